@@ -1,0 +1,36 @@
+// An angle that cannot be confused with its number of degrees: made by unit, read by unit.
+#pragma once
+
+#include <compare>
+#include <numbers>
+
+namespace kinfer {
+
+inline constexpr double degree = std::numbers::pi / 180.0;  // [rad]
+
+class Angle {
+ public:
+  constexpr Angle() = default;
+  static constexpr Angle rad(double value) { return Angle(value); }
+  static constexpr Angle deg(double value) { return Angle(value * degree); }
+  constexpr double rad() const { return rad_; }
+  constexpr double deg() const { return rad_ / degree; }
+
+  constexpr Angle operator+(Angle other) const { return Angle(rad_ + other.rad_); }
+  constexpr Angle operator-(Angle other) const { return Angle(rad_ - other.rad_); }
+  constexpr Angle operator-() const { return Angle(-rad_); }
+  constexpr Angle operator*(double factor) const { return Angle(rad_ * factor); }
+  constexpr auto operator<=>(const Angle&) const = default;
+
+ private:
+  constexpr explicit Angle(double value) : rad_(value) {}
+  double rad_ = 0.0;
+};
+
+inline namespace literals {
+constexpr Angle operator""_deg(long double value) { return Angle::deg(static_cast<double>(value)); }
+constexpr Angle operator""_deg(unsigned long long value) { return Angle::deg(static_cast<double>(value)); }
+constexpr Angle operator""_rad(long double value) { return Angle::rad(static_cast<double>(value)); }
+}  // namespace literals
+
+}  // namespace kinfer

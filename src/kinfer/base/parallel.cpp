@@ -1,0 +1,95 @@
+#include "kinfer/base/parallel.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace kinfer {
+namespace {
+
+thread_local bool inside_a_parallel_loop = false;
+
+struct Job {
+  std::size_t count = 0;
+  const std::function<void(std::size_t)>* body = nullptr;
+  std::atomic<std::size_t> next{0};
+
+  void run() {
+    inside_a_parallel_loop = true;
+    for (std::size_t i = next++; i < count; i = next++) (*body)(i);
+    inside_a_parallel_loop = false;
+  }
+};
+
+/// Workers sleep until a job is posted; `wanted` of them take part, and the poster waits for those.
+class Pool {
+ public:
+  ~Pool() {
+    {
+      const std::lock_guard lock(mutex_);
+      closing_ = true;
+    }
+    wake_.notify_all();
+    for (std::thread& worker : workers_) worker.join();
+  }
+
+  void run(Job& job, int helpers) {
+    const std::lock_guard one_job_at_a_time(posting_);
+    {
+      const std::lock_guard lock(mutex_);
+      while (static_cast<int>(workers_.size()) < helpers) workers_.emplace_back([this] { work(); });
+      job_ = &job;
+      wanted_ = helpers;
+      busy_ = helpers;
+    }
+    wake_.notify_all();
+    job.run();
+    std::unique_lock lock(mutex_);
+    done_.wait(lock, [this] { return busy_ == 0; });
+  }
+
+ private:
+  void work() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      wake_.wait(lock, [this] { return closing_ || wanted_ > 0; });
+      if (closing_) return;
+      --wanted_;
+      Job& job = *job_;
+      lock.unlock();
+      job.run();
+      lock.lock();
+      if (--busy_ == 0) done_.notify_all();
+    }
+  }
+
+  std::mutex posting_, mutex_;
+  std::condition_variable wake_, done_;
+  std::vector<std::thread> workers_;
+  Job* job_ = nullptr;
+  int wanted_ = 0, busy_ = 0;
+  bool closing_ = false;
+};
+
+}  // namespace
+
+int hardware_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
+  if (threads <= 0) threads = hardware_threads();
+  const int helpers = static_cast<int>(std::min<std::size_t>(threads, count)) - 1;
+  if (helpers <= 0 || inside_a_parallel_loop) {
+    for (std::size_t i = 0; i < count; ++i) body(i);
+    return;
+  }
+  static Pool pool;
+  Job job;
+  job.count = count;
+  job.body = &body;
+  pool.run(job, helpers);
+}
+
+}  // namespace kinfer

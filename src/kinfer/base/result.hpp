@@ -1,0 +1,34 @@
+// What a step returns when the world may err: the value, or one sentence that the user can act on.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <tl/expected.hpp>
+#include <utility>
+
+namespace kinfer {
+
+struct Error {
+  std::string what;  ///< names file, line, column and what was expected: `poses.csv:14: expected 9 columns, found 8`
+};
+
+template <class T>
+using Result = tl::expected<T, Error>;
+
+/// `return error("{}: no such file", path);` from any function that returns a Result.
+template <class... Args>
+tl::unexpected<Error> error(fmt::format_string<Args...> text, Args&&... args) {
+  return tl::unexpected<Error>(Error{fmt::format(text, std::forward<Args>(args)...)});
+}
+
+/// Hands an error on to the caller's Result type.
+inline tl::unexpected<Error> pass_on(Error failure) { return tl::unexpected<Error>(std::move(failure)); }
+
+}  // namespace kinfer
+
+/// Evaluates `expression`; returns its error from the calling function, or makes `name` its value.
+#define KINFER_TRY(name, expression)                                                     \
+  auto name##_result = (expression);                                                     \
+  if (!name##_result) return ::kinfer::pass_on(std::move(name##_result).error());        \
+  auto name = std::move(*name##_result)

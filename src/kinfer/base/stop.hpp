@@ -1,0 +1,23 @@
+// How an iteration ended: a value that can be tested, and the sentence that a user reads.
+#pragma once
+
+#include <string_view>
+
+namespace kinfer {
+
+enum class Stop {
+  converged_cost,      ///< the cost no longer falls
+  converged_step,      ///< the step is below the accuracy of the unknowns
+  converged_gradient,  ///< the gradient is zero to rounding
+  target_reached,      ///< the cost that was asked for is reached
+  budget_spent,        ///< iterations or evaluations used up
+  stalled,             ///< no damped step lowers the cost
+  not_finite,          ///< the start has no finite cost
+  cancelled,           ///< the observer asked to stop
+};
+
+std::string_view name(Stop stop);      ///< as in evidence.json: "converged_cost"
+std::string_view sentence(Stop stop);  ///< "converged: the cost no longer falls"
+bool converged(Stop stop);             ///< true for the three converged_* and for target_reached
+
+}  // namespace kinfer

@@ -1,0 +1,19 @@
+// A frame seen from another: base_T_tip maps coordinates of the tip's frame to those of the base's.
+#pragma once
+
+#include "kinfer/geometry/rotation.hpp"
+
+namespace kinfer {
+
+struct Pose {
+  Mat3 rotation = Mat3::Identity();
+  Vec3 position = Vec3::Zero();  ///< [m]
+
+  Pose operator*(const Pose& next) const { return {rotation * next.rotation, rotation * next.position + position}; }
+  Vec3 operator*(const Vec3& point) const { return rotation * point + position; }
+  Pose inverse() const { return {rotation.transpose(), -(rotation.transpose() * position)}; }
+
+  static Pose from_xyz_rpy(const Vec3& xyz, const Vec3& rpy) { return {from_rpy(rpy), xyz}; }
+};
+
+}  // namespace kinfer

@@ -1,0 +1,50 @@
+// The few dense decompositions of the house behind plain functions: Eigen's templates are compiled once, here.
+#pragma once
+
+#include <optional>
+
+#include "kinfer/linalg/types.hpp"
+
+namespace kinfer {
+
+/// a = u diag(s) vᵀ, thin, singular values descending.
+struct Svd {
+  MatrixXd u;  ///< m x k, k = min(m, n)
+  VectorXd s;  ///< k
+  MatrixXd v;  ///< n x k
+};
+Svd svd(ConstMatrixRef a);
+
+/// Singular values and right singular vectors only; tall matrices are reduced by QR first. v is n x n.
+struct RightSvd {
+  VectorXd s;  ///< n, descending; zeros where a has fewer rows than columns
+  MatrixXd v;  ///< n x n
+};
+RightSvd right_svd(ConstMatrixRef a);
+
+/// a = vectors diag(values) vectorsᵀ of a symmetric matrix (lower half read), values ascending.
+struct SymmetricEigen {
+  VectorXd values;
+  MatrixXd vectors;
+};
+SymmetricEigen symmetric_eigen(ConstMatrixRef a);
+
+/// x of a x = b for symmetric positive definite a (lower half read); nothing where a is not.
+std::optional<VectorXd> solve_positive(ConstMatrixRef a, ConstVectorRef b);
+
+/// a⁻¹ of a symmetric positive definite matrix; nothing where it is not.
+std::optional<MatrixXd> inverse_positive(ConstMatrixRef a);
+
+/// l with a = l lᵀ, lower triangular; nothing where a is not positive definite.
+std::optional<MatrixXd> cholesky(ConstMatrixRef a);
+
+/// Least-squares solution of smallest norm; singular values below `cut` times the largest count as zero.
+VectorXd solve_least_squares(ConstMatrixRef a, ConstVectorRef b, double cut = 1e-12);
+
+/// x of a x = b for a general square matrix, by LU with partial pivoting.
+VectorXd solve_square(ConstMatrixRef a, ConstVectorRef b);
+
+/// Upper triangular r of a = q r, with min(m, n) rows.
+MatrixXd triangular_factor(ConstMatrixRef a);
+
+}  // namespace kinfer

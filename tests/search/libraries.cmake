@@ -1,0 +1,3 @@
+# Ceres is the independent judge of the Levenberg-Marquardt solver; tests only.
+find_package(Ceres REQUIRED)
+set(KINFER_TEST_LIBRARIES Ceres::ceres nlohmann_json::nlohmann_json)
