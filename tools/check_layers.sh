@@ -3,15 +3,15 @@
 set -euo pipefail
 cd "${1:-.}/src/kinfer"
 declare -A may=(
-  [base]="" [linalg]="base" [geometry]="base linalg" [measurement]="base geometry"
-  [kinematics]="base geometry" [evidence]="base geometry kinematics" [inertial]="base geometry measurement"
+  [base]="" [linalg]="base" [geometry]="base linalg" [measurement]="base linalg geometry"
+  [kinematics]="base linalg geometry" [evidence]="base linalg geometry kinematics" [inertial]="base linalg geometry measurement"
   [search]="base linalg"
   [estimate]="base linalg geometry measurement kinematics evidence inertial search"
   [identify]="base linalg geometry measurement kinematics evidence inertial search estimate"
   [calibrate]="base linalg geometry measurement kinematics evidence search estimate"
-  [simulate]="base geometry measurement kinematics"
-  [io]="base geometry measurement kinematics evidence"
-  [report]="base geometry kinematics evidence io"
+  [simulate]="base linalg geometry measurement kinematics"
+  [io]="base linalg geometry measurement kinematics evidence"
+  [report]="base linalg geometry kinematics evidence io"
   [cli]="base linalg geometry measurement kinematics evidence inertial search estimate identify calibrate simulate io report cli"
 )
 status=0

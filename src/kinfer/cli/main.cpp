@@ -1,1 +1,39 @@
-int main() { return 0; }
+// The program: one verb a file, and the exit codes that docs/formats.md promises.
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <vector>
+
+#include "kinfer/base/version.hpp"
+#include "kinfer/cli/common.hpp"
+#include "kinfer/cli/verbs.hpp"
+
+namespace {
+
+int run(int argc, char** argv) {
+  using namespace kinfer::cli;
+  remember_command_line(argc, argv);
+  CLI::App app("kinfer: from raw measurements to a proven kinematic model", "kinfer");
+  app.set_version_flag("--version", std::string("kinfer ") + kinfer::version);
+  app.require_subcommand(1);
+  app.footer("\n`kinfer VERB --help` explains a verb and shows an example.");
+  const std::vector<Verb> verbs = add_verbs(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& parse_error) {
+    return app.exit(parse_error) == 0 ? exit_done : exit_bad_input;  // --help and --version end here too
+  }
+  for (const Verb& verb : verbs)
+    if (chosen(*verb.command)) return verb.run();
+  return exit_bad_input;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& failure) {
+    fmt::print(stderr, "kinfer: internal error: {}\n", failure.what());
+    return kinfer::cli::exit_internal;
+  }
+}

@@ -11,28 +11,28 @@ namespace kinfer {
 /// At least 3 points that are not on a line, else the turn about that line is arbitrary. Weights may be empty.
 Pose align_points(std::span<const Vec3> a, std::span<const Vec3> b, std::span<const double> weights = {});
 
-/// Rotation that minimises Σ |Aᵢ − R Bᵢ|² over pairs of rotations: chordal mean of Aᵢ Bᵢᵀ.
+/// Chordal mean: the rotation R that minimises Σ |Rᵢ − R|² (Frobenius). With Rᵢ = Aᵢ Bᵢᵀ it carries the Bᵢ to the Aᵢ.
 Mat3 mean_rotation(std::span<const Mat3> rotations);
 
 struct LineFit {
-  Vec3 point = Vec3::Zero();          ///< centroid of the points
-  Vec3 direction = Vec3::UnitZ();     ///< unit
-  double rms = 0.0;                   ///< [m] distance of the points from the line
+  Vec3 point = Vec3::Zero();       ///< centroid of the points
+  Vec3 direction = Vec3::UnitZ();  ///< unit
+  double rms = 0.0;                ///< [m] distance of the points from the line
 };
 LineFit fit_line(std::span<const Vec3> points);
 
 struct PlaneFit {
-  Vec3 point = Vec3::Zero();          ///< centroid
-  Vec3 normal = Vec3::UnitZ();        ///< unit
-  double rms = 0.0;                   ///< [m] distance of the points from the plane
+  Vec3 point = Vec3::Zero();    ///< centroid
+  Vec3 normal = Vec3::UnitZ();  ///< unit
+  double rms = 0.0;             ///< [m] distance of the points from the plane
 };
 PlaneFit fit_plane(std::span<const Vec3> points);
 
 struct CircleFit {
   Vec3 center = Vec3::Zero();
-  Vec3 normal = Vec3::UnitZ();        ///< unit; turns from the first point to the later ones by the right-hand rule
-  double radius = 0.0;                ///< [m]
-  double rms = 0.0;                   ///< [m] distance of the points from the circle
+  Vec3 normal = Vec3::UnitZ();  ///< unit; turns from the first point to the later ones by the right-hand rule
+  double radius = 0.0;          ///< [m]
+  double rms = 0.0;             ///< [m] distance of the points from the circle
 };
 /// Plane fit, then the geometric circle in it (Gauss-Newton from Kåsa's algebraic one). At least 3 points.
 CircleFit fit_circle(std::span<const Vec3> points);

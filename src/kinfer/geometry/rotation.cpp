@@ -10,6 +10,7 @@
 namespace kinfer {
 namespace {
 
+constexpr double gimbal_lock = 1e-12;  // cosine below which the outer and the inner axis coincide to rounding
 constexpr double small_angle = 1e-4;  // [rad]; below, the series' next term is under 1e-17
 
 }  // namespace
@@ -62,12 +63,15 @@ Vec3 quat_log(const Quat& q) {
   return sign * scale * q.vec();
 }
 
-Vec3 log_so3(const Mat3& r) { return quat_log(Quat(r).normalized()); }
+Vec3 log_so3(const Mat3& r) {
+  return quat_log(Quat(r).normalized());
+}
 
 Mat3 right_jacobian(const Vec3& v) {
   const double angle2 = v.squaredNorm(), angle = std::sqrt(angle2);
   const bool small = angle < small_angle;
-  const double a = small ? 0.5 - angle2 / 24.0 : (1.0 - std::cos(angle)) / angle2;
+  const double half = std::sin(angle / 2.0);  // 1 − cos would lose half of the digits of a small angle
+  const double a = small ? 0.5 - angle2 / 24.0 : 2.0 * half * half / angle2;
   const double b = small ? 1.0 / 6.0 - angle2 / 120.0 : (angle - std::sin(angle)) / (angle2 * angle);
   const Mat3 k = skew(v);
   return Mat3::Identity() - a * k + b * k * k;
@@ -75,20 +79,30 @@ Mat3 right_jacobian(const Vec3& v) {
 
 Mat3 right_jacobian_inverse(const Vec3& v) {
   const double angle2 = v.squaredNorm(), angle = std::sqrt(angle2);
-  const double c = angle < small_angle ? 1.0 / 12.0 + angle2 / 720.0
-                                       : (1.0 - angle / 2.0 / std::tan(angle / 2.0)) / angle2;
+  const double c =
+      angle < small_angle ? 1.0 / 12.0 + angle2 / 720.0 : (1.0 - angle / 2.0 / std::tan(angle / 2.0)) / angle2;
   const Mat3 k = skew(v);
   return Mat3::Identity() + 0.5 * k + c * k * k;
 }
 
-Mat3 from_rpy(const Vec3& rpy) { return rot_z(rpy.z()) * rot_y(rpy.y()) * rot_x(rpy.x()); }
+Mat3 from_rpy(const Vec3& rpy) {
+  return rot_z(rpy.z()) * rot_y(rpy.y()) * rot_x(rpy.x());
+}
 
 Vec3 to_rpy(const Mat3& r) {
   const double cos_pitch = std::hypot(r(0, 0), r(1, 0));
   const double pitch = std::atan2(-r(2, 0), cos_pitch);
-  constexpr double gimbal_lock = 1e-9;  // below, yaw and roll turn about the same axis to rounding
   if (cos_pitch < gimbal_lock) return {0.0, pitch, std::atan2(-r(0, 1), r(1, 1))};
-  return {std::atan2(r(2, 1), r(2, 2)), pitch, std::atan2(r(1, 0), r(0, 0))};
+  // Roll is what is left when this yaw is taken off: near the lock each is uncertain, but not the two together.
+  const double yaw = std::atan2(r(1, 0), r(0, 0)), c = std::cos(yaw), s = std::sin(yaw);
+  return {std::atan2(s * r(0, 2) - c * r(1, 2), c * r(1, 1) - s * r(0, 1)), pitch, yaw};
+}
+
+Vec3 to_intrinsic_xyz(const Mat3& r) {
+  const double cosine = std::hypot(r(0, 0), r(0, 1));
+  const double b = std::atan2(r(0, 2), cosine);
+  if (cosine < gimbal_lock) return {std::atan2(r(2, 1), r(1, 1)), b, 0.0};
+  return {std::atan2(-r(1, 2), r(2, 2)), b, std::atan2(-r(0, 1), r(0, 0))};
 }
 
 std::optional<EulerSequence> parse_euler_sequence(std::string_view text) {
@@ -133,8 +147,12 @@ Vec3 any_perpendicular(const Vec3& v) {
   return v.cross(Vec3::Unit(smallest)).normalized();
 }
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
 
-double angle_between(const Mat3& a, const Mat3& b) { return log_so3(a.transpose() * b).norm(); }
+double angle_between(const Mat3& a, const Mat3& b) {
+  return log_so3(a.transpose() * b).norm();
+}
 
 }  // namespace kinfer

@@ -38,6 +38,9 @@ Mat3 from_rpy(const Vec3& roll_pitch_yaw);
 /// Roll, pitch, yaw of R; at pitch = ±90° roll is set to 0 (only yaw ∓ roll is known there).
 Vec3 to_rpy(const Mat3& r);
 
+/// (a, b, c) of R = Rx(a) Ry(b) Rz(c); at b = ±90° c is set to 0.
+Vec3 to_intrinsic_xyz(const Mat3& r);
+
 /// Euler angles by the name of the sequence: "XYZ intrinsic" turns about the moving axes in this order
 /// (R = Rx(a) Ry(b) Rz(c)), "XYZ extrinsic" about the fixed ones (R = Rz(c) Ry(b) Rx(a)).
 struct EulerSequence {
@@ -47,7 +50,7 @@ struct EulerSequence {
 std::optional<EulerSequence> parse_euler_sequence(std::string_view text);
 Mat3 from_euler(const EulerSequence& sequence, const Vec3& angles);
 
-/// The rotation closest to m (Frobenius norm), by the quaternion's polar iteration; m must be near a rotation.
+/// The rotation closest to m (Frobenius norm), its polar factor; m must be near a rotation (det m > 0).
 Mat3 nearest_rotation(const Mat3& m);
 
 /// Any unit vector across v; continuous almost everywhere.

@@ -7,6 +7,33 @@
 #include "kinfer/base/expect.hpp"
 
 namespace kinfer {
+namespace {
+
+/// Σ zᵏ / (a (a + 1) ... (a + k)), the lower incomplete gamma function over zᵃ e⁻ᶻ; for z < a + 1.
+double gamma_series(double a, double z) {
+  double term = 1.0 / a, sum = term;
+  for (double k = 1.0; term > 1e-17 * sum; ++k) {
+    term *= z / (a + k);
+    sum += term;
+  }
+  return sum;
+}
+
+/// The upper incomplete gamma function over zᵃ e⁻ᶻ by Lentz's evaluation of its continued fraction; for z > a + 1.
+double gamma_fraction(double a, double z) {
+  double b = z + 1.0 - a, c = 1e300, d = 1.0 / b, value = d;
+  for (int k = 1; k < 100000; ++k) {
+    const double numerator = -k * (k - a);
+    b += 2.0;
+    d = 1.0 / (numerator * d + b);
+    c = b + numerator / c;
+    value *= c * d;
+    if (std::abs(c * d - 1.0) < 1e-16) break;
+  }
+  return value;
+}
+
+}  // namespace
 
 double mean(std::span<const double> values) {
   if (values.empty()) return 0.0;
@@ -39,7 +66,9 @@ double quantile(std::vector<double> values, double fraction) {
   return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
+double median(std::vector<double> values) {
+  return quantile(std::move(values), 0.5);
+}
 
 double robust_sd(std::vector<double> values) {
   const double center = median(values);
@@ -47,7 +76,9 @@ double robust_sd(std::vector<double> values) {
   return 1.4826 * median(std::move(values));
 }
 
-double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
+double normal_cdf(double x) {
+  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
+}
 
 double normal_quantile(double p) {
   KINFER_EXPECT(p > 0.0 && p < 1.0, "p = {}", p);
@@ -59,9 +90,23 @@ double normal_quantile(double p) {
   return 0.5 * (low + high);
 }
 
+double chi_squared_cdf(double x, double n) {
+  KINFER_EXPECT(n > 0.0, "{} degrees of freedom", n);
+  if (x <= 0.0) return 0.0;
+  const double a = 0.5 * n, z = 0.5 * x;
+  const double factor = std::exp(a * std::log(z) - z - std::lgamma(a));
+  return z < a + 1.0 ? factor * gamma_series(a, z) : 1.0 - factor * gamma_fraction(a, z);
+}
+
 double chi_squared_quantile(double p, double n) {
-  const double spread = 2.0 / (9.0 * n);
-  return n * std::pow(1.0 - spread + normal_quantile(p) * std::sqrt(spread), 3);
+  KINFER_EXPECT(p > 0.0 && p < 1.0, "p = {}", p);
+  double low = 0.0, high = n;
+  while (chi_squared_cdf(high, n) < p) high *= 2.0;
+  for (int i = 0; i < 200 && high - low > 1e-14 * high; ++i) {
+    const double middle = 0.5 * (low + high);
+    (chi_squared_cdf(middle, n) < p ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
 }
 
 }  // namespace kinfer

@@ -6,9 +6,9 @@
 
 namespace kinfer {
 
-double mean(std::span<const double> values);     ///< 0 for an empty list
-double rms(std::span<const double> values);      ///< 0 for an empty list
-double standard_deviation(std::span<const double> values);  ///< n − 1 below; 0 for fewer than 2
+double mean(std::span<const double> values);                   ///< 0 for an empty list
+double rms(std::span<const double> values);                    ///< 0 for an empty list
+double standard_deviation(std::span<const double> values);     ///< n − 1 below; 0 for fewer than 2
 double quantile(std::vector<double> values, double fraction);  ///< linear between ranks; `values` must not be empty
 double median(std::vector<double> values);
 
@@ -19,7 +19,11 @@ double robust_sd(std::vector<double> values);
 double normal_cdf(double x);
 double normal_quantile(double p);
 
-/// Value below which a chi-squared variable of n degrees of freedom lies with probability p (Wilson-Hilferty).
+/// Value below which a chi-squared variable of n degrees of freedom lies with probability p in (0, 1).
 double chi_squared_quantile(double p, double n);
+
+/// Probability that a chi-squared variable of n > 0 degrees of freedom is below x: the regularised incomplete gamma
+/// function P(n/2, x/2), by its series or its continued fraction (Abramowitz and Stegun 6.5.29, 6.5.31).
+double chi_squared_cdf(double x, double n);
 
 }  // namespace kinfer

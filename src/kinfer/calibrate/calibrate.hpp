@@ -1,0 +1,43 @@
+// From a nominal model and outside measurements to a corrected model, proven on poses that were not fitted.
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "kinfer/base/observer.hpp"
+#include "kinfer/base/result.hpp"
+#include "kinfer/base/rng.hpp"
+#include "kinfer/evidence/calibration.hpp"
+#include "kinfer/measurement/pose_set.hpp"
+#include "kinfer/measurement/split.hpp"
+
+namespace kinfer {
+
+/// All that is known beforehand, and what was measured.
+struct CalibrateTask {
+  Chain nominal;
+  Tolerances tolerances;
+  std::optional<Instrument> instrument;   ///< absent: judged from the residuals
+  PoseSet data;
+};
+
+struct AutoParameters {};                                     ///< the complete geometric set with tolerance priors
+struct Paper24Parameters {};                                  ///< paper 2, table 2; base and tool as given
+struct NamedParameters { std::vector<std::string> names; };
+using ParameterChoice = std::variant<AutoParameters, Paper24Parameters, NamedParameters>;
+
+struct CrossValidation { int folds = 5; };                    ///< every row is held out once; the result is fitted on all rows
+struct HeldOutFraction { double fraction = 0.2; };            ///< random rows are never fitted
+struct HeldOutByLabel {};                                     ///< rows labelled `holdout` in the data are never fitted
+using HoldoutChoice = std::variant<CrossValidation, HeldOutFraction, HeldOutByLabel>;
+
+struct CalibrateOptions {
+  ParameterChoice parameters = AutoParameters{};
+  HoldoutChoice holdout = CrossValidation{};   ///< where the data carry labels, those rule unless a fraction is asked for
+  int threads = 0;                             ///< 0: all cores; the result does not depend on it
+};
+
+Result<Calibration> calibrate(const CalibrateTask& task, const CalibrateOptions& options, Rng rng,
+                              const Observer& observer = {});
+
+}  // namespace kinfer

@@ -1,0 +1,17 @@
+// Where the robot's base stands in the instrument's world and where the target sits on the flange, from the data alone:
+// no guess is needed from the user.
+#pragma once
+
+#include "kinfer/base/result.hpp"
+#include "kinfer/kinematics/chain.hpp"
+#include "kinfer/measurement/pose_set.hpp"
+
+namespace kinfer {
+
+/// `nominal` with base and tool replaced by those that explain the data best with all other numbers as they are.
+/// Positions: rigid alignment (Kabsch) for the nominal tool, then base and tool position together under a robust loss.
+/// Orientations: base and tool turn by the relative rotations (Park & Martin 1994) first.
+/// An error where the poses are too few or do not move.
+Result<Chain> with_frames_from_data(const Chain& nominal, const PoseSet& data);
+
+}  // namespace kinfer

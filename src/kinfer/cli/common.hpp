@@ -1,0 +1,87 @@
+// What every verb shares: common options, exit codes, output folders, progress, run.json.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "kinfer/base/observer.hpp"
+#include "kinfer/base/result.hpp"
+#include "kinfer/cli/arguments.hpp"
+
+namespace kinfer::cli {
+
+enum ExitCode { exit_done = 0, exit_do_not_use = 1, exit_bad_input = 2, exit_internal = 3 };
+
+struct CommonOptions {
+  bool json = false;
+  bool quiet = false;
+  int threads = 0;
+  std::uint64_t seed = 1;
+};
+/// Adds --json, --quiet, --threads, --seed to a verb.
+void add_common_options(CLI::App& verb, CommonOptions& options);
+
+/// Prints "kinfer: sentence" to stderr and gives exit_bad_input.
+int fail(const Error& error);
+
+
+/// The folder of a run's results: made and proved writable before anything is computed, and taken away again, where it is
+/// still empty and was not there before, when the run failed.
+class OutputFolder {
+ public:
+  static Result<OutputFolder> make(const std::filesystem::path& path);
+  ~OutputFolder();
+  OutputFolder(OutputFolder&& other) noexcept;
+  OutputFolder& operator=(OutputFolder&&) = delete;
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  OutputFolder(std::filesystem::path path, std::vector<std::filesystem::path> made)
+      : path_(std::move(path)), made_(std::move(made)) {}
+  std::filesystem::path path_;
+  std::vector<std::filesystem::path> made_;  ///< folders that did not exist before, innermost first
+};
+
+/// A verb that has been added to the program: what runs when it was chosen.
+struct Verb {
+  CLI::App* command = nullptr;
+  std::function<int()> run;
+};
+
+/// Stage, iteration and best value on one line of stderr; silent unless stderr is a terminal. Erased when done.
+class ProgressLine {
+ public:
+  explicit ProgressLine(const CommonOptions& options);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  Observer observer();
+
+ private:
+  bool shown_ = false;
+  std::chrono::steady_clock::time_point last_{};
+};
+
+/// What differs from run to run and so stays out of evidence.json: command, time, threads, paths.
+class RunRecord {
+ public:
+  RunRecord(std::string verb, const CommonOptions& options);
+  void add_input(const std::filesystem::path& path);
+  Result<void> write(const std::filesystem::path& folder) const;
+
+ private:
+  std::string verb_;
+  CommonOptions options_;
+  std::vector<std::string> inputs_;
+  std::chrono::system_clock::time_point begin_;
+};
+
+/// Remembers the program's arguments for run.json.
+void remember_command_line(int argc, char** argv);
+
+}  // namespace kinfer::cli

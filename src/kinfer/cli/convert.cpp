@@ -1,0 +1,40 @@
+// kinfer convert: between model formats, by the endings of the file names.
+#include <memory>
+
+#include "kinfer/cli/robot_option.hpp"
+#include "kinfer/cli/verbs.hpp"
+#include "kinfer/io/text_file.hpp"
+#include "kinfer/io/urdf.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+struct Options {
+  RobotOption in;
+  std::string out;
+};
+
+int run(const Options& options) {
+  const auto robot = read_robot(options.in);
+  if (!robot) return fail(robot.error());
+  const std::string ending = std::filesystem::path(options.out).extension().string();
+  std::string text;
+  if (ending == ".urdf" || ending == ".xml") text = urdf(robot->chain);
+  else if (ending == ".toml") text = robot_toml(*robot);
+  else return fail({fmt::format("{}: expected an ending .toml or .urdf", options.out)});
+  const auto done = write_text_file(options.out, text);
+  return done ? exit_done : fail(done.error());
+}
+
+}  // namespace
+
+Verb add_convert(CLI::App& app) {
+  CLI::App* verb = add_command(app, "convert", "Turn a robot model into another format: TOML, URDF",
+                               "Example:\n  kinfer convert calibration/chain.toml robot.urdf");
+  auto options = std::make_shared<Options>();
+  add_robot_option(*verb, options->in, "in", "Model to read: .toml or .urdf");
+  add_text(*verb, "out", options->out, "Model to write: .toml or .urdf", Need::required, "FILE");
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,80 @@
+// kinfer inspect: what was understood of a file, and what is wrong with it, before any fit.
+#include <cmath>
+#include <memory>
+
+#include "kinfer/calibrate/excitation.hpp"
+#include "kinfer/cli/robot_option.hpp"
+#include "kinfer/cli/verbs.hpp"
+#include "kinfer/io/pose_set_csv.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+struct Options {
+  RobotOption robot;
+  std::string columns;
+  std::vector<std::string> files;
+};
+
+std::string joint_table(const std::vector<JointExcitation>& joints) {
+  std::string text = fmt::format("  {:<16} {:>10} {:>10} {:>10}\n", "joint", "from", "to", "sd");
+  for (const JointExcitation& j : joints) {
+    const double factor = j.turns ? 1.0 / degree : 1e3;
+    text += fmt::format("  {:<16} {:>10.2f} {:>10.2f} {:>10.2f} {}\n", j.name, factor * j.lowest, factor * j.highest,
+                        factor * j.sd, j.turns ? "deg" : "mm");
+  }
+  return text;
+}
+
+std::string measured_line(const PoseSet& set) {
+  std::string text;
+  const auto add = [&](std::size_t n, const char* what) {
+    if (n > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, what);
+  };
+  add(set.points.size(), "positions");
+  add(set.orientations.size(), "orientations");
+  add(set.distances.size(), "distances from anchors");
+  add(set.contacts.size(), "socket contacts");
+  add(set.pairs.size(), "pairwise distances");
+  add(set.plane_contacts.size(), "plane contacts");
+  add(set.tilts.size(), "tilts");
+  return text;
+}
+
+int inspect_pose_set(const std::string& file, const RobotModel& robot, const ColumnMap& map) {
+  const auto set = read_pose_set(file, robot.chain, map);
+  if (!set) return fail(set.error());
+  fmt::print("{}: {} poses of {} joints; measured: {}\n", file, set->rows(), set->joints.rows(), measured_line(*set));
+  const std::vector<JointExcitation> joints = joint_excitation(robot.chain, *set);
+  fmt::print("{}", joint_table(joints));
+  for (const std::string& finding : findings(*set, joints)) fmt::print("  ! {}\n", finding);
+  return exit_done;
+}
+
+int run(const Options& options) {
+  const auto robot = read_robot(options.robot);
+  if (!robot) return fail(robot.error());
+  ColumnMap map;
+  if (!options.columns.empty()) {
+    const auto from_file = read_column_map(options.columns);
+    if (!from_file) return fail(from_file.error());
+    map = *from_file;
+  }
+  for (const std::string& file : options.files)
+    if (const int code = inspect_pose_set(file, *robot, map); code != exit_done) return code;
+  return exit_done;
+}
+
+}  // namespace
+
+Verb add_inspect(CLI::App& app) {
+  CLI::App* verb = add_command(app, "inspect", "What was understood of a file, and what is wrong with it, before any fit",
+                               "Example:\n  kinfer inspect poses.csv --robot robot.toml");
+  auto options = std::make_shared<Options>();
+  add_robot_option(*verb, options->robot, "--robot", "Robot of a pose set: TOML or URDF");
+  add_texts(*verb, "files", options->files, "Pose sets", Need::required, "CSV");
+  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional, "TOML");
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace kinfer::cli

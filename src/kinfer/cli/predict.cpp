@@ -1,0 +1,64 @@
+// kinfer predict: forward kinematics of any chain for any file with the joint columns.
+#include <memory>
+
+#include "kinfer/cli/robot_option.hpp"
+#include "kinfer/cli/verbs.hpp"
+#include "kinfer/io/pose_set_csv.hpp"
+#include "kinfer/io/predictions_csv.hpp"
+#include "kinfer/io/text_file.hpp"
+#include "kinfer/kinematics/forward.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+struct Options {
+  RobotOption chain;
+  std::string joints, out, columns;
+};
+
+std::vector<Pose> predicted_poses(const Chain& chain, const PoseSet& set) {
+  const PoseEvaluator evaluator(chain, {});
+  std::vector<Pose> poses;
+  for (Eigen::Index row = 0; row < set.rows(); ++row)
+    poses.push_back(evaluator.pose(set.joints.col(row), {.payload = set.payload.empty() ? 0.0 : set.payload[row]}));
+  return poses;
+}
+
+int run(const Options& options) {
+  const auto robot = read_robot(options.chain);
+  if (!robot) return fail(robot.error());
+  ColumnMap map;
+  if (!options.columns.empty()) {
+    const auto from_file = read_column_map(options.columns);
+    if (!from_file) return fail(from_file.error());
+    map = *from_file;
+  }
+  const auto set = read_pose_set(options.joints, robot->chain, map, Expect::joints_only);
+  if (!set) return fail(set.error());
+  const std::vector<Pose> poses = predicted_poses(robot->chain, *set);
+  const auto text = predictions_csv(poses, *set, robot->chain.base.pose(), robot->anchors);
+  if (!text) return fail(text.error());
+  if (options.out.empty() || options.out == "-") {
+    fmt::print("{}", *text);
+    return exit_done;
+  }
+  const auto done = write_text_file(options.out, *text);
+  return done ? exit_done : fail(done.error());
+}
+
+}  // namespace
+
+Verb add_predict(CLI::App& app) {
+  CLI::App* verb = add_command(app, "predict", "Tool poses of a chain for a list of joint readings",
+                               "Example:\n  kinfer predict --chain calibration/chain.toml --joints joints.csv -o poses.csv");
+  auto options = std::make_shared<Options>();
+  add_robot_option(*verb, options->chain, "--chain", "Chain: chain.toml, a robot TOML, or URDF");
+  add_text(*verb, "--joints", options->joints, "File with the joint columns q1..; other columns may be there", Need::required,
+           "CSV");
+  add_text(*verb, "-o,--out", options->out, "Where to write x,y,z,qw,qx,qy,qz [m] (default: standard output)", Need::optional,
+           "CSV");
+  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional, "TOML");
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace kinfer::cli

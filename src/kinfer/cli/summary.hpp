@@ -1,0 +1,15 @@
+// What a run prints when it is done: the verdict and a compact table.
+#pragma once
+
+#include <string>
+
+#include "kinfer/evidence/calibration.hpp"
+
+namespace kinfer::cli {
+
+std::string calibration_summary(const Calibration& calibration);
+
+/// "mean 0.020  rms 0.023  max 0.043 mm over 50"
+std::string statistics_line(const ErrorStatistics& statistics);
+
+}  // namespace kinfer::cli

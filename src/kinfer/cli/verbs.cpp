@@ -1,0 +1,10 @@
+#include "kinfer/cli/verbs.hpp"
+
+namespace kinfer::cli {
+
+std::vector<Verb> add_verbs(CLI::App& app) {
+  return {add_inspect(app),  add_calibrate(app), add_predict(app),
+          add_verify(app),   add_convert(app),   add_simulate_poses(app)};
+}
+
+}  // namespace kinfer::cli

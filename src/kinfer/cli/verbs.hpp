@@ -1,0 +1,18 @@
+// The list of verbs. A new verb is a file of its own, a line here and a line in verbs.cpp.
+#pragma once
+
+#include "kinfer/cli/common.hpp"
+
+namespace kinfer::cli {
+
+Verb add_calibrate(CLI::App& app);
+Verb add_predict(CLI::App& app);
+Verb add_verify(CLI::App& app);
+Verb add_inspect(CLI::App& app);
+Verb add_convert(CLI::App& app);
+Verb add_simulate_poses(CLI::App& app);
+
+/// Adds every verb to the program, in the order of its help text.
+std::vector<Verb> add_verbs(CLI::App& app);
+
+}  // namespace kinfer::cli

@@ -1,0 +1,22 @@
+// What a result was made from, enough to make it again; nothing that differs from run to run.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kinfer {
+
+struct InputFile {
+  std::string name;     ///< without folders
+  std::string sha256;
+};
+
+struct Provenance {
+  std::vector<InputFile> inputs;
+  std::vector<std::pair<std::string, std::string>> options;   ///< as given, --name and value
+  std::uint64_t seed = 1;
+};
+
+}  // namespace kinfer

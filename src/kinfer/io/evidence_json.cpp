@@ -1,0 +1,112 @@
+#include "kinfer/io/evidence_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "kinfer/base/version.hpp"
+
+namespace kinfer {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json array_of(const VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
+
+Json array_of(const MatrixXd& matrix) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) rows.push_back(array_of(VectorXd(matrix.row(i).transpose())));
+  return rows;
+}
+
+Json json_of(const ErrorStatistics& s) {
+  return {{"mean", s.mean}, {"rms", s.rms}, {"sd", s.sd}, {"max", s.max}, {"n", s.n}};
+}
+
+Json json_of(const ChainFit& fit) {
+  Json json{{"train", json_of(fit.position.train)}, {"holdout", json_of(fit.position.holdout)}};
+  if (fit.orientation.train.n > 0)
+    json["orientation_rad"] = {{"train", json_of(fit.orientation.train)}, {"holdout", json_of(fit.orientation.holdout)}};
+  return json;
+}
+
+Json parameters_json(const Estimate& estimate) {
+  Json list = Json::array();
+  for (const ParameterEstimate& p : estimate.values)
+    list.push_back({{"name", p.name}, {"nominal", p.nominal}, {"value", p.value}, {"sd", p.sd},
+                    {"unit", unit(p.quantity)}, {"identifiable", p.identifiable}});
+  return list;
+}
+
+Json outliers_json(const std::vector<Outlier>& outliers) {
+  Json list = Json::array();
+  for (const Outlier& o : outliers) list.push_back({{"row", o.row}, {"line", o.line}, {"reason", o.reason}});
+  return list;
+}
+
+Json rows_json(const std::vector<RowErrors>& rows) {
+  Json row = Json::array(), before = Json::array(), after = Json::array(), fitted = Json::array(), held = Json::array();
+  for (const RowErrors& r : rows) {
+    row.push_back(r.row);
+    before.push_back(finite(r.before));
+    after.push_back(finite(r.after));
+    fitted.push_back(finite(r.fitted));
+    held.push_back(r.held_out);
+  }
+  return {{"row", row}, {"before", before}, {"after", after}, {"fitted", fitted}, {"held_out", held}};
+}
+
+Json search_json(const Search& search) {
+  return {{"engine", search.method}, {"iterations", search.iterations}, {"evaluations", search.evaluations},
+          {"stop", name(search.stop)}, {"stop_words", sentence(search.stop)}, {"cost", finite(search.cost)},
+          {"best", search.best}, {"median", search.median}};
+}
+
+Json provenance_json(const Provenance& provenance) {
+  Json inputs = Json::array(), options = Json::object();
+  for (const InputFile& input : provenance.inputs) inputs.push_back({{"name", input.name}, {"sha256", input.sha256}});
+  for (const auto& [key, value] : provenance.options) options[key] = value;
+  return {{"version", version}, {"seed", provenance.seed}, {"options", options}, {"inputs", inputs}};
+}
+
+}  // namespace
+
+std::string calibration_json(const Calibration& c, const Provenance& provenance) {
+  const Estimate& e = c.estimate;
+  Json json;
+  json["format"] = "kinfer-evidence/1";
+  json["kind"] = "calibrate";
+  json["verdict"] = c.verdict;
+  json["use"] = c.use;
+  json["notes"] = c.notes;
+  json["holdout"] = c.holdout;
+  json["nominal"] = json_of(c.nominal);
+  json["before"] = json_of(c.before);
+  json["after"] = json_of(c.after);
+  json["predicted_error"] = e.predicted_error;
+  json["sigma"] = e.sigma;
+  json["sigma_angle"] = e.sigma_angle;
+  json["chi2_per_n"] = e.chi2_per_n ? Json(*e.chi2_per_n) : Json(nullptr);
+  json["parameters"] = parameters_json(e);
+  json["rank"] = e.identifiability.rank;
+  json["singular_values"] = array_of(e.identifiability.singular_values);
+  json["confounded"] = e.identifiability.confounded;
+  json["outliers"] = outliers_json(e.outliers);
+  json["model"] = {{"rungs", {{{"name", "geometry"}, {"train", json_of(c.after.position.train)},
+                               {"holdout", json_of(c.after.position.holdout)}, {"chosen", true}}}}};
+  json["search"] = search_json(e.search);
+  json["covariance"] = array_of(e.covariance);
+  json["rows"] = rows_json(c.rows);
+  json["provenance"] = provenance_json(provenance);
+  return json.dump(1) + "\n";
+}
+
+std::string calibration_headline_json(const Calibration& c) {
+  const Json json{{"verdict", c.verdict}, {"use", c.use}, {"before", json_of(c.before)}, {"after", json_of(c.after)},
+                  {"rank", c.estimate.identifiability.rank}, {"outliers", c.estimate.outliers.size()},
+                  {"predicted_error", c.estimate.predicted_error}};
+  return json.dump() + "\n";
+}
+
+}  // namespace kinfer

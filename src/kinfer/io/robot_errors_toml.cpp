@@ -1,0 +1,61 @@
+#include "kinfer/io/robot_errors_toml.hpp"
+
+#include "kinfer/io/text_file.hpp"
+#include "kinfer/io/toml_tree.hpp"
+
+namespace kinfer {
+namespace {
+
+struct Scales {
+  double length = 1.0, angle = 1.0;
+};
+
+Scales read_units(TableReader& root, Complaint& complaint) {
+  Scales scales;
+  const TomlTable* units = root.table_or_none("units");
+  if (!units) return scales;
+  TableReader reader(*units, root.line_of("units"), "units: ", complaint);
+  const auto factor = [&](const char* key, Dimension dimension, const char* si) {
+    const auto found = find_unit(reader.text_or(key, si));
+    if (!found || found->dimension != dimension)
+      reader.complain(reader.line_of(key), fmt::format("{}: expected {}", key, describe(dimension)));
+    return found ? found->factor : 1.0;
+  };
+  scales.length = factor("length", Dimension::length, "m");
+  scales.angle = factor("angle", Dimension::angle, "rad");
+  reader.expect_no_other_keys();
+  return scales;
+}
+
+double in_si(Quantity quantity, const Scales& scales) {
+  if (quantity == Quantity::length) return scales.length;
+  return quantity == Quantity::angle ? scales.angle : 1.0;
+}
+
+}  // namespace
+
+Result<Chain> read_robot_errors(const std::filesystem::path& path, const RobotModel& robot) {
+  KINFER_TRY(text, read_text_file(path));
+  const std::string name = path.filename().string();
+  KINFER_TRY(table, parse_toml(text, name));
+  Complaint complaint(name);
+  TableReader root(table, 1, "", complaint);
+  const Scales scales = read_units(root, complaint);
+  const TomlTable* errors = root.table_or_none("errors");
+  root.expect_no_other_keys();
+  if (!errors && !complaint.any()) return error("{}: expected a table [errors] with name = value by parameter name", name);
+  if (complaint.any()) return pass_on(complaint.as_error());
+
+  const ParameterSet all = all_parameters(robot.chain, robot.tolerances);
+  TableReader reader(*errors, root.line_of("errors"), "errors: ", complaint);
+  Chain truth = robot.chain;
+  for (const auto& [key, value] : errors->entries) {
+    const Parameter* parameter = all.find(key);
+    if (!parameter) return error("{}:{}: errors: no parameter of this robot is called \"{}\"", name, value.line, key);
+    set_value_at(truth, parameter->at, parameter->nominal + in_si(parameter->quantity, scales) * reader.number(key));
+  }
+  if (complaint.any()) return pass_on(complaint.as_error());
+  return truth;
+}
+
+}  // namespace kinfer

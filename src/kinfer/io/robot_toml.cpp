@@ -1,0 +1,314 @@
+#include "kinfer/io/robot_toml.hpp"
+
+#include <algorithm>
+
+#include "kinfer/base/angle.hpp"
+#include "kinfer/io/text_file.hpp"
+#include "kinfer/io/toml_tree.hpp"
+
+namespace kinfer {
+namespace {
+
+enum class Convention { dh, mdh, urdf };
+
+constexpr const char* known_conventions = "\"dh\", \"mdh\" or \"urdf\"";
+constexpr const char* base_name = "base";  // as a parent, unless a joint has this name; "" always is the base
+
+struct Scales {
+  double length = 1.0;  ///< [m]
+  double angle = 1.0;   ///< [rad]
+};
+
+double scale_of(TableReader& units, std::string_view key, Dimension dimension) {
+  const std::string name = units.text_or(key, dimension == Dimension::length ? "m" : "rad");
+  const auto unit = find_unit(name);
+  if (unit && unit->dimension == dimension) return unit->factor;
+  units.complain(units.line_of(key), fmt::format("\"{}\": expected {}, found \"{}\"", key, describe(dimension), name));
+  return 1.0;
+}
+
+Scales read_scales(TableReader& file, Complaint& complaint) {
+  const TomlTable* table = file.table_or_none("units");
+  if (!table) return {};
+  TableReader units(*table, file.line_of("units"), "units: ", complaint);
+  const Scales scales{scale_of(units, "length", Dimension::length), scale_of(units, "angle", Dimension::angle)};
+  units.expect_no_other_keys();
+  return scales;
+}
+
+Convention read_convention(TableReader& table, std::optional<Convention> absent) {
+  if (absent && !table.has("convention")) return table.ignore("convention"), *absent;
+  const int line = table.line_of("convention");
+  if (!table.has("convention"))
+    table.complain(line, fmt::format("\"convention\" is missing, expected {}", known_conventions));
+  const std::string name = table.text_or("convention", "mdh");
+  if (name == "dh") return Convention::dh;
+  if (name == "mdh") return Convention::mdh;
+  if (name == "urdf") return Convention::urdf;
+  table.complain(line, fmt::format("\"convention\": expected {}, found \"{}\"", known_conventions, name));
+  return Convention::mdh;
+}
+
+Frame read_frame(TableReader& file, std::string_view key, const Scales& scales, Complaint& complaint) {
+  file.ignore(std::string(key) + "_sd");
+  const TomlTable* table = file.table_or_none(key);
+  if (!table) return {};
+  TableReader frame(*table, file.line_of(key), std::string(key) + ": ", complaint);
+  const Vec3 xyz = frame.vector_or("xyz", Vec3::Zero()), rpy = frame.vector_or("rpy", Vec3::Zero());
+  frame.expect_no_other_keys();
+  return {xyz * scales.length, from_rpy(rpy * scales.angle), Vec3::Zero()};
+}
+
+DhNumbers read_dh_numbers(TableReader& row, const Scales& scales) {
+  DhNumbers numbers;
+  numbers.a = row.number("a") * scales.length;
+  numbers.alpha = row.number("alpha") * scales.angle;
+  numbers.d = row.number("d") * scales.length;
+  numbers.theta = row.number("theta") * scales.angle;
+  numbers.beta = row.number_or("beta", 0.0) * scales.angle;
+  for (const char* key : {"a_sd", "alpha_sd", "d_sd", "theta_sd", "beta_sd"}) row.ignore(key);
+  return numbers;
+}
+
+UrdfLink read_urdf_link(TableReader& row, JointType type, const Scales& scales) {
+  UrdfLink link;
+  link.origin.xyz = row.vector_or("xyz", Vec3::Zero()) * scales.length;
+  link.origin.rotation = from_rpy(row.vector_or("rpy", Vec3::Zero()) * scales.angle);
+  for (const char* key : {"xyz_sd", "turn_sd"}) row.ignore(key);
+  if (type == JointType::fixed) return row.ignore("axis"), link;
+  const Vec3 axis = row.vector("axis");
+  if (row.has("axis") && axis.norm() < 1e-9)
+    row.complain(row.line_of("axis"), "\"axis\": expected a direction, found zeros");
+  if (axis.norm() >= 1e-9) link.axis = axis.normalized();
+  return link;
+}
+
+Link read_link(TableReader& row, JointType type, Convention convention, const Scales& scales) {
+  switch (convention) {
+    case Convention::dh:
+      return DhLink{read_dh_numbers(row, scales)};
+    case Convention::mdh:
+      return MdhLink{read_dh_numbers(row, scales)};
+    case Convention::urdf:
+      return read_urdf_link(row, type, scales);
+  }
+  return MdhLink{};
+}
+
+JointType read_type(TableReader& row) {
+  const std::string type = row.text("type");
+  if (type == "prismatic") return JointType::prismatic;
+  if (type == "fixed") return JointType::fixed;
+  if (type != "revolute" && row.has("type"))
+    row.complain(row.line_of("type"),
+                 fmt::format("\"type\": expected \"revolute\", \"prismatic\" or \"fixed\", found \"{}\"", type));
+  return JointType::revolute;
+}
+
+void read_limits(TableReader& row, Joint& joint, const Scales& scales) {
+  if (!row.has("limits")) return;
+  const double scale = joint.type == JointType::prismatic ? scales.length : scales.angle;
+  const std::vector<double> limits = row.numbers("limits", 2);
+  if (limits[0] > limits[1]) row.complain(row.line_of("limits"), "\"limits\": expected [lower, upper] in this order");
+  joint.lower = limits[0] * scale;
+  joint.upper = limits[1] * scale;
+}
+
+/// All of a joint but its relations to other joints.
+Joint read_joint(TableReader& row, const std::string& default_name, Convention of_file, const Scales& scales) {
+  Joint joint;
+  joint.name = row.text_or("name", default_name);
+  if (joint.name.empty()) row.complain(row.line_of("name"), "\"name\": expected a name, found an empty text");
+  joint.type = read_type(row);
+  joint.link = read_link(row, joint.type, read_convention(row, of_file), scales);
+  joint.has_reading = joint.type == JointType::fixed ? (row.ignore("reading"), false) : row.flag_or("reading", true);
+  joint.gain = row.number_or("gain", 1.0);
+  joint.compliance = row.number_or("compliance", 0.0);
+  for (const char* key : {"gain_sd", "compliance_sd"}) row.ignore(key);
+  read_limits(row, joint, scales);
+  return joint;
+}
+
+int find_joint(const std::vector<Joint>& joints, std::string_view name) {
+  const auto found = std::find_if(joints.begin(), joints.end(), [&](const Joint& joint) { return joint.name == name; });
+  return found == joints.end() ? -1 : static_cast<int>(found - joints.begin());
+}
+
+std::string names_of(const std::vector<Joint>& joints) {
+  std::string names;
+  for (const Joint& joint : joints) names += (names.empty() ? "" : ", ") + joint.name;
+  return names;
+}
+
+/// Joint by the name under `key`; −1 and a complaint where there is none.
+int read_joint_reference(TableReader& row, std::string_view key, const std::vector<Joint>& joints) {
+  const std::string name = row.text(key);
+  const int index = find_joint(joints, name);
+  if (index < 0)
+    row.complain(row.line_of(key),
+                 fmt::format("\"{}\": no joint is named \"{}\" (there are {})", key, name, names_of(joints)));
+  return index;
+}
+
+int read_parent(TableReader& row, int self, const std::vector<Joint>& joints) {
+  if (!row.has("parent")) return row.ignore("parent"), self - 1;
+  const std::string name = row.text("parent");
+  if (name.empty() || (name == base_name && find_joint(joints, name) < 0)) return -1;
+  const int parent = read_joint_reference(row, "parent", joints);
+  if (parent >= self)
+    row.complain(row.line_of("parent"),
+                 fmt::format("\"parent\": \"{}\" must be a joint above this one, so that there is no loop",
+                             joints[parent].name));
+  return std::min(parent, self - 1);
+}
+
+std::vector<Coupling> read_couplings(TableReader& row, const std::vector<Joint>& joints, Complaint& complaint) {
+  std::vector<Coupling> couplings;
+  const TomlTable* table = row.table_or_none("coupling");
+  if (!table) return couplings;
+  TableReader reader(*table, row.line_of("coupling"), "coupling: ", complaint);
+  for (const auto& [name, value] : table->entries) {
+    const int index = find_joint(joints, name);
+    if (index < 0)
+      reader.complain(value.line, fmt::format("no joint is named \"{}\" (there are {})", name, names_of(joints)));
+    else if (!joints[index].has_reading)
+      reader.complain(value.line, fmt::format("joint \"{}\" has no reading", name));
+    couplings.push_back({index, reader.number(name)});
+  }
+  return couplings;
+}
+
+using Rows = std::vector<std::pair<const TomlTable*, int>>;
+
+void expect_distinct_names(const std::vector<Joint>& joints, const Rows& rows, Complaint& complaint) {
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    if (const int first = find_joint(joints, joints[i].name); first < static_cast<int>(i))
+      complaint.say(rows[i].second,
+                    fmt::format("joint {}: the name \"{}\" is taken by joint {}", i + 1, joints[i].name, first + 1));
+}
+
+std::vector<Joint> read_joints(TableReader& file, Convention convention, const Scales& scales, Complaint& complaint) {
+  const Rows rows = file.tables_or_none("joint");
+  if (rows.empty()) file.complain(1, "the robot has no joints, expected at least one [[joint]]");
+  std::vector<TableReader> readers;
+  std::vector<Joint> joints;
+  for (const auto& [table, line] : rows) {
+    const std::size_t number = joints.size() + 1;
+    readers.emplace_back(*table, line, fmt::format("joint {}: ", number), complaint);
+    joints.push_back(read_joint(readers.back(), fmt::format("J{}", number), convention, scales));
+  }
+  expect_distinct_names(joints, rows, complaint);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    joints[i].parent = read_parent(readers[i], static_cast<int>(i), joints);
+    joints[i].couplings = read_couplings(readers[i], joints, complaint);
+    readers[i].expect_no_other_keys();
+  }
+  return joints;
+}
+
+std::vector<Target> read_targets(TableReader& file, const Scales& scales, Complaint& complaint) {
+  std::vector<Target> targets;
+  for (const auto& [table, line] : file.tables_or_none("target")) {
+    TableReader row(*table, line, fmt::format("target {}: ", targets.size() + 1), complaint);
+    Target target{row.text("name"), row.vector("xyz") * scales.length};
+    row.ignore("xyz_sd");
+    row.expect_no_other_keys();
+    for (const Target& other : targets)
+      if (other.name == target.name) row.complain(line, fmt::format("the name \"{}\" is taken", target.name));
+    targets.push_back(std::move(target));
+  }
+  return targets;
+}
+
+std::vector<PointMass> read_masses(TableReader& file, int joints, const Scales& scales, Complaint& complaint) {
+  std::vector<PointMass> masses;
+  for (const auto& [table, line] : file.tables_or_none("mass")) {
+    TableReader row(*table, line, fmt::format("mass {}: ", masses.size() + 1), complaint);
+    const double link = row.number("link");
+    const bool known = link >= 1 && link <= joints && link == static_cast<int>(link);
+    if (row.has("link") && !known)
+      row.complain(row.line_of("link"), fmt::format("\"link\": expected a whole number from 1 to {}", joints));
+    const double mass = row.number("mass");
+    if (mass < 0) row.complain(row.line_of("mass"), "\"mass\": expected a number from 0");
+    masses.push_back({known ? static_cast<int>(link) - 1 : 0, row.vector("com") * scales.length, mass});
+    row.expect_no_other_keys();
+  }
+  return masses;
+}
+
+Tolerances read_tolerances(TableReader& file, const Scales& scales, Complaint& complaint) {
+  Tolerances tolerances;
+  const TomlTable* table = file.table_or_none("tolerance");
+  if (!table) return tolerances;
+  TableReader reader(*table, file.line_of("tolerance"), "tolerance: ", complaint);
+  const auto read = [&](std::string_view key, double& value, double scale) {
+    value = reader.positive_or(key, value / scale) * scale;
+  };
+  read("length", tolerances.length, scales.length);
+  read("angle", tolerances.angle, scales.angle);
+  read("base_length", tolerances.base_length, scales.length);
+  read("base_angle", tolerances.base_angle, scales.angle);
+  read("tool_length", tolerances.tool_length, scales.length);
+  read("tool_angle", tolerances.tool_angle, scales.angle);
+  read("gain", tolerances.gain, 1.0);
+  read("compliance", tolerances.compliance, 1.0);
+  read("anchor", tolerances.anchor, scales.length);
+  reader.expect_no_other_keys();
+  return tolerances;
+}
+
+double from_zero(TableReader& reader, std::string_view key) {
+  const double value = reader.number_or(key, 0.0);
+  if (value < 0) reader.complain(reader.line_of(key), fmt::format("\"{}\": expected a number from 0", key));
+  return value;
+}
+
+/// Nothing where sigma is absent: it is then estimated from the residuals.
+std::optional<Instrument> read_instrument(TableReader& file, const Scales& scales, Complaint& complaint) {
+  const TomlTable* table = file.table_or_none("instrument");
+  if (!table) return std::nullopt;
+  TableReader reader(*table, file.line_of("instrument"), "instrument: ", complaint);
+  reader.text_or("kind", "position");
+  Instrument instrument;
+  instrument.sigma = from_zero(reader, "sigma") * scales.length;
+  instrument.sigma_angle = from_zero(reader, "sigma_angle") * scales.angle;
+  instrument.ppm = from_zero(reader, "ppm");
+  reader.expect_no_other_keys();
+  if (!reader.has("sigma")) return std::nullopt;
+  return instrument;
+}
+
+}  // namespace
+
+Result<RobotModel> parse_robot_toml(std::string_view text, const std::string& name) {
+  KINFER_TRY(table, parse_toml(text, name));
+  Complaint complaint(name);
+  TableReader file(table, 1, "", complaint);
+  RobotModel robot;
+  Chain& chain = robot.chain;
+  chain.name = file.text_or("name", std::filesystem::path(name).stem().string());
+  const Scales scales = read_scales(file, complaint);
+  const Convention convention = read_convention(file, std::nullopt);
+  chain.base = read_frame(file, "base", scales, complaint);
+  chain.tool = read_frame(file, "tool", scales, complaint);
+  chain.gravity = file.vector_or("gravity", chain.gravity);
+  chain.joints = read_joints(file, convention, scales, complaint);
+  chain.tip = file.has("tip") ? read_joint_reference(file, "tip", chain.joints) : (file.ignore("tip"), -1);
+  chain.targets = read_targets(file, scales, complaint);
+  chain.masses = read_masses(file, static_cast<int>(chain.joints.size()), scales, complaint);
+  robot.tolerances = read_tolerances(file, scales, complaint);
+  robot.instrument = read_instrument(file, scales, complaint);
+  robot.anchors = file.vectors_or_none("anchors");
+  for (Vec3& anchor : robot.anchors) anchor *= scales.length;
+  file.ignore("anchors_sd");
+  file.expect_no_other_keys();
+  if (complaint.any()) return pass_on(complaint.as_error());
+  return robot;
+}
+
+Result<RobotModel> read_robot_toml(const std::filesystem::path& path) {
+  KINFER_TRY(text, read_text_file(path));
+  return parse_robot_toml(text, path.string());
+}
+
+}  // namespace kinfer

@@ -1,0 +1,93 @@
+#include "kinfer/io/units.hpp"
+
+#include <array>
+
+#include "kinfer/base/angle.hpp"
+
+namespace kinfer {
+namespace {
+
+struct NamedUnit {
+  std::string_view name;
+  Unit unit;
+};
+
+constexpr double standard_gravity = 9.80665;  // [m/s²]
+
+constexpr std::array named_units{
+    NamedUnit{"m", {Dimension::length, 1.0}},
+    NamedUnit{"mm", {Dimension::length, 1e-3}},
+    NamedUnit{"um", {Dimension::length, 1e-6}},
+    NamedUnit{"µm", {Dimension::length, 1e-6}},
+    NamedUnit{"rad", {Dimension::angle, 1.0}},
+    NamedUnit{"deg", {Dimension::angle, degree}},
+    NamedUnit{"mrad", {Dimension::angle, 1e-3}},
+    NamedUnit{"s", {Dimension::time, 1.0}},
+    NamedUnit{"ms", {Dimension::time, 1e-3}},
+    NamedUnit{"us", {Dimension::time, 1e-6}},
+    NamedUnit{"µs", {Dimension::time, 1e-6}},
+    NamedUnit{"kg", {Dimension::mass, 1.0}},
+    NamedUnit{"N.m", {Dimension::torque, 1.0}},
+    NamedUnit{"m/s^2", {Dimension::acceleration, 1.0}},
+    NamedUnit{"g", {Dimension::acceleration, standard_gravity}},
+    NamedUnit{"rad/s", {Dimension::angular_rate, 1.0}},
+    NamedUnit{"deg/s", {Dimension::angular_rate, degree}},
+    NamedUnit{"uT", {Dimension::magnetic_field, 1.0}},
+    NamedUnit{"µT", {Dimension::magnetic_field, 1.0}},
+    NamedUnit{"mT", {Dimension::magnetic_field, 1e3}},
+    NamedUnit{"T", {Dimension::magnetic_field, 1e6}},
+    NamedUnit{"G", {Dimension::magnetic_field, 100.0}},
+    NamedUnit{"C", {Dimension::temperature, 1.0}},
+    NamedUnit{"K", {Dimension::temperature, 1.0, -273.15}},
+    NamedUnit{"1", {Dimension::one, 1.0}},
+};
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  const auto begin = text.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
+}  // namespace
+
+std::optional<Unit> find_unit(std::string_view text) {
+  for (const NamedUnit& named : named_units)
+    if (named.name == text) return named.unit;
+  return std::nullopt;
+}
+
+std::string_view describe(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::length:
+      return "a length (m, mm, um)";
+    case Dimension::angle:
+      return "an angle (rad, deg, mrad)";
+    case Dimension::time:
+      return "a time (s, ms, us)";
+    case Dimension::mass:
+      return "a mass (kg)";
+    case Dimension::torque:
+      return "a torque (N.m)";
+    case Dimension::acceleration:
+      return "an acceleration (m/s^2, g)";
+    case Dimension::angular_rate:
+      return "an angular rate (rad/s, deg/s)";
+    case Dimension::magnetic_field:
+      return "a magnetic field (uT, mT, T, G)";
+    case Dimension::temperature:
+      return "a temperature (C, K)";
+    case Dimension::one:
+      return "a plain number (1)";
+  }
+  return "a known unit";
+}
+
+Header split_header(std::string_view header) {
+  const std::string_view text = trimmed(header);
+  const auto open = text.rfind('[');
+  if (open == std::string_view::npos || text.back() != ']') return {text, {}, false};
+  return {trimmed(text.substr(0, open)), trimmed(text.substr(open + 1, text.size() - open - 2)), true};
+}
+
+}  // namespace kinfer

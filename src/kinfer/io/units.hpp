@@ -1,0 +1,45 @@
+// Units as headers and TOML files write them, converted once, on reading.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace kinfer {
+
+enum class Dimension {
+  length,
+  angle,
+  time,
+  mass,
+  torque,
+  acceleration,
+  angular_rate,
+  magnetic_field,
+  temperature,
+  one
+};
+
+struct Unit {
+  Dimension dimension = Dimension::one;
+  double factor = 1.0;  ///< SI value = factor · (value + offset); magnetic fields are in µT
+  double offset = 0.0;
+};
+
+/// m mm um, rad deg mrad, s ms us, kg, N.m, m/s^2 g, rad/s deg/s, uT mT T G, C K, 1; nothing for any other text.
+/// "g" is the acceleration. Temperatures are read in °C.
+std::optional<Unit> find_unit(std::string_view text);
+
+/// How people call a dimension in a message: "a length (m, mm, um)".
+std::string_view describe(Dimension dimension);
+
+/// `header` "q1[deg]" -> name "q1", unit "deg"; no bracket: empty unit.
+struct Header {
+  std::string_view name, unit;
+  bool has_unit = false;
+};
+Header split_header(std::string_view header);
+
+/// Units in which files are written.
+enum class FileUnits { si, mm_deg };
+
+}  // namespace kinfer

@@ -1,0 +1,77 @@
+#include "kinfer/kinematics/chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/base/expect.hpp"
+
+namespace kinfer {
+namespace {
+
+constexpr double unit_length_slack = 1e-9;  // an axis read from a file and normalised is closer than this
+
+bool has_reading(const Joint& joint) {
+  return joint.has_reading && joint.type != JointType::fixed;
+}
+
+void fold(Frame& frame) {
+  frame = Frame::from_pose(frame.pose());
+}
+
+}  // namespace
+
+std::vector<int> joints_with_reading(const Chain& chain) {
+  std::vector<int> joints;
+  for (int j = 0; j < static_cast<int>(chain.joints.size()); ++j) {
+    if (has_reading(chain.joints[j])) joints.push_back(j);
+  }
+  return joints;
+}
+
+int dof(const Chain& chain) {
+  return static_cast<int>(std::count_if(chain.joints.begin(), chain.joints.end(), has_reading));
+}
+
+std::vector<int> path_to(const Chain& chain, int tip) {
+  std::vector<int> path;
+  for (int j = tip; j >= 0; j = chain.joints[j].parent) path.push_back(j);
+  std::reverse(path.begin(), path.end());
+  return path;
+}
+
+std::vector<std::string> reading_names(const Chain& chain) {
+  std::vector<std::string> names;
+  for (const int j : joints_with_reading(chain)) names.push_back(chain.joints[j].name);
+  return names;
+}
+
+void expect_well_formed(const Chain& chain) {
+  const int n = static_cast<int>(chain.joints.size());
+  KINFER_EXPECT(chain.tip >= -1 && chain.tip < n, "tip {} of {} joints", chain.tip, n);
+  for (int j = 0; j < n; ++j) {
+    const Joint& joint = chain.joints[j];
+    KINFER_EXPECT(joint.parent >= -1 && joint.parent < j, "parent {} of joint {}", joint.parent, j);
+    for (const Coupling& c : joint.couplings) {
+      KINFER_EXPECT(c.joint >= 0 && c.joint < n && has_reading(chain.joints[c.joint]), "joint {} coupled to {}", j,
+                    c.joint);
+    }
+    if (const auto* link = std::get_if<UrdfLink>(&joint.link)) {
+      KINFER_EXPECT(std::abs(link->axis.norm() - 1.0) < unit_length_slack, "axis of joint {} has length {}", j,
+                    link->axis.norm());
+    }
+  }
+  for (const PointMass& mass : chain.masses) {
+    KINFER_EXPECT(mass.joint >= 0 && mass.joint < n, "mass on joint {} of {}", mass.joint, n);
+  }
+}
+
+Chain with_turns_folded(Chain chain) {
+  fold(chain.base);
+  fold(chain.tool);
+  for (Joint& joint : chain.joints) {
+    if (auto* link = std::get_if<UrdfLink>(&joint.link)) fold(link->origin);
+  }
+  return chain;
+}
+
+}  // namespace kinfer

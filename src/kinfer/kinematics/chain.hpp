@@ -1,0 +1,113 @@
+// What a machine is: a tree of joints from a base to a tool, each joint a product of elementary motions.
+//
+// Standard DH (paper 1, eq. 1): RotZ(theta) TransZ(d) TransX(a) RotX(alpha) RotY(beta)
+//
+// Modified DH (paper 2, eq. 3): RotX(alpha) TransX(a) RotY(beta) RotZ(theta) TransZ(d), with a_{i-1} and alpha_{i-1}
+//
+// URDF: Trans(xyz) R(rpy), then the motion about or along `axis`
+//
+// The variable of a DH row is in theta or d. beta is Hayati's angle for nearly parallel axes (Hayati, Mirmirani 1985).
+#pragma once
+
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "kinfer/geometry/pose.hpp"
+
+namespace kinfer {
+
+/// A frame with a small turn that an estimate may change: full rotation = rotation · Rx(turn.x) Ry(turn.y) Rz(turn.z).
+/// Estimating the turn instead of roll, pitch, yaw avoids their singularity at pitch = ±90°.
+struct Frame {
+  Vec3 xyz = Vec3::Zero();  ///< [m]
+  Mat3 rotation = Mat3::Identity();
+  Vec3 turn = Vec3::Zero();  ///< [rad]
+
+  Pose pose() const { return {rotation * rot_x(turn.x()) * rot_y(turn.y()) * rot_z(turn.z()), xyz}; }
+  static Frame from_pose(const Pose& pose) { return {pose.position, pose.rotation, Vec3::Zero()}; }
+};
+
+/// The five numbers of a DH row.
+struct DhNumbers {
+  double a = 0.0;      ///< [m]
+  double alpha = 0.0;  ///< [rad]
+  double d = 0.0;      ///< [m]
+  double theta = 0.0;  ///< [rad]
+  double beta = 0.0;   ///< [rad]
+};
+struct DhLink : DhNumbers {};
+struct MdhLink : DhNumbers {};
+struct UrdfLink {
+  Frame origin;               ///< of the joint's frame in its parent's
+  Vec3 axis = Vec3::UnitZ();  ///< unit, in the joint's frame
+};
+using Link = std::variant<DhLink, MdhLink, UrdfLink>;
+
+enum class JointType { revolute, prismatic, fixed };
+
+/// Adds factor · (reading of that joint) to this joint's variable, as belts and parallel linkages do.
+struct Coupling {
+  int joint = 0;  ///< index into Chain::joints of a joint that has a reading
+  double factor = 0.0;
+};
+
+struct Joint {
+  std::string name{};
+  int parent = -1;  ///< index of the joint before it; -1: the base
+  JointType type = JointType::revolute;
+  Link link = MdhLink{};
+  bool has_reading = true;  ///< false: moves by its couplings only (URDF mimic), or not at all (fixed)
+  double gain = 1.0;        ///< variable = offset + gain · reading + couplings
+  std::vector<Coupling> couplings{};
+  double compliance = 0.0;  ///< [rad/(N m)], revolute: variable += compliance · torque of gravity about the axis
+  double lower = -std::numeric_limits<double>::infinity();  ///< limits of the reading, [rad] or [m]
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+/// A further point on the tool, in the tool's frame.
+struct Target {
+  std::string name{};
+  Vec3 xyz = Vec3::Zero();  ///< [m]
+};
+
+/// A mass that loads the joints before it.
+struct PointMass {
+  int joint = 0;            ///< index of the joint whose frame carries it
+  Vec3 com = Vec3::Zero();  ///< [m] in that frame
+  double mass = 0.0;        ///< [kg]
+};
+
+struct Chain {
+  std::string name{};
+  Frame base;                 ///< world_T_base
+  std::vector<Joint> joints;  ///< parents before children
+  Frame tool;                 ///< flange_T_tool, on the frame of joint `tip`
+  int tip = -1;               ///< index of the joint that carries the tool; -1: the last joint
+  std::vector<Target> targets;
+  std::vector<PointMass> masses;
+  Vec3 gravity = Vec3(0, 0, -9.81);  ///< [m/s²] in the world frame
+
+  int tip_joint() const { return tip >= 0 ? tip : static_cast<int>(joints.size()) - 1; }
+};
+
+/// Indices of the joints that have a reading, in order: entry k is moved by reading k.
+std::vector<int> joints_with_reading(const Chain& chain);
+
+/// Number of readings, the length of a joint vector q.
+int dof(const Chain& chain);
+
+/// Joint indices from the base to joint `tip`.
+std::vector<int> path_to(const Chain& chain, int tip);
+
+/// Names of the joints that have a reading, in the order of q.
+std::vector<std::string> reading_names(const Chain& chain);
+
+/// Stops (programmer's error) unless parents precede children and all indices are in range.
+void expect_well_formed(const Chain& chain);
+
+/// The chain with each frame's turn multiplied into its rotation: same poses, turn = 0.
+Chain with_turns_folded(Chain chain);
+
+}  // namespace kinfer

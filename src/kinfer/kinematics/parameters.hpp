@@ -1,0 +1,79 @@
+// What of a chain is identified: ONE list rules names, units, nominal values, scales, bounds, freedom and priors.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinfer/base/angle.hpp"
+#include "kinfer/kinematics/chain.hpp"
+#include "kinfer/linalg/types.hpp"
+
+namespace kinfer {
+
+enum class Quantity { length, angle, ratio, compliance };  ///< [m], [rad], [1], [rad/(N m)]
+std::string_view unit(Quantity quantity);                  ///< "m", "rad", "1", "rad/(N m)"
+
+/// Where in a chain a number lives.
+enum class Owner { base, joint, tool };
+enum class Field { x, y, z, rx, ry, rz, a, alpha, d, theta, beta, gain, compliance };
+struct Address {
+  Owner owner = Owner::joint;
+  int joint = -1;  ///< index into Chain::joints, for Owner::joint
+  Field field = Field::a;
+  bool operator==(const Address&) const = default;
+};
+
+struct Parameter {
+  std::string name{};  ///< as in FORMATS: "a6" (rows counted from 1), "theta2", "gain3", "base_x", "tool_rz", "x4" and
+                       ///< "rx4" (URDF joints)
+  Quantity quantity = Quantity::length;
+  Address at;
+  double nominal = 0.0;
+  double scale = 1.0;  ///< size of a typical error, > 0: conditions the search
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  double prior_sd = std::numeric_limits<double>::infinity();  ///< of a Gaussian prior about nominal; infinity: none
+  bool free = true;
+};
+
+/// One-sigma guess of how far the truth may lie from the nominal numbers. SI.
+struct Tolerances {
+  double length = 0.5e-3;       ///< [m]
+  double angle = 0.1 * degree;  ///< [rad]
+  double base_length = 50e-3;   ///< [m]
+  double base_angle = 2 * degree;
+  double tool_length = 2e-3;  ///< [m]
+  double tool_angle = 2 * degree;
+  double gain = 5e-4;
+  double compliance = 5e-6;  ///< [rad/(N m)]
+  double anchor = 5e-3;      ///< [m]
+};
+
+struct ParameterSet {
+  std::vector<Parameter> parameters;
+
+  Eigen::Index free_count() const;
+  const Parameter* find(std::string_view name) const;  ///< null where there is none
+  std::vector<const Parameter*> free() const;          ///< in the order of pack
+};
+
+/// Every number of the chain that can be estimated, all free, with nominal, scale and prior from the tolerances:
+/// base (x y z rx ry rz), each joint on the path to the tip (a alpha d theta beta gain compliance, or x y z rx ry rz
+/// gain compliance for URDF joints; gain only where there is a reading; compliance only for revolute joints), tool.
+ParameterSet all_parameters(const Chain& chain, const Tolerances& tolerances);
+
+/// The named parameters are freed, all others are fixed. Programmer's error if a name is unknown.
+ParameterSet with_only_free(ParameterSet set, const std::vector<std::string>& names);
+
+double value_at(const Chain& chain, const Address& address);
+void set_value_at(Chain& chain, const Address& address, double value);
+
+/// Values of the free parameters, in order.
+VectorXd pack(const ParameterSet& set, const Chain& chain);
+
+/// `nominal` with the free parameters replaced by x.
+Chain unpack(const ParameterSet& set, const Chain& nominal, ConstVectorRef x);
+
+}  // namespace kinfer

@@ -1,0 +1,115 @@
+#include "kinfer/kinematics/program.hpp"
+
+namespace kinfer::program {
+namespace {
+
+using elementary::Factor;
+using elementary::Motion;
+
+// Multiplications that a step costs: a run of small constants is merged into one transform where that is cheaper.
+constexpr int turn_cost = 12, shift_cost = 3, transform_cost = 36;
+constexpr int matrix_cost =
+    transform_cost + 1;  // a constant rotation is no elementary step: it always makes a transform
+
+/// Constant factors since the last step that had to be placed.
+struct Pending {
+  std::vector<Step> steps;
+  Pose product;
+  int cost = 0;
+};
+
+class Compiler {
+ public:
+  explicit Compiler(const std::vector<Column>& columns) : columns_(columns) {}
+
+  void walk(const Frame& frame, Owner owner) {
+    owner_ = owner;
+    elementary::for_each_factor(frame, *this);
+  }
+
+  void walk(const Joint& joint, int index) {
+    owner_ = Owner::joint;
+    joint_ = index;
+    elementary::for_each_factor(joint, *this);
+  }
+
+  void operator()(const Mat3& rotation) {
+    if (rotation == Mat3::Identity()) return;
+    pending_.product.rotation *= rotation;
+    pending_.cost += matrix_cost;
+  }
+
+  void operator()(const Factor& factor) {
+    if (factor.field) record(factor, *factor.field, Scale::one);
+    if (factor.moves) {
+      record(factor, Field::gain, Scale::reading);
+      record(factor, Field::compliance, Scale::torque);
+      flush();
+      const auto kind = factor.motion == Motion::turn ? Step::Kind::turn_joint : Step::Kind::shift_joint;
+      list_.steps.push_back({.kind = kind, .axis = factor.axis, .index = joint_, .a = factor.value});
+    } else if (factor.value != 0.0) {
+      append(factor);
+    }
+  }
+
+  StepList finish() {
+    flush();
+    return std::move(list_);
+  }
+
+ private:
+  void append(const Factor& factor) {
+    Step step{.axis = factor.axis};
+    if (factor.motion == Motion::turn) {
+      step.kind = Step::Kind::turn, step.a = std::cos(factor.value), step.b = std::sin(factor.value);
+      pending_.cost += turn_cost;
+    } else {
+      step.kind = Step::Kind::shift, step.a = factor.value;
+      pending_.cost += shift_cost;
+    }
+    pending_.steps.push_back(step);
+    elementary::apply(pending_.product, factor.motion, factor.axis, factor.value);
+  }
+
+  void record(const Factor& factor, Field field, Scale scale) {
+    for (const Column& column : columns_) {
+      if (column.at.owner != owner_ || column.at.field != field) continue;
+      if (owner_ == Owner::joint && column.at.joint != joint_) continue;
+      flush();
+      list_.steps.push_back({.kind = Step::Kind::record,
+                             .axis = factor.axis,
+                             .index = column.index,
+                             .scale = scale,
+                             .source = joint_,
+                             .motion = factor.motion});
+    }
+  }
+
+  void flush() {
+    if (pending_.cost > transform_cost) {
+      list_.steps.push_back({.kind = Step::Kind::transform, .index = static_cast<int>(list_.constants.size())});
+      list_.constants.push_back(pending_.product);
+    } else {
+      list_.steps.insert(list_.steps.end(), pending_.steps.begin(), pending_.steps.end());
+    }
+    pending_ = {};
+  }
+
+  const std::vector<Column>& columns_;
+  Owner owner_ = Owner::base;
+  int joint_ = -1;
+  Pending pending_;
+  StepList list_;
+};
+
+}  // namespace
+
+StepList compile(const Chain& chain, const std::vector<Column>& columns) {
+  Compiler compiler(columns);
+  compiler.walk(chain.base, Owner::base);
+  for (const int j : path_to(chain, chain.tip_joint())) compiler.walk(chain.joints[j], j);
+  compiler.walk(chain.tool, Owner::tool);
+  return compiler.finish();
+}
+
+}  // namespace kinfer::program

@@ -1,0 +1,85 @@
+#include "kinfer/measurement/pose_set.hpp"
+
+#include <algorithm>
+
+namespace kinfer {
+namespace {
+
+template <class T>
+std::vector<T> pick(const std::vector<T>& from, const std::vector<int>& rows) {
+  std::vector<T> picked;
+  if (from.empty()) return picked;
+  picked.reserve(rows.size());
+  for (const int row : rows) picked.push_back(from[row]);
+  return picked;
+}
+
+template <class T>
+std::vector<T> pick_measurements(const std::vector<T>& from, const std::vector<std::vector<int>>& places) {
+  std::vector<T> picked;
+  for (const T& measurement : from)
+    for (const int place : places[measurement.row]) {
+      picked.push_back(measurement);
+      picked.back().row = place;
+    }
+  return picked;
+}
+
+/// Listed twice, both rows make two pairs: the first copies together, and the second ones.
+std::vector<PairDistance> pick_pairs(const std::vector<PairDistance>& from,
+                                     const std::vector<std::vector<int>>& places) {
+  std::vector<PairDistance> picked;
+  for (const PairDistance& pair : from) {
+    const auto &rows = places[pair.row], &others = places[pair.other];
+    for (std::size_t i = 0; i < std::min(rows.size(), others.size()); ++i)
+      picked.push_back({rows[i], others[i], pair.distance});
+  }
+  return picked;
+}
+
+MatrixXd pick_columns(const MatrixXd& from, const std::vector<int>& rows) {
+  return from.cols() == 0 ? from : MatrixXd(from(Eigen::all, rows));
+}
+
+}  // namespace
+
+bool has_measurements(const PoseSet& set) {
+  return !(set.points.empty() && set.orientations.empty() && set.distances.empty() && set.contacts.empty() &&
+           set.pairs.empty() && set.plane_contacts.empty() && set.tilts.empty());
+}
+
+PoseSet select(const PoseSet& from, const std::vector<int>& rows) {
+  std::vector<std::vector<int>> places(from.rows());  // where each old row went
+  for (std::size_t i = 0; i < rows.size(); ++i) places[rows[i]].push_back(static_cast<int>(i));
+  PoseSet set;
+  set.joint_names = from.joint_names;
+  set.joints = from.joints(Eigen::all, rows);
+  set.commanded = pick_columns(from.commanded, rows);
+  set.torques = pick_columns(from.torques, rows);
+  set.points = pick_measurements(from.points, places);
+  set.orientations = pick_measurements(from.orientations, places);
+  set.distances = pick_measurements(from.distances, places);
+  set.contacts = pick_measurements(from.contacts, places);
+  set.pairs = pick_pairs(from.pairs, places);
+  set.plane_contacts = pick_measurements(from.plane_contacts, places);
+  set.tilts = pick_measurements(from.tilts, places);
+  set.targets = from.targets;
+  set.sockets = from.sockets;
+  set.planes = from.planes;
+  set.setups = from.setups;
+  set.sweeps = from.sweeps;
+  set.setup = pick(from.setup, rows);
+  set.sweep = pick(from.sweep, rows);
+  set.payload = pick(from.payload, rows);
+  set.temperature = pick(from.temperature, rows);
+  set.id = pick(from.id, rows);
+  set.set = pick(from.set, rows);
+  set.line = pick(from.line, rows);
+  return set;
+}
+
+double position_sd(const Instrument& instrument, const Vec3& position) {
+  return instrument.sigma + 1e-6 * instrument.ppm * position.norm();
+}
+
+}  // namespace kinfer

@@ -1,0 +1,114 @@
+// Joint readings of a robot and what an outside instrument measured at each pose.
+//
+// One row a pose; each kind of measurement is a list of its own that names its row, so a new instrument is a new list.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinfer/geometry/pose.hpp"
+#include "kinfer/linalg/types.hpp"
+
+namespace kinfer {
+
+/// Position of the tool point (target −1) or of a further target on the tool, in the world frame.
+struct PointMeasurement {
+  int row = 0;
+  int target = -1;               ///< index into PoseSet::targets; −1: the tool point
+  Vec3 position = Vec3::Zero();  ///< [m]
+  std::optional<Vec3> sd;        ///< [m] per axis, where the file gives it
+};
+
+/// Orientation of the tool in the world frame.
+struct OrientationMeasurement {
+  int row = 0;
+  Quat orientation = Quat::Identity();
+};
+
+/// Distance of the tool point from a fixed anchor (draw wire).
+struct DistanceMeasurement {
+  int row = 0;
+  int anchor = 0;         ///< from 0; files count from 1
+  double distance = 0.0;  ///< [m]
+};
+
+/// The tool point touches a fixed point whose place is not known.
+struct SocketContact {
+  int row = 0;
+  int socket = 0;  ///< index into PoseSet::sockets
+};
+
+/// Distance between the tool points of two poses (ball-bar).
+struct PairDistance {
+  int row = 0;
+  int other = 0;          ///< the other row, after `row`
+  double distance = 0.0;  ///< [m]
+};
+
+/// The tool point touches a plane that is not known.
+struct PlaneContact {
+  int row = 0;
+  int plane = 0;  ///< index into PoseSet::planes
+};
+
+/// Specific force felt by the tool at rest: +g upward, in the tool's frame.
+struct TiltMeasurement {
+  int row = 0;
+  Vec3 specific_force = Vec3::Zero();  ///< [m/s²]
+};
+
+/// To which side of a split a row was given by the file.
+enum class SetLabel { none, train, holdout };
+
+struct PoseSet {
+  std::vector<std::string> joint_names;  ///< of the rows of `joints`, in the order of the robot's readings
+  MatrixXd joints;                       ///< dof x rows, [rad] or [m]
+  MatrixXd commanded;                    ///< as `joints`, what the controller was told, NaN where unknown; empty: none
+  MatrixXd torques;                      ///< dof x rows, [N m] or [N], NaN where not measured; empty: none
+
+  std::vector<PointMeasurement> points;
+  std::vector<OrientationMeasurement> orientations;
+  std::vector<DistanceMeasurement> distances;
+  std::vector<SocketContact> contacts;
+  std::vector<PairDistance> pairs;
+  std::vector<PlaneContact> plane_contacts;
+  std::vector<TiltMeasurement> tilts;
+
+  std::vector<std::string> targets;  ///< names that the lists above index
+  std::vector<std::string> sockets;
+  std::vector<std::string> planes;
+  std::vector<std::string> setups;
+  std::vector<std::string> sweeps;
+
+  std::vector<int> setup;           ///< one a row, index into `setups`, −1: none; empty: none
+  std::vector<int> sweep;           ///< one a row, index into `sweeps`, −1: none; empty: none
+  std::vector<double> payload;      ///< [kg], one a row; empty: none
+  std::vector<double> temperature;  ///< [°C], one a row, NaN where not measured; empty: none
+  std::vector<std::string> id;      ///< one a row; empty: none
+  std::vector<SetLabel> set;        ///< one a row; empty: none
+  std::vector<int> line;            ///< line of each row in its file, from 1
+
+  Eigen::Index rows() const { return joints.cols(); }
+};
+
+/// True where some list of measurements is not empty.
+bool has_measurements(const PoseSet& set);
+
+/// The rows of `from` that are listed, in that order, with their measurements. A row may be listed several times; a
+/// pair stays where both of its rows are listed.
+PoseSet select(const PoseSet& from, const std::vector<int>& rows);
+
+/// What one measurement is worth, one sigma.
+struct Instrument {
+  double sigma = 0.0;        ///< [m] per axis
+  double sigma_angle = 0.0;  ///< [rad] per axis
+  double ppm = 0.0;          ///< plus this much of the distance from the world's origin, 1e-6
+};
+
+/// Standard deviation per axis of a position measured at `position` [m]: sigma + ppm · distance from the world's
+/// origin.
+double position_sd(const Instrument& instrument, const Vec3& position);
+
+}  // namespace kinfer

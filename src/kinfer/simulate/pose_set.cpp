@@ -1,0 +1,74 @@
+#include "kinfer/simulate/pose_set.hpp"
+
+#include <cmath>
+
+#include "kinfer/kinematics/forward.hpp"
+
+namespace kinfer {
+namespace {
+
+VectorXd draw_joints(const Chain& chain, const std::vector<int>& moving, Rng& rng) {
+  VectorXd q(static_cast<Eigen::Index>(moving.size()));
+  for (std::size_t k = 0; k < moving.size(); ++k) {
+    const Joint& joint = chain.joints[moving[k]];
+    const bool turns = joint.type == JointType::revolute;
+    const double low = std::isfinite(joint.lower) ? joint.lower : turns ? -170.0 * degree : 0.0;
+    const double high = std::isfinite(joint.upper) ? joint.upper : turns ? 170.0 * degree : 0.3;
+    q[static_cast<Eigen::Index>(k)] = rng.uniform(low, high);
+  }
+  return q;
+}
+
+bool in_space(const Chain& chain, const Vec3& tool_in_world, const PoseSpace& space) {
+  const Vec3 p = chain.base.pose().inverse() * tool_in_world;
+  return p.z() > space.lowest && p.head<2>().norm() > space.clearance;
+}
+
+Vec3 noise(Rng& rng, double sd) { return sd * Vec3(rng.normal(), rng.normal(), rng.normal()); }
+
+}  // namespace
+
+Chain with_random_errors(const Chain& nominal, const Tolerances& tolerances, Rng rng) {
+  Chain truth = nominal;
+  for (const Parameter& parameter : all_parameters(nominal, tolerances).parameters) {
+    if (parameter.quantity == Quantity::compliance) continue;
+    const bool revolute_gain = parameter.at.field == Field::gain &&
+                               nominal.joints[parameter.at.joint].type == JointType::revolute;
+    if (revolute_gain) continue;  // an encoder's gain is exact unless a user says otherwise
+    set_value_at(truth, parameter.at, parameter.nominal + parameter.prior_sd * rng.normal());
+  }
+  return truth;
+}
+
+Result<PoseSet> simulate_pose_set(const Chain& truth, const PoseSimulation& simulation, Rng rng) {
+  const std::vector<int> moving = joints_with_reading(truth);
+  const PoseEvaluator evaluator(truth, {});
+  PoseSet set;
+  set.joint_names = reading_names(truth);
+  set.joints.resize(static_cast<Eigen::Index>(moving.size()), simulation.poses);
+  for (int row = 0; row < simulation.poses; ++row) {
+    Rng draws = rng.stream(row);
+    constexpr int patience = 10000;
+    VectorXd q;
+    Pose pose;
+    int tries = 0;
+    do {
+      if (++tries > patience)
+        return error("none of {} random poses keeps the tool above {} m and {} m away from the base axis", patience,
+                     simulation.space.lowest, simulation.space.clearance);
+      q = draw_joints(truth, moving, draws);
+      pose = evaluator.pose(q);
+    } while (!in_space(truth, pose.position, simulation.space));
+    set.joints.col(row) = q;
+    const double sd = position_sd(simulation.instrument, pose.position);
+    set.points.push_back({.row = row, .target = -1, .position = pose.position + noise(draws, sd), .sd = {}});
+    if (simulation.measured == Measured::poses) {
+      const Quat turned = quat_exp(noise(draws, simulation.instrument.sigma_angle)) * Quat(pose.rotation);
+      set.orientations.push_back({row, turned});
+    }
+    set.line.push_back(row + 2);
+  }
+  return set;
+}
+
+}  // namespace kinfer

@@ -1,0 +1,56 @@
+// Runs the program as a user would, and looks at what it leaves behind.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace kinfer::test {
+
+namespace fs = std::filesystem;
+
+inline std::string slurp(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+inline void write(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+/// A folder of the test's own, empty at the start.
+class Program : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("kinfer_") + info->test_suite_name() + "_" + info->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path in(const std::string& name) const { return folder_ / name; }
+
+  /// Runs `kinfer arguments` inside the test's folder.
+  Outcome kinfer(const std::string& arguments) const {
+    const std::string command = "cd '" + folder_.string() + "' && '" KINFER_PROGRAM "' " + arguments + " >out.txt 2>err.txt";
+    const int status = std::system(command.c_str());
+    return {WEXITSTATUS(status), slurp(in("out.txt")), slurp(in("err.txt"))};
+  }
+
+  std::string source(const std::string& path) const { return std::string(KINFER_SOURCE_DIR) + "/" + path; }
+
+  fs::path folder_;
+};
+
+}  // namespace kinfer::test

@@ -1,0 +1,4 @@
+# MuJoCo is the independent judge of poses and motions; tests only. Its own package file would ask for OpenGL too.
+find_path(MUJOCO_INCLUDE mujoco/mujoco.h REQUIRED)
+find_library(MUJOCO_LIBRARY mujoco REQUIRED)
+set(KINFER_TEST_LIBRARIES ${MUJOCO_LIBRARY})

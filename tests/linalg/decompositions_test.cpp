@@ -1,0 +1,130 @@
+#include "kinfer/linalg/decompositions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "kinfer/base/rng.hpp"
+
+namespace kinfer {
+namespace {
+
+MatrixXd random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
+  Rng rng(seed);
+  return MatrixXd::NullaryExpr(rows, cols, [&] { return rng.normal(); });
+}
+
+MatrixXd identity(Eigen::Index n) {
+  return MatrixXd::Identity(n, n);
+}
+
+MatrixXd random_positive(Eigen::Index n, std::uint64_t seed) {
+  const MatrixXd a = random_matrix(2 * n, n, seed);
+  return a.transpose() * a;
+}
+
+bool descending(const VectorXd& s) {
+  return std::is_sorted(s.data(), s.data() + s.size(), std::greater<>());
+}
+
+TEST(Svd, multiplies_back_with_orthonormal_factors_and_falling_values) {
+  for (const auto& [rows, cols] : {std::pair{9, 4}, std::pair{4, 9}, std::pair{5, 5}, std::pair{1, 3}}) {
+    const MatrixXd a = random_matrix(rows, cols, 1);
+    const Svd found = svd(a);
+    const Eigen::Index k = std::min(rows, cols);
+    EXPECT_LT((found.u * found.s.asDiagonal() * found.v.transpose() - a).norm(), 1e-13);
+    EXPECT_LT((found.u.transpose() * found.u - identity(k)).norm(), 1e-13);
+    EXPECT_LT((found.v.transpose() * found.v - identity(k)).norm(), 1e-13);
+    EXPECT_TRUE(descending(found.s));
+  }
+}
+
+TEST(RightSvd, has_the_values_of_the_whole_decomposition_and_zeros_where_rows_are_missing) {
+  for (const auto& [rows, cols] : {std::pair{200, 6}, std::pair{4, 9}, std::pair{5, 5}}) {
+    const MatrixXd a = random_matrix(rows, cols, 2);
+    const RightSvd found = right_svd(a);
+    const VectorXd s = svd(a).s;
+    ASSERT_EQ(found.s.size(), cols);
+    EXPECT_LT((found.s.head(s.size()) - s).norm(), 1e-12);
+    EXPECT_LT(found.s.tail(cols - s.size()).norm(), 1e-13);
+    EXPECT_LT((found.v.transpose() * found.v - identity(cols)).norm(), 1e-13);
+    for (Eigen::Index i = 0; i < cols; ++i) EXPECT_NEAR((a * found.v.col(i)).norm(), found.s[i], 1e-12);
+  }
+}
+
+TEST(RightSvd, sees_a_direction_that_no_row_sees) {
+  MatrixXd a = random_matrix(50, 3, 3);
+  a.col(2) = a.col(0) - 2 * a.col(1);  // so (1, −2, −1) is not seen
+  const RightSvd found = right_svd(a);
+  EXPECT_LT(found.s[2], 1e-14 * found.s[0]);
+  EXPECT_NEAR(std::abs(found.v.col(2).dot(Eigen::Vector3d(1, -2, -1).normalized())), 1.0, 1e-14);
+}
+
+TEST(SymmetricEigen, of_a_turned_diagonal_are_its_entries_ascending) {
+  const MatrixXd turn = svd(random_matrix(4, 4, 4)).u;
+  const MatrixXd a = turn * Eigen::Vector4d(3, -1, 7, 0.5).asDiagonal() * turn.transpose();
+  const SymmetricEigen found = symmetric_eigen(a);
+  EXPECT_LT((found.values - Eigen::Vector4d(-1, 0.5, 3, 7)).norm(), 1e-13);
+  EXPECT_LT((a * found.vectors - found.vectors * found.values.asDiagonal()).norm(), 1e-13);
+}
+
+TEST(SymmetricEigen, reads_the_lower_half_only) {
+  const MatrixXd a = random_positive(3, 5);
+  MatrixXd lower = a;
+  lower.triangularView<Eigen::StrictlyUpper>().setConstant(99);
+  EXPECT_EQ(symmetric_eigen(lower).values, symmetric_eigen(a).values);
+}
+
+TEST(Positive, solution_inverse_and_factor_satisfy_their_equations) {
+  const MatrixXd a = random_positive(6, 6);
+  const VectorXd b = random_matrix(6, 1, 7);
+  EXPECT_LT((a * *solve_positive(a, b) - b).norm(), 1e-12);
+  EXPECT_LT((a * *inverse_positive(a) - identity(6)).norm(), 1e-12);
+  const MatrixXd l = *cholesky(a);
+  EXPECT_LT((l * l.transpose() - a).norm(), 1e-13 * a.norm());
+  EXPECT_EQ(MatrixXd(l.triangularView<Eigen::StrictlyUpper>()).norm(), 0.0);
+}
+
+TEST(Positive, an_indefinite_matrix_has_no_answer) {
+  const MatrixXd a = Eigen::Vector3d(1, -1, 2).asDiagonal();
+  EXPECT_FALSE(solve_positive(a, VectorXd::Ones(3)).has_value());
+  EXPECT_FALSE(inverse_positive(a).has_value());
+  EXPECT_FALSE(cholesky(a).has_value());
+}
+
+TEST(SolveLeastSquares, leaves_a_residual_across_the_columns) {
+  const MatrixXd a = random_matrix(20, 5, 8);
+  const VectorXd b = random_matrix(20, 1, 9);
+  EXPECT_LT((a.transpose() * (a * solve_least_squares(a, b) - b)).norm(), 1e-12);
+}
+
+TEST(SolveLeastSquares, of_all_solutions_takes_the_shortest) {
+  // x + y = 2 and again 2 x + 2 y = 4
+  const MatrixXd a = (MatrixXd(2, 2) << 1, 1, 2, 2).finished();
+  EXPECT_LT((solve_least_squares(a, Eigen::Vector2d(2, 4)) - Eigen::Vector2d(1, 1)).norm(), 1e-14);
+}
+
+TEST(SolveLeastSquares, cut_decides_what_counts_as_zero) {
+  const MatrixXd a = Eigen::Vector2d(1, 1e-6).asDiagonal();
+  EXPECT_NEAR(solve_least_squares(a, Eigen::Vector2d(1, 1))[1], 1e6, 1e-6);
+  EXPECT_EQ(solve_least_squares(a, Eigen::Vector2d(1, 1), 1e-5)[1], 0.0);
+}
+
+TEST(SolveSquare, solves_a_system_that_needs_pivoting) {
+  const MatrixXd a = (MatrixXd(2, 2) << 0, 1, 2, 3).finished();
+  EXPECT_LT((solve_square(a, Eigen::Vector2d(4, 5)) - Eigen::Vector2d(-3.5, 4)).norm(), 1e-15);
+}
+
+TEST(TriangularFactor, has_the_same_inner_products_and_zeros_below) {
+  for (const auto& [rows, cols] : {std::pair{30, 5}, std::pair{3, 5}}) {
+    const MatrixXd a = random_matrix(rows, cols, 10), r = triangular_factor(a);
+    EXPECT_EQ(r.rows(), std::min(rows, cols));
+    EXPECT_LT((r.transpose() * r - a.transpose() * a).norm(), 1e-12);
+    EXPECT_EQ(MatrixXd(r.triangularView<Eigen::StrictlyLower>()).norm(), 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace kinfer

@@ -1,0 +1,66 @@
+#include "kinfer/linalg/normal_equations.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kinfer/base/rng.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer {
+namespace {
+
+MatrixXd random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
+  Rng rng(seed);
+  return MatrixXd::NullaryExpr(rows, cols, [&] { return rng.normal(); });
+}
+
+/// The same minimum from the stacked system [a; √damping I] x = −[b; 0], solved by singular values.
+VectorXd slow_damped(const MatrixXd& a, const VectorXd& b, double damping) {
+  MatrixXd stacked(a.rows() + a.cols(), a.cols());
+  stacked << a, std::sqrt(damping) * MatrixXd::Identity(a.cols(), a.cols());
+  VectorXd right = VectorXd::Zero(stacked.rows());
+  right.head(b.size()) = -b;
+  return solve_least_squares(stacked, right, 1e-15);
+}
+
+TEST(NormalEquations, are_the_inner_products_term_by_term) {
+  for (const Eigen::Index rows : {1, 5, 301}) {
+    for (const Eigen::Index cols : {1, 2, 7, 34}) {
+      const MatrixXd a = random_matrix(rows, cols, 1);
+      const VectorXd b = random_matrix(rows, 1, 2);
+      const NormalEquations found = normal_equations(a, b);
+      for (Eigen::Index i = 0; i < cols; ++i) {
+        EXPECT_NEAR(found.gradient[i], a.col(i).dot(b), 1e-12);
+        for (Eigen::Index j = 0; j < cols; ++j)
+          EXPECT_NEAR(found.matrix(i, j), j <= i ? a.col(i).dot(a.col(j)) : 0.0, 1e-12) << rows << " " << cols;
+      }
+    }
+  }
+}
+
+TEST(NormalEquations, both_ways_give_the_minimum_of_the_damped_squares) {
+  for (const Eigen::Index rows : {4, 6, 50}) {
+    const MatrixXd a = random_matrix(rows, 6, 3);
+    const VectorXd b = random_matrix(rows, 1, 4);
+    for (const double damping : {1e-3, 1.0, 1e6}) {
+      const VectorXd slow = slow_damped(a, b, damping);
+      const auto quick = damped_by_cholesky(normal_equations(a, b), damping);
+      ASSERT_TRUE(quick.has_value()) << rows << " rows, damping " << damping;
+      EXPECT_LT((*quick - slow).norm(), 1e-9 * slow.norm());
+      EXPECT_LT((damped_by_svd(singular_system(a, b), damping) - slow).norm(), 1e-11 * slow.norm());
+    }
+  }
+}
+
+TEST(NormalEquations, cholesky_refuses_what_it_would_answer_wrongly_and_svd_does_not_move_along_the_unseen) {
+  MatrixXd a = random_matrix(60, 4, 5);
+  a.col(3) = a.col(0) + a.col(1);
+  const VectorXd b = random_matrix(60, 1, 6);
+  EXPECT_FALSE(damped_by_cholesky(normal_equations(a, b), 1e-14).has_value());
+  const VectorXd shortest = solve_least_squares(a, -b, 1e-10);
+  EXPECT_LT((damped_by_svd(singular_system(a, b), 1e-14) - shortest).norm(), 1e-10);
+}
+
+}  // namespace
+}  // namespace kinfer

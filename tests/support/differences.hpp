@@ -1,0 +1,27 @@
+// Central differences: the independent judge of every derivative that was worked out by hand.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+namespace kinfer::testing {
+
+/// d f / d x, one column per unknown, by central differences with steps of `step` times max(|x_j|, 1). The error is
+/// about f''' h²/6 + 1e-16 |f| / h: 1e-6 and up is right for functions of the size of one.
+template <class Function>
+Eigen::MatrixXd numeric_jacobian(const Function& f, const Eigen::VectorXd& x, double step = 1e-6) {
+  Eigen::MatrixXd jacobian;
+  for (Eigen::Index j = 0; j < x.size(); ++j) {
+    const double h = step * std::max(std::abs(x[j]), 1.0);
+    Eigen::VectorXd above = x, below = x;
+    above[j] += h;
+    below[j] -= h;
+    const Eigen::VectorXd difference = Eigen::VectorXd(f(above)) - Eigen::VectorXd(f(below));
+    if (jacobian.size() == 0) jacobian.resize(difference.size(), x.size());
+    jacobian.col(j) = difference / (above[j] - below[j]);
+  }
+  return jacobian;
+}
+
+}  // namespace kinfer::testing

@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# Every relative link in the Markdown files leads to a file.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+status=0
+while IFS=: read -r file link; do
+  target=${link%%#*}
+  [ -z "$target" ] && continue
+  [ -e "$(dirname "$file")/$target" ] || { echo "$file: broken link $target"; status=1; }
+done < <(git ls-files '*.md' | xargs grep -oHE '\]\([^)]+\)' | sed -E 's/\]\(//; s/\)$//' | grep -vE ':https?://')
+exit $status
