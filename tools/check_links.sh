@@ -7,5 +7,5 @@ while IFS=: read -r file link; do
   target=${link%%#*}
   [ -z "$target" ] && continue
   [ -e "$(dirname "$file")/$target" ] || { echo "$file: broken link $target"; status=1; }
-done < <(git ls-files '*.md' | xargs grep -oHE '\]\([^)]+\)' | sed -E 's/\]\(//; s/\)$//' | grep -vE ':https?://')
+done < <(find . -name '*.md' -not -path './build/*' -not -path '*/node_modules/*' -print0 | xargs -0 grep -oHE '\]\([^)]+\)' | sed -E 's/\]\(//; s/\)$//' | grep -vE ':https?://')
 exit $status

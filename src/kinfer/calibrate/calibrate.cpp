@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/calibrate/population_fit.hpp"
 #include "kinfer/calibrate/single_fit.hpp"
 #include "kinfer/calibrate/verdict.hpp"
 #include "kinfer/estimate/bundle.hpp"
@@ -81,21 +82,52 @@ std::vector<int> without(std::vector<int> rows, const std::vector<Outlier>& outl
 }
 
 struct Proof {
-  Chain before, after;
+  Chain before;
+  Estimate after;
   Error failure;
 };
 
+/// Rows are counted in the whole data set again.
+void map_rows_back(std::vector<Outlier>& outliers, const std::vector<int>& rows) {
+  for (Outlier& outlier : outliers) outlier.row = rows[outlier.row];
+}
+
+/// The estimate by the method that was asked for.
+Result<Estimate> fit_by_method(const CalibrateTask& task, const PoseSet& rows, const CalibrateOptions& options,
+                               ToleranceScale scale, Rng rng, const Observer& observer = {}) {
+  return options.population ? fit_population(task, rows, options.parameters, scale, *options.population, rng, observer)
+                            : fit_once(task, rows, options.parameters, scale, observer);
+}
+
+/// Where a population is to search: it does so on the rows that the least-squares fit believes.
+Result<ScaledFit> with_population(const CalibrateTask& task, const PoseSet& rows, const CalibrateOptions& options,
+                                  const ScaledFit& found, Rng rng, const Observer& observer) {
+  if (!options.population) return found;
+  const PoseSet believed = select(rows, without(all_rows(rows), found.estimate.outliers));
+  KINFER_TRY(estimate, fit_by_method(task, believed, options, found.scale, rng.stream(0), observer));
+  estimate.outliers = found.estimate.outliers;
+  if (std::holds_alternative<BpnnPsoOptions>(options.population->search)) {
+    KINFER_TRY(runs, side_by_side(task, believed, options.parameters, found.scale, *options.population,
+                                  found.estimate.chain, rng.stream(1), observer));
+    estimate.search.side_by_side = runs;
+  }
+  return ScaledFit{estimate, found.scale};
+}
+
 /// Fits each split's train rows, without the rows' help that are held out.
-Result<std::vector<Proof>> prove(const CalibrateTask& task, const Plan& plan, const ParameterChoice& choice,
-                                 ToleranceScale scale, int threads) {
+Result<std::vector<Proof>> prove(const CalibrateTask& task, const Plan& plan, const CalibrateOptions& options,
+                                 const ScaledFit& found, Rng rng) {
+  std::vector<Outlier> not_believed = found.estimate.outliers;
+  map_rows_back(not_believed, plan.fitted);
   std::vector<Proof> proofs(plan.proofs.size());
-  parallel_for(proofs.size(), threads, [&](std::size_t i) {
+  parallel_for(proofs.size(), options.threads, [&](std::size_t i) {
     const PoseSet rows = select(task.data, plan.proofs[i].train);
+    const PoseSet searched = options.population ? select(task.data, without(plan.proofs[i].train, not_believed)) : rows;
     const Result<Chain> before = fit_frames_only(task, rows);
-    const Result<Estimate> after = fit_once(task, rows, choice, scale);
+    const Result<Estimate> after = fit_by_method(task, searched, options, found.scale, rng.stream(i));
     if (!before) proofs[i].failure = before.error();
     else if (!after) proofs[i].failure = after.error();
-    else proofs[i] = {*before, after->chain, {}};
+    else proofs[i] = {*before, *after, {}};
   });
   for (const Proof& proof : proofs)
     if (!proof.failure.what.empty()) return pass_on(proof.failure);
@@ -110,10 +142,10 @@ struct HeldOutErrors {
   void add(const Chain& given, const Proof& proof, const PoseSet& rows) {
     append(nominal, point_errors(given, rows));
     append(before, point_errors(proof.before, rows));
-    append(after, point_errors(proof.after, rows));
+    append(after, point_errors(proof.after.chain, rows));
     append(turn_nominal, orientation_errors(given, rows));
     append(turn_before, orientation_errors(proof.before, rows));
-    append(turn_after, orientation_errors(proof.after, rows));
+    append(turn_after, orientation_errors(proof.after.chain, rows));
   }
   static void append(std::vector<double>& to, const std::vector<double>& more) { to.insert(to.end(), more.begin(), more.end()); }
 };
@@ -149,7 +181,7 @@ void fill_rows(Calibration& calibration, const CalibrateTask& task, const Plan& 
     calibration.rows.push_back({row, before.position_of_row[row], after.position_of_row[row], after.position_of_row[row], false});
   for (std::size_t i = 0; i < proofs.size(); ++i) {
     const PoseSet rows = select(task.data, plan.proofs[i].holdout);
-    const Errors unseen_before = errors_of(proofs[i].before, rows), unseen_after = errors_of(proofs[i].after, rows);
+    const Errors unseen_before = errors_of(proofs[i].before, rows), unseen_after = errors_of(proofs[i].after.chain, rows);
     for (std::size_t k = 0; k < plan.proofs[i].holdout.size(); ++k) {
       RowErrors& entry = calibration.rows[plan.proofs[i].holdout[k]];
       entry.before = unseen_before.position_of_row[k];
@@ -178,18 +210,22 @@ void express_frames_as_in_file(std::vector<ParameterEstimate>& values, const Par
   }
 }
 
-/// Rows are counted in the whole data set again.
-void map_rows_back(std::vector<Outlier>& outliers, const std::vector<int>& rows) {
-  for (Outlier& outlier : outliers) outlier.row = rows[outlier.row];
-}
-
-/// Rms distance of a measured point from the truth that the instrument promises [m]; nothing where it is not known.
-std::optional<double> expected_scatter(const CalibrateTask& task) {
-  if (!task.instrument || task.data.points.empty()) return std::nullopt;
-  const Weights weights = weights_of(task.data, *task.instrument);
-  double squares = 0.0;
-  for (const Vec3& sd : weights.point_sd) squares += sd.squaredNorm();
-  return std::sqrt(squares / static_cast<double>(weights.point_sd.size()));
+/// Rms error that the held-out rows should show [m]: the instrument's scatter and the uncertainty of the fits that did not
+/// see them. Nothing where the instrument is not known.
+std::optional<double> expected_error(const CalibrateTask& task, const Plan& plan, const std::vector<Proof>& proofs,
+                                     const std::vector<Outlier>& outliers) {
+  if (!task.instrument) return std::nullopt;
+  double squares = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < proofs.size(); ++i) {
+    const PoseSet rows = select(task.data, without(plan.proofs[i].holdout, outliers));
+    const Weights promised = weights_of(rows, *task.instrument);
+    for (std::size_t k = 0; k < rows.points.size(); ++k) {
+      const auto q = rows.joints.col(rows.points[k].row);
+      squares += promised.point_sd[k].squaredNorm() + predicted_covariance(proofs[i].after, q).trace();
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? std::optional(std::sqrt(squares / count)) : std::nullopt;
 }
 
 Result<void> enough_rows(const CalibrateTask& task, const Plan& plan) {
@@ -211,8 +247,9 @@ Result<Calibration> calibrate(const CalibrateTask& task, const CalibrateOptions&
   if (auto enough = enough_rows(task, plan_of_rows); !enough) return pass_on(enough.error());
   const PoseSet fitted = select(task.data, plan_of_rows.fitted);
   KINFER_TRY(frames_only, fit_frames_only(task, fitted));
-  KINFER_TRY(found, fit_with_believable_tolerances(task, fitted, options.parameters, rng.stream(2), observer));
-  KINFER_TRY(proofs, prove(task, plan_of_rows, options.parameters, found.scale, options.threads));
+  KINFER_TRY(least_squares_fit, fit_with_believable_tolerances(task, fitted, options.parameters, rng.stream(2), observer));
+  KINFER_TRY(found, with_population(task, fitted, options, least_squares_fit, rng.stream(3), observer));
+  KINFER_TRY(proofs, prove(task, plan_of_rows, options, found, rng.stream(4)));
 
   Calibration calibration;
   calibration.estimate = found.estimate;
@@ -225,7 +262,7 @@ Result<Calibration> calibrate(const CalibrateTask& task, const CalibrateOptions&
         "the nominal model is further off than its tolerances say: they were multiplied by {:.0f}", found.scale.factor));
   fill_figures(calibration, task, plan_of_rows, frames_only, proofs);
   fill_rows(calibration, task, plan_of_rows, frames_only, proofs);
-  judge(calibration, expected_scatter(task));
+  judge(calibration, expected_error(task, plan_of_rows, proofs, calibration.estimate.outliers));
   return calibration;
 }
 

@@ -7,6 +7,7 @@
 #include "kinfer/base/observer.hpp"
 #include "kinfer/base/result.hpp"
 #include "kinfer/base/rng.hpp"
+#include "kinfer/calibrate/population_options.hpp"
 #include "kinfer/evidence/calibration.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 #include "kinfer/measurement/split.hpp"
@@ -19,6 +20,8 @@ struct CalibrateTask {
   Tolerances tolerances;
   std::optional<Instrument> instrument;   ///< absent: judged from the residuals
   PoseSet data;
+  std::optional<Chain> earlier{};         ///< an earlier calibration of this robot: searches start there
+  std::vector<Chain> fleet{};             ///< earlier calibrations of robots of this kind: their mean and spread are the prior
 };
 
 struct AutoParameters {};                                     ///< the complete geometric set with tolerance priors
@@ -34,6 +37,7 @@ using HoldoutChoice = std::variant<CrossValidation, HeldOutFraction, HeldOutByLa
 struct CalibrateOptions {
   ParameterChoice parameters = AutoParameters{};
   HoldoutChoice holdout = CrossValidation{};   ///< where the data carry labels, those rule unless a fraction is asked for
+  std::optional<PopulationOptions> population{};  ///< search by a population (paper 2); none: Levenberg-Marquardt
   int threads = 0;                             ///< 0: all cores; the result does not depend on it
 };
 

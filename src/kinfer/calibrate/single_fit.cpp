@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kinfer/calibrate/fleet_prior.hpp"
 #include "kinfer/calibrate/frames_start.hpp"
 #include "kinfer/calibrate/parameter_choice.hpp"
 #include "kinfer/estimate/bundle.hpp"
@@ -89,11 +90,15 @@ Result<PreparedFit> prepare_fit(const CalibrateTask& task, const PoseSet& rows, 
                                 ToleranceScale scale) {
   const Tolerances tolerances = scaled(task.tolerances, scale.factor);
   KINFER_TRY(set, chosen_parameters(task, choice, tolerances));
-  if (!frees_the_base(set)) return PreparedFit{task.nominal, set};
+  const auto informed = [&](const Chain& start, const ParameterSet& parameters) {
+    return PreparedFit{task.earlier ? with_joint_numbers_of(start, *task.earlier, parameters) : start,
+                       with_fleet_prior(parameters, task.fleet)};
+  };
+  if (!frees_the_base(set)) return informed(task.nominal, set);
   KINFER_TRY(found, with_frames_from_data(task.nominal, rows));
   Chain centre = found;
   centre.tool = believed_tool(task.nominal.tool, found.tool, tolerances.tool_length);
-  return PreparedFit{found, centred_at(set, centre)};
+  return informed(found, centred_at(set, centre));
 }
 
 Result<Chain> fit_frames_only(const CalibrateTask& task, const PoseSet& rows) {

@@ -20,26 +20,25 @@ std::string left_out(const Calibration& calibration) {
 
 }  // namespace
 
-void judge(Calibration& calibration, std::optional<double> instrument_scatter) {
+void judge(Calibration& calibration, std::optional<double> expected) {
   const ErrorStatistics& before = judged(calibration.before.position);
   const ErrorStatistics& after = judged(calibration.after.position);
-  constexpr double excuse = 3.0;  // times the scatter of instrument and model together: beyond it, something is not modelled
-  const double expected = std::hypot(instrument_scatter.value_or(0.0), calibration.estimate.predicted_error);
+  constexpr double excuse = 3.0;  // times what is expected: beyond it, something is not modelled
 
   const std::string figures =
       fmt::format("on poses that were not fitted the tool is {} off on average and {} at worst ({} and {} before){}",
                   millimetres(after.mean), millimetres(after.max), millimetres(before.mean), millimetres(before.max),
                   left_out(calibration));
   const bool better = after.mean < before.mean;
-  const bool excused = !instrument_scatter || after.rms <= excuse * expected;
+  const bool excused = !expected || after.rms <= excuse * *expected;
   calibration.use = better && excused;
   if (!better) {
     calibration.verdict = "Do not use: the corrected model is no better than the nominal one: " + figures + ".";
   } else if (!excused) {
     calibration.verdict = fmt::format(
-        "Do not use without a look: better, but the errors are {:.0f} times what the instrument can excuse, so something is "
+        "Do not use without a look: better, but the errors are {:.0f} times what instrument and fit can excuse, so something is "
         "not modelled: {}.",
-        after.rms / expected, figures);
+        after.rms / *expected, figures);
   } else {
     calibration.verdict = "Use it: " + figures + ".";
   }

@@ -7,8 +7,8 @@
 
 namespace kinfer {
 
-/// Fills `use` and `verdict` from the rest. `instrument_scatter`: rms distance of a measured point from the truth that the
-/// instrument promises [m]; nothing where the instrument is not known.
-void judge(Calibration& calibration, std::optional<double> instrument_scatter);
+/// Fills `use` and `verdict` from the rest. `expected`: rms error that instrument and model uncertainty together
+/// let the held-out rows show [m]; nothing where the instrument is not known.
+void judge(Calibration& calibration, std::optional<double> expected);
 
 }  // namespace kinfer

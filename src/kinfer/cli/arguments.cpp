@@ -38,6 +38,13 @@ void add_number(CLI::App& verb, const std::string& name, double& value, const st
   verb.add_option(name, value, help)->capture_default_str();
 }
 
+void add_number(CLI::App& verb, const std::string& name, double& value, double lowest, double highest,
+                const std::string& help) {
+  CLI::Validator in_range = CLI::Range(lowest, highest);
+  in_range.description("");
+  verb.add_option(name, value, help)->check(in_range)->capture_default_str();
+}
+
 void add_number(CLI::App& verb, const std::string& name, double& value, bool& given, const std::string& help) {
   verb.add_option(name, value, help)->each([&given](const std::string&) { given = true; });
 }

@@ -25,6 +25,8 @@ void add_choice(CLI::App& verb, const std::string& name, std::string& value, con
                 const std::string& help);
 void add_count(CLI::App& verb, const std::string& name, int& value, int lowest, int highest, const std::string& help);
 void add_number(CLI::App& verb, const std::string& name, double& value, const std::string& help);
+void add_number(CLI::App& verb, const std::string& name, double& value, double lowest, double highest,
+                const std::string& help);
 /// A number that counts only where it was given.
 void add_number(CLI::App& verb, const std::string& name, double& value, bool& given, const std::string& help);
 void add_seed(CLI::App& verb, const std::string& name, std::uint64_t& value, const std::string& help);

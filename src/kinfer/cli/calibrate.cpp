@@ -6,6 +6,7 @@
 
 #include "kinfer/base/sha256.hpp"
 #include "kinfer/cli/robot_option.hpp"
+#include "kinfer/cli/search_options.hpp"
 #include "kinfer/cli/summary.hpp"
 #include "kinfer/cli/verbs.hpp"
 #include "kinfer/io/evidence_json.hpp"
@@ -20,6 +21,7 @@ namespace {
 
 struct Options {
   CommonOptions common;
+  SearchArguments search;
   RobotOption robot;
   std::string data, out, columns, holdout, parameters = "auto";
 };
@@ -64,6 +66,8 @@ Result<Inputs> read_inputs(const Options& options) {
   KINFER_TRY(parameters, read_parameter_choice(options.parameters));
   KINFER_TRY(holdout, add_holdout(options.holdout, robot, map, data));
   inputs.how = {.parameters = parameters, .holdout = holdout, .threads = options.common.threads};
+  KINFER_TRY(population, population_options(options.search, options.common.threads));
+  inputs.how.population = population;
   inputs.robot = std::move(robot);
   inputs.data = std::move(data);
   return inputs;
@@ -73,6 +77,7 @@ std::vector<std::string> input_paths(const Options& options) {
   std::vector<std::string> paths{options.robot.path, options.data};
   for (const std::string& path : {options.columns, options.parameters, options.holdout})
     if (std::filesystem::is_regular_file(path)) paths.push_back(path);
+  for (const std::string& path : input_paths(options.search)) paths.push_back(path);
   return paths;
 }
 
@@ -84,6 +89,7 @@ Provenance provenance_of(const Options& options) {
       provenance.inputs.push_back({std::filesystem::path(path).filename().string(), sha256(*text)});
   const auto plain = [](const std::string& value) { return std::filesystem::path(value).filename().string(); };
   provenance.options.emplace_back("--parameters", plain(options.parameters));
+  if (options.search.method != "lm") provenance.options.emplace_back("--method", options.search.method);
   if (!options.holdout.empty()) provenance.options.emplace_back("--holdout", plain(options.holdout));
   return provenance;
 }
@@ -95,6 +101,8 @@ Result<void> write_results(const Options& options, RobotModel robot, const Calib
   robot.chain = with_turns_folded(calibration.estimate.chain);
   if (auto done = write_text_file(folder / "chain.toml", robot_toml(robot, sd)); !done) return done;
   if (auto done = write_text_file(folder / "chain.urdf", urdf(robot.chain)); !done) return done;
+  if (const std::string& net = calibration.estimate.search.net; !net.empty())
+    if (auto done = write_text_file(folder / "net.txt", net); !done) return done;
   return write_text_file(folder / "evidence.json", calibration_json(calibration, provenance_of(options)));
 }
 
@@ -105,7 +113,8 @@ int run(const Options& options) {
   if (!inputs) return fail(inputs.error());
   const auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
-  const CalibrateTask task{inputs->robot.chain, inputs->robot.tolerances, inputs->robot.instrument, inputs->data};
+  CalibrateTask task{inputs->robot.chain, inputs->robot.tolerances, inputs->robot.instrument, inputs->data, {}, {}};
+  if (auto done = read_earlier_calibrations(options.search, task); !done) return fail(done.error());
   Result<Calibration> calibration = [&] {
     ProgressLine progress(options.common);
     return calibrate(task, inputs->how, Rng(options.common.seed), progress.observer());
@@ -136,6 +145,7 @@ Verb add_calibrate(CLI::App& app) {
            "with parameters = [\"a2\", ...]");
   add_text(*verb, "--holdout", options->holdout,
            "Rows that are never fitted: a fraction (0.2), or a further pose set (default: 5-fold cross-validation)");
+  add_search_arguments(*verb, options->search);
   add_common_options(*verb, options->common);
   return {verb, [options] { return run(*options); }};
 }

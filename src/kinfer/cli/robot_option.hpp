@@ -9,7 +9,8 @@ namespace kinfer::cli {
 struct RobotOption {
   std::string path, base_link, tip_link;
 };
-void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& name, const std::string& help);
+void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& name, const std::string& help,
+                      Need need = Need::required);
 
 /// Reads by the ending: .urdf and .xml are URDF, all else is TOML.
 Result<RobotModel> read_robot(const RobotOption& option);

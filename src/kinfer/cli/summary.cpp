@@ -55,6 +55,17 @@ std::string bullet_list(const char* title, const List& list, std::size_t most, W
   return text + "\n";
 }
 
+std::string search_lines(const Search& search) {
+  if (search.method == "lm") return "";
+  std::string text = fmt::format("Searched by {}: {} iterations, {} evaluations, {}.\n", search.method, search.iterations,
+                                 search.evaluations, sentence(search.stop));
+  if (search.side_by_side.empty()) return text + "\n";
+  text += "Iterations to the least-squares optimum:";
+  for (const SearchRun& run : search.side_by_side)
+    text += fmt::format(" {} {};", run.name, run.iterations < 0 ? "not reached" : fmt::format("{}", run.iterations));
+  return text + "\n\n";
+}
+
 }  // namespace
 
 std::string calibration_summary(const Calibration& c) {
@@ -64,6 +75,7 @@ std::string calibration_summary(const Calibration& c) {
   text += fit_table("tool position [mm]", c.nominal, c.before, c.after, &ChainFit::position, 1e3);
   if (c.after.orientation.train.n > 0)
     text += fit_table("tool orientation [deg]", c.nominal, c.before, c.after, &ChainFit::orientation, 1.0 / degree);
+  text += search_lines(e.search);
   text += parameter_table(e);
   text += fmt::format("The data determine {} of {} combinations of parameters. Noise level {:.4f} mm", e.identifiability.rank,
                       e.values.size(), 1e3 * e.sigma);

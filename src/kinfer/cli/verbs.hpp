@@ -10,7 +10,11 @@ Verb add_predict(CLI::App& app);
 Verb add_verify(CLI::App& app);
 Verb add_inspect(CLI::App& app);
 Verb add_convert(CLI::App& app);
+Verb add_simulate(CLI::App& app);
 Verb add_simulate_poses(CLI::App& app);
+Verb add_orient(CLI::App& app);
+Verb add_compensate(CLI::App& app);
+Verb add_frames(CLI::App& app);
 
 /// Adds every verb to the program, in the order of its help text.
 std::vector<Verb> add_verbs(CLI::App& app);

@@ -26,6 +26,14 @@ struct ParameterEstimate {
   bool identifiable = false;            ///< the data halve the variance that the tolerance allows
 };
 
+/// One of several searches on the same problem, to compare them.
+struct SearchRun {
+  std::string name;            ///< "cold", "nominal swarm", "warm start", "net"
+  int iterations = -1;         ///< until the target was reached; -1: not within the budget
+  int evaluations = 0;
+  double rms = 0.0;            ///< [m] error of the points at the end
+};
+
 /// How the numbers were found.
 struct Search {
   std::string method;                   ///< "lm"
@@ -34,6 +42,8 @@ struct Search {
   double cost = 0.0;                    ///< final
   std::vector<double> best;             ///< cost after each iteration
   std::vector<double> median;           ///< of the population, where there is one
+  std::string net;                      ///< BPNN-PSO: the trained net as text, for the next calibration of this robot
+  std::vector<SearchRun> side_by_side;  ///< what a net is worth (BPNN-PSO only)
 };
 
 struct Estimate {

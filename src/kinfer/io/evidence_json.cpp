@@ -57,10 +57,20 @@ Json rows_json(const std::vector<RowErrors>& rows) {
   return {{"row", row}, {"before", before}, {"after", after}, {"fitted", fitted}, {"held_out", held}};
 }
 
+Json side_by_side_json(const std::vector<SearchRun>& runs) {
+  Json list = Json::array();
+  for (const SearchRun& run : runs)
+    list.push_back({{"start", run.name}, {"iterations", run.iterations < 0 ? Json(nullptr) : Json(run.iterations)},
+                    {"evaluations", run.evaluations}, {"rms", run.rms}});
+  return list;
+}
+
 Json search_json(const Search& search) {
-  return {{"engine", search.method}, {"iterations", search.iterations}, {"evaluations", search.evaluations},
+  Json json{{"engine", search.method}, {"iterations", search.iterations}, {"evaluations", search.evaluations},
           {"stop", name(search.stop)}, {"stop_words", sentence(search.stop)}, {"cost", finite(search.cost)},
           {"best", search.best}, {"median", search.median}};
+  if (!search.side_by_side.empty()) json["side_by_side"] = side_by_side_json(search.side_by_side);
+  return json;
 }
 
 Json provenance_json(const Provenance& provenance) {

@@ -76,10 +76,15 @@ MatrixXd read_matrix(PoseColumns& columns, const std::vector<std::string>& names
   return values;
 }
 
-void read_joints(PoseColumns& columns, const Chain& chain, PoseSet& set) {
+void read_joints(PoseColumns& columns, const Chain& chain, Expect expect, PoseSet& set) {
   set.joint_names = reading_names(chain);
   const ReadingColumns naming{"q", ""};
   const auto names = find_readings(columns, naming, set.joint_names);
+  const bool none = std::all_of(names.begin(), names.end(), [](const auto& name) { return name.empty(); });
+  if (none && expect == Expect::targets) {
+    set.joints.resize(0, static_cast<Eigen::Index>(columns.rows()));
+    return;
+  }
   expect_all_readings(columns, naming, names);
   set.joints = read_matrix(columns, names, [&](int reading) { return reading_dimension(chain, reading); });
   for (std::size_t row = 0; row < columns.rows(); ++row)
@@ -278,7 +283,7 @@ void read_what_rows_are(PoseColumns& columns, PoseSet& set) {
 
 PoseSet read_columns(PoseColumns& columns, const Chain& chain, const ColumnMap& map, Expect expect) {
   PoseSet set;
-  read_joints(columns, chain, set);
+  read_joints(columns, chain, expect, set);
   set.commanded = read_further_readings(columns, {"q", "_cmd"}, set,
                                         [&](int reading) { return reading_dimension(chain, reading); });
   set.torques = read_further_readings(columns, {"tau", ""}, set, [](int) { return Dimension::torque; });
@@ -319,6 +324,8 @@ Result<PoseSet> parse_pose_set(std::string_view text, const std::string& name, c
   if (table.rows() == 0) complaint.say(header.line, "the file has a header but no rows, expected one row a pose");
   if (expect == Expect::measurements && !has_measurements(set))
     complaint.say(header.line, "nothing is measured in this file, expected columns as x,y,z beside the joints");
+  if (expect == Expect::targets && set.points.size() != table.rows())
+    complaint.say(header.line, "expected the columns x, y, z of the wanted tool point in every row");
   if (complaint.any()) return pass_on(complaint.as_error());
   return set;
 }

@@ -29,8 +29,9 @@ Result<ColumnMap> read_column_map(const std::filesystem::path& path);
 Result<ColumnMap> parse_column_map(std::string_view text, const std::string& name_in_messages);
 
 /// What must be in the file besides the joint readings. `joints_only`, for prediction: nothing; a row with an anchor
-/// but no distance then has NaN for its distance.
-enum class Expect { measurements, joints_only };
+/// but no distance then has NaN for its distance. `targets`, for compensation: the tool points that are wanted, with or
+/// without readings to start from (PoseSet::joints then has no rows).
+enum class Expect { measurements, joints_only, targets };
 
 /// Reads a pose set for a robot: joint columns q1..qn or q_<name> of `chain` (unit by the joint's type), then what was
 /// measured. PoseSet::targets are those of the chain where the file has columns of further targets.

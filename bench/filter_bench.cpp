@@ -1,0 +1,59 @@
+// Time of the orientation filters per row and sensor, and of reading a recording.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "kinfer/inertial/orientation.hpp"
+#include "kinfer/io/ins_csv.hpp"
+#include "support/carried_sensor.hpp"
+
+namespace {
+
+using namespace kinfer;
+
+const testing::CarriedSensor& carried_sensor(double rate) {
+  static const SensorModel grade = *sensor_grade("industrial");
+  static const testing::CarriedSensor at200 = testing::carried({.seconds = 120.0, .rate = 200.0, .grade = &grade});
+  static const testing::CarriedSensor at1000 = testing::carried({.seconds = 60.0, .rate = 1000.0, .grade = &grade});
+  return rate > 500.0 ? at1000 : at200;
+}
+
+void filter_a_row(benchmark::State& state, const FilterOptions& options) {
+  const testing::CarriedSensor& c = carried_sensor(static_cast<double>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(orientations(c.sensor, c.time, options));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(c.time.size()));
+}
+BENCHMARK_CAPTURE(filter_a_row, kinfer, KinferFilterOptions{})->Arg(200)->Arg(1000);
+BENCHMARK_CAPTURE(filter_a_row, kinfer_without_magnetometer, without_magnetometer(KinferFilterOptions{}))->Arg(200);
+BENCHMARK_CAPTURE(filter_a_row, kinfer_offline, KinferOfflineOptions{})->Arg(200)->Arg(1000);
+BENCHMARK_CAPTURE(filter_a_row, paper, PaperEkfOptions{})->Arg(200);
+
+/// Six sensors of nine channels, 60 MB.
+void read_recording(benchmark::State& state) {
+  const auto path = std::filesystem::temp_directory_path() / "kinfer_filter_bench.csv";
+  {
+    const testing::CarriedSensor& c = carried_sensor(200.0);
+    std::ofstream file(path);
+    file << "t";
+    for (int sensor = 0; sensor < 6; ++sensor)
+      for (const char* channel : {"ax", "ay", "az", "gx", "gy", "gz", "mx", "my", "mz"})
+        file << ",ins" << sensor << '_' << channel;
+    file << '\n';
+    for (std::size_t row = 0; file.tellp() < 60'000'000; ++row) {
+      file << fmt::format("{:.4f}", 0.005 * static_cast<double>(row));
+      const std::size_t at = row % c.time.size();
+      for (int sensor = 0; sensor < 6; ++sensor)
+        for (const TriadColumns* triad : {&c.sensor.acceleration, &c.sensor.rate, &c.sensor.field})
+          for (const auto& axis : triad->axis) file << fmt::format(",{:.6g}", axis[at]);
+      file << '\n';
+    }
+  }
+  for (auto _ : state) benchmark::DoNotOptimize(read_ins_csv(path));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(std::filesystem::file_size(path)));
+  std::filesystem::remove(path);
+}
+BENCHMARK(read_recording)->Unit(benchmark::kMillisecond);
+
+}  // namespace

@@ -1,0 +1,82 @@
+// kinfer frames: base and tool frames from single-joint sweeps (paper 2, section 2.2).
+#include <memory>
+
+#include "kinfer/calibrate/frames_from_circles.hpp"
+#include "kinfer/cli/robot_option.hpp"
+#include "kinfer/cli/verbs.hpp"
+#include "kinfer/io/frames_json.hpp"
+#include "kinfer/io/pose_set_csv.hpp"
+#include "kinfer/io/text_file.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  RobotOption robot;
+  std::string data, out, columns;
+};
+
+std::string summary(const FramesFound& found) {
+  std::string text = fmt::format("Base from the sweeps of {}; tool: {}, {:.4f} mm beyond the flange.\n\n", found.base_from,
+                                 found.tool_from, 1e3 * found.tool_length);
+  text += fmt::format("  {:<18} {:<8} {:>5} {:>9} {:>11} {:>9} {:>11} {:>10} {:>10} {:>11}\n", "sweep", "joint", "rows", "swept",
+                      "radius", "rms", "centre sd", "axis sd", "off by", "turned by");
+  text += fmt::format("  {:<18} {:<8} {:>5} {:>9} {:>11} {:>9} {:>11} {:>10} {:>10} {:>11}\n", "", "", "", "deg", "mm", "mm", "mm",
+                      "deg", "mm", "deg");
+  for (const SweepCircle& c : found.sweeps)
+    text += fmt::format("  {:<18} {:<8} {:>5} {:>9.1f} {:>11.4f} {:>9.4f} {:>11.4f} {:>10.5f} {:>10.4f} {:>11.5f}\n", c.name,
+                        c.joint, c.rows, c.swept / degree, 1e3 * c.radius, 1e3 * c.rms, 1e3 * c.centre_sd, c.axis_sd / degree,
+                        1e3 * c.off_by, c.turned_by / degree);
+  return text + fmt::format("\noff by, turned by: the chain's axis in these frames against the circle's.\n"
+                            "The start that calibrate finds from all rows differs by {:.4f} mm and {:.5f} deg (base) and {:.4f} mm (tool).\n",
+                            1e3 * found.base_differs, found.base_turned / degree, 1e3 * found.tool_differs);
+}
+
+Result<void> write_results(const OutputFolder& folder, RobotModel robot, const FramesFound& found) {
+  robot.chain = found.chain;
+  if (auto done = write_text_file(folder / "chain.toml", robot_toml(robot)); !done) return done;
+  return write_text_file(folder / "evidence.json", frames_json(found));
+}
+
+int run(const Options& options) {
+  RunRecord record("frames", options.common);
+  for (const std::string& path : {options.robot.path, options.data}) record.add_input(path);
+  auto robot = read_robot(options.robot);
+  if (!robot) return fail(robot.error());
+  ColumnMap map;
+  if (!options.columns.empty()) {
+    const auto from_file = read_column_map(options.columns);
+    if (!from_file) return fail(from_file.error());
+    map = *from_file;
+  }
+  const auto data = read_pose_set(options.data, robot->chain, map);
+  if (!data) return fail(data.error());
+  const auto found = frames_from_circles(robot->chain, *data);
+  if (!found) return fail({options.data + ": " + found.error().what});
+  const auto folder = OutputFolder::make(options.out);
+  if (!folder) return fail(folder.error());
+  if (auto done = write_results(*folder, *robot, *found); !done) return fail(done.error());
+  if (auto done = record.write(options.out); !done) return fail(done.error());
+  if (options.common.json) fmt::print("{}", frames_json(*found));
+  else if (!options.common.quiet) fmt::print("{}", summary(*found));
+  return exit_done;
+}
+
+}  // namespace
+
+Verb add_frames(CLI::App& app) {
+  CLI::App* verb = add_command(
+      app, "frames", "Base and tool from sweeps of single joints, by circle fits",
+      "Sweeps are marked in a column called sweep, or found: rows in which one joint alone moves.\nExample:\n"
+      "  kinfer frames --robot robot.toml --data sweeps.csv --out frames");
+  auto options = std::make_shared<Options>();
+  add_robot_option(*verb, options->robot, "--robot", "Nominal model: TOML or URDF");
+  add_text(*verb, "--data", options->data, "Pose set with sweeps of single joints", Need::required, "CSV");
+  add_text(*verb, "--out", options->out, "Folder for chain.toml (base and tool found), evidence.json, run.json", Need::required, "DIR");
+  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional, "TOML");
+  add_common_options(*verb, options->common);
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,46 @@
+#include "kinfer/io/frames_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "kinfer/geometry/rotation.hpp"
+
+namespace kinfer {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json json_of(const SweepCircle& c) {
+  return {{"name", c.name}, {"joint", c.joint}, {"rows", c.rows}, {"swept_rad", c.swept}, {"centre", json_of(c.centre)},
+          {"axis", json_of(c.axis)}, {"radius", c.radius}, {"rms", c.rms},
+          {"sd", {{"centre_m", finite(c.centre_sd)}, {"axis_rad", finite(c.axis_sd)}, {"radius_m", finite(c.radius_sd)}}},
+          {"off_by", c.off_by}, {"turned_by", c.turned_by}};
+}
+
+Json json_of(const Frame& frame) {
+  const Pose pose = frame.pose();
+  return {{"xyz", json_of(pose.position)}, {"rpy", json_of(to_rpy(pose.rotation))}};
+}
+
+}  // namespace
+
+std::string frames_json(const FramesFound& found) {
+  Json sweeps = Json::array();
+  for (const SweepCircle& circle : found.sweeps) sweeps.push_back(json_of(circle));
+  const Json json{{"format", "kinfer-evidence/1"},
+                  {"kind", "frames"},
+                  {"base", json_of(found.chain.base)},
+                  {"base_from", found.base_from},
+                  {"tool", json_of(found.chain.tool)},
+                  {"tool_from", found.tool_from},
+                  {"tool_length", found.tool_length},
+                  {"closed_form_start", {{"base_differs_m", found.base_differs}, {"base_turned_rad", found.base_turned},
+                                         {"tool_differs_m", found.tool_differs}}},
+                  {"sweeps", sweeps}};
+  return json.dump(1) + "\n";
+}
+
+}  // namespace kinfer

@@ -1,0 +1,44 @@
+#include "kinfer/measurement/ins_recording.hpp"
+
+#include <algorithm>
+
+#include "kinfer/base/expect.hpp"
+
+namespace kinfer {
+
+std::size_t count(const InsSensor& sensor, Fault fault) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(sensor.faults, [fault](std::uint8_t bits) { return (bits & fault) != 0; }));
+}
+
+InsSample sample(const InsSensor& sensor, std::span<const double> time, std::size_t row) {
+  const unsigned bits = sensor.faults[row];
+  InsSample sample{.time = time[row]};
+  sample.has_acceleration = !(bits & (acceleration_missing | acceleration_clipped | acceleration_spike));
+  sample.has_rate = !(bits & (rate_missing | rate_spike));
+  sample.rate_clipped = sample.has_rate && (bits & rate_clipped);
+  sample.has_field = sensor.has_magnetometer() && !(bits & field_missing);
+  if (sample.has_acceleration) sample.acceleration = sensor.acceleration.at(row);
+  if (sample.has_rate) sample.rate = sensor.rate.at(row);
+  if (sample.has_field) sample.field = sensor.field.at(row);
+  return sample;
+}
+
+double typical_period(std::span<const double> time) {
+  if (time.size() < 2) return 0.0;
+  std::vector<double> steps(time.size() - 1);
+  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = time[i + 1] - time[i];
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::ranges::nth_element(steps, middle);
+  return *middle;
+}
+
+std::vector<TimeGap> gaps(std::span<const double> time) {
+  const double limit = gap_factor * typical_period(time);
+  std::vector<TimeGap> found;
+  for (std::size_t row = 1; row < time.size(); ++row)
+    if (time[row] - time[row - 1] > limit) found.push_back({row, time[row - 1], time[row]});
+  return found;
+}
+
+}  // namespace kinfer

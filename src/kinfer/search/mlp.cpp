@@ -1,0 +1,162 @@
+#include "kinfer/search/mlp.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/base/expect.hpp"
+#include "kinfer/base/parallel.hpp"
+
+namespace kinfer {
+namespace {
+
+/// Numbers of a box as −1 .. 1; a number that cannot vary is 0.
+MatrixXd scaled(ConstMatrixRef x, const Bounds& box) {
+  const VectorXd half = box.half_width();
+  const VectorXd factor = (half.array() > 0.0).select(half.cwiseInverse(), VectorXd::Zero(half.size()));
+  return factor.asDiagonal() * (x.colwise() - box.center());
+}
+
+MatrixXd unscaled(ConstMatrixRef y, const Bounds& box) {
+  return (box.half_width().asDiagonal() * y).colwise() + box.center();
+}
+
+MatrixXd hidden_layer(const Mlp& net, ConstMatrixRef scaled_inputs) {
+  const MatrixXd sum = (net.hidden_weights * scaled_inputs).colwise() - net.hidden_thresholds;
+  return sum.unaryExpr([](double s) { return std::tanh(s); });
+}
+
+MatrixXd output_layer(const Mlp& net, const MatrixXd& hidden) {
+  return (net.output_weights * hidden).colwise() - net.output_thresholds;
+}
+
+/// The four weight arrays, for reading and for writing, in the order that weights_of uses.
+template <class Net, class Visitor>
+void for_each_array(Net& net, Visitor visit) {
+  visit(net.hidden_weights.reshaped());
+  visit(net.hidden_thresholds.reshaped());
+  visit(net.output_weights.reshaped());
+  visit(net.output_thresholds.reshaped());
+}
+
+LossAndGradient backward(const Mlp& net, const MatrixXd& x, const MatrixXd& wanted) {
+  const auto pairs = static_cast<double>(x.cols());
+  const MatrixXd hidden = hidden_layer(net, x);
+  const MatrixXd error = output_layer(net, hidden) - wanted;
+  const MatrixXd at_output = error / pairs;
+  const MatrixXd at_hidden =
+      ((net.output_weights.transpose() * at_output).array() * (1.0 - hidden.array().square())).matrix();
+  Mlp gradient;
+  gradient.hidden_weights = at_hidden * x.transpose();
+  gradient.hidden_thresholds = -at_hidden.rowwise().sum();
+  gradient.output_weights = at_output * hidden.transpose();
+  gradient.output_thresholds = -at_output.rowwise().sum();
+  return {0.5 * error.squaredNorm() / pairs, weights_of(gradient)};
+}
+
+/// Step of back-propagation with momentum.
+VectorXd step(const BackPropagation& how, const VectorXd& gradient, int, VectorXd& last, VectorXd&) {
+  last = how.momentum * last - how.rate * gradient;
+  return last;
+}
+
+VectorXd step(const Adam& how, const VectorXd& gradient, int epoch, VectorXd& mean, VectorXd& square) {
+  mean = how.decay1 * mean + (1.0 - how.decay1) * gradient;
+  square = how.decay2 * square + (1.0 - how.decay2) * gradient.cwiseAbs2();
+  const double bias1 = 1.0 - std::pow(how.decay1, epoch + 1), bias2 = 1.0 - std::pow(how.decay2, epoch + 1);
+  return (-how.rate / bias1) * (mean.array() / ((square / bias2).array().sqrt() + 1e-8)).matrix();
+}
+
+double rms_of(double loss, Eigen::Index outputs) { return std::sqrt(2.0 * loss / static_cast<double>(outputs)); }
+
+MatrixXd columns(ConstMatrixRef x, const std::vector<Eigen::Index>& which) {
+  return x(Eigen::all, which);
+}
+
+}  // namespace
+
+MatrixXd predict(const Mlp& net, ConstMatrixRef x) {
+  KINFER_EXPECT(x.rows() == net.hidden_weights.cols(), "{} numbers for a net of {} inputs", x.rows(),
+                net.hidden_weights.cols());
+  return unscaled(output_layer(net, hidden_layer(net, scaled(x, net.input_box))), net.output_box);
+}
+
+Mlp untrained_mlp(const Bounds& input_box, const Bounds& output_box, int hidden_nodes, Rng rng) {
+  Mlp net{input_box, output_box, MatrixXd(hidden_nodes, input_box.size()), VectorXd(hidden_nodes),
+          MatrixXd(output_box.size(), hidden_nodes), VectorXd(output_box.size())};
+  const auto fill = [&](auto array, double reach) {
+    for (double& w : array) w = rng.uniform(-reach, reach);
+  };
+  const double first = 1.0 / std::sqrt(static_cast<double>(input_box.size()));
+  const double second = 1.0 / std::sqrt(static_cast<double>(hidden_nodes));
+  fill(net.hidden_weights.reshaped(), first);
+  fill(net.hidden_thresholds.reshaped(), first);
+  fill(net.output_weights.reshaped(), second);
+  fill(net.output_thresholds.reshaped(), second);
+  return net;
+}
+
+VectorXd weights_of(const Mlp& net) {
+  Eigen::Index count = 0;
+  for_each_array(net, [&](const auto& array) { count += array.size(); });
+  VectorXd weights(count);
+  Eigen::Index at = 0;
+  for_each_array(net, [&](const auto& array) {
+    weights.segment(at, array.size()) = array;
+    at += array.size();
+  });
+  return weights;
+}
+
+Mlp with_weights(Mlp net, ConstVectorRef weights) {
+  Eigen::Index at = 0;
+  for_each_array(net, [&](auto array) {
+    array = weights.segment(at, array.size());
+    at += array.size();
+  });
+  return net;
+}
+
+LossAndGradient loss_and_gradient(const Mlp& net, ConstMatrixRef inputs, ConstMatrixRef targets) {
+  return backward(net, scaled(inputs, net.input_box), scaled(targets, net.output_box));
+}
+
+Training train(Mlp net, ConstMatrixRef inputs, ConstMatrixRef targets, const TrainingOptions& options) {
+  KINFER_EXPECT(inputs.cols() == targets.cols() && inputs.cols() > 0, "{} inputs, {} targets", inputs.cols(), targets.cols());
+  const MatrixXd x = scaled(inputs, net.input_box), wanted = scaled(targets, net.output_box);
+  VectorXd weights = weights_of(net);
+  VectorXd state1 = VectorXd::Zero(weights.size()), state2 = state1;
+  Training training;
+  for (int epoch = 0;; ++epoch) {
+    const LossAndGradient at = backward(net, x, wanted);
+    training.error.push_back(rms_of(at.loss, wanted.rows()));
+    if (epoch == options.epochs || training.error.back() <= options.target_error) break;
+    weights += std::visit([&](const auto& how) { return step(how, at.gradient, epoch, state1, state2); }, options.trainer);
+    net = with_weights(std::move(net), weights);
+  }
+  training.net = std::move(net);
+  return training;
+}
+
+int hidden_nodes_by_formula(Eigen::Index inputs, Eigen::Index outputs, int a) {
+  return static_cast<int>(std::lround(std::sqrt(static_cast<double>(inputs + outputs)))) + a;
+}
+
+std::vector<NodeTrial> try_hidden_nodes(const Bounds& input_box, const Bounds& output_box, ConstMatrixRef inputs,
+                                        ConstMatrixRef targets, const std::vector<int>& candidates,
+                                        const TrainingOptions& options, int threads, Rng rng) {
+  std::vector<Eigen::Index> seen, unseen;
+  for (Eigen::Index i = 0; i < inputs.cols(); ++i) (i % 5 == 4 ? unseen : seen).push_back(i);
+  KINFER_EXPECT(!unseen.empty(), "{} pairs are too few for a trial", inputs.cols());
+  const MatrixXd seen_x = columns(inputs, seen), seen_y = columns(targets, seen);
+  const MatrixXd unseen_x = columns(inputs, unseen), unseen_y = columns(targets, unseen);
+  std::vector<NodeTrial> trials(candidates.size());
+  parallel_for(candidates.size(), threads, [&](std::size_t i) {
+    const Mlp start = untrained_mlp(input_box, output_box, candidates[i], rng.stream(candidates[i]));
+    const Training training = train(start, seen_x, seen_y, options);
+    const double unseen_loss = loss_and_gradient(training.net, unseen_x, unseen_y).loss;
+    trials[i] = {candidates[i], training.error.back(), rms_of(unseen_loss, output_box.size())};
+  });
+  return trials;
+}
+
+}  // namespace kinfer

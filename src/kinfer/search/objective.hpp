@@ -1,0 +1,97 @@
+// What a population search minimises and what it delivers: numbers in a box, judged in batches.
+//
+// The batch border is where types are erased, so that it costs nothing per element.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "kinfer/base/observer.hpp"
+#include "kinfer/base/rng.hpp"
+#include "kinfer/base/stop.hpp"
+#include "kinfer/linalg/types.hpp"
+#include "kinfer/search/mlp.hpp"
+
+namespace kinfer {
+
+/// A cost over a box. `evaluate` is called from several threads at once and must not keep state between calls.
+struct Objective {
+  Bounds bounds;
+  std::function<void(ConstMatrixRef x /* dim x n, one candidate per column */, std::span<double> cost /* n */)> evaluate{};
+};
+
+/// When a search ends, and how many threads it may use.
+struct Budget {
+  int max_iterations = 1000;  ///< updates of the population; 0: only the initial one is judged
+  double target_cost = -std::numeric_limits<double>::infinity();  ///< ends when the best cost is not above it
+  int threads = 0;            ///< 0: all cores; the result does not depend on it
+};
+
+/// What a search found, and what is worth keeping for the next one.
+struct Outcome {
+  VectorXd x{};                   ///< best point
+  double cost = std::numeric_limits<double>::infinity();  ///< at x
+  std::vector<double> best{};     ///< lowest cost so far: of the initial population, then after each iteration
+  std::vector<double> median{};   ///< median cost of the population, likewise
+  Stop stop = Stop::budget_spent;
+  int iterations = 0;             ///< updates of the population
+  long long evaluations = 0;      ///< candidates judged
+  long long not_finite = 0;       ///< those of them whose cost was not finite; it counts as infinite
+  MatrixXd initial_swarm{};       ///< dim x n, judged first
+  MatrixXd final_swarm{};         ///< dim x n, judged last
+  std::optional<Mlp> net{};       ///< of BPNN-PSO: trained on this run, for the next one
+};
+
+/// n points drawn evenly from the box, one per column; column p from `rng.stream(p)`.
+MatrixXd uniform_swarm(const Bounds& bounds, int n, Rng rng);
+
+/// Judges candidates in blocks of fixed size on several threads, and counts.
+class Judge {
+ public:
+  Judge(const Objective& objective, int threads) : objective_(objective), threads_(threads) {}
+
+  /// Cost of each column of x; what is not finite counts as infinite.
+  std::vector<double> operator()(const MatrixXd& x);
+
+  long long evaluations() const { return evaluations_; }
+  long long not_finite() const { return not_finite_; }
+
+ private:
+  const Objective& objective_;
+  int threads_;
+  long long evaluations_ = 0, not_finite_ = 0;
+};
+
+/// Best point so far and the history that leads to it: the bookkeeping that every population search needs.
+class Record {
+ public:
+  Record(const Budget& budget, const Observer& observer) : budget_(budget), observer_(observer) {}
+
+  /// Notes one judged population; true when the search has to end.
+  bool note(const MatrixXd& x, const std::vector<double>& cost);
+
+  const VectorXd& best() const { return outcome_.x; }
+  double best_cost() const { return outcome_.cost; }
+
+  /// The outcome, with the counts of `judge` and the population judged last.
+  Outcome finish(const Judge& judge, MatrixXd final_swarm);
+
+ private:
+  const Budget& budget_;
+  const Observer& observer_;
+  Outcome outcome_;
+  int judged_ = 0;
+};
+
+/// Each particle's own best point so far.
+struct Memory {
+  MatrixXd x;                ///< dim x n
+  std::vector<double> cost;  ///< n
+
+  void update(const MatrixXd& now, const std::vector<double>& now_cost);
+};
+
+}  // namespace kinfer

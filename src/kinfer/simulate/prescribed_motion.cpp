@@ -1,0 +1,37 @@
+#include "kinfer/simulate/prescribed_motion.hpp"
+
+#include "kinfer/base/expect.hpp"
+#include "kinfer/kinematics/motion.hpp"
+
+namespace kinfer {
+
+MachineMotion prescribed_motion(const Machine& machine, const Drive& drive, double sampling_rate) {
+  MachineMotion motion = make_motion(machine, row_count(drive.duration, sampling_rate), sampling_rate);
+  KINFER_EXPECT(static_cast<Eigen::Index>(drive.joints.size()) == motion.q.rows());
+  for (std::size_t row = 0; row < motion.time.size(); ++row) {
+    const auto column = static_cast<Eigen::Index>(row);
+    for (std::size_t k = 0; k < drive.joints.size(); ++k) {
+      const JointState state = state_at(drive.joints[k], motion.time[row]);
+      const auto reading = static_cast<Eigen::Index>(k);
+      motion.q(reading, column) = state.q;
+      motion.qd(reading, column) = state.qd;
+      motion.qdd(reading, column) = state.qdd;
+    }
+    const auto frames =
+        joint_motions(machine.chain, motion.q.col(column), motion.qd.col(column), motion.qdd.col(column));
+    for (std::size_t s = 0; s < machine.sensors.size(); ++s) {
+      const MountedSensor& mounted = machine.sensors[s];
+      const FrameMotion sensor = carried(frames[mounted.joint], mounted.segment_T_sensor);
+      const Mat3 sensor_R_world = sensor.pose.rotation.transpose();
+      SensorMotion& says = motion.sensors[s];
+      says.world_R_sensor[row] = Quat(sensor.pose.rotation);
+      says.position[row] = sensor.pose.position;
+      says.force[row] = sensor_R_world * (sensor.acceleration - machine.chain.gravity);
+      says.rate[row] = sensor_R_world * sensor.omega;
+      says.field[row] = sensor_R_world * magnetic_field_world;
+    }
+  }
+  return motion;
+}
+
+}  // namespace kinfer

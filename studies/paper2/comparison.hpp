@@ -1,0 +1,38 @@
+// All methods on one kind of problem, over many seeds: the honest table.
+#pragma once
+
+#include <functional>
+
+#include "methods.hpp"
+#include "output.hpp"
+
+namespace kinfer::paper2 {
+
+/// The identification that leaves memory behind, and the one that is timed, by seed.
+struct Scenario {
+  std::string name;
+  std::function<Problem(int seed)> before, now;
+};
+
+/// Trials of one method, one a seed.
+struct Trials {
+  Method method{};
+  std::vector<Trial> list;
+};
+
+std::vector<Trials> compare(const Scenario& scenario, const std::vector<Method>& methods, int seeds, const Effort& effort, int threads);
+
+/// Hit rate, iterations, evaluations, time, held-out errors; medians over seeds, a miss counting as infinite.
+TextTable comparison_table(const std::vector<Trials>& trials);
+
+/// Median of iterations over seeds, a miss counting as infinite (−1).
+double median_iterations(const Trials& trials);
+int hits_within(const Trials& trials, int iterations);
+
+/// Mean position error [mm] of the nominal robot over the poses of many seeds: their mean, lowest and highest.
+struct Spread {
+  double mean = 0.0, lowest = 0.0, highest = 0.0;
+};
+Spread error_before(double d6, int seeds);
+
+}  // namespace kinfer::paper2

@@ -1,0 +1,73 @@
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+#include "kinfer/io/ins_csv.hpp"
+
+namespace kinfer::test {
+namespace {
+
+using nlohmann::json;
+
+class Simulate : public Program {};
+
+TEST_F(Simulate, excavator_leaves_a_recording_that_is_read_back_and_its_truth) {
+  const Outcome run = kinfer("simulate excavator --duration 60 --out data");
+  ASSERT_EQ(run.code, 0) << run.err;
+  for (const char* file : {"imu.csv", "truth.json", "motion.csv", "machine.xml", "run.json"})
+    EXPECT_TRUE(fs::exists(in("data") / file)) << file;
+  const auto recording = read_ins_csv(in("data/imu.csv"));
+  ASSERT_TRUE(recording) << recording.error().what;
+  EXPECT_EQ(recording->sensors.size(), 6u);
+  EXPECT_EQ(recording->loggers[0].time.size(), 12000u);
+  EXPECT_TRUE(recording->remarks.empty()) << recording->remarks[0];
+  const json truth = json::parse(slurp(in("data/truth.json")));
+  EXPECT_EQ(truth["root"], "ins0");
+  ASSERT_EQ(truth["joints"].size(), 5u);
+  const json& boom = truth["joints"][1];
+  EXPECT_EQ(boom["parent"], "ins1");
+  EXPECT_EQ(boom["child"], "ins2");
+  EXPECT_EQ(boom["type"], "revolute");
+  EXPECT_NEAR(boom["point_in_parent"][0].get<double>(), 0.4, 1e-12);
+  EXPECT_NEAR(boom["point_in_child"][0].get<double>(), -0.58, 1e-12);
+  const std::string motion = slurp(in("data/motion.csv"));
+  EXPECT_EQ(motion.find("t,q_swing,q_boom,q_adjustment,q_stick,q_tool,ins0_qw,ins0_qx,ins0_qy,ins0_qz,ins1_qw"), 0u);
+}
+
+TEST_F(Simulate, same_seed_writes_the_same_bytes_anywhere_and_another_seed_does_not) {
+  const std::string options = "simulate crane --duration 14 --missing 0.05 --spikes 3 --magnetic-disturbance 5 ";
+  ASSERT_EQ(kinfer(options + "--out one --threads 1").code, 0);
+  ASSERT_EQ(kinfer(options + "--out two --threads 2").code, 0);
+  ASSERT_EQ(kinfer(options + "--out other --seed 2").code, 0);
+  for (const char* file : {"imu.csv", "truth.json", "motion.csv", "machine.xml"})
+    EXPECT_EQ(slurp(in("one") / file), slurp(in("two") / file)) << file;
+  EXPECT_NE(slurp(in("one/imu.csv")), slurp(in("other/imu.csv")));
+}
+
+TEST_F(Simulate, what_cannot_be_done_is_refused_in_a_sentence_and_nothing_is_written) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"simulate digger", "digger: no such machine; known are crane, excavator, excavator-general, robot6, tree"},
+      {"simulate tree --duration 5", "a duration of 5 s is too short for this script: 15.2 s at least"},
+      {"simulate tree --grade lab",
+       "lab: no such sensor grade; known are perfect, noise, industrial, consumer, or a file"},
+      {"simulate tree --excitation wild", "wild not in {gentle,sequential,standard,together,vigorous}"},
+      {"simulate tree --rate 5", "5 not in range"},
+      {"simulate tree --missing 1.5", "1.5 not in range"}};
+  for (const auto& [arguments, sentence] : cases) {
+    const Outcome run = kinfer(std::string(arguments) + " --out data");
+    EXPECT_EQ(run.code, 2) << arguments;
+    EXPECT_NE(run.err.find(sentence), std::string::npos) << run.err;
+    EXPECT_FALSE(fs::exists(in("data"))) << arguments;
+  }
+}
+
+TEST_F(Simulate, a_data_sheet_of_ones_own_and_a_recording_of_six_axes) {
+  write(in("sheet.toml"), "name = \"lab\"\n[accelerometer]\nnoise_density = 0\n[gyroscope]\nnoise_density = 0\n");
+  const Outcome run =
+      kinfer("simulate tree --duration 16 --motion prescribed --grade sheet.toml --no-magnetometer --json --out data");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(json::parse(run.out)["rows"], 3200);
+  EXPECT_EQ(slurp(in("data/imu.csv")).find("_mx"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace kinfer::test
