@@ -113,11 +113,11 @@ Problem experiment(int poses) {
   return with_reachable_target(problem);
 }
 
-std::optional<Problem> ur10(const std::string& source_dir, int rows) {
+std::optional<Problem> ur10(int rows) {
   const char* data = std::getenv("KINFER_DATA");
   if (!data) return std::nullopt;
-  const auto robot = read_robot_toml(source_dir + "/data/ur10/robot.toml");
-  const auto map = read_column_map(source_dir + "/data/ur10/leica_columns.toml");
+  const auto robot = read_robot_toml("data/ur10/robot.toml");
+  const auto map = read_column_map("data/ur10/leica_columns.toml");
   if (!robot || !map) return std::nullopt;
   const auto all = read_pose_set(std::string(data) + "/ur10_leica/Series_B_measurements_joint_configurations.csv", robot->chain, *map);
   if (!all) {

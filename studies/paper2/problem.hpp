@@ -35,7 +35,7 @@ Problem simulation(const Conditions& conditions, int poses, int errors);
 Problem experiment(int poses);
 
 /// Landgraf's UR10 under a Leica tracker (series B): 50 rows to fit, 50 to verify, base and tool fitted before. Nothing
-/// where KINFER_DATA is not set.
-std::optional<Problem> ur10(const std::string& source_dir, int rows);
+/// where KINFER_DATA is not set. Reads data/ur10 of the project, where `./dev study` runs.
+std::optional<Problem> ur10(int rows);
 
 }  // namespace kinfer::paper2

@@ -123,6 +123,18 @@ TEST(Calibrate, same_result_for_1_2_and_7_threads) {
   }
 }
 
+TEST(Calibrate, the_papers_24_parameters_need_no_guess_of_the_base_either) {
+  const Chain truth = placed(with_table3_errors(er20(0.125)));
+  Chain nominal = er20(0.125);
+  nominal.tool.xyz = truth.tool.xyz;
+  const PoseSet data = measured(truth, paper2_poses(50, tracker));
+  const Calibration c = calibrate({nominal, {}, tracker, data}, {.parameters = Paper24Parameters{}}, Rng(1)).value();
+  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_LT(c.after.position.holdout.mean, 0.5 * c.before.position.holdout.mean);
+  ASSERT_EQ(c.notes.size(), 1u);
+  EXPECT_NE(c.notes[0].find("were taken from the data"), std::string::npos);
+}
+
 TEST(Calibrate, rows_marked_holdout_are_never_fitted) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   PoseSet data = measured(truth, paper2_poses(60, tracker));

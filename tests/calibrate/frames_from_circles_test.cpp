@@ -56,6 +56,15 @@ TEST(FramesFromCircles, the_papers_sweeps_of_joints_1_2_and_5_give_base_and_tool
   EXPECT_EQ(found->base_from, "joint J1 and joint J2");
 }
 
+TEST(FramesFromCircles, a_target_beside_the_flanges_axis_is_found_where_the_papers_radius_is_misled) {
+  Chain truth = placed(er20(0.125));
+  truth.tool.xyz = Vec3(0.02, -0.015, 0.1);
+  const auto found = frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1)));
+  ASSERT_TRUE(found) << found.error().what;
+  expect_same_frames(found->chain, truth, 1e-9, 1e-9);
+  EXPECT_GT(std::abs(found->tool_length - 0.1), 0.5e-3);
+}
+
 TEST(FramesFromCircles, any_posture_and_any_two_axes_will_do) {
   const Chain truth = placed(er20(0.125));
   const VectorXd rest = (VectorXd(6) << 0.4, -1.2, 0.3, 0.5, 0.6, -0.2).finished();

@@ -210,6 +210,16 @@ void express_frames_as_in_file(std::vector<ParameterEstimate>& values, const Par
   }
 }
 
+/// Says so where base and tool were no parameters, and yet those of the file were not used.
+void note_frames(Calibration& calibration, const Chain& nominal) {
+  for (const ParameterEstimate& p : calibration.estimate.values)
+    if (p.name == "base_x") return;
+  const double off = (calibration.estimate.chain.base.xyz - nominal.base.xyz).norm();
+  if (off > 0.0)
+    calibration.notes.push_back(fmt::format(
+        "the base of the robot file lies {:.1f} mm from where the data show it: base and tool were taken from the data", 1e3 * off));
+}
+
 /// Rms error that the held-out rows should show [m]: the instrument's scatter and the uncertainty of the fits that did not
 /// see them. Nothing where the instrument is not known.
 std::optional<double> expected_error(const CalibrateTask& task, const Plan& plan, const std::vector<Proof>& proofs,
@@ -260,6 +270,7 @@ Result<Calibration> calibrate(const CalibrateTask& task, const CalibrateOptions&
   if (found.scale.factor > 1.0)
     calibration.notes.push_back(fmt::format(
         "the nominal model is further off than its tolerances say: they were multiplied by {:.0f}", found.scale.factor));
+  note_frames(calibration, task.nominal);
   fill_figures(calibration, task, plan_of_rows, frames_only, proofs);
   fill_rows(calibration, task, plan_of_rows, frames_only, proofs);
   judge(calibration, expected_error(task, plan_of_rows, proofs, calibration.estimate.outliers));

@@ -174,22 +174,33 @@ std::optional<double> tool_length(const Chain& chain, const PoseSet& data, const
   return (-b + std::sqrt(root)) / a;
 }
 
+/// The tool point on the flange that explains all rows best, once the base is known: the mean of where each row has it.
+Vec3 mean_tool_point(const Chain& chain, const PoseSet& data) {
+  Chain bare = chain;
+  bare.tool = Frame{};
+  Vec3 sum = Vec3::Zero();
+  double count = 0.0;
+  for (const PointMeasurement& point : data.points) {
+    if (point.target >= 0) continue;
+    sum += forward(bare, data.joints.col(point.row)).inverse() * point.position;
+    count += 1.0;
+  }
+  return sum / count;
+}
+
 void find_tool(FramesFound& found, const PoseSet& data, const std::vector<Sweep>& sweeps) {
   const int wanted = static_cast<int>(data.joints.rows()) - 2;
-  found.tool_from = "no sweep of the last joint but one: the tool is as given";
+  found.chain.tool.xyz = mean_tool_point(found.chain, data);
+  found.tool_length = found.chain.tool.xyz.z();
+  found.tool_from = "no sweep of the last joint but one";
   for (std::size_t i = 0; i < sweeps.size(); ++i) {
     if (sweeps[i].reading != wanted) continue;
     const auto length = tool_length(found.chain, data, sweeps[i], found.sweeps[i].radius);
     found.tool_from = fmt::format("radius of the sweep of joint {}", found.sweeps[i].joint);
-    if (!length) {
-      found.tool_from += " does not fit a tool on the flange's axis: the tool is as given";
-      continue;
-    }
-    found.tool_length = *length;
-    found.chain.tool.xyz = Vec3(0, 0, *length);
+    if (!length) found.tool_from += " does not fit a tool on the flange's axis";
+    else found.tool_length = *length;
     return;
   }
-  found.tool_length = found.chain.tool.xyz.z();
 }
 
 void compare_with_start(FramesFound& found, const Chain& nominal, const PoseSet& data) {

@@ -3,8 +3,9 @@
 //
 // Base: the two axes of lowest joints that are not parallel have a common perpendicular; its foot on the first axis, this
 // axis as z and the perpendicular as x are a frame that the nominal chain knows too (in the paper F1, from which F0 follows
-// by d1). So any posture and any pair of axes will do. Tool: the radius of a sweep of the last joint but one tells how far
-// the target lies beyond the flange (zt of the paper, xt = yt = 0).
+// by d1). So any posture and any pair of axes will do. Tool: once the base is known, every row says where the
+// tool point is on the flange; their mean is taken. The paper's length beside it: the radius of a sweep of the last joint
+// but one, for a target on the flange's axis (xt = yt = 0).
 #pragma once
 
 #include <span>

@@ -49,6 +49,13 @@ Frame believed_tool(const Frame& file, const Frame& found, double tolerance) {
   return tool;
 }
 
+/// Whether the data agree with the base of the file to three tolerances.
+bool base_is_believed(const CalibrateTask& task, const Chain& found) {
+  const Frame &file = task.nominal.base, &data = found.base;
+  return (file.xyz - data.xyz).norm() <= 3.0 * task.tolerances.base_length &&
+         angle_between(file.pose().rotation, data.pose().rotation) <= 3.0 * task.tolerances.base_angle;
+}
+
 /// −2 log of the marginal likelihood, by Laplace's approximation: misfit + level of the noise + price of the freedom used.
 double surprise(const Estimate& estimate, const PoseSet& data) {
   const auto points = 3.0 * static_cast<double>(data.points.size());
@@ -94,8 +101,8 @@ Result<PreparedFit> prepare_fit(const CalibrateTask& task, const PoseSet& rows, 
     return PreparedFit{task.earlier ? with_joint_numbers_of(start, *task.earlier, parameters) : start,
                        with_fleet_prior(parameters, task.fleet)};
   };
-  if (!frees_the_base(set)) return informed(task.nominal, set);
   KINFER_TRY(found, with_frames_from_data(task.nominal, rows));
+  if (!frees_the_base(set)) return informed(base_is_believed(task, found) ? task.nominal : found, set);
   Chain centre = found;
   centre.tool = believed_tool(task.nominal.tool, found.tool, tolerances.tool_length);
   return informed(found, centred_at(set, centre));

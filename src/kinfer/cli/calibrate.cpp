@@ -141,7 +141,7 @@ Verb add_calibrate(CLI::App& app) {
   add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, evidence.json, run.json", Need::required, "DIR");
   add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional, "TOML");
   add_text(*verb, "--parameters", options->parameters,
-           "auto: the complete geometric set; paper24: a alpha d theta of each joint, base and tool as given; or a TOML file "
+           "auto: the complete geometric set; paper24: a alpha d theta of each joint (base and tool as given, or from the data where those disagree); or a TOML file "
            "with parameters = [\"a2\", ...]");
   add_text(*verb, "--holdout", options->holdout,
            "Rows that are never fitted: a fraction (0.2), or a further pose set (default: 5-fold cross-validation)");

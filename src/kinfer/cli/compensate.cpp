@@ -99,16 +99,18 @@ Result<std::vector<Compensated>> compensated_rows(const Options& options, const 
 
 /// Says which rows are not reached, and why; true when all are.
 bool tell_about_rows(const Options& options, const std::vector<Compensated>& list) {
+  constexpr int most = 12;  // rows that are told one by one
   double worst = 0.0;
   int missed = 0;
   for (std::size_t i = 0; i < list.size(); ++i) {
     worst = std::max(worst, list[i].residual);
     if (list[i].reach == Reach::reached) continue;
     ++missed;
-    if (!options.common.quiet)
+    if (!options.common.quiet && missed <= most)
       fmt::print(stderr, "row {}: {}; {:.4f} mm and {:.4f} deg are left\n", i, sentence(list[i].reach), 1e3 * list[i].residual,
                  list[i].residual_angle / degree);
   }
+  if (missed > most && !options.common.quiet) fmt::print(stderr, "and {} more\n", missed - most);
   if (!options.common.quiet)
     fmt::print(stderr, "{} of {} rows are compensated; the corrected model leaves {:.6f} mm at most\n", list.size() - missed,
                list.size(), 1e3 * worst);

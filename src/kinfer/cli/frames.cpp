@@ -18,8 +18,9 @@ struct Options {
 };
 
 std::string summary(const FramesFound& found) {
-  std::string text = fmt::format("Base from the sweeps of {}; tool: {}, {:.4f} mm beyond the flange.\n\n", found.base_from,
-                                 found.tool_from, 1e3 * found.tool_length);
+  const Vec3 tool = 1e3 * found.chain.tool.xyz;
+  std::string text = fmt::format("Base from the sweeps of {}. Tool on the flange: {:.4f} {:.4f} {:.4f} mm (by the paper's {}: {:.4f} mm).\n\n",
+                                 found.base_from, tool.x(), tool.y(), tool.z(), found.tool_from, 1e3 * found.tool_length);
   text += fmt::format("  {:<18} {:<8} {:>5} {:>9} {:>11} {:>9} {:>11} {:>10} {:>10} {:>11}\n", "sweep", "joint", "rows", "swept",
                       "radius", "rms", "centre sd", "axis sd", "off by", "turned by");
   text += fmt::format("  {:<18} {:<8} {:>5} {:>9} {:>11} {:>9} {:>11} {:>10} {:>10} {:>11}\n", "", "", "", "deg", "mm", "mm", "mm",

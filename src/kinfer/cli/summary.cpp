@@ -60,10 +60,11 @@ std::string search_lines(const Search& search) {
   std::string text = fmt::format("Searched by {}: {} iterations, {} evaluations, {}.\n", search.method, search.iterations,
                                  search.evaluations, sentence(search.stop));
   if (search.side_by_side.empty()) return text + "\n";
-  text += "Iterations to the least-squares optimum:";
+  text += "Iterations to the least-squares optimum: ";
   for (const SearchRun& run : search.side_by_side)
-    text += fmt::format(" {} {};", run.name, run.iterations < 0 ? "not reached" : fmt::format("{}", run.iterations));
-  return text + "\n\n";
+    text += fmt::format("{}{} {}", &run == &search.side_by_side.front() ? "" : "; ", run.name,
+                        run.iterations < 0 ? "not reached" : fmt::format("{}", run.iterations));
+  return text + ".\n\n";
 }
 
 }  // namespace

@@ -30,8 +30,8 @@ struct FramesFound {
   Chain chain;                          ///< the nominal chain with the base and the tool found
   std::vector<SweepCircle> sweeps;
   std::string base_from;                ///< "joint J1 and joint J2"
-  std::string tool_from;                ///< "radius of the sweep of joint J5", or why the tool is as given
-  double tool_length = 0.0;             ///< [m] of the tool point from the flange along its z axis
+  double tool_length = 0.0;             ///< [m] zt by the paper's radius (xt = yt = 0); the found tool's z where it has none
+  std::string tool_from;                ///< "radius of the sweep of joint J5", or why there is none
   double base_differs = 0.0;            ///< [m] from the base that calibrate starts from, at the origin
   double base_turned = 0.0;             ///< [rad] likewise
   double tool_differs = 0.0;            ///< [m] from the tool that calibrate starts from

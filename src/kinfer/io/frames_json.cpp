@@ -35,8 +35,7 @@ std::string frames_json(const FramesFound& found) {
                   {"base", json_of(found.chain.base)},
                   {"base_from", found.base_from},
                   {"tool", json_of(found.chain.tool)},
-                  {"tool_from", found.tool_from},
-                  {"tool_length", found.tool_length},
+                  {"papers_tool_length", {{"from", found.tool_from}, {"value", found.tool_length}}},
                   {"closed_form_start", {{"base_differs_m", found.base_differs}, {"base_turned_rad", found.base_turned},
                                          {"tool_differs_m", found.tool_differs}}},
                   {"sweeps", sweeps}};

@@ -46,7 +46,7 @@ using Trainer = std::variant<BackPropagation, Adam>;
 
 struct TrainingOptions {
   Trainer trainer = BackPropagation{};
-  int epochs = 1000;          ///< passes over all pairs; every pass is one step
+  int epochs = 300;           ///< passes over all pairs, one step each; for BPNN-PSO 3000 predict no better than 200
   double target_error = 0.0;  ///< ends when the rms error of the scaled outputs is not above it
 };
 

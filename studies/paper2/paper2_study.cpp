@@ -1,6 +1,6 @@
 // Paper 2 reproduced: tables 1-8 and figures 6-15 in kind, and every method beside them.
 //
-//   kinfer_study_paper2 OUT [threads]
+//   study_paper2 OUT [threads]
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -175,11 +175,11 @@ void experiment_section(Study& study) {
 
 void ur10_section(Study& study) {
   study.section("A real robot: UR10 under a Leica tracker, 50 rows to fit and 50 to verify");
-  if (!ur10(KINFER_SOURCE_DIR, 1)) {
+  if (!ur10(1)) {
     study.say("Left out: KINFER_DATA is not set or the data are not there.");
     return;
   }
-  const Scenario scenario{"ur10", [](int seed) { return *ur10(KINFER_SOURCE_DIR, 2000 + seed); }, [](int seed) { return *ur10(KINFER_SOURCE_DIR, 3000 + seed); }};
+  const Scenario scenario{"ur10", [](int seed) { return *ur10(2000 + seed); }, [](int seed) { return *ur10(3000 + seed); }};
   study.table("methods_ur10.csv", comparison_table(compare(scenario, every_method, few_seeds, {.max_iterations = 1000}, study.threads)));
 }
 
@@ -192,7 +192,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: {} OUT [threads]\n", argv[0]);
     return 2;
   }
-  Study study{argv[1], argc == 3 ? std::atoi(argv[2]) : 0, "# Paper 2, reproduced\n\nMade by kinfer_study_paper2; docs/methods/paper2.md says what the figures mean.\n"};
+  Study study{argv[1], argc == 3 ? std::atoi(argv[2]) : 0, "# Paper 2, reproduced\n\nMade by study_paper2; docs/methods/paper2.md says what the figures mean.\n"};
   std::filesystem::create_directories(study.folder);
   printed_tables(study);
   simulation_section(study);
