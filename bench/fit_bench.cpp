@@ -1,5 +1,5 @@
-// One MAP fit of the complete six-axis set (34 parameters) to 500 measured points, beside Ceres with automatic derivatives
-// on the same residuals, priors and start, both to convergence on one core.
+// One MAP fit of the complete six-axis set (34 parameters) to 500 measured points, beside Ceres with automatic
+// derivatives on the same residuals, priors and start, both to convergence on one core.
 #include <benchmark/benchmark.h>
 #include <ceres/ceres.h>
 
@@ -122,13 +122,18 @@ void ceres_fit(benchmark::State& state) {
     VectorXd x = start;
     ceres::Problem problem;
     for (std::size_t i = 0; i < c.data.points.size(); ++i) {
-      auto* residual = new PointResidual{c.data.points[i].position, 1.0 / weights.point_sd[i].x(),
-                                         c.data.joints.col(c.data.points[i].row), c.nominal.base.rotation, {}};
+      auto* residual = new PointResidual{c.data.points[i].position,
+                                         1.0 / weights.point_sd[i].x(),
+                                         c.data.joints.col(c.data.points[i].row),
+                                         c.nominal.base.rotation,
+                                         {}};
       std::copy(beta, beta + 6, residual->beta);
-      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointResidual, 3, unknowns>(residual), nullptr, x.data());
+      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointResidual, 3, unknowns>(residual), nullptr,
+                               x.data());
     }
     problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<PriorResidual, unknowns, unknowns>(new PriorResidual(prior)), nullptr, x.data());
+        new ceres::AutoDiffCostFunction<PriorResidual, unknowns, unknowns>(new PriorResidual(prior)), nullptr,
+        x.data());
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     options.num_threads = 1;

@@ -36,8 +36,8 @@ int main() {
   for (int i = 0; i < seeds; ++i) {
     const Figures& f = figures[i];
     means.push_back(f.mean), ratios.push_back(f.rms / f.expected_rms);
-    fmt::print("{:>4}  {:>9.2f}  {:>8.2f}  {:>8.2f}  {:>17.2f}  {:>15.3f}\n", i + 1, 1e6 * f.mean, 1e6 * f.rms, 1e6 * f.max,
-               1e6 * f.expected_rms, ratios.back());
+    fmt::print("{:>4}  {:>9.2f}  {:>8.2f}  {:>8.2f}  {:>17.2f}  {:>15.3f}\n", i + 1, 1e6 * f.mean, 1e6 * f.rms,
+               1e6 * f.max, 1e6 * f.expected_rms, ratios.back());
   }
   fmt::print("mean  {:>9.2f}  {:>46}  {:>15.3f}\n", 1e6 * mean(means), "", mean(ratios));
 }

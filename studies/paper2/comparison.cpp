@@ -20,13 +20,18 @@ double median_over(const Trials& trials, Value value) {
   return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
 }
 
-double or_infinite(int iterations) { return iterations < 0 ? std::numeric_limits<double>::infinity() : iterations; }
+double or_infinite(int iterations) {
+  return iterations < 0 ? std::numeric_limits<double>::infinity() : iterations;
+}
 
-std::string iterations_text(double median) { return std::isfinite(median) ? fmt::format("{:.0f}", median) : "not reached"; }
+std::string iterations_text(double median) {
+  return std::isfinite(median) ? fmt::format("{:.0f}", median) : "not reached";
+}
 
 }  // namespace
 
-std::vector<Trials> compare(const Scenario& scenario, const std::vector<Method>& methods, int seeds, const Effort& effort, int threads) {
+std::vector<Trials> compare(const Scenario& scenario, const std::vector<Method>& methods, int seeds,
+                            const Effort& effort, int threads) {
   std::vector<Trials> all;
   for (const Method method : methods) all.push_back({method, std::vector<Trial>(seeds)});
   parallel_for(seeds, threads, [&](std::size_t i) {
@@ -44,14 +49,16 @@ double median_iterations(const Trials& trials) {
 }
 
 int hits_within(const Trials& trials, int iterations) {
-  return static_cast<int>(std::count_if(trials.list.begin(), trials.list.end(),
-                                        [&](const Trial& t) { return t.iterations >= 0 && t.iterations <= iterations; }));
+  return static_cast<int>(std::count_if(trials.list.begin(), trials.list.end(), [&](const Trial& t) {
+    return t.iterations >= 0 && t.iterations <= iterations;
+  }));
 }
 
 TextTable comparison_table(const std::vector<Trials>& trials) {
-  TextTable table{{"method", "hits", "within 404", "iterations", "to 5.55e-5 mm² sum", "evaluations", "search [s]", "training [s]",
-                   "held-out mean [mm]", "sd [mm]", "max [mm]", "predicted rms [mm]", "held-out rms [mm]"},
-                  {}};
+  TextTable table{
+      {"method", "hits", "within 404", "iterations", "to 5.55e-5 mm² sum", "evaluations", "search [s]", "training [s]",
+       "held-out mean [mm]", "sd [mm]", "max [mm]", "predicted rms [mm]", "held-out rms [mm]"},
+      {}};
   for (const Trials& t : trials) {
     const auto millimetres = [&](auto value) { return fmt::format("{:.4f}", 1e3 * median_over(t, value)); };
     const double predicted = median_over(t, [](const Trial& x) { return x.predicted_rms; });
@@ -63,8 +70,10 @@ TextTable comparison_table(const std::vector<Trials>& trials) {
          fmt::format("{:.0f}", median_over(t, [](const Trial& x) { return double(x.evaluations); })),
          fmt::format("{:.4f}", median_over(t, [](const Trial& x) { return x.seconds; })),
          fmt::format("{:.2f}", median_over(t, [](const Trial& x) { return x.training_seconds; })),
-         millimetres([](const Trial& x) { return x.held_out.mean; }), millimetres([](const Trial& x) { return x.held_out.sd; }),
-         millimetres([](const Trial& x) { return x.held_out.max; }), predicted > 0.0 ? fmt::format("{:.4f}", 1e3 * predicted) : "",
+         millimetres([](const Trial& x) { return x.held_out.mean; }),
+         millimetres([](const Trial& x) { return x.held_out.sd; }),
+         millimetres([](const Trial& x) { return x.held_out.max; }),
+         predicted > 0.0 ? fmt::format("{:.4f}", 1e3 * predicted) : "",
          millimetres([](const Trial& x) { return x.held_out.rms; })});
   }
   return table;
@@ -74,7 +83,8 @@ Spread error_before(double d6, int seeds) {
   const Chain nominal = er20(d6), truth = with_errors(nominal, table3);
   std::vector<double> means;
   for (int seed = 1; seed <= seeds; ++seed)
-    means.push_back(1e3 * mean(point_errors(nominal, measured_without_noise(truth, drawn_joints(nominal, 50, Rng(seed))))));
+    means.push_back(1e3 *
+                    mean(point_errors(nominal, measured_without_noise(truth, drawn_joints(nominal, 50, Rng(seed))))));
   return {mean(means), *std::min_element(means.begin(), means.end()), *std::max_element(means.begin(), means.end())};
 }
 

@@ -20,7 +20,8 @@ struct Trials {
   std::vector<Trial> list;
 };
 
-std::vector<Trials> compare(const Scenario& scenario, const std::vector<Method>& methods, int seeds, const Effort& effort, int threads);
+std::vector<Trials> compare(const Scenario& scenario, const std::vector<Method>& methods, int seeds,
+                            const Effort& effort, int threads);
 
 /// Hit rate, iterations, evaluations, time, held-out errors; medians over seeds, a miss counting as infinite.
 TextTable comparison_table(const std::vector<Trials>& trials);

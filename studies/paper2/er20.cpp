@@ -15,7 +15,9 @@ Joint row(double a_mm, double alpha_deg, double d, double lower_deg, double uppe
   return joint;
 }
 
-double unit_of(int k) { return k % 4 < 2 ? millimetre : degree; }  // a, d, theta, alpha
+double unit_of(int k) {
+  return k % 4 < 2 ? millimetre : degree;
+}  // a, d, theta, alpha
 
 }  // namespace
 
@@ -56,9 +58,8 @@ const Table table7{  -0.3025, 1.055,  0.292,  0.006,
 Chain er20(double d6) {
   Chain chain;
   chain.name = "ER20-C10";
-  chain.joints = {row(0, 0, 0.504, -170, 170),        row(166.605, -90, 0, -130, 40),
-                  row(782.270, 0, 0, -60, 140),       row(138.826, -90, 0.76135, -180, 180),
-                  row(0, 90, 0, -120, 120),           row(0, -90, d6, -180, 180)};
+  chain.joints = {row(0, 0, 0.504, -170, 170),           row(166.605, -90, 0, -130, 40), row(782.270, 0, 0, -60, 140),
+                  row(138.826, -90, 0.76135, -180, 180), row(0, 90, 0, -120, 120),       row(0, -90, d6, -180, 180)};
   for (int j = 0; j < 6; ++j) {
     chain.joints[j].name = fmt::format("J{}", j + 1);
     chain.joints[j].parent = j - 1;

@@ -15,9 +15,7 @@ constexpr double papers_sum = 5.55e-5 * 1e-6;  // [m²]
 
 class Stopwatch {
  public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
 
  private:
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
@@ -32,7 +30,9 @@ Objective objective_of(const Problem& problem) {
   return {problem.box, [fitness](ConstMatrixRef x, std::span<double> cost) { fitness->sums(x, cost); }};
 }
 
-bool is_noise_free(const Problem& problem) { return problem.instrument.sigma == 0.0; }
+bool is_noise_free(const Problem& problem) {
+  return problem.instrument.sigma == 0.0;
+}
 
 Budget budget_of(const Problem& problem, const Effort& effort) {
   return {.max_iterations = effort.max_iterations,
@@ -53,7 +53,8 @@ SearchOptions options_of(Method method, const Problem& problem, const Earlier& e
       return pso;
     case Method::bpnn_literal:
       // What the run itself would train afterwards is not wanted here.
-      return BpnnPsoOptions{.pso = pso, .net = earlier.net, .use = NetUse::before_every_update, .training = {.epochs = 0}};
+      return BpnnPsoOptions{
+          .pso = pso, .net = earlier.net, .use = NetUse::before_every_update, .training = {.epochs = 0}};
     case Method::warm_start:
       pso.initial = remembering_swarm(problem.box, pso.particles, earlier.x, rng);
       return pso;
@@ -108,9 +109,11 @@ Trial least_squares_trial(const Problem& problem) {
 }
 
 Trial map_trial(const Problem& problem) {
-  const Instrument instrument = is_noise_free(problem) ? Instrument{.sigma = 1e-9, .sigma_angle = 0, .ppm = 0} : problem.instrument;
+  const Instrument instrument =
+      is_noise_free(problem) ? Instrument{.sigma = 1e-9, .sigma_angle = 0, .ppm = 0} : problem.instrument;
   const Stopwatch watch;
-  const Estimate estimate = fit_bundle(problem.nominal, problem.parameters, problem.fit, instrument, {.outliers = Outliers::believe_all});
+  const Estimate estimate =
+      fit_bundle(problem.nominal, problem.parameters, problem.fit, instrument, {.outliers = Outliers::believe_all});
   Trial trial{.method = Method::map_lm, .seconds = watch.seconds(), .x = pack(problem.parameters, estimate.chain)};
   judge(trial, problem);
   trial.iterations = trial.fitted.rms <= problem.target_rms ? estimate.search.iterations : -1;
@@ -125,8 +128,15 @@ Trial map_trial(const Problem& problem) {
 }  // namespace
 
 std::string name(Method method) {
-  constexpr const char* names[] = {"PSO as printed (w 0.9)", "PSO (w 0.8)", "BPNN-PSO", "BPNN-PSO, net before every update",
-                                   "warm start without a net", "compact swarm without memory", "QPSO", "LM", "LM with tolerance priors"};
+  constexpr const char* names[] = {"PSO as printed (w 0.9)",
+                                   "PSO (w 0.8)",
+                                   "BPNN-PSO",
+                                   "BPNN-PSO, net before every update",
+                                   "warm start without a net",
+                                   "compact swarm without memory",
+                                   "QPSO",
+                                   "LM",
+                                   "LM with tolerance priors"};
   return names[static_cast<int>(method)];
 }
 

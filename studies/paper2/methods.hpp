@@ -11,19 +11,19 @@
 namespace kinfer::paper2 {
 
 enum class Method {
-  pso_printed,     ///< cold, w = 0.9
-  pso,             ///< cold, w = 0.8
-  bpnn_pso,        ///< initial swarm by the net of the earlier identification
-  bpnn_literal,    ///< the net before every update
-  warm_start,      ///< one particle remembers the earlier optimum, no net
-  compact_swarm,   ///< about the nominal numbers, no memory
+  pso_printed,    ///< cold, w = 0.9
+  pso,            ///< cold, w = 0.8
+  bpnn_pso,       ///< initial swarm by the net of the earlier identification
+  bpnn_literal,   ///< the net before every update
+  warm_start,     ///< one particle remembers the earlier optimum, no net
+  compact_swarm,  ///< about the nominal numbers, no memory
   qpso,
-  lm,              ///< Levenberg-Marquardt with analytic Jacobian, no priors
-  map_lm,          ///< the same with the tolerances as priors
+  lm,      ///< Levenberg-Marquardt with analytic Jacobian, no priors
+  map_lm,  ///< the same with the tolerances as priors
 };
-inline constexpr Method all_methods[] = {Method::pso_printed, Method::pso,           Method::bpnn_pso,
-                                         Method::bpnn_literal, Method::warm_start,   Method::compact_swarm,
-                                         Method::qpso,        Method::lm,            Method::map_lm};
+inline constexpr Method all_methods[] = {Method::pso_printed,  Method::pso,        Method::bpnn_pso,
+                                         Method::bpnn_literal, Method::warm_start, Method::compact_swarm,
+                                         Method::qpso,         Method::lm,         Method::map_lm};
 std::string name(Method method);
 
 /// What an earlier identification of the same robot left behind.
@@ -42,9 +42,9 @@ struct Trial {
   double seconds = 0.0;           ///< of the search until then
   double training_seconds = 0.0;  ///< before the search
   VectorXd x{};
-  std::vector<double> best{};     ///< [m²] sum of squares after each iteration
+  std::vector<double> best{};  ///< [m²] sum of squares after each iteration
   ErrorStatistics fitted{}, held_out{};
-  double predicted_rms = 0.0;     ///< [m] of the held-out poses, by the covariance (map_lm only)
+  double predicted_rms = 0.0;  ///< [m] of the held-out poses, by the covariance (map_lm only)
 };
 struct Effort {
   int max_iterations = 1000;

@@ -21,10 +21,12 @@ struct Series {
 };
 
 /// One bar a value, like the paper's error figures.
-std::string bar_svg(const std::string& title, const std::string& x_label, const std::string& y_label, const std::vector<double>& y);
+std::string bar_svg(const std::string& title, const std::string& x_label, const std::string& y_label,
+                    const std::vector<double>& y);
 
 /// Lines over 0, 1, 2 …; y on a logarithmic axis.
-std::string line_svg(const std::string& title, const std::string& x_label, const std::string& y_label, const std::vector<Series>& series);
+std::string line_svg(const std::string& title, const std::string& x_label, const std::string& y_label,
+                     const std::vector<Series>& series);
 
 /// Stops the study with a sentence where the file cannot be written.
 void write(const std::filesystem::path& path, const std::string& text);

@@ -42,7 +42,9 @@ std::vector<double> errors_mm(const Chain& chain, const PoseSet& set) {
   return errors;
 }
 
-Chain chain_of(const Problem& problem, const Trial& trial) { return unpack(problem.parameters, problem.nominal, trial.x); }
+Chain chain_of(const Problem& problem, const Trial& trial) {
+  return unpack(problem.parameters, problem.nominal, trial.x);
+}
 
 TextTable rows_of(const Table& errors) {
   TextTable table{{"linkage", "da [mm]", "dd [mm]", "dtheta [deg]", "dalpha [deg]"}, {}};
@@ -76,86 +78,121 @@ void printed_tables(Study& study) {
   const Chain robot = er20(d6_printed);
   for (int j = 0; j < 6; ++j) {
     const auto& row = std::get<MdhLink>(robot.joints[j].link);
-    nominal.rows.push_back({fmt::format("{}", j + 1), fmt::format("{:.3f}", 1e3 * row.a), fmt::format("{:.3f}", 1e3 * row.d),
-                            fmt::format("{:.0f}", row.alpha / degree)});
+    nominal.rows.push_back({fmt::format("{}", j + 1), fmt::format("{:.3f}", 1e3 * row.a),
+                            fmt::format("{:.3f}", 1e3 * row.d), fmt::format("{:.0f}", row.alpha / degree)});
   }
   study.table("table1_nominal.csv", nominal);
   study.table("table3_errors.csv", rows_of(table3));
-  TextTable fits{{"d6 [mm]", "table 4 leaves rms [um]", "table 5 leaves rms [um]", "mean error before, 100 pose sets [mm]", "lowest", "highest"}, {}};
+  TextTable fits{{"d6 [mm]", "table 4 leaves rms [um]", "table 5 leaves rms [um]",
+                  "mean error before, 100 pose sets [mm]", "lowest", "highest"},
+                 {}};
   for (const double d6 : {d6_printed, d6_with_target}) {
     const Spread before = error_before(d6, many_seeds);
-    fits.rows.push_back({fmt::format("{:.0f}", 1e3 * d6), fmt::format("{:.2f}", left_by(table4, d6)), fmt::format("{:.2f}", left_by(table5, d6)),
-                         fmt::format("{:.3f}", before.mean), fmt::format("{:.3f}", before.lowest), fmt::format("{:.3f}", before.highest)});
+    fits.rows.push_back({fmt::format("{:.0f}", 1e3 * d6), fmt::format("{:.2f}", left_by(table4, d6)),
+                         fmt::format("{:.2f}", left_by(table5, d6)), fmt::format("{:.3f}", before.mean),
+                         fmt::format("{:.3f}", before.lowest), fmt::format("{:.3f}", before.highest)});
   }
   study.table("tables4_5_against_table3.csv", fits);
   study.say("Tables 4 and 5 fit table 3 only with d6 = 225 mm: the target's offset belongs to d6 (section 2.2.2).");
 }
 
 /// One seed in full: identified errors, errors pose by pose, convergence. Used for the simulation and the experiment.
-void pictures(Study& study, const Problem& problem, const Earlier& earlier, const std::string& prefix, const std::string& numbers_tables,
-              const std::string& before, const std::string& pso_errors, const std::string& bpnn_errors, const std::string& pso_convergence,
-              const std::string& bpnn_convergence) {
+void pictures(Study& study, const Problem& problem, const Earlier& earlier, const std::string& prefix,
+              const std::string& numbers_tables, const std::string& before, const std::string& pso_errors,
+              const std::string& bpnn_errors, const std::string& pso_convergence, const std::string& bpnn_convergence) {
   const Effort effort{.max_iterations = 600, .threads = 1};
-  const Trial pso = run(Method::pso, problem, earlier, 1, effort), bpnn = run(Method::bpnn_pso, problem, earlier, 1, effort);
-  study.figure(before, bar_svg(prefix + ": position error before compensation", "pose", "error [mm]", errors_mm(problem.nominal, problem.verify)), "before");
-  study.figure(pso_errors, bar_svg(prefix + ": error after compensation, PSO", "pose", "error [mm]", errors_mm(chain_of(problem, pso), problem.verify)), "PSO");
-  study.figure(bpnn_errors, bar_svg(prefix + ": error after compensation, BPNN-PSO", "pose", "error [mm]", errors_mm(chain_of(problem, bpnn), problem.verify)), "BPNN-PSO");
-  study.figure(pso_convergence, line_svg(prefix + ": convergence of PSO", "iteration", "sum of squares [mm²]", {{"PSO", in_square_millimetres(pso.best)}}), "PSO");
-  study.figure(bpnn_convergence, line_svg(prefix + ": convergence of BPNN-PSO", "iteration", "sum of squares [mm²]", {{"BPNN-PSO", in_square_millimetres(bpnn.best)}}), "BPNN-PSO");
+  const Trial pso = run(Method::pso, problem, earlier, 1, effort),
+              bpnn = run(Method::bpnn_pso, problem, earlier, 1, effort);
+  study.figure(before,
+               bar_svg(prefix + ": position error before compensation", "pose", "error [mm]",
+                       errors_mm(problem.nominal, problem.verify)),
+               "before");
+  study.figure(pso_errors,
+               bar_svg(prefix + ": error after compensation, PSO", "pose", "error [mm]",
+                       errors_mm(chain_of(problem, pso), problem.verify)),
+               "PSO");
+  study.figure(bpnn_errors,
+               bar_svg(prefix + ": error after compensation, BPNN-PSO", "pose", "error [mm]",
+                       errors_mm(chain_of(problem, bpnn), problem.verify)),
+               "BPNN-PSO");
+  study.figure(pso_convergence,
+               line_svg(prefix + ": convergence of PSO", "iteration", "sum of squares [mm²]",
+                        {{"PSO", in_square_millimetres(pso.best)}}),
+               "PSO");
+  study.figure(bpnn_convergence,
+               line_svg(prefix + ": convergence of BPNN-PSO", "iteration", "sum of squares [mm²]",
+                        {{"BPNN-PSO", in_square_millimetres(bpnn.best)}}),
+               "BPNN-PSO");
   study.say("Errors identified by PSO:");
   study.table("table" + numbers_tables.substr(0, 1) + "_identified_pso.csv", rows_of(identified_errors(problem, pso)));
   study.say("Errors identified by BPNN-PSO:");
-  study.table("table" + numbers_tables.substr(1, 1) + "_identified_bpnn_pso.csv", rows_of(identified_errors(problem, bpnn)));
+  study.table("table" + numbers_tables.substr(1, 1) + "_identified_bpnn_pso.csv",
+              rows_of(identified_errors(problem, bpnn)));
 }
 
 Scenario same_robot(const std::string& name, const Conditions& now) {
   Conditions before = now;
   before.drift = 0.0;
   before.collision = before.another_robot = false;
-  return {name, [before](int seed) { return simulation(before, 2000 + seed, 1); }, [now](int seed) { return simulation(now, 3000 + seed, 100 + seed); }};
+  return {name, [before](int seed) { return simulation(before, 2000 + seed, 1); },
+          [now](int seed) { return simulation(now, 3000 + seed, 100 + seed); }};
 }
 
 void simulation_section(Study& study) {
   study.section("Section 4: simulation (figures 6-10, tables 4 and 5 in kind)");
   const Problem problem = simulation({}, 1, 1);
-  pictures(study, problem, identify_before(simulation({}, 2, 1), 1), "Simulation", "45", "figure6_before.svg", "figure9_after_pso.svg",
-           "figure10_after_bpnn_pso.svg", "figure7_convergence_pso.svg", "figure8_convergence_bpnn_pso.svg");
+  pictures(study, problem, identify_before(simulation({}, 2, 1), 1), "Simulation", "45", "figure6_before.svg",
+           "figure9_after_pso.svg", "figure10_after_bpnn_pso.svg", "figure7_convergence_pso.svg",
+           "figure8_convergence_bpnn_pso.svg");
   for (const double d6 : {d6_printed, d6_with_target}) {
-    study.say(fmt::format("All methods, d6 = {:.0f} mm, noise-free, {} seeds; iterations to rms 7.45 µm (the mean reading of the paper's fitness) and to a "
-                          "sum of 5.55e-5 mm² (the printed reading):", 1e3 * d6, few_seeds));
-    study.table(fmt::format("methods_d6_{:.0f}.csv", 1e3 * d6),
-                comparison_table(compare(same_robot("same robot", {.d6 = d6}), every_method, few_seeds, {}, study.threads)));
+    study.say(
+        fmt::format("All methods, d6 = {:.0f} mm, noise-free, {} seeds; iterations to rms 7.45 µm (the mean reading of "
+                    "the paper's fitness) and to a "
+                    "sum of 5.55e-5 mm² (the printed reading):",
+                    1e3 * d6, few_seeds));
+    study.table(
+        fmt::format("methods_d6_{:.0f}.csv", 1e3 * d6),
+        comparison_table(compare(same_robot("same robot", {.d6 = d6}), every_method, few_seeds, {}, study.threads)));
   }
 }
 
 void headline_section(Study& study) {
   study.section(fmt::format("Headline: {} seeds, d6 = 225 mm", many_seeds));
-  const auto trials = compare(same_robot("same robot", {}), {Method::pso, Method::bpnn_pso}, many_seeds, {}, study.threads);
+  const auto trials =
+      compare(same_robot("same robot", {}), {Method::pso, Method::bpnn_pso}, many_seeds, {}, study.threads);
   study.table("headline_100_seeds.csv", comparison_table(trials));
   const double cold = median_iterations(trials[0]), net = median_iterations(trials[1]);
-  study.say(fmt::format("Cold PSO (w = 0.8) reaches rms 7.45 µm within 404 iterations in {} of {} seeds; BPNN-PSO needs {:.2f} of its iterations "
-                        "(medians {:.0f} and {:.0f}; paper: 71/404 = 0.18).", hits_within(trials[0], 404), many_seeds, net / cold, net, cold));
+  study.say(
+      fmt::format("Cold PSO (w = 0.8) reaches rms 7.45 µm within 404 iterations in {} of {} seeds; BPNN-PSO needs "
+                  "{:.2f} of its iterations "
+                  "(medians {:.0f} and {:.0f}; paper: 71/404 = 0.18).",
+                  hits_within(trials[0], 404), many_seeds, net / cold, net, cold));
 }
 
 void variants_section(Study& study) {
   study.section(fmt::format("Drift, a collision, another robot, noise ({} seeds each)", few_seeds));
   const Instrument laser{.sigma = 10e-6, .sigma_angle = 0.0, .ppm = 5.0};
-  const std::pair<const char*, Conditions> variants[] = {{"drift_1_percent", {.drift = 0.01}},  {"drift_10_percent", {.drift = 0.10}},
-                                                         {"drift_50_percent", {.drift = 0.50}}, {"collision", {.collision = true}},
-                                                         {"another_robot", {.another_robot = true}}, {"noise", {.instrument = laser}}};
+  const std::pair<const char*, Conditions> variants[] = {
+      {"drift_1_percent", {.drift = 0.01}},       {"drift_10_percent", {.drift = 0.10}},
+      {"drift_50_percent", {.drift = 0.50}},      {"collision", {.collision = true}},
+      {"another_robot", {.another_robot = true}}, {"noise", {.instrument = laser}}};
   for (const auto& [name, conditions] : variants) {
     study.say(fmt::format("### {}", name));
-    study.table(fmt::format("methods_{}.csv", name), comparison_table(compare(same_robot(name, conditions), every_method, few_seeds, {}, study.threads)));
+    study.table(fmt::format("methods_{}.csv", name),
+                comparison_table(compare(same_robot(name, conditions), every_method, few_seeds, {}, study.threads)));
   }
 }
 
 TextTable table8(const Problem& problem, const Earlier& earlier) {
-  TextTable table{{"method", "mean [mm]", "sd [mm]", "max [mm]", "iterations", "fitness [mm²]", "search [s]", "training [s]"}, {}};
+  TextTable table{
+      {"method", "mean [mm]", "sd [mm]", "max [mm]", "iterations", "fitness [mm²]", "search [s]", "training [s]"}, {}};
   for (const Method method : every_method) {
     const Trial t = run(method, problem, earlier, 1, {.max_iterations = 1000, .threads = 1});
-    table.rows.push_back({name(method), fmt::format("{:.4f}", 1e3 * t.held_out.mean), fmt::format("{:.4f}", 1e3 * t.held_out.sd),
-                          fmt::format("{:.4f}", 1e3 * t.held_out.max), t.iterations < 0 ? "not reached" : fmt::format("{}", t.iterations),
-                          fmt::format("{:.4f}", 1e6 * t.fitted.n * t.fitted.rms * t.fitted.rms), fmt::format("{:.4f}", t.seconds), fmt::format("{:.2f}", t.training_seconds)});
+    table.rows.push_back({name(method), fmt::format("{:.4f}", 1e3 * t.held_out.mean),
+                          fmt::format("{:.4f}", 1e3 * t.held_out.sd), fmt::format("{:.4f}", 1e3 * t.held_out.max),
+                          t.iterations < 0 ? "not reached" : fmt::format("{}", t.iterations),
+                          fmt::format("{:.4f}", 1e6 * t.fitted.n * t.fitted.rms * t.fitted.rms),
+                          fmt::format("{:.4f}", t.seconds), fmt::format("{:.2f}", t.training_seconds)});
   }
   return table;
 }
@@ -164,13 +201,15 @@ void experiment_section(Study& study) {
   study.section("Section 5 in kind: an experiment with noise, compliance and a wrong base (figures 11-15, tables 6-8)");
   const Problem problem = experiment(1);
   const Earlier earlier = identify_before(experiment(2), 1);
-  pictures(study, problem, earlier, "Experiment", "67", "figure11_before.svg", "figure12_after_pso.svg", "figure13_after_bpnn_pso.svg",
-           "figure14_convergence_pso.svg", "figure15_convergence_bpnn_pso.svg");
+  pictures(study, problem, earlier, "Experiment", "67", "figure11_before.svg", "figure12_after_pso.svg",
+           "figure13_after_bpnn_pso.svg", "figure14_convergence_pso.svg", "figure15_convergence_bpnn_pso.svg");
   study.say("Table 8 in kind, one experiment, times on one thread:");
   study.table("table8.csv", table8(problem, earlier));
   study.say(fmt::format("The same over {} experiments:", few_seeds));
-  const Scenario scenario{"experiment", [](int seed) { return experiment(2000 + seed); }, [](int seed) { return experiment(3000 + seed); }};
-  study.table("methods_experiment.csv", comparison_table(compare(scenario, every_method, few_seeds, {}, study.threads)));
+  const Scenario scenario{"experiment", [](int seed) { return experiment(2000 + seed); },
+                          [](int seed) { return experiment(3000 + seed); }};
+  study.table("methods_experiment.csv",
+              comparison_table(compare(scenario, every_method, few_seeds, {}, study.threads)));
 }
 
 void ur10_section(Study& study) {
@@ -179,8 +218,10 @@ void ur10_section(Study& study) {
     study.say("Left out: KINFER_DATA is not set or the data are not there.");
     return;
   }
-  const Scenario scenario{"ur10", [](int seed) { return *ur10(2000 + seed); }, [](int seed) { return *ur10(3000 + seed); }};
-  study.table("methods_ur10.csv", comparison_table(compare(scenario, every_method, few_seeds, {.max_iterations = 1000}, study.threads)));
+  const Scenario scenario{"ur10", [](int seed) { return *ur10(2000 + seed); },
+                          [](int seed) { return *ur10(3000 + seed); }};
+  study.table("methods_ur10.csv",
+              comparison_table(compare(scenario, every_method, few_seeds, {.max_iterations = 1000}, study.threads)));
 }
 
 }  // namespace
@@ -192,7 +233,8 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: {} OUT [threads]\n", argv[0]);
     return 2;
   }
-  Study study{argv[1], argc == 3 ? std::atoi(argv[2]) : 0, "# Paper 2, reproduced\n\nMade by study_paper2; docs/methods/paper2.md says what the figures mean.\n"};
+  Study study{argv[1], argc == 3 ? std::atoi(argv[2]) : 0,
+              "# Paper 2, reproduced\n\nMade by study_paper2; docs/methods/paper2.md says what the figures mean.\n"};
   std::filesystem::create_directories(study.folder);
   printed_tables(study);
   simulation_section(study);

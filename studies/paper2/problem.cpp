@@ -40,7 +40,8 @@ VectorXd drawn_errors(const Conditions& conditions, Rng rng) {
   if (conditions.another_robot)
     for (double& e : errors) e *= rng.normal();
   for (double& e : errors) e *= 1.0 + conditions.drift * rng.normal();
-  if (conditions.collision) errors[8] += 0.3e-3, errors[10] += 0.15 * degree, errors[11] += 0.05 * degree;  // row 3: a, theta, alpha
+  if (conditions.collision)
+    errors[8] += 0.3e-3, errors[10] += 0.15 * degree, errors[11] += 0.05 * degree;  // row 3: a, theta, alpha
   return errors;
 }
 
@@ -68,7 +69,8 @@ double rms_at_optimum(const Problem& problem) {
   for (Parameter& p : plain.parameters) p.prior_sd = std::numeric_limits<double>::infinity();
   Weights weights;
   weights.point_sd.assign(problem.fit.points.size(), Vec3::Constant(1e-5));
-  const VectorXd x = least_squares(pose_residuals(problem.nominal, plain, problem.fit, weights), pack(plain, problem.nominal)).x;
+  const VectorXd x =
+      least_squares(pose_residuals(problem.nominal, plain, problem.fit, weights), pack(plain, problem.nominal)).x;
   double sum = 0.0;
   for (const double e : point_errors(unpack(plain, problem.nominal, x), problem.fit)) sum += e * e;
   return std::sqrt(sum / static_cast<double>(problem.fit.points.size()));
@@ -86,11 +88,13 @@ Problem simulation(const Conditions& conditions, int poses, int errors) {
   Problem problem;
   problem.nominal = er20(conditions.d6);
   problem.parameters = table2_parameters(problem.nominal);
-  const Chain truth = unpack(problem.parameters, problem.nominal,
-                             pack(problem.parameters, problem.nominal) + drawn_errors(conditions, Rng(errors).stream(7)));
+  const Chain truth =
+      unpack(problem.parameters, problem.nominal,
+             pack(problem.parameters, problem.nominal) + drawn_errors(conditions, Rng(errors).stream(7)));
   problem.instrument = conditions.instrument;
   const Rng rng = Rng(poses);
-  problem.fit = with_noise(measured_without_noise(truth, drawn_joints(problem.nominal, 50, rng.stream(0))), conditions.instrument, rng.stream(1));
+  problem.fit = with_noise(measured_without_noise(truth, drawn_joints(problem.nominal, 50, rng.stream(0))),
+                           conditions.instrument, rng.stream(1));
   problem.verify = measured_without_noise(truth, drawn_joints(problem.nominal, 50, rng.stream(2)));
   problem.box = box_about(problem.parameters, 1 * millimetre, 1 * degree);
   return conditions.instrument.sigma > 0.0 ? with_reachable_target(problem) : problem;
@@ -119,7 +123,8 @@ std::optional<Problem> ur10(int rows) {
   const auto robot = read_robot_toml("data/ur10/robot.toml");
   const auto map = read_column_map("data/ur10/leica_columns.toml");
   if (!robot || !map) return std::nullopt;
-  const auto all = read_pose_set(std::string(data) + "/ur10_leica/Series_B_measurements_joint_configurations.csv", robot->chain, *map);
+  const auto all = read_pose_set(std::string(data) + "/ur10_leica/Series_B_measurements_joint_configurations.csv",
+                                 robot->chain, *map);
   if (!all) {
     fmt::print(stderr, "{}\n", all.error().what);
     return std::nullopt;

@@ -10,21 +10,21 @@
 namespace kinfer::paper2 {
 
 struct Problem {
-  Chain nominal;                 ///< with the base and tool that are believed
-  ParameterSet parameters;       ///< table 2's 24
-  PoseSet fit, verify;           ///< 50 poses each
-  Bounds box;                    ///< about the nominal numbers
-  Instrument instrument{};       ///< of the noise that was added
-  double target_rms = 7.45e-6;   ///< [m] what table 4 leaves: the mean reading of its fitness 5.55e-5 mm²
+  Chain nominal;                ///< with the base and tool that are believed
+  ParameterSet parameters;      ///< table 2's 24
+  PoseSet fit, verify;          ///< 50 poses each
+  Bounds box;                   ///< about the nominal numbers
+  Instrument instrument{};      ///< of the noise that was added
+  double target_rms = 7.45e-6;  ///< [m] what table 4 leaves: the mean reading of its fitness 5.55e-5 mm²
 };
 
 /// What differs from the noise-free simulation of section 4.
 struct Conditions {
   double d6 = d6_with_target;
-  double drift = 0.0;            ///< every error changes by this share of itself times a standard normal number
-  bool collision = false;        ///< joint 3 slips by 0.15°, link 3 is bent by 0.3 mm and 0.05°
-  bool another_robot = false;    ///< errors of the size of table 3, drawn anew
-  Instrument instrument{};       ///< tracker noise; none: noise-free
+  double drift = 0.0;          ///< every error changes by this share of itself times a standard normal number
+  bool collision = false;      ///< joint 3 slips by 0.15°, link 3 is bent by 0.3 mm and 0.05°
+  bool another_robot = false;  ///< errors of the size of table 3, drawn anew
+  Instrument instrument{};     ///< tracker noise; none: noise-free
 };
 
 /// Section 4: table 3's errors, poses of METHODS G. `poses` and `errors` are seeds.

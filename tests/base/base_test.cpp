@@ -73,7 +73,9 @@ TEST(ParallelFor, a_nested_loop_runs_all_its_items) {
   for (const auto& row : visits) EXPECT_EQ(std::accumulate(row.begin(), row.end(), 0), 30);
 }
 
-TEST(ParallelFor, no_items_is_no_work) { parallel_for(0, 4, [](std::size_t) { FAIL(); }); }
+TEST(ParallelFor, no_items_is_no_work) {
+  parallel_for(0, 4, [](std::size_t) { FAIL(); });
+}
 
 TEST(Sha256, agrees_with_the_standards_example) {
   // FIPS 180-2, appendix B.1

@@ -13,7 +13,8 @@ namespace {
 using namespace test;
 
 /// Distances between where the real robot goes and where the nominal model wanted it.
-std::vector<double> misses(const Chain& real, const Chain& nominal, const MatrixXd& wanted, const std::vector<Compensated>& sent) {
+std::vector<double> misses(const Chain& real, const Chain& nominal, const MatrixXd& wanted,
+                           const std::vector<Compensated>& sent) {
   std::vector<double> list;
   for (std::size_t i = 0; i < sent.size(); ++i)
     list.push_back((forward(real, sent[i].q).position - forward(nominal, wanted.col(i)).position).norm());
@@ -29,7 +30,8 @@ TEST(Compensate, the_known_robot_goes_where_the_nominal_model_wanted_it) {
     EXPECT_LT(misses(real, nominal, q, sent)[i], 1e-8);
     EXPECT_LT(angle_between(forward(real, sent[i].q).rotation, forward(nominal, q.col(i)).rotation), 1e-8);
   }
-  EXPECT_GT(std::count_if(sent.begin(), sent.end(), [](const Compensated& c) { return c.reach == Reach::reached; }), 45);
+  EXPECT_GT(std::count_if(sent.begin(), sent.end(), [](const Compensated& c) { return c.reach == Reach::reached; }),
+            45);
 }
 
 TEST(Compensate, what_is_left_is_the_error_of_the_identified_model) {

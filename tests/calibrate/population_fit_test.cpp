@@ -32,7 +32,9 @@ Estimate search(const CalibrateTask& task, const PopulationOptions& options, int
   return fit_population(task, task.data, Paper24Parameters{}, {}, options, Rng(seed)).value();
 }
 
-double rms_error(const Chain& chain, const PoseSet& data) { return rms(point_errors(chain, data)); }
+double rms_error(const Chain& chain, const PoseSet& data) {
+  return rms(point_errors(chain, data));
+}
 
 TEST(PopulationFit, pso_reaches_the_papers_accuracy_within_the_papers_404_iterations) {
   const CalibrateTask task = noise_free_task();
@@ -69,8 +71,7 @@ TEST(PopulationFit, the_net_of_one_calibration_shortens_the_next) {
   task.earlier = first.chain;
   BpnnPsoOptions bpnn{.net = parse_mlp(first.search.net, "net").value()};
   const auto runs =
-      side_by_side(task, task.data, Paper24Parameters{}, {}, within(1000, bpnn),
-                   with_table3_errors(er20(d6)), Rng(2));
+      side_by_side(task, task.data, Paper24Parameters{}, {}, within(1000, bpnn), with_table3_errors(er20(d6)), Rng(2));
   ASSERT_TRUE(runs);
   ASSERT_EQ(runs->size(), 4u);
   EXPECT_EQ((*runs)[0].name, "cold");

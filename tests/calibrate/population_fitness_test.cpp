@@ -16,7 +16,8 @@ PoseSet random_points(const Chain& chain, Rng rng) {
   set.joints = MatrixXd::NullaryExpr(dof(chain), poses, [&] { return rng.uniform(-1.5, 1.5); });
   for (int row = 0; row < poses; ++row)
     for (int target = -1; target < static_cast<int>(chain.targets.size()); ++target)
-      set.points.push_back({.row = row, .target = target, .position = {rng.normal(), rng.normal(), rng.normal()}, .sd = {}});
+      set.points.push_back(
+          {.row = row, .target = target, .position = {rng.normal(), rng.normal(), rng.normal()}, .sd = {}});
   return set;
 }
 

@@ -11,8 +11,9 @@ class Calibrate : public Program {
  protected:
   /// data/: poses of the example robot with the errors of paper 2's table 3.
   void simulate(const std::string& more = "") const {
-    const Outcome run = kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") + " --errors " +
-                           source("examples/robot6/errors.toml") + " --out data --lowest 0 --clearance 350 " + more);
+    const Outcome run =
+        kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") + " --errors " +
+               source("examples/robot6/errors.toml") + " --out data --lowest 0 --clearance 350 " + more);
     ASSERT_EQ(run.code, 0) << run.err;
   }
   Outcome calibrate(const std::string& more = "") const {
@@ -25,7 +26,8 @@ TEST_F(Calibrate, simulated_robot_is_calibrated_end_to_end) {
   const Outcome run = calibrate();
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(run.out.find("Use it: "), 0u) << run.out;
-  for (const char* file : {"chain.toml", "chain.urdf", "evidence.json", "run.json"}) EXPECT_TRUE(fs::exists(in("cal") / file)) << file;
+  for (const char* file : {"chain.toml", "chain.urdf", "evidence.json", "run.json"})
+    EXPECT_TRUE(fs::exists(in("cal") / file)) << file;
   const json evidence = json::parse(slurp(in("cal/evidence.json")));
   EXPECT_EQ(evidence["format"], "kinfer-evidence/1");
   EXPECT_EQ(evidence["kind"], "calibrate");
@@ -37,7 +39,8 @@ TEST_F(Calibrate, simulated_robot_is_calibrated_end_to_end) {
                           "predicted_error", "search"})
     EXPECT_TRUE(evidence.contains(key)) << key;
   const json& parameter = evidence["parameters"][0];
-  for (const char* key : {"name", "nominal", "value", "sd", "unit", "identifiable"}) EXPECT_TRUE(parameter.contains(key)) << key;
+  for (const char* key : {"name", "nominal", "value", "sd", "unit", "identifiable"})
+    EXPECT_TRUE(parameter.contains(key)) << key;
 }
 
 TEST_F(Calibrate, predictions_of_the_corrected_chain_and_of_its_urdf_agree) {
@@ -111,7 +114,8 @@ TEST_F(Calibrate, convert_round_trips_through_urdf) {
   ASSERT_EQ(kinfer("convert robot.urdf back.toml").code, 0);
   write(in("joints.csv"), "q1,q2,q3,q4,q5,q6\n0.1,-0.2,0.3,-0.4,0.5,-0.6\n1,0.5,-0.5,2,1,-3\n");
   ASSERT_EQ(kinfer("predict --chain back.toml --joints joints.csv -o a.csv").code, 0);
-  ASSERT_EQ(kinfer("predict --chain " + source("examples/robot6/robot.toml") + " --joints joints.csv -o b.csv").code, 0);
+  ASSERT_EQ(kinfer("predict --chain " + source("examples/robot6/robot.toml") + " --joints joints.csv -o b.csv").code,
+            0);
   std::istringstream a(slurp(in("a.csv"))), b(slurp(in("b.csv")));
   std::string line_a, line_b;
   std::getline(a, line_a), std::getline(b, line_b);
@@ -129,7 +133,9 @@ TEST_F(Calibrate, inspect_says_what_was_understood) {
 struct BadInput {
   std::string name, poses, words;
 };
-void PrintTo(const BadInput& bad, std::ostream* out) { *out << bad.name; }
+void PrintTo(const BadInput& bad, std::ostream* out) {
+  *out << bad.name;
+}
 const std::string header = "q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg],x[mm],y[mm],z[mm]\n";
 
 class BadPoses : public Program, public ::testing::WithParamInterface<BadInput> {};
@@ -137,7 +143,8 @@ class BadPoses : public Program, public ::testing::WithParamInterface<BadInput> 
 TEST_P(BadPoses, is_refused_in_one_sentence_and_nothing_is_written) {
   const BadInput& bad = GetParam();
   if (bad.name != "missing") write(in("poses.csv"), bad.poses);
-  const Outcome run = kinfer("calibrate --robot " + source("examples/robot6/robot.toml") + " --data poses.csv --out cal");
+  const Outcome run =
+      kinfer("calibrate --robot " + source("examples/robot6/robot.toml") + " --data poses.csv --out cal");
   EXPECT_EQ(run.code, 2);
   EXPECT_EQ(run.out, "");
   EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
@@ -238,8 +245,8 @@ TEST_F(Calibrate, real_ur10_series_reach_the_figures_of_the_issue) {
     double sum = 0.0;
     for (int seed = 1; seed <= 5; ++seed) {
       const Outcome run = kinfer("calibrate --robot " + source("data/ur10/robot.toml") + " --columns " +
-                             source("data/ur10/leica_columns.toml") + " --data " + folder + file +
-                             " --out cal --holdout 0.5 --json --seed " + std::to_string(seed));
+                                 source("data/ur10/leica_columns.toml") + " --data " + folder + file +
+                                 " --out cal --holdout 0.5 --json --seed " + std::to_string(seed));
       ASSERT_EQ(run.code, 0) << run.err;
       sum += json::parse(run.out)["after"]["holdout"]["mean"].get<double>();
     }

@@ -1,4 +1,5 @@
-// The verbs and options of paper 2, end to end: searches by a population, warm start, fleet prior, frames, compensation.
+// The verbs and options of paper 2, end to end: searches by a population, warm start, fleet prior, frames,
+// compensation.
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -22,7 +23,8 @@ class Paper2 : public Program {
 };
 
 TEST_F(Paper2, bpnn_pso_leaves_a_net_and_a_second_run_is_compared_with_a_warm_start_without_one) {
-  const std::string calibrate = "calibrate --robot data/robot.toml --data data/poses.csv --holdout 0.2 --method bpnn-pso --iterations 300 ";
+  const std::string calibrate =
+      "calibrate --robot data/robot.toml --data data/poses.csv --holdout 0.2 --method bpnn-pso --iterations 300 ";
   const Outcome first = kinfer(calibrate + "--out first");
   EXPECT_LT(first.code, 2) << first.err;
   EXPECT_TRUE(fs::exists(in("first") / "net.txt"));
@@ -40,25 +42,31 @@ TEST_F(Paper2, bpnn_pso_leaves_a_net_and_a_second_run_is_compared_with_a_warm_st
 }
 
 TEST_F(Paper2, a_population_gives_the_same_bytes_for_1_and_7_threads) {
-  const std::string calibrate = "calibrate --robot data/robot.toml --data data/poses.csv --holdout 0.2 --method pso --iterations 50 ";
+  const std::string calibrate =
+      "calibrate --robot data/robot.toml --data data/poses.csv --holdout 0.2 --method pso --iterations 50 ";
   ASSERT_LT(kinfer(calibrate + "--out one --threads 1").code, 2);
   ASSERT_LT(kinfer(calibrate + "--out seven --threads 7").code, 2);
   EXPECT_EQ(slurp(in("one") / "evidence.json"), slurp(in("seven") / "evidence.json"));
 }
 
 TEST_F(Paper2, a_prior_of_another_kind_of_robot_is_refused) {
-  std::ofstream(in("two.toml")) << "name = \"two\"\nconvention = \"mdh\"\nunits = { length = \"mm\", angle = \"deg\" }\n"
-                                   "[[joint]]\ntype = \"revolute\"\na = 0.0\nalpha = 0.0\nd = 10.0\ntheta = 0.0\n";
+  std::ofstream(in("two.toml"))
+      << "name = \"two\"\nconvention = \"mdh\"\nunits = { length = \"mm\", angle = \"deg\" }\n"
+         "[[joint]]\ntype = \"revolute\"\na = 0.0\nalpha = 0.0\nd = 10.0\ntheta = 0.0\n";
   const Outcome run = kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal --prior two.toml");
   EXPECT_EQ(run.code, 2);
-  EXPECT_NE(run.err.find("two.toml: expected an earlier calibration of this kind of robot"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("two.toml: expected an earlier calibration of this kind of robot"), std::string::npos)
+      << run.err;
   EXPECT_FALSE(fs::exists(in("cal")));
 }
 
 TEST_F(Paper2, compensated_joints_bring_the_corrected_chain_where_the_nominal_one_was) {
-  std::ofstream(in("own.toml")) << "units = { length = \"mm\", angle = \"deg\" }\n[errors]\na2 = 0.3\nd4 = -0.2\ntheta3 = 0.05\nalpha5 = 0.02\n";
-  ASSERT_EQ(kinfer("simulate-poses --robot data/robot.toml --errors own.toml --out own --lowest 0 --clearance 350").code, 0);
-  ASSERT_LT(kinfer("compensate --chain own/truth.toml --nominal data/robot.toml --joints own/poses.csv -o sent.csv").code, 2);
+  std::ofstream(in("own.toml"))
+      << "units = { length = \"mm\", angle = \"deg\" }\n[errors]\na2 = 0.3\nd4 = -0.2\ntheta3 = 0.05\nalpha5 = 0.02\n";
+  ASSERT_EQ(
+      kinfer("simulate-poses --robot data/robot.toml --errors own.toml --out own --lowest 0 --clearance 350").code, 0);
+  ASSERT_LT(
+      kinfer("compensate --chain own/truth.toml --nominal data/robot.toml --joints own/poses.csv -o sent.csv").code, 2);
   ASSERT_EQ(kinfer("predict --chain own/truth.toml --joints sent.csv -o real.csv").code, 0);
   ASSERT_EQ(kinfer("predict --chain data/robot.toml --joints own/poses.csv -o wanted.csv").code, 0);
   std::istringstream real(slurp(in("real.csv"))), wanted(slurp(in("wanted.csv")));

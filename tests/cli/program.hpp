@@ -21,7 +21,9 @@ inline std::string slurp(const fs::path& path) {
   return text.str();
 }
 
-inline void write(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+inline void write(const fs::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
 
 struct Outcome {
   int code = -1;
@@ -43,7 +45,8 @@ class Program : public ::testing::Test {
 
   /// Runs `kinfer arguments` inside the test's folder.
   Outcome kinfer(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.string() + "' && '" KINFER_PROGRAM "' " + arguments + " >out.txt 2>err.txt";
+    const std::string command =
+        "cd '" + folder_.string() + "' && '" KINFER_PROGRAM "' " + arguments + " >out.txt 2>err.txt";
     const int status = std::system(command.c_str());
     return {WEXITSTATUS(status), slurp(in("out.txt")), slurp(in("err.txt"))};
   }

@@ -13,7 +13,9 @@ namespace {
 
 using namespace test;
 
-ParameterSet paper24(const Chain& chain) { return paper24_parameters(chain, Tolerances{}).value(); }
+ParameterSet paper24(const Chain& chain) {
+  return paper24_parameters(chain, Tolerances{}).value();
+}
 
 TEST(Residuals, jacobian_equals_differences_for_points_targets_and_orientations) {
   Chain truth = with_table3_errors(er20());
@@ -66,7 +68,9 @@ TEST(Bundle, ranks_of_the_papers_24_parameters_are_20_on_the_axis_and_23_off_it)
 TEST(Bundle, confounded_parameters_are_named_in_words) {
   const PoseSet data = measured(with_table3_errors(er20()), paper2_poses(50, Instrument{.sigma = 10e-6}));
   const auto words = fit_bundle(er20(), paper24(er20()), data, Instrument{.sigma = 10e-6}).identifiability.confounded;
-  const auto says = [&](const std::string& sentence) { return std::find(words.begin(), words.end(), sentence) != words.end(); };
+  const auto says = [&](const std::string& sentence) {
+    return std::find(words.begin(), words.end(), sentence) != words.end();
+  };
   EXPECT_TRUE(says("d2 and d3 cannot be told apart from these poses"));
   EXPECT_TRUE(says("theta6 has no effect that these measurements could show"));
   EXPECT_TRUE(says("d5 and alpha6 cannot be told apart from these poses"));
@@ -85,7 +89,8 @@ TEST(Bundle, the_complete_set_with_base_tool_and_beta_has_rank_27) {
 TEST(Bundle, what_the_data_cannot_tell_stays_nominal) {
   PoseSet data = measured(with_table3_errors(er20()), paper2_poses(50, tracker));
   const Estimate estimate = fit_bundle(er20(), paper24(er20()), data, tracker);
-  const auto theta6 = std::find_if(estimate.values.begin(), estimate.values.end(), [](auto& p) { return p.name == "theta6"; });
+  const auto theta6 =
+      std::find_if(estimate.values.begin(), estimate.values.end(), [](auto& p) { return p.name == "theta6"; });
   EXPECT_NEAR(theta6->value, 0.0, 1e-9);
   EXPECT_FALSE(theta6->identifiable);
   EXPECT_NEAR(theta6->sd, 0.1 * degree, 1e-5);  // the tolerance is all that is known
@@ -134,7 +139,8 @@ TEST(Bundle, errors_on_unseen_poses_are_as_large_as_the_covariance_says) {
     const Estimate estimate = fit_bundle(er20(), geometric_parameters(er20(), data, {}), data, tracker);
     actual[i] = rms(point_errors(estimate.chain, unseen));
     double squares = 0.0;
-    for (int row = 0; row < unseen.rows(); ++row) squares += predicted_covariance(estimate, unseen.joints.col(row)).trace();
+    for (int row = 0; row < unseen.rows(); ++row)
+      squares += predicted_covariance(estimate, unseen.joints.col(row)).trace();
     predicted[i] = std::sqrt(squares / static_cast<double>(unseen.rows()));
   });
   EXPECT_GT(mean(actual) / mean(predicted), 0.8);

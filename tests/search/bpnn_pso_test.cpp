@@ -11,7 +11,9 @@ using testing::shifted_sphere;
 
 constexpr Budget to_one_percent{.max_iterations = 2000, .target_cost = 1e-6};
 
-Outcome cold_run() { return bpnn_particle_swarm(shifted_sphere(10), {.pso = {.budget = to_one_percent}}, Rng(1)); }
+Outcome cold_run() {
+  return bpnn_particle_swarm(shifted_sphere(10), {.pso = {.budget = to_one_percent}}, Rng(1));
+}
 
 TEST(BpnnPso, without_a_net_it_is_plain_pso) {
   const Outcome plain = particle_swarm(shifted_sphere(10), {.budget = to_one_percent}, Rng(1));
@@ -28,8 +30,8 @@ TEST(BpnnPso, the_net_of_one_run_predicts_a_swarm_around_its_optimum) {
 
 TEST(BpnnPso, the_next_run_on_the_same_problem_needs_fewer_iterations) {
   const Outcome first = cold_run();
-  const Outcome next = bpnn_particle_swarm(
-      shifted_sphere(10), {.pso = {.budget = to_one_percent}, .net = first.net}, Rng(2));
+  const Outcome next =
+      bpnn_particle_swarm(shifted_sphere(10), {.pso = {.budget = to_one_percent}, .net = first.net}, Rng(2));
   EXPECT_EQ(next.stop, Stop::target_reached);
   EXPECT_LT(next.iterations, 0.6 * first.iterations);
 }
@@ -37,8 +39,8 @@ TEST(BpnnPso, the_next_run_on_the_same_problem_needs_fewer_iterations) {
 TEST(BpnnPso, the_literal_reading_keeps_the_swarm_from_a_moved_optimum) {
   const Outcome first = cold_run();
   // The same robot, after a collision: the optimum moved to −0.4.
-  const Objective moved = testing::objective_of(
-      testing::cube(10, 1.0), [](const VectorXd& x) { return (x.array() + 0.4).square().sum(); });
+  const Objective moved =
+      testing::objective_of(testing::cube(10, 1.0), [](const VectorXd& x) { return (x.array() + 0.4).square().sum(); });
   const BpnnPsoOptions faithful{.pso = {.budget = {.max_iterations = 300}}, .net = first.net};
   BpnnPsoOptions literal = faithful;
   literal.use = NetUse::before_every_update;

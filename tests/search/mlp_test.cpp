@@ -13,7 +13,9 @@ namespace {
 
 using testing::cube;
 
-Mlp small_net() { return untrained_mlp(cube(3, 2.0), cube(2, 5.0), 4, Rng(1)); }
+Mlp small_net() {
+  return untrained_mlp(cube(3, 2.0), cube(2, 5.0), 4, Rng(1));
+}
 
 TEST(Mlp, prediction_is_equation_12_written_out) {
   const Mlp net = small_net();

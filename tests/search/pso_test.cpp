@@ -77,7 +77,8 @@ TEST(Pso, ends_at_the_target_without_an_update_when_the_first_swarm_reaches_it) 
 
 TEST(Pso, clamped_particles_stay_in_the_box_and_open_ones_may_leave_it) {
   // The lowest point lies outside, behind the upper wall.
-  const Objective objective = objective_of(cube(2, 1.0), [](const VectorXd& x) { return (x.array() - 3.0).square().sum(); });
+  const Objective objective =
+      objective_of(cube(2, 1.0), [](const VectorXd& x) { return (x.array() - 3.0).square().sum(); });
   PsoOptions options{.budget = {.max_iterations = 100}};
   EXPECT_TRUE(particle_swarm(objective, options, Rng(1)).x.isApprox(VectorXd::Ones(2)));
   options.walls = Walls::open;
@@ -157,14 +158,17 @@ TEST(Minimise, every_search_gives_the_same_bits_for_1_2_and_7_threads) {
     return minimise(rastrigin(6), options, Rng(4));
   };
   BpnnPsoOptions stepwise{.hidden_nodes = HiddenNodes::stepwise, .training = {.epochs = 20}};
-  for (const SearchOptions& options : {SearchOptions(PsoOptions{}), SearchOptions(QpsoOptions{}), SearchOptions(stepwise)}) {
+  for (const SearchOptions& options :
+       {SearchOptions(PsoOptions{}), SearchOptions(QpsoOptions{}), SearchOptions(stepwise)}) {
     const Outcome one = with_threads(options, 1);
     for (const int threads : {2, 7}) {
       const Outcome other = with_threads(options, threads);
       EXPECT_EQ(one.x, other.x);
       EXPECT_EQ(one.best, other.best);
       EXPECT_EQ(one.final_swarm, other.final_swarm);
-      if (one.net) { EXPECT_EQ(mlp_text(*one.net), mlp_text(*other.net)); }
+      if (one.net) {
+        EXPECT_EQ(mlp_text(*one.net), mlp_text(*other.net));
+      }
     }
   }
 }

@@ -11,7 +11,8 @@ using testing::rastrigin;
 using testing::shifted_sphere;
 
 TEST(Qpso, finds_the_lowest_point_of_a_bowl_in_24_dimensions) {
-  const Outcome outcome = quantum_swarm(shifted_sphere(24), {.schedule = 400, .budget = {.max_iterations = 600}}, Rng(1));
+  const Outcome outcome =
+      quantum_swarm(shifted_sphere(24), {.schedule = 400, .budget = {.max_iterations = 600}}, Rng(1));
   EXPECT_LT((outcome.x.array() - 0.3).abs().maxCoeff(), 1e-3);
 }
 

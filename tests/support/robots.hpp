@@ -24,16 +24,17 @@ inline Joint mdh_joint(double a, double alpha_deg, double d, double lower_deg, d
 inline Chain er20(double d6 = 0.225) {
   Chain chain;
   chain.name = "ER20-C10";
-  chain.joints = {mdh_joint(0, 0, 0.504, -170, 170, -1),         mdh_joint(0.166605, -90, 0, -130, 40, 0),
-                  mdh_joint(0.78227, 0, 0, -60, 140, 1),          mdh_joint(0.138826, -90, 0.76135, -180, 180, 2),
-                  mdh_joint(0, 90, 0, -120, 120, 3),              mdh_joint(0, -90, d6, -180, 180, 4)};
+  chain.joints = {mdh_joint(0, 0, 0.504, -170, 170, -1), mdh_joint(0.166605, -90, 0, -130, 40, 0),
+                  mdh_joint(0.78227, 0, 0, -60, 140, 1), mdh_joint(0.138826, -90, 0.76135, -180, 180, 2),
+                  mdh_joint(0, 90, 0, -120, 120, 3),     mdh_joint(0, -90, d6, -180, 180, 4)};
   return chain;
 }
 
 /// Paper 2, table 3: mm and degrees, rows a alpha d theta.
 inline Chain with_table3_errors(Chain chain) {
   constexpr double a[] = {0.1, 0.05, 0.065, 0.06, 0.03, 0.25}, d[] = {0.05, 0.1, 0.05, 0.008, 0.36, 0.01};
-  constexpr double theta[] = {0.01, 0.015, 0.003, 0.012, 0.008, 0.025}, alpha[] = {0.01, 0.005, 0.015, 0.006, 0.004, 0.125};
+  constexpr double theta[] = {0.01, 0.015, 0.003, 0.012, 0.008, 0.025},
+                   alpha[] = {0.01, 0.005, 0.015, 0.006, 0.004, 0.125};
   for (int i = 0; i < 6; ++i) {
     auto& link = std::get<MdhLink>(chain.joints[i].link);
     link.a += 1e-3 * a[i], link.d += 1e-3 * d[i], link.theta += theta[i] * degree, link.alpha += alpha[i] * degree;

@@ -28,9 +28,15 @@ class Angle {
 };
 
 inline namespace literals {
-constexpr Angle operator""_deg(long double value) { return Angle::deg(static_cast<double>(value)); }
-constexpr Angle operator""_deg(unsigned long long value) { return Angle::deg(static_cast<double>(value)); }
-constexpr Angle operator""_rad(long double value) { return Angle::rad(static_cast<double>(value)); }
+constexpr Angle operator""_deg(long double value) {
+  return Angle::deg(static_cast<double>(value));
+}
+constexpr Angle operator""_deg(unsigned long long value) {
+  return Angle::deg(static_cast<double>(value));
+}
+constexpr Angle operator""_rad(long double value) {
+  return Angle::rad(static_cast<double>(value));
+}
 }  // namespace literals
 
 }  // namespace kinfer

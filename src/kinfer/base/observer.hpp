@@ -7,12 +7,12 @@
 namespace kinfer {
 
 struct Progress {
-  std::string_view stage;      ///< what is being done: "fit", "cross-validation"
-  double fraction = 0.0;       ///< of the stage, 0 .. 1
-  double best = 0.0;           ///< best cost so far, in the stage's own unit
-  double median = 0.0;         ///< of the population, where there is one
+  std::string_view stage;  ///< what is being done: "fit", "cross-validation"
+  double fraction = 0.0;   ///< of the stage, 0 .. 1
+  double best = 0.0;       ///< best cost so far, in the stage's own unit
+  double median = 0.0;     ///< of the population, where there is one
   int iteration = 0;
-  std::string_view detail;     ///< free words: a segment's name, a fold
+  std::string_view detail;  ///< free words: a segment's name, a fold
 };
 
 enum class Wish { go_on, stop };

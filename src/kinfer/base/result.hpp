@@ -23,12 +23,14 @@ tl::unexpected<Error> error(fmt::format_string<Args...> text, Args&&... args) {
 }
 
 /// Hands an error on to the caller's Result type.
-inline tl::unexpected<Error> pass_on(Error failure) { return tl::unexpected<Error>(std::move(failure)); }
+inline tl::unexpected<Error> pass_on(Error failure) {
+  return tl::unexpected<Error>(std::move(failure));
+}
 
 }  // namespace kinfer
 
 /// Evaluates `expression`; returns its error from the calling function, or makes `name` its value.
-#define KINFER_TRY(name, expression)                                                     \
-  auto name##_result = (expression);                                                     \
-  if (!name##_result) return ::kinfer::pass_on(std::move(name##_result).error());        \
+#define KINFER_TRY(name, expression)                                              \
+  auto name##_result = (expression);                                              \
+  if (!name##_result) return ::kinfer::pass_on(std::move(name##_result).error()); \
   auto name = std::move(*name##_result)

@@ -26,11 +26,17 @@ Rng Rng::stream(std::uint64_t name) const {
   return child;
 }
 
-std::uint64_t Rng::bits() { return mix(key_ + ++counter_ * golden); }
+std::uint64_t Rng::bits() {
+  return mix(key_ + ++counter_ * golden);
+}
 
-double Rng::uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
+double Rng::uniform() {
+  return static_cast<double>(bits() >> 11) * 0x1.0p-53;
+}
 
-double Rng::uniform(double low, double high) { return low + (high - low) * uniform(); }
+double Rng::uniform(double low, double high) {
+  return low + (high - low) * uniform();
+}
 
 double Rng::normal() {
   const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));  // 1 - u is never 0

@@ -15,11 +15,11 @@ class Rng {
   /// An independent stream: `rng.stream(generation).stream(individual)`. Does not change *this.
   Rng stream(std::uint64_t name) const;
 
-  std::uint64_t bits();                          ///< 64 random bits
-  double uniform();                              ///< in [0, 1)
-  double uniform(double low, double high);       ///< in [low, high)
-  double normal();                               ///< mean 0, standard deviation 1 (Box-Muller, one value a call)
-  std::uint64_t index(std::uint64_t count);      ///< in 0 .. count-1, each equally likely; count >= 1
+  std::uint64_t bits();                      ///< 64 random bits
+  double uniform();                          ///< in [0, 1)
+  double uniform(double low, double high);   ///< in [low, high)
+  double normal();                           ///< mean 0, standard deviation 1 (Box-Muller, one value a call)
+  std::uint64_t index(std::uint64_t count);  ///< in 0 .. count-1, each equally likely; count >= 1
 
  private:
   std::uint64_t key_;

@@ -46,11 +46,11 @@ Result<Plan> plan(const PoseSet& data, const HoldoutChoice& choice, Rng rng) {
   const auto count = static_cast<int>(data.rows());
   if (const auto* part = std::get_if<HeldOutFraction>(&choice)) {
     const Split split = random_split(count, part->fraction, rng);
-    return Plan{split.train, {split}, fmt::format("{:.0f} % of the rows, drawn at random", 100.0 * part->fraction), false};
+    return Plan{
+        split.train, {split}, fmt::format("{:.0f} % of the rows, drawn at random", 100.0 * part->fraction), false};
   }
   if (has_held_out_labels(data)) return plan_by_labels(data);
-  if (std::holds_alternative<HeldOutByLabel>(choice))
-    return error("no row is marked holdout in a column called set");
+  if (std::holds_alternative<HeldOutByLabel>(choice)) return error("no row is marked holdout in a column called set");
   const int k = std::min(std::get<CrossValidation>(choice).folds, count);
   return Plan{all_rows(data), folds(count, k, rng), fmt::format("{}-fold cross-validation", k), true};
 }
@@ -65,7 +65,8 @@ Errors errors_of(const Chain& chain, const PoseSet& rows) {
   Errors errors;
   const std::vector<double> points = point_errors(chain, rows);
   std::vector<double> sum(rows.rows(), 0.0), count(rows.rows(), 0.0);
-  for (std::size_t i = 0; i < points.size(); ++i) sum[rows.points[i].row] += points[i], count[rows.points[i].row] += 1.0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    sum[rows.points[i].row] += points[i], count[rows.points[i].row] += 1.0;
   for (std::size_t row = 0; row < sum.size(); ++row)
     errors.position_of_row.push_back(count[row] > 0.0 ? sum[row] / count[row] : not_measured);
   errors.position = error_statistics(points);
@@ -125,9 +126,12 @@ Result<std::vector<Proof>> prove(const CalibrateTask& task, const Plan& plan, co
     const PoseSet searched = options.population ? select(task.data, without(plan.proofs[i].train, not_believed)) : rows;
     const Result<Chain> before = fit_frames_only(task, rows);
     const Result<Estimate> after = fit_by_method(task, searched, options, found.scale, rng.stream(i));
-    if (!before) proofs[i].failure = before.error();
-    else if (!after) proofs[i].failure = after.error();
-    else proofs[i] = {*before, *after, {}};
+    if (!before)
+      proofs[i].failure = before.error();
+    else if (!after)
+      proofs[i].failure = after.error();
+    else
+      proofs[i] = {*before, *after, {}};
   });
   for (const Proof& proof : proofs)
     if (!proof.failure.what.empty()) return pass_on(proof.failure);
@@ -136,8 +140,8 @@ Result<std::vector<Proof>> prove(const CalibrateTask& task, const Plan& plan, co
 
 /// Gathers the errors of held-out rows over all splits.
 struct HeldOutErrors {
-  std::vector<double> nominal, before, after;                                  // [m]
-  std::vector<double> turn_nominal, turn_before, turn_after;                   // [rad]
+  std::vector<double> nominal, before, after;                 // [m]
+  std::vector<double> turn_nominal, turn_before, turn_after;  // [rad]
 
   void add(const Chain& given, const Proof& proof, const PoseSet& rows) {
     append(nominal, point_errors(given, rows));
@@ -147,7 +151,9 @@ struct HeldOutErrors {
     append(turn_before, orientation_errors(proof.before, rows));
     append(turn_after, orientation_errors(proof.after.chain, rows));
   }
-  static void append(std::vector<double>& to, const std::vector<double>& more) { to.insert(to.end(), more.begin(), more.end()); }
+  static void append(std::vector<double>& to, const std::vector<double>& more) {
+    to.insert(to.end(), more.begin(), more.end());
+  }
 };
 
 void fill_figures(Calibration& calibration, const CalibrateTask& task, const Plan& plan, const Chain& frames_only,
@@ -178,10 +184,12 @@ void fill_rows(Calibration& calibration, const CalibrateTask& task, const Plan& 
                const std::vector<Proof>& proofs) {
   const Errors before = errors_of(frames_only, task.data), after = errors_of(calibration.estimate.chain, task.data);
   for (int row = 0; row < task.data.rows(); ++row)
-    calibration.rows.push_back({row, before.position_of_row[row], after.position_of_row[row], after.position_of_row[row], false});
+    calibration.rows.push_back(
+        {row, before.position_of_row[row], after.position_of_row[row], after.position_of_row[row], false});
   for (std::size_t i = 0; i < proofs.size(); ++i) {
     const PoseSet rows = select(task.data, plan.proofs[i].holdout);
-    const Errors unseen_before = errors_of(proofs[i].before, rows), unseen_after = errors_of(proofs[i].after.chain, rows);
+    const Errors unseen_before = errors_of(proofs[i].before, rows),
+                 unseen_after = errors_of(proofs[i].after.chain, rows);
     for (std::size_t k = 0; k < plan.proofs[i].holdout.size(); ++k) {
       RowErrors& entry = calibration.rows[plan.proofs[i].holdout[k]];
       entry.before = unseen_before.position_of_row[k];
@@ -217,11 +225,12 @@ void note_frames(Calibration& calibration, const Chain& nominal) {
   const double off = (calibration.estimate.chain.base.xyz - nominal.base.xyz).norm();
   if (off > 0.0)
     calibration.notes.push_back(fmt::format(
-        "the base of the robot file lies {:.1f} mm from where the data show it: base and tool were taken from the data", 1e3 * off));
+        "the base of the robot file lies {:.1f} mm from where the data show it: base and tool were taken from the data",
+        1e3 * off));
 }
 
-/// Rms error that the held-out rows should show [m]: the instrument's scatter and the uncertainty of the fits that did not
-/// see them. Nothing where the instrument is not known.
+/// Rms error that the held-out rows should show [m]: the instrument's scatter and the uncertainty of the fits that did
+/// not see them. Nothing where the instrument is not known.
 std::optional<double> expected_error(const CalibrateTask& task, const Plan& plan, const std::vector<Proof>& proofs,
                                      const std::vector<Outlier>& outliers) {
   if (!task.instrument) return std::nullopt;
@@ -242,7 +251,8 @@ Result<void> enough_rows(const CalibrateTask& task, const Plan& plan) {
   // Each pose gives at most six equations; base and tool alone are nine unknowns, and one row must prove the result.
   constexpr int fewest = 4;
   if (static_cast<int>(plan.fitted.size()) < fewest)
-    return error("{} rows are left to fit; a calibration needs at least {} (20 or more are better)", plan.fitted.size(), fewest);
+    return error("{} rows are left to fit; a calibration needs at least {} (20 or more are better)", plan.fitted.size(),
+                 fewest);
   for (const Split& split : plan.proofs)
     if (split.train.size() < 3)
       return error("{} rows are too few to fit and prove a calibration; at least 4 are needed", task.data.rows());
@@ -257,7 +267,8 @@ Result<Calibration> calibrate(const CalibrateTask& task, const CalibrateOptions&
   if (auto enough = enough_rows(task, plan_of_rows); !enough) return pass_on(enough.error());
   const PoseSet fitted = select(task.data, plan_of_rows.fitted);
   KINFER_TRY(frames_only, fit_frames_only(task, fitted));
-  KINFER_TRY(least_squares_fit, fit_with_believable_tolerances(task, fitted, options.parameters, rng.stream(2), observer));
+  KINFER_TRY(least_squares_fit,
+             fit_with_believable_tolerances(task, fitted, options.parameters, rng.stream(2), observer));
   KINFER_TRY(found, with_population(task, fitted, options, least_squares_fit, rng.stream(3), observer));
   KINFER_TRY(proofs, prove(task, plan_of_rows, options, found, rng.stream(4)));
 
@@ -268,8 +279,9 @@ Result<Calibration> calibrate(const CalibrateTask& task, const CalibrateOptions&
   calibration.holdout = plan_of_rows.words;
   map_rows_back(calibration.estimate.outliers, plan_of_rows.fitted);
   if (found.scale.factor > 1.0)
-    calibration.notes.push_back(fmt::format(
-        "the nominal model is further off than its tolerances say: they were multiplied by {:.0f}", found.scale.factor));
+    calibration.notes.push_back(
+        fmt::format("the nominal model is further off than its tolerances say: they were multiplied by {:.0f}",
+                    found.scale.factor));
   note_frames(calibration, task.nominal);
   fill_figures(calibration, task, plan_of_rows, frames_only, proofs);
   fill_rows(calibration, task, plan_of_rows, frames_only, proofs);

@@ -18,27 +18,34 @@ namespace kinfer {
 struct CalibrateTask {
   Chain nominal;
   Tolerances tolerances;
-  std::optional<Instrument> instrument;   ///< absent: judged from the residuals
+  std::optional<Instrument> instrument;  ///< absent: judged from the residuals
   PoseSet data;
-  std::optional<Chain> earlier{};         ///< an earlier calibration of this robot: searches start there
-  std::vector<Chain> fleet{};             ///< earlier calibrations of robots of this kind: their mean and spread are the prior
+  std::optional<Chain> earlier{};  ///< an earlier calibration of this robot: searches start there
+  std::vector<Chain> fleet{};      ///< earlier calibrations of robots of this kind: their mean and spread are the prior
 };
 
-struct AutoParameters {};                                     ///< the complete geometric set with tolerance priors
-struct Paper24Parameters {};                                  ///< paper 2, table 2; base and tool as given
-struct NamedParameters { std::vector<std::string> names; };
+struct AutoParameters {};     ///< the complete geometric set with tolerance priors
+struct Paper24Parameters {};  ///< paper 2, table 2; base and tool as given
+struct NamedParameters {
+  std::vector<std::string> names;
+};
 using ParameterChoice = std::variant<AutoParameters, Paper24Parameters, NamedParameters>;
 
-struct CrossValidation { int folds = 5; };                    ///< every row is held out once; the result is fitted on all rows
-struct HeldOutFraction { double fraction = 0.2; };            ///< random rows are never fitted
-struct HeldOutByLabel {};                                     ///< rows labelled `holdout` in the data are never fitted
+struct CrossValidation {
+  int folds = 5;
+};  ///< every row is held out once; the result is fitted on all rows
+struct HeldOutFraction {
+  double fraction = 0.2;
+};                         ///< random rows are never fitted
+struct HeldOutByLabel {};  ///< rows labelled `holdout` in the data are never fitted
 using HoldoutChoice = std::variant<CrossValidation, HeldOutFraction, HeldOutByLabel>;
 
 struct CalibrateOptions {
   ParameterChoice parameters = AutoParameters{};
-  HoldoutChoice holdout = CrossValidation{};   ///< where the data carry labels, those rule unless a fraction is asked for
+  HoldoutChoice holdout =
+      CrossValidation{};  ///< where the data carry labels, those rule unless a fraction is asked for
   std::optional<PopulationOptions> population{};  ///< search by a population (paper 2); none: Levenberg-Marquardt
-  int threads = 0;                             ///< 0: all cores; the result does not depend on it
+  int threads = 0;                                ///< 0: all cores; the result does not depend on it
 };
 
 Result<Calibration> calibrate(const CalibrateTask& task, const CalibrateOptions& options, Rng rng,

@@ -20,7 +20,9 @@ Compensated compensated(const InverseSolution& solution) {
   return {solution.q, solution.position_error, solution.angle_error, solution.reach};
 }
 
-double total_error(const InverseSolution& solution) { return solution.position_error + solution.angle_error; }
+double total_error(const InverseSolution& solution) {
+  return solution.position_error + solution.angle_error;
+}
 
 /// Readings inside the limits; ±170° or ±0.5 m where a joint has none.
 VectorXd drawn_posture(const Chain& chain, Rng rng) {
@@ -63,7 +65,8 @@ Chain in_frames(Chain corrected, const Chain& nominal, CompensationFrames frames
   return corrected;
 }
 
-std::vector<Compensated> compensate_joints(const Chain& corrected, const Chain& nominal, const MatrixXd& q, int threads) {
+std::vector<Compensated> compensate_joints(const Chain& corrected, const Chain& nominal, const MatrixXd& q,
+                                           int threads) {
   KINFER_EXPECT(q.rows() == dof(corrected) && q.rows() == dof(nominal), "{} readings for {} and {} joints", q.rows(),
                 dof(corrected), dof(nominal));
   std::vector<Compensated> list(q.cols());
@@ -83,8 +86,9 @@ std::vector<Compensated> compensate_targets(const Chain& corrected, const Chain&
                                             Rng rng) {
   std::vector<Compensated> list(targets.size());
   parallel_for(list.size(), threads, [&](std::size_t i) {
-    const VectorXd first = start.cols() > 0 ? VectorXd(solved(nominal, targets[i], start.col(static_cast<Eigen::Index>(i))).q)
-                                            : nominal_solution(nominal, targets[i], rng.stream(i));
+    const VectorXd first = start.cols() > 0
+                               ? VectorXd(solved(nominal, targets[i], start.col(static_cast<Eigen::Index>(i))).q)
+                               : nominal_solution(nominal, targets[i], rng.stream(i));
     list[i] = compensated(solved(corrected, targets[i], first));
   });
   return list;

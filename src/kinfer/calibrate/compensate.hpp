@@ -19,23 +19,24 @@ enum class CompensationFrames {
   robot,     ///< the nominal base and tool for both: the corrected base tells where the instrument stood
 };
 
-/// `as_given`, unless the corrected base is further from the nominal one than three tolerances: then the instrument's world
-/// is another one.
+/// `as_given`, unless the corrected base is further from the nominal one than three tolerances: then the instrument's
+/// world is another one.
 CompensationFrames believable_frames(const Chain& corrected, const Chain& nominal, const Tolerances& tolerances);
 
 /// The corrected chain in the frames that are compared.
 Chain in_frames(Chain corrected, const Chain& nominal, CompensationFrames frames);
 
 struct Compensated {
-  VectorXd q;                 ///< [rad] or [m]
-  double residual = 0.0;      ///< [m] of the tool point, by the corrected chain
-  double residual_angle = 0.0;///< [rad]
+  VectorXd q;                   ///< [rad] or [m]
+  double residual = 0.0;        ///< [m] of the tool point, by the corrected chain
+  double residual_angle = 0.0;  ///< [rad]
   Reach reach = Reach::reached;
 };
 
-/// For each column of `q` the readings at which `corrected` has its tool where `nominal` has it at q. A chain of fewer than
-/// six joints cannot turn its tool freely: its tool point alone is put right.
-std::vector<Compensated> compensate_joints(const Chain& corrected, const Chain& nominal, const MatrixXd& q, int threads);
+/// For each column of `q` the readings at which `corrected` has its tool where `nominal` has it at q. A chain of fewer
+/// than six joints cannot turn its tool freely: its tool point alone is put right.
+std::vector<Compensated> compensate_joints(const Chain& corrected, const Chain& nominal, const MatrixXd& q,
+                                           int threads);
 
 /// A wanted tool point, with or without an orientation.
 struct ToolTarget {
@@ -43,8 +44,8 @@ struct ToolTarget {
   std::optional<Mat3> rotation;
 };
 
-/// Readings that bring the tool of `corrected` to each target. They start from the nominal solution, which itself starts
-/// from `start` (dof x targets) where given, else from several postures inside the limits.
+/// Readings that bring the tool of `corrected` to each target. They start from the nominal solution, which itself
+/// starts from `start` (dof x targets) where given, else from several postures inside the limits.
 std::vector<Compensated> compensate_targets(const Chain& corrected, const Chain& nominal,
                                             const std::vector<ToolTarget>& targets, const MatrixXd& start, int threads,
                                             Rng rng);

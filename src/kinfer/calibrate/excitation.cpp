@@ -14,9 +14,11 @@ namespace {
 
 void find_still_joints(const std::vector<JointExcitation>& joints, std::vector<std::string>& found) {
   for (const JointExcitation& j : joints) {
-    const double needed = j.turns ? 5.0 * degree : 5e-3;  // sd; below, its parameters are hardly told apart from others'
+    const double needed =
+        j.turns ? 5.0 * degree : 5e-3;  // sd; below, its parameters are hardly told apart from others'
     if (j.sd < needed)
-      found.push_back(fmt::format("{} hardly moves; its parameters cannot be determined: measure poses where it does", j.name));
+      found.push_back(
+          fmt::format("{} hardly moves; its parameters cannot be determined: measure poses where it does", j.name));
   }
 }
 
@@ -24,8 +26,8 @@ void find_degrees(const std::vector<JointExcitation>& joints, std::vector<std::s
   constexpr double two_turns = 4.0 * std::numbers::pi;
   for (const JointExcitation& j : joints)
     if (j.turns && std::max(std::abs(j.lowest), std::abs(j.highest)) > two_turns)
-      found.push_back(fmt::format("{} reads up to {:.0f} rad: are these degrees? Then the header should say [deg]", j.name,
-                                  std::max(std::abs(j.lowest), std::abs(j.highest))));
+      found.push_back(fmt::format("{} reads up to {:.0f} rad: are these degrees? Then the header should say [deg]",
+                                  j.name, std::max(std::abs(j.lowest), std::abs(j.highest))));
 }
 
 void find_repeated_rows(const PoseSet& set, std::vector<std::string>& found) {
@@ -47,8 +49,9 @@ void find_unsettled_readings(const PoseSet& set, std::vector<std::string>& found
   }
   constexpr double settled = 0.05 * degree;
   if (difference.empty() || median(difference) < settled) return;
-  found.push_back(fmt::format("commanded and read-back joints differ by {:.3f} deg typically: was the arm still moving?",
-                              median(difference) / degree));
+  found.push_back(
+      fmt::format("commanded and read-back joints differ by {:.3f} deg typically: was the arm still moving?",
+                  median(difference) / degree));
 }
 
 }  // namespace

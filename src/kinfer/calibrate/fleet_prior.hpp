@@ -7,10 +7,11 @@
 
 namespace kinfer {
 
-/// The priors of the joints' parameters are centred at the fleet's mean, with the fleet's variance. The nominal model with
-/// its tolerance counts as one more robot, so that a fleet of few is not believed too much:
+/// The priors of the joints' parameters are centred at the fleet's mean, with the fleet's variance. The nominal model
+/// with its tolerance counts as one more robot, so that a fleet of few is not believed too much:
 ///   mean = (nominal + Σ x_k) / (1 + K),   sd² = (tolerance² + Σ (x_k − mean)²) / (1 + K)
-/// Base and tool belong to a set-up, not to the robot, and keep their priors. Each robot must have the joints of `nominal`.
+/// Base and tool belong to a set-up, not to the robot, and keep their priors. Each robot must have the joints of
+/// `nominal`.
 ParameterSet with_fleet_prior(ParameterSet set, std::span<const Chain> fleet);
 
 /// The joints' numbers of `earlier` in `chain`; base and tool stay. Both must have the same joints.

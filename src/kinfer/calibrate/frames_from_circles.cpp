@@ -107,7 +107,8 @@ void add_uncertainty(SweepCircle& circle, const std::vector<Vec3>& points) {
     across.row(i) << x, y, 1.0;
   }
   // 2n scattered numbers have determined six: three of the circle in its plane, three of the plane.
-  const double scatter = circle.rms * std::sqrt(static_cast<double>(n) / std::max(1.0, 2.0 * static_cast<double>(n) - 6.0));
+  const double scatter =
+      circle.rms * std::sqrt(static_cast<double>(n) / std::max(1.0, 2.0 * static_cast<double>(n) - 6.0));
   circle.centre_sd = worst_of_two(in_plane, scatter);
   circle.axis_sd = worst_of_two(across, scatter);
   const auto covariance = inverse_positive(in_plane.transpose() * in_plane);
@@ -136,7 +137,9 @@ Pose frame_of(const Line& a, const Line& b) {
   return pose;
 }
 
-Line line_of(const SweepCircle& circle) { return {circle.centre, circle.axis}; }
+Line line_of(const SweepCircle& circle) {
+  return {circle.centre, circle.axis};
+}
 
 /// Where the chain has the axis of the sweep's joint while it is swept.
 Line axis_in_chain(const Chain& chain, const PoseSet& data, const Sweep& sweep) {
@@ -145,7 +148,9 @@ Line axis_in_chain(const Chain& chain, const PoseSet& data, const Sweep& sweep) 
   return {placed.point, chain.joints[joint].gain < 0.0 ? Vec3(-placed.axis) : placed.axis};
 }
 
-double distance(const Line& line, const Vec3& point) { return (point - line.point).cross(line.direction).norm(); }
+double distance(const Line& line, const Vec3& point) {
+  return (point - line.point).cross(line.direction).norm();
+}
 
 /// The pair of sweeps that gives the base: lowest joints first, axes not parallel.
 struct Pair {
@@ -157,11 +162,13 @@ std::optional<Pair> base_pair(const std::vector<SweepCircle>& circles) {
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return circles[a].reading < circles[b].reading; });
   for (std::size_t i = 0; i < order.size(); ++i)
     for (std::size_t k = i + 1; k < order.size(); ++k)
-      if (circles[order[i]].axis.cross(circles[order[k]].axis).norm() > std::sin(parallel)) return Pair{order[i], order[k]};
+      if (circles[order[i]].axis.cross(circles[order[k]].axis).norm() > std::sin(parallel))
+        return Pair{order[i], order[k]};
   return std::nullopt;
 }
 
-/// zt at which the tool point is `radius` from the axis, for a tool on the flange's z axis: the root that lies furthest out.
+/// zt at which the tool point is `radius` from the axis, for a tool on the flange's z axis: the root that lies furthest
+/// out.
 std::optional<double> tool_length(const Chain& chain, const PoseSet& data, const Sweep& sweep, double radius) {
   Chain bare = chain;
   bare.tool = Frame{};
@@ -197,8 +204,10 @@ void find_tool(FramesFound& found, const PoseSet& data, const std::vector<Sweep>
     if (sweeps[i].reading != wanted) continue;
     const auto length = tool_length(found.chain, data, sweeps[i], found.sweeps[i].radius);
     found.tool_from = fmt::format("radius of the sweep of joint {}", found.sweeps[i].joint);
-    if (!length) found.tool_from += " does not fit a tool on the flange's axis";
-    else found.tool_length = *length;
+    if (!length)
+      found.tool_from += " does not fit a tool on the flange's axis";
+    else
+      found.tool_length = *length;
     return;
   }
 }
@@ -250,8 +259,9 @@ Result<FramesFound> frames_from_circles(const Chain& nominal, const PoseSet& dat
   }
   const auto pair = base_pair(found.sweeps);
   if (!pair)
-    return error("{} sweeps of a single joint were found; the base needs two whose axes are not parallel (joint 1 and joint 2)",
-                 sweeps.size());
+    return error(
+        "{} sweeps of a single joint were found; the base needs two whose axes are not parallel (joint 1 and joint 2)",
+        sweeps.size());
   const SweepCircle &first = found.sweeps[pair->first], &second = found.sweeps[pair->second];
   Chain in_base = nominal;
   in_base.base = Frame{};

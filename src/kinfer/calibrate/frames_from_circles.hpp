@@ -1,11 +1,11 @@
-// Base and tool from single-joint sweeps, paper 2, section 2.2: each sweep moves the target on a circle, whose normal is
-// the joint's axis.
+// Base and tool from single-joint sweeps, paper 2, section 2.2: each sweep moves the target on a circle, whose normal
+// is the joint's axis.
 //
-// Base: the two axes of lowest joints that are not parallel have a common perpendicular; its foot on the first axis, this
-// axis as z and the perpendicular as x are a frame that the nominal chain knows too (in the paper F1, from which F0 follows
-// by d1). So any posture and any pair of axes will do. Tool: once the base is known, every row says where the
-// tool point is on the flange; their mean is taken. The paper's length beside it: the radius of a sweep of the last joint
-// but one, for a target on the flange's axis (xt = yt = 0).
+// Base: the two axes of lowest joints that are not parallel have a common perpendicular; its foot on the first axis,
+// this axis as z and the perpendicular as x are a frame that the nominal chain knows too (in the paper F1, from which
+// F0 follows by d1). So any posture and any pair of axes will do. Tool: once the base is known, every row says where
+// the tool point is on the flange; their mean is taken. The paper's length beside it: the radius of a sweep of the last
+// joint but one, for a target on the flange's axis (xt = yt = 0).
 #pragma once
 
 #include <span>
@@ -30,8 +30,8 @@ Result<std::vector<Sweep>> find_sweeps(const PoseSet& data);
 /// Circle through the measured tool points of the sweep, with its uncertainty from the scatter about it.
 SweepCircle fit_sweep(const Chain& nominal, const PoseSet& data, const Sweep& sweep);
 
-/// Base and tool of `nominal` replaced by those that the sweeps show. An error where no two sweeps have axes that are not
-/// parallel.
+/// Base and tool of `nominal` replaced by those that the sweeps show. An error where no two sweeps have axes that are
+/// not parallel.
 Result<FramesFound> frames_from_circles(const Chain& nominal, const PoseSet& data);
 
 }  // namespace kinfer

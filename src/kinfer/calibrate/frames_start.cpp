@@ -40,7 +40,8 @@ Chain with_aligned_base(Chain chain, const PoseSet& data, const std::vector<Pose
 Chain with_aligned_rotations(Chain chain, const PoseSet& data, const std::vector<Pose>& base_T_flange) {
   std::vector<Vec3> in_world, in_base;
   const auto& all = data.orientations;
-  const std::size_t stride = std::max<std::size_t>(1, all.size() / 60);  // pairs enough; their number grows with the square
+  const std::size_t stride =
+      std::max<std::size_t>(1, all.size() / 60);  // pairs enough; their number grows with the square
   for (std::size_t i = 0; i < all.size(); i += stride)
     for (std::size_t j = 0; j < i; j += stride) {
       const Mat3 seen = all[i].orientation.toRotationMatrix() * all[j].orientation.toRotationMatrix().transpose();
@@ -85,7 +86,8 @@ Chain with_solved_translations(Chain chain, const PoseSet& data, const std::vect
   return chain;
 }
 
-/// Base and tool together, under a loss that wrong rows cannot pull; the noise level is the typical residual at the start.
+/// Base and tool together, under a loss that wrong rows cannot pull; the noise level is the typical residual at the
+/// start.
 Chain refined(const Chain& start, const PoseSet& data, const ParameterSet& frames) {
   const auto floored_median = [](std::vector<double> errors, double floor) {
     return errors.empty() ? floor : std::max(floor, median(std::move(errors)));
@@ -99,8 +101,8 @@ Chain refined(const Chain& start, const PoseSet& data, const ParameterSet& frame
     LeastSquaresOptions options;
     options.loss = Loss::cauchy;
     const Chain from = chain;
-    chain = unpack(frames, from,
-                   least_squares(pose_residuals(from, frames, data, weights), pack(frames, from), options).x);
+    chain =
+        unpack(frames, from, least_squares(pose_residuals(from, frames, data, weights), pack(frames, from), options).x);
   }
   return with_turns_folded(chain);
 }
@@ -116,7 +118,8 @@ Result<Chain> with_frames_from_data(const Chain& nominal, const PoseSet& data) {
   std::set<int> rows;
   for (const PointMeasurement& point : data.points) rows.insert(point.row);
   if (rows.size() < 3)
-    return error("the pose set measures {} positions; at least 3 are needed to find the base of the robot", rows.size());
+    return error("the pose set measures {} positions; at least 3 are needed to find the base of the robot",
+                 rows.size());
   const std::vector<Pose> base_T_flange = base_to_flange(nominal, data);
   ParameterSet frames = frame_parameters(nominal, data);
   for (Parameter& parameter : frames.parameters) parameter.prior_sd = std::numeric_limits<double>::infinity();
@@ -128,7 +131,8 @@ Result<Chain> with_frames_from_data(const Chain& nominal, const PoseSet& data) {
     starts.push_back(with_aligned_base(bare, data, base_T_flange));
   }
   if (!data.orientations.empty())
-    starts.push_back(with_solved_translations(with_aligned_rotations(nominal, data, base_T_flange), data, base_T_flange));
+    starts.push_back(
+        with_solved_translations(with_aligned_rotations(nominal, data, base_T_flange), data, base_T_flange));
 
   std::optional<Chain> best;
   for (const Chain& start : starts) {

@@ -6,7 +6,9 @@
 namespace kinfer {
 namespace {
 
-bool is_turn(Field field) { return field == Field::rx || field == Field::ry || field == Field::rz; }
+bool is_turn(Field field) {
+  return field == Field::rx || field == Field::ry || field == Field::rz;
+}
 bool is_dh_row(Field field) {
   return field == Field::a || field == Field::alpha || field == Field::d || field == Field::theta;
 }
@@ -17,8 +19,8 @@ bool tool_parameter_is_used(Field field, const PoseSet& data) {
   return !is_turn(field) || !data.orientations.empty() || further_targets;
 }
 
-/// Hayati's angle is needed where the common perpendicular of two axes is ill defined: alpha near 0 or 180 degrees. Beside
-/// the base (first MDH row) and the tool (last DH row) a frame of six numbers takes its place.
+/// Hayati's angle is needed where the common perpendicular of two axes is ill defined: alpha near 0 or 180 degrees.
+/// Beside the base (first MDH row) and the tool (last DH row) a frame of six numbers takes its place.
 bool beta_is_needed(const Chain& chain, int index) {
   constexpr double nearly_parallel = 5.0 * degree;
   const Joint& joint = chain.joints[index];
@@ -54,9 +56,12 @@ ParameterSet frame_parameters(const Chain& chain, const PoseSet& data, const Tol
 ParameterSet geometric_parameters(const Chain& chain, const PoseSet& data, const Tolerances& tolerances) {
   return chosen(chain, tolerances, [&](const Parameter& p) {
     switch (p.at.owner) {
-      case Owner::base: return true;
-      case Owner::tool: return tool_parameter_is_used(p.at.field, data);
-      case Owner::joint: return joint_parameter_is_geometric(chain, p.at);
+      case Owner::base:
+        return true;
+      case Owner::tool:
+        return tool_parameter_is_used(p.at.field, data);
+      case Owner::joint:
+        return joint_parameter_is_geometric(chain, p.at);
     }
     return false;
   });

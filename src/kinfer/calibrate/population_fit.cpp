@@ -41,7 +41,8 @@ Problem problem_of(const CalibrateTask& task, const PreparedFit& prepared, const
 }
 
 /// The particles that the earlier calibration asks for; none: the search draws its own.
-MatrixXd initial_swarm(const CalibrateTask& task, const PreparedFit& prepared, const Bounds& box, int particles, Rng rng) {
+MatrixXd initial_swarm(const CalibrateTask& task, const PreparedFit& prepared, const Bounds& box, int particles,
+                       Rng rng) {
   if (!task.earlier) return {};
   return remembering_swarm(box, particles, pack(prepared.parameters, prepared.start), rng);
 }
@@ -49,7 +50,8 @@ MatrixXd initial_swarm(const CalibrateTask& task, const PreparedFit& prepared, c
 /// The search with its initial swarm filled in. The net of BPNN-PSO moves evenly drawn particles: it gets no memory.
 SearchOptions with_initial_swarm(SearchOptions search, const CalibrateTask& task, const PreparedFit& prepared,
                                  const Bounds& box, Rng rng) {
-  if (auto* pso = std::get_if<PsoOptions>(&search)) pso->initial = initial_swarm(task, prepared, box, pso->particles, rng);
+  if (auto* pso = std::get_if<PsoOptions>(&search))
+    pso->initial = initial_swarm(task, prepared, box, pso->particles, rng);
   if (auto* qpso = std::get_if<QpsoOptions>(&search))
     qpso->initial = initial_swarm(task, prepared, box, qpso->particles, rng);
   return search;
@@ -122,9 +124,10 @@ Result<Estimate> fit_population(const CalibrateTask& task, const PoseSet& rows, 
   return estimate;
 }
 
-Result<std::vector<SearchRun>> side_by_side(const CalibrateTask& task, const PoseSet& rows, const ParameterChoice& choice,
-                                            ToleranceScale scale, const PopulationOptions& options,
-                                            const Chain& least_squares, Rng rng, const Observer& observer) {
+Result<std::vector<SearchRun>> side_by_side(const CalibrateTask& task, const PoseSet& rows,
+                                            const ParameterChoice& choice, ToleranceScale scale,
+                                            const PopulationOptions& options, const Chain& least_squares, Rng rng,
+                                            const Observer& observer) {
   if (auto enough = expect_points(rows); !enough) return pass_on(enough.error());
   KINFER_TRY(prepared, prepare_fit(task, rows, choice, scale));
   const Problem problem = problem_of(task, prepared, rows, options);

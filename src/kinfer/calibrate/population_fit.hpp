@@ -4,8 +4,8 @@
 // calibrations give a prior, plus its weighted squares.
 #pragma once
 
-#include "kinfer/calibrate/single_fit.hpp"
 #include "kinfer/calibrate/population_options.hpp"
+#include "kinfer/calibrate/single_fit.hpp"
 
 namespace kinfer {
 
@@ -16,16 +16,19 @@ inline constexpr double papers_excess = 7.45e-6;  // [m]
 /// The box about `prepared.start`, one interval a free parameter.
 Bounds search_box(const PreparedFit& prepared, const PopulationOptions& options);
 
-/// Searches; the estimate has the covariance of a least-squares fit there. Orientations and distances do not count in eq. (11); an error where the rows hold no points.
+/// Searches; the estimate has the covariance of a least-squares fit there. Orientations and distances do not count in
+/// eq. (11); an error where the rows hold no points.
 Result<Estimate> fit_population(const CalibrateTask& task, const PoseSet& rows, const ParameterChoice& choice,
                                 ToleranceScale scale, const PopulationOptions& options, Rng rng,
                                 const Observer& observer = {});
 
-/// What a net is worth: iterations to `papers_excess` above `least_squares` from a swarm drawn evenly in the box (cold),
-/// from a compact one about the nominal numbers, from one that remembers the earlier result, and from the net's.
-Result<std::vector<SearchRun>> side_by_side(const CalibrateTask& task, const PoseSet& rows, const ParameterChoice& choice,
-                                            ToleranceScale scale, const PopulationOptions& options,
-                                            const Chain& least_squares, Rng rng, const Observer& observer = {});
+/// What a net is worth: iterations to `papers_excess` above `least_squares` from a swarm drawn evenly in the box
+/// (cold), from a compact one about the nominal numbers, from one that remembers the earlier result, and from the
+/// net's.
+Result<std::vector<SearchRun>> side_by_side(const CalibrateTask& task, const PoseSet& rows,
+                                            const ParameterChoice& choice, ToleranceScale scale,
+                                            const PopulationOptions& options, const Chain& least_squares, Rng rng,
+                                            const Observer& observer = {});
 
 /// Evenly drawn particles drawn together about the box's centre: a tenth of its width.
 MatrixXd compact_swarm(const Bounds& box, int particles, Rng rng);

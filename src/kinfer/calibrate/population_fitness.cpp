@@ -83,9 +83,8 @@ void carry_inwards(Points& p, Motion motion, const Movements& moved) {
 bool bends(const Chain& chain, const ParameterSet& set) {
   const auto free = set.free();
   return std::any_of(chain.joints.begin(), chain.joints.end(), [](const Joint& j) { return j.compliance != 0.0; }) ||
-         std::any_of(free.begin(), free.end(), [](const Parameter* p) {
-           return p->at.field == Field::compliance || p->at.field == Field::gain;
-         });
+         std::any_of(free.begin(), free.end(),
+                     [](const Parameter* p) { return p->at.field == Field::compliance || p->at.field == Field::gain; });
 }
 
 }  // namespace
@@ -93,13 +92,13 @@ bool bends(const Chain& chain, const ParameterSet& set) {
 struct PopulationFitness::Plan {
   Chain nominal;
   ParameterSet set;
-  std::vector<Address> addresses;         // of the free parameters
-  std::vector<int> path;                  // joints from the base to the tip
+  std::vector<Address> addresses;  // of the free parameters
+  std::vector<int> path;           // joints from the base to the tip
   std::vector<PointMeasurement> points;
   MatrixXd joints;
   std::vector<double> payload;
-  std::vector<Movements> moved;           // of each joint of the path that moves, at every point
-  bool plain = true;                      // false: the readings' effect depends on the candidate, all is computed anew
+  std::vector<Movements> moved;  // of each joint of the path that moves, at every point
+  bool plain = true;             // false: the readings' effect depends on the candidate, all is computed anew
 
   std::vector<Vec3> points_on_tool() const {  // the tool point, then the further targets
     std::vector<Vec3> list{Vec3::Zero()};
@@ -185,6 +184,8 @@ void PopulationFitness::sums(ConstMatrixRef x, std::span<double> sum) const {
   }
 }
 
-std::size_t PopulationFitness::points() const { return plan_->points.size(); }
+std::size_t PopulationFitness::points() const {
+  return plan_->points.size();
+}
 
 }  // namespace kinfer

@@ -56,7 +56,8 @@ bool base_is_believed(const CalibrateTask& task, const Chain& found) {
          angle_between(file.pose().rotation, data.pose().rotation) <= 3.0 * task.tolerances.base_angle;
 }
 
-/// −2 log of the marginal likelihood, by Laplace's approximation: misfit + level of the noise + price of the freedom used.
+/// −2 log of the marginal likelihood, by Laplace's approximation: misfit + level of the noise + price of the freedom
+/// used.
 double surprise(const Estimate& estimate, const PoseSet& data) {
   const auto points = 3.0 * static_cast<double>(data.points.size());
   const auto turns = 3.0 * static_cast<double>(data.orientations.size());

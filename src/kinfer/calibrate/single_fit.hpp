@@ -10,9 +10,9 @@ struct ToleranceScale {
   double factor = 1.0;
 };
 
-/// What identifies the parameters of one fit: the start and the priors about it. Base and tool are found from the data first
-/// (paper 2, section 2.2, does so by circles). Where they are not parameters themselves, those of the file are kept as long
-/// as the data agree with its base to three tolerances.
+/// What identifies the parameters of one fit: the start and the priors about it. Base and tool are found from the data
+/// first (paper 2, section 2.2, does so by circles). Where they are not parameters themselves, those of the file are
+/// kept as long as the data agree with its base to three tolerances.
 struct PreparedFit {
   Chain start;
   ParameterSet parameters;

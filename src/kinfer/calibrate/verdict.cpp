@@ -7,7 +7,9 @@
 namespace kinfer {
 namespace {
 
-std::string millimetres(double metres) { return fmt::format("{:.3f} mm", 1e3 * metres); }
+std::string millimetres(double metres) {
+  return fmt::format("{:.3f} mm", 1e3 * metres);
+}
 
 const ErrorStatistics& judged(const TrainHoldout& position) {
   return position.holdout.n > 0 ? position.holdout : position.train;
@@ -36,7 +38,8 @@ void judge(Calibration& calibration, std::optional<double> expected) {
     calibration.verdict = "Do not use: the corrected model is no better than the nominal one: " + figures + ".";
   } else if (!excused) {
     calibration.verdict = fmt::format(
-        "Do not use without a look: better, but the errors are {:.0f} times what instrument and fit can excuse, so something is "
+        "Do not use without a look: better, but the errors are {:.0f} times what instrument and fit can excuse, so "
+        "something is "
         "not modelled: {}.",
         after.rms / *expected, figures);
   } else {

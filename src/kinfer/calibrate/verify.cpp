@@ -8,7 +8,9 @@
 namespace kinfer {
 namespace {
 
-std::string millimetres(double metres) { return fmt::format("{:.3f} mm", 1e3 * metres); }
+std::string millimetres(double metres) {
+  return fmt::format("{:.3f} mm", 1e3 * metres);
+}
 
 double typical_sd(const Instrument& instrument, const PoseSet& data) {
   double squares = 0.0;
@@ -18,8 +20,8 @@ double typical_sd(const Instrument& instrument, const PoseSet& data) {
 
 }  // namespace
 
-Result<Verification> verify(const Chain& chain, const Tolerances& tolerances, const std::optional<Instrument>& instrument,
-                            const PoseSet& data) {
+Result<Verification> verify(const Chain& chain, const Tolerances& tolerances,
+                            const std::optional<Instrument>& instrument, const PoseSet& data) {
   if (data.points.empty()) return error("the data hold no measured positions to verify against");
   Verification v;
   v.as_it_stands = error_statistics(point_errors(chain, data));
@@ -30,17 +32,20 @@ Result<Verification> verify(const Chain& chain, const Tolerances& tolerances, co
   const double excusable = instrument ? excuse * std::max(typical_sd(*instrument, data), 1e-8) : 0.0;
   const bool moved = v.frames_refitted.rms <= (instrument ? excusable : 0.5 * v.as_it_stands.rms);
   v.good = instrument ? v.as_it_stands.rms <= excusable : !moved;
-  const std::string figures =
-      fmt::format("the tool is {} off on average and {} at worst", millimetres(v.as_it_stands.mean), millimetres(v.as_it_stands.max));
-  if (v.good) v.verdict = fmt::format("Still good: {}.", figures);
+  const std::string figures = fmt::format("the tool is {} off on average and {} at worst",
+                                          millimetres(v.as_it_stands.mean), millimetres(v.as_it_stands.max));
+  if (v.good)
+    v.verdict = fmt::format("Still good: {}.", figures);
   else if (moved)
-    v.verdict = fmt::format("Not good as it stands: {}; with base and tool refitted {} on average, so the instrument or the "
-                            "tool was moved rather than the robot changed.",
-                            figures, millimetres(v.frames_refitted.mean));
+    v.verdict = fmt::format(
+        "Not good as it stands: {}; with base and tool refitted {} on average, so the instrument or the "
+        "tool was moved rather than the robot changed.",
+        figures, millimetres(v.frames_refitted.mean));
   else
-    v.verdict = fmt::format("Not good any more: {}, more than the instrument can excuse, and refitting base and tool does not "
-                            "cure it ({}). Calibrate again.",
-                            figures, millimetres(v.frames_refitted.mean));
+    v.verdict = fmt::format(
+        "Not good any more: {}, more than the instrument can excuse, and refitting base and tool does not "
+        "cure it ({}). Calibrate again.",
+        figures, millimetres(v.frames_refitted.mean));
   return v;
 }
 

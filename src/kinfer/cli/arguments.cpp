@@ -4,7 +4,8 @@
 
 namespace kinfer::cli {
 
-CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& summary, const std::string& footer) {
+CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& summary,
+                      const std::string& footer) {
   CLI::App* verb = program.add_subcommand(name, summary);
   verb->footer("\n" + footer);
   return verb;
@@ -13,8 +14,10 @@ CLI::App* add_command(CLI::App& program, const std::string& name, const std::str
 void add_text(CLI::App& verb, const std::string& name, std::string& value, const std::string& help, Need need,
               const std::string& placeholder) {
   CLI::Option* option = verb.add_option(name, value, help)->type_name(placeholder);
-  if (need == Need::required) option->required();
-  else if (!value.empty()) option->capture_default_str();
+  if (need == Need::required)
+    option->required();
+  else if (!value.empty())
+    option->capture_default_str();
 }
 
 void add_texts(CLI::App& verb, const std::string& name, std::vector<std::string>& values, const std::string& help,
@@ -57,6 +60,8 @@ void add_flag(CLI::App& verb, const std::string& name, bool& value, const std::s
   verb.add_flag(name, value, help);
 }
 
-bool chosen(const CLI::App& verb) { return verb.parsed(); }
+bool chosen(const CLI::App& verb) {
+  return verb.parsed();
+}
 
 }  // namespace kinfer::cli

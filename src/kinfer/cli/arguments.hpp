@@ -14,7 +14,8 @@ namespace kinfer::cli {
 enum class Need { optional, required };
 
 /// A verb of the program with its help text; `footer` shows an example.
-CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& summary, const std::string& footer);
+CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& summary,
+                      const std::string& footer);
 
 // Each binds `value`, which must live until the verb runs; its present content is the default that the help shows.
 void add_text(CLI::App& verb, const std::string& name, std::string& value, const std::string& help,

@@ -41,12 +41,14 @@ Result<ParameterChoice> read_parameter_choice(const std::string& text) {
 }
 
 /// A number is a fraction; anything else is a pose set whose rows are held out.
-Result<HoldoutChoice> add_holdout(const std::string& text, const RobotModel& robot, const ColumnMap& map, PoseSet& data) {
+Result<HoldoutChoice> add_holdout(const std::string& text, const RobotModel& robot, const ColumnMap& map,
+                                  PoseSet& data) {
   if (text.empty()) return CrossValidation{};
   double fraction = 0.0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), fraction);
   if (code == std::errc{} && end == text.data() + text.size()) {
-    if (fraction <= 0.0 || fraction >= 1.0) return error("--holdout {}: expected a fraction between 0 and 1, or a file", text);
+    if (fraction <= 0.0 || fraction >= 1.0)
+      return error("--holdout {}: expected a fraction between 0 and 1, or a file", text);
     return HeldOutFraction{fraction};
   }
   KINFER_TRY(kept_aside, read_pose_set(text, robot.chain, map));
@@ -122,26 +124,31 @@ int run(const Options& options) {
   if (!calibration) return fail(calibration.error());
   if (auto done = write_results(options, inputs->robot, *calibration); !done) return fail(done.error());
   if (auto done = record.write(options.out); !done) return fail(done.error());
-  if (options.common.json) fmt::print("{}", calibration_headline_json(*calibration));
-  else if (!options.common.quiet) fmt::print("{}", calibration_summary(*calibration));
+  if (options.common.json)
+    fmt::print("{}", calibration_headline_json(*calibration));
+  else if (!options.common.quiet)
+    fmt::print("{}", calibration_summary(*calibration));
   return calibration->use ? exit_done : exit_do_not_use;
 }
 
 }  // namespace
 
 Verb add_calibrate(CLI::App& app) {
-  CLI::App* verb = add_command(
-      app, "calibrate", "Correct a robot's model from outside measurements, and prove the gain",
-      "No initial guess of base and tool is needed.\nExample:\n"
-      "  kinfer calibrate --robot robot.toml --data poses.csv --out calibration\n"
-      "  kinfer predict --chain calibration/chain.toml --joints joints.csv -o predicted.csv");
+  CLI::App* verb =
+      add_command(app, "calibrate", "Correct a robot's model from outside measurements, and prove the gain",
+                  "No initial guess of base and tool is needed.\nExample:\n"
+                  "  kinfer calibrate --robot robot.toml --data poses.csv --out calibration\n"
+                  "  kinfer predict --chain calibration/chain.toml --joints joints.csv -o predicted.csv");
   auto options = std::make_shared<Options>();
   add_robot_option(*verb, options->robot, "--robot", "Nominal model: TOML or URDF");
   add_text(*verb, "--data", options->data, "Pose set: joint readings and measurements", Need::required, "CSV");
-  add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, evidence.json, run.json", Need::required, "DIR");
-  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional, "TOML");
+  add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, evidence.json, run.json", Need::required,
+           "DIR");
+  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional,
+           "TOML");
   add_text(*verb, "--parameters", options->parameters,
-           "auto: the complete geometric set; paper24: a alpha d theta of each joint (base and tool as given, or from the data where those disagree); or a TOML file "
+           "auto: the complete geometric set; paper24: a alpha d theta of each joint (base and tool as given, or from "
+           "the data where those disagree); or a TOML file "
            "with parameters = [\"a2\", ...]");
   add_text(*verb, "--holdout", options->holdout,
            "Rows that are never fitted: a fraction (0.2), or a further pose set (default: 5-fold cross-validation)");

@@ -20,12 +20,15 @@ std::vector<std::string>& command_line() {
 
 }  // namespace
 
-void remember_command_line(int argc, char** argv) { command_line().assign(argv, argv + argc); }
+void remember_command_line(int argc, char** argv) {
+  command_line().assign(argv, argv + argc);
+}
 
 void add_common_options(CLI::App& verb, CommonOptions& options) {
   add_flag(verb, "--json", options.json, "Print the verdict and the headline figures as one JSON object");
   add_flag(verb, "--quiet", options.quiet, "No progress, no summary; errors are still printed");
-  add_count(verb, "--threads", options.threads, 0, 1024, "Number of threads; 0: all cores. Results do not depend on it");
+  add_count(verb, "--threads", options.threads, 0, 1024,
+            "Number of threads; 0: all cores. Results do not depend on it");
   add_seed(verb, "--seed", options.seed, "Seed of everything random");
 }
 
@@ -65,8 +68,8 @@ Observer ProgressLine::observer() {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_ > std::chrono::milliseconds(50)) {
       last_ = now;
-      fmt::print(stderr, "\r\033[K{} {}  iteration {}  best {:.6g}", progress.stage, progress.detail, progress.iteration,
-                 progress.best);
+      fmt::print(stderr, "\r\033[K{} {}  iteration {}  best {:.6g}", progress.stage, progress.detail,
+                 progress.iteration, progress.best);
       std::fflush(stderr);
     }
     return Wish::go_on;
@@ -76,7 +79,9 @@ Observer ProgressLine::observer() {
 RunRecord::RunRecord(std::string verb, const CommonOptions& options)
     : verb_(std::move(verb)), options_(options), begin_(std::chrono::system_clock::now()) {}
 
-void RunRecord::add_input(const std::filesystem::path& path) { inputs_.push_back(std::filesystem::absolute(path).string()); }
+void RunRecord::add_input(const std::filesystem::path& path) {
+  inputs_.push_back(std::filesystem::absolute(path).string());
+}
 
 Result<void> RunRecord::write(const std::filesystem::path& folder) const {
   const auto end = std::chrono::system_clock::now();

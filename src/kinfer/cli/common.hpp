@@ -28,9 +28,8 @@ void add_common_options(CLI::App& verb, CommonOptions& options);
 /// Prints "kinfer: sentence" to stderr and gives exit_bad_input.
 int fail(const Error& error);
 
-
-/// The folder of a run's results: made and proved writable before anything is computed, and taken away again, where it is
-/// still empty and was not there before, when the run failed.
+/// The folder of a run's results: made and proved writable before anything is computed, and taken away again, where it
+/// is still empty and was not there before, when the run failed.
 class OutputFolder {
  public:
   static Result<OutputFolder> make(const std::filesystem::path& path);

@@ -51,7 +51,8 @@ std::string result_csv(const std::vector<JointColumn>& columns, const std::vecto
   for (const JointColumn& column : columns) text += column.header + ",";
   text += "residual[mm]\n";
   for (const Compensated& row : list) {
-    for (std::size_t k = 0; k < columns.size(); ++k) text += digits(row.q[static_cast<Eigen::Index>(k)], columns[k].factor) + ",";
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      text += digits(row.q[static_cast<Eigen::Index>(k)], columns[k].factor) + ",";
     text += digits(row.residual, 1e-3) + "\n";
   }
   return text;
@@ -78,11 +79,15 @@ Result<Chains> read_chains(const Options& options) {
                  options.chain.path, options.nominal);
   CompensationFrames frames = believable_frames(corrected.chain, nominal.chain, nominal.tolerances);
   std::string note;
-  if (options.frames == "world") frames = CompensationFrames::as_given;
-  else if (options.frames == "robot") frames = CompensationFrames::robot;
+  if (options.frames == "world")
+    frames = CompensationFrames::as_given;
+  else if (options.frames == "robot")
+    frames = CompensationFrames::robot;
   else if (frames == CompensationFrames::robot)
-    note = "the corrected base is far from the nominal one, so it tells where the instrument stood: compared with the nominal "
-           "base and tool (--frames world compares as given)";
+    note =
+        "the corrected base is far from the nominal one, so it tells where the instrument stood: compared with the "
+        "nominal "
+        "base and tool (--frames world compares as given)";
   return Chains{in_frames(corrected.chain, nominal.chain, frames), nominal.chain, note};
 }
 
@@ -94,7 +99,8 @@ Result<std::vector<Compensated>> compensated_rows(const Options& options, const 
   }
   KINFER_TRY(set, read_pose_set(options.targets, chains.nominal, {}, Expect::targets));
   const MatrixXd start = set.joints.rows() > 0 ? set.joints : MatrixXd();
-  return compensate_targets(chains.corrected, chains.nominal, targets_of(set), start, threads, Rng(options.common.seed));
+  return compensate_targets(chains.corrected, chains.nominal, targets_of(set), start, threads,
+                            Rng(options.common.seed));
 }
 
 /// Says which rows are not reached, and why; true when all are.
@@ -107,19 +113,18 @@ bool tell_about_rows(const Options& options, const std::vector<Compensated>& lis
     if (list[i].reach == Reach::reached) continue;
     ++missed;
     if (!options.common.quiet && missed <= most)
-      fmt::print(stderr, "row {}: {}; {:.4f} mm and {:.4f} deg are left\n", i, sentence(list[i].reach), 1e3 * list[i].residual,
-                 list[i].residual_angle / degree);
+      fmt::print(stderr, "row {}: {}; {:.4f} mm and {:.4f} deg are left\n", i, sentence(list[i].reach),
+                 1e3 * list[i].residual, list[i].residual_angle / degree);
   }
   if (missed > most && !options.common.quiet) fmt::print(stderr, "and {} more\n", missed - most);
   if (!options.common.quiet)
-    fmt::print(stderr, "{} of {} rows are compensated; the corrected model leaves {:.6f} mm at most\n", list.size() - missed,
-               list.size(), 1e3 * worst);
+    fmt::print(stderr, "{} of {} rows are compensated; the corrected model leaves {:.6f} mm at most\n",
+               list.size() - missed, list.size(), 1e3 * worst);
   return missed == 0;
 }
 
 int run(const Options& options) {
-  if (options.joints.empty() == options.targets.empty())
-    return fail({"expected either --joints or --targets"});
+  if (options.joints.empty() == options.targets.empty()) return fail({"expected either --joints or --targets"});
   const auto chains = read_chains(options);
   if (!chains) return fail(chains.error());
   const auto list = compensated_rows(options, *chains);
@@ -127,8 +132,10 @@ int run(const Options& options) {
   if (!chains->note.empty() && !options.common.quiet) fmt::print(stderr, "{}\n", chains->note);
   const std::string& input = options.joints.empty() ? options.targets : options.joints;
   const std::string text = result_csv(joint_columns(input, reading_names(chains->nominal)), *list);
-  if (options.out.empty() || options.out == "-") fmt::print("{}", text);
-  else if (auto done = write_text_file(options.out, text); !done) return fail(done.error());
+  if (options.out.empty() || options.out == "-")
+    fmt::print("{}", text);
+  else if (auto done = write_text_file(options.out, text); !done)
+    return fail(done.error());
   return tell_about_rows(options, *list) ? exit_done : exit_do_not_use;
 }
 
@@ -143,10 +150,10 @@ Verb add_compensate(CLI::App& app) {
   add_robot_option(*verb, options->chain, "--chain", "Corrected model: chain.toml, or URDF");
   add_text(*verb, "--nominal", options->nominal, "Model that the robot's controller has", Need::required, "ROBOT");
   add_text(*verb, "--joints", options->joints, "Joint lists as the controller would send them", Need::optional, "CSV");
-  add_text(*verb, "--targets", options->targets, "Wanted tool poses: x,y,z, with or without qw,qx,qy,qz and readings to start from",
-           Need::optional, "CSV");
-  add_text(*verb, "-o,--out", options->out, "Where to write the corrected readings and residual[mm] (default: standard output)",
-           Need::optional, "CSV");
+  add_text(*verb, "--targets", options->targets,
+           "Wanted tool poses: x,y,z, with or without qw,qx,qy,qz and readings to start from", Need::optional, "CSV");
+  add_text(*verb, "-o,--out", options->out,
+           "Where to write the corrected readings and residual[mm] (default: standard output)", Need::optional, "CSV");
   add_choice(*verb, "--frames", options->frames, {"auto", "world", "robot"},
              "world: base and tool as the files say; robot: the nominal ones for both");
   add_common_options(*verb, options->common);

@@ -19,9 +19,12 @@ int run(const Options& options) {
   if (!robot) return fail(robot.error());
   const std::string ending = std::filesystem::path(options.out).extension().string();
   std::string text;
-  if (ending == ".urdf" || ending == ".xml") text = urdf(robot->chain);
-  else if (ending == ".toml") text = robot_toml(*robot);
-  else return fail({fmt::format("{}: expected an ending .toml or .urdf", options.out)});
+  if (ending == ".urdf" || ending == ".xml")
+    text = urdf(robot->chain);
+  else if (ending == ".toml")
+    text = robot_toml(*robot);
+  else
+    return fail({fmt::format("{}: expected an ending .toml or .urdf", options.out)});
   const auto done = write_text_file(options.out, text);
   return done ? exit_done : fail(done.error());
 }

@@ -19,19 +19,22 @@ struct Options {
 
 std::string summary(const FramesFound& found) {
   const Vec3 tool = 1e3 * found.chain.tool.xyz;
-  std::string text = fmt::format("Base from the sweeps of {}. Tool on the flange: {:.4f} {:.4f} {:.4f} mm (by the paper's {}: {:.4f} mm).\n\n",
-                                 found.base_from, tool.x(), tool.y(), tool.z(), found.tool_from, 1e3 * found.tool_length);
-  text += fmt::format("  {:<18} {:<8} {:>5} {:>9} {:>11} {:>9} {:>11} {:>10} {:>10} {:>11}\n", "sweep", "joint", "rows", "swept",
-                      "radius", "rms", "centre sd", "axis sd", "off by", "turned by");
-  text += fmt::format("  {:<18} {:<8} {:>5} {:>9} {:>11} {:>9} {:>11} {:>10} {:>10} {:>11}\n", "", "", "", "deg", "mm", "mm", "mm",
-                      "deg", "mm", "deg");
+  std::string text = fmt::format(
+      "Base from the sweeps of {}. Tool on the flange: {:.4f} {:.4f} {:.4f} mm (by the paper's {}: {:.4f} mm).\n\n",
+      found.base_from, tool.x(), tool.y(), tool.z(), found.tool_from, 1e3 * found.tool_length);
+  text += fmt::format("  {:<18} {:<8} {:>5} {:>9} {:>11} {:>9} {:>11} {:>10} {:>10} {:>11}\n", "sweep", "joint", "rows",
+                      "swept", "radius", "rms", "centre sd", "axis sd", "off by", "turned by");
+  text += fmt::format("  {:<18} {:<8} {:>5} {:>9} {:>11} {:>9} {:>11} {:>10} {:>10} {:>11}\n", "", "", "", "deg", "mm",
+                      "mm", "mm", "deg", "mm", "deg");
   for (const SweepCircle& c : found.sweeps)
-    text += fmt::format("  {:<18} {:<8} {:>5} {:>9.1f} {:>11.4f} {:>9.4f} {:>11.4f} {:>10.5f} {:>10.4f} {:>11.5f}\n", c.name,
-                        c.joint, c.rows, c.swept / degree, 1e3 * c.radius, 1e3 * c.rms, 1e3 * c.centre_sd, c.axis_sd / degree,
-                        1e3 * c.off_by, c.turned_by / degree);
-  return text + fmt::format("\noff by, turned by: the chain's axis in these frames against the circle's.\n"
-                            "The start that calibrate finds from all rows differs by {:.4f} mm and {:.5f} deg (base) and {:.4f} mm (tool).\n",
-                            1e3 * found.base_differs, found.base_turned / degree, 1e3 * found.tool_differs);
+    text += fmt::format("  {:<18} {:<8} {:>5} {:>9.1f} {:>11.4f} {:>9.4f} {:>11.4f} {:>10.5f} {:>10.4f} {:>11.5f}\n",
+                        c.name, c.joint, c.rows, c.swept / degree, 1e3 * c.radius, 1e3 * c.rms, 1e3 * c.centre_sd,
+                        c.axis_sd / degree, 1e3 * c.off_by, c.turned_by / degree);
+  return text + fmt::format(
+                    "\noff by, turned by: the chain's axis in these frames against the circle's.\n"
+                    "The start that calibrate finds from all rows differs by {:.4f} mm and {:.5f} deg (base) and "
+                    "{:.4f} mm (tool).\n",
+                    1e3 * found.base_differs, found.base_turned / degree, 1e3 * found.tool_differs);
 }
 
 Result<void> write_results(const OutputFolder& folder, RobotModel robot, const FramesFound& found) {
@@ -59,8 +62,10 @@ int run(const Options& options) {
   if (!folder) return fail(folder.error());
   if (auto done = write_results(*folder, *robot, *found); !done) return fail(done.error());
   if (auto done = record.write(options.out); !done) return fail(done.error());
-  if (options.common.json) fmt::print("{}", frames_json(*found));
-  else if (!options.common.quiet) fmt::print("{}", summary(*found));
+  if (options.common.json)
+    fmt::print("{}", frames_json(*found));
+  else if (!options.common.quiet)
+    fmt::print("{}", summary(*found));
   return exit_done;
 }
 
@@ -74,8 +79,10 @@ Verb add_frames(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_robot_option(*verb, options->robot, "--robot", "Nominal model: TOML or URDF");
   add_text(*verb, "--data", options->data, "Pose set with sweeps of single joints", Need::required, "CSV");
-  add_text(*verb, "--out", options->out, "Folder for chain.toml (base and tool found), evidence.json, run.json", Need::required, "DIR");
-  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional, "TOML");
+  add_text(*verb, "--out", options->out, "Folder for chain.toml (base and tool found), evidence.json, run.json",
+           Need::required, "DIR");
+  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional,
+           "TOML");
   add_common_options(*verb, options->common);
   return {verb, [options] { return run(*options); }};
 }

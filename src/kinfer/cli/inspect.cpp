@@ -57,7 +57,8 @@ int run(const Options& options) {
   if (is_recording(options.files.front()))
     return inspect_recording(options.files, options.allan ? AllanPlot::print : AllanPlot::none);
   if (options.robot.path.empty())
-    return fail({fmt::format("{}: no INS recording (no columns t and SENSOR_ax ...); a pose set needs --robot", options.files.front())});
+    return fail({fmt::format("{}: no INS recording (no columns t and SENSOR_ax ...); a pose set needs --robot",
+                             options.files.front())});
   const auto robot = read_robot(options.robot);
   if (!robot) return fail(robot.error());
   ColumnMap map;
@@ -74,13 +75,17 @@ int run(const Options& options) {
 }  // namespace
 
 Verb add_inspect(CLI::App& app) {
-  CLI::App* verb = add_command(app, "inspect", "What was understood of a file, and what is wrong with it, before any fit",
-                               "Example:\n  kinfer inspect poses.csv --robot robot.toml\n  kinfer inspect imu.csv --allan");
+  CLI::App* verb =
+      add_command(app, "inspect", "What was understood of a file, and what is wrong with it, before any fit",
+                  "Example:\n  kinfer inspect poses.csv --robot robot.toml\n  kinfer inspect imu.csv --allan");
   auto options = std::make_shared<Options>();
   add_robot_option(*verb, options->robot, "--robot", "Robot of a pose set: TOML or URDF", Need::optional);
-  add_texts(*verb, "files", options->files, "INS recordings, one a logger, or pose sets with --robot", Need::required, "CSV");
-  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional, "TOML");
-  add_flag(*verb, "--allan", options->allan, "Allan deviation of each sensor's longest rest: noise and bias instability");
+  add_texts(*verb, "files", options->files, "INS recordings, one a logger, or pose sets with --robot", Need::required,
+            "CSV");
+  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional,
+           "TOML");
+  add_flag(*verb, "--allan", options->allan,
+           "Allan deviation of each sensor's longest rest: noise and bias instability");
   return {verb, [options] { return run(*options); }};
 }
 

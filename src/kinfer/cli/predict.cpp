@@ -49,15 +49,17 @@ int run(const Options& options) {
 }  // namespace
 
 Verb add_predict(CLI::App& app) {
-  CLI::App* verb = add_command(app, "predict", "Tool poses of a chain for a list of joint readings",
-                               "Example:\n  kinfer predict --chain calibration/chain.toml --joints joints.csv -o poses.csv");
+  CLI::App* verb =
+      add_command(app, "predict", "Tool poses of a chain for a list of joint readings",
+                  "Example:\n  kinfer predict --chain calibration/chain.toml --joints joints.csv -o poses.csv");
   auto options = std::make_shared<Options>();
   add_robot_option(*verb, options->chain, "--chain", "Chain: chain.toml, a robot TOML, or URDF");
-  add_text(*verb, "--joints", options->joints, "File with the joint columns q1..; other columns may be there", Need::required,
-           "CSV");
-  add_text(*verb, "-o,--out", options->out, "Where to write x,y,z,qw,qx,qy,qz [m] (default: standard output)", Need::optional,
-           "CSV");
-  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional, "TOML");
+  add_text(*verb, "--joints", options->joints, "File with the joint columns q1..; other columns may be there",
+           Need::required, "CSV");
+  add_text(*verb, "-o,--out", options->out, "Where to write x,y,z,qw,qx,qy,qz [m] (default: standard output)",
+           Need::optional, "CSV");
+  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional,
+           "TOML");
   return {verb, [options] { return run(*options); }};
 }
 

@@ -8,7 +8,8 @@ void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& na
                       Need need) {
   add_text(verb, name, option.path, help, need, "FILE");
   add_text(verb, "--base-link", option.base_link, "Link of a URDF file where the chain begins (default: its root)");
-  add_text(verb, "--tip-link", option.tip_link, "Link of a URDF file where the chain ends (default: its longest arm's)");
+  add_text(verb, "--tip-link", option.tip_link,
+           "Link of a URDF file where the chain ends (default: its longest arm's)");
 }
 
 Result<RobotModel> read_robot(const RobotOption& option) {

@@ -51,7 +51,8 @@ void add_search_arguments(CLI::App& verb, SearchArguments& a) {
              "lm: least squares; the others search by a population (paper 2)");
   add_text(verb, "--warm-start", a.warm_start, "Folder of an earlier calibration of this robot: where searches start",
            Need::optional, "DIR");
-  add_texts(verb, "--prior", a.prior, "Earlier calibrations of robots of this kind (chain.toml files): their mean and spread are the prior",
+  add_texts(verb, "--prior", a.prior,
+            "Earlier calibrations of robots of this kind (chain.toml files): their mean and spread are the prior",
             Need::optional, "TOML");
   add_count(verb, "--particles", a.particles, 2, 100000, "Of the population");
   add_count(verb, "--iterations", a.iterations, 1, 10000000, "Updates of the population");
@@ -72,7 +73,8 @@ Result<std::optional<PopulationOptions>> population_options(const SearchArgument
   PopulationOptions options{.box_length = 1e-3 * arguments.box_length,
                             .box_angle = arguments.box_angle * degree,
                             .box_tolerances = arguments.box_tolerances};
-  if (!(options.box_length > 0.0 && options.box_angle > 0.0)) return error("--box-length and --box-angle must be above 0");
+  if (!(options.box_length > 0.0 && options.box_angle > 0.0))
+    return error("--box-length and --box-angle must be above 0");
   if (arguments.method == "pso") options.search = pso_options(arguments, budget);
   if (arguments.method == "qpso") options.search = QpsoOptions{.particles = arguments.particles, .budget = budget};
   if (arguments.method == "bpnn-pso") {

@@ -15,7 +15,7 @@ struct SearchArguments {
   std::vector<std::string> prior;
   int particles = 200, iterations = 1000;
   double inertia = 0.8, own = 0.5, swarm = 1.25;
-  double box_length = 1.0, box_angle = 1.0, box_tolerances = 0.0;   // mm, deg
+  double box_length = 1.0, box_angle = 1.0, box_tolerances = 0.0;  // mm, deg
 };
 void add_search_arguments(CLI::App& verb, SearchArguments& arguments);
 

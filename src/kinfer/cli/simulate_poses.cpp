@@ -20,8 +20,8 @@ struct Options {
     double value = 0.0;
     bool given = false;
   };
-  Given sigma, sigma_angle, ppm, lowest;   // [mm], [deg], [um/m], [mm]; not given: the robot file's instrument, no floor
-  double clearance = 0.0;                  // [mm]
+  Given sigma, sigma_angle, ppm, lowest;  // [mm], [deg], [um/m], [mm]; not given: the robot file's instrument, no floor
+  double clearance = 0.0;                 // [mm]
 };
 
 PoseSimulation simulation_of(const Options& options, const RobotModel& robot) {
@@ -60,8 +60,9 @@ int run(const Options& options) {
   true_robot.chain = with_turns_folded(*truth);
   const auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
-  for (const auto& [name, text] : {std::pair{"poses.csv", pose_set_csv(*set, robot->chain, FileUnits::mm_deg)},
-                                   std::pair{"robot.toml", robot_toml(nominal)}, std::pair{"truth.toml", robot_toml(true_robot)}})
+  for (const auto& [name, text] :
+       {std::pair{"poses.csv", pose_set_csv(*set, robot->chain, FileUnits::mm_deg)},
+        std::pair{"robot.toml", robot_toml(nominal)}, std::pair{"truth.toml", robot_toml(true_robot)}})
     if (auto done = write_text_file(*folder / name, text); !done) return fail(done.error());
   if (auto done = record.write(folder->path()); !done) return fail(done.error());
   if (!options.common.quiet)

@@ -29,14 +29,18 @@ struct Shown {
 };
 Shown shown(Quantity quantity) {
   switch (quantity) {
-    case Quantity::length: return {1e3, "mm"};
-    case Quantity::angle: return {1.0 / degree, "deg"};
-    default: return {1.0, unit(quantity).data()};
+    case Quantity::length:
+      return {1e3, "mm"};
+    case Quantity::angle:
+      return {1.0 / degree, "deg"};
+    default:
+      return {1.0, unit(quantity).data()};
   }
 }
 
 std::string parameter_table(const Estimate& estimate) {
-  std::string text = fmt::format("  {:<14} {:>13} {:>13} {:>11} {:>10}\n", "parameter", "nominal", "error", "sd", "unit");
+  std::string text =
+      fmt::format("  {:<14} {:>13} {:>13} {:>11} {:>10}\n", "parameter", "nominal", "error", "sd", "unit");
   for (const ParameterEstimate& p : estimate.values) {
     const auto [factor, unit_name] = shown(p.quantity);
     text += fmt::format("  {:<14} {:>13.4f} {:>+13.4f} {:>11.4f} {:>10}{}\n", p.name, factor * p.nominal,
@@ -57,8 +61,8 @@ std::string bullet_list(const char* title, const List& list, std::size_t most, W
 
 std::string search_lines(const Search& search) {
   if (search.method == "lm") return "";
-  std::string text = fmt::format("Searched by {}: {} iterations, {} evaluations, {}.\n", search.method, search.iterations,
-                                 search.evaluations, sentence(search.stop));
+  std::string text = fmt::format("Searched by {}: {} iterations, {} evaluations, {}.\n", search.method,
+                                 search.iterations, search.evaluations, sentence(search.stop));
   if (search.side_by_side.empty()) return text + "\n";
   text += "Iterations to the least-squares optimum: ";
   for (const SearchRun& run : search.side_by_side)
@@ -78,16 +82,16 @@ std::string calibration_summary(const Calibration& c) {
     text += fit_table("tool orientation [deg]", c.nominal, c.before, c.after, &ChainFit::orientation, 1.0 / degree);
   text += search_lines(e.search);
   text += parameter_table(e);
-  text += fmt::format("The data determine {} of {} combinations of parameters. Noise level {:.4f} mm", e.identifiability.rank,
-                      e.values.size(), 1e3 * e.sigma);
+  text += fmt::format("The data determine {} of {} combinations of parameters. Noise level {:.4f} mm",
+                      e.identifiability.rank, e.values.size(), 1e3 * e.sigma);
   text += e.chi2_per_n ? fmt::format("; chi2/n {:.2f} against the instrument (1 is good).\n", *e.chi2_per_n)
                        : " per axis, judged from the residuals.\n";
-  text += fmt::format("Expected error of the corrected model itself: {:.4f} mm rms over these poses.\n\n", 1e3 * e.predicted_error);
+  text += fmt::format("Expected error of the corrected model itself: {:.4f} mm rms over these poses.\n\n",
+                      1e3 * e.predicted_error);
   const auto same = [](const std::string& s) { return s; };
   text += bullet_list("What these poses cannot tell (tolerances hold them):", e.identifiability.confounded, 12, same);
-  text += bullet_list("Rows not believed:", e.outliers, 12, [](const Outlier& o) {
-    return fmt::format("row {} (line {}): {}", o.row, o.line, o.reason);
-  });
+  text += bullet_list("Rows not believed:", e.outliers, 12,
+                      [](const Outlier& o) { return fmt::format("row {} (line {}): {}", o.row, o.line, o.reason); });
   text += bullet_list("Noticed:", c.notes, 20, same);
   return text;
 }

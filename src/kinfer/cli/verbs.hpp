@@ -5,6 +5,7 @@
 
 namespace kinfer::cli {
 
+Verb add_identify(CLI::App& app);
 Verb add_calibrate(CLI::App& app);
 Verb add_predict(CLI::App& app);
 Verb add_verify(CLI::App& app);

@@ -29,8 +29,8 @@ void print(const Verification& v, const CommonOptions& common) {
                                       {"frames_refitted", figures(v.frames_refitted)}};
     fmt::print("{}\n", json.dump());
   } else if (!common.quiet) {
-    fmt::print("{}\n\n  as it stands            {}\n  base and tool refitted  {}\n", v.verdict, statistics_line(v.as_it_stands),
-               statistics_line(v.frames_refitted));
+    fmt::print("{}\n\n  as it stands            {}\n  base and tool refitted  {}\n", v.verdict,
+               statistics_line(v.as_it_stands), statistics_line(v.frames_refitted));
   }
 }
 
@@ -60,7 +60,8 @@ Verb add_verify(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_robot_option(*verb, options->chain, "--chain", "chain.toml of the calibration");
   add_text(*verb, "--data", options->data, "New pose set", Need::required, "CSV");
-  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional, "TOML");
+  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional,
+           "TOML");
   add_common_options(*verb, options->common);
   return {verb, [options] { return run(*options); }};
 }

@@ -15,7 +15,7 @@ namespace {
 /// All that the fit passes from step to step.
 struct State {
   Chain chain;
-  std::vector<bool> believed;   ///< one a block
+  std::vector<bool> believed;  ///< one a block
   ExcessNoise excess;
   LeastSquaresOutcome outcome;  ///< of the last run, on the believed blocks
   Search search;
@@ -65,7 +65,8 @@ class Fit {
     options.loss = loss;
     options.loss_scale = 2.0;
     const Chain nominal = state_.chain;
-    state_.outcome = least_squares(pose_residuals(nominal, set_, kept, weights), pack(set_, nominal), options, observer_);
+    state_.outcome =
+        least_squares(pose_residuals(nominal, set_, kept, weights), pack(set_, nominal), options, observer_);
     state_.chain = unpack(set_, nominal, state_.outcome.x);
     Search& search = state_.search;
     search.iterations += state_.outcome.iterations;
@@ -80,7 +81,8 @@ class Fit {
     const PoseSet kept = only_believed(data_, state_.believed);
     const ExcessNoise now = excess_noise(state_.chain, kept, instrument_, effective_parameters(state_.outcome, set_));
     const auto settled = [](double before, double after) { return std::abs(after - before) <= 0.02 * before; };
-    const bool done = settled(state_.excess.position, now.position) && settled(state_.excess.orientation, now.orientation);
+    const bool done =
+        settled(state_.excess.position, now.position) && settled(state_.excess.orientation, now.orientation);
     state_.excess = now;
     return done;
   }
@@ -181,7 +183,8 @@ class Fit {
 
   void describe_outliers(Estimate& estimate) const {
     const VectorXd distance = block_distances();
-    const std::vector<double> off = point_errors(estimate.chain, data_), turned = orientation_errors(estimate.chain, data_);
+    const std::vector<double> off = point_errors(estimate.chain, data_),
+                              turned = orientation_errors(estimate.chain, data_);
     const std::vector<Block> blocks = blocks_of(data_);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       if (state_.believed[i]) continue;
@@ -220,7 +223,8 @@ class Fit {
 }  // namespace
 
 Estimate fit_bundle(const Chain& start, const ParameterSet& set, const PoseSet& data,
-                    const std::optional<Instrument>& instrument, const BundleOptions& options, const Observer& observer) {
+                    const std::optional<Instrument>& instrument, const BundleOptions& options,
+                    const Observer& observer) {
   KINFER_EXPECT(!data.points.empty() || !data.orientations.empty(), "nothing measured");
   return Fit(start, set, data, instrument, options, observer).run();
 }

@@ -1,8 +1,9 @@
-// The fit of a chain to a pose set: MAP over the full parameter set, weights, outliers, covariance, and what is unknown.
+// The fit of a chain to a pose set: MAP over the full parameter set, weights, outliers, covariance, and what is
+// unknown.
 //
-// One stroke solves gauge, rank and regularisation: the tolerances are Gaussian priors, so parameters that the data cannot
-// tell stay at their nominal values. The noise level is the instrument's, or that of the residuals where these are larger
-// or the instrument is not known; rows that no such noise explains are given no weight and are listed.
+// One stroke solves gauge, rank and regularisation: the tolerances are Gaussian priors, so parameters that the data
+// cannot tell stay at their nominal values. The noise level is the instrument's, or that of the residuals where these
+// are larger or the instrument is not known; rows that no such noise explains are given no weight and are listed.
 #pragma once
 
 #include <optional>
@@ -16,9 +17,9 @@ namespace kinfer {
 enum class Outliers { find, believe_all };
 
 struct BundleOptions {
-  int max_iterations = 100;             ///< of each Levenberg-Marquardt run
+  int max_iterations = 100;  ///< of each Levenberg-Marquardt run
   Outliers outliers = Outliers::find;
-  double false_alarms = 1e-3;           ///< expected number of good rows called wrong in a whole data set of Gaussian noise
+  double false_alarms = 1e-3;  ///< expected number of good rows called wrong in a whole data set of Gaussian noise
 };
 
 /// `start` holds the fixed numbers and the starting values; the priors are centred at the set's nominal values.

@@ -8,7 +8,8 @@
 namespace kinfer {
 namespace {
 
-/// Rows span the same space as those of `basis` (k x n), each with a 1 where the others have 0: the sparsest simple basis.
+/// Rows span the same space as those of `basis` (k x n), each with a 1 where the others have 0: the sparsest simple
+/// basis.
 MatrixXd reduced_rows(MatrixXd basis) {
   for (Eigen::Index row = 0; row < basis.rows(); ++row) {
     Eigen::Index pivot_row, pivot_column;

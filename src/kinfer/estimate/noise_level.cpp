@@ -11,7 +11,8 @@ namespace {
 
 constexpr double median_chi2_of_three = 2.36597;  // of a chi-squared variable with 3 degrees of freedom
 
-/// Excess that brings the median of block norms² (given an excess) down to that of Gaussian noise; 0 if it is there already.
+/// Excess that brings the median of block norms² (given an excess) down to that of Gaussian noise; 0 if it is there
+/// already.
 double solve_excess(const std::function<double(double)>& median_norm2, double target, double upper) {
   if (median_norm2(0.0) <= target) return 0.0;
   double low = 0.0, high = upper;

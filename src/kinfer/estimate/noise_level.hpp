@@ -8,11 +8,11 @@
 
 namespace kinfer {
 
-/// Standard deviation that has to be added (in quadrature) to what the instrument promises so that the typical residual is
-/// explained: what the model cannot describe, and all noise where the instrument is not known.
+/// Standard deviation that has to be added (in quadrature) to what the instrument promises so that the typical residual
+/// is explained: what the model cannot describe, and all noise where the instrument is not known.
 struct ExcessNoise {
-  double position = 0.0;      ///< [m] per axis
-  double orientation = 0.0;   ///< [rad] per axis
+  double position = 0.0;     ///< [m] per axis
+  double orientation = 0.0;  ///< [rad] per axis
 };
 
 /// Judged by the median block, so a minority of wrong rows does not matter. `effective_parameters` is how many

@@ -7,8 +7,8 @@
 namespace kinfer {
 namespace {
 
-constexpr double noise_free_sd = 1e-9;         // [m]; FORMATS: 0 means noise-free, floor 1e-6 mm
-constexpr double noise_free_angle_sd = 1e-9;   // [rad]
+constexpr double noise_free_sd = 1e-9;        // [m]; FORMATS: 0 means noise-free, floor 1e-6 mm
+constexpr double noise_free_angle_sd = 1e-9;  // [rad]
 
 Load load_at(const PoseSet& data, Eigen::Index row) {
   return {.payload = data.payload.empty() ? 0.0 : data.payload[row]};
@@ -25,7 +25,8 @@ struct Writer {
   Eigen::Index row = 0;
 };
 
-void write_points(const Chain& chain, const PoseSet& data, const EvaluatedPoses& at, const Weights& weights, Writer& out) {
+void write_points(const Chain& chain, const PoseSet& data, const EvaluatedPoses& at, const Weights& weights,
+                  Writer& out) {
   for (std::size_t i = 0; i < data.points.size(); ++i) {
     const PointMeasurement& point = data.points[i];
     const Pose& pose = at.pose[point.row];
@@ -117,7 +118,8 @@ Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const Po
   problem.unknowns = unknowns;
   problem.rows = rows;
   problem.blocks.assign(blocks, 3);
-  problem.evaluate = [&nominal, &set, &data, &weights, unknowns, rows](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
+  problem.evaluate = [&nominal, &set, &data, &weights, unknowns, rows](ConstVectorRef x, VectorXd& r,
+                                                                       MatrixXd* jacobian) {
     const Chain chain = unpack(set, nominal, x);
     const EvaluatedPoses at = evaluate_poses(chain, set, data, jacobian ? Derivative::yes : Derivative::no);
     r.resize(rows);

@@ -7,23 +7,23 @@ namespace kinfer {
 
 /// Position errors of one measured row under three chains [m]; NaN where the row's position was not measured.
 struct RowErrors {
-  int row = 0;             ///< from 0
-  double before = 0.0;     ///< nominal chain, base and tool refitted (on other rows)
-  double after = 0.0;      ///< by a fit that did not see the row where `held_out`, else by the final chain
-  double fitted = 0.0;     ///< by the final chain
+  int row = 0;          ///< from 0
+  double before = 0.0;  ///< nominal chain, base and tool refitted (on other rows)
+  double after = 0.0;   ///< by a fit that did not see the row where `held_out`, else by the final chain
+  double fitted = 0.0;  ///< by the final chain
   bool held_out = false;
 };
 
 struct Calibration {
-  Estimate estimate;                   ///< the corrected chain
-  ChainFit nominal;                    ///< the chain as given
-  ChainFit before;                     ///< base and tool refitted, all else nominal
+  Estimate estimate;  ///< the corrected chain
+  ChainFit nominal;   ///< the chain as given
+  ChainFit before;    ///< base and tool refitted, all else nominal
   ChainFit after;
-  std::string holdout;                 ///< how rows were kept aside: "5-fold cross-validation"
+  std::string holdout;  ///< how rows were kept aside: "5-fold cross-validation"
   std::vector<RowErrors> rows;
-  std::vector<std::string> notes;      ///< what was noticed and done, in words
-  bool use = true;                     ///< false: the verdict advises against the result
-  std::string verdict;                 ///< one sentence
+  std::vector<std::string> notes;  ///< what was noticed and done, in words
+  bool use = true;                 ///< false: the verdict advises against the result
+  std::string verdict;             ///< one sentence
 };
 
 }  // namespace kinfer

@@ -23,20 +23,20 @@ struct ParameterEstimate {
   std::string name;
   Quantity quantity = Quantity::length;
   double nominal = 0.0, value = 0.0, sd = 0.0;
-  bool identifiable = false;            ///< the data halve the variance that the tolerance allows
+  bool identifiable = false;  ///< the data halve the variance that the tolerance allows
 };
 
 /// One of several searches on the same problem, to compare them.
 struct SearchRun {
-  std::string name;            ///< "cold", "nominal swarm", "warm start", "net"
-  int iterations = -1;         ///< until the target was reached; -1: not within the budget
+  std::string name;     ///< "cold", "nominal swarm", "warm start", "net"
+  int iterations = -1;  ///< until the target was reached; -1: not within the budget
   int evaluations = 0;
-  double rms = 0.0;            ///< [m] error of the points at the end
+  double rms = 0.0;  ///< [m] error of the points at the end
 };
 
 /// How the numbers were found.
 struct Search {
-  std::string method;                   ///< "lm"
+  std::string method;  ///< "lm"
   int iterations = 0, evaluations = 0;
   Stop stop = Stop::converged_cost;
   double cost = 0.0;                    ///< final
@@ -49,13 +49,14 @@ struct Search {
 struct Estimate {
   Chain chain;
   ParameterSet parameters;
-  std::vector<ParameterEstimate> values;   ///< of the free parameters, in order
-  MatrixXd covariance;                     ///< of the free parameters, SI, inflated where the model misfits
+  std::vector<ParameterEstimate> values;  ///< of the free parameters, in order
+  MatrixXd covariance;                    ///< of the free parameters, SI, inflated where the model misfits
   Identifiability identifiability;
-  std::optional<double> chi2_per_n;        ///< of the believed measurements against the instrument (1 is good); none: no instrument known
-  double sigma = 0.0, sigma_angle = 0.0;   ///< [m], [rad] that weighted the measurements: instrument, or residual level
+  std::optional<double>
+      chi2_per_n;  ///< of the believed measurements against the instrument (1 is good); none: no instrument known
+  double sigma = 0.0, sigma_angle = 0.0;  ///< [m], [rad] that weighted the measurements: instrument, or residual level
   std::vector<Outlier> outliers;
-  double predicted_error = 0.0;            ///< [m] rms error of the tool over the data's poses that the covariance expects
+  double predicted_error = 0.0;  ///< [m] rms error of the tool over the data's poses that the covariance expects
   Search search;
 };
 

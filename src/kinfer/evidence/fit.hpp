@@ -20,15 +20,15 @@ struct TrainHoldout {
 
 /// One chain on one data set. Orientation and distance figures have n = 0 where nothing of the kind was measured.
 struct ChainFit {
-  TrainHoldout position;      ///< [m] Euclidean error of the measured points
-  TrainHoldout orientation;   ///< [rad] angle between measured and predicted orientation
+  TrainHoldout position;     ///< [m] Euclidean error of the measured points
+  TrainHoldout orientation;  ///< [rad] angle between measured and predicted orientation
 };
 
 /// A row that the fit does not believe.
 struct Outlier {
-  int row = 0;          ///< from 0
-  int line = 0;         ///< of the file, from 1
-  std::string reason;   ///< "the point is 4.21 mm from where the model has it, 84 sigma"
+  int row = 0;         ///< from 0
+  int line = 0;        ///< of the file, from 1
+  std::string reason;  ///< "the point is 4.21 mm from where the model has it, 84 sigma"
 };
 
 }  // namespace kinfer

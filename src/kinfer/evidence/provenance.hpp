@@ -9,13 +9,13 @@
 namespace kinfer {
 
 struct InputFile {
-  std::string name;     ///< without folders
+  std::string name;  ///< without folders
   std::string sha256;
 };
 
 struct Provenance {
   std::vector<InputFile> inputs;
-  std::vector<std::pair<std::string, std::string>> options;   ///< as given, --name and value
+  std::vector<std::pair<std::string, std::string>> options;  ///< as given, --name and value
   std::uint64_t seed = 1;
 };
 

@@ -11,7 +11,7 @@ namespace kinfer {
 namespace {
 
 constexpr double gimbal_lock = 1e-12;  // cosine below which the outer and the inner axis coincide to rounding
-constexpr double small_angle = 1e-4;  // [rad]; below, the series' next term is under 1e-17
+constexpr double small_angle = 1e-4;   // [rad]; below, the series' next term is under 1e-17
 
 }  // namespace
 

@@ -10,9 +10,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json finite(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
-Json array_of(const VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
+Json array_of(const VectorXd& values) {
+  return std::vector<double>(values.begin(), values.end());
+}
 
 Json array_of(const MatrixXd& matrix) {
   Json rows = Json::array();
@@ -27,15 +31,20 @@ Json json_of(const ErrorStatistics& s) {
 Json json_of(const ChainFit& fit) {
   Json json{{"train", json_of(fit.position.train)}, {"holdout", json_of(fit.position.holdout)}};
   if (fit.orientation.train.n > 0)
-    json["orientation_rad"] = {{"train", json_of(fit.orientation.train)}, {"holdout", json_of(fit.orientation.holdout)}};
+    json["orientation_rad"] = {{"train", json_of(fit.orientation.train)},
+                               {"holdout", json_of(fit.orientation.holdout)}};
   return json;
 }
 
 Json parameters_json(const Estimate& estimate) {
   Json list = Json::array();
   for (const ParameterEstimate& p : estimate.values)
-    list.push_back({{"name", p.name}, {"nominal", p.nominal}, {"value", p.value}, {"sd", p.sd},
-                    {"unit", unit(p.quantity)}, {"identifiable", p.identifiable}});
+    list.push_back({{"name", p.name},
+                    {"nominal", p.nominal},
+                    {"value", p.value},
+                    {"sd", p.sd},
+                    {"unit", unit(p.quantity)},
+                    {"identifiable", p.identifiable}});
   return list;
 }
 
@@ -60,15 +69,22 @@ Json rows_json(const std::vector<RowErrors>& rows) {
 Json side_by_side_json(const std::vector<SearchRun>& runs) {
   Json list = Json::array();
   for (const SearchRun& run : runs)
-    list.push_back({{"start", run.name}, {"iterations", run.iterations < 0 ? Json(nullptr) : Json(run.iterations)},
-                    {"evaluations", run.evaluations}, {"rms", run.rms}});
+    list.push_back({{"start", run.name},
+                    {"iterations", run.iterations < 0 ? Json(nullptr) : Json(run.iterations)},
+                    {"evaluations", run.evaluations},
+                    {"rms", run.rms}});
   return list;
 }
 
 Json search_json(const Search& search) {
-  Json json{{"engine", search.method}, {"iterations", search.iterations}, {"evaluations", search.evaluations},
-          {"stop", name(search.stop)}, {"stop_words", sentence(search.stop)}, {"cost", finite(search.cost)},
-          {"best", search.best}, {"median", search.median}};
+  Json json{{"engine", search.method},
+            {"iterations", search.iterations},
+            {"evaluations", search.evaluations},
+            {"stop", name(search.stop)},
+            {"stop_words", sentence(search.stop)},
+            {"cost", finite(search.cost)},
+            {"best", search.best},
+            {"median", search.median}};
   if (!search.side_by_side.empty()) json["side_by_side"] = side_by_side_json(search.side_by_side);
   return json;
 }
@@ -103,8 +119,11 @@ std::string calibration_json(const Calibration& c, const Provenance& provenance)
   json["singular_values"] = array_of(e.identifiability.singular_values);
   json["confounded"] = e.identifiability.confounded;
   json["outliers"] = outliers_json(e.outliers);
-  json["model"] = {{"rungs", {{{"name", "geometry"}, {"train", json_of(c.after.position.train)},
-                               {"holdout", json_of(c.after.position.holdout)}, {"chosen", true}}}}};
+  json["model"] = {{"rungs",
+                    {{{"name", "geometry"},
+                      {"train", json_of(c.after.position.train)},
+                      {"holdout", json_of(c.after.position.holdout)},
+                      {"chosen", true}}}}};
   json["search"] = search_json(e.search);
   json["covariance"] = array_of(e.covariance);
   json["rows"] = rows_json(c.rows);
@@ -113,8 +132,12 @@ std::string calibration_json(const Calibration& c, const Provenance& provenance)
 }
 
 std::string calibration_headline_json(const Calibration& c) {
-  const Json json{{"verdict", c.verdict}, {"use", c.use}, {"before", json_of(c.before)}, {"after", json_of(c.after)},
-                  {"rank", c.estimate.identifiability.rank}, {"outliers", c.estimate.outliers.size()},
+  const Json json{{"verdict", c.verdict},
+                  {"use", c.use},
+                  {"before", json_of(c.before)},
+                  {"after", json_of(c.after)},
+                  {"rank", c.estimate.identifiability.rank},
+                  {"outliers", c.estimate.outliers.size()},
                   {"predicted_error", c.estimate.predicted_error}};
   return json.dump() + "\n";
 }

@@ -10,14 +10,26 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json json_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+Json finite(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 Json json_of(const SweepCircle& c) {
-  return {{"name", c.name}, {"joint", c.joint}, {"rows", c.rows}, {"swept_rad", c.swept}, {"centre", json_of(c.centre)},
-          {"axis", json_of(c.axis)}, {"radius", c.radius}, {"rms", c.rms},
-          {"sd", {{"centre_m", finite(c.centre_sd)}, {"axis_rad", finite(c.axis_sd)}, {"radius_m", finite(c.radius_sd)}}},
-          {"off_by", c.off_by}, {"turned_by", c.turned_by}};
+  return {
+      {"name", c.name},
+      {"joint", c.joint},
+      {"rows", c.rows},
+      {"swept_rad", c.swept},
+      {"centre", json_of(c.centre)},
+      {"axis", json_of(c.axis)},
+      {"radius", c.radius},
+      {"rms", c.rms},
+      {"sd", {{"centre_m", finite(c.centre_sd)}, {"axis_rad", finite(c.axis_sd)}, {"radius_m", finite(c.radius_sd)}}},
+      {"off_by", c.off_by},
+      {"turned_by", c.turned_by}};
 }
 
 Json json_of(const Frame& frame) {
@@ -36,8 +48,10 @@ std::string frames_json(const FramesFound& found) {
                   {"base_from", found.base_from},
                   {"tool", json_of(found.chain.tool)},
                   {"papers_tool_length", {{"from", found.tool_from}, {"value", found.tool_length}}},
-                  {"closed_form_start", {{"base_differs_m", found.base_differs}, {"base_turned_rad", found.base_turned},
-                                         {"tool_differs_m", found.tool_differs}}},
+                  {"closed_form_start",
+                   {{"base_differs_m", found.base_differs},
+                    {"base_turned_rad", found.base_turned},
+                    {"tool_differs_m", found.tool_differs}}},
                   {"sweeps", sweeps}};
   return json.dump(1) + "\n";
 }

@@ -43,7 +43,8 @@ Result<Chain> read_robot_errors(const std::filesystem::path& path, const RobotMo
   const Scales scales = read_units(root, complaint);
   const TomlTable* errors = root.table_or_none("errors");
   root.expect_no_other_keys();
-  if (!errors && !complaint.any()) return error("{}: expected a table [errors] with name = value by parameter name", name);
+  if (!errors && !complaint.any())
+    return error("{}: expected a table [errors] with name = value by parameter name", name);
   if (complaint.any()) return pass_on(complaint.as_error());
 
   const ParameterSet all = all_parameters(robot.chain, robot.tolerances);

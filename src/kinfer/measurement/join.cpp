@@ -28,7 +28,8 @@ int index_of(std::vector<std::string>& names, const std::string& name) {
 
 /// Per-row values where either set may have none.
 template <class T>
-std::vector<T> padded(std::vector<T> first, const std::vector<T>& second, std::size_t rows, std::size_t more, T absent) {
+std::vector<T> padded(std::vector<T> first, const std::vector<T>& second, std::size_t rows, std::size_t more,
+                      T absent) {
   if (first.empty() && second.empty()) return {};
   first.resize(rows, absent);
   if (second.empty()) first.resize(rows + more, absent);
@@ -44,7 +45,8 @@ MatrixXd padded(const MatrixXd& first, const MatrixXd& second, Eigen::Index dof,
   return both;
 }
 
-std::vector<int> renamed(std::vector<int> indices, std::vector<std::string>& names, const std::vector<std::string>& others) {
+std::vector<int> renamed(std::vector<int> indices, std::vector<std::string>& names,
+                         const std::vector<std::string>& others) {
   for (int& index : indices)
     if (index >= 0) index = index_of(names, others[index]);
   return indices;

@@ -35,7 +35,8 @@ Mlp learn(const Bounds& box, ConstMatrixRef initial, ConstVectorRef optimum, Hid
   return train(untrained_mlp(box, box, hidden, rng.stream(1)), initial, targets, options).net;
 }
 
-Outcome bpnn_particle_swarm(const Objective& objective, const BpnnPsoOptions& options, Rng rng, const Observer& observer) {
+Outcome bpnn_particle_swarm(const Objective& objective, const BpnnPsoOptions& options, Rng rng,
+                            const Observer& observer) {
   const Bounds& box = objective.bounds;
   PsoOptions pso = options.pso;
   const MatrixXd drawn = pso.initial.size() > 0 ? pso.initial : uniform_swarm(box, pso.particles, rng.stream(0));

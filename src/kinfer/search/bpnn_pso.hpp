@@ -12,8 +12,8 @@ namespace kinfer {
 
 enum class NetUse {
   initial_swarm,        ///< the net moves the first swarm only
-  before_every_update,  ///< the literal reading of section 3.2.2; it pulls the swarm back to the earlier optimum at each
-                        ///< iteration and so keeps the search from ending anywhere else
+  before_every_update,  ///< the literal reading of section 3.2.2; it pulls the swarm back to the earlier optimum at
+                        ///< each iteration and so keeps the search from ending anywhere else
 };
 
 /// How many hidden nodes a net gets.

@@ -66,7 +66,9 @@ VectorXd step(const Adam& how, const VectorXd& gradient, int epoch, VectorXd& me
   return (-how.rate / bias1) * (mean.array() / ((square / bias2).array().sqrt() + 1e-8)).matrix();
 }
 
-double rms_of(double loss, Eigen::Index outputs) { return std::sqrt(2.0 * loss / static_cast<double>(outputs)); }
+double rms_of(double loss, Eigen::Index outputs) {
+  return std::sqrt(2.0 * loss / static_cast<double>(outputs));
+}
 
 MatrixXd columns(ConstMatrixRef x, const std::vector<Eigen::Index>& which) {
   return x(Eigen::all, which);
@@ -81,8 +83,12 @@ MatrixXd predict(const Mlp& net, ConstMatrixRef x) {
 }
 
 Mlp untrained_mlp(const Bounds& input_box, const Bounds& output_box, int hidden_nodes, Rng rng) {
-  Mlp net{input_box, output_box, MatrixXd(hidden_nodes, input_box.size()), VectorXd(hidden_nodes),
-          MatrixXd(output_box.size(), hidden_nodes), VectorXd(output_box.size())};
+  Mlp net{input_box,
+          output_box,
+          MatrixXd(hidden_nodes, input_box.size()),
+          VectorXd(hidden_nodes),
+          MatrixXd(output_box.size(), hidden_nodes),
+          VectorXd(output_box.size())};
   const auto fill = [&](auto array, double reach) {
     for (double& w : array) w = rng.uniform(-reach, reach);
   };
@@ -121,7 +127,8 @@ LossAndGradient loss_and_gradient(const Mlp& net, ConstMatrixRef inputs, ConstMa
 }
 
 Training train(Mlp net, ConstMatrixRef inputs, ConstMatrixRef targets, const TrainingOptions& options) {
-  KINFER_EXPECT(inputs.cols() == targets.cols() && inputs.cols() > 0, "{} inputs, {} targets", inputs.cols(), targets.cols());
+  KINFER_EXPECT(inputs.cols() == targets.cols() && inputs.cols() > 0, "{} inputs, {} targets", inputs.cols(),
+                targets.cols());
   const MatrixXd x = scaled(inputs, net.input_box), wanted = scaled(targets, net.output_box);
   VectorXd weights = weights_of(net);
   VectorXd state1 = VectorXd::Zero(weights.size()), state2 = state1;
@@ -130,7 +137,8 @@ Training train(Mlp net, ConstMatrixRef inputs, ConstMatrixRef targets, const Tra
     const LossAndGradient at = backward(net, x, wanted);
     training.error.push_back(rms_of(at.loss, wanted.rows()));
     if (epoch == options.epochs || training.error.back() <= options.target_error) break;
-    weights += std::visit([&](const auto& how) { return step(how, at.gradient, epoch, state1, state2); }, options.trainer);
+    weights +=
+        std::visit([&](const auto& how) { return step(how, at.gradient, epoch, state1, state2); }, options.trainer);
     net = with_weights(std::move(net), weights);
   }
   training.net = std::move(net);

@@ -1,7 +1,7 @@
 // A multilayer perceptron with one hidden layer, paper 2, eq. (12):  P = f(Σ_j w_ij x_j − T_j)
 //
-// f is the hyperbolic tangent in the hidden layer and the identity in the output layer. Numbers are scaled to −1 .. 1 by
-// the boxes of inputs and outputs, and back.
+// f is the hyperbolic tangent in the hidden layer and the identity in the output layer. Numbers are scaled to −1 .. 1
+// by the boxes of inputs and outputs, and back.
 #pragma once
 
 #include <string>

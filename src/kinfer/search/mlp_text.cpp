@@ -48,8 +48,8 @@ class Words {
 }  // namespace
 
 std::string mlp_text(const Mlp& net) {
-  std::string text = fmt::format("{} {} {} {}\n", title, net.hidden_weights.cols(), net.hidden_nodes(),
-                                 net.output_thresholds.size());
+  std::string text =
+      fmt::format("{} {} {} {}\n", title, net.hidden_weights.cols(), net.hidden_nodes(), net.output_thresholds.size());
   for_each_line(net, [&](std::string_view name, const auto& array) {
     text += name;
     for (const double value : array.reshaped()) fmt::format_to(std::back_inserter(text), " {}", value);
@@ -65,8 +65,12 @@ Result<Mlp> parse_mlp(std::string_view text, const std::string& name_in_messages
   const bool titled = words.next() == title && words.next(inputs) && words.next(hidden) && words.next(outputs);
   if (!titled || std::min({inputs, hidden, outputs}) < 1 || std::max({inputs, hidden, outputs}) > largest)
     return error("{}: expected a net that kinfer wrote: \"{}\" and three sizes", name_in_messages, title);
-  Mlp net{{VectorXd(inputs), VectorXd(inputs)}, {VectorXd(outputs), VectorXd(outputs)}, MatrixXd(hidden, inputs),
-          VectorXd(hidden), MatrixXd(outputs, hidden), VectorXd(outputs)};
+  Mlp net{{VectorXd(inputs), VectorXd(inputs)},
+          {VectorXd(outputs), VectorXd(outputs)},
+          MatrixXd(hidden, inputs),
+          VectorXd(hidden),
+          MatrixXd(outputs, hidden),
+          VectorXd(outputs)};
   std::string damaged;
   for_each_line(net, [&](std::string_view name, auto& array) {
     if (!damaged.empty()) return;

@@ -56,12 +56,13 @@ bool Record::note(const MatrixXd& x, const std::vector<double>& cost) {
   outcome_.best.push_back(outcome_.cost);
   outcome_.median.push_back(median_of(cost));
 
-  const Progress progress{.stage = "search",
-                          .fraction = budget_.max_iterations > 0 ? double(outcome_.iterations) / budget_.max_iterations : 1,
-                          .best = outcome_.cost,
-                          .median = outcome_.median.back(),
-                          .iteration = outcome_.iterations,
-                          .detail = {}};
+  const Progress progress{
+      .stage = "search",
+      .fraction = budget_.max_iterations > 0 ? double(outcome_.iterations) / budget_.max_iterations : 1,
+      .best = outcome_.cost,
+      .median = outcome_.median.back(),
+      .iteration = outcome_.iterations,
+      .detail = {}};
   if (outcome_.cost <= budget_.target_cost) {
     outcome_.stop = Stop::target_reached;
   } else if (tell(observer_, progress) == Wish::stop) {

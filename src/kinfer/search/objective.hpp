@@ -20,29 +20,30 @@ namespace kinfer {
 /// A cost over a box. `evaluate` is called from several threads at once and must not keep state between calls.
 struct Objective {
   Bounds bounds;
-  std::function<void(ConstMatrixRef x /* dim x n, one candidate per column */, std::span<double> cost /* n */)> evaluate{};
+  std::function<void(ConstMatrixRef x /* dim x n, one candidate per column */, std::span<double> cost /* n */)>
+      evaluate{};
 };
 
 /// When a search ends, and how many threads it may use.
 struct Budget {
   int max_iterations = 1000;  ///< updates of the population; 0: only the initial one is judged
   double target_cost = -std::numeric_limits<double>::infinity();  ///< ends when the best cost is not above it
-  int threads = 0;            ///< 0: all cores; the result does not depend on it
+  int threads = 0;                                                ///< 0: all cores; the result does not depend on it
 };
 
 /// What a search found, and what is worth keeping for the next one.
 struct Outcome {
-  VectorXd x{};                   ///< best point
+  VectorXd x{};                                           ///< best point
   double cost = std::numeric_limits<double>::infinity();  ///< at x
-  std::vector<double> best{};     ///< lowest cost so far: of the initial population, then after each iteration
-  std::vector<double> median{};   ///< median cost of the population, likewise
+  std::vector<double> best{};    ///< lowest cost so far: of the initial population, then after each iteration
+  std::vector<double> median{};  ///< median cost of the population, likewise
   Stop stop = Stop::budget_spent;
-  int iterations = 0;             ///< updates of the population
-  long long evaluations = 0;      ///< candidates judged
-  long long not_finite = 0;       ///< those of them whose cost was not finite; it counts as infinite
-  MatrixXd initial_swarm{};       ///< dim x n, judged first
-  MatrixXd final_swarm{};         ///< dim x n, judged last
-  std::optional<Mlp> net{};       ///< of BPNN-PSO: trained on this run, for the next one
+  int iterations = 0;         ///< updates of the population
+  long long evaluations = 0;  ///< candidates judged
+  long long not_finite = 0;   ///< those of them whose cost was not finite; it counts as infinite
+  MatrixXd initial_swarm{};   ///< dim x n, judged first
+  MatrixXd final_swarm{};     ///< dim x n, judged last
+  std::optional<Mlp> net{};   ///< of BPNN-PSO: trained on this run, for the next one
 };
 
 /// n points drawn evenly from the box, one per column; column p from `rng.stream(p)`.

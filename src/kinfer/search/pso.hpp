@@ -29,7 +29,7 @@ struct PsoOptions {
   double velocity_limit = 0.0;  ///< largest |v| of each number, as a fraction of the box's width; 0: none
   RandomNumbers random_numbers = RandomNumbers::per_dimension;
   Walls walls = Walls::absorb;
-  MatrixXd initial{};           ///< dim x particles; empty: drawn evenly from the box. Velocities start at zero
+  MatrixXd initial{};  ///< dim x particles; empty: drawn evenly from the box. Velocities start at zero
   Budget budget{};
 };
 

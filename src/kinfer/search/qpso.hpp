@@ -19,8 +19,8 @@ struct QpsoOptions {
   Budget budget{};
 };
 
-/// Particle p of iteration k draws from `rng.stream(1).stream(k).stream(p)`. Particles that leave the box are put on its
-/// wall.
+/// Particle p of iteration k draws from `rng.stream(1).stream(k).stream(p)`. Particles that leave the box are put on
+/// its wall.
 Outcome quantum_swarm(const Objective& objective, const QpsoOptions& options, Rng rng, const Observer& observer = {});
 
 }  // namespace kinfer

@@ -24,7 +24,9 @@ bool in_space(const Chain& chain, const Vec3& tool_in_world, const PoseSpace& sp
   return p.z() > space.lowest && p.head<2>().norm() > space.clearance;
 }
 
-Vec3 noise(Rng& rng, double sd) { return sd * Vec3(rng.normal(), rng.normal(), rng.normal()); }
+Vec3 noise(Rng& rng, double sd) {
+  return sd * Vec3(rng.normal(), rng.normal(), rng.normal());
+}
 
 }  // namespace
 
@@ -32,8 +34,8 @@ Chain with_random_errors(const Chain& nominal, const Tolerances& tolerances, Rng
   Chain truth = nominal;
   for (const Parameter& parameter : all_parameters(nominal, tolerances).parameters) {
     if (parameter.quantity == Quantity::compliance) continue;
-    const bool revolute_gain = parameter.at.field == Field::gain &&
-                               nominal.joints[parameter.at.joint].type == JointType::revolute;
+    const bool revolute_gain =
+        parameter.at.field == Field::gain && nominal.joints[parameter.at.joint].type == JointType::revolute;
     if (revolute_gain) continue;  // an encoder's gain is exact unless a user says otherwise
     set_value_at(truth, parameter.at, parameter.nominal + parameter.prior_sd * rng.normal());
   }

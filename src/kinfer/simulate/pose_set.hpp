@@ -12,8 +12,8 @@ namespace kinfer {
 
 /// Where poses are drawn: uniform within the joint limits (±170° or 0 .. 0.3 m where a joint has none), in free space.
 struct PoseSpace {
-  double lowest = -std::numeric_limits<double>::infinity();   ///< [m] tool above this height over the base
-  double clearance = 0.0;                                     ///< [m] tool further than this from the base's z axis
+  double lowest = -std::numeric_limits<double>::infinity();  ///< [m] tool above this height over the base
+  double clearance = 0.0;                                    ///< [m] tool further than this from the base's z axis
 };
 
 enum class Measured { positions, poses };

@@ -1,0 +1,169 @@
+// kinfer identify: INS logs of an unknown machine -> order of its segments, chain, evidence.
+#include "kinfer/identify/identify.hpp"
+
+#include <fmt/ranges.h>
+
+#include <map>
+#include <memory>
+
+#include "kinfer/base/sha256.hpp"
+#include "kinfer/cli/arguments.hpp"
+#include "kinfer/cli/identify_summary.hpp"
+#include "kinfer/cli/verbs.hpp"
+#include "kinfer/io/chain_dh_csv.hpp"
+#include "kinfer/io/identify_json.hpp"
+#include "kinfer/io/ins_csv.hpp"
+#include "kinfer/io/robot_toml.hpp"
+#include "kinfer/io/text_file.hpp"
+#include "kinfer/io/urdf.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::vector<std::string> logs;
+  std::string out, engine = "bp", terminals = "hinge", filter = "kinfer-offline", root, pairing = "halves";
+  double smoothing = SegmentMotionOptions{}.smoothing;
+  LinkSearchOptions search;
+  int links = 0;
+};
+
+const std::map<std::string, Terminals> terminals_by_name{{"hinge", Terminals::hinge}, {"euler", Terminals::euler}};
+const std::map<std::string, Pairing> pairings{{"halves", Pairing::halves}, {"mirrored", Pairing::mirrored}};
+
+Result<IdentifyOptions> options_of(const Options& options) {
+  IdentifyOptions how;
+  const auto filter = filter_named(options.filter);
+  if (!filter) return error("--filter {}: no such filter; known are {}", options.filter, filter_names);
+  if (options.search.depth.max < options.search.depth.min)
+    return error("--max-depth {}: less than --min-depth {}", options.search.depth.max, options.search.depth.min);
+  if (options.search.depth.max_leaves < options.search.depth.min)
+    return error("--max-leaves {}: too few for --min-depth {}", options.search.depth.max_leaves,
+                 options.search.depth.min);
+  if (!(options.smoothing >= 0.0 && options.smoothing <= 1.0))
+    return error("--smoothing {}: expected 0 .. 1 s", options.smoothing);
+  how.motion.filter = *filter;
+  how.motion.smoothing = options.smoothing;
+  how.terminals = terminals_by_name.at(options.terminals);
+  how.search = options.search;
+  how.search.bacteria.pairing = pairings.at(options.pairing);
+  if (!options.root.empty()) how.root = options.root;
+  how.links = options.links;
+  how.threads = options.common.threads;
+  return how;
+}
+
+Result<InsRecording> read_logs(const Options& options) {
+  const std::vector<std::filesystem::path> paths(options.logs.begin(), options.logs.end());
+  KINFER_TRY(recording, read_ins_csv(paths));
+  for (const InsSensor& sensor : recording.sensors)
+    if (!sensor.acceleration.present() || !sensor.rate.present())
+      return error("{}: identification needs its specific force (ax ay az) and its angular rate (gx gy gz)",
+                   sensor.name);
+  return recording;
+}
+
+Provenance provenance_of(const Options& options) {
+  Provenance provenance;
+  provenance.seed = options.common.seed;
+  for (const std::string& path : options.logs)
+    if (const auto text = read_text_file(path))
+      provenance.inputs.push_back({std::filesystem::path(path).filename().string(), sha256(*text)});
+  const BacterialOptions& b = options.search.bacteria;
+  provenance.options = {{"--engine", options.engine},
+                        {"--terminals", options.terminals},
+                        {"--filter", options.filter},
+                        {"--root", options.root},
+                        {"--smoothing", fmt::to_string(options.smoothing)},
+                        {"--individuals", fmt::to_string(b.individuals)},
+                        {"--generations", fmt::to_string(b.generations)},
+                        {"--clones", fmt::to_string(b.clones)},
+                        {"--cycles", fmt::to_string(b.cycles)},
+                        {"--transfers", fmt::to_string(b.transfers)},
+                        {"--pairing", options.pairing},
+                        {"--min-depth", fmt::to_string(options.search.depth.min)},
+                        {"--max-depth", fmt::to_string(options.search.depth.max)},
+                        {"--max-leaves", fmt::to_string(options.search.depth.max_leaves)},
+                        {"--rows", fmt::to_string(options.search.rows)},
+                        {"--links", fmt::to_string(options.links)}};
+  return provenance;
+}
+
+Result<void> write_results(const Options& options, const Identification& found) {
+  const std::filesystem::path folder(options.out);
+  RobotModel robot{.chain = found.chain};
+  if (auto done = write_text_file(folder / "chain.toml", robot_toml(robot)); !done) return done;
+  if (auto done = write_text_file(folder / "chain.urdf", urdf(found.chain)); !done) return done;
+  if (auto done = write_text_file(folder / "chain_dh.csv", chain_dh_csv(found.dh)); !done) return done;
+  return write_text_file(folder / "evidence.json", identification_json(found, provenance_of(options)));
+}
+
+int run(const Options& options) {
+  RunRecord record("identify", options.common);
+  for (const std::string& path : options.logs) record.add_input(path);
+  const auto how = options_of(options);
+  if (!how) return fail(how.error());
+  const auto recording = read_logs(options);
+  if (!recording) return fail(recording.error());
+  if (auto ready = make_writable_folder(options.out); !ready) return fail(ready.error());
+  if (auto ready = make_writable_folder(options.out); !ready) return fail(ready.error());
+  const Result<Identification> found = [&] {
+    ProgressLine progress(options.common);
+    return identify(*recording, *how, Rng(options.common.seed), progress.observer());
+  }();
+  if (!found) return fail(found.error());
+  if (auto done = write_results(options, *found); !done) return fail(done.error());
+  if (auto done = record.write(options.out); !done) return fail(done.error());
+  if (options.common.json)
+    fmt::print("{}", identification_headline_json(*found));
+  else if (!options.common.quiet)
+    fmt::print("{}", identification_summary(*found));
+  return exit_done;
+}
+
+void add_search_options(CLI::App& verb, Options& options) {
+  BacterialOptions& b = options.search.bacteria;
+  DepthLimits& depth = options.search.depth;
+  constexpr int most = 1000000;
+  add_count(verb, "--individuals", b.individuals, 2, most, "Bacteria in the population (paper 1, table 4)");
+  add_count(verb, "--generations", b.generations, 0, most, "Generations a link");
+  add_count(verb, "--clones", b.clones, 1, most, "Clones of a bacterium in its mutation, itself included");
+  add_count(verb, "--cycles", b.cycles, 0, most, "Parts of a bacterium that are mutated in a generation");
+  add_count(verb, "--transfers", b.transfers, 0, most, "Genes transferred in a generation");
+  add_choice(verb, "--pairing", options.pairing, {"halves", "mirrored"},
+             "Gene transfer: one from each half, or best with worst (pseudo code)");
+  add_count(verb, "--min-depth", depth.min, 1, 20, "Least depth of a tree");
+  add_count(verb, "--max-depth", depth.max, 1, 20, "Largest depth of a tree");
+  add_count(verb, "--max-leaves", depth.max_leaves, 1, 1000, "Most leaves of a tree");
+  add_count(verb, "--rows", options.search.rows, 20, most, "Rows of the log that the cost sums over");
+}
+
+}  // namespace
+
+Verb add_identify(CLI::App& app) {
+  CLI::App* verb =
+      add_command(app, "identify", "Find the chain of an unknown machine from one INS on each segment",
+                  "Let the machine rest for a few seconds, move joint after joint, then all together.\nExample:\n"
+                  "  kinfer simulate excavator --out drive --grade noise\n"
+                  "  kinfer identify drive/imu.csv --out excavator");
+  auto options = std::make_shared<Options>();
+  add_texts(*verb, "logs", options->logs, "INS recordings", Need::required, "CSV");
+  add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, chain_dh.csv, evidence.json, run.json",
+           Need::required, "DIR");
+  add_choice(*verb, "--engine", options->engine, {"bp"}, "How the chain is searched; bp: bacterial programming");
+  add_choice(*verb, "--terminals", options->terminals, {"hinge", "euler"},
+             "hinge: relative rotations, rates from gyros; euler: differences of Euler angles, as in paper 1");
+  add_text(*verb, "--filter", options->filter, "Orientation filter: kinfer, kinfer-offline, paper", Need::optional,
+           "NAME");
+  add_text(*verb, "--root", options->root, "Sensor on the machine's base (default: the one that stands still)",
+           Need::optional, "NAME");
+  add_number(*verb, "--smoothing", options->smoothing,
+             "Standard deviation of the Gaussian on accelerations and rates [s]");
+  add_count(*verb, "--links", options->links, 0, 1000, "Links to find, from the root outwards; 0 means all");
+  add_search_options(*verb, *options);
+  add_common_options(*verb, options->common);
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace kinfer::cli

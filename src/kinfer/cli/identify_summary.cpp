@@ -1,0 +1,78 @@
+#include "kinfer/cli/identify_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinfer::cli {
+namespace {
+
+/// Paper 1's table 3, and how safe the other way is.
+std::string order_table(const OrderEvidence& order) {
+  std::string text = fmt::format("{:<22}", "who moves when [s]");
+  for (const std::string& sensor : order.sensors) text += fmt::format(" {:>8}", sensor);
+  text += "\n";
+  for (const PhaseEvidence& phase : order.phases) {
+    text += fmt::format("  {:>8.2f} .. {:<8.2f}", phase.begin, phase.end);
+    for (const bool moves : phase.moves) text += fmt::format(" {:>8}", moves ? 1 : 0);
+    text += "\n";
+  }
+  text += fmt::format("{:<22}", "  rank");
+  for (const int rank : order.rank) text += fmt::format(" {:>8}", rank);
+  return text + fmt::format("\nspanning tree of pairwise fits: margin {:.2f}; the two {}\n\n", order.margin,
+                            order.phases_agree ? "agree" : "do not agree");
+}
+
+const char* type_name(FoundJointType type) {
+  return type == FoundJointType::revolute ? "revolute" : type == FoundJointType::prismatic ? "prismatic" : "rigid";
+}
+
+std::string vector_text(const Vec3& v, double scale, const char* form) {
+  std::string text;
+  for (Eigen::Index k = 0; k < 3; ++k) text += fmt::format(fmt::runtime(form), scale * v[k]);
+  return text;
+}
+
+std::string joint_table(const std::vector<FoundJoint>& joints) {
+  std::string text = fmt::format("{:<16} {:<10} {:<8} {:>24} {:>27} {:>16} {:>10}\n", "joint", "type", "seen by",
+                                 "axis", "point [mm]", "sd axis [mrad]", "sd [mm]");
+  for (const FoundJoint& j : joints) {
+    const auto line = [&](const std::string& head, const char* type, const std::string& sensor, const Vec3& axis,
+                          const Vec3& point, const std::array<double, 2>& axis_sd,
+                          const std::array<double, 2>& point_sd) {
+      text += fmt::format("{:<16} {:<10} {:<8} {:>24} {:>27} {:>16.2f} {:>10.1f}\n", head, type, sensor,
+                          vector_text(axis, 1.0, "{:8.4f}"), vector_text(point, 1e3, "{:9.1f}"),
+                          1e3 * std::hypot(axis_sd[0], axis_sd[1]),
+                          1e3 * std::min(std::hypot(point_sd[0], point_sd[1]), 99.0));
+    };
+    line(j.parent + "-" + j.child, type_name(j.type), j.parent, j.axis_in_parent, j.point_in_parent,
+         j.sd.axis_in_parent, j.sd.point_in_parent);
+    line("", "", j.child, j.axis_in_child, j.point_in_child, j.sd.axis_in_child, j.sd.point_in_child);
+  }
+  return text + "\n";
+}
+
+std::string fit_table(const std::vector<LinkEvidence>& searches) {
+  std::string text = fmt::format("{:<12} {:>12} {:>12} {:>12} {:>14} {:>12}\n", "J_RMSE", "accel. m/s2", "orient. rad",
+                                 "total", "not fitted", "evaluations");
+  for (const LinkEvidence& s : searches)
+    text += fmt::format("{:<12} {:>12.5f} {:>12.5f} {:>12.5f} {:>14.5f} {:>12}\n", s.segment, s.fitted.acceleration,
+                        s.fitted.orientation, s.fitted.total, s.holdout.total, s.evaluations);
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string identification_summary(const Identification& found) {
+  std::string text = found.verdict + ".\n\n" + order_table(found.order) + joint_table(found.joints);
+  for (const FoundLink& link : found.links)
+    text += fmt::format("link {}: {:.1f} mm from {} to {} (sd {:.1f} mm)\n", link.segment, 1e3 * link.length, link.from,
+                        link.to, 1e3 * link.sd);
+  if (!found.links.empty()) text += "\n";
+  text += fit_table(found.searches);
+  for (const std::string& note : found.notes) text += "  - " + note + "\n";
+  return text;
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,172 @@
+#include "kinfer/identify/hinge_geometry.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "kinfer/base/expect.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer {
+namespace {
+
+constexpr double nearly_parallel = 0.1;  // sine of the angle between two lines
+constexpr double negligible = 1e-9;      // [rad] or [m] of a number that counts as 0 when leaves are merged
+
+/// Unit vectors that all rotations map onto each other, R b = a: the smallest singular direction of [R, -1].
+void find_directions(HingeGeometry& hinge, const std::vector<Pose>& poses) {
+  MatrixXd system(3 * static_cast<Eigen::Index>(poses.size()), 6);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    system.middleRows<3>(3 * static_cast<Eigen::Index>(i)) << poses[i].rotation, -Mat3::Identity();
+  const VectorXd direction = right_svd(system).v.col(5);
+  hinge.axis_in_child = direction.head<3>().normalized();
+  hinge.axis_in_parent = direction.tail<3>().normalized();
+}
+
+/// Points that all poses map onto each other, R c + t = p; then shifted along the axis to the child's origin.
+void find_points(HingeGeometry& hinge, const std::vector<Pose>& poses) {
+  MatrixXd system(3 * static_cast<Eigen::Index>(poses.size()), 6);
+  VectorXd right(system.rows());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    system.middleRows<3>(3 * static_cast<Eigen::Index>(i)) << poses[i].rotation, -Mat3::Identity();
+    right.segment<3>(3 * static_cast<Eigen::Index>(i)) = -poses[i].position;
+  }
+  const VectorXd points = solve_least_squares(system, right, 1e-6);  // the shift along the axis stays 0
+  const double along = hinge.axis_in_child.dot(points.head<3>());
+  hinge.point_in_child = points.head<3>() - along * hinge.axis_in_child;
+  hinge.point_in_parent = points.tail<3>() - along * hinge.axis_in_parent;
+}
+
+/// Positive sense: that of the larger signal values.
+void find_sense(HingeGeometry& hinge, const std::vector<Pose>& poses, const std::vector<SignalRow>& signals) {
+  double product = 0.0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    double sum = 0.0;
+    for (const double angle : signals[i].angle) sum += angle;
+    product += sum * hinge.axis_in_parent.dot(log_so3(poses[i].rotation * hinge.home.rotation.transpose()));
+  }
+  if (product >= 0.0) return;
+  hinge.axis_in_parent = -hinge.axis_in_parent;
+  hinge.axis_in_child = -hinge.axis_in_child;
+}
+
+bool is_zero(double number) {
+  return std::abs(number) < negligible;
+}
+bool has_theta(const DhLeaf& leaf) {
+  return leaf.theta_signal != DhLeaf::constant || !is_zero(leaf.theta);
+}
+bool has_alpha(const DhLeaf& leaf) {
+  return leaf.alpha_signal != DhLeaf::constant || !is_zero(leaf.alpha);
+}
+
+/// Angles add up unless both are signals, or one is a signal without constant and the other a constant: the paper's
+/// leaves have no room for both.
+bool add_angle(double& value, int& signal, double other, int other_signal) {
+  const bool is_signal = signal != DhLeaf::constant, other_is_signal = other_signal != DhLeaf::constant;
+  if ((is_signal && other_is_signal) || (is_signal && is_zero(value) && !is_zero(other)) ||
+      (other_is_signal && is_zero(other) && !is_zero(value)))
+    return false;
+  value += other;
+  if (other_signal != DhLeaf::constant) signal = other_signal;
+  return true;
+}
+
+/// One leaf for two, where that is exact. Within a leaf the order is d, theta, a, alpha; d and theta commute, so do a
+/// and alpha.
+std::optional<DhLeaf> merged_pair(const DhLeaf& first, const DhLeaf& second) {
+  DhLeaf leaf = first;
+  if (!has_alpha(first) && is_zero(first.a)) {  // z goes on: d and theta of both add up
+    leaf.d += second.d;
+    leaf.a = second.a;
+    leaf.alpha = second.alpha;
+    leaf.alpha_signal = second.alpha_signal;
+    if (add_angle(leaf.theta, leaf.theta_signal, second.theta, second.theta_signal)) return leaf;
+  }
+  leaf = first;
+  if (!has_theta(second) && is_zero(second.d)) {  // x goes on: a and alpha of both add up
+    leaf.a += second.a;
+    if (add_angle(leaf.alpha, leaf.alpha_signal, second.alpha, second.alpha_signal)) return leaf;
+  }
+  if (!has_alpha(first) && !has_theta(second)) {  // d of the second is along the same z
+    leaf = first;
+    leaf.d += second.d;
+    leaf.a += second.a;
+    leaf.alpha = second.alpha;
+    leaf.alpha_signal = second.alpha_signal;
+    return leaf;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+HingeGeometry hinge_geometry(std::span<const DhLeaf> leaves, const std::vector<SignalRow>& signals) {
+  KINFER_EXPECT(signals.size() >= 3);
+  std::vector<Pose> poses;
+  for (const SignalRow& row : signals) poses.push_back(transform(leaves, row.angle));
+  HingeGeometry hinge;
+  hinge.home = transform(leaves, std::vector<double>(signals.front().angle.size(), 0.0));
+  find_directions(hinge, poses);
+  find_points(hinge, poses);
+  find_sense(hinge, poses, signals);
+  return hinge;
+}
+
+Pose turned(const HingeGeometry& hinge, double angle) {
+  const Mat3 turn = exp_so3(angle * hinge.axis_in_parent);
+  return {turn * hinge.home.rotation, hinge.point_in_parent + turn * (hinge.home.position - hinge.point_in_parent)};
+}
+
+Pose transform(const DhNumbers& row) {
+  return Pose{rot_z(row.theta), {0.0, 0.0, row.d}} * Pose{rot_x(row.alpha) * rot_y(row.beta), {row.a, 0.0, 0.0}};
+}
+
+DhNumbers row_to_line(const Vec3& point, const Vec3& direction) {
+  const double sine = std::hypot(direction.x(), direction.y());
+  DhNumbers row;
+  if (sine < nearly_parallel) {  // x towards where the line meets the plane d = 0; then two small turns
+    const Vec3 meets = point - (point.z() / direction.z()) * direction;
+    row.a = std::hypot(meets.x(), meets.y());
+    row.theta = row.a > negligible ? std::atan2(meets.y(), meets.x()) : 0.0;
+    const Vec3 turned = rot_z(-row.theta) * direction;  // = RotX(alpha) RotY(beta) z
+    row.beta = std::asin(turned.x());
+    row.alpha = std::atan2(-turned.y(), turned.z());
+    return row;
+  }
+  // x is the common normal z × direction, so that a turn about it by alpha takes z to the direction.
+  row.theta = std::atan2(direction.x(), -direction.y());
+  row.alpha = std::atan2(sine, direction.z());
+  const Vec3 x(std::cos(row.theta), std::sin(row.theta), 0.0), across(-x.y(), x.x(), 0.0);
+  row.a = point.dot(x);
+  row.d = point.z() - direction.z() * point.dot(across) / direction.dot(across);
+  return row;
+}
+
+std::array<DhNumbers, 3> canonical_rows(const HingeGeometry& hinge) {
+  std::array<DhNumbers, 3> rows;
+  rows[0] = row_to_line(hinge.point_in_parent, hinge.axis_in_parent);
+  const Pose axis_T_child = transform(rows[0]).inverse() * hinge.home;
+  rows[1] = row_to_line(axis_T_child.position, axis_T_child.rotation.col(2));
+  const Pose rest = transform(rows[1]).inverse() * axis_T_child;  // along and about z only
+  rows[2].theta = std::atan2(rest.rotation(1, 0), rest.rotation(0, 0));
+  rows[2].d = rest.position.z();
+  return rows;
+}
+
+std::vector<DhLeaf> merged(std::vector<DhLeaf> leaves) {
+  for (std::size_t i = 0; i + 1 < leaves.size();) {
+    if (const auto pair = merged_pair(leaves[i], leaves[i + 1])) {
+      leaves[i] = *pair;
+      leaves.erase(leaves.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      i = i > 0 ? i - 1 : 0;
+    } else {
+      ++i;
+    }
+  }
+  const auto wrap = [](double& angle) { angle = wrapped(angle); };
+  for (DhLeaf& leaf : leaves) wrap(leaf.theta), wrap(leaf.alpha);
+  return leaves;
+}
+
+}  // namespace kinfer

@@ -1,0 +1,260 @@
+#include "kinfer/identify/identify.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/geometry/fit.hpp"
+#include "kinfer/identify/found_chain.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer {
+namespace {
+
+constexpr double safe_margin = 2.0;           // of the spanning tree
+constexpr double sliding_acceleration = 0.1;  // [m/s²] rms; more between sensors that do not turn is a slide
+constexpr std::size_t judged_rows = 2000;     // rows that were not fitted, to judge on
+constexpr std::size_t posed_rows = 100;       // poses from which an axis is read
+
+/// What grows while the tree is walked from the root.
+struct Progressing {
+  const RecordedMotion& motion;
+  const SegmentTree& tree;
+  IdentifyOptions options;
+  std::vector<std::vector<FrameState>> states;  // of the found chain, by segment; empty where not found yet
+  Identification result;
+};
+
+/// The angle of the hinge that the found states are nearest to, with rates of these states.
+JointSignal hinge_angle(const HingeGeometry& hinge, const std::vector<FrameState>& parent,
+                        const std::vector<FrameState>& child) {
+  JointSignal signal{.name = "angle", .angle = {}, .rate = {}, .rate_change = {}};
+  const Quat home(hinge.home.rotation);
+  for (std::size_t row = 0; row < parent.size(); ++row) {
+    const Mat3 to_parent = parent[row].rotation.transpose();
+    const Quat turn = Quat(Mat3(to_parent * child[row].rotation)) * home.conjugate();
+    const Vec3 rate = child[row].rate - parent[row].rate;
+    const Vec3 rate_change = child[row].rate_change - parent[row].rate_change - parent[row].rate.cross(rate);
+    signal.angle.push_back(2.0 * std::atan2(hinge.axis_in_parent.dot(turn.vec()), turn.w()));
+    signal.rate.push_back(hinge.axis_in_parent.dot(to_parent * rate));
+    signal.rate_change.push_back(hinge.axis_in_parent.dot(to_parent * rate_change));
+  }
+  return signal;
+}
+
+FoundFit fit_of(const JRmse& j) {
+  return {j.total, j.acceleration, j.orientation};
+}
+
+std::vector<std::size_t> without(const std::vector<std::size_t>& rows, const std::vector<std::size_t>& taken) {
+  std::vector<std::size_t> rest;
+  std::ranges::set_difference(rows, taken, std::back_inserter(rest));
+  return rest;
+}
+
+/// Paper 1's step for one segment: evolve its sub-tree behind the frozen chain, then freeze it.
+void add_hinge(Progressing& p, std::size_t parent, std::size_t child, const std::vector<JointSignal>& signals,
+               const std::vector<std::size_t>& rows, const Rng& rng, const Observer& observer) {
+  const std::string &parent_name = p.motion.segments[parent].name, &name = p.motion.segments[child].name;
+  const std::vector<FrameState> measured = measured_states(p.motion.segments[child]);
+  const LinkSearchOptions& options = p.options.search;
+  const DhEvolution evolution = search_link(p.states[parent], measured, signals, rows, options, rng, observer);
+  const std::vector<DhLeaf> found = leaves(evolution.best);
+  p.states[child] = carried(p.states[parent], found, signals);
+
+  const auto fitted = evenly_chosen(rows, static_cast<std::size_t>(options.rows));
+  std::vector<SignalRow> poses;
+  for (const std::size_t row : evenly_chosen(rows, posed_rows)) poses.push_back(signals_at(signals, row));
+  FoundHinge hinge{hinge_geometry(found, poses), {}};
+  hinge.precision = hinge_precision(hinge.geometry, p.states[parent], measured,
+                                    hinge_angle(hinge.geometry, p.states[parent], p.states[child]), fitted);
+  const FoundJoint joint = found_joint(parent_name, name, hinge);
+  if (signal_uses(found) > 1)
+    p.result.notes.push_back(
+        fmt::format("the chain to {} uses {} signals, so it is no hinge; its axis is the one nearest to it", name,
+                    signal_uses(found)));
+  std::ranges::copy(canonical_rows(joint, hinge), std::back_inserter(p.result.dh));
+  p.result.joints.push_back(joint);
+  const auto judged = evenly_chosen(without(rows, fitted), judged_rows);
+  p.result.searches.push_back({.segment = name,
+                               .fitted = fit_of(j_rmse(p.states[child], measured, fitted, options.cost.orientation)),
+                               .holdout = fit_of(j_rmse(p.states[child], measured, judged, options.cost.orientation)),
+                               .rows = static_cast<int>(fitted.size()),
+                               .found = found_rows(name, found, signals),
+                               .merged = found_rows(name, merged(found), signals),
+                               .evaluations = evolution.evaluations,
+                               .generations = evolution.generations,
+                               .best = evolution.best_history,
+                               .median = evolution.median_history});
+}
+
+/// Bacterial programming knows no sliding joints (paper 1, section VI); the pair's fit of a common point tells the
+/// direction that the accelerations differ along.
+void add_slide(Progressing& p, std::size_t parent, std::size_t child) {
+  const SegmentMotion &a = p.motion.segments[parent], &b = p.motion.segments[child];
+  Mat3 spread = Mat3::Zero();
+  for (std::size_t row = p.motion.first_motion; row < p.motion.rows(); ++row) {
+    const Vec3 difference = a.rotation[row].transpose() * (b.acceleration[row] - a.acceleration[row]);
+    if (p.motion.usable[row]) spread += difference * difference.transpose();
+  }
+  const std::size_t home = p.motion.first_motion;
+  HingeGeometry slide;
+  slide.axis_in_parent = symmetric_eigen(spread).vectors.col(2);
+  slide.home.rotation = a.rotation[home].transpose() * b.rotation[home];
+  slide.axis_in_child = slide.home.rotation.transpose() * slide.axis_in_parent;
+  FoundJoint joint{.parent = a.name, .child = b.name, .type = FoundJointType::prismatic};
+  joint.axis_in_parent = slide.axis_in_parent;
+  joint.axis_in_child = slide.axis_in_child;
+  constexpr double not_estimated = 1.0;  // [rad], [m]
+  joint.sd = {{not_estimated, not_estimated},
+              {not_estimated, not_estimated},
+              {not_estimated, not_estimated},
+              {not_estimated, not_estimated},
+              not_estimated};
+  joint.not_identifiable.push_back("the place of the slide: bacterial programming finds turning joints only");
+  p.result.notes.push_back(
+      fmt::format("{} slides on {}; its direction is a first guess and its place is not estimated", b.name, a.name));
+  p.result.joints.push_back(joint);
+  std::ranges::copy(canonical_rows(joint, {slide, {}}), std::back_inserter(p.result.dh));
+  p.states[child] = measured_states(b);
+}
+
+/// The lever from the parent's sensor to the child's that their accelerations ask for, the shortest one.
+Vec3 rigid_lever(const RecordedMotion& motion, const SegmentMotion& a, const SegmentMotion& b) {
+  constexpr double shortness = 1e-4;  // [1/s⁴] a row: prior on what no acceleration tells
+  Mat3 normal = Mat3::Zero();
+  Vec3 right = Vec3::Zero();
+  for (std::size_t row = motion.first_motion; row < motion.rows(); ++row) {
+    if (!motion.usable[row]) continue;
+    const Mat3 rate = skew(a.rate[row]);
+    const Mat3 effect = (skew(a.rate_change[row]) + rate * rate) * a.rotation[row];
+    normal += effect.transpose() * effect + shortness * Mat3::Identity();
+    right += effect.transpose() * (b.acceleration[row] - a.acceleration[row]);
+  }
+  return solve_least_squares(normal, right);
+}
+
+/// Two sensors that never move against each other: on one segment, or beside a joint that nobody moved.
+void add_rigid(Progressing& p, std::size_t parent, std::size_t child) {
+  const SegmentMotion &a = p.motion.segments[parent], &b = p.motion.segments[child];
+  std::vector<Mat3> relative;
+  for (std::size_t row = 0; row < p.motion.rows(); ++row)
+    relative.push_back(a.rotation[row].transpose() * b.rotation[row]);
+  HingeGeometry mount;
+  mount.home = {mean_rotation(relative), rigid_lever(p.motion, a, b)};
+  mount.axis_in_child = Vec3::UnitZ();
+  mount.axis_in_parent = mount.home.rotation.col(2);
+  mount.point_in_parent = mount.home.position;
+  FoundJoint joint{.parent = a.name, .child = b.name, .type = FoundJointType::rigid};
+  joint.axis_in_parent = mount.axis_in_parent;
+  joint.point_in_parent = mount.point_in_parent;
+  joint.not_identifiable.push_back("the axis of a joint, if there is one");
+  p.result.notes.push_back(fmt::format(
+      "{} never moves against {}: on the same segment, or the joint between them is not excited", b.name, a.name));
+  p.result.joints.push_back(joint);
+  std::ranges::copy(canonical_rows(joint, {mount, {}}), std::back_inserter(p.result.dh));
+  p.states[child] = measured_states(b);
+}
+
+Result<void> add_joint(Progressing& p, std::size_t child, const Rng& rng, const Observer& observer) {
+  const std::size_t parent = *p.tree.parent[child];
+  const auto signals = joint_signals(p.motion, parent, child,
+                                     {.terminals = p.options.terminals, .smoothing = p.options.motion.smoothing});
+  const PairFit& pair = p.tree.pair(parent, child);
+  const std::string& name = p.motion.segments[child].name;
+  if (signals.empty()) {
+    if (pair.slide < sliding_acceleration)
+      add_rigid(p, parent, child);
+    else
+      add_slide(p, parent, child);
+    return {};
+  }
+  const auto rows = telling_rows(p.motion, parent, child, p.options.terminals);
+  if (rows.size() < 64) return error("only {} rows tell about {}: it hardly moves", rows.size(), name);
+  add_hinge(p, parent, child, signals, rows, rng, [&](Progress progress) {
+    progress.detail = name;
+    return tell(observer, progress);
+  });
+  return {};
+}
+
+OrderEvidence order_evidence(const RecordedMotion& motion, const SegmentTree& tree, const MovingPhases& phases) {
+  OrderEvidence order{.sensors = {},
+                      .pairs = {},
+                      .margin = tree.margin,
+                      .phases = {},
+                      .rank = phases.rank,
+                      .phases_agree = agree(phases, tree)};
+  for (const SegmentMotion& segment : motion.segments) order.sensors.push_back(segment.name);
+  for (const PairFit& pair : tree.pairs)
+    order.pairs.push_back({order.sensors[pair.first], order.sensors[pair.second], pair.residual, pair.off_axis_rate,
+                           pair.weight,
+                           tree.parent[pair.first] == pair.second || tree.parent[pair.second] == pair.first});
+  for (const MovingPhase& phase : phases.phases) order.phases.push_back({phase.begin, phase.end, phase.moves});
+  return order;
+}
+
+void note_order(Identification& result) {
+  if (result.order.margin < safe_margin)
+    result.notes.push_back(fmt::format(
+        "the order of the segments is not safe: another tree fits almost as well (margin {:.2f}, safe is {})",
+        result.order.margin, safe_margin));
+  if (!result.order.phases_agree)
+    result.notes.push_back(
+        "who moves when does not give the same order: joints that move together, a moving base or a swaying machine; "
+        "the "
+        "pairwise fits are believed");
+}
+
+/// The paper's search as the paper has it. With our own terminals: signals whose zero is arbitrary may have an offset,
+/// and orientations are compared without gimbal lock.
+void follow_terminals(IdentifyOptions& options) {
+  LinkSearchOptions& search = options.search;
+  search.cost.orientation = OrientationError::euler;
+  search.leaf.signal_angles = SignalAngles::plain;
+  if (options.terminals == Terminals::euler) return;
+  search.cost.orientation = OrientationError::chord;
+  search.leaf.signal_angles = SignalAngles::offset;
+}
+
+std::string verdict(const Identification& result) {
+  std::vector<std::string> chain;
+  for (const FoundJoint& joint : result.joints) chain.push_back(fmt::format("{}-{}", joint.parent, joint.child));
+  double largest = 0.0;
+  for (const LinkEvidence& search : result.searches) largest = std::max(largest, search.holdout.acceleration);
+  const auto rigid = std::ranges::count(result.joints, FoundJointType::rigid, &FoundJoint::type);
+  const std::string unmoved = rigid > 0 ? fmt::format(", {} of them never moved", rigid) : "";
+  return fmt::format(
+      "{} joints found{} ({}); the chain predicts accelerations that were not fitted to {:.3f} m/s² rms at worst",
+      result.joints.size(), unmoved, fmt::join(chain, ", "), largest);
+}
+
+}  // namespace
+
+Result<Identification> identify(const InsRecording& recording, const IdentifyOptions& given, const Rng& rng,
+                                const Observer& observer) {
+  IdentifyOptions options = given;
+  options.search.bacteria.threads = options.threads;
+  follow_terminals(options);
+  KINFER_TRY(motion, segment_motion(recording, options.motion, options.threads));
+  KINFER_TRY(tree, segment_tree(motion, options.root));
+  Progressing p{motion, tree, options, std::vector<std::vector<FrameState>>(motion.segments.size()), {}};
+  p.result.root = motion.segments[tree.root].name;
+  p.result.engine = "bp";
+  p.result.order = order_evidence(motion, tree, moving_phases(motion));
+  note_order(p.result);
+  p.states[tree.root] = measured_states(motion.segments[tree.root]);
+  const std::size_t links = options.links > 0 ? static_cast<std::size_t>(options.links) : tree.order.size();
+  for (std::size_t i = 1; i < tree.order.size() && i <= links; ++i)
+    if (auto done = add_joint(p, tree.order[i], rng.stream(i), observer); !done) return pass_on(done.error());
+  if (std::ranges::all_of(p.result.joints, [](const FoundJoint& j) { return j.type == FoundJointType::rigid; }))
+    return error("no sensor ever moves against another: move every joint of the machine");
+  p.result.links = found_links(p.result.joints);
+  p.result.chain =
+      found_chain(p.result.root, p.result.joints, p.result.dh, motion.segments[tree.root].rotation.front());
+  p.result.verdict = verdict(p.result);
+  return p.result;
+}
+
+}  // namespace kinfer

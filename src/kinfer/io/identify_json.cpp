@@ -1,0 +1,163 @@
+#include "kinfer/io/identify_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "kinfer/base/version.hpp"
+
+namespace kinfer {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json json_of(const std::vector<Vec3>& vectors) {
+  Json list = Json::array();
+  for (const Vec3& v : vectors) list.push_back(json_of(v));
+  return list;
+}
+
+std::string_view name(FoundJointType type) {
+  switch (type) {
+    case FoundJointType::revolute:
+      return "revolute";
+    case FoundJointType::prismatic:
+      return "prismatic";
+    case FoundJointType::rigid:
+      return "rigid";
+  }
+  return "rigid";
+}
+
+Json json_of(const JointDeviation& sd) {
+  return {{"axis_in_parent_rad", sd.axis_in_parent},
+          {"point_in_parent_m", sd.point_in_parent},
+          {"axis_in_child_rad", sd.axis_in_child},
+          {"point_in_child_m", sd.point_in_child},
+          {"slide_m", sd.slide}};
+}
+
+Json json_of(const FoundJoint& joint) {
+  Json json{{"parent", joint.parent},
+            {"child", joint.child},
+            {"type", name(joint.type)},
+            {"axis_in_parent", json_of(joint.axis_in_parent)},
+            {"point_in_parent", json_of(joint.point_in_parent)},
+            {"axis_in_child", json_of(joint.axis_in_child)},
+            {"point_in_child", json_of(joint.point_in_child)},
+            {"sd", json_of(joint.sd)},
+            {"not_identifiable", joint.not_identifiable},
+            {"not_identifiable_in_parent", json_of(joint.not_identifiable_in_parent)},
+            {"not_identifiable_in_child", json_of(joint.not_identifiable_in_child)}};
+  if (joint.azimuth_undetermined) json["azimuth_undetermined"] = true;
+  return json;
+}
+
+Json json_of(const FoundLink& link) {
+  return {
+      {"segment", link.segment}, {"from", link.from}, {"to", link.to}, {"length_m", link.length}, {"sd_m", link.sd}};
+}
+
+Json json_of(const FoundFit& fit) {
+  return {{"total", fit.total}, {"acceleration", fit.acceleration}, {"orientation", fit.orientation}};
+}
+
+Json json_of(const FoundDhRow& row) {
+  return {{"segment", row.segment},
+          {"theta", row.row.theta},
+          {"d", row.row.d},
+          {"a", row.row.a},
+          {"alpha", row.row.alpha},
+          {"theta_variable", row.theta_variable},
+          {"alpha_variable", row.alpha_variable}};
+}
+
+Json json_of(const OrderEvidence& order) {
+  Json pairs = Json::array(), phases = Json::array();
+  for (const PairEvidence& p : order.pairs)
+    pairs.push_back({{"first", p.first},
+                     {"second", p.second},
+                     {"residual", p.residual},
+                     {"off_axis_rate", p.off_axis_rate},
+                     {"weight", p.weight},
+                     {"joined", p.joined}});
+  for (const PhaseEvidence& p : order.phases)
+    phases.push_back({{"begin", p.begin}, {"end", p.end}, {"moves", p.moves}});
+  return {{"sensors", order.sensors}, {"pairs", pairs},     {"margin", order.margin},
+          {"phases", phases},         {"rank", order.rank}, {"phases_agree", order.phases_agree}};
+}
+
+template <class List>
+Json list_of(const List& list) {
+  Json json = Json::array();
+  for (const auto& item : list) json.push_back(json_of(item));
+  return json;
+}
+
+Json fit_json(const std::vector<LinkEvidence>& searches) {
+  Json fitted = Json::array(), holdout = Json::object();
+  for (const LinkEvidence& s : searches) {
+    Json fit = json_of(s.fitted);
+    fit["segment"] = s.segment;
+    fit["rows"] = s.rows;
+    fitted.push_back(fit);
+    holdout[s.segment] = json_of(s.holdout);
+  }
+  return {{"jrmse", fitted}, {"holdout", holdout}};
+}
+
+Json search_json(const Identification& found) {
+  std::int64_t evaluations = 0;
+  int generations = 0;
+  Json best = Json::array(), median = Json::array(), segments = Json::array();
+  for (const LinkEvidence& s : found.searches) {
+    evaluations += s.evaluations;
+    generations += s.generations;
+    best.push_back(s.best);
+    median.push_back(s.median);
+    segments.push_back({{"segment", s.segment},
+                        {"evaluations", s.evaluations},
+                        {"found", list_of(s.found)},
+                        {"merged", list_of(s.merged)}});
+  }
+  return {{"engine", found.engine}, {"evaluations", evaluations}, {"generations", generations},
+          {"best", best},           {"median", median},           {"segments", segments}};
+}
+
+Json provenance_json(const Provenance& provenance) {
+  Json inputs = Json::array(), options = Json::object();
+  for (const InputFile& input : provenance.inputs) inputs.push_back({{"name", input.name}, {"sha256", input.sha256}});
+  for (const auto& [key, value] : provenance.options) options[key] = value;
+  return {{"version", version}, {"seed", provenance.seed}, {"options", options}, {"inputs", inputs}};
+}
+
+}  // namespace
+
+std::string identification_json(const Identification& found, const Provenance& provenance) {
+  Json json;
+  json["format"] = "kinfer-evidence/1";
+  json["kind"] = "identify";
+  json["verdict"] = found.verdict;
+  json["notes"] = found.notes;
+  json["root"] = found.root;
+  json["joints"] = list_of(found.joints);
+  json["links"] = list_of(found.links);
+  json["order"] = json_of(found.order);
+  json["fit"] = fit_json(found.searches);
+  json["search"] = search_json(found);
+  json["provenance"] = provenance_json(provenance);
+  return json.dump(1) + "\n";
+}
+
+std::string identification_headline_json(const Identification& found) {
+  const Json json{{"verdict", found.verdict},
+                  {"root", found.root},
+                  {"joints", list_of(found.joints)},
+                  {"links", list_of(found.links)},
+                  {"fit", fit_json(found.searches)}};
+  return json.dump() + "\n";
+}
+
+}  // namespace kinfer

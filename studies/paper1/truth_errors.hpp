@@ -1,0 +1,18 @@
+// Geometry errors of a found chain against the simulation's truth, free of what cannot be known.
+#pragma once
+
+#include "kinfer/evidence/identification.hpp"
+#include "kinfer/simulate/truth.hpp"
+
+namespace kinfer::study {
+
+struct GeometryErrors {
+  double line = 0.0;       ///< [m] worst distance of axis lines, over joints and both frames
+  double direction = 0.0;  ///< [rad] worst angle between axes
+  double azimuth = 0.0;    ///< [rad] turn about a body's only axis that was taken out first
+};
+
+/// A body that turns about one fixed axis only is first turned about it to the best fit of its outgoing axis.
+GeometryErrors geometry_errors(const std::vector<FoundJoint>& found, const MachineTruth& truth);
+
+}  // namespace kinfer::study

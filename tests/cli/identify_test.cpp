@@ -1,0 +1,60 @@
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+
+namespace kinfer {
+namespace {
+
+using test::slurp;
+using test::write;
+using testing::HasSubstr;
+
+class Identify : public test::Program {
+ protected:
+  /// The excavator's log, short enough for a test; the search needs few generations to be looked at.
+  void simulate() { ASSERT_EQ(kinfer("simulate excavator --out drive --grade noise --quiet").code, 0); }
+};
+
+TEST_F(Identify, WritesTheChainAndItsEvidenceAndTheSameBytesForAnyNumberOfThreads) {
+  simulate();
+  const std::string how = "identify drive/imu.csv --generations 5 --individuals 20 --links 2 ";
+  const auto one = kinfer(how + "--out one --threads 1");
+  ASSERT_EQ(one.code, 0) << one.err;
+  EXPECT_THAT(one.out, HasSubstr("who moves when"));
+  ASSERT_EQ(kinfer(how + "--out seven --threads 7 --quiet").code, 0);
+  for (const char* name : {"chain.toml", "chain.urdf", "chain_dh.csv", "evidence.json"}) {
+    EXPECT_FALSE(slurp(in("one") / name).empty()) << name;
+    EXPECT_EQ(slurp(in("one") / name), slurp(in("seven") / name)) << name;
+  }
+  const auto json = nlohmann::json::parse(slurp(in("one") / "evidence.json"));
+  EXPECT_EQ(json["kind"], "identify");
+  EXPECT_EQ(json["root"], "ins0");
+  ASSERT_EQ(json["joints"].size(), 2u);
+  EXPECT_EQ(json["joints"][1]["parent"], "ins1");
+  EXPECT_EQ(json["joints"][1]["type"], "revolute");
+  EXPECT_EQ(json["search"]["engine"], "bp");
+  EXPECT_EQ(json["search"]["best"][0].size(), 6u);
+  EXPECT_TRUE(json["fit"]["holdout"].contains("ins2"));
+}
+
+TEST_F(Identify, BadInputGetsOneSentenceAndLeavesNothing) {
+  write(in("one.csv"), "t,a_ax,a_ay,a_az,a_gx,a_gy,a_gz\n0,0,0,9.8,0,0,0\n0.01,0,0,9.8,0,0,0\n0.02,0,0,9.8,0,0,0\n");
+  const auto lonely = kinfer("identify one.csv --out out");
+  EXPECT_EQ(lonely.code, 2);
+  EXPECT_THAT(lonely.err, HasSubstr("two sensors"));
+  simulate();
+  const auto nobody = kinfer("identify drive/imu.csv --out out --root nobody");
+  EXPECT_EQ(nobody.code, 2);
+  EXPECT_THAT(nobody.err, HasSubstr("nobody"));
+  const auto depth = kinfer("identify drive/imu.csv --out out --min-depth 4 --max-depth 2");
+  EXPECT_EQ(depth.code, 2);
+  EXPECT_THAT(depth.err, HasSubstr("--max-depth"));
+  EXPECT_EQ(kinfer("identify drive/imu.csv --out out --filter magic").code, 2);
+  EXPECT_EQ(kinfer("identify drive/imu.csv --out out --engine magic").code, 2);
+  EXPECT_FALSE(std::filesystem::exists(in("out") / "evidence.json"));
+}
+
+}  // namespace
+}  // namespace kinfer

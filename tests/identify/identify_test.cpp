@@ -1,0 +1,173 @@
+#include "kinfer/identify/identify.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "kinfer/io/ins_csv.hpp"
+#include "kinfer/simulate/ins_simulation.hpp"
+#include "kinfer/simulate/truth.hpp"
+#include "simulate/worlds.hpp"
+
+namespace kinfer {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DrivenMachine {
+  InsRecording recording;
+  MachineTruth truth;
+};
+
+DrivenMachine driven_machine(const std::string& name, const MachineOptions& options, Script script, std::uint64_t seed,
+                             const char* grade = "noise") {
+  const MujocoWorld world = test::world_of(name, options, seed);
+  const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {.script = script}), 100.0);
+  return {simulated_recording(world.machine(), motion, *sensor_grade(grade), {}, Rng(seed)),
+          machine_truth(world.machine(), motion)};
+}
+
+std::vector<std::string> edges(const Result<SegmentTree>& tree, const RecordedMotion& motion) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; tree && i < tree->parent.size(); ++i)
+    if (tree->parent[i]) names.push_back(motion.segments[*tree->parent[i]].name + "-" + motion.segments[i].name);
+  return names;
+}
+
+std::vector<std::string> edges(const MachineTruth& truth) {
+  std::vector<std::string> names;
+  for (const JointTruth& joint : truth.joints) names.push_back(joint.parent + "-" + joint.child);
+  return names;
+}
+
+class EveryMachineAndScript : public testing::TestWithParam<std::tuple<std::string, Script>> {};
+INSTANTIATE_TEST_SUITE_P(Order, EveryMachineAndScript,
+                         testing::Combine(testing::ValuesIn(machine_names()),
+                                          testing::Values(Script::standard, Script::together, Script::gentle)));
+
+TEST_P(EveryMachineAndScript, HasTheRightTree) {
+  const auto& [name, script] = GetParam();
+  for (const Base base : {Base::still, Base::rocking}) {
+    const DrivenMachine drive = driven_machine(name, {.base = base}, script, 3);
+    const auto motion = segment_motion(drive.recording);
+    ASSERT_TRUE(motion);
+    const auto tree = segment_tree(*motion, drive.truth.root);
+    EXPECT_THAT(edges(tree, *motion), testing::UnorderedElementsAreArray(edges(drive.truth)))
+        << "base " << static_cast<int>(base);
+  }
+}
+
+TEST(MovingPhases, RankTheSegmentsOfAStiffMachineOnAStillBase) {
+  const DrivenMachine drive = driven_machine("excavator", {}, Script::standard, 1);
+  const auto motion = segment_motion(drive.recording);
+  ASSERT_TRUE(motion);
+  const MovingPhases table = moving_phases(*motion);
+  EXPECT_THAT(table.rank, testing::ElementsAre(0, 1, 2, 3, 4, 5));
+  EXPECT_TRUE(agree(table, *segment_tree(*motion)));
+}
+
+TEST(SegmentTree, IsRightWithAMarginOnTheCasesOfOthers) {
+  const char* root = std::getenv("KINFER_CASES");
+  if (!root) GTEST_SKIP() << "KINFER_CASES is not set";
+  for (const auto& entry : fs::directory_iterator(fs::path(root) / "identify")) {
+    if (!fs::exists(entry.path() / "imu.csv")) continue;
+    const auto recording = read_ins_csv(entry.path() / "imu.csv");
+    ASSERT_TRUE(recording);
+    const auto motion = segment_motion(*recording);
+    const auto tree = segment_tree(*motion);
+    EXPECT_THAT(edges(tree, *motion),
+                testing::UnorderedElementsAre("ins0-ins1", "ins1-ins2", "ins2-ins3", "ins3-ins4", "ins4-ins5"))
+        << entry.path();
+    EXPECT_GT(tree->margin, 2.0) << entry.path();
+  }
+}
+
+TEST(SegmentTree, IsRightWithAMarginOnAMeasuredChainWithASphericalJointAndSoftMounts) {
+  const char* root = std::getenv("KINFER_DATA");
+  if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
+  for (const char* mounts : {"rigid.csv", "nonrigid.csv"}) {
+    const auto recording = read_ins_csv(fs::path(root) / "diodem_chain5" / "trial1" / mounts);
+    ASSERT_TRUE(recording);
+    const auto motion = segment_motion(*recording);
+    const auto tree = segment_tree(*motion, "seg1");
+    EXPECT_THAT(edges(tree, *motion),
+                testing::UnorderedElementsAre("seg1-seg2", "seg2-seg3", "seg3-seg4", "seg4-seg5"));
+    EXPECT_GT(tree->margin, 2.0) << mounts;
+  }
+}
+
+double line_error(const FoundJoint& found, const JointTruth& truth) {  // in the child's sensor [m]
+  Vec3 error = found.point_in_child - truth.point_in_child;
+  std::vector<Vec3> free{truth.axis_in_child};
+  for (const Vec3& hidden : truth.hidden_in_child)
+    if (hidden.cross(free.front()).norm() > 1e-3)
+      free.push_back((hidden - free.front() * free.front().dot(hidden)).normalized());
+  for (const Vec3& direction : free) error -= direction * direction.dot(error);
+  return error.norm();
+}
+
+TEST(Identify, FindsTheFirstLinksOfThePapersExcavator) {
+  const DrivenMachine drive = driven_machine("excavator", {}, Script::standard, 1);
+  const IdentifyOptions options{.terminals = Terminals::euler, .links = 2};
+  const auto found = identify(drive.recording, options, Rng(1));
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->joints.size(), 2u);
+  EXPECT_EQ(found->root, drive.truth.root);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_LT(angle_between(found->joints[i].axis_in_child, drive.truth.joints[i].axis_in_child), 0.05) << i;
+    EXPECT_LT(line_error(found->joints[i], drive.truth.joints[i]), 0.1) << i;
+  }
+  EXPECT_EQ(found->dh.size(), 6u);
+  EXPECT_EQ(dof(found->chain), 2);
+  EXPECT_EQ(found->searches.front().best.size(), 301u);
+  EXPECT_LT(found->searches.front().holdout.total, 1.5 * found->searches.front().fitted.total);
+}
+
+TEST(Identify, GivesTheSameBitsForAnyNumberOfThreads) {
+  const DrivenMachine drive = driven_machine("excavator", {}, Script::standard, 1);
+  const auto run = [&](int threads) {
+    IdentifyOptions options{.links = 2, .threads = threads};
+    options.search.bacteria.generations = 10;
+    return *identify(drive.recording, options, Rng(4));
+  };
+  const Identification one = run(1);
+  for (const int threads : {2, 7}) {
+    const Identification many = run(threads);
+    for (std::size_t i = 0; i < one.searches.size(); ++i) {
+      EXPECT_EQ(one.searches[i].best, many.searches[i].best);
+      EXPECT_EQ(one.searches[i].median, many.searches[i].median);
+      EXPECT_EQ(one.joints[i].point_in_child, many.joints[i].point_in_child);
+    }
+  }
+}
+
+TEST(Identify, SaysWhatARecordingCannotShow) {
+  DrivenMachine drive = driven_machine("excavator", {}, Script::standard, 1);
+  InsRecording one = drive.recording, still = drive.recording;
+  one.sensors.resize(1);
+  EXPECT_THAT(identify(one, {}, Rng(1)).error().what, testing::HasSubstr("at least two sensors"));
+  still.sensors[3] = still.sensors[0];
+  still.sensors[3].name = "lazy";
+  EXPECT_THAT(identify(still, {}, Rng(1)).error().what, testing::HasSubstr("never move"));
+  EXPECT_THAT(identify(drive.recording, {.root = "nobody"}, Rng(1)).error().what, testing::HasSubstr("no such sensor"));
+}
+
+TEST(Identify, TakesASecondSensorOnOneSegmentAndSaysSo) {
+  DrivenMachine drive = driven_machine("excavator", {}, Script::standard, 1);
+  InsSensor second = drive.recording.sensors[5];
+  second.name = "second";
+  drive.recording.sensors.push_back(second);
+  IdentifyOptions options;
+  options.search.bacteria.generations = 1;
+  const auto found = identify(drive.recording, options, Rng(1));
+  ASSERT_TRUE(found);
+  const auto rigid = std::ranges::find(found->joints, FoundJointType::rigid, &FoundJoint::type);
+  ASSERT_NE(rigid, found->joints.end());
+  EXPECT_LT(rigid->point_in_parent.norm(), 0.01);
+  EXPECT_THAT(found->verdict, testing::HasSubstr("never moved"));
+}
+
+}  // namespace
+}  // namespace kinfer
