@@ -59,11 +59,7 @@ Result<HoldoutChoice> add_holdout(const std::string& text, const RobotModel& rob
 Result<Inputs> read_inputs(const Options& options) {
   Inputs inputs;
   KINFER_TRY(robot, read_robot(options.robot));
-  ColumnMap map;
-  if (!options.columns.empty()) {
-    KINFER_TRY(from_file, read_column_map(options.columns));
-    map = from_file;
-  }
+  KINFER_TRY(map, read_columns_option(options.columns));
   KINFER_TRY(data, read_pose_set(options.data, robot.chain, map));
   KINFER_TRY(parameters, read_parameter_choice(options.parameters));
   KINFER_TRY(holdout, add_holdout(options.holdout, robot, map, data));

@@ -48,13 +48,9 @@ int run(const Options& options) {
   for (const std::string& path : {options.robot.path, options.data}) record.add_input(path);
   auto robot = read_robot(options.robot);
   if (!robot) return fail(robot.error());
-  ColumnMap map;
-  if (!options.columns.empty()) {
-    const auto from_file = read_column_map(options.columns);
-    if (!from_file) return fail(from_file.error());
-    map = *from_file;
-  }
-  const auto data = read_pose_set(options.data, robot->chain, map);
+  const auto map = read_columns_option(options.columns);
+  if (!map) return fail(map.error());
+  const auto data = read_pose_set(options.data, robot->chain, *map);
   if (!data) return fail(data.error());
   const auto found = frames_from_circles(robot->chain, *data);
   if (!found) return fail({options.data + ": " + found.error().what});

@@ -61,14 +61,10 @@ int run(const Options& options) {
                              options.files.front())});
   const auto robot = read_robot(options.robot);
   if (!robot) return fail(robot.error());
-  ColumnMap map;
-  if (!options.columns.empty()) {
-    const auto from_file = read_column_map(options.columns);
-    if (!from_file) return fail(from_file.error());
-    map = *from_file;
-  }
+  const auto map = read_columns_option(options.columns);
+  if (!map) return fail(map.error());
   for (const std::string& file : options.files)
-    if (const int code = inspect_pose_set(file, *robot, map); code != exit_done) return code;
+    if (const int code = inspect_pose_set(file, *robot, *map); code != exit_done) return code;
   return exit_done;
 }
 

@@ -27,13 +27,9 @@ std::vector<Pose> predicted_poses(const Chain& chain, const PoseSet& set) {
 int run(const Options& options) {
   const auto robot = read_robot(options.chain);
   if (!robot) return fail(robot.error());
-  ColumnMap map;
-  if (!options.columns.empty()) {
-    const auto from_file = read_column_map(options.columns);
-    if (!from_file) return fail(from_file.error());
-    map = *from_file;
-  }
-  const auto set = read_pose_set(options.joints, robot->chain, map, Expect::joints_only);
+  const auto map = read_columns_option(options.columns);
+  if (!map) return fail(map.error());
+  const auto set = read_pose_set(options.joints, robot->chain, *map, Expect::joints_only);
   if (!set) return fail(set.error());
   const std::vector<Pose> poses = predicted_poses(robot->chain, *set);
   const auto text = predictions_csv(poses, *set, robot->chain.base.pose(), robot->anchors);

@@ -21,4 +21,8 @@ Result<RobotModel> read_robot(const RobotOption& option) {
   return robot;
 }
 
+Result<ColumnMap> read_columns_option(const std::string& path) {
+  return path.empty() ? ColumnMap{} : read_column_map(path);
+}
+
 }  // namespace kinfer::cli

@@ -37,13 +37,9 @@ void print(const Verification& v, const CommonOptions& common) {
 int run(const Options& options) {
   const auto robot = read_robot(options.chain);
   if (!robot) return fail(robot.error());
-  ColumnMap map;
-  if (!options.columns.empty()) {
-    const auto from_file = read_column_map(options.columns);
-    if (!from_file) return fail(from_file.error());
-    map = *from_file;
-  }
-  const auto data = read_pose_set(options.data, robot->chain, map);
+  const auto map = read_columns_option(options.columns);
+  if (!map) return fail(map.error());
+  const auto data = read_pose_set(options.data, robot->chain, *map);
   if (!data) return fail(data.error());
   const auto verification = verify(robot->chain, robot->tolerances, robot->instrument, *data);
   if (!verification) return fail(verification.error());
