@@ -36,11 +36,32 @@ struct Setup {
   double house_distance = 1.25;      // [m] of the house's INS from the swing axis
   double accelerometer_range = 0.0;  // [m/s²]; 0: the grade's
   double gyro_range = 0.0;           // [rad/s]; 0: the grade's
+  bool second_on_boom = false;       // another INS on the boom, 0.4 m on and turned
 };
 
 Machine excavator() {
   const std::string mjcf = machine_mjcf("excavator", {}, Rng(1)).value();
   return MujocoWorld::load(mjcf).value().machine();
+}
+
+constexpr std::size_t boom = 2;
+
+/// The machine with its boom's INS 0.4 m on and turned.
+Machine with_other_boom_sensor(Machine machine) {
+  MountedSensor& sensor = machine.sensors[boom];
+  sensor.name = "second";
+  sensor.segment_T_sensor.position += sensor.segment_T_sensor.rotation * Vec3(0.4, 0.0, 0.1);
+  sensor.segment_T_sensor.rotation = sensor.segment_T_sensor.rotation * exp_so3({0.3, -0.2, 0.5});
+  return machine;
+}
+
+/// Readings of another INS on the boom; its joints are as true as those of the first.
+void add_second_on_boom(Log& log, const Machine& machine, const Drive& drive, const SensorModel& grade,
+                        const Rng& rng) {
+  const Machine other = with_other_boom_sensor(machine);
+  const MachineMotion motion = prescribed_motion(other, drive, 200.0);
+  log.recording.sensors.push_back(simulated_recording(other, motion, grade, {}, rng).sensors[boom]);
+  std::ranges::copy(machine_truth(other, motion).joints, std::back_inserter(log.truth.joints));
 }
 
 Log simulated(const Setup& setup) {
@@ -53,7 +74,9 @@ Log simulated(const Setup& setup) {
   SensorModel grade = sensor_grade(setup.grade).value();
   if (setup.accelerometer_range > 0.0) grade.accelerometer.range = setup.accelerometer_range;
   if (setup.gyro_range > 0.0) grade.gyroscope.range = setup.gyro_range;
-  return {simulated_recording(machine, motion, grade, {}, Rng(setup.seed).stream(7)), machine_truth(machine, motion)};
+  Log log{simulated_recording(machine, motion, grade, {}, Rng(setup.seed).stream(7)), machine_truth(machine, motion)};
+  if (setup.second_on_boom) add_second_on_boom(log, machine, drive, grade, Rng(setup.seed).stream(8));
+  return log;
 }
 
 /// The paper's way: its filter, its terminals, its table 4.
@@ -127,7 +150,53 @@ void write_leaves(const fs::path& folder, const std::string& name, const Identif
                           angle(r.row.alpha, r.alpha_variable), r.row.a);
 }
 
-/// Found against theoretical chain on the same rows, and figure 8: measured and predicted signals.
+/// The leaves that a run reports, with its signals found again by their names.
+std::vector<DhLeaf> found_leaves(const LinkEvidence& link, std::span<const JointSignal> signals) {
+  const auto index = [&](const std::string& name) {
+    const auto found = std::ranges::find(signals, name, &JointSignal::name);
+    return found == signals.end() ? DhLeaf::constant : static_cast<int>(found - signals.begin());
+  };
+  std::vector<DhLeaf> leaves;
+  for (const FoundDhRow& r : link.found)
+    leaves.push_back({.theta = r.row.theta,
+                      .d = r.row.d,
+                      .alpha = r.row.alpha,
+                      .a = r.row.a,
+                      .theta_signal = index(r.theta_variable),
+                      .alpha_signal = index(r.alpha_variable)});
+  return leaves;
+}
+
+/// Figure 8 for one segment: measured and predicted accelerations, and what is left of the angles.
+std::vector<Chart> signal_charts(const std::string& name, const std::vector<double>& time,
+                                 const std::vector<FrameState>& measured, const std::vector<FrameState>& found,
+                                 const std::vector<FrameState>& theoretical, const std::vector<std::size_t>& rows) {
+  std::vector<Chart> charts;
+  for (int axis = 0; axis < 3; ++axis) {
+    Line is{"measured", {}, {}, "#999999"}, best{"found chain", {}, {}, "#1f4e79"},
+        ought{"theoretical chain", {}, {}, "#2e7d32"}, residual{"found - measured", {}, {}, "#b03020"};
+    for (const std::size_t row : rows) {
+      for (Line* line : {&is, &best, &ought, &residual}) line->x.push_back(time[row]);
+      is.y.push_back(measured[row].acceleration[axis]);
+      best.y.push_back(found[row].acceleration[axis]);
+      ought.y.push_back(theoretical[row].acceleration[axis]);
+      residual.y.push_back(best.y.back() - is.y.back());
+    }
+    charts.push_back(
+        {fmt::format("{}: acceleration {}", name, "xyz"[axis]), "time [s]", "m/s²", {is, best, ought, residual}});
+  }
+  Line phi{"roll", {}, {}, "#1f4e79"}, theta{"pitch", {}, {}, "#2e7d32"}, psi{"yaw", {}, {}, "#b03020"};
+  for (const std::size_t row : rows) {
+    const Vec3 error = euler_angles(found[row].rotation) - euler_angles(measured[row].rotation);
+    Line* lines[] = {&phi, &theta, &psi};
+    for (int axis = 0; axis < 3; ++axis)
+      lines[axis]->x.push_back(time[row]), lines[axis]->y.push_back(1e3 * wrapped(error[axis]));
+  }
+  charts.push_back({name + ": residual angles of the found chain", "time [s]", "mrad", {phi, theta, psi}});
+  return charts;
+}
+
+/// Found against theoretical chain on the same rows, and figure 8.
 void write_table7_and_figure8(const fs::path& folder, const Log& log, const Identification& found) {
   const IdentifyOptions options = paper_options(3);
   const RecordedMotion motion = segment_motion(log.recording, options.motion).value();
@@ -135,47 +204,30 @@ void write_table7_and_figure8(const fs::path& folder, const Log& log, const Iden
   auto file = table(folder, "table7.csv",
                     "segment,acceleration found,acceleration theoretical,orientation found,orientation "
                     "theoretical,total found,total theoretical,deviation [%]");
-  auto states = measured_states(motion.segments[tree.root]);
+  auto theoretical = measured_states(motion.segments[tree.root]);
+  auto predicted = theoretical;
   std::vector<Chart> charts;
   const auto theory = theoretical_links();
   double deviation_sum = 0.0;
   for (std::size_t link = 0; link < theory.size(); ++link) {
     const std::size_t child = tree.order[link + 1], parent = *tree.parent[child];
+    const std::string& name = motion.segments[child].name;
     auto signals =
         joint_signals(motion, parent, child, {.terminals = Terminals::euler, .smoothing = options.motion.smoothing});
+    predicted = carried(predicted, found_leaves(found.searches[link], signals), signals);
     std::ranges::stable_sort(signals, std::greater<>(),
                              [&](const JointSignal& s) { return s.name == (link == 0 ? "psi" : "theta"); });
+    theoretical = carried(theoretical, theory[link], signals);
     const auto rows = telling_rows(motion, parent, child, Terminals::euler);
     const auto measured = measured_states(motion.segments[child]);
-    states = carried(states, theory[link], signals);
-    const JRmse j = j_rmse(states, measured, evenly_chosen(rows, 384), OrientationError::euler);
+    const JRmse j = j_rmse(theoretical, measured, evenly_chosen(rows, 384), OrientationError::euler);
     const FoundFit& f = found.searches[link].fitted;
     const double deviation = 100.0 * (f.total - j.total) / j.total;
     deviation_sum += deviation / 3.0;
-    file << fmt::format("{},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.2f}\n", motion.segments[child].name,
-                        f.acceleration, j.acceleration, f.orientation, j.orientation, f.total, j.total, deviation);
-    const auto shown = evenly_chosen(rows, 600);
-    const std::string name = motion.segments[child].name;
-    for (int axis = 0; axis < 3; ++axis) {
-      Line is{"measured", {}, {}, "#999999"}, ought{"theoretical chain", {}, {}, "#1f4e79"},
-          residual{"residual", {}, {}, "#b03020"};
-      for (const std::size_t row : shown) {
-        for (Line* line : {&is, &ought, &residual}) line->x.push_back(motion.time[row]);
-        is.y.push_back(measured[row].acceleration[axis]);
-        ought.y.push_back(states[row].acceleration[axis]);
-        residual.y.push_back(ought.y.back() - is.y.back());
-      }
-      charts.push_back(
-          {fmt::format("{}: acceleration {}", name, "xyz"[axis]), "time [s]", "m/s²", {is, ought, residual}});
-    }
-    Line phi{"roll", {}, {}, "#1f4e79"}, theta{"pitch", {}, {}, "#2e7d32"}, psi{"yaw", {}, {}, "#b03020"};
-    for (const std::size_t row : shown) {
-      const Vec3 error = euler_angles(states[row].rotation) - euler_angles(measured[row].rotation);
-      Line* lines[] = {&phi, &theta, &psi};
-      for (int axis = 0; axis < 3; ++axis)
-        lines[axis]->x.push_back(motion.time[row]), lines[axis]->y.push_back(1e3 * wrapped(error[axis]));
-    }
-    charts.push_back({name + ": residual angles", "time [s]", "mrad", {phi, theta, psi}});
+    file << fmt::format("{},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.2f}\n", name, f.acceleration, j.acceleration,
+                        f.orientation, j.orientation, f.total, j.total, deviation);
+    std::ranges::copy(signal_charts(name, motion.time, measured, predicted, theoretical, evenly_chosen(rows, 600)),
+                      std::back_inserter(charts));
   }
   file << fmt::format("mean deviation,,,,,,,{:.2f}\nin the paper,,,,,,,0.31\n", deviation_sum);
   write_svg(folder / "figure8.svg", charts);
@@ -241,6 +293,7 @@ void write_claims(const fs::path& folder) {
   for (const char* grade : {"noise", "industrial", "consumer"}) row("sensor grade", grade, {.grade = grade}, 2);
   row("clipping", "accelerometer 11 m/s2", {.accelerometer_range = 11.0}, 2);
   row("clipping", "gyro 0.4 rad/s", {.gyro_range = 0.4}, 2);
+  row("a second INS on the boom", "used as a sixth sensor", {.second_on_boom = true}, 3);
 }
 
 /// Both searches on the same evaluator, the boom's link: cost over evaluations.

@@ -42,6 +42,7 @@ double best_turn(const JointTruth& incoming, const JointTruth& outgoing, const F
 GeometryErrors geometry_errors(const std::vector<FoundJoint>& found, const MachineTruth& truth) {
   GeometryErrors errors;
   for (const FoundJoint& joint : found) {
+    if (joint.type == FoundJointType::rigid) continue;
     const auto is_it = [&](const JointTruth& t) { return t.parent == joint.parent && t.child == joint.child; };
     const auto t = std::ranges::find_if(truth.joints, is_it);
     if (t == truth.joints.end()) return {1e3, 1e3, 1e3};

@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
-#include <cstring>
 #include <memory>
 
 #include "kinfer/kinematics/motion.hpp"
 #include "laws/example_chains.hpp"
+#include "laws/mujoco_model.hpp"
 #include "laws/slow_chain.hpp"
 
 namespace kinfer {
@@ -65,23 +65,6 @@ std::string mjcf(const Chain& chain) {
       placed_at(base.rotation, base.position), bodies(chain, -1));
 }
 
-struct Free {
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-
-std::unique_ptr<mjModel, Free> load(const std::string& xml) {
-  const auto files = std::make_unique<mjVFS>();
-  mj_defaultVFS(files.get());
-  mj_makeEmptyFileVFS(files.get(), "machine.xml", static_cast<int>(xml.size()));
-  std::memcpy(files->filedata[0], xml.data(), xml.size());
-  char why[1000] = "";
-  std::unique_ptr<mjModel, Free> model(mj_loadXML("machine.xml", files.get(), why, sizeof why));
-  EXPECT_TRUE(model) << why << "\n" << xml;
-  mj_deleteVFS(files.get());
-  return model;
-}
-
 class MujocoJudges : public testing::TestWithParam<Chain> {
  protected:
   const Chain& chain() const { return GetParam(); }
@@ -96,9 +79,9 @@ class MujocoJudges : public testing::TestWithParam<Chain> {
 };
 
 TEST_P(MujocoJudges, frames_and_their_motions_agree) {
-  const auto model = load(mjcf(chain()));
+  const auto model = laws::mujoco_model(mjcf(chain()));
   ASSERT_TRUE(model);
-  const std::unique_ptr<mjData, Free> data(mj_makeData(model.get()));
+  const std::unique_ptr<mjData, laws::MujocoFree> data(mj_makeData(model.get()));
   for (std::uint64_t k = 0; k < 20; ++k) {
     const VectorXd q = laws::random_q(chain(), Rng(1).stream(k)), qd = laws::random_q(chain(), Rng(2).stream(k)),
                    qdd = laws::random_q(chain(), Rng(3).stream(k));

@@ -3,6 +3,7 @@
 
 #include "kinfer/cli/robot_option.hpp"
 #include "kinfer/cli/verbs.hpp"
+#include "kinfer/io/mjcf.hpp"
 #include "kinfer/io/text_file.hpp"
 #include "kinfer/io/urdf.hpp"
 
@@ -19,12 +20,14 @@ int run(const Options& options) {
   if (!robot) return fail(robot.error());
   const std::string ending = std::filesystem::path(options.out).extension().string();
   std::string text;
-  if (ending == ".urdf" || ending == ".xml")
+  if (ending == ".urdf")
     text = urdf(robot->chain);
+  else if (ending == ".mjcf" || ending == ".xml")
+    text = mjcf(robot->chain);
   else if (ending == ".toml")
     text = robot_toml(*robot);
   else
-    return fail({fmt::format("{}: expected an ending .toml or .urdf", options.out)});
+    return fail({fmt::format("{}: expected an ending .toml, .urdf or .mjcf", options.out)});
   const auto done = write_text_file(options.out, text);
   return done ? exit_done : fail(done.error());
 }
@@ -32,11 +35,11 @@ int run(const Options& options) {
 }  // namespace
 
 Verb add_convert(CLI::App& app) {
-  CLI::App* verb = add_command(app, "convert", "Turn a robot model into another format: TOML, URDF",
+  CLI::App* verb = add_command(app, "convert", "Turn a robot model into another format: TOML, URDF, MJCF",
                                "Example:\n  kinfer convert calibration/chain.toml robot.urdf");
   auto options = std::make_shared<Options>();
   add_robot_option(*verb, options->in, "in", "Model to read: .toml or .urdf");
-  add_text(*verb, "out", options->out, "Model to write: .toml or .urdf", Need::required, "FILE");
+  add_text(*verb, "out", options->out, "Model to write: .toml, .urdf or .mjcf (.xml)", Need::required, "FILE");
   return {verb, [options] { return run(*options); }};
 }
 

@@ -13,6 +13,7 @@
 #include "kinfer/io/chain_dh_csv.hpp"
 #include "kinfer/io/identify_json.hpp"
 #include "kinfer/io/ins_csv.hpp"
+#include "kinfer/io/mjcf.hpp"
 #include "kinfer/io/robot_toml.hpp"
 #include "kinfer/io/text_file.hpp"
 #include "kinfer/io/urdf.hpp"
@@ -95,6 +96,7 @@ Result<void> write_results(const Options& options, const Identification& found) 
   RobotModel robot{.chain = found.chain};
   if (auto done = write_text_file(folder / "chain.toml", robot_toml(robot)); !done) return done;
   if (auto done = write_text_file(folder / "chain.urdf", urdf(found.chain)); !done) return done;
+  if (auto done = write_text_file(folder / "chain.mjcf", mjcf(found.chain)); !done) return done;
   if (auto done = write_text_file(folder / "chain_dh.csv", chain_dh_csv(found.dh)); !done) return done;
   return write_text_file(folder / "evidence.json", identification_json(found, provenance_of(options)));
 }
@@ -149,7 +151,7 @@ Verb add_identify(CLI::App& app) {
                   "  kinfer identify drive/imu.csv --out excavator");
   auto options = std::make_shared<Options>();
   add_texts(*verb, "logs", options->logs, "INS recordings", Need::required, "CSV");
-  add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, chain_dh.csv, evidence.json, run.json",
+  add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, chain.mjcf, chain_dh.csv, evidence.json, run.json",
            Need::required, "DIR");
   add_choice(*verb, "--engine", options->engine, {"bp"}, "How the chain is searched; bp: bacterial programming");
   add_choice(*verb, "--terminals", options->terminals, {"hinge", "euler"},

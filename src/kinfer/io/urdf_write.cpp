@@ -4,6 +4,7 @@
 #include <set>
 
 #include "kinfer/io/digits.hpp"
+#include "kinfer/io/joint_parts.hpp"
 #include "kinfer/io/urdf.hpp"
 
 namespace kinfer {
@@ -11,37 +12,9 @@ namespace {
 
 constexpr const char* unlimited = "1e9";  // URDF wants limits, efforts and speeds even where none is known
 
-/// A joint as URDF has it: fixed before the motion, the motion about or along `axis`, fixed after it.
-struct Parts {
-  Pose before, after;
-  Vec3 axis = Vec3::UnitZ();
-};
-
-Pose turn_z_shift_z(double angle, double shift) {
-  return {rot_z(angle), Vec3(0, 0, shift)};
-}
-
-Parts parts_of(const DhLink& row) {
-  return {turn_z_shift_z(row.theta, row.d), {rot_x(row.alpha) * rot_y(row.beta), Vec3(row.a, 0, 0)}};
-}
-
-Parts parts_of(const MdhLink& row) {
-  const Pose turn_x_shift_x{rot_x(row.alpha), Vec3(row.a, 0, 0)}, turn_y{rot_y(row.beta), Vec3::Zero()};
-  return {turn_x_shift_x * turn_y * turn_z_shift_z(row.theta, row.d), {}};
-}
-
-Parts parts_of(const UrdfLink& link) {
-  return {link.origin.pose(), {}, link.axis};
-}
-
 std::string list(const Vec3& values) {
   return fmt::format("{} {} {}", digits(values.x()), digits(values.y()), digits(values.z()));
 }
-
-struct Mimic {
-  std::string joint;
-  double multiplier = 1.0;
-};
 
 class Writer {
  public:
@@ -112,7 +85,7 @@ class Writer {
   }
 
   void add_moving(const std::string& name, const Joint& joint, const std::string& parent, const std::string& child,
-                  const Pose& origin, const Vec3& axis, const Mimic* mimic) {
+                  const Pose& origin, const Vec3& axis, const Follower* mimic) {
     const bool slides = joint.type == JointType::prismatic;
     const bool limited = !mimic && (std::isfinite(joint.lower) || std::isfinite(joint.upper));
     open_joint(name, slides ? "prismatic" : limited ? "revolute" : "continuous", parent, child, origin);
@@ -127,22 +100,13 @@ class Writer {
     printer_.CloseElement();
   }
 
-  /// What else moves this joint's variable: its gain beyond 1, and its couplings.
-  std::vector<Mimic> followers(const Joint& joint) const {
-    std::vector<Mimic> mimics;
-    if (joint.has_reading && joint.gain != 1.0) mimics.push_back({joint.name, joint.gain - 1.0});
-    for (const Coupling& coupling : joint.couplings)
-      mimics.push_back({chain_.joints[coupling.joint].name, coupling.factor});
-    return mimics;
-  }
-
   void write_joint(int index, const std::string& base) {
     const Joint& joint = chain_.joints[index];
-    const Parts parts = std::visit([](const auto& link) { return parts_of(link); }, joint.link);
+    const JointParts parts = parts_of(joint.link);
     std::string parent = joint.parent < 0 ? base : link_[joint.parent];
     Pose origin = (joint.parent < 0 ? Pose{} : after_[joint.parent]) * parts.before;
     after_[index] = parts.after;
-    std::vector<Mimic> mimics = followers(joint);
+    std::vector<Follower> mimics = followers(chain_, index);
     const bool is_fixed = joint.type == JointType::fixed || (!joint.has_reading && mimics.empty());
     link_[index] = add_link("link_" + joint.name);
     if (is_fixed) {
@@ -156,7 +120,7 @@ class Writer {
       add_moving(joint.name, joint, parent, link_[index], origin, parts.axis, &mimics.front());
       mimics.erase(mimics.begin());
     }
-    for (const Mimic& mimic : mimics) {
+    for (const Follower& mimic : mimics) {
       const std::string name = unique(joint.name + "_follows_" + mimic.joint, joint_names_);
       const std::string link = add_link("link_" + name);
       add_moving(name, joint, link_[index], link, Pose{}, parts.axis, &mimic);

@@ -1,0 +1,62 @@
+// MJCF that is written is read by MuJoCo, which then puts every frame where the chain says.
+#include "kinfer/io/mjcf.hpp"
+
+#include "kinfer/kinematics/forward.hpp"
+#include "laws/example_chains.hpp"
+#include "laws/mujoco_model.hpp"
+
+namespace kinfer {
+namespace {
+
+class WrittenMjcf : public testing::TestWithParam<Chain> {
+ protected:
+  /// Readings go to the joints of their names; tied joints follow as the file's <equality> says.
+  void put(const mjModel& model, mjData& data, const VectorXd& q) const {
+    const auto names = reading_names(GetParam());
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const int joint = mj_name2id(&model, mjOBJ_JOINT, names[k].c_str());
+      ASSERT_GE(joint, 0) << names[k];
+      data.qpos[model.jnt_qposadr[joint]] = q[static_cast<Eigen::Index>(k)];
+    }
+    for (int e = 0; e < model.neq; ++e)
+      data.qpos[model.jnt_qposadr[model.eq_obj1id[e]]] =
+          model.eq_data[e * mjNEQDATA + 1] * data.qpos[model.jnt_qposadr[model.eq_obj2id[e]]];
+  }
+};
+
+void expect_site(const mjModel& model, const mjData& data, const std::string& name, const Pose& pose) {
+  const int site = mj_name2id(&model, mjOBJ_SITE, name.c_str());
+  ASSERT_GE(site, 0) << name;
+  const Eigen::Map<const Vec3> position(data.site_xpos + 3 * site);
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(data.site_xmat + 9 * site);
+  EXPECT_LT((pose.position - position).norm(), 1e-9) << name;
+  EXPECT_LT((pose.rotation - rotation).norm(), 1e-9) << name;
+}
+
+TEST_P(WrittenMjcf, gives_the_same_frames_and_tool_to_1e_9) {
+  const Chain& chain = GetParam();
+  const auto model = laws::mujoco_model(mjcf(chain));
+  ASSERT_TRUE(model);
+  const std::unique_ptr<mjData, laws::MujocoFree> data(mj_makeData(model.get()));
+  for (std::uint64_t k = 0; k < 5; ++k) {
+    const VectorXd q = laws::random_q(chain, Rng(1).stream(k));
+    put(*model, *data, q);
+    mj_kinematics(model.get(), data.get());
+    expect_site(*model, *data, "tool", forward(chain, q));
+    const auto frames = joint_frames(chain, q);
+    for (std::size_t j = 0; j < frames.size(); ++j) expect_site(*model, *data, chain.joints[j].name, frames[j]);
+  }
+}
+
+std::vector<Chain> rigid_examples() {
+  std::vector<Chain> chains = laws::examples();
+  for (Chain& chain : chains)
+    for (Joint& joint : chain.joints) joint.compliance = 0.0;
+  return chains;
+}
+
+INSTANTIATE_TEST_SUITE_P(every, WrittenMjcf, testing::ValuesIn(rigid_examples()),
+                         [](const auto& instance) { return laws::test_name(instance.param); });
+
+}  // namespace
+}  // namespace kinfer
