@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/calibrate/picture.hpp"
 #include "kinfer/calibrate/population_fit.hpp"
 #include "kinfer/calibrate/single_fit.hpp"
 #include "kinfer/calibrate/verdict.hpp"
@@ -286,6 +287,8 @@ Result<Calibration> calibrate(const CalibrateTask& task, const CalibrateOptions&
   fill_figures(calibration, task, plan_of_rows, frames_only, proofs);
   fill_rows(calibration, task, plan_of_rows, frames_only, proofs);
   judge(calibration, expected_error(task, plan_of_rows, proofs, calibration.estimate.outliers));
+  calibration.picture = calibration_picture(task, frames_only, calibration.estimate);
+  calibration.next = calibration_advice(task, calibration);
   return calibration;
 }
 

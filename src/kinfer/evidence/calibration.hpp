@@ -1,7 +1,10 @@
 // What a calibration delivers: the estimate, its proof on poses that were not fitted, and what to make of it.
 #pragma once
 
+#include "kinfer/evidence/advice.hpp"
 #include "kinfer/evidence/estimate.hpp"
+#include "kinfer/evidence/ladder.hpp"
+#include "kinfer/evidence/picture.hpp"
 
 namespace kinfer {
 
@@ -21,6 +24,9 @@ struct Calibration {
   ChainFit after;
   std::string holdout;  ///< how rows were kept aside: "5-fold cross-validation"
   std::vector<RowErrors> rows;
+  std::vector<ModelRung> ladder;   ///< models that were tried; empty: geometry alone
+  CalibrationPicture picture;      ///< what is drawn
+  std::vector<Advice> next;        ///< what to measure or to do next, most useful first
   std::vector<std::string> notes;  ///< what was noticed and done, in words
   bool use = true;                 ///< false: the verdict advises against the result
   std::string verdict;             ///< one sentence

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "kinfer/evidence/advice.hpp"
+#include "kinfer/evidence/traces.hpp"
 #include "kinfer/kinematics/chain.hpp"
 
 namespace kinfer {
@@ -97,8 +99,10 @@ struct Identification {
   std::vector<FoundDhRow> dh;  ///< canonical: three rows a joint
   std::vector<LinkEvidence> searches;
   OrderEvidence order;
-  Chain chain;         ///< from the root's sensor; one revolute joint a found one, its sensors as fixed frames
-  std::string engine;  ///< "bp"
+  Chain chain;               ///< from the root's sensor; one revolute joint a found one, its sensors as fixed frames
+  std::string engine;        ///< "bp"
+  MotionEvidence motion;     ///< predicted against measured, and the film
+  std::vector<Advice> next;  ///< what to measure or to do next, most useful first
   std::vector<std::string> notes;
   std::string verdict;  ///< one sentence
 };

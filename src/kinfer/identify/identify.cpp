@@ -7,6 +7,7 @@
 
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/identify/found_chain.hpp"
+#include "kinfer/identify/motion_evidence.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
@@ -253,6 +254,8 @@ Result<Identification> identify(const InsRecording& recording, const IdentifyOpt
   p.result.links = found_links(p.result.joints);
   p.result.chain =
       found_chain(p.result.root, p.result.joints, p.result.dh, motion.segments[tree.root].rotation.front());
+  p.result.motion = motion_evidence(motion, p.states, p.result);
+  p.result.next = identification_advice(p.result);
   p.result.verdict = verdict(p.result);
   return p.result;
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/base/version.hpp"
+#include "kinfer/io/picture_json.hpp"
 
 namespace kinfer {
 namespace {
@@ -76,6 +77,20 @@ Json side_by_side_json(const std::vector<SearchRun>& runs) {
   return list;
 }
 
+/// The models that were tried; where there was no choice, the one that was fitted.
+Json ladder_json(const Calibration& c) {
+  std::vector<ModelRung> rungs = c.ladder;
+  if (rungs.empty()) rungs.push_back({.name = "geometry", .position = c.after.position, .chosen = true, .reason = {}});
+  Json list = Json::array();
+  for (const ModelRung& rung : rungs)
+    list.push_back({{"name", rung.name},
+                    {"train", json_of(rung.position.train)},
+                    {"holdout", json_of(rung.position.holdout)},
+                    {"chosen", rung.chosen},
+                    {"reason", rung.reason}});
+  return list;
+}
+
 Json search_json(const Search& search) {
   Json json{{"engine", search.method},
             {"iterations", search.iterations},
@@ -103,8 +118,10 @@ std::string calibration_json(const Calibration& c, const Provenance& provenance)
   Json json;
   json["format"] = "kinfer-evidence/1";
   json["kind"] = "calibrate";
+  json["robot"] = e.chain.name;
   json["verdict"] = c.verdict;
   json["use"] = c.use;
+  json["next"] = advice_json(c.next);
   json["notes"] = c.notes;
   json["holdout"] = c.holdout;
   json["nominal"] = json_of(c.nominal);
@@ -119,14 +136,11 @@ std::string calibration_json(const Calibration& c, const Provenance& provenance)
   json["singular_values"] = array_of(e.identifiability.singular_values);
   json["confounded"] = e.identifiability.confounded;
   json["outliers"] = outliers_json(e.outliers);
-  json["model"] = {{"rungs",
-                    {{{"name", "geometry"},
-                      {"train", json_of(c.after.position.train)},
-                      {"holdout", json_of(c.after.position.holdout)},
-                      {"chosen", true}}}}};
+  json["model"] = {{"rungs", ladder_json(c)}};
   json["search"] = search_json(e.search);
   json["covariance"] = array_of(e.covariance);
   json["rows"] = rows_json(c.rows);
+  json["picture"] = picture_json(c.picture, e.chain);
   json["provenance"] = provenance_json(provenance);
   return json.dump(1) + "\n";
 }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/base/version.hpp"
+#include "kinfer/io/picture_json.hpp"
 
 namespace kinfer {
 namespace {
@@ -89,6 +90,18 @@ Json json_of(const OrderEvidence& order) {
           {"phases", phases},         {"rank", order.rank}, {"phases_agree", order.phases_agree}};
 }
 
+Json dh_json(const std::vector<FoundDhRow>& rows) {
+  Json list = Json::array();
+  for (const FoundDhRow& row : rows) {
+    Json json = json_of(row);
+    json["beta"] = row.row.beta;
+    json["sd"] = {
+        {"theta", row.sd.theta}, {"d", row.sd.d}, {"a", row.sd.a}, {"alpha", row.sd.alpha}, {"beta", row.sd.beta}};
+    list.push_back(json);
+  }
+  return list;
+}
+
 template <class List>
 Json list_of(const List& list) {
   Json json = Json::array();
@@ -144,9 +157,13 @@ std::string identification_json(const Identification& found, const Provenance& p
   json["root"] = found.root;
   json["joints"] = list_of(found.joints);
   json["links"] = list_of(found.links);
+  json["dh"] = dh_json(found.dh);
+  json["chain"] = chain_json(found.chain);
+  json["next"] = advice_json(found.next);
   json["order"] = json_of(found.order);
   json["fit"] = fit_json(found.searches);
   json["search"] = search_json(found);
+  json["motion"] = motion_json(found.motion);
   json["provenance"] = provenance_json(provenance);
   return json.dump(1) + "\n";
 }

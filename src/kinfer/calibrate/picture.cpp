@@ -1,0 +1,73 @@
+#include "kinfer/calibrate/picture.hpp"
+
+#include <cmath>
+
+#include "kinfer/estimate/bundle.hpp"
+#include "kinfer/kinematics/forward.hpp"
+
+namespace kinfer {
+namespace {
+
+constexpr int workspace_points = 500;
+
+double predicted_error(const Estimate& estimate, ConstVectorRef q) {
+  return std::sqrt(predicted_covariance(estimate, q).trace());
+}
+
+Load load_of(const PoseSet& data, int row) {
+  return {data.payload.empty() ? 0.0 : data.payload[row]};
+}
+
+Vec3 point_on_tool(const Chain& chain, const PointMeasurement& point, ConstVectorRef q, const Load& load) {
+  const Pose tool = forward(chain, q, load);
+  return point.target < 0 ? tool.position : tool * chain.targets[point.target].xyz;
+}
+
+void add_points(CalibrationPicture& picture, const CalibrateTask& task, const Chain& after) {
+  for (const PointMeasurement& point : task.data.points) {
+    PictureRow& row = picture.rows[point.row];
+    if (row.measured) continue;
+    const auto q = task.data.joints.col(point.row);
+    const Load load = load_of(task.data, point.row);
+    row.measured = point.position;
+    row.off_before = point_on_tool(picture.before, point, q, load) - point.position;
+    row.off_after = point_on_tool(after, point, q, load) - point.position;
+  }
+}
+
+/// Fractional parts of k · phi^-1, phi^-2, ..., with phi the root of x^(n+1) = x + 1: fills the unit cube evenly
+/// (Roberts' generalisation of the golden ratio).
+VectorXd spread(int k, Eigen::Index n) {
+  double phi = 2.0;
+  for (int i = 0; i < 30; ++i) phi = std::pow(1.0 + phi, 1.0 / static_cast<double>(n + 1));
+  VectorXd point(n);
+  double step = 1.0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    step /= phi;
+    point[i] = std::fmod(0.5 + step * (k + 1), 1.0);
+  }
+  return point;
+}
+
+std::vector<WorkspacePoint> workspace_of(const MatrixXd& joints, const Estimate& estimate) {
+  const VectorXd lowest = joints.rowwise().minCoeff(), range = joints.rowwise().maxCoeff() - lowest;
+  std::vector<WorkspacePoint> points;
+  for (int k = 0; k < workspace_points; ++k) {
+    const VectorXd q = lowest + range.cwiseProduct(spread(k, joints.rows()));
+    points.push_back({forward(estimate.chain, q).position, predicted_error(estimate, q)});
+  }
+  return points;
+}
+
+}  // namespace
+
+CalibrationPicture calibration_picture(const CalibrateTask& task, const Chain& before, const Estimate& estimate) {
+  CalibrationPicture picture{.nominal = task.nominal, .before = before, .joints = task.data.joints};
+  for (Eigen::Index row = 0; row < task.data.rows(); ++row)
+    picture.rows.push_back({.predicted = predicted_error(estimate, task.data.joints.col(row))});
+  add_points(picture, task, estimate.chain);
+  picture.workspace = workspace_of(task.data.joints, estimate);
+  return picture;
+}
+
+}  // namespace kinfer

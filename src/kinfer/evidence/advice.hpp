@@ -1,0 +1,13 @@
+// What to measure or to do next, and what it would bring.
+#pragma once
+
+#include <string>
+
+namespace kinfer {
+
+struct Advice {
+  std::string what;  ///< "Add poses near x 0.9, y -0.2, z 1.1 m"
+  std::string why;   ///< "the model is least certain there: 0.12 mm"
+};
+
+}  // namespace kinfer

@@ -1,0 +1,29 @@
+#include "kinfer/evidence/traces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kinfer/base/expect.hpp"
+
+namespace kinfer {
+
+Binning binning(std::size_t samples, std::size_t most) {
+  KINFER_EXPECT(most > 0, "no bins for {} samples", samples);
+  return {samples, std::max<std::size_t>(1, (samples + most - 1) / most)};
+}
+
+Envelope envelope(std::span<const double> samples, const Binning& bins) {
+  KINFER_EXPECT(samples.size() == bins.samples, "{} samples, bins for {}", samples.size(), bins.samples);
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  Envelope result{std::vector<double>(bins.count(), none), std::vector<double>(bins.count(), none)};
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!std::isfinite(samples[i])) continue;
+    double &low = result.low[i / bins.size], &high = result.high[i / bins.size];
+    low = std::isnan(low) ? samples[i] : std::min(low, samples[i]);
+    high = std::isnan(high) ? samples[i] : std::max(high, samples[i]);
+  }
+  return result;
+}
+
+}  // namespace kinfer

@@ -1,0 +1,143 @@
+#include "kinfer/identify/motion_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "kinfer/kinematics/forward.hpp"
+
+namespace kinfer {
+namespace {
+
+constexpr std::size_t most_bins = 1200;   // of a trace: about one a pixel of a wide screen
+constexpr std::size_t most_frames = 600;  // of the film
+
+/// Three axes of one signal at every row, NaN where the row is not to be used.
+using Axes = std::array<std::vector<double>, 3>;
+
+template <class Vector>
+Axes axes_of(const RecordedMotion& motion, Vector vector_at) {
+  Axes axes;
+  for (std::size_t row = 0; row < motion.rows(); ++row) {
+    const Vec3 v = motion.usable[row] ? vector_at(row) : Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+    for (Eigen::Index k = 0; k < 3; ++k) axes[static_cast<std::size_t>(k)].push_back(v[k]);
+  }
+  return axes;
+}
+
+double rms(const Axes& axes) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t row = 0; row < axes[0].size(); ++row) {
+    const double square = axes[0][row] * axes[0][row] + axes[1][row] * axes[1][row] + axes[2][row] * axes[2][row];
+    if (std::isfinite(square)) sum += square, count += 1.0;
+  }
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+template <class Measured, class Predicted>
+Trace trace_of(const RecordedMotion& motion, Trace trace, Measured measured, Predicted predicted) {
+  const Binning bins = binning(motion.rows(), most_bins);
+  const Axes m = axes_of(motion, measured), p = axes_of(motion, predicted);
+  const Axes r = axes_of(motion, [&](std::size_t row) -> Vec3 { return measured(row) - predicted(row); });
+  for (std::size_t k = 0; k < 3; ++k) {
+    trace.measured[k] = envelope(m[k], bins);
+    trace.predicted[k] = envelope(p[k], bins);
+    trace.residual[k] = envelope(r[k], bins);
+  }
+  trace.rms_fitted = rms(r);
+  return trace;
+}
+
+void add_traces(MotionEvidence& evidence, const RecordedMotion& motion, const SegmentMotion& segment,
+                const std::vector<FrameState>& states) {
+  const auto add = [&](const char* quantity, const char* unit, const std::vector<Vec3>& measured,
+                       Vec3 FrameState::*predicted) {
+    Trace trace{.sensor = segment.name, .quantity = quantity, .unit = unit, .frame = "ground"};
+    evidence.traces.push_back(trace_of(
+        motion, std::move(trace), [&](std::size_t row) -> Vec3 { return measured[row]; },
+        [&](std::size_t row) -> Vec3 { return states[row].*predicted; }));
+  };
+  add("acceleration", "m/s^2", segment.acceleration, &FrameState::acceleration);
+  add("rate", "rad/s", segment.rate, &FrameState::rate);
+}
+
+std::vector<double> middles(const std::vector<double>& time, const Binning& bins) {
+  std::vector<double> middle;
+  for (std::size_t i = 0; i < time.size(); i += bins.size)
+    middle.push_back(0.5 * (time[i] + time[std::min(i + bins.size, time.size()) - 1]));
+  return middle;
+}
+
+int frame_named(const Chain& chain, const std::string& name) {
+  const auto found = std::ranges::find(chain.joints, name, &Joint::name);
+  return found == chain.joints.end() ? -1 : static_cast<int>(found - chain.joints.begin());
+}
+
+/// Angle of the hinge that the child's orientation in the parent is nearest to.
+double angle_at(const Vec3& axis_in_parent, const Mat3& home, const Mat3& parent, const Mat3& child) {
+  const Quat turn(Mat3(parent.transpose() * child * home.transpose()));
+  return 2.0 * std::atan2(axis_in_parent.dot(turn.vec()), turn.w());
+}
+
+/// Nearest to the angle before, so that a film does not jump by a turn.
+double continued(double angle, double before) {
+  constexpr double turn = 2.0 * std::numbers::pi;
+  return angle + turn * std::round((before - angle) / turn);
+}
+
+void play_joint(MatrixXd& q, Eigen::Index reading, const FoundJoint& joint, const Mat3& home,
+                const std::vector<FrameState>& parent, const std::vector<FrameState>& child, std::size_t step) {
+  double before = 0.0;
+  for (Eigen::Index k = 0; k < q.cols(); ++k) {
+    const std::size_t row = static_cast<std::size_t>(k) * step;
+    before = continued(angle_at(joint.axis_in_parent, home, parent[row].rotation, child[row].rotation), before);
+    q(reading, k) = before;
+  }
+}
+
+Playback playback_of(const RecordedMotion& motion, const std::vector<std::vector<FrameState>>& states,
+                     const Identification& found) {
+  const Binning bins = binning(motion.rows(), most_frames);
+  const std::vector<int> readings = joints_with_reading(found.chain);
+  const std::vector<Pose> home = joint_frames(found.chain, VectorXd::Zero(dof(found.chain)));
+  const auto index_of = [&](const std::string& sensor) {
+    return static_cast<std::size_t>(std::ranges::find(motion.segments, sensor, &SegmentMotion::name) -
+                                    motion.segments.begin());
+  };
+  Playback film;
+  film.q = MatrixXd::Zero(dof(found.chain), static_cast<Eigen::Index>(bins.count()));
+  const SegmentMotion& root = motion.segments[index_of(found.root)];
+  for (std::size_t row = 0; row < motion.rows(); row += bins.size) {
+    film.time.push_back(motion.time[row]);
+    const Quat r(root.rotation[row]);
+    film.root.push_back({r.w(), r.x(), r.y(), r.z()});
+  }
+  if (root.still) film.root.resize(1);
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    const std::string& name = found.chain.joints[readings[k]].name;
+    const auto joint =
+        std::ranges::find_if(found.joints, [&](const FoundJoint& j) { return j.parent + "-" + j.child == name; });
+    if (joint == found.joints.end() || joint->type != FoundJointType::revolute) continue;
+    const int parent = frame_named(found.chain, joint->parent), child = frame_named(found.chain, joint->child);
+    const Mat3 parent_home = parent < 0 ? found.chain.base.pose().rotation : home[parent].rotation;
+    play_joint(film.q, static_cast<Eigen::Index>(k), *joint, parent_home.transpose() * home[child].rotation,
+               states[index_of(joint->parent)], states[index_of(joint->child)], bins.size);
+  }
+  return film;
+}
+
+}  // namespace
+
+MotionEvidence motion_evidence(const RecordedMotion& motion, const std::vector<std::vector<FrameState>>& states,
+                               const Identification& found) {
+  MotionEvidence evidence;
+  evidence.time = middles(motion.time, binning(motion.rows(), most_bins));
+  for (std::size_t i = 0; i < states.size(); ++i)
+    if (!states[i].empty() && motion.segments[i].name != found.root)
+      add_traces(evidence, motion, motion.segments[i], states[i]);
+  evidence.playback = playback_of(motion, states, found);
+  return evidence;
+}
+
+}  // namespace kinfer

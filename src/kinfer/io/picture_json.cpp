@@ -1,0 +1,181 @@
+#include "kinfer/io/picture_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "kinfer/kinematics/elementary.hpp"
+#include "kinfer/kinematics/forward.hpp"
+
+namespace kinfer {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Rounded to seven decimals; null where not finite.
+Json short_number(double value) {
+  constexpr double step = 1e-7;
+  if (!std::isfinite(value)) return nullptr;
+  const double rounded = std::round(value / step);
+  return rounded == 0.0 ? 0.0 : rounded / 1e7;
+}
+
+/// Four digits: a line on a screen has no more.
+Json plotted_number(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  if (value == 0.0) return 0.0;
+  const double scale = std::pow(10.0, 3.0 - std::floor(std::log10(std::abs(value))));
+  return scale < 1e9 ? Json(std::round(value * scale) / scale) : Json(0.0);
+}
+
+template <class List>
+Json plotted(const List& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(plotted_number(value));
+  return list;
+}
+
+template <class List>
+Json short_numbers(const List& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(short_number(value));
+  return list;
+}
+
+Json json_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json json_of(const Pose& pose) {
+  const Quat q(pose.rotation);
+  return {{"xyz", json_of(pose.position)}, {"quat", {q.w(), q.x(), q.y(), q.z()}}};
+}
+
+/// A joint's transformation, cut where it moves.
+struct CutJoint {
+  Pose before, after;
+  Vec3 axis = Vec3::Zero();  ///< unit; zero: does not move
+  bool cut = false;
+
+  void operator()(const elementary::Factor& factor) {
+    elementary::apply(cut ? after : before, factor.motion, factor.axis, factor.value);
+    if (!factor.moves) return;
+    axis = Vec3::Unit(factor.axis);
+    cut = true;
+  }
+  void operator()(const Mat3& rotation) {
+    Pose& pose = cut ? after : before;
+    pose.rotation = pose.rotation * rotation;
+  }
+};
+
+Json joint_json(const Joint& joint, const std::vector<int>& readings, int reading) {
+  CutJoint parts;
+  elementary::for_each_factor(joint, [&](const auto& step) { parts(step); });
+  const bool moves = joint.type != JointType::fixed;
+  const char* type = !moves ? "fixed" : joint.type == JointType::revolute ? "revolute" : "prismatic";
+  Json couplings = Json::array();
+  for (const Coupling& c : joint.couplings) couplings.push_back({readings[c.joint], c.factor});
+  Json json{{"name", joint.name},
+            {"parent", joint.parent},
+            {"type", type},
+            {"reading", reading},
+            {"before", json_of(parts.before)},
+            {"axis", json_of(parts.axis)},
+            {"after", json_of(parts.after)},
+            {"gain", joint.gain},
+            {"couplings", couplings}};
+  if (std::isfinite(joint.lower) && std::isfinite(joint.upper)) json["limits"] = {joint.lower, joint.upper};
+  return json;
+}
+
+Json optional_json(const std::optional<Vec3>& v) {
+  return v ? short_numbers(*v) : Json(nullptr);
+}
+
+Json json_of(const Envelope& e) {
+  return {{"low", plotted(e.low)}, {"high", plotted(e.high)}};
+}
+
+Json json_of(const std::array<Envelope, 3>& axes) {
+  return {json_of(axes[0]), json_of(axes[1]), json_of(axes[2])};
+}
+
+Json columns_json(const MatrixXd& matrix) {
+  Json list = Json::array();
+  for (Eigen::Index k = 0; k < matrix.cols(); ++k) list.push_back(short_numbers(matrix.col(k)));
+  return list;
+}
+
+Json trace_json(const Trace& trace) {
+  return {{"sensor", trace.sensor},
+          {"quantity", trace.quantity},
+          {"unit", trace.unit},
+          {"frame", trace.frame},
+          {"rms_fitted", trace.rms_fitted},
+          {"rms_holdout", trace.rms_holdout},
+          {"measured", json_of(trace.measured)},
+          {"predicted", json_of(trace.predicted)},
+          {"residual", json_of(trace.residual)}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json chain_json(const Chain& chain) {
+  const std::vector<int> readings = reading_indices(chain);
+  Json joints = Json::array(), targets = Json::array();
+  for (std::size_t i = 0; i < chain.joints.size(); ++i)
+    joints.push_back(joint_json(chain.joints[i], readings, readings[i]));
+  for (const Target& target : chain.targets) targets.push_back({{"name", target.name}, {"xyz", json_of(target.xyz)}});
+  return {{"name", chain.name},
+          {"base", json_of(chain.base.pose())},
+          {"joints", joints},
+          {"tip", chain.tip_joint()},
+          {"tool", json_of(chain.tool.pose())},
+          {"targets", targets},
+          {"readings", reading_names(chain)}};
+}
+
+nlohmann::ordered_json picture_json(const CalibrationPicture& picture, const Chain& calibrated) {
+  Json measured = Json::array(), before = Json::array(), after = Json::array(), predicted = Json::array();
+  for (const PictureRow& row : picture.rows) {
+    measured.push_back(optional_json(row.measured));
+    before.push_back(optional_json(row.off_before));
+    after.push_back(optional_json(row.off_after));
+    predicted.push_back(plotted_number(row.predicted));
+  }
+  Json tools = Json::array(), uncertain = Json::array();
+  for (const WorkspacePoint& point : picture.workspace) {
+    tools.push_back(short_numbers(point.tool));
+    uncertain.push_back(plotted_number(point.predicted));
+  }
+  return {{"chains",
+           {{"nominal", chain_json(picture.nominal)},
+            {"before", chain_json(picture.before)},
+            {"calibrated", chain_json(calibrated)}}},
+          {"q", columns_json(picture.joints)},
+          {"measured", measured},
+          {"off_before", before},
+          {"off_after", after},
+          {"predicted", predicted},
+          {"workspace", {{"tool", tools}, {"predicted", uncertain}}}};
+}
+
+nlohmann::ordered_json motion_json(const MotionEvidence& motion) {
+  Json traces = Json::array(), windows = Json::array(), root = Json::array();
+  for (const Trace& trace : motion.traces) traces.push_back(trace_json(trace));
+  for (const TimeWindow& window : motion.held_out) windows.push_back({window.begin, window.end});
+  for (const auto& quaternion : motion.playback.root) root.push_back(short_numbers(quaternion));
+  return {{"time", short_numbers(motion.time)},
+          {"held_out", windows},
+          {"traces", traces},
+          {"playback",
+           {{"time", short_numbers(motion.playback.time)}, {"root", root}, {"q", columns_json(motion.playback.q)}}}};
+}
+
+nlohmann::ordered_json advice_json(const std::vector<Advice>& list) {
+  Json json = Json::array();
+  for (const Advice& advice : list) json.push_back({{"what", advice.what}, {"why", advice.why}});
+  return json;
+}
+
+}  // namespace kinfer
