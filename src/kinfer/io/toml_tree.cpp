@@ -171,6 +171,17 @@ std::vector<double> TableReader::numbers(std::string_view key, std::size_t count
   return found;
 }
 
+std::vector<double> TableReader::number_list(std::string_view key) {
+  std::vector<double> found;
+  const TomlValue* value = require(key, "a list of numbers");
+  if (!value) return found;
+  const TomlArray* items = std::get_if<TomlArray>(&value->value);
+  if (!items) wrong_type(*value, key, "a list of numbers");
+  if (items)
+    for (const TomlValue& item : *items) found.push_back(finite(item, key));
+  return found;
+}
+
 std::vector<Vec3> TableReader::vectors_or_none(std::string_view key) {
   std::vector<Vec3> found;
   const TomlValue* value = ask(key);

@@ -57,6 +57,7 @@ class TableReader {
   Vec3 vector(std::string_view key);
   Vec3 vector_or(std::string_view key, const Vec3& absent);
   std::vector<double> numbers(std::string_view key, std::size_t count);  ///< infinities are allowed
+  std::vector<double> number_list(std::string_view key);                 ///< finite, any number of them
   std::vector<Vec3> vectors_or_none(std::string_view key);
   const TomlTable* table_or_none(std::string_view key);
   std::vector<std::pair<const TomlTable*, int>> tables_or_none(std::string_view key);  ///< [[key]], each with its line
