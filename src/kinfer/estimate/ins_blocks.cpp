@@ -1,0 +1,130 @@
+#include "kinfer/estimate/ins_blocks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "kinfer/geometry/statistics.hpp"
+
+namespace kinfer {
+namespace {
+
+using Row = Eigen::Matrix<double, 1, block_nodes>;
+using Index = Eigen::Index;
+
+Row lagrange(double u) {
+  const auto& x = block_places();
+  Row row;
+  for (std::size_t i = 0; i < block_nodes; ++i) {
+    double product = 1.0;
+    for (std::size_t j = 0; j < block_nodes; ++j)
+      if (j != i) product *= (u - x[j]) / (x[i] - x[j]);
+    row[static_cast<Index>(i)] = product;
+  }
+  return row;
+}
+
+std::optional<Vec3> reading(const InsSample& s, Instrument instrument) {
+  switch (instrument) {
+    case Instrument::gyroscope:
+      return s.has_rate && !s.rate_clipped ? std::optional<Vec3>(s.rate) : std::nullopt;
+    case Instrument::accelerometer:
+      return s.has_acceleration ? std::optional<Vec3>(s.acceleration) : std::nullopt;
+    case Instrument::magnetometer:
+      return s.has_field ? std::optional<Vec3>(s.field) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+InsBlock empty_block() {
+  InsBlock block;
+  block.factor.setZero();
+  block.target.setZero();
+  return block;
+}
+
+/// One more row of V and y, rotated into R and Qᵀ y (Givens); what remains of y is left over.
+void take(InsBlock& block, Row v, Vec3 y) {
+  ++block.samples;
+  for (Index k = 0; k < block_nodes; ++k) {
+    const double r = std::hypot(block.factor(k, k), v[k]);
+    if (r <= 0.0) continue;
+    const double c = block.factor(k, k) / r, s = v[k] / r;
+    const Row above = block.factor.row(k);
+    const Vec3 target = block.target.row(k).transpose();
+    block.factor.row(k) = c * above + s * v;
+    block.target.row(k) = (c * target + s * y).transpose();
+    v = (c * v - s * above).eval();
+    y = (c * y - s * target).eval();
+    block.factor.row(k).head(k).setZero();
+  }
+  block.left += y.cwiseAbs2();
+}
+
+template <class Take>
+std::vector<InsBlock> collected(const InsSensor& sensor, std::span<const double> time, Instrument instrument,
+                                const SplineGrid& grid, double clock_offset, const Take& take_reading) {
+  std::vector<InsBlock> blocks(static_cast<std::size_t>(grid.intervals), empty_block());
+  for (std::size_t row = 0; row < time.size(); ++row) {
+    const double where = (time[row] + clock_offset - grid.begin) / grid.period;
+    const auto k = static_cast<Index>(std::floor(where));
+    if (k < 0 || k >= grid.intervals) continue;
+    if (const auto value = reading(sample(sensor, time, row), instrument))
+      take_reading(blocks[static_cast<std::size_t>(k)], lagrange(where - static_cast<double>(k)), *value);
+  }
+  return blocks;
+}
+
+}  // namespace
+
+const std::array<double, block_nodes>& block_places() {
+  // Roots of the Legendre polynomial of degree 4, moved from −1..1 to 0..1 (Abramowitz and Stegun, table 25.4).
+  static const std::array<double, block_nodes> places = [] {
+    const double inner = std::sqrt(3.0 / 7.0 - 2.0 / 7.0 * std::sqrt(1.2)),
+                 outer = std::sqrt(3.0 / 7.0 + 2.0 / 7.0 * std::sqrt(1.2));
+    return std::array{0.5 - 0.5 * outer, 0.5 - 0.5 * inner, 0.5 + 0.5 * inner, 0.5 + 0.5 * outer};
+  }();
+  return places;
+}
+
+std::vector<InsBlock> ins_blocks(const InsSensor& sensor, std::span<const double> time, Instrument instrument,
+                                 const SplineGrid& grid, double clock_offset) {
+  return collected(sensor, time, instrument, grid, clock_offset, [](InsBlock& block, const Row& v, const Vec3& y) {
+    take(block, v, y);
+    block.rows = std::min(block.samples, block_nodes);
+  });
+}
+
+std::vector<InsBlock> mean_blocks(const InsSensor& sensor, std::span<const double> time, Instrument instrument,
+                                  const SplineGrid& grid, double clock_offset) {
+  auto blocks =
+      collected(sensor, time, instrument, grid, clock_offset, [](InsBlock& block, const Row& v, const Vec3& y) {
+        ++block.samples;
+        block.factor.row(0) += v;
+        block.target.row(0) += y.transpose();
+      });
+  for (InsBlock& block : blocks)
+    if (block.samples > 0) {
+      block.factor.row(0) /= block.samples;
+      block.target.row(0) /= block.samples;
+      block.rows = 1;
+    }
+  return blocks;
+}
+
+double reading_noise(std::span<const InsBlock> blocks) {
+  std::vector<double> variances;
+  double freedom = 0.0;
+  for (const InsBlock& block : blocks)
+    if (block.samples >= block_nodes + 2) {
+      const double n = 3.0 * (block.samples - block_nodes);
+      variances.push_back(block.left.sum() / n);
+      freedom += n;
+    }
+  if (variances.empty()) return 0.0;
+  const double typical = freedom / static_cast<double>(variances.size());
+  const double bias = std::pow(1.0 - 2.0 / (9.0 * typical), 3.0);  // median over mean of chi-squared (Wilson, Hilferty)
+  return std::sqrt(median(variances) / bias);
+}
+
+}  // namespace kinfer

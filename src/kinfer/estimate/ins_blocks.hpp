@@ -1,0 +1,45 @@
+// What one instrument said within one interval of the time grid, squeezed into a few numbers without loss for smooth
+// motion: the readings' least-squares polynomial at Gauss-Legendre nodes, in whitened form.
+//
+// n readings y = V x + white noise, x the true values at the nodes, V Lagrange's polynomials at the readings' times.
+// With V = Q R all that y tells about x is R x = Qᵀ y with the same white noise, row by row; it holds for any gaps and
+// any sampling. What is left, y − Q Qᵀ y, shows the noise. At Gauss-Legendre nodes interpolation and projection agree
+// to the first omitted degree, so a motion that is not quite a polynomial does little harm.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "kinfer/estimate/uniform_spline.hpp"
+#include "kinfer/measurement/ins_recording.hpp"
+
+namespace kinfer {
+
+constexpr int block_nodes = 4;  // a cubic an interval: at a tenth of a second true to 1e-3 for waves of 2.5 Hz
+
+/// Where the nodes lie in an interval, 0..1 (Gauss-Legendre).
+const std::array<double, block_nodes>& block_places();
+
+struct InsBlock {
+  Eigen::Matrix<double, block_nodes, block_nodes> factor;  ///< R, upper triangular; rows beyond `rows` are zero
+  Eigen::Matrix<double, block_nodes, 3> target;            ///< Qᵀ y, a column an axis
+  Vec3 left = Vec3::Zero();                                ///< squares that no polynomial explains, an axis each
+  int samples = 0;                                         ///< readings; 0: nothing was said
+  int rows = 0;                                            ///< of R and Qᵀ y that are in use
+};
+
+enum class Instrument { gyroscope, accelerometer, magnetometer };
+
+/// One a grid interval. Rows whose numbers must not be used are left out. `clock_offset` [s] is added to the times.
+std::vector<InsBlock> ins_blocks(const InsSensor& sensor, std::span<const double> time, Instrument instrument,
+                                 const SplineGrid& grid, double clock_offset = 0.0);
+
+/// The mean of the readings alone, as one row: for what is only trusted as a whole.
+std::vector<InsBlock> mean_blocks(const InsSensor& sensor, std::span<const double> time, Instrument instrument,
+                                  const SplineGrid& grid, double clock_offset = 0.0);
+
+/// Standard deviation of one reading about its block's polynomial, robust against shaken blocks; 0 where no block has
+/// readings to spare.
+double reading_noise(std::span<const InsBlock> blocks);
+
+}  // namespace kinfer

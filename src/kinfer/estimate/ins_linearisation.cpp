@@ -1,0 +1,530 @@
+#include "kinfer/estimate/ins_linearisation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/base/parallel.hpp"
+
+namespace kinfer {
+namespace {
+
+using Index = Eigen::Index;
+constexpr Index item_intervals = 8;  // of one work item; fixed, so that sums never depend on the number of threads
+constexpr Index batch_items = 16;    // linearised before they are eliminated: bounds the memory
+
+/// What a column of a body's state derivatives stands for.
+struct Column {
+  Index border = -1;              // unknown that holds for good
+  Index channel = -1, order = 0;  // else: derivative of the band's channel
+};
+
+/// How the unknowns reach each body.
+struct Paths {
+  std::vector<std::vector<Column>> columns;  // of each body
+  std::vector<std::vector<Index>> channels;  // of each body
+};
+
+Paths paths_of(const InsProblem& problem, const InsLayout& layout, const InsBodies& bodies) {
+  Paths paths{std::vector<std::vector<Column>>(bodies.size()), std::vector<std::vector<Index>>(bodies.size())};
+  auto& root = paths.columns.front();
+  if (problem.root_stands_still) {
+    for (Index i = 0; i < 3; ++i) root.push_back({.border = layout.root_force + i});
+    if (layout.has_field)
+      for (Index i = 0; i < 3; ++i) root.push_back({.border = layout.root_field + i});
+  } else {
+    for (Index i = 0; i < 3; ++i) root.push_back({.channel = i, .order = 0});
+    for (Index i = 0; i < 3; ++i) root.push_back({.channel = i, .order = 1});
+    for (Index i = 3; i < 6; ++i) root.push_back({.channel = i, .order = 0});
+    paths.channels.front() = {0, 1, 2, 3, 4, 5};
+  }
+  for (std::size_t b = 1; b < bodies.size(); ++b) {
+    const auto parent = static_cast<std::size_t>(bodies[b].parent);
+    paths.columns[b] = paths.columns[parent];
+    paths.channels[b] = paths.channels[parent];
+    if (layout.channel[b] >= 0) {
+      paths.channels[b].push_back(layout.channel[b]);
+      for (Index order = 0; order < 3; ++order)
+        paths.columns[b].push_back({.channel = layout.channel[b], .order = order});
+    }
+    for (Index i = 0; i < bodies[b].unknowns(); ++i) paths.columns[b].push_back({.border = layout.body[b] + i});
+  }
+  return paths;
+}
+
+/// Bases at the nodes; the same in every interval.
+std::array<SplineBasis, block_nodes> node_bases(const SplineGrid& grid) {
+  std::array<SplineBasis, block_nodes> bases;
+  for (std::size_t i = 0; i < block_nodes; ++i) bases[i] = spline_basis(block_places()[i], grid.period);
+  return bases;
+}
+
+double band_value(const MatrixXd& band, Index channel, Index interval, const SplineBasis& basis, Index order) {
+  double sum = 0.0;
+  for (Index i = 0; i < spline_order; ++i)
+    sum += basis.at[static_cast<std::size_t>(order)][static_cast<std::size_t>(i)] * band(channel, interval + i);
+  return sum;
+}
+
+InsState root_state(const InsProblem& problem, const InsUnknowns& x, Index interval, const SplineBasis& basis) {
+  InsState state;
+  if (problem.root_stands_still) {
+    state.force = x.root_force;
+    state.field = x.root_field;
+    return state;
+  }
+  for (Index i = 0; i < 3; ++i) {
+    state.rate[i] = band_value(x.band, i, interval, basis, 0);
+    state.rate_change[i] = band_value(x.band, i, interval, basis, 1);
+    state.force[i] = band_value(x.band, 3 + i, interval, basis, 0);
+  }
+  return state;
+}
+
+JointReading joint_reading(const InsLayout& layout, const InsUnknowns& x, std::size_t body, Index interval,
+                           const SplineBasis& basis) {
+  JointReading q{};
+  if (layout.channel[body] >= 0)
+    for (Index order = 0; order < 3; ++order)
+      q[static_cast<std::size_t>(order)] = band_value(x.band, layout.channel[body], interval, basis, order);
+  return q;
+}
+
+std::vector<InsState> body_states(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                                  Index interval, const SplineBasis& basis) {
+  std::vector<InsState> states{root_state(problem, x, interval, basis)};
+  for (std::size_t b = 1; b < x.bodies.size(); ++b)
+    states.push_back(carried(x.bodies[b], joint_reading(layout, x, b, interval, basis),
+                             states[static_cast<std::size_t>(x.bodies[b].parent)]));
+  return states;
+}
+
+/// States of all bodies at one node with their derivatives.
+struct NodeMotion {
+  std::vector<InsState> state;
+  std::vector<StateColumns> columns;
+};
+
+NodeMotion root_motion(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, Index interval,
+                       const SplineBasis& basis) {
+  NodeMotion motion;
+  motion.state.push_back(root_state(problem, x, interval, basis));
+  StateColumns columns = StateColumns::Zero(12, problem.root_stands_still ? (layout.has_field ? 6 : 3) : 9);
+  if (problem.root_stands_still) {
+    columns.block<3, 3>(6, 0).setIdentity();
+    if (layout.has_field) columns.block<3, 3>(9, 3).setIdentity();
+  } else {
+    columns.topRows<9>().setIdentity();
+  }
+  motion.columns.push_back(std::move(columns));
+  return motion;
+}
+
+NodeMotion node_motion(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, Index interval,
+                       const SplineBasis& basis) {
+  NodeMotion motion = root_motion(problem, layout, x, interval, basis);
+  CarriedDerivative derivative;
+  for (std::size_t b = 1; b < x.bodies.size(); ++b) {
+    const auto parent = static_cast<std::size_t>(x.bodies[b].parent);
+    carry(x.bodies[b], joint_reading(layout, x, b, interval, basis), motion.state[parent], derivative);
+    const Index inherited = motion.columns[parent].cols(), skipped = layout.channel[b] >= 0 ? 0 : 3;
+    StateColumns columns(12, inherited + derivative.by_own.cols() - skipped);
+    columns.leftCols(inherited).noalias() = derivative.by_parent * motion.columns[parent];
+    columns.rightCols(columns.cols() - inherited) = derivative.by_own.rightCols(derivative.by_own.cols() - skipped);
+    motion.state.push_back(derivative.state);
+    motion.columns.push_back(std::move(columns));
+  }
+  return motion;
+}
+
+// ---- Residuals of one instrument in one interval ----------------------------------------------------------------
+
+struct Prediction {
+  Eigen::Matrix<double, block_nodes, 3> value;  // of the readings at the nodes
+};
+
+Vec3 read_rate(const InsState& s, const InsErrors& e) {
+  return s.rate + e.rate_matrix * s.rate + e.rate_bias;
+}
+Vec3 read_force(const InsState& s, const InsErrors& e) {
+  return s.force + e.force_matrix * s.force + e.force_bias;
+}
+Vec3 read_field(const InsState& s, const InsErrors& e) {
+  return s.field + e.field_bias;
+}
+
+using BlockResidual = Eigen::Matrix<double, block_nodes, 3>;  // whitened; unused rows are zero
+
+BlockResidual residual(const InsBlock& block, const Eigen::Matrix<double, block_nodes, 3>& predicted, double sd) {
+  return (block.target - block.factor * predicted) / sd;
+}
+
+struct RobustBlock {
+  double cost = 0.0, weight = 1.0;
+};
+
+RobustBlock robust(double squares, double terms) {
+  const double limit = terms + 4.0 * std::sqrt(2.0 * terms);
+  if (squares <= limit) return {squares, 1.0};
+  if (!std::isfinite(squares)) return {1e300, 0.0};
+  return {limit * (1.0 + std::log(squares / limit)), limit / squares};
+}
+
+/// The three instruments of a sensor by one list.
+struct InstrumentUse {
+  const std::vector<InsBlock>& blocks;
+  double sd;
+  Vec3 (*read)(const InsState&, const InsErrors&);
+  Index state_row;  // first row of it in the state
+};
+
+std::vector<InstrumentUse> instruments(const InsProblem& problem, const InsLayout& layout, std::size_t sensor) {
+  const InsReadings& r = problem.sensors[sensor];
+  std::vector<InstrumentUse> uses{{r.rate, r.rate_sd, read_rate, 0}, {r.force, r.force_sd, read_force, 6}};
+  if (layout.has_field && !r.field.empty()) uses.push_back({r.field, r.field_sd, read_field, 9});
+  return uses;
+}
+
+// ---- Derivatives of one sensor's readings -------------------------------------------------------------------------
+
+/// Unknowns that one sensor's readings depend on: coefficients of its path's channels, then its path's and its own
+/// unknowns of the border.
+struct SensorColumns {
+  std::vector<Index> index;     // in the span: i·channels + channel; then reach·channels + border unknown
+  std::vector<Index> of_state;  // for each state column: first of its coefficients' columns, or its border column
+  Index path_border = 0;        // column of the first of the path's border unknowns
+  Index own = 0;                // column of the first of the sensor's errors
+};
+
+SensorColumns sensor_columns(const InsLayout& layout, const Paths& paths, std::size_t body, std::size_t sensor) {
+  SensorColumns columns;
+  const Index local = spline_order * layout.channels;
+  const auto& channels = paths.channels[body];
+  for (const Index channel : channels)
+    for (Index i = 0; i < spline_order; ++i) columns.index.push_back(i * layout.channels + channel);
+  for (const Column& column : paths.columns[body]) {
+    if (column.border >= 0) {
+      columns.of_state.push_back(static_cast<Index>(columns.index.size()));
+      columns.index.push_back(local + column.border);
+    } else {
+      columns.of_state.push_back(spline_order * (std::ranges::find(channels, column.channel) - channels.begin()));
+    }
+  }
+  columns.own = static_cast<Index>(columns.index.size());
+  for (Index i = 0; i < layout.errors_each; ++i) columns.index.push_back(local + layout.error[sensor] + i);
+  return columns;
+}
+
+/// Derivative of one instrument's reading at one node by the columns of the sensor (3 rows).
+template <class Rows>
+void fill_rows(Rows rows, const InstrumentUse& use, const InsLayout& layout, const SensorColumns& columns,
+               const std::vector<Column>& path, const StateColumns& state_columns, const InsState& state,
+               const InsErrors& errors, const SplineBasis& basis) {
+  rows.setZero();
+  Eigen::Matrix<double, 3, Eigen::Dynamic> by_state = state_columns.middleRows<3>(use.state_row);
+  if (layout.has_matrices && use.state_row == 0) by_state = (by_state + errors.rate_matrix * by_state).eval();
+  if (layout.has_matrices && use.state_row == 6) by_state = (by_state + errors.force_matrix * by_state).eval();
+  for (std::size_t c = 0; c < path.size(); ++c) {
+    const auto from = static_cast<Index>(c);
+    const Index at = columns.of_state[c];
+    if (path[c].border >= 0) {
+      rows.col(at) += by_state.col(from);
+      continue;
+    }
+    const auto& weights = basis.at[static_cast<std::size_t>(path[c].order)];
+    for (Index i = 0; i < spline_order; ++i)
+      rows.col(at + i) += weights[static_cast<std::size_t>(i)] * by_state.col(from);
+  }
+  const bool rate = use.state_row == 0, force = use.state_row == 6;
+  const Index bias = columns.own + (rate ? 0 : force ? 3 : layout.errors_each - 3);
+  rows.template middleCols<3>(bias).setIdentity();
+  if (layout.has_matrices && (rate || force)) {
+    const Vec3& truth = rate ? state.rate : state.force;
+    for (Index j = 0; j < 3; ++j)  // S is stored column by column
+      for (Index i = 0; i < 3; ++i) rows(i, columns.own + (rate ? 6 : 15) + 3 * j + i) = truth[j];
+  }
+}
+
+/// Whitened, robustly weighted Jacobian and residual of one sensor in one interval.
+struct SensorSystem {
+  MatrixXd jacobian;
+  VectorXd residual;
+};
+
+SensorSystem sensor_system(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                           const SensorColumns& columns, const std::vector<Column>& path, std::size_t body,
+                           Index interval, const std::array<NodeMotion, block_nodes>& motion,
+                           const std::array<SplineBasis, block_nodes>& bases) {
+  const auto sensor = static_cast<std::size_t>(x.bodies[body].sensor);
+  const auto uses = instruments(problem, layout, sensor);
+  const auto k = static_cast<std::size_t>(interval);
+  Index rows = 0;
+  for (const InstrumentUse& use : uses) rows += 3 * use.blocks[k].rows;
+  const auto width = static_cast<Index>(columns.index.size());
+  SensorSystem system{MatrixXd::Zero(rows, width), VectorXd(rows)};
+  MatrixXd at_nodes(3 * block_nodes, width);
+  Index row = 0;
+  for (const InstrumentUse& use : uses) {
+    const InsBlock& block = use.blocks[k];
+    if (block.rows == 0) continue;
+    BlockResidual predicted;
+    for (Index node = 0; node < block_nodes; ++node) {
+      const auto n = static_cast<std::size_t>(node);
+      predicted.row(node) = use.read(motion[n].state[body], x.errors[sensor]).transpose();
+      fill_rows(at_nodes.middleRows<3>(3 * node), use, layout, columns, path, motion[n].columns[body],
+                motion[n].state[body], x.errors[sensor], bases[n]);
+    }
+    const BlockResidual r = residual(block, predicted, use.sd);
+    const double weight = std::sqrt(robust(r.squaredNorm(), 3.0 * block.rows).weight);
+    for (Index i = 0; i < block.rows; ++i, row += 3) {
+      for (Index node = 0; node < block_nodes; ++node)
+        if (const double factor = block.factor(i, node); std::abs(factor) > 0.0)
+          system.jacobian.middleRows<3>(row) += (weight * factor / use.sd) * at_nodes.middleRows<3>(3 * node);
+      system.residual.segment<3>(row) = weight * r.row(i).transpose();
+    }
+  }
+  return system;
+}
+
+// ---- Priors on the band ---------------------------------------------------------------------------------------------
+
+/// Sd of the third difference of a channel's coefficients: [unit/s³] times period cubed. Far above any motion: it only
+/// bridges stretches in which nothing was said.
+double roughness_sd(const InsProblem& problem, const InsLayout& layout, Index channel) {
+  const double h = problem.grid.period, cubed = h * h * h;
+  const Index first_joint = problem.root_stands_still ? 0 : 6;
+  if (channel >= first_joint) return 300.0 * cubed;
+  (void)layout;
+  return (channel < 3 ? 3e3 : 3e4) * cubed;
+}
+
+constexpr double anchor_sd = 3.0;  // [rad] or [m]
+
+/// Calls visit(weights over the six coefficients, value, sd) for each prior residual that belongs to the interval.
+template <class Visit>
+void each_band_prior(const InsProblem& problem, const InsLayout& layout, const MatrixXd& band, Index interval,
+                     const Visit& visit) {
+  const bool last = interval + 1 == problem.grid.intervals;
+  for (Index channel = 0; channel < layout.channels; ++channel) {
+    const double sd = roughness_sd(problem, layout, channel);
+    for (Index shift = 0; shift <= (last ? 2 : 0); ++shift) {
+      Eigen::Matrix<double, spline_order, 1> weights = Eigen::Matrix<double, spline_order, 1>::Zero();
+      weights.segment<4>(shift) << -1.0, 3.0, -3.0, 1.0;
+      visit(channel, weights, weights.dot(band.row(channel).segment<spline_order>(interval).transpose()), sd);
+    }
+    const Index joint = channel - (problem.root_stands_still ? 0 : 6);
+    if (interval == 0 && joint >= 0) {
+      const double start = problem.anchor.empty() ? 0.0 : problem.anchor[static_cast<std::size_t>(joint)];
+      visit(channel, Eigen::Matrix<double, spline_order, 1>::Unit(0), band(channel, 0) - start, anchor_sd);
+    }
+  }
+}
+
+void add_band_prior(BandSpan& span, const InsProblem& problem, const InsLayout& layout, const MatrixXd& band,
+                    Index interval) {
+  each_band_prior(problem, layout, band, interval,
+                  [&](Index channel, const Eigen::Matrix<double, spline_order, 1>& w, double value, double sd) {
+                    for (Index i = 0; i < spline_order; ++i) {
+                      const Index at = i * layout.channels + channel;
+                      span.right[at] -= w[i] * value / (sd * sd);
+                      for (Index j = 0; j <= i; ++j)
+                        span.matrix(at, j * layout.channels + channel) += w[i] * w[j] / (sd * sd);
+                    }
+                  });
+}
+
+// ---- Sums over intervals
+// ----------------------------------------------------------------------------------------------
+
+struct BorderSum {
+  MatrixXd matrix;
+  VectorXd right;
+};
+
+/// Normal equations of one interval: what it adds to the band and, in `border`, to the border.
+class IntervalLinearisation {
+ public:
+  IntervalLinearisation(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x)
+      : problem_(problem),
+        layout_(layout),
+        x_(x),
+        paths_(paths_of(problem, layout, x.bodies)),
+        bases_(node_bases(problem.grid)) {
+    for (std::size_t b = 0; b < x.bodies.size(); ++b)
+      columns_.push_back(x.bodies[b].sensor < 0
+                             ? SensorColumns{}
+                             : sensor_columns(layout, paths_, b, static_cast<std::size_t>(x.bodies[b].sensor)));
+  }
+
+  /// Calls visit(columns, system) for each sensor.
+  template <class Visit>
+  void each_sensor(Index interval, const Visit& visit) const {
+    std::array<NodeMotion, block_nodes> motion;
+    for (std::size_t n = 0; n < block_nodes; ++n) motion[n] = node_motion(problem_, layout_, x_, interval, bases_[n]);
+    for (std::size_t b = 0; b < x_.bodies.size(); ++b)
+      if (x_.bodies[b].sensor >= 0)
+        visit(columns_[b].index,
+              sensor_system(problem_, layout_, x_, columns_[b], paths_.columns[b], b, interval, motion, bases_));
+  }
+
+  BandSpan span(Index interval, BorderSum& border) const {
+    const Index local = spline_order * layout_.channels;
+    BandSpan span{MatrixXd::Zero(local, local), MatrixXd::Zero(layout_.border, local), VectorXd::Zero(local)};
+    each_sensor(interval, [&](const std::vector<Index>& index, const SensorSystem& system) {
+      const Index n = system.jacobian.cols();
+      MatrixXd squares = MatrixXd::Zero(n, n);
+      squares.selfadjointView<Eigen::Lower>().rankUpdate(system.jacobian.transpose());
+      const VectorXd right = system.jacobian.transpose() * system.residual;
+      for (Index c = 0; c < n; ++c) {
+        const Index to = index[static_cast<std::size_t>(c)];
+        (to < local ? span.right[to] : border.right[to - local]) += right[c];
+        for (Index r = c; r < n; ++r) {
+          const Index other = index[static_cast<std::size_t>(r)];
+          const Index low = std::max(to, other), high = std::min(to, other);
+          if (low < local)
+            span.matrix(low, high) += squares(r, c);
+          else if (high < local)
+            span.coupling(low - local, high) += squares(r, c);
+          else
+            border.matrix(low - local, high - local) += squares(r, c);
+        }
+      }
+    });
+    add_band_prior(span, problem_, layout_, x_.band, interval);
+    return span;
+  }
+
+ private:
+  const InsProblem& problem_;
+  const InsLayout& layout_;
+  const InsUnknowns& x_;
+  Paths paths_;
+  std::array<SplineBasis, block_nodes> bases_;
+  std::vector<SensorColumns> columns_;
+};
+
+Index items_of(const InsProblem& problem) {
+  return (problem.grid.intervals + item_intervals - 1) / item_intervals;
+}
+
+std::pair<Index, Index> intervals_of(const InsProblem& problem, Index item) {
+  return {item * item_intervals, std::min(problem.grid.intervals, (item + 1) * item_intervals)};
+}
+
+void take_up(InstrumentFit& fit, double squares, double terms, double weight) {
+  fit.squares += weight * squares;
+  fit.terms += weight * terms;
+  fit.interval.push_back(terms > 0.0 ? static_cast<float>(squares / terms) : -1.0f);
+}
+
+InsCost item_cost(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, Index item,
+                  const std::array<SplineBasis, block_nodes>& bases) {
+  InsCost cost{.total = 0.0, .sensors = std::vector<SensorFit>(problem.sensors.size())};
+  const auto [first, end] = intervals_of(problem, item);
+  for (Index interval = first; interval < end; ++interval) {
+    std::array<std::vector<InsState>, block_nodes> states;
+    for (std::size_t n = 0; n < block_nodes; ++n) states[n] = body_states(problem, layout, x, interval, bases[n]);
+    for (std::size_t b = 0; b < x.bodies.size(); ++b) {
+      if (x.bodies[b].sensor < 0) continue;
+      const auto sensor = static_cast<std::size_t>(x.bodies[b].sensor);
+      for (const InstrumentUse& use : instruments(problem, layout, sensor)) {
+        const InsBlock& block = use.blocks[static_cast<std::size_t>(interval)];
+        BlockResidual predicted;
+        for (std::size_t n = 0; n < block_nodes; ++n)
+          predicted.row(static_cast<Index>(n)) = use.read(states[n][b], x.errors[sensor]).transpose();
+        const double squares = residual(block, predicted, use.sd).squaredNorm(), terms = 3.0 * block.rows;
+        const RobustBlock value = robust(squares, terms);
+        cost.total += value.cost;
+        SensorFit& fit = cost.sensors[sensor];
+        take_up(use.state_row == 0   ? fit.rate
+                : use.state_row == 6 ? fit.force
+                                     : fit.field,
+                squares, terms, value.weight);
+      }
+    }
+    each_band_prior(problem, layout, x.band, interval,
+                    [&](Index, const auto&, double value, double sd) { cost.total += value * value / (sd * sd); });
+  }
+  return cost;
+}
+
+void append(InstrumentFit& to, const InstrumentFit& more) {
+  to.squares += more.squares;
+  to.terms += more.terms;
+  to.interval.insert(to.interval.end(), more.interval.begin(), more.interval.end());
+}
+
+void damp(BandSpan& span, double damping) {
+  span.matrix.diagonal() *= 1.0 + damping;
+}
+
+}  // namespace
+
+InsCost cost_of(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, int threads) {
+  const auto bases = node_bases(problem.grid);
+  std::vector<InsCost> items(static_cast<std::size_t>(items_of(problem)));
+  parallel_for(items.size(), threads,
+               [&](std::size_t i) { items[i] = item_cost(problem, layout, x, static_cast<Index>(i), bases); });
+  InsCost sum{.total = border_prior(problem, layout, x).cost,
+              .sensors = std::vector<SensorFit>(problem.sensors.size())};
+  for (const InsCost& item : items) {
+    sum.total += item.total;
+    for (std::size_t s = 0; s < sum.sensors.size(); ++s) {
+      append(sum.sensors[s].rate, item.sensors[s].rate);
+      append(sum.sensors[s].force, item.sensors[s].force);
+      append(sum.sensors[s].field, item.sensors[s].field);
+    }
+  }
+  return sum;
+}
+
+BorderedBand eliminated(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                        const Damping& damping, int threads) {
+  const IntervalLinearisation linearisation(problem, layout, x);
+  BorderedBand band(layout.channels, spline_order, layout.border);
+  BorderPrior prior = border_prior(problem, layout, x);
+  const Index items = items_of(problem);
+  for (Index first = 0; first < items; first += batch_items) {
+    const Index count = std::min(batch_items, items - first);
+    std::vector<std::vector<BandSpan>> spans(static_cast<std::size_t>(count));
+    std::vector<BorderSum> sums(static_cast<std::size_t>(count));
+    parallel_for(spans.size(), threads, [&](std::size_t i) {
+      sums[i] = {MatrixXd::Zero(layout.border, layout.border), VectorXd::Zero(layout.border)};
+      const auto [begin, end] = intervals_of(problem, first + static_cast<Index>(i));
+      for (Index interval = begin; interval < end; ++interval) {
+        spans[i].push_back(linearisation.span(interval, sums[i]));
+        damp(spans[i].back(), damping.band);
+      }
+    });
+    for (std::size_t i = 0; i < spans.size(); ++i) {
+      for (const BandSpan& span : spans[i]) band.add(span);
+      prior.matrix += sums[i].matrix;
+      prior.right += sums[i].right;
+    }
+  }
+  prior.matrix.diagonal() *= 1.0 + damping.border;
+  band.finish(prior.matrix, prior.right);
+  return band;
+}
+
+MatrixXd interval_scores(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                         ConstMatrixRef following, int threads) {
+  const IntervalLinearisation linearisation(problem, layout, x);
+  const Index local = spline_order * layout.channels;
+  MatrixXd scores = MatrixXd::Zero(problem.grid.intervals, layout.border);
+  parallel_for(static_cast<std::size_t>(problem.grid.intervals), threads, [&](std::size_t i) {
+    const auto interval = static_cast<Index>(i);
+    VectorXd band = VectorXd::Zero(local), border = VectorXd::Zero(layout.border);
+    linearisation.each_sensor(interval, [&](const std::vector<Index>& index, const SensorSystem& system) {
+      const VectorXd right = system.jacobian.transpose() * system.residual;
+      for (Index c = 0; c < right.size(); ++c) {
+        const Index to = index[static_cast<std::size_t>(c)];
+        (to < local ? band[to] : border[to - local]) += right[c];
+      }
+    });
+    scores.row(interval) =
+        (border - following.middleRows(interval * layout.channels, local).transpose() * band).transpose();
+  });
+  return scores;
+}
+
+}  // namespace kinfer

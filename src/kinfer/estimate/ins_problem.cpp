@@ -1,0 +1,95 @@
+#include "kinfer/estimate/ins_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinfer {
+namespace {
+
+using Index = Eigen::Index;
+
+/// Calls visit(first unknown, size, pointer to value, sd) for each part of a sensor's errors.
+template <class Errors, class Visit>
+void each_error(const InsProblem& problem, const InsLayout& layout, Errors& errors, Index first, const Visit& visit) {
+  visit(first, 3, errors.rate_bias.data(), problem.prior.rate_bias);
+  visit(first + 3, 3, errors.force_bias.data(), problem.prior.force_bias);
+  Index next = first + 6;
+  if (layout.has_matrices) {
+    visit(next, 9, errors.rate_matrix.data(), problem.prior.rate_matrix);
+    visit(next + 9, 9, errors.force_matrix.data(), problem.prior.force_matrix);
+    next += 18;
+  }
+  if (layout.has_field) visit(next, 3, errors.field_bias.data(), problem.prior.field_bias);
+}
+
+}  // namespace
+
+InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
+  InsLayout layout;
+  layout.channels = problem.root_stands_still ? 0 : 6;
+  layout.has_field = problem.root_stands_still &&
+                     std::ranges::any_of(problem.sensors, [](const InsReadings& s) { return !s.field.empty(); });
+  layout.has_matrices = problem.prior.rate_matrix > 0.0 || problem.prior.force_matrix > 0.0;
+  const auto take = [&](Index count) { return std::exchange(layout.border, layout.border + count); };
+  if (problem.root_stands_still) layout.root_force = take(3);
+  if (layout.has_field) layout.root_field = take(3);
+  for (const InsBody& body : bodies) {
+    layout.body.push_back(take(body.unknowns()));
+    layout.channel.push_back(body.motion == JointMotion::none ? -1 : layout.channels++);
+  }
+  layout.errors_each = 6 + (layout.has_matrices ? 18 : 0) + (layout.has_field ? 3 : 0);
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) layout.error.push_back(take(layout.errors_each));
+  return layout;
+}
+
+InsUnknowns changed(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, ConstMatrixRef band,
+                    ConstVectorRef border) {
+  InsUnknowns result = x;
+  result.band += band;
+  if (layout.root_force >= 0) result.root_force += border.segment<3>(layout.root_force);
+  if (layout.root_field >= 0) result.root_field += border.segment<3>(layout.root_field);
+  for (std::size_t b = 0; b < x.bodies.size(); ++b)
+    result.bodies[b] = changed(x.bodies[b], border.segment(layout.body[b], x.bodies[b].unknowns()));
+  for (std::size_t s = 0; s < x.errors.size(); ++s)
+    each_error(problem, layout, result.errors[s], layout.error[s], [&](Index at, Index size, double* value, double) {
+      for (Index i = 0; i < size; ++i) value[i] += border[at + i];
+    });
+  return result;
+}
+
+BorderPrior border_prior(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x) {
+  BorderPrior prior{0.0, MatrixXd::Zero(layout.border, layout.border), VectorXd::Zero(layout.border)};
+  const auto hold = [&](Index at, double value, double sd) {
+    const double information = 1.0 / (sd * sd);
+    prior.cost += value * value * information;
+    prior.matrix(at, at) += information;
+    prior.right[at] -= value * information;
+  };
+  if (layout.root_force >= 0) {
+    const Vec3 up = x.root_force.normalized();
+    const double information = 1.0 / (problem.gravity_sd * problem.gravity_sd),
+                 excess = x.root_force.norm() - problem.gravity;
+    prior.cost += excess * excess * information;
+    prior.matrix.block<3, 3>(layout.root_force, layout.root_force) += information * up * up.transpose();
+    prior.right.segment<3>(layout.root_force) -= excess * information * up;
+  }
+  for (std::size_t b = 0; b < x.bodies.size(); ++b) {
+    const InsBody& body = x.bodies[b];
+    Index at = layout.body[b];
+    for (const auto* turns : {&body.free_parent_turn, &body.free_child_turn})
+      for (const bool is_free : *turns)
+        if (is_free) hold(at++, 0.0, problem.turn_sd);
+    for (const auto& [is_free, point] :
+         {std::pair{body.free_point_in_parent, body.point_in_parent}, {body.free_point_in_child, body.point_in_child}})
+      if (is_free)
+        for (const double value : point) hold(at++, value, problem.point_sd);
+  }
+  for (std::size_t s = 0; s < x.errors.size(); ++s)
+    each_error(problem, layout, x.errors[s], layout.error[s],
+               [&](Index at, Index size, const double* value, double sd) {
+                 for (Index i = 0; i < size; ++i) hold(at + i, value[i], sd);
+               });
+  return prior;
+}
+
+}  // namespace kinfer

@@ -1,0 +1,76 @@
+// Everything that a continuous-time fit of a machine rests on, and everything that it finds.
+//
+// In time: each joint's reading as a quintic spline; where the root moves, its angular rate and specific force too, so
+// that a moving base costs nothing and drifts nowhere. For good: the joints' geometry, the root's specific force and
+// magnetic field where it stands still, and each INS' biases and scale matrices, reading = (I + S) truth + b.
+#pragma once
+
+#include "kinfer/estimate/ins_blocks.hpp"
+#include "kinfer/estimate/ins_chain.hpp"
+
+namespace kinfer {
+
+/// What one INS said, by intervals of the grid. Standard deviations are of one row of a block.
+struct InsReadings {
+  std::vector<InsBlock> rate, force, field;  ///< field: empty where it is not used
+  double rate_sd = 1.0;                      ///< [rad/s]
+  double force_sd = 1.0;                     ///< [m/s²]
+  double field_sd = 1.0;                     ///< of an interval's mean
+};
+
+/// Systematic errors of one INS.
+struct InsErrors {
+  Vec3 rate_bias = Vec3::Zero(), force_bias = Vec3::Zero(), field_bias = Vec3::Zero();
+  Mat3 rate_matrix = Mat3::Zero(), force_matrix = Mat3::Zero();  ///< S
+};
+
+/// One sigma of what an INS may be wrong by; matrices of 0 are not estimated.
+struct InsErrorPrior {
+  double rate_bias = 0.0, force_bias = 0.0, field_bias = 0.0, rate_matrix = 0.0, force_matrix = 0.0;
+};
+
+struct InsProblem {
+  SplineGrid grid;
+  bool root_stands_still = true;
+  std::vector<InsReadings> sensors;
+  InsErrorPrior prior;
+  double gravity = 9.80665;    ///< [m/s²] size of the root's force where it stands still
+  double gravity_sd = 0.03;    ///< gravity on Earth is within this
+  double point_sd = 3.0;       ///< [m] keeps what no signal tells near the sensors
+  double turn_sd = 1.0;        ///< [rad] keeps an azimuth that no signal tells where it started
+  std::vector<double> anchor;  ///< of each joint's first coefficient: a constant that no signal tells stays there
+};
+
+struct InsUnknowns {
+  MatrixXd band;  ///< channels x coefficients: [root rate, root force] where it moves, then joints
+  InsBodies bodies;
+  Vec3 root_force = Vec3::Zero();  ///< [m/s²] where the root stands still
+  Vec3 root_field = Vec3::Zero();
+  std::vector<InsErrors> errors;  ///< one a sensor
+};
+
+/// Where each unknown stands.
+struct InsLayout {
+  Eigen::Index channels = 0;                      ///< of the band
+  Eigen::Index border = 0;                        ///< unknowns that hold for good
+  Eigen::Index root_force = -1, root_field = -1;  ///< first of three in the border; −1: not there
+  std::vector<Eigen::Index> body, error;          ///< first unknown of each body and sensor in the border
+  std::vector<Eigen::Index> channel;              ///< of each body's joint; −1: none
+  bool has_field = false, has_matrices = false;
+  Eigen::Index errors_each = 0;  ///< unknowns a sensor: [b_g, b_a, S_g, S_a, b_m]
+};
+InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies);
+
+/// The unknowns changed by a step of the band and of the border.
+InsUnknowns changed(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, ConstMatrixRef band,
+                    ConstVectorRef border);
+
+/// Prior information on the border: cost, and its Gauss-Newton terms (diagonal but for gravity) where asked for.
+struct BorderPrior {
+  double cost = 0.0;
+  MatrixXd matrix;
+  VectorXd right;  ///< minus gradient
+};
+BorderPrior border_prior(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x);
+
+}  // namespace kinfer

@@ -1,0 +1,233 @@
+#include "kinfer/identify/refine.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/inertial/sensor_judgement.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double field_trust = 0.1;  // [of the field] sd of a tenth of a second: steel moves, so only a weak gauge
+
+SplineGrid grid_over(const RecordedMotion& motion, double period) {
+  const double length = motion.time.back() - motion.time.front();
+  return {motion.time.front(), period, std::max<Index>(1, static_cast<Index>(std::ceil(length / period)))};
+}
+
+double noise_or(double measured, double density, double rate) {
+  return measured > 0.0 ? measured : density * std::sqrt(0.5 * rate);
+}
+
+InsReadings readings_of(const InsRecording& recording, const InsSensor& sensor, const SplineGrid& grid,
+                        const SensorModel& grade, bool use_field) {
+  const auto time = recording.time(sensor);
+  const double rate = 1.0 / typical_period(time);
+  InsReadings r;
+  r.rate = ins_blocks(sensor, time, Instrument::gyroscope, grid);
+  r.force = ins_blocks(sensor, time, Instrument::accelerometer, grid);
+  r.rate_sd = noise_or(reading_noise(r.rate), grade.gyroscope.noise_density, rate);
+  r.force_sd = noise_or(reading_noise(r.force), grade.accelerometer.noise_density, rate);
+  if (!use_field || !sensor.has_magnetometer()) return r;
+  r.field = mean_blocks(sensor, time, Instrument::magnetometer, grid);
+  std::vector<double> sizes;
+  for (const InsBlock& block : r.field)
+    if (block.rows > 0) sizes.push_back(block.target.row(0).norm());
+  if (sizes.empty())
+    r.field.clear();
+  else
+    r.field_sd = field_trust * median(sizes);
+  return r;
+}
+
+InsErrorPrior prior_of(const SensorModel& grade) {
+  // What a preset calls perfect is still only as good as can be seen.
+  return {.rate_bias = std::hypot(grade.gyroscope.bias_sd, 1e-4),
+          .force_bias = std::hypot(grade.accelerometer.bias_sd, 1e-3),
+          .field_bias = std::hypot(grade.magnetometer.bias_sd, 0.01),
+          .rate_matrix = grade.gyroscope.scale_sd,
+          .force_matrix = grade.accelerometer.scale_sd};
+}
+
+Vec3 mean_reading(const std::vector<InsBlock>& blocks) {
+  Vec3 sum = Vec3::Zero();
+  double weight = 0.0;
+  for (const InsBlock& block : blocks)
+    if (block.rows > 0) {
+      sum += block.target.row(0).transpose() * block.factor(0, 0);
+      weight += block.factor(0, 0) * block.factor.row(0).sum();
+    }
+  return weight > 0.0 ? Vec3(sum / weight) : Vec3(Vec3::Zero());
+}
+
+InsBody body_of(const JointStart& start, int parent) {
+  const int sensor = static_cast<int>(start.child);
+  InsBody body;
+  switch (start.type) {
+    case FoundJointType::revolute:
+      body = turning_body(parent, sensor, start.parent_R_axis, start.child_R_axis);
+      break;
+    case FoundJointType::prismatic:
+      body = sliding_body(parent, sensor, start.parent_R_axis, start.child_R_axis);
+      break;
+    case FoundJointType::rigid:
+      body = fixed_body(parent, sensor, start.parent_R_axis * start.child_R_axis.transpose());
+      break;
+  }
+  body.point_in_parent = start.point_in_parent;
+  body.point_in_child = start.point_in_child;
+  return body;
+}
+
+MatrixXd as_columns(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  MatrixXd m(static_cast<Index>(a.size()), 6);
+  for (std::size_t i = 0; i < a.size(); ++i) m.row(static_cast<Index>(i)) << a[i].transpose(), b[i].transpose();
+  return m;
+}
+
+/// Spline coefficients of the root's rate and specific force as its own INS read them.
+MatrixXd root_band(const RecordedMotion& motion, const SplineGrid& grid, std::size_t root) {
+  const SegmentMotion& m = motion.segments[root];
+  std::vector<Vec3> force;
+  for (std::size_t i = 0; i < motion.rows(); ++i)
+    force.push_back(m.rotation[i].transpose() * (m.acceleration[i] + Vec3(0.0, 0.0, 9.81)));
+  return fit_spline(grid, motion.time, as_columns(m.gyro, force));
+}
+
+struct Setup {
+  InsProblem problem;
+  InsUnknowns start;
+};
+
+Setup setup_of(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
+               const std::vector<JointStart>& starts, const SensorModel& grade, const RefineOptions& options) {
+  Setup setup;
+  InsProblem& problem = setup.problem;
+  problem.grid = grid_over(motion, options.knots);
+  problem.root_stands_still = motion.segments[tree.root].still;
+  problem.prior = prior_of(grade);
+  for (const InsSensor& sensor : recording.sensors)
+    problem.sensors.push_back(readings_of(recording, sensor, problem.grid, grade, problem.root_stands_still));
+  InsUnknowns& x = setup.start;
+  x.errors.resize(recording.sensors.size());
+  std::vector<int> body_of_segment(recording.sensors.size(), 0);
+  x.bodies.push_back({.sensor = static_cast<int>(tree.root)});
+  std::vector<MatrixXd> rows;
+  if (problem.root_stands_still) {
+    x.root_force = mean_reading(problem.sensors[tree.root].force);
+    if (!problem.sensors[tree.root].field.empty()) x.root_field = mean_reading(problem.sensors[tree.root].field);
+  } else {
+    rows.push_back(root_band(motion, problem.grid, tree.root));
+  }
+  for (const JointStart& start : starts) {
+    body_of_segment[start.child] = static_cast<int>(x.bodies.size());
+    x.bodies.push_back(body_of(start, body_of_segment[start.parent]));
+    if (start.reading.empty()) continue;
+    const Eigen::Map<const VectorXd> reading(start.reading.data(), static_cast<Index>(start.reading.size()));
+    rows.push_back(fit_spline(problem.grid, motion.time, reading));
+    problem.anchor.push_back(rows.back()(0, 0));
+  }
+  Index channels = 0;
+  for (const MatrixXd& row : rows) channels += row.rows();
+  x.band.resize(channels, problem.grid.coefficients());
+  Index at = 0;
+  for (const MatrixXd& row : rows) x.band.middleRows(at, row.rows()) = row, at += row.rows();
+  return setup;
+}
+
+/// Sd of a vector's component along a direction.
+double sd_along(const MatrixXd& covariance, Index first, const Vec3& direction) {
+  return std::sqrt(std::max(0.0, direction.dot(covariance.block<3, 3>(first, first) * direction)));
+}
+
+/// The two directions across an axis that standard deviations are stated for.
+std::array<Vec3, 2> across(const Vec3& axis) {
+  const Vec3 x = any_perpendicular(axis).normalized();
+  return {x, axis.cross(x)};
+}
+
+/// Turns about the frame's x and y, `first` and the next unknown, move its z along −y and x.
+std::array<double, 2> axis_sd(const MatrixXd& covariance, Index first, const Mat3& frame) {
+  std::array<double, 2> sd{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Vec3 direction = across(frame.col(2))[i];
+    const Eigen::Vector2d by_turns(-direction.dot(frame.col(1)), direction.dot(frame.col(0)));
+    sd[i] = std::sqrt(std::max(0.0, by_turns.dot(covariance.block<2, 2>(first, first) * by_turns)));
+  }
+  return sd;
+}
+
+std::array<double, 2> point_sd(const MatrixXd& covariance, Index first, const Vec3& axis) {
+  const auto directions = across(axis);
+  return {sd_along(covariance, first, directions[0]), sd_along(covariance, first, directions[1])};
+}
+
+constexpr double unknown_length = 0.3;  // [m] sd of a point beyond which a direction counts as not known
+
+/// Directions of a point that stay unknown even if the other point of the joint were known.
+std::vector<Vec3> hidden_directions(const MatrixXd& covariance, Index point, Index other) {
+  const Mat3 own = covariance.block<3, 3>(point, point), cross = covariance.block<3, 3>(point, other);
+  const auto inverse = inverse_positive(covariance.block<3, 3>(other, other));
+  const SymmetricEigen eigen = symmetric_eigen(inverse ? Mat3(own - cross * *inverse * cross.transpose()) : own);
+  std::vector<Vec3> hidden;
+  for (Index i = 0; i < 3; ++i)
+    if (eigen.values[i] > unknown_length * unknown_length) hidden.push_back(eigen.vectors.col(i));
+  return hidden;
+}
+
+FoundJoint found_revolute(const InsBody& body, const MatrixXd& covariance, Index first) {
+  FoundJoint joint{.parent = {}, .child = {}, .type = FoundJointType::revolute};
+  const Mat3 &a = body.parent_R_axis, &b = body.child_R_axis;
+  joint.axis_in_parent = a.col(2);
+  joint.axis_in_child = b.col(2);
+  const double along = joint.axis_in_child.dot(body.point_in_child);
+  joint.point_in_child = body.point_in_child - along * joint.axis_in_child;
+  joint.point_in_parent = body.point_in_parent - along * joint.axis_in_parent;
+  const Index in_parent = first + 4, in_child = first + 7;
+  joint.sd.axis_in_parent = axis_sd(covariance, first, a);
+  joint.sd.axis_in_child = axis_sd(covariance, first + 2, b);
+  joint.sd.point_in_parent = point_sd(covariance, in_parent, joint.axis_in_parent);
+  joint.sd.point_in_child = point_sd(covariance, in_child, joint.axis_in_child);
+  VectorXd slide(10);  // derivative of axis·p − axis·c
+  const Vec3 &p = body.point_in_parent, &c = body.point_in_child;
+  slide << -p.dot(a.col(1)), p.dot(a.col(0)), c.dot(b.col(1)), -c.dot(b.col(0)), a.col(2), -b.col(2);
+  joint.sd.slide = std::sqrt(std::max(0.0, slide.dot(covariance.block(first, first, 10, 10) * slide)));
+  joint.not_identifiable_in_parent = hidden_directions(covariance, in_parent, in_child);
+  joint.not_identifiable_in_child = hidden_directions(covariance, in_child, in_parent);
+  return joint;
+}
+
+}  // namespace
+
+Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
+                          const std::vector<JointStart>& starts, const RefineOptions& options,
+                          const Observer& observer) {
+  const SensorModel grade = options.grade ? *options.grade : judged_model(recording);
+  const Setup setup = setup_of(recording, motion, tree, starts, grade, options);
+  Refinement result;
+  result.grade = grade.name;
+  result.fit = fit_ins(setup.problem, setup.start, options.fit, observer);
+  const auto system = eliminated(setup.problem, result.fit.layout, result.fit.unknowns, {}, options.fit.threads);
+  if (!system.positive()) return error("the continuous-time fit has no covariance: the recording says too little");
+  const auto covariance = inverse_positive(system.schur());
+  if (!covariance) return error("the continuous-time fit has no covariance: the recording says too little");
+  result.covariance = *covariance;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const InsBody& body = result.fit.unknowns.bodies[i + 1];
+    FoundJoint joint;
+    if (starts[i].type == FoundJointType::revolute)
+      joint = found_revolute(body, *covariance, result.fit.layout.body[i + 1]);
+    joint.type = starts[i].type;
+    joint.parent = motion.segments[starts[i].parent].name;
+    joint.child = motion.segments[starts[i].child].name;
+    result.joints.push_back(joint);
+    result.home.push_back(body.parent_R_axis * body.child_R_axis.transpose());
+  }
+  return result;
+}
+
+}  // namespace kinfer

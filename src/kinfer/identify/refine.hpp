@@ -1,0 +1,30 @@
+// The last word on the geometry: the continuous-time fit of the whole tree over the whole recording, with honest
+// standard deviations.
+#pragma once
+
+#include "kinfer/estimate/ins_fit.hpp"
+#include "kinfer/identify/joint_start.hpp"
+#include "kinfer/measurement/sensor_model.hpp"
+
+namespace kinfer {
+
+struct RefineOptions {
+  std::optional<SensorModel> grade{};  ///< what the sensors are worth; without it judged from the recording
+  InsFitOptions fit{};
+  double knots = 0.1;  ///< [s] between the knots of the splines
+};
+
+struct Refinement {
+  std::vector<FoundJoint> joints;  ///< in the order of the starts
+  std::vector<Mat3> home;          ///< parent_R_child at angle 0 of each
+  InsFit fit;
+  MatrixXd covariance;  ///< of the border's unknowns
+  std::string grade;    ///< that was used
+};
+
+/// `starts`: one for each segment but the root, parents before children.
+Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
+                          const std::vector<JointStart>& starts, const RefineOptions& options,
+                          const Observer& observer = {});
+
+}  // namespace kinfer

@@ -1,0 +1,120 @@
+#include "kinfer/linalg/bordered_band.hpp"
+
+#include "kinfer/base/expect.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer {
+namespace {
+
+using Index = Eigen::Index;
+
+/// x of l x = b, l lower triangular, column by column of b.
+void solve_lower(const MatrixXd& l, Eigen::Ref<MatrixXd> b) {
+  l.triangularView<Eigen::Lower>().solveInPlace(b);
+}
+
+void solve_upper(const MatrixXd& l, Eigen::Ref<MatrixXd> b) {
+  l.triangularView<Eigen::Lower>().transpose().solveInPlace(b);
+}
+
+/// In place Cholesky of the small pivot; false where it is not positive definite.
+bool factorise(MatrixXd& a) {
+  for (Index j = 0; j < a.cols(); ++j) {
+    const double pivot = a(j, j) - a.row(j).head(j).squaredNorm();
+    if (!(pivot > 0.0)) return false;
+    a(j, j) = std::sqrt(pivot);
+    for (Index i = j + 1; i < a.rows(); ++i) a(i, j) = (a(i, j) - a.row(i).head(j).dot(a.row(j).head(j))) / a(j, j);
+    a.col(j).head(j).setZero();
+  }
+  return true;
+}
+
+}  // namespace
+
+BorderedBand::BorderedBand(Index width, Index reach, Index border)
+    : width_(width),
+      reach_(reach),
+      border_(border),
+      front_{MatrixXd::Zero(reach * width, reach * width), MatrixXd::Zero(border, reach * width),
+             VectorXd::Zero(reach * width)},
+      schur_(MatrixXd::Zero(border, border)),
+      schur_right_(VectorXd::Zero(border)) {}
+
+void BorderedBand::add(const BandSpan& span) {
+  KINFER_EXPECT(span.matrix.rows() == reach_ * width_ && span.coupling.rows() == border_);
+  front_.matrix.triangularView<Eigen::Lower>() += span.matrix;
+  front_.coupling += span.coupling;
+  front_.right += span.right;
+  eliminate_first();
+}
+
+void BorderedBand::eliminate_first() {
+  if (!positive_) return;
+  const Index w = width_, rest = (reach_ - 1) * width_;
+  Group group{front_.matrix.topLeftCorner(w, w), MatrixXd(front_.matrix.bottomLeftCorner(rest, w)),
+              MatrixXd(front_.coupling.leftCols(w)), VectorXd(front_.right.head(w))};
+  if (!factorise(group.pivot)) {
+    positive_ = false;
+    return;
+  }
+  const auto inverse_upper = group.pivot.triangularView<Eigen::Lower>().transpose();
+  inverse_upper.solveInPlace<Eigen::OnTheRight>(group.next);
+  inverse_upper.solveInPlace<Eigen::OnTheRight>(group.coupling);
+  solve_lower(group.pivot, group.right);
+
+  MatrixXd matrix = MatrixXd::Zero(reach_ * w, reach_ * w);
+  matrix.topLeftCorner(rest, rest) = front_.matrix.bottomRightCorner(rest, rest);
+  matrix.topLeftCorner(rest, rest).selfadjointView<Eigen::Lower>().rankUpdate(group.next, -1.0);
+  front_.matrix.swap(matrix);
+  front_.coupling.leftCols(rest) = front_.coupling.rightCols(rest).eval();
+  front_.coupling.rightCols(w).setZero();
+  front_.coupling.leftCols(rest).noalias() -= group.coupling * group.next.transpose();
+  front_.right.head(rest) = front_.right.tail(rest).eval() - group.next * group.right;
+  front_.right.tail(w).setZero();
+  schur_.selfadjointView<Eigen::Lower>().rankUpdate(group.coupling, -1.0);
+  schur_right_.noalias() -= group.coupling * group.right;
+  groups_.push_back(std::move(group));
+}
+
+void BorderedBand::finish(ConstMatrixRef border_matrix, ConstVectorRef border_right) {
+  for (Index i = 1; i < reach_; ++i) eliminate_first();
+  schur_.triangularView<Eigen::Lower>() += border_matrix;
+  schur_.triangularView<Eigen::StrictlyUpper>() = schur_.transpose();
+  schur_right_ += border_right;
+}
+
+std::optional<BorderedBand::Solution> BorderedBand::solve() const {
+  if (!positive_) return std::nullopt;
+  Solution x{MatrixXd(width_, static_cast<Index>(groups_.size())), VectorXd(border_)};
+  if (border_ > 0) {
+    const auto border = solve_positive(schur_, schur_right_);
+    if (!border) return std::nullopt;
+    x.border = *border;
+  }
+  VectorXd after = VectorXd::Zero((reach_ - 1) * width_);
+  for (Index k = x.band.cols() - 1; k >= 0; --k) {
+    const Group& group = groups_[static_cast<std::size_t>(k)];
+    VectorXd value = group.right - group.next.transpose() * after - group.coupling.transpose() * x.border;
+    solve_upper(group.pivot, value);
+    x.band.col(k) = value;
+    if (reach_ == 1) continue;
+    after.tail(after.size() - width_) = after.head(after.size() - width_).eval();
+    after.head(width_) = value;
+  }
+  return x;
+}
+
+MatrixXd BorderedBand::following() const {
+  KINFER_EXPECT(positive_);
+  const auto steps = static_cast<Index>(groups_.size()), rest = (reach_ - 1) * width_;
+  MatrixXd result = MatrixXd::Zero(steps * width_ + rest, border_);
+  for (Index k = steps - 1; k >= 0; --k) {
+    const Group& group = groups_[static_cast<std::size_t>(k)];
+    MatrixXd value = group.coupling.transpose() - group.next.transpose() * result.middleRows((k + 1) * width_, rest);
+    solve_upper(group.pivot, value);
+    result.middleRows(k * width_, width_) = value;
+  }
+  return result.topRows(steps * width_);
+}
+
+}  // namespace kinfer

@@ -1,0 +1,25 @@
+// How far found joints are from the true ones, as METHODS of the project define it (docs/methods/identify.md), scalar
+// by scalar beside the standard deviations that were claimed.
+#pragma once
+
+#include "kinfer/evidence/identification.hpp"
+#include "kinfer/simulate/truth.hpp"
+
+namespace kinfer::study {
+
+struct ScoredScalar {
+  std::string name;
+  double error = 0.0, sd = 0.0;  ///< [m] or [rad]
+};
+
+struct GeometryScore {
+  double line = 0.0;       ///< [m] worst distance of a found axis line, free of what cannot be known
+  double direction = 0.0;  ///< [rad] worst
+  double azimuth = 0.0;    ///< [rad] worst turn of a body that turns about one axis only, taken off before
+  double slide = 0.0;      ///< [m] worst, where it can be known
+  bool complete = true;    ///< every true joint was found
+  std::vector<ScoredScalar> scalars;
+};
+GeometryScore geometry_score(const std::vector<FoundJoint>& found, const MachineTruth& truth);
+
+}  // namespace kinfer::study
