@@ -56,7 +56,9 @@ void run(const Setup& setup) {
       fmt::print("seed {}: {}\n", seed, found.error().what);
       continue;
     }
-    const GeometryScore score = geometry_score(found->joints, drive.truth);
+    std::vector<FoundJoint> joints;
+    for (const RefinedJoint& joint : found->joints) joints.push_back(joint.found);
+    const GeometryScore score = geometry_score(joints, drive.truth);
     const auto seconds = [](auto a, auto b) { return std::chrono::duration<double>(b - a).count(); };
     fmt::print(
         "seed {}: line {:.2f} mm, direction {:.2f} mrad, azimuth {:.1f} mrad, slide {:.2f} mm; {} iterations {} cost "

@@ -81,7 +81,7 @@ Log simulated(const Setup& setup) {
 
 /// The paper's way: its filter, its terminals, its table 4.
 IdentifyOptions paper_options(int links) {
-  IdentifyOptions options{.terminals = Terminals::euler, .links = links};
+  IdentifyOptions options{.terminals = Terminals::euler, .links = links, .geometry = Geometry::searched};
   options.motion.filter = PaperEkfOptions{};
   return options;
 }
@@ -342,7 +342,7 @@ void run(const fs::path& folder, int seeds) {
       "three links, paper's filter and terminals: median worst line {:.1f} mm, direction {:.1f} mrad (paper: 12 mm, 1 "
       "mrad on one run)\n",
       median(paper3.line), median(paper3.direction));
-  IdentifyOptions ours{.links = 3};
+  IdentifyOptions ours{.links = 3, .geometry = Geometry::searched};
   const Errors ours3 = write_seeds(folder, "geometry_three_links_hinge.csv", seeds, ours);
   fmt::print("three links, kinfer-offline and hinge: {:.1f} mm, {:.1f} mrad\n", median(ours3.line),
              median(ours3.direction));

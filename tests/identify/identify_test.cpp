@@ -110,7 +110,7 @@ double line_error(const FoundJoint& found, const JointTruth& truth) {  // in the
 
 TEST(Identify, FindsTheFirstLinksOfThePapersExcavator) {
   const DrivenMachine drive = driven_machine("excavator", {}, Script::standard, 1);
-  const IdentifyOptions options{.terminals = Terminals::euler, .links = 2};
+  const IdentifyOptions options{.terminals = Terminals::euler, .links = 2, .geometry = Geometry::searched};
   const auto found = identify(drive.recording, options, Rng(1));
   ASSERT_TRUE(found);
   ASSERT_EQ(found->joints.size(), 2u);

@@ -15,6 +15,7 @@
 #include "kinfer/io/ins_csv.hpp"
 #include "kinfer/io/mjcf.hpp"
 #include "kinfer/io/robot_toml.hpp"
+#include "kinfer/io/sensor_grade_toml.hpp"
 #include "kinfer/io/text_file.hpp"
 #include "kinfer/io/urdf.hpp"
 
@@ -28,10 +29,19 @@ struct Options {
   double smoothing = SegmentMotionOptions{}.smoothing;
   LinkSearchOptions search;
   int links = 0;
+  std::string geometry = "refined", grade = "auto";
 };
 
 const std::map<std::string, Terminals> terminals_by_name{{"hinge", Terminals::hinge}, {"euler", Terminals::euler}};
+const std::map<std::string, Geometry> geometries{{"refined", Geometry::refined}, {"searched", Geometry::searched}};
 const std::map<std::string, Pairing> pairings{{"halves", Pairing::halves}, {"mirrored", Pairing::mirrored}};
+
+Result<SensorModel> named_grade(const std::string& name) {
+  if (const auto grade = sensor_grade(name)) return *grade;
+  if (name.ends_with(".toml")) return read_sensor_grade(name);
+  return error("--grade {}: no such sensor grade; known are auto, {}, or a file that ends in .toml", name,
+               fmt::join(sensor_grade_names, ", "));
+}
 
 Result<IdentifyOptions> options_of(const Options& options) {
   IdentifyOptions how;
@@ -51,6 +61,11 @@ Result<IdentifyOptions> options_of(const Options& options) {
   how.search.bacteria.pairing = pairings.at(options.pairing);
   if (!options.root.empty()) how.root = options.root;
   how.links = options.links;
+  how.geometry = geometries.at(options.geometry);
+  if (options.grade != "auto") {
+    KINFER_TRY(grade, named_grade(options.grade));
+    how.refine.grade = grade;
+  }
   how.threads = options.common.threads;
   return how;
 }
@@ -87,7 +102,9 @@ Provenance provenance_of(const Options& options) {
                         {"--max-depth", fmt::to_string(options.search.depth.max)},
                         {"--max-leaves", fmt::to_string(options.search.depth.max_leaves)},
                         {"--rows", fmt::to_string(options.search.rows)},
-                        {"--links", fmt::to_string(options.links)}};
+                        {"--links", fmt::to_string(options.links)},
+                        {"--geometry", options.geometry},
+                        {"--grade", options.grade}};
   return provenance;
 }
 
@@ -162,6 +179,10 @@ Verb add_identify(CLI::App& app) {
            Need::optional, "NAME");
   add_number(*verb, "--smoothing", options->smoothing,
              "Standard deviation of the Gaussian on accelerations and rates [s]");
+  add_choice(*verb, "--geometry", options->geometry, {"refined", "searched"},
+             "refined: continuous-time fit of the whole recording; searched: as the search found it (paper 1)");
+  add_text(*verb, "--grade", options->grade, "What the sensors are worth: auto, noise, industrial, consumer or a TOML",
+           Need::optional, "GRADE");
   add_count(*verb, "--links", options->links, 0, 1000, "Links to find, from the root outwards; 0 means all");
   add_search_options(*verb, *options);
   add_common_options(*verb, options->common);

@@ -24,13 +24,13 @@ Row lagrange(double u) {
   return row;
 }
 
-std::optional<Vec3> reading(const InsSample& s, Instrument instrument) {
+std::optional<Vec3> reading(const InsSample& s, InsInstrument instrument) {
   switch (instrument) {
-    case Instrument::gyroscope:
+    case InsInstrument::gyroscope:
       return s.has_rate && !s.rate_clipped ? std::optional<Vec3>(s.rate) : std::nullopt;
-    case Instrument::accelerometer:
+    case InsInstrument::accelerometer:
       return s.has_acceleration ? std::optional<Vec3>(s.acceleration) : std::nullopt;
-    case Instrument::magnetometer:
+    case InsInstrument::magnetometer:
       return s.has_field ? std::optional<Vec3>(s.field) : std::nullopt;
   }
   return std::nullopt;
@@ -62,7 +62,7 @@ void take(InsBlock& block, Row v, Vec3 y) {
 }
 
 template <class Take>
-std::vector<InsBlock> collected(const InsSensor& sensor, std::span<const double> time, Instrument instrument,
+std::vector<InsBlock> collected(const InsSensor& sensor, std::span<const double> time, InsInstrument instrument,
                                 const SplineGrid& grid, double clock_offset, const Take& take_reading) {
   std::vector<InsBlock> blocks(static_cast<std::size_t>(grid.intervals), empty_block());
   for (std::size_t row = 0; row < time.size(); ++row) {
@@ -87,7 +87,7 @@ const std::array<double, block_nodes>& block_places() {
   return places;
 }
 
-std::vector<InsBlock> ins_blocks(const InsSensor& sensor, std::span<const double> time, Instrument instrument,
+std::vector<InsBlock> ins_blocks(const InsSensor& sensor, std::span<const double> time, InsInstrument instrument,
                                  const SplineGrid& grid, double clock_offset) {
   return collected(sensor, time, instrument, grid, clock_offset, [](InsBlock& block, const Row& v, const Vec3& y) {
     take(block, v, y);
@@ -95,7 +95,7 @@ std::vector<InsBlock> ins_blocks(const InsSensor& sensor, std::span<const double
   });
 }
 
-std::vector<InsBlock> mean_blocks(const InsSensor& sensor, std::span<const double> time, Instrument instrument,
+std::vector<InsBlock> mean_blocks(const InsSensor& sensor, std::span<const double> time, InsInstrument instrument,
                                   const SplineGrid& grid, double clock_offset) {
   auto blocks =
       collected(sensor, time, instrument, grid, clock_offset, [](InsBlock& block, const Row& v, const Vec3& y) {

@@ -28,14 +28,14 @@ struct InsBlock {
   int rows = 0;                                            ///< of R and Qᵀ y that are in use
 };
 
-enum class Instrument { gyroscope, accelerometer, magnetometer };
+enum class InsInstrument { gyroscope, accelerometer, magnetometer };
 
 /// One a grid interval. Rows whose numbers must not be used are left out. `clock_offset` [s] is added to the times.
-std::vector<InsBlock> ins_blocks(const InsSensor& sensor, std::span<const double> time, Instrument instrument,
+std::vector<InsBlock> ins_blocks(const InsSensor& sensor, std::span<const double> time, InsInstrument instrument,
                                  const SplineGrid& grid, double clock_offset = 0.0);
 
 /// The mean of the readings alone, as one row: for what is only trusted as a whole.
-std::vector<InsBlock> mean_blocks(const InsSensor& sensor, std::span<const double> time, Instrument instrument,
+std::vector<InsBlock> mean_blocks(const InsSensor& sensor, std::span<const double> time, InsInstrument instrument,
                                   const SplineGrid& grid, double clock_offset = 0.0);
 
 /// Standard deviation of one reading about its block's polynomial, robust against shaken blocks; 0 where no block has

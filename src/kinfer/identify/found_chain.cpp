@@ -112,8 +112,9 @@ Chain found_chain(const std::string& root, const std::vector<FoundJoint>& joints
       const FoundDhRow& row = dh[3 * i + k];
       Joint joint{.name = names[k]};
       joint.parent = k == 0 ? frame_of(joints[i].parent) : static_cast<int>(chain.joints.size()) - 1;
-      const bool moves = k == 1 && joints[i].type == FoundJointType::revolute;
-      joint.type = moves ? JointType::revolute : JointType::fixed;
+      const bool moves = k == 1 && joints[i].type != FoundJointType::rigid;
+      const bool slides = joints[i].type == FoundJointType::prismatic;
+      joint.type = !moves ? JointType::fixed : slides ? JointType::prismatic : JointType::revolute;
       joint.has_reading = moves;
       joint.link = DhLink{row.row};
       chain.joints.push_back(joint);

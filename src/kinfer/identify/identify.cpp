@@ -8,6 +8,7 @@
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/identify/found_chain.hpp"
 #include "kinfer/identify/motion_evidence.hpp"
+#include "kinfer/identify/refined_identification.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
@@ -251,6 +252,10 @@ Result<Identification> identify(const InsRecording& recording, const IdentifyOpt
     if (auto done = add_joint(p, tree.order[i], rng.stream(i), observer); !done) return pass_on(done.error());
   if (std::ranges::all_of(p.result.joints, [](const FoundJoint& j) { return j.type == FoundJointType::rigid; }))
     return error("no sensor ever moves against another: move every joint of the machine");
+  if (options.geometry == Geometry::refined) {
+    options.refine.fit.threads = options.threads;
+    refine_geometry(p.result, recording, motion, tree, options.refine, observer);
+  }
   p.result.links = found_links(p.result.joints);
   p.result.chain =
       found_chain(p.result.root, p.result.joints, p.result.dh, motion.segments[tree.root].rotation.front());

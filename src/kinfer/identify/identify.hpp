@@ -5,8 +5,14 @@
 #include "kinfer/evidence/identification.hpp"
 #include "kinfer/identify/link_search.hpp"
 #include "kinfer/identify/moving_phases.hpp"
+#include "kinfer/identify/refine.hpp"
 
 namespace kinfer {
+
+enum class Geometry {
+  refined,  ///< the continuous-time fit of the whole recording has the last word
+  searched  ///< as the search found it, link after link
+};
 
 struct IdentifyOptions {
   SegmentMotionOptions motion{};
@@ -14,6 +20,8 @@ struct IdentifyOptions {
   LinkSearchOptions search{};         ///< what of it depends on the terminals follows them
   std::optional<std::string> root{};  ///< sensor; see segment_tree
   int links = 0;                      ///< of the tree, from the root outwards; 0: all (the paper did the first three)
+  Geometry geometry = Geometry::refined;
+  RefineOptions refine{};
   int threads = 0;
 };
 

@@ -28,12 +28,12 @@ InsReadings readings_of(const InsRecording& recording, const InsSensor& sensor, 
   const auto time = recording.time(sensor);
   const double rate = 1.0 / typical_period(time);
   InsReadings r;
-  r.rate = ins_blocks(sensor, time, Instrument::gyroscope, grid);
-  r.force = ins_blocks(sensor, time, Instrument::accelerometer, grid);
+  r.rate = ins_blocks(sensor, time, InsInstrument::gyroscope, grid);
+  r.force = ins_blocks(sensor, time, InsInstrument::accelerometer, grid);
   r.rate_sd = noise_or(reading_noise(r.rate), grade.gyroscope.noise_density, rate);
   r.force_sd = noise_or(reading_noise(r.force), grade.accelerometer.noise_density, rate);
   if (!use_field || !sensor.has_magnetometer()) return r;
-  r.field = mean_blocks(sensor, time, Instrument::magnetometer, grid);
+  r.field = mean_blocks(sensor, time, InsInstrument::magnetometer, grid);
   std::vector<double> sizes;
   for (const InsBlock& block : r.field)
     if (block.rows > 0) sizes.push_back(block.target.row(0).norm());
@@ -139,68 +139,6 @@ Setup setup_of(const InsRecording& recording, const RecordedMotion& motion, cons
   return setup;
 }
 
-/// Sd of a vector's component along a direction.
-double sd_along(const MatrixXd& covariance, Index first, const Vec3& direction) {
-  return std::sqrt(std::max(0.0, direction.dot(covariance.block<3, 3>(first, first) * direction)));
-}
-
-/// The two directions across an axis that standard deviations are stated for.
-std::array<Vec3, 2> across(const Vec3& axis) {
-  const Vec3 x = any_perpendicular(axis).normalized();
-  return {x, axis.cross(x)};
-}
-
-/// Turns about the frame's x and y, `first` and the next unknown, move its z along −y and x.
-std::array<double, 2> axis_sd(const MatrixXd& covariance, Index first, const Mat3& frame) {
-  std::array<double, 2> sd{};
-  for (std::size_t i = 0; i < 2; ++i) {
-    const Vec3 direction = across(frame.col(2))[i];
-    const Eigen::Vector2d by_turns(-direction.dot(frame.col(1)), direction.dot(frame.col(0)));
-    sd[i] = std::sqrt(std::max(0.0, by_turns.dot(covariance.block<2, 2>(first, first) * by_turns)));
-  }
-  return sd;
-}
-
-std::array<double, 2> point_sd(const MatrixXd& covariance, Index first, const Vec3& axis) {
-  const auto directions = across(axis);
-  return {sd_along(covariance, first, directions[0]), sd_along(covariance, first, directions[1])};
-}
-
-constexpr double unknown_length = 0.3;  // [m] sd of a point beyond which a direction counts as not known
-
-/// Directions of a point that stay unknown even if the other point of the joint were known.
-std::vector<Vec3> hidden_directions(const MatrixXd& covariance, Index point, Index other) {
-  const Mat3 own = covariance.block<3, 3>(point, point), cross = covariance.block<3, 3>(point, other);
-  const auto inverse = inverse_positive(covariance.block<3, 3>(other, other));
-  const SymmetricEigen eigen = symmetric_eigen(inverse ? Mat3(own - cross * *inverse * cross.transpose()) : own);
-  std::vector<Vec3> hidden;
-  for (Index i = 0; i < 3; ++i)
-    if (eigen.values[i] > unknown_length * unknown_length) hidden.push_back(eigen.vectors.col(i));
-  return hidden;
-}
-
-FoundJoint found_revolute(const InsBody& body, const MatrixXd& covariance, Index first) {
-  FoundJoint joint{.parent = {}, .child = {}, .type = FoundJointType::revolute};
-  const Mat3 &a = body.parent_R_axis, &b = body.child_R_axis;
-  joint.axis_in_parent = a.col(2);
-  joint.axis_in_child = b.col(2);
-  const double along = joint.axis_in_child.dot(body.point_in_child);
-  joint.point_in_child = body.point_in_child - along * joint.axis_in_child;
-  joint.point_in_parent = body.point_in_parent - along * joint.axis_in_parent;
-  const Index in_parent = first + 4, in_child = first + 7;
-  joint.sd.axis_in_parent = axis_sd(covariance, first, a);
-  joint.sd.axis_in_child = axis_sd(covariance, first + 2, b);
-  joint.sd.point_in_parent = point_sd(covariance, in_parent, joint.axis_in_parent);
-  joint.sd.point_in_child = point_sd(covariance, in_child, joint.axis_in_child);
-  VectorXd slide(10);  // derivative of axis·p − axis·c
-  const Vec3 &p = body.point_in_parent, &c = body.point_in_child;
-  slide << -p.dot(a.col(1)), p.dot(a.col(0)), c.dot(b.col(1)), -c.dot(b.col(0)), a.col(2), -b.col(2);
-  joint.sd.slide = std::sqrt(std::max(0.0, slide.dot(covariance.block(first, first, 10, 10) * slide)));
-  joint.not_identifiable_in_parent = hidden_directions(covariance, in_parent, in_child);
-  joint.not_identifiable_in_child = hidden_directions(covariance, in_child, in_parent);
-  return joint;
-}
-
 }  // namespace
 
 Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
@@ -217,15 +155,16 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
   if (!covariance) return error("the continuous-time fit has no covariance: the recording says too little");
   result.covariance = *covariance;
   for (std::size_t i = 0; i < starts.size(); ++i) {
+    const Index first = result.fit.layout.body[i + 1], channel = result.fit.layout.channel[i + 1];
+    const double zero =
+        channel < 0 ? 0.0
+                    : spline_value(setup.problem.grid, result.fit.unknowns.band, setup.problem.grid.begin)[channel];
     const InsBody& body = result.fit.unknowns.bodies[i + 1];
-    FoundJoint joint;
-    if (starts[i].type == FoundJointType::revolute)
-      joint = found_revolute(body, *covariance, result.fit.layout.body[i + 1]);
-    joint.type = starts[i].type;
-    joint.parent = motion.segments[starts[i].parent].name;
-    joint.child = motion.segments[starts[i].child].name;
+    const Index n = body.unknowns();
+    RefinedJoint joint = refined_joint(starts[i].type, body, zero, covariance->block(first, first, n, n));
+    joint.found.parent = motion.segments[starts[i].parent].name;
+    joint.found.child = motion.segments[starts[i].child].name;
     result.joints.push_back(joint);
-    result.home.push_back(body.parent_R_axis * body.child_R_axis.transpose());
   }
   return result;
 }

@@ -4,6 +4,7 @@
 
 #include "kinfer/estimate/ins_fit.hpp"
 #include "kinfer/identify/joint_start.hpp"
+#include "kinfer/identify/refined_joint.hpp"
 #include "kinfer/measurement/sensor_model.hpp"
 
 namespace kinfer {
@@ -15,8 +16,7 @@ struct RefineOptions {
 };
 
 struct Refinement {
-  std::vector<FoundJoint> joints;  ///< in the order of the starts
-  std::vector<Mat3> home;          ///< parent_R_child at angle 0 of each
+  std::vector<RefinedJoint> joints;  ///< in the order of the starts; angle 0 is where the recording begins
   InsFit fit;
   MatrixXd covariance;  ///< of the border's unknowns
   std::string grade;    ///< that was used

@@ -1,0 +1,13 @@
+// The continuous-time fit put in the place of what the search found.
+#pragma once
+
+#include "kinfer/identify/refine.hpp"
+
+namespace kinfer {
+
+/// Replaces joints and canonical rows of an identification by refined ones; the joint types stay. Where the fit has no
+/// answer, everything stays as the search found it and a note says why.
+void refine_geometry(Identification& result, const InsRecording& recording, const RecordedMotion& motion,
+                     const SegmentTree& tree, const RefineOptions& options, const Observer& observer = {});
+
+}  // namespace kinfer
