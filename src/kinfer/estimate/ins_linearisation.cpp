@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/estimate/ins_fact_rows.hpp"
 
 namespace kinfer {
 namespace {
@@ -348,7 +350,10 @@ class IntervalLinearisation {
         layout_(layout),
         x_(x),
         paths_(paths_of(problem, layout, x.bodies)),
-        bases_(node_bases(problem.grid)) {
+        bases_(node_bases(problem.grid)),
+        facts_(fact_rows(problem, layout, x)),
+        every_column_(static_cast<std::size_t>(spline_order * layout.channels + layout.border)) {
+    std::iota(every_column_.begin(), every_column_.end(), Index{0});
     for (std::size_t b = 0; b < x.bodies.size(); ++b)
       columns_.push_back(x.bodies[b].sensor < 0
                              ? SensorColumns{}
@@ -370,35 +375,45 @@ class IntervalLinearisation {
     const Index local = spline_order * layout_.channels;
     BandSpan span{MatrixXd::Zero(local, local), MatrixXd::Zero(layout_.border, local), VectorXd::Zero(local)};
     each_sensor(interval, [&](const std::vector<Index>& index, const SensorSystem& system) {
-      const Index n = system.jacobian.cols();
-      MatrixXd squares = MatrixXd::Zero(n, n);
-      squares.selfadjointView<Eigen::Lower>().rankUpdate(system.jacobian.transpose());
-      const VectorXd right = system.jacobian.transpose() * system.residual;
-      for (Index c = 0; c < n; ++c) {
-        const Index to = index[static_cast<std::size_t>(c)];
-        (to < local ? span.right[to] : border.right[to - local]) += right[c];
-        for (Index r = c; r < n; ++r) {
-          const Index other = index[static_cast<std::size_t>(r)];
-          const Index low = std::max(to, other), high = std::min(to, other);
-          if (low < local)
-            span.matrix(low, high) += squares(r, c);
-          else if (high < local)
-            span.coupling(low - local, high) += squares(r, c);
-          else
-            border.matrix(low - local, high - local) += squares(r, c);
-        }
-      }
+      accumulate(index, system.jacobian, system.residual, span, border);
     });
+    for (const InsFactRows& rows : facts_)
+      if (rows.interval == interval) accumulate(every_column_, rows.derivative, rows.left, span, border);
     add_band_prior(span, problem_, layout_, x_.band, interval);
     return span;
   }
 
  private:
+  /// `index`: of each column, in the span's local unknowns and behind them the border's.
+  void accumulate(const std::vector<Index>& index, const MatrixXd& jacobian, const VectorXd& residual, BandSpan& span,
+                  BorderSum& border) const {
+    const Index n = jacobian.cols(), local = spline_order * layout_.channels;
+    MatrixXd squares = MatrixXd::Zero(n, n);
+    squares.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
+    const VectorXd right = jacobian.transpose() * residual;
+    for (Index c = 0; c < n; ++c) {
+      const Index to = index[static_cast<std::size_t>(c)];
+      (to < local ? span.right[to] : border.right[to - local]) += right[c];
+      for (Index r = c; r < n; ++r) {
+        const Index other = index[static_cast<std::size_t>(r)];
+        const Index low = std::max(to, other), high = std::min(to, other);
+        if (low < local)
+          span.matrix(low, high) += squares(r, c);
+        else if (high < local)
+          span.coupling(low - local, high) += squares(r, c);
+        else
+          border.matrix(low - local, high - local) += squares(r, c);
+      }
+    }
+  }
+
   const InsProblem& problem_;
   const InsLayout& layout_;
   const InsUnknowns& x_;
   Paths paths_;
   std::array<SplineBasis, block_nodes> bases_;
+  std::vector<InsFactRows> facts_;
+  std::vector<Index> every_column_;
   std::vector<SensorColumns> columns_;
 };
 
@@ -464,7 +479,7 @@ InsCost cost_of(const InsProblem& problem, const InsLayout& layout, const InsUnk
   std::vector<InsCost> items(static_cast<std::size_t>(items_of(problem)));
   parallel_for(items.size(), threads,
                [&](std::size_t i) { items[i] = item_cost(problem, layout, x, static_cast<Index>(i), bases); });
-  InsCost sum{.total = border_prior(problem, layout, x).cost,
+  InsCost sum{.total = border_prior(problem, layout, x).cost + fact_cost(problem, layout, x),
               .sensors = std::vector<SensorFit>(problem.sensors.size())};
   for (const InsCost& item : items) {
     sum.total += item.total;

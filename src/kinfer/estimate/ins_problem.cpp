@@ -22,6 +22,16 @@ void each_error(const InsProblem& problem, const InsLayout& layout, Errors& erro
   if (layout.has_field) visit(next, 3, errors.field_bias.data(), problem.prior.field_bias);
 }
 
+/// `step`: 3 a place, 3 a touched point, then the surveyor's frame: shift and turn.
+void change_facts(InsFactUnknowns& facts, ConstVectorRef step) {
+  Index at = 0;
+  for (auto* points : {&facts.places, &facts.touched})
+    for (Vec3& point : *points) point += step.segment<3>(at), at += 3;
+  if (at == step.size()) return;
+  facts.surveyor.position += step.segment<3>(at);
+  facts.surveyor.rotation = facts.surveyor.rotation * exp_so3(step.segment<3>(at + 3));
+}
+
 }  // namespace
 
 InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
@@ -39,6 +49,9 @@ InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
   }
   layout.errors_each = 6 + (layout.has_matrices ? 18 : 0) + (layout.has_field ? 3 : 0);
   for (std::size_t s = 0; s < problem.sensors.size(); ++s) layout.error.push_back(take(layout.errors_each));
+  const InsFacts& facts = problem.facts;
+  layout.facts =
+      take(3 * static_cast<Index>(facts.places.size() + facts.touches.size()) + (facts.surveyed.empty() ? 0 : 6));
   return layout;
 }
 
@@ -54,6 +67,7 @@ InsUnknowns changed(const InsProblem& problem, const InsLayout& layout, const In
     each_error(problem, layout, result.errors[s], layout.error[s], [&](Index at, Index size, double* value, double) {
       for (Index i = 0; i < size; ++i) value[i] += border[at + i];
     });
+  change_facts(result.facts, border.tail(layout.border - layout.facts));
   return result;
 }
 
@@ -89,6 +103,11 @@ BorderPrior border_prior(const InsProblem& problem, const InsLayout& layout, con
                [&](Index at, Index size, const double* value, double sd) {
                  for (Index i = 0; i < size; ++i) hold(at + i, value[i], sd);
                });
+  for (std::size_t i = 0; i < x.facts.places.size(); ++i) {
+    const InsPlace& place = problem.facts.places[i];
+    for (Index k = 0; k < 3; ++k)
+      hold(layout.facts + 3 * static_cast<Index>(i) + k, x.facts.places[i][k] - place.start[k], place.sd);
+  }
   return prior;
 }
 

@@ -7,6 +7,7 @@
 
 #include "kinfer/estimate/ins_blocks.hpp"
 #include "kinfer/estimate/ins_chain.hpp"
+#include "kinfer/estimate/ins_facts.hpp"
 
 namespace kinfer {
 
@@ -39,6 +40,7 @@ struct InsProblem {
   double point_sd = 3.0;       ///< [m] keeps what no signal tells near the sensors
   double turn_sd = 1.0;        ///< [rad] keeps an azimuth that no signal tells where it started
   std::vector<double> anchor;  ///< of each joint's first coefficient: a constant that no signal tells stays there
+  InsFacts facts{};            ///< what else is known
 };
 
 struct InsUnknowns {
@@ -47,6 +49,7 @@ struct InsUnknowns {
   Vec3 root_force = Vec3::Zero();  ///< [m/s²] where the root stands still
   Vec3 root_field = Vec3::Zero();
   std::vector<InsErrors> errors;  ///< one a sensor
+  InsFactUnknowns facts{};
 };
 
 /// Where each unknown stands.
@@ -58,6 +61,7 @@ struct InsLayout {
   std::vector<Eigen::Index> channel;              ///< of each body's joint; −1: none
   bool has_field = false, has_matrices = false;
   Eigen::Index errors_each = 0;  ///< unknowns a sensor: [b_g, b_a, S_g, S_a, b_m]
+  Eigen::Index facts = -1;       ///< first of what facts make unknown: places, touched points, the surveyor\'s frame
 };
 InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies);
 
