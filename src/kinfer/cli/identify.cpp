@@ -13,6 +13,7 @@
 #include "kinfer/io/chain_dh_csv.hpp"
 #include "kinfer/io/identify_json.hpp"
 #include "kinfer/io/ins_csv.hpp"
+#include "kinfer/io/machine_facts_toml.hpp"
 #include "kinfer/io/mjcf.hpp"
 #include "kinfer/io/robot_toml.hpp"
 #include "kinfer/io/sensor_grade_toml.hpp"
@@ -29,7 +30,7 @@ struct Options {
   double smoothing = SegmentMotionOptions{}.smoothing;
   LinkSearchOptions search;
   int links = 0;
-  std::string geometry = "refined", grade = "auto";
+  std::string geometry = "refined", grade = "auto", facts;
 };
 
 const std::map<std::string, Terminals> terminals_by_name{{"hinge", Terminals::hinge}, {"euler", Terminals::euler}};
@@ -66,6 +67,10 @@ Result<IdentifyOptions> options_of(const Options& options) {
     KINFER_TRY(grade, named_grade(options.grade));
     how.refine.grade = grade;
   }
+  if (!options.facts.empty()) {
+    KINFER_TRY(facts, read_machine_facts(options.facts));
+    how.refine.facts = facts;
+  }
   how.threads = options.common.threads;
   return how;
 }
@@ -83,7 +88,9 @@ Result<InsRecording> read_logs(const Options& options) {
 Provenance provenance_of(const Options& options) {
   Provenance provenance;
   provenance.seed = options.common.seed;
-  for (const std::string& path : options.logs)
+  std::vector<std::string> inputs = options.logs;
+  if (!options.facts.empty()) inputs.push_back(options.facts);
+  for (const std::string& path : inputs)
     if (const auto text = read_text_file(path))
       provenance.inputs.push_back({std::filesystem::path(path).filename().string(), sha256(*text)});
   const BacterialOptions& b = options.search.bacteria;
@@ -121,6 +128,7 @@ Result<void> write_results(const Options& options, const Identification& found) 
 int run(const Options& options) {
   RunRecord record("identify", options.common);
   for (const std::string& path : options.logs) record.add_input(path);
+  if (!options.facts.empty()) record.add_input(options.facts);
   const auto how = options_of(options);
   if (!how) return fail(how.error());
   const auto recording = read_logs(options);
@@ -168,8 +176,9 @@ Verb add_identify(CLI::App& app) {
                   "  kinfer identify drive/imu.csv --out excavator");
   auto options = std::make_shared<Options>();
   add_texts(*verb, "logs", options->logs, "INS recordings", Need::required, "CSV");
-  add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, chain.mjcf, chain_dh.csv, evidence.json, run.json",
-           Need::required, "DIR");
+  add_text(*verb, "--out", options->out,
+           "Folder for chain.toml, chain.urdf, chain.mjcf, chain_dh.csv, evidence.json, run.json", Need::required,
+           "DIR");
   add_choice(*verb, "--engine", options->engine, {"bp"}, "How the chain is searched; bp: bacterial programming");
   add_choice(*verb, "--terminals", options->terminals, {"hinge", "euler"},
              "hinge: relative rotations, rates from gyros; euler: differences of Euler angles, as in paper 1");
@@ -183,6 +192,9 @@ Verb add_identify(CLI::App& app) {
              "refined: continuous-time fit of the whole recording; searched: as the search found it (paper 1)");
   add_text(*verb, "--grade", options->grade, "What the sensors are worth: auto, noise, industrial, consumer or a TOML",
            Need::optional, "GRADE");
+  add_text(*verb, "--facts", options->facts,
+           "What else is known: touches, tapes, surveyed points (docs/formats.md, Facts about a machine)",
+           Need::optional, "TOML");
   add_count(*verb, "--links", options->links, 0, 1000, "Links to find, from the root outwards; 0 means all");
   add_search_options(*verb, *options);
   add_common_options(*verb, options->common);

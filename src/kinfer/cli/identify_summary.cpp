@@ -69,6 +69,9 @@ std::string identification_summary(const Identification& found) {
   for (const FoundLink& link : found.links)
     text += fmt::format("link {}: {:.1f} mm from {} to {} (sd {:.1f} mm)\n", link.segment, 1e3 * link.length, link.from,
                         link.to, 1e3 * link.sd);
+  for (const FoundPlace& place : found.places)
+    text += fmt::format("{} in {}: {} mm (sd {} mm)\n", place.name, place.sensor,
+                        vector_text(place.xyz, 1e3, "{:9.1f}"), vector_text(place.sd, 1e3, "{:6.1f}"));
   if (!found.links.empty()) text += "\n";
   text += fit_table(found.searches);
   for (const std::string& note : found.notes) text += "  - " + note + "\n";

@@ -42,6 +42,12 @@ struct FoundLink {
   double length = 0.0, sd = 0.0;  ///< [m]
 };
 
+/// A place on a segment that touches, tapes or surveyed points told of: the tool's tip beyond the last sensor.
+struct FoundPlace {
+  std::string name, sensor;
+  Vec3 xyz = Vec3::Zero(), sd = Vec3::Zero();  ///< [m] in the sensor's frame
+};
+
 /// One DH transformation RotZ(theta) TransZ(d) TransX(a) RotX(alpha) RotY(beta) of the chain.
 struct FoundDhRow {
   std::string segment;                         ///< sensor that the row leads towards
@@ -96,6 +102,7 @@ struct Identification {
   std::string root;
   std::vector<FoundJoint> joints;  ///< parents before children
   std::vector<FoundLink> links;
+  std::vector<FoundPlace> places;
   std::vector<FoundDhRow> dh;  ///< canonical: three rows a joint
   std::vector<LinkEvidence> searches;
   OrderEvidence order;

@@ -123,4 +123,16 @@ Chain found_chain(const std::string& root, const std::vector<FoundJoint>& joints
   return chain;
 }
 
+void carry_tool(Chain& chain, const std::vector<FoundPlace>& places) {
+  const auto is_tool = [&](const FoundPlace& place) {
+    return place.name == "tip" || place.name == "tool" || places.size() == 1;
+  };
+  const auto tool = std::ranges::find_if(places, is_tool);
+  if (tool == places.end()) return;
+  const auto flange = std::ranges::find(chain.joints, tool->sensor, &Joint::name);
+  if (flange == chain.joints.end()) return;
+  chain.tip = static_cast<int>(flange - chain.joints.begin());
+  chain.tool.xyz = tool->xyz;
+}
+
 }  // namespace kinfer

@@ -30,4 +30,7 @@ std::vector<FoundLink> found_links(const std::vector<FoundJoint>& joints);
 Chain found_chain(const std::string& root, const std::vector<FoundJoint>& joints, const std::vector<FoundDhRow>& dh,
                   const Mat3& root_in_ground);
 
+/// The tool of the chain is the place called "tip" or "tool", or the only one there is; the others are left out.
+void carry_tool(Chain& chain, const std::vector<FoundPlace>& places);
+
 }  // namespace kinfer

@@ -254,11 +254,13 @@ Result<Identification> identify(const InsRecording& recording, const IdentifyOpt
     return error("no sensor ever moves against another: move every joint of the machine");
   if (options.geometry == Geometry::refined) {
     options.refine.fit.threads = options.threads;
-    refine_geometry(p.result, recording, motion, tree, options.refine, observer);
+    if (auto done = refine_geometry(p.result, recording, motion, tree, options.refine, observer); !done)
+      return pass_on(done.error());
   }
   p.result.links = found_links(p.result.joints);
   p.result.chain =
       found_chain(p.result.root, p.result.joints, p.result.dh, motion.segments[tree.root].rotation.front());
+  carry_tool(p.result.chain, p.result.places);
   p.result.motion = motion_evidence(motion, p.states, p.result);
   p.result.next = identification_advice(p.result);
   p.result.verdict = verdict(p.result);

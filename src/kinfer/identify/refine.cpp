@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/estimate/ins_fact_rows.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/identify/named_facts.hpp"
 #include "kinfer/inertial/sensor_judgement.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
@@ -98,6 +100,22 @@ MatrixXd root_band(const RecordedMotion& motion, const SplineGrid& grid, std::si
   return fit_spline(grid, motion.time, as_columns(m.gyro, force));
 }
 
+std::vector<std::string> names_of(const RecordedMotion& motion) {
+  std::vector<std::string> names;
+  for (const SegmentMotion& segment : motion.segments) names.push_back(segment.name);
+  return names;
+}
+
+std::vector<FoundPlace> found_places(const MachineFacts& facts, const InsFit& fit, ConstMatrixRef covariance) {
+  std::vector<FoundPlace> places;
+  for (std::size_t i = 0; i < facts.places.size(); ++i) {
+    const Index at = fit.layout.facts + 3 * static_cast<Index>(i);
+    places.push_back({facts.places[i].name, facts.places[i].sensor, fit.unknowns.facts.places[i],
+                      covariance.diagonal().segment<3>(at).cwiseSqrt()});
+  }
+  return places;
+}
+
 struct Setup {
   InsProblem problem;
   InsUnknowns start;
@@ -145,7 +163,11 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
                           const std::vector<JointStart>& starts, const RefineOptions& options,
                           const Observer& observer) {
   const SensorModel grade = options.grade ? *options.grade : judged_model(recording);
-  const Setup setup = setup_of(recording, motion, tree, starts, grade, options);
+  Setup setup = setup_of(recording, motion, tree, starts, grade, options);
+  KINFER_TRY(facts, named_facts(options.facts, names_of(motion), setup.start.bodies, setup.problem.grid,
+                                setup.problem.root_stands_still));
+  setup.problem.facts = facts;
+  setup.start.facts = started_facts(setup.problem, layout_of(setup.problem, setup.start.bodies), setup.start);
   Refinement result;
   result.grade = grade.name;
   result.fit = fit_ins(setup.problem, setup.start, options.fit, observer);
@@ -166,6 +188,7 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
     joint.found.child = motion.segments[starts[i].child].name;
     result.joints.push_back(joint);
   }
+  result.places = found_places(options.facts, result.fit, *covariance);
   return result;
 }
 

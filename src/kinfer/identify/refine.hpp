@@ -5,6 +5,7 @@
 #include "kinfer/estimate/ins_fit.hpp"
 #include "kinfer/identify/joint_start.hpp"
 #include "kinfer/identify/refined_joint.hpp"
+#include "kinfer/measurement/machine_facts.hpp"
 #include "kinfer/measurement/sensor_model.hpp"
 
 namespace kinfer {
@@ -12,14 +13,16 @@ namespace kinfer {
 struct RefineOptions {
   std::optional<SensorModel> grade{};  ///< what the sensors are worth; without it judged from the recording
   InsFitOptions fit{};
-  double knots = 0.1;  ///< [s] between the knots of the splines
+  double knots = 0.1;    ///< [s] between the knots of the splines
+  MachineFacts facts{};  ///< what else is known
 };
 
 struct Refinement {
   std::vector<RefinedJoint> joints;  ///< in the order of the starts; angle 0 is where the recording begins
   InsFit fit;
-  MatrixXd covariance;  ///< of the border's unknowns
-  std::string grade;    ///< that was used
+  MatrixXd covariance;             ///< of the border's unknowns
+  std::string grade;               ///< that was used
+  std::vector<FoundPlace> places;  ///< of the facts
 };
 
 /// `starts`: one for each segment but the root, parents before children.

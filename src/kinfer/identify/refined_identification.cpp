@@ -17,16 +17,17 @@ std::size_t segment_named(const RecordedMotion& motion, const std::string& name)
 
 }  // namespace
 
-void refine_geometry(Identification& result, const InsRecording& recording, const RecordedMotion& motion,
-                     const SegmentTree& tree, const RefineOptions& options, const Observer& observer) {
+Result<void> refine_geometry(Identification& result, const InsRecording& recording, const RecordedMotion& motion,
+                             const SegmentTree& tree, const RefineOptions& options, const Observer& observer) {
   std::vector<JointStart> starts;
   for (const FoundJoint& joint : result.joints)
     starts.push_back(
         joint_start(motion, tree, segment_named(motion, joint.parent), segment_named(motion, joint.child), joint.type));
   auto refined = refine(recording, motion, tree, starts, options, observer);
+  if (!refined && !options.facts.empty()) return pass_on(refined.error());
   if (!refined) {
     result.notes.push_back(refined.error().what + "; the geometry is the search's");
-    return;
+    return {};
   }
   result.joints.clear();
   result.dh.clear();
@@ -34,6 +35,8 @@ void refine_geometry(Identification& result, const InsRecording& recording, cons
     result.joints.push_back(joint.found);
     std::ranges::copy(canonical_rows(joint.found, joint.hinge), std::back_inserter(result.dh));
   }
+  result.places = refined->places;
+  return {};
 }
 
 }  // namespace kinfer

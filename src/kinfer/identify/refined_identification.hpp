@@ -6,8 +6,9 @@
 namespace kinfer {
 
 /// Replaces joints and canonical rows of an identification by refined ones; the joint types stay. Where the fit has no
-/// answer, everything stays as the search found it and a note says why.
-void refine_geometry(Identification& result, const InsRecording& recording, const RecordedMotion& motion,
-                     const SegmentTree& tree, const RefineOptions& options, const Observer& observer = {});
+/// answer, everything stays as the search found it and a note says why. An error where the facts do not fit the
+/// machine.
+Result<void> refine_geometry(Identification& result, const InsRecording& recording, const RecordedMotion& motion,
+                             const SegmentTree& tree, const RefineOptions& options, const Observer& observer = {});
 
 }  // namespace kinfer

@@ -61,6 +61,10 @@ Json json_of(const FoundLink& link) {
       {"segment", link.segment}, {"from", link.from}, {"to", link.to}, {"length_m", link.length}, {"sd_m", link.sd}};
 }
 
+Json json_of(const FoundPlace& place) {
+  return {{"name", place.name}, {"sensor", place.sensor}, {"xyz", json_of(place.xyz)}, {"sd_m", json_of(place.sd)}};
+}
+
 Json json_of(const FoundFit& fit) {
   return {{"total", fit.total}, {"acceleration", fit.acceleration}, {"orientation", fit.orientation}};
 }
@@ -160,6 +164,7 @@ std::string identification_json(const Identification& found, const Provenance& p
   json["dh"] = dh_json(found.dh);
   json["chain"] = chain_json(found.chain);
   json["next"] = advice_json(found.next);
+  json["places"] = list_of(found.places);
   json["order"] = json_of(found.order);
   json["fit"] = fit_json(found.searches);
   json["search"] = search_json(found);
