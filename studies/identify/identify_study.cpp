@@ -5,8 +5,11 @@
 #include <chrono>
 #include <cstdlib>
 
+#include "kinfer/estimate/ins_noise.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/identify/ordered_motion.hpp"
 #include "kinfer/identify/refine.hpp"
+#include "kinfer/io/ins_csv.hpp"
 #include "kinfer/simulate/ins_simulation.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
 #include "studies/identify/truth_scores.hpp"
@@ -19,6 +22,9 @@ struct Setup {
   Script script = Script::standard;
   Base base = Base::still;
   double slope = 0.0;
+  SensorTrouble trouble;
+  double accelerometer_range = 0.0, gyro_range = 0.0;  // [m/s²], [rad/s]; 0: the grade's
+  std::optional<Servo> servo;                          // forward dynamics instead of prescribed motion
   int seeds = 4;
 };
 
@@ -32,8 +38,12 @@ Drive simulated(const Setup& setup, std::uint64_t seed) {
       machine_mjcf(setup.machine, {.base = setup.base, .slope = Angle::deg(setup.slope)}, Rng(seed).stream(1)).value();
   const MujocoWorld world = MujocoWorld::load(mjcf).value();
   const auto drive = make_drive(world.machine(), {.script = setup.script}, Rng(seed).stream(2)).value();
-  const MachineMotion motion = world.prescribe(drive, 200.0);
-  return {simulated_recording(world.machine(), motion, *sensor_grade(setup.grade), {}, Rng(seed).stream(3)),
+  const MachineMotion motion =
+      setup.servo ? world.drive(drive, 200.0, *setup.servo).value() : world.prescribe(drive, 200.0);
+  SensorModel grade = *sensor_grade(setup.grade);
+  if (setup.accelerometer_range > 0.0) grade.accelerometer.range = setup.accelerometer_range;
+  if (setup.gyro_range > 0.0) grade.gyroscope.range = setup.gyro_range;
+  return {simulated_recording(world.machine(), motion, grade, setup.trouble, Rng(seed).stream(3)),
           machine_truth(world.machine(), motion)};
 }
 
@@ -43,8 +53,13 @@ void run(const Setup& setup) {
   for (int seed = 1; seed <= setup.seeds; ++seed) {
     const Drive drive = simulated(setup, static_cast<std::uint64_t>(seed));
     const auto begin = std::chrono::steady_clock::now();
-    const auto motion = segment_motion(drive.recording);
-    const auto tree = segment_tree(*motion, drive.truth.root);
+    const auto ordered = ordered_motion(drive.recording, {}, drive.truth.root, 0);
+    if (!ordered) {
+      fmt::print("seed {}: {}\n", seed, ordered.error().what);
+      continue;
+    }
+    const RecordedMotion* motion = &ordered->motion;
+    const SegmentTree* tree = &ordered->tree;
     std::vector<JointStart> starts;
     for (std::size_t i = 1; i < tree->order.size(); ++i)
       starts.push_back(
@@ -90,12 +105,60 @@ void run(const Setup& setup) {
       *std::ranges::max_element(directions), rms(ratios), 100.0 * inside / scalars);
 }
 
+/// A recording of a real machine whose joint types are given, one a joint of the tree in order.
+void run_log(const std::string& path, const std::string& root, const std::vector<FoundJointType>& types, double knots) {
+  const auto recording = read_ins_csv(path).value();
+  const auto ordered = ordered_motion(recording, {}, root, 0).value();
+  const RecordedMotion& motion = ordered.motion;
+  const SegmentTree& tree = ordered.tree;
+  std::vector<JointStart> starts;
+  for (std::size_t i = 1; i < tree.order.size(); ++i)
+    starts.push_back(joint_start(motion, tree, *tree.parent[tree.order[i]], tree.order[i], types.at(i - 1)));
+  const auto found = refine(recording, motion, tree, starts, {.knots = knots}).value();
+  fmt::print("{} iterations {} cost {:.0f} {}\n", found.fit.iterations, name(found.fit.stop), found.fit.cost.total,
+             found.grade);
+  for (std::size_t s = 0; s < found.fit.cost.sensors.size(); ++s) {
+    const SensorFit& f = found.fit.cost.sensors[s];
+    const InsNoise& noise = found.noise[s];
+    fmt::print("{}: noise rate {:.4f} force {:.4f}, memory {:.1f} {:.1f}\n", motion.segments[s].name, noise.rate,
+               noise.force, memory_of(f.rate), memory_of(f.force));
+  }
+  for (const RefinedJoint& joint : found.joints) {
+    const FoundJoint& j = joint.found;
+    const auto vector = [](const char* name, const Vec3& v) {
+      fmt::print(" {} {:.5f} {:.5f} {:.5f}", name, v.x(), v.y(), v.z());
+    };
+    fmt::print("joint {} {}", j.parent, j.child);
+    vector("axis_in_parent", j.axis_in_parent);
+    vector("axis_in_child", j.axis_in_child);
+    vector("point_in_parent", j.point_in_parent);
+    vector("point_in_child", j.point_in_child);
+    fmt::print(" sd mrad {:.2f} {:.2f} mm {:.2f} {:.2f} {:.2f}\n", 1e3 * j.sd.axis_in_parent[0],
+               1e3 * j.sd.axis_in_child[0], 1e3 * j.sd.point_in_parent[0], 1e3 * j.sd.point_in_child[0],
+               1e3 * j.sd.slide);
+  }
+  std::vector<FoundJoint> joints;
+  for (const RefinedJoint& joint : found.joints) joints.push_back(joint.found);
+  for (const FoundLink& link : found_links(joints))
+    fmt::print("link {} {:.2f} mm sd {:.2f}\n", link.segment, 1e3 * link.length, 1e3 * link.sd);
+}
+
 }  // namespace
 }  // namespace kinfer::study
 
 int main(int argc, char** argv) {
   using namespace kinfer;
   study::Setup setup;
+  if (argc > 4 && std::string(argv[1]) == "log") {
+    std::vector<FoundJointType> types;
+    for (const char letter : std::string(argv[4]))
+      types.push_back(letter == 's'   ? FoundJointType::spherical
+                      : letter == 'u' ? FoundJointType::universal
+                      : letter == 'p' ? FoundJointType::prismatic
+                                      : FoundJointType::revolute);
+    study::run_log(argv[2], argv[3], types, argc > 5 ? std::atof(argv[5]) : 0.1);
+    return 0;
+  }
   if (argc > 1) setup.machine = argv[1];
   if (argc > 2) setup.grade = argv[2];
   if (argc > 3) setup.seeds = std::atoi(argv[3]);
@@ -104,6 +167,13 @@ int main(int argc, char** argv) {
     if (word == "gentle") setup.script = Script::gentle;
     if (word == "together") setup.script = Script::together;
     if (word == "vigorous") setup.script = Script::vigorous;
+    if (word == "spiky") setup.trouble.spikes = 6.0;
+    if (word == "gappy") setup.trouble.missing = 0.05;
+    if (word == "disturbed") setup.trouble.magnetic_disturbance = 10.0;
+    if (word == "nomag") setup.trouble.has_magnetometer = false;
+    if (word == "saturated") setup.accelerometer_range = 12.0, setup.gyro_range = 0.6;
+    if (word == "stiff") setup.servo = Servo::stiff;
+    if (word == "soft") setup.servo = Servo::soft;
     if (word == "slope") setup.slope = 8.0;
     if (word == "rocking") setup.base = Base::rocking;
     if (word == "yawing") setup.base = Base::yawing;

@@ -131,7 +131,7 @@ std::string name(Method method) {
   constexpr const char* names[] = {"PSO as printed (w 0.9)",
                                    "PSO (w 0.8)",
                                    "BPNN-PSO",
-                                   "BPNN-PSO, net before every update",
+                                   "BPNN-PSO with the net before every update",
                                    "warm start without a net",
                                    "compact swarm without memory",
                                    "QPSO",

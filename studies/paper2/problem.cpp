@@ -91,6 +91,7 @@ Problem simulation(const Conditions& conditions, int poses, int errors) {
   const Chain truth =
       unpack(problem.parameters, problem.nominal,
              pack(problem.parameters, problem.nominal) + drawn_errors(conditions, Rng(errors).stream(7)));
+  problem.truth = truth;
   problem.instrument = conditions.instrument;
   const Rng rng = Rng(poses);
   problem.fit = with_noise(measured_without_noise(truth, drawn_joints(problem.nominal, 50, rng.stream(0))),
@@ -106,6 +107,7 @@ Problem experiment(int poses) {
   problem.parameters = table2_parameters(problem.nominal);
   Chain truth = bending(with_errors(problem.nominal, table7));
   truth.base = Frame::from_pose(Pose::from_xyz_rpy({0.2e-3, -0.15e-3, 0.17e-3}, Vec3(0.012, -0.01, 0.012) * degree));
+  problem.truth = truth;
   problem.instrument = laser;
   const Rng rng = Rng(poses).stream(5);
   const MatrixXd joints = drawn_joints(problem.nominal, 100, rng.stream(0));

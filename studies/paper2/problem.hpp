@@ -11,6 +11,7 @@ namespace kinfer::paper2 {
 
 struct Problem {
   Chain nominal;                ///< with the base and tool that are believed
+  Chain truth;                  ///< the real robot, where it is simulated
   ParameterSet parameters;      ///< table 2's 24
   PoseSet fit, verify;          ///< 50 poses each
   Bounds box;                   ///< about the nominal numbers

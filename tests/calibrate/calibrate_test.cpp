@@ -157,7 +157,7 @@ TEST(Calibrate, what_the_instrument_cannot_excuse_is_advised_against) {
   truth.joints[1].compliance = 2e-6;  // sags under its arm, and the geometric model has no word for it
   truth.masses = {{2, Vec3(0.4, 0, 0), 120.0}, {4, Vec3(0, 0, 0.1), 60.0}};
   const PoseSet data = measured(truth, paper2_poses(100, tracker));
-  const Calibration c = calibrate({er20(0.125), {}, tracker, data}, {}, Rng(1)).value();
+  const Calibration c = calibrate({er20(0.125), {}, tracker, data}, {.model = NamedModel{}}, Rng(1)).value();
   EXPECT_FALSE(c.use);
   EXPECT_GT(*c.estimate.chi2_per_n, 10.0);
   EXPECT_NE(c.verdict.find("not modelled"), std::string::npos);

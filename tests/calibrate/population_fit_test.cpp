@@ -117,6 +117,52 @@ TEST(FleetPrior, mean_and_spread_count_the_nominal_model_as_one_robot) {
   EXPECT_NEAR(informed.find("a3")->prior_sd, 0.25e-3, 1e-12);  // all agree: half the tolerance of 0.5 mm
 }
 
+TEST(FleetPrior, covariance_is_that_of_the_fleet_with_the_tolerances_as_one_more_robot) {
+  const Chain nominal = er20(d6);
+  const ParameterSet set = paper24_parameters(nominal, {}).value();
+  const VectorXd at = pack(set, nominal);
+  VectorXd tolerance(24);
+  for (int k = 0; k < 24; ++k) tolerance[k] = set.free()[k]->prior_sd;
+  MatrixXd off(24, 2);  // fewer robots than parameters
+  Rng rng(3);
+  for (double& v : off.reshaped()) v = rng.normal();
+  std::vector<Chain> fleet;
+  for (int i = 0; i < 2; ++i) fleet.push_back(unpack(set, nominal, at + VectorXd(tolerance.cwiseProduct(off.col(i)))));
+  const ParameterSet informed = with_fleet_prior(set, fleet);
+
+  const VectorXd mean = at + VectorXd(tolerance.cwiseProduct(off.rowwise().sum())) / 3.0;
+  MatrixXd covariance = tolerance.cwiseAbs2().asDiagonal();
+  for (const Chain& robot : fleet) covariance += (pack(set, robot) - mean) * (pack(set, robot) - mean).transpose();
+  covariance /= 3.0;
+  EXPECT_LT((nominal_of(informed) - mean).norm(), 1e-12);
+  const MatrixXd rows = prior_rows(informed), both = covariance * rows.transpose() * rows;
+  EXPECT_LT((both - MatrixXd::Identity(24, 24)).norm(), 1e-8);
+  for (int k = 0; k < 24; ++k) EXPECT_NEAR(informed.free()[k]->prior_sd, std::sqrt(covariance(k, k)), 1e-12);
+}
+
+TEST(FleetPrior, errors_that_go_together_in_the_fleet_tell_each_other) {
+  // In every sister a2 and a3 are wrong by the same amount: the sum that a few poses see best gives both.
+  const Chain nominal = er20(d6);
+  const auto robot = [&](double error) {
+    Chain chain = nominal;
+    std::get<MdhLink>(chain.joints[1].link).a += error, std::get<MdhLink>(chain.joints[2].link).a += error;
+    return chain;
+  };
+  CalibrateTask task{nominal, {}, noise_free, measured(robot(0.8e-3), paper2_poses(30, noise_free)), {}, {}};
+  for (const double error : {-1e-3, -0.5e-3, 0.5e-3, 1e-3}) task.fleet.push_back(robot(error));
+  const ParameterSet informed = prepare_fit(task, task.data, Paper24Parameters{}).value().parameters;
+  const MatrixXd rows = prior_rows(informed);
+  const auto price = [&](double a2, double a3) {
+    VectorXd x = nominal_of(informed);
+    for (std::size_t k = 0; k < informed.free().size(); ++k) {
+      if (informed.free()[k]->name == "a2") x[k] += a2;
+      if (informed.free()[k]->name == "a3") x[k] += a3;
+    }
+    return (rows * (x - nominal_of(informed))).squaredNorm();
+  };
+  EXPECT_LT(price(0.5e-3, 0.5e-3), 0.3 * price(0.5e-3, -0.5e-3));
+}
+
 TEST(FleetPrior, few_poses_and_a_fleet_beat_few_poses_alone) {
   const Chain truth = with_table3_errors(er20(d6));
   const Instrument laser{.sigma = 10e-6, .sigma_angle = 0.0, .ppm = 5.0};

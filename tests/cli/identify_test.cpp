@@ -19,7 +19,7 @@ class Identify : public test::Program {
 
 TEST_F(Identify, WritesTheChainAndItsEvidenceAndTheSameBytesForAnyNumberOfThreads) {
   simulate();
-  const std::string how = "identify drive/imu.csv --generations 5 --individuals 20 --links 2 ";
+  const std::string how = "identify drive/imu.csv --engine bp --generations 5 --individuals 20 --links 2 ";
   const auto one = kinfer(how + "--out one --threads 1");
   ASSERT_EQ(one.code, 0) << one.err;
   EXPECT_THAT(one.out, HasSubstr("who moves when"));
@@ -37,6 +37,22 @@ TEST_F(Identify, WritesTheChainAndItsEvidenceAndTheSameBytesForAnyNumberOfThread
   EXPECT_EQ(json["search"]["engine"], "bp");
   EXPECT_EQ(json["search"]["best"][0].size(), 6u);
   EXPECT_TRUE(json["fit"]["holdout"].contains("ins2"));
+}
+
+TEST_F(Identify, EnumerationIsACertificateThatTheDefaultEngineReaches) {
+  simulate();
+  const auto evidence = [&](const std::string& engine) {
+    EXPECT_EQ(
+        kinfer("identify drive/imu.csv --links 2 --geometry searched --quiet --out " + engine + " --engine " + engine)
+            .code,
+        0);
+    return nlohmann::json::parse(slurp(in(engine) / "evidence.json"));
+  };
+  const auto found = evidence("bmp"), certified = evidence("enum");
+  EXPECT_THAT(certified["verdict"].get<std::string>(), HasSubstr("no chain of up to 3 leaves fits better"));
+  EXPECT_LT(found["search"]["best"][1].back().get<double>(),
+            1.002 * certified["search"]["best"][1].back().get<double>());
+  EXPECT_LT(found["search"]["evaluations"].get<int>(), 5000);
 }
 
 TEST_F(Identify, BadInputGetsOneSentenceAndLeavesNothing) {

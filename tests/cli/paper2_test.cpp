@@ -39,6 +39,7 @@ TEST_F(Paper2, bpnn_pso_leaves_a_net_and_a_second_run_is_compared_with_a_warm_st
   for (const json& run : again["search"]["side_by_side"]) starts += run["start"].get<std::string>() + ";";
   EXPECT_EQ(starts, "cold;nominal swarm;warm start;net;");
   EXPECT_NE(second.out.find("warm start"), std::string::npos) << second.out;
+  EXPECT_NE(slurp(in("second") / "evidence.json").find("--warm-start"), std::string::npos);
 }
 
 TEST_F(Paper2, a_population_gives_the_same_bytes_for_1_and_7_threads) {

@@ -29,7 +29,7 @@ InsState state_of(ConstVectorRef x) {
 std::vector<InsBody> bodies_of_every_kind(Rng& rng) {
   const auto turn = [&] { return exp_so3(random_vector(rng)); };
   std::vector<InsBody> bodies{turning_body(0, 1, turn(), turn()), sliding_body(0, 1, turn(), turn()),
-                              fixed_body(0, 1, turn())};
+                              fixed_body(0, 1, turn()), ball_body(0, 1, turn())};
   for (InsBody& body : bodies) {
     body.point_in_parent = random_vector(rng);
     if (body.free_point_in_child) body.point_in_child = random_vector(rng);
@@ -44,18 +44,19 @@ TEST(InsChain, DerivativesAgreeWithDifferences) {
   Rng rng(5);
   for (const InsBody& body : bodies_of_every_kind(rng)) {
     const InsState parent{random_vector(rng), random_vector(rng), random_vector(rng), random_vector(rng)};
-    const JointReading q{0.4, -0.7, 1.3};
+    const JointReading q{Vec3(0.4, 0.8, -0.3), Vec3(-0.7, 0.2, 0.9), Vec3(1.3, -0.5, 0.4)};
     CarriedDerivative derivative;
     carry(body, q, parent, derivative);
     EXPECT_LT((flat(derivative.state) - flat(carried(body, q, parent))).norm(), 1e-14);
     const MatrixXd by_parent =
         numeric_jacobian([&](const VectorXd& x) { return flat(carried(body, q, state_of(x))); }, flat(parent));
     EXPECT_LT((derivative.by_parent - by_parent).norm(), 1e-7);
-    const Index n = 3 + body.unknowns();
+    const Index readings = 3 * freedoms(body.motion), n = readings + body.unknowns();
     const MatrixXd by_own = numeric_jacobian(
         [&](const VectorXd& x) {
-          const JointReading moved{q[0] + x[0], q[1] + x[1], q[2] + x[2]};
-          return flat(carried(changed(body, x.tail(n - 3)), moved, parent));
+          JointReading moved = q;
+          for (Index k = 0; k < readings; ++k) moved[static_cast<std::size_t>(k % 3)][k / 3] += x[k];
+          return flat(carried(changed(body, x.tail(n - readings)), moved, parent));
         },
         VectorXd::Zero(n));
     EXPECT_LT((derivative.by_own - by_own).norm(), 1e-7) << static_cast<int>(body.motion);
@@ -69,7 +70,7 @@ TEST(InsChain, FeelsWhatTheMotionOfAPointSays) {
   const Vec3 spin = random_vector(rng), sweep = random_vector(rng), field(1.0, 20.0, -44.0), up(0.0, 0.0, 9.81);
   const auto parent_turn = [&](double t) { return Mat3(exp_so3(std::sin(t) * spin) * exp_so3(t * t * sweep)); };
   const auto parent_place = [&](double t) { return Vec3(std::sin(2 * t) * spin + t * t * t * sweep); };
-  const auto reading = [](double t) { return 0.3 + std::sin(1.7 * t); };
+  const auto reading = [](double t) { return Vec3(0.3 + std::sin(1.7 * t), t * t, std::cos(t)); };
   constexpr double t0 = 0.3, h = 1e-3;
   const auto second = [&](const auto& f) { return Vec3((f(t0 + h) - 2.0 * f(t0) + f(t0 - h)) / (h * h)); };
   const auto rate_at = [&](const auto& turn, double t) {
@@ -84,16 +85,19 @@ TEST(InsChain, FeelsWhatTheMotionOfAPointSays) {
     return s;
   };
   for (const InsBody& body : bodies) {
-    const bool turns = body.motion == JointMotion::turn;
-    const auto q = [&](double t) { return body.motion == JointMotion::none ? 0.0 : reading(t); };
+    const auto q = [&](double t) { return Vec3(body.motion == JointMotion::none ? Vec3::Zero() : reading(t)); };
     const auto child_turn = [&](double t) {
-      return Mat3(parent_turn(t) * body.parent_R_axis * rot_z(turns ? q(t) : 0.0) * body.child_R_axis.transpose());
+      const Mat3 moved = body.motion == JointMotion::turn   ? rot_z(q(t).x())
+                         : body.motion == JointMotion::ball ? exp_so3(q(t))
+                                                            : Mat3(Mat3::Identity());
+      return Mat3(parent_turn(t) * body.parent_R_axis * moved * body.child_R_axis.transpose());
     };
     const auto child_place = [&](double t) {
-      const Vec3 joint = body.point_in_parent + (turns ? 0.0 : q(t)) * body.parent_R_axis.col(2);
+      const double slid = body.motion == JointMotion::slide ? q(t).x() : 0.0;
+      const Vec3 joint = body.point_in_parent + slid * body.parent_R_axis.col(2);
       return Vec3(parent_place(t) + parent_turn(t) * joint - child_turn(t) * body.point_in_child);
     };
-    const JointReading now{q(t0), (q(t0 + h) - q(t0 - h)) / (2 * h), (q(t0 + h) - 2 * q(t0) + q(t0 - h)) / (h * h)};
+    const JointReading now{q(t0), (q(t0 + h) - q(t0 - h)) / (2 * h), second(q)};
     const InsState is = carried(body, now, felt(parent_turn, parent_place)), ought = felt(child_turn, child_place);
     EXPECT_LT((flat(is) - flat(ought)).norm(), 2e-4) << static_cast<int>(body.motion);
   }

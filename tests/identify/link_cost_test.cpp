@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "identify/example_machine.hpp"
+#include "kinfer/identify/genome_block.hpp"
+#include "support/naive_genome.hpp"
 
 namespace kinfer {
 namespace {
@@ -83,6 +85,34 @@ TEST(LinkCost, PrefersTheShorterOfTwoEqualChainsAndRefusesAChainWithoutSignal) {
   longer.push_back({});
   EXPECT_LT(cost(tree_of(guess), infinite), cost(tree_of(longer), infinite));
   EXPECT_EQ(cost(tree_of({{.a = 1.0}}), infinite), infinite);
+}
+
+TEST(LinkBlock, AgreesWithProductsOf4x4MatricesAndDifferences) {
+  constexpr double h = 1e-3, w = 2.0 * 3.14159265358979323846;
+  const JointSignal swing = wave(0.5, 0.7, 0.3), hinge = wave(0.6, 0.9, 1.0);
+  const auto parent = swinging_parent(swing);
+  const auto child = carried(parent, general_hinge(), {&hinge, 1});
+  std::vector<test::NaiveSample> samples;
+  for (std::size_t row = 0; row < 600; ++row) {
+    test::NaiveSample s{{}, {}, child[row].acceleration, child[row].rotation};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double t = 0.01 * static_cast<double>(row) + (static_cast<double>(k) - 1.0) * h;
+      s.q[k] = 0.6 * std::sin(w * 0.9 * t + 1.0);
+      s.parent[k] = test::naive_leaf({.alpha = 0.4}, 0.0) *
+                    test::naive_leaf({.a = -1.3, .theta_signal = 0}, 0.5 * std::sin(w * 0.7 * t + 0.3));
+    }
+    samples.push_back(s);
+  }
+  auto guess = general_hinge();
+  guess[0].a += 0.3;
+  guess[1].theta -= 0.2;
+  double fast = 0.0;
+  for (const LinkBlock& block : link_blocks(parent, child, {&hinge, 1}, all_rows(600))) {
+    const FrameLanes state = block.carried(guess);
+    fast += block.acceleration_square(state) + block.chord_square(state);
+  }
+  const double slow = test::naive_square(samples, guess, h);
+  EXPECT_NEAR(fast, slow, 1e-4 * slow);  // what second differences over a millisecond leave
 }
 
 TEST(EulerAngles, AreThoseOfYawPitchRollAndHaveASecondReading) {

@@ -85,8 +85,8 @@ TEST(RobotToml, UnitsRuleEveryLengthAndAngleOfTheFile) {
   ASSERT_TRUE(robot.instrument.has_value());
   EXPECT_DOUBLE_EQ(robot.instrument->sigma, 1e-5);
   EXPECT_DOUBLE_EQ(robot.instrument->ppm, 5.0);
-  ASSERT_EQ(robot.anchors.size(), 1U);
-  EXPECT_TRUE(robot.anchors[0].isApprox(Vec3(1.8, -0.9, 0.1)));
+  ASSERT_EQ(robot.chain.surroundings.anchors.size(), 1U);
+  EXPECT_TRUE(robot.chain.surroundings.anchors[0].isApprox(Vec3(1.8, -0.9, 0.1)));
   ASSERT_EQ(chain.targets.size(), 1U);
   EXPECT_TRUE(chain.targets[0].xyz.isApprox(Vec3(0.01, 0, 0)));
   ASSERT_EQ(chain.masses.size(), 1U);

@@ -68,7 +68,7 @@ TEST(RobotTomlWriting, AllThatIsNotThePoseComesBackToo) {
   robot.chain.joints[1].name = "base";
   robot.tolerances.length = 0.2e-3, robot.tolerances.base_angle = 3 * degree;
   robot.instrument = Instrument{.sigma = 1e-5, .sigma_angle = 1e-4, .ppm = 5};
-  robot.anchors = {Vec3(1.8, -0.9, 0.1), Vec3(0, 1, 2)};
+  robot.chain.surroundings.anchors = {Vec3(1.8, -0.9, 0.1), Vec3(0, 1, 2)};
   const auto read = parse_robot_toml(robot_toml(robot), "chain.toml");
   ASSERT_TRUE(read.has_value()) << read.error().what;
   EXPECT_EQ(read->chain.name, "compliant tree");
@@ -84,7 +84,7 @@ TEST(RobotTomlWriting, AllThatIsNotThePoseComesBackToo) {
   EXPECT_EQ(read->tolerances.length, 0.2e-3);
   EXPECT_EQ(read->tolerances.base_angle, 3 * degree);
   EXPECT_EQ(read->instrument->sigma_angle, 1e-4);
-  EXPECT_EQ(read->anchors, robot.anchors);
+  EXPECT_EQ(read->chain.surroundings.anchors, robot.chain.surroundings.anchors);
 }
 
 TEST(RobotTomlWriting, NumbersArePlainWhereTheyArePlain) {

@@ -59,6 +59,18 @@ TEST(Screening, single_spikes_are_found_and_nothing_else) {
   EXPECT_TRUE(sample(c.sensor, c.time, 3000).has_rate);
 }
 
+TEST(Screening, wild_rows_together_and_at_the_ends_are_spikes_too_and_a_step_is_none) {
+  CarriedSensor c = noisy();
+  c.sensor.rate.axis[2][4000] -= 20.0f;
+  c.sensor.rate.axis[2][4001] += 15.0f;
+  for (std::size_t row = 2000; row < 2010; ++row) c.sensor.acceleration.axis[1][row] += 80.0f;
+  for (const std::size_t row :
+       {std::size_t{0}, std::size_t{5000}, std::size_t{5001}, std::size_t{5002}, c.time.size() - 1})
+    c.sensor.rate.axis[0][row] += 12.0f;
+  EXPECT_EQ((mark_faults(c.sensor), count(c.sensor, rate_spike)), 7u);
+  EXPECT_EQ(count(c.sensor, acceleration_spike), 0u);
+}
+
 TEST(Screening, missing_and_impossible_numbers_are_missing) {
   CarriedSensor c = noisy();
   c.sensor.acceleration.axis[0][10] = std::nanf("");

@@ -142,6 +142,21 @@ TEST(Pso, costs_that_are_not_finite_are_infinite_and_counted) {
   EXPECT_EQ(particle_swarm(hopeless, {.budget = {.max_iterations = 3}}, Rng(1)).stop, Stop::not_finite);
 }
 
+TEST(Pso, a_search_that_gains_nothing_any_more_ends_before_its_budget) {
+  // The bowl of 24 dimensions with a floor: noise leaves no lower cost to be found.
+  const Objective bowl = shifted_sphere(24);
+  const Objective with_floor{bowl.bounds, [bowl](ConstMatrixRef x, std::span<double> cost) {
+                               bowl.evaluate(x, cost);
+                               for (double& c : cost) c += 1e-3;
+                             }};
+  PsoOptions options;
+  options.budget = {.max_iterations = 100000, .patience = 100};
+  const Outcome outcome = particle_swarm(with_floor, options, Rng(1));
+  EXPECT_EQ(outcome.stop, Stop::converged_cost);
+  EXPECT_LT(outcome.iterations, 1000);
+  EXPECT_LT(outcome.cost, 1.02e-3);
+}
+
 TEST(Pso, an_observer_may_stop_it) {
   const auto stop_at_5 = [](const Progress& progress) { return progress.iteration == 5 ? Wish::stop : Wish::go_on; };
   const Outcome outcome = particle_swarm(shifted_sphere(3), {}, Rng(1), stop_at_5);

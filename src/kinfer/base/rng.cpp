@@ -34,6 +34,13 @@ double Rng::uniform() {
   return static_cast<double>(bits() >> 11) * 0x1.0p-53;
 }
 
+void Rng::uniform(std::span<double> to) {
+  const std::uint64_t first = key_ + counter_ * golden;
+  for (std::size_t i = 0; i < to.size(); ++i)
+    to[i] = static_cast<double>(mix(first + (i + 1) * golden) >> 11) * 0x1.0p-53;
+  counter_ += to.size();
+}
+
 double Rng::uniform(double low, double high) {
   return low + (high - low) * uniform();
 }

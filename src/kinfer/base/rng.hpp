@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 namespace kinfer {
 
@@ -18,6 +19,7 @@ class Rng {
   std::uint64_t bits();                      ///< 64 random bits
   double uniform();                          ///< in [0, 1)
   double uniform(double low, double high);   ///< in [low, high)
+  void uniform(std::span<double> to);        ///< one number after the other, each in [0, 1)
   double normal();                           ///< mean 0, standard deviation 1 (Box-Muller, one value a call)
   std::uint64_t index(std::uint64_t count);  ///< in 0 .. count-1, each equally likely; count >= 1
 

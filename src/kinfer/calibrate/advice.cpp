@@ -52,7 +52,8 @@ void measure_where_it_is_uncertain(const Calibration& c, std::vector<Advice>& li
 void measure_more_poses(const CalibrateTask& task, const Calibration& c, std::vector<Advice>& list) {
   constexpr Eigen::Index plenty = 60;
   if (task.data.rows() >= plenty) return;
-  list.push_back({fmt::format("Measure {} poses more", std::max<Eigen::Index>(10, plenty - task.data.rows())),
+  list.push_back({fmt::format("Measure {} poses more (kinfer plan --data chooses them)",
+                              std::max<Eigen::Index>(10, plenty - task.data.rows())),
                   fmt::format("{} poses leave the model itself {:.3f} mm uncertain; from about {} poses on the gain is "
                               "small",
                               task.data.rows(), 1e3 * c.estimate.predicted_error, plenty)});

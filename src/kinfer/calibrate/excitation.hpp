@@ -1,4 +1,4 @@
-// What the joints of a pose set do, and what looks wrong before any fit.
+// What the joints of a pose set do.
 #pragma once
 
 #include <string>
@@ -15,9 +15,5 @@ struct JointExcitation {
   double lowest = 0.0, highest = 0.0, sd = 0.0;
 };
 std::vector<JointExcitation> joint_excitation(const Chain& chain, const PoseSet& set);
-
-/// In words: joints that do not move, readings that look like degrees, repeated rows, readings that differ from what
-/// was commanded.
-std::vector<std::string> findings(const PoseSet& set, const std::vector<JointExcitation>& joints);
 
 }  // namespace kinfer

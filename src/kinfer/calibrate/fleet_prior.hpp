@@ -7,9 +7,10 @@
 
 namespace kinfer {
 
-/// The priors of the joints' parameters are centred at the fleet's mean, with the fleet's variance. The nominal model
-/// with its tolerance counts as one more robot, so that a fleet of few is not believed too much:
-///   mean = (nominal + Σ x_k) / (1 + K),   sd² = (tolerance² + Σ (x_k − mean)²) / (1 + K)
+/// The free parameters of the joints get the fleet's mean and full covariance as their prior. The nominal model with
+/// its tolerances T (diagonal) counts as one more robot, so that a fleet of few is not believed too much and every
+/// covariance is positive definite:
+///   mean = (nominal + Σ x_k) / (1 + K),   covariance = (T² + Σ (x_k − mean)(x_k − mean)ᵀ) / (1 + K)
 /// Base and tool belong to a set-up, not to the robot, and keep their priors. Each robot must have the joints of
 /// `nominal`.
 ParameterSet with_fleet_prior(ParameterSet set, std::span<const Chain> fleet);

@@ -1,10 +1,11 @@
 #include "kinfer/calibrate/frames_start.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <optional>
 #include <set>
 
 #include "kinfer/calibrate/parameter_choice.hpp"
+#include "kinfer/calibrate/surroundings.hpp"
 #include "kinfer/estimate/residuals.hpp"
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
@@ -86,18 +87,62 @@ Chain with_solved_translations(Chain chain, const PoseSet& data, const std::vect
   return chain;
 }
 
-/// Base and tool together, under a loss that wrong rows cannot pull; the noise level is the typical residual at the
-/// start.
+/// Tool position and sockets for known rotations: p + R t = s, linear in t and s.
+Chain with_solved_tool(Chain chain, const PoseSet& data, const std::vector<Pose>& base_T_flange) {
+  const auto n = static_cast<Eigen::Index>(data.contacts.size());
+  const auto sockets = static_cast<Eigen::Index>(chain.surroundings.sockets.size());
+  MatrixXd a = MatrixXd::Zero(3 * n, 3 + 3 * sockets);
+  VectorXd b(3 * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const SocketContact& contact = data.contacts[i];
+    const Pose& flange = base_T_flange[contact.row];
+    a.block<3, 3>(3 * i, 0) = flange.rotation;
+    a.block<3, 3>(3 * i, 3 + 3 * contact.socket) = -Mat3::Identity();
+    b.segment<3>(3 * i) = -flange.position;
+  }
+  chain.tool.xyz = solve_least_squares(a, b, 1e-9).head<3>();
+  return chain;
+}
+
+/// The tool's turn from the felt gravity (Wahba 1965) when `up_in_base` is where up is.
+Chain with_tool_from_tilts(Chain chain, const PoseSet& data, const std::vector<Pose>& base_T_flange,
+                           const Vec3& up_in_base) {
+  std::vector<Vec3> felt, expected;
+  for (const TiltMeasurement& tilt : data.tilts) {
+    const Vec3 in_flange = base_T_flange[tilt.row].rotation.transpose() * up_in_base;
+    for (const double sign : {1.0, -1.0}) {  // mirrored copies: directions have no centroid
+      felt.push_back(sign * tilt.specific_force.normalized());
+      expected.push_back(sign * in_flange);
+    }
+  }
+  chain.tool.rotation = align_points(expected, felt).rotation;
+  chain.tool.turn.setZero();
+  const Vec3 up = -chain.gravity.normalized();
+  chain.base.rotation = Quat::FromTwoVectors(up_in_base, up).toRotationMatrix();
+  chain.base.turn.setZero();
+  return chain;
+}
+
+double typical_error(const Chain& chain, const PoseSet& data) {
+  for (const ResidualKind& kind : residual_kinds()) {
+    std::vector<double> errors = errors_of_kind(kind.kind, chain, data);
+    if (!errors.empty()) return median(std::move(errors));
+  }
+  return 0.0;
+}
+
+/// All frames together, under a loss that wrong rows cannot pull; the noise level is the typical residual at the start.
 Chain refined(const Chain& start, const PoseSet& data, const ParameterSet& frames) {
-  const auto floored_median = [](std::vector<double> errors, double floor) {
-    return errors.empty() ? floor : std::max(floor, median(std::move(errors)));
-  };
   constexpr int rounds = 4;  // the noise level falls with the residuals
   Chain chain = start;
-  for (int i = 0; i < rounds; ++i) {
+  for (int i = 0; i < rounds && frames.free_count() > 0; ++i) {
     Weights weights;
-    weights.point_sd.assign(data.points.size(), Vec3::Constant(floored_median(point_errors(chain, data), 1e-9)));
-    weights.orientation_sd.assign(data.orientations.size(), floored_median(orientation_errors(chain, data), 1e-9));
+    for (const ResidualKind& kind : residual_kinds()) {
+      std::vector<double> errors = errors_of_kind(kind.kind, chain, data);
+      const std::size_t count = errors.size();
+      const double typical = count == 0 ? 0.0 : std::max(1e-9, median(std::move(errors)));
+      weights.of(kind.kind).assign(count, Vec3::Constant(typical));
+    }
     LeastSquaresOptions options;
     options.loss = Loss::cauchy;
     const Chain from = chain;
@@ -107,39 +152,85 @@ Chain refined(const Chain& start, const PoseSet& data, const ParameterSet& frame
   return with_turns_folded(chain);
 }
 
-double typical_error(const Chain& chain, const PoseSet& data) {
-  std::vector<double> errors = point_errors(chain, data);
-  return errors.empty() ? 0.0 : median(std::move(errors));
+Chain with_tool_at_flange(Chain chain) {
+  chain.tool.xyz.setZero();
+  return chain;
+}
+
+/// First guesses; the best after refinement is kept.
+std::vector<Chain> starts(const Chain& nominal, const PoseSet& data) {
+  const std::vector<Pose> base_T_flange = base_to_flange(nominal, data);
+  std::vector<Chain> list;
+  const bool moved_tool = nominal.tool.xyz.norm() > 0.0;  // a file's tool may be of another set-up
+  if (data.points.size() >= 3) {
+    list.push_back(with_aligned_base(nominal, data, base_T_flange));
+    if (moved_tool) list.push_back(with_aligned_base(with_tool_at_flange(nominal), data, base_T_flange));
+    if (!data.orientations.empty())
+      list.push_back(
+          with_solved_translations(with_aligned_rotations(nominal, data, base_T_flange), data, base_T_flange));
+    return list;
+  }
+  list.push_back(data.orientations.empty() ? nominal : with_aligned_rotations(nominal, data, base_T_flange));
+  if (moved_tool) list.push_back(with_tool_at_flange(list.front()));
+  if (data.contacts.size() >= 4) list.push_back(with_solved_tool(list.front(), data, base_T_flange));
+  if (data.tilts.size() >= 3 && data.orientations.empty())
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double sign : {1.0, -1.0})
+        list.push_back(with_tool_from_tilts(nominal, data, base_T_flange, sign * Vec3::Unit(axis)));
+  return list;
+}
+
+Result<void> enough_to_find_frames(const PoseSet& data) {
+  std::set<int> rows;
+  for (const PointMeasurement& point : data.points) rows.insert(point.row);
+  const bool touches =
+      data.contacts.size() + data.distances.size() + data.pairs.size() + data.plane_contacts.size() > 0;
+  const bool turns_only = rows.empty() && data.orientations.size() + data.tilts.size() > 0;
+  if (rows.size() < 3 && !touches && !turns_only)
+    return error("the pose set measures {} positions; at least 3 are needed to find the base of the robot",
+                 rows.size());
+  return {};
+}
+
+/// One mounting: the chain stands in it, the data are its rows.
+Result<Chain> found_frames(const Chain& nominal, const PoseSet& data) {
+  if (auto enough = enough_to_find_frames(data); !enough) return pass_on(enough.error());
+  const ParameterSet frames = frame_parameters(nominal, data);
+  std::optional<Chain> best;
+  for (const Chain& start : starts(nominal, data)) {
+    const Chain candidate = refined(with_placed_surroundings(start, data), data, frames);
+    if (!best || typical_error(candidate, data) < typical_error(*best, data)) best = candidate;
+  }
+  return *best;
+}
+
+std::vector<int> rows_of_mounting(const PoseSet& data, int mounting) {
+  std::vector<int> rows;
+  for (int row = 0; row < data.rows(); ++row)
+    if (data.mounting[row] == mounting) rows.push_back(row);
+  return rows;
 }
 
 }  // namespace
 
 Result<Chain> with_frames_from_data(const Chain& nominal, const PoseSet& data) {
-  std::set<int> rows;
-  for (const PointMeasurement& point : data.points) rows.insert(point.row);
-  if (rows.size() < 3)
-    return error("the pose set measures {} positions; at least 3 are needed to find the base of the robot",
-                 rows.size());
-  const std::vector<Pose> base_T_flange = base_to_flange(nominal, data);
-  ParameterSet frames = frame_parameters(nominal, data);
-  for (Parameter& parameter : frames.parameters) parameter.prior_sd = std::numeric_limits<double>::infinity();
-
-  std::vector<Chain> starts{with_aligned_base(nominal, data, base_T_flange)};
-  if (nominal.tool.xyz.norm() > 0.0) {  // a file's tool may be of another set-up
-    Chain bare = nominal;
-    bare.tool.xyz.setZero();
-    starts.push_back(with_aligned_base(bare, data, base_T_flange));
+  if (data.mounting.empty()) return found_frames(nominal, data);
+  Chain chain = nominal;
+  for (int mounting = -1; mounting < static_cast<int>(nominal.mountings.size()); ++mounting) {
+    const std::vector<int> rows = rows_of_mounting(data, mounting);
+    if (rows.empty()) continue;
+    Chain alone = mounted(chain, mounting);
+    PoseSet seen = select(data, rows);
+    seen.mounting.clear();
+    KINFER_TRY(found, found_frames(alone, seen));
+    if (mounting < 0) {
+      chain.base = found.base, chain.tool = found.tool;
+      continue;
+    }
+    if (chain.mountings[mounting].base) chain.mountings[mounting].base = found.base;
+    chain.mountings[mounting].tool = found.tool;
   }
-  if (!data.orientations.empty())
-    starts.push_back(
-        with_solved_translations(with_aligned_rotations(nominal, data, base_T_flange), data, base_T_flange));
-
-  std::optional<Chain> best;
-  for (const Chain& start : starts) {
-    const Chain candidate = refined(start, data, frames);
-    if (!best || typical_error(candidate, data) < typical_error(*best, data)) best = candidate;
-  }
-  return *best;
+  return refined(with_placed_surroundings(chain, data), data, frame_parameters(chain, data));
 }
 
 }  // namespace kinfer

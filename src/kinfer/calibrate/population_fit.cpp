@@ -26,16 +26,14 @@ struct Problem {
 Problem problem_of(const CalibrateTask& task, const PreparedFit& prepared, const PoseSet& rows,
                    const PopulationOptions& options) {
   const auto fitness = std::make_shared<PopulationFitness>(prepared.start, prepared.parameters, rows);
-  const std::vector<const Parameter*> free = prepared.parameters.free();
-  VectorXd mean(free.size()), weight = VectorXd::Zero(free.size());
+  const VectorXd mean = nominal_of(prepared.parameters);
   const double sigma = task.instrument ? task.instrument->sigma : 0.0;
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    mean[k] = free[k]->nominal;
-    if (!task.fleet.empty()) weight[k] = std::pow(sigma / free[k]->prior_sd, 2);
-  }
-  const auto evaluate = [fitness, mean, weight](ConstMatrixRef x, std::span<double> cost) {
+  const MatrixXd prior =
+      task.fleet.empty() ? MatrixXd(0, mean.size()) : MatrixXd(sigma * prior_rows(prepared.parameters));
+  const auto evaluate = [fitness, mean, prior](ConstMatrixRef x, std::span<double> cost) {
     fitness->sums(x, cost);
-    for (Eigen::Index i = 0; i < x.cols(); ++i) cost[i] += weight.dot((x.col(i) - mean).cwiseAbs2());
+    if (prior.rows() == 0) return;
+    for (Eigen::Index i = 0; i < x.cols(); ++i) cost[i] += (prior * (x.col(i) - mean)).squaredNorm();
   };
   return {{search_box(prepared, options), evaluate}, fitness->points()};
 }

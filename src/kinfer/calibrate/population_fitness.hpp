@@ -1,8 +1,6 @@
 // Paper 2, eq. (11), for whole populations of parameter vectors: F(x) = Σ_i |p_measured,i − f_i(x)|².
 //
-// The sines of the commanded joints are taken once for all candidates, all that a candidate changes is folded into one
-// constant transform between two joints, and the measured point is carried from the tip inwards: 13 multiply-adds a
-// joint.
+// By the batch kernels of kinematics; where joints yield to gravity, pose by pose.
 #pragma once
 
 #include <memory>

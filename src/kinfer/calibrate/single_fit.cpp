@@ -20,25 +20,41 @@ struct Overloaded : Cases... {
 template <class... Cases>
 Overloaded(Cases...) -> Overloaded<Cases...>;
 
-Tolerances scaled(Tolerances tolerances, double factor) {
-  for (double* value : {&tolerances.length, &tolerances.angle, &tolerances.tool_length, &tolerances.gain})
-    *value *= factor;
+/// Contacts alone tell no lengths but by their ratios: a robot half as large would fit them twice as well. There the
+/// tolerances of lengths stay as they are.
+bool lengths_are_measured(const CalibrateTask& task) {
+  const PoseSet& data = task.data;
+  return data.points.size() + data.distances.size() + data.pairs.size() > 0 ||
+         !task.nominal.surroundings.socket_distances.empty();
+}
+
+Tolerances scaled(const CalibrateTask& task, double factor) {
+  Tolerances tolerances = task.tolerances;
+  for (double* value : {&tolerances.angle, &tolerances.gain}) *value *= factor;
+  if (lengths_are_measured(task))
+    for (double* value : {&tolerances.length, &tolerances.tool_length}) *value *= factor;
   return tolerances;
 }
 
-Result<ParameterSet> chosen_parameters(const CalibrateTask& task, const ParameterChoice& choice,
+Result<ParameterSet> chosen_parameters(const CalibrateTask& task, const PoseSet& rows, const ParameterChoice& choice,
                                        const Tolerances& tolerances) {
-  return std::visit(
+  auto set = std::visit(
       Overloaded{[&](const AutoParameters&) -> Result<ParameterSet> {
-                   return geometric_parameters(task.nominal, task.data, tolerances);
+                   return geometric_parameters(task.nominal, rows, tolerances);
+                 },
+                 [&](const OffsetParameters&) -> Result<ParameterSet> {
+                   return offset_parameters(task.nominal, rows, tolerances);
                  },
                  [&](const Paper24Parameters&) { return paper24_parameters(task.nominal, tolerances); },
                  [&](const NamedParameters& named) { return named_parameters(task.nominal, tolerances, named.names); }},
       choice);
+  if (set) set->parameters.insert(set->parameters.end(), task.further.begin(), task.further.end());
+  return set;
 }
 
-bool frees_the_base(const ParameterSet& set) {
-  return std::any_of(set.parameters.begin(), set.parameters.end(),
+bool frees_frames(const ParameterSet& set, const ParameterChoice& choice) {
+  return std::holds_alternative<AutoParameters>(choice) || std::holds_alternative<OffsetParameters>(choice) ||
+         std::any_of(set.parameters.begin(), set.parameters.end(),
                      [](const Parameter& p) { return p.at.owner == Owner::base; });
 }
 
@@ -49,6 +65,19 @@ Frame believed_tool(const Frame& file, const Frame& found, double tolerance) {
   return tool;
 }
 
+/// Where the priors lie: base, sockets and planes where the data show them; tools where the file has them, if the data
+/// agree; anchors and gravity as in the file.
+Chain prior_centre(const Chain& nominal, const Chain& found, const Tolerances& tolerances) {
+  Chain centre = found;
+  centre.tool = believed_tool(nominal.tool, found.tool, tolerances.tool_length);
+  for (std::size_t m = 0; m < centre.mountings.size(); ++m)
+    centre.mountings[m].tool =
+        believed_tool(nominal.mountings[m].tool, found.mountings[m].tool, tolerances.tool_length);
+  centre.surroundings.anchors = nominal.surroundings.anchors;
+  centre.gravity = nominal.gravity;
+  return centre;
+}
+
 /// Whether the data agree with the base of the file to three tolerances.
 bool base_is_believed(const CalibrateTask& task, const Chain& found) {
   const Frame &file = task.nominal.base, &data = found.base;
@@ -56,21 +85,10 @@ bool base_is_believed(const CalibrateTask& task, const Chain& found) {
          angle_between(file.pose().rotation, data.pose().rotation) <= 3.0 * task.tolerances.base_angle;
 }
 
-/// −2 log of the marginal likelihood, by Laplace's approximation: misfit + level of the noise + price of the freedom
-/// used.
-double surprise(const Estimate& estimate, const PoseSet& data) {
-  const auto points = 3.0 * static_cast<double>(data.points.size());
-  const auto turns = 3.0 * static_cast<double>(data.orientations.size());
-  double sum = points * std::log(estimate.sigma * estimate.sigma) + estimate.search.cost;
-  if (turns > 0.0) sum += turns * std::log(estimate.sigma_angle * estimate.sigma_angle);
-  const VectorXd s2 = estimate.identifiability.singular_values.cwiseAbs2();
-  return sum + (1.0 + s2.array()).log().sum();
-}
-
 double reach(const Chain& chain, const PoseSet& data) {
   double furthest = 0.0;
-  const Vec3 base = chain.base.xyz;
-  for (const PointMeasurement& point : data.points) furthest = std::max(furthest, (point.position - base).norm());
+  for (const Pose& pose : evaluate_poses(chain, {}, data, Derivative::no).pose)
+    furthest = std::max(furthest, (pose.position - chain.base.xyz).norm());
   return furthest;
 }
 
@@ -96,23 +114,26 @@ bool residuals_exceed_the_instrument(const Estimate& estimate, const CalibrateTa
 
 Result<PreparedFit> prepare_fit(const CalibrateTask& task, const PoseSet& rows, const ParameterChoice& choice,
                                 ToleranceScale scale) {
-  const Tolerances tolerances = scaled(task.tolerances, scale.factor);
-  KINFER_TRY(set, chosen_parameters(task, choice, tolerances));
+  const Tolerances tolerances = scaled(task, scale.factor);
+  KINFER_TRY(set, chosen_parameters(task, rows, choice, tolerances));
   const auto informed = [&](const Chain& start, const ParameterSet& parameters) {
     return PreparedFit{task.earlier ? with_joint_numbers_of(start, *task.earlier, parameters) : start,
                        with_fleet_prior(parameters, task.fleet)};
   };
   KINFER_TRY(found, with_frames_from_data(task.nominal, rows));
-  if (!frees_the_base(set)) return informed(base_is_believed(task, found) ? task.nominal : found, set);
-  Chain centre = found;
-  centre.tool = believed_tool(task.nominal.tool, found.tool, tolerances.tool_length);
-  return informed(found, centred_at(set, centre));
+  if (!frees_frames(set, choice)) return informed(base_is_believed(task, found) ? task.nominal : found, set);
+  // A knocked robot hides where its tool is until the offsets are known: the earlier tool is believed longer.
+  Tolerances believable = tolerances;
+  if (std::holds_alternative<OffsetParameters>(choice)) believable.tool_length *= 10.0;
+  return informed(found, centred_at(set, prior_centre(task.nominal, found, believable)));
 }
 
 Result<Chain> fit_frames_only(const CalibrateTask& task, const PoseSet& rows) {
   KINFER_TRY(start, with_frames_from_data(task.nominal, rows));
-  ParameterSet frames = centred_at(frame_parameters(task.nominal, rows), start);
-  for (Parameter& parameter : frames.parameters) parameter.prior_sd = std::numeric_limits<double>::infinity();
+  Chain centre = start;
+  centre.surroundings.anchors = task.nominal.surroundings.anchors;
+  centre.gravity = task.nominal.gravity;
+  const ParameterSet frames = centred_at(frame_parameters(task.nominal, rows, task.tolerances), centre);
   return fit_bundle(start, frames, rows, task.instrument).chain;
 }
 
@@ -129,7 +150,7 @@ Result<ScaledFit> fit_with_believable_tolerances(const CalibrateTask& task, cons
   if (!residuals_exceed_the_instrument(as_given, task)) return best;
   for (const double factor : {10.0, 100.0, 1000.0}) {
     KINFER_TRY(looser, fit_once(task, rows, choice, {factor}, observer));
-    if (surprise(looser, rows) < surprise(best.estimate, rows)) best = {looser, {factor}};
+    if (looser.surprise < best.estimate.surprise) best = {looser, {factor}};
   }
   constexpr double lost = 2e-3;  // of the reach: no robot is that wrong once its parameters are found
   constexpr int starts = 20;
@@ -137,7 +158,7 @@ Result<ScaledFit> fit_with_believable_tolerances(const CalibrateTask& task, cons
   for (int i = 0; i < starts && best.estimate.sigma > lost * reach(prepared.start, rows); ++i) {
     const Chain start = shaken(prepared.start, prepared.parameters, rng.stream(i));
     const Estimate other = fit_bundle(start, prepared.parameters, rows, task.instrument, {}, observer);
-    if (surprise(other, rows) < surprise(best.estimate, rows)) best = {other, {1000.0}};
+    if (other.surprise < best.estimate.surprise) best = {other, {1000.0}};
   }
   return best;
 }

@@ -4,15 +4,20 @@
 
 #include <cmath>
 
+#include "kinfer/base/angle.hpp"
+
 namespace kinfer {
 namespace {
 
 std::string millimetres(double metres) {
   return fmt::format("{:.3f} mm", 1e3 * metres);
 }
+std::string degrees(double radians) {
+  return fmt::format("{:.3f} deg", radians / degree);
+}
 
-const ErrorStatistics& judged(const TrainHoldout& position) {
-  return position.holdout.n > 0 ? position.holdout : position.train;
+const ErrorStatistics& judged(const TrainHoldout& errors) {
+  return errors.holdout.n > 0 ? errors.holdout : errors.train;
 }
 
 std::string left_out(const Calibration& calibration) {
@@ -20,30 +25,54 @@ std::string left_out(const Calibration& calibration) {
   return n == 0 ? "" : fmt::format("; {} row{} not believed and left out", n, n == 1 ? " is" : "s are");
 }
 
+/// "position" is said of the tool; other measurements by their own name.
+std::string subject(const Calibration& calibration) {
+  return calibration.measured == "position" ? "the tool is" : fmt::format("the {} is", calibration.measured);
+}
+
+/// What the verdict compares: positions, or orientations where nothing else was measured.
+struct Compared {
+  ErrorStatistics before, after, written;
+  std::string figures;
+};
+
+Compared compared(const Calibration& calibration) {
+  const bool lengths = calibration.after.position.train.n > 0;
+  const auto kind = lengths ? &ChainFit::position : &ChainFit::orientation;
+  const auto show = lengths ? millimetres : degrees;
+  Compared c{judged(calibration.before.*kind), judged(calibration.after.*kind), (calibration.after.*kind).train, ""};
+  c.figures = fmt::format("on poses that were not fitted {} {} off on average and {} at worst ({} and {} before){}",
+                          subject(calibration), show(c.after.mean), show(c.after.max), show(c.before.mean),
+                          show(c.before.max), left_out(calibration));
+  return c;
+}
+
 }  // namespace
 
 void judge(Calibration& calibration, std::optional<double> expected) {
-  const ErrorStatistics& before = judged(calibration.before.position);
-  const ErrorStatistics& after = judged(calibration.after.position);
   constexpr double excuse = 3.0;  // times what is expected: beyond it, something is not modelled
-
-  const std::string figures =
-      fmt::format("on poses that were not fitted the tool is {} off on average and {} at worst ({} and {} before){}",
-                  millimetres(after.mean), millimetres(after.max), millimetres(before.mean), millimetres(before.max),
-                  left_out(calibration));
-  const bool better = after.mean < before.mean;
-  const bool excused = !expected || after.rms <= excuse * *expected;
-  calibration.use = better && excused;
+  // The chain that is written has seen more rows than the fits that prove it: it must fit its rows as well as they do
+  // theirs, or it is another solution than the proven one.
+  constexpr double same_solution = 1.5;
+  const Compared c = compared(calibration);
+  const bool better = c.after.mean < c.before.mean;
+  const bool proven = c.written.rms <= same_solution * c.after.rms;
+  const bool excused = !expected || c.after.rms <= excuse * *expected;
+  calibration.use = better && proven && excused;
   if (!better) {
-    calibration.verdict = "Do not use: the corrected model is no better than the nominal one: " + figures + ".";
+    calibration.verdict = "Do not use: the corrected model is no better than the nominal one: " + c.figures + ".";
+  } else if (!proven) {
+    calibration.verdict = fmt::format(
+        "Do not use: the fit of all rows is {:.1f} times worse on them than the fits that prove it are on rows that "
+        "they have not seen; {}.",
+        c.written.rms / c.after.rms, c.figures);
   } else if (!excused) {
     calibration.verdict = fmt::format(
         "Do not use without a look: better, but the errors are {:.0f} times what instrument and fit can excuse, so "
-        "something is "
-        "not modelled: {}.",
-        after.rms / *expected, figures);
+        "something is not modelled: {}.",
+        c.after.rms / *expected, c.figures);
   } else {
-    calibration.verdict = "Use it: " + figures + ".";
+    calibration.verdict = "Use it: " + c.figures + ".";
   }
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kinfer/calibrate/single_fit.hpp"
+#include "kinfer/calibrate/surroundings.hpp"
 #include "kinfer/estimate/residuals.hpp"
 
 namespace kinfer {
@@ -20,9 +21,12 @@ double typical_sd(const Instrument& instrument, const PoseSet& data) {
 
 }  // namespace
 
-Result<Verification> verify(const Chain& chain, const Tolerances& tolerances,
-                            const std::optional<Instrument>& instrument, const PoseSet& data) {
-  if (data.points.empty()) return error("the data hold no measured positions to verify against");
+Result<Verification> verify(const Chain& given_chain, const Tolerances& tolerances,
+                            const std::optional<Instrument>& instrument, const PoseSet& given_data) {
+  if (given_data.points.empty()) return error("the data hold no measured positions to verify against");
+  KINFER_TRY(placed, with_surroundings(given_chain, given_data));
+  const Chain& chain = placed.chain;
+  const PoseSet data = with_approach(placed.data);
   Verification v;
   v.as_it_stands = error_statistics(point_errors(chain, data));
   KINFER_TRY(refitted, fit_frames_only({chain, tolerances, instrument, data}, data));

@@ -1,13 +1,23 @@
 // kinfer calibrate: nominal robot + outside measurements -> corrected robot + evidence.
 #include "kinfer/calibrate/calibrate.hpp"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <charconv>
 #include <memory>
+#include <sstream>
 
 #include "kinfer/base/sha256.hpp"
+#include "kinfer/calibrate/local_poe.hpp"
+#include "kinfer/calibrate/rungs.hpp"
+#include "kinfer/calibrate/unknown.hpp"
+#include "kinfer/cli/calibration_tables.hpp"
+#include "kinfer/cli/report_file.hpp"
 #include "kinfer/cli/robot_option.hpp"
 #include "kinfer/cli/search_options.hpp"
 #include "kinfer/cli/summary.hpp"
+#include "kinfer/cli/terminal.hpp"
 #include "kinfer/cli/verbs.hpp"
 #include "kinfer/io/evidence_json.hpp"
 #include "kinfer/io/parameter_names_toml.hpp"
@@ -23,7 +33,7 @@ struct Options {
   CommonOptions common;
   SearchArguments search;
   RobotOption robot;
-  std::string data, out, columns, holdout, parameters = "auto";
+  std::string data, out, columns, holdout, parameters = "auto", model = "auto", refit;
 };
 
 /// What the files said.
@@ -31,13 +41,58 @@ struct Inputs {
   RobotModel robot;
   PoseSet data;
   CalibrateOptions how;
+  std::vector<std::string> found;  ///< in words, of a robot without a data sheet
 };
+
+constexpr std::string_view unknown = "unknown:";
+
+bool is_unknown(const RobotOption& robot) {
+  return robot.path.starts_with(unknown);
+}
+
+/// For `unknown:6R` a chain that the data can be read by; else what the file says.
+Result<RobotModel> read_robot_or_types(const RobotOption& option) {
+  if (!is_unknown(option)) return read_robot(option);
+  KINFER_TRY(types, parse_joint_types(option.path.substr(unknown.size())));
+  RobotModel robot;
+  robot.chain = generic_chain(types);
+  return robot;
+}
+
+/// The data sheet that `unknown:6R` lacks, from the rows that are not held out by name.
+Result<void> find_robot(const Options& options, Inputs& inputs) {
+  std::vector<int> rows;
+  for (int row = 0; row < inputs.data.rows(); ++row)
+    if (inputs.data.set.empty() || inputs.data.set[row] != SetLabel::holdout) rows.push_back(row);
+  KINFER_TRY(found, find_unknown_robot(options.robot.path.substr(unknown.size()), select(inputs.data, rows),
+                                       options.common.threads, Rng(options.common.seed).stream(17)));
+  inputs.robot.chain = found.sheet;
+  inputs.robot.chain.name = "unknown";
+  inputs.robot.tolerances = found.tolerances;
+  inputs.found = found.words;
+  return {};
+}
 
 Result<ParameterChoice> read_parameter_choice(const std::string& text) {
   if (text == "auto") return AutoParameters{};
   if (text == "paper24") return Paper24Parameters{};
   KINFER_TRY(names, read_parameter_names(text));
   return NamedParameters{names};
+}
+
+/// "auto", "geometry", or rungs joined by "+".
+Result<ModelChoice> read_model_choice(const std::string& text) {
+  if (text == "auto") return AutoModel{};
+  NamedModel named;
+  const std::vector<std::string> known = rung_names();
+  std::istringstream words(text);
+  for (std::string word; std::getline(words, word, '+');) {
+    if (word == "geometry") continue;
+    if (std::find(known.begin(), known.end(), word) == known.end())
+      return error("--model {}: expected auto, geometry or some of {} joined by +", text, fmt::join(known, ", "));
+    named.rungs.push_back(word);
+  }
+  return named;
 }
 
 /// A number is a fraction; anything else is a pose set whose rows are held out.
@@ -58,21 +113,25 @@ Result<HoldoutChoice> add_holdout(const std::string& text, const RobotModel& rob
 
 Result<Inputs> read_inputs(const Options& options) {
   Inputs inputs;
-  KINFER_TRY(robot, read_robot(options.robot));
+  KINFER_TRY(robot, read_robot_or_types(options.robot));
   KINFER_TRY(map, read_columns_option(options.columns));
   KINFER_TRY(data, read_pose_set(options.data, robot.chain, map));
   KINFER_TRY(parameters, read_parameter_choice(options.parameters));
   KINFER_TRY(holdout, add_holdout(options.holdout, robot, map, data));
-  inputs.how = {.parameters = parameters, .holdout = holdout, .threads = options.common.threads};
+  KINFER_TRY(model, read_model_choice(options.model));
+  inputs.how = {.parameters = parameters, .holdout = holdout, .model = model, .threads = options.common.threads};
   KINFER_TRY(population, population_options(options.search, options.common.threads));
   inputs.how.population = population;
   inputs.robot = std::move(robot);
   inputs.data = std::move(data);
+  if (is_unknown(options.robot))
+    if (auto done = find_robot(options, inputs); !done) return pass_on(done.error());
   return inputs;
 }
 
 std::vector<std::string> input_paths(const Options& options) {
-  std::vector<std::string> paths{options.robot.path, options.data};
+  std::vector<std::string> paths{options.data};
+  if (!is_unknown(options.robot)) paths.insert(paths.begin(), options.robot.path);
   for (const std::string& path : {options.columns, options.parameters, options.holdout})
     if (std::filesystem::is_regular_file(path)) paths.push_back(path);
   for (const std::string& path : input_paths(options.search)) paths.push_back(path);
@@ -87,8 +146,13 @@ Provenance provenance_of(const Options& options) {
       provenance.inputs.push_back({std::filesystem::path(path).filename().string(), sha256(*text)});
   const auto plain = [](const std::string& value) { return std::filesystem::path(value).filename().string(); };
   provenance.options.emplace_back("--parameters", plain(options.parameters));
+  provenance.options.emplace_back("--model", options.model);
+  if (!options.refit.empty()) provenance.options.emplace_back("--refit", options.refit);
   if (options.search.method != "lm") provenance.options.emplace_back("--method", options.search.method);
   if (!options.holdout.empty()) provenance.options.emplace_back("--holdout", plain(options.holdout));
+  if (!options.search.warm_start.empty())
+    provenance.options.emplace_back("--warm-start", plain(options.search.warm_start));
+  for (const std::string& path : options.search.prior) provenance.options.emplace_back("--prior", plain(path));
   return provenance;
 }
 
@@ -101,7 +165,21 @@ Result<void> write_results(const Options& options, RobotModel robot, const Calib
   if (auto done = write_text_file(folder / "chain.urdf", urdf(robot.chain)); !done) return done;
   if (const std::string& net = calibration.estimate.search.net; !net.empty())
     if (auto done = write_text_file(folder / "net.txt", net); !done) return done;
-  return write_text_file(folder / "evidence.json", calibration_json(calibration, provenance_of(options)));
+  return write_evidence(folder, calibration_json(calibration, provenance_of(options)));
+}
+
+/// The earlier calibration takes the nominal model's place; few poses prove the offsets one by one.
+Result<void> begin_at_earlier(CalibrateTask& task, CalibrateOptions& how) {
+  if (!task.earlier)
+    return error("--refit offsets: expected --warm-start DIR, the folder of the robot's earlier calibration");
+  task.nominal = *task.earlier;
+  task.earlier.reset();
+  how.parameters = OffsetParameters{};
+  how.model = NamedModel{};
+  constexpr int few = 12;
+  if (auto* folds = std::get_if<CrossValidation>(&how.holdout); folds && task.data.rows() <= few)
+    folds->folds = static_cast<int>(task.data.rows());
+  return {};
 }
 
 int run(const Options& options) {
@@ -111,19 +189,26 @@ int run(const Options& options) {
   if (!inputs) return fail(inputs.error());
   const auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
-  CalibrateTask task{inputs->robot.chain, inputs->robot.tolerances, inputs->robot.instrument, inputs->data, {}, {}};
+  CalibrateTask task{inputs->robot.chain, inputs->robot.tolerances, inputs->robot.instrument, inputs->data, {}, {}, {}};
   if (auto done = read_earlier_calibrations(options.search, task); !done) return fail(done.error());
+  if (options.refit == "offsets")
+    if (auto done = begin_at_earlier(task, inputs->how); !done) return fail(done.error());
   Result<Calibration> calibration = [&] {
     ProgressLine progress(options.common);
     return calibrate(task, inputs->how, Rng(options.common.seed), progress.observer());
   }();
   if (!calibration) return fail(calibration.error());
+  if (is_unknown(options.robot)) judge_without_sheet(*calibration);
+  calibration->notes.insert(calibration->notes.begin(), inputs->found.begin(), inputs->found.end());
+  if (const std::string accuracy = accuracy_in_words(task, *calibration); !accuracy.empty())
+    calibration->notes.push_back(accuracy);
   if (auto done = write_results(options, inputs->robot, *calibration); !done) return fail(done.error());
+  if (auto done = write_calibration_tables(options.out, task, *calibration); !done) return fail(done.error());
   if (auto done = record.write(options.out); !done) return fail(done.error());
   if (options.common.json)
     fmt::print("{}", calibration_headline_json(*calibration));
   else if (!options.common.quiet)
-    fmt::print("{}", calibration_summary(*calibration));
+    print_summary(calibration_summary(*calibration), calibration->use ? Tone::good : Tone::bad);
   return calibration->use ? exit_done : exit_do_not_use;
 }
 
@@ -136,16 +221,24 @@ Verb add_calibrate(CLI::App& app) {
                   "  kinfer calibrate --robot robot.toml --data poses.csv --out calibration\n"
                   "  kinfer predict --chain calibration/chain.toml --joints joints.csv -o predicted.csv");
   auto options = std::make_shared<Options>();
-  add_robot_option(*verb, options->robot, "--robot", "Nominal model: TOML or URDF");
+  add_robot_option(*verb, options->robot, "--robot",
+                   "Nominal model: TOML or URDF; or unknown:6R, unknown:RRPR: joint types alone");
   add_text(*verb, "--data", options->data, "Pose set: joint readings and measurements", Need::required, "CSV");
-  add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, evidence.json, run.json", Need::required,
-           "DIR");
+  add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, evidence.json, report.html, run.json",
+           Need::required, "DIR");
   add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional,
            "TOML");
   add_text(*verb, "--parameters", options->parameters,
            "auto: the complete geometric set; paper24: a alpha d theta of each joint (base and tool as given, or from "
            "the data where those disagree); or a TOML file "
            "with parameters = [\"a2\", ...]");
+  add_text(*verb, "--model", options->model,
+           "auto: geometry and what cross-validation shows to help beyond it; geometry; or some of gains, gravity, "
+           "torques, gear, spectrum, backlash, temperature joined by +");
+  add_choice(
+      *verb, "--refit", options->refit, {"offsets"},
+      "offsets: after a knock or a motor change, with few poses: only joint offsets, base and tool are found anew; "
+      "all else stays as the earlier calibration (--warm-start) found it");
   add_text(*verb, "--holdout", options->holdout,
            "Rows that are never fitted: a fraction (0.2), or a further pose set (default: 5-fold cross-validation)");
   add_search_arguments(*verb, options->search);

@@ -8,6 +8,7 @@
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/base/version.hpp"
+#include "kinfer/cli/terminal.hpp"
 #include "kinfer/io/text_file.hpp"
 
 namespace kinfer::cli {
@@ -66,10 +67,12 @@ Observer ProgressLine::observer() {
   if (!shown_) return {};
   return [this](const Progress& progress) {
     const auto now = std::chrono::steady_clock::now();
+    const std::string stage = fmt::format("{} {}", progress.stage, progress.detail);
+    if (stage != stage_) stage_ = stage, stage_began_ = now;
     if (now - last_ > std::chrono::milliseconds(50)) {
       last_ = now;
-      fmt::print(stderr, "\r\033[K{} {}  iteration {}  best {:.6g}", progress.stage, progress.detail,
-                 progress.iteration, progress.best);
+      fmt::print(stderr, "\r\033[K{}  iteration {}  best {:.6g}{}", stage, progress.iteration, progress.best,
+                 time_left(std::chrono::duration<double>(now - stage_began_).count(), progress.fraction));
       std::fflush(stderr);
     }
     return Wish::go_on;

@@ -52,7 +52,8 @@ struct Verb {
   std::function<int()> run;
 };
 
-/// Stage, iteration and best value on one line of stderr; silent unless stderr is a terminal. Erased when done.
+/// Stage, iteration, best value and time left on one line of stderr; silent unless stderr is a terminal. Erased when
+/// done.
 class ProgressLine {
  public:
   explicit ProgressLine(const CommonOptions& options);
@@ -63,7 +64,8 @@ class ProgressLine {
 
  private:
   bool shown_ = false;
-  std::chrono::steady_clock::time_point last_{};
+  std::chrono::steady_clock::time_point last_{}, stage_began_{};
+  std::string stage_;
 };
 
 /// What differs from run to run and so stays out of evidence.json: command, time, threads, paths.

@@ -9,10 +9,12 @@
 #include "kinfer/base/sha256.hpp"
 #include "kinfer/cli/arguments.hpp"
 #include "kinfer/cli/identify_summary.hpp"
+#include "kinfer/cli/ins_logs.hpp"
+#include "kinfer/cli/report_file.hpp"
+#include "kinfer/cli/terminal.hpp"
 #include "kinfer/cli/verbs.hpp"
 #include "kinfer/io/chain_dh_csv.hpp"
 #include "kinfer/io/identify_json.hpp"
-#include "kinfer/io/ins_csv.hpp"
 #include "kinfer/io/machine_facts_toml.hpp"
 #include "kinfer/io/mjcf.hpp"
 #include "kinfer/io/robot_toml.hpp"
@@ -26,13 +28,14 @@ namespace {
 struct Options {
   CommonOptions common;
   std::vector<std::string> logs;
-  std::string out, engine = "bp", terminals = "hinge", filter = "kinfer-offline", root, pairing = "halves";
+  std::string out, engine = "bmp", terminals = "hinge", filter = "kinfer-offline", root, pairing = "halves";
   double smoothing = SegmentMotionOptions{}.smoothing;
   LinkSearchOptions search;
   int links = 0;
   std::string geometry = "refined", grade = "auto", facts;
 };
 
+const std::map<std::string, Engine> engines{{"bmp", Engine::bmp}, {"bp", Engine::bp}, {"enum", Engine::enumeration}};
 const std::map<std::string, Terminals> terminals_by_name{{"hinge", Terminals::hinge}, {"euler", Terminals::euler}};
 const std::map<std::string, Geometry> geometries{{"refined", Geometry::refined}, {"searched", Geometry::searched}};
 const std::map<std::string, Pairing> pairings{{"halves", Pairing::halves}, {"mirrored", Pairing::mirrored}};
@@ -57,6 +60,7 @@ Result<IdentifyOptions> options_of(const Options& options) {
     return error("--smoothing {}: expected 0 .. 1 s", options.smoothing);
   how.motion.filter = *filter;
   how.motion.smoothing = options.smoothing;
+  how.engine = engines.at(options.engine);
   how.terminals = terminals_by_name.at(options.terminals);
   how.search = options.search;
   how.search.bacteria.pairing = pairings.at(options.pairing);
@@ -73,16 +77,6 @@ Result<IdentifyOptions> options_of(const Options& options) {
   }
   how.threads = options.common.threads;
   return how;
-}
-
-Result<InsRecording> read_logs(const Options& options) {
-  const std::vector<std::filesystem::path> paths(options.logs.begin(), options.logs.end());
-  KINFER_TRY(recording, read_ins_csv(paths));
-  for (const InsSensor& sensor : recording.sensors)
-    if (!sensor.acceleration.present() || !sensor.rate.present())
-      return error("{}: identification needs its specific force (ax ay az) and its angular rate (gx gy gz)",
-                   sensor.name);
-  return recording;
 }
 
 Provenance provenance_of(const Options& options) {
@@ -122,7 +116,7 @@ Result<void> write_results(const Options& options, const Identification& found) 
   if (auto done = write_text_file(folder / "chain.urdf", urdf(found.chain)); !done) return done;
   if (auto done = write_text_file(folder / "chain.mjcf", mjcf(found.chain)); !done) return done;
   if (auto done = write_text_file(folder / "chain_dh.csv", chain_dh_csv(found.dh)); !done) return done;
-  return write_text_file(folder / "evidence.json", identification_json(found, provenance_of(options)));
+  return write_evidence(folder, identification_json(found, provenance_of(options)));
 }
 
 int run(const Options& options) {
@@ -131,7 +125,7 @@ int run(const Options& options) {
   if (!options.facts.empty()) record.add_input(options.facts);
   const auto how = options_of(options);
   if (!how) return fail(how.error());
-  const auto recording = read_logs(options);
+  const auto recording = read_ins_logs(options.logs);
   if (!recording) return fail(recording.error());
   if (auto ready = make_writable_folder(options.out); !ready) return fail(ready.error());
   if (auto ready = make_writable_folder(options.out); !ready) return fail(ready.error());
@@ -145,7 +139,7 @@ int run(const Options& options) {
   if (options.common.json)
     fmt::print("{}", identification_headline_json(*found));
   else if (!options.common.quiet)
-    fmt::print("{}", identification_summary(*found));
+    print_summary(identification_summary(*found), Tone::neutral);
   return exit_done;
 }
 
@@ -177,9 +171,11 @@ Verb add_identify(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_texts(*verb, "logs", options->logs, "INS recordings", Need::required, "CSV");
   add_text(*verb, "--out", options->out,
-           "Folder for chain.toml, chain.urdf, chain.mjcf, chain_dh.csv, evidence.json, run.json", Need::required,
-           "DIR");
-  add_choice(*verb, "--engine", options->engine, {"bp"}, "How the chain is searched; bp: bacterial programming");
+           "Folder for chain.toml, chain.urdf, chain.mjcf, chain_dh.csv, evidence.json, report.html, run.json",
+           Need::required, "DIR");
+  add_choice(*verb, "--engine", options->engine, {"bmp", "bp", "enum"},
+             "How each link is searched; bmp: memetic bacterial programming; bp: that of paper 1; enum: every chain of "
+             "up to 3 leaves");
   add_choice(*verb, "--terminals", options->terminals, {"hinge", "euler"},
              "hinge: relative rotations, rates from gyros; euler: differences of Euler angles, as in paper 1");
   add_text(*verb, "--filter", options->filter, "Orientation filter: kinfer, kinfer-offline, paper", Need::optional,

@@ -25,13 +25,42 @@ std::string order_table(const OrderEvidence& order) {
 }
 
 const char* type_name(FoundJointType type) {
-  return type == FoundJointType::revolute ? "revolute" : type == FoundJointType::prismatic ? "prismatic" : "rigid";
+  switch (type) {
+    case FoundJointType::revolute:
+      return "revolute";
+    case FoundJointType::prismatic:
+      return "prismatic";
+    case FoundJointType::universal:
+      return "universal";
+    case FoundJointType::spherical:
+      return "spherical";
+    case FoundJointType::rigid:
+      return "rigid";
+  }
+  return "rigid";
 }
 
 std::string vector_text(const Vec3& v, double scale, const char* form) {
   std::string text;
   for (Eigen::Index k = 0; k < 3; ++k) text += fmt::format(fmt::runtime(form), scale * v[k]);
   return text;
+}
+
+/// Of two directions together; beyond what any data tell, a word.
+std::string deviation(const std::array<double, 2>& sd, double scale, int decimals) {
+  constexpr double unknown = 0.5;  // [rad], [m]
+  const double both = std::hypot(sd[0], sd[1]);
+  return both < unknown ? fmt::format("{:.{}f}", scale * both, decimals) : "unknown";
+}
+
+/// Joint by joint, what no signal shows and what would.
+std::string unknown_list(const std::vector<FoundJoint>& joints) {
+  std::string text;
+  for (const FoundJoint& joint : joints)
+    for (const std::string& words : joint.not_identifiable)
+      if (!words.starts_with("the joint's point along its own axis"))  // of every hinge; the formats say it once
+        text += fmt::format("  - {}-{}: {}\n", joint.parent, joint.child, words);
+  return text.empty() ? "" : "What this recording cannot tell:\n" + text + "\n";
 }
 
 std::string joint_table(const std::vector<FoundJoint>& joints) {
@@ -41,10 +70,9 @@ std::string joint_table(const std::vector<FoundJoint>& joints) {
     const auto line = [&](const std::string& head, const char* type, const std::string& sensor, const Vec3& axis,
                           const Vec3& point, const std::array<double, 2>& axis_sd,
                           const std::array<double, 2>& point_sd) {
-      text += fmt::format("{:<16} {:<10} {:<8} {:>24} {:>27} {:>16.2f} {:>10.1f}\n", head, type, sensor,
+      text += fmt::format("{:<16} {:<10} {:<8} {:>24} {:>27} {:>16} {:>10}\n", head, type, sensor,
                           vector_text(axis, 1.0, "{:8.4f}"), vector_text(point, 1e3, "{:9.1f}"),
-                          1e3 * std::hypot(axis_sd[0], axis_sd[1]),
-                          1e3 * std::min(std::hypot(point_sd[0], point_sd[1]), 99.0));
+                          deviation(axis_sd, 1e3, 2), deviation(point_sd, 1e3, 1));
     };
     line(j.parent + "-" + j.child, type_name(j.type), j.parent, j.axis_in_parent, j.point_in_parent,
          j.sd.axis_in_parent, j.sd.point_in_parent);
@@ -67,13 +95,13 @@ std::string fit_table(const std::vector<LinkEvidence>& searches) {
 std::string identification_summary(const Identification& found) {
   std::string text = found.verdict + ".\n\n" + order_table(found.order) + joint_table(found.joints);
   for (const FoundLink& link : found.links)
-    text += fmt::format("link {}: {:.1f} mm from {} to {} (sd {:.1f} mm)\n", link.segment, 1e3 * link.length, link.from,
-                        link.to, 1e3 * link.sd);
+    text += fmt::format("link {}: {:.1f} mm from {} to {} (sd {} mm)\n", link.segment, 1e3 * link.length, link.from,
+                        link.to, deviation({link.sd, 0.0}, 1e3, 1));
   for (const FoundPlace& place : found.places)
     text += fmt::format("{} in {}: {} mm (sd {} mm)\n", place.name, place.sensor,
                         vector_text(place.xyz, 1e3, "{:9.1f}"), vector_text(place.sd, 1e3, "{:6.1f}"));
   if (!found.links.empty()) text += "\n";
-  text += fit_table(found.searches);
+  text += fit_table(found.searches) + unknown_list(found.joints);
   for (const std::string& note : found.notes) text += "  - " + note + "\n";
   return text;
 }

@@ -1,11 +1,13 @@
 // kinfer inspect: what was understood of a file, and what is wrong with it, before any fit.
-#include <cmath>
 #include <memory>
 
+#include "kinfer/calibrate/doctor.hpp"
 #include "kinfer/calibrate/excitation.hpp"
 #include "kinfer/cli/inspect_recording.hpp"
+#include "kinfer/cli/orientation_readings.hpp"
 #include "kinfer/cli/robot_option.hpp"
 #include "kinfer/cli/verbs.hpp"
+#include "kinfer/io/findings_json.hpp"
 #include "kinfer/io/pose_set_csv.hpp"
 
 namespace kinfer::cli {
@@ -15,7 +17,7 @@ struct Options {
   RobotOption robot;
   std::string columns;
   std::vector<std::string> files;
-  bool allan = false;
+  bool allan = false, json = false;
 };
 
 std::string joint_table(const std::vector<JointExcitation>& joints) {
@@ -43,13 +45,31 @@ std::string measured_line(const PoseSet& set) {
   return text;
 }
 
-int inspect_pose_set(const std::string& file, const RobotModel& robot, const ColumnMap& map) {
+std::string finding_lines(const std::vector<Finding>& findings) {
+  if (findings.empty()) return "  nothing wrong was found\n";
+  std::string text;
+  for (const Finding& f : findings) {
+    text += fmt::format("  {}: {}{}\n", name(f.severity), f.sentence,
+                        f.lines.size() == 1 ? fmt::format(" (line {})", f.lines.front()) : "");
+    if (f.applied) text += "    certain: calibrate puts it right by itself, and says so\n";
+    if (!f.suggestion.empty()) text += fmt::format("    -> {}\n", f.suggestion);
+  }
+  return text;
+}
+
+int inspect_pose_set(const std::string& file, const RobotModel& robot, const ColumnMap& map, bool json) {
   const auto set = read_pose_set(file, robot.chain, map);
   if (!set) return fail(set.error());
+  const CalibrateTask task{
+      .nominal = robot.chain, .tolerances = robot.tolerances, .instrument = robot.instrument, .data = *set};
+  const Diagnosis diagnosis = examine(task, [&] { return orientation_readings(file, robot.chain, map); });
+  if (json) {
+    fmt::print("{}\n", findings_json(diagnosis.findings));
+    return exit_done;
+  }
   fmt::print("{}: {} poses of {} joints; measured: {}\n", file, set->rows(), set->joints.rows(), measured_line(*set));
-  const std::vector<JointExcitation> joints = joint_excitation(robot.chain, *set);
-  fmt::print("{}", joint_table(joints));
-  for (const std::string& finding : findings(*set, joints)) fmt::print("  ! {}\n", finding);
+  fmt::print("{}", joint_table(joint_excitation(robot.chain, *set)));
+  fmt::print("{}", finding_lines(diagnosis.findings));
   return exit_done;
 }
 
@@ -64,7 +84,7 @@ int run(const Options& options) {
   const auto map = read_columns_option(options.columns);
   if (!map) return fail(map.error());
   for (const std::string& file : options.files)
-    if (const int code = inspect_pose_set(file, *robot, *map); code != exit_done) return code;
+    if (const int code = inspect_pose_set(file, *robot, *map, options.json); code != exit_done) return code;
   return exit_done;
 }
 
@@ -82,6 +102,7 @@ Verb add_inspect(CLI::App& app) {
            "TOML");
   add_flag(*verb, "--allan", options->allan,
            "Allan deviation of each sensor's longest rest: noise and bias instability");
+  add_flag(*verb, "--json", options->json, "Print the findings about a pose set as one JSON array");
   return {verb, [options] { return run(*options); }};
 }
 

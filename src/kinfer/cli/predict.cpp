@@ -1,12 +1,13 @@
 // kinfer predict: forward kinematics of any chain for any file with the joint columns.
 #include <memory>
 
+#include "kinfer/calibrate/surroundings.hpp"
 #include "kinfer/cli/robot_option.hpp"
 #include "kinfer/cli/verbs.hpp"
+#include "kinfer/estimate/residuals.hpp"
 #include "kinfer/io/pose_set_csv.hpp"
 #include "kinfer/io/predictions_csv.hpp"
 #include "kinfer/io/text_file.hpp"
-#include "kinfer/kinematics/forward.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -16,12 +17,10 @@ struct Options {
   std::string joints, out, columns;
 };
 
-std::vector<Pose> predicted_poses(const Chain& chain, const PoseSet& set) {
-  const PoseEvaluator evaluator(chain, {});
-  std::vector<Pose> poses;
-  for (Eigen::Index row = 0; row < set.rows(); ++row)
-    poses.push_back(evaluator.pose(set.joints.col(row), {.payload = set.payload.empty() ? 0.0 : set.payload[row]}));
-  return poses;
+/// Each row in the set-up and with the arm that it names, approached from the row before.
+Result<std::vector<Pose>> predicted_poses(const Chain& chain, const PoseSet& set) {
+  KINFER_TRY(placed, with_surroundings(chain, set));
+  return evaluate_poses(placed.chain, {}, with_approach(placed.data), Derivative::no).pose;
 }
 
 int run(const Options& options) {
@@ -31,8 +30,9 @@ int run(const Options& options) {
   if (!map) return fail(map.error());
   const auto set = read_pose_set(options.joints, robot->chain, *map, Expect::joints_only);
   if (!set) return fail(set.error());
-  const std::vector<Pose> poses = predicted_poses(robot->chain, *set);
-  const auto text = predictions_csv(poses, *set, robot->chain.base.pose(), robot->anchors);
+  const auto poses = predicted_poses(robot->chain, *set);
+  if (!poses) return fail(poses.error());
+  const auto text = predictions_csv(*poses, *set, robot->chain.base.pose(), robot->chain.surroundings.anchors);
   if (!text) return fail(text.error());
   if (options.out.empty() || options.out == "-") {
     fmt::print("{}", *text);

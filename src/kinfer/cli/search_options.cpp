@@ -55,7 +55,8 @@ void add_search_arguments(CLI::App& verb, SearchArguments& a) {
             "Earlier calibrations of robots of this kind (chain.toml files): their mean and spread are the prior",
             Need::optional, "TOML");
   add_count(verb, "--particles", a.particles, 2, 100000, "Of the population");
-  add_count(verb, "--iterations", a.iterations, 1, 10000000, "Updates of the population");
+  add_count(verb, "--iterations", a.iterations, 1, 10000000,
+            "Updates of the population at most; it ends before where 200 updates gain less than 1 %");
   add_number(verb, "--inertia", a.inertia, "PSO: weight w of the velocity (paper: 0.9, which hardly converges)");
   add_number(verb, "--own", a.own, "PSO: c1, pull of a particle's own best");
   add_number(verb, "--swarm", a.swarm, "PSO: c2, pull of the swarm's best");
@@ -69,7 +70,7 @@ void add_search_arguments(CLI::App& verb, SearchArguments& a) {
 
 Result<std::optional<PopulationOptions>> population_options(const SearchArguments& arguments, int threads) {
   if (arguments.method == "lm") return std::nullopt;
-  const Budget budget{.max_iterations = arguments.iterations, .threads = threads};
+  const Budget budget{.max_iterations = arguments.iterations, .patience = 200, .threads = threads};
   PopulationOptions options{.box_length = 1e-3 * arguments.box_length,
                             .box_angle = arguments.box_angle * degree,
                             .box_tolerances = arguments.box_tolerances};

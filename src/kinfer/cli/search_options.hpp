@@ -13,7 +13,7 @@ namespace kinfer::cli {
 struct SearchArguments {
   std::string method = "lm", warm_start, walls = "absorb", net_use = "initial-swarm";
   std::vector<std::string> prior;
-  int particles = 200, iterations = 1000;
+  int particles = 200, iterations = 20000;
   double inertia = 0.8, own = 0.5, swarm = 1.25;
   double box_length = 1.0, box_angle = 1.0, box_tolerances = 0.0;  // mm, deg
 };

@@ -59,6 +59,20 @@ std::string bullet_list(const char* title, const List& list, std::size_t most, W
   return text + "\n";
 }
 
+std::string ladder_table(const Ladder& ladder) {
+  if (ladder.rungs.size() < 2) return "";
+  std::string text = fmt::format("Model: {}.\n  {:<14} {:>11} {:>11} {:>11}\n", ladder.chosen, "rung [mm]", "fitted",
+                                 "not fitted", "worst");
+  for (const LadderRung& r : ladder.rungs) {
+    if (r.locked)
+      text += fmt::format("  {:<14} {:>11} {:>11} {:>11}   {}\n", r.name, "-", "-", "-", r.why);
+    else
+      text += fmt::format("  {:<14} {:>11.4f} {:>11.4f} {:>11.4f}   {}\n", r.name, 1e3 * r.train.mean,
+                          1e3 * r.holdout.mean, 1e3 * r.holdout.max, r.why);
+  }
+  return text + "\n";
+}
+
 std::string search_lines(const Search& search) {
   if (search.method == "lm") return "";
   std::string text = fmt::format("Searched by {}: {} iterations, {} evaluations, {}.\n", search.method,
@@ -77,9 +91,11 @@ std::string calibration_summary(const Calibration& c) {
   const Estimate& e = c.estimate;
   std::string text = c.verdict + "\n\n";
   text += fmt::format("Held out: {}.\n", c.holdout);
-  text += fit_table("tool position [mm]", c.nominal, c.before, c.after, &ChainFit::position, 1e3);
+  text += fit_table((c.measured == "position" ? "tool position [mm]" : c.measured + " [mm]").c_str(), c.nominal,
+                    c.before, c.after, &ChainFit::position, 1e3);
   if (c.after.orientation.train.n > 0)
     text += fit_table("tool orientation [deg]", c.nominal, c.before, c.after, &ChainFit::orientation, 1.0 / degree);
+  text += ladder_table(c.ladder);
   text += search_lines(e.search);
   text += parameter_table(e);
   text += fmt::format("The data determine {} of {} combinations of parameters. Noise level {:.4f} mm",

@@ -8,6 +8,8 @@ namespace kinfer::cli {
 Verb add_identify(CLI::App& app);
 Verb add_calibrate(CLI::App& app);
 Verb add_predict(CLI::App& app);
+Verb add_plan(CLI::App& app);
+Verb add_forecast(CLI::App& app);
 Verb add_verify(CLI::App& app);
 Verb add_inspect(CLI::App& app);
 Verb add_convert(CLI::App& app);
@@ -16,6 +18,7 @@ Verb add_simulate_poses(CLI::App& app);
 Verb add_orient(CLI::App& app);
 Verb add_compensate(CLI::App& app);
 Verb add_frames(CLI::App& app);
+Verb add_report(CLI::App& app);
 
 /// Adds every verb to the program, in the order of its help text.
 std::vector<Verb> add_verbs(CLI::App& app);

@@ -3,10 +3,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "kinfer/calibrate/change.hpp"
 #include "kinfer/calibrate/verify.hpp"
 #include "kinfer/cli/robot_option.hpp"
 #include "kinfer/cli/summary.hpp"
 #include "kinfer/cli/verbs.hpp"
+#include "kinfer/io/deviations_toml.hpp"
 #include "kinfer/io/pose_set_csv.hpp"
 
 namespace kinfer::cli {
@@ -15,7 +17,7 @@ namespace {
 struct Options {
   CommonOptions common;
   RobotOption chain;
-  std::string data, columns;
+  std::string data, columns, against;
 };
 
 void print(const Verification& v, const CommonOptions& common) {
@@ -34,7 +36,69 @@ void print(const Verification& v, const CommonOptions& common) {
   }
 }
 
+struct ShownChange {
+  double factor;
+  const char* unit;
+};
+ShownChange shown(Quantity quantity) {
+  if (quantity == Quantity::length) return {1e3, "mm"};
+  if (quantity == Quantity::angle) return {1.0 / degree, "deg"};
+  return {1.0, ""};
+}
+
+void print(const Changes& changes, const CommonOptions& common) {
+  if (common.json) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const ParameterChange& c : changes.parameters)
+      list.push_back({{"name", c.name},
+                      {"before", c.before},
+                      {"after", c.after},
+                      {"change", c.change},
+                      {"sd", c.sd},
+                      {"unit", unit(c.quantity)},
+                      {"sigmas", c.sigmas},
+                      {"significant", c.significant}});
+    const nlohmann::ordered_json json{{"verdict", changes.verdict},
+                                      {"changed", changes.changed},
+                                      {"tool_rms", changes.tool_rms},
+                                      {"tool_worst", changes.tool_worst},
+                                      {"parameters", list}};
+    fmt::print("{}\n", json.dump());
+    return;
+  }
+  if (common.quiet) return;
+  fmt::print("{}\n\n  {:<12} {:>12} {:>12} {:>8}\n", changes.verdict, "number", "change", "sd", "sigma");
+  constexpr std::size_t most = 12;
+  for (std::size_t i = 0; i < std::min(most, changes.parameters.size()); ++i) {
+    const ParameterChange& c = changes.parameters[i];
+    const auto [factor, unit_name] = shown(c.quantity);
+    fmt::print("  {:<12} {:>+12.5f} {:>12.5f} {:>+8.1f} {}{}\n", c.name, factor * c.change, factor * c.sd, c.sigmas,
+               unit_name, c.significant ? "   changed" : "");
+  }
+}
+
+Result<CalibratedRobot> read_calibrated(const RobotOption& option) {
+  KINFER_TRY(robot, read_robot(option));
+  KINFER_TRY(sd, read_standard_deviations(option.path));
+  return CalibratedRobot{robot.chain, sd};
+}
+
+/// What changed from --chain to --against, by the standard deviations of both.
+int run_comparison(const Options& options) {
+  const auto earlier = read_calibrated(options.chain);
+  if (!earlier) return fail(earlier.error());
+  const auto later = read_calibrated({options.against, {}, {}});
+  if (!later) return fail(later.error());
+  const auto changes = compare_calibrations(*earlier, *later);
+  if (!changes) return fail({fmt::format("{}, {}: {}", options.chain.path, options.against, changes.error().what)});
+  print(*changes, options.common);
+  return changes->changed ? exit_do_not_use : exit_done;
+}
+
 int run(const Options& options) {
+  if (!options.against.empty()) return run_comparison(options);
+  if (options.data.empty())
+    return fail({"verify: expected --data with new measurements, or --against a later chain.toml"});
   const auto robot = read_robot(options.chain);
   if (!robot) return fail(robot.error());
   const auto map = read_columns_option(options.columns);
@@ -52,10 +116,14 @@ int run(const Options& options) {
 Verb add_verify(CLI::App& app) {
   CLI::App* verb = add_command(app, "verify", "Is an earlier calibration still good on new measurements?",
                                "Exit code 1: not good any more.\nExample:\n"
-                               "  kinfer verify --chain calibration/chain.toml --data today.csv");
+                               "  kinfer verify --chain calibration/chain.toml --data today.csv\n"
+                               "  kinfer verify --chain may/chain.toml --against june/chain.toml");
   auto options = std::make_shared<Options>();
   add_robot_option(*verb, options->chain, "--chain", "chain.toml of the calibration");
-  add_text(*verb, "--data", options->data, "New pose set", Need::required, "CSV");
+  add_text(*verb, "--data", options->data, "New pose set", Need::optional, "CSV");
+  add_text(*verb, "--against", options->against,
+           "A later calibration: which numbers have changed, by more than chance (exit code 1)", Need::optional,
+           "FILE");
   add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional,
            "TOML");
   add_common_options(*verb, options->common);

@@ -8,6 +8,7 @@
 #include "kinfer/estimate/noise_level.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/normal_equations.hpp"
 
 namespace kinfer {
 namespace {
@@ -21,23 +22,19 @@ struct State {
   Search search;
 };
 
-PoseSet only_believed(const PoseSet& data, const std::vector<bool>& believed) {
-  PoseSet kept = data;
-  kept.points.clear();
-  kept.orientations.clear();
-  for (std::size_t i = 0; i < data.points.size(); ++i)
-    if (believed[i]) kept.points.push_back(data.points[i]);
-  for (std::size_t i = 0; i < data.orientations.size(); ++i)
-    if (believed[data.points.size() + i]) kept.orientations.push_back(data.orientations[i]);
-  return kept;
-}
-
 /// Σ s²/(1+s²) over the singular values in units of noise and prior: how many parameters the data determine.
 double effective_parameters(const LeastSquaresOutcome& outcome, const ParameterSet& set) {
-  const MatrixXd data_rows = outcome.jacobian.topRows(outcome.jacobian.rows() - set.free_count());
-  const VectorXd s2 = identifiability(data_rows, set).singular_values.cwiseAbs2();
+  const auto data_rows = outcome.jacobian.topRows(outcome.jacobian.rows() - set.free_count());
+  VectorXd scale(set.free_count());
+  Eigen::Index k = 0;
+  for (const Parameter* p : set.free()) scale[k++] = std::isfinite(p->prior_sd) ? p->prior_sd : p->scale;
+  MatrixXd information = normal_equations(data_rows, VectorXd::Zero(data_rows.rows())).matrix;
+  information = scale.asDiagonal() * information * scale.asDiagonal();
+  const VectorXd s2 = symmetric_eigen(information).values.cwiseMax(0.0);
   return (s2.array() / (1.0 + s2.array())).sum();
 }
+
+constexpr double roughly = 1e-7;  // of the cost
 
 class Fit {
  public:
@@ -45,7 +42,8 @@ class Fit {
       const BundleOptions& options, const Observer& observer)
       : set_(set), data_(data), instrument_(instrument), options_(options), observer_(observer) {
     state_.chain = start;
-    state_.believed.assign(data.points.size() + data.orientations.size(), true);
+    blocks_ = blocks_of(data);
+    state_.believed.assign(blocks_.size(), true);
     state_.search.method = "lm";
     state_.excess = excess_noise(start, data, instrument, 0.0);
   }
@@ -57,12 +55,14 @@ class Fit {
   }
 
  private:
-  void minimise(Loss loss) {
-    const PoseSet kept = only_believed(data_, state_.believed);
+  /// `tolerance`: relative fall of the cost below which a run ends; rounds that only settle the level need little.
+  void minimise(Loss loss, double tolerance = LeastSquaresOptions{}.cost_tolerance) {
+    const PoseSet kept = only(data_, state_.believed);
     const Weights weights = weights_of(kept, instrument_, state_.excess);
     LeastSquaresOptions options;
     options.max_iterations = options_.max_iterations;
     options.loss = loss;
+    options.cost_tolerance = tolerance;
     options.loss_scale = 2.0;
     const Chain nominal = state_.chain;
     state_.outcome =
@@ -78,11 +78,11 @@ class Fit {
 
   /// True when the noise level has settled.
   bool update_noise_level() {
-    const PoseSet kept = only_believed(data_, state_.believed);
+    const PoseSet kept = only(data_, state_.believed);
     const ExcessNoise now = excess_noise(state_.chain, kept, instrument_, effective_parameters(state_.outcome, set_));
     const auto settled = [](double before, double after) { return std::abs(after - before) <= 0.02 * before; };
-    const bool done =
-        settled(state_.excess.position, now.position) && settled(state_.excess.orientation, now.orientation);
+    bool done = true;
+    for (std::size_t k = 0; k < now.of.size(); ++k) done &= settled(state_.excess.of[k], now.of[k]);
     state_.excess = now;
     return done;
   }
@@ -91,7 +91,7 @@ class Fit {
   void fit_robustly() {
     constexpr int rounds = 8;
     for (int i = 0; i < rounds; ++i) {
-      minimise(Loss::cauchy);
+      minimise(Loss::cauchy, roughly);
       if (update_noise_level()) break;
     }
     update_beliefs();
@@ -101,7 +101,7 @@ class Fit {
   void fit_believed() {
     constexpr int rounds = 5;
     for (int i = 0; i < rounds; ++i) {
-      minimise(Loss::none);
+      minimise(Loss::none, roughly);
       const bool settled = update_noise_level();
       const bool same = options_.outliers == Outliers::believe_all || !update_beliefs();
       if (settled && same) break;
@@ -112,22 +112,29 @@ class Fit {
   VectorXd block_distances() const {  // [sigma], one a block
     const Weights weights = weights_of(data_, instrument_, state_.excess);
     const ParameterSet nothing;
-    VectorXd r;
+    VectorXd r, distance(static_cast<Eigen::Index>(blocks_.size()));
     pose_residuals(state_.chain, nothing, data_, weights).evaluate(VectorXd(0), r, nullptr);
-    return r.reshaped(3, r.size() / 3).colwise().norm().transpose();
+    Eigen::Index row = 0;
+    for (std::size_t i = 0; i < blocks_.size(); row += blocks_[i++].size)
+      distance[static_cast<Eigen::Index>(i)] = r.segment(row, blocks_[i].size).norm();
+    return distance;
   }
 
-  double limit() const {
-    const double blocks = std::max<double>(1.0, static_cast<double>(state_.believed.size()));
-    return std::sqrt(chi_squared_quantile(1.0 - options_.false_alarms / blocks, 3));
+  /// Largest distance [sigma] that a believed block of 1, 2, 3 rows may have.
+  std::array<double, 3> limits() const {
+    const double quantile = 1.0 - options_.false_alarms / std::max<double>(1.0, static_cast<double>(blocks_.size()));
+    std::array<double, 3> limits;
+    for (int size = 1; size <= 3; ++size) limits[size - 1] = std::sqrt(chi_squared_quantile(quantile, size));
+    return limits;
   }
 
   /// True when some belief changed.
   bool update_beliefs() {
     const VectorXd distance = block_distances();
+    const std::array<double, 3> limit = limits();
     bool changed = false;
     for (std::size_t i = 0; i < state_.believed.size(); ++i) {
-      const bool believe = distance[i] <= limit();
+      const bool believe = distance[static_cast<Eigen::Index>(i)] <= limit[blocks_[i].size - 1];
       changed |= believe != state_.believed[i];
       state_.believed[i] = believe;
     }
@@ -149,19 +156,46 @@ class Fit {
   }
 
   void describe_noise(Estimate& estimate) const {
-    const PoseSet kept = only_believed(data_, state_.believed);
+    const PoseSet kept = only(data_, state_.believed);
     const Weights weights = weights_of(kept, instrument_, state_.excess);
-    std::vector<double> sd;
-    for (const Vec3& v : weights.point_sd) sd.push_back(v.norm() / std::sqrt(3.0));
-    estimate.sigma = rms(sd);
-    estimate.sigma_angle = rms(weights.orientation_sd);
-    if (!instrument_) return;
+    estimate.sigma = typical_sd(weights, {MeasurementKind::point, MeasurementKind::contact, MeasurementKind::distance,
+                                          MeasurementKind::pair, MeasurementKind::plane});
+    estimate.sigma_angle = typical_sd(weights, {MeasurementKind::orientation});
+    if (instrument_) estimate.chi2_per_n = chi2_against_the_promise(kept);
+    estimate.surprise = surprise(weights, estimate.identifiability);
+  }
+
+  /// −2 log of the marginal likelihood by Laplace's approximation: misfit, level of the noise over all rows, believed
+  /// or not, and the price of the freedom used.
+  double surprise(const Weights& weights, const Identifiability& found) const {
+    double sum = state_.outcome.cost + (1.0 + found.singular_values.cwiseAbs2().array()).log().sum();
+    for (const ResidualKind& kind : residual_kinds()) {
+      const double sd = typical_sd(weights, {kind.kind});
+      if (sd > 0.0) sum += 2.0 * kind.size * static_cast<double>(kind.count(data_)) * std::log(sd);
+    }
+    return sum;
+  }
+
+  /// Of the first of the kinds that was measured.
+  static double typical_sd(const Weights& weights, std::initializer_list<MeasurementKind> kinds) {
+    for (const MeasurementKind kind : kinds) {
+      const int size = residual_kind(kind).size;
+      std::vector<double> sd;
+      for (const Vec3& v : weights.of(kind)) sd.push_back(v.head(size).norm() / std::sqrt(size));
+      if (!sd.empty()) return rms(sd);
+    }
+    return 0.0;
+  }
+
+  /// Tilts count only where the instrument says what they are worth.
+  double chi2_against_the_promise(PoseSet kept) const {
+    if (!instrument_->sigma_tilt) kept.tilts.clear();
     const Weights promised = weights_of(kept, *instrument_);
     const ParameterSet nothing;
     VectorXd r;
     pose_residuals(state_.chain, nothing, kept, promised).evaluate(VectorXd(0), r, nullptr);
     const double redundancy = std::max(1.0, static_cast<double>(r.size()) - effective_parameters(state_.outcome, set_));
-    estimate.chi2_per_n = r.squaredNorm() / redundancy;
+    return r.squaredNorm() / redundancy;
   }
 
   void describe_parameters(Estimate& estimate) const {
@@ -183,32 +217,39 @@ class Fit {
 
   void describe_outliers(Estimate& estimate) const {
     const VectorXd distance = block_distances();
-    const std::vector<double> off = point_errors(estimate.chain, data_),
-                              turned = orientation_errors(estimate.chain, data_);
-    const std::vector<Block> blocks = blocks_of(data_);
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
+    std::array<std::vector<double>, measurement_kinds> errors;
+    for (const ResidualKind& kind : residual_kinds())
+      errors[static_cast<std::size_t>(kind.kind)] = errors_of_kind(kind.kind, estimate.chain, data_);
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
       if (state_.believed[i]) continue;
-      const Block& block = blocks[i];
+      const Block& block = blocks_[i];
       const std::string what =
-          block.kind == MeasurementKind::point
-              ? fmt::format("the point lies {:.3f} mm from where the model has it", 1e3 * off[block.index])
-              : fmt::format("the orientation is {:.3f} deg from what the model has", turned[block.index] / degree);
+          residual_kind(block.kind).in_words(errors[static_cast<std::size_t>(block.kind)][block.index]);
       const int line = data_.line.empty() ? 0 : data_.line[block.row];
-      estimate.outliers.push_back({block.row, line, fmt::format("{} ({:.0f} sigma)", what, distance[i])});
+      const double sigmas = distance[static_cast<Eigen::Index>(i)];
+      estimate.outliers.push_back({block.row, line, fmt::format("{} ({:.0f} sigma)", what, sigmas)});
     }
     std::stable_sort(estimate.outliers.begin(), estimate.outliers.end(),
                      [](const Outlier& a, const Outlier& b) { return a.row < b.row; });
+    merge_rows(estimate.outliers);
+  }
+
+  /// A row with several wrong measurements is listed once.
+  static void merge_rows(std::vector<Outlier>& outliers) {
+    std::vector<Outlier> merged;
+    for (const Outlier& outlier : outliers) {
+      if (!merged.empty() && merged.back().row == outlier.row)
+        merged.back().reason += "; " + outlier.reason;
+      else
+        merged.push_back(outlier);
+    }
+    outliers = std::move(merged);
   }
 
   double predicted_rms(const Estimate& estimate) const {
     double sum = 0.0;
-    const PoseEvaluator evaluator(estimate.chain, set_);
-    Twists twists;
-    for (Eigen::Index row = 0; row < data_.rows(); ++row) {
-      const Load load{.payload = data_.payload.empty() ? 0.0 : data_.payload[row]};
-      evaluator.pose_and_derivative(data_.joints.col(row), load, twists);
+    for (const Twists& twists : evaluate_poses(estimate.chain, set_, data_, Derivative::yes).twists)
       sum += (twists.topRows<3>() * estimate.covariance * twists.topRows<3>().transpose()).trace();
-    }
     return data_.rows() > 0 ? std::sqrt(sum / static_cast<double>(data_.rows())) : 0.0;
   }
 
@@ -217,6 +258,7 @@ class Fit {
   const std::optional<Instrument>& instrument_;
   const BundleOptions& options_;
   const Observer& observer_;
+  std::vector<Block> blocks_;
   State state_;
 };
 
@@ -225,7 +267,7 @@ class Fit {
 Estimate fit_bundle(const Chain& start, const ParameterSet& set, const PoseSet& data,
                     const std::optional<Instrument>& instrument, const BundleOptions& options,
                     const Observer& observer) {
-  KINFER_EXPECT(!data.points.empty() || !data.orientations.empty(), "nothing measured");
+  KINFER_EXPECT(has_measurements(data), "nothing measured");
   return Fit(start, set, data, instrument, options, observer).run();
 }
 

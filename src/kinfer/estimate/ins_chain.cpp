@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/estimate/rotation_rate.hpp"
 
 namespace kinfer {
 namespace {
@@ -18,33 +19,49 @@ Mat3 lever_effect(const Vec3& rate, const Vec3& rate_change) {
 
 /// What a joint does at one time, as both functions below need it.
 struct Passage {
-  Mat3 turn;                            // child_R_parent
-  Vec3 axis_parent, axis;               // in the parent, in the child
-  double q_rate = 0.0, q_change = 0.0;  // of a turn
-  Vec3 arm, arm_rate, arm_change;       // d and its derivatives, in the parent
-  Vec3 rate_in_child;                   // R ω
-  Vec3 force_at_joint;                  // R f_J
+  Mat3 turn;                       // child_R_parent
+  Vec3 axis_parent, axis;          // in the parent, in the child
+  Vec3 spin, spin_change;          // of the child against the parent, in the child
+  Vec3 arm, arm_rate, arm_change;  // d and its derivatives, in the parent
+  Vec3 rate_in_child;              // R ω
+  Vec3 force_at_joint;             // R f_J
   InsState child;
 };
 
+Mat3 turned_back(const InsBody& body, const Vec3& q) {
+  if (body.motion == JointMotion::turn) return rot_z(-q.x());
+  if (body.motion == JointMotion::ball) return exp_so3(-q);
+  return Mat3::Identity();
+}
+
+void spin(Passage& p, const InsBody& body, const JointReading& q) {
+  p.spin = p.spin_change = Vec3::Zero();
+  if (body.motion == JointMotion::turn) {
+    p.spin = q[1].x() * p.axis;
+    p.spin_change = q[2].x() * p.axis;
+  } else if (body.motion == JointMotion::ball) {
+    const RotationRate r = rotation_rate(q[0], q[1], q[2]);
+    p.spin = body.child_R_axis * r.rate;
+    p.spin_change = body.child_R_axis * r.rate_change;
+  }
+}
+
 Passage pass(const InsBody& body, const JointReading& q, const InsState& parent) {
   Passage p;
-  const bool turns = body.motion == JointMotion::turn, slides = body.motion == JointMotion::slide;
+  const double slides = body.motion == JointMotion::slide ? 1.0 : 0.0;
   p.axis_parent = body.parent_R_axis.col(2);
   p.axis = body.child_R_axis.col(2);
-  p.turn = body.child_R_axis *
-           (turns ? Mat3(rot_z(-q[0]) * body.parent_R_axis.transpose()) : Mat3(body.parent_R_axis.transpose()));
-  p.q_rate = turns ? q[1] : 0.0;
-  p.q_change = turns ? q[2] : 0.0;
-  p.arm = body.point_in_parent + (slides ? q[0] : 0.0) * p.axis_parent;
-  p.arm_rate = (slides ? q[1] : 0.0) * p.axis_parent;
-  p.arm_change = (slides ? q[2] : 0.0) * p.axis_parent;
+  p.turn = body.child_R_axis * turned_back(body, q[0]) * body.parent_R_axis.transpose();
+  spin(p, body, q);
+  p.arm = body.point_in_parent + slides * q[0].x() * p.axis_parent;
+  p.arm_rate = slides * q[1].x() * p.axis_parent;
+  p.arm_change = slides * q[2].x() * p.axis_parent;
   const Vec3 at_joint = parent.force + parent.rate_change.cross(p.arm) + parent.rate.cross(parent.rate.cross(p.arm)) +
                         2.0 * parent.rate.cross(p.arm_rate) + p.arm_change;
   p.force_at_joint = p.turn * at_joint;
   p.rate_in_child = p.turn * parent.rate;
-  p.child.rate = p.rate_in_child + p.q_rate * p.axis;
-  p.child.rate_change = p.turn * parent.rate_change + p.q_change * p.axis - p.q_rate * p.axis.cross(p.rate_in_child);
+  p.child.rate = p.rate_in_child + p.spin;
+  p.child.rate_change = p.turn * parent.rate_change + p.spin_change - p.spin.cross(p.rate_in_child);
   const Vec3& c = body.point_in_child;
   p.child.force = p.force_at_joint - p.child.rate_change.cross(c) - p.child.rate.cross(p.child.rate.cross(c));
   p.child.field = p.turn * parent.field;
@@ -72,7 +89,7 @@ void by_parent_state(const Passage& p, const InsState& parent, const ColumnMaker
   const Mat3& r = p.turn;
   by_parent.setZero();
   by_parent.block<3, 3>(0, 0) = r;
-  by_parent.block<3, 3>(3, 0) = -p.q_rate * skew(p.axis) * r;
+  by_parent.block<3, 3>(3, 0) = -skew(p.spin) * r;
   by_parent.block<3, 3>(3, 3) = r;
   const Mat3 joint_by_rate = -lever_by_rate(parent.rate, p.arm) - 2.0 * skew(p.arm_rate);
   const Mat3 arm = skew(maker.c);
@@ -86,29 +103,54 @@ void by_parent_state(const Passage& p, const InsState& parent, const ColumnMaker
 void put_turn(StateColumns& columns, Index column, const Passage& p, const InsState& parent, const ColumnMaker& maker,
               const Vec3& m, const Vec3& joint_force_change) {
   const Vec3 rate = -m.cross(p.rate_in_child);
-  const Vec3 rate_change = -m.cross(p.turn * parent.rate_change) - p.q_rate * p.axis.cross(rate);
+  const Vec3 rate_change = -m.cross(p.turn * parent.rate_change) - p.spin.cross(rate);
   maker.put(columns, column, rate, rate_change, -m.cross(p.force_at_joint) + joint_force_change,
             -m.cross(p.child.field));
 }
 
-void by_reading(StateColumns& columns, const InsBody& body, const Passage& p, const InsState& parent,
-                const ColumnMaker& maker) {
+/// A change of the spin and of its derivative by time.
+void put_spin(StateColumns& columns, Index column, const Passage& p, const ColumnMaker& maker, const Vec3& change,
+              const Vec3& change_of_change) {
+  maker.put(columns, column, change, change_of_change - change.cross(p.rate_in_child), Vec3::Zero(), Vec3::Zero());
+}
+
+void by_ball(StateColumns& columns, const InsBody& body, const JointReading& q, const Passage& p,
+             const InsState& parent, const ColumnMaker& maker) {
+  const RotationRate r = rotation_rate(q[0], q[1], q[2]);
+  const Mat3& b = body.child_R_axis;
+  for (Index i = 0; i < 3; ++i) {
+    const Vec3 turn = b * r.jacobian.col(i);
+    put_spin(columns, 3 * i, p, maker, b * r.rate_by_vector.col(i), b * r.change_by_vector.col(i));
+    const Eigen::Matrix<double, 12, 1> of_spin = columns.col(3 * i);
+    put_turn(columns, 3 * i, p, parent, maker, turn, Vec3::Zero());
+    columns.col(3 * i) += of_spin;
+    put_spin(columns, 3 * i + 1, p, maker, turn, b * r.change_by_rate.col(i));
+    put_spin(columns, 3 * i + 2, p, maker, Vec3::Zero(), turn);
+  }
+}
+
+void by_reading(StateColumns& columns, const InsBody& body, const JointReading& q, const Passage& p,
+                const InsState& parent, const ColumnMaker& maker) {
   const Vec3 none = Vec3::Zero();
   if (body.motion == JointMotion::turn) {
     put_turn(columns, 0, p, parent, maker, p.axis, none);
-    maker.put(columns, 1, p.axis, -p.axis.cross(p.rate_in_child), none, none);
-    maker.put(columns, 2, none, p.axis, none, none);
+    put_spin(columns, 1, p, maker, p.axis, none);
+    put_spin(columns, 2, p, maker, none, p.axis);
   } else if (body.motion == JointMotion::slide) {
     const Vec3& a = p.axis_parent;
     maker.put(columns, 0, none, none, p.turn * (lever_effect(parent.rate, parent.rate_change) * a), none);
     maker.put(columns, 1, none, none, p.turn * (2.0 * parent.rate.cross(a)), none);
     maker.put(columns, 2, none, none, p.turn * a, none);
-  } else {
-    columns.leftCols(3).setZero();
+  } else if (body.motion == JointMotion::ball) {
+    by_ball(columns, body, q, p, parent, maker);
   }
 }
 
 }  // namespace
+
+Index freedoms(JointMotion motion) {
+  return motion == JointMotion::ball ? 3 : motion == JointMotion::none ? 0 : 1;
+}
 
 Index InsBody::unknowns() const {
   const auto turns = std::ranges::count(free_parent_turn, true) + std::ranges::count(free_child_turn, true);
@@ -131,6 +173,13 @@ InsBody sliding_body(int parent, int sensor, const Mat3& parent_R_axis, const Ma
   body.free_parent_turn = {true, true, false};
   body.free_child_turn = {true, true, true};
   body.free_point_in_parent = true;  // c stays: the line of a slide may lie anywhere
+  return body;
+}
+
+InsBody ball_body(int parent, int sensor, const Mat3& parent_R_child) {
+  InsBody body{.parent = parent, .sensor = sensor, .motion = JointMotion::ball};
+  body.child_R_axis = parent_R_child.transpose();
+  body.free_point_in_parent = body.free_point_in_child = true;
   return body;
 }
 
@@ -168,16 +217,16 @@ void carry(const InsBody& body, const JointReading& q, const InsState& parent, C
   const ColumnMaker maker{p, body.point_in_child, lever_by_rate(p.child.rate, body.point_in_child)};
   out.state = p.child;
   by_parent_state(p, parent, maker, out.by_parent);
-  out.by_own.resize(12, 3 + body.unknowns());
-  by_reading(out.by_own, body, p, parent, maker);
-  Index k = 3;
+  Index k = 3 * freedoms(body.motion);
+  out.by_own.resize(12, k + body.unknowns());
+  by_reading(out.by_own, body, q, p, parent, maker);
   const Mat3 lever = lever_effect(parent.rate, parent.rate_change);
   const Mat3 child_R_turned = p.turn * body.parent_R_axis;  // B Rz(−q)
   for (int i = 0; i < 3; ++i)
     if (body.free_parent_turn[static_cast<std::size_t>(i)]) {
       const Vec3 axis_change = body.parent_R_axis * Vec3::Unit(i).cross(Vec3::UnitZ());
       const double s = p.arm_change.dot(p.axis_parent), v = p.arm_rate.dot(p.axis_parent);
-      const double slid = body.motion == JointMotion::slide ? q[0] : 0.0;
+      const double slid = body.motion == JointMotion::slide ? q[0].x() : 0.0;
       const Vec3 joint = lever * (slid * axis_change) + 2.0 * v * parent.rate.cross(axis_change) + s * axis_change;
       put_turn(out.by_own, k++, p, parent, maker, child_R_turned.col(i), p.turn * joint);
     }

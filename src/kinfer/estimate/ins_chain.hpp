@@ -16,9 +16,10 @@
 
 namespace kinfer {
 
-/// What moves in a joint. Universal and spherical joints are two or three turns with bodies between them that carry no
-/// sensor.
-enum class JointMotion { none, turn, slide };
+/// What moves in a joint; a ball turns by exp(φ) of a rotation vector, child_R_parent = B exp(−φ) Aᵀ. A universal joint
+/// is two turns with a body between them that carries no sensor.
+enum class JointMotion { none, turn, slide, ball };
+Eigen::Index freedoms(JointMotion motion);
 
 /// A body and the joint that it hangs on. Body 0 is the root and has none.
 struct InsBody {
@@ -41,6 +42,7 @@ using InsBodies = std::vector<InsBody>;
 
 InsBody turning_body(int parent, int sensor, const Mat3& parent_R_axis, const Mat3& child_R_axis);
 InsBody sliding_body(int parent, int sensor, const Mat3& parent_R_axis, const Mat3& child_R_axis);
+InsBody ball_body(int parent, int sensor, const Mat3& parent_R_child);
 InsBody fixed_body(int parent, int sensor, const Mat3& parent_R_child);
 
 /// Changes the unknowns by `step` (unknowns() long): turns are multiplied from the right, points are added.
@@ -55,13 +57,13 @@ struct InsState {
 };
 using StateColumns = Eigen::Matrix<double, 12, Eigen::Dynamic>;  ///< derivatives, rows as the members of InsState
 
-/// Joint reading with its derivatives by time: [rad] or [m], per second, per second².
-using JointReading = std::array<double, 3>;
+/// Joint reading with its derivatives by time: [rad] or [m], per second, per second². All of it for a ball, else x.
+using JointReading = std::array<Vec3, 3>;
 
 InsState carried(const InsBody& body, const JointReading& q, const InsState& parent);
 
-/// The same with derivatives: of the child's state by the parent's (12 x 12), and by the reading's three numbers and
-/// the body's unknowns (12 x (3 + unknowns)).
+/// The same with derivatives: of the child's state by the parent's (12 x 12), and by the reading (of each freedom the
+/// value and its two derivatives by time) and the body's unknowns (12 x (3 freedoms + unknowns)).
 struct CarriedDerivative {
   InsState state;
   Eigen::Matrix<double, 12, 12> by_parent;

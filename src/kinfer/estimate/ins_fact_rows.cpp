@@ -16,6 +16,7 @@ struct PlacedBody {
   Mat3 parent = Mat3::Identity();    // root_R_parent
   Mat3 before = Mat3::Identity();    // root_R_parent A: axes of the joint before it turns
   Mat3 after = Mat3::Identity();     // the same after it has turned
+  Mat3 turned_about = Mat3::Zero();  // root: what a change of each freedom of the reading turns about
   Mat3 rotation = Mat3::Identity();  // root_R_body
   Vec3 pivot = Vec3::Zero();         // the joint's point p
   Vec3 joint = Vec3::Zero();         // p + slide
@@ -36,15 +37,33 @@ double reading(const MatrixXd& band, Index channel, Index interval, const Spline
   return sum;
 }
 
+Mat3 joint_turn(JointMotion motion, const Vec3& reading) {
+  if (motion == JointMotion::turn) return rot_z(reading.x());
+  if (motion == JointMotion::ball) return exp_so3(reading);
+  return Mat3::Identity();
+}
+
+/// Axes of the joint that its freedoms turn about, a column each.
+Mat3 turned_about(JointMotion motion, const Vec3& reading) {
+  Mat3 axes = Mat3::Zero();
+  if (motion == JointMotion::turn) axes.col(0) = Vec3::UnitZ();
+  if (motion == JointMotion::ball) axes = right_jacobian(-reading);  // the left Jacobian
+  return axes;
+}
+
 Snapshot snapshot(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, double time) {
   const auto [interval, place] = problem.grid.place(time);
   Snapshot s{interval, spline_basis(place, problem.grid.period), {PlacedBody{}}};
   for (std::size_t b = 1; b < x.bodies.size(); ++b) {
     const InsBody& body = x.bodies[b];
     const PlacedBody& parent = s.body[static_cast<std::size_t>(body.parent)];
-    const double q = layout.channel[b] < 0 ? 0.0 : reading(x.band, layout.channel[b], interval, s.basis);
+    Vec3 vector = Vec3::Zero();
+    for (Index i = 0; i < freedoms(body.motion); ++i)
+      vector[i] = reading(x.band, layout.channel[b] + i, interval, s.basis);
+    const double q = vector.x();
     PlacedBody placed{.parent = parent.rotation, .before = parent.rotation * body.parent_R_axis};
-    placed.after = body.motion == JointMotion::turn ? Mat3(placed.before * rot_z(q)) : placed.before;
+    placed.after = placed.before * joint_turn(body.motion, vector);
+    placed.turned_about = placed.before * turned_about(body.motion, vector);
     placed.rotation = placed.after * body.child_R_axis.transpose();
     placed.pivot = parent.origin + parent.rotation * body.point_in_parent;
     placed.joint = placed.pivot + (body.motion == JointMotion::slide ? q : 0.0) * placed.before.col(2);
@@ -116,14 +135,15 @@ class PointMover {
     at += body.free_point_in_parent ? 3 : 0;
     if (body.free_point_in_child) p.by_position.middleCols<3>(at) -= placed.rotation;
     if (layout_.channel[b] < 0) return;
-    for (Index i = 0; i < spline_order; ++i) {
-      const Index column = i * layout_.channels + layout_.channel[b];
-      const double weight = s_.basis.at[0][static_cast<std::size_t>(i)];
-      if (body.motion == JointMotion::turn)
-        turn(p, column, weight, placed.before.col(2), placed.joint);
-      else
-        p.by_position.col(column) += weight * placed.before.col(2);
-    }
+    for (Index i = 0; i < spline_order; ++i)
+      for (Index k = 0; k < freedoms(body.motion); ++k) {
+        const Index column = i * layout_.channels + layout_.channel[b] + k;
+        const double weight = s_.basis.at[0][static_cast<std::size_t>(i)];
+        if (body.motion == JointMotion::slide)
+          p.by_position.col(column) += weight * placed.before.col(2);
+        else
+          turn(p, column, weight, placed.turned_about.col(k), placed.joint);
+      }
   }
 
   const InsLayout& layout_;

@@ -3,18 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/estimate/ins_noise.hpp"
+
 namespace kinfer {
 namespace {
 
 constexpr double held = 1e12;  // damping that holds the border while the band settles
-constexpr double most_damping = 1e8;
-constexpr int settling_iterations = 3;  // of the band alone
+constexpr double first_damping = 1e-3, most_damping = 1e8;
+constexpr double least_damping = 1e-14;  // must not hold a weakly known azimuth
+constexpr int settling_iterations = 3;   // of the band alone
+constexpr int round_iterations = 4;      // before the instruments are weighed anew
 
 struct Marquardt {
-  const InsProblem& problem;
+  InsProblem& problem;
   const InsFitOptions& options;
   InsFit fit;
-  double damping = 1e-3;
+  double damping = first_damping;
 
   /// One accepted step; false where no damping lowers the cost.
   bool step(bool hold_border) {
@@ -28,43 +32,57 @@ struct Marquardt {
       if (!(cost.total < fit.cost.total)) continue;
       fit.unknowns = std::move(trial);
       fit.cost = std::move(cost);
-      damping = std::max(1e-9, 0.1 * damping);
+      damping = std::max(least_damping, 0.03 * damping);
       return true;
     }
+    damping = first_damping;
     return false;
+  }
+
+  /// True where the instruments' noise, as it is now, changed since the cost was computed.
+  bool weigh() {
+    const bool changed = reweigh(problem, fit.cost);
+    fit.cost = cost_of(problem, fit.layout, fit.unknowns, options.threads);
+    return changed;
+  }
+
+  /// Iterates until the cost no longer falls, the round or the budget is over.
+  Stop round(int iterations, const Observer& observer) {
+    for (int i = 0; i < iterations && fit.iterations < options.iterations; ++i, ++fit.iterations) {
+      const double before = fit.cost.total;
+      if (!step(false)) return Stop::stalled;
+      const Progress progress{.stage = "estimate",
+                              .fraction = static_cast<double>(fit.iterations) / options.iterations,
+                              .best = fit.cost.total,
+                              .median = 0.0,
+                              .iteration = fit.iterations,
+                              .detail = {}};
+      if (tell(observer, progress) == Wish::stop) return Stop::cancelled;
+      if (before - fit.cost.total < options.least_decrease && damping < first_damping) return Stop::converged_cost;
+    }
+    return Stop::budget_spent;
   }
 };
 
 }  // namespace
 
-InsFit fit_ins(const InsProblem& problem, const InsUnknowns& start, const InsFitOptions& options,
-               const Observer& observer) {
+InsFit fit_ins(InsProblem& problem, const InsUnknowns& start, const InsFitOptions& options, const Observer& observer) {
   Marquardt m{problem, options, {start, layout_of(problem, start.bodies), {}}};
-  m.fit.cost = cost_of(problem, m.fit.layout, start, options.threads);
-  for (InsFit& fit = m.fit; fit.iterations < options.iterations; ++fit.iterations) {
-    const double before = fit.cost.total;
-    const bool settling = fit.iterations < settling_iterations;
-    if (!m.step(settling)) {
-      m.damping = 1e-3;
-      if (settling) continue;
-      fit.stop = Stop::stalled;
-      break;
-    }
-    if (tell(observer, {.stage = "estimate",
-                        .fraction = static_cast<double>(fit.iterations) / options.iterations,
-                        .best = fit.cost.total,
-                        .median = 0.0,
-                        .iteration = fit.iterations,
-                        .detail = {}}) == Wish::stop) {
-      fit.stop = Stop::cancelled;
-      break;
-    }
-    if (!settling && before - fit.cost.total < options.least_decrease * before && m.damping < 1e-3) {
-      fit.stop = Stop::converged_cost;
-      break;
-    }
+  InsFit& fit = m.fit;
+  fit.cost = cost_of(problem, fit.layout, fit.unknowns, options.threads);
+  for (int i = 0; i < settling_iterations; ++i, ++fit.iterations) {
+    m.weigh();
+    m.step(true);
   }
-  return m.fit;
+  bool changed = m.weigh();
+  for (int round = 0; round < options.rounds; ++round) {
+    fit.stop = m.round(changed ? round_iterations : options.iterations, observer);
+    if (fit.stop == Stop::cancelled || fit.iterations >= options.iterations) break;
+    const bool done = fit.stop != Stop::budget_spent;
+    changed = m.weigh();
+    if (done && !changed) break;
+  }
+  return fit;
 }
 
 }  // namespace kinfer

@@ -9,8 +9,9 @@
 namespace kinfer {
 
 struct InsFitOptions {
-  int iterations = 60;
-  double least_decrease = 1e-7;  ///< of the cost: less is convergence
+  int iterations = 60;           ///< in all
+  int rounds = 6;                ///< most of them between which the instruments are weighed anew
+  double least_decrease = 1e-2;  ///< of the cost, in squared sigmas: a step of a tenth of a sigma is convergence
   int threads = 0;
 };
 
@@ -22,8 +23,10 @@ struct InsFit {
   int iterations = 0;
 };
 
-/// From `start`: first the readings of the joints alone, then everything.
-InsFit fit_ins(const InsProblem& problem, const InsUnknowns& start, const InsFitOptions& options,
+/// From `start`: first the readings of the joints alone, then everything. In rounds: each begins by giving the
+/// instruments the noise that their residuals show, which `problem` then holds; so a poor start counts as noise first,
+/// and what the model cannot explain for good does so in the end.
+InsFit fit_ins(InsProblem& problem, const InsUnknowns& start, const InsFitOptions& options,
                const Observer& observer = {});
 
 }  // namespace kinfer

@@ -6,6 +6,7 @@
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/estimate/ins_fact_rows.hpp"
+#include "kinfer/estimate/ins_motion.hpp"
 
 namespace kinfer {
 namespace {
@@ -14,135 +15,7 @@ using Index = Eigen::Index;
 constexpr Index item_intervals = 8;  // of one work item; fixed, so that sums never depend on the number of threads
 constexpr Index batch_items = 16;    // linearised before they are eliminated: bounds the memory
 
-/// What a column of a body's state derivatives stands for.
-struct Column {
-  Index border = -1;              // unknown that holds for good
-  Index channel = -1, order = 0;  // else: derivative of the band's channel
-};
-
-/// How the unknowns reach each body.
-struct Paths {
-  std::vector<std::vector<Column>> columns;  // of each body
-  std::vector<std::vector<Index>> channels;  // of each body
-};
-
-Paths paths_of(const InsProblem& problem, const InsLayout& layout, const InsBodies& bodies) {
-  Paths paths{std::vector<std::vector<Column>>(bodies.size()), std::vector<std::vector<Index>>(bodies.size())};
-  auto& root = paths.columns.front();
-  if (problem.root_stands_still) {
-    for (Index i = 0; i < 3; ++i) root.push_back({.border = layout.root_force + i});
-    if (layout.has_field)
-      for (Index i = 0; i < 3; ++i) root.push_back({.border = layout.root_field + i});
-  } else {
-    for (Index i = 0; i < 3; ++i) root.push_back({.channel = i, .order = 0});
-    for (Index i = 0; i < 3; ++i) root.push_back({.channel = i, .order = 1});
-    for (Index i = 3; i < 6; ++i) root.push_back({.channel = i, .order = 0});
-    paths.channels.front() = {0, 1, 2, 3, 4, 5};
-  }
-  for (std::size_t b = 1; b < bodies.size(); ++b) {
-    const auto parent = static_cast<std::size_t>(bodies[b].parent);
-    paths.columns[b] = paths.columns[parent];
-    paths.channels[b] = paths.channels[parent];
-    if (layout.channel[b] >= 0) {
-      paths.channels[b].push_back(layout.channel[b]);
-      for (Index order = 0; order < 3; ++order)
-        paths.columns[b].push_back({.channel = layout.channel[b], .order = order});
-    }
-    for (Index i = 0; i < bodies[b].unknowns(); ++i) paths.columns[b].push_back({.border = layout.body[b] + i});
-  }
-  return paths;
-}
-
-/// Bases at the nodes; the same in every interval.
-std::array<SplineBasis, block_nodes> node_bases(const SplineGrid& grid) {
-  std::array<SplineBasis, block_nodes> bases;
-  for (std::size_t i = 0; i < block_nodes; ++i) bases[i] = spline_basis(block_places()[i], grid.period);
-  return bases;
-}
-
-double band_value(const MatrixXd& band, Index channel, Index interval, const SplineBasis& basis, Index order) {
-  double sum = 0.0;
-  for (Index i = 0; i < spline_order; ++i)
-    sum += basis.at[static_cast<std::size_t>(order)][static_cast<std::size_t>(i)] * band(channel, interval + i);
-  return sum;
-}
-
-InsState root_state(const InsProblem& problem, const InsUnknowns& x, Index interval, const SplineBasis& basis) {
-  InsState state;
-  if (problem.root_stands_still) {
-    state.force = x.root_force;
-    state.field = x.root_field;
-    return state;
-  }
-  for (Index i = 0; i < 3; ++i) {
-    state.rate[i] = band_value(x.band, i, interval, basis, 0);
-    state.rate_change[i] = band_value(x.band, i, interval, basis, 1);
-    state.force[i] = band_value(x.band, 3 + i, interval, basis, 0);
-  }
-  return state;
-}
-
-JointReading joint_reading(const InsLayout& layout, const InsUnknowns& x, std::size_t body, Index interval,
-                           const SplineBasis& basis) {
-  JointReading q{};
-  if (layout.channel[body] >= 0)
-    for (Index order = 0; order < 3; ++order)
-      q[static_cast<std::size_t>(order)] = band_value(x.band, layout.channel[body], interval, basis, order);
-  return q;
-}
-
-std::vector<InsState> body_states(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
-                                  Index interval, const SplineBasis& basis) {
-  std::vector<InsState> states{root_state(problem, x, interval, basis)};
-  for (std::size_t b = 1; b < x.bodies.size(); ++b)
-    states.push_back(carried(x.bodies[b], joint_reading(layout, x, b, interval, basis),
-                             states[static_cast<std::size_t>(x.bodies[b].parent)]));
-  return states;
-}
-
-/// States of all bodies at one node with their derivatives.
-struct NodeMotion {
-  std::vector<InsState> state;
-  std::vector<StateColumns> columns;
-};
-
-NodeMotion root_motion(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, Index interval,
-                       const SplineBasis& basis) {
-  NodeMotion motion;
-  motion.state.push_back(root_state(problem, x, interval, basis));
-  StateColumns columns = StateColumns::Zero(12, problem.root_stands_still ? (layout.has_field ? 6 : 3) : 9);
-  if (problem.root_stands_still) {
-    columns.block<3, 3>(6, 0).setIdentity();
-    if (layout.has_field) columns.block<3, 3>(9, 3).setIdentity();
-  } else {
-    columns.topRows<9>().setIdentity();
-  }
-  motion.columns.push_back(std::move(columns));
-  return motion;
-}
-
-NodeMotion node_motion(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, Index interval,
-                       const SplineBasis& basis) {
-  NodeMotion motion = root_motion(problem, layout, x, interval, basis);
-  CarriedDerivative derivative;
-  for (std::size_t b = 1; b < x.bodies.size(); ++b) {
-    const auto parent = static_cast<std::size_t>(x.bodies[b].parent);
-    carry(x.bodies[b], joint_reading(layout, x, b, interval, basis), motion.state[parent], derivative);
-    const Index inherited = motion.columns[parent].cols(), skipped = layout.channel[b] >= 0 ? 0 : 3;
-    StateColumns columns(12, inherited + derivative.by_own.cols() - skipped);
-    columns.leftCols(inherited).noalias() = derivative.by_parent * motion.columns[parent];
-    columns.rightCols(columns.cols() - inherited) = derivative.by_own.rightCols(derivative.by_own.cols() - skipped);
-    motion.state.push_back(derivative.state);
-    motion.columns.push_back(std::move(columns));
-  }
-  return motion;
-}
-
 // ---- Residuals of one instrument in one interval ----------------------------------------------------------------
-
-struct Prediction {
-  Eigen::Matrix<double, block_nodes, 3> value;  // of the readings at the nodes
-};
 
 Vec3 read_rate(const InsState& s, const InsErrors& e) {
   return s.rate + e.rate_matrix * s.rate + e.rate_bias;
@@ -181,8 +54,8 @@ struct InstrumentUse {
 
 std::vector<InstrumentUse> instruments(const InsProblem& problem, const InsLayout& layout, std::size_t sensor) {
   const InsReadings& r = problem.sensors[sensor];
-  std::vector<InstrumentUse> uses{{r.rate, r.rate_sd, read_rate, 0}, {r.force, r.force_sd, read_force, 6}};
-  if (layout.has_field && !r.field.empty()) uses.push_back({r.field, r.field_sd, read_field, 9});
+  std::vector<InstrumentUse> uses{{r.rate, r.noise.rate, read_rate, 0}, {r.force, r.noise.force, read_force, 6}};
+  if (layout.has_field && !r.field.empty()) uses.push_back({r.field, r.noise.field, read_field, 9});
   return uses;
 }
 
@@ -197,13 +70,13 @@ struct SensorColumns {
   Index own = 0;                // column of the first of the sensor's errors
 };
 
-SensorColumns sensor_columns(const InsLayout& layout, const Paths& paths, std::size_t body, std::size_t sensor) {
+SensorColumns sensor_columns(const InsLayout& layout, const InsPaths& paths, std::size_t body, std::size_t sensor) {
   SensorColumns columns;
   const Index local = spline_order * layout.channels;
   const auto& channels = paths.channels[body];
   for (const Index channel : channels)
     for (Index i = 0; i < spline_order; ++i) columns.index.push_back(i * layout.channels + channel);
-  for (const Column& column : paths.columns[body]) {
+  for (const InsColumn& column : paths.columns[body]) {
     if (column.border >= 0) {
       columns.of_state.push_back(static_cast<Index>(columns.index.size()));
       columns.index.push_back(local + column.border);
@@ -219,7 +92,7 @@ SensorColumns sensor_columns(const InsLayout& layout, const Paths& paths, std::s
 /// Derivative of one instrument's reading at one node by the columns of the sensor (3 rows).
 template <class Rows>
 void fill_rows(Rows rows, const InstrumentUse& use, const InsLayout& layout, const SensorColumns& columns,
-               const std::vector<Column>& path, const StateColumns& state_columns, const InsState& state,
+               const std::vector<InsColumn>& path, const StateColumns& state_columns, const InsState& state,
                const InsErrors& errors, const SplineBasis& basis) {
   rows.setZero();
   Eigen::Matrix<double, 3, Eigen::Dynamic> by_state = state_columns.middleRows<3>(use.state_row);
@@ -253,7 +126,7 @@ struct SensorSystem {
 };
 
 SensorSystem sensor_system(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
-                           const SensorColumns& columns, const std::vector<Column>& path, std::size_t body,
+                           const SensorColumns& columns, const std::vector<InsColumn>& path, std::size_t body,
                            Index interval, const std::array<NodeMotion, block_nodes>& motion,
                            const std::array<SplineBasis, block_nodes>& bases) {
   const auto sensor = static_cast<std::size_t>(x.bodies[body].sensor);
@@ -289,14 +162,13 @@ SensorSystem sensor_system(const InsProblem& problem, const InsLayout& layout, c
 
 // ---- Priors on the band ---------------------------------------------------------------------------------------------
 
-/// Sd of the third difference of a channel's coefficients: [unit/s³] times period cubed. Far above any motion: it only
-/// bridges stretches in which nothing was said.
-double roughness_sd(const InsProblem& problem, const InsLayout& layout, Index channel) {
+/// Sd of the third difference of a channel's coefficients: [unit/s³] times period cubed. Far above what shaking hands
+/// do: it only bridges stretches in which nothing was said.
+double roughness_sd(const InsProblem& problem, Index channel) {
+  constexpr double joint = 3e4, root_rate = 1e6, root_force = 1e7;
   const double h = problem.grid.period, cubed = h * h * h;
-  const Index first_joint = problem.root_stands_still ? 0 : 6;
-  if (channel >= first_joint) return 300.0 * cubed;
-  (void)layout;
-  return (channel < 3 ? 3e3 : 3e4) * cubed;
+  if (problem.root_stands_still || channel >= 6) return joint * cubed;
+  return (channel < 3 ? root_rate : root_force) * cubed;
 }
 
 constexpr double anchor_sd = 3.0;  // [rad] or [m]
@@ -307,7 +179,7 @@ void each_band_prior(const InsProblem& problem, const InsLayout& layout, const M
                      const Visit& visit) {
   const bool last = interval + 1 == problem.grid.intervals;
   for (Index channel = 0; channel < layout.channels; ++channel) {
-    const double sd = roughness_sd(problem, layout, channel);
+    const double sd = roughness_sd(problem, channel);
     for (Index shift = 0; shift <= (last ? 2 : 0); ++shift) {
       Eigen::Matrix<double, spline_order, 1> weights = Eigen::Matrix<double, spline_order, 1>::Zero();
       weights.segment<4>(shift) << -1.0, 3.0, -3.0, 1.0;
@@ -387,6 +259,7 @@ class IntervalLinearisation {
   /// `index`: of each column, in the span's local unknowns and behind them the border's.
   void accumulate(const std::vector<Index>& index, const MatrixXd& jacobian, const VectorXd& residual, BandSpan& span,
                   BorderSum& border) const {
+    if (residual.size() == 0) return;  // nothing was said
     const Index n = jacobian.cols(), local = spline_order * layout_.channels;
     MatrixXd squares = MatrixXd::Zero(n, n);
     squares.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
@@ -410,7 +283,7 @@ class IntervalLinearisation {
   const InsProblem& problem_;
   const InsLayout& layout_;
   const InsUnknowns& x_;
-  Paths paths_;
+  InsPaths paths_;
   std::array<SplineBasis, block_nodes> bases_;
   std::vector<InsFactRows> facts_;
   std::vector<Index> every_column_;
@@ -425,10 +298,22 @@ std::pair<Index, Index> intervals_of(const InsProblem& problem, Index item) {
   return {item * item_intervals, std::min(problem.grid.intervals, (item + 1) * item_intervals)};
 }
 
-void take_up(InstrumentFit& fit, double squares, double terms, double weight) {
-  fit.squares += weight * squares;
-  fit.terms += weight * terms;
-  fit.interval.push_back(terms > 0.0 ? static_cast<float>(squares / terms) : -1.0f);
+/// A block's residual against a constant offset of the readings, in sigmas, an axis each.
+std::array<float, 3> offset_of(const InsBlock& block, const BlockResidual& r) {
+  std::array<float, 3> offset{};
+  const Eigen::Matrix<double, block_nodes, 1> by_offset = block.factor.rowwise().sum();
+  const double size = by_offset.norm();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    offset[axis] = size > 0.0 ? static_cast<float>(by_offset.dot(r.col(static_cast<Index>(axis))) / size) : no_reading;
+  return offset;
+}
+
+void take_up(InstrumentFit& fit, const InsBlock& block, const BlockResidual& r, const RobustBlock& value) {
+  const double terms = 3.0 * block.rows;
+  fit.squares += value.weight * r.squaredNorm();
+  fit.terms += value.weight * terms;
+  fit.block.push_back(terms > 0.0 ? static_cast<float>(r.squaredNorm() / terms) : no_reading);
+  fit.offset.push_back(offset_of(block, r));
 }
 
 InsCost item_cost(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, Index item,
@@ -446,14 +331,11 @@ InsCost item_cost(const InsProblem& problem, const InsLayout& layout, const InsU
         BlockResidual predicted;
         for (std::size_t n = 0; n < block_nodes; ++n)
           predicted.row(static_cast<Index>(n)) = use.read(states[n][b], x.errors[sensor]).transpose();
-        const double squares = residual(block, predicted, use.sd).squaredNorm(), terms = 3.0 * block.rows;
-        const RobustBlock value = robust(squares, terms);
+        const BlockResidual r = residual(block, predicted, use.sd);
+        const RobustBlock value = robust(r.squaredNorm(), 3.0 * block.rows);
         cost.total += value.cost;
         SensorFit& fit = cost.sensors[sensor];
-        take_up(use.state_row == 0   ? fit.rate
-                : use.state_row == 6 ? fit.force
-                                     : fit.field,
-                squares, terms, value.weight);
+        take_up(use.state_row == 0 ? fit.rate : use.state_row == 6 ? fit.force : fit.field, block, r, value);
       }
     }
     each_band_prior(problem, layout, x.band, interval,
@@ -465,7 +347,8 @@ InsCost item_cost(const InsProblem& problem, const InsLayout& layout, const InsU
 void append(InstrumentFit& to, const InstrumentFit& more) {
   to.squares += more.squares;
   to.terms += more.terms;
-  to.interval.insert(to.interval.end(), more.interval.begin(), more.interval.end());
+  to.block.insert(to.block.end(), more.block.begin(), more.block.end());
+  to.offset.insert(to.offset.end(), more.offset.begin(), more.offset.end());
 }
 
 void damp(BandSpan& span, double damping) {

@@ -5,16 +5,21 @@
 // or hits a sensor for a moment counts little.
 #pragma once
 
+#include <limits>
+
 #include "kinfer/estimate/ins_problem.hpp"
 #include "kinfer/linalg/bordered_band.hpp"
 
 namespace kinfer {
 
+inline constexpr float no_reading = std::numeric_limits<float>::quiet_NaN();
+
 /// How well the instruments of one sensor are explained.
 struct InstrumentFit {
-  double squares = 0.0;         ///< whitened, robust weights applied
-  double terms = 0.0;           ///< how many, weights applied
-  std::vector<float> interval;  ///< whitened squares over terms of each interval; negative: nothing was said
+  double squares = 0.0;                      ///< whitened, robust weights applied
+  double terms = 0.0;                        ///< how many, weights applied
+  std::vector<float> block;                  ///< whitened squares over terms of each interval; NaN: nothing was said
+  std::vector<std::array<float, 3>> offset;  ///< of each interval, an axis each, in sigmas; NaN: nothing was said
 };
 struct SensorFit {
   InstrumentFit rate, force, field;

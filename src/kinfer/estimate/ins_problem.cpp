@@ -45,7 +45,8 @@ InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
   if (layout.has_field) layout.root_field = take(3);
   for (const InsBody& body : bodies) {
     layout.body.push_back(take(body.unknowns()));
-    layout.channel.push_back(body.motion == JointMotion::none ? -1 : layout.channels++);
+    layout.channel.push_back(body.motion == JointMotion::none ? -1 : layout.channels);
+    layout.channels += freedoms(body.motion);
   }
   layout.errors_each = 6 + (layout.has_matrices ? 18 : 0) + (layout.has_field ? 3 : 0);
   for (std::size_t s = 0; s < problem.sensors.size(); ++s) layout.error.push_back(take(layout.errors_each));

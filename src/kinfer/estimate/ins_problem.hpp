@@ -11,12 +11,18 @@
 
 namespace kinfer {
 
-/// What one INS said, by intervals of the grid. Standard deviations are of one row of a block.
+/// Standard deviations of one row of a block; of the magnetic field: of an interval's mean.
+struct InsNoise {
+  double rate = 1.0;   ///< [rad/s]
+  double force = 1.0;  ///< [m/s²]
+  double field = 1.0;
+};
+
+/// What one INS said, by intervals of the grid.
 struct InsReadings {
   std::vector<InsBlock> rate, force, field;  ///< field: empty where it is not used
-  double rate_sd = 1.0;                      ///< [rad/s]
-  double force_sd = 1.0;                     ///< [m/s²]
-  double field_sd = 1.0;                     ///< of an interval's mean
+  InsNoise noise;                            ///< as the fit weighs them
+  InsNoise least;                            ///< what the instrument has even where the model is perfect
 };
 
 /// Systematic errors of one INS.
@@ -58,7 +64,7 @@ struct InsLayout {
   Eigen::Index border = 0;                        ///< unknowns that hold for good
   Eigen::Index root_force = -1, root_field = -1;  ///< first of three in the border; −1: not there
   std::vector<Eigen::Index> body, error;          ///< first unknown of each body and sensor in the border
-  std::vector<Eigen::Index> channel;              ///< of each body's joint; −1: none
+  std::vector<Eigen::Index> channel;              ///< first of each body's joint; −1: none
   bool has_field = false, has_matrices = false;
   Eigen::Index errors_each = 0;  ///< unknowns a sensor: [b_g, b_a, S_g, S_a, b_m]
   Eigen::Index facts = -1;       ///< first of what facts make unknown: places, touched points, the surveyor\'s frame

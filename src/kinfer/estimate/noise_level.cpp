@@ -9,8 +9,6 @@
 namespace kinfer {
 namespace {
 
-constexpr double median_chi2_of_three = 2.36597;  // of a chi-squared variable with 3 degrees of freedom
-
 /// Excess that brings the median of block norms² (given an excess) down to that of Gaussian noise; 0 if it is there
 /// already.
 double solve_excess(const std::function<double(double)>& median_norm2, double target, double upper) {
@@ -23,19 +21,7 @@ double solve_excess(const std::function<double(double)>& median_norm2, double ta
   return high;
 }
 
-std::vector<Vec3> point_residuals(const Chain& chain, const PoseSet& data) {
-  Weights unit;
-  unit.point_sd.assign(data.points.size(), Vec3::Ones());
-  unit.orientation_sd.assign(data.orientations.size(), 1.0);
-  VectorXd r;
-  const ParameterSet nothing;
-  pose_residuals(chain, nothing, data, unit).evaluate(VectorXd(0), r, nullptr);
-  std::vector<Vec3> blocks;
-  for (Eigen::Index i = 0; i + 2 < r.size(); i += 3) blocks.push_back(r.segment<3>(i));
-  return blocks;
-}
-
-double excess_of(const std::vector<Vec3>& residuals, const std::vector<Vec3>& sd, double absorbed) {
+double excess_of(const std::vector<Vec3>& residuals, const std::vector<Vec3>& sd, int size, double absorbed) {
   if (residuals.empty()) return 0.0;
   double largest = 0.0;
   for (const Vec3& r : residuals) largest = std::max(largest, r.norm());
@@ -45,30 +31,47 @@ double excess_of(const std::vector<Vec3>& residuals, const std::vector<Vec3>& sd
       norm2[i] = residuals[i].cwiseAbs2().cwiseQuotient((sd[i].cwiseAbs2().array() + excess * excess).matrix()).sum();
     return median(std::move(norm2));
   };
-  return solve_excess(median_norm2, median_chi2_of_three * absorbed, 2.0 * largest);
+  return solve_excess(median_norm2, chi_squared_quantile(0.5, size) * absorbed, 2.0 * largest);
+}
+
+/// The kind's blocks in natural units, padded with zeros to three numbers.
+std::vector<Vec3> residuals_of(const ResidualKind& kind, const Scene& scene) {
+  std::vector<Vec3> residuals(kind.count(scene.data), Vec3::Zero());
+  VectorXd rows = VectorXd::Zero(3);
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    BlockRows out{rows, nullptr, 0};
+    kind.write(scene, i, out);
+    residuals[i].head(kind.size) = rows.head(kind.size);
+  }
+  return residuals;
 }
 
 }  // namespace
 
 ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::optional<Instrument>& instrument,
                          double effective_parameters) {
-  const std::vector<Vec3> all = point_residuals(chain, data);
-  const auto points = static_cast<std::ptrdiff_t>(data.points.size());
-  const std::vector<Vec3> positions(all.begin(), all.begin() + points), turns(all.begin() + points, all.end());
-  const double rows = 3.0 * static_cast<double>(all.size());
+  const ParameterSet nothing;
+  const EvaluatedPoses at = evaluate_poses(chain, nothing, data, Derivative::no);
+  const ColumnsOfSurroundings columns = columns_of_surroundings(chain, nothing);
+  const Scene scene{chain, data, at, columns};
+  double rows = 0.0;
+  for (const ResidualKind& kind : residual_kinds()) rows += kind.size * static_cast<double>(kind.count(data));
   // Each determined parameter takes one residual away; a tenth is left even where hardly any redundancy is.
   const double left = std::max(0.1, 1.0 - effective_parameters / rows);
-
   const Weights promised = weights_of(data, instrument.value_or(Instrument{}));
-  std::vector<Vec3> turn_sd;
-  for (const double sd : promised.orientation_sd) turn_sd.push_back(Vec3::Constant(sd));
-  return {excess_of(positions, promised.point_sd, left), excess_of(turns, turn_sd, left)};
+  ExcessNoise excess;
+  for (const ResidualKind& kind : residual_kinds())
+    excess.of[static_cast<std::size_t>(kind.kind)] =
+        excess_of(residuals_of(kind, scene), promised.of(kind.kind), kind.size, left);
+  return excess;
 }
 
 Weights weights_of(const PoseSet& data, const std::optional<Instrument>& instrument, const ExcessNoise& excess) {
   Weights weights = weights_of(data, instrument.value_or(Instrument{}));
-  for (Vec3& sd : weights.point_sd) sd = (sd.cwiseAbs2().array() + excess.position * excess.position).sqrt();
-  for (double& sd : weights.orientation_sd) sd = std::hypot(sd, excess.orientation);
+  for (const ResidualKind& kind : residual_kinds()) {
+    const double more = excess.of[static_cast<std::size_t>(kind.kind)];
+    for (Vec3& sd : weights.of(kind.kind)) sd = (sd.cwiseAbs2().array() + more * more).sqrt();
+  }
   return weights;
 }
 

@@ -1,6 +1,7 @@
 // How noisy the measurements really are: the instrument's word, or more where the residuals say so.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -8,15 +9,15 @@
 
 namespace kinfer {
 
-/// Standard deviation that has to be added (in quadrature) to what the instrument promises so that the typical residual
-/// is explained: what the model cannot describe, and all noise where the instrument is not known.
+/// Standard deviation per axis that has to be added (in quadrature) to what the instrument promises so that the typical
+/// residual is explained: what the model cannot describe, and all noise where the instrument is not known. One a kind
+/// of measurement: [m], [rad] or [m/s²].
 struct ExcessNoise {
-  double position = 0.0;     ///< [m] per axis
-  double orientation = 0.0;  ///< [rad] per axis
+  std::array<double, measurement_kinds> of{};
 };
 
-/// Judged by the median block, so a minority of wrong rows does not matter. `effective_parameters` is how many
-/// parameters the data determine: they have absorbed that many residuals.
+/// Judged by the median block of each kind, so a minority of wrong rows does not matter. `effective_parameters` is how
+/// many parameters the data determine: they have absorbed that many residuals.
 ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::optional<Instrument>& instrument,
                          double effective_parameters);
 

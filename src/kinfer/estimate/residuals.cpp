@@ -1,151 +1,199 @@
 #include "kinfer/estimate/residuals.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "kinfer/base/expect.hpp"
 
 namespace kinfer {
 namespace {
 
-constexpr double noise_free_sd = 1e-9;        // [m]; FORMATS: 0 means noise-free, floor 1e-6 mm
-constexpr double noise_free_angle_sd = 1e-9;  // [rad]
+constexpr double noise_free_sd = 1e-9;  // [m], [rad]; FORMATS: 0 means noise-free, floor 1e-6 mm
 
-Load load_at(const PoseSet& data, Eigen::Index row) {
-  return {.payload = data.payload.empty() ? 0.0 : data.payload[row]};
+/// The set as the evaluator of one mounting has it: numbers of that mounting's base and tool are its own, those of the
+/// others move nothing.
+ParameterSet seen_from(ParameterSet set, const Chain& chain, int mounting) {
+  if (mounting < 0) return set;
+  const bool own_base = chain.mountings[mounting].base.has_value();
+  for (Parameter& parameter : set.parameters) {
+    Address& at = parameter.at;
+    const bool of_chain = at.owner == Owner::tool || (at.owner == Owner::base && own_base);
+    if (of_chain)
+      at.owner = Owner::gravity;  // acts on no pose
+    else if (at.owner == Owner::mounting_base && at.joint == mounting)
+      at = {Owner::base, -1, at.field};
+    else if (at.owner == Owner::mounting_tool && at.joint == mounting)
+      at = {Owner::tool, -1, at.field};
+  }
+  return set;
 }
 
-Vec3 target_in_tool(const Chain& chain, int target) {
-  return target < 0 ? Vec3::Zero().eval() : chain.targets[target].xyz;
-}
-
-/// Writes blocks of three rows one after the other.
-struct Writer {
-  VectorXd& residuals;
-  MatrixXd* jacobian;
-  Eigen::Index row = 0;
-};
-
-void write_points(const Chain& chain, const PoseSet& data, const EvaluatedPoses& at, const Weights& weights,
-                  Writer& out) {
-  for (std::size_t i = 0; i < data.points.size(); ++i) {
-    const PointMeasurement& point = data.points[i];
-    const Pose& pose = at.pose[point.row];
-    const Vec3 arm = pose.rotation * target_in_tool(chain, point.target);
-    const Vec3 inverse_sd = weights.point_sd[i].cwiseInverse();
-    out.residuals.segment<3>(out.row) = inverse_sd.cwiseProduct(point.position - pose.position - arm);
-    if (out.jacobian) {
-      // d(p + arm) = dp + dω × arm
-      const Twists& twist = at.twists[point.row];
-      auto block = out.jacobian->middleRows<3>(out.row);
-      if (point.target < 0) {
-        block = -(inverse_sd.asDiagonal() * twist.topRows<3>());
-      } else {
-        const Mat3 turn = -skew(arm);
-        block = -(inverse_sd.asDiagonal() * (twist.topRows<3>() + turn * twist.bottomRows<3>()));
+void write_socket_distances(const Chain& chain, const ColumnsOfSurroundings& columns, VectorXd& r, MatrixXd* jacobian,
+                            Eigen::Index row) {
+  const Surroundings& around = chain.surroundings;
+  for (const SocketDistance& known : around.socket_distances) {
+    const Vec3 apart = around.sockets[known.a].xyz - around.sockets[known.b].xyz;
+    const double length = apart.norm(), inverse_sd = 1.0 / std::max(known.sd, noise_free_sd);
+    r[row] = inverse_sd * (known.distance - length);
+    if (jacobian) {
+      jacobian->row(row).setZero();
+      const Vec3 along = length > 0.0 ? Vec3(apart / length) : Vec3::UnitX().eval();
+      for (int k = 0; k < 3; ++k) {
+        if (const auto column = columns.socket[known.a][k]; column >= 0)
+          (*jacobian)(row, column) = -inverse_sd * along[k];
+        if (const auto column = columns.socket[known.b][k]; column >= 0)
+          (*jacobian)(row, column) = inverse_sd * along[k];
       }
     }
-    out.row += 3;
+    ++row;
   }
 }
 
-void write_orientations(const PoseSet& data, const EvaluatedPoses& at, const Weights& weights, Writer& out) {
-  for (std::size_t i = 0; i < data.orientations.size(); ++i) {
-    const OrientationMeasurement& measured = data.orientations[i];
-    const Mat3 misfit = measured.orientation.toRotationMatrix() * at.pose[measured.row].rotation.transpose();
-    const Vec3 error = log_so3(misfit);
-    const double inverse_sd = 1.0 / weights.orientation_sd[i];
-    out.residuals.segment<3>(out.row) = inverse_sd * error;
-    // R_measured (exp(δ) R)ᵀ = exp(error) exp(−δ), so d error = −J_r⁻¹(error) δ
-    if (out.jacobian)
-      out.jacobian->middleRows<3>(out.row) =
-          -inverse_sd * right_jacobian_inverse(error) * at.twists[measured.row].bottomRows<3>();
-    out.row += 3;
-  }
+/// `rows`: those of prior_rows, made once a problem.
+void write_priors(const MatrixXd& rows, const VectorXd& nominal, ConstVectorRef x, VectorXd& r, MatrixXd* jacobian,
+                  Eigen::Index row) {
+  r.segment(row, rows.rows()) = rows * (x - nominal);
+  if (jacobian) jacobian->middleRows(row, rows.rows()) = rows;
 }
 
-void write_priors(const std::vector<const Parameter*>& free, ConstVectorRef x, Writer& out) {
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    const double inverse_sd = 1.0 / free[k]->prior_sd;  // 0 where there is no prior
-    const auto column = static_cast<Eigen::Index>(k);
-    out.residuals[out.row] = inverse_sd * (x[column] - free[k]->nominal);
-    if (out.jacobian) {
-      out.jacobian->row(out.row).setZero();
-      (*out.jacobian)(out.row, column) = inverse_sd;
-    }
-    ++out.row;
-  }
+/// 1 / sd of every measured row, in the order of the blocks.
+VectorXd row_weights(const Weights& weights, Eigen::Index rows) {
+  VectorXd inverse_sd(rows);
+  Eigen::Index row = 0;
+  for (const ResidualKind& kind : residual_kinds())
+    for (const Vec3& sd : weights.of(kind.kind))
+      for (int k = 0; k < kind.size; ++k) inverse_sd[row++] = 1.0 / sd[k];
+  return inverse_sd;
 }
 
 }  // namespace
 
+Load load_at(const Chain& chain, const PoseSet& data, Eigen::Index row) {
+  const auto column = [&](const MatrixXd& matrix) {
+    return matrix.size() == 0
+               ? std::span<const double>{}
+               : std::span<const double>(matrix.col(row).data(), static_cast<std::size_t>(matrix.rows()));
+  };
+  Load load;
+  if (!data.payload.empty()) load.payload = data.payload[row];
+  if (!data.temperature.empty() && std::isfinite(data.temperature[row]))
+    load.warming = data.temperature[row] - chain.reference_temperature;
+  load.torques = column(data.torques);
+  load.approach = column(data.approach);
+  return load;
+}
+
 EvaluatedPoses evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative) {
-  const PoseEvaluator evaluator(chain, set);
   EvaluatedPoses at;
   at.pose.resize(data.rows());
   if (derivative == Derivative::yes) at.twists.resize(data.rows());
-  for (Eigen::Index row = 0; row < data.rows(); ++row) {
-    const auto q = data.joints.col(row);
-    const Load load = load_at(data, row);
-    at.pose[row] = derivative == Derivative::yes ? evaluator.pose_and_derivative(q, load, at.twists[row])
-                                                 : evaluator.pose(q, load);
+  const auto mountings = data.mounting.empty() ? 0 : static_cast<int>(chain.mountings.size());
+  for (int mounting = -1; mounting < mountings; ++mounting) {
+    const PoseEvaluator evaluator(mounted(chain, mounting), seen_from(set, chain, mounting));
+    for (Eigen::Index row = 0; row < data.rows(); ++row) {
+      if (!data.mounting.empty() && data.mounting[row] != mounting) continue;
+      const auto q = data.joints.col(row);
+      const Load load = load_at(chain, data, row);
+      at.pose[row] = derivative == Derivative::yes ? evaluator.pose_and_derivative(q, load, at.twists[row])
+                                                   : evaluator.pose(q, load);
+    }
   }
   return at;
 }
 
+const std::vector<Vec3>& Weights::of(MeasurementKind kind) const {
+  const std::array<const std::vector<Vec3>*, measurement_kinds> lists{
+      &point_sd, &orientation_sd, &contact_sd, &distance_sd, &pair_sd, &plane_sd, &tilt_sd};
+  return *lists[static_cast<std::size_t>(kind)];
+}
+
+std::vector<Vec3>& Weights::of(MeasurementKind kind) {
+  return const_cast<std::vector<Vec3>&>(std::as_const(*this).of(kind));
+}
+
 Weights weights_of(const PoseSet& data, const Instrument& instrument) {
   Weights weights;
-  for (const PointMeasurement& point : data.points) {
-    const double sd = std::max(position_sd(instrument, point.position), noise_free_sd);
-    weights.point_sd.push_back(point.sd ? point.sd->cwiseMax(noise_free_sd).eval() : Vec3::Constant(sd));
-  }
-  weights.orientation_sd.assign(data.orientations.size(), std::max(instrument.sigma_angle, noise_free_angle_sd));
+  for (const ResidualKind& kind : residual_kinds())
+    for (std::size_t i = 0; i < kind.count(data); ++i)
+      weights.of(kind.kind).push_back(kind.promised_sd(data, i, instrument).cwiseMax(noise_free_sd));
   return weights;
 }
 
 std::vector<Block> blocks_of(const PoseSet& data) {
   std::vector<Block> blocks;
-  for (std::size_t i = 0; i < data.points.size(); ++i)
-    blocks.push_back({MeasurementKind::point, static_cast<int>(i), data.points[i].row});
-  for (std::size_t i = 0; i < data.orientations.size(); ++i)
-    blocks.push_back({MeasurementKind::orientation, static_cast<int>(i), data.orientations[i].row});
+  for (const ResidualKind& kind : residual_kinds())
+    for (std::size_t i = 0; i < kind.count(data); ++i)
+      blocks.push_back({kind.kind, static_cast<int>(i), kind.row(data, i), kind.size});
   return blocks;
 }
 
+PoseSet only(const PoseSet& data, const std::vector<bool>& kept) {
+  PoseSet result = data;
+  auto next = kept.begin();
+  for (const ResidualKind& kind : residual_kinds()) {
+    const auto count = static_cast<std::ptrdiff_t>(kind.count(data));
+    kind.keep(result, {next, next + count});
+    next += count;
+  }
+  return result;
+}
+
 Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights) {
-  const auto blocks = data.points.size() + data.orientations.size();
-  const Eigen::Index unknowns = set.free_count(), rows = static_cast<Eigen::Index>(3 * blocks) + unknowns;
   Residuals problem;
-  problem.unknowns = unknowns;
+  problem.unknowns = set.free_count();
+  Eigen::Index measured = 0;
+  for (const ResidualKind& kind : residual_kinds()) {
+    KINFER_EXPECT(weights.of(kind.kind).size() == kind.count(data), "{} weights of {}", weights.of(kind.kind).size(),
+                  kind.count(data));
+    problem.blocks.insert(problem.blocks.end(), kind.count(data), kind.size);
+    measured += static_cast<Eigen::Index>(kind.count(data)) * kind.size;
+  }
+  const auto distances = static_cast<Eigen::Index>(nominal.surroundings.socket_distances.size());
+  const Eigen::Index unknowns = problem.unknowns, rows = measured + distances + unknowns;
   problem.rows = rows;
-  problem.blocks.assign(blocks, 3);
-  problem.evaluate = [&nominal, &set, &data, &weights, unknowns, rows](ConstVectorRef x, VectorXd& r,
-                                                                       MatrixXd* jacobian) {
+  problem.evaluate = [&nominal, &set, &data, inverse_sd = row_weights(weights, measured), unknowns, rows, measured,
+                      distances, priors = prior_rows(set),
+                      centre = nominal_of(set)](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
     const Chain chain = unpack(set, nominal, x);
     const EvaluatedPoses at = evaluate_poses(chain, set, data, jacobian ? Derivative::yes : Derivative::no);
+    const ColumnsOfSurroundings columns = columns_of_surroundings(chain, set);
+    const Scene scene{chain, data, at, columns};
     r.resize(rows);
     if (jacobian) jacobian->resize(rows, unknowns);
-    Writer out{r, jacobian};
-    write_points(chain, data, at, weights, out);
-    write_orientations(data, at, weights, out);
-    write_priors(set.free(), x, out);
+    BlockRows out{r, jacobian};
+    for (const ResidualKind& kind : residual_kinds())
+      for (std::size_t i = 0; i < kind.count(data); ++i, out.row += kind.size) kind.write(scene, i, out);
+    r.head(measured).array() *= inverse_sd.array();
+    if (jacobian) jacobian->topRows(measured).array().colwise() *= inverse_sd.array();
+    write_socket_distances(chain, columns, r, jacobian, measured);
+    write_priors(priors, centre, x, r, jacobian, measured + distances);
   };
   return problem;
 }
 
-std::vector<double> point_errors(const Chain& chain, const PoseSet& data) {
-  const EvaluatedPoses at = evaluate_poses(chain, {}, data, Derivative::no);
-  std::vector<double> errors;
-  for (const PointMeasurement& point : data.points)
-    errors.push_back((point.position - at.pose[point.row] * target_in_tool(chain, point.target)).norm());
+std::vector<double> errors_of_kind(MeasurementKind which, const Chain& chain, const PoseSet& data) {
+  const ResidualKind& kind = residual_kind(which);
+  const ParameterSet nothing;
+  const EvaluatedPoses at = evaluate_poses(chain, nothing, data, Derivative::no);
+  const ColumnsOfSurroundings columns = columns_of_surroundings(chain, nothing);
+  const Scene scene{chain, data, at, columns};
+  VectorXd residual = VectorXd::Zero(3);
+  std::vector<double> errors(kind.count(data));
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    BlockRows out{residual, nullptr, 0};
+    kind.write(scene, i, out);
+    errors[i] = residual.head(kind.size).norm();
+  }
   return errors;
 }
 
+std::vector<double> point_errors(const Chain& chain, const PoseSet& data) {
+  return errors_of_kind(MeasurementKind::point, chain, data);
+}
+
 std::vector<double> orientation_errors(const Chain& chain, const PoseSet& data) {
-  const EvaluatedPoses at = evaluate_poses(chain, {}, data, Derivative::no);
-  std::vector<double> errors;
-  for (const OrientationMeasurement& measured : data.orientations)
-    errors.push_back(angle_between(at.pose[measured.row].rotation, measured.orientation.toRotationMatrix()));
-  return errors;
+  return errors_of_kind(MeasurementKind::orientation, chain, data);
 }
 
 }  // namespace kinfer

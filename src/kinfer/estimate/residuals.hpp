@@ -1,48 +1,57 @@
 // Weighted residuals of a chain on a pose set, with their analytic Jacobian: what every fit minimises.
 //
-// Point:        (p_measured − p_predicted) / sd, one block of three.
-// Orientation:  log(R_measured R_predictedᵀ) / sigma_angle, one block of three (rotation vector in the world).
-// Prior:        (x − nominal) / prior_sd, plain rows.
+// Measurements:      (measured − predicted) / sd, one block each (residual_<instrument>.cpp say what is compared).
+// Socket distances:  (distance − |a − b|) / sd, plain rows.
+// Priors:            prior_rows(set) · (x − nominal), plain rows, one a free parameter.
 #pragma once
 
 #include <vector>
 
-#include "kinfer/kinematics/forward.hpp"
-#include "kinfer/measurement/pose_set.hpp"
+#include "kinfer/estimate/residual_kind.hpp"
 #include "kinfer/search/least_squares.hpp"
 
 namespace kinfer {
 
-/// Poses and their derivatives at all rows of a pose set: evaluated once, read by every instrument.
-struct EvaluatedPoses {
-  std::vector<Pose> pose;      ///< one a row
-  std::vector<Twists> twists;  ///< one a row, by the free parameters; empty when only residuals are wanted
-};
 enum class Derivative { no, yes };
+/// Each row in its own mounting, with the loads of that row.
 EvaluatedPoses evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative);
+
+/// Payload, warming, torques and approach at one row of the set. Views into the set.
+Load load_at(const Chain& chain, const PoseSet& data, Eigen::Index row);
 
 /// What each measurement is worth: standard deviations, one a measurement of the pose set's lists.
 struct Weights {
-  std::vector<Vec3> point_sd;          ///< [m] per axis
-  std::vector<double> orientation_sd;  ///< [rad]
+  std::vector<Vec3> point_sd;                                    ///< [m] per axis
+  std::vector<Vec3> orientation_sd;                              ///< [rad] about the world's axes
+  std::vector<Vec3> contact_sd, distance_sd, pair_sd, plane_sd;  ///< [m]; of one-row kinds only the first counts
+  std::vector<Vec3> tilt_sd;                                     ///< [m/s²]; the first two count
+
+  std::vector<Vec3>& of(MeasurementKind kind);
+  const std::vector<Vec3>& of(MeasurementKind kind) const;
 };
 
-/// The instrument's word, with a row's own standard deviation where the file gives it. `floor` keeps noise-free data
+/// The instrument's word, with a row's own standard deviation where the file gives it. A floor keeps noise-free data
 /// finite.
 Weights weights_of(const PoseSet& data, const Instrument& instrument);
 
 /// One block of rows: which list and which entry it came from.
-enum class MeasurementKind { point, orientation };
 struct Block {
   MeasurementKind kind = MeasurementKind::point;
   int index = 0;  ///< into the pose set's list of that kind
   int row = 0;    ///< pose
+  int size = 3;   ///< rows
 };
 std::vector<Block> blocks_of(const PoseSet& data);
 
+/// The pose set without the measurements that are not kept, one entry a block of blocks_of.
+PoseSet only(const PoseSet& data, const std::vector<bool>& kept);
+
 /// The least-squares problem over the free parameters of `set`; blocks first (in the order of blocks_of), then the
-/// priors. All arguments must outlive the result.
+/// socket distances, then the priors. All arguments must outlive the result.
 Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights);
+
+/// Size of each measurement's residual, [m], [rad] or [m/s²], in the list's order.
+std::vector<double> errors_of_kind(MeasurementKind kind, const Chain& chain, const PoseSet& data);
 
 /// Euclidean error of each measured point [m] and angle of each measured orientation [rad], in the lists' order.
 std::vector<double> point_errors(const Chain& chain, const PoseSet& data);

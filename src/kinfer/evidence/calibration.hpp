@@ -3,6 +3,7 @@
 
 #include "kinfer/evidence/advice.hpp"
 #include "kinfer/evidence/estimate.hpp"
+#include "kinfer/evidence/findings.hpp"
 #include "kinfer/evidence/ladder.hpp"
 #include "kinfer/evidence/picture.hpp"
 
@@ -22,11 +23,13 @@ struct Calibration {
   ChainFit nominal;   ///< the chain as given
   ChainFit before;    ///< base and tool refitted, all else nominal
   ChainFit after;
-  std::string holdout;  ///< how rows were kept aside: "5-fold cross-validation"
+  Ladder ladder;                      ///< empty where no model was chosen
+  std::string measured = "position";  ///< what the position errors of the fits are: "ball in socket", "distance", …
+  std::string holdout;                ///< how rows were kept aside: "5-fold cross-validation"
   std::vector<RowErrors> rows;
-  std::vector<ModelRung> ladder;   ///< models that were tried; empty: geometry alone
   CalibrationPicture picture;      ///< what is drawn
   std::vector<Advice> next;        ///< what to measure or to do next, most useful first
+  std::vector<Finding> findings;   ///< of the doctor, before the fit
   std::vector<std::string> notes;  ///< what was noticed and done, in words
   bool use = true;                 ///< false: the verdict advises against the result
   std::string verdict;             ///< one sentence

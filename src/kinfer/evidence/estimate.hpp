@@ -56,6 +56,7 @@ struct Estimate {
       chi2_per_n;  ///< of the believed measurements against the instrument (1 is good); none: no instrument known
   double sigma = 0.0, sigma_angle = 0.0;  ///< [m], [rad] that weighted the measurements: instrument, or residual level
   std::vector<Outlier> outliers;
+  double surprise = 0.0;         ///< −2 log of the marginal likelihood (Laplace): compares models of the same rows
   double predicted_error = 0.0;  ///< [m] rms error of the tool over the data's poses that the covariance expects
   Search search;
 };

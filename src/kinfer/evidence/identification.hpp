@@ -14,7 +14,7 @@
 
 namespace kinfer {
 
-enum class FoundJointType { revolute, prismatic, rigid };
+enum class FoundJointType { revolute, prismatic, universal, spherical, rigid };
 
 /// One sigma of what describes a joint, across its axis in each sensor's frame.
 struct JointDeviation {
@@ -23,8 +23,9 @@ struct JointDeviation {
   double slide = 0.0;                                         ///< [m] of one sensor against the other, along the axis
 };
 
-/// A joint's axis line in the frames of the sensors beside it. Both points are the same physical one (at angle 0), both
-/// axes have the sense of the positive joint angle.
+/// A joint's axis line in the frames of the sensors beside it. A spherical joint has a centre and no axis; a universal
+/// one has the axis that is fixed in the parent and the one that is fixed in the child, through its centre. Both points
+/// are the same physical one (at angle 0), both axes have the sense of the positive joint angle.
 struct FoundJoint {
   std::string parent{}, child{};  ///< sensors, parent nearer the root
   FoundJointType type = FoundJointType::revolute;
@@ -46,6 +47,14 @@ struct FoundLink {
 struct FoundPlace {
   std::string name, sensor;
   Vec3 xyz = Vec3::Zero(), sd = Vec3::Zero();  ///< [m] in the sensor's frame
+};
+
+/// Whether the recording is enough for what is wanted of a joint, and what more it would take.
+struct JointForecast {
+  std::string joint;                         ///< "ins1-ins2"
+  double line_sd = 0.0, direction_sd = 0.0;  ///< [m], [rad] largest of what can be known at all
+  bool enough = false;
+  double acceleration = 1.0, time = 1.0;  ///< times those of the recording: either would do
 };
 
 /// One DH transformation RotZ(theta) TransZ(d) TransX(a) RotX(alpha) RotY(beta) of the chain.
@@ -79,8 +88,8 @@ struct PairEvidence {
   std::string first, second;
   double residual = 0.0;       ///< [m/s²]
   double off_axis_rate = 0.0;  ///< [rad/s]
-  double weight = 0.0;
-  bool joined = false;  ///< an edge of the tree
+  double weight = 0.0;         ///< [nats] code length of a row of their relative motion; the tree has the least
+  bool joined = false;         ///< an edge of the tree
 };
 
 /// A row of paper 1's table 3: who moved in one phase.
@@ -92,7 +101,7 @@ struct PhaseEvidence {
 struct OrderEvidence {
   std::vector<std::string> sensors;
   std::vector<PairEvidence> pairs;
-  double margin = 0.0;  ///< of the spanning tree; 2 is safe
+  double margin = 0.0;  ///< of the spanning tree: exp of the least difference of weights; 2 is safe
   std::vector<PhaseEvidence> phases;
   std::vector<int> rank;      ///< table 3's sums
   bool phases_agree = false;  ///< the table gives the same parents
@@ -103,6 +112,7 @@ struct Identification {
   std::vector<FoundJoint> joints;  ///< parents before children
   std::vector<FoundLink> links;
   std::vector<FoundPlace> places;
+  std::vector<JointForecast> forecast;
   std::vector<FoundDhRow> dh;  ///< canonical: three rows a joint
   std::vector<LinkEvidence> searches;
   OrderEvidence order;

@@ -32,6 +32,7 @@ struct Trace {
   std::string unit{};      ///< "m/s^2", "rad/s"
   std::string frame{};     ///< "ground" or "sensor"
   std::array<Envelope, 3> measured{}, predicted{}, residual{};
+  double rms_measured = 0.0;                   ///< of the signal's three axes together
   double rms_fitted = 0.0, rms_holdout = 0.0;  ///< of the residual's three axes together; 0: no such rows
 };
 

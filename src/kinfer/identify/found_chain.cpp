@@ -14,12 +14,27 @@ std::string joint_name(const FoundJoint& joint) {
   return joint.parent + "-" + joint.child;
 }
 
-/// Distance of two lines, its points nearest to each other.
-double distance_of_lines(const Vec3& point_a, const Vec3& axis_a, const Vec3& point_b, const Vec3& axis_b) {
-  constexpr double parallel = 1e-3;  // sine below which the lines count as parallel
-  const Vec3 across = axis_a.cross(axis_b), between = point_b - point_a;
-  if (across.norm() < parallel) return (between - axis_a.dot(between) * axis_a).norm();
-  return std::abs(between.dot(across.normalized()));
+constexpr double parallel = 1e-3;  // sine below which two lines count as parallel
+
+/// What a link reaches to or from: an axis line, or a centre.
+struct Pivot {
+  Vec3 point = Vec3::Zero(), axis = Vec3::Zero();  // axis zero: a centre
+  double point_sd = 0.0, axis_sd = 0.0;
+};
+
+/// Shortest distance, and its standard deviation. Lines that are nearly parallel are nearest to each other far away,
+/// and where that is hangs on their small angle: the deviation says so.
+std::pair<double, double> distance(const Pivot& a, const Pivot& b) {
+  const Vec3 between = b.point - a.point, across = a.axis.cross(b.axis);
+  double sd = std::hypot(a.point_sd, b.point_sd);
+  if (across.norm() < parallel) {
+    const Vec3 along = a.axis.norm() > 0.5 ? a.axis : b.axis;
+    return {(between - along.dot(between) * along).norm(), sd};
+  }
+  const Vec3 normal = across.normalized();
+  const double sideways = between.dot(normal.cross(a.axis));
+  sd = std::hypot(sd, sideways * std::hypot(a.axis_sd, b.axis_sd) / across.norm());
+  return {std::abs(between.dot(normal)), sd};
 }
 
 double across(const std::array<double, 2>& sd) {
@@ -83,15 +98,21 @@ std::vector<FoundDhRow> canonical_rows(const FoundJoint& joint, const FoundHinge
 }
 
 std::vector<FoundLink> found_links(const std::vector<FoundJoint>& joints) {
+  const auto turns = [](const FoundJoint& j) {
+    return j.type == FoundJointType::revolute || j.type == FoundJointType::spherical;
+  };
+  const auto axis_of = [](const FoundJoint& j, const Vec3& axis) {
+    return j.type == FoundJointType::spherical ? Vec3(Vec3::Zero()) : axis;
+  };
   std::vector<FoundLink> links;
   for (const FoundJoint& to : joints)
     for (const FoundJoint& from : joints) {
-      if (from.child != to.parent || from.type != FoundJointType::revolute || to.type != FoundJointType::revolute)
-        continue;
-      const double length =
-          distance_of_lines(from.point_in_child, from.axis_in_child, to.point_in_parent, to.axis_in_parent);
-      links.push_back({from.child, joint_name(from), joint_name(to), length,
-                       std::hypot(across(from.sd.point_in_child), across(to.sd.point_in_parent))});
+      if (from.child != to.parent || !turns(from) || !turns(to)) continue;
+      const auto [length, sd] = distance({from.point_in_child, axis_of(from, from.axis_in_child),
+                                          across(from.sd.point_in_child), across(from.sd.axis_in_child)},
+                                         {to.point_in_parent, axis_of(to, to.axis_in_parent),
+                                          across(to.sd.point_in_parent), across(to.sd.axis_in_parent)});
+      links.push_back({from.child, joint_name(from), joint_name(to), length, sd});
     }
   return links;
 }
@@ -112,8 +133,8 @@ Chain found_chain(const std::string& root, const std::vector<FoundJoint>& joints
       const FoundDhRow& row = dh[3 * i + k];
       Joint joint{.name = names[k]};
       joint.parent = k == 0 ? frame_of(joints[i].parent) : static_cast<int>(chain.joints.size()) - 1;
-      const bool moves = k == 1 && joints[i].type != FoundJointType::rigid;
       const bool slides = joints[i].type == FoundJointType::prismatic;
+      const bool moves = k == 1 && (slides || joints[i].type == FoundJointType::revolute);
       joint.type = !moves ? JointType::fixed : slides ? JointType::prismatic : JointType::revolute;
       joint.has_reading = moves;
       joint.link = DhLink{row.row};

@@ -6,18 +6,20 @@
 #include <cmath>
 
 #include "kinfer/geometry/fit.hpp"
+#include "kinfer/identify/forecast.hpp"
 #include "kinfer/identify/found_chain.hpp"
+#include "kinfer/identify/joint_type.hpp"
 #include "kinfer/identify/motion_evidence.hpp"
+#include "kinfer/identify/ordered_motion.hpp"
 #include "kinfer/identify/refined_identification.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
 namespace {
 
-constexpr double safe_margin = 2.0;           // of the spanning tree
-constexpr double sliding_acceleration = 0.1;  // [m/s²] rms; more between sensors that do not turn is a slide
-constexpr std::size_t judged_rows = 2000;     // rows that were not fitted, to judge on
-constexpr std::size_t posed_rows = 100;       // poses from which an axis is read
+constexpr double safe_margin = 2.0;        // of the spanning tree
+constexpr std::size_t judged_rows = 2000;  // rows that were not fitted, to judge on
+constexpr std::size_t posed_rows = 100;    // poses from which an axis is read
 
 /// What grows while the tree is walked from the root.
 struct Progressing {
@@ -55,22 +57,48 @@ std::vector<std::size_t> without(const std::vector<std::size_t>& rows, const std
   return rest;
 }
 
-/// Paper 1's step for one segment: evolve its sub-tree behind the frozen chain, then freeze it.
+/// What every engine finds for one link.
+struct SearchedLink {
+  std::vector<DhLeaf> leaves;
+  std::int64_t evaluations = 0;
+  int generations = 0;
+  std::vector<double> best, median;
+};
+
+SearchedLink searched_link(const IdentifyOptions& options, const std::vector<FrameState>& parent,
+                           const std::vector<FrameState>& measured, const std::vector<JointSignal>& signals,
+                           const std::vector<std::size_t>& rows, const Rng& rng, const Observer& observer) {
+  if (options.engine == Engine::bp) {
+    DhEvolution found = search_link(parent, measured, signals, rows, options.search, rng, observer);
+    return {leaves(found.best), found.evaluations, found.generations, std::move(found.best_history),
+            std::move(found.median_history)};
+  }
+  MemeticOutcome found = options.engine == Engine::bmp
+                             ? search_memetic(parent, measured, signals, rows, options.memetic, rng, observer)
+                             : search_all(parent, measured, signals, rows, options.memetic);
+  return {std::move(found.leaves), found.evaluations, found.generations, std::move(found.best_history),
+          std::move(found.median_history)};
+}
+
+/// Paper 1's step for one segment: find its sub-tree behind the frozen chain, then freeze it. The memetic engines go
+/// out from what the parent's INS measured, so that no link inherits another's errors.
 void add_hinge(Progressing& p, std::size_t parent, std::size_t child, const std::vector<JointSignal>& signals,
                const std::vector<std::size_t>& rows, const Rng& rng, const Observer& observer) {
   const std::string &parent_name = p.motion.segments[parent].name, &name = p.motion.segments[child].name;
   const std::vector<FrameState> measured = measured_states(p.motion.segments[child]);
   const LinkSearchOptions& options = p.options.search;
-  const DhEvolution evolution = search_link(p.states[parent], measured, signals, rows, options, rng, observer);
-  const std::vector<DhLeaf> found = leaves(evolution.best);
-  p.states[child] = carried(p.states[parent], found, signals);
+  const std::vector<FrameState> before =
+      p.options.engine == Engine::bp ? p.states[parent] : measured_states(p.motion.segments[parent]);
+  SearchedLink evolution = searched_link(p.options, before, measured, signals, rows, rng, observer);
+  const std::vector<DhLeaf>& found = evolution.leaves;
+  p.states[child] = carried(before, found, signals);
 
   const auto fitted = evenly_chosen(rows, static_cast<std::size_t>(options.rows));
   std::vector<SignalRow> poses;
   for (const std::size_t row : evenly_chosen(rows, posed_rows)) poses.push_back(signals_at(signals, row));
   FoundHinge hinge{hinge_geometry(found, poses), {}};
-  hinge.precision = hinge_precision(hinge.geometry, p.states[parent], measured,
-                                    hinge_angle(hinge.geometry, p.states[parent], p.states[child]), fitted);
+  hinge.precision =
+      hinge_precision(hinge.geometry, before, measured, hinge_angle(hinge.geometry, before, p.states[child]), fitted);
   const FoundJoint joint = found_joint(parent_name, name, hinge);
   if (signal_uses(found) > 1)
     p.result.notes.push_back(
@@ -87,39 +115,58 @@ void add_hinge(Progressing& p, std::size_t parent, std::size_t child, const std:
                                .merged = found_rows(name, merged(found), signals),
                                .evaluations = evolution.evaluations,
                                .generations = evolution.generations,
-                               .best = evolution.best_history,
-                               .median = evolution.median_history});
+                               .best = std::move(evolution.best),
+                               .median = std::move(evolution.median)});
 }
 
-/// Bacterial programming knows no sliding joints (paper 1, section VI); the pair's fit of a common point tells the
-/// direction that the accelerations differ along.
-void add_slide(Progressing& p, std::size_t parent, std::size_t child) {
+constexpr JointDeviation not_estimated{{1.0, 1.0}, {1.0, 1.0}, {1.0, 1.0}, {1.0, 1.0}, 1.0};  // [rad], [m]
+
+/// What all joints without search share: they are told by the pair of their sensors alone.
+void add_unsearched(Progressing& p, const FoundJoint& joint, const HingeGeometry& geometry, std::size_t child) {
+  p.result.joints.push_back(joint);
+  std::ranges::copy(canonical_rows(joint, {geometry, {}}), std::back_inserter(p.result.dh));
+  p.states[child] = measured_states(p.motion.segments[child]);
+}
+
+/// Bacterial programming knows no sliding joints (paper 1, section VI).
+void add_slide(Progressing& p, std::size_t parent, std::size_t child, const JointTypeEvidence& evidence) {
   const SegmentMotion &a = p.motion.segments[parent], &b = p.motion.segments[child];
-  Mat3 spread = Mat3::Zero();
-  for (std::size_t row = p.motion.first_motion; row < p.motion.rows(); ++row) {
-    const Vec3 difference = a.rotation[row].transpose() * (b.acceleration[row] - a.acceleration[row]);
-    if (p.motion.usable[row]) spread += difference * difference.transpose();
-  }
-  const std::size_t home = p.motion.first_motion;
   HingeGeometry slide;
-  slide.axis_in_parent = symmetric_eigen(spread).vectors.col(2);
+  slide.axis_in_parent = evidence.axis_in_parent;
+  slide.axis_in_child = evidence.axis_in_child;
+  const std::size_t home = p.motion.first_motion;
   slide.home.rotation = a.rotation[home].transpose() * b.rotation[home];
-  slide.axis_in_child = slide.home.rotation.transpose() * slide.axis_in_parent;
   FoundJoint joint{.parent = a.name, .child = b.name, .type = FoundJointType::prismatic};
   joint.axis_in_parent = slide.axis_in_parent;
   joint.axis_in_child = slide.axis_in_child;
-  constexpr double not_estimated = 1.0;  // [rad], [m]
-  joint.sd = {{not_estimated, not_estimated},
-              {not_estimated, not_estimated},
-              {not_estimated, not_estimated},
-              {not_estimated, not_estimated},
-              not_estimated};
-  joint.not_identifiable.push_back("the place of the slide: bacterial programming finds turning joints only");
-  p.result.notes.push_back(
-      fmt::format("{} slides on {}; its direction is a first guess and its place is not estimated", b.name, a.name));
-  p.result.joints.push_back(joint);
-  std::ranges::copy(canonical_rows(joint, {slide, {}}), std::back_inserter(p.result.dh));
-  p.states[child] = measured_states(b);
+  joint.sd = not_estimated;
+  joint.not_identifiable.push_back("the place of the slide: it has no line of its own, only a direction");
+  p.result.notes.push_back(fmt::format("{} slides on {}", b.name, a.name));
+  add_unsearched(p, joint, slide, child);
+}
+
+/// Two or three axes through one point: the pair's common point is its centre.
+void add_centred(Progressing& p, std::size_t parent, std::size_t child, const JointTypeEvidence& evidence) {
+  const SegmentMotion &a = p.motion.segments[parent], &b = p.motion.segments[child];
+  const PairFit& pair = p.tree.pair(parent, child);
+  HingeGeometry geometry;
+  geometry.axis_in_parent = evidence.axis_in_parent;
+  geometry.axis_in_child = evidence.axis_in_child;
+  geometry.point_in_parent = pair.first == parent ? pair.point_in_first : pair.point_in_second;
+  geometry.point_in_child = pair.first == parent ? pair.point_in_second : pair.point_in_first;
+  const std::size_t home = p.motion.first_motion;
+  geometry.home.rotation = a.rotation[home].transpose() * b.rotation[home];
+  geometry.home.position = geometry.point_in_parent - geometry.home.rotation * geometry.point_in_child;
+  FoundJoint joint{.parent = a.name, .child = b.name, .type = evidence.type};
+  joint.axis_in_parent = geometry.axis_in_parent;
+  joint.axis_in_child = geometry.axis_in_child;
+  joint.point_in_parent = geometry.point_in_parent;
+  joint.point_in_child = geometry.point_in_child;
+  joint.sd = not_estimated;
+  p.result.notes.push_back(evidence.type == FoundJointType::universal
+                               ? fmt::format("{} turns on {} about two axes, one fixed in each", b.name, a.name)
+                               : fmt::format("{} turns on {} about every axis through one point", b.name, a.name));
+  add_unsearched(p, joint, geometry, child);
 }
 
 /// The lever from the parent's sensor to the child's that their accelerations ask for, the shortest one.
@@ -154,24 +201,18 @@ void add_rigid(Progressing& p, std::size_t parent, std::size_t child) {
   joint.not_identifiable.push_back("the axis of a joint, if there is one");
   p.result.notes.push_back(fmt::format(
       "{} never moves against {}: on the same segment, or the joint between them is not excited", b.name, a.name));
-  p.result.joints.push_back(joint);
-  std::ranges::copy(canonical_rows(joint, {mount, {}}), std::back_inserter(p.result.dh));
-  p.states[child] = measured_states(b);
+  add_unsearched(p, joint, mount, child);
 }
 
-Result<void> add_joint(Progressing& p, std::size_t child, const Rng& rng, const Observer& observer) {
+Result<void> add_joint(Progressing& p, std::size_t child, const JointTypeEvidence& evidence, const Rng& rng,
+                       const Observer& observer) {
   const std::size_t parent = *p.tree.parent[child];
+  const std::string& name = p.motion.segments[child].name;
   const auto signals = joint_signals(p.motion, parent, child,
                                      {.terminals = p.options.terminals, .smoothing = p.options.motion.smoothing});
-  const PairFit& pair = p.tree.pair(parent, child);
-  const std::string& name = p.motion.segments[child].name;
-  if (signals.empty()) {
-    if (pair.slide < sliding_acceleration)
-      add_rigid(p, parent, child);
-    else
-      add_slide(p, parent, child);
-    return {};
-  }
+  if (evidence.type == FoundJointType::prismatic) return add_slide(p, parent, child, evidence), Result<void>{};
+  if (evidence.type == FoundJointType::rigid || signals.empty()) return add_rigid(p, parent, child), Result<void>{};
+  if (evidence.type != FoundJointType::revolute) return add_centred(p, parent, child, evidence), Result<void>{};
   const auto rows = telling_rows(p.motion, parent, child, p.options.terminals);
   if (rows.size() < 64) return error("only {} rows tell about {}: it hardly moves", rows.size(), name);
   add_hinge(p, parent, child, signals, rows, rng, [&](Progress progress) {
@@ -190,8 +231,8 @@ OrderEvidence order_evidence(const RecordedMotion& motion, const SegmentTree& tr
                       .phases_agree = agree(phases, tree)};
   for (const SegmentMotion& segment : motion.segments) order.sensors.push_back(segment.name);
   for (const PairFit& pair : tree.pairs)
-    order.pairs.push_back({order.sensors[pair.first], order.sensors[pair.second], pair.residual, pair.off_axis_rate,
-                           pair.weight,
+    order.pairs.push_back({order.sensors[pair.first], order.sensors[pair.second], pair.residual(), pair.off_axis_rate(),
+                           pair.distance,
                            tree.parent[pair.first] == pair.second || tree.parent[pair.second] == pair.first});
   for (const MovingPhase& phase : phases.phases) order.phases.push_back({phase.begin, phase.end, phase.moves});
   return order;
@@ -209,27 +250,49 @@ void note_order(Identification& result) {
         "pairwise fits are believed");
 }
 
+void note_joints_without_reading(Identification& result) {
+  for (const FoundJoint& joint : result.joints)
+    if (joint.type == FoundJointType::spherical || joint.type == FoundJointType::universal)
+      result.notes.push_back(fmt::format(
+          "{}-{} turns about several axes: chain.toml, URDF and MJCF hold it as it stood when the recording began",
+          joint.parent, joint.child));
+}
+
 /// The paper's search as the paper has it. With our own terminals: signals whose zero is arbitrary may have an offset,
 /// and orientations are compared without gimbal lock.
 void follow_terminals(IdentifyOptions& options) {
   LinkSearchOptions& search = options.search;
   search.cost.orientation = OrientationError::euler;
   search.leaf.signal_angles = SignalAngles::plain;
-  if (options.terminals == Terminals::euler) return;
+  if (options.terminals == Terminals::euler) {
+    options.engine = Engine::bp;  // three terminals a link: what the paper's search is for
+    return;
+  }
   search.cost.orientation = OrientationError::chord;
   search.leaf.signal_angles = SignalAngles::offset;
+}
+
+std::string name_of(Engine engine) {
+  return engine == Engine::bmp ? "bmp" : engine == Engine::bp ? "bp" : "enum";
+}
+
+/// [m/s²] rms of the worst sensor, by the geometry that is delivered.
+double largest_misfit(const Identification& result) {
+  double largest = 0.0;
+  for (const Trace& trace : result.motion.traces)
+    if (trace.quantity == "acceleration") largest = std::max({largest, trace.rms_fitted, trace.rms_holdout});
+  return largest;
 }
 
 std::string verdict(const Identification& result) {
   std::vector<std::string> chain;
   for (const FoundJoint& joint : result.joints) chain.push_back(fmt::format("{}-{}", joint.parent, joint.child));
-  double largest = 0.0;
-  for (const LinkEvidence& search : result.searches) largest = std::max(largest, search.holdout.acceleration);
   const auto rigid = std::ranges::count(result.joints, FoundJointType::rigid, &FoundJoint::type);
   const std::string unmoved = rigid > 0 ? fmt::format(", {} of them never moved", rigid) : "";
-  return fmt::format(
-      "{} joints found{} ({}); the chain predicts accelerations that were not fitted to {:.3f} m/s² rms at worst",
-      result.joints.size(), unmoved, fmt::join(chain, ", "), largest);
+  const char* certificate = result.engine == "enum" ? "; no chain of up to 3 leaves fits better" : "";
+  return fmt::format("{} joints found{} ({}); the chain predicts accelerations to {:.3f} m/s² rms at worst; {}{}",
+                     result.joints.size(), unmoved, fmt::join(chain, ", "), largest_misfit(result),
+                     in_words(result.forecast), certificate);
 }
 
 }  // namespace
@@ -237,19 +300,22 @@ std::string verdict(const Identification& result) {
 Result<Identification> identify(const InsRecording& recording, const IdentifyOptions& given, const Rng& rng,
                                 const Observer& observer) {
   IdentifyOptions options = given;
-  options.search.bacteria.threads = options.threads;
+  options.search.bacteria.threads = options.memetic.bacteria.threads = options.threads;
   follow_terminals(options);
-  KINFER_TRY(motion, segment_motion(recording, options.motion, options.threads));
-  KINFER_TRY(tree, segment_tree(motion, options.root));
+  KINFER_TRY(ordered, ordered_motion(recording, options.motion, options.root, options.threads));
+  const RecordedMotion& motion = ordered.motion;
+  const SegmentTree& tree = ordered.tree;
   Progressing p{motion, tree, options, std::vector<std::vector<FrameState>>(motion.segments.size()), {}};
   p.result.root = motion.segments[tree.root].name;
-  p.result.engine = "bp";
+  p.result.engine = name_of(options.engine);
   p.result.order = order_evidence(motion, tree, moving_phases(motion));
   note_order(p.result);
   p.states[tree.root] = measured_states(motion.segments[tree.root]);
   const std::size_t links = options.links > 0 ? static_cast<std::size_t>(options.links) : tree.order.size();
+  const auto types = joint_types(motion, tree);
   for (std::size_t i = 1; i < tree.order.size() && i <= links; ++i)
-    if (auto done = add_joint(p, tree.order[i], rng.stream(i), observer); !done) return pass_on(done.error());
+    if (auto done = add_joint(p, tree.order[i], types[i - 1], rng.stream(i), observer); !done)
+      return pass_on(done.error());
   if (std::ranges::all_of(p.result.joints, [](const FoundJoint& j) { return j.type == FoundJointType::rigid; }))
     return error("no sensor ever moves against another: move every joint of the machine");
   if (options.geometry == Geometry::refined) {
@@ -261,8 +327,10 @@ Result<Identification> identify(const InsRecording& recording, const IdentifyOpt
   p.result.chain =
       found_chain(p.result.root, p.result.joints, p.result.dh, motion.segments[tree.root].rotation.front());
   carry_tool(p.result.chain, p.result.places);
-  p.result.motion = motion_evidence(motion, p.states, p.result);
+  note_joints_without_reading(p.result);
+  p.result.motion = motion_evidence(motion, p.result);
   p.result.next = identification_advice(p.result);
+  p.result.forecast = forecast(p.result.joints);
   p.result.verdict = verdict(p.result);
   return p.result;
 }

@@ -1,9 +1,11 @@
-// Paper 1 end to end: recordings of INS on an unknown machine -> order of its segments -> chain, link after link.
+// Recordings of INS on an unknown machine -> order of its segments -> joint types -> chain, link
+// after link, by paper 1's bacterial programming or its memetic successor.
 #pragma once
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/evidence/identification.hpp"
 #include "kinfer/identify/link_search.hpp"
+#include "kinfer/identify/memetic_search.hpp"
 #include "kinfer/identify/moving_phases.hpp"
 #include "kinfer/identify/refine.hpp"
 
@@ -14,10 +16,19 @@ enum class Geometry {
   searched  ///< as the search found it, link after link
 };
 
+/// How the chain of a link is searched.
+enum class Engine {
+  bmp,         ///< memetic bacterial programming: structures evolve, numbers are fitted
+  bp,          ///< paper 1's bacterial programming; always with Euler terminals
+  enumeration  ///< every structure of up to three leaves
+};
+
 struct IdentifyOptions {
   SegmentMotionOptions motion{};
   Terminals terminals = Terminals::hinge;
-  LinkSearchOptions search{};         ///< what of it depends on the terminals follows them
+  Engine engine = Engine::bmp;
+  MemeticOptions memetic{};           ///< of bmp and enumeration
+  LinkSearchOptions search{};         ///< of bp; what of it depends on the terminals follows them
   std::optional<std::string> root{};  ///< sensor; see segment_tree
   int links = 0;                      ///< of the tree, from the root outwards; 0: all (the paper did the first three)
   Geometry geometry = Geometry::refined;

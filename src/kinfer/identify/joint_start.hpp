@@ -2,6 +2,7 @@
 // find its way.
 #pragma once
 
+#include "kinfer/estimate/ins_chain.hpp"
 #include "kinfer/evidence/identification.hpp"
 #include "kinfer/identify/segment_order.hpp"
 
@@ -10,12 +11,11 @@ namespace kinfer {
 struct JointStart {
   std::size_t parent = 0, child = 0;  ///< segments
   FoundJointType type = FoundJointType::revolute;
-  Mat3 parent_R_axis = Mat3::Identity(), child_R_axis = Mat3::Identity();  ///< z along the axis
-  Vec3 point_in_parent = Vec3::Zero(), point_in_child = Vec3::Zero();      ///< [m]
-  std::vector<double> reading{};  ///< [rad] or [m] at the rows of the motion's clock; empty for a rigid joint
+  std::vector<InsBody> bodies{};                ///< behind each other; the last one carries the child's sensor
+  std::vector<std::vector<double>> readings{};  ///< [rad] or [m] at the rows of the motion's clock, one a moving body
 };
 
-/// Axis by the principal direction of the relative rate, reading by the twist about it, points by the pair's fit.
+/// Axes by the relative rate, readings by the turn about them, points by the pair's fit.
 JointStart joint_start(const RecordedMotion& motion, const SegmentTree& tree, std::size_t parent, std::size_t child,
                        FoundJointType type);
 

@@ -31,6 +31,8 @@ struct JRmse {
   double orientation = 0.0;   ///< [rad] likewise
 };
 
+struct LinkBlock;
+
 class LinkCost {
  public:
   /// `rows` choose from parent, child and signals; their order does not matter. At least 1.
@@ -47,8 +49,7 @@ class LinkCost {
   JRmse j_rmse(std::span<const DhLeaf> leaves) const;
 
  private:
-  struct Block;
-  std::vector<Block> blocks_;
+  std::vector<LinkBlock> blocks_;
   std::size_t rows_ = 0;
   LinkCostOptions options_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 
 #include "kinfer/kinematics/forward.hpp"
@@ -10,7 +11,7 @@
 namespace kinfer {
 namespace {
 
-constexpr std::size_t most_bins = 1200;   // of a trace: about one a pixel of a wide screen
+constexpr std::size_t most_bins = 500;    // of a trace: about one for two pixels of a wide screen
 constexpr std::size_t most_frames = 600;  // of the film
 
 /// Three axes of one signal at every row, NaN where the row is not to be used.
@@ -45,21 +46,61 @@ Trace trace_of(const RecordedMotion& motion, Trace trace, Measured measured, Pre
     trace.predicted[k] = envelope(p[k], bins);
     trace.residual[k] = envelope(r[k], bins);
   }
+  trace.rms_measured = rms(m);
   trace.rms_fitted = rms(r);
   return trace;
 }
 
+/// Accelerations and rates of a segment in the ground, one a row.
+struct Prediction {
+  std::vector<Vec3> acceleration, rate;
+};
+
+std::size_t segment_named(const RecordedMotion& motion, const std::string& sensor) {
+  return static_cast<std::size_t>(std::ranges::find(motion.segments, sensor, &SegmentMotion::name) -
+                                  motion.segments.begin());
+}
+
+/// Acceleration of a point of the segment less that of its sensor, for the point's place in the sensor.
+Vec3 of_lever(const SegmentMotion& segment, std::size_t row, const Vec3& lever) {
+  const Vec3 arm = segment.rotation[row] * lever, &rate = segment.rate[row];
+  return segment.rate_change[row].cross(arm) + rate.cross(rate.cross(arm));
+}
+
+Vec3 along(const Vec3& axis, const Vec3& v) {
+  return axis.dot(v) * axis;
+}
+
+Prediction carried_over(const FoundJoint& joint, const SegmentMotion& parent, const SegmentMotion& child,
+                        const Prediction& before) {
+  Prediction result;
+  for (std::size_t row = 0; row < parent.rate.size(); ++row) {
+    const Vec3 axis = parent.rotation[row] * joint.axis_in_parent;
+    Vec3 acceleration = before.acceleration[row] + of_lever(parent, row, joint.point_in_parent) -
+                        of_lever(child, row, joint.point_in_child);
+    Vec3 rate = before.rate[row];
+    if (joint.type == FoundJointType::prismatic) acceleration += along(axis, child.acceleration[row] - acceleration);
+    if (joint.type == FoundJointType::revolute)
+      rate += along(axis, child.rate[row] - rate);
+    else if (joint.type != FoundJointType::prismatic && joint.type != FoundJointType::rigid)
+      rate = child.rate[row];  // turns about several axes: no rate contradicts it
+    result.acceleration.push_back(acceleration);
+    result.rate.push_back(rate);
+  }
+  return result;
+}
+
 void add_traces(MotionEvidence& evidence, const RecordedMotion& motion, const SegmentMotion& segment,
-                const std::vector<FrameState>& states) {
+                const Prediction& prediction) {
   const auto add = [&](const char* quantity, const char* unit, const std::vector<Vec3>& measured,
-                       Vec3 FrameState::*predicted) {
+                       const std::vector<Vec3>& predicted) {
     Trace trace{.sensor = segment.name, .quantity = quantity, .unit = unit, .frame = "ground"};
     evidence.traces.push_back(trace_of(
         motion, std::move(trace), [&](std::size_t row) -> Vec3 { return measured[row]; },
-        [&](std::size_t row) -> Vec3 { return states[row].*predicted; }));
+        [&](std::size_t row) -> Vec3 { return predicted[row]; }));
   };
-  add("acceleration", "m/s^2", segment.acceleration, &FrameState::acceleration);
-  add("rate", "rad/s", segment.rate, &FrameState::rate);
+  add("acceleration", "m/s^2", segment.acceleration, prediction.acceleration);
+  add("rate", "rad/s", segment.rate, prediction.rate);
 }
 
 std::vector<double> middles(const std::vector<double>& time, const Binning& bins) {
@@ -87,27 +128,22 @@ double continued(double angle, double before) {
 }
 
 void play_joint(MatrixXd& q, Eigen::Index reading, const FoundJoint& joint, const Mat3& home,
-                const std::vector<FrameState>& parent, const std::vector<FrameState>& child, std::size_t step) {
+                const SegmentMotion& parent, const SegmentMotion& child, std::size_t step) {
   double before = 0.0;
   for (Eigen::Index k = 0; k < q.cols(); ++k) {
     const std::size_t row = static_cast<std::size_t>(k) * step;
-    before = continued(angle_at(joint.axis_in_parent, home, parent[row].rotation, child[row].rotation), before);
+    before = continued(angle_at(joint.axis_in_parent, home, parent.rotation[row], child.rotation[row]), before);
     q(reading, k) = before;
   }
 }
 
-Playback playback_of(const RecordedMotion& motion, const std::vector<std::vector<FrameState>>& states,
-                     const Identification& found) {
+Playback playback_of(const RecordedMotion& motion, const Identification& found) {
   const Binning bins = binning(motion.rows(), most_frames);
   const std::vector<int> readings = joints_with_reading(found.chain);
   const std::vector<Pose> home = joint_frames(found.chain, VectorXd::Zero(dof(found.chain)));
-  const auto index_of = [&](const std::string& sensor) {
-    return static_cast<std::size_t>(std::ranges::find(motion.segments, sensor, &SegmentMotion::name) -
-                                    motion.segments.begin());
-  };
   Playback film;
   film.q = MatrixXd::Zero(dof(found.chain), static_cast<Eigen::Index>(bins.count()));
-  const SegmentMotion& root = motion.segments[index_of(found.root)];
+  const SegmentMotion& root = motion.segments[segment_named(motion, found.root)];
   for (std::size_t row = 0; row < motion.rows(); row += bins.size) {
     film.time.push_back(motion.time[row]);
     const Quat r(root.rotation[row]);
@@ -122,21 +158,27 @@ Playback playback_of(const RecordedMotion& motion, const std::vector<std::vector
     const int parent = frame_named(found.chain, joint->parent), child = frame_named(found.chain, joint->child);
     const Mat3 parent_home = parent < 0 ? found.chain.base.pose().rotation : home[parent].rotation;
     play_joint(film.q, static_cast<Eigen::Index>(k), *joint, parent_home.transpose() * home[child].rotation,
-               states[index_of(joint->parent)], states[index_of(joint->child)], bins.size);
+               motion.segments[segment_named(motion, joint->parent)],
+               motion.segments[segment_named(motion, joint->child)], bins.size);
   }
   return film;
 }
 
 }  // namespace
 
-MotionEvidence motion_evidence(const RecordedMotion& motion, const std::vector<std::vector<FrameState>>& states,
-                               const Identification& found) {
+MotionEvidence motion_evidence(const RecordedMotion& motion, const Identification& found) {
   MotionEvidence evidence;
   evidence.time = middles(motion.time, binning(motion.rows(), most_bins));
-  for (std::size_t i = 0; i < states.size(); ++i)
-    if (!states[i].empty() && motion.segments[i].name != found.root)
-      add_traces(evidence, motion, motion.segments[i], states[i]);
-  evidence.playback = playback_of(motion, states, found);
+  const SegmentMotion& root = motion.segments[segment_named(motion, found.root)];
+  std::map<std::string, Prediction> predictions{{found.root, {root.acceleration, root.rate}}};
+  for (const FoundJoint& joint : found.joints) {
+    const SegmentMotion &parent = motion.segments[segment_named(motion, joint.parent)],
+                        &child = motion.segments[segment_named(motion, joint.child)];
+    const Prediction prediction = carried_over(joint, parent, child, predictions.at(joint.parent));
+    add_traces(evidence, motion, child, prediction);
+    predictions[joint.child] = prediction;
+  }
+  evidence.playback = playback_of(motion, found);
   return evidence;
 }
 

@@ -6,17 +6,26 @@
 namespace kinfer {
 namespace {
 
-/// For each window of rows: which segments move.
-std::vector<std::vector<bool>> motion_by_window(const RecordedMotion& motion, std::size_t rows, double rate) {
-  std::vector<std::vector<bool>> windows;
-  for (std::size_t begin = 0; begin + rows <= motion.rows(); begin += rows) {
-    std::vector<bool> moves;
-    for (const SegmentMotion& segment : motion.segments) {
-      double square = 0.0;
-      for (std::size_t row = begin; row < begin + rows; ++row) square += segment.rate[row].squaredNorm();
-      moves.push_back(std::sqrt(square / static_cast<double>(rows)) > rate);
+Vec3 acceleration_at_rest(const RecordedMotion& motion, const SegmentMotion& segment) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t row = 0; row < motion.first_motion; ++row) sum += segment.acceleration[row];
+  return sum / std::max(1.0, static_cast<double>(motion.first_motion));
+}
+
+/// For each window of rows: which segments turn, or are accelerated without turning, as on a slide.
+std::vector<std::vector<bool>> motion_by_window(const RecordedMotion& motion, std::size_t rows,
+                                                const MovingPhaseOptions& options) {
+  std::vector<std::vector<bool>> windows((motion.rows() - motion.rows() % rows) / rows);
+  for (const SegmentMotion& segment : motion.segments) {
+    const Vec3 rest = acceleration_at_rest(motion, segment);
+    for (std::size_t window = 0; window < windows.size(); ++window) {
+      double rate = 0.0, acceleration = 0.0;
+      for (std::size_t row = window * rows; row < (window + 1) * rows; ++row) {
+        rate += segment.rate[row].squaredNorm() / static_cast<double>(rows);
+        acceleration += (segment.acceleration[row] - rest).squaredNorm() / static_cast<double>(rows);
+      }
+      windows[window].push_back(std::sqrt(rate) > options.rate || std::sqrt(acceleration) > options.acceleration);
     }
-    windows.push_back(std::move(moves));
   }
   return windows;
 }
@@ -49,7 +58,7 @@ MovingPhases moving_phases(const RecordedMotion& motion, const MovingPhaseOption
   MovingPhases table;
   const auto rows = std::max<std::size_t>(1, static_cast<std::size_t>(options.window / motion.period));
   const double window = static_cast<double>(rows) * motion.period;
-  const auto windows = motion_by_window(motion, rows, options.rate);
+  const auto windows = motion_by_window(motion, rows, options);
   for (std::size_t begin = 0, end = 0; begin < windows.size(); begin = end) {
     while (end < windows.size() && windows[end] == windows[begin]) ++end;
     const bool is_long = static_cast<double>(end - begin) * window >= options.shortest;

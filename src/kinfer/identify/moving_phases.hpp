@@ -26,9 +26,10 @@ struct MovingPhases {
 };
 
 struct MovingPhaseOptions {
-  double rate = 0.05;     ///< [rad/s] rms within the window that counts as motion
-  double window = 0.25;   ///< [s]
-  double shortest = 1.0;  ///< [s] of a phase; shorter ones are the changes between phases
+  double rate = 0.05;          ///< [rad/s] rms within the window that counts as motion
+  double acceleration = 0.25;  ///< [m/s²] rms likewise, against that at rest: slides do not turn
+  double window = 0.25;        ///< [s]
+  double shortest = 1.0;       ///< [s] of a phase; shorter ones are the changes between phases
 };
 
 MovingPhases moving_phases(const RecordedMotion& motion, const MovingPhaseOptions& options = {});

@@ -20,6 +20,8 @@ struct RefineOptions {
 struct Refinement {
   std::vector<RefinedJoint> joints;  ///< in the order of the starts; angle 0 is where the recording begins
   InsFit fit;
+  std::vector<InsNoise> noise;     ///< of each sensor, as its residuals show it
+  std::vector<InsNoise> least;     ///< of each sensor, what it has even where the chain is right
   MatrixXd covariance;             ///< of the border's unknowns
   std::string grade;               ///< that was used
   std::vector<FoundPlace> places;  ///< of the facts

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/identify/hidden_words.hpp"
 
 namespace kinfer {
 namespace {
@@ -13,6 +14,22 @@ std::size_t segment_named(const RecordedMotion& motion, const std::string& name)
   const auto found = std::ranges::find(motion.segments, name, &SegmentMotion::name);
   KINFER_EXPECT(found != motion.segments.end(), "no segment {}", name);
   return static_cast<std::size_t>(found - motion.segments.begin());
+}
+
+constexpr double misfit = 3.0;  // times its own noise that a sensor leaves unexplained
+
+/// A sentence for each sensor that the chain does not explain.
+void say_misfits(std::vector<std::string>& notes, const Refinement& refined, const RecordedMotion& motion) {
+  for (std::size_t s = 0; s < refined.noise.size(); ++s) {
+    const double force = refined.noise[s].force / refined.least[s].force,
+                 rate = refined.noise[s].rate / refined.least[s].rate;
+    if (std::max(force, rate) < misfit) continue;
+    notes.push_back(fmt::format(
+        "the chain leaves {:.1f} times its noise of the specific force of {} unexplained ({:.3f} m/s²) and "
+        "{:.1f} times of its rate: a soft mount, a play in a joint, a loop, a sensor that was remounted, or "
+        "a wrong tree; the standard deviations have grown with it",
+        force, motion.segments[s].name, refined.noise[s].force, rate));
+  }
 }
 
 }  // namespace
@@ -35,6 +52,8 @@ Result<void> refine_geometry(Identification& result, const InsRecording& recordi
     result.joints.push_back(joint.found);
     std::ranges::copy(canonical_rows(joint.found, joint.hinge), std::back_inserter(result.dh));
   }
+  say_what_is_hidden(result.joints);
+  say_misfits(result.notes, *refined, motion);
   result.places = refined->places;
   return {};
 }

@@ -52,11 +52,12 @@ std::vector<Vec3> long_directions(const Mat3& covariance) {
   return directions;
 }
 
-/// Directions of a point that stay unknown even if the joint's other point were known.
-std::vector<Vec3> hidden_directions(ConstMatrixRef covariance, Index point, Index other) {
-  const Mat3 own = covariance.block<3, 3>(point, point), cross = covariance.block<3, 3>(point, other);
-  const auto inverse = inverse_positive(covariance.block<3, 3>(other, other));
-  return long_directions(inverse ? Mat3(own - cross * *inverse * cross.transpose()) : own);
+/// Directions of a point that stay unknown even if everything else about the joint were known.
+std::vector<Vec3> hidden_directions(ConstMatrixRef covariance, Index point) {
+  const auto information = inverse_positive(covariance);
+  if (!information) return long_directions(covariance.block<3, 3>(point, point));
+  const auto alone = inverse_positive(information->block<3, 3>(point, point));
+  return long_directions(alone ? Mat3(*alone) : Mat3(covariance.block<3, 3>(point, point)));
 }
 
 /// The joint's line and its pose at the reading `zero`; the sense as told in the header.
@@ -111,8 +112,8 @@ void state_hinge(FoundJoint& joint, const InsBody& body, ConstMatrixRef covarian
   const Vec3 &p = body.point_in_parent, &c = body.point_in_child;
   slide << -p.dot(a.col(1)), p.dot(a.col(0)), c.dot(b.col(1)), -c.dot(b.col(0)), a.col(2), -b.col(2);
   joint.sd.slide = root_of(slide.dot(covariance * slide));
-  joint.not_identifiable_in_parent = hidden_directions(covariance, in_parent, in_child);
-  joint.not_identifiable_in_child = hidden_directions(covariance, in_child, in_parent);
+  joint.not_identifiable_in_parent = hidden_directions(covariance, in_parent);
+  joint.not_identifiable_in_child = hidden_directions(covariance, in_child);
 }
 
 /// A slide's line runs through the child's origin by convention, so nothing of its place there is estimated.
@@ -132,14 +133,55 @@ void state_rigid(FoundJoint& joint, const InsBody& body, ConstMatrixRef covarian
   joint.not_identifiable_in_parent = long_directions(covariance.block<3, 3>(3, 3));
 }
 
+/// Axes of a universal joint, or the centre of it and of a spherical one.
+void state_centre(FoundJoint& joint, std::span<const InsBody> bodies, ConstMatrixRef covariance) {
+  const InsBody &near = bodies.front(), &far = bodies.back();
+  joint.point_in_parent = near.point_in_parent;
+  joint.point_in_child = far.point_in_child;
+  const Index in_child = covariance.cols() - 3, in_parent = bodies.size() > 1 ? near.unknowns() - 3 : 0;
+  if (joint.type == FoundJointType::universal) {
+    joint.axis_in_parent = near.parent_R_axis.col(2);
+    joint.axis_in_child = far.child_R_axis.col(2);
+    joint.sd.axis_in_parent = axis_sd(covariance, 0, near.parent_R_axis);
+    joint.sd.axis_in_child = axis_sd(covariance, near.unknowns() + 1, far.child_R_axis);
+  }
+  joint.sd.point_in_parent = point_sd(covariance, in_parent, joint.axis_in_parent);
+  joint.sd.point_in_child = point_sd(covariance, in_child, joint.axis_in_child);
+  joint.not_identifiable_in_parent = hidden_directions(covariance, in_parent);
+  joint.not_identifiable_in_child = hidden_directions(covariance, in_child);
+}
+
+/// The joint as one hinge at its readings' zero, for the chain's rows: about the last body's z.
+HingeGeometry last_hinge(std::span<const InsBody> bodies, std::span<const double> zero) {
+  const InsBody &near = bodies.front(), &far = bodies.back();
+  HingeGeometry g;
+  g.home.rotation = bodies.size() > 1 ? Mat3(near.parent_R_axis * rot_z(zero[0]) * far.parent_R_axis * rot_z(zero[1]) *
+                                             far.child_R_axis.transpose())
+                                      : Mat3(exp_so3(Vec3(zero[0], zero[1], zero[2])) * far.child_R_axis.transpose());
+  g.point_in_parent = near.point_in_parent;
+  g.point_in_child = far.point_in_child;
+  g.axis_in_child = far.child_R_axis.col(2);
+  g.axis_in_parent = g.home.rotation * g.axis_in_child;
+  g.home.position = g.point_in_parent - g.home.rotation * g.point_in_child;
+  return g;
+}
+
 }  // namespace
 
-RefinedJoint refined_joint(FoundJointType type, const InsBody& body, double zero, ConstMatrixRef covariance) {
+RefinedJoint refined_joint(FoundJointType type, std::span<const InsBody> bodies, std::span<const double> zero,
+                           ConstMatrixRef covariance) {
   RefinedJoint result;
-  result.hinge.geometry = geometry_of(body, zero);
-  const HingeGeometry& g = result.hinge.geometry;
   FoundJoint& joint = result.found;
   joint.type = type;
+  if (type == FoundJointType::universal || type == FoundJointType::spherical) {
+    result.hinge.geometry = last_hinge(bodies, zero);
+    state_centre(joint, bodies, covariance);
+    result.hinge.precision.sd = joint.sd;
+    return result;
+  }
+  const InsBody& body = bodies.front();
+  result.hinge.geometry = geometry_of(body, zero.front());
+  const HingeGeometry& g = result.hinge.geometry;
   joint.axis_in_parent = g.axis_in_parent;
   joint.axis_in_child = g.axis_in_child;
   joint.point_in_parent = g.point_in_parent;
@@ -151,7 +193,7 @@ RefinedJoint refined_joint(FoundJointType type, const InsBody& body, double zero
   else
     state_rigid(joint, body, covariance);
   result.hinge.precision.sd = joint.sd;
-  result.hinge.precision.canonical_sd = canonical_deviations(body, zero, covariance);
+  result.hinge.precision.canonical_sd = canonical_deviations(body, zero.front(), covariance);
   return result;
 }
 

@@ -12,8 +12,10 @@ struct RefinedJoint {
   FoundHinge hinge;  ///< geometry with its home at reading `zero`, standard deviations of the canonical numbers
 };
 
-/// `covariance`: of the body's unknowns. `zero` [rad] or [m]: the reading that is called 0. The axis' largest
-/// coordinate in the parent is positive.
-RefinedJoint refined_joint(FoundJointType type, const InsBody& body, double zero, ConstMatrixRef covariance);
+/// `bodies`: one, or the two or three of a universal or spherical joint. `zero` [rad] or [m]: their readings that are
+/// called 0. `covariance`: of the bodies' unknowns, one after the other. The largest coordinate of a single axis in the
+/// parent is positive.
+RefinedJoint refined_joint(FoundJointType type, std::span<const InsBody> bodies, std::span<const double> zero,
+                           ConstMatrixRef covariance);
 
 }  // namespace kinfer

@@ -8,20 +8,13 @@
 #include <numeric>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/base/parallel.hpp"
 
 namespace kinfer {
 namespace {
 
 using Edge = std::pair<std::size_t, std::size_t>;
-constexpr std::size_t fitted_rows = 3000;  // more do not change the order
-constexpr double least_turning = 0.02;     // [rad/s] below it the direction of a relative rate is noise
-
-/// K of the header in the ground, times ground_R_sensor: acts on lever arms in the sensor.
-Mat3 lever_effect(const SegmentMotion& m, std::size_t row) {
-  const Mat3 rate = skew(m.rate[row]);
-  return (skew(m.rate_change[row]) + rate * rate) * m.rotation[row];
-}
+constexpr std::size_t fitted_rows = 1500;  // more do not change the order
 
 std::vector<std::size_t> moving_rows(const RecordedMotion& motion) {
   std::vector<std::size_t> rows;
@@ -31,70 +24,9 @@ std::vector<std::size_t> moving_rows(const RecordedMotion& motion) {
   return rows;
 }
 
-/// The point with the shortest lever arms among those that fit equally well.
-void fit_common_point(PairFit& fit, const SegmentMotion& a, const SegmentMotion& b,
-                      const std::vector<std::size_t>& rows) {
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
-  constexpr double shortness = 1e-4;  // [1/s²] squared: prior on lever arms of what no acceleration tells
-  Matrix6 normal = static_cast<double>(rows.size()) * shortness * Matrix6::Identity();
-  Vector6 right = Vector6::Zero();
-  double square = 0.0;
-  for (const std::size_t row : rows) {
-    Eigen::Matrix<double, 3, 6> k;
-    k << lever_effect(a, row), -lever_effect(b, row);
-    const Vec3 difference = b.acceleration[row] - a.acceleration[row];
-    normal += k.transpose() * k;
-    right += k.transpose() * difference;
-    square += difference.squaredNorm();
-  }
-  const VectorXd arms = solve_least_squares(normal, right, 1e-10);
-  const double left = square - 2.0 * arms.dot(right) + arms.dot(normal * arms);
-  fit.residual = std::sqrt(std::max(0.0, left) / static_cast<double>(rows.size()));
-  fit.point_in_first = arms.head<3>();
-  fit.point_in_second = arms.tail<3>();
-}
-
-void fit_common_axis(PairFit& fit, const SegmentMotion& a, const SegmentMotion& b,
-                     const std::vector<std::size_t>& rows) {
-  Mat3 spread = Mat3::Zero();
-  for (const std::size_t row : rows) {
-    const Vec3 relative = a.rotation[row].transpose() * (b.rate[row] - a.rate[row]);
-    spread += relative * relative.transpose() / static_cast<double>(rows.size());
-  }
-  const VectorXd squares = symmetric_eigen(spread).values;
-  fit.off_axis_rate = std::sqrt(std::max(0.0, squares[0] + squares[1]));
-  fit.relative_rate = std::sqrt(std::max(0.0, squares.sum()));
-}
-
-/// Takes the difference along its principal direction in the first sensor out of the residual.
-void fit_slide(PairFit& fit, const SegmentMotion& a, const SegmentMotion& b, const std::vector<std::size_t>& rows) {
-  Mat3 spread = Mat3::Zero();
-  for (const std::size_t row : rows) {
-    const Vec3 difference = b.acceleration[row] + lever_effect(b, row) * fit.point_in_second - a.acceleration[row] -
-                            lever_effect(a, row) * fit.point_in_first;
-    const Vec3 in_first = a.rotation[row].transpose() * difference;
-    spread += in_first * in_first.transpose() / static_cast<double>(rows.size());
-  }
-  const VectorXd squares = symmetric_eigen(spread).values;
-  fit.slide = std::sqrt(std::max(0.0, squares[2]));
-  fit.residual = std::sqrt(std::max(0.0, squares[0] + squares[1]));
-}
-
-PairFit fit_pair(const RecordedMotion& motion, std::size_t first, std::size_t second,
-                 const std::vector<std::size_t>& rows) {
-  PairFit fit{.first = first, .second = second};
-  fit_common_point(fit, motion.segments[first], motion.segments[second], rows);
-  fit_common_axis(fit, motion.segments[first], motion.segments[second], rows);
-  if (fit.relative_rate < least_turning) fit_slide(fit, motion.segments[first], motion.segments[second], rows);
-  fit.weight =
-      fit.residual * (1.0 + off_axis_weight * fit.off_axis_rate / std::hypot(fit.relative_rate, least_turning));
-  return fit;
-}
-
 /// Kruskal 1956.
 std::vector<Edge> minimum_spanning_tree(std::vector<PairFit> pairs, std::size_t segments) {
-  std::ranges::stable_sort(pairs, {}, &PairFit::weight);
+  std::ranges::stable_sort(pairs, {}, &PairFit::distance);
   std::vector<std::size_t> component(segments);
   std::iota(component.begin(), component.end(), std::size_t{0});
   std::vector<Edge> edges;
@@ -121,8 +53,10 @@ Result<std::size_t> choose_root(const RecordedMotion& motion, const std::vector<
     if (segment.still) still.push_back(segment.name);
   }
   if (still.size() > 1)
-    return error("sensors {} never move: at most one, the root, may stand still; move every joint",
-                 fmt::join(still, ", "));
+    return error(
+        "sensors {} never move: at most one, the root, may stand still; move every joint, and give each machine a log "
+        "of its own",
+        fmt::join(still, ", "));
   const auto index = [&](const std::string& wanted) {
     return static_cast<std::size_t>(std::ranges::find(names, wanted) - names.begin());
   };
@@ -139,8 +73,8 @@ Result<std::size_t> choose_root(const RecordedMotion& motion, const std::vector<
   return best;
 }
 
-/// Largest weight on the way from a to b within the tree.
-double largest_weight_between(const SegmentTree& tree, std::size_t a, std::size_t b) {
+/// Largest distance on the way from a to b within the tree.
+double largest_between(const SegmentTree& tree, std::size_t a, std::size_t b) {
   const auto path_to_root = [&](std::size_t node) {
     std::vector<std::size_t> path{node};
     while (tree.parent[path.back()]) path.push_back(*tree.parent[path.back()]);
@@ -148,10 +82,10 @@ double largest_weight_between(const SegmentTree& tree, std::size_t a, std::size_
   };
   std::vector<std::size_t> up = path_to_root(a), down = path_to_root(b);
   while (up.size() > 1 && down.size() > 1 && up[up.size() - 2] == down[down.size() - 2]) up.pop_back(), down.pop_back();
-  double largest = 0.0;
+  double largest = -std::numeric_limits<double>::infinity();
   for (const auto* path : {&up, &down})
     for (std::size_t i = 0; i + 1 < path->size(); ++i)
-      largest = std::max(largest, tree.pair((*path)[i], (*path)[i + 1]).weight);
+      largest = std::max(largest, tree.pair((*path)[i], (*path)[i + 1]).distance);
   return largest;
 }
 
@@ -159,8 +93,19 @@ double margin_of(const SegmentTree& tree) {
   double margin = std::numeric_limits<double>::infinity();
   for (const PairFit& pair : tree.pairs)
     if (tree.parent[pair.first] != pair.second && tree.parent[pair.second] != pair.first)
-      margin = std::min(margin, pair.weight / largest_weight_between(tree, pair.first, pair.second));
-  return margin;
+      margin = std::min(margin, pair.distance - largest_between(tree, pair.first, pair.second));
+  return std::exp(margin);
+}
+
+std::vector<PairFit> all_pairs(const RecordedMotion& motion, const std::vector<std::size_t>& rows,
+                               const PairFitOptions& options, int threads) {
+  std::vector<PairFit> pairs;
+  for (std::size_t first = 0; first < motion.segments.size(); ++first)
+    for (std::size_t second = first + 1; second < motion.segments.size(); ++second)
+      pairs.push_back({.first = first, .second = second});
+  parallel_for(pairs.size(), threads,
+               [&](std::size_t i) { pairs[i] = fit_pair(motion, pairs[i].first, pairs[i].second, rows, options); });
+  return pairs;
 }
 
 }  // namespace
@@ -184,14 +129,13 @@ void hang_up(SegmentTree& tree, const std::vector<Edge>& edges) {
         }
 }
 
-Result<SegmentTree> segment_tree(const RecordedMotion& motion, const std::optional<std::string>& root) {
+Result<SegmentTree> segment_tree(const RecordedMotion& motion, const std::optional<std::string>& root,
+                                 const PairFitOptions& options, int threads) {
   const std::vector<std::size_t> rows = moving_rows(motion);
   if (rows.size() < 50)
     return error("only {} rows in which the machine moves and every sensor has sound readings", rows.size());
   SegmentTree tree;
-  for (std::size_t first = 0; first < motion.segments.size(); ++first)
-    for (std::size_t second = first + 1; second < motion.segments.size(); ++second)
-      tree.pairs.push_back(fit_pair(motion, first, second, rows));
+  tree.pairs = all_pairs(motion, rows, options, threads);
   const std::vector<Edge> edges = minimum_spanning_tree(tree.pairs, motion.segments.size());
   KINFER_TRY(chosen, choose_root(motion, edges, root));
   tree.root = chosen;

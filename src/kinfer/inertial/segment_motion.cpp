@@ -5,13 +5,16 @@
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/geometry/fit.hpp"
+#include "kinfer/inertial/bridged.hpp"
 #include "kinfer/inertial/gaussian_smoothing.hpp"
 #include "kinfer/inertial/rest.hpp"
 
 namespace kinfer {
 namespace {
 
-constexpr double longest_bridge = 0.1;  // [s] missing readings over which the line between neighbours is believed
+// [s] missing readings over which the line between neighbours is believed, and over which it is still better for a
+// filter than to start anew
+constexpr double longest_bridge = 0.1, longest_filter_bridge = 0.5;
 
 /// Readings of a triad on the common clock: gaps are bridged by straight lines, and said.
 struct Resampled {
@@ -72,7 +75,7 @@ double rms_about_mean(const std::vector<Vec3>& signal) {
   return std::sqrt(sum / static_cast<double>(signal.size()));
 }
 
-/// Orientations of the sensor's own rows, at the rows nearest to the common clock's times.
+/// Orientations of the sensor's own rows on the common clock.
 std::vector<Mat3> rotations_on(std::span<const double> clock, std::span<const double> time,
                                const std::vector<Quat>& q) {
   std::vector<Mat3> result;
@@ -85,6 +88,31 @@ std::vector<Mat3> rotations_on(std::span<const double> clock, std::span<const do
     result.push_back(q[row].slerp(share, q[next]).toRotationMatrix());
   }
   return result;
+}
+
+/// What a filter makes of a sensor: orientations, and how its gyro errs, true rate = (1 + scale) (rate - bias).
+struct Filtered {
+  std::vector<Quat> world_q_sensor;  // one a row of the sensor
+  std::vector<double> bias_time;     // [s]
+  std::vector<Vec3> bias;            // [rad/s]
+  Mat3 scale = Mat3::Zero();
+
+  Vec3 true_rate(const Vec3& rate, double time) const {
+    const auto after = std::ranges::lower_bound(bias_time, time) - bias_time.begin();
+    const Vec3 unbiased = rate - bias[std::min(static_cast<std::size_t>(after), bias.size() - 1)];
+    return unbiased + scale * unbiased;
+  }
+};
+
+/// The smoother knows the gyro's errors from motion as well; the other filters go by the rests.
+Filtered run_filter(const InsSensor& recorded, std::span<const double> time, const FilterOptions& filter) {
+  const InsSensor sensor = bridged(recorded, time, longest_filter_bridge);
+  if (const auto* offline = std::get_if<KinferOfflineOptions>(&filter)) {
+    SmoothedMotion smooth = smoothed_motion(sensor, time, *offline);
+    if (!smooth.bias.empty())
+      return {std::move(smooth.world_q_sensor), std::move(smooth.update_time), std::move(smooth.bias), smooth.scale};
+  }
+  return {orientations(sensor, time, filter), {time.front()}, {bias_at_rest(rests(sensor, time)).mean}, Mat3::Zero()};
 }
 
 /// A segment that stands still is known better by the mean than by any row.
@@ -112,11 +140,11 @@ SegmentOnClock segment_on(std::span<const double> clock, const InsRecording& rec
   SegmentOnClock result;
   SegmentMotion& m = result.motion;
   m.name = sensor.name;
-  m.rotation = rotations_on(clock, time, orientations(sensor, time, options.filter));
-  const RestBias bias = bias_at_rest(rests(sensor, time));
+  const Filtered filter = run_filter(sensor, time, options.filter);
+  m.rotation = rotations_on(clock, time, filter.world_q_sensor);
   std::vector<Vec3> rate_ground(clock.size()), acceleration_ground(clock.size());
   for (std::size_t i = 0; i < clock.size(); ++i) {
-    m.gyro.push_back(rate.values[i] - bias.mean);
+    m.gyro.push_back(filter.true_rate(rate.values[i], clock[i]));
     rate_ground[i] = m.rotation[i] * m.gyro[i];
     // Eq. (26): its printed matrix turns sensor into ground already, so it is used as printed, not transposed; the
     // gravity that an accelerometer at rest reads has to come off, which (26) does not say.
@@ -176,6 +204,13 @@ Result<RecordedMotion> segment_motion(const InsRecording& recording, const Segme
   for (SegmentOnClock& segment : segments) motion.segments.push_back(std::move(segment.motion));
   motion.first_motion = first_moving_row(motion, options.still_rate);
   return motion;
+}
+
+std::vector<Mat3> segment_rotations(const RecordedMotion& motion, const InsRecording& recording,
+                                    const InsSensor& sensor, const SegmentMotionOptions& options) {
+  const std::span<const double> time = recording.time(sensor);
+  const InsSensor whole = bridged(sensor, time, longest_filter_bridge);
+  return rotations_on(motion.time, time, orientations(whole, time, options.filter));
 }
 
 }  // namespace kinfer

@@ -14,7 +14,7 @@ namespace kinfer {
 struct SegmentMotion {
   std::string name;                ///< of the sensor
   std::vector<Mat3> rotation;      ///< ground_R_sensor
-  std::vector<Vec3> gyro;          ///< [rad/s] in the sensor, bias at rest taken off, not smoothed
+  std::vector<Vec3> gyro;          ///< [rad/s] in the sensor, its errors as far as known taken off, not smoothed
   std::vector<Vec3> rate;          ///< [rad/s] in the ground
   std::vector<Vec3> rate_change;   ///< [rad/s²] in the ground
   std::vector<Vec3> acceleration;  ///< [m/s²] in the ground, eq. (26) of paper 1 less gravity
@@ -43,5 +43,9 @@ struct SegmentMotionOptions {
 /// rates or specific forces. Loggers are taken as synchronous.
 Result<RecordedMotion> segment_motion(const InsRecording& recording, const SegmentMotionOptions& options = {},
                                       int threads = 0);
+
+/// ground_R_sensor on the motion's clock as the options' filter has it.
+std::vector<Mat3> segment_rotations(const RecordedMotion& motion, const InsRecording& recording,
+                                    const InsSensor& sensor, const SegmentMotionOptions& options);
 
 }  // namespace kinfer

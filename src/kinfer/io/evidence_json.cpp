@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/base/version.hpp"
+#include "kinfer/io/findings_json.hpp"
 #include "kinfer/io/picture_json.hpp"
 
 namespace kinfer {
@@ -78,19 +79,6 @@ Json side_by_side_json(const std::vector<SearchRun>& runs) {
 }
 
 /// The models that were tried; where there was no choice, the one that was fitted.
-Json ladder_json(const Calibration& c) {
-  std::vector<ModelRung> rungs = c.ladder;
-  if (rungs.empty()) rungs.push_back({.name = "geometry", .position = c.after.position, .chosen = true, .reason = {}});
-  Json list = Json::array();
-  for (const ModelRung& rung : rungs)
-    list.push_back({{"name", rung.name},
-                    {"train", json_of(rung.position.train)},
-                    {"holdout", json_of(rung.position.holdout)},
-                    {"chosen", rung.chosen},
-                    {"reason", rung.reason}});
-  return list;
-}
-
 Json search_json(const Search& search) {
   Json json{{"engine", search.method},
             {"iterations", search.iterations},
@@ -111,6 +99,28 @@ Json provenance_json(const Provenance& provenance) {
   return {{"version", version}, {"seed", provenance.seed}, {"options", options}, {"inputs", inputs}};
 }
 
+/// Where no ladder was climbed, the model that was fitted is its only rung.
+Json model_json(const Calibration& c) {
+  Ladder ladder = c.ladder;
+  if (ladder.rungs.empty())
+    ladder.rungs.push_back(
+        {.name = "geometry", .train = c.after.position.train, .holdout = c.after.position.holdout, .chosen = true});
+  if (ladder.chosen.empty()) ladder.chosen = ladder.rungs.front().name;
+  Json rungs = Json::array();
+  for (const LadderRung& r : ladder.rungs) {
+    Json rung{{"name", r.name}, {"adds", r.adds}};
+    if (!r.locked) rung["train"] = json_of(r.train), rung["holdout"] = json_of(r.holdout);
+    rung["terms"] = r.terms;
+    rung["determined"] = r.determined;
+    rung["not_excited"] = r.not_excited;
+    rung["chosen"] = r.chosen;
+    rung["locked"] = r.locked;
+    rung["why"] = r.why;
+    rungs.push_back(rung);
+  }
+  return {{"chosen", ladder.chosen}, {"rungs", rungs}};
+}
+
 }  // namespace
 
 std::string calibration_json(const Calibration& c, const Provenance& provenance) {
@@ -123,7 +133,9 @@ std::string calibration_json(const Calibration& c, const Provenance& provenance)
   json["use"] = c.use;
   json["next"] = advice_json(c.next);
   json["notes"] = c.notes;
+  json["findings"] = Json::parse(findings_json(c.findings));
   json["holdout"] = c.holdout;
+  json["measured"] = c.measured;
   json["nominal"] = json_of(c.nominal);
   json["before"] = json_of(c.before);
   json["after"] = json_of(c.after);
@@ -136,7 +148,7 @@ std::string calibration_json(const Calibration& c, const Provenance& provenance)
   json["singular_values"] = array_of(e.identifiability.singular_values);
   json["confounded"] = e.identifiability.confounded;
   json["outliers"] = outliers_json(e.outliers);
-  json["model"] = {{"rungs", ladder_json(c)}};
+  json["model"] = model_json(c);
   json["search"] = search_json(e.search);
   json["covariance"] = array_of(e.covariance);
   json["rows"] = rows_json(c.rows);
@@ -152,6 +164,7 @@ std::string calibration_headline_json(const Calibration& c) {
                   {"after", json_of(c.after)},
                   {"rank", c.estimate.identifiability.rank},
                   {"outliers", c.estimate.outliers.size()},
+                  {"model", c.ladder.chosen},
                   {"predicted_error", c.estimate.predicted_error}};
   return json.dump() + "\n";
 }

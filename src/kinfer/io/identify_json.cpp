@@ -26,6 +26,10 @@ std::string_view name(FoundJointType type) {
       return "revolute";
     case FoundJointType::prismatic:
       return "prismatic";
+    case FoundJointType::universal:
+      return "universal";
+    case FoundJointType::spherical:
+      return "spherical";
     case FoundJointType::rigid:
       return "rigid";
   }
@@ -40,13 +44,18 @@ Json json_of(const JointDeviation& sd) {
           {"slide_m", sd.slide}};
 }
 
+/// A ball joint has no axis.
+Json axis_json(const FoundJoint& joint, const Vec3& axis) {
+  return joint.type == FoundJointType::spherical ? Json(nullptr) : json_of(axis);
+}
+
 Json json_of(const FoundJoint& joint) {
   Json json{{"parent", joint.parent},
             {"child", joint.child},
             {"type", name(joint.type)},
-            {"axis_in_parent", json_of(joint.axis_in_parent)},
+            {"axis_in_parent", axis_json(joint, joint.axis_in_parent)},
             {"point_in_parent", json_of(joint.point_in_parent)},
-            {"axis_in_child", json_of(joint.axis_in_child)},
+            {"axis_in_child", axis_json(joint, joint.axis_in_child)},
             {"point_in_child", json_of(joint.point_in_child)},
             {"sd", json_of(joint.sd)},
             {"not_identifiable", joint.not_identifiable},
@@ -63,6 +72,15 @@ Json json_of(const FoundLink& link) {
 
 Json json_of(const FoundPlace& place) {
   return {{"name", place.name}, {"sensor", place.sensor}, {"xyz", json_of(place.xyz)}, {"sd_m", json_of(place.sd)}};
+}
+
+Json json_of(const JointForecast& f) {
+  return {{"joint", f.joint},
+          {"line_sd_m", f.line_sd},
+          {"direction_sd_rad", f.direction_sd},
+          {"enough", f.enough},
+          {"acceleration_factor", f.acceleration},
+          {"time_factor", f.time}};
 }
 
 Json json_of(const FoundFit& fit) {
@@ -165,6 +183,7 @@ std::string identification_json(const Identification& found, const Provenance& p
   json["chain"] = chain_json(found.chain);
   json["next"] = advice_json(found.next);
   json["places"] = list_of(found.places);
+  json["forecast"] = list_of(found.forecast);
   json["order"] = json_of(found.order);
   json["fit"] = fit_json(found.searches);
   json["search"] = search_json(found);

@@ -1,5 +1,6 @@
 #include "kinfer/io/picture_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -19,18 +20,18 @@ Json short_number(double value) {
   return rounded == 0.0 ? 0.0 : rounded / 1e7;
 }
 
-/// Four digits: a line on a screen has no more.
-Json plotted_number(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  if (value == 0.0) return 0.0;
-  const double scale = std::pow(10.0, 3.0 - std::floor(std::log10(std::abs(value))));
-  return scale < 1e9 ? Json(std::round(value * scale) / scale) : Json(0.0);
-}
-
+/// Rounded to a power of ten below a four-thousandth of the largest: a line on a screen has no more.
 template <class List>
 Json plotted(const List& values) {
+  double largest = 0.0;
+  for (const double value : values)
+    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+  const double per_unit = largest > 0.0 ? std::pow(10.0, std::ceil(std::log10(4000.0 / largest))) : 1.0;
   Json list = Json::array();
-  for (const double value : values) list.push_back(plotted_number(value));
+  for (const double value : values) {
+    const double rounded = std::round(value * per_unit);
+    list.push_back(!std::isfinite(value) ? Json(nullptr) : rounded == 0.0 ? Json(0) : Json(rounded / per_unit));
+  }
   return list;
 }
 
@@ -111,6 +112,7 @@ Json trace_json(const Trace& trace) {
           {"quantity", trace.quantity},
           {"unit", trace.unit},
           {"frame", trace.frame},
+          {"rms_measured", trace.rms_measured},
           {"rms_fitted", trace.rms_fitted},
           {"rms_holdout", trace.rms_holdout},
           {"measured", json_of(trace.measured)},
@@ -136,17 +138,17 @@ nlohmann::ordered_json chain_json(const Chain& chain) {
 }
 
 nlohmann::ordered_json picture_json(const CalibrationPicture& picture, const Chain& calibrated) {
-  Json measured = Json::array(), before = Json::array(), after = Json::array(), predicted = Json::array();
+  Json measured = Json::array(), before = Json::array(), after = Json::array(), tools = Json::array();
+  std::vector<double> predicted, uncertain;
   for (const PictureRow& row : picture.rows) {
     measured.push_back(optional_json(row.measured));
     before.push_back(optional_json(row.off_before));
     after.push_back(optional_json(row.off_after));
-    predicted.push_back(plotted_number(row.predicted));
+    predicted.push_back(row.predicted);
   }
-  Json tools = Json::array(), uncertain = Json::array();
   for (const WorkspacePoint& point : picture.workspace) {
     tools.push_back(short_numbers(point.tool));
-    uncertain.push_back(plotted_number(point.predicted));
+    uncertain.push_back(point.predicted);
   }
   return {{"chains",
            {{"nominal", chain_json(picture.nominal)},
@@ -156,8 +158,8 @@ nlohmann::ordered_json picture_json(const CalibrationPicture& picture, const Cha
           {"measured", measured},
           {"off_before", before},
           {"off_after", after},
-          {"predicted", predicted},
-          {"workspace", {{"tool", tools}, {"predicted", uncertain}}}};
+          {"predicted", plotted(predicted)},
+          {"workspace", {{"tool", tools}, {"predicted", plotted(uncertain)}}}};
 }
 
 nlohmann::ordered_json motion_json(const MotionEvidence& motion) {

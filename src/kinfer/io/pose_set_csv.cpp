@@ -162,7 +162,7 @@ void read_quaternions(PoseColumns& columns, PoseSet& set) {
     if (!(std::abs(orientation.norm() - 1.0) <= quaternion_slack))
       columns.complain(row, fmt::format("qw, qx, qy, qz: expected a norm of 1, found {:.4g}", orientation.norm()));
     else
-      set.orientations.push_back({static_cast<int>(row), orientation.normalized()});
+      set.orientations.push_back({static_cast<int>(row), orientation.normalized(), {}});
   }
 }
 
@@ -178,7 +178,19 @@ void read_euler_angles(PoseColumns& columns, const ColumnMap& map, PoseSet& set)
     columns.complain_about_header("the orientation is given twice, by qw, qx, qy, qz and by rx, ry, rz");
   for (std::size_t row = 0; row < columns.rows(); ++row)
     if (angles->measured(row))
-      set.orientations.push_back({static_cast<int>(row), Quat(from_euler(*map.euler, angles->at(row))).normalized()});
+      set.orientations.push_back(
+          {static_cast<int>(row), Quat(from_euler(*map.euler, angles->at(row))).normalized(), {}});
+}
+
+void read_orientation_deviations(PoseColumns& columns, PoseSet& set) {
+  const auto sd = columns.vectors({"srx", "sry", "srz"}, Dimension::angle);
+  if (!sd) return;
+  for (OrientationMeasurement& measured : set.orientations) {
+    if (!sd->measured(measured.row)) continue;
+    measured.sd = sd->at(measured.row);
+    if (measured.sd->minCoeff() < 0)
+      columns.complain(measured.row, "srx, sry, srz: expected standard deviations from 0");
+  }
 }
 
 void read_tilts(PoseColumns& columns, PoseSet& set) {
@@ -276,6 +288,9 @@ void read_what_rows_are(PoseColumns& columns, PoseSet& set) {
   NameColumn setups = columns.name_indices("setup").value_or(NameColumn{});
   set.setups = std::move(setups.names);
   set.setup = std::move(setups.index);
+  NameColumn tips = columns.name_indices("tip").value_or(NameColumn{});
+  set.tips = std::move(tips.names);
+  set.tip = std::move(tips.index);
   NameColumn sweeps = columns.name_indices("sweep").value_or(NameColumn{});
   set.sweeps = std::move(sweeps.names);
   set.sweep = std::move(sweeps.index);
@@ -292,6 +307,7 @@ PoseSet read_columns(PoseColumns& columns, const Chain& chain, const ColumnMap& 
   read_standard_deviations(columns, set);
   read_quaternions(columns, set);
   read_euler_angles(columns, map, set);
+  read_orientation_deviations(columns, set);
   read_tilts(columns, set);
   read_contacts(columns, set);
   read_distances(columns, expect, set);

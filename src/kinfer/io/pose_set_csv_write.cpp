@@ -84,6 +84,7 @@ class Writer {
     write_points(-1, "");
     for (std::size_t i = 0; i < set_.targets.size(); ++i) write_points(static_cast<int>(i), set_.targets[i] + "_");
     write_orientations();
+    write_orientation_deviations();
     write_distances();
     write_contacts();
     write_tilts();
@@ -141,6 +142,15 @@ class Writer {
     }
   }
 
+  void write_orientation_deviations() {
+    std::optional<std::size_t> deviations;
+    for (const OrientationMeasurement& measured : set_.orientations) {
+      if (!measured.sd) continue;
+      if (!deviations) deviations = add_three("sr", in_mm_ ? "[deg]" : "[rad]");
+      sheet_.set(*deviations, measured.row, *measured.sd, angle_);
+    }
+  }
+
   void write_distances() {
     if (set_.distances.empty() && set_.pairs.empty()) return;
     const std::size_t distance = sheet_.add(with_unit("distance", true));
@@ -195,6 +205,7 @@ class Writer {
     write_numbers(set_.payload, "payload[kg]");
     write_numbers(set_.temperature, "temperature[C]");
     write_names(set_.setup, set_.setups, "setup");
+    write_names(set_.tip, set_.tips, "tip");
     write_names(set_.sweep, set_.sweeps, "sweep");
     if (!set_.id.empty()) {
       const std::size_t id = sheet_.add("id");

@@ -124,7 +124,14 @@ Joint read_joint(TableReader& row, const std::string& default_name, Convention o
   joint.has_reading = joint.type == JointType::fixed ? (row.ignore("reading"), false) : row.flag_or("reading", true);
   joint.gain = row.number_or("gain", 1.0);
   joint.compliance = row.number_or("compliance", 0.0);
-  for (const char* key : {"gain_sd", "compliance_sd"}) row.ignore(key);
+  joint.torque_compliance = row.number_or("torque_compliance", 0.0);
+  joint.backlash = row.number_or("backlash", 0.0) * (joint.type == JointType::prismatic ? scales.length : scales.angle);
+  for (const Vec3& h : row.vectors_or_none("harmonics"))
+    joint.harmonics.push_back({h[0], h[1] * scales.angle, h[2] * scales.angle});
+  if (!joint.harmonics.empty() && joint.type != JointType::revolute)
+    row.complain(row.line_of("harmonics"), "\"harmonics\": only revolute joints have them");
+  for (const char* key : {"gain_sd", "compliance_sd", "torque_compliance_sd", "backlash_sd", "harmonics_sd"})
+    row.ignore(key);
   read_limits(row, joint, scales);
   return joint;
 }
@@ -220,6 +227,67 @@ std::vector<Target> read_targets(TableReader& file, const Scales& scales, Compla
   return targets;
 }
 
+/// Sockets, planes and what is known of distances between sockets.
+Surroundings read_surroundings(TableReader& file, const Scales& scales, Complaint& complaint) {
+  Surroundings around;
+  around.anchors = file.vectors_or_none("anchors");
+  for (Vec3& anchor : around.anchors) anchor *= scales.length;
+  file.ignore("anchors_sd");
+  for (const auto& [table, line] : file.tables_or_none("socket")) {
+    TableReader row(*table, line, fmt::format("socket {}: ", around.sockets.size() + 1), complaint);
+    around.sockets.push_back({row.text("name"), row.vector_or("xyz", Vec3::Zero()) * scales.length});
+    row.ignore("xyz_sd");
+    row.expect_no_other_keys();
+  }
+  for (const auto& [table, line] : file.tables_or_none("plane")) {
+    TableReader row(*table, line, fmt::format("plane {}: ", around.planes.size() + 1), complaint);
+    Plane plane{.name = row.text("name"), .offset = row.number("offset") * scales.length};
+    const Vec3 normal = row.vector("normal");
+    if (normal.norm() > 0.0) plane.rotation = Quat::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
+    row.ignore("offset_sd");
+    row.expect_no_other_keys();
+    around.planes.push_back(std::move(plane));
+  }
+  return around;
+}
+
+/// Index of the socket of that name, which is added where the file says no place of it.
+int socket_index(std::vector<Target>& sockets, const std::string& name) {
+  for (std::size_t i = 0; i < sockets.size(); ++i)
+    if (sockets[i].name == name) return static_cast<int>(i);
+  sockets.push_back({name, Vec3::Zero()});
+  return static_cast<int>(sockets.size()) - 1;
+}
+
+void read_socket_distances(TableReader& file, Surroundings& around, const Scales& scales, Complaint& complaint) {
+  for (const auto& [table, line] : file.tables_or_none("socket_distance")) {
+    TableReader row(*table, line, fmt::format("socket_distance {}: ", around.socket_distances.size() + 1), complaint);
+    const std::string a = row.text("from"), b = row.text("to");
+    SocketDistance known{socket_index(around.sockets, a), socket_index(around.sockets, b)};
+    known.distance = row.number("distance") * scales.length;
+    known.sd = row.positive_or("sigma", 1e-5 / scales.length) * scales.length;
+    row.expect_no_other_keys();
+    if (a == b) row.complain(line, "expected two different sockets");
+    around.socket_distances.push_back(known);
+  }
+}
+
+std::vector<RobotMounting> read_mountings(TableReader& file, const std::vector<Joint>& joints, const Scales& scales,
+                                          Complaint& complaint) {
+  std::vector<RobotMounting> mountings;
+  for (const auto& [table, line] : file.tables_or_none("mounting")) {
+    TableReader row(*table, line, fmt::format("mounting {}: ", mountings.size() + 1), complaint);
+    RobotMounting mounting{.name = row.text("name")};
+    if (row.has("base")) mounting.base = read_frame(row, "base", scales, complaint);
+    row.ignore("base"), row.ignore("base_sd");
+    mounting.tool = read_frame(row, "tool", scales, complaint);
+    mounting.tip = row.has("tip") ? read_joint_reference(row, "tip", joints) : (row.ignore("tip"), -1);
+    row.expect_no_other_keys();
+    mountings.push_back(std::move(mounting));
+  }
+  return mountings;
+}
+
 std::vector<PointMass> read_masses(TableReader& file, int joints, const Scales& scales, Complaint& complaint) {
   std::vector<PointMass> masses;
   for (const auto& [table, line] : file.tables_or_none("mass")) {
@@ -264,7 +332,8 @@ double from_zero(TableReader& reader, std::string_view key) {
 }
 
 /// Nothing where sigma is absent: it is then estimated from the residuals.
-std::optional<Instrument> read_instrument(TableReader& file, const Scales& scales, Complaint& complaint) {
+std::optional<Instrument> read_instrument(TableReader& file, const Scales& scales, std::optional<Vec3>& at,
+                                          Complaint& complaint) {
   const TomlTable* table = file.table_or_none("instrument");
   if (!table) return std::nullopt;
   TableReader reader(*table, file.line_of("instrument"), "instrument: ", complaint);
@@ -273,6 +342,14 @@ std::optional<Instrument> read_instrument(TableReader& file, const Scales& scale
   instrument.sigma = from_zero(reader, "sigma") * scales.length;
   instrument.sigma_angle = from_zero(reader, "sigma_angle") * scales.angle;
   instrument.ppm = from_zero(reader, "ppm");
+  const auto given = [&](std::string_view key, double scale) {
+    const double value = from_zero(reader, key) * scale;
+    return reader.has(key) ? std::optional(value) : std::nullopt;
+  };
+  instrument.sigma_distance = given("sigma_distance", scales.length);
+  instrument.sigma_contact = given("sigma_contact", scales.length);
+  instrument.sigma_tilt = given("sigma_tilt", 1.0);
+  if (reader.has("at")) at = reader.vector("at") * scales.length;
   reader.expect_no_other_keys();
   if (!reader.has("sigma")) return std::nullopt;
   return instrument;
@@ -297,10 +374,14 @@ Result<RobotModel> parse_robot_toml(std::string_view text, const std::string& na
   chain.targets = read_targets(file, scales, complaint);
   chain.masses = read_masses(file, static_cast<int>(chain.joints.size()), scales, complaint);
   robot.tolerances = read_tolerances(file, scales, complaint);
-  robot.instrument = read_instrument(file, scales, complaint);
-  robot.anchors = file.vectors_or_none("anchors");
-  for (Vec3& anchor : robot.anchors) anchor *= scales.length;
-  file.ignore("anchors_sd");
+  robot.instrument = read_instrument(file, scales, robot.instrument_at, complaint);
+  chain.surroundings = read_surroundings(file, scales, complaint);
+  read_socket_distances(file, chain.surroundings, scales, complaint);
+  chain.mountings = read_mountings(file, chain.joints, scales, complaint);
+  chain.setup = file.text_or("setup", "");
+  chain.expansion = file.number_or("expansion", 0.0);
+  chain.reference_temperature = file.number_or("reference_temperature", 0.0);
+  file.ignore("expansion_sd");
   file.expect_no_other_keys();
   if (complaint.any()) return pass_on(complaint.as_error());
   return robot;

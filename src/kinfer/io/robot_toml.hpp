@@ -19,7 +19,7 @@ struct RobotModel {
   Chain chain{};
   Tolerances tolerances{};
   std::optional<Instrument> instrument{};  ///< absent: estimated from the residuals
-  std::vector<Vec3> anchors{};             ///< [m] draw-wire anchors in the base frame
+  std::optional<Vec3> instrument_at{};     ///< [m] where the instrument stands in the world; for planning
 };
 
 /// Reads a robot file. Unknown keys, missing fields, wrong types, zero joints and broken trees are errors with the

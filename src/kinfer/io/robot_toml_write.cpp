@@ -53,8 +53,8 @@ class Writer {
   std::string write() {
     write_head();
     for (std::size_t i = 0; i < chain_.joints.size(); ++i) write_joint(static_cast<int>(i));
-    for (const Target& target : chain_.targets)
-      add("\n[[target]]\nname = {}\nxyz = {}\n", quoted(target.name), list(target.xyz, length_));
+    for (const Target& target : chain_.targets) write_point("target", target);
+    write_surroundings();
     for (const PointMass& mass : chain_.masses)
       add("\n[[mass]]\nlink = {}\ncom = {}\nmass = {}\n", mass.joint + 1, list(mass.com, length_), digits(mass.mass));
     write_tolerances();
@@ -75,10 +75,28 @@ class Writer {
     write_frame("base", chain_.base);
     write_frame("tool", chain_.tool);
     add("gravity = {}\n", list(chain_.gravity));
+    if (!chain_.setup.empty()) add("setup = {}\n", quoted(chain_.setup));
+    if (chain_.expansion != 0.0) {
+      add("expansion = {}\nreference_temperature = {}\n", digits(chain_.expansion),
+          digits(chain_.reference_temperature));
+      if (const double sd = sd_of("expansion"); !std::isnan(sd)) add("expansion_sd = {}\n", digits(sd));
+    }
     if (chain_.tip >= 0) add("tip = {}\n", quoted(name_of(chain_.tip)));
-    for (std::size_t i = 0; i < robot_.anchors.size(); ++i)
-      add("{}{}{}", i == 0 ? "anchors = [" : ", ", list(robot_.anchors[i], length_),
-          i + 1 == robot_.anchors.size() ? "]\n" : "");
+    const std::vector<Vec3>& anchors = chain_.surroundings.anchors;
+    for (std::size_t i = 0; i < anchors.size(); ++i)
+      add("{}{}{}", i == 0 ? "anchors = [" : ", ", list(anchors[i], length_), i + 1 == anchors.size() ? "]\n" : "");
+    write_anchor_deviations();
+  }
+
+  void write_anchor_deviations() {
+    std::string text;
+    bool any = false;
+    for (std::size_t i = 0; i < chain_.surroundings.anchors.size(); ++i) {
+      const std::string sd = sd_list(fmt::format("anchor{}_", i + 1).c_str(), "", "", length_);
+      any |= !sd.empty();
+      text += (i == 0 ? "" : ", ") + (sd.empty() ? "[nan, nan, nan]" : sd);
+    }
+    if (any) add("anchors_sd = [{}]\n", text);
   }
 
   const char* file_convention() const { return chain_.joints.empty() ? "mdh" : convention_of(chain_.joints[0].link); }
@@ -100,10 +118,35 @@ class Writer {
     return values.array().isNaN().all() ? "" : list(values, factor);
   }
 
-  void write_frame(const char* name, const Frame& frame) {
+  /// A target or socket, with its standard deviation.
+  void write_point(const char* kind, const Target& point) {
+    add("\n[[{}]]\nname = {}\nxyz = {}\n", kind, quoted(point.name), list(point.xyz, length_));
+    const std::string sd = sd_list(fmt::format("{}_{}_", kind, point.name).c_str(), "", "", length_);
+    if (!sd.empty()) add("xyz_sd = {}\n", sd);
+  }
+
+  void write_surroundings() {
+    const Surroundings& around = chain_.surroundings;
+    for (const Target& socket : around.sockets) write_point("socket", socket);
+    for (const SocketDistance& known : around.socket_distances)
+      add("\n[[socket_distance]]\nfrom = {}\nto = {}\ndistance = {}\nsigma = {}\n",
+          quoted(around.sockets[known.a].name), quoted(around.sockets[known.b].name), digits(known.distance, length_),
+          digits(known.sd, length_));
+    for (const Plane& plane : around.planes)
+      add("\n[[plane]]\nname = {}\nnormal = {}\noffset = {}\n", quoted(plane.name), list(plane.normal()),
+          digits(plane.offset, length_));
+    for (const RobotMounting& mounting : chain_.mountings) {
+      add("\n[[mounting]]\nname = {}\n", quoted(mounting.name));
+      if (mounting.tip >= 0) add("tip = {}\n", quoted(name_of(mounting.tip)));
+      if (mounting.base) write_frame("base", *mounting.base, "@" + mounting.name);
+      write_frame("tool", mounting.tool, "@" + mounting.name);
+    }
+  }
+
+  void write_frame(const char* name, const Frame& frame, const std::string& of = "") {
     add("{} = {{ xyz = {}, rpy = {} }}\n", name, list(frame.xyz, length_), list(to_rpy(frame.pose().rotation), angle_));
     const std::string prefix = fmt::format("{}_", name);
-    const std::string xyz = sd_list(prefix.c_str(), "", "", length_), turn = sd_list(prefix.c_str(), "r", "", angle_);
+    const std::string xyz = sd_list(prefix.c_str(), "", of, length_), turn = sd_list(prefix.c_str(), "r", of, angle_);
     if (xyz.empty() && turn.empty()) return;
     add("{}_sd = {{ {}{}{}{}{} }}\n", name, xyz.empty() ? "" : "xyz = ", xyz, xyz.empty() || turn.empty() ? "" : ", ",
         turn.empty() ? "" : "turn = ", turn);
@@ -148,11 +191,31 @@ class Writer {
     if (joint.compliance != 0.0 || sd_.count(fmt::format("compliance{}", index + 1)))
       write_number("compliance", index, joint.compliance, 1.0);
     const double unit = joint.type == JointType::prismatic ? length_ : angle_;
+    if (joint.torque_compliance != 0.0) write_number("torque_compliance", index, joint.torque_compliance, 1.0);
+    if (joint.backlash != 0.0) write_number("backlash", index, joint.backlash, unit);
+    write_harmonics(index, joint);
     if (std::isfinite(joint.lower) || std::isfinite(joint.upper))
       add("limits = [{}, {}]\n", digits(joint.lower, unit), digits(joint.upper, unit));
     for (std::size_t i = 0; i < joint.couplings.size(); ++i)
       add("{}{} = {}{}", i == 0 ? "coupling = { " : ", ", quoted(name_of(joint.couplings[i].joint)),
           digits(joint.couplings[i].factor), i + 1 == joint.couplings.size() ? " }\n" : "");
+  }
+
+  /// Order, sine and cosine of each, and the standard deviations of the last two.
+  void write_harmonics(int index, const Joint& joint) {
+    if (joint.harmonics.empty()) return;
+    std::string values, deviations;
+    bool any = false;
+    for (const Harmonic& h : joint.harmonics) {
+      const char* comma = values.empty() ? "" : ", ";
+      const std::string line = fmt::format("{:g}q{}", h.order, index + 1);
+      const double sine = sd_of("sin" + line), cosine = sd_of("cos" + line);
+      any |= !std::isnan(sine);
+      values += fmt::format("{}[{}, {}, {}]", comma, digits(h.order), digits(h.sine, angle_), digits(h.cosine, angle_));
+      deviations += fmt::format("{}[{}, {}, {}]", comma, digits(h.order), digits(sine, angle_), digits(cosine, angle_));
+    }
+    add("harmonics = [{}]\n", values);
+    if (any) add("harmonics_sd = [{}]\n", deviations);
   }
 
   /// How a joint says that it starts at the base, where another joint has taken the word.
@@ -176,6 +239,10 @@ class Writer {
         digits(instrument.sigma, length_));
     if (has_angle) add("sigma_angle = {}\n", digits(instrument.sigma_angle, angle_));
     add("ppm = {}\n", digits(instrument.ppm));
+    if (instrument.sigma_distance) add("sigma_distance = {}\n", digits(*instrument.sigma_distance, length_));
+    if (instrument.sigma_contact) add("sigma_contact = {}\n", digits(*instrument.sigma_contact, length_));
+    if (instrument.sigma_tilt) add("sigma_tilt = {}\n", digits(*instrument.sigma_tilt));
+    if (robot_.instrument_at) add("at = {}\n", list(*robot_.instrument_at, length_));
   }
 
   const RobotModel& robot_;

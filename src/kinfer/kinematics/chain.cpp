@@ -32,6 +32,16 @@ int dof(const Chain& chain) {
   return static_cast<int>(std::count_if(chain.joints.begin(), chain.joints.end(), has_reading));
 }
 
+Chain mounted(const Chain& chain, int index) {
+  Chain result = chain;
+  if (index < 0) return result;
+  const RobotMounting& mounting = chain.mountings[index];
+  if (mounting.base) result.base = *mounting.base;
+  result.tool = mounting.tool;
+  if (mounting.tip >= 0) result.tip = mounting.tip;
+  return result;
+}
+
 std::vector<int> path_to(const Chain& chain, int tip) {
   std::vector<int> path;
   for (int j = tip; j >= 0; j = chain.joints[j].parent) path.push_back(j);
@@ -60,6 +70,8 @@ void expect_well_formed(const Chain& chain) {
                     link->axis.norm());
     }
   }
+  for (const RobotMounting& mounting : chain.mountings)
+    KINFER_EXPECT(mounting.tip >= -1 && mounting.tip < n, "tip {} of {} joints", mounting.tip, n);
   for (const PointMass& mass : chain.masses) {
     KINFER_EXPECT(mass.joint >= 0 && mass.joint < n, "mass on joint {} of {}", mass.joint, n);
   }
@@ -70,6 +82,14 @@ Chain with_turns_folded(Chain chain) {
   fold(chain.tool);
   for (Joint& joint : chain.joints) {
     if (auto* link = std::get_if<UrdfLink>(&joint.link)) fold(link->origin);
+  }
+  for (RobotMounting& mounting : chain.mountings) {
+    if (mounting.base) fold(*mounting.base);
+    fold(mounting.tool);
+  }
+  for (Plane& plane : chain.surroundings.planes) {
+    plane.rotation *= rot_x(plane.turn.x()) * rot_y(plane.turn.y());
+    plane.turn.setZero();
   }
   return chain;
 }

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -53,6 +54,13 @@ struct Coupling {
   double factor = 0.0;
 };
 
+/// variable += sine · sin(order · reading) + cosine · cos(order · reading): what comes back with every turn of an
+/// eccentric gear (orders 1 and 2) or of the motor (gear ratio times 1 and 2). Revolute joints only.
+struct Harmonic {
+  double order = 1.0;               ///< per turn of the joint
+  double sine = 0.0, cosine = 0.0;  ///< [rad]
+};
+
 struct Joint {
   std::string name{};
   int parent = -1;  ///< index of the joint before it; -1: the base
@@ -62,11 +70,14 @@ struct Joint {
   double gain = 1.0;        ///< variable = offset + gain · reading + couplings
   std::vector<Coupling> couplings{};
   double compliance = 0.0;  ///< [rad/(N m)], revolute: variable += compliance · torque of gravity about the axis
+  double torque_compliance = 0.0;  ///< [rad/(N m)], revolute: variable += torque_compliance · measured joint torque
+  double backlash = 0.0;           ///< [rad] or [m]: variable += backlash · sense of approach (−1, 0, 1)
+  std::vector<Harmonic> harmonics{};
   double lower = -std::numeric_limits<double>::infinity();  ///< limits of the reading, [rad] or [m]
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// A further point on the tool, in the tool's frame.
+/// A named point: a further target on the tool, in the tool's frame, or a socket in the world.
 struct Target {
   std::string name{};
   Vec3 xyz = Vec3::Zero();  ///< [m]
@@ -79,15 +90,53 @@ struct PointMass {
   double mass = 0.0;        ///< [kg]
 };
 
+/// A plane in the world: the points x with normal · x = offset.
+struct Plane {
+  std::string name{};
+  Mat3 rotation = Mat3::Identity();  ///< takes z to the normal
+  Vec3 turn = Vec3::Zero();          ///< [rad] small turns about x and y that an estimate may change
+  double offset = 0.0;               ///< [m]
+
+  Vec3 normal() const { return rotation * (rot_x(turn.x()) * rot_y(turn.y())).col(2); }
+};
+
+/// What is known of the distance between two sockets.
+struct SocketDistance {
+  int a = 0, b = 0;       ///< indices into Surroundings::sockets
+  double distance = 0.0;  ///< [m]
+  double sd = 0.0;        ///< [m]
+};
+
+/// Fixed things that instruments and contacts refer to.
+struct Surroundings {
+  std::vector<Vec3> anchors{};    ///< [m] of draw wires, in the base frame
+  std::vector<Target> sockets{};  ///< in the world
+  std::vector<Plane> planes{};
+  std::vector<SocketDistance> socket_distances{};
+};
+
+/// Another way in which the same robot was measured: a base and tool of its own, or another arm of a tree.
+struct RobotMounting {
+  std::string name{};
+  std::optional<Frame> base{};  ///< none: the chain's
+  Frame tool{};
+  int tip = -1;  ///< index of the joint that carries this tool; −1: the chain's
+};
+
 struct Chain {
   std::string name{};
+  std::string setup{};        ///< name of the set-up that base and tool belong to; empty: there is only one
   Frame base;                 ///< world_T_base
   std::vector<Joint> joints;  ///< parents before children
   Frame tool;                 ///< flange_T_tool, on the frame of joint `tip`
   int tip = -1;               ///< index of the joint that carries the tool; -1: the last joint
   std::vector<Target> targets;
   std::vector<PointMass> masses;
-  Vec3 gravity = Vec3(0, 0, -9.81);  ///< [m/s²] in the world frame
+  Vec3 gravity = Vec3(0, 0, -9.81);    ///< [m/s²] in the world frame
+  double expansion = 0.0;              ///< [1/K]: all lengths of the joints grow by expansion · warming
+  double reference_temperature = 0.0;  ///< [°C] at which the lengths are as written
+  Surroundings surroundings{};
+  std::vector<RobotMounting> mountings{};  ///< beside base and tool above
 
   int tip_joint() const { return tip >= 0 ? tip : static_cast<int>(joints.size()) - 1; }
 };
@@ -97,6 +146,9 @@ std::vector<int> joints_with_reading(const Chain& chain);
 
 /// Number of readings, the length of a joint vector q.
 int dof(const Chain& chain);
+
+/// The chain as it stands in mounting `index` of its list: base, tool and tip are those of the mounting. −1: as it is.
+Chain mounted(const Chain& chain, int index);
 
 /// Joint indices from the base to joint `tip`.
 std::vector<int> path_to(const Chain& chain, int tip);

@@ -1,6 +1,7 @@
 #include "kinfer/kinematics/forward.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/kinematics/elementary.hpp"
@@ -30,7 +31,7 @@ bool is_loaded(const Chain& chain, const Load& load) {
 
 /// How far each joint has moved from its offset, deflection by gravity included.
 VectorXd movements(const Chain& chain, ConstVectorRef q, const Load& load) {
-  VectorXd moved = moved_by_readings(chain, q);
+  VectorXd moved = moved_by_readings(chain, q) + deviations(chain, q, load);
   if (!is_loaded(chain, load)) return moved;
   const VectorXd torques = gravity_torques(chain, q, load);
   for (Eigen::Index j = 0; j < moved.size(); ++j) moved[j] += chain.joints[j].compliance * torques[j];
@@ -48,6 +49,11 @@ std::vector<PlacedJoint> place_joints(const Chain& chain, ConstVectorRef moved) 
   return placed;
 }
 
+/// The place of a point of the robot when all its lengths have grown.
+Vec3 grown(const Chain& chain, const Load& load, const Vec3& point) {
+  return point + chain.expansion * load.warming * (point - chain.base.xyz);
+}
+
 Pose tool_pose(const Chain& chain, const std::vector<PlacedJoint>& placed) {
   const int tip = chain.tip_joint();
   return (tip >= 0 ? placed[tip].frame : chain.base.pose()) * chain.tool.pose();
@@ -62,6 +68,10 @@ Eigen::Matrix<double, 6, 1> screw(JointType type, const PlacedJoint& joint, cons
 }
 
 }  // namespace
+
+double value_or_zero(std::span<const double> values, int reading) {
+  return values.empty() || std::isnan(values[reading]) ? 0.0 : values[reading];
+}
 
 std::vector<int> reading_indices(const Chain& chain) {
   std::vector<int> index(chain.joints.size(), -1);
@@ -82,6 +92,21 @@ VectorXd moved_by_readings(const Chain& chain, ConstVectorRef q) {
   return moved;
 }
 
+VectorXd deviations(const Chain& chain, ConstVectorRef q, const Load& load) {
+  const std::vector<int> index = reading_indices(chain);
+  VectorXd added = VectorXd::Zero(static_cast<Eigen::Index>(chain.joints.size()));
+  for (Eigen::Index j = 0; j < added.size(); ++j) {
+    const Joint& joint = chain.joints[j];
+    const int k = index[j];
+    if (k < 0) continue;
+    for (const Harmonic& h : joint.harmonics)
+      added[j] += h.sine * std::sin(h.order * q[k]) + h.cosine * std::cos(h.order * q[k]);
+    added[j] += joint.torque_compliance * value_or_zero(load.torques, k);
+    added[j] += joint.backlash * value_or_zero(load.approach, k);
+  }
+  return added;
+}
+
 PlacedJoint place(const Pose& parent, const Joint& joint, double moved) {
   Placer placer{{.frame = parent}, moved};
   elementary::for_each_factor(joint, placer);
@@ -89,13 +114,19 @@ PlacedJoint place(const Pose& parent, const Joint& joint, double moved) {
 }
 
 std::vector<PlacedJoint> placed_joints(const Chain& chain, ConstVectorRef q, const Load& load) {
-  return place_joints(chain, movements(chain, q, load));
+  std::vector<PlacedJoint> placed = place_joints(chain, movements(chain, q, load));
+  for (PlacedJoint& joint : placed) {
+    joint.point = grown(chain, load, joint.point);
+    joint.frame.position = grown(chain, load, joint.frame.position);
+  }
+  return placed;
 }
 
 Pose forward(const Chain& chain, ConstVectorRef q, const Load& load) {
   const VectorXd moved = movements(chain, q, load);
   Pose pose = chain.base.pose();
   for (const int j : path_to(chain, chain.tip_joint())) pose = place(pose, chain.joints[j], moved[j]).frame;
+  pose.position = grown(chain, load, pose.position);
   return pose * chain.tool.pose();
 }
 
@@ -124,12 +155,19 @@ VectorXd gravity_torques(const Chain& chain, ConstVectorRef q, const Load& load)
 }
 
 VectorXd gravity_torques(const Chain& chain, const std::vector<PlacedJoint>& placed, const Load& load) {
+  VectorXd torques;
+  gravity_torques(chain, placed, load, torques);
+  return torques;
+}
+
+void gravity_torques(const Chain& chain, const std::vector<PlacedJoint>& placed, const Load& load, VectorXd& torques) {
   // Column j: mass at and beyond joint j, and its first moment about the world's origin.
-  Eigen::Matrix4Xd burden = Eigen::Matrix4Xd::Zero(4, static_cast<Eigen::Index>(placed.size()));
+  thread_local Eigen::Matrix4Xd burden;  // kept between calls: this runs at every pose of every fit
+  burden.setZero(4, static_cast<Eigen::Index>(placed.size()));
   const auto carry = [&](int joint, double mass, const Vec3& at) { burden.col(joint) += mass * at.homogeneous(); };
   for (const PointMass& m : chain.masses) carry(m.joint, m.mass, placed[m.joint].frame * m.com);
   if (chain.tip_joint() >= 0) carry(chain.tip_joint(), load.payload, tool_pose(chain, placed).position);
-  VectorXd torques = VectorXd::Zero(burden.cols());
+  torques.setZero(burden.cols());
   for (Eigen::Index j = burden.cols() - 1; j >= 0; --j) {
     const Joint& joint = chain.joints[j];
     if (joint.type == JointType::revolute) {
@@ -138,7 +176,6 @@ VectorXd gravity_torques(const Chain& chain, const std::vector<PlacedJoint>& pla
     }
     if (joint.parent >= 0) burden.col(joint.parent) += burden.col(j);
   }
-  return torques;
 }
 
 }  // namespace kinfer

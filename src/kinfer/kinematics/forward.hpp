@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "kinfer/kinematics/parameters.hpp"
@@ -15,10 +16,16 @@ namespace kinfer {
 /// 6 x n: rows 0-2 change of position [m], rows 3-5 change of orientation as a rotation vector in the world [rad].
 using Twists = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// Loads at one pose beyond the chain's own masses.
+/// What acts on the chain at one pose besides its readings.
 struct Load {
-  double payload = 0.0;  ///< [kg] point mass at the tool point
+  double payload = 0.0;                ///< [kg] point mass at the tool point
+  double warming = 0.0;                ///< [K] above the chain's reference temperature
+  std::span<const double> torques{};   ///< [N m] measured, one a reading; empty: none
+  std::span<const double> approach{};  ///< −1, 0 or 1, the sense in which each reading was approached; empty: none
 };
+
+/// A value of a load's list; 0 where it was not measured.
+double value_or_zero(std::span<const double> values, int reading);
 
 /// world_T_tool for the readings q (dof, [rad] or [m]).
 Pose forward(const Chain& chain, ConstVectorRef q, const Load& load = {});
@@ -45,12 +52,17 @@ VectorXd gravity_torques(const Chain& chain, ConstVectorRef q, const Load& load 
 
 /// Torque of gravity about each joint's axis for joints placed already.
 VectorXd gravity_torques(const Chain& chain, const std::vector<PlacedJoint>& placed, const Load& load = {});
+void gravity_torques(const Chain& chain, const std::vector<PlacedJoint>& placed, const Load& load, VectorXd& torques);
 
 /// Index into q of each joint's reading; -1 where it has none.
 std::vector<int> reading_indices(const Chain& chain);
 
 /// What the readings add to each joint's variable, gain · reading + couplings, in the order of the joints [rad] or [m].
+/// Linear in the readings.
 VectorXd moved_by_readings(const Chain& chain, ConstVectorRef q);
+
+/// What harmonics, measured torques and the approach add to each joint's variable besides [rad] or [m].
+VectorXd deviations(const Chain& chain, ConstVectorRef q, const Load& load = {});
 
 /// The joint on its parent's frame when it has moved so far from its offset [rad] or [m].
 PlacedJoint place(const Pose& parent, const Joint& joint, double moved);

@@ -36,7 +36,9 @@ FrameMotion slid(const FrameMotion& parent, const PlacedJoint& joint, double rat
 std::vector<FrameMotion> joint_motions(const Chain& chain, ConstVectorRef q, ConstVectorRef qd, ConstVectorRef qdd) {
   KINFER_EXPECT(qd.size() == q.size() && qdd.size() == q.size(), "{}, {}, {}", q.size(), qd.size(), qdd.size());
   const VectorXd moved = moved_by_readings(chain, q), rate = moved_by_readings(chain, qd),
-                 acceleration = moved_by_readings(chain, qdd);  // linear in the readings, so rates go the same way
+                 acceleration = moved_by_readings(
+                     chain,
+                     qdd);  // linear in the readings, so rates go the same way; harmonics are too small to matter here
   const FrameMotion base{.pose = chain.base.pose()};
   std::vector<FrameMotion> motions;
   motions.reserve(chain.joints.size());

@@ -11,57 +11,101 @@ constexpr Field frame_fields[] = {Field::x, Field::y, Field::z, Field::rx, Field
 constexpr Field dh_fields[] = {Field::a, Field::alpha, Field::d, Field::theta, Field::beta};
 
 std::string_view field_name(Field field) {
-  constexpr std::string_view names[] = {"x",     "y", "z",     "rx",   "ry",   "rz",        "a",
-                                        "alpha", "d", "theta", "beta", "gain", "compliance"};
+  constexpr std::string_view names[] = {
+      "x",        "y",   "z",     "rx",        "ry",    "rz",         "a",
+      "alpha",    "d",   "theta", "beta",      "gain",  "compliance", "torque_compliance",
+      "backlash", "sin", "cos",   "expansion", "offset"};
   return names[static_cast<int>(field)];
 }
 
-Quantity quantity_of(Field field) {
-  switch (field) {
+Quantity quantity_of(const Address& at) {
+  if (at.owner == Owner::gravity) return Quantity::acceleration;
+  switch (at.field) {
     case Field::x:
     case Field::y:
     case Field::z:
     case Field::a:
     case Field::d:
+    case Field::offset:
       return Quantity::length;
     case Field::gain:
       return Quantity::ratio;
     case Field::compliance:
+    case Field::torque_compliance:
       return Quantity::compliance;
+    case Field::expansion:
+      return Quantity::expansion;
     default:
       return Quantity::angle;
   }
 }
 
-std::string name_of(const Address& at) {
+std::string name_of_joint_number(const Chain& chain, const Address& at) {
+  if (at.field == Field::sine || at.field == Field::cosine)
+    return fmt::format("{}{:g}q{}", field_name(at.field), chain.joints[at.joint].harmonics[at.term].order,
+                       at.joint + 1);
+  return fmt::format("{}{}", field_name(at.field), at.joint + 1);
+}
+
+std::string name_of(const Chain& chain, const Address& at) {
+  const std::string_view field = field_name(at.field);
+  const Surroundings& around = chain.surroundings;
   switch (at.owner) {
     case Owner::base:
-      return fmt::format("base_{}", field_name(at.field));
+      return fmt::format("base_{}", field);
     case Owner::tool:
-      return fmt::format("tool_{}", field_name(at.field));
-    default:
-      return fmt::format("{}{}", field_name(at.field), at.joint + 1);
+      return fmt::format("tool_{}", field);
+    case Owner::joint:
+      return name_of_joint_number(chain, at);
+    case Owner::mounting_base:
+      return fmt::format("base_{}@{}", field, chain.mountings[at.joint].name);
+    case Owner::mounting_tool:
+      return fmt::format("tool_{}@{}", field, chain.mountings[at.joint].name);
+    case Owner::target:
+      return fmt::format("target_{}_{}", chain.targets[at.joint].name, field);
+    case Owner::anchor:
+      return fmt::format("anchor{}_{}", at.joint + 1, field);
+    case Owner::socket:
+      return fmt::format("socket_{}_{}", around.sockets[at.joint].name, field);
+    case Owner::plane:
+      return fmt::format("plane_{}_{}", around.planes[at.joint].name, field);
+    case Owner::gravity:
+      return fmt::format("gravity_{}", field);
+    case Owner::robot:
+      break;
   }
+  return std::string(field);
 }
 
 double tolerance_of(const Address& at, const Tolerances& t) {
-  const Quantity quantity = quantity_of(at.field);
+  const Quantity quantity = quantity_of(at);
   if (quantity == Quantity::ratio) return t.gain;
   if (quantity == Quantity::compliance) return t.compliance;
   const bool is_length = quantity == Quantity::length;
-  if (at.owner == Owner::base) return is_length ? t.base_length : t.base_angle;
-  if (at.owner == Owner::tool) return is_length ? t.tool_length : t.tool_angle;
-  return is_length ? t.length : t.angle;
+  switch (at.owner) {
+    case Owner::base:
+    case Owner::mounting_base:
+      return is_length ? t.base_length : t.base_angle;
+    case Owner::tool:
+    case Owner::mounting_tool:
+    case Owner::target:
+      return is_length ? t.tool_length : t.tool_angle;
+    case Owner::anchor:
+      return t.anchor;
+    default:
+      return is_length ? t.length : t.angle;
+  }
 }
 
 void append(ParameterSet& set, const Chain& chain, const Address& at, const Tolerances& tolerances) {
-  const double tolerance = tolerance_of(at, tolerances);
-  set.parameters.push_back({.name = name_of(at),
-                            .quantity = quantity_of(at.field),
-                            .at = at,
-                            .nominal = value_at(chain, at),
-                            .scale = tolerance,
-                            .prior_sd = tolerance});
+  set.parameters.push_back(parameter_at(chain, at, tolerance_of(at, tolerances)));
+}
+
+/// A number of which nothing is known beforehand.
+void append_unknown(ParameterSet& set, const Chain& chain, const Address& at) {
+  Parameter parameter = parameter_at(chain, at, std::numeric_limits<double>::infinity());
+  parameter.scale = 1e-2;  // [m] or [rad]
+  set.parameters.push_back(parameter);
 }
 
 std::vector<Field> fields_of(const Joint& joint) {
@@ -74,6 +118,19 @@ std::vector<Field> fields_of(const Joint& joint) {
   if (joint.has_reading && joint.type != JointType::fixed) fields.push_back(Field::gain);
   if (joint.type == JointType::revolute) fields.push_back(Field::compliance);
   return fields;
+}
+
+/// Joints on the way to the tip or to that of a further mounting, ascending.
+std::vector<int> joints_that_carry_a_tool(const Chain& chain) {
+  std::vector<int> joints = path_to(chain, chain.tip_joint());
+  for (const RobotMounting& mounting : chain.mountings) {
+    if (mounting.tip < 0) continue;
+    const std::vector<int> path = path_to(chain, mounting.tip);
+    joints.insert(joints.end(), path.begin(), path.end());
+  }
+  std::sort(joints.begin(), joints.end());
+  joints.erase(std::unique(joints.begin(), joints.end()), joints.end());
+  return joints;
 }
 
 /// The functions below find a number of the chain for reading and for writing: C is Chain or const Chain.
@@ -124,22 +181,61 @@ template <class J>
 auto* joint_number(J& joint, Field field) {
   if (field == Field::gain) return &joint.gain;
   if (field == Field::compliance) return &joint.compliance;
+  if (field == Field::torque_compliance) return &joint.torque_compliance;
+  if (field == Field::backlash) return &joint.backlash;
   return std::visit([&](auto& link) { return link_number(link, field); }, joint.link);
+}
+
+template <class P>
+auto* plane_number(P& plane, Field field) {
+  return field == Field::offset ? &plane.offset : &plane.turn[field == Field::rx ? 0 : 1];
+}
+
+template <class List>
+auto& entry(List& list, int index) {
+  KINFER_EXPECT(index >= 0 && index < static_cast<int>(list.size()), "entry {} of {}", index, list.size());
+  return list[index];
 }
 
 template <class C>
 auto* number(C& chain, const Address& at) {
-  if (at.owner == Owner::base) return frame_number(chain.base, at.field);
-  if (at.owner == Owner::tool) return frame_number(chain.tool, at.field);
+  const auto axis = static_cast<int>(at.field) - static_cast<int>(Field::x);
+  switch (at.owner) {
+    case Owner::base:
+      return frame_number(chain.base, at.field);
+    case Owner::tool:
+      return frame_number(chain.tool, at.field);
+    case Owner::mounting_base:
+      return frame_number(*entry(chain.mountings, at.joint).base, at.field);
+    case Owner::mounting_tool:
+      return frame_number(entry(chain.mountings, at.joint).tool, at.field);
+    case Owner::target:
+      return &entry(chain.targets, at.joint).xyz[axis];
+    case Owner::anchor:
+      return &entry(chain.surroundings.anchors, at.joint)[axis];
+    case Owner::socket:
+      return &entry(chain.surroundings.sockets, at.joint).xyz[axis];
+    case Owner::plane:
+      return plane_number(entry(chain.surroundings.planes, at.joint), at.field);
+    case Owner::gravity:
+      return &chain.gravity[axis];
+    case Owner::robot:
+      return &chain.expansion;
+    case Owner::joint:
+      break;
+  }
   KINFER_EXPECT(at.joint >= 0 && at.joint < static_cast<int>(chain.joints.size()), "joint {} of {}", at.joint,
                 chain.joints.size());
-  return joint_number(chain.joints[at.joint], at.field);
+  auto& joint = chain.joints[at.joint];
+  if (at.field == Field::sine) return &entry(joint.harmonics, at.term).sine;
+  if (at.field == Field::cosine) return &entry(joint.harmonics, at.term).cosine;
+  return joint_number(joint, at.field);
 }
 
 }  // namespace
 
 std::string_view unit(Quantity quantity) {
-  constexpr std::string_view units[] = {"m", "rad", "1", "rad/(N m)"};
+  constexpr std::string_view units[] = {"m", "rad", "1", "rad/(N m)", "1/K", "m/s^2"};
   return units[static_cast<int>(quantity)];
 }
 
@@ -165,16 +261,47 @@ ParameterSet all_parameters(const Chain& chain, const Tolerances& tolerances) {
   expect_well_formed(chain);
   ParameterSet set;
   for (const Field field : frame_fields) append(set, chain, {Owner::base, -1, field}, tolerances);
-  for (const int j : path_to(chain, chain.tip_joint())) {
+  for (const int j : joints_that_carry_a_tool(chain)) {
     for (const Field field : fields_of(chain.joints[j])) append(set, chain, {Owner::joint, j, field}, tolerances);
   }
   for (const Field field : frame_fields) append(set, chain, {Owner::tool, -1, field}, tolerances);
   return set;
 }
 
+ParameterSet surroundings_parameters(const Chain& chain, const Tolerances& tolerances) {
+  ParameterSet set;
+  const auto xyz = {Field::x, Field::y, Field::z};
+  for (int m = 0; m < static_cast<int>(chain.mountings.size()); ++m) {
+    for (const Field field : frame_fields)
+      if (chain.mountings[m].base) append(set, chain, {Owner::mounting_base, m, field}, tolerances);
+    for (const Field field : frame_fields) append(set, chain, {Owner::mounting_tool, m, field}, tolerances);
+  }
+  for (int i = 0; i < static_cast<int>(chain.targets.size()); ++i)
+    for (const Field field : xyz) append(set, chain, {Owner::target, i, field}, tolerances);
+  const Surroundings& around = chain.surroundings;
+  for (int i = 0; i < static_cast<int>(around.anchors.size()); ++i)
+    for (const Field field : xyz) append(set, chain, {Owner::anchor, i, field}, tolerances);
+  for (int i = 0; i < static_cast<int>(around.sockets.size()); ++i)
+    for (const Field field : xyz) append_unknown(set, chain, {Owner::socket, i, field});
+  for (int i = 0; i < static_cast<int>(around.planes.size()); ++i)
+    for (const Field field : {Field::rx, Field::ry, Field::offset})
+      append_unknown(set, chain, {Owner::plane, i, field});
+  return set;
+}
+
+Parameter parameter_at(const Chain& chain, const Address& at, double prior_sd) {
+  return {.name = name_of(chain, at),
+          .quantity = quantity_of(at),
+          .at = at,
+          .nominal = value_at(chain, at),
+          .scale = prior_sd,
+          .prior_sd = prior_sd};
+}
+
 ParameterSet with_only_free(ParameterSet set, const std::vector<std::string>& names) {
   for (const std::string& name : names) KINFER_EXPECT(set.find(name), "no parameter is called {}", name);
   for (Parameter& p : set.parameters) p.free = std::find(names.begin(), names.end(), p.name) != names.end();
+  set.prior_root.resize(0, 0);
   return set;
 }
 
@@ -184,6 +311,25 @@ double value_at(const Chain& chain, const Address& address) {
 
 void set_value_at(Chain& chain, const Address& address, double value) {
   *number(chain, address) = value;
+}
+
+MatrixXd prior_rows(const ParameterSet& set) {
+  const std::vector<const Parameter*> free = set.free();
+  const auto n = static_cast<Eigen::Index>(free.size());
+  if (set.prior_root.size() > 0) {
+    KINFER_EXPECT(set.prior_root.cols() == n, "a prior of {} parameters for {} free ones", set.prior_root.cols(), n);
+    return set.prior_root;
+  }
+  MatrixXd rows = MatrixXd::Zero(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) rows(k, k) = 1.0 / free[k]->prior_sd;  // 0 where there is no prior
+  return rows;
+}
+
+VectorXd nominal_of(const ParameterSet& set) {
+  VectorXd nominal(set.free_count());
+  Eigen::Index k = 0;
+  for (const Parameter* p : set.free()) nominal[k++] = p->nominal;
+  return nominal;
 }
 
 VectorXd pack(const ParameterSet& set, const Chain& chain) {

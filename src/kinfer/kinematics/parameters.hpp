@@ -12,16 +12,38 @@
 
 namespace kinfer {
 
-enum class Quantity { length, angle, ratio, compliance };  ///< [m], [rad], [1], [rad/(N m)]
-std::string_view unit(Quantity quantity);                  ///< "m", "rad", "1", "rad/(N m)"
+/// [m], [rad], [1], [rad/(N m)], [1/K], [m/s²]
+enum class Quantity { length, angle, ratio, compliance, expansion, acceleration };
+std::string_view unit(Quantity quantity);  ///< "m", "rad", "1", "rad/(N m)", "1/K", "m/s^2"
 
 /// Where in a chain a number lives.
-enum class Owner { base, joint, tool };
-enum class Field { x, y, z, rx, ry, rz, a, alpha, d, theta, beta, gain, compliance };
+enum class Owner { base, joint, tool, robot, mounting_base, mounting_tool, target, anchor, socket, plane, gravity };
+enum class Field {
+  x,
+  y,
+  z,
+  rx,
+  ry,
+  rz,
+  a,
+  alpha,
+  d,
+  theta,
+  beta,
+  gain,
+  compliance,
+  torque_compliance,
+  backlash,
+  sine,
+  cosine,
+  expansion,
+  offset
+};
 struct Address {
   Owner owner = Owner::joint;
-  int joint = -1;  ///< index into Chain::joints, for Owner::joint
+  int joint = -1;  ///< index into Chain::joints, or into the list of that owner (mountings, targets, anchors, …)
   Field field = Field::a;
+  int term = 0;  ///< sine and cosine: index into Joint::harmonics
   bool operator==(const Address&) const = default;
 };
 
@@ -53,6 +75,9 @@ struct Tolerances {
 
 struct ParameterSet {
   std::vector<Parameter> parameters;
+  /// A joint Gaussian prior of the free parameters in place of their prior_sd: the square of prior_root · (x − nominal)
+  /// is its exponent, n x n in the order of pack. Empty: each has its own. Made last: freeing another one breaks it.
+  MatrixXd prior_root{};
 
   Eigen::Index free_count() const;
   const Parameter* find(std::string_view name) const;  ///< null where there is none
@@ -60,15 +85,29 @@ struct ParameterSet {
 };
 
 /// Every number of the chain that can be estimated, all free, with nominal, scale and prior from the tolerances:
-/// base (x y z rx ry rz), each joint on the path to the tip (a alpha d theta beta gain compliance, or x y z rx ry rz
+/// base (x y z rx ry rz), each joint on the path to a tip (a alpha d theta beta gain compliance, or x y z rx ry rz
 /// gain compliance for URDF joints; gain only where there is a reading; compliance only for revolute joints), tool.
 ParameterSet all_parameters(const Chain& chain, const Tolerances& tolerances);
+
+/// Base, tool and joints of the further mountings (base only where they have one of their own), targets, anchors,
+/// sockets and planes. Anchors, targets and frames have priors; sockets and planes have none.
+ParameterSet surroundings_parameters(const Chain& chain, const Tolerances& tolerances);
+
+/// One parameter by its address, named, with the chain's value as nominal and `prior_sd` as prior and scale.
+Parameter parameter_at(const Chain& chain, const Address& at, double prior_sd);
 
 /// The named parameters are freed, all others are fixed. Programmer's error if a name is unknown.
 ParameterSet with_only_free(ParameterSet set, const std::vector<std::string>& names);
 
 double value_at(const Chain& chain, const Address& address);
 void set_value_at(Chain& chain, const Address& address, double value);
+
+/// Rows of the priors: their residuals at x are root · (x − nominal), n x n for n free parameters. A parameter without
+/// a prior has a row of zeros.
+MatrixXd prior_rows(const ParameterSet& set);
+
+/// Nominal numbers of the free parameters, in order.
+VectorXd nominal_of(const ParameterSet& set);
 
 /// Values of the free parameters, in order.
 VectorXd pack(const ParameterSet& set, const Chain& chain);

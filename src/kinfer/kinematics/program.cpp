@@ -1,5 +1,7 @@
 #include "kinfer/kinematics/program.hpp"
 
+#include <algorithm>
+
 namespace kinfer::program {
 namespace {
 
@@ -30,6 +32,7 @@ class Compiler {
   void walk(const Joint& joint, int index) {
     owner_ = Owner::joint;
     joint_ = index;
+    harmonics_ = &joint.harmonics;
     elementary::for_each_factor(joint, *this);
   }
 
@@ -44,12 +47,21 @@ class Compiler {
     if (factor.moves) {
       record(factor, Field::gain, Scale::reading);
       record(factor, Field::compliance, Scale::torque);
+      record(factor, Field::torque_compliance, Scale::measured_torque);
+      record(factor, Field::backlash, Scale::approach);
+      record(factor, Field::sine, Scale::sine);
+      record(factor, Field::cosine, Scale::cosine);
       flush();
       const auto kind = factor.motion == Motion::turn ? Step::Kind::turn_joint : Step::Kind::shift_joint;
       list_.steps.push_back({.kind = kind, .axis = factor.axis, .index = joint_, .a = factor.value});
     } else if (factor.value != 0.0) {
       append(factor);
     }
+  }
+
+  void end_of_joints() {
+    flush();
+    list_.steps.push_back({.kind = Step::Kind::flange});
   }
 
   StepList finish() {
@@ -76,9 +88,11 @@ class Compiler {
       if (column.at.owner != owner_ || column.at.field != field) continue;
       if (owner_ == Owner::joint && column.at.joint != joint_) continue;
       flush();
+      const bool of_a_harmonic = field == Field::sine || field == Field::cosine;
       list_.steps.push_back({.kind = Step::Kind::record,
                              .axis = factor.axis,
                              .index = column.index,
+                             .a = of_a_harmonic ? harmonics_->at(column.at.term).order : 0.0,
                              .scale = scale,
                              .source = joint_,
                              .motion = factor.motion});
@@ -98,9 +112,15 @@ class Compiler {
   const std::vector<Column>& columns_;
   Owner owner_ = Owner::base;
   int joint_ = -1;
+  const std::vector<Harmonic>* harmonics_ = nullptr;  // of that joint
   Pending pending_;
   StepList list_;
 };
+
+bool grows(const Chain& chain, const std::vector<Column>& columns) {
+  const auto of_growth = [](const Column& column) { return column.at.owner == Owner::robot; };
+  return chain.expansion != 0.0 || std::any_of(columns.begin(), columns.end(), of_growth);
+}
 
 }  // namespace
 
@@ -108,6 +128,7 @@ StepList compile(const Chain& chain, const std::vector<Column>& columns) {
   Compiler compiler(columns);
   compiler.walk(chain.base, Owner::base);
   for (const int j : path_to(chain, chain.tip_joint())) compiler.walk(chain.joints[j], j);
+  if (grows(chain, columns)) compiler.end_of_joints();
   compiler.walk(chain.tool, Owner::tool);
   return compiler.finish();
 }

@@ -7,8 +7,9 @@
 
 namespace kinfer::program {
 
-/// What a recorded screw is multiplied by: a gain's screw by the reading, a compliance's by the torque.
-enum class Scale { one, reading, torque };
+/// What a recorded screw is multiplied by: a gain's screw by the reading, a compliance's by the torque, a harmonic's by
+/// the sine or cosine of `a` times the reading.
+enum class Scale { one, reading, torque, measured_torque, approach, sine, cosine };
 
 struct Step {
   enum class Kind {
@@ -18,6 +19,7 @@ struct Step {
     turn_joint,   ///< about `axis`, by a + the movement of joint `index`
     shift_joint,  ///< along `axis`, by a + the movement of joint `index`
     record,       ///< column `index`: `axis` and origin here, times `scale` of joint `source`
+    flange,       ///< the joints end here
   };
   Kind kind = Kind::turn;
   int axis = 0;

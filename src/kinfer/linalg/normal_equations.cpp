@@ -9,6 +9,7 @@ namespace kinfer {
 namespace {
 
 constexpr double least_pivot_ratio = 1e-11;  // of aᵀa; below, fewer than five digits of the weakest direction are left
+constexpr double unseen_square = 1e-14;      // of the largest eigenvalue of aᵀa, likewise
 constexpr double unseen = 1e-13;             // of the largest singular value; what rounding makes of a zero
 
 }  // namespace
@@ -29,6 +30,15 @@ std::optional<VectorXd> damped_by_cholesky(const NormalEquations& equations, dou
   const double ratio = pivots.minCoeff() / pivots.maxCoeff();
   if (!(ratio * ratio >= least_pivot_ratio)) return std::nullopt;
   return VectorXd(factor.solve(-equations.gradient));
+}
+
+VectorXd damped_by_eigenvalues(const NormalEquations& equations, double damping) {
+  const SymmetricEigen eigen = symmetric_eigen(equations.matrix);
+  const VectorXd image = eigen.vectors.transpose() * equations.gradient;
+  VectorXd along = VectorXd::Zero(image.size());
+  for (Eigen::Index i = 0; i < along.size(); ++i)
+    if (eigen.values[i] > unseen_square * eigen.values.maxCoeff()) along[i] = -image[i] / (eigen.values[i] + damping);
+  return eigen.vectors * along;
 }
 
 SingularSystem singular_system(ConstMatrixRef a, ConstVectorRef b) {

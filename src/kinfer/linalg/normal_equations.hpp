@@ -19,6 +19,9 @@ NormalEquations normal_equations(ConstMatrixRef a, ConstVectorRef b);
 /// conditioned that few digits of x would be left. Then damped_by_svd still answers.
 std::optional<VectorXd> damped_by_cholesky(const NormalEquations& equations, double damping);
 
+/// The same x from the eigenvalues of aᵀa; directions whose eigenvalue is below rounding get no step at all.
+VectorXd damped_by_eigenvalues(const NormalEquations& equations, double damping);
+
 /// a = u diag(s) vᵀ as the damped problem needs it.
 struct SingularSystem {
   VectorXd s;      ///< singular values, descending

@@ -153,6 +153,8 @@ std::vector<bool> clipped_rows(const std::vector<float>& column, std::span<const
   return clipped;
 }
 
+constexpr std::size_t most_wild_rows = 3;  // together: where samples go wild often, two or three follow each other
+
 std::vector<bool> spike_rows(const std::vector<float>& column, double floor) {
   if (column.size() < 5) return {};
   const auto bend = [&](std::size_t row) { return std::abs(column[row] - 0.5 * (column[row - 1] + column[row + 1])); };
@@ -165,8 +167,22 @@ std::vector<bool> spike_rows(const std::vector<float>& column, double floor) {
   std::ranges::nth_element(bends, rank);
   const double limit = std::max(floor, 10.0 * *rank);
   std::vector<bool> spikes(column.size());
-  for (std::size_t row = 1; row + 1 < column.size(); ++row)
-    spikes[row] = bend(row) > limit && std::abs(column[row + 1] - column[row - 1]) < 0.3 * bend(row);
+  const auto is_wild = [&](double height, float before, float after) {
+    return height > limit && std::abs(after - before) < 0.3 * height;
+  };
+  for (std::size_t width = 1; width <= most_wild_rows; ++width)
+    for (std::size_t row = 1; row + width < column.size(); ++row) {
+      const float before = column[row - 1], after = column[row + width];
+      double lowest = std::numeric_limits<double>::infinity();
+      for (std::size_t i = row; i < row + width; ++i) {
+        const double height = std::abs(column[i] - 0.5 * (before + after));
+        if (!(height > lowest)) lowest = height;
+      }
+      if (is_wild(lowest, before, after)) std::fill_n(spikes.begin() + static_cast<std::ptrdiff_t>(row), width, true);
+    }
+  const std::size_t last = column.size() - 1;
+  spikes[0] = is_wild(std::abs(column[0] - column[1]), column[1], column[2]);
+  spikes[last] = is_wild(std::abs(column[last] - column[last - 1]), column[last - 1], column[last - 2]);
   return spikes;
 }
 

@@ -1,4 +1,4 @@
-// Marks what a recording's numbers cannot mean: rows without a number, clipped peaks, single-row spikes, and says which
+// Marks what a recording's numbers cannot mean: rows without a number, clipped peaks, spikes, and says which
 // columns seem to be in another unit. Marks, never mends.
 #pragma once
 
@@ -19,7 +19,8 @@ void mark_faults(InsSensor& sensor);
 std::vector<bool> clipped_rows(const std::vector<float>& column, std::span<const double> full_scales,
                                double smallest_range);
 
-/// Rows that leave both neighbours, which agree, by more than `floor` and by far more than the column usually bends.
+/// Rows, up to three together, that leave the rows beside them, which agree, by more than `floor` and by far more than
+/// the column usually bends.
 std::vector<bool> spike_rows(const std::vector<float>& column, double floor);
 
 /// A sentence for each instrument whose numbers cannot be in the unit that the file claims: gravity of 1 or 1000,

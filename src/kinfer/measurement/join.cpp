@@ -73,10 +73,13 @@ PoseSet joined(const PoseSet& fitted, const PoseSet& kept_aside) {
   const Eigen::Index dof = fitted.joints.rows();
   all.joints = padded(fitted.joints, more.joints, dof, fitted.rows(), more.rows());
   all.commanded = padded(fitted.commanded, more.commanded, dof, fitted.rows(), more.rows());
+  all.approach = {};
   all.torques = padded(fitted.torques, more.torques, dof, fitted.rows(), more.rows());
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   all.setup = padded(all.setup, renamed(more.setup, all.setups, more.setups), rows, count, -1);
   all.sweep = padded(all.sweep, renamed(more.sweep, all.sweeps, more.sweeps), rows, count, -1);
+  all.tip = padded(all.tip, renamed(more.tip, all.tips, more.tips), rows, count, -1);
+  all.mounting = padded(all.mounting, more.mounting, rows, count, -1);
   all.payload = padded(all.payload, more.payload, rows, count, 0.0);
   all.temperature = padded(all.temperature, more.temperature, rows, count, unknown);
   all.id = padded(all.id, more.id, rows, count, std::string());

@@ -1,6 +1,7 @@
 #include "kinfer/measurement/pose_set.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace kinfer {
 namespace {
@@ -56,6 +57,7 @@ PoseSet select(const PoseSet& from, const std::vector<int>& rows) {
   set.joints = from.joints(Eigen::all, rows);
   set.commanded = pick_columns(from.commanded, rows);
   set.torques = pick_columns(from.torques, rows);
+  set.approach = pick_columns(from.approach, rows);
   set.points = pick_measurements(from.points, places);
   set.orientations = pick_measurements(from.orientations, places);
   set.distances = pick_measurements(from.distances, places);
@@ -68,13 +70,27 @@ PoseSet select(const PoseSet& from, const std::vector<int>& rows) {
   set.planes = from.planes;
   set.setups = from.setups;
   set.sweeps = from.sweeps;
+  set.tips = from.tips;
   set.setup = pick(from.setup, rows);
   set.sweep = pick(from.sweep, rows);
+  set.tip = pick(from.tip, rows);
+  set.mounting = pick(from.mounting, rows);
   set.payload = pick(from.payload, rows);
   set.temperature = pick(from.temperature, rows);
   set.id = pick(from.id, rows);
   set.set = pick(from.set, rows);
   set.line = pick(from.line, rows);
+  return set;
+}
+
+PoseSet with_approach(PoseSet set) {
+  constexpr double still = 1e-4;  // [rad] or [m]: less is no movement of a joint
+  set.approach = MatrixXd::Zero(set.joints.rows(), set.joints.cols());
+  for (Eigen::Index row = 1; row < set.rows(); ++row)
+    for (Eigen::Index k = 0; k < set.joints.rows(); ++k) {
+      const double step = set.joints(k, row) - set.joints(k, row - 1);
+      if (std::abs(step) > still) set.approach(k, row) = step > 0.0 ? 1.0 : -1.0;
+    }
   return set;
 }
 

@@ -25,6 +25,7 @@ struct PointMeasurement {
 struct OrientationMeasurement {
   int row = 0;
   Quat orientation = Quat::Identity();
+  std::optional<Vec3> sd{};  ///< [rad] about the world's axes, where the file gives it
 };
 
 /// Distance of the tool point from a fixed anchor (draw wire).
@@ -67,6 +68,7 @@ struct PoseSet {
   MatrixXd joints;                       ///< dof x rows, [rad] or [m]
   MatrixXd commanded;                    ///< as `joints`, what the controller was told, NaN where unknown; empty: none
   MatrixXd torques;                      ///< dof x rows, [N m] or [N], NaN where not measured; empty: none
+  MatrixXd approach;                     ///< dof x rows, −1, 0 or 1: sense of the last movement; empty: none
 
   std::vector<PointMeasurement> points;
   std::vector<OrientationMeasurement> orientations;
@@ -81,9 +83,12 @@ struct PoseSet {
   std::vector<std::string> planes;
   std::vector<std::string> setups;
   std::vector<std::string> sweeps;
+  std::vector<std::string> tips;  ///< joints that carry a tool
 
-  std::vector<int> setup;           ///< one a row, index into `setups`, −1: none; empty: none
-  std::vector<int> sweep;           ///< one a row, index into `sweeps`, −1: none; empty: none
+  std::vector<int> setup;     ///< one a row, index into `setups`, −1: none; empty: none
+  std::vector<int> tip;       ///< one a row, index into `tips`, −1: the robot's; empty: none
+  std::vector<int> mounting;  ///< one a row, index into Chain::mountings, −1: base and tool as they are; empty: none
+  std::vector<int> sweep;     ///< one a row, index into `sweeps`, −1: none; empty: none
   std::vector<double> payload;      ///< [kg], one a row; empty: none
   std::vector<double> temperature;  ///< [°C], one a row, NaN where not measured; empty: none
   std::vector<std::string> id;      ///< one a row; empty: none
@@ -100,11 +105,18 @@ bool has_measurements(const PoseSet& set);
 /// pair stays where both of its rows are listed.
 PoseSet select(const PoseSet& from, const std::vector<int>& rows);
 
+/// The set with the sense in which each reading was approached: the sign of its change since the row before, 0 in the
+/// first row and where it did not move.
+PoseSet with_approach(PoseSet set);
+
 /// What one measurement is worth, one sigma.
 struct Instrument {
-  double sigma = 0.0;        ///< [m] per axis
-  double sigma_angle = 0.0;  ///< [rad] per axis
-  double ppm = 0.0;          ///< plus this much of the distance from the world's origin, 1e-6
+  double sigma = 0.0;                         ///< [m] per axis
+  double sigma_angle = 0.0;                   ///< [rad] per axis
+  double ppm = 0.0;                           ///< plus this much of the distance from the world's origin, 1e-6
+  std::optional<double> sigma_distance = {};  ///< [m] of draw wires and ball-bars; none: sigma
+  std::optional<double> sigma_contact = {};   ///< [m] of sockets and planes, per axis; none: sigma
+  std::optional<double> sigma_tilt = {};      ///< [m/s²] per axis; none: judged from the residuals
 };
 
 /// Standard deviation per axis of a position measured at `position` [m]: sigma + ppm · distance from the world's

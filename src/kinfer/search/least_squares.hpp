@@ -13,6 +13,7 @@
 
 #include "kinfer/base/observer.hpp"
 #include "kinfer/base/stop.hpp"
+#include "kinfer/linalg/normal_equations.hpp"
 #include "kinfer/linalg/types.hpp"
 #include "kinfer/search/loss.hpp"
 
@@ -27,6 +28,19 @@ struct Residuals {
   /// Fills r (rows) and, where it is not null, jacobian (rows x unknowns, dr/dx). Both come with their size and with
   /// arbitrary contents. Outside its domain it may write non-finite numbers: they count as infinite cost.
   std::function<void(ConstVectorRef x, VectorXd& r, MatrixXd* jacobian)> evaluate{};
+};
+
+/// A sum of squares that is known by its cost and its normal equations only: no Jacobian is kept.
+struct NormalProblem {
+  Eigen::Index unknowns = 0;
+  std::function<double(ConstVectorRef x)> cost{};  ///< Σ r²; not finite outside its domain
+  /// Σ r², and Jᵀ J (lower half) and Jᵀ r.
+  std::function<double(ConstVectorRef x, NormalEquations& normal)> linearise{};
+};
+
+/// How often a problem was asked.
+struct EvaluationCounts {
+  int evaluations = 0, jacobians = 0, not_finite = 0;
 };
 
 struct LeastSquaresOptions {
@@ -49,6 +63,7 @@ struct LeastSquaresOutcome {
   VectorXd residuals{};           ///< at x, not weighted by the loss
   MatrixXd jacobian{};            ///< at x, not weighted by the loss
   VectorXd block_weights{};       ///< rho' of each block at x, 0 .. 1; ones without a loss
+  NormalEquations normal{};       ///< at x, of a NormalProblem, which leaves the three above empty
   std::vector<double> history{};  ///< cost at the start and after each iteration; never rises
   Stop stop = Stop::budget_spent;
   int iterations = 0;   ///< trial steps
@@ -59,6 +74,11 @@ struct LeastSquaresOutcome {
 
 /// Minimises from `start` (unknowns, with finite cost, else Stop::not_finite). Tells the observer once an iteration.
 LeastSquaresOutcome least_squares(const Residuals& problem, ConstVectorRef start,
+                                  const LeastSquaresOptions& options = {}, const Observer& observer = {});
+
+/// The same by normal equations; options.loss must be none. A direction that JᵀJ resolves to less than rounding stays
+/// where the start has it.
+LeastSquaresOutcome least_squares(const NormalProblem& problem, ConstVectorRef start,
                                   const LeastSquaresOptions& options = {}, const Observer& observer = {});
 
 }  // namespace kinfer

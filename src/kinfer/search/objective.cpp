@@ -9,7 +9,9 @@
 namespace kinfer {
 namespace {
 
-constexpr Eigen::Index block = 25;  // candidates; fixed, so that a block's arithmetic does not depend on the threads
+// Candidates; fixed, so that a block's arithmetic does not depend on the threads, and a multiple of any number of
+// lanes.
+constexpr Eigen::Index block = 32;
 
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -67,12 +69,21 @@ bool Record::note(const MatrixXd& x, const std::vector<double>& cost) {
     outcome_.stop = Stop::target_reached;
   } else if (tell(observer_, progress) == Wish::stop) {
     outcome_.stop = Stop::cancelled;
+  } else if (is_stagnant()) {
+    outcome_.stop = Stop::converged_cost;
   } else if (outcome_.iterations < budget_.max_iterations) {
     return false;
   } else {
     outcome_.stop = std::isfinite(outcome_.cost) ? Stop::budget_spent : Stop::not_finite;
   }
   return true;
+}
+
+bool Record::is_stagnant() const {
+  constexpr double worth_waiting_for = 0.01;  // of the cost
+  if (budget_.patience <= 0 || outcome_.iterations < budget_.patience) return false;
+  const double before = outcome_.best[outcome_.best.size() - 1 - budget_.patience];
+  return std::isfinite(before) && outcome_.cost >= (1.0 - worth_waiting_for) * before;
 }
 
 Outcome Record::finish(const Judge& judge, MatrixXd final_swarm) {

@@ -27,6 +27,7 @@ struct Objective {
 /// When a search ends, and how many threads it may use.
 struct Budget {
   int max_iterations = 1000;  ///< updates of the population; 0: only the initial one is judged
+  int patience = 0;           ///< ends when the best cost fell by less than 1 % within so many updates; 0: never
   double target_cost = -std::numeric_limits<double>::infinity();  ///< ends when the best cost is not above it
   int threads = 0;                                                ///< 0: all cores; the result does not depend on it
 };
@@ -81,6 +82,8 @@ class Record {
   Outcome finish(const Judge& judge, MatrixXd final_swarm);
 
  private:
+  bool is_stagnant() const;
+
   const Budget& budget_;
   const Observer& observer_;
   Outcome outcome_;

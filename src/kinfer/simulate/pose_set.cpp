@@ -66,7 +66,7 @@ Result<PoseSet> simulate_pose_set(const Chain& truth, const PoseSimulation& simu
     set.points.push_back({.row = row, .target = -1, .position = pose.position + noise(draws, sd), .sd = {}});
     if (simulation.measured == Measured::poses) {
       const Quat turned = quat_exp(noise(draws, simulation.instrument.sigma_angle)) * Quat(pose.rotation);
-      set.orientations.push_back({row, turned});
+      set.orientations.push_back({row, turned, {}});
     }
     set.line.push_back(row + 2);
   }

@@ -1,0 +1,6 @@
+// One table of ratios: every figure of kinfer over its peer's, both measured in this run.
+#include "ratios.hpp"
+
+int main(int argc, char** argv) {
+  return kinfer::bench::run_and_print_ratios(argc, argv);
+}

@@ -1,0 +1,43 @@
+#include "peers/orocos_kdl.hpp"
+
+#include <kdl/chain.hpp>
+#include <kdl/chainfksolverpos_recursive.hpp>
+
+namespace kinfer::bench {
+namespace {
+
+/// A segment of KDL turns first: its frame holds what lies between two joints.
+KDL::Chain chain_of(const double* x) {
+  using KDL::Frame, KDL::Rotation, KDL::Vector;
+  const auto row = [x](int j) {
+    return Frame(Rotation::RotX(x[4 * j + 1])) * Frame(Vector(x[4 * j], 0, 0)) * Frame(Rotation::RotZ(x[4 * j + 3]));
+  };
+  KDL::Chain chain;
+  chain.addSegment(KDL::Segment("base", KDL::Joint("fixed"), row(0)));
+  for (int j = 0; j < 6; ++j) {
+    const Frame after = Frame(Vector(0, 0, x[4 * j + 2]));
+    chain.addSegment(KDL::Segment("link", KDL::Joint("joint", KDL::Joint::RotZ), j < 5 ? after * row(j + 1) : after));
+  }
+  return chain;
+}
+
+}  // namespace
+
+struct KdlChain::Solver {
+  KDL::Chain chain;
+  KDL::ChainFkSolverPos_recursive solver{chain};
+  KDL::JntArray q{6};
+  explicit Solver(const double* x) : chain(chain_of(x)) {}
+};
+
+KdlChain::KdlChain(const double* x) : solver_(std::make_unique<Solver>(x)) {}
+KdlChain::~KdlChain() = default;
+
+void KdlChain::position(const double* q, double* at) {
+  for (int j = 0; j < 6; ++j) solver_->q(j) = q[j];
+  KDL::Frame pose;
+  solver_->solver.JntToCart(solver_->q, pose);
+  for (int i = 0; i < 3; ++i) at[i] = pose.p[i];
+}
+
+}  // namespace kinfer::bench

@@ -1,0 +1,14 @@
+// Time from the shell's call to the first word: `kinfer --version`.
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+
+namespace {
+
+void start_up(benchmark::State& state) {
+  for (auto _ : state)
+    if (std::system(KINFER_PROGRAM " --version > /dev/null") != 0) state.SkipWithError("kinfer --version failed");
+}
+BENCHMARK(start_up)->UseRealTime();
+
+}  // namespace

@@ -1,0 +1,120 @@
+// kinfer forecast: how well a drive would tell each joint, before the whole of it is made.
+#include "kinfer/identify/forecast.hpp"
+
+#include <fmt/ranges.h>
+
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "kinfer/cli/ins_logs.hpp"
+#include "kinfer/cli/verbs.hpp"
+#include "kinfer/identify/identify.hpp"
+#include "kinfer/io/robot_toml.hpp"
+#include "kinfer/simulate/ins_simulation.hpp"
+#include "kinfer/simulate/machine_of_chain.hpp"
+#include "kinfer/simulate/prescribed_motion.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::vector<std::string> logs;
+  std::string chain, drive = "standard", grade = "industrial";
+  double duration = 0.0, line = 5.0, direction = 3.0;  // s, mm, mrad
+};
+
+const std::map<std::string, Script> scripts{{"standard", Script::standard},
+                                            {"sequential", Script::sequential},
+                                            {"together", Script::together},
+                                            {"gentle", Script::gentle},
+                                            {"vigorous", Script::vigorous}};
+
+/// The drive made in simulation with the chain as it was found.
+Result<InsRecording> rehearsed(const Options& options) {
+  KINFER_TRY(robot, read_robot_toml(options.chain));
+  const auto machine = machine_of_chain(robot.chain);
+  if (!machine) return error("{}: {}", options.chain, machine.error().what);
+  const auto grade = sensor_grade(options.grade);
+  if (!grade)
+    return error("--grade {}: no such sensor grade; known are {}", options.grade, fmt::join(sensor_grade_names, ", "));
+  const Rng rng(options.common.seed);
+  KINFER_TRY(drive,
+             make_drive(*machine, {.script = scripts.at(options.drive), .duration = options.duration}, rng.stream(1)));
+  constexpr double sampling_rate = 200.0;  // [Hz]
+  return simulated_recording(*machine, prescribed_motion(*machine, drive, sampling_rate), *grade, {}, rng.stream(2));
+}
+
+Result<std::vector<JointForecast>> forecast_of(const Options& options) {
+  if (options.logs.empty() == options.chain.empty())
+    return error("expected either recordings, or --chain with a chain.toml that identify has written");
+  auto recording = options.chain.empty() ? read_ins_logs(options.logs) : rehearsed(options);
+  if (!recording) return pass_on(recording.error());
+  IdentifyOptions how;
+  how.threads = options.common.threads;
+  ProgressLine progress(options.common);
+  KINFER_TRY(found, identify(*recording, how, Rng(options.common.seed), progress.observer()));
+  return forecast(found.joints, {1e-3 * options.line, 1e-3 * options.direction});
+}
+
+void print_table(const std::vector<JointForecast>& joints, const Options& options) {
+  fmt::print("Expected of {}: {}.\n\n", options.chain.empty() ? "this recording" : "the " + options.drive + " drive",
+             in_words(joints, {1e-3 * options.line, 1e-3 * options.direction}));
+  fmt::print("{:<16} {:>12} {:>16} {:>8} {:>18} {:>12}\n", "joint", "sd line [mm]", "sd axis [mrad]", "enough",
+             "acceleration x", "or time x");
+  for (const JointForecast& f : joints)
+    fmt::print("{:<16} {:>12.2f} {:>16.2f} {:>8} {:>18} {:>12}\n", f.joint, 1e3 * f.line_sd, 1e3 * f.direction_sd,
+               f.enough ? "yes" : "no", f.enough ? "-" : fmt::format("{:.1f}", f.acceleration),
+               f.enough ? "-" : fmt::format("{:.1f}", f.time));
+}
+
+void print_json(const std::vector<JointForecast>& joints, const Options& options) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const JointForecast& f : joints)
+    list.push_back({{"joint", f.joint},
+                    {"line_sd_m", f.line_sd},
+                    {"direction_sd_rad", f.direction_sd},
+                    {"enough", f.enough},
+                    {"acceleration_factor", f.acceleration},
+                    {"time_factor", f.time}});
+  const nlohmann::ordered_json all{{"verdict", in_words(joints, {1e-3 * options.line, 1e-3 * options.direction})},
+                                   {"joints", list}};
+  fmt::print("{}\n", all.dump());
+}
+
+int run(const Options& options) {
+  const auto joints = forecast_of(options);
+  if (!joints) return fail(joints.error());
+  if (options.common.json)
+    print_json(*joints, options);
+  else
+    print_table(*joints, options);
+  return exit_done;
+}
+
+}  // namespace
+
+Verb add_forecast(CLI::App& app) {
+  CLI::App* verb =
+      add_command(app, "forecast", "How well a drive tells each joint, and what more it would take",
+                  "From a short recording, or by rehearsing a drive with an earlier chain.\nExamples:\n"
+                  "  kinfer forecast short.csv\n"
+                  "  kinfer forecast --chain excavator/chain.toml --drive gentle --duration 90 --grade industrial");
+  auto options = std::make_shared<Options>();
+  add_texts(*verb, "logs", options->logs, "INS recordings", Need::optional, "CSV");
+  add_text(*verb, "--chain", options->chain, "chain.toml of an earlier identification", Need::optional, "TOML");
+  std::vector<std::string> drives;
+  for (const auto& [name, script] : scripts) drives.push_back(name);
+  add_choice(*verb, "--drive", options->drive, drives, "Drive to rehearse (see kinfer simulate --help)");
+  add_number(*verb, "--duration", options->duration, 0.0, 3600.0, "Length of the drive [s]; 0: its own");
+  add_text(*verb, "--grade", options->grade, "Sensors of the rehearsal: noise, industrial, consumer", Need::optional,
+           "GRADE");
+  add_number(*verb, "--line", options->line, 0.01, 1000.0, "Wanted of every axis line, in 95 of 100 cases [mm]");
+  add_number(*verb, "--direction", options->direction, 0.01, 1000.0,
+             "Wanted of every axis direction, in 95 of 100 cases [mrad]");
+  add_common_options(*verb, options->common);
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace kinfer::cli

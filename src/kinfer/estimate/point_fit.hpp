@@ -1,0 +1,27 @@
+// Least squares of measured points by the batch kernels: no Jacobian is kept, and a fit of 50 poses takes tens of
+// microseconds. For chains with a batch form (kinematics/batch_plan.hpp) and position measurements alone.
+#pragma once
+
+#include "kinfer/estimate/residuals.hpp"
+#include "kinfer/kinematics/batch_points.hpp"
+
+namespace kinfer {
+
+/// The measured points of a pose set, in its order.
+PointTable point_table(const PoseSet& data);
+
+/// 1 / standard deviation of each coordinate of each point (3 x points).
+Eigen::Matrix3Xd inverse_sd(const Weights& weights);
+
+/// Calibration starts near the optimum, where the first step may be nearly whole.
+inline LeastSquaresOptions near_the_optimum() {
+  return {.initial_damping = 1e-6};
+}
+
+/// Minimises Σ |weight · (measured − predicted)|² + |prior_rows · (x − nominal)|², the same cost as pose_residuals,
+/// from `start`. `points` was made with the same set.
+LeastSquaresOutcome fit_points(const BatchPoints& points, const ParameterSet& set, const BatchPoints::Weights& weights,
+                               ConstVectorRef start, const LeastSquaresOptions& options = near_the_optimum(),
+                               const Observer& observer = {});
+
+}  // namespace kinfer

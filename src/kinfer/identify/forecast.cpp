@@ -1,0 +1,57 @@
+#include "kinfer/identify/forecast.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinfer {
+namespace {
+
+constexpr double in_95_of_100 = 1.96;
+constexpr double unknowable = 0.5;  // [m], [rad] a standard deviation as large as the prior's: no drive would help
+
+double largest_knowable(std::initializer_list<std::array<double, 2>> pairs) {
+  double largest = 0.0;
+  for (const auto& pair : pairs)
+    for (const double sd : pair)
+      if (sd < unknowable) largest = std::max(largest, sd);
+  return largest;
+}
+
+JointForecast forecast(const FoundJoint& joint, const WantedAccuracy& wanted) {
+  JointForecast f{.joint = joint.parent + "-" + joint.child};
+  f.line_sd = largest_knowable({joint.sd.point_in_child});
+  f.direction_sd = largest_knowable({joint.sd.axis_in_child});
+  // A parent that turns about one fixed axis only has an azimuth of its own, which no brisker drive would tell.
+  if (joint.not_identifiable_in_parent.empty()) {
+    f.line_sd = std::max(f.line_sd, largest_knowable({joint.sd.point_in_parent}));
+    f.direction_sd = std::max(f.direction_sd, largest_knowable({joint.sd.axis_in_parent}));
+  }
+  f.acceleration = std::max(in_95_of_100 * f.line_sd / wanted.line, in_95_of_100 * f.direction_sd / wanted.direction);
+  f.time = f.acceleration * f.acceleration;
+  f.enough = f.acceleration <= 1.0;
+  return f;
+}
+
+}  // namespace
+
+std::vector<JointForecast> forecast(const std::vector<FoundJoint>& joints, const WantedAccuracy& wanted) {
+  std::vector<JointForecast> all;
+  for (const FoundJoint& joint : joints)
+    if (joint.type != FoundJointType::rigid) all.push_back(forecast(joint, wanted));
+  return all;
+}
+
+std::string in_words(const std::vector<JointForecast>& joints, const WantedAccuracy& wanted) {
+  std::vector<std::string> lacking;
+  for (const JointForecast& f : joints)
+    if (!f.enough)
+      lacking.push_back(
+          fmt::format("{} ({:.1f} times the acceleration, or {:.1f} times the time)", f.joint, f.acceleration, f.time));
+  const std::string what = fmt::format("{:g} mm and {:g} mrad", 1e3 * wanted.line, 1e3 * wanted.direction);
+  return lacking.empty() ? fmt::format("enough for {} in every joint", what)
+                         : fmt::format("not enough for {} in {}", what, fmt::join(lacking, ", "));
+}
+
+}  // namespace kinfer

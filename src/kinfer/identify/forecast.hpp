@@ -1,0 +1,21 @@
+// Whether a drive is enough, joint by joint, and what more it would take.
+#pragma once
+
+#include "kinfer/evidence/identification.hpp"
+
+namespace kinfer {
+
+/// What is wanted of every joint, in 95 of 100 cases.
+struct WantedAccuracy {
+  double line = 5e-3;       ///< [m]
+  double direction = 3e-3;  ///< [rad]
+};
+
+/// From the standard deviations of what the recording can tell at all. Errors fall with the square root of the time and
+/// in proportion to the accelerations.
+std::vector<JointForecast> forecast(const std::vector<FoundJoint>& joints, const WantedAccuracy& wanted = {});
+
+/// "enough for 5 mm and 3 mrad in every joint", or which joints need what.
+std::string in_words(const std::vector<JointForecast>& joints, const WantedAccuracy& wanted = {});
+
+}  // namespace kinfer

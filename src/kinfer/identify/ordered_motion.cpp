@@ -1,0 +1,30 @@
+#include "kinfer/identify/ordered_motion.hpp"
+
+namespace kinfer {
+
+void agree_on_headings(RecordedMotion& motion, const SegmentTree& tree) {
+  std::vector<HeadingLine> headings(motion.segments.size());
+  for (const std::size_t child : tree.order) {
+    if (!tree.parent[child]) continue;
+    const std::size_t parent = *tree.parent[child];
+    const PairFit& pair = tree.pair(parent, child);
+    const double sign = pair.first == parent ? 1.0 : -1.0;
+    HeadingLine& heading = headings[child];
+    heading.middle = pair.heading.middle;
+    heading.angle = headings[parent].at(heading.middle) + sign * pair.heading.angle;
+    heading.drift = headings[parent].drift + sign * pair.heading.drift;
+    turn(motion.segments[child], motion.time, heading);
+  }
+}
+
+Result<OrderedMotion> ordered_motion(const InsRecording& recording, const SegmentMotionOptions& options,
+                                     const std::optional<std::string>& root, int threads) {
+  const bool is_paper = std::holds_alternative<PaperEkfOptions>(options.filter);
+  KINFER_TRY(motion, is_paper ? segment_motion(recording, options, threads) : gyro_motion(recording, options, threads));
+  const PairFitOptions fit{.headings_known = all_have_magnetometers(recording)};
+  KINFER_TRY(tree, segment_tree(motion, root, fit, threads));
+  if (!is_paper) agree_on_headings(motion, tree);
+  return OrderedMotion{std::move(motion), std::move(tree)};
+}
+
+}  // namespace kinfer

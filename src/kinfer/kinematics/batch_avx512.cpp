@@ -1,0 +1,12 @@
+// The batch kernels for AVX-512. Compiled with -mavx512f -mfma.
+#include "kinfer/kinematics/batch_jacobian_kernel.hpp"
+#include "kinfer/kinematics/batch_sums_kernel.hpp"
+
+namespace kinfer::batch {
+
+using Wide = Pack<double, 8>;
+using Narrow = Pack<float, 16>;
+extern const Kernels avx512_kernels{
+    "AVX-512", 8, 16, population_sums<Wide, 4>, population_sums<Narrow, 4>, point_errors<Wide, 3>, jacobian<Wide>};
+
+}  // namespace kinfer::batch

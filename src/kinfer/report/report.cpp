@@ -1,0 +1,97 @@
+#include "kinfer/report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "kinfer/report/bundle.hpp"
+#include "kinfer/report/pages.hpp"
+
+namespace kinfer {
+namespace {
+
+using Json = nlohmann::json;
+
+/// JSON inside a script element: no character of it may end the element.
+std::string inside_script(std::string text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '<')
+      safe += "\\u003c";
+    else
+      safe += c;
+  }
+  return safe;
+}
+
+/// Lengths to a tenth of a micrometre: a drawing and a hint need no more.
+Json rounded(const Json& list) {
+  Json result = Json::array();
+  for (const Json& value : list)
+    result.push_back(value.is_number() ? Json(std::round(value.get<double>() * 1e7) / 1e7) : value);
+  return result;
+}
+
+/// What the scripts draw; all else of the evidence is in the page as text already.
+Json drawn(const Json& evidence) {
+  Json part;
+  for (const char* key : {"kind", "outliers", "picture", "root", "joints", "chain", "order", "motion"})
+    if (evidence.contains(key)) part[key] = evidence.at(key);
+  if (const auto rows = evidence.find("rows"); rows != evidence.end()) {
+    for (const char* key : {"before", "after"}) part["rows"][key] = rounded(rows->at(key));
+    part["rows"]["held_out"] = rows->at("held_out");
+  }
+  return part;
+}
+
+std::string contents(const std::vector<html::Section>& sections) {
+  std::string links;
+  for (const html::Section& s : sections) links += fmt::format("<a href=\"#{}\">{}</a>", s.id, s.title);
+  return links;
+}
+
+/// Nothing may be fetched: the page says so to the browser itself.
+constexpr std::string_view policy =
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:";
+
+std::string page_html(const pages::Page& page, const Json& evidence) {
+  std::string html = fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" href=\"data:,\">\n"
+      "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n",
+      policy, html::escape(page.title), report_style());
+  html += fmt::format(
+      "<a class=\"skip\" href=\"#main\">Skip to the report</a>\n<header class=\"bar\"><b>kinfer</b>"
+      "<nav aria-label=\"Sections\">{}</nav></header>\n<main id=\"main\">\n<div class=\"first\">{}</div>\n",
+      contents(page.sections), page.first);
+  for (const html::Section& section : page.sections) html += html::section(section);
+  html += fmt::format(
+      "</main>\n<footer>Made by kinfer from evidence.json.</footer>\n"
+      "<script type=\"application/json\" id=\"evidence\">{}</script>\n<script>{}</script>\n</body>\n</html>\n",
+      inside_script(drawn(evidence).dump()), report_script());
+  return html;
+}
+
+Result<pages::Page> page_of(const Json& evidence) {
+  const std::string kind = pages::text_at(evidence, "kind");
+  if (kind == "calibrate") return pages::calibration(evidence);
+  if (kind == "identify") return pages::identification(evidence);
+  return error("evidence.json: no report is known for kind '{}'", kind);
+}
+
+}  // namespace
+
+Result<std::string> report_html(std::string_view text) {
+  const Json evidence = Json::parse(text, nullptr, false);
+  if (!evidence.is_object()) return error("evidence.json: not a JSON object");
+  try {
+    KINFER_TRY(page, page_of(evidence));
+    return page_html(page, evidence);
+  } catch (const Json::exception& lacking) {
+    return error("evidence.json: not as kinfer writes it ({})", lacking.what());
+  }
+}
+
+}  // namespace kinfer

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "kinfer/report/pages.hpp"
+#include "kinfer/report/plot.hpp"
+
+namespace kinfer::pages {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string advice_item(const Json& advice) {
+  return fmt::format("<b>{}.</b> <span class=\"why\">{}.</span>", html::escape(text_at(advice, "what")),
+                     html::escape(text_at(advice, "why")));
+}
+
+const Json& member(const Json& object, const char* key) {
+  static const Json nothing = Json::object();
+  const auto found = object.find(key);
+  return found == object.end() ? nothing : *found;
+}
+
+std::string value_text(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+html::Table inputs_table(const Json& provenance) {
+  html::Table table{.name = "inputs", .caption = "Input files", .head = {"File", "SHA-256"}, .rows = {}};
+  for (const Json& input : member(provenance, "inputs"))
+    table.rows.push_back(
+        {html::text(text_at(input, "name")), {fmt::format("<code>{}</code>", html::escape(text_at(input, "sha256")))}});
+  return table;
+}
+
+html::Table options_table(const Json& provenance) {
+  html::Table table{.name = "options", .caption = "Options, seed and version", .head = {"What", "Value"}, .rows = {}};
+  table.rows.push_back({html::text("kinfer"), html::text(text_at(provenance, "version"))});
+  table.rows.push_back({html::text("seed"), html::text(member(provenance, "seed").dump())});
+  for (const auto& [name, value] : member(provenance, "options").items())
+    table.rows.push_back({html::text(name), html::text(value_text(value))});
+  return table;
+}
+
+}  // namespace
+
+std::vector<double> numbers(const Json& list) {
+  std::vector<double> values;
+  for (const Json& value : list)
+    values.push_back(value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
+  return values;
+}
+
+std::string text_at(const Json& object, const char* key, const std::string& otherwise) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : otherwise;
+}
+
+std::string verdict_block(const Json& evidence, const std::string& what) {
+  const std::string verdict = text_at(evidence, "verdict");
+  const bool use = evidence.value("use", true);
+  const auto colon = verdict.find(": ");
+  const bool judged = evidence.contains("use") && colon != std::string::npos;
+  std::string chip = judged ? verdict.substr(0, colon) : "", sentence = judged ? verdict.substr(colon + 2) : verdict;
+  if (!sentence.empty()) sentence.front() = static_cast<char>(std::toupper(sentence.front()));
+  return fmt::format(
+      "<p class=\"kicker\">{}</p><h1 id=\"verdict\">{}{}</h1>", what,
+      chip.empty() ? "" : fmt::format("<span class=\"chip {}\">{}</span> ", use ? "good" : "bad", html::escape(chip)),
+      html::escape(sentence));
+}
+
+std::string cards(const std::vector<std::pair<std::string, std::string>>& list) {
+  std::string text = "<div class=\"cards\">";
+  for (const auto& [title, body] : list) text += fmt::format("<article><h2>{}</h2>{}</article>", title, body);
+  return text + "</div>\n";
+}
+
+std::string advice_list(const Json& evidence, std::size_t most) {
+  std::vector<std::string> items;
+  for (const Json& advice : member(evidence, "next"))
+    if (items.size() < most) items.push_back(advice_item(advice));
+  return html::list(items, "todo");
+}
+
+html::Section next_section(const Json& evidence) {
+  std::string list = advice_list(evidence, std::numeric_limits<std::size_t>::max());
+  if (list.empty()) list = "<p>Nothing was noticed that another measurement would improve.</p>";
+  return {"next", "What to do next", "The most useful first.", list};
+}
+
+html::Section repeat_section(const Json& evidence) {
+  const Json& provenance = member(evidence, "provenance");
+  return {
+      "repeat", "How to make this again",
+      "The same files, options and seed give the same bytes, on any number of threads. When it ran, for how long and "
+      "on what machine is in <code>run.json</code> beside this file.",
+      "<div class=\"two\">" + html::table(options_table(provenance)) + html::table(inputs_table(provenance)) +
+          "</div><p class=\"fine\">Lengths are in metres and angles in radians inside every file; this page shows "
+          "millimetres and degrees. Frames are right-handed; the world's z points up; a frame written a in b maps "
+          "coordinates of a to those of b. ± is one standard deviation: the truth lies within two of them in about "
+          "95 of 100 cases. Every number of this page is in <code>evidence.json</code>.</p>"};
+}
+
+html::Section words_section(const std::vector<std::pair<std::string, std::string>>& list) {
+  std::string body = "<dl class=\"words\">";
+  for (const auto& [word, meaning] : list) body += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", word, meaning);
+  return {"words", "Words used here", "", body + "</dl>\n"};
+}
+
+std::string convergence_plot(const Json& best_json, const Json& median_json, const std::string& of_what) {
+  const std::vector<double> best = numbers(best_json), median = numbers(median_json);
+  std::vector<double> all = best, step;
+  all.insert(all.end(), median.begin(), median.end());
+  for (std::size_t i = 0; i < std::max(best.size(), median.size()); ++i) step.push_back(static_cast<double>(i + 1));
+  svg::Plot plot({.label = "generation", .low = 0.0, .high = static_cast<double>(step.size())},
+                 svg::log_axis_for("cost", all));
+  std::vector<double> x(step.begin(), step.begin() + static_cast<std::ptrdiff_t>(median.size()));
+  plot.line(x, median, "line-before");
+  x.assign(step.begin(), step.begin() + static_cast<std::ptrdiff_t>(best.size()));
+  plot.line(x, best, "line-after");
+  return plot.svg(fmt::format("Cost of {} over the generations: best and median of the population", of_what));
+}
+
+}  // namespace kinfer::pages

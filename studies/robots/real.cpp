@@ -1,0 +1,107 @@
+#include "real.hpp"
+
+#include <limits>
+
+#include "files.hpp"
+#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/calibrate/figures.hpp"
+#include "kinfer/calibrate/surroundings.hpp"
+#include "kinfer/calibrate/verify.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "table.hpp"
+
+namespace kinfer::study {
+namespace {
+
+constexpr double only_told = std::numeric_limits<double>::quiet_NaN();
+constexpr int halves = 5;
+
+Calibration on_half(const Chain& chain, const PoseSet& data, int seed, const ModelChoice& model) {
+  return calibrate({chain, {}, std::nullopt, data}, {.holdout = HeldOutFraction{0.5}, .model = model}, Rng(seed))
+      .value();
+}
+
+struct Halves {
+  double mean = 0.0, worst = 0.0, largest_worst = 0.0, before = 0.0;  // [mm], means over the halves
+  std::string model;
+};
+
+Halves five_halves(const Chain& chain, const PoseSet& data, const ModelChoice& model = AutoModel{}) {
+  Halves sum;
+  for (int seed = 1; seed <= halves; ++seed) {
+    const Calibration c = on_half(chain, data, seed, model);
+    sum.mean += 1e3 / halves * c.after.position.holdout.mean;
+    sum.worst += 1e3 / halves * c.after.position.holdout.max;
+    sum.largest_worst = std::max(sum.largest_worst, 1e3 * c.after.position.holdout.max);
+    sum.before += 1e3 / halves * c.before.position.holdout.mean;
+    sum.model += (seed > 1 ? "; " : "") + c.ladder.chosen;
+  }
+  return sum;
+}
+
+void print_halves(const std::string& name, double asked, const Halves& h) {
+  print_row(name, asked, h.mean,
+            fmt::format("worst {:.3f} (mean), {:.3f} (largest); before {:.3f}", h.worst, h.largest_worst, h.before));
+}
+
+void ur10(const std::string& folder) {
+  const Chain chain = ur10_chain();
+  const PoseSet b = ur10_series(folder, "Series_B_measurements_joint_configurations.csv", chain),
+                c = ur10_series(folder, "Series_C_measurements_random_poses.csv", chain);
+  print_halves("UR10 B, geometry", only_told, five_halves(chain, b, NamedModel{}));
+  const Halves chosen_b = five_halves(chain, b);
+  print_halves("UR10 B, chosen rung", 0.345, chosen_b);
+  fmt::print("      {}\n", chosen_b.model);
+  print_halves("UR10 C, geometry", only_told, five_halves(chain, c, NamedModel{}));
+  const Halves chosen_c = five_halves(chain, c);
+  print_halves("UR10 C, chosen rung", 0.435, chosen_c);
+  fmt::print("      {}\n", chosen_c.model);
+  for (const ModelChoice& model : {ModelChoice{NamedModel{}}, ModelChoice{AutoModel{}}}) {
+    const Calibration all = calibrate({chain, {}, std::nullopt, b}, {.model = model}, Rng(1)).value();
+    const Verification there = verify(all.estimate.chain, {}, std::nullopt, c).value();
+    print_row("UR10 fitted on B, tried on C with base and tool refitted", only_told, 1e3 * there.frames_refitted.mean,
+              all.ladder.chosen);
+  }
+}
+
+void mukca(const std::string& folder) {
+  const Chain chain = mukca_chain(folder);
+  const auto tried = [&](const std::string& arm, const std::vector<std::string>& fitted,
+                         const std::vector<std::string>& unseen, double asked) {
+    const PoseSet train = mukca_rows(folder, arm, fitted, chain), test = mukca_rows(folder, arm, unseen, chain);
+    const Calibration c = calibrate({chain, {}, std::nullopt, train}, {}, Rng(1)).value();
+    const auto consistency = [&](const Chain& model) {
+      const PlacedData there = with_surroundings(model, test).value();
+      return 1e3 * mean(headline_errors(there.chain, PoseSet{}, there.data));
+    };
+    print_row("MUKCa " + arm + ", ball centres at unseen tool positions", asked, consistency(c.estimate.chain),
+              fmt::format("nominal {:.2f}; {}; {} rows left out", consistency(chain), c.ladder.chosen,
+                          c.estimate.outliers.size()));
+  };
+  tried("panda_1", {"back-high", "right"}, {"front"}, 0.70);
+  tried("panda_2", {"back_left", "front_center", "front_right", "mid-high", "mid_right"},
+        {"front_left", "back_right", "high", "mid_left"}, 0.50);
+}
+
+}  // namespace
+
+void real_robots(const std::string& folder, const std::string& only) {
+  print_head("Real robots, held out [mm]");
+  const auto wanted = [&](const char* name) { return only.empty() || only == name; };
+  if (wanted("mukca")) mukca(folder);
+  if (wanted("positioner")) {
+    const Chain chain = positioner_chain();
+    const Halves h = five_halves(chain, positioner_rows(folder, chain));
+    print_halves("positioner, five halves", 1.74, h);
+    fmt::print("      {}\n", h.model);
+  }
+  if (wanted("fr3")) {
+    const Chain chain = fr3_chain();
+    const Halves h = five_halves(chain, fr3_rows(folder, chain));
+    print_halves("FR3, camera origin, five halves", 1.35, h);
+    fmt::print("      {}\n", h.model);
+  }
+  if (wanted("ur10")) ur10(folder);
+}
+
+}  // namespace kinfer::study

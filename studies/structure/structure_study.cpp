@@ -1,0 +1,254 @@
+// How surely and how fast the structure of a machine is found: order and joint types over every machine, drive, base,
+// grade and trouble; the memetic search beside its certificate and beside paper 1's bacterial programming.
+// `study_structure [FOLDER] [SEEDS]`; docs/methods/structure.md reads the tables.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "kinfer/base/parallel.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/identify/hinge_geometry.hpp"
+#include "kinfer/identify/joint_type.hpp"
+#include "kinfer/identify/link_search.hpp"
+#include "kinfer/identify/memetic_search.hpp"
+#include "kinfer/identify/ordered_motion.hpp"
+#include "kinfer/simulate/ins_simulation.hpp"
+#include "kinfer/simulate/mujoco_world.hpp"
+#include "kinfer/simulate/truth.hpp"
+
+namespace kinfer::study {
+namespace {
+
+constexpr const char* script_names[] = {"standard", "sequential", "together", "gentle", "vigorous"};
+constexpr const char* base_names[] = {"still", "rocking", "yawing"};
+constexpr const char* grades[] = {"noise", "industrial", "consumer"};
+constexpr const char* trouble_names[] = {"none", "missing 5 %", "clipped", "no magnetometer", "moving steel", "spikes"};
+
+struct Case {
+  std::string machine;
+  std::size_t script = 0, base = 0, grade = 1, trouble = 0;
+  double slope = 0.0;  // [deg]
+  Mounting mounting = Mounting::arbitrary;
+  std::uint64_t seed = 1;
+  double rate = 100.0;  // [Hz]
+};
+
+struct Log {
+  InsRecording recording;
+  MachineTruth truth;
+};
+
+Log simulated(const Case& c) {
+  const Rng rng(c.seed);
+  const MachineOptions build{.mounting = c.mounting, .base = static_cast<Base>(c.base), .slope = Angle::deg(c.slope)};
+  const auto world = MujocoWorld::load(machine_mjcf(c.machine, build, rng.stream(1)).value()).value();
+  const Drive drive = make_drive(world.machine(), {.script = static_cast<Script>(c.script)}, rng.stream(2)).value();
+  const MachineMotion motion = world.prescribe(drive, c.rate);
+  SensorModel grade = sensor_grade(grades[c.grade]).value();
+  SensorTrouble trouble;
+  if (c.trouble == 1) trouble.missing = 0.05;
+  if (c.trouble == 2) grade.accelerometer.range = 12.0, grade.gyroscope.range = 0.7;
+  if (c.trouble == 3) trouble.has_magnetometer = false;
+  if (c.trouble == 4) trouble.magnetic_disturbance = 15.0;
+  if (c.trouble == 5) trouble.spikes = 20.0;
+  return {simulated_recording(world.machine(), motion, grade, trouble, rng.stream(3)),
+          machine_truth(world.machine(), motion)};
+}
+
+/// Every machine × drive × base × grade, with slope, mounting and trouble in turn.
+std::vector<Case> all_cases(int seeds) {
+  std::vector<Case> cases;
+  for (const std::string& machine : machine_names())
+    for (std::size_t script = 0; script < 5; ++script)
+      for (std::size_t base = 0; base < 3; ++base)
+        for (std::size_t grade = 0; grade < 3; ++grade)
+          for (int k = 0; k < seeds; ++k) {
+            const std::size_t i = cases.size();
+            cases.push_back({.machine = machine,
+                             .script = script,
+                             .base = base,
+                             .grade = grade,
+                             .trouble = (7 * i / 3 + static_cast<std::size_t>(k)) % 6,
+                             .slope = 4.0 * static_cast<double>(i % 3),
+                             .mounting = (i / 2) % 2 == 0 ? Mounting::as_built : Mounting::arbitrary,
+                             .seed = i + static_cast<std::size_t>(k) + 1});
+          }
+  return cases;
+}
+
+struct OrderOutcome {
+  bool is_right = false;
+  double margin = 0.0;
+  int joints = 0, right_types = 0;
+};
+
+OrderOutcome judged_order(const Case& c) {
+  const Log log = simulated(c);
+  const auto ordered = ordered_motion(log.recording, {}, {}, 1);
+  if (!ordered) return {};
+  const auto& [motion, tree] = *ordered;
+  OrderOutcome outcome{.is_right = motion.segments[tree.root].name == log.truth.root, .margin = tree.margin};
+  const auto types = joint_types(motion, tree);
+  for (std::size_t i = 1; i < tree.order.size(); ++i) {
+    const std::string &child = motion.segments[tree.order[i]].name,
+                      &parent = motion.segments[*tree.parent[tree.order[i]]].name;
+    const auto truth = std::ranges::find_if(
+        log.truth.joints, [&](const JointTruth& j) { return j.parent == parent && j.child == child; });
+    ++outcome.joints;
+    if (truth == log.truth.joints.end()) {
+      outcome.is_right = false;
+      continue;
+    }
+    const bool slides = truth->type == JointType::prismatic;
+    outcome.right_types += types[i - 1].type == (slides ? FoundJointType::prismatic : FoundJointType::revolute) ? 1 : 0;
+  }
+  return outcome;
+}
+
+void write_order(const std::filesystem::path& folder, int seeds) {
+  const auto cases = all_cases(seeds);
+  std::vector<OrderOutcome> outcomes(cases.size());
+  parallel_for(cases.size(), 0, [&](std::size_t i) { outcomes[i] = judged_order(cases[i]); });
+  std::ofstream file(folder / "order.csv");
+  file << "machine,drive,base,slope [deg],mounting,grade,trouble,seed,right,margin,joints,right types\n";
+  int right = 0, joints = 0, types = 0, unsafe = 0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const Case& c = cases[i];
+    const OrderOutcome& o = outcomes[i];
+    file << fmt::format("{},{},{},{},{},{},{},{},{},{:.2f},{},{}\n", c.machine, script_names[c.script],
+                        base_names[c.base], c.slope, c.mounting == Mounting::as_built ? "as built" : "any",
+                        grades[c.grade], trouble_names[c.trouble], c.seed, o.is_right ? 1 : 0, o.margin, o.joints,
+                        o.right_types);
+    right += o.is_right;
+    unsafe += !o.is_right && o.margin > 2.0;
+    joints += o.joints;
+    types += o.right_types;
+  }
+  fmt::print("order right in {} of {} logs; wrong with a margin above 2: {}; joint types right: {} of {}\n", right,
+             cases.size(), unsafe, types, joints);
+}
+
+/// One engine on one link.
+struct Run {
+  double ms = 0.0, cost = 0.0, line = 0.0;  // line: [mm] error of the axis line in the child
+  std::int64_t evaluations = 0, to_one_percent = 0;
+};
+
+struct LinkProblem {
+  std::vector<FrameState> parent, child;
+  std::vector<JointSignal> signals;
+  std::vector<std::size_t> rows;
+  const JointTruth* truth = nullptr;
+};
+
+std::vector<LinkProblem> problems_of(const OrderedMotion& ordered, const MachineTruth& truth) {
+  std::vector<LinkProblem> problems;
+  const auto& [motion, tree] = ordered;
+  for (const std::size_t child : tree.order) {
+    if (!tree.parent[child]) continue;
+    const auto joint = std::ranges::find(truth.joints, motion.segments[child].name, &JointTruth::child);
+    auto signals = joint_signals(motion, *tree.parent[child], child);
+    if (signals.empty() || joint == truth.joints.end()) continue;
+    problems.push_back({measured_states(motion.segments[*tree.parent[child]]), measured_states(motion.segments[child]),
+                        std::move(signals), telling_rows(motion, *tree.parent[child], child, Terminals::hinge),
+                        &*joint});
+  }
+  return problems;
+}
+
+double line_error(const LinkProblem& p, const std::vector<DhLeaf>& leaves) {
+  std::vector<SignalRow> poses;
+  for (const std::size_t row : evenly_chosen(p.rows, 100)) poses.push_back(signals_at(p.signals, row));
+  const Vec3 error = hinge_geometry(leaves, poses).point_in_child - p.truth->point_in_child;
+  return 1e3 * error.cross(p.truth->axis_in_child).norm();
+}
+
+template <class Search>
+auto timed(double& ms, const Search& search) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto result = search();
+  ms = 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+Run memetic_run(const LinkProblem& p, const MemeticOptions& options, std::uint64_t seed, bool everything) {
+  Run run;
+  const MemeticOutcome found = timed(run.ms, [&] {
+    return everything ? search_all(p.parent, p.child, p.signals, p.rows, options)
+                      : search_memetic(p.parent, p.child, p.signals, p.rows, options, Rng(seed));
+  });
+  run.cost = found.cost;
+  run.evaluations = found.evaluations;
+  run.to_one_percent = found.evaluations_to_1;
+  run.line = line_error(p, found.leaves);
+  return run;
+}
+
+Run bp_run(const LinkProblem& p, std::uint64_t seed) {
+  Run run;
+  LinkSearchOptions options;
+  options.bacteria.threads = 1;
+  options.leaf.signal_angles = SignalAngles::offset;
+  const DhEvolution found =
+      timed(run.ms, [&] { return search_link(p.parent, p.child, p.signals, p.rows, options, Rng(seed)); });
+  run.cost = found.cost;
+  run.evaluations = found.evaluations;
+  run.line = line_error(p, leaves(found.best));
+  return run;
+}
+
+std::string row_of(const std::string& name, const std::vector<Run>& runs, const std::vector<Run>& certificate) {
+  std::vector<double> ms, line, evaluations, first;
+  int same = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    ms.push_back(runs[i].ms);
+    line.push_back(runs[i].line);
+    evaluations.push_back(static_cast<double>(runs[i].evaluations));
+    first.push_back(static_cast<double>(runs[i].to_one_percent));
+    same += std::abs(runs[i].line - certificate[i].line) < 2.0;  // [mm]
+  }
+  return fmt::format("{},{},{:.0f},{:.0f},{:.0f},{:.1f},{:.1f},{:.2f},{:.2f},{}\n", name, runs.size(),
+                     median(evaluations), *std::ranges::max_element(evaluations), *std::ranges::max_element(first),
+                     median(ms), *std::ranges::max_element(ms), median(line), *std::ranges::max_element(line), same);
+}
+
+/// Standard drive, any mounting, industrial grade.
+void write_engines(const std::filesystem::path& folder, int seeds, int bp_seeds) {
+  std::vector<Run> bmp, all, bp, all_beside_bp;
+  int in_cost = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const Log log = simulated({.machine = "excavator", .seed = static_cast<std::uint64_t>(seed), .rate = 200.0});
+    const auto ordered = ordered_motion(log.recording, {}, {}, 0).value();
+    MemeticOptions options;
+    options.bacteria.threads = 1;
+    for (const LinkProblem& p : problems_of(ordered, log.truth)) {
+      bmp.push_back(memetic_run(p, options, static_cast<std::uint64_t>(seed), false));
+      all.push_back(memetic_run(p, options, 0, true));
+      in_cost += bmp.back().cost <= 1.001 * all.back().cost;
+      if (seed > bp_seeds) continue;
+      bp.push_back(bp_run(p, static_cast<std::uint64_t>(seed)));
+      all_beside_bp.push_back(all.back());
+    }
+  }
+  const std::string table =
+      "engine,links,evaluations (median),(most),most to within 1 %,ms a link (median),(most),line error [mm] "
+      "(median),(most),within 2 mm of the certificate\n" +
+      row_of("bmp", bmp, all) + row_of("enum", all, all) + row_of("bp", bp, all_beside_bp);
+  std::ofstream(folder / "engines.csv") << table;
+  fmt::print("{}bmp's cost within 0.1 % of the certificate's: {} of {} links\n", table, in_cost, bmp.size());
+}
+
+}  // namespace
+}  // namespace kinfer::study
+
+int main(int argc, char** argv) {
+  const std::filesystem::path folder = argc > 1 ? argv[1] : "studies/structure/results";
+  const int seeds = argc > 2 ? std::atoi(argv[2]) : 100;
+  std::filesystem::create_directories(folder);
+  kinfer::study::write_engines(folder, seeds, std::min(seeds, 2));
+  kinfer::study::write_order(folder, std::max(1, seeds / 50));
+}

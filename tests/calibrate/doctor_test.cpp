@@ -1,0 +1,333 @@
+#include "kinfer/calibrate/doctor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "kinfer/calibrate/single_fit.hpp"
+#include "kinfer/kinematics/forward.hpp"
+#include "support/robots.hpp"
+
+namespace kinfer {
+namespace {
+
+Joint dh_joint(double a, double alpha_deg, double d, JointType type, int parent) {
+  Joint joint;
+  DhLink link;
+  link.a = a, link.alpha = alpha_deg * degree, link.d = d;
+  joint.link = link;
+  joint.type = type;
+  joint.parent = parent;
+  joint.name = "J" + std::to_string(parent + 2);
+  return joint;
+}
+
+Chain ur_like() {
+  Chain chain;
+  const auto r = JointType::revolute;
+  chain.joints = {dh_joint(0, 90, 0.1273, r, -1),  dh_joint(-0.612, 0, 0, r, 0),   dh_joint(-0.5723, 0, 0, r, 1),
+                  dh_joint(0, 90, 0.163941, r, 2), dh_joint(0, -90, 0.1157, r, 3), dh_joint(0, 0, 0.0922, r, 4)};
+  chain.base = Frame::from_pose(Pose::from_xyz_rpy({1.2, -2.5, 0.35}, {0.02, -0.03, 2.2}));
+  chain.tool.xyz = {0.02, -0.015, 0.1};
+  return chain;
+}
+
+Chain scara() {
+  Chain chain;
+  chain.joints = {dh_joint(0.4, 0, 0.35, JointType::revolute, -1), dh_joint(0.3, 180, 0, JointType::revolute, 0),
+                  dh_joint(0, 0, 0, JointType::prismatic, 1), dh_joint(0, 0, 0, JointType::revolute, 2)};
+  chain.tool.xyz = {0.06, 0.01, 0.03};
+  return chain;
+}
+
+Chain arm6() {
+  Chain chain = test::er20();
+  chain.tool.xyz = {0.03, -0.02, 0.1};
+  return chain;
+}
+
+/// A robot whose true numbers differ from the nominal ones by its tolerances, measured by a tracker.
+CalibrateTask measured_robot(const Chain& nominal, int seed = 1, Measured what = Measured::positions) {
+  const Chain truth = with_random_errors(nominal, {}, Rng(seed));
+  const PoseSimulation simulation{.poses = 60, .space = {}, .instrument = test::tracker, .measured = what};
+  return {.nominal = nominal,
+          .tolerances = {},
+          .instrument = test::tracker,
+          .data = simulate_pose_set(truth, simulation, Rng(seed).stream(9)).value()};
+}
+
+std::string listed(const std::vector<Finding>& findings) {
+  std::string text;
+  for (const Finding& f : findings) text += f.kind + ": " + f.sentence + "\n";
+  return text;
+}
+
+/// The only finding, of the kind that is expected.
+Finding only(const CalibrateTask& task, const std::string& kind) {
+  const Diagnosis diagnosis = examine(task);
+  EXPECT_EQ(diagnosis.findings.size(), 1u) << listed(diagnosis.findings);
+  if (diagnosis.findings.empty()) return {};
+  EXPECT_EQ(diagnosis.findings.front().kind, kind) << listed(diagnosis.findings);
+  return diagnosis.findings.front();
+}
+
+/// Noise level [m] of a fit to treated data: 20 µm or so where all was put right.
+double noise_level(const CalibrateTask& treated) {
+  return fit_once(treated, treated.data, AutoParameters{}, {}).value().sigma;
+}
+
+TEST(doctor, healthy_sets_have_no_finding) {
+  for (const Chain& nominal : {arm6(), ur_like(), scara()})
+    for (int seed = 1; seed <= 5; ++seed) {
+      const Diagnosis diagnosis = examine(measured_robot(nominal, seed, Measured::poses));
+      EXPECT_TRUE(diagnosis.findings.empty()) << seed << "\n" << listed(diagnosis.findings);
+    }
+}
+
+TEST(doctor, commanded_joints_replace_readings_that_were_taken_while_the_arm_moved) {
+  CalibrateTask task = measured_robot(arm6());
+  task.data.commanded = task.data.joints;
+  Rng rng(3);
+  for (double& q : task.data.joints.reshaped()) q += 0.1 * degree * rng.normal();
+  EXPECT_TRUE(only(task, "not_settled").applied);
+  EXPECT_EQ(examine(task).treated.data.joints, task.data.commanded);
+}
+
+TEST(doctor, commanded_joints_that_the_arm_did_not_reach_are_not_used) {
+  CalibrateTask task = measured_robot(arm6());
+  task.data.commanded = task.data.joints;
+  Rng rng(3);
+  for (double& q : task.data.commanded.reshaped()) q += 0.02 * degree * rng.normal();
+  EXPECT_TRUE(examine(task).findings.empty());
+}
+
+TEST(doctor, rows_in_which_the_arm_had_not_come_to_rest_are_named) {
+  CalibrateTask task = measured_robot(arm6());
+  task.data.commanded = task.data.joints;
+  task.data.commanded.array() += 1e-4;
+  task.data.commanded.col(7).array() += 0.01;
+  EXPECT_EQ(only(task, "not_settled").rows, std::vector<int>{7});
+}
+
+PoseSet with_readings_shifted(PoseSet data, int from, int by) {
+  const MatrixXd joints = data.joints;
+  for (int row = from; row < data.rows(); ++row) {
+    const int other = row - by;
+    if (other >= from && other < data.rows()) data.joints.col(row) = joints.col(other);
+  }
+  return data;
+}
+
+class Shifted : public ::testing::TestWithParam<std::pair<int, int>> {};  // from row, by
+
+TEST_P(Shifted, rows_are_found_and_paired_anew) {
+  CalibrateTask task = measured_robot(arm6());
+  const auto [from, by] = GetParam();
+  const PoseSet right = task.data;
+  task.data = with_readings_shifted(task.data, from, by);
+  const Finding finding = only(task, "rows_shifted");
+  EXPECT_TRUE(finding.applied);
+  EXPECT_EQ(finding.rows.size(), static_cast<std::size_t>(60 - from - std::abs(by)));
+  const PoseSet treated = examine(task).treated.data;
+  for (const PointMeasurement& point : treated.points)
+    EXPECT_EQ(treated.joints.col(point.row), right.joints.col(point.row)) << point.row;
+  EXPECT_EQ(treated.points.size(), right.points.size() - std::abs(by));
+}
+INSTANTIATE_TEST_SUITE_P(doctor, Shifted,
+                         ::testing::Values(std::pair{0, 1}, std::pair{0, -2}, std::pair{0, 7}, std::pair{41, 1},
+                                           std::pair{20, -1}),
+                         [](const auto& test) {
+                           return fmt::format("from_{}_by_{}{}", test.param.first,
+                                              test.param.second < 0 ? "minus_" : "", std::abs(test.param.second));
+                         });
+
+TEST(doctor, swapped_rows_are_named_together) {
+  CalibrateTask task = measured_robot(ur_like());
+  std::swap(task.data.points[12].position, task.data.points[40].position);
+  EXPECT_EQ(only(task, "rows_swapped").rows, (std::vector<int>{12, 40}));
+}
+
+TEST(doctor, copied_rows_are_named) {
+  CalibrateTask task = measured_robot(arm6());
+  task.data.joints.col(31) = task.data.joints.col(5);
+  task.data.points[31].position = task.data.points[5].position;
+  EXPECT_EQ(only(task, "duplicate_rows").rows, (std::vector<int>{5, 31}));
+}
+
+TEST(doctor, a_measurement_that_was_stored_twice_is_named) {
+  CalibrateTask task = measured_robot(arm6());
+  task.data.points[21].position = task.data.points[20].position;
+  EXPECT_EQ(only(task, "measurement_repeated").rows, (std::vector<int>{20, 21}));
+}
+
+TEST(doctor, a_pose_that_was_measured_again_is_no_fault) {
+  CalibrateTask task = measured_robot(arm6());
+  task.data.joints.col(31) = task.data.joints.col(5);
+  task.data.points[31].position = task.data.points[5].position + Vec3(8e-6, -5e-6, 3e-6);
+  EXPECT_TRUE(examine(task).findings.empty());
+}
+
+TEST(doctor, gross_outliers_are_named) {
+  CalibrateTask task = measured_robot(arm6());
+  task.data.points[8].position.x() += 0.004;
+  task.data.points[33].position.z() -= 0.3;
+  EXPECT_EQ(only(task, "gross_outliers").rows, (std::vector<int>{8, 33}));
+}
+
+/// A fault of the file as a whole, which is certain and put right.
+struct Fault {
+  std::string name, kind;
+  std::function<void(CalibrateTask&)> make;
+};
+void PrintTo(const Fault& fault, std::ostream* out) {
+  *out << fault.name;
+}
+
+void scale_points(CalibrateTask& task, double factor) {
+  for (PointMeasurement& point : task.data.points) point.position *= factor;
+}
+
+std::vector<Fault> faults() {
+  std::vector<Fault> list{
+      {"degrees", "degrees_for_radians", [](CalibrateTask& t) { t.data.joints /= degree; }},
+      {"radians", "radians_for_degrees", [](CalibrateTask& t) { t.data.joints *= degree; }},
+      {"millimetres", "length_unit", [](CalibrateTask& t) { scale_points(t, 1e3); }},
+      {"metres", "length_unit", [](CalibrateTask& t) { scale_points(t, 1e-3); }},
+      {"swapped_columns", "columns_swapped", [](CalibrateTask& t) { t.data.joints.row(1).swap(t.data.joints.row(3)); }},
+      {"parallel_linkage", "joint_coupled", [](CalibrateTask& t) { t.data.joints.row(2) += t.data.joints.row(1); }}};
+  for (int k = 0; k < 6; ++k) {
+    list.push_back(
+        {fmt::format("sign_of_J{}", k + 1), "wrong_sign", [k](CalibrateTask& t) { t.data.joints.row(k) *= -1.0; }});
+    if (k == 0 || k == 5) continue;  // base and tool take these up: no fault
+    for (const int offset : {90, -90, 180})
+      if (offset != 180 || (k != 1 && k != 4))  // there the same as the sign of J1 and of J6
+        list.push_back({fmt::format("offset_{}_of_J{}", offset < 0 ? "minus_90" : std::to_string(offset), k + 1),
+                        "joint_offset",
+                        [k, offset](CalibrateTask& t) { t.data.joints.row(k).array() += offset * degree; }});
+  }
+  return list;
+}
+
+class WholeFile : public ::testing::TestWithParam<Fault> {};
+
+TEST_P(WholeFile, fault_is_found_alone_and_put_right) {
+  CalibrateTask task = measured_robot(ur_like(), 2);
+  GetParam().make(task);
+  const Diagnosis diagnosis = examine(task);
+  ASSERT_EQ(diagnosis.findings.size(), 1u) << listed(diagnosis.findings);
+  const Finding& finding = diagnosis.findings.front();
+  EXPECT_EQ(finding.kind, GetParam().kind) << finding.sentence;
+  EXPECT_TRUE(finding.applied);
+  EXPECT_LT(noise_level(diagnosis.treated), 5e-5) << finding.sentence;
+}
+INSTANTIATE_TEST_SUITE_P(doctor, WholeFile, ::testing::ValuesIn(faults()),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(doctor, two_wrong_signs_are_found_together) {
+  CalibrateTask task = measured_robot(ur_like());
+  task.data.joints.row(1) *= -1.0;
+  task.data.joints.row(4) *= -1.0;
+  const Diagnosis diagnosis = examine(task);
+  EXPECT_EQ(diagnosis.findings.size(), 2u) << listed(diagnosis.findings);
+  EXPECT_LT(noise_level(diagnosis.treated), 5e-5);
+}
+
+TEST(doctor, a_mirrored_measurement_is_said_and_left_alone) {
+  CalibrateTask task = measured_robot(arm6());
+  for (PointMeasurement& point : task.data.points) std::swap(point.position.x(), point.position.y());
+  EXPECT_FALSE(only(task, "mirrored").applied);
+}
+
+TEST(doctor, a_prismatic_joint_in_millimetres_is_found) {
+  CalibrateTask task = measured_robot(scara());
+  task.data.joints.row(2) *= 1e3;
+  EXPECT_EQ(only(task, "length_unit").sentence, "J3 is in millimetres, but was read as metres");
+}
+
+class Orientations : public ::testing::TestWithParam<int> {};
+
+TEST_P(Orientations, of_another_convention_are_found_and_put_right) {
+  CalibrateTask task = measured_robot(arm6(), 1, Measured::poses);
+  const std::vector<OrientationMeasurement> right = task.data.orientations;
+  for (OrientationMeasurement& m : task.data.orientations) {
+    const Quat q = m.orientation;
+    if (GetParam() == 0) m.orientation = q.conjugate();
+    if (GetParam() == 1) m.orientation = Quat(q.x(), q.y(), q.z(), q.w());  // x, y, z, w read as w, x, y, z
+    if (GetParam() == 2) m.orientation = Quat(q.w(), q.x(), -q.y(), -q.z());
+  }
+  EXPECT_TRUE(only(task, "orientation_convention").applied);
+  const PoseSet treated = examine(task).treated.data;
+  for (std::size_t i = 0; i < right.size(); ++i)
+    EXPECT_NEAR(std::abs(treated.orientations[i].orientation.dot(right[i].orientation)), 1.0, 1e-9);
+}
+INSTANTIATE_TEST_SUITE_P(doctor, Orientations, ::testing::Range(0, 3));
+
+/// The only number with a decimal point in a sentence. The joints take up part of what the base does.
+double number_in(const std::string& sentence) {
+  return std::stod(sentence.substr(sentence.find('.') - 1));
+}
+
+TEST(doctor, a_drifting_base_is_seen_and_its_size_is_right) {
+  CalibrateTask task = measured_robot(ur_like());
+  for (PointMeasurement& point : task.data.points) point.position.x() += 0.4e-3 * point.row / 59.0;
+  EXPECT_NEAR(number_in(only(task, "base_drifts").sentence), 0.4, 0.1);
+}
+
+TEST(doctor, a_base_that_was_pushed_a_little_is_seen) {
+  CalibrateTask task = measured_robot(ur_like());
+  for (PointMeasurement& point : task.data.points)
+    if (point.row >= 30) point.position.y() += 0.3e-3;
+  EXPECT_NEAR(number_in(only(task, "base_moved").sentence), 0.3, 0.1);
+}
+
+TEST(doctor, a_base_that_was_moved_far_is_seen_with_its_rows) {
+  CalibrateTask task = measured_robot(arm6());
+  for (PointMeasurement& point : task.data.points)
+    if (point.row >= 40) point.position += Vec3(0.1, -0.2, 0.05);
+  const Finding finding = only(task, "base_moved");
+  ASSERT_EQ(finding.rows.size(), 20u);
+  EXPECT_EQ(finding.rows.front(), 40);
+}
+
+TEST(doctor, a_joint_that_hardly_moves_is_named) {
+  CalibrateTask task = measured_robot(arm6());
+  const Chain truth = with_random_errors(task.nominal, {}, Rng(1));
+  task.data.joints.row(3).setConstant(0.3);
+  for (PointMeasurement& point : task.data.points)
+    point.position = forward(truth, task.data.joints.col(point.row)).position;
+  EXPECT_NE(only(task, "joint_hardly_moves").sentence.find("J4"), std::string::npos);
+}
+
+TEST(doctor, a_target_that_slipped_is_seen_in_its_rows) {
+  CalibrateTask task = measured_robot(arm6());
+  const Chain truth = with_random_errors(task.nominal, {}, Rng(1));
+  const Vec3 in_tool(0.1, 0.05, -0.02);
+  task.nominal.targets = {{"s2", in_tool}};
+  task.data.targets = {"s2"};
+  Rng rng(5);
+  for (int row = 0; row < 60; ++row) {
+    const Vec3 noise = 1e-5 * Vec3(rng.normal(), rng.normal(), rng.normal());
+    const Vec3 slip = row == 14 ? Vec3(0.003, 0.001, 0) : Vec3::Zero();
+    task.data.points.push_back({.row = row,
+                                .target = 0,
+                                .position = forward(truth, task.data.joints.col(row)) * (in_tool + slip) + noise,
+                                .sd = {}});
+  }
+  EXPECT_EQ(only(task, "not_rigid").rows, std::vector<int>{14});
+}
+
+TEST(doctor, a_set_that_is_too_small_to_judge_is_left_alone) {
+  CalibrateTask task = measured_robot(arm6());
+  task.data = select(task.data, {0, 1, 2});
+  EXPECT_NO_FATAL_FAILURE(examine(task));
+  task.data = select(task.data, {});
+  EXPECT_TRUE(examine(task).findings.empty());
+}
+
+TEST(doctor, rows_are_said_in_runs) {
+  EXPECT_EQ(rows_in_words({3}), "row 3");
+  EXPECT_EQ(rows_in_words({3, 5, 6, 9, 10, 11}), "rows 3, 5, 6 and 9-11");
+}
+
+}  // namespace
+}  // namespace kinfer

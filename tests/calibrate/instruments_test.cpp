@@ -1,0 +1,215 @@
+// Each instrument alone, and several together, find the errors of a simulated robot again.
+#include <gtest/gtest.h>
+
+#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/calibrate/figures.hpp"
+#include "kinfer/calibrate/surroundings.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "support/instruments.hpp"
+
+namespace kinfer {
+namespace {
+
+using namespace test;
+
+Chain nominal_robot() {
+  Chain chain = er20(0.125);
+  chain.tool.xyz = Vec3(0.03, 0.02, 0.1);
+  return chain;
+}
+
+/// Errors of the size that the default tolerances expect, everywhere.
+Chain true_robot(int seed = 1) {
+  return with_random_errors(nominal_robot(), {}, Rng(seed));
+}
+
+Calibration calibrated(const Chain& nominal, const PoseSet& data, const Instrument& instrument) {
+  const auto c = calibrate({nominal, {}, instrument, data}, {.model = NamedModel{}}, Rng(1));
+  EXPECT_TRUE(c.has_value()) << c.error().what;
+  return *c;
+}
+
+TEST(Instruments, draw_wires_to_uncertain_anchors_calibrate_the_robot_and_the_anchors) {
+  Chain nominal = nominal_robot();
+  nominal.surroundings.anchors = {Vec3(1.8, -0.9, 0.1), Vec3(1.7, 1.1, 0.2), Vec3(0.2, 0.3, 2.4)};
+  Chain truth = with_random_errors(nominal, {}, Rng(2));
+  truth.surroundings.anchors[0] += Vec3(4e-3, -5e-3, 3e-3);
+  truth.surroundings.anchors[2] += Vec3(-6e-3, 2e-3, 1e-3);
+  PoseSet data = readings_of(measured(truth, paper2_poses(50, noise_free)));
+  measure_distances(data, truth, 10e-6, Rng(3));
+  const Calibration c = calibrated(nominal, data, {.sigma = 10e-6});
+  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_EQ(c.measured, "distance");
+  EXPECT_LT(c.after.position.holdout.mean, 35e-6);
+  EXPECT_GT(c.before.position.holdout.mean, 5.0 * c.after.position.holdout.mean);
+}
+
+TEST(Instruments, balls_in_sockets_make_unseen_sockets_consistent) {
+  const Chain truth = true_robot();
+  const std::vector<Vec3> sockets{{0.9, 0.5, 0.4}, {0.8, -0.6, 0.6}, {1.1, 0.1, 0.9}, {0.7, 0.3, 1.2}};
+  PoseSet all = readings_of(measured(truth, paper2_poses(120, noise_free)));
+  touch(
+      all, truth, [&](int row) { return truth.base.pose() * sockets[row % 4]; }, 10e-6, Rng(4));
+  PoseSet data = all, unseen = all;
+  data.sockets = {"a", "b", "c"}, unseen.sockets = {"d"};
+  std::vector<int> seen_rows, other_rows;
+  for (int row = 0; row < 120; ++row) {
+    if (row % 4 < 3)
+      data.contacts.push_back({row, row % 4}), seen_rows.push_back(row);
+    else
+      unseen.contacts.push_back({row, 0}), other_rows.push_back(row);
+  }
+  data = select(data, seen_rows), unseen = select(unseen, other_rows);
+  Chain nominal = nominal_robot();
+  nominal.surroundings.socket_distances = {};
+  const Calibration c = calibrated(nominal, data, {.sigma = 10e-6});
+  EXPECT_EQ(c.measured, "ball in socket");
+  EXPECT_TRUE(c.use) << c.verdict;
+  const auto spread = [&](const Chain& chain) {
+    const PlacedData there = with_surroundings(chain, unseen).value();
+    return mean(headline_errors(there.chain, {}, there.data));
+  };
+  EXPECT_LT(spread(c.estimate.chain), 0.1 * spread(nominal));
+  EXPECT_LT(spread(c.estimate.chain), 60e-6);
+}
+
+TEST(Instruments, a_known_distance_between_sockets_gives_the_scale) {
+  const Chain truth = true_robot(3);
+  const std::vector<Vec3> sockets{{0.9, 0.5, 0.4}, {0.8, -0.6, 0.6}, {1.1, 0.1, 0.9}};
+  PoseSet data = readings_of(measured(truth, paper2_poses(90, noise_free)));
+  data.sockets = {"a", "b", "c"};
+  touch(
+      data, truth, [&](int row) { return truth.base.pose() * sockets[row % 3]; }, 10e-6, Rng(4));
+  for (int row = 0; row < 90; ++row) data.contacts.push_back({row, row % 3});
+  Chain nominal = nominal_robot();
+  const auto apart = [](const Chain& chain) {
+    const auto& s = chain.surroundings.sockets;
+    return (s[0].xyz - s[1].xyz).norm();
+  };
+  const double distance = (sockets[0] - sockets[1]).norm();
+  nominal.surroundings.sockets = {{"b", Vec3::Zero()}, {"a", Vec3::Zero()}};  // in an order of their own
+  nominal.surroundings.socket_distances = {{0, 1, distance, 5e-6}};
+  EXPECT_NEAR(apart(calibrated(nominal, data, {.sigma = 10e-6}).estimate.chain), distance, 15e-6);
+}
+
+TEST(Instruments, ball_bars_planes_and_tilts_together_with_few_tracker_points) {
+  const Chain truth = true_robot(5);
+  const Vec3 normal = Vec3(0.1, -0.2, 1.0).normalized();
+  PoseSet data = readings_of(measured(truth, paper2_poses(120, noise_free)));
+  PoseSet on_table = select(data, [] {
+    std::vector<int> rows(40);
+    for (int i = 0; i < 40; ++i) rows[i] = i;
+    return rows;
+  }());
+  touch(
+      on_table, truth,
+      [&](int row) {
+        const Vec3 over = truth.base.pose() * Vec3(0.6 + 0.01 * row, 0.5 - 0.03 * row, 0.5);
+        return Vec3(over - (normal.dot(over) - 0.7) * normal);
+      },
+      10e-6, Rng(5));
+  data.joints.leftCols(40) = on_table.joints;
+  data.planes = {"table"};
+  for (int row = 0; row < 40; ++row) data.plane_contacts.push_back({row, 0});
+  PoseSet wanted = data;
+  measure_pairs(wanted, truth, 10e-6, Rng(6));
+  for (const PairDistance& pair : wanted.pairs)
+    if (pair.row >= 40) data.pairs.push_back(pair);
+  measure_tilts(data, truth, 1e-3, Rng(7));
+  PoseSet seen = data;
+  measure_points(seen, truth, tracker, Rng(8));
+  for (int row = 0; row < 120; row += 6) data.points.push_back(seen.points[row]);
+  Instrument instrument = tracker;
+  instrument.sigma_tilt = 1e-3;
+  const Calibration c = calibrated(nominal_robot(), data, instrument);
+  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_NEAR(*c.estimate.chi2_per_n, 1.0, 0.35);
+  EXPECT_LT(mean(point_errors(c.estimate.chain, measured(truth, paper2_poses(200, noise_free), 99))), 100e-6);
+}
+
+TEST(Instruments, targets_without_the_tool_point_find_the_tools_turn) {
+  Chain nominal = nominal_robot();
+  nominal.targets = {{"s1", Vec3(0.1, 0, 0)}, {"s2", Vec3(0, 0.1, 0.02)}, {"s3", Vec3(-0.08, -0.05, 0.05)}};
+  Chain truth = with_random_errors(nominal, {}, Rng(6));
+  truth.tool.rotation = rot_z(0.4) * truth.tool.rotation;
+  PoseSet data = readings_of(measured(truth, paper2_poses(40, noise_free)));
+  data.targets = {"s1", "s2", "s3"};
+  const std::vector<Pose> poses = true_poses(truth, data);
+  Rng rng(9);
+  for (int row = 0; row < 40; ++row)
+    for (int t = 0; t < 3; ++t)
+      data.points.push_back({row, t, poses[row] * truth.targets[t].xyz + noise(rng, 15e-6), {}});
+  const Calibration c = calibrated(nominal, data, {.sigma = 15e-6});
+  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_LT(c.after.position.holdout.mean, 45e-6);
+}
+
+TEST(Instruments, a_cameras_own_deviations_weigh_its_poses) {
+  const Chain truth = true_robot(7);
+  PoseSimulation simulation = paper2_poses(60, {.sigma = 20e-6, .sigma_angle = 1e-4});
+  simulation.measured = Measured::poses;
+  PoseSet data = measured(truth, simulation);
+  Rng rng(10);
+  for (int row = 0; row < 60; ++row) {  // every second pose was seen badly, and says so
+    const double sd = row % 2 ? 1e-3 : 20e-6;
+    data.points[row].sd = Vec3::Constant(sd);
+    data.orientations[row].sd = Vec3::Constant(row % 2 ? 5e-3 : 1e-4);
+    if (row % 2 == 0) continue;
+    data.points[row].position += noise(rng, 1e-3);
+    data.orientations[row].orientation = quat_exp(noise(rng, 5e-3)) * data.orientations[row].orientation;
+  }
+  const Calibration c = calibrated(nominal_robot(), data, {.sigma = 20e-6, .sigma_angle = 1e-4});
+  EXPECT_TRUE(c.estimate.outliers.empty());
+  EXPECT_NEAR(*c.estimate.chi2_per_n, 1.0, 0.3);
+  EXPECT_LT(mean(point_errors(c.estimate.chain, measured(truth, paper2_poses(200, noise_free), 99))), 60e-6);
+}
+
+TEST(Instruments, each_setup_has_a_base_and_tool_of_its_own) {
+  Chain truth = true_robot(8);
+  truth.mountings = {{.name = "second",
+                      .base = Frame::from_pose(Pose::from_xyz_rpy({3, 1, 0.5}, {0.1, 0.0, 2.0})),
+                      .tool = Frame::from_pose(Pose::from_xyz_rpy({-0.05, 0.1, 0.2}, {0, 0, 0}))}};
+  PoseSet data = readings_of(measured(truth, paper2_poses(60, noise_free)));
+  data.setups = {"first", "second"};
+  for (int row = 0; row < 60; ++row) data.setup.push_back(row % 2), data.mounting.push_back(row % 2 - 1);
+  measure_points(data, truth, tracker, Rng(11));
+  data.mounting.clear();
+  const Calibration c = calibrated(nominal_robot(), data, tracker);
+  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_LT(c.after.position.holdout.mean, 60e-6);
+  ASSERT_EQ(c.estimate.chain.mountings.size(), 1u);
+  EXPECT_EQ(c.estimate.chain.setup, "first");
+  EXPECT_LT((c.estimate.chain.mountings[0].tool.xyz - truth.mountings[0].tool.xyz).norm(), 1e-3);
+}
+
+TEST(Instruments, both_arms_of_a_tree_are_calibrated_by_rows_that_say_which_tip) {
+  Chain nominal = er20(0.125);
+  nominal.tip = 3;  // a torso of two axes; arm one is joints 3 and 4, arm two joints 5 to 7
+  nominal.joints[4].parent = 1;
+  nominal.joints.push_back(mdh_joint(0.3, 90, 0.2, -150, 150, 5));
+  nominal.joints[6].name = "J7";
+  nominal.tool.xyz = Vec3(0.05, 0.02, 0.3);
+  nominal.mountings = {{.name = "J7", .base = {}, .tool = Frame{.xyz = Vec3(0.1, 0.03, 0.1)}, .tip = 6}};
+  Chain truth = with_random_errors(nominal, {}, Rng(12));
+  PoseSimulation anywhere{.poses = 120, .instrument = noise_free};
+  PoseSet data = readings_of(simulate_pose_set(truth, anywhere, Rng(1)).value());
+  data.tips = {"J7"};
+  for (int row = 0; row < 120; ++row) data.tip.push_back(row % 2 - 1), data.mounting.push_back(row % 2 - 1);
+  measure_points(data, truth, tracker, Rng(12));
+  data.mounting.clear();
+  const Calibration c = calibrated(nominal, data, tracker);
+  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_LT(c.after.position.holdout.mean, 45e-6);
+  EXPECT_GT(c.before.position.holdout.mean, 10.0 * c.after.position.holdout.mean);
+}
+
+TEST(Instruments, an_anchor_that_the_robot_file_lacks_is_an_error) {
+  PoseSet data = readings_of(measured(true_robot(), paper2_poses(10, noise_free)));
+  data.distances.push_back({0, 1, 1.0});
+  const auto c = calibrate({nominal_robot(), {}, tracker, data}, {}, Rng(1));
+  ASSERT_FALSE(c.has_value());
+  EXPECT_NE(c.error().what.find("anchor 2, but the robot file lists 0"), std::string::npos) << c.error().what;
+}
+
+}  // namespace
+}  // namespace kinfer

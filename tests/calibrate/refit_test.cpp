@@ -1,0 +1,71 @@
+// After a knock or a motor change: few poses and the earlier calibration.
+#include <gtest/gtest.h>
+
+#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/estimate/residuals.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "support/robots.hpp"
+
+namespace kinfer {
+namespace {
+
+using namespace test;
+
+Chain nominal_robot() {
+  Chain chain = er20(0.125);
+  chain.tool.xyz = Vec3(0.03, 0.02, 0.1);
+  return chain;
+}
+
+/// A robot that was calibrated with 50 poses, and then had its third motor changed and its tracker moved.
+struct Knocked {
+  Chain truth = with_random_errors(nominal_robot(), {}, Rng(3));
+  Chain earlier =
+      calibrate({nominal_robot(), {}, tracker, measured(truth, paper2_poses(50, tracker))}, {}, Rng(1))->estimate.chain;
+  Chain now = truth;
+
+  Knocked() {
+    std::get<MdhLink>(now.joints[2].link).theta += 0.7 * degree;
+    now.base = Frame::from_pose(Pose::from_xyz_rpy({0.8, -1.5, 0.2}, {0.01, 0.0, 1.1}));
+  }
+
+  Calibration refit(int poses) const {
+    CalibrateOptions how{.parameters = OffsetParameters{}, .holdout = CrossValidation{poses}, .model = NamedModel{}};
+    return calibrate({earlier, {}, tracker, measured(now, paper2_poses(poses, tracker), 8)}, how, Rng(1)).value();
+  }
+  double error(const Chain& chain) const {
+    return mean(point_errors(chain, measured(now, paper2_poses(200, noise_free), 99)));
+  }
+};
+
+TEST(Refit, eight_poses_find_the_offset_that_moved_and_name_it_alone) {
+  const Knocked robot;
+  const Calibration c = robot.refit(8);
+  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_LT(robot.error(c.estimate.chain), 80e-6);
+  EXPECT_GT(c.before.position.holdout.mean, 1e-3);
+  std::vector<std::string> moved;
+  for (const std::string& note : c.notes)
+    if (note.find("since the earlier calibration") != std::string::npos) moved.push_back(note);
+  ASSERT_EQ(moved.size(), 1u) << (moved.empty() ? "" : moved.back());
+  EXPECT_EQ(moved[0].find("theta3 has moved by +0."), 0u) << moved[0];
+}
+
+TEST(Refit, is_better_than_a_new_calibration_with_as_few_poses) {
+  const Knocked robot;
+  const auto anew = calibrate({nominal_robot(), {}, tracker, measured(robot.now, paper2_poses(8, tracker), 8)},
+                              {.model = NamedModel{}}, Rng(1));
+  ASSERT_TRUE(anew.has_value());
+  EXPECT_LT(robot.error(robot.refit(8).estimate.chain), 0.5 * robot.error(anew->estimate.chain));
+}
+
+TEST(Refit, a_robot_that_was_not_knocked_is_said_not_to_have_moved) {
+  Knocked robot;
+  robot.now = robot.truth;
+  const Calibration c = robot.refit(8);
+  const auto says_so = [](const std::string& note) { return note.find("no joint offset has moved") == 0; };
+  EXPECT_TRUE(std::any_of(c.notes.begin(), c.notes.end(), says_so));
+}
+
+}  // namespace
+}  // namespace kinfer

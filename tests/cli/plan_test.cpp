@@ -1,0 +1,49 @@
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+
+namespace kinfer::test {
+namespace {
+
+using nlohmann::json;
+
+class PlanPoses : public Program {
+ protected:
+  std::string robot() const { return source("examples/robot6/robot.toml"); }
+};
+
+TEST_F(PlanPoses, planned_poses_are_readable_and_come_with_a_figure) {
+  const Outcome run = kinfer("plan --robot " + robot() + " --poses 10 -o plan.csv --lowest 100 --json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json plan = json::parse(run.out);
+  EXPECT_EQ(plan["poses"], 10);
+  EXPECT_LT(plan["expected"]["rms"], plan["random"]["rms"]);
+  EXPECT_EQ(plan["observability"].size(), 5u);
+  ASSERT_EQ(kinfer("predict --chain " + robot() + " --joints plan.csv -o poses.csv").code, 0);
+  const std::string figure = slurp(in("plan.svg"));
+  EXPECT_EQ(figure.find("<?xml"), 0u);
+  EXPECT_NE(figure.find("poses measured"), std::string::npos);
+}
+
+TEST_F(PlanPoses, some_of_the_poses_of_a_file_are_chosen_and_others_left_out) {
+  ASSERT_EQ(kinfer("simulate-poses --robot " + robot() + " --out data --poses 40").code, 0);
+  const Outcome chosen =
+      kinfer("plan --robot " + robot() + " --poses 12 -o plan.csv --candidates data/poses.csv --json");
+  ASSERT_EQ(chosen.code, 0) << chosen.err;
+  EXPECT_EQ(json::parse(chosen.out)["rows"].size(), 12u);
+  const Outcome added = kinfer("plan --robot " + robot() + " --poses 4 -o more.csv --data data/poses.csv --json");
+  ASSERT_EQ(added.code, 0) << added.err;
+  EXPECT_LT(json::parse(added.out)["expected"]["rms"], json::parse(added.out)["existing"]["rms"]);
+}
+
+TEST_F(PlanPoses, wrong_input_is_one_sentence) {
+  const Outcome place = kinfer("plan --robot " + robot() + " -o plan.csv --instrument-at 1,2");
+  EXPECT_EQ(place.code, 2);
+  EXPECT_NE(place.err.find("expected x,y,z in mm"), std::string::npos) << place.err;
+  const Outcome floor = kinfer("plan --robot " + robot() + " -o plan.csv --lowest 90000");
+  EXPECT_EQ(floor.code, 2);
+  EXPECT_NE(floor.err.find("none of"), std::string::npos) << floor.err;
+}
+
+}  // namespace
+}  // namespace kinfer::test

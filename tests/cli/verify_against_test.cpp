@@ -1,0 +1,57 @@
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+
+namespace kinfer::test {
+namespace {
+
+using nlohmann::json;
+
+class VerifyAgainst : public Program {
+ protected:
+  void calibrate(const std::string& name, int seed) const {
+    ASSERT_EQ(kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") + " --errors errors.toml --out " +
+                     name + " --lowest 0 --clearance 350 --seed " + std::to_string(seed))
+                  .code,
+              0);
+    const Outcome run = kinfer("calibrate --robot " + name + "/robot.toml --data " + name + "/poses.csv --out " + name +
+                               "/cal --model geometry");
+    ASSERT_EQ(run.code, 0) << run.out << run.err;
+  }
+};
+
+TEST_F(VerifyAgainst, a_knocked_joint_is_named_and_an_unchanged_robot_is_not) {
+  const std::string units = "units = { length = \"mm\", angle = \"deg\" }\n[errors]\na2 = 0.1\n";
+  write(in("errors.toml"), units + "theta3 = 0.05\n");
+  calibrate("may", 1);
+  calibrate("june", 2);
+  write(in("errors.toml"), units + "theta3 = 0.08\n");
+  calibrate("july", 3);
+  const Outcome same = kinfer("verify --chain may/cal/chain.toml --against june/cal/chain.toml");
+  EXPECT_EQ(same.code, 0) << same.out << same.err;
+  EXPECT_NE(same.out.find("No change beyond chance"), std::string::npos) << same.out;
+  const Outcome knocked = kinfer("verify --chain may/cal/chain.toml --against july/cal/chain.toml --json");
+  EXPECT_EQ(knocked.code, 1) << knocked.out << knocked.err;
+  const json changes = json::parse(knocked.out);
+  EXPECT_EQ(changes["parameters"][0]["name"], "theta3");
+  EXPECT_TRUE(changes["parameters"][0]["significant"]);
+}
+
+TEST_F(VerifyAgainst, tables_of_a_calibration_lie_beside_its_chain) {
+  write(in("errors.toml"), "units = { length = \"mm\", angle = \"deg\" }\n[errors]\na2 = 0.1\n");
+  calibrate("may", 1);
+  for (const char* file :
+       {"chain_mdh.csv", "chain_dh.csv", "joint_twists.csv", "encoder_offsets.csv", "covariance.csv", "accuracy.csv"})
+    EXPECT_TRUE(fs::exists(in("may/cal") / file)) << file;
+  EXPECT_EQ(slurp(in("may/cal/chain_mdh.csv")).find("joint,type,theta[deg],d[mm],a[mm],alpha[deg],beta[deg],gain\nJ1,"),
+            0u);
+}
+
+TEST_F(VerifyAgainst, neither_data_nor_a_later_chain_is_an_error) {
+  const Outcome run = kinfer("verify --chain " + source("examples/robot6/robot.toml"));
+  EXPECT_EQ(run.code, 2);
+  EXPECT_NE(run.err.find("--against"), std::string::npos) << run.err;
+}
+
+}  // namespace
+}  // namespace kinfer::test

@@ -1,0 +1,155 @@
+// Laws that every instrument's residual obeys: its Jacobian is its slope, and at the truth it is the noise.
+#include <gtest/gtest.h>
+
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+#include "support/differences.hpp"
+#include "support/instruments.hpp"
+
+namespace kinfer {
+namespace {
+
+using namespace test;
+
+/// A robot with everything that a chain can have, in surroundings with everything that instruments refer to.
+Chain rich_robot() {
+  Chain chain = with_table3_errors(er20());
+  chain.base = Frame::from_pose(Pose::from_xyz_rpy({0.4, -0.3, 0.2}, {0.1, -0.2, 0.5}));
+  chain.tool = Frame::from_pose(Pose::from_xyz_rpy({0.03, 0.02, 0.1}, {0.3, 0.4, -0.5}));
+  chain.targets = {{"side", Vec3(0.03, -0.02, 0.05)}};
+  chain.masses = {{2, Vec3(0.4, 0, 0), 120.0}, {4, Vec3(0, 0, 0.1), 60.0}};
+  chain.joints[1].compliance = 2e-6;
+  chain.joints[2].torque_compliance = 3e-6;
+  chain.joints[3].backlash = 1e-4;
+  chain.joints[0].harmonics = {{1.0, 1e-4, -2e-4}, {2.0, 3e-4, 1e-4}};
+  chain.joints[4].harmonics = {{7.5, -1e-4, 2e-4}};
+  chain.expansion = 2e-5;
+  chain.reference_temperature = 20.0;
+  Surroundings& around = chain.surroundings;
+  around.anchors = {Vec3(1.8, -0.9, 0.1), Vec3(0.0, 2.0, 0.5)};
+  around.sockets = {{"a", Vec3(1.0, 0.2, 0.5)}, {"b", Vec3(0.9, 0.4, 0.5)}};
+  around.planes = {{.name = "table", .rotation = rot_x(0.2), .turn = Vec3(0.01, 0.02, 0.0), .offset = 0.4}};
+  around.socket_distances = {{0, 1, 0.2, 1e-4}};
+  chain.mountings = {{.name = "second",
+                      .base = Frame::from_pose(Pose::from_xyz_rpy({2, 1, 0}, {0, 0.1, 1})),
+                      .tool = Frame::from_pose(Pose::from_xyz_rpy({0, 0.1, 0}, {0.2, 0, 0}))},
+                     {.name = "elbow", .base = {}, .tool = chain.tool, .tip = 3}};
+  return chain;
+}
+
+PoseSet all_kinds(const Chain& chain) {
+  PoseSet set = readings_of(measured(chain, paper2_poses(12, noise_free)));
+  set.payload.assign(12, 5.0);
+  set.temperature.assign(12, 27.0);
+  set.torques = 10.0 * set.joints;
+  set.torques(2, 3) = std::numeric_limits<double>::quiet_NaN();
+  set = with_approach(set);
+  set.mounting = {-1, -1, -1, -1, -1, -1, 0, 0, 0, 1, 1, 1};
+  measure_points(set, chain, tracker, Rng(3));
+  set.targets = {"side"};
+  set.points.push_back({2, 0, Vec3(1, 2, 3), Vec3(1e-3, 2e-3, 3e-3)});
+  const std::vector<Pose> poses = true_poses(chain, set);
+  for (int row = 0; row < set.rows(); row += 2)
+    set.orientations.push_back({row, Quat(rot_x(0.02) * poses[row].rotation), Vec3(1e-3, 2e-3, 3e-3)});
+  measure_distances(set, chain, 1e-3, Rng(4));
+  measure_pairs(set, chain, 1e-3, Rng(5));
+  measure_tilts(set, chain, 0.05, Rng(6));
+  set.contacts = {{0, 0}, {1, 1}, {7, 0}, {10, 1}};
+  set.plane_contacts = {{3, 0}, {8, 0}};
+  return set;
+}
+
+/// Every number of the chain and of its surroundings, with and beyond geometry.
+ParameterSet everything(const Chain& chain) {
+  ParameterSet set = all_parameters(chain, {});
+  const ParameterSet around = surroundings_parameters(chain, {});
+  set.parameters.insert(set.parameters.end(), around.parameters.begin(), around.parameters.end());
+  const auto add = [&](const Address& at) { set.parameters.push_back(parameter_at(chain, at, 1e-3)); };
+  for (int j = 0; j < static_cast<int>(chain.joints.size()); ++j) {
+    add({Owner::joint, j, Field::torque_compliance}), add({Owner::joint, j, Field::backlash});
+    for (int term = 0; term < static_cast<int>(chain.joints[j].harmonics.size()); ++term)
+      add({Owner::joint, j, Field::sine, term}), add({Owner::joint, j, Field::cosine, term});
+  }
+  add({Owner::robot, -1, Field::expansion});
+  for (const Field field : {Field::x, Field::y, Field::z}) add({Owner::gravity, -1, field});
+  return set;
+}
+
+/// Compliance is left at zero: its torques are held constant in the derivative, which differences do not do.
+TEST(ResidualKinds, jacobian_of_all_instruments_in_all_mountings_equals_differences) {
+  Chain chain = rich_robot();
+  chain.joints[1].compliance = 0.0;
+  const PoseSet data = all_kinds(chain);
+  ParameterSet set = everything(chain);
+  std::erase_if(set.parameters, [](const Parameter& p) { return p.at.field == Field::compliance; });
+  Weights weights = weights_of(data, Instrument{.sigma = 1e-3, .sigma_angle = 1e-3, .sigma_tilt = 1e-2});
+  const Residuals problem = pose_residuals(chain, set, data, weights);
+  const VectorXd x = pack(set, chain);
+  VectorXd r(problem.rows);
+  MatrixXd jacobian(problem.rows, problem.unknowns);
+  problem.evaluate(x, r, &jacobian);
+  const auto value = [&](ConstVectorRef at) {
+    VectorXd out(problem.rows);
+    problem.evaluate(at, out, nullptr);
+    return out;
+  };
+  const MatrixXd expected = testing::numeric_jacobian(value, x, 1e-6);
+  for (Eigen::Index k = 0; k < x.size(); ++k)
+    EXPECT_LT((jacobian.col(k) - expected.col(k)).norm(), 1e-6 * (10.0 + expected.col(k).norm()))
+        << set.parameters[k].name;
+}
+
+TEST(ResidualKinds, at_the_truth_the_residuals_are_the_noise) {
+  const Chain chain = rich_robot();
+  const PoseSet data = all_kinds(chain);
+  EXPECT_NEAR(rms(errors_of_kind(MeasurementKind::distance, chain, data)), 1e-3, 0.4e-3);
+  EXPECT_NEAR(rms(errors_of_kind(MeasurementKind::pair, chain, data)), 1e-3, 0.7e-3);
+  EXPECT_NEAR(rms(errors_of_kind(MeasurementKind::tilt, chain, data)), 0.05 * std::sqrt(2.0), 0.03);
+  for (const double error : errors_of_kind(MeasurementKind::orientation, chain, data)) EXPECT_NEAR(error, 0.02, 1e-9);
+}
+
+TEST(ResidualKinds, where_the_base_stands_is_nothing_to_a_draw_wire) {
+  Chain chain = rich_robot();
+  const PoseSet data = all_kinds(chain);
+  const std::vector<double> before = errors_of_kind(MeasurementKind::distance, chain, data);
+  chain.base.xyz += Vec3(1, 2, 3);
+  chain.base.rotation = rot_x(0.7) * chain.base.rotation;
+  PoseSet unloaded = data;  // gravity would bend the turned robot another way
+  chain.joints[1].compliance = 0.0;
+  Chain straight = rich_robot();
+  straight.joints[1].compliance = 0.0;
+  const std::vector<double> here = errors_of_kind(MeasurementKind::distance, straight, unloaded),
+                            there = errors_of_kind(MeasurementKind::distance, chain, unloaded);
+  for (std::size_t i = 0; i < here.size(); ++i) EXPECT_NEAR(here[i], there[i], 1e-12);
+}
+
+TEST(ResidualKinds, blocks_are_dropped_and_kept_as_listed) {
+  const PoseSet data = all_kinds(rich_robot());
+  const std::vector<Block> blocks = blocks_of(data);
+  std::vector<bool> kept(blocks.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = i % 3 != 0;
+  const std::vector<Block> left = blocks_of(only(data, kept));
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (!kept[i]) continue;
+    EXPECT_EQ(left[next].kind, blocks[i].kind);
+    EXPECT_EQ(left[next].row, blocks[i].row);
+    ++next;
+  }
+  EXPECT_EQ(next, left.size());
+}
+
+TEST(ResidualKinds, forward_agrees_with_the_evaluator_on_all_that_goes_beyond_geometry) {
+  const Chain chain = rich_robot();
+  const PoseSet data = all_kinds(chain);
+  for (int row = 0; row < 6; ++row) {
+    const Load load = load_at(chain, data, row);
+    const Pose slow = forward(chain, data.joints.col(row), load);
+    const Pose fast = PoseEvaluator(chain, {}).pose(data.joints.col(row), load);
+    EXPECT_LT((slow.position - fast.position).norm(), 1e-13);
+    EXPECT_LT((slow.rotation - fast.rotation).norm(), 1e-13);
+  }
+}
+
+}  // namespace
+}  // namespace kinfer

@@ -1,0 +1,71 @@
+#include "kinfer/identify/forecast.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kinfer/identify/identify.hpp"
+#include "kinfer/simulate/ins_simulation.hpp"
+#include "kinfer/simulate/machine_of_chain.hpp"
+#include "kinfer/simulate/prescribed_motion.hpp"
+#include "kinfer/simulate/truth.hpp"
+#include "simulate/worlds.hpp"
+
+namespace kinfer {
+namespace {
+
+FoundJoint joint_with(double point_sd, double axis_sd) {
+  FoundJoint joint{.parent = "a", .child = "b"};
+  joint.sd.point_in_parent = {3.0, 3.0};  // cannot be known, so it does not count
+  joint.sd.point_in_child = {0.1 * point_sd, point_sd};
+  joint.sd.axis_in_parent = joint.sd.axis_in_child = {axis_sd, axis_sd};
+  return joint;
+}
+
+TEST(Forecast, WhatCannotBeKnownAtAllDoesNotCount) {
+  const auto all = forecast({joint_with(2e-3, 1e-4)});
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_DOUBLE_EQ(all[0].line_sd, 2e-3);
+  EXPECT_TRUE(all[0].enough);
+}
+
+TEST(Forecast, TheFactorsWouldMakeItJustEnough) {
+  const JointForecast lacking = forecast({joint_with(1e-2, 1e-4)}).front();
+  EXPECT_FALSE(lacking.enough);
+  EXPECT_NEAR(lacking.acceleration, 1.96 * 1e-2 / 5e-3, 1e-12);
+  EXPECT_NEAR(lacking.time, lacking.acceleration * lacking.acceleration, 1e-12);
+  EXPECT_TRUE(forecast({joint_with(1e-2 / lacking.acceleration * 0.999, 1e-4)}).front().enough);
+  EXPECT_EQ(in_words({lacking}),
+            "not enough for 5 mm and 3 mrad in a-b (3.9 times the acceleration, or 15.4 times the time)");
+}
+
+/// The rehearsal: an identified chain is driven in simulation and identified again.
+TEST(Forecast, AChainThatWasIdentifiedCanBeDrivenAndIsFoundAgain) {
+  const MujocoWorld world = test::world_of("excavator-general", {}, 3);
+  const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}), 100.0);
+  const auto found =
+      identify(simulated_recording(world.machine(), motion, *sensor_grade("noise"), {}, Rng(1)), {}, Rng(1));
+  ASSERT_TRUE(found) << found.error().what;
+  const auto machine = machine_of_chain(found->chain);
+  ASSERT_TRUE(machine) << machine.error().what;
+  EXPECT_EQ(machine->sensors.size(), 6U);
+  EXPECT_EQ(machine->sensors.front().name, "ins0");
+  const auto drive = make_drive(*machine, {}, Rng(2));
+  const auto again = identify(
+      simulated_recording(*machine, prescribed_motion(*machine, *drive, 100.0), *sensor_grade("noise"), {}, Rng(2)), {},
+      Rng(1));
+  ASSERT_TRUE(again) << again.error().what;
+  ASSERT_EQ(again->joints.size(), found->joints.size());
+  for (const FoundJoint& joint : again->joints)
+    EXPECT_TRUE(std::ranges::any_of(
+        found->joints, [&](const FoundJoint& j) { return j.parent == joint.parent && j.child == joint.child; }));
+  ASSERT_EQ(again->links.size(), found->links.size());
+  for (const FoundLink& link : again->links) {
+    const auto same =
+        std::ranges::find(found->links, link.from + link.to, [](const FoundLink& l) { return l.from + l.to; });
+    ASSERT_NE(same, found->links.end()) << link.segment;
+    // Axes that are parallel but for half a degree are nearest to each other somewhere far away: the sd knows.
+    EXPECT_NEAR(link.length, same->length, 4.0 * std::hypot(link.sd, same->sd)) << link.segment;
+  }
+}
+
+}  // namespace
+}  // namespace kinfer

@@ -1,0 +1,1 @@
+set(KINFER_TEST_LIBRARIES nlohmann_json::nlohmann_json)

@@ -1,0 +1,7 @@
+#!/usr/bin/env bash
+# NODE TEST: runs the browser tests, unless they are not wanted (exit code 77: skipped).
+if [ "${KINFER_SKIP_BROWSER:-0}" = 1 ]; then
+  echo "browser tests skipped: KINFER_SKIP_BROWSER=1"
+  exit 77
+fi
+exec "$1" --test "$2"

@@ -1,0 +1,40 @@
+// Light, dark, or as the system has it; colours that follow.
+import { Color } from 'three';
+
+const listeners: (() => void)[] = [];
+
+export function onThemeChange(listener: () => void): void {
+  listeners.push(listener);
+}
+
+/** A colour of the page's style sheet. */
+export function cssText(name: string): string {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}
+
+export function cssColor(name: string): Color {
+  return new Color(cssText(name));
+}
+
+export function addThemeButton(bar: HTMLElement): void {
+  const dark = window.matchMedia('(prefers-color-scheme: dark)');
+  const isDark = () => (document.documentElement.dataset.theme ?? (dark.matches ? 'dark' : 'light')) === 'dark';
+  const button = document.createElement('button');
+  button.type = 'button';
+  button.className = 'theme';
+  const show = () => {
+    button.textContent = isDark() ? 'Light' : 'Dark';
+    button.setAttribute('aria-label', isDark() ? 'Light colours' : 'Dark colours');
+  };
+  const tell = () => {
+    show();
+    for (const listener of listeners) listener();
+  };
+  button.addEventListener('click', () => {
+    document.documentElement.dataset.theme = isDark() ? 'light' : 'dark';
+    tell();
+  });
+  dark.addEventListener('change', tell);
+  show();
+  bar.append(button);
+}
