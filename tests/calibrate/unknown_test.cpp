@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/kinematics/joint_table.hpp"
 #include "kinfer/calibrate/local_poe.hpp"
 #include "kinfer/kinematics/forward.hpp"
+#include "kinfer/kinematics/joint_table.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {

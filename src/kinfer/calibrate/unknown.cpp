@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/kinematics/joint_table.hpp"
 #include "kinfer/calibrate/local_poe.hpp"
+#include "kinfer/kinematics/joint_table.hpp"
 
 namespace kinfer {
 namespace {

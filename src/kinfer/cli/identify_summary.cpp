@@ -95,8 +95,8 @@ std::string fit_table(const std::vector<LinkEvidence>& searches) {
 std::string identification_summary(const Identification& found) {
   std::string text = found.verdict + ".\n\n" + order_table(found.order) + joint_table(found.joints);
   for (const FoundLink& link : found.links)
-    text += fmt::format("link {}: {:.1f} mm from {} to {} (sd {} mm)\n", link.segment, 1e3 * link.length, link.from,
-                        link.to, deviation({link.sd, 0.0}, 1e3, 1));
+    text += fmt::format("link {}: {:.1f} mm from {} to {} (sd {})\n", link.segment, 1e3 * link.length, link.from,
+                        link.to, link.sd < 0.5 ? fmt::format("{:.1f} mm", 1e3 * link.sd) : "unknown");
   for (const FoundPlace& place : found.places)
     text += fmt::format("{} in {}: {} mm (sd {} mm)\n", place.name, place.sensor,
                         vector_text(place.xyz, 1e3, "{:9.1f}"), vector_text(place.sd, 1e3, "{:6.1f}"));
