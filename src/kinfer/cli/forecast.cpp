@@ -1,12 +1,12 @@
 // kinfer forecast: how well a drive would tell each joint, before the whole of it is made.
 #include "kinfer/identify/forecast.hpp"
 
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "kinfer/cli/drive_choices.hpp"
 #include "kinfer/cli/ins_logs.hpp"
 #include "kinfer/cli/verbs.hpp"
 #include "kinfer/identify/identify.hpp"
@@ -25,25 +25,17 @@ struct Options {
   double duration = 0.0, line = 5.0, direction = 3.0;  // s, mm, mrad
 };
 
-const std::map<std::string, Script> scripts{{"standard", Script::standard},
-                                            {"sequential", Script::sequential},
-                                            {"together", Script::together},
-                                            {"gentle", Script::gentle},
-                                            {"vigorous", Script::vigorous}};
-
 /// The drive made in simulation with the chain as it was found.
 Result<InsRecording> rehearsed(const Options& options) {
   KINFER_TRY(robot, read_robot_toml(options.chain));
   const auto machine = machine_of_chain(robot.chain);
   if (!machine) return error("{}: {}", options.chain, machine.error().what);
-  const auto grade = sensor_grade(options.grade);
-  if (!grade)
-    return error("--grade {}: no such sensor grade; known are {}", options.grade, fmt::join(sensor_grade_names, ", "));
+  KINFER_TRY(grade, named_grade(options.grade));
   const Rng rng(options.common.seed);
   KINFER_TRY(drive,
              make_drive(*machine, {.script = scripts.at(options.drive), .duration = options.duration}, rng.stream(1)));
   constexpr double sampling_rate = 200.0;  // [Hz]
-  return simulated_recording(*machine, prescribed_motion(*machine, drive, sampling_rate), *grade, {}, rng.stream(2));
+  return simulated_recording(*machine, prescribed_motion(*machine, drive, sampling_rate), grade, {}, rng.stream(2));
 }
 
 Result<std::vector<JointForecast>> forecast_of(const Options& options) {
@@ -108,8 +100,8 @@ Verb add_forecast(CLI::App& app) {
   for (const auto& [name, script] : scripts) drives.push_back(name);
   add_choice(*verb, "--drive", options->drive, drives, "Drive to rehearse (see kinfer simulate --help)");
   add_number(*verb, "--duration", options->duration, 0.0, 3600.0, "Length of the drive [s]; 0: its own");
-  add_text(*verb, "--grade", options->grade, "Sensors of the rehearsal: noise, industrial, consumer", Need::optional,
-           "GRADE");
+  add_text(*verb, "--grade", options->grade, "Sensors of the rehearsal: noise, industrial, consumer or a TOML",
+           Need::optional, "GRADE");
   add_number(*verb, "--line", options->line, 0.01, 1000.0, "Wanted of every axis line, in 95 of 100 cases [mm]");
   add_number(*verb, "--direction", options->direction, 0.01, 1000.0,
              "Wanted of every axis direction, in 95 of 100 cases [mrad]");

@@ -8,6 +8,7 @@
 
 #include "kinfer/base/sha256.hpp"
 #include "kinfer/cli/arguments.hpp"
+#include "kinfer/cli/drive_choices.hpp"
 #include "kinfer/cli/identify_summary.hpp"
 #include "kinfer/cli/ins_logs.hpp"
 #include "kinfer/cli/report_file.hpp"
@@ -18,7 +19,6 @@
 #include "kinfer/io/machine_facts_toml.hpp"
 #include "kinfer/io/mjcf.hpp"
 #include "kinfer/io/robot_toml.hpp"
-#include "kinfer/io/sensor_grade_toml.hpp"
 #include "kinfer/io/text_file.hpp"
 #include "kinfer/io/urdf.hpp"
 
@@ -39,13 +39,6 @@ const std::map<std::string, Engine> engines{{"bmp", Engine::bmp}, {"bp", Engine:
 const std::map<std::string, Terminals> terminals_by_name{{"hinge", Terminals::hinge}, {"euler", Terminals::euler}};
 const std::map<std::string, Geometry> geometries{{"refined", Geometry::refined}, {"searched", Geometry::searched}};
 const std::map<std::string, Pairing> pairings{{"halves", Pairing::halves}, {"mirrored", Pairing::mirrored}};
-
-Result<SensorModel> named_grade(const std::string& name) {
-  if (const auto grade = sensor_grade(name)) return *grade;
-  if (name.ends_with(".toml")) return read_sensor_grade(name);
-  return error("--grade {}: no such sensor grade; known are auto, {}, or a file that ends in .toml", name,
-               fmt::join(sensor_grade_names, ", "));
-}
 
 Result<IdentifyOptions> options_of(const Options& options) {
   IdentifyOptions how;
@@ -68,7 +61,7 @@ Result<IdentifyOptions> options_of(const Options& options) {
   how.links = options.links;
   how.geometry = geometries.at(options.geometry);
   if (options.grade != "auto") {
-    KINFER_TRY(grade, named_grade(options.grade));
+    KINFER_TRY(grade, named_grade(options.grade, "auto"));
     how.refine.grade = grade;
   }
   if (!options.facts.empty()) {

@@ -24,22 +24,6 @@ std::string order_table(const OrderEvidence& order) {
                             order.phases_agree ? "agree" : "do not agree");
 }
 
-const char* type_name(FoundJointType type) {
-  switch (type) {
-    case FoundJointType::revolute:
-      return "revolute";
-    case FoundJointType::prismatic:
-      return "prismatic";
-    case FoundJointType::universal:
-      return "universal";
-    case FoundJointType::spherical:
-      return "spherical";
-    case FoundJointType::rigid:
-      return "rigid";
-  }
-  return "rigid";
-}
-
 std::string vector_text(const Vec3& v, double scale, const char* form) {
   std::string text;
   for (Eigen::Index k = 0; k < 3; ++k) text += fmt::format(fmt::runtime(form), scale * v[k]);
@@ -67,15 +51,15 @@ std::string joint_table(const std::vector<FoundJoint>& joints) {
   std::string text = fmt::format("{:<16} {:<10} {:<8} {:>24} {:>27} {:>16} {:>10}\n", "joint", "type", "seen by",
                                  "axis", "point [mm]", "sd axis [mrad]", "sd [mm]");
   for (const FoundJoint& j : joints) {
-    const auto line = [&](const std::string& head, const char* type, const std::string& sensor, const Vec3& axis,
+    const auto line = [&](const std::string& head, std::string_view type, const std::string& sensor, const Vec3& axis,
                           const Vec3& point, const std::array<double, 2>& axis_sd,
                           const std::array<double, 2>& point_sd) {
       text += fmt::format("{:<16} {:<10} {:<8} {:>24} {:>27} {:>16} {:>10}\n", head, type, sensor,
                           vector_text(axis, 1.0, "{:8.4f}"), vector_text(point, 1e3, "{:9.1f}"),
                           deviation(axis_sd, 1e3, 2), deviation(point_sd, 1e3, 1));
     };
-    line(j.parent + "-" + j.child, type_name(j.type), j.parent, j.axis_in_parent, j.point_in_parent,
-         j.sd.axis_in_parent, j.sd.point_in_parent);
+    line(j.parent + "-" + j.child, name(j.type), j.parent, j.axis_in_parent, j.point_in_parent, j.sd.axis_in_parent,
+         j.sd.point_in_parent);
     line("", "", j.child, j.axis_in_child, j.point_in_child, j.sd.axis_in_child, j.sd.point_in_child);
   }
   return text + "\n";

@@ -5,9 +5,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "kinfer/cli/drive_choices.hpp"
 #include "kinfer/cli/simulate_files.hpp"
 #include "kinfer/cli/verbs.hpp"
-#include "kinfer/io/sensor_grade_toml.hpp"
 #include "kinfer/io/text_file.hpp"
 #include "kinfer/simulate/ins_simulation.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
@@ -27,11 +27,6 @@ struct Options {
   double accelerometer_range = 0.0, gyro_range = 0.0;  // g, deg/s; 0: the grade's
 };
 
-const std::map<std::string, Script> scripts{{"standard", Script::standard},
-                                            {"sequential", Script::sequential},
-                                            {"together", Script::together},
-                                            {"gentle", Script::gentle},
-                                            {"vigorous", Script::vigorous}};
 const std::map<std::string, Base> bases{{"still", Base::still}, {"rocking", Base::rocking}, {"yawing", Base::yawing}};
 
 template <class Value>
@@ -47,17 +42,13 @@ MachineOptions build_of(const Options& options) {
           .slope = Angle::deg(options.slope)};
 }
 
-Result<SensorModel> named_grade(const std::string& name) {
-  if (name == "perfect") return SensorModel{.name = name, .accelerometer = {}, .gyroscope = {}, .magnetometer = {}};
-  if (const auto grade = sensor_grade(name)) return *grade;
-  if (name.ends_with(".toml")) return read_sensor_grade(name);
-  return error("{}: no such sensor grade; known are perfect, {}, or a file that ends in .toml", name,
-               fmt::join(sensor_grade_names, ", "));
-}
-
 Result<SensorModel> sensors_of(const Options& options) {
   constexpr double g = 9.80665;  // [m/s²]
-  KINFER_TRY(grade, named_grade(options.grade));
+  SensorModel grade{.name = options.grade, .accelerometer = {}, .gyroscope = {}, .magnetometer = {}};
+  if (options.grade != "perfect") {
+    KINFER_TRY(known, named_grade(options.grade, "perfect"));
+    grade = known;
+  }
   if (options.accelerometer_range > 0.0) grade.accelerometer.range = options.accelerometer_range * g;
   if (options.gyro_range > 0.0) grade.gyroscope.range = options.gyro_range * degree;
   return grade;

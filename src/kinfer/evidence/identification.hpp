@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinfer/evidence/advice.hpp"
@@ -15,6 +16,7 @@
 namespace kinfer {
 
 enum class FoundJointType { revolute, prismatic, universal, spherical, rigid };
+std::string_view name(FoundJointType type);  ///< "revolute", "prismatic", "universal", "spherical", "rigid"
 
 /// One sigma of what describes a joint, across its axis in each sensor's frame.
 struct JointDeviation {

@@ -20,22 +20,6 @@ Json json_of(const std::vector<Vec3>& vectors) {
   return list;
 }
 
-std::string_view name(FoundJointType type) {
-  switch (type) {
-    case FoundJointType::revolute:
-      return "revolute";
-    case FoundJointType::prismatic:
-      return "prismatic";
-    case FoundJointType::universal:
-      return "universal";
-    case FoundJointType::spherical:
-      return "spherical";
-    case FoundJointType::rigid:
-      return "rigid";
-  }
-  return "rigid";
-}
-
 Json json_of(const JointDeviation& sd) {
   return {{"axis_in_parent_rad", sd.axis_in_parent},
           {"point_in_parent_m", sd.point_in_parent},
