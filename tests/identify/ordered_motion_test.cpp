@@ -16,9 +16,9 @@ struct Log {
 };
 
 Log log_of(const std::string& machine, const MachineOptions& options, const char* grade, const SensorTrouble& trouble,
-           std::uint64_t seed) {
+           std::uint64_t seed, Script script = Script::standard) {
   const MujocoWorld world = test::world_of(machine, options, seed);
-  MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}, seed), 100.0);
+  MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {.script = script}, seed), 100.0);
   InsRecording recording =
       simulated_recording(world.machine(), motion, *sensor_grade(grade), trouble, Rng(seed).stream(1));
   MachineTruth truth = machine_truth(world.machine(), motion);
@@ -53,6 +53,38 @@ TEST_P(EveryTrouble, LeavesTheTreeRight) {
   const auto ordered = ordered_motion(log.recording, {}, {}, 0);
   ASSERT_TRUE(ordered) << ordered.error().what;
   EXPECT_THAT(edges(*ordered), testing::UnorderedElementsAreArray(edges(log.truth)));
+}
+
+void add_bias(TriadColumns& triad, const Vec3& bias) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (float& value : triad.axis[static_cast<std::size_t>(axis)]) value += static_cast<float>(bias[axis]);
+}
+
+TEST(OrderedMotion, AnAccelerometerThatLeansItsVerticalIsFoundToLean) {
+  Log log = log_of("excavator-general", {.mounting = Mounting::arbitrary, .base = Base::yawing}, "noise",
+                   {.has_magnetometer = false}, 3);
+  const double bias = 0.6;  // [m/s²] 61 mg, and so 61 mrad at most
+  add_bias(log.recording.sensors[4].acceleration, {bias, 0.0, 0.0});
+  const auto ordered = ordered_motion(log.recording, {}, {}, 0);
+  ASSERT_TRUE(ordered) << ordered.error().what;
+  EXPECT_THAT(edges(*ordered), testing::UnorderedElementsAreArray(edges(log.truth)));
+  EXPECT_GT(ordered->tree.margin, 10.0);
+  double level = 0.0;  // share of the sensor's x axis that is level, and so leans the vertical
+  for (const Quat& q : log.motion.sensors[4].world_R_sensor)
+    level += (q * Vec3::UnitX()).head<2>().norm() / static_cast<double>(log.motion.time.size());
+  EXPECT_NEAR(ordered->tree.pair(3, 4).tilt.norm(), level * bias / 9.81, 0.02);
+  EXPECT_LT(ordered->tree.pair(1, 2).tilt.norm(), 0.01);
+}
+
+TEST(OrderedMotion, AGyroThatReadsFiveDegreesASecondAtRestKeepsItsHeading) {
+  Log log = log_of("robot6", {}, "noise", {.spikes = 20.0, .has_magnetometer = false}, 4, Script::together);
+  const auto& truth = log.motion.sensors[3];
+  add_bias(log.recording.sensors[3].rate, truth.world_R_sensor.front().conjugate() * Vec3(0.0, 0.0, 0.08));
+  const auto ordered = ordered_motion(log.recording, {}, {}, 0);
+  ASSERT_TRUE(ordered) << ordered.error().what;
+  EXPECT_THAT(edges(*ordered), testing::UnorderedElementsAreArray(edges(log.truth)));
+  const std::size_t last = truth.rate.size() - 100;
+  EXPECT_LT((ordered->motion.segments[3].gyro[last] - truth.rate[last]).norm(), 0.005);
 }
 
 TEST(OrderedMotion, HeadingsAgreeWithoutMagnetometers) {

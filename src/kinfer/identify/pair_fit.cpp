@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/geometry/rotation.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
@@ -13,36 +14,43 @@ namespace {
 constexpr std::size_t windows = 8;             // of equal length, within which the heading counts as constant
 constexpr int heading_starts = 24;             // around the circle
 constexpr int whitenings = 2;                  // passes in which the residual's covariance weighs it
+constexpr double gravity = 9.81;               // [m/s²] any value near it will do: it turns with the grounds only
 constexpr double samples_of_one_fact = 300.0;  // rows: orientations err slowly, so few rows tell anything new
 
+using Vec2 = Eigen::Vector2d;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Mat7 = Eigen::Matrix<double, 7, 7>;
 using Row7 = Eigen::Matrix<double, 3, 7>;
 
-/// [K R, R, a]: acceleration of a point of the segment in the ground is this times (lever, bias, 1).
+/// [K R, R, f]: specific force at a point of the segment in the ground is this times (lever, bias, 1).
 Row7 point_effect(const SegmentMotion& m, std::size_t row) {
   const Mat3 rate = skew(m.rate[row]);
   Row7 effect;
-  effect << (skew(m.rate_change[row]) + rate * rate) * m.rotation[row], m.rotation[row], m.acceleration[row];
+  effect << (skew(m.rate_change[row]) + rate * rate) * m.rotation[row], m.rotation[row],
+      m.acceleration[row] + gravity * Vec3::UnitZ();
   return effect;
 }
 
-/// Sums over the rows of one window from which any heading's normal equations follow: with u and v of the two segments,
-/// Σ uᵀ Rz(ψ) v = upright + cos ψ · level + sin ψ · turned. Likewise the relative rate in the first sensor is
-/// constant + cos ψ · level + sin ψ · turned, and its mean square is a sum of these moments.
-struct Window {
-  Mat7 upright = Mat7::Zero(), level = Mat7::Zero(), turned = Mat7::Zero();
-  std::array<std::array<Mat3, 3>, 3> rate{};
-  double time = 0.0, share = 0.0;
+/// What the second segment's ground is turned by against the first's, see PairFit.
+struct GroundTurn {
+  HeadingLine heading;
+  Vec2 tilt;
+
+  Mat3 at(double time) const { return exp_so3({tilt.x(), tilt.y(), 0.0}) * rot_z(heading.at(time)); }
 };
 
-Vec3 level_part(const Vec3& v) {
-  return {v.x(), v.y(), 0.0};
-}
-Vec3 turned_part(const Vec3& v) {
-  return {-v.y(), v.x(), 0.0};
-}
+constexpr int rate_parts = 10;  // of the relative rate: the first sensor's own, and an entry of the turn each
+using RateMoments = Eigen::Matrix<double, 3 * rate_parts, 3 * rate_parts>;
+
+/// Sums over the rows of one window, within which the turn E counts as constant. With u and v of the two segments,
+/// Σ uᵀ E v = Σ E(i, j) force(i, j). The relative rate in the first sensor is likewise linear in the entries of E, and
+/// its mean square a sum of these moments.
+struct Window {
+  std::array<std::array<Mat7, 3>, 3> force{};
+  RateMoments rate = RateMoments::Zero();
+  double time = 0.0, share = 0.0;
+};
 
 double determinant(const Mat3& m) {
   return m.col(0).dot(m.col(1).cross(m.col(2)));
@@ -61,36 +69,40 @@ class PairProblem {
     begin_ = motion.time[rows.front()];
     end_ = motion.time[rows.back()];
     for (Window& window : windows_)
-      for (auto& row : window.rate) row.fill(Mat3::Zero());
+      for (auto& row : window.force) row.fill(Mat7::Zero());
     for (const std::size_t row : rows) add(row);
     for (Window& window : windows_)
       if (window.share > 0.0) window.time /= window.share;
   }
 
-  HeadingLine line(double angle, double drift) const { return {angle, drift, 0.5 * (begin_ + end_)}; }
+  GroundTurn turn(double angle, double drift, const Vec2& tilt) const {
+    return {{angle, drift, 0.5 * (begin_ + end_)}, tilt};
+  }
 
-  /// Code length of a row [nats] with the heading's own, the residual's covariance taken as isotropic.
-  double cost(const HeadingLine& heading) const {
-    const Normal normal = normal_equations(heading);
+  /// Code length of a row [nats] with the turn's own, the residual's covariance taken as isotropic.
+  double cost(const GroundTurn& turn) const {
+    const Normal normal = normal_equations(turn);
     const auto x = solve_positive(normal.matrix, -normal.right);
     const double square = normal.square + (x ? x->dot(normal.right) : 0.0);
     const double noise = options_.acceleration_floor * options_.acceleration_floor;
-    const double wander = heading.drift / options_.drift_sd;
-    const double wrong =
-        options_.headings_known ? std::remainder(heading.angle, 2.0 * std::numbers::pi) / options_.heading_sd : 0.0;
+    const double wander = turn.heading.drift / options_.drift_sd;
+    const double wrong = options_.headings_known
+                             ? std::remainder(turn.heading.angle, 2.0 * std::numbers::pi) / options_.heading_sd
+                             : 0.0;
+    const double lean = turn.tilt.squaredNorm() / (options_.tilt_sd * options_.tilt_sd);
     const double facts = static_cast<double>(rows_.size()) / samples_of_one_fact;
     return 1.5 * std::log(std::max(0.0, square) / 3.0 + noise) +
-           code_length(mean_square_rate(heading), options_.rate_floor) +
-           0.5 * (wander * wander + wrong * wrong) / facts;
+           code_length(mean_square_rate(turn), options_.rate_floor) +
+           0.5 * (wander * wander + wrong * wrong + lean) / facts;
   }
 
-  /// Levers, biases and residual at the heading, the residual weighted by `weight` (in the first sensor).
+  /// Levers, biases and residual at the fit's turn, the residual weighted by `weight` (in the first sensor).
   void solve(PairFit& fit, const Mat3& weight) const {
     MatrixXd matrix = MatrixXd::Zero(12, 12);
     VectorXd right = VectorXd::Zero(12);
     matrix.diagonal() = prior();
     for (const std::size_t row : rows_) {
-      const Eigen::Matrix<double, 3, 13> k = difference_effect(fit.heading, row);
+      const Eigen::Matrix<double, 3, 13> k = difference_effect({fit.heading, fit.tilt}, row);
       const Eigen::Matrix<double, 3, 13> weighted = weight * k;
       matrix.noalias() += k.leftCols<12>().transpose() * weighted.leftCols<12>() / count();
       right.noalias() += weighted.leftCols<12>().transpose() * k.col(12) / count();
@@ -103,19 +115,20 @@ class PairProblem {
     fit.bias_of_second = x.tail<3>();
     fit.acceleration.setZero();
     for (const std::size_t row : rows_) {
-      const Eigen::Matrix<double, 3, 13> k = difference_effect(fit.heading, row);
+      const Eigen::Matrix<double, 3, 13> k = difference_effect({fit.heading, fit.tilt}, row);
       const Vec3 residual = k.leftCols<12>() * x + k.col(12);
       fit.acceleration += residual * residual.transpose() / count();
     }
   }
 
-  Mat3 mean_square_rate(const HeadingLine& heading) const {
+  Mat3 mean_square_rate(const GroundTurn& turn) const {
     Mat3 sum = Mat3::Zero();
     for (const Window& window : windows_) {
-      const double angle = heading.at(window.time);
-      const std::array factors{1.0, std::cos(angle), std::sin(angle)};
-      for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) sum += factors[i] * factors[j] * window.rate[i][j];
+      Eigen::Matrix<double, rate_parts, 1> factor;
+      factor << 1.0, turn.at(window.time).reshaped<Eigen::RowMajor>();
+      Eigen::Matrix<double, 3, 3 * rate_parts> half = Eigen::Matrix<double, 3, 3 * rate_parts>::Zero();
+      for (int i = 0; i < rate_parts; ++i) half += factor[i] * window.rate.middleRows<3>(3 * i);
+      for (int i = 0; i < rate_parts; ++i) sum += factor[i] * half.middleCols<3>(3 * i);
     }
     return sum;
   }
@@ -150,24 +163,23 @@ class PairProblem {
     const Row7 u = point_effect(a_, row), v = point_effect(b_, row);
     of_first_ += u.transpose() * u / n;
     of_second_ += v.transpose() * v / n;
-    window.upright.noalias() += u.row(2).transpose() * v.row(2) / n;
-    window.level.noalias() += u.topRows<2>().transpose() * v.topRows<2>() / n;
-    window.turned.noalias() += (u.row(1).transpose() * v.row(0) - u.row(0).transpose() * v.row(1)) / n;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) window.force[i][j].noalias() += u.row(i).transpose() * v.row(j) / n;
     const Mat3 to_first = a_.rotation[row].transpose();
-    const Vec3 rate = b_.rate[row];
-    const std::array<Vec3, 3> parts{to_first * (Vec3(0.0, 0.0, rate.z()) - a_.rate[row]), to_first * level_part(rate),
-                                    to_first * turned_part(rate)};
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j) window.rate[i][j] += parts[i] * parts[j].transpose() / n;
+    Eigen::Matrix<double, 3, rate_parts> parts;
+    parts.col(0) = -to_first * a_.rate[row];
+    for (int i = 0; i < 3; ++i) parts.middleCols<3>(1 + 3 * i) = to_first.col(i) * b_.rate[row].transpose();
+    window.rate.noalias() += parts.reshaped() * parts.reshaped().transpose() / n;
     window.time += motion_.time[row] / n;
     window.share += 1.0 / n;
   }
 
-  Normal normal_equations(const HeadingLine& heading) const {
+  Normal normal_equations(const GroundTurn& turn) const {
     Mat7 mixed = Mat7::Zero();
     for (const Window& window : windows_) {
-      const double angle = heading.at(window.time);
-      mixed += window.upright + std::cos(angle) * window.level + std::sin(angle) * window.turned;
+      const Mat3 e = turn.at(window.time);
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) mixed += e(i, j) * window.force[i][j];
     }
     Normal normal{MatrixXd(12, 12), VectorXd(12)};
     normal.matrix << of_first_.topLeftCorner<6, 6>(), -mixed.topLeftCorner<6, 6>(),
@@ -179,10 +191,10 @@ class PairProblem {
     return normal;
   }
 
-  /// Difference of the accelerations, second less first, in the first sensor: this times (levers and biases, 1).
-  Eigen::Matrix<double, 3, 13> difference_effect(const HeadingLine& heading, std::size_t row) const {
-    const Mat3 to_first = a_.rotation[row].transpose(), turn = to_first * rot_z(heading.at(motion_.time[row]));
-    const Row7 u = to_first * point_effect(a_, row), v = turn * point_effect(b_, row);
+  /// Difference of the specific forces, second less first, in the first sensor: this times (levers and biases, 1).
+  Eigen::Matrix<double, 3, 13> difference_effect(const GroundTurn& turn, std::size_t row) const {
+    const Mat3 to_first = a_.rotation[row].transpose();
+    const Row7 u = to_first * point_effect(a_, row), v = to_first * turn.at(motion_.time[row]) * point_effect(b_, row);
     Eigen::Matrix<double, 3, 13> k;
     k << -u.leftCols<6>(), v.leftCols<6>(), v.col(6) - u.col(6);
     return k;
@@ -197,25 +209,29 @@ class PairProblem {
   std::array<Window, windows> windows_;
 };
 
-/// Best of a coarse circle of headings, then by halving steps in angle and drift.
-HeadingLine best_heading(const PairProblem& problem) {
+/// Best of a coarse circle of headings, then by halving steps in angle, drift and tilt.
+GroundTurn best_turn(const PairProblem& problem) {
   constexpr double coarse = 2.0 * std::numbers::pi / heading_starts, finest = 1e-4;
-  HeadingLine best = problem.line(0.0, 0.0);
+  GroundTurn best = problem.turn(0.0, 0.0, Vec2::Zero());
   double least = problem.cost(best);
-  const auto try_line = [&](double angle, double drift) {
-    const HeadingLine line = problem.line(angle, drift);
-    const double cost = problem.cost(line);
+  const auto try_turn = [&](double angle, double drift, const Vec2& tilt) {
+    const GroundTurn turn = problem.turn(angle, drift, tilt);
+    const double cost = problem.cost(turn);
     if (!(cost < least)) return false;
-    best = line;
+    best = turn;
     least = cost;
     return true;
   };
-  for (int k = 1; k < heading_starts; ++k) try_line(k * coarse, 0.0);
+  for (int k = 1; k < heading_starts; ++k) try_turn(k * coarse, 0.0, Vec2::Zero());
   for (double step = 0.5 * coarse; step > finest;) {
-    const double drift_step = 0.01 * step;  // [rad/s] of a log of minutes
-    const HeadingLine at = best;
-    const bool better = try_line(at.angle + step, at.drift) || try_line(at.angle - step, at.drift) ||
-                        try_line(at.angle, at.drift + drift_step) || try_line(at.angle, at.drift - drift_step);
+    const double drift_step = 0.01 * step, tilt_step = 0.1 * step;  // [rad/s] of a log of minutes; [rad]
+    const auto [heading, tilt] = best;
+    const auto try_tilt = [&](const Vec2& by) { return try_turn(heading.angle, heading.drift, tilt + tilt_step * by); };
+    const bool better = try_turn(heading.angle + step, heading.drift, tilt) ||
+                        try_turn(heading.angle - step, heading.drift, tilt) ||
+                        try_turn(heading.angle, heading.drift + drift_step, tilt) ||
+                        try_turn(heading.angle, heading.drift - drift_step, tilt) || try_tilt(Vec2::UnitX()) ||
+                        try_tilt(-Vec2::UnitX()) || try_tilt(Vec2::UnitY()) || try_tilt(-Vec2::UnitY());
     if (!better) step *= 0.5;
   }
   return best;
@@ -239,8 +255,9 @@ PairFit fit_pair(const RecordedMotion& motion, std::size_t first, std::size_t se
                  const std::vector<std::size_t>& rows, const PairFitOptions& options) {
   KINFER_EXPECT(rows.size() >= 50, "{} rows", rows.size());
   const PairProblem problem(motion, first, second, rows, options);
-  PairFit fit{.first = first, .second = second, .heading = best_heading(problem)};
-  fit.rate = problem.mean_square_rate(fit.heading);
+  const GroundTurn turn = best_turn(problem);
+  PairFit fit{.first = first, .second = second, .heading = turn.heading, .tilt = turn.tilt};
+  fit.rate = problem.mean_square_rate(turn);
   problem.solve(fit, Mat3::Identity());
   for (int k = 0; k < whitenings; ++k) problem.solve(fit, whitening(fit.acceleration, options.acceleration_floor));
   fit.distance = code_length(fit.acceleration, options.acceleration_floor) + code_length(fit.rate, options.rate_floor);

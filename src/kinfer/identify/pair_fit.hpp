@@ -2,10 +2,11 @@
 // fitted.
 //
 // Two segments that share a joint share a point (its centre), on whose acceleration both INS must agree:
-//   a_i + K_i r_i + R_i b_i = Rz(ψ) (a_j + K_j r_j + R_j b_j),  K = (skew(ω̇) + skew(ω)²) R, in the ground.
-// The lever arms r and the accelerometers' biases b are linear in it. ψ, what the headings of the two orientations
-// differ by, is not: magnetometers near steel lie, and without one a heading is arbitrary. It is a straight line of
-// time, searched with the linear unknowns eliminated at each step (variable projection, Golub and Pereyra 1973).
+//   f_i + K_i r_i + R_i b_i = E (f_j + K_j r_j + R_j b_j),  K = (skew(ω̇) + skew(ω)²) R, in the ground,
+// with the specific force f. The lever arms r and the accelerometers' biases b are linear in it. E, what the two
+// orientations' grounds differ by, is not: a heading ψ, because magnetometers near steel lie and a heading without one
+// is arbitrary, a straight line of time; and a tilt, because the biases of cheap accelerometers lean the verticals.
+// They are searched with the linear unknowns eliminated at each step (variable projection, Golub and Pereyra 1973).
 //
 // The pair's distance is the code length of a row of its relative motion, that is of what has to be told of the one
 // segment when the other's motion is known: ½ log det of the covariance of the acceleration residual plus the same of
@@ -23,7 +24,8 @@ namespace kinfer {
 
 struct PairFit {
   std::size_t first = 0, second = 0;                                   ///< indices of segments, first < second
-  HeadingLine heading{};                                               ///< of second against first
+  HeadingLine heading{};                                               ///< of second's ground against first's
+  Eigen::Vector2d tilt{0.0, 0.0};                                      ///< [rad] likewise, about level axes
   Vec3 point_in_first = Vec3::Zero(), point_in_second = Vec3::Zero();  ///< [m] the common point, as far as it shows
   Vec3 bias_of_first = Vec3::Zero(), bias_of_second = Vec3::Zero();    ///< [m/s²] of the accelerometers, less sign
   Mat3 acceleration = Mat3::Zero();  ///< [(m/s²)²] mean square of the residual, in the first sensor
@@ -42,6 +44,7 @@ struct PairFitOptions {
   double rate_floor = 3e-3;          ///< [rad/s] likewise
   double heading_sd = 0.5;           ///< [rad] how far two magnetometers' headings may differ; see `headings_known`
   double drift_sd = 2e-3;            ///< [rad/s] of a heading without magnetometer
+  double tilt_sd = 0.03;             ///< [rad] of two verticals: accelerometers of 20 mg
   bool headings_known = false;       ///< the orientations' headings come from magnetometers
 };
 

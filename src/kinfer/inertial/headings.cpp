@@ -39,8 +39,11 @@ bool all_have_magnetometers(const InsRecording& recording) {
 Result<RecordedMotion> gyro_motion(const InsRecording& recording, const SegmentMotionOptions& options, int threads) {
   SegmentMotionOptions by_gyros = options;
   by_gyros.filter = without_magnetometer(options.filter);
-  if (auto* offline = std::get_if<KinferOfflineOptions>(&by_gyros.filter))
-    offline->filter.rest.largest_bias = largest_bias;  // a bias that is not found here, no heading will mend
+  if (auto* offline = std::get_if<KinferOfflineOptions>(&by_gyros.filter)) {
+    // A bias that is not found here, no heading will mend: the rest at the start has to count whatever it reads.
+    offline->filter.rest.largest_bias = largest_bias;
+    offline->filter.bias_sd = largest_bias / 5.0;
+  }
   KINFER_TRY(motion, segment_motion(recording, by_gyros, threads));
   parallel_for(motion.segments.size(), threads, [&](std::size_t i) {
     if (!recording.sensors[i].has_magnetometer()) return;
