@@ -126,6 +126,10 @@ std::string simulated(const RobotModel& robot) {
   for (const auto& [criterion, name] : all_criteria) {
     const PosePlan plan =
         plan_poses(plan_task(robot, tracker, {}), {.poses = poses, .criterion = criterion}, Rng(1)).value();
+    if (plan.least_rms > 0.0)
+      fmt::print("expected rms {:.4f} mm, worst place {:.4f}; no choice of {} leaves less than {:.4f}; random {:.4f}\n",
+                 1e3 * plan.expected.rms, 1e3 * plan.expected.worst, poses, 1e3 * plan.least_rms,
+                 1e3 * plan.random.rms);
     table += row("simulated UR10-like", name, median_of_draws([&](int) { return plan.joints; }), by_chance);
   }
   return table;

@@ -23,6 +23,8 @@ Calibration on_half(const Chain& chain, const PoseSet& data, int seed, const Mod
 
 struct Halves {
   double mean = 0.0, worst = 0.0, largest_worst = 0.0, before = 0.0;  // [mm], means over the halves
+  double mean_of_all = 0.0, worst_of_all = 0.0;                       // wrong rows counted
+  std::size_t wrong = 0;                                              // rows left out, all halves together
   std::string model;
 };
 
@@ -33,6 +35,9 @@ Halves five_halves(const Chain& chain, const PoseSet& data, const ModelChoice& m
     sum.mean += 1e3 / halves * c.after.position.holdout.mean;
     sum.worst += 1e3 / halves * c.after.position.holdout.max;
     sum.largest_worst = std::max(sum.largest_worst, 1e3 * c.after.position.holdout.max);
+    sum.mean_of_all += 1e3 / halves * c.after.position.holdout_all_rows.mean;
+    sum.worst_of_all += 1e3 / halves * c.after.position.holdout_all_rows.max;
+    sum.wrong += c.wrong_rows.size();
     sum.before += 1e3 / halves * c.before.position.holdout.mean;
     sum.model += (seed > 1 ? "; " : "") + c.ladder.chosen;
   }
@@ -41,7 +46,9 @@ Halves five_halves(const Chain& chain, const PoseSet& data, const ModelChoice& m
 
 void print_halves(const std::string& name, double asked, const Halves& h) {
   print_row(name, asked, h.mean,
-            fmt::format("worst {:.3f} (mean), {:.3f} (largest); before {:.3f}", h.worst, h.largest_worst, h.before));
+            fmt::format("worst {:.3f} (mean), {:.3f} (largest); before {:.3f}; with {} wrong rows of the five halves "
+                        "{:.4f}, worst {:.3f}",
+                        h.worst, h.largest_worst, h.before, h.wrong, h.mean_of_all, h.worst_of_all));
 }
 
 void ur10(const std::string& folder) {

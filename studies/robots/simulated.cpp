@@ -1,8 +1,10 @@
 #include "simulated.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/calibrate/plan.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "support/instruments.hpp"
 #include "table.hpp"
@@ -85,6 +87,26 @@ void tracked(const std::string& name, double asked, const Chain& nominal, const 
     if (c.ladder.chosen != "geometry") models += "; " + c.ladder.chosen;
   }
   print_row(name, asked, mean(errors), fmt::format("covariance expects rms {:.4f}{}", mean(expected), models));
+}
+
+/// As many poses, chosen by a plan instead of at random.
+void planned(const std::string& name, double asked, const Chain& nominal, const PoseSimulation& simulation) {
+  PlanTask task;
+  task.nominal = nominal;
+  task.instrument = simulation.instrument;
+  const PosePlan plan = plan_poses(task, {.poses = simulation.poses}, Rng(1)).value();
+  std::vector<double> errors;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const Chain truth = with_random_errors(nominal, {}, Rng(100 + seed));
+    PoseSet data;
+    data.joint_names = reading_names(nominal);
+    data.joints = plan.joints;
+    measure_points(data, truth, simulation.instrument, Rng(200 + seed));
+    errors.push_back(unseen_error(calibrated(nominal, simulation.instrument, data).estimate.chain, truth, simulation));
+  }
+  print_row(name, asked, mean(errors),
+            fmt::format("expected rms {:.4f}; no choice of candidates leaves less than {:.4f}", 1e3 * plan.expected.rms,
+                        1e3 * plan.least_rms));
 }
 
 void outliers() {
@@ -170,6 +192,10 @@ void simulated_robots() {
   tracked("UR10-like, three parallel axes", 0.024, ur10_like(), free_space(50, tracker));
   tracked("SCARA with gain", 0.021, scara(), free_space(50, tracker));
   tracked("seven axes, 0.05 mm noise", 0.030, seven_axes(), free_space(50, Instrument{.sigma = 50e-6}));
+  tracked("seven axes, 0.05 mm long errors", 0.030, seven_axes(),
+          free_space(50, Instrument{.sigma = 50e-6 / std::sqrt(3.0)}));
+  planned("seven axes, 0.05 mm noise, 50 planned poses", 0.030, seven_axes(),
+          free_space(50, Instrument{.sigma = 50e-6}));
   tracked("the same with 80 poses", 0.030, seven_axes(), free_space(80, Instrument{.sigma = 50e-6}));
   outliers();
   draw_wire();

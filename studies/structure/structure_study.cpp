@@ -90,7 +90,8 @@ OrderOutcome judged_order(const Case& c) {
   const Log log = simulated(c);
   const auto ordered = ordered_motion(log.recording, {}, {}, 1);
   if (!ordered) return {};
-  const auto& [motion, tree] = *ordered;
+  const RecordedMotion& motion = ordered->motion;
+  const SegmentTree& tree = ordered->tree;
   OrderOutcome outcome{.is_right = motion.segments[tree.root].name == log.truth.root, .margin = tree.margin};
   const auto types = joint_types(motion, tree);
   for (std::size_t i = 1; i < tree.order.size(); ++i) {
@@ -147,7 +148,8 @@ struct LinkProblem {
 
 std::vector<LinkProblem> problems_of(const OrderedMotion& ordered, const MachineTruth& truth) {
   std::vector<LinkProblem> problems;
-  const auto& [motion, tree] = ordered;
+  const RecordedMotion& motion = ordered.motion;
+  const SegmentTree& tree = ordered.tree;
   for (const std::size_t child : tree.order) {
     if (!tree.parent[child]) continue;
     const auto joint = std::ranges::find(truth.joints, motion.segments[child].name, &JointTruth::child);

@@ -101,6 +101,29 @@ TEST(Ladder, measured_torques_backlash_gears_and_warmth_are_found_each) {
   });
 }
 
+TEST(Ladder, a_parallelograms_coupling_is_corrected_and_one_that_no_sheet_tells_is_found) {
+  Chain nominal = nominal_robot();
+  nominal.joints[2].couplings = {{1, -1.0}};
+  Chain truth = with_random_errors(nominal, {}, Rng(4));
+  truth.joints[2].couplings = {{1, -1.003}};
+  truth.joints[5].couplings = {{4, 0.0125}};  // a hollow wrist: one tooth of eighty
+  PoseSet data = readings(truth, 80);
+  measure_points(data, truth, tracker, Rng(5));
+  const Calibration c = climbed(nominal, data);
+  EXPECT_TRUE(rung(c, "coupling").chosen) << rung(c, "coupling").why;
+  const auto factor = [&](const std::string& name) {
+    for (const ParameterEstimate& value : c.estimate.values)
+      if (value.name == name) return value;
+    ADD_FAILURE() << name;
+    return ParameterEstimate{};
+  };
+  EXPECT_NEAR(factor("coupling3_2").value, -1.003, 3.5 * factor("coupling3_2").sd);
+  EXPECT_NEAR(factor("coupling6_5").value, 0.0125, 3.5 * factor("coupling6_5").sd);
+  EXPECT_LT(factor("coupling3_2").sd, 1e-4);
+  PoseSet unseen = readings(truth, 200, 77);
+  EXPECT_LT(error_on(c.estimate.chain, truth, unseen), 25e-6);
+}
+
 TEST(Ladder, the_spectrum_shows_a_motors_line_of_unknown_order) {
   Chain truth = with_random_errors(nominal_robot(), {}, Rng(8));
   truth.joints[1].harmonics = {{80.0, 1.5e-4, 1e-4}};

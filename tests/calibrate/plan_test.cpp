@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "kinfer/calibrate/plan_bound.hpp"
 #include "kinfer/calibrate/single_fit.hpp"
 #include "kinfer/estimate/residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
@@ -59,6 +60,20 @@ TEST(design, objectives_are_what_they_say) {
   const double worst = objective(problem, Criterion::worst, lambda);
   EXPECT_LE(worst, tool_variances(problem, sigma).maxCoeff());
   EXPECT_GE(worst, 0.8 * tool_variances(problem, sigma).maxCoeff());
+}
+
+TEST(design, no_choice_is_better_than_the_bound_and_many_poses_come_close_to_it) {
+  const DesignProblem problem = small_problem();
+  for (int a = 0; a < 9; ++a)
+    for (int b = a; b < 9; ++b)
+      for (int c = b; c < 9; ++c)
+        EXPECT_GE(objective(problem, Criterion::tool, information(problem, {a, b, c})), least_mean_square(problem, 3));
+  const std::vector<int> many = greedy_design(problem, Criterion::tool, 9);
+  EXPECT_GE(objective(problem, Criterion::tool, information(problem, many)), least_mean_square(problem, 9));
+  DesignProblem alone = problem;
+  alone.rows = problem.rows.topRows(3).eval();
+  const double only_one = objective(alone, Criterion::tool, information(alone, {0}));
+  EXPECT_NEAR(least_mean_square(alone, 1), only_one, 1e-12 * only_one);
 }
 
 TEST(design, copies_are_superfluous) {

@@ -98,6 +98,7 @@ TEST(Calibrate, a_search_by_a_population_is_proven_like_least_squares) {
   const Calibration c = calibrate(task, options, Rng(1)).value();
   EXPECT_EQ(c.estimate.search.method, "pso");
   EXPECT_EQ(c.after.position.holdout.n, 50);
+  EXPECT_NE(c.verdict.find("climb no ladder"), std::string::npos) << c.verdict;
   EXPECT_LT(c.after.position.holdout.mean, 0.1 * c.before.position.holdout.mean);
   for (const int threads : {1, 7}) {
     options.threads = threads;

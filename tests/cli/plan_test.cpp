@@ -16,6 +16,9 @@ TEST_F(PlanPoses, planned_poses_are_readable_and_come_with_a_figure) {
   const Outcome run = kinfer("plan --robot " + robot() + " --poses 10 -o plan.csv --lowest 100 --json");
   ASSERT_EQ(run.code, 0) << run.err;
   const json plan = json::parse(run.out);
+  EXPECT_EQ(slurp(in("plan.json")), run.out);
+  EXPECT_GT(plan["least_rms"].get<double>(), 0.0);
+  EXPECT_LE(plan["least_rms"].get<double>(), 1.02 * plan["expected"]["rms"].get<double>());
   EXPECT_EQ(plan["poses"], 10);
   EXPECT_LT(plan["expected"]["rms"], plan["random"]["rms"]);
   EXPECT_EQ(plan["observability"].size(), 5u);

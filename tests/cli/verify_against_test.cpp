@@ -43,6 +43,9 @@ TEST_F(VerifyAgainst, tables_of_a_calibration_lie_beside_its_chain) {
   for (const char* file :
        {"chain_mdh.csv", "chain_dh.csv", "joint_twists.csv", "encoder_offsets.csv", "covariance.csv", "accuracy.csv"})
     EXPECT_TRUE(fs::exists(in("may/cal") / file)) << file;
+  const json iso = json::parse(slurp(in("may/cal/evidence.json")))["iso9283"];
+  EXPECT_LT(iso["pose_accuracy_after"]["mean"], iso["pose_accuracy_before"]["mean"]);
+  EXPECT_EQ(iso["pose_repeatability"]["n"], 0);
   EXPECT_EQ(slurp(in("may/cal/chain_mdh.csv")).find("joint,type,theta[deg],d[mm],a[mm],alpha[deg],beta[deg],gain\nJ1,"),
             0u);
 }

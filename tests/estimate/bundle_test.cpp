@@ -148,5 +148,19 @@ TEST(Bundle, errors_on_unseen_poses_are_as_large_as_the_covariance_says) {
   EXPECT_LT(mean(actual), 30e-6);
 }
 
+TEST(Bundle, predicted_errors_of_many_poses_are_those_of_their_covariances) {
+  const PoseSet data = measured(with_table3_errors(er20()), paper2_poses(50, tracker));
+  Estimate estimate = fit_bundle(er20(), geometric_parameters(er20(), data, {}), data, tracker);
+  for (const double compliance : {0.0, 1e-6}) {  // pose by pose where a joint yields
+    estimate.chain.joints[1].compliance = compliance;
+    const VectorXd errors = predicted_errors(estimate, data.joints);
+    ASSERT_EQ(errors.size(), data.rows());
+    for (Eigen::Index row = 0; row < data.rows(); ++row) {
+      const double one = std::sqrt(predicted_covariance(estimate, data.joints.col(row)).trace());
+      EXPECT_NEAR(errors[row], one, 1e-10 * one);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace kinfer

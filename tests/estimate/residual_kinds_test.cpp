@@ -23,6 +23,8 @@ Chain rich_robot() {
   chain.joints[3].backlash = 1e-4;
   chain.joints[0].harmonics = {{1.0, 1e-4, -2e-4}, {2.0, 3e-4, 1e-4}};
   chain.joints[4].harmonics = {{7.5, -1e-4, 2e-4}};
+  chain.joints[2].couplings = {{1, 0.02}};
+  chain.joints[5].couplings = {{4, -0.3}, {3, 1e-3}};
   chain.expansion = 2e-5;
   chain.reference_temperature = 20.0;
   Surroundings& around = chain.surroundings;

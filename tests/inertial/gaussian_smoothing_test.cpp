@@ -32,8 +32,17 @@ TEST(GaussianSmoothing, DampsASineAndItsDerivativeAlike) {
   }
 }
 
-TEST(GaussianSmoothing, IsNeverNarrowerThanADerivativeNeeds) {
-  EXPECT_GT(gaussian_kernel(0.0, period).half, 1);
+TEST(GaussianSmoothing, DampsBothAlikeAtASlowSamplingRateToo) {
+  const double slow = 0.025, widened = 1.2 * slow, w = 2.0 * 3.14159265358979323846 * 8.0;
+  const GaussianKernel kernel = gaussian_kernel(sigma, slow);
+  std::vector<double> sine;
+  for (int i = 0; i < 400; ++i) sine.push_back(std::sin(w * slow * i));
+  const double damping = std::exp(-0.5 * w * w * widened * widened);
+  for (const std::size_t i : {101u, 203u}) {
+    EXPECT_NEAR(smoothed(sine, kernel)[i], damping * sine[i], 0.002);
+    EXPECT_NEAR(smoothed_derivative(sine, kernel)[i], damping * w * std::cos(w * slow * static_cast<double>(i)),
+                0.01 * damping * w);
+  }
 }
 
 }  // namespace

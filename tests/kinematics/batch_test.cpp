@@ -32,7 +32,7 @@ std::vector<Chain> stiff_examples() {
 /// Every geometric number and every gain is free.
 ParameterSet everything(const Chain& chain) {
   ParameterSet set = all_parameters(chain, {});
-  for (Parameter& p : set.parameters) p.free = p.at.field != Field::compliance;
+  for (Parameter& p : set.parameters) p.free = p.at.field != Field::compliance && p.at.field != Field::coupling;
   return set;
 }
 
@@ -140,6 +140,7 @@ TEST_P(AnyStiffChain, jacobian_and_normal_equations_are_those_of_poses_walked_on
       const BatchPoints points(chain, set, table, *kernels);
       const BatchPoints::Weights weights = points.weights(inverse_sd);
       BatchPoints::Scratch scratch;
+      r.resize(slow_r.size()), jacobian.resizeLike(slow_jacobian);
       points.residuals(x, weights, r, jacobian, scratch);
       EXPECT_LT((r - slow_r).norm(), 1e-13 * slow_r.norm()) << kernels->name;
       EXPECT_LE((jacobian - slow_jacobian).norm(), 1e-13 * slow_jacobian.norm()) << kernels->name;
@@ -187,6 +188,12 @@ TEST(Batch, a_chain_that_yields_has_no_batch_form) {
   EXPECT_FALSE(has_batch_form(laws::compliant(), everything(laws::compliant())));
   EXPECT_FALSE(has_batch_form(laws::er20(), all_parameters(laws::er20(), {})));
   EXPECT_TRUE(has_batch_form(laws::er20(), everything(laws::er20())));
+  Chain coupled = laws::er20();
+  coupled.joints[2].couplings = {{.joint = 1, .factor = 0.1}};
+  ParameterSet set = everything(coupled);
+  EXPECT_TRUE(has_batch_form(coupled, set));
+  for (Parameter& p : set.parameters) p.free = p.free || p.at.field == Field::coupling;
+  EXPECT_FALSE(has_batch_form(coupled, set));
 }
 
 }  // namespace

@@ -45,6 +45,19 @@ TEST(NormalLeastSquares, takes_the_steps_that_the_jacobian_would_take) {
   EXPECT_LT(normal.jacobians, normal.evaluations);
 }
 
+TEST(NormalLeastSquares, makes_no_equations_where_the_target_cost_ends_the_search) {
+  const Residuals dense = rosenbrock();
+  const NormalProblem problem = by_normal_equations(dense);
+  const VectorXd start = Eigen::Vector2d(-1.2, 1.0);
+  const LeastSquaresOutcome found = least_squares(problem, start, {.target_cost = 1e-6}),
+                            longer = least_squares(problem, start);
+  EXPECT_EQ(found.stop, Stop::target_reached);
+  EXPECT_LE(found.cost, 1e-6);
+  EXPECT_EQ(found.normal.matrix.size(), 0);
+  EXPECT_EQ(found.cost, longer.history[found.iterations]);
+  EXPECT_GT(longer.normal.matrix.size(), 0);
+}
+
 TEST(NormalLeastSquares, a_direction_that_no_residual_sees_stays_where_it_started) {
   Residuals problem{.unknowns = 3, .rows = 2};
   problem.evaluate = [](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {

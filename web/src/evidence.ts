@@ -1,4 +1,5 @@
-// evidence.json as kinfer writes it (docs/formats.md), as far as the page draws it.
+// evidence.json as kinfer writes it (docs/formats.md), as far as the page draws it; long signals are packed.
+import type { Packed } from './packed';
 
 export type Triple = [number, number, number];
 export type Quadruple = [number, number, number, number];
@@ -59,8 +60,8 @@ export interface FoundJointJson {
 }
 
 export interface EnvelopeJson {
-  low: (number | null)[];
-  high: (number | null)[];
+  low: Packed;
+  high: Packed;
 }
 
 export interface TraceJson {

@@ -14,9 +14,20 @@ interface DrawnJoint {
   centre: Mesh;
   axis: Bar;
   sure: Bar;
+  place: Mesh; // an ellipsoid: how sure the joint's point is
   arm: Bar; // from the joint to the child's INS: where the sensor is mounted
   links: { bar: Bar; to: FoundJointJson }[];
   open: { line: DashedLine; direction: Vector3; frame: 'parent' | 'child' }[];
+}
+
+const unknownLength = 0.5; // [m] one standard deviation of a place that counts as not known
+
+/** The direction across an axis that standard deviations are stated for: with the smallest of its coordinates. */
+function perpendicular(axis: Vector3): Vector3 {
+  const size = [Math.abs(axis.x), Math.abs(axis.y), Math.abs(axis.z)];
+  const unit = new Vector3();
+  unit.setComponent(size.indexOf(Math.min(...size)), 1);
+  return axis.clone().cross(unit).normalize();
 }
 
 function across(sd: readonly number[]): number {
@@ -100,11 +111,13 @@ export class IdentifyMachine {
       centre: ball(2.4 * thick, solid('--after')),
       axis: new Bar(0.22 * thick, solid('--after')),
       sure: new Bar(thick, sure),
+      place: ball(thick, sure),
       arm: new Bar(0.35 * thick, solid('--muted')),
       links: this.linksFrom(json.child, body, thick),
       open: [...open(json.not_identifiable_in_parent, 'parent'), ...open(json.not_identifiable_in_child, 'child')],
     };
     this.stage.add(drawn.arm.mesh);
+    if (moves) this.stage.add(drawn.place);
     if (oneAxis) this.stage.add(drawn.drum.mesh, drawn.axis.mesh, drawn.sure.mesh);
     else if (moves) this.stage.add(drawn.centre);
     for (const link of drawn.links) this.stage.add(link.bar.mesh);
@@ -144,7 +157,7 @@ export class IdentifyMachine {
       group(this.play, this.time.row),
       group(times.row),
       group(
-        toggle('how sure each axis is', 'after', true, show(this.joints.map((joint) => joint.sure.mesh))),
+        toggle('how sure axes and points are', 'after', true, show(this.joints.flatMap((j) => [j.sure.mesh, j.place]))),
         toggle('directions nothing tells', 'open', true, show(this.joints.flatMap((j) => j.open.map((o) => o.line.object)))),
       ),
     );
@@ -234,6 +247,22 @@ export class IdentifyMachine {
     this.stage.invalidate();
   }
 
+  /** Half axes are one standard deviation across the joint's axis in its child, and along it, exaggerated. */
+  private layPlace(joint: DrawnJoint, child: Matrix4, point: Vector3, axis: Vector3): void {
+    const { sd, axis_in_child: own } = joint.json;
+    const first = perpendicular(own ? new Vector3(...own) : new Vector3(0, 0, 1)).transformDirection(child);
+    const second = axis.clone().cross(first);
+    const across = [sd.point_in_child_m[0], sd.point_in_child_m[1]];
+    const along = joint.oneAxis ? Number(sd['slide_m']) : Math.hypot(...across);
+    // A place along the axis that nothing tells is drawn dashed, and not as a cigar without end.
+    const half = [...across, along < unknownLength ? along : Math.min(...across)].map((length) =>
+      Math.min(Math.max(length * this.exaggeration, 1e-4), 0.25 * this.radius),
+    );
+    joint.place.position.copy(point);
+    joint.place.quaternion.setFromRotationMatrix(new Matrix4().makeBasis(first, second, axis));
+    joint.place.scale.set(half[0]!, half[1]!, half[2]!);
+  }
+
   private layJoint(joint: DrawnJoint, frames: Map<string, Matrix4>): void {
     const { json } = joint;
     const child = frames.get(json.child);
@@ -249,6 +278,7 @@ export class IdentifyMachine {
     const spread = across(json.sd.point_in_child_m) + half * across(json.sd.axis_in_child_rad);
     joint.sure.lay(...along(half), Math.min(Math.max(spread * this.exaggeration, 1e-4), 0.25 * this.radius));
     joint.centre.position.copy(point);
+    this.layPlace(joint, child, point, axis);
     joint.arm.lay(point, at(null, child));
     for (const link of joint.links) link.bar.lay(point, at(link.to.point_in_parent, child));
     for (const open of joint.open) {

@@ -16,7 +16,20 @@ export function cssColor(name: string): Color {
   return new Color(cssText(name));
 }
 
+/** The dark colours stand once in the style sheet, for systems that are dark; the button needs them everywhere. */
+function makeDarkAvailable(): void {
+  for (const sheet of Array.from(document.styleSheets))
+    for (const rule of Array.from(sheet.cssRules)) {
+      if (!(rule instanceof CSSMediaRule) || rule.conditionText !== '(prefers-color-scheme: dark)') continue;
+      const colours = rule.cssRules[0];
+      if (colours instanceof CSSStyleRule)
+        sheet.insertRule(`@media screen { :root[data-theme='dark'] { ${colours.style.cssText} } }`, sheet.cssRules.length);
+      return;
+    }
+}
+
 export function addThemeButton(bar: HTMLElement): void {
+  makeDarkAvailable();
   const dark = window.matchMedia('(prefers-color-scheme: dark)');
   const isDark = () => (document.documentElement.dataset.theme ?? (dark.matches ? 'dark' : 'light')) === 'dark';
   const button = document.createElement('button');

@@ -2,6 +2,7 @@
 import uPlot from 'uplot';
 import { choice, group } from './controls';
 import type { EnvelopeJson, IdentifyEvidence, TraceJson } from './evidence';
+import { unpacked } from './packed';
 import { cssText, onThemeChange } from './theme';
 
 const axisNames = ['x', 'y', 'z'];
@@ -64,7 +65,7 @@ function plot(
     );
     bands.push({ series: [first, first + 1], fill: () => colour(curve.colour) } as uPlot.Band);
   }
-  const data = [time, ...curves.flatMap((c) => [c.envelope.high, c.envelope.low])] as uPlot.AlignedData;
+  const data = [time, ...curves.flatMap((c) => [unpacked(c.envelope.high), unpacked(c.envelope.low)])] as uPlot.AlignedData;
   return new uPlot(
     {
       width: host.clientWidth || 600,

@@ -4,16 +4,19 @@
 #include <numbers>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/base/uniform_kernel.hpp"
 
 namespace kinfer {
 namespace {
 
-constexpr std::uint64_t golden = 0x9e3779b97f4a7c15ULL;
+using base::golden, base::mix;
 
-constexpr std::uint64_t mix(std::uint64_t z) {
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31);
+base::UniformKernel best_uniform_kernel() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return base::uniform_avx512;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return base::uniform_avx2;
+#endif
+  return base::fill_uniform;
 }
 
 }  // namespace
@@ -35,9 +38,8 @@ double Rng::uniform() {
 }
 
 void Rng::uniform(std::span<double> to) {
-  const std::uint64_t first = key_ + counter_ * golden;
-  for (std::size_t i = 0; i < to.size(); ++i)
-    to[i] = static_cast<double>(mix(first + (i + 1) * golden) >> 11) * 0x1.0p-53;
+  static const base::UniformKernel fill = best_uniform_kernel();
+  fill(key_ + counter_ * golden, to.size(), to.data());
   counter_ += to.size();
 }
 

@@ -10,4 +10,10 @@ std::string sha256(std::string_view bytes) {
   return hex;
 }
 
+std::optional<std::string> sha256_of_file(const std::filesystem::path& path) {
+  char hex[SHA256_DIGEST_STRING_LENGTH];
+  if (!SHA256File(path.c_str(), hex)) return std::nullopt;
+  return hex;
+}
+
 }  // namespace kinfer

@@ -7,12 +7,14 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/calibrate/doctor.hpp"
 #include "kinfer/calibrate/figures.hpp"
+#include "kinfer/calibrate/iso9283.hpp"
 #include "kinfer/calibrate/ladder.hpp"
 #include "kinfer/calibrate/picture.hpp"
 #include "kinfer/calibrate/population_fit.hpp"
 #include "kinfer/calibrate/single_fit.hpp"
 #include "kinfer/calibrate/surroundings.hpp"
 #include "kinfer/calibrate/verdict.hpp"
+#include "kinfer/calibrate/wrong_rows.hpp"
 #include "kinfer/geometry/statistics.hpp"
 
 namespace kinfer {
@@ -24,11 +26,21 @@ struct Found {
   ToleranceScale scale;
   std::vector<Proof> proofs;
   Ladder ladder;
+  std::vector<Outlier> wrong;  ///< rows of the whole data set that no model is to be judged by
 };
 
 /// Rows are counted in the whole data set again.
-void map_rows_back(std::vector<Outlier>& outliers, const std::vector<int>& rows) {
+std::vector<Outlier> counted_in_all(std::vector<Outlier> outliers, const std::vector<int>& rows) {
   for (Outlier& outlier : outliers) outlier.row = rows[outlier.row];
+  return outliers;
+}
+
+/// Adds those of `more` whose rows are not listed yet, ascending.
+void add_rows(std::vector<Outlier>& list, const std::vector<Outlier>& more) {
+  for (const Outlier& outlier : more)
+    if (std::none_of(list.begin(), list.end(), [&](const Outlier& o) { return o.row == outlier.row; }))
+      list.push_back(outlier);
+  std::stable_sort(list.begin(), list.end(), [](const Outlier& a, const Outlier& b) { return a.row < b.row; });
 }
 
 /// Base and tool alone, fitted on each split's train rows.
@@ -66,7 +78,10 @@ Result<Found> found_by_least_squares(const CalibrateTask& task, const RowsPlan& 
   const Climbed climbed =
       climb(task, fitted, geometry.estimate, splits_of_fitted(plan, fitted, rng.stream(5)), how, observer);
   const std::vector<Estimate> after = plan.result_sees_all_rows ? climbed.unseen : std::vector{climbed.fit};
-  return Found{climbed.fit, geometry.scale, proofs_of(before, after), climbed.ladder};
+  KINFER_TRY(wrong, wrong_beside_geometry(task, plan, options.parameters, geometry.estimate, rng.stream(6)));
+  add_rows(wrong, counted_in_all(climbed.wrong, plan.fitted));
+  return Found{climbed.fit, geometry.scale, proofs_of(before, after), climbed.ladder,
+               without_explained(wrong, climbed.fit, fitted, task.data)};
 }
 
 /// A population searches on the rows that the least-squares fit believes.
@@ -88,13 +103,13 @@ Result<Found> found_by_population(const CalibrateTask& task, const RowsPlan& pla
                                   least_squares_fit.estimate.chain, searching.stream(1), observer));
     estimate.search.side_by_side = runs;
   }
-  std::vector<Outlier> not_believed = estimate.outliers;
-  map_rows_back(not_believed, plan.fitted);
+  const std::vector<Outlier> not_believed = counted_in_all(estimate.outliers, plan.fitted);
+  KINFER_TRY(wrong, wrong_beside_geometry(task, plan, options.parameters, least_squares_fit.estimate, rng.stream(6)));
   std::vector<Result<Estimate>> after(plan.proofs.size(), error(""));
   parallel_for(after.size(), options.threads, [&](std::size_t i) {
     after[i] = search(select(task.data, without(plan.proofs[i].train, not_believed)), proving.stream(i), {});
   });
-  Found found{estimate, scale, {}, {}};
+  Found found{estimate, scale, {}, {}, wrong};
   for (std::size_t i = 0; i < after.size(); ++i) {
     if (!after[i]) return pass_on(after[i].error());
     found.proofs.push_back({before[i], *after[i]});
@@ -136,6 +151,26 @@ void note_scale(Calibration& calibration, const ToleranceScale& scale) {
   if (scale.factor > 1.0)
     calibration.notes.push_back(fmt::format(
         "the nominal model is further off than its tolerances say: they were multiplied by {:.0f}", scale.factor));
+}
+
+/// Rows that are wrong are listed although no fit has seen them, and no figure counts them.
+LeftOut leave_out_wrong_rows(Calibration& calibration, const std::vector<Outlier>& wrong, const RowsPlan& plan) {
+  const LeftOut left_out = left_out_of_figures(wrong, plan);
+  calibration.wrong_rows = left_out.rows;
+  if (left_out.too_many)
+    calibration.notes.push_back(fmt::format(
+        "{} of the rows that were held out lie where no noise explains it: too many to call the rows wrong, so all "
+        "count in the held-out figures",
+        left_out.looking));
+  std::vector<Outlier> held_out;
+  for (Outlier outlier : wrong) {
+    if (std::find(left_out.rows.begin(), left_out.rows.end(), outlier.row) == left_out.rows.end()) continue;
+    if (std::find(plan.fitted.begin(), plan.fitted.end(), outlier.row) == plan.fitted.end())
+      outlier.reason = "held out: " + outlier.reason;
+    held_out.push_back(outlier);
+  }
+  add_rows(calibration.estimate.outliers, held_out);
+  return left_out;
 }
 
 /// Which joint offsets have moved since the earlier calibration, by more than chance explains among so many.
@@ -195,14 +230,17 @@ Result<Calibration> calibrate(const CalibrateTask& given, const CalibrateOptions
   express_frames_as_in_file(calibration.estimate.values, calibration.estimate.parameters, task.nominal,
                             calibration.estimate.chain);
   calibration.holdout = plan.words;
-  map_rows_back(calibration.estimate.outliers, plan.fitted);
+  calibration.estimate.outliers = counted_in_all(calibration.estimate.outliers, plan.fitted);
+  const LeftOut left_out = leave_out_wrong_rows(calibration, found.wrong, plan);
   note_scale(calibration, found.scale);
   note_frames(calibration, task.nominal);
   note_urdf(calibration);
   if (std::holds_alternative<OffsetParameters>(options.parameters)) note_offsets(calibration);
-  const Judged judged{task.nominal, task.instrument, task.data, plan, frames_only, found.proofs};
+  calibration.geometry_alone = options.population.has_value();
+  const Judged judged{task.nominal, task.instrument, task.data, plan, frames_only, found.proofs, left_out.rows};
   fill_figures(calibration, judged);
-  judge(calibration, expected_error(judged, calibration.estimate.outliers));
+  judge(calibration, expected_error(judged));
+  calibration.accuracy = pose_accuracy(frames_only, calibration.estimate.chain, task.data);
   calibration.picture = calibration_picture(task, frames_only, calibration.estimate);
   calibration.next = calibration_advice(task, calibration);
   return calibration;

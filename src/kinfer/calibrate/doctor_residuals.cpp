@@ -148,6 +148,26 @@ void check_drift(DoctorCase& patient, const Chain& chain, const PoseSet& data, c
                                    : "warm up first, measure in random order, and measure the base again in between"});
 }
 
+/// Points of the rows that were not fitted and that the fit puts further off than noise explains.
+std::vector<Outlier> wrong_elsewhere(const Estimate& fit, const CalibrateTask& task, const std::vector<int>& fitted) {
+  constexpr double false_alarms = 1e-3;  // in a whole data set, as in the fit
+  constexpr double unseen = 1.25;        // a fit predicts what it has not seen less well than its noise says
+  const auto count = std::max<double>(1.0, static_cast<double>(task.data.points.size()));
+  const double limit = unseen * std::sqrt(chi_squared_quantile(1.0 - false_alarms / count, 3));
+  const std::vector<double> errors = point_errors(fit.chain, task.data);
+  std::vector<Outlier> wrong;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const PointMeasurement& point = task.data.points[i];
+    const double sd = std::max(fit.sigma, point.sd ? point.sd->maxCoeff() : 0.0);
+    if (errors[i] <= limit * sd || std::binary_search(fitted.begin(), fitted.end(), point.row)) continue;
+    wrong.push_back({point.row, 0,
+                     fmt::format("the point lies {:.3f} mm from where the model has it ({:.0f} sigma)", 1e3 * errors[i],
+                                 errors[i] / sd),
+                     errors[i] / sd});
+  }
+  return wrong;
+}
+
 }  // namespace
 
 void check_commanded(DoctorCase& patient) {
@@ -206,38 +226,52 @@ std::set<int> explained_rows(const DoctorCase& patient) {
   return rows;
 }
 
+/// Of the thinned rows in the whole set, ascending.
+std::vector<int> rows_in_all(const PoseSet& thin, const PoseSet& all) {
+  std::vector<int> row_of(thin.rows());
+  for (std::size_t i = 0, row = 0; i < row_of.size(); ++i) {
+    while (!thin.line.empty() && row < all.line.size() && all.line[row] != thin.line[i]) ++row;
+    row_of[i] = thin.line.empty() ? static_cast<int>(i) : static_cast<int>(row);
+  }
+  return row_of;
+}
+
+void tell_gross_outliers(DoctorCase& patient, std::vector<Outlier> wrong) {
+  const std::set<int> told = explained_rows(patient);
+  std::erase_if(wrong, [&](const Outlier& outlier) { return told.contains(outlier.row); });
+  std::sort(wrong.begin(), wrong.end(), [](const Outlier& a, const Outlier& b) { return a.row < b.row; });
+  std::set<int> rows;
+  for (const Outlier& outlier : wrong) rows.insert(outlier.row);
+  if (rows.empty() || 4 * static_cast<Eigen::Index>(rows.size()) > patient.task.data.rows()) return;
+  const std::vector<int> list(rows.begin(), rows.end());
+  add_finding(patient, {.kind = "gross_outliers",
+                        .severity = Severity::warning,
+                        .rows = list,
+                        .sentence = fmt::format("{} {} where no noise explains it: {}{}", rows_in_words(list),
+                                                list.size() == 1 ? "lies" : "lie",
+                                                list.size() == 1 ? "" : "in the first ", wrong.front().reason),
+                        .suggestion = "calibrate does not believe such rows; look at them"});
+}
+
 void check_residuals(DoctorCase& patient) {
   constexpr std::size_t too_few = 12;  // rows; base, tool and joints take three of each four equations
   if (patient.task.data.points.size() < too_few) return;
   const CalibrateTask thin = thinned(patient.task);
   const auto fit = fit_once(thin, thin.data, AutoParameters{}, {});
   if (!fit) return;
-  std::vector<int> row_of(thin.data.rows());  // of the thinned rows in the whole set
-  const std::vector<int>&some = thin.data.line, &all = patient.task.data.line;
-  for (std::size_t i = 0, row = 0; i < row_of.size(); ++i) {
-    while (!some.empty() && row < all.size() && all[row] != some[i]) ++row;
-    row_of[i] = some.empty() ? static_cast<int>(i) : static_cast<int>(row);
-  }
+  const std::vector<int> row_of = rows_in_all(thin.data, patient.task.data);
   const std::set<int> told = explained_rows(patient);
-  std::set<int> wrong;
+  std::vector<Outlier> gross = wrong_elsewhere(*fit, patient.task, row_of);
+  std::set<int> wrong;  // of the thinned rows
   for (std::size_t i = 0; i < row_of.size(); ++i)
     if (told.contains(row_of[i])) wrong.insert(static_cast<int>(i));
-  std::vector<int> rows;
-  std::string reason;
-  for (const Outlier& outlier : fit->outliers)
-    if (wrong.insert(outlier.row).second) {
-      if (rows.empty()) reason = outlier.reason;
-      rows.push_back(row_of[outlier.row]);
-    }
+  for (Outlier outlier : fit->outliers) {
+    wrong.insert(outlier.row);
+    outlier.row = row_of[outlier.row];
+    gross.push_back(outlier);
+  }
   check_drift(patient, fit->chain, thin.data, row_of, wrong);
-  if (rows.empty() || 4 * rows.size() > row_of.size()) return;
-  add_finding(patient, {.kind = "gross_outliers",
-                        .severity = Severity::warning,
-                        .rows = rows,
-                        .sentence = fmt::format("{} {} where no noise explains it: {}{}", rows_in_words(rows),
-                                                rows.size() == 1 ? "lies" : "lie",
-                                                rows.size() == 1 ? "" : "in the first ", reason),
-                        .suggestion = "calibrate does not believe such rows; look at them"});
+  tell_gross_outliers(patient, gross);
 }
 
 }  // namespace kinfer

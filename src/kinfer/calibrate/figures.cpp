@@ -38,32 +38,34 @@ struct Gathered {
     append(position, headline_errors(chain, seen, rows));
     append(orientation, orientation_errors(chain, rows));
   }
-  void put(ErrorStatistics& into_position, ErrorStatistics& into_orientation) const {
-    into_position = error_statistics(position);
-    into_orientation = error_statistics(orientation);
+  void put(ChainFit& fit, ErrorStatistics TrainHoldout::*which) const {
+    fit.position.*which = error_statistics(position);
+    fit.orientation.*which = error_statistics(orientation);
   }
 };
 
 void fill_train(ChainFit& fit, const Chain& chain, const PoseSet& seen, const PoseSet& rows) {
   Gathered errors;
   errors.add(chain, seen, rows);
-  errors.put(fit.position.train, fit.orientation.train);
+  errors.put(fit, &TrainHoldout::train);
 }
 
-void fill_held_out(Calibration& calibration, const Judged& judged) {
+/// Over the held-out rows without `skipped`.
+void fill_held_out(Calibration& calibration, const Judged& judged, const std::vector<int>& skipped,
+                   ErrorStatistics TrainHoldout::*which) {
   Gathered nominal, before, after;
   const PoseSet nothing_seen;
   for (std::size_t i = 0; i < judged.proofs.size(); ++i) {
     const Split& split = judged.plan.proofs[i];
-    const PoseSet rows = select(judged.data, without(split.holdout, calibration.estimate.outliers));
+    const PoseSet rows = select(judged.data, without(split.holdout, skipped));
     const PoseSet seen = select(judged.data, split.train);
     nominal.add(judged.nominal, nothing_seen, rows);
     before.add(judged.proofs[i].before, seen, rows);
     after.add(judged.proofs[i].after.chain, seen, rows);
   }
-  nominal.put(calibration.nominal.position.holdout, calibration.nominal.orientation.holdout);
-  before.put(calibration.before.position.holdout, calibration.before.orientation.holdout);
-  after.put(calibration.after.position.holdout, calibration.after.orientation.holdout);
+  nominal.put(calibration.nominal, which);
+  before.put(calibration.before, which);
+  after.put(calibration.after, which);
 }
 
 void fill_rows(Calibration& calibration, const Judged& judged) {
@@ -123,19 +125,20 @@ void fill_figures(Calibration& calibration, const Judged& judged) {
   fill_train(calibration.nominal, judged.nominal, nothing_seen, rows);
   fill_train(calibration.before, judged.frames_only, rows, rows);
   fill_train(calibration.after, calibration.estimate.chain, rows, rows);
-  fill_held_out(calibration, judged);
+  fill_held_out(calibration, judged, judged.wrong, &TrainHoldout::holdout);
+  fill_held_out(calibration, judged, {}, &TrainHoldout::holdout_all_rows);
   fill_rows(calibration, judged);
   calibration.measured = headline_word(headline_kind(judged.data));
 }
 
-std::optional<double> expected_error(const Judged& judged, const std::vector<Outlier>& outliers) {
+std::optional<double> expected_error(const Judged& judged) {
   const auto headline = headline_kind(judged.data);
   if (!judged.instrument || !headline) return std::nullopt;
   const ResidualKind& kind = residual_kind(*headline);
   double squares = 0.0, count = 0.0;
   for (std::size_t i = 0; i < judged.proofs.size(); ++i) {
     const Estimate& fit = judged.proofs[i].after;
-    const PoseSet rows = select(judged.data, without(judged.plan.proofs[i].holdout, outliers));
+    const PoseSet rows = select(judged.data, without(judged.plan.proofs[i].holdout, judged.wrong));
     const Chain chain = with_unseen_surroundings(fit.chain, select(judged.data, judged.plan.proofs[i].train), rows);
     const Weights promised = weights_of(rows, *judged.instrument);
     const EvaluatedPoses at = evaluate_poses(chain, fit.parameters, rows, Derivative::yes);

@@ -31,6 +31,7 @@ struct Judged {
   const RowsPlan& plan;
   const Chain& frames_only;
   const std::vector<Proof>& proofs;
+  const std::vector<int>& wrong;  ///< held-out rows that are not counted
 };
 
 /// Fills nominal, before, after and rows from the final estimate (whose outliers count in the data's rows) and proofs.
@@ -38,6 +39,6 @@ void fill_figures(Calibration& calibration, const Judged& judged);
 
 /// Rms error that the held-out rows should show [m]: the instrument's scatter and the uncertainty of the fits that did
 /// not see them. Nothing where the instrument is not known.
-std::optional<double> expected_error(const Judged& judged, const std::vector<Outlier>& outliers);
+std::optional<double> expected_error(const Judged& judged);
 
 }  // namespace kinfer

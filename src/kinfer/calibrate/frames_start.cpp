@@ -192,9 +192,23 @@ Result<void> enough_to_find_frames(const PoseSet& data) {
   return {};
 }
 
+/// Rows that are enough to begin with: points and orientations of some hundred rows tell a frame as well as all do.
+PoseSet enough_rows(const PoseSet& data) {
+  constexpr Eigen::Index most = 300;
+  const bool further = data.contacts.size() + data.distances.size() + data.pairs.size() + data.plane_contacts.size() +
+                           data.tilts.size() >
+                       0;
+  if (further || data.rows() <= most) return data;
+  std::vector<int> rows;
+  for (Eigen::Index i = 0; i < most; ++i) rows.push_back(static_cast<int>(i * data.rows() / most));
+  const PoseSet some = select(data, rows);
+  return enough_to_find_frames(some) ? some : data;
+}
+
 /// One mounting: the chain stands in it, the data are its rows.
-Result<Chain> found_frames(const Chain& nominal, const PoseSet& data) {
-  if (auto enough = enough_to_find_frames(data); !enough) return pass_on(enough.error());
+Result<Chain> found_frames(const Chain& nominal, const PoseSet& all) {
+  if (auto enough = enough_to_find_frames(all); !enough) return pass_on(enough.error());
+  const PoseSet data = enough_rows(all);
   const ParameterSet frames = frame_parameters(nominal, data);
   std::optional<Chain> best;
   for (const Chain& start : starts(nominal, data)) {

@@ -8,14 +8,13 @@
 namespace kinfer {
 namespace {
 
-bool same_pose(const Chain& chain, const PoseSet& data, int a, int b) {
+/// How far two readings of each joint may differ and still be one command [rad], [m].
+VectorXd same_command(const Chain& chain) {
   const std::vector<int> moving = joints_with_reading(chain);
-  for (std::size_t k = 0; k < moving.size(); ++k) {
-    const auto row = static_cast<Eigen::Index>(k);
-    const double same = chain.joints[moving[k]].type == JointType::prismatic ? 1e-5 : 1e-4;
-    if (std::abs(data.joints(row, a) - data.joints(row, b)) > same) return false;
-  }
-  return true;
+  VectorXd same(static_cast<Eigen::Index>(moving.size()));
+  for (std::size_t k = 0; k < moving.size(); ++k)
+    same[static_cast<Eigen::Index>(k)] = chain.joints[moving[k]].type == JointType::prismatic ? 1e-5 : 1e-4;
+  return same;
 }
 
 /// The measured tool points of each row.
@@ -39,10 +38,14 @@ std::vector<PoseAccuracy> pose_accuracy(const Chain& before, const Chain& after,
   const EvaluatedPoses at_before = evaluate_poses(before, {}, data, Derivative::no),
                        at_after = evaluate_poses(after, {}, data, Derivative::no);
   std::vector<PoseAccuracy> poses;
+  const VectorXd same = same_command(after);
+  const auto same_pose = [&](int a, int b) {
+    return ((data.joints.col(a) - data.joints.col(b)).array().abs() <= same.array()).all();
+  };
   for (int row = 0; row < data.rows(); ++row) {
     if (points[row].empty()) continue;
-    const auto known = std::find_if(poses.begin(), poses.end(),
-                                    [&](const PoseAccuracy& p) { return same_pose(after, data, p.rows.front(), row); });
+    const auto known =
+        std::find_if(poses.begin(), poses.end(), [&](const PoseAccuracy& p) { return same_pose(p.rows.front(), row); });
     if (known == poses.end())
       poses.push_back({{row}, 0.0, 0.0, {}});
     else

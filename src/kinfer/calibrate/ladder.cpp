@@ -7,6 +7,7 @@
 #include "kinfer/calibrate/far_splits.hpp"
 #include "kinfer/calibrate/parameter_choice.hpp"
 #include "kinfer/calibrate/rungs.hpp"
+#include "kinfer/calibrate/wrong_rows.hpp"
 #include "kinfer/geometry/statistics.hpp"
 
 namespace kinfer {
@@ -26,16 +27,17 @@ struct Tried {
 };
 
 Estimate fit_rows(const Chain& start, const ParameterSet& set, const PoseSet& rows, const CalibrateTask& task,
-                  const Observer& observer = {}) {
-  return fit_bundle(start, seen_in(set, rows), rows, task.instrument, {}, observer);
+                  const BundleOptions& options, const Observer& observer = {}) {
+  return fit_bundle(start, seen_in(set, rows), rows, task.instrument, options, observer);
 }
 
 HeldOut cross_validated(const Estimate& fit, const ParameterSet& set, const PoseSet& rows,
                         const std::vector<Split>& splits, const CalibrateTask& task, int threads) {
   HeldOut held;
   held.unseen.resize(splits.size());
-  parallel_for(splits.size(), threads,
-               [&](std::size_t i) { held.unseen[i] = fit_rows(fit.chain, set, select(rows, splits[i].train), task); });
+  parallel_for(splits.size(), threads, [&](std::size_t i) {
+    held.unseen[i] = fit_rows(fit.chain, set, select(rows, splits[i].train), task, {.begin = Begin::near_the_fit});
+  });
   const auto headline = headline_kind(rows);
   if (!headline) return held;
   for (std::size_t i = 0; i < splits.size(); ++i) {
@@ -49,15 +51,16 @@ HeldOut cross_validated(const Estimate& fit, const ParameterSet& set, const Pose
   return held;
 }
 
-bool is_outlier(const Estimate& fit, int row) {
-  return std::any_of(fit.outliers.begin(), fit.outliers.end(), [&](const Outlier& o) { return o.row == row; });
+bool contains(const std::vector<Outlier>& list, int row) {
+  return std::any_of(list.begin(), list.end(), [&](const Outlier& o) { return o.row == row; });
 }
 
-ErrorStatistics held_out(const Tried& tried) {
-  std::vector<double> believed;
-  for (std::size_t i = 0; i < tried.near.errors.size(); ++i)
-    if (!is_outlier(tried.fit, tried.near.row[i])) believed.push_back(tried.near.errors[i]);
-  return error_statistics(believed);
+/// Statistics of the rows that are not wrong.
+ErrorStatistics judged(const HeldOut& held, const std::vector<Outlier>& wrong) {
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < held.errors.size(); ++i)
+    if (!contains(wrong, held.row[i])) errors.push_back(held.errors[i]);
+  return error_statistics(errors);
 }
 
 ErrorStatistics trained(const Tried& tried, const PoseSet& rows) {
@@ -75,7 +78,7 @@ Comparison compare(const Tried& before, const Tried& after, HeldOut Tried::*whic
   const HeldOut &old = before.*which, &now = after.*which;
   std::vector<double> gain, a, b;
   for (std::size_t i = 0; i < old.errors.size(); ++i) {
-    if (is_outlier(before.fit, old.row[i]) && is_outlier(after.fit, old.row[i])) continue;
+    if (contains(before.fit.outliers, old.row[i]) && contains(after.fit.outliers, old.row[i])) continue;
     gain.push_back(old.errors[i] - now.errors[i]);
     a.push_back(old.errors[i]), b.push_back(now.errors[i]);
   }
@@ -91,12 +94,11 @@ std::string millimetres(double metres) {
   return fmt::format("{:.4f} mm", 1e3 * metres);
 }
 
-/// Whether the rung is taken, and the sentence that says why.
-bool decide(const Comparison& c, const Comparison& far, double worst_of_geometry, std::string& why) {
+/// Whether the rung helps between the fitted poses; the sentence that says why, or what it goes from and to.
+bool helps(const Comparison& c, double worst_of_geometry, std::string& why) {
   constexpr double certain = 2.5;      // standard errors
   constexpr double worth_it = 0.01;    // of the mean error: less is not worth a term
   constexpr double worst_slack = 1.0;  // times the worst error before: no pose may pay for the others
-  constexpr double far_slack = 1.02;   // times the error before, beyond the fitted poses
   const std::string means =
       fmt::format("the held-out mean goes from {} to {}", millimetres(c.mean_before), millimetres(c.mean_after));
   if (c.mean_after >= (1.0 - worth_it) * c.mean_before) {
@@ -112,15 +114,19 @@ bool decide(const Comparison& c, const Comparison& far, double worst_of_geometry
                       millimetres(c.worst_before), millimetres(c.worst_after));
     return false;
   }
+  why = fmt::format("{} ({:.0f} standard errors)", means, c.t);
+  return true;
+}
+
+/// Whether a rung that helps between the fitted poses does no harm beyond them; completes the sentence.
+bool holds_beyond(const Comparison& far, std::string& why) {
+  constexpr double far_slack = 1.02;  // times the error before
+  const std::string means = fmt::format("from {} to {}", millimetres(far.mean_before), millimetres(far.mean_after));
   if (far.mean_after > far_slack * far.mean_before) {
-    why = fmt::format("refused: {}, but beyond the fitted poses the mean rises from {} to {}", means,
-                      millimetres(far.mean_before), millimetres(far.mean_after));
+    why = "refused: " + why + ", but beyond the fitted poses the mean rises " + means;
     return false;
   }
-  why = fmt::format("taken: {} ({:.0f} standard errors)", means, c.t);
-  if (far.mean_before > 0.0)
-    why += fmt::format("; beyond the fitted poses from {} to {}", millimetres(far.mean_before),
-                       millimetres(far.mean_after));
+  why = "taken: " + why + (far.mean_before > 0.0 ? "; beyond the fitted poses " + means : "");
   return true;
 }
 
@@ -147,27 +153,47 @@ class Climb {
     begin_with(geometry);
     const auto* named = std::get_if<NamedModel>(&options_.model);
     for (const std::string& name : named ? named->rungs : rung_names()) try_rung(name, named != nullptr);
-    return {now_.fit, now_.near.unseen, ladder_};
+    const std::vector<Outlier> wrong = wrong_rows(geometry);
+    for (std::size_t i = 0; i < ladder_.rungs.size(); ++i) ladder_.rungs[i].holdout = judged(held_out_[i], wrong);
+    return {now_.fit, now_.near.unseen, ladder_, wrong};
   }
 
  private:
   void begin_with(const Estimate& geometry) {
     now_.fit = geometry;
-    prove(now_, geometry.parameters);
+    now_.near = proof(now_, geometry.parameters, splits_);
+    if (std::holds_alternative<AutoModel>(options_.model)) now_.far = proof(now_, geometry.parameters, far_);
     LadderRung entry{.name = "geometry", .adds = "the complete geometric set", .chosen = true};
-    entry.train = trained(now_, rows_), entry.holdout = held_out(now_);
+    entry.train = trained(now_, rows_);
     entry.terms = static_cast<int>(geometry.values.size());
     entry.determined = geometry.identifiability.rank;
     entry.why = "where every robot begins";
-    worst_of_geometry_ = entry.holdout.max;
-    ladder_.rungs.push_back(entry);
+    worst_of_geometry_ = judged(now_.near, geometry.outliers).max;
+    add(entry, now_.near);
     ladder_.chosen = "geometry";
   }
 
-  void prove(Tried& tried, const ParameterSet& set) const {
-    tried.near = cross_validated(tried.fit, set, rows_, splits_, task_, options_.threads);
-    const bool chooses = std::holds_alternative<AutoModel>(options_.model);
-    if (chooses) tried.far = cross_validated(tried.fit, set, rows_, far_, task_, options_.threads);
+  void add(const LadderRung& entry, const HeldOut& held) {
+    ladder_.rungs.push_back(entry);
+    held_out_.push_back({{}, held.errors, held.row});
+  }
+
+  std::vector<Outlier> wrong_rows(const Estimate& geometry) const {
+    std::vector<Outlier> wrong = without_explained(geometry.outliers, now_.fit, rows_, rows_);
+    for (const Outlier& outlier : wrong_beside_both(geometry, now_.fit, rows_))
+      if (!contains(wrong, outlier.row)) wrong.push_back(outlier);
+    return wrong;
+  }
+
+  HeldOut proof(const Tried& tried, const ParameterSet& set, const std::vector<Split>& splits) const {
+    return cross_validated(tried.fit, set, rows_, splits, task_, options_.threads);
+  }
+
+  /// Tried beyond the fitted poses only where it helps between them.
+  bool earns_its_place(Tried& next, const ParameterSet& set, std::string& why) const {
+    if (!helps(compare(now_, next, &Tried::near), worst_of_geometry_, why)) return false;
+    next.far = proof(next, set, far_);
+    return holds_beyond(compare(now_, next, &Tried::far), why);
   }
 
   void try_rung(const std::string& name, bool must) {
@@ -181,29 +207,27 @@ class Climb {
     ParameterSet set = now_.fit.parameters;
     set.parameters.insert(set.parameters.end(), rung.further.begin(), rung.further.end());
     Tried next;
-    next.fit = fit_rows(rung.nominal, set, rows_, task_, observer_);
+    next.fit = fit_rows(rung.nominal, set, rows_, task_, {}, observer_);
     describe_terms(entry, rung, next.fit);
     if (entry.determined == 0 && !must) {
       lock(entry, "these poses do not excite its terms");
       return;
     }
-    prove(next, set);
-    entry.train = trained(next, rows_), entry.holdout = held_out(next);
-    entry.chosen =
-        decide(compare(now_, next, &Tried::near), compare(now_, next, &Tried::far), worst_of_geometry_, entry.why) ||
-        must;
+    next.near = proof(next, set, splits_);
+    entry.train = trained(next, rows_);
+    entry.chosen = must || earns_its_place(next, set, entry.why);
     if (must) entry.why = "asked for";
+    add(entry, next.near);
     if (entry.chosen) {
       now_ = std::move(next);
       ladder_.chosen += " + " + name;
     }
-    ladder_.rungs.push_back(entry);
   }
 
   void lock(LadderRung& entry, const std::string& why) {
     entry.locked = true;
     entry.why = "locked: " + why;
-    ladder_.rungs.push_back(entry);
+    add(entry, {});
   }
 
   const CalibrateTask& task_;
@@ -214,6 +238,7 @@ class Climb {
   const Observer& observer_;
   Tried now_;
   Ladder ladder_;
+  std::vector<HeldOut> held_out_;  // errors of each rung of the ladder
   double worst_of_geometry_ = 0.0;
 };
 

@@ -14,6 +14,7 @@ struct Climbed {
   Estimate fit;                  ///< of all rows, by the chosen model
   std::vector<Estimate> unseen;  ///< one a split: the chosen model fitted on the split's train rows
   Ladder ladder;
+  std::vector<Outlier> wrong;  ///< rows that no model is judged by, the same for every rung
 };
 
 /// Climbs from `geometry`, the fit of all `rows`; `splits` are of these rows. AutoModel tries every rung, NamedModel

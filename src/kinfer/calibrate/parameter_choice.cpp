@@ -83,7 +83,7 @@ bool beta_is_needed(const Chain& chain, int index) {
 
 bool joint_parameter_is_geometric(const Chain& chain, const Address& at) {
   const Joint& joint = chain.joints[at.joint];
-  if (at.field == Field::compliance) return false;
+  if (at.field == Field::compliance || at.field == Field::coupling) return false;
   if (at.field == Field::gain) return joint.type == JointType::prismatic && joint.has_reading;
   if (std::holds_alternative<UrdfLink>(joint.link)) return joint.type != JointType::fixed;
   return is_dh_row(at.field) || (at.field == Field::beta && beta_is_needed(chain, at.joint));

@@ -10,10 +10,6 @@ namespace {
 
 constexpr int workspace_points = 500;
 
-double predicted_error(const Estimate& estimate, ConstVectorRef q) {
-  return std::sqrt(predicted_covariance(estimate, q).trace());
-}
-
 Load load_of(const PoseSet& data, int row) {
   return {data.payload.empty() ? 0.0 : data.payload[row]};
 }
@@ -51,11 +47,11 @@ VectorXd spread(int k, Eigen::Index n) {
 
 std::vector<WorkspacePoint> workspace_of(const MatrixXd& joints, const Estimate& estimate) {
   const VectorXd lowest = joints.rowwise().minCoeff(), range = joints.rowwise().maxCoeff() - lowest;
+  MatrixXd q(joints.rows(), workspace_points);
+  for (int k = 0; k < workspace_points; ++k) q.col(k) = lowest + range.cwiseProduct(spread(k, joints.rows()));
+  const VectorXd errors = predicted_errors(estimate, q);
   std::vector<WorkspacePoint> points;
-  for (int k = 0; k < workspace_points; ++k) {
-    const VectorXd q = lowest + range.cwiseProduct(spread(k, joints.rows()));
-    points.push_back({forward(estimate.chain, q).position, predicted_error(estimate, q)});
-  }
+  for (int k = 0; k < workspace_points; ++k) points.push_back({forward(estimate.chain, q.col(k)).position, errors[k]});
   return points;
 }
 
@@ -63,8 +59,7 @@ std::vector<WorkspacePoint> workspace_of(const MatrixXd& joints, const Estimate&
 
 CalibrationPicture calibration_picture(const CalibrateTask& task, const Chain& before, const Estimate& estimate) {
   CalibrationPicture picture{.nominal = task.nominal, .before = before, .joints = task.data.joints};
-  for (Eigen::Index row = 0; row < task.data.rows(); ++row)
-    picture.rows.push_back({.predicted = predicted_error(estimate, task.data.joints.col(row))});
+  for (const double error : predicted_errors(estimate, task.data.joints)) picture.rows.push_back({.predicted = error});
   add_points(picture, task, estimate.chain);
   picture.workspace = workspace_of(task.data.joints, estimate);
   return picture;

@@ -5,6 +5,7 @@
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/calibrate/parameter_choice.hpp"
+#include "kinfer/calibrate/plan_bound.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/linalg/decompositions.hpp"
@@ -216,6 +217,8 @@ Result<PosePlan> plan_poses(const PlanTask& task, const PlanOptions& options, Rn
   plan.expected =
       expected_error(problem, static_cast<int>(chosen.size()), information(problem, {}) + scaled.information(q));
   plan.existing = expected_error(problem, static_cast<int>(task.existing.rows()), information(problem, {}));
+  if (options.criterion == Criterion::tool)
+    plan.least_rms = std::sqrt(least_mean_square(problem, static_cast<int>(chosen.size())));
   const int far = std::min<int>(2 * options.poses, static_cast<int>(candidates.cols()));
   plan.planned_curve = curve(problem, greedy_design(problem, options.criterion, far));
   plan.random_curve = random_curve(problem, far, options.threads, rng.stream(3));

@@ -70,11 +70,16 @@ std::vector<int> all_rows(const PoseSet& data) {
   return rows;
 }
 
-std::vector<int> without(std::vector<int> rows, const std::vector<Outlier>& outliers) {
-  std::set<int> wrong;
-  for (const Outlier& outlier : outliers) wrong.insert(outlier.row);
-  std::erase_if(rows, [&](int row) { return wrong.contains(row); });
+std::vector<int> without(std::vector<int> rows, const std::vector<int>& others) {
+  const std::set<int> unwanted(others.begin(), others.end());
+  std::erase_if(rows, [&](int row) { return unwanted.contains(row); });
   return rows;
+}
+
+std::vector<int> without(std::vector<int> rows, const std::vector<Outlier>& outliers) {
+  std::vector<int> wrong;
+  for (const Outlier& outlier : outliers) wrong.push_back(outlier.row);
+  return without(std::move(rows), wrong);
 }
 
 std::vector<Split> folds_of(const PoseSet& data, int k, Rng rng) {

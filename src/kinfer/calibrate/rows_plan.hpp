@@ -24,7 +24,8 @@ std::vector<Split> folds_of(const PoseSet& data, int k, Rng rng);
 
 std::vector<int> all_rows(const PoseSet& data);
 
-/// The rows without those that a fit does not believe.
+/// The rows without some, or without those that a fit does not believe.
+std::vector<int> without(std::vector<int> rows, const std::vector<int>& others);
 std::vector<int> without(std::vector<int> rows, const std::vector<Outlier>& outliers);
 
 }  // namespace kinfer

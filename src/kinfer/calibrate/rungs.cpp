@@ -10,6 +10,7 @@
 namespace kinfer {
 namespace {
 
+constexpr double coupling_prior = 1e-2;  // of a turn: a transmission's ratio is known better, its existence may not be
 constexpr double harmonic_prior = 0.2e-3;  // [rad]: eccentric gears and encoder rings are off by less
 constexpr double backlash_prior = 0.3e-3;  // [rad] or, for slides, [m]
 constexpr double expansion_prior = 20e-6;  // [1/K]: between steel and aluminium
@@ -48,6 +49,25 @@ double spread(const std::vector<double>& values) {
 Rung gains(Rung rung, const CalibrateTask& task) {
   rung.adds = "a gain of each turning joint's encoder";
   free_joint_numbers(rung, Field::gain, task.tolerances.gain, turns_by_reading);
+  return rung;
+}
+
+/// Turning joints follow the reading of the one or two before them: a parallelogram's or a hollow wrist's transmission.
+Rung coupling(Rung rung) {
+  rung.adds = "how far each turning joint follows the readings of the two before it (transmissions, parallelograms)";
+  for (int j = 0; j < static_cast<int>(rung.nominal.joints.size()); ++j) {
+    Joint& joint = rung.nominal.joints[j];
+    if (!turns(joint)) continue;
+    int before = joint.parent;
+    for (int steps = 0; steps < 2 && before >= 0; ++steps, before = rung.nominal.joints[before].parent) {
+      const auto known = [&](const Coupling& c) { return c.joint == before; };
+      if (turns_by_reading(joint) && turns_by_reading(rung.nominal.joints[before]) &&
+          std::none_of(joint.couplings.begin(), joint.couplings.end(), known))
+        joint.couplings.push_back({before, 0.0});
+    }
+    for (int k = 0; k < static_cast<int>(joint.couplings.size()); ++k)
+      rung.further.push_back(parameter_at(rung.nominal, {Owner::joint, j, Field::coupling, k}, coupling_prior));
+  }
   return rung;
 }
 
@@ -113,13 +133,14 @@ Rung temperature(Rung rung, const PoseSet& rows) {
 }  // namespace
 
 std::vector<std::string> rung_names() {
-  return {"gains", "gravity", "torques", "gear", "spectrum", "backlash", "temperature"};
+  return {"gains", "coupling", "gravity", "torques", "gear", "spectrum", "backlash", "temperature"};
 }
 
 Rung rung_on(const Chain& nominal, const std::string& name, const CalibrateTask& task, const PoseSet& rows,
              const Estimate& fitted) {
   Rung rung{.name = name, .nominal = nominal};
   if (name == "gains") return gains(rung, task);
+  if (name == "coupling") return coupling(rung);
   if (name == "gravity") return gravity(rung, task, rows);
   if (name == "torques") return torques(rung, task, rows);
   if (name == "gear") return gear(rung);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/calibrate/doctor_case.hpp"
 
 namespace kinfer {
 namespace {
@@ -20,9 +21,18 @@ const ErrorStatistics& judged(const TrainHoldout& errors) {
   return errors.holdout.n > 0 ? errors.holdout : errors.train;
 }
 
-std::string left_out(const Calibration& calibration) {
-  const auto n = calibration.estimate.outliers.size();
-  return n == 0 ? "" : fmt::format("; {} row{} not believed and left out", n, n == 1 ? " is" : "s are");
+std::string rows_are(std::size_t n) {
+  return fmt::format("{} row{}", n, n == 1 ? " is" : "s are");
+}
+
+/// Which rows the figures do not count, what they would be with them, and how many more the fit gives no weight.
+std::string left_out(const Calibration& calibration, const std::string& worst_of_all) {
+  const std::size_t listed = calibration.estimate.outliers.size(), wrong = calibration.wrong_rows.size();
+  if (wrong == 0) return listed == 0 ? "" : "; " + rows_are(listed) + " not believed and left out of the fit";
+  std::string text = fmt::format("; {} not believed and left out: {} ({} at worst with {})", rows_are(wrong),
+                                 rows_in_words(calibration.wrong_rows), worst_of_all, wrong == 1 ? "it" : "them");
+  const std::size_t more = listed - wrong;
+  return more == 0 ? text : text + fmt::format("; the fit gives {} more row{} no weight", more, more == 1 ? "" : "s");
 }
 
 /// "position" is said of the tool; other measurements by their own name.
@@ -41,9 +51,11 @@ Compared compared(const Calibration& calibration) {
   const auto kind = lengths ? &ChainFit::position : &ChainFit::orientation;
   const auto show = lengths ? millimetres : degrees;
   Compared c{judged(calibration.before.*kind), judged(calibration.after.*kind), (calibration.after.*kind).train, ""};
-  c.figures = fmt::format("on poses that were not fitted {} {} off on average and {} at worst ({} and {} before){}",
-                          subject(calibration), show(c.after.mean), show(c.after.max), show(c.before.mean),
-                          show(c.before.max), left_out(calibration));
+  c.figures =
+      fmt::format("on poses that were not fitted {} {} off on average and {} at worst ({} and {} before){}",
+                  subject(calibration), show(c.after.mean), show(c.after.max), show(c.before.mean), show(c.before.max),
+                  left_out(calibration, show((calibration.after.*kind).holdout_all_rows.max)));
+  if (calibration.geometry_alone) c.figures += "; geometry alone, for population methods climb no ladder of models";
   return c;
 }
 

@@ -142,8 +142,8 @@ Provenance provenance_of(const Options& options) {
   Provenance provenance;
   provenance.seed = options.common.seed;
   for (const std::string& path : input_paths(options))
-    if (const auto text = read_text_file(path))
-      provenance.inputs.push_back({std::filesystem::path(path).filename().string(), sha256(*text)});
+    if (const auto fingerprint = sha256_of_file(path))
+      provenance.inputs.push_back({std::filesystem::path(path).filename().string(), *fingerprint});
   const auto plain = [](const std::string& value) { return std::filesystem::path(value).filename().string(); };
   provenance.options.emplace_back("--parameters", plain(options.parameters));
   provenance.options.emplace_back("--model", options.model);
@@ -200,7 +200,7 @@ int run(const Options& options) {
   if (!calibration) return fail(calibration.error());
   if (is_unknown(options.robot)) judge_without_sheet(*calibration);
   calibration->notes.insert(calibration->notes.begin(), inputs->found.begin(), inputs->found.end());
-  if (const std::string accuracy = accuracy_in_words(task, *calibration); !accuracy.empty())
+  if (const std::string accuracy = accuracy_in_words(*calibration); !accuracy.empty())
     calibration->notes.push_back(accuracy);
   if (auto done = write_results(options, inputs->robot, *calibration); !done) return fail(done.error());
   if (auto done = write_calibration_tables(options.out, task, *calibration); !done) return fail(done.error());
@@ -233,7 +233,8 @@ Verb add_calibrate(CLI::App& app) {
            "the data where those disagree); or a TOML file "
            "with parameters = [\"a2\", ...]");
   add_text(*verb, "--model", options->model,
-           "auto: geometry and what cross-validation shows to help beyond it; geometry; or some of gains, gravity, "
+           "auto: geometry and what cross-validation shows to help beyond it; geometry; or some of gains, coupling, "
+           "gravity, "
            "torques, gear, spectrum, backlash, temperature joined by +");
   add_choice(
       *verb, "--refit", options->refit, {"offsets"},

@@ -12,13 +12,6 @@
 namespace kinfer::cli {
 namespace {
 
-/// Before: the nominal chain with base and tool fitted to the rows.
-std::vector<PoseAccuracy> accuracies(const CalibrateTask& task, const Calibration& calibration) {
-  if (task.data.points.empty()) return {};
-  const auto before = fit_frames_only(task, task.data);
-  return pose_accuracy(before ? *before : task.nominal, calibration.estimate.chain, task.data);
-}
-
 std::string accuracy_csv(const std::vector<PoseAccuracy>& poses) {
   std::string text = "row,rows,AP_before[mm],AP_after[mm],RP[mm]\n";
   for (const PoseAccuracy& p : poses)
@@ -38,23 +31,22 @@ Result<void> write_calibration_tables(const std::filesystem::path& folder, const
       {"covariance.csv", covariance_csv(estimate)}};
   if (const auto mdh = as_mdh(estimate.chain)) files.emplace_back("chain_mdh.csv", joint_rows_csv(*mdh));
   if (const auto dh = as_dh(estimate.chain)) files.emplace_back("chain_dh.csv", joint_rows_csv(*dh));
-  if (const auto poses = accuracies(task, calibration); !poses.empty())
-    files.emplace_back("accuracy.csv", accuracy_csv(poses));
+  if (!calibration.accuracy.empty()) files.emplace_back("accuracy.csv", accuracy_csv(calibration.accuracy));
   for (const auto& [name, text] : files)
     if (auto done = write_text_file(folder / name, text); !done) return done;
   return {};
 }
 
-std::string accuracy_in_words(const CalibrateTask& task, const Calibration& calibration) {
+std::string accuracy_in_words(const Calibration& calibration) {
   std::vector<double> before, after, repeat;
-  for (const PoseAccuracy& p : accuracies(task, calibration)) {
+  for (const PoseAccuracy& p : calibration.accuracy) {
     before.push_back(p.accuracy_before), after.push_back(p.accuracy_after);
     if (p.repeatability) repeat.push_back(*p.repeatability);
   }
   if (after.empty()) return "";
   const auto worst = [](const std::vector<double>& list) { return 1e3 * *std::max_element(list.begin(), list.end()); };
   std::string text = fmt::format(
-      "ISO 9283 on the fitted rows: pose accuracy AP {:.3f} mm on average and {:.3f} mm at worst ({:.3f} and {:.3f} mm "
+      "ISO 9283 over all rows: pose accuracy AP {:.3f} mm on average and {:.3f} mm at worst ({:.3f} and {:.3f} mm "
       "before)",
       1e3 * mean(after), worst(after), 1e3 * mean(before), worst(before));
   if (!repeat.empty())

@@ -13,6 +13,6 @@ Result<void> write_calibration_tables(const std::filesystem::path& folder, const
                                       const Calibration& calibration);
 
 /// Pose accuracy and, where poses repeat, repeatability in one sentence; empty where no tool point was measured.
-std::string accuracy_in_words(const CalibrateTask& task, const Calibration& calibration);
+std::string accuracy_in_words(const Calibration& calibration);
 
 }  // namespace kinfer::cli

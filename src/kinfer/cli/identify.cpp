@@ -32,13 +32,34 @@ struct Options {
   double smoothing = SegmentMotionOptions{}.smoothing;
   LinkSearchOptions search;
   int links = 0;
-  std::string geometry = "refined", grade = "auto", facts;
+  std::string geometry = "refined", grade = "auto", facts, sensors, tree;
 };
 
 const std::map<std::string, Engine> engines{{"bmp", Engine::bmp}, {"bp", Engine::bp}, {"enum", Engine::enumeration}};
 const std::map<std::string, Terminals> terminals_by_name{{"hinge", Terminals::hinge}, {"euler", Terminals::euler}};
 const std::map<std::string, Geometry> geometries{{"refined", Geometry::refined}, {"searched", Geometry::searched}};
 const std::map<std::string, Pairing> pairings{{"halves", Pairing::halves}, {"mirrored", Pairing::mirrored}};
+
+std::vector<std::string> list_of(const std::string& text) {
+  std::vector<std::string> items;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    items.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return items;
+}
+
+/// "ins0-ins1,ins1-ins2"; a colon where names have hyphens of their own.
+Result<std::vector<GivenLink>> links_of(const std::string& text) {
+  std::vector<GivenLink> links;
+  for (const std::string& item : list_of(text)) {
+    const std::size_t colon = item.find(':'), at = colon != std::string::npos ? colon : item.find('-');
+    if (at == std::string::npos) return error("--tree {}: expected two sensors, as ins0-ins1", item);
+    links.push_back({item.substr(0, at), item.substr(at + 1)});
+  }
+  return links;
+}
 
 Result<IdentifyOptions> options_of(const Options& options) {
   IdentifyOptions how;
@@ -58,6 +79,9 @@ Result<IdentifyOptions> options_of(const Options& options) {
   how.search = options.search;
   how.search.bacteria.pairing = pairings.at(options.pairing);
   if (!options.root.empty()) how.root = options.root;
+  how.sensors = list_of(options.sensors);
+  KINFER_TRY(links, links_of(options.tree));
+  how.tree = links;
   how.links = options.links;
   how.geometry = geometries.at(options.geometry);
   if (options.grade != "auto") {
@@ -78,8 +102,8 @@ Provenance provenance_of(const Options& options) {
   std::vector<std::string> inputs = options.logs;
   if (!options.facts.empty()) inputs.push_back(options.facts);
   for (const std::string& path : inputs)
-    if (const auto text = read_text_file(path))
-      provenance.inputs.push_back({std::filesystem::path(path).filename().string(), sha256(*text)});
+    if (const auto fingerprint = sha256_of_file(path))
+      provenance.inputs.push_back({std::filesystem::path(path).filename().string(), *fingerprint});
   const BacterialOptions& b = options.search.bacteria;
   provenance.options = {{"--engine", options.engine},
                         {"--terminals", options.terminals},
@@ -97,6 +121,8 @@ Provenance provenance_of(const Options& options) {
                         {"--max-leaves", fmt::to_string(options.search.depth.max_leaves)},
                         {"--rows", fmt::to_string(options.search.rows)},
                         {"--links", fmt::to_string(options.links)},
+                        {"--sensors", options.sensors},
+                        {"--tree", options.tree},
                         {"--geometry", options.geometry},
                         {"--grade", options.grade}};
   return provenance;
@@ -121,7 +147,6 @@ int run(const Options& options) {
   const auto recording = read_ins_logs(options.logs);
   if (!recording) return fail(recording.error());
   if (auto ready = make_writable_folder(options.out); !ready) return fail(ready.error());
-  if (auto ready = make_writable_folder(options.out); !ready) return fail(ready.error());
   const Result<Identification> found = [&] {
     ProgressLine progress(options.common);
     return identify(*recording, *how, Rng(options.common.seed), progress.observer());
@@ -132,8 +157,8 @@ int run(const Options& options) {
   if (options.common.json)
     fmt::print("{}", identification_headline_json(*found));
   else if (!options.common.quiet)
-    print_summary(identification_summary(*found), Tone::neutral);
-  return exit_done;
+    print_summary(identification_summary(*found), found->use ? Tone::neutral : Tone::bad);
+  return found->use ? exit_done : exit_do_not_use;
 }
 
 void add_search_options(CLI::App& verb, Options& options) {
@@ -175,6 +200,12 @@ Verb add_identify(CLI::App& app) {
            "NAME");
   add_text(*verb, "--root", options->root, "Sensor on the machine's base (default: the one that stands still)",
            Need::optional, "NAME");
+  add_text(*verb, "--sensors", options->sensors, "Only these sensors of the log, as ins0,ins1,ins2", Need::optional,
+           "NAMES");
+  add_text(*verb, "--tree", options->tree,
+           "Which sensors' segments share joints, as ins0-ins1,ins1-ins2 (default: as the log tells; what it tells "
+           "against them is said)",
+           Need::optional, "LINKS");
   add_number(*verb, "--smoothing", options->smoothing,
              "Standard deviation of the Gaussian on accelerations and rates [s]");
   add_choice(*verb, "--geometry", options->geometry, {"refined", "searched"},

@@ -96,6 +96,9 @@ std::string summary(const PosePlan& plan, const Options& options) {
   text += expected_line("with these poses", plan.expected);
   if (plan.existing.poses > 0) text += expected_line("with the existing ones alone", plan.existing);
   text += expected_line("with as many random ones", plan.random);
+  if (plan.least_rms > 0.0)
+    text += fmt::format("  {:<34} {:>6} {:>12.4f}\n", "no choice of candidates leaves less", plan.expected.poses,
+                        1e3 * plan.least_rms);
   text += fmt::format("  the instrument adds {:.4f} mm per axis to each measurement\n\n", 1e3 * plan.noise);
   const auto& o = plan.observability;
   text += fmt::format(
@@ -125,13 +128,14 @@ std::string headline_json(const PosePlan& plan) {
       {"expected", expected(plan.expected)},
       {"existing", expected(plan.existing)},
       {"random", expected(plan.random)},
+      {"least_rms", plan.least_rms},
       {"parameters", plan.parameters},
       {"rank", plan.rank},
       {"observability", {{"O1", o[0]}, {"O2", o[1]}, {"O3", o[2]}, {"O4", o[3]}, {"O5", o[4]}}},
       {"rows", plan.candidates},
       {"leave_out", plan.superfluous},
       {"travel_rad", plan.travel}};
-  return json.dump();
+  return json.dump() + "\n";
 }
 
 int run(const Options& options) {
@@ -152,8 +156,10 @@ int run(const Options& options) {
     return fail(done.error());
   auto figure = std::filesystem::path(options.out).replace_extension(".svg");
   if (auto done = write_text_file(figure, plan_figure(*plan)); !done) return fail(done.error());
+  const auto figures = std::filesystem::path(options.out).replace_extension(".json");
+  if (auto done = write_text_file(figures, headline_json(*plan)); !done) return fail(done.error());
   if (options.common.json)
-    fmt::print("{}\n", headline_json(*plan));
+    fmt::print("{}", headline_json(*plan));
   else if (!options.common.quiet)
     fmt::print("{}\nFigure: {}\n", summary(*plan, options), figure.string());
   return exit_done;

@@ -7,9 +7,11 @@
 
 #include "kinfer/cli/drive_choices.hpp"
 #include "kinfer/cli/simulate_files.hpp"
+#include "kinfer/cli/simulated_faults.hpp"
 #include "kinfer/cli/verbs.hpp"
 #include "kinfer/io/text_file.hpp"
 #include "kinfer/simulate/ins_simulation.hpp"
+#include "kinfer/simulate/linkage.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
 
 namespace kinfer::cli {
@@ -23,7 +25,8 @@ struct Options {
   double duration = 0.0;  // s; 0: the script's own
   double sampling_rate = 200.0;
   SensorTrouble trouble;
-  bool no_magnetometer = false;
+  bool no_magnetometer = false, linkage = false;
+  SimulatedFaults faults;
   double accelerometer_range = 0.0, gyro_range = 0.0;  // g, deg/s; 0: the grade's
 };
 
@@ -60,7 +63,9 @@ SensorTrouble trouble_of(const Options& options) {
   return trouble;
 }
 
-Result<MachineMotion> move(const MujocoWorld& world, const Drive& drive, const Options& options) {
+Result<MachineMotion> move(const MujocoWorld& world, const Machine& machine, const Drive& drive,
+                           const Options& options) {
+  if (options.linkage) return linkage_motion(machine, drive, options.sampling_rate);
   if (options.motion == "prescribed") return world.prescribe(drive, options.sampling_rate);
   return world.drive(drive, options.sampling_rate, options.motion == "soft" ? Servo::soft : Servo::stiff);
 }
@@ -88,19 +93,24 @@ Result<void> simulate(const Options& options) {
   KINFER_TRY(mjcf, machine_mjcf(options.machine, build_of(options), rng.stream(1)));
   KINFER_TRY(sensors, sensors_of(options));
   KINFER_TRY(world, MujocoWorld::load(mjcf));
-  const Machine& machine = world.machine();
-  KINFER_TRY(drive,
-             make_drive(machine, {.script = scripts.at(options.script), .duration = options.duration}, rng.stream(2)));
+  if (options.linkage && !options.machine.starts_with("excavator"))
+    return error("--linkage: only the excavators have a bucket for it");
+  const Machine machine = options.linkage ? with_linkage(world.machine()) : world.machine();
+  KINFER_TRY(drive, make_drive(world.machine(), {.script = scripts.at(options.script), .duration = options.duration},
+                               rng.stream(2)));
   const std::filesystem::path folder(options.out);
   if (auto ready = make_writable_folder(folder); !ready) return ready;
-  KINFER_TRY(motion, move(world, drive, options));
-  const InsRecording recording = simulated_recording(machine, motion, sensors, trouble_of(options), rng.stream(3));
+  KINFER_TRY(moved, move(world, machine, drive, options));
+  const MachineTruth truth = machine_truth(machine, moved);
+  KINFER_TRY(motion, with_remount(machine, std::move(moved), options.faults));
+  KINFER_TRY(recording,
+             with_late_sensor(simulated_recording(machine, motion, sensors, trouble_of(options), rng.stream(3)),
+                              options.faults));
   const SimulationRecord record{options.machine, sensors.name,        options.base,
                                 options.slope,   options.common.seed, options.sampling_rate};
   for (const auto& [name, text] :
        {std::pair{"imu.csv", imu_csv(recording)}, std::pair{"motion.csv", motion_csv(machine, motion)},
-        std::pair{"truth.json", truth_json(record, drive, machine, machine_truth(machine, motion))},
-        std::pair{"machine.xml", mjcf}})
+        std::pair{"truth.json", truth_json(record, drive, machine, truth)}, std::pair{"machine.xml", mjcf}})
     if (auto done = write_text_file(folder / name, text); !done) return done;
   if (auto done = run_record.write(folder); !done) return done;
   print_summary(options, machine, motion);
@@ -117,6 +127,8 @@ void add_machine_options(CLI::App& verb, Options& options) {
            "Sensors anyhow on their segments, joints a little off (excavator-general always is)");
   add_choice(verb, "--base", options.base, names_of(bases),
              "rocking: it rolls, pitches and heaves; yawing: it also turns on its tracks");
+  add_flag(verb, "--linkage", options.linkage,
+           "A four-bar linkage about the excavator's bucket, an INS on each bar; its motion is prescribed");
   add_number(verb, "--slope", options.slope, 0.0, 45.0, "Slope of the ground [deg]");
 }
 
@@ -141,6 +153,11 @@ void add_sensor_options(CLI::App& verb, Options& options) {
   add_number(verb, "--magnetic-disturbance", options.trouble.magnetic_disturbance, 0.0, 1000.0,
              "Field of moving steel [uT rms]");
   add_flag(verb, "--no-magnetometer", options.no_magnetometer, "Six axes only");
+  add_text(verb, "--late", options.faults.late, "This sensor's readings are logged so many ms late", Need::optional,
+           "SENSOR=MS");
+  add_text(verb, "--remount", options.faults.remount,
+           "This sensor is turned by 21 degrees and shifted by 10 cm after so many seconds; truth.json is that before",
+           Need::optional, "SENSOR=S");
 }
 
 }  // namespace

@@ -18,6 +18,8 @@ std::string fit_table(const char* title, const ChainFit& nominal, const ChainFit
   text += table_row("as nominal", (nominal.*kind).holdout, scale);
   text += table_row("base and tool refitted, not fitted", (before.*kind).holdout, scale);
   text += table_row("calibrated, not fitted", (after.*kind).holdout, scale);
+  if (const ErrorStatistics& all = (after.*kind).holdout_all_rows; all.n > (after.*kind).holdout.n)
+    text += table_row("  the same with the wrong rows", all, scale);
   text += table_row("calibrated, fitted", (after.*kind).train, scale);
   return text + "\n";
 }

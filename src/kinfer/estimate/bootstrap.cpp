@@ -23,13 +23,6 @@ Weights counted(const PoseSet& data, Weights weights, const std::vector<double>&
   return weights;
 }
 
-bool only_points(const PoseSet& data) {
-  if (!data.mounting.empty()) return false;
-  PoseSet rest = data;
-  rest.points.clear();
-  return !has_measurements(rest);
-}
-
 bool is_poor(Stop stop) {
   return stop == Stop::budget_spent || stop == Stop::not_finite;
 }
@@ -43,7 +36,7 @@ Bootstrap bootstrap(const Chain& estimate, const ParameterSet& set, const PoseSe
   LeastSquaresOptions how = near_the_optimum();
   how.max_iterations = options.max_iterations;
   std::optional<BatchPoints> batch;
-  if (has_batch_form(estimate, set) && only_points(data)) batch.emplace(estimate, set, point_table(data));
+  if (has_points_alone(estimate, set, data)) batch.emplace(estimate, set, point_table(data));
 
   Bootstrap result;
   result.x.resize(start.size(), options.resamples);

@@ -7,6 +7,7 @@
 #include "kinfer/estimate/identifiability.hpp"
 #include "kinfer/estimate/noise_level.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/kinematics/batch_points.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/normal_equations.hpp"
 
@@ -49,7 +50,10 @@ class Fit {
   }
 
   Estimate run() {
-    if (options_.outliers == Outliers::find) fit_robustly();
+    if (options_.outliers == Outliers::find) {
+      if (options_.begin == Begin::anywhere) fit_robustly();
+      update_beliefs();
+    }
     fit_believed();
     return summary();
   }
@@ -94,7 +98,6 @@ class Fit {
       minimise(Loss::cauchy, roughly);
       if (update_noise_level()) break;
     }
-    update_beliefs();
   }
 
   /// Plain least squares on the believed rows, until level and beliefs agree with the fit.
@@ -227,7 +230,7 @@ class Fit {
           residual_kind(block.kind).in_words(errors[static_cast<std::size_t>(block.kind)][block.index]);
       const int line = data_.line.empty() ? 0 : data_.line[block.row];
       const double sigmas = distance[static_cast<Eigen::Index>(i)];
-      estimate.outliers.push_back({block.row, line, fmt::format("{} ({:.0f} sigma)", what, sigmas)});
+      estimate.outliers.push_back({block.row, line, fmt::format("{} ({:.0f} sigma)", what, sigmas), sigmas});
     }
     std::stable_sort(estimate.outliers.begin(), estimate.outliers.end(),
                      [](const Outlier& a, const Outlier& b) { return a.row < b.row; });
@@ -238,10 +241,12 @@ class Fit {
   static void merge_rows(std::vector<Outlier>& outliers) {
     std::vector<Outlier> merged;
     for (const Outlier& outlier : outliers) {
-      if (!merged.empty() && merged.back().row == outlier.row)
-        merged.back().reason += "; " + outlier.reason;
-      else
+      if (merged.empty() || merged.back().row != outlier.row) {
         merged.push_back(outlier);
+        continue;
+      }
+      merged.back().reason += "; " + outlier.reason;
+      merged.back().sigmas = std::max(merged.back().sigmas, outlier.sigmas);
     }
     outliers = std::move(merged);
   }
@@ -276,6 +281,24 @@ Mat3 predicted_covariance(const Estimate& estimate, ConstVectorRef q) {
   Twists twists;
   evaluator.pose_and_derivative(q, {}, twists);
   return twists.topRows<3>() * estimate.covariance * twists.topRows<3>().transpose();
+}
+
+VectorXd predicted_errors(const Estimate& estimate, ConstMatrixRef joints) {
+  VectorXd errors(joints.cols());
+  if (!has_batch_form(estimate.chain, estimate.parameters)) {
+    for (Eigen::Index i = 0; i < errors.size(); ++i)
+      errors[i] = std::sqrt(predicted_covariance(estimate, joints.col(i)).trace());
+    return errors;
+  }
+  const Eigen::Matrix3Xd origin = Eigen::Matrix3Xd::Zero(3, joints.cols()), one = origin.array() + 1.0;
+  const BatchPoints points(estimate.chain, estimate.parameters, {joints, origin});
+  VectorXd place(3 * joints.cols());
+  MatrixXd jacobian(place.size(), points.unknowns());
+  BatchPoints::Scratch scratch;
+  points.residuals(pack(estimate.parameters, estimate.chain), points.weights(one), place, jacobian, scratch);
+  const VectorXd variance = (jacobian * estimate.covariance).cwiseProduct(jacobian).rowwise().sum();
+  for (Eigen::Index i = 0; i < errors.size(); ++i) errors[i] = std::sqrt(variance.segment<3>(3 * i).sum());
+  return errors;
 }
 
 }  // namespace kinfer

@@ -15,10 +15,15 @@
 namespace kinfer {
 
 enum class Outliers { find, believe_all };
+enum class Begin {
+  anywhere,      ///< noise level, beliefs and parameters are found together, robustly
+  near_the_fit,  ///< the start was fitted robustly to these rows and others: what it disbelieves is where to begin
+};
 
 struct BundleOptions {
   int max_iterations = 100;  ///< of each Levenberg-Marquardt run
   Outliers outliers = Outliers::find;
+  Begin begin = Begin::anywhere;
   double false_alarms = 1e-3;  ///< expected number of good rows called wrong in a whole data set of Gaussian noise
 };
 
@@ -29,5 +34,8 @@ Estimate fit_bundle(const Chain& start, const ParameterSet& set, const PoseSet& 
 
 /// Predicted covariance of the tool point at readings q: 3 x 3 [m²].
 Mat3 predicted_covariance(const Estimate& estimate, ConstVectorRef q);
+
+/// Predicted error of the tool point [m], the root of that covariance's trace, at many readings (dof x n).
+VectorXd predicted_errors(const Estimate& estimate, ConstMatrixRef joints);
 
 }  // namespace kinfer

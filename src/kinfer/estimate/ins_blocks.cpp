@@ -36,15 +36,20 @@ std::optional<Vec3> reading(const InsSample& s, InsInstrument instrument) {
   return std::nullopt;
 }
 
-InsBlock empty_block() {
-  InsBlock block;
-  block.factor.setZero();
-  block.target.setZero();
-  return block;
+/// A block while its readings come in.
+struct Gathered {
+  Eigen::Matrix<double, block_nodes, block_nodes> factor = Eigen::Matrix<double, block_nodes, block_nodes>::Zero();
+  Eigen::Matrix<double, block_nodes, 3> target = Eigen::Matrix<double, block_nodes, 3>::Zero();
+  Vec3 left = Vec3::Zero();
+  int samples = 0;
+};
+
+InsBlock stored(const Gathered& g, int rows) {
+  return {g.factor.cast<float>(), g.target.cast<float>(), g.left.cast<float>(), g.samples, rows};
 }
 
 /// One more row of V and y, rotated into R and Qᵀ y (Givens); what remains of y is left over.
-void take(InsBlock& block, Row v, Vec3 y) {
+void take(Gathered& block, Row v, Vec3 y) {
   ++block.samples;
   for (Index k = 0; k < block_nodes; ++k) {
     const double r = std::hypot(block.factor(k, k), v[k]);
@@ -61,17 +66,27 @@ void take(InsBlock& block, Row v, Vec3 y) {
   block.left += y.cwiseAbs2();
 }
 
-template <class Take>
+template <class Take, class Store>
 std::vector<InsBlock> collected(const InsSensor& sensor, std::span<const double> time, InsInstrument instrument,
-                                const SplineGrid& grid, double clock_offset, const Take& take_reading) {
-  std::vector<InsBlock> blocks(static_cast<std::size_t>(grid.intervals), empty_block());
+                                const SplineGrid& grid, double clock_offset, const Take& take_reading,
+                                const Store& store) {
+  std::vector<InsBlock> blocks(static_cast<std::size_t>(grid.intervals));
+  Gathered open;
+  Index at = -1;
+  const auto close = [&] {
+    if (open.samples > 0) blocks[static_cast<std::size_t>(at)] = store(open);
+    open = {};
+  };
   for (std::size_t row = 0; row < time.size(); ++row) {
     const double where = (time[row] + clock_offset - grid.begin) / grid.period;
     const auto k = static_cast<Index>(std::floor(where));
     if (k < 0 || k >= grid.intervals) continue;
+    if (k != at) close();
+    at = k;
     if (const auto value = reading(sample(sensor, time, row), instrument))
-      take_reading(blocks[static_cast<std::size_t>(k)], lagrange(where - static_cast<double>(k)), *value);
+      take_reading(open, lagrange(where - static_cast<double>(k)), *value);
   }
+  close();
   return blocks;
 }
 
@@ -87,29 +102,44 @@ const std::array<double, block_nodes>& block_places() {
   return places;
 }
 
+const NodeMatrix& node_derivative() {
+  static const NodeMatrix derivative = [] {
+    NodeMatrix d = NodeMatrix::Zero();
+    const auto& x = block_places();
+    for (std::size_t i = 0; i < block_nodes; ++i)
+      for (std::size_t j = 0; j < block_nodes; ++j)
+        for (std::size_t left_out = 0; left_out < block_nodes; ++left_out) {
+          if (left_out == j) continue;
+          double product = 1.0 / (x[j] - x[left_out]);
+          for (std::size_t m = 0; m < block_nodes; ++m)
+            if (m != j && m != left_out) product *= (x[i] - x[m]) / (x[j] - x[m]);
+          d(static_cast<Index>(i), static_cast<Index>(j)) += product;
+        }
+    return d;
+  }();
+  return derivative;
+}
+
 std::vector<InsBlock> ins_blocks(const InsSensor& sensor, std::span<const double> time, InsInstrument instrument,
                                  const SplineGrid& grid, double clock_offset) {
-  return collected(sensor, time, instrument, grid, clock_offset, [](InsBlock& block, const Row& v, const Vec3& y) {
-    take(block, v, y);
-    block.rows = std::min(block.samples, block_nodes);
-  });
+  return collected(sensor, time, instrument, grid, clock_offset, take,
+                   [](const Gathered& g) { return stored(g, std::min(g.samples, block_nodes)); });
 }
 
 std::vector<InsBlock> mean_blocks(const InsSensor& sensor, std::span<const double> time, InsInstrument instrument,
                                   const SplineGrid& grid, double clock_offset) {
-  auto blocks =
-      collected(sensor, time, instrument, grid, clock_offset, [](InsBlock& block, const Row& v, const Vec3& y) {
+  return collected(
+      sensor, time, instrument, grid, clock_offset,
+      [](Gathered& block, const Row& v, const Vec3& y) {
         ++block.samples;
         block.factor.row(0) += v;
         block.target.row(0) += y.transpose();
+      },
+      [](Gathered g) {
+        g.factor.row(0) /= g.samples;
+        g.target.row(0) /= g.samples;
+        return stored(g, 1);
       });
-  for (InsBlock& block : blocks)
-    if (block.samples > 0) {
-      block.factor.row(0) /= block.samples;
-      block.target.row(0) /= block.samples;
-      block.rows = 1;
-    }
-  return blocks;
 }
 
 double reading_noise(std::span<const InsBlock> blocks) {
@@ -118,7 +148,7 @@ double reading_noise(std::span<const InsBlock> blocks) {
   for (const InsBlock& block : blocks)
     if (block.samples >= block_nodes + 2) {
       const double n = 3.0 * (block.samples - block_nodes);
-      variances.push_back(block.left.sum() / n);
+      variances.push_back(static_cast<double>(block.left.sum()) / n);
       freedom += n;
     }
   if (variances.empty()) return 0.0;

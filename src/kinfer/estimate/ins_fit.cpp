@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "kinfer/estimate/ins_noise.hpp"
+#include "kinfer/estimate/ins_system.hpp"
 
 namespace kinfer {
 namespace {
@@ -11,8 +13,11 @@ namespace {
 constexpr double held = 1e12;  // damping that holds the border while the band settles
 constexpr double first_damping = 1e-3, most_damping = 1e8;
 constexpr double least_damping = 1e-14;  // must not hold a weakly known azimuth
-constexpr int settling_iterations = 3;   // of the band alone
-constexpr int round_iterations = 4;      // before the instruments are weighed anew
+constexpr double rough_decrease = 1.0;   // of the cost, that is worth a step while the weights still change
+constexpr double little_uphill = 1.2;    // times the cost
+constexpr int most_looks = 4;
+constexpr int settling_iterations = 3;  // of the band alone
+constexpr int round_iterations = 4;     // before the instruments are weighed anew
 
 struct Marquardt {
   InsProblem& problem;
@@ -20,18 +25,34 @@ struct Marquardt {
   InsFit fit;
   double damping = first_damping;
 
-  /// One accepted step; false where no damping lowers the cost.
+  struct Point {
+    InsUnknowns unknowns;
+    InsCost cost;
+  };
+
+  /// Where the damped equations at `from` lead; nothing where they are not positive definite.
+  std::optional<Point> stepped(const InsUnknowns& from, bool hold_border) const {
+    const InsSystem system(problem, fit.layout, from, {damping, hold_border ? held : damping}, options.threads);
+    const auto change = system.solve();
+    if (!change) return std::nullopt;
+    InsUnknowns to = changed(problem, fit.layout, from, change->band, change->border);
+    InsCost cost = cost_of(problem, fit.layout, to, options.threads);
+    return Point{std::move(to), std::move(cost)};
+  }
+
+  /// One accepted step; false where no damping lowers the cost. A little uphill is looked at from the other side first:
+  /// in a valley that bends, as an azimuth's that only disturbed magnetometers tell, a long step leaves the ground and
+  /// the next one comes back to it, where steps that never rise creep.
   bool step(bool hold_border) {
     for (; damping < most_damping; damping *= 10.0) {
-      const auto system =
-          eliminated(problem, fit.layout, fit.unknowns, {damping, hold_border ? held : damping}, options.threads);
-      const auto change = system.solve();
-      if (!change) continue;
-      InsUnknowns trial = changed(problem, fit.layout, fit.unknowns, change->band, change->border);
-      InsCost cost = cost_of(problem, fit.layout, trial, options.threads);
-      if (!(cost.total < fit.cost.total)) continue;
-      fit.unknowns = std::move(trial);
-      fit.cost = std::move(cost);
+      auto trial = stepped(fit.unknowns, hold_border);
+      for (int look = 0; look < most_looks && trial && !(trial->cost.total < fit.cost.total) &&
+                         trial->cost.total < little_uphill * fit.cost.total;
+           ++look)
+        trial = stepped(trial->unknowns, hold_border);
+      if (!trial || !(trial->cost.total < fit.cost.total)) continue;
+      fit.unknowns = std::move(trial->unknowns);
+      fit.cost = std::move(trial->cost);
       damping = std::max(least_damping, 0.03 * damping);
       return true;
     }
@@ -46,8 +67,8 @@ struct Marquardt {
     return changed;
   }
 
-  /// Iterates until the cost no longer falls, the round or the budget is over.
-  Stop round(int iterations, const Observer& observer) {
+  /// Iterates until the cost falls by less than `least_decrease`, the round or the budget is over.
+  Stop round(int iterations, double least_decrease, const Observer& observer) {
     for (int i = 0; i < iterations && fit.iterations < options.iterations; ++i, ++fit.iterations) {
       const double before = fit.cost.total;
       if (!step(false)) return Stop::stalled;
@@ -58,7 +79,7 @@ struct Marquardt {
                               .iteration = fit.iterations,
                               .detail = {}};
       if (tell(observer, progress) == Wish::stop) return Stop::cancelled;
-      if (before - fit.cost.total < options.least_decrease && damping < first_damping) return Stop::converged_cost;
+      if (before - fit.cost.total < least_decrease && damping < first_damping) return Stop::converged_cost;
     }
     return Stop::budget_spent;
   }
@@ -76,11 +97,13 @@ InsFit fit_ins(InsProblem& problem, const InsUnknowns& start, const InsFitOption
   }
   bool changed = m.weigh();
   for (int round = 0; round < options.rounds; ++round) {
-    fit.stop = m.round(changed ? round_iterations : options.iterations, observer);
+    const bool rough = changed;
+    fit.stop = rough ? m.round(round_iterations, rough_decrease, observer)
+                     : m.round(options.iterations, options.least_decrease, observer);
     if (fit.stop == Stop::cancelled || fit.iterations >= options.iterations) break;
     const bool done = fit.stop != Stop::budget_spent;
     changed = m.weigh();
-    if (done && !changed) break;
+    if (done && !changed && !rough) break;
   }
   return fit;
 }

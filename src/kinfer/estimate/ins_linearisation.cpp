@@ -13,9 +13,13 @@ namespace {
 
 using Index = Eigen::Index;
 constexpr Index item_intervals = 8;  // of one work item; fixed, so that sums never depend on the number of threads
-constexpr Index batch_items = 16;    // linearised before they are eliminated: bounds the memory
 
 // ---- Residuals of one instrument in one interval ----------------------------------------------------------------
+
+/// [s] of an interval's middle after the grid's.
+double from_middle(const SplineGrid& grid, Index interval) {
+  return grid.period * (static_cast<double>(interval) + 0.5 - 0.5 * static_cast<double>(grid.intervals));
+}
 
 Vec3 read_rate(const InsState& s, const InsErrors& e) {
   return s.rate + e.rate_matrix * s.rate + e.rate_bias;
@@ -29,8 +33,20 @@ Vec3 read_field(const InsState& s, const InsErrors& e) {
 
 using BlockResidual = Eigen::Matrix<double, block_nodes, 3>;  // whitened; unused rows are zero
 
-BlockResidual residual(const InsBlock& block, const Eigen::Matrix<double, block_nodes, 3>& predicted, double sd) {
-  return (block.target - block.factor * predicted) / sd;
+BlockResidual residual(const InsBlock& block, const NodeMatrix& factor, const BlockResidual& predicted, double sd) {
+  return (block.target.cast<double>() - factor * predicted) / sd;
+}
+
+/// Where a sensor's clock puts the truth that it shows, less where it logs it, in intervals.
+double clock_shift(const InsProblem& problem, const InsLayout& layout, const InsErrors& errors, Index interval) {
+  if (!layout.has_clocks) return 0.0;
+  return (errors.clock.offset + errors.clock.drift * from_middle(problem.grid, interval)) / problem.grid.period;
+}
+
+/// What a block's rows are of the values at the nodes when these are carried on by a small shift: R (I + shift D).
+NodeMatrix shifted_factor(const InsBlock& block, const InsLayout& layout, double shift) {
+  if (!layout.has_clocks) return block.factor.cast<double>();
+  return block.factor.cast<double>() * (NodeMatrix::Identity() + shift * node_derivative());
 }
 
 struct RobustBlock {
@@ -110,7 +126,7 @@ void fill_rows(Rows rows, const InstrumentUse& use, const InsLayout& layout, con
       rows.col(at + i) += weights[static_cast<std::size_t>(i)] * by_state.col(from);
   }
   const bool rate = use.state_row == 0, force = use.state_row == 6;
-  const Index bias = columns.own + (rate ? 0 : force ? 3 : layout.errors_each - 3);
+  const Index bias = columns.own + (rate ? 0 : force ? 3 : layout.field_error);
   rows.template middleCols<3>(bias).setIdentity();
   if (layout.has_matrices && (rate || force)) {
     const Vec3& truth = rate ? state.rate : state.force;
@@ -141,6 +157,7 @@ SensorSystem sensor_system(const InsProblem& problem, const InsLayout& layout, c
   for (const InstrumentUse& use : uses) {
     const InsBlock& block = use.blocks[k];
     if (block.rows == 0) continue;
+    const NodeMatrix factor = shifted_factor(block, layout, clock_shift(problem, layout, x.errors[sensor], interval));
     BlockResidual predicted;
     for (Index node = 0; node < block_nodes; ++node) {
       const auto n = static_cast<std::size_t>(node);
@@ -148,12 +165,19 @@ SensorSystem sensor_system(const InsProblem& problem, const InsLayout& layout, c
       fill_rows(at_nodes.middleRows<3>(3 * node), use, layout, columns, path, motion[n].columns[body],
                 motion[n].state[body], x.errors[sensor], bases[n]);
     }
-    const BlockResidual r = residual(block, predicted, use.sd);
+    const BlockResidual r = residual(block, factor, predicted, use.sd);
     const double weight = std::sqrt(robust(r.squaredNorm(), 3.0 * block.rows).weight);
+    const BlockResidual by_shift = block.factor.cast<double>() * (node_derivative() * predicted);
     for (Index i = 0; i < block.rows; ++i, row += 3) {
       for (Index node = 0; node < block_nodes; ++node)
-        if (const double factor = block.factor(i, node); std::abs(factor) > 0.0)
-          system.jacobian.middleRows<3>(row) += (weight * factor / use.sd) * at_nodes.middleRows<3>(3 * node);
+        if (std::abs(factor(i, node)) > 0.0)
+          system.jacobian.middleRows<3>(row) += (weight * factor(i, node) / use.sd) * at_nodes.middleRows<3>(3 * node);
+      if (layout.has_clocks) {
+        const Index clock = columns.own + layout.clock_error;
+        const Vec3 by_offset = (weight / (use.sd * problem.grid.period)) * by_shift.row(i).transpose();
+        system.jacobian.block<3, 1>(row, clock) = by_offset;
+        system.jacobian.block<3, 1>(row, clock + 1) = from_middle(problem.grid, interval) * by_offset;
+      }
       system.residual.segment<3>(row) = weight * r.row(i).transpose();
     }
   }
@@ -209,86 +233,29 @@ void add_band_prior(BandSpan& span, const InsProblem& problem, const InsLayout& 
 // ---- Sums over intervals
 // ----------------------------------------------------------------------------------------------
 
-struct BorderSum {
-  MatrixXd matrix;
-  VectorXd right;
-};
-
-/// Normal equations of one interval: what it adds to the band and, in `border`, to the border.
-class IntervalLinearisation {
- public:
-  IntervalLinearisation(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x)
-      : problem_(problem),
-        layout_(layout),
-        x_(x),
-        paths_(paths_of(problem, layout, x.bodies)),
-        bases_(node_bases(problem.grid)),
-        facts_(fact_rows(problem, layout, x)),
-        every_column_(static_cast<std::size_t>(spline_order * layout.channels + layout.border)) {
-    std::iota(every_column_.begin(), every_column_.end(), Index{0});
-    for (std::size_t b = 0; b < x.bodies.size(); ++b)
-      columns_.push_back(x.bodies[b].sensor < 0
-                             ? SensorColumns{}
-                             : sensor_columns(layout, paths_, b, static_cast<std::size_t>(x.bodies[b].sensor)));
-  }
-
-  /// Calls visit(columns, system) for each sensor.
-  template <class Visit>
-  void each_sensor(Index interval, const Visit& visit) const {
-    std::array<NodeMotion, block_nodes> motion;
-    for (std::size_t n = 0; n < block_nodes; ++n) motion[n] = node_motion(problem_, layout_, x_, interval, bases_[n]);
-    for (std::size_t b = 0; b < x_.bodies.size(); ++b)
-      if (x_.bodies[b].sensor >= 0)
-        visit(columns_[b].index,
-              sensor_system(problem_, layout_, x_, columns_[b], paths_.columns[b], b, interval, motion, bases_));
-  }
-
-  BandSpan span(Index interval, BorderSum& border) const {
-    const Index local = spline_order * layout_.channels;
-    BandSpan span{MatrixXd::Zero(local, local), MatrixXd::Zero(layout_.border, local), VectorXd::Zero(local)};
-    each_sensor(interval, [&](const std::vector<Index>& index, const SensorSystem& system) {
-      accumulate(index, system.jacobian, system.residual, span, border);
-    });
-    for (const InsFactRows& rows : facts_)
-      if (rows.interval == interval) accumulate(every_column_, rows.derivative, rows.left, span, border);
-    add_band_prior(span, problem_, layout_, x_.band, interval);
-    return span;
-  }
-
- private:
-  /// `index`: of each column, in the span's local unknowns and behind them the border's.
-  void accumulate(const std::vector<Index>& index, const MatrixXd& jacobian, const VectorXd& residual, BandSpan& span,
-                  BorderSum& border) const {
-    if (residual.size() == 0) return;  // nothing was said
-    const Index n = jacobian.cols(), local = spline_order * layout_.channels;
-    MatrixXd squares = MatrixXd::Zero(n, n);
-    squares.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
-    const VectorXd right = jacobian.transpose() * residual;
-    for (Index c = 0; c < n; ++c) {
-      const Index to = index[static_cast<std::size_t>(c)];
-      (to < local ? span.right[to] : border.right[to - local]) += right[c];
-      for (Index r = c; r < n; ++r) {
-        const Index other = index[static_cast<std::size_t>(r)];
-        const Index low = std::max(to, other), high = std::min(to, other);
-        if (low < local)
-          span.matrix(low, high) += squares(r, c);
-        else if (high < local)
-          span.coupling(low - local, high) += squares(r, c);
-        else
-          border.matrix(low - local, high - local) += squares(r, c);
-      }
+/// `index`: of each column, in the span's local unknowns and behind them the border's.
+void accumulate(const std::vector<Index>& index, const MatrixXd& jacobian, const VectorXd& residual, BandSpan& span,
+                BorderSum& border) {
+  if (residual.size() == 0) return;  // nothing was said
+  const Index n = jacobian.cols(), local = span.right.size();
+  MatrixXd squares = MatrixXd::Zero(n, n);
+  squares.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
+  const VectorXd right = jacobian.transpose() * residual;
+  for (Index c = 0; c < n; ++c) {
+    const Index to = index[static_cast<std::size_t>(c)];
+    (to < local ? span.right[to] : border.right[to - local]) += right[c];
+    for (Index r = c; r < n; ++r) {
+      const Index other = index[static_cast<std::size_t>(r)];
+      const Index low = std::max(to, other), high = std::min(to, other);
+      if (low < local)
+        span.matrix(low, high) += squares(r, c);
+      else if (high < local)
+        span.coupling(low - local, high) += squares(r, c);
+      else
+        border.matrix(low - local, high - local) += squares(r, c);
     }
   }
-
-  const InsProblem& problem_;
-  const InsLayout& layout_;
-  const InsUnknowns& x_;
-  InsPaths paths_;
-  std::array<SplineBasis, block_nodes> bases_;
-  std::vector<InsFactRows> facts_;
-  std::vector<Index> every_column_;
-  std::vector<SensorColumns> columns_;
-};
+}
 
 Index items_of(const InsProblem& problem) {
   return (problem.grid.intervals + item_intervals - 1) / item_intervals;
@@ -301,7 +268,7 @@ std::pair<Index, Index> intervals_of(const InsProblem& problem, Index item) {
 /// A block's residual against a constant offset of the readings, in sigmas, an axis each.
 std::array<float, 3> offset_of(const InsBlock& block, const BlockResidual& r) {
   std::array<float, 3> offset{};
-  const Eigen::Matrix<double, block_nodes, 1> by_offset = block.factor.rowwise().sum();
+  const Eigen::Matrix<double, block_nodes, 1> by_offset = block.factor.cast<double>().rowwise().sum();
   const double size = by_offset.norm();
   for (std::size_t axis = 0; axis < 3; ++axis)
     offset[axis] = size > 0.0 ? static_cast<float>(by_offset.dot(r.col(static_cast<Index>(axis))) / size) : no_reading;
@@ -331,7 +298,8 @@ InsCost item_cost(const InsProblem& problem, const InsLayout& layout, const InsU
         BlockResidual predicted;
         for (std::size_t n = 0; n < block_nodes; ++n)
           predicted.row(static_cast<Index>(n)) = use.read(states[n][b], x.errors[sensor]).transpose();
-        const BlockResidual r = residual(block, predicted, use.sd);
+        const double shift = clock_shift(problem, layout, x.errors[sensor], interval);
+        const BlockResidual r = residual(block, shifted_factor(block, layout, shift), predicted, use.sd);
         const RobustBlock value = robust(r.squaredNorm(), 3.0 * block.rows);
         cost.total += value.cost;
         SensorFit& fit = cost.sensors[sensor];
@@ -349,10 +317,6 @@ void append(InstrumentFit& to, const InstrumentFit& more) {
   to.terms += more.terms;
   to.block.insert(to.block.end(), more.block.begin(), more.block.end());
   to.offset.insert(to.offset.end(), more.offset.begin(), more.offset.end());
-}
-
-void damp(BandSpan& span, double damping) {
-  span.matrix.diagonal() *= 1.0 + damping;
 }
 
 }  // namespace
@@ -375,54 +339,70 @@ InsCost cost_of(const InsProblem& problem, const InsLayout& layout, const InsUnk
   return sum;
 }
 
-BorderedBand eliminated(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
-                        const Damping& damping, int threads) {
-  const IntervalLinearisation linearisation(problem, layout, x);
-  BorderedBand band(layout.channels, spline_order, layout.border);
-  BorderPrior prior = border_prior(problem, layout, x);
-  const Index items = items_of(problem);
-  for (Index first = 0; first < items; first += batch_items) {
-    const Index count = std::min(batch_items, items - first);
-    std::vector<std::vector<BandSpan>> spans(static_cast<std::size_t>(count));
-    std::vector<BorderSum> sums(static_cast<std::size_t>(count));
-    parallel_for(spans.size(), threads, [&](std::size_t i) {
-      sums[i] = {MatrixXd::Zero(layout.border, layout.border), VectorXd::Zero(layout.border)};
-      const auto [begin, end] = intervals_of(problem, first + static_cast<Index>(i));
-      for (Index interval = begin; interval < end; ++interval) {
-        spans[i].push_back(linearisation.span(interval, sums[i]));
-        damp(spans[i].back(), damping.band);
-      }
-    });
-    for (std::size_t i = 0; i < spans.size(); ++i) {
-      for (const BandSpan& span : spans[i]) band.add(span);
-      prior.matrix += sums[i].matrix;
-      prior.right += sums[i].right;
-    }
+struct IntervalLinearisation::Parts {
+  const InsProblem& problem;
+  const InsLayout& layout;
+  const InsUnknowns& x;
+  InsPaths paths;
+  std::array<SplineBasis, block_nodes> bases;
+  std::vector<InsFactRows> facts;
+  std::vector<Index> every_column;
+  std::vector<SensorColumns> columns;
+
+  /// Calls visit(columns, system) for each sensor.
+  template <class Visit>
+  void each_sensor(Index interval, const Visit& visit) const {
+    std::array<NodeMotion, block_nodes> motion;
+    for (std::size_t n = 0; n < block_nodes; ++n) motion[n] = node_motion(problem, layout, x, interval, bases[n]);
+    for (std::size_t b = 0; b < x.bodies.size(); ++b)
+      if (x.bodies[b].sensor >= 0)
+        visit(columns[b].index,
+              sensor_system(problem, layout, x, columns[b], paths.columns[b], b, interval, motion, bases));
   }
-  prior.matrix.diagonal() *= 1.0 + damping.border;
-  band.finish(prior.matrix, prior.right);
-  return band;
+};
+
+IntervalLinearisation::IntervalLinearisation(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x)
+    : parts_(std::make_unique<Parts>(Parts{problem,
+                                           layout,
+                                           x,
+                                           paths_of(problem, layout, x.bodies),
+                                           node_bases(problem.grid),
+                                           fact_rows(problem, layout, x),
+                                           {},
+                                           {}})) {
+  parts_->every_column.resize(static_cast<std::size_t>(spline_order * layout.channels + layout.border));
+  std::iota(parts_->every_column.begin(), parts_->every_column.end(), Index{0});
+  for (std::size_t b = 0; b < x.bodies.size(); ++b)
+    parts_->columns.push_back(x.bodies[b].sensor < 0 ? SensorColumns{}
+                                                     : sensor_columns(layout, parts_->paths, b,
+                                                                      static_cast<std::size_t>(x.bodies[b].sensor)));
 }
 
-MatrixXd interval_scores(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
-                         ConstMatrixRef following, int threads) {
-  const IntervalLinearisation linearisation(problem, layout, x);
-  const Index local = spline_order * layout.channels;
-  MatrixXd scores = MatrixXd::Zero(problem.grid.intervals, layout.border);
-  parallel_for(static_cast<std::size_t>(problem.grid.intervals), threads, [&](std::size_t i) {
-    const auto interval = static_cast<Index>(i);
-    VectorXd band = VectorXd::Zero(local), border = VectorXd::Zero(layout.border);
-    linearisation.each_sensor(interval, [&](const std::vector<Index>& index, const SensorSystem& system) {
-      const VectorXd right = system.jacobian.transpose() * system.residual;
-      for (Index c = 0; c < right.size(); ++c) {
-        const Index to = index[static_cast<std::size_t>(c)];
-        (to < local ? band[to] : border[to - local]) += right[c];
-      }
-    });
-    scores.row(interval) =
-        (border - following.middleRows(interval * layout.channels, local).transpose() * band).transpose();
+IntervalLinearisation::~IntervalLinearisation() = default;
+
+BandSpan IntervalLinearisation::span(Index interval, BorderSum& border) const {
+  const Index local = spline_order * parts_->layout.channels, held = parts_->layout.border;
+  BandSpan span{MatrixXd::Zero(local, local), MatrixXd::Zero(held, local), VectorXd::Zero(local)};
+  parts_->each_sensor(interval, [&](const std::vector<Index>& index, const SensorSystem& system) {
+    accumulate(index, system.jacobian, system.residual, span, border);
   });
-  return scores;
+  for (const InsFactRows& rows : parts_->facts)
+    if (rows.interval == interval) accumulate(parts_->every_column, rows.derivative, rows.left, span, border);
+  add_band_prior(span, parts_->problem, parts_->layout, parts_->x.band, interval);
+  return span;
+}
+
+IntervalGradient IntervalLinearisation::gradient(Index interval) const {
+  const Index local = spline_order * parts_->layout.channels;
+  IntervalGradient gradient{VectorXd::Zero(local), VectorXd::Zero(parts_->layout.border)};
+  parts_->each_sensor(interval, [&](const std::vector<Index>& index, const SensorSystem& system) {
+    const VectorXd right = system.jacobian.transpose() * system.residual;
+    for (Index c = 0; c < right.size(); ++c) {
+      const Index to = index[static_cast<std::size_t>(c)];
+      (to < local ? gradient.band[to] : gradient.border[to - local]) += right[c];
+    }
+  });
+  return gradient;
 }
 
 }  // namespace kinfer

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 
 #include "kinfer/estimate/ins_problem.hpp"
 #include "kinfer/linalg/bordered_band.hpp"
@@ -31,17 +32,33 @@ struct InsCost {
 };
 InsCost cost_of(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, int threads);
 
-struct Damping {
-  double band = 0.0, border = 0.0;  ///< times the diagonal (Marquardt)
+/// Normal equations in the border's unknowns.
+struct BorderSum {
+  MatrixXd matrix;  ///< lower half
+  VectorXd right;
 };
 
-/// Normal equations at x, eliminated up to the border; memory is that of the band's factor.
-BorderedBand eliminated(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
-                        const Damping& damping, int threads);
+/// Gradient (minus, of half the cost) of one interval's readings.
+struct IntervalGradient {
+  VectorXd band;  ///< order · channels: of the coefficients that the interval sees
+  VectorXd border;
+};
 
-/// Gradient of each interval's readings in the border's unknowns when the band follows (`following` of the elimination
-/// at x): intervals x border. Its rows sum to about zero at the optimum, their spread is what the data really say.
-MatrixXd interval_scores(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
-                         ConstMatrixRef following, int threads);
+/// The residuals linearised at x, interval by interval. What it is made from must outlive it.
+class IntervalLinearisation {
+ public:
+  IntervalLinearisation(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x);
+  ~IntervalLinearisation();
+
+  /// Normal equations of one interval: what it adds to the band and, in `border`, to the border.
+  BandSpan span(Eigen::Index interval, BorderSum& border) const;
+
+  /// Readings alone: neither priors nor facts.
+  IntervalGradient gradient(Eigen::Index interval) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
 
 }  // namespace kinfer

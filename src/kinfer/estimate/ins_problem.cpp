@@ -8,18 +8,26 @@ namespace {
 
 using Index = Eigen::Index;
 
+constexpr double certain = 1e-9;  // [s], [s/s] of the reference's clock, which is right by definition
+
 /// Calls visit(first unknown, size, pointer to value, sd) for each part of a sensor's errors.
 template <class Errors, class Visit>
-void each_error(const InsProblem& problem, const InsLayout& layout, Errors& errors, Index first, const Visit& visit) {
+void each_error(const InsProblem& problem, const InsLayout& layout, Errors& all, std::size_t sensor,
+                const Visit& visit) {
+  auto& errors = all[sensor];
+  const Index first = layout.error[sensor];
   visit(first, 3, errors.rate_bias.data(), problem.prior.rate_bias);
   visit(first + 3, 3, errors.force_bias.data(), problem.prior.force_bias);
-  Index next = first + 6;
   if (layout.has_matrices) {
-    visit(next, 9, errors.rate_matrix.data(), problem.prior.rate_matrix);
-    visit(next + 9, 9, errors.force_matrix.data(), problem.prior.force_matrix);
-    next += 18;
+    visit(first + 6, 9, errors.rate_matrix.data(), problem.prior.rate_matrix);
+    visit(first + 15, 9, errors.force_matrix.data(), problem.prior.force_matrix);
   }
-  if (layout.has_field) visit(next, 3, errors.field_bias.data(), problem.prior.field_bias);
+  if (layout.has_field) visit(first + layout.field_error, 3, errors.field_bias.data(), problem.prior.field_bias);
+  if (!layout.has_clocks) return;
+  const bool is_reference = sensor == problem.clock_reference;
+  const Index clock = first + layout.clock_error;
+  visit(clock, 1, &errors.clock.offset, is_reference ? certain : problem.prior.clock_offset);
+  visit(clock + 1, 1, &errors.clock.drift, is_reference ? certain : problem.prior.clock_drift);
 }
 
 /// `step`: 3 a place, 3 a touched point, then the surveyor's frame: shift and turn.
@@ -48,7 +56,11 @@ InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
     layout.channel.push_back(body.motion == JointMotion::none ? -1 : layout.channels);
     layout.channels += freedoms(body.motion);
   }
-  layout.errors_each = 6 + (layout.has_matrices ? 18 : 0) + (layout.has_field ? 3 : 0);
+  layout.has_clocks = problem.prior.clock_offset > 0.0;
+  const auto append = [&](Index count) { return std::exchange(layout.errors_each, layout.errors_each + count); };
+  append(layout.has_matrices ? 24 : 6);
+  if (layout.has_field) layout.field_error = append(3);
+  if (layout.has_clocks) layout.clock_error = append(2);
   for (std::size_t s = 0; s < problem.sensors.size(); ++s) layout.error.push_back(take(layout.errors_each));
   const InsFacts& facts = problem.facts;
   layout.facts =
@@ -65,7 +77,7 @@ InsUnknowns changed(const InsProblem& problem, const InsLayout& layout, const In
   for (std::size_t b = 0; b < x.bodies.size(); ++b)
     result.bodies[b] = changed(x.bodies[b], border.segment(layout.body[b], x.bodies[b].unknowns()));
   for (std::size_t s = 0; s < x.errors.size(); ++s)
-    each_error(problem, layout, result.errors[s], layout.error[s], [&](Index at, Index size, double* value, double) {
+    each_error(problem, layout, result.errors, s, [&](Index at, Index size, double* value, double) {
       for (Index i = 0; i < size; ++i) value[i] += border[at + i];
     });
   change_facts(result.facts, border.tail(layout.border - layout.facts));
@@ -100,10 +112,9 @@ BorderPrior border_prior(const InsProblem& problem, const InsLayout& layout, con
         for (const double value : point) hold(at++, value, problem.point_sd);
   }
   for (std::size_t s = 0; s < x.errors.size(); ++s)
-    each_error(problem, layout, x.errors[s], layout.error[s],
-               [&](Index at, Index size, const double* value, double sd) {
-                 for (Index i = 0; i < size; ++i) hold(at + i, value[i], sd);
-               });
+    each_error(problem, layout, x.errors, s, [&](Index at, Index size, const double* value, double sd) {
+      for (Index i = 0; i < size; ++i) hold(at + i, value[i], sd);
+    });
   for (std::size_t i = 0; i < x.facts.places.size(); ++i) {
     const InsPlace& place = problem.facts.places[i];
     for (Index k = 0; k < 3; ++k)

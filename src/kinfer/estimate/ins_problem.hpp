@@ -25,15 +25,24 @@ struct InsReadings {
   InsNoise least;                            ///< what the instrument has even where the model is perfect
 };
 
+/// How a sensor's clock errs: a reading that is logged at t shows the truth at t + offset + drift (t − the grid's
+/// middle).
+struct InsClock {
+  double offset = 0.0;  ///< [s]
+  double drift = 0.0;   ///< [s/s]
+};
+
 /// Systematic errors of one INS.
 struct InsErrors {
   Vec3 rate_bias = Vec3::Zero(), force_bias = Vec3::Zero(), field_bias = Vec3::Zero();
   Mat3 rate_matrix = Mat3::Zero(), force_matrix = Mat3::Zero();  ///< S
+  InsClock clock{};
 };
 
-/// One sigma of what an INS may be wrong by; matrices of 0 are not estimated.
+/// One sigma of what an INS may be wrong by; matrices and clocks of 0 are not estimated.
 struct InsErrorPrior {
   double rate_bias = 0.0, force_bias = 0.0, field_bias = 0.0, rate_matrix = 0.0, force_matrix = 0.0;
+  double clock_offset = 0.0, clock_drift = 0.0;
 };
 
 struct InsProblem {
@@ -41,12 +50,13 @@ struct InsProblem {
   bool root_stands_still = true;
   std::vector<InsReadings> sensors;
   InsErrorPrior prior;
-  double gravity = 9.80665;    ///< [m/s²] size of the root's force where it stands still
-  double gravity_sd = 0.03;    ///< gravity on Earth is within this
-  double point_sd = 3.0;       ///< [m] keeps what no signal tells near the sensors
-  double turn_sd = 1.0;        ///< [rad] keeps an azimuth that no signal tells where it started
-  std::vector<double> anchor;  ///< of each joint's first coefficient: a constant that no signal tells stays there
-  InsFacts facts{};            ///< what else is known
+  double gravity = 9.80665;         ///< [m/s²] size of the root's force where it stands still
+  double gravity_sd = 0.03;         ///< gravity on Earth is within this
+  double point_sd = 3.0;            ///< [m] keeps what no signal tells near the sensors
+  double turn_sd = 1.0;             ///< [rad] keeps an azimuth that no signal tells where it started
+  std::size_t clock_reference = 0;  ///< sensor whose clock is the machine's
+  std::vector<double> anchor;       ///< of each joint's first coefficient: a constant that no signal tells stays there
+  InsFacts facts{};                 ///< what else is known
 };
 
 struct InsUnknowns {
@@ -65,9 +75,10 @@ struct InsLayout {
   Eigen::Index root_force = -1, root_field = -1;  ///< first of three in the border; −1: not there
   std::vector<Eigen::Index> body, error;          ///< first unknown of each body and sensor in the border
   std::vector<Eigen::Index> channel;              ///< first of each body's joint; −1: none
-  bool has_field = false, has_matrices = false;
-  Eigen::Index errors_each = 0;  ///< unknowns a sensor: [b_g, b_a, S_g, S_a, b_m]
-  Eigen::Index facts = -1;       ///< first of what facts make unknown: places, touched points, the surveyor\'s frame
+  bool has_field = false, has_matrices = false, has_clocks = false;
+  Eigen::Index errors_each = 0;                     ///< unknowns a sensor: [b_g, b_a, S_g, S_a, b_m, clock]
+  Eigen::Index field_error = -1, clock_error = -1;  ///< where they begin among these; −1: not there
+  Eigen::Index facts = -1;  ///< first of what facts make unknown: places, touched points, the surveyor\'s frame
 };
 InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies);
 

@@ -1,29 +1,55 @@
 #include "kinfer/estimate/point_fit.hpp"
 
+#include <algorithm>
+
 namespace kinfer {
 namespace {
 
 /// The priors' part of the cost, and of the normal equations where they are wanted.
-struct Priors {
-  MatrixXd information;
-  VectorXd mean;
-
-  explicit Priors(const ParameterSet& set) : mean(nominal_of(set)) {
-    const MatrixXd rows = prior_rows(set);
-    information = rows.transpose() * rows;
+class Priors {
+ public:
+  explicit Priors(const ParameterSet& set) : mean_(nominal_of(set)) {
+    if (set.prior_root.size() > 0) {
+      const MatrixXd rows = prior_rows(set);
+      information_ = rows.transpose() * rows;
+      return;
+    }
+    own_.resize(mean_.size());
+    Eigen::Index k = 0;
+    for (const Parameter* p : set.free()) own_[k++] = 1.0 / (p->prior_sd * p->prior_sd);
   }
 
   double add(ConstVectorRef x, NormalEquations* normal) const {
-    const VectorXd pull = information * (x - mean);
+    const VectorXd offset = x - mean_;
+    VectorXd pull;
+    if (information_.size() > 0)
+      pull = information_ * offset;
+    else
+      pull = own_.cwiseProduct(offset);
     if (normal) {
-      normal->matrix += information.triangularView<Eigen::Lower>();
       normal->gradient += pull;
+      if (information_.size() > 0)
+        normal->matrix += information_.triangularView<Eigen::Lower>();
+      else
+        normal->matrix.diagonal() += own_;
     }
-    return pull.dot(x - mean);
+    return pull.dot(offset);
   }
+
+ private:
+  VectorXd mean_;
+  VectorXd own_;          // 1 / variance of each; 0 where there is no prior
+  MatrixXd information_;  // of a joint prior, in their place
 };
 
 }  // namespace
+
+bool has_points_alone(const Chain& chain, const ParameterSet& set, const PoseSet& data) {
+  const auto is_measured = [&](const ResidualKind& kind) { return kind.count(data) > 0; };
+  const auto& kinds = residual_kinds();
+  return data.mounting.empty() && !data.points.empty() && chain.surroundings.socket_distances.empty() &&
+         std::count_if(kinds.begin(), kinds.end(), is_measured) == 1 && has_batch_form(chain, set);
+}
 
 PointTable point_table(const PoseSet& data) {
   PointTable table;

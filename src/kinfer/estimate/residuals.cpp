@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/estimate/point_fit.hpp"
 
 namespace kinfer {
 namespace {
@@ -58,13 +60,53 @@ void write_priors(const MatrixXd& rows, const VectorXd& nominal, ConstVectorRef 
 }
 
 /// 1 / sd of every measured row, in the order of the blocks.
-VectorXd row_weights(const Weights& weights, Eigen::Index rows) {
+VectorXd row_weights(const Weights& weights) {
+  Eigen::Index rows = 0, row = 0;
+  for (const ResidualKind& kind : residual_kinds())
+    rows += static_cast<Eigen::Index>(weights.of(kind.kind).size()) * kind.size;
   VectorXd inverse_sd(rows);
-  Eigen::Index row = 0;
   for (const ResidualKind& kind : residual_kinds())
     for (const Vec3& sd : weights.of(kind.kind))
       for (int k = 0; k < kind.size; ++k) inverse_sd[row++] = 1.0 / sd[k];
   return inverse_sd;
+}
+
+/// Writes the rows of all measurements and socket distances.
+using MeasuredRows = std::function<void(ConstVectorRef x, VectorXd& r, MatrixXd* jacobian)>;
+
+/// Any measurements, pose by pose.
+MeasuredRows rows_by_walking(const Chain& nominal, const ParameterSet& set, const PoseSet& data,
+                             const Weights& weights) {
+  return [&nominal, &set, &data, inverse_sd = row_weights(weights)](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
+    const Chain chain = unpack(set, nominal, x);
+    const EvaluatedPoses at = evaluate_poses(chain, set, data, jacobian ? Derivative::yes : Derivative::no);
+    const ColumnsOfSurroundings columns = columns_of_surroundings(chain, set);
+    const Scene scene{chain, data, at, columns};
+    BlockRows out{r, jacobian};
+    for (const ResidualKind& kind : residual_kinds())
+      for (std::size_t i = 0; i < kind.count(data); ++i, out.row += kind.size) kind.write(scene, i, out);
+    r.head(out.row).array() *= inverse_sd.array();
+    if (jacobian) jacobian->topRows(out.row).array().colwise() *= inverse_sd.array();
+    write_socket_distances(chain, columns, r, jacobian, out.row);
+  };
+}
+
+/// Points alone, by the batch kernels. A function must be copyable, the kernels' form of the data is not: it is shared.
+MeasuredRows rows_by_kernels(const Chain& nominal, const ParameterSet& set, const PoseSet& data,
+                             const Weights& weights) {
+  const Eigen::Matrix3Xd inverse = inverse_sd(weights);
+  auto points = std::make_shared<const BatchPoints>(nominal, set, point_table(data));
+  auto lane_weights = std::make_shared<const BatchPoints::Weights>(points->weights(inverse));
+  return [points, lane_weights, inverse](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
+    BatchPoints::Scratch scratch;
+    if (jacobian) {
+      points->residuals(x, *lane_weights, r.head(inverse.size()), jacobian->topRows(inverse.size()), scratch);
+    } else {
+      Eigen::Matrix3Xd error;
+      points->errors(x, error, scratch);
+      r.head(inverse.size()) = error.cwiseProduct(inverse).reshaped();
+    }
+  };
 }
 
 }  // namespace
@@ -152,22 +194,15 @@ Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const Po
   const auto distances = static_cast<Eigen::Index>(nominal.surroundings.socket_distances.size());
   const Eigen::Index unknowns = problem.unknowns, rows = measured + distances + unknowns;
   problem.rows = rows;
-  problem.evaluate = [&nominal, &set, &data, inverse_sd = row_weights(weights, measured), unknowns, rows, measured,
-                      distances, priors = prior_rows(set),
+  problem.evaluate = [write_measured = has_points_alone(nominal, set, data)
+                                           ? rows_by_kernels(nominal, set, data, weights)
+                                           : rows_by_walking(nominal, set, data, weights),
+                      unknowns, rows, priors = prior_rows(set),
                       centre = nominal_of(set)](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
-    const Chain chain = unpack(set, nominal, x);
-    const EvaluatedPoses at = evaluate_poses(chain, set, data, jacobian ? Derivative::yes : Derivative::no);
-    const ColumnsOfSurroundings columns = columns_of_surroundings(chain, set);
-    const Scene scene{chain, data, at, columns};
     r.resize(rows);
     if (jacobian) jacobian->resize(rows, unknowns);
-    BlockRows out{r, jacobian};
-    for (const ResidualKind& kind : residual_kinds())
-      for (std::size_t i = 0; i < kind.count(data); ++i, out.row += kind.size) kind.write(scene, i, out);
-    r.head(measured).array() *= inverse_sd.array();
-    if (jacobian) jacobian->topRows(measured).array().colwise() *= inverse_sd.array();
-    write_socket_distances(chain, columns, r, jacobian, measured);
-    write_priors(priors, centre, x, r, jacobian, measured + distances);
+    write_measured(x, r, jacobian);
+    write_priors(priors, centre, x, r, jacobian, rows - unknowns);
   };
   return problem;
 }

@@ -1,4 +1,4 @@
-// What is wrong with a pose set, found before any fit is believed, and what was done about it.
+// What is wrong with a pose set or a recording, found before any fit is believed, and what was done about it.
 #pragma once
 
 #include <string>

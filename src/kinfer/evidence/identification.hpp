@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kinfer/evidence/advice.hpp"
+#include "kinfer/evidence/findings.hpp"
 #include "kinfer/evidence/traces.hpp"
 #include "kinfer/kinematics/chain.hpp"
 
@@ -37,6 +38,9 @@ struct FoundJoint {
   std::vector<std::string> not_identifiable{};                                  ///< in words
   std::vector<Vec3> not_identifiable_in_parent{}, not_identifiable_in_child{};  ///< unit
   bool azimuth_undetermined = false;
+  /// How it moved: a row for each of its variables in the chain, a column for each frame of the film [rad] or [m];
+  /// empty where only the orientations of its two sensors are known.
+  MatrixXd film{};
 };
 
 /// Shortest distance between the axis lines of the two joints of a segment.
@@ -49,6 +53,13 @@ struct FoundLink {
 struct FoundPlace {
   std::string name, sensor;
   Vec3 xyz = Vec3::Zero(), sd = Vec3::Zero();  ///< [m] in the sensor's frame
+};
+
+/// How the clock of a sensor was corrected: its times t became t + offset + drift (t − middle of the recording).
+struct FoundClock {
+  std::string sensor;
+  double offset = 0.0, drift = 0.0;        ///< [s], [s/s]
+  double offset_sd = 0.0, drift_sd = 0.0;  ///< [s], [s/s]
 };
 
 /// Whether the recording is enough for what is wanted of a joint, and what more it would take.
@@ -64,6 +75,9 @@ struct FoundDhRow {
   std::string segment;                         ///< sensor that the row leads towards
   DhNumbers row, sd;                           ///< [rad], [m]; beta only where axes are nearly parallel
   std::string theta_variable, alpha_variable;  ///< signal that is added to the angle; empty: none
+  std::string d_variable{};                    ///< the same of a slide
+
+  const std::string& variable() const { return d_variable.empty() ? theta_variable : d_variable; }
 };
 
 /// Eq. (20) of paper 1 on rows that were fitted or not.
@@ -114,16 +128,19 @@ struct Identification {
   std::vector<FoundJoint> joints;  ///< parents before children
   std::vector<FoundLink> links;
   std::vector<FoundPlace> places;
+  std::vector<FoundClock> clocks;  ///< one a sensor; none where all clocks agree
   std::vector<JointForecast> forecast;
   std::vector<FoundDhRow> dh;  ///< canonical: three rows a joint
   std::vector<LinkEvidence> searches;
   OrderEvidence order;
-  Chain chain;               ///< from the root's sensor; one revolute joint a found one, its sensors as fixed frames
-  std::string engine;        ///< "bp"
-  MotionEvidence motion;     ///< predicted against measured, and the film
-  std::vector<Advice> next;  ///< what to measure or to do next, most useful first
+  Chain chain;            ///< from the root's sensor; one revolute joint a found one, its sensors as fixed frames
+  std::string engine;     ///< "bp"
+  MotionEvidence motion;  ///< predicted against measured, and the film
+  std::vector<Finding> findings;  ///< what is wrong with the recording, and what was done about it
+  std::vector<Advice> next;       ///< what to measure or to do next, most useful first
   std::vector<std::string> notes;
   std::string verdict;  ///< one sentence
+  bool use = true;      ///< false: something is wrong that makes the chain as a whole unfit for use
 };
 
 }  // namespace kinfer

@@ -26,6 +26,7 @@ struct PosePlan {
   /// inverse sum of inverses (Sun, Hollerbach 2008).
   std::array<double, 5> observability{};
   ExpectedError expected, existing, random;  ///< with the plan; with the existing rows alone; with as many random poses
+  double least_rms = 0.0;  ///< [m] no choice of as many of the candidates leaves less; for criterion `tool`, else 0
   std::vector<ExpectedError> planned_curve, random_curve;  ///< by number of poses
   std::vector<int> superfluous;                            ///< existing rows that tell hardly anything
   double noise = 0.0;                                      ///< [m] of the instrument, per axis, at a typical pose

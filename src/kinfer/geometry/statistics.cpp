@@ -59,11 +59,12 @@ double standard_deviation(std::span<const double> values) {
 
 double quantile(std::vector<double> values, double fraction) {
   KINFER_EXPECT(!values.empty() && fraction >= 0.0 && fraction <= 1.0);
-  std::sort(values.begin(), values.end());
   const double place = fraction * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+  const auto below = static_cast<std::ptrdiff_t>(place);
+  const auto at = values.begin() + below;
+  std::nth_element(values.begin(), at, values.end());
+  const double next = at + 1 < values.end() ? *std::min_element(at + 1, values.end()) : *at;
+  return *at + (place - static_cast<double>(below)) * (next - *at);
 }
 
 double median(std::vector<double> values) {

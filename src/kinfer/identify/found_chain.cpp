@@ -85,15 +85,35 @@ std::vector<FoundDhRow> found_rows(const std::string& segment, std::span<const D
   return rows;
 }
 
+std::vector<Vec3> joint_axes(FoundJointType type, const HingeGeometry& geometry) {
+  if (type == FoundJointType::universal)
+    return {geometry.axis_in_parent, geometry.home.rotation * geometry.axis_in_child};
+  if (type == FoundJointType::spherical)
+    return {geometry.ball_axes.col(0), geometry.ball_axes.col(1), geometry.ball_axes.col(2)};
+  return {geometry.axis_in_parent};
+}
+
+std::vector<DhNumbers> joint_rows(FoundJointType type, const HingeGeometry& geometry) {
+  return rows_through(geometry.point_in_parent, joint_axes(type, geometry), geometry.home);
+}
+
 std::vector<FoundDhRow> canonical_rows(const FoundJoint& joint, const FoundHinge& hinge) {
-  const auto numbers = canonical_rows(hinge.geometry);
+  const std::vector<DhNumbers> numbers = joint_rows(joint.type, hinge.geometry);
+  const std::vector<DhNumbers>& sd = hinge.precision.canonical_sd;
+  const std::size_t axes = numbers.size() - 2;
+  const auto variable = [&](std::size_t row) {
+    if (joint.type == FoundJointType::rigid || row == 0 || row > axes) return std::string();
+    return axes == 1 ? joint_name(joint) : fmt::format("{} {}", joint_name(joint), row);
+  };
+  const bool slides = joint.type == FoundJointType::prismatic;
   std::vector<FoundDhRow> rows;
   for (std::size_t i = 0; i < numbers.size(); ++i)
     rows.push_back({.segment = joint.child,
                     .row = numbers[i],
-                    .sd = hinge.precision.canonical_sd[i],
-                    .theta_variable = i == 1 ? joint_name(joint) : "",
-                    .alpha_variable = ""});
+                    .sd = i < sd.size() ? sd[i] : DhNumbers{},
+                    .theta_variable = slides ? "" : variable(i),
+                    .alpha_variable = "",
+                    .d_variable = slides ? variable(i) : ""});
   return rows;
 }
 
@@ -119,7 +139,6 @@ std::vector<FoundLink> found_links(const std::vector<FoundJoint>& joints) {
 
 Chain found_chain(const std::string& root, const std::vector<FoundJoint>& joints, const std::vector<FoundDhRow>& dh,
                   const Mat3& root_in_ground) {
-  KINFER_EXPECT(dh.size() == 3 * joints.size(), "{} rows for {} joints", dh.size(), joints.size());
   Chain chain;
   chain.name = "identified";
   chain.base.rotation = root_in_ground;
@@ -127,20 +146,23 @@ Chain found_chain(const std::string& root, const std::vector<FoundJoint>& joints
     const auto found = std::ranges::find(chain.joints, sensor, &Joint::name);
     return sensor == root || found == chain.joints.end() ? -1 : static_cast<int>(found - chain.joints.begin());
   };
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const std::array<std::string, 3> names{joint_name(joints[i]) + " axis", joint_name(joints[i]), joints[i].child};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const FoundDhRow& row = dh[3 * i + k];
-      Joint joint{.name = names[k]};
-      joint.parent = k == 0 ? frame_of(joints[i].parent) : static_cast<int>(chain.joints.size()) - 1;
-      const bool slides = joints[i].type == FoundJointType::prismatic;
-      const bool moves = k == 1 && (slides || joints[i].type == FoundJointType::revolute);
-      joint.type = !moves ? JointType::fixed : slides ? JointType::prismatic : JointType::revolute;
-      joint.has_reading = moves;
-      joint.link = DhLink{row.row};
+  auto row = dh.begin();
+  for (const FoundJoint& found : joints) {
+    const auto first = row, last = std::find_if(row, dh.end(), [&](const auto&r) { return r.segment != found.child; });
+    KINFER_EXPECT(last - first >= 3, "{} rows lead to {}", last - first, found.child);
+    for (; row != last; ++row) {
+      Joint joint{.name = row == first ? joint_name(found) + " axis" : row->variable()};
+      if (joint.name.empty()) joint.name = row + 1 == last ? found.child : joint_name(found);
+      joint.parent = row == first ? frame_of(found.parent) : static_cast<int>(chain.joints.size()) - 1;
+      joint.has_reading = !row->variable().empty();
+      joint.type = !joint.has_reading         ? JointType::fixed
+                   : !row->d_variable.empty() ? JointType::prismatic
+                                              : JointType::revolute;
+      joint.link = DhLink{row->row};
       chain.joints.push_back(joint);
     }
   }
+  KINFER_EXPECT(row == dh.end(), "rows of no joint");
   return chain;
 }
 

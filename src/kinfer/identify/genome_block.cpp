@@ -82,13 +82,17 @@ void LinkBlock::turn_alpha(FrameLanes& s, const DhLeaf& leaf) const {
     turn_by_signal(s, 0, 1, 2, signals[static_cast<std::size_t>(leaf.alpha_signal)]);
 }
 
-FrameLanes LinkBlock::carried(std::span<const DhLeaf> leaves) const {
-  FrameLanes s = parent;
+void LinkBlock::carry(FrameLanes& s, std::span<const DhLeaf> leaves) const {
   for (const DhLeaf& leaf : leaves) {
     turn_theta(s, leaf);
     step(s, leaf.d, leaf.a);
     turn_alpha(s, leaf);
   }
+}
+
+FrameLanes LinkBlock::carried(std::span<const DhLeaf> leaves) const {
+  FrameLanes s = parent;
+  carry(s, leaves);
   return s;
 }
 

@@ -48,7 +48,8 @@ struct LinkBlock {
   /// Angles of one leaf: theta, or alpha.
   void turn_theta(FrameLanes& s, const DhLeaf& leaf) const;
   void turn_alpha(FrameLanes& s, const DhLeaf& leaf) const;
-  FrameLanes carried(std::span<const DhLeaf> leaves) const;
+  void carry(FrameLanes& s, std::span<const DhLeaf> leaves) const;
+  FrameLanes carried(std::span<const DhLeaf> leaves) const;  ///< from the parent
 
   double acceleration_square(const FrameLanes& s) const;
   double chord_square(const FrameLanes& s) const;  ///< half the squared Frobenius norm of the rotations' difference

@@ -143,15 +143,24 @@ DhNumbers row_to_line(const Vec3& point, const Vec3& direction) {
   return row;
 }
 
-std::array<DhNumbers, 3> canonical_rows(const HingeGeometry& hinge) {
-  std::array<DhNumbers, 3> rows;
-  rows[0] = row_to_line(hinge.point_in_parent, hinge.axis_in_parent);
-  const Pose axis_T_child = transform(rows[0]).inverse() * hinge.home;
-  rows[1] = row_to_line(axis_T_child.position, axis_T_child.rotation.col(2));
-  const Pose rest = transform(rows[1]).inverse() * axis_T_child;  // along and about z only
-  rows[2].theta = std::atan2(rest.rotation(1, 0), rest.rotation(0, 0));
-  rows[2].d = rest.position.z();
+std::vector<DhNumbers> rows_through(const Vec3& point, std::span<const Vec3> axes, const Pose& home) {
+  std::vector<DhNumbers> rows;
+  Pose parent_T_here;
+  const auto add = [&](const Vec3& on_line, const Vec3& direction) {
+    const Pose here = parent_T_here.inverse();
+    rows.push_back(row_to_line(here * on_line, here.rotation * direction));
+    parent_T_here = parent_T_here * transform(rows.back());
+  };
+  for (const Vec3& axis : axes) add(point, axis);
+  add(home.position, home.rotation.col(2));
+  const Pose rest = parent_T_here.inverse() * home;  // along and about z only
+  rows.push_back({.d = rest.position.z(), .theta = std::atan2(rest.rotation(1, 0), rest.rotation(0, 0))});
   return rows;
+}
+
+std::array<DhNumbers, 3> canonical_rows(const HingeGeometry& hinge) {
+  const auto rows = rows_through(hinge.point_in_parent, std::span(&hinge.axis_in_parent, 1), hinge.home);
+  return {rows[0], rows[1], rows[2]};
 }
 
 std::vector<DhLeaf> merged(std::vector<DhLeaf> leaves) {

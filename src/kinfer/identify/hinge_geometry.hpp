@@ -14,6 +14,7 @@ struct HingeGeometry {
   Vec3 axis_in_parent = Vec3::UnitZ(), axis_in_child = Vec3::UnitZ();  ///< unit
   Vec3 point_in_parent = Vec3::Zero(), point_in_child = Vec3::Zero();  ///< [m]
   Pose home;                                                           ///< parent_T_child at angle 0
+  Mat3 ball_axes = Mat3::Identity();  ///< of a ball: columns, in the parent at home, that it turns about one by one
 };
 
 /// The common axis of the poses that the leaves make at the given signal values, by least squares; exact where the
@@ -29,6 +30,11 @@ Pose transform(const DhNumbers& row);
 /// The row behind which z lies along a line: `direction` is unit. Where the line is nearly parallel to z, d would be
 /// huge and ill-defined; then d is 0 and Hayati's angle beta takes its place.
 DhNumbers row_to_line(const Vec3& point, const Vec3& direction);
+
+/// The rows of a joint that turns about, or slides along, one axis after another, all through `point`: a row from the
+/// parent to the first axis, one from each axis to the next and from the last one to the child's z, to whose theta or d
+/// the axis' reading is added; theta and d along the child's z. `axes`: unit, in the parent at home.
+std::vector<DhNumbers> rows_through(const Vec3& point, std::span<const Vec3> axes, const Pose& home);
 
 /// The ten numbers of a hinge between two frames as canonical DH: a row from the parent to the axis; one from the axis
 /// to the child's z, to whose theta the joint's angle is added; theta and d along that.

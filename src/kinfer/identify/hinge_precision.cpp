@@ -155,7 +155,8 @@ HingePrecision hinge_precision(const HingeGeometry& hinge, const std::vector<Fra
                .point_in_parent = {sd(2), sd(3)},
                .point_in_child = {sd(6), sd(7)},
                .slide = sd(9)};
-  result.canonical_sd = canonical_deviations(base, covariance, step);
+  const auto canonical_sd = canonical_deviations(base, covariance, step);
+  result.canonical_sd.assign(canonical_sd.begin(), canonical_sd.end());
   result.hidden_in_parent = hidden_directions(parent, rows, acceleration);
   result.hidden_in_child = hidden_directions(child, rows, acceleration);
   return result;

@@ -12,7 +12,7 @@ namespace kinfer {
 struct HingePrecision {
   JointDeviation sd;
   std::vector<Vec3> hidden_in_parent, hidden_in_child;  ///< unit, in the sensors: lever directions that no signal sees
-  std::array<DhNumbers, 3> canonical_sd;                ///< standard deviations of the numbers of canonical_rows(hinge)
+  std::vector<DhNumbers> canonical_sd;                  ///< of the joint's rows; empty: not estimated
 };
 
 /// `angle`: of the hinge at each row, with its derivatives. `rows` that were fitted.

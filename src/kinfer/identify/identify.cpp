@@ -6,13 +6,19 @@
 #include <cmath>
 
 #include "kinfer/geometry/fit.hpp"
+#include "kinfer/identify/conclusion.hpp"
 #include "kinfer/identify/forecast.hpp"
 #include "kinfer/identify/found_chain.hpp"
 #include "kinfer/identify/joint_type.hpp"
+#include "kinfer/identify/loops.hpp"
+#include "kinfer/identify/machines.hpp"
 #include "kinfer/identify/motion_evidence.hpp"
+#include "kinfer/identify/one_clock.hpp"
 #include "kinfer/identify/ordered_motion.hpp"
 #include "kinfer/identify/refined_identification.hpp"
+#include "kinfer/identify/remount.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/measurement/chosen_sensors.hpp"
 
 namespace kinfer {
 namespace {
@@ -250,14 +256,6 @@ void note_order(Identification& result) {
         "pairwise fits are believed");
 }
 
-void note_joints_without_reading(Identification& result) {
-  for (const FoundJoint& joint : result.joints)
-    if (joint.type == FoundJointType::spherical || joint.type == FoundJointType::universal)
-      result.notes.push_back(fmt::format(
-          "{}-{} turns about several axes: chain.toml, URDF and MJCF hold it as it stood when the recording began",
-          joint.parent, joint.child));
-}
-
 /// The paper's search as the paper has it. With our own terminals: signals whose zero is arbitrary may have an offset,
 /// and orientations are compared without gimbal lock.
 void follow_terminals(IdentifyOptions& options) {
@@ -276,40 +274,82 @@ std::string name_of(Engine engine) {
   return engine == Engine::bmp ? "bmp" : engine == Engine::bp ? "bp" : "enum";
 }
 
-/// [m/s²] rms of the worst sensor, by the geometry that is delivered.
-double largest_misfit(const Identification& result) {
-  double largest = 0.0;
-  for (const Trace& trace : result.motion.traces)
-    if (trace.quantity == "acceleration") largest = std::max({largest, trace.rms_fitted, trace.rms_holdout});
-  return largest;
+/// Part of a recording that identification should rather go on with.
+struct Part {
+  std::vector<std::size_t> sensors;
+  double begin = 0.0, end = 0.0;  ///< [s]
+  std::vector<Finding> findings;
+};
+
+/// An identification, and what its fit found out about the clocks; or the part of the recording to begin again with.
+struct Found {
+  Identification result{};
+  std::vector<RefinedClock> clocks{};
+  std::optional<Part> rather{};
+  std::vector<Finding> on_the_ground{};  ///< groups that share nothing but a root that stands still
+};
+
+std::vector<std::string> sensor_names(const RecordedMotion& motion) {
+  std::vector<std::string> names;
+  for (const SegmentMotion& segment : motion.segments) names.push_back(segment.name);
+  return names;
 }
 
-std::string verdict(const Identification& result) {
-  std::vector<std::string> chain;
-  for (const FoundJoint& joint : result.joints) chain.push_back(fmt::format("{}-{}", joint.parent, joint.child));
-  const auto rigid = std::ranges::count(result.joints, FoundJointType::rigid, &FoundJoint::type);
-  const std::string unmoved = rigid > 0 ? fmt::format(", {} of them never moved", rigid) : "";
-  const char* certificate = result.engine == "enum" ? "; no chain of up to 3 leaves fits better" : "";
-  return fmt::format("{} joints found{} ({}); the chain predicts accelerations to {:.3f} m/s² rms at worst; {}{}",
-                     result.joints.size(), unmoved, fmt::join(chain, ", "), largest_misfit(result),
-                     in_words(result.forecast), certificate);
+/// The sensors that were asked for, or all, without those that never move.
+Result<Chosen> chosen_sensors(const InsRecording& recording, const IdentifyOptions& options) {
+  std::vector<std::size_t> asked;
+  for (std::size_t s = 0; s < recording.sensors.size(); ++s) asked.push_back(s);
+  if (!options.sensors.empty()) {
+    KINFER_TRY(named, sensors_named(recording, options.sensors));
+    asked = named;
+  }
+  Chosen chosen = options.sensors.empty() ? without_idle(recording, options.motion, options.root)
+                                          : without_idle(with_sensors(recording, asked), options.motion, options.root);
+  for (std::size_t& s : chosen.sensors) s = asked[s];
+  return chosen;
 }
 
-}  // namespace
+/// What is wrong with the recording as a whole, and the part of it that is sound.
+std::optional<Part> sound_part(const OrderedMotion& ordered, const IdentifyOptions& options) {
+  const RecordedMotion& motion = ordered.motion;
+  Part all{.sensors = {}, .begin = motion.time.front() - 1.0, .end = motion.time.back() + 1.0, .findings = {}};
+  for (std::size_t s = 0; s < motion.segments.size(); ++s) all.sensors.push_back(s);
+  if (const auto remount = find_remount(ordered, options.threads)) {
+    if (remount->before_tells_more)
+      all.end = remount->begin;
+    else
+      all.begin = remount->end;
+    all.findings.push_back(finding_about(*remount, motion));
+    return all;
+  }
+  if (!options.tree.empty()) return std::nullopt;
+  Chosen chosen = one_machine(ordered, options.root);
+  if (chosen.sensors.size() == motion.segments.size()) return std::nullopt;
+  all.sensors = std::move(chosen.sensors);
+  all.findings = std::move(chosen.findings);
+  return all;
+}
 
-Result<Identification> identify(const InsRecording& recording, const IdentifyOptions& given, const Rng& rng,
-                                const Observer& observer) {
-  IdentifyOptions options = given;
-  options.search.bacteria.threads = options.memetic.bacteria.threads = options.threads;
-  follow_terminals(options);
-  KINFER_TRY(ordered, ordered_motion(recording, options.motion, options.root, options.threads));
+void say_order(Identification& result, const OrderedMotion& ordered, const IdentifyOptions& options) {
+  const auto closing = options.tree.empty() ? loop_closing_pairs(ordered.tree) : std::vector<PairFit>{};
+  result.order = order_evidence(ordered.motion, ordered.tree, moving_phases(ordered.motion));
+  result.order.margin = margin_of(ordered.tree, closing);
+  note_order(result);
+  result.findings = loop_findings(ordered.tree, closing, sensor_names(ordered.motion));
+  std::ranges::copy(ordered.findings, std::back_inserter(result.findings));
+}
+
+/// All sensors on one clock, as far as is known.
+Result<Found> identify_synchronous(const InsRecording& recording, const IdentifyOptions& options, const Rng& rng,
+                                   const Observer& observer) {
+  KINFER_TRY(ordered, ordered_motion(recording, options.motion, options.root, options.threads, options.tree));
+  if (auto part = sound_part(ordered, options)) return Found{.rather = std::move(part)};
   const RecordedMotion& motion = ordered.motion;
   const SegmentTree& tree = ordered.tree;
   Progressing p{motion, tree, options, std::vector<std::vector<FrameState>>(motion.segments.size()), {}};
   p.result.root = motion.segments[tree.root].name;
   p.result.engine = name_of(options.engine);
-  p.result.order = order_evidence(motion, tree, moving_phases(motion));
-  note_order(p.result);
+  say_order(p.result, ordered, options);
   p.states[tree.root] = measured_states(motion.segments[tree.root]);
   const std::size_t links = options.links > 0 ? static_cast<std::size_t>(options.links) : tree.order.size();
   const auto types = joint_types(motion, tree);
@@ -318,21 +358,62 @@ Result<Identification> identify(const InsRecording& recording, const IdentifyOpt
       return pass_on(done.error());
   if (std::ranges::all_of(p.result.joints, [](const FoundJoint& j) { return j.type == FoundJointType::rigid; }))
     return error("no sensor ever moves against another: move every joint of the machine");
+  p.states = {};
+  RefinedGeometry geometry;
   if (options.geometry == Geometry::refined) {
-    options.refine.fit.threads = options.threads;
-    if (auto done = refine_geometry(p.result, recording, motion, tree, options.refine, observer); !done)
-      return pass_on(done.error());
+    KINFER_TRY(refined, refine_geometry(p.result, recording, motion, tree, options.refine, observer));
+    geometry = std::move(refined);
   }
   p.result.links = found_links(p.result.joints);
   p.result.chain =
       found_chain(p.result.root, p.result.joints, p.result.dh, motion.segments[tree.root].rotation.front());
   carry_tool(p.result.chain, p.result.places);
-  note_joints_without_reading(p.result);
-  p.result.motion = motion_evidence(motion, p.result);
-  p.result.next = identification_advice(p.result);
-  p.result.forecast = forecast(p.result.joints);
-  p.result.verdict = verdict(p.result);
-  return p.result;
+  p.result.motion = motion_evidence(motion, p.result, geometry.held_out);
+  return Found{.result = std::move(p.result),
+               .clocks = std::move(geometry.clocks),
+               .rather = {},
+               .on_the_ground = groups_on_the_ground(ordered)};
+}
+
+}  // namespace
+
+Result<Identification> identify(const InsRecording& recording, const IdentifyOptions& given, const Rng& rng,
+                                const Observer& observer) {
+  constexpr int most_passes = 3, most_parts = 6;
+  IdentifyOptions options = given;
+  options.search.bacteria.threads = options.memetic.bacteria.threads = options.refine.fit.threads = options.threads;
+  follow_terminals(options);
+  KINFER_TRY(chosen, chosen_sensors(recording, options));
+  std::optional<InsRecording> part;  // only where not all of the recording is used: an hour's is large
+  if (chosen.sensors.size() < recording.sensors.size()) part = with_sensors(recording, chosen.sensors);
+  const InsRecording* base = part ? &*part : &recording;
+  OneClock clock = on_one_clock(*base, options.motion, options.threads);
+  Found found;
+  for (int pass = 0, narrowed = 0; pass < most_passes;) {
+    options.refine.clocks = clock.trust;
+    KINFER_TRY(now, identify_synchronous(clock.of(*base), options, rng, observer));
+    found = std::move(now);
+    if (found.rather) {
+      if (++narrowed > most_parts) return error("the recording is wrong in more ways than can be told");
+      narrow(clock, *base, found.rather->sensors, found.rather->begin, found.rather->end);
+      part = with_sensors(*base, found.rather->sensors);
+      base = &*part;
+      std::ranges::move(found.rather->findings, std::back_inserter(chosen.findings));
+    } else if (!take_up(clock, *base, found.clocks)) {
+      break;
+    } else {
+      ++pass;
+    }
+  }
+  Identification& result = found.result;
+  if (std::ranges::find(chosen.findings, "idle", &Finding::kind) != chosen.findings.end())
+    std::ranges::move(found.on_the_ground, std::back_inserter(chosen.findings));
+  result.findings.insert(result.findings.begin(), chosen.findings.begin(), chosen.findings.end());
+  say_clocks(result, clock, *base, found.clocks);
+  result.next = identification_advice(result);
+  result.forecast = forecast(result.joints);
+  conclude(result);
+  return result;
 }
 
 }  // namespace kinfer

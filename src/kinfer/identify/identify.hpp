@@ -4,6 +4,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/evidence/identification.hpp"
+#include "kinfer/identify/given_tree.hpp"
 #include "kinfer/identify/link_search.hpp"
 #include "kinfer/identify/memetic_search.hpp"
 #include "kinfer/identify/moving_phases.hpp"
@@ -27,10 +28,12 @@ struct IdentifyOptions {
   SegmentMotionOptions motion{};
   Terminals terminals = Terminals::hinge;
   Engine engine = Engine::bmp;
-  MemeticOptions memetic{};           ///< of bmp and enumeration
-  LinkSearchOptions search{};         ///< of bp; what of it depends on the terminals follows them
-  std::optional<std::string> root{};  ///< sensor; see segment_tree
-  int links = 0;                      ///< of the tree, from the root outwards; 0: all (the paper did the first three)
+  MemeticOptions memetic{};            ///< of bmp and enumeration
+  LinkSearchOptions search{};          ///< of bp; what of it depends on the terminals follows them
+  std::optional<std::string> root{};   ///< sensor; see segment_tree
+  std::vector<std::string> sensors{};  ///< that belong to the machine; empty: all of the log
+  std::vector<GivenLink> tree{};       ///< which sensors' segments share joints; empty: as the log tells
+  int links = 0;                       ///< of the tree, from the root outwards; 0: all (the paper did the first three)
   Geometry geometry = Geometry::refined;
   RefineOptions refine{};
   int threads = 0;

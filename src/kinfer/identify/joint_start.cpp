@@ -46,16 +46,18 @@ std::vector<double> twist(const RecordedMotion& motion, const SegmentMotion& par
   return angles;
 }
 
-/// The relative displacement along an axis, from the difference of accelerations twice summed up; its drift is taken
-/// off by a parabola between the ends, which is where the fit takes over.
+/// The relative displacement along an axis, from the difference of accelerations twice summed up with a memory of some
+/// seconds, so that it does not drift away; slow slides are left to the fit.
 std::vector<double> slid(const RecordedMotion& motion, const SegmentMotion& parent, const SegmentMotion& child,
                          const Vec3& axis) {
+  constexpr double memory = 5.0;  // [s]
+  const double kept = std::exp(-motion.period / memory);
   std::vector<double> place(motion.rows(), 0.0);
   double rate = 0.0;
   for (std::size_t row = 1; row < motion.rows(); ++row) {
     const Vec3 difference = parent.rotation[row].transpose() * (child.acceleration[row] - parent.acceleration[row]);
-    rate = 0.999 * rate + motion.period * axis.dot(difference);
-    place[row] = 0.999 * place[row - 1] + motion.period * rate;
+    rate = kept * rate + motion.period * axis.dot(difference);
+    place[row] = kept * place[row - 1] + motion.period * rate;
   }
   return place;
 }

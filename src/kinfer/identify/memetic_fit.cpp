@@ -17,17 +17,28 @@ using Index = Eigen::Index;
 constexpr std::int64_t whole = 8;  // eighths of a pass over all rows
 constexpr Index biases = 6;        // parent's accelerometer, then the child's
 
+bool has_constant(AngleKind kind) {
+  return kind == AngleKind::constant || kind == AngleKind::offset_signal;
+}
+
 /// The leaves' angles that are constants, in order.
 std::vector<double*> constants_of(const LinkStructure& structure, std::vector<DhLeaf>& leaves) {
-  const auto has_constant = [](AngleKind kind) {
-    return kind == AngleKind::constant || kind == AngleKind::offset_signal;
-  };
   std::vector<double*> constants;
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     if (has_constant(structure.leaves[i].theta)) constants.push_back(&leaves[i].theta);
     if (has_constant(structure.leaves[i].alpha)) constants.push_back(&leaves[i].alpha);
   }
   return constants;
+}
+
+/// The leaf of each of them.
+std::vector<std::size_t> leaf_of_constants(const LinkStructure& structure) {
+  std::vector<std::size_t> list;
+  for (std::size_t i = 0; i < structure.leaves.size(); ++i) {
+    if (has_constant(structure.leaves[i].theta)) list.push_back(i);
+    if (has_constant(structure.leaves[i].alpha)) list.push_back(i);
+  }
+  return list;
 }
 
 std::vector<DhLeaf> leaves_of(const LinkStructure& structure) {
@@ -245,14 +256,21 @@ MemeticLink::Normal MemeticLink::normal(const LinkStructure& structure, const st
   const auto k = static_cast<Index>(angles.size()), linear = 2 * static_cast<Index>(leaves.size()) + biases;
   Normal sum{MatrixXd::Zero(k + linear, k + linear), VectorXd::Zero(k + linear)};
   FrameLanes frame;
+  const std::vector<std::size_t> leaf = leaf_of_constants(structure);
   std::vector<FrameLanes> shifted(angles.size());
   for (const LinkBlock& block : blocks) {
     std::vector<Lanes3> columns = linear_columns(block, leaves, frame);
-    const FrameLanes state = with_angles ? block.carried(leaves) : frame;
+    std::vector<FrameLanes> before;  // each leaf: what lies there is carried once for all angles behind it
+    FrameLanes state = with_angles ? block.parent : frame;
+    for (std::size_t l = 0; with_angles && l < leaves.size(); ++l) {
+      before.push_back(state);
+      block.carry(state, std::span(leaves).subspan(l, 1));
+    }
     for (std::size_t i = 0; i < angles.size(); ++i) {
       const double angle = *angles[i];
       *angles[i] = angle + difference_step;
-      shifted[i] = block.carried(moved);
+      shifted[i] = before[leaf[i]];
+      block.carry(shifted[i], std::span(moved).subspan(leaf[i]));
       *angles[i] = angle;
       Lanes3 derivative = difference(shifted[i].acceleration, state.acceleration);
       for (Lane& lane : derivative)

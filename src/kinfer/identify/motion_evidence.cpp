@@ -27,17 +27,27 @@ Axes axes_of(const RecordedMotion& motion, Vector vector_at) {
   return axes;
 }
 
-double rms(const Axes& axes) {
+/// Of the rows that are marked so.
+double rms(const Axes& axes, const std::vector<bool>& marked, bool mark) {
   double sum = 0.0, count = 0.0;
   for (std::size_t row = 0; row < axes[0].size(); ++row) {
     const double square = axes[0][row] * axes[0][row] + axes[1][row] * axes[1][row] + axes[2][row] * axes[2][row];
-    if (std::isfinite(square)) sum += square, count += 1.0;
+    if (marked[row] == mark && std::isfinite(square)) sum += square, count += 1.0;
   }
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
+std::vector<bool> rows_in(const std::vector<double>& time, const std::vector<TimeWindow>& windows) {
+  std::vector<bool> inside;
+  for (const double t : time)
+    inside.push_back(std::ranges::any_of(windows, [t](const TimeWindow& w) { return t >= w.begin && t < w.end; }));
+  return inside;
+}
+
+/// `unseen`: rows of the held-out windows; `foreseen`: what the chain predicts there that did not see them.
 template <class Measured, class Predicted>
-Trace trace_of(const RecordedMotion& motion, Trace trace, Measured measured, Predicted predicted) {
+Trace trace_of(const RecordedMotion& motion, Trace trace, const std::vector<bool>& unseen, Measured measured,
+               Predicted predicted, Predicted foreseen) {
   const Binning bins = binning(motion.rows(), most_bins);
   const Axes m = axes_of(motion, measured), p = axes_of(motion, predicted);
   const Axes r = axes_of(motion, [&](std::size_t row) -> Vec3 { return measured(row) - predicted(row); });
@@ -46,8 +56,11 @@ Trace trace_of(const RecordedMotion& motion, Trace trace, Measured measured, Pre
     trace.predicted[k] = envelope(p[k], bins);
     trace.residual[k] = envelope(r[k], bins);
   }
-  trace.rms_measured = rms(m);
-  trace.rms_fitted = rms(r);
+  const std::vector<bool> all(motion.rows(), true);
+  trace.rms_measured = rms(m, all, true);
+  trace.rms_fitted = rms(r, unseen, false);
+  trace.rms_holdout =
+      rms(axes_of(motion, [&](std::size_t row) -> Vec3 { return measured(row) - foreseen(row); }), unseen, true);
   return trace;
 }
 
@@ -90,17 +103,32 @@ Prediction carried_over(const FoundJoint& joint, const SegmentMotion& parent, co
   return result;
 }
 
+using Predictions = std::map<std::string, Prediction>;
+
+/// Of every segment that the joints reach.
+Predictions predictions_of(const RecordedMotion& motion, const std::string& root_name,
+                           const std::vector<FoundJoint>& joints) {
+  const SegmentMotion& root = motion.segments[segment_named(motion, root_name)];
+  Predictions predictions{{root_name, {root.acceleration, root.rate}}};
+  for (const FoundJoint& joint : joints)
+    predictions[joint.child] =
+        carried_over(joint, motion.segments[segment_named(motion, joint.parent)],
+                     motion.segments[segment_named(motion, joint.child)], predictions.at(joint.parent));
+  return predictions;
+}
+
 void add_traces(MotionEvidence& evidence, const RecordedMotion& motion, const SegmentMotion& segment,
-                const Prediction& prediction) {
+                const std::vector<bool>& unseen, const Prediction& prediction, const Prediction& unseeing) {
   const auto add = [&](const char* quantity, const char* unit, const std::vector<Vec3>& measured,
-                       const std::vector<Vec3>& predicted) {
+                       const std::vector<Vec3>& predicted, const std::vector<Vec3>& foreseen) {
+    const auto of = [](const std::vector<Vec3>& rows) {
+      return [&rows](std::size_t row) -> Vec3 { return rows[row]; };
+    };
     Trace trace{.sensor = segment.name, .quantity = quantity, .unit = unit, .frame = "ground"};
-    evidence.traces.push_back(trace_of(
-        motion, std::move(trace), [&](std::size_t row) -> Vec3 { return measured[row]; },
-        [&](std::size_t row) -> Vec3 { return predicted[row]; }));
+    evidence.traces.push_back(trace_of(motion, std::move(trace), unseen, of(measured), of(predicted), of(foreseen)));
   };
-  add("acceleration", "m/s^2", segment.acceleration, prediction.acceleration);
-  add("rate", "rad/s", segment.rate, prediction.rate);
+  add("acceleration", "m/s^2", segment.acceleration, prediction.acceleration, unseeing.acceleration);
+  add("rate", "rad/s", segment.rate, prediction.rate, unseeing.rate);
 }
 
 std::vector<double> middles(const std::vector<double>& time, const Binning& bins) {
@@ -137,6 +165,22 @@ void play_joint(MatrixXd& q, Eigen::Index reading, const FoundJoint& joint, cons
   }
 }
 
+/// That a joint has in the chain.
+Eigen::Index variables(FoundJointType type) {
+  switch (type) {
+    case FoundJointType::rigid:
+      return 0;
+    case FoundJointType::universal:
+      return 2;
+    case FoundJointType::spherical:
+      return 3;
+    case FoundJointType::revolute:
+    case FoundJointType::prismatic:
+      break;
+  }
+  return 1;
+}
+
 Playback playback_of(const RecordedMotion& motion, const Identification& found) {
   const Binning bins = binning(motion.rows(), most_frames);
   const std::vector<int> readings = joints_with_reading(found.chain);
@@ -144,17 +188,22 @@ Playback playback_of(const RecordedMotion& motion, const Identification& found) 
   Playback film;
   film.q = MatrixXd::Zero(dof(found.chain), static_cast<Eigen::Index>(bins.count()));
   const SegmentMotion& root = motion.segments[segment_named(motion, found.root)];
+  film.time = film_times(motion);
   for (std::size_t row = 0; row < motion.rows(); row += bins.size) {
-    film.time.push_back(motion.time[row]);
     const Quat r(root.rotation[row]);
     film.root.push_back({r.w(), r.x(), r.y(), r.z()});
   }
   if (root.still) film.root.resize(1);
+  Eigen::Index row = 0;
+  for (const FoundJoint& joint : found.joints) {  // their variables stand in the chain in the same order
+    if (joint.film.size() > 0) film.q.middleRows(row, joint.film.rows()) = joint.film;
+    row += variables(joint.type);
+  }
   for (std::size_t k = 0; k < readings.size(); ++k) {
     const std::string& name = found.chain.joints[readings[k]].name;
     const auto joint =
         std::ranges::find_if(found.joints, [&](const FoundJoint& j) { return j.parent + "-" + j.child == name; });
-    if (joint == found.joints.end() || joint->type != FoundJointType::revolute) continue;
+    if (joint == found.joints.end() || joint->type != FoundJointType::revolute || joint->film.size() > 0) continue;
     const int parent = frame_named(found.chain, joint->parent), child = frame_named(found.chain, joint->child);
     const Mat3 parent_home = parent < 0 ? found.chain.base.pose().rotation : home[parent].rotation;
     play_joint(film.q, static_cast<Eigen::Index>(k), *joint, parent_home.transpose() * home[child].rotation,
@@ -166,18 +215,23 @@ Playback playback_of(const RecordedMotion& motion, const Identification& found) 
 
 }  // namespace
 
-MotionEvidence motion_evidence(const RecordedMotion& motion, const Identification& found) {
+std::vector<double> film_times(const RecordedMotion& motion) {
+  std::vector<double> times;
+  for (std::size_t row = 0; row < motion.rows(); row += binning(motion.rows(), most_frames).size)
+    times.push_back(motion.time[row]);
+  return times;
+}
+
+MotionEvidence motion_evidence(const RecordedMotion& motion, const Identification& found, const HeldOut& held) {
   MotionEvidence evidence;
   evidence.time = middles(motion.time, binning(motion.rows(), most_bins));
-  const SegmentMotion& root = motion.segments[segment_named(motion, found.root)];
-  std::map<std::string, Prediction> predictions{{found.root, {root.acceleration, root.rate}}};
-  for (const FoundJoint& joint : found.joints) {
-    const SegmentMotion &parent = motion.segments[segment_named(motion, joint.parent)],
-                        &child = motion.segments[segment_named(motion, joint.child)];
-    const Prediction prediction = carried_over(joint, parent, child, predictions.at(joint.parent));
-    add_traces(evidence, motion, child, prediction);
-    predictions[joint.child] = prediction;
-  }
+  evidence.held_out = held.windows;
+  const std::vector<bool> unseen = rows_in(motion.time, held.windows);
+  const Predictions seen = predictions_of(motion, found.root, found.joints),
+                    foreseen = predictions_of(motion, found.root, held.windows.empty() ? found.joints : held.joints);
+  for (const FoundJoint& joint : found.joints)
+    add_traces(evidence, motion, motion.segments[segment_named(motion, joint.child)], unseen, seen.at(joint.child),
+               foreseen.at(joint.child));
   evidence.playback = playback_of(motion, found);
   return evidence;
 }

@@ -18,13 +18,22 @@ void agree_on_headings(RecordedMotion& motion, const SegmentTree& tree) {
 }
 
 Result<OrderedMotion> ordered_motion(const InsRecording& recording, const SegmentMotionOptions& options,
-                                     const std::optional<std::string>& root, int threads) {
+                                     const std::optional<std::string>& root, int threads,
+                                     const std::vector<GivenLink>& given) {
   const bool is_paper = std::holds_alternative<PaperEkfOptions>(options.filter);
   KINFER_TRY(motion, is_paper ? segment_motion(recording, options, threads) : gyro_motion(recording, options, threads));
   const PairFitOptions fit{.headings_known = all_have_magnetometers(recording)};
   KINFER_TRY(tree, segment_tree(motion, root, fit, threads));
+  std::vector<Finding> findings;
+  if (!given.empty()) {
+    std::vector<std::string> names;
+    for (const SegmentMotion& segment : motion.segments) names.push_back(segment.name);
+    KINFER_TRY(insisted, given_tree(tree, names, given));
+    findings = findings_about(insisted, tree, names);
+    tree = insisted;
+  }
   if (!is_paper) agree_on_headings(motion, tree);
-  return OrderedMotion{std::move(motion), std::move(tree)};
+  return OrderedMotion{std::move(motion), std::move(tree), std::move(findings)};
 }
 
 }  // namespace kinfer

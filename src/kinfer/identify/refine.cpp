@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "kinfer/estimate/ins_covariance.hpp"
 #include "kinfer/estimate/ins_fact_rows.hpp"
 #include "kinfer/identify/azimuth.hpp"
+#include "kinfer/identify/clock_fit.hpp"
+#include "kinfer/identify/joint_film.hpp"
+#include "kinfer/identify/loose_hinge.hpp"
+#include "kinfer/identify/motion_evidence.hpp"
 #include "kinfer/identify/named_facts.hpp"
-#include "kinfer/identify/refine_setup.hpp"
+#include "kinfer/identify/refine_band.hpp"
 #include "kinfer/inertial/sensor_judgement.hpp"
 
 namespace kinfer {
@@ -16,6 +21,7 @@ namespace {
 using Index = Eigen::Index;
 
 constexpr double undetermined_azimuth = 0.1;  // [rad]
+constexpr double unexplained = 3.0;           // times their own noise that instruments show where the chain is no model
 
 /// The covariance of a joint's unknowns, those of its bodies one behind the other, as the residuals inflate it.
 MatrixXd joint_covariance(const InsCovariance& covariance, const InsLayout& layout, const InsBodies& bodies,
@@ -34,6 +40,48 @@ std::vector<double> first_readings(const RefineSetup& setup, const InsFit& fit, 
   return readings;
 }
 
+/// Orientations of a ball in its parent.
+std::vector<Mat3> rotations_of(const RefineFit& fitted, std::size_t body, std::span<const double> times) {
+  const InsUnknowns& x = fitted.fit.unknowns;
+  std::vector<Mat3> rotations;
+  for (const double time : times) {
+    const VectorXd all = spline_value(fitted.setup.problem.grid, x.band, time);
+    rotations.push_back(exp_so3(all.segment<3>(fitted.fit.layout.channel[body])) *
+                        x.bodies[body].child_R_axis.transpose());
+  }
+  return rotations;
+}
+
+std::vector<double> knot_times(const SplineGrid& grid) {
+  std::vector<double> times;
+  for (Index k = 0; k <= grid.intervals; ++k) times.push_back(grid.begin + grid.period * static_cast<double>(k));
+  return times;
+}
+
+VectorXd joined(const std::vector<VectorXd>& parts, std::size_t first, std::size_t last) {
+  VectorXd all(0);
+  for (std::size_t b = first; b <= last; ++b) {
+    all.conservativeResize(all.size() + parts[b].size());
+    all.tail(parts[b].size()) = parts[b];
+  }
+  return all;
+}
+
+/// How much more than their own noise the instruments leave unexplained: the worst.
+double misfit_of(const InsProblem& problem) {
+  double worst = 1.0;
+  for (const InsReadings& r : problem.sensors)
+    worst = std::max({worst, r.noise.rate / r.least.rate, r.noise.force / r.least.force});
+  return worst;
+}
+
+/// Spline coefficients of the joint's readings, one row a freedom.
+MatrixXd joint_band(const InsFit& fit, std::size_t first, std::size_t last) {
+  Index rows = 0;
+  for (std::size_t b = first; b <= last; ++b) rows += freedoms(fit.unknowns.bodies[b].motion);
+  return rows > 0 ? MatrixXd(fit.unknowns.band.middleRows(fit.layout.channel[first], rows)) : MatrixXd();
+}
+
 std::vector<std::string> names_of(const RecordedMotion& motion) {
   std::vector<std::string> names;
   for (const SegmentMotion& segment : motion.segments) names.push_back(segment.name);
@@ -50,41 +98,151 @@ std::vector<FoundPlace> found_places(const MachineFacts& facts, const InsFit& fi
   return places;
 }
 
+RefineFit fit_all_motion(const RefineTask& task, const RefineOptions& options, const Observer& observer) {
+  RefineFit fitted{refine_setup(task.recording, task.motion, task.tree, task.starts, task.grade, options.knots), {}};
+  InsProblem& problem = fitted.setup.problem;
+  problem.facts = task.facts;
+  fitted.setup.start.facts = started_facts(problem, layout_of(problem, fitted.setup.start.bodies), fitted.setup.start);
+  if (options.clocks == Clocks::estimated) free_clocks(problem);
+  fitted.fit = fit_ins(problem, fitted.setup.start, task.options, observer);
+  if (options.clocks == Clocks::checked && clocks_are_doubtful(problem, fitted.fit, task.options.threads))
+    refit_with_clocks(problem, fitted.fit, task.options, observer);
+  return fitted;
+}
+
+/// A sensor's clock is still to be put right, by the caller.
+bool clocks_differ(const InsUnknowns& x) {
+  constexpr double notable = 1e-3;  // [s]
+  return std::ranges::any_of(x.errors, [](const InsErrors& e) { return std::abs(e.clock.offset) > notable; });
+}
+
+/// [rad] How far the least straying hinge strays. What even that one shows is the mounts': INS that give way in step
+/// with the motion, so that it does not average out. 0 where a hinge held strictly: then the mounts do, too.
+double softness_of(const RefineTask& task, const RefineFit& fitted) {
+  double least = 0.0;
+  for (std::size_t i = 0; i < task.starts.size(); ++i) {
+    if (task.starts[i].type != FoundJointType::revolute) continue;
+    const std::size_t body = fitted.setup.first_body[i];
+    const InsBody& ball = fitted.fit.unknowns.bodies[body];
+    if (ball.motion != JointMotion::ball) return 0.0;
+    const auto rotations = rotations_of(fitted, body, knot_times(fitted.setup.problem.grid));
+    const double stray = loose_hinge(ball, rotations, MatrixXd::Zero(6, 6), 0.0).stray;
+    least = least > 0.0 ? std::min(least, stray) : stray;
+  }
+  return least;
+}
+
+/// Points of a ball in frames that lean by so much on their segments: 6 x 6.
+void lean(MatrixXd& covariance, const InsBody& ball, double angle) {
+  covariance.diagonal().head<3>().array() += angle * angle * ball.point_in_parent.squaredNorm();
+  covariance.diagonal().tail<3>().array() += angle * angle * ball.point_in_child.squaredNorm();
+}
+
+/// A hinge that was let loose in the fit.
+RefinedJoint joint_of_ball(const RefineFit& fitted, std::size_t body, ConstMatrixRef covariance, double softness,
+                           std::span<const double> film_time) {
+  const InsProblem& problem = fitted.setup.problem;
+  const double crossed = std::hypot(softness, 0.5 * std::max(problem.prior.rate_matrix, problem.prior.force_matrix));
+  const LooseHinge hinge = loose_hinge(fitted.fit.unknowns.bodies[body],
+                                       rotations_of(fitted, body, knot_times(problem.grid)), covariance, crossed);
+  RefinedJoint joint = refined_joint(FoundJointType::revolute, {&hinge.body, 1}, {&hinge.zero, 1}, hinge.covariance);
+  joint.stray = hinge.stray;
+  joint.found.film = loose_film(hinge, rotations_of(fitted, body, film_time));
+  if (joint.hinge.geometry.axis_in_parent.dot(hinge.body.parent_R_axis.col(2)) < 0.0) joint.found.film *= -1.0;
+  return joint;
+}
+
+/// One joint with its share of the covariance, and of the shift between bands where there is one.
+RefinedJoint joint_of(const RefineTask& task, const RefineFit& fitted, const InsCovariance& covariance,
+                      const std::vector<VectorXd>& shift, double softness, std::size_t index,
+                      std::span<const double> film_time) {
+  const JointStart& start = task.starts[index];
+  const InsFit& fit = fitted.fit;
+  const std::size_t first = fitted.setup.first_body[index], last = fitted.setup.last_body[index];
+  const auto bodies = std::span(fit.unknowns.bodies).subspan(first, last - first + 1);
+  MatrixXd own = joint_covariance(covariance, fit.layout, fit.unknowns.bodies, first, last);
+  if (!shift.empty()) {
+    const VectorXd moved = joined(shift, first, last);
+    own += moved * moved.transpose();
+  }
+  if (bodies.front().motion == JointMotion::ball) lean(own, bodies.front(), softness);
+  if (start.type == FoundJointType::revolute && bodies.front().motion == JointMotion::ball)
+    return joint_of_ball(fitted, first, own, softness, film_time);
+  const SplineGrid& grid = fitted.setup.problem.grid;
+  const MatrixXd band = joint_band(fit, first, last);
+  const bool is_ball = start.type == FoundJointType::spherical;
+  const Mat3 turning = is_ball ? ball_axes(ball_turns(grid, band, film_time)) : Mat3(Mat3::Identity());
+  RefinedJoint joint = refined_joint(start.type, bodies, first_readings(fitted.setup, fit, first, last), own, turning);
+  joint.found.film = joint_film(start.type, bodies, joint.hinge.geometry, grid, band, film_time);
+  if (start.type == FoundJointType::revolute && joint.found.not_identifiable_in_child.size() == 1)
+    joint.found.azimuth_undetermined =
+        azimuth_sd(fit.layout, fit.unknowns.bodies, covariance.model, last) > undetermined_azimuth;
+  return joint;
+}
+
+/// All joints, named.
+std::vector<RefinedJoint> joints_of(const RefineTask& task, const RefineFit& fitted, const InsCovariance& covariance,
+                                    const std::vector<VectorXd>& shift) {
+  const std::vector<double> film_time = film_times(task.motion);
+  const double softness = softness_of(task, fitted);
+  std::vector<RefinedJoint> joints;
+  for (std::size_t i = 0; i < task.starts.size(); ++i) {
+    joints.push_back(joint_of(task, fitted, covariance, shift, softness, i, film_time));
+    joints.back().found.parent = task.motion.segments[task.starts[i].parent].name;
+    joints.back().found.child = task.motion.segments[task.starts[i].child].name;
+  }
+  return joints;
+}
+
+HeldOut held_out(const RefineTask& task, RefineFit& fitted, const InsCovariance& covariance,
+                 const std::vector<VectorXd>& shift) {
+  const SplineGrid& grid = fitted.setup.problem.grid;
+  const auto intervals = held_out_intervals(grid);
+  HeldOut held;
+  for (const auto& [begin, end] : intervals)
+    held.windows.push_back(
+        {grid.begin + grid.period * static_cast<double>(begin), grid.begin + grid.period * static_cast<double>(end)});
+  InsFit whole =
+      std::exchange(fitted.fit, fit_without(fitted.setup.problem, fitted.fit.unknowns, intervals, task.options));
+  for (const RefinedJoint& joint : joints_of(task, fitted, covariance, shift)) held.joints.push_back(joint.found);
+  fitted.fit = std::move(whole);
+  return held;
+}
+
 }  // namespace
 
 Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
                           const std::vector<JointStart>& starts, const RefineOptions& options,
                           const Observer& observer) {
   const SensorModel grade = options.grade ? *options.grade : judged_model(recording);
-  RefineSetup setup = refine_setup(recording, motion, tree, starts, grade, options.knots);
+  const RefineSetup setup = refine_setup(recording, motion, tree, starts, grade, options.knots);
   KINFER_TRY(facts, named_facts(options.facts, names_of(motion), setup.start.bodies, setup.problem.grid,
                                 setup.problem.root_stands_still));
-  setup.problem.facts = facts;
-  setup.start.facts = started_facts(setup.problem, layout_of(setup.problem, setup.start.bodies), setup.start);
+  const RefineTask task{recording, motion, tree, starts, grade, facts, options.fit};
+  RefineFit fitted = fit_all_motion(task, options, observer);
   Refinement result;
   result.grade = grade.name;
-  result.fit = fit_ins(setup.problem, setup.start, options.fit, observer);
-  for (const InsReadings& readings : setup.problem.sensors) {
+  for (const InsReadings& readings : fitted.setup.problem.sensors) {
     result.noise.push_back(readings.noise);
     result.least.push_back(readings.least);
   }
-  const InsFit& fit = result.fit;
-  const auto covariance = covariance_of(setup.problem, fit.layout, fit.unknowns, options.fit.threads);
+  std::vector<VectorXd> shift;
+  if (misfit_of(fitted.setup.problem) > unexplained && !clocks_differ(fitted.fit.unknowns)) {
+    SlowMotion slow = fit_slow_motion(task, fitted, observer);
+    fitted = std::move(slow.fitted);
+    shift = std::move(slow.shift);
+    result.noise = std::move(slow.noise);
+    result.cutoff = slow.cutoff;
+  }
+  result.fit = fitted.fit;
+  const auto covariance =
+      covariance_of(fitted.setup.problem, result.fit.layout, result.fit.unknowns, options.fit.threads);
   if (!covariance) return error("the continuous-time fit has no covariance: the recording says too little");
   result.covariance = covariance->model;
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    const std::size_t first = setup.first_body[i], last = setup.last_body[i];
-    const auto bodies = std::span(fit.unknowns.bodies).subspan(first, last - first + 1);
-    RefinedJoint joint = refined_joint(starts[i].type, bodies, first_readings(setup, fit, first, last),
-                                       joint_covariance(*covariance, fit.layout, fit.unknowns.bodies, first, last));
-    joint.found.parent = motion.segments[starts[i].parent].name;
-    joint.found.child = motion.segments[starts[i].child].name;
-    if (starts[i].type == FoundJointType::revolute && joint.found.not_identifiable_in_child.size() == 1)
-      joint.found.azimuth_undetermined =
-          azimuth_sd(fit.layout, fit.unknowns.bodies, covariance->model, last) > undetermined_azimuth;
-    result.joints.push_back(joint);
-  }
-  result.places = found_places(options.facts, fit, covariance->model);
+  result.clocks = refined_clocks(fitted.setup.problem, result.fit, *covariance);
+  result.joints = joints_of(task, fitted, *covariance, shift);
+  if (options.hold_out) result.held_out = held_out(task, fitted, *covariance, shift);
+  result.places = found_places(options.facts, result.fit, covariance->model);
   return result;
 }
 

@@ -13,8 +13,9 @@ using Index = Eigen::Index;
 constexpr double field_trust = 0.1;  // [of the field] sd of a tenth of a second: steel moves, so only a weak gauge
 
 SplineGrid grid_over(const RecordedMotion& motion, double period) {
+  constexpr Index least = spline_order - 1;  // a stretch's ends do not overlap
   const double length = motion.time.back() - motion.time.front();
-  return {motion.time.front(), period, std::max<Index>(1, static_cast<Index>(std::ceil(length / period)))};
+  return {motion.time.front(), period, std::max(least, static_cast<Index>(std::ceil(length / period)))};
 }
 
 double noise_or(double measured, double density, double rate) {
@@ -34,7 +35,7 @@ InsReadings readings_of(const InsRecording& recording, const InsSensor& sensor, 
   r.field = mean_blocks(sensor, time, InsInstrument::magnetometer, grid);
   std::vector<double> sizes;
   for (const InsBlock& block : r.field)
-    if (block.rows > 0) sizes.push_back(block.target.row(0).norm());
+    if (block.rows > 0) sizes.push_back(double{block.target.row(0).norm()});
   if (sizes.empty())
     r.field.clear();
   else
@@ -56,8 +57,9 @@ Vec3 mean_reading(const std::vector<InsBlock>& blocks) {
   double weight = 0.0;
   for (const InsBlock& block : blocks)
     if (block.rows > 0) {
-      sum += block.target.row(0).transpose() * block.factor(0, 0);
-      weight += block.factor(0, 0) * block.factor.row(0).sum();
+      const double first{block.factor(0, 0)};
+      sum += first * block.target.row(0).transpose().cast<double>();
+      weight += first * double{block.factor.row(0).sum()};
     }
   return weight > 0.0 ? Vec3(sum / weight) : Vec3(Vec3::Zero());
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/base/expect.hpp"
 #include "kinfer/identify/hidden_words.hpp"
 
@@ -32,10 +33,29 @@ void say_misfits(std::vector<std::string>& notes, const Refinement& refined, con
   }
 }
 
+/// Which part of the motion was believed, and which joints are none in the strict sense.
+void say_what_was_believed(std::vector<std::string>& notes, const Refinement& refined) {
+  constexpr double notable_stray = 0.01;  // [rad]
+  if (refined.cutoff > 0.0)
+    notes.push_back(fmt::format(
+        "faster motion is not that of a rigid chain: the geometry comes from the motion below {:.1f} Hz, and its "
+        "standard deviations contain what a wider band would change",
+        refined.cutoff));
+  for (const RefinedJoint& joint : refined.joints)
+    if (joint.stray > notable_stray)
+      notes.push_back(
+          fmt::format("the joint {}-{} is no pure hinge: its axis strays by {:.1f} degrees (rms), by play in the "
+                      "bearing, a twisting "
+                      "segment or a mount that gives way; it was fitted as a joint that turns freely, and the axis "
+                      "stated is the mean",
+                      joint.found.parent, joint.found.child, Angle::rad(joint.stray).deg()));
+}
+
 }  // namespace
 
-Result<void> refine_geometry(Identification& result, const InsRecording& recording, const RecordedMotion& motion,
-                             const SegmentTree& tree, const RefineOptions& options, const Observer& observer) {
+Result<RefinedGeometry> refine_geometry(Identification& result, const InsRecording& recording,
+                                        const RecordedMotion& motion, const SegmentTree& tree,
+                                        const RefineOptions& options, const Observer& observer) {
   std::vector<JointStart> starts;
   for (const FoundJoint& joint : result.joints)
     starts.push_back(
@@ -44,7 +64,7 @@ Result<void> refine_geometry(Identification& result, const InsRecording& recordi
   if (!refined && !options.facts.empty()) return pass_on(refined.error());
   if (!refined) {
     result.notes.push_back(refined.error().what + "; the geometry is the search's");
-    return {};
+    return RefinedGeometry{};
   }
   result.joints.clear();
   result.dh.clear();
@@ -54,8 +74,9 @@ Result<void> refine_geometry(Identification& result, const InsRecording& recordi
   }
   say_what_is_hidden(result.joints);
   say_misfits(result.notes, *refined, motion);
+  say_what_was_believed(result.notes, *refined);
   result.places = refined->places;
-  return {};
+  return RefinedGeometry{std::move(refined->clocks), std::move(refined->held_out)};
 }
 
 }  // namespace kinfer

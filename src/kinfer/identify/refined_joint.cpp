@@ -82,25 +82,6 @@ HingeGeometry geometry_of(const InsBody& body, double zero) {
   return g;
 }
 
-/// Standard deviations of the canonical numbers, by differences.
-std::array<DhNumbers, 3> canonical_deviations(const InsBody& body, double zero, ConstMatrixRef covariance) {
-  constexpr double step = 1e-6;  // [rad], [m]
-  constexpr std::array<double DhNumbers::*, 5> numbers{&DhNumbers::theta, &DhNumbers::d, &DhNumbers::alpha,
-                                                       &DhNumbers::a, &DhNumbers::beta};
-  const auto here = canonical_rows(geometry_of(body, zero));
-  const Index n = body.unknowns();
-  MatrixXd derivative(15, n);
-  for (Index k = 0; k < n; ++k) {
-    const auto there = canonical_rows(geometry_of(changed(body, step * VectorXd::Unit(n, k)), zero));
-    for (std::size_t i = 0; i < 15; ++i)
-      derivative(static_cast<Index>(i), k) = wrapped(there[i / 5].*numbers[i % 5] - here[i / 5].*numbers[i % 5]) / step;
-  }
-  const VectorXd variance = (derivative * covariance * derivative.transpose()).diagonal();
-  std::array<DhNumbers, 3> sd;
-  for (std::size_t i = 0; i < 15; ++i) sd[i / 5].*numbers[i % 5] = root_of(variance[static_cast<Index>(i)]);
-  return sd;
-}
-
 void state_hinge(FoundJoint& joint, const InsBody& body, ConstMatrixRef covariance) {
   constexpr Index parent_turn = 0, child_turn = 2, in_parent = 4, in_child = 7;
   const Mat3 &a = body.parent_R_axis, &b = body.child_R_axis;
@@ -151,7 +132,7 @@ void state_centre(FoundJoint& joint, std::span<const InsBody> bodies, ConstMatri
   joint.not_identifiable_in_child = hidden_directions(covariance, in_child);
 }
 
-/// The joint as one hinge at its readings' zero, for the chain's rows: about the last body's z.
+/// A universal or spherical joint at its readings' zero. Of a ball the axes say nothing.
 HingeGeometry last_hinge(std::span<const InsBody> bodies, std::span<const double> zero) {
   const InsBody &near = bodies.front(), &far = bodies.back();
   HingeGeometry g;
@@ -161,27 +142,63 @@ HingeGeometry last_hinge(std::span<const InsBody> bodies, std::span<const double
   g.point_in_parent = near.point_in_parent;
   g.point_in_child = far.point_in_child;
   g.axis_in_child = far.child_R_axis.col(2);
-  g.axis_in_parent = g.home.rotation * g.axis_in_child;
+  g.axis_in_parent = bodies.size() > 1 ? Vec3(near.parent_R_axis.col(2)) : Vec3(g.home.rotation * g.axis_in_child);
   g.home.position = g.point_in_parent - g.home.rotation * g.point_in_child;
   return g;
+}
+
+/// Of one body, or of the bodies of a universal or spherical joint.
+HingeGeometry geometry_of(FoundJointType type, std::span<const InsBody> bodies, std::span<const double> zero) {
+  return type == FoundJointType::universal || type == FoundJointType::spherical
+             ? last_hinge(bodies, zero)
+             : geometry_of(bodies.front(), zero.front());
+}
+
+/// Standard deviations of the DH rows, by differences. `here`: the joint's geometry.
+std::vector<DhNumbers> row_deviations(FoundJointType type, std::span<const InsBody> bodies,
+                                      std::span<const double> zero, const HingeGeometry& here,
+                                      ConstMatrixRef covariance) {
+  constexpr double step = 1e-6;  // [rad], [m]
+  constexpr std::array<double DhNumbers::*, 5> numbers{&DhNumbers::theta, &DhNumbers::d, &DhNumbers::alpha,
+                                                       &DhNumbers::a, &DhNumbers::beta};
+  const std::vector<DhNumbers> rows = joint_rows(type, here);
+  MatrixXd derivative(static_cast<Index>(5 * rows.size()), covariance.cols());
+  Index column = 0;
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    for (Index k = 0; k < bodies[b].unknowns(); ++k, ++column) {
+      std::vector<InsBody> moved(bodies.begin(), bodies.end());
+      moved[b] = changed(bodies[b], step * VectorXd::Unit(bodies[b].unknowns(), k));
+      HingeGeometry geometry = geometry_of(type, moved, zero);
+      geometry.ball_axes = here.ball_axes;
+      const std::vector<DhNumbers> there = joint_rows(type, geometry);
+      for (std::size_t i = 0; i < 5 * rows.size(); ++i)
+        derivative(static_cast<Index>(i), column) =
+            wrapped(there[i / 5].*numbers[i % 5] - rows[i / 5].*numbers[i % 5]) / step;
+    }
+  const VectorXd variance = (derivative * covariance * derivative.transpose()).diagonal();
+  std::vector<DhNumbers> sd(rows.size());
+  for (std::size_t i = 0; i < 5 * rows.size(); ++i)
+    sd[i / 5].*numbers[i % 5] = root_of(variance[static_cast<Index>(i)]);
+  return sd;
 }
 
 }  // namespace
 
 RefinedJoint refined_joint(FoundJointType type, std::span<const InsBody> bodies, std::span<const double> zero,
-                           ConstMatrixRef covariance) {
+                           ConstMatrixRef covariance, const Mat3& ball_axes) {
   RefinedJoint result;
   FoundJoint& joint = result.found;
   joint.type = type;
+  HingeGeometry& g = result.hinge.geometry;
+  g = geometry_of(type, bodies, zero);
+  g.ball_axes = ball_axes;
+  result.hinge.precision.canonical_sd = row_deviations(type, bodies, zero, g, covariance);
   if (type == FoundJointType::universal || type == FoundJointType::spherical) {
-    result.hinge.geometry = last_hinge(bodies, zero);
     state_centre(joint, bodies, covariance);
     result.hinge.precision.sd = joint.sd;
     return result;
   }
   const InsBody& body = bodies.front();
-  result.hinge.geometry = geometry_of(body, zero.front());
-  const HingeGeometry& g = result.hinge.geometry;
   joint.axis_in_parent = g.axis_in_parent;
   joint.axis_in_child = g.axis_in_child;
   joint.point_in_parent = g.point_in_parent;
@@ -193,7 +210,6 @@ RefinedJoint refined_joint(FoundJointType type, std::span<const InsBody> bodies,
   else
     state_rigid(joint, body, covariance);
   result.hinge.precision.sd = joint.sd;
-  result.hinge.precision.canonical_sd = canonical_deviations(body, zero.front(), covariance);
   return result;
 }
 

@@ -73,30 +73,6 @@ Result<std::size_t> choose_root(const RecordedMotion& motion, const std::vector<
   return best;
 }
 
-/// Largest distance on the way from a to b within the tree.
-double largest_between(const SegmentTree& tree, std::size_t a, std::size_t b) {
-  const auto path_to_root = [&](std::size_t node) {
-    std::vector<std::size_t> path{node};
-    while (tree.parent[path.back()]) path.push_back(*tree.parent[path.back()]);
-    return path;
-  };
-  std::vector<std::size_t> up = path_to_root(a), down = path_to_root(b);
-  while (up.size() > 1 && down.size() > 1 && up[up.size() - 2] == down[down.size() - 2]) up.pop_back(), down.pop_back();
-  double largest = -std::numeric_limits<double>::infinity();
-  for (const auto* path : {&up, &down})
-    for (std::size_t i = 0; i + 1 < path->size(); ++i)
-      largest = std::max(largest, tree.pair((*path)[i], (*path)[i + 1]).distance);
-  return largest;
-}
-
-double margin_of(const SegmentTree& tree) {
-  double margin = std::numeric_limits<double>::infinity();
-  for (const PairFit& pair : tree.pairs)
-    if (tree.parent[pair.first] != pair.second && tree.parent[pair.second] != pair.first)
-      margin = std::min(margin, pair.distance - largest_between(tree, pair.first, pair.second));
-  return std::exp(margin);
-}
-
 std::vector<PairFit> all_pairs(const RecordedMotion& motion, const std::vector<std::size_t>& rows,
                                const PairFitOptions& options, int threads) {
   std::vector<PairFit> pairs;
@@ -115,6 +91,33 @@ const PairFit& SegmentTree::pair(std::size_t a, std::size_t b) const {
       pairs, [&](const PairFit& p) { return p.first == std::min(a, b) && p.second == std::max(a, b); });
   KINFER_EXPECT(found != pairs.end(), "no pair {}, {}", a, b);
   return *found;
+}
+
+std::vector<Edge> path_between(const SegmentTree& tree, std::size_t a, std::size_t b) {
+  const auto path_to_root = [&](std::size_t node) {
+    std::vector<std::size_t> path{node};
+    while (tree.parent[path.back()]) path.push_back(*tree.parent[path.back()]);
+    return path;
+  };
+  std::vector<std::size_t> up = path_to_root(a), down = path_to_root(b);
+  while (up.size() > 1 && down.size() > 1 && up[up.size() - 2] == down[down.size() - 2]) up.pop_back(), down.pop_back();
+  std::vector<Edge> edges;
+  for (const auto* path : {&up, &down})
+    for (std::size_t i = 0; i + 1 < path->size(); ++i) edges.emplace_back((*path)[i], (*path)[i + 1]);
+  return edges;
+}
+
+double margin_of(const SegmentTree& tree, const std::vector<PairFit>& closes_loop) {
+  double margin = std::numeric_limits<double>::infinity();
+  for (const PairFit& pair : tree.pairs) {
+    if (tree.parent[pair.first] == pair.second || tree.parent[pair.second] == pair.first) continue;
+    if (std::ranges::any_of(closes_loop,
+                            [&](const PairFit& c) { return c.first == pair.first && c.second == pair.second; }))
+      continue;
+    for (const auto& [a, b] : path_between(tree, pair.first, pair.second))
+      margin = std::min(margin, pair.distance - tree.pair(a, b).distance);
+  }
+  return std::exp(margin);
 }
 
 void hang_up(SegmentTree& tree, const std::vector<Edge>& edges) {

@@ -28,6 +28,13 @@ struct SegmentTree {
 Result<SegmentTree> segment_tree(const RecordedMotion& motion, const std::optional<std::string>& root = {},
                                  const PairFitOptions& options = {}, int threads = 0);
 
+/// Edges on the way from one segment to another within the tree.
+std::vector<std::pair<std::size_t, std::size_t>> path_between(const SegmentTree& tree, std::size_t a, std::size_t b);
+
+/// exp of the least difference of distances between a pair off the tree and the worst on the path that it would close;
+/// `closes_loop` pairs apart, which are joints in addition.
+double margin_of(const SegmentTree& tree, const std::vector<PairFit>& closes_loop = {});
+
 /// The tree with these edges, hung up at `root`: order and parents.
 void hang_up(SegmentTree& tree, const std::vector<std::pair<std::size_t, std::size_t>>& edges);
 

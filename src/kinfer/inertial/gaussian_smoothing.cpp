@@ -8,7 +8,7 @@
 namespace kinfer {
 namespace {
 
-constexpr double least_width = 0.6;   // [periods] below it the sampled Gaussian is hardly more than one sample
+constexpr double least_width = 1.2;   // [periods] below it sampling folds what is above half the sampling rate back
 constexpr double kernel_reach = 4.5;  // [sigma] where the Gaussian has fallen to 4e-5
 
 std::vector<double> convolved(std::span<const double> signal, std::span<const double> weights, int half) {

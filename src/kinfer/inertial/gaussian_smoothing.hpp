@@ -18,7 +18,7 @@ struct GaussianKernel {
   std::vector<double> derivative;  ///< [1/s] gives the derivative of a straight line exactly
 };
 
-/// Standard deviation and sampling period in seconds. Narrower than 0.6 periods would miss the derivative: it is
+/// Standard deviation and sampling period in seconds. Narrower than 1.2 periods the two transfer functions part: it is
 /// widened to that.
 GaussianKernel gaussian_kernel(double sigma, double period);
 

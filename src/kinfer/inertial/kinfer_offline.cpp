@@ -1,5 +1,7 @@
 #include "kinfer/inertial/kinfer_offline.hpp"
 
+#include <algorithm>
+
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
@@ -32,40 +34,47 @@ MatrixXd unpacked(const std::array<double, packed_size>& half) {
   return full;
 }
 
-struct ForwardPass {
-  std::vector<Step> steps;
-  std::vector<Quat> turned;                 // each row's orientation relative to the begin of its step
-  KinferBelief last;                        // after the last correction
-  std::size_t first_row = 0, last_row = 0;  // where the filter starts; where the last step ends
+/// Where the forward pass can be taken up again: memory for a few periods is enough for any length of recording.
+struct Resumption {
+  KinferFilter filter;
+  Step step;            // that has begun
+  std::size_t row = 0;  // read next
 };
 
-/// Rows after the last whole period hang on its end, rows before the start on its begin.
-ForwardPass forward_pass(const InsSensor& sensor, std::span<const double> time, const KinferFilterOptions& options) {
-  ForwardPass pass;
-  pass.turned.assign(time.size(), Quat::Identity());
-  KinferFilter filter(options);
-  Step step;
-  for (std::size_t row = 0; row < time.size(); ++row) {
+struct ForwardPass {
+  std::vector<Step> steps;
+  std::size_t first_row = 0;  // of `turned`
+  std::vector<Quat> turned;   // each row's orientation relative to the begin of its step
+  Resumption end;
+};
+
+constexpr std::size_t steps_at_a_time = 256;
+
+/// On from there, for some steps or to the last row.
+ForwardPass forward_pass(const InsSensor& sensor, std::span<const double> time, const Resumption& from) {
+  ForwardPass pass{.steps = {}, .first_row = from.row, .turned = {}, .end = from};
+  auto& [filter, step, row] = pass.end;
+  while (row < time.size() && pass.steps.size() < steps_at_a_time) {
     const bool was_started = filter.started();
     filter.integrate(sample(sensor, time, row));
+    pass.turned.push_back(Quat::Identity());
+    const std::size_t here = row++;
     if (!filter.started()) continue;
     if (!was_started) {
-      pass.first_row = step.first_row = row;
+      step.first_row = here;
       step.begin = filter.belief();
     }
-    pass.turned[row] = step.begin.world_q_sensor.conjugate() * filter.orientation();
+    pass.turned.back() = step.begin.world_q_sensor.conjugate() * filter.orientation();
     if (!filter.update_is_due()) continue;
-    step.last_row = row;
+    step.last_row = here;
     step.transition = filter.predict();
     step.predicted = filter.belief();
     step.covariance = packed(filter.covariance());
     pass.steps.push_back(step);
     filter.correct();
-    step.first_row = row;
+    step.first_row = here;
     step.begin = filter.belief();
   }
-  pass.last = step.begin;
-  pass.last_row = step.first_row;
   return pass;
 }
 
@@ -86,35 +95,53 @@ KinferBelief smoothed_begin(const Step& step, const KinferBelief& end) {
 /// Orientations of the step's rows between its two smoothed ends: the forward pass's turning, with what does not close
 /// spread evenly over time.
 void fill_rows(const Step& step, const Quat& begin, const Quat& end, std::span<const double> time,
-               const std::vector<Quat>& turned, std::vector<Quat>& out) {
-  const Vec3 open = quat_log(end * (begin * turned[step.last_row]).conjugate());
+               const ForwardPass& pass, std::vector<Quat>& out) {
+  const auto turned = [&](std::size_t row) { return pass.turned[row - pass.first_row]; };
+  const Vec3 open = quat_log(end * (begin * turned(step.last_row)).conjugate());
   const double span = time[step.last_row] - time[step.first_row];
   for (std::size_t row = step.first_row + 1; row <= step.last_row; ++row) {
     const double share = (time[row] - time[step.first_row]) / span;
-    out[row] = (quat_exp(share * open) * begin * turned[row]).normalized();
+    out[row] = (quat_exp(share * open) * begin * turned(row)).normalized();
   }
+}
+
+/// Where the forward pass may be taken up, in order; the last one is its end.
+std::vector<Resumption> resumptions(const InsSensor& sensor, std::span<const double> time,
+                                    const KinferFilterOptions& options, SmoothedMotion& motion) {
+  std::vector<Resumption> all{{.filter = KinferFilter(options), .step = {}, .row = 0}};
+  do {
+    const ForwardPass pass = forward_pass(sensor, time, all.back());
+    for (const Step& step : pass.steps) motion.update_time.push_back(time[step.last_row]);
+    all.push_back(pass.end);
+  } while (all.back().row < time.size());
+  return all;
 }
 
 }  // namespace
 
 SmoothedMotion smoothed_motion(const InsSensor& sensor, std::span<const double> time,
                                const KinferOfflineOptions& options) {
-  const ForwardPass pass = forward_pass(sensor, time, options.filter);
   SmoothedMotion motion;
+  const std::vector<Resumption> from = resumptions(sensor, time, options.filter, motion);
   motion.world_q_sensor.assign(time.size(), Quat::Identity());
-  motion.bias.resize(pass.steps.size());
-  for (const Step& step : pass.steps) motion.update_time.push_back(time[step.last_row]);
-  KinferBelief end = pass.last;
-  for (std::size_t row = pass.last_row; row < time.size(); ++row)
-    motion.world_q_sensor[row] = (end.world_q_sensor * pass.turned[row]).normalized();
-  for (std::size_t k = pass.steps.size(); k-- > 0;) {
-    const KinferBelief begin = smoothed_begin(pass.steps[k], end);
-    fill_rows(pass.steps[k], begin.world_q_sensor, end.world_q_sensor, time, pass.turned, motion.world_q_sensor);
-    motion.bias[k] = end.bias;
-    end = begin;
+  motion.bias.resize(motion.update_time.size());
+  const Step& open = from.back().step;  // its period never came to an end: its rows hang on its begin
+  KinferBelief end = open.begin;
+  std::size_t update = motion.bias.size(), first_row = open.first_row;
+  for (std::size_t k = from.size() - 1; k-- > 0;) {
+    const ForwardPass pass = forward_pass(sensor, time, from[k]);
+    for (std::size_t row = std::max(open.first_row, pass.first_row); row < pass.end.row; ++row)
+      motion.world_q_sensor[row] = (open.begin.world_q_sensor * pass.turned[row - pass.first_row]).normalized();
+    for (std::size_t i = pass.steps.size(); i-- > 0;) {
+      const KinferBelief begin = smoothed_begin(pass.steps[i], end);
+      fill_rows(pass.steps[i], begin.world_q_sensor, end.world_q_sensor, time, pass, motion.world_q_sensor);
+      motion.bias[--update] = end.bias;
+      end = begin;
+      first_row = pass.steps[i].first_row;
+    }
   }
   motion.scale = end.scale;
-  for (std::size_t row = 0; row <= pass.first_row && row < time.size(); ++row)
+  for (std::size_t row = 0; row <= first_row && row < time.size(); ++row)
     motion.world_q_sensor[row] = end.world_q_sensor.normalized();
   return motion;
 }

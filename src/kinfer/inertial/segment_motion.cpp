@@ -22,17 +22,37 @@ struct Resampled {
   std::vector<bool> sound;
 };
 
-/// The usable readings of a sensor, `pick`ed from its samples, at the times of `clock`.
+/// Readings at times of their own.
+struct Readings {
+  std::vector<double> time;
+  std::vector<Vec3> value;
+  double bin = 0.0;            // [s] over which they are averaged; 0: not at all
+  std::size_t last_count = 0;  // readings in the last entry
+
+  void add(double at, const Vec3& v) {
+    if (bin > 0.0 && !time.empty() && std::floor(at / bin) <= std::floor(time.back() / bin)) {
+      const double share = 1.0 / static_cast<double>(++last_count);
+      time.back() += share * (at - time.back());
+      value.back() += share * (v - value.back());
+      return;
+    }
+    last_count = 1;
+    time.push_back(at);
+    value.push_back(v);
+  }
+};
+
+/// The usable readings of a sensor, `pick`ed from its samples, at the times of `clock`; where the clock is slower than
+/// the sensor, means over its period, so that nothing fast is mistaken for something slow.
 template <class Pick>
 Resampled resampled(const InsSensor& sensor, std::span<const double> time, std::span<const double> clock,
                     const Pick& pick) {
-  std::vector<double> known_time;
-  std::vector<Vec3> known;
+  const double period = clock[1] - clock[0];
+  Readings readings{.time = {}, .value = {}, .bin = period > 1.5 * typical_period(time) ? period : 0.0};
   for (std::size_t row = 0; row < time.size(); ++row)
-    if (const auto value = pick(sample(sensor, time, row))) {
-      known_time.push_back(time[row]);
-      known.push_back(*value);
-    }
+    if (const auto value = pick(sample(sensor, time, row))) readings.add(time[row], *value);
+  const std::vector<double>& known_time = readings.time;
+  const std::vector<Vec3>& known = readings.value;
   Resampled result{std::vector<Vec3>(clock.size(), Vec3::Zero()), std::vector<bool>(clock.size(), false)};
   std::size_t next = 0;
   for (std::size_t i = 0; i < clock.size() && !known.empty(); ++i) {
@@ -45,6 +65,15 @@ Resampled resampled(const InsSensor& sensor, std::span<const double> time, std::
                       clock[i] <= known_time[after] + longest_bridge;
   }
   return result;
+}
+
+/// Seconds between the rows of the common clock: those of the sensors; of a long recording a few times as much, because
+/// an hour tells enough in rows that are as far apart as the knots of a motion.
+double clock_period(std::span<const double> time) {
+  constexpr double most_rows = 80000.0, longest = 0.05;  // [s]
+  const double period = typical_period(time), rows = (time.back() - time.front()) / period;
+  const double stride = std::min(std::ceil(rows / most_rows), std::floor(longest / period));
+  return std::max(1.0, stride) * period;
 }
 
 std::vector<double> equally_spaced(std::span<const double> time, double period) {
@@ -190,7 +219,7 @@ Result<RecordedMotion> segment_motion(const InsRecording& recording, const Segme
   RecordedMotion motion;
   const std::span<const double> time = recording.time(recording.sensors.front());
   if (time.size() < 100) return error("identification needs at least 100 rows, found {}", time.size());
-  motion.period = typical_period(time);
+  motion.period = clock_period(time);
   motion.time = equally_spaced(time, motion.period);
   const GaussianKernel kernel = gaussian_kernel(options.smoothing, motion.period);
   std::vector<SegmentOnClock> segments(recording.sensors.size());

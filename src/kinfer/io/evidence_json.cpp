@@ -31,10 +31,13 @@ Json json_of(const ErrorStatistics& s) {
 }
 
 Json json_of(const ChainFit& fit) {
-  Json json{{"train", json_of(fit.position.train)}, {"holdout", json_of(fit.position.holdout)}};
-  if (fit.orientation.train.n > 0)
-    json["orientation_rad"] = {{"train", json_of(fit.orientation.train)},
-                               {"holdout", json_of(fit.orientation.holdout)}};
+  const auto sides = [](const TrainHoldout& errors) {
+    return Json{{"train", json_of(errors.train)},
+                {"holdout", json_of(errors.holdout)},
+                {"holdout_all_rows", json_of(errors.holdout_all_rows)}};
+  };
+  Json json = sides(fit.position);
+  if (fit.orientation.train.n > 0) json["orientation_rad"] = sides(fit.orientation);
   return json;
 }
 
@@ -66,6 +69,18 @@ Json rows_json(const std::vector<RowErrors>& rows) {
     held.push_back(r.held_out);
   }
   return {{"row", row}, {"before", before}, {"after", after}, {"fitted", fitted}, {"held_out", held}};
+}
+
+/// ISO 9283 over all poses, and over those that were repeated.
+Json iso9283_json(const std::vector<PoseAccuracy>& poses) {
+  std::vector<double> before, after, repeatability;
+  for (const PoseAccuracy& pose : poses) {
+    before.push_back(pose.accuracy_before), after.push_back(pose.accuracy_after);
+    if (pose.repeatability) repeatability.push_back(*pose.repeatability);
+  }
+  return {{"pose_accuracy_before", json_of(error_statistics(before))},
+          {"pose_accuracy_after", json_of(error_statistics(after))},
+          {"pose_repeatability", json_of(error_statistics(repeatability))}};
 }
 
 Json side_by_side_json(const std::vector<SearchRun>& runs) {
@@ -135,10 +150,12 @@ std::string calibration_json(const Calibration& c, const Provenance& provenance)
   json["notes"] = c.notes;
   json["findings"] = Json::parse(findings_json(c.findings));
   json["holdout"] = c.holdout;
+  json["wrong_rows"] = c.wrong_rows;
   json["measured"] = c.measured;
   json["nominal"] = json_of(c.nominal);
   json["before"] = json_of(c.before);
   json["after"] = json_of(c.after);
+  if (!c.accuracy.empty()) json["iso9283"] = iso9283_json(c.accuracy);
   json["predicted_error"] = e.predicted_error;
   json["sigma"] = e.sigma;
   json["sigma_angle"] = e.sigma_angle;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/base/version.hpp"
+#include "kinfer/io/findings_json.hpp"
 #include "kinfer/io/picture_json.hpp"
 
 namespace kinfer {
@@ -58,6 +59,13 @@ Json json_of(const FoundPlace& place) {
   return {{"name", place.name}, {"sensor", place.sensor}, {"xyz", json_of(place.xyz)}, {"sd_m", json_of(place.sd)}};
 }
 
+Json json_of(const FoundClock& clock) {
+  return {{"sensor", clock.sensor},
+          {"offset_s", clock.offset},
+          {"drift_ppm", 1e6 * clock.drift},
+          {"sd", {{"offset_s", clock.offset_sd}, {"drift_ppm", 1e6 * clock.drift_sd}}}};
+}
+
 Json json_of(const JointForecast& f) {
   return {{"joint", f.joint},
           {"line_sd_m", f.line_sd},
@@ -78,7 +86,8 @@ Json json_of(const FoundDhRow& row) {
           {"a", row.row.a},
           {"alpha", row.row.alpha},
           {"theta_variable", row.theta_variable},
-          {"alpha_variable", row.alpha_variable}};
+          {"alpha_variable", row.alpha_variable},
+          {"d_variable", row.d_variable}};
 }
 
 Json json_of(const OrderEvidence& order) {
@@ -159,6 +168,7 @@ std::string identification_json(const Identification& found, const Provenance& p
   json["format"] = "kinfer-evidence/1";
   json["kind"] = "identify";
   json["verdict"] = found.verdict;
+  json["findings"] = Json::parse(findings_json(found.findings));
   json["notes"] = found.notes;
   json["root"] = found.root;
   json["joints"] = list_of(found.joints);
@@ -167,6 +177,7 @@ std::string identification_json(const Identification& found, const Provenance& p
   json["chain"] = chain_json(found.chain);
   json["next"] = advice_json(found.next);
   json["places"] = list_of(found.places);
+  json["clocks"] = list_of(found.clocks);
   json["forecast"] = list_of(found.forecast);
   json["order"] = json_of(found.order);
   json["fit"] = fit_json(found.searches);

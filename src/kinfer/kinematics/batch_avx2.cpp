@@ -7,6 +7,7 @@ namespace kinfer::batch {
 using Wide = Pack<double, 4>;
 using Narrow = Pack<float, 8>;
 extern const Kernels avx2_kernels{
-    "AVX2 + FMA", 4, 8, population_sums<Wide, 3>, population_sums<Narrow, 3>, point_errors<Wide, 3>, jacobian<Wide>};
+    "AVX2 + FMA",  4, 8, population_sums<Wide, 3>, population_sums<Narrow, 3>, sines<Wide>, point_errors<Wide, 3>,
+    jacobian<Wide>};
 
 }  // namespace kinfer::batch

@@ -7,6 +7,7 @@ namespace kinfer::batch {
 using Wide = Pack<double, 8>;
 using Narrow = Pack<float, 16>;
 extern const Kernels avx512_kernels{
-    "AVX-512", 8, 16, population_sums<Wide, 4>, population_sums<Narrow, 4>, point_errors<Wide, 3>, jacobian<Wide>};
+    "AVX-512",     8, 16, population_sums<Wide, 4>, population_sums<Narrow, 4>, sines<Wide>, point_errors<Wide, 4>,
+    jacobian<Wide>};
 
 }  // namespace kinfer::batch

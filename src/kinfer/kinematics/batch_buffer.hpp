@@ -1,9 +1,9 @@
-// Numbers that start at a cache line: a pack that straddles two lines costs two loads.
+// Numbers that start at a cache line: a pack that straddles two lines costs two loads. They come with arbitrary values.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <memory>
 
 namespace kinfer::batch {
 
@@ -15,21 +15,21 @@ class Buffer {
 
   /// At least so many numbers; what was there may be lost.
   void reserve(std::size_t size) {
-    if (size > size_) memory_.assign(size + spare, T(0)), size_ = size;
+    if (size > size_) memory_.reset(new T[size + spare]), size_ = size;
   }
 
-  T* data() { return memory_.data() + first(); }
-  const T* data() const { return memory_.data() + first(); }
+  T* data() { return memory_.get() + first(); }
+  const T* data() const { return memory_.get() + first(); }
   std::size_t size() const { return size_; }
 
  private:
   static constexpr std::size_t line = 64, spare = line / sizeof(T);
   std::size_t first() const {
-    const std::size_t past = reinterpret_cast<std::uintptr_t>(memory_.data()) % line;
+    const std::size_t past = reinterpret_cast<std::uintptr_t>(memory_.get()) % line;
     return past == 0 ? 0 : (line - past) / sizeof(T);
   }
 
-  std::vector<T> memory_;
+  std::unique_ptr<T[]> memory_;
   std::size_t size_ = 0;
 };
 

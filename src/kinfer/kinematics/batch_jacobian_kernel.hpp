@@ -1,250 +1,255 @@
 // Residuals, their derivative and the normal equations of many points at one candidate: lanes are points. Included by
 // the kernel files only.
 //
-// A walk from the world outwards notes the axis and origin of every parameter's motion; at the tool each becomes a
-// column (axis × lever, or axis). The normal equations grow chunk by chunk, so that no Jacobian need be kept.
+// A point is carried from the tool inwards and its place before each screw is noted. Then a frame is carried outwards,
+// rotation only: what a turn about axis e of that frame does to the point is R (e × place), what a shift does is R e
+// (the columns of the geometric Jacobian; Whitney 1972). The frame starts with the weights, so that columns come out
+// weighted. The normal equations grow chunk by chunk: no Jacobian need be kept.
 #pragma once
 
-#include "kinfer/kinematics/batch_kernel.hpp"
-#include "kinfer/kinematics/batch_pack.hpp"
+#include "kinfer/kinematics/batch_gram_kernel.hpp"
+#include "kinfer/kinematics/batch_points_kernel.hpp"
+#include "kinfer/kinematics/batch_sines_kernel.hpp"
 
 namespace kinfer::batch {
 namespace {  // each kernel file has its own, compiled for its processor
 
-/// Frames in flight at the same time: rotations r[3 row + column] and positions t.
-template <class V, int n>
-struct Frames {
-  V r[9][n], t[3][n];
-};
+/// What a candidate makes of a screw: cosine, sine, length, change of the gain.
+inline constexpr int numbers_of_screw = 4;
+/// What is noted of a point at a screw: its place across the axis; cosine and sine where they are the point's own.
+inline constexpr int notes_of_screw = 4;
 
-template <class V, int n, int axis>
-inline void turn(Frames<V, n>& f, const V (&c)[n], const V (&s)[n]) {
-  constexpr int i = axis == 2 ? 0 : axis + 1, j = 3 - axis - i;
-  for (int row = 0; row < 3; ++row)
-    for (int u = 0; u < n; ++u) {
-      const V p = f.r[3 * row + i][u], q = f.r[3 * row + j][u];
-      f.r[3 * row + i][u] = mul_add(c[u], p, s[u] * q);
-      f.r[3 * row + j][u] = mul_sub(c[u], q, s[u] * p);
-    }
+inline void fold_screws(const JacobianJob& job, const Sines& at, double* to) {
+  for (int k = 0; k < job.screw_count; ++k, to += numbers_of_screw) {
+    const Screw& screw = job.screws[k];
+    to[0] = at.cos(screw.turn), to[1] = at.sin(screw.turn);
+    to[2] = at.value(screw.shift);
+    to[3] = screw.gain.parameter < 0 ? 0.0 : at.value(screw.gain) - screw.gain.constant;
+  }
 }
 
-template <class V, int n>
-inline void turn(Frames<V, n>& f, int axis, const V (&c)[n], const V (&s)[n]) {
-  if (axis == 0) turn<V, n, 0>(f, c, s);
-  if (axis == 1) turn<V, n, 1>(f, c, s);
-  if (axis == 2) turn<V, n, 2>(f, c, s);
+template <int axis, class V, int n>
+inline V (&part(Points<V, n>& p))[n] {
+  if constexpr (axis == 0) return p.x;
+  if constexpr (axis == 1) return p.y;
+  if constexpr (axis == 2) return p.z;
 }
 
-template <class V, int n>
-inline void shift(Frames<V, n>& f, int axis, const V (&length)[n]) {
-  for (int row = 0; row < 3; ++row)
-    for (int u = 0; u < n; ++u) f.t[row][u] = mul_add(length[u], f.r[3 * row + axis][u], f.t[row][u]);
-}
-
-template <class V, int n>
-inline void rotate(Frames<V, n>& f, const double* by) {
-  for (int row = 0; row < 3; ++row)
-    for (int u = 0; u < n; ++u) {
-      const V p[3] = {f.r[3 * row][u], f.r[3 * row + 1][u], f.r[3 * row + 2][u]};
-      for (int col = 0; col < 3; ++col)
-        f.r[3 * row + col][u] = mul_add(p[0], broadcast<V>(by[col]),
-                                        mul_add(p[1], broadcast<V>(by[3 + col]), p[2] * broadcast<V>(by[6 + col])));
-    }
-}
-
-/// n blocks of points walked through the steps together.
+/// n blocks of points in flight.
 template <class V, int n>
 class Walk {
  public:
   static constexpr int lanes = Traits<V>::lanes;
 
-  /// `columns`: 6 n packs a column, for axes and origins.
-  Walk(const JacobianJob& job, int block, double* columns) : job_(job), block_(block), columns_(columns) {
+  /// `notes`: notes_of_screw · n packs a screw. `to`: row 0 of column 0 of the first block; columns are `apart` numbers
+  /// apart, blocks 3 packs.
+  Walk(const JacobianJob& job, int block, const double* numbers, double* notes, double* to, std::ptrdiff_t apart)
+      : job_(job), block_(block), numbers_(numbers), notes_(notes), to_(to), apart_(apart) {}
+
+  /// Writes the weighted residuals, which are `between` numbers from block to block, and adds their squares to `sum`.
+  void inwards(const double* on_tool, double* residuals, V& sum) const {
+    Points<V, n> p;
+    fill(p.x, on_tool[0]), fill(p.y, on_tool[1]), fill(p.z, on_tool[2]);
+    for (int k = job_.screw_count - 1; k >= 0; --k) {
+      const Screw& screw = job_.screws[k];
+      const double* numbers = numbers_ + numbers_of_screw * k;
+      if (screw.is_rotation) {
+        turn_constantly(screw.rotation, p);
+      } else if (screw.move != Move::none) {
+        move_inwards(screw, numbers, note_at(k), p);
+      } else if (screw.axis == 0) {
+        go_inwards<0>(numbers, note_at(k), p);
+      } else if (screw.axis == 1) {
+        go_inwards<1>(numbers, note_at(k), p);
+      } else {
+        go_inwards<2>(numbers, note_at(k), p);
+      }
+    }
+    const int measured = job_.stride - 3;
     for (int u = 0; u < n; ++u) {
-      for (int i = 0; i < 9; ++i) f_.r[i][u] = broadcast<V>(i % 4 == 0 ? 1.0 : 0.0);
-      for (int i = 0; i < 3; ++i) f_.t[i][u] = broadcast<V>(0.0);
+      const V x = weight(u, 0) * (datum(u, measured) - p.x[u]), y = weight(u, 1) * (datum(u, measured + 1) - p.y[u]),
+              z = weight(u, 2) * (datum(u, measured + 2) - p.z[u]);
+      double* at = residuals + 3 * lanes * u;
+      store(at, x), store(at + lanes, y), store(at + 2 * lanes, z);
+      sum = mul_add(x, x, mul_add(y, y, mul_add(z, z, sum)));
     }
   }
 
-  void to_the_tool(const double* on_tool) {
-    for (int i = 0; i < job_.step_count; ++i) take(job_.steps[i]);
-    for (int axis = 0; axis < 3; ++axis) {
-      V length[n];
-      fill(length, on_tool[axis]);
-      if (on_tool[axis] != 0.0) shift(f_, axis, length);
+  /// Writes the columns of d residual.
+  void outwards() const {
+    Points<V, n> x, y, z;  // the frame's axes, seen in the world and weighted
+    for (int u = 0; u < n; ++u) {
+      const V zero = broadcast<V>(0.0);
+      x.x[u] = -weight(u, 0), x.y[u] = zero, x.z[u] = zero;
+      y.x[u] = zero, y.y[u] = -weight(u, 1), y.z[u] = zero;
+      z.x[u] = zero, z.y[u] = zero, z.z[u] = -weight(u, 2);
     }
-  }
-
-  /// Residual and columns of block u, weighted: `to` is where row 0 of column 0 goes, columns are `apart` numbers
-  /// apart; the residual is the column after the last.
-  void finish(int u, double* to, std::ptrdiff_t apart, double* residuals) const {
-    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(block_ + u) * 3 * lanes;
-    V weight[3];
-    for (int row = 0; row < 3; ++row) {
-      weight[row] = load<V>(job_.weights + at + row * lanes);
-      const V residual = weight[row] * (datum(u, job_.stride - 3 + row) - f_.t[row][u]);
-      store(residuals + row * lanes, residual);
+    for (int k = 0; k < job_.screw_count; ++k) {
+      const Screw& screw = job_.screws[k];
+      const double* numbers = numbers_ + numbers_of_screw * k;
+      if (screw.is_rotation) {
+        rotate(screw.rotation, x, y, z);
+      } else if (screw.axis == 0) {
+        go_outwards(screw, numbers, note_at(k), x, y, z);
+      } else if (screw.axis == 1) {
+        go_outwards(screw, numbers, note_at(k), y, z, x);
+      } else if (screw.move == Move::none) {
+        go_outwards(screw, numbers, note_at(k), z, x, y);
+      } else {
+        move_outwards(screw, numbers, note_at(k), z, x, y);
+      }
     }
-    for (int i = 0; i < job_.step_count; ++i) {
-      const Step& step = job_.steps[i];
-      if (step.kind == Step::Kind::record_turn) finish_turn(step.column, u, weight, to + step.column * apart);
-      if (step.kind == Step::Kind::record_shift) finish_shift(step.column, u, weight, to + step.column * apart);
-    }
-    for (int i = 0; i < job_.idle_count; ++i)
-      for (int row = 0; row < 3; ++row) store(to + job_.idle[i] * apart + row * lanes, broadcast<V>(0.0));
   }
 
  private:
-  double* noted(int column, int i, int u) const { return columns_ + ((column * 6 + i) * n + u) * lanes; }
-
   static void fill(V (&to)[n], double value) {
     for (int u = 0; u < n; ++u) to[u] = broadcast<V>(value);
   }
-
   V datum(int u, int slot) const {
     return load<V>(job_.items + (static_cast<std::ptrdiff_t>(block_ + u) * job_.stride + slot) * lanes);
   }
+  V weight(int u, int row) const {
+    return load<V>(job_.weights + (static_cast<std::ptrdiff_t>(block_ + u) * 3 + row) * lanes);
+  }
+  double* note_at(int k) const { return notes_ + static_cast<std::ptrdiff_t>(notes_of_screw * n * lanes) * k; }
+  static double* noted(double* note, int i, int u) { return note + (i * n + u) * lanes; }
 
-  void take(const Step& step) {
-    V first[n], second[n];
-    switch (step.kind) {
-      case Step::Kind::turn:
-        fill(first, step.a), fill(second, step.b);
-        return turn(f_, step.axis, first, second);
-      case Step::Kind::shift:
-        fill(first, step.a);
-        return shift(f_, step.axis, first);
-      case Step::Kind::rotation:
-        return rotate(f_, step.rotation);
-      case Step::Kind::turn_joint:
-        return turn_joint(step);
-      case Step::Kind::shift_joint:
-        return shift_joint(step);
-      case Step::Kind::record_turn:
-      case Step::Kind::record_shift:
-        return note(step);
+  static void turn_constantly(const double* by, Points<V, n>& p) {
+    Points<V, n> q = p;
+    const auto row = [&](int i, int u) {
+      return mul_add(broadcast<V>(by[i]), p.x[u],
+                     mul_add(broadcast<V>(by[i + 1]), p.y[u], broadcast<V>(by[i + 2]) * p.z[u]));
+    };
+    for (int u = 0; u < n; ++u) q.x[u] = row(0, u), q.y[u] = row(3, u), q.z[u] = row(6, u);
+    p = q;
+  }
+
+  /// p seen from before a turn; its place across the axis is noted.
+  template <int axis>
+  static void turn_inwards(const V (&c)[n], const V (&s)[n], double* note, Points<V, n>& p) {
+    V(&first)[n] = part<(axis + 1) % 3>(p), (&second)[n] = part<(axis + 2) % 3>(p);
+    for (int u = 0; u < n; ++u) {
+      const V a = first[u], b = second[u];
+      first[u] = mul_sub(c[u], a, s[u] * b);
+      second[u] = mul_add(s[u], a, c[u] * b);
+      store(noted(note, 0, u), first[u]), store(noted(note, 1, u), second[u]);
     }
   }
 
-  /// By the sum of the joint's movement and the offset.
-  void turn_joint(const Step& step) {
+  template <int axis>
+  static void go_inwards(const double* numbers, double* note, Points<V, n>& p) {
     V c[n], s[n];
-    const V a = broadcast<V>(step.a), b = broadcast<V>(step.b);
-    for (int u = 0; u < n; ++u) {
-      const V moved_c = datum(u, step.slot), moved_s = datum(u, step.slot + 1);
-      c[u] = mul_sub(a, moved_c, b * moved_s);
-      s[u] = mul_add(a, moved_s, b * moved_c);
-    }
-    turn(f_, step.axis, c, s);
-    if (step.extra_gain == 0.0) return;
-    for (int u = 0; u < n; ++u) {
-      const SinCos<V> more = sin_cos(broadcast<V>(step.extra_gain) * datum(u, step.slot + 2));
-      c[u] = more.cos, s[u] = more.sin;
-    }
-    turn(f_, step.axis, c, s);
+    fill(c, numbers[0]), fill(s, numbers[1]);
+    turn_inwards<axis>(c, s, note, p);
+    for (int u = 0; u < n; ++u) part<axis>(p)[u] += broadcast<V>(numbers[2]);
   }
 
-  void shift_joint(const Step& step) {
-    V length[n];
-    for (int u = 0; u < n; ++u) length[u] = broadcast<V>(step.a) + datum(u, step.slot);
-    if (step.extra_gain != 0.0)
-      for (int u = 0; u < n; ++u)
-        length[u] = mul_add(broadcast<V>(step.extra_gain), datum(u, step.slot + 2), length[u]);
-    shift(f_, step.axis, length);
-  }
-
-  void note(const Step& step) {
-    for (int row = 0; row < 3; ++row)
-      for (int u = 0; u < n; ++u) {
-        V axis = f_.r[3 * row + step.axis][u];
-        if (step.slot >= 0) axis *= datum(u, step.slot);
-        store(noted(step.column, row, u), axis);
-        if (step.kind == Step::Kind::record_turn) store(noted(step.column, 3 + row, u), f_.t[row][u]);
+  void move_inwards(const Screw& screw, const double* numbers, double* note, Points<V, n>& p) const {
+    V c[n], s[n];
+    fill(c, numbers[0]), fill(s, numbers[1]);
+    for (int u = 0; u < n; ++u) {
+      V first = datum(u, screw.slot);
+      p.z[u] += broadcast<V>(numbers[2]);
+      if (screw.move == Move::shift_by_gain) first = mul_add(broadcast<V>(numbers[3]), datum(u, screw.slot + 2), first);
+      if (screw.move == Move::shift || screw.move == Move::shift_by_gain) {
+        p.z[u] += first;
+        continue;
       }
+      turn_by(c[u], s[u], first, datum(u, screw.slot + 1));
+      if (screw.move != Move::turn_by_gain) continue;
+      const SinCos<V> more = sin_cos(broadcast<V>(numbers[3]) * datum(u, screw.slot + 2));
+      turn_by(c[u], s[u], more.cos, more.sin);
+    }
+    for (int u = 0; u < n; ++u) store(noted(note, 2, u), c[u]), store(noted(note, 3, u), s[u]);
+    turn_inwards<2>(c, s, note, p);
   }
 
-  void finish_turn(int column, int u, const V* weight, double* to) const {
-    V axis[3], lever[3];
-    for (int row = 0; row < 3; ++row) {
-      axis[row] = load<V>(noted(column, row, u));
-      lever[row] = load<V>(noted(column, 3 + row, u)) - f_.t[row][u];  // of − d residual
-    }
-    for (int row = 0; row < 3; ++row) {
-      const int i = (row + 1) % 3, j = (row + 2) % 3;
-      store(to + row * lanes, weight[row] * mul_sub(axis[i], lever[j], axis[j] * lever[i]));
+  /// The sum of two angles.
+  static void turn_by(V& c, V& s, V by_c, V by_s) {
+    const V was = c;
+    c = mul_sub(was, by_c, s * by_s);
+    s = mul_add(was, by_s, s * by_c);
+  }
+
+  void put(int parameter, int u, V x, V y, V z) const {
+    double* at = to_ + parameter * apart_ + 3 * lanes * u;
+    store(at, x), store(at + lanes, y), store(at + 2 * lanes, z);
+  }
+
+  /// first × second = axis.
+  void write_columns(const Screw& screw, double* note, const Points<V, n>& axis, const Points<V, n>& first,
+                     const Points<V, n>& second) const {
+    if (screw.turn.parameter >= 0)
+      for (int u = 0; u < n; ++u) {
+        const V a = load<V>(noted(note, 0, u)), b = load<V>(noted(note, 1, u));
+        put(screw.turn.parameter, u, mul_sub(second.x[u], a, first.x[u] * b), mul_sub(second.y[u], a, first.y[u] * b),
+            mul_sub(second.z[u], a, first.z[u] * b));
+      }
+    if (screw.shift.parameter >= 0)
+      for (int u = 0; u < n; ++u) put(screw.shift.parameter, u, axis.x[u], axis.y[u], axis.z[u]);
+  }
+
+  static void turn_outwards(const V (&c)[n], const V (&s)[n], Points<V, n>& first, Points<V, n>& second) {
+    const auto turn = [&](V(&a)[n], V(&b)[n]) {
+      for (int u = 0; u < n; ++u) {
+        const V was = a[u];
+        a[u] = mul_add(c[u], was, s[u] * b[u]);
+        b[u] = mul_sub(c[u], b[u], s[u] * was);
+      }
+    };
+    turn(first.x, second.x), turn(first.y, second.y), turn(first.z, second.z);
+  }
+
+  void go_outwards(const Screw& screw, const double* numbers, double* note, Points<V, n>& axis, Points<V, n>& first,
+                   Points<V, n>& second) const {
+    write_columns(screw, note, axis, first, second);
+    V c[n], s[n];
+    fill(c, numbers[0]), fill(s, numbers[1]);
+    turn_outwards(c, s, first, second);
+  }
+
+  void move_outwards(const Screw& screw, const double*, double* note, Points<V, n>& axis, Points<V, n>& first,
+                     Points<V, n>& second) const {
+    write_columns(screw, note, axis, first, second);
+    if (screw.gain.parameter >= 0) write_gain(screw, note, axis, first, second);
+    V c[n], s[n];
+    for (int u = 0; u < n; ++u) c[u] = load<V>(noted(note, 2, u)), s[u] = load<V>(noted(note, 3, u));
+    turn_outwards(c, s, first, second);
+  }
+
+  void write_gain(const Screw& screw, double* note, const Points<V, n>& axis, const Points<V, n>& first,
+                  const Points<V, n>& second) const {
+    for (int u = 0; u < n; ++u) {
+      const V reading = datum(u, screw.slot + 2);
+      if (screw.move == Move::shift_by_gain) {
+        put(screw.gain.parameter, u, reading * axis.x[u], reading * axis.y[u], reading * axis.z[u]);
+        continue;
+      }
+      const V a = reading * load<V>(noted(note, 0, u)), b = reading * load<V>(noted(note, 1, u));
+      put(screw.gain.parameter, u, mul_sub(second.x[u], a, first.x[u] * b), mul_sub(second.y[u], a, first.y[u] * b),
+          mul_sub(second.z[u], a, first.z[u] * b));
     }
   }
 
-  void finish_shift(int column, int u, const V* weight, double* to) const {
-    for (int row = 0; row < 3; ++row) store(to + row * lanes, -weight[row] * load<V>(noted(column, row, u)));
+  static void rotate(const double* by, Points<V, n>& x, Points<V, n>& y, Points<V, n>& z) {
+    const auto turn = [by](V(&a)[n], V(&b)[n], V(&c)[n]) {
+      for (int u = 0; u < n; ++u) {
+        const V was[3] = {a[u], b[u], c[u]};
+        const auto column = [&](int i) {
+          return mul_add(was[0], broadcast<V>(by[i]),
+                         mul_add(was[1], broadcast<V>(by[3 + i]), was[2] * broadcast<V>(by[6 + i])));
+        };
+        a[u] = column(0), b[u] = column(1), c[u] = column(2);
+      }
+    };
+    turn(x.x, y.x, z.x), turn(x.y, y.y, z.y), turn(x.z, y.z, z.z);
   }
 
   const JacobianJob& job_;
   int block_;
-  double* columns_;
-  Frames<V, n> f_;
-};
-
-/// [J r]ᵀ[J r] as it grows: 4 x 3 products a tile, each still spread over the lanes.
-template <class V>
-class Gram {
- public:
-  static constexpr int lanes = Traits<V>::lanes, tall = tile_height, wide = tile_width;
-
-  Gram(int size, double* tiles) : size_(size), tiles_(tiles) {
-    for_each_tile([](int, int, double* tile) {
-      for (int i = 0; i < tall * wide; ++i) store(tile + i * lanes, broadcast<V>(0.0));
-    });
-  }
-
-  /// Adds the rows of a chunk: column k is at `chunk + k · apart`, `rows` packs of it.
-  void add(const double* chunk, std::ptrdiff_t apart, int rows) {
-    for_each_tile([&](int i0, int j0, double* tile) {
-      V sum[tall][wide];
-      for (int i = 0; i < tall * wide; ++i) sum[i / wide][i % wide] = load<V>(tile + i * lanes);
-      const double *left = chunk + i0 * apart, *right = chunk + j0 * apart;
-      for (int row = 0; row < rows; ++row, left += lanes, right += lanes) {
-        V r[wide];
-        for (int j = 0; j < wide; ++j) r[j] = load<V>(right + j * apart);
-        for (int i = 0; i < tall; ++i) {
-          const V l = load<V>(left + i * apart);
-          for (int j = 0; j < wide; ++j) sum[i][j] = mul_add(l, r[j], sum[i][j]);
-        }
-      }
-      for (int i = 0; i < tall * wide; ++i) store(tile + i * lanes, sum[i / wide][i % wide]);
-    });
-  }
-
-  /// Lower half, row i of the result after row i − 1.
-  void write(double* to) const {
-    for_each_tile([&](int i0, int j0, const double* tile) {
-      for (int i = 0; i < tall; ++i)
-        for (int j = 0; j < wide; ++j) {
-          if (i0 + i >= size_ || j0 + j > i0 + i) continue;
-          to[(i0 + i) * size_ + j0 + j] = lane_sum(tile + (i * wide + j) * lanes);
-        }
-    });
-  }
-
- private:
-  /// Pairwise, so that the additions need not wait for each other.
-  static double lane_sum(const double* pack) {
-    double sum[lanes];
-    for (int lane = 0; lane < lanes; ++lane) sum[lane] = pack[lane];
-    for (int half = lanes / 2; half > 0; half /= 2)
-      for (int lane = 0; lane < half; ++lane) sum[lane] += sum[lane + half];
-    return sum[0];
-  }
-
-  template <class F>
-  void for_each_tile(F&& f) const {
-    double* tile = tiles_;
-    for (int i0 = 0; i0 < size_; i0 += tall)
-      for (int j0 = 0; j0 < i0 + tall && j0 < size_; j0 += wide, tile += tall * wide * lanes) f(i0, j0, tile);
-  }
-
-  int size_;
-  double* tiles_;
+  const double* numbers_;
+  double *notes_, *to_;
+  std::ptrdiff_t apart_;
 };
 
 template <class V>
@@ -254,61 +259,74 @@ class JacobianKernel {
 
   explicit JacobianKernel(const JacobianJob& job)
       : job_(job),
-        noted_(job.workspace),
-        chunk_(noted_ + job.columns * 6 * in_flight * lanes),
-        gram_(job.columns + 1, chunk_ + padded_columns(job.columns) * apart) {
-    for (int k = job.columns + 1; k < padded_columns(job.columns); ++k)
-      for (int i = 0; i < apart; ++i) chunk_[k * apart + i] = 0.0;
+        numbers_(job.workspace),
+        notes_(numbers_ + round_up(numbers_of_screw * job.screw_count, lanes)),
+        chunk_(notes_ + notes_of_screw * in_flight * lanes * job.screw_count),
+        gram_(job.columns, job.blocks, chunk_ + padded_columns(job.columns) * apart),
+        sum_(broadcast<V>(0.0)) {
+    fold_screws(job, Sines::of<V>(job.at, chunk_), numbers_);  // the chunk is still free
+    for (int i = 0; i < job.idle_count; ++i) clear(job.idle[i]);
+    if (!job.jacobian)
+      for (int k = job.columns + 1; k < padded_columns(job.columns); ++k) clear(k);
   }
 
-  void run() {
+  /// Returns the sum of the squared residuals.
+  double run() {
     for (int g = 0; g < job_.group_count; ++g) {
       const Group& group = job_.groups[g];
       int block = group.begin;
       for (; block + in_flight <= group.end; block += in_flight) walk<in_flight>(block, group.on_tool);
       for (; block < group.end; ++block) walk<1>(block, group.on_tool);
     }
-    add_chunk();
-    if (!job_.jacobian) gram_.write(job_.normal);
+    if (!job_.jacobian) gram_.finish(chunk_, apart, 3 * in_chunk_, job_.matrix, job_.gradient);
+    double sum = 0.0;
+    for (int lane = 0; lane < lanes; ++lane) sum += sum_[lane];
+    return sum;
   }
 
  private:
   static constexpr int apart = 3 * blocks_a_chunk * lanes;
 
+  /// A column that nothing writes.
+  void clear(int column) const {
+    const std::ptrdiff_t numbers = job_.jacobian ? static_cast<std::ptrdiff_t>(job_.blocks) * 3 * lanes : apart;
+    double* to = (job_.jacobian ? job_.jacobian : chunk_) + column * numbers;
+    for (std::ptrdiff_t i = 0; i < numbers; ++i) to[i] = 0.0;
+  }
+
   template <int n>
   void walk(int block, const double* on_tool) {
-    if (in_chunk_ + n > blocks_a_chunk) add_chunk();
-    Walk<V, n> walk(job_, block, noted_);
-    walk.to_the_tool(on_tool);
-    for (int u = 0; u < n; ++u) {
-      double* residuals = job_.residuals + static_cast<std::ptrdiff_t>(block + u) * 3 * lanes;
-      if (job_.jacobian) {
-        const std::ptrdiff_t column = static_cast<std::ptrdiff_t>(job_.blocks) * 3 * lanes;
-        walk.finish(u, job_.jacobian + static_cast<std::ptrdiff_t>(block + u) * 3 * lanes, column, residuals);
-      } else {
-        double* to = chunk_ + in_chunk_ * 3 * lanes;
-        walk.finish(u, to, apart, residuals);
-        for (int row = 0; row < 3; ++row)
-          store(to + job_.columns * apart + row * lanes, load<V>(residuals + row * lanes));
-        ++in_chunk_;
-      }
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(block) * 3 * lanes;
+    if (job_.jacobian) {
+      const Walk<V, n> walk(job_, block, numbers_, notes_, job_.jacobian + at,
+                            static_cast<std::ptrdiff_t>(job_.blocks) * 3 * lanes);
+      walk.inwards(on_tool, job_.residuals + at, sum_);
+      walk.outwards();
+      return;
     }
+    if (in_chunk_ + n > blocks_a_chunk) add_chunk();
+    double* to = chunk_ + in_chunk_ * 3 * lanes;
+    const Walk<V, n> walk(job_, block, numbers_, notes_, to, apart);
+    walk.inwards(on_tool, to + job_.columns * apart, sum_);
+    walk.outwards();
+    in_chunk_ += n;
   }
 
   void add_chunk() {
-    if (in_chunk_ > 0) gram_.add(chunk_, apart, 3 * in_chunk_);
+    gram_.add(chunk_, apart, 3 * in_chunk_);
     in_chunk_ = 0;
   }
 
   const JacobianJob& job_;
-  double *noted_, *chunk_;
+  double *numbers_, *notes_, *chunk_;
   Gram<V> gram_;
+  V sum_;
   int in_chunk_ = 0;
 };
 
 template <class V>
-void jacobian(const JacobianJob& job) {
-  JacobianKernel<V>(job).run();
+double jacobian(const JacobianJob& job) {
+  return JacobianKernel<V>(job).run();
 }
 
 }  // namespace

@@ -13,9 +13,21 @@ namespace kinfer::batch {
 /// A number of the chain: parameter x[parameter], or a constant where that is negative.
 struct Value {
   int parameter = -1;
+  int angle = -1;               ///< of a parameter that is an angle: which one of them
   double constant = 0.0;        ///< of a parameter: its nominal number
   double cos = 1.0, sin = 0.0;  ///< of the constant, where it is an angle
 };
+
+/// One candidate. `angles` are the parameters that are angles: only their sines are taken.
+struct Candidate {
+  const double* x = nullptr;
+  const int* angles = nullptr;
+  int angle_count = 0;
+};
+/// Numbers of workspace for the sines of a candidate.
+[[gnu::always_inline]] constexpr std::size_t sines_workspace(int angles, int lanes) {
+  return static_cast<std::size_t>(3 * (angles + lanes));
+}
 
 /// A turn about or a shift along one axis; or a constant rotation (row by row).
 struct Factor {
@@ -38,7 +50,8 @@ enum class Move : std::uint8_t { none, turn, shift, turn_by_gain, shift_by_gain 
 /// A constant transform [r00 r01 r02 tx; r10 r11 r12 ty; r20 r21 r22 tz], and the movement after it.
 struct Segment {
   Shape shape = Shape::identity;
-  bool varies = false;  ///< with the candidate
+  bool varies = false;    ///< with the candidate
+  bool in_sheet = false;  ///< a link that varies: for one candidate it is folded beside others
   double numbers[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   Value d, a, alpha, theta;         ///< of a link that varies
   const Factor* factors = nullptr;  ///< of a general transform that varies
@@ -46,6 +59,19 @@ struct Segment {
   Move move = Move::none;
   Value gain;            ///< of a movement by gain: x[parameter] − constant is what changed
   int slots_before = 0;  ///< numbers of an item that belong to the movements further outwards
+};
+
+/// One number of each link of a sheet.
+inline constexpr int links_a_sheet = 8;
+struct SheetColumn {
+  int parameter[links_a_sheet] = {};    ///< any where none is free
+  double is_free[links_a_sheet] = {};   ///< all bits set or none
+  double constant[links_a_sheet] = {};  ///< as of a Value
+  double cos[links_a_sheet] = {1, 1, 1, 1, 1, 1, 1, 1}, sin[links_a_sheet] = {};
+};
+/// Segments 8 k .. 8 k + 7 side by side: those that are not links are left to others.
+struct LinkSheet {
+  SheetColumn d, a, alpha, theta;
 };
 
 /// Points that start at the same place of the tool.
@@ -67,7 +93,9 @@ struct PopulationJob {
   int stride = 0;  ///< numbers of an item
   int unknowns = 0;
   const double* nominal = nullptr;  ///< of each unknown
-  const double* x = nullptr;        ///< unknowns x candidates, column by column
+  const int* angles = nullptr;      ///< unknowns that are angles
+  int angle_count = 0;
+  const double* x = nullptr;  ///< unknowns x candidates, column by column
   std::ptrdiff_t x_stride = 0;
   int candidates = 0;
   double* sums = nullptr;
@@ -75,71 +103,85 @@ struct PopulationJob {
 };
 
 /// Numbers of workspace that a PointsJob needs.
-[[gnu::always_inline]] constexpr std::size_t points_workspace(int unknowns, int segments, int lanes) {
-  return static_cast<std::size_t>(3 * (unknowns + lanes) + 13 * segments * (lanes + 1) + lanes);
+[[gnu::always_inline]] constexpr std::size_t points_workspace(int angles, int segments, int lanes) {
+  return sines_workspace(angles, lanes) + static_cast<std::size_t>(13 * (segments + links_a_sheet));
 }
 
 /// Errors of points at one candidate: lanes are points, in blocks of as many.
 struct PointsJob {
   const Segment* segments = nullptr;
   int segment_count = 0;
-  const Group* groups = nullptr;  ///< items are blocks
+  const LinkSheet* sheets = nullptr;  ///< null: no segment is in a sheet
+  const Group* groups = nullptr;      ///< items are blocks
   int group_count = 0;
   const double* items = nullptr;  ///< block by block, number by number, lane by lane
   int stride = 0;
-  const double* x = nullptr;
-  int unknowns = 0;
+  Candidate at;              ///< only angles of segments that are in no sheet
   double* errors = nullptr;  ///< measured − predicted, 3 x lanes a block
   double* workspace = nullptr;
 };
 
-/// The walk from the world to the tool that collects derivatives: lanes are points.
-struct Step {
-  enum class Kind : std::uint8_t { turn, shift, rotation, turn_joint, shift_joint, record_turn, record_shift };
-  Kind kind = Kind::turn;
+/// A turn about and a shift along one axis, which commute; or a constant rotation. A movement is about or along z. The
+/// column of a parameter has its number.
+struct Screw {
+  bool is_rotation = false;
   int axis = 0;
-  double a = 0.0, b = 0.0;  ///< cosine and sine, or length
-  double extra_gain = 0.0;  ///< of a joint: by what its gain differs from the one that the items were made with
-  int slot = -1;            ///< of the joint's numbers in an item; of what a record is multiplied by, −1: nothing
-  int column = -1;          ///< of a record
-  double rotation[9] = {};  ///< row by row
+  Value turn{}, shift{};
+  Move move = Move::none;
+  Value gain{};   ///< as of a Segment
+  int slot = -1;  ///< of the movement's numbers in an item
+  double rotation[9] = {};
 };
 
 struct JacobianJob {
-  const Step* steps = nullptr;
-  int step_count = 0;
+  const Screw* screws = nullptr;  ///< from the world to the tool
+  int screw_count = 0;
+  Candidate at;
   const Group* groups = nullptr;  ///< items are blocks
   int group_count = 0;
   const double* items = nullptr;  ///< as of a PointsJob
   int stride = 0;
   const double* weights = nullptr;  ///< 3 x lanes a block, 1 / sd; 0 where a lane has no point
   int columns = 0;
-  const int* idle = nullptr;  ///< columns that no step records
+  const int* idle = nullptr;  ///< columns that no screw writes
   int idle_count = 0;
-  double* residuals = nullptr;  ///< weight · (measured − predicted), 3 x lanes a block
-  double* jacobian = nullptr;   ///< of the residuals: column by column, each 3 x lanes a block; null: not stored
   int blocks = 0;
-  double* normal = nullptr;  ///< (columns + 1)²: lower half of [J r]ᵀ[J r]; read only where no Jacobian is stored
+  double* jacobian = nullptr;   ///< d residuals: column by column, each 3 x lanes a block; null: normal equations
+  double* residuals = nullptr;  ///< with a Jacobian: weight · (measured − predicted), 3 x lanes a block
+  double* matrix = nullptr;     ///< without: lower half of JᵀJ, column by column
+  double* gradient = nullptr;   ///< likewise: Jᵀr
   double* workspace = nullptr;
 };
 
-/// The products of [J r]ᵀ[J r] are made in tiles.
-inline constexpr int tile_height = 4, tile_width = 3;
-inline constexpr int blocks_in_flight = 2, blocks_a_chunk = 8;
-[[gnu::always_inline]] constexpr int tile_numbers(int size) {
-  int tiles = 0;
-  for (int i = 0; i < size; i += tile_height)
-    for (int j = 0; j < i + tile_height && j < size; j += tile_width) ++tiles;
-  return tiles * tile_height * tile_width;
+/// The products of JᵀJ are made in tiles that fill the registers, those of Jᵀr in strips.
+inline constexpr int tile_height = 4, strip_width = 12;
+[[gnu::always_inline]] constexpr int tile_width(int lanes) {
+  return lanes == 8 ? 4 : 3;
 }
-/// Columns of a chunk: one for the residual, and what the last tiles read beyond.
+inline constexpr int blocks_in_flight = 2, blocks_a_chunk = 8;
+[[gnu::always_inline]] constexpr int round_up(int count, int to) {
+  return (count + to - 1) / to * to;
+}
+/// Numbers of the sums that go from chunk to chunk: of all tiles and strips. One of each where there is one chunk.
+[[gnu::always_inline]] constexpr int tile_numbers(int columns, int blocks, int lanes) {
+  int tiles = 1;
+  if (blocks > blocks_a_chunk) {
+    tiles = 0;
+    for (int i = 0; i < columns; i += tile_height)
+      for (int j = 0; j < i + tile_height && j < columns; j += tile_width(lanes)) ++tiles;
+  }
+  return tiles * tile_height * tile_width(lanes) * lanes;
+}
+/// Columns of a chunk: the last tiles and strips read beyond the last one, where the residual stands.
 [[gnu::always_inline]] constexpr int padded_columns(int columns) {
-  return columns + 1 + tile_height + tile_width;
+  const int read = round_up(columns, strip_width);
+  return read > columns ? read : columns + 1;
 }
 /// Numbers of workspace that a JacobianJob needs.
-[[gnu::always_inline]] constexpr std::size_t jacobian_workspace(int columns, int lanes) {
-  return static_cast<std::size_t>(lanes) *
-         (columns * 6 * blocks_in_flight + padded_columns(columns) * 3 * blocks_a_chunk + tile_numbers(columns + 1));
+[[gnu::always_inline]] constexpr std::size_t jacobian_workspace(int columns, int screws, int blocks, int lanes) {
+  return static_cast<std::size_t>(screws * (4 + 4 * blocks_in_flight * lanes) + lanes +
+                                  padded_columns(columns) * 3 * blocks_a_chunk * lanes +
+                                  tile_numbers(columns, blocks, lanes) + round_up(columns, strip_width) * lanes);
 }
 
 /// What a kernel file offers.
@@ -148,8 +190,9 @@ struct Kernels {
   int lanes = 0, float_lanes = 0;
   void (*sums)(const PopulationJob<double>&) = nullptr;
   void (*float_sums)(const PopulationJob<float>&) = nullptr;
+  void (*sines)(const double* angles, int count, double* cosines, double* sines) = nullptr;
   void (*errors)(const PointsJob&) = nullptr;
-  void (*jacobian)(const JacobianJob&) = nullptr;
+  double (*jacobian)(const JacobianJob&) = nullptr;  ///< returns the sum of the squared residuals
 };
 
 extern const Kernels portable_kernels;

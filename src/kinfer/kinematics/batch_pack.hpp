@@ -31,6 +31,14 @@ struct Traits {
   using Bits = typename PackOf<Number, lanes>::Bits;
   using Mask = typename PackOf<Number, lanes>::mask;
 };
+/// A single number is a pack of one.
+template <>
+struct Traits<double> {
+  using Number = double;
+  static constexpr int lanes = 1;
+  using Bits = std::int64_t;
+  using Mask = std::int64_t;
+};
 template <class V>
 using Number = typename Traits<V>::Number;
 
@@ -42,11 +50,17 @@ inline V broadcast(Number<V> value) {
 /// Memory need not be aligned to more than its numbers are.
 template <class V>
 inline V load(const Number<V>* from) {
-  return *reinterpret_cast<const typename PackOf<Number<V>, Traits<V>::lanes>::unaligned*>(from);
+  if constexpr (std::is_same_v<V, Number<V>>)
+    return *from;
+  else
+    return *reinterpret_cast<const typename PackOf<Number<V>, Traits<V>::lanes>::unaligned*>(from);
 }
 template <class V>
 inline void store(Number<V>* to, V v) {
-  *reinterpret_cast<typename PackOf<Number<V>, Traits<V>::lanes>::unaligned*>(to) = v;
+  if constexpr (std::is_same_v<V, Number<V>>)
+    *to = v;
+  else
+    *reinterpret_cast<typename PackOf<Number<V>, Traits<V>::lanes>::unaligned*>(to) = v;
 }
 
 /// a b + c and a b − c, in one rounding where the processor has it.
@@ -79,6 +93,20 @@ inline V from_bits(typename Traits<V>::Mask bits) {
 template <class V>
 inline V select(typename Traits<V>::Mask mask, V a, V b) {
   return from_bits<V>((bits_of(a) & mask) | (bits_of(b) & ~mask));
+}
+
+/// True where all bits of a comparison are set.
+template <class V>
+inline bool all_of(typename Traits<V>::Mask mask) {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(V) == 64) return _mm512_cmpneq_epi32_mask(__m512i(mask), _mm512_set1_epi32(-1)) == 0;
+#endif
+#if defined(__AVX2__) && defined(__FMA__)
+  if constexpr (sizeof(V) == 32) return _mm256_movemask_epi8(__m256i(mask)) == -1;
+#endif
+  bool all = true;
+  for (int i = 0; i < Traits<V>::lanes; ++i) all &= mask[i] != 0;
+  return all;
 }
 
 template <class V>
@@ -137,6 +165,12 @@ inline SinCos<V> sin_cos_near_zero(V x) {
   return {s, c};
 }
 
+template <class V>
+inline typename Traits<V>::Mask is_moderate(V angle) {
+  const V limit = broadcast<V>(Trigonometry<Number<V>>::limit);
+  return (typename Traits<V>::Mask)(angle <= limit) & (typename Traits<V>::Mask)(-angle <= limit);
+}
+
 /// Sine and cosine of angles within ± limit, to an ulp or two.
 template <class V>
 inline SinCos<V> sin_cos_of_moderate(V x) {
@@ -162,10 +196,7 @@ inline SinCos<V> sin_cos_of_moderate(V x) {
 
 template <class V>
 inline SinCos<V> sin_cos(V x) {
-  bool moderate = true;
-  for (int i = 0; i < Traits<V>::lanes; ++i)
-    moderate &= __builtin_fabs(static_cast<double>(x[i])) <= static_cast<double>(Trigonometry<Number<V>>::limit);
-  if (moderate) [[likely]]
+  if (all_of<V>(is_moderate(x))) [[likely]]
     return sin_cos_of_moderate(x);
   SinCos<V> result;
   for (int i = 0; i < Traits<V>::lanes; ++i) {

@@ -1,7 +1,10 @@
 #include "kinfer/kinematics/batch_plan.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/kinematics/elementary.hpp"
@@ -33,27 +36,54 @@ namespace {
 
 using elementary::Motion;
 
-Value value_of(int parameter, double constant) {
-  return {parameter, constant, std::cos(constant), std::sin(constant)};
+bool is_angle(Field field) {
+  constexpr std::array angles{Field::rx, Field::ry, Field::rz, Field::alpha, Field::theta, Field::beta};
+  return std::find(angles.begin(), angles.end(), field) != angles.end();
 }
 
 /// Which parameter rules a number of the chain.
 class Lookup {
  public:
   explicit Lookup(const ParameterSet& set) {
-    for (const Parameter* p : set.free()) addresses_.push_back(p->at);
+    for (const Parameter* p : set.free()) {
+      angle_.push_back(is_angle(p->at.field) ? static_cast<int>(angles_.size()) : -1);
+      if (is_angle(p->at.field)) angles_.push_back(static_cast<int>(addresses_.size()));
+      addresses_.push_back(p->at);
+      owners_ |= bit(p->at.owner), fields_ |= bit(p->at.field);
+    }
   }
 
-  Value value(const Address& at, double constant) const {
-    const auto found = std::find(addresses_.begin(), addresses_.end(), at);
-    return value_of(found == addresses_.end() ? -1 : static_cast<int>(found - addresses_.begin()), constant);
+  Value value(const Address& at, double constant, Motion motion) const {
+    Value value{.constant = constant};
+    if (motion == Motion::turn && constant != 0.0) value.cos = std::cos(constant), value.sin = std::sin(constant);
+    value.parameter = index_of(at);
+    if (value.parameter >= 0) value.angle = angle_[value.parameter];
+    return value;
   }
-  bool frees(Owner owner) const {
-    return std::any_of(addresses_.begin(), addresses_.end(), [&](const Address& at) { return at.owner == owner; });
-  }
+  bool frees(Owner owner) const { return owners_ & bit(owner); }
+  const std::vector<int>& angles() const { return angles_; }
 
  private:
+  template <class Enum>
+  static std::uint32_t bit(Enum which) {
+    return std::uint32_t{1} << static_cast<int>(which);
+  }
+
+  /// Who asks comes along the chain, and so do most sets: the search begins behind the last find.
+  int index_of(const Address& at) const {
+    if (!(owners_ & bit(at.owner)) || !(fields_ & bit(at.field))) return -1;
+    const auto next = addresses_.begin() + next_;
+    auto found = std::find(next, addresses_.end(), at);
+    if (found == addresses_.end()) found = std::find(addresses_.begin(), next, at);
+    if (found == next && (next == addresses_.end() || !(*next == at))) return -1;
+    next_ = found - addresses_.begin() + 1;
+    return static_cast<int>(next_ - 1);
+  }
+
   std::vector<Address> addresses_;
+  std::vector<int> angles_, angle_;        // of a parameter: which angle it is
+  std::uint32_t owners_ = 0, fields_ = 0;  // a bit each
+  mutable std::ptrdiff_t next_ = 0;
 };
 
 /// Calls visit(factor, value) for each turn and shift and visit(rotation) for each constant rotation on the way.
@@ -68,9 +98,10 @@ struct Walker {
     if (rotation != Mat3::Identity()) visit.rotate(rotation);
   }
   void operator()(const elementary::Factor& factor) {
-    const Value value =
-        factor.field ? lookup.value({owner, joint, *factor.field}, factor.value) : value_of(-1, factor.value);
-    visit.move(factor, value, joint);
+    Address at{owner, joint};
+    if (factor.field) at.field = *factor.field;
+    visit.move(factor, factor.field ? lookup.value(at, factor.value, factor.motion) : Value{.constant = factor.value},
+               joint);
   }
 };
 
@@ -93,6 +124,8 @@ Factor rotation_factor(const Mat3& rotation) {
 struct Collector {
   std::vector<std::vector<Factor>> lists{{}};
 
+  Collector() { lists.back().reserve(usual); }
+
   void rotate(const Mat3& rotation) { lists.back().push_back(rotation_factor(rotation)); }
   void move(const elementary::Factor& factor, const Value& value, int) {
     const auto kind = factor.motion == Motion::turn ? Factor::Kind::turn : Factor::Kind::shift;
@@ -100,8 +133,11 @@ struct Collector {
       lists.back().push_back({.kind = kind, .axis = factor.axis, .value = value, .rotation = {}});
     if (!factor.moves) return;
     KINFER_EXPECT(factor.axis == 2, "every convention moves about or along z");
-    lists.emplace_back();
+    lists.emplace_back().reserve(usual);
   }
+
+ private:
+  static constexpr std::size_t usual = 6;  // factors between two joints
 };
 
 Pose product(const std::vector<Factor>& factors) {
@@ -156,56 +192,75 @@ Segment segment_of(const std::vector<Factor>& factors) {
   return segment;
 }
 
-/// Writes down each turn and shift, and before it whose number it is.
-struct StepWriter {
-  StepPlan& plan;
-  const Lookup& lookup;
+void put(const Value& value, int place, SheetColumn& column) {
+  constexpr auto all_bits = ~std::uint64_t{0};
+  column.constant[place] = value.constant, column.cos[place] = value.cos, column.sin[place] = value.sin;
+  if (value.parameter < 0) return;
+  column.parameter[place] = value.parameter;
+  column.is_free[place] = std::bit_cast<double>(all_bits);
+}
+
+/// The links that vary, on their sheets.
+void fill_sheets(SegmentList& list) {
+  std::vector<LinkSheet> sheets((list.segments.size() + links_a_sheet - 1) / links_a_sheet);
+  for (std::size_t k = 0; k < list.segments.size(); ++k) {
+    Segment& segment = list.segments[k];
+    segment.in_sheet = segment.varies && segment.shape == Shape::link;
+    list.is_all_in_sheets &= segment.in_sheet || !segment.varies;
+    if (!segment.in_sheet) continue;
+    LinkSheet& sheet = sheets[k / links_a_sheet];
+    const auto place = static_cast<int>(k % links_a_sheet);
+    put(segment.d, place, sheet.d), put(segment.a, place, sheet.a);
+    put(segment.alpha, place, sheet.alpha), put(segment.theta, place, sheet.theta);
+  }
+  const auto in_sheet = [](const Segment& segment) { return segment.in_sheet; };
+  if (std::any_of(list.segments.begin(), list.segments.end(), in_sheet)) list.sheets = std::move(sheets);
+}
+
+/// Writes turns and shifts along one axis that follow each other as one screw.
+struct ScrewWriter {
+  ScrewPlan& plan;
   const std::vector<Movement>& movements;
-  const Chain& chain;
+  std::vector<char> is_idle;                 // of each parameter: nothing writes it
+  bool has_turn = false, has_shift = false;  // of the last screw
+  bool is_open = false;
 
   void rotate(const Mat3& rotation) {
-    Step step{.kind = Step::Kind::rotation};
-    for (int i = 0; i < 9; ++i) step.rotation[i] = rotation(i / 3, i % 3);
-    add(step, {}, {});
+    Screw screw{.is_rotation = true};
+    for (int i = 0; i < 9; ++i) screw.rotation[i] = rotation(i / 3, i % 3);
+    plan.screws.push_back(screw);
+    is_open = false;
   }
 
   void move(const elementary::Factor& factor, const Value& value, int joint) {
-    record(factor, value.parameter, -1);
-    if (!factor.moves) {
-      if (value.parameter >= 0 || value.constant != 0.0)
-        add({.kind = factor.motion == Motion::turn ? Step::Kind::turn : Step::Kind::shift, .axis = factor.axis}, value,
-            {});
-      return;
-    }
+    if (value.parameter < 0 && value.constant == 0.0 && !factor.moves) return;
+    const bool turns = factor.motion == Motion::turn;
+    Screw& screw = screw_about(factor.axis, turns);
+    (turns ? screw.turn : screw.shift) = value;
+    (turns ? has_turn : has_shift) = true;
+    written(value);
+    if (!factor.moves) return;
     const Movement& movement =
         *std::find_if(movements.begin(), movements.end(), [&](const Movement& m) { return m.joint == joint; });
-    record(factor, movement.gain.parameter, movement.slot + 2);
-    const auto kind = factor.motion == Motion::turn ? Step::Kind::turn_joint : Step::Kind::shift_joint;
-    add({.kind = kind, .axis = factor.axis, .slot = movement.slot}, value, movement.gain);
+    screw.move = movement.move, screw.gain = movement.gain, screw.slot = movement.slot;
+    written(movement.gain);
   }
 
  private:
-  void add(const Step& step, const Value& value, const Value& gain) {
-    plan.steps.push_back(step);
-    plan.values.push_back(value);
-    plan.gains.push_back(gain);
+  Screw& screw_about(int axis, bool turns) {
+    const bool fits = is_open && plan.screws.back().axis == axis && !(turns ? has_turn : has_shift);
+    if (!fits) {
+      plan.screws.push_back({.axis = axis});
+      has_turn = has_shift = false, is_open = true;
+    }
+    return plan.screws.back();
   }
-  void record(const elementary::Factor& factor, int parameter, int slot) {
-    if (parameter < 0) return;
-    const auto kind = factor.motion == Motion::turn ? Step::Kind::record_turn : Step::Kind::record_shift;
-    add({.kind = kind, .axis = factor.axis, .slot = slot, .column = parameter}, {}, {});
-    std::erase(plan.idle, parameter);
+  void written(const Value& value) {
+    if (value.parameter >= 0) is_idle[value.parameter] = false;
   }
 };
 
-double number(const Value& value, ConstVectorRef x) {
-  return value.parameter < 0 ? value.constant : x[value.parameter];
-}
-
-}  // namespace
-
-std::vector<Movement> movements_of(const Chain& chain, const ParameterSet& set) {
-  const Lookup lookup(set);
+std::vector<Movement> movements_of(const Chain& chain, const Lookup& lookup) {
   const std::vector<int> reading = reading_indices(chain);
   std::vector<Movement> list;
   for (const int j : path_to(chain, chain.tip_joint())) {
@@ -214,55 +269,103 @@ std::vector<Movement> movements_of(const Chain& chain, const ParameterSet& set) 
     const bool turns = joint.type == JointType::revolute;
     Movement movement{.joint = j,
                       .move = turns ? Move::turn : Move::shift,
-                      .gain = lookup.value({Owner::joint, j, Field::gain}, joint.gain),
+                      .gain = lookup.value({Owner::joint, j, Field::gain}, joint.gain, Motion::shift),
                       .reading = reading[j]};
     for (const Coupling& c : joint.couplings) movement.couplings.push_back({reading[c.joint], c.factor});
     KINFER_EXPECT(movement.gain.parameter < 0 || movement.reading >= 0, "gain of joint {}, which has no reading", j);
     if (movement.gain.parameter >= 0) movement.move = turns ? Move::turn_by_gain : Move::shift_by_gain;
-    list.push_back(movement);
+    list.push_back(std::move(movement));
   }
   int slot = 0;
   for (auto m = list.rbegin(); m != list.rend(); ++m) m->slot = slot, slot += m->slots();
   return list;
 }
 
-int slots_of(const std::vector<Movement>& movements) {
-  return movements.empty() ? 0 : movements.front().slot + movements.front().slots();
+template <class Visitor>
+void walk_joints_and_tool(const Chain& chain, const Lookup& lookup, Visitor& visit) {
+  for (const int j : path_to(chain, chain.tip_joint())) walk(chain.joints[j], j, lookup, visit);
+  walk(chain.tool, Owner::tool, lookup, visit);
 }
 
-void write_item(const std::vector<Movement>& movements, const double* q, const Vec3& measured, std::span<double> item) {
-  for (const Movement& m : movements) {
-    double moved = m.reading >= 0 ? m.gain.constant * q[m.reading] : 0.0;
-    for (const Coupling& c : m.couplings) moved += c.factor * q[c.joint];
-    const bool turns = m.move == Move::turn || m.move == Move::turn_by_gain;
-    item[m.slot] = turns ? std::cos(moved) : moved;
-    if (m.slots() > 1) item[m.slot + 1] = turns ? std::sin(moved) : 0.0;
-    if (m.slots() > 2) item[m.slot + 2] = q[m.reading];
-  }
-  for (int row = 0; row < 3; ++row) item[slots_of(movements) + row] = measured[row];
-}
-
-SegmentList segments_of(const Chain& nominal, const ParameterSet& set, BaseSide side) {
-  const Lookup lookup(set);
+SegmentList segments_of(const Chain& nominal, const ParameterSet& set, const Lookup& lookup,
+                        const std::vector<Movement>& movements, BaseSide side) {
   SegmentList list;
   list.nominal = pack(set, nominal);
+  list.angles = lookup.angles();
   Collector collector;
   if (side == BaseSide::measurement && !lookup.frees(Owner::base)) {
     list.base = nominal.base.pose();
   } else {
     walk(nominal.base, Owner::base, lookup, collector);
   }
-  for (const int j : path_to(nominal, nominal.tip_joint())) walk(nominal.joints[j], j, lookup, collector);
-  walk(nominal.tool, Owner::tool, lookup, collector);
+  walk_joints_and_tool(nominal, lookup, collector);
   list.factors = std::move(collector.lists);
   for (const auto& factors : list.factors) list.segments.push_back(segment_of(factors));
-  const std::vector<Movement> movements = movements_of(nominal, set);
   for (std::size_t k = 0; k < movements.size(); ++k) {
     list.segments[k].move = movements[k].move;
     list.segments[k].gain = movements[k].gain;
     list.segments[k].slots_before = movements[k].slot;
   }
+  fill_sheets(list);
   return list;
+}
+
+ScrewPlan screws_of(const Chain& nominal, const ParameterSet& set, const Lookup& lookup,
+                    const std::vector<Movement>& movements) {
+  ScrewPlan plan;
+  ScrewWriter writer{plan, movements, std::vector<char>(set.free_count(), true)};
+  walk(nominal.base, Owner::base, lookup, writer);
+  walk_joints_and_tool(nominal, lookup, writer);
+  for (std::size_t k = 0; k < writer.is_idle.size(); ++k)
+    if (writer.is_idle[k]) plan.idle.push_back(static_cast<int>(k));
+  return plan;
+}
+
+}  // namespace
+
+int slots_of(const std::vector<Movement>& movements) {
+  return movements.empty() ? 0 : movements.front().slot + movements.front().slots();
+}
+
+MatrixXd items_of(const std::vector<Movement>& movements, const PointTable& points, const Pose& measured_from,
+                  const Kernels& kernels) {
+  const int slots = slots_of(movements);
+  MatrixXd items = MatrixXd::Zero(points.measured.cols(), slots + 3);
+  VectorXd moved(items.rows());
+  for (const Movement& m : movements) {
+    moved.setZero();
+    if (m.reading >= 0) moved = m.gain.constant * points.joints.row(m.reading);
+    for (const Coupling& c : m.couplings) moved += c.factor * points.joints.row(c.joint);
+    if (m.move == Move::turn || m.move == Move::turn_by_gain) {
+      kernels.sines(moved.data(), static_cast<int>(moved.size()), items.col(m.slot).data(),
+                    items.col(m.slot + 1).data());
+    } else {
+      items.col(m.slot) = moved;
+    }
+    if (m.slots() > 2) items.col(m.slot + 2) = points.joints.row(m.reading);
+  }
+  const Mat3 turned = measured_from.rotation.transpose();
+  items.rightCols<3>() = (turned * (points.measured.colwise() - measured_from.position)).transpose();
+  return items;
+}
+
+std::vector<PointsAtTarget> points_by_target(const Chain& chain, const PointTable& points) {
+  std::vector<PointsAtTarget> list(chain.targets.size() + 1);
+  for (int i = 0; i < points.measured.cols(); ++i) {
+    const int target = points.target.empty() ? -1 : points.target[i];
+    list[target + 1].target = target;
+    list[target + 1].points.push_back(i);
+  }
+  std::erase_if(list, [](const PointsAtTarget& at) { return at.points.empty(); });
+  return list;
+}
+
+ChainPlan plan_of(const Chain& nominal, const ParameterSet& set, BaseSide side) {
+  const Lookup lookup(set);
+  ChainPlan plan{.movements = movements_of(nominal, lookup), .list = {}, .screws = {}};
+  plan.list = segments_of(nominal, set, lookup, plan.movements, side);
+  if (side == BaseSide::chain) plan.screws = screws_of(nominal, set, lookup, plan.movements);
+  return plan;
 }
 
 Group group_at(const SegmentList& list, const Chain& nominal, int target) {
@@ -276,33 +379,6 @@ Group group_at(const SegmentList& list, const Chain& nominal, int target) {
   group.on_last_axis = turns && on_tool.x() == 0.0 && on_tool.y() == 0.0 &&
                        std::all_of(list.factors.back().begin(), list.factors.back().end(), keeps_to_the_axis);
   return group;
-}
-
-StepPlan steps_of(const Chain& nominal, const ParameterSet& set) {
-  const Lookup lookup(set);
-  const std::vector<Movement> movements = movements_of(nominal, set);
-  StepPlan plan;
-  for (int k = 0; k < set.free_count(); ++k) plan.idle.push_back(k);
-  StepWriter writer{plan, lookup, movements, nominal};
-  walk(nominal.base, Owner::base, lookup, writer);
-  for (const int j : path_to(nominal, nominal.tip_joint())) walk(nominal.joints[j], j, lookup, writer);
-  walk(nominal.tool, Owner::tool, lookup, writer);
-  return plan;
-}
-
-std::vector<Step> StepPlan::at(ConstVectorRef x) const {
-  std::vector<Step> now = steps;
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    Step& step = now[i];
-    const double value = number(values[i], x);
-    if (step.kind == Step::Kind::turn || step.kind == Step::Kind::turn_joint) {
-      step.a = std::cos(value), step.b = std::sin(value);
-    } else {
-      step.a = value;
-    }
-    if (gains[i].parameter >= 0) step.extra_gain = x[gains[i].parameter] - gains[i].constant;
-  }
-  return now;
 }
 
 }  // namespace batch

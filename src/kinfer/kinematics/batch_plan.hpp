@@ -36,12 +36,19 @@ struct Movement {
   int slots() const { return move == Move::turn ? 2 : move == Move::shift ? 1 : 3; }
 };
 
-/// The joints of the path that move, from the base to the tip; slots from the tip inwards.
-std::vector<Movement> movements_of(const Chain& chain, const ParameterSet& set);
+/// Slots of all: the first is at the base, the first slot at the tip.
 int slots_of(const std::vector<Movement>& movements);
 
-/// The numbers of one item, measured point included.
-void write_item(const std::vector<Movement>& movements, const double* q, const Vec3& measured, std::span<double> item);
+/// The numbers of the items, one item a row: the movements' slots, then the measured point.
+MatrixXd items_of(const std::vector<Movement>& movements, const PointTable& points, const Pose& measured_from,
+                  const Kernels& kernels);
+
+/// Indices of the points at each place of the tool that has any: the tool point (−1) first.
+struct PointsAtTarget {
+  int target = -1;
+  std::vector<int> points{};
+};
+std::vector<PointsAtTarget> points_by_target(const Chain& chain, const PointTable& points);
 
 /// Where a base that is not identified is accounted for.
 enum class BaseSide {
@@ -53,24 +60,28 @@ enum class BaseSide {
 struct SegmentList {
   std::vector<Segment> segments;
   std::vector<std::vector<Factor>> factors;
-  Pose base;         ///< what the measured points are to be seen from
-  VectorXd nominal;  ///< of the free parameters
+  Pose base;                      ///< what the measured points are to be seen from
+  VectorXd nominal;               ///< of the free parameters
+  std::vector<int> angles;        ///< those of them that are angles: Value::angle counts them
+  std::vector<LinkSheet> sheets;  ///< empty: no segment is in one
+  bool is_all_in_sheets = true;   ///< all segments that vary
 };
-SegmentList segments_of(const Chain& nominal, const ParameterSet& set, BaseSide side);
 
 /// Places on the tool where points start, tool point first; on the last axis where nothing takes it off.
 Group group_at(const SegmentList& list, const Chain& nominal, int target);
 
-/// Steps from the world to the tool, and where each takes its number from.
-struct StepPlan {
-  std::vector<Step> steps;
-  std::vector<Value> values;  ///< one a step
-  std::vector<Value> gains;   ///< one a step
-  std::vector<int> idle;      ///< parameters that nothing records
-
-  /// The steps at one candidate.
-  std::vector<Step> at(ConstVectorRef x) const;
+/// Screws from the world to the tool.
+struct ScrewPlan {
+  std::vector<Screw> screws;
+  std::vector<int> idle;  ///< parameters that nothing writes
 };
-StepPlan steps_of(const Chain& nominal, const ParameterSet& set);
+
+/// All that the kernels know of a chain of which a set is identified.
+struct ChainPlan {
+  std::vector<Movement> movements;
+  SegmentList list;
+  ScrewPlan screws;  ///< where the base is on the chain's side
+};
+ChainPlan plan_of(const Chain& nominal, const ParameterSet& set, BaseSide side);
 
 }  // namespace kinfer::batch

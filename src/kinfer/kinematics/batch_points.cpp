@@ -8,11 +8,9 @@ namespace kinfer {
 
 struct BatchPoints::Plan {
   const batch::Kernels& kernels;
-  batch::SegmentList list;
-  batch::StepPlan steps;
+  batch::ChainPlan chain;
   Eigen::Index unknowns = 0;
   std::vector<batch::Group> groups{};
-  std::vector<int> targets{};  // of each group
   batch::Buffer<double> items{};
   std::vector<std::size_t> first_row{};  // of each point in an array of 3 x lanes a block
   int stride = 0, blocks = 0;
@@ -25,50 +23,43 @@ struct BatchPoints::Plan {
 
   std::size_t lane_numbers() const { return static_cast<std::size_t>(blocks) * 3 * lanes(); }
 
-  void take_points(const Chain& nominal, const ParameterSet& set, const PointTable& points) {
-    const std::vector<batch::Movement> movements = batch::movements_of(nominal, set);
-    stride = batch::slots_of(movements) + 3;
+  void take_points(const Chain& nominal, const PointTable& points) {
+    const MatrixXd all = batch::items_of(chain.movements, points, {}, kernels);
+    const std::vector<batch::PointsAtTarget> by_target = batch::points_by_target(nominal, points);
+    stride = static_cast<int>(all.cols());
     first_row.resize(points.measured.cols());
-    for (int target = -1; target < static_cast<int>(nominal.targets.size()); ++target) {
-      const auto count = static_cast<int>(points_at(target, points).size());
-      if (count == 0) continue;
-      batch::Group group = batch::group_at(list, nominal, target);
+    for (const batch::PointsAtTarget& at : by_target) {
+      batch::Group group = batch::group_at(chain.list, nominal, at.target);
       group.begin = blocks;
-      group.end = blocks += (count + lanes() - 1) / lanes();
+      group.end = blocks += (static_cast<int>(at.points.size()) + lanes() - 1) / lanes();
       groups.push_back(group);
-      targets.push_back(target);
     }
     items.reserve(static_cast<std::size_t>(blocks) * stride * lanes());
-    for (std::size_t g = 0; g < groups.size(); ++g) fill(groups[g], points_at(targets[g], points), movements, points);
-  }
-
-  static std::vector<int> points_at(int target, const PointTable& points) {
-    std::vector<int> list;
-    for (int i = 0; i < points.measured.cols(); ++i)
-      if ((points.target.empty() ? -1 : points.target[i]) == target) list.push_back(i);
-    return list;
+    for (std::size_t g = 0; g < groups.size(); ++g) fill(groups[g], by_target[g].points, all);
   }
 
   /// Lanes without a point repeat the last one, so that they compute with decent numbers.
-  void fill(const batch::Group& group, const std::vector<int>& mine, const std::vector<batch::Movement>& movements,
-            const PointTable& points) {
-    std::vector<double> item(stride);
-    for (int lane = 0; lane < (group.end - group.begin) * lanes(); ++lane) {
-      const int at = group.begin * lanes() + lane;
-      if (lane < static_cast<int>(mine.size())) {
-        const int i = mine[lane];
-        first_row[i] = static_cast<std::size_t>(at / lanes()) * 3 * lanes() + at % lanes();
-        batch::write_item(movements, points.joints.col(i).data(), points.measured.col(i), item);
+  void fill(const batch::Group& group, const std::vector<int>& mine, const MatrixXd& all) {
+    double* to = items.data() + static_cast<std::size_t>(group.begin) * stride * lanes();
+    std::vector<int> now(lanes());
+    for (int block = group.begin; block < group.end; ++block) {
+      const std::size_t first = static_cast<std::size_t>(block - group.begin) * lanes();
+      for (int lane = 0; lane < lanes(); ++lane) {
+        now[lane] = mine[std::min(first + lane, mine.size() - 1)];
+        if (first + lane < mine.size()) first_row[now[lane]] = static_cast<std::size_t>(block) * 3 * lanes() + lane;
       }
-      for (int k = 0; k < stride; ++k)
-        items.data()[(static_cast<std::size_t>(at / lanes()) * stride + k) * lanes() + at % lanes()] = item[k];
+      for (int k = 0; k < stride; ++k) {
+        const double* column = all.col(k).data();
+        for (const int i : now) *to++ = column[i];
+      }
     }
   }
 
   std::size_t workspace() const {
-    return std::max(
-        batch::jacobian_workspace(static_cast<int>(unknowns), lanes()),
-        batch::points_workspace(static_cast<int>(unknowns), static_cast<int>(list.segments.size()), lanes()));
+    const auto segments = static_cast<int>(chain.list.segments.size()),
+               screws = static_cast<int>(chain.screws.screws.size());
+    return std::max(batch::jacobian_workspace(static_cast<int>(unknowns), screws, blocks, lanes()),
+                    batch::points_workspace(static_cast<int>(chain.list.angles.size()), segments, lanes()));
   }
 
   /// Scratch of at least this many numbers beyond the workspace, which comes first.
@@ -78,17 +69,23 @@ struct BatchPoints::Plan {
     return scratch.data() + own;
   }
 
-  batch::JacobianJob job(const std::vector<batch::Step>& now, const Weights& weights, Scratch& scratch) const {
-    return {.steps = now.data(),
-            .step_count = static_cast<int>(now.size()),
+  batch::Candidate at(ConstVectorRef x) const {
+    KINFER_EXPECT(x.size() == unknowns, "{} values for {} free parameters", x.size(), unknowns);
+    return {x.data(), chain.list.angles.data(), static_cast<int>(chain.list.angles.size())};
+  }
+
+  batch::JacobianJob job(ConstVectorRef x, const Weights& weights, Scratch& scratch) const {
+    return {.screws = chain.screws.screws.data(),
+            .screw_count = static_cast<int>(chain.screws.screws.size()),
+            .at = at(x),
             .groups = groups.data(),
             .group_count = static_cast<int>(groups.size()),
             .items = items.data(),
             .stride = stride,
             .weights = weights.data(),
             .columns = static_cast<int>(unknowns),
-            .idle = steps.idle.data(),
-            .idle_count = static_cast<int>(steps.idle.size()),
+            .idle = chain.screws.idle.data(),
+            .idle_count = static_cast<int>(chain.screws.idle.size()),
             .blocks = blocks,
             .workspace = scratch.data()};
   }
@@ -99,9 +96,9 @@ BatchPoints::BatchPoints(const Chain& nominal, const ParameterSet& set, const Po
   KINFER_EXPECT(has_batch_form(nominal, set), "a chain whose joints yield has no batch form");
   KINFER_EXPECT(points.joints.cols() == points.measured.cols(), "{} joint vectors for {} points", points.joints.cols(),
                 points.measured.cols());
-  auto plan = std::make_unique<Plan>(Plan{kernels, batch::segments_of(nominal, set, batch::BaseSide::chain),
-                                          batch::steps_of(nominal, set), set.free_count()});
-  plan->take_points(nominal, set, points);
+  auto plan =
+      std::make_unique<Plan>(Plan{kernels, batch::plan_of(nominal, set, batch::BaseSide::chain), set.free_count()});
+  plan->take_points(nominal, points);
   plan_ = std::move(plan);
 }
 
@@ -119,6 +116,7 @@ BatchPoints::Weights BatchPoints::weights(const Eigen::Matrix3Xd& inverse_sd) co
   const Plan& plan = *plan_;
   KINFER_EXPECT(inverse_sd.cols() == plan.points(), "{} weights for {} points", inverse_sd.cols(), plan.points());
   Weights weights(plan.lane_numbers());
+  std::fill_n(weights.data(), plan.lane_numbers(), 0.0);
   for (std::size_t i = 0; i < plan.first_row.size(); ++i)
     for (int row = 0; row < 3; ++row)
       weights.data()[plan.place(i, row)] = inverse_sd(row, static_cast<Eigen::Index>(i));
@@ -127,16 +125,17 @@ BatchPoints::Weights BatchPoints::weights(const Eigen::Matrix3Xd& inverse_sd) co
 
 const double* BatchPoints::lane_errors(ConstVectorRef x, Scratch& scratch) const {
   const Plan& plan = *plan_;
-  KINFER_EXPECT(x.size() == plan.unknowns, "{} values for {} free parameters", x.size(), plan.unknowns);
   double* found = plan.prepare(scratch, plan.lane_numbers());
-  plan.kernels.errors({.segments = plan.list.segments.data(),
-                       .segment_count = static_cast<int>(plan.list.segments.size()),
+  batch::Candidate at = plan.at(x);
+  if (plan.chain.list.is_all_in_sheets) at.angle_count = 0;
+  plan.kernels.errors({.segments = plan.chain.list.segments.data(),
+                       .segment_count = static_cast<int>(plan.chain.list.segments.size()),
+                       .sheets = plan.chain.list.sheets.empty() ? nullptr : plan.chain.list.sheets.data(),
                        .groups = plan.groups.data(),
                        .group_count = static_cast<int>(plan.groups.size()),
                        .items = plan.items.data(),
                        .stride = plan.stride,
-                       .x = x.data(),
-                       .unknowns = static_cast<int>(plan.unknowns),
+                       .at = at,
                        .errors = found,
                        .workspace = scratch.data()});
   return found;
@@ -160,22 +159,21 @@ double BatchPoints::cost(ConstVectorRef x, const Weights& weights, Scratch& scra
 
 const double* BatchPoints::lane_jacobian(ConstVectorRef x, const Weights& weights, Scratch& scratch) const {
   const Plan& plan = *plan_;
-  KINFER_EXPECT(x.size() == plan.unknowns, "{} values for {} free parameters", x.size(), plan.unknowns);
   const std::size_t numbers = plan.lane_numbers();
   double* found = plan.prepare(scratch, numbers * (plan.unknowns + 1));
-  const std::vector<batch::Step> now = plan.steps.at(x);
-  batch::JacobianJob job = plan.job(now, weights, scratch);
+  batch::JacobianJob job = plan.job(x, weights, scratch);
   job.residuals = found, job.jacobian = found + numbers;
   plan.kernels.jacobian(job);
   return found;
 }
 
-void BatchPoints::residuals(ConstVectorRef x, const Weights& weights, VectorXd& r, MatrixXd& jacobian,
+void BatchPoints::residuals(ConstVectorRef x, const Weights& weights, VectorRef r, Eigen::Ref<MatrixXd> jacobian,
                             Scratch& scratch) const {
   const Plan& plan = *plan_;
   const double* found = lane_jacobian(x, weights, scratch);
   const auto numbers = static_cast<std::ptrdiff_t>(plan.lane_numbers());
-  r.resize(3 * plan.points()), jacobian.resize(3 * plan.points(), plan.unknowns);
+  KINFER_EXPECT(r.size() == 3 * plan.points() && jacobian.rows() == r.size() && jacobian.cols() == plan.unknowns,
+                "{} residuals, {} x {} derivatives", r.size(), jacobian.rows(), jacobian.cols());
   for (Eigen::Index k = -1; k < plan.unknowns; ++k, found += numbers) {
     double* to = k < 0 ? r.data() : jacobian.col(k).data();
     for (std::size_t i = 0; i < plan.first_row.size(); ++i)
@@ -186,20 +184,12 @@ void BatchPoints::residuals(ConstVectorRef x, const Weights& weights, VectorXd& 
 double BatchPoints::normal_equations(ConstVectorRef x, const Weights& weights, MatrixXd& matrix, VectorXd& gradient,
                                      Scratch& scratch) const {
   const Plan& plan = *plan_;
-  KINFER_EXPECT(x.size() == plan.unknowns, "{} values for {} free parameters", x.size(), plan.unknowns);
-  const Eigen::Index n = plan.unknowns;
-  const std::size_t numbers = plan.lane_numbers();
-  double* found = plan.prepare(scratch, numbers + (n + 1) * (n + 1));
-  const std::vector<batch::Step> now = plan.steps.at(x);
-  batch::JacobianJob job = plan.job(now, weights, scratch);
-  job.residuals = found, job.normal = found + numbers;
-  plan.kernels.jacobian(job);
-  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> gram(job.normal, n + 1,
-                                                                                                      n + 1);
-  matrix.setZero(n, n);
-  matrix.triangularView<Eigen::Lower>() = gram.topLeftCorner(n, n);
-  gradient = gram.row(n).head(n).transpose();
-  return gram(n, n);
+  plan.prepare(scratch, 0);
+  matrix.setZero(plan.unknowns, plan.unknowns);
+  gradient.resize(plan.unknowns);
+  batch::JacobianJob job = plan.job(x, weights, scratch);
+  job.matrix = matrix.data(), job.gradient = gradient.data();
+  return plan.kernels.jacobian(job);
 }
 
 }  // namespace kinfer

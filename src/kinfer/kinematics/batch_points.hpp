@@ -38,7 +38,8 @@ class BatchPoints {
   const double* lane_errors(ConstVectorRef x, Scratch& scratch) const;
 
   /// Weighted residuals r (3 a point, in the points' order) and J = dr/dx, 3 points x unknowns.
-  void residuals(ConstVectorRef x, const Weights& weights, VectorXd& r, MatrixXd& jacobian, Scratch& scratch) const;
+  void residuals(ConstVectorRef x, const Weights& weights, VectorRef r, Eigen::Ref<MatrixXd> jacobian,
+                 Scratch& scratch) const;
 
   /// The same as the kernels leave it: residuals, then column by column, each 3 x lanes a block. Valid until `scratch`
   /// is used again.

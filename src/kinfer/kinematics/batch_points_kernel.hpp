@@ -1,8 +1,7 @@
 // The kernels that carry points from the tip inwards: 12 multiply-adds a joint. Included by the kernel files only.
 #pragma once
 
-#include "kinfer/kinematics/batch_kernel.hpp"
-#include "kinfer/kinematics/batch_pack.hpp"
+#include "kinfer/kinematics/batch_fold_kernel.hpp"
 
 namespace kinfer::batch {
 namespace {  // each kernel file has its own, compiled for its processor
@@ -13,11 +12,10 @@ struct Points {
   V x[n], y[n], z[n];
 };
 
-/// p seen from before a link, whose numbers are packs at `m`.
-template <class V, int n>
+/// p seen from before a link, whose numbers are at `m`.
+template <class Constant, class V, int n>
 inline void carry_link(const Number<V>* m, Points<V, n>& p) {
-  constexpr int lanes = Traits<V>::lanes;
-  const auto number = [m](int i) { return load<V>(m + i * lanes); };
+  const auto number = [m](int i) { return Constant::at(m, i); };
   Points<V, n> q;
   for (int u = 0; u < n; ++u) q.x[u] = mul_add(number(0), p.x[u], mul_add(number(1), p.y[u], number(3)));
   for (int u = 0; u < n; ++u) q.y[u] = mul_add(number(4), p.x[u], mul_add(number(5), p.y[u], number(6) * p.z[u]));
@@ -26,13 +24,26 @@ inline void carry_link(const Number<V>* m, Points<V, n>& p) {
   p = q;
 }
 
+/// measured − p seen from before a link. The difference begins where the link's sums begin, which saves one step.
+template <class Constant, class V, int n>
+inline void carry_link_to(const Points<V, n>& measured, const Number<V>* m, Points<V, n>& p) {
+  const auto minus = [m](int i) { return -Constant::at(m, i); };
+  Points<V, n> q;
+  for (int u = 0; u < n; ++u) q.x[u] = mul_add(minus(0), p.x[u], mul_add(minus(1), p.y[u], measured.x[u] + minus(3)));
+  for (int u = 0; u < n; ++u)
+    q.y[u] = mul_add(minus(4), p.x[u], mul_add(minus(5), p.y[u], mul_add(minus(6), p.z[u], measured.y[u])));
+  for (int u = 0; u < n; ++u)
+    q.z[u] =
+        mul_add(minus(8), p.x[u], mul_add(minus(9), p.y[u], mul_add(minus(10), p.z[u], measured.z[u] + minus(11))));
+  p = q;
+}
+
 /// p seen from before any constant transform.
-template <class V, int n>
+template <class Constant, class V, int n>
 inline void carry_constant(Shape shape, const Number<V>* m, Points<V, n>& p) {
-  constexpr int lanes = Traits<V>::lanes;
-  const auto number = [m](int i) { return load<V>(m + i * lanes); };
+  const auto number = [m](int i) { return Constant::at(m, i); };
   if (shape == Shape::identity) return;
-  if (shape == Shape::link) return carry_link(m, p);
+  if (shape == Shape::link) return carry_link<Constant>(m, p);
   Points<V, n> q = p;
   for (int u = 0; u < n; ++u) {
     const auto row = [&](int i) {
@@ -53,10 +64,10 @@ inline void carry_turn(Points<V, n>& p, const V (&c)[n], const V (&s)[n]) {
   }
 }
 
-/// p seen from before a movement. `datum(u, k)` is number k of the movement at item u; the pack at `extra_gain` is what
-/// the candidate's gain differs by.
+/// p seen from before a movement. `datum(u, k)` is number k of the movement at item u; `extra_gain` is what the
+/// candidate's gain differs by.
 template <class V, int n, class Datum>
-inline void carry_movement(Move move, const Number<V>* extra_gain, Datum datum, Points<V, n>& p) {
+inline void carry_movement(Move move, V extra_gain, Datum datum, Points<V, n>& p) {
   V first[n], second[n];
   for (int u = 0; u < n; ++u) first[u] = datum(u, 0);
   if (move == Move::shift) {
@@ -64,192 +75,119 @@ inline void carry_movement(Move move, const Number<V>* extra_gain, Datum datum, 
     return;
   }
   if (move == Move::shift_by_gain) {
-    for (int u = 0; u < n; ++u) p.z[u] += mul_add(load<V>(extra_gain), datum(u, 2), first[u]);
+    for (int u = 0; u < n; ++u) p.z[u] += mul_add(extra_gain, datum(u, 2), first[u]);
     return;
   }
   for (int u = 0; u < n; ++u) second[u] = datum(u, 1);
   carry_turn(p, first, second);
   if (move == Move::turn) return;
   for (int u = 0; u < n; ++u) {
-    const SinCos<V> more = sin_cos(load<V>(extra_gain) * datum(u, 2));
+    const SinCos<V> more = sin_cos(extra_gain * datum(u, 2));
     first[u] = more.cos, second[u] = more.sin;
   }
   carry_turn(p, first, second);
 }
 
-/// The 12 of its constant, then the change of the gain of the movement after it.
-inline constexpr int numbers_of_segment = 13;
-
-/// Numbers of one candidate a lane: every constant transform, folded.
-template <class V>
-class Folder {
- public:
-  using T = Number<V>;
-  static constexpr int lanes = Traits<V>::lanes;
-
-  /// x: one pack a parameter; nominal: one number a parameter.
-  Folder(const T* x, const double* nominal, int unknowns, T* numbers) : x_(x), numbers_(numbers) {
-    const V limit = broadcast<V>(Trigonometry<T>::limit), small = broadcast<V>(T(0.125));
-    Mask moderate = ~Mask{}, near = ~Mask{};
-    for (int k = 0; k < unknowns; ++k) {
-      const V v = load<V>(x + k * lanes), change = v - broadcast<V>(static_cast<T>(nominal[k]));
-      moderate &= (Mask)(v <= limit) & (Mask)(-v <= limit);
-      near &= (Mask)(change <= small) & (Mask)(-change <= small);
-    }
-    moderate_ = all_set(moderate), near_ = all_set(near);
-  }
-
-  /// The same where cosine and sine of every parameter are known, one pack each.
-  Folder(const T* x, const T* cosines, const T* sines, T* numbers)
-      : x_(x), cosines_(cosines), sines_(sines), numbers_(numbers) {}
-
-  V value(const Value& v) const {
-    return v.parameter < 0 ? broadcast<V>(static_cast<T>(v.constant)) : load<V>(x_ + v.parameter * lanes);
-  }
-
-  /// x[parameter] − constant; zero where nothing changes.
-  V change(const Value& v) const {
-    return v.parameter < 0 ? broadcast<V>(T(0))
-                           : load<V>(x_ + v.parameter * lanes) - broadcast<V>(static_cast<T>(v.constant));
-  }
-
-  void fold(const Segment* segments, int count) {
-    for (int k = 0; k < count; ++k) {
-      T* to = numbers_ + numbers_of_segment * lanes * k;
-      fold(segments[k], to);
-      store(to + 12 * lanes, change(segments[k].gain));
-    }
-  }
-
- private:
-  void fold(const Segment& segment, T* to) {
-    if (!segment.varies) {
-      for (int i = 0; i < 12; ++i) store(to + i * lanes, broadcast<V>(static_cast<T>(segment.numbers[i])));
-    } else if (segment.shape == Shape::link) {
-      fold_link(segment, to);
-    } else {
-      fold_factors(segment, to);
-    }
-  }
-
-  using Mask = typename Traits<V>::Mask;
-  static bool all_set(Mask mask) {
-    bool all = true;
-    for (int i = 0; i < lanes; ++i) all &= mask[i] != 0;
-    return all;
-  }
-
-  /// Near the nominal angle by the sum of angles.
-  SinCos<V> angle(const Value& v) const {
-    if (v.parameter < 0) return {broadcast<V>(static_cast<T>(v.sin)), broadcast<V>(static_cast<T>(v.cos))};
-    if (sines_) return {load<V>(sines_ + v.parameter * lanes), load<V>(cosines_ + v.parameter * lanes)};
-    if (near_) [[likely]] {
-      const SinCos<V> by = sin_cos_near_zero(change(v));
-      const V c = broadcast<V>(static_cast<T>(v.cos)), s = broadcast<V>(static_cast<T>(v.sin));
-      return {mul_add(s, by.cos, c * by.sin), mul_sub(c, by.cos, s * by.sin)};
-    }
-    return moderate_ ? sin_cos_of_moderate(value(v)) : sin_cos(value(v));
-  }
-
-  void fold_link(const Segment& segment, T* to) {
-    const SinCos<V> alpha = angle(segment.alpha), theta = angle(segment.theta);
-    const V zero = broadcast<V>(T(0));
-    // clang-format off
-    const V m[12] = {theta.cos,             -theta.sin,             zero,       value(segment.a),
-                     alpha.cos * theta.sin, alpha.cos * theta.cos, -alpha.sin, zero,
-                     alpha.sin * theta.sin, alpha.sin * theta.cos,  alpha.cos, value(segment.d)};
-    // clang-format on
-    for (int i = 0; i < 12; ++i) store(to + i * lanes, m[i]);
-  }
-
-  void fold_factors(const Segment& segment, T* to) {
-    V m[12];
-    for (int i = 0; i < 12; ++i) m[i] = broadcast<V>(T(i % 5 == 0 ? 1 : 0));
-    for (int f = 0; f < segment.factor_count; ++f) apply(segment.factors[f], m);
-    for (int i = 0; i < 12; ++i) store(to + i * lanes, m[i]);
-  }
-
-  void apply(const Factor& factor, V* m) {
-    if (factor.kind == Factor::Kind::shift) {
-      const V length = value(factor.value);
-      for (int row = 0; row < 3; ++row) m[4 * row + 3] = mul_add(length, m[4 * row + factor.axis], m[4 * row + 3]);
-    } else if (factor.kind == Factor::Kind::turn) {
-      const int i = factor.axis == 2 ? 0 : factor.axis + 1, j = 3 - factor.axis - i;
-      const SinCos<V> by = angle(factor.value);
-      for (int row = 0; row < 3; ++row) {
-        const V u = m[4 * row + i], v = m[4 * row + j];
-        m[4 * row + i] = mul_add(by.cos, u, by.sin * v);
-        m[4 * row + j] = mul_sub(by.cos, v, by.sin * u);
-      }
-    } else {
-      for (int row = 0; row < 3; ++row) {
-        const V u[3] = {m[4 * row], m[4 * row + 1], m[4 * row + 2]};
-        for (int col = 0; col < 3; ++col) {
-          V sum = broadcast<V>(T(0));
-          for (int k = 0; k < 3; ++k)
-            sum = mul_add(u[k], broadcast<V>(static_cast<T>(factor.rotation[3 * k + col])), sum);
-          m[4 * row + col] = sum;
-        }
-      }
-    }
-  }
-
-  const T *x_, *cosines_ = nullptr, *sines_ = nullptr;
-  T* numbers_;
-  bool moderate_ = false, near_ = false;
-};
-
-/// Where the points of a group start, and before which movement they are then: what no item changes is done.
+/// Where the points of a group are once all that no item changes is done, and the next movement inwards, that after
+/// segment `movement`. Behind a turn a fixed point is on an arc: on_cos · cos + on_sin · sin + centre, six
+/// multiply-adds for the turn and the constant before it.
 template <class V>
 struct Start {
-  Points<V, 1> point;
-  int movement = 0;  ///< the next movement inwards is that after segment `movement`
+  Points<V, 1> centre, on_cos, on_sin;
+  bool is_arc = false;
+  int slot = 0;  ///< of the arc's cosine and sine in an item
+  int movement = 0;
+
+  template <int n, class Datum>
+  Points<V, n> at(Datum datum) const {
+    Points<V, n> p;
+    for (int u = 0; u < n; ++u) {
+      p.x[u] = centre.x[0], p.y[u] = centre.y[0], p.z[u] = centre.z[0];
+      if (!is_arc) continue;
+      const V c = datum(u, slot), s = datum(u, slot + 1);
+      p.x[u] = mul_add(on_cos.x[0], c, mul_add(on_sin.x[0], s, p.x[u]));
+      p.y[u] = mul_add(on_cos.y[0], c, mul_add(on_sin.y[0], s, p.y[u]));
+      p.z[u] = mul_add(on_cos.z[0], c, mul_add(on_sin.z[0], s, p.z[u]));
+    }
+    return p;
+  }
 };
 
-template <class V>
+/// The arc of a point that turns before the constant transform at `m`.
+template <class Constant, class V>
+inline void bend(const Number<V>* m, Start<V>& start) {
+  const V x = start.centre.x[0], y = start.centre.y[0], z = start.centre.z[0];
+  const auto row = [&](int i, V& on_cos, V& on_sin, V& centre) {
+    const V first = Constant::at(m, i), second = Constant::at(m, i + 1);
+    on_cos = mul_add(first, x, second * y);
+    on_sin = mul_sub(second, x, first * y);
+    centre = mul_add(Constant::at(m, i + 2), z, Constant::at(m, i + 3));
+  };
+  row(0, start.on_cos.x[0], start.on_sin.x[0], start.centre.x[0]);
+  row(4, start.on_cos.y[0], start.on_sin.y[0], start.centre.y[0]);
+  row(8, start.on_cos.z[0], start.on_sin.z[0], start.centre.z[0]);
+  start.is_arc = true;
+}
+
+template <class Constant, class V>
 inline Start<V> start_of(const Group& group, const Segment* segments, int segment_count, const Number<V>* numbers) {
   using T = Number<V>;
-  constexpr int lanes = Traits<V>::lanes;
-  Points<V, 1> p;
+  const auto constant = [&](int k) { return numbers + Constant::place(k); };
+  Start<V> start;
+  Points<V, 1>& p = start.centre;
   p.x[0] = broadcast<V>(static_cast<T>(group.on_tool[0]));
   p.y[0] = broadcast<V>(static_cast<T>(group.on_tool[1]));
   p.z[0] = broadcast<V>(static_cast<T>(group.on_tool[2]));
   int last = segment_count - 1;
-  carry_constant(segments[last].shape, numbers + numbers_of_segment * lanes * last, p);
-  if (group.on_last_axis) {
+  carry_constant<Constant>(segments[last].shape, constant(last), p);
+  if (group.on_last_axis) --last, carry_constant<Constant>(segments[last].shape, constant(last), p);
+  if (last > 0 && segments[last - 1].move == Move::turn) {
     --last;
-    carry_constant(segments[last].shape, numbers + numbers_of_segment * lanes * last, p);
+    start.slot = segments[last].slots_before;
+    bend<Constant>(constant(last), start);
   }
-  return {p, last - 1};
+  start.movement = last - 1;
+  return start;
 }
 
 /// True where joints turn and links lie between them: most robots. Their loop has nothing to decide.
-inline bool turns_and_links(const Segment* segments, int movement) {
-  bool yes = true;
-  for (int k = movement; k >= 0; --k) yes &= segments[k].move == Move::turn && segments[k].shape == Shape::link;
+template <class V>
+inline bool turns_and_links(const Segment* segments, const Start<V>& start) {
+  bool yes = start.is_arc && start.movement >= 0;
+  for (int k = start.movement; k >= 0; --k) yes &= segments[k].move == Move::turn && segments[k].shape == Shape::link;
   return yes;
 }
 
-/// All the way from the start to the base.
-template <bool is_plain, class V, int n, class Datum>
-inline void carry_to_base(const Segment* segments, const Number<V>* numbers, int movement, Datum datum,
-                          Points<V, n>& p) {
-  constexpr int lanes = Traits<V>::lanes;
-  for (int k = movement; k >= 0; --k) {
+/// measured − predicted of n items.
+template <bool is_plain, class Constant, class V, int n, class Datum>
+inline Points<V, n> errors_of(const Segment* segments, const Number<V>* numbers, const Start<V>& start, int stride,
+                              Datum datum) {
+  Points<V, n> measured;
+  for (int u = 0; u < n; ++u)
+    measured.x[u] = datum(u, stride - 3), measured.y[u] = datum(u, stride - 2), measured.z[u] = datum(u, stride - 1);
+  Points<V, n> p = start.template at<n>(datum);
+  for (int k = start.movement; k >= 0; --k) {
     const Segment& segment = segments[k];
     const int before = segment.slots_before;
-    const Number<V>* constant = numbers + numbers_of_segment * lanes * k;
+    const Number<V>* constant = numbers + Constant::place(k);
     if constexpr (is_plain) {
       V c[n], s[n];
       for (int u = 0; u < n; ++u) c[u] = datum(u, before), s[u] = datum(u, before + 1);
       carry_turn(p, c, s);
-      carry_link(constant, p);
+      if (k > 0)
+        carry_link<Constant>(constant, p);
+      else
+        carry_link_to<Constant>(measured, constant, p);
     } else {
       carry_movement(
-          segment.move, constant + 12 * lanes, [&](int u, int i) { return datum(u, before + i); }, p);
-      carry_constant(segment.shape, constant, p);
+          segment.move, Constant::at(constant, 12), [&](int u, int i) { return datum(u, before + i); }, p);
+      carry_constant<Constant>(segment.shape, constant, p);
     }
   }
+  if constexpr (!is_plain)
+    for (int u = 0; u < n; ++u)
+      p.x[u] = measured.x[u] - p.x[u], p.y[u] = measured.y[u] - p.y[u], p.z[u] = measured.z[u] - p.z[u];
+  return p;
 }
 
 }  // namespace

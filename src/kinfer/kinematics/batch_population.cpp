@@ -10,27 +10,23 @@ namespace kinfer {
 template <class T>
 struct BatchPopulation<T>::Plan {
   const batch::Kernels& kernels;
-  batch::SegmentList list;
+  batch::ChainPlan chain;
   std::vector<batch::Group> groups;
   std::vector<T> items;
   int stride = 0;
   Eigen::Index unknowns = 0;
 
-  void take_points(const Chain& nominal, const ParameterSet& set, const PointTable& points) {
-    const std::vector<batch::Movement> movements = batch::movements_of(nominal, set);
-    stride = batch::slots_of(movements) + 3;
-    std::vector<double> item(stride);
-    for (int target = -1; target < static_cast<int>(nominal.targets.size()); ++target) {
-      batch::Group group = batch::group_at(list, nominal, target);
-      group.begin = group.end = groups.empty() ? 0 : groups.back().end;
-      for (Eigen::Index i = 0; i < points.measured.cols(); ++i) {
-        if ((points.target.empty() ? -1 : points.target[i]) != target) continue;
-        const Vec3 measured = list.base.inverse() * Vec3(points.measured.col(i));
-        batch::write_item(movements, points.joints.col(i).data(), measured, item);
-        for (const double number : item) items.push_back(static_cast<T>(number));
-        ++group.end;
-      }
-      if (group.end > group.begin) groups.push_back(group);
+  void take_points(const Chain& nominal, const PointTable& points) {
+    const MatrixXd all = batch::items_of(chain.movements, points, chain.list.base, kernels);
+    stride = static_cast<int>(all.cols());
+    items.reserve(all.size());
+    for (const batch::PointsAtTarget& at : batch::points_by_target(nominal, points)) {
+      batch::Group group = batch::group_at(chain.list, nominal, at.target);
+      group.begin = groups.empty() ? 0 : groups.back().end;
+      group.end = group.begin + static_cast<int>(at.points.size());
+      groups.push_back(group);
+      for (const int i : at.points)
+        for (int k = 0; k < stride; ++k) items.push_back(static_cast<T>(all(i, k)));
     }
   }
 };
@@ -42,8 +38,8 @@ BatchPopulation<T>::BatchPopulation(const Chain& nominal, const ParameterSet& se
   KINFER_EXPECT(points.joints.cols() == points.measured.cols(), "{} joint vectors for {} points", points.joints.cols(),
                 points.measured.cols());
   auto plan = std::make_unique<Plan>(
-      Plan{kernels, batch::segments_of(nominal, set, batch::BaseSide::measurement), {}, {}, 0, set.free_count()});
-  plan->take_points(nominal, set, points);
+      Plan{kernels, batch::plan_of(nominal, set, batch::BaseSide::measurement), {}, {}, 0, set.free_count()});
+  plan->take_points(nominal, points);
   plan_ = std::move(plan);
 }
 
@@ -57,18 +53,20 @@ void BatchPopulation<T>::sums(ConstMatrixRef x, std::span<double> sum) const {
   const Plan& plan = *plan_;
   KINFER_EXPECT(x.rows() == plan.unknowns, "{} values for {} free parameters", x.rows(), plan.unknowns);
   if (x.cols() == 0) return;
-  const auto segments = static_cast<int>(plan.list.segments.size());
+  const auto segments = static_cast<int>(plan.chain.list.segments.size());
   constexpr bool is_double = sizeof(T) == sizeof(double);
   const int lanes = is_double ? plan.kernels.lanes : plan.kernels.float_lanes;
   batch::Buffer<T> workspace(static_cast<std::size_t>(lanes) * (plan.unknowns + 13 * segments));
-  const batch::PopulationJob<T> job{.segments = plan.list.segments.data(),
+  const batch::PopulationJob<T> job{.segments = plan.chain.list.segments.data(),
                                     .segment_count = segments,
                                     .groups = plan.groups.data(),
                                     .group_count = static_cast<int>(plan.groups.size()),
                                     .items = plan.items.data(),
                                     .stride = plan.stride,
                                     .unknowns = static_cast<int>(plan.unknowns),
-                                    .nominal = plan.list.nominal.data(),
+                                    .nominal = plan.chain.list.nominal.data(),
+                                    .angles = plan.chain.list.angles.data(),
+                                    .angle_count = static_cast<int>(plan.chain.list.angles.size()),
                                     .x = x.data(),
                                     .x_stride = x.outerStride(),
                                     .candidates = static_cast<int>(x.cols()),

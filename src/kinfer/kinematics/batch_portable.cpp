@@ -7,6 +7,7 @@ namespace kinfer::batch {
 using Wide = Pack<double, 2>;
 using Narrow = Pack<float, 4>;
 const Kernels portable_kernels{
-    "portable", 2, 4, population_sums<Wide, 2>, population_sums<Narrow, 2>, point_errors<Wide, 2>, jacobian<Wide>};
+    "portable",    2, 4, population_sums<Wide, 2>, population_sums<Narrow, 2>, sines<Wide>, point_errors<Wide, 2>,
+    jacobian<Wide>};
 
 }  // namespace kinfer::batch

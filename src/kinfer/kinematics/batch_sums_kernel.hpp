@@ -17,27 +17,50 @@ inline V sum_over(const PopulationJob<Number<V>>& job, const Number<V>* numbers,
   for (int item = begin; item + n <= end; item += n) {
     const T* data = job.items + static_cast<std::ptrdiff_t>(item) * job.stride;
     const auto datum = [&](int u, int slot) { return broadcast<V>(data[u * job.stride + slot]); };
-    Points<V, n> p;
-    for (int u = 0; u < n; ++u) p.x[u] = start.point.x[0], p.y[u] = start.point.y[0], p.z[u] = start.point.z[0];
-    carry_to_base<is_plain>(job.segments, numbers, start.movement, datum, p);
-    for (int u = 0; u < n; ++u) {
-      const V x = datum(u, job.stride - 3) - p.x[u], y = datum(u, job.stride - 2) - p.y[u],
-              z = datum(u, job.stride - 1) - p.z[u];
-      sum[u] = mul_add(x, x, mul_add(y, y, mul_add(z, z, sum[u])));
-    }
+    const auto e = errors_of<is_plain, Own<V>, V, n>(job.segments, numbers, start, job.stride, datum);
+    for (int u = 0; u < n; ++u)
+      sum[u] = mul_add(e.x[u], e.x[u], mul_add(e.y[u], e.y[u], mul_add(e.z[u], e.z[u], sum[u])));
   }
   for (int u = 1; u < n; ++u) sum[0] += sum[u];
   return sum[0];
 }
 
-/// The same for any number of items: those that are left over fly together, too.
+/// How many flights of n items come first, so that flights of n − 1 do the rest: none flies with fewer if that is
+/// possible.
+inline int full_flights(int items, int n) {
+  const int full = items / n, rest = items % n;
+  if (rest == 0 || n == 1) return full;
+  const int given_up = n - 1 - rest;  // each flight that is given up leaves one item more
+  return full >= given_up ? full - given_up : full;
+}
+
+/// The same for any number of items.
 template <bool is_plain, class V, int n>
 inline V sum_over_all(const PopulationJob<Number<V>>& job, const Number<V>* numbers, const Start<V>& start, int begin,
                       int end) {
-  const int rest = begin + (end - begin) / n * n;
+  const int rest = begin + full_flights(end - begin, n) * n;
   V sum = sum_over<is_plain, V, n>(job, numbers, start, begin, rest);
   if constexpr (n > 1) sum += sum_over_all<is_plain, V, n - 1>(job, numbers, start, rest, end);
   return sum;
+}
+
+/// Numbers k .. k + 3 of four candidates, turned so that those of one number stand side by side.
+template <class T>
+inline void transpose_four(const double* const* column, int k, T* to, int apart) {
+  using Four = Pack<double, 4>;
+  typedef T Narrow __attribute__((vector_size(4 * sizeof(T))));
+  typedef T Unaligned __attribute__((vector_size(4 * sizeof(T)), aligned(alignof(T)), may_alias));
+  const Four a = load<Four>(column[0] + k), b = load<Four>(column[1] + k), c = load<Four>(column[2] + k),
+             d = load<Four>(column[3] + k);
+  const Four ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7),
+             cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  const auto put = [&](int number, Four v) {
+    *reinterpret_cast<Unaligned*>(to + number * apart) = __builtin_convertvector(v, Narrow);
+  };
+  put(0, __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5));
+  put(1, __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5));
+  put(2, __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7));
+  put(3, __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7));
 }
 
 /// One pack a parameter: candidates first .. first + lanes − 1; beyond the last one, the last one again.
@@ -49,11 +72,12 @@ inline void gather(const PopulationJob<Number<V>>& job, int first, Number<V>* x)
     const int candidate = first + lane < job.candidates ? first + lane : job.candidates - 1;
     column[lane] = job.x + candidate * job.x_stride;
   }
-  for (int k = 0; k < job.unknowns; ++k) {
-    V v;
-    for (int lane = 0; lane < lanes; ++lane) v[lane] = static_cast<Number<V>>(column[lane][k]);
-    store(x + k * lanes, v);
-  }
+  int k = 0;
+  if constexpr (sizeof(V) >= sizeof(Pack<double, 4>))
+    for (; k + 4 <= job.unknowns; k += 4)
+      for (int lane = 0; lane < lanes; lane += 4) transpose_four(column + lane, k, x + k * lanes + lane, lanes);
+  for (; k < job.unknowns; ++k)
+    for (int lane = 0; lane < lanes; ++lane) x[k * lanes + lane] = static_cast<Number<V>>(column[lane][k]);
 }
 
 template <class V, int in_flight>
@@ -63,12 +87,12 @@ void population_sums(const PopulationJob<Number<V>>& job) {
   T *x = job.workspace, *numbers = x + lanes * job.unknowns;
   for (int first = 0; first < job.candidates; first += lanes) {
     gather<V>(job, first, x);
-    Folder<V>(x, job.nominal, job.unknowns, numbers).fold(job.segments, job.segment_count);
+    Folder<V>(x, job.nominal, job.angles, job.angle_count, numbers).fold(job.segments, job.segment_count);
     V sum = broadcast<V>(T(0));
     for (int g = 0; g < job.group_count; ++g) {
       const Group& group = job.groups[g];
-      const Start<V> start = start_of<V>(group, job.segments, job.segment_count, numbers);
-      sum += turns_and_links(job.segments, start.movement)
+      const Start<V> start = start_of<Own<V>, V>(group, job.segments, job.segment_count, numbers);
+      sum += turns_and_links(job.segments, start)
                  ? sum_over_all<true, V, in_flight>(job, numbers, start, group.begin, group.end)
                  : sum_over_all<false, V, in_flight>(job, numbers, start, group.begin, group.end);
     }
@@ -84,50 +108,33 @@ inline void errors_over(const PointsJob& job, const double* numbers, const Start
   for (int item = begin; item + n <= end; item += n) {
     const double* data = job.items + item * stride;
     const auto datum = [&](int u, int slot) { return load<V>(data + u * stride + slot * lanes); };
-    Points<V, n> p;
-    for (int u = 0; u < n; ++u) p.x[u] = start.point.x[0], p.y[u] = start.point.y[0], p.z[u] = start.point.z[0];
-    carry_to_base<is_plain>(job.segments, numbers, start.movement, datum, p);
+    const auto e = errors_of<is_plain, Common<V>, V, n>(job.segments, numbers, start, job.stride, datum);
     for (int u = 0; u < n; ++u) {
       double* to = job.errors + static_cast<std::ptrdiff_t>(item + u) * 3 * lanes;
-      store(to, datum(u, job.stride - 3) - p.x[u]);
-      store(to + lanes, datum(u, job.stride - 2) - p.y[u]);
-      store(to + 2 * lanes, datum(u, job.stride - 1) - p.z[u]);
+      store(to, e.x[u]), store(to + lanes, e.y[u]), store(to + 2 * lanes, e.z[u]);
     }
   }
 }
 
 template <bool is_plain, class V, int n>
 inline void errors_over_all(const PointsJob& job, const double* numbers, const Start<V>& start, int begin, int end) {
-  const int rest = begin + (end - begin) / n * n;
+  const int rest = begin + full_flights(end - begin, n) * n;
   errors_over<is_plain, V, n>(job, numbers, start, begin, rest);
   if constexpr (n > 1) errors_over_all<is_plain, V, n - 1>(job, numbers, start, rest, end);
 }
 
-/// One candidate, folded with its angles side by side, then spread over the lanes. Returns where its numbers are.
-template <class V>
-inline const double* folded(const PointsJob& job) {
-  constexpr int lanes = Traits<V>::lanes;
-  using One = Pack<double, 1>;
-  const int padded = (job.unknowns + lanes - 1) / lanes * lanes, count = numbers_of_segment * job.segment_count;
-  double *x = job.workspace, *cosines = x + padded, *sines = cosines + padded, *narrow = sines + padded;
-  double* numbers = job.workspace + (3 * padded + count + lanes - 1) / lanes * lanes;
-  for (int k = 0; k < padded; ++k) x[k] = k < job.unknowns ? job.x[k] : 0.0;
-  for (int k = 0; k < padded; k += lanes) {
-    const SinCos<V> angle = sin_cos(load<V>(x + k));
-    store(cosines + k, angle.cos), store(sines + k, angle.sin);
-  }
-  Folder<One>(x, cosines, sines, narrow).fold(job.segments, job.segment_count);
-  for (int i = 0; i < count; ++i) store(numbers + i * lanes, broadcast<V>(narrow[i]));
-  return numbers;
-}
-
 template <class V, int in_flight>
 void point_errors(const PointsJob& job) {
-  const double* numbers = folded<V>(job);
+  constexpr int lanes = Traits<V>::lanes;
+  double* numbers = job.workspace + sines_workspace(job.at.angle_count, lanes);
+  for (int k = 0; job.sheets && k < job.segment_count; k += links_a_sheet)
+    fold_sheet<V>(job.sheets[k / links_a_sheet], job.at.x, numbers + Common<V>::place(k));
+  const Sines known = Sines::of<V>(job.at, job.workspace);
+  Folder<double>(job.at.x, known, numbers).fold(job.segments, job.segment_count);
   for (int g = 0; g < job.group_count; ++g) {
     const Group& group = job.groups[g];
-    const Start<V> start = start_of<V>(group, job.segments, job.segment_count, numbers);
-    if (turns_and_links(job.segments, start.movement))
+    const Start<V> start = start_of<Common<V>, V>(group, job.segments, job.segment_count, numbers);
+    if (turns_and_links(job.segments, start))
       errors_over_all<true, V, in_flight>(job, numbers, start, group.begin, group.end);
     else
       errors_over_all<false, V, in_flight>(job, numbers, start, group.begin, group.end);

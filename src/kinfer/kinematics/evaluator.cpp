@@ -75,7 +75,7 @@ struct PoseEvaluator::Program {
     std::vector<bool> acts(wanted.size(), false);
     for (const Step& step : recorded.steps) {
       if (step.kind != Step::Kind::record) continue;
-      const bool by_reading = step.scale != Scale::one && step.scale != Scale::torque;
+      const bool by_reading = step.scale != Scale::one && step.scale != Scale::torque && step.scale != Scale::coupled;
       KINFER_EXPECT(!by_reading || movers[step.source].reading >= 0, "gain of joint {}, which has no reading",
                     step.source);
       acts[step.index] = true;
@@ -124,6 +124,8 @@ struct PoseEvaluator::Program {
         return std::sin(step.a * drive.q[reading]);
       case Scale::cosine:
         return std::cos(step.a * drive.q[reading]);
+      case Scale::coupled:
+        return drive.q[couplings[movers[step.source].coupling_begin + step.term].joint];
     }
     return 1.0;
   }

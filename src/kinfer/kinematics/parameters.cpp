@@ -12,9 +12,9 @@ constexpr Field dh_fields[] = {Field::a, Field::alpha, Field::d, Field::theta, F
 
 std::string_view field_name(Field field) {
   constexpr std::string_view names[] = {
-      "x",        "y",   "z",     "rx",        "ry",    "rz",         "a",
-      "alpha",    "d",   "theta", "beta",      "gain",  "compliance", "torque_compliance",
-      "backlash", "sin", "cos",   "expansion", "offset"};
+      "x",        "y",   "z",     "rx",        "ry",     "rz",         "a",
+      "alpha",    "d",   "theta", "beta",      "gain",   "compliance", "torque_compliance",
+      "backlash", "sin", "cos",   "expansion", "offset", "coupling"};
   return names[static_cast<int>(field)];
 }
 
@@ -29,6 +29,7 @@ Quantity quantity_of(const Address& at) {
     case Field::offset:
       return Quantity::length;
     case Field::gain:
+    case Field::coupling:
       return Quantity::ratio;
     case Field::compliance:
     case Field::torque_compliance:
@@ -44,6 +45,8 @@ std::string name_of_joint_number(const Chain& chain, const Address& at) {
   if (at.field == Field::sine || at.field == Field::cosine)
     return fmt::format("{}{:g}q{}", field_name(at.field), chain.joints[at.joint].harmonics[at.term].order,
                        at.joint + 1);
+  if (at.field == Field::coupling)
+    return fmt::format("coupling{}_{}", at.joint + 1, chain.joints[at.joint].couplings[at.term].joint + 1);
   return fmt::format("{}{}", field_name(at.field), at.joint + 1);
 }
 
@@ -229,6 +232,7 @@ auto* number(C& chain, const Address& at) {
   auto& joint = chain.joints[at.joint];
   if (at.field == Field::sine) return &entry(joint.harmonics, at.term).sine;
   if (at.field == Field::cosine) return &entry(joint.harmonics, at.term).cosine;
+  if (at.field == Field::coupling) return &entry(joint.couplings, at.term).factor;
   return joint_number(joint, at.field);
 }
 
@@ -263,6 +267,8 @@ ParameterSet all_parameters(const Chain& chain, const Tolerances& tolerances) {
   for (const Field field : frame_fields) append(set, chain, {Owner::base, -1, field}, tolerances);
   for (const int j : joints_that_carry_a_tool(chain)) {
     for (const Field field : fields_of(chain.joints[j])) append(set, chain, {Owner::joint, j, field}, tolerances);
+    for (int k = 0; k < static_cast<int>(chain.joints[j].couplings.size()); ++k)
+      append(set, chain, {Owner::joint, j, Field::coupling, k}, tolerances);
   }
   for (const Field field : frame_fields) append(set, chain, {Owner::tool, -1, field}, tolerances);
   return set;

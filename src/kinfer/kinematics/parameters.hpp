@@ -37,19 +37,20 @@ enum class Field {
   sine,
   cosine,
   expansion,
-  offset
+  offset,
+  coupling
 };
 struct Address {
   Owner owner = Owner::joint;
   int joint = -1;  ///< index into Chain::joints, or into the list of that owner (mountings, targets, anchors, …)
   Field field = Field::a;
-  int term = 0;  ///< sine and cosine: index into Joint::harmonics
+  int term = 0;  ///< sine and cosine: index into Joint::harmonics; coupling: into Joint::couplings
   bool operator==(const Address&) const = default;
 };
 
 struct Parameter {
   std::string name{};  ///< as in FORMATS: "a6" (rows counted from 1), "theta2", "gain3", "base_x", "tool_rz", "x4" and
-                       ///< "rx4" (URDF joints)
+                       ///< "rx4" (URDF joints), "coupling3_2" (how far joint 3 follows the reading of joint 2)
   Quantity quantity = Quantity::length;
   Address at;
   double nominal = 0.0;
@@ -86,7 +87,8 @@ struct ParameterSet {
 
 /// Every number of the chain that can be estimated, all free, with nominal, scale and prior from the tolerances:
 /// base (x y z rx ry rz), each joint on the path to a tip (a alpha d theta beta gain compliance, or x y z rx ry rz
-/// gain compliance for URDF joints; gain only where there is a reading; compliance only for revolute joints), tool.
+/// gain compliance for URDF joints; gain only where there is a reading; compliance only for revolute joints; the
+/// couplings that it has), tool.
 ParameterSet all_parameters(const Chain& chain, const Tolerances& tolerances);
 
 /// Base, tool and joints of the further mountings (base only where they have one of their own), targets, anchors,

@@ -51,6 +51,7 @@ class Compiler {
       record(factor, Field::backlash, Scale::approach);
       record(factor, Field::sine, Scale::sine);
       record(factor, Field::cosine, Scale::cosine);
+      record(factor, Field::coupling, Scale::coupled);
       flush();
       const auto kind = factor.motion == Motion::turn ? Step::Kind::turn_joint : Step::Kind::shift_joint;
       list_.steps.push_back({.kind = kind, .axis = factor.axis, .index = joint_, .a = factor.value});
@@ -95,6 +96,7 @@ class Compiler {
                              .a = of_a_harmonic ? harmonics_->at(column.at.term).order : 0.0,
                              .scale = scale,
                              .source = joint_,
+                             .term = column.at.term,
                              .motion = factor.motion});
     }
   }

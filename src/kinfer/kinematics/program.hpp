@@ -8,8 +8,8 @@
 namespace kinfer::program {
 
 /// What a recorded screw is multiplied by: a gain's screw by the reading, a compliance's by the torque, a harmonic's by
-/// the sine or cosine of `a` times the reading.
-enum class Scale { one, reading, torque, measured_torque, approach, sine, cosine };
+/// the sine or cosine of `a` times the reading, a coupling's by the reading that it follows.
+enum class Scale { one, reading, torque, measured_torque, approach, sine, cosine, coupled };
 
 struct Step {
   enum class Kind {
@@ -27,6 +27,7 @@ struct Step {
   double a = 0.0, b = 0.0;
   Scale scale = Scale::one;
   int source = 0;
+  int term = 0;                                          ///< coupled: which of the joint's couplings
   elementary::Motion motion = elementary::Motion::turn;  ///< of what is recorded
 };
 

@@ -2,6 +2,7 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/small_cholesky.hpp"
 
 namespace kinfer {
 namespace {
@@ -17,18 +18,6 @@ void solve_upper(const MatrixXd& l, Eigen::Ref<MatrixXd> b) {
   l.triangularView<Eigen::Lower>().transpose().solveInPlace(b);
 }
 
-/// In place Cholesky of the small pivot; false where it is not positive definite.
-bool factorise(MatrixXd& a) {
-  for (Index j = 0; j < a.cols(); ++j) {
-    const double pivot = a(j, j) - a.row(j).head(j).squaredNorm();
-    if (!(pivot > 0.0)) return false;
-    a(j, j) = std::sqrt(pivot);
-    for (Index i = j + 1; i < a.rows(); ++i) a(i, j) = (a(i, j) - a.row(i).head(j).dot(a.row(j).head(j))) / a(j, j);
-    a.col(j).head(j).setZero();
-  }
-  return true;
-}
-
 }  // namespace
 
 BorderedBand::BorderedBand(Index width, Index reach, Index border)
@@ -40,7 +29,8 @@ BorderedBand::BorderedBand(Index width, Index reach, Index border)
       schur_(MatrixXd::Zero(border, border)),
       schur_right_(VectorXd::Zero(border)) {}
 
-void BorderedBand::add(const BandSpan& span) {
+void BorderedBand::add(const BandSpan& span, bool sound) {
+  positive_ = positive_ && sound;
   KINFER_EXPECT(span.matrix.rows() == reach_ * width_ && span.coupling.rows() == border_);
   front_.matrix.triangularView<Eigen::Lower>() += span.matrix;
   front_.coupling += span.coupling;
@@ -53,7 +43,7 @@ void BorderedBand::eliminate_first() {
   const Index w = width_, rest = (reach_ - 1) * width_;
   Group group{front_.matrix.topLeftCorner(w, w), MatrixXd(front_.matrix.bottomLeftCorner(rest, w)),
               MatrixXd(front_.coupling.leftCols(w)), VectorXd(front_.right.head(w))};
-  if (!factorise(group.pivot)) {
+  if (!factorise_small(group.pivot)) {
     positive_ = false;
     return;
   }

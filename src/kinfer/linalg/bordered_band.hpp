@@ -27,7 +27,8 @@ class BorderedBand {
   BorderedBand(Eigen::Index width, Eigen::Index reach, Eigen::Index border);
 
   /// Spans come in order, the k-th couples groups k .. k + reach - 1; group k is eliminated at once.
-  void add(const BandSpan& span);
+  /// `sound` false: the span is that of a stretch whose own elimination failed, and so does this one.
+  void add(const BandSpan& span, bool sound = true);
 
   /// Eliminates what is left. `border_matrix` C (lower half) and `border_right` c are the sums over all spans.
   void finish(ConstMatrixRef border_matrix, ConstVectorRef border_right);

@@ -108,6 +108,8 @@ std::string error_table(const Json& e, const char* name, const std::string& capt
   add("before", "holdout", "base and tool fitted, rows not fitted");
   add("before", "train", "base and tool fitted, rows fitted");
   add("after", "holdout", "calibrated, rows not fitted");
+  if (!e.value("wrong_rows", Json::array()).empty())
+    add("after", "holdout_all_rows", "the same with the rows that are wrong");
   add("after", "train", "calibrated, rows fitted");
   return html::table(table);
 }

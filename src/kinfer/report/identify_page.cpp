@@ -49,8 +49,9 @@ std::string how_good(const Json& e) {
   double worst_axis = 0.0, worst_link = 0.0;
   for (const Json& joint : e.at("joints"))
     if (text_at(joint, "type") != "rigid") {
-      const double spread = across(joint.at("sd").at("axis_in_child_rad"));
-      if (spread < unknown_angle) worst_axis = std::max(worst_axis, spread);
+      for (const char* side : {"axis_in_parent_rad", "axis_in_child_rad"})
+        if (const double spread = across(joint.at("sd").at(side)); spread < unknown_angle)
+          worst_axis = std::max(worst_axis, spread);
     }
   for (const Json& link : e.at("links"))
     if (known_length(link)) worst_link = std::max(worst_link, link.at("sd_m").get<double>());
@@ -206,21 +207,23 @@ Cell dh_cell(double value, double sd, double scale, double unknown, int decimals
 html::Section dh(const Json& e) {
   html::Table table{.name = "dh",
                     .caption = "The chain as DH rows RotZ(theta) TransZ(d) TransX(a) RotX(alpha) RotY(beta)",
-                    .head = {"Towards", "theta [°]", "d [mm]", "a [mm]", "alpha [°]", "beta [°]", "variable in theta"},
+                    .head = {"Towards", "theta [°]", "d [mm]", "a [mm]", "alpha [°]", "beta [°]", "variable"},
                     .rows = {}};
   constexpr double deg = 1.0 / degree;
   for (const Json& row : e.at("dh")) {
     const Json& sd = row.at("sd");
     const auto angle = [&](const char* k) { return dh_cell(row.at(k), sd.at(k), deg, unknown_angle, 3); };
     const auto length = [&](const char* k) { return dh_cell(row.at(k), sd.at(k), mm, unknown_length, 1); };
-    table.rows.push_back({html::text(text_at(row, "segment")), angle("theta"), length("d"), length("a"), angle("alpha"),
-                          angle("beta"), html::text(text_at(row, "theta_variable"))});
+    table.rows.push_back(
+        {html::text(text_at(row, "segment")), angle("theta"), length("d"), length("a"), angle("alpha"), angle("beta"),
+         html::text(text_at(row, text_at(row, "theta_variable").empty() ? "d_variable" : "theta_variable"))});
   }
-  return {"dh-section", "DH table",
-          "Three rows lead from one INS to the next: to the joint's axis, across the joint, to the next INS. A number "
-          "without "
-          "± is a choice of the convention. <i>Not determinable</i> means that no signal tells it.",
-          html::table(table)};
+  return {
+      "dh-section", "DH table",
+      "The rows lead from one INS to the next: to the joint's axis, across the joint (once for each of its axes), to "
+      "the next INS. A number without "
+      "± is a choice of the convention. <i>Not determinable</i> means that no signal tells it.",
+      html::table(table)};
 }
 
 html::Section fit(const Json& e) {

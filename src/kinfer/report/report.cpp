@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/report/bundle.hpp"
+#include "kinfer/report/packed.hpp"
 #include "kinfer/report/pages.hpp"
 
 namespace kinfer {
@@ -36,8 +37,9 @@ Json rounded(const Json& list) {
 /// What the scripts draw; all else of the evidence is in the page as text already.
 Json drawn(const Json& evidence) {
   Json part;
-  for (const char* key : {"kind", "outliers", "picture", "root", "joints", "chain", "order", "motion"})
+  for (const char* key : {"kind", "outliers", "picture", "root", "joints", "chain", "order"})
     if (evidence.contains(key)) part[key] = evidence.at(key);
+  if (evidence.contains("motion")) part["motion"] = pages::with_packed_traces(evidence.at("motion"));
   if (const auto rows = evidence.find("rows"); rows != evidence.end()) {
     for (const char* key : {"before", "after"}) part["rows"][key] = rounded(rows->at(key));
     part["rows"]["held_out"] = rows->at("held_out");

@@ -13,9 +13,14 @@ namespace {
 
 using Json = nlohmann::json;
 
+std::string as_sentence(std::string words) {
+  if (!words.empty() && words.front() >= 'a' && words.front() <= 'z') words.front() += 'A' - 'a';
+  return words;
+}
+
 std::string advice_item(const Json& advice) {
   return fmt::format("<b>{}.</b> <span class=\"why\">{}.</span>", html::escape(text_at(advice, "what")),
-                     html::escape(text_at(advice, "why")));
+                     html::escape(as_sentence(text_at(advice, "why"))));
 }
 
 const Json& member(const Json& object, const char* key) {

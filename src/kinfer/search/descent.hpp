@@ -6,6 +6,7 @@
 //   NormalEquations normal(const Point&);                  of the linearised point, weighted
 //   VectorXd step_where_cholesky_fails(const NormalEquations& scaled, const VectorXd& scale, double damping);
 //   static constexpr bool linearises_for_little;           so that a step's cost alone is hardly cheaper
+//   static constexpr bool is_linearised_at_the_end;        for whoever wants the model where the search ends
 #pragma once
 
 #include <algorithm>
@@ -96,6 +97,7 @@ class Descent {
       tighten();
     }
     history_.push_back(here_.cost);
+    if (!here_.linearised) return Stop::target_reached;
     if (damping_ > largest_damping) return Stop::stalled;
     if (shortened) return std::nullopt;
     if (gain > 0.0 ? std::max(gain, forecast) <= options_.cost_tolerance * here_.cost : forecast <= noise)
@@ -132,12 +134,17 @@ class Descent {
     return source_.step_where_cholesky_fails(normal_, scale_, mu);
   }
 
+  /// No model is made where no further step will be taken.
+  bool is_the_end(double cost) const {
+    return !Source::is_linearised_at_the_end && options_.target_cost > 0.0 && cost <= options_.target_cost;
+  }
+
   /// How much the cost falls by the step; where it does, the step is taken.
   double try_step(const VectorXd& dy) {
     there_.x = here_.x + dy.cwiseProduct(scale_);
     // A model at once is cheaper than a second call, as long as steps succeed.
     source_.evaluate(there_, Source::linearises_for_little && last_step_succeeded_);
-    if (there_.cost < here_.cost && !there_.linearised) source_.evaluate(there_, true);
+    if (there_.cost < here_.cost && !there_.linearised && !is_the_end(there_.cost)) source_.evaluate(there_, true);
     const double gain = here_.cost - there_.cost;
     if (gain > 0.0) std::swap(here_, there_);
     last_step_succeeded_ = gain > 0.0;
@@ -149,6 +156,7 @@ class Descent {
     damping_ *= std::max(fastest_relaxation, 1.0 - std::pow(2.0 * std::min(came_true, 1.0) - 1.0, 3));
     damping_ = std::max(damping_, least_damping);
     growth_ = 2.0;
+    if (!here_.linearised) return;
     linearise();
     largest_length_ = std::max(largest_length_, scaled(here_.x).norm());
   }

@@ -24,7 +24,7 @@ void check(Eigen::Index unknowns, ConstVectorRef start, const LeastSquaresOption
 /// Residuals and Jacobian as they are, robust weights made here.
 class DenseSource {
  public:
-  static constexpr bool linearises_for_little = true;
+  static constexpr bool linearises_for_little = true, is_linearised_at_the_end = true;
 
   struct Point {
     VectorXd x, r;
@@ -113,7 +113,7 @@ class DenseSource {
 /// Normal equations that the problem makes itself.
 class NormalSource {
  public:
-  static constexpr bool linearises_for_little = false;
+  static constexpr bool linearises_for_little = false, is_linearised_at_the_end = false;
 
   struct Point {
     VectorXd x;
@@ -187,7 +187,7 @@ LeastSquaresOutcome least_squares(const NormalProblem& problem, ConstVectorRef s
   search::Descent descent(source, start, options);
   const Stop stop = descent.run(observer);
   LeastSquaresOutcome outcome = outcome_of(descent, source, stop);
-  outcome.normal = std::move(descent.best().normal);
+  if (descent.best().linearised) outcome.normal = std::move(descent.best().normal);
   return outcome;
 }
 

@@ -63,7 +63,8 @@ struct LeastSquaresOutcome {
   VectorXd residuals{};           ///< at x, not weighted by the loss
   MatrixXd jacobian{};            ///< at x, not weighted by the loss
   VectorXd block_weights{};       ///< rho' of each block at x, 0 .. 1; ones without a loss
-  NormalEquations normal{};       ///< at x, of a NormalProblem, which leaves the three above empty
+  NormalEquations normal{};       ///< at x, of a NormalProblem, which leaves the three above empty; empty itself where
+                                  ///< the target cost ended the search: they are not made to be thrown away
   std::vector<double> history{};  ///< cost at the start and after each iteration; never rises
   Stop stop = Stop::budget_spent;
   int iterations = 0;   ///< trial steps

@@ -1,11 +1,11 @@
 #include "kinfer/search/pso.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <vector>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/search/swarm_kernel.hpp"
 
 namespace kinfer {
 namespace {
@@ -23,28 +23,37 @@ void draw_pairs(RandomNumbers how, Rng draw, std::span<double> pairs) {
   for (std::size_t i = 2; i < pairs.size(); ++i) pairs[i] = pairs[i - 2];
 }
 
-/// Eqs. (9) and (10) for one particle, in place. `to` is a buffer of the hot loop.
-void move(double* v, double* x, const double* own_best, const double* swarm_best, const double* pairs, double w,
-          const PsoOptions& options, const VectorXd& fastest, const Bounds& box, VectorXd& to) {
-  const double own = options.own, swarm = options.swarm;
-  const Eigen::Index dim = fastest.size();
-  const double* limit = fastest.data();
-  for (Eigen::Index d = 0; d < dim; ++d) {
-    const double pull = own * pairs[2 * d] * (own_best[d] - x[d]) + swarm * pairs[2 * d + 1] * (swarm_best[d] - x[d]);
-    v[d] = std::min(std::max(w * v[d] + pull, -limit[d]), limit[d]);
-  }
-  Eigen::Map<VectorXd> at(x, dim);
-  to = at + Eigen::Map<const VectorXd>(v, dim);
-  if (options.walls == Walls::open) {
-    at = to;
-    return;
-  }
-  at = to.cwiseMax(box.lower).cwiseMin(box.upper);
-  // Most particles stay inside: compared as bytes, which is fastest.
-  if (options.walls != Walls::absorb || std::memcmp(x, to.data(), dim * sizeof(double)) == 0) return;
-  for (Eigen::Index d = 0; d < dim; ++d)
-    if (x[d] != to[d]) v[d] = 0.0;
+search::SwarmKernel best_swarm_kernel() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return search::swarm_avx512;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return search::swarm_avx2;
+#endif
+  return search::move_particle;
 }
+
+/// Where and how fast particles may be.
+struct Limits {
+  VectorXd fastest, lower, upper;
+
+  Limits(const PsoOptions& options, const Bounds& box) : lower(box.lower), upper(box.upper) {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    fastest = VectorXd::Constant(box.size(), infinite);
+    if (options.velocity_limit > 0.0) fastest = 2.0 * options.velocity_limit * box.half_width();
+    if (options.walls == Walls::open) lower.setConstant(-infinite), upper.setConstant(infinite);
+  }
+
+  search::SwarmStep step(const PsoOptions& options, double inertia, const VectorXd& swarm_best) const {
+    return {.dim = static_cast<int>(fastest.size()),
+            .inertia = inertia,
+            .own = options.own,
+            .swarm = options.swarm,
+            .swarm_best = swarm_best.data(),
+            .fastest = fastest.data(),
+            .lower = lower.data(),
+            .upper = upper.data(),
+            .absorbs = options.walls == Walls::absorb};
+  }
+};
 
 MatrixXd first_swarm(const Objective& objective, const PsoOptions& options, Rng rng) {
   if (options.initial.size() == 0) return uniform_swarm(objective.bounds, options.particles, rng);
@@ -61,27 +70,24 @@ Outcome particle_swarm(const Objective& objective, const PsoOptions& options, Rn
   Judge judge(objective, options.budget.threads);
   Record record(options.budget, observer);
   const Rng moves = rng.stream(1);
-  const VectorXd fastest = options.velocity_limit > 0.0
-                               ? VectorXd(2.0 * options.velocity_limit * objective.bounds.half_width())
-                               : VectorXd::Constant(objective.bounds.size(), std::numeric_limits<double>::infinity());
+  const search::SwarmKernel move = best_swarm_kernel();
+  const Limits limits(options, objective.bounds);
 
   MatrixXd x = first_swarm(objective, options, rng.stream(0));
   MatrixXd v = MatrixXd::Zero(x.rows(), x.cols());
   Memory own;
   std::vector<double> pairs(2 * x.rows());
-  VectorXd to(x.rows());
   for (int iteration = 1;; ++iteration) {
     const std::vector<double> cost = judge(x);
     own.update(x, cost);
     if (record.note(x, cost)) break;
 
     if (before_every_update) x = clamped(before_every_update(x), objective.bounds);
-    const double w = inertia_at(options, iteration);
+    const search::SwarmStep step = limits.step(options, inertia_at(options, iteration), record.best());
     const Rng draws = moves.stream(iteration);
     for (Eigen::Index p = 0; p < x.cols(); ++p) {
       draw_pairs(options.random_numbers, draws.stream(p), pairs);
-      move(v.col(p).data(), x.col(p).data(), own.x.col(p).data(), record.best().data(), pairs.data(), w, options,
-           fastest, objective.bounds, to);
+      move(step, pairs.data(), own.x.col(p).data(), x.col(p).data(), v.col(p).data());
     }
   }
   return record.finish(judge, std::move(x));

@@ -36,7 +36,8 @@ Chain with_random_errors(const Chain& nominal, const Tolerances& tolerances, Rng
     if (parameter.quantity == Quantity::compliance) continue;
     const bool revolute_gain =
         parameter.at.field == Field::gain && nominal.joints[parameter.at.joint].type == JointType::revolute;
-    if (revolute_gain) continue;  // an encoder's gain is exact unless a user says otherwise
+    const bool coupling = parameter.at.field == Field::coupling;
+    if (revolute_gain || coupling) continue;  // an encoder's gain is exact unless a user says otherwise
     set_value_at(truth, parameter.at, parameter.nominal + parameter.prior_sd * rng.normal());
   }
   return truth;

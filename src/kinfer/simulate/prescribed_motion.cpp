@@ -6,12 +6,22 @@
 namespace kinfer {
 
 MachineMotion prescribed_motion(const Machine& machine, const Drive& drive, double sampling_rate) {
-  MachineMotion motion = make_motion(machine, row_count(drive.duration, sampling_rate), sampling_rate);
-  KINFER_EXPECT(static_cast<Eigen::Index>(drive.joints.size()) == motion.q.rows());
+  return prescribed_motion(machine, drive.duration, sampling_rate, [&](double time) {
+    std::vector<JointState> states;
+    for (const JointDrive& joint : drive.joints) states.push_back(state_at(joint, time));
+    return states;
+  });
+}
+
+MachineMotion prescribed_motion(const Machine& machine, double duration, double sampling_rate,
+                                const JointStates& states) {
+  MachineMotion motion = make_motion(machine, row_count(duration, sampling_rate), sampling_rate);
   for (std::size_t row = 0; row < motion.time.size(); ++row) {
     const auto column = static_cast<Eigen::Index>(row);
-    for (std::size_t k = 0; k < drive.joints.size(); ++k) {
-      const JointState state = state_at(drive.joints[k], motion.time[row]);
+    const std::vector<JointState> now = states(motion.time[row]);
+    KINFER_EXPECT(static_cast<Eigen::Index>(now.size()) == motion.q.rows());
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      const JointState& state = now[k];
       const auto reading = static_cast<Eigen::Index>(k);
       motion.q(reading, column) = state.q;
       motion.qd(reading, column) = state.qd;

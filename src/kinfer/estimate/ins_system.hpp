@@ -1,0 +1,63 @@
+// Normal equations of a whole recording, eliminated up to the unknowns that hold for good.
+//
+// The recording is cut into stretches of fixed length. Each is linearised and condensed to its ends on a thread of its
+// own (linalg/band_stretch), the ends and the border are solved, then each stretch fills in what lies between. What a
+// stretch's elimination leaves behind is kept where it is small, else it is made again: so an hour needs little more
+// memory than a minute. The stretches depend on the recording alone, so results are the same for any number of threads.
+#pragma once
+
+#include "kinfer/estimate/ins_linearisation.hpp"
+#include "kinfer/linalg/band_stretch.hpp"
+
+namespace kinfer {
+
+struct Damping {
+  double band = 0.0, border = 0.0;  ///< times the diagonal (Marquardt)
+};
+
+class InsSystem {
+ public:
+  /// At x; the arguments must outlive the system. `most_kept` [bytes] of factors are kept rather than made again.
+  InsSystem(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, const Damping& damping,
+            int threads, double most_kept = 96.0 * 1048576);
+
+  bool positive() const { return ends_.positive(); }  ///< false: nothing below may be asked for
+
+  /// The step that solves the equations; nothing where they are not positive definite.
+  std::optional<BorderedBand::Solution> solve() const;
+
+  /// The information on the border when the band is free.
+  const MatrixXd& schur() const { return ends_.schur(); }
+
+  /// Gradient of the readings in the border's unknowns when the band follows, summed over blocks of so many intervals:
+  /// blocks x border. Its rows sum to about zero at the optimum, their spread is what the data really say.
+  MatrixXd block_scores(Eigen::Index intervals) const;
+
+ private:
+  struct Stretch {
+    Eigen::Index first = 0, end = 0;  // intervals
+  };
+  struct Condensed {
+    BandSpan span;
+    BorderSum border;
+    bool positive = false;
+    std::optional<BandStretch> kept;
+  };
+  Condensed condensed(const Stretch& stretch, bool keep) const;
+  BandStretch eliminated(const Stretch& stretch, BorderSum& border) const;
+  BandStretch eliminated(const Stretch& stretch, ConstVectorRef border) const;
+  MatrixXd between(std::size_t stretch, const BorderedBand::Solution& ends) const;
+  MatrixXd stretch_scores(std::size_t stretch, ConstMatrixRef ends_following) const;
+  Eigen::Index end_width() const { return (spline_order - 1) * layout_.channels; }
+
+  const InsProblem& problem_;
+  const InsLayout& layout_;
+  Damping damping_;
+  int threads_;
+  IntervalLinearisation linearisation_;
+  std::vector<Stretch> stretches_;
+  BorderedBand ends_;
+  std::vector<BandStretch> kept_;  // all stretches, or none
+};
+
+}  // namespace kinfer

@@ -1,0 +1,112 @@
+#include "kinfer/identify/clock_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/estimate/ins_system.hpp"
+
+namespace kinfer {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double clock_offset_sd = 0.01;                // [s] what comparing rates leaves
+constexpr double clock_drift_sd = 1e-4;                 // [s/s] quartz is within 100 ppm
+constexpr double least_offset = 2e-4;                   // [s] less does no harm
+constexpr double suspicious = 4.0, beyond_doubt = 6.0;  // standard deviations
+
+double turning(const InsReadings& readings) {
+  double sum = 0.0;
+  for (const InsBlock& block : readings.rate) sum += double{block.target.squaredNorm()};
+  return sum;
+}
+
+/// Largest shift of a clock over the recording.
+double largest_shift(const ClockCorrection& clock, const SplineGrid& grid) {
+  return std::max(std::abs(clock.shift_at(grid.begin)), std::abs(clock.shift_at(grid.end())));
+}
+
+bool differs(const RefinedClock& clock, const SplineGrid& grid, double certainty) {
+  const bool by_offset = std::abs(clock.correction.offset) > certainty * clock.offset_sd;
+  const bool by_drift = std::abs(clock.correction.drift) > certainty * clock.drift_sd;
+  return (by_offset || by_drift) && largest_shift(clock.correction, grid) > least_offset;
+}
+
+RefinedClock clock_at(const InsFit& fit, const InsCovariance& covariance, std::size_t sensor, double middle) {
+  const Index at = fit.layout.error[sensor] + fit.layout.clock_error;
+  const auto sd = [&](Index k) { return std::sqrt(covariance.model(k, k) * std::max(1.0, covariance.inflation[k])); };
+  const InsClock& clock = fit.unknowns.errors[sensor].clock;
+  return {{clock.offset, clock.drift, middle}, sd(at), sd(at + 1)};
+}
+
+/// The problem with free clocks for as long as this lives, and with its noise as it was after it; a copy would hold an
+/// hour's readings twice.
+class WithFreeClocks {
+ public:
+  explicit WithFreeClocks(InsProblem& problem)
+      : problem_(problem), prior_(problem.prior), reference_(problem.clock_reference) {
+    for (const InsReadings& readings : problem.sensors) noise_.push_back(readings.noise);
+    free_clocks(problem);
+  }
+  WithFreeClocks(const WithFreeClocks&) = delete;
+  WithFreeClocks& operator=(const WithFreeClocks&) = delete;
+  ~WithFreeClocks() {
+    if (kept_) return;
+    problem_.prior = prior_;
+    problem_.clock_reference = reference_;
+    for (std::size_t s = 0; s < noise_.size(); ++s) problem_.sensors[s].noise = noise_[s];
+  }
+  void keep() { kept_ = true; }
+
+ private:
+  InsProblem& problem_;
+  InsErrorPrior prior_;
+  std::size_t reference_;
+  std::vector<InsNoise> noise_;
+  bool kept_ = false;
+};
+
+}  // namespace
+
+void free_clocks(InsProblem& problem) {
+  problem.prior.clock_offset = clock_offset_sd;
+  problem.prior.clock_drift = clock_drift_sd;
+  const auto most = std::ranges::max_element(problem.sensors, {}, turning);
+  problem.clock_reference = static_cast<std::size_t>(most - problem.sensors.begin());
+}
+
+bool clocks_are_doubtful(InsProblem& problem, const InsFit& fit, int threads) {
+  const WithFreeClocks free(problem);
+  InsFit next{.unknowns = {}, .layout = layout_of(problem, fit.unknowns.bodies), .cost = {}};
+  const auto step = InsSystem(problem, next.layout, fit.unknowns, {}, threads).solve();
+  const auto covariance = covariance_of(problem, next.layout, fit.unknowns, threads);
+  if (!step || !covariance) return false;
+  next.unknowns = changed(problem, next.layout, fit.unknowns, step->band, step->border);
+  const auto clocks = refined_clocks(problem, next, *covariance);
+  return std::ranges::any_of(clocks,
+                             [&](const RefinedClock& clock) { return differs(clock, problem.grid, suspicious); });
+}
+
+void refit_with_clocks(InsProblem& problem, InsFit& fit, const InsFitOptions& options, const Observer& observer) {
+  WithFreeClocks free(problem);
+  InsFit trial = fit_ins(problem, fit.unknowns, options, observer);
+  const auto covariance = covariance_of(problem, trial.layout, trial.unknowns, options.threads);
+  if (!covariance) return;
+  const auto clocks = refined_clocks(problem, trial, *covariance);
+  if (std::ranges::none_of(clocks,
+                           [&](const RefinedClock& clock) { return differs(clock, problem.grid, beyond_doubt); }))
+    return;
+  free.keep();
+  fit = std::move(trial);
+}
+
+std::vector<RefinedClock> refined_clocks(const InsProblem& problem, const InsFit& fit,
+                                         const InsCovariance& covariance) {
+  std::vector<RefinedClock> clocks;
+  if (!fit.layout.has_clocks) return clocks;
+  const double middle = 0.5 * (problem.grid.begin + problem.grid.end());
+  for (std::size_t s = 0; s < fit.unknowns.errors.size(); ++s) clocks.push_back(clock_at(fit, covariance, s, middle));
+  return clocks;
+}
+
+}  // namespace kinfer

@@ -1,0 +1,19 @@
+#include "kinfer/linalg/small_cholesky.hpp"
+
+#include <cmath>
+
+namespace kinfer {
+
+bool factorise_small(MatrixXd& a) {
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    const double pivot = a(j, j) - a.row(j).head(j).squaredNorm();
+    if (!(pivot > 0.0)) return false;
+    a(j, j) = std::sqrt(pivot);
+    for (Eigen::Index i = j + 1; i < a.rows(); ++i)
+      a(i, j) = (a(i, j) - a.row(i).head(j).dot(a.row(j).head(j))) / a(j, j);
+    a.col(j).head(j).setZero();
+  }
+  return true;
+}
+
+}  // namespace kinfer

@@ -1,0 +1,74 @@
+#include "kinfer/simulate/log_faults.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "kinfer/base/expect.hpp"
+#include "kinfer/measurement/chosen_sensors.hpp"
+
+namespace kinfer {
+
+InsRecording with_own_clock(const InsRecording& recording, const ClockFault& fault) {
+  KINFER_EXPECT(fault.sensor < recording.sensors.size());
+  InsRecording result = recording;
+  InsSensor& sensor = result.sensors[fault.sensor];
+  InsLogger logger = recording.loggers[sensor.logger];
+  logger.name = sensor.name + ".csv";
+  const double middle = 0.5 * (logger.time.front() + logger.time.back());
+  for (double& t : logger.time) t += fault.offset + fault.drift * (t - middle);
+  sensor.logger = result.loggers.size();
+  result.loggers.push_back(std::move(logger));
+  return result;
+}
+
+InsRecording with_late_rows(const InsRecording& recording, std::size_t sensor, std::size_t rows) {
+  KINFER_EXPECT(sensor < recording.sensors.size() && rows < recording.sensors[sensor].rows());
+  InsRecording result = recording;
+  InsSensor& late = result.sensors[sensor];
+  const auto by = static_cast<std::ptrdiff_t>(rows);
+  for (TriadColumns* columns : {&late.acceleration, &late.rate, &late.field})
+    for (std::vector<float>& axis : columns->axis) {
+      if (axis.empty()) continue;
+      std::shift_right(axis.begin(), axis.end(), by);
+      std::fill_n(axis.begin(), by, std::numeric_limits<float>::quiet_NaN());
+    }
+  std::shift_right(late.faults.begin(), late.faults.end(), by);
+  std::fill_n(late.faults.begin(), by, std::uint8_t{acceleration_missing | rate_missing | field_missing});
+  return result;
+}
+
+MachineMotion with_remount(MachineMotion motion, std::size_t sensor, std::size_t row, const Pose& old_T_new) {
+  KINFER_EXPECT(sensor < motion.sensors.size() && motion.time.size() > 2);
+  SensorMotion& m = motion.sensors[sensor];
+  const SensorMotion was = m;
+  const double period = motion.time[1] - motion.time[0];
+  const Mat3 new_R_old = old_T_new.rotation.transpose();
+  const Vec3& lever = old_T_new.position;
+  for (std::size_t i = row; i < motion.time.size(); ++i) {
+    const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, motion.time.size() - 1);
+    const Vec3 rate_change = (was.rate[after] - was.rate[before]) / (period * static_cast<double>(after - before));
+    const Vec3& rate = was.rate[i];
+    m.force[i] = new_R_old * (was.force[i] + rate_change.cross(lever) + rate.cross(rate.cross(lever)));
+    m.rate[i] = new_R_old * rate;
+    m.field[i] = new_R_old * was.field[i];
+    m.position[i] += was.world_R_sensor[i] * lever;
+    m.world_R_sensor[i] = was.world_R_sensor[i] * Quat(old_T_new.rotation);
+  }
+  return motion;
+}
+
+InsRecording side_by_side(const InsRecording& one, const InsRecording& other, const std::string& prefix) {
+  KINFER_EXPECT(one.loggers.size() == 1 && other.loggers.size() == 1);
+  const double end = std::min(one.loggers[0].time.back(), other.loggers[0].time.back());
+  InsRecording result = within(one, one.loggers[0].time.front(), end);
+  const std::size_t rows = result.loggers[0].time.size();
+  const InsRecording more = within(other, other.loggers[0].time.front(), end);
+  KINFER_EXPECT(more.loggers[0].time.size() == rows);
+  for (InsSensor sensor : more.sensors) {
+    sensor.name = prefix + sensor.name;
+    result.sensors.push_back(std::move(sensor));
+  }
+  return result;
+}
+
+}  // namespace kinfer

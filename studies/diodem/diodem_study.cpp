@@ -1,0 +1,119 @@
+// The real chain of five segments, moved by hand: found from its INS alone, judged by cameras. One argument: the folder
+// of a trial with rigid.csv, nonrigid.csv and optical.csv; then, if only one is wanted, the log and the root.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/base/angle.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/identify/identify.hpp"
+#include "kinfer/io/ins_csv.hpp"
+#include "studies/diodem/optical_truth.hpp"
+
+namespace kinfer::study {
+namespace {
+
+constexpr double length_of_segment_4 = 0.2706, length_of_segments_2_and_3 = 0.5782;  // [m] by the cameras, to 1-2 mm
+
+/// A joint with the segment of the smaller number as its parent.
+FoundJoint outward(FoundJoint joint) {
+  if (joint.parent < joint.child) return joint;
+  std::swap(joint.parent, joint.child);
+  std::swap(joint.axis_in_parent, joint.axis_in_child);
+  std::swap(joint.point_in_parent, joint.point_in_child);
+  std::swap(joint.sd.axis_in_parent, joint.sd.axis_in_child);
+  std::swap(joint.sd.point_in_parent, joint.sd.point_in_child);
+  return joint;
+}
+
+FoundJoint joint_between(const Identification& found, const std::string& parent, const std::string& child) {
+  for (const FoundJoint& joint : found.joints)
+    if (const FoundJoint turned = outward(joint); turned.parent == parent && turned.child == child) return turned;
+  return {};
+}
+
+double degrees_between(const Vec3& a, const Vec3& b) {
+  return Angle::rad(std::asin(std::min(1.0, a.cross(b).norm()))).deg();
+}
+
+struct Length {
+  double metres = 0.0, sd = 0.0;
+};
+
+double largest(const std::array<double, 2>& sd) {
+  return std::max(sd[0], sd[1]);
+}
+
+/// Joint 12 to joint 34 along hinge 23: the split between both segments slides along the hinge, their sum does not.
+Length segments_2_and_3(const Identification& found) {
+  const FoundJoint j12 = joint_between(found, "seg1", "seg2"), j23 = joint_between(found, "seg2", "seg3"),
+                   j34 = joint_between(found, "seg3", "seg4");
+  const Vec3 &a = j23.axis_in_child, &b = j34.axis_in_parent, between = j34.point_in_parent - j23.point_in_child;
+  const double in_2 = (j23.point_in_parent - j12.point_in_child).dot(j23.axis_in_parent);
+  const double c = a.dot(b), in_3 = (between.dot(a) - c * between.dot(b)) / (1.0 - c * c);  // foot on line 34
+  return {std::abs(in_2 + in_3),
+          std::hypot(largest(j12.sd.point_in_child), j23.sd.slide, largest(j34.sd.point_in_parent))};
+}
+
+void print(const char* name, const Length& length, double truth) {
+  fmt::print("  {:<15} {:6.1f} mm, sd {:4.1f}; truth {:.1f}; actual/predicted {:5.2f}\n", name, 1e3 * length.metres,
+             1e3 * length.sd, 1e3 * truth, (length.metres - truth) / length.sd);
+}
+
+void judge(const Identification& found, const OpticalLog& optical, const OpticalAlignment& alignment) {
+  std::vector<double> errors;
+  for (const auto& [parent, child] : {std::pair{"seg2", "seg3"}, {"seg3", "seg4"}, {"seg4", "seg5"}}) {
+    const FoundJoint joint = joint_between(found, parent, child);
+    const OpticalHinge truth = optical_hinge(optical, alignment, parent, child);
+    const double is_parent = degrees_between(joint.axis_in_parent, truth.in_parent),
+                 is_child = degrees_between(joint.axis_in_child, truth.in_child);
+    errors.insert(errors.end(), {is_parent, is_child});
+    const auto deg = [](const std::array<double, 2>& sd) { return Angle::rad(std::hypot(sd[0], sd[1])).deg(); };
+    fmt::print(
+        "  hinge {}-{}: axis {:.2f} and {:.2f} deg off (sd {:.2f}, {:.2f}); by the cameras it strays {:.2f} deg\n",
+        parent, child, is_parent, is_child, deg(joint.sd.axis_in_parent), deg(joint.sd.axis_in_child),
+        Angle::rad(truth.stray).deg());
+  }
+  fmt::print("  axes: median {:.2f}, worst {:.2f} deg; joint seg1-seg2 is {}\n", median(errors),
+             *std::ranges::max_element(errors), name(joint_between(found, "seg1", "seg2").type));
+  for (const FoundLink& link : found.links)
+    if (link.segment == "seg4") print("segment 4", {link.length, link.sd}, length_of_segment_4);
+  print("segments 2 + 3", segments_2_and_3(found), length_of_segments_2_and_3);
+  fmt::print("  {}\n", found.verdict);
+}
+
+void run(const std::string& folder, const std::string& log, const std::string& root) {
+  const auto recording = read_ins_csv(folder + "/" + log + ".csv");
+  const auto optical = read_optical(folder + "/optical.csv", {"seg1", "seg2", "seg3", "seg4", "seg5"});
+  if (!recording || !optical) {
+    fmt::print("{}\n", recording ? optical.error().what : recording.error().what);
+    return;
+  }
+  const OpticalAlignment alignment = aligned(*optical, *recording);
+  fmt::print("{} from {}: the cameras' clock is {:.0f} ms behind; turning rates differ by", log, root,
+             1e3 * alignment.late);
+  for (const auto& [segment, rms] : alignment.rms) fmt::print(" {:.3f}", rms);
+  fmt::print(" rad/s\n");
+  const auto found = identify(*recording, {.root = root}, Rng(1));
+  if (!found)
+    fmt::print("  {}\n", found.error().what);
+  else
+    judge(*found, *optical, alignment);
+}
+
+}  // namespace
+}  // namespace kinfer::study
+
+int main(int argc, char** argv) {
+  if (argc != 2 && argc != 4) {
+    fmt::print("usage: study_diodem FOLDER [LOG ROOT]\n");
+    return 1;
+  }
+  if (argc == 4) {
+    kinfer::study::run(argv[1], argv[2], argv[3]);
+    return 0;
+  }
+  for (const char* log : {"rigid", "nonrigid"})
+    for (const char* root : {"seg5", "seg1"}) kinfer::study::run(argv[1], log, root);
+}

@@ -1,0 +1,147 @@
+#include "studies/diodem/optical_truth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "kinfer/geometry/fit.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/identify/loose_hinge.hpp"
+
+namespace kinfer::study {
+namespace {
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::stringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+double number(const std::vector<std::string>& cells, std::size_t column) {
+  if (column >= cells.size() || cells[column].empty()) return std::numeric_limits<double>::quiet_NaN();
+  return std::stod(cells[column]);
+}
+
+Mat3 rotation_at(const std::vector<std::string>& cells, std::size_t first) {
+  return Quat(number(cells, first), number(cells, first + 1), number(cells, first + 2), number(cells, first + 3))
+      .normalized()
+      .toRotationMatrix();
+}
+
+/// The gyro's integral up to each row, so that mean rates between any two times are differences [rad].
+struct TurnedSum {
+  std::span<const double> time;
+  std::vector<Vec3> sum;
+
+  TurnedSum(const InsSensor& sensor, std::span<const double> t) : time(t) {
+    const std::size_t at_rest = std::min<std::size_t>(40, t.size());
+    Vec3 bias = Vec3::Zero(), total = Vec3::Zero();
+    for (std::size_t i = 0; i < at_rest; ++i) bias += sensor.rate.at(i) / static_cast<double>(at_rest);
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      if (i > 0) total += (t[i] - t[i - 1]) * (0.5 * (sensor.rate.at(i) + sensor.rate.at(i - 1)) - bias);
+      sum.push_back(total);
+    }
+  }
+
+  Vec3 at(double t) const {
+    const auto after = std::ranges::lower_bound(time, t);
+    const auto i = static_cast<std::size_t>(
+        std::clamp<std::ptrdiff_t>(after - time.begin(), 1, static_cast<std::ptrdiff_t>(time.size()) - 1));
+    const double share = std::clamp((t - time[i - 1]) / (time[i] - time[i - 1]), 0.0, 1.0);
+    return sum[i - 1] + share * (sum[i] - sum[i - 1]);
+  }
+};
+
+constexpr std::size_t pictures = 3;  // between the two of a turn: a tenth of a second
+
+struct Turns {
+  std::vector<Vec3> optical, gyro;  // [rad] of the same times
+};
+
+Turns turns_of(const OpticalLog& optical, const std::vector<Mat3>& pose, const TurnedSum& gyro, double late) {
+  Turns turns;
+  for (std::size_t i = 0; i + pictures < optical.time.size(); ++i) {
+    const Mat3 turn = pose[i].transpose() * pose[i + pictures];
+    const double from = optical.time[i] + late, to = optical.time[i + pictures] + late;
+    if (!turn.allFinite() || from < gyro.time.front() || to > gyro.time.back()) continue;
+    turns.optical.push_back(log_so3(turn));
+    turns.gyro.push_back(gyro.at(to) - gyro.at(from));
+  }
+  return turns;
+}
+
+/// The rotation about the origin that carries the first to the second best.
+Mat3 rotation_between(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+  std::vector<Vec3> a = to, b = from;
+  for (const Vec3& v : to) a.push_back(-v);  // so that both centroids are the origin
+  for (const Vec3& v : from) b.push_back(-v);
+  return align_points(a, b).rotation;
+}
+
+/// [rad/s] what the best rotation leaves; the worst hundredth left out: pictures beside gaps.
+double difference(const Turns& turns, const Mat3& rotation) {
+  std::vector<double> squares;
+  for (std::size_t i = 0; i < turns.gyro.size(); ++i)
+    squares.push_back((turns.gyro[i] - rotation * turns.optical[i]).squaredNorm());
+  std::ranges::sort(squares);
+  squares.resize(squares.size() - squares.size() / 100);
+  double sum = 0.0;
+  for (const double s : squares) sum += s / static_cast<double>(squares.size());
+  return std::sqrt(sum) * 30.0 / static_cast<double>(pictures);
+}
+
+}  // namespace
+
+Result<OpticalLog> read_optical(const std::string& path, const std::vector<std::string>& segments) {
+  std::ifstream file(path);
+  std::string line;
+  if (!std::getline(file, line)) return error("{} cannot be read", path);
+  const auto header = cells_of(line);
+  OpticalLog log;
+  while (std::getline(file, line)) {
+    const auto cells = cells_of(line);
+    log.time.push_back(number(cells, 0));
+    for (const std::string& name : segments) {
+      const auto first = std::ranges::find(header, name + "_qw");
+      if (first == header.end()) return error("{} has no column {}_qw", path, name);
+      log.segment[name].push_back(rotation_at(cells, static_cast<std::size_t>(first - header.begin())));
+    }
+  }
+  return log;
+}
+
+OpticalAlignment aligned(const OpticalLog& optical, const InsRecording& recording) {
+  OpticalAlignment best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int step = -30; step <= 30; ++step) {
+    OpticalAlignment alignment{.late = 1e-3 * step, .rotation = {}, .rms = {}};
+    double sum = 0.0;
+    for (const InsSensor& sensor : recording.sensors) {
+      const TurnedSum gyro(sensor, recording.time(sensor));
+      const Turns turns = turns_of(optical, optical.segment.at(sensor.name), gyro, alignment.late);
+      const Mat3 rotation = rotation_between(turns.optical, turns.gyro);
+      alignment.rotation[sensor.name] = rotation;
+      alignment.rms[sensor.name] = difference(turns, rotation);
+      sum += alignment.rms[sensor.name];
+    }
+    if (sum < least) least = sum, best = alignment;
+  }
+  return best;
+}
+
+OpticalHinge optical_hinge(const OpticalLog& optical, const OpticalAlignment& alignment, const std::string& parent,
+                           const std::string& child) {
+  std::vector<Mat3> rotations;
+  for (std::size_t i = 0; i < optical.time.size(); ++i) {
+    const Mat3 r = optical.segment.at(parent)[i].transpose() * optical.segment.at(child)[i];
+    if (r.allFinite())
+      rotations.push_back(alignment.rotation.at(parent) * r * alignment.rotation.at(child).transpose());
+  }
+  const LooseHinge hinge = loose_hinge(ball_body(0, 0, Mat3::Identity()), rotations, MatrixXd::Zero(6, 6), 0.0);
+  return {hinge.body.parent_R_axis.col(2), hinge.body.child_R_axis.col(2), hinge.stray};
+}
+
+}  // namespace kinfer::study

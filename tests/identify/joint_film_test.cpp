@@ -1,0 +1,140 @@
+#include "kinfer/identify/joint_film.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kinfer/base/rng.hpp"
+#include "kinfer/identify/joint_start.hpp"
+#include "kinfer/io/robot_toml.hpp"
+#include "kinfer/io/urdf.hpp"
+#include "kinfer/kinematics/forward.hpp"
+
+namespace kinfer {
+namespace {
+
+using Eigen::Index;
+
+Vec3 random_vector(Rng& rng) {
+  const double x = rng.normal(), y = rng.normal(), z = rng.normal();
+  return {x, y, z};
+}
+
+std::vector<InsBody> bodies_of(FoundJointType type, Rng& rng) {
+  const auto turn = [&] { return exp_so3(random_vector(rng)); };
+  std::vector<InsBody> bodies;
+  if (type == FoundJointType::prismatic) bodies = {sliding_body(0, 1, turn(), turn())};
+  if (type == FoundJointType::revolute) bodies = {turning_body(0, 1, turn(), turn())};
+  if (type == FoundJointType::spherical) bodies = {ball_body(0, 1, turn())};
+  if (type == FoundJointType::universal) {
+    bodies = {turning_body(0, -1, turn(), Mat3::Identity()), turning_body(1, 1, rot_y(1.2), turn())};
+    bodies[0].free_child_turn = {};
+    bodies[1].free_parent_turn = {false, true, false};
+    bodies[0].free_point_in_child = bodies[1].free_point_in_parent = false;
+  }
+  bodies.front().point_in_parent = random_vector(rng);
+  if (type != FoundJointType::prismatic) bodies.back().point_in_child = random_vector(rng);
+  return bodies;
+}
+
+/// parent_T_child as the continuous-time fit has it.
+Pose pose_of(const std::vector<InsBody>& bodies, const VectorXd& reading) {
+  Pose parent_T_here;
+  Index k = 0;
+  for (const InsBody& body : bodies) {
+    Mat3 turn = Mat3::Identity();
+    Vec3 slid = Vec3::Zero();
+    if (body.motion == JointMotion::turn) turn = rot_z(reading[k]);
+    if (body.motion == JointMotion::slide) slid = reading[k] * body.parent_R_axis.col(2);
+    if (body.motion == JointMotion::ball) turn = exp_so3(reading.segment<3>(k));
+    k += freedoms(body.motion);
+    const Mat3 rotation = body.parent_R_axis * turn * body.child_R_axis.transpose();
+    parent_T_here = parent_T_here * Pose{rotation, body.point_in_parent + slid - rotation * body.point_in_child};
+  }
+  return parent_T_here;
+}
+
+struct Played {
+  Chain chain;
+  MatrixXd film;
+  std::vector<Pose> truth;
+};
+
+Played played(FoundJointType type, std::uint64_t seed) {
+  Rng rng(seed);
+  const std::vector<InsBody> bodies = bodies_of(type, rng);
+  const SplineGrid grid{.begin = 2.0, .period = 0.1, .intervals = 12};
+  Index freedom = 0, unknowns = 0;
+  for (const InsBody& body : bodies) freedom += freedoms(body.motion), unknowns += body.unknowns();
+  MatrixXd band(freedom, grid.coefficients());
+  for (double& value : band.reshaped()) value = 0.5 * rng.normal();
+  const std::vector<double> times{2.0, 2.17, 2.5, 2.93, 3.2};
+  const VectorXd zero = spline_value(grid, band, grid.begin);
+  const bool is_ball = type == FoundJointType::spherical;
+  const Mat3 axes = is_ball ? ball_axes(ball_turns(grid, band, times)) : Mat3(Mat3::Identity());
+  RefinedJoint joint = refined_joint(type, bodies, std::span(zero.data(), static_cast<std::size_t>(zero.size())),
+                                     MatrixXd::Identity(unknowns, unknowns), axes);
+  joint.found.parent = "a";
+  joint.found.child = "b";
+  Played result{found_chain("a", {joint.found}, canonical_rows(joint.found, joint.hinge), Mat3::Identity()),
+                joint_film(type, bodies, joint.hinge.geometry, grid, band, times),
+                {}};
+  for (const double t : times) result.truth.push_back(pose_of(bodies, spline_value(grid, band, t)));
+  return result;
+}
+
+constexpr std::array every_type{FoundJointType::revolute, FoundJointType::prismatic, FoundJointType::universal,
+                                FoundJointType::spherical};
+
+double largest_difference(const Pose& a, const Pose& b) {
+  return std::max((a.rotation - b.rotation).cwiseAbs().maxCoeff(), (a.position - b.position).cwiseAbs().maxCoeff());
+}
+
+TEST(JointFilm, MovesTheFoundChainAsTheFitHasIt) {
+  for (const FoundJointType type : every_type)
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      const Played p = played(type, seed);
+      ASSERT_EQ(dof(p.chain), p.film.rows());
+      EXPECT_LT(p.film.col(0).norm(), 1e-12) << "the zero is where the recording begins";
+      for (std::size_t i = 0; i < p.truth.size(); ++i) {
+        const Pose found = joint_frames(p.chain, p.film.col(static_cast<Index>(i))).back();
+        EXPECT_LT(largest_difference(found, p.truth[i]), 1e-9) << name(type) << " " << seed << " " << i;
+      }
+    }
+}
+
+TEST(JointFilm, IsReadAgainFromTheFilesToTheSamePoses) {
+  for (const FoundJointType type : every_type) {
+    const Played p = played(type, 9);
+    const auto from_urdf = parse_urdf(urdf(p.chain), "chain.urdf");
+    const auto from_toml = parse_robot_toml(robot_toml({.chain = p.chain}), "chain.toml");
+    ASSERT_TRUE(from_urdf && from_toml);
+    for (Index i = 0; i < p.film.cols(); ++i) {
+      const Pose before = forward(p.chain, p.film.col(i));
+      EXPECT_LT(largest_difference(before, forward(*from_urdf, p.film.col(i))), 1e-9) << name(type);
+      EXPECT_LT(largest_difference(before, forward(from_toml->chain, p.film.col(i))), 1e-9) << name(type);
+    }
+  }
+}
+
+TEST(JointFilm, CardanAnglesGoOnThroughTheirSingularity) {
+  Vec3 angles = Vec3::Zero();
+  for (int i = 0; i <= 200; ++i) {
+    const double t = 0.01 * i;
+    const Mat3 r = rot_x(0.3 * t) * rot_y(t * std::numbers::pi / 2.0) * rot_z(-0.2 * t);  // through 90° to 180°
+    angles = cardan_angles(r, angles);
+    EXPECT_LT((rot_x(angles.x()) * rot_y(angles.y()) * rot_z(angles.z()) - r).norm(), 1e-7) << i;
+  }
+  EXPECT_NEAR(angles.y(), std::numbers::pi, 1e-6);
+}
+
+TEST(JointFilm, ABallTurnsMostAboutItsFirstAxisAndLeastAboutItsSecond) {
+  MatrixXd turns(3, 3);
+  turns << 0.1, -0.1, 0.0, 0.5, -0.4, 0.2, 1.0, 2.0, -1.5;
+  const Mat3 axes = ball_axes(turns);
+  const Vec3 size = (axes.transpose() * turns).rowwise().norm();
+  EXPECT_GT(size.x(), size.z());
+  EXPECT_GT(size.z(), size.y());
+  EXPECT_NEAR(axes.determinant(), 1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace kinfer

@@ -1,0 +1,19 @@
+// Long signals as the page holds them: 16-bit steps in base64 (src/kinfer/report/packed.hpp).
+
+export interface Packed {
+  zero: number;
+  step: number;
+  packed: string;
+}
+
+const missing = 65535;
+
+export function unpacked(signal: Packed): (number | null)[] {
+  const bytes = atob(signal.packed);
+  const numbers: (number | null)[] = [];
+  for (let i = 0; i + 1 < bytes.length; i += 2) {
+    const steps = bytes.charCodeAt(i) + 256 * bytes.charCodeAt(i + 1);
+    numbers.push(steps === missing ? null : signal.zero + signal.step * steps);
+  }
+  return numbers;
+}
