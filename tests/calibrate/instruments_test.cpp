@@ -12,12 +12,6 @@ namespace {
 
 using namespace test;
 
-Chain nominal_robot() {
-  Chain chain = er20(0.125);
-  chain.tool.xyz = Vec3(0.03, 0.02, 0.1);
-  return chain;
-}
-
 /// Errors of the size that the default tolerances expect, everywhere.
 Chain true_robot(int seed = 1) {
   return with_random_errors(nominal_robot(), {}, Rng(seed));

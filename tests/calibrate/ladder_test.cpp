@@ -13,12 +13,6 @@ namespace {
 
 using namespace test;
 
-Chain nominal_robot() {
-  Chain chain = er20(0.125);
-  chain.tool.xyz = Vec3(0.03, 0.02, 0.1);
-  return chain;
-}
-
 PoseSet readings(const Chain& truth, int poses, int seed = 1) {
   return readings_of(measured(truth, paper2_poses(poses, noise_free), seed));
 }

@@ -11,12 +11,6 @@ namespace {
 
 using namespace test;
 
-Chain nominal_robot() {
-  Chain chain = er20(0.125);
-  chain.tool.xyz = Vec3(0.03, 0.02, 0.1);
-  return chain;
-}
-
 /// A robot that was calibrated with 50 poses, and then had its third motor changed and its tracker moved.
 struct Knocked {
   Chain truth = with_random_errors(nominal_robot(), {}, Rng(3));

@@ -10,12 +10,6 @@ namespace {
 
 using namespace test;
 
-Chain nominal_robot() {
-  Chain chain = er20(0.125);
-  chain.tool.xyz = Vec3(0.03, 0.02, 0.1);
-  return chain;
-}
-
 /// 80 poses of a robot with gears that geometry cannot describe; rows 5, 20 and 60 lie 3 mm off.
 PoseSet with_three_wrong_rows() {
   Chain truth = with_random_errors(nominal_robot(), {}, Rng(4));

@@ -4,17 +4,14 @@
 
 #include "kinfer/base/rng.hpp"
 #include "support/differences.hpp"
+#include "support/random.hpp"
 
 namespace kinfer {
 namespace {
 
 using Eigen::Index;
+using test::random_vector;
 using testing::numeric_jacobian;
-
-Vec3 random_vector(Rng& rng) {
-  const double x = rng.normal(), y = rng.normal(), z = rng.normal();
-  return {x, y, z};
-}
 
 VectorXd flat(const InsState& s) {
   VectorXd x(12);

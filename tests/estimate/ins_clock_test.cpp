@@ -2,16 +2,13 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/estimate/ins_linearisation.hpp"
+#include "support/random.hpp"
 
 namespace kinfer {
 namespace {
 
 using Eigen::Index;
-
-Vec3 random_vector(Rng& rng) {
-  const double x = rng.normal(), y = rng.normal(), z = rng.normal();
-  return {x, y, z};
-}
+using test::random_vector;
 
 struct Example {
   InsProblem problem;

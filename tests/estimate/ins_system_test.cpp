@@ -4,16 +4,13 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "support/random.hpp"
 
 namespace kinfer {
 namespace {
 
 using Eigen::Index;
-
-Vec3 random_vector(Rng& rng) {
-  const double x = rng.normal(), y = rng.normal(), z = rng.normal();
-  return {x, y, z};
-}
+using test::random_vector;
 
 std::vector<InsBlock> random_blocks(Index intervals, Rng& rng) {
   std::vector<InsBlock> blocks(static_cast<std::size_t>(intervals));

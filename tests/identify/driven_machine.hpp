@@ -1,9 +1,11 @@
 // Simulated machines, driven and measured, with what there is to find.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/identify/identify.hpp"
 #include "kinfer/simulate/ins_simulation.hpp"
 #include "kinfer/simulate/truth.hpp"
 #include "simulate/worlds.hpp"
@@ -45,6 +47,12 @@ inline double worst_line_error(const std::vector<FoundJoint>& found, const Machi
     if (joint.type == JointType::revolute) worst = std::max(worst, line_error(*f, joint));
   }
   return worst;
+}
+
+inline Identification identified(const InsRecording& recording, const IdentifyOptions& options = {}) {
+  const auto found = identify(recording, options, Rng(1));
+  EXPECT_TRUE(found) << found.error().what;
+  return found ? *found : Identification{};
 }
 
 inline bool has_finding(const Identification& found, const std::string& kind, const std::string& word = "") {

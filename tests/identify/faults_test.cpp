@@ -14,13 +14,8 @@ namespace {
 using test::driven_machine;
 using test::DrivenMachine;
 using test::has_finding;
+using test::identified;
 using test::worst_line_error;
-
-Identification identified(const InsRecording& recording, const IdentifyOptions& options = {}) {
-  const auto found = identify(recording, options, Rng(1));
-  EXPECT_TRUE(found) << found.error().what;
-  return found ? *found : Identification{};
-}
 
 /// The excavator at seed 3, the given sensor remounted after `seconds`.
 DrivenMachine remounted(std::size_t sensor, double seconds, const Pose& old_T_new) {

@@ -6,21 +6,16 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "identify/driven_machine.hpp"
 #include "kinfer/identify/ordered_motion.hpp"
 #include "kinfer/io/ins_csv.hpp"
-#include "kinfer/simulate/ins_simulation.hpp"
-#include "kinfer/simulate/truth.hpp"
-#include "simulate/worlds.hpp"
 
 namespace kinfer {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct DrivenMachine {
-  InsRecording recording;
-  MachineTruth truth;
-};
+using test::DrivenMachine;
+using test::line_error;
 
 DrivenMachine driven_machine(const std::string& name, const MachineOptions& options, Script script, std::uint64_t seed,
                              const char* grade = "noise") {
@@ -103,16 +98,6 @@ TEST(SegmentTree, IsRightWithAMarginOnAMeasuredChainWithASphericalJointAndSoftMo
                 testing::UnorderedElementsAre("seg1-seg2", "seg2-seg3", "seg3-seg4", "seg4-seg5"));
     EXPECT_GT(ordered->tree.margin, 2.0) << mounts;
   }
-}
-
-double line_error(const FoundJoint& found, const JointTruth& truth) {  // in the child's sensor [m]
-  Vec3 error = found.point_in_child - truth.point_in_child;
-  std::vector<Vec3> free{truth.axis_in_child};
-  for (const Vec3& hidden : truth.hidden_in_child)
-    if (hidden.cross(free.front()).norm() > 1e-3)
-      free.push_back((hidden - free.front() * free.front().dot(hidden)).normalized());
-  for (const Vec3& direction : free) error -= direction * direction.dot(error);
-  return error.norm();
 }
 
 TEST(Identify, FindsTheFirstLinksOfThePapersExcavator) {

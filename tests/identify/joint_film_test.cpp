@@ -7,16 +7,13 @@
 #include "kinfer/io/robot_toml.hpp"
 #include "kinfer/io/urdf.hpp"
 #include "kinfer/kinematics/forward.hpp"
+#include "support/random.hpp"
 
 namespace kinfer {
 namespace {
 
 using Eigen::Index;
-
-Vec3 random_vector(Rng& rng) {
-  const double x = rng.normal(), y = rng.normal(), z = rng.normal();
-  return {x, y, z};
-}
+using test::random_vector;
 
 std::vector<InsBody> bodies_of(FoundJointType type, Rng& rng) {
   const auto turn = [&] { return exp_so3(random_vector(rng)); };

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include "identify/driven_machine.hpp"
-#include "kinfer/identify/identify.hpp"
 #include "kinfer/simulate/log_faults.hpp"
 
 namespace kinfer {
@@ -12,13 +11,8 @@ namespace {
 using test::driven_machine;
 using test::DrivenMachine;
 using test::has_finding;
+using test::identified;
 using test::worst_line_error;
-
-Identification identified(const InsRecording& recording) {
-  const auto found = identify(recording, {}, Rng(1));
-  EXPECT_TRUE(found) << found.error().what;
-  return *found;
-}
 
 const FoundClock& clock_of(const Identification& found, const std::string& sensor) {
   const auto place = std::ranges::find(found.clocks, sensor, &FoundClock::sensor);

@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "kinfer/estimate/residuals.hpp"
+#include "support/random.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer::test {
 
 inline Vec3 noise(Rng& rng, double sd) {
-  const double x = rng.normal(), y = rng.normal(), z = rng.normal();
-  return sd * Vec3(x, y, z);
+  return sd * random_vector(rng);
 }
 
 /// The readings of the set, nothing measured.

@@ -54,4 +54,11 @@ inline PoseSet measured(const Chain& truth, const PoseSimulation& simulation, in
 inline constexpr Instrument noise_free{};
 inline constexpr Instrument tracker{.sigma = 10e-6, .sigma_angle = 1e-5, .ppm = 5.0};
 
+/// The nominal model of many tests: paper 2's robot with a target off the last axis.
+inline Chain nominal_robot() {
+  Chain chain = er20(0.125);
+  chain.tool.xyz = Vec3(0.03, 0.02, 0.1);
+  return chain;
+}
+
 }  // namespace kinfer::test

@@ -8,7 +8,6 @@
 #include <memory>
 #include <sstream>
 
-#include "kinfer/base/sha256.hpp"
 #include "kinfer/calibrate/local_poe.hpp"
 #include "kinfer/calibrate/rungs.hpp"
 #include "kinfer/calibrate/unknown.hpp"
@@ -141,9 +140,7 @@ std::vector<std::string> input_paths(const Options& options) {
 Provenance provenance_of(const Options& options) {
   Provenance provenance;
   provenance.seed = options.common.seed;
-  for (const std::string& path : input_paths(options))
-    if (const auto fingerprint = sha256_of_file(path))
-      provenance.inputs.push_back({std::filesystem::path(path).filename().string(), *fingerprint});
+  provenance.inputs = fingerprints(input_paths(options));
   const auto plain = [](const std::string& value) { return std::filesystem::path(value).filename().string(); };
   provenance.options.emplace_back("--parameters", plain(options.parameters));
   provenance.options.emplace_back("--model", options.model);

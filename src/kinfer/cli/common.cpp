@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/base/sha256.hpp"
 #include "kinfer/base/version.hpp"
 #include "kinfer/cli/terminal.hpp"
 #include "kinfer/io/text_file.hpp"
@@ -101,6 +102,14 @@ Result<void> RunRecord::write(const std::filesystem::path& folder) const {
   run["began"] = fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(begin_)));
   run["seconds"] = std::chrono::duration<double>(end - begin_).count();
   return write_text_file(folder / "run.json", run.dump(1) + "\n");
+}
+
+std::vector<InputFile> fingerprints(const std::vector<std::string>& paths) {
+  std::vector<InputFile> files;
+  for (const std::string& path : paths)
+    if (const auto fingerprint = sha256_of_file(path))
+      files.push_back({std::filesystem::path(path).filename().string(), *fingerprint});
+  return files;
 }
 
 }  // namespace kinfer::cli

@@ -11,6 +11,7 @@
 #include "kinfer/base/observer.hpp"
 #include "kinfer/base/result.hpp"
 #include "kinfer/cli/arguments.hpp"
+#include "kinfer/evidence/provenance.hpp"
 
 namespace kinfer::cli {
 
@@ -81,6 +82,9 @@ class RunRecord {
   std::vector<std::string> inputs_;
   std::chrono::system_clock::time_point begin_;
 };
+
+/// Names and hashes of what a run has read, for its evidence; what cannot be read is left out.
+std::vector<InputFile> fingerprints(const std::vector<std::string>& paths);
 
 /// Remembers the program's arguments for run.json.
 void remember_command_line(int argc, char** argv);

@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 
-#include "kinfer/base/sha256.hpp"
 #include "kinfer/cli/arguments.hpp"
 #include "kinfer/cli/drive_choices.hpp"
 #include "kinfer/cli/identify_summary.hpp"
@@ -101,9 +100,7 @@ Provenance provenance_of(const Options& options) {
   provenance.seed = options.common.seed;
   std::vector<std::string> inputs = options.logs;
   if (!options.facts.empty()) inputs.push_back(options.facts);
-  for (const std::string& path : inputs)
-    if (const auto fingerprint = sha256_of_file(path))
-      provenance.inputs.push_back({std::filesystem::path(path).filename().string(), *fingerprint});
+  provenance.inputs = fingerprints(inputs);
   const BacterialOptions& b = options.search.bacteria;
   provenance.options = {{"--engine", options.engine},
                         {"--terminals", options.terminals},
@@ -128,14 +125,13 @@ Provenance provenance_of(const Options& options) {
   return provenance;
 }
 
-Result<void> write_results(const Options& options, const Identification& found) {
-  const std::filesystem::path folder(options.out);
+Result<void> write_results(const OutputFolder& folder, const Options& options, const Identification& found) {
   RobotModel robot{.chain = found.chain};
   if (auto done = write_text_file(folder / "chain.toml", robot_toml(robot)); !done) return done;
   if (auto done = write_text_file(folder / "chain.urdf", urdf(found.chain)); !done) return done;
   if (auto done = write_text_file(folder / "chain.mjcf", mjcf(found.chain)); !done) return done;
   if (auto done = write_text_file(folder / "chain_dh.csv", chain_dh_csv(found.dh)); !done) return done;
-  return write_evidence(folder, identification_json(found, provenance_of(options)));
+  return write_evidence(folder.path(), identification_json(found, provenance_of(options)));
 }
 
 int run(const Options& options) {
@@ -146,13 +142,14 @@ int run(const Options& options) {
   if (!how) return fail(how.error());
   const auto recording = read_ins_logs(options.logs);
   if (!recording) return fail(recording.error());
-  if (auto ready = make_writable_folder(options.out); !ready) return fail(ready.error());
+  const auto folder = OutputFolder::make(options.out);
+  if (!folder) return fail(folder.error());
   const Result<Identification> found = [&] {
     ProgressLine progress(options.common);
     return identify(*recording, *how, Rng(options.common.seed), progress.observer());
   }();
   if (!found) return fail(found.error());
-  if (auto done = write_results(options, *found); !done) return fail(done.error());
+  if (auto done = write_results(*folder, options, *found); !done) return fail(done.error());
   if (auto done = record.write(options.out); !done) return fail(done.error());
   if (options.common.json)
     fmt::print("{}", identification_headline_json(*found));

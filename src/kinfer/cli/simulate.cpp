@@ -98,8 +98,7 @@ Result<void> simulate(const Options& options) {
   const Machine machine = options.linkage ? with_linkage(world.machine()) : world.machine();
   KINFER_TRY(drive, make_drive(world.machine(), {.script = scripts.at(options.script), .duration = options.duration},
                                rng.stream(2)));
-  const std::filesystem::path folder(options.out);
-  if (auto ready = make_writable_folder(folder); !ready) return ready;
+  KINFER_TRY(folder, OutputFolder::make(options.out));
   KINFER_TRY(moved, move(world, machine, drive, options));
   const MachineTruth truth = machine_truth(machine, moved);
   KINFER_TRY(motion, with_remount(machine, std::move(moved), options.faults));
@@ -112,7 +111,7 @@ Result<void> simulate(const Options& options) {
        {std::pair{"imu.csv", imu_csv(recording)}, std::pair{"motion.csv", motion_csv(machine, motion)},
         std::pair{"truth.json", truth_json(record, drive, machine, truth)}, std::pair{"machine.xml", mjcf}})
     if (auto done = write_text_file(folder / name, text); !done) return done;
-  if (auto done = run_record.write(folder); !done) return done;
+  if (auto done = run_record.write(folder.path()); !done) return done;
   print_summary(options, machine, motion);
   return {};
 }

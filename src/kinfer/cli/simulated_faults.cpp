@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
+#include "kinfer/io/csv.hpp"
 #include "kinfer/simulate/log_faults.hpp"
 
 namespace kinfer::cli {
@@ -22,11 +22,9 @@ Result<SensorAndNumber> understood(const std::string& text, const char* option, 
   const std::string name = text.substr(0, equals), number = text.substr(equals + 1);
   const auto place = std::ranges::find_if(sensors, [&](const auto& sensor) { return sensor.name == name; });
   if (place == sensors.end()) return error("{} {}: no sensor {}", option, text, name);
-  char* end = nullptr;
-  const double value = std::strtod(number.c_str(), &end);
-  if (number.empty() || *end != '\0' || !(value >= 0.0))
-    return error("{} {}: expected a number that is not negative after =", option, text);
-  return SensorAndNumber{static_cast<std::size_t>(place - sensors.begin()), value};
+  const auto value = parse_number(number);
+  if (!value || !(*value >= 0.0)) return error("{} {}: expected a number that is not negative after =", option, text);
+  return SensorAndNumber{static_cast<std::size_t>(place - sensors.begin()), *value};
 }
 
 }  // namespace

@@ -289,12 +289,6 @@ struct Found {
   std::vector<Finding> on_the_ground{};  ///< groups that share nothing but a root that stands still
 };
 
-std::vector<std::string> sensor_names(const RecordedMotion& motion) {
-  std::vector<std::string> names;
-  for (const SegmentMotion& segment : motion.segments) names.push_back(segment.name);
-  return names;
-}
-
 /// The sensors that were asked for, or all, without those that never move.
 Result<Chosen> chosen_sensors(const InsRecording& recording, const IdentifyOptions& options) {
   std::vector<std::size_t> asked;
@@ -335,7 +329,7 @@ void say_order(Identification& result, const OrderedMotion& ordered, const Ident
   result.order = order_evidence(ordered.motion, ordered.tree, moving_phases(ordered.motion));
   result.order.margin = margin_of(ordered.tree, closing);
   note_order(result);
-  result.findings = loop_findings(ordered.tree, closing, sensor_names(ordered.motion));
+  result.findings = loop_findings(ordered.tree, closing, segment_names(ordered.motion));
   std::ranges::copy(ordered.findings, std::back_inserter(result.findings));
 }
 

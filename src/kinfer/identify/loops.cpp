@@ -3,7 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
+#include <set>
 
 namespace kinfer {
 namespace {
@@ -43,24 +43,20 @@ std::vector<Finding> loop_findings(const SegmentTree& tree, const std::vector<Pa
                                    const std::vector<std::string>& names) {
   std::vector<Finding> findings;
   for (const PairFit& pair : closing) {
-    std::vector<std::string> loop;
-    for (std::size_t s = 0; s < names.size(); ++s) {
-      const auto path = path_between(tree, pair.first, pair.second);
-      if (std::ranges::any_of(path, [&](const auto& edge) { return edge.first == s || edge.second == s; }))
-        loop.push_back(names[s]);
+    std::set<std::size_t> segments;
+    double worst = 0.0;
+    for (const auto& [a, b] : path_between(tree, pair.first, pair.second)) {
+      segments.insert({a, b});
+      worst = std::max(worst, tree.pair(a, b).residual());
     }
+    std::vector<std::string> loop;
+    for (const std::size_t s : segments) loop.push_back(names[s]);
     findings.push_back(
         {.kind = "loop",
          .severity = Severity::warning,
          .sentence = fmt::format("the segments {} close a loop: {} and {} share a hinge too ({:.3f} m/s² left, the "
                                  "others leave up to {:.3f}); the chain is cut open there",
-                                 fmt::join(loop, ", "), names[pair.first], names[pair.second], pair.residual(),
-                                 [&] {
-                                   double worst = 0.0;
-                                   for (const auto& [a, b] : path_between(tree, pair.first, pair.second))
-                                     worst = std::max(worst, tree.pair(a, b).residual());
-                                   return worst;
-                                 }()),
+                                 fmt::join(loop, ", "), names[pair.first], names[pair.second], pair.residual(), worst),
          .suggestion = "take the joint angles of a linkage as they are measured: they depend on each other"});
   }
   return findings;

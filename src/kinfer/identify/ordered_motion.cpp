@@ -26,8 +26,7 @@ Result<OrderedMotion> ordered_motion(const InsRecording& recording, const Segmen
   KINFER_TRY(tree, segment_tree(motion, root, fit, threads));
   std::vector<Finding> findings;
   if (!given.empty()) {
-    std::vector<std::string> names;
-    for (const SegmentMotion& segment : motion.segments) names.push_back(segment.name);
+    const std::vector<std::string> names = segment_names(motion);
     KINFER_TRY(insisted, given_tree(tree, names, given));
     findings = findings_about(insisted, tree, names);
     tree = insisted;

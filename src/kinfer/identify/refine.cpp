@@ -82,12 +82,6 @@ MatrixXd joint_band(const InsFit& fit, std::size_t first, std::size_t last) {
   return rows > 0 ? MatrixXd(fit.unknowns.band.middleRows(fit.layout.channel[first], rows)) : MatrixXd();
 }
 
-std::vector<std::string> names_of(const RecordedMotion& motion) {
-  std::vector<std::string> names;
-  for (const SegmentMotion& segment : motion.segments) names.push_back(segment.name);
-  return names;
-}
-
 std::vector<FoundPlace> found_places(const MachineFacts& facts, const InsFit& fit, ConstMatrixRef covariance) {
   std::vector<FoundPlace> places;
   for (std::size_t i = 0; i < facts.places.size(); ++i) {
@@ -216,7 +210,7 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
                           const Observer& observer) {
   const SensorModel grade = options.grade ? *options.grade : judged_model(recording);
   const RefineSetup setup = refine_setup(recording, motion, tree, starts, grade, options.knots);
-  KINFER_TRY(facts, named_facts(options.facts, names_of(motion), setup.start.bodies, setup.problem.grid,
+  KINFER_TRY(facts, named_facts(options.facts, segment_names(motion), setup.start.bodies, setup.problem.grid,
                                 setup.problem.root_stands_still));
   const RefineTask task{recording, motion, tree, starts, grade, facts, options.fit};
   RefineFit fitted = fit_all_motion(task, options, observer);

@@ -47,11 +47,10 @@ double turning(const SegmentMotion& segment) {
 
 Result<std::size_t> choose_root(const RecordedMotion& motion, const std::vector<Edge>& edges,
                                 const std::optional<std::string>& name) {
-  std::vector<std::string> names, still;
-  for (const SegmentMotion& segment : motion.segments) {
-    names.push_back(segment.name);
+  const std::vector<std::string> names = segment_names(motion);
+  std::vector<std::string> still;
+  for (const SegmentMotion& segment : motion.segments)
     if (segment.still) still.push_back(segment.name);
-  }
   if (still.size() > 1)
     return error(
         "sensors {} never move: at most one, the root, may stand still; move every joint, and give each machine a log "

@@ -213,6 +213,12 @@ std::size_t first_moving_row(const RecordedMotion& motion, double still_rate) {
 
 }  // namespace
 
+std::vector<std::string> segment_names(const RecordedMotion& motion) {
+  std::vector<std::string> names;
+  for (const SegmentMotion& segment : motion.segments) names.push_back(segment.name);
+  return names;
+}
+
 Result<RecordedMotion> segment_motion(const InsRecording& recording, const SegmentMotionOptions& options, int threads) {
   if (recording.sensors.size() < 2)
     return error("identification needs at least two sensors, found {}", recording.sensors.size());

@@ -31,6 +31,9 @@ struct RecordedMotion {
   std::size_t rows() const { return time.size(); }
 };
 
+/// Names of the segments' sensors, in their order.
+std::vector<std::string> segment_names(const RecordedMotion& motion);
+
 struct SegmentMotionOptions {
   FilterOptions filter = KinferOfflineOptions{};
   double smoothing = 0.02;           ///< [s] standard deviation of the Gaussian; wider damps noise and fast motion
