@@ -7,6 +7,7 @@
 #include "kinfer/estimate/point_fit.hpp"
 #include "paper2_case.hpp"
 #include "peers/ceres_jets.hpp"
+#include "ratios.hpp"
 
 namespace kinfer::bench {
 namespace {
@@ -52,7 +53,12 @@ void bootstrap_1000(benchmark::State& state) {
   const BootstrapOptions options{.threads = static_cast<int>(state.range(0))};
   for (auto _ : state) benchmark::DoNotOptimize(bootstrap(truth, c.set, data, weights, options, Rng(1)));
 }
-BENCHMARK(bootstrap_1000)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(bootstrap_1000)
+    ->Arg(1)
+    ->Arg(2)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond)
+    ->ComputeStatistics("fastest", fastest);
 
 }  // namespace
 }  // namespace kinfer::bench

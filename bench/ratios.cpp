@@ -15,9 +15,9 @@
 namespace kinfer::bench {
 namespace {
 
-/// Medians of what a benchmark measured.
+/// Medians of what a benchmark measured; by the clock, its fastest repetition.
 struct Measured {
-  double seconds = 0.0;  ///< CPU time of an iteration
+  double seconds = 0.0;  ///< of an iteration
   double items = 0.0;    ///< a second
   double bytes = 0.0;    ///< a second
 };
@@ -30,9 +30,9 @@ class MedianReporter : public benchmark::BenchmarkReporter {
     for (const Run& run : runs) {
       const std::string name = run.run_name.str();
       if (run.error_occurred) fmt::print(stderr, "{}: {}\n", name, run.error_message);
-      if (run.aggregate_name == "median") {
+      const bool by_the_clock = name.find("/real_time") != std::string::npos;
+      if (run.aggregate_name == (by_the_clock ? "fastest" : "median")) {
         Measured& m = medians[name];
-        const bool by_the_clock = name.find("/real_time") != std::string::npos;
         m.seconds = (by_the_clock ? run.GetAdjustedRealTime() : run.GetAdjustedCPUTime()) /
                     benchmark::GetTimeUnitMultiplier(run.time_unit);
         if (const auto found = run.counters.find("items_per_second"); found != run.counters.end())
@@ -164,7 +164,8 @@ int run_and_print_ratios(int argc, char** argv) {
   MedianReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   benchmark::Shutdown();
-  fmt::print("{}; {}; medians of CPU time, one thread\n", processor(), KINFER_BUILD);
+  fmt::print("{}; {}; medians of CPU time on one thread; 1 -> 2 threads: the fastest by the clock\n", processor(),
+             KINFER_BUILD);
   print(reporter.medians);
   return 0;
 }

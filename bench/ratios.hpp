@@ -1,7 +1,15 @@
 // Runs all benchmarks, interleaved, and prints medians of CPU time as ratios to the peers.
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 namespace kinfer::bench {
+
+/// Statistic for what is measured by the clock: whatever else the machine does only ever adds to it.
+inline double fastest(const std::vector<double>& times) {
+  return *std::min_element(times.begin(), times.end());
+}
 
 /// Takes Google Benchmark's options; `--benchmark_out=FILE` writes everything as JSON with machine and flags.
 int run_and_print_ratios(int argc, char** argv);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/estimate/residuals.hpp"
@@ -34,11 +35,17 @@ std::vector<Trials> compare(const Scenario& scenario, const std::vector<Method>&
                             const Effort& effort, int threads) {
   std::vector<Trials> all;
   for (const Method method : methods) all.push_back({method, std::vector<Trial>(seeds)});
+  std::vector<std::optional<Problem>> problems(seeds);
+  std::vector<Earlier> earlier(seeds);
   parallel_for(seeds, threads, [&](std::size_t i) {
     const int seed = static_cast<int>(i) + 1;
-    const Problem problem = scenario.now(seed);
-    const Earlier earlier = identify_before(scenario.before(seed), seed);
-    for (Trials& trials : all) trials.list[i] = run(trials.method, problem, earlier, 1000 + seed, effort);
+    problems[i] = scenario.now(seed);
+    earlier[i] = identify_before(scenario.before(seed), seed);
+  });
+  // Every run is an item of its own, all seeds of a method after one another: the cores end together.
+  parallel_for(seeds * methods.size(), threads, [&](std::size_t item) {
+    const std::size_t method = item / seeds, i = item % seeds;
+    all[method].list[i] = run(methods[method], *problems[i], earlier[i], 1001 + static_cast<int>(i), effort);
   });
   return all;
 }

@@ -20,13 +20,15 @@ MatrixXd unscaled(ConstMatrixRef y, const Bounds& box) {
   return (box.half_width().asDiagonal() * y).colwise() + box.center();
 }
 
-MatrixXd hidden_layer(const Mlp& net, ConstMatrixRef scaled_inputs) {
-  const MatrixXd sum = (net.hidden_weights * scaled_inputs).colwise() - net.hidden_thresholds;
-  return sum.unaryExpr([](double s) { return std::tanh(s); });
+void hidden_layer(const Mlp& net, ConstMatrixRef scaled_inputs, MatrixXd& hidden) {
+  hidden.noalias() = net.hidden_weights * scaled_inputs;
+  hidden.colwise() -= net.hidden_thresholds;
+  for (double& sum : hidden.reshaped()) sum = std::tanh(sum);
 }
 
-MatrixXd output_layer(const Mlp& net, const MatrixXd& hidden) {
-  return (net.output_weights * hidden).colwise() - net.output_thresholds;
+void output_layer(const Mlp& net, const MatrixXd& hidden, MatrixXd& output) {
+  output.noalias() = net.output_weights * hidden;
+  output.colwise() -= net.output_thresholds;
 }
 
 /// The four weight arrays, for reading and for writing, in the order that weights_of uses.
@@ -38,20 +40,30 @@ void for_each_array(Net& net, Visitor visit) {
   visit(net.output_thresholds.reshaped());
 }
 
-LossAndGradient backward(const Mlp& net, const MatrixXd& x, const MatrixXd& wanted) {
-  const auto pairs = static_cast<double>(x.cols());
-  const MatrixXd hidden = hidden_layer(net, x);
-  const MatrixXd error = output_layer(net, hidden) - wanted;
-  const MatrixXd at_output = error / pairs;
-  const MatrixXd at_hidden =
-      ((net.output_weights.transpose() * at_output).array() * (1.0 - hidden.array().square())).matrix();
-  Mlp gradient;
-  gradient.hidden_weights = at_hidden * x.transpose();
-  gradient.hidden_thresholds = -at_hidden.rowwise().sum();
-  gradient.output_weights = at_output * hidden.transpose();
-  gradient.output_thresholds = -at_output.rowwise().sum();
-  return {0.5 * error.squaredNorm() / pairs, weights_of(gradient)};
-}
+/// Back-propagation through all pairs. The layers are kept from epoch to epoch: an allocator that gives arrays of this
+/// size back to the system each time makes two threads wait for each other.
+class Backward {
+ public:
+  LossAndGradient operator()(const Mlp& net, const MatrixXd& x, const MatrixXd& wanted) {
+    const auto pairs = static_cast<double>(x.cols());
+    hidden_layer(net, x, hidden_);
+    output_layer(net, hidden_, error_);
+    error_ -= wanted;
+    const double loss = 0.5 * error_.squaredNorm() / pairs;
+    error_ /= pairs;
+    at_hidden_.noalias() = net.output_weights.transpose() * error_;
+    at_hidden_.array() *= 1.0 - hidden_.array().square();
+    gradient_.hidden_weights.noalias() = at_hidden_ * x.transpose();
+    gradient_.hidden_thresholds = -at_hidden_.rowwise().sum();
+    gradient_.output_weights.noalias() = error_ * hidden_.transpose();
+    gradient_.output_thresholds = -error_.rowwise().sum();
+    return {loss, weights_of(gradient_)};
+  }
+
+ private:
+  MatrixXd hidden_, error_, at_hidden_;
+  Mlp gradient_;
+};
 
 /// Step of back-propagation with momentum.
 VectorXd step(const BackPropagation& how, const VectorXd& gradient, int, VectorXd& last, VectorXd&) {
@@ -79,7 +91,10 @@ MatrixXd columns(ConstMatrixRef x, const std::vector<Eigen::Index>& which) {
 MatrixXd predict(const Mlp& net, ConstMatrixRef x) {
   KINFER_EXPECT(x.rows() == net.hidden_weights.cols(), "{} numbers for a net of {} inputs", x.rows(),
                 net.hidden_weights.cols());
-  return unscaled(output_layer(net, hidden_layer(net, scaled(x, net.input_box))), net.output_box);
+  MatrixXd hidden, output;
+  hidden_layer(net, scaled(x, net.input_box), hidden);
+  output_layer(net, hidden, output);
+  return unscaled(output, net.output_box);
 }
 
 Mlp untrained_mlp(const Bounds& input_box, const Bounds& output_box, int hidden_nodes, Rng rng) {
@@ -123,7 +138,7 @@ Mlp with_weights(Mlp net, ConstVectorRef weights) {
 }
 
 LossAndGradient loss_and_gradient(const Mlp& net, ConstMatrixRef inputs, ConstMatrixRef targets) {
-  return backward(net, scaled(inputs, net.input_box), scaled(targets, net.output_box));
+  return Backward()(net, scaled(inputs, net.input_box), scaled(targets, net.output_box));
 }
 
 Training train(Mlp net, ConstMatrixRef inputs, ConstMatrixRef targets, const TrainingOptions& options) {
@@ -133,6 +148,7 @@ Training train(Mlp net, ConstMatrixRef inputs, ConstMatrixRef targets, const Tra
   VectorXd weights = weights_of(net);
   VectorXd state1 = VectorXd::Zero(weights.size()), state2 = state1;
   Training training;
+  Backward backward;
   for (int epoch = 0;; ++epoch) {
     const LossAndGradient at = backward(net, x, wanted);
     training.error.push_back(rms_of(at.loss, wanted.rows()));
