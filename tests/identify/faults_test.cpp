@@ -78,7 +78,7 @@ TEST(GivenTree, AgainstTheLogIsSaidByName) {
   EXPECT_TRUE(has_finding(found, "given_link", "ins1-ins3"));
   EXPECT_TRUE(has_finding(found, "given_link", "ins2-ins4"));
   EXPECT_FALSE(has_finding(found, "given_link", "link ins4-ins5"));
-  EXPECT_THAT(found.verdict, testing::StartsWith("do not use"));
+  EXPECT_THAT(found.verdict, testing::StartsWith("Do not use"));
 }
 
 TEST(GivenTree, ThatIsTheLogsOwnChangesNothing) {

@@ -37,6 +37,20 @@ TEST(Forecast, TheFactorsWouldMakeItJustEnough) {
             "not enough for 5 mm and 3 mrad in a-b (3.9 times the acceleration, or 15.4 times the time)");
 }
 
+TEST(Forecast, TheTurnAboutTheOnlyAxisOfTheParentIsSaidApart) {
+  FoundJoint joint = joint_with(1e-3, 1e-4);
+  joint.sd.axis_in_parent = {3e-3, 4e-3};
+  EXPECT_FALSE(forecast({joint}).front().enough);
+  joint.not_identifiable_in_parent = {Vec3::UnitZ()};
+  const JointForecast apart = forecast({joint}).front();
+  EXPECT_TRUE(apart.enough);
+  EXPECT_EQ(apart.azimuth_of, "a");
+  EXPECT_DOUBLE_EQ(apart.azimuth_sd, 5e-3);
+  EXPECT_EQ(in_words({apart}),
+            "enough for 5 mm and 3 mrad in every joint; the turn of a about its only axis is known to ± 5 mrad");
+  EXPECT_EQ(in_words({apart}, {.direction = 0.01}), "enough for 5 mm and 10 mrad in every joint");
+}
+
 /// The rehearsal: an identified chain is driven in simulation and identified again.
 TEST(Forecast, AChainThatWasIdentifiedCanBeDrivenAndIsFoundAgain) {
   const MujocoWorld world = test::world_of("excavator-general", {}, 3);

@@ -1,5 +1,5 @@
 // What to do next after a calibration.
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,16 +37,30 @@ void move_idle_joints(const CalibrateTask& task, std::vector<Advice>& list) {
   }
 }
 
-void measure_where_it_is_uncertain(const Calibration& c, std::vector<Advice>& list) {
+/// "12, -40, 85 mm, …": degrees, but for slides.
+std::string reading_in_words(const Chain& chain, const VectorXd& joints) {
+  std::vector<std::string> words;
+  for (const Joint& joint : chain.joints)
+    if (joint.has_reading) {
+      const double q = joints[static_cast<Eigen::Index>(words.size())];
+      words.push_back(joint.type == JointType::prismatic ? fmt::format("{:.0f} mm", 1e3 * q)
+                                                         : fmt::format("{:.0f}°", q / degree));
+    }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+void measure_where_it_is_uncertain(const CalibrateTask& task, const Calibration& c, std::vector<Advice>& list) {
   constexpr double much_worse = 1.5;  // times the rms over the data's poses
   const auto& points = c.picture.workspace;
   if (points.empty()) return;
   const auto worst = std::ranges::max_element(points, {}, &WorkspacePoint::predicted);
   if (worst->predicted < much_worse * c.estimate.predicted_error) return;
-  list.push_back({fmt::format("Add poses with the tool near x {:.2f}, y {:.2f}, z {:.2f} m", worst->tool.x(),
-                              worst->tool.y(), worst->tool.z()),
-                  fmt::format("the model is least certain there: {:.3f} mm against {:.3f} mm over these poses",
-                              1e3 * worst->predicted, 1e3 * c.estimate.predicted_error)});
+  list.push_back({fmt::format("Add poses with the joints near {}, if the cell allows it",
+                              reading_in_words(task.nominal, worst->joints)),
+                  fmt::format("the model is least certain there ({:.3f} mm against {:.3f} mm over these poses); the "
+                              "tool is then at x {:.2f}, y {:.2f}, z {:.2f} m in the frame of the measurements",
+                              1e3 * worst->predicted, 1e3 * c.estimate.predicted_error, worst->tool.x(),
+                              worst->tool.y(), worst->tool.z())});
 }
 
 void measure_more_poses(const CalibrateTask& task, const Calibration& c, std::vector<Advice>& list) {
@@ -66,7 +80,7 @@ std::vector<Advice> calibration_advice(const CalibrateTask& task, const Calibrat
   find_what_is_missing(calibration, list);
   look_at_unbelieved_rows(calibration, list);
   move_idle_joints(task, list);
-  measure_where_it_is_uncertain(calibration, list);
+  measure_where_it_is_uncertain(task, calibration, list);
   measure_more_poses(task, calibration, list);
   list.push_back({"Keep ten of these poses and measure them again now and then (kinfer verify)",
                   "it tells whether this calibration still holds after a crash, a new tool or a hot summer"});

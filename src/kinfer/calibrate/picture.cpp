@@ -51,7 +51,8 @@ std::vector<WorkspacePoint> workspace_of(const MatrixXd& joints, const Estimate&
   for (int k = 0; k < workspace_points; ++k) q.col(k) = lowest + range.cwiseProduct(spread(k, joints.rows()));
   const VectorXd errors = predicted_errors(estimate, q);
   std::vector<WorkspacePoint> points;
-  for (int k = 0; k < workspace_points; ++k) points.push_back({forward(estimate.chain, q.col(k)).position, errors[k]});
+  for (int k = 0; k < workspace_points; ++k)
+    points.push_back({forward(estimate.chain, q.col(k)).position, errors[k], q.col(k)});
   return points;
 }
 

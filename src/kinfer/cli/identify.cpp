@@ -13,6 +13,7 @@
 #include "kinfer/cli/report_file.hpp"
 #include "kinfer/cli/terminal.hpp"
 #include "kinfer/cli/verbs.hpp"
+#include "kinfer/identify/forecast.hpp"
 #include "kinfer/io/chain_dh_csv.hpp"
 #include "kinfer/io/identify_json.hpp"
 #include "kinfer/io/machine_facts_toml.hpp"
@@ -154,7 +155,8 @@ int run(const Options& options) {
   if (options.common.json)
     fmt::print("{}", identification_headline_json(*found));
   else if (!options.common.quiet)
-    print_summary(identification_summary(*found), found->use ? Tone::neutral : Tone::bad);
+    print_summary(identification_summary(*found),
+                  found->use ? enough_for_all(found->forecast) ? Tone::good : Tone::neutral : Tone::bad);
   return found->use ? exit_done : exit_do_not_use;
 }
 

@@ -24,9 +24,12 @@ std::string order_table(const OrderEvidence& order) {
                             order.phases_agree ? "agree" : "do not agree");
 }
 
-std::string vector_text(const Vec3& v, double scale, const char* form) {
+/// Four decimals of a unit vector, one of millimetres; no minus before a zero.
+std::string vector_text(const Vec3& v, double scale, int width, int decimals) {
+  const double unit = std::pow(10.0, decimals);
   std::string text;
-  for (Eigen::Index k = 0; k < 3; ++k) text += fmt::format(fmt::runtime(form), scale * v[k]);
+  for (Eigen::Index k = 0; k < 3; ++k)
+    text += fmt::format("{:{}.{}f}", std::round(unit * scale * v[k]) / unit + 0.0, width, decimals);
   return text;
 }
 
@@ -55,7 +58,7 @@ std::string joint_table(const std::vector<FoundJoint>& joints) {
                           const Vec3& point, const std::array<double, 2>& axis_sd,
                           const std::array<double, 2>& point_sd) {
       text += fmt::format("{:<16} {:<10} {:<8} {:>24} {:>27} {:>16} {:>10}\n", head, type, sensor,
-                          vector_text(axis, 1.0, "{:8.4f}"), vector_text(point, 1e3, "{:9.1f}"),
+                          vector_text(axis, 1.0, 8, 4), vector_text(point, 1e3, 9, 1),
                           deviation(axis_sd, 1e3, 2), deviation(point_sd, 1e3, 1));
     };
     line(j.parent + "-" + j.child, name(j.type), j.parent, j.axis_in_parent, j.point_in_parent, j.sd.axis_in_parent,
@@ -83,7 +86,7 @@ std::string identification_summary(const Identification& found) {
                         link.to, link.sd < 0.5 ? fmt::format("{:.1f} mm", 1e3 * link.sd) : "unknown");
   for (const FoundPlace& place : found.places)
     text += fmt::format("{} in {}: {} mm (sd {} mm)\n", place.name, place.sensor,
-                        vector_text(place.xyz, 1e3, "{:9.1f}"), vector_text(place.sd, 1e3, "{:6.1f}"));
+                        vector_text(place.xyz, 1e3, 9, 1), vector_text(place.sd, 1e3, 6, 1));
   if (!found.links.empty()) text += "\n";
   text += fit_table(found.searches) + unknown_list(found.joints);
   for (const std::string& note : found.notes) text += "  - " + note + "\n";

@@ -20,6 +20,7 @@ struct PictureRow {
 struct WorkspacePoint {
   Vec3 tool = Vec3::Zero();  ///< [m] in the world
   double predicted = 0.0;    ///< [m] rms error that the covariance expects
+  VectorXd joints{};         ///< dof, [rad] or [m]: what puts the tool there
 };
 
 struct CalibrationPicture {

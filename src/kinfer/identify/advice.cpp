@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/identify/forecast.hpp"
 #include "kinfer/identify/motion_evidence.hpp"
 
 namespace kinfer {
@@ -30,19 +31,22 @@ void fix_azimuths(const Identification& found, std::vector<Advice>& list) {
       list.push_back(
           {fmt::format("Drive once on a slope, or note how the INS {} is turned about the axis", joint.child),
            "its turn about the vertical axis leaves no trace in any signal"});
+  for (const JointForecast& f : found.forecast)
+    if (is_vague_azimuth(f))
+      list.push_back(
+          {fmt::format("Drive once on a slope, or let the base rock, if the heading of {} matters", f.joint),
+           fmt::format("how {} is turned about its only axis is known to {:.0f} mrad; on level ground hardly "
+                       "any signal tells it",
+                       f.azimuth_of, 1e3 * f.azimuth_sd)});
 }
 
-void shake_vague_joints(const Identification& found, std::vector<Advice>& list) {
-  constexpr double vague = 0.005;  // [rad]
-  const auto spread = [](const FoundJoint& j) {
-    return std::max(std::hypot(j.sd.axis_in_parent[0], j.sd.axis_in_parent[1]),
-                    std::hypot(j.sd.axis_in_child[0], j.sd.axis_in_child[1]));
-  };
-  for (const FoundJoint& joint : found.joints)
-    if (joint.type != FoundJointType::rigid && spread(joint) > vague)
-      list.push_back({fmt::format("Move {}-{} further and faster", joint.parent, joint.child),
-                      fmt::format("its axis is known to {:.0f} mrad only; twice the acceleration halves that",
-                                  1e3 * spread(joint))});
+void move_more(const Identification& found, std::vector<Advice>& list) {
+  for (const JointForecast& f : found.forecast)
+    if (!f.enough)
+      list.push_back({fmt::format("Move {} further and faster: {:.1f} times the acceleration, or {:.1f} times as long",
+                                  f.joint, f.acceleration, f.time),
+                      fmt::format("its line is known to {:.1f} mm and its direction to {:.1f} mrad only",
+                                  1e3 * f.line_sd, 1e3 * f.direction_sd)});
 }
 
 /// The sensors that carry no further joint: what lies beyond them moves with them unseen.
@@ -61,7 +65,7 @@ std::vector<Advice> identification_advice(const Identification& found) {
   std::vector<Advice> list;
   make_the_order_safe(found, list);
   move_what_stood_still(found, list);
-  shake_vague_joints(found, list);
+  move_more(found, list);
   fix_azimuths(found, list);
   touch_the_tool(found, list);
   return list;

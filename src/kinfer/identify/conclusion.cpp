@@ -1,6 +1,6 @@
 #include "kinfer/identify/conclusion.hpp"
 
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -17,24 +17,23 @@ double largest_misfit(const Identification& result, double Trace::*rms) {
   return largest;
 }
 
-/// "…, and to 0.035 in 10.6 s that it was not fitted to"
-std::string held_out_in_words(const Identification& result) {
+/// "accelerations in 11.0 s that it was not fitted to": what nobody has seen counts, where there is any.
+std::string misfit_in_words(const Identification& result) {
   double seconds = 0.0;
   for (const TimeWindow& window : result.motion.held_out) seconds += window.end - window.begin;
-  if (seconds <= 0.0) return "";
-  return fmt::format(", and to {:.3f} in {:.1f} s that it was not fitted to",
-                     largest_misfit(result, &Trace::rms_holdout), seconds);
+  if (seconds <= 0.0)
+    return fmt::format("accelerations are predicted to {:.3f} m/s² rms at worst",
+                       largest_misfit(result, &Trace::rms_fitted));
+  return fmt::format("accelerations in {:.1f} s that it was not fitted to are predicted to {:.3f} m/s² rms at worst",
+                     seconds, largest_misfit(result, &Trace::rms_holdout));
 }
 
 std::string chain_in_words(const Identification& result) {
-  std::vector<std::string> chain;
-  for (const FoundJoint& joint : result.joints) chain.push_back(fmt::format("{}-{}", joint.parent, joint.child));
   const auto rigid = std::ranges::count(result.joints, FoundJointType::rigid, &FoundJoint::type);
   const std::string unmoved = rigid > 0 ? fmt::format(", {} of them never moved", rigid) : "";
   const char* certificate = result.engine == "enum" ? "; no chain of up to 3 leaves fits better" : "";
-  return fmt::format("{} joints found{} ({}); the chain predicts accelerations to {:.3f} m/s² rms at worst{}; {}{}",
-                     result.joints.size(), unmoved, fmt::join(chain, ", "), largest_misfit(result, &Trace::rms_fitted),
-                     held_out_in_words(result), in_words(result.forecast), certificate);
+  return fmt::format("{} joints found{}, and the drive was {}; {}{}", result.joints.size(), unmoved,
+                     in_words(result.forecast), misfit_in_words(result), certificate);
 }
 
 bool spoils(const Finding& finding) {
@@ -60,8 +59,10 @@ void conclude(Identification& result) {
   const std::string faults = sentences(result.findings, spoils);
   const std::string rest =
       sentences(result.findings, [](const Finding& f) { return f.severity != Severity::note && !spoils(f); });
-  result.verdict =
-      (result.use ? "" : fmt::format("do not use as it is: {}; ", faults.substr(2))) + chain_in_words(result) + rest;
+  const std::string judgement = !result.use ? fmt::format("Do not use as it is: {}; ", faults.substr(2))
+                                : enough_for_all(result.forecast) ? "Use it: "
+                                                                  : "Use with care: ";
+  result.verdict = judgement + chain_in_words(result) + rest;
 }
 
 }  // namespace kinfer

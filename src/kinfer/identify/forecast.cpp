@@ -23,10 +23,12 @@ JointForecast forecast(const FoundJoint& joint, const WantedAccuracy& wanted) {
   JointForecast f{.joint = joint.parent + "-" + joint.child};
   f.line_sd = largest_knowable({joint.sd.point_in_child});
   f.direction_sd = largest_knowable({joint.sd.axis_in_child});
-  // A parent that turns about one fixed axis only has an azimuth of its own, which no brisker drive would tell.
   if (joint.not_identifiable_in_parent.empty()) {
     f.line_sd = std::max(f.line_sd, largest_knowable({joint.sd.point_in_parent}));
     f.direction_sd = std::max(f.direction_sd, largest_knowable({joint.sd.axis_in_parent}));
+  } else {
+    f.azimuth_of = joint.parent;
+    f.azimuth_sd = std::hypot(joint.sd.axis_in_parent[0], joint.sd.axis_in_parent[1]);
   }
   f.acceleration = std::max(in_95_of_100 * f.line_sd / wanted.line, in_95_of_100 * f.direction_sd / wanted.direction);
   f.time = f.acceleration * f.acceleration;
@@ -43,15 +45,38 @@ std::vector<JointForecast> forecast(const std::vector<FoundJoint>& joints, const
   return all;
 }
 
-std::string in_words(const std::vector<JointForecast>& joints, const WantedAccuracy& wanted) {
+bool enough_for_all(const std::vector<JointForecast>& joints) {
+  return std::ranges::all_of(joints, &JointForecast::enough);
+}
+
+bool is_vague_azimuth(const JointForecast& joint, const WantedAccuracy& wanted) {
+  return !joint.azimuth_of.empty() && in_95_of_100 * joint.azimuth_sd > wanted.direction;
+}
+
+std::string lacking_in_words(const std::vector<JointForecast>& joints) {
   std::vector<std::string> lacking;
   for (const JointForecast& f : joints)
     if (!f.enough)
       lacking.push_back(
           fmt::format("{} ({:.1f} times the acceleration, or {:.1f} times the time)", f.joint, f.acceleration, f.time));
+  return fmt::format("{}", fmt::join(lacking, ", "));
+}
+
+std::string azimuths_in_words(const std::vector<JointForecast>& joints, const WantedAccuracy& wanted) {
+  std::string text;
+  for (const JointForecast& f : joints)
+    if (is_vague_azimuth(f, wanted))
+      text += fmt::format(
+          "; the turn of {} about its only axis is {}", f.azimuth_of,
+          f.azimuth_sd < unknowable ? fmt::format("known to ± {:.0f} mrad", 1e3 * f.azimuth_sd) : "not known");
+  return text;
+}
+
+std::string in_words(const std::vector<JointForecast>& joints, const WantedAccuracy& wanted) {
   const std::string what = fmt::format("{:g} mm and {:g} mrad", 1e3 * wanted.line, 1e3 * wanted.direction);
-  return lacking.empty() ? fmt::format("enough for {} in every joint", what)
-                         : fmt::format("not enough for {} in {}", what, fmt::join(lacking, ", "));
+  return (enough_for_all(joints) ? fmt::format("enough for {} in every joint", what)
+                                 : fmt::format("not enough for {} in {}", what, lacking_in_words(joints))) +
+         azimuths_in_words(joints, wanted);
 }
 
 }  // namespace kinfer

@@ -15,6 +15,11 @@ struct WantedAccuracy {
 /// in proportion to the accelerations.
 std::vector<JointForecast> forecast(const std::vector<FoundJoint>& joints, const WantedAccuracy& wanted = {});
 
+bool enough_for_all(const std::vector<JointForecast>& joints);
+
+/// How the parent is turned about the only axis that it turns about is known worse than any direction should be.
+bool is_vague_azimuth(const JointForecast& joint, const WantedAccuracy& wanted = {});
+
 /// "enough for 5 mm and 3 mrad in every joint", or which joints need what.
 std::string in_words(const std::vector<JointForecast>& joints, const WantedAccuracy& wanted = {});
 

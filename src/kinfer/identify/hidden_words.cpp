@@ -10,7 +10,8 @@ namespace {
 constexpr double nearly_parallel = 0.05;  // [rad]
 
 std::string direction_text(const Vec3& v) {
-  return fmt::format("[{:.2f} {:.2f} {:.2f}]", v.x(), v.y(), v.z());
+  const Vec3 rounded = (100.0 * v).array().round() / 100.0 + 0.0;  // + 0.0: no "-0.00"
+  return fmt::format("[{:.2f} {:.2f} {:.2f}]", rounded.x(), rounded.y(), rounded.z());
 }
 
 std::string place_words(const FoundJoint& joint) {

@@ -404,8 +404,8 @@ Result<Identification> identify(const InsRecording& recording, const IdentifyOpt
     std::ranges::move(found.on_the_ground, std::back_inserter(chosen.findings));
   result.findings.insert(result.findings.begin(), chosen.findings.begin(), chosen.findings.end());
   say_clocks(result, clock, *base, found.clocks);
-  result.next = identification_advice(result);
   result.forecast = forecast(result.joints);
+  result.next = identification_advice(result);
   conclude(result);
   return result;
 }

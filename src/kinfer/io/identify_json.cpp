@@ -67,12 +67,17 @@ Json json_of(const FoundClock& clock) {
 }
 
 Json json_of(const JointForecast& f) {
-  return {{"joint", f.joint},
-          {"line_sd_m", f.line_sd},
-          {"direction_sd_rad", f.direction_sd},
-          {"enough", f.enough},
-          {"acceleration_factor", f.acceleration},
-          {"time_factor", f.time}};
+  Json json{{"joint", f.joint},
+            {"line_sd_m", f.line_sd},
+            {"direction_sd_rad", f.direction_sd},
+            {"enough", f.enough},
+            {"acceleration_factor", f.acceleration},
+            {"time_factor", f.time}};
+  if (!f.azimuth_of.empty()) {
+    json["azimuth_of"] = f.azimuth_of;
+    json["azimuth_sd_rad"] = f.azimuth_sd;
+  }
+  return json;
 }
 
 Json json_of(const FoundFit& fit) {
@@ -168,6 +173,7 @@ std::string identification_json(const Identification& found, const Provenance& p
   json["format"] = "kinfer-evidence/1";
   json["kind"] = "identify";
   json["verdict"] = found.verdict;
+  json["use"] = found.use;
   json["findings"] = Json::parse(findings_json(found.findings));
   json["notes"] = found.notes;
   json["root"] = found.root;
@@ -189,6 +195,7 @@ std::string identification_json(const Identification& found, const Provenance& p
 
 std::string identification_headline_json(const Identification& found) {
   const Json json{{"verdict", found.verdict},
+                  {"use", found.use},
                   {"root", found.root},
                   {"joints", list_of(found.joints)},
                   {"links", list_of(found.links)},

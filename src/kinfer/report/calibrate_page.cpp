@@ -72,13 +72,13 @@ std::string how_uncertain(const Json& e) {
   for (const Json& p : e.at("parameters")) open += p.at("identifiable").get<bool>() ? 0 : 1;
   std::string text = fmt::format(
       "<p><b class=\"big\">{}</b> is the uncertainty of the corrected model itself at the tool, "
-      "over these poses.</p><p>The data fix {} of {} combinations of parameters",
+      "over these poses.</p><p>The data pin down {} independent combinations of the {} parameters",
       in_mm(e.at("predicted_error")), e.at("rank").get<int>(), e.at("parameters").size());
   text += open == 0 ? std::string(".</p>")
                     : fmt::format(
-                          "; {} cannot be told from these poses and kept {} nominal value. That does no harm "
+                          ". What they leave open touches {}, which stay{} near the data sheet. That does no harm "
                           "where these poses are.</p>",
-                          plural(open, "parameter"), open == 1 ? "its" : "their");
+                          plural(open, "parameter"), open == 1 ? "s" : "");
   if (const std::size_t wrong = e.at("outliers").size(); wrong > 0)
     text += fmt::format("<p><a href=\"#doubts\">{}</a> not believed and left out.</p>",
                         wrong == 1 ? "One row was" : plural(wrong, "row") + " were");

@@ -25,7 +25,8 @@ std::string facts(const Json& e) {
   const Json& time = e.at("motion").at("time");
   const double seconds = time.empty() ? 0.0 : time.back().get<double>() - time.front().get<double>();
   return fmt::format(
-      "<dl class=\"facts\"><dt>Sensors</dt><dd>{}</dd><dt>Log</dt><dd>{} s</dd><dt>Root</dt><dd>{}</dd></dl>",
+      "<dl class=\"facts\"><dt>Inertial sensors (INS)</dt><dd>{}</dd><dt>Log</dt><dd>{} "
+      "s</dd><dt>Root</dt><dd>{}</dd></dl>",
       e.at("order").at("sensors").size(), html::fixed(seconds, 0), html::escape(text_at(e, "root")));
 }
 
@@ -41,27 +42,25 @@ std::string first_screen(const Json& e) {
          "</div></div>";
 }
 
-bool known_length(const Json& link) {
-  return link.at("sd_m").get<double>() < unknown_length;
+/// Worst of what the joints' lines are known to. What counts apart (forecast's azimuth) is listed with what is
+/// uncertain.
+std::string accuracy(const Json& e) {
+  double line = 0.0, direction = 0.0;
+  for (const Json& f : member(e, "forecast")) {
+    line = std::max(line, f.at("line_sd_m").get<double>());
+    direction = std::max(direction, f.at("direction_sd_rad").get<double>());
+  }
+  if (line == 0.0) return "";
+  return fmt::format(
+      "<p>Joint axes are known to ± <b>{} mm</b> and ± <b>{} mrad</b> or better (one standard deviation).</p>",
+      html::short_number(mm * line), html::short_number(mrad * direction));
 }
 
 std::string how_good(const Json& e) {
-  double worst_axis = 0.0, worst_link = 0.0;
-  for (const Json& joint : e.at("joints"))
-    if (text_at(joint, "type") != "rigid") {
-      for (const char* side : {"axis_in_parent_rad", "axis_in_child_rad"})
-        if (const double spread = across(joint.at("sd").at(side)); spread < unknown_angle)
-          worst_axis = std::max(worst_axis, spread);
-    }
-  for (const Json& link : e.at("links"))
-    if (known_length(link)) worst_link = std::max(worst_link, link.at("sd_m").get<double>());
   std::string text =
       fmt::format("<p><b class=\"big\">{} joints</b> in {} segments, hung up at {}.</p>", e.at("joints").size(),
                   e.at("order").at("sensors").size(), html::escape(text_at(e, "root")));
-  text += fmt::format(
-      "<p>Axes are known to ± <b>{} mrad</b> or better{}.</p>", html::short_number(mrad * worst_axis),
-      worst_link > 0.0 ? fmt::format(", distances between axes to ± <b>{} mm</b>", html::short_number(mm * worst_link))
-                       : "");
+  text += accuracy(e);
   const double margin = e.at("order").at("margin");
   text += fmt::format("<p>The order of the segments is {}: the next best order fits {} times worse.</p>",
                       margin >= 2.0 ? "safe" : "<b>not safe</b>", html::short_number(margin));
@@ -82,10 +81,21 @@ std::vector<std::string> unknown_words(const Json& joint) {
   return words;
 }
 
+/// Along the axis itself any point does, and of parallel axes any share of a sum: those are choices, nothing that a
+/// user misses. What is missed has a direction, or is an azimuth.
+bool misses_something(const Json& joint) {
+  return !joint.at("not_identifiable_in_parent").empty() || !joint.at("not_identifiable_in_child").empty() ||
+         joint.value("azimuth_undetermined", false);
+}
+
 std::string how_uncertain(const Json& e) {
   std::vector<std::string> items;
+  for (const Json& f : member(e, "forecast"))
+    if (const double sd = f.value("azimuth_sd_rad", 0.0); mrad * sd > 1.0)
+      items.push_back(fmt::format("how <b>{}</b> is turned about its only axis: ± {} mrad",
+                                  html::escape(text_at(f, "azimuth_of")), html::short_number(mrad * sd)));
   for (const Json& joint : e.at("joints"))
-    if (const auto words = unknown_words(joint); !words.empty())
+    if (const auto words = unknown_words(joint); !words.empty() && misses_something(joint))
       items.push_back(fmt::format("<b>{}–{}</b>: {}", html::escape(text_at(joint, "parent")),
                                   html::escape(text_at(joint, "child")), html::escape(words.front())));
   const std::size_t all = items.size();
@@ -93,9 +103,9 @@ std::string how_uncertain(const Json& e) {
     return "<p>Everything that was asked for leaves a trace in the signals; how sure it is stands beside each number "
            "as ±.</p>";
   if (all > 3) items.resize(3);
-  std::string text =
-      "<p>Some things leave no trace in any signal. They are drawn dashed.</p>" + html::list(items, "open");
-  if (all > 3) text += fmt::format("<p><a href=\"#unknown\">and {} joint{} more</a></p>", all - 3, all == 4 ? "" : "s");
+  std::string text = "<p>These leave little or no trace in any signal. What leaves none is drawn dashed.</p>" +
+                     html::list(items, "open");
+  if (all > 3) text += fmt::format("<p><a href=\"#unknown\">and {} more</a></p>", all - 3);
   return text;
 }
 

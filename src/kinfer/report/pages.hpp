@@ -29,6 +29,8 @@ html::Section words_section(const std::vector<std::pair<std::string, std::string
 std::string convergence_plot(const nlohmann::json& best, const nlohmann::json& median, const std::string& of_what);
 
 std::vector<double> numbers(const nlohmann::json& list);  ///< null becomes NaN
+/// Of an object; an empty one where evidence of an older kinfer has none.
+const nlohmann::json& member(const nlohmann::json& object, const char* key);
 std::string text_at(const nlohmann::json& object, const char* key, const std::string& otherwise = "");
 
 }  // namespace kinfer::pages

@@ -23,12 +23,6 @@ std::string advice_item(const Json& advice) {
                      html::escape(as_sentence(text_at(advice, "why"))));
 }
 
-const Json& member(const Json& object, const char* key) {
-  static const Json nothing = Json::object();
-  const auto found = object.find(key);
-  return found == object.end() ? nothing : *found;
-}
-
 std::string value_text(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
@@ -64,17 +58,28 @@ std::string text_at(const Json& object, const char* key, const std::string& othe
   return found != object.end() && found->is_string() ? found->get<std::string>() : otherwise;
 }
 
+const Json& member(const Json& object, const char* key) {
+  static const Json nothing = Json::object();
+  const auto found = object.find(key);
+  return found == object.end() ? nothing : *found;
+}
+
+/// What is said first stands large, what is added after a semicolon below it.
 std::string verdict_block(const Json& evidence, const std::string& what) {
   const std::string verdict = text_at(evidence, "verdict");
   const bool use = evidence.value("use", true);
   const auto colon = verdict.find(": ");
   const bool judged = evidence.contains("use") && colon != std::string::npos;
-  std::string chip = judged ? verdict.substr(0, colon) : "", sentence = judged ? verdict.substr(colon + 2) : verdict;
-  if (!sentence.empty()) sentence.front() = static_cast<char>(std::toupper(sentence.front()));
+  const std::string chip = judged ? verdict.substr(0, colon) : "",
+                    sentence = judged ? verdict.substr(colon + 2) : verdict;
+  const char* kind = !use ? "bad" : chip == "Use it" ? "good" : "fair";
+  const auto semicolon = sentence.find("; ");
+  const std::string added = semicolon == std::string::npos ? "" : as_sentence(sentence.substr(semicolon + 2));
   return fmt::format(
-      "<p class=\"kicker\">{}</p><h1 id=\"verdict\">{}{}</h1>", what,
-      chip.empty() ? "" : fmt::format("<span class=\"chip {}\">{}</span> ", use ? "good" : "bad", html::escape(chip)),
-      html::escape(sentence));
+      "<p class=\"kicker\">{}</p><div id=\"verdict\"><h1>{}{}</h1>{}</div>", what,
+      chip.empty() ? "" : fmt::format("<span class=\"chip {}\">{}</span> ", kind, html::escape(chip)),
+      html::escape(as_sentence(sentence.substr(0, semicolon))),
+      added.empty() ? "" : fmt::format("<p>{}{}</p>", html::escape(added), added.ends_with('.') ? "" : "."));
 }
 
 std::string cards(const std::vector<std::pair<std::string, std::string>>& list) {
