@@ -7,8 +7,6 @@
 #include <optional>
 
 #include "kinfer/base/parallel.hpp"
-#include "kinfer/estimate/residuals.hpp"
-#include "kinfer/geometry/statistics.hpp"
 
 namespace kinfer::paper2 {
 namespace {
@@ -84,15 +82,6 @@ TextTable comparison_table(const std::vector<Trials>& trials) {
          millimetres([](const Trial& x) { return x.held_out.rms; })});
   }
   return table;
-}
-
-Spread error_before(double d6, int seeds) {
-  const Chain nominal = er20(d6), truth = with_errors(nominal, table3);
-  std::vector<double> means;
-  for (int seed = 1; seed <= seeds; ++seed)
-    means.push_back(1e3 *
-                    mean(point_errors(nominal, measured_without_noise(truth, drawn_joints(nominal, 50, Rng(seed))))));
-  return {mean(means), *std::min_element(means.begin(), means.end()), *std::max_element(means.begin(), means.end())};
 }
 
 }  // namespace kinfer::paper2

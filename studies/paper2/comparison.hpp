@@ -30,10 +30,4 @@ TextTable comparison_table(const std::vector<Trials>& trials);
 double median_iterations(const Trials& trials);
 int hits_within(const Trials& trials, int iterations);
 
-/// Mean position error [mm] of the nominal robot over the poses of many seeds: their mean, lowest and highest.
-struct Spread {
-  double mean = 0.0, lowest = 0.0, highest = 0.0;
-};
-Spread error_before(double d6, int seeds);
-
 }  // namespace kinfer::paper2
