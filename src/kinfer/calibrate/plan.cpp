@@ -6,6 +6,7 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/calibrate/parameter_choice.hpp"
 #include "kinfer/calibrate/plan_bound.hpp"
+#include "kinfer/estimate/tool_derivatives.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/linalg/decompositions.hpp"
@@ -47,33 +48,17 @@ VectorXd prior_sds(const ParameterSet& set) {
 class Scaled {
  public:
   Scaled(const PlanTask& task, const ParameterSet& set)
-      : task_(task), sd_(prior_sds(set)), evaluator_(task.nominal, set) {}
+      : task_(task), set_(set), sd_(prior_sds(set)), evaluator_(task.nominal, set) {}
 
   MatrixXd measured(const MatrixXd& q) const {
-    const int block = task_.measures == Measures::poses ? 6 : 3;
-    MatrixXd rows(block * q.cols(), sd_.size());
-    Twists twist;
-    for (Eigen::Index i = 0; i < q.cols(); ++i) {
-      const Pose pose = evaluator_.pose_and_derivative(q.col(i), {}, twist);
-      rows.middleRows<3>(block * i) = twist.topRows<3>() * sd_.asDiagonal() / noise(pose.position);
-      if (block == 6)
-        rows.middleRows<3>(block * i + 3) =
-            twist.bottomRows<3>() * sd_.asDiagonal() / std::max(task_.instrument.sigma_angle, 1e-6);
-    }
-    return rows;
+    return task_.measures == Measures::poses ? measured_poses(q) : measured_points(q);
   }
   MatrixXd information(const MatrixXd& q) const {
     const MatrixXd rows = measured(q);
     return rows.transpose() * rows;
   }
   MatrixXd tool(const MatrixXd& q) const {
-    MatrixXd rows(3 * q.cols(), sd_.size());
-    Twists twist;
-    for (Eigen::Index i = 0; i < q.cols(); ++i) {
-      evaluator_.pose_and_derivative(q.col(i), {}, twist);
-      rows.middleRows<3>(3 * i) = twist.topRows<3>() * sd_.asDiagonal();
-    }
-    return rows;
+    return tool_derivatives(task_.nominal, set_, q).jacobian * sd_.asDiagonal();
   }
   double noise(const Vec3& position) const { return std::max(position_sd(task_.instrument, position), 1e-6); }
   double typical_noise(const MatrixXd& q) const {
@@ -83,7 +68,25 @@ class Scaled {
   }
 
  private:
+  MatrixXd measured_points(const MatrixXd& q) const {
+    auto [position, rows] = tool_derivatives(task_.nominal, set_, q);
+    for (Eigen::Index i = 0; i < q.cols(); ++i) rows.middleRows<3>(3 * i) /= noise(position.col(i));
+    return rows * sd_.asDiagonal();
+  }
+  MatrixXd measured_poses(const MatrixXd& q) const {
+    MatrixXd rows(6 * q.cols(), sd_.size());
+    Twists twist;
+    for (Eigen::Index i = 0; i < q.cols(); ++i) {
+      const Pose pose = evaluator_.pose_and_derivative(q.col(i), {}, twist);
+      rows.middleRows<3>(6 * i) = twist.topRows<3>() * sd_.asDiagonal() / noise(pose.position);
+      rows.middleRows<3>(6 * i + 3) =
+          twist.bottomRows<3>() * sd_.asDiagonal() / std::max(task_.instrument.sigma_angle, 1e-6);
+    }
+    return rows;
+  }
+
   const PlanTask& task_;
+  const ParameterSet& set_;
   VectorXd sd_;
   PoseEvaluator evaluator_;
 };

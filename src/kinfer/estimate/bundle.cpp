@@ -6,8 +6,8 @@
 #include "kinfer/base/expect.hpp"
 #include "kinfer/estimate/identifiability.hpp"
 #include "kinfer/estimate/noise_level.hpp"
+#include "kinfer/estimate/tool_derivatives.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/kinematics/batch_points.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/normal_equations.hpp"
 
@@ -284,21 +284,9 @@ Mat3 predicted_covariance(const Estimate& estimate, ConstVectorRef q) {
 }
 
 VectorXd predicted_errors(const Estimate& estimate, ConstMatrixRef joints) {
-  VectorXd errors(joints.cols());
-  if (!has_batch_form(estimate.chain, estimate.parameters)) {
-    for (Eigen::Index i = 0; i < errors.size(); ++i)
-      errors[i] = std::sqrt(predicted_covariance(estimate, joints.col(i)).trace());
-    return errors;
-  }
-  const Eigen::Matrix3Xd origin = Eigen::Matrix3Xd::Zero(3, joints.cols()), one = origin.array() + 1.0;
-  const BatchPoints points(estimate.chain, estimate.parameters, {joints, origin});
-  VectorXd place(3 * joints.cols());
-  MatrixXd jacobian(place.size(), points.unknowns());
-  BatchPoints::Scratch scratch;
-  points.residuals(pack(estimate.parameters, estimate.chain), points.weights(one), place, jacobian, scratch);
+  const MatrixXd jacobian = tool_derivatives(estimate.chain, estimate.parameters, joints).jacobian;
   const VectorXd variance = (jacobian * estimate.covariance).cwiseProduct(jacobian).rowwise().sum();
-  for (Eigen::Index i = 0; i < errors.size(); ++i) errors[i] = std::sqrt(variance.segment<3>(3 * i).sum());
-  return errors;
+  return variance.reshaped(3, joints.cols()).colwise().sum().cwiseSqrt().transpose();
 }
 
 }  // namespace kinfer
