@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "kinfer/identify/identify.hpp"
 #include "kinfer/simulate/ins_simulation.hpp"
 #include "kinfer/simulate/machine_of_chain.hpp"
@@ -23,18 +25,18 @@ FoundJoint joint_with(double point_sd, double axis_sd) {
 TEST(Forecast, WhatCannotBeKnownAtAllDoesNotCount) {
   const auto all = forecast({joint_with(2e-3, 1e-4)});
   ASSERT_EQ(all.size(), 1U);
-  EXPECT_DOUBLE_EQ(all[0].line_sd, 2e-3);
+  EXPECT_DOUBLE_EQ(all[0].line_sd, std::hypot(2e-4, 2e-3));
   EXPECT_TRUE(all[0].enough);
 }
 
 TEST(Forecast, TheFactorsWouldMakeItJustEnough) {
   const JointForecast lacking = forecast({joint_with(1e-2, 1e-4)}).front();
   EXPECT_FALSE(lacking.enough);
-  EXPECT_NEAR(lacking.acceleration, 1.96 * 1e-2 / 5e-3, 1e-12);
+  EXPECT_NEAR(lacking.acceleration, 1.96 * std::hypot(1e-3, 1e-2) / 5e-3, 1e-12);
   EXPECT_NEAR(lacking.time, lacking.acceleration * lacking.acceleration, 1e-12);
   EXPECT_TRUE(forecast({joint_with(1e-2 / lacking.acceleration * 0.999, 1e-4)}).front().enough);
   EXPECT_EQ(in_words({lacking}),
-            "not enough for 5 mm and 3 mrad in a-b (3.9 times the acceleration, or 15.4 times the time)");
+            "not enough for 5 mm and 3 mrad in a-b (3.9 times the acceleration, or 15.5 times the time)");
 }
 
 TEST(Forecast, TheTurnAboutTheOnlyAxisOfTheParentIsSaidApart) {

@@ -1,5 +1,6 @@
 // report.html from evidence: complete, well formed, safe against what names and notes may hold, and never too large.
 #include "kinfer/report/report.hpp"
+#include "kinfer/report/html.hpp"
 
 #include <gtest/gtest.h>
 
@@ -105,6 +106,12 @@ std::vector<std::string> unbalanced(const std::string& html) {
   }
   wrong.insert(wrong.end(), open.begin(), open.end());
   return wrong;
+}
+
+TEST(Html, ProseKeepsUnitsWithTheirNumbersAndSetsCallsAsCode) {
+  EXPECT_EQ(html::prose("± 5 mm in J1 12 of a < b"), "±&nbsp;5&nbsp;mm in J1 12&nbsp;of a &lt; b");
+  EXPECT_EQ(html::prose("as kinfer plan --data chooses, or kinfer verify."),
+            "as <code>kinfer plan --data</code> chooses, or <code>kinfer verify</code>.");
 }
 
 TEST(Report, every_element_that_is_opened_is_closed) {

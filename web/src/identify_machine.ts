@@ -158,7 +158,7 @@ export class IdentifyMachine {
       group(times.row),
       group(
         toggle('how sure axes and points are', 'after', true, show(this.joints.flatMap((j) => [j.sure.mesh, j.place]))),
-        toggle('directions nothing tells', 'open', true, show(this.joints.flatMap((j) => j.open.map((o) => o.line.object)))),
+        toggle('what no signal tells', 'open', true, show(this.joints.flatMap((j) => j.open.map((o) => o.line.object)))),
       ),
     );
   }

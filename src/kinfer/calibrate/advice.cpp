@@ -37,14 +37,22 @@ void move_idle_joints(const CalibrateTask& task, std::vector<Advice>& list) {
   }
 }
 
-/// "12, -40, 85 mm, …": degrees, but for slides.
+void put_it_to_use(const Calibration& c, std::vector<Advice>& list) {
+  if (c.use)
+    list.push_back(
+        {"Put the corrected numbers to use: offsets and DH table into the controller, or joint targets through "
+         "kinfer compensate",
+         "the corrected model is in chain.toml, chain.urdf and the tables beside them"});
+}
+
+/// "J1 12°, J2 -40°, J3 85 mm"
 std::string reading_in_words(const Chain& chain, const VectorXd& joints) {
   std::vector<std::string> words;
   for (const Joint& joint : chain.joints)
     if (joint.has_reading) {
       const double q = joints[static_cast<Eigen::Index>(words.size())];
-      words.push_back(joint.type == JointType::prismatic ? fmt::format("{:.0f} mm", 1e3 * q)
-                                                         : fmt::format("{:.0f}°", q / degree));
+      words.push_back(joint.name + (joint.type == JointType::prismatic ? fmt::format(" {:.0f} mm", 1e3 * q)
+                                                                       : fmt::format(" {:.0f}°", q / degree)));
     }
   return fmt::format("{}", fmt::join(words, ", "));
 }
@@ -55,18 +63,16 @@ void measure_where_it_is_uncertain(const CalibrateTask& task, const Calibration&
   if (points.empty()) return;
   const auto worst = std::ranges::max_element(points, {}, &WorkspacePoint::predicted);
   if (worst->predicted < much_worse * c.estimate.predicted_error) return;
-  list.push_back({fmt::format("Add poses with the joints near {}, if the cell allows it",
-                              reading_in_words(task.nominal, worst->joints)),
-                  fmt::format("the model is least certain there ({:.3f} mm against {:.3f} mm over these poses); the "
-                              "tool is then at x {:.2f}, y {:.2f}, z {:.2f} m in the frame of the measurements",
-                              1e3 * worst->predicted, 1e3 * c.estimate.predicted_error, worst->tool.x(),
-                              worst->tool.y(), worst->tool.z())});
+  list.push_back(
+      {"For a better model where it is least certain, add poses near " + reading_in_words(task.nominal, worst->joints),
+       fmt::format("it expects {:.3f} mm there against {:.3f} mm over these poses", 1e3 * worst->predicted,
+                   1e3 * c.estimate.predicted_error)});
 }
 
 void measure_more_poses(const CalibrateTask& task, const Calibration& c, std::vector<Advice>& list) {
   constexpr Eigen::Index plenty = 60;
   if (task.data.rows() >= plenty) return;
-  list.push_back({fmt::format("Measure {} poses more (kinfer plan --data chooses them)",
+  list.push_back({fmt::format("For a better model everywhere, measure {} poses more; kinfer plan --data chooses them",
                               std::max<Eigen::Index>(10, plenty - task.data.rows())),
                   fmt::format("{} poses leave the model itself {:.3f} mm uncertain; from about {} poses on the gain is "
                               "small",
@@ -77,6 +83,7 @@ void measure_more_poses(const CalibrateTask& task, const Calibration& c, std::ve
 
 std::vector<Advice> calibration_advice(const CalibrateTask& task, const Calibration& calibration) {
   std::vector<Advice> list;
+  put_it_to_use(calibration, list);
   find_what_is_missing(calibration, list);
   look_at_unbelieved_rows(calibration, list);
   move_idle_joints(task, list);

@@ -65,7 +65,7 @@ struct FoundClock {
 /// Whether the recording is enough for what is wanted of a joint, and what more it would take.
 struct JointForecast {
   std::string joint;                         ///< "ins1-ins2"
-  double line_sd = 0.0, direction_sd = 0.0;  ///< [m], [rad] largest of what a drive like this one tells
+  double line_sd = 0.0, direction_sd = 0.0;  ///< [m], [rad] of the worse side, across the axis
   /// The parent, where it turns about one fixed axis only: how the joint is turned about that axis leaves hardly a trace
   /// in any signal on level ground (METHODS K's azimuth), and counts apart. Empty: nothing is left out.
   std::string azimuth_of{};

@@ -1,5 +1,5 @@
 // What to do next after an identification.
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,19 +25,24 @@ void move_what_stood_still(const Identification& found, std::vector<Advice>& lis
                       "the two never moved against each other, so nothing is known about a joint there"});
 }
 
-void fix_azimuths(const Identification& found, std::vector<Advice>& list) {
+/// What a machine on level ground that never rocks cannot show: turns about its upright axis, and where that axis is.
+void show_what_level_ground_hides(const Identification& found, std::vector<Advice>& list) {
+  std::vector<std::string> hidden;
   for (const FoundJoint& joint : found.joints)
     if (joint.azimuth_undetermined)
-      list.push_back(
-          {fmt::format("Drive once on a slope, or note how the INS {} is turned about the axis", joint.child),
-           "its turn about the vertical axis leaves no trace in any signal"});
+      hidden.push_back(fmt::format("the turn of {} about the axis leaves no trace", joint.child));
   for (const JointForecast& f : found.forecast)
-    if (is_vague_azimuth(f))
-      list.push_back(
-          {fmt::format("Drive once on a slope, or let the base rock, if the heading of {} matters", f.joint),
-           fmt::format("how {} is turned about its only axis is known to {:.0f} mrad; on level ground hardly "
-                       "any signal tells it",
-                       f.azimuth_of, 1e3 * f.azimuth_sd)});
+    if (is_vague_azimuth(f)) hidden.push_back(azimuth_in_words(f));
+  std::vector<std::string> places;
+  for (const FoundJoint& joint : found.joints)
+    if (!joint.not_identifiable_in_parent.empty() && std::ranges::find(places, joint.parent) == places.end())
+      places.push_back(joint.parent);
+  if (!places.empty())
+    hidden.push_back(fmt::format("where the joint is in {} leaves no trace", fmt::join(places, " and in ")));
+  if (!hidden.empty())
+    list.push_back(
+        {"Drive once on a slope and let the base rock, or take a tape, if positions are wanted from the root",
+         fmt::format("on level ground {}; the joints beyond do not need it", fmt::join(hidden, ", and "))});
 }
 
 void move_more(const Identification& found, std::vector<Advice>& list) {
@@ -66,7 +71,7 @@ std::vector<Advice> identification_advice(const Identification& found) {
   make_the_order_safe(found, list);
   move_what_stood_still(found, list);
   move_more(found, list);
-  fix_azimuths(found, list);
+  show_what_level_ground_hides(found, list);
   touch_the_tool(found, list);
   return list;
 }

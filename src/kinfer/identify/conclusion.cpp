@@ -32,8 +32,10 @@ std::string chain_in_words(const Identification& result) {
   const auto rigid = std::ranges::count(result.joints, FoundJointType::rigid, &FoundJoint::type);
   const std::string unmoved = rigid > 0 ? fmt::format(", {} of them never moved", rigid) : "";
   const char* certificate = result.engine == "enum" ? "; no chain of up to 3 leaves fits better" : "";
-  return fmt::format("{} joints found{}, and the drive was {}; {}{}", result.joints.size(), unmoved,
-                     in_words(result.forecast), misfit_in_words(result), certificate);
+  const std::string accuracy = accuracy_in_words(result.forecast);
+  return fmt::format("{} joints found{}{}, {}; {}{}", result.joints.size(), unmoved,
+                     accuracy.empty() ? "" : ", their axes to " + accuracy, in_words(result.forecast),
+                     misfit_in_words(result), certificate);
 }
 
 bool spoils(const Finding& finding) {

@@ -11,21 +11,18 @@ namespace {
 constexpr double in_95_of_100 = 1.96;
 constexpr double unknowable = 0.5;  // [m], [rad] a standard deviation as large as the prior's: no drive would help
 
-double largest_knowable(std::initializer_list<std::array<double, 2>> pairs) {
-  double largest = 0.0;
-  for (const auto& pair : pairs)
-    for (const double sd : pair)
-      if (sd < unknowable) largest = std::max(largest, sd);
-  return largest;
+/// Of the two directions across an axis together, as far as they can be known.
+double across(const std::array<double, 2>& sd) {
+  return std::hypot(sd[0] < unknowable ? sd[0] : 0.0, sd[1] < unknowable ? sd[1] : 0.0);
 }
 
 JointForecast forecast(const FoundJoint& joint, const WantedAccuracy& wanted) {
   JointForecast f{.joint = joint.parent + "-" + joint.child};
-  f.line_sd = largest_knowable({joint.sd.point_in_child});
-  f.direction_sd = largest_knowable({joint.sd.axis_in_child});
+  f.line_sd = across(joint.sd.point_in_child);
+  f.direction_sd = across(joint.sd.axis_in_child);
   if (joint.not_identifiable_in_parent.empty()) {
-    f.line_sd = std::max(f.line_sd, largest_knowable({joint.sd.point_in_parent}));
-    f.direction_sd = std::max(f.direction_sd, largest_knowable({joint.sd.axis_in_parent}));
+    f.line_sd = std::max(f.line_sd, across(joint.sd.point_in_parent));
+    f.direction_sd = std::max(f.direction_sd, across(joint.sd.axis_in_parent));
   } else {
     f.azimuth_of = joint.parent;
     f.azimuth_sd = std::hypot(joint.sd.axis_in_parent[0], joint.sd.axis_in_parent[1]);
@@ -62,21 +59,26 @@ std::string lacking_in_words(const std::vector<JointForecast>& joints) {
   return fmt::format("{}", fmt::join(lacking, ", "));
 }
 
-std::string azimuths_in_words(const std::vector<JointForecast>& joints, const WantedAccuracy& wanted) {
-  std::string text;
+std::string azimuth_in_words(const JointForecast& joint) {
+  return fmt::format(
+      "the turn of {} about its only axis is {}", joint.azimuth_of,
+      joint.azimuth_sd < unknowable ? fmt::format("known to ± {:.0f} mrad", 1e3 * joint.azimuth_sd) : "not known");
+}
+
+std::string accuracy_in_words(const std::vector<JointForecast>& joints) {
+  double line = 0.0, direction = 0.0;
   for (const JointForecast& f : joints)
-    if (is_vague_azimuth(f, wanted))
-      text += fmt::format(
-          "; the turn of {} about its only axis is {}", f.azimuth_of,
-          f.azimuth_sd < unknowable ? fmt::format("known to ± {:.0f} mrad", 1e3 * f.azimuth_sd) : "not known");
-  return text;
+    line = std::max(line, f.line_sd), direction = std::max(direction, f.direction_sd);
+  return line > 0.0 ? fmt::format("± {:.1f} mm and ± {:.2f} mrad", 1e3 * line, 1e3 * direction) : "";
 }
 
 std::string in_words(const std::vector<JointForecast>& joints, const WantedAccuracy& wanted) {
   const std::string what = fmt::format("{:g} mm and {:g} mrad", 1e3 * wanted.line, 1e3 * wanted.direction);
-  return (enough_for_all(joints) ? fmt::format("enough for {} in every joint", what)
-                                 : fmt::format("not enough for {} in {}", what, lacking_in_words(joints))) +
-         azimuths_in_words(joints, wanted);
+  std::string text = enough_for_all(joints) ? fmt::format("enough for {} in every joint", what)
+                                            : fmt::format("not enough for {} in {}", what, lacking_in_words(joints));
+  for (const JointForecast& f : joints)
+    if (is_vague_azimuth(f, wanted)) text += "; " + azimuth_in_words(f);
+  return text;
 }
 
 }  // namespace kinfer

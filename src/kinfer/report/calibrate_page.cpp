@@ -25,7 +25,7 @@ std::string plural(std::size_t n, std::string_view one) {
 
 std::string facts(const Json& e) {
   return fmt::format(
-      "<dl class=\"facts\"><dt>Poses</dt><dd>{}, of which {} not believed</dd><dt>Proof</dt><dd>{}</dd>"
+      "<dl class=\"facts\"><dt>Poses</dt><dd>{}, of which {} left out as wrong</dd><dt>Proof</dt><dd>{}</dd>"
       "<dt>Model</dt><dd>{}, {} parameters</dd></dl>",
       e.at("rows").at("row").size(), e.at("outliers").size(), html::escape(text_at(e, "holdout")),
       html::escape(text_at(e.at("model"), "chosen", "geometry")), e.at("parameters").size());
@@ -49,9 +49,11 @@ std::string how_good(const Json& e) {
   const Headline h = headline(e);
   const double most = mm * ninety_five_percent(e);
   std::string text = fmt::format(
-      "<p><b class=\"big\">{} {}</b> on average, <b>{} {}</b> at worst{}.</p><p>Judged on {} measurements: {}.</p>",
+      "<p><b class=\"big\">{}&nbsp;{}</b> on average, <b>{}&nbsp;{}</b> at worst{}.</p><p>Judged on {} measurements: "
+      "{}.</p>",
       html::short_number(h.mean_after), h.unit, html::short_number(h.max_after), h.unit,
-      std::isfinite(most) ? fmt::format("; 95 of 100 poses stay below <b>{} mm</b>", html::short_number(most)) : "",
+      std::isfinite(most) ? fmt::format("; 95 of 100 poses stay below <b>{}&nbsp;mm</b>", html::short_number(most))
+                          : "",
       h.n, html::escape(text_at(e, "holdout")));
   if (const Json& chi2 = e.at("chi2_per_n"); chi2.is_number()) {
     const double times = std::sqrt(chi2.get<double>());
@@ -71,14 +73,15 @@ std::string how_uncertain(const Json& e) {
   std::size_t open = 0;
   for (const Json& p : e.at("parameters")) open += p.at("identifiable").get<bool>() ? 0 : 1;
   std::string text = fmt::format(
-      "<p><b class=\"big\">{}</b> is the uncertainty of the corrected model itself at the tool, "
-      "over these poses.</p><p>The data pin down {} independent combinations of the {} parameters",
-      in_mm(e.at("predicted_error")), e.at("rank").get<int>(), e.at("parameters").size());
-  text += open == 0 ? std::string(".</p>")
+      "<p><b class=\"big\">{}</b> is the expected error (rms) of the corrected model itself at the tool, over these "
+      "poses. The figures on the left hold the instrument's scatter too.</p>",
+      in_mm(e.at("predicted_error")));
+  text += open == 0 ? std::string("<p>The data fix every parameter.</p>")
                     : fmt::format(
-                          ". What they leave open touches {}, which stay{} near the data sheet. That does no harm "
-                          "where these poses are.</p>",
-                          plural(open, "parameter"), open == 1 ? "s" : "");
+                          "<p>{} of {} parameters cannot be told apart from others and stay near the data "
+                          "sheet. That does no harm where these poses are; elsewhere see <a "
+                          "href=\"#uncertainty\">the map</a>.</p>",
+                          open, e.at("parameters").size());
   if (const std::size_t wrong = e.at("outliers").size(); wrong > 0)
     text += fmt::format("<p><a href=\"#doubts\">{}</a> not believed and left out.</p>",
                         wrong == 1 ? "One row was" : plural(wrong, "row") + " were");

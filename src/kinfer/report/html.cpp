@@ -30,6 +30,45 @@ std::string escape(std::string_view text) {
   return safe;
 }
 
+namespace {
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || c == '-';
+}
+
+/// Length of "kinfer verb" or "kinfer verb --option" at the beginning of the text; 0: it begins otherwise.
+std::size_t length_of_call(std::string_view text) {
+  constexpr std::string_view program = "kinfer ";
+  if (!text.starts_with(program)) return 0;
+  const auto end_of_word = [&](std::size_t from) {
+    while (from < text.size() && is_letter(text[from])) ++from;
+    return from;
+  };
+  const std::size_t verb = end_of_word(program.size());
+  return text.substr(verb).starts_with(" --") ? end_of_word(verb + 1) : verb;
+}
+
+}  // namespace
+
+std::string prose(std::string_view text) {
+  std::string set;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (const std::size_t call = length_of_call(text.substr(i)); call > 0) {
+      set += "<code>" + escape(text.substr(i, call)) + "</code>";
+      i += call - 1;
+    } else if (text[i] == ' ' && i > 0 && i + 1 < text.size() &&
+               (is_digit(text[i - 1]) ? !is_digit(text[i + 1]) : set.ends_with("±"))) {
+      set += "&nbsp;";
+    } else {
+      set += escape(text.substr(i, 1));
+    }
+  }
+  return set;
+}
+
 std::string fixed(double value, int decimals) {
   if (!std::isfinite(value)) return "–";
   std::string text = fmt::format("{:.{}f}", value, decimals);

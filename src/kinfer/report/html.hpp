@@ -9,6 +9,9 @@ namespace kinfer::html {
 
 std::string escape(std::string_view text);
 
+/// Escaped; a number stays on the line of its unit, and calls of kinfer are set as code.
+std::string prose(std::string_view text);
+
 /// A number of table or sentence, rounded for reading; "–" where it is not finite.
 std::string fixed(double value, int decimals);
 

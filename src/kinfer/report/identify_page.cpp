@@ -52,13 +52,15 @@ std::string accuracy(const Json& e) {
   }
   if (line == 0.0) return "";
   return fmt::format(
-      "<p>Joint axes are known to ± <b>{} mm</b> and ± <b>{} mrad</b> or better (one standard deviation).</p>",
-      html::short_number(mm * line), html::short_number(mrad * direction));
+      "<p>The axes of the joints are known to ±&nbsp;<b>{}&nbsp;mm</b> and ±&nbsp;<b>{}&nbsp;mrad</b> or better (one "
+      "standard deviation), "
+      "apart from what is listed beside.</p>",
+      html::fixed(mm * line, 1), html::fixed(mrad * direction, 2));
 }
 
 std::string how_good(const Json& e) {
   std::string text =
-      fmt::format("<p><b class=\"big\">{} joints</b> in {} segments, hung up at {}.</p>", e.at("joints").size(),
+      fmt::format("<p><b class=\"big\">{} joints</b> between {} segments; the root is {}.</p>", e.at("joints").size(),
                   e.at("order").at("sensors").size(), html::escape(text_at(e, "root")));
   text += accuracy(e);
   const double margin = e.at("order").at("margin");
@@ -88,24 +90,48 @@ bool misses_something(const Json& joint) {
          joint.value("azimuth_undetermined", false);
 }
 
-std::string how_uncertain(const Json& e) {
+/// "where the axis is in ins0, which does not turn: rock or drive …" without its remedy, which stands in the next card.
+std::string without_remedy(const std::string& words) {
+  return words.substr(0, words.find(": "));
+}
+
+/// Sensors that carry no further joint.
+std::vector<std::string> last_sensors(const Json& e) {
+  std::vector<std::string> list;
+  for (const Json& joint : e.at("joints"))
+    if (std::ranges::none_of(e.at("joints"),
+                             [&](const Json& other) { return text_at(other, "parent") == text_at(joint, "child"); }))
+      list.push_back(text_at(joint, "child"));
+  return list;
+}
+
+std::vector<std::string> open_questions(const Json& e) {
   std::vector<std::string> items;
   for (const Json& f : member(e, "forecast"))
     if (const double sd = f.value("azimuth_sd_rad", 0.0); mrad * sd > 1.0)
-      items.push_back(fmt::format("how <b>{}</b> is turned about its only axis: ± {} mrad",
-                                  html::escape(text_at(f, "azimuth_of")), html::short_number(mrad * sd)));
+      items.push_back(fmt::format("the turn of <b>{}</b> about its only axis: ±&nbsp;{}&nbsp;mrad",
+                                  html::escape(text_at(f, "azimuth_of")), html::fixed(mrad * sd, 0)));
   for (const Json& joint : e.at("joints"))
     if (const auto words = unknown_words(joint); !words.empty() && misses_something(joint))
       items.push_back(fmt::format("<b>{}–{}</b>: {}", html::escape(text_at(joint, "parent")),
-                                  html::escape(text_at(joint, "child")), html::escape(words.front())));
+                                  html::escape(text_at(joint, "child")), html::escape(without_remedy(words.front()))));
+  if (member(e, "places").empty())
+    for (const std::string& sensor : last_sensors(e))
+      items.push_back(fmt::format("where the tool is beyond <b>{}</b>", html::escape(sensor)));
+  return items;
+}
+
+std::string how_uncertain(const Json& e) {
+  constexpr std::size_t most = 4;
+  std::vector<std::string> items = open_questions(e);
   const std::size_t all = items.size();
   if (all == 0)
     return "<p>Everything that was asked for leaves a trace in the signals; how sure it is stands beside each number "
            "as ±.</p>";
-  if (all > 3) items.resize(3);
+  if (all > most) items.resize(most);
   std::string text = "<p>These leave little or no trace in any signal. What leaves none is drawn dashed.</p>" +
                      html::list(items, "open");
-  if (all > 3) text += fmt::format("<p><a href=\"#unknown\">and {} more</a></p>", all - 3);
+  if (all > most) text += fmt::format("<p><a href=\"#unknown\">and {} more</a></p>", all - most);
   return text;
 }
 
@@ -126,6 +152,13 @@ Cell plus_minus(double sd, double scale, double unknown, int decimals) {
   return html::number(sd, scale, decimals);
 }
 
+/// A place that no signal tells stands in brackets: it is a choice, not a measurement.
+Cell point_cell(const Json& point, double sd) {
+  Cell cell = vector_cell(point, mm, 1);
+  if (!(sd < unknown_length)) cell.shown = "<span class=\"note\">(" + cell.shown + ")</span>";
+  return cell;
+}
+
 html::Section joints(const Json& e) {
   html::Table table{.name = "joints",
                     .caption = "Joints in the frames of the INS on both sides; point [mm]",
@@ -138,7 +171,7 @@ html::Section joints(const Json& e) {
       table.rows.push_back({html::text(head), html::text(type), html::text(text_at(j, sensor)),
                             vector_cell(j.at("axis" + in), 1.0, 5),
                             plus_minus(across(sd.at("axis" + in + "_rad")), mrad, mrad * unknown_angle, 2),
-                            vector_cell(j.at("point" + in), mm, 1),
+                            point_cell(j.at("point" + in), across(sd.at("point" + in + "_m"))),
                             plus_minus(across(sd.at("point" + in + "_m")), mm, unknown_length, 1)});
     };
     side(text_at(j, "parent") + "–" + text_at(j, "child"), text_at(j, "type"), "parent");
@@ -154,7 +187,7 @@ html::Section joints(const Json& e) {
                           plus_minus(link.at("sd_m"), mm, unknown_length, 1)});
   return {"joints-section", "What was found",
           "Every joint as a line in space, in the frame of the INS on either side. Both points are the same physical "
-          "point.",
+          "point. A point in brackets is a choice that no signal tells.",
           html::table(table) + (links.rows.empty() ? "" : html::table(links))};
 }
 

@@ -19,8 +19,8 @@ std::string as_sentence(std::string words) {
 }
 
 std::string advice_item(const Json& advice) {
-  return fmt::format("<b>{}.</b> <span class=\"why\">{}.</span>", html::escape(text_at(advice, "what")),
-                     html::escape(as_sentence(text_at(advice, "why"))));
+  return fmt::format("<b>{}.</b> <span class=\"why\">{}.</span>", html::prose(text_at(advice, "what")),
+                     html::prose(as_sentence(text_at(advice, "why"))));
 }
 
 std::string value_text(const Json& value) {
@@ -78,8 +78,8 @@ std::string verdict_block(const Json& evidence, const std::string& what) {
   return fmt::format(
       "<p class=\"kicker\">{}</p><div id=\"verdict\"><h1>{}{}</h1>{}</div>", what,
       chip.empty() ? "" : fmt::format("<span class=\"chip {}\">{}</span> ", kind, html::escape(chip)),
-      html::escape(as_sentence(sentence.substr(0, semicolon))),
-      added.empty() ? "" : fmt::format("<p>{}{}</p>", html::escape(added), added.ends_with('.') ? "" : "."));
+      html::prose(as_sentence(sentence.substr(0, semicolon))),
+      added.empty() ? "" : fmt::format("<p>{}{}</p>", html::prose(added), added.ends_with('.') ? "" : "."));
 }
 
 std::string cards(const std::vector<std::pair<std::string, std::string>>& list) {
