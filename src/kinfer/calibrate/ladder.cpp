@@ -36,7 +36,8 @@ HeldOut cross_validated(const Estimate& fit, const ParameterSet& set, const Pose
   HeldOut held;
   held.unseen.resize(splits.size());
   parallel_for(splits.size(), threads, [&](std::size_t i) {
-    held.unseen[i] = fit_rows(fit.chain, set, select(rows, splits[i].train), task, {.begin = Begin::near_the_fit});
+    held.unseen[i] = fit_rows(fit.chain, set, select(rows, splits[i].train), task,
+                              {.begin = Begin::near_the_fit, .detail = Detail::numbers_only});
   });
   const auto headline = headline_kind(rows);
   if (!headline) return held;
@@ -153,6 +154,8 @@ class Climb {
     begin_with(geometry);
     const auto* named = std::get_if<NamedModel>(&options_.model);
     for (const std::string& name : named ? named->rungs : rung_names()) try_rung(name, named != nullptr);
+    if (ladder_.chosen != "geometry")  // what the data tell is said of the chosen model alone
+      now_.fit = fit_rows(now_.fit.chain, now_.fit.parameters, rows_, task_, {.begin = Begin::near_the_fit});
     const std::vector<Outlier> wrong = wrong_rows(geometry);
     for (std::size_t i = 0; i < ladder_.rungs.size(); ++i) ladder_.rungs[i].holdout = judged(held_out_[i], wrong);
     return {now_.fit, now_.near.unseen, ladder_, wrong};
@@ -207,7 +210,7 @@ class Climb {
     ParameterSet set = now_.fit.parameters;
     set.parameters.insert(set.parameters.end(), rung.further.begin(), rung.further.end());
     Tried next;
-    next.fit = fit_rows(rung.nominal, set, rows_, task_, {}, observer_);
+    next.fit = fit_rows(rung.nominal, set, rows_, task_, {.detail = Detail::numbers_only}, observer_);
     describe_terms(entry, rung, next.fit);
     if (entry.determined == 0 && !must) {
       lock(entry, "these poses do not excite its terms");

@@ -6,6 +6,7 @@
 #include "kinfer/base/expect.hpp"
 #include "kinfer/estimate/identifiability.hpp"
 #include "kinfer/estimate/noise_level.hpp"
+#include "kinfer/estimate/pose_normal.hpp"
 #include "kinfer/estimate/tool_derivatives.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
@@ -23,19 +24,26 @@ struct State {
   Search search;
 };
 
-/// Σ s²/(1+s²) over the singular values in units of noise and prior: how many parameters the data determine.
-double effective_parameters(const LeastSquaresOutcome& outcome, const ParameterSet& set) {
-  const auto data_rows = outcome.jacobian.topRows(outcome.jacobian.rows() - set.free_count());
+/// Squares of the singular values of the measured rows in units of noise and prior.
+VectorXd told_in_tolerances(const NormalEquations& normal, const ParameterSet& set) {
   VectorXd scale(set.free_count());
   Eigen::Index k = 0;
   for (const Parameter* p : set.free()) scale[k++] = std::isfinite(p->prior_sd) ? p->prior_sd : p->scale;
-  MatrixXd information = normal_equations(data_rows, VectorXd::Zero(data_rows.rows())).matrix;
+  MatrixXd information = normal.matrix - prior_information(set).triangularView<Eigen::Lower>().toDenseMatrix();
   information = scale.asDiagonal() * information * scale.asDiagonal();
-  const VectorXd s2 = symmetric_eigen(information).values.cwiseMax(0.0);
+  return symmetric_eigen(information).values.cwiseMax(0.0);
+}
+
+/// Σ s²/(1+s²): how many parameters the data determine.
+double effective_parameters(const NormalEquations& normal, const ParameterSet& set) {
+  const VectorXd s2 = told_in_tolerances(normal, set);
   return (s2.array() / (1.0 + s2.array())).sum();
 }
 
-constexpr double roughly = 1e-7;  // of the cost
+constexpr double roughly = 1e-7;         // of the cost
+constexpr double nearly_none = 1e-9;     // damping where the start is an optimum of nearly the same problem
+constexpr double robust_beyond = 2.0;    // [sigma] a row
+constexpr double exactly_enough = 1e-6;  // of the cost of one row: a thousandth of each standard deviation
 
 class Fit {
  public:
@@ -60,19 +68,19 @@ class Fit {
 
  private:
   /// `tolerance`: relative fall of the cost below which a run ends; rounds that only settle the level need little.
-  void minimise(Loss loss, double tolerance = LeastSquaresOptions{}.cost_tolerance) {
+  void minimise(Loss loss, double tolerance) {
     const PoseSet kept = only(data_, state_.believed);
     const Weights weights = weights_of(kept, instrument_, state_.excess);
+    Search& search = state_.search;
     LeastSquaresOptions options;
     options.max_iterations = options_.max_iterations;
-    options.loss = loss;
     options.cost_tolerance = tolerance;
-    options.loss_scale = 2.0;
+    options.last_step = LastStep::saved;
+    if (search.iterations > 0 || options_.begin == Begin::near_the_fit) options.initial_damping = nearly_none;
     const Chain nominal = state_.chain;
-    state_.outcome =
-        least_squares(pose_residuals(nominal, set_, kept, weights), pack(set_, nominal), options, observer_);
+    state_.outcome = least_squares(pose_normal_problem(nominal, set_, kept, weights, {loss, robust_beyond}),
+                                   pack(set_, nominal), options, observer_);
     state_.chain = unpack(set_, nominal, state_.outcome.x);
-    Search& search = state_.search;
     search.iterations += state_.outcome.iterations;
     search.evaluations += state_.outcome.evaluations;
     search.stop = state_.outcome.stop;
@@ -83,7 +91,8 @@ class Fit {
   /// True when the noise level has settled.
   bool update_noise_level() {
     const PoseSet kept = only(data_, state_.believed);
-    const ExcessNoise now = excess_noise(state_.chain, kept, instrument_, effective_parameters(state_.outcome, set_));
+    const ExcessNoise now =
+        excess_noise(state_.chain, kept, instrument_, effective_parameters(state_.outcome.normal, set_));
     const auto settled = [](double before, double after) { return std::abs(after - before) <= 0.02 * before; };
     bool done = true;
     for (std::size_t k = 0; k < now.of.size(); ++k) done &= settled(state_.excess.of[k], now.of[k]);
@@ -107,9 +116,11 @@ class Fit {
       minimise(Loss::none, roughly);
       const bool settled = update_noise_level();
       const bool same = options_.outliers == Outliers::believe_all || !update_beliefs();
-      if (settled && same) break;
+      if (!settled || !same) continue;
+      if (options_.detail == Detail::numbers_only) return;
+      break;
     }
-    minimise(Loss::none);
+    minimise(Loss::none, exactly_enough / static_cast<double>(std::max<std::size_t>(1, blocks_.size())));
   }
 
   VectorXd block_distances() const {  // [sigma], one a block
@@ -149,13 +160,24 @@ class Fit {
     estimate.chain = state_.chain;
     estimate.parameters = set_;
     estimate.search = state_.search;
-    const MatrixXd data_rows = state_.outcome.jacobian.topRows(state_.outcome.jacobian.rows() - set_.free_count());
-    estimate.identifiability = identifiability(data_rows, set_);
     describe_noise(estimate);
     describe_parameters(estimate);
     describe_outliers(estimate);
+    if (options_.detail == Detail::numbers_only) return estimate;
+    estimate.identifiability = identifiability(believed_rows(), set_);
+    estimate.surprise = surprise();
     estimate.predicted_error = predicted_rms(estimate);
     return estimate;
+  }
+
+  /// Jacobian of all that is believed and measured.
+  MatrixXd believed_rows() const {
+    const PoseSet kept = only(data_, state_.believed);
+    const Weights weights = weights_of(kept, instrument_, state_.excess);
+    VectorXd r;
+    MatrixXd jacobian;
+    pose_residuals(state_.chain, set_, kept, weights).evaluate(state_.outcome.x, r, &jacobian);
+    return jacobian.topRows(jacobian.rows() - set_.free_count());
   }
 
   void describe_noise(Estimate& estimate) const {
@@ -165,13 +187,13 @@ class Fit {
                                           MeasurementKind::pair, MeasurementKind::plane});
     estimate.sigma_angle = typical_sd(weights, {MeasurementKind::orientation});
     if (instrument_) estimate.chi2_per_n = chi2_against_the_promise(kept);
-    estimate.surprise = surprise(weights, estimate.identifiability);
   }
 
   /// −2 log of the marginal likelihood by Laplace's approximation: misfit, level of the noise over all rows, believed
   /// or not, and the price of the freedom used.
-  double surprise(const Weights& weights, const Identifiability& found) const {
-    double sum = state_.outcome.cost + (1.0 + found.singular_values.cwiseAbs2().array()).log().sum();
+  double surprise() const {
+    const Weights weights = weights_of(only(data_, state_.believed), instrument_, state_.excess);
+    double sum = state_.outcome.cost + told_in_tolerances(state_.outcome.normal, set_).array().log1p().sum();
     for (const ResidualKind& kind : residual_kinds()) {
       const double sd = typical_sd(weights, {kind.kind});
       if (sd > 0.0) sum += 2.0 * kind.size * static_cast<double>(kind.count(data_)) * std::log(sd);
@@ -197,17 +219,17 @@ class Fit {
     const ParameterSet nothing;
     VectorXd r;
     pose_residuals(state_.chain, nothing, kept, promised).evaluate(VectorXd(0), r, nullptr);
-    const double redundancy = std::max(1.0, static_cast<double>(r.size()) - effective_parameters(state_.outcome, set_));
+    const double redundancy =
+        std::max(1.0, static_cast<double>(r.size()) - effective_parameters(state_.outcome.normal, set_));
     return r.squaredNorm() / redundancy;
   }
 
   void describe_parameters(Estimate& estimate) const {
     const std::vector<const Parameter*> free = set_.free();
-    const MatrixXd& jacobian = state_.outcome.jacobian;
+    const MatrixXd& normal = state_.outcome.normal.matrix;
     // Scaled to unit diagonal: the inverse is then as accurate as the problem allows.
-    const VectorXd scale = jacobian.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
-    const MatrixXd scaled = jacobian * scale.asDiagonal();
-    const auto inverse = inverse_positive(scaled.transpose() * scaled);
+    const VectorXd scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+    const auto inverse = inverse_positive(scale.asDiagonal() * normal * scale.asDiagonal());
     const Eigen::Index n = scale.size();
     estimate.covariance = inverse ? MatrixXd(scale.asDiagonal() * *inverse * scale.asDiagonal()) : MatrixXd::Zero(n, n);
     for (Eigen::Index k = 0; k < n; ++k) {
@@ -219,15 +241,19 @@ class Fit {
   }
 
   void describe_outliers(Estimate& estimate) const {
+    if (std::find(state_.believed.begin(), state_.believed.end(), false) == state_.believed.end()) return;
     const VectorXd distance = block_distances();
-    std::array<std::vector<double>, measurement_kinds> errors;
-    for (const ResidualKind& kind : residual_kinds())
-      errors[static_cast<std::size_t>(kind.kind)] = errors_of_kind(kind.kind, estimate.chain, data_);
+    const ParameterSet nothing;
+    const EvaluatedPoses at = evaluate_poses(estimate.chain, nothing, data_, Derivative::no);
+    const ColumnsOfSurroundings columns = columns_of_surroundings(estimate.chain, nothing);
+    VectorXd residual = VectorXd::Zero(3);
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       if (state_.believed[i]) continue;
       const Block& block = blocks_[i];
-      const std::string what =
-          residual_kind(block.kind).in_words(errors[static_cast<std::size_t>(block.kind)][block.index]);
+      const ResidualKind& kind = residual_kind(block.kind);
+      BlockRows out{residual, nullptr, 0};
+      kind.write({estimate.chain, data_, at, columns}, static_cast<std::size_t>(block.index), out);
+      const std::string what = kind.in_words(residual.head(kind.size).norm());
       const int line = data_.line.empty() ? 0 : data_.line[block.row];
       const double sigmas = distance[static_cast<Eigen::Index>(i)];
       estimate.outliers.push_back({block.row, line, fmt::format("{} ({:.0f} sigma)", what, sigmas), sigmas});

@@ -20,10 +20,16 @@ enum class Begin {
   near_the_fit,  ///< the start was fitted robustly to these rows and others: what it disbelieves is where to begin
 };
 
+enum class Detail {
+  all,          ///< with what the data can tell, in words: that costs more than the fit of many rows
+  numbers_only  ///< without identifiability, surprise and predicted_error
+};
+
 struct BundleOptions {
   int max_iterations = 100;  ///< of each Levenberg-Marquardt run
   Outliers outliers = Outliers::find;
   Begin begin = Begin::anywhere;
+  Detail detail = Detail::all;
   double false_alarms = 1e-3;  ///< expected number of good rows called wrong in a whole data set of Gaussian noise
 };
 

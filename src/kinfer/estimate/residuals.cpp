@@ -31,24 +31,15 @@ ParameterSet seen_from(ParameterSet set, const Chain& chain, int mounting) {
   return set;
 }
 
-void write_socket_distances(const Chain& chain, const ColumnsOfSurroundings& columns, VectorXd& r, MatrixXd* jacobian,
-                            Eigen::Index row) {
-  const Surroundings& around = chain.surroundings;
-  for (const SocketDistance& known : around.socket_distances) {
-    const Vec3 apart = around.sockets[known.a].xyz - around.sockets[known.b].xyz;
-    const double length = apart.norm(), inverse_sd = 1.0 / std::max(known.sd, noise_free_sd);
-    r[row] = inverse_sd * (known.distance - length);
-    if (jacobian) {
-      jacobian->row(row).setZero();
-      const Vec3 along = length > 0.0 ? Vec3(apart / length) : Vec3::UnitX().eval();
-      for (int k = 0; k < 3; ++k) {
-        if (const auto column = columns.socket[known.a][k]; column >= 0)
-          (*jacobian)(row, column) = -inverse_sd * along[k];
-        if (const auto column = columns.socket[known.b][k]; column >= 0)
-          (*jacobian)(row, column) = inverse_sd * along[k];
-      }
-    }
-    ++row;
+/// Calls visit(mounting, rows) for −1 and each further mounting with the rows measured there.
+template <class Visit>
+void for_each_mounting(const Chain& chain, const PoseSet& data, Visit visit) {
+  const auto mountings = data.mounting.empty() ? 0 : static_cast<int>(chain.mountings.size());
+  for (int mounting = -1; mounting < mountings; ++mounting) {
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index row = 0; row < data.rows(); ++row)
+      if (data.mounting.empty() || data.mounting[row] == mounting) rows.push_back(row);
+    visit(mounting, rows);
   }
 }
 
@@ -128,20 +119,57 @@ Load load_at(const Chain& chain, const PoseSet& data, Eigen::Index row) {
 
 EvaluatedPoses evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative) {
   EvaluatedPoses at;
+  evaluate_poses(chain, set, data, derivative, {}, at);
+  return at;
+}
+
+void evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative,
+                    const MatrixXd& gravity, EvaluatedPoses& at) {
   at.pose.resize(data.rows());
   if (derivative == Derivative::yes) at.twists.resize(data.rows());
-  const auto mountings = data.mounting.empty() ? 0 : static_cast<int>(chain.mountings.size());
-  for (int mounting = -1; mounting < mountings; ++mounting) {
+  for_each_mounting(chain, data, [&](int mounting, const auto& rows) {
     const PoseEvaluator evaluator(mounted(chain, mounting), seen_from(set, chain, mounting));
-    for (Eigen::Index row = 0; row < data.rows(); ++row) {
-      if (!data.mounting.empty() && data.mounting[row] != mounting) continue;
+    for (const Eigen::Index row : rows) {
       const auto q = data.joints.col(row);
-      const Load load = load_at(chain, data, row);
+      Load load = load_at(chain, data, row);
+      if (gravity.size() > 0) load.gravity = {gravity.col(row).data(), static_cast<std::size_t>(gravity.rows())};
       at.pose[row] = derivative == Derivative::yes ? evaluator.pose_and_derivative(q, load, at.twists[row])
                                                    : evaluator.pose(q, load);
     }
+  });
+}
+
+MatrixXd torques_of_gravity(const Chain& chain, const PoseSet& data) {
+  const bool loaded = std::any_of(data.payload.begin(), data.payload.end(), [](double kg) { return kg != 0.0; });
+  if (chain.masses.empty() && !loaded) return {};
+  MatrixXd torques(static_cast<Eigen::Index>(chain.joints.size()), data.rows());
+  for_each_mounting(chain, data, [&](int mounting, const auto& rows) {
+    const Chain here = mounted(chain, mounting);
+    for (const Eigen::Index row : rows)
+      torques.col(row) = gravity_torques(here, data.joints.col(row), load_at(chain, data, row));
+  });
+  return torques;
+}
+
+void write_socket_distances(const Chain& chain, const ColumnsOfSurroundings& columns, VectorXd& r, MatrixXd* jacobian,
+                            Eigen::Index row) {
+  const Surroundings& around = chain.surroundings;
+  for (const SocketDistance& known : around.socket_distances) {
+    const Vec3 apart = around.sockets[known.a].xyz - around.sockets[known.b].xyz;
+    const double length = apart.norm(), inverse_sd = 1.0 / std::max(known.sd, noise_free_sd);
+    r[row] = inverse_sd * (known.distance - length);
+    if (jacobian) {
+      jacobian->row(row).setZero();
+      const Vec3 along = length > 0.0 ? Vec3(apart / length) : Vec3::UnitX().eval();
+      for (int k = 0; k < 3; ++k) {
+        if (const auto column = columns.socket[known.a][k]; column >= 0)
+          (*jacobian)(row, column) = -inverse_sd * along[k];
+        if (const auto column = columns.socket[known.b][k]; column >= 0)
+          (*jacobian)(row, column) = inverse_sd * along[k];
+      }
+    }
+    ++row;
   }
-  return at;
 }
 
 const std::vector<Vec3>& Weights::of(MeasurementKind kind) const {

@@ -15,6 +15,12 @@ namespace kinfer {
 enum class Derivative { no, yes };
 /// Each row in its own mounting, with the loads of that row.
 EvaluatedPoses evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative);
+/// The same with torques of gravity that are known (empty: they are computed), into a buffer for the hot loop.
+void evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative,
+                    const MatrixXd& gravity, EvaluatedPoses& at);
+
+/// Torque of gravity about each joint's axis at each row [N m], joints x rows; empty where nothing weighs anything.
+MatrixXd torques_of_gravity(const Chain& chain, const PoseSet& data);
 
 /// Payload, warming, torques and approach at one row of the set. Views into the set.
 Load load_at(const Chain& chain, const PoseSet& data, Eigen::Index row);
@@ -49,6 +55,10 @@ PoseSet only(const PoseSet& data, const std::vector<bool>& kept);
 /// The least-squares problem over the free parameters of `set`; blocks first (in the order of blocks_of), then the
 /// socket distances, then the priors. All arguments must outlive the result.
 Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights);
+
+/// Rows of the socket distances from `row` on.
+void write_socket_distances(const Chain& chain, const ColumnsOfSurroundings& columns, VectorXd& r, MatrixXd* jacobian,
+                            Eigen::Index row);
 
 /// Size of each measurement's residual, [m], [rad] or [m/s²], in the list's order.
 std::vector<double> errors_of_kind(MeasurementKind kind, const Chain& chain, const PoseSet& data);

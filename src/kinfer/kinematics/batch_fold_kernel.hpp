@@ -1,8 +1,8 @@
 // What a candidate makes of the constant transforms between the joints. Included by the kernel files only.
 #pragma once
 
+#include "kinfer/base/pack_kernel.hpp"
 #include "kinfer/kinematics/batch_kernel.hpp"
-#include "kinfer/kinematics/batch_pack.hpp"
 #include "kinfer/kinematics/batch_sines_kernel.hpp"
 
 namespace kinfer::batch {

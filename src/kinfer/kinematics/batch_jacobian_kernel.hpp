@@ -7,9 +7,9 @@
 // weighted. The normal equations grow chunk by chunk: no Jacobian need be kept.
 #pragma once
 
-#include "kinfer/kinematics/batch_gram_kernel.hpp"
 #include "kinfer/kinematics/batch_points_kernel.hpp"
 #include "kinfer/kinematics/batch_sines_kernel.hpp"
+#include "kinfer/linalg/gram_kernel.hpp"
 
 namespace kinfer::batch {
 namespace {  // each kernel file has its own, compiled for its processor
@@ -262,7 +262,7 @@ class JacobianKernel {
         numbers_(job.workspace),
         notes_(numbers_ + round_up(numbers_of_screw * job.screw_count, lanes)),
         chunk_(notes_ + notes_of_screw * in_flight * lanes * job.screw_count),
-        gram_(job.columns, job.blocks, chunk_ + padded_columns(job.columns) * apart),
+        gram_(job.columns, chunks_of(job.blocks), chunk_ + padded_columns(job.columns) * apart),
         sum_(broadcast<V>(0.0)) {
     fold_screws(job, Sines::of<V>(job.at, chunk_), numbers_);  // the chunk is still free
     for (int i = 0; i < job.idle_count; ++i) clear(job.idle[i]);

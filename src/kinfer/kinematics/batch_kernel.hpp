@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kinfer/linalg/gram_plan.hpp"
+
 namespace kinfer::batch {
 
 /// A number of the chain: parameter x[parameter], or a constant where that is negative.
@@ -153,35 +155,15 @@ struct JacobianJob {
   double* workspace = nullptr;
 };
 
-/// The products of JᵀJ are made in tiles that fill the registers, those of Jᵀr in strips.
-inline constexpr int tile_height = 4, strip_width = 12;
-[[gnu::always_inline]] constexpr int tile_width(int lanes) {
-  return lanes == 8 ? 4 : 3;
-}
 inline constexpr int blocks_in_flight = 2, blocks_a_chunk = 8;
-[[gnu::always_inline]] constexpr int round_up(int count, int to) {
-  return (count + to - 1) / to * to;
-}
-/// Numbers of the sums that go from chunk to chunk: of all tiles and strips. One of each where there is one chunk.
-[[gnu::always_inline]] constexpr int tile_numbers(int columns, int blocks, int lanes) {
-  int tiles = 1;
-  if (blocks > blocks_a_chunk) {
-    tiles = 0;
-    for (int i = 0; i < columns; i += tile_height)
-      for (int j = 0; j < i + tile_height && j < columns; j += tile_width(lanes)) ++tiles;
-  }
-  return tiles * tile_height * tile_width(lanes) * lanes;
-}
-/// Columns of a chunk: the last tiles and strips read beyond the last one, where the residual stands.
-[[gnu::always_inline]] constexpr int padded_columns(int columns) {
-  const int read = round_up(columns, strip_width);
-  return read > columns ? read : columns + 1;
+[[gnu::always_inline]] constexpr Chunks chunks_of(int blocks) {
+  return blocks > blocks_a_chunk ? Chunks::several : Chunks::one;
 }
 /// Numbers of workspace that a JacobianJob needs.
 [[gnu::always_inline]] constexpr std::size_t jacobian_workspace(int columns, int screws, int blocks, int lanes) {
-  return static_cast<std::size_t>(screws * (4 + 4 * blocks_in_flight * lanes) + lanes +
-                                  padded_columns(columns) * 3 * blocks_a_chunk * lanes +
-                                  tile_numbers(columns, blocks, lanes) + round_up(columns, strip_width) * lanes);
+  return static_cast<std::size_t>(
+      screws * (4 + 4 * blocks_in_flight * lanes) + lanes + padded_columns(columns) * 3 * blocks_a_chunk * lanes +
+      tile_numbers(columns, chunks_of(blocks), lanes) + round_up(columns, strip_width) * lanes);
 }
 
 /// What a kernel file offers.

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "kinfer/kinematics/batch_buffer.hpp"
+#include "kinfer/base/aligned_buffer.hpp"
 #include "kinfer/kinematics/batch_plan.hpp"
 
 namespace kinfer {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "kinfer/base/aligned_buffer.hpp"
 #include "kinfer/base/expect.hpp"
-#include "kinfer/kinematics/batch_buffer.hpp"
 
 namespace kinfer {
 

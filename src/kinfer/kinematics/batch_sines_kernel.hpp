@@ -1,8 +1,8 @@
 // The numbers of one candidate, with the sines of its angles taken side by side. Included by the kernel files only.
 #pragma once
 
+#include "kinfer/base/pack_kernel.hpp"
 #include "kinfer/kinematics/batch_kernel.hpp"
-#include "kinfer/kinematics/batch_pack.hpp"
 
 namespace kinfer::batch {
 namespace {  // each kernel file has its own, compiled for its processor

@@ -180,6 +180,7 @@ struct PoseEvaluator::Program {
 
   /// Torques of gravity on the undeflected chain; the buffers are kept between calls.
   const double* gravity(const double* q, const Load& load) const {
+    if (!load.gravity.empty()) return load.gravity.data();
     if (load.payload == 0.0 && chain.masses.empty()) return no_torque.data();
     thread_local std::vector<PlacedJoint> placed;
     thread_local VectorXd torques;

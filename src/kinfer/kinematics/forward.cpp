@@ -26,14 +26,16 @@ struct Placer {
 
 bool is_loaded(const Chain& chain, const Load& load) {
   const auto bends = [](const Joint& j) { return j.compliance != 0.0; };
-  return (load.payload != 0.0 || !chain.masses.empty()) && std::any_of(chain.joints.begin(), chain.joints.end(), bends);
+  return (load.payload != 0.0 || !chain.masses.empty() || !load.gravity.empty()) &&
+         std::any_of(chain.joints.begin(), chain.joints.end(), bends);
 }
 
 /// How far each joint has moved from its offset, deflection by gravity included.
 VectorXd movements(const Chain& chain, ConstVectorRef q, const Load& load) {
   VectorXd moved = moved_by_readings(chain, q) + deviations(chain, q, load);
   if (!is_loaded(chain, load)) return moved;
-  const VectorXd torques = gravity_torques(chain, q, load);
+  const VectorXd torques = load.gravity.empty() ? gravity_torques(chain, q, load)
+                                                : VectorXd::Map(load.gravity.data(), moved.size()).eval();
   for (Eigen::Index j = 0; j < moved.size(); ++j) moved[j] += chain.joints[j].compliance * torques[j];
   return moved;
 }

@@ -21,6 +21,7 @@ struct Load {
   double payload = 0.0;                ///< [kg] point mass at the tool point
   double warming = 0.0;                ///< [K] above the chain's reference temperature
   std::span<const double> torques{};   ///< [N m] measured, one a reading; empty: none
+  std::span<const double> gravity{};   ///< [N m] its torque about each joint's axis; empty: of the chain as it is
   std::span<const double> approach{};  ///< −1, 0 or 1, the sense in which each reading was approached; empty: none
 };
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/base/aligned_buffer.hpp"
 #include "kinfer/base/expect.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/gram_plan.hpp"
 
 namespace kinfer {
 namespace {
@@ -45,10 +47,31 @@ void solve_factorised(const MatrixXd& l, VectorXd& b) {
 
 }  // namespace
 
+const batch::GramKernel& batch::best_gram() {
+#if defined(__x86_64__)
+  static const bool avx512 = __builtin_cpu_supports("avx512f"),
+                    avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (avx512) return avx512_gram;
+  if (avx2) return avx2_gram;
+#endif
+  return portable_gram;
+}
+
 NormalEquations normal_equations(ConstMatrixRef a, ConstVectorRef b) {
   KINFER_EXPECT(a.rows() == b.size(), "{} rows, {} values", a.rows(), b.size());
-  NormalEquations equations{MatrixXd::Zero(a.cols(), a.cols()), a.transpose() * b};
-  equations.matrix.selfadjointView<Eigen::Lower>().rankUpdate(a.transpose());
+  NormalEquations equations{MatrixXd::Zero(a.cols(), a.cols()), VectorXd::Zero(a.cols())};
+  if (a.size() == 0) return equations;
+  const batch::GramKernel& kernel = batch::best_gram();
+  const auto rows = static_cast<int>(a.rows()), columns = static_cast<int>(a.cols());
+  batch::Buffer<double> workspace(batch::gram_workspace(rows, columns, kernel.lanes));
+  kernel.normal_equations({.a = a.data(),
+                           .a_stride = a.outerStride(),
+                           .b = b.data(),
+                           .rows = rows,
+                           .columns = columns,
+                           .matrix = equations.matrix.data(),
+                           .gradient = equations.gradient.data(),
+                           .workspace = workspace.data()});
   return equations;
 }
 

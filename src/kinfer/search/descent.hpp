@@ -89,6 +89,11 @@ class Descent {
     const VectorXd dy = solve(mu);
     const double forecast = -normal_.gradient.dot(dy) + mu * dy.squaredNorm();
     const bool shortened = damping_ >= 1.0 || growth_ > 2.0;  // a short step then says nothing about the optimum
+    if (options_.last_step == LastStep::saved && !shortened && last_step_succeeded_ && iterations_ > 1 &&
+        forecast <= options_.cost_tolerance * here_.cost) {
+      history_.push_back(here_.cost);
+      return Stop::converged_cost;
+    }
     const double noise = cost_noise();
     const double gain = try_step(dy);
     if (gain > 0.0) {

@@ -55,9 +55,9 @@ class DenseSource {
     here_ = &at;
     singular_.reset();
     if (options_.loss != Loss::none) {
-      weighted_jacobian_ = at.jacobian;
-      weighted_r_ = at.r;
-      apply_weights(at);
+      const VectorXd root = root_weights(at);
+      weighted_jacobian_.noalias() = root.asDiagonal() * at.jacobian;
+      weighted_r_ = root.cwiseProduct(at.r);
     }
     return normal_equations(jacobian(), r());
   }
@@ -87,16 +87,13 @@ class DenseSource {
     return cost + at.r.tail(problem_.rows - row).squaredNorm();
   }
 
-  /// Multiplies the rows of each block by the root of its weight.
-  void apply_weights(const Point& at) {
+  /// The root of each row's weight: of its block, 1 beyond the blocks.
+  VectorXd root_weights(const Point& at) const {
+    VectorXd root = VectorXd::Ones(problem_.rows);
     Eigen::Index row = 0;
-    for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
-      const int size = problem_.blocks[b];
-      const double root = std::sqrt(at.weights[static_cast<Eigen::Index>(b)]);
-      weighted_jacobian_.middleRows(row, size) *= root;
-      weighted_r_.segment(row, size) *= root;
-      row += size;
-    }
+    for (std::size_t b = 0; b < problem_.blocks.size(); row += problem_.blocks[b++])
+      root.segment(row, problem_.blocks[b]).setConstant(std::sqrt(at.weights[static_cast<Eigen::Index>(b)]));
+    return root;
   }
 
   const MatrixXd& jacobian() const { return options_.loss == Loss::none ? here_->jacobian : weighted_jacobian_; }

@@ -43,6 +43,9 @@ struct EvaluationCounts {
   int evaluations = 0, jacobians = 0, not_finite = 0;
 };
 
+/// Whether a step that promises less than the cost tolerance is still taken.
+enum class LastStep { taken, saved };
+
 struct LeastSquaresOptions {
   int max_iterations = 100;       ///< trial steps, taken or not
   double cost_tolerance = 1e-14;  ///< ends when the last step and its forecast lower the cost by less, relative
@@ -50,7 +53,8 @@ struct LeastSquaresOptions {
   double gradient_tolerance = 1e-12;  ///< ends when every |cos(column of J, r)| is less
   double target_cost = 0.0;           ///< ends when the cost is not above it
   Loss loss = Loss::none;
-  double loss_scale = 1.0;        ///< [sigma] a block of k rows is bent beyond |r| = loss_scale √k; large: as without
+  double loss_scale = 1.0;  ///< [sigma] a block of k rows is bent beyond |r| = loss_scale √k; large: as without
+  LastStep last_step = LastStep::taken;  ///< saved: one evaluation less, and the accuracy that the tolerance promises
   double initial_damping = 1e-4;  ///< mu at the start as a fraction of the largest curvature; large: shorter first step
   /// Typical size of each unknown (> 0), its tolerance for instance: a step across all of them costs the same damping.
   /// Without it, the reciprocal of the largest column norm of J so far.

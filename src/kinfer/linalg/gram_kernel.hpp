@@ -1,8 +1,8 @@
 // JᵀJ and Jᵀr of columns that arrive chunk by chunk. Included by the kernel files only.
 #pragma once
 
-#include "kinfer/kinematics/batch_kernel.hpp"
-#include "kinfer/kinematics/batch_pack.hpp"
+#include "kinfer/base/pack_kernel.hpp"
+#include "kinfer/linalg/gram_plan.hpp"
 
 namespace kinfer::batch {
 namespace {  // each kernel file has its own, compiled for its processor
@@ -35,8 +35,8 @@ class Gram {
  public:
   static constexpr int lanes = Traits<V>::lanes, tall = tile_height, wide = tile_width(lanes), strip = strip_width;
 
-  Gram(int columns, int blocks, double* sums)
-      : columns_(columns), tiles_(sums), strips_(sums + tile_numbers(columns, blocks, lanes)) {
+  Gram(int columns, Chunks chunks, double* sums)
+      : columns_(columns), tiles_(sums), strips_(sums + tile_numbers(columns, chunks, lanes)) {
     static_assert(strip % tall == 0 && strip % wide == 0);
   }
 
@@ -120,6 +120,26 @@ class Gram {
   double *tiles_, *strips_;
   bool is_empty_ = true;
 };
+
+/// The rows are copied chunk by chunk to where the cache holds them, b behind the last column.
+template <class V>
+void normal_equations(const GramJob& job) {
+  constexpr int lanes = Traits<V>::lanes, apart = packs_a_chunk * lanes;
+  const Chunks chunks = job.rows > apart ? Chunks::several : Chunks::one;
+  double* chunk = job.workspace;
+  Gram<V> gram(job.columns, chunks, chunk + static_cast<std::ptrdiff_t>(padded_columns(job.columns)) * apart);
+  for (int row = 0;; row += apart) {
+    const int left = job.rows - row, count = left < apart ? left : apart, packs = (count + lanes - 1) / lanes;
+    for (int column = 0; column <= job.columns; ++column) {
+      const double* from = (column < job.columns ? job.a + column * job.a_stride : job.b) + row;
+      double* to = chunk + static_cast<std::ptrdiff_t>(column) * apart;
+      for (int i = 0; i < count; ++i) to[i] = from[i];
+      for (int i = count; i < packs * lanes; ++i) to[i] = 0.0;
+    }
+    if (left <= apart) return gram.finish(chunk, apart, packs, job.matrix, job.gradient);
+    gram.add(chunk, apart, packs);
+  }
+}
 
 }  // namespace
 }  // namespace kinfer::batch

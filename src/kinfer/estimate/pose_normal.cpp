@@ -1,0 +1,188 @@
+#include "kinfer/estimate/pose_normal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "kinfer/estimate/point_fit.hpp"
+
+namespace kinfer {
+namespace {
+
+/// Cost of blocks of `size` rows from row 0 on; `weight` becomes the root of each row's robust weight where it is
+/// wanted.
+double cost_of_blocks(const BlockLoss& loss, int size, ConstVectorRef r, VectorXd* weight) {
+  const double limit = loss.scale * std::sqrt(static_cast<double>(size));
+  double cost = 0.0;
+  for (Eigen::Index row = 0; row + size <= r.size(); row += size) {
+    const auto [rho, slope] = loss_value(loss.loss, r.segment(row, size).squaredNorm(), limit);
+    cost += rho;
+    if (weight) weight->segment(row, size).setConstant(std::sqrt(slope));
+  }
+  return cost;
+}
+
+/// The measured part of a problem.
+class Measured {
+ public:
+  virtual ~Measured() = default;
+  virtual double cost(ConstVectorRef x) = 0;
+  /// Adds to the lower half and to the gradient.
+  virtual double linearise(ConstVectorRef x, NormalEquations& normal) = 0;
+};
+
+/// Any measurements, pose by pose.
+class Walked : public Measured {
+ public:
+  Walked(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights, BlockLoss loss)
+      : nominal_(nominal),
+        set_(set),
+        data_(data),
+        weights_(weights),
+        loss_(loss),
+        gravity_(torques_of_gravity(nominal, data)),
+        columns_(columns_of_surroundings(nominal, set)) {}
+
+  double cost(ConstVectorRef x) override {
+    const Chain chain = unpack(set_, nominal_, x);
+    evaluate_poses(chain, set_, data_, Derivative::no, gravity_, at_);
+    return sum(chain, nullptr);
+  }
+
+  double linearise(ConstVectorRef x, NormalEquations& normal) override {
+    const Chain chain = unpack(set_, nominal_, x);
+    evaluate_poses(chain, set_, data_, Derivative::yes, gravity_, at_);
+    jacobian_.resize(chunk_rows, set_.free_count());
+    return sum(chain, &normal);
+  }
+
+ private:
+  static constexpr Eigen::Index chunk_rows = 192;
+
+  double sum(const Chain& chain, NormalEquations* normal) {
+    double cost = 0.0;
+    for (const ResidualKind& kind : residual_kinds()) {
+      const std::size_t count = kind.count(data_), at_once = static_cast<std::size_t>(chunk_rows / kind.size);
+      for (std::size_t first = 0; first < count; first += at_once)
+        cost += chunk(chain, kind, first, std::min(count, first + at_once), normal);
+    }
+    return cost + socket_distances(chain, normal);
+  }
+
+  double chunk(const Chain& chain, const ResidualKind& kind, std::size_t first, std::size_t end,
+               NormalEquations* normal) {
+    const Scene scene{chain, data_, at_, columns_};
+    const auto rows = static_cast<Eigen::Index>(end - first) * kind.size;
+    residuals_.resize(chunk_rows);
+    VectorXd scale(rows);
+    BlockRows out{residuals_, normal ? &jacobian_ : nullptr};
+    for (std::size_t i = first; i < end; ++i, out.row += kind.size) {
+      kind.write(scene, i, out);
+      scale.segment(out.row, kind.size) = weights_.of(kind.kind)[i].head(kind.size).cwiseInverse();
+    }
+    const VectorXd r = residuals_.head(rows).cwiseProduct(scale);
+    if (!normal) return cost_of_blocks(loss_, kind.size, r, nullptr);
+    VectorXd root(rows);
+    const double cost = cost_of_blocks(loss_, kind.size, r, &root);
+    scale = scale.cwiseProduct(root);
+    jacobian_.topRows(rows).array().colwise() *= scale.array();
+    add(normal_equations(jacobian_.topRows(rows), r.cwiseProduct(root)), *normal);
+    return cost;
+  }
+
+  double socket_distances(const Chain& chain, NormalEquations* normal) {
+    const auto rows = static_cast<Eigen::Index>(chain.surroundings.socket_distances.size());
+    if (rows == 0) return 0.0;
+    VectorXd r(rows);
+    MatrixXd jacobian(rows, normal ? set_.free_count() : 0);
+    write_socket_distances(chain, columns_, r, normal ? &jacobian : nullptr, 0);
+    if (normal) add(normal_equations(jacobian, r), *normal);
+    return r.squaredNorm();
+  }
+
+  static void add(const NormalEquations& more, NormalEquations& to) {
+    to.matrix += more.matrix;
+    to.gradient += more.gradient;
+  }
+
+  const Chain& nominal_;
+  const ParameterSet& set_;
+  const PoseSet& data_;
+  const Weights& weights_;
+  BlockLoss loss_;
+  MatrixXd gravity_;
+  ColumnsOfSurroundings columns_;
+  EvaluatedPoses at_;
+  VectorXd residuals_;
+  MatrixXd jacobian_;
+};
+
+/// Points alone, by the batch kernels.
+class ByKernels : public Measured {
+ public:
+  ByKernels(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights, BlockLoss loss)
+      : points_(nominal, set, point_table(data)),
+        inverse_(inverse_sd(weights)),
+        plain_(points_.weights(inverse_)),
+        loss_(loss) {}
+
+  double cost(ConstVectorRef x) override {
+    return loss_.loss == Loss::none ? points_.cost(x, plain_, scratch_) : cost_of_blocks(loss_, 3, errors(x), nullptr);
+  }
+
+  double linearise(ConstVectorRef x, NormalEquations& normal) override {
+    if (loss_.loss == Loss::none) return points_.normal_equations(x, plain_, normal.matrix, normal.gradient, scratch_);
+    VectorXd root(inverse_.size());
+    const double cost = cost_of_blocks(loss_, 3, errors(x), &root);
+    const Eigen::Matrix3Xd weighted = inverse_.cwiseProduct(root.reshaped(3, inverse_.cols()));
+    points_.normal_equations(x, points_.weights(weighted), normal.matrix, normal.gradient, scratch_);
+    return cost;
+  }
+
+ private:
+  VectorXd errors(ConstVectorRef x) {
+    points_.errors(x, error_, scratch_);
+    return error_.cwiseProduct(inverse_).reshaped();
+  }
+
+  BatchPoints points_;
+  Eigen::Matrix3Xd inverse_, error_;
+  BatchPoints::Weights plain_;
+  BlockLoss loss_;
+  BatchPoints::Scratch scratch_;
+};
+
+}  // namespace
+
+MatrixXd prior_information(const ParameterSet& set) {
+  const MatrixXd rows = prior_rows(set);
+  return rows.transpose() * rows;
+}
+
+NormalProblem pose_normal_problem(const Chain& nominal, const ParameterSet& set, const PoseSet& data,
+                                  const Weights& weights, BlockLoss loss) {
+  std::shared_ptr<Measured> measured;  // shared: a function must be copyable
+  if (has_points_alone(nominal, set, data))
+    measured = std::make_shared<ByKernels>(nominal, set, data, weights, loss);
+  else
+    measured = std::make_shared<Walked>(nominal, set, data, weights, loss);
+  const auto priors = std::make_shared<const MatrixXd>(prior_information(set));
+  NormalProblem problem;
+  problem.unknowns = set.free_count();
+  problem.cost = [measured, priors, centre = nominal_of(set)](ConstVectorRef x) {
+    const VectorXd offset = x - centre;
+    return measured->cost(x) + offset.dot(*priors * offset);
+  };
+  problem.linearise = [measured, priors, centre = nominal_of(set)](ConstVectorRef x, NormalEquations& normal) {
+    const VectorXd offset = x - centre, pull = *priors * offset;
+    normal.matrix = MatrixXd::Zero(x.size(), x.size());
+    normal.gradient = VectorXd::Zero(x.size());
+    const double cost = measured->linearise(x, normal);
+    normal.matrix += priors->triangularView<Eigen::Lower>();
+    normal.gradient += pull;
+    return cost + offset.dot(pull);
+  };
+  return problem;
+}
+
+}  // namespace kinfer

@@ -1,0 +1,111 @@
+// The normal equations made chunk by chunk are those of the Jacobian as a whole.
+#include "kinfer/estimate/pose_normal.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kinfer/estimate/point_fit.hpp"
+#include "support/differences.hpp"
+#include "support/instruments.hpp"
+
+namespace kinfer {
+namespace {
+
+using namespace test;
+
+Chain soft_robot() {
+  Chain chain = with_table3_errors(er20());
+  chain.tool.xyz = Vec3(0.03, 0.02, 0.1);
+  chain.masses = {{2, Vec3(0.4, 0, 0), 120.0}, {4, Vec3(0, 0, 0.1), 60.0}};
+  chain.joints[1].compliance = 2e-6, chain.joints[2].compliance = 3e-6;
+  chain.surroundings.sockets = {{"a", Vec3(1.0, 0.2, 0.5)}, {"b", Vec3(0.9, 0.4, 0.5)}};
+  chain.surroundings.socket_distances = {{0, 1, 0.2, 1e-4}};
+  return chain;
+}
+
+PoseSet seen(const Chain& chain, int poses) {
+  PoseSet set = measured(chain, paper2_poses(poses, tracker));
+  for (int row = 0; row < poses; row += 2)
+    set.orientations.push_back({row, Quat(rot_x(0.02) * true_poses(chain, set)[row].rotation), Vec3(1e-3, 2e-3, 3e-3)});
+  set.contacts = {{0, 0}, {1, 1}, {7, 0}};
+  return set;
+}
+
+ParameterSet all_of(const Chain& chain) {
+  ParameterSet set = all_parameters(chain, {});
+  const ParameterSet around = surroundings_parameters(chain, {});
+  set.parameters.insert(set.parameters.end(), around.parameters.begin(), around.parameters.end());
+  return set;
+}
+
+/// By the Jacobian of all rows, weighted block by block.
+double by_all_rows(const Residuals& problem, ConstVectorRef x, const BlockLoss& loss, NormalEquations& normal) {
+  VectorXd r(problem.rows);
+  MatrixXd jacobian(problem.rows, problem.unknowns);
+  problem.evaluate(x, r, &jacobian);
+  double cost = 0.0;
+  Eigen::Index row = 0;
+  for (const int size : problem.blocks) {
+    const auto [rho, weight] =
+        loss_value(loss.loss, r.segment(row, size).squaredNorm(), loss.scale * std::sqrt(static_cast<double>(size)));
+    cost += rho;
+    r.segment(row, size) *= std::sqrt(weight), jacobian.middleRows(row, size) *= std::sqrt(weight);
+    row += size;
+  }
+  cost += r.tail(r.size() - row).squaredNorm();
+  normal.matrix = (jacobian.transpose() * jacobian).triangularView<Eigen::Lower>();
+  normal.gradient = jacobian.transpose() * r;
+  return cost;
+}
+
+void expect_the_same(const Chain& chain, const ParameterSet& set, const PoseSet& data, ConstVectorRef x) {
+  const Weights weights = weights_of(data, Instrument{.sigma = 1e-4, .sigma_angle = 1e-3, .ppm = 10});
+  for (const BlockLoss loss : {BlockLoss{}, BlockLoss{Loss::cauchy, 2.0}, BlockLoss{Loss::huber, 0.5}}) {
+    NormalEquations slow, quick;
+    const double cost = by_all_rows(pose_residuals(chain, set, data, weights), x, loss, slow);
+    const NormalProblem problem = pose_normal_problem(chain, set, data, weights, loss);
+    EXPECT_NEAR(problem.linearise(x, quick), cost, 1e-10 * cost);
+    EXPECT_NEAR(problem.cost(x), cost, 1e-10 * cost);
+    EXPECT_LT((quick.matrix - slow.matrix).norm(), 1e-10 * slow.matrix.norm());
+    EXPECT_LT((quick.gradient - slow.gradient).norm(), 1e-9 * slow.gradient.norm());
+  }
+}
+
+TEST(PoseNormal, chunks_of_any_instruments_add_up_to_the_whole) {
+  const Chain chain = soft_robot();
+  for (const int poses : {9, 64, 150})
+    expect_the_same(chain, all_of(chain), seen(chain, poses), pack(all_of(chain), chain));
+}
+
+TEST(PoseNormal, kernels_take_points_alone_robustly_too) {
+  const Chain chain = with_table3_errors(er20());
+  const PoseSet data = measured(chain, paper2_poses(70, tracker));
+  ParameterSet set = all_parameters(er20(), {});
+  std::erase_if(set.parameters, [](const Parameter& p) { return p.at.field == Field::compliance; });
+  ASSERT_TRUE(has_points_alone(er20(), set, data));
+  expect_the_same(er20(), set, data, pack(set, er20()));
+}
+
+/// Half the gradient of the cost is Jᵀr, compliance and all: torques are held, so that the derivative is exact.
+TEST(PoseNormal, gradient_of_a_robot_that_yields_is_the_slope_of_the_cost) {
+  const Chain chain = soft_robot();
+  const PoseSet data = seen(chain, 20);
+  const ParameterSet set = all_of(chain);
+  const Weights weights = weights_of(data, Instrument{.sigma = 1e-3, .sigma_angle = 1e-3});
+  const NormalProblem problem = pose_normal_problem(chain, set, data, weights, {Loss::cauchy, 2.0});
+  VectorXd x = pack(set, chain);
+  Rng rng(5);
+  for (Eigen::Index k = 0; k < x.size(); ++k) x[k] += 0.1 * set.free()[k]->scale * rng.normal();
+  NormalEquations normal;
+  problem.linearise(x, normal);
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    const double step = 1e-4 * set.free()[k]->scale;
+    VectorXd up = x, down = x;
+    up[k] += step, down[k] -= step;
+    const double slope = (problem.cost(up) - problem.cost(down)) / (4.0 * step);
+    EXPECT_NEAR(normal.gradient[k], slope, 1e-5 * (1.0 / set.free()[k]->scale + std::abs(slope)))
+        << set.free()[k]->name;
+  }
+}
+
+}  // namespace
+}  // namespace kinfer
