@@ -45,14 +45,14 @@ void put_it_to_use(const Calibration& c, std::vector<Advice>& list) {
          "the corrected model is in chain.toml, chain.urdf and the tables beside them"});
 }
 
-/// "J1 12°, J2 -40°, J3 85 mm"
+/// "J1=12°, J2=-40°, J3=85 mm"
 std::string reading_in_words(const Chain& chain, const VectorXd& joints) {
   std::vector<std::string> words;
   for (const Joint& joint : chain.joints)
     if (joint.has_reading) {
       const double q = joints[static_cast<Eigen::Index>(words.size())];
-      words.push_back(joint.name + (joint.type == JointType::prismatic ? fmt::format(" {:.0f} mm", 1e3 * q)
-                                                                       : fmt::format(" {:.0f}°", q / degree)));
+      words.push_back(joint.name + (joint.type == JointType::prismatic ? fmt::format("={:.0f} mm", 1e3 * q)
+                                                                       : fmt::format("={:.0f}°", q / degree)));
     }
   return fmt::format("{}", fmt::join(words, ", "));
 }

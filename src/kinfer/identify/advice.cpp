@@ -10,6 +10,12 @@
 namespace kinfer {
 namespace {
 
+void put_it_to_use(const Identification& found, std::vector<Advice>& list) {
+  if (found.use)
+    list.push_back({"Put it to use: the chain is in chain.toml, chain.urdf, chain.mjcf and chain_dh.csv",
+                    "each holds every joint in the frames of the INS beside it"});
+}
+
 void make_the_order_safe(const Identification& found, std::vector<Advice>& list) {
   constexpr double safe_margin = 2.0;
   if (found.order.margin >= safe_margin) return;
@@ -27,22 +33,19 @@ void move_what_stood_still(const Identification& found, std::vector<Advice>& lis
 
 /// What a machine on level ground that never rocks cannot show: turns about its upright axis, and where that axis is.
 void show_what_level_ground_hides(const Identification& found, std::vector<Advice>& list) {
-  std::vector<std::string> hidden;
-  for (const FoundJoint& joint : found.joints)
-    if (joint.azimuth_undetermined)
-      hidden.push_back(fmt::format("the turn of {} about the axis leaves no trace", joint.child));
+  std::vector<std::string> hidden, places;
+  for (const FoundJoint& joint : found.joints) {
+    if (joint.azimuth_undetermined) hidden.push_back(fmt::format("the turn of {} about the axis", joint.child));
+    if (!joint.not_identifiable_in_parent.empty()) places.push_back(joint.parent);
+  }
   for (const JointForecast& f : found.forecast)
     if (is_vague_azimuth(f)) hidden.push_back(azimuth_in_words(f));
-  std::vector<std::string> places;
-  for (const FoundJoint& joint : found.joints)
-    if (!joint.not_identifiable_in_parent.empty() && std::ranges::find(places, joint.parent) == places.end())
-      places.push_back(joint.parent);
-  if (!places.empty())
-    hidden.push_back(fmt::format("where the joint is in {} leaves no trace", fmt::join(places, " and in ")));
+  if (!places.empty()) hidden.push_back(fmt::format("places in {}", fmt::join(places, " and in ")));
   if (!hidden.empty())
     list.push_back(
-        {"Drive once on a slope and let the base rock, or take a tape, if positions are wanted from the root",
-         fmt::format("on level ground {}; the joints beyond do not need it", fmt::join(hidden, ", and "))});
+        {"Drive once on a slope and let the base rock, or measure with a tape, if positions are wanted from "
+         "the root",
+         fmt::format("level ground hides {}; the joints beyond do not need it", fmt::join(hidden, ", and "))});
 }
 
 void move_more(const Identification& found, std::vector<Advice>& list) {
@@ -69,6 +72,7 @@ void touch_the_tool(const Identification& found, std::vector<Advice>& list) {
 std::vector<Advice> identification_advice(const Identification& found) {
   std::vector<Advice> list;
   make_the_order_safe(found, list);
+  put_it_to_use(found, list);
   move_what_stood_still(found, list);
   move_more(found, list);
   show_what_level_ground_hides(found, list);

@@ -61,8 +61,8 @@ std::string lacking_in_words(const std::vector<JointForecast>& joints) {
 
 std::string azimuth_in_words(const JointForecast& joint) {
   return fmt::format(
-      "the turn of {} about its only axis is {}", joint.azimuth_of,
-      joint.azimuth_sd < unknowable ? fmt::format("known to ± {:.0f} mrad", 1e3 * joint.azimuth_sd) : "not known");
+      "the turn of {} about its only axis ({})", joint.azimuth_of,
+      joint.azimuth_sd < unknowable ? fmt::format("± {:.0f} mrad", 1e3 * joint.azimuth_sd) : "not known");
 }
 
 std::string accuracy_in_words(const std::vector<JointForecast>& joints) {
@@ -76,9 +76,10 @@ std::string in_words(const std::vector<JointForecast>& joints, const WantedAccur
   const std::string what = fmt::format("{:g} mm and {:g} mrad", 1e3 * wanted.line, 1e3 * wanted.direction);
   std::string text = enough_for_all(joints) ? fmt::format("enough for {} in every joint", what)
                                             : fmt::format("not enough for {} in {}", what, lacking_in_words(joints));
+  std::vector<std::string> apart;
   for (const JointForecast& f : joints)
-    if (is_vague_azimuth(f, wanted)) text += "; " + azimuth_in_words(f);
-  return text;
+    if (is_vague_azimuth(f, wanted)) apart.push_back(azimuth_in_words(f));
+  return apart.empty() ? text : text + fmt::format(", but for {}", fmt::join(apart, " and "));
 }
 
 }  // namespace kinfer

@@ -20,7 +20,7 @@ bool enough_for_all(const std::vector<JointForecast>& joints);
 /// How the parent is turned about the only axis that it turns about is known worse than any direction should be.
 bool is_vague_azimuth(const JointForecast& joint, const WantedAccuracy& wanted = {});
 
-/// "the turn of ins1 about its only axis is known to ± 11 mrad"
+/// "the turn of ins1 about its only axis (± 11 mrad)"
 std::string azimuth_in_words(const JointForecast& joint);
 
 /// "± 0.7 mm and ± 0.24 mrad": one standard deviation of the worst joint, both directions across it together;

@@ -405,8 +405,8 @@ Result<Identification> identify(const InsRecording& recording, const IdentifyOpt
   result.findings.insert(result.findings.begin(), chosen.findings.begin(), chosen.findings.end());
   say_clocks(result, clock, *base, found.clocks);
   result.forecast = forecast(result.joints);
-  result.next = identification_advice(result);
   conclude(result);
+  result.next = identification_advice(result);
   return result;
 }
 

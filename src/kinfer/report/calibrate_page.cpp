@@ -57,7 +57,8 @@ std::string how_good(const Json& e) {
       h.n, html::escape(text_at(e, "holdout")));
   if (const Json& chi2 = e.at("chi2_per_n"); chi2.is_number()) {
     const double times = std::sqrt(chi2.get<double>());
-    text += times < 1.5 ? std::string("<p>What is left is what the instrument scatters.</p>")
+    text += times < 1.5 ? fmt::format("<p>What is left is mostly what the instrument scatters, {} per axis.</p>",
+                                      in_mm(e.at("sigma")))
                         : fmt::format(
                               "<p>What is left is {} times what the instrument scatters: something is not in the "
                               "model.</p>",
@@ -74,7 +75,7 @@ std::string how_uncertain(const Json& e) {
   for (const Json& p : e.at("parameters")) open += p.at("identifiable").get<bool>() ? 0 : 1;
   std::string text = fmt::format(
       "<p><b class=\"big\">{}</b> is the expected error (rms) of the corrected model itself at the tool, over these "
-      "poses. The figures on the left hold the instrument's scatter too.</p>",
+      "poses. The errors above the cards hold the instrument's scatter too.</p>",
       in_mm(e.at("predicted_error")));
   text += open == 0 ? std::string("<p>The data fix every parameter.</p>")
                     : fmt::format(

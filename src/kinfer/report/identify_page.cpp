@@ -54,7 +54,7 @@ std::string accuracy(const Json& e) {
   return fmt::format(
       "<p>The axes of the joints are known to ±&nbsp;<b>{}&nbsp;mm</b> and ±&nbsp;<b>{}&nbsp;mrad</b> or better (one "
       "standard deviation), "
-      "apart from what is listed beside.</p>",
+      "apart from what is listed as uncertain.</p>",
       html::fixed(mm * line, 1), html::fixed(mrad * direction, 2));
 }
 
