@@ -167,6 +167,34 @@ void payload() {
   print_row("compliance with a payload column", 0.020, mean(errors), model);
 }
 
+/// A tracker at the world's origin that knows the range to 10 µm and the direction to 30 µrad, told or not.
+void tracker_of_poor_angles() {
+  const Chain nominal = with_tool(er20(0.125));
+  std::vector<double> untold, told;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    Chain truth = with_random_errors(nominal, {}, Rng(300 + seed));
+    truth.base = Frame::from_pose(Pose::from_xyz_rpy({2.4, -2.2, 0.35}, {0.02, -0.03, 2.3}));
+    PoseSet data = measured(truth, paper2_poses(50, noise_free), seed);
+    Rng rng(400 + seed);
+    for (PointMeasurement& point : data.points) {
+      const Vec3 along = point.position.normalized();
+      const double range = 10e-6, across = 30e-6 * point.position.norm();
+      const auto [sd, axes] = principal_deviations(across * across * Mat3::Identity() +
+                                                   (range * range - across * across) * along * along.transpose());
+      point.position += axes * sd.cwiseProduct(noise(rng, 1.0));
+      point.sd = sd, point.axes = axes;
+    }
+    const auto unseen = [&](const PoseSet& rows) {
+      const Calibration c = calibrate({nominal, {}, std::nullopt, rows}, {}, Rng(1)).value();
+      return unseen_error(c.estimate.chain, truth, paper2_poses(1, tracker));
+    };
+    told.push_back(unseen(data));
+    for (PointMeasurement& point : data.points) point.sd.reset(), point.axes.reset();
+    untold.push_back(unseen(data));
+  }
+  print_row("range to 10 um, direction to 30 urad, with covariances", mean(untold), mean(told), "asked: without them");
+}
+
 void half_still() {
   Chain nominal = with_tool(er20(0.125));
   Chain truth = with_random_errors(nominal, {}, Rng(5));
@@ -196,7 +224,9 @@ void simulated_robots() {
           free_space(50, Instrument{.sigma = 50e-6 / std::sqrt(3.0)}));
   planned("seven axes, 0.05 mm noise, 50 planned poses", 0.030, seven_axes(),
           free_space(50, Instrument{.sigma = 50e-6}));
-  tracked("the same with 80 poses", 0.030, seven_axes(), free_space(80, Instrument{.sigma = 50e-6}));
+  tracked("the same with 80 poses, as many as the judges' case", 0.030, seven_axes(),
+          free_space(80, Instrument{.sigma = 50e-6}));
+  tracker_of_poor_angles();
   outliers();
   draw_wire();
   payload();

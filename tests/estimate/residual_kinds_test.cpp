@@ -39,6 +39,12 @@ Chain rich_robot() {
   return chain;
 }
 
+/// Of three unequal and correlated variances about `scale`.
+Mat3 skewed_covariance(double scale) {
+  const Mat3 root = (Mat3() << 1.0, 0.0, 0.0, 0.7, 0.5, 0.0, -0.3, 0.4, 2.0).finished();
+  return scale * root * root.transpose();
+}
+
 PoseSet all_kinds(const Chain& chain) {
   PoseSet set = readings_of(measured(chain, paper2_poses(12, noise_free)));
   set.payload.assign(12, 5.0);
@@ -50,9 +56,13 @@ PoseSet all_kinds(const Chain& chain) {
   measure_points(set, chain, tracker, Rng(3));
   set.targets = {"side"};
   set.points.push_back({2, 0, Vec3(1, 2, 3), Vec3(1e-3, 2e-3, 3e-3)});
+  const auto [sd, axes] = principal_deviations(skewed_covariance(1e-6));
+  set.points[4].sd = sd, set.points[4].axes = axes;
+  set.points.push_back({3, 0, Vec3(1, 2, 3), sd, axes});
   const std::vector<Pose> poses = true_poses(chain, set);
   for (int row = 0; row < set.rows(); row += 2)
     set.orientations.push_back({row, Quat(rot_x(0.02) * poses[row].rotation), Vec3(1e-3, 2e-3, 3e-3)});
+  set.orientations[1].sd = sd, set.orientations[1].axes = axes;
   measure_distances(set, chain, 1e-3, Rng(4));
   measure_pairs(set, chain, 1e-3, Rng(5));
   measure_tilts(set, chain, 0.05, Rng(6));
@@ -99,6 +109,28 @@ TEST(ResidualKinds, jacobian_of_all_instruments_in_all_mountings_equals_differen
   for (Eigen::Index k = 0; k < x.size(); ++k)
     EXPECT_LT((jacobian.col(k) - expected.col(k)).norm(), 1e-6 * (10.0 + expected.col(k).norm()))
         << set.parameters[k].name;
+}
+
+TEST(ResidualKinds, a_full_covariance_weighs_the_error_by_its_inverse) {
+  const Chain chain = er20();
+  PoseSet set = measured(chain, paper2_poses(3, noise_free));
+  const Mat3 covariance = skewed_covariance(4e-6);
+  const auto [sd, axes] = principal_deviations(covariance);
+  EXPECT_TRUE(covariance_of(sd, axes).isApprox(covariance, 1e-12));
+  const Vec3 off(1e-3, -2e-3, 3e-3);
+  const Mat3 turned = exp_so3(off);
+  const std::vector<Pose> poses = true_poses(chain, set);
+  set.points.resize(1);
+  set.points[0].position += off, set.points[0].sd = sd, set.points[0].axes = axes;
+  set.orientations = {{2, Quat(turned * poses[2].rotation), sd, axes}};
+  const Weights weights = weights_of(set, Instrument{.sigma = 1.0, .sigma_angle = 1.0});
+  const ParameterSet nothing;
+  VectorXd r;
+  pose_residuals(chain, nothing, set, weights).evaluate(VectorXd(0), r, nullptr);
+  const double expected = off.dot(covariance.inverse() * off);
+  EXPECT_NEAR(r.head<3>().squaredNorm(), expected, 1e-9 * expected);
+  EXPECT_NEAR(r.tail<3>().squaredNorm(), expected, 1e-9 * expected);
+  EXPECT_NEAR(point_errors(chain, set)[0], off.norm(), 1e-12) << "errors stay errors";
 }
 
 TEST(ResidualKinds, at_the_truth_the_residuals_are_the_noise) {

@@ -112,6 +112,44 @@ TEST(PoseSetCsv, EveryKindOfMeasurementFindsItsList) {
   EXPECT_TRUE(set.tilts[0].specific_force.isApprox(Vec3(0, 0, 9.80665)));
 }
 
+constexpr const char* with_covariances =
+    "q1,q2,x[mm],y[mm],z[mm],p_cov_xx[mm^2],p_cov_xy[mm^2],p_cov_xz[mm^2],p_cov_yy[mm^2],p_cov_yz[mm^2],p_cov_zz[mm^2],"
+    "qw,qx,qy,qz,r_cov_xx[mrad^2],r_cov_xy[mrad^2],r_cov_xz[mrad^2],r_cov_yy[mrad^2],r_cov_yz[mrad^2],r_cov_zz[mrad^2],"
+    "s2_x,s2_y,s2_z,s2_cov_xx,s2_cov_xy,s2_cov_xz,s2_cov_yy,s2_cov_yz,s2_cov_zz\n"
+    "0,0,1,2,3,4,1,0,9,-2,1,1,0,0,0,1,0.5,0,1,0,0,7,8,9,1,0,0,2,0,3\n"
+    "0,0,1,2,3,,,,,,,1,0,0,0,,,,,,,,,,,,,,,\n";
+
+TEST(PoseSetCsv, ACovarianceIsKeptAsDeviationsAlongItsAxes) {
+  const PoseSet set = poses_of(with_covariances);
+  ASSERT_EQ(set.points.size(), 3U);
+  const Mat3 point = 1e-6 * (Mat3() << 4, 1, 0, 1, 9, -2, 0, -2, 1).finished();
+  EXPECT_TRUE(covariance_of(*set.points[0].sd, set.points[0].axes).isApprox(point, 1e-12));
+  EXPECT_FALSE(set.points[1].sd) << "empty cells: the instrument's word";
+  EXPECT_TRUE(set.points[2].sd->cwiseAbs2().isApprox(Vec3(1, 2, 3), 1e-12));
+  const Mat3 turn = 1e-6 * (Mat3() << 1, 0.5, 0, 0.5, 1, 0, 0, 0, 0).finished();
+  EXPECT_TRUE(covariance_of(*set.orientations[0].sd, set.orientations[0].axes).isApprox(turn, 1e-12));
+  for (const FileUnits units : {FileUnits::si, FileUnits::mm_deg}) {
+    const PoseSet again = poses_of(pose_set_csv(set, two_joints(), units));
+    ASSERT_EQ(again.points.size(), 3U);
+    EXPECT_TRUE(covariance_of(*again.points[0].sd, again.points[0].axes).isApprox(point, 1e-9));
+    EXPECT_TRUE(covariance_of(*again.orientations[0].sd, again.orientations[0].axes).isApprox(turn, 1e-9));
+    EXPECT_FALSE(again.points[1].sd);
+  }
+}
+
+TEST(PoseSetCsv, WhatIsNoCovarianceIsRefusedWithItsLine) {
+  const auto expect_error = [](const std::string& text, const std::string& words) {
+    EXPECT_NE(complaint_about(text).find(words), std::string::npos) << complaint_about(text);
+  };
+  const std::string names = "p_cov_xx,p_cov_xy,p_cov_xz,p_cov_yy,p_cov_yz,p_cov_zz";
+  expect_error("q1,q2,x,y,z," + names + "\n0,0,1,2,3,1,2,0,1,0,1\n", "negative variance");
+  expect_error("q1,q2,x,y,z," + names + "\n0,0,1,2,3,1,,0,1,0,1\n", "expected six numbers or none of them, found 5");
+  expect_error("q1,q2,x,y,z,sx,sy,sz," + names + "\n0,0,1,2,3,1,1,1,1,0,0,1,0,1\n", "expected one of both");
+  expect_error("q1,q2,x,y,z,p_cov_xx\n0,0,1,2,3,1\n", "column p_cov_xy is missing");
+  expect_error("q1,q2,x,y,z,p_cov_xx[mm],p_cov_xy,p_cov_xz,p_cov_yy,p_cov_yz,p_cov_zz\n0,0,1,2,3,1,0,0,1,0,1\n",
+               "expected a variance of lengths");
+}
+
 TEST(PoseSetCsv, RowsMayHaveLoadsLabelsSetupsSweepsTorquesAndCommands) {
   const PoseSet set = poses_of(
       "q1,q2,x,y,z,payload[kg],set,setup,sweep,tau1,tau2,q1_cmd[deg],q2_cmd[mm]\n"

@@ -45,6 +45,8 @@ class Priors {
 }  // namespace
 
 bool has_points_alone(const Chain& chain, const ParameterSet& set, const PoseSet& data) {
+  const auto has_axes = [](const PointMeasurement& point) { return point.axes.has_value(); };
+  if (std::any_of(data.points.begin(), data.points.end(), has_axes)) return false;
   const auto is_measured = [&](const ResidualKind& kind) { return kind.count(data) > 0; };
   const auto& kinds = residual_kinds();
   return data.mounting.empty() && !data.points.empty() && chain.surroundings.socket_distances.empty() &&

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -72,6 +73,11 @@ ResidualKind distance_residual();
 ResidualKind pair_residual();
 ResidualKind plane_residual();
 ResidualKind tilt_residual();
+
+/// An error seen along the axes of its covariance, so that its parts are independent; none: as it is.
+inline Vec3 along_axes(const std::optional<Mat3>& axes, const Vec3& error) {
+  return axes ? Vec3(axes->transpose() * error) : error;
+}
 
 /// The entries of a list that are kept.
 template <class T>

@@ -12,10 +12,11 @@ void write(const Scene& scene, std::size_t index, BlockRows& out) {
   const OrientationMeasurement& measured = scene.data.orientations[index];
   const Mat3 misfit = measured.orientation.toRotationMatrix() * scene.at.pose[measured.row].rotation.transpose();
   const Vec3 error = log_so3(misfit);
-  out.residuals.segment<3>(out.row) = error;
-  if (out.jacobian)
-    out.jacobian->middleRows<3>(out.row) =
-        -right_jacobian_inverse(error) * scene.at.twists[measured.row].bottomRows<3>();
+  out.residuals.segment<3>(out.row) = along_axes(measured.axes, error);
+  if (!out.jacobian) return;
+  Mat3 slope = -right_jacobian_inverse(error);
+  if (measured.axes) slope = measured.axes->transpose() * slope;
+  out.jacobian->middleRows<3>(out.row) = slope * scene.at.twists[measured.row].bottomRows<3>();
 }
 
 Vec3 promised_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {

@@ -12,19 +12,20 @@ void write(const Scene& scene, std::size_t index, BlockRows& out) {
   const Pose& pose = scene.at.pose[point.row];
   const bool on_target = point.target >= 0;
   const Vec3 arm = on_target ? Vec3(pose.rotation * scene.chain.targets[point.target].xyz) : Vec3::Zero().eval();
-  out.residuals.segment<3>(out.row) = point.position - pose.position - arm;
+  out.residuals.segment<3>(out.row) = along_axes(point.axes, point.position - pose.position - arm);
   if (!out.jacobian) return;
   const Twists& twist = scene.at.twists[point.row];
   auto rows = out.jacobian->middleRows<3>(out.row);
-  if (!on_target) {
+  if (on_target) {
+    const Mat3 turn = -skew(arm);
+    rows = -(twist.topRows<3>() + turn * twist.bottomRows<3>());
+    for (int k = 0; k < 3; ++k)
+      if (const Eigen::Index column = scene.columns.target[point.target][k]; column >= 0)
+        rows.col(column) = -pose.rotation.col(k);
+  } else {
     rows = -twist.topRows<3>();
-    return;
   }
-  const Mat3 turn = -skew(arm);
-  rows = -(twist.topRows<3>() + turn * twist.bottomRows<3>());
-  for (int k = 0; k < 3; ++k)
-    if (const Eigen::Index column = scene.columns.target[point.target][k]; column >= 0)
-      rows.col(column) = -pose.rotation.col(k);
+  if (point.axes) rows = (point.axes->transpose() * rows).eval();
 }
 
 Vec3 promised_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {

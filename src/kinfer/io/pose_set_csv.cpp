@@ -6,6 +6,7 @@
 
 #include "kinfer/io/csv.hpp"
 #include "kinfer/io/pose_columns.hpp"
+#include "kinfer/io/pose_covariances.hpp"
 #include "kinfer/io/text_file.hpp"
 
 namespace kinfer {
@@ -308,6 +309,7 @@ PoseSet read_columns(PoseColumns& columns, const Chain& chain, const ColumnMap& 
   read_quaternions(columns, set);
   read_euler_angles(columns, map, set);
   read_orientation_deviations(columns, set);
+  read_covariances(columns, set);
   read_tilts(columns, set);
   read_contacts(columns, set);
   read_distances(columns, expect, set);

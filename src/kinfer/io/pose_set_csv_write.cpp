@@ -3,6 +3,7 @@
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/expect.hpp"
 #include "kinfer/io/digits.hpp"
+#include "kinfer/io/pose_covariances.hpp"
 #include "kinfer/io/pose_set_csv.hpp"
 
 namespace kinfer {
@@ -121,18 +122,37 @@ class Writer {
   }
 
   void write_points(int target, const std::string& prefix) {
-    std::optional<std::size_t> positions, deviations;
+    std::optional<std::size_t> positions, deviations, covariance;
     const char* unit = in_mm_ ? "[mm]" : "[m]";
     for (const PointMeasurement& point : set_.points) {
       if (point.target != target) continue;
       if (!positions) positions = add_three(prefix, unit);
       sheet_.set(*positions, point.row, point.position, length_);
-      if (!point.sd || target >= 0) continue;
+      if (point.axes) write_covariance(covariance, target < 0 ? "p" : set_.targets[target], point, Of::lengths);
+      if (!point.sd || point.axes || target >= 0) continue;
       if (!deviations) deviations = add_three("s", unit);
       sheet_.set(*deviations, point.row, *point.sd, length_);
     }
   }
 
+  enum class Of { lengths, angles };
+  /// `first`: the column of xx once there is one.
+  template <class Measurement>
+  void write_covariance(std::optional<std::size_t>& first, const std::string& of, const Measurement& measured,
+                        Of what) {
+    const bool of_length = what == Of::lengths;
+    const double unit = of_length ? length_ : angle_;
+    const std::string unit_name = of_length ? (in_mm_ ? "[mm^2]" : "[m^2]") : (in_mm_ ? "[deg^2]" : "[rad^2]");
+    if (!first)
+      for (const std::string& name : covariance_names(of)) {
+        const std::size_t column = sheet_.add(name + unit_name);
+        if (!first) first = column;
+      }
+    const Mat3 c = covariance_of(*measured.sd, measured.axes);
+    std::size_t column = *first;
+    for (int i = 0; i < 3; ++i)
+      for (int j = i; j < 3; ++j) sheet_.set(column++, measured.row, c(i, j), unit * unit);
+  }
   void write_orientations() {
     if (set_.orientations.empty()) return;
     const std::size_t scalar = sheet_.add("qw"), vector = add_three("q", "");
@@ -143,9 +163,10 @@ class Writer {
   }
 
   void write_orientation_deviations() {
-    std::optional<std::size_t> deviations;
+    std::optional<std::size_t> deviations, covariance;
     for (const OrientationMeasurement& measured : set_.orientations) {
-      if (!measured.sd) continue;
+      if (measured.axes) write_covariance(covariance, "r", measured, Of::angles);
+      if (!measured.sd || measured.axes) continue;
       if (!deviations) deviations = add_three("sr", in_mm_ ? "[deg]" : "[rad]");
       sheet_.set(*deviations, measured.row, *measured.sd, angle_);
     }

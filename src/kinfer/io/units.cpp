@@ -19,6 +19,13 @@ constexpr std::array named_units{
     NamedUnit{"mm", {Dimension::length, 1e-3}},
     NamedUnit{"um", {Dimension::length, 1e-6}},
     NamedUnit{"µm", {Dimension::length, 1e-6}},
+    NamedUnit{"m^2", {Dimension::area, 1.0}},
+    NamedUnit{"mm^2", {Dimension::area, 1e-6}},
+    NamedUnit{"um^2", {Dimension::area, 1e-12}},
+    NamedUnit{"µm^2", {Dimension::area, 1e-12}},
+    NamedUnit{"rad^2", {Dimension::square_angle, 1.0}},
+    NamedUnit{"deg^2", {Dimension::square_angle, degree* degree}},
+    NamedUnit{"mrad^2", {Dimension::square_angle, 1e-6}},
     NamedUnit{"rad", {Dimension::angle, 1.0}},
     NamedUnit{"deg", {Dimension::angle, degree}},
     NamedUnit{"mrad", {Dimension::angle, 1e-3}},
@@ -61,6 +68,10 @@ std::string_view describe(Dimension dimension) {
   switch (dimension) {
     case Dimension::length:
       return "a length (m, mm, um)";
+    case Dimension::area:
+      return "a variance of lengths (m^2, mm^2, um^2)";
+    case Dimension::square_angle:
+      return "a variance of angles (rad^2, deg^2, mrad^2)";
     case Dimension::angle:
       return "an angle (rad, deg, mrad)";
     case Dimension::time:

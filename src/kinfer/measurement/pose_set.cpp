@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/linalg/decompositions.hpp"
+
 namespace kinfer {
 namespace {
 
@@ -96,6 +98,16 @@ PoseSet with_approach(PoseSet set) {
 
 double position_sd(const Instrument& instrument, const Vec3& position) {
   return instrument.sigma + 1e-6 * instrument.ppm * position.norm();
+}
+
+PrincipalDeviations principal_deviations(const Mat3& covariance) {
+  const SymmetricEigen eigen = symmetric_eigen(covariance);
+  return {eigen.values.cwiseMax(0.0).cwiseSqrt(), eigen.vectors};
+}
+
+Mat3 covariance_of(const Vec3& sd, const std::optional<Mat3>& axes) {
+  const Mat3 along = sd.cwiseAbs2().asDiagonal();
+  return axes ? Mat3(*axes * along * axes->transpose()) : along;
 }
 
 }  // namespace kinfer

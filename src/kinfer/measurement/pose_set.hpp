@@ -18,14 +18,16 @@ struct PointMeasurement {
   int row = 0;
   int target = -1;               ///< index into PoseSet::targets; −1: the tool point
   Vec3 position = Vec3::Zero();  ///< [m]
-  std::optional<Vec3> sd;        ///< [m] per axis, where the file gives it
+  std::optional<Vec3> sd;        ///< [m] along `axes`, where the file gives it
+  std::optional<Mat3> axes{};    ///< columns: directions in the world, orthonormal; none: the world's axes
 };
 
 /// Orientation of the tool in the world frame.
 struct OrientationMeasurement {
   int row = 0;
   Quat orientation = Quat::Identity();
-  std::optional<Vec3> sd{};  ///< [rad] about the world's axes, where the file gives it
+  std::optional<Vec3> sd{};    ///< [rad] about `axes`, where the file gives it
+  std::optional<Mat3> axes{};  ///< as of a point
 };
 
 /// Distance of the tool point from a fixed anchor (draw wire).
@@ -108,6 +110,15 @@ PoseSet select(const PoseSet& from, const std::vector<int>& rows);
 /// The set with the sense in which each reading was approached: the sign of its change since the row before, 0 in the
 /// first row and where it did not move.
 PoseSet with_approach(PoseSet set);
+
+/// A covariance as standard deviations along its principal axes: covariance = axes diag(sd²) axesᵀ.
+struct PrincipalDeviations {
+  Vec3 sd = Vec3::Zero();
+  Mat3 axes = Mat3::Identity();
+};
+/// A variance below zero counts as zero.
+PrincipalDeviations principal_deviations(const Mat3& covariance);
+Mat3 covariance_of(const Vec3& sd, const std::optional<Mat3>& axes);
 
 /// What one measurement is worth, one sigma.
 struct Instrument {
