@@ -9,6 +9,7 @@
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/ordered_motion.hpp"
 #include "kinfer/identify/refine.hpp"
+#include "kinfer/inertial/sensor_judgement.hpp"
 #include "kinfer/io/ins_csv.hpp"
 #include "kinfer/simulate/ins_simulation.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
@@ -26,6 +27,9 @@ struct Setup {
   double accelerometer_range = 0.0, gyro_range = 0.0;  // [m/s²], [rad/s]; 0: the grade's
   std::optional<Servo> servo;                          // forward dynamics instead of prescribed motion
   int seeds = 4;
+  bool steady = false;    // biases that do not wander
+  bool constant = false;  // they do, and the fit does not know
+  double duration = 0.0;  // [s]; 0: the script's own
 };
 
 struct Drive {
@@ -37,12 +41,14 @@ Drive simulated(const Setup& setup, std::uint64_t seed) {
   const auto mjcf =
       machine_mjcf(setup.machine, {.base = setup.base, .slope = Angle::deg(setup.slope)}, Rng(seed).stream(1)).value();
   const MujocoWorld world = MujocoWorld::load(mjcf).value();
-  const auto drive = make_drive(world.machine(), {.script = setup.script}, Rng(seed).stream(2)).value();
+  const auto drive =
+      make_drive(world.machine(), {.script = setup.script, .duration = setup.duration}, Rng(seed).stream(2)).value();
   const MachineMotion motion =
       setup.servo ? world.drive(drive, 200.0, *setup.servo).value() : world.prescribe(drive, 200.0);
   SensorModel grade = *sensor_grade(setup.grade);
   if (setup.accelerometer_range > 0.0) grade.accelerometer.range = setup.accelerometer_range;
   if (setup.gyro_range > 0.0) grade.gyroscope.range = setup.gyro_range;
+  if (setup.steady) grade.accelerometer.instability = grade.gyroscope.instability = 0.0;
   return {simulated_recording(world.machine(), motion, grade, setup.trouble, Rng(seed).stream(3)),
           machine_truth(world.machine(), motion)};
 }
@@ -65,7 +71,9 @@ void run(const Setup& setup) {
       starts.push_back(
           joint_start(*motion, *tree, *tree->parent[tree->order[i]], tree->order[i], FoundJointType::revolute));
     const auto started = std::chrono::steady_clock::now();
-    const auto found = refine(drive.recording, *motion, *tree, starts, {});
+    SensorModel grade = judged_model(drive.recording);
+    if (setup.constant) grade.accelerometer.instability = grade.gyroscope.instability = 0.0;
+    const auto found = refine(drive.recording, *motion, *tree, starts, {.grade = grade});
     const auto done = std::chrono::steady_clock::now();
     if (!found) {
       fmt::print("seed {}: {}\n", seed, found.error().what);
@@ -164,6 +172,9 @@ int main(int argc, char** argv) {
   if (argc > 3) setup.seeds = std::atoi(argv[3]);
   for (int i = 4; i < argc; ++i) {
     const std::string word = argv[i];
+    if (word.ends_with("s") && std::atof(word.c_str()) > 0.0) setup.duration = std::atof(word.c_str());
+    if (word == "steady") setup.steady = true;
+    if (word == "constant") setup.constant = true;
     if (word == "gentle") setup.script = Script::gentle;
     if (word == "together") setup.script = Script::together;
     if (word == "vigorous") setup.script = Script::vigorous;

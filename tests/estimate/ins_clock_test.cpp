@@ -52,7 +52,7 @@ Example example() {
 double cost_after(const Example& e, Index unknown, double step) {
   VectorXd border = VectorXd::Zero(e.layout.border);
   border[unknown] = step;
-  const InsUnknowns x = changed(e.problem, e.layout, e.x, MatrixXd::Zero(1, e.x.band.cols()), border);
+  const InsUnknowns x = changed(e.problem, e.layout, e.x, {MatrixXd::Zero(1, e.x.band.cols()), border, {}});
   return cost_of(e.problem, e.layout, x, 1).total;
 }
 

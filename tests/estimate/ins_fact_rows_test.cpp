@@ -70,8 +70,8 @@ InsFacts every_kind() {
 /// The band's coefficients one channel after the other in time order, then the border.
 InsUnknowns moved(const Example& e, ConstVectorRef step) {
   const Index band = e.x.band.size();
-  return changed(e.problem, e.layout, e.x, step.head(band).reshaped(e.x.band.rows(), e.x.band.cols()),
-                 step.tail(e.layout.border));
+  return changed(e.problem, e.layout, e.x,
+                 {step.head(band).reshaped(e.x.band.rows(), e.x.band.cols()), step.tail(e.layout.border), {}});
 }
 
 TEST(InsFactRows, DerivativesAgreeWithDifferences) {

@@ -31,7 +31,9 @@ struct Example {
   InsLayout layout;
 };
 
-Example example(Index intervals) {
+enum class Biases { constant, wandering };
+
+Example example(Index intervals, Biases biases = Biases::constant) {
   Rng rng(7);
   Example e;
   e.problem.grid = {.begin = 0.0, .period = 0.1, .intervals = intervals};
@@ -44,80 +46,131 @@ Example example(Index intervals) {
   e.x.errors.resize(2);
   e.x.band = MatrixXd(7, e.problem.grid.coefficients());
   for (double& value : e.x.band.reshaped()) value = 0.1 * rng.normal();
+  if (biases == Biases::wandering) e.problem.wander = {.rate_sd = 0.3, .force_sd = 0.2, .time = 10.0};
   e.layout = layout_of(e.problem, e.x.bodies);
+  e.x.wander = MatrixXd(e.layout.wander, static_cast<Index>(stretches_of(e.problem.grid).size()));
+  for (double& value : e.x.wander.reshaped()) value = 0.1 * rng.normal();
   return e;
 }
 
-/// All equations in one matrix, interval by interval.
+/// All equations in one matrix, interval by interval: of the band, of wandering biases stretch by stretch, of the
+/// border.
 struct Dense {
   MatrixXd matrix;
   VectorXd right;
+  Index wander = 0, border = 0;  // where they begin
+  MatrixXd wander_prior;
 };
 
+/// The Gauss-Markov process' information on all stretches' unknowns, by inverting its covariance σ² a^|i − j|.
+MatrixXd process_information(const Example& e) {
+  const Index w = e.layout.wander, n = e.x.wander.cols();
+  MatrixXd covariance = MatrixXd::Zero(w * n, w * n);
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < n; ++j)
+      for (Index k = 0; k < w; ++k) {
+        const double sd = k % 6 < 3 ? e.problem.wander.rate_sd : e.problem.wander.force_sd;
+        covariance(i * w + k, j * w + k) =
+            sd * sd * std::exp(-6.4 * static_cast<double>(std::abs(i - j)) / e.problem.wander.time);
+      }
+  return w * n > 0 ? *inverse_positive(covariance) : covariance;
+}
+
 Dense dense(const Example& e) {
-  const Index band = e.layout.channels * e.problem.grid.coefficients(), all = band + e.layout.border,
+  const Index band = e.layout.channels * e.problem.grid.coefficients(), w = e.layout.wander,
+              border_at = band + e.x.wander.size(), all = border_at + e.layout.border,
               local = spline_order * e.layout.channels;
-  Dense d{MatrixXd::Zero(all, all), VectorXd::Zero(all)};
+  Dense d{MatrixXd::Zero(all, all), VectorXd::Zero(all), band, border_at, process_information(e)};
+  const auto wandering = wandering_border(e.layout);
   const BorderPrior prior = border_prior(e.problem, e.layout, e.x);
-  BorderSum border{prior.matrix, prior.right};
+  d.matrix.bottomRightCorner(e.layout.border, e.layout.border) = prior.matrix;
+  d.right.tail(e.layout.border) = prior.right;
+  d.matrix.block(band, band, e.x.wander.size(), e.x.wander.size()) = d.wander_prior;
+  d.right.segment(band, e.x.wander.size()) = -d.wander_prior * e.x.wander.reshaped();
   const IntervalLinearisation linearisation(e.problem, e.layout, e.x);
   for (Index k = 0; k < e.problem.grid.intervals; ++k) {
+    BorderSum border{MatrixXd::Zero(e.layout.border, e.layout.border), VectorXd::Zero(e.layout.border)};
     const BandSpan span = linearisation.span(k, border);
-    const Index at = k * e.layout.channels;
+    const MatrixXd own = border.matrix.selfadjointView<Eigen::Lower>();
+    const Index at = k * e.layout.channels, in_wander = band + w * stretch_at(e.problem.grid, k);
     d.matrix.block(at, at, local, local).triangularView<Eigen::Lower>() += span.matrix;
-    d.matrix.block(band, at, e.layout.border, local) += span.coupling;
+    d.matrix.block(border_at, at, e.layout.border, local) += span.coupling;
+    d.matrix.block(in_wander, at, w, local) += span.coupling(wandering, Eigen::all);
+    d.matrix.block(in_wander, in_wander, w, w) += own(wandering, wandering);
+    d.matrix.block(border_at, in_wander, e.layout.border, w) += own(Eigen::all, wandering);
+    d.matrix.bottomRightCorner(e.layout.border, e.layout.border) += own;
     d.right.segment(at, local) += span.right;
+    d.right.segment(in_wander, w) += border.right(wandering);
+    d.right.tail(e.layout.border) += border.right;
   }
-  d.matrix.bottomRightCorner(e.layout.border, e.layout.border).triangularView<Eigen::Lower>() = border.matrix;
-  d.right.tail(e.layout.border) = border.right;
   d.matrix.triangularView<Eigen::StrictlyUpper>() = d.matrix.transpose();
   return d;
 }
 
+/// A⁻¹ Bᵀ of everything but the border.
+MatrixXd following(const Dense& d) {
+  const Index rest = d.border;
+  return *inverse_positive(d.matrix.topLeftCorner(rest, rest)) * d.matrix.topRightCorner(rest, d.matrix.rows() - rest);
+}
+
 TEST(InsSystem, SolvesTheEquationsOfAllIntervalsTogether) {
-  for (const Index intervals : {5, 64, 150}) {
-    const Example e = example(intervals);
+  for (const Biases biases : {Biases::constant, Biases::wandering})
+    for (const Index intervals : {5, 64, 150, 300}) {
+      const Example e = example(intervals, biases);
+      const Dense d = dense(e);
+      const auto expected = solve_positive(d.matrix, d.right);
+      const auto x = InsSystem(e.problem, e.layout, e.x, {}, 1).solve();
+      ASSERT_TRUE(x && expected);
+      EXPECT_LT((x->band.reshaped() - expected->head(d.wander)).norm(), 1e-7 * expected->norm());
+      EXPECT_LT((x->wander.reshaped() - expected->segment(d.wander, x->wander.size())).norm(), 1e-7 * expected->norm());
+      EXPECT_LT((x->border - expected->tail(e.layout.border)).norm(), 1e-7 * expected->norm());
+    }
+}
+
+TEST(InsSystem, BlockScoresAreGradientsWithBandAndBiasesFollowing) {
+  for (const Biases biases : {Biases::constant, Biases::wandering}) {
+    const Example e = example(140, biases);
     const Dense d = dense(e);
-    const auto expected = solve_positive(d.matrix, d.right);
-    const auto x = InsSystem(e.problem, e.layout, e.x, {}, 1).solve();
-    ASSERT_TRUE(x && expected);
-    const Index band = x->band.size();
-    EXPECT_LT((x->band.reshaped() - expected->head(band)).norm(), 1e-7 * expected->norm());
-    EXPECT_LT((x->border - expected->tail(e.layout.border)).norm(), 1e-7 * expected->norm());
+    const MatrixXd follows = following(d);
+    const auto wandering = wandering_border(e.layout);
+    const MatrixXd scores = InsSystem(e.problem, e.layout, e.x, {}, 1).block_scores(20);
+    ASSERT_EQ(scores.rows(), 7);
+    const IntervalLinearisation linearisation(e.problem, e.layout, e.x);
+    for (Index block = 0; block < scores.rows(); ++block) {
+      VectorXd expected = VectorXd::Zero(e.layout.border);
+      for (Index k = 20 * block; k < 20 * (block + 1); ++k) {
+        const IntervalGradient g = linearisation.gradient(k);
+        const Index in_wander = d.wander + e.layout.wander * stretch_at(e.problem.grid, k);
+        expected += g.border - follows.middleRows(k * e.layout.channels, g.band.size()).transpose() * g.band -
+                    follows.middleRows(in_wander, e.layout.wander).transpose() * g.border(wandering);
+      }
+      EXPECT_LT((scores.row(block).transpose() - expected).norm(), 1e-6 * expected.norm());
+    }
   }
 }
 
-TEST(InsSystem, BlockScoresAreGradientsWithTheBandFollowing) {
-  const Example e = example(140);
+TEST(InsSystem, TellsWhatThePriorOnWanderingBiasesSaysAboutTheBorder) {
+  const Example e = example(300, Biases::wandering);
   const Dense d = dense(e);
-  const Index band = e.layout.channels * e.problem.grid.coefficients();
-  const MatrixXd following =
-      *inverse_positive(d.matrix.topLeftCorner(band, band)) * d.matrix.topRightCorner(band, e.layout.border);
-  const MatrixXd scores = InsSystem(e.problem, e.layout, e.x, {}, 1).block_scores(20);
-  ASSERT_EQ(scores.rows(), 7);
-  const IntervalLinearisation linearisation(e.problem, e.layout, e.x);
-  for (Index block = 0; block < scores.rows(); ++block) {
-    VectorXd expected = VectorXd::Zero(e.layout.border);
-    for (Index k = 20 * block; k < 20 * (block + 1); ++k) {
-      const IntervalGradient g = linearisation.gradient(k);
-      expected += g.border - following.middleRows(k * e.layout.channels, g.band.size()).transpose() * g.band;
-    }
-    EXPECT_LT((scores.row(block).transpose() - expected).norm(), 1e-6 * expected.norm());
-  }
+  const MatrixXd follows = following(d).middleRows(d.wander, e.x.wander.size());
+  const MatrixXd expected = follows.transpose() * d.wander_prior * follows;
+  const MatrixXd told = InsSystem(e.problem, e.layout, e.x, {}, 1).wander_information();
+  EXPECT_LT((told - expected).norm(), 1e-7 * expected.norm());
 }
 
 TEST(InsSystem, TellsTheSameWhereItKeepsNothing) {
-  const Example e = example(150);
+  const Example e = example(150, Biases::wandering);
   const Damping damping{.band = 0.01, .border = 0.1};
   const InsSystem kept(e.problem, e.layout, e.x, damping, 2), lean(e.problem, e.layout, e.x, damping, 2, 0.0);
   const auto a = kept.solve(), b = lean.solve();
   ASSERT_TRUE(a && b);
   EXPECT_LT((a->band - b->band).norm(), 1e-9 * a->band.norm());
+  EXPECT_LT((a->wander - b->wander).norm(), 1e-9 * a->wander.norm());
   EXPECT_LT((kept.block_scores(20) - lean.block_scores(20)).norm(), 1e-9 * kept.block_scores(20).norm());
 }
 
 TEST(InsSystem, IsTheSameForAnyNumberOfThreads) {
-  const Example e = example(200);
+  const Example e = example(200, Biases::wandering);
   const auto told = [&](int threads) {
     const InsSystem system(e.problem, e.layout, e.x, {}, threads, 0.0);
     return std::pair{system.solve()->band, system.block_scores(20)};

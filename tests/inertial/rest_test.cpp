@@ -68,6 +68,14 @@ TEST(SensorJudgement, each_grade_is_recognised_by_its_own_recording) {
   }
 }
 
+TEST(SensorJudgement, a_grade_does_not_depend_on_how_long_was_recorded) {
+  const SensorModel grade = *sensor_grade("industrial");
+  const CarriedSensor c = carried({.seconds = 1200.0, .rate = 50.0, .grade = &grade});
+  const auto found = findings(c.sensor, c.time, rests(c.sensor, c.time));
+  EXPECT_EQ(judged_model(found).name, "industrial");
+  EXPECT_LT(found.scale_error, 1.5e-3);
+}
+
 TEST(SensorJudgement, without_rest_the_careful_grade_is_taken) {
   EXPECT_EQ(judged_model(SensorFindings{}).name, "consumer");
 }

@@ -96,7 +96,8 @@ TEST_P(BandStretches, TogetherSolveWhatOneWalkAlongTheBandSolves) {
     EXPECT_LT((whole->band.middleCols(group, reach - 1).reshaped() - at_ends->band.col(k)).norm(), 1e-9);
     EXPECT_LT((whole->band.middleCols(group + reach - 1, inner.cols()) - inner).norm(), 1e-9);
     const MatrixXd follows =
-        stretches[i].following(ends_following.middleRows(k * end, end), ends_following.middleRows((k + 1) * end, end));
+        stretches[i].following(ends_following.middleRows(k * end, end), ends_following.middleRows((k + 1) * end, end),
+                               MatrixXd::Identity(border, border));
     EXPECT_LT((following.middleRows((group + reach - 1) * width, follows.rows()) - follows).norm(), 1e-9);
     group += static_cast<Index>(lengths[i]);
   }

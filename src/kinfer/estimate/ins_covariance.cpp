@@ -22,7 +22,8 @@ std::optional<InsCovariance> covariance_of(const InsProblem& problem, const InsL
   InsCovariance result{*inverse, VectorXd::Ones(layout.border)};
   const auto intervals = std::max<Index>(1, static_cast<Index>(std::round(block / problem.grid.period)));
   const MatrixXd scores = system.block_scores(intervals);
-  const MatrixXd middle = scores.transpose() * scores + border_prior(problem, layout, x).matrix;
+  const MatrixXd middle =
+      scores.transpose() * scores + border_prior(problem, layout, x).matrix + system.wander_information();
   const MatrixXd half = middle * result.model;
   for (Index k = 0; k < layout.border; ++k)
     result.inflation[k] = result.model.col(k).dot(half.col(k)) / result.model(k, k);

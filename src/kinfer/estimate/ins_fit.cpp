@@ -35,7 +35,7 @@ struct Marquardt {
     const InsSystem system(problem, fit.layout, from, {damping, hold_border ? held : damping}, options.threads);
     const auto change = system.solve();
     if (!change) return std::nullopt;
-    InsUnknowns to = changed(problem, fit.layout, from, change->band, change->border);
+    InsUnknowns to = changed(problem, fit.layout, from, *change);
     InsCost cost = cost_of(problem, fit.layout, to, options.threads);
     return Point{std::move(to), std::move(cost)};
   }
@@ -90,6 +90,9 @@ struct Marquardt {
 InsFit fit_ins(InsProblem& problem, const InsUnknowns& start, const InsFitOptions& options, const Observer& observer) {
   Marquardt m{problem, options, {start, layout_of(problem, start.bodies), {}}};
   InsFit& fit = m.fit;
+  const auto stretches = static_cast<Eigen::Index>(stretches_of(problem.grid).size());
+  if (fit.unknowns.wander.rows() != fit.layout.wander || fit.unknowns.wander.cols() != stretches)
+    fit.unknowns.wander = MatrixXd::Zero(fit.layout.wander, stretches);
   fit.cost = cost_of(problem, fit.layout, fit.unknowns, options.threads);
   for (int i = 0; i < settling_iterations; ++i, ++fit.iterations) {
     m.weigh();

@@ -7,6 +7,7 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/estimate/ins_fact_rows.hpp"
 #include "kinfer/estimate/ins_motion.hpp"
+#include "kinfer/estimate/ins_wander.hpp"
 
 namespace kinfer {
 namespace {
@@ -147,6 +148,7 @@ SensorSystem sensor_system(const InsProblem& problem, const InsLayout& layout, c
                            const std::array<SplineBasis, block_nodes>& bases) {
   const auto sensor = static_cast<std::size_t>(x.bodies[body].sensor);
   const auto uses = instruments(problem, layout, sensor);
+  const InsErrors errors = errors_at(problem, x, sensor, interval);
   const auto k = static_cast<std::size_t>(interval);
   Index rows = 0;
   for (const InstrumentUse& use : uses) rows += 3 * use.blocks[k].rows;
@@ -157,13 +159,13 @@ SensorSystem sensor_system(const InsProblem& problem, const InsLayout& layout, c
   for (const InstrumentUse& use : uses) {
     const InsBlock& block = use.blocks[k];
     if (block.rows == 0) continue;
-    const NodeMatrix factor = shifted_factor(block, layout, clock_shift(problem, layout, x.errors[sensor], interval));
+    const NodeMatrix factor = shifted_factor(block, layout, clock_shift(problem, layout, errors, interval));
     BlockResidual predicted;
     for (Index node = 0; node < block_nodes; ++node) {
       const auto n = static_cast<std::size_t>(node);
-      predicted.row(node) = use.read(motion[n].state[body], x.errors[sensor]).transpose();
+      predicted.row(node) = use.read(motion[n].state[body], errors).transpose();
       fill_rows(at_nodes.middleRows<3>(3 * node), use, layout, columns, path, motion[n].columns[body],
-                motion[n].state[body], x.errors[sensor], bases[n]);
+                motion[n].state[body], errors, bases[n]);
     }
     const BlockResidual r = residual(block, factor, predicted, use.sd);
     const double weight = std::sqrt(robust(r.squaredNorm(), 3.0 * block.rows).weight);
@@ -293,12 +295,13 @@ InsCost item_cost(const InsProblem& problem, const InsLayout& layout, const InsU
     for (std::size_t b = 0; b < x.bodies.size(); ++b) {
       if (x.bodies[b].sensor < 0) continue;
       const auto sensor = static_cast<std::size_t>(x.bodies[b].sensor);
+      const InsErrors errors = errors_at(problem, x, sensor, interval);
       for (const InstrumentUse& use : instruments(problem, layout, sensor)) {
         const InsBlock& block = use.blocks[static_cast<std::size_t>(interval)];
         BlockResidual predicted;
         for (std::size_t n = 0; n < block_nodes; ++n)
-          predicted.row(static_cast<Index>(n)) = use.read(states[n][b], x.errors[sensor]).transpose();
-        const double shift = clock_shift(problem, layout, x.errors[sensor], interval);
+          predicted.row(static_cast<Index>(n)) = use.read(states[n][b], errors).transpose();
+        const double shift = clock_shift(problem, layout, errors, interval);
         const BlockResidual r = residual(block, shifted_factor(block, layout, shift), predicted, use.sd);
         const RobustBlock value = robust(r.squaredNorm(), 3.0 * block.rows);
         cost.total += value.cost;
@@ -326,8 +329,9 @@ InsCost cost_of(const InsProblem& problem, const InsLayout& layout, const InsUnk
   std::vector<InsCost> items(static_cast<std::size_t>(items_of(problem)));
   parallel_for(items.size(), threads,
                [&](std::size_t i) { items[i] = item_cost(problem, layout, x, static_cast<Index>(i), bases); });
-  InsCost sum{.total = border_prior(problem, layout, x).cost + fact_cost(problem, layout, x),
-              .sensors = std::vector<SensorFit>(problem.sensors.size())};
+  InsCost sum{
+      .total = border_prior(problem, layout, x).cost + fact_cost(problem, layout, x) + wander_cost(problem, layout, x),
+      .sensors = std::vector<SensorFit>(problem.sensors.size())};
   for (const InsCost& item : items) {
     sum.total += item.total;
     for (std::size_t s = 0; s < sum.sensors.size(); ++s) {

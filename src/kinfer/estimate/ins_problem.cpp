@@ -62,16 +62,18 @@ InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
   if (layout.has_field) layout.field_error = append(3);
   if (layout.has_clocks) layout.clock_error = append(2);
   for (std::size_t s = 0; s < problem.sensors.size(); ++s) layout.error.push_back(take(layout.errors_each));
+  if (!problem.wander.is_none()) layout.wander = 6 * static_cast<Index>(problem.sensors.size());
   const InsFacts& facts = problem.facts;
   layout.facts =
       take(3 * static_cast<Index>(facts.places.size() + facts.touches.size()) + (facts.surveyed.empty() ? 0 : 6));
   return layout;
 }
 
-InsUnknowns changed(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, ConstMatrixRef band,
-                    ConstVectorRef border) {
+InsUnknowns changed(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, const InsStep& step) {
+  const VectorXd& border = step.border;
   InsUnknowns result = x;
-  result.band += band;
+  result.band += step.band;
+  if (layout.wander > 0) result.wander += step.wander;
   if (layout.root_force >= 0) result.root_force += border.segment<3>(layout.root_force);
   if (layout.root_field >= 0) result.root_field += border.segment<3>(layout.root_field);
   for (std::size_t b = 0; b < x.bodies.size(); ++b)

@@ -45,11 +45,22 @@ struct InsErrorPrior {
   double clock_offset = 0.0, clock_drift = 0.0;
 };
 
+/// How the biases of an INS wander about their constants: Gauss-Markov processes, each axis by itself, constant over a
+/// stretch of the grid. Standard deviations of 0: they do not.
+struct InsWander {
+  double rate_sd = 0.0;   ///< [rad/s]
+  double force_sd = 0.0;  ///< [m/s²]
+  double time = 100.0;    ///< [s] in which a wandering bias forgets
+
+  bool is_none() const { return rate_sd <= 0.0 && force_sd <= 0.0; }
+};
+
 struct InsProblem {
   SplineGrid grid;
   bool root_stands_still = true;
   std::vector<InsReadings> sensors;
   InsErrorPrior prior;
+  InsWander wander{};
   double gravity = 9.80665;         ///< [m/s²] size of the root's force where it stands still
   double gravity_sd = 0.03;         ///< gravity on Earth is within this
   double point_sd = 3.0;            ///< [m] keeps what no signal tells near the sensors
@@ -65,6 +76,7 @@ struct InsUnknowns {
   Vec3 root_force = Vec3::Zero();  ///< [m/s²] where the root stands still
   Vec3 root_field = Vec3::Zero();
   std::vector<InsErrors> errors;  ///< one a sensor
+  MatrixXd wander{};              ///< [rate, force] of each sensor x stretches; empty: biases are constant
   InsFactUnknowns facts{};
 };
 
@@ -75,6 +87,7 @@ struct InsLayout {
   Eigen::Index root_force = -1, root_field = -1;  ///< first of three in the border; −1: not there
   std::vector<Eigen::Index> body, error;          ///< first unknown of each body and sensor in the border
   std::vector<Eigen::Index> channel;              ///< first of each body's joint; −1: none
+  Eigen::Index wander = 0;                        ///< unknowns of each stretch: six a sensor, or none
   bool has_field = false, has_matrices = false, has_clocks = false;
   Eigen::Index errors_each = 0;                     ///< unknowns a sensor: [b_g, b_a, S_g, S_a, b_m, clock]
   Eigen::Index field_error = -1, clock_error = -1;  ///< where they begin among these; −1: not there
@@ -82,9 +95,13 @@ struct InsLayout {
 };
 InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies);
 
-/// The unknowns changed by a step of the band and of the border.
-InsUnknowns changed(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, ConstMatrixRef band,
-                    ConstVectorRef border);
+/// A change of everything unknown.
+struct InsStep {
+  MatrixXd band;    ///< channels x coefficients
+  VectorXd border;  ///< what holds for good
+  MatrixXd wander;  ///< unknowns x stretches
+};
+InsUnknowns changed(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, const InsStep& step);
 
 /// Prior information on the border: cost, and its Gauss-Newton terms (diagonal but for gravity) where asked for.
 struct BorderPrior {

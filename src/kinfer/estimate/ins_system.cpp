@@ -9,17 +9,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr Index stretch_intervals = 64;  // the last one takes the remainder as well
-constexpr std::size_t batch = 16;        // stretches condensed before they are added: bounds the memory
-
-template <class Stretch>
-std::vector<Stretch> stretches_of(Index intervals) {
-  std::vector<Stretch> stretches;
-  const Index count = std::max<Index>(1, intervals / stretch_intervals);
-  for (Index k = 0; k < count; ++k)
-    stretches.push_back({k * stretch_intervals, k + 1 == count ? intervals : (k + 1) * stretch_intervals});
-  return stretches;
-}
+constexpr std::size_t batch = 16;  // stretches condensed before they are added: bounds the memory
 
 /// Of the factors of all stretches.
 double bytes_of(const InsProblem& problem, const InsLayout& layout) {
@@ -33,18 +23,20 @@ InsSystem::InsSystem(const InsProblem& problem, const InsLayout& layout, const I
                      int threads, double most_kept)
     : problem_(problem),
       layout_(layout),
+      x_(x),
       damping_(damping),
       threads_(threads),
       linearisation_(problem, layout, x),
-      stretches_(stretches_of<Stretch>(problem.grid.intervals)),
-      ends_(end_width(), 2, layout.border) {
+      stretches_(stretches_of(problem.grid)),
+      wandering_(wandering_border(layout)),
+      ends_(end_width() + layout.wander, 2, layout.border) {
   const bool keep = bytes_of(problem, layout) < most_kept;
   BorderPrior border = border_prior(problem, layout, x);
   border.matrix.diagonal() *= 1.0 + damping.border;
   for (std::size_t first = 0; first < stretches_.size(); first += batch) {
     const std::size_t count = std::min(batch, stretches_.size() - first);
     std::vector<Condensed> done(count);
-    parallel_for(count, threads_, [&](std::size_t i) { done[i] = condensed(stretches_[first + i], keep); });
+    parallel_for(count, threads_, [&](std::size_t i) { done[i] = condensed(first + i, keep); });
     for (Condensed& stretch : done) {
       ends_.add(stretch.span, stretch.positive);
       border.matrix += stretch.border.matrix;
@@ -55,16 +47,57 @@ InsSystem::InsSystem(const InsProblem& problem, const InsLayout& layout, const I
   ends_.finish(border.matrix, border.right);
 }
 
-InsSystem::Condensed InsSystem::condensed(const Stretch& stretch, bool keep) const {
+InsSystem::Condensed InsSystem::condensed(std::size_t stretch, bool keep) const {
   BorderSum border;
-  BandStretch band = eliminated(stretch, border);
-  Condensed result{band.condensed(), std::move(border), band.positive(), {}};
+  BandStretch band = eliminated(stretches_[stretch], border);
+  Condensed result{band.condensed(), {}, band.positive(), {}};
+  if (layout_.wander > 0) result.span = with_wander(result.span, border, stretch);
+  result.border = std::move(border);
   if (keep) result.kept = std::move(band);
   return result;
 }
 
+/// What biases wander off reaches a stretch as the constants of the border do; so its columns are the border's.
+BandSpan InsSystem::with_wander(const BandSpan& ends, const BorderSum& border, std::size_t stretch) const {
+  const Index e = end_width(), w = layout_.wander, group = e + w, held = layout_.border;
+  const MatrixXd whole = border.matrix.selfadjointView<Eigen::Lower>();
+  const MatrixXd of_wander = ends.coupling(wandering_, Eigen::all);
+  BandSpan span{MatrixXd::Zero(2 * group, 2 * group), MatrixXd::Zero(held, 2 * group), VectorXd::Zero(2 * group)};
+  span.matrix.topLeftCorner(e, e) = ends.matrix.topLeftCorner(e, e);
+  span.matrix.block(e, 0, w, e) = of_wander.leftCols(e);
+  span.matrix.block(e, e, w, w) = whole(wandering_, wandering_);
+  span.matrix.block(group, 0, e, e) = ends.matrix.bottomLeftCorner(e, e);
+  span.matrix.block(group, e, e, w) = of_wander.rightCols(e).transpose();
+  span.matrix.block(group, group, e, e) = ends.matrix.bottomRightCorner(e, e);
+  span.coupling.leftCols(e) = ends.coupling.leftCols(e);
+  span.coupling.middleCols(e, w) = whole(Eigen::all, wandering_);
+  span.coupling.middleCols(group, e) = ends.coupling.rightCols(e);
+  span.right.head(e) = ends.right.head(e);
+  span.right.segment(e, w) = border.right(wandering_);
+  span.right.segment(group, e) = ends.right.tail(e);
+  add_wander_prior(span, stretch);
+  return span;
+}
+
+/// How the biases of a stretch came from those before. Behind the last stretch there is nothing to be known.
+void InsSystem::add_wander_prior(BandSpan& span, std::size_t stretch) const {
+  const Index w = layout_.wander, now = end_width(), next = 2 * end_width() + w, k = static_cast<Index>(stretch);
+  const WanderPrior prior = wander_prior(problem_, layout_);
+  const auto add = [&](Index at, const VectorXd& information, const VectorXd& value) {
+    span.matrix.diagonal().segment(at, w) += (1.0 + damping_.border) * information;
+    span.right.segment(at, w) -= information.cwiseProduct(value);
+  };
+  if (k == 0) add(now, prior.information, x_.wander.col(0));
+  if (k + 1 == x_.wander.cols()) return add(next, prior.information, VectorXd::Zero(w));
+  const double a = prior.keep;
+  const VectorXd surprise = x_.wander.col(k + 1) - a * x_.wander.col(k);
+  add(now, a * a * prior.innovation, surprise / -a);
+  add(next, prior.innovation, surprise);
+  span.matrix.block(next, now, w, w).diagonal() -= a * prior.innovation;
+}
+
 /// `border`: what the stretch adds to the border's equations, its own elimination taken off.
-BandStretch InsSystem::eliminated(const Stretch& stretch, BorderSum& border) const {
+BandStretch InsSystem::eliminated(const InsStretch& stretch, BorderSum& border) const {
   BandStretch result(layout_.channels, spline_order, layout_.border);
   border = {MatrixXd::Zero(layout_.border, layout_.border), VectorXd::Zero(layout_.border)};
   for (Index interval = stretch.first; interval < stretch.end; ++interval) {
@@ -80,7 +113,7 @@ BandStretch InsSystem::eliminated(const Stretch& stretch, BorderSum& border) con
 }
 
 /// The same where the step of the border is known.
-BandStretch InsSystem::eliminated(const Stretch& stretch, ConstVectorRef border) const {
+BandStretch InsSystem::eliminated(const InsStretch& stretch, ConstVectorRef border) const {
   BandStretch result(layout_.channels, spline_order, 0);
   BorderSum unused{MatrixXd::Zero(layout_.border, layout_.border), VectorXd::Zero(layout_.border)};
   for (Index interval = stretch.first; interval < stretch.end; ++interval) {
@@ -93,28 +126,39 @@ BandStretch InsSystem::eliminated(const Stretch& stretch, ConstVectorRef border)
   return result;
 }
 
+/// The border as a stretch sees it: what its biases wandered off is added to the constants.
+VectorXd InsSystem::border_of(std::size_t stretch, const BorderedBand::Solution& ends) const {
+  VectorXd border = ends.border;
+  if (layout_.wander > 0) border(wandering_) += ends.band.col(static_cast<Index>(stretch)).tail(layout_.wander);
+  return border;
+}
+
 /// Steps of a stretch's coefficients between its ends.
 MatrixXd InsSystem::between(std::size_t stretch, const BorderedBand::Solution& ends) const {
   const auto k = static_cast<Index>(stretch);
-  if (!kept_.empty()) return kept_[stretch].solve(ends.band.col(k), ends.band.col(k + 1), ends.border);
-  return eliminated(stretches_[stretch], ends.border).solve(ends.band.col(k), ends.band.col(k + 1), VectorXd());
+  const auto first = ends.band.col(k).head(end_width()), last = ends.band.col(k + 1).head(end_width());
+  const VectorXd border = border_of(stretch, ends);
+  if (!kept_.empty()) return kept_[stretch].solve(first, last, border);
+  return eliminated(stretches_[stretch], border).solve(first, last, VectorXd());
 }
 
-std::optional<BorderedBand::Solution> InsSystem::solve() const {
+std::optional<InsStep> InsSystem::solve() const {
   const auto ends = ends_.solve();
   if (!ends) return std::nullopt;
-  BorderedBand::Solution all{MatrixXd(layout_.channels, problem_.grid.coefficients()), ends->border};
+  const auto count = static_cast<Index>(stretches_.size());
+  InsStep step{MatrixXd(layout_.channels, problem_.grid.coefficients()), ends->border,
+               ends->band.block(end_width(), 0, layout_.wander, count)};
   constexpr Index shared = spline_order - 1;
   const auto put_end = [&](Index at, Index end) {
-    all.band.middleCols(at, shared) = ends->band.col(end).reshaped(layout_.channels, shared);
+    step.band.middleCols(at, shared) = ends->band.col(end).head(end_width()).reshaped(layout_.channels, shared);
   };
   parallel_for(stretches_.size(), threads_, [&](std::size_t i) {
-    const Stretch& s = stretches_[i];
+    const InsStretch& s = stretches_[i];
     put_end(s.first, static_cast<Index>(i));
-    all.band.middleCols(s.first + shared, s.end - s.first - shared) = between(i, *ends);
+    step.band.middleCols(s.first + shared, s.end - s.first - shared) = between(i, *ends);
   });
-  put_end(problem_.grid.intervals, ends->band.cols() - 1);
-  return all;
+  put_end(problem_.grid.intervals, count);
+  return step;
 }
 
 /// Gradient in the border's unknowns of each interval of a stretch.
@@ -122,16 +166,19 @@ MatrixXd InsSystem::stretch_scores(std::size_t stretch, ConstMatrixRef ends_foll
   const auto [first, end] = stretches_[stretch];
   BorderSum unused;
   const BandStretch band = kept_.empty() ? eliminated(stretches_[stretch], unused) : kept_[stretch];
-  const Index e = end_width(), inner = (end - first) * layout_.channels - e, at = static_cast<Index>(stretch) * e;
+  const Index e = end_width(), group = e + layout_.wander, inner = (end - first) * layout_.channels - e,
+              at = static_cast<Index>(stretch) * group;
+  MatrixXd border = MatrixXd::Identity(layout_.border, layout_.border);
+  if (layout_.wander > 0) border(wandering_, Eigen::all) -= ends_following.middleRows(at + e, layout_.wander);
   MatrixXd following(inner + 2 * e, layout_.border);
   following.topRows(e) = ends_following.middleRows(at, e);
-  following.bottomRows(e) = ends_following.middleRows(at + e, e);
-  following.middleRows(e, inner) = band.following(following.topRows(e), following.bottomRows(e));
+  following.bottomRows(e) = ends_following.middleRows(at + group, e);
+  following.middleRows(e, inner) = band.following(following.topRows(e), following.bottomRows(e), border);
   MatrixXd scores(end - first, layout_.border);
   for (Index i = 0; i < scores.rows(); ++i) {
     const IntervalGradient gradient = linearisation_.gradient(first + i);
     const auto window = following.middleRows(i * layout_.channels, spline_order * layout_.channels);
-    scores.row(i) = (gradient.border - window.transpose() * gradient.band).transpose();
+    scores.row(i) = (border.transpose() * gradient.border - window.transpose() * gradient.band).transpose();
   }
   return scores;
 }
@@ -148,6 +195,22 @@ MatrixXd InsSystem::block_scores(Index intervals) const {
         blocks.row((stretches_[first + i].first + k) / intervals) += scores[i].row(k);
   }
   return blocks;
+}
+
+MatrixXd InsSystem::wander_information() const {
+  MatrixXd information = MatrixXd::Zero(layout_.border, layout_.border);
+  if (layout_.wander == 0) return information;
+  const MatrixXd ends_following = ends_.following();
+  const WanderPrior prior = wander_prior(problem_, layout_);
+  MatrixXd before = MatrixXd::Zero(layout_.wander, layout_.border);
+  for (std::size_t k = 0; k < stretches_.size(); ++k) {
+    const Index at = static_cast<Index>(k) * (end_width() + layout_.wander) + end_width();
+    const MatrixXd now = ends_following.middleRows(at, layout_.wander), surprise = now - prior.keep * before;
+    information.noalias() +=
+        surprise.transpose() * (k == 0 ? prior.information : prior.innovation).asDiagonal() * surprise;
+    before = now;
+  }
+  return information;
 }
 
 }  // namespace kinfer

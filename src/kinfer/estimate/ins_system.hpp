@@ -3,10 +3,12 @@
 // The recording is cut into stretches of fixed length. Each is linearised and condensed to its ends on a thread of its
 // own (linalg/band_stretch), the ends and the border are solved, then each stretch fills in what lies between. What a
 // stretch's elimination leaves behind is kept where it is small, else it is made again: so an hour needs little more
-// memory than a minute. The stretches depend on the recording alone, so results are the same for any number of threads.
+// memory than a minute. Biases that wander are unknowns between the stretches' ends. The stretches depend on the
+// recording alone, so results are the same for any number of threads.
 #pragma once
 
 #include "kinfer/estimate/ins_linearisation.hpp"
+#include "kinfer/estimate/ins_wander.hpp"
 #include "kinfer/linalg/band_stretch.hpp"
 
 namespace kinfer {
@@ -24,7 +26,7 @@ class InsSystem {
   bool positive() const { return ends_.positive(); }  ///< false: nothing below may be asked for
 
   /// The step that solves the equations; nothing where they are not positive definite.
-  std::optional<BorderedBand::Solution> solve() const;
+  std::optional<InsStep> solve() const;
 
   /// The information on the border when the band is free.
   const MatrixXd& schur() const { return ends_.schur(); }
@@ -33,31 +35,36 @@ class InsSystem {
   /// blocks x border. Its rows sum to about zero at the optimum, their spread is what the data really say.
   MatrixXd block_scores(Eigen::Index intervals) const;
 
+  /// What the prior on wandering biases says about the border when they follow: border x border.
+  MatrixXd wander_information() const;
+
  private:
-  struct Stretch {
-    Eigen::Index first = 0, end = 0;  // intervals
-  };
   struct Condensed {
     BandSpan span;
     BorderSum border;
     bool positive = false;
     std::optional<BandStretch> kept;
   };
-  Condensed condensed(const Stretch& stretch, bool keep) const;
-  BandStretch eliminated(const Stretch& stretch, BorderSum& border) const;
-  BandStretch eliminated(const Stretch& stretch, ConstVectorRef border) const;
+  Condensed condensed(std::size_t stretch, bool keep) const;
+  BandSpan with_wander(const BandSpan& ends, const BorderSum& border, std::size_t stretch) const;
+  void add_wander_prior(BandSpan& span, std::size_t stretch) const;
+  VectorXd border_of(std::size_t stretch, const BorderedBand::Solution& ends) const;
+  BandStretch eliminated(const InsStretch& stretch, BorderSum& border) const;
+  BandStretch eliminated(const InsStretch& stretch, ConstVectorRef border) const;
   MatrixXd between(std::size_t stretch, const BorderedBand::Solution& ends) const;
   MatrixXd stretch_scores(std::size_t stretch, ConstMatrixRef ends_following) const;
   Eigen::Index end_width() const { return (spline_order - 1) * layout_.channels; }
 
   const InsProblem& problem_;
   const InsLayout& layout_;
+  const InsUnknowns& x_;
   Damping damping_;
   int threads_;
   IntervalLinearisation linearisation_;
-  std::vector<Stretch> stretches_;
-  BorderedBand ends_;
-  std::vector<BandStretch> kept_;  // all stretches, or none
+  std::vector<InsStretch> stretches_;
+  std::vector<Eigen::Index> wandering_;  // border unknowns that a stretch's own are added to
+  BorderedBand ends_;                    // groups: [end, what the biases wandered off in the stretch behind it]
+  std::vector<BandStretch> kept_;        // all stretches, or none
 };
 
 }  // namespace kinfer

@@ -81,7 +81,7 @@ bool clocks_are_doubtful(InsProblem& problem, const InsFit& fit, int threads) {
   const auto step = InsSystem(problem, next.layout, fit.unknowns, {}, threads).solve();
   const auto covariance = covariance_of(problem, next.layout, fit.unknowns, threads);
   if (!step || !covariance) return false;
-  next.unknowns = changed(problem, next.layout, fit.unknowns, step->band, step->border);
+  next.unknowns = changed(problem, next.layout, fit.unknowns, *step);
   const auto clocks = refined_clocks(problem, next, *covariance);
   return std::ranges::any_of(clocks,
                              [&](const RefinedClock& clock) { return differs(clock, problem.grid, suspicious); });

@@ -112,6 +112,9 @@ RefineSetup refine_setup(const InsRecording& recording, const RecordedMotion& mo
   problem.grid = grid_over(motion, knots);
   problem.root_stands_still = motion.segments[tree.root].still;
   problem.prior = prior_of(grade);
+  problem.wander = {.rate_sd = grade.gyroscope.instability,
+                    .force_sd = grade.accelerometer.instability,
+                    .time = grade.accelerometer.instability_time};
   for (const InsSensor& sensor : recording.sensors)
     problem.sensors.push_back(readings_of(recording, sensor, problem.grid, grade, problem.root_stands_still));
   for (InsReadings& readings : problem.sensors) readings.least = readings.noise;

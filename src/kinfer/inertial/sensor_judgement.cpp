@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/geometry/statistics.hpp"
 #include "kinfer/inertial/kinfer_offline.hpp"
 
 namespace kinfer {
@@ -45,6 +46,48 @@ double largest(const TriadColumns& triad) {
   return found;
 }
 
+InsSensor rows_of(const InsSensor& sensor, std::size_t first, std::size_t count) {
+  InsSensor part{.name = sensor.name, .acceleration = {}, .rate = {}, .field = {}, .faults = {}};
+  const auto cut = [&](const auto& rows) {
+    const auto begin = rows.begin() + static_cast<std::ptrdiff_t>(first);
+    return std::decay_t<decltype(rows)>(begin, begin + static_cast<std::ptrdiff_t>(count));
+  };
+  for (const auto& [from, to] : {std::pair{&sensor.acceleration, &part.acceleration}, {&sensor.rate, &part.rate}})
+    for (std::size_t k = 0; k < 3; ++k) to->axis[k] = cut(from->axis[k]);
+  part.faults = cut(sensor.faults);
+  return part;
+}
+
+/// [rad²/s²] sum over the part's rows: how much it shows of the gyro's scale.
+double turning(const InsSensor& part) {
+  double sum = 0.0;
+  for (const auto& axis : part.rate.axis)
+    for (const float rate : axis)
+      if (std::isfinite(rate)) sum += double{rate} * double{rate};
+  return sum;
+}
+
+/// Rms of the gyro's scale matrix as the smoother finds it. The smoother takes scale and bias for less changing than
+/// they are, so the figure would grow with a recording's length: of a long one the liveliest minutes are asked, one by
+/// one.
+double scale_error(const InsSensor& sensor, std::span<const double> time) {
+  constexpr double minute = 60.0;       // [s]
+  constexpr std::size_t liveliest = 5;  // minutes
+  const double length = time.back() - time.front();
+  if (length < 2.0 * minute) return smoothed_motion(sensor, time).scale.norm() / 3.0;
+  const auto rows = static_cast<std::size_t>(static_cast<double>(time.size()) * minute / length);
+  std::vector<std::pair<double, std::size_t>> parts;  // turning, first row
+  for (std::size_t first = 0; first + rows <= time.size(); first += rows)
+    parts.emplace_back(-turning(rows_of(sensor, first, rows)), first);
+  std::ranges::sort(parts);
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < std::min(liveliest, parts.size()); ++i)
+    errors.push_back(
+        smoothed_motion(rows_of(sensor, parts[i].second, rows), time.subspan(parts[i].second, rows)).scale.norm() /
+        3.0);
+  return median(errors);
+}
+
 /// Negative log likelihood of a zero-mean figure under a standard deviation, up to a constant.
 double surprise(double figure, double sd) {
   return std::log(sd) + 0.5 * figure * figure / (sd * sd);
@@ -82,7 +125,7 @@ SensorFindings findings(const InsSensor& sensor, std::span<const double> time, s
   found.gravity_error = std::sqrt(found.gravity_error);
   found.largest_rate = largest(sensor.rate);
   found.largest_acceleration = largest(sensor.acceleration);
-  found.scale_error = smoothed_motion(sensor, time).scale.norm() / 3.0;
+  found.scale_error = scale_error(sensor, time);
   return found;
 }
 

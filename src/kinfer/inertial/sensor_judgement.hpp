@@ -14,7 +14,8 @@ struct SensorFindings {
   Vec3 field_density = Vec3::Zero();         ///< [µT/√Hz]
   RestBias rate_bias;                        ///< [rad/s]
   double gravity_error = 0.0;  ///< [m/s²] rms over the rests of |mean specific force| minus standard gravity
-  double scale_error = 0.0;    ///< rms of the gyro's scale matrix as the smoother found it
+  double scale_error = 0.0;    ///< rms of the gyro's scale matrix as the smoother found it, of a long recording in its
+                               ///< liveliest minutes
   double rate_resolution = 0.0, acceleration_resolution = 0.0, field_resolution = 0.0;
   double largest_rate = 0.0, largest_acceleration = 0.0;
 };

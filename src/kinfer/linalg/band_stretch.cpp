@@ -117,13 +117,13 @@ MatrixXd BandStretch::solve(ConstVectorRef first_end, ConstVectorRef last_end, C
   return values;
 }
 
-MatrixXd BandStretch::following(ConstMatrixRef first_end, ConstMatrixRef last_end) const {
+MatrixXd BandStretch::following(ConstMatrixRef first_end, ConstMatrixRef last_end, ConstMatrixRef border) const {
   const auto steps = static_cast<Index>(groups_.size());
-  MatrixXd result(steps * width_ + end(), border_);
+  MatrixXd result(steps * width_ + end(), border.cols());
   result.bottomRows(end()) = last_end;
   for (Index k = steps - 1; k >= 0; --k) {
     const auto i = static_cast<std::size_t>(k);
-    MatrixXd value = coupling_[i].bottomRows(border_).transpose() -
+    MatrixXd value = coupling_[i].bottomRows(border_).transpose() * border -
                      coupling_[i].topRows(end()).transpose() * first_end -
                      groups_[i].next.transpose() * result.middleRows((k + 1) * width_, end());
     groups_[i].pivot.triangularView<Eigen::Lower>().transpose().solveInPlace(value);

@@ -29,9 +29,9 @@ class BandStretch {
   /// Values of the groups between the ends, width x inner groups, where ends and border have these.
   MatrixXd solve(ConstVectorRef first_end, ConstVectorRef last_end, ConstVectorRef border) const;
 
-  /// How the groups between the ends follow the border (A⁻¹ Bᵀ of the whole band), inner groups·width x border, where
-  /// the ends follow like this.
-  MatrixXd following(ConstMatrixRef first_end, ConstMatrixRef last_end) const;
+  /// How the groups between the ends follow some unknowns z, inner groups·width x z, where the ends follow like this:
+  /// they change by minus these matrices times z. `border`: how the border changes, + I where z is the border.
+  MatrixXd following(ConstMatrixRef first_end, ConstMatrixRef last_end, ConstMatrixRef border) const;
 
  private:
   struct Group {
