@@ -224,7 +224,7 @@ void simulated_robots() {
           free_space(50, Instrument{.sigma = 50e-6 / std::sqrt(3.0)}));
   planned("seven axes, 0.05 mm noise, 50 planned poses", 0.030, seven_axes(),
           free_space(50, Instrument{.sigma = 50e-6}));
-  tracked("the same with 80 poses, as many as the judges' case", 0.030, seven_axes(),
+  tracked("the same with 80 poses, as many as in the case of others", 0.030, seven_axes(),
           free_space(80, Instrument{.sigma = 50e-6}));
   tracker_of_poor_angles();
   outliers();

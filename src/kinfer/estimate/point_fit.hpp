@@ -7,7 +7,8 @@
 
 namespace kinfer {
 
-/// True where nothing but points was measured, at one mounting, with errors along the world's axes, and the chain has a batch form: what the kernels take.
+/// True where nothing but points was measured, at one mounting, with errors along the world's axes, and the chain has a
+/// batch form: what the kernels take.
 bool has_points_alone(const Chain& chain, const ParameterSet& set, const PoseSet& data);
 
 /// The measured points of a pose set, in its order.
