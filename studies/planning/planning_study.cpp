@@ -11,6 +11,7 @@
 #include <numeric>
 #include <set>
 
+#include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/calibrate/doctor.hpp"
 #include "kinfer/calibrate/doctor_case.hpp"
 #include "kinfer/calibrate/plan.hpp"
@@ -42,11 +43,13 @@ struct Errors {
   double mean = 0.0, worst = 0.0;  // [m]
 };
 
-/// A calibration from `train`, judged on `rest`.
+/// What `kinfer calibrate` makes of `train` with its defaults, judged on `rest`.
 Errors errors_of(const CalibrateTask& task, const PoseSet& train, const PoseSet& rest) {
-  const auto fit = fit_with_believable_tolerances(task, train, AutoParameters{}, Rng(1));
-  if (!fit) return {1.0, 1.0};
-  const std::vector<double> errors = point_errors(fit->estimate.chain, rest);
+  CalibrateTask seen = task;
+  seen.data = train;
+  const auto found = calibrate(seen, {.threads = 1}, Rng(1));
+  if (!found) return {1.0, 1.0};
+  const std::vector<double> errors = point_errors(found->estimate.chain, rest);
   return {mean(errors), *std::max_element(errors.begin(), errors.end())};
 }
 

@@ -4,8 +4,10 @@
 
 #include <cmath>
 
+#include "kinfer/base/aligned_buffer.hpp"
 #include "kinfer/base/rng.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/gram_plan.hpp"
 
 namespace kinfer {
 namespace {
@@ -37,6 +39,40 @@ TEST(NormalEquations, are_the_inner_products_term_by_term) {
       }
     }
   }
+}
+
+/// All that this processor runs.
+std::vector<const batch::GramKernel*> runnable_grams() {
+  std::vector<const batch::GramKernel*> kernels{&batch::portable_gram};
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) kernels.push_back(&batch::avx2_gram);
+  if (__builtin_cpu_supports("avx512f")) kernels.push_back(&batch::avx512_gram);
+#endif
+  return kernels;
+}
+
+TEST(NormalEquations, every_instruction_set_makes_the_same_from_any_number_of_chunks) {
+  for (const batch::GramKernel* kernel : runnable_grams())
+    for (const int rows : {1, 95, 96, 97, 384, 385, 1000})
+      for (const int columns : {1, 4, 11, 12, 13, 50}) {
+        const MatrixXd above = random_matrix(rows + 3, columns, 7);  // the columns are further apart than long
+        const VectorXd b = random_matrix(rows, 1, 8);
+        MatrixXd matrix = MatrixXd::Zero(columns, columns);
+        VectorXd gradient(columns);
+        batch::Buffer<double> workspace(batch::gram_workspace(rows, columns, kernel->lanes));
+        kernel->normal_equations({.a = above.data(),
+                                  .a_stride = above.outerStride(),
+                                  .b = b.data(),
+                                  .rows = rows,
+                                  .columns = columns,
+                                  .matrix = matrix.data(),
+                                  .gradient = gradient.data(),
+                                  .workspace = workspace.data()});
+        const MatrixXd a = above.topRows(rows);
+        const MatrixXd lower = (a.transpose() * a).triangularView<Eigen::Lower>();
+        EXPECT_LT((matrix - lower).cwiseAbs().maxCoeff(), 1e-12 * (rows + 10)) << kernel->lanes << " " << rows;
+        EXPECT_LT((gradient - a.transpose() * b).cwiseAbs().maxCoeff(), 1e-12 * (rows + 10));
+      }
 }
 
 TEST(NormalEquations, both_ways_give_the_minimum_of_the_damped_squares) {
