@@ -20,6 +20,12 @@ TEST(Units, EveryUnitOfTheFormatIsKnownByItsDefinition) {
   EXPECT_EQ(in_si("rad", 2), 2);
   EXPECT_DOUBLE_EQ(in_si("deg", 180), 180 * degree);
   EXPECT_DOUBLE_EQ(in_si("mrad", 2), 0.002);
+  EXPECT_DOUBLE_EQ(in_si("mm^2", 2), 2e-6);
+  EXPECT_DOUBLE_EQ(in_si("um^2", 2), 2e-12);
+  EXPECT_EQ(in_si("m^2", 2), 2);
+  EXPECT_EQ(in_si("rad^2", 2), 2);
+  EXPECT_DOUBLE_EQ(in_si("mrad^2", 2), 2e-6);
+  EXPECT_DOUBLE_EQ(in_si("deg^2", 1), degree * degree);
   EXPECT_EQ(in_si("s", 2), 2);
   EXPECT_DOUBLE_EQ(in_si("ms", 2), 0.002);
   EXPECT_DOUBLE_EQ(in_si("us", 2), 2e-6);
