@@ -3,41 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "studies/support/truth_geometry.hpp"
+
 namespace kinfer::study {
-namespace {
-
-/// What is left of `error` across the directions, which need not be orthogonal.
-double left_across(Vec3 error, const Vec3& axis, const std::vector<Vec3>& hidden) {
-  std::vector<Vec3> basis;
-  const auto add = [&](Vec3 direction) {
-    for (const Vec3& b : basis) direction -= b * b.dot(direction);
-    if (direction.norm() > 1e-3) basis.push_back(direction.normalized());
-  };
-  add(axis);
-  for (const Vec3& direction : hidden) add(direction);
-  for (const Vec3& b : basis) error -= b * b.dot(error);
-  return error.norm();
-}
-
-double axis_angle(const Vec3& a, const Vec3& b) {
-  return std::asin(std::min(1.0, a.cross(b).norm()));
-}
-
-/// The turn about the body's incoming axis that brings the found outgoing axis nearest to the true one.
-double best_turn(const JointTruth& incoming, const JointTruth& outgoing, const FoundJoint& found) {
-  const Vec3 n = incoming.axis_in_child;
-  const auto across = [&](const Vec3& v) { return Vec3(v - n * n.dot(v)); };
-  Vec3 is = found.axis_in_parent, ought = outgoing.axis_in_parent;
-  if (is.dot(ought) < 0.0) is = -is;
-  if (across(ought).norm() < 0.2) {
-    is = found.point_in_parent - incoming.point_in_child;
-    ought = outgoing.point_in_parent - incoming.point_in_child;
-  }
-  is = across(is), ought = across(ought);
-  return std::atan2(n.dot(is.cross(ought)), is.dot(ought));
-}
-
-}  // namespace
 
 GeometryErrors geometry_errors(const std::vector<FoundJoint>& found, const MachineTruth& truth) {
   GeometryErrors errors;
@@ -57,9 +25,9 @@ GeometryErrors geometry_errors(const std::vector<FoundJoint>& found, const Machi
     }
     errors.direction = std::max(
         {errors.direction, axis_angle(axis, t->axis_in_parent), axis_angle(joint.axis_in_child, t->axis_in_child)});
-    errors.line =
-        std::max({errors.line, left_across(point - t->point_in_parent, t->axis_in_parent, t->hidden_in_parent),
-                  left_across(joint.point_in_child - t->point_in_child, t->axis_in_child, t->hidden_in_child)});
+    errors.line = std::max(
+        {errors.line, across(point - t->point_in_parent, unknowable(t->axis_in_parent, t->hidden_in_parent)).norm(),
+         across(joint.point_in_child - t->point_in_child, unknowable(t->axis_in_child, t->hidden_in_child)).norm()});
   }
   return errors;
 }

@@ -9,13 +9,6 @@ using nlohmann::json;
 
 class Calibrate : public Program {
  protected:
-  /// data/: poses of the example robot with the errors of paper 2's table 3.
-  void simulate(const std::string& more = "") const {
-    const Outcome run =
-        kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") + " --errors " +
-               source("examples/robot6/errors.toml") + " --out data --lowest 0 --clearance 350 " + more);
-    ASSERT_EQ(run.code, 0) << run.err;
-  }
   Outcome calibrate(const std::string& more = "") const {
     return kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal " + more);
   }
@@ -72,6 +65,18 @@ TEST_F(Calibrate, same_bytes_for_any_number_of_threads_and_any_folder) {
   ASSERT_EQ(kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out elsewhere/deep --threads 7").code, 0);
   EXPECT_EQ(slurp(in("elsewhere/deep/chain.toml")), chain);
   EXPECT_EQ(slurp(in("elsewhere/deep/evidence.json")), evidence);
+}
+
+TEST_F(Calibrate, verbs_that_write_one_file_say_so_and_quiet_is_silent) {
+  simulate();
+  const std::string predict = "predict --chain data/robot.toml --joints data/poses.csv -o predicted.csv";
+  EXPECT_EQ(kinfer(predict).out, "predicted.csv: 50 poses\n");
+  EXPECT_EQ(kinfer("convert data/robot.toml robot.urdf").out, "robot.urdf: 6 joints\n");
+  for (const std::string& command : {predict, std::string("convert data/robot.toml robot.urdf")}) {
+    const Outcome quiet = kinfer(command + " --quiet");
+    EXPECT_EQ(quiet.code, 0);
+    EXPECT_EQ(quiet.out + quiet.err, "");
+  }
 }
 
 TEST_F(Calibrate, json_is_one_object_on_stdout_and_quiet_is_silent) {

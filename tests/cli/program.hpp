@@ -51,6 +51,14 @@ class Program : public ::testing::Test {
     return {WEXITSTATUS(status), slurp(in("out.txt")), slurp(in("err.txt"))};
   }
 
+  /// data/: poses of the example robot with the errors of paper 2's table 3.
+  void simulate(const std::string& more = "") const {
+    const Outcome run =
+        kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") + " --errors " +
+               source("examples/robot6/errors.toml") + " --out data --lowest 0 --clearance 350 " + more);
+    ASSERT_EQ(run.code, 0) << run.err;
+  }
+
   std::string source(const std::string& path) const { return std::string(KINFER_SOURCE_DIR) + "/" + path; }
 
   fs::path folder_;

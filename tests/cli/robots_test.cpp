@@ -12,13 +12,6 @@ using nlohmann::json;
 
 class Robots : public Program {
  protected:
-  void simulate(const std::string& more = "") const {
-    const Outcome run =
-        kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") + " --errors " +
-               source("examples/robot6/errors.toml") + " --out data --lowest 0 --clearance 350 " + more);
-    ASSERT_EQ(run.code, 0) << run.err;
-  }
-
   /// The file with a further column whose cell is `cell(row)`.
   template <class Cell>
   void add_column(const std::string& file, const std::string& name, Cell cell) const {

@@ -30,16 +30,7 @@ TEST(Residuals, jacobian_equals_differences_for_points_targets_and_orientations)
   const ParameterSet set = all_parameters(nominal, Tolerances{});
   const Weights weights = weights_of(data, Instrument{1e-3, 1e-3, 0});
   const Residuals problem = pose_residuals(nominal, set, data, weights);
-  const VectorXd x = pack(set, nominal);
-  VectorXd r(problem.rows);
-  MatrixXd jacobian(problem.rows, problem.unknowns);
-  problem.evaluate(x, r, &jacobian);
-  const auto value = [&](ConstVectorRef at) {
-    VectorXd out(problem.rows);
-    problem.evaluate(at, out, nullptr);
-    return out;
-  };
-  const MatrixXd expected = testing::numeric_jacobian(value, x, 1e-6);
+  const auto [jacobian, expected] = testing::jacobians(problem, pack(set, nominal));
   EXPECT_LT((jacobian - expected).norm(), 1e-6 * expected.norm());
 }
 

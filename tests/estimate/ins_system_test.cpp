@@ -133,7 +133,7 @@ TEST(InsSystem, BlockScoresAreGradientsWithBandAndBiasesFollowing) {
     const Dense d = dense(e);
     const MatrixXd follows = following(d);
     const auto wandering = wandering_border(e.layout);
-    const MatrixXd scores = InsSystem(e.problem, e.layout, e.x, {}, 1).block_scores(20);
+    const MatrixXd scores = InsSystem(e.problem, e.layout, e.x, {}, 1).scores(2.0).blocks;
     ASSERT_EQ(scores.rows(), 7);
     const IntervalLinearisation linearisation(e.problem, e.layout, e.x);
     for (Index block = 0; block < scores.rows(); ++block) {
@@ -149,13 +149,27 @@ TEST(InsSystem, BlockScoresAreGradientsWithBandAndBiasesFollowing) {
   }
 }
 
-TEST(InsSystem, TellsWhatThePriorOnWanderingBiasesSaysAboutTheBorder) {
+TEST(InsSystem, TellsWhatPriorsSayAboutTheBorder) {
   const Example e = example(300, Biases::wandering);
   const Dense d = dense(e);
   const MatrixXd follows = following(d).middleRows(d.wander, e.x.wander.size());
-  const MatrixXd expected = follows.transpose() * d.wander_prior * follows;
-  const MatrixXd told = InsSystem(e.problem, e.layout, e.x, {}, 1).wander_information();
+  const MatrixXd expected =
+      follows.transpose() * d.wander_prior * follows + border_prior(e.problem, e.layout, e.x).matrix;
+  const MatrixXd told = InsSystem(e.problem, e.layout, e.x, {}, 1).scores(2.0).priors;
   EXPECT_LT((told - expected).norm(), 1e-7 * expected.norm());
+}
+
+TEST(InsSystem, HoldsTheBorderWhileTheBandIsSolvedFor) {
+  const Example e = example(150, Biases::wandering);
+  const Dense d = dense(e);
+  const auto expected = solve_positive(d.matrix.topLeftCorner(d.wander, d.wander), d.right.head(d.wander));
+  for (const double most_kept : {1e9, 0.0}) {
+    const auto step = InsSystem(e.problem, e.layout, e.x, {.holds_border = true}, 2, most_kept).solve();
+    ASSERT_TRUE(step && expected);
+    EXPECT_LT((step->band.reshaped() - *expected).norm(), 1e-8 * expected->norm());
+    EXPECT_EQ(step->border, VectorXd::Zero(e.layout.border));
+    EXPECT_EQ(step->wander, MatrixXd::Zero(e.layout.wander, 2));
+  }
 }
 
 TEST(InsSystem, TellsTheSameWhereItKeepsNothing) {
@@ -166,14 +180,14 @@ TEST(InsSystem, TellsTheSameWhereItKeepsNothing) {
   ASSERT_TRUE(a && b);
   EXPECT_LT((a->band - b->band).norm(), 1e-9 * a->band.norm());
   EXPECT_LT((a->wander - b->wander).norm(), 1e-9 * a->wander.norm());
-  EXPECT_LT((kept.block_scores(20) - lean.block_scores(20)).norm(), 1e-9 * kept.block_scores(20).norm());
+  EXPECT_LT((kept.scores(2.0).blocks - lean.scores(2.0).blocks).norm(), 1e-9 * kept.scores(2.0).blocks.norm());
 }
 
 TEST(InsSystem, IsTheSameForAnyNumberOfThreads) {
   const Example e = example(200, Biases::wandering);
   const auto told = [&](int threads) {
     const InsSystem system(e.problem, e.layout, e.x, {}, threads, 0.0);
-    return std::pair{system.solve()->band, system.block_scores(20)};
+    return std::pair{system.solve()->band, system.scores(2.0).blocks};
   };
   const auto one = told(1);
   for (const int threads : {2, 7}) {

@@ -53,7 +53,7 @@ InsUnknowns at_rest(const InsProblem& problem) {
 }
 
 TEST(InsWander, StretchesCoverTheGridWithoutGapsAndTheLastTakesTheRemainder) {
-  for (const Index intervals : {5, 64, 127, 128, 1000}) {
+  for (const Index intervals : {5, 64, 127, 128, 1000, 36000}) {
     const SplineGrid grid{0.0, 0.1, intervals};
     const auto stretches = stretches_of(grid);
     Index at = 0;

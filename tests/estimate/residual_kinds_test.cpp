@@ -97,15 +97,7 @@ TEST(ResidualKinds, jacobian_of_all_instruments_in_all_mountings_equals_differen
   Weights weights = weights_of(data, Instrument{.sigma = 1e-3, .sigma_angle = 1e-3, .sigma_tilt = 1e-2});
   const Residuals problem = pose_residuals(chain, set, data, weights);
   const VectorXd x = pack(set, chain);
-  VectorXd r(problem.rows);
-  MatrixXd jacobian(problem.rows, problem.unknowns);
-  problem.evaluate(x, r, &jacobian);
-  const auto value = [&](ConstVectorRef at) {
-    VectorXd out(problem.rows);
-    problem.evaluate(at, out, nullptr);
-    return out;
-  };
-  const MatrixXd expected = testing::numeric_jacobian(value, x, 1e-6);
+  const auto [jacobian, expected] = testing::jacobians(problem, x);
   for (Eigen::Index k = 0; k < x.size(); ++k)
     EXPECT_LT((jacobian.col(k) - expected.col(k)).norm(), 1e-6 * (10.0 + expected.col(k).norm()))
         << set.parameters[k].name;

@@ -45,20 +45,8 @@ TEST_P(RobotTomlRoundTrip, StandardDeviationsBesideTheNumbersDoNotDisturbThem) {
   EXPECT_LT(largest_difference(GetParam(), read_back({.chain = GetParam()}, FileUnits::mm_deg, sd)), 1e-12);
 }
 
-std::vector<Chain> chains_with_joints() {
-  std::vector<Chain> chains = laws::examples();
-  std::erase_if(chains, [](const Chain& chain) { return chain.joints.empty(); });
-  return chains;
-}
-
-std::string name_of(const testing::TestParamInfo<Chain>& info) {
-  std::string name = info.param.name;
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Every, RobotTomlRoundTrip, testing::ValuesIn(chains_with_joints()), name_of);
+INSTANTIATE_TEST_SUITE_P(Every, RobotTomlRoundTrip, testing::ValuesIn(laws::examples_with_joints()),
+                         [](const auto& chain) { return laws::test_name(chain.param); });
 
 TEST(RobotTomlWriting, AllThatIsNotThePoseComesBackToo) {
   RobotModel robot{.chain = laws::compliant_tree()};

@@ -164,20 +164,8 @@ TEST_P(UrdfRoundTrip, LimitsAndNamesOfTheReadingsComeBack) {
   }
 }
 
-std::vector<Chain> chains_with_joints() {
-  std::vector<Chain> chains = laws::examples();
-  std::erase_if(chains, [](const Chain& chain) { return chain.joints.empty(); });
-  return chains;
-}
-
-std::string name_of(const testing::TestParamInfo<Chain>& info) {
-  std::string name = info.param.name;
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Every, UrdfRoundTrip, testing::ValuesIn(chains_with_joints()), name_of);
+INSTANTIATE_TEST_SUITE_P(Every, UrdfRoundTrip, testing::ValuesIn(laws::examples_with_joints()),
+                         [](const auto& chain) { return laws::test_name(chain.param); });
 
 TEST(Urdf, TargetsAreLinksOnTheTool) {
   Chain chain = laws::er20();

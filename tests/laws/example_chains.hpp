@@ -166,6 +166,12 @@ inline std::vector<Chain> examples() {
           coupled(), seven_r(), two_arms(),         compliant(), compliant_tree(),    without_joints()};
 }
 
+inline std::vector<Chain> examples_with_joints() {
+  std::vector<Chain> chains = examples();
+  std::erase_if(chains, [](const Chain& chain) { return chain.joints.empty(); });
+  return chains;
+}
+
 inline std::string test_name(const Chain& chain) {
   std::string name = chain.name;
   std::replace(name.begin(), name.end(), ' ', '_');

@@ -24,4 +24,23 @@ Eigen::MatrixXd numeric_jacobian(const Function& f, const Eigen::VectorXd& x, do
   return jacobian;
 }
 
+/// The Jacobian of residuals beside its judge.
+struct JacobianPair {
+  Eigen::MatrixXd analytic, numeric;
+};
+template <class Residuals>
+JacobianPair jacobians(const Residuals& problem, const Eigen::VectorXd& x) {
+  Eigen::VectorXd r(problem.rows);
+  JacobianPair pair{Eigen::MatrixXd(problem.rows, problem.unknowns), {}};
+  problem.evaluate(x, r, &pair.analytic);
+  pair.numeric = numeric_jacobian(
+      [&](const Eigen::VectorXd& at) {
+        Eigen::VectorXd out(problem.rows);
+        problem.evaluate(at, out, nullptr);
+        return out;
+      },
+      x, 1e-6);
+  return pair;
+}
+
 }  // namespace kinfer::testing

@@ -26,9 +26,13 @@ void remember_command_line(int argc, char** argv) {
   command_line().assign(argv, argv + argc);
 }
 
+void add_quiet_option(CLI::App& verb, bool& quiet) {
+  add_flag(verb, "--quiet", quiet, "No progress, no summary; errors are still printed");
+}
+
 void add_common_options(CLI::App& verb, CommonOptions& options) {
   add_flag(verb, "--json", options.json, "Print the verdict and the headline figures as one JSON object");
-  add_flag(verb, "--quiet", options.quiet, "No progress, no summary; errors are still printed");
+  add_quiet_option(verb, options.quiet);
   add_count(verb, "--threads", options.threads, 0, 1024,
             "Number of threads; 0: all cores. Results do not depend on it");
   add_seed(verb, "--seed", options.seed, "Seed of everything random");

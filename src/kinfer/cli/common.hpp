@@ -25,6 +25,8 @@ struct CommonOptions {
 };
 /// Adds --json, --quiet, --threads, --seed to a verb.
 void add_common_options(CLI::App& verb, CommonOptions& options);
+/// --quiet alone, for verbs with nothing random or slow in them.
+void add_quiet_option(CLI::App& verb, bool& quiet);
 
 /// Prints "kinfer: sentence" to stderr and gives exit_bad_input.
 int fail(const Error& error);

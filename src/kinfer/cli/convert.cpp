@@ -13,6 +13,7 @@ namespace {
 struct Options {
   RobotOption in;
   std::string out;
+  bool quiet = false;
 };
 
 int run(const Options& options) {
@@ -28,8 +29,9 @@ int run(const Options& options) {
     text = robot_toml(*robot);
   else
     return fail({fmt::format("{}: expected an ending .toml, .urdf or .mjcf", options.out)});
-  const auto done = write_text_file(options.out, text);
-  return done ? exit_done : fail(done.error());
+  if (const auto done = write_text_file(options.out, text); !done) return fail(done.error());
+  if (!options.quiet) fmt::print("{}: {} joints\n", options.out, robot->chain.joints.size());
+  return exit_done;
 }
 
 }  // namespace
@@ -40,6 +42,7 @@ Verb add_convert(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_robot_option(*verb, options->in, "in", "Model to read: .toml or .urdf");
   add_text(*verb, "out", options->out, "Model to write: .toml, .urdf or .mjcf (.xml)", Need::required, "FILE");
+  add_quiet_option(*verb, options->quiet);
   return {verb, [options] { return run(*options); }};
 }
 

@@ -15,6 +15,7 @@ namespace {
 struct Options {
   RobotOption chain;
   std::string joints, out, columns;
+  bool quiet = false;
 };
 
 /// Each row in the set-up and with the arm that it names, approached from the row before.
@@ -38,8 +39,9 @@ int run(const Options& options) {
     fmt::print("{}", *text);
     return exit_done;
   }
-  const auto done = write_text_file(options.out, *text);
-  return done ? exit_done : fail(done.error());
+  if (const auto done = write_text_file(options.out, *text); !done) return fail(done.error());
+  if (!options.quiet) fmt::print("{}: {} poses\n", options.out, poses->size());
+  return exit_done;
 }
 
 }  // namespace
@@ -56,6 +58,7 @@ Verb add_predict(CLI::App& app) {
            Need::optional, "CSV");
   add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Need::optional,
            "TOML");
+  add_quiet_option(*verb, options->quiet);
   return {verb, [options] { return run(*options); }};
 }
 

@@ -10,15 +10,22 @@
 namespace kinfer::cli {
 namespace {
 
+struct Options {
+  std::string folder;
+  bool quiet = false;
+};
+
 Result<void> write_report(const std::filesystem::path& folder, const std::string& evidence) {
   KINFER_TRY(page, report_html(evidence));
   return write_text_file(folder / "report.html", page);
 }
 
-int run(const std::string& folder) {
-  const auto evidence = read_text_file(std::filesystem::path(folder) / "evidence.json");
+int run(const Options& options) {
+  const std::filesystem::path folder = options.folder;
+  const auto evidence = read_text_file(folder / "evidence.json");
   if (!evidence) return fail(evidence.error());
   if (auto done = write_report(folder, *evidence); !done) return fail(done.error());
+  if (!options.quiet) fmt::print("{}\n", (folder / "report.html").string());
   return exit_done;
 }
 
@@ -36,9 +43,10 @@ Verb add_report(CLI::App& app) {
   CLI::App* verb = add_command(app, "report", "Make DIR/report.html again from DIR/evidence.json",
                                "calibrate and identify write the report themselves.\nExample:\n"
                                "  kinfer report calibration");
-  auto folder = std::make_shared<std::string>();
-  add_text(*verb, "folder", *folder, "Folder with evidence.json", Need::required, "DIR");
-  return {verb, [folder] { return run(*folder); }};
+  auto options = std::make_shared<Options>();
+  add_text(*verb, "folder", options->folder, "Folder with evidence.json", Need::required, "DIR");
+  add_quiet_option(*verb, options->quiet);
+  return {verb, [options] { return run(*options); }};
 }
 
 }  // namespace kinfer::cli

@@ -1,33 +1,30 @@
 #include "kinfer/estimate/ins_covariance.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "kinfer/estimate/ins_system.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
-namespace {
-
-using Index = Eigen::Index;
-
-}  // namespace
-
-std::optional<InsCovariance> covariance_of(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
-                                           int threads, double block) {
-  const InsSystem system(problem, layout, x, {}, threads);
+std::optional<InsCovariance> model_covariance(const InsSystem& system) {
   if (!system.positive()) return std::nullopt;
   const auto inverse = inverse_positive(system.schur());
   if (!inverse) return std::nullopt;
-  InsCovariance result{*inverse, VectorXd::Ones(layout.border)};
-  const auto intervals = std::max<Index>(1, static_cast<Index>(std::round(block / problem.grid.period)));
-  const MatrixXd scores = system.block_scores(intervals);
-  const MatrixXd middle =
-      scores.transpose() * scores + border_prior(problem, layout, x).matrix + system.wander_information();
-  const MatrixXd half = middle * result.model;
-  for (Index k = 0; k < layout.border; ++k)
-    result.inflation[k] = result.model.col(k).dot(half.col(k)) / result.model(k, k);
+  return InsCovariance{*inverse, VectorXd::Ones(inverse->rows())};
+}
+
+std::optional<InsCovariance> covariance_of(const InsSystem& system, double block) {
+  auto result = model_covariance(system);
+  if (!result) return std::nullopt;
+  const auto [blocks, priors] = system.scores(block);
+  const MatrixXd middle = blocks.transpose() * blocks + priors;
+  const MatrixXd half = middle * result->model;
+  for (Eigen::Index k = 0; k < half.cols(); ++k)
+    result->inflation[k] = result->model.col(k).dot(half.col(k)) / result->model(k, k);
   return result;
+}
+
+std::optional<InsCovariance> covariance_of(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                                           int threads, double block) {
+  return covariance_of(InsSystem(problem, layout, x, {}, threads), block);
 }
 
 }  // namespace kinfer

@@ -14,8 +14,14 @@ struct InsCovariance {
   VectorXd inflation;  ///< variance by the sandwich over that by the model, one a border unknown
 };
 
+class InsSystem;
+
 /// Nothing where the recording leaves an unknown without any information. `block` [s] of the sandwich.
 std::optional<InsCovariance> covariance_of(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
                                            int threads, double block = 2.0);
+
+/// The same of a system without damping, and without the sandwich: no inflation.
+std::optional<InsCovariance> covariance_of(const InsSystem& system, double block = 2.0);
+std::optional<InsCovariance> model_covariance(const InsSystem& system);
 
 }  // namespace kinfer

@@ -10,14 +10,12 @@
 namespace kinfer {
 namespace {
 
-constexpr double held = 1e12;  // damping that holds the border while the band settles
 constexpr double first_damping = 1e-3, most_damping = 1e8;
 constexpr double least_damping = 1e-14;  // must not hold a weakly known azimuth
 constexpr double rough_decrease = 1.0;   // of the cost, that is worth a step while the weights still change
 constexpr double little_uphill = 1.2;    // times the cost
 constexpr int most_looks = 4;
-constexpr int settling_iterations = 3;  // of the band alone
-constexpr int round_iterations = 4;     // before the instruments are weighed anew
+constexpr int round_iterations = 4;  // before the instruments are weighed anew
 
 struct Marquardt {
   InsProblem& problem;
@@ -32,7 +30,7 @@ struct Marquardt {
 
   /// Where the damped equations at `from` lead; nothing where they are not positive definite.
   std::optional<Point> stepped(const InsUnknowns& from, bool hold_border) const {
-    const InsSystem system(problem, fit.layout, from, {damping, hold_border ? held : damping}, options.threads);
+    const InsSystem system(problem, fit.layout, from, {damping, damping, hold_border}, options.threads);
     const auto change = system.solve();
     if (!change) return std::nullopt;
     InsUnknowns to = changed(problem, fit.layout, from, *change);
@@ -94,7 +92,7 @@ InsFit fit_ins(InsProblem& problem, const InsUnknowns& start, const InsFitOption
   if (fit.unknowns.wander.rows() != fit.layout.wander || fit.unknowns.wander.cols() != stretches)
     fit.unknowns.wander = MatrixXd::Zero(fit.layout.wander, stretches);
   fit.cost = cost_of(problem, fit.layout, fit.unknowns, options.threads);
-  for (int i = 0; i < settling_iterations; ++i, ++fit.iterations) {
+  for (int i = 0; i < options.settling; ++i, ++fit.iterations) {
     m.weigh();
     m.step(true);
   }

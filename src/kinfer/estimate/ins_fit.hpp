@@ -10,6 +10,7 @@ namespace kinfer {
 
 struct InsFitOptions {
   int iterations = 60;           ///< in all
+  int settling = 3;              ///< of these, first, for the readings of the joints alone
   int rounds = 6;                ///< most of them between which the instruments are weighed anew
   double least_decrease = 1e-2;  ///< of the cost, in squared sigmas: a step of a tenth of a sigma is convergence
   int threads = 0;

@@ -259,6 +259,29 @@ void accumulate(const std::vector<Index>& index, const MatrixXd& jacobian, const
   }
 }
 
+/// The band's part alone, the border taking a known step. The columns of the band come first.
+void accumulate_behind(const std::vector<Index>& index, const MatrixXd& jacobian, VectorXd residual,
+                       ConstVectorRef step, BandSpan& span) {
+  if (residual.size() == 0) return;  // nothing was said
+  const Index local = span.right.size();
+  const Index n = std::ranges::partition_point(index, [&](Index i) { return i < local; }) - index.begin();
+  for (Index c = n; c < jacobian.cols(); ++c) {
+    const double by = step[index[static_cast<std::size_t>(c)] - local];
+    if (std::abs(by) > 0.0) residual -= by * jacobian.col(c);
+  }
+  MatrixXd squares = MatrixXd::Zero(n, n);
+  squares.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.leftCols(n).transpose());
+  const VectorXd right = jacobian.leftCols(n).transpose() * residual;
+  for (Index c = 0; c < n; ++c) {
+    const Index to = index[static_cast<std::size_t>(c)];
+    span.right[to] += right[c];
+    for (Index r = c; r < n; ++r) {
+      const Index other = index[static_cast<std::size_t>(r)];
+      span.matrix(std::max(to, other), std::min(to, other)) += squares(r, c);
+    }
+  }
+}
+
 Index items_of(const InsProblem& problem) {
   return (problem.grid.intervals + item_intervals - 1) / item_intervals;
 }
@@ -315,7 +338,11 @@ InsCost item_cost(const InsProblem& problem, const InsLayout& layout, const InsU
   return cost;
 }
 
-void append(InstrumentFit& to, const InstrumentFit& more) {
+/// `all`: intervals of the recording; an hour's must not be held twice.
+void append(InstrumentFit& to, const InstrumentFit& more, std::size_t all) {
+  if (more.block.empty()) return;
+  to.block.reserve(all);
+  to.offset.reserve(all);
   to.squares += more.squares;
   to.terms += more.terms;
   to.block.insert(to.block.end(), more.block.begin(), more.block.end());
@@ -332,13 +359,15 @@ InsCost cost_of(const InsProblem& problem, const InsLayout& layout, const InsUnk
   InsCost sum{
       .total = border_prior(problem, layout, x).cost + fact_cost(problem, layout, x) + wander_cost(problem, layout, x),
       .sensors = std::vector<SensorFit>(problem.sensors.size())};
-  for (const InsCost& item : items) {
+  const auto all = static_cast<std::size_t>(problem.grid.intervals);
+  for (InsCost& item : items) {
     sum.total += item.total;
     for (std::size_t s = 0; s < sum.sensors.size(); ++s) {
-      append(sum.sensors[s].rate, item.sensors[s].rate);
-      append(sum.sensors[s].force, item.sensors[s].force);
-      append(sum.sensors[s].field, item.sensors[s].field);
+      append(sum.sensors[s].rate, item.sensors[s].rate, all);
+      append(sum.sensors[s].force, item.sensors[s].force, all);
+      append(sum.sensors[s].field, item.sensors[s].field, all);
     }
+    item = {};
   }
   return sum;
 }
@@ -392,6 +421,18 @@ BandSpan IntervalLinearisation::span(Index interval, BorderSum& border) const {
   });
   for (const InsFactRows& rows : parts_->facts)
     if (rows.interval == interval) accumulate(parts_->every_column, rows.derivative, rows.left, span, border);
+  add_band_prior(span, parts_->problem, parts_->layout, parts_->x.band, interval);
+  return span;
+}
+
+BandSpan IntervalLinearisation::span_behind(Index interval, ConstVectorRef border) const {
+  const Index local = spline_order * parts_->layout.channels;
+  BandSpan span{MatrixXd::Zero(local, local), MatrixXd(0, local), VectorXd::Zero(local)};
+  parts_->each_sensor(interval, [&](const std::vector<Index>& index, const SensorSystem& system) {
+    accumulate_behind(index, system.jacobian, system.residual, border, span);
+  });
+  for (const InsFactRows& rows : parts_->facts)
+    if (rows.interval == interval) accumulate_behind(parts_->every_column, rows.derivative, rows.left, border, span);
   add_band_prior(span, parts_->problem, parts_->layout, parts_->x.band, interval);
   return span;
 }

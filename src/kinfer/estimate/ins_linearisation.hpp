@@ -53,6 +53,9 @@ class IntervalLinearisation {
   /// Normal equations of one interval: what it adds to the band and, in `border`, to the border.
   BandSpan span(Eigen::Index interval, BorderSum& border) const;
 
+  /// The same for the band alone, once the border's step is known: `border`, as the interval's readings see it.
+  BandSpan span_behind(Eigen::Index interval, ConstVectorRef border) const;
+
   /// Readings alone: neither priors nor facts.
   IntervalGradient gradient(Eigen::Index interval) const;
 

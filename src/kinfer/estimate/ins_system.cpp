@@ -1,6 +1,7 @@
 #include "kinfer/estimate/ins_system.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "kinfer/base/parallel.hpp"
 
@@ -26,12 +27,15 @@ InsSystem::InsSystem(const InsProblem& problem, const InsLayout& layout, const I
       x_(x),
       damping_(damping),
       threads_(threads),
+      border_(damping.holds_border ? 0 : layout.border),
+      wander_(damping.holds_border ? 0 : layout.wander),
       linearisation_(problem, layout, x),
       stretches_(stretches_of(problem.grid)),
       wandering_(wandering_border(layout)),
-      ends_(end_width() + layout.wander, 2, layout.border) {
+      ends_(end_width() + wander_, 2, border_) {
   const bool keep = bytes_of(problem, layout) < most_kept;
-  BorderPrior border = border_prior(problem, layout, x);
+  BorderPrior border{0.0, MatrixXd(border_, border_), VectorXd(border_)};
+  if (border_ > 0) border = border_prior(problem, layout, x);
   border.matrix.diagonal() *= 1.0 + damping.border;
   for (std::size_t first = 0; first < stretches_.size(); first += batch) {
     const std::size_t count = std::min(batch, stretches_.size() - first);
@@ -48,10 +52,11 @@ InsSystem::InsSystem(const InsProblem& problem, const InsLayout& layout, const I
 }
 
 InsSystem::Condensed InsSystem::condensed(std::size_t stretch, bool keep) const {
-  BorderSum border;
-  BandStretch band = eliminated(stretches_[stretch], border);
+  BorderSum border{MatrixXd(border_, border_), VectorXd(border_)};
+  BandStretch band = damping_.holds_border ? eliminated_behind(stretches_[stretch], VectorXd::Zero(layout_.border))
+                                           : eliminated(stretches_[stretch], border);
   Condensed result{band.condensed(), {}, band.positive(), {}};
-  if (layout_.wander > 0) result.span = with_wander(result.span, border, stretch);
+  if (wander_ > 0) result.span = with_wander(result.span, border, stretch);
   result.border = std::move(border);
   if (keep) result.kept = std::move(band);
   return result;
@@ -113,23 +118,21 @@ BandStretch InsSystem::eliminated(const InsStretch& stretch, BorderSum& border) 
 }
 
 /// The same where the step of the border is known.
-BandStretch InsSystem::eliminated(const InsStretch& stretch, ConstVectorRef border) const {
+BandStretch InsSystem::eliminated_behind(const InsStretch& stretch, ConstVectorRef border) const {
   BandStretch result(layout_.channels, spline_order, 0);
-  BorderSum unused{MatrixXd::Zero(layout_.border, layout_.border), VectorXd::Zero(layout_.border)};
   for (Index interval = stretch.first; interval < stretch.end; ++interval) {
-    BandSpan span = linearisation_.span(interval, unused);
+    BandSpan span = linearisation_.span_behind(interval, border);
     span.matrix.diagonal() *= 1.0 + damping_.band;
-    span.right -= span.coupling.transpose() * border;
-    span.coupling.resize(0, span.matrix.cols());
     result.add(span);
   }
+  result.finish();
   return result;
 }
 
 /// The border as a stretch sees it: what its biases wandered off is added to the constants.
 VectorXd InsSystem::border_of(std::size_t stretch, const BorderedBand::Solution& ends) const {
-  VectorXd border = ends.border;
-  if (layout_.wander > 0) border(wandering_) += ends.band.col(static_cast<Index>(stretch)).tail(layout_.wander);
+  VectorXd border = border_ > 0 ? ends.border : VectorXd(VectorXd::Zero(layout_.border));
+  if (wander_ > 0) border(wandering_) += ends.band.col(static_cast<Index>(stretch)).tail(wander_);
   return border;
 }
 
@@ -138,16 +141,18 @@ MatrixXd InsSystem::between(std::size_t stretch, const BorderedBand::Solution& e
   const auto k = static_cast<Index>(stretch);
   const auto first = ends.band.col(k).head(end_width()), last = ends.band.col(k + 1).head(end_width());
   const VectorXd border = border_of(stretch, ends);
-  if (!kept_.empty()) return kept_[stretch].solve(first, last, border);
-  return eliminated(stretches_[stretch], border).solve(first, last, VectorXd());
+  if (!kept_.empty()) return kept_[stretch].solve(first, last, border.head(border_));
+  return eliminated_behind(stretches_[stretch], border).solve(first, last, VectorXd());
 }
 
 std::optional<InsStep> InsSystem::solve() const {
   const auto ends = ends_.solve();
   if (!ends) return std::nullopt;
   const auto count = static_cast<Index>(stretches_.size());
-  InsStep step{MatrixXd(layout_.channels, problem_.grid.coefficients()), ends->border,
-               ends->band.block(end_width(), 0, layout_.wander, count)};
+  InsStep step{MatrixXd(layout_.channels, problem_.grid.coefficients()), VectorXd::Zero(layout_.border),
+               MatrixXd::Zero(layout_.wander, count)};
+  step.border.head(border_) = ends->border;
+  step.wander.topRows(wander_) = ends->band.block(end_width(), 0, wander_, count);
   constexpr Index shared = spline_order - 1;
   const auto put_end = [&](Index at, Index end) {
     step.band.middleCols(at, shared) = ends->band.col(end).head(end_width()).reshaped(layout_.channels, shared);
@@ -183,24 +188,25 @@ MatrixXd InsSystem::stretch_scores(std::size_t stretch, ConstMatrixRef ends_foll
   return scores;
 }
 
-MatrixXd InsSystem::block_scores(Index intervals) const {
+InsSystem::Scores InsSystem::scores(double seconds) const {
+  const auto intervals = std::max<Index>(1, static_cast<Index>(std::round(seconds / problem_.grid.period)));
   const MatrixXd ends_following = ends_.following();
-  MatrixXd blocks = MatrixXd::Zero((problem_.grid.intervals + intervals - 1) / intervals, layout_.border);
+  Scores result{MatrixXd::Zero((problem_.grid.intervals + intervals - 1) / intervals, layout_.border),
+                prior_information(ends_following)};
   for (std::size_t first = 0; first < stretches_.size(); first += batch) {
     std::vector<MatrixXd> scores(std::min(batch, stretches_.size() - first));
     parallel_for(scores.size(), threads_,
                  [&](std::size_t i) { scores[i] = stretch_scores(first + i, ends_following); });
     for (std::size_t i = 0; i < scores.size(); ++i)
       for (Index k = 0; k < scores[i].rows(); ++k)
-        blocks.row((stretches_[first + i].first + k) / intervals) += scores[i].row(k);
+        result.blocks.row((stretches_[first + i].first + k) / intervals) += scores[i].row(k);
   }
-  return blocks;
+  return result;
 }
 
-MatrixXd InsSystem::wander_information() const {
-  MatrixXd information = MatrixXd::Zero(layout_.border, layout_.border);
+MatrixXd InsSystem::prior_information(ConstMatrixRef ends_following) const {
+  MatrixXd information = border_prior(problem_, layout_, x_).matrix;
   if (layout_.wander == 0) return information;
-  const MatrixXd ends_following = ends_.following();
   const WanderPrior prior = wander_prior(problem_, layout_);
   MatrixXd before = MatrixXd::Zero(layout_.wander, layout_.border);
   for (std::size_t k = 0; k < stretches_.size(); ++k) {

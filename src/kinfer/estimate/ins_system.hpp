@@ -15,6 +15,7 @@ namespace kinfer {
 
 struct Damping {
   double band = 0.0, border = 0.0;  ///< times the diagonal (Marquardt)
+  bool holds_border = false;        ///< what holds for good stays as it is, and so do the biases: much less work
 };
 
 class InsSystem {
@@ -31,12 +32,13 @@ class InsSystem {
   /// The information on the border when the band is free.
   const MatrixXd& schur() const { return ends_.schur(); }
 
-  /// Gradient of the readings in the border's unknowns when the band follows, summed over blocks of so many intervals:
-  /// blocks x border. Its rows sum to about zero at the optimum, their spread is what the data really say.
-  MatrixXd block_scores(Eigen::Index intervals) const;
-
-  /// What the prior on wandering biases says about the border when they follow: border x border.
-  MatrixXd wander_information() const;
+  struct Scores {
+    MatrixXd blocks;  ///< blocks x border
+    MatrixXd priors;  ///< border x border: what priors say, that on wandering biases with these following
+  };
+  /// Gradient of the readings in the border's unknowns when band and biases follow, summed over blocks of so many
+  /// seconds. Its rows sum to about zero at the optimum, their spread is what the data really say.
+  Scores scores(double seconds) const;
 
  private:
   struct Condensed {
@@ -50,9 +52,10 @@ class InsSystem {
   void add_wander_prior(BandSpan& span, std::size_t stretch) const;
   VectorXd border_of(std::size_t stretch, const BorderedBand::Solution& ends) const;
   BandStretch eliminated(const InsStretch& stretch, BorderSum& border) const;
-  BandStretch eliminated(const InsStretch& stretch, ConstVectorRef border) const;
+  BandStretch eliminated_behind(const InsStretch& stretch, ConstVectorRef border) const;
   MatrixXd between(std::size_t stretch, const BorderedBand::Solution& ends) const;
   MatrixXd stretch_scores(std::size_t stretch, ConstMatrixRef ends_following) const;
+  MatrixXd prior_information(ConstMatrixRef ends_following) const;
   Eigen::Index end_width() const { return (spline_order - 1) * layout_.channels; }
 
   const InsProblem& problem_;
@@ -60,6 +63,7 @@ class InsSystem {
   const InsUnknowns& x_;
   Damping damping_;
   int threads_;
+  Eigen::Index border_, wander_;  // unknowns for good and of each stretch, none where they are held
   IntervalLinearisation linearisation_;
   std::vector<InsStretch> stretches_;
   std::vector<Eigen::Index> wandering_;  // border unknowns that a stretch's own are added to

@@ -8,25 +8,30 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr Index stretch_intervals = 64;
 constexpr double perfect_rate = 1e-9, perfect_force = 1e-8;  // [rad/s], [m/s²] where only the other wanders
 
+constexpr Index long_recording = 12288;  // intervals, twenty minutes: from here on half as many ends are worth more
+
+Index length_of_stretch(const SplineGrid& grid) {
+  return grid.intervals < long_recording ? 64 : 128;
+}
+
 Index count_of(const SplineGrid& grid) {
-  return std::max<Index>(1, grid.intervals / stretch_intervals);
+  return std::max<Index>(1, grid.intervals / length_of_stretch(grid));
 }
 
 }  // namespace
 
 std::vector<InsStretch> stretches_of(const SplineGrid& grid) {
   std::vector<InsStretch> stretches;
-  const Index count = count_of(grid);
+  const Index count = count_of(grid), length = length_of_stretch(grid);
   for (Index k = 0; k < count; ++k)
-    stretches.push_back({k * stretch_intervals, k + 1 == count ? grid.intervals : (k + 1) * stretch_intervals});
+    stretches.push_back({k * length, k + 1 == count ? grid.intervals : (k + 1) * length});
   return stretches;
 }
 
 Index stretch_at(const SplineGrid& grid, Index interval) {
-  return std::min(interval / stretch_intervals, count_of(grid) - 1);
+  return std::min(interval / length_of_stretch(grid), count_of(grid) - 1);
 }
 
 InsErrors errors_at(const InsProblem& problem, const InsUnknowns& x, std::size_t sensor, Index interval) {
@@ -40,9 +45,10 @@ InsErrors errors_at(const InsProblem& problem, const InsUnknowns& x, std::size_t
 
 WanderPrior wander_prior(const InsProblem& problem, const InsLayout& layout) {
   const InsWander& wander = problem.wander;
-  WanderPrior prior{.keep = std::exp(-problem.grid.period * static_cast<double>(stretch_intervals) / wander.time),
-                    .information = VectorXd(layout.wander),
-                    .innovation = {}};
+  WanderPrior prior{
+      .keep = std::exp(-problem.grid.period * static_cast<double>(length_of_stretch(problem.grid)) / wander.time),
+      .information = VectorXd(layout.wander),
+      .innovation = {}};
   for (Index at = 0; at < layout.wander; at += 3) {
     const double sd = at % 6 == 0 ? std::max(wander.rate_sd, perfect_rate) : std::max(wander.force_sd, perfect_force);
     prior.information.segment<3>(at).setConstant(1.0 / (sd * sd));

@@ -9,7 +9,8 @@
 
 namespace kinfer {
 
-/// The grid's intervals by stretches of fixed length, whatever the number of threads; the last one takes the remainder.
+/// The grid's intervals by stretches, 64 each and in long recordings 128, whatever the number of threads; the last one
+/// takes the remainder.
 struct InsStretch {
   Eigen::Index first = 0, end = 0;  ///< intervals
 };

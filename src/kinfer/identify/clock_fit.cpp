@@ -78,13 +78,17 @@ void free_clocks(InsProblem& problem) {
 bool clocks_are_doubtful(InsProblem& problem, const InsFit& fit, int threads) {
   const WithFreeClocks free(problem);
   InsFit next{.unknowns = {}, .layout = layout_of(problem, fit.unknowns.bodies), .cost = {}};
-  const auto step = InsSystem(problem, next.layout, fit.unknowns, {}, threads).solve();
-  const auto covariance = covariance_of(problem, next.layout, fit.unknowns, threads);
-  if (!step || !covariance) return false;
+  const InsSystem system(problem, next.layout, fit.unknowns, {}, threads);
+  const auto step = system.solve();
+  if (!step) return false;
   next.unknowns = changed(problem, next.layout, fit.unknowns, *step);
-  const auto clocks = refined_clocks(problem, next, *covariance);
-  return std::ranges::any_of(clocks,
-                             [&](const RefinedClock& clock) { return differs(clock, problem.grid, suspicious); });
+  const auto are_suspicious = [&](const std::optional<InsCovariance>& covariance) {
+    return covariance &&
+           std::ranges::any_of(refined_clocks(problem, next, *covariance),
+                               [&](const RefinedClock& clock) { return differs(clock, problem.grid, suspicious); });
+  };
+  // The sandwich only ever widens a standard deviation and costs more than all the rest.
+  return are_suspicious(model_covariance(system)) && are_suspicious(covariance_of(system));
 }
 
 void refit_with_clocks(InsProblem& problem, InsFit& fit, const InsFitOptions& options, const Observer& observer) {

@@ -10,7 +10,7 @@ using Intervals = std::vector<std::pair<Index, Index>>;
 
 constexpr Index windows = 5;
 constexpr double share = 0.2;  // of each fifth, in its middle
-constexpr int few_steps = 5;   // three of them for the motion alone
+constexpr int few_steps = 2;   // the motion need not settle first: it was found with all readings
 
 /// The readings of the held-out intervals, lifted out of a problem until this goes.
 class Lifted {
@@ -64,6 +64,7 @@ InsFit fit_without(InsProblem& problem, const InsUnknowns& found, const Interval
   const Lifted lifted(problem, intervals);
   InsFitOptions few = options;
   few.iterations = few_steps;
+  few.settling = 0;
   few.rounds = 1;
   return fit_ins(problem, found, few);
 }

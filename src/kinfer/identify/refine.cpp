@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "kinfer/estimate/ins_covariance.hpp"
+#include "kinfer/estimate/ins_excerpt.hpp"
 #include "kinfer/estimate/ins_fact_rows.hpp"
 #include "kinfer/identify/azimuth.hpp"
 #include "kinfer/identify/clock_fit.hpp"
@@ -92,11 +93,13 @@ std::vector<FoundPlace> found_places(const MachineFacts& facts, const InsFit& fi
   return places;
 }
 
-RefineFit fit_all_motion(const RefineTask& task, const RefineOptions& options, const Observer& observer) {
-  RefineFit fitted{refine_setup(task.recording, task.motion, task.tree, task.starts, task.grade, options.knots), {}};
+RefineFit fit_all_motion(const RefineTask& task, RefineSetup setup, const RefineOptions& options,
+                         const Observer& observer) {
+  RefineFit fitted{std::move(setup), {}};
   InsProblem& problem = fitted.setup.problem;
   problem.facts = task.facts;
   fitted.setup.start.facts = started_facts(problem, layout_of(problem, fitted.setup.start.bodies), fitted.setup.start);
+  start_from_excerpt(problem, fitted.setup.start, task.options, observer);
   if (options.clocks == Clocks::estimated) free_clocks(problem);
   fitted.fit = fit_ins(problem, fitted.setup.start, task.options, observer);
   if (options.clocks == Clocks::checked && clocks_are_doubtful(problem, fitted.fit, task.options.threads))
@@ -188,6 +191,7 @@ std::vector<RefinedJoint> joints_of(const RefineTask& task, const RefineFit& fit
   return joints;
 }
 
+/// `fitted` has the fit without the windows afterwards.
 HeldOut held_out(const RefineTask& task, RefineFit& fitted, const InsCovariance& covariance,
                  const std::vector<VectorXd>& shift) {
   const SplineGrid& grid = fitted.setup.problem.grid;
@@ -196,10 +200,8 @@ HeldOut held_out(const RefineTask& task, RefineFit& fitted, const InsCovariance&
   for (const auto& [begin, end] : intervals)
     held.windows.push_back(
         {grid.begin + grid.period * static_cast<double>(begin), grid.begin + grid.period * static_cast<double>(end)});
-  InsFit whole =
-      std::exchange(fitted.fit, fit_without(fitted.setup.problem, fitted.fit.unknowns, intervals, task.options));
+  fitted.fit = fit_without(fitted.setup.problem, fitted.fit.unknowns, intervals, task.options);
   for (const RefinedJoint& joint : joints_of(task, fitted, covariance, shift)) held.joints.push_back(joint.found);
-  fitted.fit = std::move(whole);
   return held;
 }
 
@@ -209,11 +211,11 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
                           const std::vector<JointStart>& starts, const RefineOptions& options,
                           const Observer& observer) {
   const SensorModel grade = options.grade ? *options.grade : judged_model(recording);
-  const RefineSetup setup = refine_setup(recording, motion, tree, starts, grade, options.knots);
+  RefineSetup setup = refine_setup(recording, motion, tree, starts, grade, options.knots);
   KINFER_TRY(facts, named_facts(options.facts, segment_names(motion), setup.start.bodies, setup.problem.grid,
                                 setup.problem.root_stands_still));
   const RefineTask task{recording, motion, tree, starts, grade, facts, options.fit};
-  RefineFit fitted = fit_all_motion(task, options, observer);
+  RefineFit fitted = fit_all_motion(task, std::move(setup), options, observer);
   Refinement result;
   result.grade = grade.name;
   for (const InsReadings& readings : fitted.setup.problem.sensors) {
@@ -229,6 +231,7 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
     result.cutoff = slow.cutoff;
   }
   result.fit = fitted.fit;
+  fitted.fit.cost = {};  // an hour's residuals are large
   const auto covariance =
       covariance_of(fitted.setup.problem, result.fit.layout, result.fit.unknowns, options.fit.threads);
   if (!covariance) return error("the continuous-time fit has no covariance: the recording says too little");

@@ -1,5 +1,7 @@
 #include "kinfer/linalg/bordered_band.hpp"
 
+#include <algorithm>
+
 #include "kinfer/base/expect.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/small_cholesky.hpp"
@@ -96,15 +98,17 @@ std::optional<BorderedBand::Solution> BorderedBand::solve() const {
 
 MatrixXd BorderedBand::following() const {
   KINFER_EXPECT(positive_);
-  const auto steps = static_cast<Index>(groups_.size()), rest = (reach_ - 1) * width_;
-  MatrixXd result = MatrixXd::Zero(steps * width_ + rest, border_);
+  const auto steps = static_cast<Index>(groups_.size()), all = steps * width_;
+  MatrixXd result(all, border_);
   for (Index k = steps - 1; k >= 0; --k) {
     const Group& group = groups_[static_cast<std::size_t>(k)];
-    MatrixXd value = group.coupling.transpose() - group.next.transpose() * result.middleRows((k + 1) * width_, rest);
+    const Index behind = (k + 1) * width_, there = std::min((reach_ - 1) * width_, all - behind);
+    MatrixXd value =
+        group.coupling.transpose() - group.next.topRows(there).transpose() * result.middleRows(behind, there);
     solve_upper(group.pivot, value);
     result.middleRows(k * width_, width_) = value;
   }
-  return result.topRows(steps * width_);
+  return result;
 }
 
 }  // namespace kinfer
