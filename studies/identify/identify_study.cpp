@@ -13,6 +13,7 @@
 #include "kinfer/io/ins_csv.hpp"
 #include "kinfer/simulate/ins_simulation.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
+#include "kinfer/simulate/soft_mounts.hpp"
 #include "studies/identify/truth_scores.hpp"
 
 namespace kinfer::study {
@@ -26,6 +27,8 @@ struct Setup {
   SensorTrouble trouble;
   double accelerometer_range = 0.0, gyro_range = 0.0;  // [m/s²], [rad/s]; 0: the grade's
   std::optional<Servo> servo;                          // forward dynamics instead of prescribed motion
+  double lean = 0.0;                                   // [rad] of mounts of foam under the sensors' own weight
+  double rate = 200.0;                                 // [Hz]
   int seeds = 4;
   bool steady = false;    // biases that do not wander
   bool constant = false;  // they do, and the fit does not know
@@ -37,6 +40,14 @@ struct Drive {
   MachineTruth truth;
 };
 
+MachineMotion on_foam(const MachineMotion& motion, double lean, const Rng& rng) {
+  constexpr double swaying = 8.0;  // [Hz]
+  std::vector<SoftMount> mounts;
+  for (std::size_t s = 0; s < motion.sensors.size(); ++s)
+    mounts.push_back(drawn_soft_mount(lean, swaying, rng.stream(s)));
+  return with_soft_mounts(motion, mounts);
+}
+
 Drive simulated(const Setup& setup, std::uint64_t seed) {
   const auto mjcf =
       machine_mjcf(setup.machine, {.base = setup.base, .slope = Angle::deg(setup.slope)}, Rng(seed).stream(1)).value();
@@ -44,18 +55,44 @@ Drive simulated(const Setup& setup, std::uint64_t seed) {
   const auto drive =
       make_drive(world.machine(), {.script = setup.script, .duration = setup.duration}, Rng(seed).stream(2)).value();
   const MachineMotion motion =
-      setup.servo ? world.drive(drive, 200.0, *setup.servo).value() : world.prescribe(drive, 200.0);
+      setup.servo ? world.drive(drive, setup.rate, *setup.servo).value() : world.prescribe(drive, setup.rate);
   SensorModel grade = *sensor_grade(setup.grade);
   if (setup.accelerometer_range > 0.0) grade.accelerometer.range = setup.accelerometer_range;
   if (setup.gyro_range > 0.0) grade.gyroscope.range = setup.gyro_range;
   if (setup.steady) grade.accelerometer.instability = grade.gyroscope.instability = 0.0;
-  return {simulated_recording(world.machine(), motion, grade, setup.trouble, Rng(seed).stream(3)),
+  const MachineMotion carried = setup.lean > 0.0 ? on_foam(motion, setup.lean, Rng(seed).stream(4)) : motion;
+  return {simulated_recording(world.machine(), carried, grade, setup.trouble, Rng(seed).stream(3)),
           machine_truth(world.machine(), motion)};
+}
+
+/// The links' lengths alone: sensors that lean have no frame of their own to be judged in.
+struct Lengths {
+  std::vector<double> off, ratio;
+};
+
+void judge_lengths(const std::vector<FoundJoint>& joints, const MachineTruth& truth, Lengths& lengths) {
+  for (const FoundLink& link : found_links(joints)) {
+    const auto t = std::ranges::find(truth.links, link.segment, &LinkTruth::segment);
+    if (t == truth.links.end()) continue;
+    const double off = link.length - t->length;
+    lengths.off.push_back(1e3 * std::abs(off));
+    lengths.ratio.push_back(off / link.sd);
+    fmt::print("  {} {:.1f} mm, {:+.2f}, sd {:.2f}", link.segment, 1e3 * t->length, 1e3 * off, 1e3 * link.sd);
+  }
+  fmt::print("\n");
+}
+
+void sum_up(const Lengths& lengths) {
+  const auto inside = std::ranges::count_if(lengths.ratio, [](double r) { return std::abs(r) <= 1.96; });
+  fmt::print("lengths: median {:.2f}, worst {:.2f} mm off; actual/predicted {:.2f}; coverage {:.1f} % of {}\n",
+             median(lengths.off), *std::ranges::max_element(lengths.off), rms(lengths.ratio),
+             100.0 * static_cast<double>(inside) / static_cast<double>(lengths.off.size()), lengths.off.size());
 }
 
 void run(const Setup& setup) {
   std::vector<double> lines, directions, ratios;
   double inside = 0.0, scalars = 0.0;
+  Lengths lengths;
   for (int seed = 1; seed <= setup.seeds; ++seed) {
     const Drive drive = simulated(setup, static_cast<std::uint64_t>(seed));
     const auto begin = std::chrono::steady_clock::now();
@@ -81,6 +118,7 @@ void run(const Setup& setup) {
     }
     std::vector<FoundJoint> joints;
     for (const RefinedJoint& joint : found->joints) joints.push_back(joint.found);
+    judge_lengths(joints, drive.truth, lengths);
     const GeometryScore score = geometry_score(joints, drive.truth);
     const auto seconds = [](auto a, auto b) { return std::chrono::duration<double>(b - a).count(); };
     fmt::print(
@@ -111,6 +149,7 @@ void run(const Setup& setup) {
       "{:.2f}; coverage {:.1f} %\n",
       setup.machine, setup.grade, median(lines), *std::ranges::max_element(lines), median(directions),
       *std::ranges::max_element(directions), rms(ratios), 100.0 * inside / scalars);
+  sum_up(lengths);
 }
 
 /// A recording of a real machine whose joint types are given, one a joint of the tree in order.
@@ -185,6 +224,8 @@ int main(int argc, char** argv) {
     if (word == "saturated") setup.accelerometer_range = 12.0, setup.gyro_range = 0.6;
     if (word == "stiff") setup.servo = Servo::stiff;
     if (word == "soft") setup.servo = Servo::soft;
+    if (word == "foam") setup.lean = 0.08, setup.rate = 50.0;
+    if (word == "tape") setup.lean = 0.02, setup.rate = 50.0;
     if (word == "slope") setup.slope = 8.0;
     if (word == "rocking") setup.base = Base::rocking;
     if (word == "yawing") setup.base = Base::yawing;

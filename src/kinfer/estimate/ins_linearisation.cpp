@@ -106,13 +106,20 @@ SensorColumns sensor_columns(const InsLayout& layout, const InsPaths& paths, std
   return columns;
 }
 
+/// By the numbers of the tilt, of what one instrument feels.
+const Eigen::Matrix<double, 3, 9>& by_tilt(const FeltDerivative& felt, const InstrumentUse& use) {
+  return use.state_row == 0 ? felt.rate_by_tilt : use.state_row == 6 ? felt.force_by_tilt : felt.field_by_tilt;
+}
+
 /// Derivative of one instrument's reading at one node by the columns of the sensor (3 rows).
 template <class Rows>
 void fill_rows(Rows rows, const InstrumentUse& use, const InsLayout& layout, const SensorColumns& columns,
-               const std::vector<InsColumn>& path, const StateColumns& state_columns, const InsState& state,
+               const std::vector<InsColumn>& path, const StateColumns& state_columns, const FeltDerivative& felt,
                const InsErrors& errors, const SplineBasis& basis) {
   rows.setZero();
+  const InsState& state = felt.state;
   Eigen::Matrix<double, 3, Eigen::Dynamic> by_state = state_columns.middleRows<3>(use.state_row);
+  if (layout.has_tilts) by_state = (felt.turn * by_state).eval();
   if (layout.has_matrices && use.state_row == 0) by_state = (by_state + errors.rate_matrix * by_state).eval();
   if (layout.has_matrices && use.state_row == 6) by_state = (by_state + errors.force_matrix * by_state).eval();
   for (std::size_t c = 0; c < path.size(); ++c) {
@@ -134,6 +141,26 @@ void fill_rows(Rows rows, const InstrumentUse& use, const InsLayout& layout, con
     for (Index j = 0; j < 3; ++j)  // S is stored column by column
       for (Index i = 0; i < 3; ++i) rows(i, columns.own + (rate ? 6 : 15) + 3 * j + i) = truth[j];
   }
+  if (!layout.has_tilts) return;
+  auto tilt = rows.template middleCols<9>(columns.own + layout.tilt_error);
+  tilt = by_tilt(felt, use);
+  if (layout.has_matrices && rate) tilt += errors.rate_matrix * by_tilt(felt, use);
+  if (layout.has_matrices && force) tilt += errors.force_matrix * by_tilt(felt, use);
+}
+
+/// What the INS feels at a node, on the mount that it has.
+InsState felt_at(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, std::size_t sensor,
+                 Index interval, std::size_t node, const InsState& segment) {
+  if (!layout.has_tilts) return segment;
+  const InsBending& bending = problem.sensors[sensor].bending[static_cast<std::size_t>(interval)];
+  return felt(segment, x.errors[sensor].tilt, bending.force_at(node), bending.change_at(node));
+}
+
+FeltDerivative felt_with_derivative(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                                    std::size_t sensor, Index interval, std::size_t node, const InsState& segment) {
+  if (!layout.has_tilts) return {segment, Mat3::Identity(), {}, {}, {}};
+  const InsBending& bending = problem.sensors[sensor].bending[static_cast<std::size_t>(interval)];
+  return felt_derivative(segment, x.errors[sensor].tilt, bending.force_at(node), bending.change_at(node));
 }
 
 /// Whitened, robustly weighted Jacobian and residual of one sensor in one interval.
@@ -155,6 +182,9 @@ SensorSystem sensor_system(const InsProblem& problem, const InsLayout& layout, c
   const auto width = static_cast<Index>(columns.index.size());
   SensorSystem system{MatrixXd::Zero(rows, width), VectorXd(rows)};
   MatrixXd at_nodes(3 * block_nodes, width);
+  std::array<FeltDerivative, block_nodes> felt;
+  for (std::size_t n = 0; n < block_nodes; ++n)
+    felt[n] = felt_with_derivative(problem, layout, x, sensor, interval, n, motion[n].state[body]);
   Index row = 0;
   for (const InstrumentUse& use : uses) {
     const InsBlock& block = use.blocks[k];
@@ -163,9 +193,9 @@ SensorSystem sensor_system(const InsProblem& problem, const InsLayout& layout, c
     BlockResidual predicted;
     for (Index node = 0; node < block_nodes; ++node) {
       const auto n = static_cast<std::size_t>(node);
-      predicted.row(node) = use.read(motion[n].state[body], errors).transpose();
-      fill_rows(at_nodes.middleRows<3>(3 * node), use, layout, columns, path, motion[n].columns[body],
-                motion[n].state[body], errors, bases[n]);
+      predicted.row(node) = use.read(felt[n].state, errors).transpose();
+      fill_rows(at_nodes.middleRows<3>(3 * node), use, layout, columns, path, motion[n].columns[body], felt[n], errors,
+                bases[n]);
     }
     const BlockResidual r = residual(block, factor, predicted, use.sd);
     const double weight = std::sqrt(robust(r.squaredNorm(), 3.0 * block.rows).weight);
@@ -319,6 +349,8 @@ InsCost item_cost(const InsProblem& problem, const InsLayout& layout, const InsU
       if (x.bodies[b].sensor < 0) continue;
       const auto sensor = static_cast<std::size_t>(x.bodies[b].sensor);
       const InsErrors errors = errors_at(problem, x, sensor, interval);
+      for (std::size_t n = 0; n < block_nodes; ++n)
+        states[n][b] = felt_at(problem, layout, x, sensor, interval, n, states[n][b]);
       for (const InstrumentUse& use : instruments(problem, layout, sensor)) {
         const InsBlock& block = use.blocks[static_cast<std::size_t>(interval)];
         BlockResidual predicted;

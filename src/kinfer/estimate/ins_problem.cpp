@@ -23,6 +23,7 @@ void each_error(const InsProblem& problem, const InsLayout& layout, Errors& all,
     visit(first + 15, 9, errors.force_matrix.data(), problem.prior.force_matrix);
   }
   if (layout.has_field) visit(first + layout.field_error, 3, errors.field_bias.data(), problem.prior.field_bias);
+  if (layout.has_tilts) visit(first + layout.tilt_error, 9, errors.tilt.data(), problem.prior.tilt);
   if (!layout.has_clocks) return;
   const bool is_reference = sensor == problem.clock_reference;
   const Index clock = first + layout.clock_error;
@@ -61,6 +62,8 @@ InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
   append(layout.has_matrices ? 24 : 6);
   if (layout.has_field) layout.field_error = append(3);
   if (layout.has_clocks) layout.clock_error = append(2);
+  layout.has_tilts = problem.prior.tilt > 0.0;
+  if (layout.has_tilts) layout.tilt_error = append(9);
   for (std::size_t s = 0; s < problem.sensors.size(); ++s) layout.error.push_back(take(layout.errors_each));
   if (!problem.wander.is_none()) layout.wander = 6 * static_cast<Index>(problem.sensors.size());
   const InsFacts& facts = problem.facts;

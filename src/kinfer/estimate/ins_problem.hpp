@@ -8,6 +8,7 @@
 #include "kinfer/estimate/ins_blocks.hpp"
 #include "kinfer/estimate/ins_chain.hpp"
 #include "kinfer/estimate/ins_facts.hpp"
+#include "kinfer/estimate/ins_mount.hpp"
 
 namespace kinfer {
 
@@ -23,6 +24,7 @@ struct InsReadings {
   std::vector<InsBlock> rate, force, field;  ///< field: empty where it is not used
   InsNoise noise;                            ///< as the fit weighs them
   InsNoise least;                            ///< what the instrument has even where the model is perfect
+  std::vector<InsBending> bending{};         ///< of its mount; empty where mounts are rigid
 };
 
 /// How a sensor's clock errs: a reading that is logged at t shows the truth at t + offset + drift (t − the grid's
@@ -37,12 +39,14 @@ struct InsErrors {
   Vec3 rate_bias = Vec3::Zero(), force_bias = Vec3::Zero(), field_bias = Vec3::Zero();
   Mat3 rate_matrix = Mat3::Zero(), force_matrix = Mat3::Zero();  ///< S
   InsClock clock{};
+  Mat3 tilt = Mat3::Zero();  ///< [rad per m/s²] of its mount (ins_mount)
 };
 
-/// One sigma of what an INS may be wrong by; matrices and clocks of 0 are not estimated.
+/// One sigma of what an INS may be wrong by; matrices, clocks and tilts of 0 are not estimated.
 struct InsErrorPrior {
   double rate_bias = 0.0, force_bias = 0.0, field_bias = 0.0, rate_matrix = 0.0, force_matrix = 0.0;
   double clock_offset = 0.0, clock_drift = 0.0;
+  double tilt = 0.0;
 };
 
 /// How the biases of an INS wander about their constants: Gauss-Markov processes, each axis by itself, constant over a
@@ -88,9 +92,9 @@ struct InsLayout {
   std::vector<Eigen::Index> body, error;          ///< first unknown of each body and sensor in the border
   std::vector<Eigen::Index> channel;              ///< first of each body's joint; −1: none
   Eigen::Index wander = 0;                        ///< unknowns of each stretch: six a sensor, or none
-  bool has_field = false, has_matrices = false, has_clocks = false;
-  Eigen::Index errors_each = 0;                     ///< unknowns a sensor: [b_g, b_a, S_g, S_a, b_m, clock]
-  Eigen::Index field_error = -1, clock_error = -1;  ///< where they begin among these; −1: not there
+  bool has_field = false, has_matrices = false, has_clocks = false, has_tilts = false;
+  Eigen::Index errors_each = 0;  ///< unknowns a sensor: [b_g, b_a, S_g, S_a, b_m, clock, tilt]
+  Eigen::Index field_error = -1, clock_error = -1, tilt_error = -1;  ///< where they begin among these; −1: not there
   Eigen::Index facts = -1;  ///< first of what facts make unknown: places, touched points, the surveyor\'s frame
 };
 InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies);

@@ -59,11 +59,11 @@ std::vector<double> knot_times(const SplineGrid& grid) {
   return times;
 }
 
-VectorXd joined(const std::vector<VectorXd>& parts, std::size_t first, std::size_t last) {
-  VectorXd all(0);
+MatrixXd joined(const std::vector<MatrixXd>& parts, std::size_t first, std::size_t last) {
+  MatrixXd all(0, parts[first].cols());
   for (std::size_t b = first; b <= last; ++b) {
-    all.conservativeResize(all.size() + parts[b].size());
-    all.tail(parts[b].size()) = parts[b];
+    all.conservativeResize(all.rows() + parts[b].rows(), Eigen::NoChange);
+    all.bottomRows(parts[b].rows()) = parts[b];
   }
   return all;
 }
@@ -135,6 +135,13 @@ void lean(MatrixXd& covariance, const InsBody& ball, double angle) {
   covariance.diagonal().tail<3>().array() += angle * angle * ball.point_in_child.squaredNorm();
 }
 
+/// Axes in frames that lean by so much on their segments.
+void lean_axes(MatrixXd& covariance, const InsBody& body, double parent, double child) {
+  if (body.motion != JointMotion::turn && body.motion != JointMotion::slide) return;
+  covariance.diagonal().head<2>().array() += parent * parent;
+  covariance.diagonal().segment<2>(2).array() += child * child;
+}
+
 /// A hinge that was let loose in the fit.
 RefinedJoint joint_of_ball(const RefineFit& fitted, std::size_t body, ConstMatrixRef covariance, double softness,
                            std::span<const double> film_time) {
@@ -149,18 +156,19 @@ RefinedJoint joint_of_ball(const RefineFit& fitted, std::size_t body, ConstMatri
   return joint;
 }
 
-/// One joint with its share of the covariance, and of the shift between bands where there is one.
+/// One joint with its share of the covariance and of the model's error.
 RefinedJoint joint_of(const RefineTask& task, const RefineFit& fitted, const InsCovariance& covariance,
-                      const std::vector<VectorXd>& shift, double softness, std::size_t index,
-                      std::span<const double> film_time) {
+                      const ModelError& error, double softness, std::size_t index, std::span<const double> film_time) {
   const JointStart& start = task.starts[index];
   const InsFit& fit = fitted.fit;
   const std::size_t first = fitted.setup.first_body[index], last = fitted.setup.last_body[index];
   const auto bodies = std::span(fit.unknowns.bodies).subspan(first, last - first + 1);
   MatrixXd own = joint_covariance(covariance, fit.layout, fit.unknowns.bodies, first, last);
-  if (!shift.empty()) {
-    const VectorXd moved = joined(shift, first, last);
+  if (!error.shift.empty()) {
+    const MatrixXd moved = joined(error.shift, first, last);
     own += moved * moved.transpose();
+    softness = std::hypot(softness, error.lean[start.parent], error.lean[start.child]);
+    lean_axes(own, bodies.front(), error.lean[start.parent], error.lean[start.child]);
   }
   if (bodies.front().motion == JointMotion::ball) lean(own, bodies.front(), softness);
   if (start.type == FoundJointType::revolute && bodies.front().motion == JointMotion::ball)
@@ -179,12 +187,12 @@ RefinedJoint joint_of(const RefineTask& task, const RefineFit& fitted, const Ins
 
 /// All joints, named.
 std::vector<RefinedJoint> joints_of(const RefineTask& task, const RefineFit& fitted, const InsCovariance& covariance,
-                                    const std::vector<VectorXd>& shift) {
+                                    const ModelError& error) {
   const std::vector<double> film_time = film_times(task.motion);
   const double softness = softness_of(task, fitted);
   std::vector<RefinedJoint> joints;
   for (std::size_t i = 0; i < task.starts.size(); ++i) {
-    joints.push_back(joint_of(task, fitted, covariance, shift, softness, i, film_time));
+    joints.push_back(joint_of(task, fitted, covariance, error, softness, i, film_time));
     joints.back().found.parent = task.motion.segments[task.starts[i].parent].name;
     joints.back().found.child = task.motion.segments[task.starts[i].child].name;
   }
@@ -192,8 +200,7 @@ std::vector<RefinedJoint> joints_of(const RefineTask& task, const RefineFit& fit
 }
 
 /// `fitted` has the fit without the windows afterwards.
-HeldOut held_out(const RefineTask& task, RefineFit& fitted, const InsCovariance& covariance,
-                 const std::vector<VectorXd>& shift) {
+HeldOut held_out(const RefineTask& task, RefineFit& fitted, const InsCovariance& covariance, const ModelError& error) {
   const SplineGrid& grid = fitted.setup.problem.grid;
   const auto intervals = held_out_intervals(grid);
   HeldOut held;
@@ -201,7 +208,7 @@ HeldOut held_out(const RefineTask& task, RefineFit& fitted, const InsCovariance&
     held.windows.push_back(
         {grid.begin + grid.period * static_cast<double>(begin), grid.begin + grid.period * static_cast<double>(end)});
   fitted.fit = fit_without(fitted.setup.problem, fitted.fit.unknowns, intervals, task.options);
-  for (const RefinedJoint& joint : joints_of(task, fitted, covariance, shift)) held.joints.push_back(joint.found);
+  for (const RefinedJoint& joint : joints_of(task, fitted, covariance, error)) held.joints.push_back(joint.found);
   return held;
 }
 
@@ -222,11 +229,11 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
     result.noise.push_back(readings.noise);
     result.least.push_back(readings.least);
   }
-  std::vector<VectorXd> shift;
+  ModelError model_error;
   if (misfit_of(fitted.setup.problem) > unexplained && !clocks_differ(fitted.fit.unknowns)) {
     SlowMotion slow = fit_slow_motion(task, fitted, observer);
     fitted = std::move(slow.fitted);
-    shift = std::move(slow.shift);
+    model_error = std::move(slow.error);
     result.noise = std::move(slow.noise);
     result.cutoff = slow.cutoff;
   }
@@ -237,8 +244,8 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
   if (!covariance) return error("the continuous-time fit has no covariance: the recording says too little");
   result.covariance = covariance->model;
   result.clocks = refined_clocks(fitted.setup.problem, result.fit, *covariance);
-  result.joints = joints_of(task, fitted, *covariance, shift);
-  if (options.hold_out) result.held_out = held_out(task, fitted, *covariance, shift);
+  result.joints = joints_of(task, fitted, *covariance, model_error);
+  if (options.hold_out) result.held_out = held_out(task, fitted, *covariance, model_error);
   result.places = found_places(options.facts, result.fit, covariance->model);
   return result;
 }

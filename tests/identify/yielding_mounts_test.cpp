@@ -1,0 +1,85 @@
+#include "kinfer/identify/yielding_mounts.hpp"
+
+#include <gtest/gtest.h>
+
+#include "identify/hand_moved_chain.hpp"
+
+namespace kinfer {
+namespace {
+
+using test::HandMovedChain;
+using test::refined;
+
+/// Between the hinges on the middle segment, and how sure that is.
+struct Lever {
+  double length, sd;
+};
+
+double between(const Vec3& axis, const Vec3& point, const Vec3& other_axis, const Vec3& other_point) {
+  return std::abs((other_point - point).dot(axis.cross(other_axis).normalized()));
+}
+
+Lever middle_of(const Refinement& found) {
+  const FoundJoint &near = found.joints[0].found, &far = found.joints[1].found;
+  return {between(near.axis_in_child, near.point_in_child, far.axis_in_parent, far.point_in_parent),
+          std::hypot(near.sd.point_in_child[0], near.sd.point_in_child[1], far.sd.point_in_parent[0])};
+}
+
+double true_middle(const HandMovedChain& chain) {
+  return between(chain.bodies[1].child_R_axis.col(2), chain.bodies[1].point_in_child, Vec3::UnitX(),
+                 chain.bodies[2].point_in_parent);
+}
+
+/// Each sensor's mass stands above its mount along z: it leans about y by the force along x and about −x by that along
+/// y.
+Mat3 top_heavy(double lean) {
+  Mat3 tilt = Mat3::Zero();
+  tilt(0, 1) = -lean / 9.81;
+  tilt(1, 0) = 0.7 * lean / 9.81;
+  return tilt;
+}
+
+TEST(YieldingMounts, LeversAndTiltsAreFoundThoughEverySensorLeansWithTheMotion) {
+  const Mat3 tilt = top_heavy(0.07);
+  const HandMovedChain chain(0.0, tilt);
+  const Refinement found = refined(chain.recording, 0);
+  ASSERT_GT(found.cutoff, 0.0);
+  const Lever middle = middle_of(found);
+  EXPECT_NEAR(middle.length, true_middle(chain), 2.5 * middle.sd);
+  EXPECT_NEAR(middle.length, true_middle(chain), 10e-3);
+  EXPECT_LT(middle.sd, 15e-3);
+  for (std::size_t s = 0; s < 3; ++s) {
+    SCOPED_TRACE(s);
+    EXPECT_NEAR(9.81 * found.fit.unknowns.errors[s].tilt(0, 1), 9.81 * tilt(0, 1), 0.03);
+    EXPECT_NEAR(9.81 * found.fit.unknowns.errors[s].tilt(1, 0), 9.81 * tilt(1, 0), 0.03);
+  }
+}
+
+TEST(YieldingMounts, FirmOnesAreToldSoAndKeepTheirIntervals) {
+  const HandMovedChain chain;
+  const Refinement found = refined(chain.recording, 0);
+  ASSERT_GT(found.cutoff, 0.0);
+  for (const InsErrors& errors : found.fit.unknowns.errors) EXPECT_LT(9.81 * errors.tilt.cwiseAbs().maxCoeff(), 0.02);
+  const Lever middle = middle_of(found);
+  EXPECT_NEAR(middle.length, true_middle(chain), 2.5 * middle.sd);
+  EXPECT_LT(middle.sd, 6e-3);
+}
+
+TEST(YieldingMounts, HiddenTiltsAreBelievedToBeLikeTheVisibleOnes) {
+  // Nine tilts, of which three are seen to 1e-4 and are 2e-3 each; of the others nothing is known.
+  InsProblem problem;
+  problem.prior.tilt = 1e-2;
+  InsFit fit;
+  fit.layout.error = {0};
+  fit.layout.tilt_error = 0;
+  fit.unknowns.errors.resize(1);
+  fit.unknowns.errors[0].tilt.col(0).setConstant(2e-3);
+  InsCovariance covariance{MatrixXd::Identity(9, 9) * 1e-4, VectorXd::Ones(9)};
+  covariance.model.diagonal().head<3>().setConstant(1e-8);
+  EXPECT_NEAR(shown_tilt(problem, fit, covariance), 2e-3, 1e-6);
+  covariance.inflation.head<3>().setConstant(1e5);  // then nothing is seen, and the prior stays
+  EXPECT_NEAR(shown_tilt(problem, fit, covariance), problem.prior.tilt, 1e-12);
+}
+
+}  // namespace
+}  // namespace kinfer
