@@ -58,6 +58,7 @@ BENCHMARK(bootstrap_1000)
     ->Arg(2)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond)
+    ->Repetitions(61)  // two cores are seldom left alone together
     ->ComputeStatistics("fastest", fastest);
 
 }  // namespace

@@ -95,7 +95,9 @@ class Table {
  private:
   std::optional<Measured> find(const std::string& name) const {
     for (const auto& [key, value] : medians_)
-      if (key == name || key.starts_with(name + "/iterations") || key.starts_with(name + "/real_time")) return value;
+      if (key == name || key.starts_with(name + "/iterations") || key.starts_with(name + "/repeats") ||
+          key.starts_with(name + "/real_time"))
+        return value;
     return std::nullopt;
   }
   static std::string duration(double seconds) {
