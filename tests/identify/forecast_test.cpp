@@ -49,8 +49,10 @@ TEST(Forecast, TheTurnAboutTheOnlyAxisOfTheParentIsSaidApart) {
   EXPECT_EQ(apart.azimuth_of, "a");
   EXPECT_DOUBLE_EQ(apart.azimuth_sd, 5e-3);
   EXPECT_EQ(in_words({apart}),
-            "enough for 5 mm and 3 mrad in every joint, but for the turn of a about its only axis (± 5 mrad)");
-  EXPECT_EQ(in_words({apart}, {.direction = 0.01}), "enough for 5 mm and 10 mrad in every joint");
+            "enough for 5 mm and 3 mrad in every joint, but for places that no signal tells and the turn of a about "
+            "its only axis (± 5 mrad)");
+  EXPECT_EQ(in_words({apart}, {.direction = 0.01}),
+            "enough for 5 mm and 10 mrad in every joint, but for places that no signal tells");
 }
 
 /// The rehearsal: an identified chain is driven in simulation and identified again.

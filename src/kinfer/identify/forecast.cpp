@@ -77,6 +77,8 @@ std::string in_words(const std::vector<JointForecast>& joints, const WantedAccur
   std::string text = enough_for_all(joints) ? fmt::format("enough for {} in every joint", what)
                                             : fmt::format("not enough for {} in {}", what, lacking_in_words(joints));
   std::vector<std::string> apart;
+  if (std::ranges::any_of(joints, [](const JointForecast& f) { return !f.azimuth_of.empty(); }))
+    apart.emplace_back("places that no signal tells");
   for (const JointForecast& f : joints)
     if (is_vague_azimuth(f, wanted)) apart.push_back(azimuth_in_words(f));
   return apart.empty() ? text : text + fmt::format(", but for {}", fmt::join(apart, " and "));
