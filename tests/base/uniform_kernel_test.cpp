@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "kinfer/base/processor.hpp"
 #include "kinfer/base/rng.hpp"
 
 namespace kinfer {
@@ -12,8 +13,8 @@ namespace {
 std::vector<base::UniformKernel> runnable() {
   std::vector<base::UniformKernel> list{base::fill_uniform};
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) list.push_back(base::uniform_avx2);
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) list.push_back(base::uniform_avx512);
+  if (instruction_set() >= InstructionSet::avx2) list.push_back(base::uniform_avx2);
+  if (instruction_set() >= InstructionSet::avx512) list.push_back(base::uniform_avx512);
 #endif
   return list;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kinfer/base/aligned_buffer.hpp"
+#include "kinfer/base/processor.hpp"
 #include "kinfer/base/rng.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/gram_plan.hpp"
@@ -45,8 +46,8 @@ TEST(NormalEquations, are_the_inner_products_term_by_term) {
 std::vector<const batch::GramKernel*> runnable_grams() {
   std::vector<const batch::GramKernel*> kernels{&batch::portable_gram};
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) kernels.push_back(&batch::avx2_gram);
-  if (__builtin_cpu_supports("avx512f")) kernels.push_back(&batch::avx512_gram);
+  if (instruction_set() >= InstructionSet::avx2) kernels.push_back(&batch::avx2_gram);
+  if (instruction_set() >= InstructionSet::avx512) kernels.push_back(&batch::avx512_gram);
 #endif
   return kernels;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "kinfer/base/processor.hpp"
 #include "kinfer/base/rng.hpp"
 #include "kinfer/linalg/types.hpp"
 
@@ -15,8 +16,8 @@ namespace {
 std::vector<search::SwarmKernel> runnable() {
   std::vector<search::SwarmKernel> list{search::move_particle};
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) list.push_back(search::swarm_avx2);
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) list.push_back(search::swarm_avx512);
+  if (instruction_set() >= InstructionSet::avx2) list.push_back(search::swarm_avx2);
+  if (instruction_set() >= InstructionSet::avx512) list.push_back(search::swarm_avx512);
 #endif
   return list;
 }

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/base/processor.hpp"
 #include "kinfer/base/uniform_kernel.hpp"
 
 namespace kinfer {
@@ -13,8 +14,8 @@ using base::golden, base::mix;
 
 base::UniformKernel best_uniform_kernel() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return base::uniform_avx512;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return base::uniform_avx2;
+  if (instruction_set() == InstructionSet::avx512) return base::uniform_avx512;
+  if (instruction_set() == InstructionSet::avx2) return base::uniform_avx2;
 #endif
   return base::fill_uniform;
 }

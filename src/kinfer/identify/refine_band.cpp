@@ -83,6 +83,15 @@ RefineFit fit_from(const RefineTask& task, RefineSetup setup) {
   return result;
 }
 
+/// Fitted again from where it ended, `change` made to its setup.
+template <class Change>
+RefineFit fitted_again(const RefineTask& task, const RefineFit& fitted, Change change) {
+  RefineSetup setup = fitted.setup;
+  setup.start = fitted.fit.unknowns;
+  change(setup);
+  return fit_from(task, std::move(setup));
+}
+
 /// Mounts that may give way by so much. What they do outweighs the scale errors by far, which stay as they are: half of
 /// the border.
 void free_tilts(InsProblem& problem, const InsRecording& recording, double tilt) {
@@ -167,20 +176,6 @@ double believed_tilt(const RefineTask& task, const RefineFit& fitted) {
   return covariance ? shown_tilt(problem, fitted.fit, *covariance) : problem.prior.tilt;
 }
 
-RefineFit with_tilts(const RefineTask& task, RefineFit fitted, double tilt) {
-  fitted.setup.problem.prior.tilt = tilt;
-  fitted.setup.start = fitted.fit.unknowns;
-  return fit_from(task, std::move(fitted.setup));
-}
-
-/// The fit with the sensors' scale errors among its unknowns.
-RefineFit with_matrices(const RefineTask& task, RefineFit fitted, const InsErrorPrior& prior) {
-  fitted.setup.problem.prior.rate_matrix = prior.rate_matrix;
-  fitted.setup.problem.prior.force_matrix = prior.force_matrix;
-  fitted.setup.start = fitted.fit.unknowns;
-  return fit_from(task, std::move(fitted.setup));
-}
-
 /// Unknowns of a body that lead from one state of it to another.
 VectorXd shift_of(const InsBody& from, const InsBody& to) {
   VectorXd shift(from.unknowns());
@@ -220,11 +215,10 @@ double uncertainty(const RefineTask& task, const RefineFit& slow, const std::vec
 
 /// The fit on mounts that do not give way.
 RefineFit on_firm_mounts(const RefineTask& task, const RefineFit& fitted) {
-  RefineFit firm{fitted.setup, {}};
-  firm.setup.problem.prior.tilt = 0.0;
-  firm.setup.start = fitted.fit.unknowns;
-  for (InsErrors& errors : firm.setup.start.errors) errors.tilt.setZero();
-  return fit_from(task, std::move(firm.setup));
+  return fitted_again(task, fitted, [](RefineSetup& setup) {
+    setup.problem.prior.tilt = 0.0;
+    for (InsErrors& errors : setup.start.errors) errors.tilt.setZero();
+  });
 }
 
 /// [rad] rms that a mount leans.
@@ -274,13 +268,16 @@ SlowMotion surest(const RefineTask& task, const RefineFit& whole, double tilt, c
 SlowMotion fit_slow_motion(const RefineTask& task, const RefineFit& found, const Observer& observer) {
   RefineFit fitted = slow_fit(task, whole_motion(task, found), trial_cutoff, unknown_tilt);
   const double first = believed_tilt(task, fitted);
-  fitted = with_tilts(task, std::move(fitted), first);
+  fitted = fitted_again(task, fitted, [&](RefineSetup& setup) { setup.problem.prior.tilt = first; });
   const double tilt = believed_tilt(task, fitted);
   if (task.facts.places.empty()) fitted = loosened(task, std::move(fitted), observer);
   const RefineFit whole = whole_motion(task, fitted);
   SlowMotion slow = surest(task, whole, tilt, observer);
   doubt_mounts(task, slow.fitted, slow.error);
-  slow.fitted = with_matrices(task, std::move(slow.fitted), whole.setup.problem.prior);
+  slow.fitted = fitted_again(task, slow.fitted, [&](RefineSetup& setup) {  // the scale errors are unknowns again
+    setup.problem.prior.rate_matrix = whole.setup.problem.prior.rate_matrix;
+    setup.problem.prior.force_matrix = whole.setup.problem.prior.force_matrix;
+  });
   for (const InsReadings& readings : whole.setup.problem.sensors) slow.noise.push_back(readings.noise);
   return slow;
 }

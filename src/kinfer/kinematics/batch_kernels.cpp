@@ -1,3 +1,4 @@
+#include "kinfer/base/processor.hpp"
 #include "kinfer/kinematics/batch_kernel.hpp"
 
 namespace kinfer::batch {
@@ -6,8 +7,8 @@ KernelList runnable_kernels() {
   KernelList list;
   list.kernels[list.count++] = &portable_kernels;
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) list.kernels[list.count++] = &avx2_kernels;
-  if (__builtin_cpu_supports("avx512f")) list.kernels[list.count++] = &avx512_kernels;
+  if (instruction_set() >= InstructionSet::avx2) list.kernels[list.count++] = &avx2_kernels;
+  if (instruction_set() >= InstructionSet::avx512) list.kernels[list.count++] = &avx512_kernels;
 #endif
   return list;
 }

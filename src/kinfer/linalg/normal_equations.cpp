@@ -5,6 +5,7 @@
 
 #include "kinfer/base/aligned_buffer.hpp"
 #include "kinfer/base/expect.hpp"
+#include "kinfer/base/processor.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/gram_plan.hpp"
 
@@ -49,10 +50,8 @@ void solve_factorised(const MatrixXd& l, VectorXd& b) {
 
 const batch::GramKernel& batch::best_gram() {
 #if defined(__x86_64__)
-  static const bool avx512 = __builtin_cpu_supports("avx512f"),
-                    avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  if (avx512) return avx512_gram;
-  if (avx2) return avx2_gram;
+  if (instruction_set() == InstructionSet::avx512) return avx512_gram;
+  if (instruction_set() == InstructionSet::avx2) return avx2_gram;
 #endif
   return portable_gram;
 }

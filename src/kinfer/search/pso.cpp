@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/base/processor.hpp"
 #include "kinfer/search/swarm_kernel.hpp"
 
 namespace kinfer {
@@ -25,8 +26,8 @@ void draw_pairs(RandomNumbers how, Rng draw, std::span<double> pairs) {
 
 search::SwarmKernel best_swarm_kernel() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return search::swarm_avx512;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return search::swarm_avx2;
+  if (instruction_set() == InstructionSet::avx512) return search::swarm_avx512;
+  if (instruction_set() == InstructionSet::avx2) return search::swarm_avx2;
 #endif
   return search::move_particle;
 }

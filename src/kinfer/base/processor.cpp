@@ -1,0 +1,22 @@
+#include "kinfer/base/processor.hpp"
+
+namespace kinfer {
+namespace {
+
+InstructionSet found() {
+#if defined(__x86_64__)
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
+  if (avx2) return avx512 ? InstructionSet::avx512 : InstructionSet::avx2;
+#endif
+  return InstructionSet::portable;
+}
+
+}  // namespace
+
+InstructionSet instruction_set() {
+  static const InstructionSet set = found();
+  return set;
+}
+
+}  // namespace kinfer
