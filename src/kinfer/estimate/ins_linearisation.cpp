@@ -7,6 +7,8 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/estimate/ins_fact_rows.hpp"
 #include "kinfer/estimate/ins_motion.hpp"
+#include "kinfer/estimate/ins_residual.hpp"
+#include "kinfer/estimate/ins_sensor_system.hpp"
 #include "kinfer/estimate/ins_wander.hpp"
 
 namespace kinfer {
@@ -14,207 +16,6 @@ namespace {
 
 using Index = Eigen::Index;
 constexpr Index item_intervals = 8;  // of one work item; fixed, so that sums never depend on the number of threads
-
-// ---- Residuals of one instrument in one interval ----------------------------------------------------------------
-
-/// [s] of an interval's middle after the grid's.
-double from_middle(const SplineGrid& grid, Index interval) {
-  return grid.period * (static_cast<double>(interval) + 0.5 - 0.5 * static_cast<double>(grid.intervals));
-}
-
-Vec3 read_rate(const InsState& s, const InsErrors& e) {
-  return s.rate + e.rate_matrix * s.rate + e.rate_bias;
-}
-Vec3 read_force(const InsState& s, const InsErrors& e) {
-  return s.force + e.force_matrix * s.force + e.force_bias;
-}
-Vec3 read_field(const InsState& s, const InsErrors& e) {
-  return s.field + e.field_bias;
-}
-
-using BlockResidual = Eigen::Matrix<double, block_nodes, 3>;  // whitened; unused rows are zero
-
-BlockResidual residual(const InsBlock& block, const NodeMatrix& factor, const BlockResidual& predicted, double sd) {
-  return (block.target.cast<double>() - factor * predicted) / sd;
-}
-
-/// Where a sensor's clock puts the truth that it shows, less where it logs it, in intervals.
-double clock_shift(const InsProblem& problem, const InsLayout& layout, const InsErrors& errors, Index interval) {
-  if (!layout.has_clocks) return 0.0;
-  return (errors.clock.offset + errors.clock.drift * from_middle(problem.grid, interval)) / problem.grid.period;
-}
-
-/// What a block's rows are of the values at the nodes when these are carried on by a small shift: R (I + shift D).
-NodeMatrix shifted_factor(const InsBlock& block, const InsLayout& layout, double shift) {
-  if (!layout.has_clocks) return block.factor.cast<double>();
-  return block.factor.cast<double>() * (NodeMatrix::Identity() + shift * node_derivative());
-}
-
-struct RobustBlock {
-  double cost = 0.0, weight = 1.0;
-};
-
-RobustBlock robust(double squares, double terms) {
-  const double limit = terms + 4.0 * std::sqrt(2.0 * terms);
-  if (squares <= limit) return {squares, 1.0};
-  if (!std::isfinite(squares)) return {1e300, 0.0};
-  return {limit * (1.0 + std::log(squares / limit)), limit / squares};
-}
-
-/// The three instruments of a sensor by one list.
-struct InstrumentUse {
-  const std::vector<InsBlock>& blocks;
-  double sd;
-  Vec3 (*read)(const InsState&, const InsErrors&);
-  Index state_row;  // first row of it in the state
-};
-
-std::vector<InstrumentUse> instruments(const InsProblem& problem, const InsLayout& layout, std::size_t sensor) {
-  const InsReadings& r = problem.sensors[sensor];
-  std::vector<InstrumentUse> uses{{r.rate, r.noise.rate, read_rate, 0}, {r.force, r.noise.force, read_force, 6}};
-  if (layout.has_field && !r.field.empty()) uses.push_back({r.field, r.noise.field, read_field, 9});
-  return uses;
-}
-
-// ---- Derivatives of one sensor's readings -------------------------------------------------------------------------
-
-/// Unknowns that one sensor's readings depend on: coefficients of its path's channels, then its path's and its own
-/// unknowns of the border.
-struct SensorColumns {
-  std::vector<Index> index;     // in the span: i·channels + channel; then reach·channels + border unknown
-  std::vector<Index> of_state;  // for each state column: first of its coefficients' columns, or its border column
-  Index path_border = 0;        // column of the first of the path's border unknowns
-  Index own = 0;                // column of the first of the sensor's errors
-};
-
-SensorColumns sensor_columns(const InsLayout& layout, const InsPaths& paths, std::size_t body, std::size_t sensor) {
-  SensorColumns columns;
-  const Index local = spline_order * layout.channels;
-  const auto& channels = paths.channels[body];
-  for (const Index channel : channels)
-    for (Index i = 0; i < spline_order; ++i) columns.index.push_back(i * layout.channels + channel);
-  for (const InsColumn& column : paths.columns[body]) {
-    if (column.border >= 0) {
-      columns.of_state.push_back(static_cast<Index>(columns.index.size()));
-      columns.index.push_back(local + column.border);
-    } else {
-      columns.of_state.push_back(spline_order * (std::ranges::find(channels, column.channel) - channels.begin()));
-    }
-  }
-  columns.own = static_cast<Index>(columns.index.size());
-  for (Index i = 0; i < layout.errors_each; ++i) columns.index.push_back(local + layout.error[sensor] + i);
-  return columns;
-}
-
-/// By the numbers of the tilt, of what one instrument feels.
-const Eigen::Matrix<double, 3, 9>& by_tilt(const FeltDerivative& felt, const InstrumentUse& use) {
-  return use.state_row == 0 ? felt.rate_by_tilt : use.state_row == 6 ? felt.force_by_tilt : felt.field_by_tilt;
-}
-
-/// Derivative of one instrument's reading at one node by the columns of the sensor (3 rows).
-template <class Rows>
-void fill_rows(Rows rows, const InstrumentUse& use, const InsLayout& layout, const SensorColumns& columns,
-               const std::vector<InsColumn>& path, const StateColumns& state_columns, const FeltDerivative& felt,
-               const InsErrors& errors, const SplineBasis& basis) {
-  rows.setZero();
-  const InsState& state = felt.state;
-  Eigen::Matrix<double, 3, Eigen::Dynamic> by_state = state_columns.middleRows<3>(use.state_row);
-  if (layout.has_tilts) by_state = (felt.turn * by_state).eval();
-  if (layout.has_matrices && use.state_row == 0) by_state = (by_state + errors.rate_matrix * by_state).eval();
-  if (layout.has_matrices && use.state_row == 6) by_state = (by_state + errors.force_matrix * by_state).eval();
-  for (std::size_t c = 0; c < path.size(); ++c) {
-    const auto from = static_cast<Index>(c);
-    const Index at = columns.of_state[c];
-    if (path[c].border >= 0) {
-      rows.col(at) += by_state.col(from);
-      continue;
-    }
-    const auto& weights = basis.at[static_cast<std::size_t>(path[c].order)];
-    for (Index i = 0; i < spline_order; ++i)
-      rows.col(at + i) += weights[static_cast<std::size_t>(i)] * by_state.col(from);
-  }
-  const bool rate = use.state_row == 0, force = use.state_row == 6;
-  const Index bias = columns.own + (rate ? 0 : force ? 3 : layout.field_error);
-  rows.template middleCols<3>(bias).setIdentity();
-  if (layout.has_matrices && (rate || force)) {
-    const Vec3& truth = rate ? state.rate : state.force;
-    for (Index j = 0; j < 3; ++j)  // S is stored column by column
-      for (Index i = 0; i < 3; ++i) rows(i, columns.own + (rate ? 6 : 15) + 3 * j + i) = truth[j];
-  }
-  if (!layout.has_tilts) return;
-  auto tilt = rows.template middleCols<9>(columns.own + layout.tilt_error);
-  tilt = by_tilt(felt, use);
-  if (layout.has_matrices && rate) tilt += errors.rate_matrix * by_tilt(felt, use);
-  if (layout.has_matrices && force) tilt += errors.force_matrix * by_tilt(felt, use);
-}
-
-/// What the INS feels at a node, on the mount that it has.
-InsState felt_at(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, std::size_t sensor,
-                 Index interval, std::size_t node, const InsState& segment) {
-  if (!layout.has_tilts) return segment;
-  const InsBending& bending = problem.sensors[sensor].bending[static_cast<std::size_t>(interval)];
-  return felt(segment, x.errors[sensor].tilt, bending.force_at(node), bending.change_at(node));
-}
-
-FeltDerivative felt_with_derivative(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
-                                    std::size_t sensor, Index interval, std::size_t node, const InsState& segment) {
-  if (!layout.has_tilts) return {segment, Mat3::Identity(), {}, {}, {}};
-  const InsBending& bending = problem.sensors[sensor].bending[static_cast<std::size_t>(interval)];
-  return felt_derivative(segment, x.errors[sensor].tilt, bending.force_at(node), bending.change_at(node));
-}
-
-/// Whitened, robustly weighted Jacobian and residual of one sensor in one interval.
-struct SensorSystem {
-  MatrixXd jacobian;
-  VectorXd residual;
-};
-
-SensorSystem sensor_system(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
-                           const SensorColumns& columns, const std::vector<InsColumn>& path, std::size_t body,
-                           Index interval, const std::array<NodeMotion, block_nodes>& motion,
-                           const std::array<SplineBasis, block_nodes>& bases) {
-  const auto sensor = static_cast<std::size_t>(x.bodies[body].sensor);
-  const auto uses = instruments(problem, layout, sensor);
-  const InsErrors errors = errors_at(problem, x, sensor, interval);
-  const auto k = static_cast<std::size_t>(interval);
-  Index rows = 0;
-  for (const InstrumentUse& use : uses) rows += 3 * use.blocks[k].rows;
-  const auto width = static_cast<Index>(columns.index.size());
-  SensorSystem system{MatrixXd::Zero(rows, width), VectorXd(rows)};
-  MatrixXd at_nodes(3 * block_nodes, width);
-  std::array<FeltDerivative, block_nodes> felt;
-  for (std::size_t n = 0; n < block_nodes; ++n)
-    felt[n] = felt_with_derivative(problem, layout, x, sensor, interval, n, motion[n].state[body]);
-  Index row = 0;
-  for (const InstrumentUse& use : uses) {
-    const InsBlock& block = use.blocks[k];
-    if (block.rows == 0) continue;
-    const NodeMatrix factor = shifted_factor(block, layout, clock_shift(problem, layout, errors, interval));
-    BlockResidual predicted;
-    for (Index node = 0; node < block_nodes; ++node) {
-      const auto n = static_cast<std::size_t>(node);
-      predicted.row(node) = use.read(felt[n].state, errors).transpose();
-      fill_rows(at_nodes.middleRows<3>(3 * node), use, layout, columns, path, motion[n].columns[body], felt[n], errors,
-                bases[n]);
-    }
-    const BlockResidual r = residual(block, factor, predicted, use.sd);
-    const double weight = std::sqrt(robust(r.squaredNorm(), 3.0 * block.rows).weight);
-    const BlockResidual by_shift = block.factor.cast<double>() * (node_derivative() * predicted);
-    for (Index i = 0; i < block.rows; ++i, row += 3) {
-      for (Index node = 0; node < block_nodes; ++node)
-        if (std::abs(factor(i, node)) > 0.0)
-          system.jacobian.middleRows<3>(row) += (weight * factor(i, node) / use.sd) * at_nodes.middleRows<3>(3 * node);
-      if (layout.has_clocks) {
-        const Index clock = columns.own + layout.clock_error;
-        const Vec3 by_offset = (weight / (use.sd * problem.grid.period)) * by_shift.row(i).transpose();
-        system.jacobian.block<3, 1>(row, clock) = by_offset;
-        system.jacobian.block<3, 1>(row, clock + 1) = from_middle(problem.grid, interval) * by_offset;
-      }
-      system.residual.segment<3>(row) = weight * r.row(i).transpose();
-    }
-  }
-  return system;
-}
 
 // ---- Priors on the band ---------------------------------------------------------------------------------------------
 
@@ -424,6 +225,16 @@ struct IntervalLinearisation::Parts {
         visit(columns[b].index,
               sensor_system(problem, layout, x, columns[b], paths.columns[b], b, interval, motion, bases));
   }
+
+  /// Calls visit(index, jacobian, residual) for each sensor's readings and each fact of the interval.
+  template <class Visit>
+  void each_rows(Index interval, const Visit& visit) const {
+    each_sensor(interval, [&](const std::vector<Index>& index, const SensorSystem& system) {
+      visit(index, system.jacobian, system.residual);
+    });
+    for (const InsFactRows& rows : facts)
+      if (rows.interval == interval) visit(every_column, rows.derivative, rows.left);
+  }
 };
 
 IntervalLinearisation::IntervalLinearisation(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x)
@@ -448,11 +259,9 @@ IntervalLinearisation::~IntervalLinearisation() = default;
 BandSpan IntervalLinearisation::span(Index interval, BorderSum& border) const {
   const Index local = spline_order * parts_->layout.channels, held = parts_->layout.border;
   BandSpan span{MatrixXd::Zero(local, local), MatrixXd::Zero(held, local), VectorXd::Zero(local)};
-  parts_->each_sensor(interval, [&](const std::vector<Index>& index, const SensorSystem& system) {
-    accumulate(index, system.jacobian, system.residual, span, border);
+  parts_->each_rows(interval, [&](const std::vector<Index>& index, const MatrixXd& jacobian, const VectorXd& residual) {
+    accumulate(index, jacobian, residual, span, border);
   });
-  for (const InsFactRows& rows : parts_->facts)
-    if (rows.interval == interval) accumulate(parts_->every_column, rows.derivative, rows.left, span, border);
   add_band_prior(span, parts_->problem, parts_->layout, parts_->x.band, interval);
   return span;
 }
@@ -460,11 +269,9 @@ BandSpan IntervalLinearisation::span(Index interval, BorderSum& border) const {
 BandSpan IntervalLinearisation::span_behind(Index interval, ConstVectorRef border) const {
   const Index local = spline_order * parts_->layout.channels;
   BandSpan span{MatrixXd::Zero(local, local), MatrixXd(0, local), VectorXd::Zero(local)};
-  parts_->each_sensor(interval, [&](const std::vector<Index>& index, const SensorSystem& system) {
-    accumulate_behind(index, system.jacobian, system.residual, border, span);
+  parts_->each_rows(interval, [&](const std::vector<Index>& index, const MatrixXd& jacobian, const VectorXd& residual) {
+    accumulate_behind(index, jacobian, residual, border, span);
   });
-  for (const InsFactRows& rows : parts_->facts)
-    if (rows.interval == interval) accumulate_behind(parts_->every_column, rows.derivative, rows.left, border, span);
   add_band_prior(span, parts_->problem, parts_->layout, parts_->x.band, interval);
   return span;
 }
