@@ -40,14 +40,6 @@ struct Drive {
   MachineTruth truth;
 };
 
-MachineMotion on_foam(const MachineMotion& motion, double lean, const Rng& rng) {
-  constexpr double swaying = 8.0;  // [Hz]
-  std::vector<SoftMount> mounts;
-  for (std::size_t s = 0; s < motion.sensors.size(); ++s)
-    mounts.push_back(drawn_soft_mount(lean, swaying, rng.stream(s)));
-  return with_soft_mounts(motion, mounts);
-}
-
 Drive simulated(const Setup& setup, std::uint64_t seed) {
   const auto mjcf =
       machine_mjcf(setup.machine, {.base = setup.base, .slope = Angle::deg(setup.slope)}, Rng(seed).stream(1)).value();

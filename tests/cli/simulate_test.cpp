@@ -43,6 +43,13 @@ TEST_F(Simulate, same_seed_writes_the_same_bytes_anywhere_and_another_seed_does_
   EXPECT_NE(slurp(in("one/imu.csv")), slurp(in("other/imu.csv")));
 }
 
+TEST_F(Simulate, sensors_on_foam_feel_another_motion_of_the_same_machine) {
+  ASSERT_EQ(kinfer("simulate tree --duration 16 --out firm").code, 0);
+  ASSERT_EQ(kinfer("simulate tree --duration 16 --foam 3 --out soft").code, 0);
+  EXPECT_NE(slurp(in("firm/imu.csv")), slurp(in("soft/imu.csv")));
+  EXPECT_EQ(json::parse(slurp(in("firm/truth.json")))["joints"], json::parse(slurp(in("soft/truth.json")))["joints"]);
+}
+
 TEST_F(Simulate, what_cannot_be_done_is_refused_in_a_sentence_and_nothing_is_written) {
   const std::pair<const char*, const char*> cases[] = {
       {"simulate digger", "digger: no such machine; known are crane, excavator, excavator-general, robot6, tree"},

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/cli/drive_choices.hpp"
 #include "kinfer/cli/simulate_files.hpp"
 #include "kinfer/cli/simulated_faults.hpp"
@@ -13,6 +14,7 @@
 #include "kinfer/simulate/ins_simulation.hpp"
 #include "kinfer/simulate/linkage.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
+#include "kinfer/simulate/soft_mounts.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -101,6 +103,7 @@ Result<void> simulate(const Options& options) {
   KINFER_TRY(folder, OutputFolder::make(options.out));
   KINFER_TRY(moved, move(world, machine, drive, options));
   const MachineTruth truth = machine_truth(machine, moved);
+  if (options.faults.foam > 0.0) moved = on_foam(std::move(moved), options.faults.foam * degree, rng.stream(4));
   KINFER_TRY(motion, with_remount(machine, std::move(moved), options.faults));
   KINFER_TRY(recording,
              with_late_sensor(simulated_recording(machine, motion, sensors, trouble_of(options), rng.stream(3)),
@@ -152,6 +155,8 @@ void add_sensor_options(CLI::App& verb, Options& options) {
   add_number(verb, "--magnetic-disturbance", options.trouble.magnetic_disturbance, 0.0, 1000.0,
              "Field of moving steel [uT rms]");
   add_flag(verb, "--no-magnetometer", options.no_magnetometer, "Six axes only");
+  add_number(verb, "--foam", options.faults.foam, 0.0, 30.0,
+             "Sensors on foam: they sway, and lean by this many degrees where they hang sideways; 0: firm mounts");
   add_text(verb, "--late", options.faults.late, "This sensor's readings are logged so many ms late", Need::optional,
            "SENSOR=MS");
   add_text(verb, "--remount", options.faults.remount,

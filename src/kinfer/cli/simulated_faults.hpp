@@ -12,6 +12,7 @@ namespace kinfer::cli {
 struct SimulatedFaults {
   std::string late;     ///< "ins2=50": its readings are logged 50 ms late
   std::string remount;  ///< "ins3=30": turned by 21 degrees and shifted by 10 cm on its segment after 30 s
+  double foam = 0.0;    ///< [deg] that sensors on foam lean where they hang sideways; 0: firm mounts
 };
 
 Result<MachineMotion> with_remount(const Machine& machine, MachineMotion motion, const SimulatedFaults& faults);

@@ -106,4 +106,12 @@ MachineMotion with_soft_mounts(MachineMotion motion, const std::vector<SoftMount
   return motion;
 }
 
+MachineMotion on_foam(MachineMotion motion, double lean, const Rng& rng) {
+  constexpr double swaying = 8.0;  // [Hz]
+  std::vector<SoftMount> mounts;
+  for (std::size_t s = 0; s < motion.sensors.size(); ++s)
+    mounts.push_back(drawn_soft_mount(lean, swaying, rng.stream(s)));
+  return with_soft_mounts(std::move(motion), mounts);
+}
+
 }  // namespace kinfer

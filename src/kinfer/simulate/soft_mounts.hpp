@@ -23,4 +23,7 @@ SoftMount drawn_soft_mount(double lean, double frequency, Rng rng);
 /// The same motion felt by sensors on such mounts, one a sensor. They have settled before t = 0.
 MachineMotion with_soft_mounts(MachineMotion motion, const std::vector<SoftMount>& mounts);
 
+/// Every sensor on foam of its own, which sways at 8 Hz and leans by about `lean` [rad].
+MachineMotion on_foam(MachineMotion motion, double lean, const Rng& rng);
+
 }  // namespace kinfer
