@@ -39,6 +39,13 @@ TEST(Forecast, TheFactorsWouldMakeItJustEnough) {
             "not enough for 5 mm and 3 mrad in a-b (3.9 times the acceleration, or 15.5 times the time)");
 }
 
+TEST(Forecast, NobodyIsSentToDriveForAYear) {
+  const JointForecast hopeless = forecast({joint_with(0.1, 1e-4)}).front();
+  EXPECT_FALSE(a_drive_would_do(hopeless));
+  EXPECT_EQ(in_words({hopeless}),
+            "not enough for 5 mm and 3 mrad in a-b (± 100 mm and ± 0 mrad, more than a longer drive mends)");
+}
+
 TEST(Forecast, TheTurnAboutTheOnlyAxisOfTheParentIsSaidApart) {
   FoundJoint joint = joint_with(1e-3, 1e-4);
   joint.sd.axis_in_parent = {3e-3, 4e-3};

@@ -51,10 +51,13 @@ void show_what_level_ground_hides(const Identification& found, std::vector<Advic
 void move_more(const Identification& found, std::vector<Advice>& list) {
   for (const JointForecast& f : found.forecast)
     if (!f.enough)
-      list.push_back({fmt::format("Move {} further and faster: {:.1f} times the acceleration, or {:.1f} times as long",
-                                  f.joint, f.acceleration, f.time),
-                      fmt::format("its line is known to {:.1f} mm and its direction to {:.1f} mrad only",
-                                  1e3 * f.line_sd, 1e3 * f.direction_sd)});
+      list.push_back(
+          {a_drive_would_do(f)
+               ? fmt::format("Move {} further and faster: {:.1f} times the acceleration, or {:.1f} times as long",
+                             f.joint, f.acceleration, f.time)
+               : fmt::format("Look at the sensors beside {}: mount them firmly, then move it much further", f.joint),
+           fmt::format("its line is known to {:.1f} mm and its direction to {:.1f} mrad only", 1e3 * f.line_sd,
+                       1e3 * f.direction_sd)});
 }
 
 /// The sensors that carry no further joint: what lies beyond them moves with them unseen.

@@ -50,12 +50,20 @@ bool is_vague_azimuth(const JointForecast& joint, const WantedAccuracy& wanted) 
   return !joint.azimuth_of.empty() && in_95_of_100 * joint.azimuth_sd > wanted.direction;
 }
 
+bool a_drive_would_do(const JointForecast& joint) {
+  constexpr double most = 10.0;  // times the acceleration: no machine has that to spare
+  return joint.acceleration <= most;
+}
+
 std::string lacking_in_words(const std::vector<JointForecast>& joints) {
   std::vector<std::string> lacking;
   for (const JointForecast& f : joints)
     if (!f.enough)
-      lacking.push_back(
-          fmt::format("{} ({:.1f} times the acceleration, or {:.1f} times the time)", f.joint, f.acceleration, f.time));
+      lacking.push_back(a_drive_would_do(f)
+                            ? fmt::format("{} ({:.1f} times the acceleration, or {:.1f} times the time)", f.joint,
+                                          f.acceleration, f.time)
+                            : fmt::format("{} (± {:.0f} mm and ± {:.0f} mrad, more than a longer drive mends)", f.joint,
+                                          1e3 * f.line_sd, 1e3 * f.direction_sd));
   return fmt::format("{}", fmt::join(lacking, ", "));
 }
 

@@ -15,6 +15,9 @@ struct WantedAccuracy {
 /// in proportion to the accelerations.
 std::vector<JointForecast> forecast(const std::vector<FoundJoint>& joints, const WantedAccuracy& wanted = {});
 
+/// Whether a brisker or longer drive of the same kind can be expected to tell a joint that is lacking.
+bool a_drive_would_do(const JointForecast& joint);
+
 bool enough_for_all(const std::vector<JointForecast>& joints);
 
 /// How the parent is turned about the only axis that it turns about is known worse than any direction should be.
