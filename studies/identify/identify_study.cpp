@@ -30,6 +30,7 @@ struct Setup {
   double lean = 0.0;                                   // [rad] of mounts of foam under the sensors' own weight
   double rate = 200.0;                                 // [Hz]
   int seeds = 4;
+  double knots = 0.0;     // [s]; 0: chosen
   bool steady = false;    // biases that do not wander
   bool constant = false;  // they do, and the fit does not know
   double duration = 0.0;  // [s]; 0: the script's own
@@ -102,7 +103,7 @@ void run(const Setup& setup) {
     const auto started = std::chrono::steady_clock::now();
     SensorModel grade = judged_model(drive.recording);
     if (setup.constant) grade.accelerometer.instability = grade.gyroscope.instability = 0.0;
-    const auto found = refine(drive.recording, *motion, *tree, starts, {.grade = grade});
+    const auto found = refine(drive.recording, *motion, *tree, starts, {.grade = grade, .knots = setup.knots});
     const auto done = std::chrono::steady_clock::now();
     if (!found) {
       fmt::print("seed {}: {}\n", seed, found.error().what);
@@ -116,9 +117,10 @@ void run(const Setup& setup) {
     fmt::print(
         "seed {}: line {:.2f} mm, direction {:.2f} mrad, azimuth {:.1f} mrad, slide {:.2f} mm; {} iterations {} cost "
         "{:.0f}; "
-        "{:.2f} + {:.2f} s, {}\n",
+        "{:.2f} + {:.2f} s, {}, knots {:.3f} s\n",
         seed, 1e3 * score.line, 1e3 * score.direction, 1e3 * score.azimuth, 1e3 * score.slide, found->fit.iterations,
-        name(found->fit.stop), found->fit.cost.total, seconds(begin, started), seconds(started, done), found->grade);
+        name(found->fit.stop), found->fit.cost.total, seconds(begin, started), seconds(started, done), found->grade,
+        found->knots);
     if (std::getenv("DETAIL")) {
       for (std::size_t s = 0; s < found->fit.cost.sensors.size(); ++s) {
         const SensorFit& f = found->fit.cost.sensors[s];
@@ -195,7 +197,7 @@ int main(int argc, char** argv) {
                       : letter == 'u' ? FoundJointType::universal
                       : letter == 'p' ? FoundJointType::prismatic
                                       : FoundJointType::revolute);
-    study::run_log(argv[2], argv[3], types, argc > 5 ? std::atof(argv[5]) : 0.1);
+    study::run_log(argv[2], argv[3], types, argc > 5 ? std::atof(argv[5]) : 0.0);
     return 0;
   }
   if (argc > 1) setup.machine = argv[1];
@@ -203,11 +205,14 @@ int main(int argc, char** argv) {
   if (argc > 3) setup.seeds = std::atoi(argv[3]);
   for (int i = 4; i < argc; ++i) {
     const std::string word = argv[i];
-    if (word.ends_with("s") && std::atof(word.c_str()) > 0.0) setup.duration = std::atof(word.c_str());
+    if (word.ends_with("s") && !word.ends_with("knots") && std::atof(word.c_str()) > 0.0)
+      setup.duration = std::atof(word.c_str());
+    if (word.ends_with("knots")) setup.knots = std::atof(word.c_str());
     if (word == "steady") setup.steady = true;
     if (word == "constant") setup.constant = true;
     if (word == "gentle") setup.script = Script::gentle;
     if (word == "together") setup.script = Script::together;
+    if (word == "quick") setup.script = Script::quick;
     if (word == "vigorous") setup.script = Script::vigorous;
     if (word == "spiky") setup.trouble.spikes = 6.0;
     if (word == "gappy") setup.trouble.missing = 0.05;

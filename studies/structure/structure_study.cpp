@@ -23,7 +23,7 @@
 namespace kinfer::study {
 namespace {
 
-constexpr const char* script_names[] = {"standard", "sequential", "together", "gentle", "vigorous"};
+constexpr const char* script_names[] = {"standard", "sequential", "together", "gentle", "vigorous", "quick"};
 constexpr const char* base_names[] = {"still", "rocking", "yawing"};
 constexpr const char* grades[] = {"noise", "industrial", "consumer"};
 constexpr const char* trouble_names[] = {"none", "missing 5 %", "clipped", "no magnetometer", "moving steel", "spikes"};
@@ -63,7 +63,7 @@ Log simulated(const Case& c) {
 std::vector<Case> all_cases(int seeds) {
   std::vector<Case> cases;
   for (const std::string& machine : machine_names())
-    for (std::size_t script = 0; script < 5; ++script)
+    for (std::size_t script = 0; script < std::size(script_names); ++script)
       for (std::size_t base = 0; base < 3; ++base)
         for (std::size_t grade = 0; grade < 3; ++grade)
           for (int k = 0; k < seeds; ++k) {

@@ -56,7 +56,7 @@ TEST_F(Simulate, what_cannot_be_done_is_refused_in_a_sentence_and_nothing_is_wri
       {"simulate tree --duration 5", "a duration of 5 s is too short for this script: 15.2 s at least"},
       {"simulate tree --grade lab",
        "lab: no such sensor grade; known are perfect, noise, industrial, consumer, or a file"},
-      {"simulate tree --excitation wild", "wild not in {gentle,sequential,standard,together,vigorous}"},
+      {"simulate tree --excitation wild", "wild not in {gentle,quick,sequential,standard,together,vigorous}"},
       {"simulate tree --rate 5", "5 not in range"},
       {"simulate tree --missing 1.5", "1.5 not in range"}};
   for (const auto& [arguments, sentence] : cases) {

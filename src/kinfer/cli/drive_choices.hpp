@@ -10,11 +10,9 @@
 
 namespace kinfer::cli {
 
-inline const std::map<std::string, Script> scripts{{"standard", Script::standard},
-                                                   {"sequential", Script::sequential},
-                                                   {"together", Script::together},
-                                                   {"gentle", Script::gentle},
-                                                   {"vigorous", Script::vigorous}};
+inline const std::map<std::string, Script> scripts{{"standard", Script::standard}, {"sequential", Script::sequential},
+                                                   {"together", Script::together}, {"gentle", Script::gentle},
+                                                   {"vigorous", Script::vigorous}, {"quick", Script::quick}};
 
 /// A preset, or a data sheet whose name ends in .toml. `also`: words that the verb knows besides, for the complaint.
 Result<SensorModel> named_grade(const std::string& name, const std::string& also = "");

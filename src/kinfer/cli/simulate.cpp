@@ -137,7 +137,7 @@ void add_machine_options(CLI::App& verb, Options& options) {
 void add_motion_options(CLI::App& verb, Options& options) {
   add_choice(verb, "--excitation", options.script, names_of(scripts),
              "standard: 4 s rest, 6 s a joint, 16 s all; sequential: without 'all'; together: 30 s all; gentle and "
-             "vigorous: standard at 45 and 180 %");
+             "vigorous: standard at 45 and 180 %; quick: its waves four times as fast");
   add_number(verb, "--duration", options.duration, 0.0, 3600.0, "Length of the recording [s]; 0: the script's own");
   add_choice(verb, "--motion", options.motion, {"stiff", "soft", "prescribed"},
              "stiff: forward dynamics, the joints follow; soft: they sway; prescribed: inverse dynamics");

@@ -16,6 +16,7 @@ constexpr double rough_decrease = 1.0;   // of the cost, that is worth a step wh
 constexpr double little_uphill = 1.2;    // times the cost
 constexpr int most_looks = 4;
 constexpr int round_iterations = 4;  // before the instruments are weighed anew
+constexpr double short_way = 0.01;   // of a step, over which the cost is straight
 
 struct Marquardt {
   InsProblem& problem;
@@ -29,29 +30,58 @@ struct Marquardt {
   };
 
   /// Where the damped equations at `from` lead; nothing where they are not positive definite.
-  std::optional<Point> stepped(const InsUnknowns& from, bool hold_border) const {
-    const InsSystem system(problem, fit.layout, from, {damping, damping, hold_border}, options.threads);
-    const auto change = system.solve();
-    if (!change) return std::nullopt;
-    InsUnknowns to = changed(problem, fit.layout, from, *change);
-    InsCost cost = cost_of(problem, fit.layout, to, options.threads);
-    return Point{std::move(to), std::move(cost)};
+  std::optional<InsStep> direction(const InsUnknowns& from, bool hold_border) const {
+    return InsSystem(problem, fit.layout, from, {damping, damping, hold_border}, options.threads).solve();
   }
 
-  /// One accepted step; false where no damping lowers the cost. A little uphill is looked at from the other side first:
-  /// in a valley that bends, as an azimuth's that only disturbed magnetometers tell, a long step leaves the ground and
-  /// the next one comes back to it, where steps that never rise creep.
+  Point reached(const InsUnknowns& from, const InsStep& step) const {
+    InsUnknowns to = changed(problem, fit.layout, from, step);
+    InsCost cost = cost_of(problem, fit.layout, to, options.threads);
+    return {std::move(to), std::move(cost)};
+  }
+
+  Point part_of_the_way(const InsStep& step, double share) const {
+    return reached(fit.unknowns, {share * step.band, share * step.border, share * step.wander});
+  }
+
+  void accept(Point&& point) {
+    fit.unknowns = std::move(point.unknowns);
+    fit.cost = std::move(point.cost);
+  }
+
+  /// A little uphill is looked at from the other side: in a valley that bends, as an azimuth's that only disturbed
+  /// magnetometers tell, a long step leaves the ground and the next one comes back to it, where steps that never rise
+  /// creep.
+  Point come_back(Point trial, bool hold_border) const {
+    for (int look = 0;
+         look < most_looks && trial.cost.total >= fit.cost.total && trial.cost.total < little_uphill * fit.cost.total;
+         ++look) {
+      const auto next = direction(trial.unknowns, hold_border);
+      if (!next) break;
+      trial = reached(trial.unknowns, *next);
+    }
+    return trial;
+  }
+
+  /// One accepted step; false where the ground is reached or no damping lowers the cost.
   bool step(bool hold_border) {
     for (; damping < most_damping; damping *= 10.0) {
-      auto trial = stepped(fit.unknowns, hold_border);
-      for (int look = 0; look < most_looks && trial && !(trial->cost.total < fit.cost.total) &&
-                         trial->cost.total < little_uphill * fit.cost.total;
-           ++look)
-        trial = stepped(trial->unknowns, hold_border);
-      if (!trial || !(trial->cost.total < fit.cost.total)) continue;
-      fit.unknowns = std::move(trial->unknowns);
-      fit.cost = std::move(trial->cost);
-      damping = std::max(least_damping, 0.03 * damping);
+      const auto first = direction(fit.unknowns, hold_border);
+      if (!first) continue;
+      Point trial = reached(fit.unknowns, *first);
+      if (trial.cost.total < fit.cost.total) {
+        accept(std::move(trial));
+        damping = std::max(least_damping, 0.03 * damping);
+        return true;
+      }
+      const double rise = trial.cost.total - fit.cost.total,
+                   slope = (fit.cost.total - part_of_the_way(*first, short_way).cost.total) / short_way;
+      if (slope < options.least_decrease) break;  // the ground; a more damped step promises less still
+      // Robust weights that change on the way make the step too long: the parabola's lowest point is nearer.
+      trial = rise < slope ? part_of_the_way(*first, 0.5 * slope / (slope + rise))
+                           : come_back(std::move(trial), hold_border);
+      if (trial.cost.total >= fit.cost.total) continue;
+      accept(std::move(trial));
       return true;
     }
     damping = first_damping;

@@ -7,6 +7,7 @@
 #include "kinfer/estimate/ins_covariance.hpp"
 #include "kinfer/estimate/ins_excerpt.hpp"
 #include "kinfer/estimate/ins_fact_rows.hpp"
+#include "kinfer/estimate/motion_knots.hpp"
 #include "kinfer/identify/azimuth.hpp"
 #include "kinfer/identify/clock_fit.hpp"
 #include "kinfer/identify/joint_film.hpp"
@@ -218,13 +219,15 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
                           const std::vector<JointStart>& starts, const RefineOptions& options,
                           const Observer& observer) {
   const SensorModel grade = options.grade ? *options.grade : judged_model(recording);
-  RefineSetup setup = refine_setup(recording, motion, tree, starts, grade, options.knots);
+  const double knots = options.knots > 0.0 ? options.knots : motion_knots(recording);
+  RefineSetup setup = refine_setup(recording, motion, tree, starts, grade, knots);
   KINFER_TRY(facts, named_facts(options.facts, segment_names(motion), setup.start.bodies, setup.problem.grid,
                                 setup.problem.root_stands_still));
   const RefineTask task{recording, motion, tree, starts, grade, facts, options.fit};
   RefineFit fitted = fit_all_motion(task, std::move(setup), options, observer);
   Refinement result;
   result.grade = grade.name;
+  result.knots = knots;
   for (const InsReadings& readings : fitted.setup.problem.sensors) {
     result.noise.push_back(readings.noise);
     result.least.push_back(readings.least);

@@ -22,7 +22,7 @@ enum class Clocks {
 struct RefineOptions {
   std::optional<SensorModel> grade{};  ///< what the sensors are worth; without it judged from the recording
   InsFitOptions fit{};
-  double knots = 0.1;    ///< [s] between the knots of the splines
+  double knots = 0.0;    ///< [s] between the knots of the splines; 0: as the motion asks for (motion_knots)
   MachineFacts facts{};  ///< what else is known
   Clocks clocks = Clocks::checked;
   bool hold_out = true;  ///< fit once more without some windows, to tell how well the chain predicts
@@ -42,6 +42,7 @@ struct Refinement {
   MatrixXd covariance;                 ///< of the border's unknowns
   std::string grade;                   ///< that was used
   std::vector<FoundPlace> places;      ///< of the facts
+  double knots = 0.0;                  ///< [s] that were used for all of the motion
   double cutoff = 0.0;                 ///< [Hz] below which the motion was believed; 0: all of it was
   std::vector<RefinedClock> clocks{};  ///< one a sensor; none where the clocks were right
   HeldOut held_out{};                  ///< empty where the recording is too short or nobody asked

@@ -76,11 +76,11 @@ struct Band {
 constexpr Band machine_bands[] = {{0.12, 0.25}, {0.3, 0.45}, {0.45, 0.65}};
 constexpr Band base_bands[] = {{0.3, 0.5}, {0.6, 0.8}, {0.9, 1.2}};
 
-/// Waves of about equal rates, one a band, as large as `most` allows.
-Movement draw_movement(double begin, double end, const Reach& most, std::span<const Band> bands, Rng rng) {
+/// Waves of about equal rates, one a band and `pace` times as fast, as large as `most` allows.
+Movement draw_movement(double begin, double end, const Reach& most, std::span<const Band> bands, double pace, Rng rng) {
   Movement movement{.begin = begin, .end = end};
   for (const Band& band : bands) {
-    const double frequency = rng.uniform(band.low, band.high);
+    const double frequency = pace * rng.uniform(band.low, band.high);
     movement.waves.push_back({rng.uniform(0.6, 1.0) / frequency, frequency, rng.uniform(0.0, 2.0 * std::numbers::pi)});
   }
   const Reach unscaled = reached(movement);
@@ -92,6 +92,11 @@ Movement draw_movement(double begin, double end, const Reach& most, std::span<co
 
 double size_of(Script script) {
   return script == Script::gentle ? 0.45 : script == Script::vigorous ? 1.8 : 1.0;
+}
+
+/// How much faster the waves are than the standard drive's.
+double pace_of(Script script) {
+  return script == Script::quick ? 4.0 : 1.0;
 }
 
 /// Rest, a phase for each of `joints`, a phase for all, rest; as the script has them.
@@ -119,10 +124,11 @@ Result<std::vector<Phase>> plan(const std::vector<std::string>& joints, const Ex
 
 Reach most_of_joint(const Joint& joint, double home, const ExcitationOptions& options) {
   const bool turns = joint.type == JointType::revolute;
-  const double room = std::min(joint.upper - home, home - joint.lower), size = size_of(options.script);
+  const double room = std::min(joint.upper - home, home - joint.lower), size = size_of(options.script),
+               pace = pace_of(options.script);
   return {std::min(size, 1.0) * std::min(0.95 * room, turns ? 0.8 : 1.0),
           size * (turns ? options.turn_rate : options.slide_rate),
-          size * (turns ? options.turn_acceleration : options.slide_acceleration)};
+          size * pace * (turns ? options.turn_acceleration : options.slide_acceleration)};
 }
 
 Reach most_of_base(const Joint& joint, const ExcitationOptions& options) {
@@ -136,7 +142,7 @@ Reach most_of_base(const Joint& joint, const ExcitationOptions& options) {
 
 std::vector<Movement> base_movements(const Joint& joint, const std::vector<Phase>& phases,
                                      const ExcitationOptions& options, Rng rng) {
-  return {draw_movement(phases.front().end, phases.back().begin, most_of_base(joint, options), base_bands, rng)};
+  return {draw_movement(phases.front().end, phases.back().begin, most_of_base(joint, options), base_bands, 1.0, rng)};
 }
 
 std::vector<Movement> joint_movements(const Joint& joint, double home, const std::vector<Phase>& phases,
@@ -148,7 +154,8 @@ std::vector<Movement> joint_movements(const Joint& joint, double home, const std
     Reach most = most_of_joint(joint, home, options);
     if (phase.what == "all")
       most = {most.excursion, options.together * most.rate, options.together * most.acceleration};
-    movements.push_back(draw_movement(phase.begin, phase.end, most, machine_bands, rng.stream(p)));
+    movements.push_back(
+        draw_movement(phase.begin, phase.end, most, machine_bands, pace_of(options.script), rng.stream(p)));
   }
   return movements;
 }

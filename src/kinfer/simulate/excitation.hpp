@@ -55,7 +55,8 @@ enum class Script {
   sequential,  ///< 4 s rest, 6 s a joint
   together,    ///< 4 s rest, then all together for 30 s
   gentle,      ///< the standard drive at 45 % of its size
-  vigorous     ///< the standard drive at 180 % of its rates, as far as the joints' ranges let it
+  vigorous,    ///< the standard drive at 180 % of its rates, as far as the joints' ranges let it
+  quick        ///< the standard drive with waves four times as fast, of the same rates: an arm, not a machine
 };
 
 struct ExcitationOptions {
