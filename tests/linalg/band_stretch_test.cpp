@@ -47,10 +47,9 @@ std::vector<BandStretch> cut(const Parts& p, std::vector<std::size_t> lengths) {
   std::vector<BandStretch> stretches;
   std::size_t at = 0;
   for (const std::size_t length : lengths) {
-    BandStretch stretch(p.width, p.reach, p.border);
-    for (std::size_t k = 0; k < length; ++k) stretch.add(p.spans[at++]);
-    stretch.finish();
-    stretches.push_back(std::move(stretch));
+    StretchSum sum(p.width, p.reach, p.border, static_cast<Index>(length));
+    for (Index k = 0; k < static_cast<Index>(length); ++k) sum.add(k, p.spans[at++]);
+    stretches.emplace_back(std::move(sum));
   }
   return stretches;
 }

@@ -10,6 +10,7 @@
 #include "kinfer/estimate/ins_residual.hpp"
 #include "kinfer/estimate/ins_sensor_system.hpp"
 #include "kinfer/estimate/ins_wander.hpp"
+#include "kinfer/linalg/block_products.hpp"
 
 namespace kinfer {
 namespace {
@@ -72,7 +73,7 @@ void accumulate(const std::vector<Index>& index, const MatrixXd& jacobian, const
   if (residual.size() == 0) return;  // nothing was said
   const Index n = jacobian.cols(), local = span.right.size();
   MatrixXd squares = MatrixXd::Zero(n, n);
-  squares.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
+  add_square(jacobian.transpose(), 1.0, squares);
   const VectorXd right = jacobian.transpose() * residual;
   for (Index c = 0; c < n; ++c) {
     const Index to = index[static_cast<std::size_t>(c)];
@@ -101,7 +102,7 @@ void accumulate_behind(const std::vector<Index>& index, const MatrixXd& jacobian
     if (std::abs(by) > 0.0) residual -= by * jacobian.col(c);
   }
   MatrixXd squares = MatrixXd::Zero(n, n);
-  squares.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.leftCols(n).transpose());
+  add_square(jacobian.leftCols(n).transpose(), 1.0, squares);
   const VectorXd right = jacobian.leftCols(n).transpose() * residual;
   for (Index c = 0; c < n; ++c) {
     const Index to = index[static_cast<std::size_t>(c)];

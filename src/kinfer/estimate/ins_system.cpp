@@ -103,15 +103,12 @@ void InsSystem::add_wander_prior(BandSpan& span, std::size_t stretch) const {
 
 /// `border`: what the stretch adds to the border's equations, its own elimination taken off.
 BandStretch InsSystem::eliminated(const InsStretch& stretch, BorderSum& border) const {
-  BandStretch result(layout_.channels, spline_order, layout_.border);
+  StretchSum sum(layout_.channels, spline_order, layout_.border, stretch.end - stretch.first);
   border = {MatrixXd::Zero(layout_.border, layout_.border), VectorXd::Zero(layout_.border)};
-  for (Index interval = stretch.first; interval < stretch.end; ++interval) {
-    BandSpan span = linearisation_.span(interval, border);
-    span.matrix.diagonal() *= 1.0 + damping_.band;
-    result.add(span);
-  }
+  for (Index interval = stretch.first; interval < stretch.end; ++interval)
+    sum.add(interval - stretch.first, linearisation_.span(interval, border));
   border.matrix.diagonal() *= 1.0 + damping_.border;
-  result.finish();
+  BandStretch result(std::move(sum), damping_.band);
   border.matrix += result.border_matrix();
   border.right += result.border_right();
   return result;
@@ -119,14 +116,10 @@ BandStretch InsSystem::eliminated(const InsStretch& stretch, BorderSum& border) 
 
 /// The same where the step of the border is known.
 BandStretch InsSystem::eliminated_behind(const InsStretch& stretch, ConstVectorRef border) const {
-  BandStretch result(layout_.channels, spline_order, 0);
-  for (Index interval = stretch.first; interval < stretch.end; ++interval) {
-    BandSpan span = linearisation_.span_behind(interval, border);
-    span.matrix.diagonal() *= 1.0 + damping_.band;
-    result.add(span);
-  }
-  result.finish();
-  return result;
+  StretchSum sum(layout_.channels, spline_order, 0, stretch.end - stretch.first);
+  for (Index interval = stretch.first; interval < stretch.end; ++interval)
+    sum.add(interval - stretch.first, linearisation_.span_behind(interval, border));
+  return BandStretch(std::move(sum), damping_.band);
 }
 
 /// The border as a stretch sees it: what its biases wandered off is added to the constants.

@@ -1,6 +1,7 @@
 #include "kinfer/linalg/band_stretch.hpp"
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/linalg/block_products.hpp"
 #include "kinfer/linalg/small_cholesky.hpp"
 
 namespace kinfer {
@@ -8,128 +9,121 @@ namespace {
 
 using Index = Eigen::Index;
 
-MatrixXd side_by_side(const std::vector<MatrixXd>& parts, Index rows, Index width) {
-  MatrixXd all(rows, width * static_cast<Index>(parts.size()));
-  for (std::size_t k = 0; k < parts.size(); ++k) all.middleCols(width * static_cast<Index>(k), width) = parts[k];
-  return all;
-}
-
 }  // namespace
 
-BandStretch::BandStretch(Index width, Index reach, Index border)
-    : width_(width),
-      reach_(reach),
-      border_(border),
-      front_{MatrixXd::Zero(reach * width, reach * width), MatrixXd::Zero((reach - 1) * width + border, reach * width),
-             VectorXd::Zero(reach * width)},
-      end_matrix_(MatrixXd::Zero((reach - 1) * width + border, (reach - 1) * width + border)),
-      end_right_(VectorXd::Zero((reach - 1) * width + border)) {}
-
-void BandStretch::add(const BandSpan& span) {
-  KINFER_EXPECT(span.matrix.rows() == reach_ * width_ && span.coupling.rows() == border_);
-  if (spans_++ < reach_ - 1) return add_beside_first_end(span);
-  front_.matrix.triangularView<Eigen::Lower>() += span.matrix;
-  front_.coupling.bottomRows(border_) += span.coupling;
-  front_.right += span.right;
-  eliminate_first();
+StretchSum::StretchSum(Index width_, Index reach_, Index border_, Index spans_)
+    : width(width_),
+      reach(reach_),
+      border(border_),
+      spans(spans_),
+      band(MatrixXd::Zero(reach * width, (spans + reach - 1) * width)),
+      beside(MatrixXd::Zero(end() + border, band.cols())),
+      right(VectorXd::Zero(band.cols())),
+      border_matrix(MatrixXd::Zero(border, border)),
+      border_right(VectorXd::Zero(border)) {
+  KINFER_EXPECT(spans >= reach - 1, "{} spans, ends of {} groups", spans, reach - 1);
 }
 
-/// The span's first groups belong to the first end, its others to the front, which waits there.
-void BandStretch::add_beside_first_end(const BandSpan& span) {
-  const Index from = (spans_ - 1) * width_, in_end = end() - from, in_front = reach_ * width_ - in_end;
-  end_matrix_.block(from, from, in_end, in_end).triangularView<Eigen::Lower>() +=
-      span.matrix.topLeftCorner(in_end, in_end);
-  end_matrix_.block(end(), from, border_, in_end) += span.coupling.leftCols(in_end);
-  end_right_.segment(from, in_end) += span.right.head(in_end);
-  front_.matrix.topLeftCorner(in_front, in_front).triangularView<Eigen::Lower>() +=
-      span.matrix.bottomRightCorner(in_front, in_front);
-  front_.coupling.block(from, 0, in_end, in_front) += span.matrix.bottomLeftCorner(in_front, in_end).transpose();
-  front_.coupling.bottomLeftCorner(border_, in_front) += span.coupling.rightCols(in_front);
-  front_.right.head(in_front) += span.right.tail(in_front);
-}
-
-void BandStretch::eliminate_first() {
-  if (!positive_) return;
-  const Index w = width_, rest = end();
-  Group group{front_.matrix.topLeftCorner(w, w), MatrixXd(front_.matrix.bottomLeftCorner(rest, w))};
-  if (!factorise_small(group.pivot)) {
-    positive_ = false;
-    return;
+void StretchSum::add(Index span, const BandSpan& more) {
+  KINFER_EXPECT(more.matrix.rows() == reach * width && more.coupling.rows() == border);
+  const Index at = span * width;
+  for (Index c = 0; c < more.matrix.cols(); ++c) {
+    const Index group = c / width * width;
+    band.col(at + c).segment(c - group, reach * width - c) += more.matrix.col(c).tail(reach * width - c);
   }
-  MatrixXd coupling = front_.coupling.leftCols(w);
-  VectorXd right = front_.right.head(w);
-  const auto inverse_upper = group.pivot.triangularView<Eigen::Lower>().transpose();
-  inverse_upper.solveInPlace<Eigen::OnTheRight>(group.next);
-  inverse_upper.solveInPlace<Eigen::OnTheRight>(coupling);
-  group.pivot.triangularView<Eigen::Lower>().solveInPlace(right);
-  // Everything moves up by one group while the eliminated one is taken off.
-  for (Index c = 0; c < rest; ++c)
-    front_.matrix.col(c).segment(c, rest - c) = front_.matrix.col(c + w).segment(c + w, rest - c) -
-                                                group.next.bottomRows(rest - c) * group.next.row(c).transpose();
-  front_.matrix.bottomRows(w).setZero();
-  front_.matrix.rightCols(w).setZero();
-  front_.coupling.leftCols(rest) = front_.coupling.rightCols(rest).eval();
-  front_.coupling.rightCols(w).setZero();
-  front_.coupling.leftCols(rest).noalias() -= coupling * group.next.transpose();
-  front_.right.head(rest) = front_.right.tail(rest).eval() - group.next * right;
-  front_.right.tail(w).setZero();
-  end_right_.noalias() -= coupling * right;
-  groups_.push_back(std::move(group));
-  coupling_.push_back(std::move(coupling));
-  right_.push_back(std::move(right));
+  beside.block(end(), at, border, reach * width) += more.coupling;
+  right.segment(at, reach * width) += more.right;
 }
 
-void BandStretch::finish() {
-  KINFER_EXPECT(spans_ >= reach_ - 1, "{} spans, ends of {} groups", spans_, reach_ - 1);
-  if (positive_ && !groups_.empty())  // all groups in one product: it is as fast as the processor allows
-    end_matrix_.selfadjointView<Eigen::Lower>().rankUpdate(side_by_side(coupling_, end_matrix_.rows(), width_), -1.0);
+BandStretch::BandStretch(StretchSum sum, double damping) : sum_(std::move(sum)) {
+  for (Index c = 0; c < sum_.band.cols(); ++c) sum_.band(c % sum_.width, c) *= 1.0 + damping;
+  take_off_first_end();
+  for (Index at = end(); positive_ && at < end() + inner(); at += sum_.width) positive_ = eliminate(at);
+  if (positive_) take_from_beside();
+}
+
+/// How the first end meets what comes behind it stands beside that: both ends and the border stay together.
+void BandStretch::take_off_first_end() {
+  const Index w = sum_.width, e = end();
+  first_end_ = MatrixXd::Zero(e, e);
+  for (Index c = 0; c < e; ++c) {
+    const Index group = c / w * w;
+    first_end_.col(c).tail(e - c) = sum_.band.col(c).segment(c - group, e - c);
+    sum_.beside.row(c).segment(e, group + w) = sum_.band.col(c).tail(group + w).transpose();
+  }
+}
+
+/// The group whose unknowns begin at `at`; false where its pivot is not positive.
+bool BandStretch::eliminate(Index at) {
+  const Index w = sum_.width, e = end();
+  auto pivot = sum_.band.block(0, at, w, w), next = sum_.band.block(w, at, e, w);
+  auto beside = sum_.beside.middleCols(at, w);
+  auto right = sum_.right.segment(at, w);
+  if (!factorise_small(pivot)) return false;
+  solve_right(pivot, next);
+  solve_right(pivot, beside);
+  pivot.triangularView<Eigen::Lower>().solveInPlace(right);
+  for (Index before = 0; before < e; before += w)
+    add_product(next.bottomRows(e - before), next.middleRows(before, w), -1.0,
+                sum_.band.block(0, at + w + before, e - before, w));
+  add_product(beside, next, -1.0, sum_.beside.middleCols(at + w, e));
+  sum_.right.segment(at + w, e).noalias() -= next * right;
+  return true;
+}
+
+/// All groups at once.
+void BandStretch::take_from_beside() {
+  const Index e = end(), b = sum_.border;
+  const auto beside = sum_.beside.middleCols(e, inner());
+  const VectorXd right = beside * sum_.right.segment(e, inner());
+  MatrixXd taken = MatrixXd::Zero(e + b, e + b);
+  add_square(beside, 1.0, taken);
+  first_end_ -= taken.topLeftCorner(e, e);
+  sum_.beside.block(e, 0, b, e) -= taken.bottomLeftCorner(b, e);
+  sum_.right.head(e) -= right.head(e);
+  sum_.border_matrix -= taken.bottomRightCorner(b, b);
+  sum_.border_right -= right.tail(b);
 }
 
 BandSpan BandStretch::condensed() const {
-  const Index e = end();
-  BandSpan span{MatrixXd::Zero(2 * e, 2 * e), MatrixXd(border_, 2 * e), VectorXd(2 * e)};
-  span.matrix.topLeftCorner(e, e) = end_matrix_.topLeftCorner(e, e);
-  span.matrix.bottomLeftCorner(e, e) = front_.coupling.topLeftCorner(e, e).transpose();
-  span.matrix.bottomRightCorner(e, e) = front_.matrix.topLeftCorner(e, e);
-  span.coupling << end_matrix_.bottomLeftCorner(border_, e), front_.coupling.bottomLeftCorner(border_, e);
-  span.right << end_right_.head(e), front_.right.head(e);
+  const Index w = sum_.width, e = end(), b = sum_.border, last = end() + inner();
+  BandSpan span{MatrixXd::Zero(2 * e, 2 * e), MatrixXd(b, 2 * e), VectorXd(2 * e)};
+  span.matrix.topLeftCorner(e, e) = first_end_;
+  span.matrix.bottomLeftCorner(e, e) = sum_.beside.topRightCorner(e, e).transpose();
+  for (Index c = 0; c < e; ++c) span.matrix.col(e + c).tail(e - c) = sum_.band.col(last + c).segment(c % w, e - c);
+  span.coupling << sum_.beside.bottomLeftCorner(b, e), sum_.beside.bottomRightCorner(b, e);
+  span.right << sum_.right.head(e), sum_.right.tail(e);
   return span;
 }
 
-MatrixXd BandStretch::border_matrix() const {
-  return end_matrix_.bottomRightCorner(border_, border_);
+/// What stands in the rows of the inner groups, behind them the last end: lᵀ x, in its place comes x.
+template <class Values>
+void BandStretch::substitute_back(Values& values) const {
+  const Index w = sum_.width, e = end();
+  for (Index group = sum_.inner_groups() - 1; group >= 0; --group) {
+    const Index at = group * w;
+    auto value = values.middleRows(at, w);
+    value.noalias() -= sum_.band.block(w, e + at, e, w).transpose() * values.middleRows(at + w, e);
+    sum_.band.block(0, e + at, w, w).template triangularView<Eigen::Lower>().transpose().solveInPlace(value);
+  }
 }
 
 MatrixXd BandStretch::solve(ConstVectorRef first_end, ConstVectorRef last_end, ConstVectorRef border) const {
-  VectorXd beside(end() + border_);
+  VectorXd beside(end() + sum_.border), values(inner() + end());
   beside << first_end, border;
-  MatrixXd values(width_, static_cast<Index>(groups_.size()));
-  VectorXd after = last_end;
-  for (Index k = values.cols() - 1; k >= 0; --k) {
-    const auto i = static_cast<std::size_t>(k);
-    VectorXd value = right_[i] - groups_[i].next.transpose() * after - coupling_[i].transpose() * beside;
-    groups_[i].pivot.triangularView<Eigen::Lower>().transpose().solveInPlace(value);
-    values.col(k) = value;
-    if (reach_ == 1) continue;
-    after.tail(after.size() - width_) = after.head(after.size() - width_).eval();
-    after.head(width_) = value;
-  }
-  return values;
+  values << sum_.right.segment(end(), inner()) - sum_.beside.middleCols(end(), inner()).transpose() * beside, last_end;
+  substitute_back(values);
+  return values.head(inner()).reshaped(sum_.width, sum_.inner_groups());
 }
 
 MatrixXd BandStretch::following(ConstMatrixRef first_end, ConstMatrixRef last_end, ConstMatrixRef border) const {
-  const auto steps = static_cast<Index>(groups_.size());
-  MatrixXd result(steps * width_ + end(), border.cols());
-  result.bottomRows(end()) = last_end;
-  for (Index k = steps - 1; k >= 0; --k) {
-    const auto i = static_cast<std::size_t>(k);
-    MatrixXd value = coupling_[i].bottomRows(border_).transpose() * border -
-                     coupling_[i].topRows(end()).transpose() * first_end -
-                     groups_[i].next.transpose() * result.middleRows((k + 1) * width_, end());
-    groups_[i].pivot.triangularView<Eigen::Lower>().transpose().solveInPlace(value);
-    result.middleRows(k * width_, width_) = value;
-  }
-  return result.topRows(steps * width_);
+  const Index e = end();
+  MatrixXd values(inner() + e, border.cols());
+  values << sum_.beside.block(e, e, sum_.border, inner()).transpose() * border -
+                sum_.beside.block(0, e, e, inner()).transpose() * first_end,
+      last_end;
+  substitute_back(values);
+  return values.topRows(inner());
 }
 
 }  // namespace kinfer

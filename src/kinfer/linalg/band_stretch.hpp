@@ -10,21 +10,36 @@
 
 namespace kinfer {
 
+/// The normal equations of a stretch while they are summed up. Unknown c of span k is the stretch's unknown
+/// k·width + c.
+struct StretchSum {
+  StretchSum(Eigen::Index width, Eigen::Index reach, Eigen::Index border, Eigen::Index spans);
+
+  void add(Eigen::Index span, const BandSpan& more);
+
+  Eigen::Index end() const { return (reach - 1) * width; }           ///< unknowns of one end
+  Eigen::Index inner_groups() const { return spans - (reach - 1); }  ///< between the ends
+
+  Eigen::Index width, reach, border, spans;
+  MatrixXd band;    ///< reach·width x unknowns: of each column the rows from its own group on; the lower half
+  MatrixXd beside;  ///< (end + border) x unknowns: how they meet the border; the first rows are the elimination's
+  VectorXd right;   ///< unknowns
+  MatrixXd border_matrix;  ///< lower half
+  VectorXd border_right;
+};
+
 class BandStretch {
  public:
-  BandStretch(Eigen::Index width, Eigen::Index reach, Eigen::Index border);
-
-  /// Spans come in order, at least reach - 1 of them.
-  void add(const BandSpan& span);
-  void finish();
+  /// Eliminates, in the place of the sum. `damping`: times the band's diagonal, to be added.
+  explicit BandStretch(StretchSum sum, double damping = 0.0);
 
   bool positive() const { return positive_; }  ///< false: some pivot was not, and nothing below may be asked for
 
-  /// What is left once finished: matrix and right side over [first end, last end], and how they meet the border.
+  /// What is left: matrix and right side over [first end, last end], and how they meet the border.
   BandSpan condensed() const;
-  /// What the elimination takes from the border's matrix and right side (to be added; lower half).
-  MatrixXd border_matrix() const;
-  VectorXd border_right() const { return end_right_.tail(border_); }
+  /// The border's matrix (lower half) and right side, less what the elimination takes from them.
+  const MatrixXd& border_matrix() const { return sum_.border_matrix; }
+  const VectorXd& border_right() const { return sum_.border_right; }
 
   /// Values of the groups between the ends, width x inner groups, where ends and border have these.
   MatrixXd solve(ConstVectorRef first_end, ConstVectorRef last_end, ConstVectorRef border) const;
@@ -34,21 +49,16 @@ class BandStretch {
   MatrixXd following(ConstMatrixRef first_end, ConstMatrixRef last_end, ConstMatrixRef border) const;
 
  private:
-  struct Group {
-    MatrixXd pivot;  ///< L, width x width, lower
-    MatrixXd next;   ///< (reach-1)·width x width
-  };
-  Eigen::Index end() const { return (reach_ - 1) * width_; }
-  void add_beside_first_end(const BandSpan& span);
-  void eliminate_first();
+  void take_off_first_end();
+  bool eliminate(Eigen::Index first);
+  void take_from_beside();
+  Eigen::Index end() const { return sum_.end(); }
+  Eigen::Index inner() const { return sum_.inner_groups() * sum_.width; }  ///< unknowns between the ends
+  template <class Values>
+  void substitute_back(Values& values) const;
 
-  Eigen::Index width_, reach_, border_, spans_ = 0;
-  BandSpan front_;       // its coupling has rows [first end, border]
-  MatrixXd end_matrix_;  // of [first end, border], lower half
-  VectorXd end_right_;
-  std::vector<Group> groups_;
-  std::vector<MatrixXd> coupling_;  // of each group: [first end, border] x width
-  std::vector<VectorXd> right_;     // of each group: L⁻¹ a
+  StretchSum sum_;  // between the ends: in `band` the factor, in `beside` and `right` what the factor makes of them
+  MatrixXd first_end_;
   bool positive_ = true;
 };
 

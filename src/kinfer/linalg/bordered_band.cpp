@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/linalg/block_products.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/small_cholesky.hpp"
 
@@ -49,21 +50,20 @@ void BorderedBand::eliminate_first() {
     positive_ = false;
     return;
   }
-  const auto inverse_upper = group.pivot.triangularView<Eigen::Lower>().transpose();
-  inverse_upper.solveInPlace<Eigen::OnTheRight>(group.next);
-  inverse_upper.solveInPlace<Eigen::OnTheRight>(group.coupling);
+  solve_right(group.pivot, group.next);
+  solve_right(group.pivot, group.coupling);
   solve_lower(group.pivot, group.right);
 
   MatrixXd matrix = MatrixXd::Zero(reach_ * w, reach_ * w);
   matrix.topLeftCorner(rest, rest) = front_.matrix.bottomRightCorner(rest, rest);
-  matrix.topLeftCorner(rest, rest).selfadjointView<Eigen::Lower>().rankUpdate(group.next, -1.0);
+  add_square(group.next, -1.0, matrix.topLeftCorner(rest, rest));
   front_.matrix.swap(matrix);
   front_.coupling.leftCols(rest) = front_.coupling.rightCols(rest).eval();
   front_.coupling.rightCols(w).setZero();
-  front_.coupling.leftCols(rest).noalias() -= group.coupling * group.next.transpose();
+  add_product(group.coupling, group.next, -1.0, front_.coupling.leftCols(rest));
   front_.right.head(rest) = front_.right.tail(rest).eval() - group.next * group.right;
   front_.right.tail(w).setZero();
-  schur_.selfadjointView<Eigen::Lower>().rankUpdate(group.coupling, -1.0);
+  add_square(group.coupling, -1.0, schur_);
   schur_right_.noalias() -= group.coupling * group.right;
   groups_.push_back(std::move(group));
 }

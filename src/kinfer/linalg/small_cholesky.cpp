@@ -4,7 +4,7 @@
 
 namespace kinfer {
 
-bool factorise_small(MatrixXd& a) {
+bool factorise_small(MatrixRef a) {
   for (Eigen::Index j = 0; j < a.cols(); ++j) {
     const double pivot = a(j, j) - a.row(j).head(j).squaredNorm();
     if (!(pivot > 0.0)) return false;
