@@ -58,9 +58,9 @@ double cost_after(const Example& e, Index unknown, double step) {
 
 TEST(InsClock, TheGradientOfEveryBorderUnknownAgreesWithDifferences) {
   const Example e = example();
-  const IntervalLinearisation linearisation(e.problem, e.layout, e.x);
+  const InsLinearisation linearisation(e.problem, e.layout, e.x);
   VectorXd gradient = border_prior(e.problem, e.layout, e.x).right;
-  for (Index k = 0; k < e.problem.grid.intervals; ++k) gradient += linearisation.gradient(k).border;
+  for (const IntervalGradient& g : linearisation.gradients({0, e.problem.grid.intervals})) gradient += g.border;
   const Index reference = e.layout.error[0] + e.layout.clock_error;
   for (Index k = 0; k < e.layout.border; ++k) {
     if (k == reference || k == reference + 1) continue;  // held: far too stiff for differences

@@ -63,14 +63,8 @@ struct Example {
 
 TEST(InsMount, TheGradientsOfTiltsAndMotionAgreeWithDifferences) {
   const Example e;
-  const IntervalLinearisation linearisation(e.problem, e.layout, e.x);
-  VectorXd border = border_prior(e.problem, e.layout, e.x).right,
-           band = VectorXd::Zero(e.layout.channels * e.problem.grid.coefficients());
-  BorderSum unused{MatrixXd::Zero(e.layout.border, e.layout.border), VectorXd::Zero(e.layout.border)};
-  for (Index k = 0; k < e.problem.grid.intervals; ++k) {
-    border += linearisation.gradient(k).border;
-    band.segment(k * e.layout.channels, spline_order * e.layout.channels) += linearisation.span(k, unused).right;
-  }
+  const StretchSum sum = InsLinearisation(e.problem, e.layout, e.x).sum({0, e.problem.grid.intervals});
+  const VectorXd border = border_prior(e.problem, e.layout, e.x).right + sum.border_right, &band = sum.right;
   constexpr double step = 1e-6;
   const auto expect_slope = [](double gradient, double more, double less) {
     const double slope = (more - less) / (2.0 * step);

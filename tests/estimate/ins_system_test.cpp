@@ -76,10 +76,19 @@ MatrixXd process_information(const Example& e) {
   return w * n > 0 ? *inverse_positive(covariance) : covariance;
 }
 
+/// Lower half.
+MatrixXd dense_band(const StretchSum& sum) {
+  const Index n = sum.right.size();
+  MatrixXd dense = MatrixXd::Zero(n, n);
+  for (Index c = 0; c < n; ++c)
+    for (Index r = c; r < std::min(n, (c / sum.width + sum.reach) * sum.width); ++r)
+      dense(r, c) = sum.band(r - c / sum.width * sum.width, c);
+  return dense;
+}
+
 Dense dense(const Example& e) {
   const Index band = e.layout.channels * e.problem.grid.coefficients(), w = e.layout.wander,
-              border_at = band + e.x.wander.size(), all = border_at + e.layout.border,
-              local = spline_order * e.layout.channels;
+              border_at = band + e.x.wander.size(), all = border_at + e.layout.border;
   Dense d{MatrixXd::Zero(all, all), VectorXd::Zero(all), band, border_at, process_information(e)};
   const auto wandering = wandering_border(e.layout);
   const BorderPrior prior = border_prior(e.problem, e.layout, e.x);
@@ -87,21 +96,22 @@ Dense dense(const Example& e) {
   d.right.tail(e.layout.border) = prior.right;
   d.matrix.block(band, band, e.x.wander.size(), e.x.wander.size()) = d.wander_prior;
   d.right.segment(band, e.x.wander.size()) = -d.wander_prior * e.x.wander.reshaped();
-  const IntervalLinearisation linearisation(e.problem, e.layout, e.x);
-  for (Index k = 0; k < e.problem.grid.intervals; ++k) {
-    BorderSum border{MatrixXd::Zero(e.layout.border, e.layout.border), VectorXd::Zero(e.layout.border)};
-    const BandSpan span = linearisation.span(k, border);
-    const MatrixXd own = border.matrix.selfadjointView<Eigen::Lower>();
-    const Index at = k * e.layout.channels, in_wander = band + w * stretch_at(e.problem.grid, k);
-    d.matrix.block(at, at, local, local).triangularView<Eigen::Lower>() += span.matrix;
-    d.matrix.block(border_at, at, e.layout.border, local) += span.coupling;
-    d.matrix.block(in_wander, at, w, local) += span.coupling(wandering, Eigen::all);
+  const InsLinearisation linearisation(e.problem, e.layout, e.x);
+  for (const InsStretch& stretch : stretches_of(e.problem.grid)) {
+    const StretchSum sum = linearisation.sum(stretch);
+    const MatrixXd own = sum.border_matrix.selfadjointView<Eigen::Lower>();
+    const MatrixXd coupling = sum.beside.bottomRows(e.layout.border);
+    const Index at = stretch.first * e.layout.channels,
+                in_wander = band + w * stretch_at(e.problem.grid, stretch.first), n = sum.right.size();
+    d.matrix.block(at, at, n, n) += dense_band(sum);
+    d.matrix.block(border_at, at, e.layout.border, n) += coupling;
+    d.matrix.block(in_wander, at, w, n) += coupling(wandering, Eigen::all);
     d.matrix.block(in_wander, in_wander, w, w) += own(wandering, wandering);
     d.matrix.block(border_at, in_wander, e.layout.border, w) += own(Eigen::all, wandering);
     d.matrix.bottomRightCorner(e.layout.border, e.layout.border) += own;
-    d.right.segment(at, local) += span.right;
-    d.right.segment(in_wander, w) += border.right(wandering);
-    d.right.tail(e.layout.border) += border.right;
+    d.right.segment(at, n) += sum.right;
+    d.right.segment(in_wander, w) += sum.border_right(wandering);
+    d.right.tail(e.layout.border) += sum.border_right;
   }
   d.matrix.triangularView<Eigen::StrictlyUpper>() = d.matrix.transpose();
   return d;
@@ -135,11 +145,11 @@ TEST(InsSystem, BlockScoresAreGradientsWithBandAndBiasesFollowing) {
     const auto wandering = wandering_border(e.layout);
     const MatrixXd scores = InsSystem(e.problem, e.layout, e.x, {}, 1).scores(2.0).blocks;
     ASSERT_EQ(scores.rows(), 7);
-    const IntervalLinearisation linearisation(e.problem, e.layout, e.x);
+    const auto gradients = InsLinearisation(e.problem, e.layout, e.x).gradients({0, e.problem.grid.intervals});
     for (Index block = 0; block < scores.rows(); ++block) {
       VectorXd expected = VectorXd::Zero(e.layout.border);
       for (Index k = 20 * block; k < 20 * (block + 1); ++k) {
-        const IntervalGradient g = linearisation.gradient(k);
+        const IntervalGradient& g = gradients[static_cast<std::size_t>(k)];
         const Index in_wander = d.wander + e.layout.wander * stretch_at(e.problem.grid, k);
         expected += g.border - follows.middleRows(k * e.layout.channels, g.band.size()).transpose() * g.band -
                     follows.middleRows(in_wander, e.layout.wander).transpose() * g.border(wandering);

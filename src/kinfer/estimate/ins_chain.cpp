@@ -152,9 +152,12 @@ Index freedoms(JointMotion motion) {
   return motion == JointMotion::ball ? 3 : motion == JointMotion::none ? 0 : 1;
 }
 
+Index InsBody::turns() const {
+  return std::ranges::count(free_parent_turn, true) + std::ranges::count(free_child_turn, true);
+}
+
 Index InsBody::unknowns() const {
-  const auto turns = std::ranges::count(free_parent_turn, true) + std::ranges::count(free_child_turn, true);
-  return turns + (free_point_in_parent ? 3 : 0) + (free_point_in_child ? 3 : 0);
+  return turns() + (free_point_in_parent ? 3 : 0) + (free_point_in_child ? 3 : 0);
 }
 
 InsBody turning_body(int parent, int sensor, const Mat3& parent_R_axis, const Mat3& child_R_axis) {

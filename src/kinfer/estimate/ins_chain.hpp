@@ -34,7 +34,8 @@ struct InsBody {
   std::array<bool, 3> free_parent_turn{}, free_child_turn{};
   bool free_point_in_parent = false, free_point_in_child = false;
 
-  Eigen::Index unknowns() const;
+  Eigen::Index turns() const;     ///< of A and B that are free
+  Eigen::Index unknowns() const;  ///< all of it
 };
 
 /// Body after body from the root: [A turns, B turns, p, c] of each that are free.

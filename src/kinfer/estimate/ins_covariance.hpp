@@ -5,7 +5,7 @@
 // blocks of some seconds, P the prior's information. Where the model is right, M + P estimates C⁻¹ and both agree.
 #pragma once
 
-#include "kinfer/estimate/ins_linearisation.hpp"
+#include "kinfer/estimate/ins_cost.hpp"
 
 namespace kinfer {
 

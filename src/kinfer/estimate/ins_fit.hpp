@@ -4,7 +4,7 @@
 
 #include "kinfer/base/observer.hpp"
 #include "kinfer/base/stop.hpp"
-#include "kinfer/estimate/ins_linearisation.hpp"
+#include "kinfer/estimate/ins_cost.hpp"
 
 namespace kinfer {
 

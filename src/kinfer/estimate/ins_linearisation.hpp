@@ -1,42 +1,15 @@
-// The residuals of a continuous-time fit, interval by interval, and their normal equations as a bordered band.
-//
-// A block of readings (one instrument, one interval) is one item for the robust loss: with s its whitened square sum of
-// m terms, cost s up to a² = m + 4 √(2m), a² (1 + log(s / a²)) beyond. So white noise is never touched, and what shakes
-// or hits a sensor for a moment counts little.
+// The residuals of a continuous-time fit linearised, stretch by stretch, and their normal equations as a bordered band.
 #pragma once
 
-#include <limits>
-#include <memory>
+#include <optional>
 
-#include "kinfer/estimate/ins_problem.hpp"
-#include "kinfer/linalg/bordered_band.hpp"
+#include "kinfer/estimate/ins_cost.hpp"
+#include "kinfer/estimate/ins_fact_rows.hpp"
+#include "kinfer/estimate/ins_motion.hpp"
+#include "kinfer/estimate/ins_wander.hpp"
+#include "kinfer/linalg/band_stretch.hpp"
 
 namespace kinfer {
-
-inline constexpr float no_reading = std::numeric_limits<float>::quiet_NaN();
-
-/// How well the instruments of one sensor are explained.
-struct InstrumentFit {
-  double squares = 0.0;                      ///< whitened, robust weights applied
-  double terms = 0.0;                        ///< how many, weights applied
-  std::vector<float> block;                  ///< whitened squares over terms of each interval; NaN: nothing was said
-  std::vector<std::array<float, 3>> offset;  ///< of each interval, an axis each, in sigmas; NaN: nothing was said
-};
-struct SensorFit {
-  InstrumentFit rate, force, field;
-};
-
-struct InsCost {
-  double total = 0.0;  ///< robust, priors included
-  std::vector<SensorFit> sensors;
-};
-InsCost cost_of(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, int threads);
-
-/// Normal equations in the border's unknowns.
-struct BorderSum {
-  MatrixXd matrix;  ///< lower half
-  VectorXd right;
-};
 
 /// Gradient (minus, of half the cost) of one interval's readings.
 struct IntervalGradient {
@@ -44,24 +17,30 @@ struct IntervalGradient {
   VectorXd border;
 };
 
-/// The residuals linearised at x, interval by interval. What it is made from must outlive it.
-class IntervalLinearisation {
+/// The residuals linearised at x. What it is made from must outlive it.
+class InsLinearisation {
  public:
-  IntervalLinearisation(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x);
-  ~IntervalLinearisation();
+  InsLinearisation(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x);
 
-  /// Normal equations of one interval: what it adds to the band and, in `border`, to the border.
-  BandSpan span(Eigen::Index interval, BorderSum& border) const;
+  /// Normal equations of a stretch's intervals: band and border. Priors on the band and facts are part of them.
+  StretchSum sum(const InsStretch& stretch) const;
 
-  /// The same for the band alone, once the border's step is known: `border`, as the interval's readings see it.
-  BandSpan span_behind(Eigen::Index interval, ConstVectorRef border) const;
+  /// The same for the band alone, once the border's step is known: `border`, as the stretch's readings see it; where
+  /// nothing is given, it is held.
+  StretchSum sum_behind(const InsStretch& stretch, const std::optional<VectorXd>& border = {}) const;
 
-  /// Readings alone: neither priors nor facts.
-  IntervalGradient gradient(Eigen::Index interval) const;
+  /// Of each interval of a stretch, readings alone: neither priors nor facts.
+  std::vector<IntervalGradient> gradients(const InsStretch& stretch) const;
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  void add_band_prior(StretchSum& sum, const InsStretch& stretch) const;
+  void add_facts(StretchSum& sum, const InsStretch& stretch) const;
+  void add_facts_behind(StretchSum& sum, const InsStretch& stretch, const std::optional<VectorXd>& border) const;
+
+  const InsProblem& problem_;
+  const InsLayout& layout_;
+  const InsUnknowns& x_;
+  std::vector<InsFactRows> facts_;
 };
 
 }  // namespace kinfer

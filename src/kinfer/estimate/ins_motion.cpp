@@ -1,5 +1,7 @@
 #include "kinfer/estimate/ins_motion.hpp"
 
+#include "kinfer/linalg/block_products.hpp"
+
 namespace kinfer {
 namespace {
 
@@ -36,46 +38,28 @@ JointReading joint_reading(const InsLayout& layout, const InsUnknowns& x, std::s
   return q;
 }
 
-NodeMotion root_motion(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, Index interval,
-                       const SplineBasis& basis) {
-  NodeMotion motion;
-  motion.state.push_back(root_state(problem, x, interval, basis));
-  StateColumns columns = StateColumns::Zero(12, problem.root_stands_still ? (layout.has_field ? 6 : 3) : 9);
-  if (problem.root_stands_still) {
-    columns.block<3, 3>(6, 0).setIdentity();
-    if (layout.has_field) columns.block<3, 3>(9, 3).setIdentity();
-  } else {
-    columns.topRows<9>().setIdentity();
-  }
-  motion.columns.push_back(std::move(columns));
-  return motion;
+constexpr Index orders = 3;  // derivatives by time of a channel that states depend on
+
+Index size(const std::vector<Index>& unknowns) {
+  return static_cast<Index>(unknowns.size());
 }
 
 }  // namespace
 
-InsPaths paths_of(const InsProblem& problem, const InsLayout& layout, const InsBodies& bodies) {
-  InsPaths paths{std::vector<std::vector<InsColumn>>(bodies.size()), std::vector<std::vector<Index>>(bodies.size())};
-  auto& root = paths.columns.front();
-  if (problem.root_stands_still) {
-    for (Index i = 0; i < 3; ++i) root.push_back({.border = layout.root_force + i});
-    if (layout.has_field)
-      for (Index i = 0; i < 3; ++i) root.push_back({.border = layout.root_field + i});
-  } else {
-    for (Index i = 0; i < 3; ++i) root.push_back({.channel = i, .order = 0});
-    for (Index i = 0; i < 3; ++i) root.push_back({.channel = i, .order = 1});
-    for (Index i = 3; i < 6; ++i) root.push_back({.channel = i, .order = 0});
-    paths.channels.front() = {0, 1, 2, 3, 4, 5};
-  }
+std::vector<InsPath> paths_of(const InsProblem& problem, const InsLayout& layout, const InsBodies& bodies) {
+  std::vector<InsPath> paths(bodies.size());
+  const auto append = [](std::vector<Index>& to, Index first, Index count) {
+    for (Index i = 0; i < count; ++i) to.push_back(first + i);
+  };
+  if (!problem.root_stands_still) append(paths[0].channels, 0, 6);
+  if (problem.root_stands_still) append(paths[0].shifting, layout.root_force, 3);
+  if (layout.has_field) append(paths[0].turning, layout.root_field, 3);
   for (std::size_t b = 1; b < bodies.size(); ++b) {
-    const auto parent = static_cast<std::size_t>(bodies[b].parent);
-    paths.columns[b] = paths.columns[parent];
-    paths.channels[b] = paths.channels[parent];
-    for (Index i = 0; i < freedoms(bodies[b].motion); ++i) {
-      paths.channels[b].push_back(layout.channel[b] + i);
-      for (Index order = 0; order < 3; ++order)
-        paths.columns[b].push_back({.channel = layout.channel[b] + i, .order = order});
-    }
-    for (Index i = 0; i < bodies[b].unknowns(); ++i) paths.columns[b].push_back({.border = layout.body[b] + i});
+    paths[b] = paths[static_cast<std::size_t>(bodies[b].parent)];
+    append(paths[b].channels, layout.channel[b], freedoms(bodies[b].motion));
+    const Index turns = bodies[b].turns(), points = bodies[b].unknowns() - turns;
+    append(paths[b].turning, layout.body[b], turns);
+    append(paths[b].shifting, layout.body[b] + turns, points);
   }
   return paths;
 }
@@ -95,21 +79,93 @@ std::vector<InsState> body_states(const InsProblem& problem, const InsLayout& la
   return states;
 }
 
-NodeMotion node_motion(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, Index interval,
-                       const SplineBasis& basis) {
-  NodeMotion motion = root_motion(problem, layout, x, interval, basis);
-  CarriedDerivative derivative;
-  for (std::size_t b = 1; b < x.bodies.size(); ++b) {
-    const auto parent = static_cast<std::size_t>(x.bodies[b].parent);
-    carry(x.bodies[b], joint_reading(layout, x, b, interval, basis), motion.state[parent], derivative);
-    const Index inherited = motion.columns[parent].cols();
-    StateColumns columns(12, inherited + derivative.by_own.cols());
-    columns.leftCols(inherited).noalias() = derivative.by_parent * motion.columns[parent];
-    columns.rightCols(derivative.by_own.cols()) = derivative.by_own;
-    motion.state.push_back(derivative.state);
-    motion.columns.push_back(std::move(columns));
+IntervalMotion::IntervalMotion(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, InsScope scope)
+    : problem_(problem),
+      layout_(layout),
+      x_(x),
+      scope_(scope),
+      bases_(node_bases(problem.grid)),
+      paths_(paths_of(problem, layout, x.bodies)),
+      carried_(x.bodies.size()) {
+  for (InsPath& path : paths_) {
+    if (scope == InsScope::band) path.turning.clear(), path.shifting.clear();
+    bodies_.push_back({.state = {},
+                       .band = MatrixXd::Zero(block_nodes * orders * size(path.channels), 12),
+                       .turning = MatrixXd::Zero(block_nodes * size(path.turning), 12),
+                       .shifting = MatrixXd::Zero(block_nodes * size(path.shifting), 3)});
   }
-  return motion;
+  start_root();
+}
+
+/// Its derivatives are the same everywhere.
+void IntervalMotion::start_root() {
+  BodyMotion& root = bodies_.front();
+  for (Index node = 0; node < block_nodes; ++node) {
+    if (!problem_.root_stands_still) {
+      const Index value = 6 * orders * node, change = value + 6;
+      root.band.block<3, 3>(value, 0).setIdentity();
+      root.band.block<3, 3>(change, 3).setIdentity();
+      root.band.block<3, 3>(value + 3, 6).setIdentity();
+    }
+    if (root.shifting.size() > 0) root.shifting.middleRows<3>(3 * node).setIdentity();
+    if (root.turning.size() > 0) root.turning.block<3, 3>(3 * node, 9).setIdentity();
+  }
+}
+
+void IntervalMotion::go_to(Index interval) {
+  for (std::size_t node = 0; node < block_nodes; ++node)
+    bodies_.front().state[node] = root_state(problem_, x_, interval, bases_[node]);
+  for (std::size_t b = 1; b < bodies_.size(); ++b) {
+    BodyMotion& body = bodies_[b];
+    const BodyMotion& parent = bodies_[static_cast<std::size_t>(x_.bodies[b].parent)];
+    body.band.setZero();
+    body.turning.setZero();
+    body.shifting.setZero();
+    for (std::size_t node = 0; node < block_nodes; ++node) {
+      carry(x_.bodies[b], joint_reading(layout_, x_, b, interval, bases_[node]), parent.state[node], carried_[b]);
+      body.state[node] = carried_[b].state;
+      carry_on(b, static_cast<Index>(node));
+      put_own(b, static_cast<Index>(node));
+    }
+  }
+}
+
+/// What reached the parent reaches the body.
+void IntervalMotion::carry_on(std::size_t b, Index node) {
+  const auto p = static_cast<std::size_t>(x_.bodies[b].parent);
+  const BodyMotion& parent = bodies_[p];
+  BodyMotion& body = bodies_[b];
+  const Eigen::Matrix<double, 12, 12>& by = carried_[b].by_parent;
+  const auto carry_rows = [&](const MatrixXd& from, MatrixXd& to, Index piece, Index count, Index own_count) {
+    const auto rows = from.middleRows(piece * count, count);
+    auto carried = to.middleRows(piece * own_count, count);
+    add_product(rows.leftCols(9), by.topLeftCorner<9, 9>(), 1.0, carried.leftCols(9));
+    if (layout_.has_field) add_product(rows.rightCols(3), by.bottomRightCorner<3, 3>(), 1.0, carried.rightCols(3));
+  };
+  for (Index order = 0; order < orders; ++order)
+    carry_rows(parent.band, body.band, orders * node + order, size(paths_[p].channels), size(paths_[b].channels));
+  carry_rows(parent.turning, body.turning, node, size(paths_[p].turning), size(paths_[b].turning));
+  const Index count = size(paths_[p].shifting), own_count = size(paths_[b].shifting);
+  add_product(parent.shifting.middleRows(node * count, count), by.block<3, 3>(6, 6), 1.0,
+              body.shifting.middleRows(node * own_count, count));
+}
+
+/// The joint's readings and what holds for good of it stand behind what reached the parent.
+void IntervalMotion::put_own(std::size_t b, Index node) {
+  const StateColumns& own = carried_[b].by_own;
+  const InsPath& path = paths_[b];
+  BodyMotion& body = bodies_[b];
+  const Index free = freedoms(x_.bodies[b].motion), turns = x_.bodies[b].turns();
+  for (Index order = 0; order < orders; ++order)
+    for (Index i = 0; i < free; ++i)
+      body.band.row((orders * node + order + 1) * size(path.channels) - free + i) =
+          own.col(orders * i + order).transpose();
+  if (scope_ == InsScope::band) return;
+  const Index points = x_.bodies[b].unknowns() - turns;
+  body.turning.middleRows((node + 1) * size(path.turning) - turns, turns) =
+      own.middleCols(orders * free, turns).transpose();
+  body.shifting.middleRows((node + 1) * size(path.shifting) - points, points) =
+      own.middleCols(orders * free + turns, points).middleRows<3>(6).transpose();
 }
 
 }  // namespace kinfer

@@ -1,4 +1,4 @@
-// How every body of the machine moves at a node of an interval, with its derivatives by the coefficients of the band
+// How every body of the machine moves at the nodes of an interval, with its derivatives by the coefficients of the band
 // and by the unknowns that hold for good.
 #pragma once
 
@@ -6,19 +6,13 @@
 
 namespace kinfer {
 
-/// What a column of a body's state derivatives stands for.
-struct InsColumn {
-  Eigen::Index border = -1;              // unknown that holds for good
-  Eigen::Index channel = -1, order = 0;  // else: derivative of the band's channel
+/// The unknowns that reach a body's state.
+struct InsPath {
+  std::vector<Eigen::Index> channels;  ///< of the band, ascending
+  std::vector<Eigen::Index> turning;   ///< of the border: what turns frames, and the root's field
+  std::vector<Eigen::Index> shifting;  ///< of the border: what forces alone depend on: points, and the root's force
 };
-
-/// How the unknowns reach each body.
-struct InsPaths {
-  std::vector<std::vector<InsColumn>> columns;      // of each body
-  std::vector<std::vector<Eigen::Index>> channels;  // of each body
-};
-
-InsPaths paths_of(const InsProblem& problem, const InsLayout& layout, const InsBodies& bodies);
+std::vector<InsPath> paths_of(const InsProblem& problem, const InsLayout& layout, const InsBodies& bodies);
 
 /// Bases at the nodes; the same in every interval.
 std::array<SplineBasis, block_nodes> node_bases(const SplineGrid& grid);
@@ -27,13 +21,44 @@ std::array<SplineBasis, block_nodes> node_bases(const SplineGrid& grid);
 std::vector<InsState> body_states(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
                                   Eigen::Index interval, const SplineBasis& basis);
 
-/// States of all bodies at one node with their derivatives.
-struct NodeMotion {
-  std::vector<InsState> state;
-  std::vector<StateColumns> columns;
+/// One body's states at the nodes and how they follow the unknowns of its path.
+struct BodyMotion {
+  std::array<InsState, block_nodes> state;
+  MatrixXd band;      ///< (node, derivative 0 .. 2 by time, channel) x 12: by these derivatives of the channels
+  MatrixXd turning;   ///< (node, unknown) x 12
+  MatrixXd shifting;  ///< (node, unknown) x 3: of the force
 };
 
-NodeMotion node_motion(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, Eigen::Index interval,
-                       const SplineBasis& basis);
+/// What a linearisation is asked for.
+enum class InsScope {
+  everything,
+  band  ///< what holds for good is held
+};
+
+/// All bodies in one interval after the other; what it is made from must outlive it.
+class IntervalMotion {
+ public:
+  IntervalMotion(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, InsScope scope);
+
+  void go_to(Eigen::Index interval);
+
+  const InsPath& path(std::size_t body) const { return paths_[body]; }
+  const BodyMotion& body(std::size_t body) const { return bodies_[body]; }
+  const std::array<SplineBasis, block_nodes>& bases() const { return bases_; }
+
+ private:
+  void start_root();
+  void carry_on(std::size_t body, Eigen::Index node);
+  void put_own(std::size_t body, Eigen::Index node);
+
+  const InsProblem& problem_;
+  const InsLayout& layout_;
+  const InsUnknowns& x_;
+  InsScope scope_;
+  std::array<SplineBasis, block_nodes> bases_;
+  std::vector<InsPath> paths_;
+  std::vector<BodyMotion> bodies_;
+  std::vector<CarriedDerivative> carried_;  // of each body, to be used again
+};
 
 }  // namespace kinfer

@@ -1,7 +1,7 @@
 // What the residuals of a fit say about the noise: how large it is, and how long it remembers.
 #pragma once
 
-#include "kinfer/estimate/ins_linearisation.hpp"
+#include "kinfer/estimate/ins_cost.hpp"
 
 namespace kinfer {
 

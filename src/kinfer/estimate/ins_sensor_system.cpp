@@ -1,132 +1,211 @@
 #include "kinfer/estimate/ins_sensor_system.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include "kinfer/estimate/ins_mount.hpp"
-#include "kinfer/estimate/ins_residual.hpp"
 #include "kinfer/estimate/ins_wander.hpp"
+#include "kinfer/linalg/block_products.hpp"
 
 namespace kinfer {
 namespace {
 
 using Index = Eigen::Index;
 
+constexpr Index orders = 3;  // derivatives by time of a channel that states depend on
+constexpr Index rate_row = 0, force_row = 6;
+
+Index size(const std::vector<Index>& unknowns) {
+  return static_cast<Index>(unknowns.size());
+}
+
+/// Column of the first of some more unknowns of the border.
+Index append(SensorRows& part, Index first, Index count) {
+  const Index column = size(part.band) + size(part.border);
+  for (Index i = 0; i < count; ++i) part.border.push_back(first + i);
+  return column;
+}
+
+Index append(SensorRows& part, const std::vector<Index>& unknowns) {
+  const Index column = size(part.band) + size(part.border);
+  part.border.insert(part.border.end(), unknowns.begin(), unknowns.end());
+  return column;
+}
+
 /// By the numbers of the tilt, of what one instrument feels.
-const Eigen::Matrix<double, 3, 9>& by_tilt(const FeltDerivative& felt, const InstrumentUse& use) {
-  return use.state_row == 0 ? felt.rate_by_tilt : use.state_row == 6 ? felt.force_by_tilt : felt.field_by_tilt;
-}
-
-/// Derivative of one instrument's reading at one node by the columns of the sensor (3 rows).
-template <class Rows>
-void fill_rows(Rows rows, const InstrumentUse& use, const InsLayout& layout, const SensorColumns& columns,
-               const std::vector<InsColumn>& path, const StateColumns& state_columns, const FeltDerivative& felt,
-               const InsErrors& errors, const SplineBasis& basis) {
-  rows.setZero();
-  const InsState& state = felt.state;
-  Eigen::Matrix<double, 3, Eigen::Dynamic> by_state = state_columns.middleRows<3>(use.state_row);
-  if (layout.has_tilts) by_state = (felt.turn * by_state).eval();
-  if (layout.has_matrices && use.state_row == 0) by_state = (by_state + errors.rate_matrix * by_state).eval();
-  if (layout.has_matrices && use.state_row == 6) by_state = (by_state + errors.force_matrix * by_state).eval();
-  for (std::size_t c = 0; c < path.size(); ++c) {
-    const auto from = static_cast<Index>(c);
-    const Index at = columns.of_state[c];
-    if (path[c].border >= 0) {
-      rows.col(at) += by_state.col(from);
-      continue;
-    }
-    const auto& weights = basis.at[static_cast<std::size_t>(path[c].order)];
-    for (Index i = 0; i < spline_order; ++i)
-      rows.col(at + i) += weights[static_cast<std::size_t>(i)] * by_state.col(from);
-  }
-  const bool rate = use.state_row == 0, force = use.state_row == 6;
-  const Index bias = columns.own + (rate ? 0 : force ? 3 : layout.field_error);
-  rows.template middleCols<3>(bias).setIdentity();
-  if (layout.has_matrices && (rate || force)) {
-    const Vec3& truth = rate ? state.rate : state.force;
-    for (Index j = 0; j < 3; ++j)  // S is stored column by column
-      for (Index i = 0; i < 3; ++i) rows(i, columns.own + (rate ? 6 : 15) + 3 * j + i) = truth[j];
-  }
-  if (!layout.has_tilts) return;
-  auto tilt = rows.template middleCols<9>(columns.own + layout.tilt_error);
-  tilt = by_tilt(felt, use);
-  if (layout.has_matrices && rate) tilt += errors.rate_matrix * by_tilt(felt, use);
-  if (layout.has_matrices && force) tilt += errors.force_matrix * by_tilt(felt, use);
-}
-
-FeltDerivative felt_with_derivative(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
-                                    std::size_t sensor, Index interval, std::size_t node, const InsState& segment) {
-  if (!layout.has_tilts) return {segment, Mat3::Identity(), {}, {}, {}};
-  const InsBending& bending = problem.sensors[sensor].bending[static_cast<std::size_t>(interval)];
-  return felt_derivative(segment, x.errors[sensor].tilt, bending.force_at(node), bending.change_at(node));
+const Eigen::Matrix<double, 3, 9>& by_tilt(const FeltDerivative& felt, Index state_row) {
+  return state_row == rate_row ? felt.rate_by_tilt : state_row == force_row ? felt.force_by_tilt : felt.field_by_tilt;
 }
 
 }  // namespace
 
-SensorColumns sensor_columns(const InsLayout& layout, const InsPaths& paths, std::size_t body, std::size_t sensor) {
-  SensorColumns columns;
-  const Index local = spline_order * layout.channels;
-  const auto& channels = paths.channels[body];
-  for (const Index channel : channels)
-    for (Index i = 0; i < spline_order; ++i) columns.index.push_back(i * layout.channels + channel);
-  for (const InsColumn& column : paths.columns[body]) {
-    if (column.border >= 0) {
-      columns.of_state.push_back(static_cast<Index>(columns.index.size()));
-      columns.index.push_back(local + column.border);
-    } else {
-      columns.of_state.push_back(spline_order * (std::ranges::find(channels, column.channel) - channels.begin()));
-    }
+SensorSystem::SensorSystem(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                           const IntervalMotion& motion, std::size_t body, InsScope scope)
+    : problem_(problem),
+      layout_(layout),
+      x_(x),
+      motion_(motion),
+      body_(body),
+      sensor_(static_cast<std::size_t>(x.bodies[body].sensor)),
+      scope_(scope) {
+  const InsPath& path = motion.path(body);
+  for (SensorRows& part : parts_)
+    for (Index i = 0; i < spline_order; ++i)
+      for (const Index channel : path.channels) part.band.push_back(i * layout.channels + channel);
+  if (scope == InsScope::everything) {
+    for (SensorRows& part : parts_) part.turning = append(part, path.turning);
+    parts_[1].shifting = append(parts_[1], path.shifting);
   }
-  columns.own = static_cast<Index>(columns.index.size());
-  for (Index i = 0; i < layout.errors_each; ++i) columns.index.push_back(local + layout.error[sensor] + i);
-  return columns;
+  for (const InstrumentUse& instrument : instruments(problem, layout, sensor_)) uses_.push_back(use_of(instrument));
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    SensorRows& part = parts_[p];
+    if (scope == InsScope::everything) {
+      if (layout.has_tilts) part.tilt = append(part, layout.error[sensor_] + layout.tilt_error, 9);
+      if (layout.has_clocks) part.clock = append(part, layout.error[sensor_] + layout.clock_error, 2);
+    }
+    const auto instruments = std::ranges::count(uses_, p, &Use::part);
+    part.jacobian.resize(size(part.band) + size(part.border), 3 * block_nodes * instruments);
+    part.residual.resize(part.jacobian.cols());
+  }
+  shown_band_.resize(motion.body(body).band.rows(), 3);
+  shown_turning_.resize(motion.body(body).turning.rows(), 3);
+  shown_shifting_.resize(motion.body(body).shifting.rows(), 3);
 }
 
-SensorSystem sensor_system(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
-                           const SensorColumns& columns, const std::vector<InsColumn>& path, std::size_t body,
-                           Index interval, const std::array<NodeMotion, block_nodes>& motion,
-                           const std::array<SplineBasis, block_nodes>& bases) {
-  const auto sensor = static_cast<std::size_t>(x.bodies[body].sensor);
-  const auto uses = instruments(problem, layout, sensor);
-  const InsErrors errors = errors_at(problem, x, sensor, interval);
-  const auto k = static_cast<std::size_t>(interval);
-  Index rows = 0;
-  for (const InstrumentUse& use : uses) rows += 3 * use.blocks[k].rows;
-  const auto width = static_cast<Index>(columns.index.size());
-  SensorSystem system{MatrixXd::Zero(rows, width), VectorXd(rows)};
-  MatrixXd at_nodes(3 * block_nodes, width);
-  std::array<FeltDerivative, block_nodes> felt;
+SensorSystem::Use SensorSystem::use_of(const InstrumentUse& instrument) {
+  const bool rate = instrument.state_row == rate_row, force = instrument.state_row == force_row;
+  Use use{instrument, force ? 1UL : 0UL};
+  if (scope_ == InsScope::band) return use;
+  const Index first = layout_.error[sensor_];
+  use.bias = append(parts_[use.part], first + (rate ? 0 : force ? 3 : layout_.field_error), 3);
+  if (layout_.has_matrices && (rate || force)) use.matrix = append(parts_[use.part], first + (rate ? 6 : 15), 9);
+  return use;
+}
+
+void SensorSystem::go_to(Index interval) {
+  errors_ = errors_at(problem_, x_, sensor_, interval);
+  feel(interval);
+  for (SensorRows& part : parts_) part.used = 0;
+  for (const Use& use : uses_) add_rows(use, interval);
+}
+
+void SensorSystem::feel(Index interval) {
+  const auto& segment = motion_.body(body_).state;
+  for (std::size_t n = 0; n < block_nodes; ++n) {
+    felt_[n].state = segment[n];
+    if (!layout_.has_tilts) continue;
+    const InsBending& bending = problem_.sensors[sensor_].bending[static_cast<std::size_t>(interval)];
+    felt_[n] = felt_derivative(segment[n], errors_.tilt, bending.force_at(n), bending.change_at(n));
+  }
+}
+
+void SensorSystem::add_rows(const Use& use, Index interval) {
+  const InsBlock& block = use.instrument.blocks[static_cast<std::size_t>(interval)];
+  if (block.rows == 0) return;
+  SensorRows& part = parts_[use.part];
+  BlockResidual predicted;
   for (std::size_t n = 0; n < block_nodes; ++n)
-    felt[n] = felt_with_derivative(problem, layout, x, sensor, interval, n, motion[n].state[body]);
-  Index row = 0;
-  for (const InstrumentUse& use : uses) {
-    const InsBlock& block = use.blocks[k];
-    if (block.rows == 0) continue;
-    const NodeMatrix factor = shifted_factor(block, layout, clock_shift(problem, layout, errors, interval));
-    BlockResidual predicted;
-    for (Index node = 0; node < block_nodes; ++node) {
-      const auto n = static_cast<std::size_t>(node);
-      predicted.row(node) = use.read(felt[n].state, errors).transpose();
-      fill_rows(at_nodes.middleRows<3>(3 * node), use, layout, columns, path, motion[n].columns[body], felt[n], errors,
-                bases[n]);
+    predicted.row(static_cast<Index>(n)) = use.instrument.read(felt_[n].state, errors_).transpose();
+  const NodeMatrix factor = shifted_factor(block, layout_, clock_shift(problem_, layout_, errors_, interval));
+  const BlockResidual r = residual(block, factor, predicted, use.instrument.sd);
+  const double weight = std::sqrt(robust(r.squaredNorm(), 3.0 * block.rows).weight), scale = weight / use.instrument.sd;
+  const Weighed weighed{use, scale * factor, part.used, block.rows};
+  part.jacobian.middleCols(part.used, 3 * block.rows).setZero();
+  put_path(weighed);
+  if (scope_ == InsScope::everything) {
+    put_errors(weighed);
+    if (layout_.has_clocks)
+      put_clock(weighed, scale * block.factor.cast<double>() * (node_derivative() * predicted), interval);
+  }
+  for (Index i = 0; i < block.rows; ++i) part.residual.segment<3>(part.used + 3 * i) = weight * r.row(i).transpose();
+  part.used += 3 * block.rows;
+}
+
+/// What the instrument makes of what it feels: I + S.
+Mat3 SensorSystem::scaled(const Use& use) const {
+  const Mat3 one = Mat3::Identity();
+  if (use.instrument.state_row == rate_row) return one + errors_.rate_matrix;
+  return use.instrument.state_row == force_row ? Mat3(one + errors_.force_matrix) : one;
+}
+
+/// Derivatives of what the instrument shows at the nodes, from those of its segment's state: columns `row` .. of
+/// `truth`, a quarter of the rows for each node.
+Eigen::Ref<const MatrixXd> SensorSystem::shown(const Use& use, const MatrixXd& truth, Index row, MatrixXd& room) const {
+  if (!layout_.has_tilts && !layout_.has_matrices) return truth.middleCols<3>(row);
+  const Mat3 scale = scaled(use);
+  const Index each = truth.rows() / block_nodes;
+  room.setZero();
+  for (std::size_t n = 0; n < block_nodes; ++n) {
+    const Index at = each * static_cast<Index>(n);
+    const Mat3 by_truth = layout_.has_tilts ? Mat3(scale * felt_[n].turn) : scale;
+    add_product(truth.block(at, row, each, 3), by_truth, 1.0, room.middleRows(at, each));
+  }
+  return room;
+}
+
+void SensorSystem::put_path(const Weighed& w) {
+  SensorRows& part = parts_[w.use.part];
+  const BodyMotion& body = motion_.body(body_);
+  const Index row = w.use.instrument.state_row, channels = size(part.band) / spline_order;
+  const auto band = shown(w.use, body.band, row, shown_band_);
+  for (Index i = 0; i < w.rows; ++i) {
+    Eigen::Matrix<double, spline_order, block_nodes * orders> by_derivatives;
+    for (Index n = 0; n < block_nodes; ++n)
+      for (Index order = 0; order < orders; ++order)
+        for (Index k = 0; k < spline_order; ++k)
+          by_derivatives(k, orders * n + order) =
+              w.weight(i, n) * motion_.bases()[static_cast<std::size_t>(n)]
+                                   .at[static_cast<std::size_t>(order)][static_cast<std::size_t>(k)];
+    for (Index axis = 0; axis < 3; ++axis)
+      add_product(Eigen::Map<const MatrixXd>(band.col(axis).data(), channels, block_nodes * orders), by_derivatives,
+                  1.0, Eigen::Map<MatrixXd>(part.jacobian.col(w.first + 3 * i + axis).data(), channels, spline_order));
+  }
+  if (scope_ == InsScope::band) return;
+  const auto put = [&](const Eigen::Ref<const MatrixXd>& by_unknowns, Index column) {
+    const Index count = by_unknowns.rows() / block_nodes;
+    for (Index axis = 0; axis < 3; ++axis) {
+      // every third row of the Jacobian
+      Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>> to(part.jacobian.col(w.first + axis).data() + column, count, w.rows,
+                                                       Eigen::OuterStride<>(3 * part.jacobian.rows()));
+      add_product(Eigen::Map<const MatrixXd>(by_unknowns.col(axis).data(), count, block_nodes),
+                  w.weight.topRows(w.rows), 1.0, to);
     }
-    const BlockResidual r = residual(block, factor, predicted, use.sd);
-    const double weight = std::sqrt(robust(r.squaredNorm(), 3.0 * block.rows).weight);
-    const BlockResidual by_shift = block.factor.cast<double>() * (node_derivative() * predicted);
-    for (Index i = 0; i < block.rows; ++i, row += 3) {
-      for (Index node = 0; node < block_nodes; ++node)
-        if (std::abs(factor(i, node)) > 0.0)
-          system.jacobian.middleRows<3>(row) += (weight * factor(i, node) / use.sd) * at_nodes.middleRows<3>(3 * node);
-      if (layout.has_clocks) {
-        const Index clock = columns.own + layout.clock_error;
-        const Vec3 by_offset = (weight / (use.sd * problem.grid.period)) * by_shift.row(i).transpose();
-        system.jacobian.block<3, 1>(row, clock) = by_offset;
-        system.jacobian.block<3, 1>(row, clock + 1) = from_middle(problem.grid, interval) * by_offset;
+  };
+  put(shown(w.use, body.turning, row, shown_turning_), part.turning);
+  if (row == force_row) put(shown(w.use, body.shifting, 0, shown_shifting_), part.shifting);
+}
+
+void SensorSystem::put_errors(const Weighed& w) {
+  MatrixXd& jacobian = parts_[w.use.part].jacobian;
+  const Index tilt = parts_[w.use.part].tilt, state_row = w.use.instrument.state_row;
+  const bool has_matrix = layout_.has_matrices && (state_row == rate_row || state_row == force_row);
+  const Mat3 scale = scaled(w.use);
+  for (Index i = 0; i < w.rows; ++i)
+    for (Index axis = 0; axis < 3; ++axis) jacobian(w.use.bias + axis, w.first + 3 * i + axis) = w.weight.row(i).sum();
+  for (std::size_t n = 0; n < block_nodes; ++n) {
+    const Vec3& truth = state_row == rate_row ? felt_[n].state.rate : felt_[n].state.force;
+    const Eigen::Matrix<double, 3, 9> tilting = layout_.has_tilts
+                                                    ? Eigen::Matrix<double, 3, 9>(scale * by_tilt(felt_[n], state_row))
+                                                    : Eigen::Matrix<double, 3, 9>(Eigen::Matrix<double, 3, 9>::Zero());
+    for (Index i = 0; i < w.rows; ++i) {
+      const double weight = w.weight(i, static_cast<Index>(n));
+      for (Index axis = 0; axis < 3; ++axis) {
+        auto row = jacobian.col(w.first + 3 * i + axis);
+        if (has_matrix)  // S is stored column by column
+          for (Index j = 0; j < 3; ++j) row[w.use.matrix + 3 * j + axis] += weight * truth[j];
+        if (layout_.has_tilts) row.segment<9>(tilt) += weight * tilting.row(axis).transpose();
       }
-      system.residual.segment<3>(row) = weight * r.row(i).transpose();
     }
   }
-  return system;
+}
+
+/// `by_shift`: of the block's rows, by intervals.
+void SensorSystem::put_clock(const Weighed& w, const BlockResidual& by_shift, Index interval) {
+  SensorRows& part = parts_[w.use.part];
+  for (Index i = 0; i < w.rows; ++i)
+    for (Index axis = 0; axis < 3; ++axis) {
+      auto row = part.jacobian.col(w.first + 3 * i + axis);
+      row[part.clock] = by_shift(i, axis) / problem_.grid.period;
+      row[part.clock + 1] = from_middle(problem_.grid, interval) * row[part.clock];
+    }
 }
 
 }  // namespace kinfer

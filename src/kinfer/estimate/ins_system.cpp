@@ -43,8 +43,8 @@ InsSystem::InsSystem(const InsProblem& problem, const InsLayout& layout, const I
     parallel_for(count, threads_, [&](std::size_t i) { done[i] = condensed(first + i, keep); });
     for (Condensed& stretch : done) {
       ends_.add(stretch.span, stretch.positive);
-      border.matrix += stretch.border.matrix;
-      border.right += stretch.border.right;
+      border.matrix += stretch.border_matrix;
+      border.right += stretch.border_right;
       if (keep) kept_.push_back(std::move(*stretch.kept));
     }
   }
@@ -52,20 +52,19 @@ InsSystem::InsSystem(const InsProblem& problem, const InsLayout& layout, const I
 }
 
 InsSystem::Condensed InsSystem::condensed(std::size_t stretch, bool keep) const {
-  BorderSum border{MatrixXd(border_, border_), VectorXd(border_)};
-  BandStretch band = damping_.holds_border ? eliminated_behind(stretches_[stretch], VectorXd::Zero(layout_.border))
-                                           : eliminated(stretches_[stretch], border);
-  Condensed result{band.condensed(), {}, band.positive(), {}};
-  if (wander_ > 0) result.span = with_wander(result.span, border, stretch);
-  result.border = std::move(border);
+  const InsStretch& intervals = stretches_[stretch];
+  BandStretch band =
+      damping_.holds_border ? BandStretch(linearisation_.sum_behind(intervals), damping_.band) : eliminated(intervals);
+  Condensed result{band.condensed(), band.border_matrix(), band.border_right(), band.positive(), {}};
+  if (wander_ > 0) result.span = with_wander(result.span, band, stretch);
   if (keep) result.kept = std::move(band);
   return result;
 }
 
 /// What biases wander off reaches a stretch as the constants of the border do; so its columns are the border's.
-BandSpan InsSystem::with_wander(const BandSpan& ends, const BorderSum& border, std::size_t stretch) const {
+BandSpan InsSystem::with_wander(const BandSpan& ends, const BandStretch& band, std::size_t stretch) const {
   const Index e = end_width(), w = layout_.wander, group = e + w, held = layout_.border;
-  const MatrixXd whole = border.matrix.selfadjointView<Eigen::Lower>();
+  const MatrixXd whole = band.border_matrix().selfadjointView<Eigen::Lower>();
   const MatrixXd of_wander = ends.coupling(wandering_, Eigen::all);
   BandSpan span{MatrixXd::Zero(2 * group, 2 * group), MatrixXd::Zero(held, 2 * group), VectorXd::Zero(2 * group)};
   span.matrix.topLeftCorner(e, e) = ends.matrix.topLeftCorner(e, e);
@@ -78,7 +77,7 @@ BandSpan InsSystem::with_wander(const BandSpan& ends, const BorderSum& border, s
   span.coupling.middleCols(e, w) = whole(Eigen::all, wandering_);
   span.coupling.middleCols(group, e) = ends.coupling.rightCols(e);
   span.right.head(e) = ends.right.head(e);
-  span.right.segment(e, w) = border.right(wandering_);
+  span.right.segment(e, w) = band.border_right()(wandering_);
   span.right.segment(group, e) = ends.right.tail(e);
   add_wander_prior(span, stretch);
   return span;
@@ -101,30 +100,16 @@ void InsSystem::add_wander_prior(BandSpan& span, std::size_t stretch) const {
   span.matrix.block(next, now, w, w).diagonal() -= a * prior.innovation;
 }
 
-/// `border`: what the stretch adds to the border's equations, its own elimination taken off.
-BandStretch InsSystem::eliminated(const InsStretch& stretch, BorderSum& border) const {
-  StretchSum sum(layout_.channels, spline_order, layout_.border, stretch.end - stretch.first);
-  border = {MatrixXd::Zero(layout_.border, layout_.border), VectorXd::Zero(layout_.border)};
-  for (Index interval = stretch.first; interval < stretch.end; ++interval)
-    sum.add(interval - stretch.first, linearisation_.span(interval, border));
-  border.matrix.diagonal() *= 1.0 + damping_.border;
-  BandStretch result(std::move(sum), damping_.band);
-  border.matrix += result.border_matrix();
-  border.right += result.border_right();
-  return result;
-}
-
-/// The same where the step of the border is known.
-BandStretch InsSystem::eliminated_behind(const InsStretch& stretch, ConstVectorRef border) const {
-  StretchSum sum(layout_.channels, spline_order, 0, stretch.end - stretch.first);
-  for (Index interval = stretch.first; interval < stretch.end; ++interval)
-    sum.add(interval - stretch.first, linearisation_.span_behind(interval, border));
+BandStretch InsSystem::eliminated(const InsStretch& stretch) const {
+  StretchSum sum = linearisation_.sum(stretch);
+  sum.border_matrix.diagonal() *= 1.0 + damping_.border;
   return BandStretch(std::move(sum), damping_.band);
 }
 
-/// The border as a stretch sees it: what its biases wandered off is added to the constants.
-VectorXd InsSystem::border_of(std::size_t stretch, const BorderedBand::Solution& ends) const {
-  VectorXd border = border_ > 0 ? ends.border : VectorXd(VectorXd::Zero(layout_.border));
+/// The border as a stretch sees it: what its biases wandered off is added to the constants. Nothing where it is held.
+std::optional<VectorXd> InsSystem::border_of(std::size_t stretch, const BorderedBand::Solution& ends) const {
+  if (damping_.holds_border) return std::nullopt;
+  VectorXd border = ends.border;
   if (wander_ > 0) border(wandering_) += ends.band.col(static_cast<Index>(stretch)).tail(wander_);
   return border;
 }
@@ -133,9 +118,10 @@ VectorXd InsSystem::border_of(std::size_t stretch, const BorderedBand::Solution&
 MatrixXd InsSystem::between(std::size_t stretch, const BorderedBand::Solution& ends) const {
   const auto k = static_cast<Index>(stretch);
   const auto first = ends.band.col(k).head(end_width()), last = ends.band.col(k + 1).head(end_width());
-  const VectorXd border = border_of(stretch, ends);
-  if (!kept_.empty()) return kept_[stretch].solve(first, last, border.head(border_));
-  return eliminated_behind(stretches_[stretch], border).solve(first, last, VectorXd());
+  const auto border = border_of(stretch, ends);
+  if (!kept_.empty()) return kept_[stretch].solve(first, last, border ? *border : VectorXd());
+  const BandStretch band(linearisation_.sum_behind(stretches_[stretch], border), damping_.band);
+  return band.solve(first, last, VectorXd());
 }
 
 std::optional<InsStep> InsSystem::solve() const {
@@ -162,8 +148,7 @@ std::optional<InsStep> InsSystem::solve() const {
 /// Gradient in the border's unknowns of each interval of a stretch.
 MatrixXd InsSystem::stretch_scores(std::size_t stretch, ConstMatrixRef ends_following) const {
   const auto [first, end] = stretches_[stretch];
-  BorderSum unused;
-  const BandStretch band = kept_.empty() ? eliminated(stretches_[stretch], unused) : kept_[stretch];
+  const BandStretch band = kept_.empty() ? eliminated(stretches_[stretch]) : kept_[stretch];
   const Index e = end_width(), group = e + layout_.wander, inner = (end - first) * layout_.channels - e,
               at = static_cast<Index>(stretch) * group;
   MatrixXd border = MatrixXd::Identity(layout_.border, layout_.border);
@@ -173,8 +158,9 @@ MatrixXd InsSystem::stretch_scores(std::size_t stretch, ConstMatrixRef ends_foll
   following.bottomRows(e) = ends_following.middleRows(at + group, e);
   following.middleRows(e, inner) = band.following(following.topRows(e), following.bottomRows(e), border);
   MatrixXd scores(end - first, layout_.border);
+  const auto gradients = linearisation_.gradients(stretches_[stretch]);
   for (Index i = 0; i < scores.rows(); ++i) {
-    const IntervalGradient gradient = linearisation_.gradient(first + i);
+    const IntervalGradient& gradient = gradients[static_cast<std::size_t>(i)];
     const auto window = following.middleRows(i * layout_.channels, spline_order * layout_.channels);
     scores.row(i) = (border.transpose() * gradient.border - window.transpose() * gradient.band).transpose();
   }

@@ -43,16 +43,16 @@ class InsSystem {
  private:
   struct Condensed {
     BandSpan span;
-    BorderSum border;
+    MatrixXd border_matrix;
+    VectorXd border_right;
     bool positive = false;
     std::optional<BandStretch> kept;
   };
   Condensed condensed(std::size_t stretch, bool keep) const;
-  BandSpan with_wander(const BandSpan& ends, const BorderSum& border, std::size_t stretch) const;
+  BandSpan with_wander(const BandSpan& ends, const BandStretch& band, std::size_t stretch) const;
   void add_wander_prior(BandSpan& span, std::size_t stretch) const;
-  VectorXd border_of(std::size_t stretch, const BorderedBand::Solution& ends) const;
-  BandStretch eliminated(const InsStretch& stretch, BorderSum& border) const;
-  BandStretch eliminated_behind(const InsStretch& stretch, ConstVectorRef border) const;
+  std::optional<VectorXd> border_of(std::size_t stretch, const BorderedBand::Solution& ends) const;
+  BandStretch eliminated(const InsStretch& stretch) const;
   MatrixXd between(std::size_t stretch, const BorderedBand::Solution& ends) const;
   MatrixXd stretch_scores(std::size_t stretch, ConstMatrixRef ends_following) const;
   MatrixXd prior_information(ConstMatrixRef ends_following) const;
@@ -64,7 +64,7 @@ class InsSystem {
   Damping damping_;
   int threads_;
   Eigen::Index border_, wander_;  // unknowns for good and of each stretch, none where they are held
-  IntervalLinearisation linearisation_;
+  InsLinearisation linearisation_;
   std::vector<InsStretch> stretches_;
   std::vector<Eigen::Index> wandering_;  // border unknowns that a stretch's own are added to
   BorderedBand ends_;                    // groups: [end, what the biases wandered off in the stretch behind it]
