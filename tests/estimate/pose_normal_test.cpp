@@ -26,6 +26,8 @@ PoseSet seen(const Chain& chain, int poses) {
   PoseSet set = measured(chain, paper2_poses(poses, tracker));
   for (int row = 0; row < poses; row += 2)
     set.orientations.push_back({row, Quat(rot_x(0.02) * true_poses(chain, set)[row].rotation), Vec3(1e-3, 2e-3, 3e-3)});
+  for (std::size_t i = 0; i < set.orientations.size(); i += 3)  // point and orientation err together
+    set.orientations[i].with_point = 3e-8 * rot_x(0.1 * static_cast<double>(i));
   set.contacts = {{0, 0}, {1, 1}, {7, 0}};
   return set;
 }
@@ -83,6 +85,27 @@ TEST(PoseNormal, kernels_take_points_alone_robustly_too) {
   std::erase_if(set.parameters, [](const Parameter& p) { return p.at.field == Field::compliance; });
   ASSERT_TRUE(has_points_alone(er20(), set, data));
   expect_the_same(er20(), set, data, pack(set, er20()));
+}
+
+TEST(PoseNormal, kernels_take_points_whose_covariances_lie_along_axes_of_their_own) {
+  const Chain chain = with_table3_errors(er20());
+  PoseSet data = measured(chain, paper2_poses(70, tracker));
+  ParameterSet set = all_parameters(er20(), {});
+  std::erase_if(set.parameters, [](const Parameter& p) { return p.at.field == Field::compliance; });
+  for (std::size_t i = 0; i < data.points.size(); i += 2)
+    data.points[i].sd = Vec3(1e-5, 2e-5, 4e-5), data.points[i].axes = rot_x(0.1 * static_cast<double>(i));
+  ASSERT_TRUE(has_points_alone(er20(), set, data));
+  const VectorXd x = pack(set, er20());
+  expect_the_same(er20(), set, data, x);
+  const Weights weights = weights_of(data, Instrument{.sigma = 1e-4});
+  PoseSet walked = data;  // a second kind of measurement keeps the kernels away
+  walked.orientations.push_back({.row = 0, .orientation = Quat::Identity()});
+  VectorXd r, slow;
+  MatrixXd jacobian, slow_jacobian;
+  pose_residuals(er20(), set, data, weights).evaluate(x, r, &jacobian);
+  pose_residuals(er20(), set, walked, weights_of(walked, Instrument{.sigma = 1e-4})).evaluate(x, slow, &slow_jacobian);
+  EXPECT_LT((r.head(210) - slow.head(210)).norm(), 1e-9 * slow.head(210).norm());
+  EXPECT_LT((jacobian.topRows(210) - slow_jacobian.topRows(210)).norm(), 1e-9 * slow_jacobian.topRows(210).norm());
 }
 
 /// Half the gradient of the cost is Jᵀr, compliance and all: torques are held, so that the derivative is exact.

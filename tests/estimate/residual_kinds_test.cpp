@@ -1,6 +1,7 @@
 // Laws that every instrument's residual obeys: its Jacobian is its slope, and at the truth it is the noise.
 #include <gtest/gtest.h>
 
+#include "kinfer/estimate/noise_level.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "support/differences.hpp"
@@ -63,6 +64,8 @@ PoseSet all_kinds(const Chain& chain) {
   for (int row = 0; row < set.rows(); row += 2)
     set.orientations.push_back({row, Quat(rot_x(0.02) * poses[row].rotation), Vec3(1e-3, 2e-3, 3e-3)});
   set.orientations[1].sd = sd, set.orientations[1].axes = axes;
+  set.orientations[2].with_point = 0.1e-6 * rot_x(0.4);  // beside a point of full covariance
+  set.orientations[3].with_point = 0.1e-6 * rot_x(-0.3), set.orientations[3].sd = sd, set.orientations[3].axes = axes;
   measure_distances(set, chain, 1e-3, Rng(4));
   measure_pairs(set, chain, 1e-3, Rng(5));
   measure_tilts(set, chain, 0.05, Rng(6));
@@ -123,6 +126,68 @@ TEST(ResidualKinds, a_full_covariance_weighs_the_error_by_its_inverse) {
   EXPECT_NEAR(r.head<3>().squaredNorm(), expected, 1e-9 * expected);
   EXPECT_NEAR(r.tail<3>().squaredNorm(), expected, 1e-9 * expected);
   EXPECT_NEAR(point_errors(chain, set)[0], off.norm(), 1e-12) << "errors stay errors";
+}
+
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+
+/// Point and orientation of one row with a 6 x 6 covariance, off by `point` and `turn`.
+struct OnePose {
+  Mat6 covariance = Mat6::Zero();
+  Vec6 off = Vec6::Zero();
+  PoseSet set;
+};
+
+OnePose one_pose(const Chain& chain) {
+  OnePose one;
+  Rng rng(11);
+  Mat6 root;
+  for (Eigen::Index k = 0; k < 36; ++k) root(k) = 1e-3 * rng.normal();
+  one.covariance = root * root.transpose();
+  one.off << 1e-3, -2e-3, 3e-3, -2e-3, 1e-3, 1.5e-3;
+  one.set = measured(chain, paper2_poses(3, noise_free));
+  one.set.points.resize(2);
+  one.set.points[1].position += one.off.head<3>();
+  const PrincipalDeviations point = principal_deviations(one.covariance.topLeftCorner<3, 3>()),
+                            turn = principal_deviations(one.covariance.bottomRightCorner<3, 3>());
+  one.set.points[1].sd = point.sd, one.set.points[1].axes = point.axes;
+  const Quat turned(exp_so3(one.off.tail<3>()) * true_poses(chain, one.set)[1].rotation);
+  one.set.orientations = {{1, turned, turn.sd, turn.axes, Mat3(one.covariance.topRightCorner<3, 3>())}};
+  return one;
+}
+
+TEST(ResidualKinds, six_rows_of_a_pose_weigh_its_error_by_the_inverse_of_their_covariance) {
+  const Chain chain = er20();
+  const OnePose one = one_pose(chain);
+  const ParameterSet nothing;
+  VectorXd r;
+  const auto squares = [&](const PoseSet& set, const Weights& weights) {
+    pose_residuals(chain, nothing, set, weights).evaluate(VectorXd(0), r, nullptr);
+    return r.squaredNorm();
+  };
+  const double expected = one.off.dot(one.covariance.inverse() * one.off);
+  EXPECT_NEAR(squares(one.set, weights_of(one.set, Instrument{.sigma = 1.0})), expected, 1e-8 * expected);
+  const double excess = 0.7e-3, turn_excess = 0.4e-3;  // what the model cannot say is added to both blocks
+  Mat6 wider = one.covariance;
+  wider.topLeftCorner<3, 3>() += excess * excess * Mat3::Identity();
+  wider.bottomRightCorner<3, 3>() += turn_excess * turn_excess * Mat3::Identity();
+  ExcessNoise more;
+  more.of[static_cast<std::size_t>(MeasurementKind::point)] = excess;
+  more.of[static_cast<std::size_t>(MeasurementKind::orientation)] = turn_excess;
+  const double less = one.off.dot(wider.inverse() * one.off);
+  EXPECT_NEAR(squares(one.set, weights_of(one.set, Instrument{.sigma = 1.0}, more)), less, 1e-8 * less);
+}
+
+TEST(ResidualKinds, an_orientation_whose_point_is_not_kept_has_its_own_covariance) {
+  const Chain chain = er20();
+  const OnePose one = one_pose(chain);
+  const PoseSet alone = only(one.set, {true, false, true});
+  const ParameterSet nothing;
+  VectorXd r;
+  pose_residuals(chain, nothing, alone, weights_of(alone, Instrument{.sigma = 1.0})).evaluate(VectorXd(0), r, nullptr);
+  const Vec3 turn = one.off.tail<3>();
+  const double expected = turn.dot(one.covariance.bottomRightCorner<3, 3>().inverse() * turn);
+  EXPECT_NEAR(r.tail<3>().squaredNorm(), expected, 1e-8 * expected);
 }
 
 TEST(ResidualKinds, at_the_truth_the_residuals_are_the_noise) {

@@ -150,6 +150,47 @@ TEST(PoseSetCsv, WhatIsNoCovarianceIsRefusedWithItsLine) {
                "expected a variance of lengths");
 }
 
+constexpr const char* cross_columns =
+    "pr_cov_xx[mm.mrad],pr_cov_xy[mm.mrad],pr_cov_xz[mm.mrad],pr_cov_yx[mm.mrad],pr_cov_yy[mm.mrad],pr_cov_yz[mm.mrad],"
+    "pr_cov_zx[mm.mrad],pr_cov_zy[mm.mrad],pr_cov_zz[mm.mrad]";
+
+TEST(PoseSetCsv, HowPointAndOrientationGoTogetherIsReadAndWritten) {
+  const std::string text =
+      std::string("q1,q2,x,y,z,sx[mm],sy[mm],sz[mm],qw,qx,qy,qz,srx[mrad],sry[mrad],srz[mrad],") + cross_columns +
+      "\n0,0,1,2,3,1,2,3,1,0,0,0,4,5,6,1,2,-1,0.5,3,-2,0,1,2\n0,0,1,2,3,1,2,3,1,0,0,0,4,5,6,,,,,,,,,\n";
+  const PoseSet set = poses_of(text);
+  ASSERT_EQ(set.orientations.size(), 2U);
+  const Mat3 expected = 1e-6 * (Mat3() << 1, 2, -1, 0.5, 3, -2, 0, 1, 2).finished();  // rows: the point's axes
+  EXPECT_TRUE(set.orientations[0].with_point->isApprox(expected, 1e-12));
+  EXPECT_FALSE(set.orientations[1].with_point);
+  for (const FileUnits units : {FileUnits::si, FileUnits::mm_deg}) {
+    const PoseSet again = poses_of(pose_set_csv(set, two_joints(), units));
+    ASSERT_EQ(again.orientations.size(), 2U);
+    EXPECT_TRUE(again.orientations[0].with_point->isApprox(expected, 1e-9));
+    EXPECT_FALSE(again.orientations[1].with_point);
+  }
+}
+
+TEST(PoseSetCsv, ACovarianceOfAPoseThatIsNotPositiveDefiniteIsRefusedWithItsLine) {
+  const std::string header =
+      std::string("q1,q2,x,y,z,sx[mm],sy[mm],sz[mm],qw,qx,qy,qz,srx[mrad],sry[mrad],srz[mrad],") + cross_columns + "\n";
+  const std::string row = "0,0,1,2,3,1,2,3,1,0,0,0,4,5,6,";
+  const auto complaint = [&](const std::string& cells) { return complaint_about(header + cells + "\n"); };
+  EXPECT_EQ(complaint(row + "4.1,0,0,0,0,0,0,0,0"),
+            "poses.csv:2: pr_cov_xx to pr_cov_zz: with p_cov and r_cov of the row, expected a positive definite 6 x 6 "
+            "covariance of the pose");
+  EXPECT_EQ(complaint(row + "3.9,0,0,0,0,0,0,0,0"), "(accepted)");
+  EXPECT_EQ(complaint(row + "1,0,0,0,,0,0,0,0"),
+            "poses.csv:2: pr_cov_xx to pr_cov_zz: expected nine numbers or none of them, found 8");
+  const std::string lonely = "pr_cov_xx to pr_cov_zz: expected a position and an orientation beside it, both with";
+  EXPECT_NE(complaint("0,0,1,2,3,,,,1,0,0,0,4,5,6,1,0,0,0,0,0,0,0,0").find(lonely), std::string::npos);
+  EXPECT_NE(complaint("0,0,1,2,3,1,2,3,1,0,0,0,,,,1,0,0,0,0,0,0,0,0").find(lonely), std::string::npos);
+  EXPECT_NE(complaint("0,0,1,2,3,1,2,3,,,,,,,,1,0,0,0,0,0,0,0,0").find("expected an orientation beside it"),
+            std::string::npos);
+  EXPECT_NE(complaint_about("q1,q2,x,y,z,qw,qx,qy,qz,pr_cov_xy\n0,0,1,2,3,1,0,0,0,1\n").find("pr_cov_xx is missing"),
+            std::string::npos);
+}
+
 TEST(PoseSetCsv, RowsMayHaveLoadsLabelsSetupsSweepsTorquesAndCommands) {
   const PoseSet set = poses_of(
       "q1,q2,x,y,z,payload[kg],set,setup,sweep,tau1,tau2,q1_cmd[deg],q2_cmd[mm]\n"

@@ -33,6 +33,8 @@ void scale_points(PoseSet& data, double factor) {
     point.position *= factor;
     if (point.sd) *point.sd *= factor;
   }
+  for (OrientationMeasurement& measured : data.orientations)
+    if (measured.with_point) *measured.with_point *= factor;
 }
 
 void add_offset(Joint& joint, double angle) {

@@ -22,6 +22,7 @@ struct Options {
   };
   Given sigma, sigma_angle, ppm, lowest;  // [mm], [deg], [um/m], [mm]; not given: the robot file's instrument, no floor
   double clearance = 0.0;                 // [mm]
+  double shake = 0.0;                     // [deg]
 };
 
 PoseSimulation simulation_of(const Options& options, const RobotModel& robot) {
@@ -34,6 +35,7 @@ PoseSimulation simulation_of(const Options& options, const RobotModel& robot) {
   if (options.lowest.given) simulation.space.lowest = 1e-3 * options.lowest.value;
   simulation.space.clearance = 1e-3 * options.clearance;
   simulation.measured = options.measured == "pose" ? Measured::poses : Measured::positions;
+  simulation.shake = options.shake * degree;
   return simulation;
 }
 
@@ -52,6 +54,8 @@ int run(const Options& options) {
   const auto truth = true_chain(options, *robot, rng.stream(1));
   if (!truth) return fail(truth.error());
   const PoseSimulation simulation = simulation_of(options, *robot);
+  if (simulation.shake > 0.0 && simulation.measured == Measured::positions)
+    return fail(Error{"--shake: what the orientations tell of it is lost with positions alone; add --measured pose"});
   const auto set = simulate_pose_set(*truth, simulation, rng.stream(2));
   if (!set) return fail(set.error());
 
@@ -91,6 +95,10 @@ Verb add_simulate_poses(CLI::App& app) {
   add_number(*verb, "--lowest", options->lowest.value, options->lowest.given,
              "Tool stays above this height over the base [mm]");
   add_number(*verb, "--clearance", options->clearance, "Tool stays further than this from the base axis [mm]");
+  add_number(
+      *verb, "--shake", options->shake, 0.0, 1.0,
+      "The instrument's stand turns by this much about each axis between poses [deg]; the file has the covariance "
+      "of each pose");
   add_common_options(*verb, options->common);
   return {verb, [options] { return run(*options); }};
 }

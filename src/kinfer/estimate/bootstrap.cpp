@@ -36,7 +36,8 @@ Bootstrap bootstrap(const Chain& estimate, const ParameterSet& set, const PoseSe
   LeastSquaresOptions how = near_the_optimum();
   how.max_iterations = options.max_iterations;
   std::optional<BatchPoints> batch;
-  if (has_points_alone(estimate, set, data)) batch.emplace(estimate, set, point_table(data));
+  if (has_points_alone(estimate, set, data) && !has_full_covariances(data))
+    batch.emplace(estimate, set, point_table(data));
 
   Bootstrap result;
   result.x.resize(start.size(), options.resamples);

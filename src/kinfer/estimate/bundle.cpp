@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/estimate/identifiability.hpp"
@@ -123,8 +124,18 @@ class Fit {
     minimise(Loss::none, exactly_enough / static_cast<double>(std::max<std::size_t>(1, blocks_.size())));
   }
 
-  VectorXd block_distances() const {  // [sigma], one a block
-    const Weights weights = weights_of(data_, instrument_, state_.excess);
+  /// [sigma], one a block. An orientation is judged beside the point of its row only where that is believed.
+  VectorXd block_distances() const {
+    Weights weights = weights_of(data_, instrument_, state_.excess);
+    if (weights.couplings.empty()) return block_distances(weights);
+    const std::vector<PoseCoupling> couplings = std::exchange(weights.couplings, {});
+    const VectorXd alone = block_distances(weights);  // points are the first blocks
+    for (const PoseCoupling& c : couplings)
+      if (alone[c.point] <= limits()[2]) weights.couplings.push_back(c);
+    return block_distances(weights);
+  }
+
+  VectorXd block_distances(const Weights& weights) const {
     const ParameterSet nothing;
     VectorXd r, distance(static_cast<Eigen::Index>(blocks_.size()));
     pose_residuals(state_.chain, nothing, data_, weights).evaluate(VectorXd(0), r, nullptr);
@@ -198,6 +209,7 @@ class Fit {
       const double sd = typical_sd(weights, {kind.kind});
       if (sd > 0.0) sum += 2.0 * kind.size * static_cast<double>(kind.count(data_)) * std::log(sd);
     }
+    for (const PoseCoupling& coupling : weights.couplings) sum += coupling.log_determinant();
     return sum;
   }
 

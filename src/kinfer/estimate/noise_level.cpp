@@ -46,6 +46,44 @@ std::vector<Vec3> residuals_of(const ResidualKind& kind, const Scene& scene) {
   return residuals;
 }
 
+/// One kind's blocks with the deviations that they are measured against, along the same axes.
+struct Blocks {
+  std::vector<Vec3> residuals, sd;
+};
+
+RemainingError in_world(const Blocks& blocks, int index, const std::optional<Mat3>& axes) {
+  const Vec3& along = blocks.residuals[index];
+  return {axes ? Vec3(*axes * along) : along, covariance_of(blocks.sd[index], axes)};
+}
+
+void replace(Blocks& blocks, int index, const RemainingError& by) {
+  const PrincipalDeviations spread = principal_deviations(by.covariance);
+  blocks.residuals[index] = spread.axes.transpose() * by.error, blocks.sd[index] = spread.sd;
+}
+
+/// Points and orientations that err together hide small errors in each other's: points are judged given the
+/// orientation, and orientations given the point with the excess that was found for it.
+void judge_poses(const Weights& promised, const PoseSet& data, double left, Blocks& points, Blocks& turns,
+                 ExcessNoise& excess) {
+  Blocks given_turns = points;
+  for (const PoseCoupling& c : promised.couplings) {
+    const OrientationMeasurement& turn = data.orientations[c.orientation];
+    replace(given_turns, c.point,
+            given(in_world(turns, c.orientation, turn.axes), in_world(points, c.point, data.points[c.point].axes),
+                  *turn.with_point));
+  }
+  double& of_points = excess.of[static_cast<std::size_t>(MeasurementKind::point)];
+  of_points = excess_of(given_turns.residuals, given_turns.sd, 3, left);
+  for (const PoseCoupling& c : promised.couplings) {
+    const OrientationMeasurement& turn = data.orientations[c.orientation];
+    RemainingError point = in_world(points, c.point, data.points[c.point].axes);
+    point.covariance += of_points * of_points * Mat3::Identity();
+    replace(turns, c.orientation,
+            given(point, in_world(turns, c.orientation, turn.axes), turn.with_point->transpose()));
+  }
+  excess.of[static_cast<std::size_t>(MeasurementKind::orientation)] = excess_of(turns.residuals, turns.sd, 3, left);
+}
+
 }  // namespace
 
 ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::optional<Instrument>& instrument,
@@ -60,9 +98,15 @@ ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::opt
   const double left = std::max(0.1, 1.0 - effective_parameters / rows);
   const Weights promised = weights_of(data, instrument.value_or(Instrument{}));
   ExcessNoise excess;
-  for (const ResidualKind& kind : residual_kinds())
-    excess.of[static_cast<std::size_t>(kind.kind)] =
-        excess_of(residuals_of(kind, scene), promised.of(kind.kind), kind.size, left);
+  std::array<Blocks, measurement_kinds> blocks;
+  for (const ResidualKind& kind : residual_kinds()) {
+    const auto k = static_cast<std::size_t>(kind.kind);
+    blocks[k] = {residuals_of(kind, scene), promised.of(kind.kind)};
+    excess.of[k] = excess_of(blocks[k].residuals, blocks[k].sd, kind.size, left);
+  }
+  if (!promised.couplings.empty())
+    judge_poses(promised, data, left, blocks[static_cast<std::size_t>(MeasurementKind::point)],
+                blocks[static_cast<std::size_t>(MeasurementKind::orientation)], excess);
   return excess;
 }
 
@@ -72,6 +116,7 @@ Weights weights_of(const PoseSet& data, const std::optional<Instrument>& instrum
     const double more = excess.of[static_cast<std::size_t>(kind.kind)];
     for (Vec3& sd : weights.of(kind.kind)) sd = (sd.cwiseAbs2().array() + more * more).sqrt();
   }
+  weights.couplings = couplings_of(data, weights.point_sd, weights.orientation_sd);
   return weights;
 }
 

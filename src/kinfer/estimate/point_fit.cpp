@@ -45,12 +45,35 @@ class Priors {
 }  // namespace
 
 bool has_points_alone(const Chain& chain, const ParameterSet& set, const PoseSet& data) {
-  const auto has_axes = [](const PointMeasurement& point) { return point.axes.has_value(); };
-  if (std::any_of(data.points.begin(), data.points.end(), has_axes)) return false;
   const auto is_measured = [&](const ResidualKind& kind) { return kind.count(data) > 0; };
   const auto& kinds = residual_kinds();
   return data.mounting.empty() && !data.points.empty() && chain.surroundings.socket_distances.empty() &&
          std::count_if(kinds.begin(), kinds.end(), is_measured) == 1 && has_batch_form(chain, set);
+}
+
+bool has_full_covariances(const PoseSet& data) {
+  return std::any_of(data.points.begin(), data.points.end(),
+                     [](const PointMeasurement& point) { return point.axes.has_value(); });
+}
+
+std::vector<Mat3> whiteners(const PoseSet& data, const Weights& weights) {
+  std::vector<Mat3> by;
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const Mat3 along = data.points[i].axes.value_or(Mat3::Identity());
+    by.push_back(weights.point_sd[i].cwiseInverse().asDiagonal() * along.transpose());
+  }
+  return by;
+}
+
+void whiten(const std::vector<Mat3>& by, Eigen::Ref<MatrixXd> rows) {
+  for (Eigen::Index k = 0; k < rows.cols(); ++k) {
+    double* column = rows.col(k).data();
+    for (const Mat3& w : by) {
+      const double x = column[0], y = column[1], z = column[2];
+      for (int i = 0; i < 3; ++i) column[i] = w(i, 0) * x + w(i, 1) * y + w(i, 2) * z;
+      column += 3;
+    }
+  }
 }
 
 PointTable point_table(const PoseSet& data) {

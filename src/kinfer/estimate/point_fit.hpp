@@ -7,9 +7,16 @@
 
 namespace kinfer {
 
-/// True where nothing but points was measured, at one mounting, with errors along the world's axes, and the chain has a
-/// batch form: what the kernels take.
+/// True where nothing but points was measured, at one mounting, and the chain has a batch form: what the kernels take.
 bool has_points_alone(const Chain& chain, const ParameterSet& set, const PoseSet& data);
+
+/// True where some point's errors are independent along axes of its own, not the world's.
+bool has_full_covariances(const PoseSet& data);
+
+/// diag(1/sd) axesᵀ of each point: turns its error and the error's derivative into independent rows of unit variance.
+std::vector<Mat3> whiteners(const PoseSet& data, const Weights& weights);
+/// `rows`: 3 points x n.
+void whiten(const std::vector<Mat3>& by, Eigen::Ref<MatrixXd> rows);
 
 /// The measured points of a pose set, in its order.
 PointTable point_table(const PoseSet& data);

@@ -80,14 +80,35 @@ class Walked : public Measured {
       kind.write(scene, i, out);
       scale.segment(out.row, kind.size) = weights_.of(kind.kind)[i].head(kind.size).cwiseInverse();
     }
-    const VectorXd r = residuals_.head(rows).cwiseProduct(scale);
+    residuals_.head(rows).array() *= scale.array();
+    if (normal) jacobian_.topRows(rows).array().colwise() *= scale.array();
+    if (kind.kind == MeasurementKind::orientation) decouple(scene, first, end, normal ? &jacobian_ : nullptr);
+    const auto r = residuals_.head(rows);
     if (!normal) return cost_of_blocks(loss_, kind.size, r, nullptr);
     VectorXd root(rows);
     const double cost = cost_of_blocks(loss_, kind.size, r, &root);
-    scale = scale.cwiseProduct(root);
-    jacobian_.topRows(rows).array().colwise() *= scale.array();
+    if (loss_.loss != Loss::none) jacobian_.topRows(rows).array().colwise() *= root.array();
     add(normal_equations(jacobian_.topRows(rows), r.cwiseProduct(root)), *normal);
     return cost;
+  }
+
+  /// Orientations `first` to `end`, whose weighted rows are written, made independent of the points beside them.
+  void decouple(const Scene& scene, std::size_t first, std::size_t end, MatrixXd* jacobian) {
+    const auto before = [](const PoseCoupling& c, std::size_t i) {
+      return static_cast<std::size_t>(c.orientation) < i;
+    };
+    const std::vector<PoseCoupling>& all = weights_.couplings;
+    for (auto c = std::lower_bound(all.begin(), all.end(), first, before);
+         c != all.end() && static_cast<std::size_t>(c->orientation) < end; ++c) {
+      const auto row = static_cast<Eigen::Index>(3 * (static_cast<std::size_t>(c->orientation) - first));
+      const Vec3 inverse_sd = weights_.point_sd[c->point].cwiseInverse();
+      VectorXd r(3);
+      MatrixXd beside(3, jacobian ? set_.free_count() : 0);
+      BlockRows out{r, jacobian ? &beside : nullptr};
+      residual_kind(MeasurementKind::point).write(scene, static_cast<std::size_t>(c->point), out);
+      c->whiten(residuals_.segment<3>(row), r.cwiseProduct(inverse_sd));
+      if (jacobian) c->whiten(jacobian->middleRows<3>(row), inverse_sd.asDiagonal() * beside);
+    }
   }
 
   double socket_distances(const Chain& chain, NormalEquations* normal) {
@@ -152,6 +173,51 @@ class ByKernels : public Measured {
   BatchPoints::Scratch scratch_;
 };
 
+/// Points whose errors are independent along axes of their own: the kernels' rows are turned, and then summed up.
+class TurnedByKernels : public Measured {
+ public:
+  TurnedByKernels(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights,
+                  BlockLoss loss)
+      : points_(nominal, set, point_table(data)),
+        unweighted_(points_.weights(Eigen::Matrix3Xd::Ones(3, points_.points()))),
+        by_(whiteners(data, weights)),
+        loss_(loss) {}
+
+  double cost(ConstVectorRef x) override {
+    Eigen::Matrix3Xd error;
+    points_.errors(x, error, scratch_);
+    whiten(by_, error.reshaped());
+    return cost_of_blocks(loss_, 3, error.reshaped(), nullptr);
+  }
+
+  double linearise(ConstVectorRef x, NormalEquations& normal) override {
+    VectorXd r(3 * points_.points()), root(r.size());
+    jacobian_.resize(r.size(), points_.unknowns());
+    points_.residuals(x, unweighted_, r, jacobian_, scratch_);
+    whiten(by_, r), whiten(by_, jacobian_);
+    const double cost = cost_of_blocks(loss_, 3, r, &root);
+    if (loss_.loss != Loss::none) jacobian_.array().colwise() *= root.array(), r.array() *= root.array();
+    const NormalEquations sum = normal_equations(jacobian_, r);
+    normal.matrix += sum.matrix, normal.gradient += sum.gradient;
+    return cost;
+  }
+
+ private:
+  BatchPoints points_;
+  BatchPoints::Weights unweighted_;
+  std::vector<Mat3> by_;
+  BlockLoss loss_;
+  MatrixXd jacobian_;
+  BatchPoints::Scratch scratch_;
+};
+
+std::shared_ptr<Measured> measured_part(const Chain& nominal, const ParameterSet& set, const PoseSet& data,
+                                        const Weights& weights, BlockLoss loss) {
+  if (!has_points_alone(nominal, set, data)) return std::make_shared<Walked>(nominal, set, data, weights, loss);
+  if (has_full_covariances(data)) return std::make_shared<TurnedByKernels>(nominal, set, data, weights, loss);
+  return std::make_shared<ByKernels>(nominal, set, data, weights, loss);
+}
+
 }  // namespace
 
 MatrixXd prior_information(const ParameterSet& set) {
@@ -161,11 +227,7 @@ MatrixXd prior_information(const ParameterSet& set) {
 
 NormalProblem pose_normal_problem(const Chain& nominal, const ParameterSet& set, const PoseSet& data,
                                   const Weights& weights, BlockLoss loss) {
-  std::shared_ptr<Measured> measured;  // shared: a function must be copyable
-  if (has_points_alone(nominal, set, data))
-    measured = std::make_shared<ByKernels>(nominal, set, data, weights, loss);
-  else
-    measured = std::make_shared<Walked>(nominal, set, data, weights, loss);
+  const auto measured = measured_part(nominal, set, data, weights, loss);  // shared: a function must be copyable
   const auto priors = std::make_shared<const MatrixXd>(prior_information(set));
   NormalProblem problem;
   problem.unknowns = set.free_count();

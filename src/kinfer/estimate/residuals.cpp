@@ -68,7 +68,8 @@ using MeasuredRows = std::function<void(ConstVectorRef x, VectorXd& r, MatrixXd*
 /// Any measurements, pose by pose.
 MeasuredRows rows_by_walking(const Chain& nominal, const ParameterSet& set, const PoseSet& data,
                              const Weights& weights) {
-  return [&nominal, &set, &data, inverse_sd = row_weights(weights)](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
+  return [&nominal, &set, &data, inverse_sd = row_weights(weights), &couplings = weights.couplings](
+             ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
     const Chain chain = unpack(set, nominal, x);
     const EvaluatedPoses at = evaluate_poses(chain, set, data, jacobian ? Derivative::yes : Derivative::no);
     const ColumnsOfSurroundings columns = columns_of_surroundings(chain, set);
@@ -78,6 +79,12 @@ MeasuredRows rows_by_walking(const Chain& nominal, const ParameterSet& set, cons
       for (std::size_t i = 0; i < kind.count(data); ++i, out.row += kind.size) kind.write(scene, i, out);
     r.head(out.row).array() *= inverse_sd.array();
     if (jacobian) jacobian->topRows(out.row).array().colwise() *= inverse_sd.array();
+    const auto first_turn = static_cast<Eigen::Index>(3 * data.points.size());  // orientations stand behind the points
+    for (const PoseCoupling& c : couplings) {
+      const Eigen::Index turn = first_turn + 3 * c.orientation, point = 3 * c.point;
+      c.whiten(r.segment<3>(turn), r.segment<3>(point));
+      if (jacobian) c.whiten(jacobian->middleRows<3>(turn), jacobian->middleRows<3>(point));
+    }
     write_socket_distances(chain, columns, r, jacobian, out.row);
   };
 }
@@ -98,6 +105,33 @@ MeasuredRows rows_by_kernels(const Chain& nominal, const ParameterSet& set, cons
       r.head(inverse.size()) = error.cwiseProduct(inverse).reshaped();
     }
   };
+}
+
+/// The same where errors are independent along axes of the points' own: the rows are turned after the kernels.
+MeasuredRows turned_rows_by_kernels(const Chain& nominal, const ParameterSet& set, const PoseSet& data,
+                                    const Weights& weights) {
+  auto points = std::make_shared<const BatchPoints>(nominal, set, point_table(data));
+  const Eigen::Matrix3Xd ones = Eigen::Matrix3Xd::Ones(3, points->points());
+  auto unweighted = std::make_shared<const BatchPoints::Weights>(points->weights(ones));
+  return [points, unweighted, by = whiteners(data, weights)](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
+    BatchPoints::Scratch scratch;
+    const Eigen::Index rows = 3 * points->points();
+    if (jacobian) {
+      points->residuals(x, *unweighted, r.head(rows), jacobian->topRows(rows), scratch);
+      whiten(by, jacobian->topRows(rows));
+    } else {
+      Eigen::Matrix3Xd error;
+      points->errors(x, error, scratch);
+      r.head(rows) = error.reshaped();
+    }
+    whiten(by, r.head(rows));
+  };
+}
+
+MeasuredRows rows_of(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights) {
+  if (!has_points_alone(nominal, set, data)) return rows_by_walking(nominal, set, data, weights);
+  return has_full_covariances(data) ? turned_rows_by_kernels(nominal, set, data, weights)
+                                    : rows_by_kernels(nominal, set, data, weights);
 }
 
 }  // namespace
@@ -187,6 +221,7 @@ Weights weights_of(const PoseSet& data, const Instrument& instrument) {
   for (const ResidualKind& kind : residual_kinds())
     for (std::size_t i = 0; i < kind.count(data); ++i)
       weights.of(kind.kind).push_back(kind.promised_sd(data, i, instrument).cwiseMax(noise_free_sd));
+  weights.couplings = couplings_of(data, weights.point_sd, weights.orientation_sd);
   return weights;
 }
 
@@ -222,10 +257,7 @@ Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const Po
   const auto distances = static_cast<Eigen::Index>(nominal.surroundings.socket_distances.size());
   const Eigen::Index unknowns = problem.unknowns, rows = measured + distances + unknowns;
   problem.rows = rows;
-  problem.evaluate = [write_measured = has_points_alone(nominal, set, data)
-                                           ? rows_by_kernels(nominal, set, data, weights)
-                                           : rows_by_walking(nominal, set, data, weights),
-                      unknowns, rows, priors = prior_rows(set),
+  problem.evaluate = [write_measured = rows_of(nominal, set, data, weights), unknowns, rows, priors = prior_rows(set),
                       centre = nominal_of(set)](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
     r.resize(rows);
     if (jacobian) jacobian->resize(rows, unknowns);

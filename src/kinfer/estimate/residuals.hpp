@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "kinfer/estimate/pose_coupling.hpp"
 #include "kinfer/estimate/residual_kind.hpp"
 #include "kinfer/search/least_squares.hpp"
 
@@ -31,6 +32,7 @@ struct Weights {
   std::vector<Vec3> orientation_sd;                              ///< [rad] about the world's axes
   std::vector<Vec3> contact_sd, distance_sd, pair_sd, plane_sd;  ///< [m]; of one-row kinds only the first counts
   std::vector<Vec3> tilt_sd;                                     ///< [m/s²]; the first two count
+  std::vector<PoseCoupling> couplings;  ///< of orientations with the points beside them, ascending; few sets have any
 
   std::vector<Vec3>& of(MeasurementKind kind);
   const std::vector<Vec3>& of(MeasurementKind kind) const;

@@ -3,25 +3,39 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/linalg/decompositions.hpp"
+
 namespace kinfer {
 namespace {
 
-/// Six columns that belong together; each row has all or none.
-struct CovarianceColumns {
-  std::array<NumberColumn, 6> of;
+/// Columns that belong together; each row has all or none.
+template <std::size_t n>
+struct TogetherColumns {
+  std::array<NumberColumn, n> of;
 
   std::ptrdiff_t given(int row) const {
     return std::count_if(of.begin(), of.end(), [&](const NumberColumn& c) { return !std::isnan(c[row]); });
   }
-  Mat3 at(int row) const {
-    Mat3 c;
-    c << of[0][row], of[1][row], of[2][row], of[1][row], of[3][row], of[4][row], of[2][row], of[4][row], of[5][row];
-    return c;
-  }
 };
+using CovarianceColumns = TogetherColumns<6>;
+using CrossColumns = TogetherColumns<9>;
 
-std::optional<CovarianceColumns> find(PoseColumns& columns, const std::array<std::string, 6>& names,
-                                      Dimension dimension) {
+Mat3 symmetric_at(const CovarianceColumns& columns, int row) {
+  const auto& of = columns.of;
+  Mat3 c;
+  c << of[0][row], of[1][row], of[2][row], of[1][row], of[3][row], of[4][row], of[2][row], of[4][row], of[5][row];
+  return c;
+}
+
+Mat3 all_nine_at(const CrossColumns& columns, int row) {
+  Mat3 c;
+  for (int k = 0; k < 9; ++k) c(k / 3, k % 3) = columns.of[k][row];
+  return c;
+}
+
+template <std::size_t n>
+std::optional<TogetherColumns<n>> find(PoseColumns& columns, const std::array<std::string, n>& names,
+                                       Dimension dimension) {
   const auto has = [&](const std::string& name) { return columns.has(name); };
   if (std::none_of(names.begin(), names.end(), has)) return std::nullopt;
   if (const auto missing = std::find_if_not(names.begin(), names.end(), has); missing != names.end()) {
@@ -29,7 +43,7 @@ std::optional<CovarianceColumns> find(PoseColumns& columns, const std::array<std
         fmt::format("column {} is missing: a covariance is {} to {}", *missing, names.front(), names.back()));
     return std::nullopt;
   }
-  CovarianceColumns found;
+  TogetherColumns<n> found;
   for (std::size_t k = 0; k < names.size(); ++k) found.of[k] = *columns.numbers(names[k], dimension);
   return found;
 }
@@ -45,7 +59,7 @@ void take(PoseColumns& columns, const std::array<std::string, 6>& names, const C
   };
   if (given < 6) return complain(fmt::format("expected six numbers or none of them, found {}", given));
   if (measured.sd) return complain("the row has standard deviations too, expected one of both");
-  const Mat3 covariance = covariances.at(measured.row);
+  const Mat3 covariance = symmetric_at(covariances, measured.row);
   const PrincipalDeviations found = principal_deviations(covariance);
   constexpr double rounding = 1e-6;  // of the largest variance: files have few digits
   const double largest = covariance.diagonal().maxCoeff();
@@ -54,7 +68,50 @@ void take(PoseColumns& columns, const std::array<std::string, 6>& names, const C
   measured.sd = found.sd, measured.axes = found.axes;
 }
 
+/// Whether no combination of the pose's six errors is free of noise, or worse.
+bool is_positive_definite(const PointMeasurement& point, const OrientationMeasurement& turn) {
+  if (point.sd->minCoeff() <= 0.0 || turn.sd->minCoeff() <= 0.0) return false;
+  constexpr double rounding = 1e-9;  // of the variances
+  const Mat3 y = correlation(*point.sd, point.axes, *turn.sd, turn);
+  return symmetric_eigen(y.transpose() * y).values.maxCoeff() < 1.0 - rounding;
+}
+
+/// Of every orientation: how it goes with the tool point of its row.
+void take_cross(PoseColumns& columns, const CrossColumns& cross, PoseSet& set) {
+  const auto names = cross_covariance_names();
+  std::vector<const PointMeasurement*> point_of(columns.rows(), nullptr);
+  for (const PointMeasurement& point : set.points)
+    if (point.target < 0) point_of[point.row] = &point;
+  std::vector<bool> used(columns.rows(), false);
+  const auto complain = [&](int row, const std::string& what) {
+    columns.complain(row, fmt::format("{} to {}: {}", names.front(), names.back(), what));
+  };
+  for (OrientationMeasurement& measured : set.orientations) {
+    const int row = measured.row;
+    const auto given = cross.given(row);
+    used[row] = true;
+    if (given == 0) continue;
+    const PointMeasurement* point = point_of[row];
+    if (given < 9) {
+      complain(row, fmt::format("expected nine numbers or none of them, found {}", given));
+    } else if (!point || !point->sd || !measured.sd) {
+      complain(row, "expected a position and an orientation beside it, both with p_cov and r_cov or sx and srx");
+    } else {
+      measured.with_point = all_nine_at(cross, row);
+      if (!is_positive_definite(*point, measured))
+        complain(row, "with p_cov and r_cov of the row, expected a positive definite 6 x 6 covariance of the pose");
+    }
+  }
+  for (int row = 0; row < static_cast<int>(columns.rows()); ++row)
+    if (!used[row] && cross.given(row) > 0) complain(row, "expected an orientation beside it");
+}
+
 }  // namespace
+
+std::array<std::string, 9> cross_covariance_names() {
+  return {"pr_cov_xx", "pr_cov_xy", "pr_cov_xz", "pr_cov_yx", "pr_cov_yy",
+          "pr_cov_yz", "pr_cov_zx", "pr_cov_zy", "pr_cov_zz"};
+}
 
 std::array<std::string, 6> covariance_names(const std::string& of) {
   return {of + "_cov_xx", of + "_cov_xy", of + "_cov_xz", of + "_cov_yy", of + "_cov_yz", of + "_cov_zz"};
@@ -71,6 +128,8 @@ void read_covariances(PoseColumns& columns, PoseSet& set) {
   const auto names = covariance_names("r");
   if (const auto covariances = find(columns, names, Dimension::square_angle))
     for (OrientationMeasurement& measured : set.orientations) take(columns, names, *covariances, measured);
+  if (const auto cross = find(columns, cross_covariance_names(), Dimension::length_times_angle))
+    take_cross(columns, *cross, set);
 }
 
 }  // namespace kinfer

@@ -153,6 +153,17 @@ class Writer {
     for (int i = 0; i < 3; ++i)
       for (int j = i; j < 3; ++j) sheet_.set(column++, measured.row, c(i, j), unit * unit);
   }
+  void write_cross_covariance(std::optional<std::size_t>& first, const OrientationMeasurement& measured) {
+    if (!first)
+      for (const std::string& name : cross_covariance_names()) {
+        const std::size_t column = sheet_.add(name + (in_mm_ ? "[mm.deg]" : "[m.rad]"));
+        if (!first) first = column;
+      }
+    for (int k = 0; k < 9; ++k)
+      sheet_.set(*first + static_cast<std::size_t>(k), measured.row, (*measured.with_point)(k / 3, k % 3),
+                 length_ * angle_);
+  }
+
   void write_orientations() {
     if (set_.orientations.empty()) return;
     const std::size_t scalar = sheet_.add("qw"), vector = add_three("q", "");
@@ -163,9 +174,10 @@ class Writer {
   }
 
   void write_orientation_deviations() {
-    std::optional<std::size_t> deviations, covariance;
+    std::optional<std::size_t> deviations, covariance, cross;
     for (const OrientationMeasurement& measured : set_.orientations) {
       if (measured.axes) write_covariance(covariance, "r", measured, Of::angles);
+      if (measured.with_point) write_cross_covariance(cross, measured);
       if (!measured.sd || measured.axes) continue;
       if (!deviations) deviations = add_three("sr", in_mm_ ? "[deg]" : "[rad]");
       sheet_.set(*deviations, measured.row, *measured.sd, angle_);

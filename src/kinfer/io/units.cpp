@@ -26,6 +26,12 @@ constexpr std::array named_units{
     NamedUnit{"rad^2", {Dimension::square_angle, 1.0}},
     NamedUnit{"deg^2", {Dimension::square_angle, degree* degree}},
     NamedUnit{"mrad^2", {Dimension::square_angle, 1e-6}},
+    NamedUnit{"m.rad", {Dimension::length_times_angle, 1.0}},
+    NamedUnit{"m.deg", {Dimension::length_times_angle, degree}},
+    NamedUnit{"m.mrad", {Dimension::length_times_angle, 1e-3}},
+    NamedUnit{"mm.rad", {Dimension::length_times_angle, 1e-3}},
+    NamedUnit{"mm.deg", {Dimension::length_times_angle, 1e-3 * degree}},
+    NamedUnit{"mm.mrad", {Dimension::length_times_angle, 1e-6}},
     NamedUnit{"rad", {Dimension::angle, 1.0}},
     NamedUnit{"deg", {Dimension::angle, degree}},
     NamedUnit{"mrad", {Dimension::angle, 1e-3}},
@@ -72,6 +78,8 @@ std::string_view describe(Dimension dimension) {
       return "a variance of lengths (m^2, mm^2, um^2)";
     case Dimension::square_angle:
       return "a variance of angles (rad^2, deg^2, mrad^2)";
+    case Dimension::length_times_angle:
+      return "a covariance of a length with an angle (m.rad, mm.deg, mm.mrad)";
     case Dimension::angle:
       return "an angle (rad, deg, mrad)";
     case Dimension::time:

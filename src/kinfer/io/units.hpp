@@ -11,6 +11,7 @@ enum class Dimension {
   area,
   angle,
   square_angle,
+  length_times_angle,
   time,
   mass,
   torque,
@@ -27,8 +28,8 @@ struct Unit {
   double offset = 0.0;
 };
 
-/// m mm um, rad deg mrad, their squares (mm^2), s ms us, kg, N.m, m/s^2 g, rad/s deg/s, uT mT T G, C K, 1; nothing for
-/// any other text. "g" is the acceleration. Temperatures are read in °C.
+/// m mm um, rad deg mrad, their squares (mm^2) and products (mm.deg), s ms us, kg, N.m, m/s^2 g, rad/s deg/s, uT mT T
+/// G, C K, 1; nothing for any other text. "g" is the acceleration. Temperatures are read in °C.
 std::optional<Unit> find_unit(std::string_view text);
 
 /// How people call a dimension in a message: "a length (m, mm, um)".

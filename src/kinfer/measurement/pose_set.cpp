@@ -110,4 +110,12 @@ Mat3 covariance_of(const Vec3& sd, const std::optional<Mat3>& axes) {
   return axes ? Mat3(*axes * along * axes->transpose()) : along;
 }
 
+Mat3 correlation(const Vec3& point_sd, const std::optional<Mat3>& point_axes, const Vec3& turn_sd,
+                 const OrientationMeasurement& orientation) {
+  Mat3 y = *orientation.with_point;
+  if (point_axes) y = (point_axes->transpose() * y).eval();
+  if (orientation.axes) y = (y * *orientation.axes).eval();
+  return point_sd.cwiseInverse().asDiagonal() * y * turn_sd.cwiseInverse().asDiagonal();
+}
+
 }  // namespace kinfer

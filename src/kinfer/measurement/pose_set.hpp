@@ -28,6 +28,9 @@ struct OrientationMeasurement {
   Quat orientation = Quat::Identity();
   std::optional<Vec3> sd{};    ///< [rad] about `axes`, where the file gives it
   std::optional<Mat3> axes{};  ///< as of a point
+  /// [m rad] covariance of the error of the tool point measured in the same row (rows: x y z of the world) with this
+  /// one's error, a small turn of the world's axes (columns); none: independent.
+  std::optional<Mat3> with_point{};
 };
 
 /// Distance of the tool point from a fixed anchor (draw wire).
@@ -119,6 +122,11 @@ struct PrincipalDeviations {
 /// A variance below zero counts as zero.
 PrincipalDeviations principal_deviations(const Mat3& covariance);
 Mat3 covariance_of(const Vec3& sd, const std::optional<Mat3>& axes);
+
+/// How the errors of a pose's point and orientation go together: with each along the axes of its own covariance, in
+/// units of its own deviations, the six have the covariance [I Y; Yᵀ I]. Needs `with_point`.
+Mat3 correlation(const Vec3& point_sd, const std::optional<Mat3>& point_axes, const Vec3& turn_sd,
+                 const OrientationMeasurement& orientation);
 
 /// What one measurement is worth, one sigma.
 struct Instrument {

@@ -28,6 +28,23 @@ Vec3 noise(Rng& rng, double sd) {
   return sd * Vec3(rng.normal(), rng.normal(), rng.normal());
 }
 
+/// A pose with independent errors, seen from a stand at the world's origin that has turned by w: the position errs by
+/// w × p, the orientation by w.
+void see_shaken(PoseSet& set, int row, const Pose& world_T_tool, const PoseSimulation& simulation, Rng& draws) {
+  const Vec3& p = world_T_tool.position;
+  const double sd = position_sd(simulation.instrument, p), turn_sd = simulation.instrument.sigma_angle;
+  const Vec3 moved = noise(draws, sd), turned = noise(draws, turn_sd), shaken = noise(draws, simulation.shake);
+  const Mat3 lever = -skew(p);  // d(w × p) = lever w
+  const double variance = simulation.shake * simulation.shake;
+  const PrincipalDeviations spread =
+      principal_deviations(sd * sd * Mat3::Identity() + variance * lever * lever.transpose());
+  set.points.push_back({row, -1, exp_so3(shaken) * p + moved, spread.sd, spread.axes});
+  set.orientations.push_back({.row = row,
+                              .orientation = quat_exp(shaken) * quat_exp(turned) * Quat(world_T_tool.rotation),
+                              .sd = Vec3::Constant(std::hypot(turn_sd, simulation.shake)),
+                              .with_point = Mat3(variance * lever)});
+}
+
 }  // namespace
 
 Chain with_random_errors(const Chain& nominal, const Tolerances& tolerances, Rng rng) {
@@ -44,6 +61,10 @@ Chain with_random_errors(const Chain& nominal, const Tolerances& tolerances, Rng
 }
 
 Result<PoseSet> simulate_pose_set(const Chain& truth, const PoseSimulation& simulation, Rng rng) {
+  const Instrument& instrument = simulation.instrument;
+  if (simulation.shake > 0.0 && !(instrument.sigma > 0.0 && instrument.sigma_angle > 0.0))
+    return error(
+        "a stand that shakes needs an instrument whose own errors, of position and of angle, are larger than 0");
   const std::vector<int> moving = joints_with_reading(truth);
   const PoseEvaluator evaluator(truth, {});
   PoseSet set;
@@ -63,13 +84,17 @@ Result<PoseSet> simulate_pose_set(const Chain& truth, const PoseSimulation& simu
       pose = evaluator.pose(q);
     } while (!in_space(truth, pose.position, simulation.space));
     set.joints.col(row) = q;
+    set.line.push_back(row + 2);
+    if (simulation.shake > 0.0) {
+      see_shaken(set, row, pose, simulation, draws);
+      continue;
+    }
     const double sd = position_sd(simulation.instrument, pose.position);
     set.points.push_back({.row = row, .target = -1, .position = pose.position + noise(draws, sd), .sd = {}});
     if (simulation.measured == Measured::poses) {
       const Quat turned = quat_exp(noise(draws, simulation.instrument.sigma_angle)) * Quat(pose.rotation);
       set.orientations.push_back({row, turned, {}});
     }
-    set.line.push_back(row + 2);
   }
   return set;
 }

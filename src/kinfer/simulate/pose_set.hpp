@@ -23,6 +23,9 @@ struct PoseSimulation {
   PoseSpace space{};
   Instrument instrument{.sigma = 10e-6, .sigma_angle = 1e-5, .ppm = 5.0};
   Measured measured = Measured::positions;
+  /// [rad] the instrument's stand turns by this much about each axis between poses, position and orientation with it;
+  /// the poses come with the covariance of all six. 0: it stands still.
+  double shake = 0.0;
 };
 
 /// `nominal` with every parameter's error drawn from its tolerance (Gaussian); base and tool included.
