@@ -95,9 +95,11 @@ struct Marquardt {
     return changed;
   }
 
-  /// Iterates until the cost falls by less than `least_decrease`, the round or the budget is over.
+  /// Iterates until the cost falls by less than `least_decrease`, the round or the budget is over, or until the
+  /// residuals have become so much smaller that the instruments are weighed wrongly.
   Stop round(int iterations, double least_decrease, const Observer& observer) {
     for (int i = 0; i < iterations && fit.iterations < options.iterations; ++i, ++fit.iterations) {
+      if (i >= round_iterations && is_stale(problem, fit.cost)) return Stop::budget_spent;
       const double before = fit.cost.total;
       if (!step(false)) return Stop::stalled;
       const Progress progress{.stage = "estimate",

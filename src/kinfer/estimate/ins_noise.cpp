@@ -53,36 +53,46 @@ std::vector<double> believed(std::vector<double> shown) {
   return shown;
 }
 
-/// Of the instruments that `of` picks from a sensor's noise and fit.
-bool weigh(InsProblem& problem, const InsCost& cost, double InsNoise::*noise, InstrumentFit SensorFit::*fit) {
-  constexpr double notable = 0.05;
+/// Of one instrument of all sensors, where `noise` stands in a sensor's noise and `fit` among its fits.
+void show(std::vector<InsNoise>& all, const InsProblem& problem, const InsCost& cost, double InsNoise::*noise,
+          InstrumentFit SensorFit::*fit) {
   std::vector<double> shown;
   for (std::size_t s = 0; s < problem.sensors.size(); ++s)
     shown.push_back(problem.sensors[s].noise.*noise / problem.sensors[s].least.*noise *
                     std::sqrt(trimmed_mean(cost.sensors[s].*fit)));
   const std::vector<double> factors = believed(shown);
-  bool changed = false;
-  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
-    double& sd = problem.sensors[s].noise.*noise;
-    const double now = factors[s] * problem.sensors[s].least.*noise;
-    changed = changed || std::abs(now - sd) > notable * sd;
-    sd = now;
-  }
-  return changed;
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) all[s].*noise = factors[s] * problem.sensors[s].least.*noise;
 }
 
 /// Magnetometers: only ever less trust. Their memory is a rough figure, and a gauge need not be weighed finely.
-bool weigh_fields(InsProblem& problem, const InsCost& cost) {
+void show_fields(std::vector<InsNoise>& all, const InsProblem& problem, const InsCost& cost) {
   constexpr double coarse = 2.0;
-  bool changed = false;
   for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
     const InstrumentFit& field = cost.sensors[s].field;
     const double ratio = field.block.empty() ? 0.0 : trimmed_mean(field) * memory_of(field);
-    if (ratio <= coarse) continue;
-    problem.sensors[s].noise.field *= std::sqrt(ratio);
-    changed = true;
+    all[s].field = problem.sensors[s].noise.field * (ratio > coarse ? std::sqrt(ratio) : 1.0);
   }
-  return changed;
+}
+
+/// Of gyroscopes and accelerometers; the others as they are.
+std::vector<InsNoise> shown_noise(const InsProblem& problem, const InsCost& cost) {
+  std::vector<InsNoise> shown;
+  for (const InsReadings& readings : problem.sensors) shown.push_back(readings.noise);
+  show(shown, problem, cost, &InsNoise::rate, &SensorFit::rate);
+  show(shown, problem, cost, &InsNoise::force, &SensorFit::force);
+  return shown;
+}
+
+bool differ(const InsProblem& problem, const std::vector<InsNoise>& shown) {
+  constexpr double notable = 0.05;
+  const auto differs = [](double a, double b) { return std::abs(b - a) > notable * a; };
+  for (std::size_t s = 0; s < shown.size(); ++s) {
+    const InsNoise& noise = problem.sensors[s].noise;
+    if (differs(noise.rate, shown[s].rate) || differs(noise.force, shown[s].force) ||
+        differs(noise.field, shown[s].field))
+      return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -93,11 +103,16 @@ double memory_of(const InstrumentFit& fit) {
   return sum;
 }
 
+bool is_stale(const InsProblem& problem, const InsCost& cost) {
+  return differ(problem, shown_noise(problem, cost));
+}
+
 bool reweigh(InsProblem& problem, const InsCost& cost) {
-  const bool rates = weigh(problem, cost, &InsNoise::rate, &SensorFit::rate);
-  const bool forces = weigh(problem, cost, &InsNoise::force, &SensorFit::force);
-  const bool fields = weigh_fields(problem, cost);
-  return rates || forces || fields;
+  std::vector<InsNoise> shown = shown_noise(problem, cost);
+  show_fields(shown, problem, cost);
+  const bool changed = differ(problem, shown);
+  for (std::size_t s = 0; s < shown.size(); ++s) problem.sensors[s].noise = shown[s];
+  return changed;
 }
 
 }  // namespace kinfer

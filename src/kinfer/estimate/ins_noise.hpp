@@ -14,4 +14,7 @@ double memory_of(const InstrumentFit& fit);
 /// disturbances are slow, their memory too. Never less than the least. True where one of them changed notably.
 bool reweigh(InsProblem& problem, const InsCost& cost);
 
+/// True where that would change a gyroscope's or an accelerometer's notably.
+bool is_stale(const InsProblem& problem, const InsCost& cost);
+
 }  // namespace kinfer
