@@ -34,8 +34,17 @@ if(KINFER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 # Eigen alone takes longer to read than most files of ours: it is read once. `#include` lines stay complete all the same.
-set(KINFER_PRECOMPILED <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <tl/expected.hpp> <array> <cmath> <functional>
-  <optional> <span> <string> <string_view> <variant> <vector>)
+set(KINFER_PRECOMPILED <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <fmt/ranges.h> <tl/expected.hpp> <nlohmann/json.hpp>
+  <algorithm> <array> <cmath> <filesystem> <functional> <limits> <map> <memory> <numbers> <optional> <set> <span> <string>
+  <string_view> <variant> <vector>)
+
+# An object library with nothing but a precompiled header, which other targets compiled alike take by REUSE_FROM.
+function(kinfer_header_library name)
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp CONTENT "// holds the precompiled header\n")
+  add_library(${name} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  target_precompile_headers(${name} PRIVATE ${KINFER_PRECOMPILED} ${ARGN})
+endfunction()
+
 find_program(KINFER_MOLD mold)
 if(KINFER_MOLD)
   add_link_options(-fuse-ld=mold)
