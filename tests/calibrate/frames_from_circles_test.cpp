@@ -13,7 +13,7 @@ using namespace test;
 
 const Vec3 world_base(1.2, -2.5, 0.35);
 
-Chain placed(Chain chain) {
+Chain on_a_stand(Chain chain) {
   chain.base = Frame::from_pose(Pose::from_xyz_rpy(world_base, {0.02, -0.03, 2.3}));
   chain.tool.xyz = Vec3(0, 0, 0.1);
   return chain;
@@ -47,7 +47,7 @@ void expect_same_frames(const Chain& found, const Chain& truth, double length, d
 }
 
 TEST(FramesFromCircles, the_papers_sweeps_of_joints_1_2_and_5_give_base_and_tool_length) {
-  const Chain truth = placed(er20(0.125));
+  const Chain truth = on_a_stand(er20(0.125));
   const auto found = frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1)));
   ASSERT_TRUE(found) << found.error().what;
   expect_same_frames(found->chain, truth, 1e-9, 1e-9);
@@ -57,7 +57,7 @@ TEST(FramesFromCircles, the_papers_sweeps_of_joints_1_2_and_5_give_base_and_tool
 }
 
 TEST(FramesFromCircles, a_target_beside_the_flanges_axis_is_found_where_the_papers_radius_is_misled) {
-  Chain truth = placed(er20(0.125));
+  Chain truth = on_a_stand(er20(0.125));
   truth.tool.xyz = Vec3(0.02, -0.015, 0.1);
   const auto found = frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1)));
   ASSERT_TRUE(found) << found.error().what;
@@ -66,7 +66,7 @@ TEST(FramesFromCircles, a_target_beside_the_flanges_axis_is_found_where_the_pape
 }
 
 TEST(FramesFromCircles, any_posture_and_any_two_axes_will_do) {
-  const Chain truth = placed(er20(0.125));
+  const Chain truth = on_a_stand(er20(0.125));
   const VectorXd rest = (VectorXd(6) << 0.4, -1.2, 0.3, 0.5, 0.6, -0.2).finished();
   const auto found = frames_from_circles(er20(0.125), sweeps(truth, {2, 3, 4}, rest, 0.0, Rng(1)));
   ASSERT_TRUE(found) << found.error().what;
@@ -74,7 +74,7 @@ TEST(FramesFromCircles, any_posture_and_any_two_axes_will_do) {
 }
 
 TEST(FramesFromCircles, a_joint_that_turns_backwards_and_a_sweep_run_backwards_are_understood) {
-  Chain truth = placed(er20(0.125)), nominal = er20(0.125);
+  Chain truth = on_a_stand(er20(0.125)), nominal = er20(0.125);
   truth.joints[1].gain = nominal.joints[1].gain = -1.0;
   PoseSet data = sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1));
   std::vector<int> backwards(data.rows());
@@ -87,7 +87,7 @@ TEST(FramesFromCircles, a_joint_that_turns_backwards_and_a_sweep_run_backwards_a
 }
 
 TEST(FramesFromCircles, marked_sweeps_rule_and_a_mark_on_two_joints_is_refused) {
-  const Chain truth = placed(er20(0.125));
+  const Chain truth = on_a_stand(er20(0.125));
   PoseSet data = sweeps(truth, {0, 1}, zero, 0.0, Rng(1));
   data.sweeps = {"first", "second"};
   for (int row = 0; row < 26; ++row) data.sweep.push_back(row / 13);
@@ -100,14 +100,14 @@ TEST(FramesFromCircles, marked_sweeps_rule_and_a_mark_on_two_joints_is_refused) 
 }
 
 TEST(FramesFromCircles, parallel_axes_alone_do_not_make_a_base) {
-  const Chain truth = placed(er20(0.125));
+  const Chain truth = on_a_stand(er20(0.125));
   const auto found = frames_from_circles(er20(0.125), sweeps(truth, {1, 2}, zero, 0.0, Rng(1)));
   ASSERT_FALSE(found);
   EXPECT_NE(found.error().what.find("not parallel"), std::string::npos);
 }
 
 TEST(FramesFromCircles, stated_uncertainty_is_that_of_repeated_measurements) {
-  const Chain truth = placed(er20(0.125));
+  const Chain truth = on_a_stand(er20(0.125));
   constexpr double sigma = 50e-6;
   constexpr int repetitions = 300;
   const PoseSet exact = sweeps(truth, {0}, zero, 0.0, Rng(1));
@@ -128,7 +128,7 @@ TEST(FramesFromCircles, stated_uncertainty_is_that_of_repeated_measurements) {
 }
 
 TEST(FramesFromCircles, with_tracker_noise_the_base_is_as_good_as_its_circles_say) {
-  const Chain truth = placed(er20(0.125));
+  const Chain truth = on_a_stand(er20(0.125));
   const auto found = frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 10e-6, Rng(3)));
   ASSERT_TRUE(found);
   expect_same_frames(found->chain, truth, 0.2e-3, 1e-4);

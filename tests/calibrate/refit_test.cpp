@@ -23,9 +23,9 @@ struct Knocked {
     now.base = Frame::from_pose(Pose::from_xyz_rpy({0.8, -1.5, 0.2}, {0.01, 0.0, 1.1}));
   }
 
-  Calibration refit(int poses) const {
-    CalibrateOptions how{.parameters = OffsetParameters{}, .holdout = CrossValidation{poses}, .model = NamedModel{}};
-    return calibrate({earlier, {}, tracker, measured(now, paper2_poses(poses, tracker), 8)}, how, Rng(1)).value();
+  Calibration refit(int count) const {
+    CalibrateOptions how{.parameters = OffsetParameters{}, .holdout = CrossValidation{count}, .model = NamedModel{}};
+    return calibrate({earlier, {}, tracker, measured(now, paper2_poses(count, tracker), 8)}, how, Rng(1)).value();
   }
   double error(const Chain& chain) const {
     return mean(point_errors(chain, measured(now, paper2_poses(200, noise_free), 99)));

@@ -29,7 +29,7 @@ Chain random_chain(int joints, Rng rng) {
   return chain;
 }
 
-Chain scara() {
+Chain unknown_scara() {
   Chain chain = test::er20();
   chain.joints.resize(4);
   const double a[] = {0, 0.4, 0.3, 0}, alpha[] = {0, 0, 180, 0}, d[] = {0.35, 0, 0, 0};
@@ -60,7 +60,7 @@ class SameMachine : public ::testing::TestWithParam<int> {};
 
 TEST_P(SameMachine, has_the_same_poses_as_mdh_and_as_dh) {
   Chain chain = GetParam() == 0   ? test::with_table3_errors(test::er20())
-                : GetParam() == 1 ? scara()
+                : GetParam() == 1 ? unknown_scara()
                                   : random_chain(GetParam(), Rng(GetParam()));
   if (GetParam() == 7) {
     Joint fixed = chain.joints[3];
@@ -138,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(machines, Unknown,
                                                      return c;
                                                    }(),
                                                    60, 1e-4},
-                                           Machine{"scara", "RRPR", scara(), 60, 1e-4},
+                                           Machine{"scara", "RRPR", unknown_scara(), 60, 1e-4},
                                            Machine{"two_axes", "2R",
                                                    [] {
                                                      Chain c = test::er20();

@@ -97,9 +97,9 @@ TEST_F(Robots, real_balls_in_sockets_are_consistent_at_positions_that_were_not_f
   const char* root = std::getenv("KINFER_DATA");
   if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
   const std::string mukca = std::string(root) + "/mukca", arm = mukca + "/data/panda_1";
-  const std::string header = "q1,q2,q3,q4,q5,q6,q7,socket\n";
-  write(in("fit.csv"), header + socket_rows(arm, {"back-high", "right"}));
-  write(in("test.csv"), header + socket_rows(arm, {"front"}));
+  const std::string columns = "q1,q2,q3,q4,q5,q6,q7,socket\n";
+  write(in("fit.csv"), columns + socket_rows(arm, {"back-high", "right"}));
+  write(in("test.csv"), columns + socket_rows(arm, {"front"}));
   const Outcome run =
       kinfer("calibrate --robot " + mukca + "/urdf/panda.urdf --tip-link ball_link --data fit.csv --out cal");
   ASSERT_EQ(run.code, 0) << run.err << run.out;

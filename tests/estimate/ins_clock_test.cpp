@@ -10,16 +10,16 @@ namespace {
 using Eigen::Index;
 using test::random_vector;
 
-struct Example {
+struct ClockExample {
   InsProblem problem;
   InsUnknowns x;
   InsLayout layout;
 };
 
 /// A hinge whose two INS read anything at all, with clocks that differ.
-Example example() {
+ClockExample clock_example() {
   Rng rng(3);
-  Example e;
+  ClockExample e;
   e.problem.grid = {.begin = 0.0, .period = 0.1, .intervals = 12};
   e.problem.prior = {.rate_bias = 1e-2, .force_bias = 0.1, .field_bias = 0.1, .clock_offset = 0.01, .clock_drift = 0.1};
   for (std::size_t s = 0; s < 2; ++s) {
@@ -49,7 +49,7 @@ Example example() {
   return e;
 }
 
-double cost_after(const Example& e, Index unknown, double step) {
+double cost_after(const ClockExample& e, Index unknown, double step) {
   VectorXd border = VectorXd::Zero(e.layout.border);
   border[unknown] = step;
   const InsUnknowns x = changed(e.problem, e.layout, e.x, {MatrixXd::Zero(1, e.x.band.cols()), border, {}});
@@ -57,7 +57,7 @@ double cost_after(const Example& e, Index unknown, double step) {
 }
 
 TEST(InsClock, TheGradientOfEveryBorderUnknownAgreesWithDifferences) {
-  const Example e = example();
+  const ClockExample e = clock_example();
   const InsLinearisation linearisation(e.problem, e.layout, e.x);
   VectorXd gradient = border_prior(e.problem, e.layout, e.x).right;
   for (const IntervalGradient& g : linearisation.gradients({0, e.problem.grid.intervals})) gradient += g.border;

@@ -14,16 +14,16 @@ using test::random_vector;
 using testing::numeric_jacobian;
 
 /// A turn, a slide on it, a turn on that, and a fixed body at the root.
-struct Example {
+struct FactExample {
   InsProblem problem;
   InsUnknowns x;
   InsLayout layout;
 };
 
-Example example(const InsFacts& facts) {
+FactExample fact_example(const InsFacts& facts) {
   Rng rng(3);
   const auto turn = [&] { return exp_so3(random_vector(rng)); };
-  Example e;
+  FactExample e;
   e.problem.grid = {.begin = 0.0, .period = 0.1, .intervals = 20};
   e.problem.sensors.resize(5);
   e.problem.facts = facts;
@@ -68,14 +68,14 @@ InsFacts every_kind() {
 }
 
 /// The band's coefficients one channel after the other in time order, then the border.
-InsUnknowns moved(const Example& e, ConstVectorRef step) {
+InsUnknowns moved(const FactExample& e, ConstVectorRef step) {
   const Index band = e.x.band.size();
   return changed(e.problem, e.layout, e.x,
                  {step.head(band).reshaped(e.x.band.rows(), e.x.band.cols()), step.tail(e.layout.border), {}});
 }
 
 TEST(InsFactRows, DerivativesAgreeWithDifferences) {
-  const Example e = example(every_kind());
+  const FactExample e = fact_example(every_kind());
   const auto rows = fact_rows(e.problem, e.layout, e.x);
   ASSERT_EQ(rows.size(), 2U + 2U + 5U + 3U);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -91,7 +91,7 @@ TEST(InsFactRows, DerivativesAgreeWithDifferences) {
 }
 
 TEST(InsFactRows, ATapeBetweenAxesIsTheirShortestDistance) {
-  Example e = example(every_kind());
+  FactExample e = fact_example(every_kind());
   const InsTape& tape = e.problem.facts.tapes[1];
   const auto rows = fact_rows(e.problem, e.layout, e.x);
   const double predicted = tape.length - tape.sd * rows[5].left[0];
@@ -116,7 +116,7 @@ TEST(InsFactRows, ATapeBetweenAxesIsTheirShortestDistance) {
 }
 
 TEST(InsFactRows, ATouchIsOneAndTheSamePlaceOfTheRoot) {
-  const Example e = example(every_kind());
+  const FactExample e = fact_example(every_kind());
   const auto rows = fact_rows(e.problem, e.layout, e.x);
   const InsTouch& touch = e.problem.facts.touches[0];
   for (std::size_t i = 0; i < 2; ++i) {

@@ -19,12 +19,12 @@ Mat3 random_tilt(Rng& rng) {
 }
 
 /// Something that moves on mounts that give way.
-struct Example {
+struct MountExample {
   InsProblem problem;
   InsUnknowns x;
   InsLayout layout;
 
-  Example() {
+  MountExample() {
     Rng rng(5);
     problem.grid = {.begin = 0.0, .period = 0.1, .intervals = 8};
     problem.root_stands_still = false;
@@ -62,7 +62,7 @@ struct Example {
 };
 
 TEST(InsMount, TheGradientsOfTiltsAndMotionAgreeWithDifferences) {
-  const Example e;
+  const MountExample e;
   const StretchSum sum = InsLinearisation(e.problem, e.layout, e.x).sum({0, e.problem.grid.intervals});
   const VectorXd border = border_prior(e.problem, e.layout, e.x).right + sum.border_right, &band = sum.right;
   constexpr double step = 1e-6;

@@ -25,7 +25,7 @@ std::vector<InsBlock> random_blocks(Index intervals, Rng& rng) {
 }
 
 /// A turn on a root that moves, and readings that say anything.
-struct Example {
+struct SystemExample {
   InsProblem problem;
   InsUnknowns x;
   InsLayout layout;
@@ -33,9 +33,9 @@ struct Example {
 
 enum class Biases { constant, wandering };
 
-Example example(Index intervals, Biases biases = Biases::constant) {
+SystemExample system_example(Index intervals, Biases biases = Biases::constant) {
   Rng rng(7);
-  Example e;
+  SystemExample e;
   e.problem.grid = {.begin = 0.0, .period = 0.1, .intervals = intervals};
   e.problem.root_stands_still = false;
   e.problem.prior = {0.1, 0.1, 0.1, 0.01, 0.01};
@@ -63,7 +63,7 @@ struct Dense {
 };
 
 /// The Gauss-Markov process' information on all stretches' unknowns, by inverting its covariance σ² a^|i − j|.
-MatrixXd process_information(const Example& e) {
+MatrixXd process_information(const SystemExample& e) {
   const Index w = e.layout.wander, n = e.x.wander.cols();
   MatrixXd covariance = MatrixXd::Zero(w * n, w * n);
   for (Index i = 0; i < n; ++i)
@@ -86,7 +86,7 @@ MatrixXd dense_band(const StretchSum& sum) {
   return dense;
 }
 
-Dense dense(const Example& e) {
+Dense dense(const SystemExample& e) {
   const Index band = e.layout.channels * e.problem.grid.coefficients(), w = e.layout.wander,
               border_at = band + e.x.wander.size(), all = border_at + e.layout.border;
   Dense d{MatrixXd::Zero(all, all), VectorXd::Zero(all), band, border_at, process_information(e)};
@@ -126,7 +126,7 @@ MatrixXd following(const Dense& d) {
 TEST(InsSystem, SolvesTheEquationsOfAllIntervalsTogether) {
   for (const Biases biases : {Biases::constant, Biases::wandering})
     for (const Index intervals : {5, 64, 150, 300}) {
-      const Example e = example(intervals, biases);
+      const SystemExample e = system_example(intervals, biases);
       const Dense d = dense(e);
       const auto expected = solve_positive(d.matrix, d.right);
       const auto x = InsSystem(e.problem, e.layout, e.x, {}, 1).solve();
@@ -139,7 +139,7 @@ TEST(InsSystem, SolvesTheEquationsOfAllIntervalsTogether) {
 
 TEST(InsSystem, BlockScoresAreGradientsWithBandAndBiasesFollowing) {
   for (const Biases biases : {Biases::constant, Biases::wandering}) {
-    const Example e = example(140, biases);
+    const SystemExample e = system_example(140, biases);
     const Dense d = dense(e);
     const MatrixXd follows = following(d);
     const auto wandering = wandering_border(e.layout);
@@ -160,7 +160,7 @@ TEST(InsSystem, BlockScoresAreGradientsWithBandAndBiasesFollowing) {
 }
 
 TEST(InsSystem, TellsWhatPriorsSayAboutTheBorder) {
-  const Example e = example(300, Biases::wandering);
+  const SystemExample e = system_example(300, Biases::wandering);
   const Dense d = dense(e);
   const MatrixXd follows = following(d).middleRows(d.wander, e.x.wander.size());
   const MatrixXd expected =
@@ -170,7 +170,7 @@ TEST(InsSystem, TellsWhatPriorsSayAboutTheBorder) {
 }
 
 TEST(InsSystem, HoldsTheBorderWhileTheBandIsSolvedFor) {
-  const Example e = example(150, Biases::wandering);
+  const SystemExample e = system_example(150, Biases::wandering);
   const Dense d = dense(e);
   const auto expected = solve_positive(d.matrix.topLeftCorner(d.wander, d.wander), d.right.head(d.wander));
   for (const double most_kept : {1e9, 0.0}) {
@@ -183,7 +183,7 @@ TEST(InsSystem, HoldsTheBorderWhileTheBandIsSolvedFor) {
 }
 
 TEST(InsSystem, TellsTheSameWhereItKeepsNothing) {
-  const Example e = example(150, Biases::wandering);
+  const SystemExample e = system_example(150, Biases::wandering);
   const Damping damping{.band = 0.01, .border = 0.1};
   const InsSystem kept(e.problem, e.layout, e.x, damping, 2), lean(e.problem, e.layout, e.x, damping, 2, 0.0);
   const auto a = kept.solve(), b = lean.solve();
@@ -194,7 +194,7 @@ TEST(InsSystem, TellsTheSameWhereItKeepsNothing) {
 }
 
 TEST(InsSystem, IsTheSameForAnyNumberOfThreads) {
-  const Example e = example(200, Biases::wandering);
+  const SystemExample e = system_example(200, Biases::wandering);
   const auto told = [&](int threads) {
     const InsSystem system(e.problem, e.layout, e.x, {}, threads, 0.0);
     return std::pair{system.solve()->band, system.scores(2.0).blocks};

@@ -25,14 +25,14 @@ Log log_of(const std::string& machine, const MachineOptions& options, const char
   return {std::move(recording), std::move(motion), std::move(truth)};
 }
 
-std::vector<std::string> edges(const OrderedMotion& o) {
+std::vector<std::string> edge_names(const OrderedMotion& o) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < o.tree.parent.size(); ++i)
     if (o.tree.parent[i]) names.push_back(o.motion.segments[*o.tree.parent[i]].name + "-" + o.motion.segments[i].name);
   return names;
 }
 
-std::vector<std::string> edges(const MachineTruth& truth) {
+std::vector<std::string> edge_names(const MachineTruth& truth) {
   std::vector<std::string> names;
   for (const JointTruth& joint : truth.joints) names.push_back(joint.parent + "-" + joint.child);
   return names;
@@ -52,7 +52,7 @@ TEST_P(EveryTrouble, LeavesTheTreeRight) {
                          troubles[kind], seed);
   const auto ordered = ordered_motion(log.recording, {}, {}, 0);
   ASSERT_TRUE(ordered) << ordered.error().what;
-  EXPECT_THAT(edges(*ordered), testing::UnorderedElementsAreArray(edges(log.truth)));
+  EXPECT_THAT(edge_names(*ordered), testing::UnorderedElementsAreArray(edge_names(log.truth)));
 }
 
 void add_bias(TriadColumns& triad, const Vec3& bias) {
@@ -67,7 +67,7 @@ TEST(OrderedMotion, AnAccelerometerThatLeansItsVerticalIsFoundToLean) {
   add_bias(log.recording.sensors[4].acceleration, {bias, 0.0, 0.0});
   const auto ordered = ordered_motion(log.recording, {}, {}, 0);
   ASSERT_TRUE(ordered) << ordered.error().what;
-  EXPECT_THAT(edges(*ordered), testing::UnorderedElementsAreArray(edges(log.truth)));
+  EXPECT_THAT(edge_names(*ordered), testing::UnorderedElementsAreArray(edge_names(log.truth)));
   EXPECT_GT(ordered->tree.margin, 10.0);
   double level = 0.0;  // share of the sensor's x axis that is level, and so leans the vertical
   for (const Quat& q : log.motion.sensors[4].world_R_sensor)
@@ -82,7 +82,7 @@ TEST(OrderedMotion, AGyroThatReadsFiveDegreesASecondAtRestKeepsItsHeading) {
   add_bias(log.recording.sensors[3].rate, truth.world_R_sensor.front().conjugate() * Vec3(0.0, 0.0, 0.08));
   const auto ordered = ordered_motion(log.recording, {}, {}, 0);
   ASSERT_TRUE(ordered) << ordered.error().what;
-  EXPECT_THAT(edges(*ordered), testing::UnorderedElementsAreArray(edges(log.truth)));
+  EXPECT_THAT(edge_names(*ordered), testing::UnorderedElementsAreArray(edge_names(log.truth)));
   const std::size_t last = truth.rate.size() - 100;
   EXPECT_LT((ordered->motion.segments[3].gyro[last] - truth.rate[last]).norm(), 0.005);
 }

@@ -13,20 +13,20 @@
 namespace kinfer {
 namespace {
 
-struct DrivenMachine {
+struct RefinedDrive {
   InsRecording recording;
   MachineTruth truth;
 };
 
-DrivenMachine driven(const std::string& name, const MachineOptions& options, const char* grade,
-                     const SensorTrouble& trouble = {}) {
+RefinedDrive driven(const std::string& name, const MachineOptions& options, const char* grade,
+                    const SensorTrouble& trouble = {}) {
   const MujocoWorld world = test::world_of(name, options, 5);
   const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}, 5), 100.0);
   return {simulated_recording(world.machine(), motion, *sensor_grade(grade), trouble, Rng(5)),
           machine_truth(world.machine(), motion)};
 }
 
-Refinement refined(const DrivenMachine& drive, int threads = 0) {
+Refinement refined(const RefinedDrive& drive, int threads = 0) {
   const auto ordered = ordered_motion(drive.recording, {}, drive.truth.root, threads);
   EXPECT_TRUE(ordered);
   std::vector<JointStart> starts;
@@ -43,7 +43,7 @@ Refinement refined(const DrivenMachine& drive, int threads = 0) {
 }
 
 /// Distance from the true axis line in the child's sensor, free of what cannot be known [m].
-double line_error(const FoundJoint& found, const JointTruth& truth) {
+double distance_of_lines(const FoundJoint& found, const JointTruth& truth) {
   Vec3 error = found.point_in_child - truth.point_in_child;
   std::vector<Vec3> free{truth.axis_in_child};
   for (const Vec3& hidden : truth.hidden_in_child)
@@ -63,33 +63,33 @@ void expect_close(const Refinement& found, const MachineTruth& truth, double lin
     EXPECT_EQ(joint.found.parent, t->parent);
     EXPECT_LT(axis_error(joint.found, *t), direction) << t->name;
     if (t->type == JointType::revolute) {
-      EXPECT_LT(line_error(joint.found, *t), line) << t->name;
+      EXPECT_LT(distance_of_lines(joint.found, *t), line) << t->name;
     }
   }
 }
 
 TEST(Refine, FindsASimulatedMachineAsWellAsItsSensorsAllow) {
   for (const char* name : {"excavator-general", "crane", "robot6", "tree"}) {
-    const DrivenMachine drive = driven(name, {.mounting = Mounting::arbitrary}, "industrial");
+    const RefinedDrive drive = driven(name, {.mounting = Mounting::arbitrary}, "industrial");
     expect_close(refined(drive), drive.truth, 5e-3, 3e-3);
   }
 }
 
 TEST(Refine, NeedsNoBaseThatStandsStill) {
-  const DrivenMachine drive = driven("excavator-general", {.base = Base::yawing}, "industrial");
+  const RefinedDrive drive = driven("excavator-general", {.base = Base::yawing}, "industrial");
   const Refinement found = refined(drive);
   expect_close(found, drive.truth, 10e-3, 3e-3);
   EXPECT_TRUE(found.joints.front().found.not_identifiable_in_parent.empty());
 }
 
 TEST(Refine, TakesBrokenRecordings) {
-  const DrivenMachine drive =
+  const RefinedDrive drive =
       driven("excavator-general", {}, "industrial", {.missing = 0.05, .spikes = 6.0, .has_magnetometer = false});
   expect_close(refined(drive), drive.truth, 5e-3, 25e-3);  // without magnetometer the swing's direction is loose
 }
 
 TEST(Refine, SaysWhatAStillPlatformHides) {
-  const DrivenMachine drive = driven("excavator", {}, "noise", {.has_magnetometer = false});
+  const RefinedDrive drive = driven("excavator", {}, "noise", {.has_magnetometer = false});
   const Refinement found = refined(drive);
   std::vector<FoundJoint> joints;
   for (const RefinedJoint& joint : found.joints) joints.push_back(joint.found);
@@ -106,7 +106,7 @@ TEST(Refine, SaysWhatAStillPlatformHides) {
 }
 
 TEST(Refine, GivesTheSameBitsForAnyNumberOfThreads) {
-  const DrivenMachine drive = driven("excavator", {}, "noise");
+  const RefinedDrive drive = driven("excavator", {}, "noise");
   const Refinement one = refined(drive, 1);
   for (const int threads : {2, 7}) {
     const Refinement many = refined(drive, threads);

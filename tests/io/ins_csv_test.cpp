@@ -14,7 +14,7 @@
 namespace kinfer {
 namespace {
 
-const std::string header = "t,imu_ax,imu_ay,imu_az,imu_gx,imu_gy,imu_gz,imu_mx,imu_my,imu_mz\n";
+const std::string imu_header = "t,imu_ax,imu_ay,imu_az,imu_gx,imu_gy,imu_gz,imu_mx,imu_my,imu_mz\n";
 
 /// `rows` rows of a still sensor at 100 Hz, numbered by their time, with some noise so that no row repeats.
 std::string still_rows(int rows, double gravity = 9.81, double first = 0.0) {
@@ -73,38 +73,38 @@ TEST(InsCsv, a_wrong_header_has_one_sentence) {
   EXPECT_EQ(error_of("t[min],i_ax,i_ay,i_az\n"), "imu.csv:1: column t: expected a time (s, ms, us), found \"min\"");
   EXPECT_EQ(error_of("t,i_ax[1],i_ay,i_az\n"),
             "imu.csv:1: column i_ax: expected an acceleration (m/s^2, g), found \"1\"");
-  EXPECT_EQ(error_of(header), "imu.csv: the file has a header but no rows");
+  EXPECT_EQ(error_of(imu_header), "imu.csv: the file has a header but no rows");
 }
 
 TEST(InsCsv, a_wrong_row_is_named_with_its_line) {
-  EXPECT_EQ(error_of(header + still_rows(2) + "0.02,1,2,3\n" + still_rows(1, 9.81, 0.03)),
+  EXPECT_EQ(error_of(imu_header + still_rows(2) + "0.02,1,2,3\n" + still_rows(1, 9.81, 0.03)),
             "imu.csv:4: expected 10 columns, found 4");
-  EXPECT_EQ(error_of(header + "0,0,0,9.8,0,0,0,1,20,-44,5\n"), "imu.csv:2: expected 10 columns, found 11");
-  EXPECT_EQ(error_of(header + "0,0,x1,9.8,0,0,0,1,20,-44\n"),
+  EXPECT_EQ(error_of(imu_header + "0,0,0,9.8,0,0,0,1,20,-44,5\n"), "imu.csv:2: expected 10 columns, found 11");
+  EXPECT_EQ(error_of(imu_header + "0,0,x1,9.8,0,0,0,1,20,-44\n"),
             "imu.csv:2: column imu_ay: expected a number, found \"x1\"");
-  EXPECT_EQ(error_of(header + ",0,0,9.8,0,0,0,1,20,-44\n"), "imu.csv:2: column t: expected a time, found none");
+  EXPECT_EQ(error_of(imu_header + ",0,0,9.8,0,0,0,1,20,-44\n"), "imu.csv:2: column t: expected a time, found none");
 }
 
 TEST(InsCsv, time_must_rise) {
-  EXPECT_EQ(error_of(header + still_rows(3) + still_rows(1, 9.81, 0.0)),
+  EXPECT_EQ(error_of(imu_header + still_rows(3) + still_rows(1, 9.81, 0.0)),
             "imu.csv:5: the time goes backwards, from 0.02 s to 0 s; is this several recordings in one file?");
-  EXPECT_EQ(error_of(header + still_rows(3) + still_rows(1, 9.81, 0.02)),
+  EXPECT_EQ(error_of(imu_header + still_rows(3) + still_rows(1, 9.81, 0.02)),
             "imu.csv:5: the time 0.02 s repeats; each row needs a time of its own");
 }
 
 TEST(InsCsv, numbers_that_cannot_be_are_said) {
-  EXPECT_EQ(error_of(header + still_rows(50, 1.0)),
+  EXPECT_EQ(error_of(imu_header + still_rows(50, 1.0)),
             "imu.csv: imu: gravity reads 1.01 m/s²: the file seems to be in g; write the headers as imu_ax[g], "
             "imu_ay[g], imu_az[g]");
-  EXPECT_NE(error_of(header + still_rows(50, 1000.0)).find("gravity reads 1e+03 m/s², expected about 9.81"),
+  EXPECT_NE(error_of(imu_header + still_rows(50, 1000.0)).find("gravity reads 1e+03 m/s², expected about 9.81"),
             std::string::npos);
-  std::string fast = header;
+  std::string fast = imu_header;
   for (int i = 0; i < 50; ++i) fast += fmt::format("{},0,0,9.8,{},0,0,1,20,-44\n", 0.01 * i, 90 + i);
   EXPECT_NE(error_of(fast).find("the file seems to be in °/s; write the headers as imu_gx[deg/s]"), std::string::npos);
 }
 
 TEST(InsCsv, a_field_that_no_place_has_is_said_and_not_used) {
-  std::string text = header;
+  std::string text = imu_header;
   for (int i = 0; i < 50; ++i) text += fmt::format("{},0,0,9.8,0,0,0,0.1,0.4,-0.5\n", 0.01 * i);
   auto read = parse_ins_csv(text, "imu.csv");
   ASSERT_TRUE(read);
@@ -117,7 +117,7 @@ TEST(InsCsv, a_field_that_no_place_has_is_said_and_not_used) {
 }
 
 TEST(InsCsv, an_all_zero_magnetometer_is_said_and_not_used) {
-  std::string text = header;
+  std::string text = imu_header;
   for (int i = 0; i < 50; ++i) text += fmt::format("{},0,0,9.8,0,0,0,0,0,0\n", 0.01 * i);
   const auto read = parse_ins_csv(text, "imu.csv");
   ASSERT_TRUE(read);
@@ -130,13 +130,13 @@ TEST(InsCsv, what_is_odd_but_usable_is_a_remark) {
     const auto read = parse_ins_csv(text, "imu.csv");
     return read ? read->remarks : std::vector<std::string>{read.error().what};
   };
-  EXPECT_EQ(remarks(header + still_rows(1)),
+  EXPECT_EQ(remarks(imu_header + still_rows(1)),
             (std::vector<std::string>{"imu.csv: one single row: no motion can be told from it"}));
-  EXPECT_EQ(remarks(header + still_rows(50) + "0.5,1,2"),
+  EXPECT_EQ(remarks(imu_header + still_rows(50) + "0.5,1,2"),
             (std::vector<std::string>{"imu.csv: the last line is cut off and is not used"}));
-  EXPECT_EQ(remarks(header + still_rows(50) + still_rows(50, 9.81, 100.0)),
+  EXPECT_EQ(remarks(imu_header + still_rows(50) + still_rows(50, 9.81, 100.0)),
             (std::vector<std::string>{"imu.csv: 1 gaps in time, the longest 99.5 s: nothing is known in between"}));
-  std::string dead = header + still_rows(50);
+  std::string dead = imu_header + still_rows(50);
   for (int i = 50; i < 300; ++i) dead += fmt::format("{},,,,,,,,,\n", 0.01 * i);
   EXPECT_EQ(remarks(dead),
             (std::vector<std::string>{"imu: says nothing after 0.490 s (250 rows): its orientation is held there"}));
@@ -150,7 +150,7 @@ class TwoFiles : public ::testing::Test {
  protected:
   void SetUp() override {
     std::filesystem::create_directories(folder);
-    write("one.csv", header + still_rows(5));
+    write("one.csv", imu_header + still_rows(5));
     write("two.csv", "t,b_ax,b_ay,b_az,b_gx,b_gy,b_gz\n100,0,0,9.8,0,0,0\n100.5,0,0,9.8,0,0,0\n");
   }
   void TearDown() override { std::filesystem::remove_all(folder); }
@@ -206,7 +206,7 @@ TEST(PlainDecimal, is_what_from_chars_reads_or_nothing) {
 
 TEST(InsCsv, no_mangled_file_crashes_the_reader_or_slips_through_with_broken_shapes) {
   Rng rng(4);
-  const std::string good = header + still_rows(30);
+  const std::string good = imu_header + still_rows(30);
   const std::string bytes = "0123456789.,-+eE\n\r#\"[]t_agmxyz nan\xff\0";
   int accepted = 0;
   for (int i = 0; i < 20000; ++i) {

@@ -11,7 +11,7 @@
 namespace kinfer {
 namespace {
 
-constexpr const char* two_joints = R"(name = "arm"
+constexpr const char* two_joint_robot = R"(name = "arm"
 convention = "mdh"
 units = { length = "mm", angle = "deg" }
 base = { xyz = [1000, 0, 0], rpy = [0, 0, 90] }
@@ -56,7 +56,7 @@ RobotModel robot_of(const std::string& text) {
   return robot.value_or(RobotModel{});
 }
 
-std::string complaint_about(const std::string& text) {
+std::string robot_complaint(const std::string& text) {
   const Result<RobotModel> robot = parse_robot_toml(text, "arm.toml");
   return robot ? "(accepted)" : robot.error().what;
 }
@@ -68,7 +68,7 @@ std::string with(std::string text, const std::string& old_part, const std::strin
 }
 
 TEST(RobotToml, UnitsRuleEveryLengthAndAngleOfTheFile) {
-  const RobotModel robot = robot_of(two_joints);
+  const RobotModel robot = robot_of(two_joint_robot);
   const Chain& chain = robot.chain;
   EXPECT_EQ(chain.name, "arm");
   EXPECT_TRUE(chain.base.xyz.isApprox(Vec3(1, 0, 0)));
@@ -95,7 +95,7 @@ TEST(RobotToml, UnitsRuleEveryLengthAndAngleOfTheFile) {
 }
 
 TEST(RobotToml, JointsHaveTheirNamesTypesGainsAndCouplings) {
-  const Chain chain = robot_of(two_joints).chain;
+  const Chain chain = robot_of(two_joint_robot).chain;
   EXPECT_EQ(chain.joints[0].name, "shoulder");
   EXPECT_EQ(chain.joints[1].name, "J2") << "named by its row";
   EXPECT_EQ(chain.joints[1].type, JointType::prismatic);
@@ -118,7 +118,7 @@ TEST(RobotToml, BadFilesAreRefusedWithOneSentence) {
   struct Case {
     std::string text, sentence;
   };
-  const std::string good = two_joints;
+  const std::string good = two_joint_robot;
   const Case cases[] = {
       {with(good, "gain = 1.01", "gian = 1.01"), "arm.toml:22: joint 2: unknown key \"gian\""},
       {with(good, "anchors =", "anchor ="), "arm.toml:6: unknown key \"anchor\""},
@@ -151,11 +151,11 @@ TEST(RobotToml, BadFilesAreRefusedWithOneSentence) {
       {with(good, "sigma = 0.01", "sigma = -0.01"), "arm.toml:36: instrument: \"sigma\": expected a number from 0"},
       {"convention = \"dh\"\n", "arm.toml:1: the robot has no joints, expected at least one [[joint]]"},
   };
-  for (const Case& bad : cases) EXPECT_EQ(complaint_about(bad.text), bad.sentence) << bad.text;
+  for (const Case& bad : cases) EXPECT_EQ(robot_complaint(bad.text), bad.sentence) << bad.text;
 }
 
 TEST(RobotToml, TextThatIsNotTomlIsRefusedWithItsLine) {
-  EXPECT_EQ(complaint_about("name = \"arm\"\nconvention = = 3\n").rfind("arm.toml:2: not TOML: ", 0), 0U);
+  EXPECT_EQ(robot_complaint("name = \"arm\"\nconvention = = 3\n").rfind("arm.toml:2: not TOML: ", 0), 0U);
 }
 
 TEST(RobotToml, AMissingFileIsSaidAndSoIsAFolder) {

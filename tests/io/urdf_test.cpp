@@ -36,13 +36,13 @@ constexpr const char* two_joint_arm = R"(<?xml version="1.0"?>
 </robot>
 )";
 
-std::string with(std::string text, const std::string& old_part, const std::string& new_part) {
+std::string replaced(std::string text, const std::string& old_part, const std::string& new_part) {
   const auto at = text.find(old_part);
   EXPECT_NE(at, std::string::npos) << old_part;
   return at == std::string::npos ? text : text.replace(at, old_part.size(), new_part);
 }
 
-std::string complaint_about(const std::string& text, const UrdfEnds& ends = {}) {
+std::string urdf_complaint(const std::string& text, const UrdfEnds& ends = {}) {
   const auto chain = parse_urdf(text, "arm.urdf", ends);
   return chain ? "(accepted)" : chain.error().what;
 }
@@ -77,49 +77,51 @@ TEST(Urdf, BadFilesAreRefusedWithOneSentence) {
     std::string text, sentence;
   };
   const Case cases[] = {
-      {with(good, "</robot>", ""), "arm.urdf:2: malformed XML (an element does not end)"},
-      {with(good, "</joint>", ""), "arm.urdf:7: malformed XML (mismatched element)"},
+      {replaced(good, "</robot>", ""), "arm.urdf:2: malformed XML (an element does not end)"},
+      {replaced(good, "</joint>", ""), "arm.urdf:7: malformed XML (mismatched element)"},
       {"just text", "arm.urdf:1: malformed XML (parsing text)"},
       {"<model/>", "arm.urdf:1: expected <robot> as the outermost element, found <model>"},
       {"<robot name=\"a\"/>", "arm.urdf:1: the robot has no links, expected at least two <link>"},
       {"<robot name=\"a\"><link name=\"b\"/></robot>",
        "arm.urdf:1: the robot has no joints, expected at least one <joint>"},
-      {with(good, "<link name=\"hand\"/>", "<link name=\"upper\"/>"), "arm.urdf:6: link \"upper\" appears twice"},
-      {with(good, "<link name=\"hand\"/>", ""), "arm.urdf:17: joint \"wrist\": its child link \"hand\" does not exist"},
-      {with(good, "<child link=\"hand\"/>", ""), "arm.urdf:17: joint \"wrist\" has no <child link=\"...\">"},
-      {with(good, "name=\"wrist\"", "name=\"slide\""), "arm.urdf:17: joint \"slide\" appears twice"},
-      {with(good, "<child link=\"hand\"/>", "<child link=\"upper\"/>"),
+      {replaced(good, "<link name=\"hand\"/>", "<link name=\"upper\"/>"), "arm.urdf:6: link \"upper\" appears twice"},
+      {replaced(good, "<link name=\"hand\"/>", ""),
+       "arm.urdf:17: joint \"wrist\": its child link \"hand\" does not exist"},
+      {replaced(good, "<child link=\"hand\"/>", ""), "arm.urdf:17: joint \"wrist\" has no <child link=\"...\">"},
+      {replaced(good, "name=\"wrist\"", "name=\"slide\""), "arm.urdf:17: joint \"slide\" appears twice"},
+      {replaced(good, "<child link=\"hand\"/>", "<child link=\"upper\"/>"),
        "arm.urdf:17: link \"upper\" is the child of joint \"shoulder\" and of joint \"wrist\": loops cannot be read"},
-      {with(good, "<parent link=\"base\"/>", "<parent link=\"hand\"/>"),
+      {replaced(good, "<parent link=\"base\"/>", "<parent link=\"hand\"/>"),
        "arm.urdf:7: joint \"shoulder\" is part of a loop: loops cannot be read"},
-      {with(good, "<child link=\"hand\"/>", "<child link=\"base\"/>"),
+      {replaced(good, "<child link=\"hand\"/>", "<child link=\"base\"/>"),
        "arm.urdf:7: joint \"shoulder\" is part of a loop: loops cannot be read"},
-      {with(good, "<link name=\"hand\"/>", "<link name=\"hand\"/><link name=\"spare\"/>"),
+      {replaced(good, "<link name=\"hand\"/>", "<link name=\"hand\"/><link name=\"spare\"/>"),
        "arm.urdf:2: links \"base\" and \"spare\" have no parent, expected one root"},
-      {with(good, "<mimic joint=\"shoulder\"", "<mimic joint=\"neck\""),
+      {replaced(good, "<mimic joint=\"shoulder\"", "<mimic joint=\"neck\""),
        "arm.urdf: joint \"wrist\" mimics joint \"neck\", which does not exist"},
-      {with(good, "<mimic joint=\"shoulder\"", "<mimic joint=\"wrist\""), "arm.urdf: joint \"wrist\" mimics itself"},
-      {with(good, "xyz=\"1 0 0\"", "xyz=\"0 0 0\""), "arm.urdf: joint \"slide\" has an axis of zeros"},
-      {with(good, "type=\"continuous\"", "type=\"floating\""),
+      {replaced(good, "<mimic joint=\"shoulder\"", "<mimic joint=\"wrist\""),
+       "arm.urdf: joint \"wrist\" mimics itself"},
+      {replaced(good, "xyz=\"1 0 0\"", "xyz=\"0 0 0\""), "arm.urdf: joint \"slide\" has an axis of zeros"},
+      {replaced(good, "type=\"continuous\"", "type=\"floating\""),
        "arm.urdf: joint \"wrist\": expected revolute, continuous, prismatic or fixed"},
   };
-  for (const Case& bad : cases) EXPECT_EQ(complaint_about(bad.text), bad.sentence) << bad.text;
-  EXPECT_EQ(complaint_about(good, {.base_link = "bass", .tip_link = ""}),
+  for (const Case& bad : cases) EXPECT_EQ(urdf_complaint(bad.text), bad.sentence) << bad.text;
+  EXPECT_EQ(urdf_complaint(good, {.base_link = "bass", .tip_link = ""}),
             "arm.urdf: the base link \"bass\" does not exist");
-  EXPECT_EQ(complaint_about(good, {.base_link = "", .tip_link = "tip"}),
+  EXPECT_EQ(urdf_complaint(good, {.base_link = "", .tip_link = "tip"}),
             "arm.urdf: the tip link \"tip\" does not exist");
-  EXPECT_EQ(complaint_about(good, {.base_link = "lower", .tip_link = "upper"}),
+  EXPECT_EQ(urdf_complaint(good, {.base_link = "lower", .tip_link = "upper"}),
             "arm.urdf: the tip link \"upper\" is not below the base link \"lower\"");
-  EXPECT_EQ(complaint_about(good, {.base_link = "hand", .tip_link = "hand"}),
+  EXPECT_EQ(urdf_complaint(good, {.base_link = "hand", .tip_link = "hand"}),
             "arm.urdf: base link and tip link are the same, expected joints between them");
 }
 
 TEST(Urdf, WhatTheLibraryFindsIsSaidInOurSentenceAndNotPrinted) {
   testing::internal::CaptureStderr();
   const std::string no_limits =
-      with(two_joint_arm, "<limit lower=\"-1\" upper=\"2\" effort=\"1\" velocity=\"1\"/>", "");
-  const std::string sentence = complaint_about(no_limits);
-  const std::string bad_number = complaint_about(with(two_joint_arm, "0 0 0.5", "0 0 half"));
+      replaced(two_joint_arm, "<limit lower=\"-1\" upper=\"2\" effort=\"1\" velocity=\"1\"/>", "");
+  const std::string sentence = urdf_complaint(no_limits);
+  const std::string bad_number = urdf_complaint(replaced(two_joint_arm, "0 0 0.5", "0 0 half"));
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(sentence.rfind("arm.urdf: not a URDF that can be read: ", 0), 0U) << sentence;
   EXPECT_NE(sentence.find("shoulder"), std::string::npos) << sentence;

@@ -57,7 +57,7 @@ std::string bodies(const Chain& chain, int parent) {
   return xml;
 }
 
-std::string mjcf(const Chain& chain) {
+std::string model_text(const Chain& chain) {
   const Pose base = chain.base.pose();
   return fmt::format(
       "<mujoco><compiler angle='radian'/><option gravity='0 0 0'/><worldbody>"
@@ -79,7 +79,7 @@ class MujocoJudges : public testing::TestWithParam<Chain> {
 };
 
 TEST_P(MujocoJudges, frames_and_their_motions_agree) {
-  const auto model = laws::mujoco_model(mjcf(chain()));
+  const auto model = laws::mujoco_model(model_text(chain()));
   ASSERT_TRUE(model);
   const std::unique_ptr<mjData, laws::MujocoFree> data(mj_makeData(model.get()));
   for (std::uint64_t k = 0; k < 20; ++k) {
@@ -108,7 +108,7 @@ TEST_P(MujocoJudges, frames_and_their_motions_agree) {
   }
 }
 
-std::vector<Chain> rigid_examples() {
+std::vector<Chain> rigid_chains() {
   std::vector<Chain> chains;
   for (Chain& chain : laws::examples()) {
     for (Joint& joint : chain.joints) joint.compliance = 0.0;
@@ -117,7 +117,7 @@ std::vector<Chain> rigid_examples() {
   return chains;
 }
 
-INSTANTIATE_TEST_SUITE_P(every, MujocoJudges, testing::ValuesIn(rigid_examples()),
+INSTANTIATE_TEST_SUITE_P(every, MujocoJudges, testing::ValuesIn(rigid_chains()),
                          [](const auto& instance) { return laws::test_name(instance.param); });
 
 }  // namespace

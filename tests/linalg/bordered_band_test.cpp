@@ -18,7 +18,7 @@ struct Problem {
   Index band() const { return (spans + reach - 1) * width; }
 };
 
-MatrixXd random_matrix(Index rows, Index cols, Rng& rng) {
+MatrixXd random_border(Index rows, Index cols, Rng& rng) {
   MatrixXd m(rows, cols);
   for (double& value : m.reshaped()) value = rng.normal();
   return m;
@@ -30,8 +30,8 @@ Problem random_problem(Index width, Index reach, Index border, Index spans, Rng 
   p.whole = MatrixXd::Zero(all, all);
   p.right = VectorXd::Zero(all);
   for (Index k = 0; k < spans; ++k) {
-    const MatrixXd j = random_matrix(3 * local, local + border, rng);
-    const VectorXd r = random_matrix(3 * local, 1, rng);
+    const MatrixXd j = random_border(3 * local, local + border, rng);
+    const VectorXd r = random_border(3 * local, 1, rng);
     const MatrixXd h = j.transpose() * j;
     const VectorXd g = j.transpose() * r;
     p.parts.push_back({h.topLeftCorner(local, local), h.bottomLeftCorner(border, local), g.head(local)});

@@ -13,7 +13,7 @@
 namespace kinfer {
 namespace {
 
-MatrixXd random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
+MatrixXd random_rows(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
   Rng rng(seed);
   return MatrixXd::NullaryExpr(rows, cols, [&] { return rng.normal(); });
 }
@@ -30,8 +30,8 @@ VectorXd slow_damped(const MatrixXd& a, const VectorXd& b, double damping) {
 TEST(NormalEquations, are_the_inner_products_term_by_term) {
   for (const Eigen::Index rows : {1, 5, 301}) {
     for (const Eigen::Index cols : {1, 2, 7, 34}) {
-      const MatrixXd a = random_matrix(rows, cols, 1);
-      const VectorXd b = random_matrix(rows, 1, 2);
+      const MatrixXd a = random_rows(rows, cols, 1);
+      const VectorXd b = random_rows(rows, 1, 2);
       const NormalEquations found = normal_equations(a, b);
       for (Eigen::Index i = 0; i < cols; ++i) {
         EXPECT_NEAR(found.gradient[i], a.col(i).dot(b), 1e-12);
@@ -56,8 +56,8 @@ TEST(NormalEquations, every_instruction_set_makes_the_same_from_any_number_of_ch
   for (const batch::GramKernel* kernel : runnable_grams())
     for (const int rows : {1, 95, 96, 97, 384, 385, 1000})
       for (const int columns : {1, 4, 11, 12, 13, 50}) {
-        const MatrixXd above = random_matrix(rows + 3, columns, 7);  // the columns are further apart than long
-        const VectorXd b = random_matrix(rows, 1, 8);
+        const MatrixXd above = random_rows(rows + 3, columns, 7);  // the columns are further apart than long
+        const VectorXd b = random_rows(rows, 1, 8);
         MatrixXd matrix = MatrixXd::Zero(columns, columns);
         VectorXd gradient(columns);
         batch::Buffer<double> workspace(batch::gram_workspace(rows, columns, kernel->lanes));
@@ -78,8 +78,8 @@ TEST(NormalEquations, every_instruction_set_makes_the_same_from_any_number_of_ch
 
 TEST(NormalEquations, both_ways_give_the_minimum_of_the_damped_squares) {
   for (const Eigen::Index rows : {4, 6, 50}) {
-    const MatrixXd a = random_matrix(rows, 6, 3);
-    const VectorXd b = random_matrix(rows, 1, 4);
+    const MatrixXd a = random_rows(rows, 6, 3);
+    const VectorXd b = random_rows(rows, 1, 4);
     for (const double damping : {1e-3, 1.0, 1e6}) {
       const VectorXd slow = slow_damped(a, b, damping);
       const auto quick = damped_by_cholesky(normal_equations(a, b), damping);
@@ -91,9 +91,9 @@ TEST(NormalEquations, both_ways_give_the_minimum_of_the_damped_squares) {
 }
 
 TEST(NormalEquations, cholesky_refuses_what_it_would_answer_wrongly_and_svd_does_not_move_along_the_unseen) {
-  MatrixXd a = random_matrix(60, 4, 5);
+  MatrixXd a = random_rows(60, 4, 5);
   a.col(3) = a.col(0) + a.col(1);
-  const VectorXd b = random_matrix(60, 1, 6);
+  const VectorXd b = random_rows(60, 1, 6);
   EXPECT_FALSE(damped_by_cholesky(normal_equations(a, b), 1e-14).has_value());
   const VectorXd shortest = solve_least_squares(a, -b, 1e-10);
   EXPECT_LT((damped_by_svd(singular_system(a, b), 1e-14) - shortest).norm(), 1e-10);

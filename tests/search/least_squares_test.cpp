@@ -53,7 +53,7 @@ Residuals scalar(Value value, Slope slope) {
           }};
 }
 
-const VectorXd one = VectorXd::Ones(1);
+const VectorXd unit_start = VectorXd::Ones(1);
 
 TEST(LeastSquares, standard_problems_end_at_the_optimum_that_the_literature_prints) {
   for (const auto& problem : standard_problems()) {
@@ -137,7 +137,7 @@ TEST(LeastSquares, a_redundant_linear_problem_is_solved_by_the_smallest_change) 
 
 TEST(LeastSquares, the_smallest_change_is_counted_in_typical_sizes) {
   // x0 + x1 = 1 from (0, 0): the change is shared as the squares of the sizes, 4 : 1.
-  const Residuals sum = linear(Eigen::RowVector2d(1, 1), one);
+  const Residuals sum = linear(Eigen::RowVector2d(1, 1), unit_start);
   const auto fit = least_squares(sum, Eigen::Vector2d(0, 0), {.scale = VectorXd(Eigen::Vector2d(2, 1))});
   EXPECT_NEAR(fit.x[0], 0.8, 1e-12);
   EXPECT_NEAR(fit.x[1], 0.2, 1e-12);
@@ -272,9 +272,9 @@ TEST(LeastSquaresStop, budget_spent_after_as_many_iterations_as_allowed) {
 
 TEST(LeastSquaresStop, stalled_where_the_jacobian_has_the_wrong_sign) {
   const Residuals wrong = scalar([](double x) { return x; }, [](double) { return -1.0; });
-  const auto fit = least_squares(wrong, one);
+  const auto fit = least_squares(wrong, unit_start);
   EXPECT_EQ(fit.stop, Stop::stalled);
-  EXPECT_EQ(fit.x, one);
+  EXPECT_EQ(fit.x, unit_start);
 }
 
 TEST(LeastSquaresStop, not_finite_where_the_start_has_no_finite_cost_or_jacobian) {
@@ -288,7 +288,7 @@ TEST(LeastSquaresStop, not_finite_where_the_start_has_no_finite_cost_or_jacobian
     EXPECT_EQ(fit.x[0], start);
   }
   const Residuals infinite_row = scalar([](double) { return infinite; }, [](double) { return 1.0; });
-  EXPECT_EQ(least_squares(infinite_row, one, {.loss = Loss::tukey}).stop, Stop::not_finite);
+  EXPECT_EQ(least_squares(infinite_row, unit_start, {.loss = Loss::tukey}).stop, Stop::not_finite);
 }
 
 TEST(LeastSquaresStop, cancelled_when_the_observer_asks_for_it) {

@@ -91,7 +91,7 @@ Comparison compare(const Tried& before, const Tried& after, HeldOut Tried::*whic
   return c;
 }
 
-std::string millimetres(double metres) {
+std::string in_fine_millimetres(double metres) {
   return fmt::format("{:.4f} mm", 1e3 * metres);
 }
 
@@ -100,8 +100,8 @@ bool helps(const Comparison& c, double worst_of_geometry, std::string& why) {
   constexpr double certain = 2.5;      // standard errors
   constexpr double worth_it = 0.01;    // of the mean error: less is not worth a term
   constexpr double worst_slack = 1.0;  // times the worst error before: no pose may pay for the others
-  const std::string means =
-      fmt::format("the held-out mean goes from {} to {}", millimetres(c.mean_before), millimetres(c.mean_after));
+  const std::string means = fmt::format("the held-out mean goes from {} to {}", in_fine_millimetres(c.mean_before),
+                                        in_fine_millimetres(c.mean_after));
   if (c.mean_after >= (1.0 - worth_it) * c.mean_before) {
     why = "refused: " + means;
     return false;
@@ -112,7 +112,7 @@ bool helps(const Comparison& c, double worst_of_geometry, std::string& why) {
   }
   if (c.worst_after > worst_slack * std::max(c.worst_before, worst_of_geometry)) {
     why = fmt::format("refused: {}, but the worst held-out error rises from {} to {}", means,
-                      millimetres(c.worst_before), millimetres(c.worst_after));
+                      in_fine_millimetres(c.worst_before), in_fine_millimetres(c.worst_after));
     return false;
   }
   why = fmt::format("{} ({:.0f} standard errors)", means, c.t);
@@ -122,7 +122,8 @@ bool helps(const Comparison& c, double worst_of_geometry, std::string& why) {
 /// Whether a rung that helps between the fitted poses does no harm beyond them; completes the sentence.
 bool holds_beyond(const Comparison& far, std::string& why) {
   constexpr double far_slack = 1.02;  // times the error before
-  const std::string means = fmt::format("from {} to {}", millimetres(far.mean_before), millimetres(far.mean_after));
+  const std::string means =
+      fmt::format("from {} to {}", in_fine_millimetres(far.mean_before), in_fine_millimetres(far.mean_after));
   if (far.mean_after > far_slack * far.mean_before) {
     why = "refused: " + why + ", but beyond the fitted poses the mean rises " + means;
     return false;

@@ -54,14 +54,14 @@ Chain generic_start(Chain chain, const PoseSet& data, double size, Rng rng) {
   return chain;
 }
 
-struct Found {
+struct RefinedChain {
   Chain chain;
   double typical = 0.0;
 };
 
 /// Levenberg-Marquardt in rounds: the noise level falls with the residuals, and the turns are folded away, so that they
 /// stay far from their singularity.
-Found refined(Chain chain, const PoseSet& data, double size, int rounds) {
+RefinedChain refined(Chain chain, const PoseSet& data, double size, int rounds) {
   LeastSquaresOptions options;
   options.loss = Loss::cauchy;
   options.loss_scale = 3.0;
@@ -135,21 +135,21 @@ Result<LocalPoeFit> fit_local_poe(const std::vector<JointType>& types, const Pos
 
   constexpr std::size_t batch = 8, most_batches = 8;
   constexpr double explained = 0.01;  // of the spread
-  std::vector<Found> all;
-  Found best;
+  std::vector<RefinedChain> all;
+  RefinedChain best;
   const auto agreeing = [&] {
-    return static_cast<int>(
-        std::count_if(all.begin(), all.end(), [&](const Found& f) { return f.typical <= 1.2 * best.typical + 1e-9; }));
+    return static_cast<int>(std::count_if(
+        all.begin(), all.end(), [&](const RefinedChain& f) { return f.typical <= 1.2 * best.typical + 1e-9; }));
   };
   for (std::size_t b = 0; b < most_batches; ++b) {
-    std::vector<Found> found(batch);
+    std::vector<RefinedChain> found(batch);
     parallel_for(batch, threads, [&](std::size_t i) {
       constexpr int rounds = 20;
       found[i] = refined(generic_start(plain, some, size, rng.stream(b).stream(i)), some, size, rounds);
     });
     all.insert(all.end(), found.begin(), found.end());
-    best =
-        *std::min_element(all.begin(), all.end(), [](const Found& x, const Found& y) { return x.typical < y.typical; });
+    best = *std::min_element(all.begin(), all.end(),
+                             [](const RefinedChain& x, const RefinedChain& y) { return x.typical < y.typical; });
     constexpr int enough = 3;  // starts that agree are no accident
     if (best.typical < explained * size && agreeing() >= enough) break;
   }
@@ -160,7 +160,7 @@ Result<LocalPoeFit> fit_local_poe(const std::vector<JointType>& types, const Pos
         all.size(), 1e3 * best.typical);
   constexpr int final_rounds = 10;
   const int same = agreeing();
-  const Found last = refined(best.chain, data, size, final_rounds);
+  const RefinedChain last = refined(best.chain, data, size, final_rounds);
   return LocalPoeFit{last.chain, last.typical, static_cast<int>(all.size()), same};
 }
 

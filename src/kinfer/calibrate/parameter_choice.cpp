@@ -7,7 +7,7 @@
 namespace kinfer {
 namespace {
 
-bool is_turn(Field field) {
+bool is_small_turn(Field field) {
   return field == Field::rx || field == Field::ry || field == Field::rz;
 }
 bool is_dh_row(Field field) {
@@ -20,7 +20,7 @@ struct Told {
   bool touches = false;  ///< distances, contacts: they see the tool point, but not where the base stands
 
   bool uses(Owner owner, Field field) const {
-    const bool turn = is_turn(field);
+    const bool turn = is_small_turn(field);
     if (owner == Owner::base || owner == Owner::mounting_base) return points || (turn && (orientations || tilts));
     return turn ? orientations || tilts || targets : points || touches;
   }

@@ -15,11 +15,11 @@ constexpr double harmonic_prior = 0.2e-3;  // [rad]: eccentric gears and encoder
 constexpr double backlash_prior = 0.3e-3;  // [rad] or, for slides, [m]
 constexpr double expansion_prior = 20e-6;  // [1/K]: between steel and aluminium
 
-bool turns(const Joint& joint) {
+bool is_revolute(const Joint& joint) {
   return joint.type == JointType::revolute;
 }
 bool turns_by_reading(const Joint& joint) {
-  return turns(joint) && joint.has_reading;
+  return is_revolute(joint) && joint.has_reading;
 }
 
 template <class Keep>
@@ -57,7 +57,7 @@ Rung coupling(Rung rung) {
   rung.adds = "how far each turning joint follows the readings of the two before it (transmissions, parallelograms)";
   for (int j = 0; j < static_cast<int>(rung.nominal.joints.size()); ++j) {
     Joint& joint = rung.nominal.joints[j];
-    if (!turns(joint)) continue;
+    if (!is_revolute(joint)) continue;
     int before = joint.parent;
     for (int steps = 0; steps < 2 && before >= 0; ++steps, before = rung.nominal.joints[before].parent) {
       const auto known = [&](const Coupling& c) { return c.joint == before; };
@@ -79,7 +79,7 @@ Rung gravity(Rung rung, const CalibrateTask& task, const PoseSet& rows) {
     rung.nominal = with_guessed_masses(rung.nominal);
   }
   if (rung.nominal.gravity.norm() == 0.0) rung.locked = "gravity is zero in the robot file";
-  free_joint_numbers(rung, Field::compliance, task.tolerances.compliance, turns);
+  free_joint_numbers(rung, Field::compliance, task.tolerances.compliance, is_revolute);
   return rung;
 }
 

@@ -9,7 +9,7 @@
 namespace kinfer {
 namespace {
 
-std::string millimetres(double metres) {
+std::string in_millimetres(double metres) {
   return fmt::format("{:.3f} mm", 1e3 * metres);
 }
 
@@ -37,19 +37,19 @@ Result<Verification> verify(const Chain& given_chain, const Tolerances& toleranc
   const bool moved = v.frames_refitted.rms <= (instrument ? excusable : 0.5 * v.as_it_stands.rms);
   v.good = instrument ? v.as_it_stands.rms <= excusable : !moved;
   const std::string figures = fmt::format("the tool is {} off on average and {} at worst",
-                                          millimetres(v.as_it_stands.mean), millimetres(v.as_it_stands.max));
+                                          in_millimetres(v.as_it_stands.mean), in_millimetres(v.as_it_stands.max));
   if (v.good)
     v.verdict = fmt::format("Still good: {}.", figures);
   else if (moved)
     v.verdict = fmt::format(
         "Not good as it stands: {}; with base and tool refitted {} on average, so the instrument or the "
         "tool was moved rather than the robot changed.",
-        figures, millimetres(v.frames_refitted.mean));
+        figures, in_millimetres(v.frames_refitted.mean));
   else
     v.verdict = fmt::format(
         "Not good any more: {}, more than the instrument can excuse, and refitting base and tool does not "
         "cure it ({}). Calibrate again.",
-        figures, millimetres(v.frames_refitted.mean));
+        figures, in_millimetres(v.frames_refitted.mean));
   return v;
 }
 

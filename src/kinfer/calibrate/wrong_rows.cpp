@@ -8,7 +8,7 @@ namespace kinfer {
 namespace {
 
 /// Largest headline error of each row [m] by a chain that was fitted on `seen`.
-std::map<int, double> error_of_rows(const Chain& chain, const PoseSet& seen, const PoseSet& rows) {
+std::map<int, double> errors_by_row(const Chain& chain, const PoseSet& seen, const PoseSet& rows) {
   std::map<int, double> largest;
   const std::vector<double> errors = headline_errors(chain, seen, rows);
   for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -33,8 +33,8 @@ std::vector<Outlier> wrong_beside_both(const Estimate& geometry, const Estimate&
   constexpr double no_nearer = 0.5;
   std::vector<Outlier> wrong;
   if (richest.outliers.empty()) return wrong;
-  const std::map<int, double> plain = error_of_rows(geometry.chain, rows, rows),
-                              rich = error_of_rows(richest.chain, rows, rows);
+  const std::map<int, double> plain = errors_by_row(geometry.chain, rows, rows),
+                              rich = errors_by_row(richest.chain, rows, rows);
   for (const Outlier& outlier : richest.outliers)
     if (outlier.sigmas > by_far && rich.contains(outlier.row) &&
         plain.at(outlier.row) >= no_nearer * rich.at(outlier.row))
@@ -45,7 +45,7 @@ std::vector<Outlier> wrong_beside_both(const Estimate& geometry, const Estimate&
 std::vector<Outlier> without_explained(const std::vector<Outlier>& wrong, const Estimate& chosen, const PoseSet& fitted,
                                        const PoseSet& data) {
   constexpr double explained = 4.0;  // [sigma]: one point of a thousand is further off by chance
-  const std::map<int, double> error = error_of_rows(chosen.chain, fitted, data);
+  const std::map<int, double> error = errors_by_row(chosen.chain, fitted, data);
   std::vector<Outlier> left = wrong;
   std::erase_if(left, [&](const Outlier& outlier) {
     return error.contains(outlier.row) && error.at(outlier.row) <= explained * chosen.sigma;

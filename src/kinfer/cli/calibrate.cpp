@@ -28,7 +28,7 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct CalibrateArguments {
   CommonOptions common;
   SearchArguments search;
   RobotOption robot;
@@ -59,7 +59,7 @@ Result<RobotModel> read_robot_or_types(const RobotOption& option) {
 }
 
 /// The data sheet that `unknown:6R` lacks, from the rows that are not held out by name.
-Result<void> find_robot(const Options& options, Inputs& inputs) {
+Result<void> find_robot(const CalibrateArguments& options, Inputs& inputs) {
   std::vector<int> rows;
   for (int row = 0; row < inputs.data.rows(); ++row)
     if (inputs.data.set.empty() || inputs.data.set[row] != SetLabel::holdout) rows.push_back(row);
@@ -110,7 +110,7 @@ Result<HoldoutChoice> add_holdout(const std::string& text, const RobotModel& rob
   return HeldOutByLabel{};
 }
 
-Result<Inputs> read_inputs(const Options& options) {
+Result<Inputs> read_inputs(const CalibrateArguments& options) {
   Inputs inputs;
   KINFER_TRY(robot, read_robot_or_types(options.robot));
   KINFER_TRY(map, read_columns_option(options.columns));
@@ -128,7 +128,7 @@ Result<Inputs> read_inputs(const Options& options) {
   return inputs;
 }
 
-std::vector<std::string> input_paths(const Options& options) {
+std::vector<std::string> input_paths(const CalibrateArguments& options) {
   std::vector<std::string> paths{options.data};
   if (!is_unknown(options.robot)) paths.insert(paths.begin(), options.robot.path);
   for (const std::string& path : {options.columns, options.parameters, options.holdout})
@@ -137,7 +137,7 @@ std::vector<std::string> input_paths(const Options& options) {
   return paths;
 }
 
-Provenance provenance_of(const Options& options) {
+Provenance provenance_of(const CalibrateArguments& options) {
   Provenance provenance;
   provenance.seed = options.common.seed;
   provenance.inputs = fingerprints(input_paths(options));
@@ -153,7 +153,7 @@ Provenance provenance_of(const Options& options) {
   return provenance;
 }
 
-Result<void> write_results(const Options& options, RobotModel robot, const Calibration& calibration) {
+Result<void> write_results(const CalibrateArguments& options, RobotModel robot, const Calibration& calibration) {
   const std::filesystem::path folder(options.out);
   StandardDeviations sd;
   for (const ParameterEstimate& p : calibration.estimate.values) sd[p.name] = p.sd;
@@ -179,7 +179,7 @@ Result<void> begin_at_earlier(CalibrateTask& task, CalibrateOptions& how) {
   return {};
 }
 
-int run(const Options& options) {
+int run(const CalibrateArguments& options) {
   RunRecord record("calibrate", options.common);
   for (const std::string& path : input_paths(options)) record.add_input(path);
   auto inputs = read_inputs(options);
@@ -217,7 +217,7 @@ Verb add_calibrate(CLI::App& app) {
                   "No initial guess of base and tool is needed.\nExample:\n"
                   "  kinfer calibrate --robot robot.toml --data poses.csv --out calibration\n"
                   "  kinfer predict --chain calibration/chain.toml --joints joints.csv -o predicted.csv");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CalibrateArguments>();
   add_robot_option(*verb, options->robot, "--robot",
                    "Nominal model: TOML or URDF; or unknown:6R, unknown:RRPR: joint types alone");
   add_text(*verb, "--data", options->data, "Pose set: joint readings and measurements", Need::required, "CSV");

@@ -16,7 +16,7 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct CompensateArguments {
   CommonOptions common;
   RobotOption chain;
   std::string nominal, joints, targets, out, frames = "auto";
@@ -71,7 +71,7 @@ struct Chains {
   std::string note;
 };
 
-Result<Chains> read_chains(const Options& options) {
+Result<Chains> read_chains(const CompensateArguments& options) {
   KINFER_TRY(corrected, read_robot(options.chain));
   KINFER_TRY(nominal, read_robot({options.nominal, options.chain.base_link, options.chain.tip_link}));
   if (!same_kind(corrected.chain, nominal.chain))
@@ -91,7 +91,7 @@ Result<Chains> read_chains(const Options& options) {
   return Chains{in_frames(corrected.chain, nominal.chain, frames), nominal.chain, note};
 }
 
-Result<std::vector<Compensated>> compensated_rows(const Options& options, const Chains& chains) {
+Result<std::vector<Compensated>> compensated_rows(const CompensateArguments& options, const Chains& chains) {
   const int threads = options.common.threads;
   if (!options.joints.empty()) {
     KINFER_TRY(set, read_pose_set(options.joints, chains.nominal, {}, Expect::joints_only));
@@ -104,7 +104,7 @@ Result<std::vector<Compensated>> compensated_rows(const Options& options, const 
 }
 
 /// Says which rows are not reached, and why; true when all are.
-bool tell_about_rows(const Options& options, const std::vector<Compensated>& list) {
+bool tell_about_rows(const CompensateArguments& options, const std::vector<Compensated>& list) {
   constexpr int most = 12;  // rows that are told one by one
   double worst = 0.0;
   int missed = 0;
@@ -123,7 +123,7 @@ bool tell_about_rows(const Options& options, const std::vector<Compensated>& lis
   return missed == 0;
 }
 
-int run(const Options& options) {
+int run(const CompensateArguments& options) {
   if (options.joints.empty() == options.targets.empty()) return fail({"expected either --joints or --targets"});
   const auto chains = read_chains(options);
   if (!chains) return fail(chains.error());
@@ -146,7 +146,7 @@ Verb add_compensate(CLI::App& app) {
       app, "compensate", "Joint targets that put the real tool where the nominal model, or a target, wants it",
       "Rows that cannot be reached are said on standard error, and the exit code is 1.\nExample:\n"
       "  kinfer compensate --chain calibration/chain.toml --nominal robot.toml --joints joints.csv -o corrected.csv");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompensateArguments>();
   add_robot_option(*verb, options->chain, "--chain", "Corrected model: chain.toml, or URDF");
   add_text(*verb, "--nominal", options->nominal, "Model that the robot's controller has", Need::required, "ROBOT");
   add_text(*verb, "--joints", options->joints, "Joint lists as the controller would send them", Need::optional, "CSV");

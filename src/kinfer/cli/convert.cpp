@@ -10,13 +10,13 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct ConvertArguments {
   RobotOption in;
   std::string out;
   bool quiet = false;
 };
 
-int run(const Options& options) {
+int run(const ConvertArguments& options) {
   const auto robot = read_robot(options.in);
   if (!robot) return fail(robot.error());
   const std::string ending = std::filesystem::path(options.out).extension().string();
@@ -39,7 +39,7 @@ int run(const Options& options) {
 Verb add_convert(CLI::App& app) {
   CLI::App* verb = add_command(app, "convert", "Turn a robot model into another format: TOML, URDF, MJCF",
                                "Example:\n  kinfer convert calibration/chain.toml robot.urdf");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConvertArguments>();
   add_robot_option(*verb, options->in, "in", "Model to read: .toml or .urdf");
   add_text(*verb, "out", options->out, "Model to write: .toml, .urdf or .mjcf (.xml)", Need::required, "FILE");
   add_quiet_option(*verb, options->quiet);

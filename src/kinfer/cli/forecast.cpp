@@ -18,7 +18,7 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct ForecastArguments {
   CommonOptions common;
   std::vector<std::string> logs;
   std::string chain, drive = "standard", grade = "industrial";
@@ -26,7 +26,7 @@ struct Options {
 };
 
 /// The drive made in simulation with the chain as it was found.
-Result<InsRecording> rehearsed(const Options& options) {
+Result<InsRecording> rehearsed(const ForecastArguments& options) {
   KINFER_TRY(robot, read_robot_toml(options.chain));
   const auto machine = machine_of_chain(robot.chain);
   if (!machine) return error("{}: {}", options.chain, machine.error().what);
@@ -38,7 +38,7 @@ Result<InsRecording> rehearsed(const Options& options) {
   return simulated_recording(*machine, prescribed_motion(*machine, drive, sampling_rate), grade, {}, rng.stream(2));
 }
 
-Result<std::vector<JointForecast>> forecast_of(const Options& options) {
+Result<std::vector<JointForecast>> forecast_of(const ForecastArguments& options) {
   if (options.logs.empty() == options.chain.empty())
     return error("expected either recordings, or --chain with a chain.toml that identify has written");
   auto recording = options.chain.empty() ? read_ins_logs(options.logs) : rehearsed(options);
@@ -50,7 +50,7 @@ Result<std::vector<JointForecast>> forecast_of(const Options& options) {
   return forecast(found.joints, {1e-3 * options.line, 1e-3 * options.direction});
 }
 
-void print_table(const std::vector<JointForecast>& joints, const Options& options) {
+void print_table(const std::vector<JointForecast>& joints, const ForecastArguments& options) {
   fmt::print("Expected of {}: {}.\n\n", options.chain.empty() ? "this recording" : "the " + options.drive + " drive",
              in_words(joints, {1e-3 * options.line, 1e-3 * options.direction}));
   fmt::print("{:<16} {:>12} {:>16} {:>8} {:>18} {:>12}\n", "joint", "sd line [mm]", "sd axis [mrad]", "enough",
@@ -61,7 +61,7 @@ void print_table(const std::vector<JointForecast>& joints, const Options& option
                f.enough ? "-" : fmt::format("{:.1f}", f.time));
 }
 
-void print_json(const std::vector<JointForecast>& joints, const Options& options) {
+void print_json(const std::vector<JointForecast>& joints, const ForecastArguments& options) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const JointForecast& f : joints)
     list.push_back({{"joint", f.joint},
@@ -75,7 +75,7 @@ void print_json(const std::vector<JointForecast>& joints, const Options& options
   fmt::print("{}\n", all.dump());
 }
 
-int run(const Options& options) {
+int run(const ForecastArguments& options) {
   const auto joints = forecast_of(options);
   if (!joints) return fail(joints.error());
   if (options.common.json)
@@ -93,7 +93,7 @@ Verb add_forecast(CLI::App& app) {
                   "From a short recording, or by rehearsing a drive with an earlier chain.\nExamples:\n"
                   "  kinfer forecast short.csv\n"
                   "  kinfer forecast --chain excavator/chain.toml --drive gentle --duration 90 --grade industrial");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ForecastArguments>();
   add_texts(*verb, "logs", options->logs, "INS recordings", Need::optional, "CSV");
   add_text(*verb, "--chain", options->chain, "chain.toml of an earlier identification", Need::optional, "TOML");
   std::vector<std::string> drives;

@@ -11,7 +11,7 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct FramesArguments {
   CommonOptions common;
   RobotOption robot;
   std::string data, out, columns;
@@ -43,7 +43,7 @@ Result<void> write_results(const OutputFolder& folder, RobotModel robot, const F
   return write_text_file(folder / "evidence.json", frames_json(found));
 }
 
-int run(const Options& options) {
+int run(const FramesArguments& options) {
   RunRecord record("frames", options.common);
   for (const std::string& path : {options.robot.path, options.data}) record.add_input(path);
   auto robot = read_robot(options.robot);
@@ -72,7 +72,7 @@ Verb add_frames(CLI::App& app) {
       app, "frames", "Base and tool from sweeps of single joints, by circle fits",
       "Sweeps are marked in a column called sweep, or found: rows in which one joint alone moves.\nExample:\n"
       "  kinfer frames --robot robot.toml --data sweeps.csv --out frames");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FramesArguments>();
   add_robot_option(*verb, options->robot, "--robot", "Nominal model: TOML or URDF");
   add_text(*verb, "--data", options->data, "Pose set with sweeps of single joints", Need::required, "CSV");
   add_text(*verb, "--out", options->out, "Folder for chain.toml (base and tool found), evidence.json, run.json",

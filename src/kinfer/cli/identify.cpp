@@ -25,7 +25,7 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct IdentifyArguments {
   CommonOptions common;
   std::vector<std::string> logs;
   std::string out, engine = "bmp", terminals = "hinge", filter = "kinfer-offline", root, pairing = "halves";
@@ -61,7 +61,7 @@ Result<std::vector<GivenLink>> links_of(const std::string& text) {
   return links;
 }
 
-Result<IdentifyOptions> options_of(const Options& options) {
+Result<IdentifyOptions> options_of(const IdentifyArguments& options) {
   IdentifyOptions how;
   const auto filter = filter_named(options.filter);
   if (!filter) return error("--filter {}: no such filter; known are {}", options.filter, filter_names);
@@ -96,7 +96,7 @@ Result<IdentifyOptions> options_of(const Options& options) {
   return how;
 }
 
-Provenance provenance_of(const Options& options) {
+Provenance provenance_of(const IdentifyArguments& options) {
   Provenance provenance;
   provenance.seed = options.common.seed;
   std::vector<std::string> inputs = options.logs;
@@ -126,7 +126,7 @@ Provenance provenance_of(const Options& options) {
   return provenance;
 }
 
-Result<void> write_results(const OutputFolder& folder, const Options& options, const Identification& found) {
+Result<void> write_results(const OutputFolder& folder, const IdentifyArguments& options, const Identification& found) {
   RobotModel robot{.chain = found.chain};
   if (auto done = write_text_file(folder / "chain.toml", robot_toml(robot)); !done) return done;
   if (auto done = write_text_file(folder / "chain.urdf", urdf(found.chain)); !done) return done;
@@ -135,7 +135,7 @@ Result<void> write_results(const OutputFolder& folder, const Options& options, c
   return write_evidence(folder.path(), identification_json(found, provenance_of(options)));
 }
 
-int run(const Options& options) {
+int run(const IdentifyArguments& options) {
   RunRecord record("identify", options.common);
   for (const std::string& path : options.logs) record.add_input(path);
   if (!options.facts.empty()) record.add_input(options.facts);
@@ -160,7 +160,7 @@ int run(const Options& options) {
   return found->use ? exit_done : exit_do_not_use;
 }
 
-void add_search_options(CLI::App& verb, Options& options) {
+void add_search_options(CLI::App& verb, IdentifyArguments& options) {
   BacterialOptions& b = options.search.bacteria;
   DepthLimits& depth = options.search.depth;
   constexpr int most = 1000000;
@@ -185,7 +185,7 @@ Verb add_identify(CLI::App& app) {
                   "Let the machine rest for a few seconds, move joint after joint, then all together.\nExample:\n"
                   "  kinfer simulate excavator --out drive --grade noise\n"
                   "  kinfer identify drive/imu.csv --out excavator");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<IdentifyArguments>();
   add_texts(*verb, "logs", options->logs, "INS recordings", Need::required, "CSV");
   add_text(*verb, "--out", options->out,
            "Folder for chain.toml, chain.urdf, chain.mjcf, chain_dh.csv, evidence.json, report.html, run.json",

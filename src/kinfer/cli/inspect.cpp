@@ -13,7 +13,7 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct InspectArguments {
   RobotOption robot;
   std::string columns;
   std::vector<std::string> files;
@@ -73,7 +73,7 @@ int inspect_pose_set(const std::string& file, const RobotModel& robot, const Col
   return exit_done;
 }
 
-int run(const Options& options) {
+int run(const InspectArguments& options) {
   if (is_recording(options.files.front()))
     return inspect_recording(options.files, options.allan ? AllanPlot::print : AllanPlot::none);
   if (options.robot.path.empty())
@@ -94,7 +94,7 @@ Verb add_inspect(CLI::App& app) {
   CLI::App* verb =
       add_command(app, "inspect", "What was understood of a file, and what is wrong with it, before any fit",
                   "Example:\n  kinfer inspect poses.csv --robot robot.toml\n  kinfer inspect imu.csv --allan");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InspectArguments>();
   add_robot_option(*verb, options->robot, "--robot", "Robot of a pose set: TOML or URDF", Need::optional);
   add_texts(*verb, "files", options->files, "INS recordings, one a logger, or pose sets with --robot", Need::required,
             "CSV");

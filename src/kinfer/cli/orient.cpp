@@ -11,7 +11,7 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct OrientArguments {
   CommonOptions common;
   std::vector<std::string> logs;
   std::string out, filter = "kinfer", sensor, magnetometer = "auto";
@@ -49,7 +49,7 @@ struct SensorSummary {
   double rest_seconds = 0.0;
 };
 
-nlohmann::ordered_json as_json(const Options& options, const std::vector<SensorSummary>& sensors) {
+nlohmann::ordered_json as_json(const OrientArguments& options, const std::vector<SensorSummary>& sensors) {
   nlohmann::ordered_json out;
   out["filter"] = options.filter;
   for (const SensorSummary& s : sensors)
@@ -58,7 +58,7 @@ nlohmann::ordered_json as_json(const Options& options, const std::vector<SensorS
   return out;
 }
 
-void print_summary(const Options& options, const std::vector<SensorSummary>& sensors) {
+void print_summary(const OrientArguments& options, const std::vector<SensorSummary>& sensors) {
   fmt::print("{}: filter {}\n", options.out, options.filter);
   for (const SensorSummary& s : sensors) {
     fmt::print("  {:<12} {:>8} rows, {}, {:.1f} s of rest\n", s.name, s.rows,
@@ -69,7 +69,7 @@ void print_summary(const Options& options, const std::vector<SensorSummary>& sen
   }
 }
 
-int run(const Options& options) {
+int run(const OrientArguments& options) {
   const auto filter = filter_named(options.filter);
   if (!filter) return fail({fmt::format("--filter {}: no such filter, known are {}", options.filter, filter_names)});
   const FilterOptions how = options.magnetometer == "off" ? without_magnetometer(*filter) : *filter;
@@ -106,7 +106,7 @@ Verb add_orient(CLI::App& app) {
       add_command(app, "orient", "Orientation of each sensor of an INS recording, row by row",
                   "World: x east, y magnetic north, z up. Without magnetometer heading is relative to the start.\n"
                   "Example:\n  kinfer orient imu.csv -o orientation.csv --filter kinfer-offline");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<OrientArguments>();
   add_texts(*verb, "logs", options->logs, "INS recordings, one a logger", Need::required, "CSV");
   add_text(*verb, "-o,--out", options->out,
            "Where to write t, SENSOR_qw, SENSOR_qx, SENSOR_qy, SENSOR_qz (sensor to world)", Need::required, "CSV");

@@ -15,7 +15,7 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct PlanArguments {
   CommonOptions common;
   RobotOption robot;
   std::string out, data, candidates, columns, criterion = "tool", measured = "position", instrument_at;
@@ -51,7 +51,7 @@ Result<Vec3> parse_place(const std::string& text) {
   return 1e-3 * place;
 }
 
-Result<PlanTask> read_task(const Options& options, const RobotModel& robot) {
+Result<PlanTask> read_task(const PlanArguments& options, const RobotModel& robot) {
   PlanTask task;
   task.nominal = robot.chain;
   task.tolerances = robot.tolerances;
@@ -87,7 +87,7 @@ std::string expected_line(const char* what, const ExpectedError& e) {
   return fmt::format("  {:<34} {:>6} {:>12.4f} {:>12.4f}\n", what, e.poses, 1e3 * e.rms, 1e3 * e.worst);
 }
 
-std::string summary(const PosePlan& plan, const Options& options) {
+std::string summary(const PosePlan& plan, const PlanArguments& options) {
   std::string text = fmt::format("{} poses in {}, chosen by {}.\n\n", plan.joints.cols(), options.out, plan.criterion);
   if (plan.joints.cols() < options.poses)
     text += fmt::format("Only {} of {} poses are further than {} deg apart.\n\n", plan.joints.cols(), options.poses,
@@ -138,7 +138,7 @@ std::string headline_json(const PosePlan& plan) {
   return json.dump() + "\n";
 }
 
-int run(const Options& options) {
+int run(const PlanArguments& options) {
   const auto robot = read_robot(options.robot);
   if (!robot) return fail(robot.error());
   const auto task = read_task(options, *robot);
@@ -171,7 +171,7 @@ Verb add_plan(CLI::App& app) {
   CLI::App* verb = add_command(
       app, "plan", "Which poses to measure, so that the calibrated tool errs least",
       "Example:\n  kinfer plan --robot robot.toml --poses 20 -o plan.csv --lowest 100 --instrument-at 2500,0,1200");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlanArguments>();
   add_robot_option(*verb, options->robot, "--robot",
                    "Nominal model, its limits, tolerances and [instrument]: TOML or URDF");
   add_count(*verb, "--poses", options->poses, 1, 1000, "Number of poses to choose");

@@ -12,7 +12,7 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct PredictArguments {
   RobotOption chain;
   std::string joints, out, columns;
   bool quiet = false;
@@ -24,7 +24,7 @@ Result<std::vector<Pose>> predicted_poses(const Chain& chain, const PoseSet& set
   return evaluate_poses(placed.chain, {}, with_approach(placed.data), Derivative::no).pose;
 }
 
-int run(const Options& options) {
+int run(const PredictArguments& options) {
   const auto robot = read_robot(options.chain);
   if (!robot) return fail(robot.error());
   const auto map = read_columns_option(options.columns);
@@ -50,7 +50,7 @@ Verb add_predict(CLI::App& app) {
   CLI::App* verb =
       add_command(app, "predict", "Tool poses of a chain for a list of joint readings",
                   "Example:\n  kinfer predict --chain calibration/chain.toml --joints joints.csv -o poses.csv");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PredictArguments>();
   add_robot_option(*verb, options->chain, "--chain", "Chain: chain.toml, a robot TOML, or URDF");
   add_text(*verb, "--joints", options->joints, "File with the joint columns q1..; other columns may be there",
            Need::required, "CSV");

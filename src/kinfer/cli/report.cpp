@@ -10,7 +10,7 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct ReportArguments {
   std::string folder;
   bool quiet = false;
 };
@@ -20,7 +20,7 @@ Result<void> write_report(const std::filesystem::path& folder, const std::string
   return write_text_file(folder / "report.html", page);
 }
 
-int run(const Options& options) {
+int run(const ReportArguments& options) {
   const std::filesystem::path folder = options.folder;
   const auto evidence = read_text_file(folder / "evidence.json");
   if (!evidence) return fail(evidence.error());
@@ -43,7 +43,7 @@ Verb add_report(CLI::App& app) {
   CLI::App* verb = add_command(app, "report", "Make DIR/report.html again from DIR/evidence.json",
                                "calibrate and identify write the report themselves.\nExample:\n"
                                "  kinfer report calibration");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReportArguments>();
   add_text(*verb, "folder", options->folder, "Folder with evidence.json", Need::required, "DIR");
   add_quiet_option(*verb, options->quiet);
   return {verb, [options] { return run(*options); }};

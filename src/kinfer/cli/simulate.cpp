@@ -19,7 +19,7 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct SimulateArguments {
   CommonOptions common;
   std::string machine, out, base = "still", script = "standard", motion = "stiff", grade = "industrial";
   double slope = 0.0;  // deg
@@ -41,13 +41,13 @@ std::vector<std::string> names_of(const std::map<std::string, Value>& choices) {
   return names;
 }
 
-MachineOptions build_of(const Options& options) {
+MachineOptions build_of(const SimulateArguments& options) {
   return {.mounting = options.arbitrary_mounting ? Mounting::arbitrary : Mounting::as_built,
           .base = bases.at(options.base),
           .slope = Angle::deg(options.slope)};
 }
 
-Result<SensorModel> sensors_of(const Options& options) {
+Result<SensorModel> sensors_of(const SimulateArguments& options) {
   constexpr double g = 9.80665;  // [m/s²]
   SensorModel grade{.name = options.grade, .accelerometer = {}, .gyroscope = {}, .magnetometer = {}};
   if (options.grade != "perfect") {
@@ -59,20 +59,20 @@ Result<SensorModel> sensors_of(const Options& options) {
   return grade;
 }
 
-SensorTrouble trouble_of(const Options& options) {
+SensorTrouble trouble_of(const SimulateArguments& options) {
   SensorTrouble trouble = options.trouble;
   trouble.has_magnetometer = !options.no_magnetometer;
   return trouble;
 }
 
 Result<MachineMotion> move(const MujocoWorld& world, const Machine& machine, const Drive& drive,
-                           const Options& options) {
+                           const SimulateArguments& options) {
   if (options.linkage) return linkage_motion(machine, drive, options.sampling_rate);
   if (options.motion == "prescribed") return world.prescribe(drive, options.sampling_rate);
   return world.drive(drive, options.sampling_rate, options.motion == "soft" ? Servo::soft : Servo::stiff);
 }
 
-void print_summary(const Options& options, const Machine& machine, const MachineMotion& motion) {
+void print_summary(const SimulateArguments& options, const Machine& machine, const MachineMotion& motion) {
   const auto joints = dof(machine.chain) - machine.base_readings;
   const double seconds = static_cast<double>(motion.time.size()) / options.sampling_rate;
   if (options.common.json) {
@@ -89,7 +89,7 @@ void print_summary(const Options& options, const Machine& machine, const Machine
   }
 }
 
-Result<void> simulate(const Options& options) {
+Result<void> simulate(const SimulateArguments& options) {
   const RunRecord run_record("simulate", options.common);
   const Rng rng(options.common.seed);
   KINFER_TRY(mjcf, machine_mjcf(options.machine, build_of(options), rng.stream(1)));
@@ -119,12 +119,12 @@ Result<void> simulate(const Options& options) {
   return {};
 }
 
-int run(const Options& options) {
+int run(const SimulateArguments& options) {
   const auto done = simulate(options);
   return done ? exit_done : fail(done.error());
 }
 
-void add_machine_options(CLI::App& verb, Options& options) {
+void add_machine_options(CLI::App& verb, SimulateArguments& options) {
   add_flag(verb, "--arbitrary-mounting", options.arbitrary_mounting,
            "Sensors anyhow on their segments, joints a little off (excavator-general always is)");
   add_choice(verb, "--base", options.base, names_of(bases),
@@ -134,7 +134,7 @@ void add_machine_options(CLI::App& verb, Options& options) {
   add_number(verb, "--slope", options.slope, 0.0, 45.0, "Slope of the ground [deg]");
 }
 
-void add_motion_options(CLI::App& verb, Options& options) {
+void add_motion_options(CLI::App& verb, SimulateArguments& options) {
   add_choice(verb, "--excitation", options.script, names_of(scripts),
              "standard: 4 s rest, 6 s a joint, 16 s all; sequential: without 'all'; together: 30 s all; gentle and "
              "vigorous: standard at 45 and 180 %; quick: its waves four times as fast");
@@ -144,7 +144,7 @@ void add_motion_options(CLI::App& verb, Options& options) {
   add_number(verb, "--rate", options.sampling_rate, 20.0, 2000.0, "Samples a second [Hz]");
 }
 
-void add_sensor_options(CLI::App& verb, Options& options) {
+void add_sensor_options(CLI::App& verb, SimulateArguments& options) {
   add_text(verb, "--grade", options.grade, "Sensor errors: perfect, noise, industrial, consumer or a data sheet",
            Need::optional, "NAME|TOML");
   add_number(verb, "--missing", options.trouble.missing, 0.0, 0.9, "Fraction of the samples that get lost");
@@ -171,7 +171,7 @@ Verb add_simulate(CLI::App& app) {
       add_command(app, "simulate", "INS log of a simulated machine with known truth, to try things out",
                   "Examples:\n  kinfer simulate excavator --out data\n"
                   "  kinfer simulate crane --excitation gentle --grade consumer --slope 4 --seed 7 --out data");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulateArguments>();
   add_text(*verb, "machine", options->machine, fmt::format("One of {}", fmt::join(machine_names(), ", ")),
            Need::required, "NAME");
   add_text(*verb, "--out", options->out, "Folder for imu.csv, truth.json, motion.csv, machine.xml, run.json",

@@ -11,7 +11,7 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct SimulatePosesArguments {
   CommonOptions common;
   RobotOption robot;
   std::string out, errors, measured = "position";
@@ -25,7 +25,7 @@ struct Options {
   double shake = 0.0;                     // [deg]
 };
 
-PoseSimulation simulation_of(const Options& options, const RobotModel& robot) {
+PoseSimulation simulation_of(const SimulatePosesArguments& options, const RobotModel& robot) {
   PoseSimulation simulation;
   if (robot.instrument) simulation.instrument = *robot.instrument;
   if (options.sigma.given) simulation.instrument.sigma = 1e-3 * options.sigma.value;
@@ -39,12 +39,12 @@ PoseSimulation simulation_of(const Options& options, const RobotModel& robot) {
   return simulation;
 }
 
-Result<Chain> true_chain(const Options& options, const RobotModel& robot, Rng rng) {
+Result<Chain> true_chain(const SimulatePosesArguments& options, const RobotModel& robot, Rng rng) {
   if (options.errors.empty()) return with_random_errors(robot.chain, robot.tolerances, rng);
   return read_robot_errors(options.errors, robot);
 }
 
-int run(const Options& options) {
+int run(const SimulatePosesArguments& options) {
   RunRecord record("simulate-poses", options.common);
   record.add_input(options.robot.path);
   if (!options.errors.empty()) record.add_input(options.errors);
@@ -80,7 +80,7 @@ int run(const Options& options) {
 Verb add_simulate_poses(CLI::App& app) {
   CLI::App* verb = add_command(app, "simulate-poses", "Measured poses of a robot with known errors, to try things out",
                                "Example:\n  kinfer simulate-poses --robot robot.toml --poses 50 --out data");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulatePosesArguments>();
   add_robot_option(*verb, options->robot, "--robot", "Nominal model: TOML or URDF");
   add_text(*verb, "--out", options->out, "Folder for poses.csv, robot.toml, truth.toml", Need::required, "DIR");
   add_count(*verb, "--poses", options->poses, 1, 1000000, "Number of poses");

@@ -14,7 +14,7 @@
 namespace kinfer::cli {
 namespace {
 
-struct Options {
+struct VerifyArguments {
   CommonOptions common;
   RobotOption chain;
   std::string data, columns, against;
@@ -40,7 +40,7 @@ struct ShownChange {
   double factor;
   const char* unit;
 };
-ShownChange shown(Quantity quantity) {
+ShownChange shown_change(Quantity quantity) {
   if (quantity == Quantity::length) return {1e3, "mm"};
   if (quantity == Quantity::angle) return {1.0 / degree, "deg"};
   return {1.0, ""};
@@ -71,7 +71,7 @@ void print(const Changes& changes, const CommonOptions& common) {
   constexpr std::size_t most = 12;
   for (std::size_t i = 0; i < std::min(most, changes.parameters.size()); ++i) {
     const ParameterChange& c = changes.parameters[i];
-    const auto [factor, unit_name] = shown(c.quantity);
+    const auto [factor, unit_name] = shown_change(c.quantity);
     fmt::print("  {:<12} {:>+12.5f} {:>12.5f} {:>+8.1f} {}{}\n", c.name, factor * c.change, factor * c.sd, c.sigmas,
                unit_name, c.significant ? "   changed" : "");
   }
@@ -84,7 +84,7 @@ Result<CalibratedRobot> read_calibrated(const RobotOption& option) {
 }
 
 /// What changed from --chain to --against, by the standard deviations of both.
-int run_comparison(const Options& options) {
+int run_comparison(const VerifyArguments& options) {
   const auto earlier = read_calibrated(options.chain);
   if (!earlier) return fail(earlier.error());
   const auto later = read_calibrated({options.against, {}, {}});
@@ -95,7 +95,7 @@ int run_comparison(const Options& options) {
   return changes->changed ? exit_do_not_use : exit_done;
 }
 
-int run(const Options& options) {
+int run(const VerifyArguments& options) {
   if (!options.against.empty()) return run_comparison(options);
   if (options.data.empty())
     return fail({"verify: expected --data with new measurements, or --against a later chain.toml"});
@@ -118,7 +118,7 @@ Verb add_verify(CLI::App& app) {
                                "Exit code 1: not good any more.\nExample:\n"
                                "  kinfer verify --chain calibration/chain.toml --data today.csv\n"
                                "  kinfer verify --chain may/chain.toml --against june/chain.toml");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<VerifyArguments>();
   add_robot_option(*verb, options->chain, "--chain", "chain.toml of the calibration");
   add_text(*verb, "--data", options->data, "New pose set", Need::optional, "CSV");
   add_text(*verb, "--against", options->against,

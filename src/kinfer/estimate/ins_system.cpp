@@ -10,7 +10,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr std::size_t batch = 16;  // stretches condensed before they are added: bounds the memory
+constexpr std::size_t at_once = 16;  // stretches condensed before they are added: bounds the memory
 
 /// Of the factors of all stretches.
 double bytes_of(const InsProblem& problem, const InsLayout& layout) {
@@ -37,8 +37,8 @@ InsSystem::InsSystem(const InsProblem& problem, const InsLayout& layout, const I
   BorderPrior border{0.0, MatrixXd(border_, border_), VectorXd(border_)};
   if (border_ > 0) border = border_prior(problem, layout, x);
   border.matrix.diagonal() *= 1.0 + damping.border;
-  for (std::size_t first = 0; first < stretches_.size(); first += batch) {
-    const std::size_t count = std::min(batch, stretches_.size() - first);
+  for (std::size_t first = 0; first < stretches_.size(); first += at_once) {
+    const std::size_t count = std::min(at_once, stretches_.size() - first);
     std::vector<Condensed> done(count);
     parallel_for(count, threads_, [&](std::size_t i) { done[i] = condensed(first + i, keep); });
     for (Condensed& stretch : done) {
@@ -172,8 +172,8 @@ InsSystem::Scores InsSystem::scores(double seconds) const {
   const MatrixXd ends_following = ends_.following();
   Scores result{MatrixXd::Zero((problem_.grid.intervals + intervals - 1) / intervals, layout_.border),
                 prior_information(ends_following)};
-  for (std::size_t first = 0; first < stretches_.size(); first += batch) {
-    std::vector<MatrixXd> scores(std::min(batch, stretches_.size() - first));
+  for (std::size_t first = 0; first < stretches_.size(); first += at_once) {
+    std::vector<MatrixXd> scores(std::min(at_once, stretches_.size() - first));
     parallel_for(scores.size(), threads_,
                  [&](std::size_t i) { scores[i] = stretch_scores(first + i, ends_following); });
     for (std::size_t i = 0; i < scores.size(); ++i)

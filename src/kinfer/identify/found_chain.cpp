@@ -37,7 +37,7 @@ std::pair<double, double> distance(const Pivot& a, const Pivot& b) {
   return {std::abs(between.dot(normal)), sd};
 }
 
-double across(const std::array<double, 2>& sd) {
+double sd_across(const std::array<double, 2>& sd) {
   return std::hypot(sd[0], sd[1]) / std::sqrt(2.0);
 }
 
@@ -129,9 +129,9 @@ std::vector<FoundLink> found_links(const std::vector<FoundJoint>& joints) {
     for (const FoundJoint& from : joints) {
       if (from.child != to.parent || !turns(from) || !turns(to)) continue;
       const auto [length, sd] = distance({from.point_in_child, axis_of(from, from.axis_in_child),
-                                          across(from.sd.point_in_child), across(from.sd.axis_in_child)},
+                                          sd_across(from.sd.point_in_child), sd_across(from.sd.axis_in_child)},
                                          {to.point_in_parent, axis_of(to, to.axis_in_parent),
-                                          across(to.sd.point_in_parent), across(to.sd.axis_in_parent)});
+                                          sd_across(to.sd.point_in_parent), sd_across(to.sd.axis_in_parent)});
       links.push_back({from.child, joint_name(from), joint_name(to), length, sd});
     }
   return links;

@@ -10,7 +10,7 @@
 namespace kinfer {
 namespace {
 
-constexpr double nearly_parallel = 0.1;  // sine of the angle between two lines
+constexpr double hardly_crossing = 0.1;  // sine of the angle between two lines
 constexpr double negligible = 1e-9;      // [rad] or [m] of a number that counts as 0 when leaves are merged
 
 /// Unit vectors that all rotations map onto each other, R b = a: the smallest singular direction of [R, -1].
@@ -125,7 +125,7 @@ Pose transform(const DhNumbers& row) {
 DhNumbers row_to_line(const Vec3& point, const Vec3& direction) {
   const double sine = std::hypot(direction.x(), direction.y());
   DhNumbers row;
-  if (sine < nearly_parallel) {  // x towards where the line meets the plane d = 0; then two small turns
+  if (sine < hardly_crossing) {  // x towards where the line meets the plane d = 0; then two small turns
     const Vec3 meets = point - (point.z() / direction.z()) * direction;
     row.a = std::hypot(meets.x(), meets.y());
     row.theta = row.a > negligible ? std::atan2(meets.y(), meets.x()) : 0.0;

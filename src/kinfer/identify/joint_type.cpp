@@ -8,7 +8,7 @@
 namespace kinfer {
 namespace {
 
-constexpr std::size_t judged_rows = 1500;
+constexpr std::size_t type_rows = 1500;
 
 /// Relative motion of child against parent at the judged rows.
 struct Relative {
@@ -19,7 +19,7 @@ struct Relative {
 
 std::vector<std::size_t> chosen_rows(const RecordedMotion& motion) {
   std::vector<std::size_t> rows;
-  const std::size_t stride = std::max<std::size_t>(1, (motion.rows() - motion.first_motion) / judged_rows);
+  const std::size_t stride = std::max<std::size_t>(1, (motion.rows() - motion.first_motion) / type_rows);
   for (std::size_t row = motion.first_motion; row < motion.rows(); row += stride)
     if (motion.usable[row]) rows.push_back(row);
   return rows;

@@ -11,10 +11,6 @@ bool is_signal(AngleKind kind) {
   return kind == AngleKind::signal || kind == AngleKind::offset_signal;
 }
 
-bool has_constant(AngleKind kind) {
-  return kind == AngleKind::constant || kind == AngleKind::offset_signal;
-}
-
 int signal_count(const LinkStructure& structure) {
   int count = 0;
   for (const LeafStructure& leaf : structure.leaves)

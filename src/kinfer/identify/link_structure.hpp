@@ -14,6 +14,11 @@ namespace kinfer {
 /// What one angle of a leaf is.
 enum class AngleKind : std::uint8_t { zero, constant, signal, offset_signal };
 
+/// Whether the angle has a number of its own.
+inline bool has_constant(AngleKind kind) {
+  return kind == AngleKind::constant || kind == AngleKind::offset_signal;
+}
+
 struct LeafStructure {
   AngleKind theta = AngleKind::zero, alpha = AngleKind::zero;
   bool operator==(const LeafStructure&) const = default;

@@ -61,13 +61,13 @@ double misfit(const PairFit& pair) {
   return std::sqrt(std::max(0.0, symmetric_eigen(pair.acceleration).values[1]));
 }
 
-struct Link {
+struct MachineLink {
   std::size_t parent, child;
   double misfit;
 };
 
-std::vector<Link> links_of(const SegmentTree& tree) {
-  std::vector<Link> links;
+std::vector<MachineLink> links_of(const SegmentTree& tree) {
+  std::vector<MachineLink> links;
   for (const std::size_t child : tree.order)
     if (tree.parent[child])
       links.push_back({*tree.parent[child], child, misfit(tree.pair(*tree.parent[child], child))});
@@ -75,10 +75,10 @@ std::vector<Link> links_of(const SegmentTree& tree) {
 }
 
 /// Groups of segments once the links that are no joints are cut, each in the order of the sensors.
-std::vector<std::vector<std::size_t>> groups_of(std::size_t segments, const std::vector<Link>& kept) {
+std::vector<std::vector<std::size_t>> groups_of(std::size_t segments, const std::vector<MachineLink>& kept) {
   std::vector<std::size_t> group(segments);
   std::iota(group.begin(), group.end(), std::size_t{0});
-  for (const Link& link : kept) {
+  for (const MachineLink& link : kept) {
     const std::size_t from = group[link.child], to = group[link.parent];
     std::ranges::replace(group, from, to);
   }
@@ -93,7 +93,7 @@ std::vector<std::vector<std::size_t>> groups_of(std::size_t segments, const std:
 }
 
 /// How many segments the smaller part has if the tree is cut at a link.
-std::size_t smaller_part(const SegmentTree& tree, const Link& link) {
+std::size_t smaller_part(const SegmentTree& tree, const MachineLink& link) {
   std::size_t beyond = 0;
   for (std::size_t s = 0; s < tree.parent.size(); ++s)
     for (std::optional<std::size_t> at = s; at; at = tree.parent[*at])
@@ -104,12 +104,13 @@ std::size_t smaller_part(const SegmentTree& tree, const Link& link) {
   return std::min(beyond, tree.parent.size() - beyond);
 }
 
-bool is_no_joint(const SegmentTree& tree, const Link& link, double usual) {
+bool is_no_joint(const SegmentTree& tree, const MachineLink& link, double usual) {
   const NoJoint& limit = smaller_part(tree, link) >= 3 ? between_machines : between_parts;
   return link.misfit > std::max(limit.residual, limit.factor * usual);
 }
 
-Finding apart(const OrderedMotion& ordered, const Link& cut, const std::vector<std::size_t>& others, double usual) {
+Finding apart(const OrderedMotion& ordered, const MachineLink& cut, const std::vector<std::size_t>& others,
+              double usual) {
   const auto names = names_of(ordered.motion, others);
   const PairFit& pair = ordered.tree.pair(cut.parent, cut.child);
   const std::string link = ordered.motion.segments[cut.parent].name + "-" + ordered.motion.segments[cut.child].name;
@@ -167,16 +168,16 @@ Chosen without_idle(const InsRecording& recording, const SegmentMotionOptions& o
 
 Chosen one_machine(const OrderedMotion& ordered, const std::optional<std::string>& root) {
   const std::size_t segments = ordered.motion.segments.size();
-  const std::vector<Link> links = links_of(ordered.tree);
+  const std::vector<MachineLink> links = links_of(ordered.tree);
   Chosen chosen;
   chosen.sensors.resize(segments);
   std::iota(chosen.sensors.begin(), chosen.sensors.end(), std::size_t{0});
   if (links.size() < 3) return chosen;
   std::vector<double> misfits;
-  for (const Link& link : links) misfits.push_back(link.misfit);
+  for (const MachineLink& link : links) misfits.push_back(link.misfit);
   const double usual = median(misfits);
-  std::vector<Link> kept, cut;
-  for (const Link& link : links) (is_no_joint(ordered.tree, link, usual) ? cut : kept).push_back(link);
+  std::vector<MachineLink> kept, cut;
+  for (const MachineLink& link : links) (is_no_joint(ordered.tree, link, usual) ? cut : kept).push_back(link);
   if (cut.empty()) return chosen;
   const auto groups = groups_of(segments, kept);
   auto best = std::ranges::max_element(groups, {}, [](const auto& group) { return group.size(); });
@@ -189,7 +190,7 @@ Chosen one_machine(const OrderedMotion& ordered, const std::optional<std::string
   };
   for (auto group = groups.begin(); group != groups.end(); ++group) {
     if (group == best) continue;
-    const auto link = std::ranges::min_element(cut, {}, [&](const Link& l) {
+    const auto link = std::ranges::min_element(cut, {}, [&](const MachineLink& l) {
       return is_in(*group, l.parent) || is_in(*group, l.child) ? l.misfit : std::numeric_limits<double>::infinity();
     });
     chosen.findings.push_back(apart(ordered, *link, *group, usual));
@@ -200,8 +201,8 @@ Chosen one_machine(const OrderedMotion& ordered, const std::optional<std::string
 std::vector<Finding> groups_on_the_ground(const OrderedMotion& ordered) {
   const SegmentTree& tree = ordered.tree;
   if (!ordered.motion.segments[tree.root].still) return {};
-  std::vector<Link> within;
-  for (const Link& link : links_of(tree))
+  std::vector<MachineLink> within;
+  for (const MachineLink& link : links_of(tree))
     if (link.parent != tree.root) within.push_back(link);
   std::vector<std::string> groups;
   for (const auto& group : groups_of(ordered.motion.segments.size(), within))

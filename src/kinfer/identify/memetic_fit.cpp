@@ -17,10 +17,6 @@ using Index = Eigen::Index;
 constexpr std::int64_t whole = 8;  // eighths of a pass over all rows
 constexpr Index biases = 6;        // parent's accelerometer, then the child's
 
-bool has_constant(AngleKind kind) {
-  return kind == AngleKind::constant || kind == AngleKind::offset_signal;
-}
-
 /// The leaves' angles that are constants, in order.
 std::vector<double*> constants_of(const LinkStructure& structure, std::vector<DhLeaf>& leaves) {
   std::vector<double*> constants;

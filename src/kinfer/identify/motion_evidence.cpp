@@ -15,11 +15,11 @@ constexpr std::size_t most_bins = 500;    // of a trace: about one for two pixel
 constexpr std::size_t most_frames = 600;  // of the film
 
 /// Three axes of one signal at every row, NaN where the row is not to be used.
-using Axes = std::array<std::vector<double>, 3>;
+using Signals = std::array<std::vector<double>, 3>;
 
 template <class Vector>
-Axes axes_of(const RecordedMotion& motion, Vector vector_at) {
-  Axes axes;
+Signals axes_of(const RecordedMotion& motion, Vector vector_at) {
+  Signals axes;
   for (std::size_t row = 0; row < motion.rows(); ++row) {
     const Vec3 v = motion.usable[row] ? vector_at(row) : Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
     for (Eigen::Index k = 0; k < 3; ++k) axes[static_cast<std::size_t>(k)].push_back(v[k]);
@@ -28,7 +28,7 @@ Axes axes_of(const RecordedMotion& motion, Vector vector_at) {
 }
 
 /// Of the rows that are marked so.
-double rms(const Axes& axes, const std::vector<bool>& marked, bool mark) {
+double rms(const Signals& axes, const std::vector<bool>& marked, bool mark) {
   double sum = 0.0, count = 0.0;
   for (std::size_t row = 0; row < axes[0].size(); ++row) {
     const double square = axes[0][row] * axes[0][row] + axes[1][row] * axes[1][row] + axes[2][row] * axes[2][row];
@@ -49,8 +49,8 @@ template <class Measured, class Predicted>
 Trace trace_of(const RecordedMotion& motion, Trace trace, const std::vector<bool>& unseen, Measured measured,
                Predicted predicted, Predicted foreseen) {
   const Binning bins = binning(motion.rows(), most_bins);
-  const Axes m = axes_of(motion, measured), p = axes_of(motion, predicted);
-  const Axes r = axes_of(motion, [&](std::size_t row) -> Vec3 { return measured(row) - predicted(row); });
+  const Signals m = axes_of(motion, measured), p = axes_of(motion, predicted);
+  const Signals r = axes_of(motion, [&](std::size_t row) -> Vec3 { return measured(row) - predicted(row); });
   for (std::size_t k = 0; k < 3; ++k) {
     trace.measured[k] = envelope(m[k], bins);
     trace.predicted[k] = envelope(p[k], bins);
@@ -65,11 +65,11 @@ Trace trace_of(const RecordedMotion& motion, Trace trace, const std::vector<bool
 }
 
 /// Accelerations and rates of a segment in the ground, one a row.
-struct Prediction {
+struct Foreseen {
   std::vector<Vec3> acceleration, rate;
 };
 
-std::size_t segment_named(const RecordedMotion& motion, const std::string& sensor) {
+std::size_t index_of_segment(const RecordedMotion& motion, const std::string& sensor) {
   return static_cast<std::size_t>(std::ranges::find(motion.segments, sensor, &SegmentMotion::name) -
                                   motion.segments.begin());
 }
@@ -84,9 +84,9 @@ Vec3 along(const Vec3& axis, const Vec3& v) {
   return axis.dot(v) * axis;
 }
 
-Prediction carried_over(const FoundJoint& joint, const SegmentMotion& parent, const SegmentMotion& child,
-                        const Prediction& before) {
-  Prediction result;
+Foreseen carried_over(const FoundJoint& joint, const SegmentMotion& parent, const SegmentMotion& child,
+                      const Foreseen& before) {
+  Foreseen result;
   for (std::size_t row = 0; row < parent.rate.size(); ++row) {
     const Vec3 axis = parent.rotation[row] * joint.axis_in_parent;
     Vec3 acceleration = before.acceleration[row] + of_lever(parent, row, joint.point_in_parent) -
@@ -103,22 +103,22 @@ Prediction carried_over(const FoundJoint& joint, const SegmentMotion& parent, co
   return result;
 }
 
-using Predictions = std::map<std::string, Prediction>;
+using ForeseenMotion = std::map<std::string, Foreseen>;
 
 /// Of every segment that the joints reach.
-Predictions predictions_of(const RecordedMotion& motion, const std::string& root_name,
-                           const std::vector<FoundJoint>& joints) {
-  const SegmentMotion& root = motion.segments[segment_named(motion, root_name)];
-  Predictions predictions{{root_name, {root.acceleration, root.rate}}};
+ForeseenMotion predictions_of(const RecordedMotion& motion, const std::string& root_name,
+                              const std::vector<FoundJoint>& joints) {
+  const SegmentMotion& root = motion.segments[index_of_segment(motion, root_name)];
+  ForeseenMotion predictions{{root_name, {root.acceleration, root.rate}}};
   for (const FoundJoint& joint : joints)
     predictions[joint.child] =
-        carried_over(joint, motion.segments[segment_named(motion, joint.parent)],
-                     motion.segments[segment_named(motion, joint.child)], predictions.at(joint.parent));
+        carried_over(joint, motion.segments[index_of_segment(motion, joint.parent)],
+                     motion.segments[index_of_segment(motion, joint.child)], predictions.at(joint.parent));
   return predictions;
 }
 
 void add_traces(MotionEvidence& evidence, const RecordedMotion& motion, const SegmentMotion& segment,
-                const std::vector<bool>& unseen, const Prediction& prediction, const Prediction& unseeing) {
+                const std::vector<bool>& unseen, const Foreseen& prediction, const Foreseen& unseeing) {
   const auto add = [&](const char* quantity, const char* unit, const std::vector<Vec3>& measured,
                        const std::vector<Vec3>& predicted, const std::vector<Vec3>& foreseen) {
     const auto of = [](const std::vector<Vec3>& rows) {
@@ -187,7 +187,7 @@ Playback playback_of(const RecordedMotion& motion, const Identification& found) 
   const std::vector<Pose> home = joint_frames(found.chain, VectorXd::Zero(dof(found.chain)));
   Playback film;
   film.q = MatrixXd::Zero(dof(found.chain), static_cast<Eigen::Index>(bins.count()));
-  const SegmentMotion& root = motion.segments[segment_named(motion, found.root)];
+  const SegmentMotion& root = motion.segments[index_of_segment(motion, found.root)];
   film.time = film_times(motion);
   for (std::size_t row = 0; row < motion.rows(); row += bins.size) {
     const Quat r(root.rotation[row]);
@@ -207,8 +207,8 @@ Playback playback_of(const RecordedMotion& motion, const Identification& found) 
     const int parent = frame_named(found.chain, joint->parent), child = frame_named(found.chain, joint->child);
     const Mat3 parent_home = parent < 0 ? found.chain.base.pose().rotation : home[parent].rotation;
     play_joint(film.q, static_cast<Eigen::Index>(k), *joint, parent_home.transpose() * home[child].rotation,
-               motion.segments[segment_named(motion, joint->parent)],
-               motion.segments[segment_named(motion, joint->child)], bins.size);
+               motion.segments[index_of_segment(motion, joint->parent)],
+               motion.segments[index_of_segment(motion, joint->child)], bins.size);
   }
   return film;
 }
@@ -227,10 +227,10 @@ MotionEvidence motion_evidence(const RecordedMotion& motion, const Identificatio
   evidence.time = middles(motion.time, binning(motion.rows(), most_bins));
   evidence.held_out = held.windows;
   const std::vector<bool> unseen = rows_in(motion.time, held.windows);
-  const Predictions seen = predictions_of(motion, found.root, found.joints),
-                    foreseen = predictions_of(motion, found.root, held.windows.empty() ? found.joints : held.joints);
+  const ForeseenMotion seen = predictions_of(motion, found.root, found.joints),
+                       foreseen = predictions_of(motion, found.root, held.windows.empty() ? found.joints : held.joints);
   for (const FoundJoint& joint : found.joints)
-    add_traces(evidence, motion, motion.segments[segment_named(motion, joint.child)], unseen, seen.at(joint.child),
+    add_traces(evidence, motion, motion.segments[index_of_segment(motion, joint.child)], unseen, seen.at(joint.child),
                foreseen.at(joint.child));
   evidence.playback = playback_of(motion, found);
   return evidence;

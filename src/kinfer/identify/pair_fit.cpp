@@ -11,10 +11,10 @@
 namespace kinfer {
 namespace {
 
-constexpr std::size_t windows = 8;             // of equal length, within which the heading counts as constant
+constexpr std::size_t heading_windows = 8;     // of equal length, within which the heading counts as constant
 constexpr int heading_starts = 24;             // around the circle
 constexpr int whitenings = 2;                  // passes in which the residual's covariance weighs it
-constexpr double gravity = 9.81;               // [m/s²] any value near it will do: it turns with the grounds only
+constexpr double usual_gravity = 9.81;         // [m/s²] any value near it will do: it turns with the grounds only
 constexpr double samples_of_one_fact = 300.0;  // rows: orientations err slowly, so few rows tell anything new
 
 using Vec2 = Eigen::Vector2d;
@@ -28,7 +28,7 @@ Row7 point_effect(const SegmentMotion& m, std::size_t row) {
   const Mat3 rate = skew(m.rate[row]);
   Row7 effect;
   effect << (skew(m.rate_change[row]) + rate * rate) * m.rotation[row], m.rotation[row],
-      m.acceleration[row] + gravity * Vec3::UnitZ();
+      m.acceleration[row] + usual_gravity * Vec3::UnitZ();
   return effect;
 }
 
@@ -154,7 +154,7 @@ class PairProblem {
 
   std::size_t window_of(std::size_t row) const {
     const double share = (motion_.time[row] - begin_) / std::max(end_ - begin_, 1e-9);
-    return std::min(windows - 1, static_cast<std::size_t>(share * static_cast<double>(windows)));
+    return std::min(heading_windows - 1, static_cast<std::size_t>(share * static_cast<double>(heading_windows)));
   }
 
   void add(std::size_t row) {
@@ -206,7 +206,7 @@ class PairProblem {
   const PairFitOptions& options_;
   double begin_ = 0.0, end_ = 0.0;
   Mat7 of_first_ = Mat7::Zero(), of_second_ = Mat7::Zero();
-  std::array<Window, windows> windows_;
+  std::array<Window, heading_windows> windows_;
 };
 
 /// Best of a coarse circle of headings, then by halving steps in angle, drift and tilt.
@@ -225,7 +225,8 @@ GroundTurn best_turn(const PairProblem& problem) {
   for (int k = 1; k < heading_starts; ++k) try_turn(k * coarse, 0.0, Vec2::Zero());
   for (double step = 0.5 * coarse; step > finest;) {
     const double drift_step = 0.01 * step, tilt_step = 0.1 * step;  // [rad/s] of a log of minutes; [rad]
-    const auto [heading, tilt] = best;
+    const auto heading = best.heading;
+    const Vec2 tilt = best.tilt;
     const auto try_tilt = [&](const Vec2& by) { return try_turn(heading.angle, heading.drift, tilt + tilt_step * by); };
     const bool better = try_turn(heading.angle + step, heading.drift, tilt) ||
                         try_turn(heading.angle - step, heading.drift, tilt) ||

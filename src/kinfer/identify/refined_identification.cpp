@@ -17,14 +17,14 @@ std::size_t segment_named(const RecordedMotion& motion, const std::string& name)
   return static_cast<std::size_t>(found - motion.segments.begin());
 }
 
-constexpr double misfit = 3.0;  // times its own noise that a sensor leaves unexplained
+constexpr double sensor_misfit = 3.0;  // times its own noise that a sensor leaves unexplained
 
 /// A sentence for each sensor that the chain does not explain.
 void say_misfits(std::vector<std::string>& notes, const Refinement& refined, const RecordedMotion& motion) {
   for (std::size_t s = 0; s < refined.noise.size(); ++s) {
     const double force = refined.noise[s].force / refined.least[s].force,
                  rate = refined.noise[s].rate / refined.least[s].rate;
-    if (std::max(force, rate) < misfit) continue;
+    if (std::max(force, rate) < sensor_misfit) continue;
     notes.push_back(fmt::format(
         "the chain leaves {:.1f} times its noise of the specific force of {} unexplained ({:.3f} m/s²) and "
         "{:.1f} times of its rate: a soft mount, a play in a joint, a loop, a sensor that was remounted, or "

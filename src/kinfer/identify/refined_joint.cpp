@@ -10,7 +10,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double unknown_length = 0.3;  // [m] sd of a point beyond which a direction counts as not known
+constexpr double unknown_reach = 0.3;  // [m] sd of a point beyond which a direction counts as not known
 
 /// The two directions across an axis that standard deviations are stated for.
 std::array<Vec3, 2> across(const Vec3& axis) {
@@ -48,7 +48,7 @@ std::vector<Vec3> long_directions(const Mat3& covariance) {
   const SymmetricEigen eigen = symmetric_eigen(covariance);
   std::vector<Vec3> directions;
   for (Index i = 0; i < 3; ++i)
-    if (eigen.values[i] > unknown_length * unknown_length) directions.push_back(eigen.vectors.col(i));
+    if (eigen.values[i] > unknown_reach * unknown_reach) directions.push_back(eigen.vectors.col(i));
   return directions;
 }
 

@@ -15,8 +15,8 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr std::size_t judged_rows = 900, splits = 24, finer = 9;
-constexpr double moving = 0.05;          // [rad/s] rate of a row that tells something
+constexpr std::size_t remount_rows = 900, splits = 24, finer = 9;
+constexpr double telling_rate = 0.05;    // [rad/s] rate of a row that tells something
 constexpr std::size_t least_rows = 100;  // on either side
 constexpr double gravity = 9.81;         // [m/s²] as the motion's accelerations are freed of
 
@@ -205,9 +205,9 @@ std::vector<std::size_t> telling_rows(const RecordedMotion& motion) {
   std::vector<std::size_t> rows, chosen;
   for (std::size_t i = motion.first_motion; i < motion.rows(); ++i)
     if (motion.usable[i] &&
-        std::ranges::any_of(motion.segments, [&](const SegmentMotion& m) { return m.rate[i].norm() > moving; }))
+        std::ranges::any_of(motion.segments, [&](const SegmentMotion& m) { return m.rate[i].norm() > telling_rate; }))
       rows.push_back(i);
-  const std::size_t stride = std::max<std::size_t>(1, rows.size() / judged_rows);
+  const std::size_t stride = std::max<std::size_t>(1, rows.size() / remount_rows);
   for (std::size_t i = 0; i < rows.size(); i += stride) chosen.push_back(rows[i]);
   return chosen;
 }

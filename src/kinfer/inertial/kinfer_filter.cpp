@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/base/square.hpp"
+
 namespace kinfer {
 namespace {
 
@@ -28,10 +30,6 @@ Quat tilt_of(const Vec3& acceleration) {
 /// Angle by which the world must be turned about up so that the field points north.
 double turn_to_north(const Vec3& field_world) {
   return std::atan2(field_world.x(), field_world.y());
-}
-
-double square(double x) {
-  return x * x;
 }
 
 }  // namespace

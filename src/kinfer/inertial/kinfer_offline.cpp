@@ -7,7 +7,7 @@
 namespace kinfer {
 namespace {
 
-constexpr int states = kinfer_states, constants = 12, first_constant = 5;
+constexpr int states = kinfer_states, offline_constants = 12, first_constant = 5;
 constexpr int packed_size = states * (states + 1) / 2;
 
 /// One update period of the forward pass.
@@ -85,7 +85,7 @@ KinferBelief smoothed_begin(const Step& step, const KinferBelief& end) {
   const auto weighted = solve_positive(unpacked(step.covariance), error);
   KinferVector e = error;
   if (weighted) e -= step.transition.noise.cwiseProduct(*weighted);
-  const Vec3 rotation = e.head<3>() - step.transition.by_constants * e.segment<constants>(first_constant);
+  const Vec3 rotation = e.head<3>() - step.transition.by_constants * e.segment<offline_constants>(first_constant);
   e.head<3>() = rotation;
   e[3] -= step.transition.lift * rotation.y();
   e[4] += step.transition.lift * rotation.x();

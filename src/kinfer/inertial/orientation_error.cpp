@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/base/square.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
@@ -12,10 +13,6 @@ namespace {
 
 bool usable(const Quat& truth, char counts) {
   return counts != 0 && truth.coeffs().allFinite();
-}
-
-double square(double x) {
-  return x * x;
 }
 
 double heading_of(const Quat& e) {
@@ -40,7 +37,7 @@ double best_heading_offset(std::span<const Quat> estimate, std::span<const Quat>
 }
 
 /// The mean rotation: the quaternion with the largest sum of squared projections (Markley et al. 2007).
-Quat mean_rotation(const std::vector<Quat>& rotations) {
+Quat mean_quaternion(const std::vector<Quat>& rotations) {
   MatrixXd sum = MatrixXd::Zero(4, 4);
   for (const Quat& q : rotations) sum += q.coeffs() * q.coeffs().transpose();
   Quat mean;
@@ -111,10 +108,10 @@ double aligned_error(std::span<const Quat> estimate, std::span<const Quat> truth
     for (int round = 0; round < rounds; ++round) {
       for (std::size_t k = 0; k < rows.size(); ++k)
         rotations[k] = truth[rows[k]] * right.conjugate() * estimate[rows[k]].conjugate();
-      left = mean_rotation(rotations);
+      left = mean_quaternion(rotations);
       for (std::size_t k = 0; k < rows.size(); ++k)
         rotations[k] = (left * estimate[rows[k]]).conjugate() * truth[rows[k]];
-      right = mean_rotation(rotations);
+      right = mean_quaternion(rotations);
     }
     best = std::min(best, rms_angle(estimate, truth, left, right));
   }

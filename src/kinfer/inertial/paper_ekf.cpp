@@ -2,14 +2,11 @@
 
 #include <cmath>
 
+#include "kinfer/base/square.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
 namespace {
-
-double square(double x) {
-  return x * x;
-}
 
 constexpr double unknown = 1e6;  // variance of a reading that was not taken, in units of its square
 

@@ -7,19 +7,13 @@
 #include <limits>
 #include <set>
 
+#include "kinfer/io/blanks.hpp"
 #include "kinfer/io/units.hpp"
 
 namespace kinfer {
 namespace {
 
 constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
-constexpr std::string_view blanks = " \t\r";
-
-std::string_view trimmed(std::string_view text) {
-  const auto begin = text.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
 
 /// The lines of a text without their ends, and where the next one begins.
 class Lines {

@@ -1,20 +1,15 @@
 #include "kinfer/io/evidence_json.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "kinfer/base/version.hpp"
 #include "kinfer/io/findings_json.hpp"
+#include "kinfer/io/json_parts.hpp"
 #include "kinfer/io/picture_json.hpp"
 
 namespace kinfer {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json finite(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 Json array_of(const VectorXd& values) {
   return std::vector<double>(values.begin(), values.end());
@@ -63,9 +58,9 @@ Json rows_json(const std::vector<RowErrors>& rows) {
   Json row = Json::array(), before = Json::array(), after = Json::array(), fitted = Json::array(), held = Json::array();
   for (const RowErrors& r : rows) {
     row.push_back(r.row);
-    before.push_back(finite(r.before));
-    after.push_back(finite(r.after));
-    fitted.push_back(finite(r.fitted));
+    before.push_back(finite_json(r.before));
+    after.push_back(finite_json(r.after));
+    fitted.push_back(finite_json(r.fitted));
     held.push_back(r.held_out);
   }
   return {{"row", row}, {"before", before}, {"after", after}, {"fitted", fitted}, {"held_out", held}};
@@ -100,18 +95,11 @@ Json search_json(const Search& search) {
             {"evaluations", search.evaluations},
             {"stop", name(search.stop)},
             {"stop_words", sentence(search.stop)},
-            {"cost", finite(search.cost)},
+            {"cost", finite_json(search.cost)},
             {"best", search.best},
             {"median", search.median}};
   if (!search.side_by_side.empty()) json["side_by_side"] = side_by_side_json(search.side_by_side);
   return json;
-}
-
-Json provenance_json(const Provenance& provenance) {
-  Json inputs = Json::array(), options = Json::object();
-  for (const InputFile& input : provenance.inputs) inputs.push_back({{"name", input.name}, {"sha256", input.sha256}});
-  for (const auto& [key, value] : provenance.options) options[key] = value;
-  return {{"version", version}, {"seed", provenance.seed}, {"options", options}, {"inputs", inputs}};
 }
 
 /// Where no ladder was climbed, the model that was fitted is its only rung.

@@ -1,35 +1,31 @@
 #include "kinfer/io/frames_json.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "kinfer/geometry/rotation.hpp"
+#include "kinfer/io/json_parts.hpp"
 
 namespace kinfer {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json json_of(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-Json finite(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
+using kinfer::json_of;  // besides those below
 
 Json json_of(const SweepCircle& c) {
-  return {
-      {"name", c.name},
-      {"joint", c.joint},
-      {"rows", c.rows},
-      {"swept_rad", c.swept},
-      {"centre", json_of(c.centre)},
-      {"axis", json_of(c.axis)},
-      {"radius", c.radius},
-      {"rms", c.rms},
-      {"sd", {{"centre_m", finite(c.centre_sd)}, {"axis_rad", finite(c.axis_sd)}, {"radius_m", finite(c.radius_sd)}}},
-      {"off_by", c.off_by},
-      {"turned_by", c.turned_by}};
+  return {{"name", c.name},
+          {"joint", c.joint},
+          {"rows", c.rows},
+          {"swept_rad", c.swept},
+          {"centre", json_of(c.centre)},
+          {"axis", json_of(c.axis)},
+          {"radius", c.radius},
+          {"rms", c.rms},
+          {"sd",
+           {{"centre_m", finite_json(c.centre_sd)},
+            {"axis_rad", finite_json(c.axis_sd)},
+            {"radius_m", finite_json(c.radius_sd)}}},
+          {"off_by", c.off_by},
+          {"turned_by", c.turned_by}};
 }
 
 Json json_of(const Frame& frame) {

@@ -2,18 +2,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "kinfer/base/version.hpp"
 #include "kinfer/io/findings_json.hpp"
+#include "kinfer/io/json_parts.hpp"
 #include "kinfer/io/picture_json.hpp"
 
 namespace kinfer {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json json_of(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
+using kinfer::json_of;  // besides those below
 
 Json json_of(const std::vector<Vec3>& vectors) {
   Json list = Json::array();
@@ -157,13 +154,6 @@ Json search_json(const Identification& found) {
   }
   return {{"engine", found.engine}, {"evaluations", evaluations}, {"generations", generations},
           {"best", best},           {"median", median},           {"segments", segments}};
-}
-
-Json provenance_json(const Provenance& provenance) {
-  Json inputs = Json::array(), options = Json::object();
-  for (const InputFile& input : provenance.inputs) inputs.push_back({{"name", input.name}, {"sha256", input.sha256}});
-  for (const auto& [key, value] : provenance.options) options[key] = value;
-  return {{"version", version}, {"seed", provenance.seed}, {"options", options}, {"inputs", inputs}};
 }
 
 }  // namespace

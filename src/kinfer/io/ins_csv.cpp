@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "kinfer/io/blanks.hpp"
 #include "kinfer/io/csv.hpp"
 #include "kinfer/io/ins_columns.hpp"
 #include "kinfer/io/mapped_file.hpp"
@@ -16,16 +17,9 @@ namespace kinfer {
 namespace {
 
 constexpr double not_said = std::numeric_limits<double>::quiet_NaN();
-constexpr std::string_view blanks = " \t\r";
 
 /// Called with the offset of the line that is read next, so that the caller can let go of what lies before.
 using Watcher = std::function<void(std::size_t)>;
-
-std::string_view trimmed(std::string_view text) {
-  const auto begin = text.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
 
 /// Reads the body of one file into the columns of its sensors.
 class Body {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "kinfer/io/json_parts.hpp"
 #include "kinfer/kinematics/elementary.hpp"
 #include "kinfer/kinematics/forward.hpp"
 
@@ -11,6 +12,7 @@ namespace kinfer {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using kinfer::json_of;  // besides those below
 
 /// Rounded to seven decimals; null where not finite.
 Json short_number(double value) {
@@ -40,10 +42,6 @@ Json short_numbers(const List& values) {
   Json list = Json::array();
   for (const double value : values) list.push_back(short_number(value));
   return list;
-}
-
-Json json_of(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
 }
 
 Json json_of(const Pose& pose) {

@@ -6,12 +6,12 @@
 namespace kinfer {
 namespace {
 
-struct Scales {
+struct ErrorUnits {
   double length = 1.0, angle = 1.0;
 };
 
-Scales read_units(TableReader& root, Complaint& complaint) {
-  Scales scales;
+ErrorUnits read_units(TableReader& root, Complaint& complaint) {
+  ErrorUnits scales;
   const TomlTable* units = root.table_or_none("units");
   if (!units) return scales;
   TableReader reader(*units, root.line_of("units"), "units: ", complaint);
@@ -27,7 +27,7 @@ Scales read_units(TableReader& root, Complaint& complaint) {
   return scales;
 }
 
-double in_si(Quantity quantity, const Scales& scales) {
+double in_si(Quantity quantity, const ErrorUnits& scales) {
   if (quantity == Quantity::length) return scales.length;
   return quantity == Quantity::angle ? scales.angle : 1.0;
 }
@@ -40,7 +40,7 @@ Result<Chain> read_robot_errors(const std::filesystem::path& path, const RobotMo
   KINFER_TRY(table, parse_toml(text, name));
   Complaint complaint(name);
   TableReader root(table, 1, "", complaint);
-  const Scales scales = read_units(root, complaint);
+  const ErrorUnits scales = read_units(root, complaint);
   const TomlTable* errors = root.table_or_none("errors");
   root.expect_no_other_keys();
   if (!errors && !complaint.any())

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/io/blanks.hpp"
 
 namespace kinfer {
 namespace {
@@ -13,6 +14,7 @@ struct NamedUnit {
 };
 
 constexpr double standard_gravity = 9.80665;  // [m/s²]
+constexpr std::string_view line_blanks = " \t\r\n";
 
 constexpr std::array named_units{
     NamedUnit{"m", {Dimension::length, 1.0}},
@@ -55,13 +57,6 @@ constexpr std::array named_units{
     NamedUnit{"1", {Dimension::one, 1.0}},
 };
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r\n";
-  const auto begin = text.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
-
 }  // namespace
 
 std::optional<Unit> find_unit(std::string_view text) {
@@ -103,10 +98,11 @@ std::string_view describe(Dimension dimension) {
 }
 
 Header split_header(std::string_view header) {
-  const std::string_view text = trimmed(header);
+  const std::string_view text = trimmed(header, line_blanks);
   const auto open = text.rfind('[');
   if (open == std::string_view::npos || text.back() != ']') return {text, {}, false};
-  return {trimmed(text.substr(0, open)), trimmed(text.substr(open + 1, text.size() - open - 2)), true};
+  return {trimmed(text.substr(0, open), line_blanks),
+          trimmed(text.substr(open + 1, text.size() - open - 2), line_blanks), true};
 }
 
 }  // namespace kinfer
