@@ -38,10 +38,19 @@ JointReading joint_reading(const InsLayout& layout, const InsUnknowns& x, std::s
   return q;
 }
 
-constexpr Index orders = 3;  // derivatives by time of a channel that states depend on
+constexpr Index orders = channel_orders;
 
 Index size(const std::vector<Index>& unknowns) {
   return static_cast<Index>(unknowns.size());
+}
+
+/// Some components at one node, of the first rows.
+template <class Matrix>
+auto at_node(Matrix& derivatives, Index rows, Index first, Index components, Index node) {
+  using Plain = std::conditional_t<std::is_const_v<Matrix>, const MatrixXd, MatrixXd>;
+  return Eigen::Map<Plain, 0, Eigen::OuterStride<>>(
+      derivatives.data() + (first * block_nodes + node) * derivatives.rows(), rows, components,
+      Eigen::OuterStride<>(block_nodes * derivatives.rows()));
 }
 
 }  // namespace
@@ -90,9 +99,9 @@ IntervalMotion::IntervalMotion(const InsProblem& problem, const InsLayout& layou
   for (InsPath& path : paths_) {
     if (scope == InsScope::band) path.turning.clear(), path.shifting.clear();
     bodies_.push_back({.state = {},
-                       .band = MatrixXd::Zero(block_nodes * orders * size(path.channels), 12),
-                       .turning = MatrixXd::Zero(block_nodes * size(path.turning), 12),
-                       .shifting = MatrixXd::Zero(block_nodes * size(path.shifting), 3)});
+                       .band = MatrixXd::Zero(orders * size(path.channels), 12 * block_nodes),
+                       .turning = MatrixXd::Zero(size(path.turning), 12 * block_nodes),
+                       .shifting = MatrixXd::Zero(size(path.shifting), 3 * block_nodes)});
   }
   start_root();
 }
@@ -100,16 +109,16 @@ IntervalMotion::IntervalMotion(const InsProblem& problem, const InsLayout& layou
 /// Its derivatives are the same everywhere.
 void IntervalMotion::start_root() {
   BodyMotion& root = bodies_.front();
-  for (Index node = 0; node < block_nodes; ++node) {
-    if (!problem_.root_stands_still) {
-      const Index value = 6 * orders * node, change = value + 6;
-      root.band.block<3, 3>(value, 0).setIdentity();
-      root.band.block<3, 3>(change, 3).setIdentity();
-      root.band.block<3, 3>(value + 3, 6).setIdentity();
+  for (Index node = 0; node < block_nodes; ++node)
+    for (Index i = 0; i < 3; ++i) {
+      const auto column = [&](Index component) { return component * block_nodes + node; };
+      if (!problem_.root_stands_still) {
+        root.band(orders * i, column(i)) = root.band(orders * i + 1, column(3 + i)) = 1.0;
+        root.band(orders * (3 + i), column(6 + i)) = 1.0;
+      }
+      if (root.shifting.size() > 0) root.shifting(i, column(i)) = 1.0;
+      if (root.turning.size() > 0) root.turning(i, column(9 + i)) = 1.0;
     }
-    if (root.shifting.size() > 0) root.shifting.middleRows<3>(3 * node).setIdentity();
-    if (root.turning.size() > 0) root.turning.block<3, 3>(3 * node, 9).setIdentity();
-  }
 }
 
 void IntervalMotion::go_to(Index interval) {
@@ -132,40 +141,33 @@ void IntervalMotion::go_to(Index interval) {
 
 /// What reached the parent reaches the body.
 void IntervalMotion::carry_on(std::size_t b, Index node) {
-  const auto p = static_cast<std::size_t>(x_.bodies[b].parent);
-  const BodyMotion& parent = bodies_[p];
+  const BodyMotion& parent = bodies_[static_cast<std::size_t>(x_.bodies[b].parent)];
   BodyMotion& body = bodies_[b];
   const Eigen::Matrix<double, 12, 12>& by = carried_[b].by_parent;
-  const auto carry_rows = [&](const MatrixXd& from, MatrixXd& to, Index piece, Index count, Index own_count) {
-    const auto rows = from.middleRows(piece * count, count);
-    auto carried = to.middleRows(piece * own_count, count);
-    add_product(rows.leftCols(9), by.topLeftCorner<9, 9>(), 1.0, carried.leftCols(9));
-    if (layout_.has_field) add_product(rows.rightCols(3), by.bottomRightCorner<3, 3>(), 1.0, carried.rightCols(3));
+  const auto carry = [&](const MatrixXd& from, MatrixXd& to, Index first, const auto& by_components) {
+    const Index rows = from.rows(), components = by_components.cols();
+    add_product(at_node(from, rows, first, components, node), by_components, 1.0,
+                at_node(to, rows, first, components, node));
   };
-  for (Index order = 0; order < orders; ++order)
-    carry_rows(parent.band, body.band, orders * node + order, size(paths_[p].channels), size(paths_[b].channels));
-  carry_rows(parent.turning, body.turning, node, size(paths_[p].turning), size(paths_[b].turning));
-  const Index count = size(paths_[p].shifting), own_count = size(paths_[b].shifting);
-  add_product(parent.shifting.middleRows(node * count, count), by.block<3, 3>(6, 6), 1.0,
-              body.shifting.middleRows(node * own_count, count));
+  carry(parent.band, body.band, 0, by.topLeftCorner<9, 9>());
+  carry(parent.turning, body.turning, 0, by.topLeftCorner<9, 9>());
+  carry(parent.shifting, body.shifting, 0, by.block<3, 3>(6, 6));
+  if (!layout_.has_field) return;
+  carry(parent.band, body.band, 9, by.bottomRightCorner<3, 3>());
+  carry(parent.turning, body.turning, 9, by.bottomRightCorner<3, 3>());
 }
 
 /// The joint's readings and what holds for good of it stand behind what reached the parent.
 void IntervalMotion::put_own(std::size_t b, Index node) {
   const StateColumns& own = carried_[b].by_own;
-  const InsPath& path = paths_[b];
   BodyMotion& body = bodies_[b];
-  const Index free = freedoms(x_.bodies[b].motion), turns = x_.bodies[b].turns();
-  for (Index order = 0; order < orders; ++order)
-    for (Index i = 0; i < free; ++i)
-      body.band.row((orders * node + order + 1) * size(path.channels) - free + i) =
-          own.col(orders * i + order).transpose();
+  const Index read = orders * freedoms(x_.bodies[b].motion), turns = x_.bodies[b].turns(),
+              points = x_.bodies[b].unknowns() - turns;
+  at_node(body.band, body.band.rows(), 0, 12, node).bottomRows(read) = own.leftCols(read).transpose();
   if (scope_ == InsScope::band) return;
-  const Index points = x_.bodies[b].unknowns() - turns;
-  body.turning.middleRows((node + 1) * size(path.turning) - turns, turns) =
-      own.middleCols(orders * free, turns).transpose();
-  body.shifting.middleRows((node + 1) * size(path.shifting) - points, points) =
-      own.middleCols(orders * free + turns, points).middleRows<3>(6).transpose();
+  at_node(body.turning, body.turning.rows(), 0, 12, node).bottomRows(turns) = own.middleCols(read, turns).transpose();
+  at_node(body.shifting, body.shifting.rows(), 0, 3, node).bottomRows(points) =
+      own.middleRows<3>(6).rightCols(points).transpose();
 }
 
 }  // namespace kinfer

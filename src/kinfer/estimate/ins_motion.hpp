@@ -21,12 +21,15 @@ std::array<SplineBasis, block_nodes> node_bases(const SplineGrid& grid);
 std::vector<InsState> body_states(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
                                   Eigen::Index interval, const SplineBasis& basis);
 
-/// One body's states at the nodes and how they follow the unknowns of its path.
+constexpr Eigen::Index channel_orders = 3;  // derivatives by time of a channel, 0 .. 2, that states depend on
+
+/// One body's states at the nodes and how they follow the unknowns of its path. Column component·nodes + node of the
+/// derivatives is that of a state's component (as StateColumns has them) at a node.
 struct BodyMotion {
   std::array<InsState, block_nodes> state;
-  MatrixXd band;      ///< (node, derivative 0 .. 2 by time, channel) x 12: by these derivatives of the channels
-  MatrixXd turning;   ///< (node, unknown) x 12
-  MatrixXd shifting;  ///< (node, unknown) x 3: of the force
+  MatrixXd band;      ///< channels·orders x 12·nodes: by each channel's derivatives by time
+  MatrixXd turning;   ///< unknowns x 12·nodes
+  MatrixXd shifting;  ///< unknowns x 3·nodes: of the force
 };
 
 /// What a linearisation is asked for.

@@ -10,7 +10,6 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr Index orders = 3;  // derivatives by time of a channel that states depend on
 constexpr Index rate_row = 0, force_row = 6;
 
 Index size(const std::vector<Index>& unknowns) {
@@ -65,9 +64,6 @@ SensorSystem::SensorSystem(const InsProblem& problem, const InsLayout& layout, c
     part.jacobian.resize(size(part.band) + size(part.border), 3 * block_nodes * instruments);
     part.residual.resize(part.jacobian.cols());
   }
-  shown_band_.resize(motion.body(body).band.rows(), 3);
-  shown_turning_.resize(motion.body(body).turning.rows(), 3);
-  shown_shifting_.resize(motion.body(body).shifting.rows(), 3);
 }
 
 SensorSystem::Use SensorSystem::use_of(const InstrumentUse& instrument) {
@@ -107,10 +103,16 @@ void SensorSystem::add_rows(const Use& use, Index interval) {
   const NodeMatrix factor = shifted_factor(block, layout_, clock_shift(problem_, layout_, errors_, interval));
   const BlockResidual r = residual(block, factor, predicted, use.instrument.sd);
   const double weight = std::sqrt(robust(r.squaredNorm(), 3.0 * block.rows).weight), scale = weight / use.instrument.sd;
-  const Weighed weighed{use, scale * factor, part.used, block.rows};
-  part.jacobian.middleCols(part.used, 3 * block.rows).setZero();
-  put_path(weighed);
+  Weighed weighed{use, scale * factor, {}, part.used, block.rows};
+  weighed.by_truth.fill(scaled(use));
+  if (layout_.has_tilts)
+    for (std::size_t n = 0; n < block_nodes; ++n) weighed.by_truth[n] *= felt_[n].turn;
+  put_band(weighed);
   if (scope_ == InsScope::everything) {
+    part.jacobian.block(size(part.band), part.used, size(part.border), 3 * block.rows).setZero();
+    const BodyMotion& body = motion_.body(body_);
+    put_border(weighed, body.turning.middleCols(use.instrument.state_row * block_nodes, 3 * block_nodes), part.turning);
+    if (use.instrument.state_row == force_row) put_border(weighed, body.shifting, part.shifting);
     put_errors(weighed);
     if (layout_.has_clocks)
       put_clock(weighed, scale * block.factor.cast<double>() * (node_derivative() * predicted), interval);
@@ -126,51 +128,54 @@ Mat3 SensorSystem::scaled(const Use& use) const {
   return use.instrument.state_row == force_row ? Mat3(one + errors_.force_matrix) : one;
 }
 
-/// Derivatives of what the instrument shows at the nodes, from those of its segment's state: columns `row` .. of
-/// `truth`, a quarter of the rows for each node.
-Eigen::Ref<const MatrixXd> SensorSystem::shown(const Use& use, const MatrixXd& truth, Index row, MatrixXd& room) const {
-  if (!layout_.has_tilts && !layout_.has_matrices) return truth.middleCols<3>(row);
-  const Mat3 scale = scaled(use);
-  const Index each = truth.rows() / block_nodes;
-  room.setZero();
-  for (std::size_t n = 0; n < block_nodes; ++n) {
-    const Index at = each * static_cast<Index>(n);
-    const Mat3 by_truth = layout_.has_tilts ? Mat3(scale * felt_[n].turn) : scale;
-    add_product(truth.block(at, row, each, 3), by_truth, 1.0, room.middleRows(at, each));
+/// Coefficient by coefficient of each channel: what the block's row makes of the nodes, these of the channel's
+/// derivatives, and these of the coefficient.
+void SensorSystem::put_band(const Weighed& w) {
+  constexpr Index derivatives = block_nodes * channel_orders;
+  SensorRows& part = parts_[w.use.part];
+  const MatrixXd& by_channels = motion_.body(body_).band;
+  const Index channels = size(part.band) / spline_order, first = w.use.instrument.state_row * block_nodes;
+  std::array<Eigen::Matrix<double, spline_order, derivatives>, block_nodes> coefficients;  // of each row of the block
+  for (Index i = 0; i < w.rows; ++i)
+    for (Index k = 0; k < derivatives; ++k) {
+      const auto node = static_cast<std::size_t>(k / channel_orders),
+                 order = static_cast<std::size_t>(k % channel_orders);
+      const Eigen::Map<const Eigen::Matrix<double, spline_order, 1>> basis(motion_.bases()[node].at[order].data());
+      coefficients[static_cast<std::size_t>(i)].col(k) = w.weight(i, static_cast<Index>(node)) * basis;
+    }
+  for (Index c = 0; c < channels; ++c) {
+    Eigen::Matrix<double, derivatives, 3> shown;  // by the channel's derivatives at the nodes
+    for (Index k = 0; k < derivatives; ++k) {
+      const Index node = k / channel_orders, row = c * channel_orders + k % channel_orders;
+      const Vec3 truth(by_channels(row, first + node), by_channels(row, first + block_nodes + node),
+                       by_channels(row, first + 2 * block_nodes + node));
+      shown.row(k) = (w.by_truth[static_cast<std::size_t>(node)] * truth).transpose();
+    }
+    for (Index i = 0; i < w.rows; ++i) {
+      const Eigen::Matrix<double, spline_order, 3> by_coefficients =
+          coefficients[static_cast<std::size_t>(i)].lazyProduct(shown);
+      for (Index axis = 0; axis < 3; ++axis) {
+        double* to = part.jacobian.col(w.first + 3 * i + axis).data() + c;
+        for (Index k = 0; k < spline_order; ++k) to[k * channels] = by_coefficients(k, axis);
+      }
+    }
   }
-  return room;
 }
 
-void SensorSystem::put_path(const Weighed& w) {
-  SensorRows& part = parts_[w.use.part];
-  const BodyMotion& body = motion_.body(body_);
-  const Index row = w.use.instrument.state_row, channels = size(part.band) / spline_order;
-  const auto band = shown(w.use, body.band, row, shown_band_);
-  for (Index i = 0; i < w.rows; ++i) {
-    Eigen::Matrix<double, spline_order, block_nodes * orders> by_derivatives;
-    for (Index n = 0; n < block_nodes; ++n)
-      for (Index order = 0; order < orders; ++order)
-        for (Index k = 0; k < spline_order; ++k)
-          by_derivatives(k, orders * n + order) =
-              w.weight(i, n) * motion_.bases()[static_cast<std::size_t>(n)]
-                                   .at[static_cast<std::size_t>(order)][static_cast<std::size_t>(k)];
-    for (Index axis = 0; axis < 3; ++axis)
-      add_product(Eigen::Map<const MatrixXd>(band.col(axis).data(), channels, block_nodes * orders), by_derivatives,
-                  1.0, Eigen::Map<MatrixXd>(part.jacobian.col(w.first + 3 * i + axis).data(), channels, spline_order));
+/// `by_unknowns`: three components of the segment's state, each at all nodes.
+void SensorSystem::put_border(const Weighed& w, const Eigen::Ref<const MatrixXd>& by_unknowns, Index column) {
+  MatrixXd& jacobian = parts_[w.use.part].jacobian;
+  Eigen::Matrix<double, block_nodes, 3 * block_nodes> weight;
+  for (Index axis = 0; axis < 3; ++axis) {
+    for (Index component = 0; component < 3; ++component)
+      for (Index node = 0; node < block_nodes; ++node)
+        weight.col(component * block_nodes + node) =
+            w.by_truth[static_cast<std::size_t>(node)](axis, component) * w.weight.col(node);
+    Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>> every_third(jacobian.col(w.first + axis).data() + column,
+                                                              by_unknowns.rows(), w.rows,
+                                                              Eigen::OuterStride<>(3 * jacobian.rows()));
+    add_product(by_unknowns, weight.topRows(w.rows), 1.0, every_third);
   }
-  if (scope_ == InsScope::band) return;
-  const auto put = [&](const Eigen::Ref<const MatrixXd>& by_unknowns, Index column) {
-    const Index count = by_unknowns.rows() / block_nodes;
-    for (Index axis = 0; axis < 3; ++axis) {
-      // every third row of the Jacobian
-      Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>> to(part.jacobian.col(w.first + axis).data() + column, count, w.rows,
-                                                       Eigen::OuterStride<>(3 * part.jacobian.rows()));
-      add_product(Eigen::Map<const MatrixXd>(by_unknowns.col(axis).data(), count, block_nodes),
-                  w.weight.topRows(w.rows), 1.0, to);
-    }
-  };
-  put(shown(w.use, body.turning, row, shown_turning_), part.turning);
-  if (row == force_row) put(shown(w.use, body.shifting, 0, shown_shifting_), part.shifting);
 }
 
 void SensorSystem::put_errors(const Weighed& w) {

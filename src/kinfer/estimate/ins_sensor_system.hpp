@@ -44,16 +44,17 @@ class SensorSystem {
   struct Weighed {
     const Use& use;
     NodeMatrix weight;
-    Eigen::Index first, rows;  // of its rows in their part, three a row of the block
+    std::array<Mat3, block_nodes> by_truth;  // of what it shows, by what its segment would feel
+    Eigen::Index first, rows;                // of its rows in their part, three a row of the block
   };
   Use use_of(const InstrumentUse& instrument);
   void feel(Eigen::Index interval);
   void add_rows(const Use& use, Eigen::Index interval);
-  void put_path(const Weighed& block);
+  void put_band(const Weighed& block);
+  void put_border(const Weighed& block, const Eigen::Ref<const MatrixXd>& by_unknowns, Eigen::Index column);
   void put_errors(const Weighed& block);
   void put_clock(const Weighed& block, const BlockResidual& by_shift, Eigen::Index interval);
   Mat3 scaled(const Use& use) const;
-  Eigen::Ref<const MatrixXd> shown(const Use& use, const MatrixXd& truth, Eigen::Index row, MatrixXd& room) const;
 
   const InsProblem& problem_;
   const InsLayout& layout_;
@@ -65,7 +66,6 @@ class SensorSystem {
   std::vector<Use> uses_;
   InsErrors errors_;
   std::array<FeltDerivative, block_nodes> felt_;
-  MatrixXd shown_band_, shown_turning_, shown_shifting_;  // room
 };
 
 }  // namespace kinfer
