@@ -4,7 +4,7 @@ namespace kinfer {
 namespace {
 
 using Index = Eigen::Index;
-using Weights = Eigen::Matrix<double, spline_order, 1>;
+using SplineWeights = Eigen::Matrix<double, spline_order, 1>;
 
 /// Sd of the third difference of a channel's coefficients: [unit/s³] times period cubed. Far above what shaking hands
 /// do: it only bridges stretches in which nothing was said.
@@ -25,14 +25,14 @@ void each_band_prior(const InsProblem& problem, const InsLayout& layout, ConstMa
   for (Index channel = 0; channel < layout.channels; ++channel) {
     const double sd = roughness_sd(problem, channel);
     for (Index shift = 0; shift <= (last ? 2 : 0); ++shift) {
-      Weights weights = Weights::Zero();
+      SplineWeights weights = SplineWeights::Zero();
       weights.segment<4>(shift) << -1.0, 3.0, -3.0, 1.0;
       visit({channel, weights, weights.dot(band.row(channel).segment<spline_order>(interval).transpose()), sd});
     }
     const Index joint = channel - (problem.root_stands_still ? 0 : 6);
     if (interval == 0 && joint >= 0) {
       const double start = problem.anchor.empty() ? 0.0 : problem.anchor[static_cast<std::size_t>(joint)];
-      visit({channel, Weights::Unit(0), band(channel, 0) - start, anchor_sd});
+      visit({channel, SplineWeights::Unit(0), band(channel, 0) - start, anchor_sd});
     }
   }
 }

@@ -14,7 +14,7 @@ using Index = Eigen::Index;
 
 constexpr double finer = 1.0 / std::numbers::sqrt2;
 constexpr double finest_knots = 0.025;         // [s]
-constexpr double hardly = 1.03;                // times what finer knots leave
+constexpr double hardly_more = 1.03;           // times what finer knots leave
 constexpr double window_length = 10.0;         // [s]
 constexpr std::size_t most_windows = 12;       // of a sensor
 constexpr double lively = 0.1;                 // of the liveliest's mean square rate: quiet ones dilute
@@ -106,7 +106,7 @@ double holding_knots(const std::vector<Window>& windows, double widest, double l
   auto wide = left_over(windows, knots);
   for (; knots * finer >= least; knots *= finer) {
     const auto fine = left_over(windows, knots * finer);
-    if (wide[0] <= hardly * fine[0] && wide[1] <= hardly * fine[1]) break;
+    if (wide[0] <= hardly_more * fine[0] && wide[1] <= hardly_more * fine[1]) break;
     wide = fine;
   }
   return knots;

@@ -14,8 +14,8 @@ namespace kinfer {
 namespace {
 
 using Index = Eigen::Index;
-constexpr std::int64_t whole = 8;  // eighths of a pass over all rows
-constexpr Index biases = 6;        // parent's accelerometer, then the child's
+constexpr std::int64_t whole_pass = 8;  // eighths of a pass over all rows
+constexpr Index biases = 6;             // parent's accelerometer, then the child's
 
 /// The leaves' angles that are constants, in order.
 std::vector<double*> constants_of(const LinkStructure& structure, std::vector<DhLeaf>& leaves) {
@@ -324,7 +324,7 @@ MemeticFit MemeticLink::refined(const LinkStructure& structure, std::vector<DhLe
                                 std::int64_t eighths) const {
   const auto solve = [&](std::vector<DhLeaf>& at) {
     const Normal n = normal(structure, at, blocks_, false);
-    eighths += whole;
+    eighths += whole_pass;
     const auto x = solve_positive(n.matrix, n.right);
     if (!x) return Linear{};
     set_lengths(at, *x);
@@ -336,7 +336,7 @@ MemeticFit MemeticLink::refined(const LinkStructure& structure, std::vector<DhLe
   double damping = 1e-3;
   for (int step = 0; step < options_.most_steps && k > 0 && best.x.size() > 0; ++step) {
     Normal n = normal(structure, leaves, blocks_, true);
-    eighths += whole * (1 + k);
+    eighths += whole_pass * (1 + k);
     VectorXd right = n.right - full(n.matrix).rightCols(best.x.size()) * best.x;
     const double before = best.j;
     bool is_better = false;
@@ -357,7 +357,7 @@ MemeticFit MemeticLink::refined(const LinkStructure& structure, std::vector<DhLe
     if (!is_better || before - best.j < enough * before) break;
   }
   for (DhLeaf& leaf : leaves) leaf.theta = wrapped(leaf.theta), leaf.alpha = wrapped(leaf.alpha);
-  return {std::move(leaves), best.j, (eighths + whole - 1) / whole, true};
+  return {std::move(leaves), best.j, (eighths + whole_pass - 1) / whole_pass, true};
 }
 
 MemeticFit MemeticLink::fit(const LinkStructure& structure) const {
