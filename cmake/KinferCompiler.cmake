@@ -8,9 +8,14 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
+# Several files of a target are compiled as one (a unity build): what Eigen, fmt and gtest cost a file is paid once a batch.
+# Names in anonymous namespaces must then differ within a batch; where that asks too much, a file stands alone
+# (SKIP_UNITY_BUILD_INCLUSION).
+option(KINFER_UNITY "Compile files in batches: a whole build takes half the time, one changed file a few seconds more" ON)
+
 add_library(kinfer_flags INTERFACE)
 target_compile_options(kinfer_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
+  -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
   -Werror
   -ffp-contract=off)  # the same answer from every compiler; kernels use explicit fused multiply-adds
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -18,6 +23,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(kinfer_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-restrict)
   # A precompiled header alone fills the compiler's heap to where it collects garbage again and again: a tenth of its time.
   target_compile_options(kinfer_flags INTERFACE --param=ggc-min-heapsize=600000)  # [kB]
+endif()
+# A local name may be one that another file of its batch has; files compiled alone have the whole warning.
+if(NOT KINFER_UNITY)
+  target_compile_options(kinfer_flags INTERFACE -Wshadow)
+elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(kinfer_flags INTERFACE -Wshadow=local)
 endif()
 
 if(KINFER_SANITIZE)
@@ -47,10 +58,6 @@ function(kinfer_header_library name)
   target_precompile_headers(${name} PRIVATE ${KINFER_PRECOMPILED} ${ARGN})
 endfunction()
 
-# Several files of a target are compiled as one (a unity build): what Eigen, fmt and gtest cost a file is paid once a batch.
-# Names in anonymous namespaces must then differ within a batch; where that asks too much, a file stands alone
-# (SKIP_UNITY_BUILD_INCLUSION).
-option(KINFER_UNITY "Compile files in batches: a whole build takes half the time, one changed file a few seconds more" ON)
 function(kinfer_batches target size)
   if(KINFER_UNITY)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
