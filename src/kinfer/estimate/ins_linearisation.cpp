@@ -35,10 +35,6 @@ struct Walk {
   }
 };
 
-Index unknown_count(const std::vector<Index>& unknowns) {
-  return static_cast<Index>(unknowns.size());
-}
-
 /// Squares of one part of a sensor. What belongs to the border alone is summed up here over a whole stretch.
 struct PartSum {
   MatrixXd squares;  // lower half
@@ -46,7 +42,7 @@ struct PartSum {
 
   /// `jacobian`, transposed, may be without the border's columns.
   void add(const SensorRows& rows, ConstMatrixRef jacobian, ConstVectorRef residual, Index span, StretchSum& sum) {
-    const Index columns = jacobian.rows(), band = unknown_count(rows.band);
+    const Index columns = jacobian.rows(), band = number_of(rows.band);
     if (squares.size() == 0) squares = MatrixXd::Zero(columns, columns), right = VectorXd::Zero(columns);
     if (residual.size() == 0) return;  // nothing was said
     squares.leftCols(band).setZero();
@@ -57,7 +53,7 @@ struct PartSum {
   }
 
   void move_band(const SensorRows& rows, Index span, StretchSum& sum) const {
-    const Index band = unknown_count(rows.band), at = span * sum.width;
+    const Index band = number_of(rows.band), at = span * sum.width;
     for (Index c = 0; c < band; ++c) {
       const Index to = rows.band[static_cast<std::size_t>(c)];
       const double* from = squares.col(c).data();
@@ -70,7 +66,7 @@ struct PartSum {
   }
 
   void move_border(const SensorRows& rows, StretchSum& sum) const {
-    const Index band = unknown_count(rows.band);
+    const Index band = number_of(rows.band);
     for (Index c = band; c < squares.cols(); ++c) {
       const Index to = rows.border[static_cast<std::size_t>(c - band)];
       sum.border_right[to] += right[c];
@@ -86,8 +82,7 @@ struct PartSum {
 VectorXd residual_behind(const SensorRows& rows, const std::optional<VectorXd>& step) {
   VectorXd residual = rows.residual.head(rows.used);
   if (step)
-    residual -=
-        rows.jacobian.bottomLeftCorner(unknown_count(rows.border), rows.used).transpose() * (*step)(rows.border);
+    residual -= rows.jacobian.bottomLeftCorner(number_of(rows.border), rows.used).transpose() * (*step)(rows.border);
   return residual;
 }
 
@@ -116,8 +111,8 @@ StretchSum InsLinearisation::sum_behind(const InsStretch& stretch, const std::op
   std::vector<PartSum> parts(2 * walk.sensors.size());
   for (Index k = stretch.first; k < stretch.end; ++k)
     walk.go_to(k, [&](std::size_t i, const SensorRows& rows) {
-      parts[i].add(rows, rows.jacobian.topLeftCorner(unknown_count(rows.band), rows.used),
-                   residual_behind(rows, border), k - stretch.first, sum);
+      parts[i].add(rows, rows.jacobian.topLeftCorner(number_of(rows.band), rows.used), residual_behind(rows, border),
+                   k - stretch.first, sum);
     });
   add_band_prior(sum, stretch);
   add_facts_behind(sum, stretch, border);
@@ -170,8 +165,8 @@ std::vector<IntervalGradient> InsLinearisation::gradients(const InsStretch& stre
     IntervalGradient gradient{VectorXd::Zero(spline_order * layout_.channels), VectorXd::Zero(layout_.border)};
     walk.go_to(k, [&](std::size_t, const SensorRows& rows) {
       const VectorXd right = rows.jacobian.leftCols(rows.used) * rows.residual.head(rows.used);
-      gradient.band(rows.band) += right.head(unknown_count(rows.band));
-      gradient.border(rows.border) += right.tail(unknown_count(rows.border));
+      gradient.band(rows.band) += right.head(number_of(rows.band));
+      gradient.border(rows.border) += right.tail(number_of(rows.border));
     });
     gradients.push_back(std::move(gradient));
   }

@@ -40,10 +40,6 @@ JointReading joint_reading(const InsLayout& layout, const InsUnknowns& x, std::s
 
 constexpr Index orders = channel_orders;
 
-Index size(const std::vector<Index>& unknowns) {
-  return static_cast<Index>(unknowns.size());
-}
-
 /// Some components at one node, of the first rows.
 template <class Matrix>
 auto at_node(Matrix& derivatives, Index rows, Index first, Index components, Index node) {
@@ -99,9 +95,9 @@ IntervalMotion::IntervalMotion(const InsProblem& problem, const InsLayout& layou
   for (InsPath& path : paths_) {
     if (scope == InsScope::band) path.turning.clear(), path.shifting.clear();
     bodies_.push_back({.state = {},
-                       .band = MatrixXd::Zero(orders * size(path.channels), 12 * block_nodes),
-                       .turning = MatrixXd::Zero(size(path.turning), 12 * block_nodes),
-                       .shifting = MatrixXd::Zero(size(path.shifting), 3 * block_nodes)});
+                       .band = MatrixXd::Zero(orders * number_of(path.channels), 12 * block_nodes),
+                       .turning = MatrixXd::Zero(number_of(path.turning), 12 * block_nodes),
+                       .shifting = MatrixXd::Zero(number_of(path.shifting), 3 * block_nodes)});
   }
   start_root();
 }

@@ -6,6 +6,10 @@
 
 namespace kinfer {
 
+inline Eigen::Index number_of(const std::vector<Eigen::Index>& unknowns) {
+  return static_cast<Eigen::Index>(unknowns.size());
+}
+
 /// The unknowns that reach a body's state.
 struct InsPath {
   std::vector<Eigen::Index> channels;  ///< of the band, ascending

@@ -12,19 +12,15 @@ using Index = Eigen::Index;
 
 constexpr Index rate_row = 0, force_row = 6;
 
-Index count_of(const std::vector<Index>& unknowns) {
-  return static_cast<Index>(unknowns.size());
-}
-
 /// Column of the first of some more unknowns of the border.
 Index append(SensorRows& part, Index first, Index count) {
-  const Index column = count_of(part.band) + count_of(part.border);
+  const Index column = number_of(part.band) + number_of(part.border);
   for (Index i = 0; i < count; ++i) part.border.push_back(first + i);
   return column;
 }
 
 Index append(SensorRows& part, const std::vector<Index>& unknowns) {
-  const Index column = count_of(part.band) + count_of(part.border);
+  const Index column = number_of(part.band) + number_of(part.border);
   part.border.insert(part.border.end(), unknowns.begin(), unknowns.end());
   return column;
 }
@@ -61,7 +57,7 @@ SensorSystem::SensorSystem(const InsProblem& problem, const InsLayout& layout, c
       if (layout.has_clocks) part.clock = append(part, layout.error[sensor_] + layout.clock_error, 2);
     }
     const auto instruments = std::ranges::count(uses_, p, &Use::part);
-    part.jacobian.resize(count_of(part.band) + count_of(part.border), 3 * block_nodes * instruments);
+    part.jacobian.resize(number_of(part.band) + number_of(part.border), 3 * block_nodes * instruments);
     part.residual.resize(part.jacobian.cols());
   }
 }
@@ -109,7 +105,7 @@ void SensorSystem::add_rows(const Use& use, Index interval) {
     for (std::size_t n = 0; n < block_nodes; ++n) weighed.by_truth[n] *= felt_[n].turn;
   put_band(weighed);
   if (scope_ == InsScope::everything) {
-    part.jacobian.block(count_of(part.band), part.used, count_of(part.border), 3 * block.rows).setZero();
+    part.jacobian.block(number_of(part.band), part.used, number_of(part.border), 3 * block.rows).setZero();
     const BodyMotion& body = motion_.body(body_);
     put_border(weighed, body.turning.middleCols(use.instrument.state_row * block_nodes, 3 * block_nodes), part.turning);
     if (use.instrument.state_row == force_row) put_border(weighed, body.shifting, part.shifting);
@@ -134,7 +130,7 @@ void SensorSystem::put_band(const Weighed& w) {
   constexpr Index derivatives = block_nodes * channel_orders;
   SensorRows& part = parts_[w.use.part];
   const MatrixXd& by_channels = motion_.body(body_).band;
-  const Index channels = count_of(part.band) / spline_order, first = w.use.instrument.state_row * block_nodes;
+  const Index channels = number_of(part.band) / spline_order, first = w.use.instrument.state_row * block_nodes;
   std::array<Eigen::Matrix<double, spline_order, derivatives>, block_nodes> coefficients;  // of each row of the block
   for (Index i = 0; i < w.rows; ++i)
     for (Index k = 0; k < derivatives; ++k) {

@@ -5,10 +5,9 @@
 #include "kinfer/linalg/small_cholesky.hpp"
 
 namespace kinfer {
+
 namespace {
-
 using Index = Eigen::Index;
-
 }  // namespace
 
 StretchSum::StretchSum(Index width_, Index reach_, Index border_, Index spans_)
