@@ -1,0 +1,33 @@
+// simulate-poses --shake: poses whose point and orientation err together, from the command line to the calibrated
+// robot.
+#include "cli/program.hpp"
+
+namespace kinfer::test {
+namespace {
+
+class ShakenPoses : public Program {
+ protected:
+  std::string simulate(const std::string& more) const {
+    return "simulate-poses --robot " + source("examples/robot6/robot.toml") + " --out data --poses 40 --shake 0.006 " +
+           more;
+  }
+};
+
+TEST_F(ShakenPoses, come_with_the_covariance_of_all_six_which_calibrate_takes) {
+  ASSERT_EQ(kinfer(simulate("--measured pose --sigma-angle 0.0005")).code, 0);
+  EXPECT_NE(slurp(in("data/poses.csv")).find("pr_cov_xx[mm.deg]"), std::string::npos);
+  const Outcome run = kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal --model geometry");
+  EXPECT_EQ(run.code, 0) << run.err;
+}
+
+TEST_F(ShakenPoses, need_orientations_and_an_instrument_that_errs) {
+  const Outcome positions = kinfer(simulate(""));
+  EXPECT_EQ(positions.code, 2);
+  EXPECT_NE(positions.err.find("add --measured pose"), std::string::npos) << positions.err;
+  const Outcome exact = kinfer(simulate("--measured pose --sigma-angle 0"));
+  EXPECT_EQ(exact.code, 2);
+  EXPECT_NE(exact.err.find("larger than 0"), std::string::npos) << exact.err;
+}
+
+}  // namespace
+}  // namespace kinfer::test
