@@ -3,21 +3,16 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/base/processor.hpp"
-#include "kinfer/base/rng.hpp"
 #include "kinfer/linalg/block_plan.hpp"
+#include "support/random.hpp"
 
 namespace kinfer {
 namespace {
 
 using Eigen::Index;
 
-MatrixXd random_matrix(Index rows, Index cols, std::uint64_t seed) {
-  Rng rng(seed);
-  return MatrixXd::NullaryExpr(rows, cols, [&] { return rng.normal(); });
-}
-
 MatrixXd random_lower(Index size, std::uint64_t seed) {
-  MatrixXd l = random_matrix(size, size, seed).triangularView<Eigen::Lower>();
+  MatrixXd l = test::random_matrix(size, size, seed).triangularView<Eigen::Lower>();
   l.diagonal() = l.diagonal().cwiseAbs().array() + static_cast<double>(size);
   return l;
 }
@@ -39,8 +34,8 @@ TEST(BlockProducts, EveryInstructionSetAddsTheProductAndTouchesNothingElse) {
     for (const Index rows : some_rows)
       for (const Index columns : {1, 2, 5, 8, 23})
         for (const Index depth : {0, 1, 12, 64, 65, 200}) {
-          const MatrixXd a = random_matrix(rows + 3, depth, 1), b = random_matrix(columns + 1, depth, 2);
-          const MatrixXd before = random_matrix(rows + 2, columns + 1, 3);
+          const MatrixXd a = test::random_matrix(rows + 3, depth, 1), b = test::random_matrix(columns + 1, depth, 2);
+          const MatrixXd before = test::random_matrix(rows + 2, columns + 1, 3);
           MatrixXd to = before, expected = before;
           expected.topLeftCorner(rows, columns) -= 0.5 * a.topRows(rows) * b.topRows(columns).transpose();
           kernel->add_product({.a = a.data(),
@@ -62,7 +57,7 @@ TEST(BlockProducts, EveryInstructionSetAddsTheProductAndTouchesNothingElse) {
 TEST(BlockProducts, TheLowerHalfOfASquareIsThatOfTheProduct) {
   for (const Index size : some_rows)
     for (const Index depth : {1, 12, 130}) {
-      const MatrixXd a = random_matrix(size, depth, 4), before = random_matrix(size, size, 5);
+      const MatrixXd a = test::random_matrix(size, depth, 4), before = test::random_matrix(size, size, 5);
       MatrixXd to = before;
       add_square(a, 2.0, to);
       const MatrixXd error = to - before - 2.0 * a * a.transpose();
@@ -74,8 +69,8 @@ TEST(BlockProducts, EveryInstructionSetSolvesForTheLeftFactorOfAProduct) {
   for (const batch::BlockKernel* kernel : runnable())
     for (const Index rows : some_rows)
       for (const Index columns : {1, 2, 8, 14, 76}) {
-        const MatrixXd x = random_matrix(rows, columns, 6), l = random_lower(columns, 7);
-        MatrixXd b = random_matrix(rows + 2, columns, 8);
+        const MatrixXd x = test::random_matrix(rows, columns, 6), l = random_lower(columns, 7);
+        MatrixXd b = test::random_matrix(rows + 2, columns, 8);
         const MatrixXd below = b.bottomRows(2);
         b.topRows(rows) = x * l.transpose();
         kernel->solve_right({.l = l.data(),
@@ -90,7 +85,7 @@ TEST(BlockProducts, EveryInstructionSetSolvesForTheLeftFactorOfAProduct) {
 }
 
 TEST(BlockProducts, WorkOnPartsOfMatrices) {
-  const MatrixXd a = random_matrix(30, 20, 9), l = random_lower(9, 10);
+  const MatrixXd a = test::random_matrix(30, 20, 9), l = random_lower(9, 10);
   MatrixXd to = MatrixXd::Zero(30, 30), x = a;
   add_product(a.block(2, 3, 11, 7), a.block(5, 1, 6, 7), 1.0, to.block(1, 2, 11, 6));
   EXPECT_LT((to.block(1, 2, 11, 6) - a.block(2, 3, 11, 7) * a.block(5, 1, 6, 7).transpose()).norm(), 1e-12);

@@ -6,22 +6,17 @@
 #include <functional>
 #include <utility>
 
-#include "kinfer/base/rng.hpp"
+#include "support/random.hpp"
 
 namespace kinfer {
 namespace {
-
-MatrixXd random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
-  Rng rng(seed);
-  return MatrixXd::NullaryExpr(rows, cols, [&] { return rng.normal(); });
-}
 
 MatrixXd identity(Eigen::Index n) {
   return MatrixXd::Identity(n, n);
 }
 
 MatrixXd random_positive(Eigen::Index n, std::uint64_t seed) {
-  const MatrixXd a = random_matrix(2 * n, n, seed);
+  const MatrixXd a = test::random_matrix(2 * n, n, seed);
   return a.transpose() * a;
 }
 
@@ -31,7 +26,7 @@ bool descending(const VectorXd& s) {
 
 TEST(Svd, multiplies_back_with_orthonormal_factors_and_falling_values) {
   for (const auto& [rows, cols] : {std::pair{9, 4}, std::pair{4, 9}, std::pair{5, 5}, std::pair{1, 3}}) {
-    const MatrixXd a = random_matrix(rows, cols, 1);
+    const MatrixXd a = test::random_matrix(rows, cols, 1);
     const Svd found = svd(a);
     const Eigen::Index k = std::min(rows, cols);
     EXPECT_LT((found.u * found.s.asDiagonal() * found.v.transpose() - a).norm(), 1e-13);
@@ -43,7 +38,7 @@ TEST(Svd, multiplies_back_with_orthonormal_factors_and_falling_values) {
 
 TEST(RightSvd, has_the_values_of_the_whole_decomposition_and_zeros_where_rows_are_missing) {
   for (const auto& [rows, cols] : {std::pair{200, 6}, std::pair{4, 9}, std::pair{5, 5}}) {
-    const MatrixXd a = random_matrix(rows, cols, 2);
+    const MatrixXd a = test::random_matrix(rows, cols, 2);
     const RightSvd found = right_svd(a);
     const VectorXd s = svd(a).s;
     ASSERT_EQ(found.s.size(), cols);
@@ -55,7 +50,7 @@ TEST(RightSvd, has_the_values_of_the_whole_decomposition_and_zeros_where_rows_ar
 }
 
 TEST(RightSvd, sees_a_direction_that_no_row_sees) {
-  MatrixXd a = random_matrix(50, 3, 3);
+  MatrixXd a = test::random_matrix(50, 3, 3);
   a.col(2) = a.col(0) - 2 * a.col(1);  // so (1, −2, −1) is not seen
   const RightSvd found = right_svd(a);
   EXPECT_LT(found.s[2], 1e-14 * found.s[0]);
@@ -63,7 +58,7 @@ TEST(RightSvd, sees_a_direction_that_no_row_sees) {
 }
 
 TEST(SymmetricEigen, of_a_turned_diagonal_are_its_entries_ascending) {
-  const MatrixXd turn = svd(random_matrix(4, 4, 4)).u;
+  const MatrixXd turn = svd(test::random_matrix(4, 4, 4)).u;
   const MatrixXd a = turn * Eigen::Vector4d(3, -1, 7, 0.5).asDiagonal() * turn.transpose();
   const SymmetricEigen found = symmetric_eigen(a);
   EXPECT_LT((found.values - Eigen::Vector4d(-1, 0.5, 3, 7)).norm(), 1e-13);
@@ -79,7 +74,7 @@ TEST(SymmetricEigen, reads_the_lower_half_only) {
 
 TEST(Positive, solution_inverse_and_factor_satisfy_their_equations) {
   const MatrixXd a = random_positive(6, 6);
-  const VectorXd b = random_matrix(6, 1, 7);
+  const VectorXd b = test::random_matrix(6, 1, 7);
   EXPECT_LT((a * *solve_positive(a, b) - b).norm(), 1e-12);
   EXPECT_LT((a * *inverse_positive(a) - identity(6)).norm(), 1e-12);
   const MatrixXd l = *cholesky(a);
@@ -95,8 +90,8 @@ TEST(Positive, an_indefinite_matrix_has_no_answer) {
 }
 
 TEST(SolveLeastSquares, leaves_a_residual_across_the_columns) {
-  const MatrixXd a = random_matrix(20, 5, 8);
-  const VectorXd b = random_matrix(20, 1, 9);
+  const MatrixXd a = test::random_matrix(20, 5, 8);
+  const VectorXd b = test::random_matrix(20, 1, 9);
   EXPECT_LT((a.transpose() * (a * solve_least_squares(a, b) - b)).norm(), 1e-12);
 }
 
@@ -119,7 +114,7 @@ TEST(SolveSquare, solves_a_system_that_needs_pivoting) {
 
 TEST(TriangularFactor, has_the_same_inner_products_and_zeros_below) {
   for (const auto& [rows, cols] : {std::pair{30, 5}, std::pair{3, 5}}) {
-    const MatrixXd a = random_matrix(rows, cols, 10), r = triangular_factor(a);
+    const MatrixXd a = test::random_matrix(rows, cols, 10), r = triangular_factor(a);
     EXPECT_EQ(r.rows(), std::min(rows, cols));
     EXPECT_LT((r.transpose() * r - a.transpose() * a).norm(), 1e-12);
     EXPECT_EQ(MatrixXd(r.triangularView<Eigen::StrictlyLower>()).norm(), 0.0);

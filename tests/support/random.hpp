@@ -12,4 +12,10 @@ inline Vec3 random_vector(Rng& rng) {
   return {x, y, z};
 }
 
+/// Of unit variance a number.
+inline MatrixXd random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
+  Rng rng(seed);
+  return MatrixXd::NullaryExpr(rows, cols, [&] { return rng.normal(); });
+}
+
 }  // namespace kinfer::test
