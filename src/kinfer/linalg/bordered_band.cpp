@@ -12,13 +12,13 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// x of l x = b, l lower triangular, column by column of b.
+/// x of l x = b, l lower triangular, column by column of b. Eigen binds a reference to the first number even of none.
 void solve_lower(const MatrixXd& l, Eigen::Ref<MatrixXd> b) {
-  l.triangularView<Eigen::Lower>().solveInPlace(b);
+  if (b.size() > 0) l.triangularView<Eigen::Lower>().solveInPlace(b);
 }
 
 void solve_upper(const MatrixXd& l, Eigen::Ref<MatrixXd> b) {
-  l.triangularView<Eigen::Lower>().transpose().solveInPlace(b);
+  if (b.size() > 0) l.triangularView<Eigen::Lower>().transpose().solveInPlace(b);
 }
 
 }  // namespace
