@@ -108,15 +108,4 @@ MatrixXd drawn_joints(const Chain& nominal, int poses, Rng rng) {
   return joints;
 }
 
-PoseSet measured_without_noise(const Chain& truth, const MatrixXd& joints) {
-  PoseSet set;
-  set.joint_names = reading_names(truth);
-  set.joints = joints;
-  for (int i = 0; i < joints.cols(); ++i) {
-    set.points.push_back({.row = i, .target = -1, .position = forward(truth, joints.col(i)).position, .sd = {}});
-    set.line.push_back(i + 2);
-  }
-  return set;
-}
-
 }  // namespace kinfer::paper2

@@ -5,7 +5,6 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/kinematics/parameters.hpp"
-#include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer::paper2 {
 
@@ -33,8 +32,5 @@ Table errors_as_printed(ConstVectorRef si);
 
 /// Drawn evenly from the joint limits, tool above the floor (z > 0) and more than 350 mm from axis 1 (nominal robot).
 MatrixXd drawn_joints(const Chain& nominal, int poses, Rng rng);
-
-/// Tool positions of `truth` at these joints, without noise.
-PoseSet measured_without_noise(const Chain& truth, const MatrixXd& joints);
 
 }  // namespace kinfer::paper2

@@ -10,6 +10,7 @@
 #include "kinfer/evidence/fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/kinematics/forward.hpp"
+#include "kinfer/simulate/pose_set.hpp"
 
 namespace kinfer::paper2 {
 namespace {
@@ -90,7 +91,7 @@ double scatter_of(const std::vector<double>& errors, double ErrorStatistics::*fi
 
 std::vector<std::string> row(const PoseRule& rule, double d6) {
   const Chain nominal = er20(d6);
-  const PoseSet set = measured_without_noise(with_errors(nominal, table3), rule.joints(nominal));
+  const PoseSet set = seen_points(with_errors(nominal, table3), rule.joints(nominal));
   const std::vector<double> before = point_errors(nominal, set);
   const ErrorStatistics all = error_statistics(before);
   std::vector<std::string> cells{rule.name, fmt::format("{:.0f}", 1e3 * d6)};

@@ -13,6 +13,7 @@
 #include "kinfer/io/robot_toml.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/measurement/split.hpp"
+#include "kinfer/simulate/pose_set.hpp"
 
 namespace kinfer::paper2 {
 namespace {
@@ -94,9 +95,9 @@ Problem simulation(const Conditions& conditions, int poses, int errors) {
   problem.truth = truth;
   problem.instrument = conditions.instrument;
   const Rng rng = Rng(poses);
-  problem.fit = with_noise(measured_without_noise(truth, drawn_joints(problem.nominal, 50, rng.stream(0))),
-                           conditions.instrument, rng.stream(1));
-  problem.verify = measured_without_noise(truth, drawn_joints(problem.nominal, 50, rng.stream(2)));
+  problem.fit = with_noise(seen_points(truth, drawn_joints(problem.nominal, 50, rng.stream(0))), conditions.instrument,
+                           rng.stream(1));
+  problem.verify = seen_points(truth, drawn_joints(problem.nominal, 50, rng.stream(2)));
   problem.box = box_about(problem.parameters, 1 * millimetre, 1 * degree);
   return conditions.instrument.sigma > 0.0 ? with_reachable_target(problem) : problem;
 }
@@ -111,7 +112,7 @@ Problem experiment(int poses) {
   problem.instrument = laser;
   const Rng rng = Rng(poses).stream(5);
   const MatrixXd joints = drawn_joints(problem.nominal, 100, rng.stream(0));
-  const PoseSet all = with_noise(measured_without_noise(truth, joints), laser, rng.stream(1));
+  const PoseSet all = with_noise(seen_points(truth, joints), laser, rng.stream(1));
   const Split split = random_split(100, 0.5, rng.stream(2));
   problem.fit = select(all, split.train);
   problem.verify = select(all, split.holdout);

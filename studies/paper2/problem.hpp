@@ -5,6 +5,7 @@
 #include <string>
 
 #include "er20.hpp"
+#include "kinfer/measurement/pose_set.hpp"
 #include "kinfer/search/bounds.hpp"
 
 namespace kinfer::paper2 {

@@ -3,7 +3,6 @@
 
 #include "kinfer/calibrate/guessed_masses.hpp"
 #include "kinfer/io/robot_toml.hpp"
-#include "kinfer/kinematics/forward.hpp"
 #include "kinfer/simulate/pose_set.hpp"
 #include "studies/robots/chains.hpp"
 #include "trials.hpp"
@@ -33,20 +32,6 @@ void bend(Chain& truth, const Beyond& beyond, Rng rng) {
     for (const double order : {1.0, 2.0})
       joint.harmonics.push_back({order, beyond.gear * rng.normal(), beyond.gear * rng.normal()});
   }
-}
-
-/// The tool of `truth` at the readings q, seen without noise or with the tracker's.
-PoseSet seen(const Chain& truth, const MatrixXd& q, const Instrument& instrument, Rng noise) {
-  PoseSet set;
-  set.joint_names = reading_names(truth);
-  set.joints = q;
-  for (int row = 0; row < q.cols(); ++row) {
-    const Vec3 p = forward(truth, q.col(row)).position;
-    const Vec3 error = position_sd(instrument, p) * Vec3(noise.normal(), noise.normal(), noise.normal());
-    set.points.push_back({.row = row, .target = -1, .position = p + error, .sd = {}});
-    set.line.push_back(row + 2);
-  }
-  return set;
 }
 
 struct Robot {
@@ -98,8 +83,8 @@ std::string one_robot(const Robot& robot) {
       const auto judged = [&](int draw, const MatrixXd& q) {
         const Chain truth = true_robot(robot, beyond, draw);
         const CalibrateTask task{.nominal = robot.nominal, .tolerances = {}, .instrument = tracker, .data = {}};
-        return errors_of(task, fitting, seen(truth, q, tracker, Rng(300).stream(draw)),
-                         seen(truth, elsewhere, {}, Rng(1)));
+        return errors_of(task, fitting, seen_points(truth, q, tracker, Rng(300).stream(draw)),
+                         seen_points(truth, elsewhere));
       };
       const Errors random = medians_of(
           [&](int draw) { return judged(draw, draw_poses(robot.nominal, {}, poses, Rng(7).stream(draw)).value()); });

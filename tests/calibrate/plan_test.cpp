@@ -12,6 +12,7 @@
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/simulate/pose_set.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {
@@ -167,22 +168,6 @@ TEST(plan, an_impossible_space_is_an_error) {
   EXPECT_FALSE(plan_poses(task, {.poses = 5}, Rng(1)).has_value());
 }
 
-/// The tool of `truth` at readings q, with noise.
-PoseSet seen(const Chain& truth, const MatrixXd& q, const Instrument& instrument, Rng noise) {
-  PoseSet set;
-  set.joint_names = reading_names(truth);
-  set.joints = q;
-  for (int row = 0; row < q.cols(); ++row) {
-    const Vec3 p = forward(truth, q.col(row)).position;
-    set.points.push_back(
-        {.row = row,
-         .target = -1,
-         .position = p + position_sd(instrument, p) * Vec3(noise.normal(), noise.normal(), noise.normal()),
-         .sd = {}});
-  }
-  return set;
-}
-
 TEST(plan, fifteen_planned_poses_calibrate_better_than_fifteen_random_ones) {
   const PlanTask task = er20_task();
   const MatrixXd planned = plan_poses(task, {.poses = 15, .candidates = 500, .starts = 1}, Rng(1)).value().joints;
@@ -192,9 +177,9 @@ TEST(plan, fifteen_planned_poses_calibrate_better_than_fifteen_random_ones) {
     const CalibrateTask fit{.nominal = task.nominal,
                             .tolerances = {},
                             .instrument = test::tracker,
-                            .data = seen(truth, q, test::tracker, Rng(20).stream(draw))};
-    const std::vector<double> errors = point_errors(fit_once(fit, fit.data, AutoParameters{}, {}).value().chain,
-                                                    seen(truth, elsewhere, test::noise_free, Rng(1)));
+                            .data = seen_points(truth, q, test::tracker, Rng(20).stream(draw))};
+    const std::vector<double> errors =
+        point_errors(fit_once(fit, fit.data, AutoParameters{}, {}).value().chain, seen_points(truth, elsewhere));
     return *std::max_element(errors.begin(), errors.end());
   };
   std::vector<double> by_plan, by_chance;

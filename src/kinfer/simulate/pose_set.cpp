@@ -60,6 +60,19 @@ Chain with_random_errors(const Chain& nominal, const Tolerances& tolerances, Rng
   return truth;
 }
 
+PoseSet seen_points(const Chain& truth, const MatrixXd& joints, const Instrument& instrument, Rng rng) {
+  const PoseEvaluator evaluator(truth, {});
+  PoseSet set;
+  set.joint_names = reading_names(truth);
+  set.joints = joints;
+  for (int row = 0; row < joints.cols(); ++row) {
+    const Vec3 p = evaluator.pose(joints.col(row)).position;
+    set.points.push_back({.row = row, .target = -1, .position = p + noise(rng, position_sd(instrument, p)), .sd = {}});
+    set.line.push_back(row + 2);
+  }
+  return set;
+}
+
 Result<PoseSet> simulate_pose_set(const Chain& truth, const PoseSimulation& simulation, Rng rng) {
   const Instrument& instrument = simulation.instrument;
   if (simulation.shake > 0.0 && !(instrument.sigma > 0.0 && instrument.sigma_angle > 0.0))

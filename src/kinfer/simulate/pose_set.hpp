@@ -31,6 +31,10 @@ struct PoseSimulation {
 /// `nominal` with every parameter's error drawn from its tolerance (Gaussian); base and tool included.
 Chain with_random_errors(const Chain& nominal, const Tolerances& tolerances, Rng rng);
 
+/// The tool of `truth` at these joints (readings x rows), as the instrument sees it; one without sigma and ppm does not
+/// err.
+PoseSet seen_points(const Chain& truth, const MatrixXd& joints, const Instrument& instrument = {}, Rng rng = Rng(1));
+
 /// An error where the space leaves hardly any pose.
 Result<PoseSet> simulate_pose_set(const Chain& truth, const PoseSimulation& simulation, Rng rng);
 
