@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // One iteration of the continuous-time fit, residuals, derivatives, elimination and step, for recordings of 1, 10 and
 // 60 minutes of six sensors on five joints, knots of 0.1 s: work is the same whatever the readings say.
 #include <benchmark/benchmark.h>
 
 #include "kinfer/base/rng.hpp"
-#include "kinfer/estimate/ins_system.hpp"
+#include "kinfer/estimate/continuous/solver/normal_equations.hpp"
 
 namespace {
 
@@ -43,14 +44,14 @@ Case example(Index intervals) {
     c.problem.sensors.push_back(
         {blocks(intervals, block_nodes, rng), blocks(intervals, block_nodes, rng), blocks(intervals, 1, rng), {}, {}});
     if (s == 0) continue;
-    c.x.bodies.push_back(turning_body(s - 1, s, exp_so3(random_vector(rng)), exp_so3(random_vector(rng))));
+    c.x.bodies.push_back(revolute_body(s - 1, s, exp_so3(random_vector(rng)), exp_so3(random_vector(rng))));
     c.x.bodies.back().point_in_parent = random_vector(rng);
     c.x.bodies.back().point_in_child = random_vector(rng);
   }
   c.x.root_force = Vec3(0.0, 0.0, 9.81);
   c.x.errors.resize(6);
-  c.x.band = MatrixXd(5, c.problem.grid.coefficients());
-  for (double& value : c.x.band.reshaped()) value = 0.1 * rng.normal();
+  c.x.spline_coefficients = MatrixXd(5, c.problem.grid.coefficients());
+  for (double& value : c.x.spline_coefficients.reshaped()) value = 0.1 * rng.normal();
   c.layout = layout_of(c.problem, c.x.bodies);
   return c;
 }

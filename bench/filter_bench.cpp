@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time of the orientation filters per row and sensor, and of reading a recording.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -5,24 +6,26 @@
 #include <filesystem>
 #include <fstream>
 
-#include "kinfer/inertial/orientation.hpp"
-#include "kinfer/io/ins_csv.hpp"
+#include "kinfer/inertial/filters/orientation.hpp"
+#include "kinfer/io/recording/ins_csv.hpp"
 #include "support/carried_sensor.hpp"
 
 namespace {
 
 using namespace kinfer;
 
-const testing::CarriedSensor& carried_sensor(double rate) {
+const testing::CarriedSensor& carried_sensor(double sampling_rate) {
   static const SensorModel grade = *sensor_grade("industrial");
-  static const testing::CarriedSensor at200 = testing::carried({.seconds = 120.0, .rate = 200.0, .grade = &grade});
-  static const testing::CarriedSensor at1000 = testing::carried({.seconds = 60.0, .rate = 1000.0, .grade = &grade});
-  return rate > 500.0 ? at1000 : at200;
+  static const testing::CarriedSensor at200 =
+      testing::carried({.seconds = 120.0, .sampling_rate = 200.0, .grade = &grade});
+  static const testing::CarriedSensor at1000 =
+      testing::carried({.seconds = 60.0, .sampling_rate = 1000.0, .grade = &grade});
+  return sampling_rate > 500.0 ? at1000 : at200;
 }
 
 void filter_a_row(benchmark::State& state, const FilterOptions& options) {
   const testing::CarriedSensor& c = carried_sensor(static_cast<double>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(orientations(c.sensor, c.time, options));
+  for (auto _ : state) benchmark::DoNotOptimize(estimate_orientations(c.sensor, c.time, options));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(c.time.size()));
 }
 BENCHMARK_CAPTURE(filter_a_row, kinfer, KinferFilterOptions{})->Arg(200)->Arg(1000);
@@ -45,7 +48,7 @@ void read_recording(benchmark::State& state) {
       file << fmt::format("{:.4f}", 0.005 * static_cast<double>(row));
       const std::size_t at = row % c.time.size();
       for (int sensor = 0; sensor < 6; ++sensor)
-        for (const TriadColumns* triad : {&c.sensor.acceleration, &c.sensor.rate, &c.sensor.field})
+        for (const TriadColumns* triad : {&c.sensor.acceleration, &c.sensor.angular_velocity, &c.sensor.field})
           for (const auto& axis : triad->axis) file << fmt::format(",{:.6g}", axis[at]);
       file << '\n';
     }

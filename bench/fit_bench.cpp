@@ -1,13 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
 // One MAP fit of the complete six-axis set (34 parameters) to 500 measured points, beside Ceres with automatic
 // derivatives on the same residuals, priors and start, both to convergence on one core.
 #include <benchmark/benchmark.h>
 #include <ceres/ceres.h>
 
-#include "kinfer/calibrate/parameter_choice.hpp"
-#include "kinfer/estimate/bundle.hpp"
+#include "kinfer/calibrate/parameters/parameter_sets.hpp"
+#include "kinfer/estimate/poses/bundle.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {
+using namespace calibrate;
 namespace {
 
 constexpr int unknowns = 34;

@@ -1,14 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
 // One evaluation of a chain of three DH leaves on 1200 samples: the block kernel, the same on an eighth of them, and
 // the obvious way with 4×4 products and differences.
 #include <benchmark/benchmark.h>
 
 #include "identify/example_machine.hpp"
-#include "kinfer/identify/genome_block.hpp"
+#include "kinfer/identify/programming/link_block.hpp"
 #include "support/naive_genome.hpp"
 
 namespace {
 
 using namespace kinfer;
+using namespace kinfer::identify;
 
 constexpr std::size_t samples = 1200;
 constexpr double h = 1e-3;  // [s]
@@ -16,15 +18,15 @@ constexpr double h = 1e-3;  // [s]
 struct Case {
   JointSignal hinge = test::wave(0.6, 0.9, 1.0, samples);
   std::vector<FrameState> parent = test::swinging_parent(test::wave(0.5, 0.7, 0.3, samples));
-  std::vector<FrameState> child = carried(parent, test::general_hinge(), {&hinge, 1});
-  std::vector<LinkBlock> blocks = link_blocks(parent, child, {&hinge, 1}, test::all_rows(samples));
+  std::vector<FrameState> child = propagate(parent, test::general_hinge(), {&hinge, 1});
+  std::vector<LinkBlock> blocks = make_link_blocks(parent, child, {&hinge, 1}, test::all_rows(samples));
 };
 
 double square(const std::vector<LinkBlock>& blocks, std::size_t count, const std::vector<DhLeaf>& leaves) {
   double sum = 0.0;
   for (std::size_t b = 0; b < count; ++b) {
-    const FrameLanes state = blocks[b].carried(leaves);
-    sum += blocks[b].acceleration_square(state) + blocks[b].chord_square(state);
+    const FrameLanes state = blocks[b].propagate(leaves);
+    sum += blocks[b].squared_acceleration_error(state) + blocks[b].squared_chord(state);
   }
   return sum;
 }

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // Forward kinematics and their derivative: the batch kernels beside naive Eigen, Orocos KDL and Ceres' Jets, and beside
 // the most that the core's multiply-adds allow. Items are poses.
 #include <benchmark/benchmark.h>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/kinematics/batch_points.hpp"
-#include "kinfer/kinematics/batch_population.hpp"
+#include "kinfer/kinematics/batch/batch_points.hpp"
+#include "kinfer/kinematics/batch/batch_population.hpp"
 #include "paper2_case.hpp"
 #include "peers/ceres_jets.hpp"
 #include "peers/fma_peak.hpp"
@@ -12,6 +13,7 @@
 #include "peers/orocos_kdl.hpp"
 
 namespace kinfer::bench {
+using namespace calibrate;
 namespace {
 
 void count_poses(benchmark::State& state, int a_round) {

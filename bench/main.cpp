@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One table of ratios: every figure of kinfer over its peer's, both measured in this run.
 #include "ratios.hpp"
 

@@ -1,15 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 // A whole fit of paper 2's case from the nominal numbers, 50 poses and 24 parameters, beside Ceres with automatic
 // derivatives; and the bootstrap of it on one and two threads.
 #include <benchmark/benchmark.h>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/estimate/bootstrap.hpp"
-#include "kinfer/estimate/point_fit.hpp"
+#include "kinfer/estimate/poses/bootstrap.hpp"
+#include "kinfer/estimate/poses/point_fit.hpp"
 #include "paper2_case.hpp"
 #include "peers/ceres_jets.hpp"
 #include "ratios.hpp"
 
 namespace kinfer::bench {
+using namespace calibrate;
 namespace {
 
 ParameterSet without_priors(ParameterSet set) {
@@ -20,7 +22,7 @@ ParameterSet without_priors(ParameterSet set) {
 void cold_fit(benchmark::State& state) {
   const Paper2Case& c = paper2_case();
   const ParameterSet set = without_priors(c.set);
-  LeastSquaresOptions options = near_the_optimum();
+  LeastSquaresOptions options = options_near_optimum();
   options.target_cost = 1e-8;  // sigma²; Ceres ends by itself at 9e-9
   LeastSquaresOutcome outcome;
   for (auto _ : state) {  // what is prepared once for a data set is part of a cold fit

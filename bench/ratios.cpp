@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "ratios.hpp"
 
 #include <benchmark/benchmark.h>
@@ -10,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "kinfer/kinematics/batch_kernel.hpp"
+#include "kinfer/kinematics/batch/kernel_interface.hpp"
 
 namespace kinfer::bench {
 namespace {

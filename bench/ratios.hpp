@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs all benchmarks, interleaved, and prints medians of CPU time as ratios to the peers.
 #pragma once
 

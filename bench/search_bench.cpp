@@ -1,15 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 // Paper 2's search end to end: 200 particles, 50 poses, 404 iterations, beside pagmo's PSO and CMA-ES with the naive
 // fitness; all on one thread.
 #include <benchmark/benchmark.h>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/calibrate/population_fitness.hpp"
-#include "kinfer/search/pso.hpp"
+#include "kinfer/calibrate/swarm/swarm_fitness.hpp"
+#include "kinfer/search/swarm/pso.hpp"
 #include "paper2_case.hpp"
 #include "peers/naive_eigen.hpp"
 #include "peers/pagmo_swarm.hpp"
 
 namespace kinfer::bench {
+using namespace calibrate;
 namespace {
 
 constexpr int iterations = 404;
@@ -31,11 +33,11 @@ SwarmProblem swarm_problem() {
 
 void kinfer_pso(benchmark::State& state) {
   const Paper2Case& c = paper2_case();
-  const PopulationFitness fitness(c.nominal, c.set, c.data);
+  const SwarmFitness fitness(c.nominal, c.set, c.data);
   const Objective objective{box(), [&](ConstMatrixRef x, std::span<double> cost) { fitness.sums(x, cost); }};
   PsoOptions options;
   options.budget = {.max_iterations = iterations, .threads = 1};
-  Outcome outcome;
+  SearchOutcome outcome;
   for (auto _ : state) outcome = particle_swarm(objective, options, Rng(1));
   for (Eigen::Index p = 0; p < outcome.final_swarm.cols(); ++p) {
     const VectorXd x = outcome.final_swarm.col(p);

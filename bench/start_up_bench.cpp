@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time from the shell's call to the first word: `kinfer --version`.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The front end of report.html (folder web/): bundled by esbuild and written as a source file, so that the installed program
 # needs no Node. Without scripts the report still has its text, tables and drawings.
 option(KINFER_REPORT_SCRIPTS "Bundle the report's scripts (3D, plots to look into); needs nodejs and npm" ON)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Writes a source file that holds the MJCF files of `folder` as string literals, anew when one of them changes.
 function(kinfer_embed_machines folder output)
   file(GLOB files CONFIGURE_DEPENDS ${folder}/*.xml)

@@ -1,24 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a nominal robot and a pose set to a corrected chain, in a program of one's own.
 #include <fmt/core.h>
 
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/io/robot_errors_toml.hpp"
+#include "kinfer/io/robot/robot_errors_toml.hpp"
 #include "kinfer/simulate/pose_set.hpp"
 
 int main() {
   using namespace kinfer;
+  using namespace kinfer::calibrate;
   const RobotModel robot = read_robot_toml("robot6/robot.toml").value();
   const Chain truth = read_robot_errors("robot6/errors.toml", robot).value();
   const PoseSimulation tracker{.poses = 50, .instrument = *robot.instrument};
   const PoseSet measured = simulate_pose_set(truth, tracker, Rng(1)).value();
 
-  const CalibrateTask task{robot.chain, robot.tolerances, robot.instrument, measured};
-  const auto calibration = calibrate(task, {}, Rng(1));
+  const CalibrationTask task{robot.chain, robot.tolerances, robot.instrument, measured};
+  const auto calibration = calibrate_robot(task, {}, Rng(1));
   if (!calibration) {
     fmt::print("{}\n", calibration.error().what);
     return 1;
   }
   fmt::print("{}\n", calibration->verdict);
   for (const std::string& words : calibration->estimate.identifiability.confounded) fmt::print("- {}\n", words);
-  return calibration->use ? 0 : 1;
+  return calibration->usable ? 0 : 1;
 }

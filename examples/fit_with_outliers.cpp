@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fits y = a exp(b t) to samples of which two are wrong, with and without a robust loss.
 #include <fmt/format.h>
 
@@ -5,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "kinfer/search/least_squares.hpp"
+#include "kinfer/search/least_squares/least_squares.hpp"
 
 namespace {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A chain by its DH rows, where its tool is, and how that depends on one parameter.
 #include <fmt/core.h>
 

@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
-# The folder rule of docs/design.md: which folder may include which, read off the include lines.
+# SPDX-License-Identifier: Apache-2.0
+# The rules of docs/development/design.md, read off the include lines of src/kinfer: which room may include which, and no
+# cycle among files (a .hpp and its .cpp count as one) nor among folders, sub-rooms included.
 set -euo pipefail
 cd "${1:-.}/src/kinfer"
 declare -A may=(
@@ -9,21 +11,37 @@ declare -A may=(
   [estimate]="base linalg geometry measurement kinematics evidence inertial search"
   [identify]="base linalg geometry measurement kinematics evidence inertial search estimate"
   [calibrate]="base linalg geometry measurement kinematics evidence search estimate"
+  [plan]="base linalg geometry measurement kinematics evidence search estimate calibrate"
+  [deploy]="base linalg geometry measurement kinematics evidence search estimate calibrate plan"
   [simulate]="base linalg geometry measurement kinematics"
-  [io]="base linalg geometry measurement kinematics evidence"
-  [report]="base linalg geometry kinematics evidence io"
-  [cli]="base linalg geometry measurement kinematics evidence inertial search estimate identify calibrate simulate io report cli"
+  [words]="base linalg geometry measurement kinematics evidence inertial"
+  [io]="base linalg geometry measurement kinematics evidence words"
+  [report]="base linalg geometry measurement kinematics evidence words io"
+  [cli]="base linalg geometry measurement kinematics evidence inertial search estimate identify calibrate plan deploy simulate words io report cli"
 )
 status=0
-while IFS=: read -r file included; do
-  from=${file%%/*}
-  to=$(sed -E 's|.*"kinfer/([a-z_]+)/.*|\1|' <<<"$included")
-  [ "$from" = "$to" ] && continue
-  case " ${may[$from]-none} " in
-    *" $to "*) ;;
-    *) echo "src/kinfer/$file: $from may not include $to"; status=1 ;;
+edges=$(grep -rHoE '#include "kinfer/[^"]*"' --include='*.?pp' . |
+  sed -E 's|^\./||; s|\.[ch]pp:#include "kinfer/| |; s|\.hpp"$||' | sort -u)
+
+while read -r from to; do
+  room=${from%%/*} used=${to%%/*}
+  [ "$room" = "$used" ] && continue
+  case " ${may[$room]-none} " in
+    *" $used "*) ;;
+    *) echo "src/kinfer/$from: $room may not include $used ($to)"; status=1 ;;
   esac
-done < <(grep -rHoE '#include "kinfer/[a-z_]+/[^"]*"' --include='*.?pp' . | sed 's|^\./||')
+done <<<"$edges"
+
+# tsort prints each member of a cycle on standard error.
+no_cycles() {  # WHAT: pairs "user used" on standard input
+  local loops
+  if ! loops=$(tsort 2>&1 >/dev/null) || [ -n "$loops" ]; then
+    echo "cycle of $1:"; sed 's/^tsort: //' <<<"$loops"; status=1
+  fi
+}
+no_cycles files < <(awk '$1 != $2' <<<"$edges")
+no_cycles folders < <(awk '{ a = $1; b = $2; sub(/\/[^\/]*$/, "", a); sub(/\/[^\/]*$/, "", b); if (a != b) print a, b }' <<<"$edges" | sort -u)
+
 if grep -rnE '<Eigen/(SVD|Eigenvalues|QR|Cholesky|LU|Dense|Sparse)' --include='*.?pp' . | grep -v '^\./linalg/'; then
   echo "decompositions belong into linalg (compile time)"; status=1
 fi

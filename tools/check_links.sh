@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Every relative link in the Markdown files leads to a file.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

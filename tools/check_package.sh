@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # find_package(kinfer) works from an installed tree: installs BUILD into a folder of its own, builds a user's program there.
 set -euo pipefail
 build=$1 source=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/package

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # check_study.sh PROGRAM OUT: a short run of the study of paper 2 gives the same tables on one thread and on two, but for
 # the columns that are times.
 set -euo pipefail

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bundles the front end and writes it as C++ source: node bundle.mjs OUTPUT.cpp
 import { build } from 'esbuild';
 import { writeFileSync } from 'node:fs';

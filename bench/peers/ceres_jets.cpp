@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "peers/ceres_jets.hpp"
 
 #include <ceres/ceres.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ceres on paper 2's problem with automatic derivatives: the Jacobian of its Jets, and a whole fit.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one core can do at most: independent fused multiply-adds and nothing else.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The obvious way to the same figures: 4 x 4 products in Eigen with sine and cosine at each joint. Plain numbers cross
 // the border, because this file is compiled with other flags than the rest.
 #pragma once

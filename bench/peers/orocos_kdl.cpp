@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "peers/orocos_kdl.hpp"
 
 #include <kdl/chain.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Orocos KDL's recursive forward kinematics of the same chain.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "peers/pagmo_swarm.hpp"
 
 #include <pagmo/algorithm.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // pagmo's PSO and CMA-ES on paper 2's problem with the naive fitness.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The real chain of five segments, moved by hand: found from its INS alone, judged by cameras. One argument: the folder
 // of a trial with rigid.csv, nonrigid.csv and optical.csv; then, if only one is wanted, the log and the root.
 #include <fmt/format.h>
@@ -7,17 +8,18 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/identify/identify.hpp"
-#include "kinfer/io/ins_csv.hpp"
+#include "kinfer/identify/pipeline.hpp"
+#include "kinfer/io/recording/ins_csv.hpp"
 #include "studies/diodem/optical_truth.hpp"
 
 namespace kinfer::study {
+using namespace identify;
 namespace {
 
 constexpr double length_of_segment_4 = 0.2706, length_of_segments_2_and_3 = 0.5782;  // [m] by the cameras, to 1-2 mm
 
 /// A joint with the segment of the smaller number as its parent.
-FoundJoint outward(FoundJoint joint) {
+JointEstimate outward(JointEstimate joint) {
   if (joint.parent < joint.child) return joint;
   std::swap(joint.parent, joint.child);
   std::swap(joint.axis_in_parent, joint.axis_in_child);
@@ -27,9 +29,9 @@ FoundJoint outward(FoundJoint joint) {
   return joint;
 }
 
-FoundJoint joint_between(const Identification& found, const std::string& parent, const std::string& child) {
-  for (const FoundJoint& joint : found.joints)
-    if (const FoundJoint turned = outward(joint); turned.parent == parent && turned.child == child) return turned;
+JointEstimate joint_between(const Identification& found, const std::string& parent, const std::string& child) {
+  for (const JointEstimate& joint : found.joints)
+    if (const JointEstimate turned = outward(joint); turned.parent == parent && turned.child == child) return turned;
   return {};
 }
 
@@ -47,13 +49,13 @@ double largest(const std::array<double, 2>& sd) {
 
 /// Joint 12 to joint 34 along hinge 23: the split between both segments slides along the hinge, their sum does not.
 Length segments_2_and_3(const Identification& found) {
-  const FoundJoint j12 = joint_between(found, "seg1", "seg2"), j23 = joint_between(found, "seg2", "seg3"),
-                   j34 = joint_between(found, "seg3", "seg4");
+  const JointEstimate j12 = joint_between(found, "seg1", "seg2"), j23 = joint_between(found, "seg2", "seg3"),
+                      j34 = joint_between(found, "seg3", "seg4");
   const Vec3 &a = j23.axis_in_child, &b = j34.axis_in_parent, between = j34.point_in_parent - j23.point_in_child;
   const double in_2 = (j23.point_in_parent - j12.point_in_child).dot(j23.axis_in_parent);
   const double c = a.dot(b), in_3 = (between.dot(a) - c * between.dot(b)) / (1.0 - c * c);  // foot on line 34
   return {std::abs(in_2 + in_3),
-          std::hypot(largest(j12.sd.point_in_child), j23.sd.slide, largest(j34.sd.point_in_parent))};
+          std::hypot(largest(j12.sd.point_in_child), j23.sd.along_axis, largest(j34.sd.point_in_parent))};
 }
 
 void print(const char* name, const Length& length, double truth) {
@@ -64,7 +66,7 @@ void print(const char* name, const Length& length, double truth) {
 void judge(const Identification& found, const OpticalLog& optical, const OpticalAlignment& alignment) {
   std::vector<double> errors;
   for (const auto& [parent, child] : {std::pair{"seg2", "seg3"}, {"seg3", "seg4"}, {"seg4", "seg5"}}) {
-    const FoundJoint joint = joint_between(found, parent, child);
+    const JointEstimate joint = joint_between(found, parent, child);
     const OpticalHinge truth = optical_hinge(optical, alignment, parent, child);
     const double is_parent = degrees_between(joint.axis_in_parent, truth.in_parent),
                  is_child = degrees_between(joint.axis_in_child, truth.in_child);
@@ -73,11 +75,11 @@ void judge(const Identification& found, const OpticalLog& optical, const Optical
     fmt::print(
         "  hinge {}-{}: axis {:.2f} and {:.2f} deg off (sd {:.2f}, {:.2f}); by the cameras it strays {:.2f} deg\n",
         parent, child, is_parent, is_child, deg(joint.sd.axis_in_parent), deg(joint.sd.axis_in_child),
-        Angle::rad(truth.stray).deg());
+        Angle::rad(truth.axis_deviation).deg());
   }
   fmt::print("  axes: median {:.2f}, worst {:.2f} deg; joint seg1-seg2 is {}\n", median(errors),
              *std::ranges::max_element(errors), name(joint_between(found, "seg1", "seg2").type));
-  for (const FoundLink& link : found.links)
+  for (const LinkEstimate& link : found.links)
     if (link.segment == "seg4") print("segment 4", {link.length, link.sd}, length_of_segment_4);
   print("segments 2 + 3", segments_2_and_3(found), length_of_segments_2_and_3);
   fmt::print("  {}\n", found.verdict);
@@ -95,7 +97,7 @@ void run(const std::string& folder, const std::string& log, const std::string& r
              1e3 * alignment.late);
   for (const auto& [segment, rms] : alignment.rms) fmt::print(" {:.3f}", rms);
   fmt::print(" rad/s\n");
-  const auto found = identify(*recording, {.root = root}, Rng(1));
+  const auto found = identify_machine(*recording, {.root = root}, Rng(1));
   if (!found)
     fmt::print("  {}\n", found.error().what);
   else

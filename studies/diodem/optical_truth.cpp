@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "studies/diodem/optical_truth.hpp"
 
 #include <algorithm>
@@ -8,9 +9,10 @@
 
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/identify/loose_hinge.hpp"
+#include "kinfer/identify/geometry/mean_revolute.hpp"
 
 namespace kinfer::study {
+using namespace identify;
 namespace {
 
 std::vector<std::string> cells_of(const std::string& line) {
@@ -39,9 +41,10 @@ struct TurnedSum {
   TurnedSum(const InsSensor& sensor, std::span<const double> t) : time(t) {
     const std::size_t at_rest = std::min<std::size_t>(40, t.size());
     Vec3 bias = Vec3::Zero(), total = Vec3::Zero();
-    for (std::size_t i = 0; i < at_rest; ++i) bias += sensor.rate.at(i) / static_cast<double>(at_rest);
+    for (std::size_t i = 0; i < at_rest; ++i) bias += sensor.angular_velocity.at(i) / static_cast<double>(at_rest);
     for (std::size_t i = 0; i < t.size(); ++i) {
-      if (i > 0) total += (t[i] - t[i - 1]) * (0.5 * (sensor.rate.at(i) + sensor.rate.at(i - 1)) - bias);
+      if (i > 0)
+        total += (t[i] - t[i - 1]) * (0.5 * (sensor.angular_velocity.at(i) + sensor.angular_velocity.at(i - 1)) - bias);
       sum.push_back(total);
     }
   }
@@ -140,8 +143,9 @@ OpticalHinge optical_hinge(const OpticalLog& optical, const OpticalAlignment& al
     if (r.allFinite())
       rotations.push_back(alignment.rotation.at(parent) * r * alignment.rotation.at(child).transpose());
   }
-  const LooseHinge hinge = loose_hinge(ball_body(0, 0, Mat3::Identity()), rotations, MatrixXd::Zero(6, 6), 0.0);
-  return {hinge.body.parent_R_axis.col(2), hinge.body.child_R_axis.col(2), hinge.stray};
+  const MeanRevolute hinge =
+      fit_mean_revolute(spherical_body(0, 0, Mat3::Identity()), rotations, MatrixXd::Zero(6, 6), 0.0);
+  return {hinge.body.parent_R_axis.col(2), hinge.body.child_R_axis.col(2), hinge.axis_deviation};
 }
 
 }  // namespace kinfer::study

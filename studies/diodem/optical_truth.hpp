@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The real chain of five segments as cameras saw it: hinge axes in the frames of the INS on the segments.
 #pragma once
 
@@ -27,8 +28,8 @@ struct OpticalAlignment {
 OpticalAlignment aligned(const OpticalLog& optical, const InsRecording& recording);
 
 struct OpticalHinge {
-  Vec3 in_parent, in_child;  ///< axes in the frames of the INS
-  double stray = 0.0;        ///< [rad] rms angle between them
+  Vec3 in_parent, in_child;     ///< axes in the frames of the INS
+  double axis_deviation = 0.0;  ///< [rad] rms angle between them
 };
 OpticalHinge optical_hinge(const OpticalLog& optical, const OpticalAlignment& alignment, const std::string& parent,
                            const std::string& child);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Seeds x machines x grades: how far the identified geometry is from the truth, and whether its intervals are honest.
 #include <fmt/format.h>
 
@@ -5,18 +6,19 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "kinfer/estimate/ins_noise.hpp"
+#include "kinfer/estimate/continuous/solver/noise_update.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/identify/ordered_motion.hpp"
-#include "kinfer/identify/refine.hpp"
-#include "kinfer/inertial/sensor_judgement.hpp"
-#include "kinfer/io/ins_csv.hpp"
-#include "kinfer/simulate/ins_simulation.hpp"
+#include "kinfer/identify/refinement/refine.hpp"
+#include "kinfer/identify/structure/ordered_motion.hpp"
+#include "kinfer/inertial/sensor_grading.hpp"
+#include "kinfer/io/recording/ins_csv.hpp"
+#include "kinfer/simulate/compliant_mounts.hpp"
+#include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
-#include "kinfer/simulate/soft_mounts.hpp"
 #include "studies/identify/truth_scores.hpp"
 
 namespace kinfer::study {
+using namespace identify;
 namespace {
 
 struct Setup {
@@ -24,16 +26,16 @@ struct Setup {
   Script script = Script::standard;
   Base base = Base::still;
   double slope = 0.0;
-  SensorTrouble trouble;
+  SensorFaults trouble;
   double accelerometer_range = 0.0, gyro_range = 0.0;  // [m/s²], [rad/s]; 0: the grade's
   std::optional<Servo> servo;                          // forward dynamics instead of prescribed motion
   double lean = 0.0;                                   // [rad] of mounts of foam under the sensors' own weight
-  double rate = 200.0;                                 // [Hz]
+  double sampling_rate = 200.0;                        // [Hz]
   int seeds = 4;
-  double knots = 0.0;     // [s]; 0: chosen
-  bool steady = false;    // biases that do not wander
-  bool constant = false;  // they do, and the fit does not know
-  double duration = 0.0;  // [s]; 0: the script's own
+  double knot_spacing = 0.0;  // [s]; 0: chosen
+  bool steady = false;        // biases that do not wander
+  bool constant = false;      // they do, and the fit does not know
+  double duration = 0.0;      // [s]; 0: the script's own
 };
 
 struct Drive {
@@ -47,14 +49,14 @@ Drive simulated(const Setup& setup, std::uint64_t seed) {
   const MujocoWorld world = MujocoWorld::load(mjcf).value();
   const auto drive =
       make_drive(world.machine(), {.script = setup.script, .duration = setup.duration}, Rng(seed).stream(2)).value();
-  const MachineMotion motion =
-      setup.servo ? world.drive(drive, setup.rate, *setup.servo).value() : world.prescribe(drive, setup.rate);
+  const MachineMotion motion = setup.servo ? world.drive(drive, setup.sampling_rate, *setup.servo).value()
+                                           : world.prescribe(drive, setup.sampling_rate);
   SensorModel grade = *sensor_grade(setup.grade);
   if (setup.accelerometer_range > 0.0) grade.accelerometer.range = setup.accelerometer_range;
   if (setup.gyro_range > 0.0) grade.gyroscope.range = setup.gyro_range;
   if (setup.steady) grade.accelerometer.instability = grade.gyroscope.instability = 0.0;
-  const MachineMotion carried = setup.lean > 0.0 ? on_foam(motion, setup.lean, Rng(seed).stream(4)) : motion;
-  return {simulated_recording(world.machine(), carried, grade, setup.trouble, Rng(seed).stream(3)),
+  const MachineMotion carried = setup.lean > 0.0 ? with_foam_mounts(motion, setup.lean, Rng(seed).stream(4)) : motion;
+  return {simulate_recording(world.machine(), carried, grade, setup.trouble, Rng(seed).stream(3)),
           machine_truth(world.machine(), motion)};
 }
 
@@ -63,8 +65,8 @@ struct Lengths {
   std::vector<double> off, ratio;
 };
 
-void judge_lengths(const std::vector<FoundJoint>& joints, const MachineTruth& truth, Lengths& lengths) {
-  for (const FoundLink& link : found_links(joints)) {
+void judge_lengths(const std::vector<JointEstimate>& joints, const MachineTruth& truth, Lengths& lengths) {
+  for (const LinkEstimate& link : link_estimates(joints)) {
     const auto t = std::ranges::find(truth.links, link.segment, &LinkTruth::segment);
     if (t == truth.links.end()) continue;
     const double off = link.length - t->length;
@@ -89,28 +91,29 @@ void run(const Setup& setup) {
   for (int seed = 1; seed <= setup.seeds; ++seed) {
     const Drive drive = simulated(setup, static_cast<std::uint64_t>(seed));
     const auto begin = std::chrono::steady_clock::now();
-    const auto ordered = ordered_motion(drive.recording, {}, drive.truth.root, 0);
+    const auto ordered = order_segments(drive.recording, {}, drive.truth.root, 0);
     if (!ordered) {
       fmt::print("seed {}: {}\n", seed, ordered.error().what);
       continue;
     }
     const RecordedMotion* motion = &ordered->motion;
     const SegmentTree* tree = &ordered->tree;
-    std::vector<JointStart> starts;
+    std::vector<InitialJoint> starts;
     for (std::size_t i = 1; i < tree->order.size(); ++i)
-      starts.push_back(
-          joint_start(*motion, *tree, *tree->parent[tree->order[i]], tree->order[i], FoundJointType::revolute));
+      starts.push_back(estimate_initial_joint(*motion, *tree, *tree->parent[tree->order[i]], tree->order[i],
+                                              EstimatedJointType::revolute));
     const auto started = std::chrono::steady_clock::now();
-    SensorModel grade = judged_model(drive.recording);
+    SensorModel grade = estimate_sensor_model(drive.recording);
     if (setup.constant) grade.accelerometer.instability = grade.gyroscope.instability = 0.0;
-    const auto found = refine(drive.recording, *motion, *tree, starts, {.grade = grade, .knots = setup.knots});
+    const auto found =
+        refine(drive.recording, *motion, *tree, starts, {.grade = grade, .knot_spacing = setup.knot_spacing});
     const auto done = std::chrono::steady_clock::now();
     if (!found) {
       fmt::print("seed {}: {}\n", seed, found.error().what);
       continue;
     }
-    std::vector<FoundJoint> joints;
-    for (const RefinedJoint& joint : found->joints) joints.push_back(joint.found);
+    std::vector<JointEstimate> joints;
+    for (const RefinedJoint& joint : found->joints) joints.push_back(joint.estimate);
     judge_lengths(joints, drive.truth, lengths);
     const GeometryScore score = geometry_score(joints, drive.truth);
     const auto seconds = [](auto a, auto b) { return std::chrono::duration<double>(b - a).count(); };
@@ -120,12 +123,13 @@ void run(const Setup& setup) {
         "{:.2f} + {:.2f} s, {}, knots {:.3f} s\n",
         seed, 1e3 * score.line, 1e3 * score.direction, 1e3 * score.azimuth, 1e3 * score.slide, found->fit.iterations,
         name(found->fit.stop), found->fit.cost.total, seconds(begin, started), seconds(started, done), found->grade,
-        found->knots);
+        found->knot_spacing);
     if (std::getenv("DETAIL")) {
       for (std::size_t s = 0; s < found->fit.cost.sensors.size(); ++s) {
         const SensorFit& f = found->fit.cost.sensors[s];
-        fmt::print("   {}: chi2/n rate {:.3f} force {:.3f} field {:.4f}\n", s, f.rate.squares / f.rate.terms,
-                   f.force.squares / f.force.terms, f.field.squares / std::max(1.0, f.field.terms));
+        fmt::print("   {}: chi2/n rate {:.3f} force {:.3f} field {:.4f}\n", s,
+                   f.angular_velocity.squares / f.angular_velocity.terms, f.force.squares / f.force.terms,
+                   f.field.squares / std::max(1.0, f.field.terms));
       }
       for (const ScoredScalar& s : score.scalars)
         fmt::print("   {:<28} {:9.3f} sd {:8.3f}  ratio {:6.2f}\n", s.name, 1e3 * s.error, 1e3 * s.sd, s.error / s.sd);
@@ -147,25 +151,27 @@ void run(const Setup& setup) {
 }
 
 /// A recording of a real machine whose joint types are given, one a joint of the tree in order.
-void run_log(const std::string& path, const std::string& root, const std::vector<FoundJointType>& types, double knots) {
+void run_log(const std::string& path, const std::string& root, const std::vector<EstimatedJointType>& types,
+             double knot_spacing) {
   const auto recording = read_ins_csv(path).value();
-  const auto ordered = ordered_motion(recording, {}, root, 0).value();
+  const auto ordered = order_segments(recording, {}, root, 0).value();
   const RecordedMotion& motion = ordered.motion;
   const SegmentTree& tree = ordered.tree;
-  std::vector<JointStart> starts;
+  std::vector<InitialJoint> starts;
   for (std::size_t i = 1; i < tree.order.size(); ++i)
-    starts.push_back(joint_start(motion, tree, *tree.parent[tree.order[i]], tree.order[i], types.at(i - 1)));
-  const auto found = refine(recording, motion, tree, starts, {.knots = knots}).value();
+    starts.push_back(estimate_initial_joint(motion, tree, *tree.parent[tree.order[i]], tree.order[i], types.at(i - 1)));
+  const auto found = refine(recording, motion, tree, starts, {.knot_spacing = knot_spacing}).value();
   fmt::print("{} iterations {} cost {:.0f} {}\n", found.fit.iterations, name(found.fit.stop), found.fit.cost.total,
              found.grade);
   for (std::size_t s = 0; s < found.fit.cost.sensors.size(); ++s) {
     const SensorFit& f = found.fit.cost.sensors[s];
     const InsNoise& noise = found.noise[s];
-    fmt::print("{}: noise rate {:.4f} force {:.4f}, memory {:.1f} {:.1f}\n", motion.segments[s].name, noise.rate,
-               noise.force, memory_of(f.rate), memory_of(f.force));
+    fmt::print("{}: noise rate {:.4f} force {:.4f}, memory {:.1f} {:.1f}\n", motion.segments[s].name,
+               noise.angular_velocity, noise.force, autocorrelation_time(f.angular_velocity),
+               autocorrelation_time(f.force));
   }
   for (const RefinedJoint& joint : found.joints) {
-    const FoundJoint& j = joint.found;
+    const JointEstimate& j = joint.estimate;
     const auto vector = [](const char* name, const Vec3& v) {
       fmt::print(" {} {:.5f} {:.5f} {:.5f}", name, v.x(), v.y(), v.z());
     };
@@ -176,11 +182,11 @@ void run_log(const std::string& path, const std::string& root, const std::vector
     vector("point_in_child", j.point_in_child);
     fmt::print(" sd mrad {:.2f} {:.2f} mm {:.2f} {:.2f} {:.2f}\n", 1e3 * j.sd.axis_in_parent[0],
                1e3 * j.sd.axis_in_child[0], 1e3 * j.sd.point_in_parent[0], 1e3 * j.sd.point_in_child[0],
-               1e3 * j.sd.slide);
+               1e3 * j.sd.along_axis);
   }
-  std::vector<FoundJoint> joints;
-  for (const RefinedJoint& joint : found.joints) joints.push_back(joint.found);
-  for (const FoundLink& link : found_links(joints))
+  std::vector<JointEstimate> joints;
+  for (const RefinedJoint& joint : found.joints) joints.push_back(joint.estimate);
+  for (const LinkEstimate& link : link_estimates(joints))
     fmt::print("link {} {:.2f} mm sd {:.2f}\n", link.segment, 1e3 * link.length, 1e3 * link.sd);
 }
 
@@ -191,12 +197,12 @@ int main(int argc, char** argv) {
   using namespace kinfer;
   study::Setup setup;
   if (argc > 4 && std::string(argv[1]) == "log") {
-    std::vector<FoundJointType> types;
+    std::vector<EstimatedJointType> types;
     for (const char letter : std::string(argv[4]))
-      types.push_back(letter == 's'   ? FoundJointType::spherical
-                      : letter == 'u' ? FoundJointType::universal
-                      : letter == 'p' ? FoundJointType::prismatic
-                                      : FoundJointType::revolute);
+      types.push_back(letter == 's'   ? EstimatedJointType::spherical
+                      : letter == 'u' ? EstimatedJointType::universal
+                      : letter == 'p' ? EstimatedJointType::prismatic
+                                      : EstimatedJointType::revolute);
     study::run_log(argv[2], argv[3], types, argc > 5 ? std::atof(argv[5]) : 0.0);
     return 0;
   }
@@ -207,7 +213,7 @@ int main(int argc, char** argv) {
     const std::string word = argv[i];
     if (word.ends_with("s") && !word.ends_with("knots") && std::atof(word.c_str()) > 0.0)
       setup.duration = std::atof(word.c_str());
-    if (word.ends_with("knots")) setup.knots = std::atof(word.c_str());
+    if (word.ends_with("knots")) setup.knot_spacing = std::atof(word.c_str());
     if (word == "steady") setup.steady = true;
     if (word == "constant") setup.constant = true;
     if (word == "gentle") setup.script = Script::gentle;
@@ -221,8 +227,8 @@ int main(int argc, char** argv) {
     if (word == "saturated") setup.accelerometer_range = 12.0, setup.gyro_range = 0.6;
     if (word == "stiff") setup.servo = Servo::stiff;
     if (word == "soft") setup.servo = Servo::soft;
-    if (word == "foam") setup.lean = 0.08, setup.rate = 50.0;
-    if (word == "tape") setup.lean = 0.02, setup.rate = 50.0;
+    if (word == "foam") setup.lean = 0.08, setup.sampling_rate = 50.0;
+    if (word == "tape") setup.lean = 0.02, setup.sampling_rate = 50.0;
     if (word == "slope") setup.slope = 8.0;
     if (word == "rocking") setup.base = Base::rocking;
     if (word == "yawing") setup.base = Base::yawing;

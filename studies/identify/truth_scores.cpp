@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "studies/identify/truth_scores.hpp"
 
 #include <fmt/format.h>
@@ -34,12 +35,12 @@ struct Scorer {
 
 }  // namespace
 
-GeometryScore geometry_score(const std::vector<FoundJoint>& found, const MachineTruth& truth) {
+GeometryScore geometry_score(const std::vector<JointEstimate>& found, const MachineTruth& truth) {
   GeometryScore score;
   Scorer scorer{score};
   for (const JointTruth& t : truth.joints) {
     const auto joint =
-        std::ranges::find_if(found, [&](const FoundJoint& f) { return f.parent == t.parent && f.child == t.child; });
+        std::ranges::find_if(found, [&](const JointEstimate& f) { return f.parent == t.parent && f.child == t.child; });
     if (joint == found.end()) {
       score.complete = false;
       score.line = score.direction = 1e3;
@@ -48,7 +49,7 @@ GeometryScore geometry_score(const std::vector<FoundJoint>& found, const Machine
     if (t.type != JointType::revolute) continue;
     Vec3 axis = joint->axis_in_parent, point = joint->point_in_parent;
     const auto incoming = std::ranges::find(truth.joints, t.parent, &JointTruth::child);
-    const bool loose_azimuth = incoming != truth.joints.end() && t.hidden_in_parent.size() == 1;
+    const bool loose_azimuth = incoming != truth.joints.end() && t.unobservable_in_parent.size() == 1;
     if (loose_azimuth) {
       const double turn = best_turn(*incoming, t, *joint);
       const Mat3 r = exp_so3(turn * incoming->axis_in_child);
@@ -58,15 +59,15 @@ GeometryScore geometry_score(const std::vector<FoundJoint>& found, const Machine
     }
     const std::string label = t.name;
     const auto before = score.scalars.size();
-    scorer.side(label + " parent", axis, point, t.axis_in_parent, t.point_in_parent, t.hidden_in_parent,
+    scorer.side(label + " parent", axis, point, t.axis_in_parent, t.point_in_parent, t.unobservable_in_parent,
                 joint->sd.axis_in_parent, joint->sd.point_in_parent);
     if (loose_azimuth) score.scalars.resize(before);  // stated with the azimuth's part in it
-    const bool child_loose = t.azimuth_by_field_only;
+    const bool child_loose = t.heading_needs_magnetometer;
     const auto middle = score.scalars.size();
     scorer.side(label + " child", joint->axis_in_child, joint->point_in_child, t.axis_in_child, t.point_in_child,
-                t.hidden_in_child, joint->sd.axis_in_child, joint->sd.point_in_child);
+                t.unobservable_in_child, joint->sd.axis_in_child, joint->sd.point_in_child);
     if (child_loose) score.scalars.resize(std::min(score.scalars.size(), middle + 2));
-    if (t.slide_observable && t.hidden_in_parent.empty()) {
+    if (t.is_axial_offset_observable && t.unobservable_in_parent.empty()) {
       const double sign = joint->axis_in_parent.dot(t.axis_in_parent) < 0.0 ? -1.0 : 1.0;
       const auto slide = [&](const Vec3& ap, const Vec3& p, const Vec3& ac, const Vec3& c) {
         return ap.dot(p) - ac.dot(c);
@@ -75,7 +76,7 @@ GeometryScore geometry_score(const std::vector<FoundJoint>& found, const Machine
           sign * slide(joint->axis_in_parent, joint->point_in_parent, joint->axis_in_child, joint->point_in_child);
       const double ought = slide(t.axis_in_parent, t.point_in_parent, t.axis_in_child, t.point_in_child);
       score.slide = std::max(score.slide, std::abs(is - ought));
-      score.scalars.push_back({label + " slide", is - ought, joint->sd.slide});
+      score.scalars.push_back({label + " slide", is - ought, joint->sd.along_axis});
     }
   }
   return score;

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far found joints are from the true ones, as METHODS of the project define it (docs/methods/identify.md), scalar
 // by scalar beside the standard deviations that were claimed.
 #pragma once
 
 #include "kinfer/evidence/identification.hpp"
-#include "kinfer/simulate/truth.hpp"
+#include "kinfer/simulate/ground_truth.hpp"
 
 namespace kinfer::study {
 
@@ -20,6 +21,6 @@ struct GeometryScore {
   bool complete = true;    ///< every true joint was found
   std::vector<ScoredScalar> scalars;
 };
-GeometryScore geometry_score(const std::vector<FoundJoint>& found, const MachineTruth& truth);
+GeometryScore geometry_score(const std::vector<JointEstimate>& found, const MachineTruth& truth);
 
 }  // namespace kinfer::study

@@ -1,15 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tracker noise of 10 µm + 5 µm/m, 50 poses, paper 2's robot with its table 3 errors somewhere in the tracker's world:
 // the error on 300 poses that were never measured, for 20 seeds of poses and noise, beside what the covariance says.
 #include <fmt/core.h>
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/estimate/bundle.hpp"
+#include "kinfer/estimate/poses/bundle.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "support/robots.hpp"
 
 int main() {
   using namespace kinfer;
+  using namespace kinfer::calibrate;
   Chain nominal = test::er20(0.125);
   nominal.tool.xyz = Vec3(0.03, 0.02, 0.1);
   Chain truth = test::with_table3_errors(nominal);
@@ -23,7 +25,7 @@ int main() {
   std::vector<Figures> figures(seeds);
   parallel_for(seeds, 0, [&](std::size_t i) {
     const PoseSet data = test::measured(truth, test::paper2_poses(50, test::tracker), static_cast<int>(i) + 1);
-    const Calibration c = calibrate({nominal, {}, test::tracker, data}, {}, Rng(1)).value();
+    const Calibration c = calibrate_robot({nominal, {}, test::tracker, data}, {}, Rng(1)).value();
     const ErrorStatistics errors = error_statistics(point_errors(c.estimate.chain, unseen));
     double squares = 0.0;
     for (int row = 0; row < unseen.rows(); ++row)

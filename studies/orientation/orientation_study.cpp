@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the orientation filters are worth on measured data: ten trials of BROAD with optical truth, three runs of a UR5
 // with encoders. Prints the tables of docs/methods/orientation.md; draws orientation.svg into the folder given as
 // argument.
@@ -11,9 +12,9 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/parallel.hpp"
-#include "kinfer/inertial/orientation.hpp"
-#include "kinfer/inertial/orientation_error.hpp"
-#include "kinfer/io/text_file.hpp"
+#include "kinfer/inertial/filters/orientation.hpp"
+#include "kinfer/inertial/filters/orientation_error.hpp"
+#include "kinfer/io/text/text_file.hpp"
 #include "support/measured_trial.hpp"
 
 namespace {
@@ -44,8 +45,9 @@ const std::vector<std::string> chosen_trials{"09", "15", "28"};
 Score score(const testing::MeasuredTrial& trial, const FilterOptions& options) {
   const InsSensor& sensor = trial.recording.sensors[0];
   const auto& time = trial.recording.loggers[0].time;
-  const OrientationError with = orientation_error(orientations(sensor, time, options), trial.truth, trial.moves);
-  const OrientationError without = orientation_error(orientations(sensor, time, without_magnetometer(options)),
+  const OrientationError with =
+      orientation_error(estimate_orientations(sensor, time, options), trial.truth, trial.moves);
+  const OrientationError without = orientation_error(estimate_orientations(sensor, time, without_magnetometer(options)),
                                                      trial.truth, trial.moves, HeadingOffset::best_constant);
   return {with.total / degree, with.heading / degree, with.inclination / degree, without.heading / degree,
           without.inclination / degree};
@@ -118,7 +120,7 @@ void print_ur5(const fs::path& folder, const std::vector<NamedFilter>& filters) 
     for (const char* run : {"circle-150", "circle-250", "triangle-150"}) {
       const auto trial = testing::read_trial(folder / (std::string(run) + "_imu.csv"),
                                              folder / (std::string(run) + "_truth.csv"), "radius_");
-      const auto q = orientations(trial.recording.sensors[0], trial.recording.loggers[0].time, filter.options);
+      const auto q = estimate_orientations(trial.recording.sensors[0], trial.recording.loggers[0].time, filter.options);
       errors.push_back(aligned_error(q, trial.truth) / degree);
     }
     fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", filter.name, errors[0], errors[1], errors[2],

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "studies/paper1/figures.hpp"
 
 #include <fmt/format.h>

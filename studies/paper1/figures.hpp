@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Line charts as SVG, as small as paper 1's figures 8 and 9 need them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Paper 1 (Péntek et al. 2021) end to end: simulate its excavator, identify it by bacterial programming, and write its
 // tables and figures beside the values that it prints. `study_paper1 [FOLDER] [SEEDS]`; docs/methods/paper1.md reads
 // them.
@@ -8,15 +9,16 @@
 #include <numbers>
 
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/identify/identify.hpp"
-#include "kinfer/search/genetic_programming.hpp"
-#include "kinfer/simulate/ins_simulation.hpp"
+#include "kinfer/identify/pipeline.hpp"
+#include "kinfer/search/evolution/genetic_programming.hpp"
+#include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
 #include "kinfer/simulate/prescribed_motion.hpp"
 #include "studies/paper1/figures.hpp"
 #include "studies/paper1/truth_errors.hpp"
 
 namespace kinfer::study {
+using namespace identify;
 namespace {
 
 namespace fs = std::filesystem;
@@ -60,7 +62,7 @@ void add_second_on_boom(Log& log, const Machine& machine, const Drive& drive, co
                         const Rng& rng) {
   const Machine other = with_other_boom_sensor(machine);
   const MachineMotion motion = prescribed_motion(other, drive, 200.0);
-  log.recording.sensors.push_back(simulated_recording(other, motion, grade, {}, rng).sensors[boom]);
+  log.recording.sensors.push_back(simulate_recording(other, motion, grade, {}, rng).sensors[boom]);
   std::ranges::copy(machine_truth(other, motion).joints, std::back_inserter(log.truth.joints));
 }
 
@@ -74,20 +76,20 @@ Log simulated(const Setup& setup) {
   SensorModel grade = sensor_grade(setup.grade).value();
   if (setup.accelerometer_range > 0.0) grade.accelerometer.range = setup.accelerometer_range;
   if (setup.gyro_range > 0.0) grade.gyroscope.range = setup.gyro_range;
-  Log log{simulated_recording(machine, motion, grade, {}, Rng(setup.seed).stream(7)), machine_truth(machine, motion)};
+  Log log{simulate_recording(machine, motion, grade, {}, Rng(setup.seed).stream(7)), machine_truth(machine, motion)};
   if (setup.second_on_boom) add_second_on_boom(log, machine, drive, grade, Rng(setup.seed).stream(8));
   return log;
 }
 
 /// The paper's way: its filter, its terminals, its table 4.
 IdentifyOptions paper_options(int links) {
-  IdentifyOptions options{.terminals = Terminals::euler, .links = links, .geometry = Geometry::searched};
+  IdentifyOptions options{.terminals = JointVariableKind::euler, .links = links, .geometry = GeometrySource::searched};
   options.motion.filter = PaperEkfOptions{};
   return options;
 }
 
 Identification identified(const Log& log, const IdentifyOptions& options, std::uint64_t seed) {
-  auto found = identify(log.recording, options, Rng(seed));
+  auto found = identify_machine(log.recording, options, Rng(seed));
   if (!found) fmt::print(stderr, "{}\n", found.error().what), std::exit(1);
   return *found;
 }
@@ -119,7 +121,7 @@ void write_settings(const fs::path& folder) {
                                 {"magnetometer [uT]", grade.magnetometer}})
     sensors << fmt::format("{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}\n", name, i.noise_density, i.bias_sd, i.instability,
                            i.scale_sd, i.range);
-  const LinkSearchOptions s;
+  const BacterialLinkOptions s;
   table(folder, "table4.csv", "setting,value,in the paper") << fmt::format(
       "individuals,{},100\ngenerations,{},300\nclones,{},lost\ncycles,{},lost\ntransfers,{},lost\ndepth,{}-{},"
       "lost\nmost leaves,{},lost\nrows,{},a few seconds\n",
@@ -139,13 +141,13 @@ void write_table3(const fs::path& folder, const OrderEvidence& order) {
 }
 
 void write_leaves(const fs::path& folder, const std::string& name, const Identification& found,
-                  std::vector<FoundDhRow> LinkEvidence::*rows) {
+                  std::vector<DhRowEstimate> LinkEvidence::*rows) {
   auto file = table(folder, name, "segment,theta [rad],d [m],alpha [rad],a [m]");
   const auto angle = [](double value, const std::string& variable) {
     return variable.empty() ? fmt::format("{:.4f}", value) : variable;
   };
   for (const LinkEvidence& link : found.searches)
-    for (const FoundDhRow& r : link.*rows)
+    for (const DhRowEstimate& r : link.*rows)
       file << fmt::format("{},{},{:.4f},{},{:.4f}\n", r.segment, angle(r.row.theta, r.theta_variable), r.row.d,
                           angle(r.row.alpha, r.alpha_variable), r.row.a);
 }
@@ -157,7 +159,7 @@ std::vector<DhLeaf> found_leaves(const LinkEvidence& link, std::span<const Joint
     return found == signals.end() ? DhLeaf::constant : static_cast<int>(found - signals.begin());
   };
   std::vector<DhLeaf> leaves;
-  for (const FoundDhRow& r : link.found)
+  for (const DhRowEstimate& r : link.found)
     leaves.push_back({.theta = r.row.theta,
                       .d = r.row.d,
                       .alpha = r.row.alpha,
@@ -190,7 +192,7 @@ std::vector<Chart> signal_charts(const std::string& name, const std::vector<doub
     const Vec3 error = euler_angles(found[row].rotation) - euler_angles(measured[row].rotation);
     Line* lines[] = {&phi, &theta, &psi};
     for (int axis = 0; axis < 3; ++axis)
-      lines[axis]->x.push_back(time[row]), lines[axis]->y.push_back(1e3 * wrapped(error[axis]));
+      lines[axis]->x.push_back(time[row]), lines[axis]->y.push_back(1e3 * wrap_to_pi(error[axis]));
   }
   charts.push_back({name + ": residual angles of the found chain", "time [s]", "mrad", {phi, theta, psi}});
   return charts;
@@ -212,21 +214,21 @@ void write_table7_and_figure8(const fs::path& folder, const Log& log, const Iden
   for (std::size_t link = 0; link < theory.size(); ++link) {
     const std::size_t child = tree.order[link + 1], parent = *tree.parent[child];
     const std::string& name = motion.segments[child].name;
-    auto signals =
-        joint_signals(motion, parent, child, {.terminals = Terminals::euler, .smoothing = options.motion.smoothing});
-    predicted = carried(predicted, found_leaves(found.searches[link], signals), signals);
+    auto signals = find_joint_signals(motion, parent, child,
+                                      {.terminals = JointVariableKind::euler, .smoothing = options.motion.smoothing});
+    predicted = propagate(predicted, found_leaves(found.searches[link], signals), signals);
     std::ranges::stable_sort(signals, std::greater<>(),
                              [&](const JointSignal& s) { return s.name == (link == 0 ? "psi" : "theta"); });
-    theoretical = carried(theoretical, theory[link], signals);
-    const auto rows = telling_rows(motion, parent, child, Terminals::euler);
+    theoretical = propagate(theoretical, theory[link], signals);
+    const auto rows = informative_rows(motion, parent, child, JointVariableKind::euler);
     const auto measured = measured_states(motion.segments[child]);
-    const JRmse j = j_rmse(theoretical, measured, evenly_chosen(rows, 384), OrientationError::euler);
-    const FoundFit& f = found.searches[link].fitted;
+    const JRmse j = j_rmse(theoretical, measured, thin_rows(rows, 384), OrientationMetric::euler);
+    const LinkFit& f = found.searches[link].fitted;
     const double deviation = 100.0 * (f.total - j.total) / j.total;
     deviation_sum += deviation / 3.0;
     file << fmt::format("{},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.2f}\n", name, f.acceleration, j.acceleration,
                         f.orientation, j.orientation, f.total, j.total, deviation);
-    std::ranges::copy(signal_charts(name, motion.time, measured, predicted, theoretical, evenly_chosen(rows, 600)),
+    std::ranges::copy(signal_charts(name, motion.time, measured, predicted, theoretical, thin_rows(rows, 600)),
                       std::back_inserter(charts));
   }
   file << fmt::format("mean deviation,,,,,,,{:.2f}\nin the paper,,,,,,,0.31\n", deviation_sum);
@@ -305,10 +307,11 @@ void write_baseline(const fs::path& folder, int seeds) {
     const Log log = simulated({.seed = static_cast<std::uint64_t>(seed)});
     const RecordedMotion motion = segment_motion(log.recording, options.motion).value();
     const auto parent = measured_states(motion.segments[1]), child = measured_states(motion.segments[2]);
-    const auto signals = joint_signals(motion, 1, 2, {.terminals = Terminals::euler});
-    const LinkCost cost(parent, child, signals, evenly_chosen(telling_rows(motion, 1, 2, Terminals::euler), 384),
-                        {.orientation = OrientationError::euler});
-    const DhBreed breed(DhLeaves({.signals = static_cast<int>(signals.size())}), {});
+    const auto signals = find_joint_signals(motion, 1, 2, {.terminals = JointVariableKind::euler});
+    const LinkCost cost(parent, child, signals,
+                        thin_rows(informative_rows(motion, 1, 2, JointVariableKind::euler), 384),
+                        {.orientation = OrientationMetric::euler});
+    const DhBreed breed(DhLeafOperators({.signals = static_cast<int>(signals.size())}), {});
     const GenomeCost<DhTree> of_tree = [&](const DhTree& tree, double bound) { return cost(tree, bound); };
     const auto bp = evolve_bacteria(breed, of_tree, {}, Rng(static_cast<std::uint64_t>(seed)));
     const auto gp = evolve_by_crossover(breed, of_tree, {}, Rng(static_cast<std::uint64_t>(seed)));
@@ -343,7 +346,7 @@ void run(const fs::path& folder, int seeds) {
       "mrad on one run)\n",
       median(paper3.line), median(paper3.direction));
   for (const auto& [engine, name] : {std::pair{Engine::bp, "bp"}, {Engine::bmp, "bmp"}}) {
-    IdentifyOptions ours{.links = 3, .geometry = Geometry::searched};
+    IdentifyOptions ours{.links = 3, .geometry = GeometrySource::searched};
     ours.engine = engine;
     const Errors ours3 = write_seeds(folder, fmt::format("geometry_three_links_hinge_{}.csv", name), seeds, ours);
     fmt::print("three links, {}, kinfer-offline and hinge: {:.1f} mm, {:.1f} mrad\n", name, median(ours3.line),

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // Geometry errors of a found chain against the simulation's truth, free of what cannot be known.
 #pragma once
 
 #include "kinfer/evidence/identification.hpp"
-#include "kinfer/simulate/truth.hpp"
+#include "kinfer/simulate/ground_truth.hpp"
 
 namespace kinfer::study {
 
@@ -13,6 +14,6 @@ struct GeometryErrors {
 };
 
 /// A body that turns about one fixed axis only is first turned about it to the best fit of its outgoing axis.
-GeometryErrors geometry_errors(const std::vector<FoundJoint>& found, const MachineTruth& truth);
+GeometryErrors geometry_errors(const std::vector<JointEstimate>& found, const MachineTruth& truth);
 
 }  // namespace kinfer::study

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All methods on one kind of problem, over many seeds: the honest table.
 #pragma once
 

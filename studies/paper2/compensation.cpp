@@ -1,12 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "compensation.hpp"
 
 #include <fmt/format.h>
 
-#include "kinfer/calibrate/compensate.hpp"
+#include "kinfer/deploy/compensate.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/kinematics/forward.hpp"
 
 namespace kinfer::paper2 {
+using namespace deploy;
 namespace {
 
 std::vector<std::string> row(const std::string& method, const std::vector<double>& misses,
@@ -26,10 +28,10 @@ std::vector<std::string> row(const std::string& method, const std::vector<double
 /// Sends what `model` says to the real robot.
 std::vector<std::string> row_of(const std::string& method, const Problem& problem, const Chain& model) {
   const MatrixXd& wanted = problem.verify.joints;
-  const std::vector<Compensated> sent = compensate_joints(model, problem.nominal, wanted, 1);
+  const std::vector<CompensatedJoints> sent = compensate_joints(model, problem.nominal, wanted, 1);
   std::vector<double> misses, model_errors;
   for (std::size_t i = 0; i < sent.size(); ++i) {
-    if (sent[i].reach != Reach::reached) continue;
+    if (sent[i].status != InverseStatus::reached) continue;
     const Vec3 went = forward(problem.truth, sent[i].q).position;
     misses.push_back((went - forward(problem.nominal, wanted.col(static_cast<Eigen::Index>(i))).position).norm());
     model_errors.push_back((went - forward(model, sent[i].q).position).norm());

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What it was all for: joint targets corrected by each identified model, sent to the real robot.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "er20.hpp"
 
 #include <fmt/format.h>
@@ -73,7 +74,7 @@ ParameterSet table2_parameters(const Chain& robot) {
   for (int j = 0; j < 6; ++j)
     for (const Field field : {Field::a, Field::d, Field::theta, Field::alpha})
       for (const Parameter& p : all.parameters)
-        if (p.at == Address{Owner::joint, j, field}) set.parameters.push_back(p);
+        if (p.at == ParameterAddress{Owner::joint, j, field}) set.parameters.push_back(p);
   return set;
 }
 

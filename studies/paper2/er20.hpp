@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot of paper 2 and the settings that its figures are reproduced with (docs/methods/paper2.md).
 #pragma once
 

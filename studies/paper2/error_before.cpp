@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "error_before.hpp"
 
 #include <fmt/format.h>
@@ -6,8 +7,8 @@
 #include <map>
 
 #include "er20.hpp"
-#include "kinfer/estimate/residuals.hpp"
-#include "kinfer/evidence/fit.hpp"
+#include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/evidence/fit_errors.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/simulate/pose_set.hpp"
@@ -91,7 +92,7 @@ double scatter_of(const std::vector<double>& errors, double ErrorStatistics::*fi
 
 std::vector<std::string> row(const PoseRule& rule, double d6) {
   const Chain nominal = er20(d6);
-  const PoseSet set = seen_points(with_errors(nominal, table3), rule.joints(nominal));
+  const PoseSet set = simulate_points(with_errors(nominal, table3), rule.joints(nominal));
   const std::vector<double> before = point_errors(nominal, set);
   const ErrorStatistics all = error_statistics(before);
   std::vector<std::string> cells{rule.name, fmt::format("{:.0f}", 1e3 * d6)};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The position error before compensation, and what tables 4 and 5 leave against table 3: both hang on where the poses
 // are, which the paper does not say for its simulation. So they are shown for three ways to draw them.
 #pragma once

@@ -1,14 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "methods.hpp"
 
 #include <chrono>
 #include <cmath>
 
-#include "kinfer/calibrate/population_fit.hpp"
-#include "kinfer/calibrate/population_fitness.hpp"
-#include "kinfer/estimate/bundle.hpp"
+#include "kinfer/calibrate/swarm/swarm_fit.hpp"
+#include "kinfer/calibrate/swarm/swarm_fitness.hpp"
+#include "kinfer/estimate/poses/bundle.hpp"
 #include "kinfer/kinematics/forward.hpp"
 
 namespace kinfer::paper2 {
+using namespace calibrate;
 namespace {
 
 constexpr double papers_sum = 5.55e-5 * 1e-6;  // [m²]
@@ -26,7 +28,7 @@ double target_sum(const Problem& problem) {
 }
 
 Objective objective_of(const Problem& problem) {
-  auto fitness = std::make_shared<PopulationFitness>(problem.nominal, problem.parameters, problem.fit);
+  auto fitness = std::make_shared<SwarmFitness>(problem.nominal, problem.parameters, problem.fit);
   return {problem.box, [fitness](ConstMatrixRef x, std::span<double> cost) { fitness->sums(x, cost); }};
 }
 
@@ -56,10 +58,10 @@ SearchOptions options_of(Method method, const Problem& problem, const Earlier& e
       return BpnnPsoOptions{
           .pso = pso, .net = earlier.net, .use = NetUse::before_every_update, .training = {.epochs = 0}};
     case Method::warm_start:
-      pso.initial = remembering_swarm(problem.box, pso.particles, earlier.x, rng);
+      pso.initial = draw_warm_swarm(problem.box, pso.particles, earlier.x, rng);
       return pso;
-    case Method::compact_swarm:
-      pso.initial = compact_swarm(problem.box, pso.particles, rng);
+    case Method::draw_compact_swarm:
+      pso.initial = draw_compact_swarm(problem.box, pso.particles, rng);
       return pso;
     case Method::qpso:
       return QpsoOptions{.budget = pso.budget};
@@ -78,11 +80,11 @@ Trial search(Method method, const Problem& problem, const Earlier& earlier, int 
   const Objective objective = objective_of(problem);
   const SearchOptions options = options_of(method, problem, earlier, Rng(seed).stream(0), effort);
   const Stopwatch watch;
-  const Outcome outcome = minimise(objective, options, Rng(seed).stream(1));
+  const SearchOutcome outcome = minimise(objective, options, Rng(seed).stream(1));
   const double seconds = watch.seconds();
   Trial trial{.method = method, .x = outcome.x, .best = outcome.best};
-  trial.iterations = iterations_to(outcome.best, target_sum(problem));
-  trial.iterations_to_sum = iterations_to(outcome.best, papers_sum);
+  trial.iterations = iterations_until(outcome.best, target_sum(problem));
+  trial.iterations_to_sum = iterations_until(outcome.best, papers_sum);
   const double share = trial.iterations < 0 ? 1.0 : double(trial.iterations + 1) / double(outcome.best.size());
   trial.evaluations = std::llround(share * static_cast<double>(outcome.evaluations));
   trial.seconds = share * seconds;
@@ -101,8 +103,8 @@ Trial least_squares_trial(const Problem& problem) {
       least_squares(pose_residuals(problem.nominal, plain, problem.fit, weights), pack(plain, problem.nominal));
   Trial trial{.method = Method::lm, .seconds = watch.seconds(), .x = outcome.x};
   for (const double cost : outcome.history) trial.best.push_back(cost * 1e-10);  // back from units of (10 µm)²
-  trial.iterations = iterations_to(trial.best, target_sum(problem));
-  trial.iterations_to_sum = iterations_to(trial.best, papers_sum);
+  trial.iterations = iterations_until(trial.best, target_sum(problem));
+  trial.iterations_to_sum = iterations_until(trial.best, papers_sum);
   trial.evaluations = outcome.evaluations + 24LL * outcome.jacobians;
   judge(trial, problem);
   return trial;
@@ -113,7 +115,7 @@ Trial map_trial(const Problem& problem) {
       is_noise_free(problem) ? Instrument{.sigma = 1e-9, .sigma_angle = 0, .ppm = 0} : problem.instrument;
   const Stopwatch watch;
   const Estimate estimate =
-      fit_bundle(problem.nominal, problem.parameters, problem.fit, instrument, {.outliers = Outliers::believe_all});
+      fit_bundle(problem.nominal, problem.parameters, problem.fit, instrument, {.outliers = Outliers::keep_all});
   Trial trial{.method = Method::map_lm, .seconds = watch.seconds(), .x = pack(problem.parameters, estimate.chain)};
   judge(trial, problem);
   trial.iterations = trial.fitted.rms <= problem.target_rms ? estimate.search.iterations : -1;
@@ -143,9 +145,10 @@ std::string name(Method method) {
 Earlier identify_before(const Problem& problem, int seed) {
   PsoOptions pso;
   pso.budget = budget_of(problem, {});
-  const Outcome outcome = particle_swarm(objective_of(problem), pso, Rng(seed).stream(11));
+  const SearchOutcome outcome = particle_swarm(objective_of(problem), pso, Rng(seed).stream(11));
   const Stopwatch watch;
-  Mlp net = learn(problem.box, outcome.initial_swarm, outcome.x, HiddenNodes::figure, {}, 1, Rng(seed).stream(12));
+  Mlp net =
+      train_on_swarm(problem.box, outcome.initial_swarm, outcome.x, HiddenNodes::figure, {}, 1, Rng(seed).stream(12));
   return {outcome.x, std::move(net), watch.seconds()};
 }
 

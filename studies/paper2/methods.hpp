@@ -1,28 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
 // The methods that the study compares, run on one problem.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "kinfer/evidence/fit.hpp"
-#include "kinfer/search/minimise.hpp"
+#include "kinfer/evidence/fit_errors.hpp"
+#include "kinfer/search/swarm/minimise.hpp"
 #include "problem.hpp"
 
 namespace kinfer::paper2 {
 
 enum class Method {
-  pso_printed,    ///< cold, w = 0.9
-  pso,            ///< cold, w = 0.8
-  bpnn_pso,       ///< initial swarm by the net of the earlier identification
-  bpnn_literal,   ///< the net before every update
-  warm_start,     ///< one particle remembers the earlier optimum, no net
-  compact_swarm,  ///< about the nominal numbers, no memory
+  pso_printed,         ///< cold, w = 0.9
+  pso,                 ///< cold, w = 0.8
+  bpnn_pso,            ///< initial swarm by the net of the earlier identification
+  bpnn_literal,        ///< the net before every update
+  warm_start,          ///< one particle remembers the earlier optimum, no net
+  draw_compact_swarm,  ///< about the nominal numbers, no memory
   qpso,
   lm,      ///< Levenberg-Marquardt with analytic Jacobian, no priors
   map_lm,  ///< the same with the tolerances as priors
 };
 inline constexpr Method all_methods[] = {Method::pso_printed,  Method::pso,        Method::bpnn_pso,
-                                         Method::bpnn_literal, Method::warm_start, Method::compact_swarm,
+                                         Method::bpnn_literal, Method::warm_start, Method::draw_compact_swarm,
                                          Method::qpso,         Method::lm,         Method::map_lm};
 std::string name(Method method);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "output.hpp"
 
 #include <fmt/format.h>
@@ -6,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "kinfer/io/text_file.hpp"
+#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::paper2 {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tables as CSV and Markdown, figures as SVG.
 #pragma once
 

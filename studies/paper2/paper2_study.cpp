@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Paper 2 reproduced: tables 1-8 and figures 6-15 in kind, and every method beside them.
 //
 //   study_paper2 OUT [threads [seeds]]
@@ -12,7 +13,7 @@
 #include "comparison.hpp"
 #include "compensation.hpp"
 #include "error_before.hpp"
-#include "kinfer/estimate/residuals.hpp"
+#include "kinfer/estimate/poses/pose_residuals.hpp"
 
 namespace kinfer::paper2 {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "problem.hpp"
 
 #include <fmt/format.h>
@@ -6,16 +7,17 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "kinfer/calibrate/parameter_choice.hpp"
-#include "kinfer/calibrate/single_fit.hpp"
-#include "kinfer/estimate/residuals.hpp"
-#include "kinfer/io/pose_set_csv.hpp"
-#include "kinfer/io/robot_toml.hpp"
+#include "kinfer/calibrate/fit/tolerance_fit.hpp"
+#include "kinfer/calibrate/parameters/parameter_sets.hpp"
+#include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/measurement/split.hpp"
 #include "kinfer/simulate/pose_set.hpp"
 
 namespace kinfer::paper2 {
+using namespace calibrate;
 namespace {
 
 constexpr Instrument laser{.sigma = 10e-6, .sigma_angle = 0.0, .ppm = 5.0};
@@ -36,7 +38,7 @@ Bounds box_about(const ParameterSet& set, double length, double angle) {
   return {centre - half, centre + half};
 }
 
-VectorXd drawn_errors(const Conditions& conditions, Rng rng) {
+VectorXd sample_instrument_errors(const Conditions& conditions, Rng rng) {
   VectorXd errors = errors_si(table3);
   if (conditions.another_robot)
     for (double& e : errors) e *= rng.normal();
@@ -91,13 +93,13 @@ Problem simulation(const Conditions& conditions, int poses, int errors) {
   problem.parameters = table2_parameters(problem.nominal);
   const Chain truth =
       unpack(problem.parameters, problem.nominal,
-             pack(problem.parameters, problem.nominal) + drawn_errors(conditions, Rng(errors).stream(7)));
+             pack(problem.parameters, problem.nominal) + sample_instrument_errors(conditions, Rng(errors).stream(7)));
   problem.truth = truth;
   problem.instrument = conditions.instrument;
   const Rng rng = Rng(poses);
-  problem.fit = with_noise(seen_points(truth, drawn_joints(problem.nominal, 50, rng.stream(0))), conditions.instrument,
-                           rng.stream(1));
-  problem.verify = seen_points(truth, drawn_joints(problem.nominal, 50, rng.stream(2)));
+  problem.fit = with_noise(simulate_points(truth, drawn_joints(problem.nominal, 50, rng.stream(0))),
+                           conditions.instrument, rng.stream(1));
+  problem.verify = simulate_points(truth, drawn_joints(problem.nominal, 50, rng.stream(2)));
   problem.box = box_about(problem.parameters, 1 * millimetre, 1 * degree);
   return conditions.instrument.sigma > 0.0 ? with_reachable_target(problem) : problem;
 }
@@ -112,7 +114,7 @@ Problem experiment(int poses) {
   problem.instrument = laser;
   const Rng rng = Rng(poses).stream(5);
   const MatrixXd joints = drawn_joints(problem.nominal, 100, rng.stream(0));
-  const PoseSet all = with_noise(seen_points(truth, joints), laser, rng.stream(1));
+  const PoseSet all = with_noise(simulate_points(truth, joints), laser, rng.stream(1));
   const Split split = random_split(100, 0.5, rng.stream(2));
   problem.fit = select(all, split.train);
   problem.verify = select(all, split.holdout);

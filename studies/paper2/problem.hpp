@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One identification problem of the study, and what makes it hard.
 #pragma once
 
@@ -6,7 +7,7 @@
 
 #include "er20.hpp"
 #include "kinfer/measurement/pose_set.hpp"
-#include "kinfer/search/bounds.hpp"
+#include "kinfer/search/swarm/bounds.hpp"
 
 namespace kinfer::paper2 {
 

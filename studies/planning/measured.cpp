@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Choosing among measured poses: each draw plans among another half of them, and is judged on all that were not chosen.
 #include <fmt/format.h>
 
@@ -6,14 +7,16 @@
 #include <numeric>
 #include <set>
 
-#include "kinfer/calibrate/doctor.hpp"
-#include "kinfer/calibrate/doctor_case.hpp"
-#include "kinfer/calibrate/single_fit.hpp"
-#include "kinfer/io/pose_set_csv.hpp"
-#include "kinfer/io/robot_toml.hpp"
+#include "kinfer/calibrate/diagnosis/diagnose.hpp"
+#include "kinfer/calibrate/diagnosis/diagnosis_state.hpp"
+#include "kinfer/calibrate/fit/tolerance_fit.hpp"
+#include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
 #include "trials.hpp"
 
 namespace kinfer::study {
+using namespace calibrate;
+using namespace plan;
 namespace {
 
 /// `count` of the rows, in random order.
@@ -51,14 +54,14 @@ class Series {
  private:
   void leave_out_wrong_rows() {
     std::set<int> wrong;
-    const Diagnosis diagnosis = examine(task_);
+    const Diagnosis diagnosis = diagnose(task_);
     for (const Finding& finding : diagnosis.findings) wrong.insert(finding.rows.begin(), finding.rows.end());
-    const Estimate of_all_rows = fit_once(task_, task_.data, AutoParameters{}, {}).value();
+    const Estimate of_all_rows = fit_once(task_, task_.data, GeometricParameters{}, {}).value();
     for (const Outlier& outlier : of_all_rows.outliers) wrong.insert(outlier.row);
     for (int row = 0; row < task_.data.rows(); ++row)
       if (!wrong.contains(row)) right_.push_back(row);
     fmt::print("{}: neither chosen nor held out, as the doctor or the fit of all rows does not believe them: {}\n",
-               words_, rows_in_words(std::vector<int>(wrong.begin(), wrong.end())));
+               words_, describe_rows(std::vector<int>(wrong.begin(), wrong.end())));
   }
 
   std::vector<int> planned(Criterion criterion, int draw) const {
@@ -79,7 +82,7 @@ class Series {
     return errors_of(task_, fitting, select(task_.data, fitted), select(task_.data, rest));
   }
 
-  CalibrateTask task_;
+  CalibrationTask task_;
   std::string words_;
   std::vector<int> right_;
 };

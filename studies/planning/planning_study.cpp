@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What chosen poses are worth: 15 planned ones against 15 random ones, by the error on poses that were not fitted.
 //
 //   study_planning OUT [FOLDER_OF_UR10_SERIES]
@@ -8,7 +9,7 @@
 
 #include <filesystem>
 
-#include "kinfer/io/text_file.hpp"
+#include "kinfer/io/text/text_file.hpp"
 #include "trials.hpp"
 
 int main(int argc, char** argv) {

@@ -1,13 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each draw has its own true robot, noise and random poses, and is judged without noise at 1000 random poses.
 #include <fmt/format.h>
 
-#include "kinfer/calibrate/guessed_masses.hpp"
-#include "kinfer/io/robot_toml.hpp"
+#include "kinfer/calibrate/terms/approximate_masses.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/simulate/pose_set.hpp"
 #include "studies/robots/chains.hpp"
 #include "trials.hpp"
 
 namespace kinfer::study {
+using namespace calibrate;
+using namespace plan;
 namespace {
 
 constexpr Instrument tracker{.sigma = 10e-6, .sigma_angle = 0.0, .ppm = 5};
@@ -23,7 +26,7 @@ constexpr Beyond beyond_geometry[] = {{"rigid"}, {"compliant", 2e-6, 0.0}, {"com
 
 /// Masses and compliances are not those that calibrate would guess.
 void bend(Chain& truth, const Beyond& beyond, Rng rng) {
-  if (beyond.compliance > 0.0) truth = with_guessed_masses(truth);
+  if (beyond.compliance > 0.0) truth = with_approximate_masses(truth);
   for (PointMass& mass : truth.masses) mass.mass *= rng.uniform(0.5, 1.8), mass.com *= rng.uniform(0.7, 1.3);
   for (Joint& joint : truth.joints) {
     if (joint.type != JointType::revolute) continue;
@@ -65,10 +68,11 @@ std::vector<MatrixXd> planned(const Robot& robot, const NamedCriterion& by) {
   for (int seed = 1; seed <= plans; ++seed) {
     const PosePlan plan = plan_poses(task, {.poses = poses, .criterion = by.criterion}, Rng(seed)).value();
     found.push_back(plan.joints);
-    if (seed == 1 && plan.least_rms > 0.0)
+    if (seed == 1 && plan.rms_lower_bound > 0.0)
       fmt::print(
           "{}: expected rms {:.4f} mm, worst place {:.4f}; no choice leaves an rms below {:.4f}; random {:.4f}\n",
-          robot.words, 1e3 * plan.expected.rms, 1e3 * plan.expected.worst, 1e3 * plan.least_rms, 1e3 * plan.random.rms);
+          robot.words, 1e3 * plan.expected.rms, 1e3 * plan.expected.worst, 1e3 * plan.rms_lower_bound,
+          1e3 * plan.random.rms);
   }
   return found;
 }
@@ -82,9 +86,9 @@ std::string one_robot(const Robot& robot) {
     for (const Fitting fitting : all_fittings) {
       const auto judged = [&](int draw, const MatrixXd& q) {
         const Chain truth = true_robot(robot, beyond, draw);
-        const CalibrateTask task{.nominal = robot.nominal, .tolerances = {}, .instrument = tracker, .data = {}};
-        return errors_of(task, fitting, seen_points(truth, q, tracker, Rng(300).stream(draw)),
-                         seen_points(truth, elsewhere));
+        const CalibrationTask task{.nominal = robot.nominal, .tolerances = {}, .instrument = tracker, .data = {}};
+        return errors_of(task, fitting, simulate_points(truth, q, tracker, Rng(300).stream(draw)),
+                         simulate_points(truth, elsewhere));
       };
       const Errors random = medians_of(
           [&](int draw) { return judged(draw, draw_poses(robot.nominal, {}, poses, Rng(7).stream(draw)).value()); });

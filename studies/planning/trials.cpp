@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "trials.hpp"
 
 #include <fmt/format.h>
@@ -5,22 +6,24 @@
 #include <algorithm>
 
 #include "kinfer/base/parallel.hpp"
-#include "kinfer/calibrate/single_fit.hpp"
-#include "kinfer/estimate/bundle.hpp"
+#include "kinfer/calibrate/fit/tolerance_fit.hpp"
+#include "kinfer/estimate/poses/bundle.hpp"
 #include "kinfer/geometry/statistics.hpp"
 
 namespace kinfer::study {
+using namespace calibrate;
+using namespace plan;
 namespace {
 
-Result<Chain> found_by_default(const CalibrateTask& task) {
-  KINFER_TRY(found, calibrate(task, {.threads = 1}, Rng(1)));
+Result<Chain> found_by_default(const CalibrationTask& task) {
+  KINFER_TRY(found, calibrate_robot(task, {.threads = 1}, Rng(1)));
   return found.estimate.chain;
 }
 
-Result<Chain> found_by_plain_least_squares(const CalibrateTask& task) {
-  KINFER_TRY(prepared, prepare_fit(task, task.data, AutoParameters{}, {1000.0}));
+Result<Chain> found_by_plain_least_squares(const CalibrationTask& task) {
+  KINFER_TRY(prepared, prepare_fit(task, task.data, GeometricParameters{}, {1000.0}));
   return fit_bundle(prepared.start, prepared.parameters, task.data, task.instrument,
-                    {.outliers = Outliers::believe_all, .detail = Detail::numbers_only})
+                    {.outliers = Outliers::keep_all, .detail = Detail::numbers_only})
       .chain;
 }
 
@@ -30,8 +33,8 @@ const char* name(Fitting fitting) {
   return fitting == Fitting::by_default ? "default" : "plain least squares";
 }
 
-Errors errors_of(const CalibrateTask& task, Fitting fitting, const PoseSet& train, const PoseSet& rest) {
-  CalibrateTask seen = task;
+Errors errors_of(const CalibrationTask& task, Fitting fitting, const PoseSet& train, const PoseSet& rest) {
+  CalibrationTask seen = task;
   seen.data = train;
   const auto found = fitting == Fitting::by_default ? found_by_default(seen) : found_by_plain_least_squares(seen);
   if (!found) return {1.0, 1.0};

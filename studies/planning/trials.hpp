@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a choice of poses is worth: fits of the chosen poses, judged on others.
 #pragma once
 
@@ -6,9 +7,11 @@
 #include <vector>
 
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/calibrate/plan.hpp"
+#include "kinfer/plan/plan_poses.hpp"
 
 namespace kinfer::study {
+using namespace calibrate;
+using namespace plan;
 
 constexpr int poses = 15, draws = 20;
 
@@ -30,7 +33,7 @@ struct Errors {
 };
 
 /// What is found from `train`, judged on `rest`.
-Errors errors_of(const CalibrateTask& task, Fitting fitting, const PoseSet& train, const PoseSet& rest);
+Errors errors_of(const CalibrationTask& task, Fitting fitting, const PoseSet& train, const PoseSet& rest);
 
 /// Medians over the draws.
 Errors medians_of(const std::function<Errors(int draw)>& trial);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots of several kinds, as studies simulate them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "files.hpp"
 
 #include <algorithm>
@@ -6,9 +7,9 @@
 #include <sstream>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/io/pose_set_csv.hpp"
-#include "kinfer/io/robot_toml.hpp"
-#include "kinfer/io/urdf.hpp"
+#include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/urdf.hpp"
 
 namespace kinfer::study {
 namespace {
@@ -69,7 +70,7 @@ Chain mukca_chain(const std::string& folder) {
 PoseSet mukca_rows(const std::string& folder, const std::string& arm, const std::vector<std::string>& positions,
                    const Chain& chain) {
   PoseSet set;
-  set.joint_names = reading_names(chain);
+  set.joint_names = active_joint_names(chain);
   for (const std::string& position : positions)
     for (const char* hole : {"hole_0", "hole_1"}) {
       const int socket = static_cast<int>(set.sockets.size());
@@ -91,7 +92,7 @@ Chain positioner_chain() {
 
 PoseSet positioner_rows(const std::string& folder, const Chain& chain) {
   PoseSet set;
-  set.joint_names = reading_names(chain);
+  set.joint_names = active_joint_names(chain);
   std::ifstream file(folder + "/positioner_2axis/measurements.yaml");
   double pose[7] = {};  // qw qx qy qz x y z, in the order of the file
   int seen = 0;
@@ -118,7 +119,7 @@ Chain fr3_chain() {
 
 PoseSet fr3_rows(const std::string& folder, const Chain& chain) {
   PoseSet set;
-  set.joint_names = reading_names(chain);
+  set.joint_names = active_joint_names(chain);
   for (const auto& row : number_rows(folder + "/franka_fr3_camera/fr3_camera.csv")) {
     if (row.size() < 23) continue;  // the header
     append_row(set, row, 7);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The measured sets as pose sets: each keeps its own file format.
 #pragma once
 

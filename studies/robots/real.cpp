@@ -1,23 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "real.hpp"
 
 #include <limits>
 
 #include "files.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/calibrate/figures.hpp"
-#include "kinfer/calibrate/surroundings.hpp"
-#include "kinfer/calibrate/verify.hpp"
+#include "kinfer/calibrate/start/fixtures.hpp"
+#include "kinfer/calibrate/validation/validation_errors.hpp"
+#include "kinfer/deploy/verify.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "table.hpp"
 
 namespace kinfer::study {
+using namespace calibrate;
+using namespace deploy;
 namespace {
 
 constexpr double only_told = std::numeric_limits<double>::quiet_NaN();
 constexpr int halves = 5;
 
 Calibration on_half(const Chain& chain, const PoseSet& data, int seed, const ModelChoice& model) {
-  return calibrate({chain, {}, std::nullopt, data}, {.holdout = HeldOutFraction{0.5}, .model = model}, Rng(seed))
+  return calibrate_robot({chain, {}, std::nullopt, data}, {.holdout = HeldOutFraction{0.5}, .model = model}, Rng(seed))
       .value();
 }
 
@@ -28,7 +31,7 @@ struct Halves {
   std::string model;
 };
 
-Halves five_halves(const Chain& chain, const PoseSet& data, const ModelChoice& model = AutoModel{}) {
+Halves five_halves(const Chain& chain, const PoseSet& data, const ModelChoice& model = CrossValidatedModel{}) {
   Halves sum;
   for (int seed = 1; seed <= halves; ++seed) {
     const Calibration c = on_half(chain, data, seed, model);
@@ -37,9 +40,9 @@ Halves five_halves(const Chain& chain, const PoseSet& data, const ModelChoice& m
     sum.largest_worst = std::max(sum.largest_worst, 1e3 * c.after.position.holdout.max);
     sum.mean_of_all += 1e3 / halves * c.after.position.holdout_all_rows.mean;
     sum.worst_of_all += 1e3 / halves * c.after.position.holdout_all_rows.max;
-    sum.wrong += c.wrong_rows.size();
+    sum.wrong += c.gross_error_rows.size();
     sum.before += 1e3 / halves * c.before.position.holdout.mean;
-    sum.model += (seed > 1 ? "; " : "") + c.ladder.chosen;
+    sum.model += (seed > 1 ? "; " : "") + c.model_selection.selected;
   }
   return sum;
 }
@@ -55,19 +58,19 @@ void ur10(const std::string& folder) {
   const Chain chain = ur10_chain();
   const PoseSet b = ur10_series(folder, "Series_B_measurements_joint_configurations.csv", chain),
                 c = ur10_series(folder, "Series_C_measurements_random_poses.csv", chain);
-  print_halves("UR10 B, geometry", only_told, five_halves(chain, b, NamedModel{}));
+  print_halves("UR10 B, geometry", only_told, five_halves(chain, b, FixedModel{}));
   const Halves chosen_b = five_halves(chain, b);
   print_halves("UR10 B, chosen rung", 0.345, chosen_b);
   fmt::print("      {}\n", chosen_b.model);
-  print_halves("UR10 C, geometry", only_told, five_halves(chain, c, NamedModel{}));
+  print_halves("UR10 C, geometry", only_told, five_halves(chain, c, FixedModel{}));
   const Halves chosen_c = five_halves(chain, c);
   print_halves("UR10 C, chosen rung", 0.435, chosen_c);
   fmt::print("      {}\n", chosen_c.model);
-  for (const ModelChoice& model : {ModelChoice{NamedModel{}}, ModelChoice{AutoModel{}}}) {
-    const Calibration all = calibrate({chain, {}, std::nullopt, b}, {.model = model}, Rng(1)).value();
+  for (const ModelChoice& model : {ModelChoice{FixedModel{}}, ModelChoice{CrossValidatedModel{}}}) {
+    const Calibration all = calibrate_robot({chain, {}, std::nullopt, b}, {.model = model}, Rng(1)).value();
     const Verification there = verify(all.estimate.chain, {}, std::nullopt, c).value();
     print_row("UR10 fitted on B, tried on C with base and tool refitted", only_told, 1e3 * there.frames_refitted.mean,
-              all.ladder.chosen);
+              all.model_selection.selected);
   }
 }
 
@@ -76,13 +79,13 @@ void mukca(const std::string& folder) {
   const auto tried = [&](const std::string& arm, const std::vector<std::string>& fitted,
                          const std::vector<std::string>& unseen, double asked) {
     const PoseSet train = mukca_rows(folder, arm, fitted, chain), test = mukca_rows(folder, arm, unseen, chain);
-    const Calibration c = calibrate({chain, {}, std::nullopt, train}, {}, Rng(1)).value();
+    const Calibration c = calibrate_robot({chain, {}, std::nullopt, train}, {}, Rng(1)).value();
     const auto consistency = [&](const Chain& model) {
-      const PlacedData there = with_surroundings(model, test).value();
-      return 1e3 * mean(headline_errors(there.chain, PoseSet{}, there.data));
+      const DataWithFixtures there = with_fixtures(model, test).value();
+      return 1e3 * mean(primary_errors(there.chain, PoseSet{}, there.data));
     };
     print_row("MUKCa " + arm + ", ball centres at unseen tool positions", asked, consistency(c.estimate.chain),
-              fmt::format("nominal {:.2f}; {}; {} rows left out", consistency(chain), c.ladder.chosen,
+              fmt::format("nominal {:.2f}; {}; {} rows left out", consistency(chain), c.model_selection.selected,
                           c.estimate.outliers.size()));
   };
   tried("panda_1", {"back-high", "right"}, {"front"}, 0.70);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots measured by others (docs/methods/calibrate.md names the public sources). Errors on rows that were not fitted.
 #pragma once
 

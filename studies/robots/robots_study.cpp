@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any robot, any instrument: the figures of calibration on simulated robots with known truth and, where KINFER_DATA and
 // KINFER_CASES say where they lie, on measurements by others.
 //

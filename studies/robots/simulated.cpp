@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulated.hpp"
 
 #include <algorithm>
@@ -5,12 +6,14 @@
 
 #include "chains.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/calibrate/plan.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/plan/plan_poses.hpp"
 #include "support/instruments.hpp"
 #include "table.hpp"
 
 namespace kinfer::study {
+using namespace calibrate;
+using namespace plan;
 namespace {
 
 using namespace test;
@@ -33,7 +36,7 @@ double unseen_error(const Chain& found, const Chain& truth, const PoseSimulation
 }
 
 Calibration calibrated(const Chain& nominal, const Instrument& instrument, const PoseSet& data) {
-  return calibrate({nominal, {}, instrument, data}, {}, Rng(1)).value();
+  return calibrate_robot({nominal, {}, instrument, data}, {}, Rng(1)).value();
 }
 
 /// Mean over seeds of the error on unseen poses [mm] beside the instrument's asked figure; nothing is known of the
@@ -48,7 +51,7 @@ void tracked(const std::string& name, double asked, const Chain& nominal, const 
     const Calibration c = calibrated(nominal, simulation.instrument, data);
     errors.push_back(unseen_error(c.estimate.chain, truth, simulation));
     expected.push_back(1e3 * c.estimate.predicted_error);
-    if (c.ladder.chosen != "geometry") models += "; " + c.ladder.chosen;
+    if (c.model_selection.selected != "geometry") models += "; " + c.model_selection.selected;
   }
   print_row(name, asked, mean(errors), fmt::format("covariance expects rms {:.4f}{}", mean(expected), models));
 }
@@ -63,14 +66,14 @@ void planned(const std::string& name, double asked, const Chain& nominal, const 
   for (int seed = 1; seed <= seeds; ++seed) {
     const Chain truth = with_random_errors(nominal, {}, Rng(100 + seed));
     PoseSet data;
-    data.joint_names = reading_names(nominal);
+    data.joint_names = active_joint_names(nominal);
     data.joints = plan.joints;
     measure_points(data, truth, simulation.instrument, Rng(200 + seed));
     errors.push_back(unseen_error(calibrated(nominal, simulation.instrument, data).estimate.chain, truth, simulation));
   }
   print_row(name, asked, mean(errors),
             fmt::format("expected rms {:.4f}; no choice of candidates leaves less than {:.4f}", 1e3 * plan.expected.rms,
-                        1e3 * plan.least_rms));
+                        1e3 * plan.rms_lower_bound));
 }
 
 void outliers() {
@@ -93,17 +96,17 @@ void draw_wire() {
   std::vector<double> errors;
   for (int seed = 1; seed <= seeds; ++seed) {
     Chain nominal = with_tool(er20(0.125));
-    nominal.surroundings.anchors = {Vec3(1.8, -0.9, 0.1), Vec3(1.7, 1.1, 0.2), Vec3(0.2, 0.3, 2.4)};
+    nominal.fixtures.anchors = {Vec3(1.8, -0.9, 0.1), Vec3(1.7, 1.1, 0.2), Vec3(0.2, 0.3, 2.4)};
     Chain truth = with_random_errors(nominal, {}, Rng(20 + seed));
     truth.base = nominal.base;
     Rng rng(40 + seed);
-    for (Vec3& anchor : truth.surroundings.anchors) anchor += noise(rng, 5e-3);
+    for (Vec3& anchor : truth.fixtures.anchors) anchor += noise(rng, 5e-3);
     PoseSet data = readings_of(measured(truth, paper2_poses(50, noise_free), seed));
     measure_distances(data, truth, 10e-6, Rng(60 + seed));
     const Calibration c = calibrated(nominal, {.sigma = 10e-6}, data);
     PoseSet unseen = readings_of(measured(truth, paper2_poses(300, noise_free), 4321));
     measure_distances(unseen, truth, 0.0, Rng(1));
-    errors.push_back(1e3 * mean(errors_of_kind(MeasurementKind::distance, c.estimate.chain, unseen)));
+    errors.push_back(1e3 * mean(residual_norms(MeasurementKind::distance, c.estimate.chain, unseen)));
   }
   print_row("draw-wire, three anchors known to 5 mm (distance)", 0.035, mean(errors));
 }
@@ -121,7 +124,7 @@ void payload() {
     for (int row = 0; row < data.rows(); ++row) data.payload.push_back(row % 2 ? 20.0 : 0.0);
     measure_points(data, truth, tracker, Rng(70 + seed));
     const Calibration c = calibrated(nominal, tracker, data);
-    model = c.ladder.chosen;
+    model = c.model_selection.selected;
     PoseSet unseen = readings_of(measured(truth, paper2_poses(300, noise_free), 4321));
     for (int row = 0; row < unseen.rows(); ++row)
       unseen.payload.push_back(row % 3 == 0 ? 20.0 : row % 3 == 1 ? 10.0 : 0.0);
@@ -149,7 +152,7 @@ void tracker_of_poor_angles() {
       point.sd = sd, point.axes = axes;
     }
     const auto unseen = [&](const PoseSet& rows) {
-      const Calibration c = calibrate({nominal, {}, std::nullopt, rows}, {}, Rng(1)).value();
+      const Calibration c = calibrate_robot({nominal, {}, std::nullopt, rows}, {}, Rng(1)).value();
       return unseen_error(c.estimate.chain, truth, paper2_poses(1, tracker));
     };
     told.push_back(unseen(data));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Simulated robots: tracker noise 10 µm + 5 µm/m and 50 poses unless said otherwise; errors on 300 poses never seen.
 #pragma once
 

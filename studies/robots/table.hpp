@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rows that the study prints: what was asked, what was reached.
 #pragma once
 

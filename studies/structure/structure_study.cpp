@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How surely and how fast the structure of a machine is found: order and joint types over every machine, drive, base,
 // grade and trouble; the memetic search beside its certificate and beside paper 1's bacterial programming.
 // `study_structure [FOLDER] [SEEDS]`; docs/methods/structure.md reads the tables.
@@ -11,16 +12,17 @@
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/identify/hinge_geometry.hpp"
-#include "kinfer/identify/joint_type.hpp"
-#include "kinfer/identify/link_search.hpp"
-#include "kinfer/identify/memetic_search.hpp"
-#include "kinfer/identify/ordered_motion.hpp"
-#include "kinfer/simulate/ins_simulation.hpp"
+#include "kinfer/identify/geometry/joint_geometry.hpp"
+#include "kinfer/identify/programming/bacterial_search.hpp"
+#include "kinfer/identify/programming/memetic_search.hpp"
+#include "kinfer/identify/structure/joint_type.hpp"
+#include "kinfer/identify/structure/ordered_motion.hpp"
+#include "kinfer/simulate/ground_truth.hpp"
+#include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
-#include "kinfer/simulate/truth.hpp"
 
 namespace kinfer::study {
+using namespace identify;
 namespace {
 
 constexpr const char* script_names[] = {"standard", "sequential", "together", "gentle", "vigorous", "quick"};
@@ -49,13 +51,13 @@ Log simulated(const Case& c) {
   const Drive drive = make_drive(world.machine(), {.script = static_cast<Script>(c.script)}, rng.stream(2)).value();
   const MachineMotion motion = world.prescribe(drive, c.rate);
   SensorModel grade = sensor_grade(grades[c.grade]).value();
-  SensorTrouble trouble;
+  SensorFaults trouble;
   if (c.trouble == 1) trouble.missing = 0.05;
   if (c.trouble == 2) grade.accelerometer.range = 12.0, grade.gyroscope.range = 0.7;
   if (c.trouble == 3) trouble.has_magnetometer = false;
   if (c.trouble == 4) trouble.magnetic_disturbance = 15.0;
   if (c.trouble == 5) trouble.spikes = 20.0;
-  return {simulated_recording(world.machine(), motion, grade, trouble, rng.stream(3)),
+  return {simulate_recording(world.machine(), motion, grade, trouble, rng.stream(3)),
           machine_truth(world.machine(), motion)};
 }
 
@@ -88,7 +90,7 @@ struct OrderOutcome {
 
 OrderOutcome judged_order(const Case& c) {
   const Log log = simulated(c);
-  const auto ordered = ordered_motion(log.recording, {}, {}, 1);
+  const auto ordered = order_segments(log.recording, {}, {}, 1);
   if (!ordered) return {};
   const RecordedMotion& motion = ordered->motion;
   const SegmentTree& tree = ordered->tree;
@@ -104,8 +106,9 @@ OrderOutcome judged_order(const Case& c) {
       outcome.is_right = false;
       continue;
     }
-    const bool slides = truth->type == JointType::prismatic;
-    outcome.right_types += types[i - 1].type == (slides ? FoundJointType::prismatic : FoundJointType::revolute) ? 1 : 0;
+    const bool is_prismatic = truth->type == JointType::prismatic;
+    outcome.right_types +=
+        types[i - 1].type == (is_prismatic ? EstimatedJointType::prismatic : EstimatedJointType::revolute) ? 1 : 0;
   }
   return outcome;
 }
@@ -153,19 +156,19 @@ std::vector<LinkProblem> problems_of(const OrderedMotion& ordered, const Machine
   for (const std::size_t child : tree.order) {
     if (!tree.parent[child]) continue;
     const auto joint = std::ranges::find(truth.joints, motion.segments[child].name, &JointTruth::child);
-    auto signals = joint_signals(motion, *tree.parent[child], child);
+    auto signals = find_joint_signals(motion, *tree.parent[child], child);
     if (signals.empty() || joint == truth.joints.end()) continue;
     problems.push_back({measured_states(motion.segments[*tree.parent[child]]), measured_states(motion.segments[child]),
-                        std::move(signals), telling_rows(motion, *tree.parent[child], child, Terminals::hinge),
-                        &*joint});
+                        std::move(signals),
+                        informative_rows(motion, *tree.parent[child], child, JointVariableKind::hinge), &*joint});
   }
   return problems;
 }
 
 double line_error(const LinkProblem& p, const std::vector<DhLeaf>& leaves) {
   std::vector<SignalRow> poses;
-  for (const std::size_t row : evenly_chosen(p.rows, 100)) poses.push_back(signals_at(p.signals, row));
-  const Vec3 error = hinge_geometry(leaves, poses).point_in_child - p.truth->point_in_child;
+  for (const std::size_t row : thin_rows(p.rows, 100)) poses.push_back(signals_at(p.signals, row));
+  const Vec3 error = fit_revolute_geometry(leaves, poses).point_in_child - p.truth->point_in_child;
   return 1e3 * error.cross(p.truth->axis_in_child).norm();
 }
 
@@ -179,24 +182,24 @@ auto timed(double& ms, const Search& search) {
 
 Run memetic_run(const LinkProblem& p, const MemeticOptions& options, std::uint64_t seed, bool everything) {
   Run run;
-  const MemeticOutcome found = timed(run.ms, [&] {
-    return everything ? search_all(p.parent, p.child, p.signals, p.rows, options)
+  const StructureSearchOutcome found = timed(run.ms, [&] {
+    return everything ? search_exhaustive(p.parent, p.child, p.signals, p.rows, options)
                       : search_memetic(p.parent, p.child, p.signals, p.rows, options, Rng(seed));
   });
   run.cost = found.cost;
   run.evaluations = found.evaluations;
-  run.to_one_percent = found.evaluations_to_1;
+  run.to_one_percent = found.evaluations_to_1_percent;
   run.line = line_error(p, found.leaves);
   return run;
 }
 
 Run bp_run(const LinkProblem& p, std::uint64_t seed) {
   Run run;
-  LinkSearchOptions options;
+  BacterialLinkOptions options;
   options.bacteria.threads = 1;
-  options.leaf.signal_angles = SignalAngles::offset;
-  const DhEvolution found =
-      timed(run.ms, [&] { return search_link(p.parent, p.child, p.signals, p.rows, options, Rng(seed)); });
+  options.leaf.signal_angle_form = SignalAngleForm::offset;
+  const LinkEvolution found =
+      timed(run.ms, [&] { return search_bacterial(p.parent, p.child, p.signals, p.rows, options, Rng(seed)); });
   run.cost = found.cost;
   run.evaluations = found.evaluations;
   run.line = line_error(p, leaves(found.best));
@@ -224,7 +227,7 @@ void write_engines(const std::filesystem::path& folder, int seeds, int bp_seeds)
   int in_cost = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
     const Log log = simulated({.machine = "excavator", .seed = static_cast<std::uint64_t>(seed), .rate = 200.0});
-    const auto ordered = ordered_motion(log.recording, {}, {}, 0).value();
+    const auto ordered = order_segments(log.recording, {}, {}, 0).value();
     MemeticOptions options;
     options.bacteria.threads = 1;
     for (const LinkProblem& p : problems_of(ordered, log.truth)) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a found joint differs from the true one, leaving aside what no signal tells.
 #pragma once
 
@@ -6,7 +7,7 @@
 #include <vector>
 
 #include "kinfer/evidence/identification.hpp"
-#include "kinfer/simulate/truth.hpp"
+#include "kinfer/simulate/ground_truth.hpp"
 
 namespace kinfer::study {
 
@@ -34,7 +35,7 @@ inline double axis_angle(const Vec3& a, const Vec3& b) {
 }
 
 /// The turn about the body's incoming axis that brings the found outgoing axis nearest to the true one.
-inline double best_turn(const JointTruth& incoming, const JointTruth& outgoing, const FoundJoint& found) {
+inline double best_turn(const JointTruth& incoming, const JointTruth& outgoing, const JointEstimate& found) {
   const Vec3 n = incoming.axis_in_child;
   const auto flat = [&](const Vec3& v) { return Vec3(v - n * n.dot(v)); };
   Vec3 is = found.axis_in_parent, ought = outgoing.axis_in_parent;

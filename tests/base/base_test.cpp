@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,29 +16,29 @@
 namespace kinfer {
 namespace {
 
-TEST(Angle, half_a_turn_is_180_degrees_and_pi_radians) {
+TEST(Angle, HalfATurnIs180DegreesAndPiRadians) {
   EXPECT_DOUBLE_EQ((180_deg).rad(), std::numbers::pi);
   EXPECT_DOUBLE_EQ(Angle::rad(std::numbers::pi).deg(), 180.0);
   EXPECT_DOUBLE_EQ((90_deg - 30.0_deg).deg(), 60.0);
 }
 
-TEST(Expect, a_broken_expectation_names_the_condition_and_the_values) {
+TEST(Expect, ABrokenExpectationNamesTheConditionAndTheValues) {
   const int rows = 3;
   EXPECT_DEATH(KINFER_EXPECT(rows == 4, "{} rows", rows), "expected rows == 4: 3 rows");
 }
 
-TEST(Rng, equal_paths_give_equal_numbers_and_different_paths_do_not) {
+TEST(Rng, EqualPathsGiveEqualNumbersAndDifferentPathsDoNot) {
   EXPECT_EQ(Rng(7).stream(3).stream(4).bits(), Rng(7).stream(3).stream(4).bits());
   EXPECT_NE(Rng(7).stream(3).stream(4).bits(), Rng(7).stream(4).stream(3).bits());
   EXPECT_NE(Rng(7).bits(), Rng(8).bits());
 }
 
-TEST(Rng, first_draw_never_changes_between_versions) {
+TEST(Rng, FirstDrawNeverChangesBetweenVersions) {
   // SplitMix64 of the key mix(seed + golden), worked out apart from this code: a change here changes every result.
   EXPECT_EQ(Rng(1).bits(), 0x5e41ab087439611eULL);
 }
 
-TEST(Rng, moments_of_normal_and_uniform_are_right) {
+TEST(Rng, MomentsOfNormalAndUniformAreRight) {
   Rng rng(42);
   constexpr int n = 200000;
   double sum = 0, squares = 0, fourth = 0, uniform = 0;
@@ -52,14 +53,14 @@ TEST(Rng, moments_of_normal_and_uniform_are_right) {
   EXPECT_NEAR(uniform / n, 0.5, 4 * std::sqrt(1.0 / 12) * sd_of_mean);
 }
 
-TEST(Rng, index_reaches_each_value_equally_often) {
+TEST(Rng, IndexReachesEachValueEquallyOften) {
   Rng rng(5);
   std::array<int, 7> count{};
   for (int i = 0; i < 70000; ++i) ++count[rng.index(7)];
   for (const int c : count) EXPECT_NEAR(c, 10000, 400);  // 4 sd of a binomial count
 }
 
-TEST(ParallelFor, every_item_runs_once_for_any_number_of_threads) {
+TEST(ParallelFor, EveryItemRunsOnceForAnyNumberOfThreads) {
   for (const int threads : {1, 2, 7}) {
     std::vector<int> visits(1000, 0);
     parallel_for(visits.size(), threads, [&](std::size_t i) { ++visits[i]; });
@@ -67,22 +68,22 @@ TEST(ParallelFor, every_item_runs_once_for_any_number_of_threads) {
   }
 }
 
-TEST(ParallelFor, a_nested_loop_runs_all_its_items) {
+TEST(ParallelFor, ANestedLoopRunsAllItsItems) {
   std::vector<std::vector<int>> visits(20, std::vector<int>(30, 0));
   parallel_for(20, 3, [&](std::size_t i) { parallel_for(30, 3, [&](std::size_t j) { ++visits[i][j]; }); });
   for (const auto& row : visits) EXPECT_EQ(std::accumulate(row.begin(), row.end(), 0), 30);
 }
 
-TEST(ParallelFor, no_items_is_no_work) {
+TEST(ParallelFor, NoItemsIsNoWork) {
   parallel_for(0, 4, [](std::size_t) { FAIL(); });
 }
 
-TEST(Sha256, agrees_with_the_standards_example) {
+TEST(Sha256, AgreesWithTheStandardsExample) {
   // FIPS 180-2, appendix B.1
   EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
-TEST(Stop, every_reason_has_a_sentence) {
+TEST(Stop, EveryReasonHasASentence) {
   for (int i = 0; i <= static_cast<int>(Stop::cancelled); ++i) EXPECT_GT(sentence(static_cast<Stop>(i)).size(), 10u);
   EXPECT_TRUE(converged(Stop::converged_step));
   EXPECT_FALSE(converged(Stop::budget_spent));

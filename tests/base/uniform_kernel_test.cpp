@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/base/uniform_kernel.hpp"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "kinfer/base/processor.hpp"
+#include "kinfer/base/instruction_set.hpp"
 #include "kinfer/base/rng.hpp"
 
 namespace kinfer {
@@ -19,7 +20,7 @@ std::vector<base::UniformKernel> runnable() {
   return list;
 }
 
-TEST(UniformKernel, every_instruction_set_gives_the_upper_53_bits_of_each_draw) {
+TEST(UniformKernel, EveryInstructionSetGivesTheUpper53BitsOfEachDraw) {
   constexpr std::size_t count = 1003;  // no multiple of any number of lanes
   const std::uint64_t first = 0x0123456789abcdefULL;
   for (const base::UniformKernel fill : runnable()) {
@@ -30,7 +31,7 @@ TEST(UniformKernel, every_instruction_set_gives_the_upper_53_bits_of_each_draw) 
   }
 }
 
-TEST(UniformKernel, many_draws_at_once_are_those_drawn_one_by_one) {
+TEST(UniformKernel, ManyDrawsAtOnceAreThoseDrawnOneByOne) {
   Rng one = Rng(5).stream(3), many = one;
   std::vector<double> list(47);
   many.uniform(list);

@@ -1,14 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/calibrate/calibrate.hpp"
 
 #include <gtest/gtest.h>
 
-#include "kinfer/calibrate/frames_start.hpp"
-#include "kinfer/calibrate/verify.hpp"
-#include "kinfer/estimate/residuals.hpp"
+#include "kinfer/calibrate/start/initial_frames.hpp"
+#include "kinfer/deploy/verify.hpp"
+#include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {
+using namespace calibrate;
+using namespace deploy;
 namespace {
 
 using namespace test;
@@ -24,19 +27,19 @@ double mean_error_on_unseen_poses(const Chain& found, const Chain& truth) {
   return mean(point_errors(found, measured(truth, paper2_poses(300, noise_free), 4321)));
 }
 
-TEST(FramesStart, base_and_tool_need_no_guess) {
+TEST(FramesStart, BaseAndToolNeedNoGuess) {
   const Chain truth = placed(er20(0.125));
   const PoseSet data = measured(truth, paper2_poses(30, noise_free));
   Chain ignorant = truth;
   ignorant.base = Frame{};
   ignorant.tool = Frame{};
-  const Chain found = with_frames_from_data(ignorant, data).value();
+  const Chain found = with_estimated_frames(ignorant, data).value();
   EXPECT_LT((found.base.xyz - truth.base.xyz).norm(), 1e-6);
   EXPECT_LT(angle_between(found.base.pose().rotation, truth.base.pose().rotation), 1e-6);
   EXPECT_LT((found.tool.xyz - truth.tool.xyz).norm(), 1e-6);
 }
 
-TEST(FramesStart, orientations_give_the_tools_turn_too) {
+TEST(FramesStart, OrientationsGiveTheToolsTurnToo) {
   Chain truth = placed(er20(0.125));
   truth.tool = Frame::from_pose(Pose::from_xyz_rpy({0.1, -0.2, 0.3}, {1.0, -0.7, 2.5}));
   PoseSimulation simulation = paper2_poses(30, noise_free);
@@ -44,141 +47,142 @@ TEST(FramesStart, orientations_give_the_tools_turn_too) {
   Chain ignorant = truth;
   ignorant.base = Frame{};
   ignorant.tool = Frame{};
-  const Chain found = with_frames_from_data(ignorant, measured(truth, simulation)).value();
+  const Chain found = with_estimated_frames(ignorant, measured(truth, simulation)).value();
   EXPECT_LT(angle_between(found.tool.pose().rotation, truth.tool.pose().rotation), 1e-6);
   EXPECT_LT((found.tool.xyz - truth.tool.xyz).norm(), 1e-6);
   EXPECT_LT((found.base.xyz - truth.base.xyz).norm(), 1e-6);
 }
 
-TEST(Calibrate, tracker_noise_leaves_less_than_25_micrometres) {
+TEST(Calibrate, TrackerNoiseLeavesLessThan25Micrometres) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   Chain nominal = er20(0.125);
   nominal.tool.xyz = truth.tool.xyz;
   const PoseSet data = measured(truth, paper2_poses(50, tracker));
-  const Calibration c = calibrate({nominal, {}, tracker, data}, {}, Rng(1)).value();
+  const Calibration c = calibrate_robot({nominal, {}, tracker, data}, {}, Rng(1)).value();
   EXPECT_LT(mean_error_on_unseen_poses(c.estimate.chain, truth), 25e-6);
-  EXPECT_TRUE(c.use);
+  EXPECT_TRUE(c.usable);
   EXPECT_EQ(c.after.position.holdout.n, 50);
   EXPECT_LT(c.after.position.holdout.mean, 0.1 * c.before.position.holdout.mean);
 }
 
-TEST(Calibrate, full_poses_are_fitted_in_position_and_orientation) {
+TEST(Calibrate, FullPosesAreFittedInPositionAndOrientation) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   PoseSimulation simulation = paper2_poses(50, {.sigma = 10e-6, .sigma_angle = 20e-6, .ppm = 5});
   simulation.measured = Measured::poses;
   const PoseSet data = measured(truth, simulation);
-  const Calibration c = calibrate({er20(0.125), {}, simulation.instrument, data}, {}, Rng(1)).value();
+  const Calibration c = calibrate_robot({er20(0.125), {}, simulation.instrument, data}, {}, Rng(1)).value();
   EXPECT_LT(c.after.orientation.holdout.mean, 80e-6);
   EXPECT_LT(mean_error_on_unseen_poses(c.estimate.chain, truth), 25e-6);
 }
 
-TEST(Calibrate, the_guess_of_the_base_does_not_matter) {
+TEST(Calibrate, TheGuessOfTheBaseDoesNotMatter) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   const PoseSet data = measured(truth, paper2_poses(50, tracker));
   Chain near = er20(0.125), far = er20(0.125);
   near.base = truth.base;
   far.base = Frame::from_pose(Pose::from_xyz_rpy({-50, 20, 7}, {2, 1, -3}));
-  const Calibration a = calibrate({near, {}, tracker, data}, {}, Rng(1)).value();
-  const Calibration b = calibrate({far, {}, tracker, data}, {}, Rng(1)).value();
+  const Calibration a = calibrate_robot({near, {}, tracker, data}, {}, Rng(1)).value();
+  const Calibration b = calibrate_robot({far, {}, tracker, data}, {}, Rng(1)).value();
   EXPECT_NEAR(a.after.position.holdout.mean, b.after.position.holdout.mean, 1e-9);
 }
 
-TEST(Calibrate, a_nominal_model_that_is_far_off_is_found_and_said) {
+TEST(Calibrate, ANominalModelThatIsFarOffIsFoundAndSaid) {
   Chain truth = placed(er20(0.125));
   auto& link = std::get<MdhLink>(truth.joints[2].link);
   link.theta += 12.0 * degree;
   link.a += 0.08;
   std::get<MdhLink>(truth.joints[4].link).theta -= 15.0 * degree;
   const PoseSet data = measured(truth, paper2_poses(60, tracker));
-  const Calibration c = calibrate({er20(0.125), {}, tracker, data}, {}, Rng(1)).value();
+  const Calibration c = calibrate_robot({er20(0.125), {}, tracker, data}, {}, Rng(1)).value();
   EXPECT_LT(mean_error_on_unseen_poses(c.estimate.chain, truth), 40e-6);
   ASSERT_EQ(c.notes.size(), 1u);
   EXPECT_NE(c.notes[0].find("further off than its tolerances say"), std::string::npos);
 }
 
-TEST(Calibrate, joints_that_never_move_do_no_harm_and_are_named) {
+TEST(Calibrate, JointsThatNeverMoveDoNoHarmAndAreNamed) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   Chain nominal = er20(0.125);
   nominal.tool.xyz = truth.tool.xyz;
   Chain held = truth;  // three of six joints stand still
   for (const int j : {2, 4, 5}) held.joints[j].lower = held.joints[j].upper = 0.3;
   PoseSet data = measured(held, paper2_poses(40, tracker));
-  const Calibration c = calibrate({nominal, {}, tracker, data}, {}, Rng(1)).value();
+  const Calibration c = calibrate_robot({nominal, {}, tracker, data}, {}, Rng(1)).value();
   EXPECT_LT(c.estimate.identifiability.rank, 20);
   EXPECT_FALSE(c.estimate.identifiability.confounded.empty());
   // Where the joints move freely, the result is no worse than the nominal chain in the found frames.
-  const Chain frames = with_frames_from_data(nominal, data).value();
+  const Chain frames = with_estimated_frames(nominal, data).value();
   EXPECT_LE(mean_error_on_unseen_poses(c.estimate.chain, truth), mean_error_on_unseen_poses(frames, truth));
 }
 
-TEST(Calibrate, same_result_for_1_2_and_7_threads) {
+TEST(Calibrate, SameResultFor12And7Threads) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   const PoseSet data = measured(truth, paper2_poses(40, tracker));
-  const CalibrateTask task{er20(0.125), {}, tracker, data};
-  const Calibration one = calibrate(task, {.threads = 1}, Rng(1)).value();
+  const CalibrationTask task{er20(0.125), {}, tracker, data};
+  const Calibration one = calibrate_robot(task, {.threads = 1}, Rng(1)).value();
   for (const int threads : {2, 7}) {
-    const Calibration other = calibrate(task, {.threads = threads}, Rng(1)).value();
+    const Calibration other = calibrate_robot(task, {.threads = threads}, Rng(1)).value();
     EXPECT_EQ(other.after.position.holdout.mean, one.after.position.holdout.mean);
     EXPECT_EQ(other.estimate.covariance, one.estimate.covariance);
   }
 }
 
-TEST(Calibrate, the_papers_24_parameters_need_no_guess_of_the_base_either) {
+TEST(Calibrate, ThePapers24ParametersNeedNoGuessOfTheBaseEither) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   Chain nominal = er20(0.125);
   nominal.tool.xyz = truth.tool.xyz;
   const PoseSet data = measured(truth, paper2_poses(50, tracker));
-  const Calibration c = calibrate({nominal, {}, tracker, data}, {.parameters = Paper24Parameters{}}, Rng(1)).value();
-  EXPECT_TRUE(c.use) << c.verdict;
+  const Calibration c =
+      calibrate_robot({nominal, {}, tracker, data}, {.parameters = PaperDhParameters{}}, Rng(1)).value();
+  EXPECT_TRUE(c.usable) << c.verdict;
   EXPECT_LT(c.after.position.holdout.mean, 0.5 * c.before.position.holdout.mean);
   ASSERT_EQ(c.notes.size(), 1u);
   EXPECT_NE(c.notes[0].find("were taken from the data"), std::string::npos);
 }
 
-TEST(Calibrate, rows_marked_holdout_are_never_fitted) {
+TEST(Calibrate, RowsMarkedHoldoutAreNeverFitted) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   PoseSet data = measured(truth, paper2_poses(60, tracker));
-  data.set.assign(60, SetLabel::train);
-  for (int row = 40; row < 60; ++row) data.set[row] = SetLabel::holdout;
-  const CalibrateTask task{er20(0.125), {}, tracker, data};
-  const Calibration c = calibrate(task, {}, Rng(1)).value();
+  data.set.assign(60, SplitLabel::train);
+  for (int row = 40; row < 60; ++row) data.set[row] = SplitLabel::holdout;
+  const CalibrationTask task{er20(0.125), {}, tracker, data};
+  const Calibration c = calibrate_robot(task, {}, Rng(1)).value();
   EXPECT_EQ(c.after.position.train.n, 40);
   EXPECT_EQ(c.after.position.holdout.n, 20);
-  CalibrateTask spoiled = task;
+  CalibrationTask spoiled = task;
   for (PointMeasurement& point : spoiled.data.points)
     if (point.row >= 40) point.position += Vec3(1, 2, 3);
-  const Calibration same = calibrate(spoiled, {}, Rng(1)).value();
+  const Calibration same = calibrate_robot(spoiled, {}, Rng(1)).value();
   EXPECT_EQ(pack(same.estimate.parameters, same.estimate.chain), pack(c.estimate.parameters, c.estimate.chain));
-  EXPECT_FALSE(same.use);  // and the spoiled proof is seen
+  EXPECT_FALSE(same.usable);  // and the spoiled proof is seen
 }
 
-TEST(Calibrate, what_the_instrument_cannot_excuse_is_advised_against) {
+TEST(Calibrate, WhatTheInstrumentCannotExcuseIsAdvisedAgainst) {
   Chain truth = placed(with_table3_errors(er20(0.125)));
   truth.joints[1].compliance = 2e-6;  // sags under its arm, and the geometric model has no word for it
   truth.masses = {{2, Vec3(0.4, 0, 0), 120.0}, {4, Vec3(0, 0, 0.1), 60.0}};
   const PoseSet data = measured(truth, paper2_poses(100, tracker));
-  const Calibration c = calibrate({er20(0.125), {}, tracker, data}, {.model = NamedModel{}}, Rng(1)).value();
-  EXPECT_FALSE(c.use);
+  const Calibration c = calibrate_robot({er20(0.125), {}, tracker, data}, {.model = FixedModel{}}, Rng(1)).value();
+  EXPECT_FALSE(c.usable);
   EXPECT_GT(*c.estimate.chi2_per_n, 10.0);
   EXPECT_NE(c.verdict.find("not modelled"), std::string::npos);
 }
 
-TEST(Calibrate, too_few_rows_are_an_error_that_says_how_many_are_needed) {
+TEST(Calibrate, TooFewRowsAreAnErrorThatSaysHowManyAreNeeded) {
   const PoseSet data = measured(placed(er20()), paper2_poses(3, tracker));
-  const auto c = calibrate({er20(), {}, tracker, data}, {}, Rng(1));
+  const auto c = calibrate_robot({er20(), {}, tracker, data}, {}, Rng(1));
   ASSERT_FALSE(c.has_value());
   EXPECT_NE(c.error().what.find("at least 4"), std::string::npos) << c.error().what;
 }
 
-TEST(Calibrate, an_unknown_parameter_name_lists_the_known_ones) {
+TEST(Calibrate, AnUnknownParameterNameListsTheKnownOnes) {
   const PoseSet data = measured(placed(er20()), paper2_poses(20, tracker));
-  const auto c = calibrate({er20(), {}, tracker, data}, {.parameters = NamedParameters{{"a2", "zeta9"}}}, Rng(1));
+  const auto c = calibrate_robot({er20(), {}, tracker, data}, {.parameters = NamedParameters{{"a2", "zeta9"}}}, Rng(1));
   ASSERT_FALSE(c.has_value());
   EXPECT_NE(c.error().what.find("\"zeta9\""), std::string::npos);
   EXPECT_NE(c.error().what.find("theta6"), std::string::npos);
 }
 
-TEST(Verify, tells_a_moved_tracker_from_a_changed_robot) {
+TEST(Verify, TellsAMovedTrackerFromAChangedRobot) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   const PoseSet today = measured(truth, paper2_poses(30, tracker), 5);
   EXPECT_TRUE(verify(truth, {}, tracker, today)->good);

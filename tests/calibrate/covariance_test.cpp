@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A tracker whose range is good and whose angles are bad: what the full covariance of each point is worth.
 #include <gtest/gtest.h>
 
@@ -6,6 +7,7 @@
 #include "support/instruments.hpp"
 
 namespace kinfer {
+using namespace calibrate;
 namespace {
 
 using namespace test;
@@ -43,14 +45,14 @@ double unseen_error(Told told) {
     Chain truth = with_random_errors(nominal, {}, Rng(seed));
     truth.base = Frame::from_pose(Pose::from_xyz_rpy({2.4, -2.2, 0.35}, {0.02, -0.03, 2.3}));
     const PoseSet data = seen_by_tracker(truth, seed, told);
-    const auto found = calibrate({nominal, {}, std::nullopt, data}, {.model = NamedModel{}}, Rng(1)).value();
-    EXPECT_TRUE(found.use) << found.verdict;
+    const auto found = calibrate_robot({nominal, {}, std::nullopt, data}, {.model = FixedModel{}}, Rng(1)).value();
+    EXPECT_TRUE(found.usable) << found.verdict;
     errors.push_back(mean(point_errors(found.estimate.chain, measured(truth, paper2_poses(300, noise_free), 77))));
   }
   return mean(errors);
 }
 
-TEST(Covariance, of_each_point_halves_the_error_that_a_tracker_of_poor_angles_leaves) {
+TEST(Covariance, OfEachPointHalvesTheErrorThatATrackerOfPoorAnglesLeaves) {
   const double full = unseen_error(Told::covariance);
   EXPECT_LT(full, 0.6 * unseen_error(Told::nothing));
   EXPECT_LT(full, 0.7 * unseen_error(Told::deviations)) << "the world's axes are not the tracker's";

@@ -1,14 +1,16 @@
-#include "kinfer/calibrate/doctor.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/diagnosis/diagnose.hpp"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "kinfer/calibrate/single_fit.hpp"
+#include "kinfer/calibrate/fit/tolerance_fit.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {
+using namespace calibrate;
 namespace {
 
 Joint dh_joint(double a, double alpha_deg, double d, JointType type, int parent) {
@@ -47,7 +49,7 @@ Chain arm6() {
 }
 
 /// A robot whose true numbers differ from the nominal ones by its tolerances, measured by a tracker.
-CalibrateTask measured_robot(const Chain& nominal, int seed = 1, Measured what = Measured::positions) {
+CalibrationTask measured_robot(const Chain& nominal, int seed = 1, Measured what = Measured::positions) {
   const Chain truth = with_random_errors(nominal, {}, Rng(seed));
   const PoseSimulation simulation{.poses = 60, .space = {}, .instrument = test::tracker, .measured = what};
   return {.nominal = nominal,
@@ -58,51 +60,51 @@ CalibrateTask measured_robot(const Chain& nominal, int seed = 1, Measured what =
 
 std::string listed(const std::vector<Finding>& findings) {
   std::string text;
-  for (const Finding& f : findings) text += f.kind + ": " + f.sentence + "\n";
+  for (const Finding& f : findings) text += std::string(name(f.kind)) + ": " + f.sentence + "\n";
   return text;
 }
 
 /// The only finding, of the kind that is expected.
-Finding only(const CalibrateTask& task, const std::string& kind) {
-  const Diagnosis diagnosis = examine(task);
+Finding only(const CalibrationTask& task, const std::string& kind) {
+  const Diagnosis diagnosis = diagnose(task);
   EXPECT_EQ(diagnosis.findings.size(), 1u) << listed(diagnosis.findings);
   if (diagnosis.findings.empty()) return {};
-  EXPECT_EQ(diagnosis.findings.front().kind, kind) << listed(diagnosis.findings);
+  EXPECT_EQ(diagnosis.findings.front().kind, finding_kind(kind)) << listed(diagnosis.findings);
   return diagnosis.findings.front();
 }
 
 /// Noise level [m] of a fit to treated data: 20 µm or so where all was put right.
-double noise_level(const CalibrateTask& treated) {
-  return fit_once(treated, treated.data, AutoParameters{}, {}).value().sigma;
+double noise_level(const CalibrationTask& corrected_task) {
+  return fit_once(corrected_task, corrected_task.data, GeometricParameters{}, {}).value().sigma;
 }
 
-TEST(doctor, healthy_sets_have_no_finding) {
+TEST(doctor, HealthySetsHaveNoFinding) {
   for (const Chain& nominal : {arm6(), ur_like(), scara()})
     for (int seed = 1; seed <= 5; ++seed) {
-      const Diagnosis diagnosis = examine(measured_robot(nominal, seed, Measured::poses));
+      const Diagnosis diagnosis = diagnose(measured_robot(nominal, seed, Measured::poses));
       EXPECT_TRUE(diagnosis.findings.empty()) << seed << "\n" << listed(diagnosis.findings);
     }
 }
 
-TEST(doctor, commanded_joints_replace_readings_that_were_taken_while_the_arm_moved) {
-  CalibrateTask task = measured_robot(arm6());
+TEST(doctor, CommandedJointsReplaceReadingsThatWereTakenWhileTheArmMoved) {
+  CalibrationTask task = measured_robot(arm6());
   task.data.commanded = task.data.joints;
   Rng rng(3);
   for (double& q : task.data.joints.reshaped()) q += 0.1 * degree * rng.normal();
   EXPECT_TRUE(only(task, "not_settled").applied);
-  EXPECT_EQ(examine(task).treated.data.joints, task.data.commanded);
+  EXPECT_EQ(diagnose(task).corrected_task.data.joints, task.data.commanded);
 }
 
-TEST(doctor, commanded_joints_that_the_arm_did_not_reach_are_not_used) {
-  CalibrateTask task = measured_robot(arm6());
+TEST(doctor, CommandedJointsThatTheArmDidNotReachAreNotUsed) {
+  CalibrationTask task = measured_robot(arm6());
   task.data.commanded = task.data.joints;
   Rng rng(3);
   for (double& q : task.data.commanded.reshaped()) q += 0.02 * degree * rng.normal();
-  EXPECT_TRUE(examine(task).findings.empty());
+  EXPECT_TRUE(diagnose(task).findings.empty());
 }
 
-TEST(doctor, rows_in_which_the_arm_had_not_come_to_rest_are_named) {
-  CalibrateTask task = measured_robot(arm6());
+TEST(doctor, RowsInWhichTheArmHadNotComeToRestAreNamed) {
+  CalibrationTask task = measured_robot(arm6());
   task.data.commanded = task.data.joints;
   task.data.commanded.array() += 1e-4;
   task.data.commanded.col(7).array() += 0.01;
@@ -120,18 +122,18 @@ PoseSet with_readings_shifted(PoseSet data, int from, int by) {
 
 class Shifted : public ::testing::TestWithParam<std::pair<int, int>> {};  // from row, by
 
-TEST_P(Shifted, rows_are_found_and_paired_anew) {
-  CalibrateTask task = measured_robot(arm6());
+TEST_P(Shifted, RowsAreFoundAndPairedAnew) {
+  CalibrationTask task = measured_robot(arm6());
   const auto [from, by] = GetParam();
   const PoseSet right = task.data;
   task.data = with_readings_shifted(task.data, from, by);
   const Finding finding = only(task, "rows_shifted");
   EXPECT_TRUE(finding.applied);
   EXPECT_EQ(finding.rows.size(), static_cast<std::size_t>(60 - from - std::abs(by)));
-  const PoseSet treated = examine(task).treated.data;
-  for (const PointMeasurement& point : treated.points)
-    EXPECT_EQ(treated.joints.col(point.row), right.joints.col(point.row)) << point.row;
-  EXPECT_EQ(treated.points.size(), right.points.size() - std::abs(by));
+  const PoseSet corrected_task = diagnose(task).corrected_task.data;
+  for (const PointMeasurement& point : corrected_task.points)
+    EXPECT_EQ(corrected_task.joints.col(point.row), right.joints.col(point.row)) << point.row;
+  EXPECT_EQ(corrected_task.points.size(), right.points.size() - std::abs(by));
 }
 INSTANTIATE_TEST_SUITE_P(doctor, Shifted,
                          ::testing::Values(std::pair{0, 1}, std::pair{0, -2}, std::pair{0, 7}, std::pair{41, 1},
@@ -141,34 +143,34 @@ INSTANTIATE_TEST_SUITE_P(doctor, Shifted,
                                               test.param.second < 0 ? "minus_" : "", std::abs(test.param.second));
                          });
 
-TEST(doctor, swapped_rows_are_named_together) {
-  CalibrateTask task = measured_robot(ur_like());
+TEST(doctor, SwappedRowsAreNamedTogether) {
+  CalibrationTask task = measured_robot(ur_like());
   std::swap(task.data.points[12].position, task.data.points[40].position);
   EXPECT_EQ(only(task, "rows_swapped").rows, (std::vector<int>{12, 40}));
 }
 
-TEST(doctor, copied_rows_are_named) {
-  CalibrateTask task = measured_robot(arm6());
+TEST(doctor, CopiedRowsAreNamed) {
+  CalibrationTask task = measured_robot(arm6());
   task.data.joints.col(31) = task.data.joints.col(5);
   task.data.points[31].position = task.data.points[5].position;
   EXPECT_EQ(only(task, "duplicate_rows").rows, (std::vector<int>{5, 31}));
 }
 
-TEST(doctor, a_measurement_that_was_stored_twice_is_named) {
-  CalibrateTask task = measured_robot(arm6());
+TEST(doctor, AMeasurementThatWasStoredTwiceIsNamed) {
+  CalibrationTask task = measured_robot(arm6());
   task.data.points[21].position = task.data.points[20].position;
   EXPECT_EQ(only(task, "measurement_repeated").rows, (std::vector<int>{20, 21}));
 }
 
-TEST(doctor, a_pose_that_was_measured_again_is_no_fault) {
-  CalibrateTask task = measured_robot(arm6());
+TEST(doctor, APoseThatWasMeasuredAgainIsNoFault) {
+  CalibrationTask task = measured_robot(arm6());
   task.data.joints.col(31) = task.data.joints.col(5);
   task.data.points[31].position = task.data.points[5].position + Vec3(8e-6, -5e-6, 3e-6);
-  EXPECT_TRUE(examine(task).findings.empty());
+  EXPECT_TRUE(diagnose(task).findings.empty());
 }
 
-TEST(doctor, gross_outliers_are_named) {
-  CalibrateTask task = measured_robot(arm6());
+TEST(doctor, GrossOutliersAreNamed) {
+  CalibrationTask task = measured_robot(arm6());
   task.data.points[8].position.x() += 0.004;
   task.data.points[33].position.z() -= 0.3;
   EXPECT_EQ(only(task, "gross_outliers").rows, (std::vector<int>{8, 33}));
@@ -177,77 +179,78 @@ TEST(doctor, gross_outliers_are_named) {
 /// A fault of the file as a whole, which is certain and put right.
 struct Fault {
   std::string name, kind;
-  std::function<void(CalibrateTask&)> make;
+  std::function<void(CalibrationTask&)> make;
 };
 void PrintTo(const Fault& fault, std::ostream* out) {
   *out << fault.name;
 }
 
-void scale_points(CalibrateTask& task, double factor) {
+void scale_points(CalibrationTask& task, double factor) {
   for (PointMeasurement& point : task.data.points) point.position *= factor;
 }
 
 std::vector<Fault> faults() {
   std::vector<Fault> list{
-      {"degrees", "degrees_for_radians", [](CalibrateTask& t) { t.data.joints /= degree; }},
-      {"radians", "radians_for_degrees", [](CalibrateTask& t) { t.data.joints *= degree; }},
-      {"millimetres", "length_unit", [](CalibrateTask& t) { scale_points(t, 1e3); }},
-      {"metres", "length_unit", [](CalibrateTask& t) { scale_points(t, 1e-3); }},
-      {"swapped_columns", "columns_swapped", [](CalibrateTask& t) { t.data.joints.row(1).swap(t.data.joints.row(3)); }},
-      {"parallel_linkage", "joint_coupled", [](CalibrateTask& t) { t.data.joints.row(2) += t.data.joints.row(1); }}};
+      {"degrees", "degrees_for_radians", [](CalibrationTask& t) { t.data.joints /= degree; }},
+      {"radians", "radians_for_degrees", [](CalibrationTask& t) { t.data.joints *= degree; }},
+      {"millimetres", "length_unit", [](CalibrationTask& t) { scale_points(t, 1e3); }},
+      {"metres", "length_unit", [](CalibrationTask& t) { scale_points(t, 1e-3); }},
+      {"swapped_columns", "columns_swapped",
+       [](CalibrationTask& t) { t.data.joints.row(1).swap(t.data.joints.row(3)); }},
+      {"parallel_linkage", "joint_coupled", [](CalibrationTask& t) { t.data.joints.row(2) += t.data.joints.row(1); }}};
   for (int k = 0; k < 6; ++k) {
     list.push_back(
-        {fmt::format("sign_of_J{}", k + 1), "wrong_sign", [k](CalibrateTask& t) { t.data.joints.row(k) *= -1.0; }});
+        {fmt::format("sign_of_J{}", k + 1), "wrong_sign", [k](CalibrationTask& t) { t.data.joints.row(k) *= -1.0; }});
     if (k == 0 || k == 5) continue;  // base and tool take these up: no fault
     for (const int offset : {90, -90, 180})
       if (offset != 180 || (k != 1 && k != 4))  // there the same as the sign of J1 and of J6
         list.push_back({fmt::format("offset_{}_of_J{}", offset < 0 ? "minus_90" : std::to_string(offset), k + 1),
                         "joint_offset",
-                        [k, offset](CalibrateTask& t) { t.data.joints.row(k).array() += offset * degree; }});
+                        [k, offset](CalibrationTask& t) { t.data.joints.row(k).array() += offset * degree; }});
   }
   return list;
 }
 
 class WholeFile : public ::testing::TestWithParam<Fault> {};
 
-TEST_P(WholeFile, fault_is_found_alone_and_put_right) {
-  CalibrateTask task = measured_robot(ur_like(), 2);
+TEST_P(WholeFile, FaultIsFoundAloneAndPutRight) {
+  CalibrationTask task = measured_robot(ur_like(), 2);
   GetParam().make(task);
-  const Diagnosis diagnosis = examine(task);
+  const Diagnosis diagnosis = diagnose(task);
   ASSERT_EQ(diagnosis.findings.size(), 1u) << listed(diagnosis.findings);
   const Finding& finding = diagnosis.findings.front();
-  EXPECT_EQ(finding.kind, GetParam().kind) << finding.sentence;
+  EXPECT_EQ(name(finding.kind), GetParam().kind) << finding.sentence;
   EXPECT_TRUE(finding.applied);
-  EXPECT_LT(noise_level(diagnosis.treated), 5e-5) << finding.sentence;
+  EXPECT_LT(noise_level(diagnosis.corrected_task), 5e-5) << finding.sentence;
 }
 INSTANTIATE_TEST_SUITE_P(doctor, WholeFile, ::testing::ValuesIn(faults()),
                          [](const auto& test) { return test.param.name; });
 
-TEST(doctor, two_wrong_signs_are_found_together) {
-  CalibrateTask task = measured_robot(ur_like());
+TEST(doctor, TwoWrongSignsAreFoundTogether) {
+  CalibrationTask task = measured_robot(ur_like());
   task.data.joints.row(1) *= -1.0;
   task.data.joints.row(4) *= -1.0;
-  const Diagnosis diagnosis = examine(task);
+  const Diagnosis diagnosis = diagnose(task);
   EXPECT_EQ(diagnosis.findings.size(), 2u) << listed(diagnosis.findings);
-  EXPECT_LT(noise_level(diagnosis.treated), 5e-5);
+  EXPECT_LT(noise_level(diagnosis.corrected_task), 5e-5);
 }
 
-TEST(doctor, a_mirrored_measurement_is_said_and_left_alone) {
-  CalibrateTask task = measured_robot(arm6());
+TEST(doctor, AMirroredMeasurementIsSaidAndLeftAlone) {
+  CalibrationTask task = measured_robot(arm6());
   for (PointMeasurement& point : task.data.points) std::swap(point.position.x(), point.position.y());
   EXPECT_FALSE(only(task, "mirrored").applied);
 }
 
-TEST(doctor, a_prismatic_joint_in_millimetres_is_found) {
-  CalibrateTask task = measured_robot(scara());
+TEST(doctor, APrismaticJointInMillimetresIsFound) {
+  CalibrationTask task = measured_robot(scara());
   task.data.joints.row(2) *= 1e3;
   EXPECT_EQ(only(task, "length_unit").sentence, "J3 is in millimetres, but was read as metres");
 }
 
 class Orientations : public ::testing::TestWithParam<int> {};
 
-TEST_P(Orientations, of_another_convention_are_found_and_put_right) {
-  CalibrateTask task = measured_robot(arm6(), 1, Measured::poses);
+TEST_P(Orientations, OfAnotherConventionAreFoundAndPutRight) {
+  CalibrationTask task = measured_robot(arm6(), 1, Measured::poses);
   const std::vector<OrientationMeasurement> right = task.data.orientations;
   for (OrientationMeasurement& m : task.data.orientations) {
     const Quat q = m.orientation;
@@ -256,9 +259,9 @@ TEST_P(Orientations, of_another_convention_are_found_and_put_right) {
     if (GetParam() == 2) m.orientation = Quat(q.w(), q.x(), -q.y(), -q.z());
   }
   EXPECT_TRUE(only(task, "orientation_convention").applied);
-  const PoseSet treated = examine(task).treated.data;
+  const PoseSet corrected_task = diagnose(task).corrected_task.data;
   for (std::size_t i = 0; i < right.size(); ++i)
-    EXPECT_NEAR(std::abs(treated.orientations[i].orientation.dot(right[i].orientation)), 1.0, 1e-9);
+    EXPECT_NEAR(std::abs(corrected_task.orientations[i].orientation.dot(right[i].orientation)), 1.0, 1e-9);
 }
 INSTANTIATE_TEST_SUITE_P(doctor, Orientations, ::testing::Range(0, 3));
 
@@ -267,21 +270,21 @@ double number_in(const std::string& sentence) {
   return std::stod(sentence.substr(sentence.find('.') - 1));
 }
 
-TEST(doctor, a_drifting_base_is_seen_and_its_size_is_right) {
-  CalibrateTask task = measured_robot(ur_like());
+TEST(doctor, ADriftingBaseIsSeenAndItsSizeIsRight) {
+  CalibrationTask task = measured_robot(ur_like());
   for (PointMeasurement& point : task.data.points) point.position.x() += 0.4e-3 * point.row / 59.0;
   EXPECT_NEAR(number_in(only(task, "base_drifts").sentence), 0.4, 0.1);
 }
 
-TEST(doctor, a_base_that_was_pushed_a_little_is_seen) {
-  CalibrateTask task = measured_robot(ur_like());
+TEST(doctor, ABaseThatWasPushedALittleIsSeen) {
+  CalibrationTask task = measured_robot(ur_like());
   for (PointMeasurement& point : task.data.points)
     if (point.row >= 30) point.position.y() += 0.3e-3;
   EXPECT_NEAR(number_in(only(task, "base_moved").sentence), 0.3, 0.1);
 }
 
-TEST(doctor, a_base_that_was_moved_far_is_seen_with_its_rows) {
-  CalibrateTask task = measured_robot(arm6());
+TEST(doctor, ABaseThatWasMovedFarIsSeenWithItsRows) {
+  CalibrationTask task = measured_robot(arm6());
   for (PointMeasurement& point : task.data.points)
     if (point.row >= 40) point.position += Vec3(0.1, -0.2, 0.05);
   const Finding finding = only(task, "base_moved");
@@ -289,8 +292,8 @@ TEST(doctor, a_base_that_was_moved_far_is_seen_with_its_rows) {
   EXPECT_EQ(finding.rows.front(), 40);
 }
 
-TEST(doctor, a_joint_that_hardly_moves_is_named) {
-  CalibrateTask task = measured_robot(arm6());
+TEST(doctor, AJointThatHardlyMovesIsNamed) {
+  CalibrationTask task = measured_robot(arm6());
   const Chain truth = with_random_errors(task.nominal, {}, Rng(1));
   task.data.joints.row(3).setConstant(0.3);
   for (PointMeasurement& point : task.data.points)
@@ -298,8 +301,8 @@ TEST(doctor, a_joint_that_hardly_moves_is_named) {
   EXPECT_NE(only(task, "joint_hardly_moves").sentence.find("J4"), std::string::npos);
 }
 
-TEST(doctor, a_target_that_slipped_is_seen_in_its_rows) {
-  CalibrateTask task = measured_robot(arm6());
+TEST(doctor, ATargetThatSlippedIsSeenInItsRows) {
+  CalibrationTask task = measured_robot(arm6());
   const Chain truth = with_random_errors(task.nominal, {}, Rng(1));
   const Vec3 in_tool(0.1, 0.05, -0.02);
   task.nominal.targets = {{"s2", in_tool}};
@@ -316,17 +319,17 @@ TEST(doctor, a_target_that_slipped_is_seen_in_its_rows) {
   EXPECT_EQ(only(task, "not_rigid").rows, std::vector<int>{14});
 }
 
-TEST(doctor, a_set_that_is_too_small_to_judge_is_left_alone) {
-  CalibrateTask task = measured_robot(arm6());
+TEST(doctor, ASetThatIsTooSmallToJudgeIsLeftAlone) {
+  CalibrationTask task = measured_robot(arm6());
   task.data = select(task.data, {0, 1, 2});
-  EXPECT_NO_FATAL_FAILURE(examine(task));
+  EXPECT_NO_FATAL_FAILURE(diagnose(task));
   task.data = select(task.data, {});
-  EXPECT_TRUE(examine(task).findings.empty());
+  EXPECT_TRUE(diagnose(task).findings.empty());
 }
 
-TEST(doctor, rows_are_said_in_runs) {
-  EXPECT_EQ(rows_in_words({3}), "row 3");
-  EXPECT_EQ(rows_in_words({3, 5, 6, 9, 10, 11}), "rows 3, 5, 6 and 9-11");
+TEST(doctor, RowsAreSaidInRuns) {
+  EXPECT_EQ(describe_rows({3}), "row 3");
+  EXPECT_EQ(describe_rows({3, 5, 6, 9, 10, 11}), "rows 3, 5, 6 and 9-11");
 }
 
 }  // namespace

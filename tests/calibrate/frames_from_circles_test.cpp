@@ -1,4 +1,5 @@
-#include "kinfer/calibrate/frames_from_circles.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/start/circle_point_analysis.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +8,7 @@
 #include "support/robots.hpp"
 
 namespace kinfer {
+using namespace calibrate;
 namespace {
 
 using namespace test;
@@ -23,7 +25,7 @@ Chain on_a_stand(Chain chain) {
 PoseSet sweeps(const Chain& truth, const std::vector<int>& joints, const VectorXd& rest, double sigma, Rng rng) {
   constexpr int points = 13;
   PoseSet set;
-  set.joint_names = reading_names(truth);
+  set.joint_names = active_joint_names(truth);
   set.joints.resize(6, static_cast<Eigen::Index>(points * joints.size()));
   int row = 0;
   for (const int joint : joints)
@@ -46,47 +48,47 @@ void expect_same_frames(const Chain& found, const Chain& truth, double length, d
   EXPECT_LT((found.tool.xyz - truth.tool.xyz).norm(), length);
 }
 
-TEST(FramesFromCircles, the_papers_sweeps_of_joints_1_2_and_5_give_base_and_tool_length) {
+TEST(FramesFromCircles, ThePapersSweepsOfJoints12And5GiveBaseAndToolLength) {
   const Chain truth = on_a_stand(er20(0.125));
-  const auto found = frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1)));
+  const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1)));
   ASSERT_TRUE(found) << found.error().what;
   expect_same_frames(found->chain, truth, 1e-9, 1e-9);
   EXPECT_NEAR(found->tool_length, 0.1, 1e-9);  // radius 225 mm = d6 + zt
   EXPECT_NEAR(found->sweeps[2].radius, 0.225, 1e-9);
-  EXPECT_EQ(found->base_from, "joint J1 and joint J2");
+  EXPECT_EQ(found->base_source, "joint J1 and joint J2");
 }
 
-TEST(FramesFromCircles, a_target_beside_the_flanges_axis_is_found_where_the_papers_radius_is_misled) {
+TEST(FramesFromCircles, ATargetBesideTheFlangesAxisIsFoundWhereThePapersRadiusIsMisled) {
   Chain truth = on_a_stand(er20(0.125));
   truth.tool.xyz = Vec3(0.02, -0.015, 0.1);
-  const auto found = frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1)));
+  const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1)));
   ASSERT_TRUE(found) << found.error().what;
   expect_same_frames(found->chain, truth, 1e-9, 1e-9);
   EXPECT_GT(std::abs(found->tool_length - 0.1), 0.5e-3);
 }
 
-TEST(FramesFromCircles, any_posture_and_any_two_axes_will_do) {
+TEST(FramesFromCircles, AnyPostureAndAnyTwoAxesWillDo) {
   const Chain truth = on_a_stand(er20(0.125));
   const VectorXd rest = (VectorXd(6) << 0.4, -1.2, 0.3, 0.5, 0.6, -0.2).finished();
-  const auto found = frames_from_circles(er20(0.125), sweeps(truth, {2, 3, 4}, rest, 0.0, Rng(1)));
+  const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {2, 3, 4}, rest, 0.0, Rng(1)));
   ASSERT_TRUE(found) << found.error().what;
   expect_same_frames(found->chain, truth, 1e-8, 1e-8);
 }
 
-TEST(FramesFromCircles, a_joint_that_turns_backwards_and_a_sweep_run_backwards_are_understood) {
+TEST(FramesFromCircles, AJointThatTurnsBackwardsAndASweepRunBackwardsAreUnderstood) {
   Chain truth = on_a_stand(er20(0.125)), nominal = er20(0.125);
   truth.joints[1].gain = nominal.joints[1].gain = -1.0;
   PoseSet data = sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1));
   std::vector<int> backwards(data.rows());
   for (std::size_t i = 0; i < backwards.size(); ++i) backwards[i] = static_cast<int>(backwards.size() - 1 - i);
   for (const PoseSet& set : {data, select(data, backwards)}) {
-    const auto found = frames_from_circles(nominal, set);
+    const auto found = estimate_frames_from_circles(nominal, set);
     ASSERT_TRUE(found) << found.error().what;
     expect_same_frames(found->chain, truth, 1e-9, 1e-9);
   }
 }
 
-TEST(FramesFromCircles, marked_sweeps_rule_and_a_mark_on_two_joints_is_refused) {
+TEST(FramesFromCircles, MarkedSweepsRuleAndAMarkOnTwoJointsIsRefused) {
   const Chain truth = on_a_stand(er20(0.125));
   PoseSet data = sweeps(truth, {0, 1}, zero, 0.0, Rng(1));
   data.sweeps = {"first", "second"};
@@ -94,19 +96,19 @@ TEST(FramesFromCircles, marked_sweeps_rule_and_a_mark_on_two_joints_is_refused) 
   const auto marked = find_sweeps(data);
   ASSERT_TRUE(marked);
   EXPECT_EQ((*marked)[1].name, "second");
-  EXPECT_EQ((*marked)[1].reading, 1);
+  EXPECT_EQ((*marked)[1].q_index, 1);
   data.sweep[3] = 1;
   EXPECT_EQ(find_sweeps(data).error().what, "sweep second moves 2 joints; expected one joint alone");
 }
 
-TEST(FramesFromCircles, parallel_axes_alone_do_not_make_a_base) {
+TEST(FramesFromCircles, ParallelAxesAloneDoNotMakeABase) {
   const Chain truth = on_a_stand(er20(0.125));
-  const auto found = frames_from_circles(er20(0.125), sweeps(truth, {1, 2}, zero, 0.0, Rng(1)));
+  const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {1, 2}, zero, 0.0, Rng(1)));
   ASSERT_FALSE(found);
   EXPECT_NE(found.error().what.find("not parallel"), std::string::npos);
 }
 
-TEST(FramesFromCircles, stated_uncertainty_is_that_of_repeated_measurements) {
+TEST(FramesFromCircles, StatedUncertaintyIsThatOfRepeatedMeasurements) {
   const Chain truth = on_a_stand(er20(0.125));
   constexpr double sigma = 50e-6;
   constexpr int repetitions = 300;
@@ -127,9 +129,9 @@ TEST(FramesFromCircles, stated_uncertainty_is_that_of_repeated_measurements) {
   EXPECT_LT(rms(worst_tilt), 1.15 * std::sqrt(2.0) * rms(stated_tilt));
 }
 
-TEST(FramesFromCircles, with_tracker_noise_the_base_is_as_good_as_its_circles_say) {
+TEST(FramesFromCircles, WithTrackerNoiseTheBaseIsAsGoodAsItsCirclesSay) {
   const Chain truth = on_a_stand(er20(0.125));
-  const auto found = frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 10e-6, Rng(3)));
+  const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 10e-6, Rng(3)));
   ASSERT_TRUE(found);
   expect_same_frames(found->chain, truth, 0.2e-3, 1e-4);
   EXPECT_LT(found->base_differs, 0.3e-3);  // and agrees with the start that calibrate finds

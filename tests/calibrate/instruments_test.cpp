@@ -1,13 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each instrument alone, and several together, find the errors of a simulated robot again.
 #include <gtest/gtest.h>
 
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/calibrate/figures.hpp"
-#include "kinfer/calibrate/surroundings.hpp"
+#include "kinfer/calibrate/start/fixtures.hpp"
+#include "kinfer/calibrate/validation/validation_errors.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "support/instruments.hpp"
 
 namespace kinfer {
+using namespace calibrate;
 namespace {
 
 using namespace test;
@@ -18,27 +20,27 @@ Chain true_robot(int seed = 1) {
 }
 
 Calibration calibrated(const Chain& nominal, const PoseSet& data, const Instrument& instrument) {
-  const auto c = calibrate({nominal, {}, instrument, data}, {.model = NamedModel{}}, Rng(1));
+  const auto c = calibrate_robot({nominal, {}, instrument, data}, {.model = FixedModel{}}, Rng(1));
   EXPECT_TRUE(c.has_value()) << c.error().what;
   return *c;
 }
 
-TEST(Instruments, draw_wires_to_uncertain_anchors_calibrate_the_robot_and_the_anchors) {
+TEST(Instruments, DrawWiresToUncertainAnchorsCalibrateTheRobotAndTheAnchors) {
   Chain nominal = nominal_robot();
-  nominal.surroundings.anchors = {Vec3(1.8, -0.9, 0.1), Vec3(1.7, 1.1, 0.2), Vec3(0.2, 0.3, 2.4)};
+  nominal.fixtures.anchors = {Vec3(1.8, -0.9, 0.1), Vec3(1.7, 1.1, 0.2), Vec3(0.2, 0.3, 2.4)};
   Chain truth = with_random_errors(nominal, {}, Rng(2));
-  truth.surroundings.anchors[0] += Vec3(4e-3, -5e-3, 3e-3);
-  truth.surroundings.anchors[2] += Vec3(-6e-3, 2e-3, 1e-3);
+  truth.fixtures.anchors[0] += Vec3(4e-3, -5e-3, 3e-3);
+  truth.fixtures.anchors[2] += Vec3(-6e-3, 2e-3, 1e-3);
   PoseSet data = readings_of(measured(truth, paper2_poses(50, noise_free)));
   measure_distances(data, truth, 10e-6, Rng(3));
   const Calibration c = calibrated(nominal, data, {.sigma = 10e-6});
-  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_TRUE(c.usable) << c.verdict;
   EXPECT_EQ(c.measured, "distance");
   EXPECT_LT(c.after.position.holdout.mean, 35e-6);
   EXPECT_GT(c.before.position.holdout.mean, 5.0 * c.after.position.holdout.mean);
 }
 
-TEST(Instruments, balls_in_sockets_make_unseen_sockets_consistent) {
+TEST(Instruments, BallsInSocketsMakeUnseenSocketsConsistent) {
   const Chain truth = true_robot();
   const std::vector<Vec3> sockets{{0.9, 0.5, 0.4}, {0.8, -0.6, 0.6}, {1.1, 0.1, 0.9}, {0.7, 0.3, 1.2}};
   PoseSet all = readings_of(measured(truth, paper2_poses(120, noise_free)));
@@ -55,19 +57,19 @@ TEST(Instruments, balls_in_sockets_make_unseen_sockets_consistent) {
   }
   data = select(data, seen_rows), unseen = select(unseen, other_rows);
   Chain nominal = nominal_robot();
-  nominal.surroundings.socket_distances = {};
+  nominal.fixtures.socket_distances = {};
   const Calibration c = calibrated(nominal, data, {.sigma = 10e-6});
   EXPECT_EQ(c.measured, "ball in socket");
-  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_TRUE(c.usable) << c.verdict;
   const auto spread = [&](const Chain& chain) {
-    const PlacedData there = with_surroundings(chain, unseen).value();
-    return mean(headline_errors(there.chain, {}, there.data));
+    const DataWithFixtures there = with_fixtures(chain, unseen).value();
+    return mean(primary_errors(there.chain, {}, there.data));
   };
   EXPECT_LT(spread(c.estimate.chain), 0.1 * spread(nominal));
   EXPECT_LT(spread(c.estimate.chain), 60e-6);
 }
 
-TEST(Instruments, a_known_distance_between_sockets_gives_the_scale) {
+TEST(Instruments, AKnownDistanceBetweenSocketsGivesTheScale) {
   const Chain truth = true_robot(3);
   const std::vector<Vec3> sockets{{0.9, 0.5, 0.4}, {0.8, -0.6, 0.6}, {1.1, 0.1, 0.9}};
   PoseSet data = readings_of(measured(truth, paper2_poses(90, noise_free)));
@@ -77,16 +79,16 @@ TEST(Instruments, a_known_distance_between_sockets_gives_the_scale) {
   for (int row = 0; row < 90; ++row) data.contacts.push_back({row, row % 3});
   Chain nominal = nominal_robot();
   const auto apart = [](const Chain& chain) {
-    const auto& s = chain.surroundings.sockets;
+    const auto& s = chain.fixtures.sockets;
     return (s[0].xyz - s[1].xyz).norm();
   };
   const double distance = (sockets[0] - sockets[1]).norm();
-  nominal.surroundings.sockets = {{"b", Vec3::Zero()}, {"a", Vec3::Zero()}};  // in an order of their own
-  nominal.surroundings.socket_distances = {{0, 1, distance, 5e-6}};
+  nominal.fixtures.sockets = {{"b", Vec3::Zero()}, {"a", Vec3::Zero()}};  // in an order of their own
+  nominal.fixtures.socket_distances = {{0, 1, distance, 5e-6}};
   EXPECT_NEAR(apart(calibrated(nominal, data, {.sigma = 10e-6}).estimate.chain), distance, 15e-6);
 }
 
-TEST(Instruments, ball_bars_planes_and_tilts_together_with_few_tracker_points) {
+TEST(Instruments, BallBarsPlanesAndTiltsTogetherWithFewTrackerPoints) {
   const Chain truth = true_robot(5);
   const Vec3 normal = Vec3(0.1, -0.2, 1.0).normalized();
   PoseSet data = readings_of(measured(truth, paper2_poses(120, noise_free)));
@@ -116,12 +118,12 @@ TEST(Instruments, ball_bars_planes_and_tilts_together_with_few_tracker_points) {
   Instrument instrument = tracker;
   instrument.sigma_tilt = 1e-3;
   const Calibration c = calibrated(nominal_robot(), data, instrument);
-  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_TRUE(c.usable) << c.verdict;
   EXPECT_NEAR(*c.estimate.chi2_per_n, 1.0, 0.35);
   EXPECT_LT(mean(point_errors(c.estimate.chain, measured(truth, paper2_poses(200, noise_free), 99))), 100e-6);
 }
 
-TEST(Instruments, targets_without_the_tool_point_find_the_tools_turn) {
+TEST(Instruments, TargetsWithoutTheToolPointFindTheToolsTurn) {
   Chain nominal = nominal_robot();
   nominal.targets = {{"s1", Vec3(0.1, 0, 0)}, {"s2", Vec3(0, 0.1, 0.02)}, {"s3", Vec3(-0.08, -0.05, 0.05)}};
   Chain truth = with_random_errors(nominal, {}, Rng(6));
@@ -134,11 +136,11 @@ TEST(Instruments, targets_without_the_tool_point_find_the_tools_turn) {
     for (int t = 0; t < 3; ++t)
       data.points.push_back({row, t, poses[row] * truth.targets[t].xyz + noise(rng, 15e-6), {}});
   const Calibration c = calibrated(nominal, data, {.sigma = 15e-6});
-  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_TRUE(c.usable) << c.verdict;
   EXPECT_LT(c.after.position.holdout.mean, 45e-6);
 }
 
-TEST(Instruments, a_cameras_own_deviations_weigh_its_poses) {
+TEST(Instruments, ACamerasOwnDeviationsWeighItsPoses) {
   const Chain truth = true_robot(7);
   PoseSimulation simulation = paper2_poses(60, {.sigma = 20e-6, .sigma_angle = 1e-4});
   simulation.measured = Measured::poses;
@@ -158,7 +160,7 @@ TEST(Instruments, a_cameras_own_deviations_weigh_its_poses) {
   EXPECT_LT(mean(point_errors(c.estimate.chain, measured(truth, paper2_poses(200, noise_free), 99))), 60e-6);
 }
 
-TEST(Instruments, each_setup_has_a_base_and_tool_of_its_own) {
+TEST(Instruments, EachSetupHasABaseAndToolOfItsOwn) {
   Chain truth = true_robot(8);
   truth.mountings = {{.name = "second",
                       .base = Frame::from_pose(Pose::from_xyz_rpy({3, 1, 0.5}, {0.1, 0.0, 2.0})),
@@ -169,14 +171,14 @@ TEST(Instruments, each_setup_has_a_base_and_tool_of_its_own) {
   measure_points(data, truth, tracker, Rng(11));
   data.mounting.clear();
   const Calibration c = calibrated(nominal_robot(), data, tracker);
-  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_TRUE(c.usable) << c.verdict;
   EXPECT_LT(c.after.position.holdout.mean, 60e-6);
   ASSERT_EQ(c.estimate.chain.mountings.size(), 1u);
   EXPECT_EQ(c.estimate.chain.setup, "first");
   EXPECT_LT((c.estimate.chain.mountings[0].tool.xyz - truth.mountings[0].tool.xyz).norm(), 1e-3);
 }
 
-TEST(Instruments, both_arms_of_a_tree_are_calibrated_by_rows_that_say_which_tip) {
+TEST(Instruments, BothArmsOfATreeAreCalibratedByRowsThatSayWhichTip) {
   Chain nominal = er20(0.125);
   nominal.tip = 3;  // a torso of two axes; arm one is joints 3 and 4, arm two joints 5 to 7
   nominal.joints[4].parent = 1;
@@ -192,15 +194,15 @@ TEST(Instruments, both_arms_of_a_tree_are_calibrated_by_rows_that_say_which_tip)
   measure_points(data, truth, tracker, Rng(12));
   data.mounting.clear();
   const Calibration c = calibrated(nominal, data, tracker);
-  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_TRUE(c.usable) << c.verdict;
   EXPECT_LT(c.after.position.holdout.mean, 45e-6);
   EXPECT_GT(c.before.position.holdout.mean, 10.0 * c.after.position.holdout.mean);
 }
 
-TEST(Instruments, an_anchor_that_the_robot_file_lacks_is_an_error) {
+TEST(Instruments, AnAnchorThatTheRobotFileLacksIsAnError) {
   PoseSet data = readings_of(measured(true_robot(), paper2_poses(10, noise_free)));
   data.distances.push_back({0, 1, 1.0});
-  const auto c = calibrate({nominal_robot(), {}, tracker, data}, {}, Rng(1));
+  const auto c = calibrate_robot({nominal_robot(), {}, tracker, data}, {}, Rng(1));
   ASSERT_FALSE(c.has_value());
   EXPECT_NE(c.error().what.find("anchor 2, but the robot file lists 0"), std::string::npos) << c.error().what;
 }

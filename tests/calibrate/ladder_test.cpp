@@ -1,14 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ladder takes what is there, refuses what is not, and names what it could not try.
-#include "kinfer/calibrate/ladder.hpp"
+#include "kinfer/calibrate/terms/model_selection.hpp"
 
 #include <gtest/gtest.h>
 
-#include "kinfer/calibrate/far_splits.hpp"
-#include "kinfer/calibrate/gear_spectrum.hpp"
+#include "kinfer/calibrate/terms/extrapolation_splits.hpp"
+#include "kinfer/calibrate/terms/gear_harmonics.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "support/instruments.hpp"
 
 namespace kinfer {
+using namespace calibrate;
 namespace {
 
 using namespace test;
@@ -17,15 +19,15 @@ PoseSet readings(const Chain& truth, int poses, int seed = 1) {
   return readings_of(measured(truth, paper2_poses(poses, noise_free), seed));
 }
 
-const LadderRung& rung(const Calibration& c, const std::string& name) {
-  for (const LadderRung& r : c.ladder.rungs)
+const SelectionStep& step_named(const Calibration& c, const std::string& name) {
+  for (const SelectionStep& r : c.model_selection.model_terms)
     if (r.name == name) return r;
   ADD_FAILURE() << "no rung is called " << name;
-  return c.ladder.rungs.front();
+  return c.model_selection.model_terms.front();
 }
 
-Calibration climbed(const Chain& nominal, const PoseSet& data, const CalibrateOptions& options = {}) {
-  return calibrate({nominal, {}, tracker, data}, options, Rng(1)).value();
+Calibration climbed(const Chain& nominal, const PoseSet& data, const CalibrationOptions& options = {}) {
+  return calibrate_robot({nominal, {}, tracker, data}, options, Rng(1)).value();
 }
 
 double error_on(const Chain& found, const Chain& truth, PoseSet rows) {
@@ -33,20 +35,20 @@ double error_on(const Chain& found, const Chain& truth, PoseSet rows) {
   return mean(point_errors(found, rows));
 }
 
-TEST(Ladder, nothing_but_geometry_is_taken_where_there_is_nothing_else) {
+TEST(ModelSelection, NothingButGeometryIsTakenWhereThereIsNothingElse) {
   const Chain truth = with_random_errors(nominal_robot(), {}, Rng(1));
   for (const int seed : {1, 2, 3}) {
     const Calibration c = climbed(nominal_robot(), measured(truth, paper2_poses(60, tracker), seed));
-    EXPECT_EQ(c.ladder.chosen, "geometry");
-    EXPECT_TRUE(rung(c, "torques").locked);
-    EXPECT_NE(rung(c, "torques").why.find("no joint torques were measured"), std::string::npos);
-    EXPECT_TRUE(rung(c, "temperature").locked);
-    EXPECT_FALSE(rung(c, "gains").chosen);
-    EXPECT_NE(rung(c, "gains").why.find("refused"), std::string::npos);
+    EXPECT_EQ(c.model_selection.selected, "geometry");
+    EXPECT_TRUE(step_named(c, "torques").skipped);
+    EXPECT_NE(step_named(c, "torques").reason.find("no joint torques were measured"), std::string::npos);
+    EXPECT_TRUE(step_named(c, "temperature").skipped);
+    EXPECT_FALSE(step_named(c, "gains").selected);
+    EXPECT_NE(step_named(c, "gains").reason.find("refused"), std::string::npos);
   }
 }
 
-TEST(Ladder, compliance_shows_by_the_payload) {
+TEST(ModelSelection, ComplianceShowsByThePayload) {
   Chain nominal = nominal_robot();
   nominal.masses = {{1, Vec3(0.4, 0, 0.1), 60.0}, {2, Vec3(0.1, 0, 0.1), 40.0}};
   Chain truth = with_random_errors(nominal, {}, Rng(2));
@@ -55,15 +57,15 @@ TEST(Ladder, compliance_shows_by_the_payload) {
   for (int row = 0; row < 60; ++row) data.payload.push_back(row % 2 ? 20.0 : 0.0);
   measure_points(data, truth, tracker, Rng(3));
   const Calibration c = climbed(nominal, data);
-  EXPECT_TRUE(rung(c, "gravity").chosen) << rung(c, "gravity").why;
-  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_TRUE(step_named(c, "gravity").selected) << step_named(c, "gravity").reason;
+  EXPECT_TRUE(c.usable) << c.verdict;
   EXPECT_NEAR(c.estimate.chain.joints[1].compliance, 2e-6, 0.3e-6);
   PoseSet unseen = readings(truth, 200, 77);
   unseen.payload.assign(200, 10.0);
   EXPECT_LT(error_on(c.estimate.chain, truth, unseen), 25e-6);
 }
 
-TEST(Ladder, measured_torques_backlash_gears_and_warmth_are_found_each) {
+TEST(ModelSelection, MeasuredTorquesBacklashGearsAndWarmthAreFoundEach) {
   const Chain nominal = nominal_robot();
   const Chain geometry = with_random_errors(nominal, {}, Rng(4));
   const auto found = [&](const std::string& name, Chain truth, auto prepare) {
@@ -71,7 +73,7 @@ TEST(Ladder, measured_torques_backlash_gears_and_warmth_are_found_each) {
     prepare(data);
     measure_points(data, truth, tracker, Rng(5));
     const Calibration c = climbed(nominal, data);
-    EXPECT_TRUE(rung(c, name).chosen) << name << ": " << rung(c, name).why;
+    EXPECT_TRUE(step_named(c, name).selected) << name << ": " << step_named(c, name).reason;
     EXPECT_LT(error_on(c.estimate.chain, truth, data), 40e-6) << name;
   };
   Chain truth = geometry;
@@ -95,7 +97,7 @@ TEST(Ladder, measured_torques_backlash_gears_and_warmth_are_found_each) {
   });
 }
 
-TEST(Ladder, a_parallelograms_coupling_is_corrected_and_one_that_no_sheet_tells_is_found) {
+TEST(ModelSelection, AParallelogramsCouplingIsCorrectedAndOneThatNoSheetTellsIsFound) {
   Chain nominal = nominal_robot();
   nominal.joints[2].couplings = {{1, -1.0}};
   Chain truth = with_random_errors(nominal, {}, Rng(4));
@@ -104,7 +106,7 @@ TEST(Ladder, a_parallelograms_coupling_is_corrected_and_one_that_no_sheet_tells_
   PoseSet data = readings(truth, 80);
   measure_points(data, truth, tracker, Rng(5));
   const Calibration c = climbed(nominal, data);
-  EXPECT_TRUE(rung(c, "coupling").chosen) << rung(c, "coupling").why;
+  EXPECT_TRUE(step_named(c, "coupling").selected) << step_named(c, "coupling").reason;
   const auto factor = [&](const std::string& name) {
     for (const ParameterEstimate& value : c.estimate.values)
       if (value.name == name) return value;
@@ -118,26 +120,26 @@ TEST(Ladder, a_parallelograms_coupling_is_corrected_and_one_that_no_sheet_tells_
   EXPECT_LT(error_on(c.estimate.chain, truth, unseen), 25e-6);
 }
 
-TEST(Ladder, the_spectrum_shows_a_motors_line_of_unknown_order) {
+TEST(ModelSelection, TheSpectrumShowsAMotorsLineOfUnknownOrder) {
   Chain truth = with_random_errors(nominal_robot(), {}, Rng(8));
   truth.joints[1].harmonics = {{80.0, 1.5e-4, 1e-4}};
   PoseSet data = readings(truth, 400);
   measure_points(data, truth, tracker, Rng(5));
   const Calibration c = climbed(nominal_robot(), data);
-  EXPECT_TRUE(rung(c, "spectrum").chosen) << rung(c, "spectrum").why;
+  EXPECT_TRUE(step_named(c, "spectrum").selected) << step_named(c, "spectrum").reason;
   const auto& lines = c.estimate.chain.joints[1].harmonics;
   EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const Harmonic& h) { return std::abs(h.order - 80) < 0.05; }));
 }
 
-TEST(Ladder, a_named_model_is_taken_as_it_is_named) {
+TEST(ModelSelection, ANamedModelIsTakenAsItIsNamed) {
   const Chain truth = with_random_errors(nominal_robot(), {}, Rng(1));
   const PoseSet data = measured(truth, paper2_poses(40, tracker));
-  const Calibration c = climbed(nominal_robot(), data, {.model = NamedModel{{"gear"}}});
-  EXPECT_EQ(c.ladder.chosen, "geometry + gear");
-  EXPECT_EQ(c.ladder.rungs.size(), 2u);
+  const Calibration c = climbed(nominal_robot(), data, {.model = FixedModel{{"gear"}}});
+  EXPECT_EQ(c.model_selection.selected, "geometry + gear");
+  EXPECT_EQ(c.model_selection.model_terms.size(), 2u);
 }
 
-TEST(Ladder, same_model_and_same_numbers_for_1_2_and_7_threads) {
+TEST(ModelSelection, SameModelAndSameNumbersFor12And7Threads) {
   Chain truth = with_random_errors(nominal_robot(), {}, Rng(4));
   truth.joints[0].backlash = 1e-4;
   PoseSet data = with_approach(readings(truth, 50));
@@ -145,22 +147,22 @@ TEST(Ladder, same_model_and_same_numbers_for_1_2_and_7_threads) {
   const Calibration one = climbed(nominal_robot(), data, {.threads = 1});
   for (const int threads : {2, 7}) {
     const Calibration other = climbed(nominal_robot(), data, {.threads = threads});
-    EXPECT_EQ(other.ladder.chosen, one.ladder.chosen);
+    EXPECT_EQ(other.model_selection.selected, one.model_selection.selected);
     EXPECT_EQ(other.estimate.covariance, one.estimate.covariance);
-    for (std::size_t i = 0; i < one.ladder.rungs.size(); ++i)
-      EXPECT_EQ(other.ladder.rungs[i].holdout.mean, one.ladder.rungs[i].holdout.mean);
+    for (std::size_t i = 0; i < one.model_selection.model_terms.size(); ++i)
+      EXPECT_EQ(other.model_selection.model_terms[i].holdout.mean, one.model_selection.model_terms[i].holdout.mean);
   }
 }
 
-TEST(FarSplits, halve_the_rows_twice_and_hold_out_each_half) {
+TEST(FarSplits, HalveTheRowsTwiceAndHoldOutEachHalf) {
   PoseSet data;
   data.joints = MatrixXd::Zero(3, 40);
   for (int row = 0; row < 40; ++row) data.joints(0, row) = row, data.joints(1, row) = row % 7;
-  const std::vector<Split> splits = far_splits(data);
+  const std::vector<Split> splits = extrapolation_splits(data);
   ASSERT_EQ(splits.size(), 4u);
   for (const Split& split : splits) EXPECT_EQ(split.train.size() + split.holdout.size(), 40u);
   EXPECT_EQ(splits[0].train, splits[1].holdout);
-  EXPECT_TRUE(far_splits(select(data, {0, 1, 2, 3})).empty());
+  EXPECT_TRUE(extrapolation_splits(select(data, {0, 1, 2, 3})).empty());
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-#include "kinfer/calibrate/plan.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/plan/plan_poses.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,16 +7,18 @@
 #include <cmath>
 #include <set>
 
-#include "kinfer/calibrate/plan_bound.hpp"
-#include "kinfer/calibrate/single_fit.hpp"
-#include "kinfer/estimate/residuals.hpp"
+#include "kinfer/calibrate/fit/tolerance_fit.hpp"
+#include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/plan/lower_bound.hpp"
 #include "kinfer/simulate/pose_set.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {
+using namespace calibrate;
+using namespace plan;
 namespace {
 
 constexpr Criterion all_criteria[] = {Criterion::tool, Criterion::worst, Criterion::d, Criterion::a, Criterion::e};
@@ -34,7 +37,7 @@ DesignProblem small_problem() {
   return problem;
 }
 
-TEST(design, exchange_finds_the_best_of_all_triples) {
+TEST(design, ExchangeFindsTheBestOfAllTriples) {
   const DesignProblem problem = small_problem();
   for (const Criterion criterion : all_criteria) {
     double best = std::numeric_limits<double>::infinity();
@@ -48,10 +51,10 @@ TEST(design, exchange_finds_the_best_of_all_triples) {
   }
 }
 
-TEST(design, objectives_are_what_they_say) {
+TEST(design, ObjectivesAreWhatTheySay) {
   const DesignProblem problem = small_problem();
   const MatrixXd lambda = information(problem, {0, 4});
-  const MatrixXd sigma = solve_positive(lambda, VectorXd::Unit(5, 0)) ? *inverse_positive(lambda) : MatrixXd();
+  const MatrixXd sigma = solve_spd(lambda, VectorXd::Unit(5, 0)) ? *invert_spd(lambda) : MatrixXd();
   const VectorXd values = symmetric_eigen(lambda).values;
   EXPECT_NEAR(objective(problem, Criterion::d, lambda), -values.array().log().sum(), 1e-9);
   EXPECT_NEAR(objective(problem, Criterion::a, lambda), values.array().inverse().sum(), 1e-9);
@@ -63,21 +66,22 @@ TEST(design, objectives_are_what_they_say) {
   EXPECT_GE(worst, 0.8 * tool_variances(problem, sigma).maxCoeff());
 }
 
-TEST(design, no_choice_is_better_than_the_bound_and_many_poses_come_close_to_it) {
+TEST(design, NoChoiceIsBetterThanTheBoundAndManyPosesComeCloseToIt) {
   const DesignProblem problem = small_problem();
   for (int a = 0; a < 9; ++a)
     for (int b = a; b < 9; ++b)
       for (int c = b; c < 9; ++c)
-        EXPECT_GE(objective(problem, Criterion::tool, information(problem, {a, b, c})), least_mean_square(problem, 3));
+        EXPECT_GE(objective(problem, Criterion::tool, information(problem, {a, b, c})),
+                  mean_square_lower_bound(problem, 3));
   const std::vector<int> many = greedy_design(problem, Criterion::tool, 9);
-  EXPECT_GE(objective(problem, Criterion::tool, information(problem, many)), least_mean_square(problem, 9));
+  EXPECT_GE(objective(problem, Criterion::tool, information(problem, many)), mean_square_lower_bound(problem, 9));
   DesignProblem alone = problem;
   alone.rows = problem.rows.topRows(3).eval();
   const double only_one = objective(alone, Criterion::tool, information(alone, {0}));
-  EXPECT_NEAR(least_mean_square(alone, 1), only_one, 1e-12 * only_one);
+  EXPECT_NEAR(mean_square_lower_bound(alone, 1), only_one, 1e-12 * only_one);
 }
 
-TEST(design, copies_are_superfluous) {
+TEST(design, CopiesAreSuperfluous) {
   DesignProblem problem = small_problem();
   problem.rows *= 100.0;  // the noise is small, so that fewer rows than unknowns hurt
   problem.rows.bottomRows(3) = 1e-3 * problem.rows.topRows(3);
@@ -86,7 +90,7 @@ TEST(design, copies_are_superfluous) {
   EXPECT_LT(gone.size(), 9u);
 }
 
-TEST(design, candidates_too_close_are_not_chosen_together) {
+TEST(design, CandidatesTooCloseAreNotChosenTogether) {
   DesignProblem problem = small_problem();
   problem.too_close = [](int a, int b) { return std::abs(a - b) == 1; };
   const std::vector<int> found = best_design(problem, Criterion::d, 5, 2, 1, Rng(1));
@@ -102,7 +106,7 @@ PlanTask er20_task() {
   return task;
 }
 
-TEST(plan, poses_keep_to_limits_floor_view_and_spacing) {
+TEST(plan, PosesKeepToLimitsFloorViewAndSpacing) {
   PlanTask task = er20_task();
   task.space = {.lowest = 0.1, .clearance = 0.3, .instrument = Vec3(2.5, 1.0, 1.2)};
   const PlanOptions options{.poses = 12, .candidates = 200, .starts = 0};
@@ -122,7 +126,7 @@ TEST(plan, poses_keep_to_limits_floor_view_and_spacing) {
   }
 }
 
-TEST(plan, same_poses_for_any_number_of_threads) {
+TEST(plan, SamePosesForAnyNumberOfThreads) {
   const PlanTask task = er20_task();
   const auto with = [&](int threads) {
     return plan_poses(task, {.poses = 8, .candidates = 150, .threads = threads}, Rng(4)).value().joints;
@@ -132,14 +136,14 @@ TEST(plan, same_poses_for_any_number_of_threads) {
   EXPECT_EQ(one, with(7));
 }
 
-TEST(plan, ordering_is_a_permutation_that_travels_less) {
+TEST(plan, OrderingIsAPermutationThatTravelsLess) {
   const PosePlan plan = plan_poses(er20_task(), {.poses = 15, .candidates = 300, .starts = 0}, Rng(1)).value();
-  EXPECT_LT(plan.travel, plan.travel_as_chosen);
-  const std::vector<int> order = order_of_least_travel(er20_task().nominal, plan.joints);
+  EXPECT_LT(plan.travel, plan.travel_unordered);
+  const std::vector<int> order = order_by_travel(er20_task().nominal, plan.joints);
   EXPECT_EQ(std::set<int>(order.begin(), order.end()).size(), 15u);
 }
 
-TEST(plan, existing_poses_count_and_lower_the_expected_error) {
+TEST(plan, ExistingPosesCountAndLowerTheExpectedError) {
   PlanTask task = er20_task();
   task.candidates = draw_poses(task.nominal, {}, 200, Rng(9)).value();
   const PosePlan alone = plan_poses(task, {.poses = 10, .starts = 0}, Rng(1)).value();
@@ -151,7 +155,7 @@ TEST(plan, existing_poses_count_and_lower_the_expected_error) {
   for (Eigen::Index i = 0; i < 10; ++i) EXPECT_EQ(alone.joints.col(i), task.candidates.col(alone.candidates[i]));
 }
 
-TEST(plan, observability_is_that_of_the_singular_values) {
+TEST(plan, ObservabilityIsThatOfTheSingularValues) {
   PlanTask task = er20_task();
   task.candidates = draw_poses(task.nominal, {}, 100, Rng(9)).value();
   const PosePlan plan = plan_poses(task, {.poses = 20, .starts = 0}, Rng(1)).value();
@@ -162,24 +166,24 @@ TEST(plan, observability_is_that_of_the_singular_values) {
   EXPECT_GT(o1, o3 / std::sqrt(20.0));
 }
 
-TEST(plan, an_impossible_space_is_an_error) {
+TEST(plan, AnImpossibleSpaceIsAnError) {
   PlanTask task = er20_task();
   task.space.lowest = 50.0;
   EXPECT_FALSE(plan_poses(task, {.poses = 5}, Rng(1)).has_value());
 }
 
-TEST(plan, fifteen_planned_poses_calibrate_better_than_fifteen_random_ones) {
+TEST(plan, FifteenPlannedPosesCalibrateBetterThanFifteenRandomOnes) {
   const PlanTask task = er20_task();
   const MatrixXd planned = plan_poses(task, {.poses = 15, .candidates = 500, .starts = 1}, Rng(1)).value().joints;
   const MatrixXd elsewhere = draw_poses(task.nominal, {}, 300, Rng(2)).value();
   const auto worst = [&](int draw, const MatrixXd& q) {
     const Chain truth = with_random_errors(task.nominal, {}, Rng(10).stream(draw));
-    const CalibrateTask fit{.nominal = task.nominal,
-                            .tolerances = {},
-                            .instrument = test::tracker,
-                            .data = seen_points(truth, q, test::tracker, Rng(20).stream(draw))};
-    const std::vector<double> errors =
-        point_errors(fit_once(fit, fit.data, AutoParameters{}, {}).value().chain, seen_points(truth, elsewhere));
+    const CalibrationTask fit{.nominal = task.nominal,
+                              .tolerances = {},
+                              .instrument = test::tracker,
+                              .data = simulate_points(truth, q, test::tracker, Rng(20).stream(draw))};
+    const std::vector<double> errors = point_errors(fit_once(fit, fit.data, GeometricParameters{}, {}).value().chain,
+                                                    simulate_points(truth, elsewhere));
     return *std::max_element(errors.begin(), errors.end());
   };
   std::vector<double> by_plan, by_chance;

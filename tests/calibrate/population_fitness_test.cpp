@@ -1,12 +1,14 @@
-#include "kinfer/calibrate/population_fitness.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/swarm/swarm_fitness.hpp"
 
 #include <gtest/gtest.h>
 
-#include "kinfer/calibrate/parameter_choice.hpp"
-#include "kinfer/estimate/residuals.hpp"
+#include "kinfer/calibrate/parameters/parameter_sets.hpp"
+#include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "laws/example_chains.hpp"
 
 namespace kinfer {
+using namespace calibrate;
 namespace {
 
 constexpr int poses = 9;
@@ -37,21 +39,21 @@ void expect_equal_to_slow_version(const Chain& chain, const ParameterSet& set) {
   const PoseSet data = random_points(chain, Rng(1));
   const MatrixXd x = candidates(set, chain, Rng(2));
   std::vector<double> sum(x.cols());
-  PopulationFitness(chain, set, data).sums(x, sum);
+  SwarmFitness(chain, set, data).sums(x, sum);
   for (Eigen::Index i = 0; i < x.cols(); ++i)
     EXPECT_NEAR(sum[i], slow_sum(chain, set, data, x.col(i)), 1e-12 * sum[i]) << chain.name;
 }
 
 class AnyChain : public ::testing::TestWithParam<Chain> {};
-INSTANTIATE_TEST_SUITE_P(PopulationFitness, AnyChain, ::testing::ValuesIn(laws::examples()));
+INSTANTIATE_TEST_SUITE_P(SwarmFitness, AnyChain, ::testing::ValuesIn(laws::examples()));
 
-TEST_P(AnyChain, carrying_points_inwards_gives_the_sum_that_poses_give) {
+TEST_P(AnyChain, CarryingPointsInwardsGivesTheSumThatPosesGive) {
   Chain chain = GetParam();
   chain.targets = {{"second", Vec3(0.01, 0.2, -0.03)}};
   expect_equal_to_slow_version(chain, geometric_parameters(chain, random_points(chain, Rng(1)), {}));
 }
 
-TEST_P(AnyChain, gains_and_compliances_that_change_are_followed_too) {
+TEST_P(AnyChain, GainsAndCompliancesThatChangeAreFollowedToo) {
   expect_equal_to_slow_version(GetParam(), all_parameters(GetParam(), {}));
 }
 

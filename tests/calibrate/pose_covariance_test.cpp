@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An instrument on a stand that shakes: what the covariance of the whole pose is worth.
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include "support/instruments.hpp"
 
 namespace kinfer {
+using namespace calibrate;
 namespace {
 
 using namespace test;
@@ -33,12 +35,12 @@ PoseSet seen(const Robot& made, int seed) {
 }
 
 PoseSet by_blocks(PoseSet set) {
-  for (OrientationMeasurement& measured : set.orientations) measured.with_point.reset();
+  for (OrientationMeasurement& measured : set.orientations) measured.covariance_with_point.reset();
   return set;
 }
 
 Calibration fitted(const Robot& made, const PoseSet& data) {
-  return calibrate({made.nominal, {}, std::nullopt, data}, {.model = NamedModel{}}, Rng(1)).value();
+  return calibrate_robot({made.nominal, {}, std::nullopt, data}, {.model = FixedModel{}}, Rng(1)).value();
 }
 
 /// Mean error on poses that were not measured [m], wherever the base stands: the stand's mean turn moves it.
@@ -54,7 +56,7 @@ double unseen_error(const Robot& made, const PoseSet& data) {
   return mean(errors);
 }
 
-TEST(PoseCovariance, errors_of_a_shaken_camera_have_the_covariance_that_its_file_gives) {
+TEST(PoseCovariance, ErrorsOfAShakenCameraHaveTheCovarianceThatItsFileGives) {
   const Robot made = robot(1);
   const PoseSet set =
       simulate_pose_set(made.truth, {.poses = 2000, .instrument = camera, .measured = Measured::poses, .shake = shake},
@@ -72,7 +74,7 @@ TEST(PoseCovariance, errors_of_a_shaken_camera_have_the_covariance_that_its_file
   EXPECT_LT((scatter - MatrixXd::Identity(6, 6)).cwiseAbs().maxCoeff(), 5.0 * std::sqrt(2.0 / 2000.0));
 }
 
-TEST(PoseCovariance, six_rows_together_beat_point_and_orientation_apart) {
+TEST(PoseCovariance, SixRowsTogetherBeatPointAndOrientationApart) {
   std::vector<double> together, apart;
   for (int seed = 1; seed <= 4; ++seed) {
     const Robot made = robot(seed);
@@ -90,12 +92,12 @@ PoseSet moved(PoseSet set, const Pose& to) {
   for (PointMeasurement& point : set.points) point.position = to * point.position, point.axes = turned(point.axes);
   for (OrientationMeasurement& measured : set.orientations) {
     measured.orientation = Quat(to.rotation) * measured.orientation, measured.axes = turned(measured.axes);
-    measured.with_point = Mat3(to.rotation * *measured.with_point * to.rotation.transpose());
+    measured.covariance_with_point = Mat3(to.rotation * *measured.covariance_with_point * to.rotation.transpose());
   }
   return set;
 }
 
-TEST(PoseCovariance, a_turn_of_the_world_with_all_covariances_changes_no_fit) {
+TEST(PoseCovariance, ATurnOfTheWorldWithAllCovariancesChangesNoFit) {
   const Robot made = robot(2);
   const PoseSet data = seen(made, 9);
   const Pose to = Pose::from_xyz_rpy({0.3, 1.2, -0.4}, {0.5, -0.8, 2.0});
@@ -110,7 +112,7 @@ TEST(PoseCovariance, a_turn_of_the_world_with_all_covariances_changes_no_fit) {
   }
 }
 
-TEST(PoseCovariance, bad_points_and_orientations_of_coupled_poses_are_found_and_only_they_are_left_out) {
+TEST(PoseCovariance, BadPointsAndOrientationsOfCoupledPosesAreFoundAndOnlyTheyAreLeftOut) {
   const Robot made = robot(3);
   PoseSet data = seen(made, 21);
   data.points[5].position += Vec3(3e-3, 0, 0);

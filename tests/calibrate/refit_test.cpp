@@ -1,12 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
 // After a knock or a motor change: few poses and the earlier calibration.
 #include <gtest/gtest.h>
 
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/estimate/residuals.hpp"
+#include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {
+using namespace calibrate;
 namespace {
 
 using namespace test;
@@ -15,7 +17,8 @@ using namespace test;
 struct Knocked {
   Chain truth = with_random_errors(nominal_robot(), {}, Rng(3));
   Chain earlier =
-      calibrate({nominal_robot(), {}, tracker, measured(truth, paper2_poses(50, tracker))}, {}, Rng(1))->estimate.chain;
+      calibrate_robot({nominal_robot(), {}, tracker, measured(truth, paper2_poses(50, tracker))}, {}, Rng(1))
+          ->estimate.chain;
   Chain now = truth;
 
   Knocked() {
@@ -24,18 +27,19 @@ struct Knocked {
   }
 
   Calibration refit(int count) const {
-    CalibrateOptions how{.parameters = OffsetParameters{}, .holdout = CrossValidation{count}, .model = NamedModel{}};
-    return calibrate({earlier, {}, tracker, measured(now, paper2_poses(count, tracker), 8)}, how, Rng(1)).value();
+    CalibrationOptions how{
+        .parameters = JointOffsetParameters{}, .holdout = CrossValidation{count}, .model = FixedModel{}};
+    return calibrate_robot({earlier, {}, tracker, measured(now, paper2_poses(count, tracker), 8)}, how, Rng(1)).value();
   }
   double error(const Chain& chain) const {
     return mean(point_errors(chain, measured(now, paper2_poses(200, noise_free), 99)));
   }
 };
 
-TEST(Refit, eight_poses_find_the_offset_that_moved_and_name_it_alone) {
+TEST(Refit, EightPosesFindTheOffsetThatMovedAndNameItAlone) {
   const Knocked robot;
   const Calibration c = robot.refit(8);
-  EXPECT_TRUE(c.use) << c.verdict;
+  EXPECT_TRUE(c.usable) << c.verdict;
   EXPECT_LT(robot.error(c.estimate.chain), 80e-6);
   EXPECT_GT(c.before.position.holdout.mean, 1e-3);
   std::vector<std::string> moved;
@@ -45,15 +49,15 @@ TEST(Refit, eight_poses_find_the_offset_that_moved_and_name_it_alone) {
   EXPECT_EQ(moved[0].find("theta3 has moved by +0."), 0u) << moved[0];
 }
 
-TEST(Refit, is_better_than_a_new_calibration_with_as_few_poses) {
+TEST(Refit, IsBetterThanANewCalibrationWithAsFewPoses) {
   const Knocked robot;
-  const auto anew = calibrate({nominal_robot(), {}, tracker, measured(robot.now, paper2_poses(8, tracker), 8)},
-                              {.model = NamedModel{}}, Rng(1));
+  const auto anew = calibrate_robot({nominal_robot(), {}, tracker, measured(robot.now, paper2_poses(8, tracker), 8)},
+                                    {.model = FixedModel{}}, Rng(1));
   ASSERT_TRUE(anew.has_value());
   EXPECT_LT(robot.error(robot.refit(8).estimate.chain), 0.5 * robot.error(anew->estimate.chain));
 }
 
-TEST(Refit, a_robot_that_was_not_knocked_is_said_not_to_have_moved) {
+TEST(Refit, ARobotThatWasNotKnockedIsSaidNotToHaveMoved) {
   Knocked robot;
   robot.now = robot.truth;
   const Calibration c = robot.refit(8);

@@ -1,19 +1,21 @@
-#include "kinfer/calibrate/unknown.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/start/unknown_robot.hpp"
 
 #include <gtest/gtest.h>
 
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/calibrate/local_poe.hpp"
+#include "kinfer/calibrate/start/local_poe.hpp"
+#include "kinfer/kinematics/dh_conversion.hpp"
 #include "kinfer/kinematics/forward.hpp"
-#include "kinfer/kinematics/joint_table.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {
+using namespace calibrate;
 namespace {
 
 /// Frames anywhere, every third joint sliding, gains that are not 1.
 Chain random_chain(int joints, Rng rng) {
-  Chain chain = generic_chain(std::vector<JointType>(joints, JointType::revolute));
+  Chain chain = make_serial_chain(std::vector<JointType>(joints, JointType::revolute));
   for (int i = 0; i < joints; ++i) {
     auto& joint = chain.joints[i];
     const Vec3 axis = Vec3(rng.normal(), rng.normal(), rng.normal()).normalized();
@@ -58,13 +60,13 @@ void expect_same_poses(const Chain& a, const Chain& b) {
 
 class SameMachine : public ::testing::TestWithParam<int> {};
 
-TEST_P(SameMachine, has_the_same_poses_as_mdh_and_as_dh) {
+TEST_P(SameMachine, HasTheSamePosesAsMdhAndAsDh) {
   Chain chain = GetParam() == 0   ? test::with_table3_errors(test::er20())
                 : GetParam() == 1 ? unknown_scara()
                                   : random_chain(GetParam(), Rng(GetParam()));
   if (GetParam() == 7) {
     Joint fixed = chain.joints[3];
-    fixed.type = JointType::fixed, fixed.has_reading = false, fixed.name = "flange";
+    fixed.type = JointType::fixed, fixed.is_active = false, fixed.name = "flange";
     fixed.parent = 6;
     chain.joints.push_back(fixed);
   }
@@ -75,7 +77,7 @@ TEST_P(SameMachine, has_the_same_poses_as_mdh_and_as_dh) {
 }
 INSTANTIATE_TEST_SUITE_P(joint_table, SameMachine, ::testing::Values(0, 1, 2, 3, 5, 6, 7));
 
-TEST(joint_table, rows_stay_near_the_nominal_ones_with_parallel_axes) {
+TEST(joint_table, RowsStayNearTheNominalOnesWithParallelAxes) {
   const Chain mdh = *as_mdh(test::with_table3_errors(test::er20()));
   const auto& second = std::get<MdhLink>(mdh.joints[2].link);  // J2 and J3 are 0.005° from parallel
   EXPECT_NEAR(second.a, 0.7823, 1e-3);
@@ -83,21 +85,21 @@ TEST(joint_table, rows_stay_near_the_nominal_ones_with_parallel_axes) {
   EXPECT_LT(std::abs(second.beta), 0.02 * degree);
 }
 
-TEST(joint_table, coupled_joints_are_not_straight) {
+TEST(joint_table, CoupledJointsAreNotStraight) {
   Chain chain = test::er20();
   chain.joints[2].couplings.push_back({1, 1.0});
   EXPECT_FALSE(as_mdh(chain).has_value());
 }
 
-TEST(unknown, joint_types_are_read_and_nonsense_is_refused) {
+TEST(unknown, JointTypesAreReadAndNonsenseIsRefused) {
   EXPECT_EQ(parse_joint_types("6R")->size(), 6u);
   EXPECT_EQ(*parse_joint_types("R2PR"), (std::vector<JointType>{JointType::revolute, JointType::prismatic,
                                                                 JointType::prismatic, JointType::revolute}));
   for (const char* wrong : {"", "6", "0R", "RXR", "r", "21R", "R-1P"}) EXPECT_FALSE(parse_joint_types(wrong)) << wrong;
 }
 
-TEST(unknown, axes_are_said_in_words) {
-  const std::vector<std::string> words = axes_in_words(test::er20());
+TEST(unknown, AxesAreSaidInWords) {
+  const std::vector<std::string> words = describe_axes(test::er20());
   const auto said = [&](const std::string& text) {
     return std::any_of(words.begin(), words.end(), [&](const auto& w) { return w.find(text) != std::string::npos; });
   };
@@ -118,16 +120,16 @@ void PrintTo(const Machine& machine, std::ostream* out) {
 
 class Unknown : public ::testing::TestWithParam<Machine> {};
 
-TEST_P(Unknown, is_found_from_points_alone_and_proven_on_rows_that_were_not_fitted) {
+TEST_P(Unknown, IsFoundFromPointsAloneAndProvenOnRowsThatWereNotFitted) {
   const Machine& machine = GetParam();
   Chain truth = machine.truth;
   truth.base = Frame::from_pose(Pose::from_xyz_rpy({1.2, -2.5, 0.4}, {0.1, -0.2, 2.0}));
   const PoseSet data =
       simulate_pose_set(truth, {.poses = machine.poses, .space = {}, .instrument = test::tracker}, Rng(3)).value();
-  const UnknownRobot found = find_unknown_robot(machine.types, data, 0, Rng(1)).value();
-  const CalibrateTask task{
-      .nominal = found.sheet, .tolerances = found.tolerances, .instrument = test::tracker, .data = data};
-  const Calibration calibration = calibrate(task, {}, Rng(1)).value();
+  const UnknownRobot found = estimate_unknown_robot(machine.types, data, 0, Rng(1)).value();
+  const CalibrationTask task{
+      .nominal = found.nominal, .tolerances = found.tolerances, .instrument = test::tracker, .data = data};
+  const Calibration calibration = calibrate_robot(task, {}, Rng(1)).value();
   EXPECT_LT(calibration.after.position.holdout.mean, machine.limit);  // noise alone: 40 µm
 }
 INSTANTIATE_TEST_SUITE_P(machines, Unknown,
@@ -149,12 +151,12 @@ INSTANTIATE_TEST_SUITE_P(machines, Unknown,
                                                    30, 1e-4}),
                          [](const auto& test) { return test.param.name; });
 
-TEST(unknown, points_of_another_machine_are_refused) {
+TEST(unknown, PointsOfAnotherMachineAreRefused) {
   const PoseSet data =
       simulate_pose_set(test::er20(), {.poses = 60, .space = {}, .instrument = test::tracker}, Rng(3)).value();
   PoseSet shuffled = data;
   for (int row = 0; row < 60; ++row) shuffled.points[row].position = data.points[(7 * row) % 60].position;
-  const auto found = find_unknown_robot(
+  const auto found = estimate_unknown_robot(
       "2P",
       [&] {
         PoseSet two = data;
@@ -164,16 +166,16 @@ TEST(unknown, points_of_another_machine_are_refused) {
       }(),
       0, Rng(1));
   ASSERT_FALSE(found.has_value());
-  EXPECT_NE(found.error().what.find("no robot of these joints"), std::string::npos);
+  EXPECT_NE(found.error().what.find("no robot with these joint types"), std::string::npos);
 }
 
-TEST(unknown, too_few_points_are_refused) {
+TEST(unknown, TooFewPointsAreRefused) {
   const PoseSet data =
       simulate_pose_set(test::er20(), {.poses = 8, .space = {}, .instrument = test::tracker}, Rng(3)).value();
-  EXPECT_NE(find_unknown_robot("6R", data, 0, Rng(1)).error().what.find("too few"), std::string::npos);
+  EXPECT_NE(estimate_unknown_robot("6R", data, 0, Rng(1)).error().what.find("too few"), std::string::npos);
 }
 
-TEST(unknown, same_chain_for_any_number_of_threads) {
+TEST(unknown, SameChainForAnyNumberOfThreads) {
   Chain truth = test::er20();
   truth.joints.resize(3);
   truth.tool.xyz = {0.2, 0.1, 0.1};

@@ -1,11 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // Held-out figures count the same rows for every model: those whose measurement is not wrong.
-#include "kinfer/calibrate/wrong_rows.hpp"
+#include "kinfer/calibrate/validation/gross_errors.hpp"
 
 #include <gtest/gtest.h>
 
 #include "support/instruments.hpp"
 
 namespace kinfer {
+using namespace calibrate;
 namespace {
 
 using namespace test;
@@ -21,21 +23,24 @@ PoseSet with_three_wrong_rows() {
 }
 
 Calibration of_half(const PoseSet& data, const ModelChoice& model, int seed) {
-  return calibrate({nominal_robot(), {}, tracker, data}, {.holdout = HeldOutFraction{0.5}, .model = model}, Rng(seed))
+  return calibrate_robot({nominal_robot(), {}, tracker, data}, {.holdout = HeldOutFraction{0.5}, .model = model},
+                         Rng(seed))
       .value();
 }
 
-TEST(WrongRows, that_are_held_out_are_listed_and_left_out_for_every_model_alike) {
+TEST(WrongRows, ThatAreHeldOutAreListedAndLeftOutForEveryModelAlike) {
   const PoseSet data = with_three_wrong_rows();
   for (const int seed : {1, 2, 3}) {
-    const Calibration plain = of_half(data, NamedModel{}, seed), chosen = of_half(data, AutoModel{}, seed);
-    for (const int row : chosen.wrong_rows)
-      EXPECT_TRUE(std::find(plain.wrong_rows.begin(), plain.wrong_rows.end(), row) != plain.wrong_rows.end()) << row;
+    const Calibration plain = of_half(data, FixedModel{}, seed), chosen = of_half(data, CrossValidatedModel{}, seed);
+    for (const int row : chosen.gross_error_rows)
+      EXPECT_TRUE(std::find(plain.gross_error_rows.begin(), plain.gross_error_rows.end(), row) !=
+                  plain.gross_error_rows.end())
+          << row;
     EXPECT_LT(chosen.after.position.holdout.max, plain.after.position.holdout.max);
     const auto& held_out = chosen.after.position;
-    EXPECT_EQ(held_out.holdout.n + static_cast<int>(chosen.wrong_rows.size()), held_out.holdout_all_rows.n);
+    EXPECT_EQ(held_out.holdout.n + static_cast<int>(chosen.gross_error_rows.size()), held_out.holdout_all_rows.n);
     EXPECT_EQ(held_out.holdout_all_rows.n, 40);
-    if (!chosen.wrong_rows.empty()) {
+    if (!chosen.gross_error_rows.empty()) {
       EXPECT_GT(held_out.holdout_all_rows.max, 2.5e-3);
     }
     EXPECT_LT(held_out.holdout.max, 1e-3);
@@ -44,42 +49,42 @@ TEST(WrongRows, that_are_held_out_are_listed_and_left_out_for_every_model_alike)
       return std::any_of(list.begin(), list.end(), [&](const Outlier& outlier) { return outlier.row == row; });
     };
     EXPECT_TRUE(listed(5) && listed(20) && listed(60));
-    for (const int row : chosen.wrong_rows) EXPECT_TRUE(row == 5 || row == 20 || row == 60) << row;
+    for (const int row : chosen.gross_error_rows) EXPECT_TRUE(row == 5 || row == 20 || row == 60) << row;
   }
 }
 
-TEST(WrongRows, the_verdict_names_them_and_what_the_worst_would_be) {
-  const Calibration c = of_half(with_three_wrong_rows(), NamedModel{}, 1);
-  ASSERT_FALSE(c.wrong_rows.empty());
-  EXPECT_NE(c.verdict.find(std::to_string(c.wrong_rows.front())), std::string::npos) << c.verdict;
+TEST(WrongRows, TheVerdictNamesThemAndWhatTheWorstWouldBe) {
+  const Calibration c = of_half(with_three_wrong_rows(), FixedModel{}, 1);
+  ASSERT_FALSE(c.gross_error_rows.empty());
+  EXPECT_NE(c.verdict.find(std::to_string(c.gross_error_rows.front())), std::string::npos) << c.verdict;
   EXPECT_NE(c.verdict.find("at worst with"), std::string::npos) << c.verdict;
 }
 
-TEST(WrongRows, rows_held_out_that_are_all_wrong_are_judged_all_the_same) {
+TEST(WrongRows, RowsHeldOutThatAreAllWrongAreJudgedAllTheSame) {
   const Chain truth = with_random_errors(nominal_robot(), {}, Rng(1));
   PoseSet data = measured(truth, paper2_poses(60, tracker));
-  data.set.assign(60, SetLabel::train);
+  data.set.assign(60, SplitLabel::train);
   for (int row = 50; row < 60; ++row) {
-    data.set[row] = SetLabel::holdout;
+    data.set[row] = SplitLabel::holdout;
     data.points[row].position += Vec3(0, 5e-3, 0);
   }
-  const Calibration c = calibrate({nominal_robot(), {}, tracker, data}, {}, Rng(1)).value();
-  EXPECT_TRUE(c.wrong_rows.empty());
+  const Calibration c = calibrate_robot({nominal_robot(), {}, tracker, data}, {}, Rng(1)).value();
+  EXPECT_TRUE(c.gross_error_rows.empty());
   EXPECT_EQ(c.after.position.holdout.n, 10);
   EXPECT_GT(c.after.position.holdout.mean, 4e-3);
-  EXPECT_FALSE(c.use);
+  EXPECT_FALSE(c.usable);
 }
 
-TEST(WrongRows, a_model_that_throws_a_row_out_of_place_is_not_excused) {
+TEST(WrongRows, AModelThatThrowsARowOutOfPlaceIsNotExcused) {
   const Chain truth = with_random_errors(nominal_robot(), {}, Rng(1));
   const PoseSet data = measured(truth, paper2_poses(40, tracker));
   Estimate geometry, rich;
   geometry.chain = rich.chain = truth;
   rich.chain.joints[1].harmonics = {{1.0, 1e-3, 0.0}};
   rich.outliers = {{7, 9, "far off", 90.0}};
-  EXPECT_TRUE(wrong_beside_both(geometry, rich, data).empty());
+  EXPECT_TRUE(gross_errors_of_both_models(geometry, rich, data).empty());
   geometry.chain = rich.chain;
-  EXPECT_EQ(wrong_beside_both(geometry, rich, data).size(), 1u);
+  EXPECT_EQ(gross_errors_of_both_models(geometry, rich, data).size(), 1u);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"
@@ -9,14 +10,14 @@ using nlohmann::json;
 
 class Calibrate : public Program {
  protected:
-  Outcome calibrate(const std::string& more = "") const {
+  Outcome calibrate_robot(const std::string& more = "") const {
     return kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal " + more);
   }
 };
 
-TEST_F(Calibrate, simulated_robot_is_calibrated_end_to_end) {
+TEST_F(Calibrate, SimulatedRobotIsCalibratedEndToEnd) {
   simulate();
-  const Outcome run = calibrate();
+  const Outcome run = calibrate_robot();
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(run.out.find("Use it: "), 0u) << run.out;
   for (const char* file : {"chain.toml", "chain.urdf", "evidence.json", "run.json"})
@@ -36,9 +37,9 @@ TEST_F(Calibrate, simulated_robot_is_calibrated_end_to_end) {
     EXPECT_TRUE(parameter.contains(key)) << key;
 }
 
-TEST_F(Calibrate, predictions_of_the_corrected_chain_and_of_its_urdf_agree) {
+TEST_F(Calibrate, PredictionsOfTheCorrectedChainAndOfItsUrdfAgree) {
   simulate();
-  ASSERT_EQ(calibrate().code, 0);
+  ASSERT_EQ(calibrate_robot().code, 0);
   const Outcome toml = kinfer("predict --chain cal/chain.toml --joints data/poses.csv -o toml.csv");
   ASSERT_EQ(toml.code, 0) << toml.err;
   const Outcome urdf = kinfer("predict --chain cal/chain.urdf --tip-link tool --joints data/poses.csv -o urdf.csv");
@@ -58,16 +59,16 @@ TEST_F(Calibrate, predictions_of_the_corrected_chain_and_of_its_urdf_agree) {
   EXPECT_EQ(rows, 50);
 }
 
-TEST_F(Calibrate, same_bytes_for_any_number_of_threads_and_any_folder) {
+TEST_F(Calibrate, SameBytesForAnyNumberOfThreadsAndAnyFolder) {
   simulate();
-  ASSERT_EQ(calibrate("--threads 1").code, 0);
+  ASSERT_EQ(calibrate_robot("--threads 1").code, 0);
   const std::string chain = slurp(in("cal/chain.toml")), evidence = slurp(in("cal/evidence.json"));
   ASSERT_EQ(kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out elsewhere/deep --threads 7").code, 0);
   EXPECT_EQ(slurp(in("elsewhere/deep/chain.toml")), chain);
   EXPECT_EQ(slurp(in("elsewhere/deep/evidence.json")), evidence);
 }
 
-TEST_F(Calibrate, verbs_that_write_one_file_say_so_and_quiet_is_silent) {
+TEST_F(Calibrate, VerbsThatWriteOneFileSaySoAndQuietIsSilent) {
   simulate();
   const std::string predict = "predict --chain data/robot.toml --joints data/poses.csv -o predicted.csv";
   EXPECT_EQ(kinfer(predict).out, "predicted.csv: 50 poses\n");
@@ -79,20 +80,20 @@ TEST_F(Calibrate, verbs_that_write_one_file_say_so_and_quiet_is_silent) {
   }
 }
 
-TEST_F(Calibrate, json_is_one_object_on_stdout_and_quiet_is_silent) {
+TEST_F(Calibrate, JsonIsOneObjectOnStdoutAndQuietIsSilent) {
   simulate();
-  const Outcome as_json = calibrate("--json");
+  const Outcome as_json = calibrate_robot("--json");
   const json headline = json::parse(as_json.out);
   EXPECT_TRUE(headline["use"]);
   EXPECT_LT(headline["after"]["holdout"]["mean"], headline["before"]["holdout"]["mean"]);
-  const Outcome quiet = calibrate("--quiet");
+  const Outcome quiet = calibrate_robot("--quiet");
   EXPECT_EQ(quiet.out, "");
   EXPECT_EQ(quiet.err, "");
 }
 
-TEST_F(Calibrate, verify_accepts_new_data_of_the_same_robot_and_refuses_a_moved_tracker) {
+TEST_F(Calibrate, VerifyAcceptsNewDataOfTheSameRobotAndRefusesAMovedTracker) {
   simulate();
-  ASSERT_EQ(calibrate().code, 0);
+  ASSERT_EQ(calibrate_robot().code, 0);
   const fs::path first = in("data/poses.csv");
   fs::rename(first, in("first.csv"));
   simulate("--seed 2");
@@ -103,18 +104,18 @@ TEST_F(Calibrate, verify_accepts_new_data_of_the_same_robot_and_refuses_a_moved_
   EXPECT_EQ(as_nominal.code, 1) << as_nominal.out;
 }
 
-TEST_F(Calibrate, a_held_out_file_is_never_fitted) {
+TEST_F(Calibrate, AHeldOutFileIsNeverFitted) {
   simulate();
   fs::copy(in("data/poses.csv"), in("aside.csv"));
   simulate("--seed 3");
-  const Outcome run = calibrate("--holdout aside.csv --json");
+  const Outcome run = calibrate_robot("--holdout aside.csv --json");
   ASSERT_EQ(run.code, 0) << run.err;
   const json headline = json::parse(run.out);
   EXPECT_EQ(headline["after"]["train"]["n"], 50);
   EXPECT_EQ(headline["after"]["holdout"]["n"], 50);
 }
 
-TEST_F(Calibrate, convert_round_trips_through_urdf) {
+TEST_F(Calibrate, ConvertRoundTripsThroughUrdf) {
   ASSERT_EQ(kinfer("convert " + source("examples/robot6/robot.toml") + " robot.urdf").code, 0);
   ASSERT_EQ(kinfer("convert robot.urdf back.toml").code, 0);
   write(in("joints.csv"), "q1,q2,q3,q4,q5,q6\n0.1,-0.2,0.3,-0.4,0.5,-0.6\n1,0.5,-0.5,2,1,-3\n");
@@ -127,7 +128,7 @@ TEST_F(Calibrate, convert_round_trips_through_urdf) {
   while (std::getline(a, line_a) && std::getline(b, line_b)) EXPECT_NEAR(std::stod(line_a), std::stod(line_b), 1e-9);
 }
 
-TEST_F(Calibrate, inspect_says_what_was_understood) {
+TEST_F(Calibrate, InspectSaysWhatWasUnderstood) {
   simulate();
   const Outcome run = kinfer("inspect data/poses.csv --robot data/robot.toml");
   EXPECT_EQ(run.code, 0) << run.err;
@@ -145,7 +146,7 @@ const std::string header = "q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg],x[mm
 
 class BadPoses : public Program, public ::testing::WithParamInterface<BadInput> {};
 
-TEST_P(BadPoses, is_refused_in_one_sentence_and_nothing_is_written) {
+TEST_P(BadPoses, IsRefusedInOneSentenceAndNothingIsWritten) {
   const BadInput& bad = GetParam();
   if (bad.name != "missing") write(in("poses.csv"), bad.poses);
   const Outcome run =
@@ -173,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(
                       BadInput{"too_few", header + "1,2,3,4,5,6,7,8,9\n2,3,4,5,6,7,8,9,10\n", "at least"}),
     [](const auto& bad) { return bad.param.name; });
 
-TEST_F(Calibrate, an_output_folder_that_cannot_be_made_is_said_before_anything_is_computed) {
+TEST_F(Calibrate, AnOutputFolderThatCannotBeMadeIsSaidBeforeAnythingIsComputed) {
   simulate();
   write(in("file"), "in the way");
   const Outcome run = kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out file/cal");
@@ -181,7 +182,7 @@ TEST_F(Calibrate, an_output_folder_that_cannot_be_made_is_said_before_anything_i
   EXPECT_NE(run.err.find("file/cal"), std::string::npos) << run.err;
 }
 
-TEST_F(Calibrate, usage_errors_are_exit_code_2_and_help_is_0) {
+TEST_F(Calibrate, UsageErrorsAreExitCode2AndHelpIs0) {
   EXPECT_EQ(kinfer("").code, 2);
   EXPECT_EQ(kinfer("nonsense").code, 2);
   EXPECT_EQ(kinfer("calibrate").code, 2);
@@ -197,7 +198,7 @@ TEST_F(Calibrate, usage_errors_are_exit_code_2_and_help_is_0) {
 /// Measurements made and scored by others' code, where they are present.
 class Cases : public Program, public ::testing::WithParamInterface<std::pair<const char*, double>> {};
 
-TEST_P(Cases, held_out_error_is_within_1_3_times_the_reference) {
+TEST_P(Cases, HeldOutErrorIsWithin13TimesTheReference) {
   const char* root = std::getenv("KINFER_CASES");
   if (!root) GTEST_SKIP() << "KINFER_CASES is not set";
   const auto [name, reference_mm] = GetParam();
@@ -229,7 +230,7 @@ INSTANTIATE_TEST_SUITE_P(all, Cases,
                                            std::pair{"scara_screw", 0.012}, std::pair{"arm7_outliers", 0.028}),
                          [](const auto& test) { return std::string(test.param.first); });
 
-TEST_F(Calibrate, exactly_the_wrong_rows_of_the_outlier_case_are_listed) {
+TEST_F(Calibrate, ExactlyTheWrongRowsOfTheOutlierCaseAreListed) {
   const char* root = std::getenv("KINFER_CASES");
   if (!root) GTEST_SKIP() << "KINFER_CASES is not set";
   const std::string folder = std::string(root) + "/calibrate/arm7_outliers";
@@ -241,7 +242,7 @@ TEST_F(Calibrate, exactly_the_wrong_rows_of_the_outlier_case_are_listed) {
 }
 
 /// The real robot, where the data are present.
-TEST_F(Calibrate, real_ur10_series_reach_the_figures_of_the_issue) {
+TEST_F(Calibrate, RealUr10SeriesReachTheFiguresOfTheIssue) {
   const char* root = std::getenv("KINFER_DATA");
   if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
   const std::string folder = std::string(root) + "/ur10_leica/";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"
@@ -24,7 +25,7 @@ class InspectPoses : public Program {
   }
 };
 
-TEST_F(InspectPoses, a_healthy_set_is_called_so) {
+TEST_F(InspectPoses, AHealthySetIsCalledSo) {
   simulate();
   const Outcome run = kinfer("inspect data/poses.csv --robot data/robot.toml");
   EXPECT_EQ(run.code, 0) << run.err;
@@ -32,7 +33,7 @@ TEST_F(InspectPoses, a_healthy_set_is_called_so) {
   EXPECT_EQ(kinfer("inspect data/poses.csv --robot data/robot.toml --json").out, "[]\n");
 }
 
-TEST_F(InspectPoses, a_header_with_the_wrong_unit_is_found_and_calibrate_says_what_it_did) {
+TEST_F(InspectPoses, AHeaderWithTheWrongUnitIsFoundAndCalibrateSaysWhatItDid) {
   simulate();
   change_rows([](std::string line, int number) {
     return number == 0 ? "q1,q2,q3,q4,q5,q6,x[mm],y[mm],z[mm]" : line;  // degrees, read as radians
@@ -49,7 +50,7 @@ TEST_F(InspectPoses, a_header_with_the_wrong_unit_is_found_and_calibrate_says_wh
   EXPECT_LT(evidence["after"]["holdout"]["mean"], 6e-5);
 }
 
-TEST_F(InspectPoses, euler_angles_in_another_sequence_are_found) {
+TEST_F(InspectPoses, EulerAnglesInAnotherSequenceAreFound) {
   simulate("--measured pose --poses 30");
   const Outcome poses = kinfer("predict --chain data/truth.toml --joints data/poses.csv -o poses.csv");
   ASSERT_EQ(poses.code, 0) << poses.err;
@@ -83,7 +84,7 @@ TEST_F(InspectPoses, euler_angles_in_another_sequence_are_found) {
 }
 
 /// Measured by others; every finding here was looked at and is true.
-TEST_F(InspectPoses, measured_sets_have_true_findings_only) {
+TEST_F(InspectPoses, MeasuredSetsHaveTrueFindingsOnly) {
   const char* root = std::getenv("KINFER_DATA");
   if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
   const std::string common = "inspect --json --robot " + source("data/ur10/robot.toml") + " --columns " +
@@ -96,7 +97,7 @@ TEST_F(InspectPoses, measured_sets_have_true_findings_only) {
   EXPECT_EQ(kinds, (std::vector<std::string>{"measurement_repeated", "measurement_repeated", "gross_outliers"}));
 }
 
-TEST_F(InspectPoses, cases_have_no_finding_but_their_wrong_rows) {
+TEST_F(InspectPoses, CasesHaveNoFindingButTheirWrongRows) {
   const char* root = std::getenv("KINFER_CASES");
   if (!root) GTEST_SKIP() << "KINFER_CASES is not set";
   for (const std::string name : {"robot6_tracker", "ur_like_metres", "scara_screw"}) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ std::string as_csv(const CarriedMotion& motion, const std::string& name) {
   text += "\n";
   for (std::size_t row = 0; row < c.time.size(); ++row) {
     text += fmt::format("{:.4f}", c.time[row]);
-    for (const TriadColumns* triad : {&c.sensor.acceleration, &c.sensor.rate, &c.sensor.field})
+    for (const TriadColumns* triad : {&c.sensor.acceleration, &c.sensor.angular_velocity, &c.sensor.field})
       for (const auto& axis : triad->axis) text += fmt::format(",{:.7g}", axis[row]);
     text += "\n";
   }
@@ -32,11 +33,11 @@ class Orient : public Program {
   void SetUp() override {
     Program::SetUp();
     static const SensorModel grade = *sensor_grade("industrial");
-    write(in("imu.csv"), as_csv({.seconds = 20, .rate = 100, .grade = &grade}, "imu"));
+    write(in("imu.csv"), as_csv({.seconds = 20, .sampling_rate = 100, .grade = &grade}, "imu"));
   }
 };
 
-TEST_F(Orient, writes_one_row_per_input_row_close_to_the_truth) {
+TEST_F(Orient, WritesOneRowPerInputRowCloseToTheTruth) {
   for (const char* filter : {"kinfer", "kinfer-offline", "paper"}) {
     const Outcome run = kinfer(std::string("orient imu.csv -o q.csv --filter ") + filter);
     ASSERT_EQ(run.code, 0) << run.err;
@@ -44,7 +45,7 @@ TEST_F(Orient, writes_one_row_per_input_row_close_to_the_truth) {
     std::string line;
     std::getline(rows, line);
     EXPECT_EQ(line, "t,imu_qw,imu_qx,imu_qy,imu_qz");
-    const auto truth = carried({.seconds = 20, .rate = 100}).truth;
+    const auto truth = carried({.seconds = 20, .sampling_rate = 100}).truth;
     std::size_t row = 0;
     double worst = 0.0;
     for (; std::getline(rows, line); ++row) {
@@ -60,7 +61,7 @@ TEST_F(Orient, writes_one_row_per_input_row_close_to_the_truth) {
   }
 }
 
-TEST_F(Orient, json_names_the_sensors_and_quiet_says_nothing) {
+TEST_F(Orient, JsonNamesTheSensorsAndQuietSaysNothing) {
   const Outcome run = kinfer("orient imu.csv -o q.csv --json --magnetometer off");
   ASSERT_EQ(run.code, 0) << run.err;
   const auto headline = nlohmann::json::parse(run.out);
@@ -71,8 +72,8 @@ TEST_F(Orient, json_names_the_sensors_and_quiet_says_nothing) {
   EXPECT_EQ(kinfer("orient imu.csv -o q.csv --quiet").out, "");
 }
 
-TEST_F(Orient, several_loggers_are_written_one_after_the_other) {
-  write(in("other.csv"), as_csv({.seconds = 5, .rate = 50}, "other"));
+TEST_F(Orient, SeveralLoggersAreWrittenOneAfterTheOther) {
+  write(in("other.csv"), as_csv({.seconds = 5, .sampling_rate = 50}, "other"));
   const Outcome run = kinfer("orient imu.csv other.csv -o q.csv");
   ASSERT_EQ(run.code, 0) << run.err;
   const std::string text = slurp(in("q.csv"));
@@ -81,7 +82,7 @@ TEST_F(Orient, several_loggers_are_written_one_after_the_other) {
   EXPECT_EQ(slurp(in("one.csv")).substr(0, 35), "t,other_qw,other_qx,other_qy,other_");
 }
 
-TEST_F(Orient, bad_input_has_one_sentence_exit_code_2_and_no_file) {
+TEST_F(Orient, BadInputHasOneSentenceExitCode2AndNoFile) {
   write(in("g.csv"), "t,i_ax,i_ay,i_az,i_gx,i_gy,i_gz\n0,0,0,1,0,0,0\n0.01,0,0,1,0,0,0\n");
   write(in("dead.csv"), "t,i_ax,i_ay,i_az,i_gx,i_gy,i_gz\n0,0,0,0,0,0,0\n0.01,0,0,0,0,0,0\n");
   const std::pair<const char*, const char*> cases[] = {
@@ -101,7 +102,7 @@ TEST_F(Orient, bad_input_has_one_sentence_exit_code_2_and_no_file) {
   }
 }
 
-TEST_F(Orient, a_recording_is_inspected) {
+TEST_F(Orient, ARecordingIsInspected) {
   const Outcome run = kinfer("inspect imu.csv --allan");
   ASSERT_EQ(run.code, 0) << run.err;
   for (const char* words : {"imu.csv: 2000 rows", "100 Hz", "2 rests", "gyro bias at rest", "judged grade: industrial",
@@ -109,8 +110,8 @@ TEST_F(Orient, a_recording_is_inspected) {
     EXPECT_NE(run.out.find(words), std::string::npos) << words << "\n" << run.out;
 }
 
-TEST_F(Orient, what_is_wrong_with_a_recording_is_said_by_inspect) {
-  std::string text = as_csv({.seconds = 20, .rate = 100, .rest = -10}, "imu");
+TEST_F(Orient, WhatIsWrongWithARecordingIsSaidByInspect) {
+  std::string text = as_csv({.seconds = 20, .sampling_rate = 100, .rest = -10}, "imu");
   text += "60,0,0,9.81,0,0,0,0,20,-44\n";
   write(in("odd.csv"), text);
   const Outcome run = kinfer("inspect odd.csv");

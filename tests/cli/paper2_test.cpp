@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The verbs and options of paper 2, end to end: searches by a population, warm start, fleet prior, frames,
 // compensation.
 #include <cmath>
@@ -22,7 +23,7 @@ class Paper2 : public Program {
   json evidence(const std::string& folder) const { return json::parse(slurp(in(folder) / "evidence.json")); }
 };
 
-TEST_F(Paper2, bpnn_pso_leaves_a_net_and_a_second_run_is_compared_with_a_warm_start_without_one) {
+TEST_F(Paper2, BpnnPsoLeavesANetAndASecondRunIsComparedWithAWarmStartWithoutOne) {
   const std::string calibrate =
       "calibrate --robot data/robot.toml --data data/poses.csv --holdout 0.2 --method bpnn-pso --iterations 300 ";
   const Outcome first = kinfer(calibrate + "--out first");
@@ -42,7 +43,7 @@ TEST_F(Paper2, bpnn_pso_leaves_a_net_and_a_second_run_is_compared_with_a_warm_st
   EXPECT_NE(slurp(in("second") / "evidence.json").find("--warm-start"), std::string::npos);
 }
 
-TEST_F(Paper2, a_population_gives_the_same_bytes_for_1_and_7_threads) {
+TEST_F(Paper2, APopulationGivesTheSameBytesFor1And7Threads) {
   const std::string calibrate =
       "calibrate --robot data/robot.toml --data data/poses.csv --holdout 0.2 --method pso --iterations 50 ";
   ASSERT_LT(kinfer(calibrate + "--out one --threads 1").code, 2);
@@ -50,7 +51,7 @@ TEST_F(Paper2, a_population_gives_the_same_bytes_for_1_and_7_threads) {
   EXPECT_EQ(slurp(in("one") / "evidence.json"), slurp(in("seven") / "evidence.json"));
 }
 
-TEST_F(Paper2, a_prior_of_another_kind_of_robot_is_refused) {
+TEST_F(Paper2, APriorOfAnotherKindOfRobotIsRefused) {
   std::ofstream(in("two.toml"))
       << "name = \"two\"\nconvention = \"mdh\"\nunits = { length = \"mm\", angle = \"deg\" }\n"
          "[[joint]]\ntype = \"revolute\"\na = 0.0\nalpha = 0.0\nd = 10.0\ntheta = 0.0\n";
@@ -61,7 +62,7 @@ TEST_F(Paper2, a_prior_of_another_kind_of_robot_is_refused) {
   EXPECT_FALSE(fs::exists(in("cal")));
 }
 
-TEST_F(Paper2, compensated_joints_bring_the_corrected_chain_where_the_nominal_one_was) {
+TEST_F(Paper2, CompensatedJointsBringTheCorrectedChainWhereTheNominalOneWas) {
   std::ofstream(in("own.toml"))
       << "units = { length = \"mm\", angle = \"deg\" }\n[errors]\na2 = 0.3\nd4 = -0.2\ntheta3 = 0.05\nalpha5 = 0.02\n";
   ASSERT_EQ(
@@ -85,7 +86,7 @@ TEST_F(Paper2, compensated_joints_bring_the_corrected_chain_where_the_nominal_on
   EXPECT_GE(exact, 47);
 }
 
-TEST_F(Paper2, a_target_that_cannot_be_reached_is_said_and_the_exit_code_is_1) {
+TEST_F(Paper2, ATargetThatCannotBeReachedIsSaidAndTheExitCodeIs1) {
   std::ofstream(in("far.csv")) << "x,y,z\n9,0,0\n";
   const Outcome run = kinfer("compensate --chain data/truth.toml --nominal data/robot.toml --targets far.csv");
   EXPECT_EQ(run.code, 1);
@@ -93,7 +94,7 @@ TEST_F(Paper2, a_target_that_cannot_be_reached_is_said_and_the_exit_code_is_1) {
   EXPECT_NE(run.out.find("residual[mm]"), std::string::npos);
 }
 
-TEST_F(Paper2, sweeps_of_single_joints_give_base_and_tool) {
+TEST_F(Paper2, SweepsOfSingleJointsGiveBaseAndTool) {
   std::ofstream joints(in("joints.csv"));
   joints << "q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg]\n";
   for (const int swept : {0, 1, 4})

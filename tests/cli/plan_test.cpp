@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"
@@ -12,7 +13,7 @@ class PlanPoses : public Program {
   std::string robot() const { return source("examples/robot6/robot.toml"); }
 };
 
-TEST_F(PlanPoses, planned_poses_are_readable_and_come_with_a_figure) {
+TEST_F(PlanPoses, PlannedPosesAreReadableAndComeWithAFigure) {
   const Outcome run = kinfer("plan --robot " + robot() + " --poses 10 -o plan.csv --lowest 100 --json");
   ASSERT_EQ(run.code, 0) << run.err;
   const json plan = json::parse(run.out);
@@ -28,7 +29,7 @@ TEST_F(PlanPoses, planned_poses_are_readable_and_come_with_a_figure) {
   EXPECT_NE(figure.find("poses measured"), std::string::npos);
 }
 
-TEST_F(PlanPoses, some_of_the_poses_of_a_file_are_chosen_and_others_left_out) {
+TEST_F(PlanPoses, SomeOfThePosesOfAFileAreChosenAndOthersLeftOut) {
   ASSERT_EQ(kinfer("simulate-poses --robot " + robot() + " --out data --poses 40").code, 0);
   const Outcome chosen =
       kinfer("plan --robot " + robot() + " --poses 12 -o plan.csv --candidates data/poses.csv --json");
@@ -39,7 +40,7 @@ TEST_F(PlanPoses, some_of_the_poses_of_a_file_are_chosen_and_others_left_out) {
   EXPECT_LT(json::parse(added.out)["expected"]["rms"], json::parse(added.out)["existing"]["rms"]);
 }
 
-TEST_F(PlanPoses, wrong_input_is_one_sentence) {
+TEST_F(PlanPoses, WrongInputIsOneSentence) {
   const Outcome place = kinfer("plan --robot " + robot() + " -o plan.csv --instrument-at 1,2");
   EXPECT_EQ(place.code, 2);
   EXPECT_NE(place.err.find("expected x,y,z in mm"), std::string::npos) << place.err;

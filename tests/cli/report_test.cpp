@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "cli/program.hpp"
 
 namespace kinfer::test {
@@ -5,7 +6,7 @@ namespace {
 
 class Report : public Program {
  protected:
-  void calibrate() const {
+  void calibrate_robot() const {
     ASSERT_EQ(kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") + " --errors " +
                      source("examples/robot6/errors.toml") + " --out data")
                   .code,
@@ -24,8 +25,8 @@ class Report : public Program {
   }
 };
 
-TEST_F(Report, is_written_by_calibrate_and_made_again_byte_for_byte) {
-  calibrate();
+TEST_F(Report, IsWrittenByCalibrateAndMadeAgainByteForByte) {
+  calibrate_robot();
   const std::string first = slurp(in("cal/report.html"));
   ASSERT_GT(first.size(), 10000u);
   EXPECT_NE(first.find("Use it"), std::string::npos);
@@ -35,22 +36,22 @@ TEST_F(Report, is_written_by_calibrate_and_made_again_byte_for_byte) {
   EXPECT_TRUE(slurp(in("cal/report.html")) == first);
 }
 
-TEST_F(Report, holds_nothing_that_differs_from_run_to_run) {
-  calibrate();
+TEST_F(Report, HoldsNothingThatDiffersFromRunToRun) {
+  calibrate_robot();
   const std::string first = slurp(in("cal/report.html"));
   ASSERT_EQ(kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out other --quiet --threads 1").code, 0);
   EXPECT_TRUE(slurp(in("other/report.html")) == first);
   EXPECT_EQ(first.find(folder_.string()), std::string::npos);
 }
 
-TEST_F(Report, of_a_folder_without_evidence_is_bad_input) {
+TEST_F(Report, OfAFolderWithoutEvidenceIsBadInput) {
   const Outcome run = kinfer("report .");
   EXPECT_EQ(run.code, 2);
   EXPECT_NE(run.err.find("evidence.json"), std::string::npos) << run.err;
 }
 
-TEST_F(Report, verdict_is_coloured_on_a_terminal_unless_NO_COLOR_says_no) {
-  calibrate();
+TEST_F(Report, VerdictIsColouredOnATerminalUnlessNOCOLORSaysNo) {
+  calibrate_robot();
   const std::string coloured = on_terminal("env -u NO_COLOR");
   if (coloured.empty()) GTEST_SKIP() << "script(1) makes no terminal here";
   EXPECT_NE(coloured.find("\033[1;32mUse it"), std::string::npos);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calibration beyond a tracker and one robot, through the program itself.
 #include <array>
 #include <cmath>
@@ -22,7 +23,7 @@ class Robots : public Program {
   }
 };
 
-TEST_F(Robots, a_model_is_chosen_and_the_choice_is_in_the_evidence) {
+TEST_F(Robots, AModelIsChosenAndTheChoiceIsInTheEvidence) {
   simulate();
   ASSERT_EQ(kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal").code, 0);
   const json model = json::parse(slurp(in("cal/evidence.json")))["model"];
@@ -35,14 +36,14 @@ TEST_F(Robots, a_model_is_chosen_and_the_choice_is_in_the_evidence) {
   }
 }
 
-TEST_F(Robots, an_unknown_model_is_refused_in_a_sentence_that_lists_the_known_ones) {
+TEST_F(Robots, AnUnknownModelIsRefusedInASentenceThatListsTheKnownOnes) {
   simulate();
   const Outcome run = kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal --model magic");
   EXPECT_EQ(run.code, 2);
   EXPECT_NE(run.err.find("gravity"), std::string::npos) << run.err;
 }
 
-TEST_F(Robots, setups_are_written_and_predicted_by_their_name) {
+TEST_F(Robots, SetupsAreWrittenAndPredictedByTheirName) {
   simulate();
   add_column("data/poses.csv", "setup", [](int row) { return row % 2 ? "evening" : "morning"; });
   ASSERT_EQ(kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal").code, 0);
@@ -53,7 +54,7 @@ TEST_F(Robots, setups_are_written_and_predicted_by_their_name) {
   EXPECT_EQ(kinfer("verify --chain cal/chain.toml --data data/poses.csv").code, 0);
 }
 
-TEST_F(Robots, a_knocked_robot_is_refitted_with_few_poses) {
+TEST_F(Robots, AKnockedRobotIsRefittedWithFewPoses) {
   simulate();
   ASSERT_EQ(kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal").code, 0);
   simulate("--seed 9 --poses 8");
@@ -93,7 +94,7 @@ std::string socket_rows(const std::string& folder, const std::vector<std::string
   return text;
 }
 
-TEST_F(Robots, real_balls_in_sockets_are_consistent_at_positions_that_were_not_fitted) {
+TEST_F(Robots, RealBallsInSocketsAreConsistentAtPositionsThatWereNotFitted) {
   const char* root = std::getenv("KINFER_DATA");
   if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
   const std::string mukca = std::string(root) + "/mukca", arm = mukca + "/data/panda_1";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // simulate-poses --shake: poses whose point and orientation err together, from the command line to the calibrated
 // robot.
 #include "cli/program.hpp"
@@ -13,14 +14,14 @@ class ShakenPoses : public Program {
   }
 };
 
-TEST_F(ShakenPoses, come_with_the_covariance_of_all_six_which_calibrate_takes) {
+TEST_F(ShakenPoses, ComeWithTheCovarianceOfAllSixWhichCalibrateTakes) {
   ASSERT_EQ(kinfer(simulate("--measured pose --sigma-angle 0.0005")).code, 0);
   EXPECT_NE(slurp(in("data/poses.csv")).find("pr_cov_xx[mm.deg]"), std::string::npos);
   const Outcome run = kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal --model geometry");
   EXPECT_EQ(run.code, 0) << run.err;
 }
 
-TEST_F(ShakenPoses, need_orientations_and_an_instrument_that_errs) {
+TEST_F(ShakenPoses, NeedOrientationsAndAnInstrumentThatErrs) {
   const Outcome positions = kinfer(simulate(""));
   EXPECT_EQ(positions.code, 2);
   EXPECT_NE(positions.err.find("add --measured pose"), std::string::npos) << positions.err;

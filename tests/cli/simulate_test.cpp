@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"
-#include "kinfer/io/ins_csv.hpp"
+#include "kinfer/io/recording/ins_csv.hpp"
 
 namespace kinfer::test {
 namespace {
@@ -10,7 +11,7 @@ using nlohmann::json;
 
 class Simulate : public Program {};
 
-TEST_F(Simulate, excavator_leaves_a_recording_that_is_read_back_and_its_truth) {
+TEST_F(Simulate, ExcavatorLeavesARecordingThatIsReadBackAndItsTruth) {
   const Outcome run = kinfer("simulate excavator --duration 60 --out data");
   ASSERT_EQ(run.code, 0) << run.err;
   for (const char* file : {"imu.csv", "truth.json", "motion.csv", "machine.xml", "run.json"})
@@ -33,7 +34,7 @@ TEST_F(Simulate, excavator_leaves_a_recording_that_is_read_back_and_its_truth) {
   EXPECT_EQ(motion.find("t,q_swing,q_boom,q_adjustment,q_stick,q_tool,ins0_qw,ins0_qx,ins0_qy,ins0_qz,ins1_qw"), 0u);
 }
 
-TEST_F(Simulate, same_seed_writes_the_same_bytes_anywhere_and_another_seed_does_not) {
+TEST_F(Simulate, SameSeedWritesTheSameBytesAnywhereAndAnotherSeedDoesNot) {
   const std::string options = "simulate crane --duration 14 --missing 0.05 --spikes 3 --magnetic-disturbance 5 ";
   ASSERT_EQ(kinfer(options + "--out one --threads 1").code, 0);
   ASSERT_EQ(kinfer(options + "--out two --threads 2").code, 0);
@@ -43,14 +44,14 @@ TEST_F(Simulate, same_seed_writes_the_same_bytes_anywhere_and_another_seed_does_
   EXPECT_NE(slurp(in("one/imu.csv")), slurp(in("other/imu.csv")));
 }
 
-TEST_F(Simulate, sensors_on_foam_feel_another_motion_of_the_same_machine) {
+TEST_F(Simulate, SensorsOnFoamFeelAnotherMotionOfTheSameMachine) {
   ASSERT_EQ(kinfer("simulate tree --duration 16 --out firm").code, 0);
   ASSERT_EQ(kinfer("simulate tree --duration 16 --foam 3 --out soft").code, 0);
   EXPECT_NE(slurp(in("firm/imu.csv")), slurp(in("soft/imu.csv")));
   EXPECT_EQ(json::parse(slurp(in("firm/truth.json")))["joints"], json::parse(slurp(in("soft/truth.json")))["joints"]);
 }
 
-TEST_F(Simulate, what_cannot_be_done_is_refused_in_a_sentence_and_nothing_is_written) {
+TEST_F(Simulate, WhatCannotBeDoneIsRefusedInASentenceAndNothingIsWritten) {
   const std::pair<const char*, const char*> cases[] = {
       {"simulate digger", "digger: no such machine; known are crane, excavator, excavator-general, robot6, tree"},
       {"simulate tree --duration 5", "a duration of 5 s is too short for this script: 15.2 s at least"},
@@ -67,7 +68,7 @@ TEST_F(Simulate, what_cannot_be_done_is_refused_in_a_sentence_and_nothing_is_wri
   }
 }
 
-TEST_F(Simulate, a_data_sheet_of_ones_own_and_a_recording_of_six_axes) {
+TEST_F(Simulate, ADataSheetOfOnesOwnAndARecordingOfSixAxes) {
   write(in("sheet.toml"), "name = \"lab\"\n[accelerometer]\nnoise_density = 0\n[gyroscope]\nnoise_density = 0\n");
   const Outcome run =
       kinfer("simulate tree --duration 16 --motion prescribed --grade sheet.toml --no-magnetometer --json --out data");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"
@@ -9,7 +10,7 @@ using nlohmann::json;
 
 class UnknownRobot : public Program {};
 
-TEST_F(UnknownRobot, joint_types_and_points_alone_give_a_proven_chain) {
+TEST_F(UnknownRobot, JointTypesAndPointsAloneGiveAProvenChain) {
   ASSERT_EQ(kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") + " --out data --poses 60").code,
             0);
   const Outcome run = kinfer("calibrate --robot unknown:6R --data data/poses.csv --out cal");
@@ -21,7 +22,7 @@ TEST_F(UnknownRobot, joint_types_and_points_alone_give_a_proven_chain) {
   EXPECT_EQ(kinfer("predict --chain cal/chain.toml --joints data/poses.csv -o p.csv").code, 0);
 }
 
-TEST_F(UnknownRobot, nonsense_is_refused_in_one_sentence) {
+TEST_F(UnknownRobot, NonsenseIsRefusedInOneSentence) {
   write(in("poses.csv"), "q1,q2,x,y,z\n0,0,0,0,0\n");
   for (const char* types : {"unknown:", "unknown:6X", "unknown:2R"}) {
     const Outcome run = kinfer(std::string("calibrate --robot ") + types + " --data poses.csv --out cal");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"
@@ -9,7 +10,7 @@ using nlohmann::json;
 
 class VerifyAgainst : public Program {
  protected:
-  void calibrate(const std::string& name, int seed) const {
+  void calibrate_robot(const std::string& name, int seed) const {
     ASSERT_EQ(kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") + " --errors errors.toml --out " +
                      name + " --lowest 0 --clearance 350 --seed " + std::to_string(seed))
                   .code,
@@ -20,13 +21,13 @@ class VerifyAgainst : public Program {
   }
 };
 
-TEST_F(VerifyAgainst, a_knocked_joint_is_named_and_an_unchanged_robot_is_not) {
+TEST_F(VerifyAgainst, AKnockedJointIsNamedAndAnUnchangedRobotIsNot) {
   const std::string units = "units = { length = \"mm\", angle = \"deg\" }\n[errors]\na2 = 0.1\n";
   write(in("errors.toml"), units + "theta3 = 0.05\n");
-  calibrate("may", 1);
-  calibrate("june", 2);
+  calibrate_robot("may", 1);
+  calibrate_robot("june", 2);
   write(in("errors.toml"), units + "theta3 = 0.08\n");
-  calibrate("july", 3);
+  calibrate_robot("july", 3);
   const Outcome same = kinfer("verify --chain may/cal/chain.toml --against june/cal/chain.toml");
   EXPECT_EQ(same.code, 0) << same.out << same.err;
   EXPECT_NE(same.out.find("No change beyond chance"), std::string::npos) << same.out;
@@ -37,9 +38,9 @@ TEST_F(VerifyAgainst, a_knocked_joint_is_named_and_an_unchanged_robot_is_not) {
   EXPECT_TRUE(changes["parameters"][0]["significant"]);
 }
 
-TEST_F(VerifyAgainst, tables_of_a_calibration_lie_beside_its_chain) {
+TEST_F(VerifyAgainst, TablesOfACalibrationLieBesideItsChain) {
   write(in("errors.toml"), "units = { length = \"mm\", angle = \"deg\" }\n[errors]\na2 = 0.1\n");
-  calibrate("may", 1);
+  calibrate_robot("may", 1);
   for (const char* file :
        {"chain_mdh.csv", "chain_dh.csv", "joint_twists.csv", "encoder_offsets.csv", "covariance.csv", "accuracy.csv"})
     EXPECT_TRUE(fs::exists(in("may/cal") / file)) << file;
@@ -50,7 +51,7 @@ TEST_F(VerifyAgainst, tables_of_a_calibration_lie_beside_its_chain) {
             0u);
 }
 
-TEST_F(VerifyAgainst, neither_data_nor_a_later_chain_is_an_error) {
+TEST_F(VerifyAgainst, NeitherDataNorALaterChainIsAnError) {
   const Outcome run = kinfer("verify --chain " + source("examples/robot6/robot.toml"));
   EXPECT_EQ(run.code, 2);
   EXPECT_NE(run.err.find("--against"), std::string::npos) << run.err;

@@ -1,13 +1,15 @@
-#include "kinfer/estimate/bootstrap.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/poses/bootstrap.hpp"
 
 #include <gtest/gtest.h>
 
-#include "kinfer/calibrate/parameter_choice.hpp"
-#include "kinfer/estimate/bundle.hpp"
-#include "kinfer/estimate/point_fit.hpp"
+#include "kinfer/calibrate/parameters/parameter_sets.hpp"
+#include "kinfer/estimate/poses/bundle.hpp"
+#include "kinfer/estimate/poses/point_fit.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {
+using namespace calibrate;
 namespace {
 
 using namespace test;
@@ -20,14 +22,14 @@ struct Case {
 
   explicit Case(int poses, int seed = 1)
       : data(measured(truth, paper2_poses(poses, tracker), seed)),
-        set(paper24_parameters(nominal, {}).value()),
+        set(paper_dh_parameters(nominal, {}).value()),
         weights(weights_of(data, tracker)) {
     data.orientations.clear();
     weights.orientation_sd.clear();
   }
 };
 
-TEST(PointFit, ends_where_the_fit_with_a_kept_jacobian_ends) {
+TEST(PointFit, EndsWhereTheFitWithAKeptJacobianEnds) {
   const Case c(50);
   const VectorXd start = pack(c.set, c.nominal);
   const BatchPoints points(c.nominal, c.set, point_table(c.data));
@@ -41,11 +43,11 @@ TEST(PointFit, ends_where_the_fit_with_a_kept_jacobian_ends) {
   EXPECT_LT((normal - dense).norm(), 1e-6 * dense.norm());
 }
 
-TEST(Bootstrap, spread_over_resamples_is_that_of_the_covariance) {
+TEST(Bootstrap, SpreadOverResamplesIsThatOfTheCovariance) {
   const Case c(200);
-  const Estimate estimate = fit_bundle(c.nominal, c.set, c.data, tracker, {.outliers = Outliers::believe_all});
+  const Estimate estimate = fit_bundle(c.nominal, c.set, c.data, tracker, {.outliers = Outliers::keep_all});
   const Bootstrap found = bootstrap(estimate.chain, c.set, c.data, c.weights, {.resamples = 400}, Rng(1));
-  EXPECT_EQ(found.poor, 0);
+  EXPECT_EQ(found.failed, 0);
   // The directions that only the priors hold do not move with the data: compared where the data rule.
   for (Eigen::Index k = 0; k < found.sd.size(); ++k) {
     const ParameterEstimate& value = estimate.values[k];
@@ -55,7 +57,7 @@ TEST(Bootstrap, spread_over_resamples_is_that_of_the_covariance) {
   }
 }
 
-TEST(Bootstrap, result_does_not_depend_on_the_threads) {
+TEST(Bootstrap, ResultDoesNotDependOnTheThreads) {
   const Case c(30);
   const auto with = [&](int threads) {
     return bootstrap(c.truth, c.set, c.data, c.weights, {.resamples = 50, .threads = threads}, Rng(3)).x;
@@ -65,7 +67,7 @@ TEST(Bootstrap, result_does_not_depend_on_the_threads) {
   EXPECT_EQ(one, with(7));
 }
 
-TEST(Bootstrap, refits_by_pose_residuals_and_by_kernels_agree) {
+TEST(Bootstrap, RefitsByPoseResidualsAndByKernelsAgree) {
   Case c(30);
   const Bootstrap fast = bootstrap(c.truth, c.set, c.data, c.weights, {.resamples = 5}, Rng(3));
   // An orientation that says nothing sends the same problem the slow way.

@@ -1,23 +1,25 @@
-#include "kinfer/estimate/bundle.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/poses/bundle.hpp"
 
 #include <gtest/gtest.h>
 
 #include "kinfer/base/parallel.hpp"
-#include "kinfer/calibrate/parameter_choice.hpp"
+#include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "support/differences.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {
+using namespace calibrate;
 namespace {
 
 using namespace test;
 
 ParameterSet paper24(const Chain& chain) {
-  return paper24_parameters(chain, Tolerances{}).value();
+  return paper_dh_parameters(chain, Tolerances{}).value();
 }
 
-TEST(Residuals, jacobian_equals_differences_for_points_targets_and_orientations) {
+TEST(Residuals, JacobianEqualsDifferencesForPointsTargetsAndOrientations) {
   Chain truth = with_table3_errors(er20());
   truth.targets = {{"side", Vec3(0.03, -0.02, 0.05)}};
   PoseSimulation simulation = paper2_poses(6, tracker);
@@ -34,7 +36,7 @@ TEST(Residuals, jacobian_equals_differences_for_points_targets_and_orientations)
   EXPECT_LT((jacobian - expected).norm(), 1e-6 * expected.norm());
 }
 
-TEST(Bundle, noise_free_paper_case_is_fitted_to_rounding) {
+TEST(Bundle, NoiseFreePaperCaseIsFittedToRounding) {
   // The issue asks for a sum of squares of 1e-12 mm² or less over 50 poses.
   const PoseSet data = measured(with_table3_errors(er20()), paper2_poses(50, noise_free));
   const Estimate estimate = fit_bundle(er20(), paper24(er20()), data, noise_free);
@@ -44,7 +46,7 @@ TEST(Bundle, noise_free_paper_case_is_fitted_to_rounding) {
   EXPECT_TRUE(estimate.outliers.empty());
 }
 
-TEST(Bundle, ranks_of_the_papers_24_parameters_are_20_on_the_axis_and_23_off_it) {
+TEST(Bundle, RanksOfThePapers24ParametersAre20OnTheAxisAnd23OffIt) {
   // METHODS G and K: target on the last axis, and off it; sigma 10 µm.
   Chain off_axis = er20();
   off_axis.tool.xyz = Vec3(0.03, 0.02, 0.0);
@@ -56,7 +58,7 @@ TEST(Bundle, ranks_of_the_papers_24_parameters_are_20_on_the_axis_and_23_off_it)
   }
 }
 
-TEST(Bundle, confounded_parameters_are_named_in_words) {
+TEST(Bundle, ConfoundedParametersAreNamedInWords) {
   const PoseSet data = measured(with_table3_errors(er20()), paper2_poses(50, Instrument{.sigma = 10e-6}));
   const auto words = fit_bundle(er20(), paper24(er20()), data, Instrument{.sigma = 10e-6}).identifiability.confounded;
   const auto says = [&](const std::string& sentence) {
@@ -68,7 +70,7 @@ TEST(Bundle, confounded_parameters_are_named_in_words) {
   EXPECT_TRUE(says("theta5 and a6 cannot be told apart from these poses"));
 }
 
-TEST(Bundle, the_complete_set_with_base_tool_and_beta_has_rank_27) {
+TEST(Bundle, TheCompleteSetWithBaseToolAndBetaHasRank27) {
   Chain nominal = er20();
   nominal.tool.xyz = Vec3(0.03, 0.02, 0.0);
   const PoseSet data = measured(with_table3_errors(nominal), paper2_poses(60, tracker));
@@ -77,7 +79,7 @@ TEST(Bundle, the_complete_set_with_base_tool_and_beta_has_rank_27) {
   EXPECT_EQ(fit_bundle(nominal, set, data, tracker).identifiability.rank, 27);
 }
 
-TEST(Bundle, what_the_data_cannot_tell_stays_nominal) {
+TEST(Bundle, WhatTheDataCannotTellStaysNominal) {
   PoseSet data = measured(with_table3_errors(er20()), paper2_poses(50, tracker));
   const Estimate estimate = fit_bundle(er20(), paper24(er20()), data, tracker);
   const auto theta6 =
@@ -87,7 +89,7 @@ TEST(Bundle, what_the_data_cannot_tell_stays_nominal) {
   EXPECT_NEAR(theta6->sd, 0.1 * degree, 1e-5);  // the tolerance is all that is known
 }
 
-TEST(Bundle, wrong_rows_are_listed_and_do_not_move_the_result) {
+TEST(Bundle, WrongRowsAreListedAndDoNotMoveTheResult) {
   const Chain truth = with_table3_errors(er20());
   PoseSet data = measured(truth, paper2_poses(70, tracker));
   std::vector<int> wrong;
@@ -103,7 +105,7 @@ TEST(Bundle, wrong_rows_are_listed_and_do_not_move_the_result) {
   EXPECT_LT(mean(point_errors(estimate.chain, unseen)), 25e-6);
 }
 
-TEST(Bundle, the_noise_level_is_judged_from_the_residuals_where_no_instrument_is_named) {
+TEST(Bundle, TheNoiseLevelIsJudgedFromTheResidualsWhereNoInstrumentIsNamed) {
   const Instrument truth{.sigma = 80e-6};
   const PoseSet data = measured(with_table3_errors(er20()), paper2_poses(200, truth));
   const Estimate estimate = fit_bundle(er20(), paper24(er20()), data, std::nullopt);
@@ -111,7 +113,7 @@ TEST(Bundle, the_noise_level_is_judged_from_the_residuals_where_no_instrument_is
   EXPECT_FALSE(estimate.chi2_per_n.has_value());
 }
 
-TEST(Bundle, too_optimistic_an_instrument_shows_in_chi2_and_widens_the_standard_deviations) {
+TEST(Bundle, TooOptimisticAnInstrumentShowsInChi2AndWidensTheStandardDeviations) {
   const PoseSet data = measured(with_table3_errors(er20()), paper2_poses(100, Instrument{.sigma = 100e-6}));
   const Estimate honest = fit_bundle(er20(), paper24(er20()), data, Instrument{.sigma = 100e-6});
   const Estimate fooled = fit_bundle(er20(), paper24(er20()), data, Instrument{.sigma = 10e-6});
@@ -120,7 +122,7 @@ TEST(Bundle, too_optimistic_an_instrument_shows_in_chi2_and_widens_the_standard_
   EXPECT_NEAR(fooled.predicted_error, honest.predicted_error, 0.2 * honest.predicted_error);
 }
 
-TEST(Bundle, errors_on_unseen_poses_are_as_large_as_the_covariance_says) {
+TEST(Bundle, ErrorsOnUnseenPosesAreAsLargeAsTheCovarianceSays) {
   // Twenty noise seeds (a study with the same figures is in docs/results.md); 50 poses, 10 µm + 5 µm/m.
   const Chain truth = with_table3_errors(er20());
   const PoseSet unseen = measured(truth, paper2_poses(200, noise_free), 1234);
@@ -139,7 +141,7 @@ TEST(Bundle, errors_on_unseen_poses_are_as_large_as_the_covariance_says) {
   EXPECT_LT(mean(actual), 30e-6);
 }
 
-TEST(Bundle, predicted_errors_of_many_poses_are_those_of_their_covariances) {
+TEST(Bundle, PredictedErrorsOfManyPosesAreThoseOfTheirCovariances) {
   const PoseSet data = measured(with_table3_errors(er20()), paper2_poses(50, tracker));
   Estimate estimate = fit_bundle(er20(), geometric_parameters(er20(), data, {}), data, tracker);
   for (const double compliance : {0.0, 1e-6}) {  // pose by pose where a joint yields

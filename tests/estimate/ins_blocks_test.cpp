@@ -1,4 +1,5 @@
-#include "kinfer/estimate/ins_blocks.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/continuous/model/measurement_blocks.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,11 +18,12 @@ double cubic(double t) {
 
 /// A sensor whose rate about x is a cubic of time with white noise.
 InsSensor sensor_of(std::span<const double> time, double noise) {
-  InsSensor sensor{.name = "imu", .logger = 0, .acceleration = {}, .rate = {}, .field = {}, .faults = {}};
+  InsSensor sensor{.name = "imu", .logger = 0, .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}};
   Rng rng(3);
   for (const double t : time)
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      sensor.rate.axis[axis].push_back(static_cast<float>((axis == 0 ? cubic(t) : 0.0) + noise * rng.normal()));
+      sensor.angular_velocity.axis[axis].push_back(
+          static_cast<float>((axis == 0 ? cubic(t) : 0.0) + noise * rng.normal()));
       sensor.acceleration.axis[axis].push_back(0.1f);
     }
   sensor.faults.assign(time.size(), 0);
@@ -38,15 +40,15 @@ Eigen::Matrix<double, block_nodes, 1> truth_at_nodes(const SplineGrid& grid, Eig
   Eigen::Matrix<double, block_nodes, 1> x;
   for (std::size_t n = 0; n < block_nodes; ++n)
     x[static_cast<Eigen::Index>(n)] =
-        cubic(grid.begin + grid.period * (static_cast<double>(interval) + block_places()[n]));
+        cubic(grid.begin + grid.period * (static_cast<double>(interval) + block_nodes_u()[n]));
   return x;
 }
 
 TEST(InsBlocks, TellACubicExactlyWhateverRowsAreMissing) {
   const std::vector<double> time = times(100);
   InsSensor sensor = sensor_of(time, 0.0);
-  for (const std::size_t row : {3u, 4u, 5u, 25u, 38u}) sensor.faults[row] = rate_missing;
-  for (std::size_t row = 41; row < 62; ++row) sensor.faults[row] = rate_missing;  // one reading is left
+  for (const std::size_t row : {3u, 4u, 5u, 25u, 38u}) sensor.faults[row] = angular_velocity_missing;
+  for (std::size_t row = 41; row < 62; ++row) sensor.faults[row] = angular_velocity_missing;  // one reading is left
   const SplineGrid grid{0.0, 0.1, 5};
   const auto blocks = ins_blocks(sensor, time, InsInstrument::gyroscope, grid);
   ASSERT_EQ(blocks.size(), 5u);
@@ -71,7 +73,7 @@ TEST(InsBlocks, KeepAllInformationOfTheReadings) {
 TEST(InsBlocks, ShowTheNoiseThatTheReadingsHave) {
   const std::vector<double> time = times(8000);
   const auto blocks = ins_blocks(sensor_of(time, 0.01), time, InsInstrument::gyroscope, {0.0, 0.1, 20});
-  EXPECT_NEAR(reading_noise(blocks), 0.01, 0.0007);
+  EXPECT_NEAR(measurement_noise(blocks), 0.01, 0.0007);
 }
 
 TEST(InsBlocks, FollowTheClockOffset) {

@@ -1,4 +1,5 @@
-#include "kinfer/estimate/ins_chain.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/continuous/model/chain_propagation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@ using testing::numeric_jacobian;
 
 VectorXd flat(const InsState& s) {
   VectorXd x(12);
-  x << s.rate, s.rate_change, s.force, s.field;
+  x << s.angular_velocity, s.angular_acceleration, s.force, s.field;
   return x;
 }
 
@@ -25,14 +26,14 @@ InsState state_of(ConstVectorRef x) {
 
 std::vector<InsBody> bodies_of_every_kind(Rng& rng) {
   const auto turn = [&] { return exp_so3(random_vector(rng)); };
-  std::vector<InsBody> bodies{turning_body(0, 1, turn(), turn()), sliding_body(0, 1, turn(), turn()),
-                              fixed_body(0, 1, turn()), ball_body(0, 1, turn())};
+  std::vector<InsBody> bodies{revolute_body(0, 1, turn(), turn()), prismatic_body(0, 1, turn(), turn()),
+                              fixed_body(0, 1, turn()), spherical_body(0, 1, turn())};
   for (InsBody& body : bodies) {
     body.point_in_parent = random_vector(rng);
     if (body.free_point_in_child) body.point_in_child = random_vector(rng);
   }
   bodies.push_back(bodies[0]);
-  bodies.back().free_parent_turn = {false, true, true};
+  bodies.back().free_parent_rotation = {false, true, true};
   bodies.back().free_point_in_parent = false;
   return bodies;
 }
@@ -41,19 +42,19 @@ TEST(InsChain, DerivativesAgreeWithDifferences) {
   Rng rng(5);
   for (const InsBody& body : bodies_of_every_kind(rng)) {
     const InsState parent{random_vector(rng), random_vector(rng), random_vector(rng), random_vector(rng)};
-    const JointReading q{Vec3(0.4, 0.8, -0.3), Vec3(-0.7, 0.2, 0.9), Vec3(1.3, -0.5, 0.4)};
-    CarriedDerivative derivative;
-    carry(body, q, parent, derivative);
-    EXPECT_LT((flat(derivative.state) - flat(carried(body, q, parent))).norm(), 1e-14);
+    const JointKinematicState q{Vec3(0.4, 0.8, -0.3), Vec3(-0.7, 0.2, 0.9), Vec3(1.3, -0.5, 0.4)};
+    PropagatedDerivative derivative;
+    propagate(body, q, parent, derivative);
+    EXPECT_LT((flat(derivative.state) - flat(propagated(body, q, parent))).norm(), 1e-14);
     const MatrixXd by_parent =
-        numeric_jacobian([&](const VectorXd& x) { return flat(carried(body, q, state_of(x))); }, flat(parent));
+        numeric_jacobian([&](const VectorXd& x) { return flat(propagated(body, q, state_of(x))); }, flat(parent));
     EXPECT_LT((derivative.by_parent - by_parent).norm(), 1e-7);
-    const Index readings = 3 * freedoms(body.motion), n = readings + body.unknowns();
+    const Index readings = 3 * degrees_of_freedom(body.motion), n = readings + body.unknowns();
     const MatrixXd by_own = numeric_jacobian(
         [&](const VectorXd& x) {
-          JointReading moved = q;
+          JointKinematicState moved = q;
           for (Index k = 0; k < readings; ++k) moved[static_cast<std::size_t>(k % 3)][k / 3] += x[k];
-          return flat(carried(changed(body, x.tail(n - readings)), moved, parent));
+          return flat(propagated(retract(body, x.tail(n - readings)), moved, parent));
         },
         VectorXd::Zero(n));
     EXPECT_LT((derivative.by_own - by_own).norm(), 1e-7) << static_cast<int>(body.motion);
@@ -75,27 +76,27 @@ TEST(InsChain, FeelsWhatTheMotionOfAPointSays) {
   };
   const auto felt = [&](const auto& turn, const auto& place) {
     InsState s;
-    s.rate = rate_at(turn, t0);
-    s.rate_change = (rate_at(turn, t0 + h) - rate_at(turn, t0 - h)) / (2.0 * h);
+    s.angular_velocity = rate_at(turn, t0);
+    s.angular_acceleration = (rate_at(turn, t0 + h) - rate_at(turn, t0 - h)) / (2.0 * h);
     s.force = turn(t0).transpose() * (second(place) + up);
     s.field = turn(t0).transpose() * field;
     return s;
   };
   for (const InsBody& body : bodies) {
-    const auto q = [&](double t) { return Vec3(body.motion == JointMotion::none ? Vec3::Zero() : reading(t)); };
+    const auto q = [&](double t) { return Vec3(body.motion == JointMotion::fixed ? Vec3::Zero() : reading(t)); };
     const auto child_turn = [&](double t) {
-      const Mat3 moved = body.motion == JointMotion::turn   ? rot_z(q(t).x())
-                         : body.motion == JointMotion::ball ? exp_so3(q(t))
-                                                            : Mat3(Mat3::Identity());
+      const Mat3 moved = body.motion == JointMotion::revolute    ? rot_z(q(t).x())
+                         : body.motion == JointMotion::spherical ? exp_so3(q(t))
+                                                                 : Mat3(Mat3::Identity());
       return Mat3(parent_turn(t) * body.parent_R_axis * moved * body.child_R_axis.transpose());
     };
     const auto child_place = [&](double t) {
-      const double slid = body.motion == JointMotion::slide ? q(t).x() : 0.0;
+      const double slid = body.motion == JointMotion::prismatic ? q(t).x() : 0.0;
       const Vec3 joint = body.point_in_parent + slid * body.parent_R_axis.col(2);
       return Vec3(parent_place(t) + parent_turn(t) * joint - child_turn(t) * body.point_in_child);
     };
-    const JointReading now{q(t0), (q(t0 + h) - q(t0 - h)) / (2 * h), second(q)};
-    const InsState is = carried(body, now, felt(parent_turn, parent_place)), ought = felt(child_turn, child_place);
+    const JointKinematicState now{q(t0), (q(t0 + h) - q(t0 - h)) / (2 * h), second(q)};
+    const InsState is = propagated(body, now, felt(parent_turn, parent_place)), ought = felt(child_turn, child_place);
     EXPECT_LT((flat(is) - flat(ought)).norm(), 2e-4) << static_cast<int>(body.motion);
   }
 }

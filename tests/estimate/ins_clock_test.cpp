@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include "kinfer/base/rng.hpp"
-#include "kinfer/estimate/ins_linearisation.hpp"
+#include "kinfer/estimate/continuous/solver/linearisation.hpp"
 #include "support/random.hpp"
 
 namespace kinfer {
@@ -21,48 +22,54 @@ ClockExample clock_example() {
   Rng rng(3);
   ClockExample e;
   e.problem.grid = {.begin = 0.0, .period = 0.1, .intervals = 12};
-  e.problem.prior = {.rate_bias = 1e-2, .force_bias = 0.1, .field_bias = 0.1, .clock_offset = 0.01, .clock_drift = 0.1};
+  e.problem.prior = {.gyroscope_bias = 1e-2,
+                     .accelerometer_bias = 0.1,
+                     .magnetometer_bias = 0.1,
+                     .clock_offset = 0.01,
+                     .clock_drift = 0.1};
   for (std::size_t s = 0; s < 2; ++s) {
-    InsReadings readings{.rate = {}, .force = {}, .field = {}, .noise = {0.5, 0.5, 1.0}, .least = {}};
-    InsSensor sensor{.name = "s", .acceleration = {}, .rate = {}, .field = {}, .faults = {}};
+    InsMeasurements readings{
+        .angular_velocity = {}, .force = {}, .field = {}, .noise = {0.5, 0.5, 1.0}, .noise_floor = {}};
+    InsSensor sensor{.name = "s", .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}};
     std::vector<double> time;
     for (int row = 0; row < 60; ++row) {
       time.push_back(0.02 * row);
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        sensor.rate.axis[axis].push_back(static_cast<float>(rng.normal()));
+        sensor.angular_velocity.axis[axis].push_back(static_cast<float>(rng.normal()));
         sensor.acceleration.axis[axis].push_back(static_cast<float>(rng.normal()));
       }
       sensor.faults.push_back(0);
     }
-    readings.rate = ins_blocks(sensor, time, InsInstrument::gyroscope, e.problem.grid);
+    readings.angular_velocity = ins_blocks(sensor, time, InsInstrument::gyroscope, e.problem.grid);
     readings.force = ins_blocks(sensor, time, InsInstrument::accelerometer, e.problem.grid);
     e.problem.sensors.push_back(readings);
   }
-  e.x.bodies = {{.sensor = 0}, turning_body(0, 1, exp_so3(random_vector(rng)), exp_so3(random_vector(rng)))};
+  e.x.bodies = {{.sensor = 0}, revolute_body(0, 1, exp_so3(random_vector(rng)), exp_so3(random_vector(rng)))};
   e.x.bodies[1].point_in_child = random_vector(rng);
   e.x.root_force = random_vector(rng);
   e.x.errors.resize(2);
   e.x.errors[1].clock = {.offset = 0.004, .drift = 0.003};
-  e.x.band = MatrixXd(1, e.problem.grid.coefficients());
-  for (Index i = 0; i < e.x.band.size(); ++i) e.x.band.data()[i] = 0.3 * rng.normal();
+  e.x.spline_coefficients = MatrixXd(1, e.problem.grid.coefficients());
+  for (Index i = 0; i < e.x.spline_coefficients.size(); ++i) e.x.spline_coefficients.data()[i] = 0.3 * rng.normal();
   e.layout = layout_of(e.problem, e.x.bodies);
   return e;
 }
 
 double cost_after(const ClockExample& e, Index unknown, double step) {
-  VectorXd border = VectorXd::Zero(e.layout.border);
+  VectorXd border = VectorXd::Zero(e.layout.global_parameters);
   border[unknown] = step;
-  const InsUnknowns x = changed(e.problem, e.layout, e.x, {MatrixXd::Zero(1, e.x.band.cols()), border, {}});
+  const InsUnknowns x =
+      retract(e.problem, e.layout, e.x, {MatrixXd::Zero(1, e.x.spline_coefficients.cols()), border, {}});
   return cost_of(e.problem, e.layout, x, 1).total;
 }
 
 TEST(InsClock, TheGradientOfEveryBorderUnknownAgreesWithDifferences) {
   const ClockExample e = clock_example();
   const InsLinearisation linearisation(e.problem, e.layout, e.x);
-  VectorXd gradient = border_prior(e.problem, e.layout, e.x).right;
+  VectorXd gradient = global_parameter_prior(e.problem, e.layout, e.x).right;
   for (const IntervalGradient& g : linearisation.gradients({0, e.problem.grid.intervals})) gradient += g.border;
   const Index reference = e.layout.error[0] + e.layout.clock_error;
-  for (Index k = 0; k < e.layout.border; ++k) {
+  for (Index k = 0; k < e.layout.global_parameters; ++k) {
     if (k == reference || k == reference + 1) continue;  // held: far too stiff for differences
     const double step = 1e-6;
     const double slope = (cost_after(e, k, step) - cost_after(e, k, -step)) / (2.0 * step);
@@ -71,7 +78,7 @@ TEST(InsClock, TheGradientOfEveryBorderUnknownAgreesWithDifferences) {
 }
 
 TEST(InsClock, ThePolynomialsDerivativeIsExactForCubics) {
-  const auto& u = block_places();
+  const auto& u = block_nodes_u();
   Eigen::Matrix<double, block_nodes, 1> values, slopes;
   for (Index i = 0; i < block_nodes; ++i) {
     const double x = u[static_cast<std::size_t>(i)];

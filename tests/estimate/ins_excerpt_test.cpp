@@ -1,4 +1,5 @@
-#include "kinfer/estimate/ins_excerpt.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/continuous/excerpt.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,17 +27,18 @@ double turned(double time, double length) {
 InsProblem swinging(Index intervals) {
   InsProblem problem;
   problem.grid = {0.0, 0.1, intervals};
-  problem.prior = {.rate_bias = 1e-3, .force_bias = 1e-2};
+  problem.prior = {.gyroscope_bias = 1e-3, .accelerometer_bias = 1e-2};
   Rng rng(4);
-  std::array<InsSensor, 2> sensors{InsSensor{.name = "a", .acceleration = {}, .rate = {}, .field = {}, .faults = {}},
-                                   InsSensor{.name = "b", .acceleration = {}, .rate = {}, .field = {}, .faults = {}}};
+  std::array<InsSensor, 2> sensors{
+      InsSensor{.name = "a", .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}},
+      InsSensor{.name = "b", .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}}};
   std::vector<double> time;
   const double length = problem.grid.end(), h = 1e-3;
   for (double t = 0.0; t < length; t += 0.025) {
     time.push_back(t);
-    const double q = turned(t, length), rate = (turned(t + h, length) - turned(t - h, length)) / (2.0 * h),
+    const double q = turned(t, length), angular_velocity = (turned(t + h, length) - turned(t - h, length)) / (2.0 * h),
                  change = (turned(t + h, length) - 2.0 * q + turned(t - h, length)) / (h * h);
-    const Vec3 arm(0.0, 0.5, 0.0), omega(rate, 0.0, 0.0);
+    const Vec3 arm(0.0, 0.5, 0.0), omega(angular_velocity, 0.0, 0.0);
     const std::array<Vec3, 2> rates{Vec3::Zero(), omega};
     const std::array<Vec3, 2> forces{
         Vec3(0.0, 0.0, 9.80665),
@@ -44,14 +46,14 @@ InsProblem swinging(Index intervals) {
     for (std::size_t s = 0; s < 2; ++s) {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto axis = static_cast<Index>(k);
-        sensors[s].rate.axis[k].push_back(static_cast<float>(rates[s][axis] + rate_noise * rng.normal()));
+        sensors[s].angular_velocity.axis[k].push_back(static_cast<float>(rates[s][axis] + rate_noise * rng.normal()));
         sensors[s].acceleration.axis[k].push_back(static_cast<float>(forces[s][axis] + force_noise * rng.normal()));
       }
       sensors[s].faults.push_back(0);
     }
   }
   for (const InsSensor& sensor : sensors) {
-    const InsNoise noise{.rate = rate_noise, .force = force_noise};
+    const InsNoise noise{.angular_velocity = rate_noise, .force = force_noise};
     problem.sensors.push_back({ins_blocks(sensor, time, InsInstrument::gyroscope, problem.grid),
                                ins_blocks(sensor, time, InsInstrument::accelerometer, problem.grid),
                                {},
@@ -64,17 +66,17 @@ InsProblem swinging(Index intervals) {
 InsUnknowns guess(const InsProblem& problem) {
   InsUnknowns x;
   const Mat3 about_x = rot_y(1.5707963);  // its third column is x
-  x.bodies = {{.sensor = 0}, turning_body(0, 1, about_x, about_x)};
+  x.bodies = {{.sensor = 0}, revolute_body(0, 1, about_x, about_x)};
   x.bodies[1].point_in_child = Vec3(0.0, -0.3, 0.0);
   x.root_force = Vec3(0.0, 0.0, 9.8);
   x.errors.resize(2);
-  x.band = MatrixXd::Zero(1, problem.grid.coefficients());
+  x.spline_coefficients = MatrixXd::Zero(1, problem.grid.coefficients());
   return x;
 }
 
 TEST(InsExcerpt, TakesWindowsInWhichTheJointTurns) {
   const InsProblem problem = swinging(2560);  // windows 0..39
-  const auto windows = telling_windows(problem, guess(problem).bodies, 12);
+  const auto windows = most_informative_windows(problem, guess(problem).bodies, 12);
   ASSERT_EQ(windows.size(), 12U);
   EXPECT_TRUE(std::ranges::is_sorted(windows));
   for (const Index window : windows) EXPECT_TRUE((window >= 10 && window < 20) || window >= 30) << window;
@@ -82,7 +84,7 @@ TEST(InsExcerpt, TakesWindowsInWhichTheJointTurns) {
 
 TEST(InsExcerpt, AllWindowsAreTakenWhereFewerExistThanAskedFor) {
   const InsProblem problem = swinging(200);
-  const auto windows = telling_windows(problem, guess(problem).bodies, 12);
+  const auto windows = most_informative_windows(problem, guess(problem).bodies, 12);
   EXPECT_EQ(windows, (std::vector<Index>{0, 1, 2}));
 }
 

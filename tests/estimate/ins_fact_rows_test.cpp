@@ -1,4 +1,5 @@
-#include "kinfer/estimate/ins_fact_rows.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/continuous/solver/fact_residuals.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,19 +29,19 @@ FactExample fact_example(const InsFacts& facts) {
   e.problem.sensors.resize(5);
   e.problem.facts = facts;
   e.x.bodies = {{.sensor = 0},
-                turning_body(0, 1, turn(), turn()),
-                sliding_body(1, 2, turn(), turn()),
-                turning_body(2, 3, turn(), turn()),
+                revolute_body(0, 1, turn(), turn()),
+                prismatic_body(1, 2, turn(), turn()),
+                revolute_body(2, 3, turn(), turn()),
                 fixed_body(0, 4, turn())};
   for (InsBody& body : e.x.bodies) {
     body.point_in_parent = random_vector(rng);
     if (body.free_point_in_child) body.point_in_child = random_vector(rng);
   }
   e.x.errors.resize(5);
-  e.x.band = MatrixXd(3, e.problem.grid.coefficients());
-  for (Index i = 0; i < e.x.band.size(); ++i) e.x.band.data()[i] = rng.normal();
+  e.x.spline_coefficients = MatrixXd(3, e.problem.grid.coefficients());
+  for (Index i = 0; i < e.x.spline_coefficients.size(); ++i) e.x.spline_coefficients.data()[i] = rng.normal();
   e.layout = layout_of(e.problem, e.x.bodies);
-  e.x.facts = started_facts(e.problem, e.layout, e.x);
+  e.x.facts = initial_fact_unknowns(e.problem, e.layout, e.x);
   for (auto* points : {&e.x.facts.places, &e.x.facts.touched})
     for (Vec3& point : *points) point += random_vector(rng);
   e.x.facts.surveyor.rotation = e.x.facts.surveyor.rotation * turn();
@@ -69,9 +70,11 @@ InsFacts every_kind() {
 
 /// The band's coefficients one channel after the other in time order, then the border.
 InsUnknowns moved(const FactExample& e, ConstVectorRef step) {
-  const Index band = e.x.band.size();
-  return changed(e.problem, e.layout, e.x,
-                 {step.head(band).reshaped(e.x.band.rows(), e.x.band.cols()), step.tail(e.layout.border), {}});
+  const Index band = e.x.spline_coefficients.size();
+  return retract(e.problem, e.layout, e.x,
+                 {step.head(band).reshaped(e.x.spline_coefficients.rows(), e.x.spline_coefficients.cols()),
+                  step.tail(e.layout.global_parameters),
+                  {}});
 }
 
 TEST(InsFactRows, DerivativesAgreeWithDifferences) {
@@ -81,18 +84,18 @@ TEST(InsFactRows, DerivativesAgreeWithDifferences) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const MatrixXd numeric = numeric_jacobian(
         [&](const VectorXd& step) { return VectorXd(-fact_rows(e.problem, e.layout, moved(e, step))[i].left); },
-        VectorXd::Zero(e.x.band.size() + e.layout.border));
+        VectorXd::Zero(e.x.spline_coefficients.size() + e.layout.global_parameters));
     MatrixXd analytic = MatrixXd::Zero(numeric.rows(), numeric.cols());
-    const Index local = spline_order * e.layout.channels;
-    analytic.middleCols(rows[i].interval * e.layout.channels, local) = rows[i].derivative.leftCols(local);
-    analytic.rightCols(e.layout.border) = rows[i].derivative.rightCols(e.layout.border);
+    const Index local = spline_order * e.layout.spline_dimensions;
+    analytic.middleCols(rows[i].interval * e.layout.spline_dimensions, local) = rows[i].derivative.leftCols(local);
+    analytic.rightCols(e.layout.global_parameters) = rows[i].derivative.rightCols(e.layout.global_parameters);
     EXPECT_LT((analytic - numeric).norm(), 1e-5 * (1.0 + numeric.norm())) << "fact " << i;
   }
 }
 
 TEST(InsFactRows, ATapeBetweenAxesIsTheirShortestDistance) {
   FactExample e = fact_example(every_kind());
-  const InsTape& tape = e.problem.facts.tapes[1];
+  const InsTapeDistance& tape = e.problem.facts.tapes[1];
   const auto rows = fact_rows(e.problem, e.layout, e.x);
   const double predicted = tape.length - tape.sd * rows[5].left[0];
   // The slow way: walk along both lines.
@@ -101,7 +104,7 @@ TEST(InsFactRows, ATapeBetweenAxesIsTheirShortestDistance) {
     const Vec3 kept = bodies[body].point_in_parent;
     bodies[body].point_in_parent += metres * bodies[body].parent_R_axis.col(2);
     const Vec3 at =
-        placed_point(e.problem, e.layout, e.x, {InsPoint::Kind::joint_centre, static_cast<int>(body)}, tape.at);
+        point_position(e.problem, e.layout, e.x, {InsPoint::Kind::joint_centre, static_cast<int>(body)}, tape.at);
     bodies[body].point_in_parent = kept;
     return at;
   };
@@ -118,9 +121,9 @@ TEST(InsFactRows, ATapeBetweenAxesIsTheirShortestDistance) {
 TEST(InsFactRows, ATouchIsOneAndTheSamePlaceOfTheRoot) {
   const FactExample e = fact_example(every_kind());
   const auto rows = fact_rows(e.problem, e.layout, e.x);
-  const InsTouch& touch = e.problem.facts.touches[0];
+  const InsRevisitedPoint& touch = e.problem.facts.touches[0];
   for (std::size_t i = 0; i < 2; ++i) {
-    const Vec3 at = placed_point(e.problem, e.layout, e.x, touch.point, touch.at[i]);
+    const Vec3 at = point_position(e.problem, e.layout, e.x, touch.point, touch.at[i]);
     EXPECT_LT((at + touch.sd * rows[i].left - e.x.facts.touched[0]).norm(), 1e-12);
   }
 }

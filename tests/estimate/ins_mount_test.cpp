@@ -1,9 +1,10 @@
-#include "kinfer/estimate/ins_mount.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/continuous/model/mount_compliance.hpp"
 
 #include <gtest/gtest.h>
 
 #include "kinfer/base/rng.hpp"
-#include "kinfer/estimate/ins_linearisation.hpp"
+#include "kinfer/estimate/continuous/solver/linearisation.hpp"
 #include "support/random.hpp"
 
 namespace kinfer {
@@ -27,53 +28,57 @@ struct MountExample {
   MountExample() {
     Rng rng(5);
     problem.grid = {.begin = 0.0, .period = 0.1, .intervals = 8};
-    problem.root_stands_still = false;
-    problem.prior = {.rate_bias = 0.1, .force_bias = 0.1, .rate_matrix = 0.1, .force_matrix = 0.1, .tilt = 0.3};
+    problem.root_at_rest = false;
+    problem.prior = {.gyroscope_bias = 0.1,
+                     .accelerometer_bias = 0.1,
+                     .gyroscope_scale = 0.1,
+                     .accelerometer_scale = 0.1,
+                     .tilt = 0.3};
     for (std::size_t s = 0; s < 2; ++s) {
-      InsSensor sensor{.name = "s", .acceleration = {}, .rate = {}, .field = {}, .faults = {}};
+      InsSensor sensor{.name = "s", .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}};
       std::vector<double> time;
       for (int row = 0; row < 40; ++row) {
         time.push_back(0.02 * row);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          sensor.rate.axis[axis].push_back(static_cast<float>(rng.normal()));
+          sensor.angular_velocity.axis[axis].push_back(static_cast<float>(rng.normal()));
           sensor.acceleration.axis[axis].push_back(static_cast<float>(rng.normal()));
         }
         sensor.faults.push_back(0);
       }
-      problem.sensors.push_back({.rate = ins_blocks(sensor, time, InsInstrument::gyroscope, problem.grid),
+      problem.sensors.push_back({.angular_velocity = ins_blocks(sensor, time, InsInstrument::gyroscope, problem.grid),
                                  .force = ins_blocks(sensor, time, InsInstrument::accelerometer, problem.grid),
                                  .field = {},
                                  .noise = {0.5, 0.5, 1.0},
-                                 .least = {},
-                                 .bending = mount_bending(sensor, time, problem.grid)});
+                                 .noise_floor = {},
+                                 .mount_load = mount_loads(sensor, time, problem.grid)});
     }
-    x.bodies = {{.sensor = 0}, turning_body(0, 1, exp_so3(random_vector(rng)), exp_so3(random_vector(rng)))};
+    x.bodies = {{.sensor = 0}, revolute_body(0, 1, exp_so3(random_vector(rng)), exp_so3(random_vector(rng)))};
     x.bodies[1].point_in_child = random_vector(rng);
     x.errors.resize(2);
-    for (InsErrors& errors : x.errors) errors.tilt = random_tilt(rng), errors.rate_matrix = 0.2 * random_tilt(rng);
-    x.band = MatrixXd(7, problem.grid.coefficients());
-    for (double& value : x.band.reshaped()) value = 0.3 * rng.normal();
+    for (InsErrors& errors : x.errors) errors.tilt = random_tilt(rng), errors.gyroscope_scale = 0.2 * random_tilt(rng);
+    x.spline_coefficients = MatrixXd(7, problem.grid.coefficients());
+    for (double& value : x.spline_coefficients.reshaped()) value = 0.3 * rng.normal();
     layout = layout_of(problem, x.bodies);
   }
 
   double cost_after(ConstMatrixRef band, ConstVectorRef border) const {
-    return cost_of(problem, layout, changed(problem, layout, x, {band, border, {}}), 1).total;
+    return cost_of(problem, layout, retract(problem, layout, x, {band, border, {}}), 1).total;
   }
 };
 
 TEST(InsMount, TheGradientsOfTiltsAndMotionAgreeWithDifferences) {
   const MountExample e;
-  const StretchSum sum = InsLinearisation(e.problem, e.layout, e.x).sum({0, e.problem.grid.intervals});
-  const VectorXd border = border_prior(e.problem, e.layout, e.x).right + sum.border_right, &band = sum.right;
+  const BandSegmentSum sum = InsLinearisation(e.problem, e.layout, e.x).sum({0, e.problem.grid.intervals});
+  const VectorXd border = global_parameter_prior(e.problem, e.layout, e.x).right + sum.border_right, &band = sum.right;
   constexpr double step = 1e-6;
   const auto expect_slope = [](double gradient, double more, double less) {
     const double slope = (more - less) / (2.0 * step);
     EXPECT_NEAR(-2.0 * gradient, slope, 1e-5 * std::max(1.0, std::abs(slope)));
   };
-  const MatrixXd no_band = MatrixXd::Zero(e.x.band.rows(), e.x.band.cols());
-  const VectorXd no_border = VectorXd::Zero(e.layout.border);
-  for (Index k = 0; k < e.layout.border; ++k) {
-    const VectorXd by = step * VectorXd::Unit(e.layout.border, k);
+  const MatrixXd no_band = MatrixXd::Zero(e.x.spline_coefficients.rows(), e.x.spline_coefficients.cols());
+  const VectorXd no_border = VectorXd::Zero(e.layout.global_parameters);
+  for (Index k = 0; k < e.layout.global_parameters; ++k) {
+    const VectorXd by = step * VectorXd::Unit(e.layout.global_parameters, k);
     expect_slope(border[k], e.cost_after(no_band, by), e.cost_after(no_band, -by));
   }
   for (Index k = 0; k < band.size(); k += 5) {
@@ -86,26 +91,28 @@ TEST(InsMount, TheGradientsOfTiltsAndMotionAgreeWithDifferences) {
 TEST(InsMount, AFirmOneFeelsWhatItsSegmentDoes) {
   Rng rng(2);
   const InsState segment{random_vector(rng), random_vector(rng), random_vector(rng), random_vector(rng)};
-  const InsState is = felt(segment, Mat3::Zero(), random_vector(rng), random_vector(rng));
-  EXPECT_EQ(is.rate, segment.rate);
+  const InsState is = state_on_mount(segment, Mat3::Zero(), random_vector(rng), random_vector(rng));
+  EXPECT_EQ(is.angular_velocity, segment.angular_velocity);
   EXPECT_EQ(is.force, segment.force);
 }
 
 TEST(InsMount, ASensorThatLeansMoreThanItsSegmentTurnsShowsMoreOfTheTurn) {
   // Gravity in a segment that turns about x by a small angle a is g (0, a, 1): a tilt of T about x by the force along y
   // adds T g a to the angle, so T g of every rate.
-  const double angle = 0.01, rate = 0.3, gravity = 9.81, gives = 0.1 / gravity;
+  const double angle = 0.01, angular_velocity = 0.3, gravity = 9.81, gives = 0.1 / gravity;
   Mat3 tilt = Mat3::Zero();
   tilt(0, 1) = gives;
-  const InsState segment{.rate = Vec3(rate, 0.0, 0.0), .force = gravity * Vec3(0.0, angle, 1.0)};
-  const InsState is = felt(segment, tilt, gravity * Vec3(0.0, angle, 0.0), gravity * Vec3(0.0, rate, 0.0));
-  EXPECT_NEAR(is.rate.x(), 1.1 * rate, 1e-12);
+  const InsState segment{.angular_velocity = Vec3(angular_velocity, 0.0, 0.0),
+                         .force = gravity * Vec3(0.0, angle, 1.0)};
+  const InsState is =
+      state_on_mount(segment, tilt, gravity * Vec3(0.0, angle, 0.0), gravity * Vec3(0.0, angular_velocity, 0.0));
+  EXPECT_NEAR(is.angular_velocity.x(), 1.1 * angular_velocity, 1e-12);
   EXPECT_NEAR(is.force.y(), 1.1 * gravity * angle, 1e-5);
 }
 
 TEST(InsMount, WhatBendsItIsTheForceLessItsMean) {
   const SplineGrid grid{0.0, 0.1, 60};
-  InsSensor sensor{.name = "s", .acceleration = {}, .rate = {}, .field = {}, .faults = {}};
+  InsSensor sensor{.name = "s", .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}};
   std::vector<double> time;
   for (int row = 0; row < 600; ++row) {
     time.push_back(0.01 * row);
@@ -113,16 +120,16 @@ TEST(InsMount, WhatBendsItIsTheForceLessItsMean) {
     sensor.acceleration.axis[0].push_back(static_cast<float>(wave));
     sensor.acceleration.axis[1].push_back(7.0f);
     sensor.acceleration.axis[2].push_back(0.0f);
-    for (auto& axis : sensor.rate.axis) axis.push_back(0.0f);
+    for (auto& axis : sensor.angular_velocity.axis) axis.push_back(0.0f);
     sensor.faults.push_back(0);
   }
   double mean = 0.0;
   for (const float value : sensor.acceleration.axis[0]) mean += double{value} / 600.0;
-  const auto bending = mount_bending(sensor, time, grid);
-  const double at = 2.0 + 0.1 * block_places()[1];
-  EXPECT_NEAR(bending[20].force_at(1).x(), 2.0 * std::sin(2.0 * at) - mean, 1e-3);
-  EXPECT_NEAR(bending[20].change_at(1).x(), 4.0 * std::cos(2.0 * at), 1e-2);
-  EXPECT_NEAR(bending[20].force_at(1).y(), 0.0, 1e-6);
+  const auto mount_load = mount_loads(sensor, time, grid);
+  const double at = 2.0 + 0.1 * block_nodes_u()[1];
+  EXPECT_NEAR(mount_load[20].force_at(1).x(), 2.0 * std::sin(2.0 * at) - mean, 1e-3);
+  EXPECT_NEAR(mount_load[20].change_at(1).x(), 4.0 * std::cos(2.0 * at), 1e-2);
+  EXPECT_NEAR(mount_load[20].force_at(1).y(), 0.0, 1e-6);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-#include "kinfer/estimate/ins_system.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/continuous/solver/normal_equations.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,19 +38,19 @@ SystemExample system_example(Index intervals, Biases biases = Biases::constant) 
   Rng rng(7);
   SystemExample e;
   e.problem.grid = {.begin = 0.0, .period = 0.1, .intervals = intervals};
-  e.problem.root_stands_still = false;
+  e.problem.root_at_rest = false;
   e.problem.prior = {0.1, 0.1, 0.1, 0.01, 0.01};
   for (int s = 0; s < 2; ++s)
     e.problem.sensors.push_back({random_blocks(intervals, rng), random_blocks(intervals, rng), {}, {}, {}});
-  e.x.bodies = {{.sensor = 0}, turning_body(0, 1, exp_so3(random_vector(rng)), exp_so3(random_vector(rng)))};
+  e.x.bodies = {{.sensor = 0}, revolute_body(0, 1, exp_so3(random_vector(rng)), exp_so3(random_vector(rng)))};
   e.x.bodies.back().point_in_child = random_vector(rng);
   e.x.errors.resize(2);
-  e.x.band = MatrixXd(7, e.problem.grid.coefficients());
-  for (double& value : e.x.band.reshaped()) value = 0.1 * rng.normal();
-  if (biases == Biases::wandering) e.problem.wander = {.rate_sd = 0.3, .force_sd = 0.2, .time = 10.0};
+  e.x.spline_coefficients = MatrixXd(7, e.problem.grid.coefficients());
+  for (double& value : e.x.spline_coefficients.reshaped()) value = 0.1 * rng.normal();
+  if (biases == Biases::wandering) e.problem.bias_process = {.rate_sd = 0.3, .force_sd = 0.2, .time = 10.0};
   e.layout = layout_of(e.problem, e.x.bodies);
-  e.x.wander = MatrixXd(e.layout.wander, static_cast<Index>(stretches_of(e.problem.grid).size()));
-  for (double& value : e.x.wander.reshaped()) value = 0.1 * rng.normal();
+  e.x.bias_process = MatrixXd(e.layout.bias_process, static_cast<Index>(time_segments_of(e.problem.grid).size()));
+  for (double& value : e.x.bias_process.reshaped()) value = 0.1 * rng.normal();
   return e;
 }
 
@@ -58,26 +59,26 @@ SystemExample system_example(Index intervals, Biases biases = Biases::constant) 
 struct Dense {
   MatrixXd matrix;
   VectorXd right;
-  Index wander = 0, border = 0;  // where they begin
-  MatrixXd wander_prior;
+  Index bias_process = 0, border = 0;  // where they begin
+  MatrixXd bias_process_prior;
 };
 
 /// The Gauss-Markov process' information on all stretches' unknowns, by inverting its covariance σ² a^|i − j|.
 MatrixXd process_information(const SystemExample& e) {
-  const Index w = e.layout.wander, n = e.x.wander.cols();
+  const Index w = e.layout.bias_process, n = e.x.bias_process.cols();
   MatrixXd covariance = MatrixXd::Zero(w * n, w * n);
   for (Index i = 0; i < n; ++i)
     for (Index j = 0; j < n; ++j)
       for (Index k = 0; k < w; ++k) {
-        const double sd = k % 6 < 3 ? e.problem.wander.rate_sd : e.problem.wander.force_sd;
+        const double sd = k % 6 < 3 ? e.problem.bias_process.rate_sd : e.problem.bias_process.force_sd;
         covariance(i * w + k, j * w + k) =
-            sd * sd * std::exp(-6.4 * static_cast<double>(std::abs(i - j)) / e.problem.wander.time);
+            sd * sd * std::exp(-6.4 * static_cast<double>(std::abs(i - j)) / e.problem.bias_process.time);
       }
-  return w * n > 0 ? *inverse_positive(covariance) : covariance;
+  return w * n > 0 ? *invert_spd(covariance) : covariance;
 }
 
 /// Lower half.
-MatrixXd dense_band(const StretchSum& sum) {
+MatrixXd dense_band(const BandSegmentSum& sum) {
   const Index n = sum.right.size();
   MatrixXd dense = MatrixXd::Zero(n, n);
   for (Index c = 0; c < n; ++c)
@@ -87,40 +88,40 @@ MatrixXd dense_band(const StretchSum& sum) {
 }
 
 Dense dense(const SystemExample& e) {
-  const Index band = e.layout.channels * e.problem.grid.coefficients(), w = e.layout.wander,
-              border_at = band + e.x.wander.size(), all = border_at + e.layout.border;
+  const Index band = e.layout.spline_dimensions * e.problem.grid.coefficients(), w = e.layout.bias_process,
+              border_at = band + e.x.bias_process.size(), all = border_at + e.layout.global_parameters;
   Dense d{MatrixXd::Zero(all, all), VectorXd::Zero(all), band, border_at, process_information(e)};
-  const auto wandering = wandering_border(e.layout);
-  const BorderPrior prior = border_prior(e.problem, e.layout, e.x);
-  d.matrix.bottomRightCorner(e.layout.border, e.layout.border) = prior.matrix;
-  d.right.tail(e.layout.border) = prior.right;
-  d.matrix.block(band, band, e.x.wander.size(), e.x.wander.size()) = d.wander_prior;
-  d.right.segment(band, e.x.wander.size()) = -d.wander_prior * e.x.wander.reshaped();
+  const auto wandering = bias_parameters(e.layout);
+  const GlobalParameterPrior prior = global_parameter_prior(e.problem, e.layout, e.x);
+  d.matrix.bottomRightCorner(e.layout.global_parameters, e.layout.global_parameters) = prior.matrix;
+  d.right.tail(e.layout.global_parameters) = prior.right;
+  d.matrix.block(band, band, e.x.bias_process.size(), e.x.bias_process.size()) = d.bias_process_prior;
+  d.right.segment(band, e.x.bias_process.size()) = -d.bias_process_prior * e.x.bias_process.reshaped();
   const InsLinearisation linearisation(e.problem, e.layout, e.x);
-  for (const InsStretch& stretch : stretches_of(e.problem.grid)) {
-    const StretchSum sum = linearisation.sum(stretch);
+  for (const TimeSegment& time_segment : time_segments_of(e.problem.grid)) {
+    const BandSegmentSum sum = linearisation.sum(time_segment);
     const MatrixXd own = sum.border_matrix.selfadjointView<Eigen::Lower>();
-    const MatrixXd coupling = sum.beside.bottomRows(e.layout.border);
-    const Index at = stretch.first * e.layout.channels,
-                in_wander = band + w * stretch_at(e.problem.grid, stretch.first), n = sum.right.size();
+    const MatrixXd coupling = sum.outer.bottomRows(e.layout.global_parameters);
+    const Index at = time_segment.first * e.layout.spline_dimensions,
+                in_wander = band + w * time_segment_at(e.problem.grid, time_segment.first), n = sum.right.size();
     d.matrix.block(at, at, n, n) += dense_band(sum);
-    d.matrix.block(border_at, at, e.layout.border, n) += coupling;
+    d.matrix.block(border_at, at, e.layout.global_parameters, n) += coupling;
     d.matrix.block(in_wander, at, w, n) += coupling(wandering, Eigen::all);
     d.matrix.block(in_wander, in_wander, w, w) += own(wandering, wandering);
-    d.matrix.block(border_at, in_wander, e.layout.border, w) += own(Eigen::all, wandering);
-    d.matrix.bottomRightCorner(e.layout.border, e.layout.border) += own;
+    d.matrix.block(border_at, in_wander, e.layout.global_parameters, w) += own(Eigen::all, wandering);
+    d.matrix.bottomRightCorner(e.layout.global_parameters, e.layout.global_parameters) += own;
     d.right.segment(at, n) += sum.right;
     d.right.segment(in_wander, w) += sum.border_right(wandering);
-    d.right.tail(e.layout.border) += sum.border_right;
+    d.right.tail(e.layout.global_parameters) += sum.border_right;
   }
   d.matrix.triangularView<Eigen::StrictlyUpper>() = d.matrix.transpose();
   return d;
 }
 
 /// A⁻¹ Bᵀ of everything but the border.
-MatrixXd following(const Dense& d) {
+MatrixXd sensitivity(const Dense& d) {
   const Index rest = d.border;
-  return *inverse_positive(d.matrix.topLeftCorner(rest, rest)) * d.matrix.topRightCorner(rest, d.matrix.rows() - rest);
+  return *invert_spd(d.matrix.topLeftCorner(rest, rest)) * d.matrix.topRightCorner(rest, d.matrix.rows() - rest);
 }
 
 TEST(InsSystem, SolvesTheEquationsOfAllIntervalsTogether) {
@@ -128,12 +129,13 @@ TEST(InsSystem, SolvesTheEquationsOfAllIntervalsTogether) {
     for (const Index intervals : {5, 64, 150, 300}) {
       const SystemExample e = system_example(intervals, biases);
       const Dense d = dense(e);
-      const auto expected = solve_positive(d.matrix, d.right);
+      const auto expected = solve_spd(d.matrix, d.right);
       const auto x = InsSystem(e.problem, e.layout, e.x, {}, 1).solve();
       ASSERT_TRUE(x && expected);
-      EXPECT_LT((x->band.reshaped() - expected->head(d.wander)).norm(), 1e-7 * expected->norm());
-      EXPECT_LT((x->wander.reshaped() - expected->segment(d.wander, x->wander.size())).norm(), 1e-7 * expected->norm());
-      EXPECT_LT((x->border - expected->tail(e.layout.border)).norm(), 1e-7 * expected->norm());
+      EXPECT_LT((x->spline_coefficients.reshaped() - expected->head(d.bias_process)).norm(), 1e-7 * expected->norm());
+      EXPECT_LT((x->bias_process.reshaped() - expected->segment(d.bias_process, x->bias_process.size())).norm(),
+                1e-7 * expected->norm());
+      EXPECT_LT((x->border - expected->tail(e.layout.global_parameters)).norm(), 1e-7 * expected->norm());
     }
 }
 
@@ -141,18 +143,18 @@ TEST(InsSystem, BlockScoresAreGradientsWithBandAndBiasesFollowing) {
   for (const Biases biases : {Biases::constant, Biases::wandering}) {
     const SystemExample e = system_example(140, biases);
     const Dense d = dense(e);
-    const MatrixXd follows = following(d);
-    const auto wandering = wandering_border(e.layout);
+    const MatrixXd follows = sensitivity(d);
+    const auto wandering = bias_parameters(e.layout);
     const MatrixXd scores = InsSystem(e.problem, e.layout, e.x, {}, 1).scores(2.0).blocks;
     ASSERT_EQ(scores.rows(), 7);
     const auto gradients = InsLinearisation(e.problem, e.layout, e.x).gradients({0, e.problem.grid.intervals});
     for (Index block = 0; block < scores.rows(); ++block) {
-      VectorXd expected = VectorXd::Zero(e.layout.border);
+      VectorXd expected = VectorXd::Zero(e.layout.global_parameters);
       for (Index k = 20 * block; k < 20 * (block + 1); ++k) {
         const IntervalGradient& g = gradients[static_cast<std::size_t>(k)];
-        const Index in_wander = d.wander + e.layout.wander * stretch_at(e.problem.grid, k);
-        expected += g.border - follows.middleRows(k * e.layout.channels, g.band.size()).transpose() * g.band -
-                    follows.middleRows(in_wander, e.layout.wander).transpose() * g.border(wandering);
+        const Index in_wander = d.bias_process + e.layout.bias_process * time_segment_at(e.problem.grid, k);
+        expected += g.border - follows.middleRows(k * e.layout.spline_dimensions, g.band.size()).transpose() * g.band -
+                    follows.middleRows(in_wander, e.layout.bias_process).transpose() * g.border(wandering);
       }
       EXPECT_LT((scores.row(block).transpose() - expected).norm(), 1e-6 * expected.norm());
     }
@@ -162,9 +164,9 @@ TEST(InsSystem, BlockScoresAreGradientsWithBandAndBiasesFollowing) {
 TEST(InsSystem, TellsWhatPriorsSayAboutTheBorder) {
   const SystemExample e = system_example(300, Biases::wandering);
   const Dense d = dense(e);
-  const MatrixXd follows = following(d).middleRows(d.wander, e.x.wander.size());
+  const MatrixXd follows = sensitivity(d).middleRows(d.bias_process, e.x.bias_process.size());
   const MatrixXd expected =
-      follows.transpose() * d.wander_prior * follows + border_prior(e.problem, e.layout, e.x).matrix;
+      follows.transpose() * d.bias_process_prior * follows + global_parameter_prior(e.problem, e.layout, e.x).matrix;
   const MatrixXd told = InsSystem(e.problem, e.layout, e.x, {}, 1).scores(2.0).priors;
   EXPECT_LT((told - expected).norm(), 1e-7 * expected.norm());
 }
@@ -172,13 +174,13 @@ TEST(InsSystem, TellsWhatPriorsSayAboutTheBorder) {
 TEST(InsSystem, HoldsTheBorderWhileTheBandIsSolvedFor) {
   const SystemExample e = system_example(150, Biases::wandering);
   const Dense d = dense(e);
-  const auto expected = solve_positive(d.matrix.topLeftCorner(d.wander, d.wander), d.right.head(d.wander));
+  const auto expected = solve_spd(d.matrix.topLeftCorner(d.bias_process, d.bias_process), d.right.head(d.bias_process));
   for (const double most_kept : {1e9, 0.0}) {
-    const auto step = InsSystem(e.problem, e.layout, e.x, {.holds_border = true}, 2, most_kept).solve();
+    const auto step = InsSystem(e.problem, e.layout, e.x, {.holds_global_parameters = true}, 2, most_kept).solve();
     ASSERT_TRUE(step && expected);
-    EXPECT_LT((step->band.reshaped() - *expected).norm(), 1e-8 * expected->norm());
-    EXPECT_EQ(step->border, VectorXd::Zero(e.layout.border));
-    EXPECT_EQ(step->wander, MatrixXd::Zero(e.layout.wander, 2));
+    EXPECT_LT((step->spline_coefficients.reshaped() - *expected).norm(), 1e-8 * expected->norm());
+    EXPECT_EQ(step->border, VectorXd::Zero(e.layout.global_parameters));
+    EXPECT_EQ(step->bias_process, MatrixXd::Zero(e.layout.bias_process, 2));
   }
 }
 
@@ -188,8 +190,8 @@ TEST(InsSystem, TellsTheSameWhereItKeepsNothing) {
   const InsSystem kept(e.problem, e.layout, e.x, damping, 2), lean(e.problem, e.layout, e.x, damping, 2, 0.0);
   const auto a = kept.solve(), b = lean.solve();
   ASSERT_TRUE(a && b);
-  EXPECT_LT((a->band - b->band).norm(), 1e-9 * a->band.norm());
-  EXPECT_LT((a->wander - b->wander).norm(), 1e-9 * a->wander.norm());
+  EXPECT_LT((a->spline_coefficients - b->spline_coefficients).norm(), 1e-9 * a->spline_coefficients.norm());
+  EXPECT_LT((a->bias_process - b->bias_process).norm(), 1e-9 * a->bias_process.norm());
   EXPECT_LT((kept.scores(2.0).blocks - lean.scores(2.0).blocks).norm(), 1e-9 * kept.scores(2.0).blocks.norm());
 }
 
@@ -197,7 +199,7 @@ TEST(InsSystem, IsTheSameForAnyNumberOfThreads) {
   const SystemExample e = system_example(200, Biases::wandering);
   const auto told = [&](int threads) {
     const InsSystem system(e.problem, e.layout, e.x, {}, threads, 0.0);
-    return std::pair{system.solve()->band, system.scores(2.0).blocks};
+    return std::pair{system.solve()->spline_coefficients, system.scores(2.0).blocks};
   };
   const auto one = told(1);
   for (const int threads : {2, 7}) {

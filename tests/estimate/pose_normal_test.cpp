@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // The normal equations made chunk by chunk are those of the Jacobian as a whole.
-#include "kinfer/estimate/pose_normal.hpp"
+#include "kinfer/estimate/poses/pose_normal_equations.hpp"
 
 #include <gtest/gtest.h>
 
-#include "kinfer/estimate/point_fit.hpp"
+#include "kinfer/estimate/poses/point_fit.hpp"
 #include "support/differences.hpp"
 #include "support/instruments.hpp"
 
@@ -17,8 +18,8 @@ Chain soft_robot() {
   chain.tool.xyz = Vec3(0.03, 0.02, 0.1);
   chain.masses = {{2, Vec3(0.4, 0, 0), 120.0}, {4, Vec3(0, 0, 0.1), 60.0}};
   chain.joints[1].compliance = 2e-6, chain.joints[2].compliance = 3e-6;
-  chain.surroundings.sockets = {{"a", Vec3(1.0, 0.2, 0.5)}, {"b", Vec3(0.9, 0.4, 0.5)}};
-  chain.surroundings.socket_distances = {{0, 1, 0.2, 1e-4}};
+  chain.fixtures.sockets = {{"a", Vec3(1.0, 0.2, 0.5)}, {"b", Vec3(0.9, 0.4, 0.5)}};
+  chain.fixtures.socket_distances = {{0, 1, 0.2, 1e-4}};
   return chain;
 }
 
@@ -27,14 +28,14 @@ PoseSet seen(const Chain& chain, int poses) {
   for (int row = 0; row < poses; row += 2)
     set.orientations.push_back({row, Quat(rot_x(0.02) * true_poses(chain, set)[row].rotation), Vec3(1e-3, 2e-3, 3e-3)});
   for (std::size_t i = 0; i < set.orientations.size(); i += 3)  // point and orientation err together
-    set.orientations[i].with_point = 3e-8 * rot_x(0.1 * static_cast<double>(i));
+    set.orientations[i].covariance_with_point = 3e-8 * rot_x(0.1 * static_cast<double>(i));
   set.contacts = {{0, 0}, {1, 1}, {7, 0}};
   return set;
 }
 
 ParameterSet all_of(const Chain& chain) {
   ParameterSet set = all_parameters(chain, {});
-  const ParameterSet around = surroundings_parameters(chain, {});
+  const ParameterSet around = setup_parameters(chain, {});
   set.parameters.insert(set.parameters.end(), around.parameters.begin(), around.parameters.end());
   return set;
 }
@@ -72,29 +73,29 @@ void expect_the_same(const Chain& chain, const ParameterSet& set, const PoseSet&
   }
 }
 
-TEST(PoseNormal, chunks_of_any_instruments_add_up_to_the_whole) {
+TEST(PoseNormal, ChunksOfAnyInstrumentsAddUpToTheWhole) {
   const Chain chain = soft_robot();
   for (const int poses : {9, 64, 150})
     expect_the_same(chain, all_of(chain), seen(chain, poses), pack(all_of(chain), chain));
 }
 
-TEST(PoseNormal, kernels_take_points_alone_robustly_too) {
+TEST(PoseNormal, KernelsTakePointsAloneRobustlyToo) {
   const Chain chain = with_table3_errors(er20());
   const PoseSet data = measured(chain, paper2_poses(70, tracker));
   ParameterSet set = all_parameters(er20(), {});
   std::erase_if(set.parameters, [](const Parameter& p) { return p.at.field == Field::compliance; });
-  ASSERT_TRUE(has_points_alone(er20(), set, data));
+  ASSERT_TRUE(has_only_points(er20(), set, data));
   expect_the_same(er20(), set, data, pack(set, er20()));
 }
 
-TEST(PoseNormal, kernels_take_points_whose_covariances_lie_along_axes_of_their_own) {
+TEST(PoseNormal, KernelsTakePointsWhoseCovariancesLieAlongAxesOfTheirOwn) {
   const Chain chain = with_table3_errors(er20());
   PoseSet data = measured(chain, paper2_poses(70, tracker));
   ParameterSet set = all_parameters(er20(), {});
   std::erase_if(set.parameters, [](const Parameter& p) { return p.at.field == Field::compliance; });
   for (std::size_t i = 0; i < data.points.size(); i += 2)
     data.points[i].sd = Vec3(1e-5, 2e-5, 4e-5), data.points[i].axes = rot_x(0.1 * static_cast<double>(i));
-  ASSERT_TRUE(has_points_alone(er20(), set, data));
+  ASSERT_TRUE(has_only_points(er20(), set, data));
   const VectorXd x = pack(set, er20());
   expect_the_same(er20(), set, data, x);
   const Weights weights = weights_of(data, Instrument{.sigma = 1e-4});
@@ -109,7 +110,7 @@ TEST(PoseNormal, kernels_take_points_whose_covariances_lie_along_axes_of_their_o
 }
 
 /// Half the gradient of the cost is Jᵀr, compliance and all: torques are held, so that the derivative is exact.
-TEST(PoseNormal, gradient_of_a_robot_that_yields_is_the_slope_of_the_cost) {
+TEST(PoseNormal, GradientOfARobotThatYieldsIsTheSlopeOfTheCost) {
   const Chain chain = soft_robot();
   const PoseSet data = seen(chain, 20);
   const ParameterSet set = all_of(chain);

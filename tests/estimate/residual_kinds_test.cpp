@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // Laws that every instrument's residual obeys: its Jacobian is its slope, and at the truth it is the noise.
 #include <gtest/gtest.h>
 
-#include "kinfer/estimate/noise_level.hpp"
+#include "kinfer/estimate/poses/noise_level.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "support/differences.hpp"
@@ -28,10 +29,10 @@ Chain rich_robot() {
   chain.joints[5].couplings = {{4, -0.3}, {3, 1e-3}};
   chain.expansion = 2e-5;
   chain.reference_temperature = 20.0;
-  Surroundings& around = chain.surroundings;
+  Fixtures& around = chain.fixtures;
   around.anchors = {Vec3(1.8, -0.9, 0.1), Vec3(0.0, 2.0, 0.5)};
   around.sockets = {{"a", Vec3(1.0, 0.2, 0.5)}, {"b", Vec3(0.9, 0.4, 0.5)}};
-  around.planes = {{.name = "table", .rotation = rot_x(0.2), .turn = Vec3(0.01, 0.02, 0.0), .offset = 0.4}};
+  around.planes = {{.name = "table", .rotation = rot_x(0.2), .small_rotation = Vec3(0.01, 0.02, 0.0), .offset = 0.4}};
   around.socket_distances = {{0, 1, 0.2, 1e-4}};
   chain.mountings = {{.name = "second",
                       .base = Frame::from_pose(Pose::from_xyz_rpy({2, 1, 0}, {0, 0.1, 1})),
@@ -64,8 +65,9 @@ PoseSet all_kinds(const Chain& chain) {
   for (int row = 0; row < set.rows(); row += 2)
     set.orientations.push_back({row, Quat(rot_x(0.02) * poses[row].rotation), Vec3(1e-3, 2e-3, 3e-3)});
   set.orientations[1].sd = sd, set.orientations[1].axes = axes;
-  set.orientations[2].with_point = 0.1e-6 * rot_x(0.4);  // beside a point of full covariance
-  set.orientations[3].with_point = 0.1e-6 * rot_x(-0.3), set.orientations[3].sd = sd, set.orientations[3].axes = axes;
+  set.orientations[2].covariance_with_point = 0.1e-6 * rot_x(0.4);  // beside a point of full covariance
+  set.orientations[3].covariance_with_point = 0.1e-6 * rot_x(-0.3), set.orientations[3].sd = sd,
+  set.orientations[3].axes = axes;
   measure_distances(set, chain, 1e-3, Rng(4));
   measure_pairs(set, chain, 1e-3, Rng(5));
   measure_tilts(set, chain, 0.05, Rng(6));
@@ -77,9 +79,9 @@ PoseSet all_kinds(const Chain& chain) {
 /// Every number of the chain and of its surroundings, with and beyond geometry.
 ParameterSet everything(const Chain& chain) {
   ParameterSet set = all_parameters(chain, {});
-  const ParameterSet around = surroundings_parameters(chain, {});
+  const ParameterSet around = setup_parameters(chain, {});
   set.parameters.insert(set.parameters.end(), around.parameters.begin(), around.parameters.end());
-  const auto add = [&](const Address& at) { set.parameters.push_back(parameter_at(chain, at, 1e-3)); };
+  const auto add = [&](const ParameterAddress& at) { set.parameters.push_back(parameter_at(chain, at, 1e-3)); };
   for (int j = 0; j < static_cast<int>(chain.joints.size()); ++j) {
     add({Owner::joint, j, Field::torque_compliance}), add({Owner::joint, j, Field::backlash});
     for (int term = 0; term < static_cast<int>(chain.joints[j].harmonics.size()); ++term)
@@ -91,7 +93,7 @@ ParameterSet everything(const Chain& chain) {
 }
 
 /// Compliance is left at zero: its torques are held constant in the derivative, which differences do not do.
-TEST(ResidualKinds, jacobian_of_all_instruments_in_all_mountings_equals_differences) {
+TEST(ResidualKinds, JacobianOfAllInstrumentsInAllMountingsEqualsDifferences) {
   Chain chain = rich_robot();
   chain.joints[1].compliance = 0.0;
   const PoseSet data = all_kinds(chain);
@@ -106,7 +108,7 @@ TEST(ResidualKinds, jacobian_of_all_instruments_in_all_mountings_equals_differen
         << set.parameters[k].name;
 }
 
-TEST(ResidualKinds, a_full_covariance_weighs_the_error_by_its_inverse) {
+TEST(ResidualKinds, AFullCovarianceWeighsTheErrorByItsInverse) {
   const Chain chain = er20();
   PoseSet set = measured(chain, paper2_poses(3, noise_free));
   const Mat3 covariance = skewed_covariance(4e-6);
@@ -156,7 +158,7 @@ OnePose one_pose(const Chain& chain) {
   return one;
 }
 
-TEST(ResidualKinds, six_rows_of_a_pose_weigh_its_error_by_the_inverse_of_their_covariance) {
+TEST(ResidualKinds, SixRowsOfAPoseWeighItsErrorByTheInverseOfTheirCovariance) {
   const Chain chain = er20();
   const OnePose one = one_pose(chain);
   const ParameterSet nothing;
@@ -178,10 +180,10 @@ TEST(ResidualKinds, six_rows_of_a_pose_weigh_its_error_by_the_inverse_of_their_c
   EXPECT_NEAR(squares(one.set, weights_of(one.set, Instrument{.sigma = 1.0}, more)), less, 1e-8 * less);
 }
 
-TEST(ResidualKinds, an_orientation_whose_point_is_not_kept_has_its_own_covariance) {
+TEST(ResidualKinds, AnOrientationWhosePointIsNotKeptHasItsOwnCovariance) {
   const Chain chain = er20();
   const OnePose one = one_pose(chain);
-  const PoseSet alone = only(one.set, {true, false, true});
+  const PoseSet alone = keep_measurements(one.set, {true, false, true});
   const ParameterSet nothing;
   VectorXd r;
   pose_residuals(chain, nothing, alone, weights_of(alone, Instrument{.sigma = 1.0})).evaluate(VectorXd(0), r, nullptr);
@@ -190,36 +192,36 @@ TEST(ResidualKinds, an_orientation_whose_point_is_not_kept_has_its_own_covarianc
   EXPECT_NEAR(r.tail<3>().squaredNorm(), expected, 1e-8 * expected);
 }
 
-TEST(ResidualKinds, at_the_truth_the_residuals_are_the_noise) {
+TEST(ResidualKinds, AtTheTruthTheResidualsAreTheNoise) {
   const Chain chain = rich_robot();
   const PoseSet data = all_kinds(chain);
-  EXPECT_NEAR(rms(errors_of_kind(MeasurementKind::distance, chain, data)), 1e-3, 0.4e-3);
-  EXPECT_NEAR(rms(errors_of_kind(MeasurementKind::pair, chain, data)), 1e-3, 0.7e-3);
-  EXPECT_NEAR(rms(errors_of_kind(MeasurementKind::tilt, chain, data)), 0.05 * std::sqrt(2.0), 0.03);
-  for (const double error : errors_of_kind(MeasurementKind::orientation, chain, data)) EXPECT_NEAR(error, 0.02, 1e-9);
+  EXPECT_NEAR(rms(residual_norms(MeasurementKind::distance, chain, data)), 1e-3, 0.4e-3);
+  EXPECT_NEAR(rms(residual_norms(MeasurementKind::pair, chain, data)), 1e-3, 0.7e-3);
+  EXPECT_NEAR(rms(residual_norms(MeasurementKind::tilt, chain, data)), 0.05 * std::sqrt(2.0), 0.03);
+  for (const double error : residual_norms(MeasurementKind::orientation, chain, data)) EXPECT_NEAR(error, 0.02, 1e-9);
 }
 
-TEST(ResidualKinds, where_the_base_stands_is_nothing_to_a_draw_wire) {
+TEST(ResidualKinds, WhereTheBaseStandsIsNothingToADrawWire) {
   Chain chain = rich_robot();
   const PoseSet data = all_kinds(chain);
-  const std::vector<double> before = errors_of_kind(MeasurementKind::distance, chain, data);
+  const std::vector<double> before = residual_norms(MeasurementKind::distance, chain, data);
   chain.base.xyz += Vec3(1, 2, 3);
   chain.base.rotation = rot_x(0.7) * chain.base.rotation;
   PoseSet unloaded = data;  // gravity would bend the turned robot another way
   chain.joints[1].compliance = 0.0;
   Chain straight = rich_robot();
   straight.joints[1].compliance = 0.0;
-  const std::vector<double> here = errors_of_kind(MeasurementKind::distance, straight, unloaded),
-                            there = errors_of_kind(MeasurementKind::distance, chain, unloaded);
+  const std::vector<double> here = residual_norms(MeasurementKind::distance, straight, unloaded),
+                            there = residual_norms(MeasurementKind::distance, chain, unloaded);
   for (std::size_t i = 0; i < here.size(); ++i) EXPECT_NEAR(here[i], there[i], 1e-12);
 }
 
-TEST(ResidualKinds, blocks_are_dropped_and_kept_as_listed) {
+TEST(ResidualKinds, BlocksAreDroppedAndKeptAsListed) {
   const PoseSet data = all_kinds(rich_robot());
   const std::vector<Block> blocks = blocks_of(data);
   std::vector<bool> kept(blocks.size());
   for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = i % 3 != 0;
-  const std::vector<Block> left = blocks_of(only(data, kept));
+  const std::vector<Block> left = blocks_of(keep_measurements(data, kept));
   std::size_t next = 0;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     if (!kept[i]) continue;
@@ -230,7 +232,7 @@ TEST(ResidualKinds, blocks_are_dropped_and_kept_as_listed) {
   EXPECT_EQ(next, left.size());
 }
 
-TEST(ResidualKinds, forward_agrees_with_the_evaluator_on_all_that_goes_beyond_geometry) {
+TEST(ResidualKinds, ForwardAgreesWithTheEvaluatorOnAllThatGoesBeyondGeometry) {
   const Chain chain = rich_robot();
   const PoseSet data = all_kinds(chain);
   for (int row = 0; row < 6; ++row) {

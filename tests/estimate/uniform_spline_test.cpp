@@ -1,4 +1,5 @@
-#include "kinfer/estimate/uniform_spline.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/continuous/uniform_spline.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/evidence/traces.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@
 namespace kinfer {
 namespace {
 
-TEST(Traces, a_spike_of_one_sample_in_an_hour_stays_in_sight) {
+TEST(Traces, ASpikeOfOneSampleInAnHourStaysInSight) {
   std::vector<double> hour(720000, 0.0);
   hour[123457] = 40.0, hour[600001] = -30.0;
   const Binning bins = binning(hour.size(), 1000);
@@ -20,7 +21,7 @@ TEST(Traces, a_spike_of_one_sample_in_an_hour_stays_in_sight) {
   EXPECT_EQ(thin.high[123457 / 720], 40.0);
 }
 
-TEST(Traces, short_signals_keep_every_sample) {
+TEST(Traces, ShortSignalsKeepEverySample) {
   const std::vector<double> samples{3.0, 1.0, 2.0};
   const Binning bins = binning(3, 1000);
   EXPECT_EQ(bins.size, 1u);
@@ -28,7 +29,7 @@ TEST(Traces, short_signals_keep_every_sample) {
   EXPECT_EQ(envelope(samples, bins).high, samples);
 }
 
-TEST(Traces, a_bin_with_gaps_takes_what_there_is_and_an_empty_one_says_so) {
+TEST(Traces, ABinWithGapsTakesWhatThereIsAndAnEmptyOneSaysSo) {
   constexpr double gap = std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> samples{gap, 2.0, gap, gap, 5.0, 4.0};
   const Envelope thin = envelope(samples, binning(6, 3));
@@ -38,7 +39,7 @@ TEST(Traces, a_bin_with_gaps_takes_what_there_is_and_an_empty_one_says_so) {
   EXPECT_EQ(thin.high[2], 5.0);
 }
 
-TEST(Traces, the_last_bin_may_be_short) {
+TEST(Traces, TheLastBinMayBeShort) {
   const Binning bins = binning(10, 4);
   EXPECT_EQ(bins.size, 3u);
   EXPECT_EQ(bins.count(), 4u);

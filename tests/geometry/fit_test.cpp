@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/geometry/fit.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +33,7 @@ double misfit(const Pose& pose, const std::vector<Vec3>& a, const std::vector<Ve
 
 const Pose far_away = Pose::from_xyz_rpy({100, -50, 3}, {2.5, -0.4, -3.0});
 
-TEST(AlignPoints, recovers_the_pose_from_points_in_space_and_in_a_plane) {
+TEST(AlignPoints, RecoversThePoseFromPointsInSpaceAndInAPlane) {
   for (const Vec3& size : {Vec3(1, 2, 3), Vec3(1, 2, 0), Vec3(0, 1, 1)}) {
     const auto b = cloud(10, size, Rng(1));
     const Pose pose = align_points(moved(far_away, b), b);
@@ -41,7 +42,7 @@ TEST(AlignPoints, recovers_the_pose_from_points_in_space_and_in_a_plane) {
   }
 }
 
-TEST(AlignPoints, recovers_half_turns_and_no_turn) {
+TEST(AlignPoints, RecoversHalfTurnsAndNoTurn) {
   const auto b = cloud(5, {1, 1, 1}, Rng(2));
   for (const Vec3& turn : {Vec3(0, 0, 0), Vec3(pi, 0, 0), Vec3(0, pi, 0), Vec3(0, 0, pi)}) {
     const Pose truth{exp_so3(turn), Vec3(1, 2, 3)};
@@ -49,7 +50,7 @@ TEST(AlignPoints, recovers_half_turns_and_no_turn) {
   }
 }
 
-TEST(AlignPoints, never_answers_with_a_reflection) {
+TEST(AlignPoints, NeverAnswersWithAReflection) {
   // A mirrored cloud would be met best by a reflection.
   for (int seed = 0; seed < 20; ++seed) {
     const auto b = cloud(8, {1, 1, seed % 2 == 0 ? 1.0 : 1e-3}, Rng(seed));
@@ -61,7 +62,7 @@ TEST(AlignPoints, never_answers_with_a_reflection) {
   }
 }
 
-TEST(AlignPoints, no_small_turn_or_shift_fits_noisy_weighted_points_better) {
+TEST(AlignPoints, NoSmallTurnOrShiftFitsNoisyWeightedPointsBetter) {
   const auto b = cloud(20, {1, 1, 1}, Rng(3)), noise = cloud(20, {0.05, 0.05, 0.05}, Rng(4));
   auto a = moved(far_away, b);
   std::vector<double> weights;
@@ -78,7 +79,7 @@ TEST(AlignPoints, no_small_turn_or_shift_fits_noisy_weighted_points_better) {
   }
 }
 
-TEST(AlignPoints, a_point_without_weight_does_not_count) {
+TEST(AlignPoints, APointWithoutWeightDoesNotCount) {
   const auto b = cloud(6, {1, 1, 1}, Rng(5));
   auto a = moved(far_away, b);
   a[2] += Vec3(10, 0, 0);
@@ -86,14 +87,14 @@ TEST(AlignPoints, a_point_without_weight_does_not_count) {
   EXPECT_LT((pose.rotation - far_away.rotation).norm(), 1e-12);
 }
 
-TEST(MeanRotation, of_turns_about_one_axis_is_the_mean_turn) {
+TEST(MeanRotation, OfTurnsAboutOneAxisIsTheMeanTurn) {
   const std::vector<Mat3> turns{rot_z(0.2), rot_z(0.4), rot_z(0.6)};
   EXPECT_LT((mean_rotation(turns) - rot_z(0.4)).norm(), 1e-14);
   const std::vector<Mat3> across_pi{rot_z(pi - 0.1), rot_z(-pi + 0.1)};
   EXPECT_LT((mean_rotation(across_pi) - rot_z(pi)).norm(), 1e-14);
 }
 
-TEST(FitLine, finds_the_line_and_the_distances_of_points_beside_it) {
+TEST(FitLine, FindsTheLineAndTheDistancesOfPointsBesideIt) {
   // Points at ±0.1 across the x direction of a moved frame, balanced: the fit is the axis itself.
   std::vector<Vec3> points;
   for (int i = -3; i <= 3; ++i)
@@ -104,7 +105,7 @@ TEST(FitLine, finds_the_line_and_the_distances_of_points_beside_it) {
   EXPECT_NEAR(line.rms, 0.1, 1e-12);
 }
 
-TEST(FitPlane, finds_the_plane_and_the_distances_of_points_beside_it) {
+TEST(FitPlane, FindsThePlaneAndTheDistancesOfPointsBesideIt) {
   std::vector<Vec3> points;
   for (int i = -2; i <= 2; ++i)
     for (int j = -2; j <= 2; ++j)
@@ -125,14 +126,14 @@ std::vector<Vec3> arc(double radius, double from, double to, int count) {
   return points;
 }
 
-TEST(FitCircle, three_points_give_the_circle_through_them) {
+TEST(FitCircle, ThreePointsGiveTheCircleThroughThem) {
   const CircleFit circle = fit_circle(arc(2.0, 0.3, 2.0, 3));
   EXPECT_LT((circle.center - far_away.position).norm(), 1e-11);
   EXPECT_NEAR(circle.radius, 2.0, 1e-11);
   EXPECT_LT(circle.rms, 1e-12);
 }
 
-TEST(FitCircle, normal_turns_from_the_first_point_to_the_later_ones) {
+TEST(FitCircle, NormalTurnsFromTheFirstPointToTheLaterOnes) {
   const Vec3 up = far_away.rotation.col(2);
   for (const double end : {0.5, 2.0, 4.0, 6.0}) {
     EXPECT_LT((fit_circle(arc(1.5, 0.0, end, 30)).normal - up).norm(), 1e-10) << end;
@@ -140,13 +141,13 @@ TEST(FitCircle, normal_turns_from_the_first_point_to_the_later_ones) {
   }
 }
 
-TEST(FitCircle, a_short_arc_still_gives_the_center) {
+TEST(FitCircle, AShortArcStillGivesTheCenter) {
   const CircleFit circle = fit_circle(arc(1.0, 0.0, 0.1, 20));
   EXPECT_LT((circle.center - far_away.position).norm(), 1e-7);  // the arc's rise is 1e-3, its points' rounding 1e-14
   EXPECT_NEAR(circle.radius, 1.0, 1e-7);
 }
 
-TEST(FitCircle, minimises_the_distances_and_not_their_squares_algebraic_form) {
+TEST(FitCircle, MinimisesTheDistancesAndNotTheirSquaresAlgebraicForm) {
   // Two rings of points at 1 ± 0.1, turned against each other: the geometric fit has radius 1 and rms 0.1 exactly.
   std::vector<Vec3> points;
   for (int i = 0; i < 24; ++i) {
@@ -159,7 +160,7 @@ TEST(FitCircle, minimises_the_distances_and_not_their_squares_algebraic_form) {
   EXPECT_LT((circle.center - far_away.position).norm(), 1e-12);
 }
 
-TEST(FitCircle, height_above_the_plane_counts_in_the_rms) {
+TEST(FitCircle, HeightAboveThePlaneCountsInTheRms) {
   std::vector<Vec3> points;
   for (int i = 0; i < 8; ++i) {
     const double angle = 2 * pi * i / 8;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/geometry/rotation.hpp"
 
 #include <gtest/gtest.h>
@@ -41,13 +42,13 @@ Mat3 exponential_series(const Vec3& v) {
   return sum;
 }
 
-TEST(Rotation, skew_is_the_cross_product) {
+TEST(Rotation, SkewIsTheCrossProduct) {
   Rng rng(2);
   const Vec3 v = random_direction(rng), w = random_direction(rng);
   EXPECT_LT((skew(v) * w - v.cross(w)).norm(), 1e-16);
 }
 
-TEST(Rotation, elementary_rotations_turn_by_the_right_hand_rule) {
+TEST(Rotation, ElementaryRotationsTurnByTheRightHandRule) {
   EXPECT_LT((rot_x(pi / 2) * Vec3::UnitY() - Vec3::UnitZ()).norm(), 1e-15);
   EXPECT_LT((rot_y(pi / 2) * Vec3::UnitZ() - Vec3::UnitX()).norm(), 1e-15);
   EXPECT_LT((rot_z(pi / 2) * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
@@ -56,14 +57,14 @@ TEST(Rotation, elementary_rotations_turn_by_the_right_hand_rule) {
   EXPECT_LT((exp_so3(0.7 * Vec3::UnitZ()) - rot_z(0.7)).norm(), 1e-15);
 }
 
-TEST(Rotation, exponential_is_the_power_series_of_the_skew_matrix) {
+TEST(Rotation, ExponentialIsThePowerSeriesOfTheSkewMatrix) {
   for (const Vec3& v : rotation_vectors()) {
     EXPECT_LT((exp_so3(v) - exponential_series(v)).norm(), 1e-12) << v.norm();  // squaring loses three digits
     EXPECT_LT((quat_exp(v).toRotationMatrix() - exp_so3(v)).norm(), 3e-15) << v.norm();
   }
 }
 
-TEST(Rotation, exponential_is_a_rotation) {
+TEST(Rotation, ExponentialIsARotation) {
   for (const Vec3& v : rotation_vectors()) {
     const Mat3 r = exp_so3(v);
     EXPECT_LT((r * r.transpose() - Mat3::Identity()).norm(), 3e-15) << v.norm();
@@ -71,7 +72,7 @@ TEST(Rotation, exponential_is_a_rotation) {
   }
 }
 
-TEST(Rotation, logarithm_undoes_the_exponential_from_zero_to_pi) {
+TEST(Rotation, LogarithmUndoesTheExponentialFromZeroToPi) {
   for (const Vec3& v : rotation_vectors()) {
     // Relative where v is small, and nothing is lost near pi.
     EXPECT_LE((quat_log(quat_exp(v)) - v).norm(), 3e-15 * v.norm()) << v.norm();
@@ -79,7 +80,7 @@ TEST(Rotation, logarithm_undoes_the_exponential_from_zero_to_pi) {
   }
 }
 
-TEST(Rotation, logarithm_of_half_a_turn_is_pi_about_the_axis_or_its_opposite) {
+TEST(Rotation, LogarithmOfHalfATurnIsPiAboutTheAxisOrItsOpposite) {
   Rng rng(3);
   for (int i = 0; i < 20; ++i) {
     const Vec3 axis = i < 3 ? Vec3(Vec3::Unit(i)) : random_direction(rng);
@@ -90,14 +91,14 @@ TEST(Rotation, logarithm_of_half_a_turn_is_pi_about_the_axis_or_its_opposite) {
   }
 }
 
-TEST(Rotation, opposite_quaternions_have_the_same_logarithm) {
+TEST(Rotation, OppositeQuaternionsHaveTheSameLogarithm) {
   for (const Vec3& v : rotation_vectors()) {
     const Quat q = quat_exp(v), opposite(-q.coeffs());
     EXPECT_LT((quat_log(q) - quat_log(opposite)).norm(), 1e-15);
   }
 }
 
-TEST(Rotation, right_jacobian_is_the_derivative_of_the_exponential) {
+TEST(Rotation, RightJacobianIsTheDerivativeOfTheExponential) {
   Rng rng(4);
   for (const double length : {0.0, 1e-5, 0.9e-4, 1.1e-4, 1e-2, 1.0, 3.0}) {
     const Vec3 v = length * random_direction(rng);
@@ -108,7 +109,7 @@ TEST(Rotation, right_jacobian_is_the_derivative_of_the_exponential) {
   }
 }
 
-TEST(Rotation, right_jacobian_turns_left_by_the_rotation) {
+TEST(Rotation, RightJacobianTurnsLeftByTheRotation) {
   // exp(v) J_r(v) = J_r(−v), exactly; and v is its own image.
   for (const Vec3& v : rotation_vectors()) {
     EXPECT_LT((exp_so3(v) * right_jacobian(v) - right_jacobian(-v)).norm(), 2e-15 + 1e-15 * v.norm()) << v.norm();
@@ -116,19 +117,19 @@ TEST(Rotation, right_jacobian_turns_left_by_the_rotation) {
   }
 }
 
-TEST(Rotation, inverse_of_the_right_jacobian_is_its_inverse) {
+TEST(Rotation, InverseOfTheRightJacobianIsItsInverse) {
   for (const Vec3& v : rotation_vectors())
     EXPECT_LT((right_jacobian(v) * right_jacobian_inverse(v) - Mat3::Identity()).norm(), 1e-14) << v.norm();
 }
 
-TEST(Rpy, is_yaw_about_z_then_pitch_about_y_then_roll_about_x) {
+TEST(Rpy, IsYawAboutZThenPitchAboutYThenRollAboutX) {
   const Mat3 r = from_rpy({0.1, 0.2, 0.3});
   EXPECT_LT((r - exp_so3(0.3 * Vec3::UnitZ()) * exp_so3(0.2 * Vec3::UnitY()) * exp_so3(0.1 * Vec3::UnitX())).norm(),
             1e-15);
   EXPECT_LT((to_rpy(r) - Vec3(0.1, 0.2, 0.3)).norm(), 1e-15);
 }
 
-TEST(Rpy, round_trip_keeps_the_rotation_also_near_and_at_the_gimbal_lock) {
+TEST(Rpy, RoundTripKeepsTheRotationAlsoNearAndAtTheGimbalLock) {
   Rng rng(5);
   for (const double off : {1.0, 1e-3, 1e-6, 1e-8, 1e-9, 1e-10, 1e-13, 0.0}) {
     for (const double pitch : {pi / 2 - off, -pi / 2 + off}) {
@@ -140,13 +141,13 @@ TEST(Rpy, round_trip_keeps_the_rotation_also_near_and_at_the_gimbal_lock) {
   }
 }
 
-TEST(Rpy, roll_is_zero_at_the_gimbal_lock) {
+TEST(Rpy, RollIsZeroAtTheGimbalLock) {
   const Vec3 up = to_rpy(from_rpy({0.3, pi / 2, 1.0})), down = to_rpy(from_rpy({0.3, -pi / 2, 1.0}));
   EXPECT_LT((up - Vec3(0, pi / 2, 0.7)).norm(), 1e-15);
   EXPECT_LT((down - Vec3(0, -pi / 2, 1.3)).norm(), 1e-15);
 }
 
-TEST(Euler, every_sequence_is_the_product_of_its_turns) {
+TEST(Euler, EverySequenceIsTheProductOfItsTurns) {
   const Vec3 angles(0.4, -1.1, 2.3);
   const auto turn = [&](char axis, double angle) { return exp_so3(angle * Vec3::Unit(axis - 'X')); };
   int sequences = 0;
@@ -168,18 +169,18 @@ TEST(Euler, every_sequence_is_the_product_of_its_turns) {
   EXPECT_EQ(sequences, 12);
 }
 
-TEST(Euler, roll_pitch_yaw_is_xyz_extrinsic) {
+TEST(Euler, RollPitchYawIsXyzExtrinsic) {
   EXPECT_LT((from_euler(*parse_euler_sequence("xyz extrinsic"), {0.1, 0.2, 0.3}) - from_rpy({0.1, 0.2, 0.3})).norm(),
             1e-16);
 }
 
-TEST(Euler, other_words_are_no_sequence) {
+TEST(Euler, OtherWordsAreNoSequence) {
   for (const char* text :
        {"", "XY", "XYZ", "XYW intrinsic", "XXY intrinsic", "XYZ fixed", "XYZintrinsic", "XYZ intrinsic "})
     EXPECT_FALSE(parse_euler_sequence(text).has_value()) << text;
 }
 
-TEST(NearestRotation, is_the_rotation_that_was_stretched) {
+TEST(NearestRotation, IsTheRotationThatWasStretched) {
   // The polar factor of R S with S symmetric and positive is R.
   Rng rng(6);
   for (int i = 0; i < 20; ++i) {
@@ -189,7 +190,7 @@ TEST(NearestRotation, is_the_rotation_that_was_stretched) {
   }
 }
 
-TEST(AnyPerpendicular, is_a_unit_vector_across) {
+TEST(AnyPerpendicular, IsAUnitVectorAcross) {
   Rng rng(7);
   for (int i = 0; i < 20; ++i) {
     const Vec3 v = i < 3 ? Vec3(1e-6 * Vec3::Unit(i)) : Vec3(100 * random_direction(rng)),
@@ -199,14 +200,14 @@ TEST(AnyPerpendicular, is_a_unit_vector_across) {
   }
 }
 
-TEST(AngleBetween, is_accurate_for_tiny_right_and_straight_angles) {
+TEST(AngleBetween, IsAccurateForTinyRightAndStraightAngles) {
   for (const double angle : {0.0, 1e-12, 1e-6, 1.0, pi / 2, pi - 1e-6}) {
     EXPECT_NEAR(angle_between(Vec3(2, 0, 0), Vec3(std::cos(angle), std::sin(angle), 0)), angle, 1e-15 + 1e-15 * angle);
     EXPECT_NEAR(angle_between(rot_x(0.3), Mat3(rot_x(0.3) * rot_y(angle))), angle, 1e-15);
   }
 }
 
-TEST(Pose, chains_and_inverts_like_the_four_by_four_matrix) {
+TEST(Pose, ChainsAndInvertsLikeTheFourByFourMatrix) {
   const auto matrix = [](const Pose& pose) {
     Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
     m.topLeftCorner<3, 3>() = pose.rotation;

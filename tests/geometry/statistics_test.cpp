@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/geometry/statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@
 namespace kinfer {
 namespace {
 
-TEST(Statistics, of_five_numbers_are_as_worked_out_by_hand) {
+TEST(Statistics, OfFiveNumbersAreAsWorkedOutByHand) {
   const std::vector<double> values{2, 4, 4, 5, 10};
   EXPECT_DOUBLE_EQ(mean(values), 5.0);
   EXPECT_DOUBLE_EQ(rms(values), std::sqrt(161.0 / 5));
@@ -20,7 +21,7 @@ TEST(Statistics, of_five_numbers_are_as_worked_out_by_hand) {
   EXPECT_DOUBLE_EQ(robust_sd(values), 1.4826);  // deviations from 4: 2 0 0 1 6
 }
 
-TEST(Statistics, of_nothing_are_zero_and_of_one_number_have_no_spread) {
+TEST(Statistics, OfNothingAreZeroAndOfOneNumberHaveNoSpread) {
   EXPECT_EQ(mean({}), 0.0);
   EXPECT_EQ(rms({}), 0.0);
   EXPECT_EQ(standard_deviation({}), 0.0);
@@ -28,12 +29,12 @@ TEST(Statistics, of_nothing_are_zero_and_of_one_number_have_no_spread) {
   EXPECT_EQ(median({3.0}), 3.0);
 }
 
-TEST(Statistics, standard_deviation_of_large_numbers_close_together_keeps_its_digits) {
+TEST(Statistics, StandardDeviationOfLargeNumbersCloseTogetherKeepsItsDigits) {
   const std::vector<double> values{1e9 + 1, 1e9 + 2, 1e9 + 3};
   EXPECT_DOUBLE_EQ(standard_deviation(values), 1.0);
 }
 
-TEST(Quantile, is_linear_between_ranks_of_unsorted_numbers) {
+TEST(Quantile, IsLinearBetweenRanksOfUnsortedNumbers) {
   const std::vector<double> values{40, 10, 30, 20};
   EXPECT_DOUBLE_EQ(quantile(values, 0.0), 10.0);
   EXPECT_DOUBLE_EQ(quantile(values, 1.0), 40.0);
@@ -41,7 +42,7 @@ TEST(Quantile, is_linear_between_ranks_of_unsorted_numbers) {
   EXPECT_DOUBLE_EQ(quantile(values, 0.25), 17.5);
 }
 
-TEST(RobustSd, is_the_sigma_of_a_gaussian_with_a_tenth_of_gross_errors) {
+TEST(RobustSd, IsTheSigmaOfAGaussianWithATenthOfGrossErrors) {
   Rng rng(1);
   std::vector<double> values;
   for (int i = 0; i < 20000; ++i) values.push_back(i % 10 == 0 ? 1000.0 : 5.0 + 2.0 * rng.normal());
@@ -49,7 +50,7 @@ TEST(RobustSd, is_the_sigma_of_a_gaussian_with_a_tenth_of_gross_errors) {
   EXPECT_NEAR(robust_sd(values), 2.0, 0.35);
 }
 
-TEST(NormalQuantile, agrees_with_the_table_and_undoes_the_distribution) {
+TEST(NormalQuantile, AgreesWithTheTableAndUndoesTheDistribution) {
   EXPECT_NEAR(normal_quantile(0.975), 1.959963984540054, 1e-13);
   EXPECT_NEAR(normal_quantile(0.5), 0.0, 1e-15);
   EXPECT_NEAR(normal_cdf(1.0), 0.841344746068543, 1e-15);
@@ -57,7 +58,7 @@ TEST(NormalQuantile, agrees_with_the_table_and_undoes_the_distribution) {
     EXPECT_NEAR(normal_cdf(normal_quantile(p)), p, 1e-14 * p + 1e-16);
 }
 
-TEST(ChiSquared, quantiles_agree_with_the_table) {
+TEST(ChiSquared, QuantilesAgreeWithTheTable) {
   // NIST/SEMATECH e-Handbook of Statistical Methods, 1.3.6.7.4: three decimals.
   struct Row {
     double n, p, value;
@@ -68,7 +69,7 @@ TEST(ChiSquared, quantiles_agree_with_the_table) {
     EXPECT_NEAR(chi_squared_quantile(row.p, row.n), row.value, 5.1e-4) << row.n << " " << row.p;
 }
 
-TEST(ChiSquared, of_two_degrees_is_an_exponential_and_of_one_a_squared_gaussian) {
+TEST(ChiSquared, OfTwoDegreesIsAnExponentialAndOfOneASquaredGaussian) {
   for (const double p : {1e-6, 0.01, 0.5, 0.9, 0.9999}) {
     EXPECT_NEAR(chi_squared_quantile(p, 2), -2.0 * std::log1p(-p), 1e-10 * -std::log1p(-p));
     const double z = normal_quantile(0.5 * (1 + p));
@@ -76,7 +77,7 @@ TEST(ChiSquared, of_two_degrees_is_an_exponential_and_of_one_a_squared_gaussian)
   }
 }
 
-TEST(ChiSquared, distribution_rises_from_zero_to_one_without_a_step_where_its_two_formulas_meet) {
+TEST(ChiSquared, DistributionRisesFromZeroToOneWithoutAStepWhereItsTwoFormulasMeet) {
   for (const double n : {0.5, 1.0, 7.0, 200.0, 5000.0}) {
     const double seam = n + 2.0;
     EXPECT_NEAR(chi_squared_cdf(std::nextafter(seam, 0.0), n), chi_squared_cdf(std::nextafter(seam, 1e9), n), 1e-11)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Simulated machines, driven and measured, with what there is to find.
 #pragma once
 
@@ -5,12 +6,13 @@
 
 #include <algorithm>
 
-#include "kinfer/identify/identify.hpp"
-#include "kinfer/simulate/ins_simulation.hpp"
-#include "kinfer/simulate/truth.hpp"
+#include "kinfer/identify/pipeline.hpp"
+#include "kinfer/simulate/ground_truth.hpp"
+#include "kinfer/simulate/ins_recording.hpp"
 #include "simulate/worlds.hpp"
 
 namespace kinfer::test {
+using namespace identify;
 
 struct DrivenMachine {
   InsRecording recording;
@@ -22,15 +24,15 @@ inline DrivenMachine driven_machine(const std::string& name, std::uint64_t seed,
                                     const char* grade = "industrial") {
   const MujocoWorld world = world_of(name, options, seed);
   const MachineMotion motion = world.prescribe(drive_of(world.machine(), {.script = script}, seed), 100.0);
-  return {simulated_recording(world.machine(), motion, *sensor_grade(grade), {}, Rng(seed)),
+  return {simulate_recording(world.machine(), motion, *sensor_grade(grade), {}, Rng(seed)),
           machine_truth(world.machine(), motion)};
 }
 
 /// Distance of a found axis line from the true one in the child's sensor, free of what cannot be known [m].
-inline double line_error(const FoundJoint& found, const JointTruth& truth) {
+inline double line_error(const JointEstimate& found, const JointTruth& truth) {
   Vec3 error = found.point_in_child - truth.point_in_child;
   std::vector<Vec3> free{truth.axis_in_child};
-  for (const Vec3& hidden : truth.hidden_in_child)
+  for (const Vec3& hidden : truth.unobservable_in_child)
     if (hidden.cross(free.front()).norm() > 1e-3)
       free.push_back((hidden - free.front() * free.front().dot(hidden)).normalized());
   for (const Vec3& direction : free) error -= direction * direction.dot(error);
@@ -38,11 +40,11 @@ inline double line_error(const FoundJoint& found, const JointTruth& truth) {
 }
 
 /// Worst over the joints that were found; a joint of the truth that is not among them counts as 1 m.
-inline double worst_line_error(const std::vector<FoundJoint>& found, const MachineTruth& truth) {
+inline double worst_line_error(const std::vector<JointEstimate>& found, const MachineTruth& truth) {
   double worst = 0.0;
   for (const JointTruth& joint : truth.joints) {
     const auto f = std::ranges::find_if(
-        found, [&](const FoundJoint& j) { return j.parent == joint.parent && j.child == joint.child; });
+        found, [&](const JointEstimate& j) { return j.parent == joint.parent && j.child == joint.child; });
     if (f == found.end()) return 1.0;
     if (joint.type == JointType::revolute) worst = std::max(worst, line_error(*f, joint));
   }
@@ -50,14 +52,15 @@ inline double worst_line_error(const std::vector<FoundJoint>& found, const Machi
 }
 
 inline Identification identified(const InsRecording& recording, const IdentifyOptions& options = {}) {
-  const auto found = identify(recording, options, Rng(1));
+  const auto found = identify_machine(recording, options, Rng(1));
   EXPECT_TRUE(found) << found.error().what;
   return found ? *found : Identification{};
 }
 
 inline bool has_finding(const Identification& found, const std::string& kind, const std::string& word = "") {
-  return std::ranges::any_of(
-      found.findings, [&](const Finding& f) { return f.kind == kind && f.sentence.find(word) != std::string::npos; });
+  return std::ranges::any_of(found.findings, [&](const Finding& f) {
+    return name(f.kind) == kind && f.sentence.find(word) != std::string::npos;
+  });
 }
 
 }  // namespace kinfer::test

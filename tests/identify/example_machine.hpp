@@ -1,23 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small machine that moves smoothly and is measured perfectly: a base at rest and two hinges, with sensors mounted
 // anyhow.
 #pragma once
 
 #include <cmath>
 
-#include "kinfer/identify/hinge_geometry.hpp"
-#include "kinfer/identify/link_cost.hpp"
+#include "kinfer/identify/geometry/joint_geometry.hpp"
+#include "kinfer/identify/programming/link_cost.hpp"
 
 namespace kinfer::test {
+using namespace identify;
 
 /// theta(t) = amplitude sin(2 pi frequency t + phase) with its exact derivatives, sampled every 0.01 s.
 inline JointSignal wave(double amplitude, double frequency, double phase, std::size_t rows = 600) {
-  JointSignal signal{.name = "q", .angle = {}, .rate = {}, .rate_change = {}};
+  JointSignal signal{.name = "q", .angle = {}, .angular_velocity = {}, .angular_acceleration = {}};
   const double w = 2.0 * 3.14159265358979323846 * frequency;
   for (std::size_t row = 0; row < rows; ++row) {
     const double t = 0.01 * static_cast<double>(row);
     signal.angle.push_back(amplitude * std::sin(w * t + phase));
-    signal.rate.push_back(amplitude * w * std::cos(w * t + phase));
-    signal.rate_change.push_back(-amplitude * w * w * std::sin(w * t + phase));
+    signal.angular_velocity.push_back(amplitude * w * std::cos(w * t + phase));
+    signal.angular_acceleration.push_back(-amplitude * w * w * std::sin(w * t + phase));
   }
   return signal;
 }
@@ -25,7 +27,7 @@ inline JointSignal wave(double amplitude, double frequency, double phase, std::s
 /// A parent that turns about a slanted axis, 1.3 m from its sensor.
 inline std::vector<FrameState> swinging_parent(const JointSignal& swing) {
   const std::vector<DhLeaf> leaves{{.alpha = 0.4}, {.a = -1.3, .theta_signal = 0}};
-  return carried(std::vector<FrameState>(swing.angle.size()), leaves, {&swing, 1});
+  return propagate(std::vector<FrameState>(swing.angle.size()), leaves, {&swing, 1});
 }
 
 inline std::vector<std::size_t> all_rows(std::size_t count) {

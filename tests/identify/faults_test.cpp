@@ -1,14 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
 // Logs that are wrong: each fault is found and said, and what is left of the machine is as good as it can be.
 #include <gmock/gmock.h>
 
 #include "identify/driven_machine.hpp"
-#include "kinfer/identify/identify.hpp"
-#include "kinfer/identify/ordered_motion.hpp"
-#include "kinfer/identify/remount.hpp"
-#include "kinfer/simulate/linkage.hpp"
+#include "kinfer/identify/pipeline.hpp"
+#include "kinfer/identify/screening/remount.hpp"
+#include "kinfer/identify/structure/ordered_motion.hpp"
+#include "kinfer/simulate/four_bar_linkage.hpp"
 #include "kinfer/simulate/log_faults.hpp"
 
 namespace kinfer {
+using namespace identify;
 namespace {
 
 using test::driven_machine;
@@ -23,7 +25,7 @@ DrivenMachine remounted(std::size_t sensor, double seconds, const Pose& old_T_ne
   MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}, 3), 100.0);
   const MachineTruth truth = machine_truth(world.machine(), motion);
   motion = with_remount(std::move(motion), sensor, static_cast<std::size_t>(100.0 * seconds), old_T_new);
-  return {simulated_recording(world.machine(), motion, *sensor_grade("industrial"), {}, Rng(3)), truth};
+  return {simulate_recording(world.machine(), motion, *sensor_grade("industrial"), {}, Rng(3)), truth};
 }
 
 struct RemountCase {
@@ -43,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(Remount, EveryRemount,
 TEST_P(EveryRemount, IsFoundWithSensorAndTime) {
   const auto& [sensor, seconds, turn, shift, longest] = GetParam();
   const DrivenMachine drive = remounted(sensor, seconds, {exp_so3(turn), shift});
-  const auto ordered = ordered_motion(drive.recording, {}, {}, 0);
+  const auto ordered = order_segments(drive.recording, {}, {}, 0);
   ASSERT_TRUE(ordered);
   const auto found = find_remount(*ordered, 0);
   ASSERT_TRUE(found);
@@ -63,7 +65,7 @@ TEST(Remount, TheSideThatTellsMoreIsUsedAndSaid) {
 TEST(Remount, IsNotSeenWhereNobodyTouchedASensor) {
   for (const std::string& name : machine_names())
     for (const Script script : {Script::standard, Script::gentle}) {
-      const auto ordered = ordered_motion(driven_machine(name, 4, script).recording, {}, {}, 0);
+      const auto ordered = order_segments(driven_machine(name, 4, script).recording, {}, {}, 0);
       ASSERT_TRUE(ordered);
       EXPECT_FALSE(find_remount(*ordered, 0)) << name;
     }
@@ -94,7 +96,7 @@ TEST(GivenTree, ThatIsTheLogsOwnChangesNothing) {
 TEST(GivenTree, ThatIsNoTreeIsRefused) {
   const DrivenMachine drive = driven_machine("excavator-general", 3, Script::together);
   const auto refused = [&](const std::vector<GivenLink>& tree) {
-    const auto found = identify(drive.recording, {.tree = tree}, Rng(1));
+    const auto found = identify_machine(drive.recording, {.tree = tree}, Rng(1));
     return found ? std::string() : found.error().what;
   };
   EXPECT_THAT(refused({{"ins0", "nobody"}}), testing::HasSubstr("no such sensor"));
@@ -107,22 +109,22 @@ TEST(TwoMachines, OnMovingBasesAreToldApartAndTheLargerIsIdentified) {
   const MachineOptions rocking{.mounting = Mounting::arbitrary, .base = Base::rocking};
   const DrivenMachine crane = driven_machine("crane", 5, Script::together, rocking),
                       excavator = driven_machine("excavator-general", 4, Script::together, rocking);
-  const Identification found = identified(side_by_side(excavator.recording, crane.recording, "crane_"));
+  const Identification found = identified(merge_recordings(excavator.recording, crane.recording, "crane_"));
   EXPECT_EQ(found.joints.size(), excavator.truth.joints.size());
   EXPECT_TRUE(has_finding(found, "several_machines", "crane_ins0, crane_ins1"));
-  for (const FoundJoint& joint : found.joints) EXPECT_THAT(joint.child, testing::Not(testing::HasSubstr("crane")));
+  for (const JointEstimate& joint : found.joints) EXPECT_THAT(joint.child, testing::Not(testing::HasSubstr("crane")));
   EXPECT_THAT(found.verdict, testing::HasSubstr("crane_ins1"));
   std::vector<std::string> names;
   for (const InsSensor& sensor : crane.recording.sensors) names.push_back("crane_" + sensor.name);
   const Identification other =
-      identified(side_by_side(excavator.recording, crane.recording, "crane_"), {.sensors = names});
+      identified(merge_recordings(excavator.recording, crane.recording, "crane_"), {.sensors = names});
   EXPECT_EQ(other.joints.size(), crane.truth.joints.size());
 }
 
 TEST(TwoMachines, OnTheSameGroundAreIdentifiedTogetherAndSaid) {
   const DrivenMachine crane = driven_machine("crane", 5, Script::together),
                       excavator = driven_machine("excavator-general", 4, Script::together);
-  const Identification found = identified(side_by_side(excavator.recording, crane.recording, "crane_"));
+  const Identification found = identified(merge_recordings(excavator.recording, crane.recording, "crane_"));
   EXPECT_TRUE(has_finding(found, "idle", "ins0, crane_ins0"));
   EXPECT_TRUE(has_finding(found, "several_machines", "share only the ground"));
   EXPECT_LT(worst_line_error(found.joints, excavator.truth), 6e-3);
@@ -134,7 +136,7 @@ TEST(Linkage, ItsLoopIsFoundAndTheRestOfTheChainIsAsGoodAsWithout) {
     const Drive drive = test::drive_of(world.machine(), {}, seed);
     const Machine machine = with_linkage(world.machine());
     const MachineMotion motion = linkage_motion(machine, drive, 100.0);
-    const InsRecording recording = simulated_recording(machine, motion, *sensor_grade("industrial"), {}, Rng(seed));
+    const InsRecording recording = simulate_recording(machine, motion, *sensor_grade("industrial"), {}, Rng(seed));
     const Identification found = identified(recording);
     EXPECT_TRUE(has_finding(found, "loop", "ins4, ins5, rocker, coupler"));
     MachineTruth arm = machine_truth(machine, motion);

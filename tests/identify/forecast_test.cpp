@@ -1,21 +1,23 @@
-#include "kinfer/identify/forecast.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/findings/forecast.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "kinfer/identify/identify.hpp"
-#include "kinfer/simulate/ins_simulation.hpp"
-#include "kinfer/simulate/machine_of_chain.hpp"
+#include "kinfer/identify/pipeline.hpp"
+#include "kinfer/simulate/ground_truth.hpp"
+#include "kinfer/simulate/ins_recording.hpp"
+#include "kinfer/simulate/machine_from_chain.hpp"
 #include "kinfer/simulate/prescribed_motion.hpp"
-#include "kinfer/simulate/truth.hpp"
 #include "simulate/worlds.hpp"
 
 namespace kinfer {
+using namespace identify;
 namespace {
 
-FoundJoint joint_with(double point_sd, double axis_sd) {
-  FoundJoint joint{.parent = "a", .child = "b"};
+JointEstimate joint_with(double point_sd, double axis_sd) {
+  JointEstimate joint{.parent = "a", .child = "b"};
   joint.sd.point_in_parent = {3.0, 3.0};  // cannot be known, so it does not count
   joint.sd.point_in_child = {0.1 * point_sd, point_sd};
   joint.sd.axis_in_parent = joint.sd.axis_in_child = {axis_sd, axis_sd};
@@ -26,39 +28,39 @@ TEST(Forecast, WhatCannotBeKnownAtAllDoesNotCount) {
   const auto all = forecast({joint_with(2e-3, 1e-4)});
   ASSERT_EQ(all.size(), 1U);
   EXPECT_DOUBLE_EQ(all[0].line_sd, std::hypot(2e-4, 2e-3));
-  EXPECT_TRUE(all[0].enough);
+  EXPECT_TRUE(all[0].is_sufficient);
 }
 
 TEST(Forecast, TheFactorsWouldMakeItJustEnough) {
   const JointForecast lacking = forecast({joint_with(1e-2, 1e-4)}).front();
-  EXPECT_FALSE(lacking.enough);
-  EXPECT_NEAR(lacking.acceleration, 1.96 * std::hypot(1e-3, 1e-2) / 5e-3, 1e-12);
-  EXPECT_NEAR(lacking.time, lacking.acceleration * lacking.acceleration, 1e-12);
-  EXPECT_TRUE(forecast({joint_with(1e-2 / lacking.acceleration * 0.999, 1e-4)}).front().enough);
-  EXPECT_EQ(in_words({lacking}),
+  EXPECT_FALSE(lacking.is_sufficient);
+  EXPECT_NEAR(lacking.acceleration_factor, 1.96 * std::hypot(1e-3, 1e-2) / 5e-3, 1e-12);
+  EXPECT_NEAR(lacking.time_factor, lacking.acceleration_factor * lacking.acceleration_factor, 1e-12);
+  EXPECT_TRUE(forecast({joint_with(1e-2 / lacking.acceleration_factor * 0.999, 1e-4)}).front().is_sufficient);
+  EXPECT_EQ(forecast_text({lacking}),
             "not enough for 5 mm and 3 mrad in a-b (3.9 times the acceleration, or 15.5 times the time)");
 }
 
 TEST(Forecast, NobodyIsSentToDriveForAYear) {
   const JointForecast hopeless = forecast({joint_with(0.1, 1e-4)}).front();
-  EXPECT_FALSE(a_drive_would_do(hopeless));
-  EXPECT_EQ(in_words({hopeless}),
+  EXPECT_FALSE(more_excitation_suffices(hopeless));
+  EXPECT_EQ(forecast_text({hopeless}),
             "not enough for 5 mm and 3 mrad in a-b (± 100 mm and ± 0 mrad, more than a longer drive mends)");
 }
 
 TEST(Forecast, TheTurnAboutTheOnlyAxisOfTheParentIsSaidApart) {
-  FoundJoint joint = joint_with(1e-3, 1e-4);
+  JointEstimate joint = joint_with(1e-3, 1e-4);
   joint.sd.axis_in_parent = {3e-3, 4e-3};
-  EXPECT_FALSE(forecast({joint}).front().enough);
-  joint.not_identifiable_in_parent = {Vec3::UnitZ()};
+  EXPECT_FALSE(forecast({joint}).front().is_sufficient);
+  joint.unobservable_in_parent = {Vec3::UnitZ()};
   const JointForecast apart = forecast({joint}).front();
-  EXPECT_TRUE(apart.enough);
+  EXPECT_TRUE(apart.is_sufficient);
   EXPECT_EQ(apart.azimuth_of, "a");
   EXPECT_DOUBLE_EQ(apart.azimuth_sd, 5e-3);
-  EXPECT_EQ(in_words({apart}),
+  EXPECT_EQ(forecast_text({apart}),
             "enough for 5 mm and 3 mrad in every joint, but for places that no signal tells and the turn of a about "
             "its only axis (± 5 mrad)");
-  EXPECT_EQ(in_words({apart}, {.direction = 0.01}),
+  EXPECT_EQ(forecast_text({apart}, {.direction = 0.01}),
             "enough for 5 mm and 10 mrad in every joint, but for places that no signal tells");
 }
 
@@ -67,25 +69,25 @@ TEST(Forecast, AChainThatWasIdentifiedCanBeDrivenAndIsFoundAgain) {
   const MujocoWorld world = test::world_of("excavator-general", {}, 3);
   const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}), 100.0);
   const auto found =
-      identify(simulated_recording(world.machine(), motion, *sensor_grade("noise"), {}, Rng(1)), {}, Rng(1));
+      identify_machine(simulate_recording(world.machine(), motion, *sensor_grade("noise"), {}, Rng(1)), {}, Rng(1));
   ASSERT_TRUE(found) << found.error().what;
-  const auto machine = machine_of_chain(found->chain);
+  const auto machine = make_machine(found->chain);
   ASSERT_TRUE(machine) << machine.error().what;
   EXPECT_EQ(machine->sensors.size(), 6U);
   EXPECT_EQ(machine->sensors.front().name, "ins0");
   const auto drive = make_drive(*machine, {}, Rng(2));
-  const auto again = identify(
-      simulated_recording(*machine, prescribed_motion(*machine, *drive, 100.0), *sensor_grade("noise"), {}, Rng(2)), {},
+  const auto again = identify_machine(
+      simulate_recording(*machine, prescribed_motion(*machine, *drive, 100.0), *sensor_grade("noise"), {}, Rng(2)), {},
       Rng(1));
   ASSERT_TRUE(again) << again.error().what;
   ASSERT_EQ(again->joints.size(), found->joints.size());
-  for (const FoundJoint& joint : again->joints)
+  for (const JointEstimate& joint : again->joints)
     EXPECT_TRUE(std::ranges::any_of(
-        found->joints, [&](const FoundJoint& j) { return j.parent == joint.parent && j.child == joint.child; }));
+        found->joints, [&](const JointEstimate& j) { return j.parent == joint.parent && j.child == joint.child; }));
   ASSERT_EQ(again->links.size(), found->links.size());
-  for (const FoundLink& link : again->links) {
+  for (const LinkEstimate& link : again->links) {
     const auto same =
-        std::ranges::find(found->links, link.from + link.to, [](const FoundLink& l) { return l.from + l.to; });
+        std::ranges::find(found->links, link.from + link.to, [](const LinkEstimate& l) { return l.from + l.to; });
     ASSERT_NE(same, found->links.end()) << link.segment;
     // Axes that are parallel but for half a degree are nearest to each other somewhere far away: the sd knows.
     EXPECT_NEAR(link.length, same->length, 4.0 * std::hypot(link.sd, same->sd)) << link.segment;

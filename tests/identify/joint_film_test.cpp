@@ -1,34 +1,36 @@
-#include "kinfer/identify/joint_film.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/refinement/joint_trajectory.hpp"
 
 #include <gtest/gtest.h>
 
 #include "kinfer/base/rng.hpp"
-#include "kinfer/identify/joint_start.hpp"
-#include "kinfer/io/robot_toml.hpp"
-#include "kinfer/io/urdf.hpp"
+#include "kinfer/identify/geometry/initial_joint.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "support/random.hpp"
 
 namespace kinfer {
+using namespace identify;
 namespace {
 
 using Eigen::Index;
 using test::random_vector;
 
-std::vector<InsBody> bodies_of(FoundJointType type, Rng& rng) {
+std::vector<InsBody> bodies_of(EstimatedJointType type, Rng& rng) {
   const auto turn = [&] { return exp_so3(random_vector(rng)); };
   std::vector<InsBody> bodies;
-  if (type == FoundJointType::prismatic) bodies = {sliding_body(0, 1, turn(), turn())};
-  if (type == FoundJointType::revolute) bodies = {turning_body(0, 1, turn(), turn())};
-  if (type == FoundJointType::spherical) bodies = {ball_body(0, 1, turn())};
-  if (type == FoundJointType::universal) {
-    bodies = {turning_body(0, -1, turn(), Mat3::Identity()), turning_body(1, 1, rot_y(1.2), turn())};
-    bodies[0].free_child_turn = {};
-    bodies[1].free_parent_turn = {false, true, false};
+  if (type == EstimatedJointType::prismatic) bodies = {prismatic_body(0, 1, turn(), turn())};
+  if (type == EstimatedJointType::revolute) bodies = {revolute_body(0, 1, turn(), turn())};
+  if (type == EstimatedJointType::spherical) bodies = {spherical_body(0, 1, turn())};
+  if (type == EstimatedJointType::universal) {
+    bodies = {revolute_body(0, -1, turn(), Mat3::Identity()), revolute_body(1, 1, rot_y(1.2), turn())};
+    bodies[0].free_child_rotation = {};
+    bodies[1].free_parent_rotation = {false, true, false};
     bodies[0].free_point_in_child = bodies[1].free_point_in_parent = false;
   }
   bodies.front().point_in_parent = random_vector(rng);
-  if (type != FoundJointType::prismatic) bodies.back().point_in_child = random_vector(rng);
+  if (type != EstimatedJointType::prismatic) bodies.back().point_in_child = random_vector(rng);
   return bodies;
 }
 
@@ -39,10 +41,10 @@ Pose pose_of(const std::vector<InsBody>& bodies, const VectorXd& reading) {
   for (const InsBody& body : bodies) {
     Mat3 turn = Mat3::Identity();
     Vec3 slid = Vec3::Zero();
-    if (body.motion == JointMotion::turn) turn = rot_z(reading[k]);
-    if (body.motion == JointMotion::slide) slid = reading[k] * body.parent_R_axis.col(2);
-    if (body.motion == JointMotion::ball) turn = exp_so3(reading.segment<3>(k));
-    k += freedoms(body.motion);
+    if (body.motion == JointMotion::revolute) turn = rot_z(reading[k]);
+    if (body.motion == JointMotion::prismatic) slid = reading[k] * body.parent_R_axis.col(2);
+    if (body.motion == JointMotion::spherical) turn = exp_so3(reading.segment<3>(k));
+    k += degrees_of_freedom(body.motion);
     const Mat3 rotation = body.parent_R_axis * turn * body.child_R_axis.transpose();
     parent_T_here = parent_T_here * Pose{rotation, body.point_in_parent + slid - rotation * body.point_in_child};
   }
@@ -51,63 +53,63 @@ Pose pose_of(const std::vector<InsBody>& bodies, const VectorXd& reading) {
 
 struct Played {
   Chain chain;
-  MatrixXd film;
+  MatrixXd trajectory;
   std::vector<Pose> truth;
 };
 
-Played played(FoundJointType type, std::uint64_t seed) {
+Played played(EstimatedJointType type, std::uint64_t seed) {
   Rng rng(seed);
   const std::vector<InsBody> bodies = bodies_of(type, rng);
   const SplineGrid grid{.begin = 2.0, .period = 0.1, .intervals = 12};
   Index freedom = 0, unknowns = 0;
-  for (const InsBody& body : bodies) freedom += freedoms(body.motion), unknowns += body.unknowns();
+  for (const InsBody& body : bodies) freedom += degrees_of_freedom(body.motion), unknowns += body.unknowns();
   MatrixXd band(freedom, grid.coefficients());
   for (double& value : band.reshaped()) value = 0.5 * rng.normal();
   const std::vector<double> times{2.0, 2.17, 2.5, 2.93, 3.2};
   const VectorXd zero = spline_value(grid, band, grid.begin);
-  const bool is_ball = type == FoundJointType::spherical;
-  const Mat3 axes = is_ball ? ball_axes(ball_turns(grid, band, times)) : Mat3(Mat3::Identity());
+  const bool is_ball = type == EstimatedJointType::spherical;
+  const Mat3 axes = is_ball ? spherical_axes(spherical_rotation_vectors(grid, band, times)) : Mat3(Mat3::Identity());
   RefinedJoint joint = refined_joint(type, bodies, std::span(zero.data(), static_cast<std::size_t>(zero.size())),
                                      MatrixXd::Identity(unknowns, unknowns), axes);
-  joint.found.parent = "a";
-  joint.found.child = "b";
-  Played result{found_chain("a", {joint.found}, canonical_rows(joint.found, joint.hinge), Mat3::Identity()),
-                joint_film(type, bodies, joint.hinge.geometry, grid, band, times),
+  joint.estimate.parent = "a";
+  joint.estimate.child = "b";
+  Played result{build_chain("a", {joint.estimate}, canonical_dh_rows(joint.estimate, joint.solution), Mat3::Identity()),
+                joint_trajectory(type, bodies, joint.solution.geometry, grid, band, times),
                 {}};
   for (const double t : times) result.truth.push_back(pose_of(bodies, spline_value(grid, band, t)));
   return result;
 }
 
-constexpr std::array every_type{FoundJointType::revolute, FoundJointType::prismatic, FoundJointType::universal,
-                                FoundJointType::spherical};
+constexpr std::array every_type{EstimatedJointType::revolute, EstimatedJointType::prismatic,
+                                EstimatedJointType::universal, EstimatedJointType::spherical};
 
 double largest_difference(const Pose& a, const Pose& b) {
   return std::max((a.rotation - b.rotation).cwiseAbs().maxCoeff(), (a.position - b.position).cwiseAbs().maxCoeff());
 }
 
 TEST(JointFilm, MovesTheFoundChainAsTheFitHasIt) {
-  for (const FoundJointType type : every_type)
+  for (const EstimatedJointType type : every_type)
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       const Played p = played(type, seed);
-      ASSERT_EQ(dof(p.chain), p.film.rows());
-      EXPECT_LT(p.film.col(0).norm(), 1e-12) << "the zero is where the recording begins";
+      ASSERT_EQ(dof(p.chain), p.trajectory.rows());
+      EXPECT_LT(p.trajectory.col(0).norm(), 1e-12) << "the zero is where the recording begins";
       for (std::size_t i = 0; i < p.truth.size(); ++i) {
-        const Pose found = joint_frames(p.chain, p.film.col(static_cast<Index>(i))).back();
+        const Pose found = joint_frames(p.chain, p.trajectory.col(static_cast<Index>(i))).back();
         EXPECT_LT(largest_difference(found, p.truth[i]), 1e-9) << name(type) << " " << seed << " " << i;
       }
     }
 }
 
 TEST(JointFilm, IsReadAgainFromTheFilesToTheSamePoses) {
-  for (const FoundJointType type : every_type) {
+  for (const EstimatedJointType type : every_type) {
     const Played p = played(type, 9);
-    const auto from_urdf = parse_urdf(urdf(p.chain), "chain.urdf");
-    const auto from_toml = parse_robot_toml(robot_toml({.chain = p.chain}), "chain.toml");
+    const auto from_urdf = parse_urdf(format_urdf(p.chain), "chain.urdf");
+    const auto from_toml = parse_robot_toml(format_robot_toml({.chain = p.chain}), "chain.toml");
     ASSERT_TRUE(from_urdf && from_toml);
-    for (Index i = 0; i < p.film.cols(); ++i) {
-      const Pose before = forward(p.chain, p.film.col(i));
-      EXPECT_LT(largest_difference(before, forward(*from_urdf, p.film.col(i))), 1e-9) << name(type);
-      EXPECT_LT(largest_difference(before, forward(from_toml->chain, p.film.col(i))), 1e-9) << name(type);
+    for (Index i = 0; i < p.trajectory.cols(); ++i) {
+      const Pose before = forward(p.chain, p.trajectory.col(i));
+      EXPECT_LT(largest_difference(before, forward(*from_urdf, p.trajectory.col(i))), 1e-9) << name(type);
+      EXPECT_LT(largest_difference(before, forward(from_toml->chain, p.trajectory.col(i))), 1e-9) << name(type);
     }
   }
 }
@@ -126,7 +128,7 @@ TEST(JointFilm, CardanAnglesGoOnThroughTheirSingularity) {
 TEST(JointFilm, ABallTurnsMostAboutItsFirstAxisAndLeastAboutItsSecond) {
   MatrixXd turns(3, 3);
   turns << 0.1, -0.1, 0.0, 0.5, -0.4, 0.2, 1.0, 2.0, -1.5;
-  const Mat3 axes = ball_axes(turns);
+  const Mat3 axes = spherical_axes(turns);
   const Vec3 size = (axes.transpose() * turns).rowwise().norm();
   EXPECT_GT(size.x(), size.z());
   EXPECT_GT(size.z(), size.y());

@@ -1,4 +1,5 @@
-#include "kinfer/identify/joint_type.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/structure/joint_type.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,24 +7,26 @@
 #include <filesystem>
 
 #include "identify/example_machine.hpp"
-#include "kinfer/identify/ordered_motion.hpp"
-#include "kinfer/io/ins_csv.hpp"
-#include "kinfer/simulate/ins_simulation.hpp"
+#include "kinfer/identify/structure/ordered_motion.hpp"
+#include "kinfer/io/recording/ins_csv.hpp"
+#include "kinfer/simulate/ins_recording.hpp"
 #include "simulate/worlds.hpp"
 
 namespace kinfer {
+using namespace identify;
 namespace {
 
 using test::swinging_parent;
 using test::wave;
 
 SegmentMotion segment_of(const std::string& name, const std::vector<FrameState>& states) {
-  SegmentMotion segment{.name = name, .rotation = {}, .gyro = {}, .rate = {}, .rate_change = {}, .acceleration = {}};
+  SegmentMotion segment{
+      .name = name, .rotation = {}, .gyro = {}, .angular_velocity = {}, .angular_acceleration = {}, .acceleration = {}};
   for (const FrameState& s : states) {
     segment.rotation.push_back(s.rotation);
-    segment.gyro.push_back(s.rotation.transpose() * s.rate);
-    segment.rate.push_back(s.rate);
-    segment.rate_change.push_back(s.rate_change);
+    segment.gyro.push_back(s.rotation.transpose() * s.angular_velocity);
+    segment.angular_velocity.push_back(s.angular_velocity);
+    segment.angular_acceleration.push_back(s.angular_acceleration);
     segment.acceleration.push_back(s.acceleration);
   }
   return segment;
@@ -35,7 +38,7 @@ RecordedMotion two_segments(const std::vector<DhLeaf>& leaves, const std::vector
   RecordedMotion motion;
   motion.period = 0.01;
   for (std::size_t row = 0; row < parent.size(); ++row) motion.time.push_back(0.01 * static_cast<double>(row));
-  motion.segments = {segment_of("parent", parent), segment_of("child", carried(parent, leaves, signals))};
+  motion.segments = {segment_of("parent", parent), segment_of("child", propagate(parent, leaves, signals))};
   motion.usable.assign(parent.size(), true);
   return motion;
 }
@@ -55,11 +58,12 @@ TEST(JointType, CountsTheAxesThatTwoSegmentsTurnAbout) {
   const DhLeaf mount{.theta = 0.7, .d = 0.2, .alpha = -1.1, .a = 0.5}, end{.theta = -1.9, .d = 0.15, .alpha = 0.3};
   const DhLeaf first{.alpha = 1.4, .theta_signal = 0}, second{.theta = 1.5, .alpha = -1.3, .theta_signal = 1},
       third{.theta_signal = 2};
-  EXPECT_EQ(type_of(two_segments({mount, end}, three_waves())).type, FoundJointType::rigid);
-  EXPECT_EQ(type_of(two_segments({mount, first, end}, three_waves())).type, FoundJointType::revolute);
+  EXPECT_EQ(type_of(two_segments({mount, end}, three_waves())).type, EstimatedJointType::rigid);
+  EXPECT_EQ(type_of(two_segments({mount, first, end}, three_waves())).type, EstimatedJointType::revolute);
   const JointTypeEvidence universal = type_of(two_segments({mount, first, second, end}, three_waves()));
-  EXPECT_EQ(universal.type, FoundJointType::universal);
-  EXPECT_EQ(type_of(two_segments({mount, first, second, third, end}, three_waves())).type, FoundJointType::spherical);
+  EXPECT_EQ(universal.type, EstimatedJointType::universal);
+  EXPECT_EQ(type_of(two_segments({mount, first, second, third, end}, three_waves())).type,
+            EstimatedJointType::spherical);
 }
 
 TEST(JointType, FindsBothAxesOfAUniversalJoint) {
@@ -76,11 +80,11 @@ TEST(JointType, SeesTheCranesSlideAndItsHinges) {
     const MujocoWorld world = test::world_of("crane", {}, 4);
     const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}, 4), 100.0);
     const auto ordered =
-        ordered_motion(simulated_recording(world.machine(), motion, *sensor_grade(grade), {}, Rng(4)), {}, {}, 0);
+        order_segments(simulate_recording(world.machine(), motion, *sensor_grade(grade), {}, Rng(4)), {}, {}, 0);
     ASSERT_TRUE(ordered);
-    std::vector<FoundJointType> types;
+    std::vector<EstimatedJointType> types;
     for (const auto& e : joint_types(ordered->motion, ordered->tree)) types.push_back(e.type);
-    using enum FoundJointType;
+    using enum EstimatedJointType;
     EXPECT_EQ(types, (std::vector{revolute, revolute, prismatic, revolute})) << grade;
   }
 }
@@ -91,11 +95,11 @@ TEST(JointType, TellsTheBallFromTheHingesOfAMeasuredChain) {
   for (const char* mounts : {"rigid.csv", "nonrigid.csv"}) {
     const auto recording = read_ins_csv(std::filesystem::path(root) / "diodem_chain5" / "trial1" / mounts);
     ASSERT_TRUE(recording);
-    const auto ordered = ordered_motion(*recording, {}, "seg1", 0);
+    const auto ordered = order_segments(*recording, {}, "seg1", 0);
     ASSERT_TRUE(ordered);
-    std::vector<FoundJointType> types;
+    std::vector<EstimatedJointType> types;
     for (const auto& e : joint_types(ordered->motion, ordered->tree)) types.push_back(e.type);
-    using enum FoundJointType;
+    using enum EstimatedJointType;
     EXPECT_EQ(types, (std::vector{spherical, revolute, revolute, revolute})) << mounts;
   }
 }

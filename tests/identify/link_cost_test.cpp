@@ -1,14 +1,16 @@
-#include "kinfer/identify/link_cost.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/programming/link_cost.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "identify/example_machine.hpp"
-#include "kinfer/identify/genome_block.hpp"
+#include "kinfer/identify/programming/link_block.hpp"
 #include "support/naive_genome.hpp"
 
 namespace kinfer {
+using namespace identify;
 namespace {
 
 using test::all_rows;
@@ -28,7 +30,7 @@ DhTree tree_of(const std::vector<DhLeaf>& leaves) {
 TEST(LinkMotion, AccelerationsAreSecondDifferencesOfPositions) {
   const JointSignal swing = wave(0.5, 0.7, 0.3), hinge = wave(0.6, 0.9, 1.0);
   const auto parent = swinging_parent(swing);
-  const auto child = carried(parent, general_hinge(), {&hinge, 1});
+  const auto child = propagate(parent, general_hinge(), {&hinge, 1});
   const auto position = [&](double t) {
     const double w1 = 2.0 * 3.14159265358979323846 * 0.7, w2 = 2.0 * 3.14159265358979323846 * 0.9;
     const std::vector<DhLeaf> base{{.alpha = 0.4}, {.a = -1.3, .theta_signal = 0}};
@@ -46,15 +48,15 @@ TEST(LinkMotion, AccelerationsAreSecondDifferencesOfPositions) {
 TEST(LinkCost, IsZeroAtTheTruthAndAgreesWithTheSlowWayElsewhere) {
   const JointSignal swing = wave(0.5, 0.7, 0.3), hinge = wave(0.6, 0.9, 1.0);
   const auto parent = swinging_parent(swing);
-  const auto child = carried(parent, general_hinge(), {&hinge, 1});
-  for (const OrientationError orientation : {OrientationError::chord, OrientationError::euler}) {
-    const auto rows = evenly_chosen(all_rows(600), 150);  // not a multiple of the blocks
+  const auto child = propagate(parent, general_hinge(), {&hinge, 1});
+  for (const OrientationMetric orientation : {OrientationMetric::chord, OrientationMetric::euler}) {
+    const auto rows = thin_rows(all_rows(600), 150);  // not a multiple of the blocks
     const LinkCost cost(parent, child, {&hinge, 1}, rows, {.orientation = orientation});
     EXPECT_LT(cost.j_rmse(general_hinge()).total, 1e-7);
-    DhBreed breed(DhLeaves({}), {});
+    DhBreed breed(DhLeafOperators({}), {});
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
       const auto guess = leaves(breed.random(Rng(seed)));
-      const JRmse slow = j_rmse(carried(parent, guess, {&hinge, 1}), child, rows, orientation),
+      const JRmse slow = j_rmse(propagate(parent, guess, {&hinge, 1}), child, rows, orientation),
                   fast = cost.j_rmse(guess);
       EXPECT_NEAR(fast.acceleration, slow.acceleration, 1e-9 * slow.acceleration);
       EXPECT_NEAR(fast.orientation, slow.orientation, 1e-9 * slow.orientation);
@@ -65,7 +67,7 @@ TEST(LinkCost, IsZeroAtTheTruthAndAgreesWithTheSlowWayElsewhere) {
 TEST(LinkCost, GivesUpOnlyWhatIsNotBelowTheBound) {
   const JointSignal swing = wave(0.5, 0.7, 0.3), hinge = wave(0.6, 0.9, 1.0);
   const auto parent = swinging_parent(swing);
-  const auto child = carried(parent, general_hinge(), {&hinge, 1});
+  const auto child = propagate(parent, general_hinge(), {&hinge, 1});
   const LinkCost cost(parent, child, {&hinge, 1}, all_rows(600), {});
   auto guess = general_hinge();
   guess[1].a += 0.1;
@@ -77,7 +79,7 @@ TEST(LinkCost, GivesUpOnlyWhatIsNotBelowTheBound) {
 TEST(LinkCost, PrefersTheShorterOfTwoEqualChainsAndRefusesAChainWithoutSignal) {
   const JointSignal swing = wave(0.5, 0.7, 0.3), hinge = wave(0.6, 0.9, 1.0);
   const auto parent = swinging_parent(swing);
-  const auto child = carried(parent, general_hinge(), {&hinge, 1});
+  const auto child = propagate(parent, general_hinge(), {&hinge, 1});
   const LinkCost cost(parent, child, {&hinge, 1}, all_rows(600), {});
   auto guess = general_hinge(), longer = guess;
   guess[0].a += 0.1;
@@ -91,7 +93,7 @@ TEST(LinkBlock, AgreesWithProductsOf4x4MatricesAndDifferences) {
   constexpr double h = 1e-3, w = 2.0 * 3.14159265358979323846;
   const JointSignal swing = wave(0.5, 0.7, 0.3), hinge = wave(0.6, 0.9, 1.0);
   const auto parent = swinging_parent(swing);
-  const auto child = carried(parent, general_hinge(), {&hinge, 1});
+  const auto child = propagate(parent, general_hinge(), {&hinge, 1});
   std::vector<test::NaiveSample> samples;
   for (std::size_t row = 0; row < 600; ++row) {
     test::NaiveSample s{{}, {}, child[row].acceleration, child[row].rotation};
@@ -107,9 +109,9 @@ TEST(LinkBlock, AgreesWithProductsOf4x4MatricesAndDifferences) {
   guess[0].a += 0.3;
   guess[1].theta -= 0.2;
   double fast = 0.0;
-  for (const LinkBlock& block : link_blocks(parent, child, {&hinge, 1}, all_rows(600))) {
-    const FrameLanes state = block.carried(guess);
-    fast += block.acceleration_square(state) + block.chord_square(state);
+  for (const LinkBlock& block : make_link_blocks(parent, child, {&hinge, 1}, all_rows(600))) {
+    const FrameLanes state = block.propagate(guess);
+    fast += block.squared_acceleration_error(state) + block.squared_chord(state);
   }
   const double slow = test::naive_square(samples, guess, h);
   EXPECT_NEAR(fast, slow, 1e-4 * slow);  // what second differences over a millisecond leave
@@ -119,7 +121,7 @@ TEST(EulerAngles, AreThoseOfYawPitchRollAndHaveASecondReading) {
   const Vec3 angles(0.3, -1.2, 2.5);
   const Mat3 rotation = rot_z(angles.z()) * rot_y(angles.y()) * rot_x(angles.x());
   EXPECT_LT((euler_angles(rotation) - angles).norm(), 1e-12);
-  const Vec3 other = other_euler_angles(angles);
+  const Vec3 other = alternative_euler_angles(angles);
   EXPECT_LT((rot_z(other.z()) * rot_y(other.y()) * rot_x(other.x()) - rotation).norm(), 1e-12);
 }
 

@@ -1,10 +1,12 @@
-#include "kinfer/identify/memetic_search.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/programming/memetic_search.hpp"
 
 #include <gtest/gtest.h>
 
 #include "identify/example_machine.hpp"
 
 namespace kinfer {
+using namespace identify;
 namespace {
 
 using test::all_rows;
@@ -15,7 +17,7 @@ using test::wave;
 struct Link {
   JointSignal hinge = wave(0.6, 0.9, 1.0);
   std::vector<FrameState> parent = swinging_parent(wave(0.5, 0.7, 0.3));
-  std::vector<FrameState> child = carried(parent, general_hinge(), {&hinge, 1});
+  std::vector<FrameState> child = propagate(parent, general_hinge(), {&hinge, 1});
   std::vector<std::size_t> rows = all_rows(600);
 
   /// With noise as INS leave it, of the accelerations only.
@@ -30,43 +32,43 @@ struct Link {
 
 TEST(LinkStructure, AreAsManyAsCountingSays) {
   // One signal in one of 2 n angles, with or without a constant beside it; the other angles constant or not.
-  EXPECT_EQ(all_structures(1).size(), 8u);
-  EXPECT_EQ(all_structures(2).size(), 8u + 64u);
-  EXPECT_EQ(all_structures(3).size(), 8u + 64u + 384u);
+  EXPECT_EQ(enumerate_structures(1).size(), 8u);
+  EXPECT_EQ(enumerate_structures(2).size(), 8u + 64u);
+  EXPECT_EQ(enumerate_structures(3).size(), 8u + 64u + 384u);
 }
 
 TEST(LinkStructure, BreedKeepsTheSignalOnceAndTheLeavesFew) {
-  const StructureBreed breed;
+  const StructureOperators breed;
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     const LinkStructure a = breed.random(Rng(seed)), b = breed.random(Rng(seed + 1000));
-    for (const LinkStructure& s : {a, breed.mutated(a, a.leaves.size() - 1, Rng(seed)),
-                                   breed.transferred(a, 0, b, b.leaves.size() - 1, Rng(seed))}) {
+    for (const LinkStructure& s : {a, breed.mutate(a, a.leaves.size() - 1, Rng(seed)),
+                                   breed.transfer(a, 0, b, b.leaves.size() - 1, Rng(seed))}) {
       EXPECT_TRUE(uses_signal_once(s)) << text(s);
-      EXPECT_TRUE(!s.leaves.empty() && s.leaves.size() <= most_leaves);
+      EXPECT_TRUE(!s.leaves.empty() && s.leaves.size() <= max_structure_leaves);
     }
-    for (const LinkStructure& s : neighbours(a)) EXPECT_TRUE(uses_signal_once(s) && s != a);
+    for (const LinkStructure& s : neighbour_structures(a)) EXPECT_TRUE(uses_signal_once(s) && s != a);
   }
 }
 
-TEST(MemeticLink, FindsThePerfectHingeToRounding) {
+TEST(StructureFitter, FindsThePerfectHingeToRounding) {
   const Link link;
-  const MemeticLink problem(link.parent, link.child, {&link.hinge, 1}, link.rows, {.length_prior = 1e-6});
-  const MemeticFit fit = problem.fit(hinge_structure());
+  const StructureFitter problem(link.parent, link.child, {&link.hinge, 1}, link.rows, {.length_prior = 1e-6});
+  const StructureFit fit = problem.fit(revolute_structure());
   EXPECT_LT(fit.j, 1e-5);
-  const auto found = carried(link.parent, fit.leaves, {&link.hinge, 1});
+  const auto found = propagate(link.parent, fit.leaves, {&link.hinge, 1});
   for (const std::size_t row : {3u, 200u, 590u}) {
     EXPECT_LT((found[row].rotation - link.child[row].rotation).norm(), 1e-5);
     EXPECT_LT((found[row].acceleration - link.child[row].acceleration).norm(), 1e-4);
   }
 }
 
-TEST(MemeticLink, JIsThatOfTheSlowWay) {
+TEST(StructureFitter, JIsThatOfTheSlowWay) {
   const Link link = Link().with_noise(3);
-  const MemeticFit fit = MemeticLink(link.parent, link.child, {&link.hinge, 1}, link.rows,
-                                     {.length_prior = 1e-5, .bias_prior = 1e3})  // no biases
-                             .fit(hinge_structure());
+  const StructureFit fit = StructureFitter(link.parent, link.child, {&link.hinge, 1}, link.rows,
+                                           {.length_prior = 1e-5, .bias_prior = 1e3})  // no biases
+                               .fit(revolute_structure());
   const JRmse slow =
-      j_rmse(carried(link.parent, fit.leaves, {&link.hinge, 1}), link.child, link.rows, OrientationError::chord);
+      j_rmse(propagate(link.parent, fit.leaves, {&link.hinge, 1}), link.child, link.rows, OrientationMetric::chord);
   EXPECT_NEAR(fit.j, slow.total, 1e-6 * slow.total);
 }
 
@@ -74,7 +76,7 @@ TEST(MemeticSearch, EndsWhereTheCertificateEnds) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Link link = Link().with_noise(seed);
     const auto found = search_memetic(link.parent, link.child, {&link.hinge, 1}, link.rows, {}, Rng(seed));
-    const auto best = search_all(link.parent, link.child, {&link.hinge, 1}, link.rows, {});
+    const auto best = search_exhaustive(link.parent, link.child, {&link.hinge, 1}, link.rows, {});
     EXPECT_LT(found.cost, best.cost * 1.001) << text(found.structure) << " against " << text(best.structure);
     EXPECT_LT(found.evaluations, 5000);
     EXPECT_LT(found.j, 0.02 * std::sqrt(3.0) * 1.1);
@@ -88,9 +90,9 @@ TEST(MemeticSearch, GivesTheSameBitsForAnyNumberOfThreads) {
     options.bacteria.threads = threads;
     return search_memetic(link.parent, link.child, {&link.hinge, 1}, link.rows, options, Rng(2));
   };
-  const MemeticOutcome one = run(1);
+  const StructureSearchOutcome one = run(1);
   for (const int threads : {2, 7}) {
-    const MemeticOutcome many = run(threads);
+    const StructureSearchOutcome many = run(threads);
     EXPECT_EQ(one.best_history, many.best_history);
     EXPECT_EQ(one.median_history, many.median_history);
     EXPECT_EQ(one.evaluations, many.evaluations);

@@ -1,4 +1,5 @@
-#include "kinfer/identify/one_clock.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/screening/synchronisation.hpp"
 
 #include <gmock/gmock.h>
 
@@ -6,6 +7,7 @@
 #include "kinfer/simulate/log_faults.hpp"
 
 namespace kinfer {
+using namespace identify;
 namespace {
 
 using test::driven_machine;
@@ -14,8 +16,8 @@ using test::has_finding;
 using test::identified;
 using test::worst_line_error;
 
-const FoundClock& clock_of(const Identification& found, const std::string& sensor) {
-  const auto place = std::ranges::find(found.clocks, sensor, &FoundClock::sensor);
+const SensorClockEstimate& clock_of(const Identification& found, const std::string& sensor) {
+  const auto place = std::ranges::find(found.clocks, sensor, &SensorClockEstimate::sensor);
   EXPECT_NE(place, found.clocks.end());
   return *place;
 }
@@ -26,13 +28,13 @@ double relative_offset(const Identification& found, const std::string& sensor) {
 }
 
 class EverySeed : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(OneClock, EverySeed, testing::Values(1, 2));
+INSTANTIATE_TEST_SUITE_P(Synchronisation, EverySeed, testing::Values(1, 2));
 
 TEST_P(EverySeed, LoggersApartAndDriftingCostNoAccuracy) {
   const DrivenMachine drive = driven_machine("excavator-general", static_cast<std::uint64_t>(GetParam()));
   const double before = worst_line_error(identified(drive.recording).joints, drive.truth);
-  const InsRecording apart = with_own_clock(with_own_clock(drive.recording, {.sensor = 2, .offset = 0.05}),
-                                            {.sensor = 4, .offset = -0.03, .drift = 5e-5});
+  const InsRecording apart = with_clock_fault(with_clock_fault(drive.recording, {.sensor = 2, .offset = 0.05}),
+                                              {.sensor = 4, .offset = -0.03, .drift = 5e-5});
   const Identification found = identified(apart);
   EXPECT_LT(worst_line_error(found.joints, drive.truth), std::max(2.0 * before, 3e-3));
   EXPECT_NEAR(relative_offset(found, "ins2"), -0.05, 4.0 * clock_of(found, "ins2").offset_sd + 5e-5);
@@ -45,25 +47,25 @@ TEST_P(EverySeed, LoggersApartAndDriftingCostNoAccuracy) {
 TEST_P(EverySeed, ALateSensorInTheSameFileIsFoundToo) {
   const DrivenMachine drive = driven_machine("excavator-general", static_cast<std::uint64_t>(GetParam()));
   const double before = worst_line_error(identified(drive.recording).joints, drive.truth);
-  const Identification found = identified(with_late_rows(drive.recording, 4, 5));  // 50 ms
+  const Identification found = identified(with_delayed_rows(drive.recording, 4, 5));  // 50 ms
   EXPECT_LT(worst_line_error(found.joints, drive.truth), std::max(2.0 * before, 3e-3));
   EXPECT_NEAR(relative_offset(found, "ins4"), -0.05, 5e-4);
   EXPECT_TRUE(has_finding(found, "clock", "ins4 are logged"));
 }
 
-TEST(OneClock, OfEveryMachineWhoseClocksAgreeIsLeftAlone) {
+TEST(Synchronisation, OfEveryMachineWhoseClocksAgreeIsLeftAlone) {
   for (const std::string& name : machine_names())
     for (const Script script : {Script::together, Script::gentle}) {
-      const OneClock clock = on_one_clock(driven_machine(name, 4, script).recording, {}, 0);
-      EXPECT_EQ(clock.trust, Clocks::checked) << name;
+      const Synchronisation clock = synchronise_sensors(driven_machine(name, 4, script).recording, {}, 0);
+      EXPECT_EQ(clock.clock_treatment, ClockTreatment::checked) << name;
       EXPECT_TRUE(std::ranges::all_of(clock.corrections, &ClockCorrection::is_none)) << name;
     }
   EXPECT_TRUE(identified(driven_machine("tree", 4, Script::together).recording).clocks.empty());
 }
 
-TEST(OneClock, GivesTheSameBitsForAnyNumberOfThreads) {
-  const InsRecording late = with_late_rows(driven_machine("excavator", 1, Script::together).recording, 2, 5);
-  const auto run = [&](int threads) { return *identify(late, {.threads = threads}, Rng(1)); };
+TEST(Synchronisation, GivesTheSameBitsForAnyNumberOfThreads) {
+  const InsRecording late = with_delayed_rows(driven_machine("excavator", 1, Script::together).recording, 2, 5);
+  const auto run = [&](int threads) { return *identify_machine(late, {.threads = threads}, Rng(1)); };
   const Identification one = run(1);
   for (const int threads : {2, 7}) {
     const Identification many = run(threads);

@@ -1,12 +1,14 @@
-#include "kinfer/identify/ordered_motion.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/structure/ordered_motion.hpp"
 
 #include <gmock/gmock.h>
 
-#include "kinfer/simulate/ins_simulation.hpp"
-#include "kinfer/simulate/truth.hpp"
+#include "kinfer/simulate/ground_truth.hpp"
+#include "kinfer/simulate/ins_recording.hpp"
 #include "simulate/worlds.hpp"
 
 namespace kinfer {
+using namespace identify;
 namespace {
 
 struct Log {
@@ -15,12 +17,12 @@ struct Log {
   MachineTruth truth;
 };
 
-Log log_of(const std::string& machine, const MachineOptions& options, const char* grade, const SensorTrouble& trouble,
+Log log_of(const std::string& machine, const MachineOptions& options, const char* grade, const SensorFaults& trouble,
            std::uint64_t seed, Script script = Script::standard) {
   const MujocoWorld world = test::world_of(machine, options, seed);
   MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {.script = script}, seed), 100.0);
   InsRecording recording =
-      simulated_recording(world.machine(), motion, *sensor_grade(grade), trouble, Rng(seed).stream(1));
+      simulate_recording(world.machine(), motion, *sensor_grade(grade), trouble, Rng(seed).stream(1));
   MachineTruth truth = machine_truth(world.machine(), motion);
   return {std::move(recording), std::move(motion), std::move(truth)};
 }
@@ -44,13 +46,13 @@ INSTANTIATE_TEST_SUITE_P(Order, EveryTrouble,
 
 TEST_P(EveryTrouble, LeavesTheTreeRight) {
   const auto& [machine, kind] = GetParam();
-  const SensorTrouble troubles[] = {
+  const SensorFaults troubles[] = {
       {.has_magnetometer = false}, {.magnetic_disturbance = 15.0}, {.missing = 0.05}, {.spikes = 20.0}};
   const auto seed = static_cast<std::uint64_t>(11 + kind);
   const Base base = kind % 2 == 0 ? Base::still : Base::yawing;
   const Log log = log_of(machine, {.mounting = Mounting::arbitrary, .base = base, .slope = Angle::deg(4)}, "consumer",
                          troubles[kind], seed);
-  const auto ordered = ordered_motion(log.recording, {}, {}, 0);
+  const auto ordered = order_segments(log.recording, {}, {}, 0);
   ASSERT_TRUE(ordered) << ordered.error().what;
   EXPECT_THAT(edge_names(*ordered), testing::UnorderedElementsAreArray(edge_names(log.truth)));
 }
@@ -65,7 +67,7 @@ TEST(OrderedMotion, AnAccelerometerThatLeansItsVerticalIsFoundToLean) {
                    {.has_magnetometer = false}, 3);
   const double bias = 0.6;  // [m/s²] 61 mg, and so 61 mrad at most
   add_bias(log.recording.sensors[4].acceleration, {bias, 0.0, 0.0});
-  const auto ordered = ordered_motion(log.recording, {}, {}, 0);
+  const auto ordered = order_segments(log.recording, {}, {}, 0);
   ASSERT_TRUE(ordered) << ordered.error().what;
   EXPECT_THAT(edge_names(*ordered), testing::UnorderedElementsAreArray(edge_names(log.truth)));
   EXPECT_GT(ordered->tree.margin, 10.0);
@@ -79,17 +81,17 @@ TEST(OrderedMotion, AnAccelerometerThatLeansItsVerticalIsFoundToLean) {
 TEST(OrderedMotion, AGyroThatReadsFiveDegreesASecondAtRestKeepsItsHeading) {
   Log log = log_of("robot6", {}, "noise", {.spikes = 20.0, .has_magnetometer = false}, 4, Script::together);
   const auto& truth = log.motion.sensors[3];
-  add_bias(log.recording.sensors[3].rate, truth.world_R_sensor.front().conjugate() * Vec3(0.0, 0.0, 0.08));
-  const auto ordered = ordered_motion(log.recording, {}, {}, 0);
+  add_bias(log.recording.sensors[3].angular_velocity, truth.world_R_sensor.front().conjugate() * Vec3(0.0, 0.0, 0.08));
+  const auto ordered = order_segments(log.recording, {}, {}, 0);
   ASSERT_TRUE(ordered) << ordered.error().what;
   EXPECT_THAT(edge_names(*ordered), testing::UnorderedElementsAreArray(edge_names(log.truth)));
-  const std::size_t last = truth.rate.size() - 100;
-  EXPECT_LT((ordered->motion.segments[3].gyro[last] - truth.rate[last]).norm(), 0.005);
+  const std::size_t last = truth.angular_velocity.size() - 100;
+  EXPECT_LT((ordered->motion.segments[3].gyro[last] - truth.angular_velocity[last]).norm(), 0.005);
 }
 
 TEST(OrderedMotion, HeadingsAgreeWithoutMagnetometers) {
   const Log log = log_of("robot6", {.slope = Angle::deg(8)}, "noise", {.has_magnetometer = false}, 2);
-  const auto ordered = ordered_motion(log.recording, {}, {}, 0);
+  const auto ordered = order_segments(log.recording, {}, {}, 0);
   ASSERT_TRUE(ordered);
   const auto heading_error = [&](std::size_t sensor, std::size_t row) {
     const Mat3 truth = log.motion.sensors[sensor].world_R_sensor[row].toRotationMatrix();
@@ -104,9 +106,9 @@ TEST(OrderedMotion, HeadingsAgreeWithoutMagnetometers) {
 
 TEST(OrderedMotion, IsTheSameForAnyNumberOfThreads) {
   const Log log = log_of("tree", {}, "industrial", {}, 5);
-  const auto one = ordered_motion(log.recording, {}, {}, 1);
+  const auto one = order_segments(log.recording, {}, {}, 1);
   for (const int threads : {2, 7}) {
-    const auto many = ordered_motion(log.recording, {}, {}, threads);
+    const auto many = order_segments(log.recording, {}, {}, threads);
     ASSERT_EQ(one->tree.pairs.size(), many->tree.pairs.size());
     for (std::size_t i = 0; i < one->tree.pairs.size(); ++i) {
       EXPECT_EQ(one->tree.pairs[i].distance, many->tree.pairs[i].distance);
@@ -119,7 +121,7 @@ TEST(OrderedMotion, SaysThatTwoSensorsStandStill) {
   Log log = log_of("crane", {}, "noise", {}, 1);
   log.recording.sensors.push_back(log.recording.sensors.front());
   log.recording.sensors.back().name = "other";
-  const auto ordered = ordered_motion(log.recording, {}, {}, 0);
+  const auto ordered = order_segments(log.recording, {}, {}, 0);
   ASSERT_FALSE(ordered);
   EXPECT_THAT(ordered.error().what, testing::HasSubstr("each machine a log of its own"));
 }

@@ -1,15 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two INS on one segment: paper 1 says that a second one is used, not refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "kinfer/identify/identify.hpp"
-#include "kinfer/simulate/ins_simulation.hpp"
+#include "kinfer/identify/pipeline.hpp"
+#include "kinfer/simulate/ground_truth.hpp"
+#include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/prescribed_motion.hpp"
-#include "kinfer/simulate/truth.hpp"
 #include "simulate/worlds.hpp"
 
 namespace kinfer {
+using namespace identify;
 namespace {
 
 constexpr std::size_t boom = 2;
@@ -30,17 +32,17 @@ TEST(SecondIns, OnOneSegmentIsFoundRigidAndTheOtherJointsStayRight) {
   const MachineMotion motion = prescribed_motion(first, drive, 100.0),
                       other_motion = prescribed_motion(other, drive, 100.0);
   const SensorModel grade = *sensor_grade("noise");
-  InsRecording recording = simulated_recording(first, motion, grade, {}, Rng(1));
-  recording.sensors.push_back(simulated_recording(other, other_motion, grade, {}, Rng(2)).sensors[boom]);
+  InsRecording recording = simulate_recording(first, motion, grade, {}, Rng(1));
+  recording.sensors.push_back(simulate_recording(other, other_motion, grade, {}, Rng(2)).sensors[boom]);
   std::vector<JointTruth> truth = machine_truth(first, motion).joints;
   std::ranges::copy(machine_truth(other, other_motion).joints, std::back_inserter(truth));
 
-  const auto found = identify(recording, {.root = "ins0"}, Rng(1));
+  const auto found = identify_machine(recording, {.root = "ins0"}, Rng(1));
   ASSERT_TRUE(found) << found.error().what;
   ASSERT_EQ(found->joints.size(), 6U);
   int rigid = 0;
-  for (const FoundJoint& joint : found->joints) {
-    if (joint.type == FoundJointType::rigid) {
+  for (const JointEstimate& joint : found->joints) {
+    if (joint.type == EstimatedJointType::rigid) {
       ++rigid;
       const bool between_them =
           (joint.parent == "ins2" && joint.child == "second") || (joint.parent == "second" && joint.child == "ins2");

@@ -1,10 +1,12 @@
-#include "kinfer/identify/yielding_mounts.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/refinement/mount_compliance.hpp"
 
 #include <gtest/gtest.h>
 
 #include "identify/hand_moved_chain.hpp"
 
 namespace kinfer {
+using namespace identify;
 namespace {
 
 using test::HandMovedChain;
@@ -20,7 +22,7 @@ double between(const Vec3& axis, const Vec3& point, const Vec3& other_axis, cons
 }
 
 Lever middle_of(const Refinement& found) {
-  const FoundJoint &near = found.joints[0].found, &far = found.joints[1].found;
+  const JointEstimate &near = found.joints[0].estimate, &far = found.joints[1].estimate;
   return {between(near.axis_in_child, near.point_in_child, far.axis_in_parent, far.point_in_parent),
           std::hypot(near.sd.point_in_child[0], near.sd.point_in_child[1], far.sd.point_in_parent[0])};
 }
@@ -76,9 +78,9 @@ TEST(YieldingMounts, HiddenTiltsAreBelievedToBeLikeTheVisibleOnes) {
   fit.unknowns.errors[0].tilt.col(0).setConstant(2e-3);
   InsCovariance covariance{MatrixXd::Identity(9, 9) * 1e-4, VectorXd::Ones(9)};
   covariance.model.diagonal().head<3>().setConstant(1e-8);
-  EXPECT_NEAR(shown_tilt(problem, fit, covariance), 2e-3, 1e-6);
+  EXPECT_NEAR(estimate_mount_compliance(problem, fit, covariance), 2e-3, 1e-6);
   covariance.inflation.head<3>().setConstant(1e5);  // then nothing is seen, and the prior stays
-  EXPECT_NEAR(shown_tilt(problem, fit, covariance), problem.prior.tilt, 1e-12);
+  EXPECT_NEAR(estimate_mount_compliance(problem, fit, covariance), problem.prior.tilt, 1e-12);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/inertial/allan.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,7 @@
 namespace kinfer {
 namespace {
 
-TEST(Allan, white_noise_falls_with_the_root_of_the_averaging_time) {
+TEST(Allan, WhiteNoiseFallsWithTheRootOfTheAveragingTime) {
   Rng rng(3);
   constexpr double sd = 0.2, period = 0.01;
   std::vector<double> values(200000);
@@ -21,7 +22,7 @@ TEST(Allan, white_noise_falls_with_the_root_of_the_averaging_time) {
   }
 }
 
-TEST(Allan, agrees_with_the_definition_on_a_ramp) {
+TEST(Allan, AgreesWithTheDefinitionOnARamp) {
   // Means of neighbouring windows of a ramp of slope r differ by r τ, so the deviation is r τ / √2.
   std::vector<double> ramp(1000);
   for (std::size_t i = 0; i < ramp.size(); ++i) ramp[i] = 0.5 * static_cast<double>(i);
@@ -29,21 +30,21 @@ TEST(Allan, agrees_with_the_definition_on_a_ramp) {
     EXPECT_NEAR(p.deviation, 0.5 * p.tau / std::sqrt(2.0), 1e-9 * p.tau);
 }
 
-TEST(Allan, finds_the_noise_of_a_simulated_gyroscope_and_where_its_bias_begins_to_wander) {
+TEST(Allan, FindsTheNoiseOfASimulatedGyroscopeAndWhereItsBiasBeginsToWander) {
   InstrumentModel model{.noise_density = 1e-4, .instability = 1e-4, .instability_time = 500.0};
   SimulatedInstrument gyroscope(model, {}, Rng(2));
   std::vector<double> values;
   for (int i = 0; i < 400000; ++i) values.push_back(gyroscope.read(Vec3::Zero(), 0.01).x());
-  const AllanFigures figures = allan_figures(allan_deviation(values, 0.01));
+  const AllanCoefficients figures = allan_coefficients(allan_deviation(values, 0.01));
   EXPECT_NEAR(figures.noise_density / model.noise_density, 1.0, 0.1);
   // N²/(2τ) of the noise meets 2σ²τ/(3T) of a slow Gauss-Markov bias at τ = N/σ √(3T)/2 = 19 s.
   EXPECT_TRUE(figures.reaches_floor);
   EXPECT_NEAR(std::log(figures.instability_tau / 19.4), 0.0, std::log(2.0));
 }
 
-TEST(Allan, too_few_values_give_no_curve) {
+TEST(Allan, TooFewValuesGiveNoCurve) {
   EXPECT_TRUE(allan_deviation(std::vector<double>(5, 1.0), 0.01).empty());
-  EXPECT_EQ(allan_figures({}).noise_density, 0.0);
+  EXPECT_EQ(allan_coefficients({}).noise_density, 0.0);
 }
 
 }  // namespace

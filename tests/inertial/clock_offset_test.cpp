@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/inertial/clock_offset.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ InsRecording two_loggers(double shift, double other_rate) {
   const SensorModel grade = *sensor_grade("industrial");
   CarriedSensor a = carried({.seconds = 60.0, .grade = &grade, .has_magnetometer = false});
   CarriedSensor b = carried({.seconds = 60.0,
-                             .rate = other_rate,
+                             .sampling_rate = other_rate,
                              .mounting = Quat(from_rpy({1, 2, 3})),
                              .grade = &grade,
                              .has_magnetometer = false,
@@ -27,20 +28,20 @@ InsRecording two_loggers(double shift, double other_rate) {
   return recording;
 }
 
-TEST(ClockOffset, is_found_for_any_start_and_rate_of_the_clocks) {
+TEST(ClockOffset, IsFoundForAnyStartAndRateOfTheClocks) {
   for (const double shift : {0.0, 0.0137, -7.25, 1000.003})
-    for (const double rate : {200.0, 125.0}) {
-      const ClockOffset found = clock_offset(two_loggers(shift, rate), 0, 1);
-      EXPECT_NEAR(found.seconds, -shift, 0.004) << shift << " s at " << rate << " Hz";
+    for (const double sampling_rate : {200.0, 125.0}) {
+      const ClockOffset found = estimate_clock_offset(two_loggers(shift, sampling_rate), 0, 1);
+      EXPECT_NEAR(found.seconds, -shift, 0.004) << shift << " s at " << sampling_rate << " Hz";
       EXPECT_GT(found.correlation, 0.95);
     }
 }
 
-TEST(ClockOffset, still_sensors_tell_nothing) {
+TEST(ClockOffset, StillSensorsTellNothing) {
   InsRecording recording = two_loggers(1.0, 200.0);
   for (InsSensor& s : recording.sensors)
-    for (auto& axis : s.rate.axis) std::fill(axis.begin(), axis.end(), 0.001f);
-  EXPECT_EQ(clock_offset(recording, 0, 1).correlation, 0.0);
+    for (auto& axis : s.angular_velocity.axis) std::fill(axis.begin(), axis.end(), 0.001f);
+  EXPECT_EQ(estimate_clock_offset(recording, 0, 1).correlation, 0.0);
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // What sensors do when they fail: the filters say something finite, and recover where they can.
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "kinfer/inertial/orientation.hpp"
-#include "kinfer/inertial/orientation_error.hpp"
+#include "kinfer/inertial/filters/orientation.hpp"
+#include "kinfer/inertial/filters/orientation_error.hpp"
 #include "support/carried_sensor.hpp"
 
 namespace kinfer {
@@ -24,14 +25,14 @@ void set(TriadColumns& triad, std::size_t from, std::size_t to, const Vec3& valu
 }
 
 void expect_unit_quaternions(CarriedSensor c, const char* what) {
-  mark_faults(c.sensor);
+  flag_faults(c.sensor);
   for (const auto& [name, options] : filters)
-    for (const Quat& q : orientations(c.sensor, c.time, options))
+    for (const Quat& q : estimate_orientations(c.sensor, c.time, options))
       ASSERT_NEAR(q.norm(), 1.0, 1e-9) << name << " with " << what;
 }
 
-TEST(BadInput, no_failure_makes_a_filter_say_nan) {
-  const CarriedSensor good = carried({.seconds = 12.0, .rate = 100.0, .rest = 2.0});
+TEST(BadInput, NoFailureMakesAFilterSayNan) {
+  const CarriedSensor good = carried({.seconds = 12.0, .sampling_rate = 100.0, .rest = 2.0});
   const std::size_t n = good.time.size(), middle = n / 2;
   const Vec3 gone = Vec3::Constant(std::nan(""));
   const auto broken = [&](const char* what, const auto& change) {
@@ -40,15 +41,18 @@ TEST(BadInput, no_failure_makes_a_filter_say_nan) {
     expect_unit_quaternions(c, what);
   };
   broken("a sensor dead from the middle on", [&](CarriedSensor& c) {
-    for (TriadColumns* t : {&c.sensor.acceleration, &c.sensor.rate, &c.sensor.field}) set(*t, middle, n, gone);
+    for (TriadColumns* t : {&c.sensor.acceleration, &c.sensor.angular_velocity, &c.sensor.field})
+      set(*t, middle, n, gone);
   });
   broken("zeros from the middle on", [&](CarriedSensor& c) {
-    for (TriadColumns* t : {&c.sensor.acceleration, &c.sensor.rate, &c.sensor.field}) set(*t, middle, n, Vec3::Zero());
+    for (TriadColumns* t : {&c.sensor.acceleration, &c.sensor.angular_velocity, &c.sensor.field})
+      set(*t, middle, n, Vec3::Zero());
   });
   broken("no specific force at all", [&](CarriedSensor& c) { set(c.sensor.acceleration, 0, n, gone); });
-  broken("no rate at all", [&](CarriedSensor& c) { set(c.sensor.rate, 0, n, gone); });
+  broken("no rate at all", [&](CarriedSensor& c) { set(c.sensor.angular_velocity, 0, n, gone); });
   broken("an all-zero magnetometer", [&](CarriedSensor& c) { set(c.sensor.field, 0, n, Vec3::Zero()); });
-  broken("huge numbers", [&](CarriedSensor& c) { set(c.sensor.rate, middle, middle + 50, Vec3::Constant(3e30)); });
+  broken("huge numbers",
+         [&](CarriedSensor& c) { set(c.sensor.angular_velocity, middle, middle + 50, Vec3::Constant(3e30)); });
   broken("huge forces",
          [&](CarriedSensor& c) { set(c.sensor.acceleration, middle, middle + 50, Vec3::Constant(-3e30)); });
   broken("huge fields", [&](CarriedSensor& c) { set(c.sensor.field, middle, middle + 50, Vec3::Constant(1e30)); });
@@ -56,22 +60,22 @@ TEST(BadInput, no_failure_makes_a_filter_say_nan) {
     for (std::size_t row = middle; row < n; ++row) c.time[row] += 3600.0;
   });
   broken("a saturated gyro", [&](CarriedSensor& c) {
-    for (auto& axis : c.sensor.rate.axis)
+    for (auto& axis : c.sensor.angular_velocity.axis)
       for (float& w : axis) w = std::clamp(w, -0.8f, 0.8f);
   });
   broken("free fall", [&](CarriedSensor& c) { set(c.sensor.acceleration, middle, n, Vec3::Constant(1e-30)); });
 }
 
-TEST(BadInput, no_rows_and_one_row_are_answered) {
-  CarriedSensor c = carried({.seconds = 12.0, .rate = 100.0});
+TEST(BadInput, NoRowsAndOneRowAreAnswered) {
+  CarriedSensor c = carried({.seconds = 12.0, .sampling_rate = 100.0});
   for (const std::size_t rows : {0, 1, 2}) {
     CarriedSensor few = c;
     few.time.resize(rows);
-    for (TriadColumns* t : {&few.sensor.acceleration, &few.sensor.rate, &few.sensor.field})
+    for (TriadColumns* t : {&few.sensor.acceleration, &few.sensor.angular_velocity, &few.sensor.field})
       for (auto& axis : t->axis) axis.resize(rows);
-    mark_faults(few.sensor);
+    flag_faults(few.sensor);
     for (const auto& [name, options] : filters) {
-      const auto q = orientations(few.sensor, few.time, options);
+      const auto q = estimate_orientations(few.sensor, few.time, options);
       ASSERT_EQ(q.size(), rows);
       if (rows == 0) continue;
       EXPECT_LT(q[0].angularDistance(c.truth[0]), 0.5 * degree) << name;
@@ -79,13 +83,13 @@ TEST(BadInput, no_rows_and_one_row_are_answered) {
   }
 }
 
-TEST(BadInput, a_gap_in_motion_is_recovered_from) {
+TEST(BadInput, AGapInMotionIsRecoveredFrom) {
   CarriedSensor c = carried({.seconds = 60.0});
-  for (TriadColumns* t : {&c.sensor.acceleration, &c.sensor.rate, &c.sensor.field})
+  for (TriadColumns* t : {&c.sensor.acceleration, &c.sensor.angular_velocity, &c.sensor.field})
     set(*t, 20 * 200, 23 * 200, Vec3::Constant(std::nan("")));
-  mark_faults(c.sensor);
+  flag_faults(c.sensor);
   for (const FilterOptions& options : {FilterOptions(KinferFilterOptions{}), FilterOptions(KinferOfflineOptions{})}) {
-    const auto q = orientations(c.sensor, c.time, options);
+    const auto q = estimate_orientations(c.sensor, c.time, options);
     std::vector<char> later(q.size(), 0);
     std::fill(later.begin() + 35 * 200, later.end(), char{1});
     EXPECT_LT(orientation_error(q, c.truth, later).inclination, 0.5 * degree);
@@ -93,25 +97,25 @@ TEST(BadInput, a_gap_in_motion_is_recovered_from) {
   }
 }
 
-TEST(BadInput, a_row_in_ten_missing_costs_little) {
+TEST(BadInput, ARowInTenMissingCostsLittle) {
   CarriedSensor c = carried({.has_magnetometer = false});
   for (std::size_t row = 5; row < c.time.size(); row += 10)
-    for (TriadColumns* t : {&c.sensor.acceleration, &c.sensor.rate})
+    for (TriadColumns* t : {&c.sensor.acceleration, &c.sensor.angular_velocity})
       for (auto& axis : t->axis) axis[row] = nan_value;
-  mark_faults(c.sensor);
-  const auto q = orientations(c.sensor, c.time, KinferFilterOptions{});
+  flag_faults(c.sensor);
+  const auto q = estimate_orientations(c.sensor, c.time, KinferFilterOptions{});
   const auto e = orientation_error(q, c.truth, std::vector<char>(q.size(), 1), HeadingOffset::best_constant);
   EXPECT_LT(e.inclination, 0.5 * degree);
   EXPECT_LT(e.heading, 1.0 * degree);
 }
 
-TEST(BadInput, a_clipped_turn_is_recovered_from_with_a_magnetometer) {
+TEST(BadInput, AClippedTurnIsRecoveredFromWithAMagnetometer) {
   CarriedSensor c = carried({.seconds = 60.0, .rest = 10.0, .pace = 1.5});
-  for (auto& axis : c.sensor.rate.axis)
+  for (auto& axis : c.sensor.angular_velocity.axis)
     for (float& w : axis) w = std::clamp(w, -2.1816616f, 2.1816616f);  // 125 °/s
-  mark_faults(c.sensor);
-  ASSERT_GT(count(c.sensor, rate_clipped), 200u);
-  const auto q = orientations(c.sensor, c.time, KinferFilterOptions{});
+  flag_faults(c.sensor);
+  ASSERT_GT(count(c.sensor, angular_velocity_clipped), 200u);
+  const auto q = estimate_orientations(c.sensor, c.time, KinferFilterOptions{});
   std::vector<char> later(q.size(), 0);
   std::fill(later.begin() + 55 * 200, later.end(), char{1});
   EXPECT_LT(orientation_error(q, c.truth, later).inclination, 0.5 * degree);

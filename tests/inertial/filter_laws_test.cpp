@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // Laws that every orientation filter obeys, whatever is inside.
 #include <gtest/gtest.h>
 
-#include "kinfer/inertial/orientation.hpp"
-#include "kinfer/inertial/orientation_error.hpp"
+#include "kinfer/inertial/filters/orientation.hpp"
+#include "kinfer/inertial/filters/orientation_error.hpp"
 #include "support/carried_sensor.hpp"
 
 namespace kinfer {
@@ -24,7 +25,9 @@ std::ostream& operator<<(std::ostream& out, const Case& c) {
 
 class EveryFilter : public ::testing::TestWithParam<Case> {
  protected:
-  std::vector<Quat> run(const CarriedSensor& c) const { return orientations(c.sensor, c.time, GetParam().options); }
+  std::vector<Quat> run(const CarriedSensor& c) const {
+    return estimate_orientations(c.sensor, c.time, GetParam().options);
+  }
 };
 
 double largest_angle(const std::vector<Quat>& a, const std::vector<Quat>& b, std::size_t from = 0) {
@@ -41,12 +44,12 @@ double inclination(const CarriedSensor& c, const std::vector<Quat>& q) {
   return orientation_error(q, c.truth, std::vector<char>(q.size(), 1)).inclination;
 }
 
-TEST_P(EveryFilter, a_carried_sensor_is_followed) {
+TEST_P(EveryFilter, ACarriedSensorIsFollowed) {
   const CarriedSensor c = carried({});
   EXPECT_LT(total(c, run(c)), GetParam().accuracy);
 }
 
-TEST_P(EveryFilter, turning_the_field_turns_the_answer) {
+TEST_P(EveryFilter, TurningTheFieldTurnsTheAnswer) {
   constexpr double turn = 0.7;
   const auto straight = run(carried({}));
   auto turned = run(carried({.declination = turn}));
@@ -55,7 +58,7 @@ TEST_P(EveryFilter, turning_the_field_turns_the_answer) {
   EXPECT_LT(largest_angle(straight, turned), GetParam().accuracy / 6);
 }
 
-TEST_P(EveryFilter, turning_the_sensor_in_its_housing_turns_the_answer) {
+TEST_P(EveryFilter, TurningTheSensorInItsHousingTurnsTheAnswer) {
   const Quat mounting(from_rpy({0.8, -0.5, 2.0}));
   const auto straight = run(carried({}));
   auto turned = run(carried({.mounting = mounting}));
@@ -67,21 +70,22 @@ TEST_P(EveryFilter, turning_the_sensor_in_its_housing_turns_the_answer) {
 CarriedSensor decimated(const CarriedSensor& c, std::size_t n) {
   CarriedSensor out;
   for (std::size_t row = n; row < c.time.size(); row += n) {
-    Vec3 force = Vec3::Zero(), rate = Vec3::Zero(), field = Vec3::Zero();
+    Vec3 force = Vec3::Zero(), angular_velocity = Vec3::Zero(), field = Vec3::Zero();
     for (std::size_t i = row - n + 1; i <= row; ++i)
-      force += c.sensor.acceleration.at(i), rate += c.sensor.rate.at(i), field += c.sensor.field.at(i);
+      force += c.sensor.acceleration.at(i), angular_velocity += c.sensor.angular_velocity.at(i),
+          field += c.sensor.field.at(i);
     testing::append(out.sensor.acceleration, force / double(n));
-    testing::append(out.sensor.rate, rate / double(n));
+    testing::append(out.sensor.angular_velocity, angular_velocity / double(n));
     testing::append(out.sensor.field, field / double(n));
     out.time.push_back(c.time[row]);
     out.truth.push_back(c.truth[row]);
   }
-  mark_faults(out.sensor);
+  flag_faults(out.sensor);
   return out;
 }
 
-TEST_P(EveryFilter, half_and_a_quarter_of_the_rate_give_the_same_answer_within_half_a_degree) {
-  const CarriedSensor full = carried({.rate = 400.0});
+TEST_P(EveryFilter, HalfAndAQuarterOfTheRateGiveTheSameAnswerWithinHalfADegree) {
+  const CarriedSensor full = carried({.sampling_rate = 400.0});
   const auto reference = run(full);
   for (const std::size_t n : {2, 4}) {
     const CarriedSensor fewer = decimated(full, n);
@@ -93,15 +97,15 @@ TEST_P(EveryFilter, half_and_a_quarter_of_the_rate_give_the_same_answer_within_h
   }
 }
 
-TEST_P(EveryFilter, a_still_sensor_does_not_drift) {
+TEST_P(EveryFilter, AStillSensorDoesNotDrift) {
   const SensorModel grade = *sensor_grade("industrial");
-  const CarriedSensor c = carried({.seconds = 200.0, .rate = 50.0, .rest = 1000.0, .grade = &grade});
+  const CarriedSensor c = carried({.seconds = 200.0, .sampling_rate = 50.0, .rest = 1000.0, .grade = &grade});
   const auto q = run(c);
   EXPECT_LT(q[60 * 50].angularDistance(q.back()), std::max(0.5 * degree, GetParam().accuracy / 4))
       << "from one minute on";
 }
 
-TEST_P(EveryFilter, the_same_input_gives_the_same_bits) {
+TEST_P(EveryFilter, TheSameInputGivesTheSameBits) {
   const CarriedSensor c = carried({.seconds = 10.0});
   const auto a = run(c), b = run(c);
   for (std::size_t i = 0; i < a.size(); ++i) ASSERT_TRUE(a[i].coeffs() == b[i].coeffs());
@@ -114,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(Filters, EveryFilter,
                                            Case{"paper_iterated", PaperEkfOptions{.iterations = 3}, 4.0 * degree}),
                          [](const auto& chosen) { return std::string(chosen.param.name); });
 
-TEST(KinferOffline, time_reversal_gives_the_same_tilt) {
+TEST(KinferOffline, TimeReversalGivesTheSameTilt) {
   const SensorModel grade = *sensor_grade("noise");
   const CarriedSensor forward = carried({.grade = &grade, .has_magnetometer = false});
   CarriedSensor back;
@@ -122,19 +126,19 @@ TEST(KinferOffline, time_reversal_gives_the_same_tilt) {
   for (std::size_t k = 0; k < n; ++k) {  // backward, the interval before a row is the one after it
     const std::size_t from = k == 0 ? n - 1 : n - k;
     testing::append(back.sensor.acceleration, forward.sensor.acceleration.at(from));
-    testing::append(back.sensor.rate, -forward.sensor.rate.at(from));
+    testing::append(back.sensor.angular_velocity, -forward.sensor.angular_velocity.at(from));
     back.time.push_back(static_cast<double>(k) / 200.0);
   }
-  mark_faults(back.sensor);
-  const auto a = orientations(forward.sensor, forward.time, KinferOfflineOptions{});
-  auto b = orientations(back.sensor, back.time, KinferOfflineOptions{});
+  flag_faults(back.sensor);
+  const auto a = estimate_orientations(forward.sensor, forward.time, KinferOfflineOptions{});
+  auto b = estimate_orientations(back.sensor, back.time, KinferOfflineOptions{});
   std::ranges::reverse(b);
   const OrientationError e = orientation_error(b, a, std::vector<char>(n, 1), HeadingOffset::best_constant);
   EXPECT_LT(e.inclination, 0.05 * degree);
   EXPECT_LT(e.heading, 0.2 * degree);
 }
 
-TEST(KinferOffline, smoothing_tells_the_tilt_better_than_filtering) {
+TEST(KinferOffline, SmoothingTellsTheTiltBetterThanFiltering) {
   const SensorModel grade = *sensor_grade("industrial");
   for (const double scale_sd : {2e-3, 0.0})
     for (const int seed : {1, 2, 3}) {
@@ -142,8 +146,8 @@ TEST(KinferOffline, smoothing_tells_the_tilt_better_than_filtering) {
       KinferOfflineOptions offline;
       KinferFilterOptions online;
       online.scale_sd = offline.filter.scale_sd = scale_sd;
-      EXPECT_LT(inclination(c, orientations(c.sensor, c.time, offline)),
-                inclination(c, orientations(c.sensor, c.time, online)))
+      EXPECT_LT(inclination(c, estimate_orientations(c.sensor, c.time, offline)),
+                inclination(c, estimate_orientations(c.sensor, c.time, online)))
           << "seed " << seed << ", scale errors of " << scale_sd;
     }
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/inertial/gaussian_smoothing.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The filters against optical truth and encoders, on data that is not part of the project (KINFER_DATA).
 #include <gtest/gtest.h>
 
@@ -5,8 +6,8 @@
 #include <filesystem>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/inertial/orientation.hpp"
-#include "kinfer/inertial/orientation_error.hpp"
+#include "kinfer/inertial/filters/orientation.hpp"
+#include "kinfer/inertial/filters/orientation_error.hpp"
 #include "support/measured_trial.hpp"
 
 namespace kinfer {
@@ -25,7 +26,7 @@ OrientationError mean_over_broad(const FilterOptions& options, HeadingOffset off
   double n = 0.0;
   for (const auto& folder : fs::directory_iterator(fs::path(data_folder()) / "broad")) {
     const MeasuredTrial trial = testing::read_broad(folder.path());
-    const auto q = orientations(trial.recording.sensors[0], trial.recording.loggers[0].time, options);
+    const auto q = estimate_orientations(trial.recording.sensors[0], trial.recording.loggers[0].time, options);
     const OrientationError e = orientation_error(q, trial.truth, trial.moves, offset);
     mean.total += e.total / degree, mean.heading += e.heading / degree, mean.inclination += e.inclination / degree;
     n += 1.0;
@@ -34,7 +35,7 @@ OrientationError mean_over_broad(const FilterOptions& options, HeadingOffset off
   return mean;
 }
 
-TEST(Broad, the_online_filter_is_better_than_the_best_known_one) {
+TEST(Broad, TheOnlineFilterIsBetterThanTheBestKnownOne) {
   if (!data_folder()) GTEST_SKIP() << "KINFER_DATA is not set";
   const OrientationError nine = mean_over_broad(KinferFilterOptions{}, HeadingOffset::none);
   EXPECT_LT(nine.total, 2.0) << "VQF: 2.33";
@@ -45,7 +46,7 @@ TEST(Broad, the_online_filter_is_better_than_the_best_known_one) {
   EXPECT_LT(blind.heading, 1.2) << "VQF: 2.21";
 }
 
-TEST(Broad, the_smoother_is_better_than_the_best_known_one) {
+TEST(Broad, TheSmootherIsBetterThanTheBestKnownOne) {
   if (!data_folder()) GTEST_SKIP() << "KINFER_DATA is not set";
   const OrientationError nine = mean_over_broad(KinferOfflineOptions{}, HeadingOffset::none);
   EXPECT_LT(nine.total, 1.8) << "VQF: 2.25";
@@ -54,14 +55,14 @@ TEST(Broad, the_smoother_is_better_than_the_best_known_one) {
   EXPECT_LT(mean_over_broad(six, HeadingOffset::best_constant).heading, 1.1) << "VQF: 2.20";
 }
 
-TEST(Broad, the_papers_filter_is_worth_a_few_degrees) {
+TEST(Broad, ThePapersFilterIsWorthAFewDegrees) {
   if (!data_folder()) GTEST_SKIP() << "KINFER_DATA is not set";
   const OrientationError e = mean_over_broad(PaperEkfOptions{}, HeadingOffset::none);
   EXPECT_LT(e.total, 7.0);
   EXPECT_GT(e.total, mean_over_broad(KinferFilterOptions{}, HeadingOffset::none).total);
 }
 
-TEST(Ur5, the_forearms_orientation_is_right_to_0_6_degrees) {
+TEST(Ur5, TheForearmsOrientationIsRightTo06Degrees) {
   if (!data_folder()) GTEST_SKIP() << "KINFER_DATA is not set";
   const fs::path folder = fs::path(data_folder()) / "ur5_openaxes";
   for (const FilterOptions& options : {FilterOptions(KinferFilterOptions{}), FilterOptions(KinferOfflineOptions{})}) {
@@ -69,7 +70,7 @@ TEST(Ur5, the_forearms_orientation_is_right_to_0_6_degrees) {
     for (const char* run : {"circle-150", "circle-250", "triangle-150"}) {
       const MeasuredTrial trial =
           read_trial(folder / (std::string(run) + "_imu.csv"), folder / (std::string(run) + "_truth.csv"), "radius_");
-      const auto q = orientations(trial.recording.sensors[0], trial.recording.loggers[0].time, options);
+      const auto q = estimate_orientations(trial.recording.sensors[0], trial.recording.loggers[0].time, options);
       mean += aligned_error(q, trial.truth) / degree / 3.0;
     }
     EXPECT_LT(mean, 0.6);

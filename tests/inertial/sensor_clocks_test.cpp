@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/inertial/sensor_clocks.hpp"
 
 #include <gtest/gtest.h>
@@ -13,9 +14,9 @@ using testing::CarriedSensor;
 /// Two sensors of one body, mounted anyhow; the second logs everything `late` and drifts.
 InsRecording two_clocks(double late, double drift, double seconds) {
   const SensorModel grade = *sensor_grade("industrial");
-  CarriedSensor a = carried({.seconds = seconds, .rate = 100.0, .grade = &grade, .has_magnetometer = false});
+  CarriedSensor a = carried({.seconds = seconds, .sampling_rate = 100.0, .grade = &grade, .has_magnetometer = false});
   CarriedSensor b = carried({.seconds = seconds,
-                             .rate = 100.0,
+                             .sampling_rate = 100.0,
                              .mounting = Quat(from_rpy({1, 2, 3})),
                              .grade = &grade,
                              .has_magnetometer = false,
@@ -30,25 +31,25 @@ InsRecording two_clocks(double late, double drift, double seconds) {
 
 TEST(SensorClocks, AreFoundToAMillisecondForAnyStart) {
   for (const double late : {0.0, 0.013, -0.05, 8.0, -1000.003}) {
-    const auto clocks = sensor_clocks(two_clocks(late, 0.0, 60.0));
+    const auto clocks = estimate_sensor_clocks(two_clocks(late, 0.0, 60.0));
     EXPECT_TRUE(clocks[0].known && clocks[1].known);
     EXPECT_NEAR(clocks[1].correction.shift_at(30.0 + late) - clocks[0].correction.offset, -late, 1e-3) << late;
   }
 }
 
 TEST(SensorClocks, ADriftShowsInALongRecording) {
-  const auto clocks = sensor_clocks(two_clocks(0.02, 8e-5, 600.0));
+  const auto clocks = estimate_sensor_clocks(two_clocks(0.02, 8e-5, 600.0));
   EXPECT_NEAR(clocks[1].correction.drift, -8e-5, 5e-6);
 }
 
 TEST(SensorClocks, OfASensorThatNeverMovesNothingIsKnown) {
   InsRecording recording = two_clocks(0.0, 0.0, 60.0);
-  for (auto& axis : recording.sensors[1].rate.axis) std::fill(axis.begin(), axis.end(), 0.001f);
-  EXPECT_FALSE(sensor_clocks(recording)[1].known);
+  for (auto& axis : recording.sensors[1].angular_velocity.axis) std::fill(axis.begin(), axis.end(), 0.001f);
+  EXPECT_FALSE(estimate_sensor_clocks(recording)[1].known);
 }
 
 TEST(SensorClocks, TakeARecordingThatIsTooShort) {
-  EXPECT_EQ(sensor_clocks(two_clocks(0.0, 0.0, 1.0)).size(), 2u);
+  EXPECT_EQ(estimate_sensor_clocks(two_clocks(0.0, 0.0, 1.0)).size(), 2u);
 }
 
 }  // namespace

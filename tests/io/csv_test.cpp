@@ -1,4 +1,5 @@
-#include "kinfer/io/csv.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/text/csv.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-#include "kinfer/io/ins_csv.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/recording/ins_csv.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +10,7 @@
 #include <fstream>
 
 #include "kinfer/base/rng.hpp"
-#include "kinfer/io/number_rows.hpp"
+#include "kinfer/io/text/plain_decimal.hpp"
 
 namespace kinfer {
 namespace {
@@ -30,7 +31,7 @@ std::string error_of(const std::string& text) {
   return read ? "no error" : read.error().what;
 }
 
-TEST(InsCsv, rows_become_columns_of_each_sensor) {
+TEST(InsCsv, RowsBecomeColumnsOfEachSensor) {
   const std::string text =
       "# logger 7\nt,a_ax,a_ay,a_az,a_gx,a_gy,a_gz,boom_2_gx,boom_2_gy,boom_2_gz,boom_2_ax,boom_2_ay,boom_2_az\n"
       "0,1,2,9.5,4,5,6,7,8,9,1,0,9.75\n# a comment\n\n0.01,,,,4.5,nan,6.5,7,8,9,1,0,9.75\r\n";
@@ -40,13 +41,13 @@ TEST(InsCsv, rows_become_columns_of_each_sensor) {
   EXPECT_EQ(read->sensors[1].name, "boom_2");
   EXPECT_EQ(read->loggers[0].time, (std::vector<double>{0, 0.01}));
   EXPECT_EQ(read->sensors[0].acceleration.at(0), Vec3(1, 2, 9.5));
-  EXPECT_EQ(read->sensors[1].rate.at(1), Vec3(7, 8, 9));
+  EXPECT_EQ(read->sensors[1].angular_velocity.at(1), Vec3(7, 8, 9));
   EXPECT_EQ(read->sensors[1].acceleration.at(1), Vec3(1, 0, 9.75));
-  EXPECT_EQ(read->sensors[0].faults[1], acceleration_missing | rate_missing);
+  EXPECT_EQ(read->sensors[0].faults[1], acceleration_missing | angular_velocity_missing);
   EXPECT_FALSE(read->sensors[0].has_magnetometer());
 }
 
-TEST(InsCsv, units_in_brackets_are_converted) {
+TEST(InsCsv, UnitsInBracketsAreConverted) {
   const std::string text =
       "t[ms],s_ax[g],s_ay[g],s_az[g],s_gx[deg/s],s_gy[deg/s],s_gz[deg/s],s_mx[mT],s_my[G],s_mz[uT]\n"
       "0,0,0,1,180,0,0,0.02,0.3,-44\n10,0,0,1,180,0,0,0.02,0.3,-44\n";
@@ -55,11 +56,11 @@ TEST(InsCsv, units_in_brackets_are_converted) {
   const InsSensor& s = read->sensors[0];
   EXPECT_NEAR(read->loggers[0].time[1], 0.01, 1e-15);
   EXPECT_NEAR(s.acceleration.at(0).z(), 9.80665, 1e-6);
-  EXPECT_NEAR(s.rate.at(0).x(), 3.14159265, 1e-6);
+  EXPECT_NEAR(s.angular_velocity.at(0).x(), 3.14159265, 1e-6);
   EXPECT_LT((s.field.at(0) - Vec3(20, 30, -44)).norm(), 1e-5);
 }
 
-TEST(InsCsv, a_wrong_header_has_one_sentence) {
+TEST(InsCsv, AWrongHeaderHasOneSentence) {
   EXPECT_EQ(error_of(""), "imu.csv: the file has no header line");
   EXPECT_EQ(error_of("a,b\n1,2\n"),
             "imu.csv:1: expected a column t (time in s) and columns SENSOR_ax ... SENSOR_gz, found no t");
@@ -76,7 +77,7 @@ TEST(InsCsv, a_wrong_header_has_one_sentence) {
   EXPECT_EQ(error_of(imu_header), "imu.csv: the file has a header but no rows");
 }
 
-TEST(InsCsv, a_wrong_row_is_named_with_its_line) {
+TEST(InsCsv, AWrongRowIsNamedWithItsLine) {
   EXPECT_EQ(error_of(imu_header + still_rows(2) + "0.02,1,2,3\n" + still_rows(1, 9.81, 0.03)),
             "imu.csv:4: expected 10 columns, found 4");
   EXPECT_EQ(error_of(imu_header + "0,0,0,9.8,0,0,0,1,20,-44,5\n"), "imu.csv:2: expected 10 columns, found 11");
@@ -85,14 +86,14 @@ TEST(InsCsv, a_wrong_row_is_named_with_its_line) {
   EXPECT_EQ(error_of(imu_header + ",0,0,9.8,0,0,0,1,20,-44\n"), "imu.csv:2: column t: expected a time, found none");
 }
 
-TEST(InsCsv, time_must_rise) {
+TEST(InsCsv, TimeMustRise) {
   EXPECT_EQ(error_of(imu_header + still_rows(3) + still_rows(1, 9.81, 0.0)),
             "imu.csv:5: the time goes backwards, from 0.02 s to 0 s; is this several recordings in one file?");
   EXPECT_EQ(error_of(imu_header + still_rows(3) + still_rows(1, 9.81, 0.02)),
-            "imu.csv:5: the time 0.02 s repeats; each row needs a time of its own");
+            "imu.csv:5: duplicate time 0.02 s; the time must be strictly increasing");
 }
 
-TEST(InsCsv, numbers_that_cannot_be_are_said) {
+TEST(InsCsv, NumbersThatCannotBeAreSaid) {
   EXPECT_EQ(error_of(imu_header + still_rows(50, 1.0)),
             "imu.csv: imu: gravity reads 1.01 m/s²: the file seems to be in g; write the headers as imu_ax[g], "
             "imu_ay[g], imu_az[g]");
@@ -103,7 +104,7 @@ TEST(InsCsv, numbers_that_cannot_be_are_said) {
   EXPECT_NE(error_of(fast).find("the file seems to be in °/s; write the headers as imu_gx[deg/s]"), std::string::npos);
 }
 
-TEST(InsCsv, a_field_that_no_place_has_is_said_and_not_used) {
+TEST(InsCsv, AFieldThatNoPlaceHasIsSaidAndNotUsed) {
   std::string text = imu_header;
   for (int i = 0; i < 50; ++i) text += fmt::format("{},0,0,9.8,0,0,0,0.1,0.4,-0.5\n", 0.01 * i);
   auto read = parse_ins_csv(text, "imu.csv");
@@ -116,7 +117,7 @@ TEST(InsCsv, a_field_that_no_place_has_is_said_and_not_used) {
   EXPECT_TRUE(read->sensors[0].has_magnetometer()) << "arbitrary units, and said so";
 }
 
-TEST(InsCsv, an_all_zero_magnetometer_is_said_and_not_used) {
+TEST(InsCsv, AnAllZeroMagnetometerIsSaidAndNotUsed) {
   std::string text = imu_header;
   for (int i = 0; i < 50; ++i) text += fmt::format("{},0,0,9.8,0,0,0,0,0,0\n", 0.01 * i);
   const auto read = parse_ins_csv(text, "imu.csv");
@@ -125,7 +126,7 @@ TEST(InsCsv, an_all_zero_magnetometer_is_said_and_not_used) {
   EXPECT_EQ(read->remarks.at(0), "imu: the magnetometer says nothing but zeros: it is not used");
 }
 
-TEST(InsCsv, what_is_odd_but_usable_is_a_remark) {
+TEST(InsCsv, WhatIsOddButUsableIsARemark) {
   const auto remarks = [](const std::string& text) {
     const auto read = parse_ins_csv(text, "imu.csv");
     return read ? read->remarks : std::vector<std::string>{read.error().what};
@@ -158,7 +159,7 @@ class TwoFiles : public ::testing::Test {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "kinfer_ins_csv_test";
 };
 
-TEST_F(TwoFiles, each_file_is_a_logger_with_its_own_clock) {
+TEST_F(TwoFiles, EachFileIsALoggerWithItsOwnClock) {
   const std::vector<std::filesystem::path> paths{folder / "one.csv", folder / "two.csv"};
   const auto read = read_ins_csv(paths);
   ASSERT_TRUE(read) << read.error().what;
@@ -168,22 +169,22 @@ TEST_F(TwoFiles, each_file_is_a_logger_with_its_own_clock) {
   EXPECT_EQ(read->sensors[0].rows(), 5u);
 }
 
-TEST_F(TwoFiles, a_sensor_may_be_in_one_file_only) {
+TEST_F(TwoFiles, ASensorMayBeInOneFileOnly) {
   const std::vector<std::filesystem::path> paths{folder / "one.csv", folder / "one.csv"};
   const auto read = read_ins_csv(paths);
   ASSERT_FALSE(read);
-  EXPECT_NE(read.error().what.find("sensor imu is in one.csv too; each sensor needs a name of its own"),
+  EXPECT_NE(read.error().what.find("sensor imu also appears in one.csv; sensor names must be unique"),
             std::string::npos);
 }
 
-TEST_F(TwoFiles, a_path_that_cannot_be_read_is_said) {
+TEST_F(TwoFiles, APathThatCannotBeReadIsSaid) {
   EXPECT_EQ(read_ins_csv(folder / "none.csv").error().what, (folder / "none.csv").string() + ": no such file");
   EXPECT_EQ(read_ins_csv(folder).error().what, folder.string() + ": expected a file, found a folder");
   write("empty.csv", "");
   EXPECT_EQ(read_ins_csv(folder / "empty.csv").error().what, (folder / "empty.csv").string() + ": the file is empty");
 }
 
-TEST(PlainDecimal, is_what_from_chars_reads_or_nothing) {
+TEST(PlainDecimal, IsWhatFromCharsReadsOrNothing) {
   Rng rng(9);
   const std::string letters = "0123456789.-+eE,";
   int read = 0;
@@ -204,7 +205,7 @@ TEST(PlainDecimal, is_what_from_chars_reads_or_nothing) {
   EXPECT_GT(read, 130000);
 }
 
-TEST(InsCsv, no_mangled_file_crashes_the_reader_or_slips_through_with_broken_shapes) {
+TEST(InsCsv, NoMangledFileCrashesTheReaderOrSlipsThroughWithBrokenShapes) {
   Rng rng(4);
   const std::string good = imu_header + still_rows(30);
   const std::string bytes = "0123456789.,-+eE\n\r#\"[]t_agmxyz nan\xff\0";
@@ -235,14 +236,14 @@ TEST(InsCsv, no_mangled_file_crashes_the_reader_or_slips_through_with_broken_sha
     ++accepted;
     for (const InsSensor& s : read->sensors) {
       ASSERT_EQ(s.rows(), read->time(s).size());
-      for (const TriadColumns* t : {&s.acceleration, &s.rate, &s.field})
+      for (const TriadColumns* t : {&s.acceleration, &s.angular_velocity, &s.field})
         for (const auto& axis : t->axis) ASSERT_TRUE(axis.size() == s.rows() || (t == &s.field && axis.empty()));
     }
   }
   EXPECT_GT(accepted, 1000);
 }
 
-TEST(InsCsv, a_measured_recording_is_understood) {
+TEST(InsCsv, AMeasuredRecordingIsUnderstood) {
   const char* data = std::getenv("KINFER_DATA");
   if (!data) GTEST_SKIP() << "KINFER_DATA is not set";
   const auto read = read_ins_csv(std::filesystem::path(data) / "ur5_openaxes" / "circle-150_imu.csv");
@@ -250,7 +251,7 @@ TEST(InsCsv, a_measured_recording_is_understood) {
   EXPECT_EQ(read->sensors.size(), 2u);
   EXPECT_EQ(read->sensors[0].name, "radius");
   EXPECT_EQ(read->loggers[0].time.size(), 4282u);
-  EXPECT_NEAR(typical_period(read->loggers[0].time), 0.008, 1e-9);
+  EXPECT_NEAR(median_period(read->loggers[0].time), 0.008, 1e-9);
 }
 
 }  // namespace

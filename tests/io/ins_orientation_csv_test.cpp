@@ -1,14 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
-#include "kinfer/io/orientation_csv.hpp"
-#include "kinfer/io/text_file.hpp"
+#include "kinfer/io/recording/orientation_csv.hpp"
+#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 namespace {
 
-TEST(OrientationCsv, has_one_row_per_input_row_and_empty_cells_for_other_loggers) {
+TEST(OrientationCsv, HasOneRowPerInputRowAndEmptyCellsForOtherLoggers) {
   InsRecording recording;
   recording.loggers = {{"a.csv", {0.0, 0.25}}, {"b.csv", {7.5}}};
   recording.sensors.resize(2);
@@ -26,7 +27,7 @@ TEST(OrientationCsv, has_one_row_per_input_row_and_empty_cells_for_other_loggers
   std::filesystem::remove(path);
 }
 
-TEST(OrientationCsv, a_path_that_cannot_be_written_is_said) {
+TEST(OrientationCsv, APathThatCannotBeWrittenIsSaid) {
   const auto done = write_orientation_csv("/no such folder/q.csv", {}, {});
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().what.find("does the folder exist"), std::string::npos);

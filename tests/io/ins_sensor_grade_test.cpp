@@ -1,15 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/io/sensor_grade_toml.hpp"
+#include "kinfer/io/recording/sensor_grade_toml.hpp"
 
 namespace kinfer {
 namespace {
 
-TEST(SensorGradeToml, what_is_written_is_read_back) {
+TEST(SensorGradeToml, WhatIsWrittenIsReadBack) {
   for (const std::string_view name : sensor_grade_names) {
     const SensorModel model = *sensor_grade(name);
-    const auto back = parse_sensor_grade(sensor_grade_toml(model), "grade.toml");
+    const auto back = parse_sensor_grade(format_sensor_grade(model), "grade.toml");
     ASSERT_TRUE(back) << back.error().what;
     EXPECT_EQ(back->name, model.name);
     const InstrumentModel* a[] = {&model.accelerometer, &model.gyroscope, &model.magnetometer};
@@ -25,7 +26,7 @@ TEST(SensorGradeToml, what_is_written_is_read_back) {
   }
 }
 
-TEST(SensorGradeToml, data_sheet_units_are_converted) {
+TEST(SensorGradeToml, DataSheetUnitsAreConverted) {
   const auto model = parse_sensor_grade(
       "name = \"mine\"\nunits = { acceleration = \"g\", angular_rate = \"deg/s\" }\n"
       "[gyroscope]\nnoise_density = 0.005\nrange = 2000\n[accelerometer]\nbias = 1e-3\n",
@@ -36,7 +37,7 @@ TEST(SensorGradeToml, data_sheet_units_are_converted) {
   EXPECT_NEAR(model->accelerometer.bias_sd, 9.80665e-3, 1e-15);
 }
 
-TEST(SensorGradeToml, what_is_wrong_has_file_and_line) {
+TEST(SensorGradeToml, WhatIsWrongHasFileAndLine) {
   const auto wrong = [](const char* text) { return parse_sensor_grade(text, "grade.toml").error().what; };
   EXPECT_EQ(wrong("[gyroscope]\nnoise_density = -1\n"),
             "grade.toml:2: gyroscope: \"noise_density\": expected a number that is not negative");

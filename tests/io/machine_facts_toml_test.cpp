@@ -1,11 +1,12 @@
-#include "kinfer/io/machine_facts_toml.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/recording/machine_facts_toml.hpp"
 
 #include <gtest/gtest.h>
 
 namespace kinfer {
 namespace {
 
-TEST(MachineFactsToml, every_kind_of_fact_is_read_in_its_unit) {
+TEST(MachineFactsToml, EveryKindOfFactIsReadInItsUnit) {
   const auto facts = parse_machine_facts(R"(
 units = { length = "mm" }
 [[place]]
@@ -50,7 +51,7 @@ sigma = 3
   EXPECT_TRUE(facts->surveys[0].xyz.isApprox(Vec3(1, 0, -0.25)));
 }
 
-TEST(MachineFactsToml, what_is_wrong_has_file_and_line) {
+TEST(MachineFactsToml, WhatIsWrongHasFileAndLine) {
   const auto wrong = [](const char* text) {
     const auto facts = parse_machine_facts(text, "facts.toml");
     return facts ? "(accepted)" : facts.error().what;

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 // Readers of files that the world writes: whatever the bytes, either a value or one sentence, and never a crash.
 #include <gtest/gtest.h>
 
 #include "kinfer/base/rng.hpp"
-#include "kinfer/io/csv.hpp"
-#include "kinfer/io/pose_set_csv.hpp"
-#include "kinfer/io/robot_toml.hpp"
-#include "kinfer/io/urdf.hpp"
+#include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/text/csv.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
 
@@ -78,7 +79,7 @@ TEST(Mutations, ANumericTableIsReadOrRefused) {
 }
 
 TEST(Mutations, ARobotFileIsReadOrRefusedAndWhatIsReadCanMove) {
-  const int refused = refusals(robot_toml({.chain = laws::compliant_tree()}), [](const std::string& text) {
+  const int refused = refusals(format_robot_toml({.chain = laws::compliant_tree()}), [](const std::string& text) {
     auto robot = parse_robot_toml(text, "file");
     if (robot)
       forward(robot->chain, VectorXd(VectorXd::Zero(dof(robot->chain))));  // stops where the chain is not well formed
@@ -89,7 +90,7 @@ TEST(Mutations, ARobotFileIsReadOrRefusedAndWhatIsReadCanMove) {
 }
 
 TEST(Mutations, AUrdfIsReadOrRefusedAndWhatIsReadCanMove) {
-  const int refused = refusals(urdf(laws::coupled()), [](const std::string& text) {
+  const int refused = refusals(format_urdf(laws::coupled()), [](const std::string& text) {
     auto chain = parse_urdf(text, "file");
     if (chain) forward(*chain, VectorXd(VectorXd::Zero(dof(*chain))));
     return chain;

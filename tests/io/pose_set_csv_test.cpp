@@ -1,4 +1,5 @@
-#include "kinfer/io/pose_set_csv.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/pose_set/pose_set_csv.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,7 @@
 #include <string>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/io/robot_toml.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
 
 namespace kinfer {
 namespace {
@@ -25,7 +26,8 @@ Chain two_joints() {
   return chain;
 }
 
-PoseSet poses_of(const std::string& text, const ColumnMap& map = {}, Expect expect = Expect::measurements) {
+PoseSet poses_of(const std::string& text, const ColumnMap& map = {},
+                 RequiredContent expect = RequiredContent::measurements) {
   const Result<PoseSet> set = parse_pose_set(text, "poses.csv", two_joints(), map, expect);
   EXPECT_TRUE(set.has_value()) << (set ? "" : set.error().what);
   return set.value_or(PoseSet{});
@@ -129,7 +131,7 @@ TEST(PoseSetCsv, ACovarianceIsKeptAsDeviationsAlongItsAxes) {
   const Mat3 turn = 1e-6 * (Mat3() << 1, 0.5, 0, 0.5, 1, 0, 0, 0, 0).finished();
   EXPECT_TRUE(covariance_of(*set.orientations[0].sd, set.orientations[0].axes).isApprox(turn, 1e-12));
   for (const FileUnits units : {FileUnits::si, FileUnits::mm_deg}) {
-    const PoseSet again = poses_of(pose_set_csv(set, two_joints(), units));
+    const PoseSet again = poses_of(format_pose_set_csv(set, two_joints(), units));
     ASSERT_EQ(again.points.size(), 3U);
     EXPECT_TRUE(covariance_of(*again.points[0].sd, again.points[0].axes).isApprox(point, 1e-9));
     EXPECT_TRUE(covariance_of(*again.orientations[0].sd, again.orientations[0].axes).isApprox(turn, 1e-9));
@@ -161,13 +163,13 @@ TEST(PoseSetCsv, HowPointAndOrientationGoTogetherIsReadAndWritten) {
   const PoseSet set = poses_of(text);
   ASSERT_EQ(set.orientations.size(), 2U);
   const Mat3 expected = 1e-6 * (Mat3() << 1, 2, -1, 0.5, 3, -2, 0, 1, 2).finished();  // rows: the point's axes
-  EXPECT_TRUE(set.orientations[0].with_point->isApprox(expected, 1e-12));
-  EXPECT_FALSE(set.orientations[1].with_point);
+  EXPECT_TRUE(set.orientations[0].covariance_with_point->isApprox(expected, 1e-12));
+  EXPECT_FALSE(set.orientations[1].covariance_with_point);
   for (const FileUnits units : {FileUnits::si, FileUnits::mm_deg}) {
-    const PoseSet again = poses_of(pose_set_csv(set, two_joints(), units));
+    const PoseSet again = poses_of(format_pose_set_csv(set, two_joints(), units));
     ASSERT_EQ(again.orientations.size(), 2U);
-    EXPECT_TRUE(again.orientations[0].with_point->isApprox(expected, 1e-9));
-    EXPECT_FALSE(again.orientations[1].with_point);
+    EXPECT_TRUE(again.orientations[0].covariance_with_point->isApprox(expected, 1e-9));
+    EXPECT_FALSE(again.orientations[1].covariance_with_point);
   }
 }
 
@@ -197,7 +199,7 @@ TEST(PoseSetCsv, RowsMayHaveLoadsLabelsSetupsSweepsTorquesAndCommands) {
       "0,0,1,2,3,5,train,A,,0.1,0.2,1,2\n"
       "0,0,1,2,3,,holdout,B,pan,,0.4,3,4\n");
   EXPECT_EQ(set.payload, (std::vector<double>{5, 0}));
-  EXPECT_EQ(set.set, (std::vector{SetLabel::train, SetLabel::holdout}));
+  EXPECT_EQ(set.set, (std::vector{SplitLabel::train, SplitLabel::holdout}));
   EXPECT_EQ(set.setup, (std::vector<int>{0, 1}));
   EXPECT_EQ(set.setups, (std::vector<std::string>{"A", "B"}));
   EXPECT_EQ(set.sweep, (std::vector<int>{-1, 0}));
@@ -251,13 +253,13 @@ TEST(PoseSetCsv, WhatIsWrittenIsReadBack) {
   for (const char* text : texts)
     for (const FileUnits units : {FileUnits::si, FileUnits::mm_deg}) {
       const PoseSet set = poses_of(text);
-      expect_same(set, poses_of(pose_set_csv(set, two_joints(), units)));
+      expect_same(set, poses_of(format_pose_set_csv(set, two_joints(), units)));
     }
 }
 
 TEST(PoseSetCsv, JointsAloneAreEnoughWherePosesArePredicted) {
-  EXPECT_EQ(poses_of("q1,q2\n0,1\n2,3\n", {}, Expect::joints_only).rows(), 2);
-  const PoseSet with_anchor = poses_of("q1,q2,anchor\n0,1,2\n2,3,\n", {}, Expect::joints_only);
+  EXPECT_EQ(poses_of("q1,q2\n0,1\n2,3\n", {}, RequiredContent::joints_only).rows(), 2);
+  const PoseSet with_anchor = poses_of("q1,q2,anchor\n0,1,2\n2,3,\n", {}, RequiredContent::joints_only);
   EXPECT_EQ(with_anchor.rows(), 2);
   ASSERT_EQ(with_anchor.distances.size(), 1U);
   EXPECT_EQ(with_anchor.distances[0].anchor, 1);

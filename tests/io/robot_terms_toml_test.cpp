@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // What goes beyond geometry, and what instruments refer to, survives the robot file.
 #include <gtest/gtest.h>
 
-#include "kinfer/io/pose_set_csv.hpp"
-#include "kinfer/io/robot_toml.hpp"
+#include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
 
@@ -18,10 +19,11 @@ RobotModel rich_robot() {
   chain.expansion = 2e-5;
   chain.reference_temperature = 21.5;
   chain.setup = "first";
-  chain.surroundings.anchors = {Vec3(1.8, -0.9, 0.1)};
-  chain.surroundings.sockets = {{"a \"deep\" one", Vec3(1, 2, 3)}, {"b", Vec3(0.5, 0, 0)}};
-  chain.surroundings.planes = {{.name = "table", .rotation = rot_x(0.3), .turn = Vec3(0.1, 0.2, 0), .offset = 0.4}};
-  chain.surroundings.socket_distances = {{0, 1, 0.05, 1e-5}};
+  chain.fixtures.anchors = {Vec3(1.8, -0.9, 0.1)};
+  chain.fixtures.sockets = {{"a \"deep\" one", Vec3(1, 2, 3)}, {"b", Vec3(0.5, 0, 0)}};
+  chain.fixtures.planes = {
+      {.name = "table", .rotation = rot_x(0.3), .small_rotation = Vec3(0.1, 0.2, 0), .offset = 0.4}};
+  chain.fixtures.socket_distances = {{0, 1, 0.05, 1e-5}};
   chain.mountings = {{.name = "second", .base = chain.base, .tool = chain.tool},
                      {.name = "J4", .base = {}, .tool = chain.tool, .tip = 3}};
   chain.mountings[0].tool.xyz.x() += 0.1;
@@ -29,25 +31,26 @@ RobotModel rich_robot() {
   return robot;
 }
 
-TEST(RobotTerms, come_back_from_the_file_as_they_were) {
+TEST(RobotTerms, ComeBackFromTheFileAsTheyWere) {
   const RobotModel robot = rich_robot();
-  const auto read = parse_robot_toml(robot_toml(robot, {{"sin1q1", 1e-5}, {"cos1q1", 1e-5}, {"anchor1_x", 1e-3}}), "x");
+  const auto read =
+      parse_robot_toml(format_robot_toml(robot, {{"sin1q1", 1e-5}, {"cos1q1", 1e-5}, {"anchor1_x", 1e-3}}), "x");
   ASSERT_TRUE(read.has_value()) << read.error().what;
   const Chain &a = robot.chain, &b = read->chain;
   const std::vector<double> torques{1, 20, 3, 4, 5, 6}, approach{1, 1, 1, -1, 1, 0};
   Load load;
-  load.warming = 6.0, load.torques = torques, load.approach = approach;
+  load.temperature_rise = 6.0, load.torques = torques, load.approach = approach;
   const VectorXd q = laws::random_q(a, Rng(4));
   EXPECT_LT((forward(a, q, load).position - forward(b, q, load).position).norm(), 1e-12);
   EXPECT_EQ(b.setup, "first");
   EXPECT_EQ(b.reference_temperature, 21.5);
-  EXPECT_EQ(b.surroundings.anchors, a.surroundings.anchors);
-  EXPECT_EQ(b.surroundings.sockets[0].name, "a \"deep\" one");
-  EXPECT_LT((b.surroundings.sockets[0].xyz - Vec3(1, 2, 3)).norm(), 1e-15);
-  EXPECT_LT((b.surroundings.planes[0].normal() - a.surroundings.planes[0].normal()).norm(), 1e-12);
-  EXPECT_EQ(b.surroundings.planes[0].offset, 0.4);
-  EXPECT_EQ(b.surroundings.socket_distances[0].distance, 0.05);
-  EXPECT_EQ(b.surroundings.socket_distances[0].sd, 1e-5);
+  EXPECT_EQ(b.fixtures.anchors, a.fixtures.anchors);
+  EXPECT_EQ(b.fixtures.sockets[0].name, "a \"deep\" one");
+  EXPECT_LT((b.fixtures.sockets[0].xyz - Vec3(1, 2, 3)).norm(), 1e-15);
+  EXPECT_LT((b.fixtures.planes[0].normal() - a.fixtures.planes[0].normal()).norm(), 1e-12);
+  EXPECT_EQ(b.fixtures.planes[0].offset, 0.4);
+  EXPECT_EQ(b.fixtures.socket_distances[0].distance, 0.05);
+  EXPECT_EQ(b.fixtures.socket_distances[0].sd, 1e-5);
   ASSERT_EQ(b.mountings.size(), 2u);
   EXPECT_TRUE(b.mountings[0].base.has_value());
   EXPECT_FALSE(b.mountings[1].base.has_value());
@@ -57,8 +60,8 @@ TEST(RobotTerms, come_back_from_the_file_as_they_were) {
   EXPECT_EQ(*read->instrument->sigma_tilt, 0.01);
 }
 
-TEST(RobotTerms, mistakes_are_said_with_their_line) {
-  const std::string text = robot_toml({.chain = laws::scara()});
+TEST(RobotTerms, MistakesAreSaidWithTheirLine) {
+  const std::string text = format_robot_toml({.chain = laws::scara()});
   const auto with = [&](const std::string& more) { return parse_robot_toml(text + more, "r.toml"); };
   EXPECT_NE(with("[[mounting]]\nname = \"x\"\ntip = \"nobody\"\n").error().what.find("nobody"), std::string::npos);
   EXPECT_NE(with("[[plane]]\nname = \"p\"\noffset = 1\n").error().what.find("normal"), std::string::npos);
@@ -66,7 +69,7 @@ TEST(RobotTerms, mistakes_are_said_with_their_line) {
             std::string::npos);
 }
 
-TEST(PoseSetColumns, tip_and_deviations_of_orientations_are_read_and_written) {
+TEST(PoseSetColumns, TipAndDeviationsOfOrientationsAreReadAndWritten) {
   const Chain chain = laws::er20();
   const std::string text =
       "q1,q2,q3,q4,q5,q6,x,y,z,qw,qx,qy,qz,srx[mrad],sry[mrad],srz[mrad],tip\n"
@@ -78,7 +81,7 @@ TEST(PoseSetColumns, tip_and_deviations_of_orientations_are_read_and_written) {
   EXPECT_FALSE(set->orientations[1].sd.has_value());
   EXPECT_EQ(set->tips, (std::vector<std::string>{"J4"}));
   EXPECT_EQ(set->tip, (std::vector<int>{0, -1}));
-  const auto again = parse_pose_set(pose_set_csv(*set, chain, FileUnits::mm_deg), "p.csv", chain);
+  const auto again = parse_pose_set(format_pose_set_csv(*set, chain, FileUnits::mm_deg), "p.csv", chain);
   ASSERT_TRUE(again.has_value()) << again.error().what;
   EXPECT_EQ(again->tip, set->tip);
   EXPECT_LT((*again->orientations[0].sd - *set->orientations[0].sd).norm(), 1e-15);

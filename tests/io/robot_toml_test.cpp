@@ -1,4 +1,5 @@
-#include "kinfer/io/robot_toml.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/robot/robot_toml.hpp"
 
 #include <gtest/gtest.h>
 
@@ -85,8 +86,8 @@ TEST(RobotToml, UnitsRuleEveryLengthAndAngleOfTheFile) {
   ASSERT_TRUE(robot.instrument.has_value());
   EXPECT_DOUBLE_EQ(robot.instrument->sigma, 1e-5);
   EXPECT_DOUBLE_EQ(robot.instrument->ppm, 5.0);
-  ASSERT_EQ(robot.chain.surroundings.anchors.size(), 1U);
-  EXPECT_TRUE(robot.chain.surroundings.anchors[0].isApprox(Vec3(1.8, -0.9, 0.1)));
+  ASSERT_EQ(robot.chain.fixtures.anchors.size(), 1U);
+  EXPECT_TRUE(robot.chain.fixtures.anchors[0].isApprox(Vec3(1.8, -0.9, 0.1)));
   ASSERT_EQ(chain.targets.size(), 1U);
   EXPECT_TRUE(chain.targets[0].xyz.isApprox(Vec3(0.01, 0, 0)));
   ASSERT_EQ(chain.masses.size(), 1U);

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/io/digits.hpp"
-#include "kinfer/io/robot_toml.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/text/format_number.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
 
@@ -26,7 +27,7 @@ double largest_difference(const Chain& a, const Chain& b) {
 }
 
 Chain read_back(const RobotModel& robot, FileUnits units, const StandardDeviations& sd = {}) {
-  const std::string text = robot_toml(robot, sd, units);
+  const std::string text = format_robot_toml(robot, sd, units);
   const auto read = parse_robot_toml(text, "chain.toml");
   EXPECT_TRUE(read.has_value()) << (read ? "" : read.error().what) << "\n" << text;
   return read ? read->chain : Chain{};
@@ -40,7 +41,7 @@ TEST_P(RobotTomlRoundTrip, WhatIsReadBackPredictsTheSamePoses) {
 TEST_P(RobotTomlRoundTrip, StandardDeviationsBesideTheNumbersDoNotDisturbThem) {
   StandardDeviations sd;
   for (const Parameter& parameter : all_parameters(GetParam(), {}).parameters) sd[parameter.name] = 1e-4;
-  const std::string text = robot_toml({.chain = GetParam()}, sd);
+  const std::string text = format_robot_toml({.chain = GetParam()}, sd);
   EXPECT_NE(text.find("_sd = "), std::string::npos);
   EXPECT_LT(largest_difference(GetParam(), read_back({.chain = GetParam()}, FileUnits::mm_deg, sd)), 1e-12);
 }
@@ -56,8 +57,8 @@ TEST(RobotTomlWriting, AllThatIsNotThePoseComesBackToo) {
   robot.chain.joints[1].name = "base";
   robot.tolerances.length = 0.2e-3, robot.tolerances.base_angle = 3 * degree;
   robot.instrument = Instrument{.sigma = 1e-5, .sigma_angle = 1e-4, .ppm = 5};
-  robot.chain.surroundings.anchors = {Vec3(1.8, -0.9, 0.1), Vec3(0, 1, 2)};
-  const auto read = parse_robot_toml(robot_toml(robot), "chain.toml");
+  robot.chain.fixtures.anchors = {Vec3(1.8, -0.9, 0.1), Vec3(0, 1, 2)};
+  const auto read = parse_robot_toml(format_robot_toml(robot), "chain.toml");
   ASSERT_TRUE(read.has_value()) << read.error().what;
   EXPECT_EQ(read->chain.name, "compliant tree");
   EXPECT_EQ(read->chain.targets[0].name, "left \"eye\"");
@@ -72,13 +73,13 @@ TEST(RobotTomlWriting, AllThatIsNotThePoseComesBackToo) {
   EXPECT_EQ(read->tolerances.length, 0.2e-3);
   EXPECT_EQ(read->tolerances.base_angle, 3 * degree);
   EXPECT_EQ(read->instrument->sigma_angle, 1e-4);
-  EXPECT_EQ(read->chain.surroundings.anchors, robot.chain.surroundings.anchors);
+  EXPECT_EQ(read->chain.fixtures.anchors, robot.chain.fixtures.anchors);
 }
 
 TEST(RobotTomlWriting, NumbersArePlainWhereTheyArePlain) {
   RobotModel robot;
   robot.chain.joints.push_back(laws::revolute<MdhLink>(0.166605, -90, 0.504));
-  const std::string text = robot_toml(robot, {{"a1", 12.5e-6}, {"base_x", 1e-3}, {"base_rz", 0.01 * degree}});
+  const std::string text = format_robot_toml(robot, {{"a1", 12.5e-6}, {"base_x", 1e-3}, {"base_rz", 0.01 * degree}});
   EXPECT_NE(text.find("a = 166.605\na_sd = 0.0125\nalpha = -90\nd = 504\n"), std::string::npos) << text;
   EXPECT_NE(text.find("base_sd = { xyz = [1, nan, nan], turn = [nan, nan, 0.01] }\n"), std::string::npos) << text;
 }
@@ -96,12 +97,12 @@ TEST(Digits, ReadBackGivesTheSameBitsWhereverTheUnitAllows) {
   Rng rng(3);
   for (int i = 0; i < 1000; ++i) {
     const double value = rng.normal();
-    EXPECT_EQ(std::stod(digits(value)), value);
-    EXPECT_NEAR(1e-3 * std::stod(digits(value, 1e-3)), value, 1e-15 * std::abs(value));
+    EXPECT_EQ(std::stod(format_number(value)), value);
+    EXPECT_NEAR(1e-3 * std::stod(format_number(value, 1e-3)), value, 1e-15 * std::abs(value));
   }
-  EXPECT_EQ(digits(0.7, 1e-3), "700");
-  EXPECT_EQ(digits(0.504, 1e-3), "504");
-  EXPECT_EQ(digits(-90 * degree, degree), "-90");
+  EXPECT_EQ(format_number(0.7, 1e-3), "700");
+  EXPECT_EQ(format_number(0.504, 1e-3), "504");
+  EXPECT_EQ(format_number(-90 * degree, degree), "-90");
 }
 
 }  // namespace

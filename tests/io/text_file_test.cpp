@@ -1,4 +1,5 @@
-#include "kinfer/io/text_file.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/text/text_file.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -42,14 +43,14 @@ TEST_F(TextFile, PathsThatCannotBeWrittenAreSaid) {
 }
 
 TEST_F(TextFile, AnOutputFolderIsMadeOrRefusedBeforeAnythingIsComputed) {
-  EXPECT_TRUE(make_writable_folder(folder / "deep/er"));
+  EXPECT_TRUE(create_writable_folder(folder / "deep/er"));
   EXPECT_TRUE(fs::is_empty(folder / "deep/er"));
   ASSERT_TRUE(write_text_file(folder / "file", "x"));
-  EXPECT_EQ(make_writable_folder(folder / "file").error().what,
-            (folder / "file").string() + ": the output folder cannot be made");
+  EXPECT_EQ(create_writable_folder(folder / "file").error().what,
+            (folder / "file").string() + ": the output folder cannot be created");
   if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   fs::permissions(folder, fs::perms::owner_read | fs::perms::owner_exec);
-  EXPECT_EQ(make_writable_folder(folder).error().what, folder.string() + ": the output folder is not writable");
+  EXPECT_EQ(create_writable_folder(folder).error().what, folder.string() + ": the output folder is not writable");
 }
 
 }  // namespace

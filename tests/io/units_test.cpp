@@ -1,4 +1,5 @@
-#include "kinfer/io/units.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/text/units.hpp"
 
 #include <gtest/gtest.h>
 
@@ -49,13 +50,13 @@ TEST(Units, OtherTextsAreNoUnits) {
 }
 
 TEST(Units, AHeaderIsANameAndPerhapsAUnit) {
-  EXPECT_EQ(split_header(" q1 [deg] ").name, "q1");
-  EXPECT_EQ(split_header(" q1 [deg] ").unit, "deg");
-  EXPECT_FALSE(split_header("q1").has_unit);
-  EXPECT_TRUE(split_header("q1[]").has_unit) << "an empty bracket is not SI";
-  EXPECT_EQ(split_header("[deg]").name, "");
-  EXPECT_EQ(split_header("").name, "");
-  EXPECT_EQ(split_header("a]").name, "a]");
+  EXPECT_EQ(parse_column_header(" q1 [deg] ").name, "q1");
+  EXPECT_EQ(parse_column_header(" q1 [deg] ").unit, "deg");
+  EXPECT_FALSE(parse_column_header("q1").has_unit);
+  EXPECT_TRUE(parse_column_header("q1[]").has_unit) << "an empty bracket is not SI";
+  EXPECT_EQ(parse_column_header("[deg]").name, "");
+  EXPECT_EQ(parse_column_header("").name, "");
+  EXPECT_EQ(parse_column_header("a]").name, "a]");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-#include "kinfer/io/urdf.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/robot/urdf.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +7,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "kinfer/io/text_file.hpp"
+#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
 
@@ -52,7 +53,7 @@ TEST(Urdf, JointsLimitsAxesAndMimicsAreRead) {
   ASSERT_TRUE(chain.has_value()) << chain.error().what;
   EXPECT_EQ(chain->name, "arm");
   ASSERT_EQ(chain->joints.size(), 3U);
-  EXPECT_EQ(reading_names(*chain), (std::vector<std::string>{"shoulder", "slide"}));
+  EXPECT_EQ(active_joint_names(*chain), (std::vector<std::string>{"shoulder", "slide"}));
   EXPECT_EQ(chain->joints[0].lower, -1);
   EXPECT_EQ(chain->joints[1].upper, 0.3);
   EXPECT_EQ(std::get<UrdfLink>(chain->joints[0].link).axis, Vec3::UnitZ()) << "made a unit vector";
@@ -123,14 +124,14 @@ TEST(Urdf, WhatTheLibraryFindsIsSaidInOurSentenceAndNotPrinted) {
   const std::string sentence = urdf_complaint(no_limits);
   const std::string bad_number = urdf_complaint(replaced(two_joint_arm, "0 0 0.5", "0 0 half"));
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  EXPECT_EQ(sentence.rfind("arm.urdf: not a URDF that can be read: ", 0), 0U) << sentence;
+  EXPECT_EQ(sentence.rfind("arm.urdf: not a valid URDF: ", 0), 0U) << sentence;
   EXPECT_NE(sentence.find("shoulder"), std::string::npos) << sentence;
-  EXPECT_EQ(bad_number.rfind("arm.urdf: not a URDF that can be read: ", 0), 0U) << bad_number;
+  EXPECT_EQ(bad_number.rfind("arm.urdf: not a valid URDF: ", 0), 0U) << bad_number;
 }
 
 /// The readings of `from` for a chain that has the same joints in another order.
 VectorXd reordered(const Chain& to, const Chain& from, const VectorXd& q) {
-  const auto from_names = reading_names(from), to_names = reading_names(to);
+  const auto from_names = active_joint_names(from), to_names = active_joint_names(to);
   VectorXd result(to_names.size());
   for (std::size_t i = 0; i < to_names.size(); ++i)
     result[i] = q[std::find(from_names.begin(), from_names.end(), to_names[i]) - from_names.begin()];
@@ -142,7 +143,7 @@ class UrdfRoundTrip : public testing::TestWithParam<Chain> {};
 TEST_P(UrdfRoundTrip, WhatIsReadBackPredictsTheSamePoses) {
   Chain chain = GetParam();
   for (Joint& joint : chain.joints) joint.compliance = 0.0;  // URDF links are rigid
-  const std::string text = urdf(chain);
+  const std::string text = format_urdf(chain);
   const auto read = parse_urdf(text, "chain.urdf", {.base_link = "", .tip_link = "tool"});
   ASSERT_TRUE(read.has_value()) << read.error().what << "\n" << text;
   for (int i = 0; i < 20; ++i) {
@@ -154,11 +155,11 @@ TEST_P(UrdfRoundTrip, WhatIsReadBackPredictsTheSamePoses) {
 }
 
 TEST_P(UrdfRoundTrip, LimitsAndNamesOfTheReadingsComeBack) {
-  const auto read = parse_urdf(urdf(GetParam()), "chain.urdf", {.base_link = "", .tip_link = "tool"});
+  const auto read = parse_urdf(format_urdf(GetParam()), "chain.urdf", {.base_link = "", .tip_link = "tool"});
   ASSERT_TRUE(read.has_value()) << read.error().what;
   std::map<std::string, const Joint*> original;
   for (const Joint& joint : GetParam().joints) original[joint.name] = &joint;
-  for (const int j : joints_with_reading(*read)) {
+  for (const int j : active_joints(*read)) {
     const Joint& joint = read->joints[j];
     ASSERT_EQ(original.count(joint.name), 1U) << joint.name;
     EXPECT_EQ(joint.lower, original[joint.name]->lower);
@@ -172,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(Every, UrdfRoundTrip, testing::ValuesIn(laws::examples_
 TEST(Urdf, TargetsAreLinksOnTheTool) {
   Chain chain = laws::er20();
   chain.targets = {{"s2", Vec3(0.01, 0.02, 0.03)}};
-  const auto read = parse_urdf(urdf(chain), "chain.urdf", {.base_link = "", .tip_link = "s2"});
+  const auto read = parse_urdf(format_urdf(chain), "chain.urdf", {.base_link = "", .tip_link = "s2"});
   ASSERT_TRUE(read.has_value()) << read.error().what;
   const VectorXd q = laws::random_q(chain, Rng(1));
   EXPECT_LT((forward(*read, q).position - forward(chain, q) * chain.targets[0].xyz).norm(), 1e-9);
@@ -184,10 +185,10 @@ TEST(Urdf, NamesThatCollideOrNeedEscapesDoNotBreakTheFile) {
   chain.joints[0].name = "world_to_base";
   chain.joints[1].name = "5 < 6 & \"so\"";
   chain.targets = {{"tool", Vec3::UnitX()}, {"world", Vec3::UnitY()}};
-  const auto read = parse_urdf(urdf(chain), "chain.urdf", {.base_link = "", .tip_link = "tool"});
-  ASSERT_TRUE(read.has_value()) << read.error().what << urdf(chain);
+  const auto read = parse_urdf(format_urdf(chain), "chain.urdf", {.base_link = "", .tip_link = "tool"});
+  ASSERT_TRUE(read.has_value()) << read.error().what << format_urdf(chain);
   EXPECT_EQ(read->name, chain.name);
-  EXPECT_EQ(reading_names(*read), reading_names(chain));
+  EXPECT_EQ(active_joint_names(*read), active_joint_names(chain));
 }
 
 TEST(Urdf, ThePandaIsRead) {

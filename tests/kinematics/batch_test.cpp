@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "kinfer/kinematics/batch_points.hpp"
-#include "kinfer/kinematics/batch_population.hpp"
+#include "kinfer/kinematics/batch/batch_points.hpp"
+#include "kinfer/kinematics/batch/batch_population.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
 
@@ -77,7 +78,7 @@ std::vector<const batch::Kernels*> runnable() {
 class AnyStiffChain : public ::testing::TestWithParam<Chain> {};
 INSTANTIATE_TEST_SUITE_P(Batch, AnyStiffChain, ::testing::ValuesIn(stiff_examples()));
 
-TEST_P(AnyStiffChain, sums_of_populations_are_those_of_poses_walked_one_by_one) {
+TEST_P(AnyStiffChain, SumsOfPopulationsAreThoseOfPosesWalkedOneByOne) {
   const Chain chain = GetParam();
   const PointTable table = random_points(chain, Rng(1));
   for (const ParameterSet& set : {everything(chain), links_only(chain)}) {
@@ -95,7 +96,7 @@ TEST_P(AnyStiffChain, sums_of_populations_are_those_of_poses_walked_one_by_one) 
   }
 }
 
-TEST_P(AnyStiffChain, errors_of_points_are_those_of_poses_walked_one_by_one) {
+TEST_P(AnyStiffChain, ErrorsOfPointsAreThoseOfPosesWalkedOneByOne) {
   const Chain chain = GetParam();
   const PointTable table = random_points(chain, Rng(1));
   const ParameterSet set = everything(chain);
@@ -126,7 +127,7 @@ void slow_residuals(const Chain& chain, const ParameterSet& set, const PointTabl
   }
 }
 
-TEST_P(AnyStiffChain, jacobian_and_normal_equations_are_those_of_poses_walked_one_by_one) {
+TEST_P(AnyStiffChain, JacobianAndNormalEquationsAreThoseOfPosesWalkedOneByOne) {
   const Chain chain = GetParam();
   const PointTable table = random_points(chain, Rng(1));
   Rng rng(5);
@@ -153,7 +154,7 @@ TEST_P(AnyStiffChain, jacobian_and_normal_equations_are_those_of_poses_walked_on
   }
 }
 
-TEST(Batch, a_candidates_sum_does_not_depend_on_its_neighbours) {
+TEST(Batch, ACandidatesSumDoesNotDependOnItsNeighbours) {
   const Chain chain = laws::er20_with_errors();
   const ParameterSet set = everything(chain);
   const PointTable table = random_points(chain, Rng(1));
@@ -165,7 +166,7 @@ TEST(Batch, a_candidates_sum_does_not_depend_on_its_neighbours) {
   EXPECT_EQ(together, alone);
 }
 
-TEST(Batch, twists_of_many_turns_are_followed) {
+TEST(Batch, TwistsOfManyTurnsAreFollowed) {
   const Chain chain = laws::er20();
   const ParameterSet set = links_only(chain);
   const PointTable table = random_points(chain, Rng(1));
@@ -184,7 +185,7 @@ TEST(Batch, twists_of_many_turns_are_followed) {
   }
 }
 
-TEST(Batch, a_chain_that_yields_has_no_batch_form) {
+TEST(Batch, AChainThatYieldsHasNoBatchForm) {
   EXPECT_FALSE(has_batch_form(laws::compliant(), everything(laws::compliant())));
   EXPECT_FALSE(has_batch_form(laws::er20(), all_parameters(laws::er20(), {})));
   EXPECT_TRUE(has_batch_form(laws::er20(), everything(laws::er20())));

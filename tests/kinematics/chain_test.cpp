@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/kinematics/chain.hpp"
 
 #include <gmock/gmock.h>
@@ -12,32 +13,32 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(Chain, a_path_leads_from_the_base_to_the_tip_past_other_branches) {
+TEST(Chain, APathLeadsFromTheBaseToTheTipPastOtherBranches) {
   const Chain chain = laws::two_arms();
   EXPECT_THAT(path_to(chain, 3), ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(path_to(chain, 5), ElementsAre(0, 4, 5));
   EXPECT_THAT(path_to(chain, -1), IsEmpty());
 }
 
-TEST(Chain, readings_belong_to_the_joints_that_have_one) {
+TEST(Chain, ReadingsBelongToTheJointsThatHaveOne) {
   EXPECT_EQ(dof(laws::urdf_arm()), 5);  // two of seven are fixed
-  EXPECT_THAT(joints_with_reading(laws::urdf_arm()), ElementsAre(1, 2, 3, 5, 6));
-  EXPECT_THAT(reading_names(laws::urdf_arm()), ElementsAre("J2", "J3", "J4", "J6", "J7"));
+  EXPECT_THAT(active_joints(laws::urdf_arm()), ElementsAre(1, 2, 3, 5, 6));
+  EXPECT_THAT(active_joint_names(laws::urdf_arm()), ElementsAre("J2", "J3", "J4", "J6", "J7"));
   EXPECT_EQ(dof(laws::coupled()), 6);  // the follower has none
-  EXPECT_THAT(reading_indices(laws::urdf_arm()), ElementsAre(-1, 0, 1, 2, -1, 3, 4));
+  EXPECT_THAT(active_joint_indices(laws::urdf_arm()), ElementsAre(-1, 0, 1, 2, -1, 3, 4));
 }
 
-TEST(Chain, the_last_joint_carries_the_tool_unless_another_is_named) {
+TEST(Chain, TheLastJointCarriesTheToolUnlessAnotherIsNamed) {
   EXPECT_EQ(laws::er20().tip_joint(), 5);
   EXPECT_EQ(laws::two_arms().tip_joint(), 3);
   EXPECT_EQ(laws::without_joints().tip_joint(), -1);
 }
 
-TEST(Chain, every_example_is_well_formed) {
+TEST(Chain, EveryExampleIsWellFormed) {
   for (const Chain& chain : laws::examples()) expect_well_formed(chain);
 }
 
-TEST(Chain, a_malformed_chain_stops_the_program) {
+TEST(Chain, AMalformedChainStopsTheProgram) {
   Chain chain = laws::er20();
   chain.joints[2].parent = 2;
   EXPECT_DEATH(expect_well_formed(chain), "parent 2 of joint 2");
@@ -56,7 +57,7 @@ TEST(Chain, a_malformed_chain_stops_the_program) {
   EXPECT_DEATH(forward(laws::er20(), VectorXd::Zero(5)), "5 readings for 6 joints");
 }
 
-TEST(Chain, the_er20_stretches_as_its_table_says) {
+TEST(Chain, TheEr20StretchesAsItsTableSays) {
   // Paper 2, table 1, by hand: at q = 0 link 2 points along x1 and the wrist hangs down along -z0.
   Chain chain = laws::er20();
   chain.base = chain.tool = Frame{};
@@ -64,7 +65,7 @@ TEST(Chain, the_er20_stretches_as_its_table_says) {
   EXPECT_LT((flange.position - Vec3(0.166605 + 0.782270 + 0.138826, 0, 0.504 - 0.76135 - 0.125)).norm(), 1e-15);
 }
 
-TEST(Chain, a_horizontal_arm_feels_the_moment_of_its_masses) {
+TEST(Chain, AHorizontalArmFeelsTheMomentOfItsMasses) {
   Chain chain;
   chain.joints = {laws::revolute<DhLink>(0.6, 90, 0), laws::revolute<DhLink>(0.4, 0, 0)};
   chain.joints[1].parent = 0;

@@ -1,4 +1,5 @@
-#include "kinfer/kinematics/motion.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/kinematics/frame_motion.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -48,7 +49,7 @@ void expect_is_the_derivative(const FrameMotion& now, const auto& at, const std:
   EXPECT_LT((slope([&](double h) { return at(h).omega; }) - now.alpha).norm(), slope_accuracy) << what;
 }
 
-TEST(Motion, every_frame_moves_as_differences_of_its_pose_say) {
+TEST(Motion, EveryFrameMovesAsDifferencesOfItsPoseSay) {
   for (const Chain& chain : laws::examples()) {
     const Sway sway{dof(chain)};
     for (const double t : {0.0, 0.9, 4.1}) {
@@ -65,17 +66,17 @@ TEST(Motion, every_frame_moves_as_differences_of_its_pose_say) {
   }
 }
 
-TEST(Motion, a_carried_frame_moves_as_differences_of_its_pose_say) {
+TEST(Motion, ACarriedFrameMovesAsDifferencesOfItsPoseSay) {
   const Chain chain = laws::er20_with_errors();
   const Sway sway{dof(chain)};
   const Pose sensor = Pose::from_xyz_rpy({0.1, -0.2, 0.3}, {0.4, 0.5, 0.6});
   const auto at = [&](double h) {
-    return carried(joint_motions(chain, sway.q(2 + h), sway.qd(2 + h), sway.qdd(2 + h)).back(), sensor);
+    return attached_frame_motion(joint_motions(chain, sway.q(2 + h), sway.qd(2 + h), sway.qdd(2 + h)).back(), sensor);
   };
   expect_is_the_derivative(at(0.0), at, "sensor");
 }
 
-TEST(Motion, poses_are_those_of_the_rigid_chain) {
+TEST(Motion, PosesAreThoseOfTheRigidChain) {
   Chain chain = laws::compliant();
   const VectorXd q = laws::random_q(chain, Rng(4)), still = VectorXd::Zero(q.size());
   const std::vector<FrameMotion> motions = joint_motions(chain, q, still, still);
@@ -87,11 +88,12 @@ TEST(Motion, poses_are_those_of_the_rigid_chain) {
   }
 }
 
-TEST(Motion, a_point_on_a_steady_turntable_accelerates_towards_the_axis) {
+TEST(Motion, APointOnASteadyTurntableAcceleratesTowardsTheAxis) {
   Chain turntable;
   turntable.joints = {laws::revolute<MdhLink>(0, 0, 0)};
   const VectorXd rate = VectorXd::Constant(1, 3.0), zero = VectorXd::Zero(1);
-  const FrameMotion rim = carried(joint_motions(turntable, zero, rate, zero)[0], {Mat3::Identity(), {0.5, 0, 0.2}});
+  const FrameMotion rim =
+      attached_frame_motion(joint_motions(turntable, zero, rate, zero)[0], {Mat3::Identity(), {0.5, 0, 0.2}});
   EXPECT_LT((rim.velocity - Vec3(0, 1.5, 0)).norm(), 1e-15);
   EXPECT_LT((rim.acceleration - Vec3(-4.5, 0, 0)).norm(), 1e-15);  // ω² r
 }

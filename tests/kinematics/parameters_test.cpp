@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/kinematics/parameters.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +21,7 @@ std::vector<std::string> names(const ParameterSet& set) {
   return list;
 }
 
-TEST(Parameters, rows_are_counted_from_one_and_frames_named_by_their_owner) {
+TEST(Parameters, RowsAreCountedFromOneAndFramesNamedByTheirOwner) {
   Chain chain = laws::scara();
   chain.joints.resize(3);
   EXPECT_THAT(names(all_parameters(chain, {})),
@@ -31,7 +32,7 @@ TEST(Parameters, rows_are_counted_from_one_and_frames_named_by_their_owner) {
                           "tool_x", "tool_y", "tool_z", "tool_rx", "tool_ry", "tool_rz"));
 }
 
-TEST(Parameters, urdf_joints_have_the_numbers_of_their_origin) {
+TEST(Parameters, UrdfJointsHaveTheNumbersOfTheirOrigin) {
   const auto list = names(all_parameters(laws::urdf_arm(), {}));
   for (const char* name : {"x4", "y4", "z4", "rx4", "ry4", "rz4", "gain4", "x1", "compliance2"}) {
     EXPECT_THAT(list, Contains(name));
@@ -40,16 +41,16 @@ TEST(Parameters, urdf_joints_have_the_numbers_of_their_origin) {
   EXPECT_THAT(list, Not(Contains("compliance4")));  // prismatic
 }
 
-TEST(Parameters, only_joints_on_the_way_to_the_tip_are_listed) {
+TEST(Parameters, OnlyJointsOnTheWayToTheTipAreListed) {
   const auto list = names(all_parameters(laws::two_arms(), {}));
   EXPECT_THAT(list, AllOf(Contains("a4"), Not(Contains("a5")), Not(Contains("a6"))));
 }
 
-TEST(Parameters, a_follower_has_no_gain) {
+TEST(Parameters, AFollowerHasNoGain) {
   EXPECT_THAT(names(all_parameters(laws::coupled(), {})), AllOf(Contains("compliance7"), Not(Contains("gain7"))));
 }
 
-TEST(Parameters, scale_and_prior_are_the_tolerance_of_the_owner_and_quantity) {
+TEST(Parameters, ScaleAndPriorAreTheToleranceOfTheOwnerAndQuantity) {
   Tolerances t;
   t.length = 1, t.angle = 2, t.base_length = 3, t.base_angle = 4, t.tool_length = 5, t.tool_angle = 6, t.gain = 7;
   t.compliance = 8;
@@ -65,31 +66,31 @@ TEST(Parameters, scale_and_prior_are_the_tolerance_of_the_owner_and_quantity) {
   has("tool_z", 5, "m"), has("tool_rx", 6, "rad"), has("gain6", 7, "1"), has("compliance1", 8, "rad/(N m)");
 }
 
-TEST(Parameters, freeing_some_fixes_all_others) {
+TEST(Parameters, FreeingSomeFixesAllOthers) {
   const ParameterSet set = with_only_free(all_parameters(laws::er20(), {}), {"tool_x", "a6", "theta2"});
   EXPECT_THAT(names(set), ElementsAre("theta2", "a6", "tool_x"));  // in the order of the list, not of the request
   EXPECT_EQ(set.free_count(), 3);
   EXPECT_DEATH(with_only_free(set, {"a7"}), "no parameter is called a7");
 }
 
-TEST(Parameters, what_is_fixed_keeps_the_nominal_value) {
+TEST(Parameters, WhatIsFixedKeepsTheNominalValue) {
   const Chain chain = laws::er20();
   const ParameterSet set = with_only_free(all_parameters(chain, {}), {"a2", "base_rx", "gain5"});
   const Chain changed = unpack(set, chain, (VectorXd(3) << 0.01, 0.2, 1.1).finished());
-  EXPECT_EQ(changed.base.turn.x(), 0.01);  // the order of the list: the base comes first
+  EXPECT_EQ(changed.base.small_rotation.x(), 0.01);  // the order of the list: the base comes first
   EXPECT_EQ(std::get<MdhLink>(changed.joints[1].link).a, 0.2);
   EXPECT_EQ(changed.joints[4].gain, 1.1);
   EXPECT_EQ(std::get<MdhLink>(changed.joints[2].link).a, 0.782270);
   EXPECT_DEATH(unpack(set, chain, VectorXd::Zero(4)), "4 values for 3 free parameters");
 }
 
-TEST(Parameters, an_address_of_a_number_that_is_not_there_stops_the_program) {
+TEST(Parameters, AnAddressOfANumberThatIsNotThereStopsTheProgram) {
   EXPECT_DEATH(value_at(laws::er20(), {Owner::joint, 6, Field::a}), "joint 6 of 6");
   EXPECT_DEATH(value_at(laws::er20(), {Owner::joint, 1, Field::rx}), "a DH row has no rx");
   EXPECT_DEATH(value_at(laws::urdf_arm(), {Owner::base, -1, Field::alpha}), "a frame has no alpha");
 }
 
-TEST(Parameters, a_parameter_off_the_way_to_the_tip_moves_nothing) {
+TEST(Parameters, AParameterOffTheWayToTheTipMovesNothing) {
   const Chain chain = laws::two_arms();
   ParameterSet set;
   set.parameters.push_back({.name = "a6", .at = {Owner::joint, 5, Field::a}});
@@ -100,7 +101,7 @@ TEST(Parameters, a_parameter_off_the_way_to_the_tip_moves_nothing) {
   EXPECT_NEAR(twists.col(1).norm(), 1.0, 1e-15);
 }
 
-TEST(Parameters, the_gain_of_a_joint_without_reading_stops_the_program) {
+TEST(Parameters, TheGainOfAJointWithoutReadingStopsTheProgram) {
   const Chain chain = laws::coupled();
   ParameterSet set;
   set.parameters.push_back({.name = "gain7", .at = {Owner::joint, 6, Field::gain}});

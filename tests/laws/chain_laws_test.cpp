@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,14 +50,14 @@ class ChainLaws : public testing::TestWithParam<Chain> {
   }
 };
 
-TEST_P(ChainLaws, forward_is_the_product_of_the_printed_matrices) {
+TEST_P(ChainLaws, ForwardIsTheProductOfThePrintedMatrices) {
   at_random_poses([&](const VectorXd& q) {
     const Mat4 slow = laws::slow_tool(chain(), q, laws::slow_torques(chain(), q, load.payload));
     EXPECT_LT(distance(matrix(forward(chain(), q, load)), slow), judged);
   });
 }
 
-TEST_P(ChainLaws, every_joint_frame_is_the_product_of_the_printed_matrices) {
+TEST_P(ChainLaws, EveryJointFrameIsTheProductOfThePrintedMatrices) {
   at_random_poses([&](const VectorXd& q) {
     const VectorXd torques = laws::slow_torques(chain(), q, load.payload);
     const std::vector<Pose> frames = joint_frames(chain(), q, load);
@@ -67,7 +68,7 @@ TEST_P(ChainLaws, every_joint_frame_is_the_product_of_the_printed_matrices) {
   });
 }
 
-TEST_P(ChainLaws, torque_of_gravity_is_the_slope_of_the_potential_energy) {
+TEST_P(ChainLaws, TorqueOfGravityIsTheSlopeOfThePotentialEnergy) {
   at_random_poses([&](const VectorXd& q) {
     const VectorXd fast = gravity_torques(chain(), q, load), slow = laws::slow_torques(chain(), q, load.payload);
     ASSERT_EQ(fast.size(), slow.size());
@@ -75,7 +76,7 @@ TEST_P(ChainLaws, torque_of_gravity_is_the_slope_of_the_potential_energy) {
   });
 }
 
-TEST_P(ChainLaws, the_evaluator_agrees_with_forward) {
+TEST_P(ChainLaws, TheEvaluatorAgreesWithForward) {
   const PoseEvaluator all(chain(), parameters()), none(chain(), with_only_free(parameters(), {}));
   Twists twists;
   at_random_poses([&](const VectorXd& q) {
@@ -87,7 +88,7 @@ TEST_P(ChainLaws, the_evaluator_agrees_with_forward) {
   });
 }
 
-TEST_P(ChainLaws, jacobian_is_the_slope_of_forward_with_the_torques_held) {
+TEST_P(ChainLaws, JacobianIsTheSlopeOfForwardWithTheTorquesHeld) {
   at_random_poses([&](const VectorXd& q) {
     const Twists twists = jacobian(chain(), q, load);
     const VectorXd torques = gravity_torques(chain(), q, load);
@@ -102,7 +103,7 @@ TEST_P(ChainLaws, jacobian_is_the_slope_of_forward_with_the_torques_held) {
   });
 }
 
-TEST_P(ChainLaws, derivative_by_every_parameter_is_the_slope_with_the_torques_held) {
+TEST_P(ChainLaws, DerivativeByEveryParameterIsTheSlopeWithTheTorquesHeld) {
   const ParameterSet set = parameters();
   const PoseEvaluator evaluator(chain(), set);
   Twists twists;
@@ -124,7 +125,7 @@ TEST_P(ChainLaws, derivative_by_every_parameter_is_the_slope_with_the_torques_he
   });
 }
 
-TEST_P(ChainLaws, columns_follow_the_free_parameters_whatever_is_free) {
+TEST_P(ChainLaws, ColumnsFollowTheFreeParametersWhateverIsFree) {
   const ParameterSet all = parameters();
   const PoseEvaluator evaluator(chain(), all);
   Twists every, some;
@@ -146,7 +147,7 @@ TEST_P(ChainLaws, columns_follow_the_free_parameters_whatever_is_free) {
   });
 }
 
-TEST_P(ChainLaws, packing_and_unpacking_lose_nothing) {
+TEST_P(ChainLaws, PackingAndUnpackingLoseNothing) {
   const ParameterSet set = parameters();
   const VectorXd nominal = pack(set, chain());
   const Chain same = unpack(set, chain(), nominal);
@@ -158,7 +159,7 @@ TEST_P(ChainLaws, packing_and_unpacking_lose_nothing) {
   EXPECT_EQ(pack(set, unpack(set, chain(), x)), x);
 }
 
-TEST_P(ChainLaws, the_nominal_values_are_the_chains) {
+TEST_P(ChainLaws, TheNominalValuesAreTheChains) {
   const ParameterSet set = parameters();
   const VectorXd x = pack(set, chain());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -168,7 +169,7 @@ TEST_P(ChainLaws, the_nominal_values_are_the_chains) {
   }
 }
 
-TEST_P(ChainLaws, moving_the_base_moves_the_tool_rigidly) {
+TEST_P(ChainLaws, MovingTheBaseMovesTheToolRigidly) {
   const Pose shift = Pose::from_xyz_rpy({1, 2, 3}, {0.3, -0.4, 0.5});
   Chain moved = chain();
   moved.base = Frame::from_pose(shift * chain().base.pose());
@@ -178,15 +179,15 @@ TEST_P(ChainLaws, moving_the_base_moves_the_tool_rigidly) {
   });
 }
 
-TEST_P(ChainLaws, folding_the_turns_moves_nothing) {
-  const Chain folded = with_turns_folded(chain());
-  EXPECT_EQ(folded.base.turn, Vec3::Zero());
-  EXPECT_EQ(folded.tool.turn, Vec3::Zero());
+TEST_P(ChainLaws, FoldingTheTurnsMovesNothing) {
+  const Chain folded = with_small_rotations_folded(chain());
+  EXPECT_EQ(folded.base.small_rotation, Vec3::Zero());
+  EXPECT_EQ(folded.tool.small_rotation, Vec3::Zero());
   at_random_poses(
       [&](const VectorXd& q) { EXPECT_LT(distance(forward(folded, q, load), forward(chain(), q, load)), 1e-12); });
 }
 
-TEST_P(ChainLaws, rotations_stay_rotations) {
+TEST_P(ChainLaws, RotationsStayRotations) {
   at_random_poses([&](const VectorXd& q) {
     const Mat3 r = forward(chain(), q, load).rotation;
     EXPECT_LT((r * r.transpose() - Mat3::Identity()).norm(), 1e-13);

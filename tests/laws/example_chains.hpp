@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The machines that every law of kinematics is tried on. A new convention or joint gets all laws by a line in
 // `examples`.
 #pragma once
@@ -45,8 +46,9 @@ inline Joint urdf(JointType type, const Vec3& xyz, const Vec3& rpy, const Vec3& 
 inline Chain serial(std::string name, std::vector<Joint> joints) {
   Chain chain;
   chain.name = std::move(name);
-  chain.base = {.xyz = {0.3, -0.2, 0.7}, .rotation = from_rpy({0.1, -0.2, 2.0}), .turn = {0.01, -0.02, 0.03}};
-  chain.tool = {.xyz = {0.05, -0.03, 0.12}, .rotation = from_rpy({-0.4, 0.5, 0.6}), .turn = {-0.02, 0.01, 0.04}};
+  chain.base = {.xyz = {0.3, -0.2, 0.7}, .rotation = from_rpy({0.1, -0.2, 2.0}), .small_rotation = {0.01, -0.02, 0.03}};
+  chain.tool = {
+      .xyz = {0.05, -0.03, 0.12}, .rotation = from_rpy({-0.4, 0.5, 0.6}), .small_rotation = {-0.02, 0.01, 0.04}};
   chain.joints = std::move(joints);
   for (int j = 0; j < static_cast<int>(chain.joints.size()); ++j) {
     chain.joints[j].name = "J" + std::to_string(j + 1);
@@ -113,9 +115,9 @@ inline Chain coupled() {
   chain.joints[2].couplings = {{1, 1.0}};
   chain.joints[4].couplings = {{3, -0.02}};
   chain.joints[5].couplings = {{3, 0.5}, {4, -0.25}};
-  chain.joints[3].has_reading = true;
+  chain.joints[3].is_active = true;
   Joint mimic = urdf(JointType::revolute, {0.02, 0.03, 0.1}, {0.1, 0, 0}, {1, 0, 0});
-  mimic.name = "follower", mimic.parent = 5, mimic.has_reading = false;
+  mimic.name = "follower", mimic.parent = 5, mimic.is_active = false;
   mimic.couplings = {{0, -0.7}};
   chain.joints.push_back(mimic);
   return chain;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # MuJoCo is the independent judge of poses and motions; tests only. Its own package file would ask for OpenGL too.
 find_path(MUJOCO_INCLUDE mujoco/mujoco.h REQUIRED)
 find_library(MUJOCO_LIBRARY mujoco REQUIRED)

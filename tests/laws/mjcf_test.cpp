@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // MJCF that is written is read by MuJoCo, which then puts every frame where the chain says.
-#include "kinfer/io/mjcf.hpp"
+#include "kinfer/io/robot/mjcf.hpp"
 
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
@@ -12,7 +13,7 @@ class WrittenMjcf : public testing::TestWithParam<Chain> {
  protected:
   /// Readings go to the joints of their names; tied joints follow as the file's <equality> says.
   void put(const mjModel& model, mjData& data, const VectorXd& q) const {
-    const auto names = reading_names(GetParam());
+    const auto names = active_joint_names(GetParam());
     for (std::size_t k = 0; k < names.size(); ++k) {
       const int joint = mj_name2id(&model, mjOBJ_JOINT, names[k].c_str());
       ASSERT_GE(joint, 0) << names[k];
@@ -33,9 +34,9 @@ void expect_site(const mjModel& model, const mjData& data, const std::string& na
   EXPECT_LT((pose.rotation - rotation).norm(), 1e-9) << name;
 }
 
-TEST_P(WrittenMjcf, gives_the_same_frames_and_tool_to_1e_9) {
+TEST_P(WrittenMjcf, GivesTheSameFramesAndToolTo1e9) {
   const Chain& chain = GetParam();
-  const auto model = laws::mujoco_model(mjcf(chain));
+  const auto model = laws::mujoco_model(format_mjcf(chain));
   ASSERT_TRUE(model);
   const std::unique_ptr<mjData, laws::MujocoFree> data(mj_makeData(model.get()));
   for (std::uint64_t k = 0; k < 5; ++k) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // MJCF text as MuJoCo understands it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Another program's kinematics: every machine is written as MJCF and moved by MuJoCo.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -5,7 +6,7 @@
 
 #include <memory>
 
-#include "kinfer/kinematics/motion.hpp"
+#include "kinfer/kinematics/frame_motion.hpp"
 #include "laws/example_chains.hpp"
 #include "laws/mujoco_model.hpp"
 #include "laws/slow_chain.hpp"
@@ -70,7 +71,7 @@ class MujocoJudges : public testing::TestWithParam<Chain> {
   const Chain& chain() const { return GetParam(); }
 
   void put(const mjModel& model, mjtNum* to, bool velocity, const VectorXd& reading_like) const {
-    const VectorXd moved = moved_by_readings(chain(), reading_like);
+    const VectorXd moved = joint_displacements(chain(), reading_like);
     for (int j = 0; j < static_cast<int>(chain().joints.size()); ++j) {
       const int joint = mj_name2id(&model, mjOBJ_JOINT, std::to_string(j).c_str());
       if (joint >= 0) to[velocity ? model.jnt_dofadr[joint] : model.jnt_qposadr[joint]] = moved[j];
@@ -78,7 +79,7 @@ class MujocoJudges : public testing::TestWithParam<Chain> {
   }
 };
 
-TEST_P(MujocoJudges, frames_and_their_motions_agree) {
+TEST_P(MujocoJudges, FramesAndTheirMotionsAgree) {
   const auto model = laws::mujoco_model(model_text(chain()));
   ASSERT_TRUE(model);
   const std::unique_ptr<mjData, laws::MujocoFree> data(mj_makeData(model.get()));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The judge of kinematics: the printed matrices of the papers, entry by entry, multiplied out. Slow and obvious.
 #pragma once
 
@@ -57,9 +58,10 @@ inline Mat4 slow_link(const MdhLink& row, JointType type, double moved) {
 
 inline Mat4 slow_frame(const Frame& frame) {
   Mat4 m = Mat4::Identity();
-  m.topLeftCorner<3, 3>() = frame.rotation * Eigen::AngleAxisd(frame.turn.x(), Vec3::UnitX()).toRotationMatrix() *
-                            Eigen::AngleAxisd(frame.turn.y(), Vec3::UnitY()).toRotationMatrix() *
-                            Eigen::AngleAxisd(frame.turn.z(), Vec3::UnitZ()).toRotationMatrix();
+  m.topLeftCorner<3, 3>() = frame.rotation *
+                            Eigen::AngleAxisd(frame.small_rotation.x(), Vec3::UnitX()).toRotationMatrix() *
+                            Eigen::AngleAxisd(frame.small_rotation.y(), Vec3::UnitY()).toRotationMatrix() *
+                            Eigen::AngleAxisd(frame.small_rotation.z(), Vec3::UnitZ()).toRotationMatrix();
   m.topRightCorner<3, 1>() = frame.xyz;
   return m;
 }
@@ -74,7 +76,7 @@ inline Mat4 slow_link(const UrdfLink& link, JointType type, double moved) {
 
 /// variable - offset = gain · reading + couplings + compliance · torque
 inline double slow_movement(const Chain& chain, int j, const VectorXd& q, const VectorXd& torque) {
-  const std::vector<int> reads = joints_with_reading(chain);
+  const std::vector<int> reads = active_joints(chain);
   double moved = chain.joints[j].compliance * torque[j];
   for (int k = 0; k < static_cast<int>(reads.size()); ++k) {
     if (reads[k] == j) moved += chain.joints[j].gain * q[k];

@@ -1,4 +1,5 @@
-#include "kinfer/linalg/band_stretch.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/linalg/band_segment.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,23 +44,23 @@ BorderedBand walked(const Parts& p) {
   return band;
 }
 
-std::vector<BandStretch> cut(const Parts& p, std::vector<std::size_t> lengths) {
-  std::vector<BandStretch> stretches;
+std::vector<BandSegment> cut(const Parts& p, std::vector<std::size_t> lengths) {
+  std::vector<BandSegment> stretches;
   std::size_t at = 0;
   for (const std::size_t length : lengths) {
-    StretchSum sum(p.width, p.reach, p.border, static_cast<Index>(length));
+    BandSegmentSum sum(p.width, p.reach, p.border, static_cast<Index>(length));
     for (Index k = 0; k < static_cast<Index>(length); ++k) sum.add(k, p.spans[at++]);
     stretches.emplace_back(std::move(sum));
   }
   return stretches;
 }
 
-BorderedBand joined(const Parts& p, const std::vector<BandStretch>& stretches) {
+BorderedBand joined(const Parts& p, const std::vector<BandSegment>& stretches) {
   BorderedBand ends((p.reach - 1) * p.width, 2, p.border);
   MatrixXd matrix = p.border_matrix;
   VectorXd right = p.border_right;
-  for (const BandStretch& stretch : stretches) {
-    ends.add(stretch.condensed(), stretch.positive());
+  for (const BandSegment& stretch : stretches) {
+    ends.add(stretch.condensed(), stretch.is_positive_definite());
     matrix += stretch.border_matrix();
     right += stretch.border_right();
   }
@@ -86,7 +87,7 @@ TEST_P(BandStretches, TogetherSolveWhatOneWalkAlongTheBandSolves) {
   const auto at_ends = ends.solve();
   ASSERT_TRUE(whole && at_ends);
   EXPECT_LT((at_ends->border - whole->border).norm(), 1e-9 * (1.0 + whole->border.norm()));
-  const MatrixXd following = band.following(), ends_following = ends.following();
+  const MatrixXd sensitivity = band.sensitivity(), ends_following = ends.sensitivity();
   const Index end = (reach - 1) * width;
   Index group = 0;
   for (std::size_t i = 0; i < stretches.size(); ++i) {
@@ -95,9 +96,9 @@ TEST_P(BandStretches, TogetherSolveWhatOneWalkAlongTheBandSolves) {
     EXPECT_LT((whole->band.middleCols(group, reach - 1).reshaped() - at_ends->band.col(k)).norm(), 1e-9);
     EXPECT_LT((whole->band.middleCols(group + reach - 1, inner.cols()) - inner).norm(), 1e-9);
     const MatrixXd follows =
-        stretches[i].following(ends_following.middleRows(k * end, end), ends_following.middleRows((k + 1) * end, end),
-                               MatrixXd::Identity(border, border));
-    EXPECT_LT((following.middleRows((group + reach - 1) * width, follows.rows()) - follows).norm(), 1e-9);
+        stretches[i].sensitivity(ends_following.middleRows(k * end, end), ends_following.middleRows((k + 1) * end, end),
+                                 MatrixXd::Identity(border, border));
+    EXPECT_LT((sensitivity.middleRows((group + reach - 1) * width, follows.rows()) - follows).norm(), 1e-9);
     group += static_cast<Index>(lengths[i]);
   }
 }
@@ -106,12 +107,12 @@ INSTANTIATE_TEST_SUITE_P(Any, BandStretches,
                          testing::Values(Case{3, 6, 7, {9, 5, 12}}, Case{1, 6, 0, {5}}, Case{2, 3, 4, {2, 2, 7, 3}},
                                          Case{4, 2, 1, {1, 1, 6}}));
 
-TEST(BandStretch, ThatIsNotPositiveMakesTheWholeBandNotPositive) {
+TEST(BandSegment, ThatIsNotPositiveMakesTheWholeBandNotPositive) {
   Parts p = random_parts(2, 3, 2, 9, Rng(4));
   p.spans[5].matrix -= 1e3 * MatrixXd::Identity(6, 6);
   const auto stretches = cut(p, {3, 6});
-  EXPECT_FALSE(stretches.back().positive());
-  EXPECT_FALSE(joined(p, stretches).positive());
+  EXPECT_FALSE(stretches.back().is_positive_definite());
+  EXPECT_FALSE(joined(p, stretches).is_positive_definite());
 }
 
 }  // namespace

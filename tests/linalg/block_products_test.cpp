@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/linalg/block_products.hpp"
 
 #include <gtest/gtest.h>
 
-#include "kinfer/base/processor.hpp"
-#include "kinfer/linalg/block_plan.hpp"
+#include "kinfer/base/instruction_set.hpp"
+#include "kinfer/linalg/kernels/block_jobs.hpp"
 #include "support/random.hpp"
 
 namespace kinfer {

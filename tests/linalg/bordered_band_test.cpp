@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/linalg/bordered_band.hpp"
 
 #include <gtest/gtest.h>
@@ -60,7 +61,7 @@ TEST(BorderedBand, SolvesWhatADenseCholeskySolves) {
     const Problem p = random_problem(width, reach, border, 9, Rng(static_cast<std::uint64_t>(reach)));
     const auto x = eliminated(p).solve();
     ASSERT_TRUE(x);
-    const VectorXd dense = *solve_positive(p.whole, p.right);
+    const VectorXd dense = *solve_spd(p.whole, p.right);
     EXPECT_LT((x->band.reshaped() - dense.head(p.band())).norm(), 1e-9 * dense.norm());
     EXPECT_LT((x->border - dense.tail(border)).norm(), 1e-9 * dense.norm());
   }
@@ -69,16 +70,16 @@ TEST(BorderedBand, SolvesWhatADenseCholeskySolves) {
 TEST(BorderedBand, SchurComplementIsTheInverseOfTheBordersCovariance) {
   const Problem p = random_problem(2, 4, 5, 8, Rng(3));
   const BorderedBand band = eliminated(p);
-  const MatrixXd covariance = inverse_positive(p.whole)->bottomRightCorner(5, 5);
+  const MatrixXd covariance = invert_spd(p.whole)->bottomRightCorner(5, 5);
   EXPECT_LT((band.schur() * covariance - MatrixXd::Identity(5, 5)).norm(), 1e-9);
   const MatrixXd a = p.whole.topLeftCorner(p.band(), p.band()), b = p.whole.bottomLeftCorner(5, p.band());
-  EXPECT_LT((a * band.following() - b.transpose()).norm(), 1e-9 * b.norm());
+  EXPECT_LT((a * band.sensitivity() - b.transpose()).norm(), 1e-9 * b.norm());
 }
 
 TEST(BorderedBand, SaysWhereAPivotIsNotPositive) {
   Problem p = random_problem(2, 3, 2, 5, Rng(4));
   p.parts[2].matrix -= 1e3 * MatrixXd::Identity(6, 6);
-  EXPECT_FALSE(eliminated(p).positive());
+  EXPECT_FALSE(eliminated(p).is_positive_definite());
   EXPECT_FALSE(eliminated(p).solve());
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/linalg/decompositions.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +25,7 @@ bool descending(const VectorXd& s) {
   return std::is_sorted(s.data(), s.data() + s.size(), std::greater<>());
 }
 
-TEST(Svd, multiplies_back_with_orthonormal_factors_and_falling_values) {
+TEST(Svd, MultipliesBackWithOrthonormalFactorsAndFallingValues) {
   for (const auto& [rows, cols] : {std::pair{9, 4}, std::pair{4, 9}, std::pair{5, 5}, std::pair{1, 3}}) {
     const MatrixXd a = test::random_matrix(rows, cols, 1);
     const Svd found = svd(a);
@@ -36,7 +37,7 @@ TEST(Svd, multiplies_back_with_orthonormal_factors_and_falling_values) {
   }
 }
 
-TEST(RightSvd, has_the_values_of_the_whole_decomposition_and_zeros_where_rows_are_missing) {
+TEST(RightSvd, HasTheValuesOfTheWholeDecompositionAndZerosWhereRowsAreMissing) {
   for (const auto& [rows, cols] : {std::pair{200, 6}, std::pair{4, 9}, std::pair{5, 5}}) {
     const MatrixXd a = test::random_matrix(rows, cols, 2);
     const RightSvd found = right_svd(a);
@@ -49,7 +50,7 @@ TEST(RightSvd, has_the_values_of_the_whole_decomposition_and_zeros_where_rows_ar
   }
 }
 
-TEST(RightSvd, sees_a_direction_that_no_row_sees) {
+TEST(RightSvd, SeesADirectionThatNoRowSees) {
   MatrixXd a = test::random_matrix(50, 3, 3);
   a.col(2) = a.col(0) - 2 * a.col(1);  // so (1, −2, −1) is not seen
   const RightSvd found = right_svd(a);
@@ -57,7 +58,7 @@ TEST(RightSvd, sees_a_direction_that_no_row_sees) {
   EXPECT_NEAR(std::abs(found.v.col(2).dot(Eigen::Vector3d(1, -2, -1).normalized())), 1.0, 1e-14);
 }
 
-TEST(SymmetricEigen, of_a_turned_diagonal_are_its_entries_ascending) {
+TEST(SymmetricEigen, OfATurnedDiagonalAreItsEntriesAscending) {
   const MatrixXd turn = svd(test::random_matrix(4, 4, 4)).u;
   const MatrixXd a = turn * Eigen::Vector4d(3, -1, 7, 0.5).asDiagonal() * turn.transpose();
   const SymmetricEigen found = symmetric_eigen(a);
@@ -65,54 +66,54 @@ TEST(SymmetricEigen, of_a_turned_diagonal_are_its_entries_ascending) {
   EXPECT_LT((a * found.vectors - found.vectors * found.values.asDiagonal()).norm(), 1e-13);
 }
 
-TEST(SymmetricEigen, reads_the_lower_half_only) {
+TEST(SymmetricEigen, ReadsTheLowerHalfOnly) {
   const MatrixXd a = random_positive(3, 5);
   MatrixXd lower = a;
   lower.triangularView<Eigen::StrictlyUpper>().setConstant(99);
   EXPECT_EQ(symmetric_eigen(lower).values, symmetric_eigen(a).values);
 }
 
-TEST(Positive, solution_inverse_and_factor_satisfy_their_equations) {
+TEST(Positive, SolutionInverseAndFactorSatisfyTheirEquations) {
   const MatrixXd a = random_positive(6, 6);
   const VectorXd b = test::random_matrix(6, 1, 7);
-  EXPECT_LT((a * *solve_positive(a, b) - b).norm(), 1e-12);
-  EXPECT_LT((a * *inverse_positive(a) - identity(6)).norm(), 1e-12);
+  EXPECT_LT((a * *solve_spd(a, b) - b).norm(), 1e-12);
+  EXPECT_LT((a * *invert_spd(a) - identity(6)).norm(), 1e-12);
   const MatrixXd l = *cholesky(a);
   EXPECT_LT((l * l.transpose() - a).norm(), 1e-13 * a.norm());
   EXPECT_EQ(MatrixXd(l.triangularView<Eigen::StrictlyUpper>()).norm(), 0.0);
 }
 
-TEST(Positive, an_indefinite_matrix_has_no_answer) {
+TEST(Positive, AnIndefiniteMatrixHasNoAnswer) {
   const MatrixXd a = Eigen::Vector3d(1, -1, 2).asDiagonal();
-  EXPECT_FALSE(solve_positive(a, VectorXd::Ones(3)).has_value());
-  EXPECT_FALSE(inverse_positive(a).has_value());
+  EXPECT_FALSE(solve_spd(a, VectorXd::Ones(3)).has_value());
+  EXPECT_FALSE(invert_spd(a).has_value());
   EXPECT_FALSE(cholesky(a).has_value());
 }
 
-TEST(SolveLeastSquares, leaves_a_residual_across_the_columns) {
+TEST(SolveLeastSquares, LeavesAResidualAcrossTheColumns) {
   const MatrixXd a = test::random_matrix(20, 5, 8);
   const VectorXd b = test::random_matrix(20, 1, 9);
   EXPECT_LT((a.transpose() * (a * solve_least_squares(a, b) - b)).norm(), 1e-12);
 }
 
-TEST(SolveLeastSquares, of_all_solutions_takes_the_shortest) {
+TEST(SolveLeastSquares, OfAllSolutionsTakesTheShortest) {
   // x + y = 2 and again 2 x + 2 y = 4
   const MatrixXd a = (MatrixXd(2, 2) << 1, 1, 2, 2).finished();
   EXPECT_LT((solve_least_squares(a, Eigen::Vector2d(2, 4)) - Eigen::Vector2d(1, 1)).norm(), 1e-14);
 }
 
-TEST(SolveLeastSquares, cut_decides_what_counts_as_zero) {
+TEST(SolveLeastSquares, CutDecidesWhatCountsAsZero) {
   const MatrixXd a = Eigen::Vector2d(1, 1e-6).asDiagonal();
   EXPECT_NEAR(solve_least_squares(a, Eigen::Vector2d(1, 1))[1], 1e6, 1e-6);
   EXPECT_EQ(solve_least_squares(a, Eigen::Vector2d(1, 1), 1e-5)[1], 0.0);
 }
 
-TEST(SolveSquare, solves_a_system_that_needs_pivoting) {
+TEST(SolveSquare, SolvesASystemThatNeedsPivoting) {
   const MatrixXd a = (MatrixXd(2, 2) << 0, 1, 2, 3).finished();
   EXPECT_LT((solve_square(a, Eigen::Vector2d(4, 5)) - Eigen::Vector2d(-3.5, 4)).norm(), 1e-15);
 }
 
-TEST(TriangularFactor, has_the_same_inner_products_and_zeros_below) {
+TEST(TriangularFactor, HasTheSameInnerProductsAndZerosBelow) {
   for (const auto& [rows, cols] : {std::pair{30, 5}, std::pair{3, 5}}) {
     const MatrixXd a = test::random_matrix(rows, cols, 10), r = triangular_factor(a);
     EXPECT_EQ(r.rows(), std::min(rows, cols));

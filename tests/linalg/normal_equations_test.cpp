@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/linalg/normal_equations.hpp"
 
 #include <gtest/gtest.h>
@@ -5,10 +6,10 @@
 #include <cmath>
 
 #include "kinfer/base/aligned_buffer.hpp"
-#include "kinfer/base/processor.hpp"
+#include "kinfer/base/instruction_set.hpp"
 #include "kinfer/base/rng.hpp"
 #include "kinfer/linalg/decompositions.hpp"
-#include "kinfer/linalg/gram_plan.hpp"
+#include "kinfer/linalg/kernels/gram_jobs.hpp"
 
 namespace kinfer {
 namespace {
@@ -27,7 +28,7 @@ VectorXd slow_damped(const MatrixXd& a, const VectorXd& b, double damping) {
   return solve_least_squares(stacked, right, 1e-15);
 }
 
-TEST(NormalEquations, are_the_inner_products_term_by_term) {
+TEST(NormalEquations, AreTheInnerProductsTermByTerm) {
   for (const Eigen::Index rows : {1, 5, 301}) {
     for (const Eigen::Index cols : {1, 2, 7, 34}) {
       const MatrixXd a = random_rows(rows, cols, 1);
@@ -52,7 +53,7 @@ std::vector<const batch::GramKernel*> runnable_grams() {
   return kernels;
 }
 
-TEST(NormalEquations, every_instruction_set_makes_the_same_from_any_number_of_chunks) {
+TEST(NormalEquations, EveryInstructionSetMakesTheSameFromAnyNumberOfChunks) {
   for (const batch::GramKernel* kernel : runnable_grams())
     for (const int rows : {1, 95, 96, 97, 384, 385, 1000})
       for (const int columns : {1, 4, 11, 12, 13, 50}) {
@@ -60,7 +61,7 @@ TEST(NormalEquations, every_instruction_set_makes_the_same_from_any_number_of_ch
         const VectorXd b = random_rows(rows, 1, 8);
         MatrixXd matrix = MatrixXd::Zero(columns, columns);
         VectorXd gradient(columns);
-        batch::Buffer<double> workspace(batch::gram_workspace(rows, columns, kernel->lanes));
+        batch::AlignedBuffer<double> workspace(batch::gram_workspace(rows, columns, kernel->lanes));
         kernel->normal_equations({.a = above.data(),
                                   .a_stride = above.outerStride(),
                                   .b = b.data(),
@@ -76,27 +77,27 @@ TEST(NormalEquations, every_instruction_set_makes_the_same_from_any_number_of_ch
       }
 }
 
-TEST(NormalEquations, both_ways_give_the_minimum_of_the_damped_squares) {
+TEST(NormalEquations, BothWaysGiveTheMinimumOfTheDampedSquares) {
   for (const Eigen::Index rows : {4, 6, 50}) {
     const MatrixXd a = random_rows(rows, 6, 3);
     const VectorXd b = random_rows(rows, 1, 4);
     for (const double damping : {1e-3, 1.0, 1e6}) {
       const VectorXd slow = slow_damped(a, b, damping);
-      const auto quick = damped_by_cholesky(normal_equations(a, b), damping);
+      const auto quick = solve_damped_by_cholesky(normal_equations(a, b), damping);
       ASSERT_TRUE(quick.has_value()) << rows << " rows, damping " << damping;
       EXPECT_LT((*quick - slow).norm(), 1e-9 * slow.norm());
-      EXPECT_LT((damped_by_svd(singular_system(a, b), damping) - slow).norm(), 1e-11 * slow.norm());
+      EXPECT_LT((solve_damped_by_svd(singular_system(a, b), damping) - slow).norm(), 1e-11 * slow.norm());
     }
   }
 }
 
-TEST(NormalEquations, cholesky_refuses_what_it_would_answer_wrongly_and_svd_does_not_move_along_the_unseen) {
+TEST(NormalEquations, CholeskyRefusesWhatItWouldAnswerWronglyAndSvdDoesNotMoveAlongTheUnseen) {
   MatrixXd a = random_rows(60, 4, 5);
   a.col(3) = a.col(0) + a.col(1);
   const VectorXd b = random_rows(60, 1, 6);
-  EXPECT_FALSE(damped_by_cholesky(normal_equations(a, b), 1e-14).has_value());
+  EXPECT_FALSE(solve_damped_by_cholesky(normal_equations(a, b), 1e-14).has_value());
   const VectorXd shortest = solve_least_squares(a, -b, 1e-10);
-  EXPECT_LT((damped_by_svd(singular_system(a, b), 1e-14) - shortest).norm(), 1e-10);
+  EXPECT_LT((solve_damped_by_svd(singular_system(a, b), 1e-14) - shortest).norm(), 1e-10);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-#include "kinfer/measurement/clocks.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/measurement/clock_correction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@ InsRecording three_clocks() {
 
 TEST(Clocks, EveryTimeIsShiftedByOffsetAndDrift) {
   const std::vector<ClockCorrection> corrections{{}, {.offset = 0.5, .drift = 0.1, .middle = 1.0}, {.offset = -5.0}};
-  const InsRecording found = on_one_clock(three_clocks(), corrections);
+  const InsRecording found = synchronise_sensors(three_clocks(), corrections);
   EXPECT_DOUBLE_EQ(found.time(found.sensors[0])[2], 2.0);
   EXPECT_DOUBLE_EQ(found.time(found.sensors[1])[0], 0.4);
   EXPECT_DOUBLE_EQ(found.time(found.sensors[1])[2], 2.6);
@@ -24,7 +25,7 @@ TEST(Clocks, EveryTimeIsShiftedByOffsetAndDrift) {
 
 TEST(Clocks, SensorsOfOneLoggerThatNeedTheSameStayTogether) {
   const std::vector<ClockCorrection> same{{.offset = 0.1}, {.offset = 0.1, .middle = 7.0}, {.offset = 0.1}};
-  const InsRecording found = on_one_clock(three_clocks(), same);
+  const InsRecording found = synchronise_sensors(three_clocks(), same);
   EXPECT_EQ(found.loggers.size(), 2u);
   EXPECT_EQ(found.sensors[0].logger, found.sensors[1].logger);
   EXPECT_NE(found.sensors[0].logger, found.sensors[2].logger);

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "kinfer/measurement/join.hpp"
+#include "kinfer/measurement/merge_pose_sets.hpp"
 #include "kinfer/measurement/split.hpp"
 
 namespace kinfer {
@@ -22,23 +23,23 @@ PoseSet three_rows() {
   return set;
 }
 
-TEST(Join, rows_of_the_second_set_come_after_and_are_labelled_holdout) {
+TEST(Join, RowsOfTheSecondSetComeAfterAndAreLabelledHoldout) {
   PoseSet second = three_rows();
   second.sockets = {"right", "new"};
-  const PoseSet all = joined(three_rows(), second);
+  const PoseSet all = merge_pose_sets(three_rows(), second);
   EXPECT_EQ(all.rows(), 6);
   EXPECT_EQ(all.joints(0, 3), 10);
   EXPECT_EQ(all.points.back().row, 5);
   EXPECT_EQ(all.pairs.back().other, 5);
   EXPECT_EQ(all.sockets[all.contacts.back().socket], "new");
-  EXPECT_EQ(std::count(all.set.begin(), all.set.end(), SetLabel::holdout), 3);
+  EXPECT_EQ(std::count(all.set.begin(), all.set.end(), SplitLabel::holdout), 3);
 }
 
-TEST(PositionSd, grows_with_the_distance_from_the_origin) {
+TEST(PositionSd, GrowsWithTheDistanceFromTheOrigin) {
   EXPECT_DOUBLE_EQ(position_sd({.sigma = 10e-6, .ppm = 5.0}, Vec3(0, 3, 4)), 35e-6);
 }
 
-TEST(Folds, every_row_is_held_out_exactly_once) {
+TEST(Folds, EveryRowIsHeldOutExactlyOnce) {
   for (const int count : {5, 17, 100}) {
     std::vector<int> held(count, 0);
     for (const Split& split : folds(count, 5, Rng(3))) {
@@ -49,7 +50,7 @@ TEST(Folds, every_row_is_held_out_exactly_once) {
   }
 }
 
-TEST(RandomSplit, keeps_at_least_one_row_on_each_side) {
+TEST(RandomSplit, KeepsAtLeastOneRowOnEachSide) {
   EXPECT_EQ(random_split(2, 0.01, Rng(1)).holdout.size(), 1u);
   EXPECT_EQ(random_split(2, 0.99, Rng(1)).train.size(), 1u);
   EXPECT_EQ(random_split(100, 0.25, Rng(1)).holdout.size(), 25u);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/measurement/pose_set.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +26,7 @@ PoseSet four_rows() {
     set.payload.push_back(row);
     set.temperature.push_back(20 + row);
     set.id.push_back(std::to_string(row));
-    set.set.push_back(row % 2 ? SetLabel::train : SetLabel::holdout);
+    set.set.push_back(row % 2 ? SplitLabel::train : SplitLabel::holdout);
     set.line.push_back(row + 2);
   }
   set.pairs = {{0, 1, 0.5}, {1, 3, 0.7}};
@@ -50,7 +51,7 @@ TEST(PoseSet, SelectedRowsCarryEverythingThatWasSaidOfThem) {
   EXPECT_EQ(set.payload, (std::vector<double>{3, 1}));
   EXPECT_EQ(set.temperature, (std::vector<double>{23, 21}));
   EXPECT_EQ(set.id, (std::vector<std::string>{"3", "1"}));
-  EXPECT_EQ(set.set, (std::vector{SetLabel::train, SetLabel::train}));
+  EXPECT_EQ(set.set, (std::vector{SplitLabel::train, SplitLabel::train}));
   EXPECT_EQ(set.setup, (std::vector<int>{1, 1}));
   EXPECT_EQ(set.sweep, (std::vector<int>{0, 0}));
   EXPECT_EQ(set.line, (std::vector<int>{5, 3}));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/measurement/sensor_model.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,7 @@
 namespace kinfer {
 namespace {
 
-TEST(SensorModel, grades_have_the_stated_figures) {
+TEST(SensorModel, GradesHaveTheStatedFigures) {
   const SensorModel industrial = *sensor_grade("industrial");
   EXPECT_NEAR(industrial.accelerometer.noise_density / 9.80665, 120e-6, 1e-12);
   EXPECT_NEAR(industrial.gyroscope.instability / degree * 3600, 10.0, 1e-9);
@@ -20,7 +21,7 @@ TEST(SensorModel, grades_have_the_stated_figures) {
   EXPECT_FALSE(sensor_grade("military"));
 }
 
-TEST(SensorModel, noise_of_a_row_is_density_times_root_of_half_the_rate) {
+TEST(SensorModel, NoiseOfARowIsDensityTimesRootOfHalfTheRate) {
   const InstrumentModel model{.noise_density = 0.02};
   for (const double rate : {50.0, 400.0}) {
     SimulatedInstrument instrument(model, {}, Rng(3));
@@ -31,7 +32,7 @@ TEST(SensorModel, noise_of_a_row_is_density_times_root_of_half_the_rate) {
   }
 }
 
-TEST(SensorModel, the_wandering_bias_has_its_spread_and_time) {
+TEST(SensorModel, TheWanderingBiasHasItsSpreadAndTime) {
   const InstrumentModel model{.instability = 2.0, .instability_time = 5.0};
   double variance = 0.0, covariance = 0.0;
   constexpr int runs = 4000;
@@ -46,15 +47,15 @@ TEST(SensorModel, the_wandering_bias_has_its_spread_and_time) {
   EXPECT_NEAR(covariance, 4.0 * std::exp(-1.0), 0.2);
 }
 
-TEST(SensorModel, readings_are_counts_within_the_range) {
+TEST(SensorModel, ReadingsAreCountsWithinTheRange) {
   const InstrumentModel model{.range = 3.0, .resolution = 0.5};
   SimulatedInstrument instrument(model, {}, Rng(1));
   EXPECT_EQ(instrument.read(Vec3(0.74, -9.0, 0.2), 0.01), Vec3(0.5, -3.0, 0.0));
 }
 
-TEST(SensorModel, errors_of_an_individual_are_reading_is_matrix_truth_plus_bias) {
+TEST(SensorModel, ErrorsOfAnIndividualAreReadingIsMatrixTruthPlusBias) {
   const InstrumentModel model{.bias_sd = 1.0, .scale_sd = 0.01};
-  const InstrumentErrors errors = drawn_errors(model, Rng(8));
+  const InstrumentErrors errors = sample_instrument_errors(model, Rng(8));
   SimulatedInstrument instrument(model, errors, Rng(1));
   const Vec3 truth(1, 2, 3);
   EXPECT_LT((instrument.read(truth, 0.01) - (errors.matrix * truth + errors.bias)).norm(), 1e-12);

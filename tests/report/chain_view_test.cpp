@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the report draws is where the chain is: every convention, through JSON and back.
-#include "kinfer/report/chain_view.hpp"
+#include "kinfer/report/parts/chain_view.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "kinfer/base/rng.hpp"
-#include "kinfer/io/picture_json.hpp"
+#include "kinfer/io/evidence/drawing_json.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 
 class ChainViews : public ::testing::TestWithParam<Chain> {};
 
-TEST_P(ChainViews, frames_from_evidence_are_those_of_the_chain) {
+TEST_P(ChainViews, FramesFromEvidenceAreThoseOfTheChain) {
   Chain chain = GetParam();
   for (Joint& joint : chain.joints) joint.compliance = 0.0;  // a drawing leaves deflections out
   const ChainView view = chain_view(nlohmann::json::parse(chain_json(chain).dump()));
@@ -35,13 +36,13 @@ TEST_P(ChainViews, frames_from_evidence_are_those_of_the_chain) {
   }
 }
 
-TEST_P(ChainViews, axes_are_the_lines_that_joints_move_about) {
+TEST_P(ChainViews, AxesAreTheLinesThatJointsMoveAbout) {
   const Chain& chain = GetParam();
   const VectorXd q = VectorXd::Constant(dof(chain), 0.3);
   const auto drawn = placed(chain_view(nlohmann::json::parse(chain_json(chain).dump())), {q.begin(), q.end()});
   Chain stiff = chain;
   for (Joint& joint : stiff.joints) joint.compliance = 0.0;
-  const std::vector<PlacedJoint> truth = placed_joints(stiff, q);
+  const std::vector<JointPlacement> truth = joint_placements(stiff, q);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     EXPECT_LT((drawn[i].axis - truth[i].axis).norm(), 1e-12);
     EXPECT_LT(truth[i].axis.cross(drawn[i].point - truth[i].point).norm(), 1e-12);

@@ -1,39 +1,40 @@
-#include "kinfer/report/plot.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/report/parts/plot.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "kinfer/report/html.hpp"
+#include "kinfer/report/parts/html.hpp"
 
 namespace kinfer {
 namespace {
 
-TEST(Ticks, are_round_numbers_inside_the_axis) {
+TEST(Ticks, AreRoundNumbersInsideTheAxis) {
   const std::vector<double> t = svg::ticks({.label = "", .low = 0.0, .high = 1.7}, 4);
   ASSERT_EQ(t.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(t[i], 0.5 * static_cast<double>(i), 1e-12);
 }
 
-TEST(Ticks, of_a_logarithmic_axis_are_powers_of_ten) {
+TEST(Ticks, OfALogarithmicAxisArePowersOfTen) {
   const std::vector<double> t = svg::ticks({"", 0.02, 300.0, svg::Scale::logarithmic}, 6);
   ASSERT_EQ(t.size(), 4u);
   EXPECT_NEAR(t.front(), 0.1, 1e-12);
   EXPECT_NEAR(t.back(), 100.0, 1e-9);
 }
 
-TEST(Axis, of_values_that_are_all_the_same_has_an_extent) {
+TEST(Axis, OfValuesThatAreAllTheSameHasAnExtent) {
   const svg::Axis axis = svg::axis_for("", {2.0, 2.0}, svg::From::least);
   EXPECT_LT(axis.low, 2.0);
   EXPECT_GT(axis.high, 2.0);
 }
 
-TEST(Axis, without_values_is_still_one) {
+TEST(Axis, WithoutValuesIsStillOne) {
   const svg::Axis axis = svg::axis_for("", {NAN}, svg::From::zero);
   EXPECT_LT(axis.low, axis.high);
 }
 
-TEST(Plot, higher_values_are_drawn_higher) {
+TEST(Plot, HigherValuesAreDrawnHigher) {
   svg::Plot plot({.label = "x"}, {.label = "y"});
   plot.dot(0.5, 0.25, 2.0, "low");
   plot.dot(0.5, 0.75, 2.0, "high");
@@ -45,7 +46,7 @@ TEST(Plot, higher_values_are_drawn_higher) {
   EXPECT_GT(y_of("low"), y_of("high"));  // SVG counts downwards
 }
 
-TEST(Plot, a_gap_interrupts_a_line) {
+TEST(Plot, AGapInterruptsALine) {
   svg::Plot plot({.label = "x", .low = 0.0, .high = 3.0}, {.label = "y"});
   plot.line({0.0, 1.0, 2.0, 3.0}, {0.1, NAN, 0.2, 0.3}, "line");
   const std::string text = plot.svg("a line");
@@ -53,7 +54,7 @@ TEST(Plot, a_gap_interrupts_a_line) {
   EXPECT_EQ(std::count(path.begin(), path.end(), 'M'), 2);
 }
 
-TEST(Numbers, are_rounded_for_reading_and_exact_for_copying) {
+TEST(Numbers, AreRoundedForReadingAndExactForCopying) {
   EXPECT_EQ(html::fixed(-0.00004, 3), "0.000");
   EXPECT_EQ(html::fixed(-1.5, 1), "−1.5");
   EXPECT_EQ(html::fixed(NAN, 2), "–");
@@ -62,7 +63,7 @@ TEST(Numbers, are_rounded_for_reading_and_exact_for_copying) {
   EXPECT_EQ(html::short_number(0.0471), "0.047");
 }
 
-TEST(Text, is_escaped) {
+TEST(Text, IsEscaped) {
   EXPECT_EQ(html::escape("a<b & \"c\">"), "a&lt;b &amp; &quot;c&quot;&gt;");
 }
 

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 // report.html from evidence: complete, well formed, safe against what names and notes may hold, and never too large.
 #include "kinfer/report/report.hpp"
-#include "kinfer/report/html.hpp"
+#include "kinfer/report/parts/html.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +12,8 @@
 #include "kinfer/evidence/calibration.hpp"
 #include "kinfer/evidence/identification.hpp"
 #include "kinfer/evidence/provenance.hpp"
-#include "kinfer/io/evidence_json.hpp"
-#include "kinfer/io/identify_json.hpp"
+#include "kinfer/io/evidence/calibration_json.hpp"
+#include "kinfer/io/evidence/identification_json.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer::test {
@@ -28,13 +29,13 @@ Chain two_joints() {
 Calibration small_calibration() {
   Calibration c;
   c.estimate.chain = two_joints();
-  c.picture.nominal = c.picture.before = two_joints();
-  c.picture.joints = MatrixXd::Constant(2, 3, 0.2);
+  c.plot_data.nominal = c.plot_data.before = two_joints();
+  c.plot_data.joints = MatrixXd::Constant(2, 3, 0.2);
   for (int row = 0; row < 3; ++row) {
     c.rows.push_back({row, 1e-3, 1e-4, 1e-4, true});
-    c.picture.rows.push_back({Vec3(0.3, 0.1, row), Vec3(1e-3, 0, 0), Vec3(1e-4, 0, 0), 5e-5});
+    c.plot_data.rows.push_back({Vec3(0.3, 0.1, row), Vec3(1e-3, 0, 0), Vec3(1e-4, 0, 0), 5e-5});
   }
-  c.picture.workspace = {{Vec3(1, 2, 3), 1e-4}, {Vec3(2, 2, 1), 2e-4}};
+  c.plot_data.workspace = {{Vec3(1, 2, 3), 1e-4}, {Vec3(2, 2, 1), 2e-4}};
   c.before.position.holdout = {1e-3, 1e-3, 1e-4, 2e-3, 3};
   c.after.position.holdout = {1e-4, 1e-4, 1e-5, 2e-4, 3};
   c.estimate.values = {{"a2", Quantity::length, 0.3, 0.3001, 1e-5, true},
@@ -44,12 +45,12 @@ Calibration small_calibration() {
   c.estimate.outliers = {{2, 4, "the point is </script><script>alert(1)</script> off"}};
   c.verdict = "Use it: better than before.";
   c.notes = {"<b>bold & brave</b>"};
-  c.next = {{"Measure more", "more is more"}};
+  c.recommendations = {{"Measure more", "more is more"}};
   return c;
 }
 
 std::string calibration_report(const Calibration& c) {
-  return report_html(calibration_json(c, {})).value();
+  return report_html(format_calibration_evidence(c, {})).value();
 }
 
 /// A machine whose log was `rows` samples of `sensors` sensors, all signals noise-like.
@@ -65,7 +66,7 @@ Identification long_identification(std::size_t rows, std::size_t sensors) {
   for (std::size_t s = 0; s < sensors; ++s) {
     found.order.sensors.push_back("s" + std::to_string(s));
     if (s == 0) continue;
-    FoundJoint joint;
+    JointEstimate joint;
     joint.parent = "s" + std::to_string(s - 1), joint.child = "s" + std::to_string(s);
     found.joints.push_back(joint);
     for (const char* quantity : {"acceleration", "rate"})
@@ -77,9 +78,9 @@ Identification long_identification(std::size_t rows, std::size_t sensors) {
                                      .predicted = {thin, thin, thin},
                                      .residual = {thin, thin, thin}});
   }
-  found.motion.playback.time = std::vector<double>(600, 0.0);
-  found.motion.playback.root = {{1, 0, 0, 0}};
-  found.motion.playback.q = MatrixXd::Zero(0, 600);
+  found.motion.trajectory.time = std::vector<double>(600, 0.0);
+  found.motion.trajectory.root = {{1, 0, 0, 0}};
+  found.motion.trajectory.q = MatrixXd::Zero(0, 600);
   return found;
 }
 
@@ -114,13 +115,13 @@ TEST(Html, ProseKeepsUnitsWithTheirNumbersAndSetsCallsAsCode) {
             "as <code>kinfer plan --data</code> chooses, or <code>kinfer verify</code>.");
 }
 
-TEST(Report, every_element_that_is_opened_is_closed) {
+TEST(Report, EveryElementThatIsOpenedIsClosed) {
   EXPECT_EQ(unbalanced(calibration_report(small_calibration())), std::vector<std::string>{});
-  EXPECT_EQ(unbalanced(report_html(identification_json(long_identification(2000, 3), {})).value()),
+  EXPECT_EQ(unbalanced(report_html(format_identification_evidence(long_identification(2000, 3), {})).value()),
             std::vector<std::string>{});
 }
 
-TEST(Report, names_and_notes_cannot_break_out) {
+TEST(Report, NamesAndNotesCannotBreakOut) {
   const std::string html = calibration_report(small_calibration());
   EXPECT_EQ(html.find("<script>alert"), std::string::npos);
   EXPECT_EQ(html.find("<b>bold"), std::string::npos);
@@ -128,11 +129,11 @@ TEST(Report, names_and_notes_cannot_break_out) {
   EXPECT_NE(html.find("two &lt;joints&gt;"), std::string::npos);
 }
 
-TEST(Report, the_same_evidence_gives_the_same_bytes) {
+TEST(Report, TheSameEvidenceGivesTheSameBytes) {
   EXPECT_EQ(calibration_report(small_calibration()), calibration_report(small_calibration()));
 }
 
-TEST(Report, nothing_is_fetched_from_anywhere) {
+TEST(Report, NothingIsFetchedFromAnywhere) {
   const std::string html = calibration_report(small_calibration());
   EXPECT_EQ(html.find("<script src"), std::string::npos);
   EXPECT_EQ(html.find("<img"), std::string::npos);
@@ -140,29 +141,29 @@ TEST(Report, nothing_is_fetched_from_anywhere) {
   EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
 }
 
-TEST(Report, without_poses_rows_or_parameters_there_is_still_a_report) {
+TEST(Report, WithoutPosesRowsOrParametersThereIsStillAReport) {
   Calibration empty;
   empty.verdict = "Do not use: nothing was measured.";
-  const auto html = report_html(calibration_json(empty, {}));
+  const auto html = report_html(format_calibration_evidence(empty, {}));
   ASSERT_TRUE(html) << html.error().what;
   EXPECT_NE(html->find("Nothing was measured"), std::string::npos);
   Identification nothing;
   nothing.verdict = "0 joints found";
-  EXPECT_TRUE(report_html(identification_json(nothing, {})));
+  EXPECT_TRUE(report_html(format_identification_evidence(nothing, {})));
 }
 
-TEST(Report, an_hour_of_six_sensors_stays_below_five_megabytes) {
-  const std::string html = report_html(identification_json(long_identification(720000, 6), {})).value();
+TEST(Report, AnHourOfSixSensorsStaysBelowFiveMegabytes) {
+  const std::string html = report_html(format_identification_evidence(long_identification(720000, 6), {})).value();
   EXPECT_LT(html.size(), 5'000'000u);
   RecordProperty("bytes", static_cast<int>(html.size()));
 }
 
-TEST(Report, evidence_that_is_none_is_told_in_one_sentence) {
+TEST(Report, EvidenceThatIsNoneIsToldInOneSentence) {
   EXPECT_EQ(report_html("[]").error().what, "evidence.json: not a JSON object");
-  EXPECT_EQ(report_html("{\"kind\": \"frames\"}").error().what, "evidence.json: no report is known for kind 'frames'");
+  EXPECT_EQ(report_html("{\"kind\": \"frames\"}").error().what, "evidence.json: there is no report for kind 'frames'");
   const auto lacking = report_html("{\"kind\": \"calibrate\", \"verdict\": \"x\"}");
   ASSERT_FALSE(lacking);
-  EXPECT_EQ(lacking.error().what.find("evidence.json: not as kinfer writes it"), 0u);
+  EXPECT_EQ(lacking.error().what.find("evidence.json: not in kinfer's format"), 0u);
 }
 
 }  // namespace

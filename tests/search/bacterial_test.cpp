@@ -1,11 +1,12 @@
-#include "kinfer/search/bacterial.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/search/evolution/bacterial_programming.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "kinfer/search/genetic_programming.hpp"
-#include "kinfer/search/product_tree.hpp"
+#include "kinfer/search/evolution/genetic_programming.hpp"
+#include "kinfer/search/evolution/product_tree.hpp"
 
 namespace kinfer {
 namespace {
@@ -22,7 +23,7 @@ struct AffineLeaves {
   }
 };
 using AffineTree = ProductTree<Affine>;
-using AffineBreed = TreeBreed<Affine, AffineLeaves>;
+using AffineBreed = TreeOperators<Affine, AffineLeaves>;
 
 /// Distance of the product from x -> 0.7 x + 3.1, which one leaf with a shift of at most 2 cannot begin with.
 double distance_from_target(const AffineTree& tree, double /*bound*/) {
@@ -39,12 +40,12 @@ struct BitBreed {
     for (auto bit : bits) bit = rng.index(2) == 1;
     return bits;
   }
-  std::size_t parts(const Genome& bits) const { return bits.size(); }
-  Genome mutated(Genome bits, std::size_t part, Rng rng) const {
+  std::size_t part_count(const Genome& bits) const { return bits.size(); }
+  Genome mutate(Genome bits, std::size_t part, Rng rng) const {
     bits[part] = rng.index(2) == 1;
     return bits;
   }
-  Genome transferred(const Genome& from, std::size_t part, Genome to, std::size_t, Rng) const {
+  Genome transfer(const Genome& from, std::size_t part, Genome to, std::size_t, Rng) const {
     to[part] = from[part];
     return to;
   }
@@ -64,9 +65,10 @@ TEST(ProductTree, EveryOperationKeepsToTheDepthLimits) {
     for (std::uint64_t i = 0; i < 2000; ++i) {
       const AffineTree other = breed.random(rng.stream(i));
       ASSERT_TRUE(is_within(other, limits));
-      tree = breed.transferred(other, rng.index(breed.parts(other)), tree, rng.index(breed.parts(tree)), rng.stream(i));
+      tree = breed.transfer(other, rng.index(breed.part_count(other)), tree, rng.index(breed.part_count(tree)),
+                            rng.stream(i));
       ASSERT_TRUE(is_within(tree, limits));
-      tree = breed.mutated(tree, rng.index(breed.parts(tree)), rng.stream(i));
+      tree = breed.mutate(tree, rng.index(breed.part_count(tree)), rng.stream(i));
       ASSERT_TRUE(is_within(tree, limits));
     }
   }
@@ -78,7 +80,7 @@ TEST(ProductTree, TheSubTreesOfABranchAreItsChildren) {
   EXPECT_EQ(depth(tree), 3);
   EXPECT_THAT(node_depths(tree), testing::ElementsAre(1, 2, 3, 3, 2));
   EXPECT_EQ(subtree_end(tree, 1), 4u);
-  const AffineTree turned = grafted(tree, 1, c);
+  const AffineTree turned = replace_subtree(tree, 1, c);
   ASSERT_EQ(leaf_count(turned), 2);
   EXPECT_EQ(leaves(turned)[0].scale, 3.0);
 }
@@ -88,10 +90,11 @@ TEST(ProductTree, EachRenewalDoesWhatItsNameSays) {
   const AffineTree tree =
       product(product(AffineTree{{Affine{1, 0}}}, AffineTree{{Affine{2, 0}}}), AffineTree{{Affine{3, 0}}});
   Rng rng(1);
-  EXPECT_EQ(breed.renewed(tree, 0, Renewal::reparameterise, rng).nodes.size(), 5u);
-  EXPECT_EQ(breed.renewed(tree, 0, Renewal::shrink, rng).nodes.size(), 1u);
+  EXPECT_EQ(breed.mutated_subtree(tree, 0, SubtreeMutation::reparameterise, rng).nodes.size(), 5u);
+  EXPECT_EQ(breed.mutated_subtree(tree, 0, SubtreeMutation::shrink, rng).nodes.size(), 1u);
   std::size_t largest = 0;
-  for (int i = 0; i < 50; ++i) largest = std::max(largest, breed.renewed(tree, 4, Renewal::regrow, rng).nodes.size());
+  for (int i = 0; i < 50; ++i)
+    largest = std::max(largest, breed.mutated_subtree(tree, 4, SubtreeMutation::regrow, rng).nodes.size());
   EXPECT_GT(largest, 3u);
 }
 
@@ -161,9 +164,9 @@ TEST(BacterialProgramming, CostsThatAreNoNumbersNeverWin) {
 }
 
 TEST(BacterialProgramming, StopsWhenTheObserverWishes) {
-  const auto outcome =
-      evolve_bacteria(BitBreed{}, GenomeCost<BitBreed::Genome>([](const auto&, double) { return 1.0; }), {}, Rng(1),
-                      [](const Progress& p) { return p.iteration < 3 ? Wish::go_on : Wish::stop; });
+  const auto outcome = evolve_bacteria(
+      BitBreed{}, GenomeCost<BitBreed::Genome>([](const auto&, double) { return 1.0; }), {}, Rng(1),
+      [](const Progress& p) { return p.iteration < 3 ? ObserverDecision::proceed : ObserverDecision::stop; });
   EXPECT_EQ(outcome.stop, Stop::cancelled);
   EXPECT_EQ(outcome.generations, 3);
 }

@@ -1,4 +1,5 @@
-#include "kinfer/search/bpnn_pso.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/search/swarm/bpnn_pso.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,33 +12,33 @@ using testing::shifted_sphere;
 
 constexpr Budget to_one_percent{.max_iterations = 2000, .target_cost = 1e-6};
 
-Outcome cold_run() {
+SearchOutcome cold_run() {
   return bpnn_particle_swarm(shifted_sphere(10), {.pso = {.budget = to_one_percent}}, Rng(1));
 }
 
-TEST(BpnnPso, without_a_net_it_is_plain_pso) {
-  const Outcome plain = particle_swarm(shifted_sphere(10), {.budget = to_one_percent}, Rng(1));
+TEST(BpnnPso, WithoutANetItIsPlainPso) {
+  const SearchOutcome plain = particle_swarm(shifted_sphere(10), {.budget = to_one_percent}, Rng(1));
   EXPECT_EQ(cold_run().x, plain.x);
   EXPECT_EQ(cold_run().best, plain.best);
 }
 
-TEST(BpnnPso, the_net_of_one_run_predicts_a_swarm_around_its_optimum) {
-  const Outcome first = cold_run();
+TEST(BpnnPso, TheNetOfOneRunPredictsASwarmAroundItsOptimum) {
+  const SearchOutcome first = cold_run();
   const MatrixXd predicted = predict(*first.net, uniform_swarm(testing::cube(10, 1.0), 50, Rng(2)));
   EXPECT_LT((predicted.rowwise().mean() - first.x).cwiseAbs().maxCoeff(), 0.05);
   EXPECT_LT((predicted.colwise() - first.x).cwiseAbs().mean(), 0.1);  // drawn evenly from ±1: 0.5 and more
 }
 
-TEST(BpnnPso, the_next_run_on_the_same_problem_needs_fewer_iterations) {
-  const Outcome first = cold_run();
-  const Outcome next =
+TEST(BpnnPso, TheNextRunOnTheSameProblemNeedsFewerIterations) {
+  const SearchOutcome first = cold_run();
+  const SearchOutcome next =
       bpnn_particle_swarm(shifted_sphere(10), {.pso = {.budget = to_one_percent}, .net = first.net}, Rng(2));
   EXPECT_EQ(next.stop, Stop::target_reached);
   EXPECT_LT(next.iterations, 0.6 * first.iterations);
 }
 
-TEST(BpnnPso, the_literal_reading_keeps_the_swarm_from_a_moved_optimum) {
-  const Outcome first = cold_run();
+TEST(BpnnPso, TheLiteralReadingKeepsTheSwarmFromAMovedOptimum) {
+  const SearchOutcome first = cold_run();
   // The same robot, after a collision: the optimum moved to −0.4.
   const Objective moved =
       testing::objective_of(testing::cube(10, 1.0), [](const VectorXd& x) { return (x.array() + 0.4).square().sum(); });
@@ -48,11 +49,11 @@ TEST(BpnnPso, the_literal_reading_keeps_the_swarm_from_a_moved_optimum) {
   EXPECT_GT(bpnn_particle_swarm(moved, literal, Rng(2)).cost, 1e-3);
 }
 
-TEST(BpnnPso, the_number_of_hidden_nodes_follows_the_wish) {
+TEST(BpnnPso, TheNumberOfHiddenNodesFollowsTheWish) {
   const Objective objective = shifted_sphere(10);
   const auto nodes = [&](HiddenNodes how) {
-    return learn(objective.bounds, uniform_swarm(objective.bounds, 50, Rng(1)), VectorXd::Constant(10, 0.3), how,
-                 {.epochs = 50}, 1, Rng(2))
+    return train_on_swarm(objective.bounds, uniform_swarm(objective.bounds, 50, Rng(1)), VectorXd::Constant(10, 0.3),
+                          how, {.epochs = 50}, 1, Rng(2))
         .hidden_nodes();
   };
   EXPECT_EQ(nodes(HiddenNodes::figure), 70);

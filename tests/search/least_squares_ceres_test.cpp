@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The independent judge: Ceres solves the same residuals and must end at the same optimum.
 #include <ceres/ceres.h>
 #include <gtest/gtest.h>
@@ -72,7 +73,7 @@ CeresFit ceres_fit(const Residuals& problem, const VectorXd& start, Loss loss = 
   return fit;
 }
 
-TEST(LeastSquaresBesideCeres, standard_problems_have_the_same_optimum) {
+TEST(LeastSquaresBesideCeres, StandardProblemsHaveTheSameOptimum) {
   for (const auto& problem : testing::standard_problems()) {
     const auto ours = least_squares(problem.residuals, problem.start, {.max_iterations = 500});
     const auto theirs = ceres_fit(problem.residuals, problem.start);
@@ -83,7 +84,7 @@ TEST(LeastSquaresBesideCeres, standard_problems_have_the_same_optimum) {
   }
 }
 
-TEST(LeastSquaresBesideCeres, every_loss_gives_the_same_line_through_outliers) {
+TEST(LeastSquaresBesideCeres, EveryLossGivesTheSameLineThroughOutliers) {
   const Residuals problem = testing::line_with_outliers();
   for (const Loss loss : testing::losses) {
     for (const double scale : {1.0, 3.0}) {
@@ -97,7 +98,7 @@ TEST(LeastSquaresBesideCeres, every_loss_gives_the_same_line_through_outliers) {
   }
 }
 
-TEST(LeastSquaresBesideCeres, every_loss_gives_the_same_pose_with_blocks_of_two_rows_and_a_prior) {
+TEST(LeastSquaresBesideCeres, EveryLossGivesTheSamePoseWithBlocksOfTwoRowsAndAPrior) {
   const Residuals problem = testing::planar_pose_with_outliers();
   for (const Loss loss : testing::losses) {
     const VectorXd start = Eigen::Vector3d(0.49, 1.01, 1.99);

@@ -1,4 +1,5 @@
-#include "kinfer/search/least_squares.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/search/least_squares/least_squares.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -55,7 +56,7 @@ Residuals scalar(Value value, Slope slope) {
 
 const VectorXd unit_start = VectorXd::Ones(1);
 
-TEST(LeastSquares, standard_problems_end_at_the_optimum_that_the_literature_prints) {
+TEST(LeastSquares, StandardProblemsEndAtTheOptimumThatTheLiteraturePrints) {
   for (const auto& problem : standard_problems()) {
     const auto fit = least_squares(problem.residuals, problem.start, {.max_iterations = 500});
     EXPECT_TRUE(converged(fit.stop)) << problem.name << ": " << sentence(fit.stop);
@@ -63,7 +64,7 @@ TEST(LeastSquares, standard_problems_end_at_the_optimum_that_the_literature_prin
   }
 }
 
-TEST(LeastSquares, derivatives_of_the_test_problems_agree_with_differences) {
+TEST(LeastSquares, DerivativesOfTheTestProblemsAgreeWithDifferences) {
   auto problems = standard_problems();
   problems.push_back({"line", testing::line_with_outliers(), Eigen::Vector2d(1, 1), 0.0});
   problems.push_back({"planar pose", testing::planar_pose_with_outliers(), Eigen::Vector3d(0.3, 1, 1), 0.0});
@@ -74,7 +75,7 @@ TEST(LeastSquares, derivatives_of_the_test_problems_agree_with_differences) {
   }
 }
 
-TEST(LeastSquares, outcome_describes_the_point_that_it_returns) {
+TEST(LeastSquares, OutcomeDescribesThePointThatItReturns) {
   for (const auto& problem : standard_problems()) {
     const auto fit = least_squares(problem.residuals, problem.start, {.max_iterations = 5});
     EXPECT_EQ(fit.residuals, residuals_at(problem.residuals, fit.x)) << problem.name;
@@ -86,7 +87,7 @@ TEST(LeastSquares, outcome_describes_the_point_that_it_returns) {
   }
 }
 
-TEST(LeastSquares, outcome_counts_the_calls) {
+TEST(LeastSquares, OutcomeCountsTheCalls) {
   auto problem = testing::rosenbrock();
   int calls = 0, with_jacobian = 0;
   const auto inner = problem.residuals.evaluate;
@@ -101,7 +102,7 @@ TEST(LeastSquares, outcome_counts_the_calls) {
   EXPECT_EQ(fit.not_finite, 0);
 }
 
-TEST(LeastSquares, a_noise_free_fit_converges_down_to_rounding) {
+TEST(LeastSquares, ANoiseFreeFitConvergesDownToRounding) {
   const auto problem = testing::exponential();
   const auto fit = least_squares(problem.residuals, problem.start);
   EXPECT_TRUE(converged(fit.stop)) << sentence(fit.stop);
@@ -111,7 +112,7 @@ TEST(LeastSquares, a_noise_free_fit_converges_down_to_rounding) {
   EXPECT_NEAR(fit.x[1], 0.1, 2e-15);
 }
 
-TEST(LeastSquares, a_noise_free_fit_converges_down_to_rounding_with_unknowns_of_very_different_sizes) {
+TEST(LeastSquares, ANoiseFreeFitConvergesDownToRoundingWithUnknownsOfVeryDifferentSizes) {
   // Condition 1e8 before scaling: columns of 1e-4 and 1e4.
   MatrixXd a = random_matrix(30, 6, Rng(8));
   a.leftCols(3) *= 1e-4;
@@ -122,7 +123,7 @@ TEST(LeastSquares, a_noise_free_fit_converges_down_to_rounding_with_unknowns_of_
   EXPECT_LT(fit.cost, 30 * std::pow(1e4 * 1e-15, 2));
 }
 
-TEST(LeastSquares, a_redundant_linear_problem_is_solved_by_the_smallest_change) {
+TEST(LeastSquares, ARedundantLinearProblemIsSolvedByTheSmallestChange) {
   // Rank 4 of 7 unknowns: the start plus the pseudo-inverse's step is the nearest of all optima.
   const MatrixXd a = random_matrix(40, 4, Rng(1)) * random_matrix(4, 7, Rng(2));
   const VectorXd start = random_matrix(7, 1, Rng(4));
@@ -135,7 +136,7 @@ TEST(LeastSquares, a_redundant_linear_problem_is_solved_by_the_smallest_change) 
   }
 }
 
-TEST(LeastSquares, the_smallest_change_is_counted_in_typical_sizes) {
+TEST(LeastSquares, TheSmallestChangeIsCountedInTypicalSizes) {
   // x0 + x1 = 1 from (0, 0): the change is shared as the squares of the sizes, 4 : 1.
   const Residuals sum = linear(Eigen::RowVector2d(1, 1), unit_start);
   const auto fit = least_squares(sum, Eigen::Vector2d(0, 0), {.scale = VectorXd(Eigen::Vector2d(2, 1))});
@@ -143,7 +144,7 @@ TEST(LeastSquares, the_smallest_change_is_counted_in_typical_sizes) {
   EXPECT_NEAR(fit.x[1], 0.2, 1e-12);
 }
 
-TEST(LeastSquares, a_redundant_curved_problem_does_not_wander_however_long_it_runs) {
+TEST(LeastSquares, ARedundantCurvedProblemDoesNotWanderHoweverLongItRuns) {
   // Ten noisy sightings of the product x0 x1: all points of a hyperbola are optima.
   const VectorXd seen = VectorXd::Constant(10, 6.0) + 0.1 * random_matrix(10, 1, Rng(6));
   const Residuals product{2, 10, {}, [seen](ConstVectorRef x, VectorXd& r, MatrixXd* j) {
@@ -158,14 +159,14 @@ TEST(LeastSquares, a_redundant_curved_problem_does_not_wander_however_long_it_ru
   EXPECT_LT((fit.x - Eigen::Vector2d(2, 2.5)).norm(), 0.3);
 }
 
-TEST(LeastSquares, fewer_rows_than_unknowns_is_solved_by_the_smallest_change) {
+TEST(LeastSquares, FewerRowsThanUnknownsIsSolvedByTheSmallestChange) {
   const MatrixXd a = random_matrix(3, 5, Rng(11));
   const VectorXd b = random_matrix(3, 1, Rng(12));
   const auto fit = least_squares(linear(a, b), VectorXd::Zero(5), {.scale = VectorXd::Ones(5)});
   EXPECT_LT((fit.x - solve_least_squares(a, b)).norm(), 1e-10);
 }
 
-TEST(Loss, is_the_square_for_small_residuals_and_its_weight_is_its_derivative) {
+TEST(Loss, IsTheSquareForSmallResidualsAndItsWeightIsItsDerivative) {
   for (const Loss loss : testing::losses) {
     EXPECT_NEAR(loss_value(loss, 1e-8, 2.0).rho, 1e-8, 1e-16) << int(loss);
     EXPECT_NEAR(loss_value(loss, 0.0, 2.0).weight, 1.0, 1e-15) << int(loss);
@@ -177,7 +178,7 @@ TEST(Loss, is_the_square_for_small_residuals_and_its_weight_is_its_derivative) {
   }
 }
 
-TEST(LeastSquares, gradient_of_the_robust_cost_is_the_weighted_jacobian_times_the_residuals) {
+TEST(LeastSquares, GradientOfTheRobustCostIsTheWeightedJacobianTimesTheResiduals) {
   const Residuals problem = testing::planar_pose_with_outliers();
   for (const Loss loss : testing::losses) {
     const auto at = [&](const VectorXd& x) {
@@ -193,7 +194,7 @@ TEST(LeastSquares, gradient_of_the_robust_cost_is_the_weighted_jacobian_times_th
   }
 }
 
-TEST(LeastSquares, robust_losses_find_the_line_that_outliers_hide) {
+TEST(LeastSquares, RobustLossesFindTheLineThatOutliersHide) {
   const Residuals problem = testing::line_with_outliers();
   const Eigen::Vector2d truth(2, -1);
   const auto plain = least_squares(problem, Eigen::Vector2d(0, 0));
@@ -210,7 +211,7 @@ TEST(LeastSquares, robust_losses_find_the_line_that_outliers_hide) {
   }
 }
 
-TEST(LeastSquares, rows_after_the_blocks_carry_no_loss) {
+TEST(LeastSquares, RowsAfterTheBlocksCarryNoLoss) {
   // Two sightings of x at 0 (robust) and a prior at 100: without a loss on the prior the optimum of huber is at 98.
   const Residuals problem{1, 3, {1, 1}, [](ConstVectorRef x, VectorXd& r, MatrixXd* j) {
                             r << x[0], x[0], x[0] - 100.0;
@@ -221,7 +222,7 @@ TEST(LeastSquares, rows_after_the_blocks_carry_no_loss) {
   EXPECT_EQ(fit.block_weights.size(), 2);
 }
 
-TEST(LeastSquares, the_same_call_gives_the_same_bits_on_any_number_of_threads) {
+TEST(LeastSquares, TheSameCallGivesTheSameBitsOnAnyNumberOfThreads) {
   const Residuals problem = testing::planar_pose_with_outliers();
   const auto fit = [&] {
     return least_squares(problem, Eigen::Vector3d(0.3, 0.5, 1.5), {.loss = Loss::cauchy, .loss_scale = 3.0}).x;
@@ -234,20 +235,20 @@ TEST(LeastSquares, the_same_call_gives_the_same_bits_on_any_number_of_threads) {
   }
 }
 
-TEST(LeastSquaresStop, converged_cost_where_the_cost_no_longer_falls) {
+TEST(LeastSquaresStop, ConvergedCostWhereTheCostNoLongerFalls) {
   const auto problem = testing::bard();
   const auto fit = least_squares(problem.residuals, problem.start, {.step_tolerance = 0, .gradient_tolerance = 0});
   EXPECT_EQ(fit.stop, Stop::converged_cost);
 }
 
-TEST(LeastSquaresStop, converged_step_where_the_step_is_short) {
+TEST(LeastSquaresStop, ConvergedStepWhereTheStepIsShort) {
   const auto problem = testing::bard();
   const auto fit = least_squares(problem.residuals, problem.start,
                                  {.cost_tolerance = 0, .step_tolerance = 1e-4, .gradient_tolerance = 0});
   EXPECT_EQ(fit.stop, Stop::converged_step);
 }
 
-TEST(LeastSquaresStop, converged_gradient_at_the_optimum_itself) {
+TEST(LeastSquaresStop, ConvergedGradientAtTheOptimumItself) {
   const auto fit = least_squares(testing::rosenbrock().residuals, Eigen::Vector2d(1, 1));
   EXPECT_EQ(fit.stop, Stop::converged_gradient);
   EXPECT_EQ(fit.evaluations, 1);
@@ -255,7 +256,7 @@ TEST(LeastSquaresStop, converged_gradient_at_the_optimum_itself) {
   EXPECT_EQ(least_squares(two_rows, VectorXd::Zero(1)).stop, Stop::converged_gradient);
 }
 
-TEST(LeastSquaresStop, target_reached_as_soon_as_the_cost_is_low_enough) {
+TEST(LeastSquaresStop, TargetReachedAsSoonAsTheCostIsLowEnough) {
   const auto problem = testing::wood();
   const auto fit = least_squares(problem.residuals, problem.start, {.target_cost = 1.0});
   EXPECT_EQ(fit.stop, Stop::target_reached);
@@ -263,21 +264,21 @@ TEST(LeastSquaresStop, target_reached_as_soon_as_the_cost_is_low_enough) {
   EXPECT_GT(fit.history[fit.history.size() - 2], 1.0);
 }
 
-TEST(LeastSquaresStop, budget_spent_after_as_many_iterations_as_allowed) {
+TEST(LeastSquaresStop, BudgetSpentAfterAsManyIterationsAsAllowed) {
   const auto problem = testing::wood();
   const auto fit = least_squares(problem.residuals, problem.start, {.max_iterations = 3});
   EXPECT_EQ(fit.stop, Stop::budget_spent);
   EXPECT_EQ(fit.iterations, 3);
 }
 
-TEST(LeastSquaresStop, stalled_where_the_jacobian_has_the_wrong_sign) {
+TEST(LeastSquaresStop, StalledWhereTheJacobianHasTheWrongSign) {
   const Residuals wrong = scalar([](double x) { return x; }, [](double) { return -1.0; });
   const auto fit = least_squares(wrong, unit_start);
   EXPECT_EQ(fit.stop, Stop::stalled);
   EXPECT_EQ(fit.x, unit_start);
 }
 
-TEST(LeastSquaresStop, not_finite_where_the_start_has_no_finite_cost_or_jacobian) {
+TEST(LeastSquaresStop, NotFiniteWhereTheStartHasNoFiniteCostOrJacobian) {
   const Residuals logarithm = scalar([](double x) { return std::log(x); }, [](double x) { return 1 / x; });
   const Residuals root = scalar([](double x) { return std::sqrt(x) + 1; }, [](double x) { return 0.5 / std::sqrt(x); });
   for (const auto& [problem, start] : {std::pair{logarithm, -1.0}, std::pair{logarithm, 0.0}, std::pair{root, 0.0}}) {
@@ -291,19 +292,19 @@ TEST(LeastSquaresStop, not_finite_where_the_start_has_no_finite_cost_or_jacobian
   EXPECT_EQ(least_squares(infinite_row, unit_start, {.loss = Loss::tukey}).stop, Stop::not_finite);
 }
 
-TEST(LeastSquaresStop, cancelled_when_the_observer_asks_for_it) {
+TEST(LeastSquaresStop, CancelledWhenTheObserverAsksForIt) {
   const auto problem = testing::wood();
   std::vector<double> best;
   const auto fit = least_squares(problem.residuals, problem.start, {}, [&](const Progress& progress) {
     best.push_back(progress.best);
-    return progress.iteration == 4 ? Wish::stop : Wish::go_on;
+    return progress.iteration == 4 ? ObserverDecision::stop : ObserverDecision::proceed;
   });
   EXPECT_EQ(fit.stop, Stop::cancelled);
   EXPECT_EQ(fit.iterations, 4);
   EXPECT_EQ(best, fit.history);
 }
 
-TEST(LeastSquares, steps_out_of_the_domain_are_counted_and_shortened) {
+TEST(LeastSquares, StepsOutOfTheDomainAreCountedAndShortened) {
   // log x = 0 from x = 5: the undamped step leads to 5 − 5 log 5 = −3.
   const Residuals logarithm = scalar([](double x) { return std::log(x); }, [](double x) { return 1 / x; });
   const auto fit = least_squares(logarithm, VectorXd::Constant(1, 5.0));
@@ -312,7 +313,7 @@ TEST(LeastSquares, steps_out_of_the_domain_are_counted_and_shortened) {
   EXPECT_GT(fit.not_finite, 0);
 }
 
-TEST(LeastSquaresDeathTest, wrong_shapes_are_the_programmers_mistake) {
+TEST(LeastSquaresDeathTest, WrongShapesAreTheProgrammersMistake) {
   const auto problem = testing::rosenbrock();
   EXPECT_DEATH(least_squares(problem.residuals, VectorXd::Zero(3)), "3 values for 2 unknowns");
   Residuals many_blocks = problem.residuals;

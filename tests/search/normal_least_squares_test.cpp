@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "kinfer/search/least_squares.hpp"
+#include "kinfer/search/least_squares/least_squares.hpp"
 
 namespace kinfer {
 namespace {
@@ -35,7 +36,7 @@ Residuals rosenbrock() {
   return problem;
 }
 
-TEST(NormalLeastSquares, takes_the_steps_that_the_jacobian_would_take) {
+TEST(NormalLeastSquares, TakesTheStepsThatTheJacobianWouldTake) {
   const Residuals problem = rosenbrock();
   const VectorXd start = Eigen::Vector2d(-1.2, 1.0);
   const LeastSquaresOutcome dense = least_squares(problem, start),
@@ -45,7 +46,7 @@ TEST(NormalLeastSquares, takes_the_steps_that_the_jacobian_would_take) {
   EXPECT_LT(normal.jacobians, normal.evaluations);
 }
 
-TEST(NormalLeastSquares, makes_no_equations_where_the_target_cost_ends_the_search) {
+TEST(NormalLeastSquares, MakesNoEquationsWhereTheTargetCostEndsTheSearch) {
   const Residuals dense = rosenbrock();
   const NormalProblem problem = by_normal_equations(dense);
   const VectorXd start = Eigen::Vector2d(-1.2, 1.0);
@@ -58,7 +59,7 @@ TEST(NormalLeastSquares, makes_no_equations_where_the_target_cost_ends_the_searc
   EXPECT_GT(longer.normal.matrix.size(), 0);
 }
 
-TEST(NormalLeastSquares, a_direction_that_no_residual_sees_stays_where_it_started) {
+TEST(NormalLeastSquares, ADirectionThatNoResidualSeesStaysWhereItStarted) {
   Residuals problem{.unknowns = 3, .rows = 2};
   problem.evaluate = [](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
     r << x[0] + x[1] - 3.0, 1e-3 * (x[0] + x[1] - 3.0) + x[2];
@@ -69,7 +70,7 @@ TEST(NormalLeastSquares, a_direction_that_no_residual_sees_stays_where_it_starte
   EXPECT_NEAR(found.x[0] - found.x[1], 1.0, 1e-9);
 }
 
-TEST(LeastSquares, an_unknown_whose_column_is_nothing_but_rounding_stays_where_it_started) {
+TEST(LeastSquares, AnUnknownWhoseColumnIsNothingButRoundingStaysWhereItStarted) {
   Residuals problem{.unknowns = 2, .rows = 2};
   problem.evaluate = [](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
     r << x[0] - 1.0, 1.0 + 1e-16 * x[1];
@@ -82,7 +83,7 @@ TEST(LeastSquares, an_unknown_whose_column_is_nothing_but_rounding_stays_where_i
   }
 }
 
-TEST(NormalLeastSquares, a_cost_that_is_not_finite_at_the_start_is_said) {
+TEST(NormalLeastSquares, ACostThatIsNotFiniteAtTheStartIsSaid) {
   NormalProblem problem{.unknowns = 1};
   problem.cost = [](ConstVectorRef) { return std::nan(""); };
   problem.linearise = [](ConstVectorRef, NormalEquations& normal) {

@@ -1,11 +1,12 @@
-#include "kinfer/search/pso.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/search/swarm/pso.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "kinfer/search/minimise.hpp"
+#include "kinfer/search/swarm/minimise.hpp"
 #include "search/swarm_problems.hpp"
 
 namespace kinfer {
@@ -29,8 +30,8 @@ MatrixXd slow_swarm(const PsoOptions& options, int iterations, Rng rng) {
       Rng draw = rng.stream(1).stream(t).stream(p);
       for (int d = 0; d < 2; ++d) {
         const double r1 = draw.uniform(), r2 = draw.uniform();
-        v(d, p) = options.inertia * v(d, p) + options.own * r1 * (own(d, p) - x(d, p)) +
-                  options.swarm * r2 * (g[d] - x(d, p));
+        v(d, p) = options.inertia * v(d, p) + options.cognitive * r1 * (own(d, p) - x(d, p)) +
+                  options.social * r2 * (g[d] - x(d, p));
         x(d, p) = std::clamp(x(d, p) + v(d, p), -1.0, 1.0);
       }
       if (cost(x.col(p)) < cost(own.col(p))) own.col(p) = x.col(p);
@@ -39,24 +40,25 @@ MatrixXd slow_swarm(const PsoOptions& options, int iterations, Rng rng) {
   return x;
 }
 
-TEST(Pso, moves_as_equations_9_and_10_say) {
-  const PsoOptions options{.particles = 7, .walls = Walls::clamp, .budget = {.max_iterations = 30}};
-  const Outcome outcome = particle_swarm(shifted_sphere(2), options, Rng(3));
+TEST(Pso, MovesAsEquations9And10Say) {
+  const PsoOptions options{.particles = 7, .boundary = BoundaryHandling::clamp, .budget = {.max_iterations = 30}};
+  const SearchOutcome outcome = particle_swarm(shifted_sphere(2), options, Rng(3));
   EXPECT_TRUE(outcome.final_swarm.isApprox(slow_swarm(options, 30, Rng(3)), 1e-13));
 }
 
-TEST(Pso, finds_the_lowest_point_of_a_bowl_in_24_dimensions) {
-  const Outcome outcome = particle_swarm(shifted_sphere(24), {.budget = {.max_iterations = 600}}, Rng(1));
+TEST(Pso, FindsTheLowestPointOfABowlIn24Dimensions) {
+  const SearchOutcome outcome = particle_swarm(shifted_sphere(24), {.budget = {.max_iterations = 600}}, Rng(1));
   EXPECT_LT((outcome.x.array() - 0.3).abs().maxCoeff(), 1e-3);
 }
 
-TEST(Pso, finds_the_lowest_of_many_valleys) {
-  const Outcome outcome = particle_swarm(rastrigin(3), {.budget = {.max_iterations = 300}}, Rng(1));
+TEST(Pso, FindsTheLowestOfManyValleys) {
+  const SearchOutcome outcome = particle_swarm(rastrigin(3), {.budget = {.max_iterations = 300}}, Rng(1));
   EXPECT_LT(outcome.x.norm(), 1e-4);
 }
 
-TEST(Pso, history_never_rises_and_counts_every_candidate) {
-  const Outcome outcome = particle_swarm(rastrigin(4), {.particles = 30, .budget = {.max_iterations = 50}}, Rng(2));
+TEST(Pso, HistoryNeverRisesAndCountsEveryCandidate) {
+  const SearchOutcome outcome =
+      particle_swarm(rastrigin(4), {.particles = 30, .budget = {.max_iterations = 50}}, Rng(2));
   EXPECT_TRUE(std::is_sorted(outcome.best.rbegin(), outcome.best.rend()));
   EXPECT_EQ(outcome.best.size(), 51u);
   EXPECT_EQ(outcome.median.size(), 51u);
@@ -66,36 +68,36 @@ TEST(Pso, history_never_rises_and_counts_every_candidate) {
   EXPECT_EQ(outcome.best.back(), outcome.cost);
 }
 
-TEST(Pso, ends_at_the_target_without_an_update_when_the_first_swarm_reaches_it) {
+TEST(Pso, EndsAtTheTargetWithoutAnUpdateWhenTheFirstSwarmReachesIt) {
   PsoOptions options{.particles = 5, .budget = {.target_cost = 1e-20}};
   options.initial = MatrixXd::Constant(3, 5, 0.3);
-  const Outcome outcome = particle_swarm(shifted_sphere(3), options, Rng(1));
+  const SearchOutcome outcome = particle_swarm(shifted_sphere(3), options, Rng(1));
   EXPECT_EQ(outcome.stop, Stop::target_reached);
   EXPECT_EQ(outcome.iterations, 0);
   EXPECT_EQ(outcome.evaluations, 5);
 }
 
-TEST(Pso, clamped_particles_stay_in_the_box_and_open_ones_may_leave_it) {
+TEST(Pso, ClampedParticlesStayInTheBoxAndOpenOnesMayLeaveIt) {
   // The lowest point lies outside, behind the upper wall.
   const Objective objective =
       objective_of(cube(2, 1.0), [](const VectorXd& x) { return (x.array() - 3.0).square().sum(); });
   PsoOptions options{.budget = {.max_iterations = 100}};
   EXPECT_TRUE(particle_swarm(objective, options, Rng(1)).x.isApprox(VectorXd::Ones(2)));
-  options.walls = Walls::open;
+  options.boundary = BoundaryHandling::open;
   EXPECT_TRUE(particle_swarm(objective, options, Rng(1)).x.isApprox(VectorXd::Constant(2, 3.0), 1e-3));
 }
 
-TEST(Pso, velocity_limit_bounds_every_step) {
+TEST(Pso, VelocityLimitBoundsEveryStep) {
   PsoOptions options{.particles = 20, .velocity_limit = 0.01, .budget = {.max_iterations = 1}};
-  const Outcome outcome = particle_swarm(shifted_sphere(3), options, Rng(1));
+  const SearchOutcome outcome = particle_swarm(shifted_sphere(3), options, Rng(1));
   EXPECT_LE((outcome.final_swarm - outcome.initial_swarm).cwiseAbs().maxCoeff(), 0.01 * 2.0 + 1e-15);
 }
 
-TEST(Pso, one_random_number_per_particle_keeps_the_first_step_on_a_line_through_the_best) {
+TEST(Pso, OneRandomNumberPerParticleKeepsTheFirstStepOnALineThroughTheBest) {
   // From rest, own best = x: v = c2 r2 (g − x) points at the best particle only when r2 is one number.
   const auto largest_sine = [](RandomNumbers numbers) {
     const PsoOptions options{.particles = 20, .random_numbers = numbers, .budget = {.max_iterations = 1}};
-    const Outcome outcome = particle_swarm(shifted_sphere(3), options, Rng(1));
+    const SearchOutcome outcome = particle_swarm(shifted_sphere(3), options, Rng(1));
     Eigen::Index best = 0;
     (outcome.initial_swarm.array() - 0.3).square().colwise().sum().minCoeff(&best);
     double sine = 0.0;
@@ -110,7 +112,7 @@ TEST(Pso, one_random_number_per_particle_keeps_the_first_step_on_a_line_through_
   EXPECT_GT(largest_sine(RandomNumbers::per_dimension), 1e-2);
 }
 
-TEST(Pso, the_printed_weight_contracts_far_less_than_the_default) {
+TEST(Pso, ThePrintedWeightContractsFarLessThanTheDefault) {
   PsoOptions printed = pso_as_printed();
   printed.budget = {.max_iterations = 300};
   PsoOptions fallen = printed, usual = printed;
@@ -121,20 +123,20 @@ TEST(Pso, the_printed_weight_contracts_far_less_than_the_default) {
   EXPECT_GT(slow, 10.0 * particle_swarm(shifted_sphere(24), fallen, Rng(1)).cost);
 }
 
-TEST(Pso, walls_that_absorb_free_a_swarm_that_clamping_leaves_stuck) {
+TEST(Pso, WallsThatAbsorbFreeASwarmThatClampingLeavesStuck) {
   // All particles run into x_d = 1 in some number d, and none remembers anything else: found with this seed.
   PsoOptions options = pso_as_printed();
   options.budget = {.max_iterations = 1000};
-  options.walls = Walls::clamp;
+  options.boundary = BoundaryHandling::clamp;
   const double stuck = particle_swarm(shifted_sphere(24), options, Rng(1)).cost;
-  options.walls = Walls::absorb;
+  options.boundary = BoundaryHandling::absorb;
   EXPECT_NEAR(stuck, 0.49, 1e-2);
   EXPECT_LT(particle_swarm(shifted_sphere(24), options, Rng(1)).cost, 0.01);
 }
 
-TEST(Pso, costs_that_are_not_finite_are_infinite_and_counted) {
+TEST(Pso, CostsThatAreNotFiniteAreInfiniteAndCounted) {
   const Objective objective = objective_of(cube(2, 1.0), [](const VectorXd& x) { return x[0] < 0.0 ? NAN : x[0]; });
-  const Outcome outcome = particle_swarm(objective, {.budget = {.max_iterations = 20}}, Rng(1));
+  const SearchOutcome outcome = particle_swarm(objective, {.budget = {.max_iterations = 20}}, Rng(1));
   EXPECT_GT(outcome.not_finite, 0);
   EXPECT_GE(outcome.x[0], 0.0);
   EXPECT_LT(outcome.cost, 0.1);
@@ -142,7 +144,7 @@ TEST(Pso, costs_that_are_not_finite_are_infinite_and_counted) {
   EXPECT_EQ(particle_swarm(hopeless, {.budget = {.max_iterations = 3}}, Rng(1)).stop, Stop::not_finite);
 }
 
-TEST(Pso, a_search_that_gains_nothing_any_more_ends_before_its_budget) {
+TEST(Pso, ASearchThatGainsNothingAnyMoreEndsBeforeItsBudget) {
   // The bowl of 24 dimensions with a floor: noise leaves no lower cost to be found.
   const Objective bowl = shifted_sphere(24);
   const Objective with_floor{bowl.bounds, [bowl](ConstMatrixRef x, std::span<double> cost) {
@@ -151,20 +153,22 @@ TEST(Pso, a_search_that_gains_nothing_any_more_ends_before_its_budget) {
                              }};
   PsoOptions options;
   options.budget = {.max_iterations = 100000, .patience = 100};
-  const Outcome outcome = particle_swarm(with_floor, options, Rng(1));
+  const SearchOutcome outcome = particle_swarm(with_floor, options, Rng(1));
   EXPECT_EQ(outcome.stop, Stop::converged_cost);
   EXPECT_LT(outcome.iterations, 1000);
   EXPECT_LT(outcome.cost, 1.02e-3);
 }
 
-TEST(Pso, an_observer_may_stop_it) {
-  const auto stop_at_5 = [](const Progress& progress) { return progress.iteration == 5 ? Wish::stop : Wish::go_on; };
-  const Outcome outcome = particle_swarm(shifted_sphere(3), {}, Rng(1), stop_at_5);
+TEST(Pso, AnObserverMayStopIt) {
+  const auto stop_at_5 = [](const Progress& progress) {
+    return progress.iteration == 5 ? ObserverDecision::stop : ObserverDecision::proceed;
+  };
+  const SearchOutcome outcome = particle_swarm(shifted_sphere(3), {}, Rng(1), stop_at_5);
   EXPECT_EQ(outcome.iterations, 5);
   EXPECT_EQ(outcome.stop, Stop::cancelled);
 }
 
-TEST(Minimise, every_search_gives_the_same_bits_for_1_2_and_7_threads) {
+TEST(Minimise, EverySearchGivesTheSameBitsFor12And7Threads) {
   const auto with_threads = [](SearchOptions options, int threads) {
     const Budget budget{.max_iterations = 40, .threads = threads};
     if (auto* pso = std::get_if<PsoOptions>(&options)) pso->budget = budget;
@@ -175,14 +179,14 @@ TEST(Minimise, every_search_gives_the_same_bits_for_1_2_and_7_threads) {
   BpnnPsoOptions stepwise{.hidden_nodes = HiddenNodes::stepwise, .training = {.epochs = 20}};
   for (const SearchOptions& options :
        {SearchOptions(PsoOptions{}), SearchOptions(QpsoOptions{}), SearchOptions(stepwise)}) {
-    const Outcome one = with_threads(options, 1);
+    const SearchOutcome one = with_threads(options, 1);
     for (const int threads : {2, 7}) {
-      const Outcome other = with_threads(options, threads);
+      const SearchOutcome other = with_threads(options, threads);
       EXPECT_EQ(one.x, other.x);
       EXPECT_EQ(one.best, other.best);
       EXPECT_EQ(one.final_swarm, other.final_swarm);
       if (one.net) {
-        EXPECT_EQ(mlp_text(*one.net), mlp_text(*other.net));
+        EXPECT_EQ(format_mlp(*one.net), format_mlp(*other.net));
       }
     }
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Least-squares problems with known optima: from Moré, Garbow and Hillstrom, "Testing unconstrained optimization
 // software", ACM TOMS 7 (1981), and fits of a line and of a planar pose with outliers.
 #pragma once
@@ -9,7 +10,7 @@
 #include <vector>
 
 #include "kinfer/base/rng.hpp"
-#include "kinfer/search/least_squares.hpp"
+#include "kinfer/search/least_squares/least_squares.hpp"
 
 namespace kinfer::testing {
 

@@ -1,4 +1,5 @@
-#include "kinfer/search/swarm_kernel.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/search/swarm/swarm_kernel.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "kinfer/base/processor.hpp"
+#include "kinfer/base/instruction_set.hpp"
 #include "kinfer/base/rng.hpp"
 #include "kinfer/linalg/types.hpp"
 
@@ -22,7 +23,7 @@ std::vector<search::SwarmKernel> runnable() {
   return list;
 }
 
-TEST(SwarmKernel, every_instruction_set_moves_as_equations_9_and_10_say_bit_for_bit) {
+TEST(SwarmKernel, EveryInstructionSetMovesAsEquations9And10SayBitForBit) {
   constexpr int dim = 29;  // no multiple of any number of lanes
   constexpr double w = 0.8, own = 0.5, swarm = 1.25;
   Rng rng(1);
@@ -33,8 +34,8 @@ TEST(SwarmKernel, every_instruction_set_moves_as_equations_9_and_10_say_bit_for_
   rng.uniform(pairs);
   for (const double limit : {0.3, std::numeric_limits<double>::infinity()})
     for (const bool absorbs : {false, true}) {
-      const VectorXd fastest = VectorXd::Constant(dim, limit);
-      const search::SwarmStep step{dim,          w,      own, swarm, best.data(), fastest.data(), lower.data(),
+      const VectorXd max_velocity = VectorXd::Constant(dim, limit);
+      const search::SwarmStep step{dim,          w,      own, swarm, best.data(), max_velocity.data(), lower.data(),
                                    upper.data(), absorbs};
       for (const search::SwarmKernel move : runnable()) {
         VectorXd x = x0, v = v0;

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // Boxes with known lowest points, for the population searches.
 #pragma once
 
 #include <cmath>
 
-#include "kinfer/search/objective.hpp"
+#include "kinfer/search/swarm/objective.hpp"
 
 namespace kinfer::testing {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/simulate/excitation.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ struct Extremes {
   double lowest, highest, fastest;
 };
 
-Extremes extremes(const JointDrive& joint, double begin, double end) {
+Extremes extremes(const JointTrajectory& joint, double begin, double end) {
   Extremes seen{joint.home, joint.home, 0.0};
   for (double t = begin; t < end; t += step) {
     const JointState state = state_at(joint, t);
@@ -26,10 +27,10 @@ Extremes extremes(const JointDrive& joint, double begin, double end) {
   return seen;
 }
 
-TEST(Excitation, rates_and_accelerations_are_the_derivatives_of_the_angles) {
+TEST(Excitation, RatesAndAccelerationsAreTheDerivativesOfTheAngles) {
   const Drive drive = drive_of(world_of("tree").machine());
   constexpr double h = 1e-4;
-  for (const JointDrive& joint : drive.joints)
+  for (const JointTrajectory& joint : drive.joints)
     for (double t = 0.0; t < drive.duration; t += 0.0371) {
       const JointState before = state_at(joint, t - h), now = state_at(joint, t), after = state_at(joint, t + h);
       ASSERT_NEAR(now.qd, (after.q - before.q) / (2 * h), 1e-6);
@@ -37,7 +38,7 @@ TEST(Excitation, rates_and_accelerations_are_the_derivatives_of_the_angles) {
     }
 }
 
-TEST(Excitation, standard_drive_rests_then_moves_joint_after_joint_then_all) {
+TEST(Excitation, StandardDriveRestsThenMovesJointAfterJointThenAll) {
   const Machine machine = world_of("excavator").machine();
   const Drive drive = drive_of(machine);
   EXPECT_DOUBLE_EQ(drive.duration, 4.0 + 5 * 6.5 + 16.5 + 0.5);
@@ -45,21 +46,21 @@ TEST(Excitation, standard_drive_rests_then_moves_joint_after_joint_then_all) {
   for (std::size_t k = 0; k < drive.joints.size(); ++k) {
     for (const Phase& phase : drive.phases) {
       const Extremes seen = extremes(drive.joints[k], phase.begin, phase.end);
-      const bool moves = phase.what == "all" || phase.what == reading_names(machine.chain)[k];
+      const bool moves = phase.what == "all" || phase.what == active_joint_names(machine.chain)[k];
       EXPECT_EQ(moves, seen.fastest > 0.2) << k << " in " << phase.what;
       EXPECT_EQ(!moves, seen.fastest == 0.0) << k << " in " << phase.what;
     }
   }
 }
 
-TEST(Excitation, joints_keep_their_ranges_and_rates_whatever_the_script) {
+TEST(Excitation, JointsKeepTheirRangesAndRatesWhateverTheScript) {
   for (const std::string& name : machine_names()) {
     const Machine machine = world_of(name).machine();
     for (const Script script : {Script::standard, Script::together, Script::vigorous, Script::gentle}) {
       const Drive drive = drive_of(machine, {.script = script}, 9);
       const double size = script == Script::vigorous ? 1.8 : script == Script::gentle ? 0.45 : 1.0;
       for (std::size_t k = 0; k < drive.joints.size(); ++k) {
-        const Joint& joint = machine.chain.joints[joints_with_reading(machine.chain)[k]];
+        const Joint& joint = machine.chain.joints[active_joints(machine.chain)[k]];
         const Extremes seen = extremes(drive.joints[k], 0.0, drive.duration);
         EXPECT_GT(seen.lowest, joint.lower) << name << " " << joint.name;
         EXPECT_LT(seen.highest, joint.upper) << name << " " << joint.name;
@@ -70,7 +71,7 @@ TEST(Excitation, joints_keep_their_ranges_and_rates_whatever_the_script) {
   }
 }
 
-TEST(Excitation, duration_is_kept_and_one_that_is_too_short_is_refused) {
+TEST(Excitation, DurationIsKeptAndOneThatIsTooShortIsRefused) {
   const Machine machine = world_of("excavator").machine();
   for (const Script script : {Script::standard, Script::sequential, Script::together})
     EXPECT_NEAR(drive_of(machine, {.script = script, .duration = 60.0}).duration, 60.0, 1e-9);
@@ -79,9 +80,9 @@ TEST(Excitation, duration_is_kept_and_one_that_is_too_short_is_refused) {
   EXPECT_EQ(short_drive.error().what, "a duration of 6 s is too short for this script: 15.2 s at least");
 }
 
-TEST(Excitation, base_moves_from_the_first_rest_to_the_last) {
+TEST(Excitation, BaseMovesFromTheFirstRestToTheLast) {
   const Machine machine = world_of("crane", {.base = Base::rocking}).machine();
-  ASSERT_EQ(machine.base_readings, 3);
+  ASSERT_EQ(machine.base_dof, 3);
   const Drive drive = drive_of(machine);
   for (int k = 0; k < 3; ++k) {
     EXPECT_EQ(extremes(drive.joints[k], 0.0, 4.0).fastest, 0.0);

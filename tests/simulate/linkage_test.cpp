@@ -1,6 +1,7 @@
-#include "kinfer/simulate/linkage.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/simulate/four_bar_linkage.hpp"
 
-#include "kinfer/kinematics/motion.hpp"
+#include "kinfer/kinematics/frame_motion.hpp"
 #include "simulate/worlds.hpp"
 
 namespace kinfer {

@@ -1,4 +1,5 @@
-#include "kinfer/simulate/soft_mounts.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/simulate/compliant_mounts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,24 +12,24 @@ namespace kinfer {
 namespace {
 
 /// One sensor that stands still on a segment, or is turned slowly about x.
-MachineMotion turned(double rate, double until) {
+MachineMotion turned(double angular_velocity, double until) {
   MachineMotion motion;
   motion.sensors.resize(1);
   SensorMotion& m = motion.sensors[0];
   for (double t = 0.0; t < until; t += 0.005) {
-    const Mat3 sensor_R_world = exp_so3(Vec3(-rate * t, 0.0, 0.0));
+    const Mat3 sensor_R_world = exp_so3(Vec3(-angular_velocity * t, 0.0, 0.0));
     motion.time.push_back(t);
     m.world_R_sensor.push_back(Quat(Mat3(sensor_R_world.transpose())));
     m.position.emplace_back(Vec3::Zero());
     m.force.push_back(sensor_R_world * Vec3(0.0, 0.0, 9.81));
-    m.rate.emplace_back(rate, 0.0, 0.0);
+    m.angular_velocity.emplace_back(angular_velocity, 0.0, 0.0);
     m.field.push_back(sensor_R_world * Vec3(1.5, 20.5, -44.0));
   }
   return motion;
 }
 
-SoftMount leaning(double lean) {
-  SoftMount mount;
+CompliantMount leaning(double lean) {
+  CompliantMount mount;
   mount.tilt(0, 1) = -lean / 9.81;
   return mount;
 }
@@ -36,27 +37,28 @@ SoftMount leaning(double lean) {
 TEST(SoftMounts, AtRestASensorLeansAsItsWeightWantsAndFeelsGravityAskew) {
   MachineMotion still = turned(0.0, 0.5);
   for (Vec3& f : still.sensors[0].force) f = Vec3(0.0, 9.81, 0.0);
-  const MachineMotion soft = with_soft_mounts(still, {leaning(0.1)});
+  const MachineMotion soft = with_compliant_mounts(still, {leaning(0.1)});
   const Vec3 ought = 9.81 * Vec3(0.0, std::cos(0.1), std::sin(0.1));
   for (const Vec3& f : soft.sensors[0].force) EXPECT_LT((f - ought).norm(), 1e-9);
-  EXPECT_LT(soft.sensors[0].rate.back().norm(), 1e-9);
+  EXPECT_LT(soft.sensors[0].angular_velocity.back().norm(), 1e-9);
 }
 
 TEST(SoftMounts, InASlowTurnTheGyroscopeShowsTheLeaningToo) {
   // The force along y is g sin(rate t): θ = −lean sin(rate t), so θ̇ = −lean rate cos(rate t).
-  const double rate = 0.2, lean = 0.1;
-  const MachineMotion firm = turned(rate, 10.0), soft = with_soft_mounts(firm, {leaning(lean)});
+  const double angular_velocity = 0.2, lean = 0.1;
+  const MachineMotion firm = turned(angular_velocity, 10.0), soft = with_compliant_mounts(firm, {leaning(lean)});
   for (const std::size_t row : {400u, 1000u, 1600u})
-    EXPECT_NEAR(soft.sensors[0].rate[row].x(), rate * (1.0 - lean * std::cos(rate * firm.time[row])), 1e-3);
+    EXPECT_NEAR(soft.sensors[0].angular_velocity[row].x(),
+                angular_velocity * (1.0 - lean * std::cos(angular_velocity * firm.time[row])), 1e-3);
 }
 
 TEST(SoftMounts, ASensorSwaysAtItsOwnFrequencyAfterAKnock) {
   MachineMotion knocked = turned(0.0, 1.0);
   knocked.sensors[0].force[20] += Vec3(50.0, 0.0, 0.0);
-  SoftMount mount;
+  CompliantMount mount;
   mount.damping = 0.02;
   mount.frequency = 5.0;
-  const MachineMotion soft = with_soft_mounts(knocked, {mount});
+  const MachineMotion soft = with_compliant_mounts(knocked, {mount});
   int crossings = 0;
   for (std::size_t row = 30; row + 1 < soft.time.size(); ++row)
     crossings += soft.sensors[0].force[row].x() < 0.0 && soft.sensors[0].force[row + 1].x() >= 0.0;
@@ -66,15 +68,15 @@ TEST(SoftMounts, ASensorSwaysAtItsOwnFrequencyAfterAKnock) {
 TEST(SoftMounts, WhereASensorIsAgreesWithWhatItFeels) {
   const MujocoWorld world = test::world_of("excavator");
   const MachineMotion firm = world.prescribe(test::drive_of(world.machine()), 400.0);
-  std::vector<SoftMount> mounts;
-  for (std::size_t s = 0; s < firm.sensors.size(); ++s) mounts.push_back(drawn_soft_mount(0.1, 3.0, Rng(s)));
-  const MachineMotion soft = with_soft_mounts(firm, mounts);
+  std::vector<CompliantMount> mounts;
+  for (std::size_t s = 0; s < firm.sensors.size(); ++s) mounts.push_back(draw_compliant_mount(0.1, 3.0, Rng(s)));
+  const MachineMotion soft = with_compliant_mounts(firm, mounts);
   const SensorMotion& m = soft.sensors.back();
   double worst_rate = 0.0, worst_force = 0.0;
   for (std::size_t row = 4000; row < 12000; row += 37) {
     const double h = soft.time[row + 1] - soft.time[row];
     const Vec3 turned_by = quat_log(m.world_R_sensor[row - 1].conjugate() * m.world_R_sensor[row + 1]);
-    worst_rate = std::max(worst_rate, (turned_by / (2.0 * h) - m.rate[row]).norm());
+    worst_rate = std::max(worst_rate, (turned_by / (2.0 * h) - m.angular_velocity[row]).norm());
     const Vec3 acceleration = (m.position[row + 1] - 2.0 * m.position[row] + m.position[row - 1]) / (h * h);
     worst_force = std::max(
         worst_force, (m.world_R_sensor[row].conjugate() * (acceleration + Vec3(0.0, 0.0, 9.81)) - m.force[row]).norm());

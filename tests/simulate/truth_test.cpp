@@ -1,4 +1,5 @@
-#include "kinfer/simulate/truth.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/simulate/ground_truth.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,14 +19,14 @@ std::size_t index_of(const Machine& machine, const std::string& sensor) {
   return 0;
 }
 
-TEST(Truth, both_sensors_of_a_joint_see_the_same_line_at_all_times) {
+TEST(Truth, BothSensorsOfAJointSeeTheSameLineAtAllTimes) {
   for (const std::string& name : machine_names()) {
     const MujocoWorld world = world_of(name, {.base = Base::yawing}, 2);
     const Machine& machine = world.machine();
     const MachineMotion motion = test::driven(world, drive_of(machine, {.duration = 20.0}), 20.0);
     const MachineTruth truth = machine_truth(machine, motion);
     ASSERT_EQ(truth.joints.size(), machine.sensors.size() - 1);
-    const std::vector<std::string> readings = reading_names(machine.chain);
+    const std::vector<std::string> readings = active_joint_names(machine.chain);
     for (const JointTruth& joint : truth.joints) {
       const SensorMotion &parent = motion.sensors[index_of(machine, joint.parent)],
                          &child = motion.sensors[index_of(machine, joint.child)];
@@ -43,14 +44,14 @@ TEST(Truth, both_sensors_of_a_joint_see_the_same_line_at_all_times) {
   }
 }
 
-TEST(Truth, positive_joint_angle_turns_the_child_about_the_axis_by_the_right_hand) {
+TEST(Truth, PositiveJointAngleTurnsTheChildAboutTheAxisByTheRightHand) {
   const MujocoWorld world = world_of("robot6");
   const MachineMotion motion = prescribed_motion(world.machine(), drive_of(world.machine()), 100.0);
   for (const JointTruth& joint : machine_truth(world.machine(), motion).joints) {
     const std::size_t p = index_of(world.machine(), joint.parent), c = index_of(world.machine(), joint.child);
     for (std::size_t row = 0; row < motion.time.size(); row += 7) {
-      const Vec3 relative = motion.sensors[c].world_R_sensor[row] * motion.sensors[c].rate[row] -
-                            motion.sensors[p].world_R_sensor[row] * motion.sensors[p].rate[row];
+      const Vec3 relative = motion.sensors[c].world_R_sensor[row] * motion.sensors[c].angular_velocity[row] -
+                            motion.sensors[p].world_R_sensor[row] * motion.sensors[p].angular_velocity[row];
       const Vec3 axis = motion.sensors[c].world_R_sensor[row] * joint.axis_in_child;
       const auto reading = static_cast<Eigen::Index>(c) - 1;
       ASSERT_NEAR(relative.dot(axis), motion.qd(reading, static_cast<Eigen::Index>(row)), 1e-12);
@@ -58,7 +59,7 @@ TEST(Truth, positive_joint_angle_turns_the_child_about_the_axis_by_the_right_han
   }
 }
 
-TEST(Truth, excavators_lever_arms_are_the_papers) {
+TEST(Truth, ExcavatorsLeverArmsAreThePapers) {
   const MujocoWorld world = world_of("excavator");
   const MachineTruth truth =
       machine_truth(world.machine(), prescribed_motion(world.machine(), drive_of(world.machine()), 20.0));
@@ -83,30 +84,30 @@ MachineTruth truth_of(const MachineOptions& options) {
   return machine_truth(world.machine(), prescribed_motion(world.machine(), drive_of(world.machine()), 20.0));
 }
 
-TEST(Truth, a_still_platform_hides_its_joint_and_the_house_what_lies_along_its_axis) {
+TEST(Truth, AStillPlatformHidesItsJointAndTheHouseWhatLiesAlongItsAxis) {
   const MachineTruth truth = truth_of({});
-  EXPECT_EQ(truth.joints[0].hidden_in_parent.size(), 3u);
-  ASSERT_EQ(truth.joints[0].hidden_in_child.size(), 1u);
-  EXPECT_NEAR(std::abs(truth.joints[0].hidden_in_child[0].z()), 1.0, 1e-9);
-  EXPECT_EQ(truth.joints[1].hidden_in_parent.size(), 1u);
-  EXPECT_EQ(truth.joints[1].hidden_in_child.size(), 0u);
-  EXPECT_FALSE(truth.joints[0].slide_observable);
-  EXPECT_TRUE(truth.joints[1].slide_observable);
-  EXPECT_TRUE(truth.joints[0].azimuth_by_field_only);
-  EXPECT_FALSE(truth.joints[1].azimuth_by_field_only);
+  EXPECT_EQ(truth.joints[0].unobservable_in_parent.size(), 3u);
+  ASSERT_EQ(truth.joints[0].unobservable_in_child.size(), 1u);
+  EXPECT_NEAR(std::abs(truth.joints[0].unobservable_in_child[0].z()), 1.0, 1e-9);
+  EXPECT_EQ(truth.joints[1].unobservable_in_parent.size(), 1u);
+  EXPECT_EQ(truth.joints[1].unobservable_in_child.size(), 0u);
+  EXPECT_FALSE(truth.joints[0].is_axial_offset_observable);
+  EXPECT_TRUE(truth.joints[1].is_axial_offset_observable);
+  EXPECT_TRUE(truth.joints[0].heading_needs_magnetometer);
+  EXPECT_FALSE(truth.joints[1].heading_needs_magnetometer);
 }
 
-TEST(Truth, a_slope_shows_the_azimuth_and_a_rocking_base_everything) {
+TEST(Truth, ASlopeShowsTheAzimuthAndARockingBaseEverything) {
   const MachineTruth sloping = truth_of({.slope = Angle::deg(5)});
-  EXPECT_FALSE(sloping.joints[0].azimuth_by_field_only);
-  EXPECT_EQ(sloping.joints[0].hidden_in_parent.size(), 3u);
+  EXPECT_FALSE(sloping.joints[0].heading_needs_magnetometer);
+  EXPECT_EQ(sloping.joints[0].unobservable_in_parent.size(), 3u);
   for (const JointTruth& joint : truth_of({.base = Base::rocking}).joints) {
-    EXPECT_TRUE(joint.hidden_in_parent.empty() && joint.hidden_in_child.empty()) << joint.name;
-    EXPECT_TRUE(joint.slide_observable) << joint.name;
+    EXPECT_TRUE(joint.unobservable_in_parent.empty() && joint.unobservable_in_child.empty()) << joint.name;
+    EXPECT_TRUE(joint.is_axial_offset_observable) << joint.name;
   }
 }
 
-TEST(Truth, tree_has_two_arms_on_its_torso) {
+TEST(Truth, TreeHasTwoArmsOnItsTorso) {
   const MujocoWorld world = world_of("tree");
   std::vector<std::string> pairs;
   for (const JointTruth& joint :

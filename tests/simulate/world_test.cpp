@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <array>
@@ -35,7 +36,7 @@ INSTANTIATE_TEST_SUITE_P(on, EveryMachine, testing::ValuesIn(places()), [](const
   return name;
 });
 
-TEST_P(EveryMachine, engines_inverse_dynamics_and_our_own_kinematics_feel_the_same) {
+TEST_P(EveryMachine, EnginesInverseDynamicsAndOurOwnKinematicsFeelTheSame) {
   const MujocoWorld world = world_of(GetParam().machine, GetParam().options, 5);
   const Drive drive = drive_of(world.machine(), {.duration = 30.0});
   const MachineMotion theirs = world.prescribe(drive, 50.0), ours = prescribed_motion(world.machine(), drive, 50.0);
@@ -44,14 +45,14 @@ TEST_P(EveryMachine, engines_inverse_dynamics_and_our_own_kinematics_feel_the_sa
     for (std::size_t row = 0; row < ours.time.size(); ++row) {
       const SensorMotion &a = ours.sensors[s], &b = theirs.sensors[s];
       ASSERT_LT((a.force[row] - b.force[row]).norm(), 1e-8) << s << " " << row;
-      ASSERT_LT((a.rate[row] - b.rate[row]).norm(), 1e-8) << s << " " << row;
+      ASSERT_LT((a.angular_velocity[row] - b.angular_velocity[row]).norm(), 1e-8) << s << " " << row;
       ASSERT_LT((a.field[row] - b.field[row]).norm(), 1e-8) << s << " " << row;
       ASSERT_LT((a.position[row] - b.position[row]).norm(), 1e-8) << s << " " << row;
       ASSERT_LT(a.world_R_sensor[row].angularDistance(b.world_R_sensor[row]), 1e-7) << s << " " << row;  // acos near 1
     }
 }
 
-TEST_P(EveryMachine, a_sensor_at_rest_feels_g_upward) {
+TEST_P(EveryMachine, ASensorAtRestFeelsGUpward) {
   const MujocoWorld world = world_of(GetParam().machine, GetParam().options);
   Drive drive = drive_of(world.machine());
   drive.duration = 3.0;  // within the first rest
@@ -59,7 +60,7 @@ TEST_P(EveryMachine, a_sensor_at_rest_feels_g_upward) {
   for (const SensorMotion& sensor : motion.sensors)
     for (std::size_t row = 0; row < motion.time.size(); ++row) {
       ASSERT_LT((sensor.world_R_sensor[row] * sensor.force[row] - Vec3(0, 0, 9.81)).norm(), 1e-9);
-      ASSERT_LT(sensor.rate[row].norm(), 1e-9);
+      ASSERT_LT(sensor.angular_velocity[row].norm(), 1e-9);
     }
 }
 
@@ -80,11 +81,11 @@ constexpr double force_tolerance = 1e-4;  // [m/s²]
 class EitherServo : public testing::TestWithParam<Servo> {};
 INSTANTIATE_TEST_SUITE_P(holds, EitherServo, testing::Values(Servo::stiff, Servo::soft));
 
-TEST_P(EitherServo, gyro_is_the_derivative_of_orientation_and_force_that_of_position_and_gravity) {
+TEST_P(EitherServo, GyroIsTheDerivativeOfOrientationAndForceThatOfPositionAndGravity) {
   const MujocoWorld world = world_of("excavator-general", {.base = Base::rocking});
   const Drive drive = drive_of(world.machine(), {.duration = 16.0});
-  constexpr double rate = 500.0;
-  const MachineMotion motion = driven(world, drive, rate, GetParam());
+  constexpr double sampling_rate = 500.0;
+  const MachineMotion motion = driven(world, drive, sampling_rate, GetParam());
   double worst_rate = 0.0, worst_force = 0.0, moved = 0.0;
   for (const SensorMotion& sensor : motion.sensors)
     for (std::size_t row = 2; row + 2 < motion.time.size(); ++row) {
@@ -93,8 +94,9 @@ TEST_P(EitherServo, gyro_is_the_derivative_of_orientation_and_force_that_of_posi
       };
       const auto place = [&](int k) { return sensor.position[row + k]; };
       const Vec3 felt = sensor.world_R_sensor[row] * sensor.force[row] - Vec3(0, 0, 9.81);
-      worst_rate = std::max(worst_rate, (first_derivative(turned, 1.0 / rate) - sensor.rate[row]).norm());
-      worst_force = std::max(worst_force, (second_derivative(place, 1.0 / rate) - felt).norm());
+      worst_rate =
+          std::max(worst_rate, (first_derivative(turned, 1.0 / sampling_rate) - sensor.angular_velocity[row]).norm());
+      worst_force = std::max(worst_force, (second_derivative(place, 1.0 / sampling_rate) - felt).norm());
       moved = std::max(moved, felt.norm());
     }
   EXPECT_LT(worst_rate, rate_tolerance);
@@ -102,7 +104,7 @@ TEST_P(EitherServo, gyro_is_the_derivative_of_orientation_and_force_that_of_posi
   EXPECT_GT(moved, 3.0);  // [m/s²] there was something to see
 }
 
-TEST(World, stiff_joints_follow_their_drive_and_soft_ones_sway_when_others_move) {
+TEST(World, StiffJointsFollowTheirDriveAndSoftOnesSwayWhenOthersMove) {
   const MujocoWorld world = world_of("excavator");
   const Drive drive = drive_of(world.machine(), {.script = Script::sequential, .duration = 20.0});
   const auto deviation = [&](Servo servo) {
@@ -133,7 +135,7 @@ Mat4 dh(double theta, double d, double alpha, double a) {
   return m;
 }
 
-TEST(World, excavator_is_the_chain_of_the_papers_equation_27) {
+TEST(World, ExcavatorIsTheChainOfThePapersEquation27) {
   const MujocoWorld world = world_of("excavator");
   const MachineMotion motion = driven(world, drive_of(world.machine(), {.duration = 25.0}), 20.0);
   constexpr double pi = std::numbers::pi;
@@ -155,7 +157,7 @@ TEST(World, excavator_is_the_chain_of_the_papers_equation_27) {
   }
 }
 
-TEST(World, standard_drive_moves_the_tool_with_10_to_15_m_per_s2) {
+TEST(World, StandardDriveMovesTheToolWith10To15MPerS2) {
   const MujocoWorld world = world_of("excavator");
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const MachineMotion motion = prescribed_motion(world.machine(), drive_of(world.machine(), {}, seed), 50.0);
@@ -168,7 +170,7 @@ TEST(World, standard_drive_moves_the_tool_with_10_to_15_m_per_s2) {
   }
 }
 
-TEST(World, same_seed_makes_the_same_motion_bit_for_bit) {
+TEST(World, SameSeedMakesTheSameMotionBitForBit) {
   const auto make = [](std::uint64_t seed) {
     const MujocoWorld world = world_of("excavator-general", {}, seed);
     return driven(world, drive_of(world.machine(), {.duration = 18.0}, seed), 50.0);
@@ -179,13 +181,13 @@ TEST(World, same_seed_makes_the_same_motion_bit_for_bit) {
   EXPECT_FALSE(once.q == other.q);
 }
 
-TEST(World, a_file_that_is_no_machine_is_refused_in_the_engines_words) {
+TEST(World, AFileThatIsNoMachineIsRefusedInTheEnginesWords) {
   const auto world = MujocoWorld::load("<mujoco><worldbody><body><geom size='x'/></body></worldbody></mujoco>");
   ASSERT_FALSE(world);
   EXPECT_NE(world.error().what.find("machine.xml: "), std::string::npos) << world.error().what;
 }
 
-TEST(World, an_unknown_machine_is_refused_with_the_known_ones) {
+TEST(World, AnUnknownMachineIsRefusedWithTheKnownOnes) {
   const auto mjcf = machine_mjcf("excavater", {}, Rng(1));
   ASSERT_FALSE(mjcf);
   EXPECT_EQ(mjcf.error().what,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Simulated machines as the tests want them: built, loaded and driven, or the test fails.
 #pragma once
 

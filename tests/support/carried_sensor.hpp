@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A sensor carried about with known orientation: the truth that filters are judged by.
 #pragma once
 
@@ -13,14 +14,14 @@
 namespace kinfer::testing {
 
 struct CarriedMotion {
-  double seconds = 40.0, rate = 200.0;  ///< [s], [Hz]
-  double rest = 4.0;                    ///< [s] at either end
-  double swing = 1.0;                   ///< [rad] of each of three angles
-  double reach = 0.3;                   ///< [m] of each coordinate
-  double pace = 1.0;                    ///< 1: periods of 2 to 5 s
-  double declination = 0.0;             ///< [rad] the field's horizontal part is turned by this about up
-  Quat mounting = Quat::Identity();     ///< turns sensor coordinates into the carrier's
-  const SensorModel* grade = nullptr;   ///< null: perfect
+  double seconds = 40.0, sampling_rate = 200.0;  ///< [s], [Hz]
+  double rest = 4.0;                             ///< [s] at either end
+  double swing = 1.0;                            ///< [rad] of each of three angles
+  double reach = 0.3;                            ///< [m] of each coordinate
+  double pace = 1.0;                             ///< 1: periods of 2 to 5 s
+  double declination = 0.0;                      ///< [rad] the field's horizontal part is turned by this about up
+  Quat mounting = Quat::Identity();              ///< turns sensor coordinates into the carrier's
+  const SensorModel* grade = nullptr;            ///< null: perfect
   bool has_magnetometer = true;
   int seed = 1;
 };
@@ -54,29 +55,31 @@ inline void append(TriadColumns& triad, const Vec3& v) {
 /// A row holds the mean rate since the row before; specific force and field are those of the middle of that interval.
 inline CarriedSensor carried(const CarriedMotion& m) {
   CarriedSensor out;
-  const double dt = 1.0 / m.rate, h = 1e-3;
+  const double dt = 1.0 / m.sampling_rate, h = 1e-3;
   const SensorModel perfect, &grade = m.grade ? *m.grade : perfect;
   const Rng rng(static_cast<std::uint64_t>(m.seed));
-  SimulatedInstrument accelerometer(grade.accelerometer, drawn_errors(grade.accelerometer, rng.stream(1)),
+  SimulatedInstrument accelerometer(grade.accelerometer, sample_instrument_errors(grade.accelerometer, rng.stream(1)),
                                     rng.stream(2));
-  SimulatedInstrument gyroscope(grade.gyroscope, drawn_errors(grade.gyroscope, rng.stream(3)), rng.stream(4));
-  SimulatedInstrument magnetometer(grade.magnetometer, drawn_errors(grade.magnetometer, rng.stream(5)), rng.stream(6));
+  SimulatedInstrument gyroscope(grade.gyroscope, sample_instrument_errors(grade.gyroscope, rng.stream(3)),
+                                rng.stream(4));
+  SimulatedInstrument magnetometer(grade.magnetometer, sample_instrument_errors(grade.magnetometer, rng.stream(5)),
+                                   rng.stream(6));
   const Vec3 field_world = rot_z(m.declination) * Vec3(0, 20.5, -44);
   const auto pose = [&](double t) { return carrier_orientation(t, m) * m.mounting; };
-  for (int k = 0; k < static_cast<int>(m.seconds * m.rate); ++k) {
+  for (int k = 0; k < static_cast<int>(m.seconds * m.sampling_rate); ++k) {
     const double t = k * dt, middle = t - 0.5 * dt;
     const Quat now = pose(t), half = pose(middle);
-    const Vec3 rate = quat_log(pose(t - dt).conjugate() * now) / dt;
+    const Vec3 angular_velocity = quat_log(pose(t - dt).conjugate() * now) / dt;
     const Vec3 acceleration =
         (carrier_position(middle + h, m) - 2 * carrier_position(middle, m) + carrier_position(middle - h, m)) / (h * h);
     append(out.sensor.acceleration, accelerometer.read(half.conjugate() * (acceleration + Vec3(0, 0, 9.80665)), dt));
-    append(out.sensor.rate, gyroscope.read(rate, dt));
+    append(out.sensor.angular_velocity, gyroscope.read(angular_velocity, dt));
     if (m.has_magnetometer) append(out.sensor.field, magnetometer.read(half.conjugate() * field_world, dt));
     out.time.push_back(t);
     out.truth.push_back(now);
   }
   out.sensor.name = "imu";
-  mark_faults(out.sensor);
+  flag_faults(out.sensor);
   return out;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Central differences: the independent judge of every derivative that was worked out by hand.
 #pragma once
 

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // What other instruments would say about the poses of a simulated set, with known truth and noise.
 #pragma once
 
 #include <cmath>
 
-#include "kinfer/estimate/residuals.hpp"
+#include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "support/random.hpp"
 #include "support/robots.hpp"
 
@@ -39,9 +40,9 @@ inline void measure_points(PoseSet& set, const Chain& truth, const Instrument& i
 inline void measure_distances(PoseSet& set, const Chain& truth, double sigma, Rng rng) {
   const std::vector<Pose> poses = true_poses(truth, set);
   for (int row = 0; row < set.rows(); ++row)
-    for (int a = 0; a < static_cast<int>(truth.surroundings.anchors.size()); ++a) {
+    for (int a = 0; a < static_cast<int>(truth.fixtures.anchors.size()); ++a) {
       const int mounting = set.mounting.empty() ? -1 : set.mounting[row];
-      const Vec3 anchor = mounted(truth, mounting).base.pose() * truth.surroundings.anchors[a];
+      const Vec3 anchor = with_mounting(truth, mounting).base.pose() * truth.fixtures.anchors[a];
       set.distances.push_back({row, a, (poses[row].position - anchor).norm() + sigma * rng.normal()});
     }
 }

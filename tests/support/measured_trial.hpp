@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measured recordings with a reference orientation (KINFER_DATA, docs/methods/orientation.md).
 #pragma once
 
@@ -5,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "kinfer/io/csv.hpp"
-#include "kinfer/io/ins_csv.hpp"
-#include "kinfer/io/text_file.hpp"
+#include "kinfer/io/recording/ins_csv.hpp"
+#include "kinfer/io/text/csv.hpp"
+#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::testing {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The slow, obvious way to predict accelerations of a DH chain: 4×4 products at three times, differenced. The judge and
 // the yardstick of the genome kernel.
 #pragma once
@@ -6,10 +7,11 @@
 #include <cmath>
 #include <vector>
 
-#include "kinfer/identify/dh_leaf.hpp"
+#include "kinfer/identify/programming/dh_leaf.hpp"
 #include "kinfer/linalg/types.hpp"
 
 namespace kinfer::test {
+using namespace identify;
 
 inline Eigen::Matrix4d naive_leaf(const DhLeaf& leaf, double q) {
   const double theta = leaf.theta + (leaf.theta_signal == 0 ? q : 0.0);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random things that more than one test needs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots that several tests use, with known errors and measured without or with noise.
 #pragma once
 

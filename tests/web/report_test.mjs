@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two reports in a real browser.
 import assert from 'node:assert/strict';
 import { readFileSync, statSync } from 'node:fs';

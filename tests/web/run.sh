@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # NODE TEST: runs the browser tests, unless they are not wanted (exit code 77: skipped).
 if [ "${KINFER_SKIP_BROWSER:-0}" = 1 ]; then
   echo "browser tests skipped: KINFER_SKIP_BROWSER=1"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <kinfer/io/robot_toml.hpp>
 #include <kinfer/kinematics/forward.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What machines are drawn with: bars between points, balls, boxes, lines. Colours follow the theme.
 import {
   BoxGeometry,

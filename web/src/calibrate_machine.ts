@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The calibrated robot beside the one of the data sheet: joints that move, error vectors that can be exaggerated.
 import { Box3, Vector3, type Points } from 'three';
 import { Strokes, cloud } from './bodies';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the frames of a chain are: parent_T_joint = before · (turn about or shift along the axis) · after.
 import { Matrix4, Quaternion, Vector3 } from 'three';
 import type { ChainJson, JointJson, PoseJson } from './evidence';

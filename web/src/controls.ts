@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Controls that a keyboard reaches: sliders with a value in words, switches, buttons.
 
 export interface Slider {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // evidence.json as kinfer writes it (docs/formats.md), as far as the page draws it; long signals are packed.
 import type { Packed } from './packed';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The identified machine as it moved: segments, INS, axes, how sure they are, and directions that nothing tells.
 import { Box3, Matrix4, Quaternion, Vector3, type Mesh } from 'three';
 import { Bar, DashedLine, ball, box, solid } from './bodies';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Brings the report to life: the machine moves, plots can be looked into, tables can be copied.
 import { CalibrateMachine } from './calibrate_machine';
 import { readEvidence } from './evidence';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Long signals as the page holds them: 16-bit steps in base64 (src/kinfer/report/packed.hpp).
 
 export interface Packed {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A chain as a machine: bars from joint to joint, a drum about each axis, the tool.
 import { Group, Vector3 } from 'three';
 import { Bar, Rod, ball, solid } from './bodies';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A window into space: light, camera, names that follow their points. Draws only when something changed.
 import {
   Box3,

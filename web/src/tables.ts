@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tables: copied as CSV with all digits, long ones folded.
 
 function csvCell(text: string): string {

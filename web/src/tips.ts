@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The plot of all poses: what a dot says, and a click that shows its pose.
 import type { CalibrateEvidence } from './evidence';
 

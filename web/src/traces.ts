@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Predicted against measured motion of one sensor, with the difference below; zoom by dragging, double click to go back.
 import uPlot from 'uplot';
 import { choice, group } from './controls';

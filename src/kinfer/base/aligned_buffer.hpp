@@ -1,4 +1,5 @@
-// Numbers that start at a cache line: a pack that straddles two lines costs two loads. They come with arbitrary values.
+// SPDX-License-Identifier: Apache-2.0
+// A buffer aligned to cache lines: a SIMD pack that straddles two lines costs two loads. Contents are uninitialised.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +9,12 @@
 namespace kinfer::batch {
 
 template <class T>
-class Buffer {
+class AlignedBuffer {
  public:
-  Buffer() = default;
-  explicit Buffer(std::size_t size) { reserve(size); }
+  AlignedBuffer() = default;
+  explicit AlignedBuffer(std::size_t size) { reserve(size); }
 
-  /// At least so many numbers; what was there may be lost.
+  /// Makes room for at least `size` numbers; the contents may be lost.
   void reserve(std::size_t size) {
     if (size > size_) memory_.reset(new T[size + spare]), size_ = size;
   }

@@ -1,4 +1,5 @@
-// An angle that cannot be confused with its number of degrees: made by unit, read by unit.
+// SPDX-License-Identifier: Apache-2.0
+// An angle with explicit units: constructed and read in radians or degrees, so that the two cannot be confused.
 #pragma once
 
 #include <compare>

@@ -1,5 +1,6 @@
-// For mistakes of the programmer (wrong shape, index out of range): stops with file, line and values. On in every
-// build.
+// SPDX-License-Identifier: Apache-2.0
+// Assertions for programming errors (wrong shape, index out of range): abort with file, line and values. Enabled in
+// every build.
 #pragma once
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@ namespace kinfer {
 
 }  // namespace kinfer
 
-/// KINFER_EXPECT(q.size() == n) or KINFER_EXPECT(q.size() == n, "{} readings for {} joints", q.size(), n)
+/// KINFER_EXPECT(q.size() == n) or KINFER_EXPECT(q.size() == n, "{} positions for {} joints", q.size(), n)
 #define KINFER_EXPECT(condition, ...)                                                                              \
   do {                                                                                                             \
     if (!(condition)) ::kinfer::expectation_failed(__FILE__, __LINE__, #condition, ::fmt::format("" __VA_ARGS__)); \

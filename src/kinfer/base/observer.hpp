@@ -1,4 +1,5 @@
-// How long-running functions tell what they do: a callback handed in by the caller, who may print or ignore it.
+// SPDX-License-Identifier: Apache-2.0
+// Progress reports of long-running functions: a callback passed in by the caller, who may print or ignore them.
 #pragma once
 
 #include <functional>
@@ -12,16 +13,16 @@ struct Progress {
   double best = 0.0;       ///< best cost so far, in the stage's own unit
   double median = 0.0;     ///< of the population, where there is one
   int iteration = 0;
-  std::string_view detail;  ///< free words: a segment's name, a fold
+  std::string_view detail;  ///< free text: a segment's name, a fold
 };
 
-enum class Wish { go_on, stop };
+enum class ObserverDecision { proceed, stop };
 
-using Observer = std::function<Wish(const Progress&)>;
+using Observer = std::function<ObserverDecision(const Progress&)>;
 
-/// Tells the observer, if there is one; returns its wish.
-inline Wish tell(const Observer& observer, const Progress& progress) {
-  return observer ? observer(progress) : Wish::go_on;
+/// Notifies the observer, if there is one; returns whether it wants to continue.
+inline ObserverDecision notify(const Observer& observer, const Progress& progress) {
+  return observer ? observer(progress) : ObserverDecision::proceed;
 }
 
 }  // namespace kinfer

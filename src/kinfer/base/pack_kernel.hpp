@@ -1,7 +1,8 @@
-// Several numbers side by side in one register: the arithmetic that the batch kernels are written in.
+// SPDX-License-Identifier: Apache-2.0
+// SIMD packs (several numbers in one register) and the arithmetic that the batch kernels are written in.
 //
 // Included by the kernel files only, each of which is compiled for one instruction set. Everything has internal
-// linkage: no other file may get a function that was compiled for a processor it may not run on.
+// linkage, so that no other file can link a function compiled for an instruction set the processor may lack.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 #endif
 
 namespace kinfer::batch {
-namespace {  // each kernel file has its own, compiled for its processor
+namespace {  // one copy per kernel file, compiled for its instruction set
 
 template <class T, int lanes>
 struct PackOf {
@@ -23,7 +24,7 @@ struct PackOf {
 template <class T, int lanes>
 using Pack = typename PackOf<T, lanes>::type;
 
-/// What a pack consists of.
+/// Scalar type, number of lanes and mask type of a pack.
 template <class V>
 struct Traits {
   using Number = std::remove_cvref_t<decltype(V{}[0])>;
@@ -31,7 +32,7 @@ struct Traits {
   using Bits = typename PackOf<Number, lanes>::Bits;
   using Mask = typename PackOf<Number, lanes>::mask;
 };
-/// A single number is a pack of one.
+/// A scalar is a pack with one lane.
 template <>
 struct Traits<double> {
   using Number = double;
@@ -47,7 +48,7 @@ inline V broadcast(Number<V> value) {
   return value - V{};
 }
 
-/// Memory need not be aligned to more than its numbers are.
+/// Unaligned access: only the alignment of the scalar is required.
 template <class V>
 inline V load(const Number<V>* from) {
   if constexpr (std::is_same_v<V, Number<V>>)
@@ -63,7 +64,7 @@ inline void store(Number<V>* to, V v) {
     *reinterpret_cast<typename PackOf<Number<V>, Traits<V>::lanes>::unaligned*>(to) = v;
 }
 
-/// a b + c and a b − c, in one rounding where the processor has it.
+/// a b + c and a b − c, with a single rounding where the processor has fused multiply-add.
 template <class V>
 inline V mul_add(V a, V b, V c) {
 #if defined(__AVX512F__)
@@ -89,13 +90,13 @@ template <class V>
 inline V from_bits(typename Traits<V>::Mask bits) {
   return (V)bits;
 }
-/// a where the mask's bits are set, b elsewhere.
+/// a where the mask is set, b elsewhere.
 template <class V>
 inline V select(typename Traits<V>::Mask mask, V a, V b) {
   return from_bits<V>((bits_of(a) & mask) | (bits_of(b) & ~mask));
 }
 
-/// True where all bits of a comparison are set.
+/// True if the comparison holds in all lanes.
 template <class V>
 inline bool all_of(typename Traits<V>::Mask mask) {
 #if defined(__AVX512F__)
@@ -114,21 +115,21 @@ struct SinCos {
   V sin, cos;
 };
 
-/// What separates the two precisions. π/2 comes in parts whose products with a whole number of quarter turns have no
-/// rounding as long as the angle is below `limit`; more terms of the series than `terms` are not felt
-/// below π/4, more than `terms_near_zero` not below 1/8.
+/// Constants for each precision. π/2 is split into parts (Cody-Waite range reduction) whose products with a whole
+/// number of quarter turns are exact as long as the angle is below `limit`. `terms` terms of the series give full
+/// precision up to π/4, `terms_near_zero` up to 1/8.
 template <class T>
 struct Trigonometry;
 template <>
 struct Trigonometry<double> {
   static constexpr double to_integer = 0x1.8p52, limit = 1e5;
-  static constexpr double quarter[] = {0x1.921fb544p0, 0x1.0b4611a6p-34, 0x1.3198a2e037073p-69};
+  static constexpr double half_pi_parts[] = {0x1.921fb544p0, 0x1.0b4611a6p-34, 0x1.3198a2e037073p-69};
   static constexpr int terms = 8, terms_near_zero = 5;
 };
 template <>
 struct Trigonometry<float> {
   static constexpr float to_integer = 0x1.8p23f, limit = 1e3f;
-  static constexpr float quarter[] = {0x1.92p0f, 0x1.fb4p-12f, 0x1.4442d2p-24f};
+  static constexpr float half_pi_parts[] = {0x1.92p0f, 0x1.fb4p-12f, 0x1.4442d2p-24f};
   static constexpr int terms = 5, terms_near_zero = 3;
 };
 
@@ -145,7 +146,7 @@ struct Coefficients {
   }
 };
 
-/// The terms z^first .. z^last, over z^first, by Horner.
+/// The terms z^first .. z^last, divided by z^first, by Horner's scheme.
 template <class V, int odd, int first, int last>
 inline V series(V z) {
   static constexpr Coefficients<Number<V>, odd> coefficient;
@@ -166,14 +167,14 @@ inline SinCos<V> sin_cos_near_zero(V x) {
 }
 
 template <class V>
-inline typename Traits<V>::Mask is_moderate(V angle) {
+inline typename Traits<V>::Mask is_within_limit(V angle) {
   const V limit = broadcast<V>(Trigonometry<Number<V>>::limit);
   return (typename Traits<V>::Mask)(angle <= limit) & (typename Traits<V>::Mask)(-angle <= limit);
 }
 
 /// Sine and cosine of angles within ± limit, to an ulp or two.
 template <class V>
-inline SinCos<V> sin_cos_of_moderate(V x) {
+inline SinCos<V> sin_cos_within_limit(V x) {
   using T = Number<V>;
   using Trig = Trigonometry<T>;
   using Mask = typename Traits<V>::Mask;
@@ -182,7 +183,7 @@ inline SinCos<V> sin_cos_of_moderate(V x) {
   const V shifted = mul_add(x, broadcast<V>(quarters_per_radian), magic);
   const V n = shifted - magic;
   V r = x;
-  for (const T part : Trig::quarter) r = mul_add(-n, broadcast<V>(part), r);
+  for (const T part : Trig::half_pi_parts) r = mul_add(-n, broadcast<V>(part), r);
   const V z = r * r;
   const V s = mul_add(r * z, series<V, 1, 1, Trig::terms>(z), r);
   const V c = mul_add(z * z, series<V, 0, 2, Trig::terms>(z), mul_add(z, broadcast<V>(T(-0.5)), broadcast<V>(T(1))));
@@ -196,8 +197,8 @@ inline SinCos<V> sin_cos_of_moderate(V x) {
 
 template <class V>
 inline SinCos<V> sin_cos(V x) {
-  if (all_of<V>(is_moderate(x))) [[likely]]
-    return sin_cos_of_moderate(x);
+  if (all_of<V>(is_within_limit(x))) [[likely]]
+    return sin_cos_within_limit(x);
   SinCos<V> result;
   for (int i = 0; i < Traits<V>::lanes; ++i) {
     result.sin[i] = static_cast<Number<V>>(__builtin_sin(static_cast<double>(x[i])));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/base/parallel.hpp"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ struct Job {
   }
 };
 
-/// Workers sleep until a job is posted; `wanted` of them take part, and the poster waits for those.
+/// Workers sleep until a job is posted; the requested number of them take part, and the posting thread waits for them.
 class Pool {
  public:
   ~Pool() {

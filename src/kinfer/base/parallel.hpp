@@ -1,7 +1,8 @@
-// The one way to use several cores: pure items that each write their own slot.
+// SPDX-License-Identifier: Apache-2.0
+// Parallel loop over independent items that each write only their own slot: the only use of threads in the library.
 //
-// Items are handed out in order to a pool that lives as long as the program. Nested calls run their items one after
-// the other, so that a parallel caller decides alone. Which thread runs an item must not matter to its result.
+// Items are dispatched in order to a thread pool that lives as long as the program. Nested calls run serially, so that
+// only the outermost loop is parallel. The result of an item must not depend on the thread that runs it.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,7 @@
 
 namespace kinfer {
 
-/// Number of threads that the machine offers (at least 1).
+/// Number of hardware threads (at least 1).
 int hardware_threads();
 
 /// Calls body(i) for i = 0 .. count-1 on at most `threads` threads (0: all cores); returns when all are done.

@@ -1,4 +1,5 @@
-// What a step returns when the world may err: the value, or one sentence that the user can act on.
+// SPDX-License-Identifier: Apache-2.0
+// Return type of functions that can fail on bad input: the value, or one sentence that the user can act on.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,15 +23,15 @@ tl::unexpected<Error> error(fmt::format_string<Args...> text, Args&&... args) {
   return tl::unexpected<Error>(Error{fmt::format(text, std::forward<Args>(args)...)});
 }
 
-/// Hands an error on to the caller's Result type.
-inline tl::unexpected<Error> pass_on(Error failure) {
+/// Converts an error to the Result type of the caller.
+inline tl::unexpected<Error> forward_error(Error failure) {
   return tl::unexpected<Error>(std::move(failure));
 }
 
 }  // namespace kinfer
 
 /// Evaluates `expression`; returns its error from the calling function, or makes `name` its value.
-#define KINFER_TRY(name, expression)                                              \
-  auto name##_result = (expression);                                              \
-  if (!name##_result) return ::kinfer::pass_on(std::move(name##_result).error()); \
+#define KINFER_TRY(name, expression)                                                    \
+  auto name##_result = (expression);                                                    \
+  if (!name##_result) return ::kinfer::forward_error(std::move(name##_result).error()); \
   auto name = std::move(*name##_result)

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/base/rng.hpp"
 
 #include <cmath>
 #include <numbers>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/base/processor.hpp"
+#include "kinfer/base/instruction_set.hpp"
 #include "kinfer/base/uniform_kernel.hpp"
 
 namespace kinfer {

@@ -1,4 +1,5 @@
-// The square of an expression that is written once.
+// SPDX-License-Identifier: Apache-2.0
+// The square of an expression, evaluated once.
 #pragma once
 
 namespace kinfer {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/base/stop.hpp"
 
 #include "kinfer/base/expect.hpp"
@@ -5,11 +6,11 @@
 namespace kinfer {
 namespace {
 
-struct Words {
+struct StopText {
   std::string_view name, sentence;
 };
 
-Words words(Stop stop) {
+StopText stop_text(Stop stop) {
   switch (stop) {
     case Stop::converged_cost:
       return {"converged_cost", "converged: the cost no longer falls"};
@@ -34,10 +35,10 @@ Words words(Stop stop) {
 }  // namespace
 
 std::string_view name(Stop stop) {
-  return words(stop).name;
+  return stop_text(stop).name;
 }
 std::string_view sentence(Stop stop) {
-  return words(stop).sentence;
+  return stop_text(stop).sentence;
 }
 bool converged(Stop stop) {
   return stop <= Stop::target_reached;

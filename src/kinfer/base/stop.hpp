@@ -1,4 +1,5 @@
-// How an iteration ended: a value that can be tested, and the sentence that a user reads.
+// SPDX-License-Identifier: Apache-2.0
+// Why an iteration ended: an enumerator for code, and a sentence for the user.
 #pragma once
 
 #include <string_view>
@@ -9,7 +10,7 @@ enum class Stop {
   converged_cost,      ///< the cost no longer falls
   converged_step,      ///< the step is below the accuracy of the unknowns
   converged_gradient,  ///< the gradient is zero to rounding
-  target_reached,      ///< the cost that was asked for is reached
+  target_reached,      ///< the target cost is reached
   budget_spent,        ///< iterations or evaluations used up
   stalled,             ///< no damped step lowers the cost
   not_finite,          ///< the start has no finite cost

@@ -1,4 +1,5 @@
-// Draws with AVX-512. Compiled for it (src/kinfer/CMakeLists.txt).
+// SPDX-License-Identifier: Apache-2.0
+// Uniform random numbers with AVX-512 (compile options: src/kinfer/CMakeLists.txt).
 #include "kinfer/base/uniform_kernel.hpp"
 
 namespace kinfer::base {

@@ -1,5 +1,6 @@
-// Many draws of SplitMix64 at once, for files that are compiled for one instruction set each. A plain loop over whole
-// numbers: every processor gives the same bits.
+// SPDX-License-Identifier: Apache-2.0
+// Many SplitMix64 draws at once, for files that are each compiled for one instruction set. A plain loop over integers:
+// every processor gives the same bits.
 #pragma once
 
 #include <cstddef>
@@ -7,10 +8,10 @@
 
 namespace kinfer::base {
 
-/// What mix(first + k · golden) with k = 1 .. count is as a number in [0, 1).
+/// Writes mix(first + k · golden), k = 1 .. count, as numbers in [0, 1).
 using UniformKernel = void (*)(std::uint64_t first, std::size_t count, double* to);
 
-namespace {  // each kernel file has its own, compiled for its processor
+namespace {  // one copy per kernel file, compiled for its instruction set
 
 constexpr std::uint64_t golden = 0x9e3779b97f4a7c15ULL;
 
@@ -20,8 +21,8 @@ constexpr std::uint64_t golden = 0x9e3779b97f4a7c15ULL;
   return z ^ (z >> 31);
 }
 
-/// The upper 53 bits over 2⁵³, exact. Where the processor cannot turn several whole numbers of 64 bits into fractions
-/// at once, the halves are made numbers by their exponents: 2⁸⁴ + high · 2³² and 2⁵² + low.
+/// The upper 53 bits divided by 2⁵³, exact. Where the processor cannot convert several 64-bit integers to doubles at
+/// once, the two halves are converted through their exponent bits: 2⁸⁴ + high · 2³² and 2⁵² + low.
 [[gnu::always_inline]] inline double in_unit_interval(std::uint64_t bits) {
   const std::uint64_t whole = bits >> 11;
 #if defined(__AVX512DQ__)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/calibrate/calibrate.hpp"
 
 #include <algorithm>
@@ -5,122 +6,125 @@
 #include <tuple>
 
 #include "kinfer/base/parallel.hpp"
-#include "kinfer/calibrate/doctor.hpp"
-#include "kinfer/calibrate/figures.hpp"
-#include "kinfer/calibrate/iso9283.hpp"
-#include "kinfer/calibrate/ladder.hpp"
-#include "kinfer/calibrate/picture.hpp"
-#include "kinfer/calibrate/population_fit.hpp"
-#include "kinfer/calibrate/single_fit.hpp"
-#include "kinfer/calibrate/surroundings.hpp"
-#include "kinfer/calibrate/verdict.hpp"
-#include "kinfer/calibrate/wrong_rows.hpp"
+#include "kinfer/calibrate/conclusion/plot_data.hpp"
+#include "kinfer/calibrate/conclusion/verdict.hpp"
+#include "kinfer/calibrate/diagnosis/diagnose.hpp"
+#include "kinfer/calibrate/fit/tolerance_fit.hpp"
+#include "kinfer/calibrate/start/fixtures.hpp"
+#include "kinfer/calibrate/swarm/swarm_fit.hpp"
+#include "kinfer/calibrate/terms/model_selection.hpp"
+#include "kinfer/calibrate/validation/gross_errors.hpp"
+#include "kinfer/calibrate/validation/iso9283.hpp"
+#include "kinfer/calibrate/validation/validation_errors.hpp"
 #include "kinfer/geometry/statistics.hpp"
 
-namespace kinfer {
+namespace kinfer::calibrate {
 namespace {
 
-/// The result on the fitted rows, and the fits that prove it.
-struct Found {
+/// The result on the fitted rows, and the fits that validate it.
+struct CalibrationFit {
   Estimate estimate;
   ToleranceScale scale;
-  std::vector<Proof> proofs;
-  Ladder ladder;
-  std::vector<Outlier> wrong;  ///< rows of the whole data set that no model is to be judged by
+  std::vector<ValidationFit> proofs;
+  ModelSelection model_selection;
+  std::vector<Outlier> gross_errors;  ///< rows of the whole data set with gross errors, excluded from every evaluation
 };
 
-/// Rows are counted in the whole data set again.
-std::vector<Outlier> counted_in_all(std::vector<Outlier> outliers, const std::vector<int>& rows) {
+/// Converts row indices from the subset `rows` to the whole data set.
+std::vector<Outlier> with_data_rows(std::vector<Outlier> outliers, const std::vector<int>& rows) {
   for (Outlier& outlier : outliers) outlier.row = rows[outlier.row];
   return outliers;
 }
 
-/// Adds those of `more` whose rows are not listed yet, ascending.
-void add_rows(std::vector<Outlier>& list, const std::vector<Outlier>& more) {
+/// Adds the entries of `more` whose rows are not listed yet; sorted by row.
+void merge_outliers(std::vector<Outlier>& list, const std::vector<Outlier>& more) {
   for (const Outlier& outlier : more)
     if (std::none_of(list.begin(), list.end(), [&](const Outlier& o) { return o.row == outlier.row; }))
       list.push_back(outlier);
   std::stable_sort(list.begin(), list.end(), [](const Outlier& a, const Outlier& b) { return a.row < b.row; });
 }
 
-/// Base and tool alone, fitted on each split's train rows.
-Result<std::vector<Chain>> frames_without_held_out(const CalibrateTask& task, const RowsPlan& plan, int threads) {
+/// Base and tool only, fitted to each split's training rows.
+Result<std::vector<Chain>> fit_frames_of_splits(const CalibrationTask& task, const ValidationPlan& plan, int threads) {
   std::vector<Result<Chain>> fits(plan.proofs.size(), error(""));
   parallel_for(fits.size(), threads,
                [&](std::size_t i) { fits[i] = fit_frames_only(task, select(task.data, plan.proofs[i].train)); });
   std::vector<Chain> chains;
   for (const Result<Chain>& fit : fits) {
-    if (!fit) return pass_on(fit.error());
+    if (!fit) return forward_error(fit.error());
     chains.push_back(*fit);
   }
   return chains;
 }
 
-/// The splits by which the ladder chooses: those of the proof, or, where the proof's rows are kept aside for good, five
-/// of the fitted rows alone.
-std::vector<Split> splits_of_fitted(const RowsPlan& plan, const PoseSet& fitted, Rng rng) {
-  if (plan.result_sees_all_rows) return plan.proofs;
-  return folds_of(fitted, std::min<int>(5, static_cast<int>(fitted.rows())), rng);
+/// The splits for model selection: those of the validation, or, where the validation rows are never fitted, five
+/// folds of the fitted rows.
+std::vector<Split> selection_splits(const ValidationPlan& plan, const PoseSet& fitted, Rng rng) {
+  if (plan.fits_all_rows) return plan.proofs;
+  return make_row_folds(fitted, std::min<int>(5, static_cast<int>(fitted.rows())), rng);
 }
 
-std::vector<Proof> proofs_of(const std::vector<Chain>& before, const std::vector<Estimate>& after) {
-  std::vector<Proof> proofs;
+std::vector<ValidationFit> pair_validation_fits(const std::vector<Chain>& before, const std::vector<Estimate>& after) {
+  std::vector<ValidationFit> proofs;
   for (std::size_t i = 0; i < before.size(); ++i) proofs.push_back({before[i], after[i]});
   return proofs;
 }
 
-Result<Found> found_by_least_squares(const CalibrateTask& task, const RowsPlan& plan, const PoseSet& fitted,
-                                     const CalibrateOptions& options, Rng rng, const Observer& observer) {
-  KINFER_TRY(before, frames_without_held_out(task, plan, options.threads));
-  KINFER_TRY(geometry, fit_with_believable_tolerances(task, fitted, options.parameters, rng.stream(2), observer));
-  CalibrateOptions how = options;
-  if (!std::holds_alternative<AutoParameters>(options.parameters)) how.model = NamedModel{};
-  const Climbed climbed =
-      climb(task, fitted, geometry.estimate, splits_of_fitted(plan, fitted, rng.stream(5)), how, observer);
-  const std::vector<Estimate> after = plan.result_sees_all_rows ? climbed.unseen : std::vector{climbed.fit};
-  KINFER_TRY(wrong, wrong_beside_geometry(task, plan, options.parameters, geometry.estimate, rng.stream(6)));
-  add_rows(wrong, counted_in_all(climbed.wrong, plan.fitted));
-  return Found{climbed.fit, geometry.scale, proofs_of(before, after), climbed.ladder,
-               without_explained(wrong, climbed.fit, fitted, task.data)};
+Result<CalibrationFit> calibrate_by_least_squares(const CalibrationTask& task, const ValidationPlan& plan,
+                                                  const PoseSet& fitted, const CalibrationOptions& options, Rng rng,
+                                                  const Observer& observer) {
+  KINFER_TRY(before, fit_frames_of_splits(task, plan, options.threads));
+  KINFER_TRY(geometry, fit_with_scaled_tolerances(task, fitted, options.parameters, rng.stream(2), observer));
+  CalibrationOptions selection_options = options;
+  if (!std::holds_alternative<GeometricParameters>(options.parameters)) selection_options.model = FixedModel{};
+  const SelectedModel selected_model = select_model(
+      task, fitted, geometry.estimate, selection_splits(plan, fitted, rng.stream(5)), selection_options, observer);
+  const std::vector<Estimate> after = plan.fits_all_rows ? selected_model.split_fits : std::vector{selected_model.fit};
+  KINFER_TRY(gross_errors, find_gross_errors(task, plan, options.parameters, geometry.estimate, rng.stream(6)));
+  merge_outliers(gross_errors, with_data_rows(selected_model.gross_errors, plan.fitted));
+  return CalibrationFit{selected_model.fit, geometry.scale, pair_validation_fits(before, after),
+                        selected_model.model_selection,
+                        without_explained_rows(gross_errors, selected_model.fit, fitted, task.data)};
 }
 
-/// A population searches on the rows that the least-squares fit believes.
-Result<Found> found_by_population(const CalibrateTask& task, const RowsPlan& plan, const PoseSet& fitted,
-                                  const CalibrateOptions& options, Rng rng, const Observer& observer) {
-  KINFER_TRY(least_squares_fit,
-             fit_with_believable_tolerances(task, fitted, options.parameters, rng.stream(2), observer));
-  KINFER_TRY(before, frames_without_held_out(task, plan, options.threads));
-  const Rng searching = rng.stream(3), proving = rng.stream(4);
-  const PoseSet believed = select(fitted, without(all_rows(fitted), least_squares_fit.estimate.outliers));
+/// Swarm search on the inlier rows of the least-squares fit.
+Result<CalibrationFit> calibrate_by_swarm(const CalibrationTask& task, const ValidationPlan& plan,
+                                          const PoseSet& fitted, const CalibrationOptions& options, Rng rng,
+                                          const Observer& observer) {
+  KINFER_TRY(least_squares_fit, fit_with_scaled_tolerances(task, fitted, options.parameters, rng.stream(2), observer));
+  KINFER_TRY(before, fit_frames_of_splits(task, plan, options.threads));
+  const Rng search_rng = rng.stream(3), validation_rng = rng.stream(4);
+  const PoseSet inliers = select(fitted, without(all_rows(fitted), least_squares_fit.estimate.outliers));
   const ToleranceScale scale = least_squares_fit.scale;
-  const auto search = [&](const PoseSet& rows, Rng draws, const Observer& watching) {
-    return fit_population(task, rows, options.parameters, scale, *options.population, draws, watching);
+  const auto search = [&](const PoseSet& rows, Rng draws, const Observer& search_observer) {
+    return fit_by_swarm(task, rows, options.parameters, scale, *options.swarm_search, draws, search_observer);
   };
-  KINFER_TRY(estimate, search(believed, searching.stream(0), observer));
+  KINFER_TRY(estimate, search(inliers, search_rng.stream(0), observer));
   estimate.outliers = least_squares_fit.estimate.outliers;
-  if (std::holds_alternative<BpnnPsoOptions>(options.population->search)) {
-    KINFER_TRY(runs, side_by_side(task, believed, options.parameters, scale, *options.population,
-                                  least_squares_fit.estimate.chain, searching.stream(1), observer));
-    estimate.search.side_by_side = runs;
+  if (std::holds_alternative<BpnnPsoOptions>(options.swarm_search->search)) {
+    KINFER_TRY(runs, swarm_comparison(task, inliers, options.parameters, scale, *options.swarm_search,
+                                      least_squares_fit.estimate.chain, search_rng.stream(1), observer));
+    estimate.search.swarm_comparison = runs;
   }
-  const std::vector<Outlier> not_believed = counted_in_all(estimate.outliers, plan.fitted);
-  KINFER_TRY(wrong, wrong_beside_geometry(task, plan, options.parameters, least_squares_fit.estimate, rng.stream(6)));
+  const std::vector<Outlier> data_outliers = with_data_rows(estimate.outliers, plan.fitted);
+  KINFER_TRY(gross_errors,
+             find_gross_errors(task, plan, options.parameters, least_squares_fit.estimate, rng.stream(6)));
   std::vector<Result<Estimate>> after(plan.proofs.size(), error(""));
   parallel_for(after.size(), options.threads, [&](std::size_t i) {
-    after[i] = search(select(task.data, without(plan.proofs[i].train, not_believed)), proving.stream(i), {});
+    after[i] = search(select(task.data, without(plan.proofs[i].train, data_outliers)), validation_rng.stream(i), {});
   });
-  Found found{estimate, scale, {}, {}, wrong};
+  CalibrationFit calibrated{estimate, scale, {}, {}, gross_errors};
   for (std::size_t i = 0; i < after.size(); ++i) {
-    if (!after[i]) return pass_on(after[i].error());
-    found.proofs.push_back({before[i], *after[i]});
+    if (!after[i]) return forward_error(after[i].error());
+    calibrated.proofs.push_back({before[i], *after[i]});
   }
-  return found;
+  return calibrated;
 }
 
-/// Base and tool as seen from the frames of the file: the fit itself counts from the frames that the data showed.
-void express_frames_as_in_file(std::vector<ParameterEstimate>& values, const ParameterSet& set, const Chain& file,
-                               const Chain& found) {
-  const auto place = [](const Frame& from, const Frame& to, Field field) {
+/// Expresses base and tool relative to the frames of the file; the fit itself is relative to the frames from the data.
+void express_frames_relative_to_file(std::vector<ParameterEstimate>& values, const ParameterSet& set, const Chain& file,
+                                     const Chain& calibrated) {
+  const auto coordinate = [](const Frame& from, const Frame& to, Field field) {
     const auto k = static_cast<int>(field);
     if (field <= Field::z) return std::pair{from.xyz[k], to.xyz[k]};
     const Vec3 turn = to_intrinsic_xyz(from.pose().rotation.transpose() * to.pose().rotation);
@@ -128,15 +132,15 @@ void express_frames_as_in_file(std::vector<ParameterEstimate>& values, const Par
   };
   const std::vector<const Parameter*> free = set.free();
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const Address& at = free[i]->at;
+    const ParameterAddress& at = free[i]->at;
     if (at.owner != Owner::base && at.owner != Owner::tool) continue;
     const bool base = at.owner == Owner::base;
     std::tie(values[i].nominal, values[i].value) =
-        place(base ? file.base : file.tool, base ? found.base : found.tool, at.field);
+        coordinate(base ? file.base : file.tool, base ? calibrated.base : calibrated.tool, at.field);
   }
 }
 
-/// Says so where base and tool were no parameters, and yet those of the file were not used.
+/// Adds a note where base and tool were not free parameters but the frames of the file were not used.
 void note_frames(Calibration& calibration, const Chain& nominal) {
   for (const ParameterEstimate& p : calibration.estimate.values)
     if (p.name == "base_x") return;
@@ -153,34 +157,35 @@ void note_scale(Calibration& calibration, const ToleranceScale& scale) {
         "the nominal model is further off than its tolerances say: they were multiplied by {:.0f}", scale.factor));
 }
 
-/// Rows that are wrong are listed although no fit has seen them, and no figure counts them.
-LeftOut leave_out_wrong_rows(Calibration& calibration, const std::vector<Outlier>& wrong, const RowsPlan& plan) {
-  const LeftOut left_out = left_out_of_figures(wrong, plan);
-  calibration.wrong_rows = left_out.rows;
-  if (left_out.too_many)
+/// Lists held-out rows with gross errors among the outliers and excludes them from the hold-out figures.
+ExcludedRows exclude_gross_errors(Calibration& calibration, const std::vector<Outlier>& gross_errors,
+                                  const ValidationPlan& plan) {
+  const ExcludedRows excluded = select_excluded_rows(gross_errors, plan);
+  calibration.gross_error_rows = excluded.rows;
+  if (excluded.too_many)
     calibration.notes.push_back(fmt::format(
         "{} of the rows that were held out lie where no noise explains it: too many to call the rows wrong, so all "
         "count in the held-out figures",
-        left_out.looking));
+        excluded.suspect_count));
   std::vector<Outlier> held_out;
-  for (Outlier outlier : wrong) {
-    if (std::find(left_out.rows.begin(), left_out.rows.end(), outlier.row) == left_out.rows.end()) continue;
+  for (Outlier outlier : gross_errors) {
+    if (std::find(excluded.rows.begin(), excluded.rows.end(), outlier.row) == excluded.rows.end()) continue;
     if (std::find(plan.fitted.begin(), plan.fitted.end(), outlier.row) == plan.fitted.end())
       outlier.reason = "held out: " + outlier.reason;
     held_out.push_back(outlier);
   }
-  add_rows(calibration.estimate.outliers, held_out);
-  return left_out;
+  merge_outliers(calibration.estimate.outliers, held_out);
+  return excluded;
 }
 
-/// Which joint offsets have moved since the earlier calibration, by more than chance explains among so many.
+/// Which joint offsets have changed significantly since the earlier calibration (two-sided, 1 % family-wise).
 void note_offsets(Calibration& calibration) {
   const Estimate& estimate = calibration.estimate;
   const std::vector<const Parameter*> free = estimate.parameters.free();
   const auto is_offset = [](const Parameter* p) { return p->at.owner == Owner::joint; };
   const auto offsets = static_cast<double>(std::count_if(free.begin(), free.end(), is_offset));
   const double limit = normal_quantile(1.0 - 0.005 / std::max(1.0, offsets));
-  int moved = 0;
+  int changed_count = 0;
   for (std::size_t i = 0; i < free.size(); ++i) {
     const ParameterEstimate& value = estimate.values[i];
     const double by = value.value - value.nominal;
@@ -189,61 +194,63 @@ void note_offsets(Calibration& calibration) {
     calibration.notes.push_back(fmt::format("{} has moved by {:+.4f} {} since the earlier calibration ({:.0f} sd)",
                                             value.name, by / (length ? 1e-3 : degree), length ? "mm" : "deg",
                                             std::abs(by) / value.sd));
-    ++moved;
+    ++changed_count;
   }
-  if (moved == 0) calibration.notes.push_back("no joint offset has moved by more than chance explains");
+  if (changed_count == 0) calibration.notes.push_back("no joint offset has moved by more than chance explains");
 }
 
-/// What one of the written files cannot say.
+/// Adds a note where the URDF cannot represent the whole model.
 void note_urdf(Calibration& calibration) {
   const Chain& chain = calibration.estimate.chain;
-  const auto beyond = [](const Joint& j) {
+  const auto is_non_geometric = [](const Joint& j) {
     return j.compliance != 0.0 || j.torque_compliance != 0.0 || j.backlash != 0.0 || !j.harmonics.empty();
   };
-  if (chain.expansion != 0.0 || std::any_of(chain.joints.begin(), chain.joints.end(), beyond))
+  if (chain.expansion != 0.0 || std::any_of(chain.joints.begin(), chain.joints.end(), is_non_geometric))
     calibration.notes.push_back("chain.urdf holds the geometry alone; chain.toml holds what goes beyond it");
 }
 
 }  // namespace
 
-Result<Calibration> calibrate(const CalibrateTask& given, const CalibrateOptions& options, Rng rng,
-                              const Observer& observer) {
-  // The doctor judges rows of one base and one tool.
+Result<Calibration> calibrate_robot(const CalibrationTask& given, const CalibrationOptions& options, Rng rng,
+                                    const Observer& observer) {
+  // The diagnosis assumes a single base and a single tool.
   const bool one_mounting = given.data.setups.size() < 2 && given.data.tips.empty();
-  const Diagnosis diagnosis = one_mounting ? examine(given) : Diagnosis{{}, given};
-  CalibrateTask task = diagnosis.treated;
-  KINFER_TRY(placed, with_surroundings(task.nominal, task.data));
+  const Diagnosis diagnosis = one_mounting ? diagnose(given) : Diagnosis{{}, given};
+  CalibrationTask task = diagnosis.corrected_task;
+  KINFER_TRY(placed, with_fixtures(task.nominal, task.data));
   task.nominal = placed.chain;
   task.data = with_approach(placed.data);
-  KINFER_TRY(plan, plan_of_rows(task.data, options.holdout, rng.stream(1)));
+  KINFER_TRY(plan, make_validation_plan(task.data, options.holdout, rng.stream(1)));
   const PoseSet fitted = select(task.data, plan.fitted);
   KINFER_TRY(frames_only, fit_frames_only(task, fitted));
-  KINFER_TRY(found, options.population ? found_by_population(task, plan, fitted, options, rng, observer)
-                                       : found_by_least_squares(task, plan, fitted, options, rng, observer));
+  KINFER_TRY(calibrated, options.swarm_search ? calibrate_by_swarm(task, plan, fitted, options, rng, observer)
+                                              : calibrate_by_least_squares(task, plan, fitted, options, rng, observer));
 
   Calibration calibration;
   calibration.findings = diagnosis.findings;
   for (const Finding& finding : diagnosis.findings)
-    if (finding.kind != "gross_outliers") calibration.notes.push_back(in_words(finding));  // the fit lists its own
-  calibration.estimate = found.estimate;
-  calibration.ladder = found.ladder;
-  express_frames_as_in_file(calibration.estimate.values, calibration.estimate.parameters, task.nominal,
-                            calibration.estimate.chain);
+    if (finding.kind != FindingKind::gross_outliers)
+      calibration.notes.push_back(describe_finding(finding));  // the fit lists its outliers
+  calibration.estimate = calibrated.estimate;
+  calibration.model_selection = calibrated.model_selection;
+  express_frames_relative_to_file(calibration.estimate.values, calibration.estimate.parameters, task.nominal,
+                                  calibration.estimate.chain);
   calibration.holdout = plan.words;
-  calibration.estimate.outliers = counted_in_all(calibration.estimate.outliers, plan.fitted);
-  const LeftOut left_out = leave_out_wrong_rows(calibration, found.wrong, plan);
-  note_scale(calibration, found.scale);
+  calibration.estimate.outliers = with_data_rows(calibration.estimate.outliers, plan.fitted);
+  const ExcludedRows excluded = exclude_gross_errors(calibration, calibrated.gross_errors, plan);
+  note_scale(calibration, calibrated.scale);
   note_frames(calibration, task.nominal);
   note_urdf(calibration);
-  if (std::holds_alternative<OffsetParameters>(options.parameters)) note_offsets(calibration);
-  calibration.geometry_alone = options.population.has_value();
-  const Judged judged{task.nominal, task.instrument, task.data, plan, frames_only, found.proofs, left_out.rows};
-  fill_figures(calibration, judged);
-  judge(calibration, expected_error(judged));
-  calibration.accuracy = pose_accuracy(frames_only, calibration.estimate.chain, task.data);
-  calibration.picture = calibration_picture(task, frames_only, calibration.estimate);
-  calibration.next = calibration_advice(task, calibration);
+  if (std::holds_alternative<JointOffsetParameters>(options.parameters)) note_offsets(calibration);
+  calibration.geometry_only = options.swarm_search.has_value();
+  const EvaluationInputs evaluation{task.nominal, task.instrument,   task.data,    plan,
+                                    frames_only,  calibrated.proofs, excluded.rows};
+  fill_error_statistics(calibration, evaluation);
+  write_verdict(calibration, expected_holdout_rms(evaluation));
+  calibration.accuracy = evaluate_pose_accuracy(frames_only, calibration.estimate.chain, task.data);
+  calibration.plot_data = make_plot_data(task, frames_only, calibration.estimate);
+  calibration.recommendations = make_recommendations(task, calibration);
   return calibration;
 }
 
-}  // namespace kinfer
+}  // namespace kinfer::calibrate

@@ -1,4 +1,5 @@
-// The program: one verb a file, and the exit codes that docs/formats.md promises.
+// SPDX-License-Identifier: Apache-2.0
+// The program: one file per verb; exit codes as documented in docs/formats.md.
 #include <malloc.h>
 
 #include <CLI/CLI.hpp>
@@ -6,14 +7,14 @@
 #include <vector>
 
 #include "kinfer/base/version.hpp"
-#include "kinfer/cli/common.hpp"
-#include "kinfer/cli/verbs.hpp"
+#include "kinfer/cli/parts/common.hpp"
+#include "kinfer/cli/verb_list.hpp"
 
 namespace {
 
 int run(int argc, char** argv) {
   using namespace kinfer::cli;
-  remember_command_line(argc, argv);
+  store_command_line(argc, argv);
   CLI::App app("kinfer: from raw measurements to a proven kinematic model", "kinfer");
   app.set_version_flag("--version", std::string("kinfer ") + kinfer::version);
   app.require_subcommand(1);
@@ -25,15 +26,15 @@ int run(int argc, char** argv) {
     return app.exit(parse_error) == 0 ? exit_done : exit_bad_input;  // --help and --version end here too
   }
   for (const Verb& verb : verbs)
-    if (chosen(*verb.command)) return verb.run();
+    if (was_chosen(*verb.command)) return verb.run();
   return exit_bad_input;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  // glibc raises this threshold by itself up to 32 MB, and what is below never goes back to the system: an hour of six
-  // sensors then took a third more memory.
+  // glibc raises this threshold dynamically up to 32 MB, and blocks below it are not returned to the system: an hour of
+  // six sensors then took a third more memory.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   try {
     return run(argc, argv);

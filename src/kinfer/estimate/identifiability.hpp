@@ -1,13 +1,15 @@
-// What the data can tell, and in words what they cannot.
+// SPDX-License-Identifier: Apache-2.0
+// Identifiability of the parameters from the data: rank, singular values, and the unobservable or confounded parameters
+// in words.
 #pragma once
 
 #include "kinfer/evidence/estimate.hpp"
 
 namespace kinfer {
 
-/// `jacobian`: believed data rows x free parameters, in units of the noise (no prior rows). Singular values of
-/// jacobian · diag(prior_sd): above 1 the data know a combination better than the tolerances do. Parameters without a
-/// prior are scaled by their `scale`.
+/// `jacobian`: inlier measurement rows x free parameters, in units of the noise (no prior rows). Singular values are
+/// those of jacobian · diag(prior_sd): above 1, the data determine that combination better than the prior does.
+/// Parameters without a prior are scaled by their `scale`.
 Identifiability identifiability(ConstMatrixRef jacobian, const ParameterSet& set);
 
 }  // namespace kinfer

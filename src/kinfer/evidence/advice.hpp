@@ -1,4 +1,5 @@
-// What to measure or to do next, and what it would bring.
+// SPDX-License-Identifier: Apache-2.0
+// Recommendations: what to measure or do next, and the expected benefit.
 #pragma once
 
 #include <string>

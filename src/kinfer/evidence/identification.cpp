@@ -1,18 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/evidence/identification.hpp"
 
 namespace kinfer {
 
-std::string_view name(FoundJointType type) {
+std::string_view name(EstimatedJointType type) {
   switch (type) {
-    case FoundJointType::revolute:
+    case EstimatedJointType::revolute:
       return "revolute";
-    case FoundJointType::prismatic:
+    case EstimatedJointType::prismatic:
       return "prismatic";
-    case FoundJointType::universal:
+    case EstimatedJointType::universal:
       return "universal";
-    case FoundJointType::spherical:
+    case EstimatedJointType::spherical:
       return "spherical";
-    case FoundJointType::rigid:
+    case EstimatedJointType::rigid:
       return "rigid";
   }
   return "rigid";

@@ -1,4 +1,5 @@
-// What a result was made from, enough to make it again; nothing that differs from run to run.
+// SPDX-License-Identifier: Apache-2.0
+// Inputs, options and seed of a result, enough to reproduce it; nothing that differs from run to run.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 namespace kinfer {
 
 struct InputFile {
-  std::string name;  ///< without folders
+  std::string name;  ///< without directories
   std::string sha256;
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/evidence/traces.hpp"
 
 #include <algorithm>
@@ -8,9 +9,9 @@
 
 namespace kinfer {
 
-Binning binning(std::size_t samples, std::size_t most) {
-  KINFER_EXPECT(most > 0, "no bins for {} samples", samples);
-  return {samples, std::max<std::size_t>(1, (samples + most - 1) / most)};
+Binning binning(std::size_t samples, std::size_t max_bins) {
+  KINFER_EXPECT(max_bins > 0, "no bins for {} samples", samples);
+  return {samples, std::max<std::size_t>(1, (samples + max_bins - 1) / max_bins)};
 }
 
 Envelope envelope(std::span<const double> samples, const Binning& bins) {

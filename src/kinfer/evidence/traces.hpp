@@ -1,4 +1,5 @@
-// Long signals, thinned to what a screen can show without hiding a spike, and the motion as a film.
+// SPDX-License-Identifier: Apache-2.0
+// Long signals decimated for display without losing a spike (min/max envelopes), and the motion as a joint trajectory.
 #pragma once
 
 #include <array>
@@ -15,13 +16,13 @@ struct Envelope {
   std::vector<double> low, high;
 };
 
-/// Bins for `samples` samples: all of equal size but the last, at most `most`.
+/// `samples` samples in bins of equal size; the last may be shorter. binning() makes at most `max_bins`.
 struct Binning {
   std::size_t samples = 0;
-  std::size_t size = 1;  ///< samples a bin
+  std::size_t size = 1;  ///< samples per bin
   std::size_t count() const { return (samples + size - 1) / size; }
 };
-Binning binning(std::size_t samples, std::size_t most);
+Binning binning(std::size_t samples, std::size_t max_bins);
 
 Envelope envelope(std::span<const double> samples, const Binning& bins);
 
@@ -32,26 +33,26 @@ struct Trace {
   std::string unit{};      ///< "m/s^2", "rad/s"
   std::string frame{};     ///< "ground" or "sensor"
   std::array<Envelope, 3> measured{}, predicted{}, residual{};
-  double rms_measured = 0.0;                   ///< of the signal's three axes together
-  double rms_fitted = 0.0, rms_holdout = 0.0;  ///< of the residual's three axes together; 0: no such rows
+  double rms_measured = 0.0;                   ///< of the vector norm
+  double rms_fitted = 0.0, rms_holdout = 0.0;  ///< likewise of the residual; 0: no such rows
 };
 
 struct TimeWindow {
   double begin = 0.0, end = 0.0;  ///< [s]
 };
 
-/// The machine's motion in steps that a screen can play: angles and the root's orientation.
-struct Playback {
+/// The machine's motion for animation: joint positions and the orientation of the root.
+struct MachineTrajectory {
   std::vector<double> time;                 ///< [s]
-  std::vector<std::array<double, 4>> root;  ///< w x y z, root's sensor to ground: one a time, or one for all
-  MatrixXd q;                               ///< dof x times, readings of Identification::chain [rad] or [m]
+  std::vector<std::array<double, 4>> root;  ///< w x y z, world_R_root sensor: one per time, or one for all
+  MatrixXd q;                               ///< dof x times, joint positions of Identification::chain [rad] or [m]
 };
 
 struct MotionEvidence {
   std::vector<double> time;  ///< [s] middle of each bin
   std::vector<Trace> traces;
   std::vector<TimeWindow> held_out;  ///< not fitted
-  Playback playback;
+  MachineTrajectory trajectory;
 };
 
 }  // namespace kinfer

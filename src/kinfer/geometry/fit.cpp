@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/geometry/fit.hpp"
 
 #include <cmath>
@@ -105,14 +106,14 @@ CircleFit fit_circle(std::span<const Vec3> points) {
   }
 
   CircleFit fit{plane.point + c.x() * u + c.y() * v, plane.normal, radius, 0.0};
-  double turned = 0.0, squares = 0.0;
+  double signed_area = 0.0, squares = 0.0;
   for (Eigen::Index i = 0; i < n; ++i) {
     const Vec3 from_center = points[i] - fit.center;
     const double height = fit.normal.dot(from_center);
     squares += height * height + std::pow((from_center - height * fit.normal).norm() - radius, 2);
-    if (i > 0) turned += fit.normal.dot((points[i - 1] - fit.center).cross(from_center));
+    if (i > 0) signed_area += fit.normal.dot((points[i - 1] - fit.center).cross(from_center));
   }
-  if (turned < 0.0) fit.normal = -fit.normal;
+  if (signed_area < 0.0) fit.normal = -fit.normal;
   fit.rms = std::sqrt(squares / static_cast<double>(n));
   return fit;
 }

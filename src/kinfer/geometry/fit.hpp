@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Least-squares fits of points: rigid alignment, plane, line, circle in space.
 #pragma once
 
@@ -8,10 +9,10 @@
 namespace kinfer {
 
 /// a_T_b that minimises Σ wᵢ |aᵢ − a_T_b bᵢ|² (Kabsch 1976, by Horn's quaternion, so never a reflection).
-/// At least 3 points that are not on a line, else the turn about that line is arbitrary. Weights may be empty.
+/// At least 3 points that are not on a line, else the rotation about that line is arbitrary. Weights may be empty.
 Pose align_points(std::span<const Vec3> a, std::span<const Vec3> b, std::span<const double> weights = {});
 
-/// Chordal mean: the rotation R that minimises Σ |Rᵢ − R|² (Frobenius). With Rᵢ = Aᵢ Bᵢᵀ it carries the Bᵢ to the Aᵢ.
+/// Chordal mean: the rotation R that minimises Σ |Rᵢ − R|² (Frobenius). With Rᵢ = Aᵢ Bᵢᵀ it maps the Bᵢ to the Aᵢ.
 Mat3 mean_rotation(std::span<const Mat3> rotations);
 
 struct LineFit {
@@ -30,7 +31,7 @@ PlaneFit fit_plane(std::span<const Vec3> points);
 
 struct CircleFit {
   Vec3 center = Vec3::Zero();
-  Vec3 normal = Vec3::UnitZ();  ///< unit; turns from the first point to the later ones by the right-hand rule
+  Vec3 normal = Vec3::UnitZ();  ///< unit; from the first point to the later ones by the right-hand rule
   double radius = 0.0;          ///< [m]
   double rms = 0.0;             ///< [m] distance of the points from the circle
 };

@@ -1,4 +1,5 @@
-// A frame seen from another: base_T_tip maps coordinates of the tip's frame to those of the base's.
+// SPDX-License-Identifier: Apache-2.0
+// Pose of a frame in another: base_T_tip maps coordinates in the tip frame to coordinates in the base frame.
 #pragma once
 
 #include "kinfer/geometry/rotation.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/geometry/rotation.hpp"
 
 #include <cctype>
@@ -93,7 +94,7 @@ Vec3 to_rpy(const Mat3& r) {
   const double cos_pitch = std::hypot(r(0, 0), r(1, 0));
   const double pitch = std::atan2(-r(2, 0), cos_pitch);
   if (cos_pitch < gimbal_lock) return {0.0, pitch, std::atan2(-r(0, 1), r(1, 1))};
-  // Roll is what is left when this yaw is taken off: near the lock each is uncertain, but not the two together.
+  // Roll is computed after removing this yaw: near gimbal lock each is ill determined, but not their combination.
   const double yaw = std::atan2(r(1, 0), r(0, 0)), c = std::cos(yaw), s = std::sin(yaw);
   return {std::atan2(s * r(0, 2) - c * r(1, 2), c * r(1, 1) - s * r(0, 1)), pitch, yaw};
 }

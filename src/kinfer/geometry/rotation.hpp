@@ -1,4 +1,5 @@
-// Rotations in three dimensions: exponential map, roll-pitch-yaw, Euler sequences, and what is near the singularities.
+// SPDX-License-Identifier: Apache-2.0
+// Rotations in three dimensions: exponential map, roll-pitch-yaw, Euler sequences; accurate near singularities.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +23,7 @@ Mat3 rot_z(double angle);
 /// Rotation by |v| about v (Rodrigues); exact to rounding for small v too.
 Mat3 exp_so3(const Vec3& rotation_vector);
 
-/// Rotation vector of R with length in [0, π]. At π the sign of the axis is the library's choice.
+/// Rotation vector of R with length in [0, π]. At π the sign of the axis is arbitrary.
 Vec3 log_so3(const Mat3& r);
 
 Quat quat_exp(const Vec3& rotation_vector);
@@ -32,7 +33,7 @@ Vec3 quat_log(const Quat& q);
 Mat3 right_jacobian(const Vec3& rotation_vector);
 Mat3 right_jacobian_inverse(const Vec3& rotation_vector);
 
-/// R = Rz(yaw) Ry(pitch) Rx(roll), as URDF and FORMATS.md have it.
+/// R = Rz(yaw) Ry(pitch) Rx(roll), as in URDF and docs/formats.md.
 Mat3 from_rpy(const Vec3& roll_pitch_yaw);
 
 /// Roll, pitch, yaw of R; at pitch = ±90° roll is set to 0 (only yaw ∓ roll is known there).
@@ -41,7 +42,7 @@ Vec3 to_rpy(const Mat3& r);
 /// (a, b, c) of R = Rx(a) Ry(b) Rz(c); at b = ±90° c is set to 0.
 Vec3 to_intrinsic_xyz(const Mat3& r);
 
-/// Euler angles by the name of the sequence: "XYZ intrinsic" turns about the moving axes in this order
+/// Euler angles by the name of the sequence: "XYZ intrinsic" rotates about the moving axes in this order
 /// (R = Rx(a) Ry(b) Rz(c)), "XYZ extrinsic" about the fixed ones (R = Rz(c) Ry(b) Rx(a)).
 struct EulerSequence {
   char axes[3] = {'X', 'Y', 'Z'};
@@ -53,7 +54,7 @@ Mat3 from_euler(const EulerSequence& sequence, const Vec3& angles);
 /// The rotation closest to m (Frobenius norm), its polar factor; m must be near a rotation (det m > 0).
 Mat3 nearest_rotation(const Mat3& m);
 
-/// Any unit vector across v; continuous almost everywhere.
+/// A unit vector perpendicular to v; continuous almost everywhere.
 Vec3 any_perpendicular(const Vec3& v);
 
 /// Angle between two directions, [0, π]; accurate for small angles too.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/geometry/statistics.hpp"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 namespace kinfer {
 namespace {
 
-/// Σ zᵏ / (a (a + 1) ... (a + k)), the lower incomplete gamma function over zᵃ e⁻ᶻ; for z < a + 1.
+/// Σ zᵏ / (a (a + 1) ... (a + k)), the lower incomplete gamma function divided by zᵃ e⁻ᶻ; for z < a + 1.
 double gamma_series(double a, double z) {
   double term = 1.0 / a, sum = term;
   for (double k = 1.0; term > 1e-17 * sum; ++k) {
@@ -19,7 +20,7 @@ double gamma_series(double a, double z) {
   return sum;
 }
 
-/// The upper incomplete gamma function over zᵃ e⁻ᶻ by Lentz's evaluation of its continued fraction; for z > a + 1.
+/// The upper incomplete gamma function divided by zᵃ e⁻ᶻ, by Lentz's continued fraction; for z > a + 1.
 double gamma_fraction(double a, double z) {
   double b = z + 1.0 - a, c = 1e300, d = 1.0 / b, value = d;
   for (int k = 1; k < 100000; ++k) {
@@ -59,12 +60,12 @@ double standard_deviation(std::span<const double> values) {
 
 double quantile(std::vector<double> values, double fraction) {
   KINFER_EXPECT(!values.empty() && fraction >= 0.0 && fraction <= 1.0);
-  const double place = fraction * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::ptrdiff_t>(place);
+  const double rank = fraction * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::ptrdiff_t>(rank);
   const auto at = values.begin() + below;
   std::nth_element(values.begin(), at, values.end());
   const double next = at + 1 < values.end() ? *std::min_element(at + 1, values.end()) : *at;
-  return *at + (place - static_cast<double>(below)) * (next - *at);
+  return *at + (rank - static_cast<double>(below)) * (next - *at);
 }
 
 double median(std::vector<double> values) {

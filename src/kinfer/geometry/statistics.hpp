@@ -1,4 +1,5 @@
-// Figures that sum up a list of numbers. Non-finite numbers are the caller's to leave out.
+// SPDX-License-Identifier: Apache-2.0
+// Descriptive statistics and distributions. The caller leaves out non-finite numbers.
 #pragma once
 
 #include <span>
@@ -8,22 +9,22 @@ namespace kinfer {
 
 double mean(std::span<const double> values);                   ///< 0 for an empty list
 double rms(std::span<const double> values);                    ///< 0 for an empty list
-double standard_deviation(std::span<const double> values);     ///< n − 1 below; 0 for fewer than 2
+double standard_deviation(std::span<const double> values);     ///< divided by n − 1; 0 for fewer than 2
 double quantile(std::vector<double> values, double fraction);  ///< linear between ranks; `values` must not be empty
 double median(std::vector<double> values);
 
-/// Standard deviation of the Gaussian bulk that gives these magnitudes' median deviation: 1.4826 · MAD.
+/// Robust standard deviation of the Gaussian bulk: 1.4826 · median absolute deviation from the median.
 double robust_sd(std::vector<double> values);
 
-/// Probability that a standard Gaussian is below x, and the x below which it lies with probability p in (0, 1).
+/// Cumulative distribution function of the standard Gaussian, and its inverse for p in (0, 1).
 double normal_cdf(double x);
 double normal_quantile(double p);
 
-/// Value below which a chi-squared variable of n degrees of freedom lies with probability p in (0, 1).
+/// Quantile of the chi-squared distribution with n degrees of freedom, for p in (0, 1).
 double chi_squared_quantile(double p, double n);
 
-/// Probability that a chi-squared variable of n > 0 degrees of freedom is below x: the regularised incomplete gamma
-/// function P(n/2, x/2), by its series or its continued fraction (Abramowitz and Stegun 6.5.29, 6.5.31).
+/// Cumulative distribution function of the chi-squared distribution with n > 0 degrees of freedom: the regularised
+/// incomplete gamma function P(n/2, x/2), by its series or continued fraction (Abramowitz and Stegun 6.5.29, 6.5.31).
 double chi_squared_cdf(double x, double n);
 
 }  // namespace kinfer

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/inertial/activity.hpp"
 
 #include <algorithm>
@@ -9,19 +10,19 @@
 namespace kinfer {
 namespace {
 
-/// rms rate of a sensor in each window; the noise is averaged away over a tenth of the window first.
+/// rms rate of a sensor in each window, after noise averaging over a tenth of the window.
 std::vector<double> window_rates(const InsSensor& sensor, std::span<const double> time, double window) {
-  const Vec3 bias = bias_at_rest(rests(sensor, time)).mean;
+  const Vec3 bias = bias_at_rest(rest_periods(sensor, time)).mean;
   const auto windows = static_cast<std::size_t>((time.back() - time.front()) / window) + 1;
   std::vector<double> sum(windows, 0.0), seconds(windows, 0.0);
-  LowPass<Vec3> rate{Vec3::Zero()};
+  LowPass<Vec3> angular_velocity{Vec3::Zero()};
   for (std::size_t row = 1; row < time.size(); ++row) {
     const InsSample s = sample(sensor, time, row);
     const double dt = std::min(time[row] - time[row - 1], window);
-    if (!s.has_rate) continue;
-    rate.add(s.rate - bias, dt, 0.1 * window);
+    if (!s.has_angular_velocity) continue;
+    angular_velocity.add(s.angular_velocity - bias, dt, 0.1 * window);
     const auto w = static_cast<std::size_t>((time[row] - time.front()) / window);
-    sum[w] += dt * rate.value.squaredNorm();
+    sum[w] += dt * angular_velocity.value.squaredNorm();
     seconds[w] += dt;
   }
   for (std::size_t w = 0; w < windows; ++w) sum[w] = seconds[w] > 0.0 ? std::sqrt(sum[w] / seconds[w]) : 0.0;
@@ -32,20 +33,21 @@ bool same_movers(const ActivitySpan& a, const ActivitySpan& b) {
   return std::ranges::equal(a.sensors, b.sensors, {}, &SensorActivity::moves, &SensorActivity::moves);
 }
 
-/// Joins `next` to `span`: mean squares weighted by time.
+/// Merges `next` into `span`: mean squares weighted by time.
 void join(ActivitySpan& span, const ActivitySpan& next) {
   const double before = span.end - span.begin, after = next.end - next.begin;
   for (std::size_t i = 0; i < span.sensors.size(); ++i) {
-    double& rate = span.sensors[i].rms_rate;
+    double& angular_velocity = span.sensors[i].rms_rate;
     const double other = next.sensors[i].rms_rate;
-    rate = std::sqrt((before * rate * rate + after * other * other) / (before + after));
+    angular_velocity =
+        std::sqrt((before * angular_velocity * angular_velocity + after * other * other) / (before + after));
   }
   span.end = next.end;
 }
 
 }  // namespace
 
-std::vector<ActivitySpan> activity(const InsRecording& recording, const ActivityOptions& options) {
+std::vector<ActivitySpan> detect_activity(const InsRecording& recording, const ActivityOptions& options) {
   KINFER_EXPECT(recording.loggers.size() == 1, "{} loggers", recording.loggers.size());
   const auto& time = recording.loggers.front().time;
   if (time.size() < 2) return {};

@@ -1,4 +1,5 @@
-// How far the clocks of two loggers are apart, from how much their sensors turn: segments of one machine move together.
+// SPDX-License-Identifier: Apache-2.0
+// Clock offset between two loggers from the angular speed of their sensors: segments of one machine move together.
 #pragma once
 
 #include "kinfer/measurement/ins_recording.hpp"
@@ -6,13 +7,13 @@
 namespace kinfer {
 
 struct ClockOffset {
-  double seconds = 0.0;      ///< to add to the other logger's times so that they are those of the reference
-  double correlation = 0.0;  ///< of the two best matching sensors' rates, 0 .. 1; below 0.5 do not trust it
+  double seconds = 0.0;      ///< to be added to the other logger's times to obtain the reference's
+  double correlation = 0.0;  ///< of the two best matching sensors, 0 .. 1; unreliable below 0.5
 };
 
-/// By the lag at which the size of the angular rate of any sensor of one logger correlates best with that of any sensor
-/// of the other: all lags with 10 s of overlap at 2 Hz first, then near the best at 50 Hz, then the vertex of a
-/// parabola. Good to a few milliseconds where the same turns are seen by both.
-ClockOffset clock_offset(const InsRecording& recording, std::size_t reference, std::size_t other);
+/// The lag at which the magnitude of the angular rate of any sensor of one logger correlates best with that of any
+/// sensor of the other: first all lags with at least 10 s of overlap at 2 Hz, then those near the best at 50 Hz, then
+/// the vertex of a parabola. Accurate to a few milliseconds where both see the same rotations.
+ClockOffset estimate_clock_offset(const InsRecording& recording, std::size_t reference, std::size_t other);
 
 }  // namespace kinfer

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/inertial/gaussian_smoothing.hpp"
 
 #include <algorithm>
@@ -8,8 +9,8 @@
 namespace kinfer {
 namespace {
 
-constexpr double least_width = 1.2;   // [periods] below it sampling folds what is above half the sampling rate back
-constexpr double kernel_reach = 4.5;  // [sigma] where the Gaussian has fallen to 4e-5
+constexpr double min_width = 1.2;     // [periods] a narrower kernel would alias above half the sampling rate
+constexpr double kernel_reach = 4.5;  // [sigma] where the Gaussian has decayed to 4e-5
 
 std::vector<double> convolved(std::span<const double> signal, std::span<const double> weights, int half) {
   const auto n = static_cast<int>(signal.size());
@@ -28,7 +29,7 @@ std::vector<double> convolved(std::span<const double> signal, std::span<const do
 
 GaussianKernel gaussian_kernel(double sigma, double period) {
   KINFER_EXPECT(sigma >= 0.0 && period > 0.0, "sigma {}, period {}", sigma, period);
-  const double width = std::max(sigma / period, least_width);
+  const double width = std::max(sigma / period, min_width);
   GaussianKernel kernel{.half = static_cast<int>(std::ceil(kernel_reach * width)), .smooth = {}, .derivative = {}};
   double sum = 0.0, slope = 0.0;
   for (int k = -kernel.half; k <= kernel.half; ++k) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/inertial/headings.hpp"
 
 #include <algorithm>
@@ -8,9 +9,9 @@
 namespace kinfer {
 namespace {
 
-constexpr double largest_bias = 0.09;  // [rad/s] (5 °/s) an axis: three times what cheap gyros have
+constexpr double max_gyro_bias = 0.09;  // [rad/s] (5 °/s) per axis: three times the bias of cheap gyros
 
-/// Circular mean of the heading of `to` against `from`; both as close to upright as gravity makes them.
+/// Circular mean of the heading of `to` relative to `from`; both levelled by gravity.
 double mean_heading(const std::vector<Mat3>& to, const std::vector<Mat3>& from) {
   double sine = 0.0, cosine = 0.0;
   for (std::size_t row = 0; row < to.size(); ++row) {
@@ -23,11 +24,11 @@ double mean_heading(const std::vector<Mat3>& to, const std::vector<Mat3>& from) 
 
 }  // namespace
 
-void turn(SegmentMotion& segment, std::span<const double> time, const HeadingLine& heading) {
+void turn(SegmentMotion& segment, std::span<const double> time, const LinearHeading& heading) {
   for (std::size_t row = 0; row < time.size(); ++row) {
     const Mat3 about_up = rot_z(heading.at(time[row]));
     segment.rotation[row] = about_up * segment.rotation[row];
-    for (auto* vectors : {&segment.rate, &segment.rate_change, &segment.acceleration})
+    for (auto* vectors : {&segment.angular_velocity, &segment.angular_acceleration, &segment.acceleration})
       (*vectors)[row] = about_up * (*vectors)[row];
   }
 }
@@ -36,19 +37,20 @@ bool all_have_magnetometers(const InsRecording& recording) {
   return std::ranges::all_of(recording.sensors, [](const InsSensor& sensor) { return sensor.has_magnetometer(); });
 }
 
-Result<RecordedMotion> gyro_motion(const InsRecording& recording, const SegmentMotionOptions& options, int threads) {
-  SegmentMotionOptions by_gyros = options;
-  by_gyros.filter = without_magnetometer(options.filter);
-  if (auto* offline = std::get_if<KinferOfflineOptions>(&by_gyros.filter)) {
-    // A bias that is not found here, no heading will mend: the rest at the start has to count whatever it reads.
-    offline->filter.rest.largest_bias = largest_bias;
-    offline->filter.bias_sd = largest_bias / 5.0;
+Result<RecordedMotion> gyro_based_motion(const InsRecording& recording, const SegmentMotionOptions& options,
+                                         int threads) {
+  SegmentMotionOptions without_field = options;
+  without_field.filter = without_magnetometer(options.filter);
+  if (auto* offline = std::get_if<KinferOfflineOptions>(&without_field.filter)) {
+    // A bias missed here cannot be compensated by a constant heading: the initial rest must count at any bias.
+    offline->filter.rest.max_gyro_bias = max_gyro_bias;
+    offline->filter.bias_sd = max_gyro_bias / 5.0;
   }
-  KINFER_TRY(motion, segment_motion(recording, by_gyros, threads));
+  KINFER_TRY(motion, segment_motion(recording, without_field, threads));
   parallel_for(motion.segments.size(), threads, [&](std::size_t i) {
     if (!recording.sensors[i].has_magnetometer()) return;
-    const auto pointing = segment_rotations(motion, recording, recording.sensors[i], options);
-    turn(motion.segments[i], motion.time, {.angle = mean_heading(pointing, motion.segments[i].rotation)});
+    const auto north_aligned = segment_rotations(motion, recording, recording.sensors[i], options);
+    turn(motion.segments[i], motion.time, {.angle = mean_heading(north_aligned, motion.segments[i].rotation)});
   });
   return motion;
 }

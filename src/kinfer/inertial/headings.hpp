@@ -1,13 +1,15 @@
-// Headings that no steel bends: orientations from gyros and gravity alone, each segment's heading a constant that its
-// magnetometer tells on the whole; what remains is left to whoever knows how the segments hang together.
+// SPDX-License-Identifier: Apache-2.0
+// Headings that are robust to magnetic disturbances: orientations from gyro and gravity alone, with one constant
+// heading per segment taken from its magnetometer over the whole recording. Residual heading errors are removed later,
+// once the joints between the segments are known.
 #pragma once
 
 #include "kinfer/inertial/segment_motion.hpp"
 
 namespace kinfer {
 
-/// A heading over time.
-struct HeadingLine {
+/// A heading that drifts linearly with time.
+struct LinearHeading {
   double angle = 0.0;   ///< [rad] at `middle`
   double drift = 0.0;   ///< [rad/s]
   double middle = 0.0;  ///< [s]
@@ -15,15 +17,15 @@ struct HeadingLine {
   double at(double time) const { return angle + drift * (time - middle); }
 };
 
-/// Turns all that is in the ground about up.
-void turn(SegmentMotion& segment, std::span<const double> time, const HeadingLine& heading);
+/// Rotates everything expressed in the world about the vertical.
+void turn(SegmentMotion& segment, std::span<const double> time, const LinearHeading& heading);
 
-/// segment_motion with orientations that leave the magnetometers alone, and each segment turned by one constant so that
-/// it points, over the whole recording, where its magnetometer says (north), if it has one.
-Result<RecordedMotion> gyro_motion(const InsRecording& recording, const SegmentMotionOptions& options = {},
-                                   int threads = 0);
+/// segment_motion with orientations that ignore the magnetometers; a segment with a magnetometer is then rotated by one
+/// constant heading to agree with it (north) on average over the recording.
+Result<RecordedMotion> gyro_based_motion(const InsRecording& recording, const SegmentMotionOptions& options = {},
+                                         int threads = 0);
 
-/// Whether every sensor has a magnetometer, so that headings can be compared at all.
+/// Whether every sensor has a magnetometer, so that headings are comparable.
 bool all_have_magnetometers(const InsRecording& recording);
 
 }  // namespace kinfer

@@ -1,4 +1,5 @@
-// Relative motion between the INS on two neighbouring segments: the terminals that a chain's variables may be.
+// SPDX-License-Identifier: Apache-2.0
+// Relative motion between the INS of two neighbouring segments: candidates for the joint variables of a chain.
 #pragma once
 
 #include <string>
@@ -9,39 +10,39 @@
 
 namespace kinfer {
 
-/// A candidate for a joint's variable, one entry a row of the common clock.
+/// A candidate for a joint variable, one entry per row of the common clock.
 struct JointSignal {
-  std::string name;                 ///< "psi", "q"
-  std::vector<double> angle;        ///< [rad], continuous
-  std::vector<double> rate;         ///< [rad/s], smoothed
-  std::vector<double> rate_change;  ///< [rad/s²], smoothed
+  std::string name;                          ///< "psi", "q"
+  std::vector<double> angle;                 ///< [rad], continuous
+  std::vector<double> angular_velocity;      ///< [rad/s], smoothed
+  std::vector<double> angular_acceleration;  ///< [rad/s²], smoothed
 };
 
-enum class Terminals {
-  euler,  ///< eqs. (18), (19) of paper 1: differences of roll, pitch and yaw; joint angles only for sensors mounted
-          ///< square
-  hinge   ///< the turn of the relative rotation about the axis that the relative rate points along
+enum class JointVariableKind {
+  euler,  ///< eqs. (18), (19) of paper 1: differences of roll, pitch and yaw; these are joint angles only if the
+          ///< sensors are aligned with the joint axes
+  hinge   ///< angle of the relative rotation about the principal axis of the relative angular velocity
 };
 
 struct JointSignalOptions {
-  Terminals terminals = Terminals::hinge;
-  double smoothing = 0.02;         ///< [s] as that of the accelerations
-  double least_excitation = 0.05;  ///< of the largest signal's standard deviation: less excited signals are not offered
-  double least_turn = 0.02;        ///< [rad] standard deviation: less is no turn at all
+  JointVariableKind terminals = JointVariableKind::hinge;
+  double smoothing = 0.02;       ///< [s] as for the accelerations
+  double min_excitation = 0.05;  ///< fraction of the largest signal's standard deviation; weaker signals are dropped
+  double min_rotation = 0.02;    ///< [rad] standard deviation below which a signal counts as no rotation
 };
 
-/// The signals between two segments that are excited; empty where they do not turn against each other.
-std::vector<JointSignal> joint_signals(const RecordedMotion& motion, std::size_t parent, std::size_t child,
-                                       const JointSignalOptions& options = {});
+/// The excited signals between two segments; empty if the segments do not rotate relative to each other.
+std::vector<JointSignal> find_joint_signals(const RecordedMotion& motion, std::size_t parent, std::size_t child,
+                                            const JointSignalOptions& options = {});
 
-/// Roll, pitch, yaw (ZYX) of ground_R_sensor: phi = atan2(R32, R33), theta = -asin R31, psi = atan2(R21, R11). Eq. (23)
+/// Roll, pitch, yaw (ZYX) of world_R_sensor: phi = atan2(R32, R33), theta = -asin R31, psi = atan2(R21, R11). Eq. (23)
 /// of paper 1 holds for the transposed matrix, and (23a) misprints R33.
-Vec3 euler_angles(const Mat3& ground_R_sensor);
+Vec3 euler_angles(const Mat3& world_R_sensor);
 
-/// The two readings of one rotation in roll, pitch, yaw: (phi, theta, psi) and (phi + pi, pi - theta, psi + pi).
-Vec3 other_euler_angles(const Vec3& angles);
+/// The second Euler representation of a rotation: (phi, theta, psi) -> (phi + pi, pi - theta, psi + pi).
+Vec3 alternative_euler_angles(const Vec3& angles);
 
-/// Difference of two angles in (−pi, pi].
-double wrapped(double angle);
+/// An angle wrapped to [−pi, pi].
+double wrap_to_pi(double angle);
 
 }  // namespace kinfer

@@ -1,4 +1,5 @@
-// First-order low pass whose first seconds are a plain mean: it has no start-up transient to wait for.
+// SPDX-License-Identifier: Apache-2.0
+// First-order low pass that starts as a cumulative mean and so has no start-up transient.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +9,9 @@ namespace kinfer {
 template <class Value>
 struct LowPass {
   Value value{};
-  double age = 0.0;  ///< [s] since the first number
+  double age = 0.0;  ///< [s] since the first value
 
-  /// Takes a number that stands for `dt` seconds; `time_constant` in seconds. First-order hold of 1 - exp(-dt/tau).
+  /// Adds a value that covers `dt` [s]; `time_constant` in [s]. The gain approximates 1 - exp(-dt/tau).
   void add(const Value& next, double dt, double time_constant) {
     age += dt;
     const double gain = std::max(dt / (time_constant + dt), dt / age);

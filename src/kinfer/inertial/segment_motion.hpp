@@ -1,53 +1,54 @@
-// How each segment moved, as its INS tells: orientation from a filter, rates from the gyro, accelerations from specific
-// force turned to the ground and freed of gravity; all on one clock, all through the same smoothing.
+// SPDX-License-Identifier: Apache-2.0
+// Motion of each segment from its INS: orientation from a filter, angular velocity from the gyro, acceleration from
+// specific force transformed to the world minus gravity; all on one clock and with the same smoothing.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/inertial/orientation.hpp"
+#include "kinfer/inertial/filters/orientation.hpp"
 
 namespace kinfer {
 
-/// One entry a row of the common clock. Ground: x east, y north, z up.
+/// One entry per row of the common clock. World: x east, y north, z up.
 struct SegmentMotion {
-  std::string name;                ///< of the sensor
-  std::vector<Mat3> rotation;      ///< ground_R_sensor
-  std::vector<Vec3> gyro;          ///< [rad/s] in the sensor, its errors as far as known taken off, not smoothed
-  std::vector<Vec3> rate;          ///< [rad/s] in the ground
-  std::vector<Vec3> rate_change;   ///< [rad/s²] in the ground
-  std::vector<Vec3> acceleration;  ///< [m/s²] in the ground, eq. (26) of paper 1 less gravity
-  bool still = false;              ///< never moved: rotation is constant, rates and acceleration are zero
+  std::string name;                        ///< name of the sensor
+  std::vector<Mat3> rotation;              ///< world_R_sensor
+  std::vector<Vec3> gyro;                  ///< [rad/s] in the sensor, corrected for known gyro errors, not smoothed
+  std::vector<Vec3> angular_velocity;      ///< [rad/s] angular velocity in the world
+  std::vector<Vec3> angular_acceleration;  ///< [rad/s²] angular acceleration in the world
+  std::vector<Vec3> acceleration;          ///< [m/s²] in the world, eq. (26) of paper 1 minus gravity
+  bool still = false;                      ///< never moved: constant rotation, zero velocity and acceleration
 };
 
 struct RecordedMotion {
   std::vector<double> time;             ///< [s] equally spaced
   double period = 0.0;                  ///< [s]
   std::vector<SegmentMotion> segments;  ///< in the order of the recording's sensors
-  std::vector<bool> usable;             ///< rows at which every sensor has sound readings within the smoothing's reach
-  std::size_t first_motion = 0;         ///< row at which the first segment begins to move
+  std::vector<bool> usable;             ///< rows where all sensors have valid measurements within the smoothing kernel
+  std::size_t first_motion_row = 0;     ///< row at which the first segment starts to move
 
   std::size_t rows() const { return time.size(); }
 };
 
-/// Names of the segments' sensors, in their order.
+/// Names of the segments' sensors, in order.
 std::vector<std::string> segment_names(const RecordedMotion& motion);
 
 struct SegmentMotionOptions {
   FilterOptions filter = KinferOfflineOptions{};
-  double smoothing = 0.02;           ///< [s] standard deviation of the Gaussian; wider damps noise and fast motion
-  double still_rate = 0.02;          ///< [rad/s] rms, smoothed: a sensor that never turns faster may stand still
-  double still_acceleration = 0.15;  ///< [m/s²] rms, smoothed: nor is accelerated more
-  double gravity = 9.81;             ///< [m/s²]
+  double smoothing = 0.02;        ///< [s] standard deviation of the Gaussian; wider attenuates noise and fast motion
+  double stationary_rate = 0.02;  ///< [rad/s] smoothed rms below which a sensor may be stationary
+  double stationary_acceleration = 0.15;  ///< [m/s²] smoothed rms, likewise; both must hold
+  double gravity = 9.81;                  ///< [m/s²]
 };
 
-/// All sensors on the first sensor's clock. An error where there are fewer than two sensors, or a sensor has no usable
-/// rates or specific forces. Loggers are taken as synchronous.
+/// All sensors on the first sensor's clock. An error if there are fewer than two sensors, or a sensor has no usable
+/// rates or specific forces. Loggers are assumed to be synchronous.
 Result<RecordedMotion> segment_motion(const InsRecording& recording, const SegmentMotionOptions& options = {},
                                       int threads = 0);
 
-/// ground_R_sensor on the motion's clock as the options' filter has it.
+/// world_R_sensor on the motion's clock, from the filter of the options.
 std::vector<Mat3> segment_rotations(const RecordedMotion& motion, const InsRecording& recording,
                                     const InsSensor& sensor, const SegmentMotionOptions& options);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/inertial/sensor_clocks.hpp"
 
 #include <algorithm>
@@ -17,18 +18,18 @@ namespace {
 using Index = Eigen::Index;
 using Products = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;  // one row a tick
 
-constexpr std::size_t most_windows = 12;
-constexpr double least_agreement = 0.15;  // [nats] mutual information of two sensors that move together
+constexpr std::size_t max_windows = 12;
+constexpr double min_agreement = 0.15;  // [nats] least mutual information of two sensors that move together
 
-/// Ticks that all sensors share after the loggers were aligned as wholes.
+/// Common sampling instants of all sensors after the loggers have been aligned.
 struct Ticks {
   double begin = 0.0, period = 0.0;
   Index count = 0;
 };
 
-/// ω_i ω_k of a sensor at the ticks, missing readings bridged by straight lines.
+/// ω_i ω_k of a sensor at the ticks, missing measurements interpolated linearly.
 Products products_of(const InsSensor& sensor, std::span<const double> time, double shift, const Ticks& ticks) {
-  const Vec3 bias = bias_at_rest(rests(sensor, time)).mean;
+  const Vec3 bias = bias_at_rest(rest_periods(sensor, time)).mean;
   Products products(ticks.count, 6);
   Vec3 before = Vec3::Zero(), after = Vec3::Zero();
   double time_before = -1e300, time_after = -1e300;
@@ -37,9 +38,9 @@ Products products_of(const InsSensor& sensor, std::span<const double> time, doub
     const double tick = ticks.begin + ticks.period * static_cast<double>(i);
     while (time_after < tick && row < time.size()) {
       const InsSample s = sample(sensor, time, row++);
-      if (!s.has_rate) continue;
+      if (!s.has_angular_velocity) continue;
       time_before = std::exchange(time_after, s.time + shift);
-      before = std::exchange(after, Vec3(s.rate - bias));
+      before = std::exchange(after, Vec3(s.angular_velocity - bias));
       if (time_before < -1e299) before = after;
     }
     const double span = time_after - time_before;
@@ -50,8 +51,8 @@ Products products_of(const InsSensor& sensor, std::span<const double> time, doub
   return products;
 }
 
-/// A window of one sensor's products, centred, uncorrelated and of unit variance; directions that do not move are left
-/// out. Nothing where it does not move at all.
+/// A window of one sensor's products, centred and whitened; directions without excitation are dropped. nullopt if there
+/// is no excitation at all.
 std::optional<MatrixXd> whitened(const Products& products, Index first, Index count) {
   if (first < 0 || first + count > products.rows()) return std::nullopt;
   MatrixXd x = products.middleRows(first, count);
@@ -65,24 +66,24 @@ std::optional<MatrixXd> whitened(const Products& products, Index first, Index co
   return x * spread.vectors.rightCols(kept) * scale.asDiagonal();
 }
 
-/// ρ² of the best pair of forms. Near its top it is a parabola of the lag; its logarithm is a cusp.
+/// ρ² of the best pair of forms. Near its maximum it is a parabola in the lag, whereas its logarithm has a cusp.
 double squared_correlation(const MatrixXd& a, const MatrixXd& b) {
   const MatrixXd mixed = a.transpose() * b / static_cast<double>(a.rows());
   return symmetric_eigen(mixed * mixed.transpose()).values.tail<1>()[0];
 }
 
-/// Mutual information [nats] of the forms, were they Gaussian.
-double information(double square) {
+/// Mutual information [nats] of the forms, assuming Gaussian distributions.
+double mutual_information(double square) {
   return -0.5 * std::log(1.0 - std::min(square, 1.0 - 1e-12));
 }
 
 struct Lag {
-  double seconds = 0.0;    ///< to add to the second sensor's times
-  double agreement = 0.0;  ///< [nats] there
+  double seconds = 0.0;    ///< to be added to the second sensor's times
+  double agreement = 0.0;  ///< [nats] at this lag
   bool found = false;
 };
 
-/// Compares `count` ticks from `first` on of a with those of b around `middle` ticks later or earlier.
+/// Compares `count` ticks of a, starting at `first`, with those of b shifted by `middle` ± `reach` ticks.
 Lag best_lag(const Products& a, const Products& b, Index first, Index count, Index middle, Index reach, double period) {
   const auto fixed = whitened(a, first, count);
   if (!fixed) return {};
@@ -97,25 +98,26 @@ Lag best_lag(const Products& a, const Products& b, Index first, Index count, Ind
   const double bend = at[k - 1] - 2.0 * at[k] + at[k + 1];
   const double vertex = bend < 0.0 ? 0.5 * (at[k - 1] - at[k + 1]) / bend : 0.0;
   return {.seconds = (static_cast<double>(middle - reach + best) + std::clamp(vertex, -1.0, 1.0)) * period,
-          .agreement = information(at[k]),
-          .found = information(at[k]) > least_agreement};
+          .agreement = mutual_information(at[k]),
+          .found = mutual_information(at[k]) > min_agreement};
 }
 
-struct Comparison {
+struct PairLag {
   std::size_t first = 0, second = 0;
   Lag lag;
 };
 
-class Comparing {
+class ClockComparison {
  public:
-  Comparing(const InsRecording& recording, const ClockOptions& options, int threads)
+  ClockComparison(const InsRecording& recording, const ClockOptions& options, int threads)
       : recording_(recording), options_(options), threads_(threads) {
     for (std::size_t logger = 0; logger < recording.loggers.size(); ++logger) shift_.push_back(shift_of(logger));
     const auto begin = [&](std::size_t l) { return recording.loggers[l].time.front() + shift_[l]; };
     const auto end = [&](std::size_t l) { return recording.loggers[l].time.back() + shift_[l]; };
     double first = begin(0), last = end(0);
     for (std::size_t l = 1; l < shift_.size(); ++l) first = std::max(first, begin(l)), last = std::min(last, end(l));
-    ticks_ = {first, 1.0 / options.rate, std::max<Index>(0, static_cast<Index>((last - first) * options.rate))};
+    ticks_ = {first, 1.0 / options.sampling_rate,
+              std::max<Index>(0, static_cast<Index>((last - first) * options.sampling_rate))};
     products_.resize(recording.sensors.size());
     parallel_for(products_.size(), threads, [&](std::size_t s) {
       const InsSensor& sensor = recording.sensors[s];
@@ -123,34 +125,34 @@ class Comparing {
     });
   }
 
-  Index reach() const { return static_cast<Index>(std::ceil(options_.largest_offset / ticks_.period)); }
+  Index reach() const { return static_cast<Index>(std::ceil(options_.max_offset / ticks_.period)); }
   double shift(std::size_t sensor) const { return shift_[recording_.sensors[sensor].logger]; }
   double length() const { return ticks_.period * static_cast<double>(ticks_.count); }
   double middle() const { return ticks_.begin + 0.5 * length(); }
 
-  /// All pairs over the stretch in which the machine turns most.
-  std::vector<Comparison> all_pairs() const {
-    std::vector<Comparison> pairs;
+  /// All pairs, over the time window with the most rotation.
+  std::vector<PairLag> compare_all_pairs() const {
+    std::vector<PairLag> pairs;
     for (std::size_t i = 0; i < products_.size(); ++i)
       for (std::size_t j = i + 1; j < products_.size(); ++j) pairs.push_back({i, j, {}});
-    const Index count = window_count(), first = liveliest(count);
+    const Index count = window_count(), first = most_active_window(count);
     parallel_for(pairs.size(), threads_,
-                 [&](std::size_t p) { pairs[p].lag = compared(pairs[p].first, pairs[p].second, first, count, 0); });
+                 [&](std::size_t p) { pairs[p].lag = compare(pairs[p].first, pairs[p].second, first, count, 0); });
     return pairs;
   }
 
-  /// Offset at the middle and drift of a pair from windows all over the recording (Theil 1950, Sen 1968).
-  ClockCorrection line(const Comparison& pair) const {
+  /// Offset at the middle and drift of a pair from windows over the whole recording (Theil 1950, Sen 1968).
+  ClockCorrection line(const PairLag& pair) const {
     const ClockCorrection constant{.offset = pair.lag.seconds, .drift = 0.0, .middle = middle()};
-    if (length() < options_.least_drift_span) return constant;
+    if (length() < options_.min_drift_duration) return constant;
     const Index count = window_count();
-    const auto windows = std::min<std::size_t>(most_windows, static_cast<std::size_t>(ticks_.count / count));
+    const auto windows = std::min<std::size_t>(max_windows, static_cast<std::size_t>(ticks_.count / count));
     std::vector<double> at, offset;
     for (std::size_t w = 0; w < windows; ++w) {
       const auto first = static_cast<Index>(static_cast<double>(ticks_.count - count) * static_cast<double>(w) /
                                             static_cast<double>(std::max<std::size_t>(1, windows - 1)));
-      const Lag lag = compared(pair.first, pair.second, first, count,
-                               static_cast<Index>(std::round(pair.lag.seconds / ticks_.period)));
+      const Lag lag = compare(pair.first, pair.second, first, count,
+                              static_cast<Index>(std::round(pair.lag.seconds / ticks_.period)));
       if (!lag.found) continue;
       at.push_back(ticks_.begin + ticks_.period * (static_cast<double>(first) + 0.5 * static_cast<double>(count)));
       offset.push_back(lag.seconds);
@@ -166,11 +168,11 @@ class Comparing {
   }
 
  private:
-  /// Of a whole logger to the first, where that can be told.
+  /// Shift of a logger to the first one: by correlation if reliable, else by equal start times.
   double shift_of(std::size_t logger) const {
     if (logger == 0) return 0.0;
     constexpr double trusted = 0.3;
-    const ClockOffset offset = clock_offset(recording_, 0, logger);
+    const ClockOffset offset = estimate_clock_offset(recording_, 0, logger);
     return offset.correlation > trusted ? offset.seconds
                                         : recording_.loggers[0].time.front() - recording_.loggers[logger].time.front();
   }
@@ -180,14 +182,14 @@ class Comparing {
                     std::max<Index>(0, ticks_.count - 2 * reach()));
   }
 
-  Lag compared(std::size_t a, std::size_t b, Index first, Index count, Index middle) const {
+  Lag compare(std::size_t a, std::size_t b, Index first, Index count, Index middle) const {
     if (count < 200) return {};
     first = std::clamp<Index>(first, std::max<Index>(0, middle + reach()),
                               std::max<Index>(0, ticks_.count - count + std::min<Index>(0, middle - reach())));
     return best_lag(products_[a], products_[b], first, count, middle, reach(), ticks_.period);
   }
 
-  Index liveliest(Index count) const {
+  Index most_active_window(Index count) const {
     VectorXd turning = VectorXd::Zero(ticks_.count);
     for (const Products& p : products_) turning += p.leftCols<3>().rowwise().sum();
     double best = -1.0;
@@ -206,12 +208,12 @@ class Comparing {
 };
 
 /// Kruskal 1956, strongest agreement first.
-std::vector<Comparison> strongest_tree(std::vector<Comparison> pairs, std::size_t sensors) {
-  std::ranges::stable_sort(pairs, std::greater{}, [](const Comparison& c) { return c.lag.agreement; });
+std::vector<PairLag> maximum_spanning_tree(std::vector<PairLag> pairs, std::size_t sensors) {
+  std::ranges::stable_sort(pairs, std::greater{}, [](const PairLag& c) { return c.lag.agreement; });
   std::vector<std::size_t> group(sensors);
   std::iota(group.begin(), group.end(), std::size_t{0});
-  std::vector<Comparison> tree;
-  for (const Comparison& pair : pairs) {
+  std::vector<PairLag> tree;
+  for (const PairLag& pair : pairs) {
     const std::size_t from = group[pair.second], to = group[pair.first];
     if (!pair.lag.found || from == to) continue;
     tree.push_back(pair);
@@ -220,12 +222,12 @@ std::vector<Comparison> strongest_tree(std::vector<Comparison> pairs, std::size_
   return tree;
 }
 
-std::size_t reference_of(const InsRecording& recording, const std::vector<Comparison>& tree) {
+std::size_t choose_reference(const InsRecording& recording, const std::vector<PairLag>& tree) {
   std::size_t best = 0;
   double strongest = -1.0;
   for (std::size_t s = 0; s < recording.sensors.size(); ++s) {
     double sum = 0.0;
-    for (const Comparison& pair : tree)
+    for (const PairLag& pair : tree)
       if (pair.first == s || pair.second == s) sum += pair.lag.agreement;
     if (recording.sensors[s].logger == 0 && sum > strongest) best = s, strongest = sum;
   }
@@ -234,27 +236,28 @@ std::size_t reference_of(const InsRecording& recording, const std::vector<Compar
 
 }  // namespace
 
-std::vector<ClockEstimate> sensor_clocks(const InsRecording& recording, const ClockOptions& options, int threads) {
-  const Comparing comparing(recording, options, threads);
-  const std::vector<Comparison> tree = strongest_tree(comparing.all_pairs(), recording.sensors.size());
+std::vector<ClockEstimate> estimate_sensor_clocks(const InsRecording& recording, const ClockOptions& options,
+                                                  int threads) {
+  const ClockComparison comparison(recording, options, threads);
+  const std::vector<PairLag> tree = maximum_spanning_tree(comparison.compare_all_pairs(), recording.sensors.size());
   std::vector<ClockEstimate> clocks(recording.sensors.size());
   for (std::size_t s = 0; s < clocks.size(); ++s) {
-    clocks[s].correction.middle = comparing.middle() - comparing.shift(s);
-    clocks[s].correction.offset = comparing.shift(s);
+    clocks[s].correction.middle = comparison.middle() - comparison.shift(s);
+    clocks[s].correction.offset = comparison.shift(s);
   }
-  std::vector<std::size_t> reached{reference_of(recording, tree)};
+  std::vector<std::size_t> reached{choose_reference(recording, tree)};
   clocks[reached.front()].known = true;
   for (std::size_t next = 0; next < reached.size(); ++next)
-    for (const Comparison& pair : tree) {
+    for (const PairLag& pair : tree) {
       const std::size_t at = reached[next];
       if (pair.first != at && pair.second != at) continue;
       const std::size_t other = pair.first == at ? pair.second : pair.first;
       if (clocks[other].known) continue;
-      const ClockCorrection line = comparing.line(pair);
+      const ClockCorrection line = comparison.line(pair);
       const double sign = pair.second == other ? 1.0 : -1.0;
       ClockCorrection& correction = clocks[other].correction;
       correction.offset =
-          comparing.shift(other) + clocks[at].correction.offset - comparing.shift(at) + sign * line.offset;
+          comparison.shift(other) + clocks[at].correction.offset - comparison.shift(at) + sign * line.offset;
       correction.drift = clocks[at].correction.drift + sign * line.drift;
       clocks[other].known = true;
       reached.push_back(other);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/kinematics/chain.hpp"
 
 #include <algorithm>
@@ -8,10 +9,10 @@
 namespace kinfer {
 namespace {
 
-constexpr double unit_length_slack = 1e-9;  // an axis read from a file and normalised is closer than this
+constexpr double unit_length_slack = 1e-9;  // axes read from a file and normalised are within this
 
-bool has_reading(const Joint& joint) {
-  return joint.has_reading && joint.type != JointType::fixed;
+bool is_active(const Joint& joint) {
+  return joint.is_active && joint.type != JointType::fixed;
 }
 
 void fold(Frame& frame) {
@@ -20,19 +21,19 @@ void fold(Frame& frame) {
 
 }  // namespace
 
-std::vector<int> joints_with_reading(const Chain& chain) {
+std::vector<int> active_joints(const Chain& chain) {
   std::vector<int> joints;
   for (int j = 0; j < static_cast<int>(chain.joints.size()); ++j) {
-    if (has_reading(chain.joints[j])) joints.push_back(j);
+    if (is_active(chain.joints[j])) joints.push_back(j);
   }
   return joints;
 }
 
 int dof(const Chain& chain) {
-  return static_cast<int>(std::count_if(chain.joints.begin(), chain.joints.end(), has_reading));
+  return static_cast<int>(std::count_if(chain.joints.begin(), chain.joints.end(), is_active));
 }
 
-Chain mounted(const Chain& chain, int index) {
+Chain with_mounting(const Chain& chain, int index) {
   Chain result = chain;
   if (index < 0) return result;
   const RobotMounting& mounting = chain.mountings[index];
@@ -49,9 +50,9 @@ std::vector<int> path_to(const Chain& chain, int tip) {
   return path;
 }
 
-std::vector<std::string> reading_names(const Chain& chain) {
+std::vector<std::string> active_joint_names(const Chain& chain) {
   std::vector<std::string> names;
-  for (const int j : joints_with_reading(chain)) names.push_back(chain.joints[j].name);
+  for (const int j : active_joints(chain)) names.push_back(chain.joints[j].name);
   return names;
 }
 
@@ -62,7 +63,7 @@ void expect_well_formed(const Chain& chain) {
     const Joint& joint = chain.joints[j];
     KINFER_EXPECT(joint.parent >= -1 && joint.parent < j, "parent {} of joint {}", joint.parent, j);
     for (const Coupling& c : joint.couplings) {
-      KINFER_EXPECT(c.joint >= 0 && c.joint < n && has_reading(chain.joints[c.joint]), "joint {} coupled to {}", j,
+      KINFER_EXPECT(c.joint >= 0 && c.joint < n && is_active(chain.joints[c.joint]), "joint {} coupled to {}", j,
                     c.joint);
     }
     if (const auto* link = std::get_if<UrdfLink>(&joint.link)) {
@@ -77,7 +78,7 @@ void expect_well_formed(const Chain& chain) {
   }
 }
 
-Chain with_turns_folded(Chain chain) {
+Chain with_small_rotations_folded(Chain chain) {
   fold(chain.base);
   fold(chain.tool);
   for (Joint& joint : chain.joints) {
@@ -87,9 +88,9 @@ Chain with_turns_folded(Chain chain) {
     if (mounting.base) fold(*mounting.base);
     fold(mounting.tool);
   }
-  for (Plane& plane : chain.surroundings.planes) {
-    plane.rotation *= rot_x(plane.turn.x()) * rot_y(plane.turn.y());
-    plane.turn.setZero();
+  for (Plane& plane : chain.fixtures.planes) {
+    plane.rotation *= rot_x(plane.small_rotation.x()) * rot_y(plane.small_rotation.y());
+    plane.small_rotation.setZero();
   }
   return chain;
 }

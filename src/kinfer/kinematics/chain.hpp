@@ -1,10 +1,11 @@
-// What a machine is: a tree of joints from a base to a tool, each joint a product of elementary motions.
+// SPDX-License-Identifier: Apache-2.0
+// Kinematic model of a machine: a tree of joints from a base to a tool, each joint a product of elementary motions.
 //
 // Standard DH (paper 1, eq. 1): RotZ(theta) TransZ(d) TransX(a) RotX(alpha) RotY(beta)
 //
 // Modified DH (paper 2, eq. 3): RotX(alpha) TransX(a) RotY(beta) RotZ(theta) TransZ(d), with a_{i-1} and alpha_{i-1}
 //
-// URDF: Trans(xyz) R(rpy), then the motion about or along `axis`
+// URDF: Trans(xyz) R(rpy), then the joint motion about or along `axis`
 //
 // The variable of a DH row is in theta or d. beta is Hayati's angle for nearly parallel axes (Hayati, Mirmirani 1985).
 #pragma once
@@ -19,14 +20,16 @@
 
 namespace kinfer {
 
-/// A frame with a small turn that an estimate may change: full rotation = rotation · Rx(turn.x) Ry(turn.y) Rz(turn.z).
-/// Estimating the turn instead of roll, pitch, yaw avoids their singularity at pitch = ±90°.
+/// A frame with a small rotation (rx, ry, rz) that an estimate may change: full rotation = rotation · Rx(rx) Ry(ry)
+/// Rz(rz). Estimating the small rotation instead of roll, pitch, yaw avoids their singularity at pitch = ±90°.
 struct Frame {
   Vec3 xyz = Vec3::Zero();  ///< [m]
   Mat3 rotation = Mat3::Identity();
-  Vec3 turn = Vec3::Zero();  ///< [rad]
+  Vec3 small_rotation = Vec3::Zero();  ///< [rad]
 
-  Pose pose() const { return {rotation * rot_x(turn.x()) * rot_y(turn.y()) * rot_z(turn.z()), xyz}; }
+  Pose pose() const {
+    return {rotation * rot_x(small_rotation.x()) * rot_y(small_rotation.y()) * rot_z(small_rotation.z()), xyz};
+  }
   static Frame from_pose(const Pose& pose) { return {pose.position, pose.rotation, Vec3::Zero()}; }
 };
 
@@ -48,16 +51,16 @@ using Link = std::variant<DhLink, MdhLink, UrdfLink>;
 
 enum class JointType { revolute, prismatic, fixed };
 
-/// Adds factor · (reading of that joint) to this joint's variable, as belts and parallel linkages do.
+/// Adds factor · (position of that joint) to the variable of this joint, as belts and parallel linkages do.
 struct Coupling {
-  int joint = 0;  ///< index into Chain::joints of a joint that has a reading
+  int joint = 0;  ///< index into Chain::joints of an active joint
   double factor = 0.0;
 };
 
-/// variable += sine · sin(order · reading) + cosine · cos(order · reading): what comes back with every turn of an
-/// eccentric gear (orders 1 and 2) or of the motor (gear ratio times 1 and 2). Revolute joints only.
+/// variable += sine · sin(order · q) + cosine · cos(order · q): transmission error that is periodic in the rotation of
+/// an eccentric gear (orders 1 and 2) or of the motor (gear ratio times 1 and 2). Revolute joints only.
 struct Harmonic {
-  double order = 1.0;               ///< per turn of the joint
+  double order = 1.0;               ///< periods per revolution of the joint
   double sine = 0.0, cosine = 0.0;  ///< [rad]
 };
 
@@ -66,24 +69,24 @@ struct Joint {
   int parent = -1;  ///< index of the joint before it; -1: the base
   JointType type = JointType::revolute;
   Link link = MdhLink{};
-  bool has_reading = true;  ///< false: moves by its couplings only (URDF mimic), or not at all (fixed)
-  double gain = 1.0;        ///< variable = offset + gain · reading + couplings
+  bool is_active = true;  ///< false: moves by its couplings only (URDF mimic), or not at all (fixed)
+  double gain = 1.0;      ///< variable = offset + gain · q + couplings
   std::vector<Coupling> couplings{};
-  double compliance = 0.0;  ///< [rad/(N m)], revolute: variable += compliance · torque of gravity about the axis
+  double compliance = 0.0;         ///< [rad/(N m)], revolute: variable += compliance · gravity torque about the axis
   double torque_compliance = 0.0;  ///< [rad/(N m)], revolute: variable += torque_compliance · measured joint torque
-  double backlash = 0.0;           ///< [rad] or [m]: variable += backlash · sense of approach (−1, 0, 1)
+  double backlash = 0.0;           ///< [rad] or [m]: variable += backlash · direction of approach (−1, 0, 1)
   std::vector<Harmonic> harmonics{};
-  double lower = -std::numeric_limits<double>::infinity();  ///< limits of the reading, [rad] or [m]
+  double lower = -std::numeric_limits<double>::infinity();  ///< limits of the joint position q, [rad] or [m]
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// A named point: a further target on the tool, in the tool's frame, or a socket in the world.
+/// A named point: a further target on the tool, in the tool frame, or a socket in the world.
 struct Target {
   std::string name{};
   Vec3 xyz = Vec3::Zero();  ///< [m]
 };
 
-/// A mass that loads the joints before it.
+/// A point mass that loads the joints before it.
 struct PointMass {
   int joint = 0;            ///< index of the joint whose frame carries it
   Vec3 com = Vec3::Zero();  ///< [m] in that frame
@@ -93,29 +96,29 @@ struct PointMass {
 /// A plane in the world: the points x with normal · x = offset.
 struct Plane {
   std::string name{};
-  Mat3 rotation = Mat3::Identity();  ///< takes z to the normal
-  Vec3 turn = Vec3::Zero();          ///< [rad] small turns about x and y that an estimate may change
-  double offset = 0.0;               ///< [m]
+  Mat3 rotation = Mat3::Identity();    ///< rotates z to the normal
+  Vec3 small_rotation = Vec3::Zero();  ///< [rad] small rotations about x and y that an estimate may change
+  double offset = 0.0;                 ///< [m]
 
-  Vec3 normal() const { return rotation * (rot_x(turn.x()) * rot_y(turn.y())).col(2); }
+  Vec3 normal() const { return rotation * (rot_x(small_rotation.x()) * rot_y(small_rotation.y())).col(2); }
 };
 
-/// What is known of the distance between two sockets.
+/// A known distance between two sockets.
 struct SocketDistance {
-  int a = 0, b = 0;       ///< indices into Surroundings::sockets
+  int a = 0, b = 0;       ///< indices into the sockets of the fixtures
   double distance = 0.0;  ///< [m]
   double sd = 0.0;        ///< [m]
 };
 
-/// Fixed things that instruments and contacts refer to.
-struct Surroundings {
+/// Fixed objects that instruments and contacts refer to.
+struct Fixtures {
   std::vector<Vec3> anchors{};    ///< [m] of draw wires, in the base frame
   std::vector<Target> sockets{};  ///< in the world
   std::vector<Plane> planes{};
   std::vector<SocketDistance> socket_distances{};
 };
 
-/// Another way in which the same robot was measured: a base and tool of its own, or another arm of a tree.
+/// A further set-up in which the same robot was measured: a base and tool of its own, or another branch of a tree.
 struct RobotMounting {
   std::string name{};
   std::optional<Frame> base{};  ///< none: the chain's
@@ -133,33 +136,33 @@ struct Chain {
   std::vector<Target> targets;
   std::vector<PointMass> masses;
   Vec3 gravity = Vec3(0, 0, -9.81);    ///< [m/s²] in the world frame
-  double expansion = 0.0;              ///< [1/K]: all lengths of the joints grow by expansion · warming
+  double expansion = 0.0;              ///< [1/K]: all lengths of the joints grow by expansion · temperature rise
   double reference_temperature = 0.0;  ///< [°C] at which the lengths are as written
-  Surroundings surroundings{};
-  std::vector<RobotMounting> mountings{};  ///< beside base and tool above
+  Fixtures fixtures{};
+  std::vector<RobotMounting> mountings{};  ///< in addition to base and tool above
 
   int tip_joint() const { return tip >= 0 ? tip : static_cast<int>(joints.size()) - 1; }
 };
 
-/// Indices of the joints that have a reading, in order: entry k is moved by reading k.
-std::vector<int> joints_with_reading(const Chain& chain);
+/// Indices of the active joints (neither fixed nor driven by couplings alone), in order: entry k is moved by q[k].
+std::vector<int> active_joints(const Chain& chain);
 
-/// Number of readings, the length of a joint vector q.
+/// Number of active joints, the length of a joint vector q.
 int dof(const Chain& chain);
 
-/// The chain as it stands in mounting `index` of its list: base, tool and tip are those of the mounting. −1: as it is.
-Chain mounted(const Chain& chain, int index);
+/// The chain in mounting `index` of its list: base, tool and tip are those of the mounting. −1: unchanged.
+Chain with_mounting(const Chain& chain, int index);
 
 /// Joint indices from the base to joint `tip`.
 std::vector<int> path_to(const Chain& chain, int tip);
 
-/// Names of the joints that have a reading, in the order of q.
-std::vector<std::string> reading_names(const Chain& chain);
+/// Names of the active joints, in the order of q.
+std::vector<std::string> active_joint_names(const Chain& chain);
 
-/// Stops (programmer's error) unless parents precede children and all indices are in range.
+/// Aborts (programming error) unless parents precede children and all indices are in range.
 void expect_well_formed(const Chain& chain);
 
-/// The chain with each frame's turn multiplied into its rotation: same poses, turn = 0.
-Chain with_turns_folded(Chain chain);
+/// The chain with the small rotation of each frame multiplied into its rotation matrix and zeroed: same poses.
+Chain with_small_rotations_folded(Chain chain);
 
 }  // namespace kinfer

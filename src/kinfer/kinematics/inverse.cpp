@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/kinematics/inverse.hpp"
 
 #include <algorithm>
@@ -10,14 +11,15 @@
 namespace kinfer {
 namespace {
 
-constexpr double first_damping = 1e-6;  // of the largest squared column; small, as starts are usually close
-constexpr double least_damping = 1e-14;
-constexpr double most_damping = 1e8;         // beyond it a step is shorter than rounding
-constexpr double longest_step = 0.5;         // [rad] or [m] of one reading: keeps to the posture of the start
-constexpr double stationary_slope = 1e-8;    // relative slope of the error below which no small change helps
+constexpr double initial_damping = 1e-6;  // of the largest squared column; small, as starts are usually close
+constexpr double min_damping = 1e-14;
+constexpr double max_damping = 1e8;          // beyond it a step is shorter than rounding
+constexpr double max_step = 0.5;             // [rad] or [m] of one joint: keeps to the posture of the start
+constexpr double stationary_slope = 1e-8;    // relative gradient of the error below which no small change helps
 constexpr double singular_condition = 1e-4;  // smallest over largest singular value of the Jacobian
-constexpr double nudge = 0.05;               // [rad] or [m] away from a posture where the slope vanishes by accident
-constexpr int nudges = 3;
+constexpr double perturbation =
+    0.05;  // [rad] or [m], moves away from a posture where the gradient vanishes by accident
+constexpr int max_perturbations = 3;
 
 struct Goal {
   Vec3 position;
@@ -30,7 +32,7 @@ struct Limits {
 };
 
 Limits limits_of(const Chain& chain) {
-  const std::vector<int> joints = joints_with_reading(chain);
+  const std::vector<int> joints = active_joints(chain);
   Limits limits{VectorXd(joints.size()), VectorXd(joints.size())};
   for (Eigen::Index k = 0; k < limits.lower.size(); ++k) {
     limits.lower[k] = chain.joints[joints[k]].lower;
@@ -39,22 +41,22 @@ Limits limits_of(const Chain& chain) {
   return limits;
 }
 
-/// What is left to go at one q: position over length-weighted angle, 3 or 6 rows.
-struct Gap {
+/// Task-space error at one q: position, then length-weighted rotation vector, 3 or 6 rows.
+struct TaskError {
   VectorXd error;
   double position = 0.0;  // [m]
   double angle = 0.0;     // [rad]
 };
 
-class Search {
+class InverseSolver {
  public:
-  Search(const Chain& chain, const Goal& goal, const InverseOptions& options, const Load& load)
+  InverseSolver(const Chain& chain, const Goal& goal, const InverseOptions& options, const Load& load)
       : chain_(chain), goal_(goal), options_(options), load_(load), limits_(limits_of(chain)) {}
 
   InverseSolution run(ConstVectorRef start) {
-    InverseSolution best = descend(limits_.clamped(start));
-    for (int k = 1; k <= nudges && best.reach == Reach::not_reachable; ++k) {
-      InverseSolution other = descend(limits_.clamped(nudged(best.q, k)));
+    InverseSolution best = iterate(limits_.clamped(start));
+    for (int k = 1; k <= max_perturbations && best.status == InverseStatus::unreachable; ++k) {
+      InverseSolution other = iterate(limits_.clamped(perturbed(best.q, k)));
       other.iterations += best.iterations;
       const double was = weighted(best), is = weighted(other);
       if (is < was) {
@@ -71,18 +73,18 @@ class Search {
     return std::hypot(s.position_error, options_.length * s.angle_error);
   }
 
-  /// The readings moved by amounts that are the same in every run and follow no symmetry of a machine.
-  static VectorXd nudged(VectorXd q, int k) {
-    for (Eigen::Index i = 0; i < q.size(); ++i) q[i] += nudge * std::sin(1.0 + 2.4 * double(i) + 1.7 * k);
+  /// q perturbed by amounts that are the same in every run and follow no symmetry of a machine.
+  static VectorXd perturbed(VectorXd q, int k) {
+    for (Eigen::Index i = 0; i < q.size(); ++i) q[i] += perturbation * std::sin(1.0 + 2.4 * double(i) + 1.7 * k);
     return q;
   }
 
-  Gap gap(const VectorXd& q) const {
+  TaskError task_error(const VectorXd& q) const {
     const Pose tool = forward(chain_, q, load_);
     const Vec3 left = goal_.position - tool.position;
     if (!goal_.rotation) return {left, left.norm(), 0.0};
     const Vec3 turn = log_so3(*goal_.rotation * tool.rotation.transpose());
-    Gap both{VectorXd(6), left.norm(), turn.norm()};
+    TaskError both{VectorXd(6), left.norm(), turn.norm()};
     both.error << left, options_.length * turn;
     return both;
   }
@@ -94,65 +96,67 @@ class Search {
     return twists;
   }
 
-  bool within_tolerance(const Gap& g) const {
+  bool within_tolerance(const TaskError& g) const {
     return g.position <= options_.position_tolerance && g.angle <= options_.angle_tolerance;
   }
 
-  /// Zeroes the columns of readings that are at a limit and wish to go beyond it; says whether there are any.
-  bool hold_at_limits(MatrixXd& j, const VectorXd& q, const VectorXd& error) const {
-    bool held = false;
-    const VectorXd wish = j.transpose() * error;
+  /// Zeroes the columns of joints at a limit whose step would leave it; returns whether there are any.
+  bool freeze_joints_at_limits(MatrixXd& j, const VectorXd& q, const VectorXd& error) const {
+    bool is_limited = false;
+    const VectorXd descent_direction = j.transpose() * error;
     for (Eigen::Index k = 0; k < q.size(); ++k) {
-      const bool beyond = (q[k] <= limits_.lower[k] && wish[k] < 0) || (q[k] >= limits_.upper[k] && wish[k] > 0);
+      const bool beyond = (q[k] <= limits_.lower[k] && descent_direction[k] < 0) ||
+                          (q[k] >= limits_.upper[k] && descent_direction[k] > 0);
       if (!beyond) continue;
       j.col(k).setZero();
-      held = true;
+      is_limited = true;
     }
-    return held;
+    return is_limited;
   }
 
   static VectorXd step(const MatrixXd& j, const VectorXd& error, double damping) {
     MatrixXd normal = j.transpose() * j;
     normal.diagonal().array() += damping * normal.diagonal().maxCoeff();
-    const std::optional<VectorXd> solved = solve_positive(normal, j.transpose() * error);
+    const std::optional<VectorXd> solved = solve_spd(normal, j.transpose() * error);
     if (!solved) return VectorXd::Zero(j.cols());
-    const double longest = solved->cwiseAbs().maxCoeff();
-    return longest > longest_step ? VectorXd(*solved * (longest_step / longest)) : *solved;
+    const double largest = solved->cwiseAbs().maxCoeff();
+    return largest > max_step ? VectorXd(*solved * (max_step / largest)) : *solved;
   }
 
-  Reach ended(const MatrixXd& j, bool stationary, bool held) const {
-    if (stationary) return held ? Reach::at_limit : Reach::not_reachable;
+  InverseStatus final_status(const MatrixXd& j, bool stationary, bool is_limited) const {
+    if (stationary) return is_limited ? InverseStatus::at_limit : InverseStatus::unreachable;
     const VectorXd s = svd(j).s;
-    return s[s.size() - 1] < singular_condition * s[0] ? Reach::near_singular : Reach::out_of_steps;
+    return s[s.size() - 1] < singular_condition * s[0] ? InverseStatus::near_singular : InverseStatus::iteration_limit;
   }
 
-  /// Levenberg-Marquardt; the damping follows how well the linear model foretold the gain (Nielsen 1999).
-  InverseSolution descend(VectorXd q) const {
-    Gap now = gap(q);
-    double damping = first_damping, growth = 2.0;
+  /// Levenberg-Marquardt; the damping follows the gain ratio (Nielsen 1999).
+  InverseSolution iterate(VectorXd q) const {
+    TaskError now = task_error(q);
+    double damping = initial_damping, growth = 2.0;
     MatrixXd full;
-    bool held = false, stationary = false;
+    bool is_limited = false, stationary = false;
     int used = 0;
     for (; used < options_.iterations && !within_tolerance(now); ++used) {
       MatrixXd j = full = weighted_jacobian(q);
-      held = hold_at_limits(j, q, now.error);
-      stationary = damping > most_damping ||
+      is_limited = freeze_joints_at_limits(j, q, now.error);
+      stationary = damping > max_damping ||
                    (j.transpose() * now.error).norm() <= stationary_slope * full.norm() * now.error.norm();
       if (stationary) break;
       const VectorXd tried = limits_.clamped(q + step(j, now.error, damping));
-      Gap then = gap(tried);
-      const double foretold = now.error.squaredNorm() - (now.error - full * (tried - q)).squaredNorm();
+      TaskError then = task_error(tried);
+      const double predicted = now.error.squaredNorm() - (now.error - full * (tried - q)).squaredNorm();
       const double gain = now.error.squaredNorm() - then.error.squaredNorm();
       if (gain > 0.0) {
-        const double trust = foretold > 0.0 ? 2.0 * std::min(gain / foretold, 1.0) - 1.0 : 0.0;
-        damping = std::max(least_damping, damping * std::max(1.0 / 3.0, 1.0 - trust * trust * trust));
+        const double trust = predicted > 0.0 ? 2.0 * std::min(gain / predicted, 1.0) - 1.0 : 0.0;
+        damping = std::max(min_damping, damping * std::max(1.0 / 3.0, 1.0 - trust * trust * trust));
         q = tried, now = std::move(then), growth = 2.0;
       } else {
         damping *= growth, growth *= 2.0;
       }
     }
-    const Reach reach = within_tolerance(now) ? Reach::reached : ended(full, stationary, held);
-    return {std::move(q), reach, now.position, now.angle, used};
+    const InverseStatus status =
+        within_tolerance(now) ? InverseStatus::reached : final_status(full, stationary, is_limited);
+    return {std::move(q), status, now.position, now.angle, used};
   }
 
   const Chain& chain_;
@@ -162,27 +166,27 @@ class Search {
   Limits limits_;
 };
 
-InverseSolution search(const Chain& chain, const Goal& goal, ConstVectorRef start, const InverseOptions& options,
-                       const Load& load) {
+InverseSolution solve_inverse(const Chain& chain, const Goal& goal, ConstVectorRef start, const InverseOptions& options,
+                              const Load& load) {
   KINFER_EXPECT(start.size() == dof(chain) && start.size() > 0, "{} readings for {} joints", start.size(), dof(chain));
   KINFER_EXPECT(options.iterations > 0 && options.length > 0.0);
-  return Search(chain, goal, options, load).run(start);
+  return InverseSolver(chain, goal, options, load).run(start);
 }
 
 }  // namespace
 
-std::string_view sentence(Reach reach) {
-  switch (reach) {
-    case Reach::reached:
+std::string_view sentence(InverseStatus status) {
+  switch (status) {
+    case InverseStatus::reached:
       return "the tool is where it should be";
-    case Reach::not_reachable:
+    case InverseStatus::unreachable:
       return "the place is out of reach from this start: no small change of the joints brings the tool closer";
-    case Reach::at_limit:
+    case InverseStatus::at_limit:
       return "a joint at its limit holds the tool back";
-    case Reach::near_singular:
+    case InverseStatus::near_singular:
       return "the tool did not arrive: near this posture the machine can hardly move in one of the directions asked "
              "for";
-    case Reach::out_of_steps:
+    case InverseStatus::iteration_limit:
       return "the tool did not arrive within the allowed number of steps";
   }
   return "";
@@ -190,12 +194,12 @@ std::string_view sentence(Reach reach) {
 
 InverseSolution inverse(const Chain& chain, const Pose& world_T_tool, ConstVectorRef start,
                         const InverseOptions& options, const Load& load) {
-  return search(chain, {world_T_tool.position, world_T_tool.rotation}, start, options, load);
+  return solve_inverse(chain, {world_T_tool.position, world_T_tool.rotation}, start, options, load);
 }
 
 InverseSolution inverse_position(const Chain& chain, const Vec3& point, ConstVectorRef start,
                                  const InverseOptions& options, const Load& load) {
-  return search(chain, {point, std::nullopt}, start, options, load);
+  return solve_inverse(chain, {point, std::nullopt}, start, options, load);
 }
 
 }  // namespace kinfer

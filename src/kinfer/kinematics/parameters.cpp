@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/kinematics/parameters.hpp"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ std::string_view field_name(Field field) {
   return names[static_cast<int>(field)];
 }
 
-Quantity quantity_of(const Address& at) {
+Quantity quantity_of(const ParameterAddress& at) {
   if (at.owner == Owner::gravity) return Quantity::acceleration;
   switch (at.field) {
     case Field::x:
@@ -41,7 +42,7 @@ Quantity quantity_of(const Address& at) {
   }
 }
 
-std::string name_of_joint_number(const Chain& chain, const Address& at) {
+std::string name_of_joint_number(const Chain& chain, const ParameterAddress& at) {
   if (at.field == Field::sine || at.field == Field::cosine)
     return fmt::format("{}{:g}q{}", field_name(at.field), chain.joints[at.joint].harmonics[at.term].order,
                        at.joint + 1);
@@ -50,9 +51,9 @@ std::string name_of_joint_number(const Chain& chain, const Address& at) {
   return fmt::format("{}{}", field_name(at.field), at.joint + 1);
 }
 
-std::string name_of(const Chain& chain, const Address& at) {
+std::string name_of(const Chain& chain, const ParameterAddress& at) {
   const std::string_view field = field_name(at.field);
-  const Surroundings& around = chain.surroundings;
+  const Fixtures& fixtures = chain.fixtures;
   switch (at.owner) {
     case Owner::base:
       return fmt::format("base_{}", field);
@@ -69,9 +70,9 @@ std::string name_of(const Chain& chain, const Address& at) {
     case Owner::anchor:
       return fmt::format("anchor{}_{}", at.joint + 1, field);
     case Owner::socket:
-      return fmt::format("socket_{}_{}", around.sockets[at.joint].name, field);
+      return fmt::format("socket_{}_{}", fixtures.sockets[at.joint].name, field);
     case Owner::plane:
-      return fmt::format("plane_{}_{}", around.planes[at.joint].name, field);
+      return fmt::format("plane_{}_{}", fixtures.planes[at.joint].name, field);
     case Owner::gravity:
       return fmt::format("gravity_{}", field);
     case Owner::robot:
@@ -80,7 +81,7 @@ std::string name_of(const Chain& chain, const Address& at) {
   return std::string(field);
 }
 
-double tolerance_of(const Address& at, const Tolerances& t) {
+double tolerance_of(const ParameterAddress& at, const Tolerances& t) {
   const Quantity quantity = quantity_of(at);
   if (quantity == Quantity::ratio) return t.gain;
   if (quantity == Quantity::compliance) return t.compliance;
@@ -100,12 +101,12 @@ double tolerance_of(const Address& at, const Tolerances& t) {
   }
 }
 
-void append(ParameterSet& set, const Chain& chain, const Address& at, const Tolerances& tolerances) {
+void append(ParameterSet& set, const Chain& chain, const ParameterAddress& at, const Tolerances& tolerances) {
   set.parameters.push_back(parameter_at(chain, at, tolerance_of(at, tolerances)));
 }
 
-/// A number of which nothing is known beforehand.
-void append_unknown(ParameterSet& set, const Chain& chain, const Address& at) {
+/// A parameter without a prior.
+void append_unknown(ParameterSet& set, const Chain& chain, const ParameterAddress& at) {
   Parameter parameter = parameter_at(chain, at, std::numeric_limits<double>::infinity());
   parameter.scale = 1e-2;  // [m] or [rad]
   set.parameters.push_back(parameter);
@@ -118,13 +119,13 @@ std::vector<Field> fields_of(const Joint& joint) {
   } else {
     fields.assign(std::begin(dh_fields), std::end(dh_fields));
   }
-  if (joint.has_reading && joint.type != JointType::fixed) fields.push_back(Field::gain);
+  if (joint.is_active && joint.type != JointType::fixed) fields.push_back(Field::gain);
   if (joint.type == JointType::revolute) fields.push_back(Field::compliance);
   return fields;
 }
 
-/// Joints on the way to the tip or to that of a further mounting, ascending.
-std::vector<int> joints_that_carry_a_tool(const Chain& chain) {
+/// Joints on the path to the tip or to that of a further mounting, ascending.
+std::vector<int> joints_on_tool_paths(const Chain& chain) {
   std::vector<int> joints = path_to(chain, chain.tip_joint());
   for (const RobotMounting& mounting : chain.mountings) {
     if (mounting.tip < 0) continue;
@@ -136,7 +137,7 @@ std::vector<int> joints_that_carry_a_tool(const Chain& chain) {
   return joints;
 }
 
-/// The functions below find a number of the chain for reading and for writing: C is Chain or const Chain.
+/// The functions below find a number of the chain for read and write access: the chain and its parts may be const.
 template <class F>
 auto* frame_number(F& frame, Field field) {
   switch (field) {
@@ -147,7 +148,7 @@ auto* frame_number(F& frame, Field field) {
     case Field::rx:
     case Field::ry:
     case Field::rz:
-      return &frame.turn[static_cast<int>(field) - static_cast<int>(Field::rx)];
+      return &frame.small_rotation[static_cast<int>(field) - static_cast<int>(Field::rx)];
     default:
       KINFER_EXPECT(false, "a frame has no {}", field_name(field));
       return &frame.xyz[0];
@@ -191,7 +192,7 @@ auto* joint_number(J& joint, Field field) {
 
 template <class P>
 auto* plane_number(P& plane, Field field) {
-  return field == Field::offset ? &plane.offset : &plane.turn[field == Field::rx ? 0 : 1];
+  return field == Field::offset ? &plane.offset : &plane.small_rotation[field == Field::rx ? 0 : 1];
 }
 
 template <class List>
@@ -201,7 +202,7 @@ auto& entry(List& list, int index) {
 }
 
 template <class C>
-auto* number(C& chain, const Address& at) {
+auto* number(C& chain, const ParameterAddress& at) {
   const auto axis = static_cast<int>(at.field) - static_cast<int>(Field::x);
   switch (at.owner) {
     case Owner::base:
@@ -215,11 +216,11 @@ auto* number(C& chain, const Address& at) {
     case Owner::target:
       return &entry(chain.targets, at.joint).xyz[axis];
     case Owner::anchor:
-      return &entry(chain.surroundings.anchors, at.joint)[axis];
+      return &entry(chain.fixtures.anchors, at.joint)[axis];
     case Owner::socket:
-      return &entry(chain.surroundings.sockets, at.joint).xyz[axis];
+      return &entry(chain.fixtures.sockets, at.joint).xyz[axis];
     case Owner::plane:
-      return plane_number(entry(chain.surroundings.planes, at.joint), at.field);
+      return plane_number(entry(chain.fixtures.planes, at.joint), at.field);
     case Owner::gravity:
       return &chain.gravity[axis];
     case Owner::robot:
@@ -265,7 +266,7 @@ ParameterSet all_parameters(const Chain& chain, const Tolerances& tolerances) {
   expect_well_formed(chain);
   ParameterSet set;
   for (const Field field : frame_fields) append(set, chain, {Owner::base, -1, field}, tolerances);
-  for (const int j : joints_that_carry_a_tool(chain)) {
+  for (const int j : joints_on_tool_paths(chain)) {
     for (const Field field : fields_of(chain.joints[j])) append(set, chain, {Owner::joint, j, field}, tolerances);
     for (int k = 0; k < static_cast<int>(chain.joints[j].couplings.size()); ++k)
       append(set, chain, {Owner::joint, j, Field::coupling, k}, tolerances);
@@ -274,7 +275,7 @@ ParameterSet all_parameters(const Chain& chain, const Tolerances& tolerances) {
   return set;
 }
 
-ParameterSet surroundings_parameters(const Chain& chain, const Tolerances& tolerances) {
+ParameterSet setup_parameters(const Chain& chain, const Tolerances& tolerances) {
   ParameterSet set;
   const auto xyz = {Field::x, Field::y, Field::z};
   for (int m = 0; m < static_cast<int>(chain.mountings.size()); ++m) {
@@ -284,18 +285,18 @@ ParameterSet surroundings_parameters(const Chain& chain, const Tolerances& toler
   }
   for (int i = 0; i < static_cast<int>(chain.targets.size()); ++i)
     for (const Field field : xyz) append(set, chain, {Owner::target, i, field}, tolerances);
-  const Surroundings& around = chain.surroundings;
-  for (int i = 0; i < static_cast<int>(around.anchors.size()); ++i)
+  const Fixtures& fixtures = chain.fixtures;
+  for (int i = 0; i < static_cast<int>(fixtures.anchors.size()); ++i)
     for (const Field field : xyz) append(set, chain, {Owner::anchor, i, field}, tolerances);
-  for (int i = 0; i < static_cast<int>(around.sockets.size()); ++i)
+  for (int i = 0; i < static_cast<int>(fixtures.sockets.size()); ++i)
     for (const Field field : xyz) append_unknown(set, chain, {Owner::socket, i, field});
-  for (int i = 0; i < static_cast<int>(around.planes.size()); ++i)
+  for (int i = 0; i < static_cast<int>(fixtures.planes.size()); ++i)
     for (const Field field : {Field::rx, Field::ry, Field::offset})
       append_unknown(set, chain, {Owner::plane, i, field});
   return set;
 }
 
-Parameter parameter_at(const Chain& chain, const Address& at, double prior_sd) {
+Parameter parameter_at(const Chain& chain, const ParameterAddress& at, double prior_sd) {
   return {.name = name_of(chain, at),
           .quantity = quantity_of(at),
           .at = at,
@@ -307,24 +308,25 @@ Parameter parameter_at(const Chain& chain, const Address& at, double prior_sd) {
 ParameterSet with_only_free(ParameterSet set, const std::vector<std::string>& names) {
   for (const std::string& name : names) KINFER_EXPECT(set.find(name), "no parameter is called {}", name);
   for (Parameter& p : set.parameters) p.free = std::find(names.begin(), names.end(), p.name) != names.end();
-  set.prior_root.resize(0, 0);
+  set.prior_sqrt_information.resize(0, 0);
   return set;
 }
 
-double value_at(const Chain& chain, const Address& address) {
+double value_at(const Chain& chain, const ParameterAddress& address) {
   return *number(chain, address);
 }
 
-void set_value_at(Chain& chain, const Address& address, double value) {
+void set_value_at(Chain& chain, const ParameterAddress& address, double value) {
   *number(chain, address) = value;
 }
 
-MatrixXd prior_rows(const ParameterSet& set) {
+MatrixXd prior_sqrt_information_of(const ParameterSet& set) {
   const std::vector<const Parameter*> free = set.free();
   const auto n = static_cast<Eigen::Index>(free.size());
-  if (set.prior_root.size() > 0) {
-    KINFER_EXPECT(set.prior_root.cols() == n, "a prior of {} parameters for {} free ones", set.prior_root.cols(), n);
-    return set.prior_root;
+  if (set.prior_sqrt_information.size() > 0) {
+    KINFER_EXPECT(set.prior_sqrt_information.cols() == n, "a prior of {} parameters for {} free ones",
+                  set.prior_sqrt_information.cols(), n);
+    return set.prior_sqrt_information;
   }
   MatrixXd rows = MatrixXd::Zero(n, n);
   for (Eigen::Index k = 0; k < n; ++k) rows(k, k) = 1.0 / free[k]->prior_sd;  // 0 where there is no prior

@@ -1,4 +1,5 @@
-// What of a chain is identified: ONE list rules names, units, nominal values, scales, bounds, freedom and priors.
+// SPDX-License-Identifier: Apache-2.0
+// The parameters of a chain: ONE list defines names, units, nominal values, scales, bounds, free or fixed, and priors.
 #pragma once
 
 #include <limits>
@@ -16,7 +17,7 @@ namespace kinfer {
 enum class Quantity { length, angle, ratio, compliance, expansion, acceleration };
 std::string_view unit(Quantity quantity);  ///< "m", "rad", "1", "rad/(N m)", "1/K", "m/s^2"
 
-/// Where in a chain a number lives.
+/// Which number of a chain a parameter is.
 enum class Owner { base, joint, tool, robot, mounting_base, mounting_tool, target, anchor, socket, plane, gravity };
 enum class Field {
   x,
@@ -40,19 +41,19 @@ enum class Field {
   offset,
   coupling
 };
-struct Address {
+struct ParameterAddress {
   Owner owner = Owner::joint;
   int joint = -1;  ///< index into Chain::joints, or into the list of that owner (mountings, targets, anchors, …)
   Field field = Field::a;
   int term = 0;  ///< sine and cosine: index into Joint::harmonics; coupling: into Joint::couplings
-  bool operator==(const Address&) const = default;
+  bool operator==(const ParameterAddress&) const = default;
 };
 
 struct Parameter {
-  std::string name{};  ///< as in FORMATS: "a6" (rows counted from 1), "theta2", "gain3", "base_x", "tool_rz", "x4" and
-                       ///< "rx4" (URDF joints), "coupling3_2" (how far joint 3 follows the reading of joint 2)
+  std::string name{};  ///< docs/formats.md: "a6" (rows from 1), "theta2", "gain3", "base_x", "tool_rz", "x4" and
+                       ///< "rx4" (URDF joints), "coupling3_2" (how far joint 3 follows the position of joint 2)
   Quantity quantity = Quantity::length;
-  Address at;
+  ParameterAddress at;
   double nominal = 0.0;
   double scale = 1.0;  ///< size of a typical error, > 0: conditions the search
   double lower = -std::numeric_limits<double>::infinity();
@@ -61,7 +62,7 @@ struct Parameter {
   bool free = true;
 };
 
-/// One-sigma guess of how far the truth may lie from the nominal numbers. SI.
+/// Expected deviation of the true values from the nominal ones, one sigma. SI.
 struct Tolerances {
   double length = 0.5e-3;       ///< [m]
   double angle = 0.1 * degree;  ///< [rad]
@@ -76,9 +77,10 @@ struct Tolerances {
 
 struct ParameterSet {
   std::vector<Parameter> parameters;
-  /// A joint Gaussian prior of the free parameters in place of their prior_sd: the square of prior_root · (x − nominal)
-  /// is its exponent, n x n in the order of pack. Empty: each has its own. Made last: freeing another one breaks it.
-  MatrixXd prior_root{};
+  /// Square-root information of a joint Gaussian prior on the free parameters, in place of their prior_sd: cost
+  /// |prior_sqrt_information · (x − nominal)|², n x n in the order of pack. Empty: prior_sd holds. Invalid if another
+  /// one is freed.
+  MatrixXd prior_sqrt_information{};
 
   Eigen::Index free_count() const;
   const Parameter* find(std::string_view name) const;  ///< null where there is none
@@ -87,26 +89,26 @@ struct ParameterSet {
 
 /// Every number of the chain that can be estimated, all free, with nominal, scale and prior from the tolerances:
 /// base (x y z rx ry rz), each joint on the path to a tip (a alpha d theta beta gain compliance, or x y z rx ry rz
-/// gain compliance for URDF joints; gain only where there is a reading; compliance only for revolute joints; the
+/// gain compliance for URDF joints; gain only for active joints; compliance only for revolute joints; the
 /// couplings that it has), tool.
 ParameterSet all_parameters(const Chain& chain, const Tolerances& tolerances);
 
 /// Base, tool and joints of the further mountings (base only where they have one of their own), targets, anchors,
 /// sockets and planes. Anchors, targets and frames have priors; sockets and planes have none.
-ParameterSet surroundings_parameters(const Chain& chain, const Tolerances& tolerances);
+ParameterSet setup_parameters(const Chain& chain, const Tolerances& tolerances);
 
-/// One parameter by its address, named, with the chain's value as nominal and `prior_sd` as prior and scale.
-Parameter parameter_at(const Chain& chain, const Address& at, double prior_sd);
+/// One parameter by its address, named, with the value in the chain as nominal and `prior_sd` as prior and scale.
+Parameter parameter_at(const Chain& chain, const ParameterAddress& at, double prior_sd);
 
-/// The named parameters are freed, all others are fixed. Programmer's error if a name is unknown.
+/// Frees the named parameters and fixes all others. Programming error if a name is unknown.
 ParameterSet with_only_free(ParameterSet set, const std::vector<std::string>& names);
 
-double value_at(const Chain& chain, const Address& address);
-void set_value_at(Chain& chain, const Address& address, double value);
+double value_at(const Chain& chain, const ParameterAddress& address);
+void set_value_at(Chain& chain, const ParameterAddress& address, double value);
 
-/// Rows of the priors: their residuals at x are root · (x − nominal), n x n for n free parameters. A parameter without
-/// a prior has a row of zeros.
-MatrixXd prior_rows(const ParameterSet& set);
+/// Square-root information of the priors: their residuals at x are rows · (x − nominal), n x n for n free parameters. A
+/// parameter without a prior has a row of zeros.
+MatrixXd prior_sqrt_information_of(const ParameterSet& set);
 
 /// Nominal numbers of the free parameters, in order.
 VectorXd nominal_of(const ParameterSet& set);

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/linalg/block_products.hpp"
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/base/processor.hpp"
-#include "kinfer/linalg/block_plan.hpp"
+#include "kinfer/base/instruction_set.hpp"
+#include "kinfer/linalg/kernels/block_jobs.hpp"
 
 namespace kinfer {
 namespace {

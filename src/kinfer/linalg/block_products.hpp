@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
 // Products and triangular solves of dense blocks of tens to hundreds of rows, for inner loops that have thousands of
-// them: as fast as the processor allows whatever the program is compiled for, no memory of their own.
+// them: the instruction set is chosen at run time, and nothing is allocated.
 #pragma once
 
 #include "kinfer/linalg/types.hpp"
@@ -11,10 +12,10 @@ using MatrixRef = Eigen::Ref<MatrixXd>;
 /// to += factor · a bᵀ.
 void add_product(ConstMatrixRef a, ConstMatrixRef b, double factor, MatrixRef to);
 
-/// The lower half of to += factor · a aᵀ; what stands above the diagonal may be lost.
+/// The lower half of to += factor · a aᵀ; entries above the diagonal may be overwritten.
 void add_square(ConstMatrixRef a, double factor, MatrixRef to);
 
-/// x of x lᵀ = b in place of b, l lower triangular.
+/// Solves x lᵀ = b for a lower triangular l; x replaces b.
 void solve_right(ConstMatrixRef l, MatrixRef b);
 
 }  // namespace kinfer

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/linalg/bordered_band.hpp"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// x of l x = b, l lower triangular, column by column of b. Eigen binds a reference to the first number even of none.
+/// Solves l x = b in place, l lower triangular. Guarded: Eigen refers to the first element even of an empty matrix.
 void solve_lower(const MatrixXd& l, Eigen::Ref<MatrixXd> b) {
   if (b.size() > 0) l.triangularView<Eigen::Lower>().solveInPlace(b);
 }
@@ -32,8 +33,8 @@ BorderedBand::BorderedBand(Index width, Index reach, Index border)
       schur_(MatrixXd::Zero(border, border)),
       schur_right_(VectorXd::Zero(border)) {}
 
-void BorderedBand::add(const BandSpan& span, bool sound) {
-  positive_ = positive_ && sound;
+void BorderedBand::add(const BandSpan& span, bool is_valid) {
+  positive_ = positive_ && is_valid;
   KINFER_EXPECT(span.matrix.rows() == reach_ * width_ && span.coupling.rows() == border_);
   front_.matrix.triangularView<Eigen::Lower>() += span.matrix;
   front_.coupling += span.coupling;
@@ -79,7 +80,7 @@ std::optional<BorderedBand::Solution> BorderedBand::solve() const {
   if (!positive_) return std::nullopt;
   Solution x{MatrixXd(width_, static_cast<Index>(groups_.size())), VectorXd(border_)};
   if (border_ > 0) {
-    const auto border = solve_positive(schur_, schur_right_);
+    const auto border = solve_spd(schur_, schur_right_);
     if (!border) return std::nullopt;
     x.border = *border;
   }
@@ -96,7 +97,7 @@ std::optional<BorderedBand::Solution> BorderedBand::solve() const {
   return x;
 }
 
-MatrixXd BorderedBand::following() const {
+MatrixXd BorderedBand::sensitivity() const {
   KINFER_EXPECT(positive_);
   const auto steps = static_cast<Index>(groups_.size()), all = steps * width_;
   MatrixXd result(all, border_);

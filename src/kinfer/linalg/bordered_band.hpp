@@ -1,11 +1,12 @@
-// Normal equations of unknowns in time order that touch their near neighbours only, bordered by a few that all share:
-// Cholesky elimination that walks along the band, and the Schur complement of the border.
+// SPDX-License-Identifier: Apache-2.0
+// Normal equations with a bordered band: unknowns in time order that couple to their near neighbours only, and a border
+// of global unknowns that couple to all. Cholesky elimination along the band, and the Schur complement of the border.
 //
 //   | A  Bᵀ | | x |   | a |      A: `steps` groups of `width` unknowns, each coupled to the `reach` - 1 next groups,
 //   | B  C  | | z | = | c |      C: border x border.
 //
-// Work and memory grow linearly with the number of steps: a frontal matrix of reach·width + border rows moves along
-// (Irons 1970), each group is eliminated as soon as nothing more can come for it.
+// Work and memory grow linearly with the number of steps: a frontal matrix of reach·width + border rows moves along the
+// band (Irons 1970), and each group is eliminated as soon as it is fully assembled.
 #pragma once
 
 #include <optional>
@@ -15,7 +16,7 @@
 
 namespace kinfer {
 
-/// What one span adds: groups k .. k + reach - 1 and how they meet the border.
+/// Contribution of one span: groups k .. k + reach - 1 and their coupling to the border.
 struct BandSpan {
   MatrixXd matrix;    ///< reach·width squared; the lower half is read
   MatrixXd coupling;  ///< border x reach·width
@@ -27,26 +28,26 @@ class BorderedBand {
   BorderedBand(Eigen::Index width, Eigen::Index reach, Eigen::Index border);
 
   /// Spans come in order, the k-th couples groups k .. k + reach - 1; group k is eliminated at once.
-  /// `sound` false: the span is that of a stretch whose own elimination failed, and so does this one.
-  void add(const BandSpan& span, bool sound = true);
+  /// `sound` false: the span is that of a time segment whose own elimination failed; this one then fails too.
+  void add(const BandSpan& span, bool is_valid = true);
 
-  /// Eliminates what is left. `border_matrix` C (lower half) and `border_right` c are the sums over all spans.
+  /// Eliminates the remaining groups. `border_matrix` C (lower half) and `border_right` c are the sums over all spans.
   void finish(ConstMatrixRef border_matrix, ConstVectorRef border_right);
 
-  bool positive() const { return positive_; }  ///< false: some pivot was not, and nothing below may be asked for
+  bool is_positive_definite() const { return positive_; }  ///< false: a pivot was not, and no member below may be used
 
   struct Solution {
     MatrixXd band;    ///< width x groups
     VectorXd border;  ///< z
   };
-  /// Nothing where the Schur complement is not positive definite.
+  /// nullopt if the Schur complement is not positive definite.
   std::optional<Solution> solve() const;
 
-  /// C − B A⁻¹ Bᵀ: the information on the border when the band is free. Symmetric.
+  /// C − B A⁻¹ Bᵀ: the information matrix of the border with the band marginalised. Symmetric.
   const MatrixXd& schur() const { return schur_; }
 
-  /// A⁻¹ Bᵀ, groups·width x border: how the band follows the border.
-  MatrixXd following() const;
+  /// A⁻¹ Bᵀ, groups·width x border: minus the sensitivity of the band to the border.
+  MatrixXd sensitivity() const;
 
  private:
   struct Group {

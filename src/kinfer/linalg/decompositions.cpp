@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/linalg/decompositions.hpp"
 
 #include <Eigen/Cholesky>
@@ -30,13 +31,13 @@ SymmetricEigen symmetric_eigen(ConstMatrixRef a) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-std::optional<VectorXd> solve_positive(ConstMatrixRef a, ConstVectorRef b) {
+std::optional<VectorXd> solve_spd(ConstMatrixRef a, ConstVectorRef b) {
   const Eigen::LLT<MatrixXd> factor(a);
   if (factor.info() != Eigen::Success) return std::nullopt;
   return VectorXd(factor.solve(b));
 }
 
-std::optional<MatrixXd> inverse_positive(ConstMatrixRef a) {
+std::optional<MatrixXd> invert_spd(ConstMatrixRef a) {
   const Eigen::LLT<MatrixXd> factor(a);
   if (factor.info() != Eigen::Success) return std::nullopt;
   return MatrixXd(factor.solve(MatrixXd::Identity(a.rows(), a.cols())));

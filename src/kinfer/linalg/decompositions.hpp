@@ -1,4 +1,5 @@
-// The few dense decompositions of the house behind plain functions: Eigen's templates are compiled once, here.
+// SPDX-License-Identifier: Apache-2.0
+// Dense decompositions behind plain functions: Eigen's templates are compiled once, here.
 #pragma once
 
 #include <optional>
@@ -29,19 +30,19 @@ struct SymmetricEigen {
 };
 SymmetricEigen symmetric_eigen(ConstMatrixRef a);
 
-/// x of a x = b for symmetric positive definite a (lower half read); nothing where a is not.
-std::optional<VectorXd> solve_positive(ConstMatrixRef a, ConstVectorRef b);
+/// Solves a x = b for symmetric positive definite a (lower half read); nullopt if a is not.
+std::optional<VectorXd> solve_spd(ConstMatrixRef a, ConstVectorRef b);
 
-/// a⁻¹ of a symmetric positive definite matrix; nothing where it is not.
-std::optional<MatrixXd> inverse_positive(ConstMatrixRef a);
+/// a⁻¹ of a symmetric positive definite matrix; nullopt if it is not.
+std::optional<MatrixXd> invert_spd(ConstMatrixRef a);
 
-/// l with a = l lᵀ, lower triangular; nothing where a is not positive definite.
+/// l with a = l lᵀ, lower triangular; nullopt if a is not positive definite.
 std::optional<MatrixXd> cholesky(ConstMatrixRef a);
 
 /// Least-squares solution of smallest norm; singular values below `cut` times the largest count as zero.
 VectorXd solve_least_squares(ConstMatrixRef a, ConstVectorRef b, double cut = 1e-12);
 
-/// x of a x = b for a general square matrix, by LU with partial pivoting.
+/// Solves a x = b for a general square matrix, by LU with partial pivoting.
 VectorXd solve_square(ConstMatrixRef a, ConstVectorRef b);
 
 /// Upper triangular r of a = q r, with min(m, n) rows.

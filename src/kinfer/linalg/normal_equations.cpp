@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/linalg/normal_equations.hpp"
 
 #include <algorithm>
@@ -5,19 +6,19 @@
 
 #include "kinfer/base/aligned_buffer.hpp"
 #include "kinfer/base/expect.hpp"
-#include "kinfer/base/processor.hpp"
+#include "kinfer/base/instruction_set.hpp"
 #include "kinfer/linalg/decompositions.hpp"
-#include "kinfer/linalg/gram_plan.hpp"
+#include "kinfer/linalg/kernels/gram_jobs.hpp"
 
 namespace kinfer {
 namespace {
 
-constexpr double least_pivot_ratio = 1e-11;  // of aᵀa; below, fewer than five digits of the weakest direction are left
-constexpr double unseen_square = 1e-14;      // of the largest eigenvalue of aᵀa, likewise
-constexpr double unseen = 1e-13;             // of the largest singular value; what rounding makes of a zero
+constexpr double min_pivot_ratio = 1e-11;  // of aᵀa; below, the weakest direction has fewer than five valid digits
+constexpr double min_relative_eigenvalue = 1e-14;      // of the largest eigenvalue of aᵀa, likewise
+constexpr double min_relative_singular_value = 1e-13;  // of the largest singular value; zero to rounding
 
-/// Lower factor of a positive definite matrix in place (column by column, each made from four earlier ones at a time:
-/// for the tens of unknowns of a fit a third faster than Eigen's). False where a pivot is not positive.
+/// Cholesky factor of a positive definite matrix in place, column by column, with four earlier columns at a time: for
+/// tens of unknowns a third faster than Eigen's. False if a pivot is not positive.
 bool factorise(MatrixXd& a) {
   const Eigen::Index n = a.rows();
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -36,7 +37,7 @@ bool factorise(MatrixXd& a) {
   return true;
 }
 
-/// x of l lᵀ x = b in place.
+/// Solves l lᵀ x = b in place.
 void solve_factorised(const MatrixXd& l, VectorXd& b) {
   const Eigen::Index n = l.rows();
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -48,7 +49,7 @@ void solve_factorised(const MatrixXd& l, VectorXd& b) {
 
 }  // namespace
 
-const batch::GramKernel& batch::best_gram() {
+const batch::GramKernel& batch::best_gram_kernel() {
 #if defined(__x86_64__)
   if (instruction_set() == InstructionSet::avx512) return avx512_gram;
   if (instruction_set() == InstructionSet::avx2) return avx2_gram;
@@ -60,9 +61,9 @@ NormalEquations normal_equations(ConstMatrixRef a, ConstVectorRef b) {
   KINFER_EXPECT(a.rows() == b.size(), "{} rows, {} values", a.rows(), b.size());
   NormalEquations equations{MatrixXd::Zero(a.cols(), a.cols()), VectorXd::Zero(a.cols())};
   if (a.size() == 0) return equations;
-  const batch::GramKernel& kernel = batch::best_gram();
+  const batch::GramKernel& kernel = batch::best_gram_kernel();
   const auto rows = static_cast<int>(a.rows()), columns = static_cast<int>(a.cols());
-  batch::Buffer<double> workspace(batch::gram_workspace(rows, columns, kernel.lanes));
+  batch::AlignedBuffer<double> workspace(batch::gram_workspace(rows, columns, kernel.lanes));
   kernel.normal_equations({.a = a.data(),
                            .a_stride = a.outerStride(),
                            .b = b.data(),
@@ -74,23 +75,24 @@ NormalEquations normal_equations(ConstMatrixRef a, ConstVectorRef b) {
   return equations;
 }
 
-std::optional<VectorXd> damped_by_cholesky(const NormalEquations& equations, double damping) {
+std::optional<VectorXd> solve_damped_by_cholesky(const NormalEquations& equations, double damping) {
   MatrixXd matrix = equations.matrix;
   matrix.diagonal().array() += damping;
   if (!factorise(matrix)) return std::nullopt;
   const double ratio = matrix.diagonal().minCoeff() / matrix.diagonal().maxCoeff();
-  if (!(ratio * ratio >= least_pivot_ratio)) return std::nullopt;
+  if (!(ratio * ratio >= min_pivot_ratio)) return std::nullopt;
   VectorXd x = -equations.gradient;
   solve_factorised(matrix, x);
   return x;
 }
 
-VectorXd damped_by_eigenvalues(const NormalEquations& equations, double damping) {
+VectorXd solve_damped_by_eigenvalues(const NormalEquations& equations, double damping) {
   const SymmetricEigen eigen = symmetric_eigen(equations.matrix);
   const VectorXd image = eigen.vectors.transpose() * equations.gradient;
   VectorXd along = VectorXd::Zero(image.size());
   for (Eigen::Index i = 0; i < along.size(); ++i)
-    if (eigen.values[i] > unseen_square * eigen.values.maxCoeff()) along[i] = -image[i] / (eigen.values[i] + damping);
+    if (eigen.values[i] > min_relative_eigenvalue * eigen.values.maxCoeff())
+      along[i] = -image[i] / (eigen.values[i] + damping);
   return eigen.vectors * along;
 }
 
@@ -103,11 +105,11 @@ SingularSystem singular_system(ConstMatrixRef a, ConstVectorRef b) {
   return {factors.s, factors.v, factors.u.transpose() * r.col(a.cols())};
 }
 
-VectorXd damped_by_svd(const SingularSystem& system, double damping) {
+VectorXd solve_damped_by_svd(const SingularSystem& system, double damping) {
   VectorXd along = VectorXd::Zero(system.s.size());
   for (Eigen::Index i = 0; i < along.size(); ++i) {
     const double s = system.s[i];
-    if (s > unseen * system.s[0]) along[i] = -s * system.image[i] / (s * s + damping);
+    if (s > min_relative_singular_value * system.s[0]) along[i] = -s * system.image[i] / (s * s + damping);
   }
   return system.v * along;
 }

@@ -1,5 +1,6 @@
-// Damped linear least squares, min |a x + b|² + damping |x|²: normal equations where they are accurate,
-// singular values where not.
+// SPDX-License-Identifier: Apache-2.0
+// Damped linear least squares, min |a x + b|² + damping |x|²: by normal equations where they are accurate enough, else
+// by singular values.
 #pragma once
 
 #include <optional>
@@ -15,14 +16,14 @@ struct NormalEquations {
 };
 NormalEquations normal_equations(ConstMatrixRef a, ConstVectorRef b);
 
-/// x of (aᵀa + damping I) x = −aᵀb by Cholesky; nothing where the matrix is not positive definite or so badly
-/// conditioned that few digits of x would be left. Then damped_by_svd still answers.
-std::optional<VectorXd> damped_by_cholesky(const NormalEquations& equations, double damping);
+/// Solves (aᵀa + damping I) x = −aᵀb by Cholesky; nullopt if the matrix is not positive definite or too badly
+/// conditioned for an accurate x. The solution by singular values below still works then.
+std::optional<VectorXd> solve_damped_by_cholesky(const NormalEquations& equations, double damping);
 
-/// The same x from the eigenvalues of aᵀa; directions whose eigenvalue is below rounding get no step at all.
-VectorXd damped_by_eigenvalues(const NormalEquations& equations, double damping);
+/// The same x from the eigenvalues of aᵀa; directions whose eigenvalue is below rounding get a zero step.
+VectorXd solve_damped_by_eigenvalues(const NormalEquations& equations, double damping);
 
-/// a = u diag(s) vᵀ as the damped problem needs it.
+/// a = u diag(s) vᵀ and uᵀb, for repeated solutions with different damping.
 struct SingularSystem {
   VectorXd s;      ///< singular values, descending
   MatrixXd v;      ///< n x k
@@ -30,8 +31,8 @@ struct SingularSystem {
 };
 SingularSystem singular_system(ConstMatrixRef a, ConstVectorRef b);
 
-/// The same x from the singular values; directions that a sees only by its rounding (s below 1e-13 of the largest) get
-/// no step at all.
-VectorXd damped_by_svd(const SingularSystem& system, double damping);
+/// The same x from the singular values; directions that only rounding makes visible (s below 1e-13 of the largest) get
+/// a zero step.
+VectorXd solve_damped_by_svd(const SingularSystem& system, double damping);
 
 }  // namespace kinfer

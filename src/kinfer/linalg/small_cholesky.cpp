@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/linalg/small_cholesky.hpp"
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// The matrix types that cross folder borders.
+// SPDX-License-Identifier: Apache-2.0
+// Matrix types of public interfaces.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/measurement/ins_recording.hpp"
 
 #include <algorithm>
@@ -15,16 +16,16 @@ InsSample sample(const InsSensor& sensor, std::span<const double> time, std::siz
   const unsigned bits = sensor.faults[row];
   InsSample sample{.time = time[row]};
   sample.has_acceleration = !(bits & (acceleration_missing | acceleration_clipped | acceleration_spike));
-  sample.has_rate = !(bits & (rate_missing | rate_spike));
-  sample.rate_clipped = sample.has_rate && (bits & rate_clipped);
+  sample.has_angular_velocity = !(bits & (angular_velocity_missing | angular_velocity_spike));
+  sample.angular_velocity_clipped = sample.has_angular_velocity && (bits & angular_velocity_clipped);
   sample.has_field = sensor.has_magnetometer() && !(bits & field_missing);
   if (sample.has_acceleration) sample.acceleration = sensor.acceleration.at(row);
-  if (sample.has_rate) sample.rate = sensor.rate.at(row);
+  if (sample.has_angular_velocity) sample.angular_velocity = sensor.angular_velocity.at(row);
   if (sample.has_field) sample.field = sensor.field.at(row);
   return sample;
 }
 
-double typical_period(std::span<const double> time) {
+double median_period(std::span<const double> time) {
   if (time.size() < 2) return 0.0;
   std::vector<double> steps(time.size() - 1);
   for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = time[i + 1] - time[i];
@@ -34,7 +35,7 @@ double typical_period(std::span<const double> time) {
 }
 
 std::vector<TimeGap> gaps(std::span<const double> time) {
-  const double limit = gap_factor * typical_period(time);
+  const double limit = gap_factor * median_period(time);
   std::vector<TimeGap> found;
   for (std::size_t row = 1; row < time.size(); ++row)
     if (time[row] - time[row - 1] > limit) found.push_back({row, time[row - 1], time[row]});

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/measurement/ins_screening.hpp"
 
 #include <fmt/format.h>
@@ -22,24 +23,24 @@ std::vector<double> scaled(const std::array<double, N>& values, double unit) {
   return out;
 }
 
-bool finite(const TriadColumns& triad, std::size_t row) {
+bool is_finite(const TriadColumns& triad, std::size_t row) {
   return triad.at(row).allFinite();
 }
 
-// Beyond what any sensor of the kind can say: broken bytes, not a motion.
-constexpr double impossible_acceleration = 1e4;    // [m/s²]
-constexpr double impossible_rate = 4200 * degree;  // [rad/s]
-constexpr double impossible_field = 1e6;           // [µT]
+// Beyond the range of any real sensor: corrupt data, not motion.
+constexpr double max_plausible_acceleration = 1e4;                // [m/s²]
+constexpr double max_plausible_angular_velocity = 4200 * degree;  // [rad/s]
+constexpr double max_plausible_field = 1e6;                       // [µT]
 
-bool sayable(const TriadColumns& triad, std::size_t row, double impossible) {
-  return finite(triad, row) && triad.at(row).cwiseAbs().maxCoeff() < impossible;
+bool is_plausible(const TriadColumns& triad, std::size_t row, double impossible) {
+  return is_finite(triad, row) && triad.at(row).cwiseAbs().maxCoeff() < impossible;
 }
 
-bool zero(const TriadColumns& triad, std::size_t row) {
+bool is_zero(const TriadColumns& triad, std::size_t row) {
   return triad.at(row).squaredNorm() <= 0.0;
 }
 
-void mark(InsSensor& sensor, const std::vector<bool>& rows, Fault fault) {
+void set_fault(InsSensor& sensor, const std::vector<bool>& rows, Fault fault) {
   for (std::size_t row = 0; row < rows.size(); ++row)
     if (rows[row]) sensor.faults[row] = static_cast<std::uint8_t>(sensor.faults[row] | fault);
 }
@@ -51,15 +52,15 @@ float largest_magnitude(const std::vector<float>& column) {
   return largest;
 }
 
-/// How the rows lie about the column's peak value.
+/// Distribution of the rows about the column's peak value.
 struct Peak {
   float value = 0.0f;
   std::size_t at_peak = 0, in_runs = 0;  ///< rows with exactly this magnitude; of them with an equal neighbour
   std::size_t just_below = 0;            ///< rows within 1 % under it
-  std::size_t repeats = 0;               ///< rows elsewhere that repeat the row before, so exact repeats mean nothing
+  std::size_t repeats = 0;  ///< rows below the peak equal to the previous row: if many, equal rows mean nothing
 };
 
-Peak study_peak(const std::vector<float>& column) {
+Peak analyse_peak(const std::vector<float>& column) {
   Peak peak{.value = largest_magnitude(column)};
   for (std::size_t row = 0; row < column.size(); ++row) {
     const float magnitude = std::abs(column[row]);
@@ -79,9 +80,9 @@ bool is_full_scale(double value, std::span<const double> full_scales) {
   return std::ranges::any_of(full_scales, [value](double scale) { return std::abs(value / scale - 1.0) < 2e-3; });
 }
 
-/// Rows pile up on the peak: far more of them than in the whole percent below it, in columns whose numbers otherwise
-/// do not repeat (noise-free simulations and sample-and-hold repeat everywhere).
-bool piled_up(const Peak& peak, std::size_t rows) {
+/// Clipping at an unknown range: far more rows at the peak than in the whole percent below it, in a column whose values
+/// otherwise do not repeat (noise-free simulations and sample-and-hold repeat everywhere).
+bool is_clipped_at_peak(const Peak& peak, std::size_t rows) {
   return peak.in_runs >= 8 && peak.in_runs > 2 * peak.just_below && 20 * peak.repeats < rows;
 }
 
@@ -90,87 +91,92 @@ double median_norm(const TriadColumns& triad) {
   const std::size_t rows = triad.axis[0].size();
   const std::size_t stride = std::max<std::size_t>(1, rows / 20000);  // enough for a median
   for (std::size_t row = 0; row < rows; row += stride)
-    if (finite(triad, row) && !zero(triad, row)) norms.push_back(triad.at(row).norm());
+    if (is_finite(triad, row) && !is_zero(triad, row)) norms.push_back(triad.at(row).norm());
   if (norms.empty()) return 0.0;
   const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
   std::ranges::nth_element(norms, middle);
   return *middle;
 }
 
-void doubt_gravity(const InsSensor& sensor, std::vector<UnitDoubt>& doubts) {
+void check_gravity_unit(const InsSensor& sensor, std::vector<UnitWarning>& warnings) {
   const double gravity = median_norm(sensor.acceleration);
   if (gravity <= 0.0 || (gravity > 0.7 * standard_gravity && gravity < 2.0 * standard_gravity)) return;
   if (gravity > 0.7 && gravity < 1.5)
-    doubts.push_back({fmt::format("{0}: gravity reads {1:.3g} m/s²: the file seems to be in g; write the headers as "
-                                  "{0}_ax[g], {0}_ay[g], {0}_az[g]",
-                                  sensor.name, gravity),
-                      true});
+    warnings.push_back({fmt::format("{0}: gravity reads {1:.3g} m/s²: the file seems to be in g; write the headers as "
+                                    "{0}_ax[g], {0}_ay[g], {0}_az[g]",
+                                    sensor.name, gravity),
+                        true});
   else
-    doubts.push_back({fmt::format("{0}: gravity reads {1:.3g} m/s², expected about 9.81: state the unit of {0}_ax, "
-                                  "{0}_ay, {0}_az in brackets, or check the sensor",
-                                  sensor.name, gravity),
-                      true});
+    warnings.push_back({fmt::format("{0}: gravity reads {1:.3g} m/s², expected about 9.81: state the unit of {0}_ax, "
+                                    "{0}_ay, {0}_az in brackets, or check the sensor",
+                                    sensor.name, gravity),
+                        true});
 }
 
-void doubt_rate(const InsSensor& sensor, std::vector<UnitDoubt>& doubts) {
+void check_angular_velocity_unit(const InsSensor& sensor, std::vector<UnitWarning>& warnings) {
   std::size_t impossible = 0, rows = 0;
   double fastest = 0.0;
-  for (std::size_t row = 0; row < sensor.rate.axis[0].size(); ++row) {
-    if (!finite(sensor.rate, row)) continue;
-    const double rate = sensor.rate.at(row).cwiseAbs().maxCoeff();
+  for (std::size_t row = 0; row < sensor.angular_velocity.axis[0].size(); ++row) {
+    if (!is_finite(sensor.angular_velocity, row)) continue;
+    const double angular_velocity = sensor.angular_velocity.at(row).cwiseAbs().maxCoeff();
     ++rows;
-    if (rate > impossible_rate) ++impossible, fastest = std::max(fastest, rate);
+    if (angular_velocity > max_plausible_angular_velocity) ++impossible, fastest = std::max(fastest, angular_velocity);
   }
-  if (impossible * 1000 > rows)  // fewer are broken rows, and are marked
-    doubts.push_back({fmt::format("{0}: the angular rate reaches {1:.3g} rad/s, which no such sensor can measure: the "
-                                  "file seems to be in °/s; write the headers as {0}_gx[deg/s], {0}_gy[deg/s], "
-                                  "{0}_gz[deg/s]",
-                                  sensor.name, fastest),
-                      true});
+  if (impossible * 1000 > rows)  // fewer are corrupt rows, and are flagged
+    warnings.push_back(
+        {fmt::format("{0}: the angular rate reaches {1:.3g} rad/s, which no such sensor can measure: the "
+                     "file seems to be in °/s; write the headers as {0}_gx[deg/s], {0}_gy[deg/s], "
+                     "{0}_gz[deg/s]",
+                     sensor.name, fastest),
+         true});
 }
 
-void doubt_field(const InsSensor& sensor, std::vector<UnitDoubt>& doubts) {
+void check_field_unit(const InsSensor& sensor, std::vector<UnitWarning>& warnings) {
   const double field = median_norm(sensor.field);
   if (field <= 0.0)
-    doubts.push_back({fmt::format("{}: the magnetometer says nothing but zeros: it is not used", sensor.name), false});
+    warnings.push_back(
+        {fmt::format("{}: the magnetometer says nothing but zeros: it is not used", sensor.name), false});
   else if (field < 8.0 || field > 500.0)
-    doubts.push_back({fmt::format("{0}: the magnetic field reads {1:.3g} µT, the Earth's is 25 to 65: it is not used; "
-                                  "state its unit in brackets, {0}_mx[1] where it is arbitrary",
-                                  sensor.name, field),
-                      false});
+    warnings.push_back(
+        {fmt::format("{0}: the magnetic field reads {1:.3g} µT, the Earth's is 25 to 65: it is not used; "
+                     "state its unit in brackets, {0}_mx[1] where it is arbitrary",
+                     sensor.name, field),
+         false});
 }
 
 }  // namespace
 
-std::vector<bool> clipped_rows(const std::vector<float>& column, std::span<const double> full_scales,
-                               double smallest_range) {
-  const Peak peak = study_peak(column);
+std::vector<bool> find_clipped_rows(const std::vector<float>& column, std::span<const double> full_scales,
+                                    double smallest_range) {
+  const Peak peak = analyse_peak(column);
   const bool is_range = peak.value > smallest_range && ((peak.in_runs >= 1 && is_full_scale(peak.value, full_scales)) ||
-                                                        piled_up(peak, column.size()));
+                                                        is_clipped_at_peak(peak, column.size()));
   if (!is_range) return {};
   std::vector<bool> clipped(column.size());
   for (std::size_t row = 0; row < column.size(); ++row) clipped[row] = std::abs(column[row]) >= peak.value;
   return clipped;
 }
 
-constexpr std::size_t most_wild_rows = 3;  // together: where samples go wild often, two or three follow each other
+constexpr std::size_t max_spike_rows = 3;  // consecutive: where spikes are frequent, two or three may follow each other
 
-std::vector<bool> spike_rows(const std::vector<float>& column, double floor) {
+std::vector<bool> find_spikes(const std::vector<float>& column, double floor) {
   if (column.size() < 5) return {};
-  const auto bend = [&](std::size_t row) { return std::abs(column[row] - 0.5 * (column[row - 1] + column[row + 1])); };
-  std::vector<double> bends;
+  const auto second_difference = [&](std::size_t row) {
+    return std::abs(column[row] - 0.5 * (column[row - 1] + column[row + 1]));
+  };
+  std::vector<double> second_differences;
   const std::size_t stride = std::max<std::size_t>(1, column.size() / 20000);
   for (std::size_t row = 1; row + 1 < column.size(); row += stride)
-    if (std::isfinite(bend(row))) bends.push_back(bend(row));
-  if (bends.empty()) return {};
-  const auto rank = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() * 9 / 10);
-  std::ranges::nth_element(bends, rank);
+    if (std::isfinite(second_difference(row))) second_differences.push_back(second_difference(row));
+  if (second_differences.empty()) return {};
+  const auto rank = second_differences.begin() + static_cast<std::ptrdiff_t>(second_differences.size() * 9 / 10);
+  std::ranges::nth_element(second_differences, rank);
   const double limit = std::max(floor, 10.0 * *rank);
   std::vector<bool> spikes(column.size());
-  const auto is_wild = [&](double height, float before, float after) {
+  const auto is_spike = [&](double height, float before, float after) {
     return height > limit && std::abs(after - before) < 0.3 * height;
   };
-  for (std::size_t width = 1; width <= most_wild_rows; ++width)
+  for (std::size_t width = 1; width <= max_spike_rows; ++width)
     for (std::size_t row = 1; row + width < column.size(); ++row) {
       const float before = column[row - 1], after = column[row + width];
       double lowest = std::numeric_limits<double>::infinity();
@@ -178,23 +184,24 @@ std::vector<bool> spike_rows(const std::vector<float>& column, double floor) {
         const double height = std::abs(column[i] - 0.5 * (before + after));
         if (!(height > lowest)) lowest = height;
       }
-      if (is_wild(lowest, before, after)) std::fill_n(spikes.begin() + static_cast<std::ptrdiff_t>(row), width, true);
+      if (is_spike(lowest, before, after)) std::fill_n(spikes.begin() + static_cast<std::ptrdiff_t>(row), width, true);
     }
   const std::size_t last = column.size() - 1;
-  spikes[0] = is_wild(std::abs(column[0] - column[1]), column[1], column[2]);
-  spikes[last] = is_wild(std::abs(column[last] - column[last - 1]), column[last - 1], column[last - 2]);
+  spikes[0] = is_spike(std::abs(column[0] - column[1]), column[1], column[2]);
+  spikes[last] = is_spike(std::abs(column[last] - column[last - 1]), column[last - 1], column[last - 2]);
   return spikes;
 }
 
-void mark_faults(InsSensor& sensor) {
+void flag_faults(InsSensor& sensor) {
   const std::size_t rows = sensor.acceleration.axis[0].size();
   sensor.faults.assign(rows, 0);
   for (std::size_t row = 0; row < rows; ++row) {
     unsigned bits = 0;
-    if (!sayable(sensor.acceleration, row, impossible_acceleration) || zero(sensor.acceleration, row))
+    if (!is_plausible(sensor.acceleration, row, max_plausible_acceleration) || is_zero(sensor.acceleration, row))
       bits |= acceleration_missing;
-    if (!sayable(sensor.rate, row, impossible_rate)) bits |= rate_missing;
-    if (sensor.has_magnetometer() && (!sayable(sensor.field, row, impossible_field) || zero(sensor.field, row)))
+    if (!is_plausible(sensor.angular_velocity, row, max_plausible_angular_velocity)) bits |= angular_velocity_missing;
+    if (sensor.has_magnetometer() &&
+        (!is_plausible(sensor.field, row, max_plausible_field) || is_zero(sensor.field, row)))
       bits |= field_missing;
     sensor.faults[row] = static_cast<std::uint8_t>(bits);
   }
@@ -203,26 +210,27 @@ void mark_faults(InsSensor& sensor) {
   const auto accelerometer = scaled(accelerometer_scales, standard_gravity),
              gyroscope = scaled(gyroscope_scales, degree);
   for (const auto& axis : sensor.acceleration.axis) {
-    mark(sensor, clipped_rows(axis, accelerometer, smallest_acceleration_range), acceleration_clipped);
-    mark(sensor, spike_rows(axis, acceleration_spike_floor), acceleration_spike);
+    set_fault(sensor, find_clipped_rows(axis, accelerometer, smallest_acceleration_range), acceleration_clipped);
+    set_fault(sensor, find_spikes(axis, acceleration_spike_floor), acceleration_spike);
   }
-  for (const auto& axis : sensor.rate.axis) {
-    mark(sensor, clipped_rows(axis, gyroscope, smallest_rate_range), rate_clipped);
-    mark(sensor, spike_rows(axis, rate_spike_floor), rate_spike);
+  for (const auto& axis : sensor.angular_velocity.axis) {
+    set_fault(sensor, find_clipped_rows(axis, gyroscope, smallest_rate_range), angular_velocity_clipped);
+    set_fault(sensor, find_spikes(axis, rate_spike_floor), angular_velocity_spike);
   }
 }
 
-std::vector<UnitDoubt> unit_doubts(const InsSensor& sensor, bool field_has_unit) {
-  std::vector<UnitDoubt> doubts;
-  doubt_gravity(sensor, doubts);
-  doubt_rate(sensor, doubts);
-  if (sensor.has_magnetometer() && (!field_has_unit || median_norm(sensor.field) <= 0.0)) doubt_field(sensor, doubts);
-  return doubts;
+std::vector<UnitWarning> check_units(const InsSensor& sensor, bool field_has_unit) {
+  std::vector<UnitWarning> warnings;
+  check_gravity_unit(sensor, warnings);
+  check_angular_velocity_unit(sensor, warnings);
+  if (sensor.has_magnetometer() && (!field_has_unit || median_norm(sensor.field) <= 0.0))
+    check_field_unit(sensor, warnings);
+  return warnings;
 }
 
-std::size_t death_row(const InsSensor& sensor) {
+std::size_t find_usable_end(const InsSensor& sensor) {
   std::size_t row = sensor.rows();
-  while (row > 0 && (sensor.faults[row - 1] & (acceleration_missing | rate_missing))) --row;
+  while (row > 0 && (sensor.faults[row - 1] & (acceleration_missing | angular_velocity_missing))) --row;
   return row;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/measurement/pose_set.hpp"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ std::vector<T> pick_measurements(const std::vector<T>& from, const std::vector<s
   return picked;
 }
 
-/// Listed twice, both rows make two pairs: the first copies together, and the second ones.
+/// If both rows are listed twice, they form two pairs: the first copies, and the second ones.
 std::vector<PairDistance> pick_pairs(const std::vector<PairDistance>& from,
                                      const std::vector<std::vector<int>>& places) {
   std::vector<PairDistance> picked;
@@ -52,7 +53,7 @@ bool has_measurements(const PoseSet& set) {
 }
 
 PoseSet select(const PoseSet& from, const std::vector<int>& rows) {
-  std::vector<std::vector<int>> places(from.rows());  // where each old row went
+  std::vector<std::vector<int>> places(from.rows());  // new indices of each old row
   for (std::size_t i = 0; i < rows.size(); ++i) places[rows[i]].push_back(static_cast<int>(i));
   PoseSet set;
   set.joint_names = from.joint_names;
@@ -86,7 +87,7 @@ PoseSet select(const PoseSet& from, const std::vector<int>& rows) {
 }
 
 PoseSet with_approach(PoseSet set) {
-  constexpr double still = 1e-4;  // [rad] or [m]: less is no movement of a joint
+  constexpr double still = 1e-4;  // [rad] or [m]: below this a joint counts as at rest
   set.approach = MatrixXd::Zero(set.joints.rows(), set.joints.cols());
   for (Eigen::Index row = 1; row < set.rows(); ++row)
     for (Eigen::Index k = 0; k < set.joints.rows(); ++k) {
@@ -112,7 +113,7 @@ Mat3 covariance_of(const Vec3& sd, const std::optional<Mat3>& axes) {
 
 Mat3 correlation(const Vec3& point_sd, const std::optional<Mat3>& point_axes, const Vec3& turn_sd,
                  const OrientationMeasurement& orientation) {
-  Mat3 y = *orientation.with_point;
+  Mat3 y = *orientation.covariance_with_point;
   if (point_axes) y = (point_axes->transpose() * y).eval();
   if (orientation.axes) y = (y * *orientation.axes).eval();
   return point_sd.cwiseInverse().asDiagonal() * y * turn_sd.cwiseInverse().asDiagonal();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/measurement/sensor_model.hpp"
 
 #include <algorithm>
@@ -64,7 +65,7 @@ std::optional<SensorModel> sensor_grade(std::string_view name) {
   return std::nullopt;
 }
 
-InstrumentErrors drawn_errors(const InstrumentModel& model, Rng rng) {
+InstrumentErrors sample_instrument_errors(const InstrumentModel& model, Rng rng) {
   InstrumentErrors errors;
   for (int i = 0; i < 3; ++i) errors.bias[i] = model.bias_sd * rng.normal();
   for (int i = 0; i < 9; ++i) errors.matrix(i / 3, i % 3) += model.scale_sd * rng.normal();
@@ -73,19 +74,19 @@ InstrumentErrors drawn_errors(const InstrumentModel& model, Rng rng) {
 
 SimulatedInstrument::SimulatedInstrument(const InstrumentModel& model, const InstrumentErrors& errors, Rng rng)
     : model_(model), errors_(errors), rng_(rng) {
-  wander_ = model_.instability * normals();
+  bias_instability_ = model_.instability * draw_normals();
 }
 
-Vec3 SimulatedInstrument::normals() {
+Vec3 SimulatedInstrument::draw_normals() {
   const double x = rng_.normal(), y = rng_.normal(), z = rng_.normal();
   return {x, y, z};
 }
 
 Vec3 SimulatedInstrument::read(const Vec3& truth, double dt) {
   const double keep = std::exp(-dt / model_.instability_time);
-  wander_ = keep * wander_ + model_.instability * std::sqrt(1.0 - keep * keep) * normals();
-  Vec3 reading =
-      errors_.matrix * truth + errors_.bias + wander_ + model_.noise_density / std::sqrt(2.0 * dt) * normals();
+  bias_instability_ = keep * bias_instability_ + model_.instability * std::sqrt(1.0 - keep * keep) * draw_normals();
+  Vec3 reading = errors_.matrix * truth + errors_.bias + bias_instability_ +
+                 model_.noise_density / std::sqrt(2.0 * dt) * draw_normals();
   for (double& value : reading) {
     if (model_.resolution > 0.0) value = model_.resolution * std::round(value / model_.resolution);
     value = std::clamp(value, -model_.range, model_.range);

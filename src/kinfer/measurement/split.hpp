@@ -1,4 +1,5 @@
-// Rows that are fitted and rows that are kept aside to prove the gain.
+// SPDX-License-Identifier: Apache-2.0
+// Train/holdout splits: rows that are fitted, and rows that are held out to validate the fit.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
-// The front end of the report (folder web/), bundled when kinfer was built.
+// SPDX-License-Identifier: Apache-2.0
+// Front end of the report (folder web/), bundled at build time.
 #pragma once
 
 #include <string_view>

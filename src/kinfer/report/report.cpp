@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/report/report.hpp"
 
 #include <fmt/format.h>
@@ -6,16 +7,16 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/report/bundle.hpp"
-#include "kinfer/report/packed.hpp"
-#include "kinfer/report/pages.hpp"
+#include "kinfer/report/parts/packed.hpp"
+#include "kinfer/report/parts/pages.hpp"
 
 namespace kinfer {
 namespace {
 
 using Json = nlohmann::json;
 
-/// JSON inside a script element: no character of it may end the element.
-std::string inside_script(std::string text) {
+/// Escapes JSON inside a script element, so that it cannot close the element.
+std::string escape_for_script(std::string text) {
   std::string safe;
   for (const char c : text) {
     if (c == '<')
@@ -26,7 +27,7 @@ std::string inside_script(std::string text) {
   return safe;
 }
 
-/// Lengths to a tenth of a micrometre: a drawing and a hint need no more.
+/// Lengths rounded to 0.1 µm, sufficient for drawings and tooltips.
 Json rounded(const Json& list) {
   Json result = Json::array();
   for (const Json& value : list)
@@ -34,8 +35,8 @@ Json rounded(const Json& list) {
   return result;
 }
 
-/// What the scripts draw; all else of the evidence is in the page as text already.
-Json drawn(const Json& evidence) {
+/// The part of the evidence that the scripts need; everything else is in the page as text.
+Json script_data(const Json& evidence) {
   Json part;
   for (const char* key : {"kind", "outliers", "picture", "root", "joints", "chain", "order"})
     if (evidence.contains(key)) part[key] = evidence.at(key);
@@ -53,8 +54,8 @@ std::string contents(const std::vector<html::Section>& sections) {
   return links;
 }
 
-/// Nothing may be fetched: the page says so to the browser itself.
-constexpr std::string_view policy =
+/// Content security policy: nothing is fetched.
+constexpr std::string_view content_security_policy =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:";
 
 std::string page_html(const pages::Page& page, const Json& evidence) {
@@ -63,7 +64,7 @@ std::string page_html(const pages::Page& page, const Json& evidence) {
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" href=\"data:,\">\n"
       "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n",
-      policy, html::escape(page.title), report_style());
+      content_security_policy, html::escape(page.title), report_style());
   html += fmt::format(
       "<a class=\"skip\" href=\"#main\">Skip to the report</a>\n<header class=\"bar\"><b>kinfer</b>"
       "<nav aria-label=\"Sections\">{}</nav></header>\n<main id=\"main\">\n<div class=\"first\">{}</div>\n",
@@ -72,15 +73,15 @@ std::string page_html(const pages::Page& page, const Json& evidence) {
   html += fmt::format(
       "</main>\n<footer>Made by kinfer from evidence.json.</footer>\n"
       "<script type=\"application/json\" id=\"evidence\">{}</script>\n<script>{}</script>\n</body>\n</html>\n",
-      inside_script(drawn(evidence).dump()), report_script());
+      escape_for_script(script_data(evidence).dump()), report_script());
   return html;
 }
 
 Result<pages::Page> page_of(const Json& evidence) {
-  const std::string kind = pages::text_at(evidence, "kind");
+  const std::string kind = pages::string_at(evidence, "kind");
   if (kind == "calibrate") return pages::calibration(evidence);
   if (kind == "identify") return pages::identification(evidence);
-  return error("evidence.json: no report is known for kind '{}'", kind);
+  return error("evidence.json: there is no report for kind '{}'", kind);
 }
 
 }  // namespace
@@ -91,8 +92,8 @@ Result<std::string> report_html(std::string_view text) {
   try {
     KINFER_TRY(page, page_of(evidence));
     return page_html(page, evidence);
-  } catch (const Json::exception& lacking) {
-    return error("evidence.json: not as kinfer writes it ({})", lacking.what());
+  } catch (const Json::exception& malformed) {
+    return error("evidence.json: not in kinfer's format ({})", malformed.what());
   }
 }
 

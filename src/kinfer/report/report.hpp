@@ -1,5 +1,6 @@
-// report.html: one self-contained file, made of evidence.json alone. It can be read without scripts and on paper; with
-// scripts the machine moves and the plots can be looked into. Same evidence, same bytes.
+// SPDX-License-Identifier: Apache-2.0
+// report.html: one self-contained file, made from evidence.json alone. It is readable without scripts and on paper;
+// with scripts the machine moves and the plots are interactive. Deterministic to the byte.
 #pragma once
 
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/simulate/excitation.hpp"
 
 #include <algorithm>
@@ -10,12 +11,12 @@
 namespace kinfer {
 namespace {
 
-constexpr double pause = 0.5;              // [s] after each movement
-constexpr double alone = 6.0;              // [s] of a joint on its own
-constexpr double last_rest = 0.5;          // [s] besides the pause
-constexpr double longest_ramp = 1.5;       // [s] of a window
-constexpr double shortest_movement = 1.0;  // [s]
-constexpr double grid = 0.005;             // [s] on which the largest rate is looked for
+constexpr double pause = 0.5;                  // [s] after each movement
+constexpr double single_joint_duration = 6.0;  // [s] of a joint on its own
+constexpr double last_rest = 0.5;              // [s] besides the pause
+constexpr double longest_ramp = 1.5;           // [s] of the window function
+constexpr double shortest_movement = 1.0;      // [s]
+constexpr double search_step = 0.005;          // [s] sampling step of the search for extrema
 
 /// s rises from 0 at x = 0 to 1 at x = 1 with four derivatives that vanish at both ends.
 JointState smooth_step(double x) {
@@ -52,97 +53,99 @@ JointState state_at(const Movement& movement, double time) {
   return product(window(movement, time), sum);
 }
 
-/// What a movement may reach at most.
-struct Reach {
+/// Extrema of a movement, or limits on them.
+struct MotionExtrema {
   double excursion = 0.0;
-  double rate = 0.0;
+  double velocity = 0.0;
   double acceleration = 0.0;
 };
 
-Reach reached(const Movement& movement) {
-  Reach reach;
-  for (double t = movement.begin; t <= movement.end; t += grid) {
+MotionExtrema find_extrema(const Movement& movement) {
+  MotionExtrema extrema;
+  for (double t = movement.begin; t <= movement.end; t += search_step) {
     const JointState state = state_at(movement, t);
-    reach.excursion = std::max(reach.excursion, std::abs(state.q));
-    reach.rate = std::max(reach.rate, std::abs(state.qd));
-    reach.acceleration = std::max(reach.acceleration, std::abs(state.qdd));
+    extrema.excursion = std::max(extrema.excursion, std::abs(state.q));
+    extrema.velocity = std::max(extrema.velocity, std::abs(state.qd));
+    extrema.acceleration = std::max(extrema.acceleration, std::abs(state.qdd));
   }
-  return reach;
+  return extrema;
 }
 
-struct Band {
+struct FrequencyBand {
   double low, high;  // [Hz]
 };
-constexpr Band machine_bands[] = {{0.12, 0.25}, {0.3, 0.45}, {0.45, 0.65}};
-constexpr Band base_bands[] = {{0.3, 0.5}, {0.6, 0.8}, {0.9, 1.2}};
+constexpr FrequencyBand machine_bands[] = {{0.12, 0.25}, {0.3, 0.45}, {0.45, 0.65}};
+constexpr FrequencyBand base_bands[] = {{0.3, 0.5}, {0.6, 0.8}, {0.9, 1.2}};
 
-/// Waves of about equal rates, one a band and `pace` times as fast, as large as `most` allows.
-Movement draw_movement(double begin, double end, const Reach& most, std::span<const Band> bands, double pace, Rng rng) {
+/// Waves of about equal velocity amplitude, one per frequency band (times `pace`), as large as `most` allows.
+Movement draw_movement(double begin, double end, const MotionExtrema& limits, std::span<const FrequencyBand> bands,
+                       double frequency_factor, Rng rng) {
   Movement movement{.begin = begin, .end = end};
-  for (const Band& band : bands) {
-    const double frequency = pace * rng.uniform(band.low, band.high);
+  for (const FrequencyBand& band : bands) {
+    const double frequency = frequency_factor * rng.uniform(band.low, band.high);
     movement.waves.push_back({rng.uniform(0.6, 1.0) / frequency, frequency, rng.uniform(0.0, 2.0 * std::numbers::pi)});
   }
-  const Reach unscaled = reached(movement);
-  const double scale = std::min(
-      {most.excursion / unscaled.excursion, most.rate / unscaled.rate, most.acceleration / unscaled.acceleration});
+  const MotionExtrema unscaled = find_extrema(movement);
+  const double scale = std::min({limits.excursion / unscaled.excursion, limits.velocity / unscaled.velocity,
+                                 limits.acceleration / unscaled.acceleration});
   for (Wave& wave : movement.waves) wave.amplitude *= scale;
   return movement;
 }
 
-double size_of(Script script) {
+double amplitude_factor_of(Script script) {
   return script == Script::gentle ? 0.45 : script == Script::vigorous ? 1.8 : 1.0;
 }
 
-/// How much faster the waves are than the standard drive's.
-double pace_of(Script script) {
+/// Frequency factor relative to the standard drive.
+double frequency_factor_of(Script script) {
   return script == Script::quick ? 4.0 : 1.0;
 }
 
-/// Rest, a phase for each of `joints`, a phase for all, rest; as the script has them.
-Result<std::vector<Phase>> plan(const std::vector<std::string>& joints, const ExcitationOptions& options) {
+/// Rest, a phase for each of `joints`, a phase for all, rest, as far as the script has them.
+Result<std::vector<Phase>> plan_phases(const std::vector<std::string>& joints, const ExcitationOptions& options) {
   const bool one_by_one = options.script != Script::together, all = options.script != Script::sequential;
   const double together = options.script == Script::together ? 30.0 : 16.0;
   const double n = one_by_one ? static_cast<double>(joints.size()) : 0.0, movements = n + (all ? 1.0 : 0.0);
-  const double still = options.rest + movements * pause + last_rest, moving = n * alone + (all ? together : 0.0);
-  const double stretch = options.duration > 0.0 ? (options.duration - still) / moving : 1.0;
-  const double shortest = stretch * (one_by_one ? alone : together);
+  const double still = options.rest + movements * pause + last_rest,
+               moving = n * single_joint_duration + (all ? together : 0.0);
+  const double time_scale = options.duration > 0.0 ? (options.duration - still) / moving : 1.0;
+  const double shortest = time_scale * (one_by_one ? single_joint_duration : together);
   if (shortest < shortest_movement)
     return error("a duration of {} s is too short for this script: {:.1f} s at least", options.duration,
-                 still + moving * shortest_movement / (one_by_one ? alone : together));
+                 still + moving * shortest_movement / (one_by_one ? single_joint_duration : together));
   std::vector<Phase> phases{{"rest", 0.0, options.rest}};
   const auto add = [&](const std::string& what, double length) {
     const double begin = phases.size() == 1 ? options.rest : phases.back().end + pause;
-    phases.push_back({what, begin, begin + stretch * length});
+    phases.push_back({what, begin, begin + time_scale * length});
   };
   if (one_by_one)
-    for (const std::string& joint : joints) add(joint, alone);
+    for (const std::string& joint : joints) add(joint, single_joint_duration);
   if (all) add("all", together);
   phases.push_back({"rest", phases.back().end, phases.back().end + pause + last_rest});
   return phases;
 }
 
-Reach most_of_joint(const Joint& joint, double home, const ExcitationOptions& options) {
-  const bool turns = joint.type == JointType::revolute;
-  const double room = std::min(joint.upper - home, home - joint.lower), size = size_of(options.script),
-               pace = pace_of(options.script);
-  return {std::min(size, 1.0) * std::min(0.95 * room, turns ? 0.8 : 1.0),
-          size * (turns ? options.turn_rate : options.slide_rate),
-          size * pace * (turns ? options.turn_acceleration : options.slide_acceleration)};
+MotionExtrema joint_limits(const Joint& joint, double home, const ExcitationOptions& options) {
+  const bool is_revolute = joint.type == JointType::revolute;
+  const double room = std::min(joint.upper - home, home - joint.lower), size = amplitude_factor_of(options.script),
+               frequency_factor = frequency_factor_of(options.script);
+  return {std::min(size, 1.0) * std::min(0.95 * room, is_revolute ? 0.8 : 1.0),
+          size * (is_revolute ? options.max_angular_velocity : options.max_velocity),
+          size * frequency_factor * (is_revolute ? options.max_angular_acceleration : options.max_acceleration)};
 }
 
-Reach most_of_base(const Joint& joint, const ExcitationOptions& options) {
-  const bool slides = joint.type == JointType::prismatic;
-  const double excursion = slides                     ? options.heave
+MotionExtrema base_limits(const Joint& joint, const ExcitationOptions& options) {
+  const bool is_prismatic = joint.type == JointType::prismatic;
+  const double excursion = is_prismatic               ? options.heave
                            : joint.name == "base_yaw" ? options.yawing.rad()
                                                       : options.rocking.rad();
-  return {excursion, slides ? options.slide_rate : 0.25 * options.turn_rate,
-          slides ? options.slide_acceleration : 0.5 * options.turn_acceleration};
+  return {excursion, is_prismatic ? options.max_velocity : 0.25 * options.max_angular_velocity,
+          is_prismatic ? options.max_acceleration : 0.5 * options.max_angular_acceleration};
 }
 
 std::vector<Movement> base_movements(const Joint& joint, const std::vector<Phase>& phases,
                                      const ExcitationOptions& options, Rng rng) {
-  return {draw_movement(phases.front().end, phases.back().begin, most_of_base(joint, options), base_bands, 1.0, rng)};
+  return {draw_movement(phases.front().end, phases.back().begin, base_limits(joint, options), base_bands, 1.0, rng)};
 }
 
 std::vector<Movement> joint_movements(const Joint& joint, double home, const std::vector<Phase>& phases,
@@ -151,18 +154,18 @@ std::vector<Movement> joint_movements(const Joint& joint, double home, const std
   for (std::size_t p = 0; p < phases.size(); ++p) {
     const Phase& phase = phases[p];
     if (phase.what != joint.name && phase.what != "all") continue;
-    Reach most = most_of_joint(joint, home, options);
+    MotionExtrema limits = joint_limits(joint, home, options);
     if (phase.what == "all")
-      most = {most.excursion, options.together * most.rate, options.together * most.acceleration};
-    movements.push_back(
-        draw_movement(phase.begin, phase.end, most, machine_bands, pace_of(options.script), rng.stream(p)));
+      limits = {limits.excursion, options.together * limits.velocity, options.together * limits.acceleration};
+    movements.push_back(draw_movement(phase.begin, phase.end, limits, machine_bands,
+                                      frequency_factor_of(options.script), rng.stream(p)));
   }
   return movements;
 }
 
 }  // namespace
 
-JointState state_at(const JointDrive& drive, double time) {
+JointState state_at(const JointTrajectory& drive, double time) {
   JointState sum{drive.home, 0.0, 0.0};
   for (const Movement& movement : drive.movements) {
     const JointState state = state_at(movement, time);
@@ -174,15 +177,15 @@ JointState state_at(const JointDrive& drive, double time) {
 }
 
 Result<Drive> make_drive(const Machine& machine, const ExcitationOptions& options, Rng rng) {
-  const std::vector<std::string> names = reading_names(machine.chain);
-  const std::vector<int> moving = joints_with_reading(machine.chain);
+  const std::vector<std::string> names = active_joint_names(machine.chain);
+  const std::vector<int> moving = active_joints(machine.chain);
   KINFER_EXPECT(machine.home.size() == static_cast<Eigen::Index>(names.size()));
-  KINFER_TRY(phases, plan({names.begin() + machine.base_readings, names.end()}, options));
+  KINFER_TRY(phases, plan_phases({names.begin() + machine.base_dof, names.end()}, options));
   Drive drive{.phases = phases, .duration = phases.back().end};
   for (std::size_t k = 0; k < names.size(); ++k) {
     const Joint& joint = machine.chain.joints[moving[k]];
     const double home = machine.home[static_cast<Eigen::Index>(k)];
-    const bool of_base = static_cast<int>(k) < machine.base_readings;
+    const bool of_base = static_cast<int>(k) < machine.base_dof;
     drive.joints.push_back({home, of_base ? base_movements(joint, phases, options, rng.stream(k))
                                           : joint_movements(joint, home, phases, options, rng.stream(k))});
   }

@@ -1,14 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/simulate/log_faults.hpp"
 
 #include <algorithm>
 #include <limits>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/measurement/chosen_sensors.hpp"
+#include "kinfer/measurement/ins_selection.hpp"
 
 namespace kinfer {
 
-InsRecording with_own_clock(const InsRecording& recording, const ClockFault& fault) {
+InsRecording with_clock_fault(const InsRecording& recording, const ClockFault& fault) {
   KINFER_EXPECT(fault.sensor < recording.sensors.size());
   InsRecording result = recording;
   InsSensor& sensor = result.sensors[fault.sensor];
@@ -21,19 +22,19 @@ InsRecording with_own_clock(const InsRecording& recording, const ClockFault& fau
   return result;
 }
 
-InsRecording with_late_rows(const InsRecording& recording, std::size_t sensor, std::size_t rows) {
+InsRecording with_delayed_rows(const InsRecording& recording, std::size_t sensor, std::size_t rows) {
   KINFER_EXPECT(sensor < recording.sensors.size() && rows < recording.sensors[sensor].rows());
   InsRecording result = recording;
   InsSensor& late = result.sensors[sensor];
   const auto by = static_cast<std::ptrdiff_t>(rows);
-  for (TriadColumns* columns : {&late.acceleration, &late.rate, &late.field})
+  for (TriadColumns* columns : {&late.acceleration, &late.angular_velocity, &late.field})
     for (std::vector<float>& axis : columns->axis) {
       if (axis.empty()) continue;
       std::shift_right(axis.begin(), axis.end(), by);
       std::fill_n(axis.begin(), by, std::numeric_limits<float>::quiet_NaN());
     }
   std::shift_right(late.faults.begin(), late.faults.end(), by);
-  std::fill_n(late.faults.begin(), by, std::uint8_t{acceleration_missing | rate_missing | field_missing});
+  std::fill_n(late.faults.begin(), by, std::uint8_t{acceleration_missing | angular_velocity_missing | field_missing});
   return result;
 }
 
@@ -46,10 +47,12 @@ MachineMotion with_remount(MachineMotion motion, std::size_t sensor, std::size_t
   const Vec3& lever = old_T_new.position;
   for (std::size_t i = row; i < motion.time.size(); ++i) {
     const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, motion.time.size() - 1);
-    const Vec3 rate_change = (was.rate[after] - was.rate[before]) / (period * static_cast<double>(after - before));
-    const Vec3& rate = was.rate[i];
-    m.force[i] = new_R_old * (was.force[i] + rate_change.cross(lever) + rate.cross(rate.cross(lever)));
-    m.rate[i] = new_R_old * rate;
+    const Vec3 angular_acceleration =
+        (was.angular_velocity[after] - was.angular_velocity[before]) / (period * static_cast<double>(after - before));
+    const Vec3& angular_velocity = was.angular_velocity[i];
+    m.force[i] = new_R_old * (was.force[i] + angular_acceleration.cross(lever) +
+                              angular_velocity.cross(angular_velocity.cross(lever)));
+    m.angular_velocity[i] = new_R_old * angular_velocity;
     m.field[i] = new_R_old * was.field[i];
     m.position[i] += was.world_R_sensor[i] * lever;
     m.world_R_sensor[i] = was.world_R_sensor[i] * Quat(old_T_new.rotation);
@@ -57,7 +60,7 @@ MachineMotion with_remount(MachineMotion motion, std::size_t sensor, std::size_t
   return motion;
 }
 
-InsRecording side_by_side(const InsRecording& one, const InsRecording& other, const std::string& prefix) {
+InsRecording merge_recordings(const InsRecording& one, const InsRecording& other, const std::string& prefix) {
   KINFER_EXPECT(one.loggers.size() == 1 && other.loggers.size() == 1);
   const double end = std::min(one.loggers[0].time.back(), other.loggers[0].time.back());
   InsRecording result = within(one, one.loggers[0].time.front(), end);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/simulate/machine.hpp"
 
 #include <fmt/format.h>
@@ -35,40 +36,42 @@ Vec3 vector_of(const XMLElement& element, const char* attribute, const Vec3& oth
   return v;
 }
 
-Vec3 normal_vector(Rng& rng) {
+Vec3 draw_normal_vector(Rng& rng) {
   const double x = rng.normal(), y = rng.normal(), z = rng.normal();
   return {x, y, z};
 }
 
-Quat any_orientation(Rng& rng) {  // four independent normals point uniformly on the sphere of quaternions
-  const Vec3 v = normal_vector(rng);
+Quat draw_orientation(Rng& rng) {  // four independent normals point uniformly on the sphere of quaternions
+  const Vec3 v = draw_normal_vector(rng);
   return Quat(rng.normal(), v.x(), v.y(), v.z()).normalized();
 }
 
-void mount_anyhow(XMLElement& site, double spread, Rng rng) {
+void randomise_mounting(XMLElement& site, double spread, Rng rng) {
   for (const char* orientation : {"quat", "euler", "xyaxes", "zaxis", "axisangle"}) site.DeleteAttribute(orientation);
   const Vec3 shift(rng.uniform(-spread, spread), rng.uniform(-spread, spread), rng.uniform(-spread, spread));
   site.SetAttribute("pos", text(vector_of(site, "pos", Vec3::Zero()) + shift).c_str());
-  site.SetAttribute("quat", text(any_orientation(rng)).c_str());
+  site.SetAttribute("quat", text(draw_orientation(rng)).c_str());
 }
 
-void build_inaccurately(XMLElement& body, XMLElement& joint, const MachineOptions& options, Rng rng) {
-  const Vec3 axis = exp_so3(options.joint_error.rad() * normal_vector(rng)) * vector_of(joint, "axis", Vec3::UnitZ());
+void perturb_joint(XMLElement& body, XMLElement& joint, const MachineOptions& options, Rng rng) {
+  const Vec3 axis =
+      exp_so3(options.joint_error.rad() * draw_normal_vector(rng)) * vector_of(joint, "axis", Vec3::UnitZ());
   joint.SetAttribute("axis", text(axis.normalized()).c_str());
-  body.SetAttribute("pos",
-                    text(vector_of(body, "pos", Vec3::Zero()) + options.joint_shift * normal_vector(rng)).c_str());
+  body.SetAttribute(
+      "pos",
+      text(vector_of(body, "pos", Vec3::Zero()) + options.joint_shift * draw_normal_vector(rng)).c_str());
 }
 
-/// Draws mountings for `body` and all that it carries; every body and sensor has a stream of its own.
-void scatter(XMLElement& body, double spread, const MachineOptions& options, Rng rng) {
-  if (XMLElement* joint = body.FirstChildElement("joint")) build_inaccurately(body, *joint, options, rng.stream(1));
-  if (XMLElement* site = body.FirstChildElement("site")) mount_anyhow(*site, spread, rng.stream(2));
+/// Randomises joints and mountings of `body` and its descendants; every body and sensor has a random stream of its own.
+void randomise_machine(XMLElement& body, double spread, const MachineOptions& options, Rng rng) {
+  if (XMLElement* joint = body.FirstChildElement("joint")) perturb_joint(body, *joint, options, rng.stream(1));
+  if (XMLElement* site = body.FirstChildElement("site")) randomise_mounting(*site, spread, rng.stream(2));
   std::uint64_t child_index = 3;
   for (XMLElement* child = body.FirstChildElement("body"); child; child = child->NextSiblingElement("body"))
-    scatter(*child, spread, options, rng.stream(child_index++));
+    randomise_machine(*child, spread, options, rng.stream(child_index++));
 }
 
-/// The platform's own movements, before all else that it carries: slides first, then turns.
+/// Joints of the platform itself, ahead of its other children: prismatic first, then revolute.
 int add_base_joints(XMLElement& platform, Base base) {
   struct BaseJoint {
     const char *name, *type, *axis;
@@ -95,9 +98,10 @@ void prepend_zeros(XMLElement& root, int count) {
   key->SetAttribute("qpos", (qpos + key->Attribute("qpos")).c_str());
 }
 
-void put_on_slope(XMLElement& platform, Angle slope, Rng rng) {
+void tilt_platform(XMLElement& platform, Angle slope, Rng rng) {
   const double azimuth = rng.uniform(0.0, 2.0 * std::numbers::pi);
-  platform.SetAttribute("quat", text(quat_exp(slope.rad() * Vec3(std::cos(azimuth), std::sin(azimuth), 0.0))).c_str());
+  platform.SetAttribute(
+      "quat", text(quat_exp(slope.rad() * Vec3(std::cos(azimuth), std::sin(azimuth), 0.0))).c_str());
 }
 
 /// Accelerometer, gyro and magnetometer at every site.
@@ -116,7 +120,7 @@ double mounting_spread(XMLElement& root) {
   return numeric->DoubleAttribute("data");
 }
 
-std::string printed(const tinyxml2::XMLDocument& document) {
+std::string to_xml(const tinyxml2::XMLDocument& document) {
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);
   return printer.CStr();
@@ -127,11 +131,12 @@ std::string with_options(std::string_view mjcf, const MachineOptions& options, R
   KINFER_EXPECT(document.Parse(mjcf.data(), mjcf.size()) == tinyxml2::XML_SUCCESS, "{}", document.ErrorStr());
   XMLElement& root = *document.RootElement();
   XMLElement& platform = *root.FirstChildElement("worldbody")->FirstChildElement("body");
-  if (options.mounting == Mounting::arbitrary) scatter(platform, mounting_spread(root), options, rng.stream(1));
-  if (options.slope.rad() != 0.0) put_on_slope(platform, options.slope, rng.stream(2));
+  if (options.mounting == Mounting::arbitrary)
+    randomise_machine(platform, mounting_spread(root), options, rng.stream(1));
+  if (options.slope.rad() != 0.0) tilt_platform(platform, options.slope, rng.stream(2));
   if (options.base != Base::still) prepend_zeros(root, add_base_joints(platform, options.base));
   add_instruments(root, platform);
-  return printed(document);
+  return to_xml(document);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The simulated machines: MJCF files of the project, with their sensors' mountings and the base that they stand on.
+// SPDX-License-Identifier: Apache-2.0
+// The simulated machines: MJCF files of the project, with sensor mountings and a fixed or moving base.
 #pragma once
 
 #include <string>
@@ -12,7 +13,7 @@
 
 namespace kinfer {
 
-/// An INS stuck on a segment.
+/// An INS mounted on a segment.
 struct MountedSensor {
   std::string name;     ///< "ins0" is the platform's
   std::string segment;  ///< "house"
@@ -21,29 +22,29 @@ struct MountedSensor {
   Pose segment_T_sensor;
 };
 
-/// What the simulation knows about a machine: the truth that identification looks for.
+/// Ground truth of a simulated machine.
 struct Machine {
   Chain chain;                         ///< UrdfLinks; the first joints, up to the root sensor's, are the base
   std::vector<MountedSensor> sensors;  ///< parents before children
-  int base_readings = 0;               ///< so many leading readings move the platform, not the machine
-  VectorXd home;                       ///< readings at rest [rad] or [m]
+  int base_dof = 0;                    ///< number of leading joint positions that move the platform
+  VectorXd home;                       ///< joint positions at rest [rad] or [m]
 };
 
 enum class Mounting {
-  as_built,  ///< as the machine's file has them: the paper's for the excavator
-  arbitrary  ///< any orientation, shifted by the file's mounting_spread; joints a little off where they should be
+  as_built,  ///< as in the machine's file: those of the paper for the excavator
+  arbitrary  ///< random orientation, shifted by the file's mounting_spread; joints slightly misplaced
 };
 
 enum class Base {
   still,
   rocking,  ///< rolls, pitches and heaves
-  yawing    ///< rocks, and turns about the vertical on its tracks
+  yawing    ///< rocks, and rotates about the vertical on its tracks
 };
 
 struct MachineOptions {
   Mounting mounting = Mounting::as_built;
   Base base = Base::still;
-  Angle slope{};                        ///< of the ground, towards a direction drawn from the seed
+  Angle slope{};                        ///< of the terrain, in a direction drawn from the seed
   Angle joint_error = Angle::deg(0.5);  ///< sd of the joint axes' directions, for Mounting::arbitrary
   double joint_shift = 0.01;            ///< [m] sd of the joints' places, for Mounting::arbitrary
 };
@@ -51,7 +52,7 @@ struct MachineOptions {
 /// "excavator", "excavator-general", "crane", "robot6", "tree".
 std::vector<std::string> machine_names();
 
-/// The machine's MJCF with sensors mounted and base placed. An unknown name is an error that lists the known ones.
+/// The machine's MJCF with sensors, mountings and base. An unknown name is an error that lists the known ones.
 /// "excavator-general" is the excavator with Mounting::arbitrary.
 Result<std::string> machine_mjcf(const std::string& name, const MachineOptions& options, Rng rng);
 

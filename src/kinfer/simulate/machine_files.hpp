@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The project's MJCF files, embedded into the library when it is built.
 #pragma once
 

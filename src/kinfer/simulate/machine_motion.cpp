@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/simulate/machine_motion.hpp"
 
 #include <cmath>
@@ -16,7 +17,8 @@ MachineMotion make_motion(const Machine& machine, std::size_t rows, double sampl
   motion.sensors.resize(machine.sensors.size());
   for (SensorMotion& sensor : motion.sensors) {
     sensor.world_R_sensor.resize(rows);
-    for (auto* column : {&sensor.position, &sensor.force, &sensor.rate, &sensor.field}) column->resize(rows);
+    for (auto* column : {&sensor.position, &sensor.force, &sensor.angular_velocity, &sensor.field})
+      column->resize(rows);
   }
   return motion;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/simulate/mujoco_world.hpp"
 
 #include <mujoco/mujoco.h>
@@ -13,7 +14,7 @@ namespace kinfer {
 namespace {
 
 constexpr double stiff_step = 1e-3;    // [s] of the integrator, at most
-constexpr double soft_step = 2.5e-4;   // [s]: springs between unequal masses swing faster than computed torques
+constexpr double soft_step = 2.5e-4;   // [s]: springs between unequal masses oscillate faster than computed torques
 constexpr double settling_time = 2.0;  // [s] before the first row
 constexpr const char* file_name = "machine.xml";
 
@@ -34,14 +35,14 @@ Pose pose(const mjtNum* position, const mjtNum* orientation) {
   return {quat(orientation).normalized().toRotationMatrix(), vec3(position)};
 }
 
-/// What holds the joints to their drive, for the engine's callback.
+/// Joint controller that tracks the drive, for the engine's callback.
 struct Controller {
   const Drive* drive;
   Servo servo;
   VectorXd inertia;  ///< about each joint at home
   mutable VectorXd torque{};
 
-  void act(const mjModel* model, mjData* data) const {
+  void apply_torques(const mjModel* model, mjData* data) const {
     const Eigen::Index n = inertia.size();
     const double omega = 2.0 * std::numbers::pi * (servo == Servo::stiff ? 10.0 : 2.5);
     VectorXd wanted(n);
@@ -56,18 +57,18 @@ struct Controller {
   }
 };
 
-/// The engine knows one callback for the whole program, so it asks the thread whose controller is at work.
-thread_local const Controller* controller_at_work = nullptr;
+/// The engine has one callback per process, so the active controller is kept per thread.
+thread_local const Controller* active_controller = nullptr;
 
-void control(const mjModel* model, mjData* data) {
-  if (controller_at_work) controller_at_work->act(model, data);
+void control_callback(const mjModel* model, mjData* data) {
+  if (active_controller) active_controller->apply_torques(model, data);
 }
 
-void join_program() {
+void install_callbacks() {
   static std::once_flag once;
   std::call_once(once, [] {
-    mjcb_control = control;
-    mju_user_warning = [](const char*) {};  // its own handler writes a log file where the program was started
+    mjcb_control = control_callback;
+    mju_user_warning = [](const char*) {};  // the default handler writes a log file into the working directory
   });
 }
 
@@ -99,9 +100,8 @@ std::vector<int> add_bodies(const mjModel& model, Chain& chain) {
     for (int k = 0; k < std::max(count, 1); ++k) {
       const int joint = count > 0 ? first + k : -1;
       Joint made =
-          count > 0
-              ? machine_joint(model, joint)
-              : Joint{.name = mj_id2name(&model, mjOBJ_BODY, body), .type = JointType::fixed, .has_reading = false};
+          count > 0 ? machine_joint(model, joint)
+                    : Joint{.name = mj_id2name(&model, mjOBJ_BODY, body), .type = JointType::fixed, .is_active = false};
       made.parent = parent;
       made.link = joint_link(model, body, joint, k == 0);
       parent = static_cast<int>(chain.joints.size());
@@ -112,14 +112,14 @@ std::vector<int> add_bodies(const mjModel& model, Chain& chain) {
   return frame_of_body;
 }
 
-int sensor_before(const Machine& machine, int joint) {
+int find_parent_sensor(const Machine& machine, int joint) {
   for (int j = machine.chain.joints[joint].parent; j >= 0; j = machine.chain.joints[j].parent)
     for (std::size_t s = 0; s < machine.sensors.size(); ++s)
       if (machine.sensors[s].joint == j) return static_cast<int>(s);
   return -1;
 }
 
-Machine machine_of(const mjModel& model) {
+Machine read_machine(const mjModel& model) {
   Machine machine;
   machine.chain.name = model.names;  // the model's name comes first
   machine.chain.gravity = vec3(model.opt.gravity);
@@ -130,49 +130,49 @@ Machine machine_of(const mjModel& model) {
                          .segment = mj_id2name(&model, mjOBJ_BODY, body),
                          .joint = joint,
                          .segment_T_sensor = pose(model.site_pos + 3 * site, model.site_quat + 4 * site)};
-    sensor.parent = sensor_before(machine, joint);
+    sensor.parent = find_parent_sensor(machine, joint);
     machine.sensors.push_back(std::move(sensor));
   }
-  machine.base_readings = model.body_jntnum[1];
+  machine.base_dof = model.body_jntnum[1];
   KINFER_EXPECT(model.nkey == 1 && model.nq == model.nv);
   machine.home = Eigen::Map<const VectorXd>(model.key_qpos, model.nq);
   return machine;
 }
 
-/// Where each site's accelerometer, gyro and magnetometer write.
-struct Readout {
+/// Addresses of a site's accelerometer, gyro and magnetometer in mjData::sensordata.
+struct SensorAddresses {
   int accelerometer = -1, gyro = -1, magnetometer = -1;
 };
 
-std::vector<Readout> readouts(const mjModel& model) {
-  std::vector<Readout> places(model.nsite);
+std::vector<SensorAddresses> find_sensor_addresses(const mjModel& model) {
+  std::vector<SensorAddresses> addresses(model.nsite);
   for (int s = 0; s < model.nsensor; ++s) {
-    Readout& place = places[model.sensor_objid[s]];
+    SensorAddresses& place = addresses[model.sensor_objid[s]];
     const int address = model.sensor_adr[s];
     if (model.sensor_type[s] == mjSENS_ACCELEROMETER) place.accelerometer = address;
     if (model.sensor_type[s] == mjSENS_GYRO) place.gyro = address;
     if (model.sensor_type[s] == mjSENS_MAGNETOMETER) place.magnetometer = address;
   }
-  for (const Readout& place : places)
+  for (const SensorAddresses& place : addresses)
     KINFER_EXPECT(place.accelerometer >= 0 && place.gyro >= 0 && place.magnetometer >= 0, "a site without sensors");
-  return places;
+  return addresses;
 }
 
-void record(const mjModel& model, const mjData& data, const std::vector<Readout>& places, std::size_t row,
+void record(const mjModel& model, const mjData& data, const std::vector<SensorAddresses>& addresses, std::size_t row,
             MachineMotion& motion) {
   const auto column = static_cast<Eigen::Index>(row);
   motion.q.col(column) = Eigen::Map<const VectorXd>(data.qpos, model.nq);
   motion.qd.col(column) = Eigen::Map<const VectorXd>(data.qvel, model.nv);
   motion.qdd.col(column) = Eigen::Map<const VectorXd>(data.qacc, model.nv);
-  for (std::size_t s = 0; s < places.size(); ++s) {
+  for (std::size_t s = 0; s < addresses.size(); ++s) {
     SensorMotion& sensor = motion.sensors[s];
     mjtNum orientation[4];
     mju_mat2Quat(orientation, data.site_xmat + 9 * s);
     sensor.world_R_sensor[row] = quat(orientation);
     sensor.position[row] = vec3(data.site_xpos + 3 * s);
-    sensor.force[row] = vec3(data.sensordata + places[s].accelerometer);
-    sensor.rate[row] = vec3(data.sensordata + places[s].gyro);
-    sensor.field[row] = vec3(data.sensordata + places[s].magnetometer);
+    sensor.force[row] = vec3(data.sensordata + addresses[s].accelerometer);
+    sensor.angular_velocity[row] = vec3(data.sensordata + addresses[s].gyro);
+    sensor.field[row] = vec3(data.sensordata + addresses[s].magnetometer);
   }
 }
 
@@ -183,7 +183,7 @@ VectorXd inertia_about_joints(const mjModel& model, mjData& data) {
   return mass.diagonal();
 }
 
-bool out_of_control(const mjData& data) {
+bool is_unstable(const mjData& data) {
   return data.warning[mjWARN_BADQPOS].number + data.warning[mjWARN_BADQVEL].number +
              data.warning[mjWARN_BADQACC].number >
          0;
@@ -206,7 +206,7 @@ const Machine& MujocoWorld::machine() const {
 }
 
 Result<MujocoWorld> MujocoWorld::load(const std::string& mjcf) {
-  join_program();
+  install_callbacks();
   const auto files = std::make_unique<mjVFS>();  // 2 MB: not for the stack
   mj_defaultVFS(files.get());
   mj_makeEmptyFileVFS(files.get(), file_name, static_cast<int>(mjcf.size()));
@@ -215,7 +215,7 @@ Result<MujocoWorld> MujocoWorld::load(const std::string& mjcf) {
   Model model(mj_loadXML(file_name, files.get(), why, sizeof why));
   mj_deleteVFS(files.get());
   if (!model) return error("{}: {}", file_name, why);
-  Machine machine = machine_of(*model);
+  Machine machine = read_machine(*model);
   return MujocoWorld(std::make_unique<Engine>(Engine{std::move(model), std::move(machine)}));
 }
 
@@ -226,29 +226,29 @@ Result<MachineMotion> MujocoWorld::drive(const Drive& drive, double sampling_rat
   const int substeps = static_cast<int>(std::ceil(1.0 / (sampling_rate * longest_step) - 1e-9));
   model->opt.timestep = 1.0 / (sampling_rate * substeps);
   mj_resetDataKeyframe(model.get(), data.get(), 0);
-  const std::vector<Readout> places = readouts(*model);
+  const std::vector<SensorAddresses> addresses = find_sensor_addresses(*model);
   const Controller controller{&drive, servo, inertia_about_joints(*model, *data)};
-  controller_at_work = &controller;
+  active_controller = &controller;
 
   MachineMotion motion = make_motion(machine(), row_count(drive.duration, sampling_rate), sampling_rate);
   const int first_row = -static_cast<int>(settling_time * sampling_rate), rows = static_cast<int>(motion.time.size());
   for (int row = first_row; row < rows; ++row) {
-    data->time = row / sampling_rate;  // exactly, not by the sum of steps
+    data->time = row / sampling_rate;  // exact, not accumulated over steps
     if (row >= 0) {
       mj_forward(model.get(), data.get());
-      record(*model, *data, places, static_cast<std::size_t>(row), motion);
+      record(*model, *data, addresses, static_cast<std::size_t>(row), motion);
     }
     for (int step = 0; step < substeps; ++step) mj_step(model.get(), data.get());
   }
-  controller_at_work = nullptr;
-  if (out_of_control(*data)) return error("the machine got out of control: a gentler script or another seed may help");
+  active_controller = nullptr;
+  if (is_unstable(*data)) return error("the simulation became unstable: a gentler script or another seed may help");
   return motion;
 }
 
 MachineMotion MujocoWorld::prescribe(const Drive& drive, double sampling_rate) const {
   const mjModel* model = engine_->model.get();
   const Data data(mj_makeData(model));
-  const std::vector<Readout> places = readouts(*model);
+  const std::vector<SensorAddresses> addresses = find_sensor_addresses(*model);
   MachineMotion motion = make_motion(machine(), row_count(drive.duration, sampling_rate), sampling_rate);
   for (std::size_t row = 0; row < motion.time.size(); ++row) {
     for (std::size_t k = 0; k < drive.joints.size(); ++k) {
@@ -258,7 +258,7 @@ MachineMotion MujocoWorld::prescribe(const Drive& drive, double sampling_rate) c
       data->qacc[k] = state.qdd;
     }
     mj_inverse(model, data.get());
-    record(*model, *data, places, row, motion);
+    record(*model, *data, addresses, row, motion);
   }
   return motion;
 }

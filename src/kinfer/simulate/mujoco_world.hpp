@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A machine in a real physics engine (MuJoCo): masses, joint torques, accelerometer, gyro and magnetometer sites.
 #pragma once
 
@@ -10,15 +11,15 @@
 
 namespace kinfer {
 
-/// How the joints are held to their drive.
+/// How the joints track their drive.
 enum class Servo {
-  stiff,  ///< computed torque: the drive is followed to rounding
-  soft    ///< a damped spring of 2.5 Hz on each joint: others sway when one moves
+  stiff,  ///< computed torque: follows the drive to rounding
+  soft    ///< a damped spring of 2.5 Hz on each joint: the others oscillate when one moves
 };
 
 class MujocoWorld {
  public:
-  /// The engine's own words where it does not understand the file.
+  /// An invalid file is an error with MuJoCo's own message.
   static Result<MujocoWorld> load(const std::string& mjcf);
   ~MujocoWorld();
   MujocoWorld(MujocoWorld&&) noexcept;
@@ -27,12 +28,12 @@ class MujocoWorld {
   /// Joints, segments and sensors as the engine compiled them.
   const Machine& machine() const;
 
-  /// Forward dynamics: torques move masses, the sensors say what they say. The machine settles before t = 0. The torque
-  /// is computed anew in each stage of the integrator; held over a step, it would make the accelerometers disagree with
-  /// the derivative of the gyros. An error where the machine gets out of control.
+  /// Forward dynamics with the engine's sensor signals. The machine settles before t = 0. The torque is recomputed in
+  /// each stage of the integrator; held over a step, it would make the accelerometers disagree with the derivative of
+  /// the gyros. An error if the simulation becomes unstable.
   Result<MachineMotion> drive(const Drive& drive, double sampling_rate, Servo servo) const;
 
-  /// Inverse dynamics: the joints are put where the drive wants them, with its rates and accelerations.
+  /// Inverse dynamics: the joints have exactly the positions, velocities and accelerations of the drive.
   MachineMotion prescribe(const Drive& drive, double sampling_rate) const;
 
  private:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/simulate/pose_set.hpp"
 
 #include <cmath>
@@ -11,9 +12,9 @@ VectorXd draw_joints(const Chain& chain, const std::vector<int>& moving, Rng& rn
   VectorXd q(static_cast<Eigen::Index>(moving.size()));
   for (std::size_t k = 0; k < moving.size(); ++k) {
     const Joint& joint = chain.joints[moving[k]];
-    const bool turns = joint.type == JointType::revolute;
-    const double low = std::isfinite(joint.lower) ? joint.lower : turns ? -170.0 * degree : 0.0;
-    const double high = std::isfinite(joint.upper) ? joint.upper : turns ? 170.0 * degree : 0.3;
+    const bool is_revolute = joint.type == JointType::revolute;
+    const double low = std::isfinite(joint.lower) ? joint.lower : is_revolute ? -170.0 * degree : 0.0;
+    const double high = std::isfinite(joint.upper) ? joint.upper : is_revolute ? 170.0 * degree : 0.3;
     q[static_cast<Eigen::Index>(k)] = rng.uniform(low, high);
   }
   return q;
@@ -28,9 +29,10 @@ Vec3 noise(Rng& rng, double sd) {
   return sd * Vec3(rng.normal(), rng.normal(), rng.normal());
 }
 
-/// A pose with independent errors, seen from a stand at the world's origin that has turned by w: the position errs by
-/// w × p, the orientation by w.
-void see_shaken(PoseSet& set, int row, const Pose& world_T_tool, const PoseSimulation& simulation, Rng& draws) {
+/// Measures a pose with independent errors from a stand at the world origin that has rotated by w: this adds w × p to
+/// the position error and w to the orientation error.
+void measure_from_shaking_stand(PoseSet& set, int row, const Pose& world_T_tool, const PoseSimulation& simulation,
+                                Rng& draws) {
   const Vec3& p = world_T_tool.position;
   const double sd = position_sd(simulation.instrument, p), turn_sd = simulation.instrument.sigma_angle;
   const Vec3 moved = noise(draws, sd), turned = noise(draws, turn_sd), shaken = noise(draws, simulation.shake);
@@ -42,7 +44,7 @@ void see_shaken(PoseSet& set, int row, const Pose& world_T_tool, const PoseSimul
   set.orientations.push_back({.row = row,
                               .orientation = quat_exp(shaken) * quat_exp(turned) * Quat(world_T_tool.rotation),
                               .sd = Vec3::Constant(std::hypot(turn_sd, simulation.shake)),
-                              .with_point = Mat3(variance * lever)});
+                              .covariance_with_point = Mat3(variance * lever)});
 }
 
 }  // namespace
@@ -60,10 +62,10 @@ Chain with_random_errors(const Chain& nominal, const Tolerances& tolerances, Rng
   return truth;
 }
 
-PoseSet seen_points(const Chain& truth, const MatrixXd& joints, const Instrument& instrument, Rng rng) {
+PoseSet simulate_points(const Chain& truth, const MatrixXd& joints, const Instrument& instrument, Rng rng) {
   const PoseEvaluator evaluator(truth, {});
   PoseSet set;
-  set.joint_names = reading_names(truth);
+  set.joint_names = active_joint_names(truth);
   set.joints = joints;
   for (int row = 0; row < joints.cols(); ++row) {
     const Vec3 p = evaluator.pose(joints.col(row)).position;
@@ -77,11 +79,11 @@ Result<PoseSet> simulate_pose_set(const Chain& truth, const PoseSimulation& simu
   const Instrument& instrument = simulation.instrument;
   if (simulation.shake > 0.0 && !(instrument.sigma > 0.0 && instrument.sigma_angle > 0.0))
     return error(
-        "a stand that shakes needs an instrument whose own errors, of position and of angle, are larger than 0");
-  const std::vector<int> moving = joints_with_reading(truth);
+        "a shaking stand needs an instrument whose own standard deviations of position and angle are larger than 0");
+  const std::vector<int> moving = active_joints(truth);
   const PoseEvaluator evaluator(truth, {});
   PoseSet set;
-  set.joint_names = reading_names(truth);
+  set.joint_names = active_joint_names(truth);
   set.joints.resize(static_cast<Eigen::Index>(moving.size()), simulation.poses);
   for (int row = 0; row < simulation.poses; ++row) {
     Rng draws = rng.stream(row);
@@ -99,7 +101,7 @@ Result<PoseSet> simulate_pose_set(const Chain& truth, const PoseSimulation& simu
     set.joints.col(row) = q;
     set.line.push_back(row + 2);
     if (simulation.shake > 0.0) {
-      see_shaken(set, row, pose, simulation, draws);
+      measure_from_shaking_stand(set, row, pose, simulation, draws);
       continue;
     }
     const double sd = position_sd(simulation.instrument, pose.position);

@@ -1,14 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kinfer/simulate/prescribed_motion.hpp"
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/kinematics/motion.hpp"
+#include "kinfer/kinematics/frame_motion.hpp"
 
 namespace kinfer {
 
 MachineMotion prescribed_motion(const Machine& machine, const Drive& drive, double sampling_rate) {
   return prescribed_motion(machine, drive.duration, sampling_rate, [&](double time) {
     std::vector<JointState> states;
-    for (const JointDrive& joint : drive.joints) states.push_back(state_at(joint, time));
+    for (const JointTrajectory& joint : drive.joints) states.push_back(state_at(joint, time));
     return states;
   });
 }
@@ -31,14 +32,14 @@ MachineMotion prescribed_motion(const Machine& machine, double duration, double 
         joint_motions(machine.chain, motion.q.col(column), motion.qd.col(column), motion.qdd.col(column));
     for (std::size_t s = 0; s < machine.sensors.size(); ++s) {
       const MountedSensor& mounted = machine.sensors[s];
-      const FrameMotion sensor = carried(frames[mounted.joint], mounted.segment_T_sensor);
+      const FrameMotion sensor = attached_frame_motion(frames[mounted.joint], mounted.segment_T_sensor);
       const Mat3 sensor_R_world = sensor.pose.rotation.transpose();
-      SensorMotion& says = motion.sensors[s];
-      says.world_R_sensor[row] = Quat(sensor.pose.rotation);
-      says.position[row] = sensor.pose.position;
-      says.force[row] = sensor_R_world * (sensor.acceleration - machine.chain.gravity);
-      says.rate[row] = sensor_R_world * sensor.omega;
-      says.field[row] = sensor_R_world * magnetic_field_world;
+      SensorMotion& signals = motion.sensors[s];
+      signals.world_R_sensor[row] = Quat(sensor.pose.rotation);
+      signals.position[row] = sensor.pose.position;
+      signals.force[row] = sensor_R_world * (sensor.acceleration - machine.chain.gravity);
+      signals.angular_velocity[row] = sensor_R_world * sensor.omega;
+      signals.field[row] = sensor_R_world * magnetic_field_world;
     }
   }
   return motion;

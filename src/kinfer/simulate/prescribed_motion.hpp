@@ -1,5 +1,6 @@
-// A machine that follows its drive exactly, by our own kinematics: no physics engine, no forces, a hundred times
-// faster.
+// SPDX-License-Identifier: Apache-2.0
+// Motion of a machine that follows its drive exactly, by kinematics alone: no physics engine, no forces, a hundred
+// times faster.
 #pragma once
 
 #include <functional>
@@ -9,10 +10,10 @@
 
 namespace kinfer {
 
-/// What the machine's perfect sensors say while every joint is exactly where the drive wants it.
+/// Signals of ideal sensors on the machine while every joint follows the drive exactly.
 MachineMotion prescribed_motion(const Machine& machine, const Drive& drive, double sampling_rate);
 
-/// The same for joints that do what `states` says, one state a reading of the machine.
+/// The same for joint trajectories given by `states`, one state per degree of freedom of the machine.
 using JointStates = std::function<std::vector<JointState>(double time)>;
 MachineMotion prescribed_motion(const Machine& machine, double duration, double sampling_rate,
                                 const JointStates& states);

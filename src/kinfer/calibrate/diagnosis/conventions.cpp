@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/diagnosis/conventions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "kinfer/kinematics/forward.hpp"
+
+namespace kinfer::calibrate {
+namespace {
+
+enum class Correction { apply, report_only };
+
+struct Hypothesis {
+  FindingKind kind;
+  std::string sentence, suggestion;
+  Correction correction = Correction::apply;
+  std::function<void(Chain&, PoseSet&)> apply;
+};
+
+bool is_revolute(const Chain& chain, int joint) {
+  return chain.joints[joint].type == JointType::revolute;
+}
+
+/// Scales the positions of joint k, measured and commanded.
+void scale_joint_position(PoseSet& data, Eigen::Index k, double factor) {
+  data.joints.row(k) *= factor;
+  if (data.commanded.size() > 0) data.commanded.row(k) *= factor;
+}
+
+void scale_points(PoseSet& data, double factor) {
+  for (PointMeasurement& point : data.points) {
+    point.position *= factor;
+    if (point.sd) *point.sd *= factor;
+  }
+  for (OrientationMeasurement& measured : data.orientations)
+    if (measured.covariance_with_point) *measured.covariance_with_point *= factor;
+}
+
+void add_offset(Joint& joint, double angle) {
+  if (auto* dh = std::get_if<DhLink>(&joint.link)) dh->theta += angle;
+  if (auto* mdh = std::get_if<MdhLink>(&joint.link)) mdh->theta += angle;
+  if (auto* urdf = std::get_if<UrdfLink>(&joint.link))
+    urdf->origin = Frame::from_pose({urdf->origin.pose().rotation * exp_so3(angle * urdf->axis), urdf->origin.xyz});
+}
+
+void add_unit_hypotheses(const Chain& chain, std::vector<Hypothesis>& list) {
+  const std::vector<int> moving = active_joints(chain);
+  const auto all = [&](JointType type, double factor) {
+    return [&chain, moving, type, factor](Chain&, PoseSet& data) {
+      for (std::size_t k = 0; k < moving.size(); ++k)
+        if (chain.joints[moving[k]].type == type) scale_joint_position(data, static_cast<Eigen::Index>(k), factor);
+    };
+  };
+  list.push_back({FindingKind::degrees_for_radians, "the joint readings are degrees, but were read as radians",
+                  "write the unit into the header: q1[deg], q2[deg], ...", Correction::apply,
+                  all(JointType::revolute, degree)});
+  list.push_back({FindingKind::radians_for_degrees, "the joint readings are radians, but were read as degrees",
+                  "write the unit into the header: q1[rad], q2[rad], ...", Correction::apply,
+                  all(JointType::revolute, 1.0 / degree)});
+  list.push_back({FindingKind::length_unit, "the measured positions are millimetres, but were read as metres",
+                  "write the unit into the header: x[mm], y[mm], z[mm]", Correction::apply,
+                  [](Chain&, PoseSet& data) { scale_points(data, 1e-3); }});
+  list.push_back({FindingKind::length_unit, "the measured positions are metres, but were read as millimetres",
+                  "write the unit into the header: x[m], y[m], z[m]", Correction::apply,
+                  [](Chain&, PoseSet& data) { scale_points(data, 1e3); }});
+  list.push_back({FindingKind::length_unit, "the measured positions are inches, but were read as millimetres",
+                  "convert them: kinfer knows m, mm and um", Correction::apply,
+                  [](Chain&, PoseSet& data) { scale_points(data, 25.4); }});
+  for (std::size_t k = 0; k < moving.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    const std::string& name = chain.joints[moving[k]].name;
+    const auto add = [&](FindingKind kind, const char* is, const char* read_as, const char* unit, double factor) {
+      list.push_back({kind, fmt::format("{} is in {}, but was read as {}", name, is, read_as),
+                      fmt::format("write its unit into the header: q{}[{}]", k + 1, unit), Correction::apply,
+                      [row, factor](Chain&, PoseSet& data) { scale_joint_position(data, row, factor); }});
+    };
+    if (is_revolute(chain, moving[k])) {
+      add(FindingKind::degrees_for_radians, "degrees", "radians", "deg", degree);
+      add(FindingKind::radians_for_degrees, "radians", "degrees", "rad", 1.0 / degree);
+    } else {
+      add(FindingKind::length_unit, "millimetres", "metres", "mm", 1e-3);
+      add(FindingKind::length_unit, "metres", "millimetres", "m", 1e3);
+    }
+  }
+}
+
+void add_joint_hypotheses(const Chain& chain, std::vector<Hypothesis>& list) {
+  const std::vector<int> moving = active_joints(chain);
+  for (const int j : moving) {
+    const std::string& name = chain.joints[j].name;
+    list.push_back({FindingKind::wrong_sign, fmt::format("{} counts in the other sense than the robot file says", name),
+                    fmt::format("give {} gain = {:g} in the robot file", name, -chain.joints[j].gain),
+                    Correction::apply, [j](Chain& c, PoseSet&) { c.joints[j].gain = -c.joints[j].gain; }});
+  }
+  for (const int j : moving) {
+    const std::string& name = chain.joints[j].name;
+    if (!is_revolute(chain, j)) continue;
+    for (const int offset : {90, -90, 180})
+      list.push_back({FindingKind::joint_offset, fmt::format("{} is {} deg off its zero in the robot file", name, offset),
+                      fmt::format("add {} deg to the zero position (theta) of {} in the robot file", offset, name),
+                      Correction::apply,
+                      [j, offset](Chain& c, PoseSet&) { add_offset(c.joints[j], offset * degree); }});
+  }
+}
+
+/// Swapped columns, and joints whose position counts from the world instead of the previous link.
+void add_relation_hypotheses(const Chain& chain, std::vector<Hypothesis>& list) {
+  const std::vector<int> moving = active_joints(chain);
+  for (std::size_t k = 0; k < moving.size(); ++k)
+    for (std::size_t m = 0; m < k; ++m) {
+      const int j = moving[k], i = moving[m];
+      if (chain.joints[i].type != chain.joints[j].type) continue;
+      const auto a = static_cast<Eigen::Index>(m), b = static_cast<Eigen::Index>(k);
+      list.push_back(
+          {FindingKind::columns_swapped,
+           fmt::format("the readings of {} and {} are exchanged", chain.joints[i].name, chain.joints[j].name),
+           fmt::format("exchange the headers of q{} and q{}", m + 1, k + 1), Correction::apply,
+           [a, b](Chain&, PoseSet& data) {
+             data.joints.row(a).swap(data.joints.row(b));
+             if (data.commanded.size() > 0) data.commanded.row(a).swap(data.commanded.row(b));
+           }});
+      if (m + 1 != k || !is_revolute(chain, j)) continue;
+      for (const int factor : {1, -1})
+        list.push_back({FindingKind::joint_coupled,
+                        fmt::format("{} moves {} {}: a belt or a parallel linkage couples them", chain.joints[j].name,
+                                    factor > 0 ? "with" : "against", chain.joints[i].name),
+                        fmt::format("give {} coupling = {{ {} = {} }} in the robot file", chain.joints[j].name,
+                                    chain.joints[i].name, factor),
+                        Correction::apply, [j, i, factor](Chain& c, PoseSet&) {
+                          c.joints[j].couplings.push_back({i, static_cast<double>(factor)});
+                        }});
+    }
+}
+
+std::vector<Hypothesis> hypotheses(const Chain& chain) {
+  std::vector<Hypothesis> list;
+  add_unit_hypotheses(chain, list);
+  add_joint_hypotheses(chain, list);
+  add_relation_hypotheses(chain, list);
+  list.push_back({FindingKind::mirrored, "the measured positions are a mirror image: their axes are not right-handed",
+                  "turn the sign of one of x, y, z, or exchange two of them", Correction::report_only,
+                  [](Chain&, PoseSet& data) {
+                    for (PointMeasurement& point : data.points) point.position.x() *= -1.0;
+                  }});
+  return list;
+}
+
+/// A set of hypotheses applied together, and the error that remains.
+struct Explanation {
+  std::vector<std::size_t> indices;  // ascending indices into the list of hypotheses
+  Chain chain;
+  PoseSet data;
+  double median_error = 0.0;
+  std::vector<std::vector<std::size_t>> others{};  // sets that explain the points equally well
+};
+
+class HypothesisSearch {
+ public:
+  explicit HypothesisSearch(const CalibrationTask& task)
+      : list_(hypotheses(task.nominal)),
+        max_plausible_error_(max_plausible_error(task)),
+        unmodified_{{}, task.nominal, thin_pose_set(task.data, rows), 0.0} {}
+
+  /// The smallest set of hypotheses that leaves a plausible error; nullopt if none is needed or found.
+  std::optional<Explanation> run() {
+    if (unmodified_.data.rows() < min_rows || !evaluate(unmodified_) ||
+        unmodified_.median_error <= max_plausible_error_)
+      return std::nullopt;
+    std::vector<Explanation> beam{unmodified_};
+    for (int depth = 0; depth < max_depth; ++depth) {
+      std::vector<Explanation> next;
+      for (const Explanation& base : beam) expand(base, next);
+      std::stable_sort(next.begin(), next.end(),
+                       [](const Explanation& a, const Explanation& b) { return a.median_error < b.median_error; });
+      if (next.empty()) return std::nullopt;
+      if (explains(next.front())) return first_equivalent(next);
+      if (next.size() > beam_width) next.erase(next.begin() + beam_width, next.end());
+      beam = std::move(next);
+    }
+    return std::nullopt;
+  }
+
+  const Hypothesis& operator[](std::size_t i) const { return list_[i]; }
+
+ private:
+  static constexpr std::size_t rows = 40, beam_width = 4;
+  static constexpr int min_rows = 8;   // base and tool are nine unknowns; the other equations must discriminate
+  static constexpr int max_depth = 3;  // simultaneous faults
+
+  static bool evaluate(Explanation& e) {
+    const auto fit = fit_frames_quickly(e.chain, e.data);
+    if (!fit) return false;
+    e.median_error = fit->median_error;
+    return std::isfinite(e.median_error);
+  }
+
+  /// Some faults are equivalent up to base and tool, such as a half turn of a wrist joint and the sign of the next one.
+  /// Of those that explain the points equally well: the first in the list, with the others as alternatives.
+  static Explanation first_equivalent(const std::vector<Explanation>& sorted) {
+    constexpr double as_good = 1.5;
+    std::vector<const Explanation*> equal;
+    for (const Explanation& e : sorted)
+      if (e.median_error <= as_good * sorted.front().median_error) equal.push_back(&e);
+    std::sort(equal.begin(), equal.end(), [](const auto* a, const auto* b) { return a->indices < b->indices; });
+    Explanation first = *equal.front();
+    for (std::size_t i = 1; i < equal.size(); ++i) first.others.push_back(equal[i]->indices);
+    return first;
+  }
+
+  void expand(const Explanation& base, std::vector<Explanation>& next) const {
+    const std::size_t first = base.indices.empty() ? 0 : base.indices.back() + 1;
+    for (std::size_t i = first; i < list_.size(); ++i) {
+      Explanation e = base;
+      e.indices.push_back(i);
+      list_[i].apply(e.chain, e.data);
+      if (evaluate(e)) next.push_back(std::move(e));
+    }
+  }
+
+  /// Plausible by the tolerances, or so much better than without that a poor nominal model must cause the rest.
+  bool explains(const Explanation& e) const {
+    constexpr double far_better = 0.05;
+    return e.median_error <= max_plausible_error_ ? e.median_error < 0.2 * unmodified_.median_error
+                                                  : e.median_error < far_better * unmodified_.median_error;
+  }
+
+  std::vector<Hypothesis> list_;
+  double max_plausible_error_;
+  Explanation unmodified_;
+};
+
+/// A reach of a few millimetres or a hundred metres: the robot file, not the measurement, has the wrong unit.
+void check_robot_size(DiagnosisState& state) {
+  const Chain& chain = state.task.nominal;
+  double reach = chain.tool.xyz.norm();
+  for (const JointPlacement& joint : joint_placements(chain, VectorXd::Zero(dof(chain))))
+    reach = std::max(reach, (joint.frame.position - chain.base.xyz).norm());
+  constexpr double smallest = 0.01, largest = 100.0;  // [m]
+  if (reach > smallest && reach < largest) return;
+  add_finding(state, {.kind = FindingKind::robot_length_unit,
+                      .severity = Severity::fault,
+                      .sentence = fmt::format("the robot reaches {:g} m by its file", reach),
+                      .suggestion = "check units = { length = ... } in the robot file"});
+}
+
+}  // namespace
+
+void check_conventions(DiagnosisState& state) {
+  check_robot_size(state);
+  if (state.task.data.points.empty()) return;
+  HypothesisSearch search(state.task);
+  const auto found = search.run();
+  if (!found) return;
+  for (const std::size_t i : found->indices) {
+    const Hypothesis& h = search[i];
+    const bool apply = h.correction == Correction::apply;
+    if (apply) h.apply(state.task.nominal, state.task.data);
+    std::string sentence = h.sentence;
+    for (const auto& other : found->others)
+      if (found->indices.size() == 1) sentence += "; or, which comes to the same, " + search[other.front()].sentence;
+    add_finding(state, {.kind = h.kind,
+                        .severity = Severity::fault,
+                        .sentence = sentence,
+                        .suggestion = h.suggestion,
+                        .applied = apply});
+  }
+}
+
+}  // namespace kinfer::calibrate

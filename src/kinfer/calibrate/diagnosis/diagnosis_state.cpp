@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/diagnosis/diagnosis_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kinfer/calibrate/parameters/parameter_sets.hpp"
+#include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/geometry/fit.hpp"
+#include "kinfer/geometry/statistics.hpp"
+
+namespace kinfer::calibrate {
+namespace {
+
+std::string describe_range(int first, int last) {
+  if (last == first) return fmt::format("{}", first);
+  return last == first + 1 ? fmt::format("{}, {}", first, last) : fmt::format("{}-{}", first, last);
+}
+
+/// Base from rigid alignment of the measured points with those predicted by the chain.
+Chain with_aligned_base(Chain chain, const PoseSet& data) {
+  chain.base = Frame{};
+  const EvaluatedPoses at = evaluate_poses(chain, {}, data, Derivative::no);
+  std::vector<Vec3> measured, predicted;
+  for (const PointMeasurement& point : data.points) {
+    measured.push_back(point.position);
+    predicted.push_back(at.pose[point.row] *
+                        (point.target < 0 ? Vec3::Zero().eval() : chain.targets[point.target].xyz));
+  }
+  chain.base = Frame::from_pose(align_points(measured, predicted));
+  return chain;
+}
+
+/// The set with its point measurements only.
+PoseSet keep_points_only(PoseSet data) {
+  data.orientations.clear(), data.distances.clear(), data.contacts.clear(), data.pairs.clear();
+  data.plane_contacts.clear(), data.tilts.clear();
+  return data;
+}
+
+/// Fits base and tool with a robust loss; few iterations, since correct data need no more.
+FrameFit refine_base_and_tool(Chain chain, const PoseSet& data) {
+  ParameterSet frames = frame_parameters(chain, data);
+  for (Parameter& parameter : frames.parameters) parameter.prior_sd = std::numeric_limits<double>::infinity();
+  LeastSquaresOptions options;
+  options.loss = Loss::cauchy;
+  options.max_iterations = 12;
+  constexpr int rounds = 3;  // the noise level decreases with the residuals
+  FrameFit fit{chain, median(point_errors(chain, data))};
+  for (int i = 0; i < rounds && std::isfinite(fit.median_error); ++i) {
+    Weights weights;
+    weights.point_sd.assign(data.points.size(), Vec3::Constant(std::max(fit.median_error, 1e-9)));
+    const Chain from = with_small_rotations_folded(fit.chain);
+    fit.chain =
+        unpack(frames, from, least_squares(pose_residuals(from, frames, data, weights), pack(frames, from), options).x);
+    const double before = fit.median_error;
+    fit.median_error = median(point_errors(fit.chain, data));
+    if (fit.median_error > 0.9 * before) break;
+  }
+  return fit;
+}
+
+}  // namespace
+
+void add_finding(DiagnosisState& state, Finding finding) {
+  const std::vector<int>& line = state.task.data.line;
+  for (const int row : finding.rows)
+    if (!line.empty()) finding.lines.push_back(line[row]);
+  state.findings.push_back(std::move(finding));
+}
+
+std::string describe_rows(const std::vector<int>& rows) {
+  constexpr std::size_t most = 12;  // row ranges listed in a sentence
+  std::vector<std::string> pieces;
+  for (std::size_t i = 0; i < rows.size();) {
+    std::size_t end = i;
+    while (end + 1 < rows.size() && rows[end + 1] == rows[end] + 1) ++end;
+    pieces.push_back(describe_range(rows[i], rows[end]));
+    i = end + 1;
+  }
+  std::string text = rows.size() == 1 ? "row " : "rows ";
+  const std::size_t shown = std::min(most, pieces.size());
+  for (std::size_t i = 0; i < shown; ++i)
+    text += (i == 0 ? "" : i + 1 == shown && shown == pieces.size() ? " and " : ", ") + pieces[i];
+  return shown == pieces.size() ? text : text + fmt::format(" and more, {} in all", rows.size());
+}
+
+std::optional<FrameFit> fit_frames_quickly(const Chain& nominal, const PoseSet& all) {
+  const PoseSet data = keep_points_only(all);
+  constexpr std::size_t fewest = 4;
+  if (data.points.size() < fewest) return std::nullopt;
+  Chain bare = nominal;
+  bare.tool.xyz.setZero();
+  std::optional<FrameFit> best;
+  for (const Chain& start : {nominal, bare}) {
+    const FrameFit fit = refine_base_and_tool(with_aligned_base(start, data), data);
+    if (!best || fit.median_error < best->median_error) best = fit;
+  }
+  return std::isfinite(best->median_error) ? best : std::nullopt;
+}
+
+PoseSet thin_pose_set(const PoseSet& data, std::size_t most) {
+  std::vector<int> rows;
+  for (const PointMeasurement& point : data.points)
+    if (rows.empty() || rows.back() != point.row) rows.push_back(point.row);
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  std::vector<int> kept;
+  const std::size_t count = std::min(most, rows.size());
+  for (std::size_t i = 0; i < count; ++i) kept.push_back(rows[i * rows.size() / count]);
+  PoseSet thin = select(data, kept);
+  thin.orientations.clear();
+  return thin;
+}
+
+double max_plausible_error(const CalibrationTask& task) {
+  ParameterSet set = geometric_parameters(task.nominal, task.data, task.tolerances);
+  std::erase_if(set.parameters, [](const Parameter& p) { return p.at.owner == Owner::base; });
+  const PoseSet data = thin_pose_set(task.data, 40);
+  const EvaluatedPoses at = evaluate_poses(task.nominal, set, data, Derivative::yes);
+  VectorXd sd(set.free_count());
+  for (Eigen::Index k = 0; k < sd.size(); ++k) sd[k] = set.free()[k]->prior_sd;
+  double squares = 0.0;
+  for (const Twists& twist : at.twists) squares += (twist.topRows<3>() * sd.asDiagonal()).squaredNorm();
+  constexpr double generous = 4.0;
+  const double sigma = task.instrument ? task.instrument->sigma : 0.0;
+  return generous * (std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, at.twists.size()))) + sigma);
+}
+
+}  // namespace kinfer::calibrate

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// State shared by the checks of the diagnosis, and the quick fit of base and tool that they use.
+#pragma once
+
+#include <optional>
+
+#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/evidence/findings.hpp"
+
+namespace kinfer::calibrate {
+
+/// The task with all corrections so far, and the findings.
+struct DiagnosisState {
+  CalibrationTask task;
+  std::vector<Finding> findings;
+};
+
+/// Adds a finding and looks up the line numbers of its rows (no rows: the whole set).
+void add_finding(DiagnosisState& state, Finding finding);
+
+/// "row 3", "rows 3, 5 and 9", "rows 12-40 and 44"
+std::string describe_rows(const std::vector<int>& rows);
+
+/// The nominal chain with base and tool fitted to the points alone, and the median remaining error [m]. Fast rather
+/// than exact: it only has to distinguish millimetres from decimetres, hundreds of times.
+struct FrameFit {
+  Chain chain;
+  double median_error = 0.0;
+};
+std::optional<FrameFit> fit_frames_quickly(const Chain& nominal, const PoseSet& data);
+
+/// At most `most` of the rows with points, evenly spread, without orientations.
+PoseSet thin_pose_set(const PoseSet& data, std::size_t most);
+
+/// Largest point error [m] that tolerances and instrument can explain, with base and tool refitted: four times the
+/// expected rms.
+double max_plausible_error(const CalibrationTask& task);
+
+}  // namespace kinfer::calibrate

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/parameters/population_prior.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "kinfer/base/expect.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer::calibrate {
+
+namespace {
+
+/// The free joint parameters: their indices, nominal values and tolerances.
+struct JointParameters {
+  std::vector<Eigen::Index> index;
+  std::vector<ParameterAddress> address;
+  VectorXd mean, tolerance;
+};
+
+JointParameters joint_parameters(const ParameterSet& set) {
+  JointParameters numbers;
+  std::vector<double> mean, tolerance;
+  const auto free = set.free();
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    if (free[k]->at.owner != Owner::joint || !std::isfinite(free[k]->prior_sd)) continue;
+    numbers.index.push_back(static_cast<Eigen::Index>(k));
+    numbers.address.push_back(free[k]->at);
+    mean.push_back(free[k]->nominal), tolerance.push_back(free[k]->prior_sd);
+  }
+  numbers.mean = Eigen::Map<const VectorXd>(mean.data(), static_cast<Eigen::Index>(mean.size()));
+  numbers.tolerance = Eigen::Map<const VectorXd>(tolerance.data(), static_cast<Eigen::Index>(tolerance.size()));
+  return numbers;
+}
+
+/// Square root R of the information matrix, RᵀR = covariance⁻¹: the transposed Cholesky factor of the inverse.
+MatrixXd information_root(const MatrixXd& covariance) {
+  const auto inverse = invert_spd(covariance);
+  KINFER_EXPECT(inverse, "the tolerances make every fleet's covariance positive definite");
+  return cholesky(*inverse)->transpose();
+}
+
+}  // namespace
+
+ParameterSet with_population_prior(ParameterSet set, std::span<const Chain> robot_population) {
+  if (robot_population.empty()) return set;
+  const JointParameters numbers = joint_parameters(set);
+  const Eigen::Index n = numbers.mean.size();
+  const double count = 1.0 + static_cast<double>(robot_population.size());
+  MatrixXd deviation(n, static_cast<Eigen::Index>(robot_population.size()));  // in tolerances
+  for (std::size_t robot = 0; robot < robot_population.size(); ++robot)
+    for (Eigen::Index i = 0; i < n; ++i)
+      deviation(i, static_cast<Eigen::Index>(robot)) =
+          (value_at(robot_population[robot], numbers.address[i]) - numbers.mean[i]) / numbers.tolerance[i];
+  const VectorXd shift = deviation.rowwise().sum() / count;
+  deviation.colwise() -= shift;
+  const MatrixXd covariance = (MatrixXd::Identity(n, n) + deviation * deviation.transpose()) / count;
+  const MatrixXd root = information_root(covariance) * numbers.tolerance.cwiseInverse().asDiagonal();
+
+  set.prior_sqrt_information = prior_sqrt_information_of(set);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j) set.prior_sqrt_information(numbers.index[i], numbers.index[j]) = root(i, j);
+  Eigen::Index i = 0;
+  for (Parameter& parameter : set.parameters) {
+    if (i == n || !parameter.free || !(parameter.at == numbers.address[i])) continue;
+    parameter.nominal += shift[i] * numbers.tolerance[i];
+    parameter.prior_sd = std::sqrt(covariance(i, i)) * numbers.tolerance[i];
+    ++i;
+  }
+  return set;
+}
+
+Chain with_joint_parameters_of(const Chain& chain, const Chain& earlier, const ParameterSet& set) {
+  Chain result = chain;
+  for (const Parameter& parameter : set.parameters)
+    if (parameter.at.owner == Owner::joint) set_value_at(result, parameter.at, value_at(earlier, parameter.at));
+  return result;
+}
+
+bool have_same_joints(const Chain& a, const Chain& b) {
+  if (a.joints.size() != b.joints.size()) return false;
+  for (std::size_t j = 0; j < a.joints.size(); ++j)
+    if (a.joints[j].type != b.joints[j].type || a.joints[j].link.index() != b.joints[j].link.index()) return false;
+  return true;
+}
+
+}  // namespace kinfer::calibrate

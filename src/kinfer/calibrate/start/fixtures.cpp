@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/start/fixtures.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/geometry/fit.hpp"
+#include "kinfer/geometry/statistics.hpp"
+
+namespace kinfer::calibrate {
+namespace {
+
+template <class Named>
+int find_by_name(const std::vector<Named>& list, const std::string& name) {
+  const auto found = std::find_if(list.begin(), list.end(), [&](const Named& entry) { return entry.name == name; });
+  return found == list.end() ? -1 : static_cast<int>(found - list.begin());
+}
+
+/// The entries in the order of `names`, then the others.
+template <class Named>
+std::vector<Named> ordered_by_name(const std::vector<std::string>& names, const std::vector<Named>& known) {
+  std::vector<Named> ordered;
+  for (const std::string& name : names) {
+    const int place = find_by_name(known, name);
+    ordered.push_back(place >= 0 ? known[place] : Named{.name = name});
+  }
+  for (const Named& entry : known)
+    if (find_by_name(ordered, entry.name) < 0) ordered.push_back(entry);
+  return ordered;
+}
+
+void order_fixtures(Fixtures& fixtures, const PoseSet& data) {
+  const std::vector<Target> before = fixtures.sockets;
+  fixtures.sockets = ordered_by_name(data.sockets, before);
+  fixtures.planes = ordered_by_name(data.planes, fixtures.planes);
+  for (SocketDistance& known : fixtures.socket_distances)
+    for (int* index : {&known.a, &known.b}) *index = find_by_name(fixtures.sockets, before[*index].name);
+}
+
+std::string name_of(const PoseSet& data, const std::vector<int>& index, const std::vector<std::string>& names,
+                    Eigen::Index row) {
+  if (data.rows() == 0 || index.empty() || index[row] < 0) return {};
+  return names[index[row]];
+}
+
+/// The set-up of the chain's own base and tool: as given by the chain, or the first one where all rows name a set-up.
+std::string own_setup(const Chain& chain, const PoseSet& data) {
+  if (!chain.setup.empty() || data.setup.empty()) return chain.setup;
+  if (std::find(data.setup.begin(), data.setup.end(), -1) != data.setup.end()) return {};
+  return data.setups[data.setup.front()];
+}
+
+/// Index of the mounting for a set-up and a tip (−1: the chain's own); a new mounting is added to the chain.
+Result<int> find_or_add_mounting(Chain& chain, const std::string& setup, const std::string& tip) {
+  const bool own_setup = setup.empty() || setup == chain.setup;
+  const int tip_joint = tip.empty() ? chain.tip_joint() : find_by_name(chain.joints, tip);
+  if (tip_joint < 0) return error("the pose set names the tip \"{}\", but no joint of the robot has this name", tip);
+  const bool own_tip = tip_joint == chain.tip_joint();
+  if (own_setup && own_tip) return -1;
+  const std::string name = own_tip ? setup : own_setup ? tip : setup + "/" + tip;
+  const int known = find_by_name(chain.mountings, name);
+  if (known >= 0) return known;
+  RobotMounting mounting{.name = name, .tool = chain.tool, .tip = own_tip ? -1 : tip_joint};
+  if (!own_setup) mounting.base = chain.base;
+  if (const int arm = find_by_name(chain.mountings, tip); arm >= 0) mounting.tool = chain.mountings[arm].tool;
+  chain.mountings.push_back(mounting);
+  return static_cast<int>(chain.mountings.size()) - 1;
+}
+
+std::vector<Vec3> tool_points(const Chain& chain, const PoseSet& data) {
+  std::vector<Vec3> points;
+  for (const Pose& pose : evaluate_poses(chain, {}, data, Derivative::no).pose) points.push_back(pose.position);
+  return points;
+}
+
+Vec3 median_point(const std::vector<Vec3>& points) {
+  Vec3 middle;
+  for (int k = 0; k < 3; ++k) {
+    std::vector<double> values;
+    for (const Vec3& p : points) values.push_back(p[k]);
+    middle[k] = median(std::move(values));
+  }
+  return middle;
+}
+
+Vec3 mean_point(const std::vector<Vec3>& points) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& p : points) sum += p;
+  return sum / static_cast<double>(points.size());
+}
+
+void place(Plane& plane, const std::vector<Vec3>& points) {
+  const PlaneFit fit = fit_plane(points);
+  const Vec3 u = any_perpendicular(fit.normal);
+  plane.rotation << u, fit.normal.cross(u), fit.normal;
+  plane.small_rotation.setZero();
+  plane.offset = fit.normal.dot(fit.point);
+}
+
+/// Tool points grouped by socket or by plane.
+template <class Contact>
+std::vector<std::vector<Vec3>> grouped(const std::vector<Contact>& contacts, int Contact::*of, std::size_t groups,
+                                       const std::vector<Vec3>& points) {
+  std::vector<std::vector<Vec3>> lists(groups);
+  for (const Contact& contact : contacts) lists[contact.*of].push_back(points[contact.row]);
+  return lists;
+}
+
+}  // namespace
+
+Result<DataWithFixtures> with_fixtures(const Chain& given, const PoseSet& data) {
+  DataWithFixtures result{given, data};
+  Chain& chain = result.chain;
+  for (const DistanceMeasurement& wire : data.distances)
+    if (wire.anchor >= static_cast<int>(chain.fixtures.anchors.size()))
+      return error("a distance is measured from anchor {}, but the robot file lists {} anchors", wire.anchor + 1,
+                   chain.fixtures.anchors.size());
+  order_fixtures(chain.fixtures, data);
+  chain.setup = own_setup(chain, data);
+  if (data.setups.empty() && data.tips.empty()) return result;
+  result.data.mounting.assign(data.rows(), -1);
+  for (Eigen::Index row = 0; row < data.rows(); ++row) {
+    KINFER_TRY(index, find_or_add_mounting(chain, name_of(data, data.setup, data.setups, row),
+                                           name_of(data, data.tip, data.tips, row)));
+    result.data.mounting[row] = index;
+  }
+  return result;
+}
+
+Chain with_initial_fixtures(const Chain& chain, const PoseSet& data) {
+  Chain result = chain;
+  Fixtures& fixtures = result.fixtures;
+  if (data.contacts.empty() && data.plane_contacts.empty()) return result;
+  const std::vector<Vec3> points = tool_points(chain, data);
+  const auto in_sockets = grouped(data.contacts, &SocketContact::socket, fixtures.sockets.size(), points);
+  for (std::size_t i = 0; i < in_sockets.size(); ++i)
+    if (!in_sockets[i].empty()) fixtures.sockets[i].xyz = median_point(in_sockets[i]);
+  const auto on_planes = grouped(data.plane_contacts, &PlaneContact::plane, fixtures.planes.size(), points);
+  for (std::size_t i = 0; i < on_planes.size(); ++i)
+    if (on_planes[i].size() >= 3) place(fixtures.planes[i], on_planes[i]);
+  return result;
+}
+
+Chain with_unfitted_fixtures(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& evaluated) {
+  Chain result = chain;
+  Fixtures& fixtures = result.fixtures;
+  if (evaluated.contacts.empty() && evaluated.plane_contacts.empty()) return result;
+  std::set<int> sockets, planes;
+  for (const SocketContact& contact : fitted_rows.contacts) sockets.insert(contact.socket);
+  for (const PlaneContact& contact : fitted_rows.plane_contacts) planes.insert(contact.plane);
+  const std::vector<Vec3> points = tool_points(chain, evaluated);
+  const auto in_sockets = grouped(evaluated.contacts, &SocketContact::socket, fixtures.sockets.size(), points);
+  for (std::size_t i = 0; i < in_sockets.size(); ++i)
+    if (!in_sockets[i].empty() && !sockets.contains(static_cast<int>(i)))
+      fixtures.sockets[i].xyz = mean_point(in_sockets[i]);
+  const auto on_planes = grouped(evaluated.plane_contacts, &PlaneContact::plane, fixtures.planes.size(), points);
+  for (std::size_t i = 0; i < on_planes.size(); ++i)
+    if (on_planes[i].size() >= 3 && !planes.contains(static_cast<int>(i))) place(fixtures.planes[i], on_planes[i]);
+  return result;
+}
+
+}  // namespace kinfer::calibrate

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/terms/extrapolation_splits.hpp"
+
+#include <algorithm>
+
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer::calibrate {
+namespace {
+
+/// Joint positions minus their mean, scaled to unit norm; zero for joints that do not move.
+MatrixXd standardised(const MatrixXd& joints) {
+  MatrixXd z = joints.colwise() - joints.rowwise().mean();
+  for (Eigen::Index k = 0; k < z.rows(); ++k) {
+    const double spread = z.row(k).norm();
+    z.row(k) *= spread > 1e-9 ? 1.0 / spread : 0.0;
+  }
+  return z;
+}
+
+Split halved(const VectorXd& along, bool hold_out_upper) {
+  const double middle = median({along.begin(), along.end()});
+  Split split;
+  for (int row = 0; row < along.size(); ++row)
+    ((along[row] > middle) == hold_out_upper ? split.holdout : split.train).push_back(row);
+  return split;
+}
+
+}  // namespace
+
+std::vector<Split> extrapolation_splits(const PoseSet& data, int fewest) {
+  std::vector<Split> splits;
+  if (data.rows() < 2 * fewest) return splits;
+  const MatrixXd z = standardised(data.joints);
+  const SymmetricEigen directions = symmetric_eigen(z * z.transpose());
+  const Eigen::Index dof = z.rows();
+  for (Eigen::Index k = 0; k < std::min<Eigen::Index>(2, dof); ++k) {
+    const VectorXd along = z.transpose() * directions.vectors.col(dof - 1 - k);
+    for (const bool upper : {true, false})
+      if (Split split = halved(along, upper); static_cast<int>(split.train.size()) >= fewest && !split.holdout.empty())
+        splits.push_back(std::move(split));
+  }
+  return splits;
+}
+
+}  // namespace kinfer::calibrate

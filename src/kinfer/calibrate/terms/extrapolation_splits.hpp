@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Splits that test a model's extrapolation to joint positions far from the fitted ones.
+#pragma once
+
+#include <vector>
+
+#include "kinfer/measurement/pose_set.hpp"
+#include "kinfer/measurement/split.hpp"
+
+namespace kinfer::calibrate {
+
+/// Four splits: the rows are halved along the first and along the second principal direction of the joint positions
+/// (each standardised), and each half is held out once. Random folds test interpolation between the fitted poses,
+/// these splits test extrapolation beyond them. None where fewer than `fewest` rows would be left to fit. `select`
+/// drops ball-bar measurements whose two rows fall on different sides of a split.
+std::vector<Split> extrapolation_splits(const PoseSet& data, int fewest = 15);
+
+}  // namespace kinfer::calibrate

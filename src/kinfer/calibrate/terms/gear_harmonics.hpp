@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Periodic joint errors of unknown order: spectral lines of the residuals over each joint's angle.
+#pragma once
+
+#include <vector>
+
+#include "kinfer/evidence/estimate.hpp"
+#include "kinfer/measurement/pose_set.hpp"
+
+namespace kinfer::calibrate {
+
+struct SpectralLine {
+  int joint = 0;       ///< index into Chain::joints
+  double order = 0.0;  ///< periods per revolution of the joint
+  double improvement =
+      0.0;  ///< reduction of the sum of squared normalised residuals by a sine and a cosine of that order
+};
+
+/// The statistically significant lines, strongest first, at most `most`. Orders from 3 per revolution up to those of
+/// motors with high gear ratios are tested, in steps that the joint's range can resolve. Point residuals only.
+std::vector<SpectralLine> find_gear_harmonics(const Estimate& fitted, const PoseSet& rows, int most = 12);
+
+}  // namespace kinfer::calibrate

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/arguments.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace kinfer::cli {
+
+CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& summary,
+                      const std::string& footer) {
+  CLI::App* verb = program.add_subcommand(name, summary);
+  verb->footer("\n" + footer);
+  return verb;
+}
+
+void add_text(CLI::App& verb, const std::string& name, std::string& value, const std::string& help, Requirement need,
+              const std::string& placeholder) {
+  CLI::Option* option = verb.add_option(name, value, help)->type_name(placeholder);
+  if (need == Requirement::required)
+    option->required();
+  else if (!value.empty())
+    option->capture_default_str();
+}
+
+void add_texts(CLI::App& verb, const std::string& name, std::vector<std::string>& values, const std::string& help,
+               Requirement need, const std::string& placeholder) {
+  CLI::Option* option = verb.add_option(name, values, help)->type_name(placeholder);
+  if (need == Requirement::required) option->required();
+}
+
+void add_choice(CLI::App& verb, const std::string& name, std::string& value, const std::vector<std::string>& allowed,
+                const std::string& help) {
+  verb.add_option(name, value, help)->check(CLI::IsMember(allowed))->capture_default_str();
+}
+
+void add_count(CLI::App& verb, const std::string& name, int& value, int lowest, int highest, const std::string& help) {
+  CLI::Validator in_range = CLI::Range(lowest, highest);
+  in_range.description("");  // keeps the help line short; the error message states the range
+  verb.add_option(name, value, help)->type_name("N")->check(in_range)->capture_default_str();
+}
+
+void add_number(CLI::App& verb, const std::string& name, double& value, const std::string& help) {
+  verb.add_option(name, value, help)->capture_default_str();
+}
+
+void add_number(CLI::App& verb, const std::string& name, double& value, double lowest, double highest,
+                const std::string& help) {
+  CLI::Validator in_range = CLI::Range(lowest, highest);
+  in_range.description("");
+  verb.add_option(name, value, help)->check(in_range)->capture_default_str();
+}
+
+void add_number(CLI::App& verb, const std::string& name, double& value, bool& given, const std::string& help) {
+  verb.add_option(name, value, help)->each([&given](const std::string&) { given = true; });
+}
+
+void add_seed(CLI::App& verb, const std::string& name, std::uint64_t& value, const std::string& help) {
+  verb.add_option(name, value, help)->capture_default_str();
+}
+
+void add_flag(CLI::App& verb, const std::string& name, bool& value, const std::string& help) {
+  verb.add_flag(name, value, help);
+}
+
+bool was_chosen(const CLI::App& verb) {
+  return verb.parsed();
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Command-line options of a verb: a thin wrapper around CLI11, whose header costs ten seconds per including file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace kinfer::cli {
+
+enum class Requirement { optional, required };
+
+/// A verb of the program with its help text; `footer` shows an example.
+CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& summary,
+                      const std::string& footer);
+
+// Each binds `value`, which must outlive the run of the verb; its current content is the default shown in the help.
+void add_text(CLI::App& verb, const std::string& name, std::string& value, const std::string& help,
+              Requirement need = Requirement::optional, const std::string& placeholder = "TEXT");
+void add_texts(CLI::App& verb, const std::string& name, std::vector<std::string>& values, const std::string& help,
+               Requirement need = Requirement::optional, const std::string& placeholder = "TEXT");
+void add_choice(CLI::App& verb, const std::string& name, std::string& value, const std::vector<std::string>& allowed,
+                const std::string& help);
+void add_count(CLI::App& verb, const std::string& name, int& value, int lowest, int highest, const std::string& help);
+void add_number(CLI::App& verb, const std::string& name, double& value, const std::string& help);
+void add_number(CLI::App& verb, const std::string& name, double& value, double lowest, double highest,
+                const std::string& help);
+/// A number without default; `given` tells whether the option was used.
+void add_number(CLI::App& verb, const std::string& name, double& value, bool& given, const std::string& help);
+void add_seed(CLI::App& verb, const std::string& name, std::uint64_t& value, const std::string& help);
+void add_flag(CLI::App& verb, const std::string& name, bool& value, const std::string& help);
+
+bool was_chosen(const CLI::App& verb);
+
+}  // namespace kinfer::cli

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/calibration_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace kinfer::cli {
+namespace {
+
+std::string table_row(const char* what, const ErrorStatistics& s, double scale) {
+  return fmt::format("  {:<34} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>6}\n", what, scale * s.mean, scale * s.rms,
+                     scale * s.sd, scale * s.max, s.n);
+}
+
+std::string fit_table(const char* title, const ChainFit& nominal, const ChainFit& before, const ChainFit& after,
+                      TrainHoldout ChainFit::*kind, double scale) {
+  std::string text = fmt::format("  {:<34} {:>9} {:>9} {:>9} {:>9} {:>6}\n", title, "mean", "rms", "sd", "max", "n");
+  text += table_row("as nominal", (nominal.*kind).holdout, scale);
+  text += table_row("base and tool refitted, not fitted", (before.*kind).holdout, scale);
+  text += table_row("calibrated, not fitted", (after.*kind).holdout, scale);
+  if (const ErrorStatistics& all = (after.*kind).holdout_all_rows; all.n > (after.*kind).holdout.n)
+    text += table_row("  the same with the wrong rows", all, scale);
+  text += table_row("calibrated, fitted", (after.*kind).train, scale);
+  return text + "\n";
+}
+
+/// Display units: degrees and millimetres; other quantities unscaled.
+struct Shown {
+  double factor;
+  const char* unit;
+};
+Shown shown(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::length:
+      return {1e3, "mm"};
+    case Quantity::angle:
+      return {1.0 / degree, "deg"};
+    default:
+      return {1.0, unit(quantity).data()};
+  }
+}
+
+std::string parameter_table(const Estimate& estimate) {
+  std::string text =
+      fmt::format("  {:<14} {:>13} {:>13} {:>11} {:>10}\n", "parameter", "nominal", "error", "sd", "unit");
+  for (const ParameterEstimate& p : estimate.values) {
+    const auto [factor, unit_name] = shown(p.quantity);
+    text += fmt::format("  {:<14} {:>13.4f} {:>+13.4f} {:>11.4f} {:>10}{}\n", p.name, factor * p.nominal,
+                        factor * (p.value - p.nominal), factor * p.sd, unit_name,
+                        p.identifiable ? "" : "   not determined");
+  }
+  return text + "\n";
+}
+
+template <class List, class Words>
+std::string bullet_list(const char* title, const List& list, std::size_t most, Words words) {
+  if (list.empty()) return "";
+  std::string text = fmt::format("{}\n", title);
+  for (std::size_t i = 0; i < std::min(most, list.size()); ++i) text += "  - " + words(list[i]) + "\n";
+  if (list.size() > most) text += fmt::format("  - and {} more (evidence.json lists all)\n", list.size() - most);
+  return text + "\n";
+}
+
+std::string ladder_table(const ModelSelection& model_selection) {
+  if (model_selection.model_terms.size() < 2) return "";
+  std::string text = fmt::format("Model: {}.\n  {:<14} {:>11} {:>11} {:>11}\n", model_selection.selected, "rung [mm]",
+                                 "fitted", "not fitted", "worst");
+  for (const SelectionStep& r : model_selection.model_terms) {
+    if (r.skipped)
+      text += fmt::format("  {:<14} {:>11} {:>11} {:>11}   {}\n", r.name, "-", "-", "-", r.reason);
+    else
+      text += fmt::format("  {:<14} {:>11.4f} {:>11.4f} {:>11.4f}   {}\n", r.name, 1e3 * r.train.mean,
+                          1e3 * r.holdout.mean, 1e3 * r.holdout.max, r.reason);
+  }
+  return text + "\n";
+}
+
+std::string search_lines(const SearchSummary& search) {
+  if (search.method == "lm") return "";
+  std::string text = fmt::format("Searched by {}: {} iterations, {} evaluations, {}.\n", search.method,
+                                 search.iterations, search.evaluations, sentence(search.stop));
+  if (search.swarm_comparison.empty()) return text + "\n";
+  text += "Iterations to the least-squares optimum: ";
+  for (const SearchRun& run : search.swarm_comparison)
+    text += fmt::format("{}{} {}", &run == &search.swarm_comparison.front() ? "" : "; ", run.name,
+                        run.iterations < 0 ? "not reached" : fmt::format("{}", run.iterations));
+  return text + ".\n\n";
+}
+
+}  // namespace
+
+std::string calibration_summary(const Calibration& c) {
+  const Estimate& e = c.estimate;
+  std::string text = c.verdict + "\n\n";
+  text += fmt::format("Held out: {}.\n", c.holdout);
+  text += fit_table((c.measured == "position" ? "tool position [mm]" : c.measured + " [mm]").c_str(), c.nominal,
+                    c.before, c.after, &ChainFit::position, 1e3);
+  if (c.after.orientation.train.n > 0)
+    text += fit_table("tool orientation [deg]", c.nominal, c.before, c.after, &ChainFit::orientation, 1.0 / degree);
+  text += ladder_table(c.model_selection);
+  text += search_lines(e.search);
+  text += parameter_table(e);
+  text += fmt::format("The data determine {} of {} combinations of parameters. Noise level {:.4f} mm",
+                      e.identifiability.rank, e.values.size(), 1e3 * e.sigma);
+  text += e.chi2_per_n ? fmt::format("; chi2/n {:.2f} against the instrument (1 is good).\n", *e.chi2_per_n)
+                       : " per axis, judged from the residuals.\n";
+  text += fmt::format("Expected error of the corrected model itself: {:.4f} mm rms over these poses.\n\n",
+                      1e3 * e.predicted_error);
+  const auto same = [](const std::string& s) { return s; };
+  text += bullet_list("What these poses cannot tell (tolerances hold them):", e.identifiability.confounded, 12, same);
+  text += bullet_list("Rows not believed:", e.outliers, 12,
+                      [](const Outlier& o) { return fmt::format("row {} (line {}): {}", o.row, o.line, o.reason); });
+  text += bullet_list("Noticed:", c.notes, 20, same);
+  return text;
+}
+
+std::string statistics_line(const ErrorStatistics& s) {
+  return fmt::format("mean {:.4f}  rms {:.4f}  max {:.4f} mm over {}", 1e3 * s.mean, 1e3 * s.rms, 1e3 * s.max, s.n);
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/common.hpp"
+
+#include <fmt/chrono.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "kinfer/base/parallel.hpp"
+#include "kinfer/base/sha256.hpp"
+#include "kinfer/base/version.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
+#include "kinfer/io/text/text_file.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+std::vector<std::string>& command_line() {
+  static std::vector<std::string> words;  // set once by main
+  return words;
+}
+
+}  // namespace
+
+void store_command_line(int argc, char** argv) {
+  command_line().assign(argv, argv + argc);
+}
+
+void add_quiet_option(CLI::App& verb, bool& quiet) {
+  add_flag(verb, "--quiet", quiet, "No progress, no summary; errors are still printed");
+}
+
+void add_common_options(CLI::App& verb, CommonOptions& options) {
+  add_flag(verb, "--json", options.json, "Print the verdict and the headline figures as one JSON object");
+  add_quiet_option(verb, options.quiet);
+  add_count(verb, "--threads", options.threads, 0, 1024,
+            "Number of threads; 0: all cores. Results do not depend on it");
+  add_seed(verb, "--seed", options.seed, "Seed of everything random");
+}
+
+int fail(const Error& error) {
+  fmt::print(stderr, "kinfer: {}\n", error.what);
+  return exit_bad_input;
+}
+
+Result<OutputFolder> OutputFolder::make(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> missing;
+  for (auto folder = std::filesystem::absolute(path); !folder.empty() && !std::filesystem::exists(folder);
+       folder = folder.parent_path())
+    missing.push_back(folder);
+  OutputFolder folder(path, std::move(missing));
+  if (auto ready = create_writable_folder(path); !ready) return forward_error(ready.error());
+  return folder;
+}
+
+OutputFolder::OutputFolder(OutputFolder&& other) noexcept
+    : path_(std::move(other.path_)), made_(std::exchange(other.made_, {})) {}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;  // remove() refuses to delete a folder that is not empty
+  for (const auto& folder : made_)
+    if (!std::filesystem::remove(folder, ignored)) return;
+}
+
+ProgressLine::ProgressLine(const CommonOptions& options) : shown_(!options.quiet && isatty(fileno(stderr)) != 0) {}
+
+ProgressLine::~ProgressLine() {
+  if (shown_) fmt::print(stderr, "\r\033[K");
+}
+
+Observer ProgressLine::observer() {
+  if (!shown_) return {};
+  return [this](const Progress& progress) {
+    const auto now = std::chrono::steady_clock::now();
+    const std::string stage = fmt::format("{} {}", progress.stage, progress.detail);
+    if (stage != stage_) stage_ = stage, stage_began_ = now;
+    if (now - last_ > std::chrono::milliseconds(50)) {
+      last_ = now;
+      fmt::print(stderr, "\r\033[K{}  iteration {}  best {:.6g}{}", stage, progress.iteration, progress.best,
+                 time_left(std::chrono::duration<double>(now - stage_began_).count(), progress.fraction));
+      std::fflush(stderr);
+    }
+    return ObserverDecision::proceed;
+  };
+}
+
+RunRecord::RunRecord(std::string verb, const CommonOptions& options)
+    : verb_(std::move(verb)), options_(options), begin_(std::chrono::system_clock::now()) {}
+
+void RunRecord::add_input(const std::filesystem::path& path) {
+  inputs_.push_back(std::filesystem::absolute(path).string());
+}
+
+Result<void> RunRecord::write(const std::filesystem::path& folder) const {
+  const auto end = std::chrono::system_clock::now();
+  nlohmann::ordered_json run;
+  run["format"] = "kinfer-run/1";
+  run["verb"] = verb_;
+  run["command"] = command_line();
+  run["version"] = version;
+  run["compiler"] = compiler;
+  run["build"] = build_type;
+  run["threads"] = options_.threads > 0 ? options_.threads : hardware_threads();
+  run["seed"] = options_.seed;
+  run["inputs"] = inputs_;
+  run["began"] = fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(begin_)));
+  run["seconds"] = std::chrono::duration<double>(end - begin_).count();
+  return write_text_file(folder / "run.json", run.dump(1) + "\n");
+}
+
+std::vector<InputFile> fingerprints(const std::vector<std::string>& paths) {
+  std::vector<InputFile> files;
+  for (const std::string& path : paths)
+    if (const auto fingerprint = sha256_of_file(path))
+      files.push_back({std::filesystem::path(path).filename().string(), *fingerprint});
+  return files;
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shared by all verbs: common options, exit codes, output folders, progress, run.json.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "kinfer/base/observer.hpp"
+#include "kinfer/base/result.hpp"
+#include "kinfer/cli/parts/arguments.hpp"
+#include "kinfer/evidence/provenance.hpp"
+
+namespace kinfer::cli {
+
+enum ExitCode { exit_done = 0, exit_do_not_use = 1, exit_bad_input = 2, exit_internal = 3 };
+
+struct CommonOptions {
+  bool json = false;
+  bool quiet = false;
+  int threads = 0;
+  std::uint64_t seed = 1;
+};
+/// Adds --json, --quiet, --threads, --seed to a verb.
+void add_common_options(CLI::App& verb, CommonOptions& options);
+/// --quiet alone, for verbs that are deterministic and fast.
+void add_quiet_option(CLI::App& verb, bool& quiet);
+
+/// Prints "kinfer: sentence" to stderr and returns exit_bad_input.
+int fail(const Error& error);
+
+/// Output folder of a run: created and checked to be writable before anything is computed; removed again after a failed
+/// run if it was created by it and is still empty.
+class OutputFolder {
+ public:
+  static Result<OutputFolder> make(const std::filesystem::path& path);
+  ~OutputFolder();
+  OutputFolder(OutputFolder&& other) noexcept;
+  OutputFolder& operator=(OutputFolder&&) = delete;
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  OutputFolder(std::filesystem::path path, std::vector<std::filesystem::path> made)
+      : path_(std::move(path)), made_(std::move(made)) {}
+  std::filesystem::path path_;
+  std::vector<std::filesystem::path> made_;  ///< folders that did not exist before, innermost first
+};
+
+/// A verb of the program and the function that runs it.
+struct Verb {
+  CLI::App* command = nullptr;
+  std::function<int()> run;
+};
+
+/// Progress line on stderr: stage, iteration, best value and time left; only if stderr is a terminal. Erased at the
+/// end.
+class ProgressLine {
+ public:
+  explicit ProgressLine(const CommonOptions& options);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  Observer observer();
+
+ private:
+  bool shown_ = false;
+  std::chrono::steady_clock::time_point last_{}, stage_began_{};
+  std::string stage_;
+};
+
+/// Run-specific data that is kept out of evidence.json: command, time, threads, paths.
+class RunRecord {
+ public:
+  RunRecord(std::string verb, const CommonOptions& options);
+  void add_input(const std::filesystem::path& path);
+  Result<void> write(const std::filesystem::path& folder) const;
+
+ private:
+  std::string verb_;
+  CommonOptions options_;
+  std::vector<std::string> inputs_;
+  std::chrono::system_clock::time_point begin_;
+};
+
+/// Names and hashes of the input files, for the provenance; unreadable files are skipped.
+std::vector<InputFile> fingerprints(const std::vector<std::string>& paths);
+
+/// Stores the program's arguments for run.json.
+void store_command_line(int argc, char** argv);
+
+}  // namespace kinfer::cli

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/identification_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinfer::cli {
+namespace {
+
+/// Paper 1's table 3, and the margin of the spanning tree.
+std::string order_table(const OrderEvidence& order) {
+  std::string text = fmt::format("{:<22}", "who moves when [s]");
+  for (const std::string& sensor : order.sensors) text += fmt::format(" {:>8}", sensor);
+  text += "\n";
+  for (const PhaseEvidence& phase : order.phases) {
+    text += fmt::format("  {:>8.2f} .. {:<8.2f}", phase.begin, phase.end);
+    for (const bool moves : phase.moves) text += fmt::format(" {:>8}", moves ? 1 : 0);
+    text += "\n";
+  }
+  text += fmt::format("{:<22}", "  rank");
+  for (const int rank : order.rank) text += fmt::format(" {:>8}", rank);
+  return text + fmt::format("\nspanning tree of pairwise fits: margin {:.2f}; the two {}\n\n", order.margin,
+                            order.phases_agree ? "agree" : "do not agree");
+}
+
+/// Components with a fixed number of decimals; no negative zero.
+std::string vector_text(const Vec3& v, double scale, int width, int decimals) {
+  const double unit = std::pow(10.0, decimals);
+  std::string text;
+  for (Eigen::Index k = 0; k < 3; ++k)
+    text += fmt::format("{:{}.{}f}", std::round(unit * scale * v[k]) / unit + 0.0, width, decimals);
+  return text;
+}
+
+/// Combined standard deviation of two directions; "unknown" if not determined by the data.
+std::string deviation_text(const std::array<double, 2>& sd, double scale, int decimals) {
+  constexpr double unobservable = 0.5;  // [rad], [m]
+  const double both = std::hypot(sd[0], sd[1]);
+  return both < unobservable ? fmt::format("{:.{}f}", scale * both, decimals) : "unknown";
+}
+
+/// Unobservable quantities of each joint and their remedies.
+std::string unobservable_list(const std::vector<JointEstimate>& joints) {
+  std::string text;
+  for (const JointEstimate& joint : joints)
+    for (const std::string& words : joint.unobservable)
+      if (!words.starts_with("the joint's point along its own axis"))  // true of every revolute joint
+        text += fmt::format("  - {}-{}: {}\n", joint.parent, joint.child, words);
+  return text.empty() ? "" : "What this recording cannot tell:\n" + text + "\n";
+}
+
+std::string joint_table(const std::vector<JointEstimate>& joints) {
+  std::string text = fmt::format("{:<16} {:<10} {:<8} {:>24} {:>27} {:>16} {:>10}\n", "joint", "type", "seen by",
+                                 "axis", "point [mm]", "sd axis [mrad]", "sd [mm]");
+  for (const JointEstimate& j : joints) {
+    const auto line = [&](const std::string& head, std::string_view type, const std::string& sensor, const Vec3& axis,
+                          const Vec3& point, const std::array<double, 2>& axis_sd,
+                          const std::array<double, 2>& point_sd) {
+      text += fmt::format("{:<16} {:<10} {:<8} {:>24} {:>27} {:>16} {:>10}\n", head, type, sensor,
+                          vector_text(axis, 1.0, 8, 4), vector_text(point, 1e3, 9, 1), deviation_text(axis_sd, 1e3, 2),
+                          deviation_text(point_sd, 1e3, 1));
+    };
+    line(j.parent + "-" + j.child, name(j.type), j.parent, j.axis_in_parent, j.point_in_parent, j.sd.axis_in_parent,
+         j.sd.point_in_parent);
+    line("", "", j.child, j.axis_in_child, j.point_in_child, j.sd.axis_in_child, j.sd.point_in_child);
+  }
+  return text + "\n";
+}
+
+std::string fit_table(const std::vector<LinkEvidence>& searches) {
+  std::string text = fmt::format("{:<12} {:>12} {:>12} {:>12} {:>14} {:>12}\n", "J_RMSE", "accel. m/s2", "orient. rad",
+                                 "total", "not fitted", "evaluations");
+  for (const LinkEvidence& s : searches)
+    text += fmt::format("{:<12} {:>12.5f} {:>12.5f} {:>12.5f} {:>14.5f} {:>12}\n", s.segment, s.fitted.acceleration,
+                        s.fitted.orientation, s.fitted.total, s.holdout.total, s.evaluations);
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string identification_summary(const Identification& found) {
+  std::string text = found.verdict + ".\n\n" + order_table(found.order) + joint_table(found.joints);
+  for (const LinkEstimate& link : found.links)
+    text += fmt::format("link {}: {:.1f} mm from {} to {} (sd {})\n", link.segment, 1e3 * link.length, link.from,
+                        link.to, link.sd < 0.5 ? fmt::format("{:.1f} mm", 1e3 * link.sd) : "unknown");
+  for (const PointEstimate& place : found.places)
+    text += fmt::format("{} in {}: {} mm (sd {} mm)\n", place.name, place.sensor, vector_text(place.xyz, 1e3, 9, 1),
+                        vector_text(place.sd, 1e3, 6, 1));
+  if (!found.links.empty()) text += "\n";
+  text += fit_table(found.searches) + unobservable_list(found.joints);
+  for (const std::string& note : found.notes) text += "  - " + note + "\n";
+  return text;
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/inspect_recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "kinfer/base/angle.hpp"
+#include "kinfer/cli/parts/common.hpp"
+#include "kinfer/inertial/activity.hpp"
+#include "kinfer/inertial/allan.hpp"
+#include "kinfer/inertial/sensor_grading.hpp"
+#include "kinfer/io/recording/ins_csv.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+constexpr double micro_g = 9.80665e-6;  // [m/s²]
+
+void print_loggers(const InsRecording& recording) {
+  for (const InsLogger& logger : recording.loggers) {
+    const double period = median_period(logger.time), span = logger.time.back() - logger.time.front();
+    fmt::print("{}: {} rows, {:.3f} s to {:.3f} s", logger.name, logger.time.size(), logger.time.front(),
+               logger.time.back());
+    if (period > 0.0) fmt::print(", {:.4g} Hz", 1.0 / period);
+    if (span > 0.0)
+      fmt::print(" ({:.2f} % of it is there)", 100.0 * static_cast<double>(logger.time.size() - 1) * period / span);
+    fmt::print("\n");
+    const auto found = gaps(logger.time);
+    for (std::size_t i = 0; i < std::min<std::size_t>(found.size(), 5); ++i)
+      fmt::print("  gap {:.3f} s to {:.3f} s\n", found[i].begin, found[i].end);
+    if (found.size() > 5) fmt::print("  ... {} gaps in all\n", found.size());
+  }
+}
+
+/// Measurements per second of an instrument.
+double rate_of(const InsSensor& sensor, std::span<const double> time, Fault missing) {
+  const double span = time.back() - time.front();
+  return span > 0.0 ? static_cast<double>(time.size() - count(sensor, missing) - 1) / span : 0.0;
+}
+
+std::string triple(const Vec3& v, double unit, const char* format_of) {
+  return fmt::format(fmt::runtime(format_of), v.x() / unit, v.y() / unit, v.z() / unit);
+}
+
+void print_sensor(const InsSensor& sensor, std::span<const double> time, const std::vector<RestPeriod>& rest_list) {
+  fmt::print("\n{}: accelerometer {:.4g} Hz, gyroscope {:.4g} Hz, ", sensor.name,
+             rate_of(sensor, time, acceleration_missing), rate_of(sensor, time, angular_velocity_missing));
+  if (sensor.has_magnetometer())
+    fmt::print("magnetometer {:.4g} Hz\n", rate_of(sensor, time, field_missing));
+  else
+    fmt::print("no magnetometer in use\n");
+  if (rest_list.empty()) {
+    fmt::print("  ! no rest found: let the sensor stand still for a few seconds before and after the motion\n");
+    return;
+  }
+  const SensorStatistics found = sensor_statistics(sensor, time, rest_list);
+  fmt::print("  {} rests, {:.1f} s in all:", rest_list.size(), found.rest_seconds);
+  for (std::size_t i = 0; i < std::min<std::size_t>(rest_list.size(), 4); ++i)
+    fmt::print(" {:.1f}-{:.1f}", rest_list[i].begin, rest_list[i].end);
+  fmt::print("{} s\n", rest_list.size() > 4 ? " ..." : "");
+  fmt::print("  gyro bias at rest {} °/s, spread over the rests {} °/s\n",
+             triple(found.gyroscope_bias.mean, degree, "{:.4f} {:.4f} {:.4f}"),
+             triple(found.gyroscope_bias.spread, degree, "{:.4f} {:.4f} {:.4f}"));
+  fmt::print("  noise at rest: gyro {} °/s/√Hz, accelerometer {} µg/√Hz",
+             triple(found.rate_density, degree, "{:.4f} {:.4f} {:.4f}"),
+             triple(found.acceleration_density, micro_g, "{:.0f} {:.0f} {:.0f}"));
+  if (sensor.has_magnetometer())
+    fmt::print(", field {} µT/√Hz", triple(found.field_density, 1.0, "{:.3f} {:.3f} {:.3f}"));
+  fmt::print(
+      "\n  gravity at rest is {:.3f} m/s² off; largest reading {:.0f} °/s and {:.1f} m/s²; gyro scale errors about "
+      "{:.2g} %\n",
+      found.gravity_error, found.largest_rate / degree, found.largest_acceleration, 100.0 * found.scale_error);
+  fmt::print("  judged grade: {}\n", estimate_sensor_model(found).name);
+}
+
+void print_activity(const InsRecording& recording) {
+  if (recording.loggers.size() != 1 || recording.sensors.size() < 2) return;
+  fmt::print("\nwho moves when (s; number: rms rate in °/s, - still):\n  {:>16}", "");
+  for (const InsSensor& sensor : recording.sensors) fmt::print(" {:>8}", sensor.name.substr(0, 8));
+  fmt::print("\n");
+  for (const ActivitySpan& span : detect_activity(recording)) {
+    fmt::print("  {:>7.1f} {:>8.1f}", span.begin, span.end);
+    for (const SensorActivity& s : span.sensors)
+      s.moves ? fmt::print(" {:>8.2f}", s.rms_rate / degree) : fmt::print(" {:>8}", "-");
+    fmt::print("\n");
+  }
+}
+
+/// Values of one axis over the rows of a rest; missing values are skipped, which is harmless at rest.
+std::vector<double> values_at_rest(const std::vector<float>& axis, const RestPeriod& rest) {
+  std::vector<double> values;
+  for (std::size_t row = rest.first_row; row <= rest.last_row; ++row)
+    if (std::isfinite(axis[row])) values.push_back(axis[row]);
+  return values;
+}
+
+void print_allan_of(const char* what, const TriadColumns& triad, const RestPeriod& rest, double period, double unit,
+                    const char* unit_name) {
+  fmt::print("  {} [{}]: averaging time, then x y z\n", what, unit_name);
+  std::array<std::vector<AllanPoint>, 3> curves;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    curves[axis] = allan_deviation(values_at_rest(triad.axis[axis], rest), period);
+  for (std::size_t i = 0; i < curves[0].size() && i < curves[1].size() && i < curves[2].size(); ++i)
+    fmt::print("    {:>10.4f} s {:>10.5f} {:>10.5f} {:>10.5f}\n", curves[0][i].tau, curves[0][i].deviation / unit,
+               curves[1][i].deviation / unit, curves[2][i].deviation / unit);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const AllanCoefficients f = allan_coefficients(curves[axis]);
+    fmt::print("    {}: noise density {:.5f} {}/√Hz, bias instability {} {:.5f} {} (at {:.1f} s)\n", "xyz"[axis],
+               f.noise_density / unit, unit_name, f.reaches_floor ? "" : "below", f.bias_instability / unit, unit_name,
+               f.instability_tau);
+  }
+}
+
+void print_allan(const InsRecording& recording) {
+  for (const InsSensor& sensor : recording.sensors) {
+    const auto time = recording.time(sensor);
+    const auto rest_list = rest_periods(sensor, time);
+    if (rest_list.empty()) {
+      fmt::print("\nAllan deviation of {}: no rest to take it from\n", sensor.name);
+      continue;
+    }
+    const RestPeriod& longest =
+        *std::ranges::max_element(rest_list, {}, [](const RestPeriod& r) { return r.seconds(); });
+    fmt::print("\nAllan deviation of {} over its longest rest, {:.1f} s to {:.1f} s\n", sensor.name, longest.begin,
+               longest.end);
+    const double period = longest.seconds() / static_cast<double>(longest.last_row - longest.first_row);
+    print_allan_of("angular rate", sensor.angular_velocity, longest, period, degree, "°/s");
+    print_allan_of("specific force", sensor.acceleration, longest, period, 1e-3 * 9.80665, "mg");
+    if (longest.seconds() < 600.0) fmt::print("  (bias instability needs an hour of rest; this one tells the noise)\n");
+  }
+}
+
+}  // namespace
+
+bool is_recording(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string head(1 << 16, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return is_ins_csv(head);
+}
+
+int inspect_recording(const std::vector<std::string>& paths, AllanPlot allan) {
+  const std::vector<std::filesystem::path> files(paths.begin(), paths.end());
+  const auto recording = read_ins_csv(files);
+  if (!recording) return fail(recording.error());
+  print_loggers(*recording);
+  for (const InsSensor& sensor : recording->sensors) {
+    const auto time = recording->time(sensor);
+    print_sensor(sensor, time, rest_periods(sensor, time));
+  }
+  print_activity(*recording);
+  if (!recording->remarks.empty()) fmt::print("\n");
+  for (const std::string& remark : recording->remarks) fmt::print("! {}\n", remark);
+  if (allan == AllanPlot::print) print_allan(*recording);
+  return exit_done;
+}
+
+}  // namespace kinfer::cli

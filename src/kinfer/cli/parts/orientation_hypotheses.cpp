@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/orientation_hypotheses.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+std::vector<std::string> sequences() {
+  std::vector<std::string> names;
+  for (const char* kind : {" intrinsic", " extrinsic"})
+    for (const char* axes : {"XYZ", "ZYX", "ZXY", "YXZ", "XZY", "YZX", "ZYZ", "ZXZ", "XYX", "XZX", "YXY", "YZY"})
+      names.push_back(std::string(axes) + kind);
+  return names;
+}
+
+/// The column map with another unit for the angles: "theirs [deg]".
+ColumnMap with_angle_unit(ColumnMap map, const std::string& unit) {
+  for (auto& [ours, theirs] : map.columns)
+    if (ours == "rx" || ours == "ry" || ours == "rz")
+      theirs = fmt::format("{}[{}]", theirs.substr(0, theirs.find('[')), unit);
+  return map;
+}
+
+}  // namespace
+
+std::vector<calibrate::OrientationInterpretation> orientation_hypotheses(const std::string& file, const Chain& chain,
+                                                                         const ColumnMap& map) {
+  std::vector<calibrate::OrientationInterpretation> readings;
+  if (!map.euler) return readings;
+  for (const char* unit : {"deg", "rad"})
+    for (const std::string& sequence : sequences()) {
+      ColumnMap other = with_angle_unit(map, unit);
+      other.euler = parse_euler_sequence(sequence);
+      const auto set = read_pose_set(file, chain, other);
+      if (!set) continue;
+      readings.push_back(
+          {fmt::format("as {} angles in {}", sequence, unit),
+           fmt::format("write euler = \"{}\" into the column map, and rx, ry, rz in [{}]", sequence, unit),
+           set->orientations});
+    }
+  return readings;
+}
+
+}  // namespace kinfer::cli

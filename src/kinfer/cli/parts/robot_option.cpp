@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/robot_option.hpp"
+
+#include "kinfer/io/robot/urdf.hpp"
+
+namespace kinfer::cli {
+
+void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& name, const std::string& help,
+                      Requirement need) {
+  add_text(verb, name, option.path, help, need, "FILE");
+  add_text(verb, "--base-link", option.base_link, "Link of a URDF file where the chain begins (default: its root)");
+  add_text(verb, "--tip-link", option.tip_link,
+           "Link of a URDF file where the chain ends (default: its longest arm's)");
+}
+
+Result<RobotModel> read_robot(const RobotOption& option) {
+  const std::filesystem::path path(option.path);
+  if (path.extension() != ".urdf" && path.extension() != ".xml") return read_robot_toml(path);
+  KINFER_TRY(chain, read_urdf(path, {option.base_link, option.tip_link}));
+  RobotModel robot;
+  robot.chain = std::move(chain);
+  return robot;
+}
+
+Result<ColumnMap> read_columns_option(const std::string& path) {
+  return path.empty() ? ColumnMap{} : read_column_map(path);
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/search_options.hpp"
+
+#include "kinfer/calibrate/parameters/population_prior.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/text/text_file.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+std::filesystem::path net_path(const SearchArguments& arguments) {
+  return std::filesystem::path(arguments.warm_start) / "net.txt";
+}
+
+std::string chain_path(const SearchArguments& arguments) {
+  return (std::filesystem::path(arguments.warm_start) / "chain.toml").string();
+}
+
+bool has_net(const SearchArguments& arguments) {
+  return !arguments.warm_start.empty() && std::filesystem::is_regular_file(net_path(arguments));
+}
+
+PsoOptions pso_options(const SearchArguments& a, const Budget& budget) {
+  PsoOptions pso{
+      .particles = a.particles, .inertia = a.inertia, .cognitive = a.own, .social = a.swarm, .budget = budget};
+  if (a.boundary == "clamp") pso.boundary = BoundaryHandling::clamp;
+  if (a.boundary == "open") pso.boundary = BoundaryHandling::open;
+  return pso;
+}
+
+Result<BpnnPsoOptions> bpnn_options(const SearchArguments& arguments, const Budget& budget) {
+  BpnnPsoOptions bpnn{.pso = pso_options(arguments, budget)};
+  if (arguments.net_use == "every-update") bpnn.use = NetUse::before_every_update;
+  if (!has_net(arguments)) return bpnn;
+  KINFER_TRY(text, read_text_file(net_path(arguments)));
+  KINFER_TRY(net, parse_mlp(text, net_path(arguments).string()));
+  bpnn.net = std::move(net);
+  return bpnn;
+}
+
+Result<Chain> read_chain_of_same_kind(const std::string& path, const Chain& nominal) {
+  KINFER_TRY(robot, read_robot_toml(path));
+  if (!calibrate::have_same_joints(robot.chain, nominal))
+    return error("{}: expected an earlier calibration of this kind of robot ({} joints of the same types)", path,
+                 nominal.joints.size());
+  return robot.chain;
+}
+
+}  // namespace
+
+void add_search_arguments(CLI::App& verb, SearchArguments& a) {
+  add_choice(verb, "--method", a.method, {"lm", "pso", "qpso", "bpnn-pso"},
+             "lm: least squares; the others search by a population (paper 2)");
+  add_text(verb, "--warm-start", a.warm_start, "Folder of an earlier calibration of this robot: where searches start",
+           Requirement::optional, "DIR");
+  add_texts(verb, "--prior", a.prior,
+            "Earlier calibrations of robots of this kind (chain.toml files): their mean and spread are the prior",
+            Requirement::optional, "TOML");
+  add_count(verb, "--particles", a.particles, 2, 100000, "Of the population");
+  add_count(verb, "--iterations", a.iterations, 1, 10000000,
+            "Updates of the population at most; it ends before where 200 updates gain less than 1 %");
+  add_number(verb, "--inertia", a.inertia, "PSO: weight w of the velocity (paper: 0.9, which hardly converges)");
+  add_number(verb, "--own", a.own, "PSO: c1, pull of a particle's own best");
+  add_number(verb, "--swarm", a.swarm, "PSO: c2, pull of the swarm's best");
+  add_choice(verb, "--walls", a.boundary, {"absorb", "clamp", "open"}, "PSO: particles that leave the box");
+  add_choice(verb, "--net-use", a.net_use, {"initial-swarm", "every-update"},
+             "BPNN-PSO: every-update is the literal reading, and harms");
+  add_number(verb, "--box-length", a.box_length, "Half width of the box about the nominal lengths [mm]");
+  add_number(verb, "--box-angle", a.box_angle, "Half width of the box about the nominal angles [deg]");
+  add_number(verb, "--box-tolerances", a.box_tolerances, "Half width of the box in tolerances instead (0: not)");
+}
+
+Result<std::optional<calibrate::SwarmSearchOptions>> population_options(const SearchArguments& arguments, int threads) {
+  if (arguments.method == "lm") return std::nullopt;
+  const Budget budget{.max_iterations = arguments.iterations, .patience = 200, .threads = threads};
+  calibrate::SwarmSearchOptions options{.box_length = 1e-3 * arguments.box_length,
+                                        .box_angle = arguments.box_angle * degree,
+                                        .box_tolerances = arguments.box_tolerances};
+  if (!(options.box_length > 0.0 && options.box_angle > 0.0))
+    return error("--box-length and --box-angle must be above 0");
+  if (arguments.method == "pso") options.search = pso_options(arguments, budget);
+  if (arguments.method == "qpso") options.search = QpsoOptions{.particles = arguments.particles, .budget = budget};
+  if (arguments.method == "bpnn-pso") {
+    KINFER_TRY(bpnn, bpnn_options(arguments, budget));
+    options.search = std::move(bpnn);
+  }
+  return options;
+}
+
+Result<void> read_earlier_calibrations(const SearchArguments& arguments, calibrate::CalibrationTask& task) {
+  for (const std::string& path : arguments.prior) {
+    KINFER_TRY(chain, read_chain_of_same_kind(path, task.nominal));
+    task.robot_population.push_back(std::move(chain));
+  }
+  if (arguments.warm_start.empty()) return {};
+  KINFER_TRY(chain, read_chain_of_same_kind(chain_path(arguments), task.nominal));
+  task.earlier = std::move(chain);
+  return {};
+}
+
+std::vector<std::string> input_paths(const SearchArguments& arguments) {
+  std::vector<std::string> paths = arguments.prior;
+  if (!arguments.warm_start.empty()) paths.push_back(chain_path(arguments));
+  if (has_net(arguments) && arguments.method == "bpnn-pso") paths.push_back(net_path(arguments).string());
+  return paths;
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// --method and the options of the population searches (paper 2) for `calibrate`.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/cli/parts/common.hpp"
+
+namespace kinfer::cli {
+
+struct SearchArguments {
+  std::string method = "lm", warm_start, boundary = "absorb", net_use = "initial-swarm";
+  std::vector<std::string> prior;
+  int particles = 200, iterations = 20000;
+  double inertia = 0.8, own = 0.5, swarm = 1.25;
+  double box_length = 1.0, box_angle = 1.0, box_tolerances = 0.0;  // mm, deg
+};
+void add_search_arguments(CLI::App& verb, SearchArguments& arguments);
+
+/// Options of the population search, with the net of the earlier calibration if there is one; nullopt for lm.
+Result<std::optional<calibrate::SwarmSearchOptions>> population_options(const SearchArguments& arguments, int threads);
+
+/// Fills `earlier` and `fleet` from --warm-start and --prior. Each must have the same joints as the nominal robot.
+Result<void> read_earlier_calibrations(const SearchArguments& arguments, calibrate::CalibrationTask& task);
+
+/// The files that are read.
+std::vector<std::string> input_paths(const SearchArguments& arguments);
+
+}  // namespace kinfer::cli

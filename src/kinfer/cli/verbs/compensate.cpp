@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// kinfer compensate: joint targets that bring the real tool to the pose of the nominal model or to a target.
+#include "kinfer/deploy/compensate.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "kinfer/calibrate/parameters/population_prior.hpp"
+#include "kinfer/cli/parts/robot_option.hpp"
+#include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/text/csv.hpp"
+#include "kinfer/io/text/format_number.hpp"
+#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/text/units.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+struct CompensateArguments {
+  CommonOptions common;
+  RobotOption chain;
+  std::string nominal, joints, targets, out, frames = "auto";
+};
+
+/// Header of a joint column of the result, and its unit in SI.
+struct JointColumn {
+  std::string header;
+  double factor = 1.0;
+};
+
+/// The headers of the input's joint columns with their units; q1.. in SI if the input has none.
+std::vector<JointColumn> joint_columns(const std::string& path, const std::vector<std::string>& names) {
+  std::vector<JointColumn> columns;
+  for (std::size_t i = 0; i < names.size(); ++i) columns.push_back({fmt::format("q{}", i + 1), 1.0});
+  const auto text = read_text_file(path);
+  const auto header = text ? read_csv_header(*text, path) : Result<CsvHeader>(error("unreadable"));
+  if (!header) return columns;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (const std::string& cell : header->columns) {
+      const ColumnHeader parts = parse_column_header(cell);
+      if (parts.name != columns[i].header && parts.name != "q_" + names[i]) continue;
+      const auto unit = find_unit(parts.unit);
+      columns[i] = {cell, parts.has_unit && unit ? unit->factor : 1.0};
+      break;
+    }
+  return columns;
+}
+
+std::string result_csv(const std::vector<JointColumn>& columns, const std::vector<deploy::CompensatedJoints>& list) {
+  std::string text;
+  for (const JointColumn& column : columns) text += column.header + ",";
+  text += "residual[mm]\n";
+  for (const deploy::CompensatedJoints& row : list) {
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      text += format_number(row.q[static_cast<Eigen::Index>(k)], columns[k].factor) + ",";
+    text += format_number(row.residual, 1e-3) + "\n";
+  }
+  return text;
+}
+
+std::vector<deploy::ToolTarget> targets_of(const PoseSet& set) {
+  std::vector<deploy::ToolTarget> targets(set.rows());
+  for (const PointMeasurement& point : set.points) targets[point.row].position = point.position;
+  for (const OrientationMeasurement& m : set.orientations) targets[m.row].rotation = m.orientation.toRotationMatrix();
+  return targets;
+}
+
+/// Both chains in the frames of the comparison, and a note to the user about the choice.
+struct ModelPair {
+  Chain corrected, nominal;
+  std::string note;
+};
+
+Result<ModelPair> read_chains(const CompensateArguments& options) {
+  KINFER_TRY(corrected, read_robot(options.chain));
+  KINFER_TRY(nominal, read_robot({options.nominal, options.chain.base_link, options.chain.tip_link}));
+  if (!calibrate::have_same_joints(corrected.chain, nominal.chain))
+    return error("{}: expected the corrected model of the robot in {} (joints of the same number and types)",
+                 options.chain.path, options.nominal);
+  deploy::CompensationFrames frames =
+      deploy::select_compensation_frames(corrected.chain, nominal.chain, nominal.tolerances);
+  std::string note;
+  if (options.frames == "world")
+    frames = deploy::CompensationFrames::as_given;
+  else if (options.frames == "robot")
+    frames = deploy::CompensationFrames::robot;
+  else if (frames == deploy::CompensationFrames::robot)
+    note =
+        "the corrected base is far from the nominal one, so it tells where the instrument stood: compared with the "
+        "nominal "
+        "base and tool (--frames world compares as given)";
+  return ModelPair{deploy::express_in_frames(corrected.chain, nominal.chain, frames), nominal.chain, note};
+}
+
+Result<std::vector<deploy::CompensatedJoints>> compensated_rows(const CompensateArguments& options,
+                                                                const ModelPair& chains) {
+  const int threads = options.common.threads;
+  if (!options.joints.empty()) {
+    KINFER_TRY(set, read_pose_set(options.joints, chains.nominal, {}, RequiredContent::joints_only));
+    return deploy::compensate_joints(chains.corrected, chains.nominal, set.joints, threads);
+  }
+  KINFER_TRY(set, read_pose_set(options.targets, chains.nominal, {}, RequiredContent::targets));
+  const MatrixXd start = set.joints.rows() > 0 ? set.joints : MatrixXd();
+  return deploy::compensate_targets(chains.corrected, chains.nominal, targets_of(set), start, threads,
+                                    Rng(options.common.seed));
+}
+
+/// Reports the rows that are not reached, and why; true if all are reached.
+bool report_unreached_rows(const CompensateArguments& options, const std::vector<deploy::CompensatedJoints>& list) {
+  constexpr int most = 12;  // rows listed individually
+  double worst = 0.0;
+  int missed = 0;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    worst = std::max(worst, list[i].residual);
+    if (list[i].status == InverseStatus::reached) continue;
+    ++missed;
+    if (!options.common.quiet && missed <= most)
+      fmt::print(stderr, "row {}: {}; {:.4f} mm and {:.4f} deg are left\n", i, sentence(list[i].status),
+                 1e3 * list[i].residual, list[i].residual_angle / degree);
+  }
+  if (missed > most && !options.common.quiet) fmt::print(stderr, "and {} more\n", missed - most);
+  if (!options.common.quiet)
+    fmt::print(stderr, "{} of {} rows are compensated; the corrected model leaves {:.6f} mm at most\n",
+               list.size() - missed, list.size(), 1e3 * worst);
+  return missed == 0;
+}
+
+int run(const CompensateArguments& options) {
+  if (options.joints.empty() == options.targets.empty()) return fail({"expected either --joints or --targets"});
+  const auto chains = read_chains(options);
+  if (!chains) return fail(chains.error());
+  const auto list = compensated_rows(options, *chains);
+  if (!list) return fail(list.error());
+  if (!chains->note.empty() && !options.common.quiet) fmt::print(stderr, "{}\n", chains->note);
+  const std::string& input = options.joints.empty() ? options.targets : options.joints;
+  const std::string text = result_csv(joint_columns(input, active_joint_names(chains->nominal)), *list);
+  if (options.out.empty() || options.out == "-")
+    fmt::print("{}", text);
+  else if (auto done = write_text_file(options.out, text); !done)
+    return fail(done.error());
+  return report_unreached_rows(options, *list) ? exit_done : exit_do_not_use;
+}
+
+}  // namespace
+
+Verb add_compensate(CLI::App& app) {
+  CLI::App* verb = add_command(
+      app, "compensate", "Joint targets that put the real tool where the nominal model, or a target, wants it",
+      "Rows that cannot be reached are said on standard error, and the exit code is 1.\nExample:\n"
+      "  kinfer compensate --chain calibration/chain.toml --nominal robot.toml --joints joints.csv -o corrected.csv");
+  auto options = std::make_shared<CompensateArguments>();
+  add_robot_option(*verb, options->chain, "--chain", "Corrected model: chain.toml, or URDF");
+  add_text(*verb, "--nominal", options->nominal, "Model that the robot's controller has", Requirement::required,
+           "ROBOT");
+  add_text(*verb, "--joints", options->joints, "Joint lists as the controller would send them", Requirement::optional,
+           "CSV");
+  add_text(*verb, "--targets", options->targets,
+           "Wanted tool poses: x,y,z, with or without qw,qx,qy,qz and readings to start from", Requirement::optional,
+           "CSV");
+  add_text(*verb, "-o,--out", options->out,
+           "Where to write the corrected readings and residual[mm] (default: standard output)", Requirement::optional,
+           "CSV");
+  add_choice(*verb, "--frames", options->frames, {"auto", "world", "robot"},
+             "world: base and tool as the files say; robot: the nominal ones for both");
+  add_common_options(*verb, options->common);
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// kinfer inspect: contents of a file and findings about it, without any fit.
+#include <memory>
+
+#include "kinfer/calibrate/diagnosis/diagnose.hpp"
+#include "kinfer/calibrate/parameters/joint_excitation.hpp"
+#include "kinfer/cli/parts/inspect_recording.hpp"
+#include "kinfer/cli/parts/orientation_hypotheses.hpp"
+#include "kinfer/cli/parts/robot_option.hpp"
+#include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/evidence/findings_json.hpp"
+#include "kinfer/io/pose_set/pose_set_csv.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+struct InspectArguments {
+  RobotOption robot;
+  std::string columns;
+  std::vector<std::string> files;
+  bool allan = false, json = false;
+};
+
+std::string joint_table(const std::vector<calibrate::JointExcitation>& joints) {
+  std::string text = fmt::format("  {:<16} {:>10} {:>10} {:>10}\n", "joint", "from", "to", "sd");
+  for (const calibrate::JointExcitation& j : joints) {
+    const double factor = j.is_revolute ? 1.0 / degree : 1e3;
+    text += fmt::format("  {:<16} {:>10.2f} {:>10.2f} {:>10.2f} {}\n", j.name, factor * j.lower, factor * j.upper,
+                        factor * j.sd, j.is_revolute ? "deg" : "mm");
+  }
+  return text;
+}
+
+std::string measured_line(const PoseSet& set) {
+  std::string text;
+  const auto add = [&](std::size_t n, const char* what) {
+    if (n > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, what);
+  };
+  add(set.points.size(), "positions");
+  add(set.orientations.size(), "orientations");
+  add(set.distances.size(), "distances from anchors");
+  add(set.contacts.size(), "socket contacts");
+  add(set.pairs.size(), "pairwise distances");
+  add(set.plane_contacts.size(), "plane contacts");
+  add(set.tilts.size(), "tilts");
+  return text;
+}
+
+std::string finding_lines(const std::vector<Finding>& findings) {
+  if (findings.empty()) return "  nothing wrong was found\n";
+  std::string text;
+  for (const Finding& f : findings) {
+    text += fmt::format("  {}: {}{}\n", name(f.severity), f.sentence,
+                        f.lines.size() == 1 ? fmt::format(" (line {})", f.lines.front()) : "");
+    if (f.applied) text += "    certain: calibrate puts it right by itself, and says so\n";
+    if (!f.suggestion.empty()) text += fmt::format("    -> {}\n", f.suggestion);
+  }
+  return text;
+}
+
+int inspect_pose_set(const std::string& file, const RobotModel& robot, const ColumnMap& map, bool json) {
+  const auto set = read_pose_set(file, robot.chain, map);
+  if (!set) return fail(set.error());
+  const calibrate::CalibrationTask task{
+      .nominal = robot.chain, .tolerances = robot.tolerances, .instrument = robot.instrument, .data = *set};
+  const calibrate::Diagnosis diagnosis =
+      calibrate::diagnose(task, [&] { return orientation_hypotheses(file, robot.chain, map); });
+  if (json) {
+    fmt::print("{}\n", format_findings(diagnosis.findings));
+    return exit_done;
+  }
+  fmt::print("{}: {} poses of {} joints; measured: {}\n", file, set->rows(), set->joints.rows(), measured_line(*set));
+  fmt::print("{}", joint_table(calibrate::measure_joint_excitation(robot.chain, *set)));
+  fmt::print("{}", finding_lines(diagnosis.findings));
+  return exit_done;
+}
+
+int run(const InspectArguments& options) {
+  if (is_recording(options.files.front()))
+    return inspect_recording(options.files, options.allan ? AllanPlot::print : AllanPlot::none);
+  if (options.robot.path.empty())
+    return fail({fmt::format("{}: no INS recording (no columns t and SENSOR_ax ...); a pose set needs --robot",
+                             options.files.front())});
+  const auto robot = read_robot(options.robot);
+  if (!robot) return fail(robot.error());
+  const auto map = read_columns_option(options.columns);
+  if (!map) return fail(map.error());
+  for (const std::string& file : options.files)
+    if (const int code = inspect_pose_set(file, *robot, *map, options.json); code != exit_done) return code;
+  return exit_done;
+}
+
+}  // namespace
+
+Verb add_inspect(CLI::App& app) {
+  CLI::App* verb =
+      add_command(app, "inspect", "What was understood of a file, and what is wrong with it, before any fit",
+                  "Example:\n  kinfer inspect poses.csv --robot robot.toml\n  kinfer inspect imu.csv --allan");
+  auto options = std::make_shared<InspectArguments>();
+  add_robot_option(*verb, options->robot, "--robot", "Robot of a pose set: TOML or URDF", Requirement::optional);
+  add_texts(*verb, "files", options->files, "INS recordings, one a logger, or pose sets with --robot",
+            Requirement::required, "CSV");
+  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Requirement::optional,
+           "TOML");
+  add_flag(*verb, "--allan", options->allan,
+           "Allan deviation of each sensor's longest rest: noise and bias instability");
+  add_flag(*verb, "--json", options->json, "Print the findings about a pose set as one JSON array");
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// kinfer predict: forward kinematics of a chain for a file with joint columns.
+#include <memory>
+
+#include "kinfer/calibrate/start/fixtures.hpp"
+#include "kinfer/cli/parts/robot_option.hpp"
+#include "kinfer/cli/verb_list.hpp"
+#include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/pose_set/predictions_csv.hpp"
+#include "kinfer/io/text/text_file.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+struct PredictArguments {
+  RobotOption chain;
+  std::string joints, out, columns;
+  bool quiet = false;
+};
+
+/// Each row in its named set-up and with its named arm, approached from the previous row.
+Result<std::vector<Pose>> predicted_poses(const Chain& chain, const PoseSet& set) {
+  KINFER_TRY(placed, calibrate::with_fixtures(chain, set));
+  return evaluate_poses(placed.chain, {}, with_approach(placed.data), Derivative::no).pose;
+}
+
+int run(const PredictArguments& options) {
+  const auto robot = read_robot(options.chain);
+  if (!robot) return fail(robot.error());
+  const auto map = read_columns_option(options.columns);
+  if (!map) return fail(map.error());
+  const auto set = read_pose_set(options.joints, robot->chain, *map, RequiredContent::joints_only);
+  if (!set) return fail(set.error());
+  const auto poses = predicted_poses(robot->chain, *set);
+  if (!poses) return fail(poses.error());
+  const auto text = format_predictions_csv(*poses, *set, robot->chain.base.pose(), robot->chain.fixtures.anchors);
+  if (!text) return fail(text.error());
+  if (options.out.empty() || options.out == "-") {
+    fmt::print("{}", *text);
+    return exit_done;
+  }
+  if (const auto done = write_text_file(options.out, *text); !done) return fail(done.error());
+  if (!options.quiet) fmt::print("{}: {} poses\n", options.out, poses->size());
+  return exit_done;
+}
+
+}  // namespace
+
+Verb add_predict(CLI::App& app) {
+  CLI::App* verb =
+      add_command(app, "predict", "Tool poses of a chain for a list of joint readings",
+                  "Example:\n  kinfer predict --chain calibration/chain.toml --joints joints.csv -o poses.csv");
+  auto options = std::make_shared<PredictArguments>();
+  add_robot_option(*verb, options->chain, "--chain", "Chain: chain.toml, a robot TOML, or URDF");
+  add_text(*verb, "--joints", options->joints, "File with the joint columns q1..; other columns may be there",
+           Requirement::required, "CSV");
+  add_text(*verb, "-o,--out", options->out, "Where to write x,y,z,qw,qx,qy,qz [m] (default: standard output)",
+           Requirement::optional, "CSV");
+  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Requirement::optional,
+           "TOML");
+  add_quiet_option(*verb, options->quiet);
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace kinfer::cli

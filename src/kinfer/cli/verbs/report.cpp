@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// kinfer report: regenerates report.html from evidence.json.
+#include "kinfer/report/report.hpp"
+
+#include <memory>
+
+#include "kinfer/cli/parts/evidence_files.hpp"
+#include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/text/text_file.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+struct ReportArguments {
+  std::string folder;
+  bool quiet = false;
+};
+
+Result<void> write_report(const std::filesystem::path& folder, const std::string& evidence) {
+  KINFER_TRY(page, report_html(evidence));
+  return write_text_file(folder / "report.html", page);
+}
+
+int run(const ReportArguments& options) {
+  const std::filesystem::path folder = options.folder;
+  const auto evidence = read_text_file(folder / "evidence.json");
+  if (!evidence) return fail(evidence.error());
+  if (auto done = write_report(folder, *evidence); !done) return fail(done.error());
+  if (!options.quiet) fmt::print("{}\n", (folder / "report.html").string());
+  return exit_done;
+}
+
+}  // namespace
+
+Result<void> write_evidence(const std::filesystem::path& folder, const std::string& evidence) {
+  if (auto done = write_text_file(folder / "evidence.json", evidence); !done) return done;
+  // evidence.json is the result; a failed report does not invalidate it.
+  if (auto done = write_report(folder, evidence); !done)
+    fmt::print(stderr, "kinfer: report.html was not written: {}\n", done.error().what);
+  return {};
+}
+
+Verb add_report(CLI::App& app) {
+  CLI::App* verb = add_command(app, "report", "Make DIR/report.html again from DIR/evidence.json",
+                               "calibrate and identify write the report themselves.\nExample:\n"
+                               "  kinfer report calibration");
+  auto options = std::make_shared<ReportArguments>();
+  add_text(*verb, "folder", options->folder, "Folder with evidence.json", Requirement::required, "DIR");
+  add_quiet_option(*verb, options->quiet);
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/deploy/compare.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kinfer/calibrate/parameters/population_prior.hpp"
+#include "kinfer/geometry/fit.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/kinematics/forward.hpp"
+#include "kinfer/plan/pose_constraints.hpp"
+
+namespace kinfer::deploy {
+namespace {
+
+constexpr double family_risk = 0.01;  // probability that any unchanged parameter is called changed
+
+/// Relative rotation of a URDF joint's origin: its component rx, ry or rz (intrinsic) [rad].
+double rotation_change(const Chain& earlier, const Chain& later, const ParameterAddress& at) {
+  const auto& before = std::get<UrdfLink>(earlier.joints[at.joint].link);
+  const auto& after = std::get<UrdfLink>(later.joints[at.joint].link);
+  const Vec3 turn = to_intrinsic_xyz(before.origin.pose().rotation.transpose() * after.origin.pose().rotation);
+  return turn[static_cast<int>(at.field) - static_cast<int>(Field::rx)];
+}
+
+bool is_frame_rotation(Field field) {
+  return field == Field::rx || field == Field::ry || field == Field::rz;
+}
+
+double change_of(const Chain& earlier, const Chain& later, const Parameter& p) {
+  if (is_frame_rotation(p.at.field)) return rotation_change(earlier, later, p.at);
+  double change = value_at(later, p.at) - value_at(earlier, p.at);
+  if (p.quantity == Quantity::angle) change = std::remainder(change, 2.0 * std::numbers::pi);
+  return change;
+}
+
+/// Holm's test: the k-th smallest p-value (k from 0) must be below risk / (n − k), and so must all smaller ones.
+void mark_significant(std::vector<ParameterChange>& sorted) {
+  const auto n = static_cast<double>(sorted.size());
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    const double p_value = 2.0 * (1.0 - normal_cdf(std::abs(sorted[k].sigmas)));
+    if (p_value > family_risk / (n - static_cast<double>(k))) return;
+    sorted[k].significant = true;
+  }
+}
+
+/// Distances between the tools of both chains over the joint ranges, after the best rigid alignment: a change that
+/// another placement of the instrument would explain does not count.
+std::vector<double> tool_displacements(const Chain& earlier, Chain later) {
+  later.base = earlier.base, later.tool = earlier.tool;
+  constexpr int poses = 200;
+  const auto drawn = plan::draw_poses(earlier, {}, poses, Rng(1));
+  if (!drawn) return {};
+  std::vector<Vec3> before, after;
+  for (Eigen::Index i = 0; i < drawn->cols(); ++i) {
+    before.push_back(forward(earlier, drawn->col(i)).position);
+    after.push_back(forward(later, drawn->col(i)).position);
+  }
+  const Pose aligned = align_points(before, after);
+  std::vector<double> distance;
+  for (std::size_t i = 0; i < before.size(); ++i) distance.push_back((before[i] - aligned * after[i]).norm());
+  return distance;
+}
+
+std::string list_significant(const std::vector<ParameterChange>& changes) {
+  std::string text;
+  for (const ParameterChange& c : changes)
+    if (c.significant) text += fmt::format("{}{} ({:.1f} sigma)", text.empty() ? "" : ", ", c.name, std::abs(c.sigmas));
+  return text;
+}
+
+}  // namespace
+
+Result<CalibrationComparison> compare_calibrations(const CalibratedRobot& earlier, const CalibratedRobot& later) {
+  if (!calibrate::have_same_joints(earlier.chain, later.chain))
+    return error("the two chains do not have the same joints");
+  CalibrationComparison changes;
+  for (const Parameter& p : all_parameters(earlier.chain, {}).parameters) {
+    const auto before = earlier.sd.find(p.name), after = later.sd.find(p.name);
+    if (p.at.owner != Owner::joint || before == earlier.sd.end() || after == later.sd.end()) continue;
+    ParameterChange c{.name = p.name, .quantity = p.quantity};
+    c.before = value_at(earlier.chain, p.at), c.after = value_at(later.chain, p.at);
+    c.change = change_of(earlier.chain, later.chain, p);
+    c.sd = std::hypot(before->second, after->second);
+    c.sigmas = c.sd > 0.0 ? c.change / c.sd : 0.0;
+    changes.parameters.push_back(c);
+  }
+  if (changes.parameters.empty())
+    return error("no joint parameter has a standard deviation (a_sd, theta_sd, ...) in both chains");
+  std::stable_sort(changes.parameters.begin(), changes.parameters.end(),
+                   [](const auto& a, const auto& b) { return std::abs(a.sigmas) > std::abs(b.sigmas); });
+  mark_significant(changes.parameters);
+  const std::vector<double> displacements = tool_displacements(earlier.chain, later.chain);
+  if (!displacements.empty()) {
+    changes.tool_rms = rms(displacements);
+    changes.tool_worst = *std::max_element(displacements.begin(), displacements.end());
+  }
+  changes.changed = changes.parameters.front().significant;
+  const std::string tool = fmt::format("the tool differs by {:.3f} mm rms and {:.3f} mm at worst over the joint ranges",
+                                       1e3 * changes.tool_rms, 1e3 * changes.tool_worst);
+  changes.verdict = changes.changed
+                        ? fmt::format("Changed: {}; {}.", list_significant(changes.parameters), tool)
+                        : fmt::format("No change beyond chance in {} numbers; {}.", changes.parameters.size(), tool);
+  return changes;
+}
+
+}  // namespace kinfer::deploy

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compensation: joint targets that bring the real tool to the pose of the nominal model, or to a given target.
+//
+// The corrected chain represents the real robot. For each desired tool pose its inverse kinematics is solved starting
+// from the nominal joint positions, so that the robot keeps its configuration.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "kinfer/base/rng.hpp"
+#include "kinfer/kinematics/inverse.hpp"
+#include "kinfer/kinematics/parameters.hpp"
+
+namespace kinfer::deploy {
+
+/// The frames in which nominal and corrected tool poses are compared.
+enum class CompensationFrames {
+  as_given,  ///< each chain with its own base and tool: both files use the same world frame
+  robot,     ///< the nominal base and tool for both: the corrected base is relative to the instrument
+};
+
+/// `as_given`, or `robot` where the corrected base differs from the nominal one by more than three tolerances: the
+/// instrument then used another world frame.
+CompensationFrames select_compensation_frames(const Chain& corrected, const Chain& nominal,
+                                              const Tolerances& tolerances);
+
+/// The corrected chain in these frames.
+Chain express_in_frames(Chain corrected, const Chain& nominal, CompensationFrames frames);
+
+struct CompensatedJoints {
+  VectorXd q;                   ///< [rad] or [m]
+  double residual = 0.0;        ///< [m] of the tool point, for the corrected chain
+  double residual_angle = 0.0;  ///< [rad]
+  InverseStatus status = InverseStatus::reached;
+};
+
+/// For each column of `q`: the joint positions at which the tool of `corrected` has the pose that `nominal` has at q.
+/// With fewer than six joints the orientation is not free, and only the tool point is corrected.
+std::vector<CompensatedJoints> compensate_joints(const Chain& corrected, const Chain& nominal, const MatrixXd& q,
+                                                 int threads);
+
+/// A desired tool position, with or without an orientation.
+struct ToolTarget {
+  Vec3 position = Vec3::Zero();
+  std::optional<Mat3> rotation;
+};
+
+/// Joint positions that bring the tool of `corrected` to each target. Each search starts from the nominal solution,
+/// which itself starts from `start` (dof x targets) where given, else from random configurations inside the limits.
+std::vector<CompensatedJoints> compensate_targets(const Chain& corrected, const Chain& nominal,
+                                                  const std::vector<ToolTarget>& targets, const MatrixXd& start,
+                                                  int threads, Rng rng);
+
+}  // namespace kinfer::deploy

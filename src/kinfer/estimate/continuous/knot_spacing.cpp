@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/continuous/knot_spacing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "kinfer/estimate/continuous/model/measurement_blocks.hpp"
+
+namespace kinfer {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double finer = 1.0 / std::numbers::sqrt2;
+constexpr double finest_knot_spacing = 0.025;  // [s]
+constexpr double no_further_gain = 1.03;       // ratio to the residual of finer knots: no further gain
+constexpr double window_length = 10.0;         // [s]
+constexpr std::size_t most_windows = 12;       // per sensor
+constexpr double least_activity = 0.1;   // of the largest mean square angular velocity: quieter windows are left out
+constexpr double part_length = 0.2;      // [s] over which residuals are averaged
+constexpr double shock_fraction = 0.05;  // fraction of the parts: the largest are ignored
+constexpr Index least_rows = block_nodes + 2;  // samples per interval: some redundancy must be left to show the noise
+
+/// Measurements of one sensor in one window: [angular velocity, specific force], one sample per row; NaN if invalid.
+struct Window {
+  std::vector<double> time;
+  MatrixXd readings;
+  double activity = 0.0;  ///< mean square angular velocity [rad²/s²]
+};
+
+Window window_of(const InsSensor& sensor, std::span<const double> time, std::size_t first, std::size_t end) {
+  const auto rows = static_cast<Index>(end - first);
+  Window window{{time.begin() + static_cast<std::ptrdiff_t>(first), time.begin() + static_cast<std::ptrdiff_t>(end)},
+                MatrixXd::Constant(rows, 6, std::numeric_limits<double>::quiet_NaN()),
+                0.0};
+  for (Index i = 0; i < rows; ++i) {
+    const InsSample s = sample(sensor, time, first + static_cast<std::size_t>(i));
+    if (!s.has_angular_velocity || s.angular_velocity_clipped || !s.has_acceleration) continue;
+    window.readings.row(i) << s.angular_velocity.transpose(), s.acceleration.transpose();
+    window.activity += s.angular_velocity.squaredNorm() / static_cast<double>(rows);
+  }
+  return window;
+}
+
+std::vector<Window> most_active_windows(const InsSensor& sensor, std::span<const double> time) {
+  std::vector<Window> windows;
+  for (std::size_t first = 0; first < time.size();) {
+    const auto after = std::ranges::upper_bound(time, time[first] + window_length);
+    const auto end = static_cast<std::size_t>(after - time.begin());
+    if (time[end - 1] - time[first] > 0.5 * window_length) windows.push_back(window_of(sensor, time, first, end));
+    first = end;
+  }
+  std::ranges::sort(windows, std::ranges::greater{}, &Window::activity);
+  if (windows.size() > most_windows) windows.resize(most_windows);
+  const double least = windows.empty() ? 0.0 : least_activity * windows.front().activity;
+  std::erase_if(windows, [&](const Window& w) { return w.activity < least; });
+  return windows;
+}
+
+/// Mean squares of one instrument's residuals in parts of a window.
+using Parts = std::array<std::vector<double>, 2>;
+
+void add_residuals(const Window& window, double knots, Parts& parts) {
+  const double length = window.time.back() - window.time.front();
+  const SplineGrid grid{window.time.front(), knots, std::max<Index>(1, static_cast<Index>(std::ceil(length / knots)))};
+  const MatrixXd spline = fit_spline(grid, window.time, window.readings);
+  const auto count = static_cast<std::size_t>(std::ceil(length / part_length)) + 1;
+  std::array<std::vector<double>, 2> squares{std::vector<double>(count), std::vector<double>(count)};
+  std::vector<double> terms(count);
+  double rows = 0.0;
+  for (std::size_t i = 0; i < window.time.size(); ++i) {
+    const auto reading = window.readings.row(static_cast<Index>(i));
+    if (!reading.allFinite()) continue;
+    const auto part = static_cast<std::size_t>((window.time[i] - grid.begin) / part_length);
+    const VectorXd left = reading.transpose() - spline_value(grid, spline, window.time[i]);
+    squares[0][part] += left.head<3>().squaredNorm();
+    squares[1][part] += left.tail<3>().squaredNorm();
+    terms[part] += 3.0;
+    rows += 1.0;
+  }
+  const double freedom = 1.0 - static_cast<double>(grid.coefficients()) / rows;
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t i = 0; i < 2; ++i)
+      if (terms[k] > 0.0 && freedom > 0.0) parts[i].push_back(squares[i][k] / terms[k] / freedom);
+}
+
+double trimmed_rms(std::vector<double> squares) {
+  std::ranges::sort(squares);
+  const auto kept = squares.size() - static_cast<std::size_t>(shock_fraction * static_cast<double>(squares.size()));
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kept; ++i) sum += squares[i];
+  return kept > 0 ? std::sqrt(sum / static_cast<double>(kept)) : 0.0;
+}
+
+/// Residual rms of a sensor's angular velocity and specific force about splines with this knot spacing.
+std::array<double, 2> residual_rms(const std::vector<Window>& windows, double knots) {
+  Parts parts;
+  for (const Window& window : windows) add_residuals(window, knots, parts);
+  return {trimmed_rms(std::move(parts[0])), trimmed_rms(std::move(parts[1]))};
+}
+
+/// The widest knot spacing that represents this sensor's motion, not finer than `least`.
+double sufficient_knot_spacing(const std::vector<Window>& windows, double widest, double least) {
+  double knots = widest;
+  auto wide = residual_rms(windows, knots);
+  for (; knots * finer >= least; knots *= finer) {
+    const auto fine = residual_rms(windows, knots * finer);
+    if (wide[0] <= no_further_gain * fine[0] && wide[1] <= no_further_gain * fine[1]) break;
+    wide = fine;
+  }
+  return knots;
+}
+
+}  // namespace
+
+double select_knot_spacing(const InsRecording& recording) {
+  double knots = widest_knot_spacing;
+  for (const InsSensor& sensor : recording.sensors) {
+    const auto time = recording.time(sensor);
+    const double least = std::max(finest_knot_spacing, static_cast<double>(least_rows) * median_period(time));
+    const auto windows = most_active_windows(sensor, time);
+    if (windows.empty() || knots * finer < least) continue;
+    knots = std::min(knots, std::max(least, finer * sufficient_knot_spacing(windows, knots / finer, least)));
+  }
+  return knots;
+}
+
+}  // namespace kinfer

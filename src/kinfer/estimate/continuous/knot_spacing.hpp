@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Knot spacing required by a recording's motion, chosen from the measurements only, before any chain is known: a fast
+// arm must not look like a model error, and a slow machine should not cost more than necessary.
+#pragma once
+
+#include "kinfer/measurement/ins_recording.hpp"
+
+namespace kinfer {
+
+constexpr double widest_knot_spacing = 0.1;  ///< [s] relative error 1e-3 at 2.5 Hz
+
+/// [s] between knots, from `widest_knot_spacing` down to 0.025 s in steps of √2.
+///
+/// A spline is fitted to each sensor's measurements, from wide knots to fine, until knots finer by √2 hardly reduce the
+/// residual: then the residual is noise, or vibration too fast to follow. The result is finer by √2 once more, because
+/// products of splines (centripetal acceleration) have twice their frequency. If an interval would hold too few samples
+/// to separate motion from noise, the knots stay wider. Long recordings are judged by their two most active minutes.
+double select_knot_spacing(const InsRecording& recording);
+
+}  // namespace kinfer

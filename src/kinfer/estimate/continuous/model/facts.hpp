@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// External measurements of a machine besides its recording (facts), in the terms of the continuous-time fit: touches,
+// tape distances and surveyed points, each a few residuals at one time.
+#pragma once
+
+#include <vector>
+
+#include "kinfer/geometry/pose.hpp"
+
+namespace kinfer {
+
+/// A point or a joint axis fixed to a body.
+struct InsPoint {
+  enum class Kind { sensor, joint_centre, joint_axis, place };
+  Kind kind = Kind::sensor;
+  int body = 0;    ///< the body it is fixed to; for a joint: the joint's child body
+  int place = -1;  ///< index into InsFacts::places
+};
+
+/// A point of a body with unknown coordinates in the frame of the body's sensor.
+struct InsUnknownPoint {
+  int body = 0;
+  Vec3 start = Vec3::Zero();  ///< [m] prior mean
+  double sd = 3.0;            ///< [m] per axis, of the prior
+};
+
+/// The point was at the same unknown position, fixed relative to the root, at all of these times.
+struct InsRevisitedPoint {
+  InsPoint point;
+  std::vector<double> at;  ///< [s]
+  double sd = 0.0;         ///< [m] per axis
+};
+
+/// The shortest distance between two points or lines.
+struct InsTapeDistance {
+  InsPoint from, to;
+  double length = 0.0, sd = 0.0;  ///< [m]
+  double at = 0.0;                ///< [s]
+};
+
+/// Measured position of the point in a surveyor's frame, which is fixed relative to the root.
+struct InsSurveyedPoint {
+  InsPoint point;
+  double at = 0.0;          ///< [s]
+  Vec3 xyz = Vec3::Zero();  ///< [m] in the surveyor's frame
+  double sd = 0.0;          ///< [m] per axis
+};
+
+struct InsFacts {
+  std::vector<InsUnknownPoint> places;
+  std::vector<InsRevisitedPoint> touches;
+  std::vector<InsTapeDistance> tapes;
+  std::vector<InsSurveyedPoint> surveyed;
+};
+
+/// Additional unknowns of the facts: 3 per unknown point, 3 per touch, 6 for the surveyor's frame if there is one.
+struct InsFactUnknowns {
+  std::vector<Vec3> places;   ///< [m] in the sensor's frame
+  std::vector<Vec3> touched;  ///< [m] in the root's frame
+  Pose surveyor;              ///< root_T_surveyor
+};
+
+}  // namespace kinfer

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/continuous/model/problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinfer {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double certain = 1e-9;  // [s], [s/s] of the reference clock, which is exact by definition
+
+/// Calls visit(first unknown, size, pointer to value, sd) for each part of a sensor's errors.
+template <class Errors, class Visit>
+void each_error(const InsProblem& problem, const InsLayout& layout, Errors& all, std::size_t sensor,
+                const Visit& visit) {
+  auto& errors = all[sensor];
+  const Index first = layout.error[sensor];
+  visit(first, 3, errors.gyroscope_bias.data(), problem.prior.gyroscope_bias);
+  visit(first + 3, 3, errors.accelerometer_bias.data(), problem.prior.accelerometer_bias);
+  if (layout.has_matrices) {
+    visit(first + 6, 9, errors.gyroscope_scale.data(), problem.prior.gyroscope_scale);
+    visit(first + 15, 9, errors.accelerometer_scale.data(), problem.prior.accelerometer_scale);
+  }
+  if (layout.has_field)
+    visit(first + layout.field_error, 3, errors.magnetometer_bias.data(), problem.prior.magnetometer_bias);
+  if (layout.has_tilts) visit(first + layout.tilt_error, 9, errors.tilt.data(), problem.prior.tilt);
+  if (!layout.has_clocks) return;
+  const bool is_reference = sensor == problem.clock_reference;
+  const Index clock = first + layout.clock_error;
+  visit(clock, 1, &errors.clock.offset, is_reference ? certain : problem.prior.clock_offset);
+  visit(clock + 1, 1, &errors.clock.drift, is_reference ? certain : problem.prior.clock_drift);
+}
+
+/// `step`: 3 per unknown point, 3 per touched point, then the surveyor's frame: translation and rotation.
+void change_facts(InsFactUnknowns& facts, ConstVectorRef step) {
+  Index at = 0;
+  for (auto* points : {&facts.places, &facts.touched})
+    for (Vec3& point : *points) point += step.segment<3>(at), at += 3;
+  if (at == step.size()) return;
+  facts.surveyor.position += step.segment<3>(at);
+  facts.surveyor.rotation = facts.surveyor.rotation * exp_so3(step.segment<3>(at + 3));
+}
+
+}  // namespace
+
+InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
+  InsLayout layout;
+  layout.spline_dimensions = problem.root_at_rest ? 0 : 6;
+  layout.has_field = problem.root_at_rest &&
+                     std::ranges::any_of(problem.sensors, [](const InsMeasurements& s) { return !s.field.empty(); });
+  layout.has_matrices = problem.prior.gyroscope_scale > 0.0 || problem.prior.accelerometer_scale > 0.0;
+  const auto take = [&](Index count) {
+    return std::exchange(layout.global_parameters, layout.global_parameters + count);
+  };
+  if (problem.root_at_rest) layout.root_force = take(3);
+  if (layout.has_field) layout.root_field = take(3);
+  for (const InsBody& body : bodies) {
+    layout.body.push_back(take(body.unknowns()));
+    layout.spline_dimension.push_back(body.motion == JointMotion::fixed ? -1 : layout.spline_dimensions);
+    layout.spline_dimensions += degrees_of_freedom(body.motion);
+  }
+  layout.has_clocks = problem.prior.clock_offset > 0.0;
+  const auto append = [&](Index count) { return std::exchange(layout.errors_each, layout.errors_each + count); };
+  append(layout.has_matrices ? 24 : 6);
+  if (layout.has_field) layout.field_error = append(3);
+  if (layout.has_clocks) layout.clock_error = append(2);
+  layout.has_tilts = problem.prior.tilt > 0.0;
+  if (layout.has_tilts) layout.tilt_error = append(9);
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) layout.error.push_back(take(layout.errors_each));
+  if (!problem.bias_process.is_none()) layout.bias_process = 6 * static_cast<Index>(problem.sensors.size());
+  const InsFacts& facts = problem.facts;
+  layout.facts =
+      take(3 * static_cast<Index>(facts.places.size() + facts.touches.size()) + (facts.surveyed.empty() ? 0 : 6));
+  return layout;
+}
+
+InsUnknowns retract(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, const InsStep& step) {
+  const VectorXd& border = step.border;
+  InsUnknowns result = x;
+  result.spline_coefficients += step.spline_coefficients;
+  if (layout.bias_process > 0) result.bias_process += step.bias_process;
+  if (layout.root_force >= 0) result.root_force += border.segment<3>(layout.root_force);
+  if (layout.root_field >= 0) result.root_field += border.segment<3>(layout.root_field);
+  for (std::size_t b = 0; b < x.bodies.size(); ++b)
+    result.bodies[b] = retract(x.bodies[b], border.segment(layout.body[b], x.bodies[b].unknowns()));
+  for (std::size_t s = 0; s < x.errors.size(); ++s)
+    each_error(problem, layout, result.errors, s, [&](Index at, Index size, double* value, double) {
+      for (Index i = 0; i < size; ++i) value[i] += border[at + i];
+    });
+  change_facts(result.facts, border.tail(layout.global_parameters - layout.facts));
+  return result;
+}
+
+GlobalParameterPrior global_parameter_prior(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x) {
+  GlobalParameterPrior prior{0.0, MatrixXd::Zero(layout.global_parameters, layout.global_parameters),
+                             VectorXd::Zero(layout.global_parameters)};
+  const auto hold = [&](Index at, double value, double sd) {
+    const double information = 1.0 / (sd * sd);
+    prior.cost += value * value * information;
+    prior.matrix(at, at) += information;
+    prior.right[at] -= value * information;
+  };
+  if (layout.root_force >= 0) {
+    const Vec3 up = x.root_force.normalized();
+    const double information = 1.0 / (problem.gravity_sd * problem.gravity_sd),
+                 excess = x.root_force.norm() - problem.gravity;
+    prior.cost += excess * excess * information;
+    prior.matrix.block<3, 3>(layout.root_force, layout.root_force) += information * up * up.transpose();
+    prior.right.segment<3>(layout.root_force) -= excess * information * up;
+  }
+  for (std::size_t b = 0; b < x.bodies.size(); ++b) {
+    const InsBody& body = x.bodies[b];
+    Index at = layout.body[b];
+    for (const auto* turns : {&body.free_parent_rotation, &body.free_child_rotation})
+      for (const bool is_free : *turns)
+        if (is_free) hold(at++, 0.0, problem.rotation_sd);
+    for (const auto& [is_free, point] :
+         {std::pair{body.free_point_in_parent, body.point_in_parent}, {body.free_point_in_child, body.point_in_child}})
+      if (is_free)
+        for (const double value : point) hold(at++, value, problem.point_sd);
+  }
+  for (std::size_t s = 0; s < x.errors.size(); ++s)
+    each_error(problem, layout, x.errors, s, [&](Index at, Index size, const double* value, double sd) {
+      for (Index i = 0; i < size; ++i) hold(at + i, value[i], sd);
+    });
+  for (std::size_t i = 0; i < x.facts.places.size(); ++i) {
+    const InsUnknownPoint& place = problem.facts.places[i];
+    for (Index k = 0; k < 3; ++k)
+      hold(layout.facts + 3 * static_cast<Index>(i) + k, x.facts.places[i][k] - place.start[k], place.sd);
+  }
+  return prior;
+}
+
+}  // namespace kinfer

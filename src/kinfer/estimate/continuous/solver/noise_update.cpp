@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/continuous/solver/noise_update.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/geometry/statistics.hpp"
+
+namespace kinfer {
+namespace {
+
+/// Autocovariance of the offsets at `lag` intervals.
+double covariance(const std::vector<std::array<float, 3>>& offset, std::size_t axis, std::size_t lag) {
+  double sum = 0.0, n = 0.0;
+  for (std::size_t i = lag; i < offset.size(); ++i) {
+    const double product = double{offset[i][axis]} * double{offset[i - lag][axis]};
+    if (!std::isfinite(product)) continue;
+    sum += product;
+    n += 1.0;
+  }
+  return n > 0.0 ? sum / n : 0.0;
+}
+
+double autocorrelation_time_of_axis(const std::vector<std::array<float, 3>>& offset, std::size_t axis) {
+  const double variance = covariance(offset, axis, 0);
+  double memory = 1.0;
+  for (std::size_t lag = 1; variance > 0.0 && lag < offset.size() / 10; ++lag) {
+    const double rho = covariance(offset, axis, lag) / variance;
+    if (rho <= 0.0) break;
+    memory += 2.0 * rho;
+  }
+  return memory;
+}
+
+/// Mean of the blocks' mean squares without the largest twentieth, which are spikes and collisions.
+double trimmed_mean(const InstrumentFit& fit) {
+  std::vector<float> values;
+  for (const float value : fit.block)
+    if (std::isfinite(value)) values.push_back(value);
+  if (values.empty()) return 0.0;
+  const auto kept = values.begin() + static_cast<std::ptrdiff_t>(values.size() - values.size() / 20);
+  std::nth_element(values.begin(), kept - 1, values.end());
+  double sum = 0.0;
+  for (auto value = values.begin(); value != kept; ++value) sum += *value;
+  return sum / static_cast<double>(kept - values.begin());
+}
+
+/// Ratio of residual noise to the instrument's own noise of each sensor, clamped near the median of the sensors:
+/// otherwise a fit may follow one sensor exactly and ignore another.
+std::vector<double> regularised(std::vector<double> estimated) {
+  constexpr double near = 1.5;
+  const double usual = estimated.empty() ? 1.0 : median(estimated);
+  for (double& factor : estimated) factor = std::max(1.0, std::clamp(factor, usual / near, usual * near));
+  return estimated;
+}
+
+/// Of one instrument type of all sensors; `noise` and `fit` select it in InsNoise and SensorFit.
+void estimate_instrument_noise(std::vector<InsNoise>& all, const InsProblem& problem, const InsCost& cost,
+                               double InsNoise::*noise, InstrumentFit SensorFit::*fit) {
+  std::vector<double> estimated;
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s)
+    estimated.push_back(problem.sensors[s].noise.*noise / problem.sensors[s].noise_floor.*noise *
+                        std::sqrt(trimmed_mean(cost.sensors[s].*fit)));
+  const std::vector<double> factors = regularised(estimated);
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s)
+    all[s].*noise = factors[s] * problem.sensors[s].noise_floor.*noise;
+}
+
+/// Magnetometers: their noise is only ever increased. The correlation time is a rough figure, and they only fix the
+/// gauge, so a coarse weight is enough.
+void estimate_magnetometer_noise(std::vector<InsNoise>& all, const InsProblem& problem, const InsCost& cost) {
+  constexpr double coarse = 2.0;
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+    const InstrumentFit& field = cost.sensors[s].field;
+    const double ratio = field.block.empty() ? 0.0 : trimmed_mean(field) * autocorrelation_time(field);
+    all[s].field = problem.sensors[s].noise.field * (ratio > coarse ? std::sqrt(ratio) : 1.0);
+  }
+}
+
+/// Of gyroscopes and accelerometers; magnetometers unchanged.
+std::vector<InsNoise> estimated_noise(const InsProblem& problem, const InsCost& cost) {
+  std::vector<InsNoise> estimated;
+  for (const InsMeasurements& readings : problem.sensors) estimated.push_back(readings.noise);
+  estimate_instrument_noise(estimated, problem, cost, &InsNoise::angular_velocity, &SensorFit::angular_velocity);
+  estimate_instrument_noise(estimated, problem, cost, &InsNoise::force, &SensorFit::force);
+  return estimated;
+}
+
+bool differ(const InsProblem& problem, const std::vector<InsNoise>& estimated) {
+  constexpr double notable = 0.05;
+  const auto differs = [](double a, double b) { return std::abs(b - a) > notable * a; };
+  for (std::size_t s = 0; s < estimated.size(); ++s) {
+    const InsNoise& noise = problem.sensors[s].noise;
+    if (differs(noise.angular_velocity, estimated[s].angular_velocity) || differs(noise.force, estimated[s].force) ||
+        differs(noise.field, estimated[s].field))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+double autocorrelation_time(const InstrumentFit& fit) {
+  double sum = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) sum += autocorrelation_time_of_axis(fit.offset, axis) / 3.0;
+  return sum;
+}
+
+bool needs_reweighting(const InsProblem& problem, const InsCost& cost) {
+  return differ(problem, estimated_noise(problem, cost));
+}
+
+bool update_noise(InsProblem& problem, const InsCost& cost) {
+  std::vector<InsNoise> estimated = estimated_noise(problem, cost);
+  estimate_magnetometer_noise(estimated, problem, cost);
+  const bool changed = differ(problem, estimated);
+  for (std::size_t s = 0; s < estimated.size(); ++s) problem.sensors[s].noise = estimated[s];
+  return changed;
+}
+
+}  // namespace kinfer

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/continuous/solver/sensor_linearisation.hpp"
+
+#include <cmath>
+
+#include "kinfer/estimate/continuous/model/bias_process.hpp"
+#include "kinfer/linalg/block_products.hpp"
+
+namespace kinfer {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr Index rate_row = 0, force_row = 6;
+
+/// Appends columns of further global parameters; returns the first column.
+Index append(SensorRows& part, Index first, Index count) {
+  const Index column = number_of(part.band) + number_of(part.border);
+  for (Index i = 0; i < count; ++i) part.border.push_back(first + i);
+  return column;
+}
+
+Index append(SensorRows& part, const std::vector<Index>& unknowns) {
+  const Index column = number_of(part.band) + number_of(part.border);
+  part.border.insert(part.border.end(), unknowns.begin(), unknowns.end());
+  return column;
+}
+
+/// Derivatives of one instrument's measurement with respect to the tilt compliance.
+const Eigen::Matrix<double, 3, 9>& by_tilt(const MountDerivative& on_mount, Index state_row) {
+  return state_row == rate_row    ? on_mount.velocity_by_tilt
+         : state_row == force_row ? on_mount.force_by_tilt
+                                  : on_mount.field_by_tilt;
+}
+
+}  // namespace
+
+SensorLinearisation::SensorLinearisation(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                                         const IntervalMotion& motion, std::size_t body, LinearisationScope scope)
+    : problem_(problem),
+      layout_(layout),
+      x_(x),
+      motion_(motion),
+      body_(body),
+      sensor_(static_cast<std::size_t>(x.bodies[body].sensor)),
+      scope_(scope) {
+  const InsPath& path = motion.path(body);
+  for (SensorRows& part : parts_)
+    for (Index i = 0; i < spline_order; ++i)
+      for (const Index spline_dimension : path.spline_dimensions)
+        part.band.push_back(i * layout.spline_dimensions + spline_dimension);
+  if (scope == LinearisationScope::everything) {
+    for (SensorRows& part : parts_) part.rotational = append(part, path.rotational);
+    parts_[1].translational = append(parts_[1], path.translational);
+  }
+  for (const InstrumentMeasurements& instrument : instruments(problem, layout, sensor_))
+    uses_.push_back(columns_of(instrument));
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    SensorRows& part = parts_[p];
+    if (scope == LinearisationScope::everything) {
+      if (layout.has_tilts) part.tilt = append(part, layout.error[sensor_] + layout.tilt_error, 9);
+      if (layout.has_clocks) part.clock = append(part, layout.error[sensor_] + layout.clock_error, 2);
+    }
+    const auto instruments = std::ranges::count(uses_, p, &InstrumentColumns::part);
+    part.jacobian.resize(number_of(part.band) + number_of(part.border), 3 * block_nodes * instruments);
+    part.residual.resize(part.jacobian.cols());
+  }
+}
+
+SensorLinearisation::InstrumentColumns SensorLinearisation::columns_of(const InstrumentMeasurements& instrument) {
+  const bool angular_velocity = instrument.state_row == rate_row, force = instrument.state_row == force_row;
+  InstrumentColumns use{instrument, force ? 1UL : 0UL};
+  if (scope_ == LinearisationScope::spline_only) return use;
+  const Index first = layout_.error[sensor_];
+  use.bias = append(parts_[use.part], first + (angular_velocity ? 0 : force ? 3 : layout_.field_error), 3);
+  if (layout_.has_matrices && (angular_velocity || force))
+    use.matrix = append(parts_[use.part], first + (angular_velocity ? 6 : 15), 9);
+  return use;
+}
+
+void SensorLinearisation::move_to(Index interval) {
+  errors_ = errors_at(problem_, x_, sensor_, interval);
+  update_sensor_states(interval);
+  for (SensorRows& part : parts_) part.used = 0;
+  for (const InstrumentColumns& use : uses_) add_rows(use, interval);
+}
+
+void SensorLinearisation::update_sensor_states(Index interval) {
+  const auto& segment = motion_.body(body_).state;
+  for (std::size_t n = 0; n < block_nodes; ++n) {
+    on_mount_[n].state = segment[n];
+    if (!layout_.has_tilts) continue;
+    const InsMountLoad& mount_load = problem_.sensors[sensor_].mount_load[static_cast<std::size_t>(interval)];
+    on_mount_[n] = state_on_mount_derivative(segment[n], errors_.tilt, mount_load.force_at(n), mount_load.change_at(n));
+  }
+}
+
+void SensorLinearisation::add_rows(const InstrumentColumns& use, Index interval) {
+  const InsBlock& block = use.instrument.blocks[static_cast<std::size_t>(interval)];
+  if (block.rows == 0) return;
+  SensorRows& part = parts_[use.part];
+  BlockResidual predicted;
+  for (std::size_t n = 0; n < block_nodes; ++n)
+    predicted.row(static_cast<Index>(n)) = use.instrument.read(on_mount_[n].state, errors_).transpose();
+  const NodeMatrix factor = shifted_factor(block, layout_, clock_shift(problem_, layout_, errors_, interval));
+  const BlockResidual r = residual(block, factor, predicted, use.instrument.sd);
+  const double weight = std::sqrt(robust(r.squaredNorm(), 3.0 * block.rows).weight), scale = weight / use.instrument.sd;
+  WeightedBlock weighed{use, scale * factor, {}, part.used, block.rows};
+  weighed.by_state.fill(scaled(use));
+  if (layout_.has_tilts)
+    for (std::size_t n = 0; n < block_nodes; ++n) weighed.by_state[n] *= on_mount_[n].turn;
+  put_spline_columns(weighed);
+  if (scope_ == LinearisationScope::everything) {
+    part.jacobian.block(number_of(part.band), part.used, number_of(part.border), 3 * block.rows).setZero();
+    const BodyMotion& body = motion_.body(body_);
+    put_global_columns(weighed, body.rotational.middleCols(use.instrument.state_row * block_nodes, 3 * block_nodes),
+                       part.rotational);
+    if (use.instrument.state_row == force_row) put_global_columns(weighed, body.translational, part.translational);
+    put_errors(weighed);
+    if (layout_.has_clocks)
+      put_clock(weighed, scale * block.factor.cast<double>() * (node_derivative() * predicted), interval);
+  }
+  for (Index i = 0; i < block.rows; ++i) part.residual.segment<3>(part.used + 3 * i) = weight * r.row(i).transpose();
+  part.used += 3 * block.rows;
+}
+
+/// Scale matrix of the instrument: I + S.
+Mat3 SensorLinearisation::scaled(const InstrumentColumns& use) const {
+  const Mat3 one = Mat3::Identity();
+  if (use.instrument.state_row == rate_row) return one + errors_.gyroscope_scale;
+  return use.instrument.state_row == force_row ? Mat3(one + errors_.accelerometer_scale) : one;
+}
+
+/// Chain rule for each coefficient of each spline dimension: block row by nodes, nodes by the dimension's time
+/// derivatives, these by the coefficient.
+void SensorLinearisation::put_spline_columns(const WeightedBlock& w) {
+  constexpr Index derivatives = block_nodes * derivative_orders;
+  SensorRows& part = parts_[w.use.part];
+  const MatrixXd& by_channels = motion_.body(body_).band;
+  const Index spline_dimensions = number_of(part.band) / spline_order, first = w.use.instrument.state_row * block_nodes;
+  std::array<Eigen::Matrix<double, spline_order, derivatives>, block_nodes> coefficients;  // for each row of the block
+  for (Index i = 0; i < w.rows; ++i)
+    for (Index k = 0; k < derivatives; ++k) {
+      const auto node = static_cast<std::size_t>(k / derivative_orders),
+                 order = static_cast<std::size_t>(k % derivative_orders);
+      const Eigen::Map<const Eigen::Matrix<double, spline_order, 1>> basis(motion_.bases()[node].at[order].data());
+      coefficients[static_cast<std::size_t>(i)].col(k) = w.weight(i, static_cast<Index>(node)) * basis;
+    }
+  for (Index c = 0; c < spline_dimensions; ++c) {
+    Eigen::Matrix<double, derivatives, 3> shown;  // by the dimension's time derivatives at the nodes
+    for (Index k = 0; k < derivatives; ++k) {
+      const Index node = k / derivative_orders, row = c * derivative_orders + k % derivative_orders;
+      const Vec3 truth(by_channels(row, first + node), by_channels(row, first + block_nodes + node),
+                       by_channels(row, first + 2 * block_nodes + node));
+      shown.row(k) = (w.by_state[static_cast<std::size_t>(node)] * truth).transpose();
+    }
+    for (Index i = 0; i < w.rows; ++i) {
+      const Eigen::Matrix<double, spline_order, 3> by_coefficients =
+          coefficients[static_cast<std::size_t>(i)].lazyProduct(shown);
+      for (Index axis = 0; axis < 3; ++axis) {
+        double* to = part.jacobian.col(w.first + 3 * i + axis).data() + c;
+        for (Index k = 0; k < spline_order; ++k) to[k * spline_dimensions] = by_coefficients(k, axis);
+      }
+    }
+  }
+}
+
+/// `by_unknowns`: three components of the segment's state, each at all nodes.
+void SensorLinearisation::put_global_columns(const WeightedBlock& w, const Eigen::Ref<const MatrixXd>& by_unknowns,
+                                             Index column) {
+  MatrixXd& jacobian = parts_[w.use.part].jacobian;
+  Eigen::Matrix<double, block_nodes, 3 * block_nodes> weight;
+  for (Index axis = 0; axis < 3; ++axis) {
+    for (Index component = 0; component < 3; ++component)
+      for (Index node = 0; node < block_nodes; ++node)
+        weight.col(component * block_nodes + node) =
+            w.by_state[static_cast<std::size_t>(node)](axis, component) * w.weight.col(node);
+    Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>> every_third(jacobian.col(w.first + axis).data() + column,
+                                                              by_unknowns.rows(), w.rows,
+                                                              Eigen::OuterStride<>(3 * jacobian.rows()));
+    add_product(by_unknowns, weight.topRows(w.rows), 1.0, every_third);
+  }
+}
+
+void SensorLinearisation::put_errors(const WeightedBlock& w) {
+  MatrixXd& jacobian = parts_[w.use.part].jacobian;
+  const Index tilt = parts_[w.use.part].tilt, state_row = w.use.instrument.state_row;
+  const bool has_matrix = layout_.has_matrices && (state_row == rate_row || state_row == force_row);
+  const Mat3 scale = scaled(w.use);
+  for (Index i = 0; i < w.rows; ++i)
+    for (Index axis = 0; axis < 3; ++axis) jacobian(w.use.bias + axis, w.first + 3 * i + axis) = w.weight.row(i).sum();
+  for (std::size_t n = 0; n < block_nodes; ++n) {
+    const Vec3& truth = state_row == rate_row ? on_mount_[n].state.angular_velocity : on_mount_[n].state.force;
+    const Eigen::Matrix<double, 3, 9> tilting =
+        layout_.has_tilts ? Eigen::Matrix<double, 3, 9>(scale * by_tilt(on_mount_[n], state_row))
+                          : Eigen::Matrix<double, 3, 9>(Eigen::Matrix<double, 3, 9>::Zero());
+    for (Index i = 0; i < w.rows; ++i) {
+      const double weight = w.weight(i, static_cast<Index>(n));
+      for (Index axis = 0; axis < 3; ++axis) {
+        auto row = jacobian.col(w.first + 3 * i + axis);
+        if (has_matrix)  // S is stored column by column
+          for (Index j = 0; j < 3; ++j) row[w.use.matrix + 3 * j + axis] += weight * truth[j];
+        if (layout_.has_tilts) row.segment<9>(tilt) += weight * tilting.row(axis).transpose();
+      }
+    }
+  }
+}
+
+/// `by_shift`: derivative of the block's rows with respect to the time shift in intervals.
+void SensorLinearisation::put_clock(const WeightedBlock& w, const BlockResidual& by_shift, Index interval) {
+  SensorRows& part = parts_[w.use.part];
+  for (Index i = 0; i < w.rows; ++i)
+    for (Index axis = 0; axis < 3; ++axis) {
+      auto row = part.jacobian.col(w.first + 3 * i + axis);
+      row[part.clock] = by_shift(i, axis) / problem_.grid.period;
+      row[part.clock + 1] = from_middle(problem_.grid, interval) * row[part.clock];
+    }
+}
+
+}  // namespace kinfer

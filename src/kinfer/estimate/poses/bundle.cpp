@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/poses/bundle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "kinfer/base/expect.hpp"
+#include "kinfer/estimate/identifiability.hpp"
+#include "kinfer/estimate/poses/noise_level.hpp"
+#include "kinfer/estimate/poses/pose_normal_equations.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/kinematics/batch/tool_derivatives.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/normal_equations.hpp"
+
+namespace kinfer {
+namespace {
+
+/// State of the fit between its stages.
+struct State {
+  Chain chain;
+  std::vector<bool> inlier;  ///< one per block
+  ExcessNoise excess;
+  LeastSquaresOutcome outcome;  ///< of the last run, on the inlier blocks
+  SearchSummary search;
+};
+
+/// Squared singular values of the measurement Jacobian, rows in units of the noise and columns in units of the prior.
+VectorXd scaled_information_spectrum(const NormalEquations& normal, const ParameterSet& set) {
+  VectorXd scale(set.free_count());
+  Eigen::Index k = 0;
+  for (const Parameter* p : set.free()) scale[k++] = std::isfinite(p->prior_sd) ? p->prior_sd : p->scale;
+  MatrixXd information = normal.matrix - prior_information(set).triangularView<Eigen::Lower>().toDenseMatrix();
+  information = scale.asDiagonal() * information * scale.asDiagonal();
+  return symmetric_eigen(information).values.cwiseMax(0.0);
+}
+
+/// Σ s²/(1+s²): effective number of parameters that the data determine.
+double effective_parameters(const NormalEquations& normal, const ParameterSet& set) {
+  const VectorXd s2 = scaled_information_spectrum(normal, set);
+  return (s2.array() / (1.0 + s2.array())).sum();
+}
+
+constexpr double coarse_tolerance = 1e-7;    // relative decrease of the cost
+constexpr double warm_start_damping = 1e-9;  // initial damping when the start is the optimum of nearly the same problem
+constexpr double robust_loss_scale = 2.0;    // [sigma] per row
+constexpr double final_tolerance = 1e-6;     // of the cost of one row: accurate to a thousandth of each sd
+
+class Fit {
+ public:
+  Fit(const Chain& start, const ParameterSet& set, const PoseSet& data, const std::optional<Instrument>& instrument,
+      const BundleOptions& options, const Observer& observer)
+      : set_(set), data_(data), instrument_(instrument), options_(options), observer_(observer) {
+    state_.chain = start;
+    blocks_ = blocks_of(data);
+    state_.inlier.assign(blocks_.size(), true);
+    state_.search.method = "lm";
+    state_.excess = excess_noise(start, data, instrument, 0.0);
+  }
+
+  Estimate run() {
+    if (options_.outliers == Outliers::detect) {
+      if (options_.initial_guess == InitialGuess::rough) fit_robustly();
+      update_inliers();
+    }
+    fit_inliers();
+    return summary();
+  }
+
+ private:
+  /// `tolerance`: relative decrease of the cost at which a run ends; rounds that only settle the noise level can be
+  /// coarse.
+  void minimise(Loss loss, double tolerance) {
+    const PoseSet kept = keep_measurements(data_, state_.inlier);
+    const Weights weights = weights_of(kept, instrument_, state_.excess);
+    SearchSummary& search = state_.search;
+    LeastSquaresOptions options;
+    options.max_iterations = options_.max_iterations;
+    options.cost_tolerance = tolerance;
+    options.final_step = FinalStep::skipped;
+    if (search.iterations > 0 || options_.initial_guess == InitialGuess::near_optimum)
+      options.initial_damping = warm_start_damping;
+    const Chain nominal = state_.chain;
+    state_.outcome = least_squares(pose_normal_problem(nominal, set_, kept, weights, {loss, robust_loss_scale}),
+                                   pack(set_, nominal), options, observer_);
+    state_.chain = unpack(set_, nominal, state_.outcome.x);
+    search.iterations += state_.outcome.iterations;
+    search.evaluations += state_.outcome.evaluations;
+    search.stop = state_.outcome.stop;
+    search.cost = state_.outcome.cost;
+    search.best.insert(search.best.end(), state_.outcome.history.begin(), state_.outcome.history.end());
+  }
+
+  /// True when the noise level has converged.
+  bool update_noise_level() {
+    const PoseSet kept = keep_measurements(data_, state_.inlier);
+    const ExcessNoise now =
+        excess_noise(state_.chain, kept, instrument_, effective_parameters(state_.outcome.normal, set_));
+    const auto settled = [](double before, double after) { return std::abs(after - before) <= 0.02 * before; };
+    bool done = true;
+    for (std::size_t k = 0; k < now.of.size(); ++k) done &= settled(state_.excess.of[k], now.of[k]);
+    state_.excess = now;
+    return done;
+  }
+
+  /// Alternates between noise level and parameters, under a redescending (Cauchy) loss.
+  void fit_robustly() {
+    constexpr int rounds = 8;
+    for (int i = 0; i < rounds; ++i) {
+      minimise(Loss::cauchy, coarse_tolerance);
+      if (update_noise_level()) break;
+    }
+  }
+
+  /// Plain least squares on the inliers, until noise level and inliers are consistent with the fit.
+  void fit_inliers() {
+    constexpr int rounds = 5;
+    for (int i = 0; i < rounds; ++i) {
+      minimise(Loss::none, coarse_tolerance);
+      const bool settled = update_noise_level();
+      const bool same = options_.outliers == Outliers::keep_all || !update_inliers();
+      if (!settled || !same) continue;
+      if (options_.detail == Detail::numbers_only) return;
+      break;
+    }
+    minimise(Loss::none, final_tolerance / static_cast<double>(std::max<std::size_t>(1, blocks_.size())));
+  }
+
+  /// Mahalanobis distance [sigma] of each block. An orientation is conditioned on the point of its row only where that
+  /// point is an inlier.
+  VectorXd mahalanobis_distances() const {
+    Weights weights = weights_of(data_, instrument_, state_.excess);
+    if (weights.couplings.empty()) return mahalanobis_distances(weights);
+    const std::vector<PoseCoupling> couplings = std::exchange(weights.couplings, {});
+    const VectorXd alone = mahalanobis_distances(weights);  // points are the first blocks
+    for (const PoseCoupling& c : couplings)
+      if (alone[c.point] <= inlier_limits()[2]) weights.couplings.push_back(c);
+    return mahalanobis_distances(weights);
+  }
+
+  VectorXd mahalanobis_distances(const Weights& weights) const {
+    const ParameterSet nothing;
+    VectorXd r, distance(static_cast<Eigen::Index>(blocks_.size()));
+    pose_residuals(state_.chain, nothing, data_, weights).evaluate(VectorXd(0), r, nullptr);
+    Eigen::Index row = 0;
+    for (std::size_t i = 0; i < blocks_.size(); row += blocks_[i++].size)
+      distance[static_cast<Eigen::Index>(i)] = r.segment(row, blocks_[i].size).norm();
+    return distance;
+  }
+
+  /// Largest Mahalanobis distance [sigma] of an inlier block of 1, 2, 3 rows.
+  std::array<double, 3> inlier_limits() const {
+    const double quantile = 1.0 - options_.false_alarms / std::max<double>(1.0, static_cast<double>(blocks_.size()));
+    std::array<double, 3> inlier_limits;
+    for (int size = 1; size <= 3; ++size) inlier_limits[size - 1] = std::sqrt(chi_squared_quantile(quantile, size));
+    return inlier_limits;
+  }
+
+  /// True when the set of inliers changed.
+  bool update_inliers() {
+    const VectorXd distance = mahalanobis_distances();
+    const std::array<double, 3> limit = inlier_limits();
+    bool changed = false;
+    for (std::size_t i = 0; i < state_.inlier.size(); ++i) {
+      const bool believe = distance[static_cast<Eigen::Index>(i)] <= limit[blocks_[i].size - 1];
+      changed |= believe != state_.inlier[i];
+      state_.inlier[i] = believe;
+    }
+    return changed;
+  }
+
+  Estimate summary() const {
+    Estimate estimate;
+    estimate.chain = state_.chain;
+    estimate.parameters = set_;
+    estimate.search = state_.search;
+    describe_noise(estimate);
+    describe_parameters(estimate);
+    describe_outliers(estimate);
+    if (options_.detail == Detail::numbers_only) return estimate;
+    estimate.identifiability = identifiability(inlier_jacobian(), set_);
+    estimate.negative_log_evidence = negative_log_evidence();
+    estimate.predicted_error = predicted_rms(estimate);
+    return estimate;
+  }
+
+  /// Weighted Jacobian of the inlier measurements, without prior rows.
+  MatrixXd inlier_jacobian() const {
+    const PoseSet kept = keep_measurements(data_, state_.inlier);
+    const Weights weights = weights_of(kept, instrument_, state_.excess);
+    VectorXd r;
+    MatrixXd jacobian;
+    pose_residuals(state_.chain, set_, kept, weights).evaluate(state_.outcome.x, r, &jacobian);
+    return jacobian.topRows(jacobian.rows() - set_.free_count());
+  }
+
+  void describe_noise(Estimate& estimate) const {
+    const PoseSet kept = keep_measurements(data_, state_.inlier);
+    const Weights weights = weights_of(kept, instrument_, state_.excess);
+    estimate.sigma = typical_sd(weights, {MeasurementKind::point, MeasurementKind::contact, MeasurementKind::distance,
+                                          MeasurementKind::pair, MeasurementKind::plane});
+    estimate.sigma_angle = typical_sd(weights, {MeasurementKind::orientation});
+    if (instrument_) estimate.chi2_per_n = normalised_chi2(kept);
+  }
+
+  /// −2 log of the marginal likelihood by Laplace's approximation: misfit, noise level over all rows including
+  /// outliers, and the Occam factor of the parameters.
+  double negative_log_evidence() const {
+    const Weights weights = weights_of(keep_measurements(data_, state_.inlier), instrument_, state_.excess);
+    double sum = state_.outcome.cost + scaled_information_spectrum(state_.outcome.normal, set_).array().log1p().sum();
+    for (const ResidualKind& kind : residual_kinds()) {
+      const double sd = typical_sd(weights, {kind.kind});
+      if (sd > 0.0) sum += 2.0 * kind.size * static_cast<double>(kind.count(data_)) * std::log(sd);
+    }
+    for (const PoseCoupling& coupling : weights.couplings) sum += coupling.log_determinant();
+    return sum;
+  }
+
+  /// Of the first of these kinds that was measured.
+  static double typical_sd(const Weights& weights, std::initializer_list<MeasurementKind> kinds) {
+    for (const MeasurementKind kind : kinds) {
+      const int size = residual_kind(kind).size;
+      std::vector<double> sd;
+      for (const Vec3& v : weights.of(kind)) sd.push_back(v.head(size).norm() / std::sqrt(size));
+      if (!sd.empty()) return rms(sd);
+    }
+    return 0.0;
+  }
+
+  /// Tilts count only where the instrument specifies their accuracy.
+  double normalised_chi2(PoseSet kept) const {
+    if (!instrument_->sigma_tilt) kept.tilts.clear();
+    const Weights specified = weights_of(kept, *instrument_);
+    const ParameterSet nothing;
+    VectorXd r;
+    pose_residuals(state_.chain, nothing, kept, specified).evaluate(VectorXd(0), r, nullptr);
+    const double redundancy =
+        std::max(1.0, static_cast<double>(r.size()) - effective_parameters(state_.outcome.normal, set_));
+    return r.squaredNorm() / redundancy;
+  }
+
+  void describe_parameters(Estimate& estimate) const {
+    const std::vector<const Parameter*> free = set_.free();
+    const MatrixXd& normal = state_.outcome.normal.matrix;
+    // Scaled to unit diagonal before inversion, for accuracy.
+    const VectorXd scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+    const auto inverse = invert_spd(scale.asDiagonal() * normal * scale.asDiagonal());
+    const Eigen::Index n = scale.size();
+    estimate.covariance = inverse ? MatrixXd(scale.asDiagonal() * *inverse * scale.asDiagonal()) : MatrixXd::Zero(n, n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const Parameter& parameter = *free[k];
+      const double sd = std::sqrt(std::max(0.0, estimate.covariance(k, k)));
+      estimate.values.push_back({parameter.name, parameter.quantity, parameter.nominal, state_.outcome.x[k], sd,
+                                 sd * sd < 0.5 * parameter.prior_sd * parameter.prior_sd});
+    }
+  }
+
+  void describe_outliers(Estimate& estimate) const {
+    if (std::find(state_.inlier.begin(), state_.inlier.end(), false) == state_.inlier.end()) return;
+    const VectorXd distance = mahalanobis_distances();
+    const ParameterSet nothing;
+    const EvaluatedPoses at = evaluate_poses(estimate.chain, nothing, data_, Derivative::no);
+    const FixtureColumns columns = fixture_columns(estimate.chain, nothing);
+    VectorXd residual = VectorXd::Zero(3);
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      if (state_.inlier[i]) continue;
+      const Block& block = blocks_[i];
+      const ResidualKind& kind = residual_kind(block.kind);
+      BlockRows out{residual, nullptr, 0};
+      kind.write({estimate.chain, data_, at, columns}, static_cast<std::size_t>(block.index), out);
+      const std::string what = kind.in_words(residual.head(kind.size).norm());
+      const int line = data_.line.empty() ? 0 : data_.line[block.row];
+      const double sigmas = distance[static_cast<Eigen::Index>(i)];
+      estimate.outliers.push_back({block.row, line, fmt::format("{} ({:.0f} sigma)", what, sigmas), sigmas});
+    }
+    std::stable_sort(estimate.outliers.begin(), estimate.outliers.end(),
+                     [](const Outlier& a, const Outlier& b) { return a.row < b.row; });
+    merge_rows(estimate.outliers);
+  }
+
+  /// A row with several outlier measurements is listed once.
+  static void merge_rows(std::vector<Outlier>& outliers) {
+    std::vector<Outlier> merged;
+    for (const Outlier& outlier : outliers) {
+      if (merged.empty() || merged.back().row != outlier.row) {
+        merged.push_back(outlier);
+        continue;
+      }
+      merged.back().reason += "; " + outlier.reason;
+      merged.back().sigmas = std::max(merged.back().sigmas, outlier.sigmas);
+    }
+    outliers = std::move(merged);
+  }
+
+  double predicted_rms(const Estimate& estimate) const {
+    double sum = 0.0;
+    for (const Twists& twists : evaluate_poses(estimate.chain, set_, data_, Derivative::yes).twists)
+      sum += (twists.topRows<3>() * estimate.covariance * twists.topRows<3>().transpose()).trace();
+    return data_.rows() > 0 ? std::sqrt(sum / static_cast<double>(data_.rows())) : 0.0;
+  }
+
+  const ParameterSet& set_;
+  const PoseSet& data_;
+  const std::optional<Instrument>& instrument_;
+  const BundleOptions& options_;
+  const Observer& observer_;
+  std::vector<Block> blocks_;
+  State state_;
+};
+
+}  // namespace
+
+Estimate fit_bundle(const Chain& start, const ParameterSet& set, const PoseSet& data,
+                    const std::optional<Instrument>& instrument, const BundleOptions& options,
+                    const Observer& observer) {
+  KINFER_EXPECT(has_measurements(data), "nothing measured");
+  return Fit(start, set, data, instrument, options, observer).run();
+}
+
+Mat3 predicted_covariance(const Estimate& estimate, ConstVectorRef q) {
+  const PoseEvaluator evaluator(estimate.chain, estimate.parameters);
+  Twists twists;
+  evaluator.pose_and_derivative(q, {}, twists);
+  return twists.topRows<3>() * estimate.covariance * twists.topRows<3>().transpose();
+}
+
+VectorXd predicted_errors(const Estimate& estimate, ConstMatrixRef joints) {
+  const MatrixXd jacobian = tool_derivatives(estimate.chain, estimate.parameters, joints).jacobian;
+  const VectorXd variance = (jacobian * estimate.covariance).cwiseProduct(jacobian).rowwise().sum();
+  return variance.reshaped(3, joints.cols()).colwise().sum().cwiseSqrt().transpose();
+}
+
+}  // namespace kinfer

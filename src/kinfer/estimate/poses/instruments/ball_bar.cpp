@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ball-bar: its known length − |p_row − p_other|, the distance between the tool points of two poses.
+#include <fmt/format.h>
+
+#include "kinfer/estimate/poses/instruments/residual_kind.hpp"
+
+namespace kinfer {
+namespace {
+
+void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
+  const PairDistance& pair = scene.data.pairs[index];
+  const Vec3 bar = scene.at.pose[pair.row].position - scene.at.pose[pair.other].position;
+  const double length = bar.norm();
+  out.residuals[out.row] = pair.distance - length;
+  if (!out.jacobian) return;
+  const Vec3 along = length > 0.0 ? Vec3(bar / length) : Vec3::UnitX().eval();
+  out.jacobian->row(out.row) =
+      -along.transpose() * (scene.at.twists[pair.row].topRows<3>() - scene.at.twists[pair.other].topRows<3>());
+}
+
+Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {
+  const double sigma = instrument.sigma_distance.value_or(instrument.sigma);
+  return Vec3::Constant(sigma + 1e-6 * instrument.ppm * data.pairs[index].distance);
+}
+
+std::string in_words(double error) {
+  return fmt::format("the two tool points are {:.3f} mm nearer or further apart than the model has them", 1e3 * error);
+}
+
+}  // namespace
+
+ResidualKind pair_residual() {
+  return {.kind = MeasurementKind::pair,
+          .size = 1,
+          .count = [](const PoseSet& data) { return data.pairs.size(); },
+          .row = [](const PoseSet& data, std::size_t i) { return data.pairs[i].row; },
+          .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.pairs, kept); },
+          .specified_sd = specified_sd,
+          .write = write,
+          .in_words = in_words};
+}
+
+}  // namespace kinfer

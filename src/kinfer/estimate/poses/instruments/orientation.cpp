@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measured orientation: log(R_measured R_predictedᵀ), a rotation vector in the world frame.
+// R_measured (exp(δ) R)ᵀ = exp(error) exp(−δ), so d error = −J_r⁻¹(error) δ.
+#include <fmt/format.h>
+
+#include "kinfer/base/angle.hpp"
+#include "kinfer/estimate/poses/instruments/residual_kind.hpp"
+
+namespace kinfer {
+namespace {
+
+void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
+  const OrientationMeasurement& measured = scene.data.orientations[index];
+  const Mat3 misfit = measured.orientation.toRotationMatrix() * scene.at.pose[measured.row].rotation.transpose();
+  const Vec3 error = log_so3(misfit);
+  out.residuals.segment<3>(out.row) = along_axes(measured.axes, error);
+  if (!out.jacobian) return;
+  Mat3 slope = -right_jacobian_inverse(error);
+  if (measured.axes) slope = measured.axes->transpose() * slope;
+  out.jacobian->middleRows<3>(out.row) = slope * scene.at.twists[measured.row].bottomRows<3>();
+}
+
+Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {
+  const auto& sd = data.orientations[index].sd;
+  return sd ? *sd : Vec3::Constant(instrument.sigma_angle);
+}
+
+std::string in_words(double error) {
+  return fmt::format("the orientation is {:.3f} deg from what the model has", error / degree);
+}
+
+}  // namespace
+
+ResidualKind orientation_residual() {
+  return {.kind = MeasurementKind::orientation,
+          .size = 3,
+          .count = [](const PoseSet& data) { return data.orientations.size(); },
+          .row = [](const PoseSet& data, std::size_t i) { return data.orientations[i].row; },
+          .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.orientations, kept); },
+          .specified_sd = specified_sd,
+          .write = write,
+          .in_words = in_words};
+}
+
+}  // namespace kinfer

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/poses/noise_level.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "kinfer/geometry/statistics.hpp"
+
+namespace kinfer {
+namespace {
+
+/// Excess noise at which the median of the squared block norms equals that of Gaussian noise; 0 if it is below already.
+/// By bisection.
+double solve_excess(const std::function<double(double)>& median_norm2, double target, double upper) {
+  if (median_norm2(0.0) <= target) return 0.0;
+  double low = 0.0, high = upper;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (median_norm2(middle) > target ? low : high) = middle;
+  }
+  return high;
+}
+
+double excess_of(const std::vector<Vec3>& residuals, const std::vector<Vec3>& sd, int size, double absorbed) {
+  if (residuals.empty()) return 0.0;
+  double largest = 0.0;
+  for (const Vec3& r : residuals) largest = std::max(largest, r.norm());
+  const auto median_norm2 = [&](double excess) {
+    std::vector<double> norm2(residuals.size());
+    for (std::size_t i = 0; i < residuals.size(); ++i)
+      norm2[i] = residuals[i].cwiseAbs2().cwiseQuotient((sd[i].cwiseAbs2().array() + excess * excess).matrix()).sum();
+    return median(std::move(norm2));
+  };
+  return solve_excess(median_norm2, chi_squared_quantile(0.5, size) * absorbed, 2.0 * largest);
+}
+
+/// The kind's blocks in their own units, padded with zeros to three components.
+std::vector<Vec3> residuals_of(const ResidualKind& kind, const ResidualContext& scene) {
+  std::vector<Vec3> residuals(kind.count(scene.data), Vec3::Zero());
+  VectorXd rows = VectorXd::Zero(3);
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    BlockRows out{rows, nullptr, 0};
+    kind.write(scene, i, out);
+    residuals[i].head(kind.size) = rows.head(kind.size);
+  }
+  return residuals;
+}
+
+/// One kind's blocks with their standard deviations along the same axes.
+struct Blocks {
+  std::vector<Vec3> residuals, sd;
+};
+
+ConditionalError in_world(const Blocks& blocks, int index, const std::optional<Mat3>& axes) {
+  const Vec3& along = blocks.residuals[index];
+  return {axes ? Vec3(*axes * along) : along, covariance_of(blocks.sd[index], axes)};
+}
+
+void replace(Blocks& blocks, int index, const ConditionalError& by) {
+  const PrincipalDeviations spread = principal_deviations(by.covariance);
+  blocks.residuals[index] = spread.axes.transpose() * by.error, blocks.sd[index] = spread.sd;
+}
+
+/// With correlated points and orientations, each hides small errors behind the shared one: points are conditioned on
+/// the orientation, then orientations on the point with the excess found for it.
+void estimate_pose_noise(const Weights& specified, const PoseSet& data, double left, Blocks& points, Blocks& turns,
+                         ExcessNoise& excess) {
+  Blocks conditioned_points = points;
+  for (const PoseCoupling& c : specified.couplings) {
+    const OrientationMeasurement& turn = data.orientations[c.orientation];
+    replace(conditioned_points, c.point,
+            condition_on(in_world(turns, c.orientation, turn.axes),
+                         in_world(points, c.point, data.points[c.point].axes), *turn.covariance_with_point));
+  }
+  double& of_points = excess.of[static_cast<std::size_t>(MeasurementKind::point)];
+  of_points = excess_of(conditioned_points.residuals, conditioned_points.sd, 3, left);
+  for (const PoseCoupling& c : specified.couplings) {
+    const OrientationMeasurement& turn = data.orientations[c.orientation];
+    ConditionalError point = in_world(points, c.point, data.points[c.point].axes);
+    point.covariance += of_points * of_points * Mat3::Identity();
+    replace(turns, c.orientation,
+            condition_on(point, in_world(turns, c.orientation, turn.axes), turn.covariance_with_point->transpose()));
+  }
+  excess.of[static_cast<std::size_t>(MeasurementKind::orientation)] = excess_of(turns.residuals, turns.sd, 3, left);
+}
+
+}  // namespace
+
+ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::optional<Instrument>& instrument,
+                         double effective_parameters) {
+  const ParameterSet nothing;
+  const EvaluatedPoses at = evaluate_poses(chain, nothing, data, Derivative::no);
+  const FixtureColumns columns = fixture_columns(chain, nothing);
+  const ResidualContext scene{chain, data, at, columns};
+  double rows = 0.0;
+  for (const ResidualKind& kind : residual_kinds()) rows += kind.size * static_cast<double>(kind.count(data));
+  // Each determined parameter absorbs one residual; at least a tenth is kept if there is hardly any redundancy.
+  const double left = std::max(0.1, 1.0 - effective_parameters / rows);
+  const Weights specified = weights_of(data, instrument.value_or(Instrument{}));
+  ExcessNoise excess;
+  std::array<Blocks, measurement_kinds> blocks;
+  for (const ResidualKind& kind : residual_kinds()) {
+    const auto k = static_cast<std::size_t>(kind.kind);
+    blocks[k] = {residuals_of(kind, scene), specified.of(kind.kind)};
+    excess.of[k] = excess_of(blocks[k].residuals, blocks[k].sd, kind.size, left);
+  }
+  if (!specified.couplings.empty())
+    estimate_pose_noise(specified, data, left, blocks[static_cast<std::size_t>(MeasurementKind::point)],
+                        blocks[static_cast<std::size_t>(MeasurementKind::orientation)], excess);
+  return excess;
+}
+
+Weights weights_of(const PoseSet& data, const std::optional<Instrument>& instrument, const ExcessNoise& excess) {
+  Weights weights = weights_of(data, instrument.value_or(Instrument{}));
+  for (const ResidualKind& kind : residual_kinds()) {
+    const double more = excess.of[static_cast<std::size_t>(kind.kind)];
+    for (Vec3& sd : weights.of(kind.kind)) sd = (sd.cwiseAbs2().array() + more * more).sqrt();
+  }
+  weights.couplings = couplings_of(data, weights.point_sd, weights.orientation_sd);
+  return weights;
+}
+
+}  // namespace kinfer

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/poses/pose_residuals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "kinfer/base/expect.hpp"
+#include "kinfer/estimate/poses/point_fit.hpp"
+
+namespace kinfer {
+namespace {
+
+constexpr double noise_free_sd = 1e-9;  // [m], [rad]; a standard deviation of 0 means noise-free: lower bound 1e-6 mm
+
+/// The parameter set for one mounting's evaluator: that mounting's base and tool take the place of the chain's;
+/// parameters of other mountings have no effect.
+ParameterSet parameters_of_mounting(ParameterSet set, const Chain& chain, int mounting) {
+  if (mounting < 0) return set;
+  const bool own_base = chain.mountings[mounting].base.has_value();
+  for (Parameter& parameter : set.parameters) {
+    ParameterAddress& at = parameter.at;
+    const bool of_chain = at.owner == Owner::tool || (at.owner == Owner::base && own_base);
+    if (of_chain)
+      at.owner = Owner::gravity;  // affects no pose
+    else if (at.owner == Owner::mounting_base && at.joint == mounting)
+      at = {Owner::base, -1, at.field};
+    else if (at.owner == Owner::mounting_tool && at.joint == mounting)
+      at = {Owner::tool, -1, at.field};
+  }
+  return set;
+}
+
+/// Calls visit(mounting, rows) for −1 (the chain's own) and each further mounting with the rows measured there.
+template <class Visit>
+void for_each_mounting(const Chain& chain, const PoseSet& data, Visit visit) {
+  const auto mountings = data.mounting.empty() ? 0 : static_cast<int>(chain.mountings.size());
+  for (int mounting = -1; mounting < mountings; ++mounting) {
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index row = 0; row < data.rows(); ++row)
+      if (data.mounting.empty() || data.mounting[row] == mounting) rows.push_back(row);
+    visit(mounting, rows);
+  }
+}
+
+/// `rows`: from prior_sqrt_information_of, computed once per problem.
+void write_priors(const MatrixXd& rows, const VectorXd& nominal, ConstVectorRef x, VectorXd& r, MatrixXd* jacobian,
+                  Eigen::Index row) {
+  r.segment(row, rows.rows()) = rows * (x - nominal);
+  if (jacobian) jacobian->middleRows(row, rows.rows()) = rows;
+}
+
+/// 1 / sd of every measured row, in the order of the blocks.
+VectorXd row_weights(const Weights& weights) {
+  Eigen::Index rows = 0, row = 0;
+  for (const ResidualKind& kind : residual_kinds())
+    rows += static_cast<Eigen::Index>(weights.of(kind.kind).size()) * kind.size;
+  VectorXd inverse_sd(rows);
+  for (const ResidualKind& kind : residual_kinds())
+    for (const Vec3& sd : weights.of(kind.kind))
+      for (int k = 0; k < kind.size; ++k) inverse_sd[row++] = 1.0 / sd[k];
+  return inverse_sd;
+}
+
+/// Writes the rows of all measurements and socket distances.
+using MeasuredRows = std::function<void(ConstVectorRef x, VectorXd& r, MatrixXd* jacobian)>;
+
+/// Any kinds of measurements, block by block.
+MeasuredRows general_rows(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights) {
+  return [&nominal, &set, &data, inverse_sd = row_weights(weights), &couplings = weights.couplings](
+             ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
+    const Chain chain = unpack(set, nominal, x);
+    const EvaluatedPoses at = evaluate_poses(chain, set, data, jacobian ? Derivative::yes : Derivative::no);
+    const FixtureColumns columns = fixture_columns(chain, set);
+    const ResidualContext scene{chain, data, at, columns};
+    BlockRows out{r, jacobian};
+    for (const ResidualKind& kind : residual_kinds())
+      for (std::size_t i = 0; i < kind.count(data); ++i, out.row += kind.size) kind.write(scene, i, out);
+    r.head(out.row).array() *= inverse_sd.array();
+    if (jacobian) jacobian->topRows(out.row).array().colwise() *= inverse_sd.array();
+    const auto first_turn = static_cast<Eigen::Index>(3 * data.points.size());  // orientations follow the points
+    for (const PoseCoupling& c : couplings) {
+      const Eigen::Index turn = first_turn + 3 * c.orientation, point = 3 * c.point;
+      c.whiten(r.segment<3>(turn), r.segment<3>(point));
+      if (jacobian) c.whiten(jacobian->middleRows<3>(turn), jacobian->middleRows<3>(point));
+    }
+    write_socket_distances(chain, columns, r, jacobian, out.row);
+  };
+}
+
+/// Points only, by the batch kernels. The result must be copyable but the kernels' data are not: they are shared.
+MeasuredRows batch_point_rows(const Chain& nominal, const ParameterSet& set, const PoseSet& data,
+                              const Weights& weights) {
+  const Eigen::Matrix3Xd inverse = inverse_sd(weights);
+  auto points = std::make_shared<const BatchPoints>(nominal, set, point_table(data));
+  auto lane_weights = std::make_shared<const BatchPoints::Weights>(points->weights(inverse));
+  return [points, lane_weights, inverse](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
+    BatchPoints::Scratch scratch;
+    if (jacobian) {
+      points->residuals(x, *lane_weights, r.head(inverse.size()), jacobian->topRows(inverse.size()), scratch);
+    } else {
+      Eigen::Matrix3Xd error;
+      points->errors(x, error, scratch);
+      r.head(inverse.size()) = error.cwiseProduct(inverse).reshaped();
+    }
+  };
+}
+
+/// The same for points with full covariances: the rows are whitened after the kernels.
+MeasuredRows full_covariance_point_rows(const Chain& nominal, const ParameterSet& set, const PoseSet& data,
+                                        const Weights& weights) {
+  auto points = std::make_shared<const BatchPoints>(nominal, set, point_table(data));
+  const Eigen::Matrix3Xd ones = Eigen::Matrix3Xd::Ones(3, points->points());
+  auto unweighted = std::make_shared<const BatchPoints::Weights>(points->weights(ones));
+  return
+      [points, unweighted, by = whitening_matrices(data, weights)](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
+        BatchPoints::Scratch scratch;
+        const Eigen::Index rows = 3 * points->points();
+        if (jacobian) {
+          points->residuals(x, *unweighted, r.head(rows), jacobian->topRows(rows), scratch);
+          whiten(by, jacobian->topRows(rows));
+        } else {
+          Eigen::Matrix3Xd error;
+          points->errors(x, error, scratch);
+          r.head(rows) = error.reshaped();
+        }
+        whiten(by, r.head(rows));
+      };
+}
+
+MeasuredRows rows_of(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights) {
+  if (!has_only_points(nominal, set, data)) return general_rows(nominal, set, data, weights);
+  return has_full_covariances(data) ? full_covariance_point_rows(nominal, set, data, weights)
+                                    : batch_point_rows(nominal, set, data, weights);
+}
+
+}  // namespace
+
+Load load_at(const Chain& chain, const PoseSet& data, Eigen::Index row) {
+  const auto column = [&](const MatrixXd& matrix) {
+    return matrix.size() == 0
+               ? std::span<const double>{}
+               : std::span<const double>(matrix.col(row).data(), static_cast<std::size_t>(matrix.rows()));
+  };
+  Load load;
+  if (!data.payload.empty()) load.payload = data.payload[row];
+  if (!data.temperature.empty() && std::isfinite(data.temperature[row]))
+    load.temperature_rise = data.temperature[row] - chain.reference_temperature;
+  load.torques = column(data.torques);
+  load.approach = column(data.approach);
+  return load;
+}
+
+EvaluatedPoses evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative) {
+  EvaluatedPoses at;
+  evaluate_poses(chain, set, data, derivative, {}, at);
+  return at;
+}
+
+void evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative,
+                    const MatrixXd& gravity, EvaluatedPoses& at) {
+  at.pose.resize(data.rows());
+  if (derivative == Derivative::yes) at.twists.resize(data.rows());
+  for_each_mounting(chain, data, [&](int mounting, const auto& rows) {
+    const PoseEvaluator evaluator(with_mounting(chain, mounting), parameters_of_mounting(set, chain, mounting));
+    for (const Eigen::Index row : rows) {
+      const auto q = data.joints.col(row);
+      Load load = load_at(chain, data, row);
+      if (gravity.size() > 0) load.gravity = {gravity.col(row).data(), static_cast<std::size_t>(gravity.rows())};
+      at.pose[row] = derivative == Derivative::yes ? evaluator.pose_and_derivative(q, load, at.twists[row])
+                                                   : evaluator.pose(q, load);
+    }
+  });
+}
+
+MatrixXd gravity_torques_of_rows(const Chain& chain, const PoseSet& data) {
+  const bool loaded = std::any_of(data.payload.begin(), data.payload.end(), [](double kg) { return kg != 0.0; });
+  if (chain.masses.empty() && !loaded) return {};
+  MatrixXd torques(static_cast<Eigen::Index>(chain.joints.size()), data.rows());
+  for_each_mounting(chain, data, [&](int mounting, const auto& rows) {
+    const Chain here = with_mounting(chain, mounting);
+    for (const Eigen::Index row : rows)
+      torques.col(row) = gravity_torques(here, data.joints.col(row), load_at(chain, data, row));
+  });
+  return torques;
+}
+
+void write_socket_distances(const Chain& chain, const FixtureColumns& columns, VectorXd& r, MatrixXd* jacobian,
+                            Eigen::Index row) {
+  const Fixtures& around = chain.fixtures;
+  for (const SocketDistance& known : around.socket_distances) {
+    const Vec3 apart = around.sockets[known.a].xyz - around.sockets[known.b].xyz;
+    const double length = apart.norm(), inverse_sd = 1.0 / std::max(known.sd, noise_free_sd);
+    r[row] = inverse_sd * (known.distance - length);
+    if (jacobian) {
+      jacobian->row(row).setZero();
+      const Vec3 along = length > 0.0 ? Vec3(apart / length) : Vec3::UnitX().eval();
+      for (int k = 0; k < 3; ++k) {
+        if (const auto column = columns.socket[known.a][k]; column >= 0)
+          (*jacobian)(row, column) = -inverse_sd * along[k];
+        if (const auto column = columns.socket[known.b][k]; column >= 0)
+          (*jacobian)(row, column) = inverse_sd * along[k];
+      }
+    }
+    ++row;
+  }
+}
+
+const std::vector<Vec3>& Weights::of(MeasurementKind kind) const {
+  const std::array<const std::vector<Vec3>*, measurement_kinds> lists{
+      &point_sd, &orientation_sd, &contact_sd, &distance_sd, &pair_sd, &plane_sd, &tilt_sd};
+  return *lists[static_cast<std::size_t>(kind)];
+}
+
+std::vector<Vec3>& Weights::of(MeasurementKind kind) {
+  return const_cast<std::vector<Vec3>&>(std::as_const(*this).of(kind));
+}
+
+Weights weights_of(const PoseSet& data, const Instrument& instrument) {
+  Weights weights;
+  for (const ResidualKind& kind : residual_kinds())
+    for (std::size_t i = 0; i < kind.count(data); ++i)
+      weights.of(kind.kind).push_back(kind.specified_sd(data, i, instrument).cwiseMax(noise_free_sd));
+  weights.couplings = couplings_of(data, weights.point_sd, weights.orientation_sd);
+  return weights;
+}
+
+std::vector<Block> blocks_of(const PoseSet& data) {
+  std::vector<Block> blocks;
+  for (const ResidualKind& kind : residual_kinds())
+    for (std::size_t i = 0; i < kind.count(data); ++i)
+      blocks.push_back({kind.kind, static_cast<int>(i), kind.row(data, i), kind.size});
+  return blocks;
+}
+
+PoseSet keep_measurements(const PoseSet& data, const std::vector<bool>& kept) {
+  PoseSet result = data;
+  auto next = kept.begin();
+  for (const ResidualKind& kind : residual_kinds()) {
+    const auto count = static_cast<std::ptrdiff_t>(kind.count(data));
+    kind.keep(result, {next, next + count});
+    next += count;
+  }
+  return result;
+}
+
+Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights) {
+  Residuals problem;
+  problem.unknowns = set.free_count();
+  Eigen::Index measured = 0;
+  for (const ResidualKind& kind : residual_kinds()) {
+    KINFER_EXPECT(weights.of(kind.kind).size() == kind.count(data), "{} weights of {}", weights.of(kind.kind).size(),
+                  kind.count(data));
+    problem.blocks.insert(problem.blocks.end(), kind.count(data), kind.size);
+    measured += static_cast<Eigen::Index>(kind.count(data)) * kind.size;
+  }
+  const auto distances = static_cast<Eigen::Index>(nominal.fixtures.socket_distances.size());
+  const Eigen::Index unknowns = problem.unknowns, rows = measured + distances + unknowns;
+  problem.rows = rows;
+  problem.evaluate = [write_measured = rows_of(nominal, set, data, weights), unknowns, rows,
+                      priors = prior_sqrt_information_of(set),
+                      centre = nominal_of(set)](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
+    r.resize(rows);
+    if (jacobian) jacobian->resize(rows, unknowns);
+    write_measured(x, r, jacobian);
+    write_priors(priors, centre, x, r, jacobian, rows - unknowns);
+  };
+  return problem;
+}
+
+std::vector<double> residual_norms(MeasurementKind which, const Chain& chain, const PoseSet& data) {
+  const ResidualKind& kind = residual_kind(which);
+  const ParameterSet nothing;
+  const EvaluatedPoses at = evaluate_poses(chain, nothing, data, Derivative::no);
+  const FixtureColumns columns = fixture_columns(chain, nothing);
+  const ResidualContext scene{chain, data, at, columns};
+  VectorXd residual = VectorXd::Zero(3);
+  std::vector<double> errors(kind.count(data));
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    BlockRows out{residual, nullptr, 0};
+    kind.write(scene, i, out);
+    errors[i] = residual.head(kind.size).norm();
+  }
+  return errors;
+}
+
+std::vector<double> point_errors(const Chain& chain, const PoseSet& data) {
+  return residual_norms(MeasurementKind::point, chain, data);
+}
+
+std::vector<double> orientation_errors(const Chain& chain, const PoseSet& data) {
+  return residual_norms(MeasurementKind::orientation, chain, data);
+}
+
+}  // namespace kinfer

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/geometry/identified_chain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/base/expect.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+std::string joint_name(const JointEstimate& joint) {
+  return joint.parent + "-" + joint.child;
+}
+
+constexpr double max_parallel_sine = 1e-3;  // sine of the angle below which two lines count as parallel
+
+/// One end of a link: an axis line, or a centre.
+struct LinkEnd {
+  Vec3 point = Vec3::Zero(), axis = Vec3::Zero();  // axis zero: a centre
+  double point_sd = 0.0, axis_sd = 0.0;
+};
+
+/// Shortest distance and its standard deviation. The closest points of nearly parallel lines are far away and depend on
+/// the small angle between the lines; the standard deviation contains this.
+std::pair<double, double> distance(const LinkEnd& a, const LinkEnd& b) {
+  const Vec3 between = b.point - a.point, across = a.axis.cross(b.axis);
+  double sd = std::hypot(a.point_sd, b.point_sd);
+  if (across.norm() < max_parallel_sine) {
+    const Vec3 along = a.axis.norm() > 0.5 ? a.axis : b.axis;
+    return {(between - along.dot(between) * along).norm(), sd};
+  }
+  const Vec3 normal = across.normalized();
+  const double offset_along_axis = between.dot(normal.cross(a.axis));
+  sd = std::hypot(sd, offset_along_axis * std::hypot(a.axis_sd, b.axis_sd) / across.norm());
+  return {std::abs(between.dot(normal)), sd};
+}
+
+double sd_across(const std::array<double, 2>& sd) {
+  return std::hypot(sd[0], sd[1]) / std::sqrt(2.0);
+}
+
+void list_unobservable(JointEstimate& joint) {
+  const auto add = [&](std::size_t count, const std::string& sensor) {
+    if (count == 3)
+      joint.unobservable.push_back(
+          fmt::format("where the axis is in {}, which only stands or shifts without turning", sensor));
+    else if (count > 0)
+      joint.unobservable.push_back(
+          fmt::format("shifts of the axis in {} along what its sensor turns about alone", sensor));
+  };
+  add(joint.unobservable_in_parent.size(), joint.parent);
+  add(joint.unobservable_in_child.size(), joint.child);
+  joint.unobservable.emplace_back("the joint's point along its own axis");
+}
+
+}  // namespace
+
+JointEstimate joint_estimate(const std::string& parent, const std::string& child, const GeometryEstimate& hinge) {
+  JointEstimate joint{.parent = parent, .child = child};
+  joint.axis_in_parent = hinge.geometry.axis_in_parent;
+  joint.axis_in_child = hinge.geometry.axis_in_child;
+  joint.point_in_parent = hinge.geometry.point_in_parent;
+  joint.point_in_child = hinge.geometry.point_in_child;
+  joint.sd = hinge.precision.sd;
+  joint.unobservable_in_parent = hinge.precision.unobservable_in_parent;
+  joint.unobservable_in_child = hinge.precision.unobservable_in_child;
+  list_unobservable(joint);
+  return joint;
+}
+
+std::vector<DhRowEstimate> leaf_dh_rows(const std::string& segment, std::span<const DhLeaf> leaves,
+                                        std::span<const JointSignal> signals) {
+  const auto name = [&](int signal) {
+    return signal == DhLeaf::constant ? "" : signals[static_cast<std::size_t>(signal)].name;
+  };
+  std::vector<DhRowEstimate> rows;
+  for (const DhLeaf& leaf : leaves)
+    rows.push_back({.segment = segment,
+                    .row = {.a = leaf.a, .alpha = leaf.alpha, .d = leaf.d, .theta = leaf.theta},
+                    .sd = {},
+                    .theta_variable = name(leaf.theta_signal),
+                    .alpha_variable = name(leaf.alpha_signal)});
+  return rows;
+}
+
+std::vector<Vec3> joint_axes(EstimatedJointType type, const JointGeometry& geometry) {
+  if (type == EstimatedJointType::universal)
+    return {geometry.axis_in_parent, geometry.home.rotation * geometry.axis_in_child};
+  if (type == EstimatedJointType::spherical)
+    return {geometry.spherical_axes.col(0), geometry.spherical_axes.col(1), geometry.spherical_axes.col(2)};
+  return {geometry.axis_in_parent};
+}
+
+std::vector<DhNumbers> joint_dh_rows(EstimatedJointType type, const JointGeometry& geometry) {
+  return dh_rows_through(geometry.point_in_parent, joint_axes(type, geometry), geometry.home);
+}
+
+std::vector<DhRowEstimate> canonical_dh_rows(const JointEstimate& joint, const GeometryEstimate& hinge) {
+  const std::vector<DhNumbers> numbers = joint_dh_rows(joint.type, hinge.geometry);
+  const std::vector<DhNumbers>& sd = hinge.precision.canonical_sd;
+  const std::size_t axes = numbers.size() - 2;
+  const auto variable = [&](std::size_t row) {
+    if (joint.type == EstimatedJointType::rigid || row == 0 || row > axes) return std::string();
+    return axes == 1 ? joint_name(joint) : fmt::format("{} {}", joint_name(joint), row);
+  };
+  const bool is_prismatic = joint.type == EstimatedJointType::prismatic;
+  std::vector<DhRowEstimate> rows;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    rows.push_back({.segment = joint.child,
+                    .row = numbers[i],
+                    .sd = i < sd.size() ? sd[i] : DhNumbers{},
+                    .theta_variable = is_prismatic ? "" : variable(i),
+                    .alpha_variable = "",
+                    .d_variable = is_prismatic ? variable(i) : ""});
+  return rows;
+}
+
+std::vector<LinkEstimate> link_estimates(const std::vector<JointEstimate>& joints) {
+  const auto rotates = [](const JointEstimate& j) {
+    return j.type == EstimatedJointType::revolute || j.type == EstimatedJointType::spherical;
+  };
+  const auto axis_of = [](const JointEstimate& j, const Vec3& axis) {
+    return j.type == EstimatedJointType::spherical ? Vec3(Vec3::Zero()) : axis;
+  };
+  std::vector<LinkEstimate> links;
+  for (const JointEstimate& to : joints)
+    for (const JointEstimate& from : joints) {
+      if (from.child != to.parent || !rotates(from) || !rotates(to)) continue;
+      const auto [length, sd] = distance({from.point_in_child, axis_of(from, from.axis_in_child),
+                                          sd_across(from.sd.point_in_child), sd_across(from.sd.axis_in_child)},
+                                         {to.point_in_parent, axis_of(to, to.axis_in_parent),
+                                          sd_across(to.sd.point_in_parent), sd_across(to.sd.axis_in_parent)});
+      links.push_back({from.child, joint_name(from), joint_name(to), length, sd});
+    }
+  return links;
+}
+
+Chain build_chain(const std::string& root, const std::vector<JointEstimate>& joints,
+                  const std::vector<DhRowEstimate>& dh, const Mat3& world_R_root) {
+  Chain chain;
+  chain.name = "identified";
+  chain.base.rotation = world_R_root;
+  const auto frame_of = [&](const std::string& sensor) {
+    const auto found = std::ranges::find(chain.joints, sensor, &Joint::name);
+    return sensor == root || found == chain.joints.end() ? -1 : static_cast<int>(found - chain.joints.begin());
+  };
+  auto row = dh.begin();
+  for (const JointEstimate& found : joints) {
+    const auto first = row, last = std::find_if(row, dh.end(), [&](const auto&r) { return r.segment != found.child; });
+    KINFER_EXPECT(last - first >= 3, "{} rows lead to {}", last - first, found.child);
+    for (; row != last; ++row) {
+      Joint joint{.name = row == first ? joint_name(found) + " axis" : row->variable()};
+      if (joint.name.empty()) joint.name = row + 1 == last ? found.child : joint_name(found);
+      joint.parent = row == first ? frame_of(found.parent) : static_cast<int>(chain.joints.size()) - 1;
+      joint.is_active = !row->variable().empty();
+      joint.type = !joint.is_active           ? JointType::fixed
+                   : !row->d_variable.empty() ? JointType::prismatic
+                                              : JointType::revolute;
+      joint.link = DhLink{row->row};
+      chain.joints.push_back(joint);
+    }
+  }
+  KINFER_EXPECT(row == dh.end(), "rows of no joint");
+  return chain;
+}
+
+void set_tool(Chain& chain, const std::vector<PointEstimate>& places) {
+  const auto is_tool = [&](const PointEstimate& place) {
+    return place.name == "tip" || place.name == "tool" || places.size() == 1;
+  };
+  const auto tool = std::ranges::find_if(places, is_tool);
+  if (tool == places.end()) return;
+  const auto flange = std::ranges::find(chain.joints, tool->sensor, &Joint::name);
+  if (flange == chain.joints.end()) return;
+  chain.tip = static_cast<int>(flange - chain.joints.begin());
+  chain.tool.xyz = tool->xyz;
+}
+
+}  // namespace kinfer::identify

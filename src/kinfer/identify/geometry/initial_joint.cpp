@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/geometry/initial_joint.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "kinfer/geometry/fit.hpp"
+#include "kinfer/inertial/joint_signals.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+Mat3 relative_rotation(const SegmentMotion& parent, const SegmentMotion& child, std::size_t row) {
+  return parent.rotation[row].transpose() * child.rotation[row];
+}
+
+/// Principal direction of the relative angular velocities, in the parent frame.
+Vec3 rotation_axis(const RecordedMotion& motion, const SegmentMotion& parent, const SegmentMotion& child) {
+  Mat3 spread = Mat3::Zero();
+  for (std::size_t row = 0; row < motion.rows(); ++row) {
+    if (!motion.usable[row]) continue;
+    const Vec3 angular_velocity =
+        parent.rotation[row].transpose() * (child.angular_velocity[row] - parent.angular_velocity[row]);
+    spread += angular_velocity * angular_velocity.transpose();
+  }
+  return symmetric_eigen(spread).vectors.col(2);
+}
+
+/// The same direction in the child frame, where it is nearly constant: its mean.
+Vec3 axis_in_child(const RecordedMotion& motion, const SegmentMotion& parent, const SegmentMotion& child,
+                   const Vec3& axis) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t row = 0; row < motion.rows(); ++row)
+    if (motion.usable[row]) sum += relative_rotation(parent, child, row).transpose() * axis;
+  return sum.normalized();
+}
+
+/// q of parent_R_child = A Rz(q) Bᵀ, unwrapped.
+std::vector<double> revolute_positions(const RecordedMotion& motion, const SegmentMotion& parent,
+                                       const SegmentMotion& child, const Mat3& a, const Mat3& b) {
+  std::vector<double> angles;
+  for (std::size_t row = 0; row < motion.rows(); ++row) {
+    const Mat3 turn = a.transpose() * relative_rotation(parent, child, row) * b;
+    const double angle = std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
+    angles.push_back(angles.empty() ? angle : angles.back() + wrap_to_pi(angle - angles.back()));
+  }
+  return angles;
+}
+
+/// Relative displacement along an axis: the difference of accelerations, integrated twice with a forgetting time of a
+/// few seconds, which bounds the drift; slow displacements are left to the fit.
+std::vector<double> prismatic_positions(const RecordedMotion& motion, const SegmentMotion& parent,
+                                        const SegmentMotion& child, const Vec3& axis) {
+  constexpr double forgetting_time = 5.0;  // [s]
+  const double decay = std::exp(-motion.period / forgetting_time);
+  std::vector<double> displacement(motion.rows(), 0.0);
+  double velocity = 0.0;
+  for (std::size_t row = 1; row < motion.rows(); ++row) {
+    const Vec3 difference = parent.rotation[row].transpose() * (child.acceleration[row] - parent.acceleration[row]);
+    velocity = decay * velocity + motion.period * axis.dot(difference);
+    displacement[row] = decay * displacement[row - 1] + motion.period * velocity;
+  }
+  return displacement;
+}
+
+Vec3 translation_axis(const RecordedMotion& motion, const SegmentMotion& parent, const SegmentMotion& child) {
+  Mat3 spread = Mat3::Zero();
+  for (std::size_t row = motion.first_motion_row; row < motion.rows(); ++row) {
+    if (!motion.usable[row]) continue;
+    const Vec3 difference = parent.rotation[row].transpose() * (child.acceleration[row] - parent.acceleration[row]);
+    spread += difference * difference.transpose();
+  }
+  return symmetric_eigen(spread).vectors.col(2);
+}
+
+Mat3 mean_relative_rotation(const RecordedMotion& motion, const SegmentMotion& parent, const SegmentMotion& child) {
+  std::vector<Mat3> turns;
+  for (std::size_t row = 0; row < motion.rows(); ++row) turns.push_back(relative_rotation(parent, child, row));
+  return mean_rotation(turns);
+}
+
+/// Two adjacent sensors and their common point.
+struct SensorPair {
+  const RecordedMotion& motion;
+  const SegmentMotion &parent, &child;
+  Vec3 point_in_parent, point_in_child;
+};
+
+void start_revolute(InitialJoint& start, const SensorPair& pair) {
+  const Vec3 axis = rotation_axis(pair.motion, pair.parent, pair.child);
+  const Mat3 a = frame_with_z_along(axis),
+             b = frame_with_z_along(axis_in_child(pair.motion, pair.parent, pair.child, axis));
+  start.bodies = {revolute_body(-1, -1, a, b)};
+  start.joint_positions = {revolute_positions(pair.motion, pair.parent, pair.child, a, b)};
+}
+
+void start_prismatic_or_rigid(InitialJoint& start, const SensorPair& pair) {
+  const Mat3 home = mean_relative_rotation(pair.motion, pair.parent, pair.child);
+  if (start.type == EstimatedJointType::prismatic) {
+    const Vec3 axis = translation_axis(pair.motion, pair.parent, pair.child);
+    const Mat3 a = frame_with_z_along(axis);
+    start.bodies = {prismatic_body(-1, -1, a, home.transpose() * a)};
+    start.joint_positions = {prismatic_positions(pair.motion, pair.parent, pair.child, axis)};
+  } else {
+    start.bodies = {fixed_body(-1, -1, home)};
+  }
+  start.bodies.front().point_in_parent = pair.point_in_parent - home * pair.point_in_child;
+}
+
+/// parent_R_child = exp(φ) · mean orientation, φ continuous in time.
+void start_spherical(InitialJoint& start, const SensorPair& pair) {
+  const Mat3 home = mean_relative_rotation(pair.motion, pair.parent, pair.child);
+  start.joint_positions.resize(3);
+  Vec3 before = Vec3::Zero();
+  for (std::size_t row = 0; row < pair.motion.rows(); ++row) {
+    Vec3 vector = log_so3(relative_rotation(pair.parent, pair.child, row) * home.transpose());
+    const double angle = vector.norm();
+    if (angle > 1e-6) {  // the equivalent rotation vector may be nearer to the previous one
+      const Vec3 other = vector * (1.0 - 2.0 * std::numbers::pi / angle);
+      if ((other - before).norm() < (vector - before).norm()) vector = other;
+    }
+    before = vector;
+    for (std::size_t k = 0; k < 3; ++k) start.joint_positions[k].push_back(vector[static_cast<Eigen::Index>(k)]);
+  }
+  start.bodies = {spherical_body(-1, -1, home)};
+}
+
+/// Axes a in the parent and b in the child that span the plane of the relative angular velocity at every time:
+/// minimises Σ (ω_rel · (a × R b))², alternating between a and b.
+std::pair<Vec3, Vec3> universal_axes(const SensorPair& pair) {
+  const RecordedMotion& motion = pair.motion;
+  Vec3 a = rotation_axis(motion, pair.parent, pair.child), b = Vec3::UnitZ();
+  constexpr int turns = 50;
+  for (int turn = 0; turn < turns; ++turn) {
+    Mat3 for_b = Mat3::Zero(), for_a = Mat3::Zero();
+    for (std::size_t row = 0; row < motion.rows(); ++row) {
+      if (!motion.usable[row]) continue;
+      const Mat3 r = relative_rotation(pair.parent, pair.child, row);
+      const Vec3 angular_velocity = pair.parent.rotation[row].transpose() *
+                                    (pair.child.angular_velocity[row] - pair.parent.angular_velocity[row]);
+      const Vec3 of_b = r.transpose() * angular_velocity.cross(a);  // (ω × a) · R b
+      for_b += of_b * of_b.transpose();
+    }
+    b = symmetric_eigen(for_b).vectors.col(0);
+    for (std::size_t row = 0; row < motion.rows(); ++row) {
+      if (!motion.usable[row]) continue;
+      const Vec3 angular_velocity = pair.parent.rotation[row].transpose() *
+                                    (pair.child.angular_velocity[row] - pair.parent.angular_velocity[row]);
+      const Vec3 of_a = (relative_rotation(pair.parent, pair.child, row) * b).cross(angular_velocity);
+      for_a += of_a * of_a.transpose();
+    }
+    a = symmetric_eigen(for_a).vectors.col(0);
+  }
+  return {a, b};
+}
+
+/// parent_R_child = A Rz(q1) C Rz(q2) Bᵀ, C takes z to the second axis in the intermediate body.
+void start_universal(InitialJoint& start, const SensorPair& pair) {
+  const auto [first, second] = universal_axes(pair);
+  const RecordedMotion& motion = pair.motion;
+  // x of the first frame points along the second axis at the start, so that both axes lie in the x-z plane.
+  const Mat3 home = relative_rotation(pair.parent, pair.child, motion.first_motion_row);
+  Mat3 a;
+  a.col(2) = first;
+  const Vec3 across = home * second - first * first.dot(home * second);
+  a.col(0) = across.norm() > 1e-3 ? Vec3(across.normalized()) : any_perpendicular(first).normalized();
+  a.col(1) = a.col(2).cross(a.col(0));
+  const double tilt = angle_between(first, Vec3(home * second));
+  const Mat3 c = rot_y(tilt);
+  const Mat3 b = frame_with_z_along(second);
+  start.joint_positions.resize(2);
+  for (std::size_t row = 0; row < motion.rows(); ++row) {
+    const Mat3 m = a.transpose() * relative_rotation(pair.parent, pair.child, row) * b;
+    const double q1 = std::atan2(m(1, 2), m(0, 2));
+    const Mat3 rest = c.transpose() * rot_z(-q1) * m;
+    const std::array<double, 2> q{q1, std::atan2(rest(1, 0) - rest(0, 1), rest(0, 0) + rest(1, 1))};
+    for (std::size_t k = 0; k < 2; ++k) {
+      auto& position = start.joint_positions[k];
+      position.push_back(position.empty() ? q[k] : position.back() + wrap_to_pi(q[k] - position.back()));
+    }
+  }
+  start.bodies = {revolute_body(-1, -1, a, Mat3::Identity()), revolute_body(-1, -1, c, b)};
+  InsBody &near = start.bodies[0], &far = start.bodies[1];
+  near.free_child_rotation = {};
+  far.free_parent_rotation = {false, true, false};
+  near.free_point_in_child = far.free_point_in_parent = false;
+}
+
+}  // namespace
+
+Mat3 frame_with_z_along(const Vec3& axis) {
+  Mat3 frame;
+  frame.col(2) = axis.normalized();
+  frame.col(0) = any_perpendicular(axis).normalized();
+  frame.col(1) = frame.col(2).cross(frame.col(0));
+  return frame;
+}
+
+InitialJoint estimate_initial_joint(const RecordedMotion& motion, const SegmentTree& tree, std::size_t parent,
+                                    std::size_t child, EstimatedJointType type) {
+  const PairFit& fit = tree.pair(parent, child);
+  const bool in_order = fit.first == parent;
+  const SensorPair pair{motion, motion.segments[parent], motion.segments[child],
+                        in_order ? fit.point_in_first : fit.point_in_second,
+                        in_order ? fit.point_in_second : fit.point_in_first};
+  InitialJoint start{.parent = parent, .child = child, .type = type};
+  if (type == EstimatedJointType::prismatic || type == EstimatedJointType::rigid) {
+    start_prismatic_or_rigid(start, pair);
+  } else {
+    if (type == EstimatedJointType::revolute) start_revolute(start, pair);
+    if (type == EstimatedJointType::universal) start_universal(start, pair);
+    if (type == EstimatedJointType::spherical) start_spherical(start, pair);
+    start.bodies.front().point_in_parent = pair.point_in_parent;
+    start.bodies.front().free_point_in_parent = true;
+    start.bodies.back().point_in_child = pair.point_in_child;
+    start.bodies.back().free_point_in_child = true;
+  }
+  start.bodies.back().sensor = static_cast<int>(child);
+  return start;
+}
+
+}  // namespace kinfer::identify

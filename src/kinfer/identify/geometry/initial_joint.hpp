@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Initial estimate of every joint of the tree from the two adjacent sensors alone: good enough for the continuous-time
+// fit to converge.
+#pragma once
+
+#include "kinfer/estimate/continuous/model/chain_propagation.hpp"
+#include "kinfer/evidence/identification.hpp"
+#include "kinfer/identify/structure/segment_tree.hpp"
+
+namespace kinfer::identify {
+
+struct InitialJoint {
+  std::size_t parent = 0, child = 0;  ///< segments
+  EstimatedJointType type = EstimatedJointType::revolute;
+  std::vector<InsBody> bodies{};  ///< in series; the last one carries the child's sensor
+  std::vector<std::vector<double>>
+      joint_positions{};  ///< joint positions [rad] or [m] at the motion's rows, by freedom
+};
+
+/// Axes from the relative angular velocity, joint positions from the rotation about them, points from the pair fit.
+InitialJoint estimate_initial_joint(const RecordedMotion& motion, const SegmentTree& tree, std::size_t parent,
+                                    std::size_t child, EstimatedJointType type);
+
+/// A rotation whose third column is the unit vector.
+Mat3 frame_with_z_along(const Vec3& axis);
+
+}  // namespace kinfer::identify

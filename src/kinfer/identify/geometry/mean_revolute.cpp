@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/geometry/mean_revolute.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kinfer/identify/structure/joint_type.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+using Index = Eigen::Index;
+
+struct AxisPair {
+  Vec3 in_parent, in_child;
+};
+
+AxisPair mean_axes(std::span<const Mat3> rotations) {
+  Mat3 mean = Mat3::Zero();
+  for (const Mat3& r : rotations) mean += r / static_cast<double>(rotations.size());
+  const Vec3 b = symmetric_eigen(mean.transpose() * mean).vectors.col(2);
+  return {(mean * b).normalized(), b};
+}
+
+/// Variance of one axis in the other's frame, in the two directions across it.
+std::array<double, 2> axis_variance(std::span<const Mat3> rotations, const Mat3& frame, const Vec3& other,
+                                    bool in_parent) {
+  std::array<double, 2> variance{};
+  for (Index k = 0; k < 2; ++k) {
+    std::vector<double> offset;
+    double square = 0.0;
+    for (const Mat3& r : rotations) {
+      offset.push_back(frame.col(k).dot(in_parent ? Vec3(r * other) : Vec3(r.transpose() * other)));
+      square += offset.back() * offset.back();
+    }
+    variance[static_cast<std::size_t>(k)] = square / static_cast<double>(rotations.size()) / effective_samples(offset);
+  }
+  return variance;
+}
+
+double axis_deviation_of(std::span<const Mat3> rotations, const AxisPair& axes) {
+  double square = 0.0;
+  for (const Mat3& r : rotations) {
+    const double angle = std::acos(std::clamp(axes.in_parent.dot(r * axes.in_child), -1.0, 1.0));
+    square += angle * angle / static_cast<double>(rotations.size());
+  }
+  return std::sqrt(square);
+}
+
+double revolute_position(const InsBody& hinge, const Mat3& rotation) {
+  const Mat3 rotation_about_axis = hinge.parent_R_axis.transpose() * rotation * hinge.child_R_axis;
+  return std::atan2(rotation_about_axis(1, 0) - rotation_about_axis(0, 1),
+                    rotation_about_axis(0, 0) + rotation_about_axis(1, 1));
+}
+
+/// Covariance of a point whose frame has small rotation errors of this variance about any axis.
+Mat3 rotated_point_covariance(const Vec3& point, double variance) {
+  return variance * (point.squaredNorm() * Mat3::Identity() - point * point.transpose());
+}
+
+}  // namespace
+
+MeanRevolute fit_mean_revolute(const InsBody& ball, std::span<const Mat3> rotations, ConstMatrixRef points,
+                               double misalignment) {
+  const AxisPair axes = mean_axes(rotations);
+  const Mat3 a = frame_with_z_along(axes.in_parent), b = frame_with_z_along(axes.in_child);
+  MeanRevolute hinge{revolute_body(ball.parent, ball.sensor, a, b), 0.0, axis_deviation_of(rotations, axes),
+                     MatrixXd::Zero(10, 10)};
+  hinge.body.point_in_parent = ball.point_in_parent;
+  hinge.body.point_in_child = ball.point_in_child;
+  hinge.zero = revolute_position(hinge.body, rotations.front());
+  // A rotation about x moves the axis along −y, one about y along x.
+  const auto in_parent = axis_variance(rotations, a, axes.in_child, true),
+             in_child = axis_variance(rotations, b, axes.in_parent, false);
+  hinge.covariance.diagonal().head<4>() << in_parent[1], in_parent[0], in_child[1], in_child[0];
+  hinge.covariance.diagonal().head<4>().array() += misalignment * misalignment;
+  hinge.covariance.bottomRightCorner<6, 6>() = points;
+  // The same rotation of the sensor relative to its segment also moves the joint's point in the sensor.
+  hinge.covariance.block<3, 3>(4, 4) +=
+      rotated_point_covariance(ball.point_in_parent, 0.5 * (in_parent[0] + in_parent[1]));
+  hinge.covariance.block<3, 3>(7, 7) +=
+      rotated_point_covariance(ball.point_in_child, 0.5 * (in_child[0] + in_child[1]));
+  return hinge;
+}
+
+MatrixXd revolute_trajectory(const MeanRevolute& hinge, std::span<const Mat3> rotations) {
+  MatrixXd trajectory(1, static_cast<Index>(rotations.size()));
+  double before = 0.0;
+  for (std::size_t i = 0; i < rotations.size(); ++i) {
+    const double position = revolute_position(hinge.body, rotations[i]) - hinge.zero;
+    before += std::remainder(position - before, 2.0 * std::numbers::pi);
+    trajectory(0, static_cast<Index>(i)) = before;
+  }
+  return trajectory;
+}
+
+void relax_to_spherical(InsUnknowns& x, const InsLayout& layout, std::size_t body) {
+  InsBody& hinge = x.bodies[body];
+  // exp(φ) home = A Rz(q) Bᵀ with home = A Rz(middle) Bᵀ: φ = (q − middle) a.
+  const VectorXd position = x.spline_coefficients.row(layout.spline_dimension[body]);
+  const double middle = 0.5 * (position.minCoeff() + position.maxCoeff());
+  InsBody ball =
+      spherical_body(hinge.parent, hinge.sensor, hinge.parent_R_axis * rot_z(middle) * hinge.child_R_axis.transpose());
+  ball.point_in_parent = hinge.point_in_parent;
+  ball.point_in_child = hinge.point_in_child;
+  const Index at = layout.spline_dimension[body], after = x.spline_coefficients.rows() - at - 1;
+  MatrixXd band(x.spline_coefficients.rows() + 2, x.spline_coefficients.cols());
+  band.topRows(at) = x.spline_coefficients.topRows(at);
+  band.middleRows<3>(at) = hinge.parent_R_axis.col(2) * (position.array() - middle).matrix().transpose();
+  band.bottomRows(after) = x.spline_coefficients.bottomRows(after);
+  hinge = ball;
+  x.spline_coefficients = std::move(band);
+}
+
+}  // namespace kinfer::identify

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clock offsets and drifts as unknowns of the continuous-time fit.
+#pragma once
+
+#include "kinfer/estimate/continuous/solver/covariance.hpp"
+#include "kinfer/identify/refinement/refine.hpp"
+
+namespace kinfer::identify {
+
+/// Gives every sensor's clock a finite prior relative to the clock of the sensor that rotates most.
+void free_clocks(InsProblem& problem);
+
+/// Whether one step of the fit with free clocks moves a clock significantly, given noise and model errors.
+bool clocks_are_doubtful(InsProblem& problem, const InsFit& fit, int threads);
+
+/// Continues a fit with free clocks. Problem and fit stay unchanged if no clock then differs significantly.
+void refit_with_free_clocks(InsProblem& problem, InsFit& fit, const InsFitOptions& options, const Observer& observer);
+
+/// One per sensor; empty if the clocks were not free.
+std::vector<ResidualClock> refined_clocks(const InsProblem& problem, const InsFit& fit,
+                                          const InsCovariance& covariance);
+
+}  // namespace kinfer::identify

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/refinement/joint_trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+using Index = Eigen::Index;
+
+MatrixXd spline_values(const SplineGrid& grid, ConstMatrixRef coefficients, std::span<const double> times) {
+  MatrixXd values(coefficients.rows(), static_cast<Index>(times.size()));
+  for (std::size_t i = 0; i < times.size(); ++i)
+    values.col(static_cast<Index>(i)) = spline_value(grid, coefficients, times[i]);
+  return values;
+}
+
+/// parent_R_child behind the last joint of the bodies is this times a constant.
+Mat3 rotation_from_vector(const VectorXd& vector) {
+  return exp_so3(Vec3(vector));
+}
+
+MatrixXd spherical_trajectory(const MatrixXd& turns, const Mat3& axes) {
+  MatrixXd trajectory(3, turns.cols());
+  Vec3 before = Vec3::Zero();
+  for (Index i = 0; i < turns.cols(); ++i) {
+    before = cardan_angles(axes.transpose() * exp_so3(Vec3(turns.col(i))) * axes, before);
+    trajectory.col(i) = before;
+  }
+  return trajectory;
+}
+
+}  // namespace
+
+Vec3 cardan_angles(const Mat3& r, const Vec3& before) {
+  constexpr double half_turn = std::numbers::pi, full_turn = 2.0 * half_turn;
+  const double cosine = std::hypot(r(0, 0), r(0, 1));
+  Vec3 one(before.x(), std::atan2(r(0, 2), cosine), 0.0);
+  if (cosine > 1e-9) {
+    one.x() = std::atan2(-r(1, 2), r(2, 2));
+    one.z() = std::atan2(-r(0, 1), r(0, 0));
+  } else {  // gimbal lock: only the sum or difference of the outer angles is observable
+    const Mat3 rest = (rot_x(one.x()) * rot_y(one.y())).transpose() * r;
+    one.z() = std::atan2(rest(1, 0), rest(0, 0));
+  }
+  const auto near = [&](Vec3 angles) {
+    for (Index k = 0; k < 3; ++k) angles[k] += full_turn * std::round((before[k] - angles[k]) / full_turn);
+    return angles;
+  };
+  const Vec3 first = near(one), second = near({one.x() + half_turn, half_turn - one.y(), one.z() + half_turn});
+  return (first - before).norm() <= (second - before).norm() ? first : second;
+}
+
+MatrixXd spherical_rotation_vectors(const SplineGrid& grid, ConstMatrixRef coefficients,
+                                    std::span<const double> times) {
+  const Mat3 home = rotation_from_vector(spline_value(grid, coefficients, grid.begin));
+  MatrixXd turns = spline_values(grid, coefficients, times);
+  for (Index i = 0; i < turns.cols(); ++i)
+    turns.col(i) = log_so3(rotation_from_vector(turns.col(i)) * home.transpose());
+  return turns;
+}
+
+Mat3 spherical_axes(ConstMatrixRef turns) {
+  const SymmetricEigen eigen = symmetric_eigen(turns * turns.transpose());
+  Mat3 axes;
+  axes.col(0) = eigen.vectors.col(2);
+  axes.col(1) = eigen.vectors.col(0);
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  return axes;
+}
+
+MatrixXd joint_trajectory(EstimatedJointType type, std::span<const InsBody> bodies, const JointGeometry& geometry,
+                          const SplineGrid& grid, ConstMatrixRef coefficients, std::span<const double> times) {
+  if (type == EstimatedJointType::rigid) return {};
+  if (type == EstimatedJointType::spherical)
+    return spherical_trajectory(spherical_rotation_vectors(grid, coefficients, times), geometry.spherical_axes);
+  MatrixXd trajectory = spline_values(grid, coefficients, times);
+  trajectory.colwise() -= spline_value(grid, coefficients, grid.begin);
+  if (bodies.size() == 1 && geometry.axis_in_parent.dot(bodies.front().parent_R_axis.col(2)) < 0.0)
+    trajectory = -trajectory;
+  return trajectory;
+}
+
+}  // namespace kinfer::identify

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The final geometry: continuous-time fit of the whole tree over the whole recording, with standard deviations that
+// include model errors.
+#pragma once
+
+#include "kinfer/estimate/continuous/solver/batch_fit.hpp"
+#include "kinfer/identify/geometry/initial_joint.hpp"
+#include "kinfer/identify/refinement/held_out.hpp"
+#include "kinfer/identify/refinement/refined_joint.hpp"
+#include "kinfer/measurement/clock_correction.hpp"
+#include "kinfer/measurement/machine_measurements.hpp"
+#include "kinfer/measurement/sensor_model.hpp"
+
+namespace kinfer::identify {
+
+/// How the sensors' clocks are treated.
+enum class ClockTreatment {
+  trusted,   ///< as synchronous
+  checked,   ///< as synchronous unless the residuals contradict significantly
+  estimated  ///< each with an offset and a drift relative to the reference
+};
+
+struct RefinementOptions {
+  std::optional<SensorModel> grade{};  ///< sensor grade; without it estimated from the recording
+  InsFitOptions fit{};
+  double knot_spacing = 0.0;    ///< [s] knot spacing of the splines; 0: chosen from the motion (motion_knots)
+  MachineMeasurements facts{};  ///< additional knowledge: touches, tape lengths, surveyed points
+  ClockTreatment clocks = ClockTreatment::checked;
+  bool hold_out = true;  ///< fit once more without some time windows, to test the chain's predictions
+};
+
+/// Residual clock error of a sensor in the synchronised recording.
+struct ResidualClock {
+  ClockCorrection correction;
+  double offset_sd = 0.0, drift_sd = 0.0;  ///< [s], [s/s]
+};
+
+struct Refinement {
+  std::vector<RefinedJoint> joints;  ///< in the order of the starts; joint position 0 is where the recording begins
+  InsFit fit;
+  std::vector<InsNoise> noise;          ///< of each sensor, estimated from its residuals
+  std::vector<InsNoise> noise_floor;    ///< of each sensor, its noise floor: without any model error
+  MatrixXd covariance;                  ///< of the global parameters
+  std::string grade;                    ///< sensor grade that was used
+  std::vector<PointEstimate> places;    ///< points that the facts name
+  double knot_spacing = 0.0;            ///< [s] knot spacing that was used for the motion at full bandwidth
+  double cutoff = 0.0;                  ///< [Hz] upper limit of the passband that was used; 0: full bandwidth
+  std::vector<ResidualClock> clocks{};  ///< one a sensor; empty where the clocks agree
+  HeldOut held_out{};                   ///< empty where the recording is too short or hold_out is false
+};
+
+/// `starts`: one for each segment but the root, parents before children.
+Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
+                          const std::vector<InitialJoint>& starts, const RefinementOptions& options,
+                          const Observer& observer = {});
+
+}  // namespace kinfer::identify

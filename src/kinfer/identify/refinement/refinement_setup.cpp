@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/refinement/refinement_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/geometry/statistics.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double field_noise_ratio =
+    0.1;  // of the field, sd of a tenth of a second: moving steel makes it a weak reference
+
+SplineGrid make_grid(const RecordedMotion& motion, double period) {
+  constexpr Index min_intervals = spline_order - 1;  // the ends of a time segment do not overlap
+  const double length = motion.time.back() - motion.time.front();
+  return {motion.time.front(), period, std::max(min_intervals, static_cast<Index>(std::ceil(length / period)))};
+}
+
+double noise_or_from_density(double measured, double density, double sampling_rate) {
+  return measured > 0.0 ? measured : density * std::sqrt(0.5 * sampling_rate);
+}
+
+InsMeasurements sensor_blocks(const InsRecording& recording, const InsSensor& sensor, const SplineGrid& grid,
+                              const SensorModel& grade, bool use_field) {
+  const auto time = recording.time(sensor);
+  const double sampling_rate = 1.0 / median_period(time);
+  InsMeasurements r;
+  r.angular_velocity = ins_blocks(sensor, time, InsInstrument::gyroscope, grid);
+  r.force = ins_blocks(sensor, time, InsInstrument::accelerometer, grid);
+  r.noise.angular_velocity =
+      noise_or_from_density(measurement_noise(r.angular_velocity), grade.gyroscope.noise_density, sampling_rate);
+  r.noise.force = noise_or_from_density(measurement_noise(r.force), grade.accelerometer.noise_density, sampling_rate);
+  if (!use_field || !sensor.has_magnetometer()) return r;
+  r.field = mean_blocks(sensor, time, InsInstrument::magnetometer, grid);
+  std::vector<double> sizes;
+  for (const InsBlock& block : r.field)
+    if (block.rows > 0) sizes.push_back(double{block.target.row(0).norm()});
+  if (sizes.empty())
+    r.field.clear();
+  else
+    r.noise.field = field_noise_ratio * median(sizes);
+  return r;
+}
+
+InsErrorPrior prior_of(const SensorModel& grade) {
+  // Lower limits: smaller errors cannot be observed, even if a preset states 0.
+  return {.gyroscope_bias = std::hypot(grade.gyroscope.bias_sd, 1e-4),
+          .accelerometer_bias = std::hypot(grade.accelerometer.bias_sd, 1e-3),
+          .magnetometer_bias = std::hypot(grade.magnetometer.bias_sd, 0.01),
+          .gyroscope_scale = grade.gyroscope.scale_sd,
+          .accelerometer_scale = grade.accelerometer.scale_sd};
+}
+
+Vec3 mean_measurement(const std::vector<InsBlock>& blocks) {
+  Vec3 sum = Vec3::Zero();
+  double weight = 0.0;
+  for (const InsBlock& block : blocks)
+    if (block.rows > 0) {
+      const double first{block.factor(0, 0)};
+      sum += first * block.target.row(0).transpose().cast<double>();
+      weight += first * double{block.factor.row(0).sum()};
+    }
+  return weight > 0.0 ? Vec3(sum / weight) : Vec3(Vec3::Zero());
+}
+
+MatrixXd as_columns(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  MatrixXd m(static_cast<Index>(a.size()), 6);
+  for (std::size_t i = 0; i < a.size(); ++i) m.row(static_cast<Index>(i)) << a[i].transpose(), b[i].transpose();
+  return m;
+}
+
+/// Spline coefficients of the root's angular velocity and specific force as measured by its own INS.
+MatrixXd root_spline_coefficients(const RecordedMotion& motion, const SplineGrid& grid, std::size_t root) {
+  const SegmentMotion& m = motion.segments[root];
+  std::vector<Vec3> force;
+  for (std::size_t i = 0; i < motion.rows(); ++i)
+    force.push_back(m.rotation[i].transpose() * (m.acceleration[i] + Vec3(0.0, 0.0, 9.81)));
+  return fit_spline(grid, motion.time, as_columns(m.gyro, force));
+}
+
+/// Attaches every joint's bodies to those of its parent, with their joint positions as splines.
+void attach_joints(RefinementSetup& setup, const RecordedMotion& motion, const SegmentTree& tree,
+                   const std::vector<InitialJoint>& starts, std::vector<MatrixXd>& rows) {
+  InsUnknowns& x = setup.start;
+  std::vector<int> body_of_segment(motion.segments.size(), 0);
+  x.bodies.push_back({.sensor = static_cast<int>(tree.root)});
+  for (const InitialJoint& start : starts) {
+    int parent = body_of_segment[start.parent];
+    setup.first_body.push_back(x.bodies.size());
+    for (InsBody body : start.bodies) {
+      body.parent = parent;
+      parent = static_cast<int>(x.bodies.size());
+      x.bodies.push_back(body);
+    }
+    body_of_segment[start.child] = parent;
+    setup.last_body.push_back(x.bodies.size() - 1);
+    for (const std::vector<double>& values : start.joint_positions) {
+      const Eigen::Map<const VectorXd> reading(values.data(), static_cast<Index>(values.size()));
+      rows.push_back(fit_spline(setup.problem.grid, motion.time, reading));
+      setup.problem.anchor.push_back(rows.back()(0, 0));
+    }
+  }
+}
+
+}  // namespace
+
+RefinementSetup set_up_refinement(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
+                                  const std::vector<InitialJoint>& starts, const SensorModel& grade,
+                                  double knot_spacing) {
+  RefinementSetup setup;
+  InsProblem& problem = setup.problem;
+  problem.grid = make_grid(motion, knot_spacing);
+  problem.root_at_rest = motion.segments[tree.root].still;
+  problem.prior = prior_of(grade);
+  problem.bias_process = {.rate_sd = grade.gyroscope.instability,
+                          .force_sd = grade.accelerometer.instability,
+                          .time = grade.accelerometer.instability_time};
+  for (const InsSensor& sensor : recording.sensors)
+    problem.sensors.push_back(sensor_blocks(recording, sensor, problem.grid, grade, problem.root_at_rest));
+  for (InsMeasurements& joint_positions : problem.sensors) joint_positions.noise_floor = joint_positions.noise;
+  InsUnknowns& x = setup.start;
+  x.errors.resize(recording.sensors.size());
+  std::vector<MatrixXd> rows;
+  if (problem.root_at_rest) {
+    x.root_force = mean_measurement(problem.sensors[tree.root].force);
+    if (!problem.sensors[tree.root].field.empty()) x.root_field = mean_measurement(problem.sensors[tree.root].field);
+  } else {
+    rows.push_back(root_spline_coefficients(motion, problem.grid, tree.root));
+  }
+  attach_joints(setup, motion, tree, starts, rows);
+  Index spline_dimensions = 0;
+  for (const MatrixXd& row : rows) spline_dimensions += row.rows();
+  x.spline_coefficients.resize(spline_dimensions, problem.grid.coefficients());
+  Index at = 0;
+  for (const MatrixXd& row : rows) x.spline_coefficients.middleRows(at, row.rows()) = row, at += row.rows();
+  return setup;
+}
+
+}  // namespace kinfer::identify

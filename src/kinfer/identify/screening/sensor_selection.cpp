@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/screening/sensor_selection.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+constexpr double averaging_time = 0.1;  // [s] averaging time against noise
+/// A link is no joint if its residual exceeds both `residual` [m/s²] and `factor` times that of the tree's links.
+struct NoJointThreshold {
+  double residual, factor;
+};
+constexpr NoJointThreshold machine_threshold{.residual = 0.05,
+                                             .factor = 4.0};  // three segments and more on either side
+constexpr NoJointThreshold part_threshold{
+    .residual = 0.1, .factor = 10.0};  // a joint with a clipping sensor has up to 8 times the usual
+
+/// Rms deviation of a sensor's averaged measurements from their mean.
+template <class Pick>
+double deviation_from_mean(const InsSensor& sensor, std::span<const double> time, const Pick& pick) {
+  std::vector<Vec3> means;
+  Vec3 sum = Vec3::Zero(), all = Vec3::Zero();
+  double n = 0.0, begin = time.empty() ? 0.0 : time.front();
+  for (std::size_t row = 0; row < time.size(); ++row) {
+    if (const auto value = pick(sample(sensor, time, row))) sum += *value, n += 1.0;
+    if (time[row] - begin < averaging_time) continue;
+    if (n > 0.0) means.push_back(sum / n), all += means.back();
+    sum.setZero(), n = 0.0, begin = time[row];
+  }
+  double square = 0.0;
+  for (const Vec3& mean : means) square += (mean - all / static_cast<double>(means.size())).squaredNorm();
+  return means.empty() ? 0.0 : std::sqrt(square / static_cast<double>(means.size()));
+}
+
+bool is_stationary(const InsSensor& sensor, std::span<const double> time, const SegmentMotionOptions& options) {
+  return deviation_from_mean(sensor, time,
+                             [](const InsSample& s) {
+                               return s.has_angular_velocity ? std::optional<Vec3>(s.angular_velocity) : std::nullopt;
+                             }) < options.stationary_rate &&
+         deviation_from_mean(sensor, time, [](const InsSample& s) {
+           return s.has_acceleration ? std::optional<Vec3>(s.acceleration) : std::nullopt;
+         }) < options.stationary_acceleration;
+}
+
+std::vector<std::string> names_of(const RecordedMotion& motion, const std::vector<std::size_t>& segments) {
+  std::vector<std::string> names;
+  for (const std::size_t s : segments) names.push_back(motion.segments[s].name);
+  return names;
+}
+
+/// [m/s²] Acceleration residual of a link. If the two segments hardly rotate relative to each other, only across the
+/// direction of the largest residual, since they may share a prismatic joint.
+double misfit(const PairFit& pair) {
+  constexpr double turning = 0.02;  // [rad/s] rms
+  if (pair.relative_rate() > turning) return pair.residual();
+  return std::sqrt(std::max(0.0, symmetric_eigen(pair.acceleration).values[1]));
+}
+
+struct TreeLink {
+  std::size_t parent, child;
+  double misfit;
+};
+
+std::vector<TreeLink> links_of(const SegmentTree& tree) {
+  std::vector<TreeLink> links;
+  for (const std::size_t child : tree.order)
+    if (tree.parent[child])
+      links.push_back({*tree.parent[child], child, misfit(tree.pair(*tree.parent[child], child))});
+  return links;
+}
+
+/// Connected groups of segments by the links that are kept, each in the order of the sensors.
+std::vector<std::vector<std::size_t>> groups_of(std::size_t segments, const std::vector<TreeLink>& kept) {
+  std::vector<std::size_t> group(segments);
+  std::iota(group.begin(), group.end(), std::size_t{0});
+  for (const TreeLink& link : kept) {
+    const std::size_t from = group[link.child], to = group[link.parent];
+    std::ranges::replace(group, from, to);
+  }
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t g = 0; g < segments; ++g) {
+    std::vector<std::size_t> members;
+    for (std::size_t s = 0; s < segments; ++s)
+      if (group[s] == g) members.push_back(s);
+    if (!members.empty()) groups.push_back(members);
+  }
+  return groups;
+}
+
+/// Number of segments in the smaller part if the tree is cut at a link.
+std::size_t smaller_part(const SegmentTree& tree, const TreeLink& link) {
+  std::size_t beyond = 0;
+  for (std::size_t s = 0; s < tree.parent.size(); ++s)
+    for (std::optional<std::size_t> at = s; at; at = tree.parent[*at])
+      if (*at == link.child) {
+        ++beyond;
+        break;
+      }
+  return std::min(beyond, tree.parent.size() - beyond);
+}
+
+bool is_no_joint(const SegmentTree& tree, const TreeLink& link, double median_misfit) {
+  const NoJointThreshold& limit = smaller_part(tree, link) >= 3 ? machine_threshold : part_threshold;
+  return link.misfit > std::max(limit.residual, limit.factor * median_misfit);
+}
+
+Finding separation_finding(const OrderedMotion& ordered, const TreeLink& cut, const std::vector<std::size_t>& excluded,
+                           double median_misfit) {
+  const auto names = names_of(ordered.motion, excluded);
+  const PairFit& pair = ordered.tree.pair(cut.parent, cut.child);
+  const std::string link = ordered.motion.segments[cut.parent].name + "-" + ordered.motion.segments[cut.child].name;
+  const std::string evidence = fmt::format("the best link, {}, leaves {:.3f} m/s² where joints leave {:.3f}", link,
+                                           pair.residual(), median_misfit);
+  if (excluded.size() > 1)
+    return {.kind = FindingKind::several_machines,
+            .severity = Severity::warning,
+            .sentence = fmt::format("{} share no joint with the others ({}): a machine of their own, or a segment "
+                                    "without INS between; they are left out",
+                                    fmt::join(names, ", "), evidence),
+            .suggestion = fmt::format("identify them by themselves with --sensors {}", fmt::join(names, ",")),
+            .applied = true};
+  const bool turns_about_one_axis = pair.off_axis_rate() < 0.1 * pair.relative_rate();
+  return {.kind = turns_about_one_axis ? FindingKind::linkage : FindingKind::no_joint,
+          .severity = Severity::warning,
+          .sentence = fmt::format(
+              "{} shares no joint with any other sensor ({}): {}; it is left out", names.front(), evidence,
+              turns_about_one_axis ? "it turns about one axis but around no fixed point, as the bar of a linkage "
+                                     "(a loop) does, or a segment without INS lies between"
+                                   : "a loose sensor, another machine's, or a segment without INS between"),
+          .suggestion = "stick an INS on every segment, and none on the bars of a linkage",
+          .applied = true};
+}
+
+}  // namespace
+
+SensorSelection exclude_idle_sensors(const InsRecording& recording, const SegmentMotionOptions& options,
+                                     const std::optional<std::string>& root) {
+  SensorSelection chosen;
+  std::vector<std::string> still, left_out;
+  for (const InsSensor& sensor : recording.sensors)
+    if (is_stationary(sensor, recording.time(sensor), options)) still.push_back(sensor.name);
+  const bool root_is_stationary = root && std::ranges::find(still, *root) != still.end();
+  const std::string kept = still.empty() ? "" : root_is_stationary ? *root : still.front();
+  for (std::size_t s = 0; s < recording.sensors.size(); ++s) {
+    const std::string& name = recording.sensors[s].name;
+    const bool is_left_out = name != kept && std::ranges::find(still, name) != still.end();
+    if (is_left_out)
+      left_out.push_back(name);
+    else
+      chosen.sensors.push_back(s);
+  }
+  if (left_out.empty() || still.size() == recording.sensors.size()) return chosen;
+  chosen.findings.push_back(
+      {.kind = FindingKind::idle,
+       .severity = Severity::warning,
+       .sentence = fmt::format("the sensors {} never move: joints that nobody moved, several INS on one base, or the "
+                               "bases of several machines; {} left out, and {} stands for the ground",
+                               fmt::join(still, ", "), fmt::join(left_out, ", "), kept),
+       .suggestion = "move every joint, and give each machine a log of its own",
+       .applied = true});
+  return chosen;
+}
+
+SensorSelection select_machine(const OrderedMotion& ordered, const std::optional<std::string>& root) {
+  const std::size_t segments = ordered.motion.segments.size();
+  const std::vector<TreeLink> links = links_of(ordered.tree);
+  SensorSelection chosen;
+  chosen.sensors.resize(segments);
+  std::iota(chosen.sensors.begin(), chosen.sensors.end(), std::size_t{0});
+  if (links.size() < 3) return chosen;
+  std::vector<double> misfits;
+  for (const TreeLink& link : links) misfits.push_back(link.misfit);
+  const double median_misfit = median(misfits);
+  std::vector<TreeLink> kept, cut;
+  for (const TreeLink& link : links) (is_no_joint(ordered.tree, link, median_misfit) ? cut : kept).push_back(link);
+  if (cut.empty()) return chosen;
+  const auto groups = groups_of(segments, kept);
+  auto best = std::ranges::max_element(groups, {}, [](const auto& group) { return group.size(); });
+  for (auto group = groups.begin(); root && group != groups.end(); ++group)
+    for (const std::string& name : names_of(ordered.motion, *group))
+      if (name == *root && group->size() > 1) best = group;
+  chosen.sensors = *best;
+  const auto is_in = [](const std::vector<std::size_t>& group, std::size_t s) {
+    return std::ranges::find(group, s) != group.end();
+  };
+  for (auto group = groups.begin(); group != groups.end(); ++group) {
+    if (group == best) continue;
+    const auto link = std::ranges::min_element(cut, {}, [&](const TreeLink& l) {
+      return is_in(*group, l.parent) || is_in(*group, l.child) ? l.misfit : std::numeric_limits<double>::infinity();
+    });
+    chosen.findings.push_back(separation_finding(ordered, *link, *group, median_misfit));
+  }
+  return chosen;
+}
+
+std::vector<Finding> groups_attached_to_world(const OrderedMotion& ordered) {
+  const SegmentTree& tree = ordered.tree;
+  if (!ordered.motion.segments[tree.root].still) return {};
+  std::vector<TreeLink> within;
+  for (const TreeLink& link : links_of(tree))
+    if (link.parent != tree.root) within.push_back(link);
+  std::vector<std::string> groups;
+  for (const auto& group : groups_of(ordered.motion.segments.size(), within))
+    if (group.front() != tree.root || group.size() > 1)
+      groups.push_back(fmt::format("{}", fmt::join(names_of(ordered.motion, group), ", ")));
+  if (groups.size() < 2) return {};
+  return {{.kind = FindingKind::several_machines,
+           .severity = Severity::warning,
+           .sentence = fmt::format("the sensors that move fall into {} groups that share only the ground ({}): several "
+                                   "machines in one log; the chain has them all, how they stand to each other is not "
+                                   "known",
+                                   groups.size(), fmt::join(groups, "; ")),
+           .suggestion = "identify one by itself with --sensors"}};
+}
+
+}  // namespace kinfer::identify

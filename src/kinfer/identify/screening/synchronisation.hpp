@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Synchronisation of a recording whose sensors may have separate clocks, from their angular velocities alone.
+#pragma once
+
+#include <limits>
+
+#include "kinfer/base/result.hpp"
+#include "kinfer/evidence/identification.hpp"
+#include "kinfer/identify/refinement/refine.hpp"
+#include "kinfer/inertial/segment_motion.hpp"
+
+namespace kinfer::identify {
+
+struct Synchronisation {
+  std::optional<InsRecording> synchronised;  ///< synchronised recording; none if all measurements are used unchanged
+  std::vector<ClockCorrection> corrections;  ///< of each sensor, accumulated
+  ClockTreatment clock_treatment = ClockTreatment::checked;  ///< how the fit treats the clocks
+  /// [s] time window that is used, on the common clock
+  double begin = -std::numeric_limits<double>::infinity(), end = std::numeric_limits<double>::infinity();
+
+  const InsRecording& of(const InsRecording& recording) const { return synchronised ? *synchronised : recording; }
+};
+
+/// Loggers are always aligned as a whole. A sensor is shifted relative to its own logger only if its offset exceeds the
+/// noise and the shift gives a better segment tree.
+Synchronisation synchronise_sensors(const InsRecording& recording, const SegmentMotionOptions& options, int threads);
+
+/// Adds the clock corrections estimated by a fit; true if they are so large that the steps before the fit (segment tree
+/// and joint types) should be repeated.
+bool update_clocks(Synchronisation& clock, const InsRecording& recording, const std::vector<ResidualClock>& found);
+
+/// Restricts the recording to some of the sensors, from `begin` to `end` [s] on the common clock.
+void restrict_to(Synchronisation& clock, const InsRecording& recording, const std::vector<std::size_t>& sensors,
+                 double begin, double end);
+
+/// Reports corrected clocks: evidence and findings.
+void report_clocks(Identification& result, const Synchronisation& clock, const InsRecording& recording,
+                   const std::vector<ResidualClock>& found);
+
+}  // namespace kinfer::identify

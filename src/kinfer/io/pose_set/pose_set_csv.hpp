@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pose sets as CSV (docs/formats.md), and foreign files by a column map.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinfer/base/result.hpp"
+#include "kinfer/geometry/rotation.hpp"
+#include "kinfer/io/text/units.hpp"
+#include "kinfer/kinematics/chain.hpp"
+#include "kinfer/measurement/pose_set.hpp"
+
+namespace kinfer {
+
+/// Maps the columns of a foreign file to kinfer's (TOML): delimiter, decimal, skip_lines, [columns] ours = "theirs
+/// [unit]", euler. With `euler`, the columns rx, ry, rz give the orientation in that sequence.
+struct ColumnMap {
+  char delimiter = ',';
+  char decimal = '.';
+  int skip_lines = 0;
+  std::vector<std::pair<std::string, std::string>>
+      columns;  ///< ours -> "theirs [unit]"; empty: the names in the file are ours
+  std::optional<EulerSequence> euler;
+};
+Result<ColumnMap> read_column_map(const std::filesystem::path& path);
+Result<ColumnMap> parse_column_map(std::string_view text, const std::string& name_in_messages);
+
+/// What a file must hold besides the joint positions. `joints_only`, for prediction: nothing; a row with an anchor but
+/// no distance then has NaN for its distance. `targets`, for compensation: the desired positions of the tool point; the
+/// joint positions, which serve as start values, may be absent (PoseSet::joints then has no rows).
+enum class RequiredContent { measurements, joints_only, targets };
+
+/// Reads a pose set for a robot: joint columns q1..qn or q_<name> of `chain` (unit by the joint's type), then what was
+/// measured. PoseSet::targets are those of the chain where the file has columns of further targets.
+Result<PoseSet> read_pose_set(const std::filesystem::path& path, const Chain& chain, const ColumnMap& map = {},
+                              RequiredContent required = RequiredContent::measurements);
+Result<PoseSet> parse_pose_set(std::string_view text, const std::string& name_in_messages, const Chain& chain,
+                               const ColumnMap& map = {}, RequiredContent required = RequiredContent::measurements);
+
+/// Pose set as CSV, lengths and angles in `units`, with full precision.
+std::string format_pose_set_csv(const PoseSet& set, const Chain& chain, FileUnits units);
+
+}  // namespace kinfer

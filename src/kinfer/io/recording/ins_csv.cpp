@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/recording/ins_csv.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+
+#include "kinfer/io/recording/ins_columns.hpp"
+#include "kinfer/io/text/csv.hpp"
+#include "kinfer/io/text/mapped_file.hpp"
+#include "kinfer/io/text/plain_decimal.hpp"
+#include "kinfer/io/text/trim.hpp"
+#include "kinfer/measurement/ins_screening.hpp"
+
+namespace kinfer {
+namespace {
+
+constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
+
+/// Called with the offset of the next line, so that the caller can release the bytes before it.
+using OffsetCallback = std::function<void(std::size_t)>;
+
+/// Reads the body of one file into the columns of its sensors.
+class RowReader {
+ public:
+  RowReader(std::string_view text, const std::string& name, const CsvHeader& header, const InsColumns& columns,
+            InsRecording& out)
+      : text_(text), name_(name), header_(header), columns_(columns), time_(out.loggers.back().time) {
+    for (const InsColumn& column : columns.columns) {
+      std::vector<float>* target = nullptr;
+      if (column.sensor) {
+        InsSensor& sensor = out.sensors[*column.sensor];
+        TriadColumns* triads[] = {&sensor.acceleration, &sensor.angular_velocity, &sensor.field};
+        target = &triads[column.instrument]->axis[column.axis];
+      }
+      targets_.push_back({target, column.factor});
+    }
+    reserve();
+  }
+
+  Result<void> read(const OffsetCallback& on_offset) {
+    std::size_t at = header_.body;
+    int line_number = header_.line;
+    while (at < text_.size()) {
+      const void* found = std::memchr(text_.data() + at, '\n', text_.size() - at);
+      const bool whole = found != nullptr;
+      const std::size_t end =
+          whole ? static_cast<std::size_t>(static_cast<const char*>(found) - text_.data()) : text_.size();
+      ++line_number;
+      if (auto done = read_line(text_.substr(at, end - at), line_number, whole); !done) return done;
+      at = end + 1;
+      if ((line_number & 0xfff) == 0) on_offset(at);
+    }
+    return {};
+  }
+
+  bool has_truncated_last_line() const { return has_truncated_last_line_; }
+
+ private:
+  struct Target {
+    std::vector<float>* column;  // null: the time, or an unused column
+    double factor;
+  };
+
+  void reserve() {
+    const auto rest = text_.substr(header_.body);
+    const std::size_t line = std::max<std::size_t>(rest.find('\n') + 1, 2);
+    const std::size_t rows = rest.size() / line + rest.size() / line / 16 + 16;
+    time_.reserve(rows);
+    for (const Target& target : targets_)
+      if (target.column) target.column->reserve(rows);
+  }
+
+  Result<void> read_line(std::string_view line, int number, bool whole) {
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    const auto first = line.find_first_not_of(whitespace);
+    if (first == std::string_view::npos || line[first] == '#') return {};
+    const char* at = line.data();
+    const char* end = line.data() + line.size();
+    std::size_t column = 0;
+    double time = missing_value;
+    for (; column < targets_.size() && at <= end; ++column) {
+      double value = missing_value;
+      if (auto after = read_cell(at, end, value))
+        at = after;
+      else if (auto slow = read_cell_slow_path(at, end, number, column, value); slow)
+        at = *slow;
+      else
+        return tl::unexpected(slow.error());
+      if (targets_[column].column)
+        targets_[column].column->push_back(static_cast<float>(targets_[column].factor * value));
+      else if (column == columns_.time_column)
+        time = targets_[column].factor * value;
+    }
+    const bool ragged = column != targets_.size() || at <= end;
+    if (ragged && !whole) return drop_last_line();
+    if (ragged) return wrong_width(line, number);
+    return add_time(time, number);
+  }
+
+  /// Fast path: a plain decimal or an empty cell, up to the delimiter. Returns the start of the next cell (end + 1
+  /// after the last one), or null where the slow path is needed.
+  static const char* read_cell(const char* at, const char* end, double& value) {
+    if (at == end || *at == ',') return at + 1;  // empty: missing
+    const char* after = read_plain_decimal(at, end, value);
+    if (!after || (after != end && *after != ',')) return nullptr;
+    return after + 1;
+  }
+
+  Result<const char*> read_cell_slow_path(const char* at, const char* end, int number, std::size_t column,
+                                          double& value) const {
+    const char* cell_end = std::find(at, end, ',');
+    const std::string_view cell = trim({at, static_cast<std::size_t>(cell_end - at)});
+    value = missing_value;
+    if (!cell.empty()) {
+      const auto parsed = parse_number(cell);
+      if (!parsed)
+        return error("{}:{}: {}", name_, number, describe_invalid_number(header_.columns[column], cell, '.'));
+      if (std::isfinite(*parsed)) value = *parsed;
+    }
+    return cell_end + 1;
+  }
+
+  /// Drops a last line that was cut off, as when a logger loses power.
+  Result<void> drop_last_line() {
+    for (const Target& target : targets_)
+      if (target.column) target.column->resize(time_.size());
+    has_truncated_last_line_ = true;
+    return {};
+  }
+
+  Result<void> wrong_width(std::string_view line, int number) const {
+    const auto found = std::ranges::count(line, ',') + 1;
+    return error("{}:{}: expected {} columns, found {}", name_, number, targets_.size(), found);
+  }
+
+  Result<void> add_time(double time, int number) {
+    if (!std::isfinite(time)) return error("{}:{}: column t: expected a time, found none", name_, number);
+    if (!time_.empty() && !(time > time_.back())) {
+      if (time < time_.back())
+        return error("{}:{}: the time goes backwards, from {} s to {} s; is this several recordings in one file?",
+                     name_, number, time_.back(), time);
+      return error("{}:{}: duplicate time {} s; the time must be strictly increasing", name_, number, time);
+    }
+    time_.push_back(time);
+    return {};
+  }
+
+  std::string_view text_;
+  const std::string& name_;
+  const CsvHeader& header_;
+  const InsColumns& columns_;
+  std::vector<double>& time_;
+  std::vector<Target> targets_;
+  bool has_truncated_last_line_ = false;
+};
+
+void add_remark(InsRecording& recording, std::string sentence) {
+  recording.remarks.push_back(std::move(sentence));
+}
+
+void add_fault_remarks(InsRecording& out, const InsSensor& sensor) {
+  const auto add_count_remark = [&](Fault fault, const char* what) {
+    if (const std::size_t n = count(sensor, fault); n > 0)
+      add_remark(out, fmt::format("{}: {} of {} rows {}", sensor.name, n, sensor.rows(), what));
+  };
+  add_count_remark(acceleration_clipped, "clip the accelerometer's range and are not used");
+  add_count_remark(angular_velocity_clipped, "clip the gyroscope's range: the turn is larger than they say");
+  add_count_remark(acceleration_spike, "are single spikes of the accelerometer and are not used");
+  add_count_remark(angular_velocity_spike, "are single spikes of the gyroscope and are not used");
+  const std::size_t death = find_usable_end(sensor);
+  if (death == sensor.rows()) return;
+  if (death == 0)
+    return add_remark(out, fmt::format("{}: no row has both specific force and angular rate", sensor.name));
+  const auto time = out.time(sensor);
+  if (time.back() - time[death - 1] > 1.0)
+    add_remark(out, fmt::format("{}: says nothing after {:.3f} s ({} rows): its orientation is held there", sensor.name,
+                                time[death - 1], sensor.rows() - death));
+}
+
+/// Marks faults and adds remarks for the sensors from `first` on; an error where values are impossible in their unit.
+Result<void> screen_sensors(InsRecording& out, std::size_t first, const std::string& name, const InsColumns& columns) {
+  for (std::size_t i = first; i < out.sensors.size(); ++i) {
+    InsSensor& sensor = out.sensors[i];
+    flag_faults(sensor);
+    for (const UnitWarning& doubt : check_units(sensor, columns.field_has_unit[i - first])) {
+      if (doubt.fatal) return error("{}: {}", name, doubt.sentence);
+      add_remark(out, doubt.sentence);
+      sensor.field = {};
+    }
+    add_fault_remarks(out, sensor);
+  }
+  return {};
+}
+
+void add_time_remarks(InsRecording& out, const std::string& name) {
+  const auto& time = out.loggers.back().time;
+  if (time.size() == 1) add_remark(out, fmt::format("{}: one single row: no motion can be told from it", name));
+  constexpr double shortest_reported_gap = 0.1;  // [s]
+  std::size_t n = 0;
+  double longest = 0.0;
+  for (const TimeGap& gap : gaps(time))
+    if (gap.end - gap.begin > shortest_reported_gap) ++n, longest = std::max(longest, gap.end - gap.begin);
+  if (n > 0)
+    add_remark(out,
+               fmt::format("{}: {} gaps in time, the longest {:.3g} s: nothing is known in between", name, n, longest));
+}
+
+Result<void> append_logger(std::string_view text, const std::string& name, InsRecording& out,
+                           const OffsetCallback& on_offset) {
+  KINFER_TRY(header, read_csv_header(text, name));
+  if (auto distinct = expect_distinct_columns(header, name); !distinct) return distinct;
+  const std::size_t first = out.sensors.size();
+  KINFER_TRY(columns, parse_ins_columns(header, name, out));
+  for (const std::string& column : columns.unused_columns)
+    add_remark(out, fmt::format("{}: column {} is no channel of an INS and is not used", name, column));
+  RowReader body(text, name, header, columns, out);
+  if (auto done = body.read(on_offset); !done) return done;
+  if (out.loggers.back().time.empty()) return error("{}: the file has a header but no rows", name);
+  if (body.has_truncated_last_line())
+    add_remark(out, fmt::format("{}: the last line is cut off and is not used", name));
+  add_time_remarks(out, name);
+  return screen_sensors(out, first, name, columns);
+}
+
+}  // namespace
+
+Result<InsRecording> parse_ins_csv(std::string_view text, const std::string& name) {
+  InsRecording out;
+  if (auto done = append_logger(text, name, out, [](std::size_t) {}); !done) return forward_error(done.error());
+  return out;
+}
+
+Result<InsRecording> read_ins_csv(std::span<const std::filesystem::path> paths) {
+  InsRecording out;
+  for (const auto& path : paths) {
+    KINFER_TRY(file, MappedFile::open(path));
+    const auto done = append_logger(file.text(), path.string(), out, [&](std::size_t at) { file.release_before(at); });
+    if (!done) return forward_error(done.error());
+  }
+  return out;
+}
+
+Result<InsRecording> read_ins_csv(const std::filesystem::path& path) {
+  return read_ins_csv(std::span(&path, 1));
+}
+
+}  // namespace kinfer

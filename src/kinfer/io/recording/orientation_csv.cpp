@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/recording/orientation_csv.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+namespace kinfer {
+namespace {
+
+std::string header(const InsRecording& recording, const std::vector<SensorOrientations>& orientations) {
+  std::string text = "t";
+  for (const SensorOrientations& o : orientations)
+    for (const char* part : {"qw", "qx", "qy", "qz"})
+      text += fmt::format(",{}_{}", recording.sensors[o.sensor].name, part);
+  return text + "\n";
+}
+
+void add_row(fmt::memory_buffer& text, const InsRecording& recording, std::size_t logger, std::size_t row,
+             const std::vector<SensorOrientations>& orientations) {
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "{}", recording.loggers[logger].time[row]);
+  for (const SensorOrientations& o : orientations) {
+    if (recording.sensors[o.sensor].logger != logger) {
+      fmt::format_to(out, ",,,,");
+      continue;
+    }
+    const Quat& q = o.world_q_sensor[row];
+    fmt::format_to(out, ",{:.7f},{:.7f},{:.7f},{:.7f}", q.w(), q.x(), q.y(), q.z());
+  }
+  text.push_back('\n');
+}
+
+void write_rows(std::ofstream& file, const InsRecording& recording,
+                const std::vector<SensorOrientations>& orientations) {
+  constexpr std::size_t flush_size = std::size_t{1} << 20;
+  fmt::memory_buffer text;
+  const auto flush = [&] {
+    file.write(text.data(), static_cast<std::streamsize>(text.size()));
+    text.clear();
+  };
+  for (std::size_t logger = 0; logger < recording.loggers.size(); ++logger)
+    for (std::size_t row = 0; row < recording.loggers[logger].time.size(); ++row) {
+      add_row(text, recording, logger, row, orientations);
+      if (text.size() > flush_size) flush();
+    }
+  flush();
+}
+
+}  // namespace
+
+Result<void> write_orientation_csv(const std::filesystem::path& path, const InsRecording& recording,
+                                   const std::vector<SensorOrientations>& orientations) {
+  std::filesystem::path unfinished = path;
+  unfinished += ".unfinished";
+  std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
+  if (!file)
+    return error("{}: the file cannot be written; does the folder exist, and may you write there?", path.string());
+  file << header(recording, orientations);
+  write_rows(file, recording, orientations);
+  file.close();
+  std::error_code failure;
+  if (!file.fail()) std::filesystem::rename(unfinished, path, failure);
+  if (!file.fail() && !failure) return {};
+  std::error_code ignored;
+  std::filesystem::remove(unfinished, ignored);
+  return error("{}: the file cannot be written (disk full, or a folder of that name?)", path.string());
+}
+
+}  // namespace kinfer

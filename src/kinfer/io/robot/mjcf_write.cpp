@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tinyxml2.h>
+
+#include <cmath>
+
+#include "kinfer/io/robot/joint_transforms.hpp"
+#include "kinfer/io/robot/mjcf.hpp"
+#include "kinfer/io/text/format_number.hpp"
+
+namespace kinfer {
+namespace {
+
+std::string list(const Vec3& values) {
+  return fmt::format("{} {} {}", format_number(values.x()), format_number(values.y()), format_number(values.z()));
+}
+
+std::string list(const Quat& q) {
+  return fmt::format("{} {} {} {}", format_number(q.w()), format_number(q.x()), format_number(q.y()),
+                     format_number(q.z()));
+}
+
+/// An <equality> constraint: `joint` moves by factor · position of `leader`.
+struct EqualityConstraint {
+  std::string joint, leader;
+  double factor = 1.0;
+};
+
+class Writer {
+ public:
+  explicit Writer(const Chain& chain) : chain_(chain) {}
+
+  std::string write() {
+    open("mujoco", {{"model", chain_.name.empty() ? "robot" : chain_.name}});
+    // Every moving body needs a mass; where the chain has none, boundmass and boundinertia set small ones.
+    leaf("compiler", {{"angle", "radian"}, {"boundmass", "0.001"}, {"boundinertia", "0.001"}});
+    leaf("option", {{"gravity", list(chain_.gravity)}});
+    open("worldbody", {});
+    open_body("base", chain_.base.pose());
+    if (chain_.tip_joint() < 0) write_sites({});
+    write_children(-1, {});
+    close();
+    close();
+    write_constraints();
+    close();
+    return printer_.CStr();
+  }
+
+ private:
+  using Attributes = std::initializer_list<std::pair<const char*, std::string>>;
+
+  void open(const char* element, Attributes attributes) {
+    printer_.OpenElement(element);
+    for (const auto& [key, value] : attributes) printer_.PushAttribute(key, value.c_str());
+  }
+  void close() { printer_.CloseElement(); }
+  void leaf(const char* element, Attributes attributes) {
+    open(element, attributes);
+    close();
+  }
+
+  void open_body(const std::string& name, const Pose& pose) {
+    open("body", {{"name", name}, {"pos", list(pose.position)}, {"quat", list(Quat(pose.rotation))}});
+  }
+
+  /// `after`: pose of the parent joint's frame in the parent's body.
+  void write_children(int parent, const Pose& after) {
+    for (std::size_t i = 0; i < chain_.joints.size(); ++i)
+      if (chain_.joints[i].parent == parent) write_joint(static_cast<int>(i), after);
+  }
+
+  void write_joint(int index, const Pose& after_parent) {
+    const Joint& joint = chain_.joints[index];
+    const JointTransforms transforms = joint_transforms(joint.link);
+    open_body("link_" + joint.name, after_parent * transforms.before);
+    if (joint.type != JointType::fixed) write_motion(index, transforms.axis);
+    for (const PointMass& mass : chain_.masses)
+      if (mass.joint == index)
+        leaf("geom", {{"type", "sphere"},
+                      {"size", "0.01"},
+                      {"pos", list(transforms.after * mass.com)},
+                      {"mass", format_number(mass.mass)},
+                      {"contype", "0"},
+                      {"conaffinity", "0"}});
+    leaf("site", {{"name", joint.name},
+                  {"pos", list(transforms.after.position)},
+                  {"quat", list(Quat(transforms.after.rotation))}});
+    if (index == chain_.tip_joint()) write_sites(transforms.after);
+    write_children(index, transforms.after);
+    close();
+  }
+
+  void write_motion(int index, const Vec3& axis) {
+    const Joint& joint = chain_.joints[index];
+    if (joint.is_active) add_joint(joint.name, joint, axis, true);
+    for (const MimicTerm& term : mimic_terms(chain_, index)) {
+      const std::string name = joint.name + "_follows_" + term.joint;
+      add_joint(name, joint, axis, false);
+      constraints_.push_back({name, term.joint, term.multiplier});
+    }
+  }
+
+  void add_joint(const std::string& name, const Joint& joint, const Vec3& axis, bool may_be_limited) {
+    open("joint",
+         {{"name", name}, {"type", joint.type == JointType::prismatic ? "slide" : "hinge"}, {"axis", list(axis)}});
+    if (may_be_limited && std::isfinite(joint.lower) && std::isfinite(joint.upper)) {
+      printer_.PushAttribute("limited", "true");
+      printer_.PushAttribute("range",
+                             fmt::format("{} {}", format_number(joint.lower), format_number(joint.upper)).c_str());
+    }
+    close();
+  }
+
+  void write_sites(const Pose& flange) {
+    const Pose tool = flange * chain_.tool.pose();
+    leaf("site", {{"name", "tool"}, {"pos", list(tool.position)}, {"quat", list(Quat(tool.rotation))}});
+    for (const Target& target : chain_.targets) leaf("site", {{"name", target.name}, {"pos", list(tool * target.xyz)}});
+  }
+
+  void write_constraints() {
+    if (constraints_.empty()) return;
+    open("equality", {});
+    for (const EqualityConstraint& constraint : constraints_)
+      leaf("joint", {{"joint1", constraint.joint},
+                     {"joint2", constraint.leader},
+                     {"polycoef", fmt::format("0 {} 0 0 0", format_number(constraint.factor))}});
+    close();
+  }
+
+  const Chain& chain_;
+  tinyxml2::XMLPrinter printer_;
+  std::vector<EqualityConstraint> constraints_;
+};
+
+}  // namespace
+
+std::string format_mjcf(const Chain& chain) {
+  return Writer(chain).write();
+}
+
+}  // namespace kinfer

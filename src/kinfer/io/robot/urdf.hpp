@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Chains as URDF: read by urdfdom, written so that any URDF tool predicts the same poses.
+//
+// Joint gains and couplings are written as mimic joints about the same axis (multiplier gain − 1, or the coupling's
+// factor).
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "kinfer/base/result.hpp"
+#include "kinfer/kinematics/chain.hpp"
+
+namespace kinfer {
+
+struct UrdfEnds {
+  std::string base_link;  ///< empty: the root link
+  std::string tip_link;   ///< empty: the only leaf, or the leaf at the end of the longest path of moving joints (first
+                          ///< in file order)
+};
+
+/// The joints from the base link to the tip link, fixed ones included; mimic joints become couplings.
+Result<Chain> read_urdf(const std::filesystem::path& path, const UrdfEnds& ends = {});
+Result<Chain> parse_urdf(const std::string& text, const std::string& name_in_messages, const UrdfEnds& ends = {});
+
+/// URDF text with links "world", "base", one link per joint, "tool", and each target as a fixed link.
+std::string format_urdf(const Chain& chain);
+
+}  // namespace kinfer

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tinyxml2.h>
+
+#include <cmath>
+#include <set>
+
+#include "kinfer/io/robot/joint_transforms.hpp"
+#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/text/format_number.hpp"
+
+namespace kinfer {
+namespace {
+
+constexpr const char* unlimited = "1e9";  // URDF requires limits, efforts and speeds even where none is known
+
+std::string list(const Vec3& values) {
+  return fmt::format("{} {} {}", format_number(values.x()), format_number(values.y()), format_number(values.z()));
+}
+
+class Writer {
+ public:
+  explicit Writer(const Chain& chain) : chain_(chain), after_(chain.joints.size()), link_(chain.joints.size()) {
+    for (const Joint& joint : chain.joints) joint_names_.insert(joint.name);
+  }
+
+  std::string write() {
+    printer_.PushHeader(false, true);
+    printer_.OpenElement("robot");
+    printer_.PushAttribute("name", chain_.name.empty() ? "robot" : chain_.name.c_str());
+    const std::string world = add_link("world");
+    const std::string base = add_link("base");
+    add_fixed("world_to_base", world, base, chain_.base.pose());
+    for (std::size_t i = 0; i < chain_.joints.size(); ++i) write_joint(static_cast<int>(i), base);
+    write_tool(base);
+    printer_.CloseElement();
+    return printer_.CStr();
+  }
+
+ private:
+  std::string add_link(const std::string& wish) {
+    const std::string name = unique(wish, link_names_);
+    printer_.OpenElement("link");
+    printer_.PushAttribute("name", name.c_str());
+    printer_.CloseElement();
+    return name;
+  }
+
+  static std::string unique(const std::string& wish, std::set<std::string>& taken) {
+    std::string name = wish;
+    for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}", wish, i);
+    return name;
+  }
+
+  void open_joint(const std::string& name, const char* type, const std::string& parent, const std::string& child,
+                  const Pose& origin) {
+    printer_.OpenElement("joint");
+    printer_.PushAttribute("name", name.c_str());
+    printer_.PushAttribute("type", type);
+    add_element("parent", "link", parent);
+    add_element("child", "link", child);
+    printer_.OpenElement("origin");
+    printer_.PushAttribute("xyz", list(origin.position).c_str());
+    printer_.PushAttribute("rpy", list(to_rpy(origin.rotation)).c_str());
+    printer_.CloseElement();
+  }
+
+  void add_element(const char* element, const char* attribute, const std::string& value) {
+    printer_.OpenElement(element);
+    printer_.PushAttribute(attribute, value.c_str());
+    printer_.CloseElement();
+  }
+
+  void add_fixed(const std::string& wish, const std::string& parent, const std::string& child, const Pose& origin) {
+    open_joint(unique(wish, joint_names_), "fixed", parent, child, origin);
+    printer_.CloseElement();
+  }
+
+  void add_limit(const Joint& joint) {
+    printer_.OpenElement("limit");
+    printer_.PushAttribute("lower", std::isfinite(joint.lower) ? format_number(joint.lower).c_str()
+                                                               : (std::string("-") + unlimited).c_str());
+    printer_.PushAttribute("upper", std::isfinite(joint.upper) ? format_number(joint.upper).c_str() : unlimited);
+    printer_.PushAttribute("effort", unlimited);
+    printer_.PushAttribute("velocity", unlimited);
+    printer_.CloseElement();
+  }
+
+  void add_moving(const std::string& name, const Joint& joint, const std::string& parent, const std::string& child,
+                  const Pose& origin, const Vec3& axis, const MimicTerm* mimic) {
+    const bool is_prismatic = joint.type == JointType::prismatic;
+    const bool limited = !mimic && (std::isfinite(joint.lower) || std::isfinite(joint.upper));
+    open_joint(name, is_prismatic ? "prismatic" : limited ? "revolute" : "continuous", parent, child, origin);
+    add_element("axis", "xyz", list(axis));
+    if (is_prismatic || limited) add_limit(mimic ? Joint{} : joint);
+    if (mimic) {
+      printer_.OpenElement("mimic");
+      printer_.PushAttribute("joint", mimic->joint.c_str());
+      printer_.PushAttribute("multiplier", format_number(mimic->multiplier).c_str());
+      printer_.CloseElement();
+    }
+    printer_.CloseElement();
+  }
+
+  void write_joint(int index, const std::string& base) {
+    const Joint& joint = chain_.joints[index];
+    const JointTransforms transforms = joint_transforms(joint.link);
+    std::string parent = joint.parent < 0 ? base : link_[joint.parent];
+    Pose origin = (joint.parent < 0 ? Pose{} : after_[joint.parent]) * transforms.before;
+    after_[index] = transforms.after;
+    std::vector<MimicTerm> mimics = mimic_terms(chain_, index);
+    const bool is_fixed = joint.type == JointType::fixed || (!joint.is_active && mimics.empty());
+    link_[index] = add_link("link_" + joint.name);
+    if (is_fixed) {
+      open_joint(joint.name, "fixed", parent, link_[index], origin);
+      return printer_.CloseElement();
+    }
+    // Rotations about one axis add up in any order: one URDF joint each, the first with the joint's own name.
+    if (joint.is_active) {
+      add_moving(joint.name, joint, parent, link_[index], origin, transforms.axis, nullptr);
+    } else {
+      add_moving(joint.name, joint, parent, link_[index], origin, transforms.axis, &mimics.front());
+      mimics.erase(mimics.begin());
+    }
+    for (const MimicTerm& mimic : mimics) {
+      const std::string name = unique(joint.name + "_follows_" + mimic.joint, joint_names_);
+      const std::string link = add_link("link_" + name);
+      add_moving(name, joint, link_[index], link, Pose{}, transforms.axis, &mimic);
+      link_[index] = link;
+    }
+  }
+
+  void write_tool(const std::string& base) {
+    const int tip = chain_.tip_joint();
+    const std::string tool = add_link("tool");
+    add_fixed("flange_to_tool", tip < 0 ? base : link_[tip], tool,
+              (tip < 0 ? Pose{} : after_[tip]) * chain_.tool.pose());
+    for (const Target& target : chain_.targets)
+      add_fixed("tool_to_" + target.name, tool, add_link(target.name), {Mat3::Identity(), target.xyz});
+  }
+
+  const Chain& chain_;
+  tinyxml2::XMLPrinter printer_;
+  std::vector<Pose> after_;        ///< of each joint: from its last link's frame to the joint's frame
+  std::vector<std::string> link_;  ///< of each joint: its last link
+  std::set<std::string> link_names_, joint_names_;
+};
+
+}  // namespace
+
+std::string format_urdf(const Chain& chain) {
+  return Writer(chain).write();
+}
+
+}  // namespace kinfer

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/text/csv.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <limits>
+#include <set>
+
+#include "kinfer/io/text/trim.hpp"
+#include "kinfer/io/text/units.hpp"
+
+namespace kinfer {
+namespace {
+
+constexpr std::string_view utf8_byte_order_mark = "\xEF\xBB\xBF";
+
+/// Iterates over the lines of a text, without line endings.
+class LineReader {
+ public:
+  LineReader(std::string_view text, std::size_t at, int last_number) : text_(text), at_(at), number_(last_number) {}
+
+  bool next() {
+    if (at_ >= text_.size()) return false;
+    const void* found = std::memchr(text_.data() + at_, '\n', text_.size() - at_);
+    const std::size_t end = found ? static_cast<const char*>(found) - text_.data() : text_.size();
+    line_ = text_.substr(at_, end - at_);
+    if (!line_.empty() && line_.back() == '\r') line_.remove_suffix(1);
+    at_ = end + 1;
+    ++number_;
+    return true;
+  }
+
+  /// The next line that is neither empty nor a comment.
+  bool next_content_line() {
+    while (next()) {
+      const auto first = line_.find_first_not_of(whitespace);
+      if (first != std::string_view::npos && line_[first] != '#') return true;
+    }
+    return false;
+  }
+
+  std::string_view line() const { return line_; }
+  int number() const { return number_; }
+  std::size_t after() const { return std::min(at_, text_.size()); }
+
+ private:
+  std::string_view text_, line_;
+  std::size_t at_;
+  int number_;
+};
+
+/// Splits one line; false where a quote is not closed.
+class CellSplitter {
+ public:
+  CellSplitter(char delimiter, std::deque<std::string>& unquoted) : delimiter_(delimiter), unquoted_(unquoted) {}
+
+  bool split(std::string_view line, std::vector<std::string_view>& cells) const {
+    std::size_t at = 0;
+    while (true) {
+      const auto first = line.find_first_not_of(delimiter_ == '\t' ? " " : " \t", at);
+      if (first != std::string_view::npos && line[first] == '"') {
+        const auto closed = read_quoted(line, first, cells);
+        if (!closed) return false;
+        at = *closed;
+      } else {
+        const auto end = std::min(line.find(delimiter_, at), line.size());
+        cells.push_back(trim(line.substr(at, end - at)));
+        at = end;
+      }
+      if (at >= line.size()) return true;
+      ++at;  // skip the delimiter
+    }
+  }
+
+ private:
+  /// Reads the cell that opens with the quote at `open`; returns the offset of the delimiter after it.
+  std::optional<std::size_t> read_quoted(std::string_view line, std::size_t open,
+                                         std::vector<std::string_view>& cells) const {
+    std::size_t at = open + 1;
+    bool has_inner_quotes = false;
+    while (true) {
+      at = line.find('"', at);
+      if (at == std::string_view::npos) return std::nullopt;
+      if (at + 1 >= line.size() || line[at + 1] != '"') break;
+      has_inner_quotes = true;
+      at += 2;
+    }
+    std::string_view cell = line.substr(open + 1, at - open - 1);
+    if (has_inner_quotes) cell = store_unquoted(cell);
+    const auto end = std::min(line.find(delimiter_, at + 1), line.size());
+    if (!trim(line.substr(at + 1, end - at - 1)).empty()) return std::nullopt;
+    cells.push_back(trim(cell));
+    return end;
+  }
+
+  std::string_view store_unquoted(std::string_view cell) const {
+    std::string text;
+    for (std::size_t i = 0; i < cell.size(); ++i) {
+      text += cell[i];
+      if (cell[i] == '"') ++i;  // doubled
+    }
+    return unquoted_.emplace_back(std::move(text));
+  }
+
+  char delimiter_;
+  std::deque<std::string>& unquoted_;
+};
+
+tl::unexpected<Error> unclosed_quote(const std::string& name, int line) {
+  return error("{}:{}: a quoted cell does not end on this line, or text follows its closing quote", name, line);
+}
+
+std::string describe_column_count(const std::string& name, int line, std::size_t expected, std::size_t found,
+                                  const CsvFormat& format) {
+  std::string text = fmt::format("{}:{}: expected {} columns, found {}", name, line, expected, found);
+  if (found > expected && format.delimiter == ',')
+    text += "; are there commas inside numbers (thousands separators, decimal commas)?";
+  return text;
+}
+
+/// Parses numbers up to each delimiter. `from_chars` accepts neither '+' nor a decimal comma: those take the slow path.
+class NumericLine {
+ public:
+  explicit NumericLine(const CsvFormat& format) : format_(format) {}
+
+  void begin(std::string_view line) {
+    at_ = line.data();
+    end_ = line.data() + line.size();
+    ended_ = false;
+  }
+  bool ended() const { return ended_; }
+
+  /// False where the cell is not a number; `cell` is then its text.
+  bool next(double& value, std::string_view& cell) {
+    if (format_.decimal != '.') return next_slow_path(value, cell);
+    const auto [after, failure] = std::from_chars(at_, end_, value);
+    if (failure == std::errc() && (after == end_ || *after == format_.delimiter)) {
+      step_to(after);
+      return true;
+    }
+    return next_slow_path(value, cell);
+  }
+
+ private:
+  void step_to(const char* cell_end) {
+    ended_ = cell_end == end_;
+    at_ = ended_ ? end_ : cell_end + 1;
+  }
+
+  bool next_slow_path(double& value, std::string_view& cell) {
+    const char* cell_end = std::find(at_, end_, format_.delimiter);
+    cell = trim({at_, static_cast<std::size_t>(cell_end - at_)});
+    if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = trim(cell.substr(1, cell.size() - 2));
+    step_to(cell_end);
+    if (cell.empty()) {
+      value = std::numeric_limits<double>::quiet_NaN();
+      return true;
+    }
+    const auto number = parse_number(cell, format_.decimal);
+    if (number) value = *number;
+    return number.has_value();
+  }
+
+  const CsvFormat& format_;
+  const char* at_ = nullptr;
+  const char* end_ = nullptr;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+Result<CsvHeader> read_csv_header(std::string_view text, const std::string& name, const CsvFormat& format) {
+  if (text.substr(0, 2) == "\xFF\xFE" || text.substr(0, 2) == "\xFE\xFF")
+    return error("{}:1: the file is UTF-16, expected UTF-8; save it as CSV UTF-8", name);
+  LineReader lines(text, text.substr(0, 3) == utf8_byte_order_mark ? 3 : 0, 0);
+  for (int i = 0; i < format.skip_lines; ++i) lines.next();
+  if (!lines.next_content_line()) return error("{}: the file has no header line", name);
+  CsvHeader header;
+  header.line = lines.number();
+  header.body = lines.after();
+  std::vector<std::string_view> cells;
+  std::deque<std::string> unquoted;
+  if (!CellSplitter(format.delimiter, unquoted).split(lines.line(), cells)) return unclosed_quote(name, header.line);
+  header.columns.assign(cells.begin(), cells.end());
+  return header;
+}
+
+Result<void> expect_distinct_columns(const CsvHeader& header, const std::string& name) {
+  std::set<std::string_view> seen;
+  for (const std::string& column : header.columns) {
+    const std::string_view plain = parse_column_header(column).name;
+    if (plain.empty()) return error("{}:{}: a column has no name", name, header.line);
+    if (!seen.insert(plain).second) return error("{}:{}: column {} appears twice", name, header.line, plain);
+  }
+  return {};
+}
+
+Result<CsvTable> split_csv(std::string_view text, const std::string& name, const CsvFormat& format) {
+  CsvTable table;
+  KINFER_TRY(header, read_csv_header(text, name, format));
+  table.header = std::move(header);
+  const std::size_t columns = table.header.columns.size();
+  const CellSplitter splitter(format.delimiter, table.unquoted);
+  LineReader lines(text, table.header.body, table.header.line);
+  while (lines.next_content_line()) {
+    const std::size_t before = table.cells.size();
+    if (!splitter.split(lines.line(), table.cells)) return unclosed_quote(name, lines.number());
+    const std::size_t found = table.cells.size() - before;
+    if (found != columns) return forward_error({describe_column_count(name, lines.number(), columns, found, format)});
+    table.line.push_back(lines.number());
+  }
+  return table;
+}
+
+Result<NumericTable> parse_numeric_csv(std::string_view text, const std::string& name, const CsvFormat& format) {
+  NumericTable table;
+  KINFER_TRY(header, read_csv_header(text, name, format));
+  table.header = std::move(header);
+  const std::size_t columns = table.header.columns.size();
+  table.columns.resize(columns);
+  LineReader lines(text, table.header.body, table.header.line);
+  NumericLine numbers(format);
+  while (lines.next_content_line()) {
+    numbers.begin(lines.line());
+    std::size_t column = 0;
+    for (; column < columns && !numbers.ended(); ++column) {
+      double value = 0.0;
+      std::string_view cell;
+      if (!numbers.next(value, cell))
+        return error("{}:{}: {}", name, lines.number(),
+                     describe_invalid_number(table.header.columns[column], cell, format.decimal));
+      table.columns[column].push_back(value);
+    }
+    if (column != columns || !numbers.ended()) {
+      std::size_t found = std::count(lines.line().begin(), lines.line().end(), format.delimiter) + 1;
+      return forward_error({describe_column_count(name, lines.number(), columns, found, format)});
+    }
+    table.line.push_back(lines.number());
+  }
+  return table;
+}
+
+std::optional<double> parse_number(std::string_view cell, char decimal) {
+  std::array<char, 64> copy;
+  if (cell.empty() || cell.size() > copy.size()) return std::nullopt;
+  std::size_t size = 0;
+  for (const char c : cell) {
+    if (c == '.' && decimal != '.') return std::nullopt;
+    copy[size++] = c == decimal ? '.' : c;
+  }
+  const char* begin = copy.data() + (copy[0] == '+' && size > 1 && copy[1] != '-' ? 1 : 0);
+  double value = 0.0;
+  const auto [after, failure] = std::from_chars(begin, copy.data() + size, value);
+  if (failure != std::errc() || after != copy.data() + size) return std::nullopt;
+  return value;
+}
+
+std::string describe_invalid_number(std::string_view column, std::string_view cell, char decimal) {
+  std::string text = fmt::format("column {}: expected a number, found \"{}\"", column, cell);
+  const bool digits_and_marks = cell.find_first_not_of("+-0123456789., '_") == std::string_view::npos;
+  const bool has_point = cell.find('.') != std::string_view::npos, has_comma = cell.find(',') != std::string_view::npos;
+  if (!digits_and_marks || cell.find_first_of("0123456789") == std::string_view::npos) return text;
+  if (has_point && has_comma) return text + "; thousands separators are not read, or decimal marks are mixed";
+  if (decimal == '.' && has_comma) return text + "; a column map can say decimal = \",\"";
+  if (decimal == ',' && has_point) return text + "; the decimal mark of this file is the comma";
+  return text + "; thousands separators are not read";
+}
+
+}  // namespace kinfer

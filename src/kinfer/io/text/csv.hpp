@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables as text: one header line, then rows of cells. Comments (#) and empty lines are skipped; CRLF, a UTF-8
+// byte-order mark and quoted cells are supported.
+//
+// Two entry points: `split_csv` keeps each cell as text (names and numbers mixed), `parse_numeric_csv` parses directly
+// into columns of numbers (recordings of hundreds of megabytes).
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinfer/base/result.hpp"
+
+namespace kinfer {
+
+struct CsvFormat {
+  char delimiter = ',';
+  char decimal = '.';
+  int skip_lines = 0;  ///< before the header
+};
+
+struct CsvHeader {
+  std::vector<std::string> columns;
+  int line = 0;          ///< from 1
+  std::size_t body = 0;  ///< offset in the text of the line after the header
+};
+
+/// The first line that is neither empty nor a comment. A missing header and UTF-16 are errors.
+Result<CsvHeader> read_csv_header(std::string_view text, const std::string& name_in_messages,
+                                  const CsvFormat& format = {});
+
+/// An error unless every column has a name and all names differ (units ignored).
+Result<void> expect_distinct_columns(const CsvHeader& header, const std::string& name_in_messages);
+
+/// The cells are views into the text that was split, which must outlive the table.
+struct CsvTable {
+  CsvHeader header;
+  std::vector<std::string_view> cells;  ///< row after row, trimmed
+  std::vector<int> line;                ///< of each row, from 1
+  std::deque<std::string> unquoted;     ///< cells that had quotes inside
+
+  std::size_t rows() const { return line.size(); }
+  std::string_view cell(std::size_t row, std::size_t column) const {
+    return cells[row * header.columns.size() + column];
+  }
+};
+Result<CsvTable> split_csv(std::string_view text, const std::string& name_in_messages, const CsvFormat& format = {});
+
+struct NumericTable {
+  CsvHeader header;
+  std::vector<std::vector<double>> columns;  ///< NaN where the cell is empty or nan
+  std::vector<int> line;                     ///< of each row, from 1
+
+  std::size_t rows() const { return line.size(); }
+};
+Result<NumericTable> parse_numeric_csv(std::string_view text, const std::string& name_in_messages,
+                                       const CsvFormat& format = {});
+
+/// The whole cell as a number ("nan" and "inf" included); empty where it is not a number.
+std::optional<double> parse_number(std::string_view cell, char decimal = '.');
+
+/// `column q3: expected a number, found "1.234,5"`, with a hint where the decimal mark or thousands separators are the
+/// cause.
+std::string describe_invalid_number(std::string_view column, std::string_view cell, char decimal);
+
+}  // namespace kinfer

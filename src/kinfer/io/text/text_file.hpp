@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole text files, with errors that state what is wrong with the path.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "kinfer/base/result.hpp"
+
+namespace kinfer {
+
+/// The file's bytes. A folder and a missing, unreadable or empty file are errors.
+Result<std::string> read_text_file(const std::filesystem::path& path);
+
+/// Writes to a temporary file beside `path` and renames it, so that a reader never sees a partial file.
+Result<void> write_text_file(const std::filesystem::path& path, std::string_view text);
+
+/// Creates the folder where it is absent and checks that it is writable with a probe file, which is removed.
+Result<void> create_writable_folder(const std::filesystem::path& folder);
+
+}  // namespace kinfer

@@ -1,8 +1,0 @@
-// Products of blocks for AVX2 with fused multiply-adds. Compiled with -mavx2 -mfma.
-#include "kinfer/linalg/block_kernel.hpp"
-
-namespace kinfer::batch {
-
-extern const BlockKernel avx2_block{add_product<Pack<double, 4>>, solve_right<Pack<double, 4>>};
-
-}  // namespace kinfer::batch

@@ -1,8 +1,0 @@
-// Products of blocks for AVX-512 (F). Compiled with -mavx512f -mfma.
-#include "kinfer/linalg/block_kernel.hpp"
-
-namespace kinfer::batch {
-
-extern const BlockKernel avx512_block{add_product<Pack<double, 8>>, solve_right<Pack<double, 8>>};
-
-}  // namespace kinfer::batch

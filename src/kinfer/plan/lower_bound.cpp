@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/plan/lower_bound.hpp"
+
+#include <algorithm>
+
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer::plan {
+
+double mean_square_lower_bound(const DesignProblem& problem, int count) {
+  const Eigen::Index n = problem.rows.cols(), candidates = problem.candidates();
+  const MatrixXd places =
+      problem.targets.transpose() * problem.targets / static_cast<double>(problem.targets.rows() / 3);
+  MatrixXd fixed = MatrixXd::Identity(n, n);
+  if (problem.prior_information.size() > 0) fixed += problem.prior_information;
+  VectorXd weight = VectorXd::Constant(candidates, 1.0 / static_cast<double>(candidates));
+  double bound = 0.0;
+  constexpr int most_rounds = 200;
+  constexpr double close_enough = 0.02;  // of the mean square
+  for (int round = 0; round < most_rounds; ++round) {
+    const VectorXd root = (static_cast<double>(count) * weight).cwiseSqrt();
+    const MatrixXd weighted = root.transpose().replicate(problem.block, 1).reshaped().asDiagonal() * problem.rows;
+    const auto covariance = invert_spd(fixed + weighted.transpose() * weighted);
+    if (!covariance) break;
+    const MatrixXd felt = *covariance * places * *covariance;
+    const VectorXd of_rows = (problem.rows * felt).cwiseProduct(problem.rows).rowwise().sum();
+    const VectorXd gain = of_rows.reshaped(problem.block, candidates).colwise().sum().transpose();
+    const double now = places.cwiseProduct(*covariance).sum();
+    bound = std::max(bound, now - count * (gain.maxCoeff() - weight.dot(gain)));
+    if (now - bound <= close_enough * now) break;
+    weight = weight.cwiseProduct(gain.cwiseMax(0.0).cwiseSqrt());
+    weight /= weight.sum();
+  }
+  return bound;
+}
+
+}  // namespace kinfer::plan
