@@ -79,8 +79,9 @@ TEST(MovingPhases, SeeASlideThatDoesNotTurn) {
 /// "ins0-ins1": parent and child of each joint of an independent simulator's truth.
 std::vector<std::string> true_edges(const fs::path& folder) {
   std::ifstream file(folder / "truth.json");
+  const nlohmann::json truth = nlohmann::json::parse(file);
   std::vector<std::string> list;
-  for (const auto& joint : nlohmann::json::parse(file).at("joints"))
+  for (const auto& joint : truth.at("joints"))
     list.push_back(fmt::format("ins{}-ins{}", joint.at("parent_ins").get<int>(), joint.at("child_ins").get<int>()));
   return list;
 }
