@@ -59,38 +59,38 @@ constexpr int multiply_adds_a_pose = 66;  // of ER20 with the target on its last
 class Table {
  public:
   explicit Table(const std::map<std::string, Measured>& medians) : medians_(medians) {
-    fmt::print("\n{:<44} {:>14} {:>16} {:>14} {:>9} {:>9}\n", "what", "kinfer", "peer", "", "ratio", "asked");
+    fmt::print("\n{:<44} {:>14} {:>16} {:>14} {:>9} {:>9}\n", "what", "kinfer", "peer", "", "ratio", "required");
   }
 
   /// Ratio of items a second.
   void items(const std::string& what, const std::string& mine, const std::string& peer, const std::string& peer_name,
-             double asked) const {
+             double required) const {
     const auto a = find(mine), b = find(peer);
     if (!a || !b) return;
     line(what, fmt::format("{:.1f} M/s", 1e-6 * a->items), peer_name, fmt::format("{:.2f} M/s", 1e-6 * b->items),
-         a->items / b->items, asked);
+         a->items / b->items, required);
   }
 
   /// Ratio of times.
   void times(const std::string& what, const std::string& mine, const std::string& peer, const std::string& peer_name,
-             double asked) const {
+             double required) const {
     const auto a = find(mine), b = find(peer);
     if (!a || !b) return;
-    line(what, duration(a->seconds), peer_name, duration(b->seconds), b->seconds / a->seconds, asked);
+    line(what, duration(a->seconds), peer_name, duration(b->seconds), b->seconds / a->seconds, required);
   }
 
-  void share_of_bound(const std::string& kernels, double asked) const {
+  void share_of_bound(const std::string& kernels, double required) const {
     const auto a = find("population_double/" + kernels), peak = find("fma_peak/" + kernels);
     if (!a || !peak) return;
     const double bound = peak->items / multiply_adds_a_pose;
     line("population fitness, double, " + kernels, fmt::format("{:.1f} M/s", 1e-6 * a->items), "FMA bound",
-         fmt::format("{:.1f} M/s", 1e-6 * bound), a->items / bound, asked);
+         fmt::format("{:.1f} M/s", 1e-6 * bound), a->items / bound, required);
   }
 
-  void figure(const std::string& what, const std::string& mine, const std::string& asked) const {
+  void figure(const std::string& what, const std::string& mine, const std::string& required) const {
     if (const auto a = find(mine))
       fmt::print("{:<44} {:>14} {:>41} {:>9}\n", what,
-                 a->bytes > 0.0 ? fmt::format("{:.0f} MB/s", 1e-6 * a->bytes) : duration(a->seconds), "", asked);
+                 a->bytes > 0.0 ? fmt::format("{:.0f} MB/s", 1e-6 * a->bytes) : duration(a->seconds), "", required);
   }
 
  private:
@@ -106,9 +106,9 @@ class Table {
     return seconds < 1.0 ? fmt::format("{:.2f} ms", 1e3 * seconds) : fmt::format("{:.2f} s", seconds);
   }
   static void line(const std::string& what, const std::string& mine, const std::string& peer_name,
-                   const std::string& peer, double ratio, double asked) {
+                   const std::string& peer, double ratio, double required) {
     fmt::print("{:<44} {:>14} {:>16} {:>14} {:>9.2f} {:>9}\n", what, mine, peer_name, peer, ratio,
-               asked > 0.0 ? fmt::format(">= {:g}", asked) : "");
+               required > 0.0 ? fmt::format(">= {:g}", required) : "");
   }
 
   const std::map<std::string, Measured>& medians_;
@@ -119,15 +119,15 @@ void print(const std::map<std::string, Measured>& medians) {
   const batch::KernelList list = batch::runnable_kernels();
   for (int i = 0; i < list.count; ++i) {
     const std::string k = list.kernels[i]->name;
-    const bool asked = list.kernels[i]->lanes > 2;  // the portable kernels are asked for nothing
+    const bool required = list.kernels[i]->lanes > 2;  // the portable kernels have no required figure
     table.items("population 200 x 50, double, " + k, "population_double/" + k, "naive_fitness", "naive Eigen",
-                asked ? 45 : 0);
+                required ? 45 : 0);
     table.items("population 200 x 50, float, " + k, "population_float/" + k, "naive_fitness", "naive Eigen",
-                asked ? 90 : 0);
-    table.items("one candidate, 50 poses, " + k, "errors/" + k, "naive_fitness", "naive Eigen", asked ? 35 : 0);
+                required ? 90 : 0);
+    table.items("one candidate, 50 poses, " + k, "errors/" + k, "naive_fitness", "naive Eigen", required ? 35 : 0);
     table.items("population 200 x 50, double, " + k, "population_double/" + k, "kdl_position", "Orocos KDL",
-                asked ? 80 : 0);
-    table.items("residual + 24 columns, " + k, "jacobian/" + k, "ceres_jets", "Ceres Jets", asked ? 18 : 0);
+                required ? 80 : 0);
+    table.items("residual + 24 columns, " + k, "jacobian/" + k, "ceres_jets", "Ceres Jets", required ? 18 : 0);
     table.items("residual + normal equations, " + k, "normal_equations/" + k, "ceres_jets", "Ceres Jets", 0);
     table.share_of_bound(k, 0.65);
   }

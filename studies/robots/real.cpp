@@ -47,8 +47,8 @@ Halves five_halves(const Chain& chain, const PoseSet& data, const ModelChoice& m
   return sum;
 }
 
-void print_halves(const std::string& name, double asked, const Halves& h) {
-  print_row(name, asked, h.mean,
+void print_halves(const std::string& name, double target, const Halves& h) {
+  print_row(name, target, h.mean,
             fmt::format("worst {:.3f} (mean), {:.3f} (largest); before {:.3f}; with {} wrong rows of the five halves "
                         "{:.4f}, worst {:.3f}",
                         h.worst, h.largest_worst, h.before, h.wrong, h.mean_of_all, h.worst_of_all));
@@ -77,14 +77,14 @@ void ur10(const std::string& folder) {
 void mukca(const std::string& folder) {
   const Chain chain = mukca_chain(folder);
   const auto tried = [&](const std::string& arm, const std::vector<std::string>& fitted,
-                         const std::vector<std::string>& unseen, double asked) {
+                         const std::vector<std::string>& unseen, double target) {
     const PoseSet train = mukca_rows(folder, arm, fitted, chain), test = mukca_rows(folder, arm, unseen, chain);
     const Calibration c = calibrate_robot({chain, {}, std::nullopt, train}, {}, Rng(1)).value();
     const auto consistency = [&](const Chain& model) {
       const DataWithFixtures there = with_fixtures(model, test).value();
       return 1e3 * mean(primary_errors(there.chain, PoseSet{}, there.data));
     };
-    print_row("MUKCa " + arm + ", ball centres at unseen tool positions", asked, consistency(c.estimate.chain),
+    print_row("MUKCa " + arm + ", ball centres at unseen tool positions", target, consistency(c.estimate.chain),
               fmt::format("nominal {:.2f}; {}; {} rows left out", consistency(chain), c.model_selection.selected,
                           c.estimate.outliers.size()));
   };

@@ -39,9 +39,9 @@ Calibration calibrated(const Chain& nominal, const Instrument& instrument, const
   return calibrate_robot({nominal, {}, instrument, data}, {}, Rng(1)).value();
 }
 
-/// Mean over seeds of the error on unseen poses [mm] beside the instrument's asked figure; nothing is known of the
+/// Mean over seeds of the error on unseen poses [mm] beside the target; nothing is known of the
 /// base.
-void tracked(const std::string& name, double asked, const Chain& nominal, const PoseSimulation& simulation) {
+void tracked(const std::string& name, double target, const Chain& nominal, const PoseSimulation& simulation) {
   std::vector<double> errors, expected;
   std::string models;
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -53,11 +53,11 @@ void tracked(const std::string& name, double asked, const Chain& nominal, const 
     expected.push_back(1e3 * c.estimate.predicted_error);
     if (c.model_selection.selected != "geometry") models += "; " + c.model_selection.selected;
   }
-  print_row(name, asked, mean(errors), fmt::format("covariance expects rms {:.4f}{}", mean(expected), models));
+  print_row(name, target, mean(errors), fmt::format("covariance expects rms {:.4f}{}", mean(expected), models));
 }
 
 /// As many poses, chosen by a plan instead of at random.
-void planned(const std::string& name, double asked, const Chain& nominal, const PoseSimulation& simulation) {
+void planned(const std::string& name, double target, const Chain& nominal, const PoseSimulation& simulation) {
   PlanTask task;
   task.nominal = nominal;
   task.instrument = simulation.instrument;
@@ -71,7 +71,7 @@ void planned(const std::string& name, double asked, const Chain& nominal, const 
     measure_points(data, truth, simulation.instrument, Rng(200 + seed));
     errors.push_back(unseen_error(calibrated(nominal, simulation.instrument, data).estimate.chain, truth, simulation));
   }
-  print_row(name, asked, mean(errors),
+  print_row(name, target, mean(errors),
             fmt::format("expected rms {:.4f}; no choice of candidates leaves less than {:.4f}", 1e3 * plan.expected.rms,
                         1e3 * plan.rms_lower_bound));
 }
@@ -159,7 +159,7 @@ void tracker_of_poor_angles() {
     for (PointMeasurement& point : data.points) point.sd.reset(), point.axes.reset();
     untold.push_back(unseen(data));
   }
-  print_row("range to 10 um, direction to 30 urad, with covariances", mean(untold), mean(told), "asked: without them");
+  print_row("range to 10 um, direction to 30 urad, with covariances", mean(untold), mean(told), "target: without them");
 }
 
 void half_still() {

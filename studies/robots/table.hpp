@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows that the study prints: what was asked, what was reached.
+// The rows that the study prints: targets and results.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,13 +10,13 @@
 namespace kinfer::study {
 
 inline void print_head(const std::string& title) {
-  fmt::print("\n{}\n  {:<58} {:>9} {:>9}\n", title, "", "asked", "reached");
+  fmt::print("\n{}\n  {:<58} {:>9} {:>9}\n", title, "", "target", "reached");
 }
 
-/// `asked` NaN: only told. Millimetres unless the name says otherwise.
-inline void print_row(const std::string& name, double asked, double reached, const std::string& more = "") {
-  const std::string limit = std::isnan(asked) ? "-" : fmt::format("{:.3f}", asked);
-  const char* sign = std::isnan(asked) ? "" : reached <= asked ? "  yes" : "  NO";
+/// `target` NaN: no target. Millimetres unless the name says otherwise.
+inline void print_row(const std::string& name, double target, double reached, const std::string& more = "") {
+  const std::string limit = std::isnan(target) ? "-" : fmt::format("{:.3f}", target);
+  const char* sign = std::isnan(target) ? "" : reached <= target ? "  yes" : "  NO";
   fmt::print("  {:<58} {:>9} {:>9.4f}{}{}{}\n", name, limit, reached, sign, more.empty() ? "" : "   ", more);
 }
 

@@ -19,7 +19,7 @@ StopText stop_text(Stop stop) {
     case Stop::converged_gradient:
       return {"converged_gradient", "converged: the gradient is zero to rounding"};
     case Stop::target_reached:
-      return {"target_reached", "the cost that was asked for is reached"};
+      return {"target_reached", "the target cost is reached"};
     case Stop::budget_spent:
       return {"budget_spent", "stopped: the budget of iterations or evaluations is spent"};
     case Stop::stalled:

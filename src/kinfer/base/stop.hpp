@@ -14,7 +14,7 @@ enum class Stop {
   budget_spent,        ///< iterations or evaluations used up
   stalled,             ///< no damped step lowers the cost
   not_finite,          ///< the start has no finite cost
-  cancelled,           ///< the observer asked to stop
+  cancelled,           ///< the observer requested a stop
 };
 
 std::string_view name(Stop stop);      ///< as in evidence.json: "converged_cost"
