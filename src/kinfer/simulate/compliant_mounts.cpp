@@ -92,7 +92,7 @@ void simulate_mount(SensorMotion& motion, std::span<const double> time, const Co
 
 }  // namespace
 
-CompliantMount draw_compliant_mount(double lean, double frequency, Rng rng) {
+CompliantMount draw_compliant_mount(double tilt, double frequency, Rng rng) {
   constexpr double gravity = 9.81;
   const auto three = [&](const auto& draw) {
     Vec3 v;
@@ -105,7 +105,7 @@ CompliantMount draw_compliant_mount(double lean, double frequency, Rng rng) {
   const Mat3 compliance = foam * three(stiffness).cwiseInverse().asDiagonal() * foam.transpose();
   // Weight −f acting at height h above the foam rotates the sensor by −C (h × f), C the compliance.
   return {
-      .frequency = frequency, .tilt = -(lean / gravity) * compliance * above, .relative_stiffness = three(stiffness)};
+      .frequency = frequency, .tilt = -(tilt / gravity) * compliance * above, .relative_stiffness = three(stiffness)};
 }
 
 MachineMotion with_compliant_mounts(MachineMotion motion, const std::vector<CompliantMount>& mounts) {
@@ -114,11 +114,11 @@ MachineMotion with_compliant_mounts(MachineMotion motion, const std::vector<Comp
   return motion;
 }
 
-MachineMotion with_foam_mounts(MachineMotion motion, double lean, const Rng& rng) {
-  constexpr double dynamics = 8.0;  // [Hz]
+MachineMotion with_foam_mounts(MachineMotion motion, double tilt, const Rng& rng) {
+  constexpr double natural_frequency = 8.0;  // [Hz]
   std::vector<CompliantMount> mounts;
   for (std::size_t s = 0; s < motion.sensors.size(); ++s)
-    mounts.push_back(draw_compliant_mount(lean, dynamics, rng.stream(s)));
+    mounts.push_back(draw_compliant_mount(tilt, natural_frequency, rng.stream(s)));
   return with_compliant_mounts(std::move(motion), mounts);
 }
 

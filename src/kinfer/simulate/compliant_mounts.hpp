@@ -19,13 +19,13 @@ struct CompliantMount {
   Vec3 relative_stiffness = Vec3::Ones();  ///< stiffness of each direction relative to the mean
 };
 
-/// A random mount that tilts by about `lean` [rad] when mounted sideways; its mass is above the foam in some direction.
-CompliantMount draw_compliant_mount(double lean, double frequency, Rng rng);
+/// A random mount that tilts by about `tilt` [rad] when mounted sideways; its mass is above the foam in some direction.
+CompliantMount draw_compliant_mount(double tilt, double frequency, Rng rng);
 
 /// The same motion as measured by sensors on such mounts, one per sensor, settled before t = 0.
 MachineMotion with_compliant_mounts(MachineMotion motion, const std::vector<CompliantMount>& mounts);
 
-/// Every sensor on a foam mount of its own with a natural frequency of 8 Hz that tilts by about `lean` [rad].
-MachineMotion with_foam_mounts(MachineMotion motion, double lean, const Rng& rng);
+/// Every sensor on a foam mount of its own with a natural frequency of 8 Hz that tilts by about `tilt` [rad].
+MachineMotion with_foam_mounts(MachineMotion motion, double tilt, const Rng& rng);
 
 }  // namespace kinfer

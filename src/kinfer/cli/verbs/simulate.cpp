@@ -150,20 +150,22 @@ void add_motion_options(CLI::App& verb, SimulateArguments& options) {
 void add_sensor_options(CLI::App& verb, SimulateArguments& options) {
   add_text(verb, "--grade", options.grade, "Sensor errors: perfect, noise, industrial, consumer or a data sheet",
            Requirement::optional, "NAME|TOML");
-  add_number(verb, "--missing", options.trouble.missing, 0.0, 0.9, "Fraction of the samples that get lost");
-  add_number(verb, "--spikes", options.trouble.spikes, 0.0, 1000.0, "Wild samples a minute on each axis");
+  add_number(verb, "--missing", options.trouble.missing, 0.0, 0.9, "Fraction of the samples that are lost");
+  add_number(verb, "--spikes", options.trouble.spikes, 0.0, 1000.0, "Outliers per minute on each axis");
   add_number(verb, "--accelerometer-range", options.accelerometer_range, 0.0, 1000.0,
              "Clip at this many g; 0: the grade's");
   add_number(verb, "--gyro-range", options.gyro_range, 0.0, 1e5, "Saturate at this many deg/s; 0: the grade's");
   add_number(verb, "--magnetic-disturbance", options.trouble.magnetic_disturbance, 0.0, 1000.0,
-             "Field of moving steel [uT rms]");
+             "Magnetic disturbance by moving steel [uT rms]");
   add_flag(verb, "--no-magnetometer", options.no_magnetometer, "Six axes only");
   add_number(verb, "--foam", options.faults.foam, 0.0, 30.0,
-             "Sensors on foam: they sway, and lean by this many degrees where they hang sideways; 0: firm mounts");
-  add_text(verb, "--late", options.faults.late, "This sensor's readings are logged so many ms late",
+             "Sensors on foam: the mounts oscillate, and tilt by about this many degrees when mounted sideways; 0: "
+             "rigid mounts");
+  add_text(verb, "--late", options.faults.late, "This sensor's samples are logged this many ms late",
            Requirement::optional, "SENSOR=MS");
   add_text(verb, "--remount", options.faults.remount,
-           "This sensor is turned by 21 degrees and shifted by 10 cm after so many seconds; truth.json is that before",
+           "This sensor is rotated by 21 degrees and shifted by 10 cm after this many seconds; truth.json describes "
+           "the mounting before",
            Requirement::optional, "SENSOR=S");
 }
 

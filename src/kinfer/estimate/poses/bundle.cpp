@@ -163,9 +163,9 @@ class Fit {
     const std::array<double, 3> limit = inlier_limits();
     bool changed = false;
     for (std::size_t i = 0; i < state_.inlier.size(); ++i) {
-      const bool believe = distance[static_cast<Eigen::Index>(i)] <= limit[blocks_[i].size - 1];
-      changed |= believe != state_.inlier[i];
-      state_.inlier[i] = believe;
+      const bool is_inlier = distance[static_cast<Eigen::Index>(i)] <= limit[blocks_[i].size - 1];
+      changed |= is_inlier != state_.inlier[i];
+      state_.inlier[i] = is_inlier;
     }
     return changed;
   }
