@@ -54,7 +54,7 @@ std::string processor() {
   return "unknown";
 }
 
-constexpr int multiply_adds_a_pose = 66;  // of ER20 with the target on its last axis (docs/performance.md)
+constexpr int multiply_adds_a_pose = 66;  // of ER20 with the target on its last axis (docs/development/performance.md)
 
 class Table {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far found joints are from the true ones, as METHODS of the project define it (docs/methods/identify.md), scalar
-// by scalar beside the standard deviations that were claimed.
+// How far estimated joints are from the true ones (docs/development/methods/continuous-time-fit.md), scalar by scalar
+// beside their stated standard deviations.
 #pragma once
 
 #include "kinfer/evidence/identification.hpp"

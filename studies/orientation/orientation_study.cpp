@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the orientation filters are worth on measured data: ten trials of BROAD with optical truth, three runs of a UR5
-// with encoders. Prints the tables of docs/methods/orientation.md; draws orientation.svg into the folder given as
-// argument.
+// with encoders. Prints the tables of docs/development/methods/orientation.md; draws orientation.svg into the folder
+// given as argument.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -177,7 +177,7 @@ int main(int argc, char** argv) {
   if (data == nullptr) {
     fmt::print(stderr,
                "orientation: set KINFER_DATA to the folder that holds broad/ and ur5_openaxes/ "
-               "(docs/methods/orientation.md)\n");
+               "(docs/development/methods/orientation.md)\n");
     return 2;
   }
   const std::vector<NamedFilter> filters{{"paper", PaperEkfOptions{}, "#b0b0b0"},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Paper 1 (Péntek et al. 2021) end to end: simulate its excavator, identify it by bacterial programming, and write its
-// tables and figures beside the values that it prints. `study_paper1 [FOLDER] [SEEDS]`; docs/methods/paper1.md reads
-// them.
+// tables and figures beside the values that it prints. `study_paper1 [FOLDER] [SEEDS]`;
+// docs/development/methods/paper1.md reads them.
 #include <fmt/format.h>
 
 #include <cmath>

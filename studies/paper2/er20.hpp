@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The robot of paper 2 and the settings that its figures are reproduced with (docs/methods/paper2.md).
+// The robot of paper 2 and the settings that its figures are reproduced with (docs/development/methods/paper2.md).
 #pragma once
 
 #include <array>

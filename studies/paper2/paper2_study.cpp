@@ -228,10 +228,11 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: {} OUT [threads [seeds]]\n", argv[0]);
     return 2;
   }
-  Study study{
-      .folder = argv[1],
-      .threads = argc > 2 ? std::atoi(argv[2]) : 0,
-      .summary = "# Paper 2, reproduced\n\nMade by study_paper2; docs/methods/paper2.md says what the figures mean.\n"};
+  Study study{.folder = argv[1],
+              .threads = argc > 2 ? std::atoi(argv[2]) : 0,
+              .summary =
+                  "# Paper 2, reproduced\n\nMade by study_paper2; docs/development/methods/paper2.md says what the "
+                  "figures mean.\n"};
   if (argc > 3) study.few_seeds = study.many_seeds = std::atoi(argv[3]);
   std::filesystem::create_directories(study.folder);
   printed_tables(study);

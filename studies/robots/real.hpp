@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots measured by others (docs/methods/calibrate.md names the public sources). Errors on rows that were not fitted.
+// Robots measured by others (docs/development/methods/calibrate.md names the public sources). Errors on rows that were
+// not fitted.
 #pragma once
 
 #include <string>

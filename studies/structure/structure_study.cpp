@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How surely and how fast the structure of a machine is found: order and joint types over every machine, drive, base,
 // grade and trouble; the memetic search beside its certificate and beside paper 1's bacterial programming.
-// `study_structure [FOLDER] [SEEDS]`; docs/methods/structure.md reads the tables.
+// `study_structure [FOLDER] [SEEDS]`; docs/development/methods/structure.md reads the tables.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -123,7 +123,7 @@ TEST(Bundle, TooOptimisticAnInstrumentShowsInChi2AndWidensTheStandardDeviations)
 }
 
 TEST(Bundle, ErrorsOnUnseenPosesAreAsLargeAsTheCovarianceSays) {
-  // Twenty noise seeds (a study with the same figures is in docs/results.md); 50 poses, 10 µm + 5 µm/m.
+  // Twenty noise seeds (a study with the same figures is in docs/development/results.md); 50 poses, 10 µm + 5 µm/m.
   const Chain truth = with_table3_errors(er20());
   const PoseSet unseen = measured(truth, paper2_poses(200, noise_free), 1234);
   std::vector<double> actual(20), predicted(20);

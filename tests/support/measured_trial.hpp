@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measured recordings with a reference orientation (KINFER_DATA, docs/methods/orientation.md).
+// Measured recordings with a reference orientation (KINFER_DATA, docs/development/methods/orientation.md).
 #pragma once
 
 #include <filesystem>

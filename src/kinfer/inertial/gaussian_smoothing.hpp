@@ -3,7 +3,7 @@
 //
 // Their transfer functions are G(ω) and iω G(ω), so a smoothed acceleration and an angular acceleration derived from a
 // smoothed rate are attenuated equally. Differencing after smoothing, or smoothing only one of them, biases the lever
-// arms (docs/methods/paper1.md).
+// arms (docs/development/methods/paper1.md).
 #pragma once
 
 #include <span>

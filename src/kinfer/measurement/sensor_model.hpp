@@ -30,7 +30,8 @@ struct SensorModel {
   InstrumentModel accelerometer, gyroscope, magnetometer;
 };
 
-/// The three grades of docs/methods/orientation.md: "noise", "industrial", "consumer"; nullopt for other names.
+/// The three grades of docs/development/methods/orientation.md: "noise", "industrial", "consumer"; nullopt for other
+/// names.
 std::optional<SensorModel> sensor_grade(std::string_view name);
 inline constexpr std::array<std::string_view, 3> sensor_grade_names{"noise", "industrial", "consumer"};
 

@@ -3,7 +3,7 @@
 // unobservable about it from this motion.
 //
 // The position r of a sensor affects its accelerometer by K r with K = skew(ω̇) + skew(ω)² in its own frame, so
-// directions v with K v = 0 at all times are unobservable (docs/methods/simulation.md).
+// directions v with K v = 0 at all times are unobservable (docs/development/methods/simulation.md).
 #pragma once
 
 #include <string>

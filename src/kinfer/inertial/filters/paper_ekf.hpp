@@ -18,7 +18,7 @@
 namespace kinfer {
 
 /// The paper's Table 2, which feeds R_k, is not available: these values were tuned on BROAD trials
-/// (docs/methods/orientation.md).
+/// (docs/development/methods/orientation.md).
 struct PaperEkfOptions {
   MagnetometerUse magnetometer = MagnetometerUse::automatic;  ///< off: the last three rows of eq. (15) have no weight
   int iterations = 1;                                         ///< of the update, eqs. (8)-(12); 1: as printed

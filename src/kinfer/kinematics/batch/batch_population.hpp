@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sums of squared position errors of whole populations of parameter vectors, at the speed of the processor's
-// multiply-adds: F(x) = Σ_i |measured_i − f_i(x)|² (paper 2, eq. 11). docs/performance.md explains the bound.
+// multiply-adds: F(x) = Σ_i |measured_i − f_i(x)|² (paper 2, eq. 11). docs/development/performance.md explains the
+// bound.
 //
 // The sines of the joint positions are computed once for all candidates, the parameters of a candidate are folded into
 // one constant transform between two joints (11 numbers for a DH or MDH link), and the points are transformed from the

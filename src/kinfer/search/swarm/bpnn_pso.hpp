@@ -4,7 +4,7 @@
 //
 // Each particle of the earlier run is one training pair: its initial position, and the optimum of that run. All targets
 // of one robot are therefore the same vector, and the network learns this constant with a little scatter: a warm start
-// (docs/methods/paper2.md).
+// (docs/development/methods/paper2.md).
 #pragma once
 
 #include "kinfer/search/swarm/pso.hpp"

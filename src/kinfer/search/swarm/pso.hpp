@@ -35,7 +35,7 @@ struct PsoOptions {
 };
 
 /// The weights printed in paper 2: w = 0.9 with c1 + c2 = 1.75. They are at the limit of stability, so that the swarm
-/// hardly contracts (docs/methods/paper2.md).
+/// hardly contracts (docs/development/methods/paper2.md).
 inline PsoOptions pso_as_printed() {
   PsoOptions options;
   options.inertia = 0.9;
