@@ -11,9 +11,9 @@
 namespace kinfer {
 namespace {
 
-constexpr double gimbal_lock = 1e-12;      // cosine below which the outer and the inner axis coincide to rounding
-constexpr double opposite = -1.0 + 1e-12;  // cosine below which a cross product has lost its digits
-constexpr double small_angle = 1e-4;       // [rad]; below, the series' next term is under 1e-17
+constexpr double gimbal_lock = 1e-12;     // cosine below which the outer and the inner axis coincide to rounding
+constexpr double opposite = -1.0 + 1e-8;  // cosine c below which 1 + c has lost half of its digits
+constexpr double small_angle = 1e-4;      // [rad]; below, the series' next term is under 1e-17
 
 }  // namespace
 
