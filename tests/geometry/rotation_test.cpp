@@ -200,6 +200,26 @@ TEST(AnyPerpendicular, IsAUnitVectorAcross) {
   }
 }
 
+TEST(RotationBetween, TurnsOneDirectionIntoTheOtherByTheAngleBetweenThem) {
+  Rng rng(8);
+  for (int i = 0; i < 50; ++i) {
+    const Vec3 from = 3.0 * random_direction(rng), to = 0.2 * random_direction(rng);
+    const Quat turn = rotation_between(from, to);
+    EXPECT_LT((turn * from.normalized() - to.normalized()).norm(), 1e-14);
+    EXPECT_NEAR(quat_log(turn).norm(), angle_between(from, to), 1e-13);
+  }
+}
+
+TEST(RotationBetween, TurnsOppositeDirectionsIntoEachOther) {
+  for (const double off : {0.0, 1e-12, 1e-9, 1e-7, 1e-6, 3e-6, 1e-4, 2e-4, 1e-3}) {
+    const Vec3 from(0.6, 0.0, 0.8), to = -(exp_so3(Vec3(0.0, off, 0.0)) * from);
+    const Quat turn = rotation_between(from, to);
+    EXPECT_NEAR(turn.norm(), 1.0, 1e-7) << off;
+    EXPECT_LT((turn * from - to).norm(), 1e-7) << off;
+    EXPECT_NEAR(quat_log(turn).norm(), pi, off + 1e-7);
+  }
+}
+
 TEST(AngleBetween, IsAccurateForTinyRightAndStraightAngles) {
   for (const double angle : {0.0, 1e-12, 1e-6, 1.0, pi / 2, pi - 1e-6}) {
     EXPECT_NEAR(angle_between(Vec3(2, 0, 0), Vec3(std::cos(angle), std::sin(angle), 0)), angle, 1e-15 + 1e-15 * angle);

@@ -44,7 +44,7 @@ TEST(CanonicalRows, TenNumbersMakeTheSameHinge) {
       JointGeometry hinge;
       hinge.axis_in_parent = in_parent.normalized();
       hinge.axis_in_child = in_child.normalized();
-      hinge.home.rotation = Quat::FromTwoVectors(in_child, in_parent).toRotationMatrix();
+      hinge.home.rotation = rotation_between(in_child, in_parent).toRotationMatrix();
       hinge.point_in_parent = Vec3(0.4, -1.2, 0.7);
       hinge.point_in_child = Vec3(-0.3, 0.2, 0.6);
       hinge.home.position = hinge.point_in_parent - hinge.home.rotation * hinge.point_in_child;

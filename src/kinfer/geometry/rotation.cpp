@@ -11,8 +11,9 @@
 namespace kinfer {
 namespace {
 
-constexpr double gimbal_lock = 1e-12;  // cosine below which the outer and the inner axis coincide to rounding
-constexpr double small_angle = 1e-4;   // [rad]; below, the series' next term is under 1e-17
+constexpr double gimbal_lock = 1e-12;     // cosine below which the outer and the inner axis coincide to rounding
+constexpr double opposite = -1.0 + 1e-8;  // cosine c below which 1 + c has lost half of its digits
+constexpr double small_angle = 1e-4;      // [rad]; below, the series' next term is under 1e-17
 
 }  // namespace
 
@@ -140,6 +141,19 @@ Mat3 nearest_rotation(const Mat3& m) {
     if (change < 1e-15) break;
   }
   return x;
+}
+
+Quat rotation_between(const Vec3& from, const Vec3& to) {
+  const Vec3 a = from.normalized(), b = to.normalized();
+  const double cosine = b.dot(a);
+  if (cosine < opposite) {
+    const Vec3 axis = any_perpendicular(a);
+    return rotation_between(-a, b) * Quat(0.0, axis.x(), axis.y(), axis.z());
+  }
+  const Vec3 sine = a.cross(b);
+  const double twice = std::sqrt((1.0 + cosine) * 2.0);  // twice the cosine of half the angle
+  const double scale = 1.0 / twice;
+  return Quat(twice * 0.5, sine.x() * scale, sine.y() * scale, sine.z() * scale);
 }
 
 Vec3 any_perpendicular(const Vec3& v) {

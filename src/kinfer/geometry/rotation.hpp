@@ -54,6 +54,10 @@ Mat3 from_euler(const EulerSequence& sequence, const Vec3& angles);
 /// The rotation closest to m (Frobenius norm), its polar factor; m must be near a rotation (det m > 0).
 Mat3 nearest_rotation(const Mat3& m);
 
+/// The smallest rotation that turns `from` into the direction of `to`, neither zero; of directions opposite to 1e-4 rad
+/// half a turn about any perpendicular, to the same accuracy.
+Quat rotation_between(const Vec3& from, const Vec3& to);
+
 /// A unit vector perpendicular to v; continuous almost everywhere.
 Vec3 any_perpendicular(const Vec3& v);
 

@@ -25,7 +25,7 @@ Quat half_vector_quaternion(const Vec3& half) {
 Quat levelling_rotation(const Vec3& acceleration) {
   const double norm = acceleration.norm();
   if (!(norm > 0.0)) return Quat::Identity();
-  return Quat::FromTwoVectors(acceleration / norm, Vec3::UnitZ());
+  return rotation_between(acceleration / norm, Vec3::UnitZ());
 }
 
 /// Rotation of the world about the vertical that aligns the horizontal field with north.

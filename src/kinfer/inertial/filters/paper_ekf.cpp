@@ -22,7 +22,7 @@ PaperEkf::PaperEkf(const PaperEkfOptions& options) : options_(options) {
 
 void PaperEkf::start(const InsSample& sample) {
   if (!sample.has_acceleration) return;
-  world_q_sensor_ = Quat::FromTwoVectors(sample.acceleration.normalized(), Vec3::UnitZ());
+  world_q_sensor_ = rotation_between(sample.acceleration.normalized(), Vec3::UnitZ());
   set_reference_field(sample);
   time_ = sample.time;
   started_ = true;

@@ -247,7 +247,7 @@ Fixtures read_fixtures(TableReader& file, const Scales& scales, FirstError& firs
     TableReader row(*table, line, fmt::format("plane {}: ", fixtures.planes.size() + 1), first_error);
     Plane plane{.name = row.text("name"), .offset = row.number("offset") * scales.length};
     const Vec3 normal = row.vector("normal");
-    if (normal.norm() > 0.0) plane.rotation = Quat::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
+    if (normal.norm() > 0.0) plane.rotation = rotation_between(Vec3::UnitZ(), normal).toRotationMatrix();
     row.ignore("offset_sd");
     row.expect_no_other_keys();
     fixtures.planes.push_back(std::move(plane));
