@@ -5,6 +5,8 @@
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/io/robot/robot_errors_toml.hpp"
 #include "kinfer/simulate/pose_set.hpp"
+#include "kinfer/words/calibration.hpp"
+#include "kinfer/words/calibration_outliers.hpp"
 
 int main() {
   using namespace kinfer;
@@ -20,7 +22,8 @@ int main() {
     fmt::print("{}\n", calibration.error().what);
     return 1;
   }
-  fmt::print("{}\n", calibration->verdict);
-  for (const std::string& words : calibration->estimate.identifiability.confounded) fmt::print("- {}\n", words);
-  return calibration->usable ? 0 : 1;
+  fmt::print("{}\n", words::verdict(*calibration));
+  for (const std::string& text : words::undetermined_sentences(calibration->estimate.identifiability))
+    fmt::print("- {}\n", text);
+  return calibration->usability == Usability::use ? 0 : 1;
 }

@@ -8,10 +8,10 @@
 #include <set>
 
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
-#include "kinfer/calibrate/diagnosis/diagnosis_state.hpp"
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/words/row_ranges.hpp"
 #include "trials.hpp"
 
 namespace kinfer::study {
@@ -61,7 +61,7 @@ class Series {
     for (int row = 0; row < task_.data.rows(); ++row)
       if (!wrong.contains(row)) right_.push_back(row);
     fmt::print("{}: neither chosen nor held out, as the doctor or the fit of all rows does not believe them: {}\n",
-               words_, describe_rows(std::vector<int>(wrong.begin(), wrong.end())));
+               words_, words::row_ranges(std::vector<int>(wrong.begin(), wrong.end())));
   }
 
   std::vector<int> planned(Criterion criterion, int draw) const {

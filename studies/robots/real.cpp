@@ -42,7 +42,7 @@ Halves five_halves(const Chain& chain, const PoseSet& data, const ModelChoice& m
     sum.worst_of_all += 1e3 / halves * c.after.position.holdout_all_rows.max;
     sum.wrong += c.gross_error_rows.size();
     sum.before += 1e3 / halves * c.before.position.holdout.mean;
-    sum.model += (seed > 1 ? "; " : "") + c.model_selection.selected;
+    sum.model += (seed > 1 ? "; " : "") + selected_model(c.model_selection);
   }
   return sum;
 }
@@ -70,7 +70,7 @@ void ur10(const std::string& folder) {
     const Calibration all = calibrate_robot({chain, {}, std::nullopt, b}, {.model = model}, Rng(1)).value();
     const Verification there = verify(all.estimate.chain, {}, std::nullopt, c).value();
     print_row("UR10 fitted on B, tried on C with base and tool refitted", only_told, 1e3 * there.frames_refitted.mean,
-              all.model_selection.selected);
+              selected_model(all.model_selection));
   }
 }
 
@@ -85,7 +85,7 @@ void mukca(const std::string& folder) {
       return 1e3 * mean(primary_errors(there.chain, PoseSet{}, there.data));
     };
     print_row("MUKCa " + arm + ", ball centres at unseen tool positions", target, consistency(c.estimate.chain),
-              fmt::format("nominal {:.2f}; {}; {} rows left out", consistency(chain), c.model_selection.selected,
+              fmt::format("nominal {:.2f}; {}; {} rows left out", consistency(chain), selected_model(c.model_selection),
                           c.estimate.outliers.size()));
   };
   tried("panda_1", {"back-high", "right"}, {"front"}, 0.70);

@@ -51,7 +51,7 @@ void tracked(const std::string& name, double target, const Chain& nominal, const
     const Calibration c = calibrated(nominal, simulation.instrument, data);
     errors.push_back(unseen_error(c.estimate.chain, truth, simulation));
     expected.push_back(1e3 * c.estimate.predicted_error);
-    if (c.model_selection.selected != "geometry") models += "; " + c.model_selection.selected;
+    if (selected_model(c.model_selection) != "geometry") models += "; " + selected_model(c.model_selection);
   }
   print_row(name, target, mean(errors), fmt::format("covariance expects rms {:.4f}{}", mean(expected), models));
 }
@@ -124,7 +124,7 @@ void payload() {
     for (int row = 0; row < data.rows(); ++row) data.payload.push_back(row % 2 ? 20.0 : 0.0);
     measure_points(data, truth, tracker, Rng(70 + seed));
     const Calibration c = calibrated(nominal, tracker, data);
-    model = c.model_selection.selected;
+    model = selected_model(c.model_selection);
     PoseSet unseen = readings_of(measured(truth, paper2_poses(300, noise_free), 4321));
     for (int row = 0; row < unseen.rows(); ++row)
       unseen.payload.push_back(row % 3 == 0 ? 20.0 : row % 3 == 1 ? 10.0 : 0.0);
@@ -176,7 +176,7 @@ void half_still() {
   frames_refitted.base = truth.base;
   print_row("three of six joints move, on poses where all do", unseen_error(frames_refitted, truth, like),
             unseen_error(c.estimate.chain, truth, like),
-            fmt::format("{} sentences name what is undetermined", c.estimate.identifiability.confounded.size()));
+            fmt::format("{} groups of undetermined parameters", c.estimate.identifiability.undetermined.size()));
 }
 
 }  // namespace

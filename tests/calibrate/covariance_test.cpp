@@ -4,6 +4,7 @@
 
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/words/calibration.hpp"
 #include "support/instruments.hpp"
 
 namespace kinfer {
@@ -46,7 +47,7 @@ double unseen_error(Told told) {
     truth.base = Frame::from_pose(Pose::from_xyz_rpy({2.4, -2.2, 0.35}, {0.02, -0.03, 2.3}));
     const PoseSet data = seen_by_tracker(truth, seed, told);
     const auto found = calibrate_robot({nominal, {}, std::nullopt, data}, {.model = FixedModel{}}, Rng(1)).value();
-    EXPECT_TRUE(found.usable) << found.verdict;
+    EXPECT_EQ(found.usability, Usability::use) << words::verdict(found);
     errors.push_back(mean(point_errors(found.estimate.chain, measured(truth, paper2_poses(300, noise_free), 77))));
   }
   return mean(errors);

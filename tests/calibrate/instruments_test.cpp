@@ -6,6 +6,7 @@
 #include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/calibrate/validation/validation_errors.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/words/calibration.hpp"
 #include "support/instruments.hpp"
 
 namespace kinfer {
@@ -34,8 +35,8 @@ TEST(Instruments, DrawWiresToUncertainAnchorsCalibrateTheRobotAndTheAnchors) {
   PoseSet data = readings_of(measured(truth, paper2_poses(50, noise_free)));
   measure_distances(data, truth, 10e-6, Rng(3));
   const Calibration c = calibrated(nominal, data, {.sigma = 10e-6});
-  EXPECT_TRUE(c.usable) << c.verdict;
-  EXPECT_EQ(c.measured, "distance");
+  EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
+  EXPECT_EQ(c.measured, MeasurementKind::distance);
   EXPECT_LT(c.after.position.holdout.mean, 35e-6);
   EXPECT_GT(c.before.position.holdout.mean, 5.0 * c.after.position.holdout.mean);
 }
@@ -59,8 +60,8 @@ TEST(Instruments, BallsInSocketsMakeUnseenSocketsConsistent) {
   Chain nominal = nominal_robot();
   nominal.fixtures.socket_distances = {};
   const Calibration c = calibrated(nominal, data, {.sigma = 10e-6});
-  EXPECT_EQ(c.measured, "ball in socket");
-  EXPECT_TRUE(c.usable) << c.verdict;
+  EXPECT_EQ(c.measured, MeasurementKind::contact);
+  EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
   const auto spread = [&](const Chain& chain) {
     const DataWithFixtures there = with_fixtures(chain, unseen).value();
     return mean(primary_errors(there.chain, {}, there.data));
@@ -118,7 +119,7 @@ TEST(Instruments, BallBarsPlanesAndTiltsTogetherWithFewTrackerPoints) {
   Instrument instrument = tracker;
   instrument.sigma_tilt = 1e-3;
   const Calibration c = calibrated(nominal_robot(), data, instrument);
-  EXPECT_TRUE(c.usable) << c.verdict;
+  EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
   EXPECT_NEAR(*c.estimate.chi2_per_n, 1.0, 0.35);
   EXPECT_LT(mean(point_errors(c.estimate.chain, measured(truth, paper2_poses(200, noise_free), 99))), 100e-6);
 }
@@ -136,7 +137,7 @@ TEST(Instruments, TargetsWithoutTheToolPointFindTheToolsTurn) {
     for (int t = 0; t < 3; ++t)
       data.points.push_back({row, t, poses[row] * truth.targets[t].xyz + noise(rng, 15e-6), {}});
   const Calibration c = calibrated(nominal, data, {.sigma = 15e-6});
-  EXPECT_TRUE(c.usable) << c.verdict;
+  EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
   EXPECT_LT(c.after.position.holdout.mean, 45e-6);
 }
 
@@ -171,7 +172,7 @@ TEST(Instruments, EachSetupHasABaseAndToolOfItsOwn) {
   measure_points(data, truth, tracker, Rng(11));
   data.mounting.clear();
   const Calibration c = calibrated(nominal_robot(), data, tracker);
-  EXPECT_TRUE(c.usable) << c.verdict;
+  EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
   EXPECT_LT(c.after.position.holdout.mean, 60e-6);
   ASSERT_EQ(c.estimate.chain.mountings.size(), 1u);
   EXPECT_EQ(c.estimate.chain.setup, "first");
@@ -194,7 +195,7 @@ TEST(Instruments, BothArmsOfATreeAreCalibratedByRowsThatSayWhichTip) {
   measure_points(data, truth, tracker, Rng(12));
   data.mounting.clear();
   const Calibration c = calibrated(nominal, data, tracker);
-  EXPECT_TRUE(c.usable) << c.verdict;
+  EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
   EXPECT_LT(c.after.position.holdout.mean, 45e-6);
   EXPECT_GT(c.before.position.holdout.mean, 10.0 * c.after.position.holdout.mean);
 }

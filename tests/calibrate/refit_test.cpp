@@ -5,6 +5,7 @@
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/words/calibration.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {
@@ -27,9 +28,11 @@ struct Knocked {
   }
 
   Calibration refit(int count) const {
-    CalibrationOptions how{
-        .parameters = JointOffsetParameters{}, .holdout = CrossValidation{count}, .model = FixedModel{}};
-    return calibrate_robot({earlier, {}, tracker, measured(now, paper2_poses(count, tracker), 8)}, how, Rng(1)).value();
+    const CalibrationTask task{.nominal = nominal_robot(),
+                               .instrument = tracker,
+                               .data = measured(now, paper2_poses(count, tracker), 8),
+                               .earlier = earlier};
+    return calibrate_robot(task, {.parameters = JointOffsetParameters{}}, Rng(1)).value();
   }
   double error(const Chain& chain) const {
     return mean(point_errors(chain, measured(now, paper2_poses(200, noise_free), 99)));
@@ -39,14 +42,33 @@ struct Knocked {
 TEST(Refit, EightPosesFindTheOffsetThatMovedAndNameItAlone) {
   const Knocked robot;
   const Calibration c = robot.refit(8);
-  EXPECT_TRUE(c.usable) << c.verdict;
+  EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
   EXPECT_LT(robot.error(c.estimate.chain), 80e-6);
   EXPECT_GT(c.before.position.holdout.mean, 1e-3);
-  std::vector<std::string> moved;
-  for (const std::string& note : c.notes)
-    if (note.find("since the earlier calibration") != std::string::npos) moved.push_back(note);
-  ASSERT_EQ(moved.size(), 1u) << (moved.empty() ? "" : moved.back());
-  EXPECT_EQ(moved[0].find("theta3 has moved by +0."), 0u) << moved[0];
+  std::vector<CalibrationNote> moved = c.notes;
+  std::erase_if(moved, [](const CalibrationNote& n) { return n.kind != CalibrationNoteKind::joint_offset_moved; });
+  ASSERT_EQ(moved.size(), 1u);
+  EXPECT_EQ(moved[0].values.text("parameter"), "theta3");
+  EXPECT_NEAR(moved[0].values.number("change_rad"), 0.7 * degree, 0.05 * degree);
+}
+
+TEST(Refit, FewPosesAreHeldOutOneAtATime) {
+  const Knocked robot;
+  const Calibration c = robot.refit(8);
+  ASSERT_TRUE(std::holds_alternative<HoldoutFolds>(c.holdout));
+  EXPECT_EQ(std::get<HoldoutFolds>(c.holdout).folds, 8);
+  EXPECT_EQ(c.after.position.holdout.n, 8);
+}
+
+TEST(Refit, AnEarlierCalibrationOfAnotherRobotIsRefused) {
+  Chain other = nominal_robot();
+  other.joints.pop_back();
+  const CalibrationTask task{.nominal = nominal_robot(),
+                             .instrument = tracker,
+                             .data = measured(nominal_robot(), paper2_poses(10, tracker)),
+                             .earlier = other};
+  EXPECT_EQ(calibrate_robot(task, {.parameters = JointOffsetParameters{}}, Rng(1)).error().what,
+            "expected an earlier calibration of this kind of robot (6 joints of the same types)");
 }
 
 TEST(Refit, IsBetterThanANewCalibrationWithAsFewPoses) {
@@ -61,7 +83,7 @@ TEST(Refit, ARobotThatWasNotKnockedIsSaidNotToHaveMoved) {
   Knocked robot;
   robot.now = robot.truth;
   const Calibration c = robot.refit(8);
-  const auto says_so = [](const std::string& note) { return note.find("no joint offset has moved") == 0; };
+  const auto says_so = [](const CalibrationNote& n) { return n.kind == CalibrationNoteKind::no_offset_moved; };
   EXPECT_TRUE(std::any_of(c.notes.begin(), c.notes.end(), says_so));
 }
 

@@ -42,10 +42,10 @@ Calibration small_calibration() {
                        {"theta1", Quantity::angle, 0, 0, 1e-3, false}};
   c.estimate.covariance = MatrixXd::Identity(2, 2);
   c.estimate.identifiability.singular_values = VectorXd::LinSpaced(2, 10.0, 0.1);
-  c.estimate.outliers = {{2, 4, "the point is </script><script>alert(1)</script> off"}};
-  c.verdict = "Use it: better than before.";
-  c.notes = {"<b>bold & brave</b>"};
-  c.recommendations = {{"Measure more", "more is more"}};
+  c.estimate.outliers = {{.row = 2, .line = 4, .reasons = {{MeasurementKind::point, 1e-2, 80.0}}, .sigmas = 80.0}};
+  c.estimate.identifiability.undetermined = {
+      {Undetermined::confounded, {"</script><script>alert(1)</script>", "<b>bold & brave</b>"}}};
+  c.recommendations = {{CalibrationAdviceKind::keep_verification_poses}};
   return c;
 }
 
@@ -143,7 +143,8 @@ TEST(Report, NothingIsFetchedFromAnywhere) {
 
 TEST(Report, WithoutPosesRowsOrParametersThereIsStillAReport) {
   Calibration empty;
-  empty.verdict = "Do not use: nothing was measured.";
+  empty.usability = Usability::do_not_use;
+  empty.reason = CalibrationReason::no_improvement;
   const auto html = report_html(format_calibration_evidence(empty, {}));
   ASSERT_TRUE(html) << html.error().what;
   EXPECT_NE(html->find("Nothing was measured"), std::string::npos);

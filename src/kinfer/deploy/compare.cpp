@@ -5,16 +5,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "kinfer/calibrate/parameters/population_prior.hpp"
+#include "kinfer/deploy/thresholds.hpp"
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/kinematics/forward.hpp"
-#include "kinfer/plan/pose_constraints.hpp"
+#include "kinfer/kinematics/pose_constraints.hpp"
+#include "kinfer/kinematics/same_joints.hpp"
 
 namespace kinfer::deploy {
 namespace {
-
-constexpr double family_risk = 0.01;  // probability that any unchanged parameter is called changed
 
 /// Relative rotation of a URDF joint's origin: its component rx, ry or rz (intrinsic) [rad].
 double rotation_change(const Chain& earlier, const Chain& later, const ParameterAddress& at) {
@@ -40,7 +39,7 @@ void mark_significant(std::vector<ParameterChange>& sorted) {
   const auto n = static_cast<double>(sorted.size());
   for (std::size_t k = 0; k < sorted.size(); ++k) {
     const double p_value = 2.0 * (1.0 - normal_cdf(std::abs(sorted[k].sigmas)));
-    if (p_value > family_risk / (n - static_cast<double>(k))) return;
+    if (p_value > thresholds::changed_risk / (n - static_cast<double>(k))) return;
     sorted[k].significant = true;
   }
 }
@@ -49,8 +48,7 @@ void mark_significant(std::vector<ParameterChange>& sorted) {
 /// another placement of the instrument would explain does not count.
 std::vector<double> tool_displacements(const Chain& earlier, Chain later) {
   later.base = earlier.base, later.tool = earlier.tool;
-  constexpr int poses = 200;
-  const auto drawn = plan::draw_poses(earlier, {}, poses, Rng(1));
+  const auto drawn = draw_poses(earlier, {}, thresholds::compared_poses, Rng(1));
   if (!drawn) return {};
   std::vector<Vec3> before, after;
   for (Eigen::Index i = 0; i < drawn->cols(); ++i) {
@@ -63,18 +61,10 @@ std::vector<double> tool_displacements(const Chain& earlier, Chain later) {
   return distance;
 }
 
-std::string list_significant(const std::vector<ParameterChange>& changes) {
-  std::string text;
-  for (const ParameterChange& c : changes)
-    if (c.significant) text += fmt::format("{}{} ({:.1f} sigma)", text.empty() ? "" : ", ", c.name, std::abs(c.sigmas));
-  return text;
-}
-
 }  // namespace
 
 Result<CalibrationComparison> compare_calibrations(const CalibratedRobot& earlier, const CalibratedRobot& later) {
-  if (!calibrate::have_same_joints(earlier.chain, later.chain))
-    return error("the two chains do not have the same joints");
+  if (!have_same_joints(earlier.chain, later.chain)) return error("the two chains do not have the same joints");
   CalibrationComparison changes;
   for (const Parameter& p : all_parameters(earlier.chain, {}).parameters) {
     const auto before = earlier.sd.find(p.name), after = later.sd.find(p.name);
@@ -97,11 +87,6 @@ Result<CalibrationComparison> compare_calibrations(const CalibratedRobot& earlie
     changes.tool_worst = *std::max_element(displacements.begin(), displacements.end());
   }
   changes.changed = changes.parameters.front().significant;
-  const std::string tool = fmt::format("the tool differs by {:.3f} mm rms and {:.3f} mm at worst over the joint ranges",
-                                       1e3 * changes.tool_rms, 1e3 * changes.tool_worst);
-  changes.verdict = changes.changed
-                        ? fmt::format("Changed: {}; {}.", list_significant(changes.parameters), tool)
-                        : fmt::format("No change beyond chance in {} numbers; {}.", changes.parameters.size(), tool);
   return changes;
 }
 

@@ -7,10 +7,9 @@
 
 #include <map>
 #include <string>
-#include <vector>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/kinematics/parameters.hpp"
+#include "kinfer/evidence/calibration_comparison.hpp"
 
 namespace kinfer::deploy {
 
@@ -20,23 +19,6 @@ using DeviationsByName = std::map<std::string, double>;
 struct CalibratedRobot {
   Chain chain;
   DeviationsByName sd;
-};
-
-struct ParameterChange {
-  std::string name;
-  Quantity quantity = Quantity::length;
-  double before = 0.0, after = 0.0, change = 0.0;  ///< [m], [rad], …; `change` of rx ry rz: the relative rotation
-  double sd = 0.0;                                 ///< of the change
-  double sigmas = 0.0;
-  bool significant = false;
-};
-
-struct CalibrationComparison {
-  std::vector<ParameterChange> parameters;  ///< of the joints, the most significant first
-  double tool_rms = 0.0, tool_worst = 0.0;  ///< [m] tool displacement over the joint ranges, both chains with the base
-                                            ///< and tool of the earlier one
-  bool changed = false;
-  std::string verdict;  ///< one sentence
 };
 
 /// Base and tool belong to a set-up, so only joint parameters are compared. An error where the chains do not have the

@@ -6,11 +6,11 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/deploy/thresholds.hpp"
+#include "kinfer/kinematics/same_joints.hpp"
 
 namespace kinfer::deploy {
 namespace {
-
-constexpr int joints_for_full_pose = 6;
 
 InverseSolution solve_inverse(const Chain& chain, const ToolTarget& target, ConstVectorRef start) {
   if (!target.rotation) return inverse_position(chain, target.position, start);
@@ -31,7 +31,7 @@ VectorXd draw_configuration(const Chain& chain, Rng rng) {
   VectorXd q(moving.size());
   for (std::size_t k = 0; k < moving.size(); ++k) {
     const Joint& joint = chain.joints[moving[k]];
-    const double reach = joint.type == JointType::revolute ? 170.0 * degree : 0.5;
+    const double reach = joint.type == JointType::revolute ? 170.0 * degree : thresholds::reach_translation;
     q[k] = rng.uniform(std::max(joint.lower, -reach), std::min(joint.upper, reach));
   }
   return q;
@@ -39,9 +39,8 @@ VectorXd draw_configuration(const Chain& chain, Rng rng) {
 
 /// The nominal joint positions for a target: the first solution that reaches it, else the closest one.
 VectorXd nominal_solution(const Chain& nominal, const ToolTarget& target, Rng rng) {
-  constexpr int attempts = 60;
   std::optional<InverseSolution> best;
-  for (int i = 0; i < attempts; ++i) {
+  for (int i = 0; i < thresholds::inverse_attempts; ++i) {
     const InverseSolution solution = solve_inverse(nominal, target, draw_configuration(nominal, rng.stream(i)));
     if (!best || total_error(solution) < total_error(*best)) best = solution;
     if (best->status == InverseStatus::reached) break;
@@ -53,10 +52,9 @@ VectorXd nominal_solution(const Chain& nominal, const ToolTarget& target, Rng rn
 
 CompensationFrames select_compensation_frames(const Chain& corrected, const Chain& nominal,
                                               const Tolerances& tolerances) {
-  constexpr double tolerances_apart = 3.0;
   const Pose a = corrected.base.pose(), b = nominal.base.pose();
-  const bool moved = (a.position - b.position).norm() > tolerances_apart * tolerances.base_length ||
-                     angle_between(a.rotation, b.rotation) > tolerances_apart * tolerances.base_angle;
+  const bool moved = (a.position - b.position).norm() > thresholds::frames_apart * tolerances.base_length ||
+                     angle_between(a.rotation, b.rotation) > thresholds::frames_apart * tolerances.base_angle;
   return moved ? CompensationFrames::robot : CompensationFrames::as_given;
 }
 
@@ -67,12 +65,21 @@ Chain express_in_frames(Chain corrected, const Chain& nominal, CompensationFrame
   return corrected;
 }
 
+Result<CompensationModels> prepare_compensation(const Chain& corrected, const Chain& nominal,
+                                                const Tolerances& tolerances,
+                                                std::optional<CompensationFrames> frames) {
+  if (!have_same_joints(corrected, nominal))
+    return error("the corrected and the nominal model need joints of the same number and types");
+  const CompensationFrames used = frames.value_or(select_compensation_frames(corrected, nominal, tolerances));
+  return CompensationModels{express_in_frames(corrected, nominal, used), nominal, used};
+}
+
 std::vector<CompensatedJoints> compensate_joints(const Chain& corrected, const Chain& nominal, const MatrixXd& q,
                                                  int threads) {
-  KINFER_EXPECT(q.rows() == dof(corrected) && q.rows() == dof(nominal), "{} readings for {} and {} joints", q.rows(),
-                dof(corrected), dof(nominal));
+  KINFER_EXPECT(q.rows() == dof(corrected) && q.rows() == dof(nominal), "{} joint positions for {} and {} joints",
+                q.rows(), dof(corrected), dof(nominal));
   std::vector<CompensatedJoints> list(q.cols());
-  const bool full_pose = q.rows() >= joints_for_full_pose;
+  const bool full_pose = q.rows() >= thresholds::joints_for_full_pose;
   parallel_for(list.size(), threads, [&](std::size_t i) {
     const VectorXd start = q.col(static_cast<Eigen::Index>(i));
     const Pose wanted = forward(nominal, start);

@@ -8,8 +8,9 @@
 #include <optional>
 #include <vector>
 
+#include "kinfer/base/result.hpp"
 #include "kinfer/base/rng.hpp"
-#include "kinfer/kinematics/inverse.hpp"
+#include "kinfer/evidence/compensation.hpp"
 #include "kinfer/kinematics/parameters.hpp"
 
 namespace kinfer::deploy {
@@ -28,12 +29,17 @@ CompensationFrames select_compensation_frames(const Chain& corrected, const Chai
 /// The corrected chain in these frames.
 Chain express_in_frames(Chain corrected, const Chain& nominal, CompensationFrames frames);
 
-struct CompensatedJoints {
-  VectorXd q;                   ///< [rad] or [m]
-  double residual = 0.0;        ///< [m] of the tool point, for the corrected chain
-  double residual_angle = 0.0;  ///< [rad]
-  InverseStatus status = InverseStatus::reached;
+/// Both chains, comparable.
+struct CompensationModels {
+  Chain corrected, nominal;
+  CompensationFrames frames = CompensationFrames::as_given;
 };
+
+/// Expresses the corrected chain in these frames; none: those that select_compensation_frames chooses. An error where
+/// the two chains do not have the same joints.
+Result<CompensationModels> prepare_compensation(const Chain& corrected, const Chain& nominal,
+                                                const Tolerances& tolerances,
+                                                std::optional<CompensationFrames> frames = std::nullopt);
 
 /// For each column of `q`: the joint positions at which the tool of `corrected` has the pose that `nominal` has at q.
 /// With fewer than six joints the orientation is not free, and only the tool point is corrected.

@@ -3,23 +3,15 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/evidence/fit_errors.hpp"
+#include "kinfer/evidence/verification.hpp"
 #include "kinfer/kinematics/parameters.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer::deploy {
 
-struct Verification {
-  ErrorStatistics unmodified;       ///< [m] errors of the measured points
-  ErrorStatistics frames_refitted;  ///< [m] with base and tool refitted: separates a moved tracker from a changed robot
-  bool good = true;
-  std::string verdict;  ///< one sentence
-};
-
-/// Good: the rms error is within three times the instrument's noise; where the instrument is not known, when refitting
+/// Valid: the rms error is within three times the instrument's noise; where the instrument is not known, when refitting
 /// base and tool does not halve the error.
 Result<Verification> verify(const Chain& chain, const Tolerances& tolerances,
                             const std::optional<Instrument>& instrument, const PoseSet& data);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/estimate/identifiability.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "kinfer/linalg/decompositions.hpp"
@@ -23,26 +22,19 @@ MatrixXd reduced_row_echelon(MatrixXd basis) {
   return basis;
 }
 
-std::string list_of(const std::vector<std::string>& names) {
-  std::string text = names.front();
-  for (std::size_t i = 1; i < names.size(); ++i) text += (i + 1 == names.size() ? " and " : ", ") + names[i];
-  return text;
-}
-
 /// Names the parameters of an unobservable direction: those whose own effect on the data is significant.
-std::string describe_direction(ConstVectorRef direction, ConstMatrixRef scaled,
-                               const std::vector<const Parameter*>& free) {
+UndeterminedGroup describe_direction(ConstVectorRef direction, ConstMatrixRef scaled,
+                                     const std::vector<const Parameter*>& free) {
   const VectorXd effect = scaled.colwise().norm().transpose().cwiseProduct(direction.cwiseAbs());
   constexpr double significant = 0.05;  // of the largest effect: smaller contributions are not named
   const double largest = effect.maxCoeff();
   Eigen::Index leading;
   direction.cwiseAbs().maxCoeff(&leading);
-  if (largest < 1.0) return free[leading]->name + " has no effect that these measurements could show";
+  if (largest < 1.0) return {Undetermined::no_effect, {free[leading]->name}};
   std::vector<std::string> names;
   for (Eigen::Index k = 0; k < effect.size(); ++k)
     if (effect[k] > significant * largest) names.push_back(free[k]->name);
-  if (names.size() == 1) return names.front() + " is not known better than its tolerance from these poses";
-  return list_of(names) + " cannot be told apart from these poses";
+  return {names.size() == 1 ? Undetermined::weaker_than_tolerance : Undetermined::confounded, names};
 }
 
 }  // namespace
@@ -61,8 +53,7 @@ Identifiability identifiability(ConstMatrixRef jacobian, const ParameterSet& set
   if (unknown == 0) return result;
   const MatrixXd directions = reduced_row_echelon(decomposition.v.rightCols(unknown).transpose());
   for (Eigen::Index i = 0; i < unknown; ++i)
-    result.confounded.push_back(describe_direction(directions.row(i).transpose(), scaled, free));
-  std::sort(result.confounded.begin(), result.confounded.end());
+    result.undetermined.push_back(describe_direction(directions.row(i).transpose(), scaled, free));
   return result;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Identifiability of the parameters from the data: rank, singular values, and the unobservable or confounded parameters
-// in words.
+// Identifiability of the parameters from the data: rank, singular values, and the unobservable or confounded
+// parameters.
 #pragma once
 
 #include "kinfer/evidence/estimate.hpp"

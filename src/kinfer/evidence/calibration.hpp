@@ -4,11 +4,13 @@
 
 #include <optional>
 
-#include "kinfer/evidence/advice.hpp"
+#include "kinfer/evidence/calibration_facts.hpp"
 #include "kinfer/evidence/calibration_plot.hpp"
 #include "kinfer/evidence/estimate.hpp"
 #include "kinfer/evidence/findings.hpp"
 #include "kinfer/evidence/model_selection.hpp"
+#include "kinfer/evidence/unknown_robot.hpp"
+#include "kinfer/evidence/verdict.hpp"
 
 namespace kinfer {
 
@@ -30,24 +32,52 @@ struct PoseAccuracy {
       repeatability;  ///< RP [m]: mean distance from the centroid + 3 sd of it; only where rows repeat a pose
 };
 
+/// What the calibration started from.
+struct NominalModel {
+  Chain chain{};  ///< as given; the earlier calibration in a refit; estimated where there is no data sheet
+  Tolerances tolerances{};
+};
+
 struct Calibration {
+  NominalModel nominal_model;
   Estimate estimate;  ///< the corrected chain
   ChainFit nominal;   ///< the chain as given
   ChainFit before;    ///< base and tool refitted, everything else nominal
   ChainFit after;
-  ModelSelection model_selection;     ///< empty where no model selection was run
-  std::string measured = "position";  ///< what the position errors refer to: "ball in socket", "distance", …
-  std::string holdout;                ///< hold-out scheme: "5-fold cross-validation"
+  ModelSelection model_selection;                     ///< empty where no model selection was run
+  MeasurementKind measured = MeasurementKind::point;  ///< what the position errors refer to
+  HoldoutScheme holdout{};
   std::vector<int> gross_error_rows;  ///< held-out rows with gross errors, excluded from all hold-out figures
   std::vector<RowErrors> rows;
-  std::vector<PoseAccuracy> accuracy;   ///< in the order of each pose's first row; empty without measured tool points
-  CalibrationPlotData plot_data;        ///< data for the plots
-  std::vector<Advice> recommendations;  ///< what to measure or to do next, most useful first
-  std::vector<Finding> findings;        ///< of the diagnosis before the fit
-  std::vector<std::string> notes;       ///< observations and automatic decisions, in words
-  bool geometry_only = false;           ///< found by a swarm search, which has no model selection
-  bool usable = true;                   ///< false: the verdict advises against using the result
-  std::string verdict;                  ///< one sentence
+  std::vector<PoseAccuracy> accuracy;  ///< in the order of each pose's first row; empty without measured tool points
+  CalibrationPlotData plot_data;       ///< data for the plots
+  std::vector<CalibrationAdvice> recommendations;       ///< what to measure or to do next, most useful first
+  std::vector<Finding> findings;                        ///< of the diagnosis before the fit
+  std::vector<CalibrationNote> notes;                   ///< observations and automatic decisions
+  std::optional<UnknownRobotEvidence> unknown_robot{};  ///< where the robot has no data sheet
+  bool geometry_only = false;                           ///< found by a swarm search, which has no model selection
+  std::optional<double> expected_holdout_rms{};  ///< [m] from the instrument's noise and the uncertainty of the fits
+  Usability usability = Usability::use;
+  CalibrationReason reason = CalibrationReason::improves_nominal;
 };
+
+/// The corrected chain as it is written to files: with all small rotations folded into the frames.
+Chain corrected_chain(const Calibration& calibration);
+
+/// Whether lengths were measured; else the figures are those of the orientations.
+bool has_lengths(const Calibration& calibration);
+
+/// The errors that the verdict compares: of lengths, or of orientations where nothing else was measured; of held-out
+/// rows where there are some.
+const ErrorStatistics& reported_errors(const Calibration& calibration, const ChainFit& fit);
+
+/// The errors of the final chain on the rows that it was fitted to, of the same kind.
+const ErrorStatistics& final_errors(const Calibration& calibration);
+
+/// AP and RP of ISO 9283 over all poses [m]; RP over the repeated ones only.
+struct AccuracyStatistics {
+  ErrorStatistics before, after, repeatability;
+};
+AccuracyStatistics accuracy_statistics(const std::vector<PoseAccuracy>& poses);
 
 }  // namespace kinfer

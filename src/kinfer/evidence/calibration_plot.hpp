@@ -10,7 +10,7 @@
 
 namespace kinfer {
 
-/// One measured row. `off_*` is predicted minus measured, in the world frame [m]; none where no point was measured.
+/// One measured row. `error_*` is predicted minus measured, in the world frame [m]; none where no point was measured.
 struct PlotRow {
   std::optional<Vec3> measured{};                     ///< [m] first measured point of the row, in the world frame
   std::optional<Vec3> error_before{}, error_after{};  ///< nominal chain with base and tool refitted; final chain

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinfer/base/stop.hpp"
@@ -12,12 +13,25 @@
 
 namespace kinfer {
 
+/// Why the data do not determine a combination of parameters.
+enum class Undetermined {
+  no_effect,              ///< the parameter has no effect on the measurements
+  weaker_than_tolerance,  ///< the tolerance of the parameter says more than the data
+  confounded,             ///< only a combination of these parameters is determined
+};
+std::string_view name(Undetermined reason);
+
+struct UndeterminedGroup {
+  Undetermined reason = Undetermined::confounded;
+  std::vector<std::string> parameters;
+};
+
 /// Identifiability of the parameters, scaled by noise and tolerances: a singular value above 1 means that the data
 /// determine this combination of parameters better than the tolerances do.
 struct Identifiability {
-  VectorXd singular_values;             ///< descending, one per free parameter
-  int rank = 0;                         ///< number of singular values above 1
-  std::vector<std::string> confounded;  ///< groups of confounded parameters, one sentence each
+  VectorXd singular_values;                     ///< descending, one per free parameter
+  int rank = 0;                                 ///< number of singular values above 1
+  std::vector<UndeterminedGroup> undetermined;  ///< one per singular value that is not above 1
 };
 
 struct ParameterEstimate {
@@ -27,9 +41,23 @@ struct ParameterEstimate {
   bool identifiable = false;  ///< the data at least halve the prior variance
 };
 
+enum class SearchMethod { levenberg_marquardt, pso, qpso, bpnn_pso };
+/// As of --method: "lm", "pso", "qpso", "bpnn-pso"
+std::string_view name(SearchMethod method);
+std::optional<SearchMethod> search_method(std::string_view name);
+
+/// The initial swarm of a search.
+enum class InitialSwarm {
+  uniform,  ///< drawn uniformly from the box
+  compact,  ///< about the nominal values
+  warm,     ///< contains the earlier calibration
+  network,  ///< predicted by the network of an earlier search
+};
+std::string_view name(InitialSwarm swarm);  ///< "cold", "nominal swarm", "warm start", "net"
+
 /// One of several searches on the same problem, for comparison.
 struct SearchRun {
-  std::string name;     ///< "cold", "nominal swarm", "warm start", "net"
+  InitialSwarm initial = InitialSwarm::uniform;
   int iterations = -1;  ///< until the target was reached; -1: not within the budget
   int evaluations = 0;
   double rms = 0.0;  ///< [m] final error of the points
@@ -37,7 +65,7 @@ struct SearchRun {
 
 /// The optimisation that found the parameters.
 struct SearchSummary {
-  std::string method;  ///< "lm"
+  SearchMethod method = SearchMethod::levenberg_marquardt;
   int iterations = 0, evaluations = 0;
   Stop stop = Stop::converged_cost;
   double cost = 0.0;           ///< final

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
+
+#include "kinfer/evidence/measurement_kind.hpp"
 
 namespace kinfer {
 
@@ -17,7 +18,7 @@ ErrorStatistics error_statistics(std::span<const double> errors);
 /// Errors on fitted rows and on held-out rows.
 struct TrainHoldout {
   ErrorStatistics train;
-  ErrorStatistics holdout;           ///< without the rows with gross errors (Calibration::wrong_rows)
+  ErrorStatistics holdout;           ///< without the rows with gross errors (Calibration::gross_error_rows)
   ErrorStatistics holdout_all_rows;  ///< with them
 };
 
@@ -27,12 +28,20 @@ struct ChainFit {
   TrainHoldout orientation;  ///< [rad] angle between measured and predicted orientation
 };
 
-/// A row that the fit rejects as an outlier.
+/// A measurement that the fit rejects as an outlier.
+struct OutlierReason {
+  MeasurementKind kind = MeasurementKind::point;
+  double residual = 0.0;  ///< [m], [rad], or [m/s²] of a tilt
+  double sigmas = 0.0;    ///< in units of the noise
+};
+
+/// A row with rejected measurements.
 struct Outlier {
-  int row = 0;          ///< from 0
-  int line = 0;         ///< of the file, from 1
-  std::string reason;   ///< "the point is 4.21 mm from where the model has it, 84 sigma"
-  double sigmas = 0.0;  ///< residual of its worst measurement in units of the noise
+  int row = 0;   ///< from 0
+  int line = 0;  ///< of the file, from 1
+  std::vector<OutlierReason> reasons{};
+  double sigmas = 0.0;    ///< of its worst measurement
+  bool held_out = false;  ///< a held-out row with a gross error
 };
 
 }  // namespace kinfer

@@ -3,12 +3,24 @@
 #pragma once
 
 #include <array>
-#include <string>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "kinfer/linalg/types.hpp"
 
 namespace kinfer {
+
+enum class Criterion {
+  tool,   ///< mean square error of the tool over the workspace (I-optimal)
+  worst,  ///< largest error of the tool over the workspace (G-optimal)
+  d,      ///< volume of the parameters' uncertainty (D-optimal)
+  a,      ///< sum of their variances (A-optimal)
+  e,      ///< variance of their least certain combination (E-optimal)
+};
+/// As of --criterion: "tool", "worst", "d", "a", "e"
+std::string_view name(Criterion criterion);
+std::optional<Criterion> criterion_named(std::string_view name);
 
 /// Expected tool error over the workspace after a calibration with this number of poses [m].
 struct ExpectedError {
@@ -17,7 +29,7 @@ struct ExpectedError {
 };
 
 struct PosePlan {
-  std::string criterion;
+  Criterion criterion = Criterion::tool;
   MatrixXd joints;               ///< dof x poses, [rad] or [m], ordered for short travel
   std::vector<int> candidates;   ///< candidate index of each pose, where the poses were chosen from a list
   int parameters = 0, rank = 0;  ///< free parameters, and how many combinations of them are identifiable from any poses
@@ -30,7 +42,7 @@ struct PosePlan {
   double rms_lower_bound =
       0.0;  ///< [m] lower bound over all choices of as many candidates; for criterion `tool`, else 0
   std::vector<ExpectedError> planned_curve, random_curve;  ///< by number of poses
-  std::vector<int> superfluous;                            ///< existing rows with almost no information
+  std::vector<int> redundant_rows;                         ///< existing rows with almost no information
   double noise = 0.0;                                      ///< [m] of the instrument, per axis, at a typical pose
   double travel = 0.0, travel_unordered = 0.0;             ///< [rad] sum of the largest joint motion between poses
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/plan/thresholds.hpp"
 
 namespace kinfer::plan {
 
@@ -15,9 +16,7 @@ double mean_square_lower_bound(const DesignProblem& problem, int count) {
   if (problem.prior_information.size() > 0) fixed += problem.prior_information;
   VectorXd weight = VectorXd::Constant(candidates, 1.0 / static_cast<double>(candidates));
   double bound = 0.0;
-  constexpr int most_rounds = 200;
-  constexpr double close_enough = 0.02;  // of the mean square
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < thresholds::bound_rounds; ++round) {
     const VectorXd root = (static_cast<double>(count) * weight).cwiseSqrt();
     const MatrixXd weighted = root.transpose().replicate(problem.block, 1).reshaped().asDiagonal() * problem.rows;
     const auto covariance = invert_spd(fixed + weighted.transpose() * weighted);
@@ -27,7 +26,7 @@ double mean_square_lower_bound(const DesignProblem& problem, int count) {
     const VectorXd gain = of_rows.reshaped(problem.block, candidates).colwise().sum().transpose();
     const double now = places.cwiseProduct(*covariance).sum();
     bound = std::max(bound, now - count * (gain.maxCoeff() - weight.dot(gain)));
-    if (now - bound <= close_enough * now) break;
+    if (now - bound <= thresholds::bound_gap * now) break;
     weight = weight.cwiseProduct(gain.cwiseMax(0.0).cwiseSqrt());
     weight /= weight.sum();
   }

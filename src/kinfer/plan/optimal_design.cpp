@@ -10,11 +10,10 @@
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/plan/thresholds.hpp"
 
 namespace kinfer::plan {
 namespace {
-
-constexpr int worst_power = 8;  // of the power mean that approximates the maximum over places
 
 auto rows_of(const DesignProblem& problem, int candidate) {
   return problem.rows.middleRows(static_cast<Eigen::Index>(candidate) * problem.block, problem.block);
@@ -38,7 +37,7 @@ MatrixXd sensitivity(const DesignProblem& problem, Criterion criterion, const Ma
   VectorXd weight = VectorXd::Ones(problem.targets.rows() / 3);
   if (criterion == Criterion::worst) {
     const VectorXd variance = tool_variances(problem, covariance);
-    weight = (variance / variance.maxCoeff()).array().pow(worst_power - 1);
+    weight = (variance / variance.maxCoeff()).array().pow(thresholds::worst_power - 1);
   }
   MatrixXd weighted = problem.targets;
   for (Eigen::Index t = 0; t < weight.size(); ++t) weighted.middleRows<3>(3 * t) *= weight[t];
@@ -122,8 +121,7 @@ struct Design {
 Design exchange(const DesignProblem& problem, Criterion criterion, std::vector<int> chosen) {
   MatrixXd now = information(problem, chosen);
   double best = objective(problem, criterion, now);
-  constexpr int most_rounds = 12;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < thresholds::exchange_rounds; ++round) {
     bool changed = false;
     for (std::size_t place = 0; place < chosen.size(); ++place) {
       const int old = chosen[place];
@@ -178,7 +176,8 @@ double objective(const DesignProblem& problem, Criterion criterion, const Matrix
   const VectorXd variance = tool_variances(problem, *covariance);
   if (criterion == Criterion::tool) return variance.mean();
   const double largest = variance.maxCoeff();
-  return largest * std::pow((variance / largest).array().pow(worst_power).mean(), 1.0 / worst_power);
+  return largest *
+         std::pow((variance / largest).array().pow(thresholds::worst_power).mean(), 1.0 / thresholds::worst_power);
 }
 
 std::vector<int> greedy_design(const DesignProblem& problem, Criterion criterion, int count) {
@@ -211,13 +210,12 @@ std::vector<int> best_design(const DesignProblem& problem, Criterion criterion, 
 MatrixXd refined_design(const DesignProblem& problem, Criterion criterion, MatrixXd poses, const JacobianRows& rows_of,
                         const PoseProposer& propose, const std::function<bool(const MatrixXd&, Eigen::Index)>& allowed,
                         Rng rng) {
-  constexpr int rounds = 6, proposals = 150;  // more improve by less than a hundredth
   MatrixXd now = information(problem, {});
   for (Eigen::Index i = 0; i < poses.cols(); ++i) {
     const MatrixXd rows = rows_of(poses.col(i));
     now += rows.transpose() * rows;
   }
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < thresholds::refinement_rounds; ++round) {
     double improvement = 0.0;
     for (Eigen::Index i = 0; i < poses.cols(); ++i) {
       Rng draws = rng.stream(round).stream(static_cast<std::uint64_t>(i));
@@ -228,7 +226,7 @@ MatrixXd refined_design(const DesignProblem& problem, Criterion criterion, Matri
       const MatrixXd weight = criterion == Criterion::d ? MatrixXd() : sensitivity(problem, criterion, *covariance);
       double best = gain_of(old, *covariance, weight);
       const double before = best;
-      for (int k = 0; k < proposals; ++k) {
+      for (int k = 0; k < thresholds::refinement_proposals; ++k) {
         const VectorXd kept = poses.col(i), pose = propose(kept, draws);
         if (pose.size() == 0) continue;
         const MatrixXd rows = rows_of(pose);
@@ -245,12 +243,12 @@ MatrixXd refined_design(const DesignProblem& problem, Criterion criterion, Matri
       now = without + rows.transpose() * rows;
       improvement += (best - before) / before;
     }
-    if (improvement < 1e-3) break;
+    if (improvement < thresholds::refinement_gain) break;
   }
   return poses;
 }
 
-std::vector<int> superfluous(const DesignProblem& problem, Criterion criterion, double rise) {
+std::vector<int> find_redundant(const DesignProblem& problem, Criterion criterion, double rise) {
   std::vector<int> kept(problem.candidates()), removed;
   for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = static_cast<int>(i);
   MatrixXd now = information(problem, kept);

@@ -11,17 +11,10 @@
 #include <vector>
 
 #include "kinfer/base/rng.hpp"
+#include "kinfer/evidence/pose_plan.hpp"
 #include "kinfer/linalg/types.hpp"
 
 namespace kinfer::plan {
-
-enum class Criterion {
-  tool,   ///< mean square error of the tool over the workspace (I-optimal)
-  worst,  ///< largest error of the tool over the workspace (G-optimal)
-  d,      ///< volume of the parameters' uncertainty (D-optimal)
-  a,      ///< sum of their variances (A-optimal)
-  e,      ///< variance of their least certain combination (E-optimal)
-};
 
 struct DesignProblem {
   MatrixXd rows;     ///< (block · candidates) x unknowns: Jacobians over noise, times prior sd
@@ -63,6 +56,6 @@ MatrixXd refined_design(const DesignProblem& problem, Criterion criterion, Matri
 
 /// Candidates that can all be removed from a design of all of them before the criterion rises by the fraction `rise`
 /// (D: the variances, on geometric average); ascending.
-std::vector<int> superfluous(const DesignProblem& problem, Criterion criterion, double rise);
+std::vector<int> find_redundant(const DesignProblem& problem, Criterion criterion, double rise);
 
 }  // namespace kinfer::plan

@@ -11,25 +11,12 @@
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/plan/lower_bound.hpp"
+#include "kinfer/plan/optimal_design.hpp"
+#include "kinfer/plan/pose_order.hpp"
+#include "kinfer/plan/thresholds.hpp"
 
 namespace kinfer::plan {
 namespace {
-
-const char* name(Criterion criterion) {
-  switch (criterion) {
-    case Criterion::tool:
-      return "tool error over the workspace (I-optimal)";
-    case Criterion::worst:
-      return "worst tool error over the workspace (G-optimal)";
-    case Criterion::d:
-      return "D-optimal";
-    case Criterion::a:
-      return "A-optimal";
-    case Criterion::e:
-      return "E-optimal";
-  }
-  return "";
-}
 
 /// The parameters to be identified; the tool rotation only if orientations are measured.
 ParameterSet planned_parameters(const PlanTask& task) {
@@ -61,7 +48,9 @@ class ScaledJacobians {
   MatrixXd tool(const MatrixXd& q) const {
     return tool_derivatives(task_.nominal, set_, q).jacobian * sd_.asDiagonal();
   }
-  double noise(const Vec3& position) const { return std::max(position_sd(task_.instrument, position), 1e-6); }
+  double noise(const Vec3& position) const {
+    return std::max(position_sd(task_.instrument, position), thresholds::least_noise);
+  }
   double typical_noise(const MatrixXd& q) const {
     std::vector<double> sd;
     for (Eigen::Index i = 0; i < q.cols(); ++i) sd.push_back(noise(evaluator_.pose(q.col(i)).position));
@@ -81,7 +70,7 @@ class ScaledJacobians {
       const Pose pose = evaluator_.pose_and_derivative(q.col(i), {}, twist);
       rows.middleRows<3>(6 * i) = twist.topRows<3>() * sd_.asDiagonal() / noise(pose.position);
       rows.middleRows<3>(6 * i + 3) =
-          twist.bottomRows<3>() * sd_.asDiagonal() / std::max(task_.instrument.sigma_angle, 1e-6);
+          twist.bottomRows<3>() * sd_.asDiagonal() / std::max(task_.instrument.sigma_angle, thresholds::least_noise);
     }
     return rows;
   }
@@ -118,9 +107,8 @@ std::vector<ExpectedError> curve(const DesignProblem& problem, const std::vector
 
 /// Median over several random sequences, point by point.
 std::vector<ExpectedError> random_curve(const DesignProblem& problem, int count, int threads, Rng rng) {
-  constexpr std::size_t draws = 15;
-  std::vector<std::vector<ExpectedError>> curves(draws);
-  parallel_for(draws, threads, [&](std::size_t d) {
+  std::vector<std::vector<ExpectedError>> curves(thresholds::random_draws);
+  parallel_for(curves.size(), threads, [&](std::size_t d) {
     Rng stream = rng.stream(d);
     std::vector<int> all(problem.candidates());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
@@ -141,7 +129,7 @@ std::vector<ExpectedError> random_curve(const DesignProblem& problem, int count,
 void compute_observability(PosePlan& plan, const DesignProblem& problem, const MatrixXd& measured) {
   const RightSvd all = right_svd(problem.rows);
   plan.parameters = static_cast<int>(all.s.size());
-  plan.rank = static_cast<int>((all.s.array() > 1.0).count());
+  plan.rank = static_cast<int>((all.s.array() > thresholds::informative).count());
   if (plan.rank == 0 || measured.rows() < plan.rank) return;
   const VectorXd s = right_svd(measured * all.v.leftCols(plan.rank)).s;
   const double poses = static_cast<double>(measured.rows() / problem.block), smallest = s[plan.rank - 1];
@@ -161,8 +149,7 @@ MatrixXd stack(const MatrixXd& above, const MatrixXd& below) {
 std::vector<int> find_redundant_rows(DesignProblem problem, Criterion criterion, const MatrixXd& existing) {
   problem.rows = existing;
   problem.prior_information.resize(0, 0);
-  constexpr double hardly = 0.01;
-  return superfluous(problem, criterion, hardly);
+  return find_redundant(problem, criterion, thresholds::redundant_rise);
 }
 
 /// Refines the chosen poses in joint space, beyond the list of candidates.
@@ -190,11 +177,10 @@ Result<PosePlan> plan_poses(const PlanTask& task, const PlanOptions& options, Rn
   if (candidates.cols() < 2) return error("{} poses to choose from; at least 2 are needed", candidates.cols());
   const ParameterSet set = planned_parameters(task);
   const ScaledJacobians scaled(task, set);
-  constexpr Eigen::Index places = 300;
   DesignProblem problem;
   problem.block = task.measures == Measures::poses ? 6 : 3;
   problem.rows = scaled.measured(candidates);
-  problem.targets = scaled.tool(pick_evenly(candidates, places));
+  problem.targets = scaled.tool(pick_evenly(candidates, thresholds::workspace_poses));
   const MatrixXd existing = task.existing.rows() > 0 ? scaled.measured(task.existing.joints) : MatrixXd();
   if (existing.size() > 0) problem.prior_information = existing.transpose() * existing;
   problem.too_close = [&](int a, int b) {
@@ -202,7 +188,7 @@ Result<PosePlan> plan_poses(const PlanTask& task, const PlanOptions& options, Rn
   };
 
   PosePlan plan;
-  plan.criterion = name(options.criterion);
+  plan.criterion = options.criterion;
   const std::vector<int> chosen =
       best_design(problem, options.criterion, options.poses, options.starts, options.threads, rng.stream(2));
   const bool is_from_list = task.candidates.size() > 0;
@@ -228,7 +214,7 @@ Result<PosePlan> plan_poses(const PlanTask& task, const PlanOptions& options, Rn
   plan.planned_curve = curve(problem, greedy_design(problem, options.criterion, far));
   plan.random_curve = random_curve(problem, far, options.threads, rng.stream(3));
   if (chosen.size() <= plan.random_curve.size() && !chosen.empty()) plan.random = plan.random_curve[chosen.size() - 1];
-  if (existing.size() > 0) plan.superfluous = find_redundant_rows(problem, options.criterion, existing);
+  if (existing.size() > 0) plan.redundant_rows = find_redundant_rows(problem, options.criterion, existing);
   return plan;
 }
 

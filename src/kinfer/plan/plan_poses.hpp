@@ -3,13 +3,12 @@
 // as priors.
 #pragma once
 
-#include <optional>
-
+#include "kinfer/base/result.hpp"
+#include "kinfer/base/rng.hpp"
 #include "kinfer/evidence/pose_plan.hpp"
 #include "kinfer/kinematics/parameters.hpp"
+#include "kinfer/kinematics/pose_constraints.hpp"
 #include "kinfer/measurement/pose_set.hpp"
-#include "kinfer/plan/optimal_design.hpp"
-#include "kinfer/plan/pose_constraints.hpp"
 
 namespace kinfer::plan {
 
@@ -20,9 +19,9 @@ struct PlanTask {
   Tolerances tolerances{};
   Instrument instrument{.sigma = 5e-5, .sigma_angle = 2e-4};  ///< accuracy of one measurement
   Measures measures = Measures::positions;
-  PoseSet existing{};     ///< measured already: counts as prior information
-  MatrixXd candidates{};  ///< dof x n to choose from; empty: drawn from the space
-  PoseConstraints space{};
+  PoseSet existing{};       ///< measured already: counts as prior information
+  MatrixXd candidates{};    ///< dof x n to choose from; empty: drawn from the space
+  PoseConstraints space{};  ///< of poses that are drawn; not of `candidates`
 };
 
 struct PlanOptions {

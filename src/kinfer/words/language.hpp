@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// In which words facts are told: English, or the stable names of the facts themselves, for programs that read the output,
-// for translators, and for the test that no decision depends on a sentence.
+// In which words facts are told: English, or the stable names of the facts themselves, for programs that read the
+// output, for translators, and for the test that no decision depends on a sentence.
 #pragma once
 
 #include <fmt/format.h>

@@ -3,13 +3,12 @@
 
 #include <cmath>
 
+#include "kinfer/calibrate/conclusion/thresholds.hpp"
 #include "kinfer/estimate/poses/bundle.hpp"
 #include "kinfer/kinematics/forward.hpp"
 
 namespace kinfer::calibrate {
 namespace {
-
-constexpr int workspace_points = 500;
 
 Load load_of(const PoseSet& data, int row) {
   return {data.payload.empty() ? 0.0 : data.payload[row]};
@@ -48,12 +47,12 @@ VectorXd low_discrepancy_point(int k, Eigen::Index n) {
 
 std::vector<WorkspacePoint> sample_workspace(const MatrixXd& joints, const Estimate& estimate) {
   const VectorXd lowest = joints.rowwise().minCoeff(), range = joints.rowwise().maxCoeff() - lowest;
-  MatrixXd q(joints.rows(), workspace_points);
-  for (int k = 0; k < workspace_points; ++k)
+  MatrixXd q(joints.rows(), thresholds::workspace_points);
+  for (int k = 0; k < thresholds::workspace_points; ++k)
     q.col(k) = lowest + range.cwiseProduct(low_discrepancy_point(k, joints.rows()));
   const VectorXd errors = predicted_errors(estimate, q);
   std::vector<WorkspacePoint> points;
-  for (int k = 0; k < workspace_points; ++k)
+  for (int k = 0; k < thresholds::workspace_points; ++k)
     points.push_back({forward(estimate.chain, q.col(k)).position, errors[k], q.col(k)});
   return points;
 }

@@ -2,15 +2,13 @@
 // Plot data for the report of a calibration: the error of each pose, and the predicted error over the workspace.
 #pragma once
 
-#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/calibrate/problem/task.hpp"
+#include "kinfer/evidence/calibration.hpp"
 
 namespace kinfer::calibrate {
 
 /// `before`: the nominal chain with base and tool refitted. The workspace is sampled at joint positions that cover the
 /// ranges of the data evenly (an additive low-discrepancy sequence: deterministic).
 CalibrationPlotData make_plot_data(const CalibrationTask& task, const Chain& before, const Estimate& estimate);
-
-/// Recommended next steps, most useful first.
-std::vector<Advice> make_recommendations(const CalibrationTask& task, const Calibration& calibration);
 
 }  // namespace kinfer::calibrate

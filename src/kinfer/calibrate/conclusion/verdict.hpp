@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verdict of a calibration: its accuracy before and after, and whether to use it.
+// The verdict of a calibration: whether to use it, and why.
 #pragma once
-
-#include <optional>
 
 #include "kinfer/evidence/calibration.hpp"
 
 namespace kinfer::calibrate {
 
-/// Fills `use` and `verdict` from the other members. `expected`: rms error of the held-out rows expected from the
-/// instrument's noise and the model's uncertainty [m]; nothing where the instrument is not known.
-void write_verdict(Calibration& calibration, std::optional<double> expected);
+/// The reason of the verdict, from the error statistics and `expected_holdout_rms` of the calibration. A robot without
+/// a data sheet has no earlier model to be compared with: its held-out errors are compared with those of the fitted
+/// rows.
+CalibrationReason judge(const Calibration& calibration);
+
+/// `use` where the calibration improves the nominal model or generalises, else `do_not_use`.
+Usability usability_of(CalibrationReason reason);
 
 }  // namespace kinfer::calibrate

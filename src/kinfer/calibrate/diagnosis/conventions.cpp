@@ -4,18 +4,22 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
+#include <string>
 
+#include "kinfer/calibrate/diagnosis/thresholds.hpp"
 #include "kinfer/kinematics/forward.hpp"
+#include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
 namespace {
+
+using std::string_literals::operator""s;
 
 enum class Correction { apply, report_only };
 
 struct Hypothesis {
   FindingKind kind;
-  std::string sentence, suggestion;
+  FactValues values;
   Correction correction = Correction::apply;
   std::function<void(Chain&, PoseSet&)> apply;
 };
@@ -54,35 +58,38 @@ void add_unit_hypotheses(const Chain& chain, std::vector<Hypothesis>& list) {
         if (chain.joints[moving[k]].type == type) scale_joint_position(data, static_cast<Eigen::Index>(k), factor);
     };
   };
-  list.push_back({FindingKind::degrees_for_radians, "the joint readings are degrees, but were read as radians",
-                  "write the unit into the header: q1[deg], q2[deg], ...", Correction::apply,
+  list.push_back({FindingKind::degrees_for_radians,
+                  {{"unit", "deg"s}, {"read_as", "rad"s}},
+                  Correction::apply,
                   all(JointType::revolute, degree)});
-  list.push_back({FindingKind::radians_for_degrees, "the joint readings are radians, but were read as degrees",
-                  "write the unit into the header: q1[rad], q2[rad], ...", Correction::apply,
+  list.push_back({FindingKind::radians_for_degrees,
+                  {{"unit", "rad"s}, {"read_as", "deg"s}},
+                  Correction::apply,
                   all(JointType::revolute, 1.0 / degree)});
-  list.push_back({FindingKind::length_unit, "the measured positions are millimetres, but were read as metres",
-                  "write the unit into the header: x[mm], y[mm], z[mm]", Correction::apply,
-                  [](Chain&, PoseSet& data) { scale_points(data, 1e-3); }});
-  list.push_back({FindingKind::length_unit, "the measured positions are metres, but were read as millimetres",
-                  "write the unit into the header: x[m], y[m], z[m]", Correction::apply,
-                  [](Chain&, PoseSet& data) { scale_points(data, 1e3); }});
-  list.push_back({FindingKind::length_unit, "the measured positions are inches, but were read as millimetres",
-                  "convert them: kinfer knows m, mm and um", Correction::apply,
-                  [](Chain&, PoseSet& data) { scale_points(data, 25.4); }});
+  const auto positions = [&](const std::string& unit, const std::string& read_as, double factor) {
+    list.push_back({FindingKind::length_unit,
+                    {{"unit", unit}, {"read_as", read_as}},
+                    Correction::apply,
+                    [factor](Chain&, PoseSet& data) { scale_points(data, factor); }});
+  };
+  positions("mm", "m", 1e-3);
+  positions("m", "mm", 1e3);
+  positions("in", "mm", 25.4);
   for (std::size_t k = 0; k < moving.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(k);
     const std::string& name = chain.joints[moving[k]].name;
-    const auto add = [&](FindingKind kind, const char* is, const char* read_as, const char* unit, double factor) {
-      list.push_back({kind, fmt::format("{} is in {}, but was read as {}", name, is, read_as),
-                      fmt::format("write its unit into the header: q{}[{}]", k + 1, unit), Correction::apply,
+    const auto add = [&](FindingKind kind, const std::string& unit, const std::string& read_as, double factor) {
+      list.push_back({kind,
+                      {{"joint", name}, {"column", static_cast<int>(k) + 1}, {"unit", unit}, {"read_as", read_as}},
+                      Correction::apply,
                       [row, factor](Chain&, PoseSet& data) { scale_joint_position(data, row, factor); }});
     };
     if (is_revolute(chain, moving[k])) {
-      add(FindingKind::degrees_for_radians, "degrees", "radians", "deg", degree);
-      add(FindingKind::radians_for_degrees, "radians", "degrees", "rad", 1.0 / degree);
+      add(FindingKind::degrees_for_radians, "deg", "rad", degree);
+      add(FindingKind::radians_for_degrees, "rad", "deg", 1.0 / degree);
     } else {
-      add(FindingKind::length_unit, "millimetres", "metres", "mm", 1e-3);
-      add(FindingKind::length_unit, "metres", "millimetres", "m", 1e3);
+      add(FindingKind::length_unit, "mm", "m", 1e-3);
+      add(FindingKind::length_unit, "m", "mm", 1e3);
     }
   }
 }
@@ -91,16 +98,17 @@ void add_joint_hypotheses(const Chain& chain, std::vector<Hypothesis>& list) {
   const std::vector<int> moving = active_joints(chain);
   for (const int j : moving) {
     const std::string& name = chain.joints[j].name;
-    list.push_back({FindingKind::wrong_sign, fmt::format("{} counts in the other sense than the robot file says", name),
-                    fmt::format("give {} gain = {:g} in the robot file", name, -chain.joints[j].gain),
-                    Correction::apply, [j](Chain& c, PoseSet&) { c.joints[j].gain = -c.joints[j].gain; }});
+    list.push_back({FindingKind::wrong_sign,
+                    {{"joint", name}, {"gain", -chain.joints[j].gain}},
+                    Correction::apply,
+                    [j](Chain& c, PoseSet&) { c.joints[j].gain = -c.joints[j].gain; }});
   }
   for (const int j : moving) {
     const std::string& name = chain.joints[j].name;
     if (!is_revolute(chain, j)) continue;
     for (const int offset : {90, -90, 180})
-      list.push_back({FindingKind::joint_offset, fmt::format("{} is {} deg off its zero in the robot file", name, offset),
-                      fmt::format("add {} deg to the zero position (theta) of {} in the robot file", offset, name),
+      list.push_back({FindingKind::joint_offset,
+                      {{"joint", name}, {"offset_rad", offset * degree}},
                       Correction::apply,
                       [j, offset](Chain& c, PoseSet&) { add_offset(c.joints[j], offset * degree); }});
   }
@@ -114,22 +122,20 @@ void add_relation_hypotheses(const Chain& chain, std::vector<Hypothesis>& list) 
       const int j = moving[k], i = moving[m];
       if (chain.joints[i].type != chain.joints[j].type) continue;
       const auto a = static_cast<Eigen::Index>(m), b = static_cast<Eigen::Index>(k);
-      list.push_back(
-          {FindingKind::columns_swapped,
-           fmt::format("the readings of {} and {} are exchanged", chain.joints[i].name, chain.joints[j].name),
-           fmt::format("exchange the headers of q{} and q{}", m + 1, k + 1), Correction::apply,
-           [a, b](Chain&, PoseSet& data) {
-             data.joints.row(a).swap(data.joints.row(b));
-             if (data.commanded.size() > 0) data.commanded.row(a).swap(data.commanded.row(b));
-           }});
+      list.push_back({FindingKind::columns_swapped,
+                      {{"joints", std::vector{chain.joints[i].name, chain.joints[j].name}},
+                       {"columns", std::vector{static_cast<int>(m) + 1, static_cast<int>(k) + 1}}},
+                      Correction::apply,
+                      [a, b](Chain&, PoseSet& data) {
+                        data.joints.row(a).swap(data.joints.row(b));
+                        if (data.commanded.size() > 0) data.commanded.row(a).swap(data.commanded.row(b));
+                      }});
       if (m + 1 != k || !is_revolute(chain, j)) continue;
       for (const int factor : {1, -1})
         list.push_back({FindingKind::joint_coupled,
-                        fmt::format("{} moves {} {}: a belt or a parallel linkage couples them", chain.joints[j].name,
-                                    factor > 0 ? "with" : "against", chain.joints[i].name),
-                        fmt::format("give {} coupling = {{ {} = {} }} in the robot file", chain.joints[j].name,
-                                    chain.joints[i].name, factor),
-                        Correction::apply, [j, i, factor](Chain& c, PoseSet&) {
+                        {{"joint", chain.joints[j].name}, {"follows", chain.joints[i].name}, {"factor", factor}},
+                        Correction::apply,
+                        [j, i, factor](Chain& c, PoseSet&) {
                           c.joints[j].couplings.push_back({i, static_cast<double>(factor)});
                         }});
     }
@@ -140,9 +146,7 @@ std::vector<Hypothesis> hypotheses(const Chain& chain) {
   add_unit_hypotheses(chain, list);
   add_joint_hypotheses(chain, list);
   add_relation_hypotheses(chain, list);
-  list.push_back({FindingKind::mirrored, "the measured positions are a mirror image: their axes are not right-handed",
-                  "turn the sign of one of x, y, z, or exchange two of them", Correction::report_only,
-                  [](Chain&, PoseSet& data) {
+  list.push_back({FindingKind::mirrored, {}, Correction::report_only, [](Chain&, PoseSet& data) {
                     for (PointMeasurement& point : data.points) point.position.x() *= -1.0;
                   }});
   return list;
@@ -162,22 +166,22 @@ class HypothesisSearch {
   explicit HypothesisSearch(const CalibrationTask& task)
       : list_(hypotheses(task.nominal)),
         max_plausible_error_(max_plausible_error(task)),
-        unmodified_{{}, task.nominal, thin_pose_set(task.data, rows), 0.0} {}
+        unmodified_{{}, task.nominal, thin_pose_set(task.data, thresholds::hypothesis_rows), 0.0} {}
 
   /// The smallest set of hypotheses that leaves a plausible error; nullopt if none is needed or found.
   std::optional<Explanation> run() {
-    if (unmodified_.data.rows() < min_rows || !evaluate(unmodified_) ||
+    if (unmodified_.data.rows() < thresholds::min_hypothesis_rows || !evaluate(unmodified_) ||
         unmodified_.median_error <= max_plausible_error_)
       return std::nullopt;
     std::vector<Explanation> beam{unmodified_};
-    for (int depth = 0; depth < max_depth; ++depth) {
+    for (int depth = 0; depth < thresholds::max_simultaneous_faults; ++depth) {
       std::vector<Explanation> next;
       for (const Explanation& base : beam) expand(base, next);
       std::stable_sort(next.begin(), next.end(),
                        [](const Explanation& a, const Explanation& b) { return a.median_error < b.median_error; });
       if (next.empty()) return std::nullopt;
       if (explains(next.front())) return first_equivalent(next);
-      if (next.size() > beam_width) next.erase(next.begin() + beam_width, next.end());
+      if (next.size() > thresholds::beam_width) next.erase(next.begin() + thresholds::beam_width, next.end());
       beam = std::move(next);
     }
     return std::nullopt;
@@ -186,10 +190,6 @@ class HypothesisSearch {
   const Hypothesis& operator[](std::size_t i) const { return list_[i]; }
 
  private:
-  static constexpr std::size_t rows = 40, beam_width = 4;
-  static constexpr int min_rows = 8;   // base and tool are nine unknowns; the other equations must discriminate
-  static constexpr int max_depth = 3;  // simultaneous faults
-
   static bool evaluate(Explanation& e) {
     const auto fit = fit_frames_quickly(e.chain, e.data);
     if (!fit) return false;
@@ -200,10 +200,9 @@ class HypothesisSearch {
   /// Some faults are equivalent up to base and tool, such as a half turn of a wrist joint and the sign of the next one.
   /// Of those that explain the points equally well: the first in the list, with the others as alternatives.
   static Explanation first_equivalent(const std::vector<Explanation>& sorted) {
-    constexpr double as_good = 1.5;
     std::vector<const Explanation*> equal;
     for (const Explanation& e : sorted)
-      if (e.median_error <= as_good * sorted.front().median_error) equal.push_back(&e);
+      if (e.median_error <= thresholds::equivalent_ratio * sorted.front().median_error) equal.push_back(&e);
     std::sort(equal.begin(), equal.end(), [](const auto* a, const auto* b) { return a->indices < b->indices; });
     Explanation first = *equal.front();
     for (std::size_t i = 1; i < equal.size(); ++i) first.others.push_back(equal[i]->indices);
@@ -222,9 +221,9 @@ class HypothesisSearch {
 
   /// Plausible by the tolerances, or so much better than without that a poor nominal model must cause the rest.
   bool explains(const Explanation& e) const {
-    constexpr double far_better = 0.05;
-    return e.median_error <= max_plausible_error_ ? e.median_error < 0.2 * unmodified_.median_error
-                                                  : e.median_error < far_better * unmodified_.median_error;
+    const double ratio = e.median_error <= max_plausible_error_ ? thresholds::plausible_improvement
+                                                                : thresholds::implausible_improvement;
+    return e.median_error < ratio * unmodified_.median_error;
   }
 
   std::vector<Hypothesis> list_;
@@ -238,12 +237,9 @@ void check_robot_size(DiagnosisState& state) {
   double reach = chain.tool.xyz.norm();
   for (const JointPlacement& joint : joint_placements(chain, VectorXd::Zero(dof(chain))))
     reach = std::max(reach, (joint.frame.position - chain.base.xyz).norm());
-  constexpr double smallest = 0.01, largest = 100.0;  // [m]
-  if (reach > smallest && reach < largest) return;
-  add_finding(state, {.kind = FindingKind::robot_length_unit,
-                      .severity = Severity::fault,
-                      .sentence = fmt::format("the robot reaches {:g} m by its file", reach),
-                      .suggestion = "check units = { length = ... } in the robot file"});
+  if (reach > thresholds::smallest_reach && reach < thresholds::largest_reach) return;
+  add_finding(state,
+              {.kind = FindingKind::robot_length_unit, .severity = Severity::fault, .values = {{"reach_m", reach}}});
 }
 
 }  // namespace
@@ -258,14 +254,11 @@ void check_conventions(DiagnosisState& state) {
     const Hypothesis& h = search[i];
     const bool apply = h.correction == Correction::apply;
     if (apply) h.apply(state.task.nominal, state.task.data);
-    std::string sentence = h.sentence;
+    Finding finding{.kind = h.kind, .severity = Severity::fault, .values = h.values, .applied = apply};
     for (const auto& other : found->others)
-      if (found->indices.size() == 1) sentence += "; or, which comes to the same, " + search[other.front()].sentence;
-    add_finding(state, {.kind = h.kind,
-                        .severity = Severity::fault,
-                        .sentence = sentence,
-                        .suggestion = h.suggestion,
-                        .applied = apply});
+      if (found->indices.size() == 1)
+        finding.equivalents.push_back({.kind = search[other.front()].kind, .values = search[other.front()].values});
+    add_finding(state, std::move(finding));
   }
 }
 

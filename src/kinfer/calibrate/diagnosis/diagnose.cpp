@@ -41,11 +41,4 @@ Diagnosis diagnose(const CalibrationTask& task, const AlternativeOrientations& a
   return {std::move(state.findings), std::move(state.task)};
 }
 
-std::string describe_finding(const Finding& finding) {
-  if (finding.applied)
-    return finding.sentence + "; put right before the fit" +
-           (finding.suggestion.empty() ? "" : " (in the files: " + finding.suggestion + ")");
-  return finding.sentence + (finding.suggestion.empty() ? "" : "; " + finding.suggestion);
-}
-
 }  // namespace kinfer::calibrate

@@ -5,8 +5,8 @@
 // interpretation is reported as a fault; it is certain if it reduces the error to what the tolerances allow.
 #pragma once
 
-#include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/calibrate/diagnosis/orientation_conventions.hpp"
+#include "kinfer/calibrate/problem/task.hpp"
 #include "kinfer/evidence/findings.hpp"
 
 namespace kinfer::calibrate {
@@ -16,11 +16,8 @@ struct Diagnosis {
   CalibrationTask corrected_task;  ///< with all certain faults corrected; row indices are unchanged
 };
 
-/// Never fails: checks that need more measurements than there are, are skipped. `readings`: other interpretations of
-/// the file's orientations.
+/// Never fails: checks that need more measurements than there are, are skipped. `alternatives`: other interpretations
+/// of the file's orientations.
 Diagnosis diagnose(const CalibrationTask& task, const AlternativeOrientations& alternatives = {});
-
-/// The finding and its correction as one sentence for a note.
-std::string describe_finding(const Finding& finding);
 
 }  // namespace kinfer::calibrate

@@ -5,18 +5,15 @@
 #include <cmath>
 #include <limits>
 
+#include "kinfer/calibrate/diagnosis/thresholds.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
 namespace {
-
-std::string describe_range(int first, int last) {
-  if (last == first) return fmt::format("{}", first);
-  return last == first + 1 ? fmt::format("{}, {}", first, last) : fmt::format("{}-{}", first, last);
-}
 
 /// Base from rigid alignment of the measured points with those predicted by the chain.
 Chain with_aligned_base(Chain chain, const PoseSet& data) {
@@ -70,26 +67,9 @@ void add_finding(DiagnosisState& state, Finding finding) {
   state.findings.push_back(std::move(finding));
 }
 
-std::string describe_rows(const std::vector<int>& rows) {
-  constexpr std::size_t most = 12;  // row ranges listed in a sentence
-  std::vector<std::string> pieces;
-  for (std::size_t i = 0; i < rows.size();) {
-    std::size_t end = i;
-    while (end + 1 < rows.size() && rows[end + 1] == rows[end] + 1) ++end;
-    pieces.push_back(describe_range(rows[i], rows[end]));
-    i = end + 1;
-  }
-  std::string text = rows.size() == 1 ? "row " : "rows ";
-  const std::size_t shown = std::min(most, pieces.size());
-  for (std::size_t i = 0; i < shown; ++i)
-    text += (i == 0 ? "" : i + 1 == shown && shown == pieces.size() ? " and " : ", ") + pieces[i];
-  return shown == pieces.size() ? text : text + fmt::format(" and more, {} in all", rows.size());
-}
-
 std::optional<FrameFit> fit_frames_quickly(const Chain& nominal, const PoseSet& all) {
   const PoseSet data = keep_points_only(all);
-  constexpr std::size_t fewest = 4;
-  if (data.points.size() < fewest) return std::nullopt;
+  if (data.points.size() < thresholds::min_points_of_quick_fit) return std::nullopt;
   Chain bare = nominal;
   bare.tool.xyz.setZero();
   std::optional<FrameFit> best;
@@ -100,32 +80,18 @@ std::optional<FrameFit> fit_frames_quickly(const Chain& nominal, const PoseSet& 
   return std::isfinite(best->median_error) ? best : std::nullopt;
 }
 
-PoseSet thin_pose_set(const PoseSet& data, std::size_t most) {
-  std::vector<int> rows;
-  for (const PointMeasurement& point : data.points)
-    if (rows.empty() || rows.back() != point.row) rows.push_back(point.row);
-  std::sort(rows.begin(), rows.end());
-  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-  std::vector<int> kept;
-  const std::size_t count = std::min(most, rows.size());
-  for (std::size_t i = 0; i < count; ++i) kept.push_back(rows[i * rows.size() / count]);
-  PoseSet thin = select(data, kept);
-  thin.orientations.clear();
-  return thin;
-}
-
 double max_plausible_error(const CalibrationTask& task) {
   ParameterSet set = geometric_parameters(task.nominal, task.data, task.tolerances);
   std::erase_if(set.parameters, [](const Parameter& p) { return p.at.owner == Owner::base; });
-  const PoseSet data = thin_pose_set(task.data, 40);
+  const PoseSet data = thin_pose_set(task.data, thresholds::hypothesis_rows);
   const EvaluatedPoses at = evaluate_poses(task.nominal, set, data, Derivative::yes);
   VectorXd sd(set.free_count());
   for (Eigen::Index k = 0; k < sd.size(); ++k) sd[k] = set.free()[k]->prior_sd;
   double squares = 0.0;
   for (const Twists& twist : at.twists) squares += (twist.topRows<3>() * sd.asDiagonal()).squaredNorm();
-  constexpr double generous = 4.0;
   const double sigma = task.instrument ? task.instrument->sigma : 0.0;
-  return generous * (std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, at.twists.size()))) + sigma);
+  return thresholds::plausible_error_ratio *
+         (std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, at.twists.size()))) + sigma);
 }
 
 }  // namespace kinfer::calibrate

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/calibrate/problem/task.hpp"
 #include "kinfer/evidence/findings.hpp"
 
 namespace kinfer::calibrate {
@@ -18,9 +18,6 @@ struct DiagnosisState {
 /// Adds a finding and looks up the line numbers of its rows (no rows: the whole set).
 void add_finding(DiagnosisState& state, Finding finding);
 
-/// "row 3", "rows 3, 5 and 9", "rows 12-40 and 44"
-std::string describe_rows(const std::vector<int>& rows);
-
 /// The nominal chain with base and tool fitted to the points alone, and the median remaining error [m]. Fast rather
 /// than exact: it only has to distinguish millimetres from decimetres, hundreds of times.
 struct FrameFit {
@@ -28,9 +25,6 @@ struct FrameFit {
   double median_error = 0.0;
 };
 std::optional<FrameFit> fit_frames_quickly(const Chain& nominal, const PoseSet& data);
-
-/// At most `most` of the rows with points, evenly spread, without orientations.
-PoseSet thin_pose_set(const PoseSet& data, std::size_t most);
 
 /// Largest point error [m] that tolerances and instrument can explain, with base and tool refitted: four times the
 /// expected rms.

@@ -6,20 +6,20 @@
 #include <numbers>
 #include <set>
 
+#include "kinfer/calibrate/diagnosis/thresholds.hpp"
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/normal_equations.hpp"
+#include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
 namespace {
 
-constexpr std::size_t max_rows = 400;  // more add no information, and cost time before each calibration
-
 /// The task with fewer rows, without orientations.
 CalibrationTask thin_task(const CalibrationTask& task) {
   CalibrationTask thin = task;
-  thin.data = thin_pose_set(task.data, max_rows);
+  thin.data = thin_pose_set(task.data, thresholds::max_fitted_rows);
   return thin;
 }
 
@@ -49,10 +49,10 @@ std::vector<double> differences(const PoseSet& data) {
 }
 
 std::vector<int> find_unsettled_rows(const std::vector<double>& difference, double typical) {
-  constexpr double settled = 0.05 * degree, by_far = 10.0;
   std::vector<int> rows;
   for (std::size_t row = 0; row < difference.size(); ++row)
-    if (difference[row] > std::max(settled, by_far * typical)) rows.push_back(static_cast<int>(row));
+    if (difference[row] > std::max(thresholds::settled, thresholds::unsettled_ratio * typical))
+      rows.push_back(static_cast<int>(row));
   return rows;
 }
 
@@ -115,8 +115,7 @@ void check_drift(DiagnosisState& state, const Chain& chain, const PoseSet& data,
                  const std::set<int>& wrong) {
   const RigidMotionRegression motion(chain, data, wrong);
   const auto count = static_cast<int>(data.rows());
-  constexpr int too_few = 20;
-  if (count < too_few || data.setups.size() > 1) return;
+  if (count < thresholds::min_drift_rows || data.setups.size() > 1) return;
   const auto linear = motion.regress([count](int row) { return (row + 0.5) / count - 0.5; });
   RigidMotionRegression::Regression step;
   int step_at = 0;
@@ -124,7 +123,7 @@ void check_drift(DiagnosisState& state, const Chain& chain, const PoseSet& data,
     const auto found = motion.regress([at](int row) { return row < at ? -0.5 : 0.5; });
     if (found.f > step.f) step = found, step_at = at;
   }
-  const bool steps = step.f > 1.5 * linear.f;
+  const bool steps = step.f > thresholds::step_over_drift * linear.f;
   const RigidMotionRegression::Regression& found = steps ? step : linear;
   // Poses are rarely measured in random order, so model errors correlate with the row index too. They do so at any
   // frequency; a drift does so at the lowest only.
@@ -132,40 +131,30 @@ void check_drift(DiagnosisState& state, const Chain& chain, const PoseSet& data,
   for (int waves = 1; waves <= 6; ++waves)
     other_frequencies.push_back(
         motion.regress([=](int row) { return std::cos(2 * std::numbers::pi * waves * (row + 0.5) / count); }).f);
-  constexpr double min_f_statistic = 10.0;  // F = 6.4 is chi-squared of six at its one-in-a-million quantile
-  if (found.f < min_f_statistic * std::max(1.0, median(other_frequencies))) return;
-  if (found.moved < 1.5 * found.scatter) return;  // significant, but smaller than the unmodelled error
-  const double moved = found.moved;
-  add_finding(state,
-              {.kind = steps ? FindingKind::base_moved : FindingKind::base_drifts,
-               .severity = Severity::warning,
-               .sentence = steps ? fmt::format("from row {} on, the tool is seen {:.3f} mm elsewhere: the robot, the "
-                                               "instrument or the tool was moved a little",
-                                               row_of[step_at], 1e3 * moved)
-                                 : fmt::format("the tool is seen to drift by {:.3f} mm from the first row to the last: "
-                                               "the base or the instrument moves, or the robot warms up",
-                                               1e3 * moved),
-               .suggestion = steps ? fmt::format("give the rows from {} on a setup of their own", row_of[step_at])
-                                   : "warm up first, measure in random order, and measure the base again in between"});
+  if (found.f < thresholds::min_f_statistic * std::max(1.0, median(other_frequencies))) return;
+  if (found.moved < thresholds::min_motion_ratio * found.scatter)
+    return;  // significant, but smaller than the unmodelled error
+  FactValues values{{"distance_m", found.moved}};
+  if (steps) values.set("from_row", row_of[step_at]);
+  add_finding(state, {.kind = steps ? FindingKind::base_moved : FindingKind::base_drifts,
+                      .severity = Severity::warning,
+                      .values = values});
 }
 
 /// Points of rows that were not fitted whose errors exceed the noise.
 std::vector<Outlier> find_unfitted_outliers(const Estimate& fit, const CalibrationTask& task,
                                             const std::vector<int>& fitted) {
-  constexpr double false_alarms = 1e-3;  // per data set, as in the fit
-  constexpr double unseen = 1.25;        // errors of unfitted rows exceed the noise level of the fit
   const auto count = std::max<double>(1.0, static_cast<double>(task.data.points.size()));
-  const double limit = unseen * std::sqrt(chi_squared_quantile(1.0 - false_alarms / count, 3));
+  const double limit =
+      thresholds::unfitted_ratio * std::sqrt(chi_squared_quantile(1.0 - thresholds::false_alarms / count, 3));
   const std::vector<double> errors = point_errors(fit.chain, task.data);
   std::vector<Outlier> wrong;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const PointMeasurement& point = task.data.points[i];
     const double sd = std::max(fit.sigma, point.sd ? point.sd->maxCoeff() : 0.0);
     if (errors[i] <= limit * sd || std::binary_search(fitted.begin(), fitted.end(), point.row)) continue;
-    wrong.push_back({point.row, 0,
-                     fmt::format("the point lies {:.3f} mm from where the model has it ({:.0f} sigma)", 1e3 * errors[i],
-                                 errors[i] / sd),
-                     errors[i] / sd});
+    wrong.push_back(
+        {.row = point.row, .reasons = {{MeasurementKind::point, errors[i], errors[i] / sd}}, .sigmas = errors[i] / sd});
   }
   return wrong;
 }
@@ -178,45 +167,30 @@ void check_commanded_positions(DiagnosisState& state) {
   std::vector<double> difference = differences(data), finite;
   for (const double d : difference)
     if (std::isfinite(d)) finite.push_back(d);
-  constexpr double same = 1e-6;  // [rad], [m]
-  if (finite.empty() || median(finite) < same) return;
+  if (finite.empty() || median(finite) < thresholds::commanded_equal) return;
   const double typical = median(finite);
   const bool complete = finite.size() == difference.size();
   CalibrationTask measured_task = thin_task(state.task), commanded_task = measured_task;
   commanded_task.data.joints = commanded_task.data.commanded;
-  const auto read = data.points.empty() ? std::nullopt : median_error_after_fit(measured_task);
-  const auto told = data.points.empty() || !complete ? std::nullopt : median_error_after_fit(commanded_task);
-  constexpr double clearly = 0.8;
-  if (read && told && *told < clearly * *read) {
-    add_finding(state,
-                {.kind = FindingKind::not_settled,
-                 .severity = Severity::fault,
-                 .sentence = fmt::format("the read-back joints were taken while the arm still moved: they differ from "
-                                         "the commanded ones by {:.3f} deg typically, and the commanded ones explain "
-                                         "the points to {:.3f} mm instead of {:.3f} mm",
-                                         typical / degree, 1e3 * *told, 1e3 * *read),
-                 .suggestion = "use the commanded joints, or read back after the arm has come to rest",
-                 .applied = true});
+  const auto measured_error = data.points.empty() ? std::nullopt : median_error_after_fit(measured_task);
+  const auto commanded_error = data.points.empty() || !complete ? std::nullopt : median_error_after_fit(commanded_task);
+  if (measured_error && commanded_error && *commanded_error < thresholds::commanded_gain * *measured_error) {
+    add_finding(state, {.kind = FindingKind::not_settled,
+                        .severity = Severity::fault,
+                        .values = {{"difference_rad", typical},
+                                   {"commanded_error_m", *commanded_error},
+                                   {"measured_error_m", *measured_error}},
+                        .applied = true});
     data.joints = data.commanded;
     return;
   }
   const std::vector<int> rows = find_unsettled_rows(difference, typical);
-  constexpr double settled = 0.05 * degree;
   if (!rows.empty())
-    add_finding(state, {.kind = FindingKind::not_settled,
-                        .severity = Severity::warning,
-                        .rows = rows,
-                        .sentence = fmt::format("in {} commanded and read-back joints differ far more than elsewhere: "
-                                                "the arm had not come to rest",
-                                                describe_rows(rows)),
-                        .suggestion = "measure these rows again or leave them out"});
-  else if (typical > settled && !read)
-    add_finding(state, {.kind = FindingKind::not_settled,
-                        .severity = Severity::warning,
-                        .sentence = fmt::format("commanded and read-back joints differ by {:.3f} deg typically: was "
-                                                "the arm still moving?",
-                                                typical / degree),
-                        .suggestion = "read back after the arm has come to rest"});
+    add_finding(state, {.kind = FindingKind::not_settled, .severity = Severity::warning, .rows = rows});
+  else if (typical > thresholds::settled && !measured_error)
+    add_finding(
+        state,
+        {.kind = FindingKind::not_settled, .severity = Severity::warning, .values = {{"difference_rad", typical}}});
 }
 
 /// Rows that another finding already explains.
@@ -227,45 +201,38 @@ std::set<int> collect_explained_rows(const DiagnosisState& state) {
   return rows;
 }
 
-/// Index of each thinned row in the whole set, ascending.
-std::vector<int> rows_in_all(const PoseSet& thin, const PoseSet& all) {
-  std::vector<int> row_of(thin.rows());
-  for (std::size_t i = 0, row = 0; i < row_of.size(); ++i) {
-    while (!thin.line.empty() && row < all.line.size() && all.line[row] != thin.line[i]) ++row;
-    row_of[i] = thin.line.empty() ? static_cast<int>(i) : static_cast<int>(row);
-  }
-  return row_of;
-}
-
 void report_gross_outliers(DiagnosisState& state, std::vector<Outlier> wrong) {
-  const std::set<int> told = collect_explained_rows(state);
-  std::erase_if(wrong, [&](const Outlier& outlier) { return told.contains(outlier.row); });
+  const std::set<int> explained = collect_explained_rows(state);
+  std::erase_if(wrong, [&](const Outlier& outlier) { return explained.contains(outlier.row); });
   std::sort(wrong.begin(), wrong.end(), [](const Outlier& a, const Outlier& b) { return a.row < b.row; });
   std::set<int> rows;
   for (const Outlier& outlier : wrong) rows.insert(outlier.row);
-  if (rows.empty() || 4 * static_cast<Eigen::Index>(rows.size()) > state.task.data.rows()) return;
+  if (rows.empty() || thresholds::max_outlier_part * static_cast<Eigen::Index>(rows.size()) > state.task.data.rows())
+    return;
   const std::vector<int> list(rows.begin(), rows.end());
+  std::vector<std::string> kinds;
+  std::vector<double> residuals, sigmas;
+  for (const OutlierReason& reason : wrong.front().reasons) {
+    kinds.emplace_back(name(reason.kind));
+    residuals.push_back(reason.residual), sigmas.push_back(reason.sigmas);
+  }
   add_finding(state, {.kind = FindingKind::gross_outliers,
                       .severity = Severity::warning,
                       .rows = list,
-                      .sentence = fmt::format("{} {} where no noise explains it: {}{}", describe_rows(list),
-                                              list.size() == 1 ? "lies" : "lie",
-                                              list.size() == 1 ? "" : "in the first ", wrong.front().reason),
-                      .suggestion = "calibrate does not believe such rows; look at them"});
+                      .values = {{"kinds", kinds}, {"residuals", residuals}, {"sigmas", sigmas}}});
 }
 
 void check_residuals(DiagnosisState& state) {
-  constexpr std::size_t too_few = 12;  // rows; base, tool and joints then use up three of four equations
-  if (state.task.data.points.size() < too_few) return;
+  if (state.task.data.points.size() < thresholds::min_residual_points) return;
   const CalibrationTask thin = thin_task(state.task);
   const auto fit = fit_once(thin, thin.data, GeometricParameters{}, {});
   if (!fit) return;
-  const std::vector<int> row_of = rows_in_all(thin.data, state.task.data);
-  const std::set<int> told = collect_explained_rows(state);
+  const std::vector<int> row_of = thinned_rows(state.task.data, thresholds::max_fitted_rows);
+  const std::set<int> explained = collect_explained_rows(state);
   std::vector<Outlier> gross = find_unfitted_outliers(*fit, state.task, row_of);
   std::set<int> wrong;  // of the thinned rows
   for (std::size_t i = 0; i < row_of.size(); ++i)
-    if (told.contains(row_of[i])) wrong.insert(static_cast<int>(i));
+    if (explained.contains(row_of[i])) wrong.insert(static_cast<int>(i));
   for (Outlier outlier : fit->outliers) {
     wrong.insert(outlier.row);
     outlier.row = row_of[outlier.row];

@@ -5,7 +5,8 @@
 #include <cmath>
 #include <map>
 
-#include "kinfer/calibrate/parameters/joint_excitation.hpp"
+#include "kinfer/calibrate/diagnosis/thresholds.hpp"
+#include "kinfer/estimate/poses/joint_excitation.hpp"
 #include "kinfer/geometry/statistics.hpp"
 
 namespace kinfer::calibrate {
@@ -17,7 +18,8 @@ void check_limits(DiagnosisState& state) {
   const std::vector<int> moving = active_joints(chain);
   for (std::size_t k = 0; k < moving.size(); ++k) {
     const Joint& joint = chain.joints[moving[k]];
-    const double slack = joint.type == JointType::revolute ? 1.0 * degree : 1e-3;
+    const double slack =
+        joint.type == JointType::revolute ? thresholds::limit_slack_angle : thresholds::limit_slack_length;
     std::vector<int> rows;
     for (Eigen::Index row = 0; row < joints.cols(); ++row) {
       const double q = joints(static_cast<Eigen::Index>(k), row);
@@ -27,8 +29,7 @@ void check_limits(DiagnosisState& state) {
     add_finding(state, {.kind = FindingKind::outside_limits,
                         .severity = Severity::note,
                         .rows = rows,
-                        .sentence = fmt::format("{} reads beyond its limits in {}", joint.name, describe_rows(rows)),
-                        .suggestion = "check the limits in the robot file, and the unit and sign of this reading"});
+                        .values = {{"joint", joint.name}}});
   }
 }
 
@@ -71,80 +72,59 @@ std::map<std::pair<int, int>, TargetPair> target_pairs(const PoseSet& data) {
   return pairs;
 }
 
+/// Empty: the tool point.
 std::string target_name(const PoseSet& data, int target) {
-  return target < 0 ? "the tool point" : "target " + data.targets[target];
+  return target < 0 ? "" : data.targets[target];
 }
 
-void check_target_pair(DiagnosisState& state, const std::string& which, const TargetPair& pair) {
+void check_target_pair(DiagnosisState& state, const std::vector<std::string>& targets, const TargetPair& pair) {
   const double typical = median(pair.distance);
-  std::vector<double> off;
-  for (const double d : pair.distance) off.push_back(std::abs(d - typical));
   const double sd = robust_sd(pair.distance);
   const double sigma = state.task.instrument ? state.task.instrument->sigma : 0.0;
-  constexpr double by_far = 8.0;  // [sigma]: beyond any random error
   std::vector<int> rows;
-  for (std::size_t i = 0; i < off.size(); ++i)
-    if (off[i] > by_far * std::max({sd, 2.0 * sigma, 1e-6})) rows.push_back(pair.rows[i]);
+  for (std::size_t i = 0; i < pair.distance.size(); ++i)
+    if (std::abs(pair.distance[i] - typical) > thresholds::rigidity_sigmas * std::max({sd, 2.0 * sigma, 1e-6}))
+      rows.push_back(pair.rows[i]);
   if (!rows.empty())
     add_finding(state, {.kind = FindingKind::not_rigid,
                         .severity = Severity::warning,
                         .rows = rows,
-                        .sentence = fmt::format("the distance of {} is {:.3f} mm, but not in {}", which, 1e3 * typical,
-                                                describe_rows(rows)),
-                        .suggestion = "these rows hold a wrong point: measure them again or leave them out"});
-  else if (sigma > 0.0 && sd > by_far * sigma)
+                        .values = {{"targets", targets}, {"distance_m", typical}}});
+  else if (sigma > 0.0 && sd > thresholds::rigidity_sigmas * sigma)
     add_finding(state, {.kind = FindingKind::not_rigid,
                         .severity = Severity::warning,
-                        .sentence = fmt::format("the distance of {} changes by {:.3f} mm from row to row, more than "
-                                                "the instrument's {:.3f} mm can excuse",
-                                                which, 1e3 * sd, 1e3 * sigma),
-                        .suggestion = "fasten the targets, or let the arm come to rest before measuring"});
+                        .values = {{"targets", targets}, {"sd_m", sd}, {"sigma_m", sigma}}});
 }
 
 }  // namespace
 
 void check_joint_positions(DiagnosisState& state) {
   for (const JointExcitation& j : measure_joint_excitation(state.task.nominal, state.task.data)) {
-    const double needed =
-        j.is_revolute ? 5.0 * degree : 5e-3;  // sd; below, its parameters are nearly confounded with others
-    if (j.sd < needed)
-      add_finding(state,
-                  {.kind = FindingKind::joint_hardly_moves,
-                   .severity = Severity::warning,
-                   .sentence = fmt::format("{} hardly moves; its parameters cannot be determined", j.name),
-                   .suggestion = fmt::format("measure poses in which {} moves (kinfer plan proposes some)", j.name)});
+    if (j.sd < (j.is_revolute ? thresholds::min_excitation_angle : thresholds::min_excitation_length))
+      add_finding(
+          state,
+          {.kind = FindingKind::joint_hardly_moves, .severity = Severity::warning, .values = {{"joint", j.name}}});
   }
   check_limits(state);
 }
 
 void check_duplicate_rows(DiagnosisState& state) {
   const PoseSet& data = state.task.data;
-  const auto report = [&](FindingKind kind, const std::vector<int>& rows, std::string sentence) {
-    add_finding(state, {.kind = kind,
-                        .severity = Severity::warning,
-                        .rows = rows,
-                        .sentence = std::move(sentence),
-                        .suggestion = "measure these rows again or leave them out"});
-  };
   for (const auto& entry : group_equal_rows(measured_values(data))) {
     const std::vector<int>& rows = entry.second;  // clang 14 captures no structured binding
     const auto same_joints = [&](int row) { return data.joints.col(row) == data.joints.col(rows.front()); };
-    if (std::all_of(rows.begin(), rows.end(), same_joints))
-      report(
-          FindingKind::duplicate_rows, rows,
-          fmt::format("{} are copies of one another: the same joints and the same measurement", describe_rows(rows)));
-    else
-      report(FindingKind::measurement_repeated, rows,
-             fmt::format("{} hold the same measurement although the joints moved", describe_rows(rows)));
+    const bool copies = std::all_of(rows.begin(), rows.end(), same_joints);
+    add_finding(state, {.kind = copies ? FindingKind::duplicate_rows : FindingKind::measurement_repeated,
+                        .severity = Severity::warning,
+                        .rows = rows});
   }
 }
 
 void check_target_rigidity(DiagnosisState& state) {
   const PoseSet& data = state.task.data;
   for (const auto& [targets, pair] : target_pairs(data))
-    if (pair.rows.size() >= 4)
-      check_target_pair(
-          state, fmt::format("{} from {}", target_name(data, targets.second), target_name(data, targets.first)), pair);
+    if (pair.rows.size() >= thresholds::min_rigidity_rows)
+      check_target_pair(state, {target_name(data, targets.first), target_name(data, targets.second)}, pair);
 }
 
 }  // namespace kinfer::calibrate

@@ -10,8 +10,8 @@ namespace kinfer::calibrate {
 
 /// Another interpretation of the orientations of a file, with one entry per orientation of the data.
 struct OrientationInterpretation {
-  std::string words;       ///< "extrinsic ZYX angles in degrees"
-  std::string suggestion;  ///< what to change in the file
+  FactValues convention;  ///< "euler" ("ZYX extrinsic") and "unit" ("deg"); or "quaternions": inverse, scalar_last,
+                          ///< mirrored_x, mirrored_y, mirrored_z
   std::vector<OrientationMeasurement> orientations;
 };
 

@@ -5,15 +5,15 @@
 #include <cmath>
 #include <map>
 
+#include "kinfer/calibrate/diagnosis/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
 namespace {
 
 constexpr int no_shift = 0;  // shift of a correctly paired row
-constexpr int min_run = 4;   // rows in a run that suffice to accept a shift
-constexpr int largest_shift = 10;
 
 /// Joint positions of row i + shift paired with the measurements of row i; rows without a partner are omitted.
 PoseSet shifted_window(const PoseSet& data, int begin, int count, int shift) {
@@ -33,15 +33,14 @@ struct ReferenceModel {
 };
 
 std::optional<ReferenceModel> reference_from_all_rows(const CalibrationTask& task, double plausible_error) {
-  const auto fit = fit_frames_quickly(task.nominal, thin_pose_set(task.data, 80));
+  const auto fit = fit_frames_quickly(task.nominal, thin_pose_set(task.data, thresholds::reference_rows));
   if (!fit || fit->median_error > plausible_error) return std::nullopt;
-  constexpr double far_off = 8.0;  // times the median: beyond any Gaussian error
-  return ReferenceModel{fit->chain, std::max(plausible_error, far_off * fit->median_error)};
+  return ReferenceModel{fit->chain, std::max(plausible_error, thresholds::unpaired_ratio * fit->median_error)};
 }
 
 std::optional<ReferenceModel> reference_from_windows(const CalibrationTask& task, double plausible_error) {
   const auto count = static_cast<int>(task.data.rows());
-  const int width = std::clamp(count / 4, 8, 20), max_shift = std::min(largest_shift, count / 4);
+  const int width = std::clamp(count / 4, 8, 20), max_shift = std::min(thresholds::largest_shift, count / 4);
   std::optional<ReferenceModel> best;
   double best_typical = plausible_error;
   for (int begin = 0; begin + width <= count; begin += std::max(1, (count - width) / 3))
@@ -110,7 +109,8 @@ Run longest_run(const PairErrors& error, const Partners& partners, double limit,
       if (now.rows.empty()) now.shift = shift, now.begin = row, disagree = 0;
       now.rows.push_back(row);
       now.end = row + 1;
-    } else if (!now.rows.empty() && 5 * static_cast<std::size_t>(++disagree) > now.rows.size() + 4) {
+    } else if (!now.rows.empty() &&
+               thresholds::max_disagreeing * static_cast<std::size_t>(++disagree) > now.rows.size() + 4) {
       close();
     }
   }
@@ -132,23 +132,16 @@ void report_shift(DiagnosisState& state, const Run& run, const std::vector<int>&
   std::vector<int> rows = run.rows;
   rows.insert(rows.end(), lost.begin(), lost.end());
   std::sort(rows.begin(), rows.end());
-  const int by = std::abs(run.shift);
   const bool whole = rows.size() + 2 >= static_cast<std::size_t>(state.task.data.rows());
-  add_finding(
-      state,
-      {.kind = FindingKind::rows_shifted,
-       .severity = Severity::fault,
-       .rows = rows,
-       .sentence = fmt::format("{}the joint readings are shifted by {} row{} against the measurements: those of row i "
-                               "belong to the measurement of row i {} {}",
-                               whole ? "" : "in " + describe_rows(rows) + " ", by, by == 1 ? "" : "s",
-                               run.shift > 0 ? "-" : "+", by),
-       .suggestion = whole ? "pair the rows anew in the file" : "a row is missing or was taken twice where this begins",
-       .applied = true});
+  add_finding(state, {.kind = FindingKind::rows_shifted,
+                      .severity = Severity::fault,
+                      .rows = rows,
+                      .values = {{"shift", run.shift}, {"whole_set", whole ? 1 : 0}},
+                      .applied = true});
 }
 
 void find_shifts(DiagnosisState& state, const PairErrors& error, double limit, Partners& partners) {
-  const int count = static_cast<int>(partners.of.size()), max_shift = std::min(largest_shift, count / 4);
+  const int count = static_cast<int>(partners.of.size()), max_shift = std::min(thresholds::largest_shift, count / 4);
   for (;;) {
     Run best;
     for (int shift = -max_shift; shift <= max_shift; ++shift) {
@@ -156,7 +149,7 @@ void find_shifts(DiagnosisState& state, const PairErrors& error, double limit, P
       const Run run = longest_run(error, partners, limit, shift);
       if (run.rows.size() > best.rows.size()) best = run;
     }
-    if (static_cast<int>(best.rows.size()) < min_run) return;
+    if (static_cast<int>(best.rows.size()) < thresholds::min_shifted_run) return;
     for (int row = best.begin; row < best.end; ++row)
       partners.of[row] = row + best.shift, partners.explained[row] = true;
     const std::vector<int> lost = lost_rows(best, partners);
@@ -185,11 +178,7 @@ void find_swapped_rows(DiagnosisState& state, const PairErrors& error, double li
     const int other = only_partner(error, row, open, limit);
     if (other < 0 || partners.explained[other] || only_partner(error, other, open, limit) != row) continue;
     partners.explained[row] = partners.explained[other] = true;
-    add_finding(state, {.kind = FindingKind::rows_swapped,
-                        .severity = Severity::warning,
-                        .rows = {row, other},
-                        .sentence = fmt::format("the measurements of rows {} and {} are swapped", row, other),
-                        .suggestion = "exchange them in the file; as they are, calibrate does not believe them"});
+    add_finding(state, {.kind = FindingKind::rows_swapped, .severity = Severity::warning, .rows = {row, other}});
   }
 }
 
@@ -199,8 +188,8 @@ void find_moved_base(DiagnosisState& state, const ReferenceModel& reference, con
   std::vector<int> open;
   for (int row = 0; row < static_cast<int>(partners.of.size()); ++row)
     if (!partners.explained[row]) open.push_back(row);
-  constexpr std::size_t enough = 8;
-  if (open.size() < enough || open.back() - open.front() > 2 * static_cast<int>(open.size())) return;
+  if (open.size() < thresholds::min_moved_rows || open.back() - open.front() > 2 * static_cast<int>(open.size()))
+    return;
   PoseSet block = select(state.task.data, open);
   block.orientations.clear();
   const auto fit = fit_frames_quickly(state.task.nominal, block);
@@ -208,14 +197,10 @@ void find_moved_base(DiagnosisState& state, const ReferenceModel& reference, con
   std::vector<double> moved;
   for (const int row : open) moved.push_back(error(row, row));
   for (const int row : open) partners.explained[row] = true;
-  add_finding(state,
-              {.kind = FindingKind::base_moved,
-               .severity = Severity::fault,
-               .rows = open,
-               .sentence = fmt::format("in {} the tool is {:.1f} mm elsewhere, and one other place of base and tool "
-                                       "explains all of them: the robot, the instrument or the tool was moved",
-                                       describe_rows(open), 1e3 * median(moved)),
-               .suggestion = "give these rows a setup of their own in a column called setup"});
+  add_finding(state, {.kind = FindingKind::base_moved,
+                      .severity = Severity::fault,
+                      .rows = open,
+                      .values = {{"distance_m", median(moved)}}});
 }
 
 void apply_pairing(PoseSet& data, const std::vector<int>& partner) {
@@ -229,14 +214,18 @@ void apply_pairing(PoseSet& data, const std::vector<int>& partner) {
   const auto lost = [&](const auto& measurement) { return partner[measurement.row] < 0; };
   std::erase_if(data.points, lost);
   std::erase_if(data.orientations, lost);
+  std::erase_if(data.distances, lost);
+  std::erase_if(data.contacts, lost);
+  std::erase_if(data.plane_contacts, lost);
+  std::erase_if(data.tilts, lost);
+  std::erase_if(data.pairs, [&](const PairDistance& pair) { return lost(pair) || partner[pair.other] < 0; });
 }
 
 }  // namespace
 
 PairingEvaluated check_pairing(DiagnosisState& state) {
   const CalibrationTask& task = state.task;
-  constexpr int too_few = 8;
-  if (task.data.points.empty() || task.data.rows() < too_few) return PairingEvaluated::no;
+  if (task.data.points.empty() || task.data.rows() < thresholds::min_pairing_rows) return PairingEvaluated::no;
   const double plausible_error = max_plausible_error(task);
   auto reference = reference_from_all_rows(task, plausible_error);
   if (!reference) reference = reference_from_windows(task, plausible_error);
@@ -250,7 +239,10 @@ PairingEvaluated check_pairing(DiagnosisState& state) {
   const std::size_t findings_before = state.findings.size();
   find_shifts(state, error, reference->limit, partners);
   const auto explained = std::count(partners.explained.begin(), partners.explained.end(), true);
-  if (explained < (2 * task.data.rows()) / 5) {  // a run in which the faulty joint did not move fits by chance
+  if (explained <
+      static_cast<Eigen::Index>(
+          thresholds::min_explained_part *
+          static_cast<double>(task.data.rows()))) {  // a run in which the faulty joint did not move fits by chance
     state.findings.resize(findings_before);
     return PairingEvaluated::no;
   }

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 
+#include "kinfer/calibrate/fit/thresholds.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/parameters/population_prior.hpp"
 #include "kinfer/calibrate/start/initial_frames.hpp"
@@ -39,7 +40,7 @@ Tolerances scaled(const CalibrationTask& task, double factor) {
 
 Result<ParameterSet> select_parameter_set(const CalibrationTask& task, const PoseSet& rows,
                                           const ParameterChoice& choice, const Tolerances& tolerances) {
-  auto set = std::visit(
+  return std::visit(
       Overloaded{[&](const GeometricParameters&) -> Result<ParameterSet> {
                    return geometric_parameters(task.nominal, rows, tolerances);
                  },
@@ -49,8 +50,6 @@ Result<ParameterSet> select_parameter_set(const CalibrationTask& task, const Pos
                  [&](const PaperDhParameters&) { return paper_dh_parameters(task.nominal, tolerances); },
                  [&](const NamedParameters& named) { return named_parameters(task.nominal, tolerances, named.names); }},
       choice);
-  if (set) set->parameters.insert(set->parameters.end(), task.extra_parameters.begin(), task.extra_parameters.end());
-  return set;
 }
 
 bool has_free_frames(const ParameterSet& set, const ParameterChoice& choice) {
@@ -59,10 +58,11 @@ bool has_free_frames(const ParameterSet& set, const ParameterChoice& choice) {
                      [](const Parameter& p) { return p.at.owner == Owner::base; });
 }
 
-/// The frame of the file where the data agree with it within three tolerances, else the frame estimated from the data.
+/// The frame of the file where the data agree with it within `frame_agreement` tolerances, else the frame estimated
+/// from the data.
 Frame select_prior_tool(const Frame& file, const Frame& found, double tolerance) {
   Frame tool = found;
-  if ((file.xyz - found.xyz).norm() <= 3.0 * tolerance) tool.xyz = file.xyz;
+  if ((file.xyz - found.xyz).norm() <= thresholds::frame_agreement * tolerance) tool.xyz = file.xyz;
   return tool;
 }
 
@@ -79,11 +79,12 @@ Chain make_prior_mean(const Chain& nominal, const Chain& found, const Tolerances
   return centre;
 }
 
-/// Whether the data agree with the base of the file within three tolerances.
+/// Whether the data agree with the base of the file within `frame_agreement` tolerances.
 bool base_agrees_with_data(const CalibrationTask& task, const Chain& found) {
   const Frame &file = task.nominal.base, &data = found.base;
-  return (file.xyz - data.xyz).norm() <= 3.0 * task.tolerances.base_length &&
-         angle_between(file.pose().rotation, data.pose().rotation) <= 3.0 * task.tolerances.base_angle;
+  return (file.xyz - data.xyz).norm() <= thresholds::frame_agreement * task.tolerances.base_length &&
+         angle_between(file.pose().rotation, data.pose().rotation) <=
+             thresholds::frame_agreement * task.tolerances.base_angle;
 }
 
 double reach(const Chain& chain, const PoseSet& data) {
@@ -94,24 +95,21 @@ double reach(const Chain& chain, const PoseSet& data) {
 }
 
 Chain perturb(const Chain& start, const ParameterSet& set, Rng rng) {
-  constexpr double perturbation_length = 0.1,
-                   perturbation_angle = 20.0 * degree;  // [m], [rad]: LM converges from these errors
   VectorXd x = pack(set, start);
   const auto free = set.free();
   for (std::size_t k = 0; k < free.size(); ++k) {
     if (free[k]->at.owner != Owner::joint) continue;
     if (free[k]->quantity == Quantity::length)
-      x[static_cast<Eigen::Index>(k)] += perturbation_length * rng.uniform(-1, 1);
+      x[static_cast<Eigen::Index>(k)] += thresholds::perturbation_length * rng.uniform(-1, 1);
     if (free[k]->quantity == Quantity::angle)
-      x[static_cast<Eigen::Index>(k)] += perturbation_angle * rng.uniform(-1, 1);
+      x[static_cast<Eigen::Index>(k)] += thresholds::perturbation_angle * rng.uniform(-1, 1);
   }
   return unpack(set, start, x);
 }
 
 bool residuals_exceed_noise(const Estimate& estimate, const CalibrationTask& task) {
-  constexpr double ratio_limit = 2.0;  // [sigma]
   const double instrument_sigma = task.instrument ? task.instrument->sigma : 0.0;
-  return estimate.sigma > ratio_limit * instrument_sigma;
+  return estimate.sigma > thresholds::noise_ratio * instrument_sigma;
 }
 
 }  // namespace
@@ -128,7 +126,8 @@ Result<PreparedFit> prepare_fit(const CalibrationTask& task, const PoseSet& rows
   if (!has_free_frames(set, choice)) return with_priors(base_agrees_with_data(task, found) ? task.nominal : found, set);
   // Wrong joint offsets disturb the tool estimated from the data: accept the earlier tool with a wider tolerance.
   Tolerances prior_tolerances = tolerances;
-  if (std::holds_alternative<JointOffsetParameters>(choice)) prior_tolerances.tool_length *= 10.0;
+  if (std::holds_alternative<JointOffsetParameters>(choice))
+    prior_tolerances.tool_length *= thresholds::refit_tool_factor;
   return with_priors(found, with_prior_means_at(set, make_prior_mean(task.nominal, found, prior_tolerances)));
 }
 
@@ -152,17 +151,17 @@ Result<ScaledFit> fit_with_scaled_tolerances(const CalibrationTask& task, const 
   KINFER_TRY(as_given, fit_once(task, rows, choice, {}, observer));
   ScaledFit best{as_given, {}};
   if (!residuals_exceed_noise(as_given, task)) return best;
-  for (const double factor : {10.0, 100.0, 1000.0}) {
+  for (const double factor : thresholds::tolerance_factors) {
     KINFER_TRY(scaled_fit, fit_once(task, rows, choice, {factor}, observer));
     if (scaled_fit.negative_log_evidence < best.estimate.negative_log_evidence) best = {scaled_fit, {factor}};
   }
-  constexpr double unconverged = 2e-3;  // of the reach: a larger residual means that the fit has not converged
-  constexpr int starts = 20;
-  KINFER_TRY(prepared, prepare_fit(task, rows, choice, {1000.0}));
-  for (int i = 0; i < starts && best.estimate.sigma > unconverged * reach(prepared.start, rows); ++i) {
+  const ToleranceScale widest{std::end(thresholds::tolerance_factors)[-1]};
+  KINFER_TRY(prepared, prepare_fit(task, rows, choice, widest));
+  const double converged_residual = thresholds::unconverged_residual * reach(prepared.start, rows);
+  for (int i = 0; i < thresholds::random_starts && best.estimate.sigma > converged_residual; ++i) {
     const Chain start = perturb(prepared.start, prepared.parameters, rng.stream(i));
     const Estimate other = fit_bundle(start, prepared.parameters, rows, task.instrument, {}, observer);
-    if (other.negative_log_evidence < best.estimate.negative_log_evidence) best = {other, {1000.0}};
+    if (other.negative_log_evidence < best.estimate.negative_log_evidence) best = {other, widest};
   }
   return best;
 }

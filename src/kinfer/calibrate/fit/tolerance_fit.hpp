@@ -2,7 +2,11 @@
 // One least-squares fit of a robot to rows: initial frames from the data, priors, and the scale of the tolerances.
 #pragma once
 
-#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/base/observer.hpp"
+#include "kinfer/base/rng.hpp"
+#include "kinfer/calibrate/problem/options.hpp"
+#include "kinfer/calibrate/problem/task.hpp"
+#include "kinfer/evidence/estimate.hpp"
 
 namespace kinfer::calibrate {
 

@@ -36,7 +36,7 @@ JointParameters joint_parameters(const ParameterSet& set) {
 /// Square root R of the information matrix, RᵀR = covariance⁻¹: the transposed Cholesky factor of the inverse.
 MatrixXd information_root(const MatrixXd& covariance) {
   const auto inverse = invert_spd(covariance);
-  KINFER_EXPECT(inverse, "the tolerances make every fleet's covariance positive definite");
+  KINFER_EXPECT(inverse, "the tolerances make the covariance of every robot population positive definite");
   return cholesky(*inverse)->transpose();
 }
 
@@ -75,13 +75,6 @@ Chain with_joint_parameters_of(const Chain& chain, const Chain& earlier, const P
   for (const Parameter& parameter : set.parameters)
     if (parameter.at.owner == Owner::joint) set_value_at(result, parameter.at, value_at(earlier, parameter.at));
   return result;
-}
-
-bool have_same_joints(const Chain& a, const Chain& b) {
-  if (a.joints.size() != b.joints.size()) return false;
-  for (std::size_t j = 0; j < a.joints.size(); ++j)
-    if (a.joints[j].type != b.joints[j].type || a.joints[j].link.index() != b.joints[j].link.index()) return false;
-  return true;
 }
 
 }  // namespace kinfer::calibrate

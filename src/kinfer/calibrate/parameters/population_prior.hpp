@@ -12,15 +12,11 @@ namespace kinfer::calibrate {
 /// tolerances T (diagonal) counts as one more robot, so that a small population is not overweighted and the covariance
 /// is always positive definite:
 ///   mean = (nominal + Σ x_k) / (1 + K),   covariance = (T² + Σ (x_k − mean)(x_k − mean)ᵀ) / (1 + K)
-/// Base and tool belong to a set-up, not to the robot, and keep their priors. Each chain of `fleet` must have the
-/// joints that the set refers to.
+/// Base and tool belong to a set-up, not to the robot, and keep their priors. Each chain of `robot_population` must
+/// have the joints that the set refers to.
 ParameterSet with_population_prior(ParameterSet set, std::span<const Chain> robot_population);
 
 /// `chain` with the joint parameters of `earlier`; base and tool are kept. Both must have the same joints.
 Chain with_joint_parameters_of(const Chain& chain, const Chain& earlier, const ParameterSet& set);
-
-/// True when both chains have the same number of joints, of the same types and conventions, so that their parameters
-/// correspond.
-bool have_same_joints(const Chain& a, const Chain& b);
 
 }  // namespace kinfer::calibrate

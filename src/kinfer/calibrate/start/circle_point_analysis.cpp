@@ -5,17 +5,14 @@
 #include <cmath>
 #include <optional>
 
-#include "kinfer/base/angle.hpp"
 #include "kinfer/calibrate/start/initial_frames.hpp"
+#include "kinfer/calibrate/start/thresholds.hpp"
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::calibrate {
 namespace {
-
-constexpr double min_motion = 1e-4;        // [rad] or [m]: a joint that moves less counts as at rest
-constexpr double parallel = 5.0 * degree;  // axes closer to parallel have no well-defined perpendicular
 
 /// The measured tool point of each row; nullopt where it was not measured.
 std::vector<std::optional<Vec3>> tool_points(const PoseSet& data) {
@@ -38,7 +35,7 @@ double range(const PoseSet& data, const std::vector<int>& rows, Eigen::Index q_i
 std::vector<int> find_moving_joints(const PoseSet& data, const std::vector<int>& rows) {
   std::vector<int> moving;
   for (Eigen::Index k = 0; k < data.joints.rows(); ++k)
-    if (range(data, rows, k) > min_motion) moving.push_back(static_cast<int>(k));
+    if (range(data, rows, k) > thresholds::min_motion) moving.push_back(static_cast<int>(k));
   return moving;
 }
 
@@ -49,8 +46,9 @@ Result<std::vector<Sweep>> read_marked_sweeps(const PoseSet& data) {
   for (Eigen::Index row = 0; row < data.rows(); ++row)
     if (data.sweep[row] >= 0 && points[row]) sweeps[data.sweep[row]].rows.push_back(static_cast<int>(row));
   for (Sweep& sweep : sweeps) {
-    if (sweep.rows.size() < 4)
-      return error("sweep {} has {} measured points; a circle needs at least 4", sweep.name, sweep.rows.size());
+    if (sweep.rows.size() < thresholds::min_marked_points)
+      return error("sweep {} has {} measured points; a circle needs at least {}", sweep.name, sweep.rows.size(),
+                   thresholds::min_marked_points);
     const std::vector<int> moving = find_moving_joints(data, sweep.rows);
     if (moving.size() != 1)
       return error("sweep {} moves {} joints; expected one joint alone", sweep.name, moving.size());
@@ -60,16 +58,14 @@ Result<std::vector<Sweep>> read_marked_sweeps(const PoseSet& data) {
 }
 
 std::vector<Sweep> find_single_joint_runs(const PoseSet& data) {
-  constexpr std::size_t fewest = 5;
-  constexpr double least = 10.0 * degree;
   const auto points = tool_points(data);
   std::vector<Sweep> sweeps;
   std::vector<int> run;
   const auto close = [&] {
-    if (run.size() >= fewest) {
+    if (run.size() >= thresholds::min_run_rows) {
       const std::vector<int> moving = find_moving_joints(data, run);
-      if (moving.size() == 1 && range(data, run, moving.front()) >= least)
-        sweeps.push_back({fmt::format("rows {} to {}", run.front(), run.back()), moving.front(), run});
+      if (moving.size() == 1 && range(data, run, moving.front()) >= thresholds::min_run_motion)
+        sweeps.push_back({"", moving.front(), run});
     }
     run.clear();
   };
@@ -163,7 +159,7 @@ std::optional<SweepPair> select_base_pair(const std::vector<SweepCircle>& circle
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return circles[a].q_index < circles[b].q_index; });
   for (std::size_t i = 0; i < order.size(); ++i)
     for (std::size_t k = i + 1; k < order.size(); ++k)
-      if (circles[order[i]].axis.cross(circles[order[k]].axis).norm() > std::sin(parallel))
+      if (circles[order[i]].axis.cross(circles[order[k]].axis).norm() > std::sin(thresholds::parallel_axes))
         return SweepPair{order[i], order[k]};
   return std::nullopt;
 }
@@ -196,19 +192,21 @@ Vec3 mean_tool_point(const Chain& chain, const PoseSet& data) {
   return sum / count;
 }
 
+/// For an error: the name in the file, or the rows.
+std::string label(const Sweep& sweep) {
+  return sweep.name.empty() ? fmt::format("rows {} to {}", sweep.rows.front(), sweep.rows.back()) : sweep.name;
+}
+
 void estimate_tool(FrameEstimate& found, const PoseSet& data, const std::vector<Sweep>& sweeps) {
   const int wanted = static_cast<int>(data.joints.rows()) - 2;
   found.chain.tool.xyz = mean_tool_point(found.chain, data);
   found.tool_length = found.chain.tool.xyz.z();
-  found.tool_source = "no sweep of the last joint but one";
   for (std::size_t i = 0; i < sweeps.size(); ++i) {
     if (sweeps[i].q_index != wanted) continue;
     const auto length = tool_length(found.chain, data, sweeps[i], found.sweeps[i].radius);
-    found.tool_source = fmt::format("radius of the sweep of joint {}", found.sweeps[i].joint);
-    if (!length)
-      found.tool_source += " does not fit a tool on the flange's axis";
-    else
-      found.tool_length = *length;
+    found.tool_joint = found.sweeps[i].joint;
+    found.tool_length_source = length ? ToolLengthSource::sweep_radius : ToolLengthSource::radius_without_fit;
+    if (length) found.tool_length = *length;
     return;
   }
 }
@@ -236,6 +234,7 @@ SweepCircle fit_sweep(const Chain& nominal, const PoseSet& data, const Sweep& sw
   const CircleFit fit = fit_circle(points);
   SweepCircle circle;
   circle.name = sweep.name;
+  circle.first_row = sweep.rows.front(), circle.last_row = sweep.rows.back();
   circle.q_index = sweep.q_index;
   circle.joint = nominal.joints[active_joints(nominal)[sweep.q_index]].name;
   circle.rows = static_cast<int>(points.size());
@@ -255,7 +254,7 @@ Result<FrameEstimate> estimate_frames_from_circles(const Chain& nominal, const P
   found.chain = nominal;
   for (const Sweep& sweep : sweeps) {
     if (nominal.joints[active_joints(nominal)[sweep.q_index]].type != JointType::revolute)
-      return error("sweep {} moves a prismatic joint; circles need revolute ones", sweep.name);
+      return error("sweep {} moves a prismatic joint; circles need revolute ones", label(sweep));
     found.sweeps.push_back(fit_sweep(nominal, data, sweep));
   }
   const auto pair = select_base_pair(found.sweeps);
@@ -270,7 +269,7 @@ Result<FrameEstimate> estimate_frames_from_circles(const Chain& nominal, const P
   const Pose base_T_pair = frame_from_axes(predicted_axis(in_base, data, sweeps[pair->first]),
                                            predicted_axis(in_base, data, sweeps[pair->second]));
   found.chain.base = Frame::from_pose(world_T_pair * base_T_pair.inverse());
-  found.base_source = fmt::format("joint {} and joint {}", first.joint, second.joint);
+  found.base_joints = {first.joint, second.joint};
   estimate_tool(found, data, sweeps);
   for (std::size_t i = 0; i < sweeps.size(); ++i) {
     const Line axis = predicted_axis(found.chain, data, sweeps[i]);

@@ -19,7 +19,7 @@ namespace kinfer::calibrate {
 
 /// Rows in which one joint alone moves.
 struct Sweep {
-  std::string name;
+  std::string name;  ///< as marked in the file; empty: found by its rows
   int q_index = 0;
   std::vector<int> rows;
 };

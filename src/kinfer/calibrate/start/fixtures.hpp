@@ -20,8 +20,8 @@ struct DataWithFixtures {
 /// file lacks.
 Result<DataWithFixtures> with_fixtures(const Chain& chain, const PoseSet& data);
 
-/// `chain` with the sockets and planes that no row of `seen` touches re-estimated from `judged`: sockets at the mean
-/// tool point, planes fitted to the tool points.
+/// `chain` with the sockets and planes that no row of `fitted_rows` touches re-estimated from `evaluated`: sockets at
+/// the mean tool point, planes fitted to the tool points.
 Chain with_unfitted_fixtures(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& evaluated);
 
 /// `chain` with all sockets and planes initialised from its predicted tool points, as the start of a fit.

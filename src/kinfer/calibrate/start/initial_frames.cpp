@@ -7,6 +7,7 @@
 
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
+#include "kinfer/calibrate/start/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
@@ -42,15 +43,15 @@ Chain with_aligned_base(Chain chain, const PoseSet& data, const std::vector<Pose
 Chain with_aligned_rotations(Chain chain, const PoseSet& data, const std::vector<Pose>& base_T_flange) {
   std::vector<Vec3> in_world, in_base;
   const auto& all = data.orientations;
-  const std::size_t stride =
-      std::max<std::size_t>(1, all.size() / 60);  // enough pairs; their number grows with the square
+  const std::size_t stride = std::max<std::size_t>(
+      1, all.size() / thresholds::paired_orientations);  // enough pairs; their number grows with the square
   for (std::size_t i = 0; i < all.size(); i += stride)
     for (std::size_t j = 0; j < i; j += stride) {
       const Mat3 seen = all[i].orientation.toRotationMatrix() * all[j].orientation.toRotationMatrix().transpose();
       const Mat3 predicted_rotation =
           base_T_flange[all[i].row].rotation * base_T_flange[all[j].row].rotation.transpose();
       const Vec3 seen_vector = log_so3(seen), made_vector = log_so3(predicted_rotation);
-      if (seen_vector.norm() > 3.0 || made_vector.norm() > 3.0) continue;  // near 180° the sign is arbitrary
+      if (std::max(seen_vector.norm(), made_vector.norm()) > thresholds::max_relative_rotation) continue;
       in_world.push_back(seen_vector);
       in_base.push_back(made_vector);
     }
@@ -196,7 +197,7 @@ Result<void> check_enough_measurements(const PoseSet& data) {
 
 /// A subset for the start: points and orientations of a few hundred rows determine a frame as well as all of them.
 PoseSet subset_for_start(const PoseSet& data) {
-  constexpr Eigen::Index most = 300;
+  constexpr Eigen::Index most = thresholds::start_rows;
   const bool further = data.contacts.size() + data.distances.size() + data.pairs.size() + data.plane_contacts.size() +
                            data.tilts.size() >
                        0;

@@ -6,9 +6,10 @@
 #include <numbers>
 
 #include "kinfer/base/parallel.hpp"
-#include "kinfer/calibrate/diagnosis/diagnosis_state.hpp"
+#include "kinfer/calibrate/start/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -80,8 +81,7 @@ RefinedChain refine_chain(Chain chain, const PoseSet& data, double size, int rou
     chain = unpack(set, from, least_squares(pose_residuals(from, set, data, weights), pack(set, from), options).x);
     const double before = median_error;
     median_error = median(point_errors(chain, data));
-    constexpr int patience = 6;  // rounds that a start may take to converge
-    if (round > patience && median_error > 0.999 * before) break;
+    if (round > thresholds::refinement_patience && median_error > 0.999 * before) break;
   }
   return {with_small_rotations_folded(chain), median_error};
 }
@@ -131,41 +131,37 @@ Result<LocalPoeFit> fit_local_poe(const std::vector<JointType>& types, const Pos
         "{} positions are too few to find a robot of {} joints; at least {} are needed (twice as many are better)",
         data.points.size(), types.size(), (unknowns + unknowns / 4) / 3 + 1);
   const double size = rms_spread(data);
-  const std::size_t rows = std::max<std::size_t>(40, 2 * unknowns);  // enough to tell a right optimum from a wrong one
+  const std::size_t rows = std::max<std::size_t>(thresholds::min_start_rows, 2 * unknowns);
   PoseSet some = thin_pose_set(data, rows);
   if (!data.orientations.empty() && static_cast<std::size_t>(data.rows()) <= rows) some = data;
 
-  constexpr std::size_t batch = 8, most_batches = 8;
-  constexpr double explained = 0.01;  // of the spread
+  const double solution_error = thresholds::explained_spread * size;  // [m]
   std::vector<RefinedChain> all;
   RefinedChain best;
   const auto agreeing = [&] {
     return static_cast<int>(std::count_if(all.begin(), all.end(), [&](const RefinedChain& f) {
-      return f.median_error <= 1.2 * best.median_error + 1e-9;
+      return f.median_error <= thresholds::agreeing_ratio * best.median_error + 1e-9;
     }));
   };
-  for (std::size_t b = 0; b < most_batches; ++b) {
-    std::vector<RefinedChain> found(batch);
-    parallel_for(batch, threads, [&](std::size_t i) {
-      constexpr int rounds = 20;
-      found[i] =
-          refine_chain(draw_random_chain(template_chain, some, size, rng.stream(b).stream(i)), some, size, rounds);
+  for (std::size_t b = 0; b < thresholds::max_batches; ++b) {
+    std::vector<RefinedChain> found(thresholds::starts_per_batch);
+    parallel_for(found.size(), threads, [&](std::size_t i) {
+      const Chain start = draw_random_chain(template_chain, some, size, rng.stream(b).stream(i));
+      found[i] = refine_chain(start, some, size, thresholds::refinement_rounds);
     });
     all.insert(all.end(), found.begin(), found.end());
     best = *std::min_element(all.begin(), all.end(), [](const RefinedChain& x, const RefinedChain& y) {
       return x.median_error < y.median_error;
     });
-    constexpr int enough = 3;  // so many starts do not agree by chance
-    if (best.median_error < explained * size && agreeing() >= enough) break;
+    if (best.median_error < solution_error && agreeing() >= thresholds::enough_agreeing) break;
   }
-  if (!(best.median_error < explained * size))
+  if (!(best.median_error < solution_error))
     return error(
         "no robot with these joint types fits the points: the best of {} random starts leaves {:.1f} mm; check the "
         "joint types, and that the joint positions belong to the measurements",
         all.size(), 1e3 * best.median_error);
-  constexpr int final_rounds = 10;
   const int same = agreeing();
-  const RefinedChain last = refine_chain(best.chain, data, size, final_rounds);
+  const RefinedChain last = refine_chain(best.chain, data, size, thresholds::final_rounds);
   return LocalPoeFit{last.chain, last.median_error, static_cast<int>(all.size()), same};
 }
 

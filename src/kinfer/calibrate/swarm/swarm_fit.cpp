@@ -10,12 +10,15 @@
 namespace kinfer::calibrate {
 namespace {
 
-double half_width(const Parameter& parameter, const SwarmSearchOptions& options) {
-  constexpr double default_half_width = 5.0;  // gains and compliances: not in the paper
-  if (options.box_tolerances > 0.0) return options.box_tolerances * parameter.scale;
-  if (parameter.quantity == Quantity::length) return options.box_length;
-  if (parameter.quantity == Quantity::angle) return options.box_angle;
-  return default_half_width * parameter.scale;
+constexpr double other_half_width = 5.0;  // [tolerances] of gains and compliances: not in the paper
+constexpr double compact_width = 0.1;     // [1] of the box
+
+double half_width(const Parameter& parameter, const SearchBox& box) {
+  if (const auto* tolerances = std::get_if<ToleranceBox>(&box)) return tolerances->tolerances * parameter.scale;
+  const AbsoluteBox& absolute = std::get<AbsoluteBox>(box);
+  if (parameter.quantity == Quantity::length) return absolute.length;
+  if (parameter.quantity == Quantity::angle) return absolute.angle;
+  return other_half_width * parameter.scale;
 }
 
 /// Eq. (11), plus the prior's squares (scaled by the measurement variance) where there is a population prior.
@@ -57,11 +60,6 @@ SearchOptions with_initial_swarm(SearchOptions search, const CalibrationTask& ta
   return search;
 }
 
-std::string method_name(const SearchOptions& search) {
-  constexpr std::string_view names[] = {"pso", "qpso", "bpnn-pso"};
-  return std::string(names[search.index()]);
-}
-
 /// The estimate that a least-squares fit without any iteration returns at x: covariance, errors and identifiability.
 Estimate estimate_at(const CalibrationTask& task, const PreparedFit& prepared, const PoseSet& rows, ConstVectorRef x) {
   const Chain chain = unpack(prepared.parameters, prepared.start, x);
@@ -71,7 +69,7 @@ Estimate estimate_at(const CalibrationTask& task, const PreparedFit& prepared, c
 
 SearchSummary summarise_search(const SearchOutcome& outcome, const SearchOptions& options) {
   SearchSummary search;
-  search.method = method_name(options);
+  search.method = method(options);
   search.iterations = outcome.iterations;
   search.evaluations = static_cast<int>(outcome.evaluations);
   search.stop = outcome.stop;
@@ -101,7 +99,7 @@ Bounds make_search_box(const PreparedFit& prepared, const SwarmSearchOptions& op
   for (std::size_t k = 0; k < free.size(); ++k) {
     const bool is_joint_parameter = free[k]->at.owner == Owner::joint;
     centre[k] = is_joint_parameter ? free[k]->nominal : value_at(prepared.start, free[k]->at);
-    half[k] = half_width(*free[k], options);
+    half[k] = half_width(*free[k], options.box);
   }
   return {centre - half, centre + half};
 }
@@ -138,30 +136,31 @@ Result<std::vector<SearchRun>> swarm_comparison(const CalibrationTask& task, con
       sum_of_squares(least_squares, rows) + static_cast<double>(problem.points) * paper_excess * paper_excess;
 
   std::vector<SearchRun> runs;
-  const auto run = [&](const std::string& name, const MatrixXd& initial) {
+  const auto run = [&](InitialSwarm swarm, const MatrixXd& initial) {
     pso.initial = initial;
     const SearchOutcome outcome = particle_swarm(problem.objective, pso, rng.stream(1), observer);
-    runs.push_back({name, iterations_until(outcome.best, pso.budget.target_cost), static_cast<int>(outcome.evaluations),
+    runs.push_back({swarm, iterations_until(outcome.best, pso.budget.target_cost),
+                    static_cast<int>(outcome.evaluations),
                     std::sqrt(outcome.cost / static_cast<double>(problem.points))});
   };
   const MatrixXd uniform = uniform_swarm(box, pso.particles, rng.stream(0));
-  run("cold", uniform);
-  run("nominal swarm", draw_compact_swarm(box, pso.particles, rng.stream(0)));
+  run(InitialSwarm::uniform, uniform);
+  run(InitialSwarm::compact, draw_compact_swarm(box, pso.particles, rng.stream(0)));
   if (task.earlier)
-    run("warm start", draw_warm_swarm(box, pso.particles, pack(prepared.parameters, prepared.start), rng.stream(0)));
-  if (bpnn && bpnn->net) run("net", predict(*bpnn->net, uniform));
+    run(InitialSwarm::warm,
+        draw_warm_swarm(box, pso.particles, pack(prepared.parameters, prepared.start), rng.stream(0)));
+  if (bpnn && bpnn->net) run(InitialSwarm::network, predict(*bpnn->net, uniform));
   return runs;
 }
 
 MatrixXd draw_compact_swarm(const Bounds& box, int particles, Rng rng) {
-  constexpr double width = 0.1;  // of the box
   const VectorXd centre = box.center();
-  return (width * (uniform_swarm(box, particles, rng).colwise() - centre)).colwise() + centre;
+  return (compact_width * (uniform_swarm(box, particles, rng).colwise() - centre)).colwise() + centre;
 }
 
-MatrixXd draw_warm_swarm(const Bounds& box, int particles, ConstVectorRef remembered, Rng rng) {
+MatrixXd draw_warm_swarm(const Bounds& box, int particles, ConstVectorRef known, Rng rng) {
   MatrixXd swarm = uniform_swarm(box, particles, rng);
-  swarm.col(0) = remembered;
+  swarm.col(0) = known;
   return swarm;
 }
 

@@ -34,8 +34,8 @@ Result<std::vector<SearchRun>> swarm_comparison(const CalibrationTask& task, con
 /// Uniformly drawn particles, contracted about the box's centre to a tenth of its width.
 MatrixXd draw_compact_swarm(const Bounds& box, int particles, Rng rng);
 
-/// Uniformly drawn particles, the first of them replaced by `remembered`.
-MatrixXd draw_warm_swarm(const Bounds& box, int particles, ConstVectorRef remembered, Rng rng);
+/// Uniformly drawn particles, the first of them replaced by `known`.
+MatrixXd draw_warm_swarm(const Bounds& box, int particles, ConstVectorRef known, Rng rng);
 
 /// First iteration whose best cost is not above the target; −1: none.
 int iterations_until(const std::vector<double>& best, double target);

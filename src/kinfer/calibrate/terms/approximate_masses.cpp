@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
+#include "kinfer/calibrate/terms/thresholds.hpp"
 #include "kinfer/kinematics/forward.hpp"
 
 namespace kinfer::calibrate {
 
 Chain with_approximate_masses(Chain chain) {
-  constexpr double per_metre = 15.0, least = 1.0, at_tool = 2.0;  // [kg/m], [kg], [kg]
   const std::vector<Pose> frames = joint_frames(chain, VectorXd::Zero(dof(chain)));
   for (std::size_t j = 0; j < chain.joints.size(); ++j) {
     // The link after joint j ends at the next joint's frame; for a DH row it ends at the row's own frame.
@@ -23,9 +23,10 @@ Chain with_approximate_masses(Chain chain) {
           frame.inverse() * (chain.joints[j].parent >= 0 ? frames[chain.joints[j].parent] : chain.base.pose()).position;
     else if (child < chain.joints.size())
       far = frame.inverse() * frames[child].position;
-    chain.masses.push_back({static_cast<int>(j), 0.5 * far, std::max(least, per_metre * far.norm())});
+    chain.masses.push_back(
+        {static_cast<int>(j), 0.5 * far, std::max(thresholds::min_link_mass, thresholds::mass_per_metre * far.norm())});
   }
-  if (chain.tip_joint() >= 0) chain.masses.push_back({chain.tip_joint(), chain.tool.xyz, at_tool});
+  if (chain.tip_joint() >= 0) chain.masses.push_back({chain.tip_joint(), chain.tool.xyz, thresholds::tool_mass});
   return chain;
 }
 

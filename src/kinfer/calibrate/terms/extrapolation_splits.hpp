@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "kinfer/calibrate/terms/thresholds.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 #include "kinfer/measurement/split.hpp"
 
@@ -13,6 +14,6 @@ namespace kinfer::calibrate {
 /// (each standardised), and each half is held out once. Random folds test interpolation between the fitted poses,
 /// these splits test extrapolation beyond them. None where fewer than `fewest` rows would be left to fit. `select`
 /// drops ball-bar measurements whose two rows fall on different sides of a split.
-std::vector<Split> extrapolation_splits(const PoseSet& data, int fewest = 15);
+std::vector<Split> extrapolation_splits(const PoseSet& data, int fewest = thresholds::min_extrapolation_rows);
 
 }  // namespace kinfer::calibrate

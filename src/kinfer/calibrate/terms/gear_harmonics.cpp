@@ -11,8 +11,6 @@
 namespace kinfer::calibrate {
 namespace {
 
-constexpr double lowest_order = 3.0, highest_order = 260.0;
-
 /// One measured point, in units of the noise: with J the derivative of the point by the joint angle and r the residual,
 /// weight = JᵀJ and along = Jᵀr.
 struct Sample {
@@ -92,9 +90,9 @@ void remove(std::vector<Sample>& samples, double order) {
 /// The strongest line on a grid of orders with this step.
 SpectralLine strongest(const std::vector<Sample>& samples, int joint, double step) {
   SpectralLine best{joint, 0.0, 0.0};
-  Wave wave(samples, lowest_order);
+  Wave wave(samples, thresholds::lowest_order);
   const Wave by(samples, step);
-  for (double order = lowest_order; order <= highest_order; order += step, wave.advance(by))
+  for (double order = thresholds::lowest_order; order <= thresholds::highest_order; order += step, wave.advance(by))
     if (const double reduction = fit_wave(samples, wave).improvement; reduction > best.improvement)
       best = {joint, order, reduction};
   return best;
@@ -105,8 +103,8 @@ std::vector<SpectralLine> lines_of_joint(std::vector<Sample> samples, int joint,
   const auto [low, high] = std::minmax_element(samples.begin(), samples.end(),
                                                [](const Sample& a, const Sample& b) { return a.angle < b.angle; });
   const double range = high->angle - low->angle;
-  if (range < 0.5) return lines;
-  const double step = std::min(1.0, 0.25 * 2.0 * std::numbers::pi / range);
+  if (range < thresholds::min_spectrum_range) return lines;
+  const double step = std::min(1.0, thresholds::order_step * 2.0 * std::numbers::pi / range);
   while (static_cast<int>(lines.size()) < most) {
     SpectralLine best = strongest(samples, joint, step);
     for (double fine_step = 0.5 * step; fine_step > 1e-3; fine_step *= 0.5)
@@ -114,7 +112,7 @@ std::vector<SpectralLine> lines_of_joint(std::vector<Sample> samples, int joint,
         if (const double by = improvement_by(samples, order); by > best.improvement) best = {joint, order, by};
     if (best.improvement < threshold) break;
     const double whole = std::round(best.order);  // gears have integer numbers of teeth; most lines have integer orders
-    if (improvement_by(samples, whole) > 0.97 * best.improvement) best.order = whole;
+    if (improvement_by(samples, whole) > thresholds::integer_order_ratio * best.improvement) best.order = whole;
     lines.push_back(best);
     remove(samples, best.order);
   }
@@ -125,16 +123,15 @@ std::vector<SpectralLine> lines_of_joint(std::vector<Sample> samples, int joint,
 
 std::vector<SpectralLine> find_gear_harmonics(const Estimate& fitted, const PoseSet& rows, int most) {
   std::vector<SpectralLine> lines;
-  constexpr std::size_t fewest = 60;  // points: too few below that for a spectrum
-  if (rows.points.size() < fewest || !(fitted.sigma > 0.0)) return lines;
+  if (rows.points.size() < thresholds::min_spectrum_points || !(fitted.sigma > 0.0)) return lines;
   const std::vector<int> moving = active_joints(fitted.chain);
   // For pure noise the improvement is χ² with two degrees of freedom; its maximum over n lines is about 2 ln n.
-  const double tried = highest_order * 4.0 * static_cast<double>(moving.size());
-  const double threshold = 2.0 * std::log(tried) + 20.0;
+  const double tried = thresholds::highest_order * 4.0 * static_cast<double>(moving.size());
+  const double threshold = 2.0 * std::log(tried) + thresholds::spectral_margin;
   for (std::size_t k = 0; k < moving.size(); ++k) {
     if (fitted.chain.joints[moving[k]].type != JointType::revolute) continue;
     const auto samples = samples_of(fitted, rows, moving[k], static_cast<int>(k));
-    if (samples.size() < fewest) continue;
+    if (samples.size() < thresholds::min_spectrum_points) continue;
     const auto found = lines_of_joint(samples, moving[k], threshold, most);
     lines.insert(lines.end(), found.begin(), found.end());
   }

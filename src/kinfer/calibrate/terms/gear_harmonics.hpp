@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "kinfer/calibrate/terms/thresholds.hpp"
 #include "kinfer/evidence/estimate.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
@@ -18,6 +19,7 @@ struct SpectralLine {
 
 /// The statistically significant lines, strongest first, at most `most`. Orders from 3 per revolution up to those of
 /// motors with high gear ratios are tested, in steps that the joint's range can resolve. Point residuals only.
-std::vector<SpectralLine> find_gear_harmonics(const Estimate& fitted, const PoseSet& rows, int most = 12);
+std::vector<SpectralLine> find_gear_harmonics(const Estimate& fitted, const PoseSet& rows,
+                                              int most = thresholds::max_spectral_lines);
 
 }  // namespace kinfer::calibrate

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Forward model selection: geometry first, then each group of non-geometric terms that improves held-out errors.
 //
-// A group is accepted when the mean held-out error falls significantly, the largest held-out error does not rise, and
-// the model does not extrapolate worse: it is fitted to one half of the poses, split along a principal direction of the
-// joint positions, and evaluated on the other half. Terms that only interpolate would spoil poses outside the excited
-// joint ranges. Training errors always fall and are not a criterion.
+// Extrapolation is tested by fitting one half of the poses, split along a principal direction of the joint positions,
+// and evaluating the other half: terms that only interpolate would spoil poses outside the excited joint ranges.
 #pragma once
 
-#include "kinfer/calibrate/validation/validation_errors.hpp"
+#include "kinfer/base/observer.hpp"
+#include "kinfer/calibrate/problem/options.hpp"
+#include "kinfer/evidence/estimate.hpp"
+#include "kinfer/measurement/split.hpp"
 
 namespace kinfer::calibrate {
 
@@ -18,10 +19,10 @@ struct SelectedModel {
   std::vector<Outlier> gross_errors;  ///< rows with gross errors, excluded from the evaluation of every model
 };
 
-/// Starts from `geometry`, the fit to all `rows`; `splits` are of these rows. CrossValidatedModel tests every group of
-/// terms, FixedModel takes exactly the named ones, regardless of the held-out errors.
+/// Starts from `geometry`, the fit to all `rows`; `splits` are of these rows. CrossValidatedModel tests every term,
+/// FixedModel takes exactly its own, regardless of the held-out errors.
 SelectedModel select_model(const CalibrationTask& task, const PoseSet& rows, const Estimate& geometry,
-                           const std::vector<Split>& splits, const CalibrationOptions& options,
-                           const Observer& observer);
+                           const std::vector<Split>& splits, const ModelChoice& model, int threads,
+                           const Observer& observer = {});
 
 }  // namespace kinfer::calibrate

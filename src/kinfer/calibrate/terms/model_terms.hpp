@@ -2,28 +2,40 @@
 // Non-geometric model terms: the candidates for model selection, each with the parameters that it frees.
 #pragma once
 
-#include <string>
+#include <span>
 #include <vector>
 
-#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/evidence/estimate.hpp"
+#include "kinfer/evidence/model_selection.hpp"
+#include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer::calibrate {
 
-/// A group of parameters that are accepted or rejected together.
+/// A candidate: the chain with the structure that the term adds, and the parameters that it frees.
 struct ModelTerm {
-  std::string name{};         ///< "gravity"
-  std::string description{};  ///< description
-  Chain nominal{};            ///< the chain with the added structure (harmonics, couplings, masses), values zero
-  std::vector<Parameter> parameters{};  ///< the parameters that it frees, with priors about zero or the file's value
-  std::string skipped{};                ///< why it cannot be tested with these data; empty: it can
+  Chain nominal{};                          ///< with the added structure (harmonics, couplings, masses), values zero
+  std::vector<Parameter> parameters{};      ///< with priors about zero or the file's value
+  MissingData missing = MissingData::none;  ///< why it cannot be tested with these data
+  bool masses_approximate = false;
 };
 
-/// Names of all non-geometric terms, in the order in which they are tested.
-std::vector<std::string> model_term_names();
+/// What a term is made from.
+struct TermInputs {
+  const Tolerances& tolerances;
+  const PoseSet& rows;
+  const Estimate& fitted;  ///< the best fit so far; the gear spectrum is computed from its residuals
+};
 
-/// The term of that name on top of `nominal`, for these rows. `fitted` is the best fit so far; the gear spectrum is
-/// computed from its residuals.
-ModelTerm make_model_term(const Chain& nominal, const std::string& name, const CalibrationTask& task,
-                          const PoseSet& rows, const Estimate& fitted);
+/// One row per term; a new term is a new row here, its name in evidence, its words in words.
+struct TermMaker {
+  Term term;
+  ModelTerm (*make)(const Chain& nominal, const TermInputs& inputs);
+};
+
+/// In the order in which the terms are tested.
+std::span<const TermMaker> term_makers();
+
+/// The term on top of `nominal`.
+ModelTerm make_model_term(Term term, const Chain& nominal, const TermInputs& inputs);
 
 }  // namespace kinfer::calibrate

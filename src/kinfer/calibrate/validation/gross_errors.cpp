@@ -5,10 +5,12 @@
 #include <map>
 #include <set>
 
+#include "kinfer/calibrate/validation/thresholds.hpp"
+
 namespace kinfer::calibrate {
 namespace {
 
-/// Largest error of each row, of the primary kind of measurement [m], for a chain that was fitted to `seen`.
+/// Largest error of each row, of the primary kind of measurement [m], for a chain that was fitted to `fitted_rows`.
 std::map<int, double> errors_by_row(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& rows) {
   std::map<int, double> largest;
   const std::vector<double> errors = primary_errors(chain, fitted_rows, rows);
@@ -30,37 +32,33 @@ Result<std::vector<Outlier>> find_gross_errors(const CalibrationTask& task, cons
 
 std::vector<Outlier> gross_errors_of_both_models(const Estimate& geometry, const Estimate& richest,
                                                  const PoseSet& rows) {
-  constexpr double sigma_limit = 11.0;  // [sigma]: twice the largest residual by chance among a thousand valid rows
-  constexpr double error_ratio = 0.5;
   std::vector<Outlier> gross_errors;
   if (richest.outliers.empty()) return gross_errors;
   const std::map<int, double> geometric_errors = errors_by_row(geometry.chain, rows, rows),
                               richest_errors = errors_by_row(richest.chain, rows, rows);
   for (const Outlier& outlier : richest.outliers)
-    if (outlier.sigmas > sigma_limit && richest_errors.contains(outlier.row) &&
-        geometric_errors.at(outlier.row) >= error_ratio * richest_errors.at(outlier.row))
+    if (outlier.sigmas > thresholds::gross_sigmas && richest_errors.contains(outlier.row) &&
+        geometric_errors.at(outlier.row) >= thresholds::geometric_error_ratio * richest_errors.at(outlier.row))
       gross_errors.push_back(outlier);
   return gross_errors;
 }
 
 std::vector<Outlier> without_explained_rows(const std::vector<Outlier>& gross_errors, const Estimate& chosen,
                                             const PoseSet& fitted, const PoseSet& data) {
-  constexpr double explained_sigmas = 4.0;  // [sigma]: exceeded by chance by one point in a thousand
   const std::map<int, double> error = errors_by_row(chosen.chain, fitted, data);
   std::vector<Outlier> left = gross_errors;
   std::erase_if(left, [&](const Outlier& outlier) {
-    return error.contains(outlier.row) && error.at(outlier.row) <= explained_sigmas * chosen.sigma;
+    return error.contains(outlier.row) && error.at(outlier.row) <= thresholds::explained_sigmas * chosen.sigma;
   });
   return left;
 }
 
 ExcludedRows select_excluded_rows(const std::vector<Outlier>& gross_errors, const ValidationPlan& plan) {
   std::set<int> held_out, rows;
-  for (const Split& split : plan.proofs) held_out.insert(split.holdout.begin(), split.holdout.end());
+  for (const Split& split : plan.validation_splits) held_out.insert(split.holdout.begin(), split.holdout.end());
   for (const Outlier& outlier : gross_errors)
     if (held_out.contains(outlier.row)) rows.insert(outlier.row);
-  constexpr std::size_t too_many = 3;  // one in three
-  if (too_many * rows.size() >= held_out.size()) return {{}, !rows.empty(), rows.size()};
+  if (thresholds::max_gross_part * rows.size() >= held_out.size()) return {{}, !rows.empty(), rows.size()};
   return {{rows.begin(), rows.end()}, false, rows.size()};
 }
 

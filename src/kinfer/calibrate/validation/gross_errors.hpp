@@ -18,8 +18,8 @@ Result<std::vector<Outlier>> find_gross_errors(const CalibrationTask& task, cons
 std::vector<Outlier> gross_errors_of_both_models(const Estimate& geometry, const Estimate& richest,
                                                  const PoseSet& rows);
 
-/// Those of `wrong` that the selected model does not explain either: a row that it predicts within the noise is valid,
-/// however large the error of the geometric model.
+/// Those of `gross_errors` that the selected model does not explain either: a row that it predicts within the noise is
+/// valid, however large the error of the geometric model.
 std::vector<Outlier> without_explained_rows(const std::vector<Outlier>& gross_errors, const Estimate& chosen,
                                             const PoseSet& fitted, const PoseSet& data);
 

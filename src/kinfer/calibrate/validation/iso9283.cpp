@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "kinfer/calibrate/validation/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
 
@@ -14,7 +15,9 @@ VectorXd command_tolerance(const Chain& chain) {
   const std::vector<int> moving = active_joints(chain);
   VectorXd tolerance(static_cast<Eigen::Index>(moving.size()));
   for (std::size_t k = 0; k < moving.size(); ++k)
-    tolerance[static_cast<Eigen::Index>(k)] = chain.joints[moving[k]].type == JointType::prismatic ? 1e-5 : 1e-4;
+    tolerance[static_cast<Eigen::Index>(k)] = chain.joints[moving[k]].type == JointType::prismatic
+                                                  ? thresholds::same_pose_length
+                                                  : thresholds::same_pose_angle;
   return tolerance;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "kinfer/calibrate/start/fixtures.hpp"
+#include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -31,7 +32,7 @@ void append(std::vector<double>& to, const std::vector<double>& more) {
   to.insert(to.end(), more.begin(), more.end());
 }
 
-/// Errors of one chain, or of the corresponding chains of all proofs.
+/// Errors of one chain, or of the corresponding chains of all validation fits.
 struct ErrorLists {
   std::vector<double> position, orientation;
 
@@ -56,13 +57,13 @@ void fill_held_out(Calibration& calibration, const EvaluationInputs& evaluated, 
                    ErrorStatistics TrainHoldout::*which) {
   ErrorLists nominal, before, after;
   const PoseSet no_rows;
-  for (std::size_t i = 0; i < evaluated.proofs.size(); ++i) {
-    const Split& split = evaluated.plan.proofs[i];
+  for (std::size_t i = 0; i < evaluated.fits.size(); ++i) {
+    const Split& split = evaluated.plan.validation_splits[i];
     const PoseSet rows = select(evaluated.data, without(split.holdout, skipped));
     const PoseSet fitted_rows = select(evaluated.data, split.train);
     nominal.add(evaluated.nominal, no_rows, rows);
-    before.add(evaluated.proofs[i].before, fitted_rows, rows);
-    after.add(evaluated.proofs[i].after.chain, fitted_rows, rows);
+    before.add(evaluated.fits[i].before, fitted_rows, rows);
+    after.add(evaluated.fits[i].after.chain, fitted_rows, rows);
   }
   nominal.write_statistics(calibration.nominal, which);
   before.write_statistics(calibration.before, which);
@@ -75,11 +76,11 @@ void fill_rows(Calibration& calibration, const EvaluationInputs& evaluated) {
                             after = error_of_rows(calibration.estimate.chain, fitted, evaluated.data);
   for (int row = 0; row < evaluated.data.rows(); ++row)
     calibration.rows.push_back({row, before[row], after[row], after[row], false});
-  for (std::size_t i = 0; i < evaluated.proofs.size(); ++i) {
-    const Split& split = evaluated.plan.proofs[i];
+  for (std::size_t i = 0; i < evaluated.fits.size(); ++i) {
+    const Split& split = evaluated.plan.validation_splits[i];
     const PoseSet rows = select(evaluated.data, split.holdout), fitted_rows = select(evaluated.data, split.train);
-    const std::vector<double> holdout_before = error_of_rows(evaluated.proofs[i].before, fitted_rows, rows),
-                              holdout_after = error_of_rows(evaluated.proofs[i].after.chain, fitted_rows, rows);
+    const std::vector<double> holdout_before = error_of_rows(evaluated.fits[i].before, fitted_rows, rows),
+                              holdout_after = error_of_rows(evaluated.fits[i].after.chain, fitted_rows, rows);
     for (std::size_t k = 0; k < split.holdout.size(); ++k) {
       RowErrors& entry = calibration.rows[split.holdout[k]];
       entry.before = holdout_before[k];
@@ -98,22 +99,6 @@ std::optional<MeasurementKind> primary_measurement_kind(const PoseSet& data) {
   return std::nullopt;
 }
 
-std::string_view measurement_name(std::optional<MeasurementKind> kind) {
-  if (!kind) return "orientation";
-  switch (*kind) {
-    case MeasurementKind::contact:
-      return "ball in socket";
-    case MeasurementKind::distance:
-      return "distance";
-    case MeasurementKind::pair:
-      return "ball-bar length";
-    case MeasurementKind::plane:
-      return "distance from the plane";
-    default:
-      return "position";
-  }
-}
-
 std::vector<double> primary_errors(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& evaluated) {
   const auto kind = primary_measurement_kind(evaluated);
   if (!kind) return {};
@@ -121,7 +106,7 @@ std::vector<double> primary_errors(const Chain& chain, const PoseSet& fitted_row
 }
 
 void fill_error_statistics(Calibration& calibration, const EvaluationInputs& evaluated) {
-  const std::vector<int> inliers = without(evaluated.plan.fitted, calibration.estimate.outliers);
+  const std::vector<int> inliers = without_outliers(evaluated.plan.fitted, calibration.estimate.outliers);
   const PoseSet rows = select(evaluated.data, inliers), no_rows;
   fill_train(calibration.nominal, evaluated.nominal, no_rows, rows);
   fill_train(calibration.before, evaluated.frames_only, rows, rows);
@@ -129,18 +114,20 @@ void fill_error_statistics(Calibration& calibration, const EvaluationInputs& eva
   fill_held_out(calibration, evaluated, evaluated.gross_errors, &TrainHoldout::holdout);
   fill_held_out(calibration, evaluated, {}, &TrainHoldout::holdout_all_rows);
   fill_rows(calibration, evaluated);
-  calibration.measured = measurement_name(primary_measurement_kind(evaluated.data));
+  calibration.measured = primary_measurement_kind(evaluated.data).value_or(MeasurementKind::orientation);
 }
 
 std::optional<double> expected_holdout_rms(const EvaluationInputs& evaluated) {
-  const auto headline = primary_measurement_kind(evaluated.data);
-  if (!evaluated.instrument || !headline) return std::nullopt;
-  const ResidualKind& kind = residual_kind(*headline);
+  const auto primary = primary_measurement_kind(evaluated.data);
+  if (!evaluated.instrument || !primary) return std::nullopt;
+  const ResidualKind& kind = residual_kind(*primary);
   double squares = 0.0, count = 0.0;
-  for (std::size_t i = 0; i < evaluated.proofs.size(); ++i) {
-    const Estimate& fit = evaluated.proofs[i].after;
-    const PoseSet rows = select(evaluated.data, without(evaluated.plan.proofs[i].holdout, evaluated.gross_errors));
-    const Chain chain = with_unfitted_fixtures(fit.chain, select(evaluated.data, evaluated.plan.proofs[i].train), rows);
+  for (std::size_t i = 0; i < evaluated.fits.size(); ++i) {
+    const Estimate& fit = evaluated.fits[i].after;
+    const PoseSet rows =
+        select(evaluated.data, without(evaluated.plan.validation_splits[i].holdout, evaluated.gross_errors));
+    const Chain chain =
+        with_unfitted_fixtures(fit.chain, select(evaluated.data, evaluated.plan.validation_splits[i].train), rows);
     const Weights weights = weights_of(rows, *evaluated.instrument);
     const EvaluatedPoses at = evaluate_poses(chain, fit.parameters, rows, Derivative::yes);
     const FixtureColumns columns = fixture_columns(chain, fit.parameters);
@@ -152,7 +139,7 @@ std::optional<double> expected_holdout_rms(const EvaluationInputs& evaluated) {
       kind.write(scene, k, out);
       const auto block = jacobian.topRows(kind.size);
       squares +=
-          weights.of(*headline)[k].head(kind.size).squaredNorm() + (block * fit.covariance * block.transpose()).trace();
+          weights.of(*primary)[k].head(kind.size).squaredNorm() + (block * fit.covariance * block.transpose()).trace();
       count += 1.0;
     }
   }

@@ -19,9 +19,8 @@ struct ValidationFit {
 /// The primary kind of measurement, whose errors are reported first [m]: the first of points, contacts, distances,
 /// ball-bars and planes that was measured. Nothing where only orientations or tilts were measured.
 std::optional<MeasurementKind> primary_measurement_kind(const PoseSet& data);
-std::string_view measurement_name(std::optional<MeasurementKind> kind);
 
-/// Errors of the primary kind of `judged` for a chain that was fitted to `seen`.
+/// Errors of the primary kind of `evaluated` for a chain that was fitted to `fitted_rows`.
 std::vector<double> primary_errors(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& evaluated);
 
 /// The inputs that all error statistics share.
@@ -31,12 +30,12 @@ struct EvaluationInputs {
   const PoseSet& data;
   const ValidationPlan& plan;
   const Chain& frames_only;
-  const std::vector<ValidationFit>& proofs;
-  const std::vector<int>& gross_errors;  ///< held-out rows that are excluded
+  const std::vector<ValidationFit>& fits;  ///< one per split of the plan
+  const std::vector<int>& gross_errors;    ///< held-out rows that are excluded
 };
 
 /// Fills nominal, before, after and rows from the final estimate (whose outliers are indexed in the whole data set) and
-/// the proofs.
+/// the validation fits.
 void fill_error_statistics(Calibration& calibration, const EvaluationInputs& evaluated);
 
 /// Expected rms error of the held-out rows [m]: the instrument's noise and the uncertainty of the fits without these

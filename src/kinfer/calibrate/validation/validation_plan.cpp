@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <numeric>
-#include <set>
+
+#include "kinfer/calibrate/validation/thresholds.hpp"
+#include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -16,7 +18,7 @@ ValidationPlan plan_by_labels(const PoseSet& data) {
   Split split;
   for (int row = 0; row < data.rows(); ++row)
     (data.set[row] == SplitLabel::holdout ? split.holdout : split.train).push_back(row);
-  return {split.train, {split}, "rows marked holdout", false};
+  return {split.train, {split}, HoldoutLabels{}, false};
 }
 
 /// Groups of linked rows, each ascending.
@@ -48,36 +50,36 @@ Split split_to_rows(const std::vector<std::vector<int>>& groups, const Split& sp
   return {rows_of(groups, split.train), rows_of(groups, split.holdout)};
 }
 
-Result<ValidationPlan> draft_plan(const PoseSet& data, const HoldoutChoice& choice, Rng rng) {
+int fold_count(const PoseSet& data, const CrossValidation& choice, const ParameterChoice& parameters) {
+  if (choice.folds) return *choice.folds;
+  const bool leave_one_out =
+      std::holds_alternative<JointOffsetParameters>(parameters) && data.rows() <= thresholds::leave_one_out_rows;
+  return leave_one_out ? static_cast<int>(data.rows()) : thresholds::default_folds;
+}
+
+Error too_few_rows(const PoseSet& data) {
+  return {fmt::format("{} rows are too few to fit and validate a calibration; at least {} are needed", data.rows(),
+                      thresholds::min_fitted_rows)};
+}
+
+Result<ValidationPlan> draft_plan(const PoseSet& data, const CalibrationOptions& options, Rng rng) {
   const std::vector<std::vector<int>> groups = linked_row_groups(data);
   const auto count = static_cast<int>(groups.size());
-  if (const auto* part = std::get_if<HeldOutFraction>(&choice)) {
+  if (const auto* part = std::get_if<HeldOutFraction>(&options.holdout)) {
     const Split split = split_to_rows(groups, random_split(count, part->fraction, rng));
-    return ValidationPlan{
-        split.train, {split}, fmt::format("{:.0f} % of the rows, drawn at random", 100.0 * part->fraction), false};
+    return ValidationPlan{split.train, {split}, HoldoutFraction{part->fraction}, false};
   }
   if (has_held_out_labels(data)) return plan_by_labels(data);
-  if (std::holds_alternative<HeldOutByLabel>(choice)) return error("no row is marked holdout in a column called set");
-  const int k = std::min(std::get<CrossValidation>(choice).folds, count);
-  if (k < 2) return error("{} rows are too few to fit and prove a calibration; at least 4 are needed", data.rows());
-  return ValidationPlan{all_rows(data), make_row_folds(data, k, rng), fmt::format("{}-fold cross-validation", k), true};
+  const auto* folds = std::get_if<CrossValidation>(&options.holdout);
+  if (!folds) return error("no row is marked holdout in a column called set");
+  const int k = std::min(fold_count(data, *folds, options.parameters), count);
+  if (k < 2) return forward_error(too_few_rows(data));
+  return ValidationPlan{all_rows(data), make_row_folds(data, k, rng), HoldoutFolds{k}, true};
 }
 
 }  // namespace
 
-std::vector<int> all_rows(const PoseSet& data) {
-  std::vector<int> rows(data.rows());
-  std::iota(rows.begin(), rows.end(), 0);
-  return rows;
-}
-
-std::vector<int> without(std::vector<int> rows, const std::vector<int>& others) {
-  const std::set<int> unwanted(others.begin(), others.end());
-  std::erase_if(rows, [&](int row) { return unwanted.contains(row); });
-  return rows;
-}
-
-std::vector<int> without(std::vector<int> rows, const std::vector<Outlier>& outliers) {
+std::vector<int> without_outliers(std::vector<int> rows, const std::vector<Outlier>& outliers) {
   std::vector<int> wrong;
   for (const Outlier& outlier : outliers) wrong.push_back(outlier.row);
   return without(std::move(rows), wrong);
@@ -91,16 +93,13 @@ std::vector<Split> make_row_folds(const PoseSet& data, int k, Rng rng) {
   return splits;
 }
 
-Result<ValidationPlan> make_validation_plan(const PoseSet& data, const HoldoutChoice& choice, Rng rng) {
-  KINFER_TRY(plan, draft_plan(data, choice, rng));
-  // Each pose gives at most six equations; base and tool alone are nine unknowns, and one row must validate the result.
-  constexpr int fewest = 4;
-  if (static_cast<int>(plan.fitted.size()) < fewest)
+Result<ValidationPlan> make_validation_plan(const PoseSet& data, const CalibrationOptions& options, Rng rng) {
+  KINFER_TRY(plan, draft_plan(data, options, rng));
+  if (static_cast<int>(plan.fitted.size()) < thresholds::min_fitted_rows)
     return error("{} rows are left to fit; a calibration needs at least {} (20 or more are better)", plan.fitted.size(),
-                 fewest);
-  for (const Split& split : plan.proofs)
-    if (split.train.size() < 3)
-      return error("{} rows are too few to fit and prove a calibration; at least 4 are needed", data.rows());
+                 thresholds::min_fitted_rows);
+  for (const Split& split : plan.validation_splits)
+    if (split.train.size() < thresholds::min_training_rows) return forward_error(too_few_rows(data));
   return plan;
 }
 

@@ -65,4 +65,8 @@ bool was_chosen(const CLI::App& verb) {
   return verb.parsed();
 }
 
+bool was_given(const CLI::App& verb, const std::string& option) {
+  return verb.count(option) > 0;
+}
+
 }  // namespace kinfer::cli

@@ -36,4 +36,7 @@ void add_flag(CLI::App& verb, const std::string& name, bool& value, const std::s
 
 bool was_chosen(const CLI::App& verb);
 
+/// Whether the user gave this option of the verb ("--method").
+bool was_given(const CLI::App& verb, const std::string& option);
+
 }  // namespace kinfer::cli

@@ -5,6 +5,10 @@
 
 #include <cmath>
 
+#include "kinfer/words/calibration.hpp"
+#include "kinfer/words/calibration_model.hpp"
+#include "kinfer/words/calibration_outliers.hpp"
+
 namespace kinfer::cli {
 namespace {
 
@@ -13,7 +17,7 @@ std::string table_row(const char* what, const ErrorStatistics& s, double scale) 
                      scale * s.sd, scale * s.max, s.n);
 }
 
-std::string fit_table(const char* title, const ChainFit& nominal, const ChainFit& before, const ChainFit& after,
+std::string fit_table(const std::string& title, const ChainFit& nominal, const ChainFit& before, const ChainFit& after,
                       TrainHoldout ChainFit::*kind, double scale) {
   std::string text = fmt::format("  {:<34} {:>9} {:>9} {:>9} {:>9} {:>6}\n", title, "mean", "rms", "sd", "max", "n");
   text += table_row("as nominal", (nominal.*kind).holdout, scale);
@@ -62,28 +66,29 @@ std::string bullet_list(const char* title, const List& list, std::size_t most, W
   return text + "\n";
 }
 
-std::string ladder_table(const ModelSelection& model_selection) {
-  if (model_selection.model_terms.size() < 2) return "";
-  std::string text = fmt::format("Model: {}.\n  {:<14} {:>11} {:>11} {:>11}\n", model_selection.selected, "rung [mm]",
+std::string model_table(const ModelSelection& selection) {
+  if (selection.steps.size() < 2) return "";
+  std::string text = fmt::format("Model: {}.\n  {:<14} {:>11} {:>11} {:>11}\n", selected_model(selection), "term [mm]",
                                  "fitted", "not fitted", "worst");
-  for (const SelectionStep& r : model_selection.model_terms) {
-    if (r.skipped)
-      text += fmt::format("  {:<14} {:>11} {:>11} {:>11}   {}\n", r.name, "-", "-", "-", r.reason);
+  for (const SelectionStep& step : selection.steps) {
+    const std::string reason = words::reason(step);
+    if (was_tested(step))
+      text += fmt::format("  {:<14} {:>11.4f} {:>11.4f} {:>11.4f}   {}\n", name(step), 1e3 * step.train.mean,
+                          1e3 * step.holdout.mean, 1e3 * step.holdout.max, reason);
     else
-      text += fmt::format("  {:<14} {:>11.4f} {:>11.4f} {:>11.4f}   {}\n", r.name, 1e3 * r.train.mean,
-                          1e3 * r.holdout.mean, 1e3 * r.holdout.max, r.reason);
+      text += fmt::format("  {:<14} {:>11} {:>11} {:>11}   {}\n", name(step), "-", "-", "-", reason);
   }
   return text + "\n";
 }
 
 std::string search_lines(const SearchSummary& search) {
-  if (search.method == "lm") return "";
-  std::string text = fmt::format("Searched by {}: {} iterations, {} evaluations, {}.\n", search.method,
+  if (search.method == SearchMethod::levenberg_marquardt) return "";
+  std::string text = fmt::format("Searched by {}: {} iterations, {} evaluations, {}.\n", name(search.method),
                                  search.iterations, search.evaluations, sentence(search.stop));
   if (search.swarm_comparison.empty()) return text + "\n";
   text += "Iterations to the least-squares optimum: ";
   for (const SearchRun& run : search.swarm_comparison)
-    text += fmt::format("{}{} {}", &run == &search.swarm_comparison.front() ? "" : "; ", run.name,
+    text += fmt::format("{}{} {}", &run == &search.swarm_comparison.front() ? "" : "; ", name(run.initial),
                         run.iterations < 0 ? "not reached" : fmt::format("{}", run.iterations));
   return text + ".\n\n";
 }
@@ -92,13 +97,14 @@ std::string search_lines(const SearchSummary& search) {
 
 std::string calibration_summary(const Calibration& c) {
   const Estimate& e = c.estimate;
-  std::string text = c.verdict + "\n\n";
-  text += fmt::format("Held out: {}.\n", c.holdout);
-  text += fit_table((c.measured == "position" ? "tool position [mm]" : c.measured + " [mm]").c_str(), c.nominal,
-                    c.before, c.after, &ChainFit::position, 1e3);
+  std::string text = words::verdict(c) + "\n\n";
+  text += fmt::format("Held out: {}.\n", words::description(c.holdout));
+  text += fit_table(
+      c.measured == MeasurementKind::point ? "tool position [mm]" : words::measured_quantity(c.measured) + " [mm]",
+      c.nominal, c.before, c.after, &ChainFit::position, 1e3);
   if (c.after.orientation.train.n > 0)
     text += fit_table("tool orientation [deg]", c.nominal, c.before, c.after, &ChainFit::orientation, 1.0 / degree);
-  text += ladder_table(c.model_selection);
+  text += model_table(c.model_selection);
   text += search_lines(e.search);
   text += parameter_table(e);
   text += fmt::format("The data determine {} of {} combinations of parameters. Noise level {:.4f} mm",
@@ -108,10 +114,12 @@ std::string calibration_summary(const Calibration& c) {
   text += fmt::format("Expected error of the corrected model itself: {:.4f} mm rms over these poses.\n\n",
                       1e3 * e.predicted_error);
   const auto same = [](const std::string& s) { return s; };
-  text += bullet_list("What these poses cannot tell (tolerances hold them):", e.identifiability.confounded, 12, same);
-  text += bullet_list("Rows not believed:", e.outliers, 12,
-                      [](const Outlier& o) { return fmt::format("row {} (line {}): {}", o.row, o.line, o.reason); });
-  text += bullet_list("Noticed:", c.notes, 20, same);
+  text += bullet_list("What these poses cannot tell (tolerances hold them):",
+                      words::undetermined_sentences(e.identifiability), 12, same);
+  text += bullet_list("Rows not believed:", e.outliers, 12, [](const Outlier& o) {
+    return fmt::format("row {} (line {}): {}", o.row, o.line, words::sentence(o));
+  });
+  text += bullet_list("Noticed:", words::notes(c), 20, same);
   return text;
 }
 

@@ -32,10 +32,7 @@ std::vector<calibrate::OrientationInterpretation> orientation_hypotheses(const s
       other.euler = parse_euler_sequence(sequence);
       const auto set = read_pose_set(file, chain, other);
       if (!set) continue;
-      readings.push_back(
-          {fmt::format("as {} angles in {}", sequence, unit),
-           fmt::format("write euler = \"{}\" into the column map, and rx, ry, rz in [{}]", sequence, unit),
-           set->orientations});
+      readings.push_back({{{"euler", sequence}, {"unit", std::string(unit)}}, set->orientations});
     }
   return readings;
 }

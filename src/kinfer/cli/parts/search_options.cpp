@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/cli/parts/search_options.hpp"
 
-#include "kinfer/calibrate/parameters/population_prior.hpp"
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "kinfer/calibrate/starting_model.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
@@ -38,27 +42,43 @@ Result<BpnnPsoOptions> bpnn_options(const SearchArguments& arguments, const Budg
   return bpnn;
 }
 
-Result<Chain> read_chain_of_same_kind(const std::string& path, const Chain& nominal) {
+Result<Chain> read_earlier_chain(const std::string& path, const calibrate::CalibrationTask& task) {
   KINFER_TRY(robot, read_robot_toml(path));
-  if (!calibrate::have_same_joints(robot.chain, nominal))
-    return error("{}: expected an earlier calibration of this kind of robot ({} joints of the same types)", path,
-                 nominal.joints.size());
+  if (task.joint_types.empty())
+    if (auto same = calibrate::check_same_joints(robot.chain, task.nominal); !same)
+      return error("{}: {}", path, same.error().what);
   return robot.chain;
+}
+
+/// The methods in which an option has an effect.
+struct SwarmOption {
+  const char* name;
+  std::vector<std::string> methods;
+};
+
+const std::vector<SwarmOption>& swarm_only_options() {
+  static const std::vector<std::string> any{"pso", "qpso", "bpnn-pso"}, particle_swarm{"pso", "bpnn-pso"};
+  static const std::vector<SwarmOption> list{{"--particles", any},        {"--iterations", any},
+                                             {"--box-length", any},       {"--box-angle", any},
+                                             {"--box-tolerances", any},   {"--inertia", particle_swarm},
+                                             {"--own", particle_swarm},   {"--swarm", particle_swarm},
+                                             {"--walls", particle_swarm}, {"--net-use", {"bpnn-pso"}}};
+  return list;
 }
 
 }  // namespace
 
 void add_search_arguments(CLI::App& verb, SearchArguments& a) {
   add_choice(verb, "--method", a.method, {"lm", "pso", "qpso", "bpnn-pso"},
-             "lm: least squares; the others search by a population (paper 2)");
+             "lm: least squares; the others are swarm searches (paper 2)");
   add_text(verb, "--warm-start", a.warm_start, "Folder of an earlier calibration of this robot: where searches start",
            Requirement::optional, "DIR");
   add_texts(verb, "--prior", a.prior,
             "Earlier calibrations of robots of this kind (chain.toml files): their mean and spread are the prior",
             Requirement::optional, "TOML");
-  add_count(verb, "--particles", a.particles, 2, 100000, "Of the population");
+  add_count(verb, "--particles", a.particles, 2, 100000, "Swarm search: number of particles");
   add_count(verb, "--iterations", a.iterations, 1, 10000000,
-            "Updates of the population at most; it ends before where 200 updates gain less than 1 %");
+            "Swarm search: largest number of updates; it ends earlier where 200 updates gain less than 1 %");
   add_number(verb, "--inertia", a.inertia, "PSO: weight w of the velocity (paper: 0.9, which hardly converges)");
   add_number(verb, "--own", a.own, "PSO: c1, pull of a particle's own best");
   add_number(verb, "--swarm", a.swarm, "PSO: c2, pull of the swarm's best");
@@ -70,13 +90,26 @@ void add_search_arguments(CLI::App& verb, SearchArguments& a) {
   add_number(verb, "--box-tolerances", a.box_tolerances, "Half width of the box in tolerances instead (0: not)");
 }
 
-Result<std::optional<calibrate::SwarmSearchOptions>> population_options(const SearchArguments& arguments, int threads) {
+Result<void> check_search_arguments(const SearchArguments& arguments, const CLI::App& verb) {
+  for (const auto& [name, methods] : swarm_only_options())
+    if (was_given(verb, name) && std::ranges::find(methods, arguments.method) == methods.end())
+      return error("{} has no effect with --method {}; it belongs to {}", name, arguments.method,
+                   fmt::join(methods, ", "));
+  for (const char* absolute : {"--box-length", "--box-angle"})
+    if (was_given(verb, absolute) && was_given(verb, "--box-tolerances"))
+      return error("{} has no effect with --box-tolerances: the box is given in tolerances", absolute);
+  return {};
+}
+
+Result<std::optional<calibrate::SwarmSearchOptions>> read_swarm_options(const SearchArguments& arguments) {
   if (arguments.method == "lm") return std::nullopt;
-  const Budget budget{.max_iterations = arguments.iterations, .patience = 200, .threads = threads};
-  calibrate::SwarmSearchOptions options{.box_length = 1e-3 * arguments.box_length,
-                                        .box_angle = arguments.box_angle * degree,
-                                        .box_tolerances = arguments.box_tolerances};
-  if (!(options.box_length > 0.0 && options.box_angle > 0.0))
+  const Budget budget{.max_iterations = arguments.iterations, .patience = calibrate::swarm_patience};
+  calibrate::SwarmSearchOptions options;
+  if (arguments.box_tolerances > 0.0)
+    options.box = calibrate::ToleranceBox{arguments.box_tolerances};
+  else if (arguments.box_length > 0.0 && arguments.box_angle > 0.0)
+    options.box = calibrate::AbsoluteBox{1e-3 * arguments.box_length, arguments.box_angle * degree};
+  else
     return error("--box-length and --box-angle must be above 0");
   if (arguments.method == "pso") options.search = pso_options(arguments, budget);
   if (arguments.method == "qpso") options.search = QpsoOptions{.particles = arguments.particles, .budget = budget};
@@ -89,11 +122,11 @@ Result<std::optional<calibrate::SwarmSearchOptions>> population_options(const Se
 
 Result<void> read_earlier_calibrations(const SearchArguments& arguments, calibrate::CalibrationTask& task) {
   for (const std::string& path : arguments.prior) {
-    KINFER_TRY(chain, read_chain_of_same_kind(path, task.nominal));
+    KINFER_TRY(chain, read_earlier_chain(path, task));
     task.robot_population.push_back(std::move(chain));
   }
   if (arguments.warm_start.empty()) return {};
-  KINFER_TRY(chain, read_chain_of_same_kind(chain_path(arguments), task.nominal));
+  KINFER_TRY(chain, read_earlier_chain(chain_path(arguments), task));
   task.earlier = std::move(chain);
   return {};
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/calibrate/problem/options.hpp"
 #include "kinfer/cli/parts/common.hpp"
 
 namespace kinfer::cli {
@@ -14,16 +14,20 @@ namespace kinfer::cli {
 struct SearchArguments {
   std::string method = "lm", warm_start, boundary = "absorb", net_use = "initial-swarm";
   std::vector<std::string> prior;
-  int particles = 200, iterations = 20000;
+  int particles = 200, iterations = calibrate::swarm_iterations;
   double inertia = 0.8, own = 0.5, swarm = 1.25;
   double box_length = 1.0, box_angle = 1.0, box_tolerances = 0.0;  // mm, deg
 };
 void add_search_arguments(CLI::App& verb, SearchArguments& arguments);
 
-/// Options of the population search, with the net of the earlier calibration if there is one; nullopt for lm.
-Result<std::optional<calibrate::SwarmSearchOptions>> population_options(const SearchArguments& arguments, int threads);
+/// Options of the swarm search, with the network of the earlier calibration if there is one; nullopt for lm.
+Result<std::optional<calibrate::SwarmSearchOptions>> read_swarm_options(const SearchArguments& arguments);
 
-/// Fills `earlier` and `fleet` from --warm-start and --prior. Each must have the same joints as the nominal robot.
+/// An error for an option that was given but has no effect with this method.
+Result<void> check_search_arguments(const SearchArguments& arguments, const CLI::App& verb);
+
+/// Fills `earlier` and `robot_population` from --warm-start and --prior. Each must have the same joints as the nominal
+/// robot, unless that is to be found from the data.
 Result<void> read_earlier_calibrations(const SearchArguments& arguments, calibrate::CalibrationTask& task);
 
 /// The files that are read.

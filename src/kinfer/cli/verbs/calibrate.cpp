@@ -4,25 +4,20 @@
 
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <charconv>
 #include <memory>
-#include <sstream>
 
 #include "kinfer/calibrate/start/local_poe.hpp"
-#include "kinfer/calibrate/start/unknown_robot.hpp"
-#include "kinfer/calibrate/terms/model_terms.hpp"
 #include "kinfer/cli/parts/calibration_summary.hpp"
-#include "kinfer/cli/parts/calibration_tables.hpp"
 #include "kinfer/cli/parts/evidence_files.hpp"
 #include "kinfer/cli/parts/robot_option.hpp"
 #include "kinfer/cli/parts/search_options.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/evidence/calibration_files.hpp"
 #include "kinfer/io/evidence/calibration_json.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/parameter_names_toml.hpp"
-#include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/measurement/merge_pose_sets.hpp"
 
@@ -39,9 +34,8 @@ struct CalibrateArguments {
 /// Contents of the input files.
 struct Inputs {
   RobotModel robot;
-  PoseSet data;
-  calibrate::CalibrationOptions how;
-  std::vector<std::string> found;  ///< sentences about a robot identified without a data sheet
+  calibrate::CalibrationTask task;
+  calibrate::CalibrationOptions options;
 };
 
 constexpr std::string_view unknown_prefix = "unknown:";
@@ -50,50 +44,45 @@ bool has_no_data_sheet(const RobotOption& robot) {
   return robot.path.starts_with(unknown_prefix);
 }
 
+/// The joint types of `unknown:6R`; empty for a robot file.
+Result<std::vector<JointType>> read_joint_types(const RobotOption& option) {
+  if (!has_no_data_sheet(option)) return std::vector<JointType>{};
+  return calibrate::parse_joint_types(option.path.substr(unknown_prefix.size()));
+}
+
 /// The robot file; for `unknown:6R` a generic chain, which is sufficient to read the data.
-Result<RobotModel> read_robot_or_types(const RobotOption& option) {
-  if (!has_no_data_sheet(option)) return read_robot(option);
-  KINFER_TRY(types, calibrate::parse_joint_types(option.path.substr(unknown_prefix.size())));
+Result<RobotModel> read_robot_or_types(const RobotOption& option, const std::vector<JointType>& types) {
+  if (types.empty()) return read_robot(option);
   RobotModel robot;
   robot.chain = calibrate::make_serial_chain(types);
   return robot;
 }
 
-/// Identifies the nominal model of `unknown:6R` from the rows that are not labelled holdout.
-Result<void> identify_nominal_robot(const CalibrateArguments& options, Inputs& inputs) {
-  std::vector<int> rows;
-  for (int row = 0; row < inputs.data.rows(); ++row)
-    if (inputs.data.set.empty() || inputs.data.set[row] != SplitLabel::holdout) rows.push_back(row);
-  KINFER_TRY(found, calibrate::estimate_unknown_robot(options.robot.path.substr(unknown_prefix.size()),
-                                                      select(inputs.data, rows), options.common.threads,
-                                                      Rng(options.common.seed).stream(17)));
-  inputs.robot.chain = found.nominal;
-  inputs.robot.chain.name = "unknown";
-  inputs.robot.tolerances = found.tolerances;
-  inputs.found = found.words;
-  return {};
-}
-
-Result<calibrate::ParameterChoice> read_parameter_choice(const std::string& text) {
-  if (text == "auto") return calibrate::GeometricParameters{};
-  if (text == "paper24") return calibrate::PaperDhParameters{};
-  KINFER_TRY(names, read_parameter_names(text));
+Result<calibrate::ParameterChoice> read_parameter_choice(const CalibrateArguments& options) {
+  if (options.refit == "offsets") return calibrate::JointOffsetParameters{};
+  if (options.parameters == "auto") return calibrate::GeometricParameters{};
+  if (options.parameters == "paper24") return calibrate::PaperDhParameters{};
+  KINFER_TRY(names, read_parameter_names(options.parameters));
   return calibrate::NamedParameters{names};
 }
 
-/// "auto", "geometry", or model terms joined by "+".
-Result<calibrate::ModelChoice> read_model_choice(const std::string& text) {
-  if (text == "auto") return calibrate::CrossValidatedModel{};
-  calibrate::FixedModel named;
-  const std::vector<std::string> known = calibrate::model_term_names();
-  std::istringstream words(text);
-  for (std::string word; std::getline(words, word, '+');) {
-    if (word == "geometry") continue;
-    if (std::find(known.begin(), known.end(), word) == known.end())
-      return error("--model {}: expected auto, geometry or some of {} joined by +", text, fmt::join(known, ", "));
-    named.model_terms.push_back(word);
-  }
-  return named;
+/// Refuses options that would have no effect.
+Result<void> check_arguments(const CalibrateArguments& options, const CLI::App& verb) {
+  if (auto effective = check_search_arguments(options.search, verb); !effective) return effective;
+  const bool refit = !options.refit.empty();
+  if (refit && options.search.warm_start.empty())
+    return error("--refit offsets: expected --warm-start DIR, the folder of the robot's earlier calibration");
+  if (refit && was_given(verb, "--parameters"))
+    return error("--parameters has no effect with --refit offsets, which chooses the parameters itself");
+  if (!was_given(verb, "--model")) return {};
+  if (refit) return error("--model has no effect with --refit offsets: only joint offsets, base and tool are free");
+  if (options.search.method != "lm")
+    return error("--model has no effect with --method {}: a swarm search has no model selection",
+                 options.search.method);
+  if (options.parameters != "auto")
+    return error("--model has no effect with --parameters {}: model terms need the complete geometric set",
+                 options.parameters);
+  return {};
 }
 
 /// A number is a fraction; anything else is a pose set whose rows are held out and appended to `data`.
@@ -113,103 +102,94 @@ Result<calibrate::HoldoutChoice> add_holdout(const std::string& text, const Robo
 }
 
 Result<Inputs> read_inputs(const CalibrateArguments& options) {
-  Inputs inputs;
-  KINFER_TRY(robot, read_robot_or_types(options.robot));
+  KINFER_TRY(types, read_joint_types(options.robot));
+  KINFER_TRY(robot, read_robot_or_types(options.robot, types));
   KINFER_TRY(map, read_columns_option(options.columns));
   KINFER_TRY(data, read_pose_set(options.data, robot.chain, map));
-  KINFER_TRY(parameters, read_parameter_choice(options.parameters));
+  KINFER_TRY(parameters, read_parameter_choice(options));
   KINFER_TRY(holdout, add_holdout(options.holdout, robot, map, data));
-  KINFER_TRY(model, read_model_choice(options.model));
-  inputs.how = {.parameters = parameters, .holdout = holdout, .model = model, .threads = options.common.threads};
-  KINFER_TRY(swarm_search, population_options(options.search, options.common.threads));
-  inputs.how.swarm_search = swarm_search;
-  inputs.robot = std::move(robot);
-  inputs.data = std::move(data);
-  if (has_no_data_sheet(options.robot))
-    if (auto done = identify_nominal_robot(options, inputs); !done) return forward_error(done.error());
+  KINFER_TRY(model, calibrate::parse_model_choice(options.model));
+  KINFER_TRY(swarm_search, read_swarm_options(options.search));
+  Inputs inputs{.robot = robot, .task = {.nominal = robot.chain}, .options = {}};
+  inputs.task.tolerances = robot.tolerances;
+  inputs.task.instrument = robot.instrument;
+  inputs.task.data = std::move(data);
+  inputs.task.joint_types = types;
+  inputs.options = {.parameters = parameters,
+                    .holdout = holdout,
+                    .model = model,
+                    .swarm_search = swarm_search,
+                    .threads = options.common.threads};
+  if (auto done = read_earlier_calibrations(options.search, inputs.task); !done) return forward_error(done.error());
   return inputs;
 }
 
-std::vector<std::string> input_paths(const CalibrateArguments& options) {
-  std::vector<std::string> paths{options.data};
-  if (!has_no_data_sheet(options.robot)) paths.insert(paths.begin(), options.robot.path);
-  for (const std::string& path : {options.columns, options.parameters, options.holdout})
-    if (std::filesystem::is_regular_file(path)) paths.push_back(path);
+bool is_parameter_file(const std::string& parameters) {
+  return parameters != "auto" && parameters != "paper24";
+}
+
+bool is_holdout_file(const Inputs& inputs) {
+  return std::holds_alternative<calibrate::HeldOutByLabel>(inputs.options.holdout);
+}
+
+std::vector<std::string> input_paths(const CalibrateArguments& options, const Inputs& inputs) {
+  std::vector<std::string> paths;
+  if (!has_no_data_sheet(options.robot)) paths.push_back(options.robot.path);
+  paths.push_back(options.data);
+  if (!options.columns.empty()) paths.push_back(options.columns);
+  if (is_parameter_file(options.parameters)) paths.push_back(options.parameters);
+  if (is_holdout_file(inputs)) paths.push_back(options.holdout);
   for (const std::string& path : input_paths(options.search)) paths.push_back(path);
   return paths;
 }
 
-Provenance provenance_of(const CalibrateArguments& options) {
+/// The options that were used, and the names of the files that stand for some of them.
+Provenance provenance_of(const CalibrateArguments& options, const Inputs& inputs) {
   Provenance provenance;
   provenance.seed = options.common.seed;
-  provenance.inputs = fingerprints(input_paths(options));
-  const auto plain = [](const std::string& value) { return std::filesystem::path(value).filename().string(); };
-  provenance.options.emplace_back("--parameters", plain(options.parameters));
-  provenance.options.emplace_back("--model", options.model);
-  if (!options.refit.empty()) provenance.options.emplace_back("--refit", options.refit);
-  if (options.search.method != "lm") provenance.options.emplace_back("--method", options.search.method);
-  if (!options.holdout.empty()) provenance.options.emplace_back("--holdout", plain(options.holdout));
-  if (!options.search.warm_start.empty())
-    provenance.options.emplace_back("--warm-start", plain(options.search.warm_start));
-  for (const std::string& path : options.search.prior) provenance.options.emplace_back("--prior", plain(path));
+  provenance.inputs = fingerprints(input_paths(options, inputs));
+  provenance.options = calibrate::describe(inputs.task, inputs.options);
+  const auto add_file = [&](const char* option, const std::string& path) {
+    if (!path.empty()) provenance.options.emplace_back(option, std::filesystem::path(path).filename().string());
+  };
+  if (is_holdout_file(inputs)) add_file("--holdout", options.holdout);
+  add_file("--columns", options.columns);
+  add_file("--warm-start", options.search.warm_start);
+  for (const std::string& path : options.search.prior) add_file("--prior", path);
+  for (const auto& [option, value] :
+       {std::pair{"--base-link", options.robot.base_link}, std::pair{"--tip-link", options.robot.tip_link}})
+    if (!value.empty()) provenance.options.emplace_back(option, value);
   return provenance;
 }
 
-Result<void> write_results(const CalibrateArguments& options, RobotModel robot, const Calibration& calibration) {
+Result<void> write_results(const CalibrateArguments& options, const Inputs& inputs, const Calibration& calibration) {
   const std::filesystem::path folder(options.out);
-  StandardDeviations sd;
-  for (const ParameterEstimate& p : calibration.estimate.values) sd[p.name] = p.sd;
-  robot.chain = with_small_rotations_folded(calibration.estimate.chain);
-  if (auto done = write_text_file(folder / "chain.toml", format_robot_toml(robot, sd)); !done) return done;
-  if (auto done = write_text_file(folder / "chain.urdf", format_urdf(robot.chain)); !done) return done;
-  if (const std::string& net = calibration.estimate.search.net; !net.empty())
-    if (auto done = write_text_file(folder / "net.txt", net); !done) return done;
-  return write_evidence(folder, format_calibration_evidence(calibration, provenance_of(options)));
+  for (const OutputFile& file : calibration_files(calibration, inputs.robot))
+    if (auto done = write_text_file(folder / file.name, file.text); !done) return done;
+  return write_evidence(folder, format_calibration_evidence(calibration, provenance_of(options, inputs)));
 }
 
-/// The earlier calibration becomes the nominal model; with few poses, leave-one-out cross-validation is used.
-Result<void> start_from_earlier(calibrate::CalibrationTask& task, calibrate::CalibrationOptions& how) {
-  if (!task.earlier)
-    return error("--refit offsets: expected --warm-start DIR, the folder of the robot's earlier calibration");
-  task.nominal = *task.earlier;
-  task.earlier.reset();
-  how.parameters = calibrate::JointOffsetParameters{};
-  how.model = calibrate::FixedModel{};
-  constexpr int few = 12;
-  if (auto* folds = std::get_if<calibrate::CrossValidation>(&how.holdout); folds && task.data.rows() <= few)
-    folds->folds = static_cast<int>(task.data.rows());
-  return {};
-}
-
-int run(const CalibrateArguments& options) {
+int run(const CalibrateArguments& options, const CLI::App& verb) {
+  if (auto effective = check_arguments(options, verb); !effective) return fail(effective.error());
   RunRecord record("calibrate", options.common);
-  for (const std::string& path : input_paths(options)) record.add_input(path);
-  auto inputs = read_inputs(options);
+  const auto inputs = read_inputs(options);
   if (!inputs) return fail(inputs.error());
+  for (const std::string& path : input_paths(options, *inputs)) record.add_input(path);
   const auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
-  calibrate::CalibrationTask task{
-      inputs->robot.chain, inputs->robot.tolerances, inputs->robot.instrument, inputs->data, {}, {}, {}};
-  if (auto done = read_earlier_calibrations(options.search, task); !done) return fail(done.error());
-  if (options.refit == "offsets")
-    if (auto done = start_from_earlier(task, inputs->how); !done) return fail(done.error());
-  Result<Calibration> calibration = [&] {
+  const Result<Calibration> calibration = [&] {
     ProgressLine progress(options.common);
-    return calibrate::calibrate_robot(task, inputs->how, Rng(options.common.seed), progress.observer());
+    return calibrate::calibrate_robot(inputs->task, inputs->options, Rng(options.common.seed), progress.observer());
   }();
   if (!calibration) return fail(calibration.error());
-  if (has_no_data_sheet(options.robot)) calibrate::conclude_without_nominal(*calibration);
-  calibration->notes.insert(calibration->notes.begin(), inputs->found.begin(), inputs->found.end());
-  if (const std::string accuracy = pose_accuracy_sentence(*calibration); !accuracy.empty())
-    calibration->notes.push_back(accuracy);
-  if (auto done = write_results(options, inputs->robot, *calibration); !done) return fail(done.error());
-  if (auto done = write_calibration_tables(options.out, task, *calibration); !done) return fail(done.error());
+  if (auto done = write_results(options, *inputs, *calibration); !done) return fail(done.error());
   if (auto done = record.write(options.out); !done) return fail(done.error());
+  const bool usable = calibration->usability != Usability::do_not_use;
   if (options.common.json)
     fmt::print("{}", format_calibration_headline(*calibration));
   else if (!options.common.quiet)
-    print_summary(calibration_summary(*calibration), calibration->usable ? Tone::good : Tone::bad);
-  return calibration->usable ? exit_done : exit_do_not_use;
+    print_summary(calibration_summary(*calibration), usable ? Tone::good : Tone::bad);
+  return usable ? exit_done : exit_do_not_use;
 }
 
 }  // namespace
@@ -232,10 +212,11 @@ Verb add_calibrate(CLI::App& app) {
            "auto: the complete geometric set; paper24: a alpha d theta of each joint (base and tool as given, or from "
            "the data where those disagree); or a TOML file "
            "with parameters = [\"a2\", ...]");
-  add_text(*verb, "--model", options->model,
-           "auto: geometry and what cross-validation shows to help beyond it; geometry; or some of gains, coupling, "
-           "gravity, "
-           "torques, gear, spectrum, backlash, temperature joined by +");
+  add_text(
+      *verb, "--model", options->model,
+      fmt::format("auto: geometry and what cross-validation shows to help beyond it; geometry; or some of {} joined "
+                  "by +",
+                  fmt::join(term_names(), ", ")));
   add_choice(
       *verb, "--refit", options->refit, {"offsets"},
       "offsets: after a knock or a motor change, with few poses: only joint offsets, base and tool are found anew; "
@@ -244,7 +225,7 @@ Verb add_calibrate(CLI::App& app) {
            "Rows that are never fitted: a fraction (0.2), or a further pose set (default: 5-fold cross-validation)");
   add_search_arguments(*verb, options->search);
   add_common_options(*verb, options->common);
-  return {verb, [options] { return run(*options); }};
+  return {verb, [options, verb] { return run(*options, *verb); }};
 }
 
 }  // namespace kinfer::cli

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <memory>
 
-#include "kinfer/calibrate/parameters/population_prior.hpp"
 #include "kinfer/cli/parts/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
@@ -13,6 +12,7 @@
 #include "kinfer/io/text/format_number.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/units.hpp"
+#include "kinfer/words/calibration_checks.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -47,11 +47,11 @@ std::vector<JointColumn> joint_columns(const std::string& path, const std::vecto
   return columns;
 }
 
-std::string result_csv(const std::vector<JointColumn>& columns, const std::vector<deploy::CompensatedJoints>& list) {
+std::string result_csv(const std::vector<JointColumn>& columns, const std::vector<CompensatedJoints>& list) {
   std::string text;
   for (const JointColumn& column : columns) text += column.header + ",";
   text += "residual[mm]\n";
-  for (const deploy::CompensatedJoints& row : list) {
+  for (const CompensatedJoints& row : list) {
     for (std::size_t k = 0; k < columns.size(); ++k)
       text += format_number(row.q[static_cast<Eigen::Index>(k)], columns[k].factor) + ",";
     text += format_number(row.residual, 1e-3) + "\n";
@@ -66,35 +66,23 @@ std::vector<deploy::ToolTarget> targets_of(const PoseSet& set) {
   return targets;
 }
 
-/// Both chains in the frames of the comparison, and a note to the user about the choice.
-struct ModelPair {
-  Chain corrected, nominal;
-  std::string note;
-};
-
-Result<ModelPair> read_chains(const CompensateArguments& options) {
-  KINFER_TRY(corrected, read_robot(options.chain));
-  KINFER_TRY(nominal, read_robot({options.nominal, options.chain.base_link, options.chain.tip_link}));
-  if (!calibrate::have_same_joints(corrected.chain, nominal.chain))
-    return error("{}: expected the corrected model of the robot in {} (joints of the same number and types)",
-                 options.chain.path, options.nominal);
-  deploy::CompensationFrames frames =
-      deploy::select_compensation_frames(corrected.chain, nominal.chain, nominal.tolerances);
-  std::string note;
-  if (options.frames == "world")
-    frames = deploy::CompensationFrames::as_given;
-  else if (options.frames == "robot")
-    frames = deploy::CompensationFrames::robot;
-  else if (frames == deploy::CompensationFrames::robot)
-    note =
-        "the corrected base is far from the nominal one, so it tells where the instrument stood: compared with the "
-        "nominal "
-        "base and tool (--frames world compares as given)";
-  return ModelPair{deploy::express_in_frames(corrected.chain, nominal.chain, frames), nominal.chain, note};
+std::optional<deploy::CompensationFrames> frames_of(const std::string& name) {
+  if (name == "world") return deploy::CompensationFrames::as_given;
+  if (name == "robot") return deploy::CompensationFrames::robot;
+  return std::nullopt;
 }
 
-Result<std::vector<deploy::CompensatedJoints>> compensated_rows(const CompensateArguments& options,
-                                                                const ModelPair& chains) {
+Result<deploy::CompensationModels> read_models(const CompensateArguments& options) {
+  KINFER_TRY(corrected, read_robot(options.chain));
+  KINFER_TRY(nominal, read_robot({options.nominal, options.chain.base_link, options.chain.tip_link}));
+  auto models =
+      deploy::prepare_compensation(corrected.chain, nominal.chain, nominal.tolerances, frames_of(options.frames));
+  if (!models) return error("{}, {}: {}", options.chain.path, options.nominal, models.error().what);
+  return models;
+}
+
+Result<std::vector<CompensatedJoints>> compensated_rows(const CompensateArguments& options,
+                                                        const deploy::CompensationModels& chains) {
   const int threads = options.common.threads;
   if (!options.joints.empty()) {
     KINFER_TRY(set, read_pose_set(options.joints, chains.nominal, {}, RequiredContent::joints_only));
@@ -106,40 +94,32 @@ Result<std::vector<deploy::CompensatedJoints>> compensated_rows(const Compensate
                                     Rng(options.common.seed));
 }
 
-/// Reports the rows that are not reached, and why; true if all are reached.
-bool report_unreached_rows(const CompensateArguments& options, const std::vector<deploy::CompensatedJoints>& list) {
-  constexpr int most = 12;  // rows listed individually
-  double worst = 0.0;
-  int missed = 0;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    worst = std::max(worst, list[i].residual);
-    if (list[i].status == InverseStatus::reached) continue;
-    ++missed;
-    if (!options.common.quiet && missed <= most)
-      fmt::print(stderr, "row {}: {}; {:.4f} mm and {:.4f} deg are left\n", i, sentence(list[i].status),
-                 1e3 * list[i].residual, list[i].residual_angle / degree);
-  }
-  if (missed > most && !options.common.quiet) fmt::print(stderr, "and {} more\n", missed - most);
-  if (!options.common.quiet)
-    fmt::print(stderr, "{} of {} rows are compensated; the corrected model leaves {:.6f} mm at most\n",
-               list.size() - missed, list.size(), 1e3 * worst);
-  return missed == 0;
+/// Reports the rows that are not reached, and why.
+void print_summary(const CompensationSummary& summary, const std::vector<CompensatedJoints>& list) {
+  constexpr std::size_t most = 12;  // rows listed individually
+  for (std::size_t i = 0; i < std::min(most, summary.unreached.size()); ++i)
+    fmt::print(stderr, "{}\n", words::unreached_row(summary.unreached[i], list[summary.unreached[i]]));
+  if (summary.unreached.size() > most) fmt::print(stderr, "and {} more\n", summary.unreached.size() - most);
+  fmt::print(stderr, "{}\n", words::summary(summary));
 }
 
 int run(const CompensateArguments& options) {
   if (options.joints.empty() == options.targets.empty()) return fail({"expected either --joints or --targets"});
-  const auto chains = read_chains(options);
+  const auto chains = read_models(options);
   if (!chains) return fail(chains.error());
   const auto list = compensated_rows(options, *chains);
   if (!list) return fail(list.error());
-  if (!chains->note.empty() && !options.common.quiet) fmt::print(stderr, "{}\n", chains->note);
+  if (options.frames == "auto" && chains->frames == deploy::CompensationFrames::robot && !options.common.quiet)
+    fmt::print(stderr, "{}\n", words::compensation_frames_note());
   const std::string& input = options.joints.empty() ? options.targets : options.joints;
   const std::string text = result_csv(joint_columns(input, active_joint_names(chains->nominal)), *list);
   if (options.out.empty() || options.out == "-")
     fmt::print("{}", text);
   else if (auto done = write_text_file(options.out, text); !done)
     return fail(done.error());
-  return report_unreached_rows(options, *list) ? exit_done : exit_do_not_use;
+  const CompensationSummary summary = summarise(*list);
+  if (!options.common.quiet) print_summary(summary, *list);
+  return summary.unreached.empty() ? exit_done : exit_do_not_use;
 }
 
 }  // namespace

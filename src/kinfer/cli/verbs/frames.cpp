@@ -8,6 +8,7 @@
 #include "kinfer/io/evidence/frames_json.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/text/text_file.hpp"
+#include "kinfer/words/calibration_frames.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -22,15 +23,16 @@ std::string summary(const FrameEstimate& found) {
   const Vec3 tool = 1e3 * found.chain.tool.xyz;
   std::string text = fmt::format(
       "Base from the sweeps of {}. Tool on the flange: {:.4f} {:.4f} {:.4f} mm (by the paper's {}: {:.4f} mm).\n\n",
-      found.base_source, tool.x(), tool.y(), tool.z(), found.tool_source, 1e3 * found.tool_length);
+      words::base_source(found), tool.x(), tool.y(), tool.z(), words::tool_length_source(found),
+      1e3 * found.tool_length);
   text += fmt::format("  {:<18} {:<8} {:>5} {:>9} {:>11} {:>9} {:>11} {:>10} {:>10} {:>11}\n", "sweep", "joint", "rows",
                       "swept", "radius", "rms", "centre sd", "axis sd", "off by", "turned by");
   text += fmt::format("  {:<18} {:<8} {:>5} {:>9} {:>11} {:>9} {:>11} {:>10} {:>10} {:>11}\n", "", "", "", "deg", "mm",
                       "mm", "mm", "deg", "mm", "deg");
   for (const SweepCircle& c : found.sweeps)
     text += fmt::format("  {:<18} {:<8} {:>5} {:>9.1f} {:>11.4f} {:>9.4f} {:>11.4f} {:>10.5f} {:>10.4f} {:>11.5f}\n",
-                        c.name, c.joint, c.rows, c.swept / degree, 1e3 * c.radius, 1e3 * c.rms, 1e3 * c.centre_sd,
-                        c.axis_sd / degree, 1e3 * c.off_by, c.axis_angle / degree);
+                        words::sweep_name(c), c.joint, c.rows, c.swept / degree, 1e3 * c.radius, 1e3 * c.rms,
+                        1e3 * c.centre_sd, c.axis_sd / degree, 1e3 * c.off_by, c.axis_angle / degree);
   return text + fmt::format(
                     "\noff by, turned by: the chain's axis in these frames against the circle's.\n"
                     "The start that calibrate finds from all rows differs by {:.4f} mm and {:.5f} deg (base) and "

@@ -3,13 +3,14 @@
 #include <memory>
 
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
-#include "kinfer/calibrate/parameters/joint_excitation.hpp"
 #include "kinfer/cli/parts/inspect_recording.hpp"
 #include "kinfer/cli/parts/orientation_hypotheses.hpp"
 #include "kinfer/cli/parts/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/estimate/poses/joint_excitation.hpp"
 #include "kinfer/io/evidence/findings_json.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/words/findings.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -21,9 +22,9 @@ struct InspectArguments {
   bool allan = false, json = false;
 };
 
-std::string joint_table(const std::vector<calibrate::JointExcitation>& joints) {
+std::string joint_table(const std::vector<JointExcitation>& joints) {
   std::string text = fmt::format("  {:<16} {:>10} {:>10} {:>10}\n", "joint", "from", "to", "sd");
-  for (const calibrate::JointExcitation& j : joints) {
+  for (const JointExcitation& j : joints) {
     const double factor = j.is_revolute ? 1.0 / degree : 1e3;
     text += fmt::format("  {:<16} {:>10.2f} {:>10.2f} {:>10.2f} {}\n", j.name, factor * j.lower, factor * j.upper,
                         factor * j.sd, j.is_revolute ? "deg" : "mm");
@@ -50,10 +51,10 @@ std::string finding_lines(const std::vector<Finding>& findings) {
   if (findings.empty()) return "  nothing wrong was found\n";
   std::string text;
   for (const Finding& f : findings) {
-    text += fmt::format("  {}: {}{}\n", name(f.severity), f.sentence,
+    text += fmt::format("  {}: {}{}\n", name(f.severity), words::sentence(f),
                         f.lines.size() == 1 ? fmt::format(" (line {})", f.lines.front()) : "");
-    if (f.applied) text += "    certain: calibrate puts it right by itself, and says so\n";
-    if (!f.suggestion.empty()) text += fmt::format("    -> {}\n", f.suggestion);
+    if (f.applied) text += "    certain: calibrate corrects it by itself, and says so\n";
+    if (const std::string remedy = words::suggestion(f); !remedy.empty()) text += fmt::format("    -> {}\n", remedy);
   }
   return text;
 }
@@ -70,7 +71,7 @@ int inspect_pose_set(const std::string& file, const RobotModel& robot, const Col
     return exit_done;
   }
   fmt::print("{}: {} poses of {} joints; measured: {}\n", file, set->rows(), set->joints.rows(), measured_line(*set));
-  fmt::print("{}", joint_table(calibrate::measure_joint_excitation(robot.chain, *set)));
+  fmt::print("{}", joint_table(measure_joint_excitation(robot.chain, *set)));
   fmt::print("{}", finding_lines(diagnosis.findings));
   return exit_done;
 }

@@ -12,6 +12,7 @@
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/report/parts/plan_figure.hpp"
+#include "kinfer/words/calibration_checks.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -30,13 +31,6 @@ struct PlanArguments {
   double spacing = 5.0;          // [deg]
   double acceptance_angle = 60;  // [deg]
 };
-
-plan::Criterion criterion_of(const std::string& name) {
-  if (name == "worst") return plan::Criterion::worst;
-  if (name == "d") return plan::Criterion::d;
-  if (name == "a") return plan::Criterion::a;
-  return name == "e" ? plan::Criterion::e : plan::Criterion::tool;
-}
 
 /// "1800,-900,100" [mm] -> [m].
 Result<Vec3> parse_point(const std::string& text) {
@@ -89,7 +83,8 @@ std::string expected_line(const char* what, const ExpectedError& e) {
 }
 
 std::string summary(const PosePlan& plan, const PlanArguments& options) {
-  std::string text = fmt::format("{} poses in {}, chosen by {}.\n\n", plan.joints.cols(), options.out, plan.criterion);
+  std::string text = fmt::format("{} poses in {}, chosen by {}.\n\n", plan.joints.cols(), options.out,
+                                 words::description(plan.criterion));
   if (plan.joints.cols() < options.poses)
     text += fmt::format("Only {} of {} poses are further than {} deg apart.\n\n", plan.joints.cols(), options.poses,
                         options.spacing);
@@ -110,11 +105,11 @@ std::string summary(const PosePlan& plan, const PlanArguments& options) {
   text += fmt::format("Ordered for least travel: {:.0f} deg, {:.0f} deg as chosen.\n", plan.travel / degree,
                       plan.travel_unordered / degree);
   if (!plan.candidates.empty()) text += "Rows chosen, from 0: " + rows_text(plan.candidates) + "\n";
-  if (!plan.superfluous.empty())
+  if (!plan.redundant_rows.empty())
     text += fmt::format(
         "Existing rows that tell hardly anything beside the others (leaving all of them out costs less "
         "than 1 % of the criterion): {}\n",
-        rows_text(plan.superfluous));
+        rows_text(plan.redundant_rows));
   return text;
 }
 
@@ -124,7 +119,7 @@ std::string headline_json(const PosePlan& plan) {
   };
   const auto& o = plan.observability;
   const nlohmann::ordered_json json{
-      {"criterion", plan.criterion},
+      {"criterion", words::description(plan.criterion)},
       {"poses", plan.joints.cols()},
       {"expected", expected(plan.expected)},
       {"existing", expected(plan.existing)},
@@ -134,18 +129,27 @@ std::string headline_json(const PosePlan& plan) {
       {"rank", plan.rank},
       {"observability", {{"O1", o[0]}, {"O2", o[1]}, {"O3", o[2]}, {"O4", o[3]}, {"O5", o[4]}}},
       {"rows", plan.candidates},
-      {"leave_out", plan.superfluous},
+      {"leave_out", plan.redundant_rows},
       {"travel_rad", plan.travel}};
   return json.dump() + "\n";
 }
 
-int run(const PlanArguments& options) {
+/// An error for an option that was given but has no effect with --candidates: listed poses are not checked.
+Result<void> check_arguments(const PlanArguments& options, const CLI::App& verb) {
+  for (const char* constraint : {"--instrument-at", "--acceptance", "--lowest", "--clearance"})
+    if (!options.candidates.empty() && was_given(verb, constraint))
+      return error("{} has no effect with --candidates: poses are chosen from the list as it is", constraint);
+  return {};
+}
+
+int run(const PlanArguments& options, const CLI::App& verb) {
+  if (auto effective = check_arguments(options, verb); !effective) return fail(effective.error());
   const auto robot = read_robot(options.robot);
   if (!robot) return fail(robot.error());
   const auto task = read_task(options, *robot);
   if (!task) return fail(task.error());
   const plan::PlanOptions how{.poses = options.poses,
-                              .criterion = criterion_of(options.criterion),
+                              .criterion = *criterion_named(options.criterion),
                               .spacing = options.spacing * degree,
                               .threads = options.common.threads};
   const auto plan = plan::plan_poses(*task, how, Rng(options.common.seed));
@@ -199,7 +203,7 @@ Verb add_plan(CLI::App& app) {
   add_number(*verb, "--spacing", options->spacing, 0.0, 90.0,
              "Some joint differs by more than this between any two poses [deg]");
   add_common_options(*verb, options->common);
-  return {verb, [options] { return run(*options); }};
+  return {verb, [options, verb] { return run(*options, *verb); }};
 }
 
 }  // namespace kinfer::cli

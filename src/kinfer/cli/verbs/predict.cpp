@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // kinfer predict: forward kinematics of a chain for a file with joint columns.
+#include "kinfer/deploy/predict.hpp"
+
 #include <memory>
 
-#include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/cli/parts/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
-#include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/pose_set/predictions_csv.hpp"
 #include "kinfer/io/text/text_file.hpp"
@@ -19,12 +19,6 @@ struct PredictArguments {
   bool quiet = false;
 };
 
-/// Each row in its named set-up and with its named arm, approached from the previous row.
-Result<std::vector<Pose>> predicted_poses(const Chain& chain, const PoseSet& set) {
-  KINFER_TRY(placed, calibrate::with_fixtures(chain, set));
-  return evaluate_poses(placed.chain, {}, with_approach(placed.data), Derivative::no).pose;
-}
-
 int run(const PredictArguments& options) {
   const auto robot = read_robot(options.chain);
   if (!robot) return fail(robot.error());
@@ -32,7 +26,7 @@ int run(const PredictArguments& options) {
   if (!map) return fail(map.error());
   const auto set = read_pose_set(options.joints, robot->chain, *map, RequiredContent::joints_only);
   if (!set) return fail(set.error());
-  const auto poses = predicted_poses(robot->chain, *set);
+  const auto poses = deploy::predict_poses(robot->chain, *set);
   if (!poses) return fail(poses.error());
   const auto text = format_predictions_csv(*poses, *set, robot->chain.base.pose(), robot->chain.fixtures.anchors);
   if (!text) return fail(text.error());

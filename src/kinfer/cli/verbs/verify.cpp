@@ -11,6 +11,7 @@
 #include "kinfer/deploy/verify.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/standard_deviations_toml.hpp"
+#include "kinfer/words/calibration_checks.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -21,18 +22,19 @@ struct VerifyArguments {
   std::string data, columns, against;
 };
 
-void print(const deploy::Verification& v, const CommonOptions& common) {
+void print(const Verification& v, const CommonOptions& common) {
   if (common.json) {
     const auto figures = [](const ErrorStatistics& s) {
       return nlohmann::ordered_json{{"mean", s.mean}, {"rms", s.rms}, {"sd", s.sd}, {"max", s.max}, {"n", s.n}};
     };
-    const nlohmann::ordered_json json{{"verdict", v.verdict},
-                                      {"good", v.good},
+    const nlohmann::ordered_json json{{"verdict", words::verdict(v)},
+                                      {"good", v.result == VerificationResult::valid},
+                                      {"result", name(v.result)},
                                       {"as_it_stands", figures(v.unmodified)},
                                       {"frames_refitted", figures(v.frames_refitted)}};
     fmt::print("{}\n", json.dump());
   } else if (!common.quiet) {
-    fmt::print("{}\n\n  as it stands            {}\n  base and tool refitted  {}\n", v.verdict,
+    fmt::print("{}\n\n  as it stands            {}\n  base and tool refitted  {}\n", words::verdict(v),
                statistics_line(v.unmodified), statistics_line(v.frames_refitted));
   }
 }
@@ -47,10 +49,10 @@ DisplayUnit display_unit_of_change(Quantity quantity) {
   return {1.0, ""};
 }
 
-void print(const deploy::CalibrationComparison& changes, const CommonOptions& common) {
+void print(const CalibrationComparison& changes, const CommonOptions& common) {
   if (common.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const deploy::ParameterChange& c : changes.parameters)
+    for (const ParameterChange& c : changes.parameters)
       list.push_back({{"name", c.name},
                       {"before", c.before},
                       {"after", c.after},
@@ -59,7 +61,7 @@ void print(const deploy::CalibrationComparison& changes, const CommonOptions& co
                       {"unit", unit(c.quantity)},
                       {"sigmas", c.sigmas},
                       {"significant", c.significant}});
-    const nlohmann::ordered_json json{{"verdict", changes.verdict},
+    const nlohmann::ordered_json json{{"verdict", words::verdict(changes)},
                                       {"changed", changes.changed},
                                       {"tool_rms", changes.tool_rms},
                                       {"tool_worst", changes.tool_worst},
@@ -68,10 +70,10 @@ void print(const deploy::CalibrationComparison& changes, const CommonOptions& co
     return;
   }
   if (common.quiet) return;
-  fmt::print("{}\n\n  {:<12} {:>12} {:>12} {:>8}\n", changes.verdict, "number", "change", "sd", "sigma");
+  fmt::print("{}\n\n  {:<12} {:>12} {:>12} {:>8}\n", words::verdict(changes), "number", "change", "sd", "sigma");
   constexpr std::size_t most = 12;
   for (std::size_t i = 0; i < std::min(most, changes.parameters.size()); ++i) {
-    const deploy::ParameterChange& c = changes.parameters[i];
+    const ParameterChange& c = changes.parameters[i];
     const auto [factor, unit_name] = display_unit_of_change(c.quantity);
     fmt::print("  {:<12} {:>+12.5f} {:>12.5f} {:>+8.1f} {}{}\n", c.name, factor * c.change, factor * c.sd, c.sigmas,
                unit_name, c.significant ? "   changed" : "");
@@ -97,6 +99,10 @@ int run_comparison(const VerifyArguments& options) {
 }
 
 int run(const VerifyArguments& options) {
+  if (!options.against.empty() && !options.data.empty())
+    return fail({"verify: expected either --data or --against, not both"});
+  if (!options.against.empty() && !options.columns.empty())
+    return fail({"verify: --columns has no effect with --against"});
   if (!options.against.empty()) return run_comparison(options);
   if (options.data.empty())
     return fail({"verify: expected --data with new measurements, or --against a later chain.toml"});
@@ -109,7 +115,7 @@ int run(const VerifyArguments& options) {
   const auto verification = deploy::verify(robot->chain, robot->tolerances, robot->instrument, *data);
   if (!verification) return fail(verification.error());
   print(*verification, options.common);
-  return verification->good ? exit_done : exit_do_not_use;
+  return verification->result == VerificationResult::valid ? exit_done : exit_do_not_use;
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ class Fit {
     state_.chain = start;
     blocks_ = blocks_of(data);
     state_.inlier.assign(blocks_.size(), true);
-    state_.search.method = "lm";
+    state_.search.method = SearchMethod::levenberg_marquardt;
     state_.excess = excess_noise(start, data, instrument, 0.0);
   }
 
@@ -269,10 +269,10 @@ class Fit {
       const ResidualKind& kind = residual_kind(block.kind);
       BlockRows out{residual, nullptr, 0};
       kind.write({estimate.chain, data_, at, columns}, static_cast<std::size_t>(block.index), out);
-      const std::string what = kind.in_words(residual.head(kind.size).norm());
       const int line = data_.line.empty() ? 0 : data_.line[block.row];
       const double sigmas = distance[static_cast<Eigen::Index>(i)];
-      estimate.outliers.push_back({block.row, line, fmt::format("{} ({:.0f} sigma)", what, sigmas), sigmas});
+      const OutlierReason reason{block.kind, residual.head(kind.size).norm(), sigmas};
+      estimate.outliers.push_back({.row = block.row, .line = line, .reasons = {reason}, .sigmas = sigmas});
     }
     std::stable_sort(estimate.outliers.begin(), estimate.outliers.end(),
                      [](const Outlier& a, const Outlier& b) { return a.row < b.row; });
@@ -287,7 +287,7 @@ class Fit {
         merged.push_back(outlier);
         continue;
       }
-      merged.back().reason += "; " + outlier.reason;
+      merged.back().reasons.insert(merged.back().reasons.end(), outlier.reasons.begin(), outlier.reasons.end());
       merged.back().sigmas = std::max(merged.back().sigmas, outlier.sigmas);
     }
     outliers = std::move(merged);

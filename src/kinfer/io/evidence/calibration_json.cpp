@@ -6,6 +6,9 @@
 #include "kinfer/io/evidence/drawing_json.hpp"
 #include "kinfer/io/evidence/findings_json.hpp"
 #include "kinfer/io/evidence/json_parts.hpp"
+#include "kinfer/words/calibration.hpp"
+#include "kinfer/words/calibration_model.hpp"
+#include "kinfer/words/calibration_outliers.hpp"
 
 namespace kinfer {
 namespace {
@@ -51,8 +54,55 @@ Json parameters_json(const Estimate& estimate) {
 
 Json outliers_json(const std::vector<Outlier>& outliers) {
   Json list = Json::array();
-  for (const Outlier& o : outliers) list.push_back({{"row", o.row}, {"line", o.line}, {"reason", o.reason}});
+  for (const Outlier& o : outliers) {
+    Json measurements = Json::array();
+    for (const OutlierReason& r : o.reasons)
+      measurements.push_back({{"kind", name(r.kind)}, {"residual", r.residual}, {"sigmas", r.sigmas}});
+    list.push_back({{"row", o.row},
+                    {"line", o.line},
+                    {"reason", words::sentence(o)},
+                    {"measurements", measurements},
+                    {"sigmas", o.sigmas},
+                    {"held_out", o.held_out}});
+  }
   return list;
+}
+
+Json undetermined_json(const Identifiability& identifiability) {
+  Json list = Json::array();
+  for (const UndeterminedGroup& group : identifiability.undetermined)
+    list.push_back({{"reason", name(group.reason)}, {"parameters", group.parameters}});
+  return list;
+}
+
+Json notes_json(const std::vector<CalibrationNote>& notes) {
+  Json list = Json::array();
+  for (const CalibrationNote& note : notes)
+    list.push_back({{"kind", name(note.kind)}, {"values", values_json(note.values)}});
+  return list;
+}
+
+Json recommendations_json(const std::vector<CalibrationAdvice>& list) {
+  Json json = Json::array();
+  for (const CalibrationAdvice& advice : list) {
+    const auto [what, why] = words::advice(advice);
+    json.push_back({{"what", what}, {"why", why}, {"kind", name(advice.kind)}, {"values", values_json(advice.values)}});
+  }
+  return json;
+}
+
+Json unknown_robot_json(const UnknownRobotEvidence& robot) {
+  Json axes = Json::array();
+  for (const AxisPair& pair : robot.axes.pairs)
+    axes.push_back({{"joints", {pair.first, pair.second}},
+                    {"relation", name(pair.relation)},
+                    {"angle_rad", pair.angle},
+                    {"distance_m", pair.distance ? Json(*pair.distance) : Json(nullptr)}});
+  return {{"starts", robot.starts},
+          {"agreeing", robot.agreeing},
+          {"median_error", robot.median_error},
+          {"axes", axes},
+          {"wrists", robot.axes.wrists}};
 }
 
 Json rows_json(const std::vector<RowErrors>& rows) {
@@ -69,20 +119,16 @@ Json rows_json(const std::vector<RowErrors>& rows) {
 
 /// ISO 9283: accuracy over all poses, repeatability over the repeated ones.
 Json iso9283_json(const std::vector<PoseAccuracy>& poses) {
-  std::vector<double> before, after, repeatability;
-  for (const PoseAccuracy& pose : poses) {
-    before.push_back(pose.accuracy_before), after.push_back(pose.accuracy_after);
-    if (pose.repeatability) repeatability.push_back(*pose.repeatability);
-  }
-  return {{"pose_accuracy_before", json_of(error_statistics(before))},
-          {"pose_accuracy_after", json_of(error_statistics(after))},
-          {"pose_repeatability", json_of(error_statistics(repeatability))}};
+  const auto [before, after, repeatability] = accuracy_statistics(poses);
+  return {{"pose_accuracy_before", json_of(before)},
+          {"pose_accuracy_after", json_of(after)},
+          {"pose_repeatability", json_of(repeatability)}};
 }
 
 Json side_by_side_json(const std::vector<SearchRun>& runs) {
   Json list = Json::array();
   for (const SearchRun& run : runs)
-    list.push_back({{"start", run.name},
+    list.push_back({{"start", name(run.initial)},
                     {"iterations", run.iterations < 0 ? Json(nullptr) : Json(run.iterations)},
                     {"evaluations", run.evaluations},
                     {"rms", run.rms}});
@@ -91,7 +137,7 @@ Json side_by_side_json(const std::vector<SearchRun>& runs) {
 
 /// How the optimiser ran: engine, effort, why it stopped, cost history.
 Json search_json(const SearchSummary& search) {
-  Json json{{"engine", search.method},
+  Json json{{"engine", name(search.method)},
             {"iterations", search.iterations},
             {"evaluations", search.evaluations},
             {"stop", name(search.stop)},
@@ -103,26 +149,46 @@ Json search_json(const SearchSummary& search) {
   return json;
 }
 
-/// Without model selection, the fitted model is the only entry.
-Json model_json(const Calibration& c) {
-  ModelSelection model_selection = c.model_selection;
-  if (model_selection.model_terms.empty())
-    model_selection.model_terms.push_back(
-        {.name = "geometry", .train = c.after.position.train, .holdout = c.after.position.holdout, .selected = true});
-  if (model_selection.selected.empty()) model_selection.selected = model_selection.model_terms.front().name;
-  Json model_terms = Json::array();
-  for (const SelectionStep& r : model_selection.model_terms) {
-    Json model_term{{"name", r.name}, {"adds", r.description}};
-    if (!r.skipped) model_term["train"] = json_of(r.train), model_term["holdout"] = json_of(r.holdout);
-    model_term["terms"] = r.parameter_count;
-    model_term["determined"] = r.determined_count;
-    model_term["not_excited"] = r.undetermined_parameters;
-    model_term["chosen"] = r.selected;
-    model_term["locked"] = r.skipped;
-    model_term["why"] = r.reason;
-    model_terms.push_back(model_term);
+Json change_json(const ErrorChange& change) {
+  return {{"mean_before", change.mean_before},
+          {"mean_after", change.mean_after},
+          {"worst_before", change.worst_before},
+          {"worst_after", change.worst_after},
+          {"standard_errors", finite_json(change.t)}};
+}
+
+Json step_json(const SelectionStep& step) {
+  Json json{{"name", name(step)}, {"adds", words::description(step)}};
+  if (was_tested(step)) json["train"] = json_of(step.train), json["holdout"] = json_of(step.holdout);
+  json["terms"] = step.parameter_count;
+  json["determined"] = step.determined_count;
+  json["not_excited"] = step.undetermined_parameters;
+  json["chosen"] = is_selected(step);
+  json["locked"] = !was_tested(step);
+  json["why"] = words::reason(step);
+  json["decision"] = name(step.decision);
+  json["missing"] = name(step.missing);
+  if (was_tested(step) && step.term) {
+    json["interpolation"] = change_json(step.interpolation);
+    json["extrapolation"] = change_json(step.extrapolation);
   }
-  return {{"chosen", model_selection.selected}, {"rungs", model_terms}};
+  return json;
+}
+
+/// Without model selection, the fitted model is the only entry.
+Json fitted_model_json(const TrainHoldout& errors) {
+  return {
+      {"name", "geometry"}, {"adds", ""},      {"train", json_of(errors.train)}, {"holdout", json_of(errors.holdout)},
+      {"terms", 0},         {"determined", 0}, {"not_excited", Json::array()},   {"chosen", true},
+      {"locked", false},    {"why", ""}};
+}
+
+Json model_json(const Calibration& c) {
+  if (c.model_selection.steps.empty())
+    return {{"chosen", "geometry"}, {"rungs", Json::array({fitted_model_json(c.after.position)})}};
+  Json steps = Json::array();
+  for (const SelectionStep& step : c.model_selection.steps) steps.push_back(step_json(step));
+  return {{"chosen", selected_model(c.model_selection)}, {"rungs", steps}};
 }
 
 }  // namespace
@@ -133,14 +199,20 @@ std::string format_calibration_evidence(const Calibration& c, const Provenance& 
   json["format"] = "kinfer-evidence/1";
   json["kind"] = "calibrate";
   json["robot"] = e.chain.name;
-  json["verdict"] = c.verdict;
-  json["use"] = c.usable;
-  json["next"] = advice_json(c.recommendations);
-  json["notes"] = c.notes;
+  json["verdict"] = words::verdict(c);
+  json["use"] = c.usability != Usability::do_not_use;
+  json["usability"] = name(c.usability);
+  json["reason"] = name(c.reason);
+  json["next"] = recommendations_json(c.recommendations);
+  json["notes"] = words::notes(c);
+  json["note_facts"] = notes_json(c.notes);
+  if (c.unknown_robot) json["unknown_robot"] = unknown_robot_json(*c.unknown_robot);
   json["findings"] = Json::parse(format_findings(c.findings));
-  json["holdout"] = c.holdout;
+  json["holdout"] = words::description(c.holdout);
   json["wrong_rows"] = c.gross_error_rows;
-  json["measured"] = c.measured;
+  json["measured"] = words::measured_quantity(c.measured);
+  json["measurement"] = name(c.measured);
+  json["expected_holdout_rms"] = c.expected_holdout_rms ? Json(*c.expected_holdout_rms) : Json(nullptr);
   json["nominal"] = json_of(c.nominal);
   json["before"] = json_of(c.before);
   json["after"] = json_of(c.after);
@@ -152,7 +224,8 @@ std::string format_calibration_evidence(const Calibration& c, const Provenance& 
   json["parameters"] = parameters_json(e);
   json["rank"] = e.identifiability.rank;
   json["singular_values"] = array_of(e.identifiability.singular_values);
-  json["confounded"] = e.identifiability.confounded;
+  json["confounded"] = words::undetermined_sentences(e.identifiability);
+  json["undetermined"] = undetermined_json(e.identifiability);
   json["outliers"] = outliers_json(e.outliers);
   json["model"] = model_json(c);
   json["search"] = search_json(e.search);
@@ -164,13 +237,14 @@ std::string format_calibration_evidence(const Calibration& c, const Provenance& 
 }
 
 std::string format_calibration_headline(const Calibration& c) {
-  const Json json{{"verdict", c.verdict},
-                  {"use", c.usable},
+  const Json json{{"verdict", words::verdict(c)},
+                  {"use", c.usability != Usability::do_not_use},
+                  {"usability", name(c.usability)},
                   {"before", json_of(c.before)},
                   {"after", json_of(c.after)},
                   {"rank", c.estimate.identifiability.rank},
                   {"outliers", c.estimate.outliers.size()},
-                  {"model", c.model_selection.selected},
+                  {"model", selected_model(c.model_selection)},
                   {"predicted_error", c.estimate.predicted_error}};
   return json.dump() + "\n";
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Findings about a pose set or a recording as JSON: kind, severity, rows (from 0), lines, sentence, suggestion,
-// applied.
+// applied, values.
 #pragma once
 
 #include <string>

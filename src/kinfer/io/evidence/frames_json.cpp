@@ -5,6 +5,7 @@
 
 #include "kinfer/geometry/rotation.hpp"
 #include "kinfer/io/evidence/json_parts.hpp"
+#include "kinfer/words/calibration_frames.hpp"
 
 namespace kinfer {
 namespace {
@@ -13,7 +14,7 @@ using Json = nlohmann::ordered_json;
 using kinfer::json_of;  // in addition to the overloads below
 
 Json json_of(const SweepCircle& c) {
-  return {{"name", c.name},
+  return {{"name", words::sweep_name(c)},
           {"joint", c.joint},
           {"rows", c.rows},
           {"swept_rad", c.swept},
@@ -42,9 +43,12 @@ std::string format_frames_evidence(const FrameEstimate& found) {
   const Json json{{"format", "kinfer-evidence/1"},
                   {"kind", "frames"},
                   {"base", json_of(found.chain.base)},
-                  {"base_from", found.base_source},
+                  {"base_from", words::base_source(found)},
                   {"tool", json_of(found.chain.tool)},
-                  {"papers_tool_length", {{"from", found.tool_source}, {"value", found.tool_length}}},
+                  {"papers_tool_length",
+                   {{"from", words::tool_length_source(found)},
+                    {"source", name(found.tool_length_source)},
+                    {"value", found.tool_length}}},
                   {"closed_form_start",
                    {{"base_differs_m", found.base_differs},
                     {"base_turned_rad", found.base_turned},

@@ -18,6 +18,12 @@ Json finite_json(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+Json values_json(const FactValues& values) {
+  Json json = Json::object();
+  for (const auto& [key, value] : values) json[key] = std::visit([](const auto& v) { return Json(v); }, value);
+  return json;
+}
+
 Json provenance_json(const Provenance& provenance) {
   Json inputs = Json::array(), options = Json::object();
   for (const InputFile& input : provenance.inputs) inputs.push_back({{"name", input.name}, {"sha256", input.sha256}});

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "kinfer/evidence/fact.hpp"
 #include "kinfer/evidence/provenance.hpp"
 #include "kinfer/geometry/rotation.hpp"
 
@@ -14,6 +15,9 @@ nlohmann::ordered_json json_of(const Vec3& v);
 
 /// null where not finite
 nlohmann::ordered_json finite_json(double value);
+
+/// The values of a fact by their names.
+nlohmann::ordered_json values_json(const FactValues& values);
 
 /// Version, seed, options and inputs.
 nlohmann::ordered_json provenance_json(const Provenance& provenance);

@@ -9,13 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "kinfer/evidence/measurement_kind.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer {
-
-enum class MeasurementKind { point, orientation, contact, distance, pair, plane, tilt };
-inline constexpr int measurement_kinds = 7;
 
 /// Poses and their derivatives at all rows of a pose set: evaluated once for all kinds of measurements.
 struct EvaluatedPoses {

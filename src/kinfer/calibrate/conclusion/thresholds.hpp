@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Thresholds of the verdict and of the recommendations. The data on which they were set are not recorded.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace kinfer::calibrate::thresholds {
+
+/// [1] held-out rms error over the expected one: above it, some effect is not modelled. Larger accepts worse models.
+inline constexpr double expectation_ratio = 3.0;
+/// [1] rms error of the final fit on its rows over that of the validation fits on held-out rows: above it, the final
+/// fit converged to another solution than the validated one.
+inline constexpr double same_solution_ratio = 1.5;
+/// [1] held-out mean error over that of the fitted rows, without a data sheet: above it, the model is overfitted.
+inline constexpr double generalisation_ratio = 3.0;
+/// Probability that the offset of any unchanged joint is called moved (two-sided, family-wise).
+inline constexpr double moved_offset_risk = 0.01;
+
+inline constexpr double misfit_chi2 = 4.0;  ///< [1] chi2/n: the residuals are twice the instrument's noise
+inline constexpr double enough_rotation = 1.0, enough_translation = 0.1;  ///< [rad], [m] range of a joint's positions
+/// [1] of the predicted error over the poses: a workspace point above it is worth more poses.
+inline constexpr double uncertain_ratio = 1.5;
+inline constexpr Eigen::Index enough_poses = 60, least_more_poses = 10;
+inline constexpr int workspace_points = 500;  ///< samples of the predicted error; more: finer, slower
+
+}  // namespace kinfer::calibrate::thresholds

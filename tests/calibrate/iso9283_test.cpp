@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/validation/iso9283.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kinfer/kinematics/forward.hpp"
+#include "support/robots.hpp"
+
+namespace kinfer {
+using namespace calibrate;
+namespace {
+
+Chain arm() {
+  Chain chain = test::with_table3_errors(test::er20());
+  chain.tool.xyz = {0.03, -0.02, 0.1};
+  return chain;
+}
+
+TEST(Iso9283, AccuracyAndRepeatabilityAreThoseOfTheStandard) {
+  const Chain chain = arm();
+  PoseSet data = test::measured(chain, test::paper2_poses(3, test::noise_free), 1);
+  data.joints.col(1) = data.joints.col(0);
+  const Vec3 p = forward(chain, data.joints.col(0)).position;
+  data.points[0].position = p + Vec3(3e-3, 1e-3, 0);
+  data.points[1].position = p + Vec3(3e-3, -1e-3, 0);
+  const std::vector<PoseAccuracy> poses = evaluate_pose_accuracy(chain, chain, data);
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses[0].rows, (std::vector<int>{0, 1}));
+  EXPECT_NEAR(poses[0].accuracy_after, 3e-3, 1e-12);
+  EXPECT_NEAR(*poses[0].repeatability, 1e-3, 1e-12);  // both lie 1 mm from the middle: no scatter of that distance
+  EXPECT_FALSE(poses[1].repeatability.has_value());
+}
+
+}  // namespace
+}  // namespace kinfer

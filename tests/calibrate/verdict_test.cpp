@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The verdict as a function of the error statistics, and its words.
+#include "kinfer/calibrate/conclusion/verdict.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kinfer/words/calibration.hpp"
+
+namespace kinfer {
+using namespace calibrate;
+namespace {
+
+Calibration with_errors(double before, double after, double final_rms) {
+  Calibration c;
+  c.before.position.holdout = {.mean = before, .rms = before, .max = 2.0 * before, .n = 50};
+  c.after.position.holdout = {.mean = after, .rms = after, .max = 2.0 * after, .n = 50};
+  c.after.position.train = {.mean = final_rms, .rms = final_rms, .max = final_rms, .n = 50};
+  return c;
+}
+
+TEST(Verdict, ABetterModelIsUsed) {
+  const Calibration c = with_errors(1e-3, 1e-4, 1e-4);
+  EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
+  EXPECT_EQ(usability_of(judge(c)), Usability::use);
+}
+
+TEST(Verdict, AModelThatIsNoBetterIsNotUsed) {
+  EXPECT_EQ(judge(with_errors(1e-3, 1e-3, 1e-4)), CalibrationReason::no_improvement);
+  EXPECT_EQ(usability_of(CalibrationReason::no_improvement), Usability::do_not_use);
+}
+
+TEST(Verdict, AFinalFitThatConvergedElsewhereIsNotValidated) {
+  EXPECT_EQ(judge(with_errors(1e-3, 1e-4, 1.6e-4)), CalibrationReason::not_validated);
+  EXPECT_EQ(judge(with_errors(1e-3, 1e-4, 1.4e-4)), CalibrationReason::improves_nominal);
+}
+
+TEST(Verdict, ErrorsFarAboveTheExpectedOnesAreNotModelled) {
+  Calibration c = with_errors(1e-3, 1e-4, 1e-4);
+  c.expected_holdout_rms = 0.3e-4;
+  EXPECT_EQ(judge(c), CalibrationReason::unmodelled_effects);
+  c.expected_holdout_rms = 0.4e-4;
+  EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
+}
+
+TEST(Verdict, WithoutADataSheetHeldOutRowsAreComparedWithFittedOnes) {
+  Calibration c = with_errors(0.0, 1e-4, 0.3e-4);
+  c.unknown_robot = UnknownRobotEvidence{};
+  EXPECT_EQ(judge(c), CalibrationReason::overfitted);
+  c.after.position.train.mean = 0.4e-4;
+  EXPECT_EQ(judge(c), CalibrationReason::generalises);
+  c.after.position.holdout.n = 0;
+  EXPECT_EQ(judge(c), CalibrationReason::overfitted) << "nothing was held out";
+}
+
+TEST(Verdict, OrientationsAreComparedWhereNoLengthWasMeasured) {
+  Calibration c;
+  c.before.orientation.holdout = {.mean = 1e-2, .rms = 1e-2, .n = 9};
+  c.after.orientation.holdout = {.mean = 1e-3, .rms = 1e-3, .n = 9};
+  c.after.orientation.train = {.mean = 1e-3, .rms = 1e-3, .n = 9};
+  c.measured = MeasurementKind::orientation;
+  EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
+  EXPECT_NE(words::verdict(c).find("the orientation is 0.057 deg off on average"), std::string::npos)
+      << words::verdict(c);
+}
+
+TEST(VerdictWords, FiguresAreThoseOfTheHeldOutRows) {
+  EXPECT_EQ(words::verdict(with_errors(1e-3, 1e-4, 1e-4)),
+            "Use it: on poses that were not fitted the tool is 0.100 mm off on average and 0.200 mm at worst (1.000 mm "
+            "and 2.000 mm before).");
+}
+
+TEST(VerdictWords, ExcludedRowsAreNamed) {
+  Calibration c = with_errors(1e-3, 1e-4, 1e-4);
+  c.gross_error_rows = {3, 4, 5, 9};
+  c.estimate.outliers.resize(5);
+  c.after.position.holdout_all_rows.max = 7e-3;
+  EXPECT_NE(words::verdict(c).find("; 4 rows are not believed and left out: rows 3-5 and 9 (7.000 mm at worst with "
+                                   "them); the fit gives 1 more row no weight"),
+            std::string::npos)
+      << words::verdict(c);
+}
+
+}  // namespace
+}  // namespace kinfer

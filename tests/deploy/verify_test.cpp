@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/deploy/verify.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kinfer/deploy/predict.hpp"
+#include "kinfer/kinematics/forward.hpp"
+#include "kinfer/words/calibration_checks.hpp"
+#include "support/robots.hpp"
+
+namespace kinfer {
+using namespace deploy;
+namespace {
+
+using namespace test;
+
+/// The paper's robot somewhere in a tracker's world, its target off the axis.
+Chain on_a_stand(Chain chain) {
+  chain.base = Frame::from_pose(Pose::from_xyz_rpy({1.2, -2.5, 0.35}, {0.02, -0.03, 2.3}));
+  chain.tool.xyz = Vec3(0.03, 0.02, 0.1);
+  return chain;
+}
+
+TEST(Verify, TellsAMovedTrackerFromAChangedRobot) {
+  const Chain truth = on_a_stand(with_table3_errors(er20(0.125)));
+  const PoseSet today = measured(truth, paper2_poses(30, tracker), 5);
+  EXPECT_EQ(verify(truth, {}, tracker, today)->result, VerificationResult::valid);
+
+  Chain moved = truth;
+  moved.base.xyz.x() += 0.01;
+  const Verification after_move = verify(moved, {}, tracker, today).value();
+  EXPECT_EQ(after_move.result, VerificationResult::frames_moved);
+  EXPECT_NE(words::verdict(after_move).find("was moved"), std::string::npos);
+
+  Chain bent = truth;
+  std::get<MdhLink>(bent.joints[3].link).alpha += 0.2 * degree;
+  const Verification after_knock = verify(bent, {}, tracker, today).value();
+  EXPECT_EQ(after_knock.result, VerificationResult::robot_changed);
+  EXPECT_NE(words::verdict(after_knock).find("Calibrate again"), std::string::npos);
+}
+
+TEST(Verify, WithoutAnInstrumentOnlyAMovedFrameIsFound) {
+  const Chain truth = on_a_stand(with_table3_errors(er20(0.125)));
+  const PoseSet today = measured(truth, paper2_poses(30, tracker), 5);
+  Chain moved = truth;
+  moved.base.xyz.x() += 0.01;
+  EXPECT_EQ(verify(truth, {}, std::nullopt, today)->result, VerificationResult::valid);
+  EXPECT_EQ(verify(moved, {}, std::nullopt, today)->result, VerificationResult::frames_moved);
+}
+
+TEST(Verify, NeedsMeasuredPositions) {
+  PoseSet data = measured(er20(), paper2_poses(5, tracker));
+  data.points.clear();
+  EXPECT_EQ(verify(er20(), {}, tracker, data).error().what, "the data contain no measured positions to verify against");
+}
+
+TEST(Predict, RowsGetThePoseOfTheirSetup) {
+  Chain chain = er20();
+  PoseSet rows = measured(chain, paper2_poses(4, noise_free));
+  const std::vector<Pose> poses = predict_poses(chain, rows).value();
+  ASSERT_EQ(poses.size(), 4u);
+  for (int row = 0; row < 4; ++row)
+    EXPECT_LT((poses[row].position - forward(chain, rows.joints.col(row)).position).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace kinfer
