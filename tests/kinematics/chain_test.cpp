@@ -10,8 +10,8 @@
 namespace kinfer {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 TEST(Chain, APathLeadsFromTheBaseToTheTipPastOtherBranches) {
   const Chain chain = laws::two_arms();

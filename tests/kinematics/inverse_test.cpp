@@ -152,5 +152,72 @@ TEST(Inverse, EveryEndingHasASentenceOfItsOwn) {
   EXPECT_FALSE(sentences.contains(""));
 }
 
+TEST(Inverse, LargeTravelOfAPrismaticJointIsReachedInBoundedSteps) {
+  Chain chain;
+  chain.joints = {laws::prismatic<DhLink>(0, 0, 0), laws::revolute<DhLink>(0.5, 0, 0)};
+  chain.joints[1].parent = 0;
+  const VectorXd truth = readings(12.0, 0.8);
+  const InverseSolution s = inverse(chain, forward(chain, truth), readings(0.0, 0.0));
+  EXPECT_EQ(s.status, InverseStatus::reached);
+  EXPECT_LT((s.q - truth).norm(), 1e-8);
+  EXPECT_GE(s.iterations, 24);  // half a metre at a time
+}
+
+TEST(Inverse, APrismaticJointAtItsLimitIsNamed) {
+  Chain chain = laws::scara();
+  const VectorXd truth = (VectorXd(4) << 0.3, 0.7, 0.35, 0.1).finished();
+  const InverseSolution s = inverse(chain, forward(chain, truth), (VectorXd(4) << 0.3, 0.7, 0.1, 0.1).finished());
+  EXPECT_EQ(s.status, InverseStatus::at_limit);
+  EXPECT_EQ(s.q[2], 0.2);
+  EXPECT_NEAR(s.position_error, 0.98 * 0.15, 1e-9);
+}
+
+TEST(Inverse, TheWeightOfAnglesDoesNotChangeWhatIsReachable) {
+  const Chain chain = laws::dh_6r();
+  const VectorXd truth = laws::random_q(chain, Rng(21));
+  const VectorXd start = truth.array() + 0.05;
+  const Pose target = forward(chain, truth);
+  for (const double length : {0.01, 0.3, 1.0, 50.0})
+    expect_reached(chain, target, inverse(chain, target, start, {.length = length}));
+}
+
+TEST(Inverse, TheWeightOfAnglesDecidesBetweenPlaceAndOrientationOutOfReach) {
+  Pose target = forward(planar(), readings(0.4, 0.5));
+  target.rotation = rot_z(0.6) * target.rotation;  // two joints cannot have three coordinates
+  const InverseSolution place = inverse(planar(), target, readings(0.4, 0.5), {.length = 0.01});
+  const InverseSolution turn = inverse(planar(), target, readings(0.4, 0.5), {.length = 100.0});
+  EXPECT_EQ(place.status, InverseStatus::unreachable);
+  EXPECT_LT(place.position_error, 1e-3);
+  EXPECT_NEAR(place.angle_error, 0.6, 1e-2);
+  EXPECT_LT(turn.angle_error, 1e-3);
+  EXPECT_GT(turn.position_error, 0.05);
+}
+
+TEST(Inverse, AWarmMachineArrivesInAFewSteps) {
+  Chain chain = laws::dh_with_prismatic();
+  chain.expansion = 1e-3;
+  const Load warm{.temperature_rise = 50.0};
+  const VectorXd truth = (VectorXd(4) << 0.3, 0.4, -0.8, 0.2).finished(), start = truth.array() + 0.02;
+  const Vec3 target = forward(chain, truth, warm).position;
+  const InverseSolution s = inverse_position(chain, target, start, {}, warm);
+  EXPECT_EQ(s.status, InverseStatus::reached);
+  EXPECT_LT((forward(chain, s.q, warm).position - target).norm(), 1.01e-9);
+  EXPECT_LE(s.iterations, 6);
+}
+
+TEST(Inverse, TolerancesAreWhatIsLeftAtMost) {
+  const Vec3 target(1.1, 0.7, 0.0);
+  const InverseSolution rough = inverse_position(planar(), target, readings(0.4, 0.5), {.position_tolerance = 1e-2}),
+                        fine = inverse_position(planar(), target, readings(0.4, 0.5));
+  EXPECT_EQ(rough.status, InverseStatus::reached);
+  EXPECT_LE(rough.position_error, 1e-2);
+  EXPECT_LT(rough.iterations, fine.iterations);
+}
+
+TEST(Inverse, AStartOfAnotherLengthStopsTheProgram) {
+  EXPECT_DEATH(inverse_position(planar(), Vec3::Zero(), VectorXd::Zero(3)), "3 readings for 2 joints");
+  EXPECT_DEATH(inverse_position(laws::without_joints(), Vec3::Zero(), VectorXd()), "0 readings for 0 joints");
+}
+
 }  // namespace
 }  // namespace kinfer

@@ -10,10 +10,10 @@
 namespace kinfer {
 namespace {
 
-using testing::AllOf;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::Not;
 
 std::vector<std::string> names(const ParameterSet& set) {
   std::vector<std::string> list;

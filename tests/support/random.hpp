@@ -4,6 +4,7 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/geometry/rotation.hpp"
+#include "kinfer/linalg/types.hpp"
 
 namespace kinfer::test {
 

@@ -63,11 +63,11 @@ Pose tool_pose(const Chain& chain, const std::vector<JointPlacement>& placed) {
   return (tip >= 0 ? placed[tip].frame : chain.base.pose()) * chain.tool.pose();
 }
 
-/// Twist of the tool per unit motion of the joint.
-Eigen::Matrix<double, 6, 1> screw(JointType type, const JointPlacement& joint, const Vec3& tool) {
+/// Twist of the tool per unit motion of the joint. `stretch`: thermal, of all lengths; positions are stretched already.
+Eigen::Matrix<double, 6, 1> screw(JointType type, const JointPlacement& joint, const Vec3& tool, double stretch) {
   Eigen::Matrix<double, 6, 1> twist = Eigen::Matrix<double, 6, 1>::Zero();
   if (type == JointType::revolute) twist << joint.axis.cross(tool - joint.point), joint.axis;
-  if (type == JointType::prismatic) twist.head<3>() = joint.axis;
+  if (type == JointType::prismatic) twist.head<3>() = stretch * joint.axis;
   return twist;
 }
 
@@ -145,10 +145,11 @@ Twists jacobian(const Chain& chain, ConstVectorRef q, const Load& load) {
   const std::vector<JointPlacement> placed = joint_placements(chain, q, load);
   const Vec3 tool = tool_pose(chain, placed).position;
   const std::vector<int> index = active_joint_indices(chain);
+  const double stretch = 1.0 + chain.expansion * load.temperature_rise;
   Twists twists = Twists::Zero(6, q.size());
   for (const int j : path_to(chain, chain.tip_joint())) {
     const Joint& joint = chain.joints[j];
-    const Eigen::Matrix<double, 6, 1> twist = screw(joint.type, placed[j], tool);
+    const Eigen::Matrix<double, 6, 1> twist = screw(joint.type, placed[j], tool, stretch);
     if (index[j] >= 0) twists.col(index[j]) += joint.gain * twist;
     for (const Coupling& c : joint.couplings) twists.col(index[c.joint]) += c.factor * twist;
   }
