@@ -121,7 +121,7 @@ Chain with_tool_from_tilts(Chain chain, const PoseSet& data, const std::vector<P
   chain.tool.rotation = align_points(expected, measured_directions).rotation;
   chain.tool.small_rotation.setZero();
   const Vec3 up = -chain.gravity.normalized();
-  chain.base.rotation = Quat::FromTwoVectors(up_in_base, up).toRotationMatrix();
+  chain.base.rotation = rotation_between(up_in_base, up).toRotationMatrix();
   chain.base.small_rotation.setZero();
   return chain;
 }
