@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/estimate/continuous/uniform_spline.hpp"
+#include "kinfer/estimate/continuous/model/uniform_spline.hpp"
 
 #include <gtest/gtest.h>
 

@@ -130,18 +130,6 @@ Mat3 from_euler(const EulerSequence& sequence, const Vec3& angles) {
   return r;
 }
 
-Mat3 nearest_rotation(const Mat3& m) {
-  // Newton's iteration for the polar factor, X <- (X + X⁻ᵀ) / 2 (Higham 1986); quadratic near a rotation.
-  Mat3 x = m;
-  for (int i = 0; i < 30; ++i) {
-    const Mat3 next = 0.5 * (x + x.inverse().transpose());
-    const double change = (next - x).norm();
-    x = next;
-    if (change < 1e-15) break;
-  }
-  return x;
-}
-
 Vec3 any_perpendicular(const Vec3& v) {
   Eigen::Index smallest;
   v.cwiseAbs().minCoeff(&smallest);

@@ -51,9 +51,6 @@ struct EulerSequence {
 std::optional<EulerSequence> parse_euler_sequence(std::string_view text);
 Mat3 from_euler(const EulerSequence& sequence, const Vec3& angles);
 
-/// The rotation closest to m (Frobenius norm), its polar factor; m must be near a rotation (det m > 0).
-Mat3 nearest_rotation(const Mat3& m);
-
 /// A unit vector perpendicular to v; continuous almost everywhere.
 Vec3 any_perpendicular(const Vec3& v);
 

@@ -47,19 +47,13 @@ MatrixXd draw_initial_swarm(const CalibrationTask& task, const PreparedFit& prep
   return draw_warm_swarm(box, particles, pack(prepared.parameters, prepared.start), rng);
 }
 
-/// The search with its initial swarm filled in. BPNN-PSO gets none: its network maps uniformly drawn particles.
+/// The search with its initial swarm filled in, if it takes one.
 SearchOptions with_initial_swarm(SearchOptions search, const CalibrationTask& task, const PreparedFit& prepared,
                                  const Bounds& box, Rng rng) {
-  if (auto* pso = std::get_if<PsoOptions>(&search))
-    pso->initial = draw_initial_swarm(task, prepared, box, pso->particles, rng);
-  if (auto* qpso = std::get_if<QpsoOptions>(&search))
-    qpso->initial = draw_initial_swarm(task, prepared, box, qpso->particles, rng);
+  const SearchMethod& method = method_of(search);
+  if (method.takes_initial_swarm)
+    method.initial(search) = draw_initial_swarm(task, prepared, box, method.particles(search), rng);
   return search;
-}
-
-std::string method_name(const SearchOptions& search) {
-  constexpr std::string_view names[] = {"pso", "qpso", "bpnn-pso"};
-  return std::string(names[search.index()]);
 }
 
 /// The estimate that a least-squares fit without any iteration returns at x: covariance, errors and identifiability.
@@ -71,7 +65,7 @@ Estimate estimate_at(const CalibrationTask& task, const PreparedFit& prepared, c
 
 SearchSummary summarise_search(const SearchOutcome& outcome, const SearchOptions& options) {
   SearchSummary search;
-  search.method = method_name(options);
+  search.method = method_of(options).name;
   search.iterations = outcome.iterations;
   search.evaluations = static_cast<int>(outcome.evaluations);
   search.stop = outcome.stop;

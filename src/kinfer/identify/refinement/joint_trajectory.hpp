@@ -2,7 +2,7 @@
 // Trajectories of the variables of a joint of the identified chain, from the splines of the continuous-time fit.
 #pragma once
 
-#include "kinfer/estimate/continuous/uniform_spline.hpp"
+#include "kinfer/estimate/continuous/model/uniform_spline.hpp"
 #include "kinfer/identify/refinement/refined_joint.hpp"
 
 namespace kinfer::identify {

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kinfer/estimate/continuous/uniform_spline.hpp"
+#include "kinfer/estimate/continuous/model/uniform_spline.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
 
 namespace kinfer {
