@@ -56,7 +56,7 @@ TEST_F(ModelFormats, WhatAFormatWritesItReadsWithAllJointTypesAndLimits) {
     for (const Joint& joint : read->chain.joints)
       for (const Joint& original : robot.chain.joints)
         if (joint.name == original.name) {
-          EXPECT_EQ(joint.type, original.type) << format.name << " " << joint.name;
+          EXPECT_EQ(traits(joint.type).urdf, traits(original.type).urdf) << format.name << " " << joint.name;
           EXPECT_EQ(joint.lower, original.lower) << format.name << " " << joint.name;
         }
   }
@@ -82,7 +82,8 @@ TEST_F(ModelFormats, TheExtensionChoosesTheFormat) {
       ASSERT_TRUE(write_robot_model(path, robot));
       EXPECT_EQ(read_text_file(path).value(), format.format(robot, {})) << path;
     }
-    if (format.parse) EXPECT_EQ(complaint(folder / ("robot" + std::string(format.read_extensions[0]))), "(accepted)");
+    if (!format.parse) continue;
+    EXPECT_EQ(complaint(folder / ("robot" + std::string(format.read_extensions[0]))), "(accepted)");
   }
 }
 

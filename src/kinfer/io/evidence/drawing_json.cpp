@@ -71,7 +71,6 @@ struct SplitJoint {
 Json joint_json(const Joint& joint, const std::vector<int>& variable_indices, int variable_index) {
   SplitJoint parts;
   elementary::for_each_factor(joint, [&](const auto& step) { parts(step); });
-  const bool moves = has_position(joint.type);
   Json couplings = Json::array();
   for (const Coupling& c : joint.couplings) couplings.push_back({variable_indices[c.joint], c.factor});
   Json json{{"name", joint.name},

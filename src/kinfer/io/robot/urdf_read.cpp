@@ -78,7 +78,7 @@ std::string known_types() {
   std::vector<std::string_view> names;
   for (const JointTypeTraits& type : joint_types)
     for (const std::string_view name : {type.urdf, type.urdf_unlimited})
-      if (names.empty() || names.back() != name) names.push_back(name);
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   const std::string_view last = names.back();
   names.pop_back();
   return fmt::format("{} or {}", fmt::join(names, ", "), last);
