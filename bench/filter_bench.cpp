@@ -28,10 +28,18 @@ void filter_a_row(benchmark::State& state, const FilterOptions& options) {
   for (auto _ : state) benchmark::DoNotOptimize(estimate_orientations(c.sensor, c.time, options));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(c.time.size()));
 }
-BENCHMARK_CAPTURE(filter_a_row, kinfer, KinferFilterOptions{})->Arg(200)->Arg(1000);
-BENCHMARK_CAPTURE(filter_a_row, kinfer_without_magnetometer, without_magnetometer(KinferFilterOptions{}))->Arg(200);
-BENCHMARK_CAPTURE(filter_a_row, kinfer_offline, KinferOfflineOptions{})->Arg(200)->Arg(1000);
-BENCHMARK_CAPTURE(filter_a_row, paper, PaperEkfOptions{})->Arg(200);
+
+/// Every filter, with and without magnetometer.
+const bool filters_are_registered = [] {
+  for (const OrientationFilter& filter : orientation_filters()) {
+    const std::string name = fmt::format("filter_a_row/{}", filter.name);
+    benchmark::RegisterBenchmark(name.c_str(), filter_a_row, filter.default_options)->Arg(200)->Arg(1000);
+    benchmark::RegisterBenchmark((name + "/without_magnetometer").c_str(), filter_a_row,
+                                 without_magnetometer(filter.default_options))
+        ->Arg(200);
+  }
+  return true;
+}();
 
 /// Six sensors of nine channels, 60 MB.
 void read_recording(benchmark::State& state) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -13,14 +14,16 @@
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/inertial/filters/orientation.hpp"
-#include "kinfer/inertial/filters/orientation_error.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "support/measured_trial.hpp"
+#include "support/orientation_error.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using namespace kinfer;
+using testing::HeadingOffset;
+using testing::OrientationError;
 
 struct NamedFilter {
   std::string name;
@@ -34,6 +37,14 @@ struct Score {
   double free_heading = 0.0, free_inclination = 0.0;     // without; the best constant heading offset is removed
 };
 
+std::vector<NamedFilter> named_filters() {
+  const std::array<std::string, 6> colours{"#3a7ca5", "#16425b", "#b0b0b0", "#d1495b", "#edae49", "#66a182"};
+  std::vector<NamedFilter> filters;
+  for (const OrientationFilter& filter : orientation_filters())
+    filters.push_back({std::string(filter.name), filter.default_options, colours[filters.size() % colours.size()]});
+  return filters;
+}
+
 struct Trial {
   std::string name;
   bool chosen = false;        // settings were chosen on it
@@ -46,9 +57,10 @@ Score score(const testing::MeasuredTrial& trial, const FilterOptions& options) {
   const InsSensor& sensor = trial.recording.sensors[0];
   const auto& time = trial.recording.loggers[0].time;
   const OrientationError with =
-      orientation_error(estimate_orientations(sensor, time, options), trial.truth, trial.moves);
-  const OrientationError without = orientation_error(estimate_orientations(sensor, time, without_magnetometer(options)),
-                                                     trial.truth, trial.moves, HeadingOffset::best_constant);
+      testing::orientation_error(estimate_orientations(sensor, time, options), trial.truth, trial.moves);
+  const OrientationError without =
+      testing::orientation_error(estimate_orientations(sensor, time, without_magnetometer(options)), trial.truth,
+                                 trial.moves, HeadingOffset::best_constant);
   return {with.total / degree, with.heading / degree, with.inclination / degree, without.heading / degree,
           without.inclination / degree};
 }
@@ -121,7 +133,7 @@ void print_ur5(const fs::path& folder, const std::vector<NamedFilter>& filters) 
       const auto trial = testing::read_trial(folder / (std::string(run) + "_imu.csv"),
                                              folder / (std::string(run) + "_truth.csv"), "radius_");
       const auto q = estimate_orientations(trial.recording.sensors[0], trial.recording.loggers[0].time, filter.options);
-      errors.push_back(aligned_error(q, trial.truth) / degree);
+      errors.push_back(testing::aligned_error(q, trial.truth) / degree);
     }
     fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", filter.name, errors[0], errors[1], errors[2],
                (errors[0] + errors[1] + errors[2]) / 3.0);
@@ -180,9 +192,7 @@ int main(int argc, char** argv) {
                "(docs/development/methods/orientation.md)\n");
     return 2;
   }
-  const std::vector<NamedFilter> filters{{"paper", PaperEkfOptions{}, "#b0b0b0"},
-                                         {"kinfer", KinferFilterOptions{}, "#3a7ca5"},
-                                         {"kinfer-offline", KinferOfflineOptions{}, "#16425b"}};
+  const std::vector<NamedFilter> filters = named_filters();
   const std::vector<Trial> trials = broad(fs::path(data) / "broad", filters);
   print_tables(trials, filters);
   print_ur5(fs::path(data) / "ur5_openaxes", filters);

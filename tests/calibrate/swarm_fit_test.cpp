@@ -24,11 +24,8 @@ CalibrationTask noise_free_task() {
 }
 
 SwarmSearchOptions within(int iterations, SearchOptions search = PsoOptions{}) {
-  const Budget budget{.max_iterations = iterations};
-  if (auto* pso = std::get_if<PsoOptions>(&search)) pso->budget = budget;
-  if (auto* qpso = std::get_if<QpsoOptions>(&search)) qpso->budget = budget, qpso->schedule = iterations;
-  if (auto* bpnn = std::get_if<BpnnPsoOptions>(&search)) bpnn->pso.budget = budget;
-  return {.search = search};
+  if (auto* qpso = std::get_if<QpsoOptions>(&search)) qpso->schedule = iterations;
+  return {.search = with_budget(search, {.max_iterations = iterations})};
 }
 
 Estimate search(const CalibrationTask& task, const SwarmSearchOptions& options, int seed = 1) {

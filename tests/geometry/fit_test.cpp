@@ -94,17 +94,6 @@ TEST(MeanRotation, OfTurnsAboutOneAxisIsTheMeanTurn) {
   EXPECT_LT((mean_rotation(across_pi) - rot_z(pi)).norm(), 1e-14);
 }
 
-TEST(FitLine, FindsTheLineAndTheDistancesOfPointsBesideIt) {
-  // Points at ±0.1 across the x direction of a moved frame, balanced: the fit is the axis itself.
-  std::vector<Vec3> points;
-  for (int i = -3; i <= 3; ++i)
-    for (const double side : {-0.1, 0.1}) points.push_back(far_away * Vec3(i, side, 0));
-  const LineFit line = fit_line(points);
-  EXPECT_LT(line.direction.cross(far_away.rotation.col(0)).norm(), 1e-12);
-  EXPECT_LT((line.point - far_away.position).norm(), 1e-12);
-  EXPECT_NEAR(line.rms, 0.1, 1e-12);
-}
-
 TEST(FitPlane, FindsThePlaneAndTheDistancesOfPointsBesideIt) {
   std::vector<Vec3> points;
   for (int i = -2; i <= 2; ++i)

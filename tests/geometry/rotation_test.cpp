@@ -180,16 +180,6 @@ TEST(Euler, OtherWordsAreNoSequence) {
     EXPECT_FALSE(parse_euler_sequence(text).has_value()) << text;
 }
 
-TEST(NearestRotation, IsTheRotationThatWasStretched) {
-  // The polar factor of R S with S symmetric and positive is R.
-  Rng rng(6);
-  for (int i = 0; i < 20; ++i) {
-    const Mat3 r = exp_so3(2.0 * random_direction(rng)), axes = exp_so3(random_direction(rng));
-    const Mat3 stretch = axes * Vec3(1.05, 0.97, 1.2).asDiagonal() * axes.transpose();
-    EXPECT_LT((nearest_rotation(r * stretch) - r).norm(), 3e-15);
-  }
-}
-
 TEST(AnyPerpendicular, IsAUnitVectorAcross) {
   Rng rng(7);
   for (int i = 0; i < 20; ++i) {

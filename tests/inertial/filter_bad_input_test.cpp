@@ -5,17 +5,16 @@
 #include <limits>
 
 #include "kinfer/inertial/filters/orientation.hpp"
-#include "kinfer/inertial/filters/orientation_error.hpp"
 #include "support/carried_sensor.hpp"
+#include "support/orientation_error.hpp"
 
 namespace kinfer {
 namespace {
 
 using testing::carried;
 using testing::CarriedSensor;
-
-const std::vector<std::pair<const char*, FilterOptions>> filters{
-    {"kinfer", KinferFilterOptions{}}, {"kinfer-offline", KinferOfflineOptions{}}, {"paper", PaperEkfOptions{}}};
+using testing::HeadingOffset;
+using testing::orientation_error;
 
 constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
 
@@ -26,9 +25,9 @@ void set(TriadColumns& triad, std::size_t from, std::size_t to, const Vec3& valu
 
 void expect_unit_quaternions(CarriedSensor c, const char* what) {
   flag_faults(c.sensor);
-  for (const auto& [name, options] : filters)
-    for (const Quat& q : estimate_orientations(c.sensor, c.time, options))
-      ASSERT_NEAR(q.norm(), 1.0, 1e-9) << name << " with " << what;
+  for (const OrientationFilter& filter : orientation_filters())
+    for (const Quat& q : estimate_orientations(c.sensor, c.time, filter.default_options))
+      ASSERT_NEAR(q.norm(), 1.0, 1e-9) << filter.name << " with " << what;
 }
 
 TEST(BadInput, NoFailureMakesAFilterSayNan) {
@@ -74,11 +73,11 @@ TEST(BadInput, NoRowsAndOneRowAreAnswered) {
     for (TriadColumns* t : {&few.sensor.acceleration, &few.sensor.angular_velocity, &few.sensor.field})
       for (auto& axis : t->axis) axis.resize(rows);
     flag_faults(few.sensor);
-    for (const auto& [name, options] : filters) {
-      const auto q = estimate_orientations(few.sensor, few.time, options);
+    for (const OrientationFilter& filter : orientation_filters()) {
+      const auto q = estimate_orientations(few.sensor, few.time, filter.default_options);
       ASSERT_EQ(q.size(), rows);
       if (rows == 0) continue;
-      EXPECT_LT(q[0].angularDistance(c.truth[0]), 0.5 * degree) << name;
+      EXPECT_LT(q[0].angularDistance(c.truth[0]), 0.5 * degree) << filter.name;
     }
   }
 }

@@ -4,14 +4,15 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/inertial/filters/orientation.hpp"
-#include "kinfer/inertial/filters/orientation_error.hpp"
 #include "support/carried_sensor.hpp"
+#include "support/orientation_error.hpp"
 
 namespace kinfer {
 namespace {
 
 using testing::carried;
 using testing::CarriedSensor;
+using testing::orientation_error;
 
 KinferErrorState unit(int state, double size) {
   KinferErrorState v = KinferErrorState::Zero();

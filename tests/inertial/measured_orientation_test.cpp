@@ -7,14 +7,18 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/inertial/filters/orientation.hpp"
-#include "kinfer/inertial/filters/orientation_error.hpp"
 #include "support/measured_trial.hpp"
+#include "support/orientation_error.hpp"
 
 namespace kinfer {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::aligned_error;
+using testing::HeadingOffset;
 using testing::MeasuredTrial;
+using testing::orientation_error;
+using testing::OrientationError;
 using testing::read_trial;
 
 const char* data_folder() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/inertial/rest.hpp"
+#include "kinfer/inertial/rest/rest.hpp"
 
 #include <gtest/gtest.h>
 

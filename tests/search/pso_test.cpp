@@ -169,16 +169,13 @@ TEST(Pso, AnObserverMayStopIt) {
 }
 
 TEST(Minimise, EverySearchGivesTheSameBitsFor12And7Threads) {
-  const auto with_threads = [](SearchOptions options, int threads) {
+  const auto with_threads = [](const SearchOptions& options, int threads) {
     const Budget budget{.max_iterations = 40, .threads = threads};
-    if (auto* pso = std::get_if<PsoOptions>(&options)) pso->budget = budget;
-    if (auto* qpso = std::get_if<QpsoOptions>(&options)) qpso->budget = budget;
-    if (auto* bpnn = std::get_if<BpnnPsoOptions>(&options)) bpnn->pso.budget = budget;
-    return minimise(rastrigin(6), options, Rng(4));
+    return minimise(rastrigin(6), with_budget(options, budget), Rng(4));
   };
-  BpnnPsoOptions stepwise{.hidden_nodes = HiddenNodes::stepwise, .training = {.epochs = 20}};
-  for (const SearchOptions& options :
-       {SearchOptions(PsoOptions{}), SearchOptions(QpsoOptions{}), SearchOptions(stepwise)}) {
+  std::vector<SearchOptions> all{BpnnPsoOptions{.hidden_nodes = HiddenNodes::stepwise, .training = {.epochs = 20}}};
+  for (const SearchMethod& method : search_methods()) all.push_back(method.default_options);
+  for (const SearchOptions& options : all) {
     const SearchOutcome one = with_threads(options, 1);
     for (const int threads : {2, 7}) {
       const SearchOutcome other = with_threads(options, threads);
@@ -190,6 +187,45 @@ TEST(Minimise, EverySearchGivesTheSameBitsFor12And7Threads) {
       }
     }
   }
+}
+
+TEST(SearchMethods, OptionsFindTheirRowAndNamesTheirOptions) {
+  for (const SearchMethod& method : search_methods()) {
+    EXPECT_EQ(&method_of(method.default_options), &method);
+    EXPECT_EQ(method_named(method.name), &method);
+  }
+  EXPECT_EQ(method_of(QpsoOptions{}).name, "qpso");
+  EXPECT_EQ(method_named("lm"), nullptr);
+}
+
+TEST(SearchMethods, BudgetParticlesAndInitialSwarmAreThoseOfTheRun) {
+  const Bounds box = shifted_sphere(3).bounds;
+  for (const SearchMethod& method : search_methods()) {
+    SearchOptions options = with_budget(method.default_options, {.max_iterations = 2});
+    method.particles(options) = 5;
+    if (method.takes_initial_swarm) method.initial(options) = box.center().replicate(1, 5);
+    const SearchOutcome outcome = minimise(shifted_sphere(3), options, Rng(1));
+    EXPECT_EQ(outcome.iterations, 2) << method.name;
+    EXPECT_EQ(outcome.initial_swarm.cols(), 5) << method.name;
+    if (!method.takes_initial_swarm) continue;
+    EXPECT_EQ(outcome.initial_swarm, box.center().replicate(1, 5)) << method.name;
+  }
+}
+
+TEST(SearchMethods, TheDescriptionNamesTheOptionsThatHaveAnEffect) {
+  const auto value = [](const SearchOptions& options, std::string_view name) {
+    for (const auto& [key, text] : describe(options))
+      if (key == name) return text;
+    return std::string();
+  };
+  PsoOptions pso{.particles = 60, .inertia = 0.7, .boundary = BoundaryHandling::open, .budget = {.max_iterations = 30}};
+  EXPECT_EQ(value(pso, "particles"), "60");
+  EXPECT_EQ(value(pso, "iterations"), "30");
+  EXPECT_EQ(value(pso, "inertia"), "0.7");
+  EXPECT_EQ(value(pso, "walls"), "open");
+  EXPECT_EQ(value(pso, "net-use"), "");
+  EXPECT_EQ(value(QpsoOptions{}, "inertia"), "");
+  EXPECT_EQ(value(BpnnPsoOptions{.pso = pso, .use = NetUse::before_every_update}, "net-use"), "every-update");
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // Measured recordings with a reference orientation (KINFER_DATA, docs/development/methods/orientation.md).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -24,18 +26,17 @@ inline MeasuredTrial read_trial(const std::filesystem::path& imu, const std::fil
   MeasuredTrial trial;
   trial.recording = read_ins_csv(imu).value();
   const std::string text = read_text_file(truth).value();
-  const NumericTable table = parse_numeric_csv(text, truth.string()).value();
-  const auto column = [&](const std::string& name) -> const std::vector<double>* {
-    for (std::size_t i = 0; i < table.header.columns.size(); ++i)
-      if (table.header.columns[i] == name) return &table.columns[i];
-    return nullptr;
+  const CsvTable table = split_csv(text, truth.string()).value();
+  const auto& names = table.header.columns;
+  const auto column = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
   };
-  const auto *w = column(sensor + "qw"), *x = column(sensor + "qx"), *y = column(sensor + "qy"),
-             *z = column(sensor + "qz");
-  const auto* movement = column("movement");
+  const std::size_t w = column(sensor + "qw"), x = column(sensor + "qx"), y = column(sensor + "qy"),
+                    z = column(sensor + "qz"), movement = column("movement");
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    trial.truth.emplace_back((*w)[row], (*x)[row], (*y)[row], (*z)[row]);
-    trial.moves.push_back(movement == nullptr || (*movement)[row] > 0.5);
+    const auto number = [&](std::size_t k) { return parse_number(table.cell(row, k)).value_or(std::nan("")); };
+    trial.truth.emplace_back(number(w), number(x), number(y), number(z));
+    trial.moves.push_back(movement == names.size() || number(movement) > 0.5);
   }
   return trial;
 }

@@ -57,16 +57,6 @@ Mat3 mean_rotation(std::span<const Mat3> rotations) {
   return best_rotation(sum);
 }
 
-LineFit fit_line(std::span<const Vec3> points) {
-  KINFER_EXPECT(points.size() >= 2, "{} points", points.size());
-  LineFit fit;
-  fit.point = centroid(points);
-  const SymmetricEigen axes = principal_axes(points, fit.point);
-  fit.direction = axes.vectors.col(2);
-  fit.rms = std::sqrt(std::max(0.0, axes.values[0] + axes.values[1]) / static_cast<double>(points.size()));
-  return fit;
-}
-
 PlaneFit fit_plane(std::span<const Vec3> points) {
   KINFER_EXPECT(points.size() >= 3, "{} points", points.size());
   PlaneFit fit;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Least-squares fits of points: rigid alignment, plane, line, circle in space.
+// Least-squares fits of points: rigid alignment, plane, circle in space.
 #pragma once
 
 #include <span>
@@ -14,13 +14,6 @@ Pose align_points(std::span<const Vec3> a, std::span<const Vec3> b, std::span<co
 
 /// Chordal mean: the rotation R that minimises Σ |Rᵢ − R|² (Frobenius). With Rᵢ = Aᵢ Bᵢᵀ it maps the Bᵢ to the Aᵢ.
 Mat3 mean_rotation(std::span<const Mat3> rotations);
-
-struct LineFit {
-  Vec3 point = Vec3::Zero();       ///< centroid of the points
-  Vec3 direction = Vec3::UnitZ();  ///< unit
-  double rms = 0.0;                ///< [m] distance of the points from the line
-};
-LineFit fit_line(std::span<const Vec3> points);
 
 struct PlaneFit {
   Vec3 point = Vec3::Zero();    ///< centroid

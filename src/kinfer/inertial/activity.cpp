@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/inertial/rest.hpp"
+#include "kinfer/inertial/rest/rest.hpp"
 
 namespace kinfer {
 namespace {

@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/inertial/rest.hpp"
+#include "kinfer/inertial/rest/rest.hpp"
+#include "kinfer/inertial/thresholds.hpp"
 
 namespace kinfer {
 namespace {
 
 constexpr double coarse_rate = 2.0, fine_rate = 50.0;  // [Hz]
-constexpr double min_overlap = 10.0;                   // [s]
 
 /// Mean magnitude of the angular rate in time bins of equal length, from the logger's first row on.
 std::vector<double> binned_rate(const InsSensor& sensor, std::span<const double> time, double bins_per_second) {
@@ -55,7 +55,7 @@ Match best_lag(std::span<const double> a, std::span<const double> b, std::ptrdif
                double sampling_rate) {
   Match best;
   for (std::ptrdiff_t lag = from; lag <= to; ++lag) {
-    const double c = correlation_at(a, b, lag, static_cast<std::size_t>(min_overlap * sampling_rate));
+    const double c = correlation_at(a, b, lag, static_cast<std::size_t>(inertial::min_overlap * sampling_rate));
     if (c > best.correlation) best = {lag, c};
   }
   return best;
@@ -63,7 +63,7 @@ Match best_lag(std::span<const double> a, std::span<const double> b, std::ptrdif
 
 /// Lag of the vertex of the parabola through the correlations at lag - 1, lag, lag + 1.
 double vertex(std::span<const double> a, std::span<const double> b, std::ptrdiff_t lag) {
-  const auto least = static_cast<std::size_t>(min_overlap * fine_rate);
+  const auto least = static_cast<std::size_t>(inertial::min_overlap * fine_rate);
   const double before = correlation_at(a, b, lag - 1, least), at = correlation_at(a, b, lag, least);
   const double after = correlation_at(a, b, lag + 1, least), bend = before - 2.0 * at + after;
   const double shift = bend < 0.0 ? 0.5 * (before - after) / bend : 0.0;

@@ -7,8 +7,9 @@
 namespace kinfer {
 
 struct ClockOffset {
-  double seconds = 0.0;      ///< to be added to the other logger's times to obtain the reference's
-  double correlation = 0.0;  ///< of the two best matching sensors, 0 .. 1; unreliable below 0.5
+  double seconds = 0.0;  ///< to be added to the other logger's times to obtain the reference's
+  double correlation =
+      0.0;  ///< of the two best matching sensors, 0 .. 1; accepted above inertial::min_logger_correlation
 };
 
 /// The lag at which the magnitude of the angular rate of any sensor of one logger correlates best with that of any

@@ -5,11 +5,10 @@
 #include <cmath>
 
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/inertial/thresholds.hpp"
 
 namespace kinfer {
 namespace {
-
-constexpr double max_gyro_bias = 0.09;  // [rad/s] (5 °/s) per axis: three times the bias of cheap gyros
 
 /// Circular mean of the heading of `to` relative to `from`; both levelled by gravity.
 double mean_heading(const std::vector<Mat3>& to, const std::vector<Mat3>& from) {
@@ -40,12 +39,8 @@ bool all_have_magnetometers(const InsRecording& recording) {
 Result<RecordedMotion> gyro_based_motion(const InsRecording& recording, const SegmentMotionOptions& options,
                                          int threads) {
   SegmentMotionOptions without_field = options;
-  without_field.filter = without_magnetometer(options.filter);
-  if (auto* offline = std::get_if<KinferOfflineOptions>(&without_field.filter)) {
-    // A bias missed here cannot be compensated by a constant heading: the initial rest must count at any bias.
-    offline->filter.rest.max_gyro_bias = max_gyro_bias;
-    offline->filter.bias_sd = max_gyro_bias / 5.0;
-  }
+  // A bias missed here cannot be compensated by a constant heading: the initial rest must count at any bias.
+  without_field.filter = with_max_initial_bias(without_magnetometer(options.filter), inertial::max_initial_gyro_bias);
   KINFER_TRY(motion, segment_motion(recording, without_field, threads));
   parallel_for(motion.segments.size(), threads, [&](std::size_t i) {
     if (!recording.sensors[i].has_magnetometer()) return;

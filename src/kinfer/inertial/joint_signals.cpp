@@ -7,6 +7,7 @@
 
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/inertial/gaussian_smoothing.hpp"
+#include "kinfer/inertial/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
@@ -33,10 +34,9 @@ std::vector<Vec3> continuous_euler_angles(const SegmentMotion& segment) {
 /// Rates of roll, pitch and yaw from the gyro: the inverse of ω_sensor = E(φ, θ) (φ', θ', ψ')ᵀ. At 90° of pitch this is
 /// singular (gimbal lock); |cos θ| is bounded from below.
 Vec3 euler_rates(const Vec3& angles, const Vec3& gyro) {
-  constexpr double least_cosine = 0.02;  // 1.1° from gimbal lock
   const double s = std::sin(angles.x()), c = std::cos(angles.x());
   const double cosine = std::cos(angles.y());
-  const double kept = std::copysign(std::max(std::abs(cosine), least_cosine), cosine);
+  const double kept = std::copysign(std::max(std::abs(cosine), inertial::min_pitch_cosine), cosine);
   const double yaw = (s * gyro.y() + c * gyro.z()) / kept;
   return {gyro.x() + std::sin(angles.y()) * yaw, c * gyro.y() - s * gyro.z(), yaw};
 }

@@ -8,14 +8,11 @@
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/inertial/gap_bridging.hpp"
 #include "kinfer/inertial/gaussian_smoothing.hpp"
-#include "kinfer/inertial/rest.hpp"
+#include "kinfer/inertial/rest/rest.hpp"
+#include "kinfer/inertial/thresholds.hpp"
 
 namespace kinfer {
 namespace {
-
-// [s] longest gap across which linear interpolation is accepted, and longest gap that is still bridged for a filter
-// because restarting it would be worse
-constexpr double max_gap = 0.1, max_filter_gap = 0.5;
 
 /// Measurements of a triad on the common clock: gaps are interpolated linearly and marked as not sound.
 struct Resampled {
@@ -49,7 +46,8 @@ template <class Pick>
 Resampled resample(const InsSensor& sensor, std::span<const double> time, std::span<const double> clock,
                    const Pick& pick) {
   const double period = clock[1] - clock[0];
-  BinnedMeasurements measurements{.time = {}, .value = {}, .bin = period > 1.5 * median_period(time) ? period : 0.0};
+  BinnedMeasurements measurements{
+      .time = {}, .value = {}, .bin = period > inertial::min_averaging_ratio * median_period(time) ? period : 0.0};
   for (std::size_t row = 0; row < time.size(); ++row)
     if (const auto value = pick(sample(sensor, time, row))) measurements.add(time[row], *value);
   const std::vector<double>& known_time = measurements.time;
@@ -62,8 +60,8 @@ Resampled resample(const InsSensor& sensor, std::span<const double> time, std::s
     const double span = known_time[after] - known_time[before];
     const double share = span > 0.0 ? std::clamp((clock[i] - known_time[before]) / span, 0.0, 1.0) : 0.0;
     result.values[i] = known[before] + share * (known[after] - known[before]);
-    result.sound[i] =
-        span <= max_gap && clock[i] >= known_time[before] - max_gap && clock[i] <= known_time[after] + max_gap;
+    result.sound[i] = span <= inertial::max_gap && clock[i] >= known_time[before] - inertial::max_gap &&
+                      clock[i] <= known_time[after] + inertial::max_gap;
   }
   return result;
 }
@@ -71,9 +69,9 @@ Resampled resample(const InsSensor& sensor, std::span<const double> time, std::s
 /// Period of the common clock [s]: that of the sensors; for a long recording a multiple of it, because rows spaced as
 /// widely as the spline knots of the motion are sufficient.
 double clock_period(std::span<const double> time) {
-  constexpr double most_rows = 80000.0, longest = 0.05;  // [s]
   const double period = median_period(time), rows = (time.back() - time.front()) / period;
-  const double stride = std::min(std::ceil(rows / most_rows), std::floor(longest / period));
+  const double stride =
+      std::min(std::ceil(rows / inertial::max_clock_rows), std::floor(inertial::max_clock_period / period));
   return std::max(1.0, stride) * period;
 }
 
@@ -120,32 +118,15 @@ std::vector<Mat3> rotations_on(std::span<const double> clock, std::span<const do
   return result;
 }
 
-/// Filter output for a sensor: orientations and gyro errors, true rate = (1 + scale) (rate - bias).
-struct FilterOutput {
-  std::vector<Quat> world_q_sensor;  // one per row of the sensor
-  std::vector<double> bias_time;     // [s]
-  std::vector<Vec3> bias;            // [rad/s]
-  Mat3 scale = Mat3::Zero();
-
-  Vec3 true_rate(const Vec3& angular_velocity, double time) const {
-    const auto after = std::ranges::lower_bound(bias_time, time) - bias_time.begin();
-    const Vec3 unbiased = angular_velocity - bias[std::min(static_cast<std::size_t>(after), bias.size() - 1)];
-    return unbiased + scale * unbiased;
+/// With filters that do not estimate the gyro errors, one bias comes from the rests.
+FilterOutput filter_sensor(const InsSensor& recorded, std::span<const double> time, const FilterOptions& filter) {
+  const InsSensor sensor = bridge_gaps(recorded, time, inertial::max_filter_gap);
+  FilterOutput output = run_filter(sensor, time, filter);
+  if (output.bias.empty()) {
+    output.bias_time = {time.front()};
+    output.bias = {bias_at_rest(rest_periods(sensor, time)).mean};
   }
-};
-
-/// The smoother also estimates the gyro errors in motion; with the other filters the bias comes from the rests.
-FilterOutput run_filter(const InsSensor& recorded, std::span<const double> time, const FilterOptions& filter) {
-  const InsSensor sensor = bridge_gaps(recorded, time, max_filter_gap);
-  if (const auto* offline = std::get_if<KinferOfflineOptions>(&filter)) {
-    SmoothedOrientation smooth = smooth_orientation(sensor, time, *offline);
-    if (!smooth.bias.empty())
-      return {std::move(smooth.world_q_sensor), std::move(smooth.update_time), std::move(smooth.bias), smooth.scale};
-  }
-  return {estimate_orientations(sensor, time, filter),
-          {time.front()},
-          {bias_at_rest(rest_periods(sensor, time)).mean},
-          Mat3::Zero()};
+  return output;
 }
 
 /// For a stationary segment the mean is more accurate than any row.
@@ -174,7 +155,7 @@ ResampledSegment resample_segment(std::span<const double> clock, const InsRecord
   ResampledSegment result;
   SegmentMotion& m = result.motion;
   m.name = sensor.name;
-  const FilterOutput filter = run_filter(sensor, time, options.filter);
+  const FilterOutput filter = filter_sensor(sensor, time, options.filter);
   m.rotation = rotations_on(clock, time, filter.world_q_sensor);
   std::vector<Vec3> rate_world(clock.size()), acceleration_world(clock.size());
   for (std::size_t i = 0; i < clock.size(); ++i) {
@@ -213,7 +194,8 @@ std::vector<bool> usable_rows(const std::vector<ResampledSegment>& segments, std
 std::size_t first_moving_row(const RecordedMotion& motion, double stationary_rate) {
   for (std::size_t row = 0; row < motion.rows(); ++row)
     for (const SegmentMotion& segment : motion.segments)
-      if (!segment.still && segment.angular_velocity[row].norm() > 2.0 * stationary_rate) return row;
+      if (!segment.still && segment.angular_velocity[row].norm() > inertial::first_motion_factor * stationary_rate)
+        return row;
   return 0;
 }
 
@@ -229,8 +211,10 @@ Result<RecordedMotion> segment_motion(const InsRecording& recording, const Segme
   if (recording.sensors.size() < 2)
     return error("identification needs at least two sensors, found {}", recording.sensors.size());
   RecordedMotion motion;
+  motion.gravity = options.gravity;
   const std::span<const double> time = recording.time(recording.sensors.front());
-  if (time.size() < 100) return error("identification needs at least 100 rows, found {}", time.size());
+  if (time.size() < inertial::min_rows)
+    return error("identification needs at least {} rows, found {}", inertial::min_rows, time.size());
   motion.period = clock_period(time);
   motion.time = uniform_clock(time, motion.period);
   const GaussianKernel kernel = gaussian_kernel(options.smoothing, motion.period);
@@ -239,7 +223,7 @@ Result<RecordedMotion> segment_motion(const InsRecording& recording, const Segme
     segments[i] = resample_segment(motion.time, recording, recording.sensors[i], kernel, options);
   });
   for (std::size_t i = 0; i < segments.size(); ++i)
-    if (std::ranges::count(segments[i].sound, true) < 100)
+    if (std::ranges::count(segments[i].sound, true) < static_cast<std::ptrdiff_t>(inertial::min_rows))
       return error("sensor {} has too few usable rates and specific forces", recording.sensors[i].name);
   motion.usable = usable_rows(segments, motion.rows(), kernel.half);
   for (ResampledSegment& segment : segments) motion.segments.push_back(std::move(segment.motion));
@@ -250,7 +234,7 @@ Result<RecordedMotion> segment_motion(const InsRecording& recording, const Segme
 std::vector<Mat3> segment_rotations(const RecordedMotion& motion, const InsRecording& recording,
                                     const InsSensor& sensor, const SegmentMotionOptions& options) {
   const std::span<const double> time = recording.time(sensor);
-  const InsSensor whole = bridge_gaps(sensor, time, max_filter_gap);
+  const InsSensor whole = bridge_gaps(sensor, time, inertial::max_filter_gap);
   return rotations_on(motion.time, time, estimate_orientations(whole, time, options.filter));
 }
 

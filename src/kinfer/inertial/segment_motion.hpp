@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kinfer/base/constants.hpp"
 #include "kinfer/base/result.hpp"
 #include "kinfer/inertial/filters/orientation.hpp"
 
@@ -27,6 +28,7 @@ struct RecordedMotion {
   double period = 0.0;                  ///< [s]
   std::vector<SegmentMotion> segments;  ///< in the order of the recording's sensors
   std::vector<bool> usable;             ///< rows where all sensors have valid measurements within the smoothing kernel
+  double gravity = standard_gravity;    ///< [m/s²] that was subtracted from the specific forces
   std::size_t first_motion_row = 0;     ///< row at which the first segment starts to move
 
   std::size_t rows() const { return time.size(); }
@@ -40,7 +42,7 @@ struct SegmentMotionOptions {
   double smoothing = 0.02;        ///< [s] standard deviation of the Gaussian; wider attenuates noise and fast motion
   double stationary_rate = 0.02;  ///< [rad/s] smoothed rms below which a sensor may be stationary
   double stationary_acceleration = 0.15;  ///< [m/s²] smoothed rms, likewise; both must hold
-  double gravity = 9.81;                  ///< [m/s²]
+  double gravity = standard_gravity;      ///< [m/s²] subtracted from the specific force
 };
 
 /// All sensors on the first sensor's clock. An error if there are fewer than two sensors, or a sensor has no usable

@@ -9,7 +9,8 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/inertial/clock_offset.hpp"
-#include "kinfer/inertial/rest.hpp"
+#include "kinfer/inertial/rest/rest.hpp"
+#include "kinfer/inertial/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
@@ -17,9 +18,6 @@ namespace {
 
 using Index = Eigen::Index;
 using Products = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;  // one row a tick
-
-constexpr std::size_t max_windows = 12;
-constexpr double min_agreement = 0.15;  // [nats] least mutual information of two sensors that move together
 
 /// Common sampling instants of all sensors after the loggers have been aligned.
 struct Ticks {
@@ -99,7 +97,7 @@ Lag best_lag(const Products& a, const Products& b, Index first, Index count, Ind
   const double vertex = bend < 0.0 ? 0.5 * (at[k - 1] - at[k + 1]) / bend : 0.0;
   return {.seconds = (static_cast<double>(middle - reach + best) + std::clamp(vertex, -1.0, 1.0)) * period,
           .agreement = mutual_information(at[k]),
-          .found = mutual_information(at[k]) > min_agreement};
+          .found = mutual_information(at[k]) > inertial::min_agreement};
 }
 
 struct PairLag {
@@ -146,7 +144,7 @@ class ClockComparison {
     const ClockCorrection constant{.offset = pair.lag.seconds, .drift = 0.0, .middle = middle()};
     if (length() < options_.min_drift_duration) return constant;
     const Index count = window_count();
-    const auto windows = std::min<std::size_t>(max_windows, static_cast<std::size_t>(ticks_.count / count));
+    const auto windows = std::min<std::size_t>(inertial::max_windows, static_cast<std::size_t>(ticks_.count / count));
     std::vector<double> at, offset;
     for (std::size_t w = 0; w < windows; ++w) {
       const auto first = static_cast<Index>(static_cast<double>(ticks_.count - count) * static_cast<double>(w) /
@@ -160,7 +158,8 @@ class ClockComparison {
     std::vector<double> slopes, levels;
     for (std::size_t i = 0; i < at.size(); ++i)
       for (std::size_t j = i + 1; j < at.size(); ++j)
-        if (at[j] - at[i] > 0.25 * length()) slopes.push_back((offset[j] - offset[i]) / (at[j] - at[i]));
+        if (at[j] - at[i] > inertial::min_window_distance * length())
+          slopes.push_back((offset[j] - offset[i]) / (at[j] - at[i]));
     if (slopes.empty()) return constant;
     const double drift = median(slopes);
     for (std::size_t i = 0; i < at.size(); ++i) levels.push_back(offset[i] - drift * (at[i] - middle()));
@@ -171,10 +170,10 @@ class ClockComparison {
   /// Shift of a logger to the first one: by correlation if reliable, else by equal start times.
   double shift_of(std::size_t logger) const {
     if (logger == 0) return 0.0;
-    constexpr double trusted = 0.3;
     const ClockOffset offset = estimate_clock_offset(recording_, 0, logger);
-    return offset.correlation > trusted ? offset.seconds
-                                        : recording_.loggers[0].time.front() - recording_.loggers[logger].time.front();
+    return offset.correlation > inertial::min_logger_correlation
+               ? offset.seconds
+               : recording_.loggers[0].time.front() - recording_.loggers[logger].time.front();
   }
 
   Index window_count() const {

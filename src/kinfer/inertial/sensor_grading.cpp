@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/base/constants.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/inertial/filters/kinfer_smoother.hpp"
+#include "kinfer/inertial/thresholds.hpp"
 
 namespace kinfer {
 namespace {
-
-constexpr double standard_gravity = 9.80665;  // [m/s²]
 
 /// White noise density from differences of consecutive rows, insensitive to slow drift.
 Vec3 noise_density_at_rest(const TriadColumns& triad, std::span<const double> time,
@@ -74,17 +74,15 @@ double squared_rotation(const InsSensor& part) {
 /// they are, so the figure would grow with the length of the recording: for a long one it is the median over the most
 /// active minutes.
 double scale_error(const InsSensor& sensor, std::span<const double> time) {
-  constexpr double minute = 60.0;                 // [s]
-  constexpr std::size_t most_active_minutes = 5;  // minutes
   const double length = time.back() - time.front();
-  if (length < 2.0 * minute) return smooth_orientation(sensor, time).scale.norm() / 3.0;
-  const auto rows = static_cast<std::size_t>(static_cast<double>(time.size()) * minute / length);
+  if (length < inertial::undivided_duration) return smooth_orientation(sensor, time).scale.norm() / 3.0;
+  const auto rows = static_cast<std::size_t>(static_cast<double>(time.size()) * inertial::scale_excerpt / length);
   std::vector<std::pair<double, std::size_t>> parts;  // turning, first row
   for (std::size_t first = 0; first + rows <= time.size(); first += rows)
     parts.emplace_back(-squared_rotation(excerpt(sensor, first, rows)), first);
   std::ranges::sort(parts);
   std::vector<double> errors;
-  for (std::size_t i = 0; i < std::min(most_active_minutes, parts.size()); ++i)
+  for (std::size_t i = 0; i < std::min(inertial::scale_excerpts, parts.size()); ++i)
     errors.push_back(
         smooth_orientation(excerpt(sensor, parts[i].second, rows), time.subspan(parts[i].second, rows)).scale.norm() /
         3.0);
@@ -97,10 +95,9 @@ double negative_log_likelihood(double figure, double sd) {
 }
 
 double negative_log_likelihood(const SensorStatistics& found, const SensorModel& grade) {
-  // Lower limits: the noise of a rest's mean, and the variation of gravity on Earth.
-  const double rate_sd = std::hypot(grade.gyroscope.bias_sd, 2e-4),
-               gravity_sd = std::hypot(grade.accelerometer.bias_sd, 0.02);
-  const double scale_sd = std::hypot(grade.gyroscope.scale_sd, 5e-4);
+  const double rate_sd = std::hypot(grade.gyroscope.bias_sd, inertial::rest_rate_floor),
+               gravity_sd = std::hypot(grade.accelerometer.bias_sd, inertial::gravity_floor);
+  const double scale_sd = std::hypot(grade.gyroscope.scale_sd, inertial::scale_floor);
   double sum =
       negative_log_likelihood(found.gravity_error, gravity_sd) + negative_log_likelihood(found.scale_error, scale_sd);
   for (const double bias : found.gyroscope_bias.mean) sum += negative_log_likelihood(bias, rate_sd);
@@ -141,9 +138,10 @@ SensorModel estimate_sensor_model(const SensorStatistics& found) {
     const SensorModel grade = *sensor_grade(name);
     if (negative_log_likelihood(found, grade) < negative_log_likelihood(found, best)) best = grade;
   }
-  best.gyroscope.noise_density = std::max(found.rate_density.maxCoeff(), 0.1 * best.gyroscope.noise_density);
+  best.gyroscope.noise_density =
+      std::max(found.rate_density.maxCoeff(), inertial::min_density_share * best.gyroscope.noise_density);
   best.accelerometer.noise_density =
-      std::max(found.acceleration_density.maxCoeff(), 0.1 * best.accelerometer.noise_density);
+      std::max(found.acceleration_density.maxCoeff(), inertial::min_density_share * best.accelerometer.noise_density);
   if (found.field_density.maxCoeff() > 0.0) best.magnetometer.noise_density = found.field_density.maxCoeff();
   return best;
 }

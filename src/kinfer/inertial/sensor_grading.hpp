@@ -3,7 +3,7 @@
 // scale errors from the agreement of gyro and gravity in motion.
 #pragma once
 
-#include "kinfer/inertial/rest.hpp"
+#include "kinfer/inertial/rest/rest.hpp"
 #include "kinfer/measurement/sensor_model.hpp"
 
 namespace kinfer {

@@ -12,7 +12,7 @@ namespace {
 constexpr double unit_length_slack = 1e-9;  // axes read from a file and normalised are within this
 
 bool is_active(const Joint& joint) {
-  return joint.is_active && joint.type != JointType::fixed;
+  return joint.is_active && has_position(joint.type);
 }
 
 void fold(Frame& frame) {

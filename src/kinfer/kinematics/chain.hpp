@@ -16,7 +16,9 @@
 #include <variant>
 #include <vector>
 
+#include "kinfer/base/constants.hpp"
 #include "kinfer/geometry/pose.hpp"
+#include "kinfer/kinematics/joint_type.hpp"
 
 namespace kinfer {
 
@@ -48,8 +50,6 @@ struct UrdfLink {
   Vec3 axis = Vec3::UnitZ();  ///< unit, in the joint's frame
 };
 using Link = std::variant<DhLink, MdhLink, UrdfLink>;
-
-enum class JointType { revolute, prismatic, fixed };
 
 /// Adds factor · (position of that joint) to the variable of this joint, as belts and parallel linkages do.
 struct Coupling {
@@ -135,7 +135,7 @@ struct Chain {
   int tip = -1;               ///< index of the joint that carries the tool; -1: the last joint
   std::vector<Target> targets;
   std::vector<PointMass> masses;
-  Vec3 gravity = Vec3(0, 0, -9.81);    ///< [m/s²] in the world frame
+  Vec3 gravity = Vec3(0, 0, -standard_gravity);  ///< [m/s²] in the world frame
   double expansion = 0.0;              ///< [1/K]: all lengths of the joints grow by expansion · temperature rise
   double reference_temperature = 0.0;  ///< [°C] at which the lengths are as written
   Fixtures fixtures{};

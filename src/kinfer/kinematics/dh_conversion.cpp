@@ -12,7 +12,7 @@ namespace {
 
 std::vector<int> moving_joints(const Chain& chain) {
   std::vector<int> moving = path_to(chain, chain.tip_joint());
-  std::erase_if(moving, [&](int j) { return chain.joints[j].type == JointType::fixed; });
+  std::erase_if(moving, [&](int j) { return !has_position(chain.joints[j].type); });
   return moving;
 }
 
@@ -110,7 +110,7 @@ std::vector<AxisLine> axis_lines(const Chain& chain) {
   std::vector<AxisLine> lines;
   for (const int j : moving_joints(chain)) {
     const Vec3 &u = placed[j].axis, &p = placed[j].point;
-    lines.push_back({p - p.dot(u) * u, u, chain.joints[j].type == JointType::prismatic});
+    lines.push_back({p - p.dot(u) * u, u, translates(chain.joints[j].type)});
   }
   return lines;
 }

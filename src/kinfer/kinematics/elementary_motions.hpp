@@ -12,8 +12,6 @@
 
 namespace kinfer::elementary {
 
-enum class Motion { rotation, translation };
-
 struct Factor {
   Motion motion = Motion::rotation;
   int axis = 0;                ///< 0, 1, 2: x, y, z
@@ -56,8 +54,8 @@ void for_each_factor(const Frame& frame, Visitor&& visit) {
 
 template <class Visitor>
 void for_each_factor(const DhLink& link, JointType type, Visitor&& visit) {
-  visit(Factor{Motion::rotation, 2, link.theta, Field::theta, type == JointType::revolute});
-  visit(Factor{Motion::translation, 2, link.d, Field::d, type == JointType::prismatic});
+  visit(Factor{Motion::rotation, 2, link.theta, Field::theta, rotates(type)});
+  visit(Factor{Motion::translation, 2, link.d, Field::d, translates(type)});
   visit(Factor{Motion::translation, 0, link.a, Field::a});
   visit(Factor{Motion::rotation, 0, link.alpha, Field::alpha});
   visit(Factor{Motion::rotation, 1, link.beta, Field::beta});
@@ -68,8 +66,8 @@ void for_each_factor(const MdhLink& link, JointType type, Visitor&& visit) {
   visit(Factor{Motion::rotation, 0, link.alpha, Field::alpha});
   visit(Factor{Motion::translation, 0, link.a, Field::a});
   visit(Factor{Motion::rotation, 1, link.beta, Field::beta});
-  visit(Factor{Motion::rotation, 2, link.theta, Field::theta, type == JointType::revolute});
-  visit(Factor{Motion::translation, 2, link.d, Field::d, type == JointType::prismatic});
+  visit(Factor{Motion::rotation, 2, link.theta, Field::theta, rotates(type)});
+  visit(Factor{Motion::translation, 2, link.d, Field::d, translates(type)});
 }
 
 /// Rotation matrix that maps z to `axis`; the identity where it is z already.
@@ -82,10 +80,10 @@ inline Mat3 rotation_to(const Vec3& axis) {
 template <class Visitor>
 void for_each_factor(const UrdfLink& link, JointType type, Visitor&& visit) {
   for_each_factor(link.origin, visit);
-  if (type == JointType::fixed) return;
+  if (!has_position(type)) return;
   const Mat3 joint_R_axis = rotation_to(link.axis);
   visit(joint_R_axis);
-  visit(Factor{type == JointType::revolute ? Motion::rotation : Motion::translation, 2, 0.0, std::nullopt, true});
+  visit(Factor{*traits(type).motion, 2, 0.0, std::nullopt, true});
   visit(Mat3(joint_R_axis.transpose()));
 }
 

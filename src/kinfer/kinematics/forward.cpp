@@ -66,8 +66,8 @@ Pose tool_pose(const Chain& chain, const std::vector<JointPlacement>& placed) {
 /// Twist of the tool per unit motion of the joint. `stretch`: thermal, of all lengths; positions are stretched already.
 Eigen::Matrix<double, 6, 1> screw(JointType type, const JointPlacement& joint, const Vec3& tool, double stretch) {
   Eigen::Matrix<double, 6, 1> twist = Eigen::Matrix<double, 6, 1>::Zero();
-  if (type == JointType::revolute) twist << joint.axis.cross(tool - joint.point), joint.axis;
-  if (type == JointType::prismatic) twist.head<3>() = stretch * joint.axis;
+  if (rotates(type)) twist << joint.axis.cross(tool - joint.point), joint.axis;
+  if (translates(type)) twist.head<3>() = stretch * joint.axis;
   return twist;
 }
 
@@ -179,7 +179,7 @@ void gravity_torques(const Chain& chain, const std::vector<JointPlacement>& plac
   torques.setZero(carried_mass.cols());
   for (Eigen::Index j = carried_mass.cols() - 1; j >= 0; --j) {
     const Joint& joint = chain.joints[j];
-    if (joint.type == JointType::revolute) {
+    if (rotates(joint.type)) {
       const Vec3 lever = carried_mass.col(j).head<3>() - carried_mass(3, j) * placed[j].point;  // [kg m]
       torques[j] = placed[j].axis.dot(lever.cross(chain.gravity));
     }

@@ -49,9 +49,9 @@ std::vector<FrameMotion> joint_motions(const Chain& chain, ConstVectorRef q, Con
     const FrameMotion& parent = joint.parent >= 0 ? motions[joint.parent] : base;
     const auto j = static_cast<Eigen::Index>(motions.size());
     const JointPlacement placement = place_joint(parent.pose, joint, displacement[j]);
-    motions.push_back(joint.type == JointType::revolute
-                          ? through_revolute(parent, placement, joint_velocity[j], acceleration[j])
-                          : through_prismatic(parent, placement, joint_velocity[j], acceleration[j]));
+    // A fixed joint is a prismatic one that stays at zero.
+    motions.push_back(rotates(joint.type) ? through_revolute(parent, placement, joint_velocity[j], acceleration[j])
+                                          : through_prismatic(parent, placement, joint_velocity[j], acceleration[j]));
   }
   return motions;
 }

@@ -3,7 +3,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -53,11 +52,6 @@ VectorXd solve_least_squares(ConstMatrixRef a, ConstVectorRef b, double cut) {
   Eigen::JacobiSVD<MatrixXd> decomposition(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
   decomposition.setThreshold(cut);
   return decomposition.solve(b);
-}
-
-VectorXd solve_square(ConstMatrixRef a, ConstVectorRef b) {
-  KINFER_EXPECT(a.rows() == a.cols(), "{} x {}", a.rows(), a.cols());
-  return Eigen::PartialPivLU<MatrixXd>(a).solve(b);
 }
 
 MatrixXd triangular_factor(ConstMatrixRef a) {

@@ -42,9 +42,6 @@ std::optional<MatrixXd> cholesky(ConstMatrixRef a);
 /// Least-squares solution of smallest norm; singular values below `cut` times the largest count as zero.
 VectorXd solve_least_squares(ConstMatrixRef a, ConstVectorRef b, double cut = 1e-12);
 
-/// Solves a x = b for a general square matrix, by LU with partial pivoting.
-VectorXd solve_square(ConstMatrixRef a, ConstVectorRef b);
-
 /// Upper triangular r of a = q r, with min(m, n) rows.
 MatrixXd triangular_factor(ConstMatrixRef a);
 

@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/base/constants.hpp"
 
 namespace kinfer {
 namespace {
 
-constexpr double standard_gravity = 9.80665;                                                       // [m/s²]
 constexpr std::array accelerometer_scales{2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 12.0, 16.0, 24.0, 32.0};  // [g]
 constexpr std::array gyroscope_scales{125.0, 150.0, 200.0, 245.0,  250.0,  300.0, 400.0,
                                       450.0, 480.0, 500.0, 1000.0, 2000.0, 4000.0};  // [°/s]

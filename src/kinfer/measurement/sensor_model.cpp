@@ -5,11 +5,12 @@
 #include <cmath>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/base/constants.hpp"
 
 namespace kinfer {
 namespace {
 
-constexpr double g = 9.80665;  // [m/s²]
+constexpr double g = standard_gravity;
 constexpr double micro_g = 1e-6 * g, milli_g = 1e-3 * g;
 constexpr double degree_per_hour = degree / 3600.0;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinfer/base/constants.hpp"
 #include "kinfer/base/expect.hpp"
 
 namespace kinfer {
@@ -93,7 +94,6 @@ void simulate_mount(SensorMotion& motion, std::span<const double> time, const Co
 }  // namespace
 
 CompliantMount draw_compliant_mount(double tilt, double frequency, Rng rng) {
-  constexpr double gravity = 9.81;
   const auto three = [&](const auto& draw) {
     Vec3 v;
     for (double& each : v) each = draw();
@@ -104,8 +104,9 @@ CompliantMount draw_compliant_mount(double tilt, double frequency, Rng rng) {
   const Mat3 foam = exp_so3(three(any)), above = skew(three(any).normalized());
   const Mat3 compliance = foam * three(stiffness).cwiseInverse().asDiagonal() * foam.transpose();
   // Weight −f acting at height h above the foam rotates the sensor by −C (h × f), C the compliance.
-  return {
-      .frequency = frequency, .tilt = -(tilt / gravity) * compliance * above, .relative_stiffness = three(stiffness)};
+  return {.frequency = frequency,
+          .tilt = -(tilt / standard_gravity) * compliance * above,
+          .relative_stiffness = three(stiffness)};
 }
 
 MachineMotion with_compliant_mounts(MachineMotion motion, const std::vector<CompliantMount>& mounts) {

@@ -126,7 +126,7 @@ Result<std::vector<Phase>> plan_phases(const std::vector<std::string>& joints, c
 }
 
 MotionExtrema joint_limits(const Joint& joint, double home, const ExcitationOptions& options) {
-  const bool is_revolute = joint.type == JointType::revolute;
+  const bool is_revolute = rotates(joint.type);
   const double room = std::min(joint.upper - home, home - joint.lower), size = amplitude_factor_of(options.script),
                frequency_factor = frequency_factor_of(options.script);
   return {std::min(size, 1.0) * std::min(0.95 * room, is_revolute ? 0.8 : 1.0),
@@ -135,7 +135,7 @@ MotionExtrema joint_limits(const Joint& joint, double home, const ExcitationOpti
 }
 
 MotionExtrema base_limits(const Joint& joint, const ExcitationOptions& options) {
-  const bool is_prismatic = joint.type == JointType::prismatic;
+  const bool is_prismatic = translates(joint.type);
   const double excursion = is_prismatic               ? options.heave
                            : joint.name == "base_yaw" ? options.yawing.rad()
                                                       : options.rocking.rad();

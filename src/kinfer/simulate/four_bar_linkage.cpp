@@ -30,7 +30,7 @@ LinkageAngles solve_linkage(double crank_position, const FourBar& bars) {
 int driven_joint(const Chain& chain) {
   int last = -1;
   for (std::size_t j = 0; j < chain.joints.size(); ++j)
-    if (chain.joints[j].type == JointType::revolute) last = static_cast<int>(j);
+    if (rotates(chain.joints[j].type)) last = static_cast<int>(j);
   return last;
 }
 

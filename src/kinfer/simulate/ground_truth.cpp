@@ -53,7 +53,7 @@ bool rotates_about_vertical_only(const SensorExcitation& excitation) {
 /// The moving joint between a sensor and its parent; our machines have one per segment.
 int checked_joint(const Machine& machine, const MountedSensor& sensor) {
   const Joint& joint = machine.chain.joints[sensor.joint];
-  KINFER_EXPECT(joint.type != JointType::fixed && joint.parent == machine.sensors[sensor.parent].joint,
+  KINFER_EXPECT(has_position(joint.type) && joint.parent == machine.sensors[sensor.parent].joint,
                 "{} hangs on {} by one joint", sensor.name, machine.sensors[sensor.parent].name);
   return sensor.joint;
 }
@@ -70,7 +70,7 @@ JointTruth joint_truth(const Machine& machine, const MountedSensor& child) {
   // The location of a prismatic axis is arbitrary: it is put through the child's origin. A revolute one passes the
   // joint's.
   const Vec3 along = link.axis.dot(joint_T_child.position) * link.axis;
-  const Vec3 point_in_joint = joint.type == JointType::prismatic ? joint_T_child.position : along;
+  const Vec3 point_in_joint = translates(joint.type) ? joint_T_child.position : along;
   truth.point_in_parent = parent_T_joint * point_in_joint;
   truth.point_in_child = joint_T_child.inverse() * point_in_joint;
   return truth;
@@ -86,7 +86,7 @@ std::vector<LinkTruth> links_between(const std::vector<JointTruth>& joints) {
   std::vector<LinkTruth> links;
   for (const JointTruth& in : joints)
     for (const JointTruth& out : joints)
-      if (out.parent == in.child && in.type == JointType::revolute && out.type == JointType::revolute)
+      if (out.parent == in.child && rotates(in.type) && rotates(out.type))
         links.push_back(
             {in.child, fmt::format("{}-{}", in.parent, in.child), fmt::format("{}-{}", out.parent, out.child),
              distance_of_lines(in.point_in_child, in.axis_in_child, out.point_in_parent, out.axis_in_parent)});
@@ -105,8 +105,7 @@ MachineTruth machine_truth(const Machine& machine, const MachineMotion& motion) 
     joint.unobservable_in_parent = find_unobservable_directions(moved);
     joint.unobservable_in_child = find_unobservable_directions(excitation[s].acceleration_per_metre);
     joint.is_axial_offset_observable =
-        joint.type == JointType::revolute &&
-        joint.axis_in_parent.dot(moved * joint.axis_in_parent) > least_signal * least_signal;
+        rotates(joint.type) && joint.axis_in_parent.dot(moved * joint.axis_in_parent) > least_signal * least_signal;
     joint.heading_needs_magnetometer = rotates_about_vertical_only(excitation[s]);
     truth.joints.push_back(std::move(joint));
   }

@@ -25,7 +25,7 @@ Result<Machine> make_machine(const Chain& chain) {
   machine.home = VectorXd::Zero(dof(machine.chain));
   for (std::size_t j = 2; j < machine.chain.joints.size(); ++j) {
     const Joint& frame = machine.chain.joints[j];
-    if (frame.type != JointType::fixed) continue;
+    if (has_position(frame.type)) continue;
     const std::string parent =
         parent_sensor_name(machine.chain.joints[static_cast<std::size_t>(frame.parent)].name, frame.name);
     if (parent.empty()) continue;

@@ -12,7 +12,7 @@ VectorXd draw_joints(const Chain& chain, const std::vector<int>& moving, Rng& rn
   VectorXd q(static_cast<Eigen::Index>(moving.size()));
   for (std::size_t k = 0; k < moving.size(); ++k) {
     const Joint& joint = chain.joints[moving[k]];
-    const bool is_revolute = joint.type == JointType::revolute;
+    const bool is_revolute = rotates(joint.type);
     const double low = std::isfinite(joint.lower) ? joint.lower : is_revolute ? -170.0 * degree : 0.0;
     const double high = std::isfinite(joint.upper) ? joint.upper : is_revolute ? 170.0 * degree : 0.3;
     q[static_cast<Eigen::Index>(k)] = rng.uniform(low, high);
@@ -53,8 +53,7 @@ Chain with_random_errors(const Chain& nominal, const Tolerances& tolerances, Rng
   Chain truth = nominal;
   for (const Parameter& parameter : all_parameters(nominal, tolerances).parameters) {
     if (parameter.quantity == Quantity::compliance) continue;
-    const bool revolute_gain =
-        parameter.at.field == Field::gain && nominal.joints[parameter.at.joint].type == JointType::revolute;
+    const bool revolute_gain = parameter.at.field == Field::gain && rotates(nominal.joints[parameter.at.joint].type);
     const bool coupling = parameter.at.field == Field::coupling;
     if (revolute_gain || coupling) continue;  // an encoder's gain is exact unless a user says otherwise
     set_value_at(truth, parameter.at, parameter.nominal + parameter.prior_sd * rng.normal());

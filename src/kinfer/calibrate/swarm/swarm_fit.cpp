@@ -50,13 +50,12 @@ MatrixXd draw_initial_swarm(const CalibrationTask& task, const PreparedFit& prep
   return draw_warm_swarm(box, particles, pack(prepared.parameters, prepared.start), rng);
 }
 
-/// The search with its initial swarm filled in. BPNN-PSO gets none: its network maps uniformly drawn particles.
+/// The search with its initial swarm filled in, if it takes one.
 SearchOptions with_initial_swarm(SearchOptions search, const CalibrationTask& task, const PreparedFit& prepared,
                                  const Bounds& box, Rng rng) {
-  if (auto* pso = std::get_if<PsoOptions>(&search))
-    pso->initial = draw_initial_swarm(task, prepared, box, pso->particles, rng);
-  if (auto* qpso = std::get_if<QpsoOptions>(&search))
-    qpso->initial = draw_initial_swarm(task, prepared, box, qpso->particles, rng);
+  const SearchMethod& method = method_of(search);
+  if (method.takes_initial_swarm)
+    method.initial(search) = draw_initial_swarm(task, prepared, box, method.particles(search), rng);
   return search;
 }
 

@@ -3,19 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/base/constants.hpp"
 #include "kinfer/cli/parts/common.hpp"
 #include "kinfer/inertial/activity.hpp"
 #include "kinfer/inertial/allan.hpp"
 #include "kinfer/inertial/sensor_grading.hpp"
-#include "kinfer/io/recording/ins_csv.hpp"
+#include "kinfer/io/recording/recording_formats.hpp"
 
 namespace kinfer::cli {
 namespace {
 
-constexpr double micro_g = 9.80665e-6;  // [m/s²]
+constexpr double micro_g = 1e-6 * standard_gravity;  // [m/s²]
 
 void print_loggers(const InsRecording& recording) {
   for (const InsLogger& logger : recording.loggers) {
@@ -126,24 +126,16 @@ void print_allan(const InsRecording& recording) {
                longest.end);
     const double period = longest.seconds() / static_cast<double>(longest.last_row - longest.first_row);
     print_allan_of("angular rate", sensor.angular_velocity, longest, period, degree, "°/s");
-    print_allan_of("specific force", sensor.acceleration, longest, period, 1e-3 * 9.80665, "mg");
+    print_allan_of("specific force", sensor.acceleration, longest, period, 1e-3 * standard_gravity, "mg");
     if (longest.seconds() < 600.0) fmt::print("  (bias instability needs an hour of rest; this one tells the noise)\n");
   }
 }
 
 }  // namespace
 
-bool is_recording(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string head(1 << 16, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
-  return is_ins_csv(head);
-}
-
 int inspect_recording(const std::vector<std::string>& paths, AllanPlot allan) {
   const std::vector<std::filesystem::path> files(paths.begin(), paths.end());
-  const auto recording = read_ins_csv(files);
+  const auto recording = read_recording(files);
   if (!recording) return fail(recording.error());
   print_loggers(*recording);
   for (const InsSensor& sensor : recording->sensors) {

@@ -7,9 +7,6 @@
 
 namespace kinfer::cli {
 
-/// Whether the file has the header of an INS recording.
-bool is_recording(const std::string& path);
-
 enum class AllanPlot { none, print };
 
 /// Prints a description of the recording: sensors, sampling rates, gaps, faults, rests, noise and bias, which sensors

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/cli/parts/robot_option.hpp"
 
-#include "kinfer/io/robot/urdf.hpp"
-
 namespace kinfer::cli {
 
 void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& name, const std::string& help,
@@ -14,12 +12,7 @@ void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& na
 }
 
 Result<RobotModel> read_robot(const RobotOption& option) {
-  const std::filesystem::path path(option.path);
-  if (path.extension() != ".urdf" && path.extension() != ".xml") return read_robot_toml(path);
-  KINFER_TRY(chain, read_urdf(path, {option.base_link, option.tip_link}));
-  RobotModel robot;
-  robot.chain = std::move(chain);
-  return robot;
+  return read_robot_model(option.path, {option.base_link, option.tip_link});
 }
 
 Result<ColumnMap> read_columns_option(const std::string& path) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// --robot FILE (TOML or URDF) with --base-link and --tip-link, shared by all verbs that take a robot.
+// --robot FILE (any readable format) with --base-link and --tip-link, shared by all verbs that take a robot.
 #pragma once
 
 #include "kinfer/cli/parts/common.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/model_formats.hpp"
 
 namespace kinfer::cli {
 
@@ -14,7 +14,7 @@ struct RobotOption {
 void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& name, const std::string& help,
                       Requirement need = Requirement::required);
 
-/// By file extension: .urdf and .xml are URDF, everything else is TOML.
+/// By file extension, see model_formats.
 Result<RobotModel> read_robot(const RobotOption& option);
 
 /// The column map of --columns; without it, kinfer's own column names are expected.

@@ -24,16 +24,15 @@ bool has_net(const SearchArguments& arguments) {
   return !arguments.warm_start.empty() && std::filesystem::is_regular_file(net_path(arguments));
 }
 
-PsoOptions pso_options(const SearchArguments& a, const Budget& budget) {
-  PsoOptions pso{
-      .particles = a.particles, .inertia = a.inertia, .cognitive = a.own, .social = a.swarm, .budget = budget};
+PsoOptions pso_options(const SearchArguments& a) {
+  PsoOptions pso{.inertia = a.inertia, .cognitive = a.own, .social = a.swarm};
   if (a.boundary == "clamp") pso.boundary = BoundaryHandling::clamp;
   if (a.boundary == "open") pso.boundary = BoundaryHandling::open;
   return pso;
 }
 
-Result<BpnnPsoOptions> bpnn_options(const SearchArguments& arguments, const Budget& budget) {
-  BpnnPsoOptions bpnn{.pso = pso_options(arguments, budget)};
+Result<BpnnPsoOptions> bpnn_options(const SearchArguments& arguments) {
+  BpnnPsoOptions bpnn{.pso = pso_options(arguments)};
   if (arguments.net_use == "every-update") bpnn.use = NetUse::before_every_update;
   if (!has_net(arguments)) return bpnn;
   KINFER_TRY(text, read_text_file(net_path(arguments)));
@@ -69,8 +68,9 @@ const std::vector<SwarmOption>& swarm_only_options() {
 }  // namespace
 
 void add_search_arguments(CLI::App& verb, SearchArguments& a) {
-  add_choice(verb, "--method", a.method, {"lm", "pso", "qpso", "bpnn-pso"},
-             "lm: least squares; the others are swarm searches (paper 2)");
+  std::vector<std::string> methods{"lm"};
+  for (const SearchMethod& method : search_methods()) methods.emplace_back(method.name);
+  add_choice(verb, "--method", a.method, methods, "lm: least squares; the others are swarm searches (paper 2)");
   add_text(verb, "--warm-start", a.warm_start, "Folder of an earlier calibration of this robot: where searches start",
            Requirement::optional, "DIR");
   add_texts(verb, "--prior", a.prior,
@@ -111,12 +111,15 @@ Result<std::optional<calibrate::SwarmSearchOptions>> read_swarm_options(const Se
     options.box = calibrate::AbsoluteBox{1e-3 * arguments.box_length, arguments.box_angle * degree};
   else
     return error("--box-length and --box-angle must be above 0");
-  if (arguments.method == "pso") options.search = pso_options(arguments, budget);
-  if (arguments.method == "qpso") options.search = QpsoOptions{.particles = arguments.particles, .budget = budget};
-  if (arguments.method == "bpnn-pso") {
-    KINFER_TRY(bpnn, bpnn_options(arguments, budget));
+  const SearchMethod& method = *method_named(arguments.method);
+  options.search = method.default_options;
+  if (std::holds_alternative<PsoOptions>(options.search)) options.search = pso_options(arguments);
+  if (std::holds_alternative<BpnnPsoOptions>(options.search)) {
+    KINFER_TRY(bpnn, bpnn_options(arguments));
     options.search = std::move(bpnn);
   }
+  method.budget(options.search) = budget;
+  method.particles(options.search) = arguments.particles;
   return options;
 }
 

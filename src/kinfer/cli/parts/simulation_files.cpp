@@ -28,8 +28,7 @@ Json json(const std::vector<Vec3>& vectors) {
 
 Json words(const JointTruth& joint) {
   Json list = Json::array();
-  if (joint.type == JointType::prismatic)
-    list.push_back("the place of a slide's axis across itself: only its direction matters");
+  if (translates(joint.type)) list.push_back("the place of a slide's axis across itself: only its direction matters");
   if (joint.unobservable_in_parent.size() == 3)
     list.push_back("the joint's place in " + joint.parent + ", which stands still");
   if (joint.unobservable_in_parent.size() == 1)
@@ -44,7 +43,7 @@ Json json(const JointTruth& joint) {
   return {{"name", joint.name},
           {"parent", joint.parent},
           {"child", joint.child},
-          {"type", joint.type == JointType::prismatic ? "prismatic" : "revolute"},
+          {"type", traits(joint.type).name},
           {"axis_in_parent", json(joint.axis_in_parent)},
           {"point_in_parent", json(joint.point_in_parent)},
           {"axis_in_child", json(joint.axis_in_child)},

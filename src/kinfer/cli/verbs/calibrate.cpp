@@ -202,7 +202,7 @@ Verb add_calibrate(CLI::App& app) {
                   "  kinfer predict --chain calibration/chain.toml --joints joints.csv -o predicted.csv");
   auto options = std::make_shared<CalibrateArguments>();
   add_robot_option(*verb, options->robot, "--robot",
-                   "Nominal model: TOML or URDF; or unknown:6R, unknown:RRPR: joint types alone");
+                   "Nominal model: " + readable_model_formats() + "; or unknown:6R, unknown:RRPR: joint types alone");
   add_text(*verb, "--data", options->data, "Pose set: joint readings and measurements", Requirement::required, "CSV");
   add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, evidence.json, report.html, run.json",
            Requirement::required, "DIR");

@@ -76,7 +76,7 @@ Verb add_frames(CLI::App& app) {
       "Sweeps are marked in a column called sweep, or found: rows in which one joint alone moves.\nExample:\n"
       "  kinfer frames --robot robot.toml --data sweeps.csv --out frames");
   auto options = std::make_shared<FramesArguments>();
-  add_robot_option(*verb, options->robot, "--robot", "Nominal model: TOML or URDF");
+  add_robot_option(*verb, options->robot, "--robot", "Nominal model: " + readable_model_formats());
   add_text(*verb, "--data", options->data, "Pose set with sweeps of single joints", Requirement::required, "CSV");
   add_text(*verb, "--out", options->out, "Folder for chain.toml (base and tool found), evidence.json, run.json",
            Requirement::required, "DIR");

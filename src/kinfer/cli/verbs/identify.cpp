@@ -68,7 +68,7 @@ Result<std::vector<identify::GivenLink>> parse_links(const std::string& text) {
 Result<identify::IdentifyOptions> identify_options(const IdentifyArguments& options) {
   identify::IdentifyOptions how;
   const auto filter = filter_named(options.filter);
-  if (!filter) return error("--filter {}: no such filter; known are {}", options.filter, filter_names);
+  if (!filter) return error("--filter {}: no such filter; known are {}", options.filter, filter_names());
   if (options.search.depth.max < options.search.depth.min)
     return error("--max-depth {}: less than --min-depth {}", options.search.depth.max, options.search.depth.min);
   if (options.search.depth.max_leaves < options.search.depth.min)
@@ -199,8 +199,7 @@ Verb add_identify(CLI::App& app) {
              "up to 3 leaves");
   add_choice(*verb, "--terminals", options->terminals, {"hinge", "euler"},
              "hinge: relative rotations, rates from gyros; euler: differences of Euler angles, as in paper 1");
-  add_text(*verb, "--filter", options->filter, "Orientation filter: kinfer, kinfer-offline, paper",
-           Requirement::optional, "NAME");
+  add_text(*verb, "--filter", options->filter, "Orientation filter. " + filter_help(), Requirement::optional, "NAME");
   add_text(*verb, "--root", options->root, "Sensor on the machine's base (default: the one that stands still)",
            Requirement::optional, "NAME");
   add_text(*verb, "--sensors", options->sensors, "Only these sensors of the log, as ins0,ins1,ins2",

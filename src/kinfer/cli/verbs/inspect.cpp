@@ -10,6 +10,7 @@
 #include "kinfer/estimate/poses/joint_excitation.hpp"
 #include "kinfer/io/evidence/findings_json.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/recording/recording_formats.hpp"
 #include "kinfer/words/findings.hpp"
 
 namespace kinfer::cli {
@@ -98,7 +99,8 @@ Verb add_inspect(CLI::App& app) {
       add_command(app, "inspect", "What was understood of a file, and what is wrong with it, before any fit",
                   "Example:\n  kinfer inspect poses.csv --robot robot.toml\n  kinfer inspect imu.csv --allan");
   auto options = std::make_shared<InspectArguments>();
-  add_robot_option(*verb, options->robot, "--robot", "Robot of a pose set: TOML or URDF", Requirement::optional);
+  add_robot_option(*verb, options->robot, "--robot", "Robot of a pose set: " + readable_model_formats(),
+                   Requirement::optional);
   add_texts(*verb, "files", options->files, "INS recordings, one a logger, or pose sets with --robot",
             Requirement::required, "CSV");
   add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Requirement::optional,

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // kinfer orient: orientation of each sensor of an INS recording, row by row.
-#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "kinfer/cli/verb_list.hpp"
-#include "kinfer/inertial/filters/orientation.hpp"
-#include "kinfer/io/recording/ins_csv.hpp"
+#include "kinfer/inertial/sensor_orientations.hpp"
 #include "kinfer/io/recording/orientation_csv.hpp"
+#include "kinfer/io/recording/recording_formats.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -30,73 +29,50 @@ Result<std::vector<std::size_t>> chosen_sensors(const InsRecording& recording, c
   return chosen;
 }
 
-Result<void> expect_usable(const InsRecording& recording, const std::vector<std::size_t>& chosen) {
-  for (const std::size_t i : chosen) {
-    const InsSensor& sensor = recording.sensors[i];
-    const bool has_any =
-        std::ranges::any_of(sensor.faults, [](std::uint8_t bits) { return !(bits & acceleration_missing); });
-    if (!has_any)
-      return error(
-          "{}: sensor {}: no row has a specific force, so its orientation is unknown; select another one with --sensor",
-          recording.loggers[sensor.logger].name, sensor.name);
-  }
-  return {};
-}
-
-struct SensorSummary {
-  std::string name;
-  std::size_t rows = 0;
-  bool magnetometer = false;
-  double rest_seconds = 0.0;
-};
-
-nlohmann::ordered_json as_json(const OrientArguments& options, const std::vector<SensorSummary>& sensors) {
+nlohmann::ordered_json as_json(const OrientArguments& options, const InsRecording& recording,
+                               const std::vector<SensorOrientations>& orientations) {
   nlohmann::ordered_json out;
   out["filter"] = options.filter;
-  for (const SensorSummary& s : sensors)
-    out["sensors"].push_back(
-        {{"name", s.name}, {"rows", s.rows}, {"magnetometer", s.magnetometer}, {"rest_s", s.rest_seconds}});
+  for (const SensorOrientations& o : orientations)
+    out["sensors"].push_back({{"name", recording.sensors[o.sensor].name},
+                              {"rows", o.world_q_sensor.size()},
+                              {"magnetometer", o.heading_is_north},
+                              {"rest_s", o.rest_seconds}});
   return out;
 }
 
-void print_summary(const OrientArguments& options, const std::vector<SensorSummary>& sensors) {
+void print_summary(const OrientArguments& options, const InsRecording& recording,
+                   const std::vector<SensorOrientations>& orientations) {
   fmt::print("{}: filter {}\n", options.out, options.filter);
-  for (const SensorSummary& s : sensors) {
-    fmt::print("  {:<12} {:>8} rows, {}, {:.1f} s of rest\n", s.name, s.rows,
-               s.magnetometer ? "heading from the magnetometer" : "no magnetometer: heading is relative to the start",
-               s.rest_seconds);
-    if (s.rest_seconds <= 0.0)
-      fmt::print("  ! {}: no rest found: the gyro bias is known from the motion alone\n", s.name);
+  for (const SensorOrientations& o : orientations) {
+    const std::string& name = recording.sensors[o.sensor].name;
+    fmt::print(
+        "  {:<12} {:>8} rows, {}, {:.1f} s of rest\n", name, o.world_q_sensor.size(),
+        o.heading_is_north ? "heading from the magnetometer" : "no magnetometer: heading is relative to the start",
+        o.rest_seconds);
+    if (o.rest_seconds <= 0.0)
+      fmt::print("  ! {}: no rest found: the gyro bias is known from the motion alone\n", name);
   }
 }
 
 int run(const OrientArguments& options) {
   const auto filter = filter_named(options.filter);
-  if (!filter) return fail({fmt::format("--filter {}: no such filter, known are {}", options.filter, filter_names)});
+  if (!filter) return fail({fmt::format("--filter {}: no such filter, known are {}", options.filter, filter_names())});
   const FilterOptions how = options.magnetometer == "off" ? without_magnetometer(*filter) : *filter;
   const std::vector<std::filesystem::path> paths(options.logs.begin(), options.logs.end());
-  const auto recording = read_ins_csv(paths);
+  const auto recording = read_recording(paths);
   if (!recording) return fail(recording.error());
   const auto chosen = chosen_sensors(*recording, options.sensor);
   if (!chosen) return fail(chosen.error());
-  if (auto usable = expect_usable(*recording, *chosen); !usable) return fail(usable.error());
+  const auto orientations = estimate_orientations(*recording, *chosen, how);
+  if (!orientations) return fail(orientations.error());
   if (!options.common.quiet)
     for (const std::string& remark : recording->remarks) fmt::print(stderr, "kinfer: {}\n", remark);
-
-  std::vector<SensorOrientations> found;
-  std::vector<SensorSummary> summary;
-  for (const std::size_t i : *chosen) {  // sequentially: the smoother needs memory for one sensor only
-    const InsSensor& sensor = recording->sensors[i];
-    const auto time = recording->time(sensor);
-    found.push_back({i, estimate_orientations(sensor, time, how)});
-    summary.push_back({sensor.name, time.size(), sensor.has_magnetometer() && options.magnetometer != "off",
-                       bias_at_rest(rest_periods(sensor, time)).seconds});
-  }
-  if (auto done = write_orientation_csv(options.out, *recording, found); !done) return fail(done.error());
+  if (auto done = write_orientation_csv(options.out, *recording, *orientations); !done) return fail(done.error());
   if (options.common.json)
-    fmt::print("{}\n", as_json(options, summary).dump());
+    fmt::print("{}\n", as_json(options, *recording, *orientations).dump());
   else if (!options.common.quiet)
-    print_summary(options, summary);
+    print_summary(options, *recording, *orientations);
   return exit_done;
 }
 
@@ -112,11 +88,7 @@ Verb add_orient(CLI::App& app) {
   add_text(*verb, "-o,--out", options->out,
            "Where to write t, SENSOR_qw, SENSOR_qx, SENSOR_qy, SENSOR_qz (sensor to world)", Requirement::required,
            "CSV");
-  add_text(
-      *verb, "--filter", options->filter,
-      "kinfer: online; kinfer-offline: smoothed, each row knows what comes after it; paper: the 12-state filter of "
-      "Péntek et al. 2021",
-      Requirement::optional, "NAME");
+  add_text(*verb, "--filter", options->filter, filter_help(), Requirement::optional, "NAME");
   add_text(*verb, "--sensor", options->sensor, "Only this sensor (default: all)", Requirement::optional, "NAME");
   add_choice(*verb, "--magnetometer", options->magnetometer, {"auto", "off"},
              "auto: heading from the magnetometer where there is one; off: never");

@@ -178,7 +178,7 @@ Verb add_plan(CLI::App& app) {
       "Example:\n  kinfer plan --robot robot.toml --poses 20 -o plan.csv --lowest 100 --instrument-at 2500,0,1200");
   auto options = std::make_shared<PlanArguments>();
   add_robot_option(*verb, options->robot, "--robot",
-                   "Nominal model, its limits, tolerances and [instrument]: TOML or URDF");
+                   "Nominal model, its limits, tolerances and [instrument]: " + readable_model_formats());
   add_count(*verb, "--poses", options->poses, 1, 1000, "Number of poses to choose");
   add_text(*verb, "-o,--out", options->out, "Joint readings of the poses; the figure has the same name with .svg",
            Requirement::required, "CSV");

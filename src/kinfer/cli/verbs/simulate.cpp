@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/base/constants.hpp"
 #include "kinfer/cli/parts/drive_choices.hpp"
 #include "kinfer/cli/parts/simulated_faults.hpp"
 #include "kinfer/cli/parts/simulation_files.hpp"
@@ -49,13 +50,12 @@ MachineOptions machine_options(const SimulateArguments& options) {
 }
 
 Result<SensorModel> sensor_model_of(const SimulateArguments& options) {
-  constexpr double g = 9.80665;  // [m/s²]
   SensorModel grade{.name = options.grade, .accelerometer = {}, .gyroscope = {}, .magnetometer = {}};
   if (options.grade != "perfect") {
     KINFER_TRY(known, read_grade(options.grade, "perfect"));
     grade = known;
   }
-  if (options.accelerometer_range > 0.0) grade.accelerometer.range = options.accelerometer_range * g;
+  if (options.accelerometer_range > 0.0) grade.accelerometer.range = options.accelerometer_range * standard_gravity;
   if (options.gyro_range > 0.0) grade.gyroscope.range = options.gyro_range * degree;
   return grade;
 }

@@ -82,7 +82,7 @@ Verb add_simulate_poses(CLI::App& app) {
   CLI::App* verb = add_command(app, "simulate-poses", "Measured poses of a robot with known errors, to try things out",
                                "Example:\n  kinfer simulate-poses --robot robot.toml --poses 50 --out data");
   auto options = std::make_shared<SimulatePosesArguments>();
-  add_robot_option(*verb, options->robot, "--robot", "Nominal model: TOML or URDF");
+  add_robot_option(*verb, options->robot, "--robot", "Nominal model: " + readable_model_formats());
   add_text(*verb, "--out", options->out, "Folder for poses.csv, robot.toml, truth.toml", Requirement::required, "DIR");
   add_count(*verb, "--poses", options->poses, 1, 1000000, "Number of poses");
   add_text(*verb, "--errors", options->errors,

@@ -3,8 +3,9 @@
 // microseconds. For chains with a batch form (kinematics) and position measurements only.
 #pragma once
 
-#include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/estimate/poses/pose_weights.hpp"
 #include "kinfer/kinematics/batch/batch_points.hpp"
+#include "kinfer/search/least_squares/least_squares.hpp"
 
 namespace kinfer {
 

@@ -12,8 +12,6 @@
 namespace kinfer {
 namespace {
 
-constexpr double noise_free_sd = 1e-9;  // [m], [rad]; a standard deviation of 0 means noise-free: lower bound 1e-6 mm
-
 /// The parameter set for one mounting's evaluator: that mounting's base and tool take the place of the chain's;
 /// parameters of other mountings have no effect.
 ParameterSet parameters_of_mounting(ParameterSet set, const Chain& chain, int mounting) {
@@ -205,44 +203,6 @@ void write_socket_distances(const Chain& chain, const FixtureColumns& columns, V
     }
     ++row;
   }
-}
-
-const std::vector<Vec3>& Weights::of(MeasurementKind kind) const {
-  const std::array<const std::vector<Vec3>*, measurement_kinds> lists{
-      &point_sd, &orientation_sd, &contact_sd, &distance_sd, &pair_sd, &plane_sd, &tilt_sd};
-  return *lists[static_cast<std::size_t>(kind)];
-}
-
-std::vector<Vec3>& Weights::of(MeasurementKind kind) {
-  return const_cast<std::vector<Vec3>&>(std::as_const(*this).of(kind));
-}
-
-Weights weights_of(const PoseSet& data, const Instrument& instrument) {
-  Weights weights;
-  for (const ResidualKind& kind : residual_kinds())
-    for (std::size_t i = 0; i < kind.count(data); ++i)
-      weights.of(kind.kind).push_back(kind.specified_sd(data, i, instrument).cwiseMax(noise_free_sd));
-  weights.couplings = couplings_of(data, weights.point_sd, weights.orientation_sd);
-  return weights;
-}
-
-std::vector<Block> blocks_of(const PoseSet& data) {
-  std::vector<Block> blocks;
-  for (const ResidualKind& kind : residual_kinds())
-    for (std::size_t i = 0; i < kind.count(data); ++i)
-      blocks.push_back({kind.kind, static_cast<int>(i), kind.row(data, i), kind.size});
-  return blocks;
-}
-
-PoseSet keep_measurements(const PoseSet& data, const std::vector<bool>& kept) {
-  PoseSet result = data;
-  auto next = kept.begin();
-  for (const ResidualKind& kind : residual_kinds()) {
-    const auto count = static_cast<std::ptrdiff_t>(kind.count(data));
-    kind.keep(result, {next, next + count});
-    next += count;
-  }
-  return result;
 }
 
 Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights) {

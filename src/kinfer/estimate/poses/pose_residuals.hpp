@@ -8,8 +8,7 @@
 
 #include <vector>
 
-#include "kinfer/estimate/poses/instruments/residual_kind.hpp"
-#include "kinfer/estimate/poses/pose_coupling.hpp"
+#include "kinfer/estimate/poses/pose_weights.hpp"
 #include "kinfer/search/least_squares/least_squares.hpp"
 
 namespace kinfer {
@@ -26,34 +25,6 @@ MatrixXd gravity_torques_of_rows(const Chain& chain, const PoseSet& data);
 
 /// Payload, temperature rise, torques and approach direction at one row of the set. Views into the set.
 Load load_at(const Chain& chain, const PoseSet& data, Eigen::Index row);
-
-/// Standard deviations of the measurements, one per entry of the pose set's lists.
-struct Weights {
-  std::vector<Vec3> point_sd;                                    ///< [m] per axis
-  std::vector<Vec3> orientation_sd;                              ///< [rad] about the world's axes
-  std::vector<Vec3> contact_sd, distance_sd, pair_sd, plane_sd;  ///< [m]; one-row kinds use the first only
-  std::vector<Vec3> tilt_sd;                                     ///< [m/s²]; the first two are used
-  std::vector<PoseCoupling> couplings;  ///< of orientations with the points of their rows, ascending; often empty
-
-  std::vector<Vec3>& of(MeasurementKind kind);
-  const std::vector<Vec3>& of(MeasurementKind kind) const;
-};
-
-/// From the instrument's specification, or a row's own standard deviation if the file gives it. A lower bound keeps the
-/// weights of noise-free data finite.
-Weights weights_of(const PoseSet& data, const Instrument& instrument);
-
-/// One block of rows: the list and entry that it comes from.
-struct Block {
-  MeasurementKind kind = MeasurementKind::point;
-  int index = 0;  ///< into the pose set's list of that kind
-  int row = 0;    ///< pose
-  int size = 3;   ///< rows
-};
-std::vector<Block> blocks_of(const PoseSet& data);
-
-/// The pose set with only the measurements that are kept, one flag per block of blocks_of.
-PoseSet keep_measurements(const PoseSet& data, const std::vector<bool>& kept);
 
 /// The least-squares problem over the free parameters of `set`; blocks first (in the order of blocks_of), then the
 /// socket distances, then the priors. All arguments must outlive the result.

@@ -335,6 +335,8 @@ StructureFit StructureFitter::fit_all_parameters(const LinkStructure& structure,
   };
   LinearSolution best = solve(leaves);
   const auto k = static_cast<Index>(constant_count(structure));
+  // Not search/least_squares: each evaluation solves for the lengths, and the fit ends at 1e-5 of J, so that another
+  // damping gives another result.
   constexpr double tolerance = 1e-5;  // relative decrease of J
   double damping = 1e-3;
   for (int step = 0; step < options_.max_iterations && k > 0 && best.x.size() > 0; ++step) {

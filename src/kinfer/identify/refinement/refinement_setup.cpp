@@ -78,7 +78,7 @@ MatrixXd root_spline_coefficients(const RecordedMotion& motion, const SplineGrid
   const SegmentMotion& m = motion.segments[root];
   std::vector<Vec3> force;
   for (std::size_t i = 0; i < motion.rows(); ++i)
-    force.push_back(m.rotation[i].transpose() * (m.acceleration[i] + Vec3(0.0, 0.0, 9.81)));
+    force.push_back(m.rotation[i].transpose() * (m.acceleration[i] + Vec3(0.0, 0.0, motion.gravity)));
   return fit_spline(grid, motion.time, as_columns(m.gyro, force));
 }
 

@@ -19,7 +19,6 @@ using Index = Eigen::Index;
 constexpr std::size_t remount_rows = 900, coarse_splits = 24, fine_splits = 9;
 constexpr double informative_rate = 0.05;  // [rad/s] angular velocity of an informative row
 constexpr std::size_t min_rows = 100;      // on either side of a split
-constexpr double gravity = 9.81;           // [m/s²] the value that segment_motion subtracted
 
 /// Common form of the two relations: |v_a| = |v_b|, v = constant + effect · p, p a parameter of the sensor (j or r).
 struct Relation {
@@ -49,7 +48,7 @@ struct Row {
 using Rows = std::vector<Row>;
 
 /// One sensor's part of a relation at the evaluated rows.
-Rows rows_of(const SegmentMotion& m, const std::vector<std::size_t>& at, const Relation& relation) {
+Rows rows_of(const SegmentMotion& m, const std::vector<std::size_t>& at, const Relation& relation, double gravity) {
   Rows rows;
   for (const std::size_t i : at) {
     const Mat3 to_sensor = m.rotation[i].transpose();
@@ -118,7 +117,8 @@ class PairRelation {
     return std::sqrt(sum / static_cast<double>(rows_of_sensors_[0]->size()));
   }
 
-  /// Levenberg-Marquardt with Huber's weights.
+  /// Levenberg-Marquardt with Huber's weights. Not search/least_squares: a step ends on the unit sphere and is judged
+  /// by the clipped rms, and the fit ends at 1e-4 of it, so that another path gives another result.
   Fit fit_from(SplitParameters p, std::size_t split, SplitSensors split_sensors) const {
     constexpr int iterations = 12;
     Fit best{p, rms(p, split)};
@@ -233,7 +233,8 @@ class RemountSearch {
   RemountSearch(const RecordedMotion& motion, int threads)
       : motion_(motion), at_(telling_rows(motion)), threads_(threads) {
     for (const SegmentMotion& segment : motion.segments)
-      rows_.push_back({rows_of(segment, at_, gyro_relation), rows_of(segment, at_, force_relation)});
+      rows_.push_back({rows_of(segment, at_, gyro_relation, motion.gravity),
+                       rows_of(segment, at_, force_relation, motion.gravity)});
   }
 
   std::optional<Remount> run() const {

@@ -21,9 +21,9 @@ void align_headings(RecordedMotion& motion, const SegmentTree& tree) {
 Result<OrderedMotion> order_segments(const InsRecording& recording, const SegmentMotionOptions& options,
                                      const std::optional<std::string>& root, int threads,
                                      const std::vector<GivenLink>& given) {
-  const bool uses_paper_filter = std::holds_alternative<PaperEkfOptions>(options.filter);
-  KINFER_TRY(motion, uses_paper_filter ? segment_motion(recording, options, threads)
-                                       : gyro_based_motion(recording, options, threads));
+  const HeadingSource headings = filter_of(options.filter).heading_source;
+  KINFER_TRY(motion, headings == HeadingSource::filter ? segment_motion(recording, options, threads)
+                                                       : gyro_based_motion(recording, options, threads));
   const PairFitOptions fit{.headings_from_magnetometers = all_have_magnetometers(recording)};
   KINFER_TRY(tree, segment_tree(motion, root, fit, threads));
   std::vector<Finding> findings;
@@ -33,7 +33,7 @@ Result<OrderedMotion> order_segments(const InsRecording& recording, const Segmen
     findings = findings_about(given_result, tree, names);
     tree = given_result;
   }
-  if (!uses_paper_filter) align_headings(motion, tree);
+  if (headings == HeadingSource::gyro) align_headings(motion, tree);
   return OrderedMotion{std::move(motion), std::move(tree), std::move(findings)};
 }
 

@@ -15,7 +15,6 @@ namespace {
 constexpr std::size_t heading_windows = 8;             // of equal length, within which the heading is taken as constant
 constexpr int heading_starts = 24;                     // around the circle
 constexpr int whitening_passes = 2;                    // passes weighted by the residual's covariance
-constexpr double nominal_gravity = 9.81;               // [m/s²] nominal; enters only through the tilt of E
 constexpr double rows_per_independent_sample = 300.0;  // rows: orientation errors vary slowly, neighbours are redundant
 
 using Vec2 = Eigen::Vector2d;
@@ -25,11 +24,11 @@ using Mat7 = Eigen::Matrix<double, 7, 7>;
 using Row7 = Eigen::Matrix<double, 3, 7>;
 
 /// [K, R, f]: specific force at a point of the segment in the world is this times (lever arm, bias, 1).
-Row7 point_jacobian(const SegmentMotion& m, std::size_t row) {
+Row7 point_jacobian(const SegmentMotion& m, std::size_t row, double gravity) {
   const Mat3 angular_velocity = skew(m.angular_velocity[row]);
   Row7 jacobian;
   jacobian << (skew(m.angular_acceleration[row]) + angular_velocity * angular_velocity) * m.rotation[row],
-      m.rotation[row], m.acceleration[row] + nominal_gravity * Vec3::UnitZ();
+      m.rotation[row], m.acceleration[row] + gravity * Vec3::UnitZ();
   return jacobian;
 }
 
@@ -162,7 +161,7 @@ class PairProblem {
   void add(std::size_t row) {
     Window& window = windows_[window_of(row)];
     const double n = count();
-    const Row7 u = point_jacobian(a_, row), v = point_jacobian(b_, row);
+    const Row7 u = point_jacobian(a_, row, motion_.gravity), v = point_jacobian(b_, row, motion_.gravity);
     of_first_ += u.transpose() * u / n;
     of_second_ += v.transpose() * v / n;
     for (int i = 0; i < 3; ++i)
@@ -197,8 +196,8 @@ class PairProblem {
   /// Difference of the specific forces, second minus first, in the first sensor: this times (lever arms, biases, 1).
   Eigen::Matrix<double, 3, 13> difference_jacobian(const WorldRotation& world_rotation, std::size_t row) const {
     const Mat3 first_R_world = a_.rotation[row].transpose();
-    const Row7 u = first_R_world * point_jacobian(a_, row),
-               v = first_R_world * world_rotation.at(motion_.time[row]) * point_jacobian(b_, row);
+    const Row7 u = first_R_world * point_jacobian(a_, row, motion_.gravity),
+               v = first_R_world * world_rotation.at(motion_.time[row]) * point_jacobian(b_, row, motion_.gravity);
     Eigen::Matrix<double, 3, 13> k;
     k << -u.leftCols<6>(), v.leftCols<6>(), v.col(6) - u.col(6);
     return k;

@@ -16,7 +16,7 @@
 
 #include "kinfer/inertial/filters/magnetic_reference.hpp"
 #include "kinfer/inertial/filters/magnetometer_use.hpp"
-#include "kinfer/inertial/rest.hpp"
+#include "kinfer/inertial/rest/rest.hpp"
 
 namespace kinfer {
 
@@ -67,8 +67,8 @@ struct KinferEstimate {
 KinferEstimate corrected(const KinferEstimate& estimate, const KinferErrorState& error);
 KinferErrorState difference(const KinferEstimate& to, const KinferEstimate& from);
 
-/// Error propagation over one update period: rotation += rotation_by_gyro_errors [bias; scale], velocity += velocity_by_tilt
-/// (rotation_y, -rotation_x), plus process noise variances.
+/// Error propagation over one update period: rotation += rotation_by_gyro_errors [bias; scale], velocity +=
+/// velocity_by_tilt (rotation_y, -rotation_x), plus process noise variances.
 struct KinferTransition {
   Eigen::Matrix<double, 3, 12> rotation_by_gyro_errors = Eigen::Matrix<double, 3, 12>::Zero();
   double velocity_by_tilt = 0.0;  ///< [m/s per rad]

@@ -110,11 +110,11 @@ void interpolate_rows(const SmootherStep& step, const Quat& begin, const Quat& e
 
 /// Checkpoints of the forward pass, in order; the last one is its end.
 std::vector<Checkpoint> forward_checkpoints(const InsSensor& sensor, std::span<const double> time,
-                                            const KinferFilterOptions& options, SmoothedOrientation& motion) {
+                                            const KinferFilterOptions& options, FilterOutput& motion) {
   std::vector<Checkpoint> all{{.filter = KinferFilter(options), .step = {}, .row = 0}};
   do {
     const ForwardPass pass = run_forward_pass(sensor, time, all.back());
-    for (const SmootherStep& step : pass.steps) motion.update_time.push_back(time[step.last_row]);
+    for (const SmootherStep& step : pass.steps) motion.bias_time.push_back(time[step.last_row]);
     all.push_back(pass.end);
   } while (all.back().row < time.size());
   return all;
@@ -122,12 +122,12 @@ std::vector<Checkpoint> forward_checkpoints(const InsSensor& sensor, std::span<c
 
 }  // namespace
 
-SmoothedOrientation smooth_orientation(const InsSensor& sensor, std::span<const double> time,
-                                       const KinferOfflineOptions& options) {
-  SmoothedOrientation motion;
+FilterOutput smooth_orientation(const InsSensor& sensor, std::span<const double> time,
+                                const KinferOfflineOptions& options) {
+  FilterOutput motion;
   const std::vector<Checkpoint> from = forward_checkpoints(sensor, time, options.filter, motion);
   motion.world_q_sensor.assign(time.size(), Quat::Identity());
-  motion.bias.resize(motion.update_time.size());
+  motion.bias.resize(motion.bias_time.size());
   const SmootherStep& open = from.back().step;  // incomplete period: its rows are relative to its start
   KinferEstimate end = open.begin;
   std::size_t update = motion.bias.size(), first_row = open.first_row;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "kinfer/base/constants.hpp"
 #include "kinfer/base/square.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
@@ -74,7 +75,8 @@ void PaperEkf::predict(const Vec3& angular_velocity, double dt) {
 PaperEkf::Measurement PaperEkf::residual(const InsSample& sample) const {
   const Quat sensor_q_world = world_q_sensor_.conjugate();
   Measurement y;
-  y.head<3>() = sample.acceleration + acceleration_ - sensor_q_world * Vec3(0.0, 0.0, gravity_);  // + Â: see the header
+  y.head<3>() =
+      sample.acceleration + acceleration_ - sensor_q_world * Vec3(0.0, 0.0, standard_gravity);  // + Â: see the header
   if (field_strength_ > 0.0)
     y.tail<3>() = sample.field / field_strength_ - disturbance_ - sensor_q_world * field_world_;
   else
@@ -86,7 +88,7 @@ PaperEkf::Measurement PaperEkf::residual(const InsSample& sample) const {
 PaperEkf::MeasurementMatrix PaperEkf::measurement_matrix() const {
   const Quat sensor_q_world = world_q_sensor_.conjugate();
   MeasurementMatrix h = MeasurementMatrix::Zero();
-  h.block<3, 3>(0, 0) = -skew(sensor_q_world * Vec3(0.0, 0.0, gravity_));
+  h.block<3, 3>(0, 0) = -skew(sensor_q_world * Vec3(0.0, 0.0, standard_gravity));
   h.block<3, 3>(0, 6) = Mat3::Identity();
   h.block<3, 3>(3, 0) = -skew(sensor_q_world * field_world_);
   h.block<3, 3>(3, 9) = -Mat3::Identity();

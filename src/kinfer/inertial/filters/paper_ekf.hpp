@@ -41,7 +41,6 @@ class PaperEkf {
   void add(const InsSample& sample);
   const Quat& orientation() const { return world_q_sensor_; }
   bool started() const { return started_; }
-  const Vec3& bias() const { return bias_; }
 
  private:
   using State = Eigen::Matrix<double, 12, 1>;  // λ, b, A, M errors: eq. (13)
@@ -61,7 +60,7 @@ class PaperEkf {
   Quat world_q_sensor_ = Quat::Identity();
   Vec3 bias_ = Vec3::Zero(), acceleration_ = Vec3::Zero(), disturbance_ = Vec3::Zero();
   Vec3 field_world_ = Vec3::Zero();  // m^G, unit length
-  double field_strength_ = 0.0, gravity_ = 9.81;
+  double field_strength_ = 0.0;
   Covariance covariance_ = Covariance::Zero();
   double time_ = 0.0;
   bool started_ = false;

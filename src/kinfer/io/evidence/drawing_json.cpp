@@ -71,13 +71,11 @@ struct SplitJoint {
 Json joint_json(const Joint& joint, const std::vector<int>& variable_indices, int variable_index) {
   SplitJoint parts;
   elementary::for_each_factor(joint, [&](const auto& step) { parts(step); });
-  const bool moves = joint.type != JointType::fixed;
-  const char* type = !moves ? "fixed" : joint.type == JointType::revolute ? "revolute" : "prismatic";
   Json couplings = Json::array();
   for (const Coupling& c : joint.couplings) couplings.push_back({variable_indices[c.joint], c.factor});
   Json json{{"name", joint.name},
             {"parent", joint.parent},
-            {"type", type},
+            {"type", traits(joint.type).name},
             {"reading", variable_index},
             {"before", json_of(parts.before)},
             {"axis", json_of(parts.axis)},

@@ -13,10 +13,6 @@ namespace {
 
 constexpr double mm = 1e-3;
 
-const char* type_name(const Joint& joint) {
-  return joint.type == JointType::prismatic ? "prismatic" : "revolute";
-}
-
 const DhNumbers* dh_numbers(const Joint& joint) {
   if (const auto* dh = std::get_if<DhLink>(&joint.link)) return dh;
   return std::get_if<MdhLink>(&joint.link);
@@ -35,14 +31,14 @@ const ParameterEstimate* find(const Estimate& estimate, const std::string& name)
 }
 
 Offset dh_offset(const Estimate& estimate, const Joint& nominal, const Joint& found, std::size_t index) {
-  const bool is_prismatic = nominal.type == JointType::prismatic;
+  const bool is_prismatic = translates(nominal.type);
   const DhNumbers &before = *dh_numbers(nominal), &after = *dh_numbers(found);
   const auto* p = find(estimate, fmt::format("{}{}", is_prismatic ? "d" : "theta", index + 1));
   return {is_prismatic ? after.d - before.d : after.theta - before.theta, p ? p->sd : 0.0, p && p->identifiable};
 }
 
 Offset urdf_offset(const Estimate& estimate, const Joint& nominal, const Joint& found, std::size_t index) {
-  const bool is_prismatic = nominal.type == JointType::prismatic;
+  const bool is_prismatic = translates(nominal.type);
   const auto &before = std::get<UrdfLink>(nominal.link), &after = std::get<UrdfLink>(found.link);
   const Pose change = before.origin.pose().inverse() * after.origin.pose();
   Offset offset{before.axis.dot(is_prismatic ? change.position : log_so3(change.rotation)), 0.0, true};
@@ -61,9 +57,10 @@ std::string format_dh_table_csv(const Chain& chain) {
   std::string text = "joint,type,theta[deg],d[mm],a[mm],alpha[deg],beta[deg],gain\n";
   for (const Joint& joint : chain.joints)
     if (const DhNumbers* row = dh_numbers(joint))
-      text += fmt::format("{},{},{},{},{},{},{},{}\n", joint.name, type_name(joint), format_number(row->theta, degree),
-                          format_number(row->d, mm), format_number(row->a, mm), format_number(row->alpha, degree),
-                          format_number(row->beta, degree), format_number(joint.gain));
+      text +=
+          fmt::format("{},{},{},{},{},{},{},{}\n", joint.name, traits(joint.type).name,
+                      format_number(row->theta, degree), format_number(row->d, mm), format_number(row->a, mm),
+                      format_number(row->alpha, degree), format_number(row->beta, degree), format_number(joint.gain));
   return text;
 }
 
@@ -73,11 +70,11 @@ std::string format_joint_twists_csv(const Chain& chain) {
   std::size_t i = 0;
   for (const int j : path_to(chain, chain.tip_joint())) {
     const Joint& joint = chain.joints[j];
-    if (joint.type == JointType::fixed) continue;
+    if (!has_position(joint.type)) continue;
     const AxisLine& line = lines[i++];
     const Vec3 w = line.is_prismatic ? Vec3::Zero().eval() : line.direction;
     const Vec3 v = line.is_prismatic ? (mm * line.direction).eval() : line.point.cross(line.direction).eval();
-    text += fmt::format("{},{},{},{},{},{},{},{}\n", joint.name, type_name(joint), format_number(w.x()),
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", joint.name, traits(joint.type).name, format_number(w.x()),
                         format_number(w.y()), format_number(w.z()), format_number(v.x(), mm), format_number(v.y(), mm),
                         format_number(v.z(), mm));
   }
@@ -88,10 +85,10 @@ std::string format_encoder_offsets_csv(const Chain& nominal, const Estimate& est
   std::string text = "joint,offset,sd,unit,identifiable\n";
   for (std::size_t j = 0; j < nominal.joints.size() && j < estimate.chain.joints.size(); ++j) {
     const Joint &before = nominal.joints[j], &after = estimate.chain.joints[j];
-    if (before.type == JointType::fixed || before.link.index() != after.link.index()) continue;
+    if (!has_position(before.type) || before.link.index() != after.link.index()) continue;
     const Offset offset =
         dh_numbers(before) ? dh_offset(estimate, before, after, j) : urdf_offset(estimate, before, after, j);
-    const bool is_prismatic = before.type == JointType::prismatic;
+    const bool is_prismatic = translates(before.type);
     text += fmt::format("{},{},{},{},{}\n", before.name, format_number(offset.value, is_prismatic ? mm : degree),
                         format_number(offset.sd, is_prismatic ? mm : degree), is_prismatic ? "mm" : "deg",
                         offset.identifiable ? "yes" : "no");

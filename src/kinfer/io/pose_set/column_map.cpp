@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/pose_set/column_map.hpp"
+
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/pose_set/column_map.hpp"
 #include "kinfer/io/text/csv.hpp"
 #include "kinfer/io/text/first_error.hpp"
 #include "kinfer/io/text/units.hpp"

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinfer/io/pose_set/pose_columns.hpp"
+#include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer {
 

@@ -17,7 +17,7 @@ constexpr double quaternion_slack = 0.01;  // a norm further from 1 is not round
 
 Dimension joint_dimension(const Chain& chain, int dof_index) {
   const Joint& joint = chain.joints[active_joints(chain)[dof_index]];
-  return joint.type == JointType::prismatic ? Dimension::length : Dimension::angle;
+  return translates(joint.type) ? Dimension::length : Dimension::angle;
 }
 
 bool all_digits(std::string_view text) {

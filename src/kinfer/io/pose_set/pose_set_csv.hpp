@@ -3,31 +3,16 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/geometry/rotation.hpp"
+#include "kinfer/io/pose_set/column_map.hpp"
 #include "kinfer/io/text/units.hpp"
 #include "kinfer/kinematics/chain.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer {
-
-/// Maps the columns of a foreign file to kinfer's (TOML): delimiter, decimal, skip_lines, [columns] ours = "theirs
-/// [unit]", euler. With `euler`, the columns rx, ry, rz give the orientation in that sequence.
-struct ColumnMap {
-  char delimiter = ',';
-  char decimal = '.';
-  int skip_lines = 0;
-  std::vector<std::pair<std::string, std::string>>
-      columns;  ///< ours -> "theirs [unit]"; empty: the names in the file are ours
-  std::optional<EulerSequence> euler;
-};
-Result<ColumnMap> read_column_map(const std::filesystem::path& path);
-Result<ColumnMap> parse_column_map(std::string_view text, const std::string& name_in_messages);
 
 /// What a file must hold besides the joint positions. `joints_only`, for prediction: nothing; a row with an anchor but
 /// no distance then has NaN for its distance. `targets`, for compensation: the desired positions of the tool point; the

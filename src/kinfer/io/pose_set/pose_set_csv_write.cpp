@@ -109,7 +109,7 @@ class Writer {
   void write_joint_values(const MatrixXd& values, const char* prefix, const char* suffix) {
     const std::vector<int> joints = active_joints(chain_);
     for (Eigen::Index i = 0; i < values.rows(); ++i) {
-      const bool is_prismatic = chain_.joints[joints[i]].type == JointType::prismatic;
+      const bool is_prismatic = translates(chain_.joints[joints[i]].type);
       const std::size_t column = sheet_.add(with_unit(fmt::format("{}{}{}", prefix, i + 1, suffix), is_prismatic));
       for (int row = 0; row < values.cols(); ++row)
         sheet_.set(column, row, values(i, row), is_prismatic ? length_ : angle_);

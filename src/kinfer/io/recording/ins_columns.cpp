@@ -5,7 +5,6 @@
 #include <array>
 #include <filesystem>
 
-#include "kinfer/io/recording/ins_csv.hpp"
 #include "kinfer/io/text/units.hpp"
 
 namespace kinfer {

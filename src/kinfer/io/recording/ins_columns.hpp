@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinfer/base/result.hpp"
@@ -30,5 +31,8 @@ struct InsColumns {
 /// Adds the file's logger and sensors (without rows) to `out`. Errors: an incomplete triad, a sensor without
 /// accelerometer or gyroscope, a unit that is unknown or of the wrong dimension, a sensor that another file has too.
 Result<InsColumns> parse_ins_columns(const CsvHeader& header, const std::string& name_in_messages, InsRecording& out);
+
+/// Whether the header is that of an INS recording: t and at least one accelerometer or gyroscope column.
+bool is_ins_csv(std::string_view text);
 
 }  // namespace kinfer

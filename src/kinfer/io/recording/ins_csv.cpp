@@ -233,13 +233,15 @@ Result<InsRecording> parse_ins_csv(std::string_view text, const std::string& nam
   return out;
 }
 
+Result<void> append_ins_csv(const std::filesystem::path& path, InsRecording& out) {
+  KINFER_TRY(file, MappedFile::open(path));
+  return append_logger(file.text(), path.string(), out, [&](std::size_t at) { file.release_before(at); });
+}
+
 Result<InsRecording> read_ins_csv(std::span<const std::filesystem::path> paths) {
   InsRecording out;
-  for (const auto& path : paths) {
-    KINFER_TRY(file, MappedFile::open(path));
-    const auto done = append_logger(file.text(), path.string(), out, [&](std::size_t at) { file.release_before(at); });
-    if (!done) return forward_error(done.error());
-  }
+  for (const auto& path : paths)
+    if (const auto done = append_ins_csv(path, out); !done) return forward_error(done.error());
   return out;
 }
 

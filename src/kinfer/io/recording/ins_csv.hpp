@@ -17,10 +17,10 @@ namespace kinfer {
 Result<InsRecording> read_ins_csv(std::span<const std::filesystem::path> paths);
 Result<InsRecording> read_ins_csv(const std::filesystem::path& path);
 
+/// Adds the file's logger and sensors to `recording`.
+Result<void> append_ins_csv(const std::filesystem::path& path, InsRecording& recording);
+
 /// The same from the text of one log.
 Result<InsRecording> parse_ins_csv(std::string_view text, const std::string& name_in_messages);
-
-/// Whether the header is that of an INS recording: t and at least one accelerometer or gyroscope column.
-bool is_ins_csv(std::string_view text);
 
 }  // namespace kinfer

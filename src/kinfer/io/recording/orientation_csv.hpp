@@ -7,13 +7,9 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/sensor_orientations.hpp"
 
 namespace kinfer {
-
-struct SensorOrientations {
-  std::size_t sensor = 0;            ///< index in the recording
-  std::vector<Quat> world_q_sensor;  ///< one per row of its logger
-};
 
 /// One row per input row, logger after logger, each with its own clock; sensors of another logger have empty cells. The
 /// file is written completely or not at all.

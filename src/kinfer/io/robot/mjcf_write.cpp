@@ -72,7 +72,7 @@ class Writer {
     const Joint& joint = chain_.joints[index];
     const JointTransforms transforms = joint_transforms(joint.link);
     open_body("link_" + joint.name, after_parent * transforms.before);
-    if (joint.type != JointType::fixed) write_motion(index, transforms.axis);
+    if (has_position(joint.type)) write_motion(index, transforms.axis);
     for (const PointMass& mass : chain_.masses)
       if (mass.joint == index)
         leaf("geom", {{"type", "sphere"},
@@ -100,8 +100,7 @@ class Writer {
   }
 
   void add_joint(const std::string& name, const Joint& joint, const Vec3& axis, bool may_be_limited) {
-    open("joint",
-         {{"name", name}, {"type", joint.type == JointType::prismatic ? "slide" : "hinge"}, {"axis", list(axis)}});
+    open("joint", {{"name", name}, {"type", std::string(traits(joint.type).mjcf)}, {"axis", list(axis)}});
     if (may_be_limited && std::isfinite(joint.lower) && std::isfinite(joint.upper)) {
       printer_.PushAttribute("limited", "true");
       printer_.PushAttribute("range",

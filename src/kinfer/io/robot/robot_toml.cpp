@@ -77,7 +77,7 @@ UrdfLink read_urdf_link(TableReader& row, JointType type, const Scales& scales) 
   link.origin.xyz = row.vector_or("xyz", Vec3::Zero()) * scales.length;
   link.origin.rotation = from_rpy(row.vector_or("rpy", Vec3::Zero()) * scales.angle);
   for (const char* key : {"xyz_sd", "turn_sd"}) row.ignore(key);
-  if (type == JointType::fixed) return row.ignore("axis"), link;
+  if (!has_position(type)) return row.ignore("axis"), link;
   const Vec3 axis = row.vector("axis");
   if (row.has("axis") && axis.norm() < 1e-9)
     row.report_error(row.line_of("axis"), "\"axis\": expected a direction, found zeros");
@@ -98,18 +98,16 @@ Link read_link(TableReader& row, JointType type, Convention convention, const Sc
 }
 
 JointType read_type(TableReader& row) {
-  const std::string type = row.text("type");
-  if (type == "prismatic") return JointType::prismatic;
-  if (type == "fixed") return JointType::fixed;
-  if (type != "revolute" && row.has("type"))
-    row.report_error(row.line_of("type"),
-                     fmt::format("\"type\": expected \"revolute\", \"prismatic\" or \"fixed\", found \"{}\"", type));
-  return JointType::revolute;
+  const std::string name = row.text("type");
+  const auto type = joint_type_named(name);
+  if (!type && row.has("type"))
+    row.report_error(row.line_of("type"), fmt::format("\"type\": expected {}, found \"{}\"", joint_type_names(), name));
+  return type.value_or(JointType::revolute);
 }
 
 void read_limits(TableReader& row, Joint& joint, const Scales& scales) {
   if (!row.has("limits")) return;
-  const double scale = joint.type == JointType::prismatic ? scales.length : scales.angle;
+  const double scale = translates(joint.type) ? scales.length : scales.angle;
   const std::vector<double> limits = row.numbers("limits", 2);
   if (limits[0] > limits[1])
     row.report_error(row.line_of("limits"), "\"limits\": expected [lower, upper] in this order");
@@ -124,14 +122,14 @@ Joint read_joint(TableReader& row, const std::string& default_name, Convention o
   if (joint.name.empty()) row.report_error(row.line_of("name"), "\"name\": expected a name, found an empty text");
   joint.type = read_type(row);
   joint.link = read_link(row, joint.type, read_convention(row, of_file), scales);
-  joint.is_active = joint.type == JointType::fixed ? (row.ignore("reading"), false) : row.flag_or("reading", true);
+  joint.is_active = !has_position(joint.type) ? (row.ignore("reading"), false) : row.flag_or("reading", true);
   joint.gain = row.number_or("gain", 1.0);
   joint.compliance = row.number_or("compliance", 0.0);
   joint.torque_compliance = row.number_or("torque_compliance", 0.0);
-  joint.backlash = row.number_or("backlash", 0.0) * (joint.type == JointType::prismatic ? scales.length : scales.angle);
+  joint.backlash = row.number_or("backlash", 0.0) * (translates(joint.type) ? scales.length : scales.angle);
   for (const Vec3& h : row.vectors_or_none("harmonics"))
     joint.harmonics.push_back({h[0], h[1] * scales.angle, h[2] * scales.angle});
-  if (!joint.harmonics.empty() && joint.type != JointType::revolute)
+  if (!joint.harmonics.empty() && !rotates(joint.type))
     row.report_error(row.line_of("harmonics"), "\"harmonics\": only revolute joints have them");
   for (const char* key : {"gain_sd", "compliance_sd", "torque_compliance_sd", "backlash_sd", "harmonics_sd"})
     row.ignore(key);

@@ -13,18 +13,6 @@ const char* convention_of(const Link& link) {
   return names[link.index()];
 }
 
-const char* type_name(JointType type) {
-  switch (type) {
-    case JointType::revolute:
-      return "revolute";
-    case JointType::prismatic:
-      return "prismatic";
-    case JointType::fixed:
-      return "fixed";
-  }
-  return "fixed";
-}
-
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -181,13 +169,13 @@ class Writer {
 
   void write_joint(int index) {
     const Joint& joint = chain_.joints[index];
-    add("\n[[joint]]\nname = {}\ntype = \"{}\"\n", quoted(name_of(index)), type_name(joint.type));
+    add("\n[[joint]]\nname = {}\ntype = \"{}\"\n", quoted(name_of(index)), traits(joint.type).name);
     if (joint.parent != index - 1)
       add("parent = {}\n", quoted(joint.parent < 0 ? base_parent_name() : name_of(joint.parent)));
     if (convention_of(joint.link) != std::string(file_convention()))
       add("convention = \"{}\"\n", convention_of(joint.link));
     std::visit([&](const auto& link) { write_link(index, link); }, joint.link);
-    if (joint.type != JointType::fixed) write_motion(index, joint);
+    if (has_position(joint.type)) write_motion(index, joint);
   }
 
   void write_motion(int index, const Joint& joint) {
@@ -195,7 +183,7 @@ class Writer {
     if (joint.gain != 1.0 || sd_.count(fmt::format("gain{}", index + 1))) write_number("gain", index, joint.gain, 1.0);
     if (joint.compliance != 0.0 || sd_.count(fmt::format("compliance{}", index + 1)))
       write_number("compliance", index, joint.compliance, 1.0);
-    const double unit = joint.type == JointType::prismatic ? length_ : angle_;
+    const double unit = translates(joint.type) ? length_ : angle_;
     if (joint.torque_compliance != 0.0) write_number("torque_compliance", index, joint.torque_compliance, 1.0);
     if (joint.backlash != 0.0) write_number("backlash", index, joint.backlash, unit);
     write_harmonics(index, joint);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <console_bridge/console.h>
+#include <fmt/ranges.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
@@ -57,8 +58,34 @@ bool is_finite(const urdf::Joint& joint) {
   return std::isfinite(sum);
 }
 
+std::string_view type_name(const urdf::Joint& joint) {
+  switch (joint.type) {
+    case urdf::Joint::REVOLUTE:
+      return "revolute";
+    case urdf::Joint::CONTINUOUS:
+      return "continuous";
+    case urdf::Joint::PRISMATIC:
+      return "prismatic";
+    case urdf::Joint::FIXED:
+      return "fixed";
+    default:
+      return "another type";
+  }
+}
+
+/// "revolute, continuous, prismatic or fixed"
+std::string known_types() {
+  std::vector<std::string_view> names;
+  for (const JointTypeTraits& type : joint_types)
+    for (const std::string_view name : {type.urdf, type.urdf_unlimited})
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  const std::string_view last = names.back();
+  names.pop_back();
+  return fmt::format("{} or {}", fmt::join(names, ", "), last);
+}
+
 Pose motion(const UrdfLink& link, JointType type, double amount) {
-  if (type == JointType::prismatic) return {Mat3::Identity(), amount * link.axis};
+  if (translates(type)) return {Mat3::Identity(), amount * link.axis};
   return {exp_so3(amount * link.axis), Vec3::Zero()};
 }
 
@@ -139,13 +166,13 @@ class ChainBuilder {
     link.origin = frame_of(source.parent_to_joint_origin_transform);
     const Vec3 axis(source.axis.x, source.axis.y, source.axis.z);
     if (!is_finite(source)) report_error(fmt::format("joint \"{}\" has a number that is not finite", edge.joint));
-    if (joint.type != JointType::fixed) {
+    if (has_position(joint.type)) {
       if (axis.norm() < 1e-9)
         report_error(fmt::format("joint \"{}\" has an axis of zeros", edge.joint));
       else
         link.axis = axis.normalized();
     }
-    if (source.mimic && joint.type != JointType::fixed) {
+    if (source.mimic && has_position(joint.type)) {
       joint.is_active = false;
       link.origin = Frame::from_pose(link.origin.pose() * motion(link, joint.type, source.mimic->offset));
     }
@@ -159,21 +186,14 @@ class ChainBuilder {
   }
 
   void set_type(const urdf::Joint& source, Joint& joint) {
-    switch (source.type) {
-      case urdf::Joint::FIXED:
-        joint.type = JointType::fixed, joint.is_active = false;
-        return;
-      case urdf::Joint::PRISMATIC:
-        joint.type = JointType::prismatic;
-        break;
-      case urdf::Joint::REVOLUTE:
-      case urdf::Joint::CONTINUOUS:
-        joint.type = JointType::revolute;
-        break;
-      default:
-        return report_error(fmt::format("joint \"{}\": expected revolute, continuous, prismatic or fixed", joint.name));
-    }
-    if (source.type == urdf::Joint::CONTINUOUS || !source.limits) return;
+    const std::string_view name = type_name(source);
+    const auto row = std::ranges::find_if(
+        joint_types, [&](const JointTypeTraits& t) { return t.urdf == name || t.urdf_unlimited == name; });
+    if (row == joint_types.end())
+      return report_error(fmt::format("joint \"{}\": expected {}", joint.name, known_types()));
+    joint.type = row->type;
+    if (!has_position(joint.type)) joint.is_active = false;
+    if (!has_position(joint.type) || name != row->urdf || !source.limits) return;
     if (source.limits->lower > -unlimited) joint.lower = source.limits->lower;
     if (source.limits->upper < unlimited) joint.upper = source.limits->upper;
   }
@@ -181,7 +201,7 @@ class ChainBuilder {
   /// A mimic joint follows the position of another; where that one is a mimic joint too, the factors multiply.
   void add_coupling(std::size_t index) {
     const urdf::Joint* source = model_.getJoint(chain_.joints[index].name).get();
-    if (!source->mimic || chain_.joints[index].type == JointType::fixed) return;
+    if (!source->mimic || !has_position(chain_.joints[index].type)) return;
     double factor = 1.0, offset = 0.0;
     std::set<std::string> seen;
     while (source->mimic && seen.insert(source->name).second) {
@@ -196,7 +216,7 @@ class ChainBuilder {
     }
     if (source->mimic) return report_error(fmt::format("joint \"{}\" mimics itself", source->name));
     const int leader = add_with_ancestors(source->name);
-    if (leader < 0 || chain_.joints[leader].type == JointType::fixed)
+    if (leader < 0 || !has_position(chain_.joints[leader].type))
       return report_error(fmt::format("joint \"{}\" mimics joint \"{}\", which has no reading",
                                       chain_.joints[index].name, source->name));
     chain_.joints[index].couplings = {{leader, factor}};

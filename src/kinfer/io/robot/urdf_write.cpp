@@ -51,11 +51,11 @@ class Writer {
     return name;
   }
 
-  void open_joint(const std::string& name, const char* type, const std::string& parent, const std::string& child,
+  void open_joint(const std::string& name, std::string_view type, const std::string& parent, const std::string& child,
                   const Pose& origin) {
     printer_.OpenElement("joint");
     printer_.PushAttribute("name", name.c_str());
-    printer_.PushAttribute("type", type);
+    printer_.PushAttribute("type", std::string(type).c_str());
     add_element("parent", "link", parent);
     add_element("child", "link", child);
     printer_.OpenElement("origin");
@@ -87,11 +87,11 @@ class Writer {
 
   void add_moving(const std::string& name, const Joint& joint, const std::string& parent, const std::string& child,
                   const Pose& origin, const Vec3& axis, const MimicTerm* mimic) {
-    const bool is_prismatic = joint.type == JointType::prismatic;
+    const JointTypeTraits& type = traits(joint.type);
     const bool limited = !mimic && (std::isfinite(joint.lower) || std::isfinite(joint.upper));
-    open_joint(name, is_prismatic ? "prismatic" : limited ? "revolute" : "continuous", parent, child, origin);
+    open_joint(name, limited ? type.urdf : type.urdf_unlimited, parent, child, origin);
     add_element("axis", "xyz", list(axis));
-    if (is_prismatic || limited) add_limit(mimic ? Joint{} : joint);
+    if (limited || type.urdf == type.urdf_unlimited) add_limit(mimic ? Joint{} : joint);  // a type that has limits
     if (mimic) {
       printer_.OpenElement("mimic");
       printer_.PushAttribute("joint", mimic->joint.c_str());
@@ -108,7 +108,7 @@ class Writer {
     Pose origin = (joint.parent < 0 ? Pose{} : after_[joint.parent]) * transforms.before;
     after_[index] = transforms.after;
     std::vector<MimicTerm> mimics = mimic_terms(chain_, index);
-    const bool is_fixed = joint.type == JointType::fixed || (!joint.is_active && mimics.empty());
+    const bool is_fixed = !has_position(joint.type) || (!joint.is_active && mimics.empty());
     link_[index] = add_link("link_" + joint.name);
     if (is_fixed) {
       open_joint(joint.name, "fixed", parent, link_[index], origin);

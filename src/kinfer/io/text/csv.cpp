@@ -5,7 +5,6 @@
 #include <array>
 #include <charconv>
 #include <cstring>
-#include <limits>
 #include <set>
 
 #include "kinfer/io/text/trim.hpp"
@@ -120,55 +119,6 @@ std::string describe_column_count(const std::string& name, int line, std::size_t
   return text;
 }
 
-/// Parses numbers up to each delimiter. `from_chars` accepts neither '+' nor a decimal comma: those take the slow path.
-class NumericLine {
- public:
-  explicit NumericLine(const CsvFormat& format) : format_(format) {}
-
-  void begin(std::string_view line) {
-    at_ = line.data();
-    end_ = line.data() + line.size();
-    ended_ = false;
-  }
-  bool ended() const { return ended_; }
-
-  /// False where the cell is not a number; `cell` is then its text.
-  bool next(double& value, std::string_view& cell) {
-    if (format_.decimal != '.') return next_slow_path(value, cell);
-    const auto [after, failure] = std::from_chars(at_, end_, value);
-    if (failure == std::errc() && (after == end_ || *after == format_.delimiter)) {
-      step_to(after);
-      return true;
-    }
-    return next_slow_path(value, cell);
-  }
-
- private:
-  void step_to(const char* cell_end) {
-    ended_ = cell_end == end_;
-    at_ = ended_ ? end_ : cell_end + 1;
-  }
-
-  bool next_slow_path(double& value, std::string_view& cell) {
-    const char* cell_end = std::find(at_, end_, format_.delimiter);
-    cell = trim({at_, static_cast<std::size_t>(cell_end - at_)});
-    if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = trim(cell.substr(1, cell.size() - 2));
-    step_to(cell_end);
-    if (cell.empty()) {
-      value = std::numeric_limits<double>::quiet_NaN();
-      return true;
-    }
-    const auto number = parse_number(cell, format_.decimal);
-    if (number) value = *number;
-    return number.has_value();
-  }
-
-  const CsvFormat& format_;
-  const char* at_ = nullptr;
-  const char* end_ = nullptr;
-  bool ended_ = false;
-};
-
 }  // namespace
 
 Result<CsvHeader> read_csv_header(std::string_view text, const std::string& name, const CsvFormat& format) {
@@ -209,34 +159,6 @@ Result<CsvTable> split_csv(std::string_view text, const std::string& name, const
     if (!splitter.split(lines.line(), table.cells)) return unclosed_quote(name, lines.number());
     const std::size_t found = table.cells.size() - before;
     if (found != columns) return forward_error({describe_column_count(name, lines.number(), columns, found, format)});
-    table.line.push_back(lines.number());
-  }
-  return table;
-}
-
-Result<NumericTable> parse_numeric_csv(std::string_view text, const std::string& name, const CsvFormat& format) {
-  NumericTable table;
-  KINFER_TRY(header, read_csv_header(text, name, format));
-  table.header = std::move(header);
-  const std::size_t columns = table.header.columns.size();
-  table.columns.resize(columns);
-  LineReader lines(text, table.header.body, table.header.line);
-  NumericLine numbers(format);
-  while (lines.next_content_line()) {
-    numbers.begin(lines.line());
-    std::size_t column = 0;
-    for (; column < columns && !numbers.ended(); ++column) {
-      double value = 0.0;
-      std::string_view cell;
-      if (!numbers.next(value, cell))
-        return error("{}:{}: {}", name, lines.number(),
-                     describe_invalid_number(table.header.columns[column], cell, format.decimal));
-      table.columns[column].push_back(value);
-    }
-    if (column != columns || !numbers.ended()) {
-      std::size_t found = std::count(lines.line().begin(), lines.line().end(), format.delimiter) + 1;
-      return forward_error({describe_column_count(name, lines.number(), columns, found, format)});
-    }
     table.line.push_back(lines.number());
   }
   return table;

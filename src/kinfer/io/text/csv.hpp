@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tables as text: one header line, then rows of cells. Comments (#) and empty lines are skipped; CRLF, a UTF-8
 // byte-order mark and quoted cells are supported.
-//
-// Two entry points: `split_csv` keeps each cell as text (names and numbers mixed), `parse_numeric_csv` parses directly
-// into columns of numbers (recordings of hundreds of megabytes).
 #pragma once
 
 #include <deque>
@@ -48,16 +45,6 @@ struct CsvTable {
   }
 };
 Result<CsvTable> split_csv(std::string_view text, const std::string& name_in_messages, const CsvFormat& format = {});
-
-struct NumericTable {
-  CsvHeader header;
-  std::vector<std::vector<double>> columns;  ///< NaN where the cell is empty or nan
-  std::vector<int> line;                     ///< of each row, from 1
-
-  std::size_t rows() const { return line.size(); }
-};
-Result<NumericTable> parse_numeric_csv(std::string_view text, const std::string& name_in_messages,
-                                       const CsvFormat& format = {});
 
 /// The whole cell as a number ("nan" and "inf" included); empty where it is not a number.
 std::optional<double> parse_number(std::string_view cell, char decimal = '.');

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/base/constants.hpp"
 #include "kinfer/io/text/trim.hpp"
 
 namespace kinfer {
@@ -14,7 +15,6 @@ struct NamedUnit {
   Unit unit;
 };
 
-constexpr double standard_gravity = 9.80665;  // [m/s²]
 constexpr std::string_view whitespace_and_newline = " \t\r\n";
 
 constexpr std::array named_units{

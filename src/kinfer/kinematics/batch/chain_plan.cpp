@@ -267,8 +267,8 @@ std::vector<JointMotion> joint_motions_of(const Chain& chain, const Lookup& look
   std::vector<JointMotion> list;
   for (const int j : path_to(chain, chain.tip_joint())) {
     const Joint& joint = chain.joints[j];
-    if (joint.type == JointType::fixed) continue;
-    const bool turns = joint.type == JointType::revolute;
+    if (!has_position(joint.type)) continue;
+    const bool turns = rotates(joint.type);
     JointMotion joint_motion{.joint = j,
                              .move = turns ? MotionKind::revolute : MotionKind::prismatic,
                              .gain = lookup.value({Owner::joint, j, Field::gain}, joint.gain, Motion::translation),

@@ -21,7 +21,7 @@ Pose pose_of(const Json& json) {
 JointView joint_of(const Json& json) {
   JointView joint{.name = json.at("name"),
                   .parent = json.at("parent"),
-                  .type = json.at("type"),
+                  .type = joint_type_named(json.at("type").get<std::string>()).value_or(JointType::fixed),
                   .reading = json.at("reading"),
                   .before = pose_of(json.at("before")),
                   .after = pose_of(json.at("after")),
@@ -55,10 +55,9 @@ std::vector<JointPlacementView> placed(const ChainView& chain, const std::vector
     const Pose parent = joint.parent < 0 ? chain.base : places[static_cast<std::size_t>(joint.parent)].frame;
     const Pose before = parent * joint.before;
     const double v = variable(joint, q);
-    const Pose moved = joint.type == "prismatic" ? Pose{Mat3::Identity(), v * joint.axis}
-                       : joint.type == "revolute"
-                           ? Pose{Eigen::AngleAxisd(v, joint.axis).toRotationMatrix(), Vec3::Zero()}
-                           : Pose{};
+    const Pose moved = translates(joint.type) ? Pose{Mat3::Identity(), v * joint.axis}
+                       : rotates(joint.type)  ? Pose{Eigen::AngleAxisd(v, joint.axis).toRotationMatrix(), Vec3::Zero()}
+                                              : Pose{};
     places.push_back({before * moved * joint.after, before.rotation * joint.axis, before.position});
   }
   return places;

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "kinfer/geometry/pose.hpp"
+#include "kinfer/kinematics/joint_type.hpp"
 
 namespace kinfer {
 
 struct JointView {
   std::string name;
   int parent = -1;
-  std::string type;  ///< "revolute", "prismatic", "fixed"
+  JointType type = JointType::fixed;
   int reading = -1;
   Pose before, after;
   Vec3 axis = Vec3::Zero();

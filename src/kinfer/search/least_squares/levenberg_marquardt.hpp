@@ -5,10 +5,9 @@
 //   struct Point { VectorXd x; double cost; bool linearised; ... };
 //   void evaluate(Point&, bool linearise);                 cost at x (infinite where it is not finite), counted
 //   NormalEquations normal(const Point&);                  of the linearised point, weighted
-//   VectorXd fallback_step(const NormalEquations& scaled, const VectorXd& scale, double damping);   where Cholesky
-//   fails static constexpr bool is_linearisation_cheap;          the cost alone is hardly cheaper than the
-//   linearisation static constexpr bool needs_final_linearisation;       the linearisation at the solution is part of
-//   the result
+//   VectorXd fallback_step(const NormalEquations& scaled, const VectorXd& scale, double damping);   Cholesky failed
+//   static constexpr bool is_linearisation_cheap;      the cost alone is hardly cheaper than the linearisation
+//   static constexpr bool needs_final_linearisation;   the linearisation at the solution is part of the result
 #pragma once
 
 #include <algorithm>
@@ -18,8 +17,9 @@
 #include <utility>
 
 #include "kinfer/base/observer.hpp"
+#include "kinfer/base/stop.hpp"
 #include "kinfer/linalg/normal_equations.hpp"
-#include "kinfer/search/least_squares/least_squares.hpp"
+#include "kinfer/search/least_squares/options.hpp"
 
 namespace kinfer::search {
 

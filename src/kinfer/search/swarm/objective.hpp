@@ -77,7 +77,6 @@ class SearchHistory {
   bool add(const MatrixXd& x, const std::vector<double>& cost);
 
   const VectorXd& best() const { return outcome_.x; }
-  double best_cost() const { return outcome_.cost; }
 
   /// The outcome, with the evaluation counts and the population evaluated last.
   SearchOutcome finish(const BatchEvaluator& evaluator, MatrixXd final_swarm);

@@ -7,6 +7,7 @@
 // (I + S) truth + b.
 #pragma once
 
+#include "kinfer/base/constants.hpp"
 #include "kinfer/estimate/continuous/model/chain_propagation.hpp"
 #include "kinfer/estimate/continuous/model/facts.hpp"
 #include "kinfer/estimate/continuous/model/measurement_blocks.hpp"
@@ -67,13 +68,13 @@ struct InsProblem {
   std::vector<InsMeasurements> sensors;
   InsErrorPrior prior;
   BiasProcess bias_process{};
-  double gravity = 9.80665;         ///< [m/s²] norm of the root's specific force if it is at rest
-  double gravity_sd = 0.03;         ///< [m/s²] covers gravity anywhere on Earth
-  double point_sd = 3.0;            ///< [m] weak prior: keeps unobservable points near the sensors
-  double rotation_sd = 1.0;         ///< [rad] weak prior: keeps an unobservable azimuth at its initial value
-  std::size_t clock_reference = 0;  ///< sensor whose clock is the reference
-  std::vector<double> anchor;       ///< prior mean of each joint's first coefficient: fixes an unobservable constant
-  InsFacts facts{};                 ///< external measurements
+  double gravity = standard_gravity;  ///< [m/s²] norm of the root's specific force if it is at rest
+  double gravity_sd = 0.03;           ///< [m/s²] covers gravity anywhere on Earth
+  double point_sd = 3.0;              ///< [m] weak prior: keeps unobservable points near the sensors
+  double rotation_sd = 1.0;           ///< [rad] weak prior: keeps an unobservable azimuth at its initial value
+  std::size_t clock_reference = 0;    ///< sensor whose clock is the reference
+  std::vector<double> anchor;         ///< prior mean of each joint's first coefficient: fixes an unobservable constant
+  InsFacts facts{};                   ///< external measurements
 };
 
 struct InsUnknowns {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/base/constants.hpp"
 #include "kinfer/estimate/poses/instruments/residual_kind.hpp"
 
 namespace kinfer {
@@ -32,8 +33,7 @@ Vec3 specified_sd(const PoseSet&, std::size_t, const Instrument& instrument) {
 }
 
 std::string in_words(double error) {
-  constexpr double g = 9.81;
-  return fmt::format("the tilt is {:.3f} deg from what the model has", error / g / degree);
+  return fmt::format("the tilt is {:.3f} deg from what the model has", error / standard_gravity / degree);
 }
 
 }  // namespace

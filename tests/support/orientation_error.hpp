@@ -1,28 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/inertial/filters/orientation_error.hpp"
+// Orientation errors against a reference: total, heading and inclination as defined by the BROAD data set (Laidig,
+// Caruso, Cereatti, Seel, Data 6(7), 2021): e = truth ⊗ estimate⁻¹ in world coordinates, split into a rotation about
+// the vertical and a tilt.
+#pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/square.hpp"
+#include "kinfer/geometry/rotation.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
-namespace kinfer {
-namespace {
+namespace kinfer::testing {
 
-bool usable(const Quat& truth, char is_counted) {
+/// Root mean squares [rad] over the counted rows.
+struct OrientationError {
+  double total = 0.0, heading = 0.0, inclination = 0.0;
+  std::size_t rows = 0;
+};
+
+enum class HeadingOffset {
+  none,
+  best_constant
+};  ///< best_constant: without magnetometer the origin of heading is arbitrary
+
+namespace orientation_error_parts {
+
+inline bool usable(const Quat& truth, char is_counted) {
   return is_counted != 0 && truth.coeffs().allFinite();
 }
 
-double heading_of(const Quat& e) {
+inline double heading_of(const Quat& e) {
   return 2.0 * std::atan2(e.z(), e.w());
 }
 
 /// The constant heading that brings the estimate closest to the truth: circular mean, then the mean of the residuals.
-double best_heading_offset(std::span<const Quat> estimate, std::span<const Quat> truth,
-                           std::span<const char> is_counted) {
+inline double best_heading_offset(std::span<const Quat> estimate, std::span<const Quat> truth,
+                                  std::span<const char> is_counted) {
   double sine = 0.0, cosine = 0.0, sum = 0.0, n = 0.0;
   for (std::size_t i = 0; i < estimate.size(); ++i) {
     if (!usable(truth[i], is_counted[i])) continue;
@@ -39,7 +57,7 @@ double best_heading_offset(std::span<const Quat> estimate, std::span<const Quat>
 }
 
 /// Mean rotation: the quaternion that maximises the sum of squared projections (Markley et al. 2007).
-Quat mean_quaternion(const std::vector<Quat>& rotations) {
+inline Quat mean_quaternion(const std::vector<Quat>& rotations) {
   MatrixXd sum = MatrixXd::Zero(4, 4);
   for (const Quat& q : rotations) sum += q.coeffs() * q.coeffs().transpose();
   Quat mean;
@@ -48,7 +66,7 @@ Quat mean_quaternion(const std::vector<Quat>& rotations) {
 }
 
 /// The 24 rotations of a cube, as starting points over SO(3).
-std::vector<Quat> cube_rotations() {
+inline std::vector<Quat> cube_rotations() {
   std::vector<Quat> out;
   constexpr double quarter = 0.5 * std::numbers::pi;
   const Quat faces[] = {Quat::Identity(),
@@ -62,7 +80,8 @@ std::vector<Quat> cube_rotations() {
   return out;
 }
 
-double rms_angle(std::span<const Quat> estimate, std::span<const Quat> truth, const Quat& left, const Quat& right) {
+inline double rms_angle(std::span<const Quat> estimate, std::span<const Quat> truth, const Quat& left,
+                        const Quat& right) {
   double sum = 0.0, n = 0.0;
   for (std::size_t i = 0; i < estimate.size(); ++i) {
     if (!usable(truth[i], 1)) continue;
@@ -73,16 +92,19 @@ double rms_angle(std::span<const Quat> estimate, std::span<const Quat> truth, co
   return n > 0.0 ? std::sqrt(sum / n) : 0.0;
 }
 
-}  // namespace
+}  // namespace orientation_error_parts
 
-OrientationError orientation_error(std::span<const Quat> estimate, std::span<const Quat> truth,
-                                   std::span<const char> is_counted, HeadingOffset offset) {
+/// Rows where `is_counted` is 0 or the truth is not finite are skipped.
+inline OrientationError orientation_error(std::span<const Quat> estimate, std::span<const Quat> truth,
+                                          std::span<const char> is_counted,
+                                          HeadingOffset offset = HeadingOffset::none) {
   KINFER_EXPECT(estimate.size() == truth.size() && truth.size() == is_counted.size());
-  const double turn = offset == HeadingOffset::none ? 0.0 : best_heading_offset(estimate, truth, is_counted);
+  const double turn =
+      offset == HeadingOffset::none ? 0.0 : orientation_error_parts::best_heading_offset(estimate, truth, is_counted);
   const Quat turned = quat_exp(Vec3(0, 0, turn));
   OrientationError error;
   for (std::size_t i = 0; i < estimate.size(); ++i) {
-    if (!usable(truth[i], is_counted[i])) continue;
+    if (!orientation_error_parts::usable(truth[i], is_counted[i])) continue;
     const Quat e = (truth[i] * (turned * estimate[i]).conjugate()).normalized();
     error.total += square(2.0 * std::acos(std::min(1.0, std::abs(e.w()))));
     error.heading += square(2.0 * std::atan2(std::abs(e.z()), std::abs(e.w())));
@@ -96,28 +118,30 @@ OrientationError orientation_error(std::span<const Quat> estimate, std::span<con
   return error;
 }
 
-double aligned_error(std::span<const Quat> estimate, std::span<const Quat> truth) {
+/// rms angle [rad] between truth and left · estimate · right with the best-fitting constant rotations, for references
+/// with their own world and sensor frames.
+inline double aligned_error(std::span<const Quat> estimate, std::span<const Quat> truth) {
   KINFER_EXPECT(estimate.size() == truth.size());
   constexpr std::size_t stride = 10;  // consecutive rows are redundant
   constexpr int rounds = 40;
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < truth.size(); i += stride)
-    if (usable(truth[i], 1)) rows.push_back(i);
+    if (orientation_error_parts::usable(truth[i], 1)) rows.push_back(i);
   double best = std::numbers::pi;
   std::vector<Quat> rotations(rows.size());
-  for (Quat right : cube_rotations()) {
+  for (Quat right : orientation_error_parts::cube_rotations()) {
     Quat left = Quat::Identity();
     for (int round = 0; round < rounds; ++round) {
       for (std::size_t k = 0; k < rows.size(); ++k)
         rotations[k] = truth[rows[k]] * right.conjugate() * estimate[rows[k]].conjugate();
-      left = mean_quaternion(rotations);
+      left = orientation_error_parts::mean_quaternion(rotations);
       for (std::size_t k = 0; k < rows.size(); ++k)
         rotations[k] = (left * estimate[rows[k]]).conjugate() * truth[rows[k]];
-      right = mean_quaternion(rotations);
+      right = orientation_error_parts::mean_quaternion(rotations);
     }
-    best = std::min(best, rms_angle(estimate, truth, left, right));
+    best = std::min(best, orientation_error_parts::rms_angle(estimate, truth, left, right));
   }
   return best;
 }
 
-}  // namespace kinfer
+}  // namespace kinfer::testing

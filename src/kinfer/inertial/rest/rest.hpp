@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "kinfer/inertial/low_pass.hpp"
+#include "kinfer/inertial/rest/low_pass.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
 
 namespace kinfer {
@@ -41,7 +41,12 @@ struct RestPeriod {
   double seconds() const { return end - begin; }
 };
 
-/// All rests of a sensor of at least 1 s; the first and last 0.1 s of each are excluded.
+/// [s] Shortest rest that is listed. Larger: fewer, better biases. Data: not recorded.
+inline constexpr double min_rest_duration = 1.0;
+/// [s] Excluded at both ends of a rest, where the detector lags. Larger: cleaner and shorter rests. Data: not recorded.
+inline constexpr double rest_margin = 0.1;
+
+/// All rests of a sensor, without the margins.
 std::vector<RestPeriod> rest_periods(const InsSensor& sensor, std::span<const double> time,
                                      const RestOptions& options = {});
 

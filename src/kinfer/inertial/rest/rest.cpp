@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/inertial/rest.hpp"
+#include "kinfer/inertial/rest/rest.hpp"
 
 #include <cmath>
 
 namespace kinfer {
 namespace {
-
-constexpr double min_listed_duration = 1.0;  // [s] shorter rests determine the bias poorly
-constexpr double margin = 0.1;               // [s] at both ends of a rest, where the detector lags
 
 /// Mean and standard deviation over the usable rows of a rest.
 void summarise(const InsSensor& sensor, std::span<const double> time, RestPeriod& rest) {
@@ -29,17 +26,17 @@ void summarise(const InsSensor& sensor, std::span<const double> time, RestPeriod
 /// Adds the rest without its margins, if enough of it is left.
 void add_rest(const InsSensor& sensor, std::span<const double> time, std::size_t first, std::size_t last,
               std::vector<RestPeriod>& found) {
-  while (first < last && time[first] < time[last] && time[last] - time[first] > min_listed_duration &&
+  while (first < last && time[first] < time[last] && time[last] - time[first] > min_rest_duration &&
          sensor.faults[first] & (angular_velocity_missing | acceleration_missing))
     ++first;
   RestPeriod rest{.first_row = first, .last_row = last};
-  const double begin = time[first] + margin, end = time[last] - margin;
+  const double begin = time[first] + rest_margin, end = time[last] - rest_margin;
   while (rest.first_row < last && time[rest.first_row] < begin) ++rest.first_row;
   while (rest.last_row > first && time[rest.last_row] > end) --rest.last_row;
   if (rest.first_row >= rest.last_row) return;
   rest.begin = time[rest.first_row];
   rest.end = time[rest.last_row];
-  if (rest.seconds() < min_listed_duration) return;
+  if (rest.seconds() < min_rest_duration) return;
   summarise(sensor, time, rest);
   found.push_back(rest);
 }

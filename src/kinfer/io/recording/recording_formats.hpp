@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// File formats of INS recordings: a table with one row per format, recognised by the beginning of the file.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "kinfer/base/result.hpp"
+#include "kinfer/measurement/ins_recording.hpp"
+
+namespace kinfer {
+
+struct RecordingFormat {
+  std::string_view name;                               ///< "CSV"
+  bool (*recognise)(std::string_view head) = nullptr;  ///< `head`: the first 64 KiB of the file, or all of it
+  /// Adds the file's logger and sensors to `recording`.
+  Result<void> (*append)(const std::filesystem::path& path, InsRecording& recording) = nullptr;
+};
+
+/// The table. Files that no format recognises are read as the first format, whose errors say what is expected.
+std::span<const RecordingFormat> recording_formats();
+
+/// Whether some format recognises the file.
+bool is_recording(const std::filesystem::path& path);
+
+/// Reads one log or several, one per logger, each with its own clock and possibly of different formats.
+Result<InsRecording> read_recording(std::span<const std::filesystem::path> paths);
+
+}  // namespace kinfer
