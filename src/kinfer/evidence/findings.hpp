@@ -70,4 +70,7 @@ struct Finding {
   bool applied = false;      ///< certain, and corrected before the fit
 };
 
+/// A fault that was not corrected.
+bool invalidates_result(const Finding& finding);
+
 }  // namespace kinfer

@@ -148,6 +148,14 @@ Vec3 any_perpendicular(const Vec3& v) {
   return v.cross(Vec3::Unit(smallest)).normalized();
 }
 
+Mat3 frame_with_z_along(const Vec3& axis) {
+  Mat3 frame;
+  frame.col(2) = axis.normalized();
+  frame.col(0) = any_perpendicular(axis).normalized();
+  frame.col(1) = frame.col(2).cross(frame.col(0));
+  return frame;
+}
+
 double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }

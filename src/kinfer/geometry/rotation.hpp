@@ -57,6 +57,9 @@ Mat3 nearest_rotation(const Mat3& m);
 /// A unit vector perpendicular to v; continuous almost everywhere.
 Vec3 any_perpendicular(const Vec3& v);
 
+/// A rotation whose third column is the direction of `axis`.
+Mat3 frame_with_z_along(const Vec3& axis);
+
 /// Angle between two directions, [0, π]; accurate for small angles too.
 double angle_between(const Vec3& a, const Vec3& b);
 

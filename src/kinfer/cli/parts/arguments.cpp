@@ -38,6 +38,13 @@ void add_count(CLI::App& verb, const std::string& name, int& value, int lowest, 
   verb.add_option(name, value, help)->type_name("N")->check(in_range)->capture_default_str();
 }
 
+void add_count(CLI::App& verb, const std::string& name, std::optional<int>& value, int lowest, int highest,
+               const std::string& help) {
+  CLI::Validator in_range = CLI::Range(lowest, highest);
+  in_range.description("");
+  verb.add_option(name, value, help)->type_name("N")->check(in_range);
+}
+
 void add_number(CLI::App& verb, const std::string& name, double& value, const std::string& help) {
   verb.add_option(name, value, help)->capture_default_str();
 }
@@ -63,6 +70,10 @@ void add_flag(CLI::App& verb, const std::string& name, bool& value, const std::s
 
 bool was_chosen(const CLI::App& verb) {
   return verb.parsed();
+}
+
+bool was_given(const CLI::App& verb, const std::string& name) {
+  return verb.get_option(name)->count() > 0;
 }
 
 }  // namespace kinfer::cli

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ void add_texts(CLI::App& verb, const std::string& name, std::vector<std::string>
 void add_choice(CLI::App& verb, const std::string& name, std::string& value, const std::vector<std::string>& allowed,
                 const std::string& help);
 void add_count(CLI::App& verb, const std::string& name, int& value, int lowest, int highest, const std::string& help);
+/// A count without default.
+void add_count(CLI::App& verb, const std::string& name, std::optional<int>& value, int lowest, int highest,
+               const std::string& help);
 void add_number(CLI::App& verb, const std::string& name, double& value, const std::string& help);
 void add_number(CLI::App& verb, const std::string& name, double& value, double lowest, double highest,
                 const std::string& help);
@@ -35,5 +39,8 @@ void add_seed(CLI::App& verb, const std::string& name, std::uint64_t& value, con
 void add_flag(CLI::App& verb, const std::string& name, bool& value, const std::string& help);
 
 bool was_chosen(const CLI::App& verb);
+
+/// Whether the option was given on the command line.
+bool was_given(const CLI::App& verb, const std::string& name);
 
 }  // namespace kinfer::cli

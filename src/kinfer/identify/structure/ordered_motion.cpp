@@ -24,8 +24,9 @@ Result<OrderedMotion> order_segments(const InsRecording& recording, const Segmen
   const bool uses_paper_filter = std::holds_alternative<PaperEkfOptions>(options.filter);
   KINFER_TRY(motion, uses_paper_filter ? segment_motion(recording, options, threads)
                                        : gyro_based_motion(recording, options, threads));
-  const PairFitOptions fit{.headings_from_magnetometers = all_have_magnetometers(recording)};
-  KINFER_TRY(tree, segment_tree(motion, root, fit, threads));
+  const HeadingSource headings =
+      all_have_magnetometers(recording) ? HeadingSource::magnetometers : HeadingSource::arbitrary;
+  KINFER_TRY(tree, segment_tree(motion, root, headings, threads));
   std::vector<Finding> findings;
   if (!given.empty()) {
     const std::vector<std::string> names = segment_names(motion);

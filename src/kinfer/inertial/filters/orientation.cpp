@@ -49,6 +49,11 @@ std::optional<FilterOptions> filter_named(std::string_view name) {
   return std::nullopt;
 }
 
+std::string_view filter_name(const FilterOptions& options) {
+  if (std::holds_alternative<KinferFilterOptions>(options)) return "kinfer";
+  return std::holds_alternative<PaperEkfOptions>(options) ? "paper" : "kinfer-offline";
+}
+
 FilterOptions without_magnetometer(FilterOptions options) {
   std::visit([](auto& chosen) { disable_magnetometer(chosen); }, options);
   return options;

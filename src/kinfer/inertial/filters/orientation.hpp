@@ -18,6 +18,7 @@ using FilterOptions = std::variant<KinferFilterOptions, KinferOfflineOptions, Pa
 
 /// "kinfer", "kinfer-offline", "paper": the default options of that filter; nullopt for another name.
 std::optional<FilterOptions> filter_named(std::string_view name);
+std::string_view filter_name(const FilterOptions& options);
 inline constexpr std::string_view filter_names = "kinfer, kinfer-offline, paper";
 
 /// The same filter without the magnetometer.

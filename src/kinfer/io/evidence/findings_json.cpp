@@ -3,6 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "kinfer/io/evidence/json_parts.hpp"
+#include "kinfer/words/findings.hpp"
+
 namespace kinfer {
 
 std::string format_findings(const std::vector<Finding>& findings) {
@@ -12,9 +15,10 @@ std::string format_findings(const std::vector<Finding>& findings) {
                     {"severity", name(f.severity)},
                     {"rows", f.rows},
                     {"lines", f.lines},
-                    {"sentence", f.sentence},
-                    {"suggestion", f.suggestion},
-                    {"applied", f.applied}});
+                    {"sentence", words::sentence(f)},
+                    {"suggestion", words::suggestion(f)},
+                    {"applied", f.applied},
+                    {"values", json_of(f.values)}});
   return list.dump(1);
 }
 

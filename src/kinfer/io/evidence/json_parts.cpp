@@ -14,6 +14,12 @@ Json json_of(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
+Json json_of(const FactValues& values) {
+  Json json = Json::object();
+  for (const auto& [key, value] : values) std::visit([&, &key = key](const auto& v) { json[key] = v; }, value);
+  return json;
+}
+
 Json finite_json(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "kinfer/evidence/fact.hpp"
 #include "kinfer/evidence/provenance.hpp"
 #include "kinfer/geometry/rotation.hpp"
 
@@ -11,6 +12,9 @@ namespace kinfer {
 
 /// [x, y, z]
 nlohmann::ordered_json json_of(const Vec3& v);
+
+/// An object with the values in their order.
+nlohmann::ordered_json json_of(const FactValues& values);
 
 /// null where not finite
 nlohmann::ordered_json finite_json(double value);

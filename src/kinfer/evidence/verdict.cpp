@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/evidence/verdict.hpp"
+
+namespace kinfer {
+
+std::string_view name(Usability usability) {
+  switch (usability) {
+    case Usability::use:
+      return "use";
+    case Usability::use_with_care:
+      return "use_with_care";
+    case Usability::do_not_use:
+      break;
+  }
+  return "do_not_use";
+}
+
+}  // namespace kinfer
