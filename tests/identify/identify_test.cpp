@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "identify/driven_machine.hpp"
+#include "kinfer/identify/structure/moving_phases.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
 #include "kinfer/words/identification_verdict.hpp"
