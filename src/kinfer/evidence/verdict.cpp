@@ -10,9 +10,9 @@ std::string_view name(Usability usability) {
     case Usability::use_with_care:
       return "use_with_care";
     case Usability::do_not_use:
-      break;
+      return "do_not_use";
   }
-  return "do_not_use";
+  return "";
 }
 
 }  // namespace kinfer

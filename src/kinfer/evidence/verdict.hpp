@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a result may be used.
+// How far a result may be used.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sentences of a finding, whatever it is about.
+// Findings in words: what was observed, and what the user can do about it.
 #pragma once
 
 #include <string>
@@ -8,10 +8,9 @@
 
 namespace kinfer::words {
 
-/// What was observed, without a final stop.
 std::string sentence(const Finding& finding);
 
-/// What the user can do about it; may be empty.
+/// Empty where there is nothing to do.
 std::string suggestion(const Finding& finding);
 
 }  // namespace kinfer::words

@@ -18,7 +18,7 @@ std::string format_findings(const std::vector<Finding>& findings) {
                     {"sentence", words::sentence(f)},
                     {"suggestion", words::suggestion(f)},
                     {"applied", f.applied},
-                    {"values", json_of(f.values)}});
+                    {"values", values_json(f.values)}});
   return list.dump(1);
 }
 

@@ -14,14 +14,14 @@ Json json_of(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json json_of(const FactValues& values) {
-  Json json = Json::object();
-  for (const auto& [key, value] : values) std::visit([&, &key = key](const auto& v) { json[key] = v; }, value);
-  return json;
-}
-
 Json finite_json(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json values_json(const FactValues& values) {
+  Json json = Json::object();
+  for (const auto& [key, value] : values) json[key] = std::visit([](const auto& v) { return Json(v); }, value);
+  return json;
 }
 
 Json provenance_json(const Provenance& provenance) {

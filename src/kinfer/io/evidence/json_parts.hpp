@@ -13,11 +13,11 @@ namespace kinfer {
 /// [x, y, z]
 nlohmann::ordered_json json_of(const Vec3& v);
 
-/// An object with the values in their order.
-nlohmann::ordered_json json_of(const FactValues& values);
-
 /// null where not finite
 nlohmann::ordered_json finite_json(double value);
+
+/// The values of a fact by their names.
+nlohmann::ordered_json values_json(const FactValues& values);
 
 /// Version, seed, options and inputs.
 nlohmann::ordered_json provenance_json(const Provenance& provenance);
