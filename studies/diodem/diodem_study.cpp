@@ -10,6 +10,7 @@
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
+#include "kinfer/words/identification_verdict.hpp"
 #include "studies/diodem/optical_truth.hpp"
 
 namespace kinfer::study {
@@ -82,7 +83,7 @@ void judge(const Identification& found, const OpticalLog& optical, const Optical
   for (const LinkEstimate& link : found.links)
     if (link.segment == "seg4") print("segment 4", {link.length, link.sd}, length_of_segment_4);
   print("segments 2 + 3", segments_2_and_3(found), length_of_segments_2_and_3);
-  fmt::print("  {}\n", found.verdict);
+  fmt::print("  {}\n", words::identification_verdict(found));
 }
 
 void run(const std::string& folder, const std::string& log, const std::string& root) {

@@ -83,7 +83,9 @@ Log simulated(const Setup& setup) {
 
 /// The paper's way: its filter, its terminals, its table 4.
 IdentifyOptions paper_options(int links) {
-  IdentifyOptions options{.terminals = JointVariableKind::euler, .links = links, .geometry = GeometrySource::searched};
+  IdentifyOptions options{.engine = BacterialProgramming{.terminals = JointVariableKind::euler},
+                          .links = links,
+                          .geometry = GeometrySource::searched};
   options.motion.filter = PaperEkfOptions{};
   return options;
 }
@@ -121,7 +123,7 @@ void write_settings(const fs::path& folder) {
                                 {"magnetometer [uT]", grade.magnetometer}})
     sensors << fmt::format("{},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}\n", name, i.noise_density, i.bias_sd, i.instability,
                            i.scale_sd, i.range);
-  const BacterialLinkOptions s;
+  const BacterialProgramming s;
   table(folder, "table4.csv", "setting,value,in the paper") << fmt::format(
       "individuals,{},100\ngenerations,{},300\nclones,{},lost\ncycles,{},lost\ntransfers,{},lost\ndepth,{}-{},"
       "lost\nmost leaves,{},lost\nrows,{},a few seconds\n",
@@ -345,11 +347,12 @@ void run(const fs::path& folder, int seeds) {
       "three links, paper's filter and terminals: median worst line {:.1f} mm, direction {:.1f} mrad (paper: 12 mm, 1 "
       "mrad on one run)\n",
       median(paper3.line), median(paper3.direction));
-  for (const auto& [engine, name] : {std::pair{Engine::bp, "bp"}, {Engine::bmp, "bmp"}}) {
-    IdentifyOptions ours{.links = 3, .geometry = GeometrySource::searched};
-    ours.engine = engine;
-    const Errors ours3 = write_seeds(folder, fmt::format("geometry_three_links_hinge_{}.csv", name), seeds, ours);
-    fmt::print("three links, {}, kinfer-offline and hinge: {:.1f} mm, {:.1f} mrad\n", name, median(ours3.line),
+  for (const LinkEngine& engine : {LinkEngine(BacterialProgramming{}), LinkEngine(MemeticProgramming{})}) {
+    const IdentifyOptions ours{.engine = engine, .links = 3, .geometry = GeometrySource::searched};
+    const std::string_view engine_name = name(method_of(engine));
+    const Errors ours3 =
+        write_seeds(folder, fmt::format("geometry_three_links_hinge_{}.csv", engine_name), seeds, ours);
+    fmt::print("three links, {}, kinfer-offline and hinge: {:.1f} mm, {:.1f} mrad\n", engine_name, median(ours3.line),
                median(ours3.direction));
   }
   const Errors paper5 = write_seeds(folder, "geometry_five_links.csv", std::min(seeds, 5), paper_options(0));

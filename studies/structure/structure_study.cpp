@@ -180,10 +180,10 @@ auto timed(double& ms, const Search& search) {
   return result;
 }
 
-Run memetic_run(const LinkProblem& p, const MemeticOptions& options, std::uint64_t seed, bool everything) {
+Run memetic_run(const LinkProblem& p, const MemeticProgramming& options, std::uint64_t seed, bool everything) {
   Run run;
   const StructureSearchOutcome found = timed(run.ms, [&] {
-    return everything ? search_exhaustive(p.parent, p.child, p.signals, p.rows, options)
+    return everything ? search_exhaustive(p.parent, p.child, p.signals, p.rows, Enumeration{.rows = options.rows}, 1)
                       : search_memetic(p.parent, p.child, p.signals, p.rows, options, Rng(seed));
   });
   run.cost = found.cost;
@@ -195,9 +195,8 @@ Run memetic_run(const LinkProblem& p, const MemeticOptions& options, std::uint64
 
 Run bp_run(const LinkProblem& p, std::uint64_t seed) {
   Run run;
-  BacterialLinkOptions options;
+  BacterialProgramming options;
   options.bacteria.threads = 1;
-  options.leaf.signal_angle_form = SignalAngleForm::offset;
   const LinkEvolution found =
       timed(run.ms, [&] { return search_bacterial(p.parent, p.child, p.signals, p.rows, options, Rng(seed)); });
   run.cost = found.cost;
@@ -228,7 +227,7 @@ void write_engines(const std::filesystem::path& folder, int seeds, int bp_seeds)
   for (int seed = 1; seed <= seeds; ++seed) {
     const Log log = simulated({.machine = "excavator", .seed = static_cast<std::uint64_t>(seed), .rate = 200.0});
     const auto ordered = order_segments(log.recording, {}, {}, 0).value();
-    MemeticOptions options;
+    MemeticProgramming options;
     options.bacteria.threads = 1;
     for (const LinkProblem& p : problems_of(ordered, log.truth)) {
       bmp.push_back(memetic_run(p, options, static_cast<std::uint64_t>(seed), false));

@@ -65,12 +65,30 @@ TEST_F(Identify, BadInputGetsOneSentenceAndLeavesNothing) {
   const auto nobody = kinfer("identify drive/imu.csv --out out --root nobody");
   EXPECT_EQ(nobody.code, 2);
   EXPECT_THAT(nobody.err, HasSubstr("nobody"));
-  const auto depth = kinfer("identify drive/imu.csv --out out --min-depth 4 --max-depth 2");
+  const auto depth = kinfer("identify drive/imu.csv --out out --engine bp --min-depth 4 --max-depth 2");
   EXPECT_EQ(depth.code, 2);
   EXPECT_THAT(depth.err, HasSubstr("--max-depth"));
   EXPECT_EQ(kinfer("identify drive/imu.csv --out out --filter magic").code, 2);
   EXPECT_EQ(kinfer("identify drive/imu.csv --out out --engine magic").code, 2);
   EXPECT_FALSE(std::filesystem::exists(in("out") / "evidence.json"));
+}
+
+TEST_F(Identify, AnOptionWithoutEffectIsRefusedInOneSentence) {
+  simulate();
+  const auto refusal = [&](const std::string& options) {
+    const auto run = kinfer("identify drive/imu.csv --out out " + options);
+    EXPECT_EQ(run.code, 2) << options;
+    return run.err;
+  };
+  EXPECT_THAT(refusal("--max-depth 3"), HasSubstr("--max-depth: no effect with --engine bmp"));
+  EXPECT_THAT(refusal("--engine enum --clones 3 --pairing halves"),
+              HasSubstr("--clones, --pairing: no effect with --engine enum"));
+  EXPECT_THAT(refusal("--engine enum --terminals euler"),
+              HasSubstr("--terminals euler has no effect with --engine enum"));
+  EXPECT_THAT(refusal("--geometry searched --grade noise"), HasSubstr("--grade has no effect"));
+  write(in("facts.toml"), "[[tape]]\nfrom = \"ins0-ins1\"\nto = \"ins1-ins2\"\nlength = 1.0\nsigma = 0.001\n");
+  EXPECT_THAT(refusal("--geometry searched --facts facts.toml"), HasSubstr("--facts has no effect"));
+  EXPECT_FALSE(std::filesystem::exists(in("out")));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "kinfer/identify/pipeline.hpp"
+#include "kinfer/words/findings.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "simulate/worlds.hpp"
@@ -59,7 +60,7 @@ inline Identification identified(const InsRecording& recording, const IdentifyOp
 
 inline bool has_finding(const Identification& found, const std::string& kind, const std::string& word = "") {
   return std::ranges::any_of(found.findings, [&](const Finding& f) {
-    return name(f.kind) == kind && f.sentence.find(word) != std::string::npos;
+    return name(f.kind) == kind && words::sentence(f).find(word) != std::string::npos;
   });
 }
 

@@ -8,6 +8,7 @@
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/simulate/four_bar_linkage.hpp"
 #include "kinfer/simulate/log_faults.hpp"
+#include "kinfer/words/identification_verdict.hpp"
 
 namespace kinfer {
 using namespace identify;
@@ -76,11 +77,11 @@ TEST(GivenTree, AgainstTheLogIsSaidByName) {
   const Identification found =
       identified(drive.recording,
                  {.tree = {{"ins0", "ins1"}, {"ins1", "ins3"}, {"ins3", "ins2"}, {"ins2", "ins4"}, {"ins4", "ins5"}}});
-  EXPECT_FALSE(found.use);
+  EXPECT_EQ(found.usability, Usability::do_not_use);
   EXPECT_TRUE(has_finding(found, "given_link", "ins1-ins3"));
   EXPECT_TRUE(has_finding(found, "given_link", "ins2-ins4"));
   EXPECT_FALSE(has_finding(found, "given_link", "link ins4-ins5"));
-  EXPECT_THAT(found.verdict, testing::StartsWith("Do not use"));
+  EXPECT_THAT(words::identification_verdict(found), testing::StartsWith("Do not use"));
 }
 
 TEST(GivenTree, ThatIsTheLogsOwnChangesNothing) {
@@ -88,7 +89,8 @@ TEST(GivenTree, ThatIsTheLogsOwnChangesNothing) {
   IdentifyOptions options;
   for (const JointTruth& joint : drive.truth.joints) options.tree.push_back({joint.child, joint.parent});
   const Identification own = identified(drive.recording), given = identified(drive.recording, options);
-  EXPECT_TRUE(given.use && given.findings.empty());
+  EXPECT_NE(given.usability, Usability::do_not_use);
+  EXPECT_TRUE(given.findings.empty());
   for (std::size_t j = 0; j < own.joints.size(); ++j)
     EXPECT_EQ(own.joints[j].point_in_child, given.joints[j].point_in_child);
 }
@@ -102,7 +104,7 @@ TEST(GivenTree, ThatIsNoTreeIsRefused) {
   EXPECT_THAT(refused({{"ins0", "nobody"}}), testing::HasSubstr("no such sensor"));
   EXPECT_THAT(refused({{"ins0", "ins1"}}), testing::HasSubstr("6 sensors need 5"));
   EXPECT_THAT(refused({{"ins0", "ins1"}, {"ins1", "ins0"}, {"ins2", "ins3"}, {"ins3", "ins4"}, {"ins4", "ins5"}}),
-              testing::HasSubstr("loop"));
+              testing::HasSubstr("form a loop"));
 }
 
 TEST(TwoMachines, OnMovingBasesAreToldApartAndTheLargerIsIdentified) {
@@ -113,7 +115,7 @@ TEST(TwoMachines, OnMovingBasesAreToldApartAndTheLargerIsIdentified) {
   EXPECT_EQ(found.joints.size(), excavator.truth.joints.size());
   EXPECT_TRUE(has_finding(found, "several_machines", "crane_ins0, crane_ins1"));
   for (const JointEstimate& joint : found.joints) EXPECT_THAT(joint.child, testing::Not(testing::HasSubstr("crane")));
-  EXPECT_THAT(found.verdict, testing::HasSubstr("crane_ins1"));
+  EXPECT_THAT(words::identification_verdict(found), testing::HasSubstr("crane_ins1"));
   std::vector<std::string> names;
   for (const InsSensor& sensor : crane.recording.sensors) names.push_back("crane_" + sensor.name);
   const Identification other =

@@ -10,6 +10,7 @@
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/machine_from_chain.hpp"
 #include "kinfer/simulate/prescribed_motion.hpp"
+#include "kinfer/words/identification_forecast.hpp"
 #include "simulate/worlds.hpp"
 
 namespace kinfer {
@@ -37,15 +38,16 @@ TEST(Forecast, TheFactorsWouldMakeItJustEnough) {
   EXPECT_NEAR(lacking.acceleration_factor, 1.96 * std::hypot(1e-3, 1e-2) / 5e-3, 1e-12);
   EXPECT_NEAR(lacking.time_factor, lacking.acceleration_factor * lacking.acceleration_factor, 1e-12);
   EXPECT_TRUE(forecast({joint_with(1e-2 / lacking.acceleration_factor * 0.999, 1e-4)}).front().is_sufficient);
-  EXPECT_EQ(forecast_text({lacking}),
+  EXPECT_EQ(words::forecast_text({lacking}, {}),
             "not enough for 5 mm and 3 mrad in a-b (3.9 times the acceleration, or 15.5 times the time)");
 }
 
 TEST(Forecast, NobodyIsSentToDriveForAYear) {
   const JointForecast hopeless = forecast({joint_with(0.1, 1e-4)}).front();
-  EXPECT_FALSE(more_excitation_suffices(hopeless));
-  EXPECT_EQ(forecast_text({hopeless}),
-            "not enough for 5 mm and 3 mrad in a-b (± 100 mm and ± 0 mrad, more than a longer drive mends)");
+  EXPECT_FALSE(hopeless.more_excitation_suffices);
+  EXPECT_EQ(words::forecast_text({hopeless}, {}),
+            "not enough for 5 mm and 3 mrad in a-b (± 100 mm and ± 0 mrad, which a longer recording does not improve "
+            "enough)");
 }
 
 TEST(Forecast, TheTurnAboutTheOnlyAxisOfTheParentIsSaidApart) {
@@ -57,11 +59,14 @@ TEST(Forecast, TheTurnAboutTheOnlyAxisOfTheParentIsSaidApart) {
   EXPECT_TRUE(apart.is_sufficient);
   EXPECT_EQ(apart.azimuth_of, "a");
   EXPECT_DOUBLE_EQ(apart.azimuth_sd, 5e-3);
-  EXPECT_EQ(forecast_text({apart}),
-            "enough for 5 mm and 3 mrad in every joint, but for places that no signal tells and the turn of a about "
-            "its only axis (± 5 mrad)");
-  EXPECT_EQ(forecast_text({apart}, {.direction = 0.01}),
-            "enough for 5 mm and 10 mrad in every joint, but for places that no signal tells");
+  EXPECT_TRUE(apart.azimuth_is_uncertain);
+  EXPECT_EQ(words::forecast_text({apart}, {}),
+            "enough for 5 mm and 3 mrad in every joint, except for positions that are unobservable from this recording "
+            "and the azimuth of a about its only axis (± 5 mrad)");
+  const AccuracyTarget coarse{.direction = 0.01};
+  EXPECT_EQ(
+      words::forecast_text(forecast({joint}, coarse), coarse),
+      "enough for 5 mm and 10 mrad in every joint, except for positions that are unobservable from this recording");
 }
 
 /// The rehearsal: an identified chain is driven in simulation and identified again.

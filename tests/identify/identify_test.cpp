@@ -10,8 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "identify/driven_machine.hpp"
+#include "kinfer/identify/structure/moving_phases.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
+#include "kinfer/words/identification_verdict.hpp"
 
 namespace kinfer {
 using namespace identify;
@@ -116,8 +118,9 @@ TEST(SegmentTree, IsRightWithAMarginOnAMeasuredChainWithASphericalJointAndSoftMo
 
 TEST(Identify, FindsTheFirstLinksOfThePapersExcavator) {
   const DrivenMachine drive = driven_machine("excavator", {}, Script::standard, 1);
-  const IdentifyOptions options{
-      .terminals = JointVariableKind::euler, .links = 2, .geometry = GeometrySource::searched};
+  const IdentifyOptions options{.engine = BacterialProgramming{.terminals = JointVariableKind::euler},
+                                .links = 2,
+                                .geometry = GeometrySource::searched};
   const auto found = identify_machine(drive.recording, options, Rng(1));
   ASSERT_TRUE(found);
   ASSERT_EQ(found->joints.size(), 2u);
@@ -135,9 +138,7 @@ TEST(Identify, FindsTheFirstLinksOfThePapersExcavator) {
 TEST(Identify, GivesTheSameBitsForAnyNumberOfThreads) {
   const DrivenMachine drive = driven_machine("excavator", {}, Script::standard, 1);
   const auto run = [&](int threads) {
-    IdentifyOptions options{.links = 2, .threads = threads};
-    options.search.bacteria.generations = 10;
-    return *identify_machine(drive.recording, options, Rng(4));
+    return *identify_machine(drive.recording, {.links = 2, .threads = threads}, Rng(4));
   };
   const Identification one = run(1);
   for (const int threads : {2, 7}) {
@@ -160,7 +161,7 @@ TEST(Identify, SaysWhatARecordingCannotShow) {
   const auto lazy = identify_machine(still, {}, Rng(1));
   ASSERT_TRUE(lazy);
   EXPECT_EQ(lazy->findings.front().kind, FindingKind::idle);
-  EXPECT_THAT(lazy->verdict, testing::HasSubstr("ins0, lazy never move"));
+  EXPECT_THAT(words::identification_verdict(*lazy), testing::HasSubstr("ins0, lazy never move"));
   EXPECT_THAT(identify_machine(drive.recording, {.root = "nobody"}, Rng(1)).error().what,
               testing::HasSubstr("no such sensor"));
 }
@@ -170,14 +171,12 @@ TEST(Identify, TakesASecondSensorOnOneSegmentAndSaysSo) {
   InsSensor second = drive.recording.sensors[5];
   second.name = "second";
   drive.recording.sensors.push_back(second);
-  IdentifyOptions options;
-  options.search.bacteria.generations = 1;
-  const auto found = identify_machine(drive.recording, options, Rng(1));
+  const auto found = identify_machine(drive.recording, {}, Rng(1));
   ASSERT_TRUE(found);
   const auto rigid = std::ranges::find(found->joints, EstimatedJointType::rigid, &JointEstimate::type);
   ASSERT_NE(rigid, found->joints.end());
   EXPECT_LT(rigid->point_in_parent.norm(), 0.01);
-  EXPECT_THAT(found->verdict, testing::HasSubstr("never moved"));
+  EXPECT_THAT(words::identification_verdict(*found), testing::HasSubstr("never moved"));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/identify/structure/joint_type.hpp"
 
+#include "kinfer/geometry/statistics.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cstdlib>

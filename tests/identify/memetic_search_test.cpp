@@ -86,7 +86,7 @@ TEST(MemeticSearch, EndsWhereTheCertificateEnds) {
 TEST(MemeticSearch, GivesTheSameBitsForAnyNumberOfThreads) {
   const Link link = Link().with_noise(7);
   const auto run = [&](int threads) {
-    MemeticOptions options;
+    MemeticProgramming options;
     options.bacteria.threads = threads;
     return search_memetic(link.parent, link.child, {&link.hinge, 1}, link.rows, options, Rng(2));
   };

@@ -41,7 +41,7 @@ TEST_P(EverySeed, LoggersApartAndDriftingCostNoAccuracy) {
   EXPECT_NEAR(relative_offset(found, "ins4"), 0.03, 4.0 * clock_of(found, "ins4").offset_sd + 5e-5);
   EXPECT_NEAR(clock_of(found, "ins4").drift - clock_of(found, "ins3").drift, -5e-5, 1e-5);
   EXPECT_TRUE(has_finding(found, "clock", "ins2"));
-  EXPECT_THAT(found.verdict, testing::HasSubstr("ins4"));
+  EXPECT_THAT(words::identification_verdict(found), testing::HasSubstr("ins4"));
 }
 
 TEST_P(EverySeed, ALateSensorInTheSameFileIsFoundToo) {

@@ -57,7 +57,6 @@ std::string calibration_report(const Calibration& c) {
 Identification long_identification(std::size_t rows, std::size_t sensors) {
   Identification found;
   found.root = "s0";
-  found.verdict = "found";
   std::vector<double> samples(rows);
   for (std::size_t i = 0; i < rows; ++i) samples[i] = 3.0 * std::sin(1.7 * static_cast<double>(i * i % 1000003));
   const Binning bins = binning(rows, 1000);
@@ -69,11 +68,9 @@ Identification long_identification(std::size_t rows, std::size_t sensors) {
     JointEstimate joint;
     joint.parent = "s" + std::to_string(s - 1), joint.child = "s" + std::to_string(s);
     found.joints.push_back(joint);
-    for (const char* quantity : {"acceleration", "rate"})
+    for (const TraceQuantity quantity : {TraceQuantity::acceleration, TraceQuantity::angular_velocity})
       found.motion.traces.push_back({.sensor = joint.child,
                                      .quantity = quantity,
-                                     .unit = "m/s^2",
-                                     .frame = "ground",
                                      .measured = {thin, thin, thin},
                                      .predicted = {thin, thin, thin},
                                      .residual = {thin, thin, thin}});
@@ -148,9 +145,7 @@ TEST(Report, WithoutPosesRowsOrParametersThereIsStillAReport) {
   const auto html = report_html(format_calibration_evidence(empty, {}));
   ASSERT_TRUE(html) << html.error().what;
   EXPECT_NE(html->find("Nothing was measured"), std::string::npos);
-  Identification nothing;
-  nothing.verdict = "0 joints found";
-  EXPECT_TRUE(report_html(format_identification_evidence(nothing, {})));
+  EXPECT_TRUE(report_html(format_identification_evidence(Identification{}, {})));
 }
 
 TEST(Report, AnHourOfSixSensorsStaysBelowFiveMegabytes) {

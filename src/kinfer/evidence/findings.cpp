@@ -55,4 +55,8 @@ std::optional<FindingKind> finding_kind(std::string_view name) {
   return at == named_kinds.end() ? std::nullopt : std::optional(at->kind);
 }
 
+bool invalidates_result(const Finding& finding) {
+  return finding.severity == Severity::fault && !finding.applied;
+}
+
 }  // namespace kinfer

@@ -71,4 +71,7 @@ struct Finding {
   std::vector<Finding> equivalents{};  ///< other faults that would explain the data equally well
 };
 
+/// A fault that was not corrected.
+bool invalidates_result(const Finding& finding);
+
 }  // namespace kinfer

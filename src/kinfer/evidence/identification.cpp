@@ -3,20 +3,16 @@
 
 namespace kinfer {
 
-std::string_view name(EstimatedJointType type) {
-  switch (type) {
-    case EstimatedJointType::revolute:
-      return "revolute";
-    case EstimatedJointType::prismatic:
-      return "prismatic";
-    case EstimatedJointType::universal:
-      return "universal";
-    case EstimatedJointType::spherical:
-      return "spherical";
-    case EstimatedJointType::rigid:
-      return "rigid";
+std::string_view name(LinkSearchMethod method) {
+  switch (method) {
+    case LinkSearchMethod::memetic:
+      return "bmp";
+    case LinkSearchMethod::bacterial:
+      return "bp";
+    case LinkSearchMethod::enumeration:
+      break;
   }
-  return "rigid";
+  return "enum";
 }
 
 }  // namespace kinfer

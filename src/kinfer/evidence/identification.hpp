@@ -3,46 +3,20 @@
 // their uncertainty.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "kinfer/evidence/advice.hpp"
 #include "kinfer/evidence/findings.hpp"
+#include "kinfer/evidence/identification_facts.hpp"
+#include "kinfer/evidence/joint_estimate.hpp"
 #include "kinfer/evidence/traces.hpp"
+#include "kinfer/evidence/verdict.hpp"
 #include "kinfer/kinematics/chain.hpp"
 
 namespace kinfer {
-
-enum class EstimatedJointType { revolute, prismatic, universal, spherical, rigid };
-std::string_view name(EstimatedJointType type);  ///< "revolute", "prismatic", "universal", "spherical", "rigid"
-
-/// Standard deviations of a joint's axis and point in the two directions across the axis, in each sensor's frame.
-struct JointStandardDeviation {
-  std::array<double, 2> axis_in_parent{}, axis_in_child{};    ///< [rad]
-  std::array<double, 2> point_in_parent{}, point_in_child{};  ///< [m]
-  double along_axis = 0.0;                                    ///< [m] between the two sensors, along the axis
-};
-
-/// A joint's axis line in the frames of its two sensors. A spherical joint has a centre and no axis; a universal joint
-/// has one axis fixed in the parent and one fixed in the child, both through its centre. The two points are the same
-/// physical point (at joint position 0); both axes point in the positive sense of the joint position.
-struct JointEstimate {
-  std::string parent{}, child{};  ///< sensors; the parent is nearer to the root
-  EstimatedJointType type = EstimatedJointType::revolute;
-  Vec3 axis_in_parent = Vec3::UnitZ(), axis_in_child = Vec3::UnitZ();  ///< unit
-  Vec3 point_in_parent = Vec3::Zero(), point_in_child = Vec3::Zero();  ///< [m]
-  JointStandardDeviation sd{};
-  std::vector<std::string> unobservable{};                              ///< sentences
-  std::vector<Vec3> unobservable_in_parent{}, unobservable_in_child{};  ///< unit directions of the point
-  bool azimuth_unobservable = false;
-  /// Its trajectory: one row for each of its joint variables in the chain, one column for each time of
-  /// MotionEvidence::trajectory [rad] or [m]; empty where only the orientations of its two sensors are known.
-  MatrixXd trajectory{};
-};
 
 /// Shortest distance between the axis lines of the two joints of a segment.
 struct LinkEstimate {
@@ -61,18 +35,6 @@ struct SensorClockEstimate {
   std::string sensor;
   double offset = 0.0, drift = 0.0;        ///< [s], [s/s]
   double offset_sd = 0.0, drift_sd = 0.0;  ///< [s], [s/s]
-};
-
-/// Whether the recording determines a joint to the wanted accuracy and, if not, how much more excitation is needed.
-struct JointForecast {
-  std::string joint;                         ///< "ins1-ins2"
-  double line_sd = 0.0, direction_sd = 0.0;  ///< [m], [rad] across the axis, of the worse of the two sensors
-  /// The parent, where it rotates about one fixed axis only: the joint's azimuth about that axis is then nearly
-  /// unobservable on level ground and is excluded from the figures above. Empty: nothing is excluded.
-  std::string azimuth_of{};
-  double azimuth_sd = 0.0;  ///< [rad]
-  bool is_sufficient = false;
-  double acceleration_factor = 1.0, time_factor = 1.0;  ///< factors on those of the recording: either suffices
 };
 
 /// One DH transformation RotZ(theta) TransZ(d) TransX(a) RotX(alpha) RotY(beta) of the chain.
@@ -122,10 +84,21 @@ struct PhaseEvidence {
 struct OrderEvidence {
   std::vector<std::string> sensors;
   std::vector<PairEvidence> pairs;
-  double margin = 0.0;  ///< of the spanning tree: exp of the smallest difference of weights; 2 is safe
+  /// Of the spanning tree: exp of the smallest difference of weights; 2 is safe. None if there is no other tree.
+  std::optional<double> margin{};
   std::vector<PhaseEvidence> phases;
   std::vector<int> rank;      ///< table 3's sums
   bool phases_agree = false;  ///< the phases give the same parents as the tree
+};
+
+/// How the chain of a link was searched.
+enum class LinkSearchMethod { memetic, bacterial, enumeration };
+std::string_view name(LinkSearchMethod method);  ///< "bmp", "bp", "enum"
+
+/// How well the chain predicts the measured accelerations.
+struct PredictionSummary {
+  double held_out_seconds = 0.0;    ///< [s] length of the windows that were not fitted; 0: there are none
+  double worst_acceleration = 0.0;  ///< [m/s²] rms residual of the worst sensor, in these windows if there are any
 };
 
 struct Identification {
@@ -135,17 +108,19 @@ struct Identification {
   std::vector<PointEstimate> places;
   std::vector<SensorClockEstimate> clocks;  ///< one per sensor; empty if all clocks agree
   std::vector<JointForecast> forecast;
+  AccuracyTarget target{};        ///< of the forecast
   std::vector<DhRowEstimate> dh;  ///< canonical: two rows more than a joint has axes
   std::vector<LinkEvidence> searches;
   OrderEvidence order;
-  Chain chain;                    ///< from the root's sensor; the other sensors are fixed frames
-  std::string engine;             ///< "bmp", "bp" or "enum"
+  Chain chain;  ///< from the root's sensor; the other sensors are fixed frames
+  LinkSearchMethod search_method = LinkSearchMethod::memetic;
   MotionEvidence motion;          ///< predicted and measured signals, joint trajectory
   std::vector<Finding> findings;  ///< what is wrong with the recording, and what was done about it
-  std::vector<Advice> next;       ///< what to measure or to do next, most useful first
-  std::vector<std::string> notes;
-  std::string verdict;  ///< one sentence
-  bool use = true;      ///< false: something is wrong that makes the chain as a whole unfit for use
+  std::vector<IdentificationNote> notes;
+  std::vector<IdentificationAdvice> advice;  ///< what to measure or to do next, most useful first
+  PredictionSummary prediction;
+  /// do_not_use: a fault that was not corrected; use_with_care: a joint is less accurate than the target.
+  Usability usability = Usability::use;
 };
 
 }  // namespace kinfer

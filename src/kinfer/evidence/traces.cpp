@@ -27,4 +27,16 @@ Envelope envelope(std::span<const double> samples, const Binning& bins) {
   return result;
 }
 
+std::string_view name(TraceQuantity quantity) {
+  return quantity == TraceQuantity::acceleration ? "acceleration" : "rate";
+}
+
+std::string_view unit(TraceQuantity quantity) {
+  return quantity == TraceQuantity::acceleration ? "m/s^2" : "rad/s";
+}
+
+std::string_view name(TraceFrame frame) {
+  return frame == TraceFrame::world ? "ground" : "sensor";
+}
+
 }  // namespace kinfer

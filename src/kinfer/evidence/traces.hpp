@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinfer/linalg/types.hpp"
@@ -26,12 +27,18 @@ Binning binning(std::size_t samples, std::size_t max_bins);
 
 Envelope envelope(std::span<const double> samples, const Binning& bins);
 
+enum class TraceQuantity { acceleration, angular_velocity };
+std::string_view name(TraceQuantity quantity);  ///< "acceleration", "rate"
+std::string_view unit(TraceQuantity quantity);  ///< "m/s^2", "rad/s"
+
+enum class TraceFrame { world, sensor };
+std::string_view name(TraceFrame frame);  ///< "ground", "sensor"
+
 /// One kind of signal of one sensor: x, y, z.
 struct Trace {
   std::string sensor{};
-  std::string quantity{};  ///< "acceleration", "rate"
-  std::string unit{};      ///< "m/s^2", "rad/s"
-  std::string frame{};     ///< "ground" or "sensor"
+  TraceQuantity quantity = TraceQuantity::acceleration;
+  TraceFrame frame = TraceFrame::world;
   std::array<Envelope, 3> measured{}, predicted{}, residual{};
   double rms_measured = 0.0;                   ///< of the vector norm
   double rms_fitted = 0.0, rms_holdout = 0.0;  ///< likewise of the residual; 0: no such rows

@@ -131,18 +131,6 @@ Mat3 from_euler(const EulerSequence& sequence, const Vec3& angles) {
   return r;
 }
 
-Mat3 nearest_rotation(const Mat3& m) {
-  // Newton's iteration for the polar factor, X <- (X + X⁻ᵀ) / 2 (Higham 1986); quadratic near a rotation.
-  Mat3 x = m;
-  for (int i = 0; i < 30; ++i) {
-    const Mat3 next = 0.5 * (x + x.inverse().transpose());
-    const double change = (next - x).norm();
-    x = next;
-    if (change < 1e-15) break;
-  }
-  return x;
-}
-
 Quat rotation_between(const Vec3& from, const Vec3& to) {
   const Vec3 a = from.normalized(), b = to.normalized();
   const double cosine = b.dot(a);
@@ -160,6 +148,14 @@ Vec3 any_perpendicular(const Vec3& v) {
   Eigen::Index smallest;
   v.cwiseAbs().minCoeff(&smallest);
   return v.cross(Vec3::Unit(smallest)).normalized();
+}
+
+Mat3 frame_with_z_along(const Vec3& axis) {
+  Mat3 frame;
+  frame.col(2) = axis.normalized();
+  frame.col(0) = any_perpendicular(axis).normalized();
+  frame.col(1) = frame.col(2).cross(frame.col(0));
+  return frame;
 }
 
 double angle_between(const Vec3& a, const Vec3& b) {

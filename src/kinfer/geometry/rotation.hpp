@@ -51,15 +51,15 @@ struct EulerSequence {
 std::optional<EulerSequence> parse_euler_sequence(std::string_view text);
 Mat3 from_euler(const EulerSequence& sequence, const Vec3& angles);
 
-/// The rotation closest to m (Frobenius norm), its polar factor; m must be near a rotation (det m > 0).
-Mat3 nearest_rotation(const Mat3& m);
-
 /// The smallest rotation that turns `from` into the direction of `to`, neither zero; of directions opposite to 1e-4 rad
 /// half a turn about any perpendicular, to the same accuracy.
 Quat rotation_between(const Vec3& from, const Vec3& to);
 
 /// A unit vector perpendicular to v; continuous almost everywhere.
 Vec3 any_perpendicular(const Vec3& v);
+
+/// A rotation whose third column is the direction of `axis`.
+Mat3 frame_with_z_along(const Vec3& axis);
 
 /// Angle between two directions, [0, π]; accurate for small angles too.
 double angle_between(const Vec3& a, const Vec3& b);

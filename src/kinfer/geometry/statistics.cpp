@@ -111,4 +111,15 @@ double chi_squared_quantile(double p, double n) {
   return 0.5 * (low + high);
 }
 
+double effective_samples(std::span<const double> series) {
+  double mean = 0.0, square = 0.0, product = 0.0;
+  for (const double x : series) mean += x / static_cast<double>(series.size());
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    square += (series[i] - mean) * (series[i] - mean);
+    if (i > 0) product += (series[i] - mean) * (series[i - 1] - mean);
+  }
+  const double r = square > 0.0 ? std::max(0.0, product / square) : 0.0;
+  return std::max(1.0, static_cast<double>(series.size()) * (1.0 - r) / (1.0 + r));
+}
+
 }  // namespace kinfer

@@ -16,6 +16,9 @@ double median(std::vector<double> values);
 /// Robust standard deviation of the Gaussian bulk: 1.4826 · median absolute deviation from the median.
 double robust_sd(std::vector<double> values);
 
+/// Effective number of independent samples of a series, n (1 − r) / (1 + r), r the lag-one autocorrelation; at least 1.
+double effective_samples(std::span<const double> series);
+
 /// Cumulative distribution function of the standard Gaussian, and its inverse for p in (0, 1).
 double normal_cdf(double x);
 double normal_quantile(double p);

@@ -2,15 +2,16 @@
 #include "kinfer/words/findings.hpp"
 
 #include "kinfer/words/pose_set_findings.hpp"
+#include "kinfer/words/recording_findings.hpp"
 
 namespace kinfer::words {
 
 std::string sentence(const Finding& finding) {
-  return finding.sentence.empty() ? pose_set_finding_sentence(finding) : finding.sentence;
+  return is_recording_finding(finding.kind) ? recording_finding_sentence(finding) : pose_set_finding_sentence(finding);
 }
 
 std::string suggestion(const Finding& finding) {
-  return finding.sentence.empty() ? pose_set_finding_suggestion(finding) : finding.suggestion;
+  return is_recording_finding(finding.kind) ? recording_finding_suggestion(finding) : pose_set_finding_suggestion(finding);
 }
 
 }  // namespace kinfer::words

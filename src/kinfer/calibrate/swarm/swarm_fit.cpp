@@ -53,7 +53,7 @@ MatrixXd draw_initial_swarm(const CalibrationTask& task, const PreparedFit& prep
 /// The search with its initial swarm filled in, if it takes one.
 SearchOptions with_initial_swarm(SearchOptions search, const CalibrationTask& task, const PreparedFit& prepared,
                                  const Bounds& box, Rng rng) {
-  const SearchMethod& method = method_of(search);
+  const SwarmMethod& method = method_of(search);
   if (method.takes_initial_swarm)
     method.initial(search) = draw_initial_swarm(task, prepared, box, method.particles(search), rng);
   return search;

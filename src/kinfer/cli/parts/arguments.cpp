@@ -38,6 +38,13 @@ void add_count(CLI::App& verb, const std::string& name, int& value, int lowest, 
   verb.add_option(name, value, help)->type_name("N")->check(in_range)->capture_default_str();
 }
 
+void add_count(CLI::App& verb, const std::string& name, std::optional<int>& value, int lowest, int highest,
+               const std::string& help) {
+  CLI::Validator in_range = CLI::Range(lowest, highest);
+  in_range.description("");
+  verb.add_option(name, value, help)->type_name("N")->check(in_range);
+}
+
 void add_number(CLI::App& verb, const std::string& name, double& value, const std::string& help) {
   verb.add_option(name, value, help)->capture_default_str();
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ void add_texts(CLI::App& verb, const std::string& name, std::vector<std::string>
 void add_choice(CLI::App& verb, const std::string& name, std::string& value, const std::vector<std::string>& allowed,
                 const std::string& help);
 void add_count(CLI::App& verb, const std::string& name, int& value, int lowest, int highest, const std::string& help);
+/// A count without default.
+void add_count(CLI::App& verb, const std::string& name, std::optional<int>& value, int lowest, int highest,
+               const std::string& help);
 void add_number(CLI::App& verb, const std::string& name, double& value, const std::string& help);
 void add_number(CLI::App& verb, const std::string& name, double& value, double lowest, double highest,
                 const std::string& help);

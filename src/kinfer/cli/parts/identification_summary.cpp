@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/words/identification_notes.hpp"
+#include "kinfer/words/identification_unobservable.hpp"
+#include "kinfer/words/identification_verdict.hpp"
+
 namespace kinfer::cli {
 namespace {
 
@@ -21,7 +25,8 @@ std::string order_table(const OrderEvidence& order) {
   }
   text += fmt::format("{:<22}", "  rank");
   for (const int rank : order.rank) text += fmt::format(" {:>8}", rank);
-  return text + fmt::format("\nspanning tree of pairwise fits: margin {:.2f}; the two {}\n\n", order.margin,
+  return text + fmt::format("\nspanning tree of pairwise fits: margin {}; the two {}\n\n",
+                            order.margin ? fmt::format("{:.2f}", *order.margin) : "none, there is no other tree",
                             order.phases_agree ? "agree" : "do not agree");
 }
 
@@ -45,9 +50,10 @@ std::string deviation_text(const std::array<double, 2>& sd, double scale, int de
 std::string unobservable_list(const std::vector<JointEstimate>& joints) {
   std::string text;
   for (const JointEstimate& joint : joints)
-    for (const std::string& words : joint.unobservable)
-      if (!words.starts_with("the joint's point along its own axis"))  // true of every revolute joint
-        text += fmt::format("  - {}-{}: {}\n", joint.parent, joint.child, words);
+    for (const Unobservable& u : joint.unobservable)
+      if (u.kind != UnobservableKind::point_on_axis)  // true of every revolute joint
+        text += fmt::format("  - {}: {}: {}\n", joint_name(joint), words::unobservable_text(u, joint),
+                            words::remedy_text(u));
   return text.empty() ? "" : "What this recording cannot tell:\n" + text + "\n";
 }
 
@@ -62,7 +68,7 @@ std::string joint_table(const std::vector<JointEstimate>& joints) {
                           vector_text(axis, 1.0, 8, 4), vector_text(point, 1e3, 9, 1), deviation_text(axis_sd, 1e3, 2),
                           deviation_text(point_sd, 1e3, 1));
     };
-    line(j.parent + "-" + j.child, name(j.type), j.parent, j.axis_in_parent, j.point_in_parent, j.sd.axis_in_parent,
+    line(joint_name(j), name(j.type), j.parent, j.axis_in_parent, j.point_in_parent, j.sd.axis_in_parent,
          j.sd.point_in_parent);
     line("", "", j.child, j.axis_in_child, j.point_in_child, j.sd.axis_in_child, j.sd.point_in_child);
   }
@@ -81,7 +87,8 @@ std::string fit_table(const std::vector<LinkEvidence>& searches) {
 }  // namespace
 
 std::string identification_summary(const Identification& found) {
-  std::string text = found.verdict + ".\n\n" + order_table(found.order) + joint_table(found.joints);
+  std::string text =
+      words::identification_verdict(found) + ".\n\n" + order_table(found.order) + joint_table(found.joints);
   for (const LinkEstimate& link : found.links)
     text += fmt::format("link {}: {:.1f} mm from {} to {} (sd {})\n", link.segment, 1e3 * link.length, link.from,
                         link.to, link.sd < 0.5 ? fmt::format("{:.1f} mm", 1e3 * link.sd) : "unknown");
@@ -90,7 +97,7 @@ std::string identification_summary(const Identification& found) {
                         vector_text(place.sd, 1e3, 6, 1));
   if (!found.links.empty()) text += "\n";
   text += fit_table(found.searches) + unobservable_list(found.joints);
-  for (const std::string& note : found.notes) text += "  - " + note + "\n";
+  for (const std::string& note : words::note_sentences(found)) text += "  - " + note + "\n";
   return text;
 }
 

@@ -9,11 +9,7 @@ namespace kinfer::cli {
 
 Result<InsRecording> read_ins_logs(const std::vector<std::string>& files) {
   const std::vector<std::filesystem::path> paths(files.begin(), files.end());
-  KINFER_TRY(recording, read_recording(paths));
-  for (const InsSensor& sensor : recording.sensors)
-    if (!sensor.acceleration.present() || !sensor.angular_velocity.present())
-      return error("{}: identification needs specific force (ax ay az) and angular rate (gx gy gz)", sensor.name);
-  return recording;
+  return read_recording(paths);
 }
 
 }  // namespace kinfer::cli

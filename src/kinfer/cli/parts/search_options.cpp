@@ -69,7 +69,7 @@ const std::vector<SwarmOption>& swarm_only_options() {
 
 void add_search_arguments(CLI::App& verb, SearchArguments& a) {
   std::vector<std::string> methods{"lm"};
-  for (const SearchMethod& method : search_methods()) methods.emplace_back(method.name);
+  for (const SwarmMethod& method : swarm_methods()) methods.emplace_back(method.name);
   add_choice(verb, "--method", a.method, methods, "lm: least squares; the others are swarm searches (paper 2)");
   add_text(verb, "--warm-start", a.warm_start, "Folder of an earlier calibration of this robot: where searches start",
            Requirement::optional, "DIR");
@@ -111,7 +111,7 @@ Result<std::optional<calibrate::SwarmSearchOptions>> read_swarm_options(const Se
     options.box = calibrate::AbsoluteBox{1e-3 * arguments.box_length, arguments.box_angle * degree};
   else
     return error("--box-length and --box-angle must be above 0");
-  const SearchMethod& method = *method_named(arguments.method);
+  const SwarmMethod& method = *method_named(arguments.method);
   options.search = method.default_options;
   if (std::holds_alternative<PsoOptions>(options.search)) options.search = pso_options(arguments);
   if (std::holds_alternative<BpnnPsoOptions>(options.search)) {

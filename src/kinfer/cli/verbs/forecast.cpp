@@ -15,6 +15,7 @@
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/machine_from_chain.hpp"
 #include "kinfer/simulate/prescribed_motion.hpp"
+#include "kinfer/words/identification_forecast.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -25,6 +26,10 @@ struct ForecastArguments {
   std::string chain, drive = "standard", grade = "industrial";
   double duration = 0.0, line = 5.0, direction = 3.0;  // s, mm, mrad
 };
+
+AccuracyTarget target_of(const ForecastArguments& options) {
+  return {1e-3 * options.line, 1e-3 * options.direction};
+}
 
 /// Simulates the drive with an identified chain.
 Result<InsRecording> simulate_drive(const ForecastArguments& options) {
@@ -48,12 +53,12 @@ Result<std::vector<JointForecast>> forecast_of(const ForecastArguments& options)
   how.threads = options.common.threads;
   ProgressLine progress(options.common);
   KINFER_TRY(found, identify::identify_machine(*recording, how, Rng(options.common.seed), progress.observer()));
-  return identify::forecast(found.joints, {1e-3 * options.line, 1e-3 * options.direction});
+  return identify::forecast(found.joints, target_of(options));
 }
 
 void print_table(const std::vector<JointForecast>& joints, const ForecastArguments& options) {
   fmt::print("Expected of {}: {}.\n\n", options.chain.empty() ? "this recording" : "the " + options.drive + " drive",
-             identify::forecast_text(joints, {1e-3 * options.line, 1e-3 * options.direction}));
+             words::forecast_text(joints, target_of(options)));
   fmt::print("{:<16} {:>12} {:>16} {:>8} {:>18} {:>12}\n", "joint", "sd line [mm]", "sd axis [mrad]", "enough",
              "acceleration x", "or time x");
   for (const JointForecast& f : joints)
@@ -71,8 +76,7 @@ void print_json(const std::vector<JointForecast>& joints, const ForecastArgument
                     {"enough", f.is_sufficient},
                     {"acceleration_factor", f.acceleration_factor},
                     {"time_factor", f.time_factor}});
-  const nlohmann::ordered_json all{
-      {"verdict", identify::forecast_text(joints, {1e-3 * options.line, 1e-3 * options.direction})}, {"joints", list}};
+  const nlohmann::ordered_json all{{"verdict", words::forecast_text(joints, target_of(options))}, {"joints", list}};
   fmt::print("{}\n", all.dump());
 }
 

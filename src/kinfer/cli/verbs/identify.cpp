@@ -4,7 +4,7 @@
 
 #include <fmt/ranges.h>
 
-#include <map>
+#include <algorithm>
 #include <memory>
 
 #include "kinfer/cli/parts/arguments.hpp"
@@ -14,7 +14,6 @@
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
-#include "kinfer/identify/findings/forecast.hpp"
 #include "kinfer/io/evidence/chain_dh_csv.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/recording/machine_facts_toml.hpp"
@@ -26,23 +25,22 @@
 namespace kinfer::cli {
 namespace {
 
+/// Settings of a search engine; its own defaults where not given.
+struct EngineArguments {
+  std::string engine = "bmp", terminals = "hinge", pairing = "halves";
+  std::optional<int> individuals, generations, clones, cycles, transfers;
+  std::optional<int> min_depth, max_depth, max_leaves, rows;
+};
+
 struct IdentifyArguments {
   CommonOptions common;
   std::vector<std::string> logs;
-  std::string out, engine = "bmp", terminals = "hinge", filter = "kinfer-offline", root, pairing = "halves";
+  std::string out, filter = "kinfer-offline", root;
   double smoothing = SegmentMotionOptions{}.smoothing;
-  identify::BacterialLinkOptions search;
+  EngineArguments search;
   int links = 0;
   std::string geometry = "refined", grade = "auto", facts, sensors, tree;
 };
-
-const std::map<std::string, identify::Engine> engines{
-    {"bmp", identify::Engine::bmp}, {"bp", identify::Engine::bp}, {"enum", identify::Engine::enumeration}};
-const std::map<std::string, JointVariableKind> terminals_by_name{{"hinge", JointVariableKind::hinge},
-                                                                 {"euler", JointVariableKind::euler}};
-const std::map<std::string, identify::GeometrySource> geometries{{"refined", identify::GeometrySource::refined},
-                                                                 {"searched", identify::GeometrySource::searched}};
-const std::map<std::string, Pairing> pairings{{"halves", Pairing::halves}, {"mirrored", Pairing::mirrored}};
 
 std::vector<std::string> split_at_commas(const std::string& text) {
   std::vector<std::string> items;
@@ -65,29 +63,89 @@ Result<std::vector<identify::GivenLink>> parse_links(const std::string& text) {
   return links;
 }
 
-Result<identify::IdentifyOptions> identify_options(const IdentifyArguments& options) {
+/// Options of the engines and those that use them.
+struct EngineOption {
+  const char* name;
+  std::vector<std::string> engines;
+};
+
+const std::vector<EngineOption>& engine_options() {
+  static const std::vector<EngineOption> options{
+      {"--individuals", {"bmp", "bp"}}, {"--generations", {"bmp", "bp"}}, {"--clones", {"bmp", "bp"}},
+      {"--cycles", {"bmp", "bp"}},      {"--transfers", {"bmp", "bp"}},   {"--pairing", {"bmp", "bp"}},
+      {"--min-depth", {"bp"}},          {"--max-depth", {"bp"}},          {"--max-leaves", {"bp"}}};
+  return options;
+}
+
+/// Euler terminals need paper 1's engine, so they choose it.
+Result<std::string> engine_of(const CLI::App& verb, const EngineArguments& search) {
+  if (search.terminals != "euler") return search.engine;
+  if (was_given(verb, "--engine") && search.engine != "bp")
+    return error("--terminals euler has no effect with --engine {}: only bp searches with Euler angles", search.engine);
+  return "bp";
+}
+
+Result<void> check_engine_options(const CLI::App& verb, const std::string& engine) {
+  std::vector<std::string> ineffective;
+  for (const EngineOption& option : engine_options())
+    if (was_given(verb, option.name) && std::ranges::find(option.engines, engine) == option.engines.end())
+      ineffective.emplace_back(option.name);
+  if (!ineffective.empty()) return error("{}: no effect with --engine {}", fmt::join(ineffective, ", "), engine);
+  return {};
+}
+
+void set_evolution(BacterialOptions& bacteria, const EngineArguments& search) {
+  bacteria.individuals = search.individuals.value_or(bacteria.individuals);
+  bacteria.generations = search.generations.value_or(bacteria.generations);
+  bacteria.clones = search.clones.value_or(bacteria.clones);
+  bacteria.cycles = search.cycles.value_or(bacteria.cycles);
+  bacteria.transfers = search.transfers.value_or(bacteria.transfers);
+  bacteria.pairing = search.pairing == "mirrored" ? Pairing::mirrored : Pairing::halves;
+}
+
+identify::LinkEngine make_engine(const std::string& engine, const EngineArguments& search) {
+  if (engine == "enum") {
+    identify::Enumeration enumeration;
+    enumeration.rows = search.rows.value_or(enumeration.rows);
+    return enumeration;
+  }
+  if (engine == "bmp") {
+    identify::MemeticProgramming memetic;
+    set_evolution(memetic.bacteria, search);
+    memetic.rows = search.rows.value_or(memetic.rows);
+    return memetic;
+  }
+  identify::BacterialProgramming bacterial;
+  set_evolution(bacterial.bacteria, search);
+  bacterial.terminals = search.terminals == "euler" ? JointVariableKind::euler : JointVariableKind::hinge;
+  bacterial.depth.min = search.min_depth.value_or(bacterial.depth.min);
+  bacterial.depth.max = search.max_depth.value_or(bacterial.depth.max);
+  bacterial.depth.max_leaves = search.max_leaves.value_or(bacterial.depth.max_leaves);
+  bacterial.rows = search.rows.value_or(bacterial.rows);
+  return bacterial;
+}
+
+Result<identify::LinkEngine> engine_from(const CLI::App& verb, const EngineArguments& search) {
+  KINFER_TRY(engine, engine_of(verb, search));
+  if (const auto checked = check_engine_options(verb, engine); !checked) return forward_error(checked.error());
+  return make_engine(engine, search);
+}
+
+Result<identify::IdentifyOptions> identify_options(const CLI::App& verb, const IdentifyArguments& options) {
   identify::IdentifyOptions how;
   const auto filter = filter_named(options.filter);
   if (!filter) return error("--filter {}: no such filter; known are {}", options.filter, filter_names());
-  if (options.search.depth.max < options.search.depth.min)
-    return error("--max-depth {}: less than --min-depth {}", options.search.depth.max, options.search.depth.min);
-  if (options.search.depth.max_leaves < options.search.depth.min)
-    return error("--max-leaves {}: too few for --min-depth {}", options.search.depth.max_leaves,
-                 options.search.depth.min);
-  if (!(options.smoothing >= 0.0 && options.smoothing <= 1.0))
-    return error("--smoothing {}: expected 0 .. 1 s", options.smoothing);
+  KINFER_TRY(engine, engine_from(verb, options.search));
+  how.engine = engine;
   how.motion.filter = *filter;
   how.motion.smoothing = options.smoothing;
-  how.engine = engines.at(options.engine);
-  how.terminals = terminals_by_name.at(options.terminals);
-  how.search = options.search;
-  how.search.bacteria.pairing = pairings.at(options.pairing);
   if (!options.root.empty()) how.root = options.root;
   how.sensors = split_at_commas(options.sensors);
   KINFER_TRY(links, parse_links(options.tree));
   how.tree = links;
   how.links = options.links;
-  how.geometry = geometries.at(options.geometry);
+  how.geometry =
+      options.geometry == "searched" ? identify::GeometrySource::searched : identify::GeometrySource::refined;
   if (options.grade != "auto") {
     KINFER_TRY(grade, read_grade(options.grade, "auto"));
     how.refine.grade = grade;
@@ -97,53 +155,34 @@ Result<identify::IdentifyOptions> identify_options(const IdentifyArguments& opti
     how.refine.facts = facts;
   }
   how.threads = options.common.threads;
+  if (const auto checked = identify::check(how); !checked) return forward_error(checked.error());
   return how;
 }
 
-Provenance provenance_of(const IdentifyArguments& options) {
-  Provenance provenance;
-  provenance.seed = options.common.seed;
+Provenance provenance_of(const IdentifyArguments& options, const identify::IdentifyOptions& how) {
   std::vector<std::string> inputs = options.logs;
   if (!options.facts.empty()) inputs.push_back(options.facts);
-  provenance.inputs = fingerprints(inputs);
-  const BacterialOptions& b = options.search.bacteria;
-  provenance.options = {{"--engine", options.engine},
-                        {"--terminals", options.terminals},
-                        {"--filter", options.filter},
-                        {"--root", options.root},
-                        {"--smoothing", fmt::to_string(options.smoothing)},
-                        {"--individuals", fmt::to_string(b.individuals)},
-                        {"--generations", fmt::to_string(b.generations)},
-                        {"--clones", fmt::to_string(b.clones)},
-                        {"--cycles", fmt::to_string(b.cycles)},
-                        {"--transfers", fmt::to_string(b.transfers)},
-                        {"--pairing", options.pairing},
-                        {"--min-depth", fmt::to_string(options.search.depth.min)},
-                        {"--max-depth", fmt::to_string(options.search.depth.max)},
-                        {"--max-leaves", fmt::to_string(options.search.depth.max_leaves)},
-                        {"--rows", fmt::to_string(options.search.rows)},
-                        {"--links", fmt::to_string(options.links)},
-                        {"--sensors", options.sensors},
-                        {"--tree", options.tree},
-                        {"--geometry", options.geometry},
-                        {"--grade", options.grade}};
-  return provenance;
+  return {.inputs = fingerprints(inputs), .options = identify::describe(how), .seed = options.common.seed};
 }
 
-Result<void> write_results(const OutputFolder& folder, const IdentifyArguments& options, const Identification& found) {
+Tone tone_of(Usability usability) {
+  return usability == Usability::use ? Tone::good : usability == Usability::use_with_care ? Tone::neutral : Tone::bad;
+}
+
+Result<void> write_results(const OutputFolder& folder, const Provenance& provenance, const Identification& found) {
   RobotModel robot{.chain = found.chain};
   if (auto done = write_text_file(folder / "chain.toml", format_robot_toml(robot)); !done) return done;
   if (auto done = write_text_file(folder / "chain.urdf", format_urdf(found.chain)); !done) return done;
   if (auto done = write_text_file(folder / "chain.mjcf", format_mjcf(found.chain)); !done) return done;
   if (auto done = write_text_file(folder / "chain_dh.csv", format_chain_dh_csv(found.dh)); !done) return done;
-  return write_evidence(folder.path(), format_identification_evidence(found, provenance_of(options)));
+  return write_evidence(folder.path(), format_identification_evidence(found, provenance));
 }
 
-int run(const IdentifyArguments& options) {
+int run(const CLI::App& verb, const IdentifyArguments& options) {
   RunRecord record("identify", options.common);
   for (const std::string& path : options.logs) record.add_input(path);
   if (!options.facts.empty()) record.add_input(options.facts);
-  const auto how = identify_options(options);
+  const auto how = identify_options(verb, options);
   if (!how) return fail(how.error());
   const auto recording = read_ins_logs(options.logs);
   if (!recording) return fail(recording.error());
@@ -154,31 +193,35 @@ int run(const IdentifyArguments& options) {
     return identify::identify_machine(*recording, *how, Rng(options.common.seed), progress.observer());
   }();
   if (!found) return fail(found.error());
-  if (auto done = write_results(*folder, options, *found); !done) return fail(done.error());
+  if (auto done = write_results(*folder, provenance_of(options, *how), *found); !done) return fail(done.error());
   if (auto done = record.write(options.out); !done) return fail(done.error());
   if (options.common.json)
     fmt::print("{}", format_identification_headline(*found));
   else if (!options.common.quiet)
-    print_summary(identification_summary(*found),
-                  found->use ? identify::all_sufficient(found->forecast) ? Tone::good : Tone::neutral : Tone::bad);
-  return found->use ? exit_done : exit_do_not_use;
+    print_summary(identification_summary(*found), tone_of(found->usability));
+  return found->usability == Usability::do_not_use ? exit_do_not_use : exit_done;
 }
 
-void add_search_options(CLI::App& verb, IdentifyArguments& options) {
-  BacterialOptions& b = options.search.bacteria;
-  DepthLimits& depth = options.search.depth;
+void add_engine_options(CLI::App& verb, EngineArguments& search) {
   constexpr int most = 1000000;
-  add_count(verb, "--individuals", b.individuals, 2, most, "Bacteria in the population (paper 1, table 4)");
-  add_count(verb, "--generations", b.generations, 0, most, "Generations a link");
-  add_count(verb, "--clones", b.clones, 1, most, "Clones of a bacterium in its mutation, itself included");
-  add_count(verb, "--cycles", b.cycles, 0, most, "Parts of a bacterium that are mutated in a generation");
-  add_count(verb, "--transfers", b.transfers, 0, most, "Genes transferred in a generation");
-  add_choice(verb, "--pairing", options.pairing, {"halves", "mirrored"},
+  add_choice(verb, "--engine", search.engine, {"bmp", "bp", "enum"},
+             "How each link is searched; bmp: memetic bacterial programming; bp: that of paper 1; enum: every chain of "
+             "up to 3 leaves");
+  add_choice(verb, "--terminals", search.terminals, {"hinge", "euler"},
+             "hinge: relative rotations, rates from gyros; euler: differences of Euler angles, as in paper 1 (bp)");
+  add_count(verb, "--individuals", search.individuals, 2, most, "Bacteria in the population (bmp 10; bp 100: paper 1)");
+  add_count(verb, "--generations", search.generations, 0, most, "Generations a link (bmp 30; bp 300: paper 1)");
+  add_count(verb, "--clones", search.clones, 1, most,
+            "Clones of a bacterium in its mutation, itself included (bmp 3, bp 5)");
+  add_count(verb, "--cycles", search.cycles, 0, most,
+            "Parts of a bacterium that are mutated in a generation (bmp 1, bp 3)");
+  add_count(verb, "--transfers", search.transfers, 0, most, "Genes transferred in a generation (bmp 3, bp 20)");
+  add_choice(verb, "--pairing", search.pairing, {"halves", "mirrored"},
              "Gene transfer: one from each half, or best with worst (pseudo code)");
-  add_count(verb, "--min-depth", depth.min, 1, 20, "Least depth of a tree");
-  add_count(verb, "--max-depth", depth.max, 1, 20, "Largest depth of a tree");
-  add_count(verb, "--max-leaves", depth.max_leaves, 1, 1000, "Most leaves of a tree");
-  add_count(verb, "--rows", options.search.rows, 20, most, "Rows of the log that the cost sums over");
+  add_count(verb, "--min-depth", search.min_depth, 1, 20, "Least depth of a tree (bp only; 1)");
+  add_count(verb, "--max-depth", search.max_depth, 1, 20, "Largest depth of a tree (bp only; 5)");
+  add_count(verb, "--max-leaves", search.max_leaves, 1, 1000, "Most leaves of a tree (bp only; 8)");
+  add_count(verb, "--rows", search.rows, 20, most, "Rows of the log that the cost sums over (384)");
 }
 
 }  // namespace
@@ -194,11 +237,6 @@ Verb add_identify(CLI::App& app) {
   add_text(*verb, "--out", options->out,
            "Folder for chain.toml, chain.urdf, chain.mjcf, chain_dh.csv, evidence.json, report.html, run.json",
            Requirement::required, "DIR");
-  add_choice(*verb, "--engine", options->engine, {"bmp", "bp", "enum"},
-             "How each link is searched; bmp: memetic bacterial programming; bp: that of paper 1; enum: every chain of "
-             "up to 3 leaves");
-  add_choice(*verb, "--terminals", options->terminals, {"hinge", "euler"},
-             "hinge: relative rotations, rates from gyros; euler: differences of Euler angles, as in paper 1");
   add_text(*verb, "--filter", options->filter, "Orientation filter. " + filter_help(), Requirement::optional, "NAME");
   add_text(*verb, "--root", options->root, "Sensor on the machine's base (default: the one that stands still)",
            Requirement::optional, "NAME");
@@ -218,9 +256,9 @@ Verb add_identify(CLI::App& app) {
            "What else is known: touches, tapes, surveyed points (docs/formats.md, Facts about a machine)",
            Requirement::optional, "TOML");
   add_count(*verb, "--links", options->links, 0, 1000, "Links to find, from the root outwards; 0 means all");
-  add_search_options(*verb, *options);
+  add_engine_options(*verb, options->search);
   add_common_options(*verb, options->common);
-  return {verb, [options] { return run(*options); }};
+  return {verb, [verb, options] { return run(*verb, *options); }};
 }
 
 }  // namespace kinfer::cli

@@ -1,88 +1,86 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recommendations after an identification.
-#include <fmt/ranges.h>
+#include "kinfer/identify/findings/advice.hpp"
 
 #include <algorithm>
-#include <cmath>
 
-#include "kinfer/identify/findings/forecast.hpp"
-#include "kinfer/identify/findings/motion_evidence.hpp"
+#include "kinfer/identify/findings/thresholds.hpp"
 
 namespace kinfer::identify {
 namespace {
 
-void recommend_use(const Identification& found, std::vector<Advice>& list) {
-  if (found.use)
-    list.push_back({"Put it to use: the chain is in chain.toml, chain.urdf, chain.mjcf and chain_dh.csv",
-                    "each holds every joint in the frames of the INS beside it"});
+using AdviceList = std::vector<IdentificationAdvice>;
+
+void recommend_sequential_motion(const Identification& result, AdviceList& list) {
+  if (!result.order.margin || *result.order.margin >= safe_margin) return;
+  list.push_back(
+      {IdentificationAdviceKind::move_in_sequence, {{"margin", *result.order.margin}, {"safe_margin", safe_margin}}});
 }
 
-void recommend_sequential_motion(const Identification& found, std::vector<Advice>& list) {
-  constexpr double safe_margin = 2.0;
-  if (found.order.margin >= safe_margin) return;
-  list.push_back({"Move one joint after the other, each for several seconds, and identify again",
-                  fmt::format("another order of the segments fits almost as well (margin {:.2f}; {:.0f} is safe)",
-                              found.order.margin, safe_margin)});
+void recommend_use(const Identification& result, AdviceList& list) {
+  if (result.usability != Usability::do_not_use) list.push_back({IdentificationAdviceKind::use_chain, {}});
 }
 
-void recommend_moving_rigid_joints(const Identification& found, std::vector<Advice>& list) {
-  for (const JointEstimate& joint : found.joints)
+void recommend_moving_rigid_joints(const Identification& result, AdviceList& list) {
+  for (const JointEstimate& joint : result.joints)
     if (joint.type == EstimatedJointType::rigid)
-      list.push_back({fmt::format("Move the joint between {} and {}", joint.parent, joint.child),
-                      "the two never moved against each other, so nothing is known about a joint there"});
+      list.push_back({IdentificationAdviceKind::move_joint, {{"parent", joint.parent}, {"child", joint.child}}});
+}
+
+void recommend_more_excitation(const Identification& result, AdviceList& list) {
+  for (const JointForecast& f : result.forecast) {
+    if (f.is_sufficient) continue;
+    FactValues values{{"joint", f.joint}, {"line_sd", f.line_sd}, {"direction_sd", f.direction_sd}};
+    if (f.more_excitation_suffices) {
+      values.set("acceleration_factor", f.acceleration_factor);
+      values.set("time_factor", f.time_factor);
+    }
+    list.push_back(
+        {f.more_excitation_suffices ? IdentificationAdviceKind::move_further : IdentificationAdviceKind::check_mounts,
+         std::move(values)});
+  }
 }
 
 /// Unobservable on level ground with a base that does not rock: rotations about the vertical axis and its location.
-void recommend_slope(const Identification& found, std::vector<Advice>& list) {
-  std::vector<std::string> unobservable_items, places;
-  for (const JointEstimate& joint : found.joints) {
-    if (joint.azimuth_unobservable)
-      unobservable_items.push_back(fmt::format("the turn of {} about the axis", joint.child));
-    if (!joint.unobservable_in_parent.empty()) places.push_back(joint.parent);
+void recommend_slope(const Identification& result, AdviceList& list) {
+  std::vector<std::string> azimuths, uncertain_azimuths, points_in;
+  std::vector<double> azimuth_sds;
+  std::vector<int> azimuth_unobservable;
+  for (const JointEstimate& joint : result.joints) {
+    if (joint.azimuth_unobservable) azimuths.push_back(joint.child);
+    if (!joint.unobservable_in_parent.empty()) points_in.push_back(joint.parent);
   }
-  for (const JointForecast& f : found.forecast)
-    if (is_azimuth_uncertain(f)) unobservable_items.push_back(azimuth_text(f));
-  if (!places.empty()) unobservable_items.push_back(fmt::format("places in {}", fmt::join(places, " and in ")));
-  if (!unobservable_items.empty())
-    list.push_back(
-        {"Drive once on a slope and let the base rock, or measure with a tape, if positions are wanted from "
-         "the root",
-         fmt::format("level ground hides {}; the joints beyond do not need it",
-                     fmt::join(unobservable_items, ", and "))});
-}
-
-void recommend_more_excitation(const Identification& found, std::vector<Advice>& list) {
-  for (const JointForecast& f : found.forecast)
-    if (!f.is_sufficient)
-      list.push_back(
-          {more_excitation_suffices(f)
-               ? fmt::format("Move {} further and faster: {:.1f} times the acceleration, or {:.1f} times as long",
-                             f.joint, f.acceleration_factor, f.time_factor)
-               : fmt::format("Look at the sensors beside {}: mount them firmly, then move it much further", f.joint),
-           fmt::format("its line is known to {:.1f} mm and its direction to {:.1f} mrad only", 1e3 * f.line_sd,
-                       1e3 * f.direction_sd)});
+  for (const JointForecast& f : result.forecast) {
+    if (!f.azimuth_is_uncertain) continue;
+    uncertain_azimuths.push_back(f.azimuth_of);
+    azimuth_sds.push_back(f.azimuth_sd);
+    azimuth_unobservable.push_back(f.azimuth_is_unobservable ? 1 : 0);
+  }
+  if (azimuths.empty() && uncertain_azimuths.empty() && points_in.empty()) return;
+  list.push_back({IdentificationAdviceKind::record_on_slope,
+                  {{"azimuths", azimuths},
+                   {"uncertain_azimuths", uncertain_azimuths},
+                   {"azimuth_sds", azimuth_sds},
+                   {"azimuth_unobservable", azimuth_unobservable},
+                   {"points_in", points_in}}});
 }
 
 /// End segments: the position of the tool relative to the last sensor is unobservable.
-void recommend_tool_measurement(const Identification& found, std::vector<Advice>& list) {
-  for (const JointEstimate& joint : found.joints) {
-    if (std::ranges::any_of(found.joints, [&](const JointEstimate& other) { return other.parent == joint.child; }))
-      continue;
-    list.push_back({fmt::format("Measure where the tool is in {} with a tape, or touch one known point", joint.child),
-                    "no signal tells what lies beyond the last INS"});
-  }
+void recommend_tool_measurement(const Identification& result, AdviceList& list) {
+  for (const JointEstimate& joint : result.joints)
+    if (std::ranges::find(result.joints, joint.child, &JointEstimate::parent) == result.joints.end())
+      list.push_back({IdentificationAdviceKind::measure_tool, {{"sensor", joint.child}}});
 }
 
 }  // namespace
 
-std::vector<Advice> identification_advice(const Identification& found) {
-  std::vector<Advice> list;
-  recommend_sequential_motion(found, list);
-  recommend_use(found, list);
-  recommend_moving_rigid_joints(found, list);
-  recommend_more_excitation(found, list);
-  recommend_slope(found, list);
-  recommend_tool_measurement(found, list);
+std::vector<IdentificationAdvice> identification_advice(const Identification& result) {
+  AdviceList list;
+  recommend_sequential_motion(result, list);
+  recommend_use(result, list);
+  recommend_moving_rigid_joints(result, list);
+  recommend_more_excitation(result, list);
+  recommend_slope(result, list);
+  recommend_tool_measurement(result, list);
   return list;
 }
 

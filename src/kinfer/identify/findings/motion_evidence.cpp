@@ -7,13 +7,12 @@
 #include <map>
 #include <numbers>
 
+#include "kinfer/identify/findings/thresholds.hpp"
+#include "kinfer/identify/refinement/joint_trajectory.hpp"
 #include "kinfer/kinematics/forward.hpp"
 
 namespace kinfer::identify {
 namespace {
-
-constexpr std::size_t max_bins = 500;    // of a trace: about one per two pixels of a wide screen
-constexpr std::size_t max_frames = 600;  // of the joint trajectory
 
 /// Three axes of one signal at every row, NaN if the row is not usable.
 using Signals = std::array<std::vector<double>, 3>;
@@ -49,7 +48,7 @@ std::vector<bool> rows_in(const std::vector<double>& time, const std::vector<Tim
 template <class Measured, class Predicted>
 Trace trace_of(const RecordedMotion& motion, Trace trace, const std::vector<bool>& is_held_out, Measured measured,
                Predicted predicted, Predicted held_out_prediction) {
-  const Binning bins = binning(motion.rows(), max_bins);
+  const Binning bins = binning(motion.rows(), max_trace_bins);
   const Signals m = axes_of(motion, measured), p = axes_of(motion, predicted);
   const Signals r = axes_of(motion, [&](std::size_t row) -> Vec3 { return measured(row) - predicted(row); });
   for (std::size_t k = 0; k < 3; ++k) {
@@ -124,17 +123,18 @@ PredictedMotion predictions_of(const RecordedMotion& motion, const std::string& 
 void add_traces(MotionEvidence& evidence, const RecordedMotion& motion, const SegmentMotion& segment,
                 const std::vector<bool>& is_held_out, const PredictedSignals& prediction,
                 const PredictedSignals& held_out_prediction_of) {
-  const auto add = [&](const char* quantity, const char* unit, const std::vector<Vec3>& measured,
-                       const std::vector<Vec3>& predicted, const std::vector<Vec3>& held_out_prediction) {
+  const auto add = [&](TraceQuantity quantity, const std::vector<Vec3>& measured, const std::vector<Vec3>& predicted,
+                       const std::vector<Vec3>& held_out_prediction) {
     const auto of = [](const std::vector<Vec3>& rows) {
       return [&rows](std::size_t row) -> Vec3 { return rows[row]; };
     };
-    Trace trace{.sensor = segment.name, .quantity = quantity, .unit = unit, .frame = "ground"};
+    Trace trace{.sensor = segment.name, .quantity = quantity, .frame = TraceFrame::world};
     evidence.traces.push_back(
         trace_of(motion, std::move(trace), is_held_out, of(measured), of(predicted), of(held_out_prediction)));
   };
-  add("acceleration", "m/s^2", segment.acceleration, prediction.acceleration, held_out_prediction_of.acceleration);
-  add("rate", "rad/s", segment.angular_velocity, prediction.angular_velocity, held_out_prediction_of.angular_velocity);
+  add(TraceQuantity::acceleration, segment.acceleration, prediction.acceleration, held_out_prediction_of.acceleration);
+  add(TraceQuantity::angular_velocity, segment.angular_velocity, prediction.angular_velocity,
+      held_out_prediction_of.angular_velocity);
 }
 
 std::vector<double> middles(const std::vector<double>& time, const Binning& bins) {
@@ -189,7 +189,7 @@ Eigen::Index variable_count(EstimatedJointType type) {
 }
 
 MachineTrajectory machine_trajectory(const RecordedMotion& motion, const Identification& found) {
-  const Binning bins = binning(motion.rows(), max_frames);
+  const Binning bins = trajectory_frames(motion);
   const std::vector<int> variable_joints = active_joints(found.chain);
   const std::vector<Pose> home = joint_frames(found.chain, VectorXd::Zero(dof(found.chain)));
   MachineTrajectory trajectory;
@@ -209,7 +209,7 @@ MachineTrajectory machine_trajectory(const RecordedMotion& motion, const Identif
   for (std::size_t k = 0; k < variable_joints.size(); ++k) {
     const std::string& name = found.chain.joints[variable_joints[k]].name;
     const auto joint =
-        std::ranges::find_if(found.joints, [&](const JointEstimate& j) { return j.parent + "-" + j.child == name; });
+        std::ranges::find_if(found.joints, [&](const JointEstimate& j) { return joint_name(j) == name; });
     if (joint == found.joints.end() || joint->type != EstimatedJointType::revolute || joint->trajectory.size() > 0)
       continue;
     const int parent = frame_named(found.chain, joint->parent), child = frame_named(found.chain, joint->child);
@@ -224,16 +224,9 @@ MachineTrajectory machine_trajectory(const RecordedMotion& motion, const Identif
 
 }  // namespace
 
-std::vector<double> trajectory_times(const RecordedMotion& motion) {
-  std::vector<double> times;
-  for (std::size_t row = 0; row < motion.rows(); row += binning(motion.rows(), max_frames).size)
-    times.push_back(motion.time[row]);
-  return times;
-}
-
 MotionEvidence motion_evidence(const RecordedMotion& motion, const Identification& found, const HeldOut& held) {
   MotionEvidence evidence;
-  evidence.time = middles(motion.time, binning(motion.rows(), max_bins));
+  evidence.time = middles(motion.time, binning(motion.rows(), max_trace_bins));
   evidence.held_out = held.windows;
   const std::vector<bool> is_held_out = rows_in(motion.time, held.windows);
   const PredictedMotion fitted_prediction = predictions_of(motion, found.root, found.joints),

@@ -14,10 +14,4 @@ namespace kinfer::identify {
 /// them.
 MotionEvidence motion_evidence(const RecordedMotion& motion, const Identification& found, const HeldOut& held = {});
 
-/// Recommendations, most useful first.
-std::vector<Advice> identification_advice(const Identification& found);
-
-/// [s] Times of the joint trajectory.
-std::vector<double> trajectory_times(const RecordedMotion& motion);
-
 }  // namespace kinfer::identify

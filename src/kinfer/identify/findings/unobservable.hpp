@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sentences on the unobservable parameters of a joint, each with the additional measurement that would determine it.
+// The unobservable parameters of the joints of a chain.
 #pragma once
 
-#include "kinfer/evidence/identification.hpp"
+#include <vector>
+
+#include "kinfer/evidence/joint_estimate.hpp"
 
 namespace kinfer::identify {
 

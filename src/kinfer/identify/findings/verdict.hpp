@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Verdict on an identification: its faults, whether to use it, and one sentence that summarises both.
+// Whether an identification may be used, and the figures that this rests on.
 #pragma once
 
 #include "kinfer/evidence/identification.hpp"
 
 namespace kinfer::identify {
 
-/// Sets `verdict` and `use` and appends the findings to `notes`. Everything else must be filled in.
-void set_verdict(Identification& result);
+/// rms acceleration residual of the worst sensor, over the held-out windows if there are any, else over the fitted
+/// rows.
+PredictionSummary summarise_prediction(const MotionEvidence& motion);
+
+/// do_not_use: a fault was not corrected; use_with_care: not every joint is as accurate as wanted.
+Usability usability(const std::vector<Finding>& findings, const std::vector<JointForecast>& forecast);
 
 }  // namespace kinfer::identify

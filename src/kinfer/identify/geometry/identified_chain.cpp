@@ -7,15 +7,10 @@
 #include <cmath>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/identify/geometry/thresholds.hpp"
 
 namespace kinfer::identify {
 namespace {
-
-std::string joint_name(const JointEstimate& joint) {
-  return joint.parent + "-" + joint.child;
-}
-
-constexpr double max_parallel_sine = 1e-3;  // sine of the angle below which two lines count as parallel
 
 /// One end of a link: an axis line, or a centre.
 struct LinkEnd {
@@ -42,20 +37,6 @@ double sd_across(const std::array<double, 2>& sd) {
   return std::hypot(sd[0], sd[1]) / std::sqrt(2.0);
 }
 
-void list_unobservable(JointEstimate& joint) {
-  const auto add = [&](std::size_t count, const std::string& sensor) {
-    if (count == 3)
-      joint.unobservable.push_back(
-          fmt::format("where the axis is in {}, which only stands or shifts without turning", sensor));
-    else if (count > 0)
-      joint.unobservable.push_back(
-          fmt::format("shifts of the axis in {} along what its sensor turns about alone", sensor));
-  };
-  add(joint.unobservable_in_parent.size(), joint.parent);
-  add(joint.unobservable_in_child.size(), joint.child);
-  joint.unobservable.emplace_back("the joint's point along its own axis");
-}
-
 }  // namespace
 
 JointEstimate joint_estimate(const std::string& parent, const std::string& child, const GeometryEstimate& hinge) {
@@ -67,7 +48,6 @@ JointEstimate joint_estimate(const std::string& parent, const std::string& child
   joint.sd = hinge.precision.sd;
   joint.unobservable_in_parent = hinge.precision.unobservable_in_parent;
   joint.unobservable_in_child = hinge.precision.unobservable_in_child;
-  list_unobservable(joint);
   return joint;
 }
 

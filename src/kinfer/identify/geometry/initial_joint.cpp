@@ -189,14 +189,6 @@ void start_universal(InitialJoint& start, const SensorPair& pair) {
 
 }  // namespace
 
-Mat3 frame_with_z_along(const Vec3& axis) {
-  Mat3 frame;
-  frame.col(2) = axis.normalized();
-  frame.col(0) = any_perpendicular(axis).normalized();
-  frame.col(1) = frame.col(2).cross(frame.col(0));
-  return frame;
-}
-
 InitialJoint estimate_initial_joint(const RecordedMotion& motion, const SegmentTree& tree, std::size_t parent,
                                     std::size_t child, EstimatedJointType type) {
   const PairFit& fit = tree.pair(parent, child);

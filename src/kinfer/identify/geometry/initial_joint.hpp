@@ -21,7 +21,4 @@ struct InitialJoint {
 InitialJoint estimate_initial_joint(const RecordedMotion& motion, const SegmentTree& tree, std::size_t parent,
                                     std::size_t child, EstimatedJointType type);
 
-/// A rotation whose third column is the unit vector.
-Mat3 frame_with_z_along(const Vec3& axis);
-
 }  // namespace kinfer::identify

@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/identify/geometry/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::identify {
 namespace {
 
-constexpr double parallel_sine = 0.1;    // sine of the angle between two lines that count as parallel below it
 constexpr double zero_tolerance = 1e-9;  // [rad] or [m]; below it, a parameter counts as 0
 
 /// Unit vectors that all rotations map onto each other, R b = a: the smallest singular direction of [R, -1].
@@ -126,7 +126,7 @@ Pose transform(const DhNumbers& row) {
 DhNumbers dh_row_to_line(const Vec3& point, const Vec3& direction) {
   const double sine = std::hypot(direction.x(), direction.y());
   DhNumbers row;
-  if (sine < parallel_sine) {  // x towards where the line meets the plane d = 0; then two small rotations
+  if (sine < max_hayati_sine) {  // x towards where the line meets the plane d = 0; then two small rotations
     const Vec3 meets = point - (point.z() / direction.z()) * direction;
     row.a = std::hypot(meets.x(), meets.y());
     row.theta = row.a > zero_tolerance ? std::atan2(meets.y(), meets.x()) : 0.0;

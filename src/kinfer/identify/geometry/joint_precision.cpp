@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/identify/geometry/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::identify {
 namespace {
 
-constexpr double unobservable_sd = 0.5;  // [m] a lever direction with a larger standard deviation is unobservable
-constexpr double prior_sd = 100.0;       // [m] or [rad] sd of the prior that keeps unobservable parameters finite
+constexpr double prior_sd = 100.0;  // [m] or [rad] sd of the prior that keeps unobservable parameters finite
 
 /// The ten parameters as small motions of a frame with z along the axis (0-2: rotations about x y z, 3-5:
 /// translations), on the parent's and on the child's side.
@@ -93,7 +93,7 @@ std::vector<Vec3> unobservable_levers(const std::vector<FrameState>& states, con
   const SymmetricEigen eigen = symmetric_eigen(gram);
   std::vector<Vec3> hidden;
   for (Eigen::Index k = 0; k < 3; ++k)
-    if (eigen.values[k] * unobservable_sd * unobservable_sd < variance) hidden.push_back(eigen.vectors.col(k));
+    if (eigen.values[k] * max_lever_sd * max_lever_sd < variance) hidden.push_back(eigen.vectors.col(k));
   return hidden;
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kinfer/identify/structure/joint_type.hpp"
+#include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::identify {

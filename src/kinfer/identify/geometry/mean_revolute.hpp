@@ -7,7 +7,6 @@
 #pragma once
 
 #include "kinfer/estimate/continuous/model/problem.hpp"
-#include "kinfer/identify/geometry/initial_joint.hpp"
 
 namespace kinfer::identify {
 

@@ -7,13 +7,17 @@
 
 namespace kinfer::identify {
 
-struct BacterialLinkOptions {
+/// Bacterial programming as in paper 1.
+struct BacterialProgramming {
+  /// Relative rotations have an arbitrary zero, so an offset is allowed; Euler angles are taken as they are.
+  JointVariableKind terminals = JointVariableKind::hinge;
   BacterialOptions bacteria{};
   DepthLimits depth{};
-  DhLeafOptions leaf{};  ///< its number of signals is set for each link
-  LinkCostOptions cost{};
-  int rows = 384;  ///< samples in eq. (20), evenly spaced; more samples average out more noise
+  int rows = default_link_rows;  ///< samples in eq. (20), evenly spaced; more samples average out more noise
 };
+
+/// How the orientations are compared in eq. (20).
+OrientationMetric orientation_metric(JointVariableKind terminals);
 
 using LinkEvolution = EvolutionOutcome<DhTree>;
 
@@ -25,6 +29,6 @@ std::vector<std::size_t> informative_rows(const RecordedMotion& motion, std::siz
 /// Searches the chain from the parent's sensor to the child's. `rows` are evenly thinned to options.rows.
 LinkEvolution search_bacterial(const std::vector<FrameState>& parent, const std::vector<FrameState>& child,
                                std::span<const JointSignal> signals, const std::vector<std::size_t>& rows,
-                               const BacterialLinkOptions& options, const Rng& rng, const Observer& observer = {});
+                               const BacterialProgramming& options, const Rng& rng, const Observer& observer = {});
 
 }  // namespace kinfer::identify

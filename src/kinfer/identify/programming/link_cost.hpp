@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "kinfer/identify/programming/frame_state.hpp"
+#include "kinfer/identify/programming/thresholds.hpp"
 
 namespace kinfer::identify {
 

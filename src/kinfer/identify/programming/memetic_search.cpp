@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/identify/programming/thresholds.hpp"
 #include "kinfer/search/evolution/bacterial_programming.hpp"
 
 namespace kinfer::identify {
@@ -48,8 +49,6 @@ class StructureFitCache {
   std::mutex mutex_;
 };
 
-constexpr double min_gain = 1e-5;  // of the cost: many structures are different forms of the same chain
-
 /// Best cost against the number of evaluations.
 struct CostHistory {
   std::vector<double> cost;
@@ -70,7 +69,7 @@ void search_neighbours(StructureFitCache& fits, LinkStructure& best, double& cos
     std::vector<double> costs(others.size());
     parallel_for(others.size(), threads, [&](std::size_t i) { costs[i] = fits.cost(others[i]); });
     const auto least = static_cast<std::size_t>(std::ranges::min_element(costs) - costs.begin());
-    if (costs[least] < cost * (1.0 - min_gain)) {
+    if (costs[least] < cost * (1.0 - min_structure_gain)) {
       best = others[least];
       cost = costs[least];
       is_better = true;
@@ -91,17 +90,16 @@ StructureSearchOutcome outcome_of(const StructureFitCache& fits, const LinkStruc
 }
 
 StructureFitter make_fitter(const std::vector<FrameState>& parent, const std::vector<FrameState>& child,
-                            std::span<const JointSignal> signals, const std::vector<std::size_t>& rows,
-                            const MemeticOptions& options) {
-  return {parent, child, signals, thin_rows(rows, static_cast<std::size_t>(options.rows)), options.fit};
+                            std::span<const JointSignal> signals, const std::vector<std::size_t>& rows, int count) {
+  return {parent, child, signals, thin_rows(rows, static_cast<std::size_t>(count)), {}};
 }
 
 }  // namespace
 
 StructureSearchOutcome search_memetic(const std::vector<FrameState>& parent, const std::vector<FrameState>& child,
                                       std::span<const JointSignal> signals, const std::vector<std::size_t>& rows,
-                                      const MemeticOptions& options, const Rng& rng, const Observer& observer) {
-  const StructureFitter link = make_fitter(parent, child, signals, rows, options);
+                                      const MemeticProgramming& options, const Rng& rng, const Observer& observer) {
+  const StructureFitter link = make_fitter(parent, child, signals, rows, options.rows);
   StructureFitCache fits(link);
   CostHistory history;
   int stalled_generations = 0;
@@ -109,7 +107,7 @@ StructureSearchOutcome search_memetic(const std::vector<FrameState>& parent, con
     stalled_generations = !history.cost.empty() && !(progress.best < history.cost.back()) ? stalled_generations + 1 : 0;
     history.cost.push_back(progress.best);
     history.evaluations.push_back(fits.evaluations());
-    return stalled_generations >= options.patience ? ObserverDecision::stop : notify(observer, progress);
+    return stalled_generations >= patience ? ObserverDecision::stop : notify(observer, progress);
   };
   const auto evolved = evolve_bacteria(
       StructureOperators{}, GenomeCost<LinkStructure>([&](const LinkStructure& s, double) { return fits.cost(s); }),
@@ -136,13 +134,12 @@ StructureSearchOutcome search_memetic(const std::vector<FrameState>& parent, con
 
 StructureSearchOutcome search_exhaustive(const std::vector<FrameState>& parent, const std::vector<FrameState>& child,
                                          std::span<const JointSignal> signals, const std::vector<std::size_t>& rows,
-                                         const MemeticOptions& options) {
-  const StructureFitter link = make_fitter(parent, child, signals, rows, options);
+                                         const Enumeration& options, int threads) {
+  const StructureFitter link = make_fitter(parent, child, signals, rows, options.rows);
   StructureFitCache fits(link);
   const std::vector<LinkStructure> structures = enumerate_structures(max_structure_leaves);
   std::vector<double> costs(structures.size());
-  parallel_for(structures.size(), options.bacteria.threads,
-               [&](std::size_t i) { costs[i] = fits.cost(structures[i]); });
+  parallel_for(structures.size(), threads, [&](std::size_t i) { costs[i] = fits.cost(structures[i]); });
   const auto least = static_cast<std::size_t>(std::ranges::min_element(costs) - costs.begin());
   StructureSearchOutcome outcome = outcome_of(fits, structures[least], costs[least]);
   outcome.best_history = {costs[least]};

@@ -9,11 +9,15 @@
 
 namespace kinfer::identify {
 
-struct MemeticOptions {
+/// Memetic bacterial programming: structures evolve, parameters are fitted.
+struct MemeticProgramming {
   BacterialOptions bacteria{.individuals = 10, .generations = 30, .clones = 3, .cycles = 1, .transfers = 3};
-  StructureFitOptions fit{};
-  int patience = 4;  ///< generations without improvement, after which a local search among neighbours follows
-  int rows = 384;    ///< samples in the cost, evenly spaced
+  int rows = default_link_rows;  ///< samples in the cost, evenly spaced
+};
+
+/// Every structure of up to three leaves.
+struct Enumeration {
+  int rows = default_link_rows;  ///< samples in the cost, evenly spaced
 };
 
 struct StructureSearchOutcome {
@@ -31,11 +35,11 @@ struct StructureSearchOutcome {
 /// `signals`: exactly one. `rows` are evenly thinned to options.rows.
 StructureSearchOutcome search_memetic(const std::vector<FrameState>& parent, const std::vector<FrameState>& child,
                                       std::span<const JointSignal> signals, const std::vector<std::size_t>& rows,
-                                      const MemeticOptions& options, const Rng& rng, const Observer& observer = {});
+                                      const MemeticProgramming& options, const Rng& rng, const Observer& observer = {});
 
 /// Every structure of up to three leaves that uses the signal once.
 StructureSearchOutcome search_exhaustive(const std::vector<FrameState>& parent, const std::vector<FrameState>& child,
                                          std::span<const JointSignal> signals, const std::vector<std::size_t>& rows,
-                                         const MemeticOptions& options);
+                                         const Enumeration& options, int threads = 0);
 
 }  // namespace kinfer::identify

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/identify/programming/link_block.hpp"
-#include "kinfer/identify/structure/joint_type.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/identify/programming/angle_start.hpp"
+#include "kinfer/identify/programming/linear_columns.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::identify {
@@ -16,7 +16,6 @@ namespace {
 
 using Index = Eigen::Index;
 constexpr std::int64_t whole_pass = 8;  // eighths of a pass over all rows
-constexpr Index biases = 6;             // parent's accelerometer, then the child's
 
 /// The constants of the leaves' angles, in order.
 std::vector<double*> constant_angles(const LinkStructure& structure, std::vector<DhLeaf>& leaves) {
@@ -46,133 +45,6 @@ std::vector<DhLeaf> leaves_of(const LinkStructure& structure) {
   for (const LeafStructure& leaf : structure.leaves)
     leaves.push_back({.theta_signal = signal(leaf.theta), .alpha_signal = signal(leaf.alpha)});
   return leaves;
-}
-
-/// Rotation of the leaves as constant + cos q · cosine + sin q · sine; the signal occurs once.
-struct RotationInSignal {
-  Mat3 constant = Mat3::Identity(), cosine = Mat3::Zero(), sine = Mat3::Zero();
-
-  void rotate(const Mat3& r) { constant *= r, cosine *= r, sine *= r; }
-  void rotate_by_signal(int axis) {  // R(q) = n nᵀ + cos q (1 − n nᵀ) + sin q [n]×
-    const Vec3 n = axis == 0 ? Vec3::UnitX() : Vec3::UnitZ();
-    const Mat3 before = constant;
-    constant = before * (n * n.transpose());
-    cosine = before - constant;
-    sine = before * skew(n);
-  }
-};
-
-/// Σ tr(R~ᵀ R): half the sum of the squared chords is 3 n minus this.
-double agreement(const std::vector<DhLeaf>& leaves, const std::array<Mat3, 3>& moments) {
-  RotationInSignal chain;
-  for (const DhLeaf& leaf : leaves) {
-    if (leaf.theta != 0.0) chain.rotate(rot_z(leaf.theta));
-    if (leaf.theta_signal != DhLeaf::constant) chain.rotate_by_signal(2);
-    if (leaf.alpha != 0.0) chain.rotate(rot_x(leaf.alpha));
-    if (leaf.alpha_signal != DhLeaf::constant) chain.rotate_by_signal(0);
-  }
-  return moments[0].cwiseProduct(chain.constant).sum() + moments[1].cwiseProduct(chain.cosine).sum() +
-         moments[2].cwiseProduct(chain.sine).sum();
-}
-
-/// Coordinate ascent: sets each angle in turn to the maximum of the agreement, a sinusoid in it.
-double sweep_angles(std::vector<DhLeaf>& leaves, const std::vector<double*>& angles,
-                    const std::array<Mat3, 3>& moments) {
-  double best = agreement(leaves, moments);
-  for (double* angle : angles) {
-    const auto at = [&](double value) { return *angle = value, agreement(leaves, moments); };
-    const double zero = at(0.0), half = at(std::numbers::pi), quarter = at(0.5 * std::numbers::pi);
-    best = at(std::atan2(quarter - 0.5 * (zero + half), 0.5 * (zero - half)));
-  }
-  return best;
-}
-
-/// A Newton step on the agreement in all angles, damped until the agreement increases.
-double newton_step(std::vector<DhLeaf>& leaves, const std::vector<double*>& angles, const std::array<Mat3, 3>& moments,
-                   double& damping, double best) {
-  constexpr double h = 1e-4;  // [rad]
-  const auto n = static_cast<Index>(angles.size());
-  const auto at = [&](Index i, double di, Index j, double dj) {
-    double &a = *angles[static_cast<std::size_t>(i)], &b = *angles[static_cast<std::size_t>(j)];
-    const double a_before = a, b_before = b;
-    a += di;
-    b += dj;
-    const double value = agreement(leaves, moments);
-    b = b_before;
-    a = a_before;
-    return value;
-  };
-  VectorXd gradient(n), up(n);
-  MatrixXd curvature(n, n);
-  for (Index i = 0; i < n; ++i) {
-    up[i] = at(i, h, i, 0.0);
-    const double down = at(i, -h, i, 0.0);
-    gradient[i] = (up[i] - down) / (2.0 * h);
-    curvature(i, i) = -(up[i] - 2.0 * best + down) / (h * h);
-  }
-  for (Index i = 0; i < n; ++i)
-    for (Index j = 0; j < i; ++j)
-      curvature(i, j) = curvature(j, i) = -(at(i, h, j, h) - up[i] - up[j] + best) / (h * h);
-  const std::vector<DhLeaf> before = leaves;
-  const double size = std::max(1.0, curvature.diagonal().cwiseAbs().maxCoeff());
-  for (int tries = 0; tries < 8; ++tries, damping = std::max(10.0 * damping, 1e-6)) {
-    const auto change = solve_spd(curvature + damping * size * MatrixXd::Identity(n, n), gradient);
-    if (!change) continue;
-    for (Index i = 0; i < n; ++i) *angles[static_cast<std::size_t>(i)] += (*change)[i];
-    if (const double now = agreement(leaves, moments); now > best) return damping *= 0.03, now;
-    for (std::size_t i = 0; i < leaves.size(); ++i)
-      leaves[i].theta = before[i].theta, leaves[i].alpha = before[i].alpha;
-  }
-  return best;
-}
-
-/// Maximises the agreement over the angles from their current values.
-double maximise_agreement(std::vector<DhLeaf>& leaves, const std::vector<double*>& angles,
-                          const std::array<Mat3, 3>& moments, double tolerance) {
-  constexpr int sweeps = 4, most_newton_steps = 25;
-  double best = agreement(leaves, moments), damping = 1e-6;
-  for (int k = 0; k < sweeps && !angles.empty(); ++k) best = sweep_angles(leaves, angles, moments);
-  for (int k = 0; k < most_newton_steps && !angles.empty(); ++k) {
-    const double before = best;
-    best = newton_step(leaves, angles, moments, damping, before);
-    if (best - before < tolerance) break;
-  }
-  return best;
-}
-
-double dot(const Lanes3& a, const Lanes3& b, const Lane& weight) {
-  double sum = 0.0;
-  for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < block_width; ++i) sum += weight[i] * a[c][i] * b[c][i];
-  return sum;
-}
-
-/// a − b
-Lanes3 difference(const Lanes3& a, const Lanes3& b) {
-  Lanes3 result;
-  for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < block_width; ++i) result[c][i] = a[c][i] - b[c][i];
-  return result;
-}
-
-/// Columns of the linear unknowns: d and a of each leaf, then the biases. `frame` becomes that after the leaves.
-std::vector<Lanes3> linear_columns(const LinkBlock& block, const std::vector<DhLeaf>& leaves, FrameLanes& frame) {
-  std::vector<Lanes3> columns(2 * leaves.size() + static_cast<std::size_t>(biases));
-  frame = block.parent;
-  for (std::size_t l = 0; l < leaves.size(); ++l) {
-    block.rotate_theta(frame, leaves[l]);
-    lever_arm_column(frame, 2, columns[2 * l]);
-    lever_arm_column(frame, 0, columns[2 * l + 1]);
-    block.rotate_alpha(frame, leaves[l]);
-  }
-  for (std::size_t k = 0; k < 3; ++k) {  // measured = true + R b: the prediction contains the parent's bias
-    Lanes3& of_parent = columns[2 * leaves.size() + k];
-    of_parent = block.parent.axes[k];
-    for (Lane& lane : of_parent)
-      for (double& value : lane) value = -value;
-    columns[2 * leaves.size() + 3 + k] = block.axes[k];
-  }
-  return columns;
 }
 
 MatrixXd full_symmetric(const MatrixXd& lower) {
@@ -252,7 +124,7 @@ StructureFitter::Normal StructureFitter::normal(const LinkStructure& structure, 
   constexpr double difference_step = 1e-6;  // [rad]
   std::vector<DhLeaf> moved = leaves;
   const auto angles = with_angles ? constant_angles(structure, moved) : std::vector<double*>{};
-  const auto k = static_cast<Index>(angles.size()), linear = 2 * static_cast<Index>(leaves.size()) + biases;
+  const auto k = static_cast<Index>(angles.size()), linear = 2 * static_cast<Index>(leaves.size()) + bias_count;
   Normal sum{MatrixXd::Zero(k + linear, k + linear), VectorXd::Zero(k + linear)};
   FrameLanes frame;
   const std::vector<std::size_t> leaf = constant_leaves(structure);
@@ -300,7 +172,7 @@ StructureFitter::Normal StructureFitter::normal(const LinkStructure& structure, 
     }
   }
   for (Index i = k; i < k + linear; ++i) {
-    const double prior = i < k + linear - biases ? options_.length_prior : options_.bias_prior;
+    const double prior = i < k + linear - bias_count ? options_.length_prior : options_.bias_prior;
     sum.matrix(i, i) += sum.rows * prior * prior;
   }
   return sum;

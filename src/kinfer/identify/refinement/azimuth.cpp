@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "kinfer/identify/refinement/thresholds.hpp"
+
 namespace kinfer::identify {
 namespace {
 
@@ -24,9 +26,8 @@ double rotation_sd(ConstMatrixRef covariance, Index first, const MatrixXd& deriv
 }  // namespace
 
 double azimuth_sd(const InsLayout& layout, const InsBodies& bodies, ConstMatrixRef covariance, std::size_t body) {
-  constexpr double min_lever = 0.1;  // [m], or sine of the angle between axes
   const Vec3 axis = bodies[body].child_R_axis.col(2);
-  double longest = min_lever, sd = 0.0;
+  double longest = min_azimuth_lever, sd = 0.0;
   for (std::size_t next = body + 1; next < bodies.size(); ++next) {
     const InsBody& joint = bodies[next];
     if (joint.parent != static_cast<int>(body) || !joint.free_parent_rotation[0]) continue;
@@ -37,7 +38,7 @@ double azimuth_sd(const InsLayout& layout, const InsBodies& bodies, ConstMatrixR
     if (lever > longest) {
       longest = lever;
       sd = rotation_sd(covariance, layout.body[next], by_rotations, direction, axis);
-    } else if (longest <= min_lever && perpendicular_part(arm, axis).norm() > min_lever) {
+    } else if (longest <= min_azimuth_lever && perpendicular_part(arm, axis).norm() > min_azimuth_lever) {
       const Index point = layout.body[next] + joint.unknowns() - (joint.free_point_in_child ? 6 : 3);
       sd = rotation_sd(covariance, point, MatrixXd::Identity(3, 3), arm, axis);
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kinfer/estimate/continuous/solver/normal_equations.hpp"
+#include "kinfer/identify/refinement/thresholds.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -13,8 +14,6 @@ using Index = Eigen::Index;
 
 constexpr double clock_offset_sd = 0.01;  // [s] error left by the correlation of angular velocities
 constexpr double clock_drift_sd = 1e-4;   // [s/s] quartz is within 100 ppm
-constexpr double least_offset = 2e-4;     // [s] smaller offsets are harmless
-constexpr double suspicion_threshold = 4.0, certainty_threshold = 6.0;  // standard deviations
 
 double squared_rotation(const InsMeasurements& readings) {
   double sum = 0.0;
@@ -30,7 +29,7 @@ double largest_shift(const ClockCorrection& clock, const SplineGrid& grid) {
 bool is_significant(const ResidualClock& clock, const SplineGrid& grid, double certainty) {
   const bool by_offset = std::abs(clock.correction.offset) > certainty * clock.offset_sd;
   const bool by_drift = std::abs(clock.correction.drift) > certainty * clock.drift_sd;
-  return (by_offset || by_drift) && largest_shift(clock.correction, grid) > least_offset;
+  return (by_offset || by_drift) && largest_shift(clock.correction, grid) > min_clock_offset;
 }
 
 ResidualClock residual_clock(const InsFit& fit, const InsCovariance& covariance, std::size_t sensor, double middle) {
@@ -86,7 +85,7 @@ bool clocks_are_doubtful(InsProblem& problem, const InsFit& fit, int threads) {
   const auto are_suspicious = [&](const std::optional<InsCovariance>& covariance) {
     return covariance &&
            std::ranges::any_of(refined_clocks(problem, next, *covariance), [&](const ResidualClock& clock) {
-             return is_significant(clock, problem.grid, suspicion_threshold);
+             return is_significant(clock, problem.grid, clock_suspicion);
            });
   };
   // The sandwich estimator only increases standard deviations and is by far the most expensive step: it comes last.
@@ -100,7 +99,7 @@ void refit_with_free_clocks(InsProblem& problem, InsFit& fit, const InsFitOption
   if (!covariance) return;
   const auto clocks = refined_clocks(problem, trial, *covariance);
   if (std::ranges::none_of(
-          clocks, [&](const ResidualClock& clock) { return is_significant(clock, problem.grid, certainty_threshold); }))
+          clocks, [&](const ResidualClock& clock) { return is_significant(clock, problem.grid, clock_certainty); }))
     return;
   free.keep();
   fit = std::move(trial);

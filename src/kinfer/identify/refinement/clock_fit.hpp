@@ -2,8 +2,9 @@
 // Clock offsets and drifts as unknowns of the continuous-time fit.
 #pragma once
 
+#include "kinfer/estimate/continuous/solver/batch_fit.hpp"
 #include "kinfer/estimate/continuous/solver/covariance.hpp"
-#include "kinfer/identify/refinement/refine.hpp"
+#include "kinfer/identify/refinement/residual_clock.hpp"
 
 namespace kinfer::identify {
 

@@ -12,6 +12,8 @@ namespace {
 
 using Index = Eigen::Index;
 
+constexpr std::size_t max_trajectory_frames = 600;  // enough for a smooth animation of a minute
+
 MatrixXd spline_values(const SplineGrid& grid, ConstMatrixRef coefficients, std::span<const double> times) {
   MatrixXd values(coefficients.rows(), static_cast<Index>(times.size()));
   for (std::size_t i = 0; i < times.size(); ++i)
@@ -35,6 +37,17 @@ MatrixXd spherical_trajectory(const MatrixXd& turns, const Mat3& axes) {
 }
 
 }  // namespace
+
+Binning trajectory_frames(const RecordedMotion& motion) {
+  return binning(motion.rows(), max_trajectory_frames);
+}
+
+std::vector<double> trajectory_times(const RecordedMotion& motion) {
+  std::vector<double> times;
+  for (std::size_t row = 0; row < motion.rows(); row += trajectory_frames(motion).size)
+    times.push_back(motion.time[row]);
+  return times;
+}
 
 Vec3 cardan_angles(const Mat3& r, const Vec3& before) {
   constexpr double half_turn = std::numbers::pi, full_turn = 2.0 * half_turn;

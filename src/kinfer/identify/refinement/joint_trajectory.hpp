@@ -3,9 +3,17 @@
 #pragma once
 
 #include "kinfer/estimate/continuous/model/uniform_spline.hpp"
+#include "kinfer/evidence/traces.hpp"
 #include "kinfer/identify/refinement/refined_joint.hpp"
+#include "kinfer/inertial/segment_motion.hpp"
 
 namespace kinfer::identify {
+
+/// The rows of the motion that make one frame of the joint trajectory.
+Binning trajectory_frames(const RecordedMotion& motion);
+
+/// [s] Times of the joint trajectory: the first row of each frame.
+std::vector<double> trajectory_times(const RecordedMotion& motion);
 
 /// One row per joint variable, in the order of joint_axes, one column per time [rad] or [m]. `bodies`: as passed to
 /// refined_joint. `coefficients`: of the splines of their joint positions, one row per degree of freedom.

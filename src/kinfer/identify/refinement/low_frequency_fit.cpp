@@ -9,90 +9,17 @@
 
 #include "kinfer/estimate/continuous/low_frequency.hpp"
 #include "kinfer/estimate/continuous/solver/covariance.hpp"
-#include "kinfer/geometry/statistics.hpp"
-#include "kinfer/identify/geometry/mean_revolute.hpp"
+#include "kinfer/identify/refinement/joint_relaxation.hpp"
 #include "kinfer/identify/refinement/mount_compliance.hpp"
+#include "kinfer/identify/refinement/thresholds.hpp"
 
 namespace kinfer::identify {
 namespace {
 
 using Index = Eigen::Index;
 
-constexpr double finest_knot_spacing = 0.025;  // [s] knot spacing
 constexpr double knots_per_period = 10.0;  // of the cutoff: what remains of waves at twice the cutoff needs five each
-constexpr int low_frequency_iterations = 8;
 constexpr std::array cutoffs{2.0, 1.4, 1.0, 0.7};  // [Hz] widest first
-constexpr double trial_cutoff = 1.0;               // [Hz] for deciding which joints are relaxed
-// In the sum of log residuals. Two additional spline dimensions absorb 0.35 of it by chance; to be justified by the
-// Bayesian information criterion (Schwarz 1978) on a minute of low-frequency motion they need about 2.
-constexpr double min_relaxation_gain = 2.0;
-
-MatrixXd resample_spline(const SplineGrid& to, const SplineGrid& from, ConstMatrixRef band) {
-  const double step = 0.5 * std::min(to.period, from.period);
-  const auto count = static_cast<std::size_t>((from.end() - from.begin) / step);
-  std::vector<double> time;
-  MatrixXd values(static_cast<Index>(count) + 1, band.rows());
-  for (std::size_t i = 0; i <= count; ++i) {
-    time.push_back(from.begin + step * static_cast<double>(i));
-    values.row(static_cast<Index>(i)) = spline_value(from, band, time.back()).transpose();
-  }
-  return fit_spline(to, time, values);
-}
-
-/// Anchors the joint positions at their current values: keeps an unobservable constant of them where it is.
-void anchor(RefinementSetup& setup) {
-  setup.problem.anchor.clear();
-  for (Index k = setup.problem.root_at_rest ? 0 : 6; k < setup.start.spline_coefficients.rows(); ++k)
-    setup.problem.anchor.push_back(setup.start.spline_coefficients(k, 0));
-}
-
-void report_progress(const Observer& observer, const char* stage, double fraction) {
-  notify(observer, {.stage = stage, .fraction = fraction, .best = 0.0, .median = 0.0, .iteration = 0, .detail = {}});
-}
-
-/// The set-up for a recording of the same machine, starting from another fit's result.
-RefinementSetup continue_from(const RefinementTask& task, const InsRecording& recording, double knot_spacing,
-                              const SplineGrid& grid, const InsUnknowns& found) {
-  RefinementSetup setup = set_up_refinement(recording, task.motion, task.tree, task.starts, task.grade, knot_spacing);
-  setup.problem.facts = task.facts;
-  setup.start = found;
-  for (InsErrors& errors : setup.start.errors) errors.clock = {};  // small enough to be neglected here
-  setup.start.spline_coefficients = resample_spline(setup.problem.grid, grid, found.spline_coefficients);
-  anchor(setup);
-  return setup;
-}
-
-/// Fits the motion alone, the chain held fixed.
-InsFit fit_motion_only(const RefinementTask& task, RefinementSetup& setup) {
-  InsFitOptions motion_only = task.options;
-  motion_only.reweighting_rounds = 0;
-  return fit_ins(setup.problem, setup.start, motion_only);
-}
-
-/// The motion at full bandwidth, on the finest knots.
-RefinementFit fit_whole_motion(const RefinementTask& task, const RefinementFit& found) {
-  RefinementFit full_bandwidth{
-      continue_from(task, task.recording, finest_knot_spacing, found.setup.problem.grid, found.fit.unknowns), {}};
-  full_bandwidth.fit = fit_motion_only(task, full_bandwidth.setup);
-  return full_bandwidth;
-}
-
-RefinementFit fit_from(const RefinementTask& task, RefinementSetup setup) {
-  InsFitOptions options = task.options;
-  options.iterations = low_frequency_iterations;
-  RefinementFit result{std::move(setup), {}};
-  result.fit = fit_ins(result.setup.problem, result.setup.start, options);
-  return result;
-}
-
-/// Fits again from the result, after `change` of the set-up.
-template <class Change>
-RefinementFit refit_with(const RefinementTask& task, const RefinementFit& fitted, Change change) {
-  RefinementSetup setup = fitted.setup;
-  setup.start = fitted.fit.unknowns;
-  change(setup);
-  return fit_from(task, std::move(setup));
-}
 
 /// Frees the compliance of the mounts, with this prior sd. Its effects outweigh those of the scale errors by far; these
 /// are held fixed, which halves the number of global parameters.
@@ -116,66 +43,6 @@ RefinementFit fit_below_cutoff(const RefinementTask& task, const RefinementFit& 
     setup.problem.sensors[s].noise = setup.problem.sensors[s].noise_floor = fine.sensors[s].noise_floor;
   free_mount_compliance(setup.problem, low_frequency, tilt);
   return fit_from(task, std::move(setup));
-}
-
-/// Σ log of the instruments' residual noise; outliers have little weight.
-double log_residual(const RefinementFit& fitted) {
-  double sum = 0.0;
-  const auto add = [&](double noise, const InstrumentFit& fit) {
-    if (fit.terms > 0.0) sum += std::log(noise * std::sqrt(fit.squares / fit.terms));
-  };
-  for (std::size_t s = 0; s < fitted.setup.problem.sensors.size(); ++s) {
-    const InsNoise& noise = fitted.setup.problem.sensors[s].noise;
-    add(noise.angular_velocity, fitted.fit.cost.sensors[s].angular_velocity);
-    add(noise.force, fitted.fit.cost.sensors[s].force);
-  }
-  return sum;
-}
-
-RefinementSetup relaxed_setup(const RefinementFit& fitted, const std::vector<std::size_t>& bodies) {
-  RefinementSetup setup = fitted.setup;
-  setup.start = fitted.fit.unknowns;
-  for (const std::size_t body : bodies)
-    relax_to_spherical(setup.start, layout_of(setup.problem, setup.start.bodies), body);
-  anchor(setup);
-  return setup;
-}
-
-/// Decrease of the log residual when a revolute joint is relaxed to a spherical one, the geometry held fixed.
-double relaxation_gain(const RefinementTask& task, const RefinementFit& fitted, std::size_t body) {
-  RefinementFit ball{relaxed_setup(fitted, {body}), {}};
-  ball.fit = fit_motion_only(task, ball.setup);
-  return log_residual(fitted) - log_residual(ball);
-}
-
-/// Revolute joints whose relaxation explains significantly more, and more than that of the others: what all of them
-/// show comes from the mounts.
-std::vector<std::size_t> select_joints_to_relax(const std::vector<std::size_t>& hinges,
-                                                const std::vector<double>& gains) {
-  constexpr double min_ratio_to_others = 1.3;
-  std::vector<std::size_t> to_relax;
-  for (std::size_t i = 0; i < hinges.size(); ++i) {
-    std::vector<double> others = gains;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    if (gains[i] > min_relaxation_gain && (others.empty() || gains[i] > min_ratio_to_others * median(others)))
-      to_relax.push_back(hinges[i]);
-  }
-  return to_relax;
-}
-
-/// Relaxes the joints that are not strictly revolute to spherical ones.
-RefinementFit relax_joints(const RefinementTask& task, RefinementFit fitted, const Observer& observer) {
-  std::vector<std::size_t> hinges;
-  std::vector<double> gains;
-  for (std::size_t b = 1; b < fitted.fit.unknowns.bodies.size(); ++b) {
-    if (fitted.fit.unknowns.bodies[b].motion != JointMotion::revolute) continue;
-    report_progress(observer, "loose joints",
-                    static_cast<double>(b) / static_cast<double>(fitted.fit.unknowns.bodies.size()));
-    hinges.push_back(b);
-    gains.push_back(relaxation_gain(task, fitted, b));
-  }
-  const auto to_relax = select_joints_to_relax(hinges, gains);
-  return to_relax.empty() ? fitted : fit_from(task, relaxed_setup(fitted, to_relax));
 }
 
 /// Standard deviation of the mounts' compliance, estimated from the fit.

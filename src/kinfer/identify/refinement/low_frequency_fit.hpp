@@ -3,26 +3,10 @@
 // frequencies then no longer biases its lengths (low_frequency_measurements).
 #pragma once
 
-#include "kinfer/estimate/continuous/solver/batch_fit.hpp"
-#include "kinfer/identify/refinement/refinement_setup.hpp"
+#include "kinfer/base/observer.hpp"
+#include "kinfer/identify/refinement/refinement_fits.hpp"
 
 namespace kinfer::identify {
-
-/// Inputs that all fits of one recording share.
-struct RefinementTask {
-  const InsRecording& recording;
-  const RecordedMotion& motion;
-  const SegmentTree& tree;
-  const std::vector<InitialJoint>& starts;
-  const SensorModel& grade;
-  const InsFacts& facts;
-  const InsFitOptions& options;
-};
-
-struct RefinementFit {
-  RefinementSetup setup;
-  InsFit fit;
-};
 
 /// Model errors that the covariance from white noise does not contain.
 struct ModelError {

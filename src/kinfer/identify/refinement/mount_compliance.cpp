@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/identify/refinement/thresholds.hpp"
+
 namespace kinfer::identify {
 
 double estimate_mount_compliance(const InsProblem& problem, const InsFit& fit, const InsCovariance& covariance) {
-  constexpr double min_compliance = 1e-5;  // [rad per m/s²] 0.1 mrad under the sensor's own weight: negligible
   const double prior = problem.prior.tilt * problem.prior.tilt;
   double sum_of_squares = 0.0, observed_count = 0.0;
   for (const Eigen::Index first : fit.layout.error)
@@ -17,7 +18,7 @@ double estimate_mount_compliance(const InsProblem& problem, const InsFit& fit, c
       observed_count += std::clamp(1.0 - variance / prior, 0.0, 1.0);
     }
   for (const InsErrors& errors : fit.unknowns.errors) sum_of_squares += errors.tilt.squaredNorm();
-  return observed_count > 0.0 ? std::max(min_compliance, std::sqrt(sum_of_squares / observed_count))
+  return observed_count > 0.0 ? std::max(min_mount_compliance, std::sqrt(sum_of_squares / observed_count))
                               : problem.prior.tilt;
 }
 

@@ -7,18 +7,11 @@
 #include "kinfer/identify/geometry/initial_joint.hpp"
 #include "kinfer/identify/refinement/held_out.hpp"
 #include "kinfer/identify/refinement/refined_joint.hpp"
-#include "kinfer/measurement/clock_correction.hpp"
+#include "kinfer/identify/refinement/residual_clock.hpp"
 #include "kinfer/measurement/machine_measurements.hpp"
 #include "kinfer/measurement/sensor_model.hpp"
 
 namespace kinfer::identify {
-
-/// How the sensors' clocks are treated.
-enum class ClockTreatment {
-  trusted,   ///< as synchronous
-  checked,   ///< as synchronous unless the residuals contradict significantly
-  estimated  ///< each with an offset and a drift relative to the reference
-};
 
 struct RefinementOptions {
   std::optional<SensorModel> grade{};  ///< sensor grade; without it estimated from the recording
@@ -27,12 +20,6 @@ struct RefinementOptions {
   MachineMeasurements facts{};  ///< additional knowledge: touches, tape lengths, surveyed points
   ClockTreatment clocks = ClockTreatment::checked;
   bool hold_out = true;  ///< fit once more without some time windows, to test the chain's predictions
-};
-
-/// Residual clock error of a sensor in the synchronised recording.
-struct ResidualClock {
-  ClockCorrection correction;
-  double offset_sd = 0.0, drift_sd = 0.0;  ///< [s], [s/s]
 };
 
 struct Refinement {

@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replaces the geometry that the search found by that of the continuous-time fit.
+// The geometry of the joints by the continuous-time fit, in place of that of the search.
 #pragma once
 
+#include "kinfer/evidence/identification.hpp"
 #include "kinfer/identify/refinement/refine.hpp"
 
 namespace kinfer::identify {
 
-/// Results of the fit that an Identification does not contain.
-struct RefinementExtras {
+/// Joints with their canonical DH rows, and what the fit that they come from says besides.
+struct ChainGeometry {
+  std::vector<JointEstimate> joints;  ///< parents before children
+  std::vector<DhRowEstimate> dh;      ///< of all joints, in their order
+  std::vector<PointEstimate> places{};
+  std::vector<IdentificationNote> notes{};
   std::vector<ResidualClock> clocks{};  ///< residual clock errors; empty where the clocks agree
   HeldOut held_out{};
 };
 
-/// Replaces joints and canonical DH rows of an identification by refined ones; the joint types are kept. If the fit
-/// fails, the result of the search is kept and a note gives the reason; with facts, this is an error.
-Result<RefinementExtras> refine_geometry(Identification& result, const InsRecording& recording,
-                                         const RecordedMotion& motion, const SegmentTree& tree,
-                                         const RefinementOptions& options, const Observer& observer = {});
+/// Fits the joints of the search to the whole recording; the joint types are kept. If the fit fails, the geometry of
+/// the search is returned with a note on the reason; with facts, this is an error.
+Result<ChainGeometry> refine_geometry(ChainGeometry searched, const InsRecording& recording,
+                                      const RecordedMotion& motion, const SegmentTree& tree,
+                                      const RefinementOptions& options, const Observer& observer = {});
 
 }  // namespace kinfer::identify

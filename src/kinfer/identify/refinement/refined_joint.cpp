@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "kinfer/identify/refinement/thresholds.hpp"
 #include "kinfer/inertial/joint_signals.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
@@ -10,8 +11,6 @@ namespace kinfer::identify {
 namespace {
 
 using Index = Eigen::Index;
-
-constexpr double max_point_sd = 0.3;  // [m] a direction in which a point has a larger sd is unobservable
 
 /// The two directions perpendicular to an axis for which standard deviations are stated.
 std::array<Vec3, 2> perpendicular_directions(const Vec3& axis) {

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/identify/screening/loops.hpp"
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <set>
+
+#include "kinfer/identify/screening/thresholds.hpp"
 
 namespace kinfer::identify {
 namespace {
 
-constexpr double min_moving_rate = 0.05;    // [rad/s] rms relative angular velocity of a moving joint
-constexpr double max_residual_ratio = 3.0;  // factor on the residuals of the tree's own joints
-constexpr double max_off_axis_share = 0.1;  // largest share of the relative angular velocity off the axis
-
 bool is_moving_revolute(const PairFit& pair) {
-  return pair.relative_rate() > min_moving_rate && pair.off_axis_rate() < max_off_axis_share * pair.relative_rate();
+  return pair.relative_rate() > min_loop_joint_rate &&
+         pair.off_axis_rate() < max_revolute_off_axis_share * pair.relative_rate();
 }
 
 bool closes_loop(const SegmentTree& tree, const PairFit& pair) {
@@ -27,7 +24,8 @@ bool closes_loop(const SegmentTree& tree, const PairFit& pair) {
     residual = std::max(residual, own.residual());
     off_axis = std::max(off_axis, own.off_axis_rate());
   }
-  return pair.residual() < max_residual_ratio * residual && pair.off_axis_rate() < max_residual_ratio * off_axis;
+  return pair.residual() < max_loop_residual_ratio * residual &&
+         pair.off_axis_rate() < max_loop_residual_ratio * off_axis;
 }
 
 }  // namespace
@@ -35,7 +33,7 @@ bool closes_loop(const SegmentTree& tree, const PairFit& pair) {
 std::vector<PairFit> loop_closing_pairs(const SegmentTree& tree) {
   std::vector<PairFit> closing;
   std::ranges::copy_if(tree.pairs, std::back_inserter(closing), [&](const PairFit& pair) {
-    return tree.parent[pair.first] != pair.second && tree.parent[pair.second] != pair.first && closes_loop(tree, pair);
+    return !is_edge(tree, pair.first, pair.second) && closes_loop(tree, pair);
   });
   return closing;
 }
@@ -52,13 +50,13 @@ std::vector<Finding> loop_findings(const SegmentTree& tree, const std::vector<Pa
     }
     std::vector<std::string> loop;
     for (const std::size_t s : segments) loop.push_back(names[s]);
-    findings.push_back(
-        {.kind = FindingKind::loop,
-         .severity = Severity::warning,
-         .sentence = fmt::format("the segments {} close a loop: {} and {} share a hinge too ({:.3f} m/s² left, the "
-                                 "others leave up to {:.3f}); the chain is cut open there",
-                                 fmt::join(loop, ", "), names[pair.first], names[pair.second], pair.residual(), worst),
-         .suggestion = "take the joint angles of a linkage as they are measured: they depend on each other"});
+    findings.push_back({.kind = FindingKind::loop,
+                        .severity = Severity::warning,
+                        .values = {{"segments", loop},
+                                   {"first", names[pair.first]},
+                                   {"second", names[pair.second]},
+                                   {"residual", pair.residual()},
+                                   {"largest_tree_residual", worst}}});
   }
   return findings;
 }

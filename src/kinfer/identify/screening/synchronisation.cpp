@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/identify/screening/synchronisation.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/identify/screening/thresholds.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/inertial/sensor_clocks.hpp"
 #include "kinfer/measurement/ins_selection.hpp"
 
 namespace kinfer::identify {
 namespace {
-
-constexpr double usual_offset_scatter = 6e-3;  // [s] scatter of offsets on one clock: each segment also moves by itself
-constexpr double negligible_shift = 1e-3;      // [s] without effect on segment tree and joint types
-constexpr double min_reported_shift = 2e-4;    // [s] smaller shifts are not reported
 
 /// Correction of a logger as a whole: the median over its sensors.
 ClockCorrection logger_correction(const InsRecording& recording, const std::vector<ClockEstimate>& clocks,
@@ -79,19 +74,6 @@ double tree_length(const InsRecording& recording, const SegmentMotionOptions& op
   return length;
 }
 
-std::string clock_sentence(const SensorClockEstimate& clock) {
-  const auto sd = [](double value, double scale) {
-    return value > 0.0 ? fmt::format(" (± {:.2f})", scale * value) : "";
-  };
-  std::string text =
-      fmt::format("the readings of {} are logged {:.2f}{} ms {}", clock.sensor, 1e3 * std::abs(clock.offset),
-                  sd(clock.offset_sd, 1e3), clock.offset < 0.0 ? "late" : "early");
-  if (std::abs(clock.drift) > 4.0 * clock.drift_sd)
-    text += fmt::format(", and its clock runs {:.1f}{} ppm {}", 1e6 * std::abs(clock.drift), sd(clock.drift_sd, 1e6),
-                        clock.drift < 0.0 ? "fast" : "slow");
-  return text;
-}
-
 bool all_zero(const std::vector<ClockCorrection>& corrections) {
   return std::ranges::all_of(corrections, &ClockCorrection::is_none);
 }
@@ -110,11 +92,10 @@ Synchronisation synchronise_sensors(const InsRecording& recording, const Segment
   const auto loggers = logger_corrections(recording, clocks), own = sensor_corrections(recording, clocks, loggers);
   Synchronisation by_logger{synchronised_by(loggers), loggers, clock_treatment};
   if (equal(loggers, own)) return by_logger;
-  constexpr double min_gain = 0.3;  // [nats per row]
   Synchronisation by_sensor{synchronised_by(own), own, ClockTreatment::estimated};
   const double gain =
       tree_length(by_logger.of(recording), options, threads) - tree_length(by_sensor.of(recording), options, threads);
-  return gain > min_gain ? by_sensor : by_logger;
+  return gain > min_own_clock_gain ? by_sensor : by_logger;
 }
 
 bool update_clocks(Synchronisation& clock, const InsRecording& recording, const std::vector<ResidualClock>& found) {
@@ -134,33 +115,37 @@ bool update_clocks(Synchronisation& clock, const InsRecording& recording, const 
   return true;
 }
 
-void restrict_to(Synchronisation& clock, const InsRecording& recording, const std::vector<std::size_t>& sensors,
-                 double begin, double end) {
-  clock.begin = std::max(clock.begin, begin);
-  clock.end = std::min(clock.end, end);
+void restrict_to(Synchronisation& clock, const InsRecording& recording, const RecordingSelection& part) {
+  clock.begin = std::max(clock.begin, part.begin);
+  clock.end = std::min(clock.end, part.end);
   std::vector<ClockCorrection> kept;
-  for (const std::size_t s : sensors) kept.push_back(clock.corrections[s]);
+  for (const std::size_t s : part.sensors) kept.push_back(clock.corrections[s]);
   clock.corrections = std::move(kept);
-  clock.synchronised = within(select_sensors(clock.of(recording), sensors), clock.begin, clock.end);
+  clock.synchronised = within(select_sensors(clock.of(recording), part.sensors), clock.begin, clock.end);
 }
 
-void report_clocks(Identification& result, const Synchronisation& clock, const InsRecording& recording,
-                   const std::vector<ResidualClock>& found) {
-  if (found.empty() && all_zero(clock.corrections)) return;
+ClockReport report_clocks(const Synchronisation& clock, const InsRecording& recording,
+                          const std::vector<ResidualClock>& residual) {
+  ClockReport report;
+  if (residual.empty() && all_zero(clock.corrections)) return report;
   for (std::size_t s = 0; s < clock.corrections.size(); ++s) {
     const auto time = recording.time(recording.sensors[s]);
     const ClockCorrection& c = clock.corrections[s];
     const double middle = 0.5 * (time.front() + time.back());
     SensorClockEstimate evidence{.sensor = recording.sensors[s].name, .offset = c.shift_at(middle), .drift = c.drift};
-    if (!found.empty()) evidence.offset_sd = found[s].offset_sd, evidence.drift_sd = found[s].drift_sd;
-    result.clocks.push_back(evidence);
+    if (!residual.empty()) evidence.offset_sd = residual[s].offset_sd, evidence.drift_sd = residual[s].drift_sd;
+    report.clocks.push_back(evidence);
     if (std::max(std::abs(c.shift_at(time.front())), std::abs(c.shift_at(time.back()))) < min_reported_shift) continue;
-    result.findings.push_back({.kind = FindingKind::clock,
+    report.findings.push_back({.kind = FindingKind::clock,
                                .severity = Severity::warning,
-                               .sentence = clock_sentence(evidence),
-                               .suggestion = "put all sensors on one clock, or let their loggers synchronise",
+                               .values = {{"sensor", evidence.sensor},
+                                          {"offset", evidence.offset},
+                                          {"drift", evidence.drift},
+                                          {"offset_sd", evidence.offset_sd},
+                                          {"drift_sd", evidence.drift_sd}},
                                .applied = true});
   }
+  return report;
 }
 
 }  // namespace kinfer::identify

@@ -6,7 +6,8 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/evidence/identification.hpp"
-#include "kinfer/identify/refinement/refine.hpp"
+#include "kinfer/identify/refinement/residual_clock.hpp"
+#include "kinfer/identify/screening/recording_selection.hpp"
 #include "kinfer/inertial/segment_motion.hpp"
 
 namespace kinfer::identify {
@@ -29,12 +30,16 @@ Synchronisation synchronise_sensors(const InsRecording& recording, const Segment
 /// and joint types) should be repeated.
 bool update_clocks(Synchronisation& clock, const InsRecording& recording, const std::vector<ResidualClock>& found);
 
-/// Restricts the recording to some of the sensors, from `begin` to `end` [s] on the common clock.
-void restrict_to(Synchronisation& clock, const InsRecording& recording, const std::vector<std::size_t>& sensors,
-                 double begin, double end);
+/// Restricts the recording to the selected sensors and time span.
+void restrict_to(Synchronisation& clock, const InsRecording& recording, const RecordingSelection& part);
 
-/// Reports corrected clocks: evidence and findings.
-void report_clocks(Identification& result, const Synchronisation& clock, const InsRecording& recording,
-                   const std::vector<ResidualClock>& found);
+struct ClockReport {
+  std::vector<SensorClockEstimate> clocks;  ///< one per sensor; empty if all clocks agree
+  std::vector<Finding> findings;            ///< one for each clock that was corrected notably
+};
+
+/// The corrections of the sensors' clocks. `residual`: of the last fit, for the standard deviations.
+ClockReport report_clocks(const Synchronisation& clock, const InsRecording& recording,
+                          const std::vector<ResidualClock>& residual);
 
 }  // namespace kinfer::identify

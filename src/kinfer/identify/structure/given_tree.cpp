@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/identify/structure/thresholds.hpp"
+
 namespace kinfer::identify {
 namespace {
 
@@ -13,10 +15,6 @@ Result<std::size_t> sensor_named(const std::vector<std::string>& names, const st
   const auto found = std::ranges::find(names, name);
   if (found == names.end()) return error("--tree {}: no such sensor; the log has {}", name, fmt::join(names, ", "));
   return static_cast<std::size_t>(found - names.begin());
-}
-
-bool joined(const SegmentTree& tree, std::size_t a, std::size_t b) {
-  return tree.parent[a] == b || tree.parent[b] == a;
 }
 
 /// Worst link on the found tree's path between two segments: the one that the given link replaces.
@@ -27,23 +25,18 @@ const PairFit& replaced_pair(const SegmentTree& found, std::size_t a, std::size_
   return *worst;
 }
 
-Finding finding_about(const PairFit& given, const PairFit& replacement, const std::vector<std::string>& names) {
-  constexpr double decisive_gap = 0.7;  // [nats per row] twice the unexplained motion
-  const double gap = given.distance - replacement.distance;
-  const std::string link = names[given.first] + "-" + names[given.second],
-                    other = names[replacement.first] + "-" + names[replacement.second];
-  if (gap < decisive_gap)
-    return {.kind = FindingKind::given_link,
-            .severity = Severity::note,
-            .sentence = fmt::format("the given link {} fits about as well as {}, which the log alone would choose",
-                                    link, other)};
+/// [m/s²], [rad/s], and the ratio of the motion that the two pairs leave unexplained a row.
+Finding finding_about(const PairFit& given, const PairFit& replaced, const std::vector<std::string>& names) {
+  const double gap = given.distance - replaced.distance;
   return {.kind = FindingKind::given_link,
-          .severity = Severity::fault,
-          .sentence = fmt::format("the given link {} is against the log: a joint there leaves {:.3f} m/s² and {:.4f} "
-                                  "rad/s unexplained, {} leaves {:.3f} m/s² and {:.4f} rad/s ({:.2g} times less a row)",
-                                  link, given.residual(), given.off_axis_rate(), other, replacement.residual(),
-                                  replacement.off_axis_rate(), std::exp(gap)),
-          .suggestion = "leave out --tree, or check which sensor sits on which segment"};
+          .severity = gap < decisive_link_gap ? Severity::note : Severity::fault,
+          .values = {{"link", names[given.first] + "-" + names[given.second]},
+                     {"replaced_link", names[replaced.first] + "-" + names[replaced.second]},
+                     {"residual", given.residual()},
+                     {"off_axis_rate", given.off_axis_rate()},
+                     {"replaced_residual", replaced.residual()},
+                     {"replaced_off_axis_rate", replaced.off_axis_rate()},
+                     {"ratio", std::exp(gap)}}};
 }
 
 }  // namespace
@@ -70,7 +63,7 @@ std::vector<Finding> findings_about(const SegmentTree& given, const SegmentTree&
                                     const std::vector<std::string>& names) {
   std::vector<Finding> findings;
   for (const PairFit& pair : given.pairs)
-    if (joined(given, pair.first, pair.second) && !joined(found, pair.first, pair.second))
+    if (is_edge(given, pair.first, pair.second) && !is_edge(found, pair.first, pair.second))
       findings.push_back(finding_about(pair, replaced_pair(found, pair.first, pair.second), names));
   return findings;
 }

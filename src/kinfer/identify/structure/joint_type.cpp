@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/identify/structure/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::identify {
 namespace {
-
-constexpr std::size_t joint_type_rows = 1500;
 
 /// Relative motion of the child in the parent at the evaluated rows.
 struct RelativeMotion {
@@ -146,12 +146,12 @@ PairMotion pair_motion(const RecordedMotion& motion, const SegmentTree& tree, st
 
 /// Errors as a share of the sensors' angular velocity: median over the joints of the smallest component, since few
 /// joints of a machine rotate in all directions.
-double error_share(const std::vector<PairMotion>& joints, const JointTypeOptions& options) {
+double error_share(const std::vector<PairMotion>& joints) {
   std::vector<double> shares;
   for (const PairMotion& j : joints)
-    shares.push_back(j.evidence.rates[2] / std::max(j.relative.rms_rate, options.rate_noise));
+    shares.push_back(j.evidence.rates[2] / std::max(j.relative.rms_rate, relative_rate_noise));
   std::ranges::sort(shares);
-  return std::clamp(shares[shares.size() / 2], options.min_error_share, options.max_error_share);
+  return std::clamp(shares[shares.size() / 2], min_rate_error_share, max_rate_error_share);
 }
 
 EstimatedJointType rotational_type(PairMotion& j) {
@@ -173,35 +173,22 @@ EstimatedJointType rotational_type(PairMotion& j) {
 
 }  // namespace
 
-double effective_samples(std::span<const double> series) {
-  double mean = 0.0, square = 0.0, product = 0.0;
-  for (const double x : series) mean += x / static_cast<double>(series.size());
-  for (std::size_t i = 0; i < series.size(); ++i) {
-    square += (series[i] - mean) * (series[i] - mean);
-    if (i > 0) product += (series[i] - mean) * (series[i - 1] - mean);
-  }
-  const double r = square > 0.0 ? std::max(0.0, product / square) : 0.0;
-  return std::max(1.0, static_cast<double>(series.size()) * (1.0 - r) / (1.0 + r));
-}
-
-std::vector<JointTypeEvidence> joint_types(const RecordedMotion& motion, const SegmentTree& tree,
-                                           const JointTypeOptions& options) {
-  constexpr double prismatic_dominance = 1.5;  // over the residual across it: errors are isotropic
+std::vector<JointTypeEvidence> joint_types(const RecordedMotion& motion, const SegmentTree& tree) {
   const std::vector<std::size_t> rows = evaluated_rows(motion);
   std::vector<PairMotion> joints;
   for (const std::size_t child : tree.order)
     if (tree.parent[child]) joints.push_back(pair_motion(motion, tree, child, rows));
   if (joints.empty()) return {};
-  const double share = error_share(joints, options);
+  const double share = error_share(joints);
   std::vector<JointTypeEvidence> result;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     PairMotion& j = joints[i];
     const std::size_t child = tree.order[i + 1], parent = *tree.parent[child];
-    j.evidence.rate_error = options.significance * std::hypot(options.rate_noise, share * j.relative.rms_rate);
+    j.evidence.rate_error = motion_significance * std::hypot(relative_rate_noise, share * j.relative.rms_rate);
     j.evidence.type = rotational_type(j);
     const auto& a = j.evidence.accelerations;
     const auto differences = acceleration_differences(motion.segments[parent], motion.segments[child], rows);
-    const double error = std::max(options.acceleration_noise, prismatic_dominance * a[1]);
+    const double error = std::max(rigid_acceleration_noise, prismatic_dominance * a[1]);
     const Vec3 prismatic_axis =
         second_moment(rows.size(), [&](std::size_t k) { return differences[k]; }).vectors.col(2);
     if (j.evidence.type == EstimatedJointType::rigid &&

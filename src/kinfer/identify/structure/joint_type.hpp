@@ -5,20 +5,11 @@
 #pragma once
 
 #include <array>
-#include <span>
 
 #include "kinfer/evidence/identification.hpp"
 #include "kinfer/identify/structure/segment_tree.hpp"
 
 namespace kinfer::identify {
-
-struct JointTypeOptions {
-  double rate_noise = 3e-3;          ///< [rad/s] relative angular velocity of two INS without relative motion
-  double min_error_share = 0.02;     ///< scale and orientation errors, share of the angular velocity: least
-  double max_error_share = 0.1;      ///< likewise, largest: soft mounts
-  double significance = 2.5;         ///< factor on the errors below which nothing counts as motion
-  double acceleration_noise = 0.03;  ///< [m/s²] residual of a rigid pair: rotating biases, tilts
-};
 
 struct JointTypeEvidence {
   EstimatedJointType type = EstimatedJointType::revolute;
@@ -31,10 +22,6 @@ struct JointTypeEvidence {
 };
 
 /// Of every pair of the tree, in its order (one per segment except the root). `motion`: with consistent headings.
-std::vector<JointTypeEvidence> joint_types(const RecordedMotion& motion, const SegmentTree& tree,
-                                           const JointTypeOptions& options = {});
-
-/// Effective number of independent samples, n (1 − r) / (1 + r), r the lag-one autocorrelation; at least 1.
-double effective_samples(std::span<const double> series);
+std::vector<JointTypeEvidence> joint_types(const RecordedMotion& motion, const SegmentTree& tree);
 
 }  // namespace kinfer::identify

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/identify/structure/thresholds.hpp"
+
 namespace kinfer::identify {
 namespace {
 
@@ -14,8 +16,7 @@ Vec3 acceleration_at_rest(const RecordedMotion& motion, const SegmentMotion& seg
 }
 
 /// For each window of rows: which segments rotate, or accelerate without rotation, as on a prismatic joint.
-std::vector<std::vector<bool>> motion_by_window(const RecordedMotion& motion, std::size_t rows,
-                                                const MovingPhaseOptions& options) {
+std::vector<std::vector<bool>> motion_by_window(const RecordedMotion& motion, std::size_t rows) {
   std::vector<std::vector<bool>> windows((motion.rows() - motion.rows() % rows) / rows);
   for (const SegmentMotion& segment : motion.segments) {
     const Vec3 rest = acceleration_at_rest(motion, segment);
@@ -25,8 +26,8 @@ std::vector<std::vector<bool>> motion_by_window(const RecordedMotion& motion, st
         angular_velocity += segment.angular_velocity[row].squaredNorm() / static_cast<double>(rows);
         acceleration += (segment.acceleration[row] - rest).squaredNorm() / static_cast<double>(rows);
       }
-      windows[window].push_back(std::sqrt(angular_velocity) > options.angular_velocity ||
-                                std::sqrt(acceleration) > options.acceleration);
+      windows[window].push_back(std::sqrt(angular_velocity) > moving_rate ||
+                                std::sqrt(acceleration) > moving_acceleration);
     }
   }
   return windows;
@@ -56,14 +57,14 @@ bool columns_differ(const MovingPhases& table) {
 
 }  // namespace
 
-MovingPhases moving_phases(const RecordedMotion& motion, const MovingPhaseOptions& options) {
+MovingPhases moving_phases(const RecordedMotion& motion) {
   MovingPhases table;
-  const auto rows = std::max<std::size_t>(1, static_cast<std::size_t>(options.window / motion.period));
+  const auto rows = std::max<std::size_t>(1, static_cast<std::size_t>(phase_window / motion.period));
   const double window = static_cast<double>(rows) * motion.period;
-  const auto windows = motion_by_window(motion, rows, options);
+  const auto windows = motion_by_window(motion, rows);
   for (std::size_t begin = 0, end = 0; begin < windows.size(); begin = end) {
     while (end < windows.size() && windows[end] == windows[begin]) ++end;
-    const bool is_long = static_cast<double>(end - begin) * window >= options.min_duration;
+    const bool is_long = static_cast<double>(end - begin) * window >= min_phase_duration;
     const bool is_rest = std::ranges::none_of(windows[begin], [](bool moves) { return moves; });
     const auto is_same = [&](const MovingPhase& phase) { return phase.moves == windows[begin]; };
     if (is_long && !is_rest && std::ranges::none_of(table.phases, is_same))

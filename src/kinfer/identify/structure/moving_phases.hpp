@@ -26,14 +26,7 @@ struct MovingPhases {
   bool is_unambiguous = false;                     ///< exactly one segment has no parent, and no two have equal columns
 };
 
-struct MovingPhaseOptions {
-  double angular_velocity = 0.05;  ///< [rad/s] rms within the window above which a segment moves
-  double acceleration = 0.25;      ///< [m/s²] likewise, relative to rest: prismatic joints do not rotate
-  double window = 0.25;            ///< [s]
-  double min_duration = 1.0;       ///< [s] of a phase; shorter ones are transitions
-};
-
-MovingPhases moving_phases(const RecordedMotion& motion, const MovingPhaseOptions& options = {});
+MovingPhases moving_phases(const RecordedMotion& motion);
 
 /// Whether the phases give every segment the same parent as the tree.
 bool has_same_parents(const MovingPhases& phases, const SegmentTree& tree);

@@ -24,8 +24,9 @@ Result<OrderedMotion> order_segments(const InsRecording& recording, const Segmen
   const HeadingSource headings = filter_of(options.filter).heading_source;
   KINFER_TRY(motion, headings == HeadingSource::filter ? segment_motion(recording, options, threads)
                                                        : gyro_based_motion(recording, options, threads));
-  const PairFitOptions fit{.headings_from_magnetometers = all_have_magnetometers(recording)};
-  KINFER_TRY(tree, segment_tree(motion, root, fit, threads));
+  const HeadingReference reference =
+      all_have_magnetometers(recording) ? HeadingReference::magnetometers : HeadingReference::arbitrary;
+  KINFER_TRY(tree, segment_tree(motion, root, reference, threads));
   std::vector<Finding> findings;
   if (!given.empty()) {
     const std::vector<std::string> names = segment_names(motion);

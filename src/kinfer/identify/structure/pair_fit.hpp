@@ -16,41 +16,12 @@
 // one direction, and the minimum spanning tree of these distances is the most likely tree (Chow and Liu 1968).
 #pragma once
 
-#include <cmath>
-#include <vector>
-
-#include "kinfer/inertial/headings.hpp"
+#include "kinfer/identify/structure/pair_problem.hpp"
 
 namespace kinfer::identify {
 
-struct PairFit {
-  std::size_t first = 0, second = 0;                                   ///< indices of segments, first < second
-  LinearHeading heading{};                                             ///< of second's world frame in first's
-  Eigen::Vector2d tilt{0.0, 0.0};                                      ///< [rad] likewise, about horizontal axes
-  Vec3 point_in_first = Vec3::Zero(), point_in_second = Vec3::Zero();  ///< [m] the common point, as far as observable
-  Vec3 bias_of_first = Vec3::Zero(), bias_of_second = Vec3::Zero();    ///< [m/s²] negative accelerometer biases
-  Mat3 acceleration = Mat3::Zero();      ///< [(m/s²)²] mean square of the residual, in the first sensor
-  Mat3 angular_velocity = Mat3::Zero();  ///< [(rad/s)²] mean square of the relative angular velocity, likewise
-  double distance = 0.0;                 ///< [nats] code length per row
-
-  double residual() const { return std::sqrt(acceleration.trace()); }  ///< [m/s²] rms, prismatic motion included
-  double relative_rate() const { return std::sqrt(angular_velocity.trace()); }  ///< [rad/s] rms
-  double off_axis_rate() const;  ///< [rad/s] rms across the principal direction
-};
-
-struct PairFitOptions {
-  double lever_sd = 3.0;             ///< [m] prior sd of lever arms
-  double bias_sd = 0.3;              ///< [m/s²] prior sd of an accelerometer bias: 30 mg
-  double acceleration_floor = 0.01;  ///< [m/s²] residual of the best INS; smaller differences are not informative
-  double rate_floor = 3e-3;          ///< [rad/s] likewise
-  double heading_sd = 0.5;           ///< [rad] between two magnetometers' headings; see `headings_from_magnetometers`
-  double drift_sd = 2e-3;            ///< [rad/s] of a heading without magnetometer
-  double tilt_sd = 0.03;             ///< [rad] between two verticals: accelerometers of 20 mg
-  bool headings_from_magnetometers = false;  ///< headings come from magnetometers
-};
-
 /// `rows` of the motion: usable, evenly spaced, at least 50.
 PairFit fit_pair(const RecordedMotion& motion, std::size_t first, std::size_t second,
-                 const std::vector<std::size_t>& rows, const PairFitOptions& options = {});
+                 const std::vector<std::size_t>& rows, HeadingReference headings = HeadingReference::arbitrary);
 
 }  // namespace kinfer::identify

@@ -10,12 +10,12 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/identify/structure/thresholds.hpp"
 
 namespace kinfer::identify {
 namespace {
 
 using Edge = std::pair<std::size_t, std::size_t>;
-constexpr std::size_t tree_rows = 1500;  // more do not change the order
 
 std::vector<std::size_t> moving_rows(const RecordedMotion& motion) {
   std::vector<std::size_t> rows;
@@ -74,13 +74,13 @@ Result<std::size_t> choose_root(const RecordedMotion& motion, const std::vector<
 }
 
 std::vector<PairFit> all_pairs(const RecordedMotion& motion, const std::vector<std::size_t>& rows,
-                               const PairFitOptions& options, int threads) {
+                               HeadingReference headings, int threads) {
   std::vector<PairFit> pairs;
   for (std::size_t first = 0; first < motion.segments.size(); ++first)
     for (std::size_t second = first + 1; second < motion.segments.size(); ++second)
       pairs.push_back({.first = first, .second = second});
   parallel_for(pairs.size(), threads,
-               [&](std::size_t i) { pairs[i] = fit_pair(motion, pairs[i].first, pairs[i].second, rows, options); });
+               [&](std::size_t i) { pairs[i] = fit_pair(motion, pairs[i].first, pairs[i].second, rows, headings); });
   return pairs;
 }
 
@@ -91,6 +91,10 @@ const PairFit& SegmentTree::pair(std::size_t a, std::size_t b) const {
       pairs, [&](const PairFit& p) { return p.first == std::min(a, b) && p.second == std::max(a, b); });
   KINFER_EXPECT(found != pairs.end(), "no pair {}, {}", a, b);
   return *found;
+}
+
+bool is_edge(const SegmentTree& tree, std::size_t a, std::size_t b) {
+  return tree.parent[a] == b || tree.parent[b] == a;
 }
 
 std::vector<Edge> path_between(const SegmentTree& tree, std::size_t a, std::size_t b) {
@@ -112,7 +116,7 @@ std::vector<Edge> path_between(const SegmentTree& tree, std::size_t a, std::size
 double margin_of(const SegmentTree& tree, const std::vector<PairFit>& closes_loop) {
   double margin = std::numeric_limits<double>::infinity();
   for (const PairFit& pair : tree.pairs) {
-    if (tree.parent[pair.first] == pair.second || tree.parent[pair.second] == pair.first) continue;
+    if (is_edge(tree, pair.first, pair.second)) continue;
     if (std::ranges::any_of(closes_loop,
                             [&](const PairFit& c) { return c.first == pair.first && c.second == pair.second; }))
       continue;
@@ -135,12 +139,12 @@ void orient_tree(SegmentTree& tree, const std::vector<Edge>& edges) {
 }
 
 Result<SegmentTree> segment_tree(const RecordedMotion& motion, const std::optional<std::string>& root,
-                                 const PairFitOptions& options, int threads) {
+                                 HeadingReference headings, int threads) {
   const std::vector<std::size_t> rows = moving_rows(motion);
   if (rows.size() < 50)
     return error("only {} rows in which the machine moves and all sensors have valid measurements", rows.size());
   SegmentTree tree;
-  tree.pairs = all_pairs(motion, rows, options, threads);
+  tree.pairs = all_pairs(motion, rows, headings, threads);
   const std::vector<Edge> edges = minimum_spanning_tree(tree.pairs, motion.segments.size());
   KINFER_TRY(chosen, choose_root(motion, edges, root));
   tree.root = chosen;

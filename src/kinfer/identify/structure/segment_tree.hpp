@@ -27,7 +27,10 @@ struct SegmentTree {
 /// `root`: a segment's name; by default the stationary one, else the leaf of the tree that rotates least. An error for
 /// an unknown name, or if several segments are stationary.
 Result<SegmentTree> segment_tree(const RecordedMotion& motion, const std::optional<std::string>& root = {},
-                                 const PairFitOptions& options = {}, int threads = 0);
+                                 HeadingReference headings = HeadingReference::arbitrary, int threads = 0);
+
+/// Whether the two segments are joined in the tree.
+bool is_edge(const SegmentTree& tree, std::size_t a, std::size_t b);
 
 /// Edges of the path from one segment to another within the tree.
 std::vector<std::pair<std::size_t, std::size_t>> path_between(const SegmentTree& tree, std::size_t a, std::size_t b);

@@ -106,9 +106,9 @@ Json columns_json(const MatrixXd& matrix) {
 
 Json trace_json(const Trace& trace) {
   return {{"sensor", trace.sensor},
-          {"quantity", trace.quantity},
-          {"unit", trace.unit},
-          {"frame", trace.frame},
+          {"quantity", name(trace.quantity)},
+          {"unit", unit(trace.quantity)},
+          {"frame", name(trace.frame)},
           {"rms_measured", trace.rms_measured},
           {"rms_fitted", trace.rms_fitted},
           {"rms_holdout", trace.rms_holdout},

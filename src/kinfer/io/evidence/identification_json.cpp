@@ -6,6 +6,10 @@
 #include "kinfer/io/evidence/drawing_json.hpp"
 #include "kinfer/io/evidence/findings_json.hpp"
 #include "kinfer/io/evidence/json_parts.hpp"
+#include "kinfer/words/identification_advice.hpp"
+#include "kinfer/words/identification_notes.hpp"
+#include "kinfer/words/identification_unobservable.hpp"
+#include "kinfer/words/identification_verdict.hpp"
 
 namespace kinfer {
 namespace {
@@ -32,6 +36,21 @@ Json axis_json(const JointEstimate& joint, const Vec3& axis) {
   return joint.type == EstimatedJointType::spherical ? Json(nullptr) : json_of(axis);
 }
 
+Json unobservable_json(const JointEstimate& joint) {
+  Json list = Json::array();
+  for (const Unobservable& u : joint.unobservable) {
+    Json json{{"kind", name(u.kind)},
+              {"remedy", name(remedy(u.kind))},
+              {"what", words::unobservable_text(u, joint)},
+              {"how", words::remedy_text(u)}};
+    if (!u.sensor.empty()) json["sensor"] = u.sensor;
+    if (!u.directions.empty()) json["directions"] = json_of(u.directions);
+    if (!u.other_joint.empty()) json["other_joint"] = u.other_joint;
+    list.push_back(json);
+  }
+  return list;
+}
+
 Json json_of(const JointEstimate& joint) {
   Json json{{"parent", joint.parent},
             {"child", joint.child},
@@ -41,9 +60,10 @@ Json json_of(const JointEstimate& joint) {
             {"axis_in_child", axis_json(joint, joint.axis_in_child)},
             {"point_in_child", json_of(joint.point_in_child)},
             {"sd", json_of(joint.sd)},
-            {"not_identifiable", joint.unobservable},
+            {"not_identifiable", words::unobservable_sentences(joint)},
             {"not_identifiable_in_parent", json_of(joint.unobservable_in_parent)},
-            {"not_identifiable_in_child", json_of(joint.unobservable_in_child)}};
+            {"not_identifiable_in_child", json_of(joint.unobservable_in_child)},
+            {"unobservable", unobservable_json(joint)}};
   if (joint.azimuth_unobservable) json["azimuth_undetermined"] = true;
   return json;
 }
@@ -104,8 +124,9 @@ Json json_of(const OrderEvidence& order) {
                      {"joined", p.joined}});
   for (const PhaseEvidence& p : order.phases)
     phases.push_back({{"begin", p.begin}, {"end", p.end}, {"moves", p.moves}});
-  return {{"sensors", order.sensors}, {"pairs", pairs},     {"margin", order.margin},
-          {"phases", phases},         {"rank", order.rank}, {"phases_agree", order.phases_agree}};
+  return {
+      {"sensors", order.sensors}, {"pairs", pairs},     {"margin", order.margin ? Json(*order.margin) : Json(nullptr)},
+      {"phases", phases},         {"rank", order.rank}, {"phases_agree", order.phases_agree}};
 }
 
 Json dh_json(const std::vector<DhRowEstimate>& rows) {
@@ -153,8 +174,12 @@ Json search_json(const Identification& found) {
                         {"found", list_of(s.found)},
                         {"merged", list_of(s.merged)}});
   }
-  return {{"engine", found.engine}, {"evaluations", evaluations}, {"generations", generations},
-          {"best", best},           {"median", median},           {"segments", segments}};
+  return {{"engine", name(found.search_method)},
+          {"evaluations", evaluations},
+          {"generations", generations},
+          {"best", best},
+          {"median", median},
+          {"segments", segments}};
 }
 
 }  // namespace
@@ -163,16 +188,17 @@ std::string format_identification_evidence(const Identification& found, const Pr
   Json json;
   json["format"] = "kinfer-evidence/1";
   json["kind"] = "identify";
-  json["verdict"] = found.verdict;
-  json["use"] = found.use;
+  json["verdict"] = words::identification_verdict(found);
+  json["use"] = found.usability != Usability::do_not_use;
+  json["usability"] = name(found.usability);
   json["findings"] = Json::parse(format_findings(found.findings));
-  json["notes"] = found.notes;
+  json["notes"] = words::note_sentences(found);
   json["root"] = found.root;
   json["joints"] = list_of(found.joints);
   json["links"] = list_of(found.links);
   json["dh"] = dh_json(found.dh);
   json["chain"] = chain_json(found.chain);
-  json["next"] = advice_json(found.next);
+  json["next"] = advice_json(words::advice_texts(found.advice));
   json["places"] = list_of(found.places);
   json["clocks"] = list_of(found.clocks);
   json["forecast"] = list_of(found.forecast);
@@ -185,8 +211,9 @@ std::string format_identification_evidence(const Identification& found, const Pr
 }
 
 std::string format_identification_headline(const Identification& found) {
-  const Json json{{"verdict", found.verdict},
-                  {"use", found.use},
+  const Json json{{"verdict", words::identification_verdict(found)},
+                  {"use", found.usability != Usability::do_not_use},
+                  {"usability", name(found.usability)},
                   {"root", found.root},
                   {"joints", list_of(found.joints)},
                   {"links", list_of(found.links)},

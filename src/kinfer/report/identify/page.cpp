@@ -65,24 +65,11 @@ std::string how_good(const Json& e) {
       fmt::format("<p><b class=\"big\">{} joints</b> between {} segments; the root is {}.</p>", e.at("joints").size(),
                   e.at("order").at("sensors").size(), html::escape(string_at(e, "root")));
   text += axis_accuracy(e);
-  const double margin = e.at("order").at("margin");
-  text += fmt::format("<p>The order of the segments is {}: the next best order fits {} times worse.</p>",
-                      margin >= 2.0 ? "safe" : "<b>not safe</b>", html::short_number(margin));
+  const Json& margin = e.at("order").at("margin");
+  if (margin.is_number())
+    text += fmt::format("<p>The order of the segments is {}: the next best order fits {} times worse.</p>",
+                        margin.get<double>() >= 2.0 ? "safe" : "<b>not safe</b>", html::short_number(margin));
   return text;
-}
-
-/// Sentences on the unobservable quantities of a joint; if there are none, built from the directions.
-std::vector<std::string> unobservable_sentences(const Json& joint) {
-  std::vector<std::string> words;
-  for (const Json& w : joint.at("not_identifiable")) words.push_back(w.get<std::string>());
-  const auto add = [&](const char* key, const char* sensor) {
-    if (const std::size_t n = joint.at(key).size(); n > 0)
-      words.push_back(n == 3 ? fmt::format("where the axis is in {}", string_at(joint, sensor))
-                             : fmt::format("shifts of the axis in {} along {} direction{}", string_at(joint, sensor), n,
-                                           n == 1 ? "" : "s"));
-  };
-  if (words.empty()) add("not_identifiable_in_parent", "parent"), add("not_identifiable_in_child", "child");
-  return words;
 }
 
 /// True if something that the user needs is unobservable: a direction or an azimuth. The point along the axis and the
@@ -92,9 +79,10 @@ bool has_unobservable_direction(const Json& joint) {
          joint.value("azimuth_undetermined", false);
 }
 
-/// Removes the remedy after the colon ("where the axis is in ins0, ...: rock or drive ..."); the next card shows it.
-std::string without_remedy(const std::string& words) {
-  return words.substr(0, words.find(": "));
+/// The first unobservable quantity of a joint without its remedy, which the next card shows.
+std::string first_unobservable(const Json& joint) {
+  const Json& list = member(joint, "unobservable");
+  return list.empty() ? "" : string_at(list.at(0), "what");
 }
 
 /// Sensors of the last segments (leaves of the tree).
@@ -114,10 +102,9 @@ std::vector<std::string> uncertain_items(const Json& e) {
       items.push_back(fmt::format("the turn of <b>{}</b> about its only axis: ±&nbsp;{}&nbsp;mrad",
                                   html::escape(string_at(f, "azimuth_of")), html::fixed(mrad * sd, 0)));
   for (const Json& joint : e.at("joints"))
-    if (const auto words = unobservable_sentences(joint); !words.empty() && has_unobservable_direction(joint))
+    if (const std::string what = first_unobservable(joint); !what.empty() && has_unobservable_direction(joint))
       items.push_back(fmt::format("<b>{}–{}</b>: {}", html::escape(string_at(joint, "parent")),
-                                  html::escape(string_at(joint, "child")),
-                                  html::escape(without_remedy(words.front()))));
+                                  html::escape(string_at(joint, "child")), html::escape(what)));
   if (member(e, "places").empty())
     for (const std::string& sensor : leaf_sensors(e))
       items.push_back(fmt::format("where the tool is beyond <b>{}</b>", html::escape(sensor)));
@@ -227,14 +214,16 @@ std::string pairs_table(const Json& order) {
 
 html::Section order(const Json& e) {
   const Json& o = e.at("order");
-  const double margin = o.at("margin");
+  const Json& margin = o.at("margin");
+  const std::string comparison = margin.is_number() ? fmt::format("the next best tree fits {} times worse ({} is safe)",
+                                                                  html::short_number(margin), 2)
+                                                    : "there is no other tree";
   return {
       "order", "Which segment hangs on which",
       fmt::format(
           "Segments that share a joint share a point, and their INS must agree on its acceleration. The tree takes "
-          "the pairs that agree best; the next best tree fits {} times worse ({} is safe). Who moved when {}.",
-          html::short_number(margin), 2,
-          o.at("phases_agree").get<bool>() ? "gives the same order" : "does not give the same order"),
+          "the pairs that agree best; {}. Who moved when {}.",
+          comparison, o.at("phases_agree").get<bool>() ? "gives the same order" : "does not give the same order"),
       html::figure("tree", "Order of the segments", tree_drawing(e),
                    "From the root on the left outwards; below each joint, by how much the two INS disagree about the "
                    "acceleration of the point that they share.") +
@@ -303,9 +292,9 @@ html::Section fit(const Json& e) {
 html::Section unobservable(const Json& e) {
   html::Table table{.name = "unknown-table", .caption = "What no signal tells", .head = {"Joint", "What"}, .rows = {}};
   for (const Json& joint : e.at("joints"))
-    for (const std::string& words : unobservable_sentences(joint))
-      table.rows.push_back(
-          {html::text(string_at(joint, "parent") + "–" + string_at(joint, "child")), html::text(words)});
+    for (const Json& sentence : joint.at("not_identifiable"))
+      table.rows.push_back({html::text(string_at(joint, "parent") + "–" + string_at(joint, "child")),
+                            html::text(sentence.get<std::string>())});
   std::vector<std::string> notes;
   for (const Json& note : e.at("notes")) notes.push_back(html::escape(note.get<std::string>()));
   std::string body = table.rows.empty() ? "<p>Nothing.</p>" : html::table(table);

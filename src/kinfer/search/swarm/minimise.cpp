@@ -33,9 +33,9 @@ SearchDescription describe_bpnn(const BpnnPsoOptions& bpnn) {
 
 }  // namespace
 
-std::span<const SearchMethod> search_methods() {
+std::span<const SwarmMethod> swarm_methods() {
   static const std::array methods{
-      SearchMethod{
+      SwarmMethod{
           .name = "pso",
           .help = "particle swarm",
           .default_options = PsoOptions{},
@@ -47,7 +47,7 @@ std::span<const SearchMethod> search_methods() {
           .particles = [](SearchOptions& options) -> int& { return std::get<PsoOptions>(options).particles; },
           .initial = [](SearchOptions& options) -> MatrixXd& { return std::get<PsoOptions>(options).initial; },
           .describe = [](const SearchOptions& options) { return describe_pso(std::get<PsoOptions>(options)); }},
-      SearchMethod{
+      SwarmMethod{
           .name = "qpso",
           .help = "quantum-behaved particle swarm",
           .default_options = QpsoOptions{},
@@ -63,7 +63,7 @@ std::span<const SearchMethod> search_methods() {
                 const auto& qpso = std::get<QpsoOptions>(options);
                 return describe_population(qpso.particles, qpso.budget);
               }},
-      SearchMethod{
+      SwarmMethod{
           .name = "bpnn-pso",
           .help = "particle swarm that starts from the network of an earlier run",
           .default_options = BpnnPsoOptions{},
@@ -81,17 +81,17 @@ std::span<const SearchMethod> search_methods() {
   return methods;
 }
 
-const SearchMethod& method_of(const SearchOptions& options) {
-  const std::span<const SearchMethod> methods = search_methods();
+const SwarmMethod& method_of(const SearchOptions& options) {
+  const std::span<const SwarmMethod> methods = swarm_methods();
   const auto row = std::ranges::find_if(
-      methods, [&](const SearchMethod& m) { return m.default_options.index() == options.index(); });
+      methods, [&](const SwarmMethod& m) { return m.default_options.index() == options.index(); });
   KINFER_EXPECT(row != methods.end(), "no search has the options {}", options.index());
   return *row;
 }
 
-const SearchMethod* method_named(std::string_view name) {
-  const std::span<const SearchMethod> methods = search_methods();
-  const auto row = std::ranges::find(methods, name, &SearchMethod::name);
+const SwarmMethod* method_named(std::string_view name) {
+  const std::span<const SwarmMethod> methods = swarm_methods();
+  const auto row = std::ranges::find(methods, name, &SwarmMethod::name);
   return row == methods.end() ? nullptr : &*row;
 }
 

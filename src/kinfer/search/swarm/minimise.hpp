@@ -23,7 +23,7 @@ using SearchOptions = std::variant<PsoOptions, QpsoOptions, BpnnPsoOptions>;
 using SearchDescription = std::vector<std::pair<std::string, std::string>>;
 
 /// A population search. The functions take options of this search only.
-struct SearchMethod {
+struct SwarmMethod {
   std::string_view name;            ///< as in --method
   std::string_view help;            ///< a few words for the help text
   SearchOptions default_options{};  ///< their alternative identifies the search
@@ -38,13 +38,13 @@ struct SearchMethod {
 };
 
 /// The table, in the order of the help text.
-std::span<const SearchMethod> search_methods();
+std::span<const SwarmMethod> swarm_methods();
 
 /// The row of these options.
-const SearchMethod& method_of(const SearchOptions& options);
+const SwarmMethod& method_of(const SearchOptions& options);
 
 /// The row of that name; null for another name.
-const SearchMethod* method_named(std::string_view name);
+const SwarmMethod* method_named(std::string_view name);
 
 /// The same search with another budget.
 SearchOptions with_budget(SearchOptions options, const Budget& budget);

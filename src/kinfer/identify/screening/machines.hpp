@@ -6,22 +6,17 @@
 // linkage, or a segment without an INS between them.
 #pragma once
 
-#include "kinfer/evidence/findings.hpp"
+#include "kinfer/identify/screening/recording_selection.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 
 namespace kinfer::identify {
 
-struct SensorSelection {
-  std::vector<std::size_t> sensors;  ///< used by the identification, by index
-  std::vector<Finding> findings;     ///< about the excluded sensors
-};
-
 /// All sensors except those that never move; one stationary sensor is kept as the root.
-SensorSelection exclude_idle_sensors(const InsRecording& recording, const SegmentMotionOptions& options,
-                                     const std::optional<std::string>& root);
+RecordingSelection exclude_idle_sensors(const InsRecording& recording, const SegmentMotionOptions& options,
+                                        const std::optional<std::string>& root);
 
 /// The largest connected group of segments, or the one of `root`.
-SensorSelection select_machine(const OrderedMotion& ordered, const std::optional<std::string>& root);
+RecordingSelection select_machine(const OrderedMotion& ordered, const std::optional<std::string>& root);
 
 /// If the root is stationary and has several branches: a finding about them.
 std::vector<Finding> groups_attached_to_world(const OrderedMotion& ordered);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/screening/sensor_selection.hpp"
+#include "kinfer/identify/screening/machines.hpp"
 
 #include <fmt/ranges.h>
 
@@ -8,21 +8,13 @@
 #include <numeric>
 
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/identify/screening/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::identify {
 namespace {
 
 constexpr double averaging_time = 0.1;  // [s] averaging time against noise
-/// A link is no joint if its residual exceeds both `residual` [m/s²] and `factor` times that of the tree's links.
-struct NoJointThreshold {
-  double residual, factor;
-};
-constexpr NoJointThreshold machine_threshold{.residual = 0.05,
-                                             .factor = 4.0};  // three segments and more on either side
-constexpr NoJointThreshold part_threshold{
-    .residual = 0.1, .factor = 10.0};  // a joint with a clipping sensor has up to 8 times the usual
-
 /// Rms deviation of a sensor's averaged measurements from their mean.
 template <class Pick>
 double deviation_from_mean(const InsSensor& sensor, std::span<const double> time, const Pick& pick) {
@@ -59,8 +51,7 @@ std::vector<std::string> names_of(const RecordedMotion& motion, const std::vecto
 /// [m/s²] Acceleration residual of a link. If the two segments hardly rotate relative to each other, only across the
 /// direction of the largest residual, since they may share a prismatic joint.
 double misfit(const PairFit& pair) {
-  constexpr double turning = 0.02;  // [rad/s] rms
-  if (pair.relative_rate() > turning) return pair.residual();
+  if (pair.relative_rate() > min_rotating_rate) return pair.residual();
   return std::sqrt(std::max(0.0, symmetric_eigen(pair.acceleration).values[1]));
 }
 
@@ -116,34 +107,29 @@ Finding separation_finding(const OrderedMotion& ordered, const TreeLink& cut, co
                            double median_misfit) {
   const auto names = names_of(ordered.motion, excluded);
   const PairFit& pair = ordered.tree.pair(cut.parent, cut.child);
-  const std::string link = ordered.motion.segments[cut.parent].name + "-" + ordered.motion.segments[cut.child].name;
-  const std::string evidence = fmt::format("the best link, {}, leaves {:.3f} m/s² where joints leave {:.3f}", link,
-                                           pair.residual(), median_misfit);
-  if (excluded.size() > 1)
-    return {.kind = FindingKind::several_machines,
-            .severity = Severity::warning,
-            .sentence = fmt::format("{} share no joint with the others ({}): a machine of their own, or a segment "
-                                    "without INS between; they are left out",
-                                    fmt::join(names, ", "), evidence),
-            .suggestion = fmt::format("identify them by themselves with --sensors {}", fmt::join(names, ",")),
-            .applied = true};
-  const bool turns_about_one_axis = pair.off_axis_rate() < 0.1 * pair.relative_rate();
-  return {.kind = turns_about_one_axis ? FindingKind::linkage : FindingKind::no_joint,
-          .severity = Severity::warning,
-          .sentence = fmt::format(
-              "{} shares no joint with any other sensor ({}): {}; it is left out", names.front(), evidence,
-              turns_about_one_axis ? "it turns about one axis but around no fixed point, as the bar of a linkage "
-                                     "(a loop) does, or a segment without INS lies between"
-                                   : "a loose sensor, another machine's, or a segment without INS between"),
-          .suggestion = "stick an INS on every segment, and none on the bars of a linkage",
-          .applied = true};
+  const bool is_alone = excluded.size() == 1;
+  const bool rotates_about_one_axis = pair.off_axis_rate() < max_revolute_off_axis_share * pair.relative_rate();
+  Finding finding{
+      .kind = !is_alone                ? FindingKind::several_machines
+              : rotates_about_one_axis ? FindingKind::linkage
+                                       : FindingKind::no_joint,
+      .severity = Severity::warning,
+      .values = {{"link", ordered.motion.segments[cut.parent].name + "-" + ordered.motion.segments[cut.child].name},
+                 {"residual", pair.residual()},
+                 {"usual_residual", median_misfit}},
+      .applied = true};
+  if (is_alone)
+    finding.values.set("sensor", names.front());
+  else
+    finding.values.set("sensors", names);
+  return finding;
 }
 
 }  // namespace
 
-SensorSelection exclude_idle_sensors(const InsRecording& recording, const SegmentMotionOptions& options,
-                                     const std::optional<std::string>& root) {
-  SensorSelection chosen;
+RecordingSelection exclude_idle_sensors(const InsRecording& recording, const SegmentMotionOptions& options,
+                                        const std::optional<std::string>& root) {
+  RecordingSelection chosen;
   std::vector<std::string> still, left_out;
   for (const InsSensor& sensor : recording.sensors)
     if (is_stationary(sensor, recording.time(sensor), options)) still.push_back(sensor.name);
@@ -158,23 +144,17 @@ SensorSelection exclude_idle_sensors(const InsRecording& recording, const Segmen
       chosen.sensors.push_back(s);
   }
   if (left_out.empty() || still.size() == recording.sensors.size()) return chosen;
-  chosen.findings.push_back(
-      {.kind = FindingKind::idle,
-       .severity = Severity::warning,
-       .sentence = fmt::format("the sensors {} never move: joints that nobody moved, several INS on one base, or the "
-                               "bases of several machines; {} left out, and {} stands for the ground",
-                               fmt::join(still, ", "), fmt::join(left_out, ", "), kept),
-       .suggestion = "move every joint, and give each machine a log of its own",
-       .applied = true});
+  chosen.findings.push_back({.kind = FindingKind::idle,
+                             .severity = Severity::warning,
+                             .values = {{"stationary", still}, {"left_out", left_out}, {"kept", kept}},
+                             .applied = true});
   return chosen;
 }
 
-SensorSelection select_machine(const OrderedMotion& ordered, const std::optional<std::string>& root) {
+RecordingSelection select_machine(const OrderedMotion& ordered, const std::optional<std::string>& root) {
   const std::size_t segments = ordered.motion.segments.size();
   const std::vector<TreeLink> links = links_of(ordered.tree);
-  SensorSelection chosen;
-  chosen.sensors.resize(segments);
-  std::iota(chosen.sensors.begin(), chosen.sensors.end(), std::size_t{0});
+  RecordingSelection chosen = select_all(segments);
   if (links.size() < 3) return chosen;
   std::vector<double> misfits;
   for (const TreeLink& link : links) misfits.push_back(link.misfit);
@@ -212,13 +192,7 @@ std::vector<Finding> groups_attached_to_world(const OrderedMotion& ordered) {
     if (group.front() != tree.root || group.size() > 1)
       groups.push_back(fmt::format("{}", fmt::join(names_of(ordered.motion, group), ", ")));
   if (groups.size() < 2) return {};
-  return {{.kind = FindingKind::several_machines,
-           .severity = Severity::warning,
-           .sentence = fmt::format("the sensors that move fall into {} groups that share only the ground ({}): several "
-                                   "machines in one log; the chain has them all, how they stand to each other is not "
-                                   "known",
-                                   groups.size(), fmt::join(groups, "; ")),
-           .suggestion = "identify one by itself with --sensors"}};
+  return {{.kind = FindingKind::several_machines, .severity = Severity::warning, .values = {{"groups", groups}}}};
 }
 
 }  // namespace kinfer::identify

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Evidence of the order of the segments: pairs, margin, phases, kinematic loops.
+#pragma once
+
+#include "kinfer/evidence/identification.hpp"
+#include "kinfer/identify/structure/ordered_motion.hpp"
+
+namespace kinfer::identify {
+
+enum class TreeOrigin { estimated, given };
+
+struct OrderReport {
+  OrderEvidence evidence;
+  std::vector<IdentificationNote> notes;  ///< an unsafe order; phases that imply another one
+  std::vector<Finding> findings;          ///< kinematic loops, given links
+};
+
+/// Loops are searched in an estimated tree only; their closing pairs do not count in the margin.
+OrderReport report_order(const OrderedMotion& ordered, TreeOrigin origin);
+
+}  // namespace kinfer::identify

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the search, or the pair of sensors alone, tells about one joint.
+#pragma once
+
+#include <optional>
+
+#include "kinfer/evidence/identification.hpp"
+#include "kinfer/identify/programming/frame_state.hpp"
+
+namespace kinfer::identify {
+
+struct JointResult {
+  JointEstimate joint;
+  std::vector<DhRowEstimate> dh{};  ///< canonical
+  std::vector<IdentificationNote> notes{};
+  std::optional<LinkEvidence> search{};  ///< none: estimated from its two sensors alone
+  std::vector<FrameState> states{};      ///< of the child's sensor at every row, by the chain up to here
+};
+
+}  // namespace kinfer::identify

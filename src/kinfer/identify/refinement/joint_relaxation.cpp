@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/refinement/joint_relaxation.hpp"
+
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/identify/geometry/mean_revolute.hpp"
+#include "kinfer/identify/refinement/thresholds.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+RefinementSetup relaxed_setup(const RefinementFit& fitted, const std::vector<std::size_t>& bodies) {
+  RefinementSetup setup = fitted.setup;
+  setup.start = fitted.fit.unknowns;
+  for (const std::size_t body : bodies)
+    relax_to_spherical(setup.start, layout_of(setup.problem, setup.start.bodies), body);
+  anchor(setup);
+  return setup;
+}
+
+/// Decrease of the log residual when a revolute joint is relaxed to a spherical one, the geometry held fixed.
+double relaxation_gain(const RefinementTask& task, const RefinementFit& fitted, std::size_t body) {
+  RefinementFit ball{relaxed_setup(fitted, {body}), {}};
+  ball.fit = fit_motion_only(task, ball.setup);
+  return log_residual(fitted) - log_residual(ball);
+}
+
+}  // namespace
+
+std::vector<std::size_t> select_joints_to_relax(const std::vector<std::size_t>& hinges,
+                                                const std::vector<double>& gains) {
+  std::vector<std::size_t> to_relax;
+  for (std::size_t i = 0; i < hinges.size(); ++i) {
+    std::vector<double> others = gains;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    if (gains[i] > min_relaxation_gain && (others.empty() || gains[i] > min_gain_ratio_to_others * median(others)))
+      to_relax.push_back(hinges[i]);
+  }
+  return to_relax;
+}
+
+RefinementFit relax_joints(const RefinementTask& task, RefinementFit fitted, const Observer& observer) {
+  std::vector<std::size_t> hinges;
+  std::vector<double> gains;
+  for (std::size_t b = 1; b < fitted.fit.unknowns.bodies.size(); ++b) {
+    if (fitted.fit.unknowns.bodies[b].motion != JointMotion::revolute) continue;
+    report_progress(observer, "loose joints",
+                    static_cast<double>(b) / static_cast<double>(fitted.fit.unknowns.bodies.size()));
+    hinges.push_back(b);
+    gains.push_back(relaxation_gain(task, fitted, b));
+  }
+  const auto to_relax = select_joints_to_relax(hinges, gains);
+  return to_relax.empty() ? fitted : fit_from(task, relaxed_setup(fitted, to_relax));
+}
+
+}  // namespace kinfer::identify

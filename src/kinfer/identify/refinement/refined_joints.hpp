@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// All joints of a continuous-time fit as evidence, each with its share of the covariance and of the model errors.
+#pragma once
+
+#include "kinfer/estimate/continuous/solver/covariance.hpp"
+#include "kinfer/identify/refinement/low_frequency_fit.hpp"
+#include "kinfer/identify/refinement/refined_joint.hpp"
+
+namespace kinfer::identify {
+
+/// In the order of the task's starts, with the names of their segments.
+std::vector<RefinedJoint> make_joints(const RefinementTask& task, const RefinementFit& fitted,
+                                      const InsCovariance& covariance, const ModelError& error);
+
+}  // namespace kinfer::identify

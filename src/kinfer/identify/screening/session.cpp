@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/screening/session.hpp"
+
+#include <algorithm>
+
+#include "kinfer/identify/screening/machines.hpp"
+#include "kinfer/identify/screening/remount.hpp"
+#include "kinfer/measurement/ins_selection.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+constexpr int max_clock_updates = 3;  // the third is applied and reported, but not fitted again
+constexpr int max_restrictions = 6;   // each removes a machine or one side of a remounting
+
+Result<RecordingSelection> select_moving_sensors(const InsRecording& recording, const std::vector<std::string>& names,
+                                                 const std::optional<std::string>& root,
+                                                 const SegmentMotionOptions& motion) {
+  if (names.empty()) return exclude_idle_sensors(recording, motion, root);
+  KINFER_TRY(named, find_sensors(recording, names));
+  RecordingSelection chosen = exclude_idle_sensors(select_sensors(recording, named), motion, root);
+  for (std::size_t& s : chosen.sensors) s = named[s];
+  return chosen;
+}
+
+}  // namespace
+
+Result<Session> Session::open(const InsRecording& recording, const std::vector<std::string>& sensors,
+                              const std::optional<std::string>& root, const SegmentMotionOptions& motion, int threads) {
+  for (const InsSensor& sensor : recording.sensors)
+    if (!sensor.acceleration.present() || !sensor.angular_velocity.present())
+      return error("{}: identification needs specific force (ax ay az) and angular rate (gx gy gz)", sensor.name);
+  KINFER_TRY(chosen, select_moving_sensors(recording, sensors, root, motion));
+  Session session(recording);
+  if (chosen.sensors.size() < recording.sensors.size()) session.part_ = select_sensors(recording, chosen.sensors);
+  session.clock_ = synchronise_sensors(session.selected(), motion, threads);
+  session.findings_ = std::move(chosen.findings);
+  return session;
+}
+
+bool Session::has_idle_sensors() const {
+  return std::ranges::find(findings_, FindingKind::idle, &Finding::kind) != findings_.end();
+}
+
+Result<void> Session::restrict_to(RecordingSelection part) {
+  if (++restrictions_ > max_restrictions) return error("the recording has more faults than can be separated");
+  identify::restrict_to(clock_, selected(), part);
+  part_ = select_sensors(selected(), part.sensors);
+  std::ranges::move(part.findings, std::back_inserter(findings_));
+  return {};
+}
+
+bool Session::update_clocks(const std::vector<ResidualClock>& residual) {
+  return identify::update_clocks(clock_, selected(), residual) && ++clock_updates_ < max_clock_updates;
+}
+
+ClockReport Session::report_clocks(const std::vector<ResidualClock>& residual) const {
+  return identify::report_clocks(clock_, selected(), residual);
+}
+
+std::optional<RecordingSelection> select_consistent_part(const OrderedMotion& ordered,
+                                                         const std::optional<std::string>& root,
+                                                         MachineSeparation separation, int threads) {
+  const std::size_t segments = ordered.motion.segments.size();
+  if (const auto remount = find_remount(ordered, threads)) {
+    RecordingSelection part = select_all(segments);
+    (remount->before_is_more_informative ? part.end : part.begin) =
+        remount->before_is_more_informative ? remount->begin : remount->end;
+    part.findings.push_back(finding_about(*remount, ordered.motion));
+    return part;
+  }
+  if (separation == MachineSeparation::none) return std::nullopt;
+  RecordingSelection machine = select_machine(ordered, root);
+  if (machine.sensors.size() == segments) return std::nullopt;
+  return machine;
+}
+
+}  // namespace kinfer::identify

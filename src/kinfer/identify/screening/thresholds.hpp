@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Thresholds on faults of a recording.
+#pragma once
+
+#include <cstddef>
+
+namespace kinfer::identify {
+
+/// [rad/s] Angular velocity of a row that tells something about a mounting. Data not recorded.
+inline constexpr double informative_rate = 0.05;
+
+/// Rows on either side of a remounting; larger misses those near the ends. Data not recorded.
+inline constexpr std::size_t min_rows_beside_split = 100;
+
+/// Factor on the usual residual beyond which a joint's relation does not hold. Larger finds fewer remountings; seen
+/// from 3 degrees or 3 cm on in simulated drives.
+inline constexpr double broken_relation_factor = 3.0;
+
+/// Factor on the usual residual below which a relation holds. Same data.
+inline constexpr double holding_relation_factor = 3.0;
+
+/// Residual over that of the best split below which a split is in the interval of the event; larger widens the
+/// interval. Data not recorded.
+inline constexpr double max_split_ratio_to_best = 1.5;
+
+/// [rad/s] rms relative angular velocity of a moving joint of a loop; larger finds fewer loops. Simulated linkage.
+inline constexpr double min_loop_joint_rate = 0.05;
+
+/// Factor on the residuals of the tree's own joints up to which a pair closes a loop; larger finds more. Simulated
+/// linkage.
+inline constexpr double max_loop_residual_ratio = 3.0;
+
+/// Share of the relative angular velocity off its axis up to which a pair counts as a revolute joint. Simulated
+/// linkage.
+inline constexpr double max_revolute_off_axis_share = 0.1;
+
+/// [rad/s] rms relative angular velocity below which two segments may share a prismatic joint. Data not recorded.
+inline constexpr double min_rotating_rate = 0.02;
+
+/// [s] Scatter of clock offsets among sensors on one clock, since each segment also moves by itself; the comparison of
+/// angular velocities is good to 1-3 ms. Larger gives fewer sensors a clock of their own.
+inline constexpr double usual_offset_scatter = 6e-3;
+
+/// [s] Clock correction without effect on segment tree and joint types; larger repeats these steps less often. Data not
+/// recorded.
+inline constexpr double negligible_shift = 1e-3;
+
+/// [s] Smaller clock corrections are not reported. Data not recorded.
+inline constexpr double min_reported_shift = 2e-4;
+
+/// [nats per row] Decrease of the tree's length that justifies a clock of its own for a sensor. Data not recorded.
+inline constexpr double min_own_clock_gain = 0.3;
+
+/// A link is no joint if its residual exceeds both `residual` [m/s²] and `factor` times that of the tree's links.
+/// Larger separates fewer sensors.
+struct NoJointThreshold {
+  double residual, factor;
+};
+/// Three segments and more on either side. None of 225 simulated logs is cut at this (docs/methods/faults.md).
+inline constexpr NoJointThreshold machine_threshold{.residual = 0.05, .factor = 4.0};
+/// Fewer segments: a joint with a clipping sensor has up to 8 times the usual residual.
+inline constexpr NoJointThreshold part_threshold{.residual = 0.1, .factor = 10.0};
+
+}  // namespace kinfer::identify

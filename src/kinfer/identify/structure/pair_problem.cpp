@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/structure/pair_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/geometry/rotation.hpp"
+#include "kinfer/identify/structure/thresholds.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+
+/// [K, R, f]: specific force at a point of the segment in the world is this times (lever arm, bias, 1).
+Row7 point_jacobian(const SegmentMotion& m, std::size_t row, double gravity) {
+  const Mat3 angular_velocity = skew(m.angular_velocity[row]);
+  Row7 jacobian;
+  jacobian << (skew(m.angular_acceleration[row]) + angular_velocity * angular_velocity) * m.rotation[row],
+      m.rotation[row], m.acceleration[row] + gravity * Vec3::UnitZ();
+  return jacobian;
+}
+
+double determinant(const Mat3& m) {
+  return m.col(0).dot(m.col(1).cross(m.col(2)));
+}
+
+}  // namespace
+
+double code_length(const Mat3& mean_square, double floor) {
+  return 0.5 * std::log(determinant(mean_square + floor * floor * Mat3::Identity()));
+}
+
+PairProblem::PairProblem(const RecordedMotion& motion, std::size_t first, std::size_t second,
+                         const std::vector<std::size_t>& rows, HeadingReference headings)
+    : motion_(motion), a_(motion.segments[first]), b_(motion.segments[second]), rows_(rows), headings_(headings) {
+  begin_ = motion.time[rows.front()];
+  end_ = motion.time[rows.back()];
+  for (HeadingWindow& window : windows_)
+    for (auto& row : window.force) row.fill(Mat7::Zero());
+  for (const std::size_t row : rows) add(row);
+  for (HeadingWindow& window : windows_)
+    if (window.share > 0.0) window.time /= window.share;
+}
+
+WorldRotation PairProblem::world_rotation(double angle, double drift, const Vec2& tilt) const {
+  return {{angle, drift, 0.5 * (begin_ + end_)}, tilt};
+}
+
+double PairProblem::cost(const WorldRotation& world_rotation) const {
+  const Normal normal = normal_equations(world_rotation);
+  const auto x = solve_spd(normal.matrix, -normal.right);
+  const double square = normal.square + (x ? x->dot(normal.right) : 0.0);
+  const double noise = pair_acceleration_floor * pair_acceleration_floor;
+  const double drift_ratio = world_rotation.heading.drift / heading_drift_sd;
+  const double heading_ratio =
+      headings_ == HeadingReference::magnetometers
+          ? std::remainder(world_rotation.heading.angle, 2.0 * std::numbers::pi) / magnetic_heading_sd
+          : 0.0;
+  const double tilt_ratio_squared = world_rotation.tilt.squaredNorm() / (vertical_tilt_sd * vertical_tilt_sd);
+  const double independent_samples = static_cast<double>(rows_.size()) / rows_per_independent_sample;
+  return 1.5 * std::log(std::max(0.0, square) / 3.0 + noise) +
+         code_length(mean_square_rate(world_rotation), pair_rate_floor) +
+         0.5 * (drift_ratio * drift_ratio + heading_ratio * heading_ratio + tilt_ratio_squared) / independent_samples;
+}
+
+void PairProblem::solve(PairFit& fit, const Mat3& weight) const {
+  MatrixXd matrix = MatrixXd::Zero(12, 12);
+  VectorXd right = VectorXd::Zero(12);
+  matrix.diagonal() = prior();
+  for (const std::size_t row : rows_) {
+    const Eigen::Matrix<double, 3, 13> k = difference_jacobian({fit.heading, fit.tilt}, row);
+    const Eigen::Matrix<double, 3, 13> weighted = weight * k;
+    matrix.noalias() += k.leftCols<12>().transpose() * weighted.leftCols<12>() / count();
+    right.noalias() += weighted.leftCols<12>().transpose() * k.col(12) / count();
+  }
+  const auto solution = solve_spd(matrix, -right);
+  const VectorXd x = solution ? *solution : VectorXd::Zero(12);
+  fit.point_in_first = x.head<3>();
+  fit.bias_of_first = x.segment<3>(3);
+  fit.point_in_second = x.segment<3>(6);
+  fit.bias_of_second = x.tail<3>();
+  fit.acceleration.setZero();
+  for (const std::size_t row : rows_) {
+    const Eigen::Matrix<double, 3, 13> k = difference_jacobian({fit.heading, fit.tilt}, row);
+    const Vec3 residual = k.leftCols<12>() * x + k.col(12);
+    fit.acceleration += residual * residual.transpose() / count();
+  }
+}
+
+Mat3 PairProblem::mean_square_rate(const WorldRotation& world_rotation) const {
+  Mat3 sum = Mat3::Zero();
+  for (const HeadingWindow& window : windows_) {
+    Eigen::Matrix<double, rate_parts, 1> factor;
+    factor << 1.0, world_rotation.at(window.time).reshaped<Eigen::RowMajor>();
+    Eigen::Matrix<double, 3, 3 * rate_parts> half = Eigen::Matrix<double, 3, 3 * rate_parts>::Zero();
+    for (int i = 0; i < rate_parts; ++i) half += factor[i] * window.angular_velocity.middleRows<3>(3 * i);
+    for (int i = 0; i < rate_parts; ++i) sum += factor[i] * half.middleCols<3>(3 * i);
+  }
+  return sum;
+}
+
+/// Diagonal prior of the normal equations of a mean square, for a residual at its floor.
+Eigen::Matrix<double, 12, 1> PairProblem::prior() const {
+  const double noise = pair_acceleration_floor * pair_acceleration_floor;
+  const auto of = [&](double sd) { return noise / (sd * sd); };
+  Eigen::Matrix<double, 12, 1> diagonal;
+  diagonal << Vec3::Constant(of(lever_arm_sd)), Vec3::Constant(of(pair_bias_sd)), Vec3::Constant(of(lever_arm_sd)),
+      Vec3::Constant(of(pair_bias_sd));
+  return diagonal;
+}
+
+std::size_t PairProblem::window_of(std::size_t row) const {
+  const double share = (motion_.time[row] - begin_) / std::max(end_ - begin_, 1e-9);
+  return std::min(heading_windows - 1, static_cast<std::size_t>(share * static_cast<double>(heading_windows)));
+}
+
+void PairProblem::add(std::size_t row) {
+  HeadingWindow& window = windows_[window_of(row)];
+  const double n = count();
+  const Row7 u = point_jacobian(a_, row, motion_.gravity), v = point_jacobian(b_, row, motion_.gravity);
+  of_first_ += u.transpose() * u / n;
+  of_second_ += v.transpose() * v / n;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) window.force[i][j].noalias() += u.row(i).transpose() * v.row(j) / n;
+  const Mat3 first_R_world = a_.rotation[row].transpose();
+  Eigen::Matrix<double, 3, rate_parts> parts;
+  parts.col(0) = -first_R_world * a_.angular_velocity[row];
+  for (int i = 0; i < 3; ++i)
+    parts.middleCols<3>(1 + 3 * i) = first_R_world.col(i) * b_.angular_velocity[row].transpose();
+  window.angular_velocity.noalias() += parts.reshaped() * parts.reshaped().transpose() / n;
+  window.time += motion_.time[row] / n;
+  window.share += 1.0 / n;
+}
+
+PairProblem::Normal PairProblem::normal_equations(const WorldRotation& world_rotation) const {
+  Mat7 mixed = Mat7::Zero();
+  for (const HeadingWindow& window : windows_) {
+    const Mat3 e = world_rotation.at(window.time);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) mixed += e(i, j) * window.force[i][j];
+  }
+  Normal normal{MatrixXd(12, 12), VectorXd(12)};
+  normal.matrix << of_first_.topLeftCorner<6, 6>(), -mixed.topLeftCorner<6, 6>(),
+      -mixed.topLeftCorner<6, 6>().transpose(), of_second_.topLeftCorner<6, 6>();
+  normal.matrix.diagonal() += prior();
+  normal.right << of_first_.block<6, 1>(0, 6) - mixed.block<6, 1>(0, 6),
+      of_second_.block<6, 1>(0, 6) - mixed.block<1, 6>(6, 0).transpose();
+  normal.square = of_first_(6, 6) + of_second_(6, 6) - 2.0 * mixed(6, 6);
+  return normal;
+}
+
+/// Difference of the specific forces, second minus first, in the first sensor: this times (lever arms, biases, 1).
+Eigen::Matrix<double, 3, 13> PairProblem::difference_jacobian(const WorldRotation& world_rotation,
+                                                              std::size_t row) const {
+  const Mat3 first_R_world = a_.rotation[row].transpose();
+  const Row7 u = first_R_world * point_jacobian(a_, row, motion_.gravity),
+             v = first_R_world * world_rotation.at(motion_.time[row]) * point_jacobian(b_, row, motion_.gravity);
+  Eigen::Matrix<double, 3, 13> k;
+  k << -u.leftCols<6>(), v.leftCols<6>(), v.col(6) - u.col(6);
+  return k;
+}
+
+double PairFit::off_axis_rate() const {
+  const VectorXd squares = symmetric_eigen(angular_velocity).values;
+  return std::sqrt(std::max(0.0, squares[0] + squares[1]));
+}
+
+}  // namespace kinfer::identify

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/words/recording_findings.hpp"
+
+#include <gmock/gmock.h>
+
+#include "kinfer/words/findings.hpp"
+#include "kinfer/words/language.hpp"
+
+namespace kinfer::words {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<Finding> one_of_each() {
+  const FactValues cut{{"sensor", "e"}, {"link", "a-e"}, {"residual", 0.5}, {"usual_residual", 0.01}};
+  FactValues group = cut;
+  group.set("sensors", std::vector<std::string>{"e", "f"});
+  const FactValues link{{"link", "a-b"},        {"replaced_link", "a-c"},    {"residual", 0.5},
+                        {"off_axis_rate", 0.1}, {"replaced_residual", 0.01}, {"replaced_off_axis_rate", 0.001},
+                        {"ratio", 12.0}};
+  return {
+      {.kind = FindingKind::given_link, .severity = Severity::note, .values = link},
+      {.kind = FindingKind::given_link, .severity = Severity::fault, .values = link},
+      {.kind = FindingKind::loop,
+       .values = {{"segments", std::vector<std::string>{"a", "b", "c", "d"}},
+                  {"first", "a"},
+                  {"second", "d"},
+                  {"residual", 0.02},
+                  {"largest_tree_residual", 0.03}}},
+      {.kind = FindingKind::several_machines, .values = group, .applied = true},
+      {.kind = FindingKind::several_machines, .values = {{"groups", std::vector<std::string>{"a, b", "c, d"}}}},
+      {.kind = FindingKind::linkage, .values = cut, .applied = true},
+      {.kind = FindingKind::no_joint, .values = cut, .applied = true},
+      {.kind = FindingKind::idle,
+       .values = {{"stationary", std::vector<std::string>{"a", "b"}},
+                  {"left_out", std::vector<std::string>{"b"}},
+                  {"kept", "a"}},
+       .applied = true},
+      {.kind = FindingKind::remounted,
+       .values = {{"sensor", "c"},
+                  {"begin", 40.0},
+                  {"end", 41.5},
+                  {"axis_rotation", 0.174532925},
+                  {"point_shift", 0.03},
+                  {"used_part", "before"}},
+       .applied = true},
+      {.kind = FindingKind::clock,
+       .values = {{"sensor", "d"}, {"offset", -0.05}, {"drift", 5e-5}, {"offset_sd", 1e-4}, {"drift_sd", 1e-6}},
+       .applied = true},
+  };
+}
+
+TEST(RecordingFindings, EveryKindHasASentenceAndItsNumbersInUsersUnits) {
+  std::string all;
+  for (const Finding& finding : one_of_each()) {
+    ASSERT_TRUE(is_recording_finding(finding.kind)) << name(finding.kind);
+    EXPECT_FALSE(sentence(finding).empty());
+    EXPECT_EQ(sentence(finding).back() == '.', false);
+    EXPECT_EQ(suggestion(finding).empty(), finding.severity == Severity::note);
+    all += sentence(finding) + "\n";
+  }
+  EXPECT_THAT(all, HasSubstr("turned by 10.0 deg"));
+  EXPECT_THAT(all, HasSubstr("moved by about 30 mm; only what was recorded before is used"));
+  EXPECT_THAT(all, HasSubstr("d are logged 50.00 (± 0.10) ms late, and its clock runs 50.0 (± 1.00) ppm slow"));
+  EXPECT_THAT(all, HasSubstr("fall into 2 groups that share only the ground (a, b; c, d)"));
+  EXPECT_THAT(all, HasSubstr("a-b is against the log: a joint there leaves 0.500 m/s²"));
+}
+
+TEST(RecordingFindings, ADriftWithinItsUncertaintyIsNotStated) {
+  const Finding clock{
+      .kind = FindingKind::clock,
+      .values = {{"sensor", "d"}, {"offset", 0.01}, {"drift", 3e-6}, {"offset_sd", 0.0}, {"drift_sd", 1e-6}}};
+  EXPECT_EQ(sentence(clock), "the measurements of d are logged 10.00 ms early");
+}
+
+TEST(RecordingFindings, InTheLanguageOfNamesASentenceIsTheNameOfTheFact) {
+  set_language(Language::names);
+  for (const Finding& finding : one_of_each()) EXPECT_THAT(sentence(finding), testing::MatchesRegex("[a-z_]+"));
+  set_language(Language::english);
+}
+
+TEST(Findings, AboutAPoseSetAreNotAboutARecording) {
+  EXPECT_FALSE(is_recording_finding(FindingKind::rows_shifted));
+  EXPECT_FALSE(is_recording_finding(FindingKind::not_rigid));
+}
+
+}  // namespace
+}  // namespace kinfer::words
