@@ -136,6 +136,16 @@ TEST(SegmentMotionOf, TooFewSensorsRowsOrMeasurementsAreSaid) {
   EXPECT_EQ(segment_motion(dead).error().what, "sensor arm has too few usable rates and specific forces");
 }
 
+TEST(SegmentMotionOf, RotationsByAnotherFilterAreOnTheSameClock) {
+  const CarriedPair pair(true);
+  const auto found = segment_motion(pair.recording);
+  ASSERT_TRUE(found);
+  const SegmentMotionOptions online{.filter = KinferFilterOptions{}};
+  const auto rotations = segment_rotations(*found, pair.recording, pair.recording.sensors[1], online);
+  ASSERT_EQ(rotations.size(), found->rows());
+  EXPECT_LT(worst_angle(rotations, pair.truth[1]), 3.0 * degree);
+}
+
 TEST(GyroBasedMotion, HasTheHeadingOfTheMagnetometers) {
   const CarriedPair pair(true);
   EXPECT_TRUE(all_have_magnetometers(pair.recording));

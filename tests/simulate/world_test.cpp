@@ -27,8 +27,8 @@ std::vector<Place> places() {
   return all;
 }
 
-class EveryMachine : public testing::TestWithParam<Place> {};
-INSTANTIATE_TEST_SUITE_P(on, EveryMachine, testing::ValuesIn(places()), [](const auto& instance) {
+class EveryMachine : public ::testing::TestWithParam<Place> {};
+INSTANTIATE_TEST_SUITE_P(on, EveryMachine, ::testing::ValuesIn(places()), [](const auto& instance) {
   std::string name = instance.param.machine + (instance.param.options.base == Base::still     ? "_still"
                                                : instance.param.options.base == Base::rocking ? "_rocking"
                                                                                               : "_yawing");
@@ -78,8 +78,8 @@ Vec3 second_derivative(const Column& at, double h) {
 constexpr double rate_tolerance = 1e-6;   // [rad/s]
 constexpr double force_tolerance = 1e-4;  // [m/s²]
 
-class EitherServo : public testing::TestWithParam<Servo> {};
-INSTANTIATE_TEST_SUITE_P(holds, EitherServo, testing::Values(Servo::stiff, Servo::soft));
+class EitherServo : public ::testing::TestWithParam<Servo> {};
+INSTANTIATE_TEST_SUITE_P(holds, EitherServo, ::testing::Values(Servo::stiff, Servo::soft));
 
 TEST_P(EitherServo, GyroIsTheDerivativeOfOrientationAndForceThatOfPositionAndGravity) {
   const MujocoWorld world = world_of("excavator-general", {.base = Base::rocking});
