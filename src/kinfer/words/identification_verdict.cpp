@@ -35,7 +35,7 @@ template <class Pick>
 std::string joined_sentences(const std::vector<Finding>& findings, const Pick& pick) {
   std::string text;
   for (const Finding& finding : findings)
-    if (pick(finding)) text += "; " + sentence(finding);
+    if (pick(finding)) text += "; " + words::sentence(finding);
   return text;
 }
 

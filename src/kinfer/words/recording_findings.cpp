@@ -149,7 +149,7 @@ constexpr std::array recording_finding_words{
     RecordingFindingWords{FindingKind::clock, clock_sentence, clock_suggestion},
 };
 
-const RecordingFindingWords& words_of(FindingKind kind) {
+const RecordingFindingWords& recording_words_of(FindingKind kind) {
   const auto row = std::ranges::find(recording_finding_words, kind, &RecordingFindingWords::kind);
   KINFER_EXPECT(row != recording_finding_words.end(), "\"{}\" is not about a recording", name(kind));
   return *row;
@@ -163,11 +163,11 @@ bool is_recording_finding(FindingKind kind) {
 }
 
 std::string recording_finding_sentence(const Finding& finding) {
-  return words_of(finding.kind).sentence(finding);
+  return recording_words_of(finding.kind).sentence(finding);
 }
 
 std::string recording_finding_suggestion(const Finding& finding) {
-  return words_of(finding.kind).suggestion(finding);
+  return recording_words_of(finding.kind).suggestion(finding);
 }
 
 }  // namespace kinfer::words
