@@ -27,7 +27,7 @@ double mean_error_on_unseen_poses(const Chain& found, const Chain& truth) {
   return mean(point_errors(found, measured(truth, paper2_poses(300, noise_free), 4321)));
 }
 
-TEST(FramesStart, BaseAndToolNeedNoGuess) {
+TEST(InitialFrames, BaseAndToolNeedNoInitialValues) {
   const Chain truth = placed(er20(0.125));
   const PoseSet data = measured(truth, paper2_poses(30, noise_free));
   Chain ignorant = truth;
@@ -39,7 +39,7 @@ TEST(FramesStart, BaseAndToolNeedNoGuess) {
   EXPECT_LT((found.tool.xyz - truth.tool.xyz).norm(), 1e-6);
 }
 
-TEST(FramesStart, OrientationsGiveTheToolsTurnToo) {
+TEST(InitialFrames, OrientationsAlsoGiveTheToolsRotation) {
   Chain truth = placed(er20(0.125));
   truth.tool = Frame::from_pose(Pose::from_xyz_rpy({0.1, -0.2, 0.3}, {1.0, -0.7, 2.5}));
   PoseSimulation simulation = paper2_poses(30, noise_free);
@@ -75,7 +75,7 @@ TEST(Calibrate, FullPosesAreFittedInPositionAndOrientation) {
   EXPECT_LT(mean_error_on_unseen_poses(c.estimate.chain, truth), 25e-6);
 }
 
-TEST(Calibrate, TheGuessOfTheBaseDoesNotMatter) {
+TEST(Calibrate, TheInitialBaseDoesNotMatter) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   const PoseSet data = measured(truth, paper2_poses(50, tracker));
   Chain near = er20(0.125), far = er20(0.125);
@@ -86,7 +86,7 @@ TEST(Calibrate, TheGuessOfTheBaseDoesNotMatter) {
   EXPECT_NEAR(a.after.position.holdout.mean, b.after.position.holdout.mean, 1e-9);
 }
 
-TEST(Calibrate, ANominalModelThatIsFarOffIsFoundAndSaid) {
+TEST(Calibrate, ANominalModelThatIsFarOffIsDetectedAndReported) {
   Chain truth = placed(er20(0.125));
   auto& link = std::get<MdhLink>(truth.joints[2].link);
   link.theta += 12.0 * degree;
@@ -99,7 +99,7 @@ TEST(Calibrate, ANominalModelThatIsFarOffIsFoundAndSaid) {
   EXPECT_NE(c.notes[0].find("further off than its tolerances say"), std::string::npos);
 }
 
-TEST(Calibrate, JointsThatNeverMoveDoNoHarmAndAreNamed) {
+TEST(Calibrate, JointsThatNeverMoveDoNoHarmAndAreReported) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   Chain nominal = er20(0.125);
   nominal.tool.xyz = truth.tool.xyz;
@@ -126,7 +126,7 @@ TEST(Calibrate, SameResultFor12And7Threads) {
   }
 }
 
-TEST(Calibrate, ThePapers24ParametersNeedNoGuessOfTheBaseEither) {
+TEST(Calibrate, ThePapers24ParametersNeedNoInitialBaseEither) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   Chain nominal = er20(0.125);
   nominal.tool.xyz = truth.tool.xyz;
@@ -156,7 +156,7 @@ TEST(Calibrate, RowsMarkedHoldoutAreNeverFitted) {
   EXPECT_FALSE(same.usable);  // and the spoiled proof is seen
 }
 
-TEST(Calibrate, WhatTheInstrumentCannotExcuseIsAdvisedAgainst) {
+TEST(Calibrate, ErrorsAboveTheInstrumentsAccuracyAreAdvisedAgainst) {
   Chain truth = placed(with_table3_errors(er20(0.125)));
   truth.joints[1].compliance = 2e-6;  // sags under its arm, and the geometric model has no word for it
   truth.masses = {{2, Vec3(0.4, 0, 0), 120.0}, {4, Vec3(0, 0, 0.1), 60.0}};
@@ -167,7 +167,7 @@ TEST(Calibrate, WhatTheInstrumentCannotExcuseIsAdvisedAgainst) {
   EXPECT_NE(c.verdict.find("not modelled"), std::string::npos);
 }
 
-TEST(Calibrate, TooFewRowsAreAnErrorThatSaysHowManyAreNeeded) {
+TEST(Calibrate, TooFewRowsAreAnErrorThatStatesHowManyAreNeeded) {
   const PoseSet data = measured(placed(er20()), paper2_poses(3, tracker));
   const auto c = calibrate_robot({er20(), {}, tracker, data}, {}, Rng(1));
   ASSERT_FALSE(c.has_value());
@@ -182,7 +182,7 @@ TEST(Calibrate, AnUnknownParameterNameListsTheKnownOnes) {
   EXPECT_NE(c.error().what.find("theta6"), std::string::npos);
 }
 
-TEST(Verify, TellsAMovedTrackerFromAChangedRobot) {
+TEST(Verify, DistinguishesAMovedTrackerFromAChangedRobot) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   const PoseSet today = measured(truth, paper2_poses(30, tracker), 5);
   EXPECT_TRUE(verify(truth, {}, tracker, today)->good);

@@ -40,7 +40,7 @@ TEST(Instruments, DrawWiresToUncertainAnchorsCalibrateTheRobotAndTheAnchors) {
   EXPECT_GT(c.before.position.holdout.mean, 5.0 * c.after.position.holdout.mean);
 }
 
-TEST(Instruments, BallsInSocketsMakeUnseenSocketsConsistent) {
+TEST(Instruments, BallsInSocketsMakeHeldOutSocketsConsistent) {
   const Chain truth = true_robot();
   const std::vector<Vec3> sockets{{0.9, 0.5, 0.4}, {0.8, -0.6, 0.6}, {1.1, 0.1, 0.9}, {0.7, 0.3, 1.2}};
   PoseSet all = readings_of(measured(truth, paper2_poses(120, noise_free)));
@@ -123,7 +123,7 @@ TEST(Instruments, BallBarsPlanesAndTiltsTogetherWithFewTrackerPoints) {
   EXPECT_LT(mean(point_errors(c.estimate.chain, measured(truth, paper2_poses(200, noise_free), 99))), 100e-6);
 }
 
-TEST(Instruments, TargetsWithoutTheToolPointFindTheToolsTurn) {
+TEST(Instruments, TargetsWithoutTheToolPointDetermineTheToolsRotation) {
   Chain nominal = nominal_robot();
   nominal.targets = {{"s1", Vec3(0.1, 0, 0)}, {"s2", Vec3(0, 0.1, 0.02)}, {"s3", Vec3(-0.08, -0.05, 0.05)}};
   Chain truth = with_random_errors(nominal, {}, Rng(6));
@@ -140,7 +140,7 @@ TEST(Instruments, TargetsWithoutTheToolPointFindTheToolsTurn) {
   EXPECT_LT(c.after.position.holdout.mean, 45e-6);
 }
 
-TEST(Instruments, ACamerasOwnDeviationsWeighItsPoses) {
+TEST(Instruments, ACamerasStandardDeviationsWeightItsPoses) {
   const Chain truth = true_robot(7);
   PoseSimulation simulation = paper2_poses(60, {.sigma = 20e-6, .sigma_angle = 1e-4});
   simulation.measured = Measured::poses;
@@ -178,7 +178,7 @@ TEST(Instruments, EachSetupHasABaseAndToolOfItsOwn) {
   EXPECT_LT((c.estimate.chain.mountings[0].tool.xyz - truth.mountings[0].tool.xyz).norm(), 1e-3);
 }
 
-TEST(Instruments, BothArmsOfATreeAreCalibratedByRowsThatSayWhichTip) {
+TEST(Instruments, BothArmsOfATreeAreCalibratedByRowsThatNameTheTip) {
   Chain nominal = er20(0.125);
   nominal.tip = 3;  // a torso of two axes; arm one is joints 3 and 4, arm two joints 5 to 7
   nominal.joints[4].parent = 1;

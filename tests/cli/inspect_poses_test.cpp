@@ -25,7 +25,7 @@ class InspectPoses : public Program {
   }
 };
 
-TEST_F(InspectPoses, AHealthySetIsCalledSo) {
+TEST_F(InspectPoses, AFaultlessSetIsReportedAsSuch) {
   simulate();
   const Outcome run = kinfer("inspect data/poses.csv --robot data/robot.toml");
   EXPECT_EQ(run.code, 0) << run.err;
@@ -33,7 +33,7 @@ TEST_F(InspectPoses, AHealthySetIsCalledSo) {
   EXPECT_EQ(kinfer("inspect data/poses.csv --robot data/robot.toml --json").out, "[]\n");
 }
 
-TEST_F(InspectPoses, AHeaderWithTheWrongUnitIsFoundAndCalibrateSaysWhatItDid) {
+TEST_F(InspectPoses, AHeaderWithTheWrongUnitIsFoundAndCalibrateReportsTheCorrection) {
   simulate();
   change_rows([](std::string line, int number) {
     return number == 0 ? "q1,q2,q3,q4,q5,q6,x[mm],y[mm],z[mm]" : line;  // degrees, read as radians
@@ -97,7 +97,7 @@ TEST_F(InspectPoses, MeasuredSetsHaveTrueFindingsOnly) {
   EXPECT_EQ(kinds, (std::vector<std::string>{"measurement_repeated", "measurement_repeated", "gross_outliers"}));
 }
 
-TEST_F(InspectPoses, CasesHaveNoFindingButTheirWrongRows) {
+TEST_F(InspectPoses, ReferenceCasesHaveNoFindingButTheirGrossErrors) {
   const char* root = std::getenv("KINFER_CASES");
   if (!root) GTEST_SKIP() << "KINFER_CASES is not set";
   for (const std::string name : {"robot6_tracker", "ur_like_metres", "scara_screw"}) {

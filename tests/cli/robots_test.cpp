@@ -36,7 +36,7 @@ TEST_F(Robots, AModelIsChosenAndTheChoiceIsInTheEvidence) {
   }
 }
 
-TEST_F(Robots, AnUnknownModelIsRefusedInASentenceThatListsTheKnownOnes) {
+TEST_F(Robots, AnUnknownModelTermIsRefusedWithTheKnownOnes) {
   simulate();
   const Outcome run = kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal --model magic");
   EXPECT_EQ(run.code, 2);
@@ -54,7 +54,7 @@ TEST_F(Robots, SetupsAreWrittenAndPredictedByTheirName) {
   EXPECT_EQ(kinfer("verify --chain cal/chain.toml --data data/poses.csv").code, 0);
 }
 
-TEST_F(Robots, AKnockedRobotIsRefittedWithFewPoses) {
+TEST_F(Robots, ARobotIsRefittedWithFewPosesAfterACollision) {
   simulate();
   ASSERT_EQ(kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal").code, 0);
   simulate("--seed 9 --poses 8");
@@ -94,7 +94,7 @@ std::string socket_rows(const std::string& folder, const std::vector<std::string
   return text;
 }
 
-TEST_F(Robots, RealBallsInSocketsAreConsistentAtPositionsThatWereNotFitted) {
+TEST_F(Robots, RealBallsInSocketsAreConsistentAtHeldOutPositions) {
   const char* root = std::getenv("KINFER_DATA");
   if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
   const std::string mukca = std::string(root) + "/mukca", arm = mukca + "/data/panda_1";

@@ -31,14 +31,14 @@ CalibratedRobot calibrated(const Chain& truth, int seed) {
   return robot;
 }
 
-TEST(change, TwoCalibrationsOfOneRobotDifferByChanceOnly) {
+TEST(Compare, TwoCalibrationsOfOneRobotDifferByChanceOnly) {
   const CalibratedRobot first = calibrated(arm(), 1);
   int alarms = 0;
   for (int seed = 2; seed < 12; ++seed) alarms += compare_calibrations(first, calibrated(arm(), seed)).value().changed;
   EXPECT_EQ(alarms, 0);
 }
 
-TEST(change, ASlippedEncoderIsNamedFirst) {
+TEST(Compare, ASlippedEncoderIsListedFirst) {
   Chain knocked = arm();
   std::get<MdhLink>(knocked.joints[2].link).theta += 0.02 * degree;
   const CalibrationComparison changes = compare_calibrations(calibrated(arm(), 1), calibrated(knocked, 2)).value();
@@ -48,14 +48,14 @@ TEST(change, ASlippedEncoderIsNamedFirst) {
   EXPECT_GT(changes.tool_worst, 1e-4);
 }
 
-TEST(change, RobotsOfDifferentKindsAreRefused) {
+TEST(Compare, RobotsOfDifferentTypesAreRefused) {
   Chain other = arm();
   other.joints.pop_back();
   EXPECT_FALSE(compare_calibrations({arm(), {{"a2", 1e-5}}}, {other, {{"a2", 1e-5}}}).has_value());
   EXPECT_FALSE(compare_calibrations({arm(), {}}, {arm(), {}}).has_value());
 }
 
-TEST(iso9283, AccuracyAndRepeatabilityAreThoseOfTheStandard) {
+TEST(Iso9283, AccuracyAndRepeatabilityAreThoseOfTheStandard) {
   const Chain chain = arm();
   PoseSet data = test::measured(chain, test::paper2_poses(3, test::noise_free), 1);
   data.joints.col(1) = data.joints.col(0);
@@ -70,7 +70,7 @@ TEST(iso9283, AccuracyAndRepeatabilityAreThoseOfTheStandard) {
   EXPECT_FALSE(poses[1].repeatability.has_value());
 }
 
-TEST(tables, CalibratedRowsStayNearTheNominalOnesWithParallelAxes) {
+TEST(JointTables, CalibratedRowsStayNearTheNominalOnesWithParallelAxes) {
   const CalibratedRobot robot = calibrated(arm(), 1);
   const Chain nominal = test::er20();
   for (std::size_t j = 0; j < 6; ++j) {
@@ -83,7 +83,7 @@ TEST(tables, CalibratedRowsStayNearTheNominalOnesWithParallelAxes) {
   }
 }
 
-TEST(tables, EncoderOffsetsAreToldApartFromGeometry) {
+TEST(JointTables, EncoderOffsetsAreSeparatedFromGeometry) {
   const CalibrationTask task{.nominal = test::er20(),
                              .tolerances = {},
                              .instrument = test::tracker,

@@ -48,7 +48,7 @@ TEST(Rotation, SkewIsTheCrossProduct) {
   EXPECT_LT((skew(v) * w - v.cross(w)).norm(), 1e-16);
 }
 
-TEST(Rotation, ElementaryRotationsTurnByTheRightHandRule) {
+TEST(Rotation, ElementaryRotationsFollowTheRightHandRule) {
   EXPECT_LT((rot_x(pi / 2) * Vec3::UnitY() - Vec3::UnitZ()).norm(), 1e-15);
   EXPECT_LT((rot_y(pi / 2) * Vec3::UnitZ() - Vec3::UnitX()).norm(), 1e-15);
   EXPECT_LT((rot_z(pi / 2) * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
@@ -109,7 +109,7 @@ TEST(Rotation, RightJacobianIsTheDerivativeOfTheExponential) {
   }
 }
 
-TEST(Rotation, RightJacobianTurnsLeftByTheRotation) {
+TEST(Rotation, RotationTimesRightJacobianIsTheLeftJacobian) {
   // exp(v) J_r(v) = J_r(−v), exactly; and v is its own image.
   for (const Vec3& v : rotation_vectors()) {
     EXPECT_LT((exp_so3(v) * right_jacobian(v) - right_jacobian(-v)).norm(), 2e-15 + 1e-15 * v.norm()) << v.norm();
@@ -147,7 +147,7 @@ TEST(Rpy, RollIsZeroAtTheGimbalLock) {
   EXPECT_LT((down - Vec3(0, -pi / 2, 1.3)).norm(), 1e-15);
 }
 
-TEST(Euler, EverySequenceIsTheProductOfItsTurns) {
+TEST(Euler, EverySequenceIsTheProductOfItsRotations) {
   const Vec3 angles(0.4, -1.1, 2.3);
   const auto turn = [&](char axis, double angle) { return exp_so3(angle * Vec3::Unit(axis - 'X')); };
   int sequences = 0;
@@ -174,7 +174,7 @@ TEST(Euler, RollPitchYawIsXyzExtrinsic) {
             1e-16);
 }
 
-TEST(Euler, OtherWordsAreNoSequence) {
+TEST(Euler, OtherTextsAreNoSequence) {
   for (const char* text :
        {"", "XY", "XYZ", "XYW intrinsic", "XXY intrinsic", "XYZ fixed", "XYZintrinsic", "XYZ intrinsic "})
     EXPECT_FALSE(parse_euler_sequence(text).has_value()) << text;

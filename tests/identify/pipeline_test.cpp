@@ -58,7 +58,7 @@ TEST_P(EveryMachineAndScript, HasTheRightTree) {
   }
 }
 
-TEST(MovingPhases, RankTheSegmentsOfAStiffMachineOnAStillBase) {
+TEST(MovingPhases, RankTheSegmentsOfARigidMachineOnAStationaryBase) {
   const DrivenMachine drive = driven_machine("excavator", {}, Script::standard, 1);
   const auto motion = segment_motion(drive.recording);
   ASSERT_TRUE(motion);
@@ -67,7 +67,7 @@ TEST(MovingPhases, RankTheSegmentsOfAStiffMachineOnAStillBase) {
   EXPECT_TRUE(has_same_parents(table, *segment_tree(*motion)));
 }
 
-TEST(MovingPhases, SeeASlideThatDoesNotTurn) {
+TEST(MovingPhases, DetectAPrismaticJoint) {
   const DrivenMachine drive = driven_machine("crane", {}, Script::standard, 1, "industrial");
   const auto ordered = order_segments(drive.recording, {}, {}, 0);
   ASSERT_TRUE(ordered);
@@ -86,7 +86,7 @@ std::vector<std::string> true_edges(const fs::path& folder) {
   return list;
 }
 
-TEST(SegmentTree, IsRightWithAMarginOnSoundRecordingsOfAnIndependentSimulator) {
+TEST(SegmentTree, IsRightWithAMarginOnFaultlessRecordingsOfAnIndependentSimulator) {
   const char* root = std::getenv("KINFER_CASES");
   if (!root) GTEST_SKIP() << "KINFER_CASES is not set";
   for (const char* name : {"excavator_paper_noise", "excavator_general_industrial", "excavator_all_joints_30s",
@@ -101,7 +101,7 @@ TEST(SegmentTree, IsRightWithAMarginOnSoundRecordingsOfAnIndependentSimulator) {
   }
 }
 
-TEST(SegmentTree, IsRightWithAMarginOnAMeasuredChainWithASphericalJointAndSoftMounts) {
+TEST(SegmentTree, IsRightWithAMarginOnAMeasuredChainWithASphericalJointAndCompliantMounts) {
   const char* root = std::getenv("KINFER_DATA");
   if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
   for (const char* mounts : {"rigid.csv", "nonrigid.csv"}) {
@@ -150,7 +150,7 @@ TEST(Identify, GivesTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(Identify, SaysWhatARecordingCannotShow) {
+TEST(Identify, ReportsWhatARecordingLeavesUnobservable) {
   DrivenMachine drive = driven_machine("excavator", {}, Script::standard, 1);
   InsRecording one = drive.recording, still = drive.recording;
   one.sensors.resize(1);
@@ -165,7 +165,7 @@ TEST(Identify, SaysWhatARecordingCannotShow) {
               testing::HasSubstr("no such sensor"));
 }
 
-TEST(Identify, TakesASecondSensorOnOneSegmentAndSaysSo) {
+TEST(Identify, UsesASecondSensorOnOneSegmentAndReportsIt) {
   DrivenMachine drive = driven_machine("excavator", {}, Script::standard, 1);
   InsSensor second = drive.recording.sensors[5];
   second.name = "second";

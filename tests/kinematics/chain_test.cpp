@@ -20,7 +20,7 @@ TEST(Chain, APathLeadsFromTheBaseToTheTipPastOtherBranches) {
   EXPECT_THAT(path_to(chain, -1), IsEmpty());
 }
 
-TEST(Chain, ReadingsBelongToTheJointsThatHaveOne) {
+TEST(Chain, JointPositionsBelongToActiveJoints) {
   EXPECT_EQ(dof(laws::urdf_arm()), 5);  // two of seven are fixed
   EXPECT_THAT(active_joints(laws::urdf_arm()), ElementsAre(1, 2, 3, 5, 6));
   EXPECT_THAT(active_joint_names(laws::urdf_arm()), ElementsAre("J2", "J3", "J4", "J6", "J7"));
@@ -57,7 +57,7 @@ TEST(Chain, AMalformedChainStopsTheProgram) {
   EXPECT_DEATH(forward(laws::er20(), VectorXd::Zero(5)), "5 readings for 6 joints");
 }
 
-TEST(Chain, TheEr20StretchesAsItsTableSays) {
+TEST(Chain, TheEr20HasTheReachOfItsTable) {
   // Paper 2, table 1, by hand: at q = 0 link 2 points along x1 and the wrist hangs down along -z0.
   Chain chain = laws::er20();
   chain.base = chain.tool = Frame{};
@@ -65,7 +65,7 @@ TEST(Chain, TheEr20StretchesAsItsTableSays) {
   EXPECT_LT((flange.position - Vec3(0.166605 + 0.782270 + 0.138826, 0, 0.504 - 0.76135 - 0.125)).norm(), 1e-15);
 }
 
-TEST(Chain, AHorizontalArmFeelsTheMomentOfItsMasses) {
+TEST(Chain, TheTorqueOfAHorizontalArmIsTheMomentOfItsMasses) {
   Chain chain;
   chain.joints = {laws::revolute<DhLink>(0.6, 90, 0), laws::revolute<DhLink>(0.4, 0, 0)};
   chain.joints[1].parent = 0;

@@ -49,7 +49,7 @@ void expect_is_the_derivative(const FrameMotion& now, const auto& at, const std:
   EXPECT_LT((slope([&](double h) { return at(h).omega; }) - now.alpha).norm(), slope_accuracy) << what;
 }
 
-TEST(Motion, EveryFrameMovesAsDifferencesOfItsPoseSay) {
+TEST(FrameMotion, OfEveryFrameAgreesWithDifferencesOfItsPose) {
   for (const Chain& chain : laws::examples()) {
     const Sway sway{dof(chain)};
     for (const double t : {0.0, 0.9, 4.1}) {
@@ -66,7 +66,7 @@ TEST(Motion, EveryFrameMovesAsDifferencesOfItsPoseSay) {
   }
 }
 
-TEST(Motion, ACarriedFrameMovesAsDifferencesOfItsPoseSay) {
+TEST(FrameMotion, OfAnAttachedFrameAgreesWithDifferencesOfItsPose) {
   const Chain chain = laws::er20_with_errors();
   const Sway sway{dof(chain)};
   const Pose sensor = Pose::from_xyz_rpy({0.1, -0.2, 0.3}, {0.4, 0.5, 0.6});
@@ -76,7 +76,7 @@ TEST(Motion, ACarriedFrameMovesAsDifferencesOfItsPoseSay) {
   expect_is_the_derivative(at(0.0), at, "sensor");
 }
 
-TEST(Motion, PosesAreThoseOfTheRigidChain) {
+TEST(FrameMotion, PosesAreThoseOfTheRigidChain) {
   Chain chain = laws::compliant();
   const VectorXd q = laws::random_q(chain, Rng(4)), still = VectorXd::Zero(q.size());
   const std::vector<FrameMotion> motions = joint_motions(chain, q, still, still);
@@ -88,7 +88,7 @@ TEST(Motion, PosesAreThoseOfTheRigidChain) {
   }
 }
 
-TEST(Motion, APointOnASteadyTurntableAcceleratesTowardsTheAxis) {
+TEST(FrameMotion, APointOnASteadyTurntableAcceleratesTowardsTheAxis) {
   Chain turntable;
   turntable.joints = {laws::revolute<MdhLink>(0, 0, 0)};
   const VectorXd rate = VectorXd::Constant(1, 3.0), zero = VectorXd::Zero(1);

@@ -88,7 +88,7 @@ TEST_P(ChainLaws, TheEvaluatorAgreesWithForward) {
   });
 }
 
-TEST_P(ChainLaws, JacobianIsTheSlopeOfForwardWithTheTorquesHeld) {
+TEST_P(ChainLaws, JacobianIsTheSlopeOfForwardWithConstantTorques) {
   at_random_poses([&](const VectorXd& q) {
     const Twists twists = jacobian(chain(), q, load);
     const VectorXd torques = gravity_torques(chain(), q, load);
@@ -103,7 +103,7 @@ TEST_P(ChainLaws, JacobianIsTheSlopeOfForwardWithTheTorquesHeld) {
   });
 }
 
-TEST_P(ChainLaws, DerivativeByEveryParameterIsTheSlopeWithTheTorquesHeld) {
+TEST_P(ChainLaws, DerivativeByEveryParameterIsTheSlopeWithConstantTorques) {
   const ParameterSet set = parameters();
   const PoseEvaluator evaluator(chain(), set);
   Twists twists;
@@ -159,7 +159,7 @@ TEST_P(ChainLaws, PackingAndUnpackingLoseNothing) {
   EXPECT_EQ(pack(set, unpack(set, chain(), x)), x);
 }
 
-TEST_P(ChainLaws, TheNominalValuesAreTheChains) {
+TEST_P(ChainLaws, NominalValuesAreThoseOfTheChain) {
   const ParameterSet set = parameters();
   const VectorXd x = pack(set, chain());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -179,7 +179,7 @@ TEST_P(ChainLaws, MovingTheBaseMovesTheToolRigidly) {
   });
 }
 
-TEST_P(ChainLaws, FoldingTheTurnsMovesNothing) {
+TEST_P(ChainLaws, FoldingConstantRotationsMovesNothing) {
   const Chain folded = with_small_rotations_folded(chain());
   EXPECT_EQ(folded.base.small_rotation, Vec3::Zero());
   EXPECT_EQ(folded.tool.small_rotation, Vec3::Zero());

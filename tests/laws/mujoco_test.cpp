@@ -66,7 +66,7 @@ std::string model_text(const Chain& chain) {
       placed_at(base.rotation, base.position), bodies(chain, -1));
 }
 
-class MujocoJudges : public testing::TestWithParam<Chain> {
+class MujocoComparison : public testing::TestWithParam<Chain> {
  protected:
   const Chain& chain() const { return GetParam(); }
 
@@ -79,7 +79,7 @@ class MujocoJudges : public testing::TestWithParam<Chain> {
   }
 };
 
-TEST_P(MujocoJudges, FramesAndTheirMotionsAgree) {
+TEST_P(MujocoComparison, FramesAndTheirMotionsAgree) {
   const auto model = laws::mujoco_model(model_text(chain()));
   ASSERT_TRUE(model);
   const std::unique_ptr<mjData, laws::MujocoFree> data(mj_makeData(model.get()));
@@ -118,7 +118,7 @@ std::vector<Chain> rigid_chains() {
   return chains;
 }
 
-INSTANTIATE_TEST_SUITE_P(every, MujocoJudges, testing::ValuesIn(rigid_chains()),
+INSTANTIATE_TEST_SUITE_P(every, MujocoComparison, testing::ValuesIn(rigid_chains()),
                          [](const auto& instance) { return laws::test_name(instance.param); });
 
 }  // namespace

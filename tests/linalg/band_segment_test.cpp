@@ -73,9 +73,9 @@ struct Case {
   std::vector<std::size_t> lengths;
 };
 
-class BandStretches : public testing::TestWithParam<Case> {};
+class BandSegments : public testing::TestWithParam<Case> {};
 
-TEST_P(BandStretches, TogetherSolveWhatOneWalkAlongTheBandSolves) {
+TEST_P(BandSegments, TogetherSolveWhatOnePassAlongTheBandSolves) {
   const auto& [width, reach, border, lengths] = GetParam();
   std::size_t spans = 0;
   for (const std::size_t length : lengths) spans += length;
@@ -103,7 +103,7 @@ TEST_P(BandStretches, TogetherSolveWhatOneWalkAlongTheBandSolves) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Any, BandStretches,
+INSTANTIATE_TEST_SUITE_P(Any, BandSegments,
                          testing::Values(Case{3, 6, 7, {9, 5, 12}}, Case{1, 6, 0, {5}}, Case{2, 3, 4, {2, 2, 7, 3}},
                                          Case{4, 2, 1, {1, 1, 6}}));
 

@@ -76,7 +76,7 @@ TEST(BorderedBand, SchurComplementIsTheInverseOfTheBordersCovariance) {
   EXPECT_LT((a * band.sensitivity() - b.transpose()).norm(), 1e-9 * b.norm());
 }
 
-TEST(BorderedBand, SaysWhereAPivotIsNotPositive) {
+TEST(BorderedBand, ReportsWhereAPivotIsNotPositive) {
   Problem p = random_problem(2, 3, 2, 5, Rng(4));
   p.parts[2].matrix -= 1e3 * MatrixXd::Identity(6, 6);
   EXPECT_FALSE(eliminated(p).is_positive_definite());

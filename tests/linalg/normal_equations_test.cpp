@@ -91,7 +91,7 @@ TEST(NormalEquations, BothWaysGiveTheMinimumOfTheDampedSquares) {
   }
 }
 
-TEST(NormalEquations, CholeskyRefusesWhatItWouldAnswerWronglyAndSvdDoesNotMoveAlongTheUnseen) {
+TEST(NormalEquations, CholeskyRefusesARankDeficientSystemAndSvdDoesNotMoveAlongItsNullSpace) {
   MatrixXd a = random_rows(60, 4, 5);
   a.col(3) = a.col(0) + a.col(1);
   const VectorXd b = random_rows(60, 1, 6);

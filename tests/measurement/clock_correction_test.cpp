@@ -14,7 +14,7 @@ InsRecording three_clocks() {
   return recording;
 }
 
-TEST(Clocks, EveryTimeIsShiftedByOffsetAndDrift) {
+TEST(ClockCorrection, EveryTimeIsShiftedByOffsetAndDrift) {
   const std::vector<ClockCorrection> corrections{{}, {.offset = 0.5, .drift = 0.1, .middle = 1.0}, {.offset = -5.0}};
   const InsRecording found = synchronise_sensors(three_clocks(), corrections);
   EXPECT_DOUBLE_EQ(found.time(found.sensors[0])[2], 2.0);
@@ -23,7 +23,7 @@ TEST(Clocks, EveryTimeIsShiftedByOffsetAndDrift) {
   EXPECT_DOUBLE_EQ(found.time(found.sensors[2])[0], 0.0);
 }
 
-TEST(Clocks, SensorsOfOneLoggerThatNeedTheSameStayTogether) {
+TEST(ClockCorrection, SensorsOfOneLoggerWithEqualCorrectionsStayTogether) {
   const std::vector<ClockCorrection> same{{.offset = 0.1}, {.offset = 0.1, .middle = 7.0}, {.offset = 0.1}};
   const InsRecording found = synchronise_sensors(three_clocks(), same);
   EXPECT_EQ(found.loggers.size(), 2u);

@@ -21,7 +21,7 @@ InsRecording three_sensors() {
   return recording;
 }
 
-TEST(ChosenSensors, BringTheirOwnLoggersOnly) {
+TEST(InsSelection, KeepsOnlyTheLoggersOfTheSelectedSensors) {
   const InsRecording found = select_sensors(three_sensors(), {2, 0});
   ASSERT_EQ(found.sensors.size(), 2u);
   EXPECT_EQ(found.sensors[0].name, "z");
@@ -30,7 +30,7 @@ TEST(ChosenSensors, BringTheirOwnLoggersOnly) {
   EXPECT_EQ(select_sensors(three_sensors(), {1}).loggers.size(), 1u);
 }
 
-TEST(ChosenSensors, AreFoundByNameOrSaidToBeMissing) {
+TEST(InsSelection, FindsSensorsByNameOrReportsThemMissing) {
   EXPECT_EQ(*find_sensors(three_sensors(), {"z", "x"}), (std::vector<std::size_t>{2, 0}));
   EXPECT_EQ(find_sensors(three_sensors(), {"w"}).error().what, "no sensor w; the log has x, y, z");
 }

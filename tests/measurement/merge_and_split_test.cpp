@@ -23,7 +23,7 @@ PoseSet three_rows() {
   return set;
 }
 
-TEST(Join, RowsOfTheSecondSetComeAfterAndAreLabelledHoldout) {
+TEST(MergePoseSets, RowsOfTheSecondSetComeAfterAndAreLabelledHoldout) {
   PoseSet second = three_rows();
   second.sockets = {"right", "new"};
   const PoseSet all = merge_pose_sets(three_rows(), second);

@@ -33,7 +33,7 @@ PoseSet four_rows() {
   return set;
 }
 
-TEST(PoseSet, SelectedRowsCarryEverythingThatWasSaidOfThem) {
+TEST(PoseSet, SelectedRowsKeepAllTheirMeasurements) {
   const PoseSet set = select(four_rows(), {3, 1});
   EXPECT_EQ(set.joints, (MatrixXd(2, 2) << 3, 1, 13, 11).finished());
   EXPECT_EQ(set.commanded(1, 0), 113);
@@ -63,7 +63,7 @@ TEST(PoseSet, SelectedRowsCarryEverythingThatWasSaidOfThem) {
   EXPECT_EQ(set.sweeps, four_rows().sweeps);
 }
 
-TEST(PoseSet, APairStaysWhereBothOfItsRowsAre) {
+TEST(PoseSet, APairIsKeptWhereBothOfItsRowsAre) {
   const PoseSet set = select(four_rows(), {3, 1});
   ASSERT_EQ(set.pairs.size(), 1U);
   EXPECT_EQ(set.pairs[0].row, 1);

@@ -37,7 +37,7 @@ DesignProblem small_problem() {
   return problem;
 }
 
-TEST(design, ExchangeFindsTheBestOfAllTriples) {
+TEST(OptimalDesign, ExchangeFindsTheBestOfAllTriples) {
   const DesignProblem problem = small_problem();
   for (const Criterion criterion : all_criteria) {
     double best = std::numeric_limits<double>::infinity();
@@ -51,7 +51,7 @@ TEST(design, ExchangeFindsTheBestOfAllTriples) {
   }
 }
 
-TEST(design, ObjectivesAreWhatTheySay) {
+TEST(OptimalDesign, ObjectivesEqualTheirDefinitions) {
   const DesignProblem problem = small_problem();
   const MatrixXd lambda = information(problem, {0, 4});
   const MatrixXd sigma = solve_spd(lambda, VectorXd::Unit(5, 0)) ? *invert_spd(lambda) : MatrixXd();
@@ -66,7 +66,7 @@ TEST(design, ObjectivesAreWhatTheySay) {
   EXPECT_GE(worst, 0.8 * tool_variances(problem, sigma).maxCoeff());
 }
 
-TEST(design, NoChoiceIsBetterThanTheBoundAndManyPosesComeCloseToIt) {
+TEST(OptimalDesign, NoChoiceIsBelowTheLowerBoundAndManyPosesComeCloseToIt) {
   const DesignProblem problem = small_problem();
   for (int a = 0; a < 9; ++a)
     for (int b = a; b < 9; ++b)
@@ -81,7 +81,7 @@ TEST(design, NoChoiceIsBetterThanTheBoundAndManyPosesComeCloseToIt) {
   EXPECT_NEAR(mean_square_lower_bound(alone, 1), only_one, 1e-12 * only_one);
 }
 
-TEST(design, CopiesAreSuperfluous) {
+TEST(OptimalDesign, CopiesAreRedundant) {
   DesignProblem problem = small_problem();
   problem.rows *= 100.0;  // the noise is small, so that fewer rows than unknowns hurt
   problem.rows.bottomRows(3) = 1e-3 * problem.rows.topRows(3);
@@ -90,7 +90,7 @@ TEST(design, CopiesAreSuperfluous) {
   EXPECT_LT(gone.size(), 9u);
 }
 
-TEST(design, CandidatesTooCloseAreNotChosenTogether) {
+TEST(OptimalDesign, CandidatesTooCloseAreNotChosenTogether) {
   DesignProblem problem = small_problem();
   problem.too_close = [](int a, int b) { return std::abs(a - b) == 1; };
   const std::vector<int> found = best_design(problem, Criterion::d, 5, 2, 1, Rng(1));
@@ -106,7 +106,7 @@ PlanTask er20_task() {
   return task;
 }
 
-TEST(plan, PosesKeepToLimitsFloorViewAndSpacing) {
+TEST(PlanPoses, PosesKeepToLimitsFloorViewAndSpacing) {
   PlanTask task = er20_task();
   task.space = {.lowest = 0.1, .clearance = 0.3, .instrument = Vec3(2.5, 1.0, 1.2)};
   const PlanOptions options{.poses = 12, .candidates = 200, .starts = 0};
@@ -126,7 +126,7 @@ TEST(plan, PosesKeepToLimitsFloorViewAndSpacing) {
   }
 }
 
-TEST(plan, SamePosesForAnyNumberOfThreads) {
+TEST(PlanPoses, SamePosesForAnyNumberOfThreads) {
   const PlanTask task = er20_task();
   const auto with = [&](int threads) {
     return plan_poses(task, {.poses = 8, .candidates = 150, .threads = threads}, Rng(4)).value().joints;
@@ -136,14 +136,14 @@ TEST(plan, SamePosesForAnyNumberOfThreads) {
   EXPECT_EQ(one, with(7));
 }
 
-TEST(plan, OrderingIsAPermutationThatTravelsLess) {
+TEST(PlanPoses, OrderingIsAPermutationThatTravelsLess) {
   const PosePlan plan = plan_poses(er20_task(), {.poses = 15, .candidates = 300, .starts = 0}, Rng(1)).value();
   EXPECT_LT(plan.travel, plan.travel_unordered);
   const std::vector<int> order = order_by_travel(er20_task().nominal, plan.joints);
   EXPECT_EQ(std::set<int>(order.begin(), order.end()).size(), 15u);
 }
 
-TEST(plan, ExistingPosesCountAndLowerTheExpectedError) {
+TEST(PlanPoses, ExistingPosesCountAndLowerTheExpectedError) {
   PlanTask task = er20_task();
   task.candidates = draw_poses(task.nominal, {}, 200, Rng(9)).value();
   const PosePlan alone = plan_poses(task, {.poses = 10, .starts = 0}, Rng(1)).value();
@@ -155,7 +155,7 @@ TEST(plan, ExistingPosesCountAndLowerTheExpectedError) {
   for (Eigen::Index i = 0; i < 10; ++i) EXPECT_EQ(alone.joints.col(i), task.candidates.col(alone.candidates[i]));
 }
 
-TEST(plan, ObservabilityIsThatOfTheSingularValues) {
+TEST(PlanPoses, ObservabilityIndicesAreThoseOfTheSingularValues) {
   PlanTask task = er20_task();
   task.candidates = draw_poses(task.nominal, {}, 100, Rng(9)).value();
   const PosePlan plan = plan_poses(task, {.poses = 20, .starts = 0}, Rng(1)).value();
@@ -166,13 +166,13 @@ TEST(plan, ObservabilityIsThatOfTheSingularValues) {
   EXPECT_GT(o1, o3 / std::sqrt(20.0));
 }
 
-TEST(plan, AnImpossibleSpaceIsAnError) {
+TEST(PlanPoses, AnEmptyPoseSpaceIsAnError) {
   PlanTask task = er20_task();
   task.space.lowest = 50.0;
   EXPECT_FALSE(plan_poses(task, {.poses = 5}, Rng(1)).has_value());
 }
 
-TEST(plan, FifteenPlannedPosesCalibrateBetterThanFifteenRandomOnes) {
+TEST(PlanPoses, FifteenPlannedPosesCalibrateBetterThanFifteenRandomOnes) {
   const PlanTask task = er20_task();
   const MatrixXd planned = plan_poses(task, {.poses = 15, .candidates = 500, .starts = 1}, Rng(1)).value().joints;
   const MatrixXd elsewhere = draw_poses(task.nominal, {}, 300, Rng(2)).value();

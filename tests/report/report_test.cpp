@@ -121,7 +121,7 @@ TEST(Report, EveryElementThatIsOpenedIsClosed) {
             std::vector<std::string>{});
 }
 
-TEST(Report, NamesAndNotesCannotBreakOut) {
+TEST(Report, NamesAndNotesAreEscaped) {
   const std::string html = calibration_report(small_calibration());
   EXPECT_EQ(html.find("<script>alert"), std::string::npos);
   EXPECT_EQ(html.find("<b>bold"), std::string::npos);
@@ -158,7 +158,7 @@ TEST(Report, AnHourOfSixSensorsStaysBelowFiveMegabytes) {
   RecordProperty("bytes", static_cast<int>(html.size()));
 }
 
-TEST(Report, EvidenceThatIsNoneIsToldInOneSentence) {
+TEST(Report, InvalidEvidenceIsAnErrorOfOneSentence) {
   EXPECT_EQ(report_html("[]").error().what, "evidence.json: not a JSON object");
   EXPECT_EQ(report_html("{\"kind\": \"frames\"}").error().what, "evidence.json: there is no report for kind 'frames'");
   const auto lacking = report_html("{\"kind\": \"calibrate\", \"verdict\": \"x\"}");

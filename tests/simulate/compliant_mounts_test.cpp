@@ -34,7 +34,7 @@ CompliantMount leaning(double lean) {
   return mount;
 }
 
-TEST(SoftMounts, AtRestASensorLeansAsItsWeightWantsAndFeelsGravityAskew) {
+TEST(CompliantMounts, AtRestTheTiltIsThatOfTheWeightAndGravityIsMeasuredTilted) {
   MachineMotion still = turned(0.0, 0.5);
   for (Vec3& f : still.sensors[0].force) f = Vec3(0.0, 9.81, 0.0);
   const MachineMotion soft = with_compliant_mounts(still, {leaning(0.1)});
@@ -43,7 +43,7 @@ TEST(SoftMounts, AtRestASensorLeansAsItsWeightWantsAndFeelsGravityAskew) {
   EXPECT_LT(soft.sensors[0].angular_velocity.back().norm(), 1e-9);
 }
 
-TEST(SoftMounts, InASlowTurnTheGyroscopeShowsTheLeaningToo) {
+TEST(CompliantMounts, InASlowRotationTheGyroscopeMeasuresTheTiltToo) {
   // The force along y is g sin(rate t): θ = −lean sin(rate t), so θ̇ = −lean rate cos(rate t).
   const double angular_velocity = 0.2, lean = 0.1;
   const MachineMotion firm = turned(angular_velocity, 10.0), soft = with_compliant_mounts(firm, {leaning(lean)});
@@ -52,7 +52,7 @@ TEST(SoftMounts, InASlowTurnTheGyroscopeShowsTheLeaningToo) {
                 angular_velocity * (1.0 - lean * std::cos(angular_velocity * firm.time[row])), 1e-3);
 }
 
-TEST(SoftMounts, ASensorSwaysAtItsOwnFrequencyAfterAKnock) {
+TEST(CompliantMounts, ASensorOscillatesAtItsNaturalFrequencyAfterAnImpulse) {
   MachineMotion knocked = turned(0.0, 1.0);
   knocked.sensors[0].force[20] += Vec3(50.0, 0.0, 0.0);
   CompliantMount mount;
@@ -65,7 +65,7 @@ TEST(SoftMounts, ASensorSwaysAtItsOwnFrequencyAfterAKnock) {
   EXPECT_NEAR(crossings, 5.0 * (soft.time.back() - soft.time[30]), 1.0);
 }
 
-TEST(SoftMounts, WhereASensorIsAgreesWithWhatItFeels) {
+TEST(CompliantMounts, PoseAndMeasuredMotionAgree) {
   const MujocoWorld world = test::world_of("excavator");
   const MachineMotion firm = world.prescribe(test::drive_of(world.machine()), 400.0);
   std::vector<CompliantMount> mounts;

@@ -7,7 +7,7 @@
 namespace kinfer {
 namespace {
 
-TEST(Linkage, ItsCouplerHoldsOneAndTheSamePointOfTheLastSegment) {
+TEST(FourBarLinkage, ItsCouplerHoldsOneAndTheSamePointOfTheLastSegment) {
   const MujocoWorld world = test::world_of("excavator", {.mounting = Mounting::arbitrary}, 2);
   const FourBar bars;
   const Machine machine = with_linkage(world.machine(), bars);
@@ -27,7 +27,7 @@ TEST(Linkage, ItsCouplerHoldsOneAndTheSamePointOfTheLastSegment) {
   EXPECT_NEAR(first.norm(), bars.crank, 1e-9);
 }
 
-TEST(Linkage, TheRatesAreTheDerivativesOfTheReadings) {
+TEST(FourBarLinkage, TheVelocitiesAreTheDerivativesOfTheJointPositions) {
   const MujocoWorld world = test::world_of("excavator", {}, 2);
   const Machine machine = with_linkage(world.machine());
   const MachineMotion motion = linkage_motion(machine, test::drive_of(world.machine(), {}, 2), 1000.0);

@@ -19,7 +19,7 @@ std::size_t index_of(const Machine& machine, const std::string& sensor) {
   return 0;
 }
 
-TEST(Truth, BothSensorsOfAJointSeeTheSameLineAtAllTimes) {
+TEST(GroundTruth, BothSensorsOfAJointHaveTheSameAxisLineAtAllTimes) {
   for (const std::string& name : machine_names()) {
     const MujocoWorld world = world_of(name, {.base = Base::yawing}, 2);
     const Machine& machine = world.machine();
@@ -44,7 +44,7 @@ TEST(Truth, BothSensorsOfAJointSeeTheSameLineAtAllTimes) {
   }
 }
 
-TEST(Truth, PositiveJointAngleTurnsTheChildAboutTheAxisByTheRightHand) {
+TEST(GroundTruth, PositiveJointAngleRotatesTheChildAboutTheAxisByTheRightHand) {
   const MujocoWorld world = world_of("robot6");
   const MachineMotion motion = prescribed_motion(world.machine(), drive_of(world.machine()), 100.0);
   for (const JointTruth& joint : machine_truth(world.machine(), motion).joints) {
@@ -59,7 +59,7 @@ TEST(Truth, PositiveJointAngleTurnsTheChildAboutTheAxisByTheRightHand) {
   }
 }
 
-TEST(Truth, ExcavatorsLeverArmsAreThePapers) {
+TEST(GroundTruth, ExcavatorsLeverArmsAreThePapers) {
   const MujocoWorld world = world_of("excavator");
   const MachineTruth truth =
       machine_truth(world.machine(), prescribed_motion(world.machine(), drive_of(world.machine()), 20.0));
@@ -84,7 +84,7 @@ MachineTruth truth_of(const MachineOptions& options) {
   return machine_truth(world.machine(), prescribed_motion(world.machine(), drive_of(world.machine()), 20.0));
 }
 
-TEST(Truth, AStillPlatformHidesItsJointAndTheHouseWhatLiesAlongItsAxis) {
+TEST(GroundTruth, AStationaryPlatformsJointAndTheHousesAxialOffsetAreUnobservable) {
   const MachineTruth truth = truth_of({});
   EXPECT_EQ(truth.joints[0].unobservable_in_parent.size(), 3u);
   ASSERT_EQ(truth.joints[0].unobservable_in_child.size(), 1u);
@@ -97,7 +97,7 @@ TEST(Truth, AStillPlatformHidesItsJointAndTheHouseWhatLiesAlongItsAxis) {
   EXPECT_FALSE(truth.joints[1].heading_needs_magnetometer);
 }
 
-TEST(Truth, ASlopeShowsTheAzimuthAndARockingBaseEverything) {
+TEST(GroundTruth, ASlopeMakesTheAzimuthObservableAndARockingBaseEverything) {
   const MachineTruth sloping = truth_of({.slope = Angle::deg(5)});
   EXPECT_FALSE(sloping.joints[0].heading_needs_magnetometer);
   EXPECT_EQ(sloping.joints[0].unobservable_in_parent.size(), 3u);
@@ -107,7 +107,7 @@ TEST(Truth, ASlopeShowsTheAzimuthAndARockingBaseEverything) {
   }
 }
 
-TEST(Truth, TreeHasTwoArmsOnItsTorso) {
+TEST(GroundTruth, TreeHasTwoArmsOnItsTorso) {
   const MujocoWorld world = world_of("tree");
   std::vector<std::string> pairs;
   for (const JointTruth& joint :

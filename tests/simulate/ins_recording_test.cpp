@@ -74,7 +74,7 @@ TEST(InsSimulation, NoiseGradeIsWhiteWithTheDensityOfItsDataSheet) {
   EXPECT_NEAR(moments(sensor.acceleration.axis[2]).mean, 9.81, 5.0 * 120e-6 * g * bandwidth / std::sqrt(n));
 }
 
-TEST(InsSimulation, IndustrialBiasesHaveTheStatedSpreadAndDifferFromSensorToSensor) {
+TEST(InsSimulation, IndustrialBiasesHaveTheStatedStandardDeviationAndDifferFromSensorToSensor) {
   constexpr std::size_t sensors = 300, rows = 40;
   const Machine machine = one_sensor(sensors);
   const InsRecording recording = simulate_recording(machine, still(machine, rows), grade("industrial"), {}, Rng(2));
@@ -98,7 +98,7 @@ TEST(InsSimulation, GyroSaturatesAtItsRangeAndTheRowsAreMarked) {
   EXPECT_EQ(count(sensor, acceleration_clipped), 0u);
 }
 
-TEST(InsSimulation, TheAskedFractionOfRowsIsLostInRunsOfFiveOnAverage) {
+TEST(InsSimulation, TheSpecifiedFractionOfRowsIsMissingInRunsOfFiveOnAverage) {
   constexpr std::size_t n = 100000;
   const Machine machine = one_sensor();
   const InsSensor sensor =
@@ -115,7 +115,7 @@ TEST(InsSimulation, TheAskedFractionOfRowsIsLostInRunsOfFiveOnAverage) {
   EXPECT_NEAR(length, 5.0, 5.0 * std::sqrt(20.0 / static_cast<double>(runs)));  // geometric: variance 5² − 5
 }
 
-TEST(InsSimulation, SpikesComeAsOftenAsAsked) {
+TEST(InsSimulation, SpikesOccurAtTheSpecifiedRate) {
   constexpr std::size_t n = 120000;  // ten minutes
   const Machine machine = one_sensor();
   const InsSensor sensor =
@@ -128,7 +128,7 @@ TEST(InsSimulation, SpikesComeAsOftenAsAsked) {
   }
 }
 
-TEST(InsSimulation, SteelDisturbsTheFieldByTheAskedRmsSmoothly) {
+TEST(InsSimulation, SteelDisturbsTheFieldSmoothlyByTheSpecifiedRms) {
   constexpr std::size_t n = 400000;  // 2000 s: 500 correlation times of 2 · 2 s
   const Machine machine = one_sensor();
   SensorModel perfect;
@@ -141,7 +141,7 @@ TEST(InsSimulation, SteelDisturbsTheFieldByTheAskedRmsSmoothly) {
   }
 }
 
-TEST(InsSimulation, APerfectSensorSaysTheTruthAndOneWithoutCompassNoField) {
+TEST(InsSimulation, APerfectSensorMeasuresTheTruthAndOneWithoutMagnetometerNoField) {
   const Machine machine = one_sensor();
   const MachineMotion motion = still(machine, 10, 200.0, {0.1, -0.2, 0.3});
   const InsSensor sensor = simulate_recording(machine, motion, {}, {.has_magnetometer = false}, Rng(6)).sensors[0];
@@ -152,7 +152,7 @@ TEST(InsSimulation, APerfectSensorSaysTheTruthAndOneWithoutCompassNoField) {
   }
 }
 
-TEST(InsSimulation, SameSeedReadsTheSameBitForBitAndAnotherSeedOtherwise) {
+TEST(InsSimulation, SameSeedGivesTheSameBitsAndAnotherSeedDoesNot) {
   const Machine machine = one_sensor(2);
   const MachineMotion motion = still(machine, 500);
   const SensorFaults trouble{.spikes = 60.0, .magnetic_disturbance = 3.0};

@@ -36,7 +36,7 @@ INSTANTIATE_TEST_SUITE_P(on, EveryMachine, testing::ValuesIn(places()), [](const
   return name;
 });
 
-TEST_P(EveryMachine, EnginesInverseDynamicsAndOurOwnKinematicsFeelTheSame) {
+TEST_P(EveryMachine, MujocosInverseDynamicsAndOwnKinematicsAgree) {
   const MujocoWorld world = world_of(GetParam().machine, GetParam().options, 5);
   const Drive drive = drive_of(world.machine(), {.duration = 30.0});
   const MachineMotion theirs = world.prescribe(drive, 50.0), ours = prescribed_motion(world.machine(), drive, 50.0);
@@ -52,7 +52,7 @@ TEST_P(EveryMachine, EnginesInverseDynamicsAndOurOwnKinematicsFeelTheSame) {
     }
 }
 
-TEST_P(EveryMachine, ASensorAtRestFeelsGUpward) {
+TEST_P(EveryMachine, ASensorAtRestMeasuresGUpward) {
   const MujocoWorld world = world_of(GetParam().machine, GetParam().options);
   Drive drive = drive_of(world.machine());
   drive.duration = 3.0;  // within the first rest
@@ -104,7 +104,7 @@ TEST_P(EitherServo, GyroIsTheDerivativeOfOrientationAndForceThatOfPositionAndGra
   EXPECT_GT(moved, 3.0);  // [m/s²] there was something to see
 }
 
-TEST(World, StiffJointsFollowTheirDriveAndSoftOnesSwayWhenOthersMove) {
+TEST(World, StiffJointsFollowTheirDriveAndSoftOnesDeviateWhenOthersMove) {
   const MujocoWorld world = world_of("excavator");
   const Drive drive = drive_of(world.machine(), {.script = Script::sequential, .duration = 20.0});
   const auto deviation = [&](Servo servo) {
@@ -181,7 +181,7 @@ TEST(World, SameSeedMakesTheSameMotionBitForBit) {
   EXPECT_FALSE(once.q == other.q);
 }
 
-TEST(World, AFileThatIsNoMachineIsRefusedInTheEnginesWords) {
+TEST(World, AFileThatIsNoMachineIsRefusedWithMujocosMessage) {
   const auto world = MujocoWorld::load("<mujoco><worldbody><body><geom size='x'/></body></worldbody></mujoco>");
   ASSERT_FALSE(world);
   EXPECT_NE(world.error().what.find("machine.xml: "), std::string::npos) << world.error().what;

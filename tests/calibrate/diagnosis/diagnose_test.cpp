@@ -78,7 +78,7 @@ double noise_level(const CalibrationTask& corrected_task) {
   return fit_once(corrected_task, corrected_task.data, GeometricParameters{}, {}).value().sigma;
 }
 
-TEST(doctor, HealthySetsHaveNoFinding) {
+TEST(Diagnosis, FaultlessSetsHaveNoFinding) {
   for (const Chain& nominal : {arm6(), ur_like(), scara()})
     for (int seed = 1; seed <= 5; ++seed) {
       const Diagnosis diagnosis = diagnose(measured_robot(nominal, seed, Measured::poses));
@@ -86,7 +86,7 @@ TEST(doctor, HealthySetsHaveNoFinding) {
     }
 }
 
-TEST(doctor, CommandedJointsReplaceReadingsThatWereTakenWhileTheArmMoved) {
+TEST(Diagnosis, CommandedPositionsReplaceJointPositionsRecordedDuringMotion) {
   CalibrationTask task = measured_robot(arm6());
   task.data.commanded = task.data.joints;
   Rng rng(3);
@@ -95,7 +95,7 @@ TEST(doctor, CommandedJointsReplaceReadingsThatWereTakenWhileTheArmMoved) {
   EXPECT_EQ(diagnose(task).corrected_task.data.joints, task.data.commanded);
 }
 
-TEST(doctor, CommandedJointsThatTheArmDidNotReachAreNotUsed) {
+TEST(Diagnosis, CommandedPositionsThatWereNotReachedAreNotUsed) {
   CalibrationTask task = measured_robot(arm6());
   task.data.commanded = task.data.joints;
   Rng rng(3);
@@ -103,7 +103,7 @@ TEST(doctor, CommandedJointsThatTheArmDidNotReachAreNotUsed) {
   EXPECT_TRUE(diagnose(task).findings.empty());
 }
 
-TEST(doctor, RowsInWhichTheArmHadNotComeToRestAreNamed) {
+TEST(Diagnosis, RowsRecordedBeforeTheArmWasAtRestAreListed) {
   CalibrationTask task = measured_robot(arm6());
   task.data.commanded = task.data.joints;
   task.data.commanded.array() += 1e-4;
@@ -120,9 +120,9 @@ PoseSet with_readings_shifted(PoseSet data, int from, int by) {
   return data;
 }
 
-class Shifted : public ::testing::TestWithParam<std::pair<int, int>> {};  // from row, by
+class ShiftedRows : public ::testing::TestWithParam<std::pair<int, int>> {};  // from row, by
 
-TEST_P(Shifted, RowsAreFoundAndPairedAnew) {
+TEST_P(ShiftedRows, AreDetectedAndPairedAgain) {
   CalibrationTask task = measured_robot(arm6());
   const auto [from, by] = GetParam();
   const PoseSet right = task.data;
@@ -135,7 +135,7 @@ TEST_P(Shifted, RowsAreFoundAndPairedAnew) {
     EXPECT_EQ(corrected_task.joints.col(point.row), right.joints.col(point.row)) << point.row;
   EXPECT_EQ(corrected_task.points.size(), right.points.size() - std::abs(by));
 }
-INSTANTIATE_TEST_SUITE_P(doctor, Shifted,
+INSTANTIATE_TEST_SUITE_P(Diagnosis, ShiftedRows,
                          ::testing::Values(std::pair{0, 1}, std::pair{0, -2}, std::pair{0, 7}, std::pair{41, 1},
                                            std::pair{20, -1}),
                          [](const auto& test) {
@@ -143,33 +143,33 @@ INSTANTIATE_TEST_SUITE_P(doctor, Shifted,
                                               test.param.second < 0 ? "minus_" : "", std::abs(test.param.second));
                          });
 
-TEST(doctor, SwappedRowsAreNamedTogether) {
+TEST(Diagnosis, SwappedRowsAreListedTogether) {
   CalibrationTask task = measured_robot(ur_like());
   std::swap(task.data.points[12].position, task.data.points[40].position);
   EXPECT_EQ(only(task, "rows_swapped").rows, (std::vector<int>{12, 40}));
 }
 
-TEST(doctor, CopiedRowsAreNamed) {
+TEST(Diagnosis, CopiedRowsAreListed) {
   CalibrationTask task = measured_robot(arm6());
   task.data.joints.col(31) = task.data.joints.col(5);
   task.data.points[31].position = task.data.points[5].position;
   EXPECT_EQ(only(task, "duplicate_rows").rows, (std::vector<int>{5, 31}));
 }
 
-TEST(doctor, AMeasurementThatWasStoredTwiceIsNamed) {
+TEST(Diagnosis, AMeasurementThatWasStoredTwiceIsListed) {
   CalibrationTask task = measured_robot(arm6());
   task.data.points[21].position = task.data.points[20].position;
   EXPECT_EQ(only(task, "measurement_repeated").rows, (std::vector<int>{20, 21}));
 }
 
-TEST(doctor, APoseThatWasMeasuredAgainIsNoFault) {
+TEST(Diagnosis, ARepeatedPoseIsNoFault) {
   CalibrationTask task = measured_robot(arm6());
   task.data.joints.col(31) = task.data.joints.col(5);
   task.data.points[31].position = task.data.points[5].position + Vec3(8e-6, -5e-6, 3e-6);
   EXPECT_TRUE(diagnose(task).findings.empty());
 }
 
-TEST(doctor, GrossOutliersAreNamed) {
+TEST(Diagnosis, GrossOutliersAreListed) {
   CalibrationTask task = measured_robot(arm6());
   task.data.points[8].position.x() += 0.004;
   task.data.points[33].position.z() -= 0.3;
@@ -213,7 +213,7 @@ std::vector<Fault> faults() {
 
 class WholeFile : public ::testing::TestWithParam<Fault> {};
 
-TEST_P(WholeFile, FaultIsFoundAloneAndPutRight) {
+TEST_P(WholeFile, FaultIsTheOnlyFindingAndIsCorrected) {
   CalibrationTask task = measured_robot(ur_like(), 2);
   GetParam().make(task);
   const Diagnosis diagnosis = diagnose(task);
@@ -223,10 +223,10 @@ TEST_P(WholeFile, FaultIsFoundAloneAndPutRight) {
   EXPECT_TRUE(finding.applied);
   EXPECT_LT(noise_level(diagnosis.corrected_task), 5e-5) << finding.sentence;
 }
-INSTANTIATE_TEST_SUITE_P(doctor, WholeFile, ::testing::ValuesIn(faults()),
+INSTANTIATE_TEST_SUITE_P(Diagnosis, WholeFile, ::testing::ValuesIn(faults()),
                          [](const auto& test) { return test.param.name; });
 
-TEST(doctor, TwoWrongSignsAreFoundTogether) {
+TEST(Diagnosis, TwoWrongSignsAreFoundTogether) {
   CalibrationTask task = measured_robot(ur_like());
   task.data.joints.row(1) *= -1.0;
   task.data.joints.row(4) *= -1.0;
@@ -235,21 +235,21 @@ TEST(doctor, TwoWrongSignsAreFoundTogether) {
   EXPECT_LT(noise_level(diagnosis.corrected_task), 5e-5);
 }
 
-TEST(doctor, AMirroredMeasurementIsSaidAndLeftAlone) {
+TEST(Diagnosis, AMirroredMeasurementIsReportedAndNotCorrected) {
   CalibrationTask task = measured_robot(arm6());
   for (PointMeasurement& point : task.data.points) std::swap(point.position.x(), point.position.y());
   EXPECT_FALSE(only(task, "mirrored").applied);
 }
 
-TEST(doctor, APrismaticJointInMillimetresIsFound) {
+TEST(Diagnosis, APrismaticJointInMillimetresIsFound) {
   CalibrationTask task = measured_robot(scara());
   task.data.joints.row(2) *= 1e3;
   EXPECT_EQ(only(task, "length_unit").sentence, "J3 is in millimetres, but was read as metres");
 }
 
-class Orientations : public ::testing::TestWithParam<int> {};
+class OrientationConventions : public ::testing::TestWithParam<int> {};
 
-TEST_P(Orientations, OfAnotherConventionAreFoundAndPutRight) {
+TEST_P(OrientationConventions, OtherThanTheDocumentedOneAreFoundAndConverted) {
   CalibrationTask task = measured_robot(arm6(), 1, Measured::poses);
   const std::vector<OrientationMeasurement> right = task.data.orientations;
   for (OrientationMeasurement& m : task.data.orientations) {
@@ -263,27 +263,27 @@ TEST_P(Orientations, OfAnotherConventionAreFoundAndPutRight) {
   for (std::size_t i = 0; i < right.size(); ++i)
     EXPECT_NEAR(std::abs(corrected_task.orientations[i].orientation.dot(right[i].orientation)), 1.0, 1e-9);
 }
-INSTANTIATE_TEST_SUITE_P(doctor, Orientations, ::testing::Range(0, 3));
+INSTANTIATE_TEST_SUITE_P(Diagnosis, OrientationConventions, ::testing::Range(0, 3));
 
 /// The only number with a decimal point in a sentence. The joints take up part of what the base does.
 double number_in(const std::string& sentence) {
   return std::stod(sentence.substr(sentence.find('.') - 1));
 }
 
-TEST(doctor, ADriftingBaseIsSeenAndItsSizeIsRight) {
+TEST(Diagnosis, ADriftingBaseIsDetectedWithItsSize) {
   CalibrationTask task = measured_robot(ur_like());
   for (PointMeasurement& point : task.data.points) point.position.x() += 0.4e-3 * point.row / 59.0;
   EXPECT_NEAR(number_in(only(task, "base_drifts").sentence), 0.4, 0.1);
 }
 
-TEST(doctor, ABaseThatWasPushedALittleIsSeen) {
+TEST(Diagnosis, ASmallMoveOfTheBaseIsDetected) {
   CalibrationTask task = measured_robot(ur_like());
   for (PointMeasurement& point : task.data.points)
     if (point.row >= 30) point.position.y() += 0.3e-3;
   EXPECT_NEAR(number_in(only(task, "base_moved").sentence), 0.3, 0.1);
 }
 
-TEST(doctor, ABaseThatWasMovedFarIsSeenWithItsRows) {
+TEST(Diagnosis, ALargeMoveOfTheBaseIsDetectedWithItsRows) {
   CalibrationTask task = measured_robot(arm6());
   for (PointMeasurement& point : task.data.points)
     if (point.row >= 40) point.position += Vec3(0.1, -0.2, 0.05);
@@ -292,7 +292,7 @@ TEST(doctor, ABaseThatWasMovedFarIsSeenWithItsRows) {
   EXPECT_EQ(finding.rows.front(), 40);
 }
 
-TEST(doctor, AJointThatHardlyMovesIsNamed) {
+TEST(Diagnosis, AJointThatHardlyMovesIsNamed) {
   CalibrationTask task = measured_robot(arm6());
   const Chain truth = with_random_errors(task.nominal, {}, Rng(1));
   task.data.joints.row(3).setConstant(0.3);
@@ -301,7 +301,7 @@ TEST(doctor, AJointThatHardlyMovesIsNamed) {
   EXPECT_NE(only(task, "joint_hardly_moves").sentence.find("J4"), std::string::npos);
 }
 
-TEST(doctor, ATargetThatSlippedIsSeenInItsRows) {
+TEST(Diagnosis, ATargetThatSlippedIsDetectedInItsRows) {
   CalibrationTask task = measured_robot(arm6());
   const Chain truth = with_random_errors(task.nominal, {}, Rng(1));
   const Vec3 in_tool(0.1, 0.05, -0.02);
@@ -319,7 +319,7 @@ TEST(doctor, ATargetThatSlippedIsSeenInItsRows) {
   EXPECT_EQ(only(task, "not_rigid").rows, std::vector<int>{14});
 }
 
-TEST(doctor, ASetThatIsTooSmallToJudgeIsLeftAlone) {
+TEST(Diagnosis, ASetThatIsTooSmallIsLeftUnchanged) {
   CalibrationTask task = measured_robot(arm6());
   task.data = select(task.data, {0, 1, 2});
   EXPECT_NO_FATAL_FAILURE(diagnose(task));
@@ -327,7 +327,7 @@ TEST(doctor, ASetThatIsTooSmallToJudgeIsLeftAlone) {
   EXPECT_TRUE(diagnose(task).findings.empty());
 }
 
-TEST(doctor, RowsAreSaidInRuns) {
+TEST(Diagnosis, ConsecutiveRowsAreWrittenAsRanges) {
   EXPECT_EQ(describe_rows({3}), "row 3");
   EXPECT_EQ(describe_rows({3, 5, 6, 9, 10, 11}), "rows 3, 5, 6 and 9-11");
 }

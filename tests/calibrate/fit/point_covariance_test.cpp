@@ -52,7 +52,7 @@ double unseen_error(Told told) {
   return mean(errors);
 }
 
-TEST(Covariance, OfEachPointHalvesTheErrorThatATrackerOfPoorAnglesLeaves) {
+TEST(PointCovariance, HalvesTheErrorThatATrackerOfPoorAnglesLeaves) {
   const double full = unseen_error(Told::covariance);
   EXPECT_LT(full, 0.6 * unseen_error(Told::nothing));
   EXPECT_LT(full, 0.7 * unseen_error(Told::deviations)) << "the world's axes are not the tracker's";

@@ -56,7 +56,7 @@ double unseen_error(const Robot& made, const PoseSet& data) {
   return mean(errors);
 }
 
-TEST(PoseCovariance, ErrorsOfAShakenCameraHaveTheCovarianceThatItsFileGives) {
+TEST(PoseCovariance, ErrorsOfAShakenCameraHaveTheCovarianceThatItsFileStates) {
   const Robot made = robot(1);
   const PoseSet set =
       simulate_pose_set(made.truth, {.poses = 2000, .instrument = camera, .measured = Measured::poses, .shake = shake},
@@ -97,7 +97,7 @@ PoseSet moved(PoseSet set, const Pose& to) {
   return set;
 }
 
-TEST(PoseCovariance, ATurnOfTheWorldWithAllCovariancesChangesNoFit) {
+TEST(PoseCovariance, RotatingTheWorldWithAllCovariancesChangesNoFit) {
   const Robot made = robot(2);
   const PoseSet data = seen(made, 9);
   const Pose to = Pose::from_xyz_rpy({0.3, 1.2, -0.4}, {0.5, -0.8, 2.0});
@@ -112,7 +112,7 @@ TEST(PoseCovariance, ATurnOfTheWorldWithAllCovariancesChangesNoFit) {
   }
 }
 
-TEST(PoseCovariance, BadPointsAndOrientationsOfCoupledPosesAreFoundAndOnlyTheyAreLeftOut) {
+TEST(PoseCovariance, OnlyBadPointsAndOrientationsOfCoupledPosesAreRejected) {
   const Robot made = robot(3);
   PoseSet data = seen(made, 21);
   data.points[5].position += Vec3(3e-3, 0, 0);

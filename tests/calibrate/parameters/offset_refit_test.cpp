@@ -36,7 +36,7 @@ struct Knocked {
   }
 };
 
-TEST(Refit, EightPosesFindTheOffsetThatMovedAndNameItAlone) {
+TEST(OffsetRefit, EightPosesFindTheOnlyOffsetThatChanged) {
   const Knocked robot;
   const Calibration c = robot.refit(8);
   EXPECT_TRUE(c.usable) << c.verdict;
@@ -49,7 +49,7 @@ TEST(Refit, EightPosesFindTheOffsetThatMovedAndNameItAlone) {
   EXPECT_EQ(moved[0].find("theta3 has moved by +0."), 0u) << moved[0];
 }
 
-TEST(Refit, IsBetterThanANewCalibrationWithAsFewPoses) {
+TEST(OffsetRefit, IsBetterThanANewCalibrationWithAsFewPoses) {
   const Knocked robot;
   const auto anew = calibrate_robot({nominal_robot(), {}, tracker, measured(robot.now, paper2_poses(8, tracker), 8)},
                                     {.model = FixedModel{}}, Rng(1));
@@ -57,7 +57,7 @@ TEST(Refit, IsBetterThanANewCalibrationWithAsFewPoses) {
   EXPECT_LT(robot.error(robot.refit(8).estimate.chain), 0.5 * robot.error(anew->estimate.chain));
 }
 
-TEST(Refit, ARobotThatWasNotKnockedIsSaidNotToHaveMoved) {
+TEST(OffsetRefit, AnUnchangedRobotIsReportedAsUnchanged) {
   Knocked robot;
   robot.now = robot.truth;
   const Calibration c = robot.refit(8);

@@ -48,7 +48,7 @@ void expect_same_frames(const Chain& found, const Chain& truth, double length, d
   EXPECT_LT((found.tool.xyz - truth.tool.xyz).norm(), length);
 }
 
-TEST(FramesFromCircles, ThePapersSweepsOfJoints12And5GiveBaseAndToolLength) {
+TEST(CirclePointAnalysis, ThePapersSweepsOfJoints12And5GiveBaseAndToolLength) {
   const Chain truth = on_a_stand(er20(0.125));
   const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1)));
   ASSERT_TRUE(found) << found.error().what;
@@ -58,7 +58,7 @@ TEST(FramesFromCircles, ThePapersSweepsOfJoints12And5GiveBaseAndToolLength) {
   EXPECT_EQ(found->base_source, "joint J1 and joint J2");
 }
 
-TEST(FramesFromCircles, ATargetBesideTheFlangesAxisIsFoundWhereThePapersRadiusIsMisled) {
+TEST(CirclePointAnalysis, ATargetBesideTheFlangesAxisIsFoundWhereThePapersRadiusFails) {
   Chain truth = on_a_stand(er20(0.125));
   truth.tool.xyz = Vec3(0.02, -0.015, 0.1);
   const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1)));
@@ -67,7 +67,7 @@ TEST(FramesFromCircles, ATargetBesideTheFlangesAxisIsFoundWhereThePapersRadiusIs
   EXPECT_GT(std::abs(found->tool_length - 0.1), 0.5e-3);
 }
 
-TEST(FramesFromCircles, AnyPostureAndAnyTwoAxesWillDo) {
+TEST(CirclePointAnalysis, AnyPostureAndAnyTwoNonParallelAxesSuffice) {
   const Chain truth = on_a_stand(er20(0.125));
   const VectorXd rest = (VectorXd(6) << 0.4, -1.2, 0.3, 0.5, 0.6, -0.2).finished();
   const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {2, 3, 4}, rest, 0.0, Rng(1)));
@@ -75,7 +75,7 @@ TEST(FramesFromCircles, AnyPostureAndAnyTwoAxesWillDo) {
   expect_same_frames(found->chain, truth, 1e-8, 1e-8);
 }
 
-TEST(FramesFromCircles, AJointThatTurnsBackwardsAndASweepRunBackwardsAreUnderstood) {
+TEST(CirclePointAnalysis, NegativeJointDirectionsAndReversedSweepsAreHandled) {
   Chain truth = on_a_stand(er20(0.125)), nominal = er20(0.125);
   truth.joints[1].gain = nominal.joints[1].gain = -1.0;
   PoseSet data = sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1));
@@ -88,7 +88,7 @@ TEST(FramesFromCircles, AJointThatTurnsBackwardsAndASweepRunBackwardsAreUndersto
   }
 }
 
-TEST(FramesFromCircles, MarkedSweepsRuleAndAMarkOnTwoJointsIsRefused) {
+TEST(CirclePointAnalysis, MarkedSweepsTakePrecedenceAndAMarkOnTwoJointsIsRefused) {
   const Chain truth = on_a_stand(er20(0.125));
   PoseSet data = sweeps(truth, {0, 1}, zero, 0.0, Rng(1));
   data.sweeps = {"first", "second"};
@@ -101,14 +101,14 @@ TEST(FramesFromCircles, MarkedSweepsRuleAndAMarkOnTwoJointsIsRefused) {
   EXPECT_EQ(find_sweeps(data).error().what, "sweep second moves 2 joints; expected one joint alone");
 }
 
-TEST(FramesFromCircles, ParallelAxesAloneDoNotMakeABase) {
+TEST(CirclePointAnalysis, ParallelAxesAloneDoNotDetermineTheBase) {
   const Chain truth = on_a_stand(er20(0.125));
   const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {1, 2}, zero, 0.0, Rng(1)));
   ASSERT_FALSE(found);
   EXPECT_NE(found.error().what.find("not parallel"), std::string::npos);
 }
 
-TEST(FramesFromCircles, StatedUncertaintyIsThatOfRepeatedMeasurements) {
+TEST(CirclePointAnalysis, StatedUncertaintyIsThatOfRepeatedMeasurements) {
   const Chain truth = on_a_stand(er20(0.125));
   constexpr double sigma = 50e-6;
   constexpr int repetitions = 300;
@@ -129,7 +129,7 @@ TEST(FramesFromCircles, StatedUncertaintyIsThatOfRepeatedMeasurements) {
   EXPECT_LT(rms(worst_tilt), 1.15 * std::sqrt(2.0) * rms(stated_tilt));
 }
 
-TEST(FramesFromCircles, WithTrackerNoiseTheBaseIsAsGoodAsItsCirclesSay) {
+TEST(CirclePointAnalysis, WithTrackerNoiseTheBaseIsAsAccurateAsStated) {
   const Chain truth = on_a_stand(er20(0.125));
   const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 10e-6, Rng(3)));
   ASSERT_TRUE(found);

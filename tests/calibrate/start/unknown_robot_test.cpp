@@ -75,9 +75,9 @@ TEST_P(SameMachine, HasTheSamePosesAsMdhAndAsDh) {
   expect_same_poses(chain, *as_mdh(chain));
   expect_same_poses(chain, *as_dh(chain));
 }
-INSTANTIATE_TEST_SUITE_P(joint_table, SameMachine, ::testing::Values(0, 1, 2, 3, 5, 6, 7));
+INSTANTIATE_TEST_SUITE_P(JointTable, SameMachine, ::testing::Values(0, 1, 2, 3, 5, 6, 7));
 
-TEST(joint_table, RowsStayNearTheNominalOnesWithParallelAxes) {
+TEST(JointTable, RowsStayNearTheNominalOnesWithParallelAxes) {
   const Chain mdh = *as_mdh(test::with_table3_errors(test::er20()));
   const auto& second = std::get<MdhLink>(mdh.joints[2].link);  // J2 and J3 are 0.005° from parallel
   EXPECT_NEAR(second.a, 0.7823, 1e-3);
@@ -85,20 +85,20 @@ TEST(joint_table, RowsStayNearTheNominalOnesWithParallelAxes) {
   EXPECT_LT(std::abs(second.beta), 0.02 * degree);
 }
 
-TEST(joint_table, CoupledJointsAreNotStraight) {
+TEST(JointTable, CoupledJointsAreNotWritten) {
   Chain chain = test::er20();
   chain.joints[2].couplings.push_back({1, 1.0});
   EXPECT_FALSE(as_mdh(chain).has_value());
 }
 
-TEST(unknown, JointTypesAreReadAndNonsenseIsRefused) {
+TEST(UnknownRobot, JointTypesAreParsedAndInvalidTextIsRefused) {
   EXPECT_EQ(parse_joint_types("6R")->size(), 6u);
   EXPECT_EQ(*parse_joint_types("R2PR"), (std::vector<JointType>{JointType::revolute, JointType::prismatic,
                                                                 JointType::prismatic, JointType::revolute}));
   for (const char* wrong : {"", "6", "0R", "RXR", "r", "21R", "R-1P"}) EXPECT_FALSE(parse_joint_types(wrong)) << wrong;
 }
 
-TEST(unknown, AxesAreSaidInWords) {
+TEST(UnknownRobot, AxesAreDescribedInWords) {
   const std::vector<std::string> words = describe_axes(test::er20());
   const auto said = [&](const std::string& text) {
     return std::any_of(words.begin(), words.end(), [&](const auto& w) { return w.find(text) != std::string::npos; });
@@ -118,9 +118,9 @@ void PrintTo(const Machine& machine, std::ostream* out) {
   *out << machine.name;
 }
 
-class Unknown : public ::testing::TestWithParam<Machine> {};
+class UnknownMachine : public ::testing::TestWithParam<Machine> {};
 
-TEST_P(Unknown, IsFoundFromPointsAloneAndProvenOnRowsThatWereNotFitted) {
+TEST_P(UnknownMachine, IsFoundFromPointsAloneAndValidatedOnHeldOutRows) {
   const Machine& machine = GetParam();
   Chain truth = machine.truth;
   truth.base = Frame::from_pose(Pose::from_xyz_rpy({1.2, -2.5, 0.4}, {0.1, -0.2, 2.0}));
@@ -132,7 +132,7 @@ TEST_P(Unknown, IsFoundFromPointsAloneAndProvenOnRowsThatWereNotFitted) {
   const Calibration calibration = calibrate_robot(task, {}, Rng(1)).value();
   EXPECT_LT(calibration.after.position.holdout.mean, machine.limit);  // noise alone: 40 µm
 }
-INSTANTIATE_TEST_SUITE_P(machines, Unknown,
+INSTANTIATE_TEST_SUITE_P(machines, UnknownMachine,
                          ::testing::Values(Machine{"er20", "6R",
                                                    [] {
                                                      Chain c = test::with_table3_errors(test::er20());
@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(machines, Unknown,
                                                    30, 1e-4}),
                          [](const auto& test) { return test.param.name; });
 
-TEST(unknown, PointsOfAnotherMachineAreRefused) {
+TEST(UnknownRobot, PointsOfAnotherMachineAreRefused) {
   const PoseSet data =
       simulate_pose_set(test::er20(), {.poses = 60, .space = {}, .instrument = test::tracker}, Rng(3)).value();
   PoseSet shuffled = data;
@@ -169,13 +169,13 @@ TEST(unknown, PointsOfAnotherMachineAreRefused) {
   EXPECT_NE(found.error().what.find("no robot with these joint types"), std::string::npos);
 }
 
-TEST(unknown, TooFewPointsAreRefused) {
+TEST(UnknownRobot, TooFewPointsAreRefused) {
   const PoseSet data =
       simulate_pose_set(test::er20(), {.poses = 8, .space = {}, .instrument = test::tracker}, Rng(3)).value();
   EXPECT_NE(estimate_unknown_robot("6R", data, 0, Rng(1)).error().what.find("too few"), std::string::npos);
 }
 
-TEST(unknown, SameChainForAnyNumberOfThreads) {
+TEST(UnknownRobot, SameChainForAnyNumberOfThreads) {
   Chain truth = test::er20();
   truth.joints.resize(3);
   truth.tool.xyz = {0.2, 0.1, 0.1};

@@ -38,7 +38,7 @@ double rms_error(const Chain& chain, const PoseSet& data) {
   return rms(point_errors(chain, data));
 }
 
-TEST(PopulationFit, PsoReachesThePapersAccuracyWithinThePapers404Iterations) {
+TEST(SwarmFit, PsoReachesThePapersAccuracyWithinThePapers404Iterations) {
   const CalibrationTask task = noise_free_task();
   const Estimate found = search(task, within(404));
   EXPECT_LT(rms_error(found.chain, task.data), 7.45e-6);
@@ -48,12 +48,12 @@ TEST(PopulationFit, PsoReachesThePapersAccuracyWithinThePapers404Iterations) {
   EXPECT_NEAR(found.search.cost, 50 * std::pow(rms_error(found.chain, task.data), 2), 1e-15);  // eq. (11)
 }
 
-TEST(PopulationFit, QpsoComesBelowATenthOfAMillimetre) {
+TEST(SwarmFit, QpsoComesBelowATenthOfAMillimetre) {
   const CalibrationTask task = noise_free_task();
   EXPECT_LT(rms_error(search(task, within(600, QpsoOptions{})).chain, task.data), 0.1e-3);
 }
 
-TEST(PopulationFit, TheBoxIsAMillimetreAndADegreeOrSoManyTolerances) {
+TEST(SwarmFit, TheBoundsAreAMillimetreAndADegreeOrAMultipleOfTheTolerances) {
   const CalibrationTask task = noise_free_task();
   const PreparedFit prepared = prepare_fit(task, task.data, PaperDhParameters{}).value();
   const Bounds paper = make_search_box(prepared, {});
@@ -66,7 +66,7 @@ TEST(PopulationFit, TheBoxIsAMillimetreAndADegreeOrSoManyTolerances) {
   }
 }
 
-TEST(PopulationFit, TheNetOfOneCalibrationShortensTheNext) {
+TEST(SwarmFit, TheNetOfOneCalibrationShortensTheNext) {
   CalibrationTask task = noise_free_task();
   const Estimate first = search(task, within(404, BpnnPsoOptions{}));
   ASSERT_FALSE(first.search.net.empty());
@@ -84,7 +84,7 @@ TEST(PopulationFit, TheNetOfOneCalibrationShortensTheNext) {
   EXPECT_LE((*runs)[2].iterations, 1);  // and memory alone needs no net
 }
 
-TEST(PopulationFit, ANetForOtherParametersIsRefused) {
+TEST(SwarmFit, ANetForOtherParametersIsRefused) {
   const CalibrationTask task = noise_free_task();
   const Bounds other{VectorXd::Zero(3), VectorXd::Ones(3)};
   const BpnnPsoOptions bpnn{.net = initialise_mlp(other, other, 5, Rng(1))};
@@ -93,7 +93,7 @@ TEST(PopulationFit, ANetForOtherParametersIsRefused) {
   EXPECT_EQ(found.error().what, "the network of the earlier calibration has 3 parameters, but 24 are to be identified");
 }
 
-TEST(Calibrate, ASearchByAPopulationIsProvenLikeLeastSquares) {
+TEST(Calibrate, ASwarmSearchIsValidatedLikeLeastSquares) {
   const CalibrationTask task = noise_free_task();
   CalibrationOptions options{.parameters = PaperDhParameters{}};
   options.swarm_search = within(400);
@@ -109,7 +109,7 @@ TEST(Calibrate, ASearchByAPopulationIsProvenLikeLeastSquares) {
   }
 }
 
-TEST(FleetPrior, MeanAndSpreadCountTheNominalModelAsOneRobot) {
+TEST(PopulationPrior, MeanAndSpreadCountTheNominalModelAsOneRobot) {
   const Chain nominal = er20(d6);
   std::vector<Chain> robot_population(3, nominal);
   for (int i = 0; i < 3; ++i)
@@ -122,7 +122,7 @@ TEST(FleetPrior, MeanAndSpreadCountTheNominalModelAsOneRobot) {
   EXPECT_NEAR(informed.find("a3")->prior_sd, 0.25e-3, 1e-12);  // all agree: half the tolerance of 0.5 mm
 }
 
-TEST(FleetPrior, CovarianceIsThatOfTheFleetWithTheTolerancesAsOneMoreRobot) {
+TEST(PopulationPrior, CovarianceIsThatOfThePopulationWithTheTolerancesAsOneMoreRobot) {
   const Chain nominal = er20(d6);
   const ParameterSet set = paper_dh_parameters(nominal, {}).value();
   const VectorXd at = pack(set, nominal);
@@ -147,7 +147,7 @@ TEST(FleetPrior, CovarianceIsThatOfTheFleetWithTheTolerancesAsOneMoreRobot) {
   for (int k = 0; k < 24; ++k) EXPECT_NEAR(informed.free()[k]->prior_sd, std::sqrt(covariance(k, k)), 1e-12);
 }
 
-TEST(FleetPrior, ErrorsThatGoTogetherInTheFleetTellEachOther) {
+TEST(PopulationPrior, CorrelatedErrorsOfThePopulationInformEachOther) {
   // In every sister a2 and a3 are wrong by the same amount: the sum that a few poses see best gives both.
   const Chain nominal = er20(d6);
   const auto robot = [&](double error) {
@@ -170,7 +170,7 @@ TEST(FleetPrior, ErrorsThatGoTogetherInTheFleetTellEachOther) {
   EXPECT_LT(price(0.5e-3, 0.5e-3), 0.3 * price(0.5e-3, -0.5e-3));
 }
 
-TEST(FleetPrior, FewPosesAndAFleetBeatFewPosesAlone) {
+TEST(PopulationPrior, FewPosesAndAPopulationBeatFewPosesAlone) {
   const Chain truth = with_table3_errors(er20(d6));
   const Instrument laser{.sigma = 10e-6, .sigma_angle = 0.0, .ppm = 5.0};
   CalibrationTask task{er20(d6), {}, laser, measured(truth, paper2_poses(4, laser)), {}, {}};

@@ -35,7 +35,7 @@ double error_on(const Chain& found, const Chain& truth, PoseSet rows) {
   return mean(point_errors(found, rows));
 }
 
-TEST(ModelSelection, NothingButGeometryIsTakenWhereThereIsNothingElse) {
+TEST(ModelSelection, GeometryAloneIsSelectedForAPurelyGeometricRobot) {
   const Chain truth = with_random_errors(nominal_robot(), {}, Rng(1));
   for (const int seed : {1, 2, 3}) {
     const Calibration c = climbed(nominal_robot(), measured(truth, paper2_poses(60, tracker), seed));
@@ -48,7 +48,7 @@ TEST(ModelSelection, NothingButGeometryIsTakenWhereThereIsNothingElse) {
   }
 }
 
-TEST(ModelSelection, ComplianceShowsByThePayload) {
+TEST(ModelSelection, ThePayloadMakesComplianceObservable) {
   Chain nominal = nominal_robot();
   nominal.masses = {{1, Vec3(0.4, 0, 0.1), 60.0}, {2, Vec3(0.1, 0, 0.1), 40.0}};
   Chain truth = with_random_errors(nominal, {}, Rng(2));
@@ -65,7 +65,7 @@ TEST(ModelSelection, ComplianceShowsByThePayload) {
   EXPECT_LT(error_on(c.estimate.chain, truth, unseen), 25e-6);
 }
 
-TEST(ModelSelection, MeasuredTorquesBacklashGearsAndWarmthAreFoundEach) {
+TEST(ModelSelection, TorqueComplianceBacklashGearHarmonicsAndThermalExpansionAreEachFound) {
   const Chain nominal = nominal_robot();
   const Chain geometry = with_random_errors(nominal, {}, Rng(4));
   const auto found = [&](const std::string& name, Chain truth, auto prepare) {
@@ -97,7 +97,7 @@ TEST(ModelSelection, MeasuredTorquesBacklashGearsAndWarmthAreFoundEach) {
   });
 }
 
-TEST(ModelSelection, AParallelogramsCouplingIsCorrectedAndOneThatNoSheetTellsIsFound) {
+TEST(ModelSelection, AParallelogramsCouplingIsCorrectedAndAnUndocumentedOneIsFound) {
   Chain nominal = nominal_robot();
   nominal.joints[2].couplings = {{1, -1.0}};
   Chain truth = with_random_errors(nominal, {}, Rng(4));
@@ -120,7 +120,7 @@ TEST(ModelSelection, AParallelogramsCouplingIsCorrectedAndOneThatNoSheetTellsIsF
   EXPECT_LT(error_on(c.estimate.chain, truth, unseen), 25e-6);
 }
 
-TEST(ModelSelection, TheSpectrumShowsAMotorsLineOfUnknownOrder) {
+TEST(ModelSelection, TheSpectrumShowsAMotorHarmonicOfUnknownOrder) {
   Chain truth = with_random_errors(nominal_robot(), {}, Rng(8));
   truth.joints[1].harmonics = {{80.0, 1.5e-4, 1e-4}};
   PoseSet data = readings(truth, 400);
@@ -131,7 +131,7 @@ TEST(ModelSelection, TheSpectrumShowsAMotorsLineOfUnknownOrder) {
   EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const Harmonic& h) { return std::abs(h.order - 80) < 0.05; }));
 }
 
-TEST(ModelSelection, ANamedModelIsTakenAsItIsNamed) {
+TEST(ModelSelection, ANamedModelIsUsedAsGiven) {
   const Chain truth = with_random_errors(nominal_robot(), {}, Rng(1));
   const PoseSet data = measured(truth, paper2_poses(40, tracker));
   const Calibration c = climbed(nominal_robot(), data, {.model = FixedModel{{"gear"}}});
@@ -154,7 +154,7 @@ TEST(ModelSelection, SameModelAndSameNumbersFor12And7Threads) {
   }
 }
 
-TEST(FarSplits, HalveTheRowsTwiceAndHoldOutEachHalf) {
+TEST(ExtrapolationSplits, HalveTheRowsTwiceAndHoldOutEachHalf) {
   PoseSet data;
   data.joints = MatrixXd::Zero(3, 40);
   for (int row = 0; row < 40; ++row) data.joints(0, row) = row, data.joints(1, row) = row % 7;

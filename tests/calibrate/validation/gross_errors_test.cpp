@@ -28,7 +28,7 @@ Calibration of_half(const PoseSet& data, const ModelChoice& model, int seed) {
       .value();
 }
 
-TEST(WrongRows, ThatAreHeldOutAreListedAndLeftOutForEveryModelAlike) {
+TEST(GrossErrors, HeldOutOnesAreListedAndExcludedForEveryModelAlike) {
   const PoseSet data = with_three_wrong_rows();
   for (const int seed : {1, 2, 3}) {
     const Calibration plain = of_half(data, FixedModel{}, seed), chosen = of_half(data, CrossValidatedModel{}, seed);
@@ -53,14 +53,14 @@ TEST(WrongRows, ThatAreHeldOutAreListedAndLeftOutForEveryModelAlike) {
   }
 }
 
-TEST(WrongRows, TheVerdictNamesThemAndWhatTheWorstWouldBe) {
+TEST(GrossErrors, TheVerdictNamesThemAndTheWorstErrorWithThem) {
   const Calibration c = of_half(with_three_wrong_rows(), FixedModel{}, 1);
   ASSERT_FALSE(c.gross_error_rows.empty());
   EXPECT_NE(c.verdict.find(std::to_string(c.gross_error_rows.front())), std::string::npos) << c.verdict;
   EXPECT_NE(c.verdict.find("at worst with"), std::string::npos) << c.verdict;
 }
 
-TEST(WrongRows, RowsHeldOutThatAreAllWrongAreJudgedAllTheSame) {
+TEST(GrossErrors, HeldOutRowsThatAreAllWrongAreEvaluatedAllTheSame) {
   const Chain truth = with_random_errors(nominal_robot(), {}, Rng(1));
   PoseSet data = measured(truth, paper2_poses(60, tracker));
   data.set.assign(60, SplitLabel::train);
@@ -75,7 +75,7 @@ TEST(WrongRows, RowsHeldOutThatAreAllWrongAreJudgedAllTheSame) {
   EXPECT_FALSE(c.usable);
 }
 
-TEST(WrongRows, AModelThatThrowsARowOutOfPlaceIsNotExcused) {
+TEST(GrossErrors, ARowThatOnlyOneModelMissesIsNotExcluded) {
   const Chain truth = with_random_errors(nominal_robot(), {}, Rng(1));
   const PoseSet data = measured(truth, paper2_poses(40, tracker));
   Estimate geometry, rich;

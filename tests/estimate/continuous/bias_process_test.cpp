@@ -53,7 +53,7 @@ InsUnknowns at_rest(const InsProblem& problem) {
   return start;
 }
 
-TEST(BiasProcess, StretchesCoverTheGridWithoutGapsAndTheLastTakesTheRemainder) {
+TEST(BiasProcess, TimeSegmentsCoverTheGridWithoutGapsAndTheLastTakesTheRemainder) {
   for (const Index intervals : {5, 64, 127, 128, 1000, 36000}) {
     const SplineGrid grid{0.0, 0.1, intervals};
     const auto time_segments = time_segments_of(grid);
@@ -68,7 +68,7 @@ TEST(BiasProcess, StretchesCoverTheGridWithoutGapsAndTheLastTakesTheRemainder) {
   }
 }
 
-TEST(BiasProcess, ABiasThatWandersIsFollowed) {
+TEST(BiasProcess, ATimeVaryingBiasIsFollowed) {
   InsProblem problem = standing();
   const InsFit fit = fit_ins(problem, at_rest(problem), {.threads = 1});
   const auto time_segments = time_segments_of(problem.grid);
@@ -82,7 +82,7 @@ TEST(BiasProcess, ABiasThatWandersIsFollowed) {
   EXPECT_LT(difference, 0.1 * amplitude);  // 0.6 mm/s² of noise a stretch, and the wave's bend
 }
 
-TEST(BiasProcess, TheFitEndsWhereNoBiasCanBeBetter) {
+TEST(BiasProcess, TheFitEndsAtTheOptimumOverTheBiases) {
   InsProblem problem = standing();
   const InsFit fit = fit_ins(problem, at_rest(problem), {.threads = 1});
   for (const Index stretch : {0, 1, 9, 17})
@@ -94,7 +94,7 @@ TEST(BiasProcess, TheFitEndsWhereNoBiasCanBeBetter) {
       }
 }
 
-TEST(BiasProcess, WithoutWanderingThereIsNothingToFind) {
+TEST(BiasProcess, AConstantBiasHasNoProcess) {
   InsProblem problem = standing();
   problem.bias_process = {};
   const InsFit fit = fit_ins(problem, at_rest(problem), {.threads = 1});

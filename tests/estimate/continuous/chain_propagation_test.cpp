@@ -38,7 +38,7 @@ std::vector<InsBody> bodies_of_every_kind(Rng& rng) {
   return bodies;
 }
 
-TEST(InsChain, DerivativesAgreeWithDifferences) {
+TEST(ChainPropagation, DerivativesAgreeWithDifferences) {
   Rng rng(5);
   for (const InsBody& body : bodies_of_every_kind(rng)) {
     const InsState parent{random_vector(rng), random_vector(rng), random_vector(rng), random_vector(rng)};
@@ -62,7 +62,7 @@ TEST(InsChain, DerivativesAgreeWithDifferences) {
 }
 
 /// Position and orientation of a child on a parent that moves anyhow, differentiated by time: the slow way.
-TEST(InsChain, FeelsWhatTheMotionOfAPointSays) {
+TEST(ChainPropagation, SpecificForceIsThatOfThePointsMotion) {
   Rng rng(6);
   const auto bodies = bodies_of_every_kind(rng);
   const Vec3 spin = random_vector(rng), sweep = random_vector(rng), field(1.0, 20.0, -44.0), up(0.0, 0.0, 9.81);

@@ -74,7 +74,7 @@ InsUnknowns guess(const InsProblem& problem) {
   return x;
 }
 
-TEST(InsExcerpt, TakesWindowsInWhichTheJointTurns) {
+TEST(Excerpt, TakesWindowsInWhichTheJointRotates) {
   const InsProblem problem = swinging(2560);  // windows 0..39
   const auto windows = most_informative_windows(problem, guess(problem).bodies, 12);
   ASSERT_EQ(windows.size(), 12U);
@@ -82,13 +82,13 @@ TEST(InsExcerpt, TakesWindowsInWhichTheJointTurns) {
   for (const Index window : windows) EXPECT_TRUE((window >= 10 && window < 20) || window >= 30) << window;
 }
 
-TEST(InsExcerpt, AllWindowsAreTakenWhereFewerExistThanAskedFor) {
+TEST(Excerpt, AllWindowsAreTakenWhereFewerExistThanRequested) {
   const InsProblem problem = swinging(200);
   const auto windows = most_informative_windows(problem, guess(problem).bodies, 12);
   EXPECT_EQ(windows, (std::vector<Index>{0, 1, 2}));
 }
 
-TEST(InsExcerpt, FindsTheGeometryFromWindowsThatLieFarApart) {
+TEST(Excerpt, FindsTheGeometryFromWindowsThatLieFarApart) {
   const InsProblem problem = swinging(2560);
   const InsExcerpt excerpt = excerpt_of(problem, guess(problem), {11, 16, 31, 38});
   EXPECT_EQ(excerpt.problem.grid.intervals, 4 * excerpt_window);
@@ -99,14 +99,14 @@ TEST(InsExcerpt, FindsTheGeometryFromWindowsThatLieFarApart) {
   EXPECT_NEAR(point.z(), 0.0, 5e-3);
 }
 
-TEST(InsExcerpt, AShortRecordingIsFittedAsAWhole) {
+TEST(Excerpt, AShortRecordingIsFittedAsAWhole) {
   InsProblem problem = swinging(2560);
   InsUnknowns start = guess(problem);
   EXPECT_FALSE(start_from_excerpt(problem, start, {.threads = 1}));
   EXPECT_EQ(start.bodies[1].point_in_child, guess(problem).bodies[1].point_in_child);
 }
 
-TEST(InsExcerpt, ALongRecordingStartsFromWhatItsExcerptShowsForAnyNumberOfThreads) {
+TEST(Excerpt, ALongRecordingStartsFromItsExcerptsFitForAnyNumberOfThreads) {
   const InsProblem problem = swinging(12400);
   Vec3 first = Vec3::Zero();
   for (const int threads : {1, 2, 7}) {

@@ -77,7 +77,7 @@ InsUnknowns moved(const FactExample& e, ConstVectorRef step) {
                   {}});
 }
 
-TEST(InsFactRows, DerivativesAgreeWithDifferences) {
+TEST(FactResiduals, DerivativesAgreeWithDifferences) {
   const FactExample e = fact_example(every_kind());
   const auto rows = fact_rows(e.problem, e.layout, e.x);
   ASSERT_EQ(rows.size(), 2U + 2U + 5U + 3U);
@@ -93,7 +93,7 @@ TEST(InsFactRows, DerivativesAgreeWithDifferences) {
   }
 }
 
-TEST(InsFactRows, ATapeBetweenAxesIsTheirShortestDistance) {
+TEST(FactResiduals, ATapeBetweenAxesIsTheirShortestDistance) {
   FactExample e = fact_example(every_kind());
   const InsTapeDistance& tape = e.problem.facts.tapes[1];
   const auto rows = fact_rows(e.problem, e.layout, e.x);
@@ -118,7 +118,7 @@ TEST(InsFactRows, ATapeBetweenAxesIsTheirShortestDistance) {
   EXPECT_NEAR(predicted, least, 1e-3);
 }
 
-TEST(InsFactRows, ATouchIsOneAndTheSamePlaceOfTheRoot) {
+TEST(FactResiduals, TouchesAreOneAndTheSamePointInTheRoot) {
   const FactExample e = fact_example(every_kind());
   const auto rows = fact_rows(e.problem, e.layout, e.x);
   const InsRevisitedPoint& touch = e.problem.facts.touches[0];

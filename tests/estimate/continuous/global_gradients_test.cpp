@@ -63,7 +63,7 @@ double cost_after(const ClockExample& e, Index unknown, double step) {
   return cost_of(e.problem, e.layout, x, 1).total;
 }
 
-TEST(InsClock, TheGradientOfEveryBorderUnknownAgreesWithDifferences) {
+TEST(GlobalGradients, OfEveryParameterAgreeWithDifferences) {
   const ClockExample e = clock_example();
   const InsLinearisation linearisation(e.problem, e.layout, e.x);
   VectorXd gradient = global_parameter_prior(e.problem, e.layout, e.x).right;
@@ -77,7 +77,7 @@ TEST(InsClock, TheGradientOfEveryBorderUnknownAgreesWithDifferences) {
   }
 }
 
-TEST(InsClock, ThePolynomialsDerivativeIsExactForCubics) {
+TEST(MeasurementBlocks, ThePolynomialsDerivativeIsExactForCubics) {
   const auto& u = block_nodes_u();
   Eigen::Matrix<double, block_nodes, 1> values, slopes;
   for (Index i = 0; i < block_nodes; ++i) {

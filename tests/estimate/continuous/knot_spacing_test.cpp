@@ -53,35 +53,35 @@ double knots(const Swing& swing) {
   return select_knot_spacing(recorded(swing));
 }
 
-TEST(MotionKnots, AMachineGetsTheWidestAndAQuickerArmFinerOnes) {
+TEST(KnotSpacing, IsWidestForAMachineAndFinerForAQuickerArm) {
   EXPECT_DOUBLE_EQ(knots({.waves = {{0.6, 3.0}}}), widest_knot_spacing);
   EXPECT_NEAR(knots({.waves = {{2.5, 3.0}}}), 0.05, 1e-6);
   EXPECT_NEAR(knots({.waves = {{5.0, 3.0}}}), 0.03, 1e-6);  // six readings
   EXPECT_DOUBLE_EQ(knots({.waves = {}}), widest_knot_spacing);
 }
 
-TEST(MotionKnots, NeverFinerThanReadingsCanTell) {
+TEST(KnotSpacing, IsNeverFinerThanTheSamplesSupport) {
   for (const double sampling_rate : {25.0, 40.0, 50.0})
     EXPECT_DOUBLE_EQ(knots({.waves = {{3.0, 3.0}}, .sampling_rate = sampling_rate}), widest_knot_spacing);
   EXPECT_NEAR(knots({.waves = {{3.0, 3.0}}, .sampling_rate = 100.0}), 0.06, 1e-6);
   EXPECT_GE(knots({.waves = {{20.0, 3.0}}}), 0.025);
 }
 
-TEST(MotionKnots, ShakingBeyondTheFinestKnotsIsNoiseAndRefinesNothing) {
+TEST(KnotSpacing, VibrationAboveTheFinestKnotsIsNoiseAndRefinesNothing) {
   EXPECT_DOUBLE_EQ(knots({.waves = {{0.6, 3.0}, {31.0, 0.5}}}), widest_knot_spacing);
 }
 
-TEST(MotionKnots, SpikesAndLostRowsDoNotSpeak) {
+TEST(KnotSpacing, SpikesAndMissingRowsHaveNoInfluence) {
   EXPECT_DOUBLE_EQ(knots({.waves = {{0.6, 3.0}}, .spikes = 0.1, .missing = 0.1}), widest_knot_spacing);
   EXPECT_NEAR(knots({.waves = {{2.5, 3.0}}, .spikes = 0.1, .missing = 0.1}), 0.05, 1e-6);
 }
 
-TEST(MotionKnots, AQuickMinuteInALongQuietRecordingDecides) {
+TEST(KnotSpacing, AFastMinuteInALongSlowRecordingDecides) {
   EXPECT_NEAR(knots({.waves = {{2.5, 3.0}}, .sampling_rate = 100.0, .duration = 900.0, .moving_from = 840.0}), 0.06,
               1e-6);
 }
 
-TEST(MotionKnots, TooLittleToJudgeLeavesTheWidest) {
+TEST(KnotSpacing, IsWidestForTooShortARecording) {
   EXPECT_DOUBLE_EQ(knots({.waves = {{3.0, 3.0}}, .duration = 2.0}), widest_knot_spacing);
 }
 

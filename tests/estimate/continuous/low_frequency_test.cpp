@@ -25,7 +25,7 @@ MatrixXd spline_dimension(const SplineGrid& grid, double frequency) {
   return fit_spline(grid, time, values);
 }
 
-TEST(LowBand, LeavesAWaveOfTheCutoffAtSeventyPercentAndSlowOnesWhole) {
+TEST(LowFrequency, AttenuatesTheCutoffToSeventyPercentAndPassesSlowWaves) {
   const SplineGrid grid{0.0, 0.025, 400};
   for (const auto& [frequency, amplitude] : {std::pair{2.0, std::numbers::sqrt2 / 2.0}, {0.2, 0.9965}, {6.0, 0.0442}}) {
     const MatrixXd slow = low_frequency_motion(spline_dimension(grid, frequency), grid, 2.0);
@@ -88,13 +88,13 @@ struct Machine {
   }
 };
 
-TEST(LowBand, ReadingsThatAChainExplainsAreExplainedWhenSlowed) {
+TEST(LowFrequency, SamplesThatAChainExplainsAreExplainedWhenFiltered) {
   const Machine machine;
   const InsRecording slow = low_frequency_measurements(machine.recording, machine.problem, machine.x, 1.0, 1);
   EXPECT_LT(machine.off(slow, 1.0), 1e-4);
 }
 
-TEST(LowBand, OnlyWhatTheChainDoesNotExplainIsFiltered) {
+TEST(LowFrequency, OnlyTheResidualOfTheChainIsFiltered) {
   Machine machine;
   for (std::size_t row = 0; row < machine.recording.loggers[0].time.size(); ++row)
     machine.recording.sensors[1].acceleration.axis[0][row] +=
@@ -103,7 +103,7 @@ TEST(LowBand, OnlyWhatTheChainDoesNotExplainIsFiltered) {
   EXPECT_NEAR(machine.off(slow, 1.0), std::numbers::sqrt2 / 2.0, 0.01);
 }
 
-TEST(LowBand, RowsThatSayNothingStaySilentAndDoNotSpeakForTheirNeighbours) {
+TEST(LowFrequency, UnusableRowsStayUnusedAndDoNotAffectTheirNeighbours) {
   Machine machine;
   for (std::size_t row = 400; row < 420; ++row) {
     machine.recording.sensors[1].faults[row] = acceleration_missing;
@@ -117,7 +117,7 @@ TEST(LowBand, RowsThatSayNothingStaySilentAndDoNotSpeakForTheirNeighbours) {
     EXPECT_NEAR(slow.sensors[1].acceleration.axis[0][row], ought.sensors[1].acceleration.axis[0][row], 1e-3);
 }
 
-TEST(LowBand, IsTheSameForAnyNumberOfThreads) {
+TEST(LowFrequency, IsTheSameForAnyNumberOfThreads) {
   const Machine machine;
   const InsRecording one = low_frequency_measurements(machine.recording, machine.problem, machine.x, 1.0, 1);
   for (const int threads : {2, 7}) {

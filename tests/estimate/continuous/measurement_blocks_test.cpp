@@ -44,7 +44,7 @@ Eigen::Matrix<double, block_nodes, 1> truth_at_nodes(const SplineGrid& grid, Eig
   return x;
 }
 
-TEST(InsBlocks, TellACubicExactlyWhateverRowsAreMissing) {
+TEST(MeasurementBlocks, ReproduceACubicExactlyWhicheverRowsAreMissing) {
   const std::vector<double> time = times(100);
   InsSensor sensor = sensor_of(time, 0.0);
   for (const std::size_t row : {3u, 4u, 5u, 25u, 38u}) sensor.faults[row] = angular_velocity_missing;
@@ -62,7 +62,7 @@ TEST(InsBlocks, TellACubicExactlyWhateverRowsAreMissing) {
   EXPECT_EQ(blocks[2].rows, 1);
 }
 
-TEST(InsBlocks, KeepAllInformationOfTheReadings) {
+TEST(MeasurementBlocks, KeepAllInformationOfTheSamples) {
   const std::vector<double> time = times(20);
   const auto blocks = ins_blocks(sensor_of(time, 0.0), time, InsInstrument::gyroscope, {0.0, 0.1, 1});
   // A constant offset of n readings has information n.
@@ -70,13 +70,13 @@ TEST(InsBlocks, KeepAllInformationOfTheReadings) {
   EXPECT_NEAR((blocks[0].factor.cast<double>() * ones).squaredNorm(), 20.0, 1e-4);
 }
 
-TEST(InsBlocks, ShowTheNoiseThatTheReadingsHave) {
+TEST(MeasurementBlocks, HaveTheNoiseOfTheSamples) {
   const std::vector<double> time = times(8000);
   const auto blocks = ins_blocks(sensor_of(time, 0.01), time, InsInstrument::gyroscope, {0.0, 0.1, 20});
   EXPECT_NEAR(measurement_noise(blocks), 0.01, 0.0007);
 }
 
-TEST(InsBlocks, FollowTheClockOffset) {
+TEST(MeasurementBlocks, FollowTheClockOffset) {
   const std::vector<double> time = times(40);
   const SplineGrid grid{0.0, 0.1, 2};
   const InsSensor sensor = sensor_of(time, 0.0);

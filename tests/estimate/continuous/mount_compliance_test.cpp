@@ -66,7 +66,7 @@ struct MountExample {
   }
 };
 
-TEST(InsMount, TheGradientsOfTiltsAndMotionAgreeWithDifferences) {
+TEST(MountCompliance, GradientsByComplianceAndMotionAgreeWithDifferences) {
   const MountExample e;
   const BandSegmentSum sum = InsLinearisation(e.problem, e.layout, e.x).sum({0, e.problem.grid.intervals});
   const VectorXd border = global_parameter_prior(e.problem, e.layout, e.x).right + sum.border_right, &band = sum.right;
@@ -88,7 +88,7 @@ TEST(InsMount, TheGradientsOfTiltsAndMotionAgreeWithDifferences) {
   }
 }
 
-TEST(InsMount, AFirmOneFeelsWhatItsSegmentDoes) {
+TEST(MountCompliance, ARigidMountMeasuresItsSegmentsMotion) {
   Rng rng(2);
   const InsState segment{random_vector(rng), random_vector(rng), random_vector(rng), random_vector(rng)};
   const InsState is = state_on_mount(segment, Mat3::Zero(), random_vector(rng), random_vector(rng));
@@ -96,7 +96,7 @@ TEST(InsMount, AFirmOneFeelsWhatItsSegmentDoes) {
   EXPECT_EQ(is.force, segment.force);
 }
 
-TEST(InsMount, ASensorThatLeansMoreThanItsSegmentTurnsShowsMoreOfTheTurn) {
+TEST(MountCompliance, TheTiltAddsToTheMeasuredRotation) {
   // Gravity in a segment that turns about x by a small angle a is g (0, a, 1): a tilt of T about x by the force along y
   // adds T g a to the angle, so T g of every rate.
   const double angle = 0.01, angular_velocity = 0.3, gravity = 9.81, gives = 0.1 / gravity;
@@ -110,7 +110,7 @@ TEST(InsMount, ASensorThatLeansMoreThanItsSegmentTurnsShowsMoreOfTheTurn) {
   EXPECT_NEAR(is.force.y(), 1.1 * gravity * angle, 1e-5);
 }
 
-TEST(InsMount, WhatBendsItIsTheForceLessItsMean) {
+TEST(MountCompliance, TheTiltIsProportionalToTheForceLessItsMean) {
   const SplineGrid grid{0.0, 0.1, 60};
   InsSensor sensor{.name = "s", .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}};
   std::vector<double> time;

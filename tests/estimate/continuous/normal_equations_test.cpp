@@ -139,7 +139,7 @@ TEST(InsSystem, SolvesTheEquationsOfAllIntervalsTogether) {
     }
 }
 
-TEST(InsSystem, BlockScoresAreGradientsWithBandAndBiasesFollowing) {
+TEST(InsSystem, BlockScoresAreGradientsWithSplinesAndBiasesEliminated) {
   for (const Biases biases : {Biases::constant, Biases::wandering}) {
     const SystemExample e = system_example(140, biases);
     const Dense d = dense(e);
@@ -161,7 +161,7 @@ TEST(InsSystem, BlockScoresAreGradientsWithBandAndBiasesFollowing) {
   }
 }
 
-TEST(InsSystem, TellsWhatPriorsSayAboutTheBorder) {
+TEST(InsSystem, PriorsAppearInTheGlobalParameters) {
   const SystemExample e = system_example(300, Biases::wandering);
   const Dense d = dense(e);
   const MatrixXd follows = sensitivity(d).middleRows(d.bias_process, e.x.bias_process.size());
@@ -171,7 +171,7 @@ TEST(InsSystem, TellsWhatPriorsSayAboutTheBorder) {
   EXPECT_LT((told - expected).norm(), 1e-7 * expected.norm());
 }
 
-TEST(InsSystem, HoldsTheBorderWhileTheBandIsSolvedFor) {
+TEST(InsSystem, GlobalParametersMayBeHeldWhileTheSplinesAreSolvedFor) {
   const SystemExample e = system_example(150, Biases::wandering);
   const Dense d = dense(e);
   const auto expected = solve_spd(d.matrix.topLeftCorner(d.bias_process, d.bias_process), d.right.head(d.bias_process));
@@ -184,7 +184,7 @@ TEST(InsSystem, HoldsTheBorderWhileTheBandIsSolvedFor) {
   }
 }
 
-TEST(InsSystem, TellsTheSameWhereItKeepsNothing) {
+TEST(InsSystem, SolvesTheSameWithoutStoredFactors) {
   const SystemExample e = system_example(150, Biases::wandering);
   const Damping damping{.band = 0.01, .border = 0.1};
   const InsSystem kept(e.problem, e.layout, e.x, damping, 2), lean(e.problem, e.layout, e.x, damping, 2, 0.0);

@@ -47,7 +47,7 @@ TEST(UniformSpline, BasisSumsToOneAndItsDerivativesToZero) {
   }
 }
 
-TEST(UniformSpline, BridgesAStretchWithoutSamples) {
+TEST(UniformSpline, BridgesASpanWithoutSamples) {
   const SplineGrid grid{0.0, 0.1, 60};
   std::vector<double> time;
   for (double t = 0.0; t < 6.0; t += 0.01)

@@ -29,7 +29,7 @@ struct Case {
   }
 };
 
-TEST(PointFit, EndsWhereTheFitWithAKeptJacobianEnds) {
+TEST(PointFit, EndsWhereTheFitWithAFixedJacobianEnds) {
   const Case c(50);
   const VectorXd start = pack(c.set, c.nominal);
   const BatchPoints points(c.nominal, c.set, point_table(c.data));

@@ -58,7 +58,7 @@ TEST(Bundle, RanksOfThePapers24ParametersAre20OnTheAxisAnd23OffIt) {
   }
 }
 
-TEST(Bundle, ConfoundedParametersAreNamedInWords) {
+TEST(Bundle, ConfoundedParametersAreNamed) {
   const PoseSet data = measured(with_table3_errors(er20()), paper2_poses(50, Instrument{.sigma = 10e-6}));
   const auto words = fit_bundle(er20(), paper24(er20()), data, Instrument{.sigma = 10e-6}).identifiability.confounded;
   const auto says = [&](const std::string& sentence) {
@@ -79,7 +79,7 @@ TEST(Bundle, TheCompleteSetWithBaseToolAndBetaHasRank27) {
   EXPECT_EQ(fit_bundle(nominal, set, data, tracker).identifiability.rank, 27);
 }
 
-TEST(Bundle, WhatTheDataCannotTellStaysNominal) {
+TEST(Bundle, UnobservableParametersStayNominal) {
   PoseSet data = measured(with_table3_errors(er20()), paper2_poses(50, tracker));
   const Estimate estimate = fit_bundle(er20(), paper24(er20()), data, tracker);
   const auto theta6 =
@@ -89,7 +89,7 @@ TEST(Bundle, WhatTheDataCannotTellStaysNominal) {
   EXPECT_NEAR(theta6->sd, 0.1 * degree, 1e-5);  // the tolerance is all that is known
 }
 
-TEST(Bundle, WrongRowsAreListedAndDoNotMoveTheResult) {
+TEST(Bundle, OutliersAreListedAndDoNotMoveTheResult) {
   const Chain truth = with_table3_errors(er20());
   PoseSet data = measured(truth, paper2_poses(70, tracker));
   std::vector<int> wrong;
@@ -105,7 +105,7 @@ TEST(Bundle, WrongRowsAreListedAndDoNotMoveTheResult) {
   EXPECT_LT(mean(point_errors(estimate.chain, unseen)), 25e-6);
 }
 
-TEST(Bundle, TheNoiseLevelIsJudgedFromTheResidualsWhereNoInstrumentIsNamed) {
+TEST(Bundle, TheNoiseLevelIsEstimatedFromTheResidualsWhereNoInstrumentIsGiven) {
   const Instrument truth{.sigma = 80e-6};
   const PoseSet data = measured(with_table3_errors(er20()), paper2_poses(200, truth));
   const Estimate estimate = fit_bundle(er20(), paper24(er20()), data, std::nullopt);
@@ -113,7 +113,7 @@ TEST(Bundle, TheNoiseLevelIsJudgedFromTheResidualsWhereNoInstrumentIsNamed) {
   EXPECT_FALSE(estimate.chi2_per_n.has_value());
 }
 
-TEST(Bundle, TooOptimisticAnInstrumentShowsInChi2AndWidensTheStandardDeviations) {
+TEST(Bundle, AnOverlyOptimisticInstrumentShowsInChi2AndWidensTheStandardDeviations) {
   const PoseSet data = measured(with_table3_errors(er20()), paper2_poses(100, Instrument{.sigma = 100e-6}));
   const Estimate honest = fit_bundle(er20(), paper24(er20()), data, Instrument{.sigma = 100e-6});
   const Estimate fooled = fit_bundle(er20(), paper24(er20()), data, Instrument{.sigma = 10e-6});
@@ -122,7 +122,7 @@ TEST(Bundle, TooOptimisticAnInstrumentShowsInChi2AndWidensTheStandardDeviations)
   EXPECT_NEAR(fooled.predicted_error, honest.predicted_error, 0.2 * honest.predicted_error);
 }
 
-TEST(Bundle, ErrorsOnUnseenPosesAreAsLargeAsTheCovarianceSays) {
+TEST(Bundle, ErrorsOnHeldOutPosesAreAsLargeAsTheCovariancePredicts) {
   // Twenty noise seeds (a study with the same figures is in docs/development/results.md); 50 poses, 10 µm + 5 µm/m.
   const Chain truth = with_table3_errors(er20());
   const PoseSet unseen = measured(truth, paper2_poses(200, noise_free), 1234);

@@ -73,13 +73,13 @@ void expect_the_same(const Chain& chain, const ParameterSet& set, const PoseSet&
   }
 }
 
-TEST(PoseNormal, ChunksOfAnyInstrumentsAddUpToTheWhole) {
+TEST(PoseNormalEquations, ChunksOfAnyInstrumentsAddUpToTheWhole) {
   const Chain chain = soft_robot();
   for (const int poses : {9, 64, 150})
     expect_the_same(chain, all_of(chain), seen(chain, poses), pack(all_of(chain), chain));
 }
 
-TEST(PoseNormal, KernelsTakePointsAloneRobustlyToo) {
+TEST(PoseNormalEquations, KernelsHandlePointsAloneWithARobustLoss) {
   const Chain chain = with_table3_errors(er20());
   const PoseSet data = measured(chain, paper2_poses(70, tracker));
   ParameterSet set = all_parameters(er20(), {});
@@ -88,7 +88,7 @@ TEST(PoseNormal, KernelsTakePointsAloneRobustlyToo) {
   expect_the_same(er20(), set, data, pack(set, er20()));
 }
 
-TEST(PoseNormal, KernelsTakePointsWhoseCovariancesLieAlongAxesOfTheirOwn) {
+TEST(PoseNormalEquations, KernelsHandlePointsWithFullCovariances) {
   const Chain chain = with_table3_errors(er20());
   PoseSet data = measured(chain, paper2_poses(70, tracker));
   ParameterSet set = all_parameters(er20(), {});
@@ -110,7 +110,7 @@ TEST(PoseNormal, KernelsTakePointsWhoseCovariancesLieAlongAxesOfTheirOwn) {
 }
 
 /// Half the gradient of the cost is Jᵀr, compliance and all: torques are held, so that the derivative is exact.
-TEST(PoseNormal, GradientOfARobotThatYieldsIsTheSlopeOfTheCost) {
+TEST(PoseNormalEquations, TheGradientOfACompliantRobotIsTheSlopeOfTheCost) {
   const Chain chain = soft_robot();
   const PoseSet data = seen(chain, 20);
   const ParameterSet set = all_of(chain);

@@ -108,7 +108,7 @@ TEST(ResidualKinds, JacobianOfAllInstrumentsInAllMountingsEqualsDifferences) {
         << set.parameters[k].name;
 }
 
-TEST(ResidualKinds, AFullCovarianceWeighsTheErrorByItsInverse) {
+TEST(ResidualKinds, AFullCovarianceWeightsTheErrorByItsInverse) {
   const Chain chain = er20();
   PoseSet set = measured(chain, paper2_poses(3, noise_free));
   const Mat3 covariance = skewed_covariance(4e-6);
@@ -158,7 +158,7 @@ OnePose one_pose(const Chain& chain) {
   return one;
 }
 
-TEST(ResidualKinds, SixRowsOfAPoseWeighItsErrorByTheInverseOfTheirCovariance) {
+TEST(ResidualKinds, SixRowsOfAPoseWeightItsErrorByTheInverseOfTheirCovariance) {
   const Chain chain = er20();
   const OnePose one = one_pose(chain);
   const ParameterSet nothing;
@@ -201,7 +201,7 @@ TEST(ResidualKinds, AtTheTruthTheResidualsAreTheNoise) {
   for (const double error : residual_norms(MeasurementKind::orientation, chain, data)) EXPECT_NEAR(error, 0.02, 1e-9);
 }
 
-TEST(ResidualKinds, WhereTheBaseStandsIsNothingToADrawWire) {
+TEST(ResidualKinds, ADrawWireDoesNotDependOnTheBase) {
   Chain chain = rich_robot();
   const PoseSet data = all_kinds(chain);
   const std::vector<double> before = residual_norms(MeasurementKind::distance, chain, data);
@@ -232,7 +232,7 @@ TEST(ResidualKinds, BlocksAreDroppedAndKeptAsListed) {
   EXPECT_EQ(next, left.size());
 }
 
-TEST(ResidualKinds, ForwardAgreesWithTheEvaluatorOnAllThatGoesBeyondGeometry) {
+TEST(ResidualKinds, ForwardAgreesWithTheEvaluatorOnAllNonGeometricTerms) {
   const Chain chain = rich_robot();
   const PoseSet data = all_kinds(chain);
   for (int row = 0; row < 6; ++row) {

@@ -24,14 +24,14 @@ JointEstimate joint_with(double point_sd, double axis_sd) {
   return joint;
 }
 
-TEST(Forecast, WhatCannotBeKnownAtAllDoesNotCount) {
+TEST(Forecast, UnobservableQuantitiesDoNotCount) {
   const auto all = forecast({joint_with(2e-3, 1e-4)});
   ASSERT_EQ(all.size(), 1U);
   EXPECT_DOUBLE_EQ(all[0].line_sd, std::hypot(2e-4, 2e-3));
   EXPECT_TRUE(all[0].is_sufficient);
 }
 
-TEST(Forecast, TheFactorsWouldMakeItJustEnough) {
+TEST(Forecast, TheRecommendedFactorsJustReachTheTarget) {
   const JointForecast lacking = forecast({joint_with(1e-2, 1e-4)}).front();
   EXPECT_FALSE(lacking.is_sufficient);
   EXPECT_NEAR(lacking.acceleration_factor, 1.96 * std::hypot(1e-3, 1e-2) / 5e-3, 1e-12);
@@ -41,14 +41,14 @@ TEST(Forecast, TheFactorsWouldMakeItJustEnough) {
             "not enough for 5 mm and 3 mrad in a-b (3.9 times the acceleration, or 15.5 times the time)");
 }
 
-TEST(Forecast, NobodyIsSentToDriveForAYear) {
+TEST(Forecast, TheRecommendedDurationIsBounded) {
   const JointForecast hopeless = forecast({joint_with(0.1, 1e-4)}).front();
   EXPECT_FALSE(more_excitation_suffices(hopeless));
   EXPECT_EQ(forecast_text({hopeless}),
             "not enough for 5 mm and 3 mrad in a-b (± 100 mm and ± 0 mrad, more than a longer drive mends)");
 }
 
-TEST(Forecast, TheTurnAboutTheOnlyAxisOfTheParentIsSaidApart) {
+TEST(Forecast, TheAzimuthIsReportedSeparately) {
   JointEstimate joint = joint_with(1e-3, 1e-4);
   joint.sd.axis_in_parent = {3e-3, 4e-3};
   EXPECT_FALSE(forecast({joint}).front().is_sufficient);
@@ -65,7 +65,7 @@ TEST(Forecast, TheTurnAboutTheOnlyAxisOfTheParentIsSaidApart) {
 }
 
 /// The rehearsal: an identified chain is driven in simulation and identified again.
-TEST(Forecast, AChainThatWasIdentifiedCanBeDrivenAndIsFoundAgain) {
+TEST(Forecast, AnIdentifiedChainIsSimulatedAndIdentifiedAgain) {
   const MujocoWorld world = test::world_of("excavator-general", {}, 3);
   const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}), 100.0);
   const auto found =

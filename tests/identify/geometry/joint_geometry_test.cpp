@@ -20,7 +20,7 @@ void expect_same_pose(const Pose& a, const Pose& b) {
   EXPECT_LT((a.rotation - b.rotation).norm(), 1e-9);
 }
 
-TEST(JointGeometry, AHingeTurnedByItsAngleIsTheChainItWasReadFrom) {
+TEST(JointGeometry, ARevoluteJointRotatedByItsAngleIsTheChainItCameFrom) {
   const JointGeometry hinge = fit_revolute_geometry(general_hinge(), readings());
   for (const double angle : {-1.0, 0.0, 0.7})
     expect_same_pose(pose_at(hinge, angle), transform(general_hinge(), std::vector{angle}));
@@ -28,7 +28,7 @@ TEST(JointGeometry, AHingeTurnedByItsAngleIsTheChainItWasReadFrom) {
   EXPECT_LT((hinge.home * hinge.point_in_child - hinge.point_in_parent).norm(), 1e-9);
 }
 
-TEST(JointGeometry, TheAxisIsTheSecondLeafsZ) {
+TEST(JointGeometry, TheAxisIsTheZAxisOfTheSecondLeaf) {
   const JointGeometry hinge = fit_revolute_geometry(general_hinge(), readings());
   const Pose parent_T_axis = transform(general_hinge().front());
   EXPECT_LT((hinge.axis_in_parent - parent_T_axis.rotation.col(2)).norm(), 1e-9);
@@ -36,7 +36,7 @@ TEST(JointGeometry, TheAxisIsTheSecondLeafsZ) {
   EXPECT_LT(between.cross(hinge.axis_in_parent).norm(), 1e-9);
 }
 
-TEST(CanonicalRows, TenNumbersMakeTheSameHinge) {
+TEST(CanonicalRows, TenNumbersDescribeTheSameRevoluteJoint) {
   const Vec3 axes[] = {Vec3(0.3, -0.5, 0.8), Vec3(0, 0, 1),        Vec3(0, 0, -1),
                        Vec3(1, 0, 0),        Vec3(0.02, -0.01, 1), Vec3(0.01, 0.03, -1)};
   for (const Vec3& in_parent : axes)

@@ -22,7 +22,7 @@ double across(const Vec3& error, const Vec3& axis) {
   return (error - axis * axis.dot(error)).norm();
 }
 
-TEST(MeanRevolute, AStrayingHingeOnAShakenChainIsFoundAsOneAndItsLeversStayRight) {
+TEST(MeanRevolute, AnImperfectRevoluteJointOnAShakenChainIsIdentifiedWithItsLevers) {
   const HandMovedChain chain;
   const Refinement found = refined(chain.recording, 0);
   ASSERT_EQ(found.joints.size(), 2u);
@@ -43,7 +43,7 @@ TEST(MeanRevolute, AStrayingHingeOnAShakenChainIsFoundAsOneAndItsLeversStayRight
   EXPECT_LT(sound.estimate.axis_in_parent.cross(other).norm(), 0.01);
 }
 
-TEST(MeanRevolute, ABallInItsPlaceMovesTheSame) {
+TEST(MeanRevolute, TheRelaxedJointMovesTheSame) {
   Rng rng(2);
   InsProblem problem;
   problem.grid = {0.0, 0.1, 10};
@@ -74,7 +74,7 @@ TEST(MeanRevolute, ABallInItsPlaceMovesTheSame) {
   }
 }
 
-TEST(MeanRevolute, TheAxisIsTheDirectionThatStaysPutAndTheStrayItsScatter) {
+TEST(MeanRevolute, TheAxisIsTheMeanDirectionAndTheDeviationItsScatter) {
   const Vec3 a = Vec3(1.0, 0.2, -0.1).normalized(), b = Vec3(0.3, 1.0, 0.2).normalized();
   const Mat3 in_parent = frame_with_z_along(a), in_child = frame_with_z_along(b);
   std::vector<Mat3> rotations;
@@ -92,7 +92,7 @@ TEST(MeanRevolute, TheAxisIsTheDirectionThatStaysPutAndTheStrayItsScatter) {
   EXPECT_LT(std::sqrt(hinge.covariance(0, 0)), 0.015);
 }
 
-TEST(MeanRevolute, TheSlowFitIsTheSameForAnyNumberOfThreads) {
+TEST(MeanRevolute, TheLowFrequencyFitIsTheSameForAnyNumberOfThreads) {
   HandMovedChain chain;
   chain.recording.loggers[0].time.resize(400);
   for (InsSensor& sensor : chain.recording.sensors) {

@@ -45,7 +45,7 @@ TEST(LinkMotion, AccelerationsAreSecondDifferencesOfPositions) {
   }
 }
 
-TEST(LinkCost, IsZeroAtTheTruthAndAgreesWithTheSlowWayElsewhere) {
+TEST(LinkCost, IsZeroAtTheTruthAndAgreesWithTheReferenceElsewhere) {
   const JointSignal swing = wave(0.5, 0.7, 0.3), hinge = wave(0.6, 0.9, 1.0);
   const auto parent = swinging_parent(swing);
   const auto child = propagate(parent, general_hinge(), {&hinge, 1});
@@ -64,7 +64,7 @@ TEST(LinkCost, IsZeroAtTheTruthAndAgreesWithTheSlowWayElsewhere) {
   }
 }
 
-TEST(LinkCost, GivesUpOnlyWhatIsNotBelowTheBound) {
+TEST(LinkCost, StopsEarlyOnlyAboveTheBound) {
   const JointSignal swing = wave(0.5, 0.7, 0.3), hinge = wave(0.6, 0.9, 1.0);
   const auto parent = swinging_parent(swing);
   const auto child = propagate(parent, general_hinge(), {&hinge, 1});
@@ -117,7 +117,7 @@ TEST(LinkBlock, AgreesWithProductsOf4x4MatricesAndDifferences) {
   EXPECT_NEAR(fast, slow, 1e-4 * slow);  // what second differences over a millisecond leave
 }
 
-TEST(EulerAngles, AreThoseOfYawPitchRollAndHaveASecondReading) {
+TEST(EulerAngles, AreThoseOfYawPitchRollAndHaveASecondSolution) {
   const Vec3 angles(0.3, -1.2, 2.5);
   const Mat3 rotation = rot_z(angles.z()) * rot_y(angles.y()) * rot_x(angles.x());
   EXPECT_LT((euler_angles(rotation) - angles).norm(), 1e-12);

@@ -30,14 +30,14 @@ struct Link {
   }
 };
 
-TEST(LinkStructure, AreAsManyAsCountingSays) {
+TEST(LinkStructure, EnumerationHasTheExpectedCount) {
   // One signal in one of 2 n angles, with or without a constant beside it; the other angles constant or not.
   EXPECT_EQ(enumerate_structures(1).size(), 8u);
   EXPECT_EQ(enumerate_structures(2).size(), 8u + 64u);
   EXPECT_EQ(enumerate_structures(3).size(), 8u + 64u + 384u);
 }
 
-TEST(LinkStructure, BreedKeepsTheSignalOnceAndTheLeavesFew) {
+TEST(LinkStructure, OperatorsKeepTheSignalOnceAndTheLeavesFew) {
   const StructureOperators breed;
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     const LinkStructure a = breed.random(Rng(seed)), b = breed.random(Rng(seed + 1000));
@@ -50,7 +50,7 @@ TEST(LinkStructure, BreedKeepsTheSignalOnceAndTheLeavesFew) {
   }
 }
 
-TEST(StructureFitter, FindsThePerfectHingeToRounding) {
+TEST(StructureFitter, FindsANoiseFreeRevoluteJointToRounding) {
   const Link link;
   const StructureFitter problem(link.parent, link.child, {&link.hinge, 1}, link.rows, {.length_prior = 1e-6});
   const StructureFit fit = problem.fit(revolute_structure());
@@ -62,7 +62,7 @@ TEST(StructureFitter, FindsThePerfectHingeToRounding) {
   }
 }
 
-TEST(StructureFitter, JIsThatOfTheSlowWay) {
+TEST(StructureFitter, JEqualsTheReference) {
   const Link link = Link().with_noise(3);
   const StructureFit fit = StructureFitter(link.parent, link.child, {&link.hinge, 1}, link.rows,
                                            {.length_prior = 1e-5, .bias_prior = 1e3})  // no biases
@@ -72,7 +72,7 @@ TEST(StructureFitter, JIsThatOfTheSlowWay) {
   EXPECT_NEAR(fit.j, slow.total, 1e-6 * slow.total);
 }
 
-TEST(MemeticSearch, EndsWhereTheCertificateEnds) {
+TEST(MemeticSearch, EndsAtTheOptimumOfExhaustiveSearch) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Link link = Link().with_noise(seed);
     const auto found = search_memetic(link.parent, link.child, {&link.hinge, 1}, link.rows, {}, Rng(seed));

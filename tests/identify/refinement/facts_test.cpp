@@ -67,7 +67,7 @@ MachineMeasurements surveyed_tip() {
   return facts;
 }
 
-TEST(Facts, SurveyedPointsTellWhereTheTipIsBeyondTheLastSensor) {
+TEST(Facts, SurveyedPointsLocateTheTipBeyondTheLastSensor) {
   const auto result = refined(surveyed_tip());
   ASSERT_TRUE(result) << result.error().what;
   ASSERT_EQ(result->places.size(), 1U);
@@ -94,7 +94,7 @@ double largest_link_error(const Refinement& refined, const MachineTruth& truth) 
   return largest;
 }
 
-TEST(Facts, ATapeBetweenPinsIsBelievedMoreThanTheSensors) {
+TEST(Facts, ATapeBetweenPinsOutweighsTheSensors) {
   const MachineTruth truth = machine_truth(excavator().machine, excavator().motion);
   constexpr double tape_sd = 5e-5;
   MachineMeasurements facts;
@@ -105,7 +105,7 @@ TEST(Facts, ATapeBetweenPinsIsBelievedMoreThanTheSensors) {
   EXPECT_GT(largest_link_error(*without, truth), 6.0 * tape_sd);
 }
 
-TEST(Facts, WhatDoesNotFitTheMachineIsSaidInOneSentence) {
+TEST(Facts, AFactThatDoesNotFitTheMachineIsAnErrorOfOneSentence) {
   const auto complaint = [](const MachineMeasurements& facts) {
     const auto result = refined(facts);
     return result ? "(accepted)" : result.error().what;

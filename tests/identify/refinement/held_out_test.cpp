@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-TEST(HeldOut, AFifthOfTheRecordingIsKeptAwayInWindowsSpreadOverIt) {
+TEST(HeldOut, AFifthOfTheRecordingIsHeldOutInWindowsSpreadOverIt) {
   const SplineGrid grid{2.0, 0.1, 530};
   const auto intervals = held_out_intervals(grid);
   ASSERT_EQ(intervals.size(), 5u);
@@ -41,7 +41,7 @@ InsSensor shaking(std::span<const double> time, double amplitude) {
   return sensor;
 }
 
-TEST(HeldOut, WhatHappensInAWindowDoesNotReachTheFitAndTheProblemStaysWhole) {
+TEST(HeldOut, SamplesOfAWindowDoNotAffectTheFit) {
   InsProblem problem;
   problem.grid = {0.0, 0.1, 20};
   problem.prior = {.gyroscope_bias = 1e-3, .accelerometer_bias = 1e-2};

@@ -87,7 +87,7 @@ double largest_difference(const Pose& a, const Pose& b) {
   return std::max((a.rotation - b.rotation).cwiseAbs().maxCoeff(), (a.position - b.position).cwiseAbs().maxCoeff());
 }
 
-TEST(JointFilm, MovesTheFoundChainAsTheFitHasIt) {
+TEST(JointTrajectory, MovesTheIdentifiedChainAsTheFitDoes) {
   for (const EstimatedJointType type : every_type)
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       const Played p = played(type, seed);
@@ -100,7 +100,7 @@ TEST(JointFilm, MovesTheFoundChainAsTheFitHasIt) {
     }
 }
 
-TEST(JointFilm, IsReadAgainFromTheFilesToTheSamePoses) {
+TEST(JointTrajectory, IsReadBackFromTheFilesWithTheSamePoses) {
   for (const EstimatedJointType type : every_type) {
     const Played p = played(type, 9);
     const auto from_urdf = parse_urdf(format_urdf(p.chain), "chain.urdf");
@@ -114,7 +114,7 @@ TEST(JointFilm, IsReadAgainFromTheFilesToTheSamePoses) {
   }
 }
 
-TEST(JointFilm, CardanAnglesGoOnThroughTheirSingularity) {
+TEST(JointTrajectory, CardanAnglesAreContinuousThroughTheirSingularity) {
   Vec3 angles = Vec3::Zero();
   for (int i = 0; i <= 200; ++i) {
     const double t = 0.01 * i;
@@ -125,7 +125,7 @@ TEST(JointFilm, CardanAnglesGoOnThroughTheirSingularity) {
   EXPECT_NEAR(angles.y(), std::numbers::pi, 1e-6);
 }
 
-TEST(JointFilm, ABallTurnsMostAboutItsFirstAxisAndLeastAboutItsSecond) {
+TEST(JointTrajectory, ASphericalJointRotatesMostAboutItsFirstAxisAndLeastAboutItsSecond) {
   MatrixXd turns(3, 3);
   turns << 0.1, -0.1, 0.0, 0.5, -0.4, 0.2, 1.0, 2.0, -1.5;
   const Mat3 axes = spherical_axes(turns);

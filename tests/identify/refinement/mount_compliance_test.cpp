@@ -41,7 +41,7 @@ Mat3 top_heavy(double lean) {
   return tilt;
 }
 
-TEST(YieldingMounts, LeversAndTiltsAreFoundThoughEverySensorLeansWithTheMotion) {
+TEST(MountCompliance, LeversAndCompliancesAreFoundWithEverySensorOnASoftMount) {
   const Mat3 tilt = top_heavy(0.07);
   const HandMovedChain chain(0.0, tilt);
   const Refinement found = refined(chain.recording, 0);
@@ -57,7 +57,7 @@ TEST(YieldingMounts, LeversAndTiltsAreFoundThoughEverySensorLeansWithTheMotion) 
   }
 }
 
-TEST(YieldingMounts, FirmOnesAreToldSoAndKeepTheirIntervals) {
+TEST(MountCompliance, RigidMountsAreReportedAsSuchAndKeepTheirIntervals) {
   const HandMovedChain chain;
   const Refinement found = refined(chain.recording, 0);
   ASSERT_GT(found.cutoff, 0.0);
@@ -67,7 +67,7 @@ TEST(YieldingMounts, FirmOnesAreToldSoAndKeepTheirIntervals) {
   EXPECT_LT(middle.sd, 6e-3);
 }
 
-TEST(YieldingMounts, HiddenTiltsAreBelievedToBeLikeTheVisibleOnes) {
+TEST(MountCompliance, UnobservableCompliancesAreAssumedToBeLikeTheObservableOnes) {
   // Nine tilts, of which three are seen to 1e-4 and are 2e-3 each; of the others nothing is known.
   InsProblem problem;
   problem.prior.tilt = 1e-2;

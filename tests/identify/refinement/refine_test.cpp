@@ -70,27 +70,27 @@ void expect_close(const Refinement& found, const MachineTruth& truth, double lin
   }
 }
 
-TEST(Refine, FindsASimulatedMachineAsWellAsItsSensorsAllow) {
+TEST(Refine, IdentifiesASimulatedMachineAsAccuratelyAsItsSensorsAllow) {
   for (const char* name : {"excavator-general", "crane", "robot6", "tree"}) {
     const RefinedDrive drive = driven(name, {.mounting = Mounting::arbitrary}, "industrial");
     expect_close(refined(drive), drive.truth, 5e-3, 3e-3);
   }
 }
 
-TEST(Refine, NeedsNoBaseThatStandsStill) {
+TEST(Refine, NeedsNoStationaryBase) {
   const RefinedDrive drive = driven("excavator-general", {.base = Base::yawing}, "industrial");
   const Refinement found = refined(drive);
   expect_close(found, drive.truth, 10e-3, 3e-3);
   EXPECT_TRUE(found.joints.front().estimate.unobservable_in_parent.empty());
 }
 
-TEST(Refine, TakesBrokenRecordings) {
+TEST(Refine, HandlesFaultyRecordings) {
   const RefinedDrive drive =
       driven("excavator-general", {}, "industrial", {.missing = 0.05, .spikes = 6.0, .has_magnetometer = false});
   expect_close(refined(drive), drive.truth, 5e-3, 25e-3);  // without magnetometer the swing's direction is loose
 }
 
-TEST(Refine, SaysWhatAStillPlatformHides) {
+TEST(Refine, ReportsWhatAStationaryPlatformLeavesUnobservable) {
   const RefinedDrive drive = driven("excavator", {}, "noise", {.has_magnetometer = false});
   const Refinement found = refined(drive);
   std::vector<JointEstimate> joints;

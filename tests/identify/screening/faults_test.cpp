@@ -55,14 +55,14 @@ TEST_P(EveryRemount, IsFoundWithSensorAndTime) {
   EXPECT_LT(found->end - found->begin, longest);
 }
 
-TEST(Remount, TheSideThatTellsMoreIsUsedAndSaid) {
+TEST(Remount, TheMoreInformativeSideIsUsedAndReported) {
   const DrivenMachine drive = remounted(3, 41.0, {exp_so3(Vec3(0.2, 0.3, 0.1)), Vec3::Zero()});
   const Identification found = identified(drive.recording);
   EXPECT_TRUE(has_finding(found, "remounted", "ins3"));
   EXPECT_LT(worst_line_error(found.joints, drive.truth), 10e-3);
 }
 
-TEST(Remount, IsNotSeenWhereNobodyTouchedASensor) {
+TEST(Remount, IsNotReportedWhereNoSensorWasMoved) {
   for (const std::string& name : machine_names())
     for (const Script script : {Script::standard, Script::gentle}) {
       const auto ordered = order_segments(driven_machine(name, 4, script).recording, {}, {}, 0);
@@ -71,7 +71,7 @@ TEST(Remount, IsNotSeenWhereNobodyTouchedASensor) {
     }
 }
 
-TEST(GivenTree, AgainstTheLogIsSaidByName) {
+TEST(GivenTree, ThatContradictsTheRecordingIsReportedByName) {
   const DrivenMachine drive = driven_machine("excavator-general", 3);
   const Identification found =
       identified(drive.recording,
@@ -83,7 +83,7 @@ TEST(GivenTree, AgainstTheLogIsSaidByName) {
   EXPECT_THAT(found.verdict, testing::StartsWith("Do not use"));
 }
 
-TEST(GivenTree, ThatIsTheLogsOwnChangesNothing) {
+TEST(GivenTree, ThatEqualsTheEstimatedTreeChangesNothing) {
   const DrivenMachine drive = driven_machine("excavator-general", 3, Script::together);
   IdentifyOptions options;
   for (const JointTruth& joint : drive.truth.joints) options.tree.push_back({joint.child, joint.parent});
@@ -105,7 +105,7 @@ TEST(GivenTree, ThatIsNoTreeIsRefused) {
               testing::HasSubstr("loop"));
 }
 
-TEST(TwoMachines, OnMovingBasesAreToldApartAndTheLargerIsIdentified) {
+TEST(TwoMachines, OnMovingBasesAreSeparatedAndTheLargerIsIdentified) {
   const MachineOptions rocking{.mounting = Mounting::arbitrary, .base = Base::rocking};
   const DrivenMachine crane = driven_machine("crane", 5, Script::together, rocking),
                       excavator = driven_machine("excavator-general", 4, Script::together, rocking);
@@ -121,7 +121,7 @@ TEST(TwoMachines, OnMovingBasesAreToldApartAndTheLargerIsIdentified) {
   EXPECT_EQ(other.joints.size(), crane.truth.joints.size());
 }
 
-TEST(TwoMachines, OnTheSameGroundAreIdentifiedTogetherAndSaid) {
+TEST(TwoMachines, OnTheSameGroundAreIdentifiedTogetherAndReported) {
   const DrivenMachine crane = driven_machine("crane", 5, Script::together),
                       excavator = driven_machine("excavator-general", 4, Script::together);
   const Identification found = identified(merge_recordings(excavator.recording, crane.recording, "crane_"));
@@ -130,7 +130,7 @@ TEST(TwoMachines, OnTheSameGroundAreIdentifiedTogetherAndSaid) {
   EXPECT_LT(worst_line_error(found.joints, excavator.truth), 6e-3);
 }
 
-TEST(Linkage, ItsLoopIsFoundAndTheRestOfTheChainIsAsGoodAsWithout) {
+TEST(Linkage, ItsLoopIsFoundAndTheRestOfTheChainIsAsAccurateAsWithout) {
   for (const std::uint64_t seed : {2u, 3u}) {
     const MujocoWorld world = test::world_of("excavator", {.mounting = Mounting::arbitrary}, seed);
     const Drive drive = test::drive_of(world.machine(), {}, seed);

@@ -30,7 +30,7 @@ double relative_offset(const Identification& found, const std::string& sensor) {
 class EverySeed : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Synchronisation, EverySeed, testing::Values(1, 2));
 
-TEST_P(EverySeed, LoggersApartAndDriftingCostNoAccuracy) {
+TEST_P(EverySeed, OffsetAndDriftingLoggerClocksCostNoAccuracy) {
   const DrivenMachine drive = driven_machine("excavator-general", static_cast<std::uint64_t>(GetParam()));
   const double before = worst_line_error(identified(drive.recording).joints, drive.truth);
   const InsRecording apart = with_clock_fault(with_clock_fault(drive.recording, {.sensor = 2, .offset = 0.05}),
@@ -44,7 +44,7 @@ TEST_P(EverySeed, LoggersApartAndDriftingCostNoAccuracy) {
   EXPECT_THAT(found.verdict, testing::HasSubstr("ins4"));
 }
 
-TEST_P(EverySeed, ALateSensorInTheSameFileIsFoundToo) {
+TEST_P(EverySeed, ADelayedSensorInTheSameFileIsFoundToo) {
   const DrivenMachine drive = driven_machine("excavator-general", static_cast<std::uint64_t>(GetParam()));
   const double before = worst_line_error(identified(drive.recording).joints, drive.truth);
   const Identification found = identified(with_delayed_rows(drive.recording, 4, 5));  // 50 ms
@@ -53,7 +53,7 @@ TEST_P(EverySeed, ALateSensorInTheSameFileIsFoundToo) {
   EXPECT_TRUE(has_finding(found, "clock", "ins4 are logged"));
 }
 
-TEST(Synchronisation, OfEveryMachineWhoseClocksAgreeIsLeftAlone) {
+TEST(Synchronisation, LeavesMachinesWhoseClocksAgreeUnchanged) {
   for (const std::string& name : machine_names())
     for (const Script script : {Script::together, Script::gentle}) {
       const Synchronisation clock = synchronise_sensors(driven_machine(name, 4, script).recording, {}, 0);

@@ -54,7 +54,7 @@ const std::vector<JointSignal>& three_waves() {
   return waves;
 }
 
-TEST(JointType, CountsTheAxesThatTwoSegmentsTurnAbout) {
+TEST(JointType, CountsTheRotationAxesBetweenTwoSegments) {
   const DhLeaf mount{.theta = 0.7, .d = 0.2, .alpha = -1.1, .a = 0.5}, end{.theta = -1.9, .d = 0.15, .alpha = 0.3};
   const DhLeaf first{.alpha = 1.4, .theta_signal = 0}, second{.theta = 1.5, .alpha = -1.3, .theta_signal = 1},
       third{.theta_signal = 2};
@@ -75,7 +75,7 @@ TEST(JointType, FindsBothAxesOfAUniversalJoint) {
   EXPECT_LT(found.axis_in_child.cross(in_child).norm(), 1e-3);
 }
 
-TEST(JointType, SeesTheCranesSlideAndItsHinges) {
+TEST(JointType, FindsTheCranesPrismaticAndRevoluteJoints) {
   for (const char* grade : {"noise", "industrial"}) {
     const MujocoWorld world = test::world_of("crane", {}, 4);
     const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}, 4), 100.0);
@@ -89,7 +89,7 @@ TEST(JointType, SeesTheCranesSlideAndItsHinges) {
   }
 }
 
-TEST(JointType, TellsTheBallFromTheHingesOfAMeasuredChain) {
+TEST(JointType, DistinguishesSphericalFromRevoluteJointsOfAMeasuredChain) {
   const char* root = std::getenv("KINFER_DATA");
   if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
   for (const char* mounts : {"rigid.csv", "nonrigid.csv"}) {

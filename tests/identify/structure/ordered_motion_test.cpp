@@ -40,11 +40,11 @@ std::vector<std::string> edge_names(const MachineTruth& truth) {
   return names;
 }
 
-class EveryTrouble : public testing::TestWithParam<std::tuple<std::string, int>> {};
-INSTANTIATE_TEST_SUITE_P(Order, EveryTrouble,
+class EverySensorFault : public testing::TestWithParam<std::tuple<std::string, int>> {};
+INSTANTIATE_TEST_SUITE_P(Order, EverySensorFault,
                          testing::Combine(testing::ValuesIn(machine_names()), testing::Values(0, 1, 2, 3)));
 
-TEST_P(EveryTrouble, LeavesTheTreeRight) {
+TEST_P(EverySensorFault, LeavesTheTreeRight) {
   const auto& [machine, kind] = GetParam();
   const SensorFaults troubles[] = {
       {.has_magnetometer = false}, {.magnetic_disturbance = 15.0}, {.missing = 0.05}, {.spikes = 20.0}};
@@ -62,7 +62,7 @@ void add_bias(TriadColumns& triad, const Vec3& bias) {
     for (float& value : triad.axis[static_cast<std::size_t>(axis)]) value += static_cast<float>(bias[axis]);
 }
 
-TEST(OrderedMotion, AnAccelerometerThatLeansItsVerticalIsFoundToLean) {
+TEST(OrderedMotion, AnAccelerometerBiasThatTiltsTheVerticalIsFound) {
   Log log = log_of("excavator-general", {.mounting = Mounting::arbitrary, .base = Base::yawing}, "noise",
                    {.has_magnetometer = false}, 3);
   const double bias = 0.6;  // [m/s²] 61 mg, and so 61 mrad at most
@@ -78,7 +78,7 @@ TEST(OrderedMotion, AnAccelerometerThatLeansItsVerticalIsFoundToLean) {
   EXPECT_LT(ordered->tree.pair(1, 2).tilt.norm(), 0.01);
 }
 
-TEST(OrderedMotion, AGyroThatReadsFiveDegreesASecondAtRestKeepsItsHeading) {
+TEST(OrderedMotion, AGyroBiasOfFiveDegreesASecondLeavesTheHeadingRight) {
   Log log = log_of("robot6", {}, "noise", {.spikes = 20.0, .has_magnetometer = false}, 4, Script::together);
   const auto& truth = log.motion.sensors[3];
   add_bias(log.recording.sensors[3].angular_velocity, truth.world_R_sensor.front().conjugate() * Vec3(0.0, 0.0, 0.08));
@@ -117,7 +117,7 @@ TEST(OrderedMotion, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(OrderedMotion, SaysThatTwoSensorsStandStill) {
+TEST(OrderedMotion, ReportsThatTwoSensorsAreStationary) {
   Log log = log_of("crane", {}, "noise", {}, 1);
   log.recording.sensors.push_back(log.recording.sensors.front());
   log.recording.sensors.back().name = "other";

@@ -31,7 +31,7 @@ void expect_unit_quaternions(CarriedSensor c, const char* what) {
       ASSERT_NEAR(q.norm(), 1.0, 1e-9) << name << " with " << what;
 }
 
-TEST(BadInput, NoFailureMakesAFilterSayNan) {
+TEST(BadInput, NoFailureMakesAFilterReturnNan) {
   const CarriedSensor good = carried({.seconds = 12.0, .sampling_rate = 100.0, .rest = 2.0});
   const std::size_t n = good.time.size(), middle = n / 2;
   const Vec3 gone = Vec3::Constant(std::nan(""));
@@ -66,7 +66,7 @@ TEST(BadInput, NoFailureMakesAFilterSayNan) {
   broken("free fall", [&](CarriedSensor& c) { set(c.sensor.acceleration, middle, n, Vec3::Constant(1e-30)); });
 }
 
-TEST(BadInput, NoRowsAndOneRowAreAnswered) {
+TEST(BadInput, NoRowsAndOneRowAreHandled) {
   CarriedSensor c = carried({.seconds = 12.0, .sampling_rate = 100.0});
   for (const std::size_t rows : {0, 1, 2}) {
     CarriedSensor few = c;
@@ -109,7 +109,7 @@ TEST(BadInput, ARowInTenMissingCostsLittle) {
   EXPECT_LT(e.heading, 1.0 * degree);
 }
 
-TEST(BadInput, AClippedTurnIsRecoveredFromWithAMagnetometer) {
+TEST(BadInput, AClippedRotationIsRecoveredFromWithAMagnetometer) {
   CarriedSensor c = carried({.seconds = 60.0, .rest = 10.0, .pace = 1.5});
   for (auto& axis : c.sensor.angular_velocity.axis)
     for (float& w : axis) w = std::clamp(w, -2.1816616f, 2.1816616f);  // 125 °/s

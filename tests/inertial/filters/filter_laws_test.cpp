@@ -44,12 +44,12 @@ double inclination(const CarriedSensor& c, const std::vector<Quat>& q) {
   return orientation_error(q, c.truth, std::vector<char>(q.size(), 1)).inclination;
 }
 
-TEST_P(EveryFilter, ACarriedSensorIsFollowed) {
+TEST_P(EveryFilter, TheOrientationOfAMovingSensorIsFollowed) {
   const CarriedSensor c = carried({});
   EXPECT_LT(total(c, run(c)), GetParam().accuracy);
 }
 
-TEST_P(EveryFilter, TurningTheFieldTurnsTheAnswer) {
+TEST_P(EveryFilter, RotatingTheFieldRotatesTheResult) {
   constexpr double turn = 0.7;
   const auto straight = run(carried({}));
   auto turned = run(carried({.declination = turn}));
@@ -58,7 +58,7 @@ TEST_P(EveryFilter, TurningTheFieldTurnsTheAnswer) {
   EXPECT_LT(largest_angle(straight, turned), GetParam().accuracy / 6);
 }
 
-TEST_P(EveryFilter, TurningTheSensorInItsHousingTurnsTheAnswer) {
+TEST_P(EveryFilter, RotatingTheSensorInItsHousingRotatesTheResult) {
   const Quat mounting(from_rpy({0.8, -0.5, 2.0}));
   const auto straight = run(carried({}));
   auto turned = run(carried({.mounting = mounting}));
@@ -84,7 +84,7 @@ CarriedSensor decimated(const CarriedSensor& c, std::size_t n) {
   return out;
 }
 
-TEST_P(EveryFilter, HalfAndAQuarterOfTheRateGiveTheSameAnswerWithinHalfADegree) {
+TEST_P(EveryFilter, HalfAndAQuarterOfTheRateGiveTheSameResultWithinHalfADegree) {
   const CarriedSensor full = carried({.sampling_rate = 400.0});
   const auto reference = run(full);
   for (const std::size_t n : {2, 4}) {
@@ -97,7 +97,7 @@ TEST_P(EveryFilter, HalfAndAQuarterOfTheRateGiveTheSameAnswerWithinHalfADegree) 
   }
 }
 
-TEST_P(EveryFilter, AStillSensorDoesNotDrift) {
+TEST_P(EveryFilter, AStationarySensorDoesNotDrift) {
   const SensorModel grade = *sensor_grade("industrial");
   const CarriedSensor c = carried({.seconds = 200.0, .sampling_rate = 50.0, .rest = 1000.0, .grade = &grade});
   const auto q = run(c);
@@ -138,7 +138,7 @@ TEST(KinferOffline, TimeReversalGivesTheSameTilt) {
   EXPECT_LT(e.heading, 0.2 * degree);
 }
 
-TEST(KinferOffline, SmoothingTellsTheTiltBetterThanFiltering) {
+TEST(KinferOffline, SmoothingEstimatesTheTiltBetterThanFiltering) {
   const SensorModel grade = *sensor_grade("industrial");
   for (const double scale_sd : {2e-3, 0.0})
     for (const int seed : {1, 2, 3}) {

@@ -88,7 +88,7 @@ TEST(KinferFilter, GyroBiasIsFoundAtRestAndInMotion) {
   }
 }
 
-TEST(KinferFilter, ALargeMachineIsFollowedAsWellAsAHand) {
+TEST(KinferFilter, ALargeMachineIsFollowedAsWellAsAHandHeldSensor) {
   const CarriedSensor hand = carried({.has_magnetometer = false});
   const CarriedSensor crane = carried({.seconds = 120.0, .reach = 8.0, .pace = 0.2, .has_magnetometer = false});
   for (const CarriedSensor* c : {&hand, &crane}) {
@@ -97,7 +97,7 @@ TEST(KinferFilter, ALargeMachineIsFollowedAsWellAsAHand) {
   }
 }
 
-TEST(KinferFilter, ASlowSteadyTurnIsNotTakenForABias) {
+TEST(KinferFilter, ASlowSteadyRotationIsNotTakenForABias) {
   CarriedSensor c = carried({.seconds = 60.0, .sampling_rate = 100.0, .rest = 1000.0, .has_magnetometer = false});
   const double angular_velocity = 1.0 * degree;  // about up, from 20 s to 28 s
   for (std::size_t row = 2000; row < 2800; ++row) {
@@ -109,7 +109,7 @@ TEST(KinferFilter, ASlowSteadyTurnIsNotTakenForABias) {
   EXPECT_NEAR(q[1990].angularDistance(q[2790]), 8 * angular_velocity, 0.1 * angular_velocity * 8);
 }
 
-TEST(KinferFilter, AMagnetNearbyForTenSecondsDoesNotTurnTheHeading) {
+TEST(KinferFilter, AMagnetNearbyForTenSecondsDoesNotChangeTheHeading) {
   CarriedSensor c = carried({.seconds = 60.0});
   for (std::size_t row = 30 * 200; row < 40 * 200; ++row) {
     const Vec3 disturbance = c.truth[row].conjugate() * Vec3(25, 0, 10);
@@ -122,7 +122,7 @@ TEST(KinferFilter, AMagnetNearbyForTenSecondsDoesNotTurnTheHeading) {
   EXPECT_LT(worst, 2.5 * degree) << "the field was turned by 50 degrees";
 }
 
-TEST(KinferFilter, AFieldThatChangedForGoodIsLearnedInMinutes) {
+TEST(KinferFilter, APermanentChangeOfTheFieldIsLearnedInMinutes) {
   CarriedSensor c = carried({.seconds = 240.0, .sampling_rate = 100.0, .rest = 2.0});
   const Vec3 now = 1.4 * (rot_z(0.5) * Vec3(0, 20.5, -44));
   for (std::size_t row = 60 * 100; row < c.time.size(); ++row) {
@@ -133,7 +133,7 @@ TEST(KinferFilter, AFieldThatChangedForGoodIsLearnedInMinutes) {
   EXPECT_GT(q[230 * 100].angularDistance(c.truth[230 * 100]), 0.35) << "of the 0.5 rad that it changed by";
 }
 
-TEST(KinferFilter, ACopyGoesOnWhereTheOriginalWas) {
+TEST(KinferFilter, ACopyContinuesFromTheStateOfTheOriginal) {
   const CarriedSensor c = carried({.seconds = 12.0});
   KinferFilter filter;
   for (std::size_t row = 0; row < 1000; ++row) filter.add(sample(c.sensor, c.time, row));

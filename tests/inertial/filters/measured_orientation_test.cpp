@@ -55,7 +55,7 @@ TEST(Broad, TheSmootherIsBetterThanTheBestKnownOne) {
   EXPECT_LT(mean_over_broad(six, HeadingOffset::best_constant).heading, 1.1) << "VQF: 2.20";
 }
 
-TEST(Broad, ThePapersFilterIsWorthAFewDegrees) {
+TEST(Broad, ThePapersFilterIsAccurateToAFewDegrees) {
   if (!data_folder()) GTEST_SKIP() << "KINFER_DATA is not set";
   const OrientationError e = mean_over_broad(PaperEkfOptions{}, HeadingOffset::none);
   EXPECT_LT(e.total, 7.0);

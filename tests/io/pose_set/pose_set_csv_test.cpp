@@ -61,14 +61,14 @@ TEST(PoseSetCsv, JointColumnsMayBeNamedAndStandInAnyOrder) {
   EXPECT_EQ(set.joint_names, (std::vector<std::string>{"pan", "slide"}));
 }
 
-TEST(PoseSetCsv, AnEmptyCellIsNotMeasured) {
+TEST(PoseSetCsv, AnEmptyCellIsNoMeasurement) {
   const PoseSet set = poses_of("q1,q2,x,y,z\n0,0,1,2,3\n0,0,,,\n0,0,4,5,6\n");
   EXPECT_EQ(set.rows(), 3);
   ASSERT_EQ(set.points.size(), 2U);
   EXPECT_EQ(set.points[1].row, 2);
 }
 
-TEST(PoseSetCsv, CommentsEmptyLinesCarriageReturnsMarksAndQuotesAreUnderstood) {
+TEST(PoseSetCsv, CommentsEmptyLinesCarriageReturnsByteOrderMarksAndQuotesAreHandled) {
   const PoseSet set = poses_of(
       "\xEF\xBB\xBF# measured on Monday\r\nq1,q2,x,y,z,\"id\"\r\n\r\n0,0,1,2,3,\"the \"\"first\"\", again\"\r\n# "
       "pause\r\n0, 0, +4 ,\"5\",6,b\r\n");
@@ -139,7 +139,7 @@ TEST(PoseSetCsv, ACovarianceIsKeptAsDeviationsAlongItsAxes) {
   }
 }
 
-TEST(PoseSetCsv, WhatIsNoCovarianceIsRefusedWithItsLine) {
+TEST(PoseSetCsv, AnInvalidCovarianceIsRefusedWithItsLine) {
   const auto expect_error = [](const std::string& text, const std::string& words) {
     EXPECT_NE(complaint_about(text).find(words), std::string::npos) << complaint_about(text);
   };
@@ -156,7 +156,7 @@ constexpr const char* cross_columns =
     "pr_cov_xx[mm.mrad],pr_cov_xy[mm.mrad],pr_cov_xz[mm.mrad],pr_cov_yx[mm.mrad],pr_cov_yy[mm.mrad],pr_cov_yz[mm.mrad],"
     "pr_cov_zx[mm.mrad],pr_cov_zy[mm.mrad],pr_cov_zz[mm.mrad]";
 
-TEST(PoseSetCsv, HowPointAndOrientationGoTogetherIsReadAndWritten) {
+TEST(PoseSetCsv, TheCrossCovarianceOfPointAndOrientationIsReadAndWritten) {
   const std::string text =
       std::string("q1,q2,x,y,z,sx[mm],sy[mm],sz[mm],qw,qx,qy,qz,srx[mrad],sry[mrad],srz[mrad],") + cross_columns +
       "\n0,0,1,2,3,1,2,3,1,0,0,0,4,5,6,1,2,-1,0.5,3,-2,0,1,2\n0,0,1,2,3,1,2,3,1,0,0,0,4,5,6,,,,,,,,,\n";
@@ -240,7 +240,7 @@ void expect_same(const PoseSet& a, const PoseSet& b) {
   EXPECT_EQ(a.commanded.size(), b.commanded.size());
 }
 
-TEST(PoseSetCsv, WhatIsWrittenIsReadBack) {
+TEST(PoseSetCsv, WritingThenReadingGivesEqualValues) {
   const char* const texts[] = {
       "q1[deg],q2[mm],x[mm],y[mm],z[mm],qw,qx,qy,qz\n33.3,250,1000.1,-2000,3,1,0,0,0\n-7.7,1,,,,0.6,0,0.8,0\n",
       "q1,q2,x,y,z,sx,sy,sz,s2_x,s2_y,s2_z\n0,0,1,2,3,0.1,0.2,0.3,7,8,9\n0,0,,,,,,,4,5,6\n",
@@ -257,7 +257,7 @@ TEST(PoseSetCsv, WhatIsWrittenIsReadBack) {
     }
 }
 
-TEST(PoseSetCsv, JointsAloneAreEnoughWherePosesArePredicted) {
+TEST(PoseSetCsv, JointPositionsAloneSufficeForPredictions) {
   EXPECT_EQ(poses_of("q1,q2\n0,1\n2,3\n", {}, RequiredContent::joints_only).rows(), 2);
   const PoseSet with_anchor = poses_of("q1,q2,anchor\n0,1,2\n2,3,\n", {}, RequiredContent::joints_only);
   EXPECT_EQ(with_anchor.rows(), 2);
@@ -337,7 +337,7 @@ TEST(PoseSetCsv, BadFilesAreRefusedWithOneSentence) {
   for (const Case& bad : cases) EXPECT_EQ(complaint_about(bad.text), bad.sentence) << bad.text;
 }
 
-TEST(PoseSetCsv, MissingAndEmptyFilesAreSaid) {
+TEST(PoseSetCsv, MissingAndEmptyFilesAreErrors) {
   EXPECT_EQ(read_pose_set("no-such-poses.csv", two_joints()).error().what, "no-such-poses.csv: no such file");
   EXPECT_EQ(read_pose_set("/dev/null", two_joints()).error().what, "/dev/null: the file is empty");
 }
@@ -363,7 +363,7 @@ ColumnMap map_of(const std::string& text) {
   return map.value_or(ColumnMap{});
 }
 
-TEST(ColumnMap, AForeignFileIsReadByItsMapAndOtherColumnsAreLeftAlone) {
+TEST(ColumnMap, AForeignFileIsReadByItsMapAndOtherColumnsAreIgnored) {
   const PoseSet set = poses_of(
       "exported by a tracker\nName;Name;Joint A;Joint B;X;Y;Z [mm];A;B;C\np1;p1;90,5;12,5;1000;-2,5;3;10;20;30\n",
       map_of(foreign_map));

@@ -60,7 +60,7 @@ TEST(InsCsv, UnitsInBracketsAreConverted) {
   EXPECT_LT((s.field.at(0) - Vec3(20, 30, -44)).norm(), 1e-5);
 }
 
-TEST(InsCsv, AWrongHeaderHasOneSentence) {
+TEST(InsCsv, AWrongHeaderIsAnErrorOfOneSentence) {
   EXPECT_EQ(error_of(""), "imu.csv: the file has no header line");
   EXPECT_EQ(error_of("a,b\n1,2\n"),
             "imu.csv:1: expected a column t (time in s) and columns SENSOR_ax ... SENSOR_gz, found no t");
@@ -93,7 +93,7 @@ TEST(InsCsv, TimeMustRise) {
             "imu.csv:5: duplicate time 0.02 s; the time must be strictly increasing");
 }
 
-TEST(InsCsv, NumbersThatCannotBeAreSaid) {
+TEST(InsCsv, ImpossibleNumbersAreReported) {
   EXPECT_EQ(error_of(imu_header + still_rows(50, 1.0)),
             "imu.csv: imu: gravity reads 1.01 m/s²: the file seems to be in g; write the headers as imu_ax[g], "
             "imu_ay[g], imu_az[g]");
@@ -104,7 +104,7 @@ TEST(InsCsv, NumbersThatCannotBeAreSaid) {
   EXPECT_NE(error_of(fast).find("the file seems to be in °/s; write the headers as imu_gx[deg/s]"), std::string::npos);
 }
 
-TEST(InsCsv, AFieldThatNoPlaceHasIsSaidAndNotUsed) {
+TEST(InsCsv, AnImplausibleMagneticFieldIsReportedAndNotUsed) {
   std::string text = imu_header;
   for (int i = 0; i < 50; ++i) text += fmt::format("{},0,0,9.8,0,0,0,0.1,0.4,-0.5\n", 0.01 * i);
   auto read = parse_ins_csv(text, "imu.csv");
@@ -117,7 +117,7 @@ TEST(InsCsv, AFieldThatNoPlaceHasIsSaidAndNotUsed) {
   EXPECT_TRUE(read->sensors[0].has_magnetometer()) << "arbitrary units, and said so";
 }
 
-TEST(InsCsv, AnAllZeroMagnetometerIsSaidAndNotUsed) {
+TEST(InsCsv, AnAllZeroMagnetometerIsReportedAndNotUsed) {
   std::string text = imu_header;
   for (int i = 0; i < 50; ++i) text += fmt::format("{},0,0,9.8,0,0,0,0,0,0\n", 0.01 * i);
   const auto read = parse_ins_csv(text, "imu.csv");
@@ -126,7 +126,7 @@ TEST(InsCsv, AnAllZeroMagnetometerIsSaidAndNotUsed) {
   EXPECT_EQ(read->remarks.at(0), "imu: the magnetometer says nothing but zeros: it is not used");
 }
 
-TEST(InsCsv, WhatIsOddButUsableIsARemark) {
+TEST(InsCsv, UnusualButUsableInputIsARemark) {
   const auto remarks = [](const std::string& text) {
     const auto read = parse_ins_csv(text, "imu.csv");
     return read ? read->remarks : std::vector<std::string>{read.error().what};
@@ -177,14 +177,14 @@ TEST_F(TwoFiles, ASensorMayBeInOneFileOnly) {
             std::string::npos);
 }
 
-TEST_F(TwoFiles, APathThatCannotBeReadIsSaid) {
+TEST_F(TwoFiles, APathThatCannotBeReadIsAnError) {
   EXPECT_EQ(read_ins_csv(folder / "none.csv").error().what, (folder / "none.csv").string() + ": no such file");
   EXPECT_EQ(read_ins_csv(folder).error().what, folder.string() + ": expected a file, found a folder");
   write("empty.csv", "");
   EXPECT_EQ(read_ins_csv(folder / "empty.csv").error().what, (folder / "empty.csv").string() + ": the file is empty");
 }
 
-TEST(PlainDecimal, IsWhatFromCharsReadsOrNothing) {
+TEST(PlainDecimal, EqualsFromCharsOrIsEmpty) {
   Rng rng(9);
   const std::string letters = "0123456789.-+eE,";
   int read = 0;
@@ -205,7 +205,7 @@ TEST(PlainDecimal, IsWhatFromCharsReadsOrNothing) {
   EXPECT_GT(read, 130000);
 }
 
-TEST(InsCsv, NoMangledFileCrashesTheReaderOrSlipsThroughWithBrokenShapes) {
+TEST(InsCsv, NoDamagedFileCrashesTheReaderOrGivesInconsistentShapes) {
   Rng rng(4);
   const std::string good = imu_header + still_rows(30);
   const std::string bytes = "0123456789.,-+eE\n\r#\"[]t_agmxyz nan\xff\0";
@@ -243,7 +243,7 @@ TEST(InsCsv, NoMangledFileCrashesTheReaderOrSlipsThroughWithBrokenShapes) {
   EXPECT_GT(accepted, 1000);
 }
 
-TEST(InsCsv, AMeasuredRecordingIsUnderstood) {
+TEST(InsCsv, AMeasuredRecordingIsRead) {
   const char* data = std::getenv("KINFER_DATA");
   if (!data) GTEST_SKIP() << "KINFER_DATA is not set";
   const auto read = read_ins_csv(std::filesystem::path(data) / "ur5_openaxes" / "circle-150_imu.csv");

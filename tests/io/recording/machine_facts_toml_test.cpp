@@ -51,7 +51,7 @@ sigma = 3
   EXPECT_TRUE(facts->surveys[0].xyz.isApprox(Vec3(1, 0, -0.25)));
 }
 
-TEST(MachineFactsToml, WhatIsWrongHasFileAndLine) {
+TEST(MachineFactsToml, ErrorsNameFileAndLine) {
   const auto wrong = [](const char* text) {
     const auto facts = parse_machine_facts(text, "facts.toml");
     return facts ? "(accepted)" : facts.error().what;

@@ -27,7 +27,7 @@ TEST(OrientationCsv, HasOneRowPerInputRowAndEmptyCellsForOtherLoggers) {
   std::filesystem::remove(path);
 }
 
-TEST(OrientationCsv, APathThatCannotBeWrittenIsSaid) {
+TEST(OrientationCsv, APathThatCannotBeWrittenIsAnError) {
   const auto done = write_orientation_csv("/no such folder/q.csv", {}, {});
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().what.find("does the folder exist"), std::string::npos);

@@ -7,7 +7,7 @@
 namespace kinfer {
 namespace {
 
-TEST(SensorGradeToml, WhatIsWrittenIsReadBack) {
+TEST(SensorGradeToml, WritingThenReadingGivesEqualValues) {
   for (const std::string_view name : sensor_grade_names) {
     const SensorModel model = *sensor_grade(name);
     const auto back = parse_sensor_grade(format_sensor_grade(model), "grade.toml");
@@ -37,7 +37,7 @@ TEST(SensorGradeToml, DataSheetUnitsAreConverted) {
   EXPECT_NEAR(model->accelerometer.bias_sd, 9.80665e-3, 1e-15);
 }
 
-TEST(SensorGradeToml, WhatIsWrongHasFileAndLine) {
+TEST(SensorGradeToml, ErrorsNameFileAndLine) {
   const auto wrong = [](const char* text) { return parse_sensor_grade(text, "grade.toml").error().what; };
   EXPECT_EQ(wrong("[gyroscope]\nnoise_density = -1\n"),
             "grade.toml:2: gyroscope: \"noise_density\": expected a number that is not negative");

@@ -31,7 +31,7 @@ RobotModel rich_robot() {
   return robot;
 }
 
-TEST(RobotTerms, ComeBackFromTheFileAsTheyWere) {
+TEST(RobotTerms, WritingThenReadingGivesEqualValues) {
   const RobotModel robot = rich_robot();
   const auto read =
       parse_robot_toml(format_robot_toml(robot, {{"sin1q1", 1e-5}, {"cos1q1", 1e-5}, {"anchor1_x", 1e-3}}), "x");
@@ -60,7 +60,7 @@ TEST(RobotTerms, ComeBackFromTheFileAsTheyWere) {
   EXPECT_EQ(*read->instrument->sigma_tilt, 0.01);
 }
 
-TEST(RobotTerms, MistakesAreSaidWithTheirLine) {
+TEST(RobotTerms, ErrorsNameTheirLine) {
   const std::string text = format_robot_toml({.chain = laws::scara()});
   const auto with = [&](const std::string& more) { return parse_robot_toml(text + more, "r.toml"); };
   EXPECT_NE(with("[[mounting]]\nname = \"x\"\ntip = \"nobody\"\n").error().what.find("nobody"), std::string::npos);

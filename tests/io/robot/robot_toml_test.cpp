@@ -68,7 +68,7 @@ std::string with(std::string text, const std::string& old_part, const std::strin
   return text.replace(at, old_part.size(), new_part);
 }
 
-TEST(RobotToml, UnitsRuleEveryLengthAndAngleOfTheFile) {
+TEST(RobotToml, UnitsApplyToEveryLengthAndAngleOfTheFile) {
   const RobotModel robot = robot_of(two_joint_robot);
   const Chain& chain = robot.chain;
   EXPECT_EQ(chain.name, "arm");
@@ -159,13 +159,13 @@ TEST(RobotToml, TextThatIsNotTomlIsRefusedWithItsLine) {
   EXPECT_EQ(robot_complaint("name = \"arm\"\nconvention = = 3\n").rfind("arm.toml:2: not TOML: ", 0), 0U);
 }
 
-TEST(RobotToml, AMissingFileIsSaidAndSoIsAFolder) {
+TEST(RobotToml, AMissingFileAndAFolderAreErrors) {
   EXPECT_EQ(read_robot_toml("no-such-robot.toml").error().what, "no-such-robot.toml: no such file");
   EXPECT_EQ(read_robot_toml(KINFER_SOURCE_DIR).error().what,
             std::string(KINFER_SOURCE_DIR) + ": expected a file, found a folder");
 }
 
-TEST(RobotToml, TheCasesOfOtherSimulatorsAreRead) {
+TEST(RobotToml, TheReferenceCasesAreRead) {
   const char* cases = std::getenv("KINFER_CASES");
   if (!cases) GTEST_SKIP() << "KINFER_CASES is not set";
   for (const char* name : {"robot6_tracker", "ur_like_metres", "scara_screw", "arm7_outliers"}) {

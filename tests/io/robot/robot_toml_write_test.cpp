@@ -33,12 +33,12 @@ Chain read_back(const RobotModel& robot, FileUnits units, const StandardDeviatio
   return read ? read->chain : Chain{};
 }
 
-TEST_P(RobotTomlRoundTrip, WhatIsReadBackPredictsTheSamePoses) {
+TEST_P(RobotTomlRoundTrip, PredictsTheSamePoses) {
   for (const FileUnits units : {FileUnits::si, FileUnits::mm_deg})
     EXPECT_LT(largest_difference(GetParam(), read_back({.chain = GetParam()}, units)), 1e-12);
 }
 
-TEST_P(RobotTomlRoundTrip, StandardDeviationsBesideTheNumbersDoNotDisturbThem) {
+TEST_P(RobotTomlRoundTrip, StandardDeviationsDoNotChangeTheNumbers) {
   StandardDeviations sd;
   for (const Parameter& parameter : all_parameters(GetParam(), {}).parameters) sd[parameter.name] = 1e-4;
   const std::string text = format_robot_toml({.chain = GetParam()}, sd);
@@ -49,7 +49,7 @@ TEST_P(RobotTomlRoundTrip, StandardDeviationsBesideTheNumbersDoNotDisturbThem) {
 INSTANTIATE_TEST_SUITE_P(Every, RobotTomlRoundTrip, testing::ValuesIn(laws::examples_with_joints()),
                          [](const auto& chain) { return laws::test_name(chain.param); });
 
-TEST(RobotTomlWriting, AllThatIsNotThePoseComesBackToo) {
+TEST(RobotTomlWriting, NonGeometricValuesAreReadBackToo) {
   RobotModel robot{.chain = laws::compliant_tree()};
   robot.chain.targets = {{"left \"eye\"", Vec3(0.1, 0.2, 0.3)}};
   robot.chain.gravity = Vec3(0, 9.81, 0);
@@ -76,7 +76,7 @@ TEST(RobotTomlWriting, AllThatIsNotThePoseComesBackToo) {
   EXPECT_EQ(read->chain.fixtures.anchors, robot.chain.fixtures.anchors);
 }
 
-TEST(RobotTomlWriting, NumbersArePlainWhereTheyArePlain) {
+TEST(RobotTomlWriting, RoundNumbersAreWrittenRound) {
   RobotModel robot;
   robot.chain.joints.push_back(laws::revolute<MdhLink>(0.166605, -90, 0.504));
   const std::string text = format_robot_toml(robot, {{"a1", 12.5e-6}, {"base_x", 1e-3}, {"base_rz", 0.01 * degree}});
@@ -84,7 +84,7 @@ TEST(RobotTomlWriting, NumbersArePlainWhereTheyArePlain) {
   EXPECT_NE(text.find("base_sd = { xyz = [1, nan, nan], turn = [nan, nan, 0.01] }\n"), std::string::npos) << text;
 }
 
-TEST(RobotTomlWriting, AToolThatPointsStraightUpKeepsItsPose) {
+TEST(RobotTomlWriting, AToolAtGimbalLockKeepsItsPose) {
   for (const double pitch : {90.0, -90.0, 90.0 - 1e-7, 90.0 - 1e-10}) {
     Chain chain = laws::er20();
     chain.tool.rotation = rot_x(0.3) * from_rpy({0.7, pitch * degree, -1.1});

@@ -66,7 +66,7 @@ TEST(Urdf, JointsLimitsAxesAndMimicsAreRead) {
   EXPECT_TRUE(tool.rotation.isApprox(rot_z(0.4) * rot_x(-0.1), 1e-14));
 }
 
-TEST(Urdf, TheEndsChooseThePartOfTheMachine) {
+TEST(Urdf, BaseAndTipLinksSelectThePartOfTheMachine) {
   const auto part = parse_urdf(two_joint_arm, "arm.urdf", {.base_link = "base", .tip_link = "upper"});
   ASSERT_TRUE(part.has_value());
   EXPECT_EQ(part->joints.size(), 1U);
@@ -117,7 +117,7 @@ TEST(Urdf, BadFilesAreRefusedWithOneSentence) {
             "arm.urdf: base link and tip link are the same, expected joints between them");
 }
 
-TEST(Urdf, WhatTheLibraryFindsIsSaidInOurSentenceAndNotPrinted) {
+TEST(Urdf, ParserErrorsAreReturnedAndNotPrinted) {
   testing::internal::CaptureStderr();
   const std::string no_limits =
       replaced(two_joint_arm, "<limit lower=\"-1\" upper=\"2\" effort=\"1\" velocity=\"1\"/>", "");
@@ -140,7 +140,7 @@ VectorXd reordered(const Chain& to, const Chain& from, const VectorXd& q) {
 
 class UrdfRoundTrip : public testing::TestWithParam<Chain> {};
 
-TEST_P(UrdfRoundTrip, WhatIsReadBackPredictsTheSamePoses) {
+TEST_P(UrdfRoundTrip, PredictsTheSamePoses) {
   Chain chain = GetParam();
   for (Joint& joint : chain.joints) joint.compliance = 0.0;  // URDF links are rigid
   const std::string text = format_urdf(chain);
@@ -154,7 +154,7 @@ TEST_P(UrdfRoundTrip, WhatIsReadBackPredictsTheSamePoses) {
   }
 }
 
-TEST_P(UrdfRoundTrip, LimitsAndNamesOfTheReadingsComeBack) {
+TEST_P(UrdfRoundTrip, KeepsLimitsAndNamesOfTheJoints) {
   const auto read = parse_urdf(format_urdf(GetParam()), "chain.urdf", {.base_link = "", .tip_link = "tool"});
   ASSERT_TRUE(read.has_value()) << read.error().what;
   std::map<std::string, const Joint*> original;

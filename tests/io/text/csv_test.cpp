@@ -28,7 +28,7 @@ TEST(NumericCsv, ALineMayEndWithAnEmptyCellAndTheFileWithoutALineEnd) {
   EXPECT_TRUE(std::isnan(table->columns[2][0]) && std::isnan(table->columns[2][1]));
 }
 
-TEST(NumericCsv, ItAgreesWithTheCellsReadOneByOne) {
+TEST(NumericCsv, AgreesWithTheCellsReadOneByOne) {
   const std::string text = "a;b;c\n1,5;-2;3e-2\n;7,25;\n +1; 2 ;\"3\"\n";
   const CsvFormat format{.delimiter = ';', .decimal = ','};
   const auto numbers = parse_numeric_csv(text, "log.csv", format);

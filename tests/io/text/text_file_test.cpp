@@ -19,7 +19,7 @@ class TextFile : public testing::Test {
   const fs::path folder = fs::path(testing::TempDir()) / ("kinfer_text_file_" + std::to_string(getpid()));
 };
 
-TEST_F(TextFile, WhatIsWrittenIsReadAndNothingElseIsLeft) {
+TEST_F(TextFile, WritingThenReadingGivesTheSameTextAndNoOtherFile) {
   const std::string text = std::string("line\r\n\0byte", 11);
   ASSERT_TRUE(write_text_file(folder / "a.txt", "before"));
   ASSERT_TRUE(write_text_file(folder / "a.txt", text));
@@ -27,7 +27,7 @@ TEST_F(TextFile, WhatIsWrittenIsReadAndNothingElseIsLeft) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator{}), 1);
 }
 
-TEST_F(TextFile, PathsThatCannotBeReadAreSaid) {
+TEST_F(TextFile, PathsThatCannotBeReadAreErrors) {
   const std::string name = folder.string();
   EXPECT_EQ(read_text_file(folder / "none.csv").error().what, name + "/none.csv: no such file");
   EXPECT_EQ(read_text_file(folder).error().what, name + ": expected a file, found a folder");
@@ -35,7 +35,7 @@ TEST_F(TextFile, PathsThatCannotBeReadAreSaid) {
   EXPECT_EQ(read_text_file(folder / "empty.csv").error().what, name + "/empty.csv: the file is empty");
 }
 
-TEST_F(TextFile, PathsThatCannotBeWrittenAreSaid) {
+TEST_F(TextFile, PathsThatCannotBeWrittenAreErrors) {
   const std::string name = folder.string();
   EXPECT_EQ(write_text_file(folder, "x").error().what, name + ": expected a file to write, found a folder");
   EXPECT_EQ(write_text_file(folder / "none/a.txt", "x").error().what,

@@ -75,10 +75,10 @@ std::vector<const batch::Kernels*> runnable() {
   return {list.kernels, list.kernels + list.count};
 }
 
-class AnyStiffChain : public ::testing::TestWithParam<Chain> {};
-INSTANTIATE_TEST_SUITE_P(Batch, AnyStiffChain, ::testing::ValuesIn(stiff_examples()));
+class AnyRigidChain : public ::testing::TestWithParam<Chain> {};
+INSTANTIATE_TEST_SUITE_P(Batch, AnyRigidChain, ::testing::ValuesIn(stiff_examples()));
 
-TEST_P(AnyStiffChain, SumsOfPopulationsAreThoseOfPosesWalkedOneByOne) {
+TEST_P(AnyRigidChain, SumsOfPopulationsAreThoseOfSinglePoses) {
   const Chain chain = GetParam();
   const PointTable table = random_points(chain, Rng(1));
   for (const ParameterSet& set : {everything(chain), links_only(chain)}) {
@@ -96,7 +96,7 @@ TEST_P(AnyStiffChain, SumsOfPopulationsAreThoseOfPosesWalkedOneByOne) {
   }
 }
 
-TEST_P(AnyStiffChain, ErrorsOfPointsAreThoseOfPosesWalkedOneByOne) {
+TEST_P(AnyRigidChain, ErrorsOfPointsAreThoseOfSinglePoses) {
   const Chain chain = GetParam();
   const PointTable table = random_points(chain, Rng(1));
   const ParameterSet set = everything(chain);
@@ -127,7 +127,7 @@ void slow_residuals(const Chain& chain, const ParameterSet& set, const PointTabl
   }
 }
 
-TEST_P(AnyStiffChain, JacobianAndNormalEquationsAreThoseOfPosesWalkedOneByOne) {
+TEST_P(AnyRigidChain, JacobianAndNormalEquationsAreThoseOfSinglePoses) {
   const Chain chain = GetParam();
   const PointTable table = random_points(chain, Rng(1));
   Rng rng(5);
@@ -166,7 +166,7 @@ TEST(Batch, ACandidatesSumDoesNotDependOnItsNeighbours) {
   EXPECT_EQ(together, alone);
 }
 
-TEST(Batch, TwistsOfManyTurnsAreFollowed) {
+TEST(Batch, AnglesOfManyTurnsAreHandled) {
   const Chain chain = laws::er20();
   const ParameterSet set = links_only(chain);
   const PointTable table = random_points(chain, Rng(1));
@@ -185,7 +185,7 @@ TEST(Batch, TwistsOfManyTurnsAreFollowed) {
   }
 }
 
-TEST(Batch, AChainThatYieldsHasNoBatchForm) {
+TEST(Batch, ACompliantChainHasNoBatchForm) {
   EXPECT_FALSE(has_batch_form(laws::compliant(), everything(laws::compliant())));
   EXPECT_FALSE(has_batch_form(laws::er20(), all_parameters(laws::er20(), {})));
   EXPECT_TRUE(has_batch_form(laws::er20(), everything(laws::er20())));

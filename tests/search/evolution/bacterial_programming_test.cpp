@@ -85,7 +85,7 @@ TEST(ProductTree, TheSubTreesOfABranchAreItsChildren) {
   EXPECT_EQ(leaves(turned)[0].scale, 3.0);
 }
 
-TEST(ProductTree, EachRenewalDoesWhatItsNameSays) {
+TEST(ProductTree, EachMutationDoesWhatItsNameSays) {
   const AffineBreed breed({}, {});
   const AffineTree tree =
       product(product(AffineTree{{Affine{1, 0}}}, AffineTree{{Affine{2, 0}}}), AffineTree{{Affine{3, 0}}});
@@ -134,7 +134,7 @@ TEST(BacterialProgramming, GivesTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(BacterialProgramming, GivingUpHopelessEvaluationsChangesNothing) {
+TEST(BacterialProgramming, StoppingEvaluationsAboveTheBoundChangesNothing) {
   const GenomeCost<AffineTree> impatient = [](const AffineTree& tree, double bound) {
     const double cost = distance_from_target(tree, bound);
     return cost < bound ? cost : unbounded;
@@ -154,7 +154,7 @@ TEST(BacterialProgramming, WorksOnAnyGenome) {
   EXPECT_EQ(outcome.stop, Stop::target_reached);
 }
 
-TEST(BacterialProgramming, CostsThatAreNoNumbersNeverWin) {
+TEST(BacterialProgramming, NonFiniteCostsNeverWin) {
   const GenomeCost<BitBreed::Genome> cost = [](const BitBreed::Genome& bits, double) {
     return bits[0] ? std::nan("") : static_cast<double>(std::ranges::count(bits, false));
   };
@@ -163,7 +163,7 @@ TEST(BacterialProgramming, CostsThatAreNoNumbersNeverWin) {
   EXPECT_LT(outcome.cost, 64.0);
 }
 
-TEST(BacterialProgramming, StopsWhenTheObserverWishes) {
+TEST(BacterialProgramming, StopsWhenTheObserverRequests) {
   const auto outcome = evolve_bacteria(
       BitBreed{}, GenomeCost<BitBreed::Genome>([](const auto&, double) { return 1.0; }), {}, Rng(1),
       [](const Progress& p) { return p.iteration < 3 ? ObserverDecision::proceed : ObserverDecision::stop; });

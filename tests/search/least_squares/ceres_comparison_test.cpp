@@ -73,7 +73,7 @@ CeresFit ceres_fit(const Residuals& problem, const VectorXd& start, Loss loss = 
   return fit;
 }
 
-TEST(LeastSquaresBesideCeres, StandardProblemsHaveTheSameOptimum) {
+TEST(CeresComparison, StandardProblemsHaveTheSameOptimum) {
   for (const auto& problem : testing::standard_problems()) {
     const auto ours = least_squares(problem.residuals, problem.start, {.max_iterations = 500});
     const auto theirs = ceres_fit(problem.residuals, problem.start);
@@ -84,7 +84,7 @@ TEST(LeastSquaresBesideCeres, StandardProblemsHaveTheSameOptimum) {
   }
 }
 
-TEST(LeastSquaresBesideCeres, EveryLossGivesTheSameLineThroughOutliers) {
+TEST(CeresComparison, EveryLossGivesTheSameLineThroughOutliers) {
   const Residuals problem = testing::line_with_outliers();
   for (const Loss loss : testing::losses) {
     for (const double scale : {1.0, 3.0}) {
@@ -98,7 +98,7 @@ TEST(LeastSquaresBesideCeres, EveryLossGivesTheSameLineThroughOutliers) {
   }
 }
 
-TEST(LeastSquaresBesideCeres, EveryLossGivesTheSamePoseWithBlocksOfTwoRowsAndAPrior) {
+TEST(CeresComparison, EveryLossGivesTheSamePoseWithBlocksOfTwoRowsAndAPrior) {
   const Residuals problem = testing::planar_pose_with_outliers();
   for (const Loss loss : testing::losses) {
     const VectorXd start = Eigen::Vector3d(0.49, 1.01, 1.99);

@@ -144,7 +144,7 @@ TEST(LeastSquares, TheSmallestChangeIsCountedInTypicalSizes) {
   EXPECT_NEAR(fit.x[1], 0.2, 1e-12);
 }
 
-TEST(LeastSquares, ARedundantCurvedProblemDoesNotWanderHoweverLongItRuns) {
+TEST(LeastSquares, ARedundantNonlinearProblemDoesNotDriftHoweverLongItRuns) {
   // Ten noisy sightings of the product x0 x1: all points of a hyperbola are optima.
   const VectorXd seen = VectorXd::Constant(10, 6.0) + 0.1 * random_matrix(10, 1, Rng(6));
   const Residuals product{2, 10, {}, [seen](ConstVectorRef x, VectorXd& r, MatrixXd* j) {
@@ -194,7 +194,7 @@ TEST(LeastSquares, GradientOfTheRobustCostIsTheWeightedJacobianTimesTheResiduals
   }
 }
 
-TEST(LeastSquares, RobustLossesFindTheLineThatOutliersHide) {
+TEST(LeastSquares, RobustLossesFindTheLineDespiteOutliers) {
   const Residuals problem = testing::line_with_outliers();
   const Eigen::Vector2d truth(2, -1);
   const auto plain = least_squares(problem, Eigen::Vector2d(0, 0));
@@ -292,7 +292,7 @@ TEST(LeastSquaresStop, NotFiniteWhereTheStartHasNoFiniteCostOrJacobian) {
   EXPECT_EQ(least_squares(infinite_row, unit_start, {.loss = Loss::tukey}).stop, Stop::not_finite);
 }
 
-TEST(LeastSquaresStop, CancelledWhenTheObserverAsksForIt) {
+TEST(LeastSquaresStop, CancelledWhenTheObserverRequestsIt) {
   const auto problem = testing::wood();
   std::vector<double> best;
   const auto fit = least_squares(problem.residuals, problem.start, {}, [&](const Progress& progress) {
@@ -313,7 +313,7 @@ TEST(LeastSquares, StepsOutOfTheDomainAreCountedAndShortened) {
   EXPECT_GT(fit.not_finite, 0);
 }
 
-TEST(LeastSquaresDeathTest, WrongShapesAreTheProgrammersMistake) {
+TEST(LeastSquaresDeathTest, WrongShapesStopTheProgram) {
   const auto problem = testing::rosenbrock();
   EXPECT_DEATH(least_squares(problem.residuals, VectorXd::Zero(3)), "3 values for 2 unknowns");
   Residuals many_blocks = problem.residuals;

@@ -59,7 +59,7 @@ TEST(NormalLeastSquares, MakesNoEquationsWhereTheTargetCostEndsTheSearch) {
   EXPECT_GT(longer.normal.matrix.size(), 0);
 }
 
-TEST(NormalLeastSquares, ADirectionThatNoResidualSeesStaysWhereItStarted) {
+TEST(NormalLeastSquares, AnUnobservableDirectionStaysAtItsStart) {
   Residuals problem{.unknowns = 3, .rows = 2};
   problem.evaluate = [](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
     r << x[0] + x[1] - 3.0, 1e-3 * (x[0] + x[1] - 3.0) + x[2];
@@ -70,7 +70,7 @@ TEST(NormalLeastSquares, ADirectionThatNoResidualSeesStaysWhereItStarted) {
   EXPECT_NEAR(found.x[0] - found.x[1], 1.0, 1e-9);
 }
 
-TEST(LeastSquares, AnUnknownWhoseColumnIsNothingButRoundingStaysWhereItStarted) {
+TEST(LeastSquares, AnUnknownWhoseColumnIsRoundingStaysAtItsStart) {
   Residuals problem{.unknowns = 2, .rows = 2};
   problem.evaluate = [](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
     r << x[0] - 1.0, 1.0 + 1e-16 * x[1];
@@ -83,7 +83,7 @@ TEST(LeastSquares, AnUnknownWhoseColumnIsNothingButRoundingStaysWhereItStarted) 
   }
 }
 
-TEST(NormalLeastSquares, ACostThatIsNotFiniteAtTheStartIsSaid) {
+TEST(NormalLeastSquares, ANonFiniteCostAtTheStartIsReported) {
   NormalProblem problem{.unknowns = 1};
   problem.cost = [](ConstVectorRef) { return std::nan(""); };
   problem.linearise = [](ConstVectorRef, NormalEquations& normal) {

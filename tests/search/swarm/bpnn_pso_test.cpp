@@ -37,7 +37,7 @@ TEST(BpnnPso, TheNextRunOnTheSameProblemNeedsFewerIterations) {
   EXPECT_LT(next.iterations, 0.6 * first.iterations);
 }
 
-TEST(BpnnPso, TheLiteralReadingKeepsTheSwarmFromAMovedOptimum) {
+TEST(BpnnPso, ApplyingTheNetBeforeEveryUpdateKeepsTheSwarmFromAMovedOptimum) {
   const SearchOutcome first = cold_run();
   // The same robot, after a collision: the optimum moved to −0.4.
   const Objective moved =
@@ -49,7 +49,7 @@ TEST(BpnnPso, TheLiteralReadingKeepsTheSwarmFromAMovedOptimum) {
   EXPECT_GT(bpnn_particle_swarm(moved, literal, Rng(2)).cost, 1e-3);
 }
 
-TEST(BpnnPso, TheNumberOfHiddenNodesFollowsTheWish) {
+TEST(BpnnPso, TheNumberOfHiddenNodesFollowsTheOption) {
   const Objective objective = shifted_sphere(10);
   const auto nodes = [&](HiddenNodes how) {
     return train_on_swarm(objective.bounds, uniform_swarm(objective.bounds, 50, Rng(1)), VectorXd::Constant(10, 0.3),

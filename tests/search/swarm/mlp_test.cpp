@@ -43,7 +43,7 @@ TEST(Mlp, GradientOfBackPropagationAgreesWithDifferences) {
   EXPECT_TRUE(loss_and_gradient(net, inputs, targets).gradient.isApprox(numeric.transpose(), 1e-7));
 }
 
-TEST(Mlp, BothTrainersLearnABentFunction) {
+TEST(Mlp, BothTrainersLearnANonlinearFunction) {
   const Bounds in = cube(1, 2.0), out = cube(1, 1.0);
   const MatrixXd x = uniform_swarm(in, 100, Rng(4));
   const MatrixXd y = x.array().sin();
@@ -55,7 +55,7 @@ TEST(Mlp, BothTrainersLearnABentFunction) {
   }
 }
 
-TEST(Mlp, TrainingEndsAtTheErrorThatWasAskedFor) {
+TEST(Mlp, TrainingEndsAtTheTargetError) {
   const MatrixXd x = uniform_swarm(cube(3, 2.0), 20, Rng(6)), y = MatrixXd::Constant(2, 20, 1.0);
   const Training training = train(small_net(), x, y, {.epochs = 5000, .target_error = 0.05});
   EXPECT_LE(training.error.back(), 0.05);
@@ -67,7 +67,7 @@ TEST(Mlp, ThePapersFormulaGives8To17NodesFor24ParametersAndNever70) {
   EXPECT_EQ(hidden_nodes_by_formula(24, 24, 10), 17);
 }
 
-TEST(Mlp, TheStepwiseTrialSeesThatTwoNodesAreTooFewForAWave) {
+TEST(Mlp, TheStepwiseTrialRejectsTwoNodesForAWave) {
   const Bounds in = cube(1, 1.0), out = cube(1, 1.0);
   const MatrixXd x = uniform_swarm(in, 60, Rng(7));
   const MatrixXd y = (6.0 * x.array()).sin();
@@ -85,7 +85,7 @@ TEST(Mlp, ANetReadBackFromItsTextPredictsTheSameBits) {
   EXPECT_EQ(predict(*back, x), predict(net, x));
 }
 
-TEST(Mlp, ADamagedTextIsRefusedWithThePlace) {
+TEST(Mlp, ADamagedTextIsRefusedWithItsPosition) {
   std::string text = format_mlp(small_net());
   EXPECT_EQ(parse_mlp("something else", "net.txt").error().what,
             "net.txt: expected a network file written by kinfer: \"kinfer-net/1\" and three sizes");

@@ -40,18 +40,18 @@ MatrixXd slow_swarm(const PsoOptions& options, int iterations, Rng rng) {
   return x;
 }
 
-TEST(Pso, MovesAsEquations9And10Say) {
+TEST(Pso, UpdatesByEquations9And10) {
   const PsoOptions options{.particles = 7, .boundary = BoundaryHandling::clamp, .budget = {.max_iterations = 30}};
   const SearchOutcome outcome = particle_swarm(shifted_sphere(2), options, Rng(3));
   EXPECT_TRUE(outcome.final_swarm.isApprox(slow_swarm(options, 30, Rng(3)), 1e-13));
 }
 
-TEST(Pso, FindsTheLowestPointOfABowlIn24Dimensions) {
+TEST(Pso, FindsTheMinimumOfAQuadraticIn24Dimensions) {
   const SearchOutcome outcome = particle_swarm(shifted_sphere(24), {.budget = {.max_iterations = 600}}, Rng(1));
   EXPECT_LT((outcome.x.array() - 0.3).abs().maxCoeff(), 1e-3);
 }
 
-TEST(Pso, FindsTheLowestOfManyValleys) {
+TEST(Pso, FindsTheGlobalOfManyLocalMinima) {
   const SearchOutcome outcome = particle_swarm(rastrigin(3), {.budget = {.max_iterations = 300}}, Rng(1));
   EXPECT_LT(outcome.x.norm(), 1e-4);
 }
@@ -112,7 +112,7 @@ TEST(Pso, OneRandomNumberPerParticleKeepsTheFirstStepOnALineThroughTheBest) {
   EXPECT_GT(largest_sine(RandomNumbers::per_dimension), 1e-2);
 }
 
-TEST(Pso, ThePrintedWeightContractsFarLessThanTheDefault) {
+TEST(Pso, ThePrintedInertiaContractsFarLessThanTheDefault) {
   PsoOptions printed = pso_as_printed();
   printed.budget = {.max_iterations = 300};
   PsoOptions fallen = printed, usual = printed;
@@ -123,7 +123,7 @@ TEST(Pso, ThePrintedWeightContractsFarLessThanTheDefault) {
   EXPECT_GT(slow, 10.0 * particle_swarm(shifted_sphere(24), fallen, Rng(1)).cost);
 }
 
-TEST(Pso, WallsThatAbsorbFreeASwarmThatClampingLeavesStuck) {
+TEST(Pso, AbsorbingBoundsFreeASwarmThatClampingTraps) {
   // All particles run into x_d = 1 in some number d, and none remembers anything else: found with this seed.
   PsoOptions options = pso_as_printed();
   options.budget = {.max_iterations = 1000};
@@ -144,7 +144,7 @@ TEST(Pso, CostsThatAreNotFiniteAreInfiniteAndCounted) {
   EXPECT_EQ(particle_swarm(hopeless, {.budget = {.max_iterations = 3}}, Rng(1)).stop, Stop::not_finite);
 }
 
-TEST(Pso, ASearchThatGainsNothingAnyMoreEndsBeforeItsBudget) {
+TEST(Pso, AStagnatingSearchEndsBeforeItsBudget) {
   // The bowl of 24 dimensions with a floor: noise leaves no lower cost to be found.
   const Objective bowl = shifted_sphere(24);
   const Objective with_floor{bowl.bounds, [bowl](ConstMatrixRef x, std::span<double> cost) {

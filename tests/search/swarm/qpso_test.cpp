@@ -11,13 +11,13 @@ namespace {
 using testing::rastrigin;
 using testing::shifted_sphere;
 
-TEST(Qpso, FindsTheLowestPointOfABowlIn24Dimensions) {
+TEST(Qpso, FindsTheMinimumOfAQuadraticIn24Dimensions) {
   const SearchOutcome outcome =
       quantum_swarm(shifted_sphere(24), {.schedule = 400, .budget = {.max_iterations = 600}}, Rng(1));
   EXPECT_LT((outcome.x.array() - 0.3).abs().maxCoeff(), 1e-3);
 }
 
-TEST(Qpso, FindsTheLowestOfManyValleys) {
+TEST(Qpso, FindsTheGlobalOfManyLocalMinima) {
   const SearchOutcome outcome =
       quantum_swarm(rastrigin(3), {.schedule = 300, .budget = {.max_iterations = 300}}, Rng(1));
   EXPECT_LT(outcome.x.norm(), 1e-4);

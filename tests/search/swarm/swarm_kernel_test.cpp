@@ -23,7 +23,7 @@ std::vector<search::SwarmKernel> runnable() {
   return list;
 }
 
-TEST(SwarmKernel, EveryInstructionSetMovesAsEquations9And10SayBitForBit) {
+TEST(SwarmKernel, EveryInstructionSetUpdatesByEquations9And10BitForBit) {
   constexpr int dim = 29;  // no multiple of any number of lanes
   constexpr double w = 0.8, own = 0.5, swarm = 1.25;
   Rng rng(1);
