@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-/// The paper's robot somewhere in a tracker's world, its target off the axis.
+/// The paper's robot at an unknown place in a tracker's world, its target off the axis.
 Chain placed(Chain chain) {
   chain.base = Frame::from_pose(Pose::from_xyz_rpy({1.2, -2.5, 0.35}, {0.02, -0.03, 2.3}));
   chain.tool.xyz = Vec3(0.03, 0.02, 0.1);
@@ -103,13 +103,13 @@ TEST(Calibrate, JointsThatNeverMoveDoNoHarmAndAreReported) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   Chain nominal = er20(0.125);
   nominal.tool.xyz = truth.tool.xyz;
-  Chain held = truth;  // three of six joints stand still
+  Chain held = truth;  // three of six joints do not move
   for (const int j : {2, 4, 5}) held.joints[j].lower = held.joints[j].upper = 0.3;
   PoseSet data = measured(held, paper2_poses(40, tracker));
   const Calibration c = calibrate_robot({nominal, {}, tracker, data}, {}, Rng(1)).value();
   EXPECT_LT(c.estimate.identifiability.rank, 20);
   EXPECT_FALSE(c.estimate.identifiability.confounded.empty());
-  // Where the joints move freely, the result is no worse than the nominal chain in the found frames.
+  // Where all joints move, the result is no worse than the nominal chain with estimated base and tool.
   const Chain frames = with_estimated_frames(nominal, data).value();
   EXPECT_LE(mean_error_on_unseen_poses(c.estimate.chain, truth), mean_error_on_unseen_poses(frames, truth));
 }
@@ -153,12 +153,12 @@ TEST(Calibrate, RowsMarkedHoldoutAreNeverFitted) {
     if (point.row >= 40) point.position += Vec3(1, 2, 3);
   const Calibration same = calibrate_robot(spoiled, {}, Rng(1)).value();
   EXPECT_EQ(pack(same.estimate.parameters, same.estimate.chain), pack(c.estimate.parameters, c.estimate.chain));
-  EXPECT_FALSE(same.usable);  // and the spoiled proof is seen
+  EXPECT_FALSE(same.usable);  // and the contaminated validation is detected
 }
 
 TEST(Calibrate, ErrorsAboveTheInstrumentsAccuracyAreAdvisedAgainst) {
   Chain truth = placed(with_table3_errors(er20(0.125)));
-  truth.joints[1].compliance = 2e-6;  // sags under its arm, and the geometric model has no word for it
+  truth.joints[1].compliance = 2e-6;  // sags under its arm, which the geometric model cannot describe
   truth.masses = {{2, Vec3(0.4, 0, 0), 120.0}, {4, Vec3(0, 0, 0.1), 60.0}};
   const PoseSet data = measured(truth, paper2_poses(100, tracker));
   const Calibration c = calibrate_robot({er20(0.125), {}, tracker, data}, {.model = FixedModel{}}, Rng(1)).value();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each instrument alone, and several together, find the errors of a simulated robot again.
+// Each instrument alone, and several together, recover the errors of a simulated robot.
 #include <gtest/gtest.h>
 
 #include "kinfer/calibrate/calibrate.hpp"
@@ -83,7 +83,7 @@ TEST(Instruments, AKnownDistanceBetweenSocketsGivesTheScale) {
     return (s[0].xyz - s[1].xyz).norm();
   };
   const double distance = (sockets[0] - sockets[1]).norm();
-  nominal.fixtures.sockets = {{"b", Vec3::Zero()}, {"a", Vec3::Zero()}};  // in an order of their own
+  nominal.fixtures.sockets = {{"b", Vec3::Zero()}, {"a", Vec3::Zero()}};  // in another order than in the data
   nominal.fixtures.socket_distances = {{0, 1, distance, 5e-6}};
   EXPECT_NEAR(apart(calibrated(nominal, data, {.sigma = 10e-6}).estimate.chain), distance, 15e-6);
 }
@@ -146,7 +146,7 @@ TEST(Instruments, ACamerasStandardDeviationsWeightItsPoses) {
   simulation.measured = Measured::poses;
   PoseSet data = measured(truth, simulation);
   Rng rng(10);
-  for (int row = 0; row < 60; ++row) {  // every second pose was seen badly, and says so
+  for (int row = 0; row < 60; ++row) {  // every second pose is inaccurate and has a matching sd
     const double sd = row % 2 ? 1e-3 : 20e-6;
     data.points[row].sd = Vec3::Constant(sd);
     data.orientations[row].sd = Vec3::Constant(row % 2 ? 5e-3 : 1e-4);

@@ -195,7 +195,7 @@ TEST_F(Calibrate, UsageErrorsAreExitCode2AndHelpIs0) {
   }
 }
 
-/// Measurements made and scored by others' code, where they are present.
+/// Reference cases, simulated and scored by independent code, where KINFER_CASES is set.
 class ReferenceCases : public Program, public ::testing::WithParamInterface<std::pair<const char*, double>> {};
 
 TEST_P(ReferenceCases, HeldOutErrorIsWithin13TimesTheReference) {
@@ -241,7 +241,7 @@ TEST_F(Calibrate, ExactlyTheGrossErrorsOfTheOutlierCaseAreListed) {
   EXPECT_EQ(rows, (std::vector<int>{11, 37, 44, 52, 53, 68, 72, 73, 75}));
 }
 
-/// The real robot, where the data are present.
+/// The real robot, where KINFER_DATA is set.
 TEST_F(Calibrate, RealUr10SeriesReachTheirTargets) {
   const char* root = std::getenv("KINFER_DATA");
   if (!root) GTEST_SKIP() << "KINFER_DATA is not set";

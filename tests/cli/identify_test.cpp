@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 class Identify : public test::Program {
  protected:
-  /// The excavator's log, short enough for a test; the search needs few generations to be looked at.
+  /// The excavator's log, short enough for a test; few generations of the search suffice.
   void simulate() { ASSERT_EQ(kinfer("simulate excavator --out drive --grade noise --quiet").code, 0); }
 };
 

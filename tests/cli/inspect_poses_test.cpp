@@ -83,7 +83,7 @@ TEST_F(InspectPoses, EulerAnglesInAnotherSequenceAreFound) {
   EXPECT_NE(run.out.find("XYZ extrinsic angles in deg"), std::string::npos) << run.out << run.err;
 }
 
-/// Measured by others; every finding here was looked at and is true.
+/// Public measured sets; every finding here was checked by hand and is true.
 TEST_F(InspectPoses, MeasuredSetsHaveTrueFindingsOnly) {
   const char* root = std::getenv("KINFER_DATA");
   if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
@@ -93,7 +93,7 @@ TEST_F(InspectPoses, MeasuredSetsHaveTrueFindingsOnly) {
   const json b = json::parse(kinfer(common + "Series_B_measurements_joint_configurations.csv").out);
   std::vector<std::string> kinds;
   for (const json& finding : b) kinds.push_back(finding["kind"]);
-  // The tracker's numbers stand twice, to the last digit, although elbow and shoulder have changed sides.
+  // The tracker's numbers appear twice, to the last digit, although elbow and shoulder have changed configuration.
   EXPECT_EQ(kinds, (std::vector<std::string>{"measurement_repeated", "measurement_repeated", "gross_outliers"}));
 }
 

@@ -13,7 +13,7 @@ namespace {
 using testing::carried;
 using testing::CarriedMotion;
 
-/// The carried sensor as a CSV file; its name is `name`.
+/// The moving sensor as a CSV file; its name is `name`.
 std::string as_csv(const CarriedMotion& motion, const std::string& name) {
   const testing::CarriedSensor c = carried(motion);
   std::string text = "t";

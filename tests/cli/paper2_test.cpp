@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verbs and options of paper 2, end to end: searches by a population, warm start, fleet prior, frames,
-// compensation.
+// The verbs and options of paper 2, end to end: swarm searches, warm start, population prior, frames, compensation.
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -73,7 +72,7 @@ TEST_F(Paper2, CompensatedJointsBringTheCorrectedChainWhereTheNominalOneWas) {
   ASSERT_EQ(kinfer("predict --chain data/robot.toml --joints own/poses.csv -o wanted.csv").code, 0);
   std::istringstream real(slurp(in("real.csv"))), wanted(slurp(in("wanted.csv")));
   std::string a, b;
-  int exact = 0;  // a joint at its limit may keep a row or two from it
+  int exact = 0;  // a joint at its limit may prevent this in a row or two
   for (std::getline(real, a), std::getline(wanted, b); std::getline(real, a) && std::getline(wanted, b);) {
     std::istringstream cells_a(a), cells_b(b);
     double worst = 0.0;

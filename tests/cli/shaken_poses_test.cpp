@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// simulate-poses --shake: poses whose point and orientation err together, from the command line to the calibrated
-// robot.
+// simulate-poses --shake: poses with correlated errors of point and orientation, from the command line to the
+// calibrated robot.
 #include "cli/program.hpp"
 
 namespace kinfer::test {

@@ -15,7 +15,7 @@ namespace {
 
 using namespace test;
 
-/// Distances between where the real robot goes and where the nominal model wanted it.
+/// Distances between the real robot's tool and the nominal targets.
 std::vector<double> misses(const Chain& real, const Chain& nominal, const MatrixXd& wanted,
                            const std::vector<CompensatedJoints>& sent) {
   std::vector<double> list;
@@ -51,7 +51,7 @@ TEST(Compensate, TheRemainingErrorIsThatOfTheIdentifiedModel) {
     for (int i = 0; i < 100; ++i) uncorrected[i].q = wanted.joints.col(i);
     return uncorrected;
   }()));
-  // The model's own error at the compensated readings: what it says of the real robot there.
+  // The model's own error against the real robot at the compensated joint positions.
   for (PointMeasurement& point : visited.points) point.position = forward(real, visited.joints.col(point.row)).position;
   const double model_error = median(point_errors(found, visited));
   const double after = median(misses(real, nominal, wanted.joints, sent));

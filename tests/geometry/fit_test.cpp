@@ -51,7 +51,7 @@ TEST(AlignPoints, RecoversHalfTurnsAndTheIdentity) {
 }
 
 TEST(AlignPoints, NeverAnswersWithAReflection) {
-  // A mirrored cloud would be met best by a reflection.
+  // A mirrored cloud would be fitted best by a reflection.
   for (int seed = 0; seed < 20; ++seed) {
     const auto b = cloud(8, {1, 1, seed % 2 == 0 ? 1.0 : 1e-3}, Rng(seed));
     auto mirrored = b;
@@ -95,7 +95,7 @@ TEST(MeanRotation, OfRotationsAboutOneAxisIsTheMeanAngle) {
 }
 
 TEST(FitLine, FindsTheLineAndTheDistancesOfPointsBesideIt) {
-  // Points at ±0.1 across the x direction of a moved frame, balanced: the fit is the axis itself.
+  // Points at ±0.1 across the x direction of a moved frame, symmetric: the fit is the axis itself.
   std::vector<Vec3> points;
   for (int i = -3; i <= 3; ++i)
     for (const double side : {-0.1, 0.1}) points.push_back(far_away * Vec3(i, side, 0));
@@ -143,12 +143,12 @@ TEST(FitCircle, TheNormalPointsByTheRightHandFromTheFirstPointToTheLaterOnes) {
 
 TEST(FitCircle, AShortArcStillGivesTheCenter) {
   const CircleFit circle = fit_circle(arc(1.0, 0.0, 0.1, 20));
-  EXPECT_LT((circle.center - far_away.position).norm(), 1e-7);  // the arc's rise is 1e-3, its points' rounding 1e-14
+  EXPECT_LT((circle.center - far_away.position).norm(), 1e-7);  // the arc's height is 1e-3, the points' rounding 1e-14
   EXPECT_NEAR(circle.radius, 1.0, 1e-7);
 }
 
 TEST(FitCircle, MinimisesTheDistancesAndNotTheirSquaresAlgebraicForm) {
-  // Two rings of points at 1 ± 0.1, turned against each other: the geometric fit has radius 1 and rms 0.1 exactly.
+  // Two rings of points at 1 ± 0.1, rotated against each other: the geometric fit has radius 1 and rms 0.1 exactly.
   std::vector<Vec3> points;
   for (int i = 0; i < 24; ++i) {
     const double angle = 2 * pi * i / 24, radius = i % 2 == 0 ? 1.1 : 0.9;

@@ -21,7 +21,7 @@ Vec3 random_direction(Rng& rng) {
   return Vec3(rng.normal(), rng.normal(), rng.normal()).normalized();
 }
 
-/// Rotation vectors of all lengths from 0 to π, around the switch to the series and next to π too.
+/// Rotation vectors of all lengths from 0 to π, near the switch to the series and near π too.
 std::vector<Vec3> rotation_vectors() {
   std::vector<Vec3> vectors{Vec3::Zero()};
   Rng rng(1);
@@ -33,7 +33,7 @@ std::vector<Vec3> rotation_vectors() {
   return vectors;
 }
 
-/// exp(skew(v)) the long way: the power series of the matrix v / 2^10, squared ten times.
+/// Reference for exp(skew(v)): the power series of the matrix v / 2^10, squared ten times.
 Mat3 exponential_series(const Vec3& v) {
   const Mat3 k = skew(v / 1024.0);
   Mat3 sum = Mat3::Identity(), term = Mat3::Identity();
@@ -74,7 +74,7 @@ TEST(Rotation, ExponentialIsARotation) {
 
 TEST(Rotation, LogarithmUndoesTheExponentialFromZeroToPi) {
   for (const Vec3& v : rotation_vectors()) {
-    // Relative where v is small, and nothing is lost near pi.
+    // Relative where v is small, and without loss near π.
     EXPECT_LE((quat_log(quat_exp(v)) - v).norm(), 3e-15 * v.norm()) << v.norm();
     EXPECT_LT((log_so3(exp_so3(v)) - v).norm(), 5e-15) << v.norm();
   }
@@ -149,7 +149,7 @@ TEST(Rpy, RollIsZeroAtTheGimbalLock) {
 
 TEST(Euler, EverySequenceIsTheProductOfItsRotations) {
   const Vec3 angles(0.4, -1.1, 2.3);
-  const auto turn = [&](char axis, double angle) { return exp_so3(angle * Vec3::Unit(axis - 'X')); };
+  const auto rotation_about = [&](char axis, double angle) { return exp_so3(angle * Vec3::Unit(axis - 'X')); };
   int sequences = 0;
   for (const char a : {'X', 'Y', 'Z'}) {
     for (const char b : {'X', 'Y', 'Z'}) {
@@ -160,7 +160,8 @@ TEST(Euler, EverySequenceIsTheProductOfItsRotations) {
         EXPECT_EQ(intrinsic.has_value(), a != b && b != c) << axes;
         if (!intrinsic) continue;
         ++sequences;
-        const Mat3 first = turn(a, angles[0]), second = turn(b, angles[1]), third = turn(c, angles[2]);
+        const Mat3 first = rotation_about(a, angles[0]), second = rotation_about(b, angles[1]),
+                   third = rotation_about(c, angles[2]);
         EXPECT_LT((from_euler(*intrinsic, angles) - first * second * third).norm(), 1e-15) << axes;
         EXPECT_LT((from_euler(*extrinsic, angles) - third * second * first).norm(), 1e-15) << axes;
       }

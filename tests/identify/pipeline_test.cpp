@@ -76,7 +76,7 @@ TEST(MovingPhases, DetectAPrismaticJoint) {
   EXPECT_TRUE(has_same_parents(table, ordered->tree));
 }
 
-/// "ins0-ins1": parent and child of each joint of an independent simulator's truth.
+/// "ins0-ins1": parent and child of each joint in an independent simulator's ground truth.
 std::vector<std::string> true_edges(const fs::path& folder) {
   std::ifstream file(folder / "truth.json");
   const nlohmann::json truth = nlohmann::json::parse(file);

@@ -11,7 +11,7 @@ namespace {
 using testing::carried;
 using testing::CarriedSensor;
 
-/// Two sensors of one body, mounted anyhow; the second logs everything `late` and drifts.
+/// Two sensors of one body in general position; the second logs with a delay `late` and drifts.
 InsRecording two_clocks(double late, double drift, double seconds) {
   const SensorModel grade = *sensor_grade("industrial");
   CarriedSensor a = carried({.seconds = seconds, .sampling_rate = 100.0, .grade = &grade, .has_magnetometer = false});

@@ -14,8 +14,8 @@ namespace {
 constexpr double step = 2e-3;  // [s], of the five-point differences
 constexpr double slope_accuracy = 1e-7, curvature_accuracy = 1e-6;
 
-/// A smooth movement of all readings and its derivatives.
-struct Sway {
+/// A smooth motion of all joint positions and its derivatives.
+struct SineMotion {
   Eigen::Index n;
   VectorXd wave(double t, double phase, int power) const {
     VectorXd q(n);
@@ -51,10 +51,10 @@ void expect_is_the_derivative(const FrameMotion& now, const auto& at, const std:
 
 TEST(FrameMotion, OfEveryFrameAgreesWithDifferencesOfItsPose) {
   for (const Chain& chain : laws::examples()) {
-    const Sway sway{dof(chain)};
+    const SineMotion motion{dof(chain)};
     for (const double t : {0.0, 0.9, 4.1}) {
       const auto motions = [&](double h) {
-        return joint_motions(chain, sway.q(t + h), sway.qd(t + h), sway.qdd(t + h));
+        return joint_motions(chain, motion.q(t + h), motion.qd(t + h), motion.qdd(t + h));
       };
       const std::vector<FrameMotion> now = motions(0.0);
       ASSERT_EQ(now.size(), chain.joints.size());
@@ -68,10 +68,11 @@ TEST(FrameMotion, OfEveryFrameAgreesWithDifferencesOfItsPose) {
 
 TEST(FrameMotion, OfAnAttachedFrameAgreesWithDifferencesOfItsPose) {
   const Chain chain = laws::er20_with_errors();
-  const Sway sway{dof(chain)};
+  const SineMotion motion{dof(chain)};
   const Pose sensor = Pose::from_xyz_rpy({0.1, -0.2, 0.3}, {0.4, 0.5, 0.6});
   const auto at = [&](double h) {
-    return attached_frame_motion(joint_motions(chain, sway.q(2 + h), sway.qd(2 + h), sway.qdd(2 + h)).back(), sensor);
+    return attached_frame_motion(joint_motions(chain, motion.q(2 + h), motion.qd(2 + h), motion.qdd(2 + h)).back(),
+                                 sensor);
   };
   expect_is_the_derivative(at(0.0), at, "sensor");
 }

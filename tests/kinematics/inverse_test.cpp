@@ -10,7 +10,7 @@
 
 namespace kinfer {
 
-/// What GoogleTest says of an ending.
+/// How GoogleTest prints a status.
 void PrintTo(InverseStatus status, std::ostream* out) {
   *out << sentence(status);
 }
@@ -120,7 +120,7 @@ TEST(Inverse, AStartOutsideTheLimitsIsClamped) {
 }
 
 TEST(Inverse, AStretchedArmReachesAPointOnItsOwnLine) {
-  const InverseSolution s = inverse_position(planar(), {1.2, 0, 0}, readings(0.0, 0.0));  // the slope vanishes here
+  const InverseSolution s = inverse_position(planar(), {1.2, 0, 0}, readings(0.0, 0.0));  // the gradient vanishes here
   EXPECT_EQ(s.status, InverseStatus::reached);
 }
 

@@ -28,7 +28,7 @@ TEST(Parameters, RowsAreCountedFromOneAndFramesNamedByTheirOwner) {
               ElementsAre("base_x", "base_y", "base_z", "base_rx", "base_ry", "base_rz",    //
                           "a1", "alpha1", "d1", "theta1", "beta1", "gain1", "compliance1",  //
                           "a2", "alpha2", "d2", "theta2", "beta2", "gain2", "compliance2",  //
-                          "a3", "alpha3", "d3", "theta3", "beta3", "gain3",                 // a slide does not bend
+                          "a3", "alpha3", "d3", "theta3", "beta3", "gain3",  // a prismatic joint has no compliance
                           "tool_x", "tool_y", "tool_z", "tool_rx", "tool_ry", "tool_rz"));
 }
 

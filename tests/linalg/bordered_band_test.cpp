@@ -14,7 +14,7 @@ using Eigen::Index;
 struct Problem {
   Index width, reach, border, spans;
   std::vector<BandSpan> parts;
-  MatrixXd whole, border_matrix;  // of everything, dense
+  MatrixXd whole, border_matrix;  // the whole system, dense
   VectorXd right, border_right;
   Index band() const { return (spans + reach - 1) * width; }
 };

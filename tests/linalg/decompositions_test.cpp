@@ -52,15 +52,15 @@ TEST(RightSvd, HasTheValuesOfTheWholeDecompositionAndZerosWhereRowsAreMissing) {
 
 TEST(RightSvd, FindsTheNullDirection) {
   MatrixXd a = test::random_matrix(50, 3, 3);
-  a.col(2) = a.col(0) - 2 * a.col(1);  // so (1, −2, −1) is not seen
+  a.col(2) = a.col(0) - 2 * a.col(1);  // so (1, −2, −1) is the null direction
   const RightSvd found = right_svd(a);
   EXPECT_LT(found.s[2], 1e-14 * found.s[0]);
   EXPECT_NEAR(std::abs(found.v.col(2).dot(Eigen::Vector3d(1, -2, -1).normalized())), 1.0, 1e-14);
 }
 
 TEST(SymmetricEigen, OfARotatedDiagonalAreItsEntriesAscending) {
-  const MatrixXd turn = svd(test::random_matrix(4, 4, 4)).u;
-  const MatrixXd a = turn * Eigen::Vector4d(3, -1, 7, 0.5).asDiagonal() * turn.transpose();
+  const MatrixXd orthogonal = svd(test::random_matrix(4, 4, 4)).u;
+  const MatrixXd a = orthogonal * Eigen::Vector4d(3, -1, 7, 0.5).asDiagonal() * orthogonal.transpose();
   const SymmetricEigen found = symmetric_eigen(a);
   EXPECT_LT((found.values - Eigen::Vector4d(-1, 0.5, 3, 7)).norm(), 1e-13);
   EXPECT_LT((a * found.vectors - found.vectors * found.values.asDiagonal()).norm(), 1e-13);

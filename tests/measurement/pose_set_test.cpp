@@ -6,7 +6,7 @@
 namespace kinfer {
 namespace {
 
-/// Four rows, every list filled, numbers that say their row.
+/// Four rows, every list filled, with numbers that encode their row.
 PoseSet four_rows() {
   PoseSet set;
   set.joint_names = {"a", "b"};

@@ -29,7 +29,7 @@ MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, double size, Rng
   return m;
 }
 
-/// Nine candidates of five unknowns, small enough to try all.
+/// Nine candidates of five unknowns, few enough to enumerate.
 DesignProblem small_problem() {
   DesignProblem problem;
   problem.rows = random_matrix(27, 5, 3.0, Rng(1));
@@ -83,7 +83,7 @@ TEST(OptimalDesign, NoChoiceIsBelowTheLowerBoundAndManyPosesComeCloseToIt) {
 
 TEST(OptimalDesign, CopiesAreRedundant) {
   DesignProblem problem = small_problem();
-  problem.rows *= 100.0;  // the noise is small, so that fewer rows than unknowns hurt
+  problem.rows *= 100.0;  // little noise, so that fewer rows than unknowns cost accuracy
   problem.rows.bottomRows(3) = 1e-3 * problem.rows.topRows(3);
   const std::vector<int> gone = superfluous(problem, Criterion::tool, 0.01);
   EXPECT_TRUE(std::find(gone.begin(), gone.end(), 8) != gone.end());
@@ -159,7 +159,7 @@ TEST(PlanPoses, ObservabilityIndicesAreThoseOfTheSingularValues) {
   PlanTask task = er20_task();
   task.candidates = draw_poses(task.nominal, {}, 100, Rng(9)).value();
   const PosePlan plan = plan_poses(task, {.poses = 20, .starts = 0}, Rng(1)).value();
-  EXPECT_EQ(plan.rank, 27);  // METHODS: 4·6 + 3
+  EXPECT_EQ(plan.rank, 27);  // 4·6 + 3: four per joint and the tool point
   const auto [o1, o2, o3, o4, o5] = plan.observability;
   EXPECT_NEAR(o4, o2 * o3, 1e-9 * o4);
   EXPECT_LT(o5, o3);

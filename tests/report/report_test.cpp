@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// report.html from evidence: complete, well formed, safe against what names and notes may hold, and never too large.
+// report.html from evidence: complete, well formed, with escaped names and notes, and limited in size.
 #include "kinfer/report/report.hpp"
 #include "kinfer/report/parts/html.hpp"
 

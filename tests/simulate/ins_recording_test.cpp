@@ -12,7 +12,7 @@ namespace {
 
 constexpr double g = 9.80665;  // [m/s²]
 
-/// A machine of one sensor that lies still, and what it would say for `rows` rows.
+/// A machine of one stationary sensor, and its error-free samples over `rows` rows.
 Machine one_sensor(std::size_t sensors = 1) {
   Machine machine;
   for (std::size_t s = 0; s < sensors; ++s)
@@ -34,7 +34,7 @@ MachineMotion still(const Machine& machine, std::size_t rows, double sampling_ra
 }
 
 struct Moments {
-  double mean = 0.0, sd = 0.0, lag_one = 0.0;  // lag_one: correlation of neighbours
+  double mean = 0.0, sd = 0.0, lag_one = 0.0;  // lag_one: autocorrelation at one row
 };
 
 Moments moments(const std::vector<float>& values) {
@@ -111,7 +111,8 @@ TEST(InsSimulation, TheSpecifiedFractionOfRowsIsMissingInRunsOfFiveOnAverage) {
     runs += gone && (row == 0 || !std::isnan(sensor.angular_velocity.axis[1][row - 1]));
   }
   const double fraction = static_cast<double>(lost) / n, length = static_cast<double>(lost) / static_cast<double>(runs);
-  EXPECT_NEAR(fraction, 0.1, 5.0 * std::sqrt(0.1 * 0.9 * 9.0 / n));  // rows of a run come together: 2 · 5 − 1 = 9
+  EXPECT_NEAR(fraction, 0.1,
+              5.0 * std::sqrt(0.1 * 0.9 * 9.0 / n));  // rows are missing in runs: variance factor 2 · 5 − 1 = 9
   EXPECT_NEAR(length, 5.0, 5.0 * std::sqrt(20.0 / static_cast<double>(runs)));  // geometric: variance 5² − 5
 }
 

@@ -74,7 +74,8 @@ Vec3 second_derivative(const Column& at, double h) {
   return (-at(-2) + 16.0 * at(-1) - 30.0 * at(0) + 16.0 * at(1) - at(2)) / (12.0 * h * h);
 }
 
-// The differences leave h⁴/90 of the sixth derivative and the integrator as little; at 500 Hz both are far below this.
+// Differences have an error of h⁴/90 of the sixth derivative, the integrator a similar one; both are far smaller at 500
+// Hz.
 constexpr double rate_tolerance = 1e-6;   // [rad/s]
 constexpr double force_tolerance = 1e-4;  // [m/s²]
 
@@ -101,7 +102,7 @@ TEST_P(EitherServo, GyroIsTheDerivativeOfOrientationAndForceThatOfPositionAndGra
     }
   EXPECT_LT(worst_rate, rate_tolerance);
   EXPECT_LT(worst_force, force_tolerance);
-  EXPECT_GT(moved, 3.0);  // [m/s²] there was something to see
+  EXPECT_GT(moved, 3.0);  // [m/s²] the force varies enough to test
 }
 
 TEST(World, StiffJointsFollowTheirDriveAndSoftOnesDeviateWhenOthersMove) {
@@ -143,7 +144,7 @@ TEST(World, ExcavatorIsTheChainOfThePapersEquation27) {
     const VectorXd q = motion.q.col(static_cast<Eigen::Index>(row));
     std::array<Mat4, 6> ins;
     ins[0] = Mat4::Identity();
-    ins[0](2, 3) = 1.1;  // the platform's INS, above the ground
+    ins[0](2, 3) = 1.1;  // height of the platform's INS
     ins[1] = ins[0] * dh(q[0], 0, 0, -1.25);
     ins[2] = ins[1] * dh(pi, 0, -pi / 2, -0.4) * dh(q[1], 0, 0, 0.58);
     ins[3] = ins[2] * dh(0, 0, 0, 1.285) * dh(q[2], 0, 0, 0.33);

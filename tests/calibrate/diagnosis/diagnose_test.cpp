@@ -64,7 +64,7 @@ std::string listed(const std::vector<Finding>& findings) {
   return text;
 }
 
-/// The only finding, of the kind that is expected.
+/// The only finding, which must be of the expected kind.
 Finding only(const CalibrationTask& task, const std::string& kind) {
   const Diagnosis diagnosis = diagnose(task);
   EXPECT_EQ(diagnosis.findings.size(), 1u) << listed(diagnosis.findings);
@@ -73,7 +73,7 @@ Finding only(const CalibrationTask& task, const std::string& kind) {
   return diagnosis.findings.front();
 }
 
-/// Noise level [m] of a fit to treated data: 20 µm or so where all was put right.
+/// Noise level [m] of a fit to corrected data: about 20 µm where everything was corrected.
 double noise_level(const CalibrationTask& corrected_task) {
   return fit_once(corrected_task, corrected_task.data, GeometricParameters{}, {}).value().sigma;
 }
@@ -176,7 +176,7 @@ TEST(Diagnosis, GrossOutliersAreListed) {
   EXPECT_EQ(only(task, "gross_outliers").rows, (std::vector<int>{8, 33}));
 }
 
-/// A fault of the file as a whole, which is certain and put right.
+/// A fault of the file as a whole, which is certain and corrected.
 struct Fault {
   std::string name, kind;
   std::function<void(CalibrationTask&)> make;
@@ -201,9 +201,9 @@ std::vector<Fault> faults() {
   for (int k = 0; k < 6; ++k) {
     list.push_back(
         {fmt::format("sign_of_J{}", k + 1), "wrong_sign", [k](CalibrationTask& t) { t.data.joints.row(k) *= -1.0; }});
-    if (k == 0 || k == 5) continue;  // base and tool take these up: no fault
+    if (k == 0 || k == 5) continue;  // absorbed by base and tool: no fault
     for (const int offset : {90, -90, 180})
-      if (offset != 180 || (k != 1 && k != 4))  // there the same as the sign of J1 and of J6
+      if (offset != 180 || (k != 1 && k != 4))  // equivalent to the sign of J1 and of J6
         list.push_back({fmt::format("offset_{}_of_J{}", offset < 0 ? "minus_90" : std::to_string(offset), k + 1),
                         "joint_offset",
                         [k, offset](CalibrationTask& t) { t.data.joints.row(k).array() += offset * degree; }});
@@ -265,7 +265,7 @@ TEST_P(OrientationConventions, OtherThanTheDocumentedOneAreFoundAndConverted) {
 }
 INSTANTIATE_TEST_SUITE_P(Diagnosis, OrientationConventions, ::testing::Range(0, 3));
 
-/// The only number with a decimal point in a sentence. The joints take up part of what the base does.
+/// The only number with a decimal point in a sentence. The joints absorb part of the base's motion.
 double number_in(const std::string& sentence) {
   return std::stod(sentence.substr(sentence.find('.') - 1));
 }

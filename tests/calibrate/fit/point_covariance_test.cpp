@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tracker whose range is good and whose angles are bad: what the full covariance of each point is worth.
+// A tracker with accurate range and poor angles: what the full covariance of each point gains.
 #include <gtest/gtest.h>
 
 #include "kinfer/calibrate/calibrate.hpp"
@@ -14,7 +14,7 @@ using namespace test;
 
 constexpr double range_sd = 10e-6, angle_sd = 30e-6;  // [m], [rad]
 
-/// Of a point seen from the world's origin.
+/// Covariance of a point measured from the world's origin.
 Mat3 covariance_seen(const Vec3& p) {
   const Vec3 along = p.normalized();
   const double across = angle_sd * p.norm();
@@ -37,7 +37,7 @@ PoseSet seen_by_tracker(const Chain& truth, int seed, Told told) {
   return data;
 }
 
-/// Mean error on poses that were not measured [m], mean of some robots.
+/// Mean error on held-out poses [m], averaged over robots.
 double unseen_error(Told told) {
   std::vector<double> errors;
   for (int seed = 1; seed <= 4; ++seed) {

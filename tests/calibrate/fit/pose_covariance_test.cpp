@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An instrument on a stand that shakes: what the covariance of the whole pose is worth.
+// An instrument on a shaking stand: what the covariance of the whole pose gains.
 #include <gtest/gtest.h>
 
 #include "kinfer/calibrate/calibrate.hpp"
@@ -43,7 +43,7 @@ Calibration fitted(const Robot& made, const PoseSet& data) {
   return calibrate_robot({made.nominal, {}, std::nullopt, data}, {.model = FixedModel{}}, Rng(1)).value();
 }
 
-/// Mean error on poses that were not measured [m], wherever the base stands: the stand's mean turn moves it.
+/// Mean error on held-out poses [m] with the base aligned: the stand's mean rotation moves the base.
 double unseen_error(const Robot& made, const PoseSet& data) {
   const PoseSet elsewhere = simulate_pose_set(made.truth, {.poses = 300, .instrument = noise_free}, Rng(77)).value();
   const std::vector<Pose> found = true_poses(fitted(made, data).estimate.chain, elsewhere);
@@ -84,7 +84,7 @@ TEST(PoseCovariance, SixRowsTogetherBeatPointAndOrientationApart) {
   EXPECT_LT(mean(together), 0.7 * mean(apart));
 }
 
-/// Everything in the world is turned and moved, the covariances with it.
+/// Everything in the world rotated and moved, covariances included.
 PoseSet moved(PoseSet set, const Pose& to) {
   const auto turned = [&](const std::optional<Mat3>& axes) {
     return Mat3(to.rotation * axes.value_or(Mat3::Identity()));
@@ -106,7 +106,7 @@ TEST(PoseCovariance, RotatingTheWorldWithAllCovariancesChangesNoFit) {
   const Calibration here = fitted(made, data), away = fitted(there, moved(data, to));
   for (std::size_t k = 0; k < here.estimate.values.size(); ++k) {
     const ParameterEstimate &a = here.estimate.values[k], &b = away.estimate.values[k];
-    if (a.name.starts_with("base_")) continue;  // turns of the base are priors about the world's axes
+    if (a.name.starts_with("base_")) continue;  // rotations of the base have priors about the world's axes
     EXPECT_NEAR(a.value, b.value, 0.02 * a.sd + 1e-9) << a.name;
     EXPECT_NEAR(a.sd, b.sd, 0.02 * a.sd) << a.name;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// After a knock or a motor change: few poses and the earlier calibration.
+// After a collision or a motor change: few poses and the earlier calibration.
 #include <gtest/gtest.h>
 
 #include "kinfer/calibrate/calibrate.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-/// A robot that was calibrated with 50 poses, and then had its third motor changed and its tracker moved.
+/// A robot calibrated with 50 poses, whose third motor was changed and tracker moved afterwards.
 struct Knocked {
   Chain truth = with_random_errors(nominal_robot(), {}, Rng(3));
   Chain earlier =

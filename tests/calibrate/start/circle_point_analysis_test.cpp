@@ -124,7 +124,7 @@ TEST(CirclePointAnalysis, StatedUncertaintyIsThatOfRepeatedMeasurements) {
     worst_tilt.push_back(angle_between(circle.axis, true_circle.axis));
   }
   EXPECT_NEAR(standard_deviation(radius), rms(stated_radius), 0.15 * rms(stated_radius));
-  // The tilt has two directions; the stated one is the worse: their root sum of squares lies between 1 and √2 of it.
+  // The tilt has two directions; the larger is stated: their root sum of squares lies between 1 and √2 of it.
   EXPECT_GT(rms(worst_tilt), 0.85 * rms(stated_tilt));
   EXPECT_LT(rms(worst_tilt), 1.15 * std::sqrt(2.0) * rms(stated_tilt));
 }
@@ -134,7 +134,7 @@ TEST(CirclePointAnalysis, WithTrackerNoiseTheBaseIsAsAccurateAsStated) {
   const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 10e-6, Rng(3)));
   ASSERT_TRUE(found);
   expect_same_frames(found->chain, truth, 0.2e-3, 1e-4);
-  EXPECT_LT(found->base_differs, 0.3e-3);  // and agrees with the start that calibrate finds
+  EXPECT_LT(found->base_differs, 0.3e-3);  // and agrees with the initial frames of calibrate
 }
 
 }  // namespace

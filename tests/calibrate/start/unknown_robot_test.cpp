@@ -13,7 +13,7 @@ namespace kinfer {
 using namespace calibrate;
 namespace {
 
-/// Frames anywhere, every third joint sliding, gains that are not 1.
+/// Random frames, every third joint prismatic, gains other than 1.
 Chain random_chain(int joints, Rng rng) {
   Chain chain = make_serial_chain(std::vector<JointType>(joints, JointType::revolute));
   for (int i = 0; i < joints; ++i) {

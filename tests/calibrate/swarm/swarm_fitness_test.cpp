@@ -28,7 +28,7 @@ MatrixXd candidates(const ParameterSet& set, const Chain& chain, Rng rng) {
   return x.unaryExpr([&](double v) { return v + 0.01 * rng.normal(); });
 }
 
-/// The slow version: every candidate's chain, every pose walked from the base.
+/// Reference: every candidate's chain, every pose by forward kinematics from the base.
 double slow_sum(const Chain& nominal, const ParameterSet& set, const PoseSet& data, ConstVectorRef x) {
   double sum = 0.0;
   for (const double error : point_errors(unpack(set, nominal, x), data)) sum += error * error;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ladder takes what is there, refuses what is not, and names what it could not try.
+// Model selection accepts terms that are present, rejects others, and names those it could not test.
 #include "kinfer/calibrate/terms/model_selection.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ PoseSet readings(const Chain& truth, int poses, int seed = 1) {
 const SelectionStep& step_named(const Calibration& c, const std::string& name) {
   for (const SelectionStep& r : c.model_selection.model_terms)
     if (r.name == name) return r;
-  ADD_FAILURE() << "no rung is called " << name;
+  ADD_FAILURE() << "no model term is called " << name;
   return c.model_selection.model_terms.front();
 }
 
@@ -102,7 +102,7 @@ TEST(ModelSelection, AParallelogramsCouplingIsCorrectedAndAnUndocumentedOneIsFou
   nominal.joints[2].couplings = {{1, -1.0}};
   Chain truth = with_random_errors(nominal, {}, Rng(4));
   truth.joints[2].couplings = {{1, -1.003}};
-  truth.joints[5].couplings = {{4, 0.0125}};  // a hollow wrist: one tooth of eighty
+  truth.joints[5].couplings = {{4, 0.0125}};  // a hollow wrist: one tooth of eighty couples into joint 6
   PoseSet data = readings(truth, 80);
   measure_points(data, truth, tracker, Rng(5));
   const Calibration c = climbed(nominal, data);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Held-out figures count the same rows for every model: those whose measurement is not wrong.
+// Held-out figures use the same rows for every model: those without a gross measurement error.
 #include "kinfer/calibrate/validation/gross_errors.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-/// 80 poses of a robot with gears that geometry cannot describe; rows 5, 20 and 60 lie 3 mm off.
+/// 80 poses of a robot with gear harmonics that geometry cannot describe; rows 5, 20 and 60 are 3 mm off.
 PoseSet with_three_wrong_rows() {
   Chain truth = with_random_errors(nominal_robot(), {}, Rng(4));
   truth.joints[1].harmonics = {{1.0, 1.5e-4, 0.0}, {2.0, 1e-4, 1.5e-4}};

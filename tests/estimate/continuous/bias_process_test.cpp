@@ -19,7 +19,7 @@ double wave(double time) {
   return amplitude * std::sin(time / 10.0);
 }
 
-/// An INS that stands still for two minutes, its accelerometer's x axis wandering up and down.
+/// A stationary INS over two minutes; the bias of its accelerometer's x axis varies sinusoidally.
 InsProblem standing() {
   InsProblem problem;
   problem.grid = {0.0, 0.1, 1200};
@@ -79,17 +79,17 @@ TEST(BiasProcess, ATimeVaryingBiasIsFollowed) {
                          errors_at(problem, fit.unknowns, 0, time_segments[k].first).accelerometer_bias.x();
     difference = std::max(difference, std::abs(found - wave(time)));
   }
-  EXPECT_LT(difference, 0.1 * amplitude);  // 0.6 mm/s² of noise a stretch, and the wave's bend
+  EXPECT_LT(difference, 0.1 * amplitude);  // 0.6 mm/s² of noise a time segment, and the wave's curvature
 }
 
 TEST(BiasProcess, TheFitEndsAtTheOptimumOverTheBiases) {
   InsProblem problem = standing();
   const InsFit fit = fit_ins(problem, at_rest(problem), {.threads = 1});
-  for (const Index stretch : {0, 1, 9, 17})
+  for (const Index time_segment : {0, 1, 9, 17})
     for (const Index unknown : {0, 3, 5})
       for (const double step : {-1e-4, 1e-4}) {
         InsUnknowns other = fit.unknowns;
-        other.bias_process(unknown, stretch) += step;
+        other.bias_process(unknown, time_segment) += step;
         EXPECT_GT(cost_of(problem, fit.layout, other, 1).total, fit.cost.total);
       }
 }

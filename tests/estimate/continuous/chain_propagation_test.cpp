@@ -25,9 +25,10 @@ InsState state_of(ConstVectorRef x) {
 }
 
 std::vector<InsBody> bodies_of_every_kind(Rng& rng) {
-  const auto turn = [&] { return exp_so3(random_vector(rng)); };
-  std::vector<InsBody> bodies{revolute_body(0, 1, turn(), turn()), prismatic_body(0, 1, turn(), turn()),
-                              fixed_body(0, 1, turn()), spherical_body(0, 1, turn())};
+  const auto random_rotation = [&] { return exp_so3(random_vector(rng)); };
+  std::vector<InsBody> bodies{revolute_body(0, 1, random_rotation(), random_rotation()),
+                              prismatic_body(0, 1, random_rotation(), random_rotation()),
+                              fixed_body(0, 1, random_rotation()), spherical_body(0, 1, random_rotation())};
   for (InsBody& body : bodies) {
     body.point_in_parent = random_vector(rng);
     if (body.free_point_in_child) body.point_in_child = random_vector(rng);
@@ -49,55 +50,57 @@ TEST(ChainPropagation, DerivativesAgreeWithDifferences) {
     const MatrixXd by_parent =
         numeric_jacobian([&](const VectorXd& x) { return flat(propagated(body, q, state_of(x))); }, flat(parent));
     EXPECT_LT((derivative.by_parent - by_parent).norm(), 1e-7);
-    const Index readings = 3 * degrees_of_freedom(body.motion), n = readings + body.unknowns();
+    const Index variables = 3 * degrees_of_freedom(body.motion), n = variables + body.unknowns();
     const MatrixXd by_own = numeric_jacobian(
         [&](const VectorXd& x) {
           JointKinematicState moved = q;
-          for (Index k = 0; k < readings; ++k) moved[static_cast<std::size_t>(k % 3)][k / 3] += x[k];
-          return flat(propagated(retract(body, x.tail(n - readings)), moved, parent));
+          for (Index k = 0; k < variables; ++k) moved[static_cast<std::size_t>(k % 3)][k / 3] += x[k];
+          return flat(propagated(retract(body, x.tail(n - variables)), moved, parent));
         },
         VectorXd::Zero(n));
     EXPECT_LT((derivative.by_own - by_own).norm(), 1e-7) << static_cast<int>(body.motion);
   }
 }
 
-/// Position and orientation of a child on a parent that moves anyhow, differentiated by time: the slow way.
+/// Reference: position and orientation of a child on an arbitrarily moving parent, differentiated numerically.
 TEST(ChainPropagation, SpecificForceIsThatOfThePointsMotion) {
   Rng rng(6);
   const auto bodies = bodies_of_every_kind(rng);
   const Vec3 spin = random_vector(rng), sweep = random_vector(rng), field(1.0, 20.0, -44.0), up(0.0, 0.0, 9.81);
-  const auto parent_turn = [&](double t) { return Mat3(exp_so3(std::sin(t) * spin) * exp_so3(t * t * sweep)); };
-  const auto parent_place = [&](double t) { return Vec3(std::sin(2 * t) * spin + t * t * t * sweep); };
-  const auto reading = [](double t) { return Vec3(0.3 + std::sin(1.7 * t), t * t, std::cos(t)); };
+  const auto parent_rotation = [&](double t) { return Mat3(exp_so3(std::sin(t) * spin) * exp_so3(t * t * sweep)); };
+  const auto parent_position = [&](double t) { return Vec3(std::sin(2 * t) * spin + t * t * t * sweep); };
+  const auto joint_position = [](double t) { return Vec3(0.3 + std::sin(1.7 * t), t * t, std::cos(t)); };
   constexpr double t0 = 0.3, h = 1e-3;
   const auto second = [&](const auto& f) { return Vec3((f(t0 + h) - 2.0 * f(t0) + f(t0 - h)) / (h * h)); };
-  const auto rate_at = [&](const auto& turn, double t) {
-    return Vec3(log_so3(Mat3(turn(t - h).transpose() * turn(t + h))) / (2.0 * h));
+  const auto angular_velocity_at = [&](const auto& rotation, double t) {
+    return Vec3(log_so3(Mat3(rotation(t - h).transpose() * rotation(t + h))) / (2.0 * h));
   };
-  const auto felt = [&](const auto& turn, const auto& place) {
+  const auto measured_state = [&](const auto& rotation, const auto& position) {
     InsState s;
-    s.angular_velocity = rate_at(turn, t0);
-    s.angular_acceleration = (rate_at(turn, t0 + h) - rate_at(turn, t0 - h)) / (2.0 * h);
-    s.force = turn(t0).transpose() * (second(place) + up);
-    s.field = turn(t0).transpose() * field;
+    s.angular_velocity = angular_velocity_at(rotation, t0);
+    s.angular_acceleration =
+        (angular_velocity_at(rotation, t0 + h) - angular_velocity_at(rotation, t0 - h)) / (2.0 * h);
+    s.force = rotation(t0).transpose() * (second(position) + up);
+    s.field = rotation(t0).transpose() * field;
     return s;
   };
   for (const InsBody& body : bodies) {
-    const auto q = [&](double t) { return Vec3(body.motion == JointMotion::fixed ? Vec3::Zero() : reading(t)); };
-    const auto child_turn = [&](double t) {
+    const auto q = [&](double t) { return Vec3(body.motion == JointMotion::fixed ? Vec3::Zero() : joint_position(t)); };
+    const auto child_rotation = [&](double t) {
       const Mat3 moved = body.motion == JointMotion::revolute    ? rot_z(q(t).x())
                          : body.motion == JointMotion::spherical ? exp_so3(q(t))
                                                                  : Mat3(Mat3::Identity());
-      return Mat3(parent_turn(t) * body.parent_R_axis * moved * body.child_R_axis.transpose());
+      return Mat3(parent_rotation(t) * body.parent_R_axis * moved * body.child_R_axis.transpose());
     };
-    const auto child_place = [&](double t) {
-      const double slid = body.motion == JointMotion::prismatic ? q(t).x() : 0.0;
-      const Vec3 joint = body.point_in_parent + slid * body.parent_R_axis.col(2);
-      return Vec3(parent_place(t) + parent_turn(t) * joint - child_turn(t) * body.point_in_child);
+    const auto child_position = [&](double t) {
+      const double displacement = body.motion == JointMotion::prismatic ? q(t).x() : 0.0;
+      const Vec3 joint = body.point_in_parent + displacement * body.parent_R_axis.col(2);
+      return Vec3(parent_position(t) + parent_rotation(t) * joint - child_rotation(t) * body.point_in_child);
     };
     const JointKinematicState now{q(t0), (q(t0 + h) - q(t0 - h)) / (2 * h), second(q)};
-    const InsState is = propagated(body, now, felt(parent_turn, parent_place)), ought = felt(child_turn, child_place);
-    EXPECT_LT((flat(is) - flat(ought)).norm(), 2e-4) << static_cast<int>(body.motion);
+    const InsState actual = propagated(body, now, measured_state(parent_rotation, parent_position)),
+                   expected = measured_state(child_rotation, child_position);
+    EXPECT_LT((flat(actual) - flat(expected)).norm(), 2e-4) << static_cast<int>(body.motion);
   }
 }
 

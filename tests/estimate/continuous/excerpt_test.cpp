@@ -16,14 +16,14 @@ using Eigen::Index;
 
 constexpr double rate_noise = 1e-3, force_noise = 1e-2;
 
-/// [rad] of a hinge that moves in the second and the last quarter only.
-double turned(double time, double length) {
+/// Angle [rad] of a revolute joint that moves in the second and the last quarter only.
+double joint_angle(double time, double length) {
   const double quarter = 0.25 * length, waves = 4.0 * std::round(length / 25.6);  // at rest between quarters
   const bool moves = (time > quarter && time < 2.0 * quarter) || time > 3.0 * quarter;
   return moves ? 0.4 * std::pow(std::sin(2.0 * std::numbers::pi * waves * time / length), 3) : 0.0;
 }
 
-/// Two INS on a hinge about the level x axis of a root that stands still, the second 0.5 m from it.
+/// Two INS on a revolute joint about the horizontal x axis of a stationary root, the second 0.5 m from the axis.
 InsProblem swinging(Index intervals) {
   InsProblem problem;
   problem.grid = {0.0, 0.1, intervals};
@@ -36,17 +36,19 @@ InsProblem swinging(Index intervals) {
   const double length = problem.grid.end(), h = 1e-3;
   for (double t = 0.0; t < length; t += 0.025) {
     time.push_back(t);
-    const double q = turned(t, length), angular_velocity = (turned(t + h, length) - turned(t - h, length)) / (2.0 * h),
-                 change = (turned(t + h, length) - 2.0 * q + turned(t - h, length)) / (h * h);
+    const double q = joint_angle(t, length),
+                 angular_velocity = (joint_angle(t + h, length) - joint_angle(t - h, length)) / (2.0 * h),
+                 angular_acceleration = (joint_angle(t + h, length) - 2.0 * q + joint_angle(t - h, length)) / (h * h);
     const Vec3 arm(0.0, 0.5, 0.0), omega(angular_velocity, 0.0, 0.0);
-    const std::array<Vec3, 2> rates{Vec3::Zero(), omega};
-    const std::array<Vec3, 2> forces{
-        Vec3(0.0, 0.0, 9.80665),
-        rot_x(-q) * Vec3(0.0, 0.0, 9.80665) + Vec3(change, 0.0, 0.0).cross(arm) + omega.cross(omega.cross(arm))};
+    const std::array<Vec3, 2> angular_velocities{Vec3::Zero(), omega};
+    const std::array<Vec3, 2> forces{Vec3(0.0, 0.0, 9.80665), rot_x(-q) * Vec3(0.0, 0.0, 9.80665) +
+                                                                  Vec3(angular_acceleration, 0.0, 0.0).cross(arm) +
+                                                                  omega.cross(omega.cross(arm))};
     for (std::size_t s = 0; s < 2; ++s) {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto axis = static_cast<Index>(k);
-        sensors[s].angular_velocity.axis[k].push_back(static_cast<float>(rates[s][axis] + rate_noise * rng.normal()));
+        sensors[s].angular_velocity.axis[k].push_back(
+            static_cast<float>(angular_velocities[s][axis] + rate_noise * rng.normal()));
         sensors[s].acceleration.axis[k].push_back(static_cast<float>(forces[s][axis] + force_noise * rng.normal()));
       }
       sensors[s].faults.push_back(0);

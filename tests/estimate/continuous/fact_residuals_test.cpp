@@ -14,7 +14,7 @@ using Eigen::Index;
 using test::random_vector;
 using testing::numeric_jacobian;
 
-/// A turn, a slide on it, a turn on that, and a fixed body at the root.
+/// A revolute, a prismatic and a revolute joint in series, and a fixed body at the root.
 struct FactExample {
   InsProblem problem;
   InsUnknowns x;
@@ -23,16 +23,16 @@ struct FactExample {
 
 FactExample fact_example(const InsFacts& facts) {
   Rng rng(3);
-  const auto turn = [&] { return exp_so3(random_vector(rng)); };
+  const auto random_rotation = [&] { return exp_so3(random_vector(rng)); };
   FactExample e;
   e.problem.grid = {.begin = 0.0, .period = 0.1, .intervals = 20};
   e.problem.sensors.resize(5);
   e.problem.facts = facts;
   e.x.bodies = {{.sensor = 0},
-                revolute_body(0, 1, turn(), turn()),
-                prismatic_body(1, 2, turn(), turn()),
-                revolute_body(2, 3, turn(), turn()),
-                fixed_body(0, 4, turn())};
+                revolute_body(0, 1, random_rotation(), random_rotation()),
+                prismatic_body(1, 2, random_rotation(), random_rotation()),
+                revolute_body(2, 3, random_rotation(), random_rotation()),
+                fixed_body(0, 4, random_rotation())};
   for (InsBody& body : e.x.bodies) {
     body.point_in_parent = random_vector(rng);
     if (body.free_point_in_child) body.point_in_child = random_vector(rng);
@@ -44,7 +44,7 @@ FactExample fact_example(const InsFacts& facts) {
   e.x.facts = initial_fact_unknowns(e.problem, e.layout, e.x);
   for (auto* points : {&e.x.facts.places, &e.x.facts.touched})
     for (Vec3& point : *points) point += random_vector(rng);
-  e.x.facts.surveyor.rotation = e.x.facts.surveyor.rotation * turn();
+  e.x.facts.surveyor.rotation = e.x.facts.surveyor.rotation * random_rotation();
   return e;
 }
 
@@ -68,11 +68,11 @@ InsFacts every_kind() {
   return facts;
 }
 
-/// The band's coefficients one channel after the other in time order, then the border.
+/// Step: spline coefficients, all dimensions of a time together, in time order; then the global parameters.
 InsUnknowns moved(const FactExample& e, ConstVectorRef step) {
-  const Index band = e.x.spline_coefficients.size();
+  const Index coefficients = e.x.spline_coefficients.size();
   return retract(e.problem, e.layout, e.x,
-                 {step.head(band).reshaped(e.x.spline_coefficients.rows(), e.x.spline_coefficients.cols()),
+                 {step.head(coefficients).reshaped(e.x.spline_coefficients.rows(), e.x.spline_coefficients.cols()),
                   step.tail(e.layout.global_parameters),
                   {}});
 }
@@ -98,7 +98,7 @@ TEST(FactResiduals, ATapeBetweenAxesIsTheirShortestDistance) {
   const InsTapeDistance& tape = e.problem.facts.tapes[1];
   const auto rows = fact_rows(e.problem, e.layout, e.x);
   const double predicted = tape.length - tape.sd * rows[5].left[0];
-  // The slow way: walk along both lines.
+  // Reference: sample both lines.
   InsBodies& bodies = e.x.bodies;
   const auto along = [&](std::size_t body, double metres) {
     const Vec3 kept = bodies[body].point_in_parent;

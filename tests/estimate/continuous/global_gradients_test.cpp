@@ -17,7 +17,7 @@ struct ClockExample {
   InsLayout layout;
 };
 
-/// A hinge whose two INS read anything at all, with clocks that differ.
+/// A revolute joint whose two INS return random samples, with clocks that differ.
 ClockExample clock_example() {
   Rng rng(3);
   ClockExample e;
@@ -28,7 +28,7 @@ ClockExample clock_example() {
                      .clock_offset = 0.01,
                      .clock_drift = 0.1};
   for (std::size_t s = 0; s < 2; ++s) {
-    InsMeasurements readings{
+    InsMeasurements measurements{
         .angular_velocity = {}, .force = {}, .field = {}, .noise = {0.5, 0.5, 1.0}, .noise_floor = {}};
     InsSensor sensor{.name = "s", .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}};
     std::vector<double> time;
@@ -40,9 +40,9 @@ ClockExample clock_example() {
       }
       sensor.faults.push_back(0);
     }
-    readings.angular_velocity = ins_blocks(sensor, time, InsInstrument::gyroscope, e.problem.grid);
-    readings.force = ins_blocks(sensor, time, InsInstrument::accelerometer, e.problem.grid);
-    e.problem.sensors.push_back(readings);
+    measurements.angular_velocity = ins_blocks(sensor, time, InsInstrument::gyroscope, e.problem.grid);
+    measurements.force = ins_blocks(sensor, time, InsInstrument::accelerometer, e.problem.grid);
+    e.problem.sensors.push_back(measurements);
   }
   e.x.bodies = {{.sensor = 0}, revolute_body(0, 1, exp_so3(random_vector(rng)), exp_so3(random_vector(rng)))};
   e.x.bodies[1].point_in_child = random_vector(rng);
@@ -56,10 +56,10 @@ ClockExample clock_example() {
 }
 
 double cost_after(const ClockExample& e, Index unknown, double step) {
-  VectorXd border = VectorXd::Zero(e.layout.global_parameters);
-  border[unknown] = step;
+  VectorXd global_step = VectorXd::Zero(e.layout.global_parameters);
+  global_step[unknown] = step;
   const InsUnknowns x =
-      retract(e.problem, e.layout, e.x, {MatrixXd::Zero(1, e.x.spline_coefficients.cols()), border, {}});
+      retract(e.problem, e.layout, e.x, {MatrixXd::Zero(1, e.x.spline_coefficients.cols()), global_step, {}});
   return cost_of(e.problem, e.layout, x, 1).total;
 }
 
@@ -70,7 +70,7 @@ TEST(GlobalGradients, OfEveryParameterAgreeWithDifferences) {
   for (const IntervalGradient& g : linearisation.gradients({0, e.problem.grid.intervals})) gradient += g.border;
   const Index reference = e.layout.error[0] + e.layout.clock_error;
   for (Index k = 0; k < e.layout.global_parameters; ++k) {
-    if (k == reference || k == reference + 1) continue;  // held: far too stiff for differences
+    if (k == reference || k == reference + 1) continue;  // held by priors far too tight for differences
     const double step = 1e-6;
     const double slope = (cost_after(e, k, step) - cost_after(e, k, -step)) / (2.0 * step);
     EXPECT_NEAR(-2.0 * gradient[k], slope, 1e-5 * std::max(1.0, std::abs(slope))) << k;

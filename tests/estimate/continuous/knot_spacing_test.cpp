@@ -11,7 +11,7 @@
 namespace kinfer {
 namespace {
 
-/// One sensor whose every axis swings with these waves, besides noise.
+/// One sensor whose every axis oscillates with these waves, plus noise.
 struct Swing {
   std::vector<std::pair<double, double>> waves;  ///< [Hz], and the force's amplitude [m/s²]
   double sampling_rate = 200.0;                  ///< [Hz] of rows
@@ -56,7 +56,7 @@ double knots(const Swing& swing) {
 TEST(KnotSpacing, IsWidestForAMachineAndFinerForAQuickerArm) {
   EXPECT_DOUBLE_EQ(knots({.waves = {{0.6, 3.0}}}), widest_knot_spacing);
   EXPECT_NEAR(knots({.waves = {{2.5, 3.0}}}), 0.05, 1e-6);
-  EXPECT_NEAR(knots({.waves = {{5.0, 3.0}}}), 0.03, 1e-6);  // six readings
+  EXPECT_NEAR(knots({.waves = {{5.0, 3.0}}}), 0.03, 1e-6);  // six samples
   EXPECT_DOUBLE_EQ(knots({.waves = {}}), widest_knot_spacing);
 }
 

@@ -34,7 +34,7 @@ TEST(LowFrequency, AttenuatesTheCutoffToSeventyPercentAndPassesSlowWaves) {
   }
 }
 
-/// A root that spins and shakes, and a body on a hinge.
+/// A root that rotates and vibrates, and a body on a revolute joint.
 struct Machine {
   InsProblem problem;
   InsUnknowns x;
@@ -72,7 +72,7 @@ struct Machine {
     }
   }
 
-  /// Largest difference of a recording's forces from what the chain says of the slow motion [m/s²].
+  /// Largest difference of a recording's forces from those of the chain's low-frequency motion [m/s²].
   double off(const InsRecording& readings, double cutoff) const {
     InsUnknowns slow = x;
     slow.spline_coefficients = low_frequency_motion(x.spline_coefficients, problem.grid, cutoff);

@@ -16,7 +16,7 @@ double cubic(double t) {
   return 1.0 + 3.0 * t - 40.0 * t * t + 200.0 * t * t * t;
 }
 
-/// A sensor whose rate about x is a cubic of time with white noise.
+/// A sensor whose angular velocity about x is a cubic of time with white noise.
 InsSensor sensor_of(std::span<const double> time, double noise) {
   InsSensor sensor{.name = "imu", .logger = 0, .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}};
   Rng rng(3);
@@ -48,14 +48,14 @@ TEST(MeasurementBlocks, ReproduceACubicExactlyWhicheverRowsAreMissing) {
   const std::vector<double> time = times(100);
   InsSensor sensor = sensor_of(time, 0.0);
   for (const std::size_t row : {3u, 4u, 5u, 25u, 38u}) sensor.faults[row] = angular_velocity_missing;
-  for (std::size_t row = 41; row < 62; ++row) sensor.faults[row] = angular_velocity_missing;  // one reading is left
+  for (std::size_t row = 41; row < 62; ++row) sensor.faults[row] = angular_velocity_missing;  // one sample is left
   const SplineGrid grid{0.0, 0.1, 5};
   const auto blocks = ins_blocks(sensor, time, InsInstrument::gyroscope, grid);
   ASSERT_EQ(blocks.size(), 5u);
   for (std::size_t k = 0; k < 5; ++k) {
     const auto predicted = truth_at_nodes(grid, static_cast<Eigen::Index>(k));
     EXPECT_LT((blocks[k].factor.cast<double>() * predicted - blocks[k].target.col(0).cast<double>()).norm(), 1e-4)
-        << k;  // float readings
+        << k;  // samples are float
     EXPECT_EQ(blocks[k].rows, std::min(blocks[k].samples, block_nodes));
   }
   EXPECT_EQ(blocks[0].samples, 17);
@@ -65,7 +65,7 @@ TEST(MeasurementBlocks, ReproduceACubicExactlyWhicheverRowsAreMissing) {
 TEST(MeasurementBlocks, KeepAllInformationOfTheSamples) {
   const std::vector<double> time = times(20);
   const auto blocks = ins_blocks(sensor_of(time, 0.0), time, InsInstrument::gyroscope, {0.0, 0.1, 1});
-  // A constant offset of n readings has information n.
+  // A constant offset of n samples has information n.
   const Eigen::Matrix<double, block_nodes, 1> ones = Eigen::Matrix<double, block_nodes, 1>::Ones();
   EXPECT_NEAR((blocks[0].factor.cast<double>() * ones).squaredNorm(), 20.0, 1e-4);
 }

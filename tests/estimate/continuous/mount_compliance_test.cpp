@@ -19,7 +19,7 @@ Mat3 random_tilt(Rng& rng) {
   return tilt;
 }
 
-/// Something that moves on mounts that give way.
+/// A moving machine with compliant sensor mounts.
 struct MountExample {
   InsProblem problem;
   InsUnknowns x;
@@ -61,53 +61,54 @@ struct MountExample {
     layout = layout_of(problem, x.bodies);
   }
 
-  double cost_after(ConstMatrixRef band, ConstVectorRef border) const {
-    return cost_of(problem, layout, retract(problem, layout, x, {band, border, {}}), 1).total;
+  double cost_after(ConstMatrixRef splines, ConstVectorRef globals) const {
+    return cost_of(problem, layout, retract(problem, layout, x, {splines, globals, {}}), 1).total;
   }
 };
 
 TEST(MountCompliance, GradientsByComplianceAndMotionAgreeWithDifferences) {
   const MountExample e;
   const BandSegmentSum sum = InsLinearisation(e.problem, e.layout, e.x).sum({0, e.problem.grid.intervals});
-  const VectorXd border = global_parameter_prior(e.problem, e.layout, e.x).right + sum.border_right, &band = sum.right;
+  const VectorXd globals = global_parameter_prior(e.problem, e.layout, e.x).right + sum.border_right,
+                 &splines = sum.right;
   constexpr double step = 1e-6;
   const auto expect_slope = [](double gradient, double more, double less) {
     const double slope = (more - less) / (2.0 * step);
     EXPECT_NEAR(-2.0 * gradient, slope, 1e-5 * std::max(1.0, std::abs(slope)));
   };
-  const MatrixXd no_band = MatrixXd::Zero(e.x.spline_coefficients.rows(), e.x.spline_coefficients.cols());
-  const VectorXd no_border = VectorXd::Zero(e.layout.global_parameters);
+  const MatrixXd zero_splines = MatrixXd::Zero(e.x.spline_coefficients.rows(), e.x.spline_coefficients.cols());
+  const VectorXd zero_globals = VectorXd::Zero(e.layout.global_parameters);
   for (Index k = 0; k < e.layout.global_parameters; ++k) {
     const VectorXd by = step * VectorXd::Unit(e.layout.global_parameters, k);
-    expect_slope(border[k], e.cost_after(no_band, by), e.cost_after(no_band, -by));
+    expect_slope(globals[k], e.cost_after(zero_splines, by), e.cost_after(zero_splines, -by));
   }
-  for (Index k = 0; k < band.size(); k += 5) {
-    MatrixXd by = no_band;
+  for (Index k = 0; k < splines.size(); k += 5) {
+    MatrixXd by = zero_splines;
     by.reshaped()[k] = step;
-    expect_slope(band[k], e.cost_after(by, no_border), e.cost_after(-by, no_border));
+    expect_slope(splines[k], e.cost_after(by, zero_globals), e.cost_after(-by, zero_globals));
   }
 }
 
 TEST(MountCompliance, ARigidMountMeasuresItsSegmentsMotion) {
   Rng rng(2);
   const InsState segment{random_vector(rng), random_vector(rng), random_vector(rng), random_vector(rng)};
-  const InsState is = state_on_mount(segment, Mat3::Zero(), random_vector(rng), random_vector(rng));
-  EXPECT_EQ(is.angular_velocity, segment.angular_velocity);
-  EXPECT_EQ(is.force, segment.force);
+  const InsState measured = state_on_mount(segment, Mat3::Zero(), random_vector(rng), random_vector(rng));
+  EXPECT_EQ(measured.angular_velocity, segment.angular_velocity);
+  EXPECT_EQ(measured.force, segment.force);
 }
 
 TEST(MountCompliance, TheTiltAddsToTheMeasuredRotation) {
-  // Gravity in a segment that turns about x by a small angle a is g (0, a, 1): a tilt of T about x by the force along y
-  // adds T g a to the angle, so T g of every rate.
-  const double angle = 0.01, angular_velocity = 0.3, gravity = 9.81, gives = 0.1 / gravity;
+  // Gravity in a segment rotated about x by a small angle a is g (0, a, 1): a compliance T about x by the force along y
+  // adds T g a to the angle, so the factor T g to its angular velocity.
+  const double angle = 0.01, angular_velocity = 0.3, gravity = 9.81, compliance = 0.1 / gravity;
   Mat3 tilt = Mat3::Zero();
-  tilt(0, 1) = gives;
+  tilt(0, 1) = compliance;
   const InsState segment{.angular_velocity = Vec3(angular_velocity, 0.0, 0.0),
                          .force = gravity * Vec3(0.0, angle, 1.0)};
-  const InsState is =
+  const InsState measured =
       state_on_mount(segment, tilt, gravity * Vec3(0.0, angle, 0.0), gravity * Vec3(0.0, angular_velocity, 0.0));
-  EXPECT_NEAR(is.angular_velocity.x(), 1.1 * angular_velocity, 1e-12);
-  EXPECT_NEAR(is.force.y(), 1.1 * gravity * angle, 1e-5);
+  EXPECT_NEAR(measured.angular_velocity.x(), 1.1 * angular_velocity, 1e-12);
+  EXPECT_NEAR(measured.force.y(), 1.1 * gravity * angle, 1e-5);
 }
 
 TEST(MountCompliance, TheTiltIsProportionalToTheForceLessItsMean) {

@@ -25,14 +25,14 @@ std::vector<InsBlock> random_blocks(Index intervals, Rng& rng) {
   return blocks;
 }
 
-/// A turn on a root that moves, and readings that say anything.
+/// A revolute joint on a moving root, with random measurements.
 struct SystemExample {
   InsProblem problem;
   InsUnknowns x;
   InsLayout layout;
 };
 
-enum class Biases { constant, wandering };
+enum class Biases { constant, time_varying };
 
 SystemExample system_example(Index intervals, Biases biases = Biases::constant) {
   Rng rng(7);
@@ -47,23 +47,23 @@ SystemExample system_example(Index intervals, Biases biases = Biases::constant) 
   e.x.errors.resize(2);
   e.x.spline_coefficients = MatrixXd(7, e.problem.grid.coefficients());
   for (double& value : e.x.spline_coefficients.reshaped()) value = 0.1 * rng.normal();
-  if (biases == Biases::wandering) e.problem.bias_process = {.rate_sd = 0.3, .force_sd = 0.2, .time = 10.0};
+  if (biases == Biases::time_varying) e.problem.bias_process = {.rate_sd = 0.3, .force_sd = 0.2, .time = 10.0};
   e.layout = layout_of(e.problem, e.x.bodies);
   e.x.bias_process = MatrixXd(e.layout.bias_process, static_cast<Index>(time_segments_of(e.problem.grid).size()));
   for (double& value : e.x.bias_process.reshaped()) value = 0.1 * rng.normal();
   return e;
 }
 
-/// All equations in one matrix, interval by interval: of the band, of wandering biases stretch by stretch, of the
-/// border.
+/// All equations in one dense matrix: spline coefficients interval by interval, biases by time segment, global
+/// parameters.
 struct Dense {
   MatrixXd matrix;
   VectorXd right;
-  Index bias_process = 0, border = 0;  // where they begin
+  Index bias_process = 0, global_parameters = 0;  // first rows
   MatrixXd bias_process_prior;
 };
 
-/// The Gauss-Markov process' information on all stretches' unknowns, by inverting its covariance σ² a^|i − j|.
+/// Information of the Gauss-Markov process on the biases of all time segments: the inverse of σ² a^|i − j|.
 MatrixXd process_information(const SystemExample& e) {
   const Index w = e.layout.bias_process, n = e.x.bias_process.cols();
   MatrixXd covariance = MatrixXd::Zero(w * n, w * n);
@@ -88,44 +88,44 @@ MatrixXd dense_band(const BandSegmentSum& sum) {
 }
 
 Dense dense(const SystemExample& e) {
-  const Index band = e.layout.spline_dimensions * e.problem.grid.coefficients(), w = e.layout.bias_process,
-              border_at = band + e.x.bias_process.size(), all = border_at + e.layout.global_parameters;
-  Dense d{MatrixXd::Zero(all, all), VectorXd::Zero(all), band, border_at, process_information(e)};
-  const auto wandering = bias_parameters(e.layout);
+  const Index splines = e.layout.spline_dimensions * e.problem.grid.coefficients(), w = e.layout.bias_process,
+              first_global = splines + e.x.bias_process.size(), all = first_global + e.layout.global_parameters;
+  Dense d{MatrixXd::Zero(all, all), VectorXd::Zero(all), splines, first_global, process_information(e)};
+  const auto bias_columns = bias_parameters(e.layout);
   const GlobalParameterPrior prior = global_parameter_prior(e.problem, e.layout, e.x);
   d.matrix.bottomRightCorner(e.layout.global_parameters, e.layout.global_parameters) = prior.matrix;
   d.right.tail(e.layout.global_parameters) = prior.right;
-  d.matrix.block(band, band, e.x.bias_process.size(), e.x.bias_process.size()) = d.bias_process_prior;
-  d.right.segment(band, e.x.bias_process.size()) = -d.bias_process_prior * e.x.bias_process.reshaped();
+  d.matrix.block(splines, splines, e.x.bias_process.size(), e.x.bias_process.size()) = d.bias_process_prior;
+  d.right.segment(splines, e.x.bias_process.size()) = -d.bias_process_prior * e.x.bias_process.reshaped();
   const InsLinearisation linearisation(e.problem, e.layout, e.x);
   for (const TimeSegment& time_segment : time_segments_of(e.problem.grid)) {
     const BandSegmentSum sum = linearisation.sum(time_segment);
     const MatrixXd own = sum.border_matrix.selfadjointView<Eigen::Lower>();
     const MatrixXd coupling = sum.outer.bottomRows(e.layout.global_parameters);
     const Index at = time_segment.first * e.layout.spline_dimensions,
-                in_wander = band + w * time_segment_at(e.problem.grid, time_segment.first), n = sum.right.size();
+                first_bias = splines + w * time_segment_at(e.problem.grid, time_segment.first), n = sum.right.size();
     d.matrix.block(at, at, n, n) += dense_band(sum);
-    d.matrix.block(border_at, at, e.layout.global_parameters, n) += coupling;
-    d.matrix.block(in_wander, at, w, n) += coupling(wandering, Eigen::all);
-    d.matrix.block(in_wander, in_wander, w, w) += own(wandering, wandering);
-    d.matrix.block(border_at, in_wander, e.layout.global_parameters, w) += own(Eigen::all, wandering);
+    d.matrix.block(first_global, at, e.layout.global_parameters, n) += coupling;
+    d.matrix.block(first_bias, at, w, n) += coupling(bias_columns, Eigen::all);
+    d.matrix.block(first_bias, first_bias, w, w) += own(bias_columns, bias_columns);
+    d.matrix.block(first_global, first_bias, e.layout.global_parameters, w) += own(Eigen::all, bias_columns);
     d.matrix.bottomRightCorner(e.layout.global_parameters, e.layout.global_parameters) += own;
     d.right.segment(at, n) += sum.right;
-    d.right.segment(in_wander, w) += sum.border_right(wandering);
+    d.right.segment(first_bias, w) += sum.border_right(bias_columns);
     d.right.tail(e.layout.global_parameters) += sum.border_right;
   }
   d.matrix.triangularView<Eigen::StrictlyUpper>() = d.matrix.transpose();
   return d;
 }
 
-/// A⁻¹ Bᵀ of everything but the border.
+/// A⁻¹ Bᵀ of everything but the global parameters.
 MatrixXd sensitivity(const Dense& d) {
-  const Index rest = d.border;
+  const Index rest = d.global_parameters;
   return *invert_spd(d.matrix.topLeftCorner(rest, rest)) * d.matrix.topRightCorner(rest, d.matrix.rows() - rest);
 }
 
 TEST(InsSystem, SolvesTheEquationsOfAllIntervalsTogether) {
-  for (const Biases biases : {Biases::constant, Biases::wandering})
+  for (const Biases biases : {Biases::constant, Biases::time_varying})
     for (const Index intervals : {5, 64, 150, 300}) {
       const SystemExample e = system_example(intervals, biases);
       const Dense d = dense(e);
@@ -140,11 +140,11 @@ TEST(InsSystem, SolvesTheEquationsOfAllIntervalsTogether) {
 }
 
 TEST(InsSystem, BlockScoresAreGradientsWithSplinesAndBiasesEliminated) {
-  for (const Biases biases : {Biases::constant, Biases::wandering}) {
+  for (const Biases biases : {Biases::constant, Biases::time_varying}) {
     const SystemExample e = system_example(140, biases);
     const Dense d = dense(e);
     const MatrixXd follows = sensitivity(d);
-    const auto wandering = bias_parameters(e.layout);
+    const auto bias_columns = bias_parameters(e.layout);
     const MatrixXd scores = InsSystem(e.problem, e.layout, e.x, {}, 1).scores(2.0).blocks;
     ASSERT_EQ(scores.rows(), 7);
     const auto gradients = InsLinearisation(e.problem, e.layout, e.x).gradients({0, e.problem.grid.intervals});
@@ -152,9 +152,9 @@ TEST(InsSystem, BlockScoresAreGradientsWithSplinesAndBiasesEliminated) {
       VectorXd expected = VectorXd::Zero(e.layout.global_parameters);
       for (Index k = 20 * block; k < 20 * (block + 1); ++k) {
         const IntervalGradient& g = gradients[static_cast<std::size_t>(k)];
-        const Index in_wander = d.bias_process + e.layout.bias_process * time_segment_at(e.problem.grid, k);
+        const Index first_bias = d.bias_process + e.layout.bias_process * time_segment_at(e.problem.grid, k);
         expected += g.border - follows.middleRows(k * e.layout.spline_dimensions, g.band.size()).transpose() * g.band -
-                    follows.middleRows(in_wander, e.layout.bias_process).transpose() * g.border(wandering);
+                    follows.middleRows(first_bias, e.layout.bias_process).transpose() * g.border(bias_columns);
       }
       EXPECT_LT((scores.row(block).transpose() - expected).norm(), 1e-6 * expected.norm());
     }
@@ -162,17 +162,17 @@ TEST(InsSystem, BlockScoresAreGradientsWithSplinesAndBiasesEliminated) {
 }
 
 TEST(InsSystem, PriorsAppearInTheGlobalParameters) {
-  const SystemExample e = system_example(300, Biases::wandering);
+  const SystemExample e = system_example(300, Biases::time_varying);
   const Dense d = dense(e);
   const MatrixXd follows = sensitivity(d).middleRows(d.bias_process, e.x.bias_process.size());
   const MatrixXd expected =
       follows.transpose() * d.bias_process_prior * follows + global_parameter_prior(e.problem, e.layout, e.x).matrix;
-  const MatrixXd told = InsSystem(e.problem, e.layout, e.x, {}, 1).scores(2.0).priors;
-  EXPECT_LT((told - expected).norm(), 1e-7 * expected.norm());
+  const MatrixXd priors = InsSystem(e.problem, e.layout, e.x, {}, 1).scores(2.0).priors;
+  EXPECT_LT((priors - expected).norm(), 1e-7 * expected.norm());
 }
 
 TEST(InsSystem, GlobalParametersMayBeHeldWhileTheSplinesAreSolvedFor) {
-  const SystemExample e = system_example(150, Biases::wandering);
+  const SystemExample e = system_example(150, Biases::time_varying);
   const Dense d = dense(e);
   const auto expected = solve_spd(d.matrix.topLeftCorner(d.bias_process, d.bias_process), d.right.head(d.bias_process));
   for (const double most_kept : {1e9, 0.0}) {
@@ -185,25 +185,26 @@ TEST(InsSystem, GlobalParametersMayBeHeldWhileTheSplinesAreSolvedFor) {
 }
 
 TEST(InsSystem, SolvesTheSameWithoutStoredFactors) {
-  const SystemExample e = system_example(150, Biases::wandering);
+  const SystemExample e = system_example(150, Biases::time_varying);
   const Damping damping{.band = 0.01, .border = 0.1};
-  const InsSystem kept(e.problem, e.layout, e.x, damping, 2), lean(e.problem, e.layout, e.x, damping, 2, 0.0);
-  const auto a = kept.solve(), b = lean.solve();
+  const InsSystem stored(e.problem, e.layout, e.x, damping, 2), recomputed(e.problem, e.layout, e.x, damping, 2, 0.0);
+  const auto a = stored.solve(), b = recomputed.solve();
   ASSERT_TRUE(a && b);
   EXPECT_LT((a->spline_coefficients - b->spline_coefficients).norm(), 1e-9 * a->spline_coefficients.norm());
   EXPECT_LT((a->bias_process - b->bias_process).norm(), 1e-9 * a->bias_process.norm());
-  EXPECT_LT((kept.scores(2.0).blocks - lean.scores(2.0).blocks).norm(), 1e-9 * kept.scores(2.0).blocks.norm());
+  EXPECT_LT((stored.scores(2.0).blocks - recomputed.scores(2.0).blocks).norm(),
+            1e-9 * stored.scores(2.0).blocks.norm());
 }
 
 TEST(InsSystem, IsTheSameForAnyNumberOfThreads) {
-  const SystemExample e = system_example(200, Biases::wandering);
-  const auto told = [&](int threads) {
+  const SystemExample e = system_example(200, Biases::time_varying);
+  const auto solved = [&](int threads) {
     const InsSystem system(e.problem, e.layout, e.x, {}, threads, 0.0);
     return std::pair{system.solve()->spline_coefficients, system.scores(2.0).blocks};
   };
-  const auto one = told(1);
+  const auto one = solved(1);
   for (const int threads : {2, 7}) {
-    const auto more = told(threads);
+    const auto more = solved(threads);
     EXPECT_TRUE(one.first == more.first);
     EXPECT_TRUE(one.second == more.second);
   }

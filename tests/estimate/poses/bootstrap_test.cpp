@@ -48,7 +48,7 @@ TEST(Bootstrap, SpreadOverResamplesIsThatOfTheCovariance) {
   const Estimate estimate = fit_bundle(c.nominal, c.set, c.data, tracker, {.outliers = Outliers::keep_all});
   const Bootstrap found = bootstrap(estimate.chain, c.set, c.data, c.weights, {.resamples = 400}, Rng(1));
   EXPECT_EQ(found.failed, 0);
-  // The directions that only the priors hold do not move with the data: compared where the data rule.
+  // Directions that only the priors determine do not move with the data: compared where the data dominate.
   for (Eigen::Index k = 0; k < found.sd.size(); ++k) {
     const ParameterEstimate& value = estimate.values[k];
     const double prior_sd = c.set.free()[k]->prior_sd;
@@ -70,7 +70,7 @@ TEST(Bootstrap, ResultDoesNotDependOnTheThreads) {
 TEST(Bootstrap, RefitsByPoseResidualsAndByKernelsAgree) {
   Case c(30);
   const Bootstrap fast = bootstrap(c.truth, c.set, c.data, c.weights, {.resamples = 5}, Rng(3));
-  // An orientation that says nothing sends the same problem the slow way.
+  // An orientation without information sends the same problem through the general residuals.
   c.data.orientations.push_back({.row = 0, .orientation = Quat::Identity()});
   c.weights.orientation_sd.push_back(Vec3::Constant(1e9));
   const Bootstrap slow = bootstrap(c.truth, c.set, c.data, c.weights, {.resamples = 5}, Rng(3));

@@ -37,7 +37,7 @@ TEST(Residuals, JacobianEqualsDifferencesForPointsTargetsAndOrientations) {
 }
 
 TEST(Bundle, NoiseFreePaperCaseIsFittedToRounding) {
-  // The issue asks for a sum of squares of 1e-12 mm² or less over 50 poses.
+  // Target: a sum of squares of at most 1e-12 mm² over 50 poses.
   const PoseSet data = measured(with_table3_errors(er20()), paper2_poses(50, noise_free));
   const Estimate estimate = fit_bundle(er20(), paper24(er20()), data, noise_free);
   double squares = 0.0;
@@ -47,7 +47,7 @@ TEST(Bundle, NoiseFreePaperCaseIsFittedToRounding) {
 }
 
 TEST(Bundle, RanksOfThePapers24ParametersAre20OnTheAxisAnd23OffIt) {
-  // METHODS G and K: target on the last axis, and off it; sigma 10 µm.
+  // Paper 2's robot with the target on the last axis, and off it; sigma 10 µm.
   Chain off_axis = er20();
   off_axis.tool.xyz = Vec3(0.03, 0.02, 0.0);
   for (const auto& [nominal, rank] : {std::pair{er20(), 20}, std::pair{off_axis, 23}}) {
@@ -61,13 +61,13 @@ TEST(Bundle, RanksOfThePapers24ParametersAre20OnTheAxisAnd23OffIt) {
 TEST(Bundle, ConfoundedParametersAreNamed) {
   const PoseSet data = measured(with_table3_errors(er20()), paper2_poses(50, Instrument{.sigma = 10e-6}));
   const auto words = fit_bundle(er20(), paper24(er20()), data, Instrument{.sigma = 10e-6}).identifiability.confounded;
-  const auto says = [&](const std::string& sentence) {
+  const auto is_listed = [&](const std::string& sentence) {
     return std::find(words.begin(), words.end(), sentence) != words.end();
   };
-  EXPECT_TRUE(says("d2 and d3 cannot be told apart from these poses"));
-  EXPECT_TRUE(says("theta6 has no effect that these measurements could show"));
-  EXPECT_TRUE(says("d5 and alpha6 cannot be told apart from these poses"));
-  EXPECT_TRUE(says("theta5 and a6 cannot be told apart from these poses"));
+  EXPECT_TRUE(is_listed("d2 and d3 cannot be told apart from these poses"));
+  EXPECT_TRUE(is_listed("theta6 has no effect that these measurements could show"));
+  EXPECT_TRUE(is_listed("d5 and alpha6 cannot be told apart from these poses"));
+  EXPECT_TRUE(is_listed("theta5 and a6 cannot be told apart from these poses"));
 }
 
 TEST(Bundle, TheCompleteSetWithBaseToolAndBetaHasRank27) {
@@ -86,7 +86,7 @@ TEST(Bundle, UnobservableParametersStayNominal) {
       std::find_if(estimate.values.begin(), estimate.values.end(), [](auto& p) { return p.name == "theta6"; });
   EXPECT_NEAR(theta6->value, 0.0, 1e-9);
   EXPECT_FALSE(theta6->identifiable);
-  EXPECT_NEAR(theta6->sd, 0.1 * degree, 1e-5);  // the tolerance is all that is known
+  EXPECT_NEAR(theta6->sd, 0.1 * degree, 1e-5);  // only the tolerance determines it
 }
 
 TEST(Bundle, OutliersAreListedAndDoNotMoveTheResult) {
@@ -101,8 +101,8 @@ TEST(Bundle, OutliersAreListedAndDoNotMoveTheResult) {
   std::vector<int> listed;
   for (const Outlier& outlier : estimate.outliers) listed.push_back(outlier.row);
   EXPECT_EQ(listed, wrong);
-  const PoseSet unseen = measured(truth, paper2_poses(200, noise_free), 99);
-  EXPECT_LT(mean(point_errors(estimate.chain, unseen)), 25e-6);
+  const PoseSet test_poses = measured(truth, paper2_poses(200, noise_free), 99);
+  EXPECT_LT(mean(point_errors(estimate.chain, test_poses)), 25e-6);
 }
 
 TEST(Bundle, TheNoiseLevelIsEstimatedFromTheResidualsWhereNoInstrumentIsGiven) {
@@ -125,16 +125,16 @@ TEST(Bundle, AnOverlyOptimisticInstrumentShowsInChi2AndWidensTheStandardDeviatio
 TEST(Bundle, ErrorsOnHeldOutPosesAreAsLargeAsTheCovariancePredicts) {
   // Twenty noise seeds (a study with the same figures is in docs/development/results.md); 50 poses, 10 µm + 5 µm/m.
   const Chain truth = with_table3_errors(er20());
-  const PoseSet unseen = measured(truth, paper2_poses(200, noise_free), 1234);
+  const PoseSet test_poses = measured(truth, paper2_poses(200, noise_free), 1234);
   std::vector<double> actual(20), predicted(20);
   parallel_for(actual.size(), 0, [&](std::size_t i) {
     const PoseSet data = measured(truth, paper2_poses(50, tracker), static_cast<int>(100 + i));
     const Estimate estimate = fit_bundle(er20(), geometric_parameters(er20(), data, {}), data, tracker);
-    actual[i] = rms(point_errors(estimate.chain, unseen));
+    actual[i] = rms(point_errors(estimate.chain, test_poses));
     double squares = 0.0;
-    for (int row = 0; row < unseen.rows(); ++row)
-      squares += predicted_covariance(estimate, unseen.joints.col(row)).trace();
-    predicted[i] = std::sqrt(squares / static_cast<double>(unseen.rows()));
+    for (int row = 0; row < test_poses.rows(); ++row)
+      squares += predicted_covariance(estimate, test_poses.joints.col(row)).trace();
+    predicted[i] = std::sqrt(squares / static_cast<double>(test_poses.rows()));
   });
   EXPECT_GT(mean(actual) / mean(predicted), 0.8);
   EXPECT_LT(mean(actual) / mean(predicted), 1.25);
@@ -144,7 +144,7 @@ TEST(Bundle, ErrorsOnHeldOutPosesAreAsLargeAsTheCovariancePredicts) {
 TEST(Bundle, PredictedErrorsOfManyPosesAreThoseOfTheirCovariances) {
   const PoseSet data = measured(with_table3_errors(er20()), paper2_poses(50, tracker));
   Estimate estimate = fit_bundle(er20(), geometric_parameters(er20(), data, {}), data, tracker);
-  for (const double compliance : {0.0, 1e-6}) {  // pose by pose where a joint yields
+  for (const double compliance : {0.0, 1e-6}) {  // pose by pose where a joint is compliant
     estimate.chain.joints[1].compliance = compliance;
     const VectorXd errors = predicted_errors(estimate, data.joints);
     ASSERT_EQ(errors.size(), data.rows());

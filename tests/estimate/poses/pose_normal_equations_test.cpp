@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The normal equations made chunk by chunk are those of the Jacobian as a whole.
+// The normal equations summed chunk by chunk are those of the whole Jacobian.
 #include "kinfer/estimate/poses/pose_normal_equations.hpp"
 
 #include <gtest/gtest.h>
@@ -23,11 +23,11 @@ Chain soft_robot() {
   return chain;
 }
 
-PoseSet seen(const Chain& chain, int poses) {
+PoseSet simulated_poses(const Chain& chain, int poses) {
   PoseSet set = measured(chain, paper2_poses(poses, tracker));
   for (int row = 0; row < poses; row += 2)
     set.orientations.push_back({row, Quat(rot_x(0.02) * true_poses(chain, set)[row].rotation), Vec3(1e-3, 2e-3, 3e-3)});
-  for (std::size_t i = 0; i < set.orientations.size(); i += 3)  // point and orientation err together
+  for (std::size_t i = 0; i < set.orientations.size(); i += 3)  // correlated errors of point and orientation
     set.orientations[i].covariance_with_point = 3e-8 * rot_x(0.1 * static_cast<double>(i));
   set.contacts = {{0, 0}, {1, 1}, {7, 0}};
   return set;
@@ -40,7 +40,7 @@ ParameterSet all_of(const Chain& chain) {
   return set;
 }
 
-/// By the Jacobian of all rows, weighted block by block.
+/// Reference: from the Jacobian of all rows, weighted block by block.
 double by_all_rows(const Residuals& problem, ConstVectorRef x, const BlockLoss& loss, NormalEquations& normal) {
   VectorXd r(problem.rows);
   MatrixXd jacobian(problem.rows, problem.unknowns);
@@ -76,7 +76,7 @@ void expect_the_same(const Chain& chain, const ParameterSet& set, const PoseSet&
 TEST(PoseNormalEquations, ChunksOfAnyInstrumentsAddUpToTheWhole) {
   const Chain chain = soft_robot();
   for (const int poses : {9, 64, 150})
-    expect_the_same(chain, all_of(chain), seen(chain, poses), pack(all_of(chain), chain));
+    expect_the_same(chain, all_of(chain), simulated_poses(chain, poses), pack(all_of(chain), chain));
 }
 
 TEST(PoseNormalEquations, KernelsHandlePointsAloneWithARobustLoss) {
@@ -99,20 +99,20 @@ TEST(PoseNormalEquations, KernelsHandlePointsWithFullCovariances) {
   const VectorXd x = pack(set, er20());
   expect_the_same(er20(), set, data, x);
   const Weights weights = weights_of(data, Instrument{.sigma = 1e-4});
-  PoseSet walked = data;  // a second kind of measurement keeps the kernels away
-  walked.orientations.push_back({.row = 0, .orientation = Quat::Identity()});
+  PoseSet mixed = data;  // a second kind of measurement keeps the kernels away
+  mixed.orientations.push_back({.row = 0, .orientation = Quat::Identity()});
   VectorXd r, slow;
   MatrixXd jacobian, slow_jacobian;
   pose_residuals(er20(), set, data, weights).evaluate(x, r, &jacobian);
-  pose_residuals(er20(), set, walked, weights_of(walked, Instrument{.sigma = 1e-4})).evaluate(x, slow, &slow_jacobian);
+  pose_residuals(er20(), set, mixed, weights_of(mixed, Instrument{.sigma = 1e-4})).evaluate(x, slow, &slow_jacobian);
   EXPECT_LT((r.head(210) - slow.head(210)).norm(), 1e-9 * slow.head(210).norm());
   EXPECT_LT((jacobian.topRows(210) - slow_jacobian.topRows(210)).norm(), 1e-9 * slow_jacobian.topRows(210).norm());
 }
 
-/// Half the gradient of the cost is Jᵀr, compliance and all: torques are held, so that the derivative is exact.
+/// Half the gradient of the cost is Jᵀr, with compliance too: torques are held constant, so the derivative is exact.
 TEST(PoseNormalEquations, TheGradientOfACompliantRobotIsTheSlopeOfTheCost) {
   const Chain chain = soft_robot();
-  const PoseSet data = seen(chain, 20);
+  const PoseSet data = simulated_poses(chain, 20);
   const ParameterSet set = all_of(chain);
   const Weights weights = weights_of(data, Instrument{.sigma = 1e-3, .sigma_angle = 1e-3});
   const NormalProblem problem = pose_normal_problem(chain, set, data, weights, {Loss::cauchy, 2.0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws that every instrument's residual obeys: its Jacobian is its slope, and at the truth it is the noise.
+// Laws of every instrument's residual: its Jacobian is its slope, and at the truth it is the noise.
 #include <gtest/gtest.h>
 
 #include "kinfer/estimate/poses/noise_level.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-/// A robot with everything that a chain can have, in surroundings with everything that instruments refer to.
+/// A robot with every feature that a chain can have, and fixtures of every kind that instruments refer to.
 Chain rich_robot() {
   Chain chain = with_table3_errors(er20());
   chain.base = Frame::from_pose(Pose::from_xyz_rpy({0.4, -0.3, 0.2}, {0.1, -0.2, 0.5}));
@@ -41,7 +41,7 @@ Chain rich_robot() {
   return chain;
 }
 
-/// Of three unequal and correlated variances about `scale`.
+/// Covariance of three unequal and correlated variances about `scale`.
 Mat3 skewed_covariance(double scale) {
   const Mat3 root = (Mat3() << 1.0, 0.0, 0.0, 0.7, 0.5, 0.0, -0.3, 0.4, 2.0).finished();
   return scale * root * root.transpose();
@@ -76,7 +76,7 @@ PoseSet all_kinds(const Chain& chain) {
   return set;
 }
 
-/// Every number of the chain and of its surroundings, with and beyond geometry.
+/// Every number of the chain and of its fixtures, geometric or not.
 ParameterSet everything(const Chain& chain) {
   ParameterSet set = all_parameters(chain, {});
   const ParameterSet around = setup_parameters(chain, {});
@@ -115,11 +115,11 @@ TEST(ResidualKinds, AFullCovarianceWeightsTheErrorByItsInverse) {
   const auto [sd, axes] = principal_deviations(covariance);
   EXPECT_TRUE(covariance_of(sd, axes).isApprox(covariance, 1e-12));
   const Vec3 off(1e-3, -2e-3, 3e-3);
-  const Mat3 turned = exp_so3(off);
+  const Mat3 rotated = exp_so3(off);
   const std::vector<Pose> poses = true_poses(chain, set);
   set.points.resize(1);
   set.points[0].position += off, set.points[0].sd = sd, set.points[0].axes = axes;
-  set.orientations = {{2, Quat(turned * poses[2].rotation), sd, axes}};
+  set.orientations = {{2, Quat(rotated * poses[2].rotation), sd, axes}};
   const Weights weights = weights_of(set, Instrument{.sigma = 1.0, .sigma_angle = 1.0});
   const ParameterSet nothing;
   VectorXd r;
@@ -133,7 +133,7 @@ TEST(ResidualKinds, AFullCovarianceWeightsTheErrorByItsInverse) {
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 
-/// Point and orientation of one row with a 6 x 6 covariance, off by `point` and `turn`.
+/// Point and orientation of one row with a 6 x 6 covariance, displaced by `off` (point, rotation).
 struct OnePose {
   Mat6 covariance = Mat6::Zero();
   Vec6 off = Vec6::Zero();
@@ -151,10 +151,10 @@ OnePose one_pose(const Chain& chain) {
   one.set.points.resize(2);
   one.set.points[1].position += one.off.head<3>();
   const PrincipalDeviations point = principal_deviations(one.covariance.topLeftCorner<3, 3>()),
-                            turn = principal_deviations(one.covariance.bottomRightCorner<3, 3>());
+                            rotation = principal_deviations(one.covariance.bottomRightCorner<3, 3>());
   one.set.points[1].sd = point.sd, one.set.points[1].axes = point.axes;
-  const Quat turned(exp_so3(one.off.tail<3>()) * true_poses(chain, one.set)[1].rotation);
-  one.set.orientations = {{1, turned, turn.sd, turn.axes, Mat3(one.covariance.topRightCorner<3, 3>())}};
+  const Quat rotated(exp_so3(one.off.tail<3>()) * true_poses(chain, one.set)[1].rotation);
+  one.set.orientations = {{1, rotated, rotation.sd, rotation.axes, Mat3(one.covariance.topRightCorner<3, 3>())}};
   return one;
 }
 
@@ -169,13 +169,13 @@ TEST(ResidualKinds, SixRowsOfAPoseWeightItsErrorByTheInverseOfTheirCovariance) {
   };
   const double expected = one.off.dot(one.covariance.inverse() * one.off);
   EXPECT_NEAR(squares(one.set, weights_of(one.set, Instrument{.sigma = 1.0})), expected, 1e-8 * expected);
-  const double excess = 0.7e-3, turn_excess = 0.4e-3;  // what the model cannot say is added to both blocks
+  const double excess = 0.7e-3, rotation_excess = 0.4e-3;  // model error that is added to both blocks
   Mat6 wider = one.covariance;
   wider.topLeftCorner<3, 3>() += excess * excess * Mat3::Identity();
-  wider.bottomRightCorner<3, 3>() += turn_excess * turn_excess * Mat3::Identity();
+  wider.bottomRightCorner<3, 3>() += rotation_excess * rotation_excess * Mat3::Identity();
   ExcessNoise more;
   more.of[static_cast<std::size_t>(MeasurementKind::point)] = excess;
-  more.of[static_cast<std::size_t>(MeasurementKind::orientation)] = turn_excess;
+  more.of[static_cast<std::size_t>(MeasurementKind::orientation)] = rotation_excess;
   const double less = one.off.dot(wider.inverse() * one.off);
   EXPECT_NEAR(squares(one.set, weights_of(one.set, Instrument{.sigma = 1.0}, more)), less, 1e-8 * less);
 }
@@ -187,8 +187,8 @@ TEST(ResidualKinds, AnOrientationWhosePointIsNotKeptHasItsOwnCovariance) {
   const ParameterSet nothing;
   VectorXd r;
   pose_residuals(chain, nothing, alone, weights_of(alone, Instrument{.sigma = 1.0})).evaluate(VectorXd(0), r, nullptr);
-  const Vec3 turn = one.off.tail<3>();
-  const double expected = turn.dot(one.covariance.bottomRightCorner<3, 3>().inverse() * turn);
+  const Vec3 rotation = one.off.tail<3>();
+  const double expected = rotation.dot(one.covariance.bottomRightCorner<3, 3>().inverse() * rotation);
   EXPECT_NEAR(r.tail<3>().squaredNorm(), expected, 1e-8 * expected);
 }
 
@@ -207,7 +207,7 @@ TEST(ResidualKinds, ADrawWireDoesNotDependOnTheBase) {
   const std::vector<double> before = residual_norms(MeasurementKind::distance, chain, data);
   chain.base.xyz += Vec3(1, 2, 3);
   chain.base.rotation = rot_x(0.7) * chain.base.rotation;
-  PoseSet unloaded = data;  // gravity would bend the turned robot another way
+  PoseSet unloaded = data;  // gravity would deflect the rotated robot otherwise
   chain.joints[1].compliance = 0.0;
   Chain straight = rich_robot();
   straight.joints[1].compliance = 0.0;

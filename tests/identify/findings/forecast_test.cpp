@@ -18,7 +18,7 @@ namespace {
 
 JointEstimate joint_with(double point_sd, double axis_sd) {
   JointEstimate joint{.parent = "a", .child = "b"};
-  joint.sd.point_in_parent = {3.0, 3.0};  // cannot be known, so it does not count
+  joint.sd.point_in_parent = {3.0, 3.0};  // unobservable, so it does not count
   joint.sd.point_in_child = {0.1 * point_sd, point_sd};
   joint.sd.axis_in_parent = joint.sd.axis_in_child = {axis_sd, axis_sd};
   return joint;
@@ -64,7 +64,7 @@ TEST(Forecast, TheAzimuthIsReportedSeparately) {
             "enough for 5 mm and 10 mrad in every joint, but for places that no signal tells");
 }
 
-/// The rehearsal: an identified chain is driven in simulation and identified again.
+/// An identified chain is driven in simulation and identified again.
 TEST(Forecast, AnIdentifiedChainIsSimulatedAndIdentifiedAgain) {
   const MujocoWorld world = test::world_of("excavator-general", {}, 3);
   const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}), 100.0);
@@ -89,7 +89,7 @@ TEST(Forecast, AnIdentifiedChainIsSimulatedAndIdentifiedAgain) {
     const auto same =
         std::ranges::find(found->links, link.from + link.to, [](const LinkEstimate& l) { return l.from + l.to; });
     ASSERT_NE(same, found->links.end()) << link.segment;
-    // Axes that are parallel but for half a degree are nearest to each other somewhere far away: the sd knows.
+    // Axes half a degree from parallel have their common normal far away, and its sd shows that.
     EXPECT_NEAR(link.length, same->length, 4.0 * std::hypot(link.sd, same->sd)) << link.segment;
   }
 }

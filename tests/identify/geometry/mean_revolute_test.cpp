@@ -31,7 +31,7 @@ TEST(MeanRevolute, AnImperfectRevoluteJointOnAShakenChainIsIdentifiedWithItsLeve
   EXPECT_NEAR(loose.axis_deviation, 0.05, 0.01);
   EXPECT_LT(sound.axis_deviation, 0.01);
   EXPECT_EQ(loose.estimate.type, EstimatedJointType::revolute);
-  const Vec3 axis = Vec3::UnitX();  // of the straying hinge, in the parent
+  const Vec3 axis = Vec3::UnitX();  // of the imperfect joint, in the parent
   EXPECT_LT(loose.estimate.axis_in_parent.cross(axis).norm(), 0.02);
   EXPECT_LT(across(loose.estimate.point_in_parent - chain.bodies[2].point_in_parent, axis), 2e-3);
   const Vec3 in_child = chain.bodies[2].child_R_axis * axis;

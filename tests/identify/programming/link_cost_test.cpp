@@ -26,7 +26,7 @@ DhTree tree_of(const std::vector<DhLeaf>& leaves) {
   return tree;
 }
 
-/// Position by composing poses: twice differentiated by differences it judges the recursion.
+/// Position by composing poses: its second differences are the reference of the recursion.
 TEST(LinkMotion, AccelerationsAreSecondDifferencesOfPositions) {
   const JointSignal swing = wave(0.5, 0.7, 0.3), hinge = wave(0.6, 0.9, 1.0);
   const auto parent = swinging_parent(swing);
@@ -114,7 +114,7 @@ TEST(LinkBlock, AgreesWithProductsOf4x4MatricesAndDifferences) {
     fast += block.squared_acceleration_error(state) + block.squared_chord(state);
   }
   const double slow = test::naive_square(samples, guess, h);
-  EXPECT_NEAR(fast, slow, 1e-4 * slow);  // what second differences over a millisecond leave
+  EXPECT_NEAR(fast, slow, 1e-4 * slow);  // error of second differences over a millisecond
 }
 
 TEST(EulerAngles, AreThoseOfYawPitchRollAndHaveASecondSolution) {

@@ -20,7 +20,7 @@ struct Link {
   std::vector<FrameState> child = propagate(parent, general_hinge(), {&hinge, 1});
   std::vector<std::size_t> rows = all_rows(600);
 
-  /// With noise as INS leave it, of the accelerations only.
+  /// With an INS' noise, of the accelerations only.
   Link with_noise(std::uint64_t seed) const {
     Link link = *this;
     Rng rng(seed);
@@ -31,7 +31,7 @@ struct Link {
 };
 
 TEST(LinkStructure, EnumerationHasTheExpectedCount) {
-  // One signal in one of 2 n angles, with or without a constant beside it; the other angles constant or not.
+  // One signal in one of 2 n angles, with or without a constant offset; the other angles constant or zero.
   EXPECT_EQ(enumerate_structures(1).size(), 8u);
   EXPECT_EQ(enumerate_structures(2).size(), 8u + 64u);
   EXPECT_EQ(enumerate_structures(3).size(), 8u + 64u + 384u);

@@ -31,7 +31,7 @@ const Excavator& excavator() {
   return example;
 }
 
-/// In the world, at a row of the motion.
+/// World coordinates at a row of the motion.
 Vec3 true_tip(std::size_t row) {
   const Excavator& e = excavator();
   const MountedSensor& last = e.machine.sensors.back();

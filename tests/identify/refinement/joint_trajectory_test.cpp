@@ -34,7 +34,7 @@ std::vector<InsBody> bodies_of(EstimatedJointType type, Rng& rng) {
   return bodies;
 }
 
-/// parent_T_child as the continuous-time fit has it.
+/// parent_T_child of the continuous-time fit.
 Pose pose_of(const std::vector<InsBody>& bodies, const VectorXd& reading) {
   Pose parent_T_here;
   Index k = 0;

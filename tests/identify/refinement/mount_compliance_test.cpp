@@ -12,7 +12,7 @@ namespace {
 using test::HandMovedChain;
 using test::refined;
 
-/// Between the hinges on the middle segment, and how sure that is.
+/// Distance between the revolute joints on the middle segment, and its sd.
 struct Lever {
   double length, sd;
 };
@@ -32,7 +32,7 @@ double true_middle(const HandMovedChain& chain) {
                  chain.bodies[2].point_in_parent);
 }
 
-/// Each sensor's mass stands above its mount along z: it leans about y by the force along x and about −x by that along
+/// Each sensor's mass lies above its mount along z: it tilts about y by the force along x and about −x by that along
 /// y.
 Mat3 top_heavy(double lean) {
   Mat3 tilt = Mat3::Zero();
@@ -68,7 +68,7 @@ TEST(MountCompliance, RigidMountsAreReportedAsSuchAndKeepTheirIntervals) {
 }
 
 TEST(MountCompliance, UnobservableCompliancesAreAssumedToBeLikeTheObservableOnes) {
-  // Nine tilts, of which three are seen to 1e-4 and are 2e-3 each; of the others nothing is known.
+  // Nine compliances, of which three are observable to 1e-4 and are 2e-3 each; the others are unobservable.
   InsProblem problem;
   problem.prior.tilt = 1e-2;
   InsFit fit;
@@ -79,7 +79,7 @@ TEST(MountCompliance, UnobservableCompliancesAreAssumedToBeLikeTheObservableOnes
   InsCovariance covariance{MatrixXd::Identity(9, 9) * 1e-4, VectorXd::Ones(9)};
   covariance.model.diagonal().head<3>().setConstant(1e-8);
   EXPECT_NEAR(estimate_mount_compliance(problem, fit, covariance), 2e-3, 1e-6);
-  covariance.inflation.head<3>().setConstant(1e5);  // then nothing is seen, and the prior stays
+  covariance.inflation.head<3>().setConstant(1e5);  // then nothing is observable, and the prior stays
   EXPECT_NEAR(estimate_mount_compliance(problem, fit, covariance), problem.prior.tilt, 1e-12);
 }
 

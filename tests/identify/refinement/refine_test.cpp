@@ -44,7 +44,7 @@ Refinement refined(const RefinedDrive& drive, int threads = 0) {
   return *result;
 }
 
-/// Distance from the true axis line in the child's sensor, free of what cannot be known [m].
+/// Distance from the true axis line in the child's sensor, without unobservable directions [m].
 double distance_of_lines(const JointEstimate& found, const JointTruth& truth) {
   Vec3 error = found.point_in_child - truth.point_in_child;
   std::vector<Vec3> free{truth.axis_in_child};
@@ -87,7 +87,8 @@ TEST(Refine, NeedsNoStationaryBase) {
 TEST(Refine, HandlesFaultyRecordings) {
   const RefinedDrive drive =
       driven("excavator-general", {}, "industrial", {.missing = 0.05, .spikes = 6.0, .has_magnetometer = false});
-  expect_close(refined(drive), drive.truth, 5e-3, 25e-3);  // without magnetometer the swing's direction is loose
+  expect_close(refined(drive), drive.truth, 5e-3,
+               25e-3);  // without magnetometer the swing's heading is poorly observable
 }
 
 TEST(Refine, ReportsWhatAStationaryPlatformLeavesUnobservable) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logs that are wrong: each fault is found and said, and what is left of the machine is as good as it can be.
+// Faulty recordings: each fault is found and reported, and the rest of the machine is as accurate as possible.
 #include <gmock/gmock.h>
 
 #include "identify/driven_machine.hpp"

@@ -22,7 +22,7 @@ const SensorClockEstimate& clock_of(const Identification& found, const std::stri
   return *place;
 }
 
-/// Against the clock of ins3, which nobody touched.
+/// Relative to the clock of ins3, which was not changed.
 double relative_offset(const Identification& found, const std::string& sensor) {
   return clock_of(found, sensor).offset - clock_of(found, "ins3").offset;
 }

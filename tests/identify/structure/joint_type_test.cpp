@@ -32,7 +32,7 @@ SegmentMotion segment_of(const std::string& name, const std::vector<FrameState>&
   return segment;
 }
 
-/// A swinging parent and a child behind the leaves, measured perfectly.
+/// A swinging parent and a child behind the leaves, measured without error.
 RecordedMotion two_segments(const std::vector<DhLeaf>& leaves, const std::vector<JointSignal>& signals) {
   const auto parent = swinging_parent(wave(0.5, 0.7, 0.3));
   RecordedMotion motion;

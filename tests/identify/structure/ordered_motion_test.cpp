@@ -71,7 +71,7 @@ TEST(OrderedMotion, AnAccelerometerBiasThatTiltsTheVerticalIsFound) {
   ASSERT_TRUE(ordered) << ordered.error().what;
   EXPECT_THAT(edge_names(*ordered), testing::UnorderedElementsAreArray(edge_names(log.truth)));
   EXPECT_GT(ordered->tree.margin, 10.0);
-  double level = 0.0;  // share of the sensor's x axis that is level, and so leans the vertical
+  double level = 0.0;  // horizontal share of the sensor's x axis: tilts the estimated vertical
   for (const Quat& q : log.motion.sensors[4].world_R_sensor)
     level += (q * Vec3::UnitX()).head<2>().norm() / static_cast<double>(log.motion.time.size());
   EXPECT_NEAR(ordered->tree.pair(3, 4).tilt.norm(), level * bias / 9.81, 0.02);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two INS on one segment: paper 1 says that a second one is used, not refused.
+// Two INS on one segment: as in paper 1, the second one is used, not refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t boom = 2;
 
-/// The machine with its boom's INS elsewhere on the boom.
+/// The machine with its boom's INS at another place on the boom.
 Machine with_other_boom_sensor(Machine machine) {
   MountedSensor& sensor = machine.sensors[boom];
   sensor.name = "second";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What sensors do when they fail: the filters say something finite, and recover where they can.
+// Sensor failures: the filters return finite orientations and recover where possible.
 #include <gtest/gtest.h>
 
 #include <limits>

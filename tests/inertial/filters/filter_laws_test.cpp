@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws that every orientation filter obeys, whatever is inside.
+// Laws of every orientation filter.
 #include <gtest/gtest.h>
 
 #include "kinfer/inertial/filters/orientation.hpp"
@@ -16,7 +16,7 @@ using testing::CarriedSensor;
 struct Case {
   const char* name;
   FilterOptions options;
-  double accuracy;  // [rad] total rms on the perfect carried sensor
+  double accuracy;  // [rad] total rms on an error-free moving sensor
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) {
@@ -54,7 +54,7 @@ TEST_P(EveryFilter, RotatingTheFieldRotatesTheResult) {
   const auto straight = run(carried({}));
   auto turned = run(carried({.declination = turn}));
   for (Quat& q : turned) q = quat_exp(Vec3(0, 0, turn)) * q;
-  // Not to the last digit: the motion is not turned with the field, so the small errors of the filter differ.
+  // Not to the last digit: the motion is not rotated with the field, so small errors of the filter differ.
   EXPECT_LT(largest_angle(straight, turned), GetParam().accuracy / 6);
 }
 
@@ -66,7 +66,7 @@ TEST_P(EveryFilter, RotatingTheSensorInItsHousingRotatesTheResult) {
   EXPECT_LT(largest_angle(straight, turned), 1e-3);
 }
 
-/// As an instrument of a lower rate would report it: means over `n` rows, at the time of the last.
+/// Samples of an instrument of a lower rate: means over `n` rows, at the time of the last.
 CarriedSensor decimated(const CarriedSensor& c, std::size_t n) {
   CarriedSensor out;
   for (std::size_t row = n; row < c.time.size(); row += n) {

@@ -27,7 +27,7 @@ TEST(KinferEstimate, DifferenceUndoesCorrection) {
   EXPECT_LT((difference(corrected(estimate, error), estimate) - error).norm(), 1e-12);
 }
 
-/// What predict() says of the end of a period, against filters that really start with another bias or scale.
+/// Reference for predict()'s state at the end of a period: filters that start with another bias or scale.
 TEST(KinferFilter, TransitionAgreesWithDifferences) {
   const CarriedSensor c = carried({.seconds = 8.0, .rest = 0.0, .has_magnetometer = false});
   const auto one_period = [&](const KinferErrorState& error, KinferTransition* transition) {

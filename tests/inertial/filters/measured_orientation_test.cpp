@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filters against optical truth and encoders, on data that is not part of the project (KINFER_DATA).
+// The filters against optical ground truth and encoders, on public data that is not part of the project (KINFER_DATA).
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -14,7 +14,7 @@
 namespace kinfer {
 namespace {
 
-/// A turning and a sliding joint, with a further target on the tool.
+/// A revolute and a prismatic joint, with a further target on the tool.
 Chain two_joints() {
   Chain chain;
   chain.joints.resize(2);

@@ -17,7 +17,7 @@ namespace {
 
 const std::string imu_header = "t,imu_ax,imu_ay,imu_az,imu_gx,imu_gy,imu_gz,imu_mx,imu_my,imu_mz\n";
 
-/// `rows` rows of a still sensor at 100 Hz, numbered by their time, with some noise so that no row repeats.
+/// `rows` rows of a stationary sensor at 100 Hz, numbered by their time, with some noise so that no row repeats.
 std::string still_rows(int rows, double gravity = 9.81, double first = 0.0) {
   std::string text;
   for (int i = 0; i < rows; ++i)
@@ -197,9 +197,9 @@ TEST(PlainDecimal, EqualsFromCharsOrIsEmpty) {
     const char* after = read_plain_decimal(text.data(), end, ours);
     if (!after) continue;
     ++read;
-    const auto judged = std::from_chars(text.data(), end, theirs);
-    ASSERT_EQ(judged.ec, std::errc()) << text;
-    ASSERT_EQ(judged.ptr, after) << text;
+    const auto parsed = std::from_chars(text.data(), end, theirs);
+    ASSERT_EQ(parsed.ec, std::errc()) << text;
+    ASSERT_EQ(parsed.ptr, after) << text;
     ASSERT_EQ(ours, theirs) << text;
   }
   EXPECT_GT(read, 130000);

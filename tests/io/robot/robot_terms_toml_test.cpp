@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes beyond geometry, and what instruments refer to, survives the robot file.
+// Non-geometric terms and fixtures survive writing and reading the robot file.
 #include <gtest/gtest.h>
 
 #include "kinfer/io/pose_set/pose_set_csv.hpp"

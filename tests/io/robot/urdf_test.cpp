@@ -60,7 +60,7 @@ TEST(Urdf, JointsLimitsAxesAndMimicsAreRead) {
   ASSERT_EQ(chain->joints[2].couplings.size(), 1U);
   EXPECT_EQ(chain->joints[2].couplings[0].joint, 0);
   EXPECT_EQ(chain->joints[2].couplings[0].factor, -0.5);
-  // By hand: turn 0.4 about z, slide 0.1 along x after 0.2, turn -0.5 · 0.4 + 0.1 about x (URDF's default axis).
+  // By hand: rotate 0.4 about z, shift 0.1 along x after 0.2, rotate -0.5 · 0.4 + 0.1 about x (URDF's default axis).
   const Pose tool = forward(*chain, VectorXd((VectorXd(2) << 0.4, 0.1).finished()));
   EXPECT_TRUE(tool.position.isApprox(rot_z(0.4) * Vec3(0.3, 0, 0) + Vec3(0, 0, 0.5), 1e-14));
   EXPECT_TRUE(tool.rotation.isApprox(rot_z(0.4) * rot_x(-0.1), 1e-14));
@@ -129,7 +129,7 @@ TEST(Urdf, ParserErrorsAreReturnedAndNotPrinted) {
   EXPECT_EQ(bad_number.rfind("arm.urdf: not a valid URDF: ", 0), 0U) << bad_number;
 }
 
-/// The readings of `from` for a chain that has the same joints in another order.
+/// The joint positions of `from` for a chain that has the same joints in another order.
 VectorXd reordered(const Chain& to, const Chain& from, const VectorXd& q) {
   const auto from_names = active_joint_names(from), to_names = active_joint_names(to);
   VectorXd result(to_names.size());

@@ -11,20 +11,20 @@
 namespace kinfer {
 namespace {
 
-constexpr int poses = 23;  // no multiple of any number of lanes
+constexpr int poses = 23;  // not a multiple of any number of lanes
 
 Chain without_compliance(Chain chain) {
   for (Joint& joint : chain.joints) joint.compliance = 0.0;
   return chain;
 }
 
-std::vector<Chain> stiff_examples() {
+std::vector<Chain> rigid_examples() {
   std::vector<Chain> list;
   for (const Chain& chain : laws::examples()) {
     list.push_back(without_compliance(chain));
     list.back().targets = {{"second", Vec3(0.01, 0.2, -0.03)}};
   }
-  Chain on_axis = laws::er20();  // as in paper 2: base at the world, tool on the last axis
+  Chain on_axis = laws::er20();  // as in paper 2: base at the world origin, tool on the last axis
   on_axis.name = "ER20 on its axis", on_axis.base = {}, on_axis.tool = {};
   list.push_back(on_axis);
   return list;
@@ -76,7 +76,7 @@ std::vector<const batch::Kernels*> runnable() {
 }
 
 class AnyRigidChain : public ::testing::TestWithParam<Chain> {};
-INSTANTIATE_TEST_SUITE_P(Batch, AnyRigidChain, ::testing::ValuesIn(stiff_examples()));
+INSTANTIATE_TEST_SUITE_P(Batch, AnyRigidChain, ::testing::ValuesIn(rigid_examples()));
 
 TEST_P(AnyRigidChain, SumsOfPopulationsAreThoseOfSinglePoses) {
   const Chain chain = GetParam();

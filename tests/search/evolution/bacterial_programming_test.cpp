@@ -25,14 +25,14 @@ struct AffineLeaves {
 using AffineTree = ProductTree<Affine>;
 using AffineBreed = TreeOperators<Affine, AffineLeaves>;
 
-/// Distance of the product from x -> 0.7 x + 3.1, which one leaf with a shift of at most 2 cannot begin with.
+/// Distance of the product from x -> 0.7 x + 3.1, which one leaf with a shift of at most 2 cannot reach.
 double distance_from_target(const AffineTree& tree, double /*bound*/) {
   Affine all;
   for (const Affine& leaf : leaves(tree)) all = {all.scale * leaf.scale, all.scale * leaf.shift + all.shift};
   return std::hypot(all.scale - 0.7, all.shift - 3.1) + 1e-9 * leaf_count(tree);
 }
 
-/// Bit strings: another kind of genome, whose parts are its bits.
+/// Bit strings: another genome, whose parts are its bits.
 struct BitBreed {
   using Genome = std::vector<bool>;
   Genome random(Rng rng) const {

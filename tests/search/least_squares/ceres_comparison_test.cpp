@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The independent judge: Ceres solves the same residuals and must end at the same optimum.
+// Ceres as independent reference: it solves the same residuals and must end at the same optimum.
 #include <ceres/ceres.h>
 #include <gtest/gtest.h>
 
@@ -78,7 +78,7 @@ TEST(CeresComparison, StandardProblemsHaveTheSameOptimum) {
     const auto ours = least_squares(problem.residuals, problem.start, {.max_iterations = 500});
     const auto theirs = ceres_fit(problem.residuals, problem.start);
     EXPECT_LE(ours.cost, theirs.cost * (1 + 1e-10) + 1e-24) << problem.name;
-    // The optimum of Powell's function is flat to fourth order, so its place is known to the root of the root only.
+    // The optimum of Powell's function is flat to fourth order, so its position is determined to the fourth root only.
     const double place = problem.name == "powell_singular" ? 1e-5 : 1e-6 * theirs.x.norm();
     EXPECT_LT((ours.x - theirs.x).norm(), place) << problem.name;
   }

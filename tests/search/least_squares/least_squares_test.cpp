@@ -107,7 +107,7 @@ TEST(LeastSquares, ANoiseFreeFitConvergesDownToRounding) {
   const auto fit = least_squares(problem.residuals, problem.start);
   EXPECT_TRUE(converged(fit.stop)) << sentence(fit.stop);
   EXPECT_LT(fit.cost,
-            20 * 1e-30);  // 20 residuals of numbers of the size of 1 .. 5, each with an error of 1e-15 or less
+            20 * 1e-30);  // 20 residuals of numbers of 1 .. 5, each with a rounding error of at most 1e-15
   EXPECT_NEAR(fit.x[0], 0.3, 2e-15);
   EXPECT_NEAR(fit.x[1], 0.1, 2e-15);
 }
@@ -145,7 +145,7 @@ TEST(LeastSquares, TheSmallestChangeIsCountedInTypicalSizes) {
 }
 
 TEST(LeastSquares, ARedundantNonlinearProblemDoesNotDriftHoweverLongItRuns) {
-  // Ten noisy sightings of the product x0 x1: all points of a hyperbola are optima.
+  // Ten noisy measurements of the product x0 x1: all points of a hyperbola are optima.
   const VectorXd seen = VectorXd::Constant(10, 6.0) + 0.1 * random_matrix(10, 1, Rng(6));
   const Residuals product{2, 10, {}, [seen](ConstVectorRef x, VectorXd& r, MatrixXd* j) {
                             r = VectorXd::Constant(10, x[0] * x[1]) - seen;
@@ -212,7 +212,7 @@ TEST(LeastSquares, RobustLossesFindTheLineDespiteOutliers) {
 }
 
 TEST(LeastSquares, RowsAfterTheBlocksCarryNoLoss) {
-  // Two sightings of x at 0 (robust) and a prior at 100: without a loss on the prior the optimum of huber is at 98.
+  // Two measurements of x at 0 (robust) and a prior at 100: without a loss on the prior the optimum of huber is at 98.
   const Residuals problem{1, 3, {1, 1}, [](ConstVectorRef x, VectorXd& r, MatrixXd* j) {
                             r << x[0], x[0], x[0] - 100.0;
                             if (j) j->setOnes();

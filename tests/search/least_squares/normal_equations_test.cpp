@@ -6,7 +6,7 @@
 namespace kinfer {
 namespace {
 
-/// The same problem, known by its normal equations only.
+/// The same problem, given by its normal equations only.
 NormalProblem by_normal_equations(const Residuals& problem) {
   const auto evaluate = [&problem](ConstVectorRef x, MatrixXd* jacobian) {
     VectorXd r(problem.rows);

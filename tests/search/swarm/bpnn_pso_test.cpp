@@ -26,7 +26,7 @@ TEST(BpnnPso, TheNetOfOneRunPredictsASwarmAroundItsOptimum) {
   const SearchOutcome first = cold_run();
   const MatrixXd predicted = predict(*first.net, uniform_swarm(testing::cube(10, 1.0), 50, Rng(2)));
   EXPECT_LT((predicted.rowwise().mean() - first.x).cwiseAbs().maxCoeff(), 0.05);
-  EXPECT_LT((predicted.colwise() - first.x).cwiseAbs().mean(), 0.1);  // drawn evenly from ±1: 0.5 and more
+  EXPECT_LT((predicted.colwise() - first.x).cwiseAbs().mean(), 0.1);  // a uniform draw from ±1 has 0.5 and more
 }
 
 TEST(BpnnPso, TheNextRunOnTheSameProblemNeedsFewerIterations) {

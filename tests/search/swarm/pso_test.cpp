@@ -17,7 +17,7 @@ using testing::objective_of;
 using testing::rastrigin;
 using testing::shifted_sphere;
 
-/// Eqs. (9) and (10) written for one number of one particle, with the same draws, as slowly and plainly as they read.
+/// Reference: eqs. (9) and (10) for one number of one particle, with the same random draws.
 MatrixXd slow_swarm(const PsoOptions& options, int iterations, Rng rng) {
   const Bounds box = cube(2, 1.0);
   const auto cost = [](const VectorXd& x) { return (x.array() - 0.3).square().sum(); };
@@ -78,7 +78,7 @@ TEST(Pso, EndsAtTheTargetWithoutAnUpdateWhenTheFirstSwarmReachesIt) {
 }
 
 TEST(Pso, ClampedParticlesStayInTheBoxAndOpenOnesMayLeaveIt) {
-  // The lowest point lies outside, behind the upper wall.
+  // The minimum lies outside, beyond the upper bound.
   const Objective objective =
       objective_of(cube(2, 1.0), [](const VectorXd& x) { return (x.array() - 3.0).square().sum(); });
   PsoOptions options{.budget = {.max_iterations = 100}};
@@ -124,7 +124,7 @@ TEST(Pso, ThePrintedInertiaContractsFarLessThanTheDefault) {
 }
 
 TEST(Pso, AbsorbingBoundsFreeASwarmThatClampingTraps) {
-  // All particles run into x_d = 1 in some number d, and none remembers anything else: found with this seed.
+  // With this seed all particles reach x_d = 1 in some dimension d, and so do their personal bests.
   PsoOptions options = pso_as_printed();
   options.budget = {.max_iterations = 1000};
   options.boundary = BoundaryHandling::clamp;
@@ -145,7 +145,7 @@ TEST(Pso, CostsThatAreNotFiniteAreInfiniteAndCounted) {
 }
 
 TEST(Pso, AStagnatingSearchEndsBeforeItsBudget) {
-  // The bowl of 24 dimensions with a floor: noise leaves no lower cost to be found.
+  // The quadratic of 24 dimensions with a floor, below which no cost can be found.
   const Objective bowl = shifted_sphere(24);
   const Objective with_floor{bowl.bounds, [bowl](ConstMatrixRef x, std::span<double> cost) {
                                bowl.evaluate(x, cost);

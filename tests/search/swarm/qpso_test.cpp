@@ -24,7 +24,7 @@ TEST(Qpso, FindsTheGlobalOfManyLocalMinima) {
 }
 
 TEST(Qpso, AContractionAbove178DispersesTheSwarm) {
-  // Sun et al.: |x − p| grows without bound in the mean above e^gamma = 1.781; here the walls hold it.
+  // Sun et al.: |x − p| grows without bound in the mean above e^gamma = 1.781; here the bounds limit it.
   const QpsoOptions wide{.contraction = 2.2, .final_contraction = 2.2, .budget = {.max_iterations = 200}};
   const QpsoOptions narrow{.contraction = 0.6, .final_contraction = 0.6, .budget = {.max_iterations = 200}};
   const auto width = [](const SearchOutcome& o) { return (o.final_swarm.colwise() - o.x).cwiseAbs().mean(); };

@@ -24,7 +24,7 @@ std::vector<search::SwarmKernel> runnable() {
 }
 
 TEST(SwarmKernel, EveryInstructionSetUpdatesByEquations9And10BitForBit) {
-  constexpr int dim = 29;  // no multiple of any number of lanes
+  constexpr int dim = 29;  // not a multiple of any number of lanes
   constexpr double w = 0.8, own = 0.5, swarm = 1.25;
   Rng rng(1);
   const auto random = [&] { return VectorXd::NullaryExpr(dim, [&] { return rng.uniform(-1.0, 1.0); }).eval(); };
