@@ -13,9 +13,9 @@ namespace {
 using laws::Mat4;
 
 constexpr Load load{.payload = 12.0};
-constexpr double rounding = 1e-13;  // [m], [1]
+constexpr double rounding = 1e-13;         // [m], [1]
 constexpr double torque_rounding = 1e-11;  // [m] deflections by the numeric torques of the reference
-constexpr double difference = 1e-7;  // relative to the largest entry of the column
+constexpr double difference = 1e-7;        // relative to the largest entry of the column
 
 Mat4 matrix(const Pose& pose) {
   Mat4 m = Mat4::Identity();
