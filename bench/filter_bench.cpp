@@ -41,7 +41,7 @@ const bool filters_are_registered = [] {
   return true;
 }();
 
-/// Six sensors of nine channels, 60 MB.
+/// Six sensors with nine columns each, 60 MB.
 void read_recording(benchmark::State& state) {
   const auto path = std::filesystem::temp_directory_path() / "kinfer_filter_bench.csv";
   {
@@ -49,8 +49,8 @@ void read_recording(benchmark::State& state) {
     std::ofstream file(path);
     file << "t";
     for (int sensor = 0; sensor < 6; ++sensor)
-      for (const char* channel : {"ax", "ay", "az", "gx", "gy", "gz", "mx", "my", "mz"})
-        file << ",ins" << sensor << '_' << channel;
+      for (const char* column : {"ax", "ay", "az", "gx", "gy", "gz", "mx", "my", "mz"})
+        file << ",ins" << sensor << '_' << column;
     file << '\n';
     for (std::size_t row = 0; file.tellp() < 60'000'000; ++row) {
       file << fmt::format("{:.4f}", 0.005 * static_cast<double>(row));

@@ -20,7 +20,7 @@ struct Case {
   ParameterSet set;
 };
 
-const Case& the_case() {
+const Case& benchmark_case() {
   static const Case made = [] {
     Chain nominal = test::er20(0.125);
     nominal.base = Frame::from_pose(Pose::from_xyz_rpy({1.2, -2.5, 0.35}, {0.02, -0.03, 2.3}));
@@ -32,7 +32,7 @@ const Case& the_case() {
 }
 
 void kinfer_fit(benchmark::State& state) {
-  const Case& c = the_case();
+  const Case& c = benchmark_case();
   const Weights weights = weights_of(c.data, test::tracker);
   const Residuals problem = pose_residuals(c.nominal, c.set, c.data, weights);
   const VectorXd start = pack(c.set, c.nominal);
@@ -44,13 +44,13 @@ void kinfer_fit(benchmark::State& state) {
 BENCHMARK(kinfer_fit)->Unit(benchmark::kMillisecond);
 
 void kinfer_fit_with_noise_level_outliers_and_covariance(benchmark::State& state) {
-  const Case& c = the_case();
+  const Case& c = benchmark_case();
   for (auto _ : state) benchmark::DoNotOptimize(fit_bundle(c.nominal, c.set, c.data, test::tracker));
 }
 BENCHMARK(kinfer_fit_with_noise_level_outliers_and_covariance)->Unit(benchmark::kMillisecond);
 
-/// The same model written for automatic derivatives: parameters in the order of the set (base 6; a alpha d theta [beta]
-/// of each joint; tool 3).
+/// The same model for automatic derivatives: parameters in the order of the set (base 6; a alpha d theta [beta] of each
+/// joint; tool 3).
 struct PointResidual {
   Vec3 measured;
   double inverse_sd;
@@ -111,7 +111,7 @@ struct PriorResidual {
 };
 
 void ceres_fit(benchmark::State& state) {
-  const Case& c = the_case();
+  const Case& c = benchmark_case();
   const Weights weights = weights_of(c.data, test::tracker);
   const VectorXd start = pack(c.set, c.nominal);
   bool beta[6];

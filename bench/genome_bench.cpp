@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One evaluation of a chain of three DH leaves on 1200 samples: the block kernel, the same on an eighth of them, and
-// the obvious way with 4×4 products and differences.
+// the reference with 4×4 products and differences.
 #include <benchmark/benchmark.h>
 
 #include "identify/example_machine.hpp"

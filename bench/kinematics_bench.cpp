@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forward kinematics and their derivative: the batch kernels beside naive Eigen, Orocos KDL and Ceres' Jets, and beside
-// the most that the core's multiply-adds allow. Items are poses.
+// Forward kinematics and derivatives: the batch kernels beside naive Eigen, Orocos KDL and Ceres' Jets, and beside the
+// peak of the core's multiply-adds. Items are poses.
 #include <benchmark/benchmark.h>
 
 #include "kinfer/base/expect.hpp"
@@ -22,7 +22,7 @@ void count_poses(benchmark::State& state, int a_round) {
 
 void naive_fitness(benchmark::State& state) {
   const Paper2Case& c = paper2_case();
-  constexpr int few = 10;  // candidates: slow enough
+  constexpr int few = 10;  // candidates: the naive version is slow
   double sum = 0.0;
   for (auto _ : state)
     for (int p = 0; p < few; ++p)
@@ -51,7 +51,7 @@ void population_fitness(benchmark::State& state, const batch::Kernels& kernels) 
   count_poses(state, particles * poses);
 }
 
-/// One candidate, lanes are poses: what a fit asks for.
+/// One candidate, lanes are poses: as a fit evaluates it.
 void errors_of_one_candidate(benchmark::State& state, const batch::Kernels& kernels) {
   const Paper2Case& c = paper2_case();
   const BatchPoints points(c.nominal, c.set, c.table, kernels);
@@ -91,7 +91,7 @@ void kdl_position(benchmark::State& state) {
     }
   Vec3 naive;
   naive_position(c.start.data(), c.table.joints.col(poses - 1).data(), naive.data());
-  KINFER_EXPECT((at - naive).norm() < 1e-12, "KDL sees another chain");
+  KINFER_EXPECT((at - naive).norm() < 1e-12, "KDL's chain differs");
   count_poses(state, poses);
 }
 BENCHMARK(kdl_position);
@@ -116,7 +116,7 @@ void fma_peak(benchmark::State& state, void (*run)(int), int lanes) {
   state.SetItemsProcessed(state.iterations() * std::int64_t{10} * rounds * lanes);
 }
 
-/// Every kernel that this processor runs.
+/// Every kernel that this processor supports.
 [[maybe_unused]] const bool registered = [] {
   const batch::KernelList list = batch::runnable_kernels();
   for (int i = 0; i < list.count; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One table of ratios: every figure of kinfer over its peer's, both measured in this run.
+// Prints one table of ratios: each figure of kinfer over its peer's, both measured in this run.
 #include "ratios.hpp"
 
 int main(int argc, char** argv) {

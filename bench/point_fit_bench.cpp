@@ -25,7 +25,7 @@ void cold_fit(benchmark::State& state) {
   LeastSquaresOptions options = options_near_optimum();
   options.target_cost = 1e-8;  // sigma²; Ceres ends by itself at 9e-9
   LeastSquaresOutcome outcome;
-  for (auto _ : state) {  // what is prepared once for a data set is part of a cold fit
+  for (auto _ : state) {  // a cold fit includes the preparation of the data set
     const BatchPoints points(c.nominal, set, c.table);
     outcome = fit_points(points, set, points.weights(Eigen::Matrix3Xd::Constant(3, poses, 1e5)), c.start, options);
   }
@@ -60,7 +60,7 @@ BENCHMARK(bootstrap_1000)
     ->Arg(2)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond)
-    ->Repetitions(61)  // two cores are seldom left alone together
+    ->Repetitions(61)  // both cores are rarely idle at the same time
     ->ComputeStatistics("fastest", fastest);
 
 }  // namespace

@@ -16,7 +16,7 @@
 namespace kinfer::bench {
 namespace {
 
-/// Medians of what a benchmark measured; by the clock, its fastest repetition.
+/// Medians of a benchmark's repetitions; the fastest repetition for wall-clock times.
 struct Measured {
   double seconds = 0.0;  ///< of an iteration
   double items = 0.0;    ///< a second
@@ -31,10 +31,10 @@ class MedianReporter : public benchmark::BenchmarkReporter {
     for (const Run& run : runs) {
       const std::string name = run.run_name.str();
       if (run.error_occurred) fmt::print(stderr, "{}: {}\n", name, run.error_message);
-      const bool by_the_clock = name.find("/real_time") != std::string::npos;
-      if (run.aggregate_name == (by_the_clock ? "fastest" : "median")) {
+      const bool is_wall_clock = name.find("/real_time") != std::string::npos;
+      if (run.aggregate_name == (is_wall_clock ? "fastest" : "median")) {
         Measured& m = medians[name];
-        m.seconds = (by_the_clock ? run.GetAdjustedRealTime() : run.GetAdjustedCPUTime()) /
+        m.seconds = (is_wall_clock ? run.GetAdjustedRealTime() : run.GetAdjustedCPUTime()) /
                     benchmark::GetTimeUnitMultiplier(run.time_unit);
         if (const auto found = run.counters.find("items_per_second"); found != run.counters.end())
           m.items = found->second;
@@ -143,7 +143,7 @@ void print(const std::map<std::string, Measured>& medians) {
   table.figure("orientation filter, 120 s at 200 Hz", "filter_a_row/kinfer/200", "");
 }
 
-/// The defaults of every run; what the user gives comes after and wins.
+/// Default options, which options of the user override.
 std::vector<char*> with_defaults(int argc, char** argv, std::vector<std::string>& storage) {
   storage = {argv[0], "--benchmark_repetitions=15", "--benchmark_min_time=0.01",
              "--benchmark_enable_random_interleaving=true", "--benchmark_report_aggregates_only=true"};
@@ -167,7 +167,7 @@ int run_and_print_ratios(int argc, char** argv) {
   MedianReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   benchmark::Shutdown();
-  fmt::print("{}; {}; medians of CPU time on one thread; 1 -> 2 threads: the fastest by the clock\n", processor(),
+  fmt::print("{}; {}; medians of CPU time on one thread; 1 -> 2 threads: fastest wall-clock time\n", processor(),
              KINFER_BUILD);
   print(reporter.medians);
   return 0;

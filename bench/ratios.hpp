@@ -7,7 +7,7 @@
 
 namespace kinfer::bench {
 
-/// Statistic for what is measured by the clock: whatever else the machine does only ever adds to it.
+/// Statistic of wall-clock times: other load of the machine can only increase them.
 inline double fastest(const std::vector<double>& times) {
   return *std::min_element(times.begin(), times.end());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time from the shell's call to the first word: `kinfer --version`.
+// Start-up time of the program: `kinfer --version`.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>

@@ -9,8 +9,8 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
-# Several files of a target are compiled as one (a unity build): what Eigen, fmt and gtest cost a file is paid once a batch.
-# Names in anonymous namespaces must then differ within a batch; where that asks too much, a file stands alone
+# Several files of a target are compiled as one (a unity build): Eigen, fmt and gtest are parsed once per batch. Names in
+# anonymous namespaces must then differ within a batch; a file that cannot comply is compiled alone
 # (SKIP_UNITY_BUILD_INCLUSION).
 option(KINFER_UNITY "Compile files in batches: a whole build takes half the time, one changed file a few seconds more" ON)
 
@@ -20,12 +20,12 @@ target_compile_options(kinfer_flags INTERFACE
   -Werror
   -ffp-contract=off)  # the same answer from every compiler; kernels use explicit fused multiply-adds
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # gcc 12 sees ghosts in inlined Eigen and std::string code at -O3.
+  # False positives of gcc 12 in inlined Eigen and std::string code at -O3.
   target_compile_options(kinfer_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-restrict)
-  # A precompiled header alone fills the compiler's heap to where it collects garbage again and again: a tenth of its time.
+  # A precompiled header fills the compiler's heap so far that it collects garbage repeatedly, a tenth of its time.
   target_compile_options(kinfer_flags INTERFACE --param=ggc-min-heapsize=600000)  # [kB]
 endif()
-# A local name may be one that another file of its batch has; files compiled alone have the whole warning.
+# In a batch, a local name may equal a name of another file; files compiled alone get the full warning.
 if(NOT KINFER_UNITY)
   target_compile_options(kinfer_flags INTERFACE -Wshadow)
 elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -47,12 +47,12 @@ if(KINFER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   endif()
 endif()
 
-# Eigen alone takes longer to read than most files of ours: it is read once. `#include` lines stay complete all the same.
+# Eigen takes longer to parse than most source files: it is precompiled. `#include` lines stay complete nevertheless.
 set(KINFER_PRECOMPILED <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <fmt/ranges.h> <tl/expected.hpp> <nlohmann/json.hpp>
   <algorithm> <array> <cmath> <filesystem> <functional> <limits> <map> <memory> <numbers> <optional> <set> <span> <string>
   <string_view> <variant> <vector>)
 
-# An object library with nothing but a precompiled header, which other targets compiled alike take by REUSE_FROM.
+# An object library that holds only a precompiled header, which targets with the same flags use by REUSE_FROM.
 function(kinfer_header_library name)
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp CONTENT "// holds the precompiled header\n")
   add_library(${name} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
@@ -63,7 +63,7 @@ function(kinfer_batches target size)
   if(KINFER_UNITY)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-      target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # takes the files of a batch for headers
+      target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # it mistakes the files of a batch for headers
     endif()
   endif()
 endfunction()

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 # The front end of report.html (folder web/): bundled by esbuild and written as a source file, so that the installed program
 # needs no Node. Without scripts the report still has its text, tables and drawings.
-option(KINFER_REPORT_SCRIPTS "Bundle the report's scripts (3D, plots to look into); needs nodejs and npm" ON)
+option(KINFER_REPORT_SCRIPTS "Bundle the report's scripts (3D, interactive plots); needs nodejs and npm" ON)
 
 function(kinfer_report_bundle output)
   set(web ${PROJECT_SOURCE_DIR}/web)
   if(NOT KINFER_REPORT_SCRIPTS)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${web}/src/style.css)
     file(READ ${web}/src/style.css style)
-    string(REGEX REPLACE "@import [^\n]*\n" "" style "${style}")  # of the plots that are looked into
+    string(REGEX REPLACE "@import [^\n]*\n" "" style "${style}")  # style of the interactive plots
     file(CONFIGURE OUTPUT ${output} @ONLY CONTENT [[
 #include "kinfer/report/bundle.hpp"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes a source file that holds the MJCF files of `folder` as string literals, anew when one of them changes.
+# Writes a source file that holds the MJCF files of `folder` as string literals; rewritten when one of them changes.
 function(kinfer_embed_machines folder output)
   file(GLOB files CONFIGURE_DEPENDS ${folder}/*.xml)
   set(entries "")

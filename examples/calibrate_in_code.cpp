@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a nominal robot and a pose set to a corrected chain, in a program of one's own.
+// Calibrates a robot from a nominal model and a pose set, in your own program.
 #include <fmt/core.h>
 
 #include "kinfer/calibrate/calibrate.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fits y = a exp(b t) to samples of which two are wrong, with and without a robust loss.
+// Fits y = a exp(b t) to samples with two outliers, with and without a robust loss.
 #include <fmt/format.h>
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A chain by its DH rows, where its tool is, and how that depends on one parameter.
+// Builds a chain from DH rows and computes its tool position and the derivative by one parameter.
 #include <fmt/core.h>
 
 #include <cmath>

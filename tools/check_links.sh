@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Every relative link in the Markdown files leads to a file, and its #anchor to a heading of that file.
+# Every relative link in the Markdown files leads to an existing file, and its #anchor to a heading of that file.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 status=0

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# find_package(kinfer) works from an installed tree: installs BUILD into a folder of its own, builds a user's program there.
+# find_package(kinfer) works from an installed tree: installs BUILD into a temporary folder and builds a user's program.
 set -euo pipefail
 build=$1 source=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/package
 place=$(mktemp -d)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_study.sh PROGRAM OUT: a short run of the study of paper 2 gives the same tables on one thread and on two, but for
-# the columns that are times.
+# check_study.sh PROGRAM OUT: a short run of the study of paper 2 gives the same tables on one thread and on two, except
+# for columns of times.
 set -euo pipefail
 program=$1 out=$2
 rm -rf "$out"

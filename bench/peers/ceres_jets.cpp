@@ -8,7 +8,7 @@
 namespace kinfer::bench {
 namespace {
 
-/// The point carried from the tip inwards, as a careful user of Ceres would write it.
+/// The point transformed from the tip inwards, as a careful user of Ceres would write it.
 struct PointResidual {
   double q[6], measured[3], inverse_sd;
 

@@ -6,7 +6,7 @@
 namespace kinfer::bench {
 namespace {
 
-/// Ten chains cover a latency of five cycles on two pipes; assembly, so that no compiler thinks them away.
+/// Ten chains cover a latency of five cycles on two pipes; assembly, so that no compiler removes them.
 template <class V>
 [[gnu::always_inline]] inline void ten_chains(int rounds) {
   constexpr int chains = 10;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one core can do at most: independent fused multiply-adds and nothing else.
+// Peak of one core: independent fused multiply-adds and nothing else.
 #pragma once
 
 namespace kinfer::bench {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The obvious way to the same figures: 4 x 4 products in Eigen with sine and cosine at each joint. Plain numbers cross
-// the border, because this file is compiled with other flags than the rest.
+// The straightforward version: 4 x 4 products in Eigen with sine and cosine at each joint. The interface has plain
+// numbers only, because this file is compiled with other flags than the rest.
 #pragma once
 
 namespace kinfer::bench {

@@ -7,7 +7,7 @@
 namespace kinfer::bench {
 namespace {
 
-/// A segment of KDL turns first: its frame holds what lies between two joints.
+/// A KDL segment rotates first: its frame holds the constant transform between two joints.
 KDL::Chain chain_of(const double* x) {
   using KDL::Frame, KDL::Rotation, KDL::Vector;
   const auto row = [x](int j) {

@@ -12,7 +12,7 @@
 namespace kinfer::bench {
 namespace {
 
-/// What pagmo calls a problem.
+/// Pagmo's interface of a problem.
 struct NaiveFitness {
   const SwarmProblem* problem = nullptr;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The real chain of five segments, moved by hand: found from its INS alone, judged by cameras. One argument: the folder
-// of a trial with rigid.csv, nonrigid.csv and optical.csv; then, if only one is wanted, the log and the root.
+// A real chain of five segments, moved by hand: identified from its INS alone, compared with an optical reference.
+// Arguments: the folder of a trial with rigid.csv, nonrigid.csv and optical.csv; optionally one log and its root.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,8 @@ JointEstimate outward(JointEstimate joint) {
 
 JointEstimate joint_between(const Identification& found, const std::string& parent, const std::string& child) {
   for (const JointEstimate& joint : found.joints)
-    if (const JointEstimate turned = outward(joint); turned.parent == parent && turned.child == child) return turned;
+    if (const JointEstimate ordered = outward(joint); ordered.parent == parent && ordered.child == child)
+      return ordered;
   return {};
 }
 
@@ -48,7 +49,7 @@ double largest(const std::array<double, 2>& sd) {
   return std::max(sd[0], sd[1]);
 }
 
-/// Joint 12 to joint 34 along hinge 23: the split between both segments slides along the hinge, their sum does not.
+/// Joint 12 to joint 34 along the axis of joint 23: the split between both segments is unobservable, their sum is not.
 Length segments_2_and_3(const Identification& found) {
   const JointEstimate j12 = joint_between(found, "seg1", "seg2"), j23 = joint_between(found, "seg2", "seg3"),
                       j34 = joint_between(found, "seg3", "seg4");
@@ -64,18 +65,19 @@ void print(const char* name, const Length& length, double truth) {
              1e3 * length.sd, 1e3 * truth, (length.metres - truth) / length.sd);
 }
 
-void judge(const Identification& found, const OpticalLog& optical, const OpticalAlignment& alignment) {
+void print_comparison(const Identification& found, const OpticalLog& optical, const OpticalAlignment& alignment) {
   std::vector<double> errors;
   for (const auto& [parent, child] : {std::pair{"seg2", "seg3"}, {"seg3", "seg4"}, {"seg4", "seg5"}}) {
     const JointEstimate joint = joint_between(found, parent, child);
-    const OpticalHinge truth = optical_hinge(optical, alignment, parent, child);
-    const double is_parent = degrees_between(joint.axis_in_parent, truth.in_parent),
-                 is_child = degrees_between(joint.axis_in_child, truth.in_child);
-    errors.insert(errors.end(), {is_parent, is_child});
+    const OpticalJoint truth = optical_joint(optical, alignment, parent, child);
+    const double error_in_parent = degrees_between(joint.axis_in_parent, truth.in_parent),
+                 error_in_child = degrees_between(joint.axis_in_child, truth.in_child);
+    errors.insert(errors.end(), {error_in_parent, error_in_child});
     const auto deg = [](const std::array<double, 2>& sd) { return Angle::rad(std::hypot(sd[0], sd[1])).deg(); };
     fmt::print(
-        "  hinge {}-{}: axis {:.2f} and {:.2f} deg off (sd {:.2f}, {:.2f}); by the cameras it strays {:.2f} deg\n",
-        parent, child, is_parent, is_child, deg(joint.sd.axis_in_parent), deg(joint.sd.axis_in_child),
+        "  revolute joint {}-{}: axis errors {:.2f} and {:.2f} deg (sd {:.2f}, {:.2f}); optical axis deviation {:.2f} "
+        "deg\n",
+        parent, child, error_in_parent, error_in_child, deg(joint.sd.axis_in_parent), deg(joint.sd.axis_in_child),
         Angle::rad(truth.axis_deviation).deg());
   }
   fmt::print("  axes: median {:.2f}, worst {:.2f} deg; joint seg1-seg2 is {}\n", median(errors),
@@ -94,7 +96,7 @@ void run(const std::string& folder, const std::string& log, const std::string& r
     return;
   }
   const OpticalAlignment alignment = aligned(*optical, *recording);
-  fmt::print("{} from {}: the cameras' clock is {:.0f} ms behind; turning rates differ by", log, root,
+  fmt::print("{} from {}: the cameras' clock is {:.0f} ms behind; rms differences of angular velocity", log, root,
              1e3 * alignment.late);
   for (const auto& [segment, rms] : alignment.rms) fmt::print(" {:.3f}", rms);
   fmt::print(" rad/s\n");
@@ -102,7 +104,7 @@ void run(const std::string& folder, const std::string& log, const std::string& r
   if (!found)
     fmt::print("  {}\n", found.error().what);
   else
-    judge(*found, *optical, alignment);
+    print_comparison(*found, *optical, alignment);
 }
 
 }  // namespace

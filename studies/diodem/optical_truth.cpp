@@ -33,12 +33,12 @@ Mat3 rotation_at(const std::vector<std::string>& cells, std::size_t first) {
       .toRotationMatrix();
 }
 
-/// The gyro's integral up to each row, so that mean rates between any two times are differences [rad].
-struct TurnedSum {
+/// The gyro's integral up to each row [rad], whose differences are mean angular velocities times durations.
+struct GyroIntegral {
   std::span<const double> time;
   std::vector<Vec3> sum;
 
-  TurnedSum(const InsSensor& sensor, std::span<const double> t) : time(t) {
+  GyroIntegral(const InsSensor& sensor, std::span<const double> t) : time(t) {
     const std::size_t at_rest = std::min<std::size_t>(40, t.size());
     Vec3 bias = Vec3::Zero(), total = Vec3::Zero();
     for (std::size_t i = 0; i < at_rest; ++i) bias += sensor.angular_velocity.at(i) / static_cast<double>(at_rest);
@@ -58,25 +58,26 @@ struct TurnedSum {
   }
 };
 
-constexpr std::size_t pictures = 3;  // between the two of a turn: a tenth of a second
+constexpr std::size_t frames = 3;  // between the two of a rotation: a tenth of a second
 
-struct Turns {
-  std::vector<Vec3> optical, gyro;  // [rad] of the same times
+struct Rotations {
+  std::vector<Vec3> optical, gyro;  // [rad] rotation vectors over the same times
 };
 
-Turns turns_of(const OpticalLog& optical, const std::vector<Mat3>& pose, const TurnedSum& gyro, double late) {
-  Turns turns;
-  for (std::size_t i = 0; i + pictures < optical.time.size(); ++i) {
-    const Mat3 turn = pose[i].transpose() * pose[i + pictures];
-    const double from = optical.time[i] + late, to = optical.time[i + pictures] + late;
-    if (!turn.allFinite() || from < gyro.time.front() || to > gyro.time.back()) continue;
-    turns.optical.push_back(log_so3(turn));
-    turns.gyro.push_back(gyro.at(to) - gyro.at(from));
+Rotations rotations_of(const OpticalLog& optical, const std::vector<Mat3>& pose, const GyroIntegral& gyro,
+                       double late) {
+  Rotations rotations;
+  for (std::size_t i = 0; i + frames < optical.time.size(); ++i) {
+    const Mat3 rotation = pose[i].transpose() * pose[i + frames];
+    const double from = optical.time[i] + late, to = optical.time[i + frames] + late;
+    if (!rotation.allFinite() || from < gyro.time.front() || to > gyro.time.back()) continue;
+    rotations.optical.push_back(log_so3(rotation));
+    rotations.gyro.push_back(gyro.at(to) - gyro.at(from));
   }
-  return turns;
+  return rotations;
 }
 
-/// The rotation about the origin that carries the first to the second best.
+/// The rotation about the origin that best maps the first vectors to the second.
 Mat3 rotation_between(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   std::vector<Vec3> a = to, b = from;
   for (const Vec3& v : to) a.push_back(-v);  // so that both centroids are the origin
@@ -84,16 +85,16 @@ Mat3 rotation_between(const std::vector<Vec3>& from, const std::vector<Vec3>& to
   return align_points(a, b).rotation;
 }
 
-/// [rad/s] what the best rotation leaves; the worst hundredth left out: pictures beside gaps.
-double difference(const Turns& turns, const Mat3& rotation) {
+/// Residual of the best rotation [rad/s], without the worst hundredth (frames beside gaps).
+double difference(const Rotations& rotations, const Mat3& rotation) {
   std::vector<double> squares;
-  for (std::size_t i = 0; i < turns.gyro.size(); ++i)
-    squares.push_back((turns.gyro[i] - rotation * turns.optical[i]).squaredNorm());
+  for (std::size_t i = 0; i < rotations.gyro.size(); ++i)
+    squares.push_back((rotations.gyro[i] - rotation * rotations.optical[i]).squaredNorm());
   std::ranges::sort(squares);
   squares.resize(squares.size() - squares.size() / 100);
   double sum = 0.0;
   for (const double s : squares) sum += s / static_cast<double>(squares.size());
-  return std::sqrt(sum) * 30.0 / static_cast<double>(pictures);
+  return std::sqrt(sum) * 30.0 / static_cast<double>(frames);
 }
 
 }  // namespace
@@ -123,11 +124,11 @@ OpticalAlignment aligned(const OpticalLog& optical, const InsRecording& recordin
     OpticalAlignment alignment{.late = 1e-3 * step, .rotation = {}, .rms = {}};
     double sum = 0.0;
     for (const InsSensor& sensor : recording.sensors) {
-      const TurnedSum gyro(sensor, recording.time(sensor));
-      const Turns turns = turns_of(optical, optical.segment.at(sensor.name), gyro, alignment.late);
-      const Mat3 rotation = rotation_between(turns.optical, turns.gyro);
+      const GyroIntegral gyro(sensor, recording.time(sensor));
+      const Rotations rotations = rotations_of(optical, optical.segment.at(sensor.name), gyro, alignment.late);
+      const Mat3 rotation = rotation_between(rotations.optical, rotations.gyro);
       alignment.rotation[sensor.name] = rotation;
-      alignment.rms[sensor.name] = difference(turns, rotation);
+      alignment.rms[sensor.name] = difference(rotations, rotation);
       sum += alignment.rms[sensor.name];
     }
     if (sum < least) least = sum, best = alignment;
@@ -135,7 +136,7 @@ OpticalAlignment aligned(const OpticalLog& optical, const InsRecording& recordin
   return best;
 }
 
-OpticalHinge optical_hinge(const OpticalLog& optical, const OpticalAlignment& alignment, const std::string& parent,
+OpticalJoint optical_joint(const OpticalLog& optical, const OpticalAlignment& alignment, const std::string& parent,
                            const std::string& child) {
   std::vector<Mat3> rotations;
   for (std::size_t i = 0; i < optical.time.size(); ++i) {
@@ -143,9 +144,9 @@ OpticalHinge optical_hinge(const OpticalLog& optical, const OpticalAlignment& al
     if (r.allFinite())
       rotations.push_back(alignment.rotation.at(parent) * r * alignment.rotation.at(child).transpose());
   }
-  const MeanRevolute hinge =
+  const MeanRevolute joint =
       fit_mean_revolute(spherical_body(0, 0, Mat3::Identity()), rotations, MatrixXd::Zero(6, 6), 0.0);
-  return {hinge.body.parent_R_axis.col(2), hinge.body.child_R_axis.col(2), hinge.axis_deviation};
+  return {joint.body.parent_R_axis.col(2), joint.body.child_R_axis.col(2), joint.axis_deviation};
 }
 
 }  // namespace kinfer::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Seeds x machines x grades: how far the identified geometry is from the truth, and whether its intervals are honest.
+// Seeds x machines x grades: errors of the identified geometry, and coverage of its confidence intervals.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,16 +26,16 @@ struct Setup {
   Script script = Script::standard;
   Base base = Base::still;
   double slope = 0.0;
-  SensorFaults trouble;
+  SensorFaults faults;
   double accelerometer_range = 0.0, gyro_range = 0.0;  // [m/s²], [rad/s]; 0: the grade's
   std::optional<Servo> servo;                          // forward dynamics instead of prescribed motion
-  double lean = 0.0;                                   // [rad] of mounts of foam under the sensors' own weight
+  double tilt = 0.0;                                   // [rad] tilt of foam mounts under the sensors' weight
   double sampling_rate = 200.0;                        // [Hz]
   int seeds = 4;
-  double knot_spacing = 0.0;  // [s]; 0: chosen
-  bool steady = false;        // biases that do not wander
-  bool constant = false;      // they do, and the fit does not know
-  double duration = 0.0;      // [s]; 0: the script's own
+  double knot_spacing = 0.0;         // [s]; 0: chosen
+  bool constant_biases = false;      // of the simulated sensors
+  bool fit_constant_biases = false;  // the fit assumes constant biases although they vary
+  double duration = 0.0;             // [s]; 0: the script's own
 };
 
 struct Drive {
@@ -54,18 +54,18 @@ Drive simulated(const Setup& setup, std::uint64_t seed) {
   SensorModel grade = *sensor_grade(setup.grade);
   if (setup.accelerometer_range > 0.0) grade.accelerometer.range = setup.accelerometer_range;
   if (setup.gyro_range > 0.0) grade.gyroscope.range = setup.gyro_range;
-  if (setup.steady) grade.accelerometer.instability = grade.gyroscope.instability = 0.0;
-  const MachineMotion carried = setup.lean > 0.0 ? with_foam_mounts(motion, setup.lean, Rng(seed).stream(4)) : motion;
-  return {simulate_recording(world.machine(), carried, grade, setup.trouble, Rng(seed).stream(3)),
+  if (setup.constant_biases) grade.accelerometer.instability = grade.gyroscope.instability = 0.0;
+  const MachineMotion measured = setup.tilt > 0.0 ? with_foam_mounts(motion, setup.tilt, Rng(seed).stream(4)) : motion;
+  return {simulate_recording(world.machine(), measured, grade, setup.faults, Rng(seed).stream(3)),
           machine_truth(world.machine(), motion)};
 }
 
-/// The links' lengths alone: sensors that lean have no frame of their own to be judged in.
+/// Link lengths alone: a tilting sensor has no constant frame to compare in.
 struct Lengths {
   std::vector<double> off, ratio;
 };
 
-void judge_lengths(const std::vector<JointEstimate>& joints, const MachineTruth& truth, Lengths& lengths) {
+void compare_lengths(const std::vector<JointEstimate>& joints, const MachineTruth& truth, Lengths& lengths) {
   for (const LinkEstimate& link : link_estimates(joints)) {
     const auto t = std::ranges::find(truth.links, link.segment, &LinkTruth::segment);
     if (t == truth.links.end()) continue;
@@ -77,7 +77,7 @@ void judge_lengths(const std::vector<JointEstimate>& joints, const MachineTruth&
   fmt::print("\n");
 }
 
-void sum_up(const Lengths& lengths) {
+void print_summary(const Lengths& lengths) {
   const auto inside = std::ranges::count_if(lengths.ratio, [](double r) { return std::abs(r) <= 1.96; });
   fmt::print("lengths: median {:.2f}, worst {:.2f} mm off; actual/predicted {:.2f}; coverage {:.1f} % of {}\n",
              median(lengths.off), *std::ranges::max_element(lengths.off), rms(lengths.ratio),
@@ -104,7 +104,7 @@ void run(const Setup& setup) {
                                               EstimatedJointType::revolute));
     const auto started = std::chrono::steady_clock::now();
     SensorModel grade = estimate_sensor_model(drive.recording);
-    if (setup.constant) grade.accelerometer.instability = grade.gyroscope.instability = 0.0;
+    if (setup.fit_constant_biases) grade.accelerometer.instability = grade.gyroscope.instability = 0.0;
     const auto found =
         refine(drive.recording, *motion, *tree, starts, {.grade = grade, .knot_spacing = setup.knot_spacing});
     const auto done = std::chrono::steady_clock::now();
@@ -114,20 +114,21 @@ void run(const Setup& setup) {
     }
     std::vector<JointEstimate> joints;
     for (const RefinedJoint& joint : found->joints) joints.push_back(joint.estimate);
-    judge_lengths(joints, drive.truth, lengths);
+    compare_lengths(joints, drive.truth, lengths);
     const GeometryScore score = geometry_score(joints, drive.truth);
     const auto seconds = [](auto a, auto b) { return std::chrono::duration<double>(b - a).count(); };
     fmt::print(
-        "seed {}: line {:.2f} mm, direction {:.2f} mrad, azimuth {:.1f} mrad, slide {:.2f} mm; {} iterations {} cost "
+        "seed {}: line {:.2f} mm, direction {:.2f} mrad, azimuth {:.1f} mrad, axial offset {:.2f} mm; {} iterations {} "
+        "cost "
         "{:.0f}; "
         "{:.2f} + {:.2f} s, {}, knots {:.3f} s\n",
-        seed, 1e3 * score.line, 1e3 * score.direction, 1e3 * score.azimuth, 1e3 * score.slide, found->fit.iterations,
-        name(found->fit.stop), found->fit.cost.total, seconds(begin, started), seconds(started, done), found->grade,
-        found->knot_spacing);
+        seed, 1e3 * score.line, 1e3 * score.direction, 1e3 * score.azimuth, 1e3 * score.axial_offset,
+        found->fit.iterations, name(found->fit.stop), found->fit.cost.total, seconds(begin, started),
+        seconds(started, done), found->grade, found->knot_spacing);
     if (std::getenv("DETAIL")) {
       for (std::size_t s = 0; s < found->fit.cost.sensors.size(); ++s) {
         const SensorFit& f = found->fit.cost.sensors[s];
-        fmt::print("   {}: chi2/n rate {:.3f} force {:.3f} field {:.4f}\n", s,
+        fmt::print("   {}: chi2/n angular velocity {:.3f} force {:.3f} field {:.4f}\n", s,
                    f.angular_velocity.squares / f.angular_velocity.terms, f.force.squares / f.force.terms,
                    f.field.squares / std::max(1.0, f.field.terms));
       }
@@ -147,10 +148,10 @@ void run(const Setup& setup) {
       "{:.2f}; coverage {:.1f} %\n",
       setup.machine, setup.grade, median(lines), *std::ranges::max_element(lines), median(directions),
       *std::ranges::max_element(directions), rms(ratios), 100.0 * inside / scalars);
-  sum_up(lengths);
+  print_summary(lengths);
 }
 
-/// A recording of a real machine whose joint types are given, one a joint of the tree in order.
+/// A recording of a real machine with given joint types, one for each joint in the order of the tree.
 void run_log(const std::string& path, const std::string& root, const std::vector<EstimatedJointType>& types,
              double knot_spacing) {
   const auto recording = read_ins_csv(path).value();
@@ -166,8 +167,8 @@ void run_log(const std::string& path, const std::string& root, const std::vector
   for (std::size_t s = 0; s < found.fit.cost.sensors.size(); ++s) {
     const SensorFit& f = found.fit.cost.sensors[s];
     const InsNoise& noise = found.noise[s];
-    fmt::print("{}: noise rate {:.4f} force {:.4f}, memory {:.1f} {:.1f}\n", motion.segments[s].name,
-               noise.angular_velocity, noise.force, autocorrelation_time(f.angular_velocity),
+    fmt::print("{}: noise angular velocity {:.4f} force {:.4f}, autocorrelation time {:.1f} {:.1f}\n",
+               motion.segments[s].name, noise.angular_velocity, noise.force, autocorrelation_time(f.angular_velocity),
                autocorrelation_time(f.force));
   }
   for (const RefinedJoint& joint : found.joints) {
@@ -214,21 +215,21 @@ int main(int argc, char** argv) {
     if (word.ends_with("s") && !word.ends_with("knots") && std::atof(word.c_str()) > 0.0)
       setup.duration = std::atof(word.c_str());
     if (word.ends_with("knots")) setup.knot_spacing = std::atof(word.c_str());
-    if (word == "steady") setup.steady = true;
-    if (word == "constant") setup.constant = true;
+    if (word == "steady") setup.constant_biases = true;
+    if (word == "constant") setup.fit_constant_biases = true;
     if (word == "gentle") setup.script = Script::gentle;
     if (word == "together") setup.script = Script::together;
     if (word == "quick") setup.script = Script::quick;
     if (word == "vigorous") setup.script = Script::vigorous;
-    if (word == "spiky") setup.trouble.spikes = 6.0;
-    if (word == "gappy") setup.trouble.missing = 0.05;
-    if (word == "disturbed") setup.trouble.magnetic_disturbance = 10.0;
-    if (word == "nomag") setup.trouble.has_magnetometer = false;
+    if (word == "spiky") setup.faults.spikes = 6.0;
+    if (word == "gappy") setup.faults.missing = 0.05;
+    if (word == "disturbed") setup.faults.magnetic_disturbance = 10.0;
+    if (word == "nomag") setup.faults.has_magnetometer = false;
     if (word == "saturated") setup.accelerometer_range = 12.0, setup.gyro_range = 0.6;
     if (word == "stiff") setup.servo = Servo::stiff;
     if (word == "soft") setup.servo = Servo::soft;
-    if (word == "foam") setup.lean = 0.08, setup.sampling_rate = 50.0;
-    if (word == "tape") setup.lean = 0.02, setup.sampling_rate = 50.0;
+    if (word == "foam") setup.tilt = 0.08, setup.sampling_rate = 50.0;
+    if (word == "tape") setup.tilt = 0.02, setup.sampling_rate = 50.0;
     if (word == "slope") setup.slope = 8.0;
     if (word == "rocking") setup.base = Base::rocking;
     if (word == "yawing") setup.base = Base::yawing;

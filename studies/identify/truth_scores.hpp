@@ -14,13 +14,13 @@ struct ScoredScalar {
 };
 
 struct GeometryScore {
-  double line = 0.0;       ///< [m] worst distance of a found axis line, free of what cannot be known
-  double direction = 0.0;  ///< [rad] worst
-  double azimuth = 0.0;    ///< [rad] worst turn of a body that turns about one axis only, taken off before
-  double slide = 0.0;      ///< [m] worst, where it can be known
-  bool complete = true;    ///< every true joint was found
+  double line = 0.0;          ///< [m] worst distance of an axis line, without unobservable directions
+  double direction = 0.0;     ///< [rad] worst
+  double azimuth = 0.0;       ///< [rad] worst rotation of a body about its only axis, removed before
+  double axial_offset = 0.0;  ///< [m] worst, where observable
+  bool complete = true;       ///< every true joint was identified
   std::vector<ScoredScalar> scalars;
 };
-GeometryScore geometry_score(const std::vector<JointEstimate>& found, const MachineTruth& truth);
+GeometryScore geometry_score(const std::vector<JointEstimate>& estimates, const MachineTruth& truth);
 
 }  // namespace kinfer::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the orientation filters are worth on measured data: ten trials of BROAD with optical truth, three runs of a UR5
+// Accuracy of the orientation filters on measured data: ten trials of BROAD with optical truth, three runs of a UR5
 // with encoders. Prints the tables of docs/development/methods/orientation.md; draws orientation.svg into the folder
 // given as argument.
 #include <fmt/format.h>
@@ -47,7 +47,7 @@ std::vector<NamedFilter> named_filters() {
 
 struct Trial {
   std::string name;
-  bool chosen = false;        // settings were chosen on it
+  bool chosen = false;        // used for choosing the settings
   std::vector<Score> scores;  // one a filter
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Line charts as SVG, as small as paper 1's figures 8 and 9 need them.
+// Line charts as SVG, for paper 1's figures 8 and 9.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Paper 1 (Péntek et al. 2021) end to end: simulate its excavator, identify it by bacterial programming, and write its
-// tables and figures beside the values that it prints. `study_paper1 [FOLDER] [SEEDS]`;
+// tables and figures beside the printed values. `study_paper1 [FOLDER] [SEEDS]`;
 // docs/development/methods/paper1.md reads them.
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ struct Setup {
   double house_distance = 1.25;      // [m] of the house's INS from the swing axis
   double accelerometer_range = 0.0;  // [m/s²]; 0: the grade's
   double gyro_range = 0.0;           // [rad/s]; 0: the grade's
-  bool second_on_boom = false;       // another INS on the boom, 0.4 m on and turned
+  bool second_on_boom = false;       // another INS on the boom, shifted by 0.4 m and rotated
 };
 
 Machine excavator() {
@@ -48,7 +48,7 @@ Machine excavator() {
 
 constexpr std::size_t boom = 2;
 
-/// The machine with its boom's INS 0.4 m on and turned.
+/// The machine with its boom's INS shifted by 0.4 m and rotated.
 Machine with_other_boom_sensor(Machine machine) {
   MountedSensor& sensor = machine.sensors[boom];
   sensor.name = "second";
@@ -57,7 +57,7 @@ Machine with_other_boom_sensor(Machine machine) {
   return machine;
 }
 
-/// Readings of another INS on the boom; its joints are as true as those of the first.
+/// Adds another INS on the boom; its joints are part of the truth like those of the first.
 void add_second_on_boom(Log& log, const Machine& machine, const Drive& drive, const SensorModel& grade,
                         const Rng& rng) {
   const Machine other = with_other_boom_sensor(machine);
@@ -81,7 +81,7 @@ Log simulated(const Setup& setup) {
   return log;
 }
 
-/// The paper's way: its filter, its terminals, its table 4.
+/// The paper's method: its filter, its joint-variable candidates, its table 4.
 IdentifyOptions paper_options(int links) {
   IdentifyOptions options{.engine = BacterialProgramming{.terminals = JointVariableKind::euler},
                           .links = links,
@@ -154,7 +154,7 @@ void write_leaves(const fs::path& folder, const std::string& name, const Identif
                           angle(r.row.alpha, r.alpha_variable), r.row.a);
 }
 
-/// The leaves that a run reports, with its signals found again by their names.
+/// The reported leaves, with their signals looked up by name.
 std::vector<DhLeaf> found_leaves(const LinkEvidence& link, std::span<const JointSignal> signals) {
   const auto index = [&](const std::string& name) {
     const auto found = std::ranges::find(signals, name, &JointSignal::name);
@@ -171,23 +171,25 @@ std::vector<DhLeaf> found_leaves(const LinkEvidence& link, std::span<const Joint
   return leaves;
 }
 
-/// Figure 8 for one segment: measured and predicted accelerations, and what is left of the angles.
+/// Figure 8 for one segment: measured and predicted accelerations, and residual angles.
 std::vector<Chart> signal_charts(const std::string& name, const std::vector<double>& time,
                                  const std::vector<FrameState>& measured, const std::vector<FrameState>& found,
                                  const std::vector<FrameState>& theoretical, const std::vector<std::size_t>& rows) {
   std::vector<Chart> charts;
   for (int axis = 0; axis < 3; ++axis) {
-    Line is{"measured", {}, {}, "#999999"}, best{"found chain", {}, {}, "#1f4e79"},
-        ought{"theoretical chain", {}, {}, "#2e7d32"}, residual{"found - measured", {}, {}, "#b03020"};
+    Line measured_line{"measured", {}, {}, "#999999"}, best{"found chain", {}, {}, "#1f4e79"},
+        theory_line{"theoretical chain", {}, {}, "#2e7d32"}, residual{"found - measured", {}, {}, "#b03020"};
     for (const std::size_t row : rows) {
-      for (Line* line : {&is, &best, &ought, &residual}) line->x.push_back(time[row]);
-      is.y.push_back(measured[row].acceleration[axis]);
+      for (Line* line : {&measured_line, &best, &theory_line, &residual}) line->x.push_back(time[row]);
+      measured_line.y.push_back(measured[row].acceleration[axis]);
       best.y.push_back(found[row].acceleration[axis]);
-      ought.y.push_back(theoretical[row].acceleration[axis]);
-      residual.y.push_back(best.y.back() - is.y.back());
+      theory_line.y.push_back(theoretical[row].acceleration[axis]);
+      residual.y.push_back(best.y.back() - measured_line.y.back());
     }
-    charts.push_back(
-        {fmt::format("{}: acceleration {}", name, "xyz"[axis]), "time [s]", "m/s²", {is, best, ought, residual}});
+    charts.push_back({fmt::format("{}: acceleration {}", name, "xyz"[axis]),
+                      "time [s]",
+                      "m/s²",
+                      {measured_line, best, theory_line, residual}});
   }
   Line phi{"roll", {}, {}, "#1f4e79"}, theta{"pitch", {}, {}, "#2e7d32"}, psi{"yaw", {}, {}, "#b03020"};
   for (const std::size_t row : rows) {
@@ -277,7 +279,7 @@ Errors write_seeds(const fs::path& folder, const std::string& name, int seeds, c
   return errors;
 }
 
-/// What the paper claims in words, three seeds a row.
+/// The paper's statements in words, three seeds a row.
 void write_claims(const fs::path& folder) {
   auto file = table(folder, "claims.csv",
                     "claim,setting,median line [mm],worst line [mm],median direction [mrad],worst direction [mrad]");
@@ -300,7 +302,7 @@ void write_claims(const fs::path& folder) {
   row("a second INS on the boom", "used as a sixth sensor", {.second_on_boom = true}, 3);
 }
 
-/// Both searches on the same evaluator, the boom's link: cost over evaluations.
+/// Both searches with the same evaluator on the boom's link: cost over evaluations.
 void write_baseline(const fs::path& folder, int seeds) {
   const IdentifyOptions options = paper_options(2);
   auto file = table(folder, "baseline.csv", "seed,evaluations,bacterial programming,genetic programming");
@@ -344,7 +346,8 @@ void run(const fs::path& folder, int seeds) {
   write_figure9(folder, three);
   const Errors paper3 = write_seeds(folder, "geometry_three_links.csv", seeds, paper_options(3));
   fmt::print(
-      "three links, paper's filter and terminals: median worst line {:.1f} mm, direction {:.1f} mrad (paper: 12 mm, 1 "
+      "three links, paper's filter and joint variables: median worst line {:.1f} mm, direction {:.1f} mrad (paper: 12 "
+      "mm, 1 "
       "mrad on one run)\n",
       median(paper3.line), median(paper3.direction));
   for (const LinkEngine& engine : {LinkEngine(BacterialProgramming{}), LinkEngine(MemeticProgramming{})}) {
@@ -356,7 +359,7 @@ void run(const fs::path& folder, int seeds) {
                median(ours3.direction));
   }
   const Errors paper5 = write_seeds(folder, "geometry_five_links.csv", std::min(seeds, 5), paper_options(0));
-  fmt::print("five links, paper's filter and terminals: {:.1f} mm, {:.1f} mrad\n", median(paper5.line),
+  fmt::print("five links, paper's filter and joint variables: {:.1f} mm, {:.1f} mrad\n", median(paper5.line),
              median(paper5.direction));
   write_baseline(folder, std::min(seeds, 5));
   write_claims(folder);

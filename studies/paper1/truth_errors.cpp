@@ -8,29 +8,23 @@
 
 namespace kinfer::study {
 
-GeometryErrors geometry_errors(const std::vector<JointEstimate>& found, const MachineTruth& truth) {
+GeometryErrors geometry_errors(const std::vector<JointEstimate>& estimates, const MachineTruth& truth) {
   GeometryErrors errors;
-  for (const JointEstimate& joint : found) {
+  const auto line_error = [](const Vec3& error, const Vec3& axis, const std::vector<Vec3>& unobservable) {
+    return orthogonal_part(error, unobservable_basis(axis, unobservable)).norm();
+  };
+  for (const JointEstimate& joint : estimates) {
     if (joint.type == EstimatedJointType::rigid) continue;
-    const auto is_it = [&](const JointTruth& t) { return t.parent == joint.parent && t.child == joint.child; };
-    const auto t = std::ranges::find_if(truth.joints, is_it);
+    const auto is_same = [&](const JointTruth& t) { return t.parent == joint.parent && t.child == joint.child; };
+    const auto t = std::ranges::find_if(truth.joints, is_same);
     if (t == truth.joints.end()) return {1e3, 1e3, 1e3};
-    Vec3 axis = joint.axis_in_parent, point = joint.point_in_parent;
-    const auto incoming = std::ranges::find(truth.joints, joint.parent, &JointTruth::child);
-    if (incoming != truth.joints.end() && t->unobservable_in_parent.size() == 1) {
-      const double turn = best_turn(*incoming, *t, joint);
-      const Mat3 r = exp_so3(turn * incoming->axis_in_child);
-      axis = r * axis;
-      point = incoming->point_in_child + r * (point - incoming->point_in_child);
-      errors.azimuth = std::max(errors.azimuth, std::abs(turn));
-    }
-    errors.direction = std::max(
-        {errors.direction, axis_angle(axis, t->axis_in_parent), axis_angle(joint.axis_in_child, t->axis_in_child)});
+    const AlignedJoint aligned = align_azimuth(joint, *t, truth);
+    errors.azimuth = std::max(errors.azimuth, std::abs(aligned.azimuth));
+    errors.direction = std::max({errors.direction, axis_angle(aligned.axis, t->axis_in_parent),
+                                 axis_angle(joint.axis_in_child, t->axis_in_child)});
     errors.line = std::max(
-        {errors.line,
-         across(point - t->point_in_parent, unknowable(t->axis_in_parent, t->unobservable_in_parent)).norm(),
-         across(joint.point_in_child - t->point_in_child, unknowable(t->axis_in_child, t->unobservable_in_child))
-             .norm()});
+        {errors.line, line_error(aligned.point - t->point_in_parent, t->axis_in_parent, t->unobservable_in_parent),
+         line_error(joint.point_in_child - t->point_in_child, t->axis_in_child, t->unobservable_in_child)});
   }
   return errors;
 }

@@ -41,7 +41,7 @@ std::vector<Trials> compare(const Scenario& scenario, const std::vector<Method>&
     problems[i] = scenario.now(seed);
     earlier[i] = identify_before(scenario.before(seed), seed);
   });
-  // Every run is an item of its own, all seeds of a method after one another: the cores end together.
+  // Every run is one item, all seeds of a method after one another, so that the cores finish together.
   parallel_for(seeds * methods.size(), threads, [&](std::size_t item) {
     const std::size_t method = item / seeds, i = item % seeds;
     all[method].list[i] = run(methods[method], *problems[i], earlier[i], 1001 + static_cast<int>(i), effort);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All methods on one kind of problem, over many seeds: the honest table.
+// All methods on one problem type over many seeds, and the table of their medians.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace kinfer::paper2 {
 
-/// The identification that leaves memory behind, and the one that is timed, by seed.
+/// The earlier identification, and the one that is measured, by seed.
 struct Scenario {
   std::string name;
   std::function<Problem(int seed)> before, now;

@@ -14,7 +14,7 @@ namespace {
 std::vector<std::string> row(const std::string& method, const std::vector<double>& misses,
                              const std::vector<double>& model_errors) {
   if (misses.empty()) return {method, "0", "", "", "", "", ""};
-  const ErrorStatistics miss = error_statistics(misses), own = error_statistics(model_errors);
+  const ErrorStatistics miss = error_statistics(misses), model_error = error_statistics(model_errors);
   const auto millimetres = [](double value) { return fmt::format("{:.4f}", 1e3 * value); };
   return {method,
           fmt::format("{}", miss.n),
@@ -22,19 +22,19 @@ std::vector<std::string> row(const std::string& method, const std::vector<double
           millimetres(median(misses)),
           millimetres(miss.max),
           millimetres(median(model_errors)),
-          millimetres(own.max)};
+          millimetres(model_error.max)};
 }
 
-/// Sends what `model` says to the real robot.
+/// Sends the joint positions compensated by `model` to the real robot.
 std::vector<std::string> row_of(const std::string& method, const Problem& problem, const Chain& model) {
-  const MatrixXd& wanted = problem.verify.joints;
-  const std::vector<CompensatedJoints> sent = compensate_joints(model, problem.nominal, wanted, 1);
+  const MatrixXd& targets = problem.verify.joints;
+  const std::vector<CompensatedJoints> compensated = compensate_joints(model, problem.nominal, targets, 1);
   std::vector<double> misses, model_errors;
-  for (std::size_t i = 0; i < sent.size(); ++i) {
-    if (sent[i].status != InverseStatus::reached) continue;
-    const Vec3 went = forward(problem.truth, sent[i].q).position;
-    misses.push_back((went - forward(problem.nominal, wanted.col(static_cast<Eigen::Index>(i))).position).norm());
-    model_errors.push_back((went - forward(model, sent[i].q).position).norm());
+  for (std::size_t i = 0; i < compensated.size(); ++i) {
+    if (compensated[i].status != InverseStatus::reached) continue;
+    const Vec3 reached = forward(problem.truth, compensated[i].q).position;
+    misses.push_back((reached - forward(problem.nominal, targets.col(static_cast<Eigen::Index>(i))).position).norm());
+    model_errors.push_back((reached - forward(model, compensated[i].q).position).norm());
   }
   return row(method, misses, model_errors);
 }

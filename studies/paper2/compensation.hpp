@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it was all for: joint targets corrected by each identified model, sent to the real robot.
+// Joint targets compensated by each identified model and sent to the real robot.
 #pragma once
 
 #include "methods.hpp"
@@ -7,8 +7,8 @@
 
 namespace kinfer::paper2 {
 
-/// For each model the distance between where the real robot's tool goes and where the nominal model wanted it, beside
-/// the model's own error at the same readings. `problem.truth` is the real robot.
+/// For each model the distance between the real robot's tool and the nominal target, beside the model's own error at
+/// the same joint positions. `problem.truth` is the real robot.
 TextTable compensation_table(const Problem& problem, const Earlier& earlier);
 
 }  // namespace kinfer::paper2

@@ -69,7 +69,7 @@ std::vector<int> spread_furthest(const MatrixXd& tools, int chosen) {
   return order;
 }
 
-/// Section 5.1 to the letter: each set of 50 is "distributed evenly in the working space as much as possible".
+/// Section 5.1 literally: each set of 50 is "distributed evenly in the working space as much as possible".
 MatrixXd spread_over_the_work_space(const Chain& nominal) {
   constexpr int candidates = 2000;  // from 1000 to 5000 the two means move by less than 0.01 mm
   MatrixXd spread(6, pose_count);

@@ -54,7 +54,7 @@ SearchOptions options_of(Method method, const Problem& problem, const Earlier& e
       pso.initial = clamped(predict(earlier.net, even), problem.box);
       return pso;
     case Method::bpnn_literal:
-      // What the run itself would train afterwards is not wanted here.
+      // The training after the run is not needed here.
       return BpnnPsoOptions{
           .pso = pso, .net = earlier.net, .use = NetUse::before_every_update, .training = {.epochs = 0}};
     case Method::warm_start:
@@ -70,7 +70,7 @@ SearchOptions options_of(Method method, const Problem& problem, const Earlier& e
   }
 }
 
-void judge(Trial& trial, const Problem& problem) {
+void evaluate(Trial& trial, const Problem& problem) {
   const Chain found = unpack(problem.parameters, problem.nominal, trial.x);
   trial.fitted = error_statistics(point_errors(found, problem.fit));
   trial.held_out = error_statistics(point_errors(found, problem.verify));
@@ -89,7 +89,7 @@ Trial search(Method method, const Problem& problem, const Earlier& earlier, int 
   trial.evaluations = std::llround(share * static_cast<double>(outcome.evaluations));
   trial.seconds = share * seconds;
   if (method == Method::bpnn_pso || method == Method::bpnn_literal) trial.training_seconds = earlier.training_seconds;
-  judge(trial, problem);
+  evaluate(trial, problem);
   return trial;
 }
 
@@ -106,7 +106,7 @@ Trial least_squares_trial(const Problem& problem) {
   trial.iterations = iterations_until(trial.best, target_sum(problem));
   trial.iterations_to_sum = iterations_until(trial.best, papers_sum);
   trial.evaluations = outcome.evaluations + 24LL * outcome.jacobians;
-  judge(trial, problem);
+  evaluate(trial, problem);
   return trial;
 }
 
@@ -117,7 +117,7 @@ Trial map_trial(const Problem& problem) {
   const Estimate estimate =
       fit_bundle(problem.nominal, problem.parameters, problem.fit, instrument, {.outliers = Outliers::keep_all});
   Trial trial{.method = Method::map_lm, .seconds = watch.seconds(), .x = pack(problem.parameters, estimate.chain)};
-  judge(trial, problem);
+  evaluate(trial, problem);
   trial.iterations = trial.fitted.rms <= problem.target_rms ? estimate.search.iterations : -1;
   trial.evaluations = 25LL * estimate.search.evaluations;
   double variance = 0.0;
@@ -130,15 +130,10 @@ Trial map_trial(const Problem& problem) {
 }  // namespace
 
 std::string name(Method method) {
-  constexpr const char* names[] = {"PSO as printed (w 0.9)",
-                                   "PSO (w 0.8)",
-                                   "BPNN-PSO",
-                                   "BPNN-PSO with the net before every update",
-                                   "warm start without a net",
-                                   "compact swarm without memory",
-                                   "QPSO",
-                                   "LM",
-                                   "LM with tolerance priors"};
+  constexpr const char* names[] = {
+      "PSO as printed (w 0.9)",   "PSO (w 0.8)",   "BPNN-PSO", "BPNN-PSO with the net before every update",
+      "warm start without a net", "compact swarm", "QPSO",     "LM",
+      "LM with tolerance priors"};
   return names[static_cast<int>(method)];
 }
 

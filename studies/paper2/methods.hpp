@@ -12,12 +12,12 @@
 namespace kinfer::paper2 {
 
 enum class Method {
-  pso_printed,         ///< cold, w = 0.9
-  pso,                 ///< cold, w = 0.8
+  pso_printed,         ///< uniform initial swarm, w = 0.9
+  pso,                 ///< uniform initial swarm, w = 0.8
   bpnn_pso,            ///< initial swarm by the net of the earlier identification
   bpnn_literal,        ///< the net before every update
-  warm_start,          ///< one particle remembers the earlier optimum, no net
-  draw_compact_swarm,  ///< about the nominal numbers, no memory
+  warm_start,          ///< one particle starts at the earlier optimum, no net
+  draw_compact_swarm,  ///< about the nominal numbers, independent of earlier results
   qpso,
   lm,      ///< Levenberg-Marquardt with analytic Jacobian, no priors
   map_lm,  ///< the same with the tolerances as priors
@@ -27,7 +27,7 @@ inline constexpr Method all_methods[] = {Method::pso_printed,  Method::pso,     
                                          Method::qpso,         Method::lm,         Method::map_lm};
 std::string name(Method method);
 
-/// What an earlier identification of the same robot left behind.
+/// Result of an earlier identification of the same robot.
 struct Earlier {
   VectorXd x{};
   Mlp net;
@@ -38,9 +38,9 @@ Earlier identify_before(const Problem& problem, int seed);
 struct Trial {
   Method method{};
   int iterations = -1;            ///< to the target rms; -1: not within the budget
-  int iterations_to_sum = -1;     ///< to a sum of 5.55e-5 mm², the other reading of the paper's fitness
+  int iterations_to_sum = -1;     ///< to a sum of 5.55e-5 mm², the other interpretation of the paper's fitness
   long long evaluations = 0;      ///< until the target, or all; a Jacobian counts as 24
-  double seconds = 0.0;           ///< of the search until then
+  double seconds = 0.0;           ///< of the search until the target
   double training_seconds = 0.0;  ///< before the search
   VectorXd x{};
   std::vector<double> best{};  ///< [m²] sum of squares after each iteration

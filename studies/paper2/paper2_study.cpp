@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Paper 2 reproduced: tables 1-8 and figures 6-15 in kind, and every method beside them.
+// Paper 2 reproduced: its tables 1-8 and figures 6-15 on simulated data, with all methods compared.
 //
 //   study_paper2 OUT [threads [seeds]]
 //
-// With `seeds` every comparison runs over so many instead of 20 and 100: a short run, whose tables do not depend on the
-// number of threads but for the times.
+// With `seeds` every comparison runs over that number instead of 20 and 100: a short run, whose tables do not depend on
+// the number of threads, except for times.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -31,7 +31,7 @@ struct Study {
     summary += fmt::format("\n## {}\n\n", title);
     fmt::print(stderr, "{}\n", title);
   }
-  void say(const std::string& sentence) { summary += sentence + "\n\n"; }
+  void add_text(const std::string& sentence) { summary += sentence + "\n\n"; }
   void table(const std::string& file, const TextTable& table) {
     write(folder / file, table.csv());
     summary += table.markdown() + "\n";
@@ -83,13 +83,15 @@ void printed_tables(Study& study) {
   study.table("table1_nominal.csv", nominal);
   study.table("table3_errors.csv", rows_of(table3));
   study.table("tables4_5_against_table3.csv", error_before_table());
-  study.say("Tables 4 and 5 fit table 3 only with d6 = 225 mm: the target's offset belongs to d6 (section 2.2.2).");
+  study.add_text(
+      "Tables 4 and 5 fit table 3 only with d6 = 225 mm: the target's offset belongs to d6 (section 2.2.2).");
 }
 
 /// One seed in full: identified errors, errors pose by pose, convergence. Used for the simulation and the experiment.
-void pictures(Study& study, const Problem& problem, const Earlier& earlier, const std::string& prefix,
-              const std::string& numbers_tables, const std::string& before, const std::string& pso_errors,
-              const std::string& bpnn_errors, const std::string& pso_convergence, const std::string& bpnn_convergence) {
+void write_one_seed(Study& study, const Problem& problem, const Earlier& earlier, const std::string& prefix,
+                    const std::string& numbers_tables, const std::string& before, const std::string& pso_errors,
+                    const std::string& bpnn_errors, const std::string& pso_convergence,
+                    const std::string& bpnn_convergence) {
   const Effort effort{.max_iterations = 600, .threads = 1};
   const Trial pso = run(Method::pso, problem, earlier, 1, effort),
               bpnn = run(Method::bpnn_pso, problem, earlier, 1, effort);
@@ -113,9 +115,9 @@ void pictures(Study& study, const Problem& problem, const Earlier& earlier, cons
                line_svg(prefix + ": convergence of BPNN-PSO", "iteration", "sum of squares [mm²]",
                         {{"BPNN-PSO", in_square_millimetres(bpnn.best)}}),
                "BPNN-PSO");
-  study.say("Errors identified by PSO:");
+  study.add_text("Errors identified by PSO:");
   study.table("table" + numbers_tables.substr(0, 1) + "_identified_pso.csv", rows_of(identified_errors(problem, pso)));
-  study.say("Errors identified by BPNN-PSO:");
+  study.add_text("Errors identified by BPNN-PSO:");
   study.table("table" + numbers_tables.substr(1, 1) + "_identified_bpnn_pso.csv",
               rows_of(identified_errors(problem, bpnn)));
 }
@@ -129,17 +131,16 @@ Scenario same_robot(const std::string& name, const Conditions& now) {
 }
 
 void simulation_section(Study& study) {
-  study.section("Section 4: simulation (figures 6-10, tables 4 and 5 in kind)");
+  study.section("Section 4: simulation (as figures 6-10, tables 4 and 5)");
   const Problem problem = simulation({}, 1, 1);
-  pictures(study, problem, identify_before(simulation({}, 2, 1), 1), "Simulation", "45", "figure6_before.svg",
-           "figure9_after_pso.svg", "figure10_after_bpnn_pso.svg", "figure7_convergence_pso.svg",
-           "figure8_convergence_bpnn_pso.svg");
+  write_one_seed(study, problem, identify_before(simulation({}, 2, 1), 1), "Simulation", "45", "figure6_before.svg",
+                 "figure9_after_pso.svg", "figure10_after_bpnn_pso.svg", "figure7_convergence_pso.svg",
+                 "figure8_convergence_bpnn_pso.svg");
   for (const double d6 : {d6_printed, d6_with_target}) {
-    study.say(
-        fmt::format("All methods, d6 = {:.0f} mm, noise-free, {} seeds; iterations to rms 7.45 µm (the mean reading of "
-                    "the paper's fitness) and to a "
-                    "sum of 5.55e-5 mm² (the printed reading):",
-                    1e3 * d6, study.few_seeds));
+    study.add_text(fmt::format(
+        "All methods, d6 = {:.0f} mm, noise-free, {} seeds; iterations to rms 7.45 µm (the paper's fitness read as a "
+        "mean) and to a sum of 5.55e-5 mm² (as printed):",
+        1e3 * d6, study.few_seeds));
     study.table(fmt::format("methods_d6_{:.0f}.csv", 1e3 * d6),
                 comparison_table(
                     compare(same_robot("same robot", {.d6 = d6}), every_method, study.few_seeds, {}, study.threads)));
@@ -152,7 +153,7 @@ void headline_section(Study& study) {
       compare(same_robot("same robot", {}), {Method::pso, Method::bpnn_pso}, study.many_seeds, {}, study.threads);
   study.table("headline_100_seeds.csv", comparison_table(trials));
   const double cold = median_iterations(trials[0]), net = median_iterations(trials[1]);
-  study.say(
+  study.add_text(
       fmt::format("Cold PSO (w = 0.8) reaches rms 7.45 µm within 404 iterations in {} of {} seeds; BPNN-PSO needs "
                   "{:.2f} of its iterations "
                   "(medians {:.0f} and {:.0f}; paper: 71/404 = 0.18).",
@@ -167,7 +168,7 @@ void variants_section(Study& study) {
       {"drift_50_percent", {.drift = 0.50}},      {"collision", {.collision = true}},
       {"another_robot", {.another_robot = true}}, {"noise", {.instrument = laser}}};
   for (const auto& [name, conditions] : variants) {
-    study.say(fmt::format("### {}", name));
+    study.add_text(fmt::format("### {}", name));
     study.table(
         fmt::format("methods_{}.csv", name),
         comparison_table(compare(same_robot(name, conditions), every_method, study.few_seeds, {}, study.threads)));
@@ -189,18 +190,19 @@ TextTable table8(const Problem& problem, const Earlier& earlier) {
 }
 
 void experiment_section(Study& study) {
-  study.section("Section 5 in kind: an experiment with noise, compliance and a wrong base (figures 11-15, tables 6-8)");
+  study.section(
+      "Section 5, simulated: an experiment with noise, compliance and a base error (as figures 11-15, tables 6-8)");
   const Problem problem = experiment(1);
   const Earlier earlier = identify_before(experiment(2), 1);
-  pictures(study, problem, earlier, "Experiment", "67", "figure11_before.svg", "figure12_after_pso.svg",
-           "figure13_after_bpnn_pso.svg", "figure14_convergence_pso.svg", "figure15_convergence_bpnn_pso.svg");
-  study.say(
-      "Compensated joint targets sent to the robot, 50 unseen poses: the tool misses by the identified model's own "
+  write_one_seed(study, problem, earlier, "Experiment", "67", "figure11_before.svg", "figure12_after_pso.svg",
+                 "figure13_after_bpnn_pso.svg", "figure14_convergence_pso.svg", "figure15_convergence_bpnn_pso.svg");
+  study.add_text(
+      "Compensated joint targets sent to the robot, 50 held-out poses: the tool misses by the identified model's own "
       "error (medians; poses whose compensated joints lie within the limits):");
   study.table("compensation.csv", compensation_table(problem, earlier));
-  study.say("Table 8 in kind, one experiment, times on one thread:");
+  study.add_text("As table 8: one experiment, times on one thread:");
   study.table("table8.csv", table8(problem, earlier));
-  study.say(fmt::format("The same over {} experiments:", study.few_seeds));
+  study.add_text(fmt::format("The same over {} experiments:", study.few_seeds));
   const Scenario scenario{"experiment", [](int seed) { return experiment(2000 + seed); },
                           [](int seed) { return experiment(3000 + seed); }};
   study.table("methods_experiment.csv",
@@ -210,7 +212,7 @@ void experiment_section(Study& study) {
 void ur10_section(Study& study) {
   study.section("A real robot: UR10 under a Leica tracker, 50 rows to fit and 50 to verify");
   if (!ur10(1)) {
-    study.say("Left out: KINFER_DATA is not set or the data are not there.");
+    study.add_text("Left out: KINFER_DATA is not set or the data are not there.");
     return;
   }
   const Scenario scenario{"ur10", [](int seed) { return *ur10(2000 + seed); },
@@ -231,7 +233,7 @@ int main(int argc, char** argv) {
   Study study{.folder = argv[1],
               .threads = argc > 2 ? std::atoi(argv[2]) : 0,
               .summary =
-                  "# Paper 2, reproduced\n\nMade by study_paper2; docs/development/methods/paper2.md says what the "
+                  "# Paper 2, reproduced\n\nWritten by study_paper2; docs/development/methods/paper2.md says what the "
                   "figures mean.\n"};
   if (argc > 3) study.few_seeds = study.many_seeds = std::atoi(argv[3]);
   std::filesystem::create_directories(study.folder);

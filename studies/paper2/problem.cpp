@@ -48,7 +48,7 @@ VectorXd sample_instrument_errors(const Conditions& conditions, Rng rng) {
   return errors;
 }
 
-Chain bending(Chain robot) {
+Chain with_compliance(Chain robot) {
   robot.masses = {{.joint = 1, .com = {0.4, 0, 0}, .mass = 70},
                   {.joint = 2, .com = {0.1, 0, 0.05}, .mass = 60},
                   {.joint = 3, .com = {0, 0, -0.2}, .mass = 20},
@@ -79,7 +79,7 @@ double rms_at_optimum(const Problem& problem) {
   return std::sqrt(sum / static_cast<double>(problem.fit.points.size()));
 }
 
-/// Where the optimum is not zero, "there" is 2 % above it, and the paper's 7.45 µm in quadrature.
+/// Where the optimum is not zero, the target is 2 % above it, plus the paper's 7.45 µm in quadrature.
 Problem with_reachable_target(Problem problem) {
   problem.target_rms = std::hypot(1.02 * rms_at_optimum(problem), 7.45e-6);
   return problem;
@@ -108,7 +108,7 @@ Problem experiment(int poses) {
   Problem problem;
   problem.nominal = er20(d6_with_target);
   problem.parameters = table2_parameters(problem.nominal);
-  Chain truth = bending(with_errors(problem.nominal, table7));
+  Chain truth = with_compliance(with_errors(problem.nominal, table7));
   truth.base = Frame::from_pose(Pose::from_xyz_rpy({0.2e-3, -0.15e-3, 0.17e-3}, Vec3(0.012, -0.01, 0.012) * degree));
   problem.truth = truth;
   problem.instrument = laser;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One identification problem of the study, and what makes it hard.
+// One identification problem of the study, and its conditions.
 #pragma once
 
 #include <optional>
@@ -12,13 +12,13 @@
 namespace kinfer::paper2 {
 
 struct Problem {
-  Chain nominal;                ///< with the base and tool that are believed
+  Chain nominal;                ///< with the assumed base and tool
   Chain truth;                  ///< the real robot, where it is simulated
   ParameterSet parameters;      ///< table 2's 24
   PoseSet fit, verify;          ///< 50 poses each
   Bounds box;                   ///< about the nominal numbers
   Instrument instrument{};      ///< of the noise that was added
-  double target_rms = 7.45e-6;  ///< [m] what table 4 leaves: the mean reading of its fitness 5.55e-5 mm²
+  double target_rms = 7.45e-6;  ///< [m] rms of table 4: its fitness 5.55e-5 mm² read as a mean
 };
 
 /// What differs from the noise-free simulation of section 4.
@@ -30,11 +30,11 @@ struct Conditions {
   Instrument instrument{};     ///< tracker noise; none: noise-free
 };
 
-/// Section 4: table 3's errors, poses of METHODS G. `poses` and `errors` are seeds.
+/// Section 4: table 3's errors, poses by drawn_joints(). `poses` and `errors` are seeds.
 Problem simulation(const Conditions& conditions, int poses, int errors);
 
-/// Section 5 in kind: 100 poses, 50/50; table 7's errors, tracker noise, links that bend, and a base that is 0.3 mm and
-/// 0.02° off after its preliminary identification. Box ±2 mm, ±1°: table 6 lies outside ±1 mm.
+/// Modelled on section 5: 100 poses, 50/50; table 7's errors, tracker noise, compliant links, and a base that is 0.3 mm
+/// and 0.02° off after its preliminary identification. Box ±2 mm, ±1°: table 6 lies outside ±1 mm.
 Problem experiment(int poses);
 
 /// Landgraf's UR10 under a Leica tracker (series B): 50 rows to fit, 50 to verify, base and tool fitted before. Nothing

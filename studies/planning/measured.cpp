@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choosing among measured poses: each draw plans among another half of them, and is judged on all that were not chosen.
+// Choosing among measured poses: each draw plans among another half of them and is evaluated on all others.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using namespace plan;
 namespace {
 
 /// `count` of the rows, in random order.
-std::vector<int> some_of(std::vector<int> rows, int count, Rng rng) {
+std::vector<int> random_subset(std::vector<int> rows, int count, Rng rng) {
   for (int i = 0; i < count; ++i) std::swap(rows[i], rows[i + rng.index(rows.size() - i)]);
   rows.resize(count);
   return rows;
@@ -31,7 +31,7 @@ class Series {
   Series(const RobotModel& robot, const PoseSet& data, std::string words)
       : task_{.nominal = robot.chain, .tolerances = robot.tolerances, .instrument = robot.instrument, .data = data},
         words_(std::move(words)) {
-    leave_out_wrong_rows();
+    exclude_gross_errors();
   }
 
   std::string table() const {
@@ -40,24 +40,24 @@ class Series {
       const auto of = [&](const auto& chosen) {
         return medians_of([&](int draw) { return held_out(fitting, chosen(draw)); });
       };
-      const Errors random = of([&](int draw) { return some_of(right_, poses, Rng(7).stream(draw)); });
+      const Errors random = of([&](int draw) { return random_subset(valid_rows_, poses, Rng(7).stream(draw)); });
       table += row(words_, fitting, "random", random, random);
       for (const NamedCriterion& by : all_criteria)
         table += row(words_, fitting, by.name, of([&](int draw) { return planned(by.criterion, draw); }), random);
-      // Judged on the rows that it saw: the least that any choice could leave.
+      // Evaluated on the fitted rows: a lower bound for any choice.
       table += row(words_, fitting, "all rows fitted",
-                   errors_of(task_, fitting, task_.data, select(task_.data, right_)), random);
+                   errors_of(task_, fitting, task_.data, select(task_.data, valid_rows_)), random);
     }
     return table;
   }
 
  private:
-  void leave_out_wrong_rows() {
-    std::set<int> wrong;
+  void exclude_gross_errors() {
+    std::set<int> gross_errors;
     const Diagnosis diagnosis = diagnose(task_);
-    for (const Finding& finding : diagnosis.findings) wrong.insert(finding.rows.begin(), finding.rows.end());
+    for (const Finding& finding : diagnosis.findings) gross_errors.insert(finding.rows.begin(), finding.rows.end());
     const Estimate of_all_rows = fit_once(task_, task_.data, GeometricParameters{}, {}).value();
-    for (const Outlier& outlier : of_all_rows.outliers) wrong.insert(outlier.row);
+    for (const Outlier& outlier : of_all_rows.outliers) gross_errors.insert(outlier.row);
     for (int row = 0; row < task_.data.rows(); ++row)
       if (!wrong.contains(row)) right_.push_back(row);
     fmt::print("{}: neither chosen nor held out, as the doctor or the fit of all rows does not believe them: {}\n",
@@ -65,7 +65,8 @@ class Series {
   }
 
   std::vector<int> planned(Criterion criterion, int draw) const {
-    const std::vector<int> half = some_of(right_, static_cast<int>(right_.size()) / 2, Rng(8).stream(draw));
+    const std::vector<int> half =
+        random_subset(valid_rows_, static_cast<int>(valid_rows_.size()) / 2, Rng(8).stream(draw));
     PlanTask choice;
     choice.nominal = task_.nominal, choice.tolerances = task_.tolerances;
     choice.instrument = {.sigma = 2e-4, .sigma_angle = 1e-3};
@@ -77,14 +78,14 @@ class Series {
   }
 
   Errors held_out(Fitting fitting, const std::vector<int>& fitted) const {
-    std::vector<int> rest = right_;
+    std::vector<int> rest = valid_rows_;
     std::erase_if(rest, [&](int row) { return std::find(fitted.begin(), fitted.end(), row) != fitted.end(); });
     return errors_of(task_, fitting, select(task_.data, fitted), select(task_.data, rest));
   }
 
   CalibrationTask task_;
   std::string words_;
-  std::vector<int> right_;
+  std::vector<int> valid_rows_;
 };
 
 }  // namespace

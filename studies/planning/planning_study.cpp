@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What chosen poses are worth: 15 planned ones against 15 random ones, by the error on poses that were not fitted.
+// Gain of pose planning: 15 planned poses against 15 random ones, by the error on held-out poses.
 //
 //   study_planning OUT [FOLDER_OF_UR10_SERIES]
 //

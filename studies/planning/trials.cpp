@@ -15,12 +15,12 @@ using namespace calibrate;
 using namespace plan;
 namespace {
 
-Result<Chain> found_by_default(const CalibrationTask& task) {
+Result<Chain> fit_by_default(const CalibrationTask& task) {
   KINFER_TRY(found, calibrate_robot(task, {.threads = 1}, Rng(1)));
   return found.estimate.chain;
 }
 
-Result<Chain> found_by_plain_least_squares(const CalibrationTask& task) {
+Result<Chain> fit_by_plain_least_squares(const CalibrationTask& task) {
   KINFER_TRY(prepared, prepare_fit(task, task.data, GeometricParameters{}, {1000.0}));
   return fit_bundle(prepared.start, prepared.parameters, task.data, task.instrument,
                     {.outliers = Outliers::keep_all, .detail = Detail::numbers_only})
@@ -34,9 +34,9 @@ const char* name(Fitting fitting) {
 }
 
 Errors errors_of(const CalibrationTask& task, Fitting fitting, const PoseSet& train, const PoseSet& rest) {
-  CalibrationTask seen = task;
-  seen.data = train;
-  const auto found = fitting == Fitting::by_default ? found_by_default(seen) : found_by_plain_least_squares(seen);
+  CalibrationTask training = task;
+  training.data = train;
+  const auto found = fitting == Fitting::by_default ? fit_by_default(training) : fit_by_plain_least_squares(training);
   if (!found) return {1.0, 1.0};
   const std::vector<double> errors = point_errors(*found, rest);
   return {mean(errors), *std::max_element(errors.begin(), errors.end())};

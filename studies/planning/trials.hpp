@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a choice of poses is worth: fits of the chosen poses, judged on others.
+// Evaluation of a choice of poses: fits of the chosen poses, evaluated on others.
 #pragma once
 
 #include <functional>
@@ -22,8 +22,8 @@ struct NamedCriterion {
 constexpr NamedCriterion all_criteria[] = {{Criterion::tool, "tool"}, {Criterion::worst, "worst"}, {Criterion::d, "D"}};
 
 enum class Fitting {
-  by_default,           ///< as `kinfer calibrate` does: doctor, priors, ladder of models, wrong rows
-  plain_least_squares,  ///< geometry alone, tolerances a thousand times as wide, every row believed
+  by_default,           ///< as `kinfer calibrate` does: diagnosis, priors, model selection, gross errors
+  plain_least_squares,  ///< geometry alone, tolerances a thousand times as wide, all rows kept
 };
 constexpr Fitting all_fittings[] = {Fitting::by_default, Fitting::plain_least_squares};
 const char* name(Fitting fitting);
@@ -32,7 +32,7 @@ struct Errors {
   double mean = 0.0, worst = 0.0;  // [m]
 };
 
-/// What is found from `train`, judged on `rest`.
+/// Errors on `rest` of the fit of `train`.
 Errors errors_of(const CalibrationTask& task, Fitting fitting, const PoseSet& train, const PoseSet& rest);
 
 /// Medians over the draws.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots of several kinds, as studies simulate them.
+// Robots of several types for simulation studies.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace kinfer::study {
 
-/// A row of a DH table behind the one numbered `parent`.
+/// A row of a DH table after the one numbered `parent`.
 inline Joint dh_joint(double a, double alpha_deg, double d, int parent, JointType type = JointType::revolute) {
   Joint joint;
   DhLink link;

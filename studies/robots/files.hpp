@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The measured sets as pose sets: each keeps its own file format.
+// Public measured sets, each in its own file format, as pose sets.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ Chain mukca_chain(const std::string& folder);
 PoseSet mukca_rows(const std::string& folder, const std::string& arm, const std::vector<std::string>& positions,
                    const Chain& chain);
 
-/// Two axes about which nothing is known but that they are roughly at right angles.
+/// Two axes of unknown geometry, roughly at right angles.
 Chain positioner_chain();
 PoseSet positioner_rows(const std::string& folder, const Chain& chain);
 

@@ -16,7 +16,7 @@ using namespace calibrate;
 using namespace deploy;
 namespace {
 
-constexpr double only_told = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_target = std::numeric_limits<double>::quiet_NaN();
 constexpr int halves = 5;
 
 Calibration on_half(const Chain& chain, const PoseSet& data, int seed, const ModelChoice& model) {
@@ -26,8 +26,8 @@ Calibration on_half(const Chain& chain, const PoseSet& data, int seed, const Mod
 
 struct Halves {
   double mean = 0.0, worst = 0.0, largest_worst = 0.0, before = 0.0;  // [mm], means over the halves
-  double mean_of_all = 0.0, worst_of_all = 0.0;                       // wrong rows counted
-  std::size_t wrong = 0;                                              // rows left out, all halves together
+  double mean_of_all = 0.0, worst_of_all = 0.0;                       // gross errors included
+  std::size_t wrong = 0;                                              // excluded rows, all halves together
   std::string model;
 };
 
@@ -49,7 +49,7 @@ Halves five_halves(const Chain& chain, const PoseSet& data, const ModelChoice& m
 
 void print_halves(const std::string& name, double target, const Halves& h) {
   print_row(name, target, h.mean,
-            fmt::format("worst {:.3f} (mean), {:.3f} (largest); before {:.3f}; with {} wrong rows of the five halves "
+            fmt::format("worst {:.3f} (mean), {:.3f} (largest); before {:.3f}; with {} gross errors of the five halves "
                         "{:.4f}, worst {:.3f}",
                         h.worst, h.largest_worst, h.before, h.wrong, h.mean_of_all, h.worst_of_all));
 }
@@ -58,13 +58,13 @@ void ur10(const std::string& folder) {
   const Chain chain = ur10_chain();
   const PoseSet b = ur10_series(folder, "Series_B_measurements_joint_configurations.csv", chain),
                 c = ur10_series(folder, "Series_C_measurements_random_poses.csv", chain);
-  print_halves("UR10 B, geometry", only_told, five_halves(chain, b, FixedModel{}));
+  print_halves("UR10 B, geometry", no_target, five_halves(chain, b, FixedModel{}));
   const Halves chosen_b = five_halves(chain, b);
-  print_halves("UR10 B, chosen rung", 0.345, chosen_b);
+  print_halves("UR10 B, selected model", 0.345, chosen_b);
   fmt::print("      {}\n", chosen_b.model);
-  print_halves("UR10 C, geometry", only_told, five_halves(chain, c, FixedModel{}));
+  print_halves("UR10 C, geometry", no_target, five_halves(chain, c, FixedModel{}));
   const Halves chosen_c = five_halves(chain, c);
-  print_halves("UR10 C, chosen rung", 0.435, chosen_c);
+  print_halves("UR10 C, selected model", 0.435, chosen_c);
   fmt::print("      {}\n", chosen_c.model);
   for (const ModelChoice& model : {ModelChoice{FixedModel{}}, ModelChoice{CrossValidatedModel{}}}) {
     const Calibration all = calibrate_robot({chain, {}, std::nullopt, b}, {.model = model}, Rng(1)).value();
@@ -77,8 +77,8 @@ void ur10(const std::string& folder) {
 void mukca(const std::string& folder) {
   const Chain chain = mukca_chain(folder);
   const auto tried = [&](const std::string& arm, const std::vector<std::string>& fitted,
-                         const std::vector<std::string>& unseen, double target) {
-    const PoseSet train = mukca_rows(folder, arm, fitted, chain), test = mukca_rows(folder, arm, unseen, chain);
+                         const std::vector<std::string>& held_out, double target) {
+    const PoseSet train = mukca_rows(folder, arm, fitted, chain), test = mukca_rows(folder, arm, held_out, chain);
     const Calibration c = calibrate_robot({chain, {}, std::nullopt, train}, {}, Rng(1)).value();
     const auto consistency = [&](const Chain& model) {
       const DataWithFixtures there = with_fixtures(model, test).value();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any robot, any instrument: the figures of calibration on simulated robots with known truth and, where KINFER_DATA and
-// KINFER_CASES say where they lie, on measurements by others.
+// Any robot, any instrument: calibration errors on simulated robots with known truth and, where KINFER_DATA is set, on
+// public measured sets.
 //
 //   study_robots [simulated|real|all]
 #include <cstdlib>

@@ -29,7 +29,7 @@ PoseSimulation free_space(int poses, Instrument instrument) {
   return {.poses = poses, .instrument = instrument};
 }
 
-double unseen_error(const Chain& found, const Chain& truth, const PoseSimulation& like) {
+double held_out_error(const Chain& found, const Chain& truth, const PoseSimulation& like) {
   PoseSimulation exact = like;
   exact.poses = 300, exact.instrument = {};
   return 1e3 * mean(point_errors(found, measured(truth, exact, 4321)));
@@ -39,8 +39,7 @@ Calibration calibrated(const Chain& nominal, const Instrument& instrument, const
   return calibrate_robot({nominal, {}, instrument, data}, {}, Rng(1)).value();
 }
 
-/// Mean over seeds of the error on unseen poses [mm] beside the target; nothing is known of the
-/// base.
+/// Mean over seeds of the error on held-out poses [mm] beside the target; the base is unknown.
 void tracked(const std::string& name, double target, const Chain& nominal, const PoseSimulation& simulation) {
   std::vector<double> errors, expected;
   std::string models;
@@ -49,14 +48,14 @@ void tracked(const std::string& name, double target, const Chain& nominal, const
     truth.base = Frame::from_pose(Pose::from_xyz_rpy({1.2, -2.5, 0.35}, {0.02, -0.03, 2.3}));
     const PoseSet data = measured(truth, simulation, seed);
     const Calibration c = calibrated(nominal, simulation.instrument, data);
-    errors.push_back(unseen_error(c.estimate.chain, truth, simulation));
+    errors.push_back(held_out_error(c.estimate.chain, truth, simulation));
     expected.push_back(1e3 * c.estimate.predicted_error);
     if (selected_model(c.model_selection) != "geometry") models += "; " + selected_model(c.model_selection);
   }
-  print_row(name, target, mean(errors), fmt::format("covariance expects rms {:.4f}{}", mean(expected), models));
+  print_row(name, target, mean(errors), fmt::format("rms by the covariance {:.4f}{}", mean(expected), models));
 }
 
-/// As many poses, chosen by a plan instead of at random.
+/// The same number of poses, planned instead of random.
 void planned(const std::string& name, double target, const Chain& nominal, const PoseSimulation& simulation) {
   PlanTask task;
   task.nominal = nominal;
@@ -69,10 +68,11 @@ void planned(const std::string& name, double target, const Chain& nominal, const
     data.joint_names = active_joint_names(nominal);
     data.joints = plan.joints;
     measure_points(data, truth, simulation.instrument, Rng(200 + seed));
-    errors.push_back(unseen_error(calibrated(nominal, simulation.instrument, data).estimate.chain, truth, simulation));
+    errors.push_back(
+        held_out_error(calibrated(nominal, simulation.instrument, data).estimate.chain, truth, simulation));
   }
   print_row(name, target, mean(errors),
-            fmt::format("expected rms {:.4f}; no choice of candidates leaves less than {:.4f}", 1e3 * plan.expected.rms,
+            fmt::format("expected rms {:.4f}; lower bound for any choice {:.4f}", 1e3 * plan.expected.rms,
                         1e3 * plan.rms_lower_bound));
 }
 
@@ -88,7 +88,7 @@ void outliers() {
   }
   const Calibration c = calibrated(with_tool(er20(0.125)), tracker, data);
   for (const Outlier& outlier : c.estimate.outliers) listed.push_back(outlier.row);
-  print_row("12 gross outliers of 70 rows", 0.025, unseen_error(c.estimate.chain, truth, paper2_poses(1, tracker)),
+  print_row("12 gross outliers of 70 rows", 0.025, held_out_error(c.estimate.chain, truth, paper2_poses(1, tracker)),
             listed == wrong ? "exactly those rows listed" : fmt::format("{} rows listed", listed.size()));
 }
 
@@ -104,9 +104,9 @@ void draw_wire() {
     PoseSet data = readings_of(measured(truth, paper2_poses(50, noise_free), seed));
     measure_distances(data, truth, 10e-6, Rng(60 + seed));
     const Calibration c = calibrated(nominal, {.sigma = 10e-6}, data);
-    PoseSet unseen = readings_of(measured(truth, paper2_poses(300, noise_free), 4321));
-    measure_distances(unseen, truth, 0.0, Rng(1));
-    errors.push_back(1e3 * mean(residual_norms(MeasurementKind::distance, c.estimate.chain, unseen)));
+    PoseSet test_poses = readings_of(measured(truth, paper2_poses(300, noise_free), 4321));
+    measure_distances(test_poses, truth, 0.0, Rng(1));
+    errors.push_back(1e3 * mean(residual_norms(MeasurementKind::distance, c.estimate.chain, test_poses)));
   }
   print_row("draw-wire, three anchors known to 5 mm (distance)", 0.035, mean(errors));
 }
@@ -134,10 +134,10 @@ void payload() {
   print_row("compliance with a payload column", 0.020, mean(errors), model);
 }
 
-/// A tracker at the world's origin that knows the range to 10 µm and the direction to 30 µrad, told or not.
+/// A tracker at the world's origin, accurate to 10 µm in range and 30 µrad in direction, with covariances and without.
 void tracker_of_poor_angles() {
   const Chain nominal = with_tool(er20(0.125));
-  std::vector<double> untold, told;
+  std::vector<double> without_covariance, with_covariance;
   for (int seed = 1; seed <= seeds; ++seed) {
     Chain truth = with_random_errors(nominal, {}, Rng(300 + seed));
     truth.base = Frame::from_pose(Pose::from_xyz_rpy({2.4, -2.2, 0.35}, {0.02, -0.03, 2.3}));
@@ -151,18 +151,19 @@ void tracker_of_poor_angles() {
       point.position += axes * sd.cwiseProduct(noise(rng, 1.0));
       point.sd = sd, point.axes = axes;
     }
-    const auto unseen = [&](const PoseSet& rows) {
+    const auto error_of_fit = [&](const PoseSet& rows) {
       const Calibration c = calibrate_robot({nominal, {}, std::nullopt, rows}, {}, Rng(1)).value();
-      return unseen_error(c.estimate.chain, truth, paper2_poses(1, tracker));
+      return held_out_error(c.estimate.chain, truth, paper2_poses(1, tracker));
     };
-    told.push_back(unseen(data));
+    with_covariance.push_back(error_of_fit(data));
     for (PointMeasurement& point : data.points) point.sd.reset(), point.axes.reset();
-    untold.push_back(unseen(data));
+    without_covariance.push_back(error_of_fit(data));
   }
-  print_row("range to 10 um, direction to 30 urad, with covariances", mean(untold), mean(told), "target: without them");
+  print_row("range to 10 um, direction to 30 urad, with covariances", mean(without_covariance), mean(with_covariance),
+            "target: without them");
 }
 
-void half_still() {
+void half_of_the_joints() {
   Chain nominal = with_tool(er20(0.125));
   Chain truth = with_random_errors(nominal, {}, Rng(5));
   Chain held = truth;
@@ -182,22 +183,22 @@ void half_still() {
 }  // namespace
 
 void simulated_robots() {
-  print_head("Simulated, mean error on unseen poses [mm], mean of 5 seeds");
+  print_head("Simulated, mean error on held-out poses [mm], mean of 5 seeds");
   tracked("six axes, unknown tracker frame", 0.025, with_tool(er20(0.125)), paper2_poses(50, tracker));
   tracked("UR10-like, three parallel axes", 0.024, ur10_like(), free_space(50, tracker));
   tracked("SCARA with gain", 0.021, scara(), free_space(50, tracker));
   tracked("seven axes, 0.05 mm noise", 0.030, seven_axes(), free_space(50, Instrument{.sigma = 50e-6}));
-  tracked("seven axes, 0.05 mm long errors", 0.030, seven_axes(),
+  tracked("seven axes, error vectors of 0.05 mm", 0.030, seven_axes(),
           free_space(50, Instrument{.sigma = 50e-6 / std::sqrt(3.0)}));
   planned("seven axes, 0.05 mm noise, 50 planned poses", 0.030, seven_axes(),
           free_space(50, Instrument{.sigma = 50e-6}));
-  tracked("the same with 80 poses, as many as in the case of others", 0.030, seven_axes(),
+  tracked("the same with 80 poses, as in the reference case", 0.030, seven_axes(),
           free_space(80, Instrument{.sigma = 50e-6}));
   tracker_of_poor_angles();
   outliers();
   draw_wire();
   payload();
-  half_still();
+  half_of_the_joints();
 }
 
 }  // namespace kinfer::study

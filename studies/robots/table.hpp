@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows that the study prints: targets and results.
+// Printed rows of the study: target and result.
 #pragma once
 
 #include <fmt/format.h>

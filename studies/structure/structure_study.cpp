@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How surely and how fast the structure of a machine is found: order and joint types over every machine, drive, base,
-// grade and trouble; the memetic search beside its certificate and beside paper 1's bacterial programming.
+// Success rate and speed of structure identification: order and joint types over every machine, drive, base, grade and
+// sensor fault; the memetic search beside exhaustive search and beside paper 1's bacterial programming.
 // `study_structure [FOLDER] [SEEDS]`; docs/development/methods/structure.md reads the tables.
 #include <fmt/format.h>
 
@@ -28,15 +28,15 @@ namespace {
 constexpr const char* script_names[] = {"standard", "sequential", "together", "gentle", "vigorous", "quick"};
 constexpr const char* base_names[] = {"still", "rocking", "yawing"};
 constexpr const char* grades[] = {"noise", "industrial", "consumer"};
-constexpr const char* trouble_names[] = {"none", "missing 5 %", "clipped", "no magnetometer", "moving steel", "spikes"};
+constexpr const char* fault_names[] = {"none", "missing 5 %", "clipped", "no magnetometer", "moving steel", "spikes"};
 
 struct Case {
   std::string machine;
-  std::size_t script = 0, base = 0, grade = 1, trouble = 0;
+  std::size_t script = 0, base = 0, grade = 1, faults = 0;
   double slope = 0.0;  // [deg]
   Mounting mounting = Mounting::arbitrary;
   std::uint64_t seed = 1;
-  double rate = 100.0;  // [Hz]
+  double sampling_rate = 100.0;  // [Hz]
 };
 
 struct Log {
@@ -49,19 +49,19 @@ Log simulated(const Case& c) {
   const MachineOptions build{.mounting = c.mounting, .base = static_cast<Base>(c.base), .slope = Angle::deg(c.slope)};
   const auto world = MujocoWorld::load(machine_mjcf(c.machine, build, rng.stream(1)).value()).value();
   const Drive drive = make_drive(world.machine(), {.script = static_cast<Script>(c.script)}, rng.stream(2)).value();
-  const MachineMotion motion = world.prescribe(drive, c.rate);
+  const MachineMotion motion = world.prescribe(drive, c.sampling_rate);
   SensorModel grade = sensor_grade(grades[c.grade]).value();
-  SensorFaults trouble;
-  if (c.trouble == 1) trouble.missing = 0.05;
-  if (c.trouble == 2) grade.accelerometer.range = 12.0, grade.gyroscope.range = 0.7;
-  if (c.trouble == 3) trouble.has_magnetometer = false;
-  if (c.trouble == 4) trouble.magnetic_disturbance = 15.0;
-  if (c.trouble == 5) trouble.spikes = 20.0;
-  return {simulate_recording(world.machine(), motion, grade, trouble, rng.stream(3)),
+  SensorFaults faults;
+  if (c.faults == 1) faults.missing = 0.05;
+  if (c.faults == 2) grade.accelerometer.range = 12.0, grade.gyroscope.range = 0.7;
+  if (c.faults == 3) faults.has_magnetometer = false;
+  if (c.faults == 4) faults.magnetic_disturbance = 15.0;
+  if (c.faults == 5) faults.spikes = 20.0;
+  return {simulate_recording(world.machine(), motion, grade, faults, rng.stream(3)),
           machine_truth(world.machine(), motion)};
 }
 
-/// Every machine × drive × base × grade, with slope, mounting and trouble in turn.
+/// Every machine × drive × base × grade, cycling through slopes, mountings and sensor faults.
 std::vector<Case> all_cases(int seeds) {
   std::vector<Case> cases;
   for (const std::string& machine : machine_names())
@@ -74,7 +74,7 @@ std::vector<Case> all_cases(int seeds) {
                              .script = script,
                              .base = base,
                              .grade = grade,
-                             .trouble = (7 * i / 3 + static_cast<std::size_t>(k)) % 6,
+                             .faults = (7 * i / 3 + static_cast<std::size_t>(k)) % 6,
                              .slope = 4.0 * static_cast<double>(i % 3),
                              .mounting = (i / 2) % 2 == 0 ? Mounting::as_built : Mounting::arbitrary,
                              .seed = i + static_cast<std::size_t>(k) + 1});
@@ -83,18 +83,18 @@ std::vector<Case> all_cases(int seeds) {
 }
 
 struct OrderOutcome {
-  bool is_right = false;
+  bool is_correct = false;
   double margin = 0.0;
-  int joints = 0, right_types = 0;
+  int joints = 0, correct_types = 0;
 };
 
-OrderOutcome judged_order(const Case& c) {
+OrderOutcome evaluate_order(const Case& c) {
   const Log log = simulated(c);
   const auto ordered = order_segments(log.recording, {}, {}, 1);
   if (!ordered) return {};
   const RecordedMotion& motion = ordered->motion;
   const SegmentTree& tree = ordered->tree;
-  OrderOutcome outcome{.is_right = motion.segments[tree.root].name == log.truth.root, .margin = tree.margin};
+  OrderOutcome outcome{.is_correct = motion.segments[tree.root].name == log.truth.root, .margin = tree.margin};
   const auto types = joint_types(motion, tree);
   for (std::size_t i = 1; i < tree.order.size(); ++i) {
     const std::string &child = motion.segments[tree.order[i]].name,
@@ -103,11 +103,11 @@ OrderOutcome judged_order(const Case& c) {
         log.truth.joints, [&](const JointTruth& j) { return j.parent == parent && j.child == child; });
     ++outcome.joints;
     if (truth == log.truth.joints.end()) {
-      outcome.is_right = false;
+      outcome.is_correct = false;
       continue;
     }
     const bool is_prismatic = truth->type == JointType::prismatic;
-    outcome.right_types +=
+    outcome.correct_types +=
         types[i - 1].type == (is_prismatic ? EstimatedJointType::prismatic : EstimatedJointType::revolute) ? 1 : 0;
   }
   return outcome;
@@ -116,24 +116,24 @@ OrderOutcome judged_order(const Case& c) {
 void write_order(const std::filesystem::path& folder, int seeds) {
   const auto cases = all_cases(seeds);
   std::vector<OrderOutcome> outcomes(cases.size());
-  parallel_for(cases.size(), 0, [&](std::size_t i) { outcomes[i] = judged_order(cases[i]); });
+  parallel_for(cases.size(), 0, [&](std::size_t i) { outcomes[i] = evaluate_order(cases[i]); });
   std::ofstream file(folder / "order.csv");
-  file << "machine,drive,base,slope [deg],mounting,grade,trouble,seed,right,margin,joints,right types\n";
-  int right = 0, joints = 0, types = 0, unsafe = 0;
+  file << "machine,drive,base,slope [deg],mounting,grade,sensor fault,seed,correct,margin,joints,correct types\n";
+  int correct = 0, joints = 0, types = 0, confident_errors = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const Case& c = cases[i];
     const OrderOutcome& o = outcomes[i];
     file << fmt::format("{},{},{},{},{},{},{},{},{},{:.2f},{},{}\n", c.machine, script_names[c.script],
-                        base_names[c.base], c.slope, c.mounting == Mounting::as_built ? "as built" : "any",
-                        grades[c.grade], trouble_names[c.trouble], c.seed, o.is_right ? 1 : 0, o.margin, o.joints,
-                        o.right_types);
-    right += o.is_right;
-    unsafe += !o.is_right && o.margin > 2.0;
+                        base_names[c.base], c.slope, c.mounting == Mounting::as_built ? "as built" : "arbitrary",
+                        grades[c.grade], fault_names[c.faults], c.seed, o.is_correct ? 1 : 0, o.margin, o.joints,
+                        o.correct_types);
+    correct += o.is_correct;
+    confident_errors += !o.is_correct && o.margin > 2.0;
     joints += o.joints;
-    types += o.right_types;
+    types += o.correct_types;
   }
-  fmt::print("order right in {} of {} logs; wrong with a margin above 2: {}; joint types right: {} of {}\n", right,
-             cases.size(), unsafe, types, joints);
+  fmt::print("order correct in {} of {} logs; wrong with a margin above 2: {}; joint types correct: {} of {}\n",
+             correct, cases.size(), confident_errors, types, joints);
 }
 
 /// One engine on one link.
@@ -205,7 +205,7 @@ Run bp_run(const LinkProblem& p, std::uint64_t seed) {
   return run;
 }
 
-std::string row_of(const std::string& name, const std::vector<Run>& runs, const std::vector<Run>& certificate) {
+std::string row_of(const std::string& name, const std::vector<Run>& runs, const std::vector<Run>& optimum) {
   std::vector<double> ms, line, evaluations, first;
   int same = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -213,19 +213,20 @@ std::string row_of(const std::string& name, const std::vector<Run>& runs, const 
     line.push_back(runs[i].line);
     evaluations.push_back(static_cast<double>(runs[i].evaluations));
     first.push_back(static_cast<double>(runs[i].to_one_percent));
-    same += std::abs(runs[i].line - certificate[i].line) < 2.0;  // [mm]
+    same += std::abs(runs[i].line - optimum[i].line) < 2.0;  // [mm]
   }
   return fmt::format("{},{},{:.0f},{:.0f},{:.0f},{:.1f},{:.1f},{:.2f},{:.2f},{}\n", name, runs.size(),
                      median(evaluations), *std::ranges::max_element(evaluations), *std::ranges::max_element(first),
                      median(ms), *std::ranges::max_element(ms), median(line), *std::ranges::max_element(line), same);
 }
 
-/// Standard drive, any mounting, industrial grade.
+/// Standard drive, arbitrary mounting, industrial grade.
 void write_engines(const std::filesystem::path& folder, int seeds, int bp_seeds) {
-  std::vector<Run> bmp, all, bp, all_beside_bp;
+  std::vector<Run> bmp, all, bp, all_of_bp;
   int in_cost = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
-    const Log log = simulated({.machine = "excavator", .seed = static_cast<std::uint64_t>(seed), .rate = 200.0});
+    const Log log =
+        simulated({.machine = "excavator", .seed = static_cast<std::uint64_t>(seed), .sampling_rate = 200.0});
     const auto ordered = order_segments(log.recording, {}, {}, 0).value();
     MemeticProgramming options;
     options.bacteria.threads = 1;
@@ -235,15 +236,15 @@ void write_engines(const std::filesystem::path& folder, int seeds, int bp_seeds)
       in_cost += bmp.back().cost <= 1.001 * all.back().cost;
       if (seed > bp_seeds) continue;
       bp.push_back(bp_run(p, static_cast<std::uint64_t>(seed)));
-      all_beside_bp.push_back(all.back());
+      all_of_bp.push_back(all.back());
     }
   }
   const std::string table =
-      "engine,links,evaluations (median),(most),most to within 1 %,ms a link (median),(most),line error [mm] "
-      "(median),(most),within 2 mm of the certificate\n" +
-      row_of("bmp", bmp, all) + row_of("enum", all, all) + row_of("bp", bp, all_beside_bp);
+      "engine,links,evaluations (median),evaluations (max),evaluations to within 1 % (max),ms per link (median),"
+      "ms per link (max),line error [mm] (median),line error [mm] (max),within 2 mm of the optimum\n" +
+      row_of("bmp", bmp, all) + row_of("enum", all, all) + row_of("bp", bp, all_of_bp);
   std::ofstream(folder / "engines.csv") << table;
-  fmt::print("{}bmp's cost within 0.1 % of the certificate's: {} of {} links\n", table, in_cost, bmp.size());
+  fmt::print("{}bmp's cost within 0.1 % of the optimum's: {} of {} links\n", table, in_cost, bmp.size());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a found joint differs from the true one, leaving aside what no signal tells.
+// How an estimated joint differs from the true one, without unobservable directions.
 #pragma once
 
 #include <algorithm>
@@ -11,20 +11,20 @@
 
 namespace kinfer::study {
 
-/// Basis of what cannot be known of a point: the axis and the hidden directions, orthonormal.
-inline std::vector<Vec3> unknowable(const Vec3& axis, const std::vector<Vec3>& hidden) {
+/// Orthonormal basis of a point's unobservable directions: along the axis, and those that the truth lists.
+inline std::vector<Vec3> unobservable_basis(const Vec3& axis, const std::vector<Vec3>& unobservable) {
   std::vector<Vec3> basis;
   const auto add = [&](Vec3 direction) {
     for (const Vec3& b : basis) direction -= b * b.dot(direction);
     if (direction.norm() > 1e-3) basis.push_back(direction.normalized());
   };
   add(axis);
-  for (const Vec3& direction : hidden) add(direction);
+  for (const Vec3& direction : unobservable) add(direction);
   return basis;
 }
 
-/// What is left of `error` across an orthonormal basis.
-inline Vec3 across(Vec3 error, const std::vector<Vec3>& basis) {
+/// The part of `error` that is orthogonal to an orthonormal basis.
+inline Vec3 orthogonal_part(Vec3 error, const std::vector<Vec3>& basis) {
   for (const Vec3& b : basis) error -= b * b.dot(error);
   return error;
 }
@@ -34,18 +34,37 @@ inline double axis_angle(const Vec3& a, const Vec3& b) {
   return std::asin(std::min(1.0, a.cross(b).norm()));
 }
 
-/// The turn about the body's incoming axis that brings the found outgoing axis nearest to the true one.
-inline double best_turn(const JointTruth& incoming, const JointTruth& outgoing, const JointEstimate& found) {
+/// Rotation about the body's incoming axis that brings the estimated outgoing axis nearest to the true one [rad].
+inline double azimuth_correction(const JointTruth& incoming, const JointTruth& outgoing,
+                                 const JointEstimate& estimate) {
   const Vec3 n = incoming.axis_in_child;
   const auto flat = [&](const Vec3& v) { return Vec3(v - n * n.dot(v)); };
-  Vec3 is = found.axis_in_parent, ought = outgoing.axis_in_parent;
-  if (is.dot(ought) < 0.0) is = -is;
-  if (flat(ought).norm() < 0.2) {
-    is = found.point_in_parent - incoming.point_in_child;
-    ought = outgoing.point_in_parent - incoming.point_in_child;
+  Vec3 estimated = estimate.axis_in_parent, expected = outgoing.axis_in_parent;
+  if (estimated.dot(expected) < 0.0) estimated = -estimated;
+  if (flat(expected).norm() < 0.2) {
+    estimated = estimate.point_in_parent - incoming.point_in_child;
+    expected = outgoing.point_in_parent - incoming.point_in_child;
   }
-  is = flat(is), ought = flat(ought);
-  return std::atan2(n.dot(is.cross(ought)), is.dot(ought));
+  estimated = flat(estimated), expected = flat(expected);
+  return std::atan2(n.dot(estimated.cross(expected)), estimated.dot(expected));
+}
+
+/// An estimated joint in its parent's frame; where the parent has one axis only, rotated about it to the best fit.
+struct AlignedJoint {
+  Vec3 axis, point;
+  double azimuth = 0.0;  ///< [rad] rotation that was applied
+  bool azimuth_is_free = false;
+};
+inline AlignedJoint align_azimuth(const JointEstimate& estimate, const JointTruth& joint, const MachineTruth& truth) {
+  AlignedJoint aligned{.axis = estimate.axis_in_parent, .point = estimate.point_in_parent};
+  const auto incoming = std::ranges::find(truth.joints, joint.parent, &JointTruth::child);
+  aligned.azimuth_is_free = incoming != truth.joints.end() && joint.unobservable_in_parent.size() == 1;
+  if (!aligned.azimuth_is_free) return aligned;
+  aligned.azimuth = azimuth_correction(*incoming, joint, estimate);
+  const Mat3 r = exp_so3(aligned.azimuth * incoming->axis_in_child);
+  aligned.axis = r * aligned.axis;
+  aligned.point = incoming->point_in_child + r * (aligned.point - incoming->point_in_child);
+  return aligned;
 }
 
 }  // namespace kinfer::study

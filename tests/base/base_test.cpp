@@ -34,7 +34,7 @@ TEST(Rng, EqualPathsGiveEqualNumbersAndDifferentPathsDoNot) {
 }
 
 TEST(Rng, FirstDrawNeverChangesBetweenVersions) {
-  // SplitMix64 of the key mix(seed + golden), worked out apart from this code: a change here changes every result.
+  // SplitMix64 of the key mix(seed + golden), computed independently of this code: a change here changes every result.
   EXPECT_EQ(Rng(1).bits(), 0x5e41ab087439611eULL);
 }
 

@@ -21,7 +21,7 @@ std::vector<base::UniformKernel> runnable() {
 }
 
 TEST(UniformKernel, EveryInstructionSetGivesTheUpper53BitsOfEachDraw) {
-  constexpr std::size_t count = 1003;  // no multiple of any number of lanes
+  constexpr std::size_t count = 1003;  // not a multiple of any number of lanes
   const std::uint64_t first = 0x0123456789abcdefULL;
   for (const base::UniformKernel fill : runnable()) {
     std::vector<double> found(count);

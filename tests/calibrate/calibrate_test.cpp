@@ -15,7 +15,7 @@ namespace {
 
 using namespace test;
 
-/// The paper's robot somewhere in a tracker's world, its target off the axis.
+/// The paper's robot at an unknown place in a tracker's world, its target off the axis.
 Chain placed(Chain chain) {
   chain.base = Frame::from_pose(Pose::from_xyz_rpy({1.2, -2.5, 0.35}, {0.02, -0.03, 2.3}));
   chain.tool.xyz = Vec3(0.03, 0.02, 0.1);
@@ -74,7 +74,7 @@ TEST(Calibrate, FullPosesAreFittedInPositionAndOrientation) {
   EXPECT_LT(mean_error_on_unseen_poses(c.estimate.chain, truth), 25e-6);
 }
 
-TEST(Calibrate, TheGuessOfTheBaseDoesNotMatter) {
+TEST(Calibrate, TheInitialBaseDoesNotMatter) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   const PoseSet data = measured(truth, paper2_poses(50, tracker));
   Chain near = er20(0.125), far = er20(0.125);
@@ -85,7 +85,7 @@ TEST(Calibrate, TheGuessOfTheBaseDoesNotMatter) {
   EXPECT_NEAR(a.after.position.holdout.mean, b.after.position.holdout.mean, 1e-9);
 }
 
-TEST(Calibrate, ANominalModelThatIsFarOffIsFoundAndSaid) {
+TEST(Calibrate, ANominalModelThatIsFarOffIsDetectedAndReported) {
   Chain truth = placed(er20(0.125));
   auto& link = std::get<MdhLink>(truth.joints[2].link);
   link.theta += 12.0 * degree;
@@ -99,11 +99,11 @@ TEST(Calibrate, ANominalModelThatIsFarOffIsFoundAndSaid) {
   EXPECT_GE(c.notes[0].values.number("factor"), 10.0);
 }
 
-TEST(Calibrate, JointsThatNeverMoveDoNoHarmAndAreNamed) {
+TEST(Calibrate, JointsThatNeverMoveDoNoHarmAndAreReported) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   Chain nominal = er20(0.125);
   nominal.tool.xyz = truth.tool.xyz;
-  Chain held = truth;  // three of six joints stand still
+  Chain held = truth;  // three of six joints do not move
   for (const int j : {2, 4, 5}) held.joints[j].lower = held.joints[j].upper = 0.3;
   PoseSet data = measured(held, paper2_poses(40, tracker));
   const Calibration c = calibrate_robot({nominal, {}, tracker, data}, {}, Rng(1)).value();
@@ -126,7 +126,7 @@ TEST(Calibrate, SameResultFor12And7Threads) {
   }
 }
 
-TEST(Calibrate, ThePapers24ParametersNeedNoGuessOfTheBaseEither) {
+TEST(Calibrate, ThePapers24ParametersNeedNoInitialBaseEither) {
   const Chain truth = placed(with_table3_errors(er20(0.125)));
   Chain nominal = er20(0.125);
   nominal.tool.xyz = truth.tool.xyz;
@@ -156,9 +156,9 @@ TEST(Calibrate, RowsMarkedHoldoutAreNeverFitted) {
   EXPECT_EQ(same.usability, Usability::do_not_use);  // and the spoiled validation is seen
 }
 
-TEST(Calibrate, WhatTheInstrumentCannotExcuseIsAdvisedAgainst) {
+TEST(Calibrate, ErrorsAboveTheInstrumentsAccuracyAreAdvisedAgainst) {
   Chain truth = placed(with_table3_errors(er20(0.125)));
-  truth.joints[1].compliance = 2e-6;  // sags under its arm, and the geometric model has no word for it
+  truth.joints[1].compliance = 2e-6;  // sags under its arm, which the geometric model cannot describe
   truth.masses = {{2, Vec3(0.4, 0, 0), 120.0}, {4, Vec3(0, 0, 0.1), 60.0}};
   const PoseSet data = measured(truth, paper2_poses(100, tracker));
   const Calibration c = calibrate_robot({er20(0.125), {}, tracker, data}, {.model = FixedModel{}}, Rng(1)).value();
@@ -167,7 +167,7 @@ TEST(Calibrate, WhatTheInstrumentCannotExcuseIsAdvisedAgainst) {
   EXPECT_EQ(c.reason, CalibrationReason::unmodelled_effects);
 }
 
-TEST(Calibrate, TooFewRowsAreAnErrorThatSaysHowManyAreNeeded) {
+TEST(Calibrate, TooFewRowsAreAnErrorThatStatesHowManyAreNeeded) {
   const PoseSet data = measured(placed(er20()), paper2_poses(3, tracker));
   const auto c = calibrate_robot({er20(), {}, tracker, data}, {}, Rng(1));
   ASSERT_FALSE(c.has_value());

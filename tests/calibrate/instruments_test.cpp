@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each instrument alone, and several together, find the errors of a simulated robot again.
+// Each instrument alone, and several together, recover the errors of a simulated robot.
 #include <gtest/gtest.h>
 
 #include "kinfer/calibrate/calibrate.hpp"
@@ -41,7 +41,7 @@ TEST(Instruments, DrawWiresToUncertainAnchorsCalibrateTheRobotAndTheAnchors) {
   EXPECT_GT(c.before.position.holdout.mean, 5.0 * c.after.position.holdout.mean);
 }
 
-TEST(Instruments, BallsInSocketsMakeUnseenSocketsConsistent) {
+TEST(Instruments, BallsInSocketsMakeHeldOutSocketsConsistent) {
   const Chain truth = true_robot();
   const std::vector<Vec3> sockets{{0.9, 0.5, 0.4}, {0.8, -0.6, 0.6}, {1.1, 0.1, 0.9}, {0.7, 0.3, 1.2}};
   PoseSet all = readings_of(measured(truth, paper2_poses(120, noise_free)));
@@ -84,7 +84,7 @@ TEST(Instruments, AKnownDistanceBetweenSocketsGivesTheScale) {
     return (s[0].xyz - s[1].xyz).norm();
   };
   const double distance = (sockets[0] - sockets[1]).norm();
-  nominal.fixtures.sockets = {{"b", Vec3::Zero()}, {"a", Vec3::Zero()}};  // in an order of their own
+  nominal.fixtures.sockets = {{"b", Vec3::Zero()}, {"a", Vec3::Zero()}};  // in another order than in the data
   nominal.fixtures.socket_distances = {{0, 1, distance, 5e-6}};
   EXPECT_NEAR(apart(calibrated(nominal, data, {.sigma = 10e-6}).estimate.chain), distance, 15e-6);
 }
@@ -124,7 +124,7 @@ TEST(Instruments, BallBarsPlanesAndTiltsTogetherWithFewTrackerPoints) {
   EXPECT_LT(mean(point_errors(c.estimate.chain, measured(truth, paper2_poses(200, noise_free), 99))), 100e-6);
 }
 
-TEST(Instruments, TargetsWithoutTheToolPointFindTheToolsTurn) {
+TEST(Instruments, TargetsWithoutTheToolPointDetermineTheToolsRotation) {
   Chain nominal = nominal_robot();
   nominal.targets = {{"s1", Vec3(0.1, 0, 0)}, {"s2", Vec3(0, 0.1, 0.02)}, {"s3", Vec3(-0.08, -0.05, 0.05)}};
   Chain truth = with_random_errors(nominal, {}, Rng(6));
@@ -141,13 +141,13 @@ TEST(Instruments, TargetsWithoutTheToolPointFindTheToolsTurn) {
   EXPECT_LT(c.after.position.holdout.mean, 45e-6);
 }
 
-TEST(Instruments, ACamerasOwnDeviationsWeighItsPoses) {
+TEST(Instruments, ACamerasStandardDeviationsWeightItsPoses) {
   const Chain truth = true_robot(7);
   PoseSimulation simulation = paper2_poses(60, {.sigma = 20e-6, .sigma_angle = 1e-4});
   simulation.measured = Measured::poses;
   PoseSet data = measured(truth, simulation);
   Rng rng(10);
-  for (int row = 0; row < 60; ++row) {  // every second pose was seen badly, and says so
+  for (int row = 0; row < 60; ++row) {  // every second pose is inaccurate and has a matching sd
     const double sd = row % 2 ? 1e-3 : 20e-6;
     data.points[row].sd = Vec3::Constant(sd);
     data.orientations[row].sd = Vec3::Constant(row % 2 ? 5e-3 : 1e-4);
@@ -179,7 +179,7 @@ TEST(Instruments, EachSetupHasABaseAndToolOfItsOwn) {
   EXPECT_LT((c.estimate.chain.mountings[0].tool.xyz - truth.mountings[0].tool.xyz).norm(), 1e-3);
 }
 
-TEST(Instruments, BothArmsOfATreeAreCalibratedByRowsThatSayWhichTip) {
+TEST(Instruments, BothArmsOfATreeAreCalibratedByRowsThatNameTheTip) {
   Chain nominal = er20(0.125);
   nominal.tip = 3;  // a torso of two axes; arm one is joints 3 and 4, arm two joints 5 to 7
   nominal.joints[4].parent = 1;

@@ -68,7 +68,7 @@ TEST_F(Calibrate, SameBytesForAnyNumberOfThreadsAndAnyFolder) {
   EXPECT_EQ(slurp(in("elsewhere/deep/evidence.json")), evidence);
 }
 
-TEST_F(Calibrate, VerbsThatWriteOneFileSaySoAndQuietIsSilent) {
+TEST_F(Calibrate, VerbsThatWriteOneFileReportItAndQuietIsSilent) {
   simulate();
   const std::string predict = "predict --chain data/robot.toml --joints data/poses.csv -o predicted.csv";
   EXPECT_EQ(kinfer(predict).out, "predicted.csv: 50 poses\n");
@@ -128,7 +128,7 @@ TEST_F(Calibrate, ConvertRoundTripsThroughUrdf) {
   while (std::getline(a, line_a) && std::getline(b, line_b)) EXPECT_NEAR(std::stod(line_a), std::stod(line_b), 1e-9);
 }
 
-TEST_F(Calibrate, InspectSaysWhatWasUnderstood) {
+TEST_F(Calibrate, InspectReportsWhatWasRead) {
   simulate();
   const Outcome run = kinfer("inspect data/poses.csv --robot data/robot.toml");
   EXPECT_EQ(run.code, 0) << run.err;
@@ -174,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(
                       BadInput{"too_few", header + "1,2,3,4,5,6,7,8,9\n2,3,4,5,6,7,8,9,10\n", "at least"}),
     [](const auto& bad) { return bad.param.name; });
 
-TEST_F(Calibrate, AnOutputFolderThatCannotBeMadeIsSaidBeforeAnythingIsComputed) {
+TEST_F(Calibrate, AnOutputFolderThatCannotBeMadeIsAnErrorBeforeAnythingIsComputed) {
   simulate();
   write(in("file"), "in the way");
   const Outcome run = kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out file/cal");
@@ -195,10 +195,10 @@ TEST_F(Calibrate, UsageErrorsAreExitCode2AndHelpIs0) {
   }
 }
 
-/// Measurements made and scored by others' code, where they are present.
-class Cases : public Program, public ::testing::WithParamInterface<std::pair<const char*, double>> {};
+/// Reference cases, simulated and scored by independent code, where KINFER_CASES is set.
+class ReferenceCases : public Program, public ::testing::WithParamInterface<std::pair<const char*, double>> {};
 
-TEST_P(Cases, HeldOutErrorIsWithin13TimesTheReference) {
+TEST_P(ReferenceCases, HeldOutErrorIsWithin13TimesTheReference) {
   const char* root = std::getenv("KINFER_CASES");
   if (!root) GTEST_SKIP() << "KINFER_CASES is not set";
   const auto [name, reference_mm] = GetParam();
@@ -225,12 +225,12 @@ TEST_P(Cases, HeldOutErrorIsWithin13TimesTheReference) {
   EXPECT_LE(1e3 * sum / n, 1.3 * reference_mm);
 }
 
-INSTANTIATE_TEST_SUITE_P(all, Cases,
+INSTANTIATE_TEST_SUITE_P(all, ReferenceCases,
                          ::testing::Values(std::pair{"robot6_tracker", 0.020}, std::pair{"ur_like_metres", 0.013},
                                            std::pair{"scara_screw", 0.012}, std::pair{"arm7_outliers", 0.028}),
                          [](const auto& test) { return std::string(test.param.first); });
 
-TEST_F(Calibrate, ExactlyTheWrongRowsOfTheOutlierCaseAreListed) {
+TEST_F(Calibrate, ExactlyTheGrossErrorsOfTheOutlierCaseAreListed) {
   const char* root = std::getenv("KINFER_CASES");
   if (!root) GTEST_SKIP() << "KINFER_CASES is not set";
   const std::string folder = std::string(root) + "/calibrate/arm7_outliers";
@@ -241,8 +241,8 @@ TEST_F(Calibrate, ExactlyTheWrongRowsOfTheOutlierCaseAreListed) {
   EXPECT_EQ(rows, (std::vector<int>{11, 37, 44, 52, 53, 68, 72, 73, 75}));
 }
 
-/// The real robot, where the data are present.
-TEST_F(Calibrate, RealUr10SeriesReachTheFiguresOfTheIssue) {
+/// The real robot, where KINFER_DATA is set.
+TEST_F(Calibrate, RealUr10SeriesReachTheirTargets) {
   const char* root = std::getenv("KINFER_DATA");
   if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
   const std::string folder = std::string(root) + "/ur10_leica/";

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 class Identify : public test::Program {
  protected:
-  /// The excavator's log, short enough for a test; the search needs few generations to be looked at.
+  /// The excavator's log, short enough for a test; few generations of the search suffice.
   void simulate() { ASSERT_EQ(kinfer("simulate excavator --out drive --grade noise --quiet").code, 0); }
 };
 
@@ -40,7 +40,7 @@ TEST_F(Identify, WritesTheChainAndItsEvidenceAndTheSameBytesForAnyNumberOfThread
   EXPECT_TRUE(json["fit"]["holdout"].contains("ins2"));
 }
 
-TEST_F(Identify, EnumerationIsACertificateThatTheDefaultEngineReaches) {
+TEST_F(Identify, TheDefaultEngineReachesTheOptimumOfExhaustiveSearch) {
   simulate();
   const auto evidence = [&](const std::string& engine) {
     EXPECT_EQ(
@@ -56,7 +56,7 @@ TEST_F(Identify, EnumerationIsACertificateThatTheDefaultEngineReaches) {
   EXPECT_LT(found["search"]["evaluations"].get<int>(), 5000);
 }
 
-TEST_F(Identify, BadInputGetsOneSentenceAndLeavesNothing) {
+TEST_F(Identify, BadInputGivesOneSentenceAndNoOutput) {
   write(in("one.csv"), "t,a_ax,a_ay,a_az,a_gx,a_gy,a_gz\n0,0,0,9.8,0,0,0\n0.01,0,0,9.8,0,0,0\n0.02,0,0,9.8,0,0,0\n");
   const auto lonely = kinfer("identify one.csv --out out");
   EXPECT_EQ(lonely.code, 2);

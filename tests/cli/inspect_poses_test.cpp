@@ -25,7 +25,7 @@ class InspectPoses : public Program {
   }
 };
 
-TEST_F(InspectPoses, AHealthySetIsCalledSo) {
+TEST_F(InspectPoses, AFaultlessSetIsReportedAsSuch) {
   simulate();
   const Outcome run = kinfer("inspect data/poses.csv --robot data/robot.toml");
   EXPECT_EQ(run.code, 0) << run.err;
@@ -33,7 +33,7 @@ TEST_F(InspectPoses, AHealthySetIsCalledSo) {
   EXPECT_EQ(kinfer("inspect data/poses.csv --robot data/robot.toml --json").out, "[]\n");
 }
 
-TEST_F(InspectPoses, AHeaderWithTheWrongUnitIsFoundAndCalibrateSaysWhatItDid) {
+TEST_F(InspectPoses, AHeaderWithTheWrongUnitIsFoundAndCalibrateReportsTheCorrection) {
   simulate();
   change_rows([](std::string line, int number) {
     return number == 0 ? "q1,q2,q3,q4,q5,q6,x[mm],y[mm],z[mm]" : line;  // degrees, read as radians
@@ -83,7 +83,7 @@ TEST_F(InspectPoses, EulerAnglesInAnotherSequenceAreFound) {
   EXPECT_NE(run.out.find("XYZ extrinsic angles in deg"), std::string::npos) << run.out << run.err;
 }
 
-/// Measured by others; every finding here was looked at and is true.
+/// Public measured sets; every finding here was checked by hand and is true.
 TEST_F(InspectPoses, MeasuredSetsHaveTrueFindingsOnly) {
   const char* root = std::getenv("KINFER_DATA");
   if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
@@ -93,11 +93,11 @@ TEST_F(InspectPoses, MeasuredSetsHaveTrueFindingsOnly) {
   const json b = json::parse(kinfer(common + "Series_B_measurements_joint_configurations.csv").out);
   std::vector<std::string> kinds;
   for (const json& finding : b) kinds.push_back(finding["kind"]);
-  // The tracker's numbers stand twice, to the last digit, although elbow and shoulder have changed sides.
+  // The tracker's numbers appear twice, to the last digit, although elbow and shoulder have changed configuration.
   EXPECT_EQ(kinds, (std::vector<std::string>{"measurement_repeated", "measurement_repeated", "gross_outliers"}));
 }
 
-TEST_F(InspectPoses, CasesHaveNoFindingButTheirWrongRows) {
+TEST_F(InspectPoses, ReferenceCasesHaveNoFindingButTheirGrossErrors) {
   const char* root = std::getenv("KINFER_CASES");
   if (!root) GTEST_SKIP() << "KINFER_CASES is not set";
   for (const std::string name : {"robot6_tracker", "ur_like_metres", "scara_screw"}) {

@@ -13,7 +13,7 @@ namespace {
 using testing::carried;
 using testing::CarriedMotion;
 
-/// The carried sensor as a CSV file; its name is `name`.
+/// The moving sensor as a CSV file; its name is `name`.
 std::string as_csv(const CarriedMotion& motion, const std::string& name) {
   const testing::CarriedSensor c = carried(motion);
   std::string text = "t";
@@ -61,7 +61,7 @@ TEST_F(Orient, WritesOneRowPerInputRowCloseToTheTruth) {
   }
 }
 
-TEST_F(Orient, JsonNamesTheSensorsAndQuietSaysNothing) {
+TEST_F(Orient, JsonNamesTheSensorsAndQuietIsSilent) {
   const Outcome run = kinfer("orient imu.csv -o q.csv --json --magnetometer off");
   ASSERT_EQ(run.code, 0) << run.err;
   const auto headline = nlohmann::json::parse(run.out);
@@ -82,7 +82,7 @@ TEST_F(Orient, SeveralLoggersAreWrittenOneAfterTheOther) {
   EXPECT_EQ(slurp(in("one.csv")).substr(0, 35), "t,other_qw,other_qx,other_qy,other_");
 }
 
-TEST_F(Orient, BadInputHasOneSentenceExitCode2AndNoFile) {
+TEST_F(Orient, BadInputGivesOneSentenceExitCode2AndNoFile) {
   write(in("g.csv"), "t,i_ax,i_ay,i_az,i_gx,i_gy,i_gz\n0,0,0,1,0,0,0\n0.01,0,0,1,0,0,0\n");
   write(in("dead.csv"), "t,i_ax,i_ay,i_az,i_gx,i_gy,i_gz\n0,0,0,0,0,0,0\n0.01,0,0,0,0,0,0\n");
   const std::pair<const char*, const char*> cases[] = {
@@ -110,7 +110,7 @@ TEST_F(Orient, ARecordingIsInspected) {
     EXPECT_NE(run.out.find(words), std::string::npos) << words << "\n" << run.out;
 }
 
-TEST_F(Orient, WhatIsWrongWithARecordingIsSaidByInspect) {
+TEST_F(Orient, InspectReportsTheFaultsOfARecording) {
   std::string text = as_csv({.seconds = 20, .sampling_rate = 100, .rest = -10}, "imu");
   text += "60,0,0,9.81,0,0,0,0,20,-44\n";
   write(in("odd.csv"), text);

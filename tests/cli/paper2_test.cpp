@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verbs and options of paper 2, end to end: searches by a population, warm start, fleet prior, frames,
-// compensation.
+// The verbs and options of paper 2, end to end: swarm searches, warm start, population prior, frames, compensation.
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -23,7 +22,7 @@ class Paper2 : public Program {
   json evidence(const std::string& folder) const { return json::parse(slurp(in(folder) / "evidence.json")); }
 };
 
-TEST_F(Paper2, BpnnPsoLeavesANetAndASecondRunIsComparedWithAWarmStartWithoutOne) {
+TEST_F(Paper2, BpnnPsoWritesANetAndASecondRunIsComparedWithAWarmStartWithoutOne) {
   const std::string calibrate =
       "calibrate --robot data/robot.toml --data data/poses.csv --holdout 0.2 --method bpnn-pso --iterations 300 ";
   const Outcome first = kinfer(calibrate + "--out first");
@@ -43,7 +42,7 @@ TEST_F(Paper2, BpnnPsoLeavesANetAndASecondRunIsComparedWithAWarmStartWithoutOne)
   EXPECT_NE(slurp(in("second") / "evidence.json").find("--warm-start"), std::string::npos);
 }
 
-TEST_F(Paper2, APopulationGivesTheSameBytesFor1And7Threads) {
+TEST_F(Paper2, ASwarmSearchGivesTheSameBytesFor1And7Threads) {
   const std::string calibrate =
       "calibrate --robot data/robot.toml --data data/poses.csv --holdout 0.2 --method pso --iterations 50 ";
   ASSERT_LT(kinfer(calibrate + "--out one --threads 1").code, 2);
@@ -51,7 +50,7 @@ TEST_F(Paper2, APopulationGivesTheSameBytesFor1And7Threads) {
   EXPECT_EQ(slurp(in("one") / "evidence.json"), slurp(in("seven") / "evidence.json"));
 }
 
-TEST_F(Paper2, APriorOfAnotherKindOfRobotIsRefused) {
+TEST_F(Paper2, APriorOfAnotherRobotTypeIsRefused) {
   std::ofstream(in("two.toml"))
       << "name = \"two\"\nconvention = \"mdh\"\nunits = { length = \"mm\", angle = \"deg\" }\n"
          "[[joint]]\ntype = \"revolute\"\na = 0.0\nalpha = 0.0\nd = 10.0\ntheta = 0.0\n";
@@ -73,7 +72,7 @@ TEST_F(Paper2, CompensatedJointsBringTheCorrectedChainWhereTheNominalOneWas) {
   ASSERT_EQ(kinfer("predict --chain data/robot.toml --joints own/poses.csv -o wanted.csv").code, 0);
   std::istringstream real(slurp(in("real.csv"))), wanted(slurp(in("wanted.csv")));
   std::string a, b;
-  int exact = 0;  // a joint at its limit may keep a row or two from it
+  int exact = 0;  // a joint at its limit may prevent this in a row or two
   for (std::getline(real, a), std::getline(wanted, b); std::getline(real, a) && std::getline(wanted, b);) {
     std::istringstream cells_a(a), cells_b(b);
     double worst = 0.0;
@@ -86,7 +85,7 @@ TEST_F(Paper2, CompensatedJointsBringTheCorrectedChainWhereTheNominalOneWas) {
   EXPECT_GE(exact, 47);
 }
 
-TEST_F(Paper2, ATargetThatCannotBeReachedIsSaidAndTheExitCodeIs1) {
+TEST_F(Paper2, ATargetThatCannotBeReachedIsReportedWithExitCode1) {
   std::ofstream(in("far.csv")) << "x,y,z\n9,0,0\n";
   const Outcome run = kinfer("compensate --chain data/truth.toml --nominal data/robot.toml --targets far.csv");
   EXPECT_EQ(run.code, 1);

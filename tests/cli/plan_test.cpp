@@ -13,7 +13,7 @@ class PlanPoses : public Program {
   std::string robot() const { return source("examples/robot6/robot.toml"); }
 };
 
-TEST_F(PlanPoses, PlannedPosesAreReadableAndComeWithAFigure) {
+TEST_F(PlanPoses, PlannedPosesAreReadBackAndComeWithAFigure) {
   const Outcome run = kinfer("plan --robot " + robot() + " --poses 10 -o plan.csv --lowest 100 --json");
   ASSERT_EQ(run.code, 0) << run.err;
   const json plan = json::parse(run.out);
@@ -40,7 +40,7 @@ TEST_F(PlanPoses, SomeOfThePosesOfAFileAreChosenAndOthersLeftOut) {
   EXPECT_LT(json::parse(added.out)["expected"]["rms"], json::parse(added.out)["existing"]["rms"]);
 }
 
-TEST_F(PlanPoses, WrongInputIsOneSentence) {
+TEST_F(PlanPoses, BadInputGivesOneSentence) {
   const Outcome place = kinfer("plan --robot " + robot() + " -o plan.csv --instrument-at 1,2");
   EXPECT_EQ(place.code, 2);
   EXPECT_NE(place.err.find("expected x,y,z in mm"), std::string::npos) << place.err;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the program as a user would, and looks at what it leaves behind.
+// Runs the program as a user would and reads its output.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ struct Outcome {
   std::string out, err;
 };
 
-/// A folder of the test's own, empty at the start.
+/// A temporary folder of the test, empty at the start.
 class Program : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibration beyond a tracker and one robot, through the program itself.
+// Calibration with other instruments, set-ups and models, through the program.
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -36,7 +36,7 @@ TEST_F(Robots, AModelIsChosenAndTheChoiceIsInTheEvidence) {
   }
 }
 
-TEST_F(Robots, AnUnknownModelIsRefusedInASentenceThatListsTheKnownOnes) {
+TEST_F(Robots, AnUnknownModelTermIsRefusedWithTheKnownOnes) {
   simulate();
   const Outcome run = kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal --model magic");
   EXPECT_EQ(run.code, 2);
@@ -54,11 +54,11 @@ TEST_F(Robots, SetupsAreWrittenAndPredictedByTheirName) {
   EXPECT_EQ(kinfer("verify --chain cal/chain.toml --data data/poses.csv").code, 0);
 }
 
-TEST_F(Robots, AKnockedRobotIsRefittedWithFewPoses) {
+TEST_F(Robots, ARobotIsRefittedWithFewPosesAfterACollision) {
   simulate();
   ASSERT_EQ(kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal").code, 0);
   simulate("--seed 9 --poses 8");
-  std::string poses = slurp(in("data/poses.csv"));  // the third motor now reads 0.4 deg less
+  std::string poses = slurp(in("data/poses.csv"));  // the third encoder now reports 0.4 deg less
   std::istringstream lines(poses);
   std::string text, line;
   std::getline(lines, line);
@@ -82,7 +82,7 @@ TEST_F(Robots, AKnockedRobotIsRefittedWithFewPoses) {
   EXPECT_NE(alone.err.find("--warm-start"), std::string::npos) << alone.err;
 }
 
-/// Rows of others' ball-in-socket set as a pose set of ours.
+/// Rows of a public ball-in-socket set as a pose set file.
 std::string socket_rows(const std::string& folder, const std::vector<std::string>& positions) {
   std::string text;
   for (const std::string& position : positions)
@@ -94,7 +94,7 @@ std::string socket_rows(const std::string& folder, const std::vector<std::string
   return text;
 }
 
-TEST_F(Robots, RealBallsInSocketsAreConsistentAtPositionsThatWereNotFitted) {
+TEST_F(Robots, RealBallsInSocketsAreConsistentAtHeldOutPositions) {
   const char* root = std::getenv("KINFER_DATA");
   if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
   const std::string mukca = std::string(root) + "/mukca", arm = mukca + "/data/panda_1";

@@ -11,7 +11,7 @@ using nlohmann::json;
 
 class Simulate : public Program {};
 
-TEST_F(Simulate, ExcavatorLeavesARecordingThatIsReadBackAndItsTruth) {
+TEST_F(Simulate, ExcavatorWritesARecordingThatIsReadBackAndItsGroundTruth) {
   const Outcome run = kinfer("simulate excavator --duration 60 --out data");
   ASSERT_EQ(run.code, 0) << run.err;
   for (const char* file : {"imu.csv", "truth.json", "motion.csv", "machine.xml", "run.json"})
@@ -44,14 +44,14 @@ TEST_F(Simulate, SameSeedWritesTheSameBytesAnywhereAndAnotherSeedDoesNot) {
   EXPECT_NE(slurp(in("one/imu.csv")), slurp(in("other/imu.csv")));
 }
 
-TEST_F(Simulate, SensorsOnFoamFeelAnotherMotionOfTheSameMachine) {
+TEST_F(Simulate, SensorsOnFoamMeasureAnotherMotionOfTheSameMachine) {
   ASSERT_EQ(kinfer("simulate tree --duration 16 --out firm").code, 0);
   ASSERT_EQ(kinfer("simulate tree --duration 16 --foam 3 --out soft").code, 0);
   EXPECT_NE(slurp(in("firm/imu.csv")), slurp(in("soft/imu.csv")));
   EXPECT_EQ(json::parse(slurp(in("firm/truth.json")))["joints"], json::parse(slurp(in("soft/truth.json")))["joints"]);
 }
 
-TEST_F(Simulate, WhatCannotBeDoneIsRefusedInASentenceAndNothingIsWritten) {
+TEST_F(Simulate, ImpossibleOptionsAreRefusedInOneSentenceAndNothingIsWritten) {
   const std::pair<const char*, const char*> cases[] = {
       {"simulate digger", "digger: no such machine; known are crane, excavator, excavator-general, robot6, tree"},
       {"simulate tree --duration 5", "a duration of 5 s is too short for this script: 15.2 s at least"},
@@ -68,7 +68,7 @@ TEST_F(Simulate, WhatCannotBeDoneIsRefusedInASentenceAndNothingIsWritten) {
   }
 }
 
-TEST_F(Simulate, ADataSheetOfOnesOwnAndARecordingOfSixAxes) {
+TEST_F(Simulate, AnOwnSensorGradeAndSixAxesAreRecorded) {
   write(in("sheet.toml"), "name = \"lab\"\n[accelerometer]\nnoise_density = 0\n[gyroscope]\nnoise_density = 0\n");
   const Outcome run =
       kinfer("simulate tree --duration 16 --motion prescribed --grade sheet.toml --no-magnetometer --json --out data");

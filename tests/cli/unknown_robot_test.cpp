@@ -10,7 +10,7 @@ using nlohmann::json;
 
 class UnknownRobot : public Program {};
 
-TEST_F(UnknownRobot, JointTypesAndPointsAloneGiveAProvenChain) {
+TEST_F(UnknownRobot, JointTypesAndPointsAloneGiveAValidatedChain) {
   ASSERT_EQ(kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") + " --out data --poses 60").code,
             0);
   const Outcome run = kinfer("calibrate --robot unknown:6R --data data/poses.csv --out cal");
@@ -22,7 +22,7 @@ TEST_F(UnknownRobot, JointTypesAndPointsAloneGiveAProvenChain) {
   EXPECT_EQ(kinfer("predict --chain cal/chain.toml --joints data/poses.csv -o p.csv").code, 0);
 }
 
-TEST_F(UnknownRobot, NonsenseIsRefusedInOneSentence) {
+TEST_F(UnknownRobot, BadInputGivesOneSentence) {
   write(in("poses.csv"), "q1,q2,x,y,z\n0,0,0,0,0\n");
   for (const char* types : {"unknown:", "unknown:6X", "unknown:2R"}) {
     const Outcome run = kinfer(std::string("calibrate --robot ") + types + " --data poses.csv --out cal");

@@ -21,7 +21,7 @@ class VerifyAgainst : public Program {
   }
 };
 
-TEST_F(VerifyAgainst, AKnockedJointIsNamedAndAnUnchangedRobotIsNot) {
+TEST_F(VerifyAgainst, AChangedJointIsNamedAndAnUnchangedRobotIsNot) {
   const std::string units = "units = { length = \"mm\", angle = \"deg\" }\n[errors]\na2 = 0.1\n";
   write(in("errors.toml"), units + "theta3 = 0.05\n");
   calibrate_robot("may", 1);
@@ -38,7 +38,7 @@ TEST_F(VerifyAgainst, AKnockedJointIsNamedAndAnUnchangedRobotIsNot) {
   EXPECT_TRUE(changes["parameters"][0]["significant"]);
 }
 
-TEST_F(VerifyAgainst, TablesOfACalibrationLieBesideItsChain) {
+TEST_F(VerifyAgainst, TablesOfACalibrationAreWrittenBesideItsChain) {
   write(in("errors.toml"), "units = { length = \"mm\", angle = \"deg\" }\n[errors]\na2 = 0.1\n");
   calibrate_robot("may", 1);
   for (const char* file :

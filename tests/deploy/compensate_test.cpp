@@ -15,7 +15,7 @@ namespace {
 
 using namespace test;
 
-/// Distances between where the real robot goes and where the nominal model wanted it.
+/// Distances between the real robot's tool and the nominal targets.
 std::vector<double> misses(const Chain& real, const Chain& nominal, const MatrixXd& wanted,
                            const std::vector<CompensatedJoints>& sent) {
   std::vector<double> list;
@@ -24,7 +24,7 @@ std::vector<double> misses(const Chain& real, const Chain& nominal, const Matrix
   return list;
 }
 
-TEST(Compensate, TheKnownRobotGoesWhereTheNominalModelWantedIt) {
+TEST(Compensate, AnExactlyKnownRobotReachesTheNominalTargets) {
   const Chain nominal = er20(), real = with_table3_errors(nominal);
   const MatrixXd q = measured(nominal, paper2_poses(50, noise_free)).joints;
   const auto sent = compensate_joints(real, nominal, q, 1);
@@ -38,7 +38,7 @@ TEST(Compensate, TheKnownRobotGoesWhereTheNominalModelWantedIt) {
             45);
 }
 
-TEST(Compensate, WhatIsLeftIsTheErrorOfTheIdentifiedModel) {
+TEST(Compensate, TheRemainingErrorIsThatOfTheIdentifiedModel) {
   const Chain nominal = er20(), real = with_table3_errors(nominal);
   CalibrationTask task{nominal, {}, tracker, measured(real, paper2_poses(50, tracker)), {}, {}};
   const Chain found = calibrate_robot(task, {.parameters = PaperDhParameters{}}, Rng(1)).value().estimate.chain;
@@ -51,7 +51,7 @@ TEST(Compensate, WhatIsLeftIsTheErrorOfTheIdentifiedModel) {
     for (int i = 0; i < 100; ++i) uncorrected[i].q = wanted.joints.col(i);
     return uncorrected;
   }()));
-  // The model's own error at the compensated readings: what it says of the real robot there.
+  // The model's own error against the real robot at the compensated joint positions.
   for (PointMeasurement& point : visited.points) point.position = forward(real, visited.joints.col(point.row)).position;
   const double model_error = median(point_errors(found, visited));
   const double after = median(misses(real, nominal, wanted.joints, sent));
@@ -78,14 +78,14 @@ TEST(Compensate, ATargetIsReachedByTheRealToolWithoutAStart) {
   EXPECT_GE(reached, 18);
 }
 
-TEST(Compensate, ATargetOutOfReachIsSaid) {
+TEST(Compensate, ATargetOutOfReachIsReported) {
   const Chain nominal = er20();
   const auto sent = compensate_targets(nominal, nominal, {{Vec3(9, 0, 0), std::nullopt}}, {}, 1, Rng(1));
   EXPECT_NE(sent[0].status, InverseStatus::reached);
   EXPECT_GT(sent[0].residual, 5.0);
 }
 
-TEST(Compensate, AnInstrumentsWorldIsToldFromASmallBaseError) {
+TEST(Compensate, AnInstrumentsWorldIsDistinguishedFromASmallBaseError) {
   const Chain nominal = er20();
   Chain near = nominal, far = nominal;
   near.base.xyz = Vec3(0.02, 0, 0);
@@ -95,7 +95,7 @@ TEST(Compensate, AnInstrumentsWorldIsToldFromASmallBaseError) {
   EXPECT_EQ(express_in_frames(far, nominal, CompensationFrames::robot).base.xyz, nominal.base.xyz);
 }
 
-TEST(Compensate, SameReadingsFor12And7Threads) {
+TEST(Compensate, SameJointPositionsFor12And7Threads) {
   const Chain nominal = er20(), real = with_table3_errors(nominal);
   const std::vector<ToolTarget> targets(9, {Vec3(1.0, 0.3, 0.8), std::nullopt});
   const auto one = compensate_targets(real, nominal, targets, {}, 1, Rng(1));

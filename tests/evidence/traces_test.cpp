@@ -10,7 +10,7 @@
 namespace kinfer {
 namespace {
 
-TEST(Traces, ASpikeOfOneSampleInAnHourStaysInSight) {
+TEST(Traces, ASpikeOfOneSampleInAnHourStaysVisible) {
   std::vector<double> hour(720000, 0.0);
   hour[123457] = 40.0, hour[600001] = -30.0;
   const Binning bins = binning(hour.size(), 1000);
@@ -29,7 +29,7 @@ TEST(Traces, ShortSignalsKeepEverySample) {
   EXPECT_EQ(envelope(samples, bins).high, samples);
 }
 
-TEST(Traces, ABinWithGapsTakesWhatThereIsAndAnEmptyOneSaysSo) {
+TEST(Traces, ABinWithGapsUsesItsSamplesAndAnEmptyOneIsMarked) {
   constexpr double gap = std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> samples{gap, 2.0, gap, gap, 5.0, 4.0};
   const Envelope thin = envelope(samples, binning(6, 3));

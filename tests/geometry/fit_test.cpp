@@ -42,7 +42,7 @@ TEST(AlignPoints, RecoversThePoseFromPointsInSpaceAndInAPlane) {
   }
 }
 
-TEST(AlignPoints, RecoversHalfTurnsAndNoTurn) {
+TEST(AlignPoints, RecoversHalfTurnsAndTheIdentity) {
   const auto b = cloud(5, {1, 1, 1}, Rng(2));
   for (const Vec3& turn : {Vec3(0, 0, 0), Vec3(pi, 0, 0), Vec3(0, pi, 0), Vec3(0, 0, pi)}) {
     const Pose truth{exp_so3(turn), Vec3(1, 2, 3)};
@@ -51,7 +51,7 @@ TEST(AlignPoints, RecoversHalfTurnsAndNoTurn) {
 }
 
 TEST(AlignPoints, NeverAnswersWithAReflection) {
-  // A mirrored cloud would be met best by a reflection.
+  // A mirrored cloud would be fitted best by a reflection.
   for (int seed = 0; seed < 20; ++seed) {
     const auto b = cloud(8, {1, 1, seed % 2 == 0 ? 1.0 : 1e-3}, Rng(seed));
     auto mirrored = b;
@@ -62,7 +62,7 @@ TEST(AlignPoints, NeverAnswersWithAReflection) {
   }
 }
 
-TEST(AlignPoints, NoSmallTurnOrShiftFitsNoisyWeightedPointsBetter) {
+TEST(AlignPoints, NoSmallRotationOrShiftFitsNoisyWeightedPointsBetter) {
   const auto b = cloud(20, {1, 1, 1}, Rng(3)), noise = cloud(20, {0.05, 0.05, 0.05}, Rng(4));
   auto a = moved(far_away, b);
   std::vector<double> weights;
@@ -87,7 +87,7 @@ TEST(AlignPoints, APointWithoutWeightDoesNotCount) {
   EXPECT_LT((pose.rotation - far_away.rotation).norm(), 1e-12);
 }
 
-TEST(MeanRotation, OfTurnsAboutOneAxisIsTheMeanTurn) {
+TEST(MeanRotation, OfRotationsAboutOneAxisIsTheMeanAngle) {
   const std::vector<Mat3> turns{rot_z(0.2), rot_z(0.4), rot_z(0.6)};
   EXPECT_LT((mean_rotation(turns) - rot_z(0.4)).norm(), 1e-14);
   const std::vector<Mat3> across_pi{rot_z(pi - 0.1), rot_z(-pi + 0.1)};
@@ -122,7 +122,7 @@ TEST(FitCircle, ThreePointsGiveTheCircleThroughThem) {
   EXPECT_LT(circle.rms, 1e-12);
 }
 
-TEST(FitCircle, NormalTurnsFromTheFirstPointToTheLaterOnes) {
+TEST(FitCircle, TheNormalPointsByTheRightHandFromTheFirstPointToTheLaterOnes) {
   const Vec3 up = far_away.rotation.col(2);
   for (const double end : {0.5, 2.0, 4.0, 6.0}) {
     EXPECT_LT((fit_circle(arc(1.5, 0.0, end, 30)).normal - up).norm(), 1e-10) << end;
@@ -132,12 +132,12 @@ TEST(FitCircle, NormalTurnsFromTheFirstPointToTheLaterOnes) {
 
 TEST(FitCircle, AShortArcStillGivesTheCenter) {
   const CircleFit circle = fit_circle(arc(1.0, 0.0, 0.1, 20));
-  EXPECT_LT((circle.center - far_away.position).norm(), 1e-7);  // the arc's rise is 1e-3, its points' rounding 1e-14
+  EXPECT_LT((circle.center - far_away.position).norm(), 1e-7);  // the arc's height is 1e-3, the points' rounding 1e-14
   EXPECT_NEAR(circle.radius, 1.0, 1e-7);
 }
 
 TEST(FitCircle, MinimisesTheDistancesAndNotTheirSquaresAlgebraicForm) {
-  // Two rings of points at 1 ± 0.1, turned against each other: the geometric fit has radius 1 and rms 0.1 exactly.
+  // Two rings of points at 1 ± 0.1, rotated against each other: the geometric fit has radius 1 and rms 0.1 exactly.
   std::vector<Vec3> points;
   for (int i = 0; i < 24; ++i) {
     const double angle = 2 * pi * i / 24, radius = i % 2 == 0 ? 1.1 : 0.9;

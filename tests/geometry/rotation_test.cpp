@@ -21,7 +21,7 @@ Vec3 random_direction(Rng& rng) {
   return Vec3(rng.normal(), rng.normal(), rng.normal()).normalized();
 }
 
-/// Rotation vectors of all lengths from 0 to π, around the switch to the series and next to π too.
+/// Rotation vectors of all lengths from 0 to π, near the switch to the series and near π too.
 std::vector<Vec3> rotation_vectors() {
   std::vector<Vec3> vectors{Vec3::Zero()};
   Rng rng(1);
@@ -33,7 +33,7 @@ std::vector<Vec3> rotation_vectors() {
   return vectors;
 }
 
-/// exp(skew(v)) the long way: the power series of the matrix v / 2^10, squared ten times.
+/// Reference for exp(skew(v)): the power series of the matrix v / 2^10, squared ten times.
 Mat3 exponential_series(const Vec3& v) {
   const Mat3 k = skew(v / 1024.0);
   Mat3 sum = Mat3::Identity(), term = Mat3::Identity();
@@ -48,7 +48,7 @@ TEST(Rotation, SkewIsTheCrossProduct) {
   EXPECT_LT((skew(v) * w - v.cross(w)).norm(), 1e-16);
 }
 
-TEST(Rotation, ElementaryRotationsTurnByTheRightHandRule) {
+TEST(Rotation, ElementaryRotationsFollowTheRightHandRule) {
   EXPECT_LT((rot_x(pi / 2) * Vec3::UnitY() - Vec3::UnitZ()).norm(), 1e-15);
   EXPECT_LT((rot_y(pi / 2) * Vec3::UnitZ() - Vec3::UnitX()).norm(), 1e-15);
   EXPECT_LT((rot_z(pi / 2) * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
@@ -74,7 +74,7 @@ TEST(Rotation, ExponentialIsARotation) {
 
 TEST(Rotation, LogarithmUndoesTheExponentialFromZeroToPi) {
   for (const Vec3& v : rotation_vectors()) {
-    // Relative where v is small, and nothing is lost near pi.
+    // Relative where v is small, and without loss near π.
     EXPECT_LE((quat_log(quat_exp(v)) - v).norm(), 3e-15 * v.norm()) << v.norm();
     EXPECT_LT((log_so3(exp_so3(v)) - v).norm(), 5e-15) << v.norm();
   }
@@ -109,7 +109,7 @@ TEST(Rotation, RightJacobianIsTheDerivativeOfTheExponential) {
   }
 }
 
-TEST(Rotation, RightJacobianTurnsLeftByTheRotation) {
+TEST(Rotation, RotationTimesRightJacobianIsTheLeftJacobian) {
   // exp(v) J_r(v) = J_r(−v), exactly; and v is its own image.
   for (const Vec3& v : rotation_vectors()) {
     EXPECT_LT((exp_so3(v) * right_jacobian(v) - right_jacobian(-v)).norm(), 2e-15 + 1e-15 * v.norm()) << v.norm();
@@ -147,9 +147,9 @@ TEST(Rpy, RollIsZeroAtTheGimbalLock) {
   EXPECT_LT((down - Vec3(0, -pi / 2, 1.3)).norm(), 1e-15);
 }
 
-TEST(Euler, EverySequenceIsTheProductOfItsTurns) {
+TEST(Euler, EverySequenceIsTheProductOfItsRotations) {
   const Vec3 angles(0.4, -1.1, 2.3);
-  const auto turn = [&](char axis, double angle) { return exp_so3(angle * Vec3::Unit(axis - 'X')); };
+  const auto rotation_about = [&](char axis, double angle) { return exp_so3(angle * Vec3::Unit(axis - 'X')); };
   int sequences = 0;
   for (const char a : {'X', 'Y', 'Z'}) {
     for (const char b : {'X', 'Y', 'Z'}) {
@@ -160,7 +160,8 @@ TEST(Euler, EverySequenceIsTheProductOfItsTurns) {
         EXPECT_EQ(intrinsic.has_value(), a != b && b != c) << axes;
         if (!intrinsic) continue;
         ++sequences;
-        const Mat3 first = turn(a, angles[0]), second = turn(b, angles[1]), third = turn(c, angles[2]);
+        const Mat3 first = rotation_about(a, angles[0]), second = rotation_about(b, angles[1]),
+                   third = rotation_about(c, angles[2]);
         EXPECT_LT((from_euler(*intrinsic, angles) - first * second * third).norm(), 1e-15) << axes;
         EXPECT_LT((from_euler(*extrinsic, angles) - third * second * first).norm(), 1e-15) << axes;
       }
@@ -174,7 +175,7 @@ TEST(Euler, RollPitchYawIsXyzExtrinsic) {
             1e-16);
 }
 
-TEST(Euler, OtherWordsAreNoSequence) {
+TEST(Euler, OtherTextsAreNoSequence) {
   for (const char* text :
        {"", "XY", "XYZ", "XYW intrinsic", "XXY intrinsic", "XYZ fixed", "XYZintrinsic", "XYZ intrinsic "})
     EXPECT_FALSE(parse_euler_sequence(text).has_value()) << text;

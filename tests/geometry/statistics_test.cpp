@@ -12,7 +12,7 @@
 namespace kinfer {
 namespace {
 
-TEST(Statistics, OfFiveNumbersAreAsWorkedOutByHand) {
+TEST(Statistics, OfFiveNumbersAreThoseComputedByHand) {
   const std::vector<double> values{2, 4, 4, 5, 10};
   EXPECT_DOUBLE_EQ(mean(values), 5.0);
   EXPECT_DOUBLE_EQ(rms(values), std::sqrt(161.0 / 5));

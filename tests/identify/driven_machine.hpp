@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simulated machines, driven and measured, with what there is to find.
+// Simulated machines, driven and measured, with their ground truth.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ inline DrivenMachine driven_machine(const std::string& name, std::uint64_t seed,
           machine_truth(world.machine(), motion)};
 }
 
-/// Distance of a found axis line from the true one in the child's sensor, free of what cannot be known [m].
+/// Distance of an estimated axis line from the true one in the child's sensor, without unobservable directions [m].
 inline double line_error(const JointEstimate& found, const JointTruth& truth) {
   Vec3 error = found.point_in_child - truth.point_in_child;
   std::vector<Vec3> free{truth.axis_in_child};
@@ -40,7 +40,7 @@ inline double line_error(const JointEstimate& found, const JointTruth& truth) {
   return error.norm();
 }
 
-/// Worst over the joints that were found; a joint of the truth that is not among them counts as 1 m.
+/// Worst over the estimated joints; a true joint that is not among them counts as 1 m.
 inline double worst_line_error(const std::vector<JointEstimate>& found, const MachineTruth& truth) {
   double worst = 0.0;
   for (const JointTruth& joint : truth.joints) {

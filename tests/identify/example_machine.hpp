@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small machine that moves smoothly and is measured perfectly: a base at rest and two hinges, with sensors mounted
-// anyhow.
+// A small machine that moves smoothly and is measured without error: a base at rest and two revolute joints, with
+// sensors in general position.
 #pragma once
 
 #include <cmath>
@@ -24,7 +24,7 @@ inline JointSignal wave(double amplitude, double frequency, double phase, std::s
   return signal;
 }
 
-/// A parent that turns about a slanted axis, 1.3 m from its sensor.
+/// A parent that rotates about an inclined axis, 1.3 m from its sensor.
 inline std::vector<FrameState> swinging_parent(const JointSignal& swing) {
   const std::vector<DhLeaf> leaves{{.alpha = 0.4}, {.a = -1.3, .theta_signal = 0}};
   return propagate(std::vector<FrameState>(swing.angle.size()), leaves, {&swing, 1});
@@ -36,7 +36,7 @@ inline std::vector<std::size_t> all_rows(std::size_t count) {
   return rows;
 }
 
-/// A hinge that needs all ten numbers.
+/// A revolute joint in general position, which needs all ten numbers.
 inline std::vector<DhLeaf> general_hinge() {
   return {{.theta = 0.7, .d = 0.2, .alpha = -1.1, .a = 0.5},
           {.theta = 0.3, .d = -0.4, .alpha = 0.9, .a = 0.8, .theta_signal = 0},

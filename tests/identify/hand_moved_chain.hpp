@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A chain of three sensors that a hand moves and shakes: a root in six freedoms, a hinge, and a hinge that may stray.
+// A hand-moved, shaken chain of three sensors: a root with six degrees of freedom, a revolute joint, and a revolute
+// joint whose axis may deviate.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,8 +27,8 @@ inline JointKinematicState readings(const std::array<std::array<double, 3>, 3>& 
   return q;
 }
 
-/// A root moved by hand, a hinge, and a hinge whose axis strays by `stray` [rad] (rms); all shaken at 6 Hz. `tilt`
-/// [rad per m/s²] of the sensors' mounts.
+/// A root moved by hand, a revolute joint, and one whose axis deviates by `stray` [rad] (rms); all shaken at 6 Hz.
+/// `tilt`: compliance of the sensors' mounts [rad per m/s²].
 struct HandMovedChain {
   double stray = 0.05;
   Mat3 tilt = Mat3::Zero();
@@ -59,7 +60,7 @@ struct HandMovedChain {
   static constexpr double moment = 1e-4;  // [s]
 
   std::vector<InsState> states_at(double t) const {
-    // The root turns by exp(φ) and shifts: ω of a rotation vector is that of a ball on a body at rest.
+    // The root rotates by exp(φ) and shifts: its ω is that of a spherical joint on a body at rest.
     InsState ground;
     ground.force = Vec3(0.0, 0.0, 9.81);
     InsBody hand = spherical_body(0, 0, Mat3::Identity());

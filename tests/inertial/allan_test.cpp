@@ -30,7 +30,7 @@ TEST(Allan, AgreesWithTheDefinitionOnARamp) {
     EXPECT_NEAR(p.deviation, 0.5 * p.tau / std::sqrt(2.0), 1e-9 * p.tau);
 }
 
-TEST(Allan, FindsTheNoiseOfASimulatedGyroscopeAndWhereItsBiasBeginsToWander) {
+TEST(Allan, FindsTheNoiseAndTheBiasInstabilityOfASimulatedGyroscope) {
   InstrumentModel model{.noise_density = 1e-4, .instability = 1e-4, .instability_time = 500.0};
   SimulatedInstrument gyroscope(model, {}, Rng(2));
   std::vector<double> values;

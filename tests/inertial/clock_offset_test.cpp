@@ -37,7 +37,7 @@ TEST(ClockOffset, IsFoundForAnyStartAndRateOfTheClocks) {
     }
 }
 
-TEST(ClockOffset, StillSensorsTellNothing) {
+TEST(ClockOffset, IsUnobservableFromStationarySensors) {
   InsRecording recording = two_loggers(1.0, 200.0);
   for (InsSensor& s : recording.sensors)
     for (auto& axis : s.angular_velocity.axis) std::fill(axis.begin(), axis.end(), 0.001f);

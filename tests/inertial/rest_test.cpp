@@ -26,7 +26,7 @@ TEST(RestPeriod, TheRestsBeforeAndAfterAMotionAreFound) {
   }
 }
 
-TEST(RestPeriod, TheMeanRateOfTheRestsIsTheBias) {
+TEST(RestPeriod, TheMeanAngularVelocityAtRestIsTheBias) {
   const SensorModel grade = *sensor_grade("industrial");
   const CarriedSensor c = carried({.grade = &grade, .seed = 7});
   const InstrumentErrors truth = sample_instrument_errors(grade.gyroscope, Rng(7).stream(3));
@@ -42,7 +42,7 @@ TEST(RestPeriod, ASensorThatNeverStopsHasNone) {
   EXPECT_EQ(bias_at_rest({}).seconds, 0.0);
 }
 
-TEST(Activity, TellsWhoMovesWhen) {
+TEST(Activity, ReportsWhichSegmentMovesWhen) {
   InsRecording recording;
   const CarriedSensor still = carried({.rest = 100.0}), moving = carried({.rest = 8.0});
   recording.loggers.push_back({"log", still.time});
@@ -55,7 +55,7 @@ TEST(Activity, TellsWhoMovesWhen) {
   EXPECT_NEAR(spans[1].end, 31.5, 0.6);
 }
 
-TEST(SensorJudgement, EachGradeIsRecognisedByItsOwnRecording) {
+TEST(SensorGrading, EachGradeIsRecognisedByItsOwnRecording) {
   for (const std::string_view name : sensor_grade_names) {
     int right = 0;
     for (int seed = 1; seed <= 8; ++seed) {
@@ -69,7 +69,7 @@ TEST(SensorJudgement, EachGradeIsRecognisedByItsOwnRecording) {
   }
 }
 
-TEST(SensorJudgement, AGradeDoesNotDependOnHowLongWasRecorded) {
+TEST(SensorGrading, AGradeDoesNotDependOnTheLengthOfTheRecording) {
   const SensorModel grade = *sensor_grade("industrial");
   const CarriedSensor c = carried({.seconds = 1200.0, .sampling_rate = 50.0, .grade = &grade});
   const auto found = sensor_statistics(c.sensor, c.time, rest_periods(c.sensor, c.time));
@@ -77,7 +77,7 @@ TEST(SensorJudgement, AGradeDoesNotDependOnHowLongWasRecorded) {
   EXPECT_LT(found.scale_error, 1.5e-3);
 }
 
-TEST(SensorJudgement, WithoutRestTheCarefulGradeIsTaken) {
+TEST(SensorGrading, WithoutRestTheConservativeGradeIsUsed) {
   EXPECT_EQ(estimate_sensor_model(SensorStatistics{}).name, "consumer");
 }
 

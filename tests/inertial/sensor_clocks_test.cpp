@@ -11,7 +11,7 @@ namespace {
 using testing::carried;
 using testing::CarriedSensor;
 
-/// Two sensors of one body, mounted anyhow; the second logs everything `late` and drifts.
+/// Two sensors of one body in general position; the second logs with a delay `late` and drifts.
 InsRecording two_clocks(double late, double drift, double seconds) {
   const SensorModel grade = *sensor_grade("industrial");
   CarriedSensor a = carried({.seconds = seconds, .sampling_rate = 100.0, .grade = &grade, .has_magnetometer = false});
@@ -42,13 +42,13 @@ TEST(SensorClocks, ADriftShowsInALongRecording) {
   EXPECT_NEAR(clocks[1].correction.drift, -8e-5, 5e-6);
 }
 
-TEST(SensorClocks, OfASensorThatNeverMovesNothingIsKnown) {
+TEST(SensorClocks, AreUnobservableForASensorThatNeverMoves) {
   InsRecording recording = two_clocks(0.0, 0.0, 60.0);
   for (auto& axis : recording.sensors[1].angular_velocity.axis) std::fill(axis.begin(), axis.end(), 0.001f);
   EXPECT_FALSE(estimate_sensor_clocks(recording)[1].known);
 }
 
-TEST(SensorClocks, TakeARecordingThatIsTooShort) {
+TEST(SensorClocks, HandleARecordingThatIsTooShort) {
   EXPECT_EQ(estimate_sensor_clocks(two_clocks(0.0, 0.0, 1.0)).size(), 2u);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Readers of files that the world writes: whatever the bytes, either a value or one sentence, and never a crash.
+// Readers of input files: any bytes give either a value or an error of one sentence, never a crash.
 #include <gtest/gtest.h>
 
 #include "kinfer/base/rng.hpp"
@@ -15,8 +15,7 @@ namespace {
 
 constexpr int trials = 3000;
 
-/// Overwrites, inserts, deletes and repeats a few bytes; half of the new bytes are those that mean something to a
-/// format.
+/// Overwrites, inserts, deletes and repeats a few bytes; half of the new bytes are syntax characters of the formats.
 std::string mutated(std::string text, Rng rng) {
   constexpr std::string_view meaningful = "\",.;#[]{}=<>/&\n\r\t -+0e9naif\xEF\xBB\xBF\xFF";
   const int edits = 1 + static_cast<int>(rng.index(6));

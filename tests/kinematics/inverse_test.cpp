@@ -10,7 +10,7 @@
 
 namespace kinfer {
 
-/// What GoogleTest says of an ending.
+/// How GoogleTest prints a status.
 void PrintTo(InverseStatus status, std::ostream* out) {
   *out << sentence(status);
 }
@@ -50,7 +50,7 @@ TEST(Inverse, APoseNearTheStartIsReachedInAFewSteps) {
   }
 }
 
-TEST(Inverse, AFarPoseIsMostlyReachedAndWhatIsSaidIsTrue) {
+TEST(Inverse, AFarPoseIsMostlyReachedAndTheStatusIsTrue) {
   const Chain chain = laws::er20();
   int reached = 0;
   for (std::uint64_t k = 0; k < 100; ++k) {
@@ -65,7 +65,7 @@ TEST(Inverse, AFarPoseIsMostlyReachedAndWhatIsSaidIsTrue) {
   EXPECT_GE(reached, 60);
 }
 
-TEST(Inverse, TheDeflectedToolArrivesUnderItsLoad) {
+TEST(Inverse, TheDeflectedToolReachesThePoseUnderLoad) {
   const Chain chain = laws::compliant();
   const Load load{.payload = 20.0};
   const VectorXd truth = (VectorXd(6) << 0.2, -0.8, 0.7, 0.4, 0.9, -0.3).finished();
@@ -103,7 +103,7 @@ TEST(Inverse, APointOffThePlaneIsMissedByItsHeight) {
   EXPECT_NEAR(s.position_error, 0.25, 1e-9);
 }
 
-TEST(Inverse, ALimitIsKeptAndNamed) {
+TEST(Inverse, ALimitIsKeptAndReported) {
   Chain chain = planar();
   chain.joints[0].lower = -0.1, chain.joints[0].upper = 0.5;
   const InverseSolution s = inverse_position(chain, {-1.2, 1.2, 0}, readings(0.4, 0.5));
@@ -111,7 +111,7 @@ TEST(Inverse, ALimitIsKeptAndNamed) {
   EXPECT_EQ(s.q[0], 0.5);
 }
 
-TEST(Inverse, AStartOutsideTheLimitsIsBroughtInside) {
+TEST(Inverse, AStartOutsideTheLimitsIsClamped) {
   Chain chain = planar();
   chain.joints[1].lower = 0.0, chain.joints[1].upper = 2.0;
   const InverseSolution s = inverse_position(chain, {1.0, 1.0, 0}, readings(0.0, -1.0));
@@ -119,8 +119,8 @@ TEST(Inverse, AStartOutsideTheLimitsIsBroughtInside) {
   EXPECT_GE(s.q[1], 0.0);
 }
 
-TEST(Inverse, AStretchedArmFindsItsWayToAPointOnItsOwnLine) {
-  const InverseSolution s = inverse_position(planar(), {1.2, 0, 0}, readings(0.0, 0.0));  // the slope vanishes here
+TEST(Inverse, AStretchedArmReachesAPointOnItsOwnLine) {
+  const InverseSolution s = inverse_position(planar(), {1.2, 0, 0}, readings(0.0, 0.0));  // the gradient vanishes here
   EXPECT_EQ(s.status, InverseStatus::reached);
 }
 
@@ -129,7 +129,7 @@ TEST(Inverse, APointOnTheRimOfTheWorkspaceIsReached) {
   EXPECT_EQ(s.status, InverseStatus::reached);
 }
 
-TEST(Inverse, AStepSpentByAnAlignedWristIsSaidToBeNearSingular) {
+TEST(Inverse, AnAlignedWristIsReportedAsNearSingular) {
   Chain chain = laws::er20();
   const VectorXd start = (VectorXd(6) << 0.2, -0.8, 0.7, 0.4, 1e-6, -0.3).finished();
   Pose target = forward(chain, start);
@@ -139,12 +139,12 @@ TEST(Inverse, AStepSpentByAnAlignedWristIsSaidToBeNearSingular) {
   EXPECT_EQ(s.status, InverseStatus::near_singular);
 }
 
-TEST(Inverse, StepsSpentElsewhereAreSaidToBeSpent) {
+TEST(Inverse, AnExhaustedBudgetElsewhereIsReportedAsSuch) {
   const InverseSolution s = inverse_position(planar(), {-1.0, -1.0, 0}, readings(0.4, 0.9), {.iterations = 2});
   EXPECT_EQ(s.status, InverseStatus::iteration_limit);
 }
 
-TEST(Inverse, EveryEndingHasASentenceOfItsOwn) {
+TEST(Inverse, EveryStatusHasASentenceOfItsOwn) {
   std::set<std::string_view> sentences;
   for (int i = 0; i <= static_cast<int>(InverseStatus::iteration_limit); ++i)
     sentences.insert(sentence(static_cast<InverseStatus>(i)));

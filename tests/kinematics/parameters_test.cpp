@@ -28,7 +28,7 @@ TEST(Parameters, RowsAreCountedFromOneAndFramesNamedByTheirOwner) {
               ElementsAre("base_x", "base_y", "base_z", "base_rx", "base_ry", "base_rz",    //
                           "a1", "alpha1", "d1", "theta1", "beta1", "gain1", "compliance1",  //
                           "a2", "alpha2", "d2", "theta2", "beta2", "gain2", "compliance2",  //
-                          "a3", "alpha3", "d3", "theta3", "beta3", "gain3",                 // a slide does not bend
+                          "a3", "alpha3", "d3", "theta3", "beta3", "gain3",  // a prismatic joint has no compliance
                           "tool_x", "tool_y", "tool_z", "tool_rx", "tool_ry", "tool_rz"));
 }
 
@@ -41,12 +41,12 @@ TEST(Parameters, UrdfJointsHaveTheNumbersOfTheirOrigin) {
   EXPECT_THAT(list, Not(Contains("compliance4")));  // prismatic
 }
 
-TEST(Parameters, OnlyJointsOnTheWayToTheTipAreListed) {
+TEST(Parameters, OnlyJointsBetweenBaseAndTipAreListed) {
   const auto list = names(all_parameters(laws::two_arms(), {}));
   EXPECT_THAT(list, AllOf(Contains("a4"), Not(Contains("a5")), Not(Contains("a6"))));
 }
 
-TEST(Parameters, AFollowerHasNoGain) {
+TEST(Parameters, AMimicJointHasNoGain) {
   EXPECT_THAT(names(all_parameters(laws::coupled(), {})), AllOf(Contains("compliance7"), Not(Contains("gain7"))));
 }
 
@@ -73,7 +73,7 @@ TEST(Parameters, FreeingSomeFixesAllOthers) {
   EXPECT_DEATH(with_only_free(set, {"a7"}), "no parameter is called a7");
 }
 
-TEST(Parameters, WhatIsFixedKeepsTheNominalValue) {
+TEST(Parameters, FixedParametersKeepTheNominalValue) {
   const Chain chain = laws::er20();
   const ParameterSet set = with_only_free(all_parameters(chain, {}), {"a2", "base_rx", "gain5"});
   const Chain changed = unpack(set, chain, (VectorXd(3) << 0.01, 0.2, 1.1).finished());
@@ -84,13 +84,13 @@ TEST(Parameters, WhatIsFixedKeepsTheNominalValue) {
   EXPECT_DEATH(unpack(set, chain, VectorXd::Zero(4)), "4 values for 3 free parameters");
 }
 
-TEST(Parameters, AnAddressOfANumberThatIsNotThereStopsTheProgram) {
+TEST(Parameters, AnAddressOfAMissingNumberStopsTheProgram) {
   EXPECT_DEATH(value_at(laws::er20(), {Owner::joint, 6, Field::a}), "joint 6 of 6");
   EXPECT_DEATH(value_at(laws::er20(), {Owner::joint, 1, Field::rx}), "a DH row has no rx");
   EXPECT_DEATH(value_at(laws::urdf_arm(), {Owner::base, -1, Field::alpha}), "a frame has no alpha");
 }
 
-TEST(Parameters, AParameterOffTheWayToTheTipMovesNothing) {
+TEST(Parameters, AParameterOfAnotherBranchMovesNothing) {
   const Chain chain = laws::two_arms();
   ParameterSet set;
   set.parameters.push_back({.name = "a6", .at = {Owner::joint, 5, Field::a}});
@@ -101,7 +101,7 @@ TEST(Parameters, AParameterOffTheWayToTheTipMovesNothing) {
   EXPECT_NEAR(twists.col(1).norm(), 1.0, 1e-15);
 }
 
-TEST(Parameters, TheGainOfAJointWithoutReadingStopsTheProgram) {
+TEST(Parameters, TheGainOfAPassiveJointStopsTheProgram) {
   const Chain chain = laws::coupled();
   ParameterSet set;
   set.parameters.push_back({.name = "gain7", .at = {Owner::joint, 6, Field::gain}});

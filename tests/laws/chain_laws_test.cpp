@@ -13,9 +13,9 @@ namespace {
 using laws::Mat4;
 
 constexpr Load load{.payload = 12.0};
-constexpr double rounding = 1e-13;   // [m], [1]
-constexpr double judged = 1e-11;     // the slow torques, being differences, bend compliant chains by so much
-constexpr double difference = 1e-7;  // relative to the largest entry of the column
+constexpr double rounding = 1e-13;         // [m], [1]
+constexpr double torque_rounding = 1e-11;  // [m] deflections by the numeric torques of the reference
+constexpr double difference = 1e-7;        // relative to the largest entry of the column
 
 Mat4 matrix(const Pose& pose) {
   Mat4 m = Mat4::Identity();
@@ -32,7 +32,7 @@ double distance(const Pose& a, const Pose& b) {
 }
 
 /// Twist that leads from one pose to another, divided by `step`.
-Eigen::Matrix<double, 6, 1> rate(const Mat4& from, const Mat4& to, double step) {
+Eigen::Matrix<double, 6, 1> twist_rate(const Mat4& from, const Mat4& to, double step) {
   Eigen::Matrix<double, 6, 1> twist;
   twist.head<3>() = (to - from).topRightCorner<3, 1>() / step;
   twist.tail<3>() = log_so3(to.topLeftCorner<3, 3>() * from.topLeftCorner<3, 3>().transpose()) / step;
@@ -53,7 +53,7 @@ class ChainLaws : public testing::TestWithParam<Chain> {
 TEST_P(ChainLaws, ForwardIsTheProductOfThePrintedMatrices) {
   at_random_poses([&](const VectorXd& q) {
     const Mat4 slow = laws::slow_tool(chain(), q, laws::slow_torques(chain(), q, load.payload));
-    EXPECT_LT(distance(matrix(forward(chain(), q, load)), slow), judged);
+    EXPECT_LT(distance(matrix(forward(chain(), q, load)), slow), torque_rounding);
   });
 }
 
@@ -63,7 +63,8 @@ TEST_P(ChainLaws, EveryJointFrameIsTheProductOfThePrintedMatrices) {
     const std::vector<Pose> frames = joint_frames(chain(), q, load);
     ASSERT_EQ(frames.size(), chain().joints.size());
     for (int j = 0; j < static_cast<int>(frames.size()); ++j) {
-      EXPECT_LT(distance(matrix(frames[j]), laws::slow_joint(chain(), j, q, torques)), judged) << "joint " << j;
+      EXPECT_LT(distance(matrix(frames[j]), laws::slow_joint(chain(), j, q, torques)), torque_rounding)
+          << "joint " << j;
     }
   });
 }
@@ -88,7 +89,7 @@ TEST_P(ChainLaws, TheEvaluatorAgreesWithForward) {
   });
 }
 
-TEST_P(ChainLaws, JacobianIsTheSlopeOfForwardWithTheTorquesHeld) {
+TEST_P(ChainLaws, JacobianIsTheSlopeOfForwardWithConstantTorques) {
   at_random_poses([&](const VectorXd& q) {
     const Twists twists = jacobian(chain(), q, load);
     const VectorXd torques = gravity_torques(chain(), q, load);
@@ -97,13 +98,13 @@ TEST_P(ChainLaws, JacobianIsTheSlopeOfForwardWithTheTorquesHeld) {
     for (Eigen::Index k = 0; k < q.size(); ++k) {
       const VectorXd step = h * VectorXd::Unit(q.size(), k);
       const auto slope =
-          rate(laws::slow_tool(chain(), q - step, torques), laws::slow_tool(chain(), q + step, torques), 2 * h);
+          twist_rate(laws::slow_tool(chain(), q - step, torques), laws::slow_tool(chain(), q + step, torques), 2 * h);
       EXPECT_LT((twists.col(k) - slope).cwiseAbs().maxCoeff(), difference * (1 + slope.norm())) << "reading " << k;
     }
   });
 }
 
-TEST_P(ChainLaws, DerivativeByEveryParameterIsTheSlopeWithTheTorquesHeld) {
+TEST_P(ChainLaws, DerivativeByEveryParameterIsTheSlopeWithConstantTorques) {
   const ParameterSet set = parameters();
   const PoseEvaluator evaluator(chain(), set);
   Twists twists;
@@ -115,8 +116,8 @@ TEST_P(ChainLaws, DerivativeByEveryParameterIsTheSlopeWithTheTorquesHeld) {
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       const double h = 1e-6 / std::max(1.0, twists.col(i).norm());  // moves the tool by some 1e-6
       const VectorXd step = h * VectorXd::Unit(x.size(), i);
-      const auto slope = rate(laws::slow_tool(unpack(set, chain(), x - step), q, torques),
-                              laws::slow_tool(unpack(set, chain(), x + step), q, torques), 2 * h);
+      const auto slope = twist_rate(laws::slow_tool(unpack(set, chain(), x - step), q, torques),
+                                    laws::slow_tool(unpack(set, chain(), x + step), q, torques), 2 * h);
       EXPECT_LT((twists.col(i) - slope).cwiseAbs().maxCoeff(), difference * (1 + slope.norm()))
           << set.parameters[i].name << "\n"
           << twists.col(i).transpose() << "\n"
@@ -159,7 +160,7 @@ TEST_P(ChainLaws, PackingAndUnpackingLoseNothing) {
   EXPECT_EQ(pack(set, unpack(set, chain(), x)), x);
 }
 
-TEST_P(ChainLaws, TheNominalValuesAreTheChains) {
+TEST_P(ChainLaws, NominalValuesAreThoseOfTheChain) {
   const ParameterSet set = parameters();
   const VectorXd x = pack(set, chain());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -179,7 +180,7 @@ TEST_P(ChainLaws, MovingTheBaseMovesTheToolRigidly) {
   });
 }
 
-TEST_P(ChainLaws, FoldingTheTurnsMovesNothing) {
+TEST_P(ChainLaws, FoldingConstantRotationsMovesNothing) {
   const Chain folded = with_small_rotations_folded(chain());
   EXPECT_EQ(folded.base.small_rotation, Vec3::Zero());
   EXPECT_EQ(folded.tool.small_rotation, Vec3::Zero());

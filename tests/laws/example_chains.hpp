@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The machines that every law of kinematics is tried on. A new convention or joint gets all laws by a line in
+// The machines that every law of kinematics is tested on. A new convention or joint type gets all laws by a line in
 // `examples`.
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace kinfer {
 
-/// What GoogleTest calls a chain.
+/// Name of a chain in test names.
 inline void PrintTo(const Chain& chain, std::ostream* out) {
   *out << chain.name;
 }
@@ -71,7 +71,7 @@ inline Chain er20() {
                          revolute<MdhLink>(0, 90, 0), revolute<MdhLink>(0, -90, 0.125)});
 }
 
-/// ER20 with errors everywhere: no number is special, Hayati's beta included.
+/// ER20 with errors in every number, Hayati's beta included: general position.
 inline Chain er20_with_errors() {
   Chain chain = er20();
   chain.name = "ER20 with errors";
@@ -108,7 +108,7 @@ inline Chain urdf_arm() {
        urdf(revolute, {0, 0, 0.1}, {0, 0.3, 0}, {0.3, 0.4, -0.8})});
 }
 
-/// Wrist whose belts couple it to the joints before it, and a joint that only follows another (URDF's mimic).
+/// Wrist whose belts couple it to the joints before it, and a joint that follows another (URDF's mimic).
 inline Chain coupled() {
   Chain chain = er20_with_errors();
   chain.name = "coupled";
@@ -136,11 +136,11 @@ inline Chain two_arms() {
                    prismatic<MdhLink>(0.1, 40, 0.2), revolute<DhLink>(0.25, 80, 0.1), revolute<DhLink>(0.2, -30, 0.0)});
   chain.joints[4].parent = 0;
   chain.tip = 3;
-  chain.joints[2].couplings = {{5, 0.3}};  // reading of the other arm
+  chain.joints[2].couplings = {{5, 0.3}};  // joint position of the other arm
   return chain;
 }
 
-/// Heavy arm whose joints yield to gravity.
+/// Heavy arm with compliant joints.
 inline Chain compliant() {
   Chain chain = er20_with_errors();
   chain.name = "compliant";
@@ -150,7 +150,7 @@ inline Chain compliant() {
   return chain;
 }
 
-/// The two arms yield too: the other arm's masses load the torso alone.
+/// Two compliant arms: the other arm's masses load the torso only.
 inline Chain compliant_tree() {
   Chain chain = two_arms();
   chain.name = "compliant tree";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MJCF that is written is read by MuJoCo, which then puts every frame where the chain says.
+// Written MJCF is read by MuJoCo, whose frames must be those of the chain.
 #include "kinfer/io/robot/mjcf.hpp"
 
 #include "kinfer/kinematics/forward.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 class WrittenMjcf : public testing::TestWithParam<Chain> {
  protected:
-  /// Readings go to the joints of their names; tied joints follow as the file's <equality> says.
+  /// Joint positions are set by name; coupled joints follow by the file's <equality>.
   void put(const mjModel& model, mjData& data, const VectorXd& q) const {
     const auto names = active_joint_names(GetParam());
     for (std::size_t k = 0; k < names.size(); ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MJCF text as MuJoCo understands it.
+// MJCF text compiled by MuJoCo.
 #pragma once
 
 #include <gtest/gtest.h>

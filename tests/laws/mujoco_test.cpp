@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Another program's kinematics: every machine is written as MJCF and moved by MuJoCo.
+// MuJoCo's kinematics as reference: every machine is written as MJCF and moved by MuJoCo.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
@@ -23,21 +23,22 @@ std::string placed_at(const Mat3& rotation, const Vec3& position) {
   return fmt::format("pos='{}' quat='{:.17g} {:.17g} {:.17g} {:.17g}'", text(position), q.w(), q.x(), q.y(), q.z());
 }
 
-/// The line of the joint, seen from the link's frame at rest.
+/// The joint's axis line in the link's frame at rest.
 struct Line {
   Vec3 axis = Vec3::UnitZ(), point = Vec3::Zero();
 };
 
-/// Read off a quarter turn or a metre of sliding, so that it holds for every convention.
+/// From a quarter turn or a shift of one metre, so that it holds for every convention.
 Line joint_line(const Joint& joint, const laws::Mat4& rest) {
   const double move = joint.type == JointType::revolute ? 90 * degree : 1.0;
   const laws::Mat4 moved = std::visit([&](const auto& l) { return laws::slow_link(l, joint.type, move); }, joint.link);
   const Mat3 rest_R = rest.topLeftCorner<3, 3>();
   const Vec3 shift = rest_R.transpose() * (moved - rest).topRightCorner<3, 1>();
   if (joint.type == JointType::prismatic) return {shift, Vec3::Zero()};
-  const Mat3 turn = rest_R.transpose() * moved.topLeftCorner<3, 3>();
-  const Vec3 axis = Vec3(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)) / 2.0;
-  return {axis, 0.5 * (shift + axis.cross(shift))};  // shift = (1 - turn) point
+  const Mat3 rotation = rest_R.transpose() * moved.topLeftCorner<3, 3>();
+  const Vec3 axis =
+      Vec3(rotation(2, 1) - rotation(1, 2), rotation(0, 2) - rotation(2, 0), rotation(1, 0) - rotation(0, 1)) / 2.0;
+  return {axis, 0.5 * (shift + axis.cross(shift))};  // shift = (1 - rotation) point
 }
 
 std::string bodies(const Chain& chain, int parent) {
@@ -66,7 +67,7 @@ std::string model_text(const Chain& chain) {
       placed_at(base.rotation, base.position), bodies(chain, -1));
 }
 
-class MujocoJudges : public testing::TestWithParam<Chain> {
+class MujocoComparison : public testing::TestWithParam<Chain> {
  protected:
   const Chain& chain() const { return GetParam(); }
 
@@ -79,7 +80,7 @@ class MujocoJudges : public testing::TestWithParam<Chain> {
   }
 };
 
-TEST_P(MujocoJudges, FramesAndTheirMotionsAgree) {
+TEST_P(MujocoComparison, FramesAndTheirMotionsAgree) {
   const auto model = laws::mujoco_model(model_text(chain()));
   ASSERT_TRUE(model);
   const std::unique_ptr<mjData, laws::MujocoFree> data(mj_makeData(model.get()));
@@ -98,7 +99,7 @@ TEST_P(MujocoJudges, FramesAndTheirMotionsAgree) {
       const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(data->xmat + 9 * body);
       EXPECT_LT((motions[j].pose.position - position).norm(), 1e-12) << "joint " << j;
       EXPECT_LT((motions[j].pose.rotation - rotation).norm(), 1e-12) << "joint " << j;
-      Eigen::Matrix<double, 6, 1> velocity, acceleration;  // turning above moving
+      Eigen::Matrix<double, 6, 1> velocity, acceleration;  // angular above linear
       mj_objectVelocity(model.get(), data.get(), mjOBJ_XBODY, body, velocity.data(), 0);
       mj_objectAcceleration(model.get(), data.get(), mjOBJ_XBODY, body, acceleration.data(), 0);
       EXPECT_LT((motions[j].omega - velocity.head<3>()).norm(), 1e-11) << "joint " << j;
@@ -118,7 +119,7 @@ std::vector<Chain> rigid_chains() {
   return chains;
 }
 
-INSTANTIATE_TEST_SUITE_P(every, MujocoJudges, testing::ValuesIn(rigid_chains()),
+INSTANTIATE_TEST_SUITE_P(every, MujocoComparison, testing::ValuesIn(rigid_chains()),
                          [](const auto& instance) { return laws::test_name(instance.param); });
 
 }  // namespace

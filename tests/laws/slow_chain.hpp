@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The judge of kinematics: the printed matrices of the papers, entry by entry, multiplied out. Slow and obvious.
+// Reference of kinematics: the printed matrices of the papers, entry by entry, multiplied out. Slow and obvious.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -22,7 +22,7 @@ inline Mat4 rotation_about_y(double beta) {
   return m;
 }
 
-/// Paper 1, eq. (1), then Hayati's turn about y.
+/// Paper 1, eq. (1), then Hayati's rotation about y.
 inline Mat4 slow_link(const DhLink& row, JointType type, double moved) {
   const double theta = row.theta + (type == JointType::revolute ? moved : 0.0);
   const double d = row.d + (type == JointType::prismatic ? moved : 0.0);
@@ -37,7 +37,7 @@ inline Mat4 slow_link(const DhLink& row, JointType type, double moved) {
   return m * rotation_about_y(row.beta);
 }
 
-/// Paper 2, eq. (3); with Hayati's turn about y it is the product of the equation's halves with the turn between them.
+/// Paper 2, eq. (3); Hayati's rotation about y stands between the equation's halves.
 inline Mat4 slow_link(const MdhLink& row, JointType type, double moved) {
   const double theta = row.theta + (type == JointType::revolute ? moved : 0.0);
   const double d = row.d + (type == JointType::prismatic ? moved : 0.0);
@@ -74,7 +74,7 @@ inline Mat4 slow_link(const UrdfLink& link, JointType type, double moved) {
   return slow_frame(link.origin) * motion;
 }
 
-/// variable - offset = gain · reading + couplings + compliance · torque
+/// variable - offset = gain · joint position + couplings + compliance · torque
 inline double slow_movement(const Chain& chain, int j, const VectorXd& q, const VectorXd& torque) {
   const std::vector<int> reads = active_joints(chain);
   double moved = chain.joints[j].compliance * torque[j];
@@ -87,7 +87,7 @@ inline double slow_movement(const Chain& chain, int j, const VectorXd& q, const 
   return moved;
 }
 
-/// world_T_frame of joint j (-1: the base), the torques given.
+/// world_T_frame of joint j (-1: the base), for given torques.
 inline Mat4 slow_joint(const Chain& chain, int j, const VectorXd& q, const VectorXd& torque) {
   if (j < 0) return slow_frame(chain.base);
   const Joint& joint = chain.joints[j];

@@ -18,7 +18,7 @@ MatrixXd random_lower(Index size, std::uint64_t seed) {
   return l;
 }
 
-/// All that this processor runs.
+/// All instruction sets that this processor has.
 std::vector<const batch::BlockKernel*> runnable() {
   std::vector<const batch::BlockKernel*> kernels{&batch::portable_block};
 #if defined(__x86_64__)

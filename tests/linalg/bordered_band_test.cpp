@@ -14,7 +14,7 @@ using Eigen::Index;
 struct Problem {
   Index width, reach, border, spans;
   std::vector<BandSpan> parts;
-  MatrixXd whole, border_matrix;  // of everything, dense
+  MatrixXd whole, border_matrix;  // the whole system, dense
   VectorXd right, border_right;
   Index band() const { return (spans + reach - 1) * width; }
 };
@@ -76,7 +76,7 @@ TEST(BorderedBand, SchurComplementIsTheInverseOfTheBordersCovariance) {
   EXPECT_LT((a * band.sensitivity() - b.transpose()).norm(), 1e-9 * b.norm());
 }
 
-TEST(BorderedBand, SaysWhereAPivotIsNotPositive) {
+TEST(BorderedBand, ReportsWhereAPivotIsNotPositive) {
   Problem p = random_problem(2, 3, 2, 5, Rng(4));
   p.parts[2].matrix -= 1e3 * MatrixXd::Identity(6, 6);
   EXPECT_FALSE(eliminated(p).is_positive_definite());

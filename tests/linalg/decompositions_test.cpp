@@ -50,17 +50,17 @@ TEST(RightSvd, HasTheValuesOfTheWholeDecompositionAndZerosWhereRowsAreMissing) {
   }
 }
 
-TEST(RightSvd, SeesADirectionThatNoRowSees) {
+TEST(RightSvd, FindsTheNullDirection) {
   MatrixXd a = test::random_matrix(50, 3, 3);
-  a.col(2) = a.col(0) - 2 * a.col(1);  // so (1, −2, −1) is not seen
+  a.col(2) = a.col(0) - 2 * a.col(1);  // so (1, −2, −1) is the null direction
   const RightSvd found = right_svd(a);
   EXPECT_LT(found.s[2], 1e-14 * found.s[0]);
   EXPECT_NEAR(std::abs(found.v.col(2).dot(Eigen::Vector3d(1, -2, -1).normalized())), 1.0, 1e-14);
 }
 
-TEST(SymmetricEigen, OfATurnedDiagonalAreItsEntriesAscending) {
-  const MatrixXd turn = svd(test::random_matrix(4, 4, 4)).u;
-  const MatrixXd a = turn * Eigen::Vector4d(3, -1, 7, 0.5).asDiagonal() * turn.transpose();
+TEST(SymmetricEigen, OfARotatedDiagonalAreItsEntriesAscending) {
+  const MatrixXd orthogonal = svd(test::random_matrix(4, 4, 4)).u;
+  const MatrixXd a = orthogonal * Eigen::Vector4d(3, -1, 7, 0.5).asDiagonal() * orthogonal.transpose();
   const SymmetricEigen found = symmetric_eigen(a);
   EXPECT_LT((found.values - Eigen::Vector4d(-1, 0.5, 3, 7)).norm(), 1e-13);
   EXPECT_LT((a * found.vectors - found.vectors * found.values.asDiagonal()).norm(), 1e-13);
@@ -83,14 +83,14 @@ TEST(Positive, SolutionInverseAndFactorSatisfyTheirEquations) {
   EXPECT_EQ(MatrixXd(l.triangularView<Eigen::StrictlyUpper>()).norm(), 0.0);
 }
 
-TEST(Positive, AnIndefiniteMatrixHasNoAnswer) {
+TEST(Positive, AnIndefiniteMatrixHasNoSolution) {
   const MatrixXd a = Eigen::Vector3d(1, -1, 2).asDiagonal();
   EXPECT_FALSE(solve_spd(a, VectorXd::Ones(3)).has_value());
   EXPECT_FALSE(invert_spd(a).has_value());
   EXPECT_FALSE(cholesky(a).has_value());
 }
 
-TEST(SolveLeastSquares, LeavesAResidualAcrossTheColumns) {
+TEST(SolveLeastSquares, LeavesAResidualOrthogonalToTheColumns) {
   const MatrixXd a = test::random_matrix(20, 5, 8);
   const VectorXd b = test::random_matrix(20, 1, 9);
   EXPECT_LT((a.transpose() * (a * solve_least_squares(a, b) - b)).norm(), 1e-12);
@@ -102,7 +102,7 @@ TEST(SolveLeastSquares, OfAllSolutionsTakesTheShortest) {
   EXPECT_LT((solve_least_squares(a, Eigen::Vector2d(2, 4)) - Eigen::Vector2d(1, 1)).norm(), 1e-14);
 }
 
-TEST(SolveLeastSquares, CutDecidesWhatCountsAsZero) {
+TEST(SolveLeastSquares, ThresholdDecidesWhatCountsAsZero) {
   const MatrixXd a = Eigen::Vector2d(1, 1e-6).asDiagonal();
   EXPECT_NEAR(solve_least_squares(a, Eigen::Vector2d(1, 1))[1], 1e6, 1e-6);
   EXPECT_EQ(solve_least_squares(a, Eigen::Vector2d(1, 1), 1e-5)[1], 0.0);

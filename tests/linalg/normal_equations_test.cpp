@@ -43,7 +43,7 @@ TEST(NormalEquations, AreTheInnerProductsTermByTerm) {
   }
 }
 
-/// All that this processor runs.
+/// All instruction sets that this processor has.
 std::vector<const batch::GramKernel*> runnable_grams() {
   std::vector<const batch::GramKernel*> kernels{&batch::portable_gram};
 #if defined(__x86_64__)
@@ -57,7 +57,7 @@ TEST(NormalEquations, EveryInstructionSetMakesTheSameFromAnyNumberOfChunks) {
   for (const batch::GramKernel* kernel : runnable_grams())
     for (const int rows : {1, 95, 96, 97, 384, 385, 1000})
       for (const int columns : {1, 4, 11, 12, 13, 50}) {
-        const MatrixXd above = random_rows(rows + 3, columns, 7);  // the columns are further apart than long
+        const MatrixXd above = random_rows(rows + 3, columns, 7);  // column stride larger than the number of rows
         const VectorXd b = random_rows(rows, 1, 8);
         MatrixXd matrix = MatrixXd::Zero(columns, columns);
         VectorXd gradient(columns);
@@ -91,7 +91,7 @@ TEST(NormalEquations, BothWaysGiveTheMinimumOfTheDampedSquares) {
   }
 }
 
-TEST(NormalEquations, CholeskyRefusesWhatItWouldAnswerWronglyAndSvdDoesNotMoveAlongTheUnseen) {
+TEST(NormalEquations, CholeskyRefusesARankDeficientSystemAndSvdDoesNotMoveAlongItsNullSpace) {
   MatrixXd a = random_rows(60, 4, 5);
   a.col(3) = a.col(0) + a.col(1);
   const VectorXd b = random_rows(60, 1, 6);

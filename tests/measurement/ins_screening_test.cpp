@@ -20,7 +20,7 @@ CarriedSensor noisy() {
   return carried({.pace = 1.5, .grade = &grade});
 }
 
-TEST(Screening, AGoodRecordingHasNoMarks) {
+TEST(Screening, AFaultlessRecordingHasNoFlags) {
   for (const char* name : {"noise", "industrial", "consumer"}) {
     const SensorModel grade = *sensor_grade(name);
     const CarriedSensor c = carried({.grade = &grade});
@@ -60,7 +60,7 @@ TEST(Screening, SingleSpikesAreFoundAndNothingElse) {
   EXPECT_TRUE(sample(c.sensor, c.time, 3000).has_angular_velocity);
 }
 
-TEST(Screening, WildRowsTogetherAndAtTheEndsAreSpikesTooAndAStepIsNone) {
+TEST(Screening, ConsecutiveOutliersAndThoseAtTheEndsAreSpikesTooAndAStepIsNone) {
   CarriedSensor c = noisy();
   c.sensor.angular_velocity.axis[2][4000] -= 20.0f;
   c.sensor.angular_velocity.axis[2][4001] += 15.0f;

@@ -6,7 +6,7 @@
 namespace kinfer {
 namespace {
 
-/// Four rows, every list filled, numbers that say their row.
+/// Four rows, every list filled, with numbers that encode their row.
 PoseSet four_rows() {
   PoseSet set;
   set.joint_names = {"a", "b"};
@@ -33,7 +33,7 @@ PoseSet four_rows() {
   return set;
 }
 
-TEST(PoseSet, SelectedRowsCarryEverythingThatWasSaidOfThem) {
+TEST(PoseSet, SelectedRowsKeepAllTheirMeasurements) {
   const PoseSet set = select(four_rows(), {3, 1});
   EXPECT_EQ(set.joints, (MatrixXd(2, 2) << 3, 1, 13, 11).finished());
   EXPECT_EQ(set.commanded(1, 0), 113);
@@ -63,7 +63,7 @@ TEST(PoseSet, SelectedRowsCarryEverythingThatWasSaidOfThem) {
   EXPECT_EQ(set.sweeps, four_rows().sweeps);
 }
 
-TEST(PoseSet, APairStaysWhereBothOfItsRowsAre) {
+TEST(PoseSet, APairIsKeptWhereBothOfItsRowsAre) {
   const PoseSet set = select(four_rows(), {3, 1});
   ASSERT_EQ(set.pairs.size(), 1U);
   EXPECT_EQ(set.pairs[0].row, 1);

@@ -32,7 +32,7 @@ TEST(SensorModel, NoiseOfARowIsDensityTimesRootOfHalfTheRate) {
   }
 }
 
-TEST(SensorModel, TheWanderingBiasHasItsSpreadAndTime) {
+TEST(SensorModel, TheBiasProcessHasItsStandardDeviationAndCorrelationTime) {
   const InstrumentModel model{.instability = 2.0, .instability_time = 5.0};
   double variance = 0.0, covariance = 0.0;
   constexpr int runs = 4000;
@@ -47,13 +47,13 @@ TEST(SensorModel, TheWanderingBiasHasItsSpreadAndTime) {
   EXPECT_NEAR(covariance, 4.0 * std::exp(-1.0), 0.2);
 }
 
-TEST(SensorModel, ReadingsAreCountsWithinTheRange) {
+TEST(SensorModel, SamplesAreQuantisedWithinTheRange) {
   const InstrumentModel model{.range = 3.0, .resolution = 0.5};
   SimulatedInstrument instrument(model, {}, Rng(1));
   EXPECT_EQ(instrument.read(Vec3(0.74, -9.0, 0.2), 0.01), Vec3(0.5, -3.0, 0.0));
 }
 
-TEST(SensorModel, ErrorsOfAnIndividualAreReadingIsMatrixTruthPlusBias) {
+TEST(SensorModel, SamplesAreMatrixTimesTruthPlusBias) {
   const InstrumentModel model{.bias_sd = 1.0, .scale_sd = 0.01};
   const InstrumentErrors errors = sample_instrument_errors(model, Rng(8));
   SimulatedInstrument instrument(model, errors, Rng(1));

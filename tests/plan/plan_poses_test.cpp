@@ -31,7 +31,7 @@ MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, double size, Rng
   return m;
 }
 
-/// Nine candidates of five unknowns, small enough to try all.
+/// Nine candidates of five unknowns, few enough to enumerate.
 DesignProblem small_problem() {
   DesignProblem problem;
   problem.rows = random_matrix(27, 5, 3.0, Rng(1));
@@ -85,7 +85,7 @@ TEST(Design, NoChoiceIsBetterThanTheBoundAndManyPosesComeCloseToIt) {
 
 TEST(Design, CopiesAreRedundant) {
   DesignProblem problem = small_problem();
-  problem.rows *= 100.0;  // the noise is small, so that fewer rows than unknowns hurt
+  problem.rows *= 100.0;  // little noise, so that fewer rows than unknowns cost accuracy
   problem.rows.bottomRows(3) = 1e-3 * problem.rows.topRows(3);
   const std::vector<int> gone = find_redundant(problem, Criterion::tool, 0.01);
   EXPECT_TRUE(std::find(gone.begin(), gone.end(), 8) != gone.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the report draws is where the chain is: every convention, through JSON and back.
+// The drawn frames are those of the chain: every convention, through JSON and back.
 #include "kinfer/report/parts/chain_view.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ class ChainViews : public ::testing::TestWithParam<Chain> {};
 
 TEST_P(ChainViews, FramesFromEvidenceAreThoseOfTheChain) {
   Chain chain = GetParam();
-  for (Joint& joint : chain.joints) joint.compliance = 0.0;  // a drawing leaves deflections out
+  for (Joint& joint : chain.joints) joint.compliance = 0.0;  // a drawing ignores deflections
   const ChainView view = chain_view(nlohmann::json::parse(chain_json(chain).dump()));
   Rng rng(7);
   for (int trial = 0; trial < 5; ++trial) {

@@ -22,7 +22,7 @@ TEST(Packed, Base64IsThatOfTheRfc) {
   EXPECT_EQ(encoded("foobar"), "Zm9vYmFy");
 }
 
-TEST(Packed, NumbersSpanAllStepsAndAMissingOneIsTheLastCode) {
+TEST(Packed, NumbersSpanAllCodesAndAMissingOneIsTheLastCode) {
   const json p = packed(json::array({-2.0, nullptr, 4.0}));
   EXPECT_EQ(p["zero"], -2.0);
   EXPECT_DOUBLE_EQ(p["step"].get<double>(), 6.0 / 65534);

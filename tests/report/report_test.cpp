@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// report.html from evidence: complete, well formed, safe against what names and notes may hold, and never too large.
+// report.html from evidence: complete, well formed, with escaped names and notes, and limited in size.
 #include "kinfer/report/report.hpp"
 #include "kinfer/report/parts/html.hpp"
 
@@ -118,7 +118,7 @@ TEST(Report, EveryElementThatIsOpenedIsClosed) {
             std::vector<std::string>{});
 }
 
-TEST(Report, NamesAndNotesCannotBreakOut) {
+TEST(Report, NamesAndNotesAreEscaped) {
   const std::string html = calibration_report(small_calibration());
   EXPECT_EQ(html.find("<script>alert"), std::string::npos);
   EXPECT_EQ(html.find("<b>bold"), std::string::npos);
@@ -154,7 +154,7 @@ TEST(Report, AnHourOfSixSensorsStaysBelowFiveMegabytes) {
   RecordProperty("bytes", static_cast<int>(html.size()));
 }
 
-TEST(Report, EvidenceThatIsNoneIsToldInOneSentence) {
+TEST(Report, InvalidEvidenceIsAnErrorOfOneSentence) {
   EXPECT_EQ(report_html("[]").error().what, "evidence.json: not a JSON object");
   EXPECT_EQ(report_html("{\"kind\": \"frames\"}").error().what, "evidence.json: there is no report for kind 'frames'");
   const auto lacking = report_html("{\"kind\": \"calibrate\", \"verdict\": \"x\"}");

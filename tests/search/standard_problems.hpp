@@ -125,8 +125,8 @@ inline Residuals line_with_outliers() {
   return {2, 40, std::vector<int>(40, 1), evaluate};
 }
 
-/// Turn 0.5 rad and shift (1, 2) that carry 30 planar points to where noise of 0.01 and six gross errors put them (two
-/// rows a block), and a prior on the turn, 0.4 ± 0.1 (a plain row).
+/// Rotation by 0.5 rad and shift (1, 2) of 30 planar points, measured with noise of 0.01 and six gross errors (two rows
+/// a block), and a prior on the rotation, 0.4 ± 0.1 (a plain row).
 inline Residuals planar_pose_with_outliers() {
   const auto evaluate = [](ConstVectorRef x, VectorXd& r, MatrixXd* j) {
     const Rng noise(4);

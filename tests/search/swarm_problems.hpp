@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes with known lowest points, for the population searches.
+// Bounded problems with known minima, for the swarm searches.
 #pragma once
 
 #include <cmath>
@@ -19,12 +19,12 @@ Objective objective_of(const Bounds& bounds, Cost cost) {
           }};
 }
 
-/// Σ (x_d − 0.3)², lowest at 0.3 in each number.
+/// Σ (x_d − 0.3)², minimum at 0.3 in each dimension.
 inline Objective shifted_sphere(Eigen::Index dim) {
   return objective_of(cube(dim, 1.0), [](const VectorXd& x) { return (x.array() - 0.3).square().sum(); });
 }
 
-/// Rastrigin: 10 local minima along each axis, lowest at 0.
+/// Rastrigin: 10 local minima along each axis, the global one at 0.
 inline Objective rastrigin(Eigen::Index dim) {
   return objective_of(cube(dim, 5.12), [](const VectorXd& x) {
     return (x.array().square() - 10.0 * (2.0 * M_PI * x.array()).cos() + 10.0).sum();

@@ -27,7 +27,7 @@ Extremes extremes(const JointTrajectory& joint, double begin, double end) {
   return seen;
 }
 
-TEST(Excitation, RatesAndAccelerationsAreTheDerivativesOfTheAngles) {
+TEST(Excitation, VelocitiesAndAccelerationsAreTheDerivativesOfTheAngles) {
   const Drive drive = drive_of(world_of("tree").machine());
   constexpr double h = 1e-4;
   for (const JointTrajectory& joint : drive.joints)
@@ -53,7 +53,7 @@ TEST(Excitation, StandardDriveRestsThenMovesJointAfterJointThenAll) {
   }
 }
 
-TEST(Excitation, JointsKeepTheirRangesAndRatesWhateverTheScript) {
+TEST(Excitation, JointsKeepTheirLimitsAndSpeedsWhateverTheScript) {
   for (const std::string& name : machine_names()) {
     const Machine machine = world_of(name).machine();
     for (const Script script : {Script::standard, Script::together, Script::vigorous, Script::gentle}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simulated machines as the tests want them: built, loaded and driven, or the test fails.
+// Simulated machines for tests: built, loaded and driven, or the test fails.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sensor carried about with known orientation: the truth that filters are judged by.
+// A moving sensor with known orientation: the ground truth of filters.
 #pragma once
 
 #include <cmath>
@@ -19,9 +19,9 @@ struct CarriedMotion {
   double swing = 1.0;                            ///< [rad] of each of three angles
   double reach = 0.3;                            ///< [m] of each coordinate
   double pace = 1.0;                             ///< 1: periods of 2 to 5 s
-  double declination = 0.0;                      ///< [rad] the field's horizontal part is turned by this about up
-  Quat mounting = Quat::Identity();              ///< turns sensor coordinates into the carrier's
-  const SensorModel* grade = nullptr;            ///< null: perfect
+  double declination = 0.0;                      ///< [rad] rotation of the field's horizontal part about the vertical
+  Quat mounting = Quat::Identity();              ///< sensor to carrier
+  const SensorModel* grade = nullptr;            ///< null: without errors
   bool has_magnetometer = true;
   int seed = 1;
 };

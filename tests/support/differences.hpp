@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Central differences: the independent judge of every derivative that was worked out by hand.
+// Central differences: the independent reference of every analytic derivative.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 namespace kinfer::testing {
 
 /// d f / d x, one column per unknown, by central differences with steps of `step` times max(|x_j|, 1). The error is
-/// about f''' h²/6 + 1e-16 |f| / h: 1e-6 and up is right for functions of the size of one.
+/// about f''' h²/6 + 1e-16 |f| / h: 1e-6 and above suits functions of order one.
 template <class Function>
 Eigen::MatrixXd numeric_jacobian(const Function& f, const Eigen::VectorXd& x, double step = 1e-6) {
   Eigen::MatrixXd jacobian;
@@ -25,7 +25,7 @@ Eigen::MatrixXd numeric_jacobian(const Function& f, const Eigen::VectorXd& x, do
   return jacobian;
 }
 
-/// The Jacobian of residuals beside its judge.
+/// The analytic Jacobian of residuals beside the numeric one.
 struct JacobianPair {
   Eigen::MatrixXd analytic, numeric;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What other instruments would say about the poses of a simulated set, with known truth and noise.
+// Simulated measurements of further instruments at the poses of a set, with known truth and noise.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ inline Vec3 noise(Rng& rng, double sd) {
   return sd * random_vector(rng);
 }
 
-/// The readings of the set, nothing measured.
+/// The joint positions of the set, without measurements.
 inline PoseSet readings_of(const PoseSet& set) {
   PoseSet bare;
   bare.joint_names = set.joint_names, bare.joints = set.joints, bare.payload = set.payload;
@@ -27,7 +27,7 @@ inline std::vector<Pose> true_poses(const Chain& truth, const PoseSet& set) {
   return evaluate_poses(truth, {}, set, Derivative::no).pose;
 }
 
-/// Tool points by a tracker, for loads and mountings that the readings carry.
+/// Tool points by a tracker, with the loads and mountings of the rows.
 inline void measure_points(PoseSet& set, const Chain& truth, const Instrument& instrument, Rng rng) {
   const std::vector<Pose> poses = true_poses(truth, set);
   for (int row = 0; row < set.rows(); ++row) {
@@ -60,8 +60,8 @@ inline void measure_tilts(PoseSet& set, const Chain& truth, double sigma, Rng rn
     set.tilts.push_back({row, -(poses[row].rotation.transpose() * truth.gravity) + noise(rng, sigma)});
 }
 
-/// Readings that bring the true tool point to where `goal` (row) wants it, as near as the joints allow: a few
-/// Newton steps on the position alone from the given readings, with a little noise in the end.
+/// Joint positions that bring the true tool point to `goal(row)`, as near as the joints allow: a few Newton steps on
+/// the position alone from the given joint positions, with a little noise at the end.
 template <class Goal>
 void touch(PoseSet& set, const Chain& truth, const Goal& goal, double sigma, Rng rng) {
   const PoseEvaluator evaluator(truth, {});

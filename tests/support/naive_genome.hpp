@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The slow, obvious way to predict accelerations of a DH chain: 4×4 products at three times, differenced. The judge and
-// the yardstick of the genome kernel.
+// Reference for accelerations of a DH chain: 4×4 products at three times, differenced. The link kernel is tested and
+// benchmarked against it.
 #pragma once
 
 #include <array>

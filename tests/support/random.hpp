@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random things that more than one test needs.
+// Random vectors and matrices for tests.
 #pragma once
 
 #include "kinfer/base/rng.hpp"
@@ -8,13 +8,13 @@
 
 namespace kinfer::test {
 
-/// Of unit variance an axis.
+/// Unit variance along each axis.
 inline Vec3 random_vector(Rng& rng) {
   const double x = rng.normal(), y = rng.normal(), z = rng.normal();
   return {x, y, z};
 }
 
-/// Of unit variance a number.
+/// Unit variance of each entry.
 inline MatrixXd random_matrix(Eigen::Index rows, Eigen::Index cols, std::uint64_t seed) {
   Rng rng(seed);
   return MatrixXd::NullaryExpr(rows, cols, [&] { return rng.normal(); });

@@ -21,7 +21,8 @@ inline Joint mdh_joint(double a, double alpha_deg, double d, double lower_deg, d
   return joint;
 }
 
-/// Paper 2, table 1; joint ranges of METHODS G. `d6` [m]: 0.125 as printed, 0.225 with the target's offset.
+/// Paper 2, table 1; joint limits of docs/development/methods/paper2.md. `d6` [m]: 0.125 as printed, 0.225 with the
+/// target's offset.
 inline Chain er20(double d6 = 0.225) {
   Chain chain;
   chain.name = "ER20-C10";
@@ -43,7 +44,7 @@ inline Chain with_table3_errors(Chain chain) {
   return chain;
 }
 
-/// METHODS G: tool above the floor and more than 350 mm from axis 1.
+/// Tool above the floor and more than 350 mm from axis 1.
 inline PoseSimulation paper2_poses(int poses, Instrument instrument) {
   return {.poses = poses, .space = {.lowest = 0.0, .clearance = 0.35}, .instrument = instrument};
 }

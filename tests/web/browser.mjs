@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A real browser and reports to open in it: made once for all tests.
+// A real browser and reports to open in it, made once for all tests.
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
@@ -42,7 +42,7 @@ export async function launch() {
   });
 }
 
-/** Opens a report and notes everything that should not happen. */
+/** Opens a report and collects console messages, errors and network requests. */
 export async function open(browser, kind, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
   const page = await context.newPage();
@@ -53,7 +53,7 @@ export async function open(browser, kind, options = {}) {
   page.on('pageerror', (error) => complaints.push(String(error)));
   const url = pathToFileURL(reportPath(kind)).href;
   page.on('request', (request) => {
-    if (request.url() !== url && !request.url().startsWith('data:')) complaints.push(`asked for ${request.url()}`);
+    if (request.url() !== url && !request.url().startsWith('data:')) complaints.push(`requested ${request.url()}`);
   });
   const began = Date.now();
   await page.goto(url);
@@ -71,7 +71,7 @@ export function cells(page, id) {
   );
 }
 
-/** What the canvas shows, as its own bytes. */
+/** A screenshot of the canvas once it is still. */
 export async function picture(page) {
   const frames = () => page.$eval('.stage canvas', (canvas) => Number(canvas.dataset.frames));
   let last = -1;

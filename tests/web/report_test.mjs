@@ -17,7 +17,7 @@ before(async () => {
 after(() => browser?.close());
 
 for (const kind of kinds) {
-  test(`the ${kind} report opens without a complaint and asks for nothing`, async () => {
+  test(`the ${kind} report opens without errors and requests nothing`, async () => {
     const times = [];
     for (let i = 0; i < 3; ++i) {
       const { page, complaints, milliseconds, close } = await open(browser, kind);
@@ -30,7 +30,7 @@ for (const kind of kinds) {
     assert.ok(Math.min(...times) < 6000, `interactive after ${times} ms`);
   });
 
-  test(`the ${kind} report is looked at, wide and narrow, light and dark`, async () => {
+  test(`the ${kind} report fits wide and narrow screens, light and dark`, async () => {
     for (const width of [1280, 390])
       for (const colorScheme of ['light', 'dark']) {
         const { page, close } = await open(browser, kind, { viewport: { width, height: 844 }, colorScheme });
@@ -60,7 +60,7 @@ for (const kind of kinds) {
     await close();
   });
 
-  test(`the ${kind} report is read without scripts`, async () => {
+  test(`the ${kind} report is readable without scripts`, async () => {
     const { page, close } = await open(browser, kind, { javaScriptEnabled: false });
     assert.ok((await page.locator('#verdict').textContent()).length > 20);
     assert.ok(await page.locator('.still svg.scene').isVisible());
@@ -68,7 +68,7 @@ for (const kind of kinds) {
     await close();
   });
 
-  test(`the machine of the ${kind} report turns by the keyboard`, async () => {
+  test(`the machine of the ${kind} report rotates by the keyboard`, async () => {
     const { page, close } = await open(browser, kind);
     await page.locator('.stage canvas').focus();
     const first = await picture(page);
@@ -120,10 +120,10 @@ test('the tables of a calibration equal evidence.json', async () => {
     assert.equal(parameters[i][7] !== "not determined", p.identifiable);
   });
   const errors = Object.fromEntries((await cells(page, 'errors')).map(([name, ...rest]) => [name, rest]));
-  const judged = errors['calibrated, rows not fitted'];
+  const holdout = errors['calibrated, rows not fitted'];
   const { mean, rms, sd, max, n } = evidence.after.holdout;
-  [mean, rms, sd, max].forEach((value, i) => assert.ok(about(judged[i], 1e3 * value)));
-  assert.equal(Number(judged[4]), n);
+  [mean, rms, sd, max].forEach((value, i) => assert.ok(about(holdout[i], 1e3 * value)));
+  assert.equal(Number(holdout[4]), n);
   await close();
 });
 
@@ -173,7 +173,7 @@ test('the exaggeration slider stretches the error vectors', async () => {
   await close();
 });
 
-test('the time slider moves the machine as it moved, and play plays', async () => {
+test('the time slider moves the machine through its recording, and play runs it', async () => {
   const { page, close } = await open(browser, 'identify');
   const first = await picture(page);
   const slider = page.locator('.control', { hasText: 'Time' }).locator('input');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What machines are drawn with: bars between points, balls, boxes, lines. Colours follow the theme.
+// Shapes of drawn machines: bars between points, spheres, boxes, lines. Colours follow the theme.
 import {
   BoxGeometry,
   BufferGeometry,
@@ -22,7 +22,7 @@ import {
 import { cssColor, onThemeChange } from './theme';
 
 const barShape = new CylinderGeometry(1, 1, 1, 20);
-const ballShape = new SphereGeometry(1, 18, 12);
+const sphereShape = new SphereGeometry(1, 18, 12);
 const boxShape = new BoxGeometry(1, 1, 1);
 const up = new Vector3(0, 1, 0);
 
@@ -43,7 +43,7 @@ export function solid(colour: string, opacity = 1): MeshLambertMaterial {
   );
 }
 
-/** A round bar that can be laid between any two points. */
+/** A round bar between any two points. */
 export class Bar {
   readonly mesh: Mesh;
   constructor(private readonly radius: number, material: MeshLambertMaterial) {
@@ -60,8 +60,8 @@ export class Bar {
   }
 }
 
-export function ball(radius: number, material: MeshLambertMaterial): Mesh {
-  const mesh = new Mesh(ballShape, material);
+export function sphere(radius: number, material: MeshLambertMaterial): Mesh {
+  const mesh = new Mesh(sphereShape, material);
   mesh.scale.setScalar(radius);
   return mesh;
 }
@@ -99,7 +99,7 @@ export class DashedLine {
   }
 }
 
-/** A cloud of points, of one colour or of one colour a point. */
+/** A cloud of points, in one colour or with a colour for each point. */
 export function cloud(points: Vector3[], size: number, colour: string, colourOf?: (index: number) => string): Points {
   const geometry = new BufferGeometry().setFromPoints(points);
   const material = new PointsMaterial({ size, sizeAttenuation: false });
@@ -114,18 +114,18 @@ export function cloud(points: Vector3[], size: number, colour: string, colourOf?
   return new Points(geometry, material);
 }
 
-/** A bent bar through points, with balls at the corners. */
+/** A bent bar through points, with spheres at the corners. */
 export class Rod {
   readonly group = new Group();
   private readonly bars: Bar[] = [];
-  private readonly balls: Mesh[] = [];
+  private readonly spheres: Mesh[] = [];
   constructor(corners: number, radius: number, material: MeshLambertMaterial) {
     for (let i = 0; i + 1 < corners; ++i) this.bars.push(new Bar(radius, material));
-    for (let i = 0; i < corners; ++i) this.balls.push(ball(radius, material));
-    this.group.add(...this.bars.map((bar) => bar.mesh), ...this.balls);
+    for (let i = 0; i < corners; ++i) this.spheres.push(sphere(radius, material));
+    this.group.add(...this.bars.map((bar) => bar.mesh), ...this.spheres);
   }
   lay(corners: Vector3[]): void {
     this.bars.forEach((bar, i) => bar.lay(corners[i]!, corners[i + 1]!));
-    this.balls.forEach((mesh, i) => mesh.position.copy(corners[i]!));
+    this.spheres.forEach((mesh, i) => mesh.position.copy(corners[i]!));
   }
 }

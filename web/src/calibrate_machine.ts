@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The calibrated robot beside the one of the data sheet: joints that move, error vectors that can be exaggerated.
+// The calibrated robot beside the nominal one: joints that move, error vectors that can be exaggerated.
 import { Box3, Vector3, type Points } from 'three';
 import { Strokes, cloud } from './bodies';
 import { Chain, type PlacedChain } from './chain';
@@ -25,8 +25,8 @@ function millimetres(metres: number | null | undefined): string {
   return `${mm.toFixed(mm >= 100 ? 0 : mm >= 10 ? 1 : mm >= 1 ? 2 : 3)} mm`;
 }
 
-function joined(reading: number, turns: boolean): string {
-  return turns ? `${((reading * 180) / Math.PI).toFixed(1)}°` : `${(reading * 1e3).toFixed(1)} mm`;
+function positionText(position: number, isRevolute: boolean): string {
+  return isRevolute ? `${((position * 180) / Math.PI).toFixed(1)}°` : `${(position * 1e3).toFixed(1)} mm`;
 }
 
 export class CalibrateMachine {
@@ -34,7 +34,7 @@ export class CalibrateMachine {
   private readonly calibrated: Chain;
   private readonly before: Chain;
   private readonly body: Skeleton;
-  private readonly ghost: Skeleton;
+  private readonly nominalBody: Skeleton;
   private readonly errorsBefore = new Strokes('--before', 0.9);
   private readonly errorsAfter = new Strokes('--after');
   private readonly measured: (Vector3 | null)[];
@@ -62,7 +62,7 @@ export class CalibrateMachine {
     this.body = new Skeleton(this.calibrated, radius, {
       colour: '--body', jointColour: '--after', opacity: 1, thickness: 0.018,
     });
-    this.ghost = new Skeleton(this.before, radius, {
+    this.nominalBody = new Skeleton(this.before, radius, {
       colour: '--before', jointColour: '--before', opacity: 0.45, thickness: 0.011,
     });
     const typical = median(this.offBefore.map((v) => v?.length() ?? NaN)) || 1e-3;
@@ -71,7 +71,7 @@ export class CalibrateMachine {
     const points = cloud(this.measured.filter((v) => v !== null), 4, '--muted');
     const uncertain = this.uncertaintyCloud();
     uncertain.visible = false;
-    this.stage.add(this.body.group, this.ghost.group, points, uncertain, this.errorsBefore.object, this.errorsAfter.object);
+    this.stage.add(this.body.group, this.nominalBody.group, points, uncertain, this.errorsBefore.object, this.errorsAfter.object);
     this.names = this.calibrated.json.joints.map((joint) =>
       joint.type === 'fixed' ? { place: () => undefined } : this.stage.name(joint.name, 'joint'),
     );
@@ -99,7 +99,7 @@ export class CalibrateMachine {
     const { before, after } = this.evidence.rows;
     const wrong = this.evidence.outliers.some((outlier) => outlier.row === row);
     this.poseSlider.show(
-      `row ${row}: ${millimetres(before[row])} → ${millimetres(after[row])}${wrong ? ' (not believed)' : ''}`,
+      `row ${row}: ${millimetres(before[row])} → ${millimetres(after[row])}${wrong ? ' (outlier)' : ''}`,
     );
     this.lay();
   }
@@ -137,7 +137,7 @@ export class CalibrateMachine {
     panel.append(
       group(this.poseSlider.row, this.times.row),
       group(
-        toggle('data sheet’s robot', 'before', true, show(this.ghost.group)),
+        toggle('nominal robot', 'before', true, show(this.nominalBody.group)),
         toggle('errors before', 'before', true, show(this.errorsBefore.object)),
         toggle('errors after', 'after', true, show(this.errorsAfter.object)),
         toggle('where it is uncertain', 'heat4', false, show(uncertain)),
@@ -152,7 +152,7 @@ export class CalibrateMachine {
     const { q } = this.evidence.picture;
     this.calibrated.json.readings.forEach((name, k) => {
       const joint = this.calibrated.json.joints.find((j) => j.reading === k);
-      const turns = joint?.type !== 'prismatic';
+      const isRevolute = joint?.type !== 'prismatic';
       const values = q.map((row) => row[k] ?? 0);
       const [min, max] = joint?.limits ?? [Math.min(0, ...values), Math.max(0, ...values)];
       const control = slider(name, { min, max: max > min ? max : min + 1, step: 'any', value: this.q[k] ?? 0 }, (value) => {
@@ -161,7 +161,7 @@ export class CalibrateMachine {
         this.lay();
       });
       control.input.dataset.joint = String(k);
-      control.input.dataset.turns = String(turns);
+      control.input.dataset.revolute = String(isRevolute);
       this.jointSliders.push(control);
       details.append(control.row);
     });
@@ -185,7 +185,7 @@ export class CalibrateMachine {
     const placed = this.calibrated.place(this.q);
     const nominal = this.before.place(this.q);
     this.body.lay(placed);
-    this.ghost.lay(nominal, (i, k, at) => {
+    this.nominalBody.lay(nominal, (i, k, at) => {
       const corner = Skeleton.corner(this.calibrated, placed, i, k);
       return corner.clone().addScaledVector(at.clone().sub(corner), this.exaggeration);
     });
@@ -193,7 +193,7 @@ export class CalibrateMachine {
     this.jointSliders.forEach((control, k) => {
       const value = this.q[k] ?? 0;
       control.input.value = String(value);
-      control.show(joined(value, control.input.dataset.turns === 'true'));
+      control.show(positionText(value, control.input.dataset.revolute === 'true'));
     });
     this.stage.invalidate();
   }

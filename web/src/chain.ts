@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the frames of a chain are: parent_T_joint = before · (turn about or shift along the axis) · after.
+// Forward kinematics of a chain: parent_T_joint = before · (rotation about or shift along the axis) · after.
 import { Matrix4, Quaternion, Vector3 } from 'three';
 import type { ChainJson, JointJson, PoseJson } from './evidence';
 
@@ -50,7 +50,7 @@ export class Chain {
     return this.json.readings.length;
   }
 
-  /** `base`: another place of the base than the chain's own. */
+  /** `base`: base pose other than the chain's own. */
   place(q: readonly number[], base: Matrix4 = this.base): PlacedChain {
     const joints: PlacedJoint[] = [];
     this.json.joints.forEach((joint, i) => {

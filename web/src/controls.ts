@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Controls that a keyboard reaches: sliders with a value in words, switches, buttons.
+// Controls with keyboard access: sliders with a displayed value, switches, buttons.
 
 export interface Slider {
   row: HTMLElement;

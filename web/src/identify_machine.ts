@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// The identified machine as it moved: segments, INS, axes, how sure they are, and directions that nothing tells.
+// The identified machine in motion: segments, INS, axes, their uncertainty, and unobservable directions.
 import { Box3, Matrix4, Quaternion, Vector3, type Mesh } from 'three';
-import { Bar, DashedLine, ball, box, solid } from './bodies';
+import { Bar, DashedLine, sphere, box, solid } from './bodies';
 import { Chain, type PlacedChain } from './chain';
 import { button, group, slider, toggle, type Slider } from './controls';
 import type { FoundJointJson, IdentifyEvidence, Triple } from './evidence';
 import { Stage } from './stage';
 
-/** A joint, drawn in the frame of its child's INS, and the link that leads on from it. */
+/** A joint, drawn in the frame of its child's INS, and the link that follows it. */
 interface DrawnJoint {
   json: FoundJointJson;
-  oneAxis: boolean; // else a ball about the common centre of its axes
+  oneAxis: boolean; // else a sphere about the common centre of its axes
   drum: Bar;
   centre: Mesh;
   axis: Bar;
   sure: Bar;
-  place: Mesh; // an ellipsoid: how sure the joint's point is
+  place: Mesh; // an ellipsoid: uncertainty of the joint's point
   arm: Bar; // from the joint to the child's INS: where the sensor is mounted
   links: { bar: Bar; to: FoundJointJson }[];
   open: { line: DashedLine; direction: Vector3; frame: 'parent' | 'child' }[];
 }
 
-const unknownLength = 0.5; // [m] one standard deviation of a place that counts as not known
+const unknownLength = 0.5; // [m] a point with a larger standard deviation counts as unobservable
 
-/** The direction across an axis that standard deviations are stated for: with the smallest of its coordinates. */
+/** First direction across an axis that standard deviations refer to: built from its smallest coordinate. */
 function perpendicular(axis: Vector3): Vector3 {
   const size = [Math.abs(axis.x), Math.abs(axis.y), Math.abs(axis.z)];
   const unit = new Vector3();
@@ -68,7 +68,7 @@ export class IdentifyMachine {
     this.sensors = this.drawSensors();
     this.ends = evidence.joints
       .filter((joint) => !evidence.joints.some((other) => other.parent === joint.child))
-      .map((joint) => ({ joint, mesh: ball(1.2 * thick, solid('--muted')) }));
+      .map((joint) => ({ joint, mesh: sphere(1.2 * thick, solid('--muted')) }));
     for (const { bar } of this.roots) this.stage.add(bar.mesh);
     for (const end of this.ends) this.stage.add(end.mesh);
 
@@ -109,10 +109,10 @@ export class IdentifyMachine {
       json,
       oneAxis,
       drum: new Bar(moves ? 2 * thick : thick, solid('--after')),
-      centre: ball(2.4 * thick, solid('--after')),
+      centre: sphere(2.4 * thick, solid('--after')),
       axis: new Bar(0.22 * thick, solid('--after')),
       sure: new Bar(thick, sure),
-      place: ball(thick, sure),
+      place: sphere(thick, sure),
       arm: new Bar(0.35 * thick, solid('--muted')),
       links: this.linksFrom(json.child, body, thick),
       open: [...open(json.not_identifiable_in_parent, 'parent'), ...open(json.not_identifiable_in_child, 'child')],
@@ -255,7 +255,7 @@ export class IdentifyMachine {
     const second = axis.clone().cross(first);
     const across = [sd.point_in_child_m[0], sd.point_in_child_m[1]];
     const along = joint.oneAxis ? Number(sd['slide_m']) : Math.hypot(...across);
-    // A place along the axis that nothing tells is drawn dashed, and not as a cigar without end.
+    // An unobservable point along the axis is drawn as a dashed line instead of an endless ellipsoid.
     const half = [...across, along < unknownLength ? along : Math.min(...across)].map((length) =>
       Math.min(Math.max(length * this.exaggeration, 1e-4), 0.25 * this.radius),
     );
@@ -274,7 +274,7 @@ export class IdentifyMachine {
     const along = (half: number) => [point.clone().addScaledVector(axis, -half), point.clone().addScaledVector(axis, half)] as const;
     joint.drum.lay(...along(0.055 * this.radius));
     joint.axis.lay(...along(0.2 * this.radius));
-    // Half of the tube's radius is how far the axis may lie aside, the other half how far it may lean at the tube's end.
+    // Half of the tube's radius is the axis' uncertainty in position, the other half that of its direction at the end.
     const half = 0.2 * this.radius;
     const spread = across(json.sd.point_in_child_m) + half * across(json.sd.axis_in_child_rad);
     joint.sure.lay(...along(half), Math.min(Math.max(spread * this.exaggeration, 1e-4), 0.25 * this.radius));

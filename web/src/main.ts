@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Brings the report to life: the machine moves, plots can be looked into, tables can be copied.
+// Makes the report interactive: the machine moves, plots zoom, tables can be copied.
 import { CalibrateMachine } from './calibrate_machine';
 import { readEvidence } from './evidence';
 import { IdentifyMachine } from './identify_machine';
@@ -27,7 +27,7 @@ function enlivenMachine(): void {
     }
     place.classList.add('live');
   } catch (problem) {
-    // Without WebGL the drawing that is there already stays.
+    // Without WebGL the static drawing stays.
     stage.remove();
     panel.remove();
     console.warn('The machine cannot be shown in three dimensions here:', problem);
@@ -35,7 +35,7 @@ function enlivenMachine(): void {
   }
 }
 
-/** Paper has no folds. */
+/** Printed pages show folded parts. */
 function unfoldForPaper(): void {
   const folded = [...document.querySelectorAll<HTMLDetailsElement>('section details:not([open])')];
   for (const details of folded) details.open = true;

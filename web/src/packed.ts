@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long signals as the page holds them: 16-bit steps in base64 (src/kinfer/report/packed.hpp).
+// Long signals of the page: 16-bit codes in base64 (src/kinfer/report/parts/packed.hpp).
 
 export interface Packed {
   zero: number;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// A chain as a machine: bars from joint to joint, a drum about each axis, the tool.
+// Drawing of a chain: bars from joint to joint, a drum about each axis, the tool.
 import { Group, Vector3 } from 'three';
-import { Bar, Rod, ball, solid } from './bodies';
+import { Bar, Rod, sphere, solid } from './bodies';
 import type { Chain, PlacedChain } from './chain';
 
 export interface Look {
   colour: string;
   jointColour: string;
   opacity: number;
-  thickness: number; // of a bar, in parts of the machine's radius
+  thickness: number; // of a bar, relative to the machine's radius
 }
 
-/** Corners of the way from one frame to the next: along the axis first, as a link is built. */
+/** Corners of the path from one frame to the next: along the axis first, as a link is built. */
 function corners(placed: PlacedChain, i: number): Vector3[] {
   const joint = placed.joints[i]!;
   return [joint.parent, joint.point, joint.elbow, new Vector3().setFromMatrixPosition(joint.frame)];
@@ -33,7 +33,7 @@ export class Skeleton {
       if (part.type !== 'fixed') this.drums.push(new Bar(1.9 * thick, joint));
     }
     this.toolBar = new Bar(0.7 * thick, body);
-    this.toolBall = ball(1.3 * thick, joint);
+    this.toolBall = sphere(1.3 * thick, joint);
     this.group.add(
       ...this.links.map((link) => link.group),
       ...this.drums.map((drum) => drum.mesh),

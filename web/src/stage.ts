@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A window into space: light, camera, names that follow their points. Draws only when something changed.
+// A 3D scene: light, camera, labels that follow their points. Draws only after a change.
 import {
   Box3,
   Color,
@@ -38,7 +38,7 @@ export class Stage {
   private home: View = { ...this.view, elevation: 0.32 };
   private points: Vector3[] = [];
   private axes = { toEye: new Vector3(1, 0, 0), right: new Vector3(0, 1, 0), up: new Vector3(0, 0, 1) };
-  private asked = false;
+  private frameRequested = false;
   private visible = true;
 
   /** Throws where the browser has no WebGL. */
@@ -67,7 +67,7 @@ export class Stage {
     this.resize();
   }
 
-  /** Looks so that all points are in view, and lays a floor below them. */
+  /** Points the camera so that all points are in view, and draws a floor below them. */
   fit(points: Vector3[]): void {
     const box = new Box3().setFromPoints(points);
     const radius = Math.max(0.5 * box.getSize(new Vector3()).length(), 1e-3);
@@ -118,15 +118,15 @@ export class Stage {
   }
 
   invalidate(): void {
-    if (this.asked || !this.visible) return;
-    this.asked = true;
+    if (this.frameRequested || !this.visible) return;
+    this.frameRequested = true;
     requestAnimationFrame(() => {
-      this.asked = false;
+      this.frameRequested = false;
       this.draw();
     });
   }
 
-  /** From where every point lies within the picture, with room for names and axes. */
+  /** Camera distance at which every point lies within the picture, with room for labels and axes. */
   private distanceFor(target: Vector3): number {
     const high = 0.84 * Math.tan((this.camera.fov * Math.PI) / 360);
     const wide = high * this.camera.aspect;

@@ -5,7 +5,7 @@ function csvCell(text: string): string {
   return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 }
 
-/** The table as CSV: exact values where a cell has them, the shown text elsewhere. */
+/** The table as CSV: exact values where a cell has them, the displayed text elsewhere. */
 export function tableCsv(table: HTMLTableElement): string {
   const line = (row: HTMLTableRowElement) =>
     [...row.cells].map((cell) => csvCell(cell.dataset.v ?? cell.textContent?.trim() ?? '')).join(',');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light, dark, or as the system has it; colours that follow.
+// Light or dark theme, by default that of the system, and the colours that follow it.
 import { Color } from 'three';
 
 const listeners: (() => void)[] = [];
@@ -17,7 +17,7 @@ export function cssColor(name: string): Color {
   return new Color(cssText(name));
 }
 
-/** The dark colours stand once in the style sheet, for systems that are dark; the button needs them everywhere. */
+/** The style sheet has the dark colours once, for dark systems; the button applies them on any system. */
 function makeDarkAvailable(): void {
   for (const sheet of Array.from(document.styleSheets))
     for (const rule of Array.from(sheet.cssRules)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plot of all poses: what a dot says, and a click that shows its pose.
+// The plot of all poses: a tooltip at each dot, and a click that shows its pose.
 import type { CalibrateEvidence } from './evidence';
 
 function words(evidence: CalibrateEvidence, row: number): string {

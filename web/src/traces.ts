@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Predicted against measured motion of one sensor, with the difference below; zoom by dragging, double click to go back.
+// Predicted against measured motion of one sensor, with the difference below; zoom by dragging, double click to reset.
 import uPlot from 'uplot';
 import { choice, group } from './controls';
 import type { EnvelopeJson, IdentifyEvidence, TraceJson } from './evidence';

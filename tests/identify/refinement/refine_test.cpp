@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/refinement/refine.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "kinfer/identify/findings/unobservable.hpp"
+#include "kinfer/identify/structure/ordered_motion.hpp"
+#include "kinfer/simulate/ground_truth.hpp"
+#include "kinfer/simulate/ins_recording.hpp"
+#include "simulate/worlds.hpp"
+
+namespace kinfer {
+using namespace identify;
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::Field;
+
+struct RefinedDrive {
+  InsRecording recording;
+  MachineTruth truth;
+};
+
+RefinedDrive driven(const std::string& name, const MachineOptions& options, const char* grade,
+                    const SensorFaults& trouble = {}) {
+  const MujocoWorld world = test::world_of(name, options, 5);
+  const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}, 5), 100.0);
+  return {simulate_recording(world.machine(), motion, *sensor_grade(grade), trouble, Rng(5)),
+          machine_truth(world.machine(), motion)};
+}
+
+Refinement refined(const RefinedDrive& drive, int threads = 0) {
+  const auto ordered = order_segments(drive.recording, {}, drive.truth.root, threads);
+  EXPECT_TRUE(ordered);
+  std::vector<InitialJoint> starts;
+  for (std::size_t i = 1; i < ordered->tree.order.size(); ++i) {
+    const std::size_t child = ordered->tree.order[i];
+    const auto truth = std::ranges::find(drive.truth.joints, ordered->motion.segments[child].name, &JointTruth::child);
+    starts.push_back(estimate_initial_joint(
+        ordered->motion, ordered->tree, *ordered->tree.parent[child], child,
+        truth->type == JointType::prismatic ? EstimatedJointType::prismatic : EstimatedJointType::revolute));
+  }
+  auto result = refine(drive.recording, ordered->motion, ordered->tree, starts, {.fit = {.threads = threads}});
+  EXPECT_TRUE(result);
+  return *result;
+}
+
+/// Distance from the true axis line in the child's sensor, without unobservable directions [m].
+double distance_of_lines(const JointEstimate& found, const JointTruth& truth) {
+  Vec3 error = found.point_in_child - truth.point_in_child;
+  std::vector<Vec3> free{truth.axis_in_child};
+  for (const Vec3& hidden : truth.unobservable_in_child)
+    if (hidden.cross(free.front()).norm() > 1e-3) free.push_back(hidden);
+  for (const Vec3& direction : free) error -= direction * direction.dot(error);
+  return error.norm();
+}
+
+double axis_error(const JointEstimate& found, const JointTruth& truth) {
+  return std::asin(std::min(1.0, found.axis_in_child.cross(truth.axis_in_child).norm()));
+}
+
+void expect_close(const Refinement& found, const MachineTruth& truth, double line, double direction) {
+  for (const RefinedJoint& joint : found.joints) {
+    const auto t = std::ranges::find(truth.joints, joint.estimate.child, &JointTruth::child);
+    ASSERT_NE(t, truth.joints.end());
+    EXPECT_EQ(joint.estimate.parent, t->parent);
+    EXPECT_LT(axis_error(joint.estimate, *t), direction) << t->name;
+    if (t->type == JointType::revolute) {
+      EXPECT_LT(distance_of_lines(joint.estimate, *t), line) << t->name;
+    }
+  }
+}
+
+TEST(Refine, IdentifiesASimulatedMachineAsAccuratelyAsItsSensorsAllow) {
+  for (const char* name : {"excavator-general", "crane", "robot6", "tree"}) {
+    const RefinedDrive drive = driven(name, {.mounting = Mounting::arbitrary}, "industrial");
+    expect_close(refined(drive), drive.truth, 5e-3, 3e-3);
+  }
+}
+
+TEST(Refine, NeedsNoStationaryBase) {
+  const RefinedDrive drive = driven("excavator-general", {.base = Base::yawing}, "industrial");
+  const Refinement found = refined(drive);
+  expect_close(found, drive.truth, 10e-3, 3e-3);
+  EXPECT_TRUE(found.joints.front().estimate.unobservable_in_parent.empty());
+}
+
+TEST(Refine, HandlesFaultyRecordings) {
+  const RefinedDrive drive =
+      driven("excavator-general", {}, "industrial", {.missing = 0.05, .spikes = 6.0, .has_magnetometer = false});
+  expect_close(refined(drive), drive.truth, 5e-3,
+               25e-3);  // without magnetometer the swing's heading is poorly observable
+}
+
+TEST(Refine, ReportsWhatAStationaryPlatformLeavesUnobservable) {
+  const RefinedDrive drive = driven("excavator", {}, "noise", {.has_magnetometer = false});
+  const Refinement found = refined(drive);
+  std::vector<JointEstimate> joints;
+  for (const RefinedJoint& joint : found.joints) joints.push_back(joint.estimate);
+  list_unobservable(joints);
+  EXPECT_EQ(joints[0].unobservable_in_parent.size(), 3u);
+  EXPECT_THAT(joints[0].unobservable, Contains(AllOf(Field(&Unobservable::kind, UnobservableKind::point),
+                                                     Field(&Unobservable::sensor, "ins0"))));
+  EXPECT_TRUE(joints[0].azimuth_unobservable);
+  EXPECT_THAT(joints[0].unobservable, Contains(Field(&Unobservable::kind, UnobservableKind::azimuth)));
+  ASSERT_EQ(joints[1].unobservable_in_parent.size(), 1u);
+  EXPECT_LT(angle_between(joints[0].axis_in_child, joints[1].unobservable_in_parent[0]) *
+                angle_between(joints[0].axis_in_child, Vec3(-joints[1].unobservable_in_parent[0])),
+            0.05);
+  EXPECT_THAT(joints[2].unobservable, Contains(Field(&Unobservable::kind, UnobservableKind::offset_split)));
+}
+
+TEST(Refine, GivesTheSameBitsForAnyNumberOfThreads) {
+  const RefinedDrive drive = driven("excavator", {}, "noise");
+  const Refinement one = refined(drive, 1);
+  for (const int threads : {2, 7}) {
+    const Refinement many = refined(drive, threads);
+    for (std::size_t i = 0; i < one.joints.size(); ++i) {
+      EXPECT_EQ(one.joints[i].estimate.point_in_child, many.joints[i].estimate.point_in_child);
+      EXPECT_EQ(one.joints[i].estimate.sd.point_in_child, many.joints[i].estimate.sd.point_in_child);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kinfer

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/structure/joint_type.hpp"
+
+#include "kinfer/geometry/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "identify/example_machine.hpp"
+#include "kinfer/identify/structure/ordered_motion.hpp"
+#include "kinfer/io/recording/ins_csv.hpp"
+#include "kinfer/simulate/ins_recording.hpp"
+#include "simulate/worlds.hpp"
+
+namespace kinfer {
+using namespace identify;
+namespace {
+
+using test::swinging_parent;
+using test::wave;
+
+SegmentMotion segment_of(const std::string& name, const std::vector<FrameState>& states) {
+  SegmentMotion segment{
+      .name = name, .rotation = {}, .gyro = {}, .angular_velocity = {}, .angular_acceleration = {}, .acceleration = {}};
+  for (const FrameState& s : states) {
+    segment.rotation.push_back(s.rotation);
+    segment.gyro.push_back(s.rotation.transpose() * s.angular_velocity);
+    segment.angular_velocity.push_back(s.angular_velocity);
+    segment.angular_acceleration.push_back(s.angular_acceleration);
+    segment.acceleration.push_back(s.acceleration);
+  }
+  return segment;
+}
+
+/// A swinging parent and a child behind the leaves, measured without error.
+RecordedMotion two_segments(const std::vector<DhLeaf>& leaves, const std::vector<JointSignal>& signals) {
+  const auto parent = swinging_parent(wave(0.5, 0.7, 0.3));
+  RecordedMotion motion;
+  motion.period = 0.01;
+  for (std::size_t row = 0; row < parent.size(); ++row) motion.time.push_back(0.01 * static_cast<double>(row));
+  motion.segments = {segment_of("parent", parent), segment_of("child", propagate(parent, leaves, signals))};
+  motion.usable.assign(parent.size(), true);
+  return motion;
+}
+
+JointTypeEvidence type_of(const RecordedMotion& motion) {
+  const auto tree = segment_tree(motion, "parent");
+  EXPECT_TRUE(tree);
+  return joint_types(motion, *tree).front();
+}
+
+const std::vector<JointSignal>& three_waves() {
+  static const std::vector<JointSignal> waves{wave(0.6, 0.9, 1.0), wave(0.4, 1.3, 0.2), wave(0.5, 0.5, 2.0)};
+  return waves;
+}
+
+TEST(JointType, CountsTheRotationAxesBetweenTwoSegments) {
+  const DhLeaf mount{.theta = 0.7, .d = 0.2, .alpha = -1.1, .a = 0.5}, end{.theta = -1.9, .d = 0.15, .alpha = 0.3};
+  const DhLeaf first{.alpha = 1.4, .theta_signal = 0}, second{.theta = 1.5, .alpha = -1.3, .theta_signal = 1},
+      third{.theta_signal = 2};
+  EXPECT_EQ(type_of(two_segments({mount, end}, three_waves())).type, EstimatedJointType::rigid);
+  EXPECT_EQ(type_of(two_segments({mount, first, end}, three_waves())).type, EstimatedJointType::revolute);
+  const JointTypeEvidence universal = type_of(two_segments({mount, first, second, end}, three_waves()));
+  EXPECT_EQ(universal.type, EstimatedJointType::universal);
+  EXPECT_EQ(type_of(two_segments({mount, first, second, third, end}, three_waves())).type,
+            EstimatedJointType::spherical);
+}
+
+TEST(JointType, FindsBothAxesOfAUniversalJoint) {
+  const DhLeaf mount{.theta = 0.7, .d = 0.2, .alpha = -1.1, .a = 0.5}, end{.theta = -1.9, .d = 0.15, .alpha = 0.3};
+  const DhLeaf first{.alpha = 1.4, .theta_signal = 0}, second{.theta_signal = 1};
+  const JointTypeEvidence found = type_of(two_segments({mount, first, second, end}, three_waves()));
+  const Vec3 in_parent = transform(mount).rotation.col(2), in_child = transform(end).rotation.transpose().col(2);
+  EXPECT_LT(found.axis_in_parent.cross(in_parent).norm(), 1e-3);
+  EXPECT_LT(found.axis_in_child.cross(in_child).norm(), 1e-3);
+}
+
+TEST(JointType, FindsTheCranesPrismaticAndRevoluteJoints) {
+  for (const char* grade : {"noise", "industrial"}) {
+    const MujocoWorld world = test::world_of("crane", {}, 4);
+    const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}, 4), 100.0);
+    const auto ordered =
+        order_segments(simulate_recording(world.machine(), motion, *sensor_grade(grade), {}, Rng(4)), {}, {}, 0);
+    ASSERT_TRUE(ordered);
+    std::vector<EstimatedJointType> types;
+    for (const auto& e : joint_types(ordered->motion, ordered->tree)) types.push_back(e.type);
+    using enum EstimatedJointType;
+    EXPECT_EQ(types, (std::vector{revolute, revolute, prismatic, revolute})) << grade;
+  }
+}
+
+TEST(JointType, DistinguishesSphericalFromRevoluteJointsOfAMeasuredChain) {
+  const char* root = std::getenv("KINFER_DATA");
+  if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
+  for (const char* mounts : {"rigid.csv", "nonrigid.csv"}) {
+    const auto recording = read_ins_csv(std::filesystem::path(root) / "diodem_chain5" / "trial1" / mounts);
+    ASSERT_TRUE(recording);
+    const auto ordered = order_segments(*recording, {}, "seg1", 0);
+    ASSERT_TRUE(ordered);
+    std::vector<EstimatedJointType> types;
+    for (const auto& e : joint_types(ordered->motion, ordered->tree)) types.push_back(e.type);
+    using enum EstimatedJointType;
+    EXPECT_EQ(types, (std::vector{spherical, revolute, revolute, revolute})) << mounts;
+  }
+}
+
+TEST(EffectiveSamples, OfASlowWaveAreFewAndOfNoiseAll) {
+  Rng rng(1);
+  std::vector<double> noise, slow;
+  for (int i = 0; i < 4000; ++i) {
+    noise.push_back(rng.normal());
+    slow.push_back((slow.empty() ? 0.0 : 0.9 * slow.back()) + rng.normal());
+  }
+  EXPECT_GT(effective_samples(noise), 3500.0);
+  EXPECT_NEAR(effective_samples(slow), 4000.0 * 0.1 / 1.9, 60.0);  // closed form of a first-order process
+}
+
+}  // namespace
+}  // namespace kinfer

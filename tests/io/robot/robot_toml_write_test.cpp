@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "kinfer/base/angle.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/text/format_number.hpp"
+#include "kinfer/kinematics/forward.hpp"
+#include "laws/example_chains.hpp"
+
+namespace kinfer {
+namespace {
+
+class RobotTomlRoundTrip : public testing::TestWithParam<Chain> {};
+
+double largest_difference(const Chain& a, const Chain& b) {
+  double largest = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    const VectorXd q = laws::random_q(a, Rng(7).stream(i));
+    const Load load{.payload = 3.0};
+    const Pose pa = forward(a, q, load), pb = forward(b, q, load);
+    largest =
+        std::max({largest, (pa.position - pb.position).norm(), (pa.rotation - pb.rotation).cwiseAbs().maxCoeff()});
+  }
+  return largest;
+}
+
+Chain read_back(const RobotModel& robot, FileUnits units, const StandardDeviations& sd = {}) {
+  const std::string text = format_robot_toml(robot, sd, units);
+  const auto read = parse_robot_toml(text, "chain.toml");
+  EXPECT_TRUE(read.has_value()) << (read ? "" : read.error().what) << "\n" << text;
+  return read ? read->chain : Chain{};
+}
+
+TEST_P(RobotTomlRoundTrip, PredictsTheSamePoses) {
+  for (const FileUnits units : {FileUnits::si, FileUnits::mm_deg})
+    EXPECT_LT(largest_difference(GetParam(), read_back({.chain = GetParam()}, units)), 1e-12);
+}
+
+TEST_P(RobotTomlRoundTrip, StandardDeviationsDoNotChangeTheNumbers) {
+  StandardDeviations sd;
+  for (const Parameter& parameter : all_parameters(GetParam(), {}).parameters) sd[parameter.name] = 1e-4;
+  const std::string text = format_robot_toml({.chain = GetParam()}, sd);
+  EXPECT_NE(text.find("_sd = "), std::string::npos);
+  EXPECT_LT(largest_difference(GetParam(), read_back({.chain = GetParam()}, FileUnits::mm_deg, sd)), 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, RobotTomlRoundTrip, testing::ValuesIn(laws::examples_with_joints()),
+                         [](const auto& chain) { return laws::test_name(chain.param); });
+
+TEST(RobotTomlWriting, NonGeometricValuesAreReadBackToo) {
+  RobotModel robot{.chain = laws::compliant_tree()};
+  robot.chain.targets = {{"left \"eye\"", Vec3(0.1, 0.2, 0.3)}};
+  robot.chain.gravity = Vec3(0, 9.81, 0);
+  robot.chain.joints[3].lower = -0.1, robot.chain.joints[3].upper = 0.4;
+  robot.chain.joints[1].name = "base";
+  robot.tolerances.length = 0.2e-3, robot.tolerances.base_angle = 3 * degree;
+  robot.instrument = Instrument{.sigma = 1e-5, .sigma_angle = 1e-4, .ppm = 5};
+  robot.chain.fixtures.anchors = {Vec3(1.8, -0.9, 0.1), Vec3(0, 1, 2)};
+  const auto read = parse_robot_toml(format_robot_toml(robot), "chain.toml");
+  ASSERT_TRUE(read.has_value()) << read.error().what;
+  EXPECT_EQ(read->chain.name, "compliant tree");
+  EXPECT_EQ(read->chain.targets[0].name, "left \"eye\"");
+  EXPECT_EQ(read->chain.targets[0].xyz, robot.chain.targets[0].xyz);
+  EXPECT_EQ(read->chain.gravity, robot.chain.gravity);
+  EXPECT_EQ(read->chain.joints[3].lower, -0.1);
+  EXPECT_EQ(read->chain.joints[3].upper, 0.4);
+  EXPECT_EQ(read->chain.joints[1].name, "base");
+  EXPECT_EQ(read->chain.joints[4].parent, 0);
+  EXPECT_EQ(read->chain.tip, 3);
+  EXPECT_EQ(read->chain.masses[1].com, robot.chain.masses[1].com);
+  EXPECT_EQ(read->tolerances.length, 0.2e-3);
+  EXPECT_EQ(read->tolerances.base_angle, 3 * degree);
+  EXPECT_EQ(read->instrument->sigma_angle, 1e-4);
+  EXPECT_EQ(read->chain.fixtures.anchors, robot.chain.fixtures.anchors);
+}
+
+TEST(RobotTomlWriting, RoundNumbersAreWrittenRound) {
+  RobotModel robot;
+  robot.chain.joints.push_back(laws::revolute<MdhLink>(0.166605, -90, 0.504));
+  const std::string text = format_robot_toml(robot, {{"a1", 12.5e-6}, {"base_x", 1e-3}, {"base_rz", 0.01 * degree}});
+  EXPECT_NE(text.find("a = 166.605\na_sd = 0.0125\nalpha = -90\nd = 504\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("base_sd = { xyz = [1, nan, nan], turn = [nan, nan, 0.01] }\n"), std::string::npos) << text;
+}
+
+TEST(RobotTomlWriting, AToolAtGimbalLockKeepsItsPose) {
+  for (const double pitch : {90.0, -90.0, 90.0 - 1e-7, 90.0 - 1e-10}) {
+    Chain chain = laws::er20();
+    chain.tool.rotation = rot_x(0.3) * from_rpy({0.7, pitch * degree, -1.1});
+    chain.base.rotation = from_rpy({0.7, pitch * degree, -1.1});
+    EXPECT_LT(largest_difference(chain, read_back({.chain = chain}, FileUnits::mm_deg)), 1e-12) << pitch;
+  }
+}
+
+TEST(Digits, ReadBackGivesTheSameBitsWhereverTheUnitAllows) {
+  Rng rng(3);
+  for (int i = 0; i < 1000; ++i) {
+    const double value = rng.normal();
+    EXPECT_EQ(std::stod(format_number(value)), value);
+    EXPECT_NEAR(1e-3 * std::stod(format_number(value, 1e-3)), value, 1e-15 * std::abs(value));
+  }
+  EXPECT_EQ(format_number(0.7, 1e-3), "700");
+  EXPECT_EQ(format_number(0.504, 1e-3), "504");
+  EXPECT_EQ(format_number(-90 * degree, degree), "-90");
+}
+
+}  // namespace
+}  // namespace kinfer

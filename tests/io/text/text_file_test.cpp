@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/text/text_file.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace kinfer {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TextFile : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder); }
+  void TearDown() override {
+    fs::permissions(folder, fs::perms::owner_all);
+    fs::remove_all(folder);
+  }
+  const fs::path folder = fs::path(testing::TempDir()) / ("kinfer_text_file_" + std::to_string(getpid()));
+};
+
+TEST_F(TextFile, WritingThenReadingGivesTheSameTextAndNoOtherFile) {
+  const std::string text = std::string("line\r\n\0byte", 11);
+  ASSERT_TRUE(write_text_file(folder / "a.txt", "before"));
+  ASSERT_TRUE(write_text_file(folder / "a.txt", text));
+  EXPECT_EQ(*read_text_file(folder / "a.txt"), text);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator{}), 1);
+}
+
+TEST_F(TextFile, PathsThatCannotBeReadAreErrors) {
+  const std::string name = folder.string();
+  EXPECT_EQ(read_text_file(folder / "none.csv").error().what, name + "/none.csv: no such file");
+  EXPECT_EQ(read_text_file(folder).error().what, name + ": expected a file, found a folder");
+  ASSERT_TRUE(write_text_file(folder / "empty.csv", ""));
+  EXPECT_EQ(read_text_file(folder / "empty.csv").error().what, name + "/empty.csv: the file is empty");
+}
+
+TEST_F(TextFile, PathsThatCannotBeWrittenAreErrors) {
+  const std::string name = folder.string();
+  EXPECT_EQ(write_text_file(folder, "x").error().what, name + ": expected a file to write, found a folder");
+  EXPECT_EQ(write_text_file(folder / "none/a.txt", "x").error().what,
+            name + "/none/a.txt: the file cannot be written; does the folder exist, and may you write there?");
+}
+
+TEST_F(TextFile, AnOutputFolderIsMadeOrRefusedBeforeAnythingIsComputed) {
+  EXPECT_TRUE(create_writable_folder(folder / "deep/er"));
+  EXPECT_TRUE(fs::is_empty(folder / "deep/er"));
+  ASSERT_TRUE(write_text_file(folder / "file", "x"));
+  EXPECT_EQ(create_writable_folder(folder / "file").error().what,
+            (folder / "file").string() + ": the output folder cannot be created");
+  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  fs::permissions(folder, fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_EQ(create_writable_folder(folder).error().what, folder.string() + ": the output folder is not writable");
+}
+
+}  // namespace
+}  // namespace kinfer
