@@ -6,7 +6,7 @@
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
-#include "kinfer/io/text/sha256.hpp"
+#include "kinfer/base/sha256.hpp"
 
 namespace kinfer {
 namespace {

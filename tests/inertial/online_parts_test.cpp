@@ -9,8 +9,8 @@
 #include "kinfer/inertial/filters/magnetic_reference.hpp"
 #include "kinfer/inertial/filters/paper_ekf.hpp"
 #include "kinfer/inertial/gap_bridging.hpp"
-#include "kinfer/inertial/low_pass.hpp"
-#include "kinfer/inertial/rest.hpp"
+#include "kinfer/inertial/rest/low_pass.hpp"
+#include "kinfer/inertial/rest/rest.hpp"
 #include "kinfer/inertial/sensor_grading.hpp"
 #include "support/carried_sensor.hpp"
 

@@ -68,7 +68,7 @@ Result<void> check(const IdentifyOptions& options) {
 NamedValues describe(const IdentifyOptions& options) {
   NamedValues list{{"--engine", std::string(name(method_of(options.engine)))},
                    {"--terminals", terminals_of(options.engine) == JointVariableKind::euler ? "euler" : "hinge"},
-                   {"--filter", std::string(filter_name(options.motion.filter))},
+                   {"--filter", std::string(filter_of(options.motion.filter).name)},
                    {"--root", options.root.value_or("")},
                    {"--smoothing", fmt::to_string(options.motion.smoothing)}};
   describe_engine(list, options.engine);

@@ -48,7 +48,7 @@ RecordedMotion two_segments(const std::vector<DhLeaf>& leaves, const std::vector
 JointTypeEvidence type_of(const RecordedMotion& motion) {
   const auto tree = segment_tree(motion, "parent");
   EXPECT_TRUE(tree);
-  return joint_types(motion, *tree).front();
+  return identify::joint_types(motion, *tree).front();
 }
 
 const std::vector<JointSignal>& three_waves() {
@@ -85,7 +85,7 @@ TEST(JointType, FindsTheCranesPrismaticAndRevoluteJoints) {
         order_segments(simulate_recording(world.machine(), motion, *sensor_grade(grade), {}, Rng(4)), {}, {}, 0);
     ASSERT_TRUE(ordered);
     std::vector<EstimatedJointType> types;
-    for (const auto& e : joint_types(ordered->motion, ordered->tree)) types.push_back(e.type);
+    for (const auto& e : identify::joint_types(ordered->motion, ordered->tree)) types.push_back(e.type);
     using enum EstimatedJointType;
     EXPECT_EQ(types, (std::vector{revolute, revolute, prismatic, revolute})) << grade;
   }
@@ -100,7 +100,7 @@ TEST(JointType, DistinguishesSphericalFromRevoluteJointsOfAMeasuredChain) {
     const auto ordered = order_segments(*recording, {}, "seg1", 0);
     ASSERT_TRUE(ordered);
     std::vector<EstimatedJointType> types;
-    for (const auto& e : joint_types(ordered->motion, ordered->tree)) types.push_back(e.type);
+    for (const auto& e : identify::joint_types(ordered->motion, ordered->tree)) types.push_back(e.type);
     using enum EstimatedJointType;
     EXPECT_EQ(types, (std::vector{spherical, revolute, revolute, revolute})) << mounts;
   }

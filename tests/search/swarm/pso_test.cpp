@@ -174,7 +174,7 @@ TEST(Minimise, EverySearchGivesTheSameBitsFor12And7Threads) {
     return minimise(rastrigin(6), with_budget(options, budget), Rng(4));
   };
   std::vector<SearchOptions> all{BpnnPsoOptions{.hidden_nodes = HiddenNodes::stepwise, .training = {.epochs = 20}}};
-  for (const SearchMethod& method : search_methods()) all.push_back(method.default_options);
+  for (const SwarmMethod& method : swarm_methods()) all.push_back(method.default_options);
   for (const SearchOptions& options : all) {
     const SearchOutcome one = with_threads(options, 1);
     for (const int threads : {2, 7}) {
@@ -190,7 +190,7 @@ TEST(Minimise, EverySearchGivesTheSameBitsFor12And7Threads) {
 }
 
 TEST(SearchMethods, OptionsFindTheirRowAndNamesTheirOptions) {
-  for (const SearchMethod& method : search_methods()) {
+  for (const SwarmMethod& method : swarm_methods()) {
     EXPECT_EQ(&method_of(method.default_options), &method);
     EXPECT_EQ(method_named(method.name), &method);
   }
@@ -200,7 +200,7 @@ TEST(SearchMethods, OptionsFindTheirRowAndNamesTheirOptions) {
 
 TEST(SearchMethods, BudgetParticlesAndInitialSwarmAreThoseOfTheRun) {
   const Bounds box = shifted_sphere(3).bounds;
-  for (const SearchMethod& method : search_methods()) {
+  for (const SwarmMethod& method : swarm_methods()) {
     SearchOptions options = with_budget(method.default_options, {.max_iterations = 2});
     method.particles(options) = 5;
     if (method.takes_initial_swarm) method.initial(options) = box.center().replicate(1, 5);

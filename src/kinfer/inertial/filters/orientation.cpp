@@ -119,11 +119,6 @@ MagnetometerUse magnetometer_use(FilterOptions options) {
   return filter_of(options).magnetometer(options);
 }
 
-std::string_view filter_name(const FilterOptions& options) {
-  if (std::holds_alternative<KinferFilterOptions>(options)) return "kinfer";
-  return std::holds_alternative<PaperEkfOptions>(options) ? "paper" : "kinfer-offline";
-}
-
 FilterOptions without_magnetometer(FilterOptions options) {
   filter_of(options).magnetometer(options) = MagnetometerUse::off;
   return options;
