@@ -326,7 +326,7 @@ TEST(Diagnosis, ASetThatIsTooSmallToJudgeIsLeftAlone) {
 
 TEST(Diagnosis, AShiftDropsEveryMeasurementOfARowWithoutJointPositions) {
   CalibrationTask task = measured_robot(arm6());
-  for (int row = 0; row < 60; ++row) task.data.tilts.push_back({row, Vec3(0, 0, 9.8), {}});
+  for (int row = 0; row < 60; ++row) task.data.tilts.push_back({row, Vec3(0, 0, 9.8)});
   task.data = with_readings_shifted(task.data, 0, 2);
   const PoseSet corrected = diagnose(task).corrected_task.data;
   EXPECT_EQ(corrected.points.size(), 58u);
