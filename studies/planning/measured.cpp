@@ -59,9 +59,9 @@ class Series {
     const Estimate of_all_rows = fit_once(task_, task_.data, GeometricParameters{}, {}).value();
     for (const Outlier& outlier : of_all_rows.outliers) gross_errors.insert(outlier.row);
     for (int row = 0; row < task_.data.rows(); ++row)
-      if (!wrong.contains(row)) right_.push_back(row);
-    fmt::print("{}: neither chosen nor held out, as the doctor or the fit of all rows does not believe them: {}\n",
-               words_, words::row_ranges(std::vector<int>(wrong.begin(), wrong.end())));
+      if (!gross_errors.contains(row)) valid_rows_.push_back(row);
+    fmt::print("{}: neither chosen nor held out, gross errors by the diagnosis or the fit of all rows: {}\n",
+               words_, words::row_ranges(std::vector<int>(gross_errors.begin(), gross_errors.end())));
   }
 
   std::vector<int> planned(Criterion criterion, int draw) const {

@@ -20,7 +20,8 @@ std::map<std::string, std::string> described(const CalibrationTask& task, const 
 const CalibrationTask nominal_task{.nominal = test::er20()};
 
 TEST(Options, DefaultsAreTheCompleteSetWithModelSelection) {
-  EXPECT_EQ(described(nominal_task, {}), (std::map<std::string, std::string>{{"--model", "auto"}, {"--parameters", "auto"}}));
+  EXPECT_EQ(described(nominal_task, {}),
+            (std::map<std::string, std::string>{{"--model", "auto"}, {"--parameters", "auto"}}));
 }
 
 TEST(Options, AModelChoiceIsParsedAndDescribedAlike) {
@@ -46,8 +47,9 @@ TEST(Options, OnlyTheOptionsOfTheSearchMethodAreDescribed) {
   EXPECT_EQ(pso.at("--box-length"), "1");
   EXPECT_EQ(pso.at("--box-angle"), "1");
   EXPECT_FALSE(pso.contains("--net-use"));
-  const auto qpso = described(
-      nominal_task, {.swarm_search = SwarmSearchOptions{.search = QpsoOptions{.particles = 30}, .box = ToleranceBox{2.5}}});
+  const auto qpso =
+      described(nominal_task,
+                {.swarm_search = SwarmSearchOptions{.search = QpsoOptions{.particles = 30}, .box = ToleranceBox{2.5}}});
   EXPECT_EQ(qpso.at("--particles"), "30");
   EXPECT_EQ(qpso.at("--box-tolerances"), "2.5");
   EXPECT_FALSE(qpso.contains("--inertia"));
@@ -64,7 +66,7 @@ TEST(Options, ARefitChoosesParametersAndModelItself) {
 TEST(Options, JointTypesAreDescribedAsTheyAreGiven) {
   const auto r = JointType::revolute, p = JointType::prismatic;
   const CalibrationTask scara{.nominal = {}, .joint_types = {r, r, p, r}};
-  EXPECT_EQ(described(scara, {}).at("--nominal_task"), "unknown:2RPR");
+  EXPECT_EQ(described(scara, {}).at("--robot"), "unknown:2RPR");
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ball-bar: its known length − |p_row − p_other|, the distance between the tool points of two poses.
-#include <fmt/format.h>
 
 #include "kinfer/estimate/poses/instruments/residual_kind.hpp"
 
@@ -23,10 +22,6 @@ Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& inst
   return Vec3::Constant(sigma + 1e-6 * instrument.ppm * data.pairs[index].distance);
 }
 
-std::string in_words(double error) {
-  return fmt::format("the two tool points are {:.3f} mm nearer or further apart than the model has them", 1e3 * error);
-}
-
 }  // namespace
 
 ResidualKind pair_residual() {
@@ -36,8 +31,7 @@ ResidualKind pair_residual() {
           .row = [](const PoseSet& data, std::size_t i) { return data.pairs[i].row; },
           .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.pairs, kept); },
           .specified_sd = specified_sd,
-          .write = write,
-          .in_words = in_words};
+          .write = write};
 }
 
 }  // namespace kinfer

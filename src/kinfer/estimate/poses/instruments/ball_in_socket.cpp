@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ball in socket: socket position − p. The socket position is an unknown of the fit like any other.
-#include <fmt/format.h>
 
 #include "kinfer/estimate/poses/instruments/residual_kind.hpp"
 
@@ -23,10 +22,6 @@ Vec3 specified_sd(const PoseSet&, std::size_t, const Instrument& instrument) {
   return Vec3::Constant(instrument.sigma_contact.value_or(instrument.sigma));
 }
 
-std::string in_words(double error) {
-  return fmt::format("the tool point lies {:.3f} mm from its socket", 1e3 * error);
-}
-
 }  // namespace
 
 ResidualKind contact_residual() {
@@ -36,8 +31,7 @@ ResidualKind contact_residual() {
           .row = [](const PoseSet& data, std::size_t i) { return data.contacts[i].row; },
           .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.contacts, kept); },
           .specified_sd = specified_sd,
-          .write = write,
-          .in_words = in_words};
+          .write = write};
 }
 
 }  // namespace kinfer

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draw wire: measured distance − |p − base · anchor|. The anchors are fixed in the base frame, so the base frame has no
 // effect; their positions are unknowns with the tolerance as prior.
-#include <fmt/format.h>
 
 #include "kinfer/estimate/poses/instruments/residual_kind.hpp"
 
@@ -35,10 +34,6 @@ Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& inst
   return Vec3::Constant(sigma + 1e-6 * instrument.ppm * data.distances[index].distance);
 }
 
-std::string in_words(double error) {
-  return fmt::format("the wire is {:.3f} mm longer or shorter than the model has it", 1e3 * error);
-}
-
 }  // namespace
 
 ResidualKind distance_residual() {
@@ -48,8 +43,7 @@ ResidualKind distance_residual() {
           .row = [](const PoseSet& data, std::size_t i) { return data.distances[i].row; },
           .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.distances, kept); },
           .specified_sd = specified_sd,
-          .write = write,
-          .in_words = in_words};
+          .write = write};
 }
 
 }  // namespace kinfer

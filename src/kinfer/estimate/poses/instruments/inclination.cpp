@@ -2,7 +2,6 @@
 // An accelerometer at rest on the tool measures −g in the tool frame. Only the direction is compared, since its scale
 // is rarely known as accurately as an angle. With B two unit vectors orthogonal to the measured direction, the residual
 // is Bᵀ Rᵀ g, zero if both agree; d(Rᵀ g) = Rᵀ (g × δ) + Rᵀ dg for a rotation δ of the tool.
-#include <fmt/format.h>
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/constants.hpp"
@@ -32,10 +31,6 @@ Vec3 specified_sd(const PoseSet&, std::size_t, const Instrument& instrument) {
   return Vec3::Constant(instrument.sigma_tilt.value_or(0.0));
 }
 
-std::string in_words(double error) {
-  return fmt::format("the tilt is {:.3f} deg from what the model has", error / standard_gravity / degree);
-}
-
 }  // namespace
 
 ResidualKind tilt_residual() {
@@ -45,8 +40,7 @@ ResidualKind tilt_residual() {
           .row = [](const PoseSet& data, std::size_t i) { return data.tilts[i].row; },
           .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.tilts, kept); },
           .specified_sd = specified_sd,
-          .write = write,
-          .in_words = in_words};
+          .write = write};
 }
 
 }  // namespace kinfer

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measured orientation: log(R_measured R_predictedᵀ), a rotation vector in the world frame.
 // R_measured (exp(δ) R)ᵀ = exp(error) exp(−δ), so d error = −J_r⁻¹(error) δ.
-#include <fmt/format.h>
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/estimate/poses/instruments/residual_kind.hpp"
@@ -25,10 +24,6 @@ Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& inst
   return sd ? *sd : Vec3::Constant(instrument.sigma_angle);
 }
 
-std::string in_words(double error) {
-  return fmt::format("the orientation is {:.3f} deg from what the model has", error / degree);
-}
-
 }  // namespace
 
 ResidualKind orientation_residual() {
@@ -38,8 +33,7 @@ ResidualKind orientation_residual() {
           .row = [](const PoseSet& data, std::size_t i) { return data.orientations[i].row; },
           .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.orientations, kept); },
           .specified_sd = specified_sd,
-          .write = write,
-          .in_words = in_words};
+          .write = write};
 }
 
 }  // namespace kinfer

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tool point on an unknown plane: offset − n · p. The normal is parametrised by two small angles, so it stays a unit
 // vector: n = R (sin b, −sin a cos b, cos a cos b).
-#include <fmt/format.h>
 
 #include <cmath>
 
@@ -30,10 +29,6 @@ Vec3 specified_sd(const PoseSet&, std::size_t, const Instrument& instrument) {
   return Vec3::Constant(instrument.sigma_contact.value_or(instrument.sigma));
 }
 
-std::string in_words(double error) {
-  return fmt::format("the tool point lies {:.3f} mm off its plane", 1e3 * error);
-}
-
 }  // namespace
 
 ResidualKind plane_residual() {
@@ -43,8 +38,7 @@ ResidualKind plane_residual() {
           .row = [](const PoseSet& data, std::size_t i) { return data.plane_contacts[i].row; },
           .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.plane_contacts, kept); },
           .specified_sd = specified_sd,
-          .write = write,
-          .in_words = in_words};
+          .write = write};
 }
 
 }  // namespace kinfer

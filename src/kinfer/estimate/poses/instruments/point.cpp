@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measured point: position − (p + R t), with t the target in the tool frame (zero for the tool point).
 // d(p + R t) = dp + dω × R t + R dt.
-#include <fmt/format.h>
 
 #include "kinfer/estimate/poses/instruments/residual_kind.hpp"
 
@@ -34,10 +33,6 @@ Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& inst
   return point.sd ? *point.sd : Vec3::Constant(position_sd(instrument, point.position));
 }
 
-std::string in_words(double error) {
-  return fmt::format("the point lies {:.3f} mm from where the model has it", 1e3 * error);
-}
-
 }  // namespace
 
 ResidualKind point_residual() {
@@ -47,8 +42,7 @@ ResidualKind point_residual() {
           .row = [](const PoseSet& data, std::size_t i) { return data.points[i].row; },
           .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.points, kept); },
           .specified_sd = specified_sd,
-          .write = write,
-          .in_words = in_words};
+          .write = write};
 }
 
 }  // namespace kinfer

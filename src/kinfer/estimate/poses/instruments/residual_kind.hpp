@@ -6,7 +6,6 @@
 #include <array>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "kinfer/evidence/measurement_kind.hpp"
@@ -57,7 +56,6 @@ struct ResidualKind {
   void (*keep)(PoseSet&, const std::vector<bool>& kept);                       ///< removes the others
   Vec3 (*specified_sd)(const PoseSet&, std::size_t index, const Instrument&);  ///< the first `size` are used
   void (*write)(const ResidualContext&, std::size_t index, BlockRows&);        ///< residual and Jacobian of one block
-  std::string (*in_words)(double error);                                       ///< sentence for the norm of one block
 };
 
 const ResidualKind& residual_kind(MeasurementKind kind);
