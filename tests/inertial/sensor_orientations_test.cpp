@@ -74,7 +74,6 @@ TEST(SensorOrientations, TheSmootherIsCloserToTheTruthWithShortGapsBridged) {
                  raw = orientation_error(estimate_orientations(c.sensor, c.time, KinferOfflineOptions{}), c.truth, all)
                            .total;
     EXPECT_LE(bridged, 1.001 * raw) << seconds << " s: " << bridged / degree << "° instead of " << raw / degree;
-    std::printf("gap %.2f bridged %.4f raw %.4f\n", seconds, bridged / degree, raw / degree);
   }
 }
 
