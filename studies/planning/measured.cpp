@@ -60,8 +60,8 @@ class Series {
     for (const Outlier& outlier : of_all_rows.outliers) gross_errors.insert(outlier.row);
     for (int row = 0; row < task_.data.rows(); ++row)
       if (!gross_errors.contains(row)) valid_rows_.push_back(row);
-    fmt::print("{}: neither chosen nor held out, gross errors by the diagnosis or the fit of all rows: {}\n",
-               words_, words::row_ranges(std::vector<int>(gross_errors.begin(), gross_errors.end())));
+    fmt::print("{}: neither chosen nor held out, gross errors by the diagnosis or the fit of all rows: {}\n", words_,
+               words::row_ranges(std::vector<int>(gross_errors.begin(), gross_errors.end())));
   }
 
   std::vector<int> planned(Criterion criterion, int draw) const {

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "cli/program.hpp"
+#include "kinfer/base/sha256.hpp"
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
-#include "kinfer/base/sha256.hpp"
 
 namespace kinfer {
 namespace {

@@ -7,9 +7,9 @@
 #include <algorithm>
 
 #include "kinfer/identify/pipeline.hpp"
-#include "kinfer/words/findings.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
+#include "kinfer/words/findings.hpp"
 #include "simulate/worlds.hpp"
 
 namespace kinfer::test {

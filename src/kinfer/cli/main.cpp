@@ -4,11 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <string>
 #include <vector>
 
 #include "kinfer/base/version.hpp"
 #include "kinfer/cli/parts/common.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/words/language.hpp"
 
 namespace {
 
@@ -17,6 +19,11 @@ int run(int argc, char** argv) {
   store_command_line(argc, argv);
   CLI::App app("kinfer: from raw measurements to a proven kinematic model", "kinfer");
   app.set_version_flag("--version", std::string("kinfer ") + kinfer::version);
+  std::string language = "english";
+  app.add_option("--language", language,
+                 "names: the stable name of each fact instead of its sentence, for programs and translators")
+      ->check(CLI::IsMember({"english", "names"}))
+      ->capture_default_str();
   app.require_subcommand(1);
   app.footer("\n`kinfer VERB --help` explains a verb and shows an example.");
   const std::vector<Verb> verbs = add_verbs(app);
@@ -25,6 +32,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& parse_error) {
     return app.exit(parse_error) == 0 ? exit_done : exit_bad_input;  // --help and --version end here too
   }
+  if (language == "names") kinfer::words::set_language(kinfer::words::Language::names);
   for (const Verb& verb : verbs)
     if (was_chosen(*verb.command)) return verb.run();
   return exit_bad_input;

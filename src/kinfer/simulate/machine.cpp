@@ -57,9 +57,8 @@ void perturb_joint(XMLElement& body, XMLElement& joint, const MachineOptions& op
   const Vec3 axis =
       exp_so3(options.joint_error.rad() * draw_normal_vector(rng)) * vector_of(joint, "axis", Vec3::UnitZ());
   joint.SetAttribute("axis", text(axis.normalized()).c_str());
-  body.SetAttribute(
-      "pos",
-      text(vector_of(body, "pos", Vec3::Zero()) + options.joint_shift * draw_normal_vector(rng)).c_str());
+  body.SetAttribute("pos",
+                    text(vector_of(body, "pos", Vec3::Zero()) + options.joint_shift * draw_normal_vector(rng)).c_str());
 }
 
 /// Randomises joints and mountings of `body` and its descendants; every body and sensor has a random stream of its own.
@@ -100,8 +99,7 @@ void prepend_zeros(XMLElement& root, int count) {
 
 void tilt_platform(XMLElement& platform, Angle slope, Rng rng) {
   const double azimuth = rng.uniform(0.0, 2.0 * std::numbers::pi);
-  platform.SetAttribute(
-      "quat", text(quat_exp(slope.rad() * Vec3(std::cos(azimuth), std::sin(azimuth), 0.0))).c_str());
+  platform.SetAttribute("quat", text(quat_exp(slope.rad() * Vec3(std::cos(azimuth), std::sin(azimuth), 0.0))).c_str());
 }
 
 /// Accelerometer, gyro and magnetometer at every site.

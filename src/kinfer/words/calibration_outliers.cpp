@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/words/calibration_outliers.hpp"
+#include "kinfer/base/constants.hpp"
 
 #include <algorithm>
 
@@ -9,7 +10,7 @@
 namespace kinfer::words {
 namespace {
 
-constexpr double gravity = 9.81;  // [m/s²], to show a tilt residual as an angle
+constexpr double gravity = standard_gravity;  // [m/s²], to show a tilt residual as an angle
 
 std::string residual_sentence(const OutlierReason& reason) {
   const double mm = 1e3 * reason.residual;

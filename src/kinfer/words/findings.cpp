@@ -11,7 +11,8 @@ std::string sentence(const Finding& finding) {
 }
 
 std::string suggestion(const Finding& finding) {
-  return is_recording_finding(finding.kind) ? recording_finding_suggestion(finding) : pose_set_finding_suggestion(finding);
+  return is_recording_finding(finding.kind) ? recording_finding_suggestion(finding)
+                                            : pose_set_finding_suggestion(finding);
 }
 
 }  // namespace kinfer::words

@@ -50,7 +50,8 @@ class RemountSearch {
   RemountSearch(const RecordedMotion& motion, int threads)
       : motion_(motion), at_(telling_rows(motion)), threads_(threads) {
     for (const SegmentMotion& segment : motion.segments)
-      rows_.push_back({relation_rows(segment, at_, gyro_relation, motion.gravity), relation_rows(segment, at_, force_relation, motion.gravity)});
+      rows_.push_back({relation_rows(segment, at_, gyro_relation, motion.gravity),
+                       relation_rows(segment, at_, force_relation, motion.gravity)});
   }
 
   std::optional<Remount> run() const {

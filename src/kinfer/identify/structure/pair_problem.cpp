@@ -11,7 +11,6 @@
 namespace kinfer::identify {
 namespace {
 
-
 /// [K, R, f]: specific force at a point of the segment in the world is this times (lever arm, bias, 1).
 Row7 point_jacobian(const SegmentMotion& m, std::size_t row, double gravity) {
   const Mat3 angular_velocity = skew(m.angular_velocity[row]);

@@ -35,34 +35,32 @@ SearchDescription describe_bpnn(const BpnnPsoOptions& bpnn) {
 
 std::span<const SwarmMethod> swarm_methods() {
   static const std::array methods{
-      SwarmMethod{
-          .name = "pso",
-          .help = "particle swarm",
-          .default_options = PsoOptions{},
-          .run =
-              [](const Objective& objective, const SearchOptions& options, Rng rng, const Observer& observer) {
-                return particle_swarm(objective, std::get<PsoOptions>(options), rng, observer);
-              },
-          .budget = [](SearchOptions& options) -> Budget& { return std::get<PsoOptions>(options).budget; },
-          .particles = [](SearchOptions& options) -> int& { return std::get<PsoOptions>(options).particles; },
-          .initial = [](SearchOptions& options) -> MatrixXd& { return std::get<PsoOptions>(options).initial; },
-          .describe = [](const SearchOptions& options) { return describe_pso(std::get<PsoOptions>(options)); }},
-      SwarmMethod{
-          .name = "qpso",
-          .help = "quantum-behaved particle swarm",
-          .default_options = QpsoOptions{},
-          .run =
-              [](const Objective& objective, const SearchOptions& options, Rng rng, const Observer& observer) {
-                return quantum_swarm(objective, std::get<QpsoOptions>(options), rng, observer);
-              },
-          .budget = [](SearchOptions& options) -> Budget& { return std::get<QpsoOptions>(options).budget; },
-          .particles = [](SearchOptions& options) -> int& { return std::get<QpsoOptions>(options).particles; },
-          .initial = [](SearchOptions& options) -> MatrixXd& { return std::get<QpsoOptions>(options).initial; },
-          .describe =
-              [](const SearchOptions& options) {
-                const auto& qpso = std::get<QpsoOptions>(options);
-                return describe_population(qpso.particles, qpso.budget);
-              }},
+      SwarmMethod{.name = "pso",
+                  .help = "particle swarm",
+                  .default_options = PsoOptions{},
+                  .run =
+                      [](const Objective& objective, const SearchOptions& options, Rng rng, const Observer& observer) {
+                        return particle_swarm(objective, std::get<PsoOptions>(options), rng, observer);
+                      },
+                  .budget = [](SearchOptions& options) -> Budget& { return std::get<PsoOptions>(options).budget; },
+                  .particles = [](SearchOptions& options) -> int& { return std::get<PsoOptions>(options).particles; },
+                  .initial = [](SearchOptions& options) -> MatrixXd& { return std::get<PsoOptions>(options).initial; },
+                  .describe = [](const SearchOptions& options) { return describe_pso(std::get<PsoOptions>(options)); }},
+      SwarmMethod{.name = "qpso",
+                  .help = "quantum-behaved particle swarm",
+                  .default_options = QpsoOptions{},
+                  .run =
+                      [](const Objective& objective, const SearchOptions& options, Rng rng, const Observer& observer) {
+                        return quantum_swarm(objective, std::get<QpsoOptions>(options), rng, observer);
+                      },
+                  .budget = [](SearchOptions& options) -> Budget& { return std::get<QpsoOptions>(options).budget; },
+                  .particles = [](SearchOptions& options) -> int& { return std::get<QpsoOptions>(options).particles; },
+                  .initial = [](SearchOptions& options) -> MatrixXd& { return std::get<QpsoOptions>(options).initial; },
+                  .describe =
+                      [](const SearchOptions& options) {
+                        const auto& qpso = std::get<QpsoOptions>(options);
+                        return describe_population(qpso.particles, qpso.budget);
+                      }},
       SwarmMethod{
           .name = "bpnn-pso",
           .help = "particle swarm that starts from the network of an earlier run",
@@ -83,8 +81,8 @@ std::span<const SwarmMethod> swarm_methods() {
 
 const SwarmMethod& method_of(const SearchOptions& options) {
   const std::span<const SwarmMethod> methods = swarm_methods();
-  const auto row = std::ranges::find_if(
-      methods, [&](const SwarmMethod& m) { return m.default_options.index() == options.index(); });
+  const auto row =
+      std::ranges::find_if(methods, [&](const SwarmMethod& m) { return m.default_options.index() == options.index(); });
   KINFER_EXPECT(row != methods.end(), "no search has the options {}", options.index());
   return *row;
 }
