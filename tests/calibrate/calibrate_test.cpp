@@ -26,7 +26,7 @@ double mean_error_on_unseen_poses(const Chain& found, const Chain& truth) {
   return mean(point_errors(found, measured(truth, paper2_poses(300, noise_free), 4321)));
 }
 
-TEST(InitialFrames, BaseAndToolNeedNoGuess) {
+TEST(InitialFrames, BaseAndToolNeedNoInitialValues) {
   const Chain truth = placed(er20(0.125));
   const PoseSet data = measured(truth, paper2_poses(30, noise_free));
   Chain ignorant = truth;
@@ -38,7 +38,7 @@ TEST(InitialFrames, BaseAndToolNeedNoGuess) {
   EXPECT_LT((found.tool.xyz - truth.tool.xyz).norm(), 1e-6);
 }
 
-TEST(InitialFrames, OrientationsGiveTheToolsTurnToo) {
+TEST(InitialFrames, OrientationsAlsoGiveTheToolsRotation) {
   Chain truth = placed(er20(0.125));
   truth.tool = Frame::from_pose(Pose::from_xyz_rpy({0.1, -0.2, 0.3}, {1.0, -0.7, 2.5}));
   PoseSimulation simulation = paper2_poses(30, noise_free);
@@ -109,7 +109,7 @@ TEST(Calibrate, JointsThatNeverMoveDoNoHarmAndAreReported) {
   const Calibration c = calibrate_robot({nominal, {}, tracker, data}, {}, Rng(1)).value();
   EXPECT_LT(c.estimate.identifiability.rank, 20);
   EXPECT_FALSE(c.estimate.identifiability.undetermined.empty());
-  // Where the joints move freely, the result is no worse than the nominal chain in the found frames.
+  // Where all joints move, the result is no worse than the nominal chain with estimated base and tool.
   const Chain frames = with_estimated_frames(nominal, data).value();
   EXPECT_LE(mean_error_on_unseen_poses(c.estimate.chain, truth), mean_error_on_unseen_poses(frames, truth));
 }

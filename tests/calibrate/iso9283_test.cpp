@@ -27,7 +27,7 @@ TEST(Iso9283, AccuracyAndRepeatabilityAreThoseOfTheStandard) {
   ASSERT_EQ(poses.size(), 2u);
   EXPECT_EQ(poses[0].rows, (std::vector<int>{0, 1}));
   EXPECT_NEAR(poses[0].accuracy_after, 3e-3, 1e-12);
-  EXPECT_NEAR(*poses[0].repeatability, 1e-3, 1e-12);  // both lie 1 mm from the middle: no scatter of that distance
+  EXPECT_NEAR(*poses[0].repeatability, 1e-3, 1e-12);  // both lie 1 mm from the mean: that distance does not scatter
   EXPECT_FALSE(poses[1].repeatability.has_value());
 }
 

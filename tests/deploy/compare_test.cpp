@@ -35,7 +35,7 @@ TEST(Compare, TwoCalibrationsOfOneRobotDifferByChanceOnly) {
   EXPECT_EQ(alarms, 0);
 }
 
-TEST(Compare, ASlippedEncoderIsNamedFirst) {
+TEST(Compare, ASlippedEncoderIsListedFirst) {
   Chain knocked = arm();
   std::get<MdhLink>(knocked.joints[2].link).theta += 0.02 * degree;
   const CalibrationComparison changes = compare_calibrations(calibrated(arm(), 1), calibrated(knocked, 2)).value();
@@ -45,7 +45,7 @@ TEST(Compare, ASlippedEncoderIsNamedFirst) {
   EXPECT_GT(changes.tool_worst, 1e-4);
 }
 
-TEST(Compare, RobotsOfDifferentKindsAreRefused) {
+TEST(Compare, RobotsOfDifferentTypesAreRefused) {
   Chain other = arm();
   other.joints.pop_back();
   EXPECT_FALSE(compare_calibrations({arm(), {{"a2", 1e-5}}}, {other, {{"a2", 1e-5}}}).has_value());

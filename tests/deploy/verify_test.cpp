@@ -14,14 +14,14 @@ namespace {
 
 using namespace test;
 
-/// The paper's robot somewhere in a tracker's world, its target off the axis.
+/// The paper's robot at an unknown place in a tracker's world, its target off the axis.
 Chain on_a_stand(Chain chain) {
   chain.base = Frame::from_pose(Pose::from_xyz_rpy({1.2, -2.5, 0.35}, {0.02, -0.03, 2.3}));
   chain.tool.xyz = Vec3(0.03, 0.02, 0.1);
   return chain;
 }
 
-TEST(Verify, TellsAMovedTrackerFromAChangedRobot) {
+TEST(Verify, DistinguishesAMovedTrackerFromAChangedRobot) {
   const Chain truth = on_a_stand(with_table3_errors(er20(0.125)));
   const PoseSet today = measured(truth, paper2_poses(30, tracker), 5);
   EXPECT_EQ(verify(truth, {}, tracker, today)->result, VerificationResult::valid);

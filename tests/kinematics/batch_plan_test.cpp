@@ -40,7 +40,7 @@ TEST(Kernels, SinesAreRightToAFewUlpsForAnglesOfAnySize) {
       0.0, -0.0, 1e-300, 0.125, -0.125, 0.7853981633974483, 1.5707963267948966, 3.141592653589793};
   Rng rng(3);
   for (const double size : {0.1, 3.0, 100.0, 9e4, 1e8})
-    for (int k = 0; k < 41; ++k) angles.push_back(rng.uniform(-size, size));  // no multiple of any number of lanes
+    for (int k = 0; k < 41; ++k) angles.push_back(rng.uniform(-size, size));  // not a multiple of any number of lanes
   for (const batch::Kernels* kernels : all_kernels()) {
     std::vector<double> c(angles.size()), s(angles.size());
     kernels->sines(angles.data(), static_cast<int>(angles.size()), c.data(), s.data());

@@ -157,7 +157,7 @@ TEST(PlanPoses, ExistingPosesCountAndLowerTheExpectedError) {
   for (Eigen::Index i = 0; i < 10; ++i) EXPECT_EQ(alone.joints.col(i), task.candidates.col(alone.candidates[i]));
 }
 
-TEST(PlanPoses, ObservabilityIsThatOfTheSingularValues) {
+TEST(PlanPoses, ObservabilityIndicesAreThoseOfTheSingularValues) {
   PlanTask task = er20_task();
   task.candidates = draw_poses(task.nominal, {}, 100, Rng(9)).value();
   const PosePlan plan = plan_poses(task, {.poses = 20, .starts = 0}, Rng(1)).value();
@@ -168,7 +168,7 @@ TEST(PlanPoses, ObservabilityIsThatOfTheSingularValues) {
   EXPECT_GT(o1, o3 / std::sqrt(20.0));
 }
 
-TEST(PlanPoses, AnImpossibleSpaceIsAnError) {
+TEST(PlanPoses, AnEmptyPoseSpaceIsAnError) {
   PlanTask task = er20_task();
   task.space.lowest = 50.0;
   EXPECT_FALSE(plan_poses(task, {.poses = 5}, Rng(1)).has_value());

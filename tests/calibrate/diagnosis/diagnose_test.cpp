@@ -65,7 +65,7 @@ std::string listed(const std::vector<Finding>& findings) {
   return text;
 }
 
-/// The only finding, of the kind that is expected.
+/// The only finding, which must be of the expected kind.
 Finding only(const CalibrationTask& task, const std::string& kind) {
   const Diagnosis diagnosis = diagnose(task);
   EXPECT_EQ(diagnosis.findings.size(), 1u) << listed(diagnosis.findings);
@@ -74,12 +74,12 @@ Finding only(const CalibrationTask& task, const std::string& kind) {
   return diagnosis.findings.front();
 }
 
-/// Noise level [m] of a fit to treated data: 20 µm or so where all was put right.
+/// Noise level [m] of a fit to corrected data: about 20 µm where everything was corrected.
 double noise_level(const CalibrationTask& corrected_task) {
   return fit_once(corrected_task, corrected_task.data, GeometricParameters{}, {}).value().sigma;
 }
 
-TEST(Diagnosis, HealthySetsHaveNoFinding) {
+TEST(Diagnosis, FaultlessSetsHaveNoFinding) {
   for (const Chain& nominal : {arm6(), ur_like(), scara()})
     for (int seed = 1; seed <= 5; ++seed) {
       const Diagnosis diagnosis = diagnose(measured_robot(nominal, seed, Measured::poses));
@@ -87,7 +87,7 @@ TEST(Diagnosis, HealthySetsHaveNoFinding) {
     }
 }
 
-TEST(Diagnosis, CommandedJointsReplaceReadingsThatWereTakenWhileTheArmMoved) {
+TEST(Diagnosis, CommandedPositionsReplaceJointPositionsRecordedDuringMotion) {
   CalibrationTask task = measured_robot(arm6());
   task.data.commanded = task.data.joints;
   Rng rng(3);
@@ -96,7 +96,7 @@ TEST(Diagnosis, CommandedJointsReplaceReadingsThatWereTakenWhileTheArmMoved) {
   EXPECT_EQ(diagnose(task).corrected_task.data.joints, task.data.commanded);
 }
 
-TEST(Diagnosis, CommandedJointsThatTheArmDidNotReachAreNotUsed) {
+TEST(Diagnosis, CommandedPositionsThatWereNotReachedAreNotUsed) {
   CalibrationTask task = measured_robot(arm6());
   task.data.commanded = task.data.joints;
   Rng rng(3);
@@ -104,7 +104,7 @@ TEST(Diagnosis, CommandedJointsThatTheArmDidNotReachAreNotUsed) {
   EXPECT_TRUE(diagnose(task).findings.empty());
 }
 
-TEST(Diagnosis, RowsInWhichTheArmHadNotComeToRestAreNamed) {
+TEST(Diagnosis, RowsRecordedBeforeTheArmWasAtRestAreListed) {
   CalibrationTask task = measured_robot(arm6());
   task.data.commanded = task.data.joints;
   task.data.commanded.array() += 1e-4;
@@ -121,9 +121,9 @@ PoseSet with_readings_shifted(PoseSet data, int from, int by) {
   return data;
 }
 
-class Shifted : public ::testing::TestWithParam<std::pair<int, int>> {};  // from row, by
+class ShiftedRows : public ::testing::TestWithParam<std::pair<int, int>> {};  // from row, by
 
-TEST_P(Shifted, RowsAreFoundAndPairedAnew) {
+TEST_P(ShiftedRows, AreDetectedAndPairedAgain) {
   CalibrationTask task = measured_robot(arm6());
   const auto [from, by] = GetParam();
   const PoseSet right = task.data;
@@ -136,7 +136,7 @@ TEST_P(Shifted, RowsAreFoundAndPairedAnew) {
     EXPECT_EQ(corrected_task.joints.col(point.row), right.joints.col(point.row)) << point.row;
   EXPECT_EQ(corrected_task.points.size(), right.points.size() - std::abs(by));
 }
-INSTANTIATE_TEST_SUITE_P(Diagnosis, Shifted,
+INSTANTIATE_TEST_SUITE_P(Diagnosis, ShiftedRows,
                          ::testing::Values(std::pair{0, 1}, std::pair{0, -2}, std::pair{0, 7}, std::pair{41, 1},
                                            std::pair{20, -1}),
                          [](const auto& test) {
@@ -144,40 +144,40 @@ INSTANTIATE_TEST_SUITE_P(Diagnosis, Shifted,
                                               test.param.second < 0 ? "minus_" : "", std::abs(test.param.second));
                          });
 
-TEST(Diagnosis, SwappedRowsAreNamedTogether) {
+TEST(Diagnosis, SwappedRowsAreListedTogether) {
   CalibrationTask task = measured_robot(ur_like());
   std::swap(task.data.points[12].position, task.data.points[40].position);
   EXPECT_EQ(only(task, "rows_swapped").rows, (std::vector<int>{12, 40}));
 }
 
-TEST(Diagnosis, CopiedRowsAreNamed) {
+TEST(Diagnosis, CopiedRowsAreListed) {
   CalibrationTask task = measured_robot(arm6());
   task.data.joints.col(31) = task.data.joints.col(5);
   task.data.points[31].position = task.data.points[5].position;
   EXPECT_EQ(only(task, "duplicate_rows").rows, (std::vector<int>{5, 31}));
 }
 
-TEST(Diagnosis, AMeasurementThatWasStoredTwiceIsNamed) {
+TEST(Diagnosis, AMeasurementThatWasStoredTwiceIsListed) {
   CalibrationTask task = measured_robot(arm6());
   task.data.points[21].position = task.data.points[20].position;
   EXPECT_EQ(only(task, "measurement_repeated").rows, (std::vector<int>{20, 21}));
 }
 
-TEST(Diagnosis, APoseThatWasMeasuredAgainIsNoFault) {
+TEST(Diagnosis, ARepeatedPoseIsNoFault) {
   CalibrationTask task = measured_robot(arm6());
   task.data.joints.col(31) = task.data.joints.col(5);
   task.data.points[31].position = task.data.points[5].position + Vec3(8e-6, -5e-6, 3e-6);
   EXPECT_TRUE(diagnose(task).findings.empty());
 }
 
-TEST(Diagnosis, GrossOutliersAreNamed) {
+TEST(Diagnosis, GrossOutliersAreListed) {
   CalibrationTask task = measured_robot(arm6());
   task.data.points[8].position.x() += 0.004;
   task.data.points[33].position.z() -= 0.3;
   EXPECT_EQ(only(task, "gross_outliers").rows, (std::vector<int>{8, 33}));
 }
 
-/// A fault of the file as a whole, which is certain and put right.
+/// A fault of the file as a whole, which is certain and corrected.
 struct Fault {
   std::string name, kind;
   std::function<void(CalibrationTask&)> make;
@@ -202,9 +202,9 @@ std::vector<Fault> faults() {
   for (int k = 0; k < 6; ++k) {
     list.push_back(
         {fmt::format("sign_of_J{}", k + 1), "wrong_sign", [k](CalibrationTask& t) { t.data.joints.row(k) *= -1.0; }});
-    if (k == 0 || k == 5) continue;  // base and tool take these up: no fault
+    if (k == 0 || k == 5) continue;  // absorbed by base and tool: no fault
     for (const int offset : {90, -90, 180})
-      if (offset != 180 || (k != 1 && k != 4))  // there the same as the sign of J1 and of J6
+      if (offset != 180 || (k != 1 && k != 4))  // equivalent to the sign of J1 and of J6
         list.push_back({fmt::format("offset_{}_of_J{}", offset < 0 ? "minus_90" : std::to_string(offset), k + 1),
                         "joint_offset",
                         [k, offset](CalibrationTask& t) { t.data.joints.row(k).array() += offset * degree; }});
@@ -214,7 +214,7 @@ std::vector<Fault> faults() {
 
 class WholeFile : public ::testing::TestWithParam<Fault> {};
 
-TEST_P(WholeFile, FaultIsFoundAloneAndPutRight) {
+TEST_P(WholeFile, FaultIsTheOnlyFindingAndIsCorrected) {
   CalibrationTask task = measured_robot(ur_like(), 2);
   GetParam().make(task);
   const Diagnosis diagnosis = diagnose(task);
@@ -236,7 +236,7 @@ TEST(Diagnosis, TwoWrongSignsAreFoundTogether) {
   EXPECT_LT(noise_level(diagnosis.corrected_task), 5e-5);
 }
 
-TEST(Diagnosis, AMirroredMeasurementIsSaidAndLeftAlone) {
+TEST(Diagnosis, AMirroredMeasurementIsReportedAndNotCorrected) {
   CalibrationTask task = measured_robot(arm6());
   for (PointMeasurement& point : task.data.points) std::swap(point.position.x(), point.position.y());
   EXPECT_FALSE(only(task, "mirrored").applied);
@@ -248,9 +248,9 @@ TEST(Diagnosis, APrismaticJointInMillimetresIsFound) {
   EXPECT_EQ(words::sentence(only(task, "length_unit")), "J3 is in millimetres, but was read as metres");
 }
 
-class Orientations : public ::testing::TestWithParam<int> {};
+class OrientationConventions : public ::testing::TestWithParam<int> {};
 
-TEST_P(Orientations, OfAnotherConventionAreFoundAndPutRight) {
+TEST_P(OrientationConventions, OtherThanTheDocumentedOneAreFoundAndConverted) {
   CalibrationTask task = measured_robot(arm6(), 1, Measured::poses);
   const std::vector<OrientationMeasurement> right = task.data.orientations;
   for (OrientationMeasurement& m : task.data.orientations) {
@@ -264,23 +264,23 @@ TEST_P(Orientations, OfAnotherConventionAreFoundAndPutRight) {
   for (std::size_t i = 0; i < right.size(); ++i)
     EXPECT_NEAR(std::abs(corrected_task.orientations[i].orientation.dot(right[i].orientation)), 1.0, 1e-9);
 }
-INSTANTIATE_TEST_SUITE_P(Diagnosis, Orientations, ::testing::Range(0, 3));
+INSTANTIATE_TEST_SUITE_P(Diagnosis, OrientationConventions, ::testing::Range(0, 3));
 
 /// The joints take up part of what the base does.
-TEST(Diagnosis, ADriftingBaseIsSeenAndItsSizeIsRight) {
+TEST(Diagnosis, ADriftingBaseIsDetectedWithItsSize) {
   CalibrationTask task = measured_robot(ur_like());
   for (PointMeasurement& point : task.data.points) point.position.x() += 0.4e-3 * point.row / 59.0;
   EXPECT_NEAR(only(task, "base_drifts").values.number("distance_m"), 0.4e-3, 0.1e-3);
 }
 
-TEST(Diagnosis, ABaseThatWasPushedALittleIsSeen) {
+TEST(Diagnosis, ASmallMoveOfTheBaseIsDetected) {
   CalibrationTask task = measured_robot(ur_like());
   for (PointMeasurement& point : task.data.points)
     if (point.row >= 30) point.position.y() += 0.3e-3;
   EXPECT_NEAR(only(task, "base_moved").values.number("distance_m"), 0.3e-3, 0.1e-3);
 }
 
-TEST(Diagnosis, ABaseThatWasMovedFarIsSeenWithItsRows) {
+TEST(Diagnosis, ALargeMoveOfTheBaseIsDetectedWithItsRows) {
   CalibrationTask task = measured_robot(arm6());
   for (PointMeasurement& point : task.data.points)
     if (point.row >= 40) point.position += Vec3(0.1, -0.2, 0.05);
@@ -298,7 +298,7 @@ TEST(Diagnosis, AJointThatHardlyMovesIsNamed) {
   EXPECT_EQ(only(task, "joint_hardly_moves").values.text("joint"), "J4");
 }
 
-TEST(Diagnosis, ATargetThatSlippedIsSeenInItsRows) {
+TEST(Diagnosis, ATargetThatSlippedIsDetectedInItsRows) {
   CalibrationTask task = measured_robot(arm6());
   const Chain truth = with_random_errors(task.nominal, {}, Rng(1));
   const Vec3 in_tool(0.1, 0.05, -0.02);
@@ -316,7 +316,7 @@ TEST(Diagnosis, ATargetThatSlippedIsSeenInItsRows) {
   EXPECT_EQ(only(task, "not_rigid").rows, std::vector<int>{14});
 }
 
-TEST(Diagnosis, ASetThatIsTooSmallToJudgeIsLeftAlone) {
+TEST(Diagnosis, ASetThatIsTooSmallIsLeftUnchanged) {
   CalibrationTask task = measured_robot(arm6());
   task.data = select(task.data, {0, 1, 2});
   EXPECT_NO_FATAL_FAILURE(diagnose(task));

@@ -59,7 +59,7 @@ TEST(CirclePointAnalysis, ThePapersSweepsOfJoints12And5GiveBaseAndToolLength) {
   EXPECT_EQ(found->tool_length_source, ToolLengthSource::sweep_radius);
 }
 
-TEST(CirclePointAnalysis, ATargetBesideTheFlangesAxisIsFoundWhereThePapersRadiusIsMisled) {
+TEST(CirclePointAnalysis, ATargetBesideTheFlangesAxisIsFoundWhereThePapersRadiusFails) {
   Chain truth = on_a_stand(er20(0.125));
   truth.tool.xyz = Vec3(0.02, -0.015, 0.1);
   const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1)));
@@ -68,7 +68,7 @@ TEST(CirclePointAnalysis, ATargetBesideTheFlangesAxisIsFoundWhereThePapersRadius
   EXPECT_GT(std::abs(found->tool_length - 0.1), 0.5e-3);
 }
 
-TEST(CirclePointAnalysis, AnyPostureAndAnyTwoAxesWillDo) {
+TEST(CirclePointAnalysis, AnyPostureAndAnyTwoNonParallelAxesSuffice) {
   const Chain truth = on_a_stand(er20(0.125));
   const VectorXd rest = (VectorXd(6) << 0.4, -1.2, 0.3, 0.5, 0.6, -0.2).finished();
   const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {2, 3, 4}, rest, 0.0, Rng(1)));
@@ -76,7 +76,7 @@ TEST(CirclePointAnalysis, AnyPostureAndAnyTwoAxesWillDo) {
   expect_same_frames(found->chain, truth, 1e-8, 1e-8);
 }
 
-TEST(CirclePointAnalysis, AJointThatTurnsBackwardsAndASweepRunBackwardsAreUnderstood) {
+TEST(CirclePointAnalysis, NegativeJointDirectionsAndReversedSweepsAreHandled) {
   Chain truth = on_a_stand(er20(0.125)), nominal = er20(0.125);
   truth.joints[1].gain = nominal.joints[1].gain = -1.0;
   PoseSet data = sweeps(truth, {0, 1, 4}, zero, 0.0, Rng(1));
@@ -89,7 +89,7 @@ TEST(CirclePointAnalysis, AJointThatTurnsBackwardsAndASweepRunBackwardsAreUnders
   }
 }
 
-TEST(CirclePointAnalysis, MarkedSweepsRuleAndAMarkOnTwoJointsIsRefused) {
+TEST(CirclePointAnalysis, MarkedSweepsTakePrecedenceAndAMarkOnTwoJointsIsRefused) {
   const Chain truth = on_a_stand(er20(0.125));
   PoseSet data = sweeps(truth, {0, 1}, zero, 0.0, Rng(1));
   data.sweeps = {"first", "second"};
@@ -102,7 +102,7 @@ TEST(CirclePointAnalysis, MarkedSweepsRuleAndAMarkOnTwoJointsIsRefused) {
   EXPECT_EQ(find_sweeps(data).error().what, "sweep second moves 2 joints; expected one joint alone");
 }
 
-TEST(CirclePointAnalysis, ParallelAxesAloneDoNotMakeABase) {
+TEST(CirclePointAnalysis, ParallelAxesAloneDoNotDetermineTheBase) {
   const Chain truth = on_a_stand(er20(0.125));
   const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {1, 2}, zero, 0.0, Rng(1)));
   ASSERT_FALSE(found);
@@ -125,17 +125,17 @@ TEST(CirclePointAnalysis, StatedUncertaintyIsThatOfRepeatedMeasurements) {
     worst_tilt.push_back(angle_between(circle.axis, true_circle.axis));
   }
   EXPECT_NEAR(standard_deviation(radius), rms(stated_radius), 0.15 * rms(stated_radius));
-  // The tilt has two directions; the stated one is the worse: their root sum of squares lies between 1 and √2 of it.
+  // The tilt has two directions; the larger is stated: their root sum of squares lies between 1 and √2 of it.
   EXPECT_GT(rms(worst_tilt), 0.85 * rms(stated_tilt));
   EXPECT_LT(rms(worst_tilt), 1.15 * std::sqrt(2.0) * rms(stated_tilt));
 }
 
-TEST(CirclePointAnalysis, WithTrackerNoiseTheBaseIsAsGoodAsItsCirclesSay) {
+TEST(CirclePointAnalysis, WithTrackerNoiseTheBaseIsAsAccurateAsStated) {
   const Chain truth = on_a_stand(er20(0.125));
   const auto found = estimate_frames_from_circles(er20(0.125), sweeps(truth, {0, 1, 4}, zero, 10e-6, Rng(3)));
   ASSERT_TRUE(found);
   expect_same_frames(found->chain, truth, 0.2e-3, 1e-4);
-  EXPECT_LT(found->base_differs, 0.3e-3);  // and agrees with the start that calibrate finds
+  EXPECT_LT(found->base_differs, 0.3e-3);  // and agrees with the initial frames of calibrate
 }
 
 }  // namespace

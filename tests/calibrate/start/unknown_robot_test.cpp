@@ -14,7 +14,7 @@ namespace kinfer {
 using namespace calibrate;
 namespace {
 
-/// Frames anywhere, every third joint sliding, gains that are not 1.
+/// Random frames, every third joint prismatic, gains other than 1.
 Chain random_chain(int joints, Rng rng) {
   Chain chain = make_serial_chain(std::vector<JointType>(joints, JointType::revolute));
   for (int i = 0; i < joints; ++i) {
@@ -92,14 +92,14 @@ TEST(DhConversion, CoupledJointsAreNotStraight) {
   EXPECT_FALSE(as_mdh(chain).has_value());
 }
 
-TEST(UnknownRobot, JointTypesAreReadAndNonsenseIsRefused) {
+TEST(UnknownRobot, JointTypesAreParsedAndInvalidTextIsRefused) {
   EXPECT_EQ(parse_joint_types("6R")->size(), 6u);
   EXPECT_EQ(*parse_joint_types("R2PR"), (std::vector<JointType>{JointType::revolute, JointType::prismatic,
                                                                 JointType::prismatic, JointType::revolute}));
   for (const char* wrong : {"", "6", "0R", "RXR", "r", "21R", "R-1P"}) EXPECT_FALSE(parse_joint_types(wrong)) << wrong;
 }
 
-TEST(UnknownRobot, AxesAreSaidInWords) {
+TEST(UnknownRobot, AxesAreDescribedInWords) {
   const std::vector<std::string> sentences = words::axis_sentences(axis_geometry(test::er20()));
   const auto said = [&](const std::string& text) {
     return std::any_of(sentences.begin(), sentences.end(),

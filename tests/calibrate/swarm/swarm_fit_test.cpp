@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-constexpr double d6 = 0.225;  // printed 125 mm and the target's 100 mm: what tables 4 and 5 fit
+constexpr double d6 = 0.225;  // [m] printed 125 mm plus the target's 100 mm, which tables 4 and 5 fit
 
 CalibrationTask noise_free_task() {
   const Chain truth = with_table3_errors(er20(d6));
@@ -51,7 +51,7 @@ TEST(SwarmFit, QpsoComesBelowATenthOfAMillimetre) {
   EXPECT_LT(rms_error(search(task, within(600, QpsoOptions{})).chain, task.data), 0.1e-3);
 }
 
-TEST(SwarmFit, TheBoxIsAMillimetreAndADegreeOrSoManyTolerances) {
+TEST(SwarmFit, TheBoundsAreAMillimetreAndADegreeOrAMultipleOfTheTolerances) {
   const CalibrationTask task = noise_free_task();
   const PreparedFit prepared = prepare_fit(task, task.data, PaperDhParameters{}).value();
   const Bounds paper = make_search_box(prepared, {});
@@ -79,7 +79,7 @@ TEST(SwarmFit, TheNetOfOneCalibrationShortensTheNext) {
   ASSERT_GT((*runs)[3].iterations, 0);
   const int cold = (*runs)[0].iterations < 0 ? 1000 : (*runs)[0].iterations;
   EXPECT_LT((*runs)[3].iterations, 0.6 * cold);
-  EXPECT_LE((*runs)[2].iterations, 1);  // and memory alone needs no net
+  EXPECT_LE((*runs)[2].iterations, 1);  // and the warm start alone needs no net
 }
 
 TEST(SwarmFit, ANetForOtherParametersIsRefused) {
@@ -156,7 +156,7 @@ TEST(PopulationPrior, CovarianceIsThatOfThePopulationWithTheTolerancesAsOneMoreR
 }
 
 TEST(PopulationPrior, ErrorsThatAreCorrelatedInThePopulationDetermineEachOther) {
-  // In every sister a2 and a3 are wrong by the same amount: the sum that a few poses see best gives both.
+  // In every other robot a2 and a3 are wrong by the same amount: their sum, which few poses determine best, gives both.
   const Chain nominal = er20(d6);
   const auto robot = [&](double error) {
     Chain chain = nominal;
@@ -187,7 +187,7 @@ TEST(PopulationPrior, FewPosesAndAPopulationBeatFewPosesAlone) {
     return mean(point_errors(fit_once(task, task.data, PaperDhParameters{}, {}).value().chain, unseen));
   };
   const double alone = error();
-  // Sisters: the same machining errors, and ±30 µm, ±0.003° of their own.
+  // Robots of one type: common machining errors, and individual ones of ±30 µm, ±0.003°.
   const ParameterSet set = paper_dh_parameters(truth, {}).value();
   for (int i = 0; i < 4; ++i) {
     Rng rng = Rng(7).stream(i);

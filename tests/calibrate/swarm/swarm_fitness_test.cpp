@@ -28,7 +28,7 @@ MatrixXd candidates(const ParameterSet& set, const Chain& chain, Rng rng) {
   return x.unaryExpr([&](double v) { return v + 0.01 * rng.normal(); });
 }
 
-/// The slow version: every candidate's chain, every pose walked from the base.
+/// Reference: every candidate's chain, every pose by forward kinematics from the base.
 double slow_sum(const Chain& nominal, const ParameterSet& set, const PoseSet& data, ConstVectorRef x) {
   double sum = 0.0;
   for (const double error : point_errors(unpack(set, nominal, x), data)) sum += error * error;
@@ -47,13 +47,13 @@ void expect_equal_to_slow_version(const Chain& chain, const ParameterSet& set) {
 class AnyChain : public ::testing::TestWithParam<Chain> {};
 INSTANTIATE_TEST_SUITE_P(SwarmFitness, AnyChain, ::testing::ValuesIn(laws::examples()));
 
-TEST_P(AnyChain, CarryingPointsInwardsGivesTheSumThatPosesGive) {
+TEST_P(AnyChain, TransformingPointsInwardsGivesTheSumThatPosesGive) {
   Chain chain = GetParam();
   chain.targets = {{"second", Vec3(0.01, 0.2, -0.03)}};
   expect_equal_to_slow_version(chain, geometric_parameters(chain, random_points(chain, Rng(1)), {}));
 }
 
-TEST_P(AnyChain, GainsAndCompliancesThatChangeAreFollowedToo) {
+TEST_P(AnyChain, CandidatesMayDifferInGainsAndCompliances) {
   expect_equal_to_slow_version(GetParam(), all_parameters(GetParam(), {}));
 }
 

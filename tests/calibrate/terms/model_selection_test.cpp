@@ -43,7 +43,7 @@ double error_on(const Chain& found, const Chain& truth, PoseSet rows) {
   return mean(point_errors(found, rows));
 }
 
-TEST(ModelSelection, NothingButGeometryIsTakenWhereThereIsNothingElse) {
+TEST(ModelSelection, GeometryAloneIsSelectedForAPurelyGeometricRobot) {
   const Chain truth = with_random_errors(nominal_robot(), {}, Rng(1));
   for (const int seed : {1, 2, 3}) {
     const Calibration c = calibrated(nominal_robot(), measured(truth, paper2_poses(60, tracker), seed));
@@ -55,7 +55,7 @@ TEST(ModelSelection, NothingButGeometryIsTakenWhereThereIsNothingElse) {
   }
 }
 
-TEST(ModelSelection, ComplianceShowsByThePayload) {
+TEST(ModelSelection, ThePayloadMakesComplianceObservable) {
   Chain nominal = nominal_robot();
   nominal.masses = {{1, Vec3(0.4, 0, 0.1), 60.0}, {2, Vec3(0.1, 0, 0.1), 40.0}};
   Chain truth = with_random_errors(nominal, {}, Rng(2));
@@ -72,7 +72,7 @@ TEST(ModelSelection, ComplianceShowsByThePayload) {
   EXPECT_LT(error_on(c.estimate.chain, truth, unseen), 25e-6);
 }
 
-TEST(ModelSelection, MeasuredTorquesBacklashGearsAndWarmthAreFoundEach) {
+TEST(ModelSelection, TorqueComplianceBacklashGearHarmonicsAndThermalExpansionAreEachFound) {
   const Chain nominal = nominal_robot();
   const Chain geometry = with_random_errors(nominal, {}, Rng(4));
   const auto expect_found = [&](Term term, Chain truth, auto prepare) {
@@ -109,7 +109,7 @@ TEST(ModelSelection, AParallelogramsCouplingIsCorrectedAndAnUnlistedOneIsFound) 
   nominal.joints[2].couplings = {{1, -1.0}};
   Chain truth = with_random_errors(nominal, {}, Rng(4));
   truth.joints[2].couplings = {{1, -1.003}};
-  truth.joints[5].couplings = {{4, 0.0125}};  // a hollow wrist: one tooth of eighty
+  truth.joints[5].couplings = {{4, 0.0125}};  // a hollow wrist: one tooth of eighty couples into joint 6
   PoseSet data = readings(truth, 80);
   measure_points(data, truth, tracker, Rng(5));
   const Calibration c = calibrated(nominal, data);
@@ -127,7 +127,7 @@ TEST(ModelSelection, AParallelogramsCouplingIsCorrectedAndAnUnlistedOneIsFound) 
   EXPECT_LT(error_on(c.estimate.chain, truth, unseen), 25e-6);
 }
 
-TEST(ModelSelection, TheSpectrumShowsAMotorsLineOfUnknownOrder) {
+TEST(ModelSelection, TheSpectrumShowsAMotorHarmonicOfUnknownOrder) {
   Chain truth = with_random_errors(nominal_robot(), {}, Rng(8));
   truth.joints[1].harmonics = {{80.0, 1.5e-4, 1e-4}};
   PoseSet data = readings(truth, 400);
@@ -138,7 +138,7 @@ TEST(ModelSelection, TheSpectrumShowsAMotorsLineOfUnknownOrder) {
   EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const Harmonic& h) { return std::abs(h.order - 80) < 0.05; }));
 }
 
-TEST(ModelSelection, ANamedModelIsTakenAsItIsNamed) {
+TEST(ModelSelection, ANamedModelIsUsedAsGiven) {
   const Chain truth = with_random_errors(nominal_robot(), {}, Rng(1));
   const PoseSet data = measured(truth, paper2_poses(40, tracker));
   const Calibration c = calibrated(nominal_robot(), data, {.model = FixedModel{{Term::gear_harmonics}}});

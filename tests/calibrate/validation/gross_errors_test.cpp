@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Held-out figures count the same rows for every model: those whose measurement is not wrong.
+// Held-out figures use the same rows for every model: those without a gross measurement error.
 #include "kinfer/calibrate/validation/gross_errors.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-/// 80 poses of a robot with gears that geometry cannot describe; rows 5, 20 and 60 lie 3 mm off.
+/// 80 poses of a robot with gear harmonics that geometry cannot describe; rows 5, 20 and 60 are 3 mm off.
 PoseSet with_three_wrong_rows() {
   Chain truth = with_random_errors(nominal_robot(), {}, Rng(4));
   truth.joints[1].harmonics = {{1.0, 1.5e-4, 0.0}, {2.0, 1e-4, 1.5e-4}};
@@ -30,7 +30,7 @@ Calibration of_half(const PoseSet& data, const ModelChoice& model, int seed) {
       .value();
 }
 
-TEST(GrossErrors, ThatAreHeldOutAreListedAndLeftOutForEveryModelAlike) {
+TEST(GrossErrors, HeldOutOnesAreListedAndExcludedForEveryModelAlike) {
   const PoseSet data = with_three_wrong_rows();
   for (const int seed : {1, 2, 3}) {
     const Calibration plain = of_half(data, FixedModel{}, seed), chosen = of_half(data, CrossValidatedModel{}, seed);
@@ -55,14 +55,14 @@ TEST(GrossErrors, ThatAreHeldOutAreListedAndLeftOutForEveryModelAlike) {
   }
 }
 
-TEST(GrossErrors, TheVerdictNamesThemAndWhatTheWorstWouldBe) {
+TEST(GrossErrors, TheVerdictNamesThemAndTheWorstErrorWithThem) {
   const Calibration c = of_half(with_three_wrong_rows(), FixedModel{}, 1);
   ASSERT_FALSE(c.gross_error_rows.empty());
   EXPECT_NE(words::verdict(c).find(std::to_string(c.gross_error_rows.front())), std::string::npos) << words::verdict(c);
   EXPECT_NE(words::verdict(c).find("at worst with"), std::string::npos) << words::verdict(c);
 }
 
-TEST(GrossErrors, RowsHeldOutThatAreAllWrongAreJudgedAllTheSame) {
+TEST(GrossErrors, HeldOutRowsThatAreAllWrongAreEvaluatedAllTheSame) {
   const Chain truth = with_random_errors(nominal_robot(), {}, Rng(1));
   PoseSet data = measured(truth, paper2_poses(60, tracker));
   data.set.assign(60, SplitLabel::train);
@@ -77,7 +77,7 @@ TEST(GrossErrors, RowsHeldOutThatAreAllWrongAreJudgedAllTheSame) {
   EXPECT_EQ(c.usability, Usability::do_not_use);
 }
 
-TEST(GrossErrors, AModelThatThrowsARowOutOfPlaceIsNotExcused) {
+TEST(GrossErrors, ARowThatOnlyOneModelMissesIsNotExcluded) {
   const Chain truth = with_random_errors(nominal_robot(), {}, Rng(1));
   const PoseSet data = measured(truth, paper2_poses(40, tracker));
   Estimate geometry, rich;
