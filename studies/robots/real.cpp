@@ -69,7 +69,7 @@ void ur10(const std::string& folder) {
   for (const ModelChoice& model : {ModelChoice{FixedModel{}}, ModelChoice{CrossValidatedModel{}}}) {
     const Calibration all = calibrate_robot({chain, {}, std::nullopt, b}, {.model = model}, Rng(1)).value();
     const Verification there = verify(all.estimate.chain, {}, std::nullopt, c).value();
-    print_row("UR10 fitted on B, tried on C with base and tool refitted", only_told, 1e3 * there.frames_refitted.mean,
+    print_row("UR10 fitted on B, tried on C with base and tool refitted", no_target, 1e3 * there.frames_refitted.mean,
               selected_model(all.model_selection));
   }
 }

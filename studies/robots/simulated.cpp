@@ -175,8 +175,8 @@ void half_of_the_joints() {
   const PoseSimulation like = paper2_poses(1, tracker);
   Chain frames_refitted = nominal;
   frames_refitted.base = truth.base;
-  print_row("three of six joints move, on poses where all do", unseen_error(frames_refitted, truth, like),
-            unseen_error(c.estimate.chain, truth, like),
+  print_row("three of six joints move, on poses where all do", held_out_error(frames_refitted, truth, like),
+            held_out_error(c.estimate.chain, truth, like),
             fmt::format("{} groups of undetermined parameters", c.estimate.identifiability.undetermined.size()));
 }
 

@@ -95,7 +95,7 @@ OrderOutcome evaluate_order(const Case& c) {
   const RecordedMotion& motion = ordered->motion;
   const SegmentTree& tree = ordered->tree;
   OrderOutcome outcome{.is_correct = motion.segments[tree.root].name == log.truth.root, .margin = tree.margin};
-  const auto types = joint_types(motion, tree);
+  const auto types = identify::joint_types(motion, tree);
   for (std::size_t i = 1; i < tree.order.size(); ++i) {
     const std::string &child = motion.segments[tree.order[i]].name,
                       &parent = motion.segments[*tree.parent[tree.order[i]]].name;

@@ -189,10 +189,10 @@ TEST(Smoother, FindsTheBiasAndTheScaleOfTheGyro) {
   for (std::size_t k = 0; k < 3; ++k)
     for (float& w : c.sensor.angular_velocity.axis[k])
       w = static_cast<float>(static_cast<double>(w) / 1.003 + bias[static_cast<Eigen::Index>(k)]);
-  const SmoothedOrientation found = smooth_orientation(c.sensor, c.time);
+  const FilterOutput found = smooth_orientation(c.sensor, c.time);
   ASSERT_EQ(found.world_q_sensor.size(), c.time.size());
-  ASSERT_EQ(found.bias.size(), found.update_time.size());
-  EXPECT_TRUE(std::is_sorted(found.update_time.begin(), found.update_time.end()));
+  ASSERT_EQ(found.bias.size(), found.bias_time.size());
+  EXPECT_TRUE(std::is_sorted(found.bias_time.begin(), found.bias_time.end()));
   EXPECT_LT((found.bias[found.bias.size() / 2] - bias).norm(), 0.02 * degree);
   EXPECT_NEAR(found.scale.trace() / 3, 0.003, 0.0015) << "a prior of 0.002 pulls it towards zero";
 }
@@ -210,7 +210,6 @@ TEST(PaperFilter, StartsWithTheFirstUsableSampleAndACopyGoesOnAlone) {
   EXPECT_GT(filter.orientation().angularDistance(copy.orientation()), 0.1);
   for (std::size_t row = 1000; row < 1500; ++row) copy.add(sample(c.sensor, c.time, row));
   EXPECT_EQ(filter.orientation().coeffs(), copy.orientation().coeffs());
-  EXPECT_LT(filter.bias().norm(), 1.0 * degree) << "a perfect gyro";
 }
 
 TEST(Statistics, OfASensorAreTheFiguresOfItsGrade) {
