@@ -44,7 +44,7 @@ TEST_F(InspectPoses, AHeaderWithTheWrongUnitIsFoundAndCalibrateReportsTheCorrect
   EXPECT_TRUE(findings[0]["applied"]);
   const Outcome run = kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out cal");
   EXPECT_EQ(run.code, 0) << run.out;
-  EXPECT_NE(run.out.find("put right before the fit"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("corrected before the fit"), std::string::npos) << run.out;
   const json evidence = json::parse(slurp(in("cal/evidence.json")));
   EXPECT_EQ(evidence["findings"][0]["kind"], "degrees_for_radians");
   EXPECT_LT(evidence["after"]["holdout"]["mean"], 6e-5);

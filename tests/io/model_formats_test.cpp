@@ -57,7 +57,7 @@ TEST_F(ModelFormats, WhatAFormatWritesItReadsWithAllJointTypesAndLimits) {
       for (const Joint& original : robot.chain.joints)
         if (joint.name == original.name) {
           EXPECT_EQ(traits(joint.type).urdf, traits(original.type).urdf) << format.name << " " << joint.name;
-          EXPECT_EQ(joint.lower, original.lower) << format.name << " " << joint.name;
+          EXPECT_DOUBLE_EQ(joint.lower, original.lower) << format.name << " " << joint.name;
         }
   }
 }

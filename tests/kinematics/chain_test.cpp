@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kinfer/base/constants.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
 
@@ -70,13 +71,13 @@ TEST(Chain, TheTorqueOfAHorizontalArmIsTheMomentOfItsMasses) {
   chain.joints = {laws::revolute<DhLink>(0.6, 90, 0), laws::revolute<DhLink>(0.4, 0, 0)};
   chain.joints[1].parent = 0;
   chain.masses = {{1, {-0.1, 0, 0}, 2.0}};  // 0.3 m beyond joint 2
-  // Joint 1 is vertical and has no torque; joint 2 lifts: 9.81 (2 · 0.3 + 5 · 0.4) against its sense.
+  // Joint 1 is vertical and has no torque; joint 2 lifts: g (2 · 0.3 + 5 · 0.4) against its sense.
   const VectorXd torques = gravity_torques(chain, VectorXd::Zero(2), {.payload = 5.0});
   EXPECT_NEAR(torques[0], 0.0, 1e-14);
-  EXPECT_NEAR(torques[1], -9.81 * (2.0 * 0.3 + 5.0 * 0.4), 1e-12);
+  EXPECT_NEAR(torques[1], -standard_gravity * (2.0 * 0.3 + 5.0 * 0.4), 1e-12);
   chain.joints[1].compliance = 1e-4;
   const Pose sagged = forward(chain, VectorXd::Zero(2), {.payload = 5.0});
-  EXPECT_NEAR(sagged.position.z(), -0.4 * std::sin(1e-4 * 9.81 * 2.6), 1e-15);
+  EXPECT_NEAR(sagged.position.z(), -0.4 * std::sin(1e-4 * standard_gravity * 2.6), 1e-15);
 }
 
 }  // namespace

@@ -65,20 +65,31 @@ const Json& member(const Json& object, const char* key) {
   return found == object.end() ? nothing : *found;
 }
 
-/// The first clause is the headline; what follows a semicolon is shown below it.
+/// Colour of the verdict and the words beside it where the sentence has none of its own.
+struct Chip {
+  const char* kind;
+  const char* words;
+};
+
+Chip chip_of(const Json& evidence) {
+  const std::string usability =
+      string_at(evidence, "usability", evidence.value("use", true) ? "use_with_care" : "do_not_use");
+  if (usability == "do_not_use") return {"bad", "Do not use"};
+  return usability == "use" ? Chip{"good", "Use it"} : Chip{"fair", "Use with care"};
+}
+
+/// The first clause is the headline; what follows a semicolon is shown below it. Only the layout looks for them.
 std::string verdict_block(const Json& evidence, const std::string& what) {
   const std::string verdict = string_at(evidence, "verdict");
-  const bool use = evidence.value("use", true);
   const auto colon = verdict.find(": ");
-  const bool judged = evidence.contains("use") && colon != std::string::npos;
-  const std::string chip = judged ? verdict.substr(0, colon) : "",
-                    sentence = judged ? verdict.substr(colon + 2) : verdict;
-  const char* kind = !use ? "bad" : chip == "Use it" ? "good" : "fair";
+  const Chip usability = chip_of(evidence);
+  const std::string chip = colon != std::string::npos ? verdict.substr(0, colon) : usability.words,
+                    sentence = colon != std::string::npos ? verdict.substr(colon + 2) : verdict;
   const auto semicolon = sentence.find("; ");
   const std::string added = semicolon == std::string::npos ? "" : as_sentence(sentence.substr(semicolon + 2));
   return fmt::format(
       "<p class=\"kicker\">{}</p><div id=\"verdict\"><h1>{}{}</h1>{}</div>", what,
-      chip.empty() ? "" : fmt::format("<span class=\"chip {}\">{}</span> ", kind, html::escape(chip)),
+      fmt::format("<span class=\"chip {}\">{}</span> ", usability.kind, html::escape(chip)),
       html::prose(as_sentence(sentence.substr(0, semicolon))),
       added.empty() ? "" : fmt::format("<p>{}{}</p>", html::prose(added), added.ends_with('.') ? "" : "."));
 }
