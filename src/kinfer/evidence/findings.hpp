@@ -65,8 +65,6 @@ struct Finding {
   std::vector<int> rows{};   ///< from 0; empty: the whole set
   std::vector<int> lines{};  ///< of these rows in the file; from 1
   FactValues values{};
-  std::string sentence{};              ///< what was observed
-  std::string suggestion{};            ///< what the user can do about it; may be empty
   bool applied = false;                ///< certain, and corrected before the fit
   std::vector<Finding> equivalents{};  ///< other faults that would explain the data equally well
 };
