@@ -22,11 +22,10 @@ MachineMotion prescribed_motion(const Machine& machine, double duration, double 
     const std::vector<JointState> now = states(motion.time[row]);
     KINFER_EXPECT(static_cast<Eigen::Index>(now.size()) == motion.q.rows());
     for (std::size_t k = 0; k < now.size(); ++k) {
-      const JointState& state = now[k];
-      const auto reading = static_cast<Eigen::Index>(k);
-      motion.q(reading, column) = state.q;
-      motion.qd(reading, column) = state.qd;
-      motion.qdd(reading, column) = state.qdd;
+      const auto joint = static_cast<Eigen::Index>(k);
+      motion.q(joint, column) = now[k].q;
+      motion.qd(joint, column) = now[k].qd;
+      motion.qdd(joint, column) = now[k].qdd;
     }
     const auto frames =
         joint_motions(machine.chain, motion.q.col(column), motion.qd.col(column), motion.qdd.col(column));

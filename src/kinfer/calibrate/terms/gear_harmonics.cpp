@@ -18,7 +18,7 @@ struct Sample {
   double weight = 0.0, projection = 0.0;
 };
 
-std::vector<Sample> samples_of(const Estimate& fitted, const PoseSet& rows, int joint, int reading) {
+std::vector<Sample> samples_of(const Estimate& fitted, const PoseSet& rows, int joint, int joint_row) {
   std::set<int> wrong;
   for (const Outlier& outlier : fitted.outliers) wrong.insert(outlier.row);
   std::vector<Sample> samples;
@@ -26,7 +26,7 @@ std::vector<Sample> samples_of(const Estimate& fitted, const PoseSet& rows, int 
   angle.parameters.push_back(parameter_at(fitted.chain, {Owner::joint, joint, Field::gain}, 1.0));
   const EvaluatedPoses at = evaluate_poses(fitted.chain, angle, rows, Derivative::yes);
   for (const PointMeasurement& point : rows.points) {
-    const double q = rows.joints(reading, point.row);
+    const double q = rows.joints(joint_row, point.row);
     if (wrong.contains(point.row) || point.target >= 0 || std::abs(q) < 1e-6) continue;
     // The Jacobian column of the gain is the column of the joint angle times q.
     const Vec3 residual = (point.position - at.pose[point.row].position) / fitted.sigma;

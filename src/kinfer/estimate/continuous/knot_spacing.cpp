@@ -26,7 +26,7 @@ constexpr Index least_rows = block_nodes + 2;  // samples per interval: some red
 /// Measurements of one sensor in one window: [angular velocity, specific force], one sample per row; NaN if invalid.
 struct Window {
   std::vector<double> time;
-  MatrixXd readings;
+  MatrixXd measurements;
   double activity = 0.0;  ///< mean square angular velocity [rad²/s²]
 };
 
@@ -38,7 +38,7 @@ Window window_of(const InsSensor& sensor, std::span<const double> time, std::siz
   for (Index i = 0; i < rows; ++i) {
     const InsSample s = sample(sensor, time, first + static_cast<std::size_t>(i));
     if (!s.has_angular_velocity || s.angular_velocity_clipped || !s.has_acceleration) continue;
-    window.readings.row(i) << s.angular_velocity.transpose(), s.acceleration.transpose();
+    window.measurements.row(i) << s.angular_velocity.transpose(), s.acceleration.transpose();
     window.activity += s.angular_velocity.squaredNorm() / static_cast<double>(rows);
   }
   return window;
@@ -65,16 +65,16 @@ using Parts = std::array<std::vector<double>, 2>;
 void add_residuals(const Window& window, double knots, Parts& parts) {
   const double length = window.time.back() - window.time.front();
   const SplineGrid grid{window.time.front(), knots, std::max<Index>(1, static_cast<Index>(std::ceil(length / knots)))};
-  const MatrixXd spline = fit_spline(grid, window.time, window.readings);
+  const MatrixXd spline = fit_spline(grid, window.time, window.measurements);
   const auto count = static_cast<std::size_t>(std::ceil(length / part_length)) + 1;
   std::array<std::vector<double>, 2> squares{std::vector<double>(count), std::vector<double>(count)};
   std::vector<double> terms(count);
   double rows = 0.0;
   for (std::size_t i = 0; i < window.time.size(); ++i) {
-    const auto reading = window.readings.row(static_cast<Index>(i));
-    if (!reading.allFinite()) continue;
+    const auto measurement = window.measurements.row(static_cast<Index>(i));
+    if (!measurement.allFinite()) continue;
     const auto part = static_cast<std::size_t>((window.time[i] - grid.begin) / part_length);
-    const VectorXd left = reading.transpose() - spline_value(grid, spline, window.time[i]);
+    const VectorXd left = measurement.transpose() - spline_value(grid, spline, window.time[i]);
     squares[0][part] += left.head<3>().squaredNorm();
     squares[1][part] += left.tail<3>().squaredNorm();
     terms[part] += 3.0;

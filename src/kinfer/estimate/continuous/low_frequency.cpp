@@ -107,17 +107,17 @@ double gaussian_width(double cutoff) {
   return std::sqrt(std::numbers::ln2) / (2.0 * std::numbers::pi * cutoff);
 }
 
-MatrixXd low_frequency_motion(ConstMatrixRef band, const SplineGrid& grid, double cutoff) {
+MatrixXd low_frequency_motion(ConstMatrixRef coefficients, const SplineGrid& grid, double cutoff) {
   // Filtering the coefficients filters the spline: it is a sum of the same basis function shifted by whole periods.
   const double width = gaussian_width(cutoff) / grid.period;
   const auto half = static_cast<Index>(std::ceil(kernel_reach * width));
-  MatrixXd result(band.rows(), band.cols());
-  for (Index k = 0; k < band.cols(); ++k) {
-    VectorXd sum = VectorXd::Zero(band.rows());
+  MatrixXd result(coefficients.rows(), coefficients.cols());
+  for (Index k = 0; k < coefficients.cols(); ++k) {
+    VectorXd sum = VectorXd::Zero(coefficients.rows());
     double weights = 0.0;
-    for (Index i = std::max<Index>(0, k - half); i <= std::min(band.cols() - 1, k + half); ++i) {
+    for (Index i = std::max<Index>(0, k - half); i <= std::min(coefficients.cols() - 1, k + half); ++i) {
       const double w = weight(static_cast<double>(i - k), width);
-      sum += w * band.col(i);
+      sum += w * coefficients.col(i);
       weights += w;
     }
     result.col(k) = sum / weights;

@@ -18,7 +18,7 @@ namespace kinfer {
 double gaussian_width(double cutoff);
 
 /// L x: every spline dimension of the motion; at the ends the kernel is truncated and renormalised.
-MatrixXd low_frequency_motion(ConstMatrixRef band, const SplineGrid& grid, double cutoff);
+MatrixXd low_frequency_motion(ConstMatrixRef coefficients, const SplineGrid& grid, double cutoff);
 
 /// y' for gyroscopes and accelerometers, sample by sample; faulty samples and magnetometers are not changed. `x` is the
 /// full motion on `problem`'s grid. Sensors are in the order of the problem.

@@ -39,15 +39,15 @@ double sd_across(const std::array<double, 2>& sd) {
 
 }  // namespace
 
-JointEstimate joint_estimate(const std::string& parent, const std::string& child, const GeometryEstimate& hinge) {
+JointEstimate joint_estimate(const std::string& parent, const std::string& child, const GeometryEstimate& estimate) {
   JointEstimate joint{.parent = parent, .child = child};
-  joint.axis_in_parent = hinge.geometry.axis_in_parent;
-  joint.axis_in_child = hinge.geometry.axis_in_child;
-  joint.point_in_parent = hinge.geometry.point_in_parent;
-  joint.point_in_child = hinge.geometry.point_in_child;
-  joint.sd = hinge.precision.sd;
-  joint.unobservable_in_parent = hinge.precision.unobservable_in_parent;
-  joint.unobservable_in_child = hinge.precision.unobservable_in_child;
+  joint.axis_in_parent = estimate.geometry.axis_in_parent;
+  joint.axis_in_child = estimate.geometry.axis_in_child;
+  joint.point_in_parent = estimate.geometry.point_in_parent;
+  joint.point_in_child = estimate.geometry.point_in_child;
+  joint.sd = estimate.precision.sd;
+  joint.unobservable_in_parent = estimate.precision.unobservable_in_parent;
+  joint.unobservable_in_child = estimate.precision.unobservable_in_child;
   return joint;
 }
 
@@ -78,9 +78,9 @@ std::vector<DhNumbers> joint_dh_rows(EstimatedJointType type, const JointGeometr
   return dh_rows_through(geometry.point_in_parent, joint_axes(type, geometry), geometry.home);
 }
 
-std::vector<DhRowEstimate> canonical_dh_rows(const JointEstimate& joint, const GeometryEstimate& hinge) {
-  const std::vector<DhNumbers> numbers = joint_dh_rows(joint.type, hinge.geometry);
-  const std::vector<DhNumbers>& sd = hinge.precision.canonical_sd;
+std::vector<DhRowEstimate> canonical_dh_rows(const JointEstimate& joint, const GeometryEstimate& estimate) {
+  const std::vector<DhNumbers> numbers = joint_dh_rows(joint.type, estimate.geometry);
+  const std::vector<DhNumbers>& sd = estimate.precision.canonical_sd;
   const std::size_t axes = numbers.size() - 2;
   const auto variable = [&](std::size_t row) {
     if (joint.type == EstimatedJointType::rigid || row == 0 || row > axes) return std::string();

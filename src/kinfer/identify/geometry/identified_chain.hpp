@@ -13,7 +13,7 @@ struct GeometryEstimate {
   JointPrecision precision;
 };
 
-JointEstimate joint_estimate(const std::string& parent, const std::string& child, const GeometryEstimate& hinge);
+JointEstimate joint_estimate(const std::string& parent, const std::string& child, const GeometryEstimate& estimate);
 
 /// One row per leaf; its variables are named after the signals.
 std::vector<DhRowEstimate> leaf_dh_rows(const std::string& segment, std::span<const DhLeaf> leaves,
@@ -27,7 +27,7 @@ std::vector<Vec3> joint_axes(EstimatedJointType type, const JointGeometry& geome
 std::vector<DhNumbers> joint_dh_rows(EstimatedJointType type, const JointGeometry& geometry);
 
 /// The joint's rows with standard deviations. Its variable is named "parent-child"; several are "parent-child 1", ...
-std::vector<DhRowEstimate> canonical_dh_rows(const JointEstimate& joint, const GeometryEstimate& hinge);
+std::vector<DhRowEstimate> canonical_dh_rows(const JointEstimate& joint, const GeometryEstimate& estimate);
 
 /// One for each pair of consecutive joints.
 std::vector<LinkEstimate> link_estimates(const std::vector<JointEstimate>& joints);

@@ -15,17 +15,17 @@ namespace {
 constexpr double zero_tolerance = 1e-9;  // [rad] or [m]; below it, a parameter counts as 0
 
 /// Unit vectors that all rotations map onto each other, R b = a: the smallest singular direction of [R, -1].
-void fit_axis_directions(JointGeometry& hinge, const std::vector<Pose>& poses) {
+void fit_axis_directions(JointGeometry& revolute, const std::vector<Pose>& poses) {
   MatrixXd system(3 * static_cast<Eigen::Index>(poses.size()), 6);
   for (std::size_t i = 0; i < poses.size(); ++i)
     system.middleRows<3>(3 * static_cast<Eigen::Index>(i)) << poses[i].rotation, -Mat3::Identity();
   const VectorXd direction = right_svd(system).v.col(5);
-  hinge.axis_in_child = direction.head<3>().normalized();
-  hinge.axis_in_parent = direction.tail<3>().normalized();
+  revolute.axis_in_child = direction.head<3>().normalized();
+  revolute.axis_in_parent = direction.tail<3>().normalized();
 }
 
 /// Points that all poses map onto each other, R c + t = p; then the ones on the axis nearest to the child's origin.
-void fit_axis_points(JointGeometry& hinge, const std::vector<Pose>& poses) {
+void fit_axis_points(JointGeometry& revolute, const std::vector<Pose>& poses) {
   MatrixXd system(3 * static_cast<Eigen::Index>(poses.size()), 6);
   VectorXd right(system.rows());
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -33,22 +33,22 @@ void fit_axis_points(JointGeometry& hinge, const std::vector<Pose>& poses) {
     right.segment<3>(3 * static_cast<Eigen::Index>(i)) = -poses[i].position;
   }
   const VectorXd points = solve_least_squares(system, right, 1e-6);  // the undetermined shift along the axis is 0
-  const double along = hinge.axis_in_child.dot(points.head<3>());
-  hinge.point_in_child = points.head<3>() - along * hinge.axis_in_child;
-  hinge.point_in_parent = points.tail<3>() - along * hinge.axis_in_parent;
+  const double along = revolute.axis_in_child.dot(points.head<3>());
+  revolute.point_in_child = points.head<3>() - along * revolute.axis_in_child;
+  revolute.point_in_parent = points.tail<3>() - along * revolute.axis_in_parent;
 }
 
 /// Orients the axis so that the joint angle increases with the signals.
-void orient_axes(JointGeometry& hinge, const std::vector<Pose>& poses, const std::vector<SignalRow>& signals) {
+void orient_axes(JointGeometry& revolute, const std::vector<Pose>& poses, const std::vector<SignalRow>& signals) {
   double product = 0.0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     double sum = 0.0;
     for (const double angle : signals[i].angle) sum += angle;
-    product += sum * hinge.axis_in_parent.dot(log_so3(poses[i].rotation * hinge.home.rotation.transpose()));
+    product += sum * revolute.axis_in_parent.dot(log_so3(poses[i].rotation * revolute.home.rotation.transpose()));
   }
   if (product >= 0.0) return;
-  hinge.axis_in_parent = -hinge.axis_in_parent;
-  hinge.axis_in_child = -hinge.axis_in_child;
+  revolute.axis_in_parent = -revolute.axis_in_parent;
+  revolute.axis_in_child = -revolute.axis_in_child;
 }
 
 bool is_zero(double number) {
@@ -106,17 +106,18 @@ JointGeometry fit_revolute_geometry(std::span<const DhLeaf> leaves, const std::v
   KINFER_EXPECT(signals.size() >= 3);
   std::vector<Pose> poses;
   for (const SignalRow& row : signals) poses.push_back(transform(leaves, row.angle));
-  JointGeometry hinge;
-  hinge.home = transform(leaves, std::vector<double>(signals.front().angle.size(), 0.0));
-  fit_axis_directions(hinge, poses);
-  fit_axis_points(hinge, poses);
-  orient_axes(hinge, poses, signals);
-  return hinge;
+  JointGeometry revolute;
+  revolute.home = transform(leaves, std::vector<double>(signals.front().angle.size(), 0.0));
+  fit_axis_directions(revolute, poses);
+  fit_axis_points(revolute, poses);
+  orient_axes(revolute, poses, signals);
+  return revolute;
 }
 
-Pose pose_at(const JointGeometry& hinge, double angle) {
-  const Mat3 turn = exp_so3(angle * hinge.axis_in_parent);
-  return {turn * hinge.home.rotation, hinge.point_in_parent + turn * (hinge.home.position - hinge.point_in_parent)};
+Pose pose_at(const JointGeometry& revolute, double angle) {
+  const Mat3 turn = exp_so3(angle * revolute.axis_in_parent);
+  return {turn * revolute.home.rotation,
+          revolute.point_in_parent + turn * (revolute.home.position - revolute.point_in_parent)};
 }
 
 Pose transform(const DhNumbers& row) {
@@ -159,8 +160,8 @@ std::vector<DhNumbers> dh_rows_through(const Vec3& point, std::span<const Vec3> 
   return rows;
 }
 
-std::array<DhNumbers, 3> canonical_dh_rows(const JointGeometry& hinge) {
-  const auto rows = dh_rows_through(hinge.point_in_parent, std::span(&hinge.axis_in_parent, 1), hinge.home);
+std::array<DhNumbers, 3> canonical_dh_rows(const JointGeometry& revolute) {
+  const auto rows = dh_rows_through(revolute.point_in_parent, std::span(&revolute.axis_in_parent, 1), revolute.home);
   return {rows[0], rows[1], rows[2]};
 }
 

@@ -23,7 +23,7 @@ struct JointGeometry {
 JointGeometry fit_revolute_geometry(std::span<const DhLeaf> leaves, const std::vector<SignalRow>& signals);
 
 /// parent_T_child at the joint angle `angle` [rad].
-Pose pose_at(const JointGeometry& hinge, double angle);
+Pose pose_at(const JointGeometry& revolute, double angle);
 
 /// RotZ(theta) TransZ(d) TransX(a) RotX(alpha) RotY(beta)
 Pose transform(const DhNumbers& row);
@@ -39,7 +39,7 @@ std::vector<DhNumbers> dh_rows_through(const Vec3& point, std::span<const Vec3> 
 
 /// The ten parameters of a revolute joint between two frames as canonical DH: one row from the parent to the axis; one
 /// from the axis to the child's z, to whose theta the joint angle is added; theta and d along the child's z.
-std::array<DhNumbers, 3> canonical_dh_rows(const JointGeometry& hinge);
+std::array<DhNumbers, 3> canonical_dh_rows(const JointGeometry& revolute);
 
 /// The same product with fewer leaves, where adjacent ones can be merged exactly: parameters that are 0 allow the ones
 /// beside them to be added (paper 1, table 5 to table 6).

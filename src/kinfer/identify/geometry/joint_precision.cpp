@@ -30,22 +30,22 @@ struct SplitRevolute {
   Pose before, after;
 };
 
-SplitRevolute split_at_axis(const JointGeometry& hinge) {
+SplitRevolute split_at_axis(const JointGeometry& revolute) {
   Mat3 axes;
-  axes.col(2) = hinge.axis_in_parent;
-  axes.col(0) = any_perpendicular(hinge.axis_in_parent);
+  axes.col(2) = revolute.axis_in_parent;
+  axes.col(0) = any_perpendicular(revolute.axis_in_parent);
   axes.col(1) = axes.col(2).cross(axes.col(0));
-  const Pose before{axes, hinge.point_in_parent};
-  return {before, before.inverse() * hinge.home};
+  const Pose before{axes, revolute.point_in_parent};
+  return {before, before.inverse() * revolute.home};
 }
 
-SplitRevolute perturbed(const SplitRevolute& hinge, const RevoluteStep& numbers) {
+SplitRevolute perturbed(const SplitRevolute& revolute, const RevoluteStep& numbers) {
   PoseIncrement of_parent = PoseIncrement::Zero(), of_child = PoseIncrement::Zero();
   for (std::size_t k = 0; k < parent_motions.size(); ++k)
     of_parent[parent_motions[k]] = numbers[static_cast<Eigen::Index>(k)];
   for (std::size_t k = 0; k < child_motions.size(); ++k)
     of_child[child_motions[k]] = numbers[static_cast<Eigen::Index>(4 + k)];
-  return {hinge.before * small_motion(of_parent), small_motion(of_child) * hinge.after};
+  return {revolute.before * small_motion(of_parent), small_motion(of_child) * revolute.after};
 }
 
 FrameState propagate_by(FrameState state, const Pose& pose) {
@@ -56,10 +56,10 @@ FrameState propagate_by(FrameState state, const Pose& pose) {
   return state;
 }
 
-FrameState predict(const SplitRevolute& hinge, const FrameState& parent, const SignalRow& angle) {
+FrameState predict(const SplitRevolute& revolute, const FrameState& parent, const SignalRow& angle) {
   const DhLeaf turn{.theta_signal = 0};
-  return propagate_by(propagate(propagate_by(parent, hinge.before), std::span<const DhLeaf>(&turn, 1), angle),
-                      hinge.after);
+  return propagate_by(propagate(propagate_by(parent, revolute.before), std::span<const DhLeaf>(&turn, 1), angle),
+                      revolute.after);
 }
 
 FrameResidual residual_of(const FrameState& a, const FrameState& b) {
@@ -97,15 +97,15 @@ std::vector<Vec3> unobservable_levers(const std::vector<FrameState>& states, con
   return hidden;
 }
 
-JointGeometry geometry_of(const SplitRevolute& hinge) {
-  const Pose child_T_axis = hinge.after.inverse();
+JointGeometry geometry_of(const SplitRevolute& revolute) {
+  const Pose child_T_axis = revolute.after.inverse();
   JointGeometry geometry;
-  geometry.home = hinge.before * hinge.after;
-  geometry.axis_in_parent = hinge.before.rotation.col(2);
+  geometry.home = revolute.before * revolute.after;
+  geometry.axis_in_parent = revolute.before.rotation.col(2);
   geometry.axis_in_child = child_T_axis.rotation.col(2);
   const double along = geometry.axis_in_child.dot(child_T_axis.position);
   geometry.point_in_child = child_T_axis.position - along * geometry.axis_in_child;
-  geometry.point_in_parent = hinge.before.position - along * geometry.axis_in_parent;
+  geometry.point_in_parent = revolute.before.position - along * geometry.axis_in_parent;
   return geometry;
 }
 
@@ -130,11 +130,11 @@ std::array<DhNumbers, 3> canonical_row_sd(const SplitRevolute& base, const Matri
 
 }  // namespace
 
-JointPrecision revolute_precision(const JointGeometry& hinge, const std::vector<FrameState>& parent,
+JointPrecision revolute_precision(const JointGeometry& revolute, const std::vector<FrameState>& parent,
                                   const std::vector<FrameState>& child, const JointSignal& angle,
                                   const std::vector<std::size_t>& rows) {
   constexpr double step = 1e-6;  // [rad], [m]
-  const SplitRevolute base = split_at_axis(hinge);
+  const SplitRevolute base = split_at_axis(revolute);
   std::vector<FrameResidual> residuals;
   for (const std::size_t row : rows)
     residuals.push_back(residual_of(predict(base, parent[row], signals_at({&angle, 1}, row)), child[row]));

@@ -19,7 +19,7 @@ struct JointPrecision {
 };
 
 /// `angle`: joint angle at each row, with its derivatives. `rows`: those that were fitted.
-JointPrecision revolute_precision(const JointGeometry& hinge, const std::vector<FrameState>& parent,
+JointPrecision revolute_precision(const JointGeometry& revolute, const std::vector<FrameState>& parent,
                                   const std::vector<FrameState>& child, const JointSignal& angle,
                                   const std::vector<std::size_t>& rows);
 

@@ -49,8 +49,8 @@ double axis_deviation_of(std::span<const Mat3> rotations, const AxisPair& axes) 
   return std::sqrt(square);
 }
 
-double revolute_position(const InsBody& hinge, const Mat3& rotation) {
-  const Mat3 rotation_about_axis = hinge.parent_R_axis.transpose() * rotation * hinge.child_R_axis;
+double revolute_position(const InsBody& revolute, const Mat3& rotation) {
+  const Mat3 rotation_about_axis = revolute.parent_R_axis.transpose() * rotation * revolute.child_R_axis;
   return std::atan2(rotation_about_axis(1, 0) - rotation_about_axis(0, 1),
                     rotation_about_axis(0, 0) + rotation_about_axis(1, 1));
 }
@@ -62,34 +62,34 @@ Mat3 rotated_point_covariance(const Vec3& point, double variance) {
 
 }  // namespace
 
-MeanRevolute fit_mean_revolute(const InsBody& ball, std::span<const Mat3> rotations, ConstMatrixRef points,
+MeanRevolute fit_mean_revolute(const InsBody& spherical, std::span<const Mat3> rotations, ConstMatrixRef points,
                                double misalignment) {
   const AxisPair axes = mean_axes(rotations);
   const Mat3 a = frame_with_z_along(axes.in_parent), b = frame_with_z_along(axes.in_child);
-  MeanRevolute hinge{revolute_body(ball.parent, ball.sensor, a, b), 0.0, axis_deviation_of(rotations, axes),
-                     MatrixXd::Zero(10, 10)};
-  hinge.body.point_in_parent = ball.point_in_parent;
-  hinge.body.point_in_child = ball.point_in_child;
-  hinge.zero = revolute_position(hinge.body, rotations.front());
+  MeanRevolute revolute{revolute_body(spherical.parent, spherical.sensor, a, b), 0.0,
+                        axis_deviation_of(rotations, axes), MatrixXd::Zero(10, 10)};
+  revolute.body.point_in_parent = spherical.point_in_parent;
+  revolute.body.point_in_child = spherical.point_in_child;
+  revolute.zero = revolute_position(revolute.body, rotations.front());
   // A rotation about x moves the axis along −y, one about y along x.
   const auto in_parent = axis_variance(rotations, a, axes.in_child, true),
              in_child = axis_variance(rotations, b, axes.in_parent, false);
-  hinge.covariance.diagonal().head<4>() << in_parent[1], in_parent[0], in_child[1], in_child[0];
-  hinge.covariance.diagonal().head<4>().array() += misalignment * misalignment;
-  hinge.covariance.bottomRightCorner<6, 6>() = points;
+  revolute.covariance.diagonal().head<4>() << in_parent[1], in_parent[0], in_child[1], in_child[0];
+  revolute.covariance.diagonal().head<4>().array() += misalignment * misalignment;
+  revolute.covariance.bottomRightCorner<6, 6>() = points;
   // The same rotation of the sensor relative to its segment also moves the joint's point in the sensor.
-  hinge.covariance.block<3, 3>(4, 4) +=
-      rotated_point_covariance(ball.point_in_parent, 0.5 * (in_parent[0] + in_parent[1]));
-  hinge.covariance.block<3, 3>(7, 7) +=
-      rotated_point_covariance(ball.point_in_child, 0.5 * (in_child[0] + in_child[1]));
-  return hinge;
+  revolute.covariance.block<3, 3>(4, 4) +=
+      rotated_point_covariance(spherical.point_in_parent, 0.5 * (in_parent[0] + in_parent[1]));
+  revolute.covariance.block<3, 3>(7, 7) +=
+      rotated_point_covariance(spherical.point_in_child, 0.5 * (in_child[0] + in_child[1]));
+  return revolute;
 }
 
-MatrixXd revolute_trajectory(const MeanRevolute& hinge, std::span<const Mat3> rotations) {
+MatrixXd revolute_trajectory(const MeanRevolute& revolute, std::span<const Mat3> rotations) {
   MatrixXd trajectory(1, static_cast<Index>(rotations.size()));
   double before = 0.0;
   for (std::size_t i = 0; i < rotations.size(); ++i) {
-    const double position = revolute_position(hinge.body, rotations[i]) - hinge.zero;
+    const double position = revolute_position(revolute.body, rotations[i]) - revolute.zero;
     before += std::remainder(position - before, 2.0 * std::numbers::pi);
     trajectory(0, static_cast<Index>(i)) = before;
   }
@@ -97,21 +97,21 @@ MatrixXd revolute_trajectory(const MeanRevolute& hinge, std::span<const Mat3> ro
 }
 
 void relax_to_spherical(InsUnknowns& x, const InsLayout& layout, std::size_t body) {
-  InsBody& hinge = x.bodies[body];
+  InsBody& revolute = x.bodies[body];
   // exp(φ) home = A Rz(q) Bᵀ with home = A Rz(middle) Bᵀ: φ = (q − middle) a.
   const VectorXd position = x.spline_coefficients.row(layout.spline_dimension[body]);
   const double middle = 0.5 * (position.minCoeff() + position.maxCoeff());
-  InsBody ball =
-      spherical_body(hinge.parent, hinge.sensor, hinge.parent_R_axis * rot_z(middle) * hinge.child_R_axis.transpose());
-  ball.point_in_parent = hinge.point_in_parent;
-  ball.point_in_child = hinge.point_in_child;
+  InsBody spherical = spherical_body(revolute.parent, revolute.sensor,
+                                     revolute.parent_R_axis * rot_z(middle) * revolute.child_R_axis.transpose());
+  spherical.point_in_parent = revolute.point_in_parent;
+  spherical.point_in_child = revolute.point_in_child;
   const Index at = layout.spline_dimension[body], after = x.spline_coefficients.rows() - at - 1;
-  MatrixXd band(x.spline_coefficients.rows() + 2, x.spline_coefficients.cols());
-  band.topRows(at) = x.spline_coefficients.topRows(at);
-  band.middleRows<3>(at) = hinge.parent_R_axis.col(2) * (position.array() - middle).matrix().transpose();
-  band.bottomRows(after) = x.spline_coefficients.bottomRows(after);
-  hinge = ball;
-  x.spline_coefficients = std::move(band);
+  MatrixXd coefficients(x.spline_coefficients.rows() + 2, x.spline_coefficients.cols());
+  coefficients.topRows(at) = x.spline_coefficients.topRows(at);
+  coefficients.middleRows<3>(at) = revolute.parent_R_axis.col(2) * (position.array() - middle).matrix().transpose();
+  coefficients.bottomRows(after) = x.spline_coefficients.bottomRows(after);
+  revolute = spherical;
+  x.spline_coefficients = std::move(coefficients);
 }
 
 }  // namespace kinfer::identify

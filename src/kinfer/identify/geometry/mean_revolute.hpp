@@ -20,11 +20,11 @@ struct MeanRevolute {
 /// `rotations`: parent_R_child at evenly spaced times, the first at the begin of the recording. `points`: 6 x 6
 /// covariance of the spherical joint's centre in the parent and in the child. `misalignment` [rad]: of the sensors'
 /// own axes.
-MeanRevolute fit_mean_revolute(const InsBody& ball, std::span<const Mat3> rotations, ConstMatrixRef points,
+MeanRevolute fit_mean_revolute(const InsBody& spherical, std::span<const Mat3> rotations, ConstMatrixRef points,
                                double misalignment);
 
 /// Joint positions at these orientations, relative to `zero`, unwrapped; one row [rad].
-MatrixXd revolute_trajectory(const MeanRevolute& hinge, std::span<const Mat3> rotations);
+MatrixXd revolute_trajectory(const MeanRevolute& revolute, std::span<const Mat3> rotations);
 
 /// Replaces a body's revolute joint by a spherical one with the same motion.
 void relax_to_spherical(InsUnknowns& x, const InsLayout& layout, std::size_t body);

@@ -90,12 +90,12 @@ StructureFitter::StructureFitter(const std::vector<FrameState>& parent, const st
   revolute_chord_ = at.square;
   std::int64_t eighths = 0;
   revolute_screening_ = screening_cost(revolute_structure(), at.leaves, eighths);
-  const StructureFit hinge = fit_all_parameters(revolute_structure(), at.leaves, eighths);
-  revolute_j_ = hinge.j;
+  const StructureFit revolute = fit_all_parameters(revolute_structure(), at.leaves, eighths);
+  revolute_j_ = revolute.j;
   std::array<std::vector<double>, 3> series;
   for (auto& s : series) s.resize(blocks_.size() * block_width, 0.0);
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const FrameLanes state = blocks_[b].propagate(hinge.leaves);
+    const FrameLanes state = blocks_[b].propagate(revolute.leaves);
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t i = 0; i < block_width; ++i)
         series[c][i * blocks_.size() + b] = blocks_[b].acceleration[c][i] - state.acceleration[c][i];

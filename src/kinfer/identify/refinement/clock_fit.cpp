@@ -15,9 +15,9 @@ using Index = Eigen::Index;
 constexpr double clock_offset_sd = 0.01;  // [s] error left by the correlation of angular velocities
 constexpr double clock_drift_sd = 1e-4;   // [s/s] quartz is within 100 ppm
 
-double squared_rotation(const InsMeasurements& readings) {
+double squared_rotation(const InsMeasurements& sensor) {
   double sum = 0.0;
-  for (const InsBlock& block : readings.angular_velocity) sum += double{block.target.squaredNorm()};
+  for (const InsBlock& block : sensor.angular_velocity) sum += double{block.target.squaredNorm()};
   return sum;
 }
 
@@ -45,7 +45,7 @@ class ScopedFreeClocks {
  public:
   explicit ScopedFreeClocks(InsProblem& problem)
       : problem_(problem), prior_(problem.prior), reference_(problem.clock_reference) {
-    for (const InsMeasurements& readings : problem.sensors) noise_.push_back(readings.noise);
+    for (const InsMeasurements& sensor : problem.sensors) noise_.push_back(sensor.noise);
     free_clocks(problem);
   }
   ScopedFreeClocks(const ScopedFreeClocks&) = delete;

@@ -19,36 +19,36 @@ RefinementSetup relaxed_setup(const RefinementFit& fitted, const std::vector<std
 
 /// Decrease of the log residual when a revolute joint is relaxed to a spherical one, the geometry held fixed.
 double relaxation_gain(const RefinementTask& task, const RefinementFit& fitted, std::size_t body) {
-  RefinementFit ball{relaxed_setup(fitted, {body}), {}};
-  ball.fit = fit_motion_only(task, ball.setup);
-  return log_residual(fitted) - log_residual(ball);
+  RefinementFit spherical{relaxed_setup(fitted, {body}), {}};
+  spherical.fit = fit_motion_only(task, spherical.setup);
+  return log_residual(fitted) - log_residual(spherical);
 }
 
 }  // namespace
 
-std::vector<std::size_t> select_joints_to_relax(const std::vector<std::size_t>& hinges,
+std::vector<std::size_t> select_joints_to_relax(const std::vector<std::size_t>& revolute_joints,
                                                 const std::vector<double>& gains) {
   std::vector<std::size_t> to_relax;
-  for (std::size_t i = 0; i < hinges.size(); ++i) {
+  for (std::size_t i = 0; i < revolute_joints.size(); ++i) {
     std::vector<double> others = gains;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     if (gains[i] > min_relaxation_gain && (others.empty() || gains[i] > min_gain_ratio_to_others * median(others)))
-      to_relax.push_back(hinges[i]);
+      to_relax.push_back(revolute_joints[i]);
   }
   return to_relax;
 }
 
 RefinementFit relax_joints(const RefinementTask& task, RefinementFit fitted, const Observer& observer) {
-  std::vector<std::size_t> hinges;
+  std::vector<std::size_t> revolute_joints;
   std::vector<double> gains;
   for (std::size_t b = 1; b < fitted.fit.unknowns.bodies.size(); ++b) {
     if (fitted.fit.unknowns.bodies[b].motion != JointMotion::revolute) continue;
     report_progress(observer, "loose joints",
                     static_cast<double>(b) / static_cast<double>(fitted.fit.unknowns.bodies.size()));
-    hinges.push_back(b);
+    revolute_joints.push_back(b);
     gains.push_back(relaxation_gain(task, fitted, b));
   }
-  const auto to_relax = select_joints_to_relax(hinges, gains);
+  const auto to_relax = select_joints_to_relax(revolute_joints, gains);
   return to_relax.empty() ? fitted : fit_from(task, relaxed_setup(fitted, to_relax));
 }
 

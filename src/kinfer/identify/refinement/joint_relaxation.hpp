@@ -7,9 +7,9 @@
 
 namespace kinfer::identify {
 
-/// Of the bodies `hinges`, those whose relaxation gains significantly more than nothing, and more than that of the
-/// others: what all of them show comes from the mounts. `gains`: decrease of the log residual, one per body.
-std::vector<std::size_t> select_joints_to_relax(const std::vector<std::size_t>& hinges,
+/// Of the bodies `revolute_joints`, those whose relaxation gains significantly more than nothing, and more than that of
+/// the others: what all of them show comes from the mounts. `gains`: decrease of the log residual, one per body.
+std::vector<std::size_t> select_joints_to_relax(const std::vector<std::size_t>& revolute_joints,
                                                 const std::vector<double>& gains);
 
 /// The fit with these joints relaxed; unchanged if there are none.

@@ -158,8 +158,8 @@ LowFrequencyFit fit_low_frequency(const RefinementTask& task, const RefinementFi
         setup.problem.prior.gyroscope_scale = full_bandwidth.setup.problem.prior.gyroscope_scale;
         setup.problem.prior.accelerometer_scale = full_bandwidth.setup.problem.prior.accelerometer_scale;
       });
-  for (const InsMeasurements& readings : full_bandwidth.setup.problem.sensors)
-    low_frequency.noise.push_back(readings.noise);
+  for (const InsMeasurements& sensor : full_bandwidth.setup.problem.sensors)
+    low_frequency.noise.push_back(sensor.noise);
   return low_frequency;
 }
 

@@ -90,9 +90,9 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
   Refinement result;
   result.grade = grade.name;
   result.knot_spacing = knot_spacing;
-  for (const InsMeasurements& readings : fitted.setup.problem.sensors) {
-    result.noise.push_back(readings.noise);
-    result.noise_floor.push_back(readings.noise_floor);
+  for (const InsMeasurements& sensor : fitted.setup.problem.sensors) {
+    result.noise.push_back(sensor.noise);
+    result.noise_floor.push_back(sensor.noise_floor);
   }
   ModelError model_error;
   if (worst_misfit(fitted.setup.problem) > max_rigid_chain_misfit && !clocks_differ(fitted.fit.unknowns)) {

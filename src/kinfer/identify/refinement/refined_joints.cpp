@@ -25,11 +25,11 @@ MatrixXd joint_covariance(const InsCovariance& covariance, const InsLayout& layo
 std::vector<double> initial_joint_positions(const RefinementSetup& setup, const InsFit& fit, std::size_t first,
                                             std::size_t last) {
   const VectorXd all = spline_value(setup.problem.grid, fit.unknowns.spline_coefficients, setup.problem.grid.begin);
-  std::vector<double> readings;
+  std::vector<double> positions;
   for (std::size_t b = first; b <= last; ++b)
     for (Index i = 0; i < std::max<Index>(1, degrees_of_freedom(fit.unknowns.bodies[b].motion)); ++i)
-      readings.push_back(fit.layout.spline_dimension[b] < 0 ? 0.0 : all[fit.layout.spline_dimension[b] + i]);
-  return readings;
+      positions.push_back(fit.layout.spline_dimension[b] < 0 ? 0.0 : all[fit.layout.spline_dimension[b] + i]);
+  return positions;
 }
 
 /// Orientations of a spherical joint in its parent.
@@ -75,19 +75,19 @@ double common_axis_deviation(const RefinementTask& task, const RefinementFit& fi
   for (std::size_t i = 0; i < task.starts.size(); ++i) {
     if (task.starts[i].type != EstimatedJointType::revolute) continue;
     const std::size_t body = fitted.setup.first_body[i];
-    const InsBody& ball = fitted.fit.unknowns.bodies[body];
-    if (ball.motion != JointMotion::spherical) return 0.0;
+    const InsBody& spherical = fitted.fit.unknowns.bodies[body];
+    if (spherical.motion != JointMotion::spherical) return 0.0;
     const auto rotations = spherical_rotations(fitted, body, knot_times(fitted.setup.problem.grid));
-    const double axis_deviation = fit_mean_revolute(ball, rotations, MatrixXd::Zero(6, 6), 0.0).axis_deviation;
+    const double axis_deviation = fit_mean_revolute(spherical, rotations, MatrixXd::Zero(6, 6), 0.0).axis_deviation;
     smallest = smallest > 0.0 ? std::min(smallest, axis_deviation) : axis_deviation;
   }
   return smallest;
 }
 
 /// Adds to a spherical joint's points (6 x 6) that the sensor frames deflect by `angle` [rad] on their segments.
-void add_point_deflection(MatrixXd& covariance, const InsBody& ball, double angle) {
-  covariance.diagonal().head<3>().array() += angle * angle * ball.point_in_parent.squaredNorm();
-  covariance.diagonal().tail<3>().array() += angle * angle * ball.point_in_child.squaredNorm();
+void add_point_deflection(MatrixXd& covariance, const InsBody& spherical, double angle) {
+  covariance.diagonal().head<3>().array() += angle * angle * spherical.point_in_parent.squaredNorm();
+  covariance.diagonal().tail<3>().array() += angle * angle * spherical.point_in_child.squaredNorm();
 }
 
 /// Adds to a joint's axes that the sensor frames deflect by so much [rad] on their segments.
@@ -103,14 +103,14 @@ RefinedJoint relaxed_joint(const RefinementFit& fitted, std::size_t body, ConstM
   const InsProblem& problem = fitted.setup.problem;
   const double misalignment =
       std::hypot(mount_deflection, 0.5 * std::max(problem.prior.gyroscope_scale, problem.prior.accelerometer_scale));
-  const MeanRevolute hinge =
+  const MeanRevolute revolute =
       fit_mean_revolute(fitted.fit.unknowns.bodies[body], spherical_rotations(fitted, body, knot_times(problem.grid)),
                         covariance, misalignment);
   RefinedJoint joint =
-      refined_joint(EstimatedJointType::revolute, {&hinge.body, 1}, {&hinge.zero, 1}, hinge.covariance);
-  joint.axis_deviation = hinge.axis_deviation;
-  joint.estimate.trajectory = revolute_trajectory(hinge, spherical_rotations(fitted, body, trajectory_time));
-  if (joint.solution.geometry.axis_in_parent.dot(hinge.body.parent_R_axis.col(2)) < 0.0)
+      refined_joint(EstimatedJointType::revolute, {&revolute.body, 1}, {&revolute.zero, 1}, revolute.covariance);
+  joint.axis_deviation = revolute.axis_deviation;
+  joint.estimate.trajectory = revolute_trajectory(revolute, spherical_rotations(fitted, body, trajectory_time));
+  if (joint.solution.geometry.axis_in_parent.dot(revolute.body.parent_R_axis.col(2)) < 0.0)
     joint.estimate.trajectory *= -1.0;
   return joint;
 }
@@ -135,14 +135,14 @@ RefinedJoint make_joint(const RefinementTask& task, const RefinementFit& fitted,
   if (start.type == EstimatedJointType::revolute && bodies.front().motion == JointMotion::spherical)
     return relaxed_joint(fitted, first, own, mount_deflection, trajectory_time);
   const SplineGrid& grid = fitted.setup.problem.grid;
-  const MatrixXd band = joint_spline_coefficients(fit, first, last);
+  const MatrixXd coefficients = joint_spline_coefficients(fit, first, last);
   const bool is_spherical = start.type == EstimatedJointType::spherical;
-  const Mat3 turning =
-      is_spherical ? spherical_axes(spherical_rotation_vectors(grid, band, trajectory_time)) : Mat3(Mat3::Identity());
+  const Mat3 turning = is_spherical ? spherical_axes(spherical_rotation_vectors(grid, coefficients, trajectory_time))
+                                    : Mat3(Mat3::Identity());
   RefinedJoint joint =
       refined_joint(start.type, bodies, initial_joint_positions(fitted.setup, fit, first, last), own, turning);
   joint.estimate.trajectory =
-      joint_trajectory(start.type, bodies, joint.solution.geometry, grid, band, trajectory_time);
+      joint_trajectory(start.type, bodies, joint.solution.geometry, grid, coefficients, trajectory_time);
   if (start.type == EstimatedJointType::revolute && joint.estimate.unobservable_in_child.size() == 1)
     joint.estimate.azimuth_unobservable =
         azimuth_sd(fit.layout, fit.unknowns.bodies, covariance.model, last) > max_azimuth_sd;

@@ -12,14 +12,14 @@ using Index = Eigen::Index;
 constexpr double finest_knot_spacing = 0.025;  // [s] knot spacing
 constexpr int low_frequency_iterations = 8;
 
-MatrixXd resample_spline(const SplineGrid& to, const SplineGrid& from, ConstMatrixRef band) {
+MatrixXd resample_spline(const SplineGrid& to, const SplineGrid& from, ConstMatrixRef coefficients) {
   const double step = 0.5 * std::min(to.period, from.period);
   const auto count = static_cast<std::size_t>((from.end() - from.begin) / step);
   std::vector<double> time;
-  MatrixXd values(static_cast<Index>(count) + 1, band.rows());
+  MatrixXd values(static_cast<Index>(count) + 1, coefficients.rows());
   for (std::size_t i = 0; i <= count; ++i) {
     time.push_back(from.begin + step * static_cast<double>(i));
-    values.row(static_cast<Index>(i)) = spline_value(from, band, time.back()).transpose();
+    values.row(static_cast<Index>(i)) = spline_value(from, coefficients, time.back()).transpose();
   }
   return fit_spline(to, time, values);
 }

@@ -99,8 +99,8 @@ void attach_joints(RefinementSetup& setup, const RecordedMotion& motion, const S
     body_of_segment[start.child] = parent;
     setup.last_body.push_back(x.bodies.size() - 1);
     for (const std::vector<double>& values : start.joint_positions) {
-      const Eigen::Map<const VectorXd> reading(values.data(), static_cast<Index>(values.size()));
-      rows.push_back(fit_spline(setup.problem.grid, motion.time, reading));
+      const Eigen::Map<const VectorXd> positions(values.data(), static_cast<Index>(values.size()));
+      rows.push_back(fit_spline(setup.problem.grid, motion.time, positions));
       setup.problem.anchor.push_back(rows.back()(0, 0));
     }
   }

@@ -8,12 +8,12 @@ namespace {
 
 using Index = Eigen::Index;
 
-double spline_dimension_value(const MatrixXd& band, Index spline_dimension, Index interval, const SplineBasis& basis,
-                              Index order) {
+double spline_dimension_value(const MatrixXd& coefficients, Index spline_dimension, Index interval,
+                              const SplineBasis& basis, Index order) {
   double sum = 0.0;
   for (Index i = 0; i < spline_order; ++i)
-    sum +=
-        basis.at[static_cast<std::size_t>(order)][static_cast<std::size_t>(i)] * band(spline_dimension, interval + i);
+    sum += basis.at[static_cast<std::size_t>(order)][static_cast<std::size_t>(i)] *
+           coefficients(spline_dimension, interval + i);
   return sum;
 }
 
@@ -100,7 +100,7 @@ IntervalMotion::IntervalMotion(const InsProblem& problem, const InsLayout& layou
   for (InsPath& path : paths_) {
     if (scope == LinearisationScope::spline_only) path.rotational.clear(), path.translational.clear();
     bodies_.push_back({.state = {},
-                       .band = MatrixXd::Zero(orders * number_of(path.spline_dimensions), 12 * block_nodes),
+                       .by_spline = MatrixXd::Zero(orders * number_of(path.spline_dimensions), 12 * block_nodes),
                        .rotational = MatrixXd::Zero(number_of(path.rotational), 12 * block_nodes),
                        .translational = MatrixXd::Zero(number_of(path.translational), 3 * block_nodes)});
   }
@@ -114,8 +114,8 @@ void IntervalMotion::start_root() {
     for (Index i = 0; i < 3; ++i) {
       const auto column = [&](Index component) { return component * block_nodes + node; };
       if (!problem_.root_at_rest) {
-        root.band(orders * i, column(i)) = root.band(orders * i + 1, column(3 + i)) = 1.0;
-        root.band(orders * (3 + i), column(6 + i)) = 1.0;
+        root.by_spline(orders * i, column(i)) = root.by_spline(orders * i + 1, column(3 + i)) = 1.0;
+        root.by_spline(orders * (3 + i), column(6 + i)) = 1.0;
       }
       if (root.translational.size() > 0) root.translational(i, column(i)) = 1.0;
       if (root.rotational.size() > 0) root.rotational(i, column(9 + i)) = 1.0;
@@ -128,7 +128,7 @@ void IntervalMotion::move_to(Index interval) {
   for (std::size_t b = 1; b < bodies_.size(); ++b) {
     BodyMotion& body = bodies_[b];
     const BodyMotion& parent = bodies_[static_cast<std::size_t>(x_.bodies[b].parent)];
-    body.band.setZero();
+    body.by_spline.setZero();
     body.rotational.setZero();
     body.translational.setZero();
     for (std::size_t node = 0; node < block_nodes; ++node) {
@@ -150,11 +150,11 @@ void IntervalMotion::propagate_from_parent(std::size_t b, Index node) {
     add_product(at_node(from, rows, first, components, node), by_components, 1.0,
                 at_node(to, rows, first, components, node));
   };
-  propagate(parent.band, body.band, 0, by.topLeftCorner<9, 9>());
+  propagate(parent.by_spline, body.by_spline, 0, by.topLeftCorner<9, 9>());
   propagate(parent.rotational, body.rotational, 0, by.topLeftCorner<9, 9>());
   propagate(parent.translational, body.translational, 0, by.block<3, 3>(6, 6));
   if (!layout_.has_field) return;
-  propagate(parent.band, body.band, 9, by.bottomRightCorner<3, 3>());
+  propagate(parent.by_spline, body.by_spline, 9, by.bottomRightCorner<3, 3>());
   propagate(parent.rotational, body.rotational, 9, by.bottomRightCorner<3, 3>());
 }
 
@@ -164,7 +164,7 @@ void IntervalMotion::append_own_derivatives(std::size_t b, Index node) {
   BodyMotion& body = bodies_[b];
   const Index read = orders * degrees_of_freedom(x_.bodies[b].motion), turns = x_.bodies[b].turns(),
               points = x_.bodies[b].unknowns() - turns;
-  at_node(body.band, body.band.rows(), 0, 12, node).bottomRows(read) = own.leftCols(read).transpose();
+  at_node(body.by_spline, body.by_spline.rows(), 0, 12, node).bottomRows(read) = own.leftCols(read).transpose();
   if (scope_ == LinearisationScope::spline_only) return;
   at_node(body.rotational, body.rotational.rows(), 0, 12, node).bottomRows(turns) =
       own.middleCols(read, turns).transpose();

@@ -32,7 +32,7 @@ constexpr Eigen::Index derivative_orders = 3;  // states depend on time derivati
 /// component · nodes + node belongs to a state's component (in the order of the members of InsState) at a node.
 struct BodyMotion {
   std::array<InsState, block_nodes> state;
-  MatrixXd band;           ///< dimensions · orders x 12 · nodes: by each spline dimension's time derivatives
+  MatrixXd by_spline;      ///< dimensions · orders x 12 · nodes: by each spline dimension's time derivatives
   MatrixXd rotational;     ///< unknowns x 12·nodes
   MatrixXd translational;  ///< unknowns x 3·nodes: of the specific force
 };

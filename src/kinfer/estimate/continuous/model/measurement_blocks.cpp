@@ -25,7 +25,7 @@ Row lagrange(double u) {
   return row;
 }
 
-std::optional<Vec3> reading(const InsSample& s, InsInstrument instrument) {
+std::optional<Vec3> measured_vector(const InsSample& s, InsInstrument instrument) {
   switch (instrument) {
     case InsInstrument::gyroscope:
       return s.has_angular_velocity && !s.angular_velocity_clipped ? std::optional<Vec3>(s.angular_velocity)
@@ -85,7 +85,7 @@ std::vector<InsBlock> accumulate_blocks(const InsSensor& sensor, std::span<const
     if (k < 0 || k >= grid.intervals) continue;
     if (k != at) close();
     at = k;
-    if (const auto value = reading(sample(sensor, time, row), instrument))
+    if (const auto value = measured_vector(sample(sensor, time, row), instrument))
       accumulate(open, lagrange(where - static_cast<double>(k)), *value);
   }
   close();

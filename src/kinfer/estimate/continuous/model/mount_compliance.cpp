@@ -28,12 +28,12 @@ std::vector<InsMountLoad> mount_loads(const InsSensor& sensor, std::span<const d
   for (std::size_t i = 0; i < force.size(); ++i) values.row(static_cast<Index>(i)) = force[i].transpose();
   const Eigen::RowVector3d mean = values.colwise().mean();
   values.rowwise() -= mean;
-  const MatrixXd band = fit_spline(grid, when, values);
+  const MatrixXd coefficients = fit_spline(grid, when, values);
   for (std::size_t k = 0; k < mount_load.size(); ++k)
     for (std::size_t node = 0; node < block_nodes; ++node) {
       const double at = grid.begin + grid.period * (static_cast<double>(k) + block_nodes_u()[node]);
-      put(mount_load[k].force, node, spline_value(grid, band, at));
-      put(mount_load[k].change, node, spline_value(grid, band, at, 1));
+      put(mount_load[k].force, node, spline_value(grid, coefficients, at));
+      put(mount_load[k].change, node, spline_value(grid, coefficients, at, 1));
     }
   return mount_load;
 }

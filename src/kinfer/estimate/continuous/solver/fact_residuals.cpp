@@ -31,24 +31,25 @@ struct Snapshot {
   std::vector<BodyKinematics> body;
 };
 
-double reading(const MatrixXd& band, Index spline_dimension, Index interval, const SplineBasis& basis) {
+double spline_dimension_value(const MatrixXd& coefficients, Index spline_dimension, Index interval,
+                              const SplineBasis& basis) {
   double sum = 0.0;
   for (Index i = 0; i < spline_order; ++i)
-    sum += basis.at[0][static_cast<std::size_t>(i)] * band(spline_dimension, interval + i);
+    sum += basis.at[0][static_cast<std::size_t>(i)] * coefficients(spline_dimension, interval + i);
   return sum;
 }
 
-Mat3 joint_rotation(JointMotion motion, const Vec3& reading) {
-  if (motion == JointMotion::revolute) return rot_z(reading.x());
-  if (motion == JointMotion::spherical) return exp_so3(reading);
+Mat3 joint_rotation(JointMotion motion, const Vec3& position) {
+  if (motion == JointMotion::revolute) return rot_z(position.x());
+  if (motion == JointMotion::spherical) return exp_so3(position);
   return Mat3::Identity();
 }
 
 /// Rotation axes of the joint's degrees of freedom in the joint's frame, a column each.
-Mat3 rotation_axes(JointMotion motion, const Vec3& reading) {
+Mat3 rotation_axes(JointMotion motion, const Vec3& position) {
   Mat3 axes = Mat3::Zero();
   if (motion == JointMotion::revolute) axes.col(0) = Vec3::UnitZ();
-  if (motion == JointMotion::spherical) axes = right_jacobian(-reading);  // the left Jacobian
+  if (motion == JointMotion::spherical) axes = right_jacobian(-position);  // the left Jacobian
   return axes;
 }
 
@@ -60,7 +61,7 @@ Snapshot snapshot(const InsProblem& problem, const InsLayout& layout, const InsU
     const BodyKinematics& parent = s.body[static_cast<std::size_t>(body.parent)];
     Vec3 vector = Vec3::Zero();
     for (Index i = 0; i < degrees_of_freedom(body.motion); ++i)
-      vector[i] = reading(x.spline_coefficients, layout.spline_dimension[b] + i, interval, s.basis);
+      vector[i] = spline_dimension_value(x.spline_coefficients, layout.spline_dimension[b] + i, interval, s.basis);
     const double q = vector.x();
     BodyKinematics placed{.parent = parent.rotation, .before = parent.rotation * body.parent_R_axis};
     placed.after = placed.before * joint_rotation(body.motion, vector);

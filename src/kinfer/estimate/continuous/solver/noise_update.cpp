@@ -80,7 +80,7 @@ void estimate_magnetometer_noise(std::vector<InsNoise>& all, const InsProblem& p
 /// Of gyroscopes and accelerometers; magnetometers unchanged.
 std::vector<InsNoise> estimated_noise(const InsProblem& problem, const InsCost& cost) {
   std::vector<InsNoise> estimated;
-  for (const InsMeasurements& readings : problem.sensors) estimated.push_back(readings.noise);
+  for (const InsMeasurements& sensor : problem.sensors) estimated.push_back(sensor.noise);
   estimate_instrument_noise(estimated, problem, cost, &InsNoise::angular_velocity, &SensorFit::angular_velocity);
   estimate_instrument_noise(estimated, problem, cost, &InsNoise::force, &SensorFit::force);
   return estimated;

@@ -136,7 +136,7 @@ Mat3 SensorLinearisation::scaled(const InstrumentColumns& use) const {
 void SensorLinearisation::put_spline_columns(const WeightedBlock& w) {
   constexpr Index derivatives = block_nodes * derivative_orders;
   SensorRows& part = parts_[w.use.part];
-  const MatrixXd& by_channels = motion_.body(body_).band;
+  const MatrixXd& by_spline = motion_.body(body_).by_spline;
   const Index spline_dimensions = number_of(part.band) / spline_order, first = w.use.instrument.state_row * block_nodes;
   std::array<Eigen::Matrix<double, spline_order, derivatives>, block_nodes> coefficients;  // for each row of the block
   for (Index i = 0; i < w.rows; ++i)
@@ -150,8 +150,8 @@ void SensorLinearisation::put_spline_columns(const WeightedBlock& w) {
     Eigen::Matrix<double, derivatives, 3> shown;  // by the dimension's time derivatives at the nodes
     for (Index k = 0; k < derivatives; ++k) {
       const Index node = k / derivative_orders, row = c * derivative_orders + k % derivative_orders;
-      const Vec3 truth(by_channels(row, first + node), by_channels(row, first + block_nodes + node),
-                       by_channels(row, first + 2 * block_nodes + node));
+      const Vec3 truth(by_spline(row, first + node), by_spline(row, first + block_nodes + node),
+                       by_spline(row, first + 2 * block_nodes + node));
       shown.row(k) = (w.by_state[static_cast<std::size_t>(node)] * truth).transpose();
     }
     for (Index i = 0; i < w.rows; ++i) {

@@ -20,7 +20,7 @@ constexpr double anchor_sd = 3.0;  // [rad] or [m]
 
 }  // namespace
 
-void each_spline_prior(const InsProblem& problem, const InsLayout& layout, ConstMatrixRef band, Index interval,
+void each_spline_prior(const InsProblem& problem, const InsLayout& layout, ConstMatrixRef coefficients, Index interval,
                        const std::function<void(const SplinePriorTerm&)>& visit) {
   const bool last = interval + 1 == problem.grid.intervals;
   for (Index spline_dimension = 0; spline_dimension < layout.spline_dimensions; ++spline_dimension) {
@@ -29,12 +29,12 @@ void each_spline_prior(const InsProblem& problem, const InsLayout& layout, Const
       SplineWeights weights = SplineWeights::Zero();
       weights.segment<4>(shift) << -1.0, 3.0, -3.0, 1.0;
       visit({spline_dimension, weights,
-             weights.dot(band.row(spline_dimension).segment<spline_order>(interval).transpose()), sd});
+             weights.dot(coefficients.row(spline_dimension).segment<spline_order>(interval).transpose()), sd});
     }
     const Index joint = spline_dimension - (problem.root_at_rest ? 0 : 6);
     if (interval == 0 && joint >= 0) {
       const double start = problem.anchor.empty() ? 0.0 : problem.anchor[static_cast<std::size_t>(joint)];
-      visit({spline_dimension, SplineWeights::Unit(0), band(spline_dimension, 0) - start, anchor_sd});
+      visit({spline_dimension, SplineWeights::Unit(0), coefficients(spline_dimension, 0) - start, anchor_sd});
     }
   }
 }

@@ -17,7 +17,7 @@ struct SplinePriorTerm {
 };
 
 /// Calls visit(term) for each prior residual that belongs to the interval.
-void each_spline_prior(const InsProblem& problem, const InsLayout& layout, ConstMatrixRef band, Eigen::Index interval,
-                       const std::function<void(const SplinePriorTerm&)>& visit);
+void each_spline_prior(const InsProblem& problem, const InsLayout& layout, ConstMatrixRef coefficients,
+                       Eigen::Index interval, const std::function<void(const SplinePriorTerm&)>& visit);
 
 }  // namespace kinfer
