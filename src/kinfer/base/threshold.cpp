@@ -5,6 +5,8 @@
 
 #include <map>
 
+#include "kinfer/base/expect.hpp"
+
 namespace kinfer {
 namespace {
 
@@ -23,11 +25,16 @@ double& vary_threshold(std::string_view name, double value) {
   return registry().try_emplace(std::string(name), Varied{value, value}).first->second.value;
 }
 
-bool scale_threshold(std::string_view name, double factor) {
+void scale_threshold(std::string_view name, double factor) {
   const auto found = registry().find(name);
-  if (found == registry().end()) return false;
+  KINFER_EXPECT(found != registry().end());
   found->second.value = factor * found->second.standard;
-  return true;
+}
+
+double threshold_value(std::string_view name) {
+  const auto found = registry().find(name);
+  KINFER_EXPECT(found != registry().end());
+  return found->second.value;
 }
 
 std::vector<std::string> threshold_names() {

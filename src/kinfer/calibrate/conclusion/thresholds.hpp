@@ -4,10 +4,12 @@
 
 #include <Eigen/Core>
 
+#include "kinfer/base/threshold.hpp"
+
 namespace kinfer::calibrate::thresholds {
 
 /// [1] held-out rms error over the expected one: above it, some effect is not modelled. Larger accepts worse models.
-inline constexpr double expectation_ratio = 3.0;
+KINFER_THRESHOLD(calibrate, expectation_ratio, 3.0);
 /// [1] rms error of the final fit on its rows over that of the validation fits on held-out rows: above it, the final
 /// fit converged to another solution than the validated one.
 inline constexpr double same_solution_ratio = 1.5;

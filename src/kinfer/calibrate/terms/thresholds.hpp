@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include "kinfer/base/threshold.hpp"
+
 namespace kinfer::calibrate::thresholds {
 
 // ---- priors of the terms, about zero or the file's value; larger accepts larger errors ----
@@ -17,13 +19,13 @@ inline constexpr double min_temperature_range = 1.0;
 
 // ---- acceptance of a term by its held-out errors ----
 /// [standard errors] of the mean reduction; larger accepts fewer terms. Not corrected for the number of terms tested.
-inline constexpr double min_significance = 2.5;
+KINFER_THRESHOLD(calibrate, min_significance, 2.5);
 /// [1] of the mean error; larger accepts fewer terms.
-inline constexpr double min_reduction = 0.01;
+KINFER_THRESHOLD(calibrate, min_reduction, 0.01);
 /// [1] of the largest error before, or of the geometric model; larger lets single poses pay for the others.
-inline constexpr double worst_error_ratio = 1.0;
+KINFER_THRESHOLD(calibrate, worst_error_ratio, 1.0);
 /// [1] of the mean error beyond the fitted poses; larger accepts terms that only interpolate.
-inline constexpr double extrapolation_ratio = 1.02;
+KINFER_THRESHOLD(calibrate, extrapolation_ratio, 1.02);
 /// Rows left to fit on each side of an extrapolation split; with fewer, extrapolation is not tested.
 inline constexpr int min_extrapolation_rows = 15;
 
@@ -35,7 +37,7 @@ inline constexpr double order_step = 0.25;
 inline constexpr double integer_order_ratio = 0.97;     ///< [1] of the improvement: above it, the order is rounded
 inline constexpr std::size_t min_spectrum_points = 60;  ///< too few below that for a spectrum
 /// [Δχ²] above the expected maximum of pure noise; larger finds fewer lines.
-inline constexpr double spectral_margin = 20.0;
+KINFER_THRESHOLD(calibrate, spectral_margin, 20.0);
 inline constexpr int max_spectral_lines = 12;
 
 // ---- approximate masses: only their ratios matter ----

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include "kinfer/base/threshold.hpp"
+
 namespace kinfer::calibrate::thresholds {
 
 inline constexpr int default_folds = 5;        ///< of a cross-validation; more: slower, fits closer to the final one
@@ -13,9 +15,9 @@ inline constexpr int min_fitted_rows = 4;
 inline constexpr std::size_t min_training_rows = 3;
 
 /// [sigma] gross error of the richest model: twice the largest residual by chance among a thousand valid rows.
-inline constexpr double gross_sigmas = 11.0;
+KINFER_THRESHOLD(calibrate, gross_sigmas, 11.0);
 /// [1] error by the geometric over that by the richer model; below it, the richer model is at fault and not the row.
-inline constexpr double geometric_error_ratio = 0.5;
+KINFER_THRESHOLD(calibrate, geometric_error_ratio, 0.5);
 /// [sigma] a row with a smaller error is explained; exceeded by chance by one point in a thousand.
 inline constexpr double explained_sigmas = 4.0;
 /// One held-out row in so many with a gross error: the model is at fault, and no row is excluded.

@@ -4,10 +4,12 @@
 
 #include <cstddef>
 
+#include "kinfer/base/threshold.hpp"
+
 namespace kinfer::identify {
 
 /// [rad] Standard deviation from which an azimuth is unobservable; larger reports fewer. Data not recorded.
-inline constexpr double max_azimuth_sd = 0.1;
+KINFER_THRESHOLD(identify, max_azimuth_sd, 0.1);
 
 /// [rad] Axis deviation of a relaxed joint from which it is reported; larger reports fewer. Data not recorded.
 inline constexpr double min_reported_axis_deviation = 0.01;
@@ -18,7 +20,7 @@ inline constexpr double max_sensor_misfit = 3.0;
 /// Residual noise over noise floor above which a rigid chain is not valid at full bandwidth and the low-frequency
 /// motion is fitted; larger keeps the full bandwidth more often. Set on measured chains with rigid and with soft mounts
 /// (DIODEM).
-inline constexpr double max_rigid_chain_misfit = 3.0;
+KINFER_THRESHOLD(identify, max_rigid_chain_misfit, 3.0);
 
 /// [s] Clock offset of a fit above which the clocks are corrected and the fit repeated before its bandwidth is limited.
 /// Data not recorded.
@@ -31,28 +33,28 @@ inline constexpr double min_azimuth_lever = 0.1;
 inline constexpr double min_mount_compliance = 1e-5;
 
 /// Factor on the other joints' median gain above which a joint is relaxed; larger relaxes fewer. Data not recorded.
-inline constexpr double min_gain_ratio_to_others = 1.3;
+KINFER_THRESHOLD(identify, min_gain_ratio_to_others, 1.3);
 
 /// [Hz] Passband in which it is decided which joints are relaxed. Data not recorded.
-inline constexpr double trial_cutoff = 1.0;
+KINFER_THRESHOLD(identify, trial_cutoff, 1.0);
 
 /// [s] Smaller clock errors are harmless and not corrected. Data not recorded.
 inline constexpr double min_clock_offset = 2e-4;
 
 /// [m] A direction in which a point of the refined geometry has a larger standard deviation is unobservable; smaller
 /// reports more of them. Data not recorded.
-inline constexpr double max_point_sd = 0.3;
+KINFER_THRESHOLD(identify, max_point_sd, 0.3);
 
 /// Decrease of the sum of log residuals from which a revolute joint is relaxed to a spherical one. Two additional
 /// spline dimensions absorb 0.35 of it by chance; to be justified by the Bayesian information criterion (Schwarz 1978)
 /// on a minute of low-frequency motion they need about 2. Larger relaxes fewer joints.
-inline constexpr double min_relaxation_gain = 2.0;
+KINFER_THRESHOLD(identify, min_relaxation_gain, 2.0);
 
 /// Standard deviations of a clock error after one step from which the fit is repeated with free clocks; smaller repeats
 /// more often. Data not recorded.
 inline constexpr double clock_suspicion = 4.0;
 
 /// Standard deviations of a clock error from which the free clocks are kept; smaller keeps more. Data not recorded.
-inline constexpr double clock_certainty = 6.0;
+KINFER_THRESHOLD(identify, clock_certainty, 6.0);
 
 }  // namespace kinfer::identify

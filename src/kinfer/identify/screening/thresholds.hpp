@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include "kinfer/base/threshold.hpp"
+
 namespace kinfer::identify {
 
 /// [rad/s] Angular velocity of a row that tells something about a mounting. Data not recorded.
@@ -14,7 +16,7 @@ inline constexpr std::size_t min_rows_beside_split = 100;
 
 /// Factor on the usual residual beyond which a joint's relation does not hold. Larger finds fewer remountings; seen
 /// from 3 degrees or 3 cm on in simulated drives.
-inline constexpr double broken_relation_factor = 3.0;
+KINFER_THRESHOLD(identify, broken_relation_factor, 3.0);
 
 /// Factor on the usual residual below which a relation holds. Same data.
 inline constexpr double holding_relation_factor = 3.0;
@@ -28,7 +30,7 @@ inline constexpr double min_loop_joint_rate = 0.05;
 
 /// Factor on the residuals of the tree's own joints up to which a pair closes a loop; larger finds more. Simulated
 /// linkage.
-inline constexpr double max_loop_residual_ratio = 3.0;
+KINFER_THRESHOLD(identify, max_loop_residual_ratio, 3.0);
 
 /// Share of the relative angular velocity off its axis up to which a pair counts as a revolute joint. Simulated
 /// linkage.

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include "kinfer/base/threshold.hpp"
+
 namespace kinfer::identify {
 
 /// [nats per row] Gap of a given link to the one that it replaces from which it is a fault: twice the unexplained
@@ -22,11 +24,11 @@ inline constexpr std::size_t joint_type_rows = 1500;
 
 /// Factor by which a prismatic joint's translation must exceed the residual across it: errors are isotropic. Larger
 /// finds fewer prismatic joints. Set on the simulated machines.
-inline constexpr double prismatic_dominance = 1.5;
+KINFER_THRESHOLD(identify, prismatic_dominance, 1.5);
 
 /// [rad/s] Relative angular velocity of two INS without relative motion. Set, like the next four, on the simulated
 /// machines and on measured chains (DIODEM).
-inline constexpr double relative_rate_noise = 3e-3;
+KINFER_THRESHOLD(identify, relative_rate_noise, 3e-3);
 
 /// Scale and orientation errors as a share of the angular velocity, least; larger calls more joints rigid or revolute.
 inline constexpr double min_rate_error_share = 0.02;
@@ -35,7 +37,7 @@ inline constexpr double min_rate_error_share = 0.02;
 inline constexpr double max_rate_error_share = 0.1;
 
 /// Factor on the errors below which nothing counts as motion; larger finds simpler joints.
-inline constexpr double motion_significance = 2.5;
+KINFER_THRESHOLD(identify, motion_significance, 2.5);
 
 /// [m/s²] Residual of a rigid pair: rotating biases, tilts; larger finds fewer prismatic joints.
 inline constexpr double rigid_acceleration_noise = 0.03;
