@@ -12,14 +12,14 @@ function(kinfer_report_bundle output)
     file(CONFIGURE OUTPUT ${output} @ONLY CONTENT [[
 #include "kinfer/report/bundle.hpp"
 
-namespace kinfer {
+namespace kinfer::report {
 
 std::string_view report_script() { return ""; }
 std::string_view report_style() {
   return R"css(@style@)css";
 }
 
-}  // namespace kinfer
+}  // namespace kinfer::report
 ]])
     return()
   endif()

@@ -44,7 +44,7 @@ if (/<\/script|<!--/i.test(script)) throw new Error('the bundle would end its sc
 
 writeFileSync(process.argv[2], `#include "kinfer/report/bundle.hpp"
 
-namespace kinfer {
+namespace kinfer::report {
 namespace {
 
 constexpr char script[] =
@@ -58,5 +58,5 @@ ${literal(style)};
 std::string_view report_script() { return {script, sizeof(script) - 1}; }
 std::string_view report_style() { return {style, sizeof(style) - 1}; }
 
-}  // namespace kinfer
+}  // namespace kinfer::report
 `);

@@ -19,7 +19,8 @@ class CalibrateLibrary : public Program {
     task.data = read_pose_set(in("data/poses.csv"), task.nominal, {}).value();
     Provenance provenance{.inputs = {}, .options = calibrate::describe(task, options)};
     for (const std::string& file : files) provenance.inputs.push_back({file, *sha256_of_file(in("data") / file)});
-    return format_calibration_evidence(calibrate::calibrate_robot(task, options, Rng(1)).value(), provenance);
+    return format_calibration_evidence(
+        calibration_evidence(calibrate::calibrate_robot(task, options, Rng(1)).value(), provenance));
   }
 };
 

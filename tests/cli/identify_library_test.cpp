@@ -32,7 +32,8 @@ TEST_F(IdentifyLibrary, GivesTheBytesOfTheProgramsEvidence) {
   const Provenance provenance{.inputs = {{"imu.csv", *sha256_of_file(in("drive") / "imu.csv")}},
                               .options = identify::describe(options),
                               .seed = 5};
-  EXPECT_EQ(slurp(in("out") / "evidence.json"), format_identification_evidence(*found, provenance));
+  EXPECT_EQ(slurp(in("out") / "evidence.json"),
+            format_identification_evidence(identification_evidence(*found, provenance)));
 }
 
 }  // namespace

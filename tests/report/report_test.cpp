@@ -1,56 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 // report.html from evidence: complete, well formed, with escaped names and notes, and limited in size.
 #include "kinfer/report/report.hpp"
-#include "kinfer/report/parts/html.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
-#include "kinfer/evidence/calibration.hpp"
-#include "kinfer/evidence/identification.hpp"
-#include "kinfer/evidence/provenance.hpp"
 #include "kinfer/io/evidence/calibration_json.hpp"
+#include "kinfer/io/evidence/frames_json.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
-#include "support/robots.hpp"
+#include "support/rich_evidence.hpp"
 
 namespace kinfer::test {
 namespace {
 
-Chain two_joints() {
-  Chain chain;
-  chain.name = "two <joints> & \"more\"";
-  chain.joints = {mdh_joint(0.0, 0.0, 0.4, -170, 170, -1), mdh_joint(0.3, -90.0, 0.0, -90, 90, 0)};
-  return chain;
-}
-
-Calibration small_calibration() {
-  Calibration c;
-  c.estimate.chain = two_joints();
-  c.plot_data.nominal = c.plot_data.before = two_joints();
-  c.plot_data.joints = MatrixXd::Constant(2, 3, 0.2);
-  for (int row = 0; row < 3; ++row) {
-    c.rows.push_back({row, 1e-3, 1e-4, 1e-4, true});
-    c.plot_data.rows.push_back({Vec3(0.3, 0.1, row), Vec3(1e-3, 0, 0), Vec3(1e-4, 0, 0), 5e-5});
-  }
-  c.plot_data.workspace = {{Vec3(1, 2, 3), 1e-4}, {Vec3(2, 2, 1), 2e-4}};
-  c.before.position.holdout = {1e-3, 1e-3, 1e-4, 2e-3, 3};
-  c.after.position.holdout = {1e-4, 1e-4, 1e-5, 2e-4, 3};
-  c.estimate.values = {{"a2", Quantity::length, 0.3, 0.3001, 1e-5, true},
-                       {"theta1", Quantity::angle, 0, 0, 1e-3, false}};
-  c.estimate.covariance = MatrixXd::Identity(2, 2);
-  c.estimate.identifiability.singular_values = VectorXd::LinSpaced(2, 10.0, 0.1);
-  c.estimate.outliers = {{.row = 2, .line = 4, .reasons = {{MeasurementKind::point, 1e-2, 80.0}}, .sigmas = 80.0}};
-  c.estimate.identifiability.undetermined = {
-      {Undetermined::confounded, {"</script><script>alert(1)</script>", "<b>bold & brave</b>"}}};
-  c.recommendations = {{CalibrationAdviceKind::keep_verification_poses}};
-  return c;
-}
+using nlohmann::ordered_json;
+using report::report_html;
+using report::report_of_file;
 
 std::string calibration_report(const Calibration& c) {
-  return report_html(format_calibration_evidence(c, {})).value();
+  return report_html(calibration_evidence(c, rich_provenance()));
+}
+
+std::string identification_report(const Identification& i) {
+  return report_html(identification_evidence(i, rich_provenance()));
 }
 
 /// A machine whose log was `rows` samples of `sensors` sensors, all signals noise-like.
@@ -106,60 +82,107 @@ std::vector<std::string> unbalanced(const std::string& html) {
   return wrong;
 }
 
-TEST(Html, ProseKeepsUnitsWithTheirNumbersAndSetsCallsAsCode) {
-  EXPECT_EQ(html::prose("± 5 mm in J1 12 of a < b"), "±&nbsp;5&nbsp;mm in J1 12&nbsp;of a &lt; b");
-  EXPECT_EQ(html::prose("as kinfer plan --data chooses, or kinfer verify."),
-            "as <code>kinfer plan --data</code> chooses, or <code>kinfer verify</code>.");
+TEST(Report, EveryElementThatIsOpenedIsClosed) {
+  EXPECT_EQ(unbalanced(calibration_report(rich_calibration())), std::vector<std::string>{});
+  EXPECT_EQ(unbalanced(identification_report(rich_identification())), std::vector<std::string>{});
+  EXPECT_EQ(unbalanced(identification_report(long_identification(2000, 3))), std::vector<std::string>{});
 }
 
-TEST(Report, EveryElementThatIsOpenedIsClosed) {
-  EXPECT_EQ(unbalanced(calibration_report(small_calibration())), std::vector<std::string>{});
-  EXPECT_EQ(unbalanced(report_html(format_identification_evidence(long_identification(2000, 3), {})).value()),
-            std::vector<std::string>{});
+TEST(Report, FromItsFileIsThatOfTheValues) {
+  const CalibrationEvidence calibration = calibration_evidence(rich_calibration(), rich_provenance());
+  EXPECT_EQ(report_of_file(format_calibration_evidence(calibration)).value(), report_html(calibration));
+  const IdentificationEvidence identification = identification_evidence(rich_identification(), rich_provenance());
+  EXPECT_EQ(report_of_file(format_identification_evidence(identification)).value(), report_html(identification));
 }
 
 TEST(Report, NamesAndNotesAreEscaped) {
-  const std::string html = calibration_report(small_calibration());
+  const std::string html = calibration_report(rich_calibration());
   EXPECT_EQ(html.find("<script>alert"), std::string::npos);
   EXPECT_EQ(html.find("<b>bold"), std::string::npos);
   EXPECT_NE(html.find("&lt;b&gt;bold &amp; brave"), std::string::npos);
   EXPECT_NE(html.find("two &lt;joints&gt;"), std::string::npos);
 }
 
-TEST(Report, TheSameEvidenceGivesTheSameBytes) {
-  EXPECT_EQ(calibration_report(small_calibration()), calibration_report(small_calibration()));
+/// Replaces every string of the evidence but names that must be known.
+void make_hostile(ordered_json& json, const std::string& key = "") {
+  static const std::set<std::string> names{"format",   "kind",      "type",     "unit",       "severity", "stop",
+                                           "quantity", "usability", "frame",    "remedy",     "decision", "missing",
+                                           "engine",   "start",     "relation", "measurement"};
+  if (json.is_string() && !names.contains(key)) {
+    json = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\" onclick=\"alert(3)";
+  } else if (json.is_structured()) {
+    for (auto& [name, member] : json.items()) make_hostile(member, json.is_object() ? name : key);
+  }
+}
+
+TEST(Report, NoTextOfTheEvidenceBecomesMarkup) {
+  for (ordered_json json : {calibration_json(calibration_evidence(rich_calibration(), rich_provenance())),
+                            identification_json(identification_evidence(rich_identification(), rich_provenance()))}) {
+    const ordered_json reason = json.value("reason", ordered_json()),
+                       undetermined = json.value("undetermined", ordered_json());
+    make_hostile(json);
+    if (!reason.is_null()) json["reason"] = reason, json["undetermined"] = undetermined;  // enumerators
+    const auto html = report_of_file(json.dump());
+    ASSERT_TRUE(html) << html.error().what;
+    EXPECT_EQ(html->find("<script>alert"), std::string::npos);
+    EXPECT_EQ(html->find("<img"), std::string::npos);
+    EXPECT_EQ(html->substr(0, html->find("<script type=\"application/json\"")).find("\" onclick"), std::string::npos);
+    EXPECT_EQ(unbalanced(*html), std::vector<std::string>{});
+  }
 }
 
 TEST(Report, NothingIsFetchedFromAnywhere) {
-  const std::string html = calibration_report(small_calibration());
+  const std::string html = calibration_report(rich_calibration());
   EXPECT_EQ(html.find("<script src"), std::string::npos);
   EXPECT_EQ(html.find("<img"), std::string::npos);
   EXPECT_EQ(html.find("@import"), std::string::npos);
   EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
 }
 
+TEST(Report, HoldsTheLicencesOfItsScripts) {
+  for (const std::string& html : {calibration_report(rich_calibration()), identification_report(rich_identification())})
+    EXPECT_NE(html.find("Third-party notices"), std::string::npos);
+}
+
+TEST(Report, EverySectionIsLinkedOnce) {
+  const std::string html = identification_report(rich_identification());
+  std::set<std::string> ids;
+  const std::regex section("<section id=\"([^\"]*)\"");
+  for (auto at = std::sregex_iterator(html.begin(), html.end(), section); at != std::sregex_iterator(); ++at) {
+    EXPECT_TRUE(ids.insert((*at)[1]).second) << (*at)[1];
+    EXPECT_NE(html.find("<a href=\"#" + (*at)[1].str() + "\">"), std::string::npos);
+  }
+  EXPECT_EQ(ids.size(), 11u);
+}
+
 TEST(Report, WithoutPosesRowsOrParametersThereIsStillAReport) {
   Calibration empty;
   empty.usability = Usability::do_not_use;
   empty.reason = CalibrationReason::no_improvement;
-  const auto html = report_html(format_calibration_evidence(empty, {}));
+  EXPECT_NE(calibration_report(empty).find("class=\"chip bad\""), std::string::npos);
+  EXPECT_NE(identification_report({}).find("0&nbsp;joints found"), std::string::npos);
+}
+
+TEST(Report, OfTwoSensorsThereIsOneToo) {
+  Identification two = rich_identification();
+  two.order.margin.reset();
+  const auto html = report_of_file(format_identification_evidence(identification_evidence(two, {})));
   ASSERT_TRUE(html) << html.error().what;
-  EXPECT_NE(html->find("class=\"chip bad\""), std::string::npos);
-  EXPECT_TRUE(report_html(format_identification_evidence(Identification{}, {})));
+  EXPECT_NE(html->find("no other order is possible"), std::string::npos);
 }
 
 TEST(Report, AnHourOfSixSensorsStaysBelowFiveMegabytes) {
-  const std::string html = report_html(format_identification_evidence(long_identification(720000, 6), {})).value();
+  const std::string html = identification_report(long_identification(720000, 6));
   EXPECT_LT(html.size(), 5'000'000u);
   RecordProperty("bytes", static_cast<int>(html.size()));
 }
 
-TEST(Report, InvalidEvidenceIsAnErrorOfOneSentence) {
-  EXPECT_EQ(report_html("[]").error().what, "evidence.json: not a JSON object");
-  EXPECT_EQ(report_html("{\"kind\": \"frames\"}").error().what, "evidence.json: there is no report for kind 'frames'");
-  const auto lacking = report_html("{\"kind\": \"calibrate\", \"verdict\": \"x\"}");
-  ASSERT_FALSE(lacking);
-  EXPECT_EQ(lacking.error().what.find("evidence.json: not in kinfer's format"), 0u);
+TEST(Report, OfAnotherKindThereIsNone) {
+  EXPECT_EQ(report_of_file("[]").error().what, "evidence.json: not a JSON object");
+  EXPECT_EQ(report_of_file(format_frames_evidence(frames_evidence(rich_frames()))).error().what,
+            "evidence.json: there is no report for kind 'frames'");
+  EXPECT_EQ(report_of_file("{\"kind\": \"calibrate\", \"verdict\": \"x\"}").error().what,
+            "evidence.json: robot: missing");
 }
 
 }  // namespace

@@ -175,6 +175,22 @@ TEST(FrameWords, SweepsWithoutANameAreCalledByTheirRows) {
   EXPECT_EQ(words::sweep_name({.name = "axis1"}), "axis1");
 }
 
+TEST(VerdictWords, PartsMakeTheSentence) {
+  for (const CalibrationReason reason : {CalibrationReason::improves_nominal, CalibrationReason::no_improvement,
+                                         CalibrationReason::not_validated, CalibrationReason::generalises}) {
+    Calibration c;
+    c.reason = reason;
+    c.geometry_only = true;
+    c.gross_error_rows = {4};
+    c.estimate.outliers = {{.row = 4}, {.row = 6}};
+    c.after.position.train = c.after.position.holdout = {1e-3, 1e-3, 1e-4, 2e-3, 20};
+    const VerdictText text = words::verdict_text(c);
+    EXPECT_EQ(words::verdict(c), sentence(text) + ".");
+    EXPECT_EQ(text.recommendation, "Use it");
+    EXPECT_FALSE(text.remarks.empty());
+  }
+}
+
 /// Sets the language for one test.
 struct InNames {
   InNames() { words::set_language(words::Language::names); }
@@ -186,6 +202,7 @@ TEST(Names, FactsAreToldByTheirNamesAlone) {
   Calibration c;
   c.reason = CalibrationReason::overfitted;
   EXPECT_EQ(words::verdict(c), "overfitted");
+  EXPECT_EQ(words::verdict_text(c).statement, "overfitted");
   EXPECT_EQ(words::sentence(Finding{.kind = FindingKind::mirrored}), "mirrored");
   EXPECT_EQ(words::reason({.decision = Decision::accepted}), "accepted");
   EXPECT_EQ(words::sentence(CalibrationNote{CalibrationNoteKind::no_offset_moved, {}}), "no_offset_moved");

@@ -140,7 +140,7 @@ export class CalibrateMachine {
         toggle('nominal robot', 'before', true, show(this.nominalBody.group)),
         toggle('errors before', 'before', true, show(this.errorsBefore.object)),
         toggle('errors after', 'after', true, show(this.errorsAfter.object)),
-        toggle('where it is uncertain', 'heat4', false, show(uncertain)),
+        toggle('uncertainty over the workspace', 'heat4', false, show(uncertain)),
       ),
       this.jointPanel(),
     );

@@ -5,6 +5,12 @@ import type { Packed } from './packed';
 export type Triple = [number, number, number];
 export type Quadruple = [number, number, number, number];
 
+export type JointMotion = 'revolute' | 'prismatic' | 'fixed';
+export type JointType = 'revolute' | 'prismatic' | 'universal' | 'spherical' | 'rigid';
+export type TraceQuantity = 'acceleration' | 'rate';
+export type TraceUnit = 'm/s^2' | 'rad/s';
+export type TraceFrame = 'ground' | 'sensor';
+
 export interface PoseJson {
   xyz: Triple;
   quat: Quadruple; // w x y z
@@ -13,8 +19,8 @@ export interface PoseJson {
 export interface JointJson {
   name: string;
   parent: number; // index of the joint before it; -1: the base
-  type: 'revolute' | 'prismatic' | 'fixed';
-  reading: number;
+  type: JointMotion;
+  reading: number; // index into q; -1: none
   before: PoseJson;
   axis: Triple;
   after: PoseJson;
@@ -50,7 +56,7 @@ export interface CalibrateEvidence {
 export interface FoundJointJson {
   parent: string;
   child: string;
-  type: string;
+  type: JointType;
   axis_in_parent: Triple | null;
   point_in_parent: Triple | null;
   axis_in_child: Triple | null;
@@ -67,9 +73,9 @@ export interface EnvelopeJson {
 
 export interface TraceJson {
   sensor: string;
-  quantity: string;
-  unit: string;
-  frame: string;
+  quantity: TraceQuantity;
+  unit: TraceUnit;
+  frame: TraceFrame;
   measured: EnvelopeJson[];
   predicted: EnvelopeJson[];
   residual: EnvelopeJson[];

@@ -1,49 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The identified machine in motion: segments, INS, axes, their uncertainty, and unobservable directions.
 import { Box3, Matrix4, Quaternion, Vector3, type Mesh } from 'three';
-import { Bar, DashedLine, sphere, box, solid } from './bodies';
+import { Bar, sphere, box, solid } from './bodies';
 import { Chain, type PlacedChain } from './chain';
 import { button, group, slider, toggle, type Slider } from './controls';
-import type { FoundJointJson, IdentifyEvidence, Triple } from './evidence';
+import type { FoundJointJson, IdentifyEvidence } from './evidence';
+import { at, JointBody, type LinkBody } from './joint_body';
 import { Stage } from './stage';
-
-/** A joint, drawn in the frame of its child's INS, and the link that follows it. */
-interface DrawnJoint {
-  json: FoundJointJson;
-  oneAxis: boolean; // else a sphere about the common centre of its axes
-  drum: Bar;
-  centre: Mesh;
-  axis: Bar;
-  sure: Bar;
-  place: Mesh; // an ellipsoid: uncertainty of the joint's point
-  arm: Bar; // from the joint to the child's INS: where the sensor is mounted
-  links: { bar: Bar; to: FoundJointJson }[];
-  open: { line: DashedLine; direction: Vector3; frame: 'parent' | 'child' }[];
-}
-
-const unknownLength = 0.5; // [m] a point with a larger standard deviation counts as unobservable
-
-/** First direction across an axis that standard deviations refer to: built from its smallest coordinate. */
-function perpendicular(axis: Vector3): Vector3 {
-  const size = [Math.abs(axis.x), Math.abs(axis.y), Math.abs(axis.z)];
-  const unit = new Vector3();
-  unit.setComponent(size.indexOf(Math.min(...size)), 1);
-  return axis.clone().cross(unit).normalize();
-}
-
-function across(sd: readonly number[]): number {
-  return Math.hypot(sd[0] ?? 0, sd[1] ?? 0);
-}
-
-function at(point: Triple | null, frame: Matrix4): Vector3 {
-  return point ? new Vector3(...point).applyMatrix4(frame) : new Vector3().setFromMatrixPosition(frame);
-}
 
 export class IdentifyMachine {
   private readonly stage: Stage;
   private readonly chain: Chain;
-  private readonly joints: DrawnJoint[];
-  private readonly roots: { bar: Bar; to: FoundJointJson }[];
+  private readonly joints: JointBody[];
+  private readonly roots: LinkBody[];
   private readonly sensors: Map<string, { box: Mesh; name: { place(at: Vector3): void } }>;
   private readonly ends: { joint: FoundJointJson; mesh: Mesh }[];
   private readonly radius: number;
@@ -63,12 +32,15 @@ export class IdentifyMachine {
     const body = solid('--body');
     const sure = solid('--after', 0.28);
     const thick = 0.02 * this.radius;
-    this.joints = evidence.joints.map((json) => this.draw(json, body, sure, thick));
+    this.joints = evidence.joints.map(
+      (json) => new JointBody(json, this.linksFrom(json.child, body, thick), { radius: this.radius, thick }, sure),
+    );
     this.roots = this.linksFrom(evidence.root, body, thick);
     this.sensors = this.drawSensors();
     this.ends = evidence.joints
       .filter((joint) => !evidence.joints.some((other) => other.parent === joint.child))
       .map((joint) => ({ joint, mesh: sphere(1.2 * thick, solid('--muted')) }));
+    for (const joint of this.joints) this.stage.add(...joint.objects());
     for (const { bar } of this.roots) this.stage.add(bar.mesh);
     for (const end of this.ends) this.stage.add(end.mesh);
 
@@ -96,37 +68,7 @@ export class IdentifyMachine {
     this.followers.push(follow);
   }
 
-  private draw(json: FoundJointJson, body: ReturnType<typeof solid>, sure: ReturnType<typeof solid>, thick: number): DrawnJoint {
-    const moves = json.type !== 'rigid';
-    const open = (directions: Triple[], frame: 'parent' | 'child') =>
-      directions.map((direction) => ({
-        line: new DashedLine('--open', 0.03 * this.radius),
-        direction: new Vector3(...direction),
-        frame,
-      }));
-    const oneAxis = json.type === 'revolute' || json.type === 'prismatic';
-    const drawn: DrawnJoint = {
-      json,
-      oneAxis,
-      drum: new Bar(moves ? 2 * thick : thick, solid('--after')),
-      centre: sphere(2.4 * thick, solid('--after')),
-      axis: new Bar(0.22 * thick, solid('--after')),
-      sure: new Bar(thick, sure),
-      place: sphere(thick, sure),
-      arm: new Bar(0.35 * thick, solid('--muted')),
-      links: this.linksFrom(json.child, body, thick),
-      open: [...open(json.not_identifiable_in_parent, 'parent'), ...open(json.not_identifiable_in_child, 'child')],
-    };
-    this.stage.add(drawn.arm.mesh);
-    if (moves) this.stage.add(drawn.place);
-    if (oneAxis) this.stage.add(drawn.drum.mesh, drawn.axis.mesh, drawn.sure.mesh);
-    else if (moves) this.stage.add(drawn.centre);
-    for (const link of drawn.links) this.stage.add(link.bar.mesh);
-    for (const { line } of drawn.open) this.stage.add(line.object);
-    return drawn;
-  }
-
-  private linksFrom(sensor: string, body: ReturnType<typeof solid>, thick: number): { bar: Bar; to: FoundJointJson }[] {
+  private linksFrom(sensor: string, body: ReturnType<typeof solid>, thick: number): LinkBody[] {
     return this.evidence.joints
       .filter((joint) => joint.parent === sensor)
       .map((to) => ({ bar: new Bar(thick, body), to }));
@@ -158,8 +100,8 @@ export class IdentifyMachine {
       group(this.play, this.time.row),
       group(times.row),
       group(
-        toggle('how sure axes and points are', 'after', true, show(this.joints.flatMap((j) => [j.sure.mesh, j.place]))),
-        toggle('what no signal tells', 'open', true, show(this.joints.flatMap((j) => j.open.map((o) => o.line.object)))),
+        toggle('uncertainty of axes and points', 'after', true, show(this.joints.flatMap((j) => [j.sure.mesh, j.place]))),
+        toggle('unobservable quantities', 'open', true, show(this.joints.flatMap((j) => j.open.map((o) => o.line.object)))),
       ),
     );
   }
@@ -232,7 +174,7 @@ export class IdentifyMachine {
     const frames = this.frames(k);
     const root = frames.get(this.evidence.root)!;
     for (const { bar, to } of this.roots) bar.lay(at(null, root), at(to.point_in_parent, root));
-    for (const joint of this.joints) this.layJoint(joint, frames);
+    for (const joint of this.joints) joint.lay(frames, this.exaggeration);
     for (const [name, sensor] of this.sensors) {
       const frame = frames.get(name);
       if (!frame) continue;
@@ -246,46 +188,5 @@ export class IdentifyMachine {
     }
     for (const follow of this.followers) follow(seconds);
     this.stage.invalidate();
-  }
-
-  /** Half axes are one standard deviation across the joint's axis in its child, and along it, exaggerated. */
-  private layPlace(joint: DrawnJoint, child: Matrix4, point: Vector3, axis: Vector3): void {
-    const { sd, axis_in_child: own } = joint.json;
-    const first = perpendicular(own ? new Vector3(...own) : new Vector3(0, 0, 1)).transformDirection(child);
-    const second = axis.clone().cross(first);
-    const across = [sd.point_in_child_m[0], sd.point_in_child_m[1]];
-    const along = joint.oneAxis ? Number(sd['slide_m']) : Math.hypot(...across);
-    // An unobservable point along the axis is drawn as a dashed line instead of an endless ellipsoid.
-    const half = [...across, along < unknownLength ? along : Math.min(...across)].map((length) =>
-      Math.min(Math.max(length * this.exaggeration, 1e-4), 0.25 * this.radius),
-    );
-    joint.place.position.copy(point);
-    joint.place.quaternion.setFromRotationMatrix(new Matrix4().makeBasis(first, second, axis));
-    joint.place.scale.set(half[0]!, half[1]!, half[2]!);
-  }
-
-  private layJoint(joint: DrawnJoint, frames: Map<string, Matrix4>): void {
-    const { json } = joint;
-    const child = frames.get(json.child);
-    const parent = frames.get(json.parent);
-    if (!child || !parent) return;
-    const point = at(json.point_in_child, child);
-    const axis = json.axis_in_child ? new Vector3(...json.axis_in_child).transformDirection(child) : new Vector3(0, 0, 1);
-    const along = (half: number) => [point.clone().addScaledVector(axis, -half), point.clone().addScaledVector(axis, half)] as const;
-    joint.drum.lay(...along(0.055 * this.radius));
-    joint.axis.lay(...along(0.2 * this.radius));
-    // Half of the tube's radius is the axis' uncertainty in position, the other half that of its direction at the end.
-    const half = 0.2 * this.radius;
-    const spread = across(json.sd.point_in_child_m) + half * across(json.sd.axis_in_child_rad);
-    joint.sure.lay(...along(half), Math.min(Math.max(spread * this.exaggeration, 1e-4), 0.25 * this.radius));
-    joint.centre.position.copy(point);
-    this.layPlace(joint, child, point, axis);
-    joint.arm.lay(point, at(null, child));
-    for (const link of joint.links) link.bar.lay(point, at(link.to.point_in_parent, child));
-    for (const open of joint.open) {
-      const direction = open.direction.clone().transformDirection(open.frame === 'parent' ? parent : child);
-      const reach = 0.3 * this.radius;
-      open.line.lay(point.clone().addScaledVector(direction, -reach), point.clone().addScaledVector(direction, reach));
-    }
   }
 }

@@ -12,6 +12,7 @@ import {
   WebGLRenderer,
   type Object3D,
 } from 'three';
+import { listen } from './gestures';
 import { cssColor, onThemeChange } from './theme';
 
 interface View {
@@ -57,7 +58,12 @@ export class Stage {
     const sun = new DirectionalLight(0xffffff, 2.0);
     sun.position.set(-2, -3, 5);
     this.scene.add(new HemisphereLight(0xffffff, 0x8a8f98, 1.8), sun);
-    this.listen();
+    listen(this.canvas, {
+      turn: (right, up) => this.turn(right, up),
+      shift: (right, up) => this.shift(right, up),
+      zoom: (factor) => this.zoom(factor),
+      reset: () => this.reset(),
+    });
     new ResizeObserver(() => this.resize()).observe(host);
     new IntersectionObserver((entries) => {
       this.visible = entries.some((entry) => entry.isIntersecting);
@@ -216,64 +222,5 @@ export class Stage {
     const y = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
     this.view.target.addScaledVector(x, -right * unit).addScaledVector(y, up * unit);
     this.invalidate();
-  }
-
-  private listen(): void {
-    const pointers = new Map<number, { x: number; y: number }>();
-    const canvas = this.canvas;
-    canvas.addEventListener('pointerdown', (event) => {
-      canvas.setPointerCapture(event.pointerId);
-      pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    });
-    const release = (event: PointerEvent) => pointers.delete(event.pointerId);
-    canvas.addEventListener('pointerup', release);
-    canvas.addEventListener('pointercancel', release);
-    canvas.addEventListener('pointermove', (event) => {
-      const last = pointers.get(event.pointerId);
-      if (!last) return;
-      const dx = event.clientX - last.x;
-      const dy = event.clientY - last.y;
-      const others = [...pointers].filter(([id]) => id !== event.pointerId).map(([, p]) => p);
-      if (others[0]) {
-        const before = Math.hypot(last.x - others[0].x, last.y - others[0].y);
-        const now = Math.hypot(event.clientX - others[0].x, event.clientY - others[0].y);
-        this.zoom(before / Math.max(now, 1));
-        this.shift(dx / 2, dy / 2);
-      } else if (event.shiftKey || event.buttons === 2 || event.buttons === 4) {
-        this.shift(dx, dy);
-      } else {
-        this.turn(dx * 0.008, dy * 0.008);
-      }
-      pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-    });
-    canvas.addEventListener('contextmenu', (event) => event.preventDefault());
-    canvas.addEventListener('dblclick', () => this.reset());
-    // The wheel scrolls the page until the machine was clicked.
-    canvas.addEventListener(
-      'wheel',
-      (event) => {
-        if (document.activeElement !== canvas && !event.ctrlKey) return;
-        event.preventDefault();
-        this.zoom(Math.exp(event.deltaY * 0.0012));
-      },
-      { passive: false },
-    );
-    const keys: Record<string, () => void> = {
-      ArrowLeft: () => this.turn(-0.12, 0),
-      ArrowRight: () => this.turn(0.12, 0),
-      ArrowUp: () => this.turn(0, 0.09),
-      ArrowDown: () => this.turn(0, -0.09),
-      '+': () => this.zoom(0.87),
-      '=': () => this.zoom(0.87),
-      '-': () => this.zoom(1.15),
-      '0': () => this.reset(),
-      Home: () => this.reset(),
-    };
-    canvas.addEventListener('keydown', (event) => {
-      const action = keys[event.key];
-      if (!action) return;
-      event.preventDefault();
-      action();
-    });
   }
 }

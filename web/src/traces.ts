@@ -2,19 +2,19 @@
 // Predicted against measured motion of one sensor, with the difference below; zoom by dragging, double click to reset.
 import uPlot from 'uplot';
 import { choice, group } from './controls';
-import type { EnvelopeJson, IdentifyEvidence, TraceJson } from './evidence';
+import type { EnvelopeJson, IdentifyEvidence, TraceFrame, TraceJson, TraceQuantity, TraceUnit } from './evidence';
 import { unpacked } from './packed';
 import { cssText, onThemeChange } from './theme';
 
 const axisNames = ['x', 'y', 'z'];
 const height = 210;
 
-function title(trace: TraceJson): string {
-  return `${trace.sensor}: ${trace.quantity === 'rate' ? 'angular rate' : trace.quantity}`;
-}
+const quantityText: Record<TraceQuantity, string> = { acceleration: 'acceleration', rate: 'angular velocity' };
+const frameText: Record<TraceFrame, string> = { ground: 'world frame', sensor: 'sensor frame' };
+const unitText: Record<TraceUnit, string> = { 'm/s^2': 'm/s²', 'rad/s': 'rad/s' };
 
-function unit(trace: TraceJson): string {
-  return trace.unit.replace('^2', '²');
+function title(trace: TraceJson): string {
+  return `${trace.sensor}: ${quantityText[trace.quantity]}`;
 }
 
 /** Stripes behind the curves where rows were not fitted. */
@@ -119,9 +119,9 @@ export function showTraces(
       plot(
         upper, time,
         [curve(trace.measured, '--before', 'measured'), curve(trace.predicted, '--after', 'predicted')],
-        `${axisNames[axis]} [${unit(trace)}]`, held_out, 'traces',
+        `${axisNames[axis]} [${unitText[trace.unit]}]`, held_out, 'traces',
       ),
-      plot(lower, time, [curve(trace.residual, '--rest', 'difference')], `difference [${unit(trace)}]`, held_out, 'traces'),
+      plot(lower, time, [curve(trace.residual, '--rest', 'difference')], `difference [${unitText[trace.unit]}]`, held_out, 'traces'),
     ];
     for (const p of plots)
       p.over.addEventListener('click', () => {
@@ -135,7 +135,7 @@ export function showTraces(
         which = index;
         draw();
       }),
-      choice('Axis', axisNames.map((name) => `${name} in the ${traces[0]!.frame}`), (index) => {
+      choice('Axis', axisNames.map((name) => `${name} in the ${frameText[traces[0]!.frame]}`), (index) => {
         axis = index;
         draw();
       }),

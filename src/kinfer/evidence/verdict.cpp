@@ -15,4 +15,10 @@ std::string_view name(Usability usability) {
   return "";
 }
 
+std::string sentence(const VerdictText& verdict) {
+  std::string text = verdict.recommendation + ": " + verdict.statement;
+  for (const std::string& remark : verdict.remarks) text += "; " + remark;
+  return text;
+}
+
 }  // namespace kinfer

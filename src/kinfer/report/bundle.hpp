@@ -4,9 +4,9 @@
 
 #include <string_view>
 
-namespace kinfer {
+namespace kinfer::report {
 
 std::string_view report_script();
 std::string_view report_style();
 
-}  // namespace kinfer
+}  // namespace kinfer::report

@@ -3,50 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-
+#include "kinfer/io/evidence/evidence_file.hpp"
 #include "kinfer/report/bundle.hpp"
-#include "kinfer/report/parts/packed.hpp"
-#include "kinfer/report/parts/pages.hpp"
+#include "kinfer/report/calibrate/page.hpp"
+#include "kinfer/report/identify/page.hpp"
+#include "kinfer/report/parts/script_data.hpp"
 
-namespace kinfer {
+namespace kinfer::report {
 namespace {
-
-using Json = nlohmann::json;
-
-/// Escapes JSON inside a script element, so that it cannot close the element.
-std::string escape_for_script(std::string text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '<')
-      safe += "\\u003c";
-    else
-      safe += c;
-  }
-  return safe;
-}
-
-/// Lengths rounded to 0.1 µm, sufficient for drawings and tooltips.
-Json rounded(const Json& list) {
-  Json result = Json::array();
-  for (const Json& value : list)
-    result.push_back(value.is_number() ? Json(std::round(value.get<double>() * 1e7) / 1e7) : value);
-  return result;
-}
-
-/// The part of the evidence that the scripts need; everything else is in the page as text.
-Json script_data(const Json& evidence) {
-  Json part;
-  for (const char* key : {"kind", "outliers", "picture", "root", "joints", "chain", "order"})
-    if (evidence.contains(key)) part[key] = evidence.at(key);
-  if (evidence.contains("motion")) part["motion"] = pages::with_packed_traces(evidence.at("motion"));
-  if (const auto rows = evidence.find("rows"); rows != evidence.end()) {
-    for (const char* key : {"before", "after"}) part["rows"][key] = rounded(rows->at(key));
-    part["rows"]["held_out"] = rows->at("held_out");
-  }
-  return part;
-}
 
 std::string contents(const std::vector<html::Section>& sections) {
   std::string links;
@@ -58,7 +22,7 @@ std::string contents(const std::vector<html::Section>& sections) {
 constexpr std::string_view content_security_policy =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:";
 
-std::string page_html(const pages::Page& page, const Json& evidence) {
+std::string page_html(const Page& page, const std::string& data) {
   std::string html = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
@@ -73,28 +37,25 @@ std::string page_html(const pages::Page& page, const Json& evidence) {
   html += fmt::format(
       "</main>\n<footer>Made by kinfer from evidence.json.</footer>\n"
       "<script type=\"application/json\" id=\"evidence\">{}</script>\n<script>{}</script>\n</body>\n</html>\n",
-      escape_for_script(script_data(evidence).dump()), report_script());
+      escape_for_script(data), report_script());
   return html;
-}
-
-Result<pages::Page> page_of(const Json& evidence) {
-  const std::string kind = pages::string_at(evidence, "kind");
-  if (kind == "calibrate") return pages::calibration(evidence);
-  if (kind == "identify") return pages::identification(evidence);
-  return error("evidence.json: there is no report for kind '{}'", kind);
 }
 
 }  // namespace
 
-Result<std::string> report_html(std::string_view text) {
-  const Json evidence = Json::parse(text, nullptr, false);
-  if (!evidence.is_object()) return error("evidence.json: not a JSON object");
-  try {
-    KINFER_TRY(page, page_of(evidence));
-    return page_html(page, evidence);
-  } catch (const Json::exception& malformed) {
-    return error("evidence.json: not in kinfer's format ({})", malformed.what());
-  }
+std::string report_html(const CalibrationEvidence& evidence) {
+  return page_html(calibration_page(evidence), script_data(evidence));
 }
 
-}  // namespace kinfer
+std::string report_html(const IdentificationEvidence& evidence) {
+  return page_html(identification_page(evidence), script_data(evidence));
+}
+
+Result<std::string> report_of_file(std::string_view text) {
+  KINFER_TRY(evidence, read_evidence(text));
+  if (const auto* calibration = std::get_if<CalibrationEvidence>(&evidence)) return report_html(*calibration);
+  if (const auto* identification = std::get_if<IdentificationEvidence>(&evidence)) return report_html(*identification);
+  return error("evidence.json: there is no report for kind 'frames'");
+}
+
+}  // namespace kinfer::report

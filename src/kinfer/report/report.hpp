@@ -7,10 +7,16 @@
 #include <string_view>
 
 #include "kinfer/base/result.hpp"
+#include "kinfer/evidence/calibration_evidence.hpp"
+#include "kinfer/evidence/identification_evidence.hpp"
 
-namespace kinfer {
+namespace kinfer::report {
 
-/// `evidence`: the text of evidence.json of `calibrate` or `identify`.
-Result<std::string> report_html(std::string_view evidence);
+std::string report_html(const CalibrationEvidence& evidence);
+std::string report_html(const IdentificationEvidence& evidence);
 
-}  // namespace kinfer
+/// `text`: evidence.json of `calibrate` or `identify`. Errors: the text is not such a file, with the path of the first
+/// wrong value; or evidence of another kind, which has no report.
+Result<std::string> report_of_file(std::string_view text);
+
+}  // namespace kinfer::report

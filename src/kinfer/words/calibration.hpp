@@ -12,6 +12,7 @@ namespace kinfer::words {
 
 /// "Use it: on poses that were not fitted the tool is …"
 std::string verdict(const Calibration& calibration);
+VerdictText verdict_text(const Calibration& calibration);  ///< its parts
 
 /// The verdict in two words: "Use it", "Do not use", "Do not use without a look".
 std::string verdict_headline(const Calibration& calibration);

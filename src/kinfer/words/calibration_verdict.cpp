@@ -21,13 +21,15 @@ std::string rows_are(std::size_t n) {
 }
 
 /// Which rows are excluded from the figures, the worst error with them, and how many more rows the fit gives no weight.
-std::string excluded_rows_text(const Calibration& c, const std::string& worst_of_all) {
+std::vector<std::string> excluded_rows_texts(const Calibration& c, const std::string& worst_of_all) {
   const std::size_t listed = c.estimate.outliers.size(), wrong = c.gross_error_rows.size();
-  if (wrong == 0) return listed == 0 ? "" : "; " + rows_are(listed) + " not believed and left out of the fit";
-  std::string text = fmt::format("; {} not believed and left out: {} ({} at worst with {})", rows_are(wrong),
-                                 row_ranges(c.gross_error_rows), worst_of_all, wrong == 1 ? "it" : "them");
+  if (wrong == 0 && listed == 0) return {};
+  if (wrong == 0) return {rows_are(listed) + " not believed and left out of the fit"};
+  std::vector<std::string> texts{fmt::format("{} not believed and left out: {} ({} at worst with {})", rows_are(wrong),
+                                             row_ranges(c.gross_error_rows), worst_of_all, wrong == 1 ? "it" : "them")};
   const std::size_t more = listed - wrong;
-  return more == 0 ? text : text + fmt::format("; the fit gives {} more row{} no weight", more, more == 1 ? "" : "s");
+  if (more > 0) texts.push_back(fmt::format("the fit gives {} more row{} no weight", more, more == 1 ? "" : "s"));
+  return texts;
 }
 
 /// "the tool" for positions; other measurements by their own name.
@@ -35,25 +37,58 @@ std::string subject(const Calibration& c) {
   return c.measured == MeasurementKind::point ? "the tool is" : fmt::format("the {} is", measured_quantity(c.measured));
 }
 
+auto display_of(const Calibration& c) {
+  return has_lengths(c) ? millimetres : degrees;
+}
+
 std::string figures(const Calibration& c) {
-  const bool lengths = has_lengths(c);
-  const auto show = lengths ? millimetres : degrees;
+  const auto show = display_of(c);
   const ErrorStatistics &before = reported_errors(c, c.before), &after = reported_errors(c, c.after);
-  const TrainHoldout& errors = lengths ? c.after.position : c.after.orientation;
-  std::string text =
-      fmt::format("on poses that were not fitted {} {} off on average and {} at worst ({} and {} before){}", subject(c),
-                  show(after.mean), show(after.max), show(before.mean), show(before.max),
-                  excluded_rows_text(c, show(errors.holdout_all_rows.max)));
-  if (c.geometry_only) text += "; geometry alone: a swarm search has no model selection";
-  return text;
+  return fmt::format("on poses that were not fitted {} {} off on average and {} at worst ({} and {} before)",
+                     subject(c), show(after.mean), show(after.max), show(before.mean), show(before.max));
 }
 
 std::string figures_without_nominal(const Calibration& c) {
   const ErrorStatistics &train = c.after.position.train, &holdout = c.after.position.holdout;
   return fmt::format(
-      "the robot was found without a data sheet; on poses that were not fitted the tool is {} off on average and {} at "
-      "worst, on fitted ones {} on average",
+      "on poses that were not fitted the tool is {} off on average and {} at worst, on fitted ones {} on average",
       millimetres(holdout.mean), millimetres(holdout.max), millimetres(train.mean));
+}
+
+std::vector<std::string> remarks(const Calibration& c) {
+  const TrainHoldout& errors = has_lengths(c) ? c.after.position : c.after.orientation;
+  std::vector<std::string> texts = excluded_rows_texts(c, display_of(c)(errors.holdout_all_rows.max));
+  if (c.geometry_only) texts.emplace_back("geometry alone: a swarm search has no model selection");
+  return texts;
+}
+
+VerdictText with_remarks(const Calibration& c, std::string statement) {
+  return {verdict_headline(c), std::move(statement), remarks(c)};
+}
+
+VerdictText english_verdict(const Calibration& c) {
+  switch (c.reason) {
+    case CalibrationReason::improves_nominal:
+      return with_remarks(c, figures(c));
+    case CalibrationReason::no_improvement:
+      return with_remarks(c, "the corrected model is no better than the nominal one: " + figures(c));
+    case CalibrationReason::unmodelled_effects:
+      return with_remarks(c, fmt::format("better, but the errors are {:.0f} times what instrument and fit can excuse, "
+                                         "so something is not modelled: {}",
+                                         reported_errors(c, c.after).rms / *c.expected_holdout_rms, figures(c)));
+    case CalibrationReason::not_validated: {
+      VerdictText text = with_remarks(
+          c, fmt::format("the fit of all rows is {:.1f} times worse on them than the fits that validate it are on rows "
+                         "that they have not seen",
+                         final_errors(c).rms / reported_errors(c, c.after).rms));
+      text.remarks.insert(text.remarks.begin(), figures(c));
+      return text;
+    }
+    case CalibrationReason::generalises:
+    case CalibrationReason::overfitted:
+      break;
+  }
+  return {verdict_headline(c), "the robot was found without a data sheet", {figures_without_nominal(c)}};
 }
 
 }  // namespace
@@ -63,29 +98,14 @@ std::string verdict_headline(const Calibration& calibration) {
   return calibration.reason == CalibrationReason::unmodelled_effects ? "Do not use without a look" : "Do not use";
 }
 
+VerdictText verdict_text(const Calibration& c) {
+  if (language() == Language::names) return {std::string(name(c.usability)), std::string(name(c.reason)), {}};
+  return english_verdict(c);
+}
+
 std::string verdict(const Calibration& c) {
-  const std::string_view id = name(c.reason);
-  const std::string headline = verdict_headline(c);
-  switch (c.reason) {
-    case CalibrationReason::improves_nominal:
-      return phrase(id, "{}: {}.", headline, figures(c));
-    case CalibrationReason::no_improvement:
-      return phrase(id, "{}: the corrected model is no better than the nominal one: {}.", headline, figures(c));
-    case CalibrationReason::not_validated:
-      return phrase(id,
-                    "{}: the fit of all rows is {:.1f} times worse on them than the fits that validate it are on rows "
-                    "that they have not seen; {}.",
-                    headline, final_errors(c).rms / reported_errors(c, c.after).rms, figures(c));
-    case CalibrationReason::unmodelled_effects:
-      return phrase(id,
-                    "{}: better, but the errors are {:.0f} times what instrument and fit can excuse, so something is "
-                    "not modelled: {}.",
-                    headline, reported_errors(c, c.after).rms / *c.expected_holdout_rms, figures(c));
-    case CalibrationReason::generalises:
-    case CalibrationReason::overfitted:
-      return phrase(id, "{}: {}.", headline, figures_without_nominal(c));
-  }
-  return "";
+  if (language() == Language::names) return std::string(name(c.reason));
+  return kinfer::sentence(english_verdict(c)) + ".";
 }
 
 }  // namespace kinfer::words

@@ -19,45 +19,53 @@ std::string prediction_text(const PredictionSummary& prediction) {
                 prediction.held_out_seconds, prediction.worst_acceleration);
 }
 
-std::string chain_text(const Identification& result) {
+std::string joints_text(const Identification& result) {
   const auto rigid = std::ranges::count(result.joints, EstimatedJointType::rigid, &JointEstimate::type);
   const std::string rigid_text = rigid > 0 ? fmt::format(", {} of them never moved", rigid) : "";
-  const char* certificate =
-      result.search_method == LinkSearchMethod::enumeration ? "; no chain of up to 3 leaves fits better" : "";
   const std::string accuracy = accuracy_text(result.forecast);
-  return fmt::format("{} joints found{}{}, {}; {}{}", result.joints.size(), rigid_text,
+  return fmt::format("{} joints found{}{}, {}", result.joints.size(), rigid_text,
                      accuracy.empty() ? "" : ", their axes to " + accuracy,
-                     forecast_text(result.forecast, result.target), prediction_text(result.prediction), certificate);
+                     forecast_text(result.forecast, result.target));
 }
 
-/// Sentences of the findings for which `pick` is true, each after a separator.
-template <class Pick>
-std::string joined_sentences(const std::vector<Finding>& findings, const Pick& pick) {
-  std::string text;
-  for (const Finding& finding : findings)
-    if (pick(finding)) text += "; " + words::sentence(finding);
-  return text;
-}
-
-std::string recommendation_text(const Identification& result) {
-  switch (result.usability) {
+std::string recommendation_text(Usability usability) {
+  switch (usability) {
     case Usability::use:
-      return "Use it: ";
+      return "Use it";
     case Usability::use_with_care:
-      return "Use with care: ";
+      return "Use with care";
     case Usability::do_not_use:
       break;
   }
-  const std::string faults = joined_sentences(result.findings, invalidates_result);
-  return fmt::format("Do not use as it is: {}; ", faults.substr(std::min<std::size_t>(2, faults.size())));
+  return "Do not use as it is";
+}
+
+/// Faults first, then joints and accuracy, then what else is wrong with the recording.
+VerdictText english_verdict(const Identification& result) {
+  std::vector<std::string> texts;
+  for (const Finding& finding : result.findings)
+    if (invalidates_result(finding)) texts.push_back(words::sentence(finding));
+  texts.push_back(joints_text(result));
+  texts.push_back(prediction_text(result.prediction));
+  if (result.search_method == LinkSearchMethod::enumeration)
+    texts.emplace_back("no chain of up to 3 leaves fits better");
+  for (const Finding& finding : result.findings)
+    if (finding.severity != Severity::note && !invalidates_result(finding)) texts.push_back(words::sentence(finding));
+  VerdictText text{recommendation_text(result.usability), texts.front(), {}};
+  text.remarks.assign(texts.begin() + 1, texts.end());
+  return text;
 }
 
 }  // namespace
 
+VerdictText identification_verdict_text(const Identification& result) {
+  if (language() == Language::english) return english_verdict(result);
+  return {std::string(name(result.usability)), "joints_found", {}};
+}
+
 std::string identification_verdict(const Identification& result) {
-  const std::string others = joined_sentences(
-      result.findings, [](const Finding& f) { return f.severity != Severity::note && !invalidates_result(f); });
-  return phrase(name(result.usability), "{}{}{}", recommendation_text(result), chain_text(result), others);
+  if (language() == Language::names) return std::string(name(result.usability));
+  return sentence(english_verdict(result));
 }
 
 }  // namespace kinfer::words

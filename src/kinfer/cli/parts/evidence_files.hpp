@@ -3,13 +3,15 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "kinfer/base/result.hpp"
+#include "kinfer/evidence/calibration_evidence.hpp"
+#include "kinfer/evidence/identification_evidence.hpp"
 
 namespace kinfer::cli {
 
-/// Writes evidence.json as given, and report.html made from it.
-Result<void> write_evidence(const std::filesystem::path& folder, const std::string& evidence);
+/// Writes evidence.json, and report.html made from it.
+Result<void> write_evidence(const std::filesystem::path& folder, const CalibrationEvidence& evidence);
+Result<void> write_evidence(const std::filesystem::path& folder, const IdentificationEvidence& evidence);
 
 }  // namespace kinfer::cli

@@ -166,7 +166,7 @@ Result<void> write_results(const CalibrateArguments& options, const Inputs& inpu
   const std::filesystem::path folder(options.out);
   for (const OutputFile& file : calibration_files(calibration, inputs.robot))
     if (auto done = write_text_file(folder / file.name, file.text); !done) return done;
-  return write_evidence(folder, format_calibration_evidence(calibration, provenance_of(options, inputs)));
+  return write_evidence(folder, calibration_evidence(calibration, provenance_of(options, inputs)));
 }
 
 int run(const CalibrateArguments& options, const CLI::App& verb) {

@@ -43,7 +43,7 @@ std::string summary(const FrameEstimate& found) {
 Result<void> write_results(const OutputFolder& folder, RobotModel robot, const FrameEstimate& found) {
   robot.chain = found.chain;
   if (auto done = write_text_file(folder / "chain.toml", format_robot_toml(robot)); !done) return done;
-  return write_text_file(folder / "evidence.json", format_frames_evidence(found));
+  return write_text_file(folder / "evidence.json", format_frames_evidence(frames_evidence(found)));
 }
 
 int run(const FramesArguments& options) {
@@ -62,7 +62,7 @@ int run(const FramesArguments& options) {
   if (auto done = write_results(*folder, *robot, *found); !done) return fail(done.error());
   if (auto done = record.write(options.out); !done) return fail(done.error());
   if (options.common.json)
-    fmt::print("{}", format_frames_evidence(*found));
+    fmt::print("{}", format_frames_evidence(frames_evidence(*found)));
   else if (!options.common.quiet)
     fmt::print("{}", summary(*found));
   return exit_done;

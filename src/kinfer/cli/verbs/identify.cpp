@@ -175,7 +175,7 @@ Result<void> write_results(const OutputFolder& folder, const Provenance& provena
   if (auto done = write_text_file(folder / "chain.urdf", format_urdf(found.chain)); !done) return done;
   if (auto done = write_text_file(folder / "chain.mjcf", format_mjcf(found.chain)); !done) return done;
   if (auto done = write_text_file(folder / "chain_dh.csv", format_chain_dh_csv(found.dh)); !done) return done;
-  return write_evidence(folder.path(), format_identification_evidence(found, provenance));
+  return write_evidence(folder.path(), identification_evidence(found, provenance));
 }
 
 int run(const CLI::App& verb, const IdentifyArguments& options) {

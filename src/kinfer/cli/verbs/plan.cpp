@@ -160,7 +160,7 @@ int run(const PlanArguments& options, const CLI::App& verb) {
   if (auto done = write_text_file(options.out, format_pose_set_csv(poses, robot->chain, FileUnits::mm_deg)); !done)
     return fail(done.error());
   auto figure = std::filesystem::path(options.out).replace_extension(".svg");
-  if (auto done = write_text_file(figure, plan_figure(*plan)); !done) return fail(done.error());
+  if (auto done = write_text_file(figure, report::plan_figure(*plan)); !done) return fail(done.error());
   const auto figures = std::filesystem::path(options.out).replace_extension(".json");
   if (auto done = write_text_file(figures, headline_json(*plan)); !done) return fail(done.error());
   if (options.common.json)

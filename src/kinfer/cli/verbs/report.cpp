@@ -6,6 +6,8 @@
 
 #include "kinfer/cli/parts/evidence_files.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/evidence/calibration_json.hpp"
+#include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::cli {
@@ -16,28 +18,28 @@ struct ReportArguments {
   bool quiet = false;
 };
 
-Result<void> write_report(const std::filesystem::path& folder, const std::string& evidence) {
-  KINFER_TRY(page, report_html(evidence));
-  return write_text_file(folder / "report.html", page);
-}
-
 int run(const ReportArguments& options) {
   const std::filesystem::path folder = options.folder;
   const auto evidence = read_text_file(folder / "evidence.json");
   if (!evidence) return fail(evidence.error());
-  if (auto done = write_report(folder, *evidence); !done) return fail(done.error());
+  const auto page = report::report_of_file(*evidence);
+  if (!page) return fail(page.error());
+  if (auto done = write_text_file(folder / "report.html", *page); !done) return fail(done.error());
   if (!options.quiet) fmt::print("{}\n", (folder / "report.html").string());
   return exit_done;
 }
 
 }  // namespace
 
-Result<void> write_evidence(const std::filesystem::path& folder, const std::string& evidence) {
-  if (auto done = write_text_file(folder / "evidence.json", evidence); !done) return done;
-  // evidence.json is the result; a failed report does not invalidate it.
-  if (auto done = write_report(folder, evidence); !done)
-    fmt::print(stderr, "kinfer: report.html was not written: {}\n", done.error().what);
-  return {};
+Result<void> write_evidence(const std::filesystem::path& folder, const CalibrationEvidence& evidence) {
+  if (auto done = write_text_file(folder / "evidence.json", format_calibration_evidence(evidence)); !done) return done;
+  return write_text_file(folder / "report.html", report::report_html(evidence));
+}
+
+Result<void> write_evidence(const std::filesystem::path& folder, const IdentificationEvidence& evidence) {
+  if (auto done = write_text_file(folder / "evidence.json", format_identification_evidence(evidence)); !done)
+    return done;
+  return write_text_file(folder / "report.html", report::report_html(evidence));
 }
 
 Verb add_report(CLI::App& app) {

@@ -1,60 +1,90 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/evidence/frames_json.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include "kinfer/geometry/rotation.hpp"
-#include "kinfer/io/evidence/json_parts.hpp"
+#include "kinfer/io/evidence/shared_fields.hpp"
 #include "kinfer/words/calibration_frames.hpp"
 
 namespace kinfer {
-namespace {
+namespace evidence_json {
 
-using Json = nlohmann::ordered_json;
-using kinfer::json_of;  // in addition to the overloads below
-
-Json json_of(const SweepCircle& c) {
-  return {{"name", words::sweep_name(c)},
-          {"joint", c.joint},
-          {"rows", c.rows},
-          {"swept_rad", c.swept},
-          {"centre", json_of(c.centre)},
-          {"axis", json_of(c.axis)},
-          {"radius", c.radius},
-          {"rms", c.rms},
-          {"sd",
-           {{"centre_m", finite_json(c.centre_sd)},
-            {"axis_rad", finite_json(c.axis_sd)},
-            {"radius_m", finite_json(c.radius_sd)}}},
-          {"off_by", c.off_by},
-          {"turned_by", c.axis_angle}};
+template <class Archive>
+void fields(Archive& a, Value<Archive, SweepCircle>& c) {
+  a("name", c.name);
+  a("joint", c.joint);
+  a("rows", c.rows);
+  a("swept_rad", c.swept);
+  a("centre", c.centre);
+  a("axis", c.axis);
+  a("radius", c.radius);
+  a("rms", c.rms);
+  a.group("sd", [&](auto& sd) {
+    sd("centre_m", c.centre_sd);
+    sd("axis_rad", c.axis_sd);
+    sd("radius_m", c.radius_sd);
+  });
+  a("off_by", c.off_by);
+  a("turned_by", c.axis_angle);
 }
 
-Json json_of(const Frame& frame) {
+template <class Archive>
+void fields(Archive& a, Value<Archive, FrameRecord>& frame) {
+  a("xyz", frame.xyz);
+  a("rpy", frame.rpy);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, FramesEvidence>& e) {
+  a.constant("format", format_name);
+  a.constant("kind", "frames");
+  a("base", e.base);
+  a("base_from", e.base_source);
+  a("tool", e.tool);
+  a.group("papers_tool_length", [&](auto& length) {
+    length("from", e.tool_source);
+    length.when(e.tool_length_source.has_value(), "source", e.tool_length_source);
+    length("value", e.tool_length);
+  });
+  a.group("closed_form_start", [&](auto& start) {
+    start("base_differs_m", e.base_differs);
+    start("base_turned_rad", e.base_turned);
+    start("tool_differs_m", e.tool_differs);
+  });
+  a("sweeps", e.sweeps);
+}
+
+}  // namespace evidence_json
+
+namespace {
+
+FrameRecord frame_record(const Frame& frame) {
   const Pose pose = frame.pose();
-  return {{"xyz", json_of(pose.position)}, {"rpy", json_of(to_rpy(pose.rotation))}};
+  return {pose.position, to_rpy(pose.rotation)};
 }
 
 }  // namespace
 
-std::string format_frames_evidence(const FrameEstimate& found) {
-  Json sweeps = Json::array();
-  for (const SweepCircle& circle : found.sweeps) sweeps.push_back(json_of(circle));
-  const Json json{{"format", "kinfer-evidence/1"},
-                  {"kind", "frames"},
-                  {"base", json_of(found.chain.base)},
-                  {"base_from", words::base_source(found)},
-                  {"tool", json_of(found.chain.tool)},
-                  {"papers_tool_length",
-                   {{"from", words::tool_length_source(found)},
-                    {"source", name(found.tool_length_source)},
-                    {"value", found.tool_length}}},
-                  {"closed_form_start",
-                   {{"base_differs_m", found.base_differs},
-                    {"base_turned_rad", found.base_turned},
-                    {"tool_differs_m", found.tool_differs}}},
-                  {"sweeps", sweeps}};
-  return json.dump(1) + "\n";
+FramesEvidence frames_evidence(const FrameEstimate& estimate) {
+  FramesEvidence evidence{.base = frame_record(estimate.chain.base),
+                          .base_source = words::base_source(estimate),
+                          .tool = frame_record(estimate.chain.tool),
+                          .tool_length = estimate.tool_length,
+                          .tool_source = words::tool_length_source(estimate),
+                          .tool_length_source = estimate.tool_length_source,
+                          .base_differs = estimate.base_differs,
+                          .base_turned = estimate.base_turned,
+                          .tool_differs = estimate.tool_differs,
+                          .sweeps = estimate.sweeps};
+  for (SweepCircle& sweep : evidence.sweeps) sweep.name = words::sweep_name(sweep);
+  return evidence;
+}
+
+std::string format_frames_evidence(const FramesEvidence& evidence) {
+  return evidence_json::JsonWriter::object_of(evidence).dump(1) + "\n";
+}
+
+Result<FramesEvidence> read_frames_evidence(std::string_view text) {
+  return evidence_json::read_text<FramesEvidence>(text);
 }
 
 }  // namespace kinfer

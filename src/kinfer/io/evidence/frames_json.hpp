@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Evidence of `frames` as JSON (docs/formats.md). SI throughout; the same bytes for the same evidence.
+// evidence.json of `frames` (docs/formats.md), written and read. SI throughout; the same bytes for the same evidence.
 #pragma once
 
 #include <string>
+#include <string_view>
 
-#include "kinfer/evidence/frame_estimate.hpp"
+#include "kinfer/base/result.hpp"
+#include "kinfer/evidence/frames_evidence.hpp"
 
 namespace kinfer {
 
-std::string format_frames_evidence(const FrameEstimate& found);
+FramesEvidence frames_evidence(const FrameEstimate& estimate);
+std::string format_frames_evidence(const FramesEvidence& evidence);
+Result<FramesEvidence> read_frames_evidence(std::string_view text);
 
 }  // namespace kinfer

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures of the calibration report.
+// Figures of the calibration report, as HTML; empty where the evidence holds nothing to draw.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
-namespace kinfer::pages {
+#include "kinfer/evidence/calibration_evidence.hpp"
 
-std::string machine_drawing(const nlohmann::json& evidence);  ///< both chains, poses, error vectors
-std::string gain_drawing(const nlohmann::json& evidence);     ///< before and after as two bars
-std::string error_histogram(const nlohmann::json& evidence);
-std::string errors_per_pose(const nlohmann::json& evidence);
-std::string workspace_map(const nlohmann::json& evidence);  ///< top and side view
-std::string singular_value_plot(const nlohmann::json& evidence);
-std::string correlation_map(const nlohmann::json& evidence);
-std::string ladder_plot(const nlohmann::json& evidence);
+namespace kinfer::report {
+
+std::string calibrated_machine_drawing(const CalibrationEvidence& evidence);  ///< chain, poses, error vectors
+std::string gain_drawing(const CalibrationEvidence& evidence);                ///< before and after as two bars
+std::string error_histogram(const CalibrationEvidence& evidence);
+std::string errors_per_pose(const CalibrationEvidence& evidence);
+std::string workspace_map(const CalibrationEvidence& evidence);  ///< top and side view
+std::string singular_value_plot(const CalibrationEvidence& evidence);
+std::string correlation_map(const CalibrationEvidence& evidence);
+std::string model_selection_plot(const CalibrationEvidence& evidence);
 
 /// Errors compared on the first screen: lengths, or orientations if nothing else was measured; on held-out rows if
 /// there are any.
@@ -25,9 +26,9 @@ struct Headline {
   std::string unit{};  ///< "mm", "°"
   std::string what{};  ///< "the tool", "the distance", "the tool's orientation"
 };
-Headline headline(const nlohmann::json& evidence);
+Headline headline(const CalibrationEvidence& evidence);
 
 /// 95th percentile of the tool error [m]; NaN if there are no rows.
-double error_percentile_95(const nlohmann::json& evidence);
+double error_percentile_95(const CalibrationEvidence& evidence);
 
-}  // namespace kinfer::pages
+}  // namespace kinfer::report

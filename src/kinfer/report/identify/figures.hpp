@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures of the identification report.
+// Figures of the identification report, as HTML; empty where the evidence holds nothing to draw.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
-namespace kinfer::pages {
+#include "kinfer/evidence/identification_evidence.hpp"
 
-std::string identified_machine_drawing(
-    const nlohmann::json& evidence);                           ///< segments, INS, axes, unobservable directions
-std::string tree_drawing(const nlohmann::json& evidence);      ///< tree of the segments
-std::string residual_drawing(const nlohmann::json& evidence);  ///< rms of the motion and of its residual
-std::string trace_drawings(const nlohmann::json& evidence);    ///< predicted and measured signals of each trace
+namespace kinfer::report {
 
-}  // namespace kinfer::pages
+/// Segments, INS, axes, unobservable directions.
+std::string identified_machine_drawing(const IdentificationEvidence& evidence);
+std::string tree_drawing(const IdentificationEvidence& evidence);      ///< tree of the segments
+std::string residual_drawing(const IdentificationEvidence& evidence);  ///< rms of the motion and of its residual
+std::string trace_drawings(const IdentificationEvidence& evidence);    ///< predicted and measured signals
+
+}  // namespace kinfer::report

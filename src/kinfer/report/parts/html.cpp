@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace kinfer::html {
+namespace kinfer::report::html {
 
 std::string escape(std::string_view text) {
   std::string safe;
@@ -89,22 +89,24 @@ Cell text(std::string_view words) {
 }
 
 Cell number(double value, int decimals) {
-  return {fixed(value, decimals), std::isfinite(value) ? fmt::format("{}", value) : "", "num"};
+  return {fixed(value, decimals), std::isfinite(value) ? fmt::format("{}", value) : "", CellKind::number};
 }
 
 Cell number(double value, double factor, int decimals) {
-  return {fixed(factor * value, decimals), std::isfinite(value) ? fmt::format("{:.12g}", factor * value) : "", "num"};
+  return {fixed(factor * value, decimals), std::isfinite(value) ? fmt::format("{:.12g}", factor * value) : "",
+          CellKind::number};
 }
 
 Cell undetermined_cell(std::string_view words) {
-  return {fmt::format("<span class=\"tag open\">{}</span>", escape(words)), std::string(words), "num"};
+  return {fmt::format("<span class=\"tag open\">{}</span>", escape(words)), std::string(words), CellKind::number};
 }
 
 namespace {
 
 std::string cell_html(const Cell& cell) {
   std::string attributes;
-  if (!cell.kind.empty()) attributes += fmt::format(" class=\"{}\"", cell.kind);
+  if (cell.kind != CellKind::text)
+    attributes += fmt::format(" class=\"{}\"", cell.kind == CellKind::number ? "num" : "name");
   if (!cell.exact.empty()) attributes += fmt::format(" data-v=\"{}\"", escape(cell.exact));
   return fmt::format("<td{}>{}</td>", attributes, cell.shown);
 }
@@ -121,7 +123,7 @@ std::string table(const Table& t) {
                   t.name, t.name);
   html += fmt::format("<caption>{}</caption><thead><tr>", escape(t.caption));
   for (std::size_t k = 0; k < t.head.size(); ++k) {
-    const bool is_number = !t.rows.empty() && k < t.rows.front().size() && t.rows.front()[k].kind == "num";
+    const bool is_number = !t.rows.empty() && k < t.rows.front().size() && t.rows.front()[k].kind == CellKind::number;
     html += fmt::format("<th scope=\"col\"{}>{}</th>", is_number ? " class=\"num\"" : "", escape(t.head[k]));
   }
   html += "</tr></thead><tbody>\n";
@@ -146,6 +148,12 @@ std::string section(const Section& s) {
       s.id, s.id, s.id, s.title, s.lead, s.body);
 }
 
+std::string legend(const std::vector<std::pair<const char*, const char*>>& entries) {
+  std::string text = "<p class=\"legend\">";
+  for (const auto& [kind, meaning] : entries) text += fmt::format("<span><i class=\"{}\"></i>{}</span>", kind, meaning);
+  return text + "</p>";
+}
+
 std::string list(const std::vector<std::string>& items, std::string_view kind) {
   if (items.empty()) return "";
   std::string html = kind.empty() ? "<ul>" : fmt::format("<ul class=\"{}\">", kind);
@@ -153,4 +161,4 @@ std::string list(const std::vector<std::string>& items, std::string_view kind) {
   return html + "</ul>\n";
 }
 
-}  // namespace kinfer::html
+}  // namespace kinfer::report::html

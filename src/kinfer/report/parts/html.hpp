@@ -4,9 +4,10 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-namespace kinfer::html {
+namespace kinfer::report::html {
 
 std::string escape(std::string_view text);
 
@@ -20,10 +21,11 @@ std::string fixed(double value, int decimals);
 std::string short_number(double value);
 
 /// A table cell. `exact` is copied to CSV; if empty, the shown text is.
+enum class CellKind { text, number, name };
 struct Cell {
   std::string shown;  ///< HTML
   std::string exact{};
-  std::string kind{};  ///< CSS class: "num", "name", "weak"
+  CellKind kind = CellKind::text;
 };
 Cell text(std::string_view words);
 Cell number(double value, int decimals);                 ///< unscaled
@@ -48,6 +50,9 @@ struct Section {
 };
 std::string section(const Section& section);
 
+/// CSS class of each mark and its meaning.
+std::string legend(const std::vector<std::pair<const char*, const char*>>& kind_and_meaning);
+
 std::string list(const std::vector<std::string>& items, std::string_view kind = "");
 
-}  // namespace kinfer::html
+}  // namespace kinfer::report::html

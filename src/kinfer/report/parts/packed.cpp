@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-namespace kinfer::pages {
+namespace kinfer::report {
 namespace {
 
 constexpr std::uint16_t missing = 65535;
@@ -28,27 +28,19 @@ std::string base64(std::span<const unsigned char> bytes) {
   return text;
 }
 
-nlohmann::json packed(const nlohmann::json& numbers) {
+nlohmann::json packed(std::span<const double> values) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const auto& value : numbers)
-    if (value.is_number()) low = std::min(low, value.get<double>()), high = std::max(high, value.get<double>());
-  const double step = high > low ? (high - low) / most_steps : 1.0, zero = low <= high ? low : 0.0;
+  for (const double value : values)
+    if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
+  const double step = high > low && std::isfinite(high - low) ? (high - low) / most_steps : 1.0;
+  const double zero = low <= high ? low : 0.0;
   std::vector<unsigned char> bytes;
-  for (const auto& value : numbers) {
-    const std::uint16_t steps =
-        value.is_number() ? static_cast<std::uint16_t>(std::lround((value.get<double>() - zero) / step)) : missing;
+  for (const double value : values) {
+    const auto steps = std::isfinite(value) ? static_cast<std::uint16_t>(std::lround((value - zero) / step)) : missing;
     bytes.push_back(static_cast<unsigned char>(steps & 255U));
     bytes.push_back(static_cast<unsigned char>(steps >> 8));
   }
   return {{"zero", zero}, {"step", step}, {"packed", base64(bytes)}};
 }
 
-nlohmann::json with_packed_traces(nlohmann::json motion) {
-  for (auto& trace : motion.at("traces"))
-    for (const char* which : {"measured", "predicted", "residual"})
-      for (auto& axis : trace.at(which))
-        for (auto& side : axis) side = packed(side);
-  return motion;
-}
-
-}  // namespace kinfer::pages
+}  // namespace kinfer::report

@@ -7,16 +7,13 @@
 #include <span>
 #include <string>
 
-namespace kinfer::pages {
+namespace kinfer::report {
 
 /// RFC 4648, with padding.
 std::string base64(std::span<const unsigned char> bytes);
 
 /// {"zero", "step", "packed"}: value i is zero + step · (16-bit little-endian integer i of the base64 text); 65535
-/// encodes a missing value (null). `numbers` is an array of numbers and nulls.
-nlohmann::json packed(const nlohmann::json& numbers);
+/// encodes a value that is not finite.
+nlohmann::json packed(std::span<const double> values);
 
-/// The motion of evidence.json with all envelopes packed.
-nlohmann::json with_packed_traces(nlohmann::json motion);
-
-}  // namespace kinfer::pages
+}  // namespace kinfer::report

@@ -7,10 +7,10 @@
 
 #include "kinfer/report/parts/plot.hpp"
 
-namespace kinfer {
+namespace kinfer::report {
 namespace {
 
-constexpr const char* style =
+constexpr const char* plan_style =
     "<style>svg{font:12px sans-serif;background:#fff}text{fill:#444}.ty{text-anchor:end}.tx,.lx,.ly{text-anchor:middle}"
     ".grid{stroke:#e5e5e5;fill:none}.axis{stroke:#888;fill:none}.planned{stroke:#0b6;fill:none;stroke-width:2}"
     ".random{stroke:#c60;fill:none;stroke-width:2}.worst{stroke-dasharray:5 4}.level{text-anchor:end}"
@@ -65,8 +65,8 @@ std::string plan_figure(const PosePlan& plan) {
       "Expected error of the tool over the workspace by the number of poses. Solid: rms; dashed: "
       "worst place. Dots: the poses of this plan, which were exchanged until none was better.");
   const std::size_t end = text.find('>');
-  return "<?xml version=\"1.0\"?>\n" + text.substr(0, end) + " xmlns=\"http://www.w3.org/2000/svg\">" + style +
+  return "<?xml version=\"1.0\"?>\n" + text.substr(0, end) + " xmlns=\"http://www.w3.org/2000/svg\">" + plan_style +
          text.substr(end + 1) + "\n";
 }
 
-}  // namespace kinfer
+}  // namespace kinfer::report

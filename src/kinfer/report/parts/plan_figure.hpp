@@ -6,9 +6,9 @@
 
 #include "kinfer/evidence/pose_plan.hpp"
 
-namespace kinfer {
+namespace kinfer::report {
 
 /// An SVG file: rms and worst expected error over the workspace, planned and random poses.
 std::string plan_figure(const PosePlan& plan);
 
-}  // namespace kinfer
+}  // namespace kinfer::report

@@ -9,7 +9,7 @@
 
 #include "kinfer/report/parts/html.hpp"
 
-namespace kinfer::svg {
+namespace kinfer::report::svg {
 namespace {
 
 constexpr double left = 58.0, right = 12.0, top = 12.0, bottom = 44.0;  // margins around the plot area
@@ -60,12 +60,17 @@ std::string dots(const std::string& points, double radius, std::string_view kind
 std::vector<double> ticks(const Axis& axis, int count) {
   if (axis.scale == Scale::logarithmic) return powers_of_ten(axis, count);
   const double raw = (axis.high - axis.low) / count;
+  if (!(raw > 0.0) || !std::isfinite(raw)) return {};
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
   const double part = raw / power;
   const double step = power * (part <= 1.0 ? 1.0 : part <= 2.0 ? 2.0 : part <= 5.0 ? 5.0 : 10.0);
   std::vector<double> list;
-  for (double k = std::ceil(axis.low / step - 1e-9); k * step <= axis.high + 1e-9 * step; k += 1.0)
+  const double first = std::ceil(axis.low / step - 1e-9);
+  for (int i = 0; i <= 2 * count; ++i) {  // bounded: k + 1 is k where the axis is narrow and far from zero
+    const double k = first + i;
+    if (!(k * step <= axis.high + 1e-9 * step)) break;
     list.push_back(k == 0.0 ? 0.0 : k * step);
+  }
   return list;
 }
 
@@ -84,6 +89,7 @@ Axis log_axis_for(std::string label, const std::vector<double>& values) {
   for (const double v : values)
     if (std::isfinite(v) && v > 0.0) low = std::min(low, v), high = std::max(high, v);
   if (high == 0.0) low = 0.1, high = 1.0;
+  low = std::clamp(low, 1e-300, 1e300), high = std::clamp(high, low, 1e300);
   return {std::move(label), low / 1.3, high * 1.3, Scale::logarithmic};
 }
 
@@ -217,4 +223,4 @@ std::string heat_map(const std::vector<std::string>& names, const std::vector<st
       coordinate(cell * static_cast<double>(names.size()) + 1), marks, labels);
 }
 
-}  // namespace kinfer::svg
+}  // namespace kinfer::report::svg

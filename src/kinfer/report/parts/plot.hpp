@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace kinfer::svg {
+namespace kinfer::report::svg {
 
 enum class Scale { linear, logarithmic };
 
@@ -70,4 +70,4 @@ std::string dots(const std::string& points, double radius, std::string_view kind
 /// A coordinate rounded to 0.1 units, finer than a pixel.
 std::string coordinate(double value);
 
-}  // namespace kinfer::svg
+}  // namespace kinfer::report::svg

@@ -9,7 +9,7 @@
 #include "kinfer/base/angle.hpp"
 #include "kinfer/report/parts/html.hpp"
 
-namespace kinfer::svg {
+namespace kinfer::report::svg {
 namespace {
 
 using Point2 = Eigen::Vector2d;
@@ -82,4 +82,4 @@ std::string Scene::svg(Size size, std::string_view description) const {
                      coordinate(size.width), coordinate(size.height), html::escape(description), text);
 }
 
-}  // namespace kinfer::svg
+}  // namespace kinfer::report::svg

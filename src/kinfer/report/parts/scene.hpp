@@ -9,7 +9,7 @@
 #include "kinfer/geometry/pose.hpp"
 #include "kinfer/report/parts/plot.hpp"
 
-namespace kinfer::svg {
+namespace kinfer::report::svg {
 
 class Scene {
  public:
@@ -37,4 +37,4 @@ class Scene {
   std::vector<Mark> marks_;
 };
 
-}  // namespace kinfer::svg
+}  // namespace kinfer::report::svg

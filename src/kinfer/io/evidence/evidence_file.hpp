@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads evidence.json of any kind.
+#pragma once
+
+#include <string_view>
+#include <variant>
+
+#include "kinfer/base/result.hpp"
+#include "kinfer/evidence/calibration_evidence.hpp"
+#include "kinfer/evidence/frames_evidence.hpp"
+#include "kinfer/evidence/identification_evidence.hpp"
+
+namespace kinfer {
+
+using Evidence = std::variant<CalibrationEvidence, IdentificationEvidence, FramesEvidence>;
+
+Result<Evidence> read_evidence(std::string_view text);
+
+}  // namespace kinfer

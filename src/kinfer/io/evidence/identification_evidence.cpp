@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/evidence/identification_evidence.hpp"
+
+#include "kinfer/io/evidence/identification_json.hpp"
+#include "kinfer/io/evidence/make_records.hpp"
+#include "kinfer/io/evidence/plot_rounding.hpp"
+#include "kinfer/words/identification_advice.hpp"
+#include "kinfer/words/identification_notes.hpp"
+#include "kinfer/words/identification_unobservable.hpp"
+#include "kinfer/words/identification_verdict.hpp"
+
+namespace kinfer {
+namespace {
+
+JointRecord joint_record(const JointEstimate& joint) {
+  JointRecord record{.estimate = joint, .sentences = words::unobservable_sentences(joint)};
+  for (const Unobservable& u : joint.unobservable)
+    record.unobservable.push_back({u, words::unobservable_text(u, joint), words::remedy_text(u)});
+  record.estimate.unobservable.clear();
+  record.estimate.trajectory = {};
+  return record;
+}
+
+std::vector<JointRecord> joint_records(const std::vector<JointEstimate>& joints) {
+  std::vector<JointRecord> records;
+  for (const JointEstimate& joint : joints) records.push_back(joint_record(joint));
+  return records;
+}
+
+std::vector<ClockRecord> clock_records(const std::vector<SensorClockEstimate>& clocks) {
+  std::vector<ClockRecord> records;
+  for (const SensorClockEstimate& c : clocks)
+    records.push_back({c.sensor, c.offset, c.offset_sd, 1e6 * c.drift, 1e6 * c.drift_sd});
+  return records;
+}
+
+}  // namespace
+
+IdentificationEvidence identification_evidence(const Identification& i, const Provenance& provenance) {
+  return {.verdict = {words::identification_verdict(i), i.usability, words::identification_verdict_text(i)},
+          .findings = finding_records(i.findings),
+          .notes = words::note_sentences(i),
+          .root = i.root,
+          .joints = joint_records(i.joints),
+          .links = i.links,
+          .dh = i.dh,
+          .chain = chain_view(i.chain),
+          .next = words::advice_texts(i.advice),
+          .places = i.places,
+          .clocks = clock_records(i.clocks),
+          .forecast = i.forecast,
+          .order = i.order,
+          .fit = fit_record(i.searches),
+          .search = structure_search_record(i),
+          .motion = rounded(i.motion),
+          .provenance = provenance_record(provenance)};
+}
+
+}  // namespace kinfer

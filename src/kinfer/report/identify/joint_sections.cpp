@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/base/angle.hpp"
+#include "kinfer/report/identify/sections.hpp"
+#include "kinfer/report/identify/unobservable.hpp"
+#include "kinfer/report/parts/units.hpp"
+
+namespace kinfer::report {
+namespace {
+
+using html::Cell;
+
+double across(const std::array<double, 2>& sd) {
+  return std::hypot(sd[0], sd[1]);
+}
+
+Cell vector_cell(const Vec3& v, double scale, int decimals) {
+  return {fmt::format("{}&ensp;{}&ensp;{}", html::fixed(scale * v.x(), decimals), html::fixed(scale * v.y(), decimals),
+                      html::fixed(scale * v.z(), decimals)),
+          fmt::format("{:.12g} {:.12g} {:.12g}", scale * v.x(), scale * v.y(), scale * v.z()), html::CellKind::number};
+}
+
+Cell axis_cell(const JointEstimate& joint, const Vec3& axis) {
+  if (joint.type == EstimatedJointType::spherical) return {"–", "", html::CellKind::number};
+  return vector_cell(axis, 1.0, 5);
+}
+
+Cell plus_minus(double sd, double scale, double unobservable, int decimals) {
+  if (!(sd < unobservable)) return html::undetermined_cell("not determinable");
+  return html::number(sd, scale, decimals);
+}
+
+/// An unobservable point is shown in brackets: it is a choice, not a measurement.
+Cell point_cell(const Vec3& point, double sd) {
+  Cell cell = vector_cell(point, mm, 1);
+  if (!(sd < unobservable_length)) cell.shown = "<span class=\"note\">(" + cell.shown + ")</span>";
+  return cell;
+}
+
+/// A joint's axis line in the frame of one of its sensors.
+struct JointSide {
+  const std::string& sensor;
+  const Vec3 &axis, &point;
+  const std::array<double, 2>&axis_sd, &point_sd;
+};
+
+std::vector<Cell> joint_row(const JointEstimate& joint, const JointSide& side, const std::string& head,
+                            const std::string& type) {
+  return {html::text(head),
+          html::text(type),
+          html::text(side.sensor),
+          axis_cell(joint, side.axis),
+          plus_minus(across(side.axis_sd), mrad, mrad * unobservable_angle, 2),
+          point_cell(side.point, across(side.point_sd)),
+          plus_minus(across(side.point_sd), mm, unobservable_length, 1)};
+}
+
+std::string joint_table(const IdentificationEvidence& e) {
+  html::Table table{.name = "joints",
+                    .caption = "Joints in the frames of the INS on both sides; point [mm]",
+                    .head = {"Joint", "type", "seen by", "axis (x y z)", "± [mrad]", "point [mm] (x y z)", "± [mm]"},
+                    .rows = {}};
+  for (const JointRecord& record : e.joints) {
+    const JointEstimate& j = record.estimate;
+    const JointSide parent{j.parent, j.axis_in_parent, j.point_in_parent, j.sd.axis_in_parent, j.sd.point_in_parent};
+    const JointSide child{j.child, j.axis_in_child, j.point_in_child, j.sd.axis_in_child, j.sd.point_in_child};
+    table.rows.push_back(joint_row(j, parent, joint_label(j), std::string(name(j.type))));
+    table.rows.push_back(joint_row(j, child, "", ""));
+  }
+  return html::table(table);
+}
+
+std::string link_table(const IdentificationEvidence& e) {
+  html::Table table{.name = "links",
+                    .caption = "Shortest distance between the two axes of a segment [mm]",
+                    .head = {"Segment", "from", "to", "length", "±"},
+                    .rows = {}};
+  for (const LinkEstimate& link : e.links)
+    table.rows.push_back({html::text(link.segment), html::text(link.from), html::text(link.to),
+                          html::number(link.length, mm, 1), plus_minus(link.sd, mm, unobservable_length, 1)});
+  return table.rows.empty() ? "" : html::table(table);
+}
+
+/// A number without a standard deviation is a choice of the convention.
+Cell dh_cell(double value, double sd, double scale, double unobservable, int decimals) {
+  const std::string exact = fmt::format("{:.12g}", scale * value);
+  if (!(sd < unobservable)) return {html::undetermined_cell("not determinable").shown, exact, html::CellKind::number};
+  std::string shown = html::fixed(scale * value, decimals);
+  if (sd > 0.0) shown += fmt::format(" <small>± {}</small>", html::fixed(scale * sd, std::max(1, decimals - 1)));
+  return {shown, exact, html::CellKind::number};
+}
+
+std::vector<Cell> dh_row(const DhRowEstimate& row) {
+  const auto angle = [&](double DhNumbers::*k) {
+    return dh_cell(row.row.*k, row.sd.*k, 1.0 / degree, unobservable_angle, 3);
+  };
+  const auto length = [&](double DhNumbers::*k) { return dh_cell(row.row.*k, row.sd.*k, mm, unobservable_length, 1); };
+  return {html::text(row.segment),
+          angle(&DhNumbers::theta),
+          length(&DhNumbers::d),
+          length(&DhNumbers::a),
+          angle(&DhNumbers::alpha),
+          angle(&DhNumbers::beta),
+          html::text(row.theta_variable.empty() ? row.d_variable : row.theta_variable)};
+}
+
+}  // namespace
+
+html::Section joints_section(const IdentificationEvidence& e) {
+  return {"joints-section", "What was found",
+          "Every joint as a line in space, in the frame of the INS on either side. Both points are the same physical "
+          "point. A point in brackets is unobservable: a choice of the convention.",
+          joint_table(e) + link_table(e)};
+}
+
+html::Section dh_section(const IdentificationEvidence& e) {
+  html::Table table{.name = "dh",
+                    .caption = "The chain as DH rows RotZ(theta) TransZ(d) TransX(a) RotX(alpha) RotY(beta)",
+                    .head = {"Towards", "theta [°]", "d [mm]", "a [mm]", "alpha [°]", "beta [°]", "variable"},
+                    .rows = {}};
+  for (const DhRowEstimate& row : e.dh) table.rows.push_back(dh_row(row));
+  return {
+      "dh-section", "DH table",
+      "The rows lead from one INS to the next: to the joint's axis, across the joint (once for each of its axes), to "
+      "the next INS. A number without "
+      "± is a choice of the convention. <i>Not determinable</i>: unobservable from this recording.",
+      html::table(table)};
+}
+
+}  // namespace kinfer::report

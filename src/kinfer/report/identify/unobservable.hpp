@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Quantities of a machine that are unobservable from the recording, as the report lists them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinfer/evidence/identification_evidence.hpp"
+
+namespace kinfer::report {
+
+/// [m], [rad] standard deviation from which a value counts as unobservable.
+inline constexpr double unobservable_length = 0.5, unobservable_angle = 0.5;
+
+/// HTML items: what the user may need and the recording does not determine.
+std::vector<std::string> uncertain_items(const IdentificationEvidence& evidence);
+
+}  // namespace kinfer::report
