@@ -125,7 +125,7 @@ void ceres_fit(benchmark::State& state) {
     ceres::Problem problem;
     for (std::size_t i = 0; i < c.data.points.size(); ++i) {
       auto* residual = new PointResidual{c.data.points[i].position,
-                                         1.0 / weights.point_sd[i].x(),
+                                         1.0 / weights.of<PointMeasurement>()[i].x(),
                                          c.data.joints.col(c.data.points[i].row),
                                          c.nominal.base.rotation,
                                          {}};

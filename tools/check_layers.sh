@@ -6,7 +6,7 @@ set -euo pipefail
 cd "${1:-.}/src/kinfer"
 declare -A may=(
   [base]="" [linalg]="base" [geometry]="base linalg" [measurement]="base linalg geometry"
-  [kinematics]="base linalg geometry" [evidence]="base linalg geometry kinematics" [inertial]="base linalg geometry measurement"
+  [kinematics]="base linalg geometry" [evidence]="base linalg geometry measurement kinematics" [inertial]="base linalg geometry measurement"
   [search]="base linalg"
   [estimate]="base linalg geometry measurement kinematics evidence inertial search"
   [identify]="base linalg geometry measurement kinematics evidence inertial search estimate"

@@ -97,7 +97,7 @@ Trial least_squares_trial(const Problem& problem) {
   ParameterSet plain = problem.parameters;
   for (Parameter& p : plain.parameters) p.prior_sd = std::numeric_limits<double>::infinity();
   Weights weights;
-  weights.point_sd.assign(problem.fit.points.size(), Vec3::Constant(1e-5));
+  weights.of<PointMeasurement>().assign(problem.fit.points.size(), Vec3::Constant(1e-5));
   const Stopwatch watch;
   const LeastSquaresOutcome outcome =
       least_squares(pose_residuals(problem.nominal, plain, problem.fit, weights), pack(plain, problem.nominal));

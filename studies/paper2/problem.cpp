@@ -71,7 +71,7 @@ double rms_at_optimum(const Problem& problem) {
   ParameterSet plain = problem.parameters;
   for (Parameter& p : plain.parameters) p.prior_sd = std::numeric_limits<double>::infinity();
   Weights weights;
-  weights.point_sd.assign(problem.fit.points.size(), Vec3::Constant(1e-5));
+  weights.of<PointMeasurement>().assign(problem.fit.points.size(), Vec3::Constant(1e-5));
   const VectorXd x =
       least_squares(pose_residuals(problem.nominal, plain, problem.fit, weights), pack(plain, problem.nominal)).x;
   double sum = 0.0;

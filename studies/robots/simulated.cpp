@@ -106,7 +106,7 @@ void draw_wire() {
     const Calibration c = calibrated(nominal, {.sigma = 10e-6}, data);
     PoseSet test_poses = readings_of(measured(truth, paper2_poses(300, noise_free), 4321));
     measure_distances(test_poses, truth, 0.0, Rng(1));
-    errors.push_back(1e3 * mean(residual_norms(MeasurementKind::distance, c.estimate.chain, test_poses)));
+    errors.push_back(1e3 * mean(residual_norms(kind_of<DistanceMeasurement>, c.estimate.chain, test_poses)));
   }
   print_row("draw-wire, three anchors known to 5 mm (distance)", 0.035, mean(errors));
 }

@@ -36,7 +36,7 @@ TEST(Instruments, DrawWiresToUncertainAnchorsCalibrateTheRobotAndTheAnchors) {
   measure_distances(data, truth, 10e-6, Rng(3));
   const Calibration c = calibrated(nominal, data, {.sigma = 10e-6});
   EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
-  EXPECT_EQ(c.measured, MeasurementKind::distance);
+  EXPECT_EQ(c.measured, kind_of<DistanceMeasurement>);
   EXPECT_LT(c.after.position.holdout.mean, 35e-6);
   EXPECT_GT(c.before.position.holdout.mean, 5.0 * c.after.position.holdout.mean);
 }
@@ -60,7 +60,7 @@ TEST(Instruments, BallsInSocketsMakeHeldOutSocketsConsistent) {
   Chain nominal = nominal_robot();
   nominal.fixtures.socket_distances = {};
   const Calibration c = calibrated(nominal, data, {.sigma = 10e-6});
-  EXPECT_EQ(c.measured, MeasurementKind::contact);
+  EXPECT_EQ(c.measured, kind_of<SocketContact>);
   EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
   const auto spread = [&](const Chain& chain) {
     const DataWithFixtures there = with_fixtures(chain, unseen).value();

@@ -57,7 +57,7 @@ TEST(Verdict, OrientationsAreComparedWhereNoLengthWasMeasured) {
   c.before.orientation.holdout = {.mean = 1e-2, .rms = 1e-2, .n = 9};
   c.after.orientation.holdout = {.mean = 1e-3, .rms = 1e-3, .n = 9};
   c.after.orientation.train = {.mean = 1e-3, .rms = 1e-3, .n = 9};
-  c.measured = MeasurementKind::orientation;
+  c.measured = kind_of<OrientationMeasurement>;
   EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
   EXPECT_NE(words::verdict(c).find("the orientation is 0.057 deg off on average"), std::string::npos)
       << words::verdict(c);

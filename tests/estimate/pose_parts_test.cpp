@@ -212,7 +212,7 @@ TEST(ExcessNoiseOf, IsWhatTheInstrumentDoesNotExplain) {
   const PoseSet data =
       test::measured(chain, {.poses = 400, .space = {.lowest = 0.0, .clearance = 0.3}, .instrument = {.sigma = 1e-3}});
   const auto point_sd = [&](const std::optional<Instrument>& instrument) {
-    return weights_of(data, instrument, excess_noise(chain, data, instrument, 0.0)).point_sd[0].x();
+    return weights_of(data, instrument, excess_noise(chain, data, instrument, 0.0)).of<PointMeasurement>()[0].x();
   };
   EXPECT_NEAR(point_sd(std::nullopt), 1e-3, 0.1e-3);
   EXPECT_NEAR(point_sd(Instrument{.sigma = 0.3e-3}), 1e-3, 0.1e-3) << "too optimistic a specification";
@@ -224,7 +224,9 @@ TEST(ExcessNoiseOf, AMinorityOfOutliersDoesNotCountAndFittedParametersDo) {
   PoseSet data =
       test::measured(chain, {.poses = 400, .space = {.lowest = 0.0, .clearance = 0.3}, .instrument = {.sigma = 1e-3}});
   const auto sd_of = [&](double parameters) {
-    return weights_of(data, std::nullopt, excess_noise(chain, data, std::nullopt, parameters)).point_sd[0].x();
+    return weights_of(data, std::nullopt, excess_noise(chain, data, std::nullopt, parameters))
+        .of<PointMeasurement>()[0]
+        .x();
   };
   const double all = sd_of(0.0);
   EXPECT_NEAR(sd_of(300.0) / all, std::sqrt(4.0 / 3.0), 1e-6) << "300 of 1200 rows are absorbed";

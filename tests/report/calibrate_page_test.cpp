@@ -38,7 +38,7 @@ TEST(CalibrationHeadline, ComparesHeldOutRowsWhereThereAreAny) {
 
 TEST(CalibrationHeadline, NamesWhatTheErrorsReferTo) {
   CalibrationEvidence e = rich();
-  e.measured = "distance", e.measurement = MeasurementKind::distance;
+  e.measured = "distance", e.measurement = kind_of<DistanceMeasurement>;
   EXPECT_EQ(headline(e).what, "the distance");
   e.after.position = {};
   EXPECT_EQ(headline(e).what, "the tool's orientation");

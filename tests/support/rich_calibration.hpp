@@ -69,7 +69,7 @@ inline Calibration rich_calibration() {
   c.estimate.chi2_per_n = 1.2;
   c.estimate.sigma = 1e-5, c.estimate.sigma_angle = 2e-5;
   c.estimate.outliers = {
-      {2, 4, {{MeasurementKind::point, 0.01, 200.0}, {MeasurementKind::tilt, 0.1, 5.0}}, 200.0, true}};
+      {2, 4, {{kind_of<PointMeasurement>, 0.01, 200.0}, {kind_of<TiltMeasurement>, 0.1, 5.0}}, 200.0, true}};
   c.estimate.predicted_error = 3e-5;
   c.estimate.search = rich_search();
   c.nominal.position = {{5e-3, 6e-3, 1e-3, 9e-3, 5}, {5.1e-3, 6e-3, 1e-3, 9e-3, 5}, {}};

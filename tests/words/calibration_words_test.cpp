@@ -77,7 +77,7 @@ TEST(FindingWords, EquivalentFaultsAreNamedToo) {
 TEST(OutlierWords, AllMeasurementsOfARowAreNamed) {
   const Outlier outlier{
       .row = 3,
-      .reasons = {{MeasurementKind::point, 4.2134e-3, 84.2}, {MeasurementKind::orientation, 1.0 * degree, 9.0}},
+      .reasons = {{kind_of<PointMeasurement>, 4.2134e-3, 84.2}, {kind_of<OrientationMeasurement>, 1.0 * degree, 9.0}},
       .held_out = true};
   EXPECT_EQ(
       words::sentence(outlier),
@@ -86,7 +86,7 @@ TEST(OutlierWords, AllMeasurementsOfARowAreNamed) {
 }
 
 TEST(OutlierWords, EveryKindOfMeasurementHasASentenceAndAName) {
-  for (int i = 0; i < measurement_kinds; ++i) {
+  for (std::size_t i = 0; i < measurement_kinds; ++i) {
     const auto kind = static_cast<MeasurementKind>(i);
     EXPECT_FALSE(words::outlier_reasons({{kind, 1e-3, 5.0}}).empty());
     EXPECT_FALSE(words::measured_quantity(kind).empty());

@@ -44,8 +44,8 @@ struct Calibration {
   ChainFit nominal;   ///< the chain as given
   ChainFit before;    ///< base and tool refitted, everything else nominal
   ChainFit after;
-  ModelSelection model_selection;                     ///< empty where no model selection was run
-  MeasurementKind measured = MeasurementKind::point;  ///< what the position errors refer to
+  ModelSelection model_selection;                        ///< empty where no model selection was run
+  MeasurementKind measured = kind_of<PointMeasurement>;  ///< what the position errors refer to
   HoldoutScheme holdout{};
   std::vector<int> gross_error_rows;  ///< held-out rows with gross errors, excluded from all hold-out figures
   std::vector<RowErrors> rows;

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "kinfer/evidence/measurement_kind.hpp"
+#include "kinfer/measurement/measurements.hpp"
 
 namespace kinfer {
 
@@ -30,7 +30,7 @@ struct ChainFit {
 
 /// A measurement that the fit rejects as an outlier.
 struct OutlierReason {
-  MeasurementKind kind = MeasurementKind::point;
+  MeasurementKind kind = kind_of<PointMeasurement>;
   double residual = 0.0;  ///< [m], [rad], or [m/s²] of a tilt
   double sigmas = 0.0;    ///< in units of the noise
 };

@@ -15,10 +15,6 @@ bool is_active(const Joint& joint) {
   return joint.is_active && has_position(joint.type);
 }
 
-void fold(Frame& frame) {
-  frame = Frame::from_pose(frame.pose());
-}
-
 }  // namespace
 
 std::vector<int> active_joints(const Chain& chain) {
@@ -88,10 +84,9 @@ Chain with_small_rotations_folded(Chain chain) {
     if (mounting.base) fold(*mounting.base);
     fold(mounting.tool);
   }
-  for (Plane& plane : chain.fixtures.planes) {
-    plane.rotation *= rot_x(plane.small_rotation.x()) * rot_y(plane.small_rotation.y());
-    plane.small_rotation.setZero();
-  }
+  for_each_fixture_list(chain.fixtures, [](const auto&, auto& list) {
+    for (auto& fixture : list) fold(fixture);
+  });
   return chain;
 }
 

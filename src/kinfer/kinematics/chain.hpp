@@ -17,23 +17,11 @@
 #include <vector>
 
 #include "kinfer/base/constants.hpp"
-#include "kinfer/geometry/pose.hpp"
+#include "kinfer/kinematics/fixtures.hpp"
+#include "kinfer/kinematics/frame.hpp"
 #include "kinfer/kinematics/joint_type.hpp"
 
 namespace kinfer {
-
-/// A frame with a small rotation (rx, ry, rz) that an estimate may change: full rotation = rotation · Rx(rx) Ry(ry)
-/// Rz(rz). Estimating the small rotation instead of roll, pitch, yaw avoids their singularity at pitch = ±90°.
-struct Frame {
-  Vec3 xyz = Vec3::Zero();  ///< [m]
-  Mat3 rotation = Mat3::Identity();
-  Vec3 small_rotation = Vec3::Zero();  ///< [rad]
-
-  Pose pose() const {
-    return {rotation * rot_x(small_rotation.x()) * rot_y(small_rotation.y()) * rot_z(small_rotation.z()), xyz};
-  }
-  static Frame from_pose(const Pose& pose) { return {pose.position, pose.rotation, Vec3::Zero()}; }
-};
 
 /// The five numbers of a DH row.
 struct DhNumbers {
@@ -80,42 +68,11 @@ struct Joint {
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// A named point: a further target on the tool, in the tool frame, or a socket in the world.
-struct Target {
-  std::string name{};
-  Vec3 xyz = Vec3::Zero();  ///< [m]
-};
-
 /// A point mass that loads the joints before it.
 struct PointMass {
   int joint = 0;            ///< index of the joint whose frame carries it
   Vec3 com = Vec3::Zero();  ///< [m] in that frame
   double mass = 0.0;        ///< [kg]
-};
-
-/// A plane in the world: the points x with normal · x = offset.
-struct Plane {
-  std::string name{};
-  Mat3 rotation = Mat3::Identity();    ///< rotates z to the normal
-  Vec3 small_rotation = Vec3::Zero();  ///< [rad] small rotations about x and y that an estimate may change
-  double offset = 0.0;                 ///< [m]
-
-  Vec3 normal() const { return rotation * (rot_x(small_rotation.x()) * rot_y(small_rotation.y())).col(2); }
-};
-
-/// A known distance between two sockets.
-struct SocketDistance {
-  int a = 0, b = 0;       ///< indices into the sockets of the fixtures
-  double distance = 0.0;  ///< [m]
-  double sd = 0.0;        ///< [m]
-};
-
-/// Fixed objects that instruments and contacts refer to.
-struct Fixtures {
-  std::vector<Vec3> anchors{};    ///< [m] of draw wires, in the base frame
-  std::vector<Target> sockets{};  ///< in the world
-  std::vector<Plane> planes{};
-  std::vector<SocketDistance> socket_distances{};
 };
 
 /// A further set-up in which the same robot was measured: a base and tool of its own, or another branch of a tree.

@@ -8,46 +8,10 @@
 #include <vector>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/kinematics/chain.hpp"
+#include "kinfer/kinematics/parameter_address.hpp"
 #include "kinfer/linalg/types.hpp"
 
 namespace kinfer {
-
-/// [m], [rad], [1], [rad/(N m)], [1/K], [m/s²]
-enum class Quantity { length, angle, ratio, compliance, expansion, acceleration };
-std::string_view unit(Quantity quantity);  ///< "m", "rad", "1", "rad/(N m)", "1/K", "m/s^2"
-
-/// Which number of a chain a parameter is.
-enum class Owner { base, joint, tool, robot, mounting_base, mounting_tool, target, anchor, socket, plane, gravity };
-enum class Field {
-  x,
-  y,
-  z,
-  rx,
-  ry,
-  rz,
-  a,
-  alpha,
-  d,
-  theta,
-  beta,
-  gain,
-  compliance,
-  torque_compliance,
-  backlash,
-  sine,
-  cosine,
-  expansion,
-  offset,
-  coupling
-};
-struct ParameterAddress {
-  Owner owner = Owner::joint;
-  int joint = -1;  ///< index into Chain::joints, or into the list of that owner (mountings, targets, anchors, …)
-  Field field = Field::a;
-  int term = 0;  ///< sine and cosine: index into Joint::harmonics; coupling: into Joint::couplings
-  bool operator==(const ParameterAddress&) const = default;
-};
 
 struct Parameter {
   std::string name{};  ///< docs/formats.md: "a6" (rows from 1), "theta2", "gain3", "base_x", "tool_rz", "x4" and
@@ -93,8 +57,8 @@ struct ParameterSet {
 /// couplings that it has), tool.
 ParameterSet all_parameters(const Chain& chain, const Tolerances& tolerances);
 
-/// Base, tool and joints of the further mountings (base only where they have one of their own), targets, anchors,
-/// sockets and planes. Anchors, targets and frames have priors; sockets and planes have none.
+/// Base, tool and joints of the further mountings (base only where they have one of their own), targets and fixtures.
+/// Frames, targets and the fixtures whose kind has FixturePrior::tolerance have priors.
 ParameterSet setup_parameters(const Chain& chain, const Tolerances& tolerances);
 
 /// One parameter by its address, named, with the value in the chain as nominal and `prior_sd` as prior and scale.
@@ -102,9 +66,6 @@ Parameter parameter_at(const Chain& chain, const ParameterAddress& at, double pr
 
 /// Frees the named parameters and fixes all others. Programming error if a name is unknown.
 ParameterSet with_only_free(ParameterSet set, const std::vector<std::string>& names);
-
-double value_at(const Chain& chain, const ParameterAddress& address);
-void set_value_at(Chain& chain, const ParameterAddress& address, double value);
 
 /// Square-root information of the priors: their residuals at x are rows · (x − nominal), n x n for n free parameters. A
 /// parameter without a prior has a row of zeros.

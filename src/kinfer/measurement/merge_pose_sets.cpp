@@ -47,6 +47,17 @@ MatrixXd concatenate_padded(const MatrixXd& first, const MatrixXd& second, Eigen
   return both;
 }
 
+/// Refers the measurements' fixtures to `names`, to which new ones are appended.
+void rename_fixtures(PoseMeasurements& measured, const FixtureNames& old_names, FixtureNames& names) {
+  for_each_list(measured, [&]<class M>(std::vector<M>& list) {
+    if constexpr (RefersToFixture<M>)
+      if (std::vector<std::string>* known = find_fixture_names(names, M::traits.fixture))
+        for (M& measurement : list)
+          measurement.*M::fixture_index =
+              index_of(*known, (*find_fixture_names(old_names, M::traits.fixture))[measurement.*M::fixture_index]);
+  });
+}
+
 std::vector<int> remap_indices(std::vector<int> indices, std::vector<std::string>& names,
                                const std::vector<std::string>& others) {
   for (int& index : indices)
@@ -61,15 +72,8 @@ PoseSet merge_pose_sets(const PoseSet& fitted, const PoseSet& held_out) {
   PoseSet more = held_out, all = fitted;
   const auto rows = static_cast<std::size_t>(fitted.rows()), count = static_cast<std::size_t>(more.rows());
   const auto first = static_cast<int>(rows);
-  for (SocketContact& contact : more.contacts) contact.socket = index_of(all.sockets, more.sockets[contact.socket]);
-  for (PlaneContact& contact : more.plane_contacts) contact.plane = index_of(all.planes, more.planes[contact.plane]);
-  append_measurements(all.points, more.points, first);
-  append_measurements(all.orientations, more.orientations, first);
-  append_measurements(all.distances, more.distances, first);
-  append_measurements(all.contacts, more.contacts, first);
-  append_measurements(all.pairs, more.pairs, first);
-  append_measurements(all.plane_contacts, more.plane_contacts, first);
-  append_measurements(all.tilts, more.tilts, first);
+  rename_fixtures(more, held_out, all);
+  for_each_list(more, [&]<class M>(const std::vector<M>& list) { append_measurements(list_of<M>(all), list, first); });
   if (all.targets.empty()) all.targets = more.targets;
 
   const Eigen::Index dof = fitted.joints.rows();

@@ -45,45 +45,55 @@ MatrixXd pick_columns(const MatrixXd& from, const std::vector<int>& rows) {
   return from.cols() == 0 ? from : MatrixXd(from(Eigen::all, rows));
 }
 
+JointRecord select(const JointRecord& from, const std::vector<int>& rows) {
+  return {from.joint_names, from.joints(Eigen::all, rows), pick_columns(from.commanded, rows)};
+}
+
+RowConditions select(const RowConditions& from, const std::vector<int>& rows) {
+  return {pick_columns(from.torques, rows), pick_columns(from.approach, rows), pick(from.payload, rows),
+          pick(from.temperature, rows)};
+}
+
+PoseMeasurements select(const PoseMeasurements& from, const std::vector<std::vector<int>>& places) {
+  PoseMeasurements picked;
+  for_each_list(from, [&]<class M>(const std::vector<M>& list) {
+    if constexpr (std::is_same_v<M, PairDistance>)
+      picked.pairs = pick_pairs(list, places);
+    else
+      list_of<M>(picked) = pick_measurements(list, places);
+  });
+  return picked;
+}
+
+RowGroups select(const RowGroups& from, const std::vector<int>& rows) {
+  return {.setups = from.setups,
+          .sweeps = from.sweeps,
+          .tips = from.tips,
+          .setup = pick(from.setup, rows),
+          .tip = pick(from.tip, rows),
+          .sweep = pick(from.sweep, rows),
+          .mounting = pick(from.mounting, rows)};
+}
+
+RowOrigin select(const RowOrigin& from, const std::vector<int>& rows) {
+  return {pick(from.id, rows), pick(from.set, rows), pick(from.line, rows)};
+}
+
 }  // namespace
 
-bool has_measurements(const PoseSet& set) {
-  return !(set.points.empty() && set.orientations.empty() && set.distances.empty() && set.contacts.empty() &&
-           set.pairs.empty() && set.plane_contacts.empty() && set.tilts.empty());
+bool has_measurements(const PoseMeasurements& measured) {
+  bool any = false;
+  for_each_list(measured, [&](const auto& list) { any |= !list.empty(); });
+  return any;
 }
 
 PoseSet select(const PoseSet& from, const std::vector<int>& rows) {
   std::vector<std::vector<int>> places(from.rows());  // new indices of each old row
   for (std::size_t i = 0; i < rows.size(); ++i) places[rows[i]].push_back(static_cast<int>(i));
-  PoseSet set;
-  set.joint_names = from.joint_names;
-  set.joints = from.joints(Eigen::all, rows);
-  set.commanded = pick_columns(from.commanded, rows);
-  set.torques = pick_columns(from.torques, rows);
-  set.approach = pick_columns(from.approach, rows);
-  set.points = pick_measurements(from.points, places);
-  set.orientations = pick_measurements(from.orientations, places);
-  set.distances = pick_measurements(from.distances, places);
-  set.contacts = pick_measurements(from.contacts, places);
-  set.pairs = pick_pairs(from.pairs, places);
-  set.plane_contacts = pick_measurements(from.plane_contacts, places);
-  set.tilts = pick_measurements(from.tilts, places);
-  set.targets = from.targets;
-  set.sockets = from.sockets;
-  set.planes = from.planes;
-  set.setups = from.setups;
-  set.sweeps = from.sweeps;
-  set.tips = from.tips;
-  set.setup = pick(from.setup, rows);
-  set.sweep = pick(from.sweep, rows);
-  set.tip = pick(from.tip, rows);
-  set.mounting = pick(from.mounting, rows);
-  set.payload = pick(from.payload, rows);
-  set.temperature = pick(from.temperature, rows);
-  set.id = pick(from.id, rows);
-  set.set = pick(from.set, rows);
-  set.line = pick(from.line, rows);
-  return set;
+  return {
+      select(static_cast<const JointRecord&>(from), rows),        select(static_cast<const RowConditions&>(from), rows),
+      select(static_cast<const PoseMeasurements&>(from), places), static_cast<const FixtureNames&>(from),
+      select(static_cast<const RowGroups&>(from), rows),          select(static_cast<const RowOrigin&>(from), rows)};
 }
 
 PoseSet with_approach(PoseSet set) {
@@ -95,10 +105,6 @@ PoseSet with_approach(PoseSet set) {
       if (std::abs(step) > still) set.approach(k, row) = step > 0.0 ? 1.0 : -1.0;
     }
   return set;
-}
-
-double position_sd(const Instrument& instrument, const Vec3& position) {
-  return instrument.sigma + 1e-6 * instrument.ppm * position.norm();
 }
 
 PrincipalDeviations principal_deviations(const Mat3& covariance) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/words/calibration_outliers.hpp"
-#include "kinfer/base/constants.hpp"
 
 #include <algorithm>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/base/constants.hpp"
+#include "kinfer/measurement/measurements.hpp"
 #include "kinfer/words/language.hpp"
 
 namespace kinfer::words {
@@ -12,25 +13,31 @@ namespace {
 
 constexpr double gravity = standard_gravity;  // [m/s²], to show a tilt residual as an angle
 
-std::string residual_sentence(const OutlierReason& reason) {
-  const double mm = 1e3 * reason.residual;
-  switch (reason.kind) {
-    case MeasurementKind::point:
-      return phrase("point", "the point lies {:.3f} mm from where the model has it", mm);
-    case MeasurementKind::orientation:
-      return phrase("orientation", "the orientation is {:.3f} deg from what the model has", reason.residual / degree);
-    case MeasurementKind::contact:
-      return phrase("contact", "the tool point lies {:.3f} mm from its socket", mm);
-    case MeasurementKind::distance:
-      return phrase("distance", "the wire is {:.3f} mm longer or shorter than the model has it", mm);
-    case MeasurementKind::pair:
-      return phrase("pair", "the two tool points are {:.3f} mm nearer or further apart than the model has them", mm);
-    case MeasurementKind::plane:
-      return phrase("plane", "the tool point lies {:.3f} mm off its plane", mm);
-    case MeasurementKind::tilt:
-      return phrase("tilt", "the tilt is {:.3f} deg from what the model has", reason.residual / gravity / degree);
+/// The residual as a screen shows it.
+std::string shown(double residual, ResidualUnit unit) {
+  switch (unit) {
+    case ResidualUnit::length:
+      return fmt::format("{:.3f} mm", 1e3 * residual);
+    case ResidualUnit::angle:
+      return fmt::format("{:.3f} deg", residual / degree);
+    case ResidualUnit::acceleration:
+      return fmt::format("{:.3f} deg", residual / gravity / degree);
   }
   return "";
+}
+
+std::string residual_sentence(const OutlierReason& reason) {
+  const MeasurementTraits& kind = traits_of(reason.kind);
+  const std::string error = shown(reason.residual, kind.unit);
+  if (reason.kind == kind_of<PointMeasurement>)
+    return phrase(kind.name, "the point lies {} from where the model has it", error);
+  if (reason.kind == kind_of<SocketContact>) return phrase(kind.name, "the tool point lies {} from its socket", error);
+  if (reason.kind == kind_of<DistanceMeasurement>)
+    return phrase(kind.name, "the wire is {} longer or shorter than the model has it", error);
+  if (reason.kind == kind_of<PairDistance>)
+    return phrase(kind.name, "the two tool points are {} nearer or further apart than the model has them", error);
+  if (reason.kind == kind_of<PlaneContact>) return phrase(kind.name, "the tool point lies {} off its plane", error);
+  return phrase(kind.name, "the {} is {} from what the model has", kind.quantity, error);
 }
 
 std::string list_of(const std::vector<std::string>& names) {
@@ -42,22 +49,7 @@ std::string list_of(const std::vector<std::string>& names) {
 }  // namespace
 
 std::string measured_quantity(MeasurementKind kind) {
-  switch (kind) {
-    case MeasurementKind::contact:
-      return "ball in socket";
-    case MeasurementKind::distance:
-      return "distance";
-    case MeasurementKind::pair:
-      return "ball-bar length";
-    case MeasurementKind::plane:
-      return "distance from the plane";
-    case MeasurementKind::point:
-      return "position";
-    case MeasurementKind::orientation:
-    case MeasurementKind::tilt:
-      break;
-  }
-  return "orientation";
+  return std::string(traits_of(kind).quantity);
 }
 
 std::string outlier_reasons(const std::vector<OutlierReason>& reasons) {

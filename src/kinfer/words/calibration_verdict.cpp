@@ -34,7 +34,8 @@ std::vector<std::string> excluded_rows_texts(const Calibration& c, const std::st
 
 /// "the tool" for positions; other measurements by their own name.
 std::string subject(const Calibration& c) {
-  return c.measured == MeasurementKind::point ? "the tool is" : fmt::format("the {} is", measured_quantity(c.measured));
+  return c.measured == kind_of<PointMeasurement> ? "the tool is"
+                                                 : fmt::format("the {} is", measured_quantity(c.measured));
 }
 
 auto display_of(const Calibration& c) {

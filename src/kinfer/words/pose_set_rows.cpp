@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "kinfer/measurement/measurements.hpp"
 #include "kinfer/words/calibration_outliers.hpp"
 #include "kinfer/words/finding_words.hpp"
 #include "kinfer/words/language.hpp"

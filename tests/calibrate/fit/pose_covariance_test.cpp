@@ -125,9 +125,9 @@ TEST(PoseCovariance, OnlyBadPointsAndOrientationsOfCoupledPosesAreRejected) {
     for (const OutlierReason& reason : found.estimate.outliers[i].reasons) list.push_back(reason.kind);
     return list;
   };
-  EXPECT_EQ(kinds(0), std::vector{MeasurementKind::point}) << "its orientation is good";
+  EXPECT_EQ(kinds(0), std::vector{kind_of<PointMeasurement>}) << "its orientation is good";
   EXPECT_EQ(found.estimate.outliers[1].row, 17);
-  EXPECT_EQ(kinds(1), std::vector{MeasurementKind::orientation}) << "its point is good";
+  EXPECT_EQ(kinds(1), std::vector{kind_of<OrientationMeasurement>}) << "its point is good";
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ struct Case {
         set(paper_dh_parameters(nominal, {}).value()),
         weights(weights_of(data, tracker)) {
     data.orientations.clear();
-    weights.orientation_sd.clear();
+    weights.of<OrientationMeasurement>().clear();
   }
 };
 
@@ -72,7 +72,7 @@ TEST(Bootstrap, RefitsByPoseResidualsAndByKernelsAgree) {
   const Bootstrap fast = bootstrap(c.truth, c.set, c.data, c.weights, {.resamples = 5}, Rng(3));
   // An orientation without information sends the same problem through the general residuals.
   c.data.orientations.push_back({.row = 0, .orientation = Quat::Identity()});
-  c.weights.orientation_sd.push_back(Vec3::Constant(1e9));
+  c.weights.of<OrientationMeasurement>().push_back(Vec3::Constant(1e9));
   const Bootstrap slow = bootstrap(c.truth, c.set, c.data, c.weights, {.resamples = 5}, Rng(3));
   for (Eigen::Index k = 0; k < fast.x.rows(); ++k)
     EXPECT_LT((fast.x.row(k) - slow.x.row(k)).norm(), 1e-5 * c.set.free()[k]->prior_sd);

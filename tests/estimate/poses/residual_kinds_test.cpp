@@ -174,8 +174,8 @@ TEST(ResidualKinds, SixRowsOfAPoseWeightItsErrorByTheInverseOfTheirCovariance) {
   wider.topLeftCorner<3, 3>() += excess * excess * Mat3::Identity();
   wider.bottomRightCorner<3, 3>() += rotation_excess * rotation_excess * Mat3::Identity();
   ExcessNoise more;
-  more.of[static_cast<std::size_t>(MeasurementKind::point)] = excess;
-  more.of[static_cast<std::size_t>(MeasurementKind::orientation)] = rotation_excess;
+  more.of[index(kind_of<PointMeasurement>)] = excess;
+  more.of[index(kind_of<OrientationMeasurement>)] = rotation_excess;
   const double less = one.off.dot(wider.inverse() * one.off);
   EXPECT_NEAR(squares(one.set, weights_of(one.set, Instrument{.sigma = 1.0}, more)), less, 1e-8 * less);
 }
@@ -195,24 +195,25 @@ TEST(ResidualKinds, AnOrientationWhosePointIsNotKeptHasItsOwnCovariance) {
 TEST(ResidualKinds, AtTheTruthTheResidualsAreTheNoise) {
   const Chain chain = rich_robot();
   const PoseSet data = all_kinds(chain);
-  EXPECT_NEAR(rms(residual_norms(MeasurementKind::distance, chain, data)), 1e-3, 0.4e-3);
-  EXPECT_NEAR(rms(residual_norms(MeasurementKind::pair, chain, data)), 1e-3, 0.7e-3);
-  EXPECT_NEAR(rms(residual_norms(MeasurementKind::tilt, chain, data)), 0.05 * std::sqrt(2.0), 0.03);
-  for (const double error : residual_norms(MeasurementKind::orientation, chain, data)) EXPECT_NEAR(error, 0.02, 1e-9);
+  EXPECT_NEAR(rms(residual_norms(kind_of<DistanceMeasurement>, chain, data)), 1e-3, 0.4e-3);
+  EXPECT_NEAR(rms(residual_norms(kind_of<PairDistance>, chain, data)), 1e-3, 0.7e-3);
+  EXPECT_NEAR(rms(residual_norms(kind_of<TiltMeasurement>, chain, data)), 0.05 * std::sqrt(2.0), 0.03);
+  for (const double error : residual_norms(kind_of<OrientationMeasurement>, chain, data))
+    EXPECT_NEAR(error, 0.02, 1e-9);
 }
 
 TEST(ResidualKinds, ADrawWireDoesNotDependOnTheBase) {
   Chain chain = rich_robot();
   const PoseSet data = all_kinds(chain);
-  const std::vector<double> before = residual_norms(MeasurementKind::distance, chain, data);
+  const std::vector<double> before = residual_norms(kind_of<DistanceMeasurement>, chain, data);
   chain.base.xyz += Vec3(1, 2, 3);
   chain.base.rotation = rot_x(0.7) * chain.base.rotation;
   PoseSet unloaded = data;  // gravity would deflect the rotated robot otherwise
   chain.joints[1].compliance = 0.0;
   Chain straight = rich_robot();
   straight.joints[1].compliance = 0.0;
-  const std::vector<double> here = residual_norms(MeasurementKind::distance, straight, unloaded),
-                            there = residual_norms(MeasurementKind::distance, chain, unloaded);
+  const std::vector<double> here = residual_norms(kind_of<DistanceMeasurement>, straight, unloaded),
+                            there = residual_norms(kind_of<DistanceMeasurement>, chain, unloaded);
   for (std::size_t i = 0; i < here.size(); ++i) EXPECT_NEAR(here[i], there[i], 1e-12);
 }
 

@@ -64,10 +64,10 @@ TEST(EvidenceRoundTrip, ValuesOfACalibrationComeBack) {
   EXPECT_EQ(e.unknown_robot->axes.pairs[0].distance, 0.4);
   EXPECT_FALSE(e.unknown_robot->axes.pairs[1].distance);
   EXPECT_EQ(e.unknown_robot->axes.wrists, c.unknown_robot->axes.wrists);
-  EXPECT_EQ(e.measurement, MeasurementKind::point);
+  EXPECT_EQ(e.measurement, kind_of<PointMeasurement>);
   EXPECT_EQ(e.expected_holdout_rms, 1.1e-4);
   EXPECT_EQ(e.identifiability.undetermined[0].parameters, (std::vector<std::string>{"a2", "d<3>"}));
-  EXPECT_EQ(e.outliers[0].outlier.reasons[1].kind, MeasurementKind::tilt);
+  EXPECT_EQ(e.outliers[0].outlier.reasons[1].kind, kind_of<TiltMeasurement>);
   EXPECT_TRUE(e.outliers[0].outlier.held_out);
   EXPECT_EQ(e.model.models[1].decision, Decision::no_improvement);
   EXPECT_EQ(e.model.models[1].interpolation->mean_after, 1.1e-4);

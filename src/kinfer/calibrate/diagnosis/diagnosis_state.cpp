@@ -31,8 +31,7 @@ Chain with_aligned_base(Chain chain, const PoseSet& data) {
 
 /// The set with its point measurements only.
 PoseSet keep_points_only(PoseSet data) {
-  data.orientations.clear(), data.distances.clear(), data.contacts.clear(), data.pairs.clear();
-  data.plane_contacts.clear(), data.tilts.clear();
+  static_cast<PoseMeasurements&>(data) = {.points = std::move(data.points)};
   return data;
 }
 
@@ -47,7 +46,7 @@ FrameFit refine_base_and_tool(Chain chain, const PoseSet& data) {
   FrameFit fit{chain, median(point_errors(chain, data))};
   for (int i = 0; i < rounds && std::isfinite(fit.median_error); ++i) {
     Weights weights;
-    weights.point_sd.assign(data.points.size(), Vec3::Constant(std::max(fit.median_error, 1e-9)));
+    weights.of<PointMeasurement>().assign(data.points.size(), Vec3::Constant(std::max(fit.median_error, 1e-9)));
     const Chain from = with_small_rotations_folded(fit.chain);
     fit.chain =
         unpack(frames, from, least_squares(pose_residuals(from, frames, data, weights), pack(frames, from), options).x);

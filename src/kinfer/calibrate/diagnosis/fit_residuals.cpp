@@ -153,8 +153,9 @@ std::vector<Outlier> find_unfitted_outliers(const Estimate& fit, const Calibrati
     const PointMeasurement& point = task.data.points[i];
     const double sd = std::max(fit.sigma, point.sd ? point.sd->maxCoeff() : 0.0);
     if (errors[i] <= limit * sd || std::binary_search(fitted.begin(), fitted.end(), point.row)) continue;
-    wrong.push_back(
-        {.row = point.row, .reasons = {{MeasurementKind::point, errors[i], errors[i] / sd}}, .sigmas = errors[i] / sd});
+    wrong.push_back({.row = point.row,
+                     .reasons = {{kind_of<PointMeasurement>, errors[i], errors[i] / sd}},
+                     .sigmas = errors[i] / sd});
   }
   return wrong;
 }

@@ -25,9 +25,10 @@ Overloaded(Cases...) -> Overloaded<Cases...>;
 /// Contacts alone determine only ratios of lengths: shrinking the robot would reduce the residuals. Without measured
 /// lengths the tolerances of lengths are not scaled.
 bool lengths_are_measured(const CalibrationTask& task) {
-  const PoseSet& data = task.data;
-  return data.points.size() + data.distances.size() + data.pairs.size() > 0 ||
-         !task.nominal.fixtures.socket_distances.empty();
+  bool measured = !task.nominal.fixtures.socket_distances.empty();
+  for_each_list(task.data,
+                [&]<class M>(const std::vector<M>& list) { measured |= M::traits.observes.scale && !list.empty(); });
+  return measured;
 }
 
 Tolerances scaled(const CalibrationTask& task, double factor) {

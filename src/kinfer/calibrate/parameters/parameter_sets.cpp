@@ -8,64 +8,50 @@
 namespace kinfer::calibrate {
 namespace {
 
-bool is_rotation(Field field) {
-  return field == Field::rx || field == Field::ry || field == Field::rz;
-}
 bool is_dh_row(Field field) {
   return field == Field::a || field == Field::alpha || field == Field::d || field == Field::theta;
 }
 
-/// The kinds of measurement in the rows of one mounting, and which frame parameters they depend on.
-struct MeasuredKinds {
-  bool points = false, targets = false, orientations = false, tilts = false;
-  bool tool_contact = false;  ///< distances, contacts: they depend on the tool point, but do not determine the base
-
-  bool depends_on(Owner owner, Field field) const {
-    const bool turn = is_rotation(field);
-    if (owner == Owner::base || owner == Owner::mounting_base) return points || (turn && (orientations || tilts));
-    return turn ? orientations || tilts || targets : points || tool_contact;
-  }
-};
-
-MeasuredKinds measured_in_mounting(const PoseSet& data, int mounting) {
+/// What the measurements in the rows of one mounting observe.
+Observes observed_in_mounting(const PoseSet& data, int mounting) {
   const auto here = [&](int row) { return data.mounting.empty() ? mounting < 0 : data.mounting[row] == mounting; };
-  MeasuredKinds kinds;
-  for (const PointMeasurement& m : data.points)
-    if (here(m.row)) kinds.points = true, kinds.targets |= m.target >= 0;
-  for (const auto& m : data.orientations) kinds.orientations |= here(m.row);
-  for (const auto& m : data.tilts) kinds.tilts |= here(m.row);
-  for (const auto& m : data.distances) kinds.tool_contact |= here(m.row);
-  for (const auto& m : data.contacts) kinds.tool_contact |= here(m.row);
-  for (const auto& m : data.pairs) kinds.tool_contact |= here(m.row);
-  for (const auto& m : data.plane_contacts) kinds.tool_contact |= here(m.row);
-  return kinds;
+  Observes sum;
+  for_each_list(data, [&]<class M>(const std::vector<M>& list) {
+    if (std::none_of(list.begin(), list.end(), [&](const M& m) { return here(m.row); })) return;
+    constexpr Observes observes = M::traits.observes;
+    sum.base_position |= observes.base_position, sum.base_rotation |= observes.base_rotation;
+    sum.tool_position |= observes.tool_position, sum.tool_rotation |= observes.tool_rotation;
+  });
+  sum.tool_rotation |= std::any_of(data.points.begin(), data.points.end(),
+                                   [&](const PointMeasurement& m) { return m.target >= 0 && here(m.row); });
+  return sum;
 }
 
-template <class List, class Same>
-bool any(const List& list, Same same) {
-  return std::any_of(list.begin(), list.end(), same);
+bool is_observed(const ParameterAddress& frame, const PoseSet& data) {
+  const bool own = frame.owner == Owner::base || frame.owner == Owner::tool;
+  const Observes observed = observed_in_mounting(data, own ? -1 : frame.joint);
+  const bool turn = quantity_of(frame) == Quantity::angle;
+  if (frame.owner == Owner::base || frame.owner == Owner::mounting_base)
+    return turn ? observed.base_rotation : observed.base_position;
+  return turn ? observed.tool_rotation : observed.tool_position;
 }
 
-/// Whether any row refers to that target, anchor, socket or plane, or depends on that frame.
+bool refers_to(const PoseMeasurements& data, FixtureKind kind, int fixture) {
+  bool found = false;
+  for_each_list(data, [&]<class M>(const std::vector<M>& list) {
+    if constexpr (RefersToFixture<M>)
+      if (fixture_kind(M::traits.fixture) == kind)
+        found |= std::any_of(list.begin(), list.end(), [&](const M& m) { return m.*M::fixture_index == fixture; });
+  });
+  return found;
+}
+
+/// Whether any row refers to that target or fixture, or depends on that frame.
 bool is_referenced(const ParameterAddress& at, const PoseSet& data) {
-  switch (at.owner) {
-    case Owner::base:
-    case Owner::tool:
-      return measured_in_mounting(data, -1).depends_on(at.owner, at.field);
-    case Owner::mounting_base:
-    case Owner::mounting_tool:
-      return measured_in_mounting(data, at.joint).depends_on(at.owner, at.field);
-    case Owner::target:
-      return any(data.points, [&](const PointMeasurement& m) { return m.target == at.joint; });
-    case Owner::anchor:
-      return any(data.distances, [&](const DistanceMeasurement& m) { return m.anchor == at.joint; });
-    case Owner::socket:
-      return any(data.contacts, [&](const SocketContact& m) { return m.socket == at.joint; });
-    case Owner::plane:
-      return any(data.plane_contacts, [&](const PlaneContact& m) { return m.plane == at.joint; });
-    default:
-      return false;
-  }
+  if (is_frame_parameter(at)) return is_observed(at, data);
+  if (is_fixture_parameter(at)) return refers_to(data, at.fixture, at.joint);
+  return at.owner == Owner::target && std::any_of(data.points.begin(), data.points.end(),
+                                                  [&](const PointMeasurement& m) { return m.target == at.joint; });
 }
 
 /// Hayati's angle beta is needed where the common normal of two axes is ill-defined: alpha near 0 or 180 degrees.
@@ -104,8 +90,8 @@ bool is_offset(const Joint& joint, Field field) {
 
 ParameterSet all_with_fixtures(const Chain& chain, const Tolerances& tolerances) {
   ParameterSet set = all_parameters(chain, tolerances);
-  const ParameterSet is_fixture = setup_parameters(chain, tolerances);
-  set.parameters.insert(set.parameters.end(), is_fixture.parameters.begin(), is_fixture.parameters.end());
+  const ParameterSet setup = setup_parameters(chain, tolerances);
+  set.parameters.insert(set.parameters.end(), setup.parameters.begin(), setup.parameters.end());
   return set;
 }
 
@@ -134,14 +120,14 @@ ParameterSet frame_parameters(const Chain& chain, const PoseSet& data, const Tol
   ParameterSet set = select_parameters(
       chain, tolerances, [&](const Parameter& p) { return p.at.owner != Owner::target && is_referenced(p.at, data); });
   for (Parameter& parameter : set.parameters)
-    if (parameter.at.owner != Owner::anchor) parameter.prior_sd = std::numeric_limits<double>::infinity();
+    if (!is_fixture_parameter(parameter.at)) parameter.prior_sd = std::numeric_limits<double>::infinity();
   add_gravity(set, chain, data, tolerances);
   return set;
 }
 
 ParameterSet geometric_parameters(const Chain& chain, const PoseSet& data, const Tolerances& tolerances) {
   ParameterSet set = select_parameters(chain, tolerances, [&](const Parameter& p) {
-    return p.at.owner == Owner::joint ? is_geometric(chain, p.at) : is_referenced(p.at, data);
+    return is_joint_parameter(p.at) ? is_geometric(chain, p.at) : is_referenced(p.at, data);
   });
   add_gravity(set, chain, data, tolerances);
   return set;
@@ -150,10 +136,10 @@ ParameterSet geometric_parameters(const Chain& chain, const PoseSet& data, const
 ParameterSet joint_offset_parameters(const Chain& chain, const PoseSet& data, const Tolerances& tolerances) {
   constexpr double collision_angle = 3.0 * degree, collision_length = 10e-3;
   ParameterSet set = select_parameters(chain, tolerances, [&](const Parameter& p) {
-    return p.at.owner == Owner::joint ? is_offset(chain.joints[p.at.joint], p.at.field) : is_referenced(p.at, data);
+    return is_joint_parameter(p.at) ? is_offset(chain.joints[p.at.joint], p.at.field) : is_referenced(p.at, data);
   });
   for (Parameter& parameter : set.parameters)
-    if (parameter.at.owner == Owner::joint)
+    if (is_joint_parameter(parameter.at))
       parameter.scale = parameter.prior_sd =
           parameter.quantity == Quantity::length ? collision_length : collision_angle;
   add_gravity(set, chain, data, tolerances);
@@ -162,7 +148,7 @@ ParameterSet joint_offset_parameters(const Chain& chain, const PoseSet& data, co
 
 Result<ParameterSet> paper_dh_parameters(const Chain& chain, const Tolerances& tolerances) {
   ParameterSet set = select_parameters(
-      chain, tolerances, [](const Parameter& p) { return p.at.owner == Owner::joint && is_dh_row(p.at.field); });
+      chain, tolerances, [](const Parameter& p) { return is_joint_parameter(p.at) && is_dh_row(p.at.field); });
   if (set.parameters.empty()) return error("paper24 needs a robot in DH or MDH form");
   return set;
 }
@@ -183,10 +169,8 @@ Result<ParameterSet> named_parameters(const Chain& chain, const Tolerances& tole
 
 ParameterSet restricted_to_data(ParameterSet set, const PoseSet& data) {
   std::erase_if(set.parameters, [&](const Parameter& parameter) {
-    const Owner owner = parameter.at.owner;
-    const bool is_fixture =
-        owner == Owner::target || owner == Owner::anchor || owner == Owner::socket || owner == Owner::plane;
-    return is_fixture && !is_referenced(parameter.at, data);
+    const bool is_object = parameter.at.owner == Owner::target || is_fixture_parameter(parameter.at);
+    return is_object && !is_referenced(parameter.at, data);
   });
   return set;
 }

@@ -9,13 +9,13 @@
 namespace kinfer::calibrate {
 
 /// The frames and fixtures that the measurements depend on: bases, tools (rotations only where orientations, tilts or
-/// several targets are measured), sockets and planes, all without a prior; anchors and the direction of gravity with
-/// their priors.
+/// several targets are measured), targets and fixtures without a prior; fixtures whose kind has a prior and the
+/// direction of gravity with theirs.
 ParameterSet frame_parameters(const Chain& chain, const PoseSet& data, const Tolerances& tolerances = {});
 
 /// The complete geometric set: those of frame_parameters, targets, a alpha d theta of every joint (x y z rx ry rz of a
-/// URDF joint), beta where two axes are nearly parallel, and the gain of prismatic joints. All but sockets and planes
-/// have priors, so that redundant parameters do not make the problem singular.
+/// URDF joint), beta where two axes are nearly parallel, and the gain of prismatic joints. All but the fixtures without
+/// a prior have one, so that redundant parameters do not make the problem singular.
 ParameterSet geometric_parameters(const Chain& chain, const PoseSet& data, const Tolerances& tolerances);
 
 /// Parameters that change in a collision or when a motor is replaced: the offset of each actuated joint (theta, d of a
@@ -30,7 +30,7 @@ Result<ParameterSet> paper_dh_parameters(const Chain& chain, const Tolerances& t
 Result<ParameterSet> named_parameters(const Chain& chain, const Tolerances& tolerances,
                                       const std::vector<std::string>& names);
 
-/// The set without the targets, anchors, sockets and planes that no row of `data` refers to.
+/// The set without the targets and fixtures that no row of `data` refers to.
 ParameterSet restricted_to_data(ParameterSet set, const PoseSet& data);
 
 /// The set with its prior means at the values of `chain`.

@@ -2,7 +2,7 @@
 #include "kinfer/calibrate/start/fixtures.hpp"
 
 #include <algorithm>
-#include <set>
+#include <optional>
 
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/fit.hpp"
@@ -32,8 +32,10 @@ std::vector<Named> ordered_by_name(const std::vector<std::string>& names, const 
 
 void order_fixtures(Fixtures& fixtures, const PoseSet& data) {
   const std::vector<Target> before = fixtures.sockets;
-  fixtures.sockets = ordered_by_name(data.sockets, before);
-  fixtures.planes = ordered_by_name(data.planes, fixtures.planes);
+  for_each_fixture_list(fixtures, [&]<class T>(const auto& row, std::vector<T>& list) {
+    if constexpr (requires(T fixture) { fixture.name; })
+      if (const auto* names = find_fixture_names(data, row.kind)) list = ordered_by_name(*names, list);
+  });
   for (SocketDistance& known : fixtures.socket_distances)
     for (int* index : {&known.a, &known.b}) *index = find_by_name(fixtures.sockets, before[*index].name);
 }
@@ -90,21 +92,70 @@ Vec3 mean_point(const std::vector<Vec3>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-void place(Plane& plane, const std::vector<Vec3>& points) {
-  const PlaneFit fit = fit_plane(points);
+/// Whether a fixture is estimated as the start of a robust fit, or for rows whose outliers are already excluded.
+enum class Estimator { robust, mean };
+
+/// The measurements of one fixture, with the tool point of each.
+template <class M>
+struct Sightings {
+  std::vector<M> measured;
+  std::vector<Vec3> points;
+};
+
+/// The functions `place` estimate a fixture from its sightings; unchanged where they do not suffice.
+void place(Target& socket, const Sightings<SocketContact>& seen, Estimator estimator) {
+  if (seen.points.empty()) return;
+  socket.xyz = estimator == Estimator::robust ? median_point(seen.points) : mean_point(seen.points);
+}
+
+void place(Plane& plane, const Sightings<PlaneContact>& seen, Estimator) {
+  if (seen.points.size() < 3) return;
+  const PlaneFit fit = fit_plane(seen.points);
   const Vec3 u = any_perpendicular(fit.normal);
   plane.rotation << u, fit.normal.cross(u), fit.normal;
   plane.small_rotation.setZero();
   plane.offset = fit.normal.dot(fit.point);
 }
 
-/// Tool points grouped by socket or by plane.
-template <class Contact>
-std::vector<std::vector<Vec3>> grouped(const std::vector<Contact>& contacts, int Contact::*of, std::size_t groups,
+/// One entry for each fixture.
+template <class M>
+std::vector<Sightings<M>> sightings_of(const std::vector<M>& list, std::size_t fixtures,
                                        const std::vector<Vec3>& points) {
-  std::vector<std::vector<Vec3>> lists(groups);
-  for (const Contact& contact : contacts) lists[contact.*of].push_back(points[contact.row]);
-  return lists;
+  std::vector<Sightings<M>> sightings(fixtures);
+  for (const M& measurement : list) {
+    Sightings<M>& seen = sightings[measurement.*M::fixture_index];
+    seen.measured.push_back(measurement), seen.points.push_back(points[measurement.row]);
+  }
+  return sightings;
+}
+
+template <class M>
+std::vector<int> counts_of(const std::vector<M>& list, std::size_t fixtures) {
+  std::vector<int> counts(fixtures, 0);
+  for (const M& measurement : list) ++counts[measurement.*M::fixture_index];
+  return counts;
+}
+
+/// Estimates the fixtures without a prior to which `data` refers and `fitted` does not.
+Chain with_placed_fixtures(const Chain& chain, const PoseSet& data, const PoseMeasurements& fitted,
+                           Estimator estimator) {
+  Chain result = chain;
+  std::optional<std::vector<Vec3>> points;
+  for_each_list(data, [&]<class M>(const std::vector<M>& list) {
+    if constexpr (RefersToFixture<M>) {
+      constexpr auto& row = std::get<index(fixture_kind(M::traits.fixture))>(fixture_lists);
+      if constexpr (row.prior == FixturePrior::none) {
+        if (list.empty()) return;
+        if (!points) points = tool_points(chain, data);
+        auto& fixtures = result.fixtures.*row.list;
+        const auto of_fitted = counts_of(list_of<M>(fitted), fixtures.size());
+        const auto sightings = sightings_of(list, fixtures.size(), *points);
+        for (std::size_t i = 0; i < fixtures.size(); ++i)
+          if (of_fitted[i] == 0) place(fixtures[i], sightings[i], estimator);
+      }
+    }
+  });
+  return result;
 }
 
 }  // namespace
@@ -129,35 +180,11 @@ Result<DataWithFixtures> with_fixtures(const Chain& given, const PoseSet& data) 
 }
 
 Chain with_initial_fixtures(const Chain& chain, const PoseSet& data) {
-  Chain result = chain;
-  Fixtures& fixtures = result.fixtures;
-  if (data.contacts.empty() && data.plane_contacts.empty()) return result;
-  const std::vector<Vec3> points = tool_points(chain, data);
-  const auto in_sockets = grouped(data.contacts, &SocketContact::socket, fixtures.sockets.size(), points);
-  for (std::size_t i = 0; i < in_sockets.size(); ++i)
-    if (!in_sockets[i].empty()) fixtures.sockets[i].xyz = median_point(in_sockets[i]);
-  const auto on_planes = grouped(data.plane_contacts, &PlaneContact::plane, fixtures.planes.size(), points);
-  for (std::size_t i = 0; i < on_planes.size(); ++i)
-    if (on_planes[i].size() >= 3) place(fixtures.planes[i], on_planes[i]);
-  return result;
+  return with_placed_fixtures(chain, data, {}, Estimator::robust);
 }
 
 Chain with_unfitted_fixtures(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& evaluated) {
-  Chain result = chain;
-  Fixtures& fixtures = result.fixtures;
-  if (evaluated.contacts.empty() && evaluated.plane_contacts.empty()) return result;
-  std::set<int> sockets, planes;
-  for (const SocketContact& contact : fitted_rows.contacts) sockets.insert(contact.socket);
-  for (const PlaneContact& contact : fitted_rows.plane_contacts) planes.insert(contact.plane);
-  const std::vector<Vec3> points = tool_points(chain, evaluated);
-  const auto in_sockets = grouped(evaluated.contacts, &SocketContact::socket, fixtures.sockets.size(), points);
-  for (std::size_t i = 0; i < in_sockets.size(); ++i)
-    if (!in_sockets[i].empty() && !sockets.contains(static_cast<int>(i)))
-      fixtures.sockets[i].xyz = mean_point(in_sockets[i]);
-  const auto on_planes = grouped(evaluated.plane_contacts, &PlaneContact::plane, fixtures.planes.size(), points);
-  for (std::size_t i = 0; i < on_planes.size(); ++i)
-    if (on_planes[i].size() >= 3 && !planes.contains(static_cast<int>(i))) place(fixtures.planes[i], on_planes[i]);
-  return result;
+  return with_placed_fixtures(chain, evaluated, fitted_rows, Estimator::mean);
 }
 
 }  // namespace kinfer::calibrate

@@ -183,13 +183,24 @@ std::vector<Chain> initial_guesses(const Chain& nominal, const PoseSet& data) {
   return list;
 }
 
+/// Number of measurements of the kinds whose traits are accepted.
+template <class Accepts>
+std::size_t count_measurements(const PoseMeasurements& data, Accepts accepts) {
+  std::size_t count = 0;
+  for_each_list(data, [&]<class M>(const std::vector<M>& list) {
+    if (accepts(M::traits.observes)) count += list.size();
+  });
+  return count;
+}
+
 Result<void> check_enough_measurements(const PoseSet& data) {
   std::set<int> rows;
   for (const PointMeasurement& point : data.points) rows.insert(point.row);
-  const bool touches =
-      data.contacts.size() + data.distances.size() + data.pairs.size() + data.plane_contacts.size() > 0;
-  const bool only_orientations = rows.empty() && data.orientations.size() + data.tilts.size() > 0;
-  if (rows.size() < 3 && !touches && !only_orientations)
+  const bool tool_only =
+      count_measurements(data, [](const Observes& o) { return o.tool_position && !o.base_position; }) > 0;
+  const bool only_orientations =
+      rows.empty() && count_measurements(data, [](const Observes& o) { return o.base_rotation; }) > 0;
+  if (rows.size() < 3 && !tool_only && !only_orientations)
     return error("the pose set measures {} positions; at least 3 are needed to find the base of the robot",
                  rows.size());
   return {};
@@ -198,9 +209,8 @@ Result<void> check_enough_measurements(const PoseSet& data) {
 /// A subset for the start: points and orientations of a few hundred rows determine a frame as well as all of them.
 PoseSet subset_for_start(const PoseSet& data) {
   constexpr Eigen::Index most = thresholds::start_rows;
-  const bool further = data.contacts.size() + data.distances.size() + data.pairs.size() + data.plane_contacts.size() +
-                           data.tilts.size() >
-                       0;
+  const std::size_t all = count_measurements(data, [](const Observes&) { return true; });
+  const bool further = all > data.points.size() + data.orientations.size();
   if (further || data.rows() <= most) return data;
   std::vector<int> rows;
   for (Eigen::Index i = 0; i < most; ++i) rows.push_back(static_cast<int>(i * data.rows() / most));

@@ -74,10 +74,10 @@ RefinedChain refine_chain(Chain chain, const PoseSet& data, double size, int rou
     const Chain from = with_small_rotations_folded(chain);
     const ParameterSet set = free_frame_parameters(from, data, size);
     Weights weights;
-    weights.point_sd.assign(data.points.size(), Vec3::Constant(std::max(median_error, min_noise)));
+    weights.of<PointMeasurement>().assign(data.points.size(), Vec3::Constant(std::max(median_error, min_noise)));
     if (!data.orientations.empty())
-      weights.orientation_sd.assign(data.orientations.size(),
-                                    Vec3::Constant(std::max(median(orientation_errors(from, data)), min_noise)));
+      weights.of<OrientationMeasurement>().assign(
+          data.orientations.size(), Vec3::Constant(std::max(median(orientation_errors(from, data)), min_noise)));
     chain = unpack(set, from, least_squares(pose_residuals(from, set, data, weights), pack(set, from), options).x);
     const double before = median_error;
     median_error = median(point_errors(chain, data));

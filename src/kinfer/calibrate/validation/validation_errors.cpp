@@ -93,16 +93,15 @@ void fill_rows(Calibration& calibration, const EvaluationInputs& evaluated) {
 }  // namespace
 
 std::optional<MeasurementKind> primary_measurement_kind(const PoseSet& data) {
-  for (const MeasurementKind kind : {MeasurementKind::point, MeasurementKind::contact, MeasurementKind::distance,
-                                     MeasurementKind::pair, MeasurementKind::plane})
-    if (residual_kind(kind).count(data) > 0) return kind;
+  for (const ResidualKind& kind : residual_kinds())
+    if (kind.traits.observes.tool_position && kind.count(data) > 0) return kind.kind;
   return std::nullopt;
 }
 
 std::vector<double> primary_errors(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& evaluated) {
   const auto kind = primary_measurement_kind(evaluated);
   if (!kind) return {};
-  return residual_norms(*kind, with_unfitted_fixtures(chain, fitted_rows, evaluated), evaluated);
+  return position_errors(*kind, with_unfitted_fixtures(chain, fitted_rows, evaluated), evaluated);
 }
 
 void fill_error_statistics(Calibration& calibration, const EvaluationInputs& evaluated) {
@@ -114,7 +113,7 @@ void fill_error_statistics(Calibration& calibration, const EvaluationInputs& eva
   fill_held_out(calibration, evaluated, evaluated.gross_errors, &TrainHoldout::holdout);
   fill_held_out(calibration, evaluated, {}, &TrainHoldout::holdout_all_rows);
   fill_rows(calibration, evaluated);
-  calibration.measured = primary_measurement_kind(evaluated.data).value_or(MeasurementKind::orientation);
+  calibration.measured = primary_measurement_kind(evaluated.data).value_or(kind_of<OrientationMeasurement>);
 }
 
 std::optional<double> expected_holdout_rms(const EvaluationInputs& evaluated) {
@@ -138,8 +137,10 @@ std::optional<double> expected_holdout_rms(const EvaluationInputs& evaluated) {
       BlockRows out{residual, &jacobian, 0};
       kind.write(scene, k, out);
       const auto block = jacobian.topRows(kind.size);
-      squares +=
-          weights.of(*primary)[k].head(kind.size).squaredNorm() + (block * fit.covariance * block.transpose()).trace();
+      const double metres = kind.metres(scene, k);
+      squares += metres * metres *
+                 (weights.of(*primary)[k].head(kind.size).squaredNorm() +
+                  (block * fit.covariance * block.transpose()).trace());
       count += 1.0;
     }
   }

@@ -100,7 +100,7 @@ std::string calibration_summary(const Calibration& c) {
   std::string text = words::verdict(c) + "\n\n";
   text += fmt::format("Held out: {}.\n", words::description(c.holdout));
   text += fit_table(
-      c.measured == MeasurementKind::point ? "tool position [mm]" : words::measured_quantity(c.measured) + " [mm]",
+      c.measured == kind_of<PointMeasurement> ? "tool position [mm]" : words::measured_quantity(c.measured) + " [mm]",
       c.nominal, c.before, c.after, &ChainFit::position, 1e3);
   if (c.after.orientation.train.n > 0)
     text += fit_table("tool orientation [deg]", c.nominal, c.before, c.after, &ChainFit::orientation, 1.0 / degree);

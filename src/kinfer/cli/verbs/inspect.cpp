@@ -35,16 +35,9 @@ std::string joint_table(const std::vector<JointExcitation>& joints) {
 
 std::string measured_line(const PoseSet& set) {
   std::string text;
-  const auto add = [&](std::size_t n, const char* what) {
-    if (n > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, what);
-  };
-  add(set.points.size(), "positions");
-  add(set.orientations.size(), "orientations");
-  add(set.distances.size(), "distances from anchors");
-  add(set.contacts.size(), "socket contacts");
-  add(set.pairs.size(), "pairwise distances");
-  add(set.plane_contacts.size(), "plane contacts");
-  add(set.tilts.size(), "tilts");
+  for_each_list(set, [&]<class M>(const std::vector<M>& list) {
+    if (!list.empty()) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", list.size(), M::traits.plural);
+  });
   return text;
 }
 

@@ -198,9 +198,11 @@ class Fit {
   void describe_noise(Estimate& estimate) const {
     const PoseSet kept = keep_measurements(data_, state_.inlier);
     const Weights weights = weights_of(kept, instrument_, state_.excess);
-    estimate.sigma = typical_sd(weights, {MeasurementKind::point, MeasurementKind::contact, MeasurementKind::distance,
-                                          MeasurementKind::pair, MeasurementKind::plane});
-    estimate.sigma_angle = typical_sd(weights, {MeasurementKind::orientation});
+    const std::vector<double> ranges = metres_of_primary_kind(kept);
+    estimate.sigma = typical_sd(weights, [](const MeasurementTraits& t) { return t.observes.tool_position; }) *
+                     (ranges.empty() ? 1.0 : rms(ranges));
+    estimate.sigma_angle =
+        typical_sd(weights, [](const MeasurementTraits& t) { return t.unit == ResidualUnit::angle; });
     if (instrument_) estimate.chi2_per_n = normalised_chi2(kept);
   }
 
@@ -210,27 +212,47 @@ class Fit {
     const Weights weights = weights_of(keep_measurements(data_, state_.inlier), instrument_, state_.excess);
     double sum = state_.outcome.cost + scaled_information_spectrum(state_.outcome.normal, set_).array().log1p().sum();
     for (const ResidualKind& kind : residual_kinds()) {
-      const double sd = typical_sd(weights, {kind.kind});
+      const double sd = typical_sd(weights, kind);
       if (sd > 0.0) sum += 2.0 * kind.size * static_cast<double>(kind.count(data_)) * std::log(sd);
     }
     for (const PoseCoupling& coupling : weights.couplings) sum += coupling.log_determinant();
     return sum;
   }
 
-  /// Of the first of these kinds that was measured.
-  static double typical_sd(const Weights& weights, std::initializer_list<MeasurementKind> kinds) {
-    for (const MeasurementKind kind : kinds) {
-      const int size = residual_kind(kind).size;
-      std::vector<double> sd;
-      for (const Vec3& v : weights.of(kind)) sd.push_back(v.head(size).norm() / std::sqrt(size));
-      if (!sd.empty()) return rms(sd);
+  /// Metres at the tool point of one unit of each residual of the first kind that observes it; empty: all 1.
+  std::vector<double> metres_of_primary_kind(const PoseSet& data) const {
+    for (const ResidualKind& kind : residual_kinds()) {
+      if (!kind.traits.observes.tool_position || kind.count(data) == 0) continue;
+      if (!kind.model.metres) return {};
+      const ParameterSet nothing;
+      const EvaluatedPoses at = evaluate_poses(state_.chain, nothing, data, Derivative::no);
+      const FixtureColumns columns = fixture_columns(state_.chain, nothing);
+      std::vector<double> metres(kind.count(data));
+      for (std::size_t i = 0; i < metres.size(); ++i) metres[i] = kind.metres({state_.chain, data, at, columns}, i);
+      return metres;
     }
+    return {};
+  }
+
+  /// Of the first kind with such traits that was measured.
+  template <class Accepts>
+  static double typical_sd(const Weights& weights, Accepts accepts) {
+    for (const ResidualKind& kind : residual_kinds())
+      if (accepts(kind.traits) && !weights.of(kind.kind).empty()) return typical_sd(weights, kind);
     return 0.0;
   }
 
-  /// Tilts count only where the instrument specifies their accuracy.
+  static double typical_sd(const Weights& weights, const ResidualKind& kind) {
+    std::vector<double> sd;
+    for (const Vec3& v : weights.of(kind.kind)) sd.push_back(v.head(kind.size).norm() / std::sqrt(kind.size));
+    return sd.empty() ? 0.0 : rms(sd);
+  }
+
+  /// A kind counts only where the instrument specifies its accuracy.
   double normalised_chi2(PoseSet kept) const {
-    if (!instrument_->sigma_tilt) kept.tilts.clear();
+    for_each_list(kept, [&]<class M>(std::vector<M>& list) {
+      if (!M::traits.sigma_is_known(*instrument_)) list.clear();
+    });
     const Weights specified = weights_of(kept, *instrument_);
     const ParameterSet nothing;
     VectorXd r;

@@ -73,7 +73,7 @@ void estimate_pose_noise(const Weights& specified, const PoseSet& data, double l
             condition_on(in_world(turns, c.orientation, turn.axes),
                          in_world(points, c.point, data.points[c.point].axes), *turn.covariance_with_point));
   }
-  double& of_points = excess.of[static_cast<std::size_t>(MeasurementKind::point)];
+  double& of_points = excess.of[index(kind_of<PointMeasurement>)];
   of_points = excess_of(conditioned_points.residuals, conditioned_points.sd, 3, left);
   for (const PoseCoupling& c : specified.couplings) {
     const OrientationMeasurement& turn = data.orientations[c.orientation];
@@ -82,7 +82,7 @@ void estimate_pose_noise(const Weights& specified, const PoseSet& data, double l
     replace(turns, c.orientation,
             condition_on(point, in_world(turns, c.orientation, turn.axes), turn.covariance_with_point->transpose()));
   }
-  excess.of[static_cast<std::size_t>(MeasurementKind::orientation)] = excess_of(turns.residuals, turns.sd, 3, left);
+  excess.of[index(kind_of<OrientationMeasurement>)] = excess_of(turns.residuals, turns.sd, 3, left);
 }
 
 }  // namespace
@@ -101,23 +101,23 @@ ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::opt
   ExcessNoise excess;
   std::array<Blocks, measurement_kinds> blocks;
   for (const ResidualKind& kind : residual_kinds()) {
-    const auto k = static_cast<std::size_t>(kind.kind);
+    const auto k = index(kind.kind);
     blocks[k] = {residuals_of(kind, scene), specified.of(kind.kind)};
     excess.of[k] = excess_of(blocks[k].residuals, blocks[k].sd, kind.size, left);
   }
   if (!specified.couplings.empty())
-    estimate_pose_noise(specified, data, left, blocks[static_cast<std::size_t>(MeasurementKind::point)],
-                        blocks[static_cast<std::size_t>(MeasurementKind::orientation)], excess);
+    estimate_pose_noise(specified, data, left, blocks[index(kind_of<PointMeasurement>)],
+                        blocks[index(kind_of<OrientationMeasurement>)], excess);
   return excess;
 }
 
 Weights weights_of(const PoseSet& data, const std::optional<Instrument>& instrument, const ExcessNoise& excess) {
   Weights weights = weights_of(data, instrument.value_or(Instrument{}));
   for (const ResidualKind& kind : residual_kinds()) {
-    const double more = excess.of[static_cast<std::size_t>(kind.kind)];
+    const double more = excess.of[index(kind.kind)];
     for (Vec3& sd : weights.of(kind.kind)) sd = (sd.cwiseAbs2().array() + more * more).sqrt();
   }
-  weights.couplings = couplings_of(data, weights.point_sd, weights.orientation_sd);
+  weights.couplings = couplings_of(data, weights.of<PointMeasurement>(), weights.of<OrientationMeasurement>());
   return weights;
 }
 

@@ -61,7 +61,7 @@ std::vector<Mat3> whitening_matrices(const PoseSet& data, const Weights& weights
   std::vector<Mat3> by;
   for (std::size_t i = 0; i < data.points.size(); ++i) {
     const Mat3 along = data.points[i].axes.value_or(Mat3::Identity());
-    by.push_back(weights.point_sd[i].cwiseInverse().asDiagonal() * along.transpose());
+    by.push_back(weights.of<PointMeasurement>()[i].cwiseInverse().asDiagonal() * along.transpose());
   }
   return by;
 }
@@ -91,9 +91,9 @@ PointTable point_table(const PoseSet& data) {
 }
 
 Eigen::Matrix3Xd inverse_sd(const Weights& weights) {
-  Eigen::Matrix3Xd inverse(3, weights.point_sd.size());
-  for (std::size_t i = 0; i < weights.point_sd.size(); ++i)
-    inverse.col(static_cast<Eigen::Index>(i)) = weights.point_sd[i].cwiseInverse();
+  Eigen::Matrix3Xd inverse(3, weights.of<PointMeasurement>().size());
+  for (std::size_t i = 0; i < weights.of<PointMeasurement>().size(); ++i)
+    inverse.col(static_cast<Eigen::Index>(i)) = weights.of<PointMeasurement>()[i].cwiseInverse();
   return inverse;
 }
 

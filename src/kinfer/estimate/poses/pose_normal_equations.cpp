@@ -84,7 +84,8 @@ class GeneralMeasurements : public MeasurementCost {
     }
     residuals_.head(rows).array() *= scale.array();
     if (normal) jacobian_.topRows(rows).array().colwise() *= scale.array();
-    if (kind.kind == MeasurementKind::orientation) whiten_couplings(scene, first, end, normal ? &jacobian_ : nullptr);
+    if (kind.kind == kind_of<OrientationMeasurement>)
+      whiten_couplings(scene, first, end, normal ? &jacobian_ : nullptr);
     const auto r = residuals_.head(rows);
     if (!normal) return cost_of_blocks(loss_, kind.size, r, nullptr);
     VectorXd root(rows);
@@ -103,11 +104,11 @@ class GeneralMeasurements : public MeasurementCost {
     for (auto c = std::lower_bound(all.begin(), all.end(), first, before);
          c != all.end() && static_cast<std::size_t>(c->orientation) < end; ++c) {
       const auto row = static_cast<Eigen::Index>(3 * (static_cast<std::size_t>(c->orientation) - first));
-      const Vec3 inverse_sd = weights_.point_sd[c->point].cwiseInverse();
+      const Vec3 inverse_sd = weights_.of<PointMeasurement>()[c->point].cwiseInverse();
       VectorXd r(3);
       MatrixXd beside(3, jacobian ? set_.free_count() : 0);
       BlockRows out{r, jacobian ? &beside : nullptr};
-      residual_kind(MeasurementKind::point).write(scene, static_cast<std::size_t>(c->point), out);
+      residual_kind(kind_of<PointMeasurement>).write(scene, static_cast<std::size_t>(c->point), out);
       c->whiten(residuals_.segment<3>(row), r.cwiseProduct(inverse_sd));
       if (jacobian) c->whiten(jacobian->middleRows<3>(row), inverse_sd.asDiagonal() * beside);
     }

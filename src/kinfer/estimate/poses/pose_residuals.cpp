@@ -186,6 +186,7 @@ MatrixXd gravity_torques_of_rows(const Chain& chain, const PoseSet& data) {
 
 void write_socket_distances(const Chain& chain, const FixtureColumns& columns, VectorXd& r, MatrixXd* jacobian,
                             Eigen::Index row) {
+  constexpr FixtureKind sockets = fixture_kind("socket");
   const Fixtures& around = chain.fixtures;
   for (const SocketDistance& known : around.socket_distances) {
     const Vec3 apart = around.sockets[known.a].xyz - around.sockets[known.b].xyz;
@@ -195,9 +196,9 @@ void write_socket_distances(const Chain& chain, const FixtureColumns& columns, V
       jacobian->row(row).setZero();
       const Vec3 along = length > 0.0 ? Vec3(apart / length) : Vec3::UnitX().eval();
       for (int k = 0; k < 3; ++k) {
-        if (const auto column = columns.socket[known.a][k]; column >= 0)
+        if (const auto column = columns.of(sockets, known.a)[k]; column >= 0)
           (*jacobian)(row, column) = -inverse_sd * along[k];
-        if (const auto column = columns.socket[known.b][k]; column >= 0)
+        if (const auto column = columns.of(sockets, known.b)[k]; column >= 0)
           (*jacobian)(row, column) = inverse_sd * along[k];
       }
     }
@@ -229,8 +230,10 @@ Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const Po
   return problem;
 }
 
-std::vector<double> residual_norms(MeasurementKind which, const Chain& chain, const PoseSet& data) {
-  const ResidualKind& kind = residual_kind(which);
+namespace {
+
+enum class ErrorUnit { of_residual, metres };
+std::vector<double> errors_of(const ResidualKind& kind, const Chain& chain, const PoseSet& data, ErrorUnit unit) {
   const ParameterSet nothing;
   const EvaluatedPoses at = evaluate_poses(chain, nothing, data, Derivative::no);
   const FixtureColumns columns = fixture_columns(chain, nothing);
@@ -240,17 +243,27 @@ std::vector<double> residual_norms(MeasurementKind which, const Chain& chain, co
   for (std::size_t i = 0; i < errors.size(); ++i) {
     BlockRows out{residual, nullptr, 0};
     kind.write(scene, i, out);
-    errors[i] = residual.head(kind.size).norm();
+    errors[i] = residual.head(kind.size).norm() * (unit == ErrorUnit::metres ? kind.metres(scene, i) : 1.0);
   }
   return errors;
 }
 
+}  // namespace
+
+std::vector<double> residual_norms(MeasurementKind kind, const Chain& chain, const PoseSet& data) {
+  return errors_of(residual_kind(kind), chain, data, ErrorUnit::of_residual);
+}
+
+std::vector<double> position_errors(MeasurementKind kind, const Chain& chain, const PoseSet& data) {
+  return errors_of(residual_kind(kind), chain, data, ErrorUnit::metres);
+}
+
 std::vector<double> point_errors(const Chain& chain, const PoseSet& data) {
-  return residual_norms(MeasurementKind::point, chain, data);
+  return residual_norms(kind_of<PointMeasurement>, chain, data);
 }
 
 std::vector<double> orientation_errors(const Chain& chain, const PoseSet& data) {
-  return residual_norms(MeasurementKind::orientation, chain, data);
+  return residual_norms(kind_of<OrientationMeasurement>, chain, data);
 }
 
 }  // namespace kinfer

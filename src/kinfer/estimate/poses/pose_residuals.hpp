@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Weighted residuals of a chain on a pose set, with their analytic Jacobian: the objective of every fit to poses.
 //
-// Measurements:      (measured − predicted) / sd, one block each (defined in residual_<instrument>.cpp).
+// Measurements:      (measured − predicted) / sd, one block each (defined in instruments/).
 // Socket distances:  (distance − |a − b|) / sd, plain rows.
 // Priors:            prior_sqrt_information_of(set) · (x − nominal), plain rows, one per free parameter.
 #pragma once
@@ -36,6 +36,9 @@ void write_socket_distances(const Chain& chain, const FixtureColumns& columns, V
 
 /// Norm of each measurement's residual, [m], [rad] or [m/s²], in the list's order.
 std::vector<double> residual_norms(MeasurementKind kind, const Chain& chain, const PoseSet& data);
+
+/// The same in metres at the tool point, for kinds whose residual is another quantity.
+std::vector<double> position_errors(MeasurementKind kind, const Chain& chain, const PoseSet& data);
 
 /// Euclidean error of each measured point [m] and angle of each measured orientation [rad], in the lists' order.
 std::vector<double> point_errors(const Chain& chain, const PoseSet& data);

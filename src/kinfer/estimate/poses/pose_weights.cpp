@@ -1,27 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/estimate/poses/pose_weights.hpp"
 
-#include <array>
-#include <utility>
-
 namespace kinfer {
-
-const std::vector<Vec3>& Weights::of(MeasurementKind kind) const {
-  const std::array<const std::vector<Vec3>*, measurement_kinds> lists{
-      &point_sd, &orientation_sd, &contact_sd, &distance_sd, &pair_sd, &plane_sd, &tilt_sd};
-  return *lists[static_cast<std::size_t>(kind)];
-}
-
-std::vector<Vec3>& Weights::of(MeasurementKind kind) {
-  return const_cast<std::vector<Vec3>&>(std::as_const(*this).of(kind));
-}
 
 Weights weights_of(const PoseSet& data, const Instrument& instrument) {
   Weights weights;
   for (const ResidualKind& kind : residual_kinds())
     for (std::size_t i = 0; i < kind.count(data); ++i)
       weights.of(kind.kind).push_back(kind.specified_sd(data, i, instrument).cwiseMax(noise_free_sd));
-  weights.couplings = couplings_of(data, weights.point_sd, weights.orientation_sd);
+  weights.couplings = couplings_of(data, weights.of<PointMeasurement>(), weights.of<OrientationMeasurement>());
   return weights;
 }
 

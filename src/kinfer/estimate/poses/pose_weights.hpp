@@ -2,6 +2,7 @@
 // Standard deviations of the measurements of a pose set, and the blocks of residuals that they weight.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "kinfer/estimate/poses/instruments/residual_kind.hpp"
@@ -14,14 +15,20 @@ inline constexpr double noise_free_sd = 1e-9;
 
 /// Standard deviations of the measurements, one per entry of the pose set's lists.
 struct Weights {
-  std::vector<Vec3> point_sd;                                    ///< [m] per axis
-  std::vector<Vec3> orientation_sd;                              ///< [rad] about the world's axes
-  std::vector<Vec3> contact_sd, distance_sd, pair_sd, plane_sd;  ///< [m]; one-row kinds use the first only
-  std::vector<Vec3> tilt_sd;                                     ///< [m/s²]; the first two are used
+  /// [m], [rad] or [m/s²] for each kind; the first `rows` of each are used: points and orientations along their axes.
+  std::array<std::vector<Vec3>, measurement_kinds> sd;
   std::vector<PoseCoupling> couplings;  ///< of orientations with the points of their rows, ascending; often empty
 
-  std::vector<Vec3>& of(MeasurementKind kind);
-  const std::vector<Vec3>& of(MeasurementKind kind) const;
+  std::vector<Vec3>& of(MeasurementKind kind) { return sd[index(kind)]; }
+  const std::vector<Vec3>& of(MeasurementKind kind) const { return sd[index(kind)]; }
+  template <class M>
+  std::vector<Vec3>& of() {
+    return of(kind_of<M>);
+  }
+  template <class M>
+  const std::vector<Vec3>& of() const {
+    return of(kind_of<M>);
+  }
 };
 
 /// From the instrument's specification, or a row's own standard deviation if the file gives it. A lower bound keeps the
@@ -30,7 +37,7 @@ Weights weights_of(const PoseSet& data, const Instrument& instrument);
 
 /// One block of rows: the list and entry that it comes from.
 struct Block {
-  MeasurementKind kind = MeasurementKind::point;
+  MeasurementKind kind = kind_of<PointMeasurement>;
   int index = 0;  ///< into the pose set's list of that kind
   int row = 0;    ///< pose
   int size = 3;   ///< rows

@@ -24,7 +24,7 @@ inline constexpr auto last<Stop> = Stop::cancelled;
 template <>
 inline constexpr auto last<Quantity> = Quantity::acceleration;
 template <>
-inline constexpr auto last<MeasurementKind> = MeasurementKind::tilt;
+inline constexpr auto last<MeasurementKind> = MeasurementKind{measurement_kinds - 1};
 template <>
 inline constexpr auto last<Undetermined> = Undetermined::confounded;
 template <>

@@ -60,6 +60,13 @@ std::vector<std::string_view> PoseColumns::names() const {
   return names;
 }
 
+std::vector<std::string_view> PoseColumns::untaken_names() const {
+  std::vector<std::string_view> names;
+  for (const Column& column : columns_)
+    if (!column.taken) names.push_back(column.name);
+  return names;
+}
+
 const PoseColumns::Column* PoseColumns::find(std::string_view name) const {
   const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == name; });
   return found == columns_.end() ? nullptr : &*found;

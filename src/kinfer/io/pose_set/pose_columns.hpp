@@ -38,6 +38,7 @@ class PoseColumns {
 
   bool has(std::string_view name) const { return find(name) != nullptr; }
   std::vector<std::string_view> names() const;
+  std::vector<std::string_view> untaken_names() const;
   std::size_t rows() const { return table_.rows(); }
   int line(std::size_t row) const { return table_.line[row]; }
   int header_line() const { return table_.header.line; }

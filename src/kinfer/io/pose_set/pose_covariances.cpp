@@ -132,4 +132,24 @@ void read_covariances(PoseColumns& columns, PoseSet& set) {
     set_cross_covariances(columns, *cross, set);
 }
 
+void write_covariance(PoseSheet& sheet, const std::string& of, int row, const Mat3& covariance,
+                      CovarianceQuantity quantity) {
+  const bool of_lengths = quantity == CovarianceQuantity::lengths;
+  const double unit = of_lengths ? sheet.length() : sheet.angle();
+  const std::array<std::string, 6> names = covariance_names(of);
+  std::array<std::size_t, 6> columns;
+  for (std::size_t k = 0; k < 6; ++k)
+    columns[k] = sheet.column(names[k] + (of_lengths ? sheet.in_areas() : sheet.in_square_angles()));
+  std::size_t k = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j) sheet.set(columns[k++], row, covariance(i, j), unit * unit);
+}
+
+void write_cross_covariance(PoseSheet& sheet, int row, const Mat3& covariance) {
+  const std::array<std::string, 9> names = cross_covariance_names();
+  for (int k = 0; k < 9; ++k)
+    sheet.set(sheet.column(names[static_cast<std::size_t>(k)] + sheet.in_lengths_times_angles()), row,
+              covariance(k / 3, k % 3), sheet.length() * sheet.angle());
+}
+
 }  // namespace kinfer

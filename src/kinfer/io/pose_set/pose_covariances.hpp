@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinfer/io/pose_set/pose_columns.hpp"
+#include "kinfer/io/pose_set/pose_sheet.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer {
@@ -17,5 +18,11 @@ std::array<std::string, 9> cross_covariance_names();
 
 /// Reads the covariances in the file into the measured points and orientations of `set`.
 void read_covariances(PoseColumns& columns, PoseSet& set);
+
+enum class CovarianceQuantity { lengths, angles };
+/// Writes the covariance of one measurement under covariance_names(of).
+void write_covariance(PoseSheet& sheet, const std::string& of, int row, const Mat3& covariance,
+                      CovarianceQuantity quantity);
+void write_cross_covariance(PoseSheet& sheet, int row, const Mat3& covariance);
 
 }  // namespace kinfer

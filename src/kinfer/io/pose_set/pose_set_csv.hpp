@@ -8,16 +8,12 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/io/pose_set/column_map.hpp"
+#include "kinfer/io/pose_set/required_content.hpp"
 #include "kinfer/io/text/units.hpp"
 #include "kinfer/kinematics/chain.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer {
-
-/// What a file must hold besides the joint positions. `joints_only`, for prediction: nothing; a row with an anchor but
-/// no distance then has NaN for its distance. `targets`, for compensation: the desired positions of the tool point; the
-/// joint positions, which serve as start values, may be absent (PoseSet::joints then has no rows).
-enum class RequiredContent { measurements, joints_only, targets };
 
 /// Reads a pose set for a robot: joint columns q1..qn or q_<name> of `chain` (unit by the joint's type), then what was
 /// measured. PoseSet::targets are those of the chain where the file has columns of further targets.

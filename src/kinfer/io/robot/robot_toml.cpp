@@ -18,6 +18,10 @@ constexpr const char* base_name = "base";  // as a parent, unless a joint has th
 struct Scales {
   double length = 1.0;  ///< [m]
   double angle = 1.0;   ///< [rad]
+
+  double of(ResidualUnit unit) const {
+    return unit == ResidualUnit::length ? length : unit == ResidualUnit::angle ? angle : 1.0;
+  }
 };
 
 double scale_of(TableReader& units, std::string_view key, Dimension dimension) {
@@ -229,27 +233,57 @@ std::vector<Target> read_targets(TableReader& file, const Scales& scales, FirstE
   return targets;
 }
 
-/// Anchors, sockets and planes.
+/// The functions `read_fixture` read a table [[kind]] by the type of the fixture.
+Target read_fixture(TableReader& row, const Scales& scales, Target target) {
+  target.name = row.text("name"), target.xyz = row.vector_or("xyz", Vec3::Zero()) * scales.length;
+  row.ignore("xyz_sd");
+  return target;
+}
+
+Plane read_fixture(TableReader& row, const Scales& scales, Plane plane) {
+  plane.name = row.text("name"), plane.offset = row.number("offset") * scales.length;
+  const Vec3 normal = row.vector("normal");
+  if (normal.norm() > 0.0) plane.rotation = rotation_between(Vec3::UnitZ(), normal).toRotationMatrix();
+  row.ignore("offset_sd");
+  return plane;
+}
+
+[[maybe_unused]] NamedFrame read_fixture(TableReader& row, const Scales& scales, NamedFrame fixture) {
+  fixture.name = row.text("name");
+  const Vec3 xyz = row.vector_or("xyz", Vec3::Zero()), rpy = row.vector_or("rpy", Vec3::Zero());
+  fixture.frame = {xyz * scales.length, from_rpy(rpy * scales.angle), Vec3::Zero()};
+  row.ignore("xyz_sd"), row.ignore("turn_sd");
+  return fixture;
+}
+
+template <class T>
+std::vector<T> read_fixture_list(TableReader& file, std::string_view kind, const Scales& scales,
+                                 FirstError& first_error) {
+  std::vector<T> fixtures;
+  for (const auto& [table, line] : file.tables_or_none(kind)) {
+    TableReader row(*table, line, fmt::format("{} {}: ", kind, fixtures.size() + 1), first_error);
+    fixtures.push_back(read_fixture(row, scales, T{}));
+    row.expect_no_other_keys();
+  }
+  return fixtures;
+}
+
+/// Points without a name are one array: "anchors" of the kind "anchor".
+std::vector<Vec3> read_points(TableReader& file, const std::string& key, const Scales& scales) {
+  std::vector<Vec3> points = file.vectors_or_none(key);
+  for (Vec3& point : points) point *= scales.length;
+  file.ignore(key + "_sd");
+  return points;
+}
+
 Fixtures read_fixtures(TableReader& file, const Scales& scales, FirstError& first_error) {
   Fixtures fixtures;
-  fixtures.anchors = file.vectors_or_none("anchors");
-  for (Vec3& anchor : fixtures.anchors) anchor *= scales.length;
-  file.ignore("anchors_sd");
-  for (const auto& [table, line] : file.tables_or_none("socket")) {
-    TableReader row(*table, line, fmt::format("socket {}: ", fixtures.sockets.size() + 1), first_error);
-    fixtures.sockets.push_back({row.text("name"), row.vector_or("xyz", Vec3::Zero()) * scales.length});
-    row.ignore("xyz_sd");
-    row.expect_no_other_keys();
-  }
-  for (const auto& [table, line] : file.tables_or_none("plane")) {
-    TableReader row(*table, line, fmt::format("plane {}: ", fixtures.planes.size() + 1), first_error);
-    Plane plane{.name = row.text("name"), .offset = row.number("offset") * scales.length};
-    const Vec3 normal = row.vector("normal");
-    if (normal.norm() > 0.0) plane.rotation = rotation_between(Vec3::UnitZ(), normal).toRotationMatrix();
-    row.ignore("offset_sd");
-    row.expect_no_other_keys();
-    fixtures.planes.push_back(std::move(plane));
-  }
+  for_each_fixture_list(fixtures, [&]<class T>(const auto& row, std::vector<T>& list) {
+    if constexpr (std::is_same_v<T, Vec3>)
+      list = read_points(file, std::string(row.kind) + "s", scales);
+    else
+      list = read_fixture_list<T>(file, row.kind, scales, first_error);
+  });
   return fixtures;
 }
 
@@ -345,13 +379,10 @@ std::optional<Instrument> read_instrument(TableReader& file, const Scales& scale
   instrument.sigma = non_negative_or_zero(reader, "sigma") * scales.length;
   instrument.sigma_angle = non_negative_or_zero(reader, "sigma_angle") * scales.angle;
   instrument.ppm = non_negative_or_zero(reader, "ppm");
-  const auto given = [&](std::string_view key, double scale) {
-    const double value = non_negative_or_zero(reader, key) * scale;
-    return reader.has(key) ? std::optional(value) : std::nullopt;
-  };
-  instrument.sigma_distance = given("sigma_distance", scales.length);
-  instrument.sigma_contact = given("sigma_contact", scales.length);
-  instrument.sigma_tilt = given("sigma_tilt", 1.0);
+  for (const InstrumentSigma& sigma : instrument_sigmas) {
+    const double value = non_negative_or_zero(reader, sigma.key) * scales.of(sigma.unit);
+    if (reader.has(sigma.key)) instrument.*sigma.value = value;
+  }
   if (reader.has("at")) at = reader.vector("at") * scales.length;
   reader.expect_no_other_keys();
   if (!reader.has("sigma")) return std::nullopt;

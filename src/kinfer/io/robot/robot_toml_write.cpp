@@ -43,7 +43,7 @@ class Writer {
   std::string write() {
     write_header_keys();
     for (std::size_t i = 0; i < chain_.joints.size(); ++i) write_joint(static_cast<int>(i));
-    for (const Target& target : chain_.targets) write_point("target", target);
+    for (const Target& target : chain_.targets) write_fixture("target", target);
     write_fixtures();
     for (const PointMass& mass : chain_.masses)
       add("\n[[mass]]\nlink = {}\ncom = {}\nmass = {}\n", mass.joint + 1, list(mass.com, length_),
@@ -73,21 +73,24 @@ class Writer {
       if (const double sd = sd_of("expansion"); !std::isnan(sd)) add("expansion_sd = {}\n", format_number(sd));
     }
     if (chain_.tip >= 0) add("tip = {}\n", quoted(name_of(chain_.tip)));
-    const std::vector<Vec3>& anchors = chain_.fixtures.anchors;
-    for (std::size_t i = 0; i < anchors.size(); ++i)
-      add("{}{}{}", i == 0 ? "anchors = [" : ", ", list(anchors[i], length_), i + 1 == anchors.size() ? "]\n" : "");
-    write_anchor_deviations();
+    for_each_fixture_list(chain_.fixtures, [&]<class T>(const auto& row, const std::vector<T>& list) {
+      if constexpr (std::is_same_v<T, Vec3>) write_points(row.kind, list);
+    });
   }
 
-  void write_anchor_deviations() {
-    std::string text;
+  /// Points without a name, in one array: "anchors" of the kind "anchor".
+  void write_points(std::string_view kind, const std::vector<Vec3>& points) {
+    std::string values, deviations;
     bool any = false;
-    for (std::size_t i = 0; i < chain_.fixtures.anchors.size(); ++i) {
-      const std::string sd = sd_list(fmt::format("anchor{}_", i + 1).c_str(), "", "", length_);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const char* comma = i == 0 ? "" : ", ";
+      const std::string sd = sd_list(fmt::format("{}{}_", kind, i + 1).c_str(), "", "", length_);
       any |= !sd.empty();
-      text += (i == 0 ? "" : ", ") + (sd.empty() ? "[nan, nan, nan]" : sd);
+      values += comma + list(points[i], length_);
+      deviations += comma + (sd.empty() ? "[nan, nan, nan]" : sd);
     }
-    if (any) add("anchors_sd = [{}]\n", text);
+    if (!points.empty()) add("{}s = [{}]\n", kind, values);
+    if (any) add("{}s_sd = [{}]\n", kind, deviations);
   }
 
   const char* file_convention() const { return chain_.joints.empty() ? "mdh" : convention_of(chain_.joints[0].link); }
@@ -110,22 +113,38 @@ class Writer {
   }
 
   /// A target or socket, with its standard deviation.
-  void write_point(const char* kind, const Target& point) {
+  void write_fixture(std::string_view kind, const Target& point) {
     add("\n[[{}]]\nname = {}\nxyz = {}\n", kind, quoted(point.name), list(point.xyz, length_));
     const std::string sd = sd_list(fmt::format("{}_{}_", kind, point.name).c_str(), "", "", length_);
     if (!sd.empty()) add("xyz_sd = {}\n", sd);
   }
 
+  void write_fixture(std::string_view kind, const Plane& plane) {
+    add("\n[[{}]]\nname = {}\nnormal = {}\noffset = {}\n", kind, quoted(plane.name), list(plane.normal()),
+        format_number(plane.offset, length_));
+  }
+
+  void write_fixture(std::string_view kind, const NamedFrame& fixture) {
+    add("\n[[{}]]\nname = {}\n", kind, quoted(fixture.name));
+    const Frame& frame = fixture.frame;
+    add("xyz = {}\nrpy = {}\n", list(frame.xyz, length_), list(to_rpy(frame.pose().rotation), angle_));
+    const std::string prefix = fmt::format("{}_{}_", kind, fixture.name);
+    const std::string xyz = sd_list(prefix.c_str(), "", "", length_),
+                      rotation = sd_list(prefix.c_str(), "r", "", angle_);
+    if (!xyz.empty()) add("xyz_sd = {}\n", xyz);
+    if (!rotation.empty()) add("turn_sd = {}\n", rotation);
+  }
+
   void write_fixtures() {
     const Fixtures& fixtures = chain_.fixtures;
-    for (const Target& socket : fixtures.sockets) write_point("socket", socket);
+    for_each_fixture_list(fixtures, [&]<class T>(const auto& row, const std::vector<T>& list) {
+      if constexpr (!std::is_same_v<T, Vec3>)
+        for (const T& fixture : list) write_fixture(row.kind, fixture);
+    });
     for (const SocketDistance& known : fixtures.socket_distances)
       add("\n[[socket_distance]]\nfrom = {}\nto = {}\ndistance = {}\nsigma = {}\n",
           quoted(fixtures.sockets[known.a].name), quoted(fixtures.sockets[known.b].name),
           format_number(known.distance, length_), format_number(known.sd, length_));
-    for (const Plane& plane : fixtures.planes)
-      add("\n[[plane]]\nname = {}\nnormal = {}\noffset = {}\n", quoted(plane.name), list(plane.normal()),
-          format_number(plane.offset, length_));
     for (const RobotMounting& mounting : chain_.mountings) {
       add("\n[[mounting]]\nname = {}\n", quoted(mounting.name));
       if (mounting.tip >= 0) add("tip = {}\n", quoted(name_of(mounting.tip)));
@@ -231,15 +250,19 @@ class Writer {
         format_number(t.anchor, length_));
   }
 
+  double unit_of(ResidualUnit unit) const {
+    return unit == ResidualUnit::length ? length_ : unit == ResidualUnit::angle ? angle_ : 1.0;
+  }
+
   void write_instrument(const Instrument& instrument) {
     const bool has_angle = instrument.sigma_angle > 0.0;
     add("\n[instrument]\nkind = \"{}\"\nsigma = {}\n", has_angle ? "pose" : "position",
         format_number(instrument.sigma, length_));
     if (has_angle) add("sigma_angle = {}\n", format_number(instrument.sigma_angle, angle_));
     add("ppm = {}\n", format_number(instrument.ppm));
-    if (instrument.sigma_distance) add("sigma_distance = {}\n", format_number(*instrument.sigma_distance, length_));
-    if (instrument.sigma_contact) add("sigma_contact = {}\n", format_number(*instrument.sigma_contact, length_));
-    if (instrument.sigma_tilt) add("sigma_tilt = {}\n", format_number(*instrument.sigma_tilt));
+    for (const InstrumentSigma& sigma : instrument_sigmas)
+      if (const auto& value = instrument.*sigma.value)
+        add("{} = {}\n", sigma.key, format_number(*value, unit_of(sigma.unit)));
     if (robot_.instrument_position) add("at = {}\n", list(*robot_.instrument_position, length_));
   }
 

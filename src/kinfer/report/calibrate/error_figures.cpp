@@ -48,7 +48,7 @@ std::vector<double> counts(const std::vector<double>& values, double high, std::
 
 /// "the tool", or what else the errors refer to.
 std::string measured_text(const CalibrationEvidence& evidence) {
-  return evidence.measurement == MeasurementKind::point ? "the tool" : "the " + evidence.measured;
+  return evidence.measurement == kind_of<PointMeasurement> ? "the tool" : "the " + evidence.measured;
 }
 
 }  // namespace

@@ -18,20 +18,14 @@ void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
 }
 
 Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {
-  const double sigma = instrument.sigma_distance.value_or(instrument.sigma);
-  return Vec3::Constant(sigma + 1e-6 * instrument.ppm * data.pairs[index].distance);
+  return Vec3::Constant(PairDistance::traits.sigma_of(instrument) + 1e-6 * instrument.ppm * data.pairs[index].distance);
 }
 
 }  // namespace
 
-ResidualKind pair_residual() {
-  return {.kind = MeasurementKind::pair,
-          .size = 1,
-          .count = [](const PoseSet& data) { return data.pairs.size(); },
-          .row = [](const PoseSet& data, std::size_t i) { return data.pairs[i].row; },
-          .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.pairs, kept); },
-          .specified_sd = specified_sd,
-          .write = write};
+template <>
+ResidualModel residual_model<PairDistance>() {
+  return {.write = write, .specified_sd = specified_sd};
 }
 
 }  // namespace kinfer

@@ -7,6 +7,8 @@
 namespace kinfer {
 namespace {
 
+constexpr FixtureKind anchor_kind = fixture_kind("anchor");
+
 Pose base_of(const ResidualContext& scene, int row) {
   const int mounting = scene.mounting(row);
   const bool own = mounting >= 0 && scene.chain.mountings[mounting].base;
@@ -25,25 +27,20 @@ void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   row = -along.transpose() * scene.at.twists[measured.row].topRows<3>();
   for (const Eigen::Index column : scene.columns.base) row[column] = 0.0;
   for (int k = 0; k < 3; ++k)
-    if (const Eigen::Index column = scene.columns.anchor[measured.anchor][k]; column >= 0)
+    if (const Eigen::Index column = scene.columns.of(anchor_kind, measured.anchor)[k]; column >= 0)
       row[column] = along.dot(base.rotation.col(k));
 }
 
 Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {
-  const double sigma = instrument.sigma_distance.value_or(instrument.sigma);
-  return Vec3::Constant(sigma + 1e-6 * instrument.ppm * data.distances[index].distance);
+  return Vec3::Constant(DistanceMeasurement::traits.sigma_of(instrument) +
+                        1e-6 * instrument.ppm * data.distances[index].distance);
 }
 
 }  // namespace
 
-ResidualKind distance_residual() {
-  return {.kind = MeasurementKind::distance,
-          .size = 1,
-          .count = [](const PoseSet& data) { return data.distances.size(); },
-          .row = [](const PoseSet& data, std::size_t i) { return data.distances[i].row; },
-          .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.distances, kept); },
-          .specified_sd = specified_sd,
-          .write = write};
+template <>
+ResidualModel residual_model<DistanceMeasurement>() {
+  return {.write = write, .specified_sd = specified_sd};
 }
 
 }  // namespace kinfer

@@ -27,20 +27,11 @@ void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
     if (const Eigen::Index column = scene.columns.gravity[k]; column >= 0) rows.col(column) = seen.col(k);
 }
 
-Vec3 specified_sd(const PoseSet&, std::size_t, const Instrument& instrument) {
-  return Vec3::Constant(instrument.sigma_tilt.value_or(0.0));
-}
-
 }  // namespace
 
-ResidualKind tilt_residual() {
-  return {.kind = MeasurementKind::tilt,
-          .size = 2,
-          .count = [](const PoseSet& data) { return data.tilts.size(); },
-          .row = [](const PoseSet& data, std::size_t i) { return data.tilts[i].row; },
-          .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.tilts, kept); },
-          .specified_sd = specified_sd,
-          .write = write};
+template <>
+ResidualModel residual_model<TiltMeasurement>() {
+  return {.write = write};
 }
 
 }  // namespace kinfer

@@ -26,14 +26,9 @@ Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& inst
 
 }  // namespace
 
-ResidualKind orientation_residual() {
-  return {.kind = MeasurementKind::orientation,
-          .size = 3,
-          .count = [](const PoseSet& data) { return data.orientations.size(); },
-          .row = [](const PoseSet& data, std::size_t i) { return data.orientations[i].row; },
-          .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.orientations, kept); },
-          .specified_sd = specified_sd,
-          .write = write};
+template <>
+ResidualModel residual_model<OrientationMeasurement>() {
+  return {.write = write, .specified_sd = specified_sd};
 }
 
 }  // namespace kinfer

@@ -9,6 +9,8 @@
 namespace kinfer {
 namespace {
 
+constexpr FixtureKind plane_kind = fixture_kind("plane");
+
 void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   const PlaneContact& contact = scene.data.plane_contacts[index];
   const Plane& plane = scene.chain.fixtures.planes[contact.plane];
@@ -17,7 +19,8 @@ void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   if (!out.jacobian) return;
   auto row = out.jacobian->row(out.row);
   row = -normal.transpose() * scene.at.twists[contact.row].topRows<3>();
-  const auto [rx, ry, offset] = scene.columns.plane[contact.plane];
+  const FixtureColumns::Numbers& columns = scene.columns.of(plane_kind, contact.plane);
+  const Eigen::Index rx = columns[0], ry = columns[1], offset = columns[2];
   const double sa = std::sin(plane.small_rotation.x()), ca = std::cos(plane.small_rotation.x());
   const double sb = std::sin(plane.small_rotation.y()), cb = std::cos(plane.small_rotation.y());
   if (rx >= 0) row[rx] = -point.dot(plane.rotation * Vec3(0.0, -ca * cb, -sa * cb));
@@ -25,20 +28,11 @@ void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   if (offset >= 0) row[offset] = 1.0;
 }
 
-Vec3 specified_sd(const PoseSet&, std::size_t, const Instrument& instrument) {
-  return Vec3::Constant(instrument.sigma_contact.value_or(instrument.sigma));
-}
-
 }  // namespace
 
-ResidualKind plane_residual() {
-  return {.kind = MeasurementKind::plane,
-          .size = 1,
-          .count = [](const PoseSet& data) { return data.plane_contacts.size(); },
-          .row = [](const PoseSet& data, std::size_t i) { return data.plane_contacts[i].row; },
-          .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.plane_contacts, kept); },
-          .specified_sd = specified_sd,
-          .write = write};
+template <>
+ResidualModel residual_model<PlaneContact>() {
+  return {.write = write};
 }
 
 }  // namespace kinfer

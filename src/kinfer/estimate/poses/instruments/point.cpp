@@ -35,14 +35,9 @@ Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& inst
 
 }  // namespace
 
-ResidualKind point_residual() {
-  return {.kind = MeasurementKind::point,
-          .size = 3,
-          .count = [](const PoseSet& data) { return data.points.size(); },
-          .row = [](const PoseSet& data, std::size_t i) { return data.points[i].row; },
-          .keep = [](PoseSet& data, const std::vector<bool>& kept) { keep_entries(data.points, kept); },
-          .specified_sd = specified_sd,
-          .write = write};
+template <>
+ResidualModel residual_model<PointMeasurement>() {
+  return {.write = write, .specified_sd = specified_sd};
 }
 
 }  // namespace kinfer

@@ -1,40 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/estimate/poses/instruments/residual_kind.hpp"
 
-#include "kinfer/base/expect.hpp"
+#include <algorithm>
 
 namespace kinfer {
+namespace {
+
+template <class M>
+void keep_entries(PoseMeasurements& measured, const std::vector<bool>& kept) {
+  std::vector<M>& list = list_of<M>(measured);
+  std::size_t to = 0;
+  for (std::size_t from = 0; from < list.size(); ++from)
+    if (kept[from]) list[to++] = list[from];
+  list.resize(to);
+}
+
+/// Place of a parameter among the numbers of its fixture.
+std::ptrdiff_t number_in_fixture(const Fixtures& fixtures, const ParameterAddress& at) {
+  std::ptrdiff_t place = 0;
+  for_each_fixture_list(fixtures, [&](const auto& row, const auto& list) {
+    if (fixture_kind(row.kind) != at.fixture) return;
+    const std::span<const Field> fields = fields_of(list[at.joint]);
+    place = std::find(fields.begin(), fields.end(), at.field) - fields.begin();
+  });
+  return place;
+}
+
+template <class M>
+ResidualKind make_kind() {
+  return {.kind = kind_of<M>,
+          .traits = M::traits,
+          .model = residual_model<M>(),
+          .size = M::traits.rows,
+          .count = [](const PoseMeasurements& measured) { return list_of<M>(measured).size(); },
+          .row = [](const PoseMeasurements& measured, std::size_t i) { return list_of<M>(measured)[i].row; },
+          .keep = keep_entries<M>};
+}
+
+}  // namespace
 
 std::span<const ResidualKind> residual_kinds() {
-  static const std::array<ResidualKind, measurement_kinds> kinds{
-      point_residual(), orientation_residual(), contact_residual(), distance_residual(),
-      pair_residual(),  plane_residual(),       tilt_residual()};
+  static const auto kinds =
+      std::apply([]<class... M>(std::vector<M> PoseMeasurements::*...) { return std::array{make_kind<M>()...}; },
+                 measurement_lists);
   return kinds;
 }
 
 const ResidualKind& residual_kind(MeasurementKind kind) {
-  const ResidualKind& found = residual_kinds()[static_cast<std::size_t>(kind)];
-  KINFER_EXPECT(found.kind == kind, "the kinds are listed in their own order");
-  return found;
+  return residual_kinds()[index(kind)];
 }
 
 FixtureColumns fixture_columns(const Chain& chain, const ParameterSet& set) {
   constexpr FixtureColumns::Xyz none{-1, -1, -1};
   FixtureColumns columns;
   columns.target.assign(chain.targets.size(), none);
-  columns.anchor.assign(chain.fixtures.anchors.size(), none);
-  columns.socket.assign(chain.fixtures.sockets.size(), none);
-  columns.plane.assign(chain.fixtures.planes.size(), none);
+  for_each_fixture_list(chain.fixtures, [&](const auto& row, const auto& list) {
+    columns.fixture[index(fixture_kind(row.kind))].assign(list.size(), {-1, -1, -1, -1, -1, -1});
+  });
   Eigen::Index column = 0;
   for (const Parameter* parameter : set.free()) {
     const ParameterAddress& at = parameter->at;
     const int axis = static_cast<int>(at.field) - static_cast<int>(Field::x);
     if (at.owner == Owner::target) columns.target[at.joint][axis] = column;
-    if (at.owner == Owner::anchor) columns.anchor[at.joint][axis] = column;
-    if (at.owner == Owner::socket) columns.socket[at.joint][axis] = column;
     if (at.owner == Owner::gravity) columns.gravity[axis] = column;
-    if (at.owner == Owner::plane)
-      columns.plane[at.joint][at.field == Field::rx ? 0 : at.field == Field::ry ? 1 : 2] = column;
+    if (is_fixture_parameter(at))
+      columns.fixture[index(at.fixture)][at.joint][number_in_fixture(chain.fixtures, at)] = column;
     if (at.owner == Owner::base || at.owner == Owner::mounting_base) columns.base.push_back(column);
     ++column;
   }

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// A frame whose rotation an estimate changes by small angles.
+#pragma once
+
+#include "kinfer/geometry/pose.hpp"
+
+namespace kinfer {
+
+/// A frame with a small rotation (rx, ry, rz) that an estimate may change: full rotation = rotation · Rx(rx) Ry(ry)
+/// Rz(rz). Estimating the small rotation instead of roll, pitch, yaw avoids their singularity at pitch = ±90°.
+struct Frame {
+  Vec3 xyz = Vec3::Zero();  ///< [m]
+  Mat3 rotation = Mat3::Identity();
+  Vec3 small_rotation = Vec3::Zero();  ///< [rad]
+
+  Pose pose() const {
+    return {rotation * rot_x(small_rotation.x()) * rot_y(small_rotation.y()) * rot_z(small_rotation.z()), xyz};
+  }
+  static Frame from_pose(const Pose& pose) { return {pose.position, pose.rotation, Vec3::Zero()}; }
+};
+
+/// Multiplies the small rotation into the rotation matrix: the same pose.
+inline void fold(Frame& frame) {
+  frame = Frame::from_pose(frame.pose());
+}
+
+}  // namespace kinfer
