@@ -31,7 +31,7 @@ VectorXd draw_configuration(const Chain& chain, Rng rng) {
   VectorXd q(moving.size());
   for (std::size_t k = 0; k < moving.size(); ++k) {
     const Joint& joint = chain.joints[moving[k]];
-    const double reach = joint.type == JointType::revolute ? 170.0 * degree : thresholds::reach_translation;
+    const double reach = rotates(joint.type) ? 170.0 * degree : thresholds::reach_translation;
     q[k] = rng.uniform(std::max(joint.lower, -reach), std::min(joint.upper, reach));
   }
   return q;

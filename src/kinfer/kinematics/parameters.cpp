@@ -52,8 +52,8 @@ std::vector<Field> fields_of(const Joint& joint) {
   } else {
     fields.assign(std::begin(dh_fields), std::end(dh_fields));
   }
-  if (joint.is_active && joint.type != JointType::fixed) fields.push_back(Field::gain);
-  if (joint.type == JointType::revolute) fields.push_back(Field::compliance);
+  if (joint.is_active && has_position(joint.type)) fields.push_back(Field::gain);
+  if (rotates(joint.type)) fields.push_back(Field::compliance);
   return fields;
 }
 

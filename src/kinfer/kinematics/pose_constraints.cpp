@@ -8,7 +8,7 @@
 
 namespace kinfer {
 JointRange joint_range(const Joint& joint) {
-  const bool is_revolute = joint.type == JointType::revolute;
+  const bool is_revolute = rotates(joint.type);
   const double low = std::isfinite(joint.lower) ? joint.lower : is_revolute ? -170.0 * degree : 0.0;
   const double high = std::isfinite(joint.upper) ? joint.upper : is_revolute ? 170.0 * degree : 0.3;
   constexpr double margin = 0.01;  // of the range: a pose at a limit may not be reached by the real robot

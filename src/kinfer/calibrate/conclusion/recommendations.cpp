@@ -45,7 +45,7 @@ void recommend_uncertain_region(const CalibrationTask& task, const Calibration& 
   for (const Joint& joint : task.nominal.joints)
     if (joint.is_active) {
       joints.push_back(joint.name);
-      prismatic.push_back(joint.type == JointType::prismatic ? 1 : 0);
+      prismatic.push_back(translates(joint.type) ? 1 : 0);
     }
   list.push_back({CalibrationAdviceKind::measure_uncertain_region,
                   {{"joints", joints},

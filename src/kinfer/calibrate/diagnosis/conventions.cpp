@@ -25,7 +25,7 @@ struct Hypothesis {
 };
 
 bool is_revolute(const Chain& chain, int joint) {
-  return chain.joints[joint].type == JointType::revolute;
+  return rotates(chain.joints[joint].type);
 }
 
 /// Scales the positions of joint k, measured and commanded.

@@ -18,8 +18,7 @@ void check_limits(DiagnosisState& state) {
   const std::vector<int> moving = active_joints(chain);
   for (std::size_t k = 0; k < moving.size(); ++k) {
     const Joint& joint = chain.joints[moving[k]];
-    const double slack =
-        joint.type == JointType::revolute ? thresholds::limit_slack_angle : thresholds::limit_slack_length;
+    const double slack = rotates(joint.type) ? thresholds::limit_slack_angle : thresholds::limit_slack_length;
     std::vector<int> rows;
     for (Eigen::Index row = 0; row < joints.cols(); ++row) {
       const double q = joints(static_cast<Eigen::Index>(k), row);

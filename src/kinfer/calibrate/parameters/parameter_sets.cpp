@@ -71,15 +71,15 @@ bool needs_beta(const Chain& chain, int index) {
 bool is_geometric(const Chain& chain, const ParameterAddress& at) {
   const Joint& joint = chain.joints[at.joint];
   if (at.field == Field::compliance || at.field == Field::coupling) return false;
-  if (at.field == Field::gain) return joint.type == JointType::prismatic && joint.is_active;
-  if (std::holds_alternative<UrdfLink>(joint.link)) return joint.type != JointType::fixed;
+  if (at.field == Field::gain) return translates(joint.type) && joint.is_active;
+  if (std::holds_alternative<UrdfLink>(joint.link)) return has_position(joint.type);
   return is_dh_row(at.field) || (at.field == Field::beta && needs_beta(chain, at.joint));
 }
 
 /// Whether the field is the joint's zero offset.
 bool is_offset(const Joint& joint, Field field) {
-  if (!joint.is_active || joint.type == JointType::fixed) return false;
-  const bool revolute = joint.type == JointType::revolute;
+  if (!joint.is_active || !has_position(joint.type)) return false;
+  const bool revolute = rotates(joint.type);
   const auto* urdf = std::get_if<UrdfLink>(&joint.link);
   if (!urdf) return field == (revolute ? Field::theta : Field::d);
   Eigen::Index along;

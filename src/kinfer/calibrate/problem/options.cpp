@@ -62,7 +62,7 @@ std::string describe_joint_types(const std::vector<JointType>& types) {
   for (std::size_t i = 0; i < types.size();) {
     std::size_t end = i;
     while (end < types.size() && types[end] == types[i]) ++end;
-    text += (end - i > 1 ? std::to_string(end - i) : "") + (types[i] == JointType::revolute ? "R" : "P");
+    text += (end - i > 1 ? std::to_string(end - i) : "") + (rotates(types[i]) ? "R" : "P");
     i = end;
   }
   return text;

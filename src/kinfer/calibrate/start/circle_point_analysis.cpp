@@ -253,7 +253,7 @@ Result<FrameEstimate> estimate_frames_from_circles(const Chain& nominal, const P
   FrameEstimate found;
   found.chain = nominal;
   for (const Sweep& sweep : sweeps) {
-    if (nominal.joints[active_joints(nominal)[sweep.q_index]].type != JointType::revolute)
+    if (!rotates(nominal.joints[active_joints(nominal)[sweep.q_index]].type))
       return error("sweep {} moves a prismatic joint; circles need revolute ones", label(sweep));
     found.sweeps.push_back(fit_sweep(nominal, data, sweep));
   }

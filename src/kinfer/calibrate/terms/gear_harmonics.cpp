@@ -129,7 +129,7 @@ std::vector<SpectralLine> find_gear_harmonics(const Estimate& fitted, const Pose
   const double tried = thresholds::highest_order * 4.0 * static_cast<double>(moving.size());
   const double threshold = 2.0 * std::log(tried) + thresholds::spectral_margin;
   for (std::size_t k = 0; k < moving.size(); ++k) {
-    if (fitted.chain.joints[moving[k]].type != JointType::revolute) continue;
+    if (!rotates(fitted.chain.joints[moving[k]].type)) continue;
     const auto samples = samples_of(fitted, rows, moving[k], static_cast<int>(k));
     if (samples.size() < thresholds::min_spectrum_points) continue;
     const auto found = lines_of_joint(samples, moving[k], threshold, most);

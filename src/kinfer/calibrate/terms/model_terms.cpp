@@ -14,7 +14,7 @@ namespace kinfer::calibrate {
 namespace {
 
 bool is_revolute(const Joint& joint) {
-  return joint.type == JointType::revolute;
+  return rotates(joint.type);
 }
 bool is_actuated_revolute(const Joint& joint) {
   return is_revolute(joint) && joint.is_active;
@@ -116,7 +116,7 @@ ModelTerm backlash(const Chain& nominal, const TermInputs& inputs) {
   ModelTerm model_term{.nominal = nominal};
   if (inputs.rows.approach.size() == 0) model_term.missing = MissingData::approach_order;
   free_joint_parameters(model_term, Field::backlash, thresholds::backlash_prior,
-                        [](const Joint& joint) { return joint.is_active && joint.type != JointType::fixed; });
+                        [](const Joint& joint) { return joint.is_active && has_position(joint.type); });
   return model_term;
 }
 

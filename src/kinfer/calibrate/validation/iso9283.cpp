@@ -15,9 +15,8 @@ VectorXd command_tolerance(const Chain& chain) {
   const std::vector<int> moving = active_joints(chain);
   VectorXd tolerance(static_cast<Eigen::Index>(moving.size()));
   for (std::size_t k = 0; k < moving.size(); ++k)
-    tolerance[static_cast<Eigen::Index>(k)] = chain.joints[moving[k]].type == JointType::prismatic
-                                                  ? thresholds::same_pose_length
-                                                  : thresholds::same_pose_angle;
+    tolerance[static_cast<Eigen::Index>(k)] =
+        translates(chain.joints[moving[k]].type) ? thresholds::same_pose_length : thresholds::same_pose_angle;
   return tolerance;
 }
 

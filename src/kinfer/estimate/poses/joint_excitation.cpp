@@ -10,8 +10,8 @@ std::vector<JointExcitation> measure_joint_excitation(const Chain& chain, const 
   for (std::size_t k = 0; k < moving.size(); ++k) {
     const auto values = set.joints.row(static_cast<Eigen::Index>(k));
     const std::vector<double> list(values.begin(), values.end());
-    joints.push_back({set.joint_names[k], chain.joints[moving[k]].type == JointType::revolute, values.minCoeff(),
-                      values.maxCoeff(), standard_deviation(list)});
+    joints.push_back({set.joint_names[k], rotates(chain.joints[moving[k]].type), values.minCoeff(), values.maxCoeff(),
+                      standard_deviation(list)});
   }
   return joints;
 }
