@@ -94,6 +94,13 @@ TEST(OutlierWords, EveryKindOfMeasurementHasASentenceAndAName) {
   }
 }
 
+TEST(OutlierWords, TheHelpTextNamesEveryKindOfMeasurement) {
+  const std::string list = words::measured_kinds();
+  EXPECT_TRUE(list.starts_with("positions, orientations, socket contacts, "));
+  for (std::size_t i = 0; i < measurement_kinds; ++i)
+    EXPECT_NE(list.find(traits_of(static_cast<MeasurementKind>(i)).plural), std::string::npos);
+}
+
 TEST(UndeterminedWords, GroupsAreSortedSentences) {
   Identifiability identifiability;
   identifiability.undetermined = {{Undetermined::no_effect, {"theta6"}},

@@ -52,6 +52,13 @@ std::string measured_quantity(MeasurementKind kind) {
   return std::string(traits_of(kind).quantity);
 }
 
+std::string measured_kinds() {
+  std::vector<std::string> plurals;
+  for (std::size_t kind = 0; kind < measurement_kinds; ++kind)
+    plurals.emplace_back(traits_of(static_cast<MeasurementKind>(kind)).plural);
+  return list_of(plurals);
+}
+
 std::string outlier_reasons(const std::vector<OutlierReason>& reasons) {
   std::string text;
   for (const OutlierReason& reason : reasons)

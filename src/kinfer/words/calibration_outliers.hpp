@@ -12,6 +12,9 @@ namespace kinfer::words {
 /// "position", "ball in socket", "distance", "ball-bar length", "distance from the plane", "orientation"
 std::string measured_quantity(MeasurementKind kind);
 
+/// All kinds of measurements, for help texts: "positions, orientations, …".
+std::string measured_kinds();
+
 /// "the point lies 4.213 mm from where the model has it (84 sigma)"; several are joined by semicolons.
 std::string outlier_reasons(const std::vector<OutlierReason>& reasons);
 

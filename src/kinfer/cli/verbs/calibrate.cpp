@@ -20,6 +20,7 @@
 #include "kinfer/io/robot/parameter_names_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/measurement/merge_pose_sets.hpp"
+#include "kinfer/words/calibration_outliers.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -203,7 +204,9 @@ Verb add_calibrate(CLI::App& app) {
   auto options = std::make_shared<CalibrateArguments>();
   add_robot_option(*verb, options->robot, "--robot",
                    "Nominal model: " + readable_model_formats() + "; or unknown:6R, unknown:RRPR: joint types alone");
-  add_text(*verb, "--data", options->data, "Pose set: joint readings and measurements", Requirement::required, "CSV");
+  add_text(*verb, "--data", options->data,
+           "Pose set: joint positions and measurements (" + words::measured_kinds() + ")", Requirement::required,
+           "CSV");
   add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, evidence.json, report.html, run.json",
            Requirement::required, "DIR");
   add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Requirement::optional,
