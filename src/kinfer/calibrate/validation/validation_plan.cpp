@@ -2,6 +2,7 @@
 #include "kinfer/calibrate/validation/validation_plan.hpp"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "kinfer/calibrate/validation/thresholds.hpp"
@@ -21,6 +22,22 @@ ValidationPlan plan_by_labels(const PoseSet& data) {
   return {split.train, {split}, HoldoutLabels{}, false};
 }
 
+/// Calls link(row, other) for rows of one pose that several fixtures see (stations, anchors): the same joint positions
+/// with different fixtures. Each would tell the error of the others if only one of them were held out.
+template <class Link>
+void link_sights_of_one_pose(const PoseSet& data, Link link) {
+  for_each_list(data, [&]<class M>(const std::vector<M>& list) {
+    if constexpr (RefersToFixture<M>) {
+      std::map<std::vector<double>, const M*> first;
+      for (const M& m : list) {
+        const auto q = data.joints.col(m.row);
+        const auto [at, is_new] = first.try_emplace({q.begin(), q.end()}, &m);
+        if (!is_new && at->second->*M::fixture_index != m.*M::fixture_index) link(at->second->row, m.row);
+      }
+    }
+  });
+}
+
 /// Groups of linked rows, each ascending.
 std::vector<std::vector<int>> linked_row_groups(const PoseSet& data) {
   std::vector<int> first(data.rows());  // smallest row of the group
@@ -29,10 +46,12 @@ std::vector<std::vector<int>> linked_row_groups(const PoseSet& data) {
     while (first[row] != row) row = first[row];
     return row;
   };
-  for (const PairDistance& pair : data.pairs) {
-    const int a = root(pair.row), b = root(pair.other);
+  const auto link = [&](int row, int other) {
+    const int a = root(row), b = root(other);
     first[std::max(a, b)] = std::min(a, b);
-  }
+  };
+  for (const PairDistance& pair : data.pairs) link(pair.row, pair.other);
+  link_sights_of_one_pose(data, link);
   std::vector<std::vector<int>> groups(data.rows());
   for (int row = 0; row < data.rows(); ++row) groups[root(row)].push_back(row);
   std::erase_if(groups, [](const auto& group) { return group.empty(); });
