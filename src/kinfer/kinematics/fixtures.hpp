@@ -48,6 +48,7 @@ struct Fixtures {
   std::vector<Vec3> anchors{};    ///< [m] of draw wires, in the base frame
   std::vector<Target> sockets{};  ///< in the world
   std::vector<Plane> planes{};
+  std::vector<NamedFrame> stations{};  ///< of instruments that measure directions: world_T_station
   std::vector<SocketDistance> socket_distances{};
 };
 
@@ -62,7 +63,8 @@ struct FixtureList {
 };
 inline constexpr std::tuple fixture_lists{FixtureList{"anchor", &Fixtures::anchors, FixturePrior::tolerance},
                                           FixtureList{"socket", &Fixtures::sockets, FixturePrior::none},
-                                          FixtureList{"plane", &Fixtures::planes, FixturePrior::none}};
+                                          FixtureList{"plane", &Fixtures::planes, FixturePrior::none},
+                                          FixtureList{"station", &Fixtures::stations, FixturePrior::none}};
 inline constexpr std::size_t fixture_kinds = std::tuple_size_v<decltype(fixture_lists)>;
 
 /// Position of a kind in fixture_lists.

@@ -20,12 +20,13 @@ namespace kinfer {
 
 /// Accuracy of one measurement, one sigma.
 struct Instrument {
-  double sigma = 0.0;                         ///< [m] per axis
-  double sigma_angle = 0.0;                   ///< [rad] per axis
-  double ppm = 0.0;                           ///< [1e-6] plus this fraction of the distance from the world origin
-  std::optional<double> sigma_distance = {};  ///< [m] of draw wires and ball-bars; none: sigma
-  std::optional<double> sigma_contact = {};   ///< [m] of sockets and planes, per axis; none: sigma
-  std::optional<double> sigma_tilt = {};      ///< [m/s²] per axis; none: estimated from the residuals
+  double sigma = 0.0;                          ///< [m] per axis
+  double sigma_angle = 0.0;                    ///< [rad] per axis
+  double ppm = 0.0;                            ///< [1e-6] plus this fraction of the distance from the world origin
+  std::optional<double> sigma_distance = {};   ///< [m] of draw wires and ball-bars; none: sigma
+  std::optional<double> sigma_contact = {};    ///< [m] of sockets and planes, per axis; none: sigma
+  std::optional<double> sigma_tilt = {};       ///< [m/s²] per axis; none: estimated from the residuals
+  std::optional<double> sigma_direction = {};  ///< [rad] across the line of sight, per axis; none: from the residuals
 };
 
 /// Standard deviation per axis of a position measured at `position` [m]: sigma + ppm · distance from the world origin.
@@ -43,6 +44,7 @@ inline constexpr InstrumentSigma instrument_sigmas[] = {
     {"sigma_distance", ResidualUnit::length, &Instrument::sigma_distance},
     {"sigma_contact", ResidualUnit::length, &Instrument::sigma_contact},
     {"sigma_tilt", ResidualUnit::acceleration, &Instrument::sigma_tilt},
+    {"sigma_direction", ResidualUnit::angle, &Instrument::sigma_direction},
 };
 
 /// What a kind of measurement determines, besides its own fixture.
@@ -191,6 +193,24 @@ struct TiltMeasurement {
                                             .sigma = &Instrument::sigma_tilt};
 };
 
+/// Direction in which a station of unknown position and orientation sees the tool point (theodolite, calibrated
+/// camera).
+struct DirectionMeasurement {
+  int row = 0;
+  int station = 0;                 ///< index into FixtureNames::stations
+  Vec3 direction = Vec3::UnitX();  ///< unit, in the station's frame
+
+  static constexpr int DirectionMeasurement::*fixture_index = &DirectionMeasurement::station;
+  static constexpr MeasurementTraits traits{.name = "direction",
+                                            .plural = "directions",
+                                            .quantity = "line of sight",
+                                            .rows = 2,
+                                            .unit = ResidualUnit::angle,
+                                            .observes = {.tool_position = true},
+                                            .fixture = "station",
+                                            .sigma = &Instrument::sigma_direction};
+};
+
 /// One list for each kind of measurement; each entry names its row.
 struct PoseMeasurements {
   std::vector<PointMeasurement> points{};
@@ -200,18 +220,19 @@ struct PoseMeasurements {
   std::vector<PairDistance> pairs{};
   std::vector<PlaneContact> plane_contacts{};
   std::vector<TiltMeasurement> tilts{};
+  std::vector<DirectionMeasurement> directions{};
 };
 
 /// The kinds, in the order of the residual blocks.
 inline constexpr std::tuple measurement_lists{&PoseMeasurements::points,   &PoseMeasurements::orientations,
                                               &PoseMeasurements::contacts, &PoseMeasurements::distances,
                                               &PoseMeasurements::pairs,    &PoseMeasurements::plane_contacts,
-                                              &PoseMeasurements::tilts};
+                                              &PoseMeasurements::tilts,    &PoseMeasurements::directions};
 inline constexpr std::size_t measurement_kinds = std::tuple_size_v<decltype(measurement_lists)>;
 
 /// Names of the objects that measurements index: targets on the tool, and fixtures.
 struct FixtureNames {
-  std::vector<std::string> targets{}, sockets{}, planes{};
+  std::vector<std::string> targets{}, sockets{}, planes{}, stations{};
 };
 
 /// Names of the fixtures of one kind.
@@ -219,8 +240,8 @@ struct FixtureNameList {
   std::string_view kind;
   std::vector<std::string> FixtureNames::*names;
 };
-inline constexpr FixtureNameList fixture_name_lists[] = {{"socket", &FixtureNames::sockets},
-                                                         {"plane", &FixtureNames::planes}};
+inline constexpr FixtureNameList fixture_name_lists[] = {
+    {"socket", &FixtureNames::sockets}, {"plane", &FixtureNames::planes}, {"station", &FixtureNames::stations}};
 
 /// Position of a kind in measurement_lists.
 enum class MeasurementKind : std::size_t {};

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <optional>
 
+#include "kinfer/base/square.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -117,6 +119,87 @@ void place(Plane& plane, const Sightings<PlaneContact>& seen, Estimator) {
   plane.offset = fit.normal.dot(fit.point);
 }
 
+/// Number of measurements of each fixture.
+template <class M>
+std::vector<int> counts_of(const std::vector<M>& list, std::size_t fixtures) {
+  std::vector<int> counts(fixtures, 0);
+  for (const M& measurement : list) ++counts[measurement.*M::fixture_index];
+  return counts;
+}
+
+constexpr std::size_t fewest_sights = 6;  // of a resection by direct linear transformation
+
+/// Resection: the pose of a station that sees these points in these directions m. Of P X ∥ m with a 3 x 4 matrix P
+/// (direct linear transformation, Hartley and Zisserman 2004, 7.1), the rotation nearest to its left part is taken.
+Pose resect_linearly(const Sightings<DirectionMeasurement>& seen) {
+  const Vec3 centre = mean_point(seen.points);
+  double size = 0.0;
+  for (const Vec3& p : seen.points) size += (p - centre).norm() / static_cast<double>(seen.points.size());
+  MatrixXd information = MatrixXd::Zero(12, 12);
+  const auto homogeneous = [&](std::size_t i) { return Vec3((seen.points[i] - centre) / size).homogeneous().eval(); };
+  for (std::size_t i = 0; i < seen.points.size(); ++i) {
+    MatrixXd by_matrix = MatrixXd::Zero(3, 12);  // of P X, P in rows
+    for (int k = 0; k < 3; ++k) by_matrix.block<1, 4>(k, 4 * k) = homogeneous(i).transpose();
+    const MatrixXd rows = skew(seen.measured[i].direction) * by_matrix;
+    information += rows.transpose() * rows;
+  }
+  const VectorXd smallest = symmetric_eigen(information).vectors.col(0);
+  Eigen::Matrix<double, 3, 4> projection;
+  for (int k = 0; k < 3; ++k) projection.row(k) = smallest.segment<4>(4 * k).transpose();
+  double forward = 0.0;  // the points lie before the station, not behind it
+  for (std::size_t i = 0; i < seen.points.size(); ++i)
+    forward += seen.measured[i].direction.dot(projection * homogeneous(i));
+  if (forward < 0.0) projection *= -1.0;
+  const Svd parts = svd(projection.leftCols<3>());
+  const Vec3 sign(1.0, 1.0, (parts.u * parts.v.transpose()).determinant() < 0.0 ? -1.0 : 1.0);
+  const Mat3 station_R_world = parts.u * sign.asDiagonal() * parts.v.transpose();
+  const double scale = parts.s.mean();
+  return {station_R_world.transpose(), centre - size / scale * (station_R_world.transpose() * projection.col(3))};
+}
+
+/// One Gauss-Newton step on the angles, with weights that gross errors cannot dominate.
+Pose refine_resection(const Pose& station, const Sightings<DirectionMeasurement>& seen) {
+  std::vector<Vec3> sights, errors;
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < seen.points.size(); ++i) {
+    sights.push_back(station.inverse() * seen.points[i]);
+    errors.push_back(sights[i].normalized() - seen.measured[i].direction);
+    angles.push_back(errors[i].norm());
+  }
+  const double typical = std::max(1e-12, median(angles));
+  MatrixXd information = MatrixXd::Zero(6, 6);
+  VectorXd gradient = VectorXd::Zero(6);
+  for (std::size_t i = 0; i < seen.points.size(); ++i) {
+    const Vec3 along = sights[i].normalized();
+    const Mat3 by_sight = (Mat3::Identity() - along * along.transpose()) / sights[i].norm();
+    MatrixXd rows(3, 6);  // by a shift and a turn in the station's frame
+    rows << -by_sight, by_sight * skew(sights[i]);
+    const double weight = 1.0 / (1.0 + square(angles[i] / (3.0 * typical)));
+    information += weight * rows.transpose() * rows, gradient += weight * rows.transpose() * errors[i];
+  }
+  const auto step = solve_spd(information, gradient);
+  if (!step) return station;
+  return {station.rotation * exp_so3(-step->tail<3>()), station.position - station.rotation * step->head<3>()};
+}
+
+void place(NamedFrame& station, const Sightings<DirectionMeasurement>& seen, Estimator) {
+  constexpr int rounds = 10;
+  if (seen.points.size() < fewest_sights) return;
+  Pose pose = resect_linearly(seen);
+  for (int i = 0; i < rounds; ++i) pose = refine_resection(pose, seen);
+  station.frame = Frame::from_pose(pose);
+}
+
+/// An error for a station that neither the robot file nor its sights locate.
+Result<void> check_stations(const Fixtures& known, const PoseSet& data) {
+  const std::vector<int> sights = counts_of(data.directions, data.stations.size());
+  for (std::size_t i = 0; i < sights.size(); ++i)
+    if (static_cast<std::size_t>(sights[i]) < fewest_sights && find_by_name(known.stations, data.stations[i]) < 0)
+      return error("station \"{}\" sees {} poses; at least {} are needed to find where it stands", data.stations[i],
+                   sights[i], fewest_sights);
+  return {};
+}
+
 /// One entry for each fixture.
 template <class M>
 std::vector<Sightings<M>> sightings_of(const std::vector<M>& list, std::size_t fixtures,
@@ -127,13 +210,6 @@ std::vector<Sightings<M>> sightings_of(const std::vector<M>& list, std::size_t f
     seen.measured.push_back(measurement), seen.points.push_back(points[measurement.row]);
   }
   return sightings;
-}
-
-template <class M>
-std::vector<int> counts_of(const std::vector<M>& list, std::size_t fixtures) {
-  std::vector<int> counts(fixtures, 0);
-  for (const M& measurement : list) ++counts[measurement.*M::fixture_index];
-  return counts;
 }
 
 /// Estimates the fixtures without a prior to which `data` refers and `fitted` does not.
@@ -167,6 +243,7 @@ Result<DataWithFixtures> with_fixtures(const Chain& given, const PoseSet& data) 
     if (wire.anchor >= static_cast<int>(chain.fixtures.anchors.size()))
       return error("a distance is measured from anchor {}, but the robot file lists {} anchors", wire.anchor + 1,
                    chain.fixtures.anchors.size());
+  if (auto located = check_stations(chain.fixtures, data); !located) return forward_error(located.error());
   order_fixtures(chain.fixtures, data);
   chain.setup = own_setup(chain, data);
   if (data.setups.empty() && data.tips.empty()) return result;
