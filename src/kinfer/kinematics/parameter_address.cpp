@@ -118,7 +118,7 @@ double* fixture_number(Target& point, Field field) {
 double* fixture_number(Plane& plane, Field field) {
   return plane_number(plane, field);
 }
-[[maybe_unused]] double* fixture_number(NamedFrame& fixture, Field field) {
+double* fixture_number(NamedFrame& fixture, Field field) {
   return frame_number(fixture.frame, field);
 }
 

@@ -248,7 +248,7 @@ Plane read_fixture(TableReader& row, const Scales& scales, Plane plane) {
   return plane;
 }
 
-[[maybe_unused]] NamedFrame read_fixture(TableReader& row, const Scales& scales, NamedFrame fixture) {
+NamedFrame read_fixture(TableReader& row, const Scales& scales, NamedFrame fixture) {
   fixture.name = row.text("name");
   const Vec3 xyz = row.vector_or("xyz", Vec3::Zero()), rpy = row.vector_or("rpy", Vec3::Zero());
   fixture.frame = {xyz * scales.length, from_rpy(rpy * scales.angle), Vec3::Zero()};
