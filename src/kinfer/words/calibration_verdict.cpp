@@ -24,11 +24,13 @@ std::string rows_are(std::size_t n) {
 std::vector<std::string> excluded_rows_texts(const Calibration& c, const std::string& worst_of_all) {
   const std::size_t listed = c.estimate.outliers.size(), wrong = c.gross_error_rows.size();
   if (wrong == 0 && listed == 0) return {};
-  if (wrong == 0) return {rows_are(listed) + " not believed and left out of the fit"};
-  std::vector<std::string> texts{fmt::format("{} not believed and left out: {} ({} at worst with {})", rows_are(wrong),
-                                             row_ranges(c.gross_error_rows), worst_of_all, wrong == 1 ? "it" : "them")};
+  if (wrong == 0) return {phrase("rows_without_weight", "{} not believed and left out of the fit", rows_are(listed))};
+  std::vector<std::string> texts{phrase("rows_excluded", "{} not believed and left out: {} ({} at worst with {})",
+                                        rows_are(wrong), row_ranges(c.gross_error_rows), worst_of_all,
+                                        wrong == 1 ? "it" : "them")};
   const std::size_t more = listed - wrong;
-  if (more > 0) texts.push_back(fmt::format("the fit gives {} more row{} no weight", more, more == 1 ? "" : "s"));
+  if (more > 0)
+    texts.push_back(phrase("rows_without_weight", "the fit gives {} more row{} no weight", more, more == 1 ? "" : "s"));
   return texts;
 }
 
@@ -45,13 +47,14 @@ auto display_of(const Calibration& c) {
 std::string figures(const Calibration& c) {
   const auto show = display_of(c);
   const ErrorStatistics &before = reported_errors(c, c.before), &after = reported_errors(c, c.after);
-  return fmt::format("on poses that were not fitted {} {} off on average and {} at worst ({} and {} before)",
-                     subject(c), show(after.mean), show(after.max), show(before.mean), show(before.max));
+  return phrase("errors", "on poses that were not fitted {} {} off on average and {} at worst ({} and {} before)",
+                subject(c), show(after.mean), show(after.max), show(before.mean), show(before.max));
 }
 
 std::string figures_without_nominal(const Calibration& c) {
   const ErrorStatistics &train = c.after.position.train, &holdout = c.after.position.holdout;
-  return fmt::format(
+  return phrase(
+      "errors",
       "on poses that were not fitted the tool is {} off on average and {} at worst, on fitted ones {} on average",
       millimetres(holdout.mean), millimetres(holdout.max), millimetres(train.mean));
 }
@@ -59,15 +62,16 @@ std::string figures_without_nominal(const Calibration& c) {
 std::vector<std::string> remarks(const Calibration& c) {
   const TrainHoldout& errors = has_lengths(c) ? c.after.position : c.after.orientation;
   std::vector<std::string> texts = excluded_rows_texts(c, display_of(c)(errors.holdout_all_rows.max));
-  if (c.geometry_only) texts.emplace_back("geometry alone: a swarm search has no model selection");
+  if (c.geometry_only)
+    texts.push_back(phrase("geometry_only", "geometry alone: a swarm search has no model selection"));
   return texts;
 }
 
-VerdictText with_remarks(const Calibration& c, std::string statement) {
-  return {verdict_headline(c), std::move(statement), remarks(c)};
+VerdictText with_remarks(const Calibration& c, const std::string& statement) {
+  return {phrase(name(c.usability), "{}", verdict_headline(c)), phrase(name(c.reason), "{}", statement), remarks(c)};
 }
 
-VerdictText english_verdict(const Calibration& c) {
+VerdictText parts_of_verdict(const Calibration& c) {
   switch (c.reason) {
     case CalibrationReason::improves_nominal:
       return with_remarks(c, figures(c));
@@ -89,7 +93,9 @@ VerdictText english_verdict(const Calibration& c) {
     case CalibrationReason::overfitted:
       break;
   }
-  return {verdict_headline(c), "the robot was found without a data sheet", {figures_without_nominal(c)}};
+  return {phrase(name(c.usability), "{}", verdict_headline(c)),
+          phrase(name(c.reason), "the robot was found without a data sheet"),
+          {figures_without_nominal(c)}};
 }
 
 }  // namespace
@@ -100,13 +106,12 @@ std::string verdict_headline(const Calibration& calibration) {
 }
 
 VerdictText verdict_text(const Calibration& c) {
-  if (language() == Language::names) return {std::string(name(c.usability)), std::string(name(c.reason)), {}};
-  return english_verdict(c);
+  return parts_of_verdict(c);
 }
 
 std::string verdict(const Calibration& c) {
   if (language() == Language::names) return std::string(name(c.reason));
-  return kinfer::sentence(english_verdict(c)) + ".";
+  return kinfer::sentence(parts_of_verdict(c)) + ".";
 }
 
 }  // namespace kinfer::words

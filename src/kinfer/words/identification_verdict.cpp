@@ -23,9 +23,8 @@ std::string joints_text(const Identification& result) {
   const auto rigid = std::ranges::count(result.joints, EstimatedJointType::rigid, &JointEstimate::type);
   const std::string rigid_text = rigid > 0 ? fmt::format(", {} of them never moved", rigid) : "";
   const std::string accuracy = accuracy_text(result.forecast);
-  return fmt::format("{} joints found{}{}, {}", result.joints.size(), rigid_text,
-                     accuracy.empty() ? "" : ", their axes to " + accuracy,
-                     forecast_text(result.forecast, result.target));
+  return phrase("joints_found", "{} joints found{}{}, {}", result.joints.size(), rigid_text,
+                accuracy.empty() ? "" : ", their axes to " + accuracy, forecast_text(result.forecast, result.target));
 }
 
 std::string recommendation_text(Usability usability) {
@@ -41,17 +40,17 @@ std::string recommendation_text(Usability usability) {
 }
 
 /// Faults first, then joints and accuracy, then what else is wrong with the recording.
-VerdictText english_verdict(const Identification& result) {
+VerdictText parts_of_verdict(const Identification& result) {
   std::vector<std::string> texts;
   for (const Finding& finding : result.findings)
     if (invalidates_result(finding)) texts.push_back(words::sentence(finding));
   texts.push_back(joints_text(result));
   texts.push_back(prediction_text(result.prediction));
   if (result.search_method == LinkSearchMethod::enumeration)
-    texts.emplace_back("no chain of up to 3 leaves fits better");
+    texts.push_back(phrase("best_chain", "no chain of up to 3 leaves fits better"));
   for (const Finding& finding : result.findings)
     if (finding.severity != Severity::note && !invalidates_result(finding)) texts.push_back(words::sentence(finding));
-  VerdictText text{recommendation_text(result.usability), texts.front(), {}};
+  VerdictText text{phrase(name(result.usability), "{}", recommendation_text(result.usability)), texts.front(), {}};
   text.remarks.assign(texts.begin() + 1, texts.end());
   return text;
 }
@@ -59,13 +58,12 @@ VerdictText english_verdict(const Identification& result) {
 }  // namespace
 
 VerdictText identification_verdict_text(const Identification& result) {
-  if (language() == Language::english) return english_verdict(result);
-  return {std::string(name(result.usability)), "joints_found", {}};
+  return parts_of_verdict(result);
 }
 
 std::string identification_verdict(const Identification& result) {
   if (language() == Language::names) return std::string(name(result.usability));
-  return sentence(english_verdict(result));
+  return sentence(parts_of_verdict(result));
 }
 
 }  // namespace kinfer::words
