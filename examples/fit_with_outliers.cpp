@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kinfer/search/least_squares/least_squares.hpp"
+#include "kinfer/words/status.hpp"
 
 namespace {
 
@@ -32,8 +33,8 @@ int main() {
   const Eigen::Vector2d start(1.0, -1.0);
   const auto plain = kinfer::least_squares(decay(), start);
   const auto robust = kinfer::least_squares(decay(), start, {.loss = kinfer::Loss::cauchy, .loss_scale = 2.0});
-  fmt::print("plain   a = {:7.4f}, b = {:7.4f}; {}\n", plain.x[0], plain.x[1], kinfer::sentence(plain.stop));
-  fmt::print("cauchy  a = {:7.4f}, b = {:7.4f}; {}\n", robust.x[0], robust.x[1], kinfer::sentence(robust.stop));
+  fmt::print("plain   a = {:7.4f}, b = {:7.4f}; {}\n", plain.x[0], plain.x[1], kinfer::words::sentence(plain.stop));
+  fmt::print("cauchy  a = {:7.4f}, b = {:7.4f}; {}\n", robust.x[0], robust.x[1], kinfer::words::sentence(robust.stop));
   fmt::print("weights of the samples:");
   for (const double weight : robust.block_weights) fmt::print(" {:.2f}", weight);
   fmt::print("\n");

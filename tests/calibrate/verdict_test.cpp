@@ -74,7 +74,7 @@ TEST(VerdictWords, ExcludedRowsAreNamed) {
   c.gross_error_rows = {3, 4, 5, 9};
   c.estimate.outliers.resize(5);
   c.after.position.holdout_all_rows.max = 7e-3;
-  EXPECT_NE(words::verdict(c).find("; 4 rows are not believed and left out: rows 3-5 and 9 (7.000 mm at worst with "
+  EXPECT_NE(words::verdict(c).find("; 4 rows are rejected as outliers: rows 3-5 and 9 (7.000 mm at worst with "
                                    "them); the fit gives 1 more row no weight"),
             std::string::npos)
       << words::verdict(c);

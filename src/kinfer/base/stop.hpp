@@ -17,8 +17,7 @@ enum class Stop {
   cancelled,           ///< the observer requested a stop
 };
 
-std::string_view name(Stop stop);      ///< as in evidence.json: "converged_cost"
-std::string_view sentence(Stop stop);  ///< "converged: the cost no longer falls"
-bool converged(Stop stop);             ///< true for the three converged_* and for target_reached
+std::string_view name(Stop stop);  ///< as in evidence.json: "converged_cost"
+bool converged(Stop stop);         ///< true for the three converged_* and for target_reached
 
 }  // namespace kinfer

@@ -175,23 +175,6 @@ InverseSolution solve_inverse(const Chain& chain, const Goal& goal, ConstVectorR
 
 }  // namespace
 
-std::string_view sentence(InverseStatus status) {
-  switch (status) {
-    case InverseStatus::reached:
-      return "the tool is where it should be";
-    case InverseStatus::unreachable:
-      return "the place is out of reach from this start: no small change of the joints brings the tool closer";
-    case InverseStatus::at_limit:
-      return "a joint at its limit holds the tool back";
-    case InverseStatus::near_singular:
-      return "the tool did not arrive: near this posture the machine can hardly move in one of the directions asked "
-             "for";
-    case InverseStatus::iteration_limit:
-      return "the tool did not arrive within the allowed number of steps";
-  }
-  return "";
-}
-
 InverseSolution inverse(const Chain& chain, const Pose& world_T_tool, ConstVectorRef start,
                         const InverseOptions& options, const Load& load) {
   return solve_inverse(chain, {world_T_tool.position, world_T_tool.rotation}, start, options, load);

@@ -2,8 +2,6 @@
 // Inverse kinematics: damped least-squares steps (Levenberg 1944, Marquardt 1963) inside the joint limits.
 #pragma once
 
-#include <string_view>
-
 #include "kinfer/kinematics/forward.hpp"
 
 namespace kinfer {
@@ -15,9 +13,6 @@ enum class InverseStatus {
   near_singular,    ///< iterations used up near a kinematic singularity
   iteration_limit,  ///< iterations used up elsewhere
 };
-
-/// One sentence for the user.
-std::string_view sentence(InverseStatus status);
 
 struct InverseOptions {
   double position_tolerance = 1e-9;  ///< [m]

@@ -30,9 +30,10 @@ std::string joint_positions(const FactValues& values) {
 Advice advice_on_outliers(const CalibrationAdvice& a) {
   const int n = a.values.count("rows");
   return {
-      phrase(name(a.kind), "Look at the {} row{} that {} not believed", n, n == 1 ? "" : "s", n == 1 ? "is" : "are"),
-      phrase(name(a.kind),
-             "they were left out; a reason that is found now (a lost beam, a wrong row) saves the next set")};
+      phrase(name(a.kind), "Check the {} outlier row{}", n, n == 1 ? "" : "s"),
+      phrase(
+          name(a.kind),
+          "they are excluded from the fit; a reason that is found now (a lost beam, a wrong row) saves the next set")};
 }
 
 Advice advice_on_joint_range(const CalibrationAdvice& a) {
@@ -139,7 +140,7 @@ Advice advice(const CalibrationAdvice& a) {
     case CalibrationAdviceKind::keep_verification_poses:
       return {phrase(name(a.kind), "Keep ten of these poses and measure them again now and then (kinfer verify)"),
               phrase(name(a.kind),
-                     "it tells whether this calibration still holds after a crash, a new tool or a hot summer")};
+                     "it shows whether this calibration still holds after a crash, a new tool or a hot summer")};
   }
   return {};
 }

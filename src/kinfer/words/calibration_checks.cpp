@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kinfer/words/language.hpp"
+#include "kinfer/words/status.hpp"
 
 namespace kinfer::words {
 namespace {
@@ -62,7 +63,7 @@ std::string unreached_row(int row, const CompensatedJoints& joints) {
 
 std::string compensation_frames_note() {
   return phrase("compensation_frames",
-                "the corrected base is far from the nominal one, so it tells where the instrument stood: compared with "
+                "the corrected base is far from the nominal one, so it shows where the instrument stood: compared with "
                 "the nominal base and tool (--frames world compares as given)");
 }
 

@@ -24,8 +24,9 @@ std::string rows_are(std::size_t n) {
 std::vector<std::string> excluded_rows_texts(const Calibration& c, const std::string& worst_of_all) {
   const std::size_t listed = c.estimate.outliers.size(), wrong = c.gross_error_rows.size();
   if (wrong == 0 && listed == 0) return {};
-  if (wrong == 0) return {phrase("rows_without_weight", "{} not believed and left out of the fit", rows_are(listed))};
-  std::vector<std::string> texts{phrase("rows_excluded", "{} not believed and left out: {} ({} at worst with {})",
+  if (wrong == 0)
+    return {phrase("rows_without_weight", "{} rejected as outliers and excluded from the fit", rows_are(listed))};
+  std::vector<std::string> texts{phrase("rows_excluded", "{} rejected as outliers: {} ({} at worst with {})",
                                         rows_are(wrong), row_ranges(c.gross_error_rows), worst_of_all,
                                         wrong == 1 ? "it" : "them")};
   const std::size_t more = listed - wrong;

@@ -91,7 +91,7 @@ TEST(CeresComparison, EveryLossGivesTheSameLineThroughOutliers) {
       const VectorXd start = Eigen::Vector2d(2.1, -1.1);  // tukey has other optima far away
       const auto ours = least_squares(problem, start, {.loss = loss, .loss_scale = scale});
       const auto theirs = ceres_fit(problem, start, loss, scale);
-      EXPECT_TRUE(converged(ours.stop)) << sentence(ours.stop);
+      EXPECT_TRUE(converged(ours.stop)) << name(ours.stop);
       EXPECT_NEAR(ours.cost, theirs.cost, 1e-9 * theirs.cost) << "loss " << int(loss) << " scale " << scale;
       EXPECT_LT((ours.x - theirs.x).norm(), 1e-6) << "loss " << int(loss) << " scale " << scale;
     }
@@ -104,7 +104,7 @@ TEST(CeresComparison, EveryLossGivesTheSamePoseWithBlocksOfTwoRowsAndAPrior) {
     const VectorXd start = Eigen::Vector3d(0.49, 1.01, 1.99);
     const auto ours = least_squares(problem, start, {.loss = loss, .loss_scale = 3.0});
     const auto theirs = ceres_fit(problem, start, loss, 3.0);
-    EXPECT_TRUE(converged(ours.stop)) << sentence(ours.stop);
+    EXPECT_TRUE(converged(ours.stop)) << name(ours.stop);
     EXPECT_NEAR(ours.cost, theirs.cost, 1e-9 * theirs.cost) << "loss " << int(loss);
     EXPECT_LT((ours.x - theirs.x).norm(), 1e-6) << "loss " << int(loss);
   }

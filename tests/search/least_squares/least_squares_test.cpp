@@ -59,7 +59,7 @@ const VectorXd unit_start = VectorXd::Ones(1);
 TEST(LeastSquares, StandardProblemsEndAtTheOptimumThatTheLiteraturePrints) {
   for (const auto& problem : standard_problems()) {
     const auto fit = least_squares(problem.residuals, problem.start, {.max_iterations = 500});
-    EXPECT_TRUE(converged(fit.stop)) << problem.name << ": " << sentence(fit.stop);
+    EXPECT_TRUE(converged(fit.stop)) << problem.name << ": " << name(fit.stop);
     EXPECT_NEAR(fit.cost, problem.optimum, 1e-5 * problem.optimum + 1e-24) << problem.name;
   }
 }
@@ -105,7 +105,7 @@ TEST(LeastSquares, OutcomeCountsTheCalls) {
 TEST(LeastSquares, ANoiseFreeFitConvergesDownToRounding) {
   const auto problem = testing::exponential();
   const auto fit = least_squares(problem.residuals, problem.start);
-  EXPECT_TRUE(converged(fit.stop)) << sentence(fit.stop);
+  EXPECT_TRUE(converged(fit.stop)) << name(fit.stop);
   EXPECT_LT(fit.cost,
             20 * 1e-30);  // 20 residuals of numbers of 1 .. 5, each with a rounding error of at most 1e-15
   EXPECT_NEAR(fit.x[0], 0.3, 2e-15);
@@ -119,7 +119,7 @@ TEST(LeastSquares, ANoiseFreeFitConvergesDownToRoundingWithUnknownsOfVeryDiffere
   a.rightCols(3) *= 1e4;
   const VectorXd truth = random_matrix(6, 1, Rng(9));
   const auto fit = least_squares(linear(a, a * truth), VectorXd::Zero(6));
-  EXPECT_TRUE(converged(fit.stop)) << sentence(fit.stop);
+  EXPECT_TRUE(converged(fit.stop)) << name(fit.stop);
   EXPECT_LT(fit.cost, 30 * std::pow(1e4 * 1e-15, 2));
 }
 
@@ -131,7 +131,7 @@ TEST(LeastSquares, ARedundantLinearProblemIsSolvedByTheSmallestChange) {
     const VectorXd b = a * random_matrix(7, 1, Rng(3)) + noise * random_matrix(40, 1, Rng(5));
     const VectorXd nearest = start + solve_least_squares(a, b - a * start, 1e-10);
     const auto fit = least_squares(linear(a, b), start, {.scale = VectorXd::Ones(7)});
-    EXPECT_TRUE(converged(fit.stop)) << sentence(fit.stop);
+    EXPECT_TRUE(converged(fit.stop)) << name(fit.stop);
     EXPECT_LT((fit.x - nearest).norm(), 1e-10) << "noise " << noise;
   }
 }
@@ -203,7 +203,7 @@ TEST(LeastSquares, RobustLossesFindTheLineDespiteOutliers) {
     if (loss == Loss::none) continue;
     const VectorXd start = loss == Loss::tukey ? VectorXd(Eigen::Vector2d(2.1, -0.9)) : VectorXd(Eigen::Vector2d(0, 0));
     const auto fit = least_squares(problem, start, {.loss = loss, .loss_scale = loss == Loss::tukey ? 5.0 : 3.0});
-    EXPECT_TRUE(converged(fit.stop)) << sentence(fit.stop);
+    EXPECT_TRUE(converged(fit.stop)) << name(fit.stop);
     // Standard deviation of the intercept from 32 good samples is 0.035; huber is biased by its bounded pull.
     EXPECT_LT((fit.x - truth).norm(), loss == Loss::huber ? 0.2 : 0.1) << int(loss);
     for (Eigen::Index i = 0; i < 40; ++i)
@@ -308,7 +308,7 @@ TEST(LeastSquares, StepsOutOfTheDomainAreCountedAndShortened) {
   // log x = 0 from x = 5: the undamped step leads to 5 − 5 log 5 = −3.
   const Residuals logarithm = scalar([](double x) { return std::log(x); }, [](double x) { return 1 / x; });
   const auto fit = least_squares(logarithm, VectorXd::Constant(1, 5.0));
-  EXPECT_TRUE(converged(fit.stop)) << sentence(fit.stop);
+  EXPECT_TRUE(converged(fit.stop)) << name(fit.stop);
   EXPECT_NEAR(fit.x[0], 1.0, 1e-15);
   EXPECT_GT(fit.not_finite, 0);
 }

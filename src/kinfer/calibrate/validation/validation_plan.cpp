@@ -23,7 +23,7 @@ ValidationPlan plan_by_labels(const PoseSet& data) {
 }
 
 /// Calls link(row, other) for rows of one pose that several fixtures see (stations, anchors): the same joint positions
-/// with different fixtures. Each would tell the error of the others if only one of them were held out.
+/// with different fixtures. Each would reveal the error of the others if only one of them were held out.
 template <class Link>
 void link_sights_of_one_pose(const PoseSet& data, Link link) {
   for_each_list(data, [&]<class M>(const std::vector<M>& list) {

@@ -8,6 +8,7 @@
 #include "kinfer/words/calibration.hpp"
 #include "kinfer/words/calibration_model.hpp"
 #include "kinfer/words/calibration_outliers.hpp"
+#include "kinfer/words/status.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -84,7 +85,7 @@ std::string model_table(const ModelSelection& selection) {
 std::string search_lines(const SearchSummary& search) {
   if (search.method == SearchMethod::levenberg_marquardt) return "";
   std::string text = fmt::format("Searched by {}: {} iterations, {} evaluations, {}.\n", name(search.method),
-                                 search.iterations, search.evaluations, sentence(search.stop));
+                                 search.iterations, search.evaluations, words::sentence(search.stop));
   if (search.swarm_comparison.empty()) return text + "\n";
   text += "Iterations to the least-squares optimum: ";
   for (const SearchRun& run : search.swarm_comparison)
@@ -114,9 +115,9 @@ std::string calibration_summary(const Calibration& c) {
   text += fmt::format("Expected error of the corrected model itself: {:.4f} mm rms over these poses.\n\n",
                       1e3 * e.predicted_error);
   const auto same = [](const std::string& s) { return s; };
-  text += bullet_list("What these poses cannot tell (tolerances hold them):",
+  text += bullet_list("Unobservable in these poses (held by the tolerances):",
                       words::undetermined_sentences(e.identifiability), 12, same);
-  text += bullet_list("Rows not believed:", e.outliers, 12, [](const Outlier& o) {
+  text += bullet_list("Outliers:", e.outliers, 12, [](const Outlier& o) {
     return fmt::format("row {} (line {}): {}", o.row, o.line, words::sentence(o));
   });
   text += bullet_list("Noticed:", words::notes(c), 20, same);

@@ -54,7 +54,7 @@ std::string unobservable_list(const std::vector<JointEstimate>& joints) {
       if (u.kind != UnobservableKind::point_on_axis)  // true of every revolute joint
         text += fmt::format("  - {}: {}: {}\n", joint_name(joint), words::unobservable_text(u, joint),
                             words::remedy_text(u));
-  return text.empty() ? "" : "What this recording cannot tell:\n" + text + "\n";
+  return text.empty() ? "" : "Unobservable in this recording:\n" + text + "\n";
 }
 
 std::string joint_table(const std::vector<JointEstimate>& joints) {

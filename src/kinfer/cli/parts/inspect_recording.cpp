@@ -127,7 +127,8 @@ void print_allan(const InsRecording& recording) {
     const double period = longest.seconds() / static_cast<double>(longest.last_row - longest.first_row);
     print_allan_of("angular rate", sensor.angular_velocity, longest, period, degree, "°/s");
     print_allan_of("specific force", sensor.acceleration, longest, period, 1e-3 * standard_gravity, "mg");
-    if (longest.seconds() < 600.0) fmt::print("  (bias instability needs an hour of rest; this one tells the noise)\n");
+    if (longest.seconds() < 600.0)
+      fmt::print("  (bias instability needs an hour of rest; this one shows the noise only)\n");
   }
 }
 

@@ -93,11 +93,11 @@ int run(const ForecastArguments& options) {
 }  // namespace
 
 Verb add_forecast(CLI::App& app) {
-  CLI::App* verb =
-      add_command(app, "forecast", "How well a drive tells each joint, and what more it would take",
-                  "From a short recording, or by rehearsing a drive with an earlier chain.\nExamples:\n"
-                  "  kinfer forecast short.csv\n"
-                  "  kinfer forecast --chain excavator/chain.toml --drive gentle --duration 90 --grade industrial");
+  CLI::App* verb = add_command(
+      app, "forecast", "How accurately a drive determines each joint, and how much more excitation is needed",
+      "From a short recording, or by rehearsing a drive with an earlier chain.\nExamples:\n"
+      "  kinfer forecast short.csv\n"
+      "  kinfer forecast --chain excavator/chain.toml --drive gentle --duration 90 --grade industrial");
   auto options = std::make_shared<ForecastArguments>();
   add_texts(*verb, "logs", options->logs, "INS recordings", Requirement::optional, "CSV");
   add_text(*verb, "--chain", options->chain, "chain.toml of an earlier identification", Requirement::optional, "TOML");

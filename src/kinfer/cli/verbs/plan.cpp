@@ -107,7 +107,7 @@ std::string summary(const PosePlan& plan, const PlanArguments& options) {
   if (!plan.candidates.empty()) text += "Rows chosen, from 0: " + rows_text(plan.candidates) + "\n";
   if (!plan.redundant_rows.empty())
     text += fmt::format(
-        "Existing rows that tell hardly anything beside the others (leaving all of them out costs less "
+        "Existing rows that add hardly any information to the others (leaving all of them out costs less "
         "than 1 % of the criterion): {}\n",
         rows_text(plan.redundant_rows));
   return text;
@@ -182,7 +182,7 @@ Verb add_plan(CLI::App& app) {
   add_count(*verb, "--poses", options->poses, 1, 1000, "Number of poses to choose");
   add_text(*verb, "-o,--out", options->out, "Joint readings of the poses; the figure has the same name with .svg",
            Requirement::required, "CSV");
-  add_text(*verb, "--data", options->data, "Poses measured already: which to add, and which tell hardly anything",
+  add_text(*verb, "--data", options->data, "Poses measured already: which to add, and which are redundant",
            Requirement::optional, "CSV");
   add_text(*verb, "--candidates", options->candidates, "Choose among these poses only (default: any in the space)",
            Requirement::optional, "CSV");

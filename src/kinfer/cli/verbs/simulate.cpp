@@ -129,7 +129,7 @@ int run(const SimulateArguments& options) {
 
 void add_machine_options(CLI::App& verb, SimulateArguments& options) {
   add_flag(verb, "--arbitrary-mounting", options.arbitrary_mounting,
-           "Sensors anyhow on their segments, joints a little off (excavator-general always is)");
+           "Sensors in arbitrary mountings, joints with small errors (excavator-general always is)");
   add_choice(verb, "--base", options.base, names_of(bases),
              "rocking: it rolls, pitches and heaves; yawing: it also turns on its tracks");
   add_flag(verb, "--linkage", options.linkage,

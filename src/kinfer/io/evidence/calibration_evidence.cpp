@@ -7,6 +7,7 @@
 #include "kinfer/words/calibration.hpp"
 #include "kinfer/words/calibration_model.hpp"
 #include "kinfer/words/calibration_outliers.hpp"
+#include "kinfer/words/status.hpp"
 
 namespace kinfer {
 namespace {
@@ -52,7 +53,7 @@ ModelSelectionRecord model_selection_record(const Calibration& c) {
 }
 
 SearchRecord search_record(const SearchSummary& search) {
-  SearchRecord record{search, std::string(sentence(search.stop))};
+  SearchRecord record{search, words::sentence(search.stop)};
   record.summary.net.clear();
   return record;
 }

@@ -91,7 +91,7 @@ std::string how_uncertain(const CalibrationEvidence& e) {
 html::Section calibration_glossary() {
   return glossary_section({
       {"not fitted, held out",
-       "Poses that were not used for the fit. Only their errors tell how accurate the model is on a new pose."},
+       "Poses that were not used for the fit. Only their errors show how accurate the model is on a new pose."},
       {"cross-validation",
        "The poses are divided into parts; the errors of each part are those of a fit to the others."},
       {"base and tool", "Where the robot stands in the instrument's frame, and where the target sits on the flange."},

@@ -95,7 +95,7 @@ html::Section identification_glossary() {
       {"not determinable", "Unobservable from this recording: no measurement depends on the number."},
       {"margin", "How many times worse the next best tree of segments fits."},
       {"not fitted",
-       "Parts of the log that were not used for the fit. Only their residuals tell how accurate the chain is."},
+       "Parts of the log that were not used for the fit. Only their residuals show how accurate the chain is."},
       {"rms", "Root of the mean square: weighs large errors more than the mean does."},
   });
 }
