@@ -5,6 +5,7 @@
 
 #include "identify/driven_machine.hpp"
 #include "kinfer/simulate/log_faults.hpp"
+#include "kinfer/words/identification_verdict.hpp"
 
 namespace kinfer {
 using namespace identify;
