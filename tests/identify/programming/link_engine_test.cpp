@@ -78,6 +78,21 @@ TEST(LinkEngine, BacterialProgrammingNeverLosesItsBest) {
   EXPECT_GE(count_signal_uses(found.leaves), 1);
 }
 
+TEST(LinkEngine, AnObserverMayEndAnEvolution) {
+  const LinkExample link;
+  for (const LinkEngine& engine : {LinkEngine(MemeticProgramming{.rows = 60}), LinkEngine(short_bacterial())}) {
+    int calls = 0;
+    const Observer after_two = [&](const Progress&) {
+      return ++calls < 2 ? ObserverDecision::proceed : ObserverDecision::stop;
+    };
+    const LinkSolution found =
+        search_link(engine, {link.parent, link.child, link.signals, link.rows}, 1, Rng(3), after_two);
+    EXPECT_EQ(calls, 2);
+    EXPECT_LE(found.generations, 2);
+    EXPECT_FALSE(found.leaves.empty()) << "the best so far";
+  }
+}
+
 TEST(LinkEngine, EveryMethodGivesTheSameBitsForAnyNumberOfThreads) {
   const LinkExample link;
   for (const LinkEngine& engine : {LinkEngine(MemeticProgramming{.rows = 80}), LinkEngine(Enumeration{.rows = 80}),
