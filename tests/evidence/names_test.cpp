@@ -46,7 +46,7 @@ TEST(Names, EveryKindHasOneOfItsOwnThatAProgramCanUse) {
       names_up_to(Usability::do_not_use),
       names_up_to(TraceQuantity::angular_velocity),
       names_up_to(TraceFrame::sensor),
-      names_up_to(MeasurementKind::tilt),
+      names_up_to(kind_of<TiltMeasurement>),
       names_up_to(Undetermined::confounded),
       names_up_to(SearchMethod::bpnn_pso),
       names_up_to(Term::thermal_expansion),
@@ -70,12 +70,12 @@ TEST(Names, EveryKindHasOneOfItsOwnThatAProgramCanUse) {
 
 TEST(Names, AreReadBack) {
   for (const std::string_view one : names_up_to(FindingKind::clock)) EXPECT_EQ(name(*finding_kind(one)), one);
-  for (const std::string_view one : names_up_to(MeasurementKind::tilt)) EXPECT_EQ(name(*measurement_kind(one)), one);
+  for (const std::string_view one : names_up_to(kind_of<TiltMeasurement>)) EXPECT_EQ(name(*measurement_kind(one)), one);
   for (const std::string_view one : names_up_to(SearchMethod::bpnn_pso)) EXPECT_EQ(name(*search_method(one)), one);
   for (const std::string_view one : names_up_to(Criterion::e)) EXPECT_EQ(name(*criterion_named(one)), one);
   for (const std::string& one : term_names()) EXPECT_EQ(name(*term_named(one)), one);
   EXPECT_EQ(term_names().size(), static_cast<std::size_t>(term_count));
-  EXPECT_EQ(names_up_to(MeasurementKind::tilt).size(), static_cast<std::size_t>(measurement_kinds));
+  EXPECT_EQ(names_up_to(kind_of<TiltMeasurement>).size(), static_cast<std::size_t>(measurement_kinds));
 }
 
 TEST(Names, WhatIsNoNameIsNotRead) {

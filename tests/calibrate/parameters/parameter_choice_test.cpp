@@ -144,7 +144,7 @@ TEST(RestrictedToData, LeavesOutWhatNoRowRefersTo) {
   all.parameters.insert(all.parameters.end(), fixtures.parameters.begin(), fixtures.parameters.end());
   std::set<std::pair<int, int>> left;
   for (const Parameter& parameter : restricted_to_data(all, data).parameters)
-    if (parameter.at.owner == Owner::target || parameter.at.owner == Owner::anchor)
+    if (parameter.at.owner == Owner::target || is_fixture_parameter(parameter.at))
       left.insert({static_cast<int>(parameter.at.owner), parameter.at.joint});
   EXPECT_EQ(left, (std::set<std::pair<int, int>>{{static_cast<int>(Owner::target), 1},
                                                  {static_cast<int>(Owner::anchor), 0}}));

@@ -157,15 +157,15 @@ TEST(PrimaryMeasurementKind, IsTheFirstLengthThatWasMeasured) {
   data.orientations.push_back({});
   EXPECT_FALSE(primary_measurement_kind(data)) << "angles are no lengths";
   data.plane_contacts.push_back({});
-  EXPECT_EQ(primary_measurement_kind(data), MeasurementKind::plane);
+  EXPECT_EQ(primary_measurement_kind(data), kind_of<PlaneContact>);
   data.pairs.push_back({0, 1, 0.5});
-  EXPECT_EQ(primary_measurement_kind(data), MeasurementKind::pair);
+  EXPECT_EQ(primary_measurement_kind(data), kind_of<PairDistance>);
   data.distances.push_back({});
-  EXPECT_EQ(primary_measurement_kind(data), MeasurementKind::distance);
+  EXPECT_EQ(primary_measurement_kind(data), kind_of<DistanceMeasurement>);
   data.contacts.push_back({});
-  EXPECT_EQ(primary_measurement_kind(data), MeasurementKind::contact);
+  EXPECT_EQ(primary_measurement_kind(data), kind_of<SocketContact>);
   data.points.push_back({});
-  EXPECT_EQ(primary_measurement_kind(data), MeasurementKind::point);
+  EXPECT_EQ(primary_measurement_kind(data), kind_of<PointMeasurement>);
 }
 
 }  // namespace
