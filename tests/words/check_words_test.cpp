@@ -11,6 +11,7 @@
 #include "kinfer/words/calibration_model.hpp"
 #include "kinfer/words/calibration_unknown.hpp"
 #include "kinfer/words/findings.hpp"
+#include "kinfer/words/status.hpp"
 
 namespace kinfer {
 namespace {
@@ -44,7 +45,7 @@ TEST(CompensationWords, ARowThatWasNotReachedSaysWhyAndByHowMuch) {
         words::unreached_row(7, {.residual = 1.5e-3, .residual_angle = 0.25 * degree, .status = status});
     EXPECT_TRUE(text.starts_with("row 7: ")) << text;
     EXPECT_TRUE(text.ends_with("; 1.5000 mm and 0.2500 deg are left")) << text;
-    EXPECT_NE(text.find(sentence(status)), std::string::npos);
+    EXPECT_NE(text.find(words::sentence(status)), std::string::npos);
   }
   EXPECT_FALSE(words::compensation_frames_note().empty());
 }

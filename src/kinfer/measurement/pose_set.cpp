@@ -45,7 +45,7 @@ MatrixXd pick_columns(const MatrixXd& from, const std::vector<int>& rows) {
   return from.cols() == 0 ? from : MatrixXd(from(Eigen::all, rows));
 }
 
-JointRecord select(const JointRecord& from, const std::vector<int>& rows) {
+RecordedJoints select(const RecordedJoints& from, const std::vector<int>& rows) {
   return {from.joint_names, from.joints(Eigen::all, rows), pick_columns(from.commanded, rows)};
 }
 
@@ -91,7 +91,7 @@ PoseSet select(const PoseSet& from, const std::vector<int>& rows) {
   std::vector<std::vector<int>> places(from.rows());  // new indices of each old row
   for (std::size_t i = 0; i < rows.size(); ++i) places[rows[i]].push_back(static_cast<int>(i));
   return {
-      select(static_cast<const JointRecord&>(from), rows),        select(static_cast<const RowConditions&>(from), rows),
+      select(static_cast<const RecordedJoints&>(from), rows),        select(static_cast<const RowConditions&>(from), rows),
       select(static_cast<const PoseMeasurements&>(from), places), static_cast<const FixtureNames&>(from),
       select(static_cast<const RowGroups&>(from), rows),          select(static_cast<const RowOrigin&>(from), rows)};
 }

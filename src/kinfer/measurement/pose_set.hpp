@@ -13,7 +13,7 @@
 namespace kinfer {
 
 /// What the robot's controller logged.
-struct JointRecord {
+struct RecordedJoints {
   std::vector<std::string> joint_names;  ///< of the rows of `joints`, in the order of the robot's joints
   MatrixXd joints;                       ///< dof x rows, [rad] or [m]
   MatrixXd commanded;                    ///< as `joints`: commanded positions, NaN where unknown; empty: none
@@ -47,7 +47,7 @@ struct RowOrigin {
   std::vector<int> line;        ///< line of each row in its file, from 1
 };
 
-struct PoseSet : JointRecord, RowConditions, PoseMeasurements, FixtureNames, RowGroups, RowOrigin {
+struct PoseSet : RecordedJoints, RowConditions, PoseMeasurements, FixtureNames, RowGroups, RowOrigin {
   Eigen::Index rows() const { return joints.cols(); }
 };
 
