@@ -5,8 +5,8 @@
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/io/robot/robot_errors_toml.hpp"
 #include "kinfer/simulate/pose_set.hpp"
-#include "kinfer/words/calibration.hpp"
-#include "kinfer/words/calibration_outliers.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
+#include "kinfer/words/findings/outliers.hpp"
 
 int main() {
   using namespace kinfer;

@@ -10,7 +10,7 @@
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
-#include "kinfer/words/identification_verdict.hpp"
+#include "kinfer/words/identification/verdict.hpp"
 #include "studies/diodem/optical_truth.hpp"
 
 namespace kinfer::study {

@@ -3,7 +3,7 @@
 // beside their stated standard deviations.
 #pragma once
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
 
 namespace kinfer::study {

@@ -2,7 +2,7 @@
 // Geometry errors of an identified chain against the simulation's truth, without unobservable directions.
 #pragma once
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
 
 namespace kinfer::study {

@@ -8,7 +8,7 @@
 
 #include "er20.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
-#include "kinfer/evidence/fit_errors.hpp"
+#include "kinfer/evidence/calibration/fit_errors.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/simulate/pose_set.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kinfer/evidence/fit_errors.hpp"
+#include "kinfer/evidence/calibration/fit_errors.hpp"
 #include "kinfer/search/swarm/minimise.hpp"
 #include "problem.hpp"
 

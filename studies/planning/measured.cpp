@@ -11,7 +11,7 @@
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
-#include "kinfer/words/row_ranges.hpp"
+#include "kinfer/words/findings/row_ranges.hpp"
 #include "trials.hpp"
 
 namespace kinfer::study {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
 
 namespace kinfer::study {

@@ -6,7 +6,7 @@
 #include "kinfer/calibrate/start/initial_frames.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/words/calibration.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {

@@ -8,7 +8,7 @@
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
-#include "kinfer/words/calibration.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
 #include "support/differences.hpp"
 #include "support/instruments.hpp"
 

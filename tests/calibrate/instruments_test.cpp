@@ -6,7 +6,7 @@
 #include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/calibrate/validation/validation_errors.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/words/calibration.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
 #include "support/instruments.hpp"
 
 namespace kinfer {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kinfer/words/calibration.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
 
 namespace kinfer {
 using namespace calibrate;

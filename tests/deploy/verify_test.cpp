@@ -5,7 +5,7 @@
 
 #include "kinfer/deploy/predict.hpp"
 #include "kinfer/kinematics/forward.hpp"
-#include "kinfer/words/calibration_checks.hpp"
+#include "kinfer/words/calibration/checks.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "kinfer/evidence/calibration.hpp"
-#include "kinfer/evidence/compensation.hpp"
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/calibration/calibration.hpp"
+#include "kinfer/evidence/deployment/compensation.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "support/robots.hpp"
 

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <set>
 
-#include "kinfer/evidence/calibration_facts.hpp"
-#include "kinfer/evidence/estimate.hpp"
-#include "kinfer/evidence/findings.hpp"
-#include "kinfer/evidence/frame_estimate.hpp"
-#include "kinfer/evidence/identification.hpp"
-#include "kinfer/evidence/model_selection.hpp"
-#include "kinfer/evidence/pose_plan.hpp"
-#include "kinfer/evidence/unknown_robot.hpp"
-#include "kinfer/evidence/verification.hpp"
+#include "kinfer/evidence/calibration/calibration_facts.hpp"
+#include "kinfer/evidence/calibration/estimate.hpp"
+#include "kinfer/evidence/calibration/model_selection.hpp"
+#include "kinfer/evidence/calibration/unknown_robot.hpp"
+#include "kinfer/evidence/deployment/frame_estimate.hpp"
+#include "kinfer/evidence/deployment/pose_plan.hpp"
+#include "kinfer/evidence/deployment/verification.hpp"
+#include "kinfer/evidence/facts/findings.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/measurement/measurements.hpp"
 
 namespace kinfer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/evidence/traces.hpp"
+#include "kinfer/evidence/identification/traces.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "kinfer/identify/findings/order_evidence.hpp"
-#include "kinfer/words/identification_advice.hpp"
+#include "kinfer/words/identification/advice.hpp"
 
 namespace kinfer {
 using namespace identify;

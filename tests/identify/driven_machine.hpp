@@ -9,7 +9,7 @@
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
-#include "kinfer/words/findings.hpp"
+#include "kinfer/words/findings/findings.hpp"
 #include "simulate/worlds.hpp"
 
 namespace kinfer::test {

@@ -13,7 +13,7 @@
 #include "kinfer/identify/structure/moving_phases.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
-#include "kinfer/words/identification_verdict.hpp"
+#include "kinfer/words/identification/verdict.hpp"
 
 namespace kinfer {
 using namespace identify;

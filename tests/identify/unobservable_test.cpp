@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kinfer/words/identification_unobservable.hpp"
+#include "kinfer/words/identification/unobservable.hpp"
 
 namespace kinfer {
 using namespace identify;

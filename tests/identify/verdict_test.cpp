@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kinfer/words/identification_verdict.hpp"
+#include "kinfer/words/identification/verdict.hpp"
 
 namespace kinfer {
 using namespace identify;

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "kinfer/evidence/calibration.hpp"
-#include "kinfer/evidence/frame_estimate.hpp"
-#include "kinfer/evidence/identification.hpp"
-#include "kinfer/evidence/provenance.hpp"
+#include "kinfer/evidence/calibration/calibration.hpp"
+#include "kinfer/evidence/deployment/frame_estimate.hpp"
+#include "kinfer/evidence/facts/provenance.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer::test {

@@ -3,16 +3,16 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/words/calibration.hpp"
-#include "kinfer/words/calibration_checks.hpp"
-#include "kinfer/words/calibration_frames.hpp"
-#include "kinfer/words/calibration_model.hpp"
-#include "kinfer/words/calibration_outliers.hpp"
-#include "kinfer/words/calibration_unknown.hpp"
-#include "kinfer/words/findings.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
+#include "kinfer/words/calibration/checks.hpp"
+#include "kinfer/words/calibration/frames.hpp"
+#include "kinfer/words/calibration/model.hpp"
+#include "kinfer/words/calibration/unknown_robot.hpp"
+#include "kinfer/words/findings/findings.hpp"
+#include "kinfer/words/findings/outliers.hpp"
+#include "kinfer/words/findings/pose_set_findings.hpp"
+#include "kinfer/words/findings/row_ranges.hpp"
 #include "kinfer/words/language.hpp"
-#include "kinfer/words/pose_set_findings.hpp"
-#include "kinfer/words/row_ranges.hpp"
 
 namespace kinfer {
 namespace {

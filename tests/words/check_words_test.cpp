@@ -5,12 +5,12 @@
 #include <set>
 
 #include "kinfer/base/constants.hpp"
-#include "kinfer/words/calibration.hpp"
-#include "kinfer/words/calibration_checks.hpp"
-#include "kinfer/words/calibration_frames.hpp"
-#include "kinfer/words/calibration_model.hpp"
-#include "kinfer/words/calibration_unknown.hpp"
-#include "kinfer/words/findings.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
+#include "kinfer/words/calibration/checks.hpp"
+#include "kinfer/words/calibration/frames.hpp"
+#include "kinfer/words/calibration/model.hpp"
+#include "kinfer/words/calibration/unknown_robot.hpp"
+#include "kinfer/words/findings/findings.hpp"
 #include "kinfer/words/status.hpp"
 
 namespace kinfer {

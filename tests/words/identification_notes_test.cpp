@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/words/identification_notes.hpp"
+#include "kinfer/words/identification/notes.hpp"
 
 #include <gmock/gmock.h>
 

@@ -4,12 +4,12 @@
 
 #include <set>
 
-#include "kinfer/words/findings.hpp"
-#include "kinfer/words/identification_advice.hpp"
-#include "kinfer/words/identification_forecast.hpp"
-#include "kinfer/words/identification_notes.hpp"
-#include "kinfer/words/identification_unobservable.hpp"
-#include "kinfer/words/identification_verdict.hpp"
+#include "kinfer/words/findings/findings.hpp"
+#include "kinfer/words/identification/advice.hpp"
+#include "kinfer/words/identification/forecast.hpp"
+#include "kinfer/words/identification/notes.hpp"
+#include "kinfer/words/identification/unobservable.hpp"
+#include "kinfer/words/identification/verdict.hpp"
 #include "kinfer/words/language.hpp"
 
 namespace kinfer::words {

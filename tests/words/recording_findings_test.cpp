@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/words/recording_findings.hpp"
+#include "kinfer/words/findings/recording_findings.hpp"
 
 #include <gmock/gmock.h>
 
-#include "kinfer/words/findings.hpp"
+#include "kinfer/words/findings/findings.hpp"
 #include "kinfer/words/language.hpp"
 
 namespace kinfer::words {

@@ -7,7 +7,7 @@
 #include "kinfer/base/rng.hpp"
 #include "kinfer/calibrate/problem/options.hpp"
 #include "kinfer/calibrate/problem/task.hpp"
-#include "kinfer/evidence/calibration.hpp"
+#include "kinfer/evidence/calibration/calibration.hpp"
 
 namespace kinfer::calibrate {
 

@@ -9,7 +9,7 @@
 #include "kinfer/base/rng.hpp"
 #include "kinfer/calibrate/problem/options.hpp"
 #include "kinfer/calibrate/problem/task.hpp"
-#include "kinfer/evidence/unknown_robot.hpp"
+#include "kinfer/evidence/calibration/unknown_robot.hpp"
 
 namespace kinfer::calibrate {
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/evidence/calibration_comparison.hpp"
+#include "kinfer/evidence/deployment/calibration_comparison.hpp"
 
 namespace kinfer::deploy {
 

@@ -10,7 +10,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/base/rng.hpp"
-#include "kinfer/evidence/compensation.hpp"
+#include "kinfer/evidence/deployment/compensation.hpp"
 #include "kinfer/kinematics/parameters.hpp"
 
 namespace kinfer::deploy {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/evidence/verification.hpp"
+#include "kinfer/evidence/deployment/verification.hpp"
 #include "kinfer/kinematics/parameters.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 

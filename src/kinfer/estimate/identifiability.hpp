@@ -3,7 +3,7 @@
 // parameters.
 #pragma once
 
-#include "kinfer/evidence/estimate.hpp"
+#include "kinfer/evidence/calibration/estimate.hpp"
 
 namespace kinfer {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/identify/options.hpp"
 
 namespace kinfer::identify {

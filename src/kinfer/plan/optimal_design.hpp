@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "kinfer/base/rng.hpp"
-#include "kinfer/evidence/pose_plan.hpp"
+#include "kinfer/evidence/deployment/pose_plan.hpp"
 #include "kinfer/linalg/types.hpp"
 
 namespace kinfer::plan {

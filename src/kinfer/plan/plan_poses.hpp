@@ -5,7 +5,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/base/rng.hpp"
-#include "kinfer/evidence/pose_plan.hpp"
+#include "kinfer/evidence/deployment/pose_plan.hpp"
 #include "kinfer/kinematics/parameters.hpp"
 #include "kinfer/kinematics/pose_constraints.hpp"
 #include "kinfer/measurement/pose_set.hpp"

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/evidence/calibration_evidence.hpp"
-#include "kinfer/evidence/identification_evidence.hpp"
+#include "kinfer/evidence/calibration/calibration_evidence.hpp"
+#include "kinfer/evidence/identification/identification_evidence.hpp"
 
 namespace kinfer::report {
 

@@ -5,7 +5,7 @@
 
 #include "kinfer/calibrate/conclusion/notes.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
-#include "kinfer/words/calibration.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {

@@ -7,7 +7,7 @@
 
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
 #include "kinfer/kinematics/forward.hpp"
-#include "kinfer/words/findings.hpp"
+#include "kinfer/words/findings/findings.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {

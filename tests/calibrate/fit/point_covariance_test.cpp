@@ -4,7 +4,7 @@
 
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/words/calibration.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
 #include "support/instruments.hpp"
 
 namespace kinfer {

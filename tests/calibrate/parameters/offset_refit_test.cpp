@@ -5,7 +5,7 @@
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/words/calibration.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {

@@ -7,7 +7,7 @@
 #include "kinfer/calibrate/start/local_poe.hpp"
 #include "kinfer/kinematics/dh_conversion.hpp"
 #include "kinfer/kinematics/forward.hpp"
-#include "kinfer/words/calibration_unknown.hpp"
+#include "kinfer/words/calibration/unknown_robot.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {

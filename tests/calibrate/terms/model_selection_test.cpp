@@ -9,8 +9,8 @@
 #include "kinfer/calibrate/terms/gear_harmonics.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/words/calibration.hpp"
-#include "kinfer/words/calibration_model.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
+#include "kinfer/words/calibration/model.hpp"
 #include "support/instruments.hpp"
 
 namespace kinfer {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/words/calibration.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
 #include "support/instruments.hpp"
 
 namespace kinfer {

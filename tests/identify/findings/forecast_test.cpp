@@ -10,7 +10,7 @@
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/machine_from_chain.hpp"
 #include "kinfer/simulate/prescribed_motion.hpp"
-#include "kinfer/words/identification_forecast.hpp"
+#include "kinfer/words/identification/forecast.hpp"
 #include "simulate/worlds.hpp"
 
 namespace kinfer {

@@ -5,7 +5,7 @@
 
 #include "identify/measured_segments.hpp"
 #include "kinfer/identify/joints/search_links.hpp"
-#include "kinfer/words/identification_notes.hpp"
+#include "kinfer/words/identification/notes.hpp"
 
 namespace kinfer {
 using namespace identify;

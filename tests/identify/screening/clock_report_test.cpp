@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/identify/screening/synchronisation.hpp"
-#include "kinfer/words/findings.hpp"
+#include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer {
 using namespace identify;

@@ -8,7 +8,7 @@
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/simulate/four_bar_linkage.hpp"
 #include "kinfer/simulate/log_faults.hpp"
-#include "kinfer/words/identification_verdict.hpp"
+#include "kinfer/words/identification/verdict.hpp"
 
 namespace kinfer {
 using namespace identify;

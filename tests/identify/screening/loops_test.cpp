@@ -5,7 +5,7 @@
 
 #include "identify/hand_made_tree.hpp"
 #include "kinfer/identify/findings/order_evidence.hpp"
-#include "kinfer/words/findings.hpp"
+#include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer {
 using namespace identify;

@@ -7,7 +7,7 @@
 
 #include "identify/hand_made_tree.hpp"
 #include "kinfer/base/rng.hpp"
-#include "kinfer/words/findings.hpp"
+#include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer {
 using namespace identify;

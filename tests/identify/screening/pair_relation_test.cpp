@@ -5,7 +5,7 @@
 
 #include "identify/measured_segments.hpp"
 #include "kinfer/identify/screening/remount.hpp"
-#include "kinfer/words/findings.hpp"
+#include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer {
 using namespace identify;

@@ -5,7 +5,7 @@
 
 #include "identify/driven_machine.hpp"
 #include "kinfer/simulate/log_faults.hpp"
-#include "kinfer/words/identification_verdict.hpp"
+#include "kinfer/words/identification/verdict.hpp"
 
 namespace kinfer {
 using namespace identify;

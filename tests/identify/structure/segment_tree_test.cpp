@@ -10,7 +10,7 @@
 #include "identify/hand_made_tree.hpp"
 #include "identify/measured_segments.hpp"
 #include "kinfer/identify/structure/given_tree.hpp"
-#include "kinfer/words/findings.hpp"
+#include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer {
 using namespace identify;

@@ -4,7 +4,7 @@
 
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
 #include "kinfer/calibrate/validation/gross_errors.hpp"
-#include "kinfer/evidence/calibration.hpp"
+#include "kinfer/evidence/calibration/calibration.hpp"
 
 namespace kinfer::calibrate {
 

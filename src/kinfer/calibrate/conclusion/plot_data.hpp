@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinfer/calibrate/problem/task.hpp"
-#include "kinfer/evidence/calibration.hpp"
+#include "kinfer/evidence/calibration/calibration.hpp"
 
 namespace kinfer::calibrate {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kinfer/calibrate/problem/task.hpp"
-#include "kinfer/evidence/calibration.hpp"
+#include "kinfer/evidence/calibration/calibration.hpp"
 
 namespace kinfer::calibrate {
 

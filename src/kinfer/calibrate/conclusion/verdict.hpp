@@ -2,7 +2,7 @@
 // The verdict of a calibration: whether to use it, and why.
 #pragma once
 
-#include "kinfer/evidence/calibration.hpp"
+#include "kinfer/evidence/calibration/calibration.hpp"
 
 namespace kinfer::calibrate {
 

@@ -7,7 +7,7 @@
 
 #include "kinfer/calibrate/diagnosis/orientation_conventions.hpp"
 #include "kinfer/calibrate/problem/task.hpp"
-#include "kinfer/evidence/findings.hpp"
+#include "kinfer/evidence/facts/findings.hpp"
 
 namespace kinfer::calibrate {
 

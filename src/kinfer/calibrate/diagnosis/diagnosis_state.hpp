@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "kinfer/calibrate/problem/task.hpp"
-#include "kinfer/evidence/findings.hpp"
+#include "kinfer/evidence/facts/findings.hpp"
 
 namespace kinfer::calibrate {
 

@@ -6,7 +6,7 @@
 #include "kinfer/base/rng.hpp"
 #include "kinfer/calibrate/problem/options.hpp"
 #include "kinfer/calibrate/problem/task.hpp"
-#include "kinfer/evidence/estimate.hpp"
+#include "kinfer/evidence/calibration/estimate.hpp"
 
 namespace kinfer::calibrate {
 

@@ -11,7 +11,7 @@
 #include "kinfer/base/result.hpp"
 #include "kinfer/calibrate/problem/swarm_options.hpp"
 #include "kinfer/calibrate/problem/task.hpp"
-#include "kinfer/evidence/model_selection.hpp"
+#include "kinfer/evidence/calibration/model_selection.hpp"
 
 namespace kinfer::calibrate {
 

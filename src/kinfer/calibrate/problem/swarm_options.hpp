@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/evidence/estimate.hpp"
+#include "kinfer/evidence/calibration/estimate.hpp"
 #include "kinfer/search/swarm/minimise.hpp"
 
 namespace kinfer::calibrate {

@@ -12,7 +12,7 @@
 #include <span>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/evidence/frame_estimate.hpp"
+#include "kinfer/evidence/deployment/frame_estimate.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer::calibrate {

@@ -8,7 +8,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/base/rng.hpp"
-#include "kinfer/evidence/unknown_robot.hpp"
+#include "kinfer/evidence/calibration/unknown_robot.hpp"
 #include "kinfer/kinematics/parameters.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <span>
 
-#include "kinfer/evidence/model_selection.hpp"
+#include "kinfer/evidence/calibration/model_selection.hpp"
 
 namespace kinfer::calibrate {
 

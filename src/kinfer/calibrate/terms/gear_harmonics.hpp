@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kinfer/calibrate/terms/thresholds.hpp"
-#include "kinfer/evidence/estimate.hpp"
+#include "kinfer/evidence/calibration/estimate.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer::calibrate {

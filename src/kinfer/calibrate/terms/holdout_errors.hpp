@@ -6,7 +6,7 @@
 
 #include "kinfer/calibrate/problem/task.hpp"
 #include "kinfer/estimate/poses/bundle.hpp"
-#include "kinfer/evidence/model_selection.hpp"
+#include "kinfer/evidence/calibration/model_selection.hpp"
 #include "kinfer/measurement/split.hpp"
 
 namespace kinfer::calibrate {

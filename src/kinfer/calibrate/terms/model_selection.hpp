@@ -7,7 +7,7 @@
 
 #include "kinfer/base/observer.hpp"
 #include "kinfer/calibrate/problem/options.hpp"
-#include "kinfer/evidence/estimate.hpp"
+#include "kinfer/evidence/calibration/estimate.hpp"
 #include "kinfer/measurement/split.hpp"
 
 namespace kinfer::calibrate {

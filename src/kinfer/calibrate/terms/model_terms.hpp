@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "kinfer/evidence/estimate.hpp"
-#include "kinfer/evidence/model_selection.hpp"
+#include "kinfer/evidence/calibration/estimate.hpp"
+#include "kinfer/evidence/calibration/model_selection.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer::calibrate {

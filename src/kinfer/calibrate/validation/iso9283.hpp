@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "kinfer/evidence/calibration.hpp"
+#include "kinfer/evidence/calibration/calibration.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer::calibrate {

@@ -6,7 +6,7 @@
 
 #include "kinfer/calibrate/validation/validation_plan.hpp"
 #include "kinfer/estimate/poses/bundle.hpp"
-#include "kinfer/evidence/calibration.hpp"
+#include "kinfer/evidence/calibration/calibration.hpp"
 
 namespace kinfer::calibrate {
 

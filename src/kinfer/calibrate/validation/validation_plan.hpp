@@ -7,7 +7,7 @@
 #include "kinfer/base/result.hpp"
 #include "kinfer/base/rng.hpp"
 #include "kinfer/calibrate/problem/options.hpp"
-#include "kinfer/evidence/calibration_facts.hpp"
+#include "kinfer/evidence/calibration/calibration_facts.hpp"
 #include "kinfer/measurement/split.hpp"
 
 namespace kinfer::calibrate {

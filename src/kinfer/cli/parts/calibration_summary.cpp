@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "kinfer/words/calibration.hpp"
-#include "kinfer/words/calibration_model.hpp"
-#include "kinfer/words/calibration_outliers.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
+#include "kinfer/words/calibration/model.hpp"
+#include "kinfer/words/findings/outliers.hpp"
 #include "kinfer/words/status.hpp"
 
 namespace kinfer::cli {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "kinfer/evidence/calibration.hpp"
+#include "kinfer/evidence/calibration/calibration.hpp"
 
 namespace kinfer::cli {
 

@@ -12,7 +12,7 @@
 #include "kinfer/base/observer.hpp"
 #include "kinfer/base/result.hpp"
 #include "kinfer/cli/parts/arguments.hpp"
-#include "kinfer/evidence/provenance.hpp"
+#include "kinfer/evidence/facts/provenance.hpp"
 
 namespace kinfer::cli {
 

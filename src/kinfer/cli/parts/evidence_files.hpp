@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/evidence/calibration_evidence.hpp"
-#include "kinfer/evidence/identification_evidence.hpp"
+#include "kinfer/evidence/calibration/calibration_evidence.hpp"
+#include "kinfer/evidence/identification/identification_evidence.hpp"
 
 namespace kinfer::cli {
 

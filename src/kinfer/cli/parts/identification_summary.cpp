@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinfer/words/identification_notes.hpp"
-#include "kinfer/words/identification_unobservable.hpp"
-#include "kinfer/words/identification_verdict.hpp"
+#include "kinfer/words/identification/notes.hpp"
+#include "kinfer/words/identification/unobservable.hpp"
+#include "kinfer/words/identification/verdict.hpp"
 
 namespace kinfer::cli {
 namespace {

@@ -20,7 +20,7 @@
 #include "kinfer/io/robot/parameter_names_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/measurement/merge_pose_sets.hpp"
-#include "kinfer/words/calibration_outliers.hpp"
+#include "kinfer/words/findings/outliers.hpp"
 
 namespace kinfer::cli {
 namespace {

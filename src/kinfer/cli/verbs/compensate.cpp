@@ -12,7 +12,7 @@
 #include "kinfer/io/text/format_number.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/units.hpp"
-#include "kinfer/words/calibration_checks.hpp"
+#include "kinfer/words/calibration/checks.hpp"
 
 namespace kinfer::cli {
 namespace {

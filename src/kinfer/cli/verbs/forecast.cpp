@@ -15,7 +15,7 @@
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/machine_from_chain.hpp"
 #include "kinfer/simulate/prescribed_motion.hpp"
-#include "kinfer/words/identification_forecast.hpp"
+#include "kinfer/words/identification/forecast.hpp"
 
 namespace kinfer::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include "kinfer/io/evidence/frames_json.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/text/text_file.hpp"
-#include "kinfer/words/calibration_frames.hpp"
+#include "kinfer/words/calibration/frames.hpp"
 
 namespace kinfer::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "kinfer/io/evidence/findings_json.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/recording/recording_formats.hpp"
-#include "kinfer/words/findings.hpp"
+#include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer::cli {
 namespace {

@@ -12,7 +12,7 @@
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/report/parts/plan_figure.hpp"
-#include "kinfer/words/calibration_checks.hpp"
+#include "kinfer/words/calibration/checks.hpp"
 
 namespace kinfer::cli {
 namespace {

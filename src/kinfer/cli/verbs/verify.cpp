@@ -11,7 +11,7 @@
 #include "kinfer/deploy/verify.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/standard_deviations_toml.hpp"
-#include "kinfer/words/calibration_checks.hpp"
+#include "kinfer/words/calibration/checks.hpp"
 
 namespace kinfer::cli {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "kinfer/base/observer.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
-#include "kinfer/evidence/estimate.hpp"
+#include "kinfer/evidence/calibration/estimate.hpp"
 
 namespace kinfer {
 

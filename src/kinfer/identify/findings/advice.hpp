@@ -2,7 +2,7 @@
 // Recommendations after an identification.
 #pragma once
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 
 namespace kinfer::identify {
 

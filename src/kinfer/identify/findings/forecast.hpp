@@ -2,7 +2,7 @@
 // Whether a recording determines each joint accurately enough, and how much more excitation it would need.
 #pragma once
 
-#include "kinfer/evidence/joint_estimate.hpp"
+#include "kinfer/evidence/identification/joint_estimate.hpp"
 
 namespace kinfer::identify {
 

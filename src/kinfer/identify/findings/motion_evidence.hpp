@@ -2,7 +2,7 @@
 // Predicted and measured motion, decimated for display, and the machine's joint trajectory.
 #pragma once
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/identify/refinement/held_out.hpp"
 #include "kinfer/inertial/segment_motion.hpp"
 

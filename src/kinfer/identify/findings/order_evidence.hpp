@@ -2,7 +2,7 @@
 // Evidence of the order of the segments: pairs, margin, phases, kinematic loops.
 #pragma once
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 
 namespace kinfer::identify {

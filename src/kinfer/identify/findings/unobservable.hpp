@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "kinfer/evidence/joint_estimate.hpp"
+#include "kinfer/evidence/identification/joint_estimate.hpp"
 
 namespace kinfer::identify {
 

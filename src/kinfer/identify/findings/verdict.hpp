@@ -2,7 +2,7 @@
 // Whether an identification may be used, and the figures that this rests on.
 #pragma once
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 
 namespace kinfer::identify {
 

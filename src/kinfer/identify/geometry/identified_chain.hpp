@@ -2,7 +2,7 @@
 // Products of an identification, made from the estimated joints: canonical DH rows, link lengths, a chain.
 #pragma once
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/identify/geometry/joint_precision.hpp"
 
 namespace kinfer::identify {

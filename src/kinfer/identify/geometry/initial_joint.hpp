@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinfer/estimate/continuous/model/chain_propagation.hpp"
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/identify/structure/segment_tree.hpp"
 
 namespace kinfer::identify {

@@ -6,7 +6,7 @@
 // included.
 #pragma once
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/identify/geometry/joint_geometry.hpp"
 
 namespace kinfer::identify {

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/identify/programming/frame_state.hpp"
 
 namespace kinfer::identify {

@@ -4,7 +4,7 @@
 
 #include <variant>
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/identify/programming/bacterial_search.hpp"
 #include "kinfer/identify/programming/memetic_search.hpp"
 

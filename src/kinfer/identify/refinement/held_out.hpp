@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinfer/estimate/continuous/solver/batch_fit.hpp"
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 
 namespace kinfer::identify {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinfer/estimate/continuous/model/uniform_spline.hpp"
-#include "kinfer/evidence/traces.hpp"
+#include "kinfer/evidence/identification/traces.hpp"
 #include "kinfer/identify/refinement/refined_joint.hpp"
 #include "kinfer/inertial/segment_motion.hpp"
 

@@ -2,7 +2,7 @@
 // The geometry of the joints by the continuous-time fit, in place of that of the search.
 #pragma once
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/identify/refinement/refine.hpp"
 
 namespace kinfer::identify {

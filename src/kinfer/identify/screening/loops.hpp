@@ -2,7 +2,7 @@
 // Joints that are not in the tree: they close a kinematic loop, such as the four-bar linkage of a bucket.
 #pragma once
 
-#include "kinfer/evidence/findings.hpp"
+#include "kinfer/evidence/facts/findings.hpp"
 #include "kinfer/identify/structure/segment_tree.hpp"
 
 namespace kinfer::identify {

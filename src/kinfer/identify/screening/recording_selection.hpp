@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "kinfer/evidence/findings.hpp"
+#include "kinfer/evidence/facts/findings.hpp"
 
 namespace kinfer::identify {
 

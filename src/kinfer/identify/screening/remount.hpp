@@ -11,7 +11,7 @@
 
 #include <optional>
 
-#include "kinfer/evidence/findings.hpp"
+#include "kinfer/evidence/facts/findings.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 
 namespace kinfer::identify {

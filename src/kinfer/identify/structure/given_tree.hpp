@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/evidence/findings.hpp"
+#include "kinfer/evidence/facts/findings.hpp"
 #include "kinfer/identify/structure/segment_tree.hpp"
 
 namespace kinfer::identify {

@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/identify/structure/segment_tree.hpp"
 
 namespace kinfer::identify {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/evidence/calibration_evidence.hpp"
+#include "kinfer/evidence/calibration/calibration_evidence.hpp"
 
 #include "kinfer/io/evidence/calibration_json.hpp"
 #include "kinfer/io/evidence/make_records.hpp"
 #include "kinfer/io/evidence/plot_rounding.hpp"
-#include "kinfer/words/calibration.hpp"
-#include "kinfer/words/calibration_model.hpp"
-#include "kinfer/words/calibration_outliers.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
+#include "kinfer/words/calibration/model.hpp"
+#include "kinfer/words/findings/outliers.hpp"
 #include "kinfer/words/status.hpp"
 
 namespace kinfer {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kinfer/evidence/calibration.hpp"
+#include "kinfer/evidence/calibration/calibration.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 
 namespace kinfer {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/evidence/calibration_json.hpp"
 
-#include "kinfer/io/evidence/calibration_fields.hpp"
-#include "kinfer/words/calibration.hpp"
+#include "kinfer/io/evidence/json/calibration_fields.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
 
 namespace kinfer {
 namespace evidence_json {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/evidence/calibration_evidence.hpp"
+#include "kinfer/evidence/calibration/calibration_evidence.hpp"
 
 namespace kinfer {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "kinfer/evidence/identification.hpp"
+#include "kinfer/evidence/identification/identification.hpp"
 
 namespace kinfer {
 

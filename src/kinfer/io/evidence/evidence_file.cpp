@@ -4,7 +4,7 @@
 #include "kinfer/io/evidence/calibration_json.hpp"
 #include "kinfer/io/evidence/frames_json.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
-#include "kinfer/io/evidence/shared_fields.hpp"
+#include "kinfer/io/evidence/json/shared_fields.hpp"
 
 namespace kinfer {
 namespace evidence_json {

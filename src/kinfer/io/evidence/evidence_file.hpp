@@ -6,9 +6,9 @@
 #include <variant>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/evidence/calibration_evidence.hpp"
-#include "kinfer/evidence/frames_evidence.hpp"
-#include "kinfer/evidence/identification_evidence.hpp"
+#include "kinfer/evidence/calibration/calibration_evidence.hpp"
+#include "kinfer/evidence/deployment/frames_evidence.hpp"
+#include "kinfer/evidence/identification/identification_evidence.hpp"
 
 namespace kinfer {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/evidence/findings_json.hpp"
 
+#include "kinfer/io/evidence/json/shared_fields.hpp"
 #include "kinfer/io/evidence/make_records.hpp"
-#include "kinfer/io/evidence/shared_fields.hpp"
 
 namespace kinfer {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kinfer/evidence/findings.hpp"
+#include "kinfer/evidence/facts/findings.hpp"
 
 namespace kinfer {
 

@@ -2,8 +2,8 @@
 #include "kinfer/io/evidence/frames_json.hpp"
 
 #include "kinfer/geometry/rotation.hpp"
-#include "kinfer/io/evidence/shared_fields.hpp"
-#include "kinfer/words/calibration_frames.hpp"
+#include "kinfer/io/evidence/json/shared_fields.hpp"
+#include "kinfer/words/calibration/frames.hpp"
 
 namespace kinfer {
 namespace evidence_json {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/evidence/frames_evidence.hpp"
+#include "kinfer/evidence/deployment/frames_evidence.hpp"
 
 namespace kinfer {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/evidence/identification_evidence.hpp"
+#include "kinfer/evidence/identification/identification_evidence.hpp"
 
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/evidence/make_records.hpp"
 #include "kinfer/io/evidence/plot_rounding.hpp"
-#include "kinfer/words/identification_advice.hpp"
-#include "kinfer/words/identification_notes.hpp"
-#include "kinfer/words/identification_unobservable.hpp"
-#include "kinfer/words/identification_verdict.hpp"
+#include "kinfer/words/identification/advice.hpp"
+#include "kinfer/words/identification/notes.hpp"
+#include "kinfer/words/identification/unobservable.hpp"
+#include "kinfer/words/identification/verdict.hpp"
 
 namespace kinfer {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/evidence/identification_json.hpp"
 
-#include "kinfer/io/evidence/identification_fields.hpp"
-#include "kinfer/io/evidence/motion_fields.hpp"
+#include "kinfer/io/evidence/json/identification_fields.hpp"
+#include "kinfer/io/evidence/json/motion_fields.hpp"
 
 namespace kinfer {
 namespace evidence_json {

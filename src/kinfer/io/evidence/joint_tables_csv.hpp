@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "kinfer/evidence/estimate.hpp"
+#include "kinfer/evidence/calibration/estimate.hpp"
 #include "kinfer/kinematics/dh_conversion.hpp"
 
 namespace kinfer {

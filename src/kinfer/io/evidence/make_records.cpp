@@ -2,7 +2,7 @@
 #include "kinfer/io/evidence/make_records.hpp"
 
 #include "kinfer/base/version.hpp"
-#include "kinfer/words/findings.hpp"
+#include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "kinfer/evidence/records.hpp"
+#include "kinfer/evidence/facts/records.hpp"
 
 namespace kinfer {
 

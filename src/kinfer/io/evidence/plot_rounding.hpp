@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "kinfer/evidence/calibration_plot.hpp"
-#include "kinfer/evidence/traces.hpp"
+#include "kinfer/evidence/calibration/calibration_plot.hpp"
+#include "kinfer/evidence/identification/traces.hpp"
 
 namespace kinfer {
 

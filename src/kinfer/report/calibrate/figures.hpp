@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "kinfer/evidence/calibration_evidence.hpp"
+#include "kinfer/evidence/calibration/calibration_evidence.hpp"
 
 namespace kinfer::report {
 

@@ -2,7 +2,7 @@
 // The report on a calibration.
 #pragma once
 
-#include "kinfer/evidence/calibration_evidence.hpp"
+#include "kinfer/evidence/calibration/calibration_evidence.hpp"
 #include "kinfer/report/parts/page.hpp"
 
 namespace kinfer::report {

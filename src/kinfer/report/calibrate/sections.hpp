@@ -2,7 +2,7 @@
 // Sections of the calibration report below the first screen.
 #pragma once
 
-#include "kinfer/evidence/calibration_evidence.hpp"
+#include "kinfer/evidence/calibration/calibration_evidence.hpp"
 #include "kinfer/report/parts/html.hpp"
 
 namespace kinfer::report {

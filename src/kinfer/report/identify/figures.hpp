@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "kinfer/evidence/identification_evidence.hpp"
+#include "kinfer/evidence/identification/identification_evidence.hpp"
 
 namespace kinfer::report {
 

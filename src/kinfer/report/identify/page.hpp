@@ -2,7 +2,7 @@
 // The report on an identification.
 #pragma once
 
-#include "kinfer/evidence/identification_evidence.hpp"
+#include "kinfer/evidence/identification/identification_evidence.hpp"
 #include "kinfer/report/parts/page.hpp"
 
 namespace kinfer::report {

@@ -2,7 +2,7 @@
 // Sections of the identification report below the first screen.
 #pragma once
 
-#include "kinfer/evidence/identification_evidence.hpp"
+#include "kinfer/evidence/identification/identification_evidence.hpp"
 #include "kinfer/report/parts/html.hpp"
 
 namespace kinfer::report {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "kinfer/evidence/identification_evidence.hpp"
+#include "kinfer/evidence/identification/identification_evidence.hpp"
 
 namespace kinfer::report {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "kinfer/evidence/pose_plan.hpp"
+#include "kinfer/evidence/deployment/pose_plan.hpp"
 
 namespace kinfer::report {
 

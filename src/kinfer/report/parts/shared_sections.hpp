@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "kinfer/evidence/advice.hpp"
-#include "kinfer/evidence/records.hpp"
+#include "kinfer/evidence/facts/advice.hpp"
+#include "kinfer/evidence/facts/records.hpp"
 #include "kinfer/report/parts/html.hpp"
 
 namespace kinfer::report {

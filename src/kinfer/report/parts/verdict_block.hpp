@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "kinfer/evidence/records.hpp"
+#include "kinfer/evidence/facts/records.hpp"
 
 namespace kinfer::report {
 

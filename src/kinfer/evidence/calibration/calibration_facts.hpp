@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a calibration reports beside its numbers: notes, recommendations and the reason of the verdict, as facts.
+#pragma once
+
+#include <string_view>
+#include <variant>
+
+#include "kinfer/evidence/facts/fact.hpp"
+
+namespace kinfer {
+
+/// How rows were held out.
+struct HoldoutLabels {};  ///< rows labelled `holdout`
+struct HoldoutFraction {
+  double fraction = 0.2;  ///< of the rows, drawn at random
+};
+struct HoldoutFolds {
+  int folds = 5;  ///< of a cross-validation
+};
+using HoldoutScheme = std::variant<HoldoutFolds, HoldoutFraction, HoldoutLabels>;
+
+/// Why the calibration may or may not be used.
+enum class CalibrationReason {
+  improves_nominal,    ///< better than the nominal model on held-out rows, and as good as expected
+  no_improvement,      ///< no better than the nominal model on held-out rows
+  not_validated,       ///< the final fit converged to another solution than the fits that validate it
+  unmodelled_effects,  ///< the errors far exceed what instrument and fit uncertainty explain
+  generalises,         ///< without a data sheet: the held-out errors are those of the fitted rows
+  overfitted,          ///< without a data sheet: the held-out errors far exceed those of the fitted rows
+};
+std::string_view name(CalibrationReason reason);
+
+enum class CalibrationNoteKind {
+  many_gross_errors,   ///< too many held-out rows with gross errors to exclude them: "rows"
+  tolerances_scaled,   ///< the tolerances were too small: "factor"
+  frames_from_data,    ///< base and tool of the robot file disagree with the data: "distance_m"
+  urdf_geometry_only,  ///< a URDF cannot hold the whole model
+  joint_offset_moved,  ///< since the earlier calibration: "parameter", "change_m" or "change_rad", "sigmas"
+  no_offset_moved,
+};
+std::string_view name(CalibrationNoteKind kind);
+
+struct CalibrationNote {
+  CalibrationNoteKind kind{};
+  FactValues values{};
+};
+
+enum class CalibrationAdviceKind {
+  use_corrections,
+  check_model,               ///< residuals far above the noise: "residual_ratio"
+  check_outliers,            ///< "rows"
+  extend_joint_range,        ///< "joint", "range_m" or "range_rad"
+  measure_uncertain_region,  ///< "joints", "positions" [rad] or [m], "prismatic" 0 or 1, "error_there_m", "error_m"
+  measure_more_poses,        ///< "more", "poses", "error_m", "enough"
+  keep_verification_poses,
+};
+std::string_view name(CalibrationAdviceKind kind);
+
+struct CalibrationAdvice {
+  CalibrationAdviceKind kind{};
+  FactValues values{};
+};
+
+}  // namespace kinfer

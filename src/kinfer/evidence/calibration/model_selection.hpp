@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Model selection: which non-geometric terms reduced the held-out errors.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinfer/evidence/calibration/fit_errors.hpp"
+
+namespace kinfer {
+
+/// A non-geometric model term: a group of parameters that are accepted or rejected together.
+enum class Term {
+  gain,                ///< of each encoder
+  coupling,            ///< of a joint to those before it
+  gravity_compliance,  ///< joint compliance under gravity
+  torque_compliance,   ///< joint compliance under the measured torques
+  gear_harmonics,      ///< once and twice per revolution
+  spectral_harmonics,  ///< lines in the spectrum of the residuals
+  backlash,
+  thermal_expansion,
+};
+inline constexpr int term_count = 8;
+
+/// As of --model: "gains", "coupling", "gravity", "torques", "gear", "spectrum", "backlash", "temperature"
+std::string_view name(Term term);
+std::optional<Term> term_named(std::string_view name);
+std::vector<std::string> term_names();  ///< of all terms
+
+enum class Decision {
+  start,                ///< the geometric model, which every selection starts from
+  accepted,             ///< reduces the held-out errors
+  requested,            ///< part of a fixed model
+  no_improvement,       ///< the mean held-out error does not fall enough
+  not_significant,      ///< it falls by no more than chance explains
+  worst_error_rises,    ///< the largest held-out error rises
+  extrapolation_worse,  ///< the mean error beyond the fitted poses rises
+  not_excited,          ///< not tested: the data determine none of its parameters
+  data_missing,         ///< not tested: see MissingData
+};
+std::string_view name(Decision decision);  ///< "start", "accepted", …
+
+/// What a term needs and the data do not have.
+enum class MissingData {
+  none,
+  gravity,            ///< gravity is zero in the robot file
+  torques,            ///< no joint torques
+  approach_order,     ///< the order in which the poses were approached is unknown
+  temperature,        ///< no temperatures
+  temperature_range,  ///< the temperature hardly changed
+  spectral_line,      ///< no significant line in the residuals
+};
+std::string_view name(MissingData missing);  ///< "none", "gravity", …
+
+/// Paired comparison of the held-out errors of two models, without the rows that are outliers of both.
+struct ErrorChange {
+  double mean_before = 0.0, mean_after = 0.0;    ///< [m]
+  double worst_before = 0.0, worst_after = 0.0;  ///< [m]
+  double t = 0.0;                                ///< mean reduction of the error over its standard error
+};
+
+/// One candidate, tested (or skipped) on top of the terms accepted before it.
+struct SelectionStep {
+  std::optional<Term> term{};  ///< none: the geometric model
+  Decision decision = Decision::start;
+  MissingData missing = MissingData::none;
+  ErrorChange interpolation{};         ///< by random folds
+  ErrorChange extrapolation{};         ///< by splits along the joint positions; zero where it was not tested
+  ErrorStatistics train{}, holdout{};  ///< [m] by cross-validation over the fitted rows; n = 0 where it was skipped
+  int parameter_count = 0,
+      determined_count = 0;  ///< number of parameters it adds, and how many of them the data determine
+  std::vector<std::string> undetermined_parameters{};  ///< its parameters that the data do not determine
+  bool masses_approximate = false;                     ///< gravity: the robot file has no masses
+};
+
+/// "geometry", or the name of the term
+std::string_view name(const SelectionStep& step);
+bool is_selected(const SelectionStep& step);  ///< part of the selected model
+bool was_tested(const SelectionStep& step);
+
+struct ModelSelection {
+  std::vector<SelectionStep> steps{};
+};
+
+std::vector<Term> selected_terms(const ModelSelection& selection);
+/// "geometry", "geometry + gravity"; empty without steps
+std::string selected_model(const ModelSelection& selection);
+
+}  // namespace kinfer

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/evidence/facts/findings.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace kinfer {
+namespace {
+
+struct NamedKind {
+  FindingKind kind;
+  std::string_view name;
+};
+
+constexpr std::array named_kinds{
+    NamedKind{FindingKind::rows_shifted, "rows_shifted"},
+    NamedKind{FindingKind::rows_swapped, "rows_swapped"},
+    NamedKind{FindingKind::base_moved, "base_moved"},
+    NamedKind{FindingKind::base_drifts, "base_drifts"},
+    NamedKind{FindingKind::degrees_for_radians, "degrees_for_radians"},
+    NamedKind{FindingKind::radians_for_degrees, "radians_for_degrees"},
+    NamedKind{FindingKind::length_unit, "length_unit"},
+    NamedKind{FindingKind::wrong_sign, "wrong_sign"},
+    NamedKind{FindingKind::joint_offset, "joint_offset"},
+    NamedKind{FindingKind::columns_swapped, "columns_swapped"},
+    NamedKind{FindingKind::joint_coupled, "joint_coupled"},
+    NamedKind{FindingKind::mirrored, "mirrored"},
+    NamedKind{FindingKind::robot_length_unit, "robot_length_unit"},
+    NamedKind{FindingKind::orientation_convention, "orientation_convention"},
+    NamedKind{FindingKind::not_settled, "not_settled"},
+    NamedKind{FindingKind::gross_outliers, "gross_outliers"},
+    NamedKind{FindingKind::joint_hardly_moves, "joint_hardly_moves"},
+    NamedKind{FindingKind::outside_limits, "outside_limits"},
+    NamedKind{FindingKind::duplicate_rows, "duplicate_rows"},
+    NamedKind{FindingKind::measurement_repeated, "measurement_repeated"},
+    NamedKind{FindingKind::not_rigid, "not_rigid"},
+    NamedKind{FindingKind::given_link, "given_link"},
+    NamedKind{FindingKind::loop, "loop"},
+    NamedKind{FindingKind::several_machines, "several_machines"},
+    NamedKind{FindingKind::linkage, "linkage"},
+    NamedKind{FindingKind::no_joint, "no_joint"},
+    NamedKind{FindingKind::idle, "idle"},
+    NamedKind{FindingKind::remounted, "remounted"},
+    NamedKind{FindingKind::clock, "clock"},
+};
+
+}  // namespace
+
+std::string_view name(FindingKind kind) {
+  return std::ranges::find(named_kinds, kind, &NamedKind::kind)->name;
+}
+
+std::optional<FindingKind> finding_kind(std::string_view name) {
+  const auto at = std::ranges::find(named_kinds, name, &NamedKind::name);
+  return at == named_kinds.end() ? std::nullopt : std::optional(at->kind);
+}
+
+bool invalidates_result(const Finding& finding) {
+  return finding.severity == Severity::fault && !finding.applied;
+}
+
+}  // namespace kinfer

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// An identified joint in the frames of its two sensors, its uncertainty, and the forecast of what more excitation
+// gives.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kinfer/evidence/facts/unobservable.hpp"
+#include "kinfer/linalg/types.hpp"
+
+namespace kinfer {
+
+enum class EstimatedJointType { revolute, prismatic, universal, spherical, rigid };
+std::string_view name(EstimatedJointType type);  ///< "revolute", "prismatic", "universal", "spherical", "rigid"
+
+/// Standard deviations of a joint's axis and point in the two directions across the axis, in each sensor's frame.
+struct JointStandardDeviation {
+  std::array<double, 2> axis_in_parent{}, axis_in_child{};    ///< [rad]
+  std::array<double, 2> point_in_parent{}, point_in_child{};  ///< [m]
+  double along_axis = 0.0;                                    ///< [m] between the two sensors, along the axis
+};
+
+/// A joint's axis line in the frames of its two sensors. A spherical joint has a centre and no axis; a universal joint
+/// has one axis fixed in the parent and one fixed in the child, both through its centre. The two points are the same
+/// physical point (at joint position 0); both axes point in the positive sense of the joint position.
+struct JointEstimate {
+  std::string parent{}, child{};  ///< sensors; the parent is nearer to the root
+  EstimatedJointType type = EstimatedJointType::revolute;
+  Vec3 axis_in_parent = Vec3::UnitZ(), axis_in_child = Vec3::UnitZ();  ///< unit
+  Vec3 point_in_parent = Vec3::Zero(), point_in_child = Vec3::Zero();  ///< [m]
+  JointStandardDeviation sd{};
+  std::vector<Unobservable> unobservable{};
+  std::vector<Vec3> unobservable_in_parent{}, unobservable_in_child{};  ///< unit directions of the point
+  bool azimuth_unobservable = false;
+  /// Its trajectory: one row for each of its joint variables in the chain, one column for each time of
+  /// MotionEvidence::trajectory [rad] or [m]; empty where only the orientations of its two sensors are known.
+  MatrixXd trajectory{};
+};
+
+/// "ins1-ins2": parent and child.
+std::string joint_name(const JointEstimate& joint);
+
+/// Accuracy wanted of every joint, at 95 % confidence.
+struct AccuracyTarget {
+  double line = 5e-3;       ///< [m]
+  double direction = 3e-3;  ///< [rad]
+};
+
+/// Whether the recording determines a joint to the wanted accuracy and, if not, how much more excitation is needed.
+struct JointForecast {
+  std::string joint;                         ///< "ins1-ins2"
+  double line_sd = 0.0, direction_sd = 0.0;  ///< [m], [rad] across the axis, of the worse of the two sensors
+  /// The parent, where it rotates about one fixed axis only: the joint's azimuth about that axis is then nearly
+  /// unobservable on level ground and is excluded from the figures above. Empty: nothing is excluded.
+  std::string azimuth_of{};
+  double azimuth_sd = 0.0;               ///< [rad]
+  bool azimuth_is_uncertain = false;     ///< less accurate than wanted of any direction
+  bool azimuth_is_unobservable = false;  ///< its standard deviation is that of its prior
+  bool is_sufficient = false;
+  double acceleration_factor = 1.0, time_factor = 1.0;  ///< factors on those of the recording: either suffices
+  bool more_excitation_suffices = true;  ///< a faster or longer recording of the same kind can determine the joint
+};
+
+/// Whether every joint is determined to the wanted accuracy.
+bool all_sufficient(const std::vector<JointForecast>& joints);
+
+}  // namespace kinfer

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// Members of the structs of an identification, in the order of the file.
+#pragma once
+
+#include "kinfer/evidence/identification/identification_evidence.hpp"
+#include "kinfer/io/evidence/json/shared_fields.hpp"
+
+namespace kinfer::evidence_json {
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, JointStandardDeviation>& sd) {
+  a("axis_in_parent_rad", sd.axis_in_parent);
+  a("point_in_parent_m", sd.point_in_parent);
+  a("axis_in_child_rad", sd.axis_in_child);
+  a("point_in_child_m", sd.point_in_child);
+  a("slide_m", sd.along_axis);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, UnobservableRecord>& record) {
+  auto& u = record.unobservable;
+  a("kind", u.kind);
+  UnobservableRemedy means = remedy(u.kind);
+  a("remedy", means);
+  a("what", record.what);
+  a("how", record.how);
+  a.when(!u.sensor.empty(), "sensor", u.sensor);
+  a.when(!u.directions.empty(), "directions", u.directions);
+  a.when(!u.other_joint.empty(), "other_joint", u.other_joint);
+}
+
+/// A spherical joint has no axis.
+template <class Archive>
+void fields(Archive& a, Value<Archive, JointRecord>& record) {
+  auto& joint = record.estimate;
+  a("parent", joint.parent);
+  a("child", joint.child);
+  a("type", joint.type);
+  const bool has_axis = joint.type != EstimatedJointType::spherical;
+  a.known(has_axis, "axis_in_parent", joint.axis_in_parent);
+  a("point_in_parent", joint.point_in_parent);
+  a.known(has_axis, "axis_in_child", joint.axis_in_child);
+  a("point_in_child", joint.point_in_child);
+  a("sd", joint.sd);
+  a("not_identifiable", record.sentences);
+  a("not_identifiable_in_parent", joint.unobservable_in_parent);
+  a("not_identifiable_in_child", joint.unobservable_in_child);
+  a.later("unobservable", record.unobservable);
+  a.when(joint.azimuth_unobservable, "azimuth_undetermined", joint.azimuth_unobservable);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, LinkEstimate>& link) {
+  a("segment", link.segment);
+  a("from", link.from);
+  a("to", link.to);
+  a("length_m", link.length);
+  a("sd_m", link.sd);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, PointEstimate>& point) {
+  a("name", point.name);
+  a("sensor", point.sensor);
+  a("xyz", point.xyz);
+  a("sd_m", point.sd);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, ClockRecord>& clock) {
+  a("sensor", clock.sensor);
+  a("offset_s", clock.offset);
+  a("drift_ppm", clock.drift);
+  a.group("sd", [&](auto& sd) {
+    sd("offset_s", clock.offset_sd);
+    sd("drift_ppm", clock.drift_sd);
+  });
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, JointForecast>& f) {
+  a("joint", f.joint);
+  a("line_sd_m", f.line_sd);
+  a("direction_sd_rad", f.direction_sd);
+  a("enough", f.is_sufficient);
+  a("acceleration_factor", f.acceleration_factor);
+  a("time_factor", f.time_factor);
+  a.when(!f.azimuth_of.empty(), "azimuth_of", f.azimuth_of);
+  a.when(!f.azimuth_of.empty(), "azimuth_sd_rad", f.azimuth_sd);
+}
+
+/// A row of a search; beta and the standard deviations are those of the final table alone.
+template <class Archive>
+void search_row_fields(Archive& a, Value<Archive, DhRowEstimate>& row) {
+  a("segment", row.segment);
+  a("theta", row.row.theta);
+  a("d", row.row.d);
+  a("a", row.row.a);
+  a("alpha", row.row.alpha);
+  a("theta_variable", row.theta_variable);
+  a.later("alpha_variable", row.alpha_variable);
+  a.later("d_variable", row.d_variable);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, DhRowEstimate>& row) {
+  search_row_fields(a, row);
+  a.later("beta", row.row.beta);
+  a.group("sd", [&](auto& sd) {
+    sd("theta", row.sd.theta);
+    sd("d", row.sd.d);
+    sd("a", row.sd.a);
+    sd("alpha", row.sd.alpha);
+    sd.later("beta", row.sd.beta);
+  });
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, SearchRow>& row) {
+  search_row_fields(a, row.row);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, PairEvidence>& pair) {
+  a("first", pair.first);
+  a("second", pair.second);
+  a("residual", pair.residual);
+  a("off_axis_rate", pair.off_axis_rate);
+  a.later("weight", pair.weight);
+  a("joined", pair.joined);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, PhaseEvidence>& phase) {
+  a("begin", phase.begin);
+  a("end", phase.end);
+  a("moves", phase.moves);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, OrderEvidence>& order) {
+  a("sensors", order.sensors);
+  a("pairs", order.pairs);
+  a("margin", order.margin);
+  a("phases", order.phases);
+  a("rank", order.rank);
+  a("phases_agree", order.phases_agree);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, LinkFit>& fit) {
+  a("total", fit.total);
+  a("acceleration", fit.acceleration);
+  a("orientation", fit.orientation);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, SegmentFitRecord>& fit) {
+  fields(a, fit.fitted);
+  a("segment", fit.segment);
+  a("rows", fit.rows);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, FitRecord>& fit) {
+  a("jrmse", fit.fitted);
+  a.map("holdout", fit.holdout);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, SegmentSearchRecord>& search) {
+  a("segment", search.segment);
+  a("evaluations", search.evaluations);
+  a("found", search.found);
+  a("merged", search.merged);
+}
+
+inline void check_curves(JsonReader& a, const StructureSearchRecord& search) {
+  if (search.best.size() != search.median.size()) a.error("median", "expected one list for each of best");
+}
+inline void check_curves(JsonWriter&, const StructureSearchRecord&) {}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, StructureSearchRecord>& search) {
+  a("engine", search.method);
+  a("evaluations", search.evaluations);
+  a("generations", search.generations);
+  a("best", search.best);
+  a("median", search.median);
+  a.later("segments", search.segments);
+  check_curves(a, search);
+}
+
+}  // namespace kinfer::evidence_json

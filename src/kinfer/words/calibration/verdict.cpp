@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "kinfer/words/calibration/calibration.hpp"
+#include "kinfer/words/findings/outliers.hpp"
+#include "kinfer/words/findings/row_ranges.hpp"
+#include "kinfer/words/language.hpp"
+
+namespace kinfer::words {
+namespace {
+
+std::string millimetres(double metres) {
+  return fmt::format("{:.3f} mm", 1e3 * metres);
+}
+std::string degrees(double radians) {
+  return fmt::format("{:.3f} deg", radians / degree);
+}
+
+std::string rows_are(std::size_t n) {
+  return fmt::format("{} row{}", n, n == 1 ? " is" : "s are");
+}
+
+/// Which rows are excluded from the figures, the worst error with them, and how many more rows the fit gives no weight.
+std::vector<std::string> excluded_rows_texts(const Calibration& c, const std::string& worst_of_all) {
+  const std::size_t listed = c.estimate.outliers.size(), wrong = c.gross_error_rows.size();
+  if (wrong == 0 && listed == 0) return {};
+  if (wrong == 0)
+    return {phrase("rows_without_weight", "{} rejected as outliers and excluded from the fit", rows_are(listed))};
+  std::vector<std::string> texts{phrase("rows_excluded", "{} rejected as outliers: {} ({} at worst with {})",
+                                        rows_are(wrong), row_ranges(c.gross_error_rows), worst_of_all,
+                                        wrong == 1 ? "it" : "them")};
+  const std::size_t more = listed - wrong;
+  if (more > 0)
+    texts.push_back(phrase("rows_without_weight", "the fit gives {} more row{} no weight", more, more == 1 ? "" : "s"));
+  return texts;
+}
+
+/// "the tool" for positions; other measurements by their own name.
+std::string subject(const Calibration& c) {
+  return c.measured == kind_of<PointMeasurement> ? "the tool is"
+                                                 : fmt::format("the {} is", measured_quantity(c.measured));
+}
+
+auto display_of(const Calibration& c) {
+  return has_lengths(c) ? millimetres : degrees;
+}
+
+std::string figures(const Calibration& c) {
+  const auto show = display_of(c);
+  const ErrorStatistics &before = reported_errors(c, c.before), &after = reported_errors(c, c.after);
+  return phrase("errors", "on poses that were not fitted {} {} off on average and {} at worst ({} and {} before)",
+                subject(c), show(after.mean), show(after.max), show(before.mean), show(before.max));
+}
+
+std::string figures_without_nominal(const Calibration& c) {
+  const ErrorStatistics &train = c.after.position.train, &holdout = c.after.position.holdout;
+  return phrase(
+      "errors",
+      "on poses that were not fitted the tool is {} off on average and {} at worst, on fitted ones {} on average",
+      millimetres(holdout.mean), millimetres(holdout.max), millimetres(train.mean));
+}
+
+std::vector<std::string> remarks(const Calibration& c) {
+  const TrainHoldout& errors = has_lengths(c) ? c.after.position : c.after.orientation;
+  std::vector<std::string> texts = excluded_rows_texts(c, display_of(c)(errors.holdout_all_rows.max));
+  if (c.geometry_only)
+    texts.push_back(phrase("geometry_only", "geometry alone: a swarm search has no model selection"));
+  return texts;
+}
+
+VerdictText with_remarks(const Calibration& c, const std::string& statement) {
+  return {phrase(name(c.usability), "{}", verdict_headline(c)), phrase(name(c.reason), "{}", statement), remarks(c)};
+}
+
+VerdictText parts_of_verdict(const Calibration& c) {
+  switch (c.reason) {
+    case CalibrationReason::improves_nominal:
+      return with_remarks(c, figures(c));
+    case CalibrationReason::no_improvement:
+      return with_remarks(c, "the corrected model is no better than the nominal one: " + figures(c));
+    case CalibrationReason::unmodelled_effects:
+      return with_remarks(c, fmt::format("better, but the errors are {:.0f} times what instrument and fit can excuse, "
+                                         "so something is not modelled: {}",
+                                         reported_errors(c, c.after).rms / *c.expected_holdout_rms, figures(c)));
+    case CalibrationReason::not_validated: {
+      VerdictText text = with_remarks(
+          c, fmt::format("the fit of all rows is {:.1f} times worse on them than the fits that validate it are on rows "
+                         "that they have not seen",
+                         final_errors(c).rms / reported_errors(c, c.after).rms));
+      text.remarks.insert(text.remarks.begin(), figures(c));
+      return text;
+    }
+    case CalibrationReason::generalises:
+    case CalibrationReason::overfitted:
+      break;
+  }
+  return {phrase(name(c.usability), "{}", verdict_headline(c)),
+          phrase(name(c.reason), "the robot was found without a data sheet"),
+          {figures_without_nominal(c)}};
+}
+
+}  // namespace
+
+std::string verdict_headline(const Calibration& calibration) {
+  if (calibration.usability != Usability::do_not_use) return "Use it";
+  return calibration.reason == CalibrationReason::unmodelled_effects ? "Do not use without a look" : "Do not use";
+}
+
+VerdictText verdict_text(const Calibration& c) {
+  return parts_of_verdict(c);
+}
+
+std::string verdict(const Calibration& c) {
+  if (language() == Language::names) return std::string(name(c.reason));
+  return kinfer::sentence(parts_of_verdict(c)) + ".";
+}
+
+}  // namespace kinfer::words

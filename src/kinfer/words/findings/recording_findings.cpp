@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/words/findings/recording_findings.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "kinfer/base/angle.hpp"
+#include "kinfer/base/expect.hpp"
+#include "kinfer/words/language.hpp"
+
+namespace kinfer::words {
+namespace {
+
+std::string given_link_sentence(const Finding& f) {
+  const FactValues& v = f.values;
+  if (f.severity == Severity::note)
+    return phrase("given_link_fits", "the given link {} fits about as well as {}, which the log alone would choose",
+                  v.text("link"), v.text("replaced_link"));
+  return phrase("given_link_contradicted",
+                "the given link {} is against the log: a joint there leaves {:.3f} m/s² and {:.4f} rad/s unexplained, "
+                "{} leaves {:.3f} m/s² and {:.4f} rad/s ({:.2g} times less a row)",
+                v.text("link"), v.number("residual"), v.number("off_axis_rate"), v.text("replaced_link"),
+                v.number("replaced_residual"), v.number("replaced_off_axis_rate"), v.number("ratio"));
+}
+
+std::string given_link_suggestion(const Finding& f) {
+  if (f.severity == Severity::note) return "";
+  return phrase("given_link_contradicted.suggestion", "leave out --tree, or check which sensor sits on which segment");
+}
+
+std::string loop_sentence(const Finding& f) {
+  const FactValues& v = f.values;
+  return phrase("loop",
+                "the segments {} close a loop: {} and {} share a revolute joint, too ({:.3f} m/s² left, the others "
+                "leave up to {:.3f}); the chain is cut open there",
+                fmt::join(v.texts("segments"), ", "), v.text("first"), v.text("second"), v.number("residual"),
+                v.number("largest_tree_residual"));
+}
+
+std::string loop_suggestion(const Finding&) {
+  return phrase("loop.suggestion",
+                "take the joint angles of a linkage as they are measured: they depend on each other");
+}
+
+std::string best_link_text(const FactValues& v) {
+  return fmt::format("the best link, {}, leaves {:.3f} m/s² where joints leave {:.3f}", v.text("link"),
+                     v.number("residual"), v.number("usual_residual"));
+}
+
+std::string several_machines_sentence(const Finding& f) {
+  const FactValues& v = f.values;
+  if (f.applied)
+    return phrase("separate_machine",
+                  "{} share no joint with the others ({}): a separate machine, or a segment without INS between; they "
+                  "are left out",
+                  fmt::join(v.texts("sensors"), ", "), best_link_text(v));
+  return phrase("machines_on_one_ground",
+                "the sensors that move fall into {} groups that share only the ground ({}): several machines in one "
+                "log; the chain contains all of them, their relative position is unobservable",
+                v.texts("groups").size(), fmt::join(v.texts("groups"), "; "));
+}
+
+std::string several_machines_suggestion(const Finding& f) {
+  if (f.applied)
+    return phrase("separate_machine.suggestion", "identify them by themselves with --sensors {}",
+                  fmt::join(f.values.texts("sensors"), ","));
+  return phrase("machines_on_one_ground.suggestion", "identify one by itself with --sensors");
+}
+
+std::string linkage_sentence(const Finding& f) {
+  return phrase("linkage",
+                "{} shares no joint with any other sensor ({}): it rotates about one axis but around no fixed point, "
+                "as the bar of a linkage (a loop) does, or a segment without INS lies between; it is left out",
+                f.values.text("sensor"), best_link_text(f.values));
+}
+
+std::string no_joint_sentence(const Finding& f) {
+  return phrase("no_joint",
+                "{} shares no joint with any other sensor ({}): a loose sensor, another machine's, or a segment "
+                "without INS between; it is left out",
+                f.values.text("sensor"), best_link_text(f.values));
+}
+
+std::string no_joint_suggestion(const Finding&) {
+  return phrase("no_joint.suggestion", "mount an INS on every segment, and none on the bars of a linkage");
+}
+
+std::string idle_sentence(const Finding& f) {
+  const FactValues& v = f.values;
+  return phrase("idle",
+                "the sensors {} never move: joints that nobody moved, several INS on one base, or the bases of several "
+                "machines; {} left out, and {} stands for the ground",
+                fmt::join(v.texts("stationary"), ", "), fmt::join(v.texts("left_out"), ", "), v.text("kept"));
+}
+
+std::string idle_suggestion(const Finding&) {
+  return phrase("idle.suggestion", "move every joint, and give each machine a log of its own");
+}
+
+std::string remounted_sentence(const Finding& f) {
+  const FactValues& v = f.values;
+  return phrase("remounted",
+                "the mounting of {} changed between {:.1f} and {:.1f} s: a joint's axis turned by {:.1f} deg in it and "
+                "the joint's point moved by about {:.0f} mm; only what was recorded {} is used",
+                v.text("sensor"), v.number("begin"), v.number("end"), Angle::rad(v.number("axis_rotation")).deg(),
+                1e3 * v.number("point_shift"), v.text("used_part"));
+}
+
+std::string remounted_suggestion(const Finding&) {
+  return phrase("remounted.suggestion", "fix the sensor and record again, or give each part a log of its own");
+}
+
+std::string clock_sentence(const Finding& f) {
+  constexpr double certain = 4.0;  // standard deviations beyond which a drift is stated
+  const FactValues& v = f.values;
+  const auto sd = [](double value, double scale) {
+    return value > 0.0 ? fmt::format(" (± {:.2f})", scale * value) : "";
+  };
+  const double offset = v.number("offset"), drift = v.number("drift"), drift_sd = v.number("drift_sd");
+  const std::string drift_text = std::abs(drift) > certain * drift_sd
+                                     ? fmt::format(", and its clock runs {:.1f}{} ppm {}", 1e6 * std::abs(drift),
+                                                   sd(drift_sd, 1e6), drift < 0.0 ? "fast" : "slow")
+                                     : "";
+  return phrase("clock", "the measurements of {} are logged {:.2f}{} ms {}{}", v.text("sensor"), 1e3 * std::abs(offset),
+                sd(v.number("offset_sd"), 1e3), offset < 0.0 ? "late" : "early", drift_text);
+}
+
+std::string clock_suggestion(const Finding&) {
+  return phrase("clock.suggestion", "put all sensors on one clock, or let their loggers synchronise");
+}
+
+struct RecordingFindingWords {
+  FindingKind kind;
+  std::string (*sentence)(const Finding&);
+  std::string (*suggestion)(const Finding&);
+};
+
+constexpr std::array recording_finding_words{
+    RecordingFindingWords{FindingKind::given_link, given_link_sentence, given_link_suggestion},
+    RecordingFindingWords{FindingKind::loop, loop_sentence, loop_suggestion},
+    RecordingFindingWords{FindingKind::several_machines, several_machines_sentence, several_machines_suggestion},
+    RecordingFindingWords{FindingKind::linkage, linkage_sentence, no_joint_suggestion},
+    RecordingFindingWords{FindingKind::no_joint, no_joint_sentence, no_joint_suggestion},
+    RecordingFindingWords{FindingKind::idle, idle_sentence, idle_suggestion},
+    RecordingFindingWords{FindingKind::remounted, remounted_sentence, remounted_suggestion},
+    RecordingFindingWords{FindingKind::clock, clock_sentence, clock_suggestion},
+};
+
+const RecordingFindingWords& recording_words_of(FindingKind kind) {
+  const auto row = std::ranges::find(recording_finding_words, kind, &RecordingFindingWords::kind);
+  KINFER_EXPECT(row != recording_finding_words.end(), "\"{}\" is not about a recording", name(kind));
+  return *row;
+}
+
+}  // namespace
+
+bool is_recording_finding(FindingKind kind) {
+  return std::ranges::find(recording_finding_words, kind, &RecordingFindingWords::kind) !=
+         recording_finding_words.end();
+}
+
+std::string recording_finding_sentence(const Finding& finding) {
+  return recording_words_of(finding.kind).sentence(finding);
+}
+
+std::string recording_finding_suggestion(const Finding& finding) {
+  return recording_words_of(finding.kind).suggestion(finding);
+}
+
+}  // namespace kinfer::words

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/words/identification/verdict.hpp"
+
+#include <algorithm>
+
+#include "kinfer/words/findings/findings.hpp"
+#include "kinfer/words/identification/forecast.hpp"
+#include "kinfer/words/language.hpp"
+
+namespace kinfer::words {
+namespace {
+
+std::string prediction_text(const PredictionSummary& prediction) {
+  if (prediction.held_out_seconds <= 0.0)
+    return phrase("fitted_prediction", "accelerations are predicted to {:.3f} m/s² rms at worst",
+                  prediction.worst_acceleration);
+  return phrase("held_out_prediction",
+                "accelerations in {:.1f} s that it was not fitted to are predicted to {:.3f} m/s² rms at worst",
+                prediction.held_out_seconds, prediction.worst_acceleration);
+}
+
+std::string joints_text(const Identification& result) {
+  const auto rigid = std::ranges::count(result.joints, EstimatedJointType::rigid, &JointEstimate::type);
+  const std::string rigid_text = rigid > 0 ? fmt::format(", {} of them never moved", rigid) : "";
+  const std::string accuracy = accuracy_text(result.forecast);
+  return phrase("joints_found", "{} joints found{}{}, {}", result.joints.size(), rigid_text,
+                accuracy.empty() ? "" : ", their axes to " + accuracy, forecast_text(result.forecast, result.target));
+}
+
+std::string recommendation_text(Usability usability) {
+  switch (usability) {
+    case Usability::use:
+      return "Use it";
+    case Usability::use_with_care:
+      return "Use with care";
+    case Usability::do_not_use:
+      break;
+  }
+  return "Do not use as it is";
+}
+
+/// Faults first, then joints and accuracy, then what else is wrong with the recording.
+VerdictText parts_of_verdict(const Identification& result) {
+  std::vector<std::string> texts;
+  for (const Finding& finding : result.findings)
+    if (invalidates_result(finding)) texts.push_back(words::sentence(finding));
+  texts.push_back(joints_text(result));
+  texts.push_back(prediction_text(result.prediction));
+  if (result.search_method == LinkSearchMethod::enumeration)
+    texts.push_back(phrase("best_chain", "no chain of up to 3 leaves fits better"));
+  for (const Finding& finding : result.findings)
+    if (finding.severity != Severity::note && !invalidates_result(finding)) texts.push_back(words::sentence(finding));
+  VerdictText text{phrase(name(result.usability), "{}", recommendation_text(result.usability)), texts.front(), {}};
+  text.remarks.assign(texts.begin() + 1, texts.end());
+  return text;
+}
+
+}  // namespace
+
+VerdictText identification_verdict_text(const Identification& result) {
+  return parts_of_verdict(result);
+}
+
+std::string identification_verdict(const Identification& result) {
+  if (language() == Language::names) return std::string(name(result.usability));
+  return sentence(parts_of_verdict(result));
+}
+
+}  // namespace kinfer::words
