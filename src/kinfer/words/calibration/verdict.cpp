@@ -16,19 +16,17 @@ std::string degrees(double radians) {
   return fmt::format("{:.3f} deg", radians / degree);
 }
 
-std::string rows_are(std::size_t n) {
-  return fmt::format("{} row{}", n, n == 1 ? " is" : "s are");
+std::string rejected_rows(std::size_t n) {
+  return n == 1 ? "1 row is rejected as an outlier" : fmt::format("{} rows are rejected as outliers", n);
 }
 
 /// Which rows are excluded from the figures, the worst error with them, and how many more rows the fit gives no weight.
 std::vector<std::string> excluded_rows_texts(const Calibration& c, const std::string& worst_of_all) {
   const std::size_t listed = c.estimate.outliers.size(), wrong = c.gross_error_rows.size();
   if (wrong == 0 && listed == 0) return {};
-  if (wrong == 0)
-    return {phrase("rows_without_weight", "{} rejected as outliers and excluded from the fit", rows_are(listed))};
-  std::vector<std::string> texts{phrase("rows_excluded", "{} rejected as outliers: {} ({} at worst with {})",
-                                        rows_are(wrong), row_ranges(c.gross_error_rows), worst_of_all,
-                                        wrong == 1 ? "it" : "them")};
+  if (wrong == 0) return {phrase("rows_without_weight", "{}", rejected_rows(listed))};
+  std::vector<std::string> texts{phrase("rows_excluded", "{}: {} ({} at worst with {})", rejected_rows(wrong),
+                                        row_ranges(c.gross_error_rows), worst_of_all, wrong == 1 ? "it" : "them")};
   const std::size_t more = listed - wrong;
   if (more > 0)
     texts.push_back(phrase("rows_without_weight", "the fit gives {} more row{} no weight", more, more == 1 ? "" : "s"));
