@@ -23,7 +23,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # False positives of gcc 12 in inlined Eigen and std::string code at -O3.
   target_compile_options(kinfer_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-restrict)
   # A precompiled header fills the compiler's heap so far that it collects garbage repeatedly, a tenth of its time.
-  target_compile_options(kinfer_flags INTERFACE --param=ggc-min-heapsize=600000)  # [kB]
+  target_compile_options(kinfer_flags INTERFACE --param=ggc-min-heapsize=2000000)  # [kB]
 endif()
 # In a batch, a local name may equal a name of another file; files compiled alone get the full warning.
 if(NOT KINFER_UNITY)

@@ -105,10 +105,13 @@ std::vector<SimulatedRecording> simulated_recordings() {
   return {simulated({.machine = "excavator-general"}, 3),
           simulated({.machine = "excavator-general"}, 13),
           simulated({.machine = "tree", .grade = "consumer", .script = Script::together}, 4),
+          simulated({.machine = "tree", .grade = "consumer", .script = Script::gentle}, 14),
           simulated({.machine = "crane", .base = Base::rocking, .magnetometer = false}, 7),
+          simulated({.machine = "crane", .grade = "consumer", .script = Script::gentle}, 17),
           simulated({.machine = "robot6"}, 9),
-          simulated({.machine = "excavator", .linkage = true}, 6),
           simulated({.machine = "robot6", .foam = 1.0 * degree}, 5),
+          simulated({.machine = "robot6", .grade = "consumer", .foam = 4.0 * degree}, 15),
+          simulated({.machine = "excavator", .linkage = true}, 6),
           simulated({.machine = "excavator", .remount = 25.0}, 8),
           simulated({.machine = "excavator", .late = 0.04}, 10)};
 }

@@ -59,7 +59,7 @@ std::vector<std::string> thresholds_of(std::string_view room) {
 int main() {
   using namespace kinfer::study;
   const auto recordings = simulated_recordings();
-  print_table("Identification of nine simulated recordings", thresholds_of("identify"),
+  print_table("Identification of twelve simulated recordings", thresholds_of("identify"),
               [&] { return identification_figures(recordings); });
   const auto robots = measured_robots();
   print_table(fmt::format("Calibration of {} robots", robots.size()), thresholds_of("calibrate"),

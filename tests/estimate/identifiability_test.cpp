@@ -38,7 +38,7 @@ TEST(IdentifiabilityOf, ParametersThatActAlikeAreNamedTogetherAndThoseWithoutEff
   ASSERT_EQ(found.undetermined.size(), 2u);
   int together = 0, alone = 0;
   for (const UndeterminedGroup& group : found.undetermined) {
-    EXPECT_THAT(group.parameters, testing::Not(testing::Contains("second")));
+    EXPECT_THAT(group.parameters, ::testing::Not(::testing::Contains("second")));
     together += group.parameters == std::vector<std::string>{"first", "third"};
     alone += group.parameters == std::vector<std::string>{"fourth"} && group.reason == Undetermined::no_effect;
   }

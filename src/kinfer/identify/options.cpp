@@ -3,15 +3,12 @@
 
 #include <fmt/ranges.h>
 
+#include "kinfer/base/overloaded.hpp"
+
 namespace kinfer::identify {
 namespace {
 
 using NamedValues = std::vector<std::pair<std::string, std::string>>;
-
-template <class... Functions>
-struct Overloaded : Functions... {
-  using Functions::operator()...;
-};
 
 Result<void> check_depth(const DepthLimits& depth) {
   if (depth.max < depth.min) return error("--max-depth {}: less than --min-depth {}", depth.max, depth.min);

@@ -61,6 +61,8 @@ struct FixtureList {
   std::vector<T> Fixtures::*list;
   FixturePrior prior;
 };
+template <class T>
+FixtureList(std::string_view, std::vector<T> Fixtures::*, FixturePrior) -> FixtureList<T>;
 inline constexpr std::tuple fixture_lists{FixtureList{"anchor", &Fixtures::anchors, FixturePrior::tolerance},
                                           FixtureList{"socket", &Fixtures::sockets, FixturePrior::none},
                                           FixtureList{"plane", &Fixtures::planes, FixturePrior::none},

@@ -14,11 +14,11 @@ namespace {
 using Index = Eigen::Index;
 
 /// Solves l x = b in place, l lower triangular. Guarded: Eigen refers to the first element even of an empty matrix.
-void solve_lower(const MatrixXd& l, Eigen::Ref<MatrixXd> b) {
+void solve_lower(const MatrixXd& l, const Eigen::Ref<MatrixXd>& b) {
   if (b.size() > 0) l.triangularView<Eigen::Lower>().solveInPlace(b);
 }
 
-void solve_upper(const MatrixXd& l, Eigen::Ref<MatrixXd> b) {
+void solve_upper(const MatrixXd& l, const Eigen::Ref<MatrixXd>& b) {
   if (b.size() > 0) l.triangularView<Eigen::Lower>().transpose().solveInPlace(b);
 }
 

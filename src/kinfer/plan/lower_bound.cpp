@@ -10,8 +10,8 @@ namespace kinfer::plan {
 
 double mean_square_lower_bound(const DesignProblem& problem, int count) {
   const Eigen::Index n = problem.rows.cols(), candidates = problem.candidates();
-  const MatrixXd places =
-      problem.targets.transpose() * problem.targets / static_cast<double>(problem.targets.rows() / 3);
+  const Eigen::Index place_count = problem.targets.rows() / 3;
+  const MatrixXd places = problem.targets.transpose() * problem.targets / static_cast<double>(place_count);
   MatrixXd fixed = MatrixXd::Identity(n, n);
   if (problem.prior_information.size() > 0) fixed += problem.prior_information;
   VectorXd weight = VectorXd::Constant(candidates, 1.0 / static_cast<double>(candidates));

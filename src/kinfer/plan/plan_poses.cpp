@@ -132,7 +132,8 @@ void compute_observability(PosePlan& plan, const DesignProblem& problem, const M
   plan.rank = static_cast<int>((all.s.array() > thresholds::informative).count());
   if (plan.rank == 0 || measured.rows() < plan.rank) return;
   const VectorXd s = right_svd(measured * all.v.leftCols(plan.rank)).s;
-  const double poses = static_cast<double>(measured.rows() / problem.block), smallest = s[plan.rank - 1];
+  const Eigen::Index pose_count = measured.rows() / problem.block;
+  const double poses = static_cast<double>(pose_count), smallest = s[plan.rank - 1];
   plan.observability = {std::exp(s.array().max(1e-300).log().mean()) / std::sqrt(poses), smallest / s[0], smallest,
                         smallest * smallest / s[0], 1.0 / s.array().max(1e-300).inverse().sum()};
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <tinyxml2.h>
+#include <ranges>
 
 #include <algorithm>
 #include <cmath>
@@ -79,11 +80,11 @@ int add_base_joints(XMLElement& platform, Base base) {
   if (base == Base::yawing) joints.push_back({"base_yaw", "hinge", "0 0 1"});
   joints.push_back({"base_pitch", "hinge", "0 1 0"});
   joints.push_back({"base_roll", "hinge", "1 0 0"});
-  for (auto joint = joints.rbegin(); joint != joints.rend(); ++joint) {
+  for (const BaseJoint& joint : std::views::reverse(joints)) {
     XMLElement* element = platform.GetDocument()->NewElement("joint");
-    element->SetAttribute("name", joint->name);
-    element->SetAttribute("type", joint->type);
-    element->SetAttribute("axis", joint->axis);
+    element->SetAttribute("name", joint.name);
+    element->SetAttribute("type", joint.type);
+    element->SetAttribute("axis", joint.axis);
     element->SetAttribute("limited", "false");
     platform.InsertFirstChild(element);
   }

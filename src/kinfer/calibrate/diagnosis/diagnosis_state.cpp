@@ -36,7 +36,7 @@ PoseSet keep_points_only(PoseSet data) {
 }
 
 /// Fits base and tool with a robust loss; few iterations, since correct data need no more.
-FrameFit refine_base_and_tool(Chain chain, const PoseSet& data) {
+FrameFit refine_base_and_tool(const Chain& chain, const PoseSet& data) {
   ParameterSet frames = frame_parameters(chain, data);
   for (Parameter& parameter : frames.parameters) parameter.prior_sd = std::numeric_limits<double>::infinity();
   LeastSquaresOptions options;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "kinfer/base/overloaded.hpp"
 #include "kinfer/calibrate/fit/thresholds.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/parameters/population_prior.hpp"
@@ -14,13 +15,6 @@
 
 namespace kinfer::calibrate {
 namespace {
-
-template <class... Cases>
-struct Overloaded : Cases... {
-  using Cases::operator()...;
-};
-template <class... Cases>
-Overloaded(Cases...) -> Overloaded<Cases...>;
 
 /// Contacts alone determine only ratios of lengths: shrinking the robot would reduce the residuals. Without measured
 /// lengths the tolerances of lengths are not scaled.

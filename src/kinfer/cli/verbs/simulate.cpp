@@ -98,6 +98,8 @@ Result<void> simulate(const SimulateArguments& options) {
   KINFER_TRY(world, MujocoWorld::load(mjcf));
   if (options.linkage && !options.machine.starts_with("excavator"))
     return error("--linkage: only available for excavators");
+  if (options.linkage && options.motion == "soft")
+    return error("--motion soft: has no effect with --linkage, whose joints follow the drive exactly");
   const Machine machine = options.linkage ? with_linkage(world.machine()) : world.machine();
   KINFER_TRY(drive,
              make_drive(world.machine(), {.script = drive_scripts.at(options.script), .duration = options.duration},

@@ -187,7 +187,7 @@ struct LinearSolution {
 
 }  // namespace
 
-double StructureFitter::screening_cost(const LinkStructure& structure, std::vector<DhLeaf> leaves,
+double StructureFitter::screening_cost(const LinkStructure& structure, const std::vector<DhLeaf>& leaves,
                                        std::int64_t& eighths) const {
   const Normal n = normal(structure, leaves, std::span(blocks_).first(screening_blocks_), false);
   ++eighths;

@@ -53,7 +53,7 @@ class StructureFitter {
   AngleStart initial_angles(const LinkStructure& structure) const;
   Normal normal(const LinkStructure& structure, const std::vector<DhLeaf>& leaves, std::span<const LinkBlock> blocks,
                 bool with_angles) const;
-  double screening_cost(const LinkStructure& structure, std::vector<DhLeaf> leaves, std::int64_t& eighths) const;
+  double screening_cost(const LinkStructure& structure, const std::vector<DhLeaf>& leaves, std::int64_t& eighths) const;
   StructureFit fit_all_parameters(const LinkStructure& structure, std::vector<DhLeaf> leaves,
                                   std::int64_t eighths) const;
 

@@ -74,7 +74,7 @@ double PairRelation::rms(const SplitParameters& p, std::size_t split) const {
   return std::sqrt(sum / static_cast<double>(rows_of_sensors_[0]->size()));
 }
 
-SplitFit PairRelation::fit_from(SplitParameters p, std::size_t split, SplitSensors split_sensors) const {
+SplitFit PairRelation::fit_from(const SplitParameters& p, std::size_t split, SplitSensors split_sensors) const {
   constexpr int iterations = 12;
   SplitFit best{p, rms(p, split)};
   double damping = 1e-3;

@@ -66,7 +66,7 @@ class PairRelation {
   double rms(const SplitParameters& p, std::size_t split) const;
 
   /// Levenberg-Marquardt with Huber's weights.
-  SplitFit fit_from(SplitParameters p, std::size_t split, SplitSensors split_sensors) const;
+  SplitFit fit_from(const SplitParameters& p, std::size_t split, SplitSensors split_sensors) const;
   void accumulate(const SplitParameters& p, std::size_t split, SplitSensors split_sensors, MatrixXd& matrix,
                   VectorXd& right) const;
   SplitParameters updated(SplitParameters p, const VectorXd& step, SplitSensors split_sensors) const;

@@ -38,7 +38,7 @@ class Writer {
 
  private:
   std::string add_link(const std::string& wish) {
-    const std::string name = unique(wish, link_names_);
+    std::string name = unique(wish, link_names_);
     printer_.OpenElement("link");
     printer_.PushAttribute("name", name.c_str());
     printer_.CloseElement();

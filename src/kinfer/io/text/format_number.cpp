@@ -20,11 +20,11 @@ double read_back(const std::string& text) {
 
 std::string format_number(double value, double factor) {
   const double scaled = value / factor;
-  const std::string plain = fmt::format("{:.12g}", scaled);
+  std::string plain = fmt::format("{:.12g}", scaled);
   if (std::abs(factor * read_back(plain) - value) <= std::numeric_limits<double>::epsilon() * std::abs(value))
     return plain;
   for (const int precision : {15, 16, 17}) {
-    const std::string text = fmt::format("{:.{}g}", scaled, precision);
+    std::string text = fmt::format("{:.{}g}", scaled, precision);
     if (factor * read_back(text) == value) return text;
   }
   return fmt::format("{}", scaled);

@@ -15,7 +15,7 @@ std::vector<double> finite_sorted(std::vector<double> values) {
 
 double quantile(const std::vector<double>& sorted, double fraction) {
   if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto k = static_cast<std::size_t>(fraction * static_cast<double>(sorted.size() - 1) + 0.5);
+  const auto k = static_cast<std::size_t>(std::lround(fraction * static_cast<double>(sorted.size() - 1)));
   return sorted[std::min(k, sorted.size() - 1)];
 }
 
