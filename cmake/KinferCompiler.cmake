@@ -47,10 +47,13 @@ if(KINFER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   endif()
 endif()
 
-# Eigen takes longer to parse than most source files: it is precompiled. `#include` lines stay complete nevertheless.
+# Eigen takes longer to parse than most source files: it is precompiled, and so are the headers of our own that most files
+# include. `#include` lines stay complete nevertheless.
 set(KINFER_PRECOMPILED <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <fmt/ranges.h> <tl/expected.hpp> <nlohmann/json.hpp>
   <algorithm> <array> <cmath> <filesystem> <functional> <limits> <map> <memory> <numbers> <optional> <set> <span> <string>
-  <string_view> <variant> <vector>)
+  <string_view> <variant> <vector> <kinfer/kinematics/chain.hpp> <kinfer/measurement/pose_set.hpp>
+  <kinfer/measurement/ins_recording.hpp> <kinfer/evidence/calibration/calibration.hpp>
+  <kinfer/evidence/identification/identification.hpp>)
 
 # An object library that holds only a precompiled header, which targets with the same flags use by REUSE_FROM.
 function(kinfer_header_library name)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Thresholds of the verdict and of the recommendations. The data on which they were set are not recorded.
+// What half and double of those in KINFER_THRESHOLD do to the figures: docs/development/thresholds.md.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Thresholds of segment tree and joint types.
+// What half and double of those in KINFER_THRESHOLD do to the figures: docs/development/thresholds.md.
 #pragma once
 
 #include <cstddef>

@@ -6,7 +6,7 @@
 namespace kinfer {
 namespace {
 
-void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
+void ball_bar_residual(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   const PairDistance& pair = scene.data.pairs[index];
   const Vec3 bar = scene.at.pose[pair.row].position - scene.at.pose[pair.other].position;
   const double length = bar.norm();
@@ -17,7 +17,7 @@ void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
       -along.transpose() * (scene.at.twists[pair.row].topRows<3>() - scene.at.twists[pair.other].topRows<3>());
 }
 
-Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {
+Vec3 ball_bar_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {
   return Vec3::Constant(PairDistance::traits.sigma_of(instrument) + 1e-6 * instrument.ppm * data.pairs[index].distance);
 }
 
@@ -25,7 +25,7 @@ Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& inst
 
 template <>
 ResidualModel residual_model<PairDistance>() {
-  return {.write = write, .specified_sd = specified_sd};
+  return {.write = ball_bar_residual, .specified_sd = ball_bar_sd};
 }
 
 }  // namespace kinfer

@@ -8,7 +8,7 @@ namespace {
 
 constexpr FixtureKind socket_kind = fixture_kind("socket");
 
-void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
+void ball_in_socket_residual(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   const SocketContact& contact = scene.data.contacts[index];
   const Target& socket = scene.chain.fixtures.sockets[contact.socket];
   out.residuals.segment<3>(out.row) = socket.xyz - scene.at.pose[contact.row].position;
@@ -24,7 +24,7 @@ void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
 
 template <>
 ResidualModel residual_model<SocketContact>() {
-  return {.write = write};
+  return {.write = ball_in_socket_residual};
 }
 
 }  // namespace kinfer

@@ -35,7 +35,7 @@ Mat3 rotation_axes(const Frame& frame) {
   return axes;
 }
 
-void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
+void direction_residual(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   const DirectionMeasurement& measured = scene.data.directions[index];
   const Frame& frame = scene.chain.fixtures.stations[measured.station].frame;
   const Mat3 station_R_world = frame.pose().rotation.transpose();
@@ -74,7 +74,7 @@ double range_of(const ResidualContext& scene, std::size_t index) {
 
 template <>
 ResidualModel residual_model<DirectionMeasurement>() {
-  return {.write = write, .metres = range_of};
+  return {.write = direction_residual, .metres = range_of};
 }
 
 }  // namespace kinfer

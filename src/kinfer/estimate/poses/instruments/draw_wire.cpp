@@ -15,7 +15,7 @@ Pose base_of(const ResidualContext& scene, int row) {
   return own ? scene.chain.mountings[mounting].base->pose() : scene.chain.base.pose();
 }
 
-void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
+void draw_wire_residual(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   const DistanceMeasurement& measured = scene.data.distances[index];
   const Pose base = base_of(scene, measured.row);
   const Vec3 wire = scene.at.pose[measured.row].position - base * scene.chain.fixtures.anchors[measured.anchor];
@@ -31,7 +31,7 @@ void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
       row[column] = along.dot(base.rotation.col(k));
 }
 
-Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {
+Vec3 draw_wire_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {
   return Vec3::Constant(DistanceMeasurement::traits.sigma_of(instrument) +
                         1e-6 * instrument.ppm * data.distances[index].distance);
 }
@@ -40,7 +40,7 @@ Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& inst
 
 template <>
 ResidualModel residual_model<DistanceMeasurement>() {
-  return {.write = write, .specified_sd = specified_sd};
+  return {.write = draw_wire_residual, .specified_sd = draw_wire_sd};
 }
 
 }  // namespace kinfer

@@ -10,7 +10,7 @@
 namespace kinfer {
 namespace {
 
-void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
+void inclination_residual(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   const TiltMeasurement& tilt = scene.data.tilts[index];
   const Vec3 direction = tilt.specific_force.normalized();
   Eigen::Matrix<double, 3, 2> across;
@@ -31,7 +31,7 @@ void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
 
 template <>
 ResidualModel residual_model<TiltMeasurement>() {
-  return {.write = write};
+  return {.write = inclination_residual};
 }
 
 }  // namespace kinfer

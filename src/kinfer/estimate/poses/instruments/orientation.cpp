@@ -8,7 +8,7 @@
 namespace kinfer {
 namespace {
 
-void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
+void orientation_residual(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   const OrientationMeasurement& measured = scene.data.orientations[index];
   const Mat3 misfit = measured.orientation.toRotationMatrix() * scene.at.pose[measured.row].rotation.transpose();
   const Vec3 error = log_so3(misfit);
@@ -19,7 +19,7 @@ void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   out.jacobian->middleRows<3>(out.row) = slope * scene.at.twists[measured.row].bottomRows<3>();
 }
 
-Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {
+Vec3 orientation_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {
   const auto& sd = data.orientations[index].sd;
   return sd ? *sd : Vec3::Constant(instrument.sigma_angle);
 }
@@ -28,7 +28,7 @@ Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& inst
 
 template <>
 ResidualModel residual_model<OrientationMeasurement>() {
-  return {.write = write, .specified_sd = specified_sd};
+  return {.write = orientation_residual, .specified_sd = orientation_sd};
 }
 
 }  // namespace kinfer

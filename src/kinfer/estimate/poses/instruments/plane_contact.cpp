@@ -11,7 +11,7 @@ namespace {
 
 constexpr FixtureKind plane_kind = fixture_kind("plane");
 
-void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
+void plane_contact_residual(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   const PlaneContact& contact = scene.data.plane_contacts[index];
   const Plane& plane = scene.chain.fixtures.planes[contact.plane];
   const Vec3 normal = plane.normal(), point = scene.at.pose[contact.row].position;
@@ -32,7 +32,7 @@ void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
 
 template <>
 ResidualModel residual_model<PlaneContact>() {
-  return {.write = write};
+  return {.write = plane_contact_residual};
 }
 
 }  // namespace kinfer

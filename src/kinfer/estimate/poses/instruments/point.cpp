@@ -7,7 +7,7 @@
 namespace kinfer {
 namespace {
 
-void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
+void point_residual(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   const PointMeasurement& point = scene.data.points[index];
   const Pose& pose = scene.at.pose[point.row];
   const bool has_target = point.target >= 0;
@@ -28,7 +28,7 @@ void write(const ResidualContext& scene, std::size_t index, BlockRows& out) {
   if (point.axes) rows = (point.axes->transpose() * rows).eval();
 }
 
-Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {
+Vec3 point_sd(const PoseSet& data, std::size_t index, const Instrument& instrument) {
   const PointMeasurement& point = data.points[index];
   return point.sd ? *point.sd : Vec3::Constant(position_sd(instrument, point.position));
 }
@@ -37,7 +37,7 @@ Vec3 specified_sd(const PoseSet& data, std::size_t index, const Instrument& inst
 
 template <>
 ResidualModel residual_model<PointMeasurement>() {
-  return {.write = write, .specified_sd = specified_sd};
+  return {.write = point_residual, .specified_sd = point_sd};
 }
 
 }  // namespace kinfer
