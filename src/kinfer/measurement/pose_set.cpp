@@ -91,7 +91,7 @@ PoseSet select(const PoseSet& from, const std::vector<int>& rows) {
   std::vector<std::vector<int>> places(from.rows());  // new indices of each old row
   for (std::size_t i = 0; i < rows.size(); ++i) places[rows[i]].push_back(static_cast<int>(i));
   return {
-      select(static_cast<const RecordedJoints&>(from), rows),        select(static_cast<const RowConditions&>(from), rows),
+      select(static_cast<const RecordedJoints&>(from), rows),     select(static_cast<const RowConditions&>(from), rows),
       select(static_cast<const PoseMeasurements&>(from), places), static_cast<const FixtureNames&>(from),
       select(static_cast<const RowGroups&>(from), rows),          select(static_cast<const RowOrigin&>(from), rows)};
 }
