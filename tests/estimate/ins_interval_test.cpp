@@ -107,7 +107,7 @@ TEST(IntervalMotionOf, StatesAndTheirSplineDerivativesAgreeWithDifferences) {
             for (Index order = 0; order < derivative_orders; ++order)
               analytic[component] +=
                   found.by_spline(derivative_orders * static_cast<Index>(d) + order,
-                             component * block_nodes + static_cast<Index>(node)) *
+                                  component * block_nodes + static_cast<Index>(node)) *
                   motion.bases()[node].at[static_cast<std::size_t>(order)][static_cast<std::size_t>(i)];
           EXPECT_LT((analytic.head<9>() - slope.head<9>()).norm(), 1e-5 * (1 + slope.norm())) << body << ' ' << d;
         }
