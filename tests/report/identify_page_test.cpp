@@ -87,12 +87,20 @@ TEST(Uncertain, MoreThanFourAreCountedAndNothingIsToldToo) {
   EXPECT_TRUE(shows(identification_page(e).first, "is observable from this recording"));
 }
 
-TEST(IdentifiedJoints, ABallHasNoAxisAndAnUnknownPointIsInBrackets) {
+TEST(IdentifiedJoints, ASphericalJointHasNoAxisAndAnUnknownPointIsInBrackets) {
   const std::string body = joints_section(found()).body;
   EXPECT_TRUE(shows(body, "<td>spherical</td>"));
   EXPECT_TRUE(shows(body, "<td class=\"num\">–</td>"));
   EXPECT_TRUE(shows(body, "<span class=\"note\">(−100.0&ensp;0.0&ensp;50.0)</span>"));
   EXPECT_TRUE(shows(body, "100.0&ensp;200.0&ensp;300.0</td>"));  // [mm]
+}
+
+TEST(IdentifiedJoints, AnAxisOfMoreThanHalfARadianIsNotDeterminable) {
+  IdentificationEvidence e = found();
+  e.joints[0].estimate.sd.axis_in_parent = {0.668, 0.0};
+  EXPECT_FALSE(shows(joints_section(e).body, "668.00"));
+  e.joints[0].estimate.sd.axis_in_parent = {0.468, 0.0};
+  EXPECT_TRUE(shows(joints_section(e).body, "468.00"));
 }
 
 TEST(IdentifiedJoints, LinksAreShownWithTheirDeviation) {

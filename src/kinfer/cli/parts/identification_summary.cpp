@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/evidence/identification/unobservable_limit.hpp"
 #include "kinfer/words/identification/notes.hpp"
 #include "kinfer/words/identification/unobservable.hpp"
 #include "kinfer/words/identification/verdict.hpp"
@@ -41,9 +42,8 @@ std::string vector_text(const Vec3& v, double scale, int width, int decimals) {
 
 /// Combined standard deviation of two directions; "unknown" if not determined by the data.
 std::string deviation_text(const std::array<double, 2>& sd, double scale, int decimals) {
-  constexpr double unobservable = 0.5;  // [rad], [m]
   const double both = std::hypot(sd[0], sd[1]);
-  return both < unobservable ? fmt::format("{:.{}f}", scale * both, decimals) : "unknown";
+  return both < unobservable_sd ? fmt::format("{:.{}f}", scale * both, decimals) : "unknown";
 }
 
 /// Unobservable quantities of each joint and their remedies.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/evidence/identification/unobservable_limit.hpp"
 #include "kinfer/identify/findings/thresholds.hpp"
 
 namespace kinfer::identify {

@@ -14,10 +14,6 @@ inline constexpr double safe_margin = 2.0;
 /// reports more joints. Data not recorded.
 inline constexpr double parallel_axes_angle = 0.05;
 
-/// [m], [rad] Standard deviation from which a direction counts as unobservable: about that of its prior. Smaller
-/// excludes more directions from the forecast. Data not recorded.
-inline constexpr double unobservable_sd = 0.5;
-
 /// Factor on the acceleration beyond which more excitation is not recommended: beyond any machine's reserve. Larger
 /// recommends it for less accurate joints. Data not recorded.
 inline constexpr double max_excitation_factor = 10.0;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/evidence/identification/unobservable_limit.hpp"
 #include "kinfer/report/identify/sections.hpp"
 #include "kinfer/report/identify/unobservable.hpp"
 #include "kinfer/report/parts/units.hpp"
@@ -29,15 +30,15 @@ Cell axis_cell(const JointEstimate& joint, const Vec3& axis) {
   return vector_cell(axis, 1.0, 5);
 }
 
-Cell plus_minus(double sd, double scale, double unobservable, int decimals) {
-  if (!(sd < unobservable)) return html::undetermined_cell("not determinable");
+Cell plus_minus(double sd, double scale, int decimals) {
+  if (!(sd < unobservable_sd)) return html::undetermined_cell("not determinable");
   return html::number(sd, scale, decimals);
 }
 
 /// An unobservable point is shown in brackets: it is a choice, not a measurement.
 Cell point_cell(const Vec3& point, double sd) {
   Cell cell = vector_cell(point, mm, 1);
-  if (!(sd < unobservable_length)) cell.shown = "<span class=\"note\">(" + cell.shown + ")</span>";
+  if (!(sd < unobservable_sd)) cell.shown = "<span class=\"note\">(" + cell.shown + ")</span>";
   return cell;
 }
 
@@ -54,9 +55,9 @@ std::vector<Cell> joint_row(const JointEstimate& joint, const JointSide& side, c
           html::text(type),
           html::text(side.sensor),
           axis_cell(joint, side.axis),
-          plus_minus(across(side.axis_sd), mrad, mrad * unobservable_angle, 2),
+          plus_minus(across(side.axis_sd), mrad, 2),
           point_cell(side.point, across(side.point_sd)),
-          plus_minus(across(side.point_sd), mm, unobservable_length, 1)};
+          plus_minus(across(side.point_sd), mm, 1)};
 }
 
 std::string joint_table(const IdentificationEvidence& e) {
@@ -81,24 +82,23 @@ std::string link_table(const IdentificationEvidence& e) {
                     .rows = {}};
   for (const LinkEstimate& link : e.links)
     table.rows.push_back({html::text(link.segment), html::text(link.from), html::text(link.to),
-                          html::number(link.length, mm, 1), plus_minus(link.sd, mm, unobservable_length, 1)});
+                          html::number(link.length, mm, 1), plus_minus(link.sd, mm, 1)});
   return table.rows.empty() ? "" : html::table(table);
 }
 
 /// A number without a standard deviation is a choice of the convention.
-Cell dh_cell(double value, double sd, double scale, double unobservable, int decimals) {
+Cell dh_cell(double value, double sd, double scale, int decimals) {
   const std::string exact = fmt::format("{:.12g}", scale * value);
-  if (!(sd < unobservable)) return {html::undetermined_cell("not determinable").shown, exact, html::CellKind::number};
+  if (!(sd < unobservable_sd))
+    return {html::undetermined_cell("not determinable").shown, exact, html::CellKind::number};
   std::string shown = html::fixed(scale * value, decimals);
   if (sd > 0.0) shown += fmt::format(" <small>± {}</small>", html::fixed(scale * sd, std::max(1, decimals - 1)));
   return {shown, exact, html::CellKind::number};
 }
 
 std::vector<Cell> dh_row(const DhRowEstimate& row) {
-  const auto angle = [&](double DhNumbers::*k) {
-    return dh_cell(row.row.*k, row.sd.*k, 1.0 / degree, unobservable_angle, 3);
-  };
-  const auto length = [&](double DhNumbers::*k) { return dh_cell(row.row.*k, row.sd.*k, mm, unobservable_length, 1); };
+  const auto angle = [&](double DhNumbers::*k) { return dh_cell(row.row.*k, row.sd.*k, 1.0 / degree, 3); };
+  const auto length = [&](double DhNumbers::*k) { return dh_cell(row.row.*k, row.sd.*k, mm, 1); };
   return {html::text(row.segment),
           angle(&DhNumbers::theta),
           length(&DhNumbers::d),

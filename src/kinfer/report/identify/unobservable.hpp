@@ -9,9 +9,6 @@
 
 namespace kinfer::report {
 
-/// [m], [rad] standard deviation from which a value counts as unobservable.
-inline constexpr double unobservable_length = 0.5, unobservable_angle = 0.5;
-
 /// HTML items: what the user may need and the recording does not determine.
 std::vector<std::string> uncertain_items(const IdentificationEvidence& evidence);
 
