@@ -49,7 +49,7 @@ endif()
 
 # Eigen takes longer to parse than most source files: it is precompiled, and so are the headers of our own that most files
 # include. `#include` lines stay complete nevertheless.
-set(KINFER_PRECOMPILED <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <fmt/ranges.h> <tl/expected.hpp> <nlohmann/json.hpp>
+set(KINFER_PRECOMPILED <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <fmt/ranges.h> <tl/expected.hpp>
   <algorithm> <array> <cmath> <filesystem> <functional> <limits> <map> <memory> <numbers> <optional> <set> <span> <string>
   <string_view> <variant> <vector> <kinfer/kinematics/chain.hpp> <kinfer/measurement/pose_set.hpp>
   <kinfer/measurement/ins_recording.hpp> <kinfer/evidence/calibration/calibration.hpp>

@@ -28,7 +28,7 @@ struct Plane {
   Vec3 small_rotation = Vec3::Zero();  ///< [rad] small rotations about x and y that an estimate may change
   double offset = 0.0;                 ///< [m]
 
-  Vec3 normal() const { return rotation * (rot_x(small_rotation.x()) * rot_y(small_rotation.y())).col(2); }
+  Vec3 normal() const;
 };
 
 /// A frame in the world: where an instrument stands.

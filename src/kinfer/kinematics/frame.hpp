@@ -13,15 +13,11 @@ struct Frame {
   Mat3 rotation = Mat3::Identity();
   Vec3 small_rotation = Vec3::Zero();  ///< [rad]
 
-  Pose pose() const {
-    return {rotation * rot_x(small_rotation.x()) * rot_y(small_rotation.y()) * rot_z(small_rotation.z()), xyz};
-  }
+  Pose pose() const;
   static Frame from_pose(const Pose& pose) { return {pose.position, pose.rotation, Vec3::Zero()}; }
 };
 
 /// Multiplies the small rotation into the rotation matrix: the same pose.
-inline void fold(Frame& frame) {
-  frame = Frame::from_pose(frame.pose());
-}
+void fold(Frame& frame);
 
 }  // namespace kinfer

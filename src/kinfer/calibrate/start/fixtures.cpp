@@ -151,7 +151,7 @@ Pose resect_linearly(const Sightings<DirectionMeasurement>& seen) {
     forward += seen.measured[i].direction.dot(projection * homogeneous(i));
   if (forward < 0.0) projection *= -1.0;
   const Svd parts = svd(projection.leftCols<3>());
-  const Vec3 sign(1.0, 1.0, (parts.u * parts.v.transpose()).determinant() < 0.0 ? -1.0 : 1.0);
+  const Vec3 sign(1.0, 1.0, Mat3(parts.u * parts.v.transpose()).determinant() < 0.0 ? -1.0 : 1.0);
   const Mat3 station_R_world = parts.u * sign.asDiagonal() * parts.v.transpose();
   const double scale = parts.s.mean();
   return {station_R_world.transpose(), centre - size / scale * (station_R_world.transpose() * projection.col(3))};

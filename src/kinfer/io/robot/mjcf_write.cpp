@@ -6,19 +6,11 @@
 
 #include "kinfer/io/robot/joint_transforms.hpp"
 #include "kinfer/io/robot/mjcf.hpp"
+#include "kinfer/io/robot/xml_list.hpp"
 #include "kinfer/io/text/format_number.hpp"
 
 namespace kinfer {
 namespace {
-
-std::string list(const Vec3& values) {
-  return fmt::format("{} {} {}", format_number(values.x()), format_number(values.y()), format_number(values.z()));
-}
-
-std::string list(const Quat& q) {
-  return fmt::format("{} {} {} {}", format_number(q.w()), format_number(q.x()), format_number(q.y()),
-                     format_number(q.z()));
-}
 
 /// An <equality> constraint: `joint` moves by factor · position of `leader`.
 struct EqualityConstraint {
@@ -26,15 +18,15 @@ struct EqualityConstraint {
   double factor = 1.0;
 };
 
-class Writer {
+class MjcfWriter {
  public:
-  explicit Writer(const Chain& chain) : chain_(chain) {}
+  explicit MjcfWriter(const Chain& chain) : chain_(chain) {}
 
   std::string write() {
     open("mujoco", {{"model", chain_.name.empty() ? "robot" : chain_.name}});
     // Every moving body needs a mass; where the chain has none, boundmass and boundinertia set small ones.
     leaf("compiler", {{"angle", "radian"}, {"boundmass", "0.001"}, {"boundinertia", "0.001"}});
-    leaf("option", {{"gravity", list(chain_.gravity)}});
+    leaf("option", {{"gravity", xml_list(chain_.gravity)}});
     open("worldbody", {});
     open_body("base", chain_.base.pose());
     if (chain_.tip_joint() < 0) write_sites({});
@@ -60,7 +52,7 @@ class Writer {
   }
 
   void open_body(const std::string& name, const Pose& pose) {
-    open("body", {{"name", name}, {"pos", list(pose.position)}, {"quat", list(Quat(pose.rotation))}});
+    open("body", {{"name", name}, {"pos", xml_list(pose.position)}, {"quat", xml_list(Quat(pose.rotation))}});
   }
 
   /// `after`: pose of the parent joint's frame in the parent's body.
@@ -78,13 +70,13 @@ class Writer {
       if (mass.joint == index)
         leaf("geom", {{"type", "sphere"},
                       {"size", "0.01"},
-                      {"pos", list(transforms.after * mass.com)},
+                      {"pos", xml_list(transforms.after * mass.com)},
                       {"mass", format_number(mass.mass)},
                       {"contype", "0"},
                       {"conaffinity", "0"}});
     leaf("site", {{"name", joint.name},
-                  {"pos", list(transforms.after.position)},
-                  {"quat", list(Quat(transforms.after.rotation))}});
+                  {"pos", xml_list(transforms.after.position)},
+                  {"quat", xml_list(Quat(transforms.after.rotation))}});
     if (index == chain_.tip_joint()) write_sites(transforms.after);
     write_children(index, transforms.after);
     close();
@@ -101,7 +93,7 @@ class Writer {
   }
 
   void add_joint(const std::string& name, const Joint& joint, const Vec3& axis, bool may_be_limited) {
-    open("joint", {{"name", name}, {"type", std::string(traits(joint.type).mjcf)}, {"axis", list(axis)}});
+    open("joint", {{"name", name}, {"type", std::string(traits(joint.type).mjcf)}, {"axis", xml_list(axis)}});
     if (may_be_limited && std::isfinite(joint.lower) && std::isfinite(joint.upper)) {
       printer_.PushAttribute("limited", "true");
       printer_.PushAttribute("range",
@@ -112,8 +104,9 @@ class Writer {
 
   void write_sites(const Pose& flange) {
     const Pose tool = flange * chain_.tool.pose();
-    leaf("site", {{"name", "tool"}, {"pos", list(tool.position)}, {"quat", list(Quat(tool.rotation))}});
-    for (const Target& target : chain_.targets) leaf("site", {{"name", target.name}, {"pos", list(tool * target.xyz)}});
+    leaf("site", {{"name", "tool"}, {"pos", xml_list(tool.position)}, {"quat", xml_list(Quat(tool.rotation))}});
+    for (const Target& target : chain_.targets)
+      leaf("site", {{"name", target.name}, {"pos", xml_list(tool * target.xyz)}});
   }
 
   void write_constraints() {
@@ -134,7 +127,7 @@ class Writer {
 }  // namespace
 
 std::string format_mjcf(const Chain& chain) {
-  return Writer(chain).write();
+  return MjcfWriter(chain).write();
 }
 
 }  // namespace kinfer

@@ -30,9 +30,9 @@ std::string list(const Vec3& values, double factor = 1.0) {
                      format_number(values[2], factor));
 }
 
-class Writer {
+class RobotTomlWriter {
  public:
-  Writer(const RobotModel& robot, const StandardDeviations& sd, FileUnits units)
+  RobotTomlWriter(const RobotModel& robot, const StandardDeviations& sd, FileUnits units)
       : robot_(robot),
         chain_(robot.chain),
         sd_(sd),
@@ -277,7 +277,7 @@ class Writer {
 }  // namespace
 
 std::string format_robot_toml(const RobotModel& robot, const StandardDeviations& sd, FileUnits units) {
-  return Writer(robot, sd, units).write();
+  return RobotTomlWriter(robot, sd, units).write();
 }
 
 }  // namespace kinfer

@@ -6,20 +6,17 @@
 
 #include "kinfer/io/robot/joint_transforms.hpp"
 #include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/xml_list.hpp"
 #include "kinfer/io/text/format_number.hpp"
 
 namespace kinfer {
 namespace {
 
-constexpr const char* unlimited = "1e9";  // URDF requires limits, efforts and speeds even where none is known
+constexpr const char* no_limit = "1e9";  // URDF requires limits, efforts and speeds even where none is known
 
-std::string list(const Vec3& values) {
-  return fmt::format("{} {} {}", format_number(values.x()), format_number(values.y()), format_number(values.z()));
-}
-
-class Writer {
+class UrdfWriter {
  public:
-  explicit Writer(const Chain& chain) : chain_(chain), after_(chain.joints.size()), link_(chain.joints.size()) {
+  explicit UrdfWriter(const Chain& chain) : chain_(chain), after_(chain.joints.size()), link_(chain.joints.size()) {
     for (const Joint& joint : chain.joints) joint_names_.insert(joint.name);
   }
 
@@ -59,8 +56,8 @@ class Writer {
     add_element("parent", "link", parent);
     add_element("child", "link", child);
     printer_.OpenElement("origin");
-    printer_.PushAttribute("xyz", list(origin.position).c_str());
-    printer_.PushAttribute("rpy", list(to_rpy(origin.rotation)).c_str());
+    printer_.PushAttribute("xyz", xml_list(origin.position).c_str());
+    printer_.PushAttribute("rpy", xml_list(to_rpy(origin.rotation)).c_str());
     printer_.CloseElement();
   }
 
@@ -78,10 +75,10 @@ class Writer {
   void add_limit(const Joint& joint) {
     printer_.OpenElement("limit");
     printer_.PushAttribute("lower", std::isfinite(joint.lower) ? format_number(joint.lower).c_str()
-                                                               : (std::string("-") + unlimited).c_str());
-    printer_.PushAttribute("upper", std::isfinite(joint.upper) ? format_number(joint.upper).c_str() : unlimited);
-    printer_.PushAttribute("effort", unlimited);
-    printer_.PushAttribute("velocity", unlimited);
+                                                               : (std::string("-") + no_limit).c_str());
+    printer_.PushAttribute("upper", std::isfinite(joint.upper) ? format_number(joint.upper).c_str() : no_limit);
+    printer_.PushAttribute("effort", no_limit);
+    printer_.PushAttribute("velocity", no_limit);
     printer_.CloseElement();
   }
 
@@ -90,7 +87,7 @@ class Writer {
     const JointTypeTraits& type = traits(joint.type);
     const bool limited = !mimic && (std::isfinite(joint.lower) || std::isfinite(joint.upper));
     open_joint(name, limited ? type.urdf : type.urdf_unlimited, parent, child, origin);
-    add_element("axis", "xyz", list(axis));
+    add_element("axis", "xyz", xml_list(axis));
     if (limited || type.urdf == type.urdf_unlimited) add_limit(mimic ? Joint{} : joint);  // a type that has limits
     if (mimic) {
       printer_.OpenElement("mimic");
@@ -148,7 +145,7 @@ class Writer {
 }  // namespace
 
 std::string format_urdf(const Chain& chain) {
-  return Writer(chain).write();
+  return UrdfWriter(chain).write();
 }
 
 }  // namespace kinfer

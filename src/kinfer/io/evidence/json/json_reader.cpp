@@ -63,6 +63,36 @@ bool JsonReader::is_list(const Json& json, const JsonPath& path, std::size_t siz
   return false;
 }
 
+void JsonReader::read_value(const Json& json, const JsonPath& path, bool& value) {
+  if (!json.is_boolean()) return errors_.add(path, "expected true or false");
+  value = json.get<bool>();
+}
+
+void JsonReader::read_value(const Json& json, const JsonPath& path, double& value) {
+  if (!json.is_number() && !json.is_null()) return errors_.add(path, "expected a number");
+  value = json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+void JsonReader::read_value(const Json& json, const JsonPath& path, std::string& value) {
+  if (!json.is_string()) return errors_.add(path, "expected a text");
+  value = json.get<std::string>();
+}
+
+std::optional<std::uint64_t> JsonReader::read_unsigned(const Json& json, const JsonPath& path, std::uint64_t max) {
+  if (json.is_number_unsigned() && json.get<std::uint64_t>() <= max) return json.get<std::uint64_t>();
+  errors_.add(path, "expected a whole number");
+  return {};
+}
+
+std::optional<std::int64_t> JsonReader::read_integer(const Json& json, const JsonPath& path, std::int64_t min,
+                                                     std::int64_t max) {
+  const bool is_representable = !json.is_number_unsigned() || json.get<std::uint64_t>() <= INT64_MAX;
+  if (json.is_number_integer() && is_representable)
+    if (const auto value = json.get<std::int64_t>(); min <= value && value <= max) return value;
+  errors_.add(path, "expected a whole number");
+  return {};
+}
+
 void JsonReader::matrix_rows(const char* key, MatrixXd& matrix) {
   matrix_columns(key, matrix);
   matrix.transposeInPlace();
