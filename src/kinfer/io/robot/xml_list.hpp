@@ -13,6 +13,8 @@ inline std::string xml_list(const Vec3& values) {
 }
 
 /// Scalar first, as MJCF has it.
-inline std::string xml_list(const Quat& q) { return format_number(q.w()) + ' ' + xml_list(Vec3(q.vec())); }
+inline std::string xml_list(const Quat& q) {
+  return format_number(q.w()) + ' ' + xml_list(Vec3(q.vec()));
+}
 
 }  // namespace kinfer
