@@ -10,9 +10,9 @@ struct Pose {
   Mat3 rotation = Mat3::Identity();
   Vec3 position = Vec3::Zero();  ///< [m]
 
-  Pose operator*(const Pose& next) const { return {rotation * next.rotation, rotation * next.position + position}; }
-  Vec3 operator*(const Vec3& point) const { return rotation * point + position; }
-  Pose inverse() const { return {rotation.transpose(), -(rotation.transpose() * position)}; }
+  Pose operator*(const Pose& next) const;
+  Vec3 operator*(const Vec3& point) const;
+  Pose inverse() const;
 
   static Pose from_xyz_rpy(const Vec3& xyz, const Vec3& rpy) { return {from_rpy(rpy), xyz}; }
 };
