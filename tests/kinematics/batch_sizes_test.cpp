@@ -7,6 +7,7 @@
 #include "kinfer/kinematics/batch/batch_points.hpp"
 #include "kinfer/kinematics/batch/batch_population.hpp"
 #include "kinfer/kinematics/forward.hpp"
+#include "kinfer/linalg/products.hpp"
 #include "laws/example_chains.hpp"
 
 namespace kinfer {
@@ -65,7 +66,7 @@ TEST(BatchSizes, AnyNumberOfPointsGivesTheCostOfTheWalk) {
       VectorXd gradient, r(3 * points);
       EXPECT_NEAR(batch.normal_equations(x, weights, matrix, gradient, scratch), slow, 1e-12 * slow);
       batch.residuals(x, weights, r, jacobian, scratch);
-      const MatrixXd expected = (jacobian.transpose() * jacobian).triangularView<Eigen::Lower>();
+      const MatrixXd expected = gram(jacobian).triangularView<Eigen::Lower>();
       EXPECT_LE((matrix - expected).norm(), 1e-12 * expected.norm()) << kernels->name << ' ' << points;
       EXPECT_LE((gradient - jacobian.transpose() * r).norm(), 1e-12 * jacobian.norm() * r.norm());
     }

@@ -12,6 +12,7 @@
 #include "kinfer/inertial/rest/rest.hpp"
 #include "kinfer/inertial/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer {
 namespace {
@@ -55,19 +56,19 @@ std::optional<MatrixXd> whitened(const Products& products, Index first, Index co
   if (first < 0 || first + count > products.rows()) return std::nullopt;
   MatrixXd x = products.middleRows(first, count);
   x.rowwise() -= x.colwise().mean().eval();
-  const SymmetricEigen spread = symmetric_eigen(x.transpose() * x / static_cast<double>(count));
+  const SymmetricEigen spread = symmetric_eigen(gram(x) / static_cast<double>(count));
   constexpr double still = 1e-8, negligible = 1e-4;  // [(rad/s)⁴]; of the largest variance
   const double largest = spread.values[5];
   if (!(largest > still)) return std::nullopt;
   const Index kept = (spread.values.array() > negligible * largest).count();
   const VectorXd scale = spread.values.tail(kept).cwiseSqrt().cwiseInverse();
-  return x * spread.vectors.rightCols(kept) * scale.asDiagonal();
+  return product(x, spread.vectors.rightCols(kept)) * scale.asDiagonal();
 }
 
 /// ρ² of the best pair of forms. Near its maximum it is a parabola in the lag, whereas its logarithm has a cusp.
 double squared_correlation(const MatrixXd& a, const MatrixXd& b) {
-  const MatrixXd mixed = a.transpose() * b / static_cast<double>(a.rows());
-  return symmetric_eigen(mixed * mixed.transpose()).values.tail<1>()[0];
+  const MatrixXd mixed = transposed_times(a, b) / static_cast<double>(a.rows());
+  return symmetric_eigen(times_transposed(mixed, mixed)).values.tail<1>()[0];
 }
 
 /// Mutual information [nats] of the forms, assuming Gaussian distributions.

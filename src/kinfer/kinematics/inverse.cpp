@@ -7,6 +7,7 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer {
 namespace {
@@ -115,7 +116,7 @@ class InverseSolver {
   }
 
   static VectorXd step(const MatrixXd& j, const VectorXd& error, double damping) {
-    MatrixXd normal = j.transpose() * j;
+    MatrixXd normal = gram(j);
     normal.diagonal().array() += damping * normal.diagonal().maxCoeff();
     const std::optional<VectorXd> solved = solve_spd(normal, j.transpose() * error);
     if (!solved) return VectorXd::Zero(j.cols());

@@ -2,7 +2,7 @@
 #include "kinfer/linalg/band_segment.hpp"
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/linalg/block_products.hpp"
+#include "kinfer/linalg/products.hpp"
 #include "kinfer/linalg/small_cholesky.hpp"
 
 namespace kinfer {
@@ -97,14 +97,13 @@ BandSpan BandSegment::condensed() const {
 }
 
 /// Back substitution in place: the rows of the inner groups hold lᵀ x, those after them the last end.
-template <class Values>
-void BandSegment::substitute_back(Values& values) const {
+void BandSegment::substitute_back(MatrixRef values) const {
   const Index w = sum_.width, e = end();
   for (Index group = sum_.inner_groups() - 1; group >= 0; --group) {
     const Index at = group * w;
     auto value = values.middleRows(at, w);
     value.noalias() -= sum_.band.block(w, e + at, e, w).transpose() * values.middleRows(at + w, e);
-    sum_.band.block(0, e + at, w, w).template triangularView<Eigen::Lower>().transpose().solveInPlace(value);
+    sum_.band.block(0, e + at, w, w).triangularView<Eigen::Lower>().transpose().solveInPlace(value);
   }
 }
 
@@ -119,9 +118,9 @@ MatrixXd BandSegment::solve(ConstVectorRef first_end, ConstVectorRef last_end, C
 MatrixXd BandSegment::sensitivity(ConstMatrixRef first_end, ConstMatrixRef last_end, ConstMatrixRef border) const {
   const Index e = end();
   MatrixXd values(inner() + e, border.cols());
-  values << sum_.outer.block(e, e, sum_.border, inner()).transpose() * border -
-                sum_.outer.block(0, e, e, inner()).transpose() * first_end,
-      last_end;
+  values.topRows(inner()) = transposed_times(sum_.outer.block(e, e, sum_.border, inner()), border) -
+                            transposed_times(sum_.outer.block(0, e, e, inner()), first_end);
+  values.bottomRows(e) = last_end;
   substitute_back(values);
   return values.topRows(inner());
 }

@@ -7,6 +7,7 @@
 // span of a shorter band, which BorderedBand(width of an end, 2, border) solves.
 #pragma once
 
+#include "kinfer/linalg/block_products.hpp"
 #include "kinfer/linalg/bordered_band.hpp"
 
 namespace kinfer {
@@ -54,8 +55,7 @@ class BandSegment {
   void reduce_outer();
   Eigen::Index end() const { return sum_.end(); }
   Eigen::Index inner() const { return sum_.inner_groups() * sum_.width; }  ///< unknowns between the ends
-  template <class Values>
-  void substitute_back(Values& values) const;
+  void substitute_back(MatrixRef values) const;
 
   BandSegmentSum sum_;  // between the ends: the Cholesky factor, and the forward-substituted coupling and right side
   MatrixXd first_end_;

@@ -6,6 +6,7 @@
 #include "kinfer/base/expect.hpp"
 #include "kinfer/linalg/block_products.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 #include "kinfer/linalg/small_cholesky.hpp"
 
 namespace kinfer {
@@ -104,8 +105,8 @@ MatrixXd BorderedBand::sensitivity() const {
   for (Index k = steps - 1; k >= 0; --k) {
     const Group& group = groups_[static_cast<std::size_t>(k)];
     const Index behind = (k + 1) * width_, there = std::min((reach_ - 1) * width_, all - behind);
-    MatrixXd value =
-        group.coupling.transpose() - group.next.topRows(there).transpose() * result.middleRows(behind, there);
+    MatrixXd value = group.coupling.transpose();
+    value -= transposed_times(group.next.topRows(there), result.middleRows(behind, there));
     solve_upper(group.pivot, value);
     result.middleRows(k * width_, width_) = value;
   }

@@ -9,7 +9,10 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/linalg/block_products.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
+#include "kinfer/linalg/small_cholesky.hpp"
 #include "kinfer/plan/thresholds.hpp"
 
 namespace kinfer::plan {
@@ -20,8 +23,7 @@ auto rows_of(const DesignProblem& problem, int candidate) {
 }
 
 MatrixXd updated_information(const DesignProblem& problem, MatrixXd information, int candidate, double sign) {
-  const auto g = rows_of(problem, candidate);
-  information.noalias() += sign * (g.transpose() * g);
+  information += sign * gram(rows_of(problem, candidate));
   return information;
 }
 
@@ -33,7 +35,8 @@ double sum_of_logs(const MatrixXd& cholesky_factor) {
 MatrixXd sensitivity(const DesignProblem& problem, Criterion criterion, const MatrixXd& covariance) {
   const Eigen::Index n = covariance.rows();
   if (criterion == Criterion::a) return MatrixXd::Identity(n, n);
-  if (criterion == Criterion::e) return covariance * covariance * covariance;  // tr Σ⁴: largest eigenvalue dominates
+  if (criterion == Criterion::e)
+    return product(product(covariance, covariance), covariance);  // tr Σ⁴: largest eigenvalue dominates
   VectorXd weight = VectorXd::Ones(problem.targets.rows() / 3);
   if (criterion == Criterion::worst) {
     const VectorXd variance = tool_variances(problem, covariance);
@@ -41,25 +44,31 @@ MatrixXd sensitivity(const DesignProblem& problem, Criterion criterion, const Ma
   }
   MatrixXd weighted = problem.targets;
   for (Eigen::Index t = 0; t < weight.size(); ++t) weighted.middleRows<3>(3 * t) *= weight[t];
-  return problem.targets.transpose() * weighted / static_cast<double>(weight.size());
+  return transposed_times(problem.targets, weighted) / static_cast<double>(weight.size());
 }
 
 /// Gain of the criterion by adding each candidate, sign = 1, or loss by removing it, −1. D: log det(I ± G Σ Gᵀ).
-template <int Block>
-VectorXd gains_of_blocks(const DesignProblem& problem, Criterion criterion, const MatrixXd& covariance, double sign) {
-  using Small = Eigen::Matrix<double, Block, Block>;
-  const MatrixXd seen = problem.rows * covariance;
+VectorXd gains(const DesignProblem& problem, Criterion criterion, const MatrixXd& covariance, double sign) {
+  const MatrixXd seen = product(problem.rows, covariance);
   MatrixXd felt;
-  if (criterion != Criterion::d) felt = seen * sensitivity(problem, criterion, covariance);
+  if (criterion != Criterion::d) felt = product(seen, sensitivity(problem, criterion, covariance));
+  const Eigen::Index block = problem.block;
   VectorXd gain(problem.candidates());
+  MatrixXd factor(block, block), inverse_factor(block, block), inverse(block, block), effect(block, block);
   for (Eigen::Index k = 0; k < gain.size(); ++k) {
-    const auto g = problem.rows.middleRows<Block>(Block * k);
-    const Small spread = Small::Identity() + sign * seen.middleRows<Block>(Block * k) * g.transpose();
-    if (criterion == Criterion::d) {
-      gain[k] = sign * std::log(spread.determinant());
+    const auto seen_here = seen.middleRows(block * k, block);
+    factor.setIdentity();
+    add_product(seen_here, problem.rows.middleRows(block * k, block), sign, factor);
+    if (!factorise_small(factor)) {  // the other rows leave a direction undetermined: neither added nor removed
+      gain[k] = -sign * std::numeric_limits<double>::infinity();
+    } else if (criterion == Criterion::d) {
+      gain[k] = sign * 2.0 * sum_of_logs(factor);
     } else {
-      const Small loss = felt.middleRows<Block>(Block * k) * seen.middleRows<Block>(Block * k).transpose();
-      gain[k] = (spread.inverse() * loss).trace();
+      inverse_factor.setIdentity(), inverse.setZero(), effect.setZero();
+      solve_right(factor, inverse_factor);
+      add_product(inverse_factor, inverse_factor, 1.0, inverse);
+      add_product(felt.middleRows(block * k, block), seen_here, 1.0, effect);
+      gain[k] = inverse.cwiseProduct(effect).sum();
     }
   }
   return gain;
@@ -67,19 +76,15 @@ VectorXd gains_of_blocks(const DesignProblem& problem, Criterion criterion, cons
 
 /// Gain by adding one pose; `weight` is the sensitivity, empty for D.
 double gain_of(const MatrixXd& rows, const MatrixXd& covariance, const MatrixXd& weight) {
-  const MatrixXd seen = rows * covariance;
-  const MatrixXd spread = MatrixXd::Identity(rows.rows(), rows.rows()) + seen * rows.transpose();
+  const MatrixXd seen = product(rows, covariance);
+  MatrixXd spread = times_transposed(seen, rows);
+  spread.diagonal().array() += 1.0;
   if (weight.size() == 0) {
     const auto factor = cholesky(spread);
     return factor ? 2.0 * sum_of_logs(*factor) : 0.0;
   }
   const auto inverse = invert_spd(spread);
-  return inverse ? inverse->cwiseProduct(seen * weight * seen.transpose()).sum() : 0.0;
-}
-
-VectorXd gains(const DesignProblem& problem, Criterion criterion, const MatrixXd& covariance, double sign) {
-  return problem.block == 3 ? gains_of_blocks<3>(problem, criterion, covariance, sign)
-                            : gains_of_blocks<6>(problem, criterion, covariance, sign);
+  return inverse ? inverse->cwiseProduct(propagated_covariance(seen, weight)).sum() : 0.0;
 }
 
 bool allowed(const DesignProblem& problem, const std::vector<int>& chosen, int candidate) {
@@ -161,7 +166,7 @@ MatrixXd information(const DesignProblem& problem, const std::vector<int>& chose
 }
 
 VectorXd tool_variances(const DesignProblem& problem, const MatrixXd& covariance) {
-  const MatrixXd spread = problem.targets * covariance;
+  const MatrixXd spread = product(problem.targets, covariance);
   const VectorXd per_axis = spread.cwiseProduct(problem.targets).rowwise().sum();
   return per_axis.reshaped(3, per_axis.size() / 3).colwise().sum().transpose();
 }
@@ -213,14 +218,14 @@ MatrixXd refined_design(const DesignProblem& problem, Criterion criterion, Matri
   MatrixXd now = information(problem, {});
   for (Eigen::Index i = 0; i < poses.cols(); ++i) {
     const MatrixXd rows = rows_of(poses.col(i));
-    now += rows.transpose() * rows;
+    now += gram(rows);
   }
   for (int round = 0; round < thresholds::refinement_rounds; ++round) {
     double improvement = 0.0;
     for (Eigen::Index i = 0; i < poses.cols(); ++i) {
       Rng draws = rng.stream(round).stream(static_cast<std::uint64_t>(i));
       const MatrixXd old = rows_of(poses.col(i));
-      const MatrixXd without = now - old.transpose() * old;
+      const MatrixXd without = now - gram(old);
       const auto covariance = invert_spd(without);
       if (!covariance) continue;
       const MatrixXd weight = criterion == Criterion::d ? MatrixXd() : sensitivity(problem, criterion, *covariance);
@@ -240,7 +245,7 @@ MatrixXd refined_design(const DesignProblem& problem, Criterion criterion, Matri
         }
       }
       const MatrixXd rows = rows_of(poses.col(i));
-      now = without + rows.transpose() * rows;
+      now = without + gram(rows);
       improvement += (best - before) / before;
     }
     if (improvement < thresholds::refinement_gain) break;

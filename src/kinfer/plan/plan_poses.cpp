@@ -10,6 +10,7 @@
 #include "kinfer/kinematics/batch/tool_derivatives.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 #include "kinfer/plan/lower_bound.hpp"
 #include "kinfer/plan/optimal_design.hpp"
 #include "kinfer/plan/pose_order.hpp"
@@ -43,7 +44,7 @@ class ScaledJacobians {
   }
   MatrixXd information(const MatrixXd& q) const {
     const MatrixXd rows = measured(q);
-    return rows.transpose() * rows;
+    return gram(rows);
   }
   MatrixXd tool(const MatrixXd& q) const {
     return tool_derivatives(task_.nominal, set_, q).jacobian * sd_.asDiagonal();
@@ -183,7 +184,7 @@ Result<PosePlan> plan_poses(const PlanTask& task, const PlanOptions& options, Rn
   problem.rows = scaled.measured(candidates);
   problem.targets = scaled.tool(pick_evenly(candidates, thresholds::workspace_poses));
   const MatrixXd existing = task.existing.rows() > 0 ? scaled.measured(task.existing.joints) : MatrixXd();
-  if (existing.size() > 0) problem.prior_information = existing.transpose() * existing;
+  if (existing.size() > 0) problem.prior_information = gram(existing);
   problem.too_close = [&](int a, int b) {
     return (candidates.col(a) - candidates.col(b)).cwiseAbs().maxCoeff() < options.spacing;
   };

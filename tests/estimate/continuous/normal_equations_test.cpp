@@ -5,6 +5,7 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 #include "support/random.hpp"
 
 namespace kinfer {
@@ -165,8 +166,8 @@ TEST(InsSystem, PriorsAppearInTheGlobalParameters) {
   const SystemExample e = system_example(300, Biases::time_varying);
   const Dense d = dense(e);
   const MatrixXd follows = sensitivity(d).middleRows(d.bias_process, e.x.bias_process.size());
-  const MatrixXd expected =
-      follows.transpose() * d.bias_process_prior * follows + global_parameter_prior(e.problem, e.layout, e.x).matrix;
+  const MatrixXd expected = transposed_times(follows, product(d.bias_process_prior, follows)) +
+                            global_parameter_prior(e.problem, e.layout, e.x).matrix;
   const MatrixXd priors = InsSystem(e.problem, e.layout, e.x, {}, 1).scores(2.0).priors;
   EXPECT_LT((priors - expected).norm(), 1e-7 * expected.norm());
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/estimate/poses/point_fit.hpp"
+#include "kinfer/linalg/products.hpp"
 #include "support/differences.hpp"
 #include "support/instruments.hpp"
 
@@ -55,7 +56,7 @@ double by_all_rows(const Residuals& problem, ConstVectorRef x, const BlockLoss& 
     row += size;
   }
   cost += r.tail(r.size() - row).squaredNorm();
-  normal.matrix = (jacobian.transpose() * jacobian).triangularView<Eigen::Lower>();
+  normal.matrix = gram(jacobian).triangularView<Eigen::Lower>();
   normal.gradient = jacobian.transpose() * r;
   return cost;
 }

@@ -124,7 +124,7 @@ TEST(ResidualKinds, AFullCovarianceWeightsTheErrorByItsInverse) {
   const ParameterSet nothing;
   VectorXd r;
   pose_residuals(chain, nothing, set, weights).evaluate(VectorXd(0), r, nullptr);
-  const double expected = off.dot(covariance.inverse() * off);
+  const double expected = off.dot(*solve_spd(covariance, off));
   EXPECT_NEAR(r.head<3>().squaredNorm(), expected, 1e-9 * expected);
   EXPECT_NEAR(r.tail<3>().squaredNorm(), expected, 1e-9 * expected);
   EXPECT_NEAR(point_errors(chain, set)[0], off.norm(), 1e-12) << "errors stay errors";
@@ -167,7 +167,7 @@ TEST(ResidualKinds, SixRowsOfAPoseWeightItsErrorByTheInverseOfTheirCovariance) {
     pose_residuals(chain, nothing, set, weights).evaluate(VectorXd(0), r, nullptr);
     return r.squaredNorm();
   };
-  const double expected = one.off.dot(one.covariance.inverse() * one.off);
+  const double expected = one.off.dot(*solve_spd(one.covariance, one.off));
   EXPECT_NEAR(squares(one.set, weights_of(one.set, Instrument{.sigma = 1.0})), expected, 1e-8 * expected);
   const double excess = 0.7e-3, rotation_excess = 0.4e-3;  // model error that is added to both blocks
   Mat6 wider = one.covariance;
@@ -176,7 +176,7 @@ TEST(ResidualKinds, SixRowsOfAPoseWeightItsErrorByTheInverseOfTheirCovariance) {
   ExcessNoise more;
   more.of[index(kind_of<PointMeasurement>)] = excess;
   more.of[index(kind_of<OrientationMeasurement>)] = rotation_excess;
-  const double less = one.off.dot(wider.inverse() * one.off);
+  const double less = one.off.dot(*solve_spd(wider, one.off));
   EXPECT_NEAR(squares(one.set, weights_of(one.set, Instrument{.sigma = 1.0}, more)), less, 1e-8 * less);
 }
 

@@ -6,6 +6,7 @@
 #include "kinfer/kinematics/batch/batch_points.hpp"
 #include "kinfer/kinematics/batch/batch_population.hpp"
 #include "kinfer/kinematics/forward.hpp"
+#include "kinfer/linalg/products.hpp"
 #include "laws/example_chains.hpp"
 
 namespace kinfer {
@@ -148,7 +149,7 @@ TEST_P(AnyRigidChain, JacobianAndNormalEquationsAreThoseOfSinglePoses) {
       const double cost = points.normal_equations(x, weights, matrix, gradient, scratch);
       EXPECT_NEAR(cost, slow_r.squaredNorm(), 1e-13 * cost) << kernels->name;
       EXPECT_LE((gradient - slow_jacobian.transpose() * slow_r).norm(), 1e-13 * slow_jacobian.norm() * slow_r.norm());
-      const MatrixXd slow_matrix = (slow_jacobian.transpose() * slow_jacobian).triangularView<Eigen::Lower>();
+      const MatrixXd slow_matrix = gram(slow_jacobian).triangularView<Eigen::Lower>();
       EXPECT_LE((matrix - slow_matrix).norm(), 1e-13 * slow_matrix.norm()) << kernels->name;
     }
   }

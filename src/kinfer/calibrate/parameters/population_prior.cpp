@@ -6,6 +6,7 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer::calibrate {
 
@@ -54,7 +55,7 @@ ParameterSet with_population_prior(ParameterSet set, std::span<const Chain> robo
           (value_at(robot_population[robot], numbers.address[i]) - numbers.mean[i]) / numbers.tolerance[i];
   const VectorXd shift = deviation.rowwise().sum() / count;
   deviation.colwise() -= shift;
-  const MatrixXd covariance = (MatrixXd::Identity(n, n) + deviation * deviation.transpose()) / count;
+  const MatrixXd covariance = (MatrixXd::Identity(n, n) + times_transposed(deviation, deviation)) / count;
   const MatrixXd root = information_root(covariance) * numbers.tolerance.cwiseInverse().asDiagonal();
 
   set.prior_sqrt_information = prior_sqrt_information_of(set);

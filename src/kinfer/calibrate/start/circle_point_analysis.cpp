@@ -10,6 +10,7 @@
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -87,7 +88,7 @@ std::vector<Sweep> find_single_joint_runs(const PoseSet& data) {
 
 /// Largest standard deviation of the first two unknowns of a linear fit with this Jacobian and this scatter.
 double max_sd_of_first_two(const MatrixXd& jacobian, double scatter) {
-  const auto covariance = invert_spd(jacobian.transpose() * jacobian);
+  const auto covariance = invert_spd(gram(jacobian));
   if (!covariance) return std::numeric_limits<double>::infinity();
   return scatter * std::sqrt(symmetric_eigen(covariance->topLeftCorner(2, 2)).values[1]);
 }
@@ -108,7 +109,7 @@ void estimate_uncertainty(SweepCircle& circle, const std::vector<Vec3>& points) 
       circle.rms * std::sqrt(static_cast<double>(n) / std::max(1.0, 2.0 * static_cast<double>(n) - 6.0));
   circle.centre_sd = max_sd_of_first_two(in_plane, scatter);
   circle.axis_sd = max_sd_of_first_two(across, scatter);
-  const auto covariance = invert_spd(in_plane.transpose() * in_plane);
+  const auto covariance = invert_spd(gram(in_plane));
   circle.radius_sd = covariance ? scatter * std::sqrt((*covariance)(2, 2)) : std::numeric_limits<double>::infinity();
 }
 

@@ -9,6 +9,7 @@
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -141,7 +142,7 @@ Pose resect_linearly(const Sightings<DirectionMeasurement>& seen) {
     MatrixXd by_matrix = MatrixXd::Zero(3, 12);  // of P X, P in rows
     for (int k = 0; k < 3; ++k) by_matrix.block<1, 4>(k, 4 * k) = homogeneous(i).transpose();
     const MatrixXd rows = skew(seen.measured[i].direction) * by_matrix;
-    information += rows.transpose() * rows;
+    information += gram(rows);
   }
   const VectorXd smallest = symmetric_eigen(information).vectors.col(0);
   Eigen::Matrix<double, 3, 4> projection;
@@ -151,8 +152,8 @@ Pose resect_linearly(const Sightings<DirectionMeasurement>& seen) {
     forward += seen.measured[i].direction.dot(projection * homogeneous(i));
   if (forward < 0.0) projection *= -1.0;
   const Svd parts = svd(projection.leftCols<3>());
-  const Vec3 sign(1.0, 1.0, Mat3(parts.u * parts.v.transpose()).determinant() < 0.0 ? -1.0 : 1.0);
-  const Mat3 station_R_world = parts.u * sign.asDiagonal() * parts.v.transpose();
+  const Vec3 sign(1.0, 1.0, Mat3(times_transposed(parts.u, parts.v)).determinant() < 0.0 ? -1.0 : 1.0);
+  const Mat3 station_R_world = times_transposed(parts.u * sign.asDiagonal(), parts.v);
   const double scale = parts.s.mean();
   return {station_R_world.transpose(), centre - size / scale * (station_R_world.transpose() * projection.col(3))};
 }
@@ -175,7 +176,7 @@ Pose refine_resection(const Pose& station, const Sightings<DirectionMeasurement>
     MatrixXd rows(3, 6);  // by a shift and a turn in the station's frame
     rows << -by_sight, by_sight * skew(sights[i]);
     const double weight = 1.0 / (1.0 + square(angles[i] / (3.0 * typical)));
-    information += weight * rows.transpose() * rows, gradient += weight * rows.transpose() * errors[i];
+    information += weight * gram(rows), gradient += weight * rows.transpose() * errors[i];
   }
   const auto step = solve_spd(information, gradient);
   if (!step) return station;

@@ -5,6 +5,7 @@
 
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -33,7 +34,7 @@ std::vector<Split> extrapolation_splits(const PoseSet& data, int fewest) {
   std::vector<Split> splits;
   if (data.rows() < 2 * fewest) return splits;
   const MatrixXd z = standardised(data.joints);
-  const SymmetricEigen directions = symmetric_eigen(z * z.transpose());
+  const SymmetricEigen directions = symmetric_eigen(times_transposed(z, z));
   const Eigen::Index dof = z.rows();
   for (Eigen::Index k = 0; k < std::min<Eigen::Index>(2, dof); ++k) {
     const VectorXd along = z.transpose() * directions.vectors.col(dof - 1 - k);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "kinfer/calibrate/start/fixtures.hpp"
+#include "kinfer/linalg/products.hpp"
 #include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
@@ -136,11 +137,10 @@ std::optional<double> expected_holdout_rms(const EvaluationInputs& evaluated) {
     for (std::size_t k = 0; k < kind.count(rows); ++k) {
       BlockRows out{residual, &jacobian, 0};
       kind.write(scene, k, out);
-      const auto block = jacobian.topRows(kind.size);
       const double metres = kind.metres(scene, k);
       squares += metres * metres *
                  (weights.of(*primary)[k].head(kind.size).squaredNorm() +
-                  (block * fit.covariance * block.transpose()).trace());
+                  propagated_covariance(jacobian.topRows(kind.size), fit.covariance).trace());
       count += 1.0;
     }
   }

@@ -13,6 +13,7 @@
 #include "kinfer/kinematics/batch/tool_derivatives.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/normal_equations.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer {
 namespace {
@@ -318,7 +319,7 @@ class Fit {
   double predicted_rms(const Estimate& estimate) const {
     double sum = 0.0;
     for (const Twists& twists : evaluate_poses(estimate.chain, set_, data_, Derivative::yes).twists)
-      sum += (twists.topRows<3>() * estimate.covariance * twists.topRows<3>().transpose()).trace();
+      sum += propagated_covariance(twists.topRows<3>(), estimate.covariance).trace();
     return data_.rows() > 0 ? std::sqrt(sum / static_cast<double>(data_.rows())) : 0.0;
   }
 
@@ -344,7 +345,7 @@ Mat3 predicted_covariance(const Estimate& estimate, ConstVectorRef q) {
   const PoseEvaluator evaluator(estimate.chain, estimate.parameters);
   Twists twists;
   evaluator.pose_and_derivative(q, {}, twists);
-  return twists.topRows<3>() * estimate.covariance * twists.topRows<3>().transpose();
+  return propagated_covariance(twists.topRows<3>(), estimate.covariance);
 }
 
 VectorXd predicted_errors(const Estimate& estimate, ConstMatrixRef joints) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "kinfer/linalg/products.hpp"
+
 namespace kinfer {
 namespace {
 
@@ -12,7 +14,7 @@ class Priors {
   explicit Priors(const ParameterSet& set) : mean_(nominal_of(set)) {
     if (set.prior_sqrt_information.size() > 0) {
       const MatrixXd rows = prior_sqrt_information_of(set);
-      information_ = rows.transpose() * rows;
+      information_ = gram(rows);
       return;
     }
     own_.resize(mean_.size());

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "kinfer/estimate/poses/point_fit.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer {
 namespace {
@@ -228,7 +229,7 @@ std::shared_ptr<MeasurementCost> make_measurement_cost(const Chain& nominal, con
 
 MatrixXd prior_information(const ParameterSet& set) {
   const MatrixXd rows = prior_sqrt_information_of(set);
-  return rows.transpose() * rows;
+  return gram(rows);
 }
 
 NormalProblem pose_normal_problem(const Chain& nominal, const ParameterSet& set, const PoseSet& data,

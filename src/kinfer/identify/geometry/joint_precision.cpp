@@ -6,6 +6,7 @@
 
 #include "kinfer/identify/geometry/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -121,7 +122,7 @@ std::array<DhNumbers, 3> canonical_row_sd(const SplitRevolute& base, const Matri
       derivative(static_cast<Eigen::Index>(i), k) =
           wrap_to_pi(there[i / 5].*numbers[i % 5] - here[i / 5].*numbers[i % 5]) / step;
   }
-  const VectorXd variance = (derivative * covariance * derivative.transpose()).diagonal();
+  const VectorXd variance = propagated_covariance(derivative, covariance).diagonal();
   std::array<DhNumbers, 3> sd;
   for (std::size_t i = 0; i < 15; ++i)
     sd[i / 5].*numbers[i % 5] = std::sqrt(std::max(0.0, variance[static_cast<Eigen::Index>(i)]));

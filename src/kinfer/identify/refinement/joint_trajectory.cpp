@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -78,7 +79,7 @@ MatrixXd spherical_rotation_vectors(const SplineGrid& grid, ConstMatrixRef coeff
 }
 
 Mat3 spherical_axes(ConstMatrixRef turns) {
-  const SymmetricEigen eigen = symmetric_eigen(turns * turns.transpose());
+  const SymmetricEigen eigen = symmetric_eigen(times_transposed(turns, turns));
   Mat3 axes;
   axes.col(0) = eigen.vectors.col(2);
   axes.col(1) = eigen.vectors.col(0);

@@ -6,6 +6,7 @@
 #include "kinfer/identify/refinement/thresholds.hpp"
 #include "kinfer/inertial/joint_signals.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -174,7 +175,7 @@ std::vector<DhNumbers> dh_row_sd(EstimatedJointType type, std::span<const InsBod
         derivative(static_cast<Index>(i), column) =
             wrap_to_pi(there[i / 5].*numbers[i % 5] - rows[i / 5].*numbers[i % 5]) / step;
     }
-  const VectorXd variance = (derivative * covariance * derivative.transpose()).diagonal();
+  const VectorXd variance = propagated_covariance(derivative, covariance).diagonal();
   std::vector<DhNumbers> sd(rows.size());
   for (std::size_t i = 0; i < 5 * rows.size(); ++i) sd[i / 5].*numbers[i % 5] = sd_of(variance[static_cast<Index>(i)]);
   return sd;

@@ -8,6 +8,7 @@
 #include "kinfer/identify/refinement/azimuth.hpp"
 #include "kinfer/identify/refinement/joint_trajectory.hpp"
 #include "kinfer/identify/refinement/thresholds.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -126,7 +127,7 @@ RefinedJoint make_joint(const RefinementTask& task, const RefinementFit& fitted,
   MatrixXd own = joint_covariance(covariance, fit.layout, fit.unknowns.bodies, first, last);
   if (!error.shift.empty()) {
     const MatrixXd moved = stacked(error.shift, first, last);
-    own += moved * moved.transpose();
+    own += times_transposed(moved, moved);
     mount_deflection =
         std::hypot(mount_deflection, error.mount_deflection[start.parent], error.mount_deflection[start.child]);
     add_axis_deflection(own, bodies.front(), error.mount_deflection[start.parent], error.mount_deflection[start.child]);

@@ -6,6 +6,7 @@
 #include "kinfer/base/constants.hpp"
 #include "kinfer/base/square.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer {
 namespace {
@@ -66,7 +67,7 @@ void PaperEkf::predict(const Vec3& angular_velocity, double dt) {
   q << Vec3::Constant(square(options_.gyro_noise) * dt), Vec3::Constant(square(options_.bias_drift) * dt),
       Vec3::Constant(square(options_.linear_acceleration) * (1.0 - square(keep_acceleration))),
       Vec3::Constant(square(options_.disturbance) * (1.0 - square(keep_disturbance)));
-  covariance_ = f * covariance_ * f.transpose();  // eq. (6)
+  covariance_ = propagated_covariance(f, covariance_);  // eq. (6)
   covariance_.diagonal() += q;
 }
 
@@ -110,18 +111,19 @@ void PaperEkf::update(const InsSample& sample, double dt) {
   Covariance posterior = covariance_;
   for (int pass = 0; pass < options_.iterations; ++pass) {
     const MeasurementMatrix h = measurement_matrix();
-    const MatrixXd s = h * covariance_ * h.transpose() + Eigen::Matrix<double, 6, 6>(r.asDiagonal());
+    MatrixXd s = propagated_covariance(h, covariance_);
+    s.diagonal() += r;
     const auto inverse = invert_spd(s);
     if (!inverse) return;
-    const Eigen::Matrix<double, 12, 6> k = covariance_ * h.transpose() * *inverse;  // eq. (9)
-    const State next = k * (residual(sample) + h * error);  // eq. (10); `error` is in the nominal
+    const MatrixXd k = product(times_transposed(covariance_, h), *inverse);  // eq. (9)
+    const State next = k * (residual(sample) + h * error);                   // eq. (10); `error` is in the nominal
     const State step = next - error;
     world_q_sensor_ = (world_q_sensor_ * quat_exp(Vec3(-step.head<3>()))).normalized();  // eq. (16)
     bias_ -= step.segment<3>(3);                                                         // eq. (17)
     acceleration_ -= step.segment<3>(6);
     disturbance_ -= step.tail<3>();
     error = next;
-    posterior = (Covariance::Identity() - k * h) * covariance_;  // eq. (11)
+    posterior = product(Covariance::Identity() - product(k, h), covariance_);  // eq. (11)
   }
   covariance_ = 0.5 * (posterior + posterior.transpose());
 }

@@ -3,6 +3,7 @@
 
 #include "kinfer/estimate/continuous/solver/normal_equations.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer {
 std::optional<InsCovariance> model_covariance(const InsSystem& system) {
@@ -16,8 +17,8 @@ std::optional<InsCovariance> covariance_of(const InsSystem& system, double block
   auto result = model_covariance(system);
   if (!result) return std::nullopt;
   const auto [blocks, priors] = system.scores(block);
-  const MatrixXd middle = blocks.transpose() * blocks + priors;
-  const MatrixXd half = middle * result->model;
+  const MatrixXd middle = gram(blocks) + priors;
+  const MatrixXd half = product(middle, result->model);
   for (Eigen::Index k = 0; k < half.cols(); ++k)
     result->inflation[k] = result->model.col(k).dot(half.col(k)) / result->model(k, k);
   return result;

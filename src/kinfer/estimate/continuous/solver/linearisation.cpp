@@ -6,6 +6,7 @@
 #include "kinfer/estimate/continuous/solver/sensor_linearisation.hpp"
 #include "kinfer/estimate/continuous/solver/spline_prior.hpp"
 #include "kinfer/linalg/block_products.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer {
 namespace {
@@ -141,7 +142,7 @@ void InsLinearisation::add_facts(BandSegmentSum& sum, const TimeSegment& time_se
   const Index local = spline_order * layout_.spline_dimensions;
   for (const InsFactRows& fact : facts_) {
     if (fact.interval < time_segment.first || fact.interval >= time_segment.end) continue;
-    const MatrixXd squares = fact.derivative.transpose() * fact.derivative;
+    const MatrixXd squares = gram(fact.derivative);
     const VectorXd right = fact.derivative.transpose() * fact.left;
     sum.add(fact.interval - time_segment.first,
             {squares.topLeftCorner(local, local), squares.bottomLeftCorner(layout_.global_parameters, local),
@@ -159,8 +160,7 @@ void InsLinearisation::add_facts_back_substituted(BandSegmentSum& sum, const Tim
     const auto derivative = fact.derivative.leftCols(local);
     VectorXd left = fact.left;
     if (border) left -= fact.derivative.rightCols(layout_.global_parameters) * *border;
-    sum.add(fact.interval - time_segment.first,
-            {derivative.transpose() * derivative, MatrixXd(0, local), derivative.transpose() * left});
+    sum.add(fact.interval - time_segment.first, {gram(derivative), MatrixXd(0, local), derivative.transpose() * left});
   }
 }
 

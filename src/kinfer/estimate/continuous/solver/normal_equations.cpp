@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer {
 namespace {
@@ -199,8 +200,8 @@ MatrixXd InsSystem::prior_information(ConstMatrixRef ends_following) const {
     const Index at = static_cast<Index>(k) * (end_width() + layout_.bias_process) + end_width();
     const MatrixXd now = ends_following.middleRows(at, layout_.bias_process),
                    process_noise = now - prior.decay * before;
-    information.noalias() +=
-        process_noise.transpose() * (k == 0 ? prior.information : prior.innovation).asDiagonal() * process_noise;
+    const VectorXd& weight = k == 0 ? prior.information : prior.innovation;
+    information += transposed_times(process_noise, weight.asDiagonal() * process_noise);
     before = now;
   }
   return information;
