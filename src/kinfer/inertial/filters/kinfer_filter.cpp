@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "kinfer/base/square.hpp"
-#include "kinfer/linalg/block_products.hpp"
 
 namespace kinfer {
 namespace {
@@ -173,14 +172,13 @@ KinferTransition KinferFilter::predict() {
   Cross propagated = cross;
   propagate_rows(propagated);
   Cross new_cross = propagated;
-  const auto gyro_errors = covariance_.bottomRightCorner<gyro_error_states, gyro_error_states>();  // symmetric
-  add_product(a, gyro_errors, 1.0, new_cross.topRows<3>());
+  new_cross.topRows<3>().noalias() += a * covariance_.bottomRightCorner<gyro_error_states, gyro_error_states>();
   Moving new_moving = moving;
   propagate_rows(new_moving);
   new_moving.col(3) += transition.velocity_by_tilt * new_moving.col(1);
   new_moving.col(4) -= transition.velocity_by_tilt * new_moving.col(0);
-  add_product(propagated, a, 1.0, new_moving.leftCols<3>());
-  add_product(a, new_cross, 1.0, new_moving.topRows<3>());
+  new_moving.leftCols<3>().noalias() += propagated * a.transpose();
+  new_moving.topRows<3>().noalias() += a * new_cross.transpose();
   covariance_.topLeftCorner<5, 5>() = 0.5 * (new_moving + new_moving.transpose());
   covariance_.topRightCorner<5, gyro_error_states>() = new_cross;
   covariance_.bottomLeftCorner<gyro_error_states, 5>() = new_cross.transpose();
