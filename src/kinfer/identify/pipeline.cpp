@@ -10,6 +10,7 @@
 #include "kinfer/identify/findings/unobservable.hpp"
 #include "kinfer/identify/findings/verdict.hpp"
 #include "kinfer/identify/geometry/identified_chain.hpp"
+#include "kinfer/identify/geometry/link_estimates.hpp"
 #include "kinfer/identify/joints/search_links.hpp"
 #include "kinfer/identify/refinement/refine_geometry.hpp"
 #include "kinfer/identify/screening/machines.hpp"

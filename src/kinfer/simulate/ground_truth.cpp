@@ -82,6 +82,18 @@ double distance_of_lines(const Vec3& point_a, const Vec3& axis_a, const Vec3& po
   return std::abs(between.dot(across.normalized()));
 }
 
+/// Between the points where the lines meet the plane through the sensor's origin across their mean direction.
+std::optional<double> distance_of_pins(const Vec3& point_a, const Vec3& axis_a, const Vec3& point_b,
+                                       const Vec3& axis_b) {
+  const double cosine = axis_a.dot(axis_b);
+  if (std::abs(cosine) < std::numbers::sqrt2 / 2.0) return {};
+  const Vec3 normal = axis_a + std::copysign(1.0, cosine) * axis_b;
+  const auto meets = [&](const Vec3& point, const Vec3& axis) -> Vec3 {
+    return point - normal.dot(point) / normal.dot(axis) * axis;
+  };
+  return (meets(point_b, axis_b) - meets(point_a, axis_a)).norm();
+}
+
 std::vector<LinkTruth> links_between(const std::vector<JointTruth>& joints) {
   std::vector<LinkTruth> links;
   for (const JointTruth& in : joints)
@@ -89,7 +101,10 @@ std::vector<LinkTruth> links_between(const std::vector<JointTruth>& joints) {
       if (out.parent == in.child && rotates(in.type) && rotates(out.type))
         links.push_back(
             {in.child, fmt::format("{}-{}", in.parent, in.child), fmt::format("{}-{}", out.parent, out.child),
-             distance_of_lines(in.point_in_child, in.axis_in_child, out.point_in_parent, out.axis_in_parent)});
+             distance_of_lines(in.point_in_child, in.axis_in_child, out.point_in_parent, out.axis_in_parent),
+             std::atan2(in.axis_in_child.cross(out.axis_in_parent).norm(),
+                        std::abs(in.axis_in_child.dot(out.axis_in_parent))),
+             distance_of_pins(in.point_in_child, in.axis_in_child, out.point_in_parent, out.axis_in_parent)});
   return links;
 }
 

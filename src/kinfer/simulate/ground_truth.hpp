@@ -6,6 +6,7 @@
 // directions v with K v = 0 at all times are unobservable (docs/development/methods/simulation.md).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,11 @@ struct JointTruth {
 
 /// The shortest distance between the axis lines of the joints at both ends of a segment.
 struct LinkTruth {
-  std::string segment;   ///< its sensor
-  std::string from, to;  ///< joints, as "ins1-ins2"
-  double length = 0.0;   ///< [m]
+  std::string segment;                   ///< its sensor
+  std::string from, to;                  ///< joints, as "ins1-ins2"
+  double length = 0.0;                   ///< [m] shortest distance of the two axes
+  double axis_angle = 0.0;               ///< [rad] between the two axes, 0 to π/2
+  std::optional<double> pin_distance{};  ///< [m] across the mean axis, level with the sensor; of axes within 45°
 };
 
 struct MachineTruth {

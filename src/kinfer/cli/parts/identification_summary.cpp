@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/evidence/identification/unobservable_limit.hpp"
 #include "kinfer/words/identification/notes.hpp"
 #include "kinfer/words/identification/unobservable.hpp"
@@ -84,14 +85,25 @@ std::string fit_table(const std::vector<LinkEvidence>& searches) {
   return text + "\n";
 }
 
+std::string length_text(double length, double sd) {
+  return sd < unobservable_sd ? fmt::format("{:.1f} mm (sd {:.1f} mm)", 1e3 * length, 1e3 * sd) : "unknown";
+}
+
+/// From pin to pin where the axes are nearly parallel, else the shortest distance.
+std::string link_line(const LinkEstimate& link) {
+  const std::string ends = fmt::format("link {}: from {} to {}", link.segment, link.from, link.to);
+  if (link.pin)
+    return fmt::format("{}, pin to pin {}, axes parallel within {:.2f}°\n", ends,
+                       length_text(link.pin->distance, link.pin->sd), link.axis_angle / degree);
+  return fmt::format("{}, shortest distance {}\n", ends, length_text(link.length, link.sd));
+}
+
 }  // namespace
 
 std::string identification_summary(const Identification& found) {
   std::string text =
       words::identification_verdict(found) + ".\n\n" + order_table(found.order) + joint_table(found.joints);
-  for (const LinkEstimate& link : found.links)
-    text += fmt::format("link {}: {:.1f} mm from {} to {} (sd {})\n", link.segment, 1e3 * link.length, link.from,
-                        link.to, link.sd < 0.5 ? fmt::format("{:.1f} mm", 1e3 * link.sd) : "unknown");
+  for (const LinkEstimate& link : found.links) text += link_line(link);
   for (const PointEstimate& place : found.places)
     text += fmt::format("{} in {}: {} mm (sd {} mm)\n", place.name, place.sensor, vector_text(place.xyz, 1e3, 9, 1),
                         vector_text(place.sd, 1e3, 6, 1));

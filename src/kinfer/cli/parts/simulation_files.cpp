@@ -108,9 +108,15 @@ std::string truth_json(const SimulationRecord& record, const Drive& drive, const
   document["joints"] = Json::array();
   for (const JointTruth& joint : truth.joints) document["joints"].push_back(json(joint));
   document["links"] = Json::array();
-  for (const LinkTruth& link : truth.links)
-    document["links"].push_back(
-        {{"segment", link.segment}, {"from", link.from}, {"to", link.to}, {"length_m", link.length}});
+  for (const LinkTruth& link : truth.links) {
+    Json entry{{"segment", link.segment},
+               {"from", link.from},
+               {"to", link.to},
+               {"length_m", link.length},
+               {"axis_angle_rad", link.axis_angle}};
+    if (link.pin_distance) entry["pin_distance_m"] = *link.pin_distance;
+    document["links"].push_back(entry);
+  }
   document["schedule"] = Json::array();
   for (const Phase& phase : drive.phases)
     document["schedule"].push_back({{"what", phase.what}, {"begin", phase.begin}, {"end", phase.end}});

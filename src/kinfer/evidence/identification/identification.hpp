@@ -18,10 +18,20 @@
 
 namespace kinfer {
 
-/// Shortest distance between the axis lines of the two joints of a segment.
+/// The distance between two joint axes that are parallel as machines are built, as a tape measures it from pin to pin:
+/// across the mean direction of both axes, in the plane through the origin of the segment's sensor.
+struct PinDistance {
+  double distance = 0.0, sd = 0.0;  ///< [m]
+  Vec3 direction = Vec3::UnitX();   ///< unit, from the first pin to the second, in the sensor's frame
+  double direction_sd = 0.0;        ///< [rad] about the mean axis
+};
+
+/// How the axis lines of the two joints of a segment lie relative to each other.
 struct LinkEstimate {
   std::string segment, from, to;  ///< sensor; joints as "ins1-ins2"
-  double length = 0.0, sd = 0.0;  ///< [m]
+  double length = 0.0, sd = 0.0;  ///< [m] the shortest distance between the two lines
+  double axis_angle = 0.0;        ///< [rad] between the two lines, 0 to π/2; NaN where a joint has a centre, no axis
+  std::optional<PinDistance> pin{};  ///< where the axes are nearly parallel
 };
 
 /// A point on a segment, located by touches, tape measurements or a survey: e.g. the tool tip beyond the last sensor.

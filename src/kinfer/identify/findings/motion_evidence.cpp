@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "kinfer/base/expect.hpp"
 #include "kinfer/identify/findings/thresholds.hpp"
 #include "kinfer/identify/refinement/joint_trajectory.hpp"
 #include "kinfer/kinematics/forward.hpp"
@@ -203,8 +204,14 @@ MachineTrajectory machine_trajectory(const RecordedMotion& motion, const Identif
   if (root.still) trajectory.root.resize(1);
   Eigen::Index row = 0;
   for (const JointEstimate& joint : found.joints) {  // their variables have the same order in the chain
-    if (joint.trajectory.size() > 0) trajectory.q.middleRows(row, joint.trajectory.rows()) = joint.trajectory;
-    row += variable_count(joint.type);
+    const Eigen::Index variables = variable_count(joint.type);
+    if (joint.trajectory.size() > 0) {
+      KINFER_EXPECT(joint.trajectory.rows() == variables && joint.trajectory.cols() == trajectory.q.cols(),
+                    "a trajectory of {} x {} for {}", joint.trajectory.rows(), joint.trajectory.cols(),
+                    joint_name(joint));
+      trajectory.q.middleRows(row, variables) = joint.trajectory;
+    }
+    row += variables;
   }
   for (std::size_t k = 0; k < variable_joints.size(); ++k) {
     const std::string& name = found.chain.joints[variable_joints[k]].name;

@@ -4,41 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/identify/geometry/thresholds.hpp"
 
 namespace kinfer::identify {
-namespace {
-
-/// One end of a link: an axis line, or a centre.
-struct LinkEnd {
-  Vec3 point = Vec3::Zero(), axis = Vec3::Zero();  // axis zero: a centre
-  double point_sd = 0.0, axis_sd = 0.0;
-};
-
-/// Shortest distance and its standard deviation. The closest points of nearly parallel lines are far away and depend on
-/// the small angle between the lines; the standard deviation contains this.
-std::pair<double, double> distance(const LinkEnd& a, const LinkEnd& b) {
-  const Vec3 between = b.point - a.point, across = a.axis.cross(b.axis);
-  double sd = std::hypot(a.point_sd, b.point_sd);
-  if (across.norm() < max_parallel_sine) {
-    const Vec3 along = a.axis.norm() > 0.5 ? a.axis : b.axis;
-    return {(between - along.dot(between) * along).norm(), sd};
-  }
-  const Vec3 normal = across.normalized();
-  const double offset_along_axis = between.dot(normal.cross(a.axis));
-  sd = std::hypot(sd, offset_along_axis * std::hypot(a.axis_sd, b.axis_sd) / across.norm());
-  return {std::abs(between.dot(normal)), sd};
-}
-
-double sd_across(const std::array<double, 2>& sd) {
-  return std::hypot(sd[0], sd[1]) / std::sqrt(2.0);
-}
-
-}  // namespace
-
 JointEstimate joint_estimate(const std::string& parent, const std::string& child, const GeometryEstimate& estimate) {
   JointEstimate joint{.parent = parent, .child = child};
   joint.axis_in_parent = estimate.geometry.axis_in_parent;
@@ -96,26 +65,6 @@ std::vector<DhRowEstimate> canonical_dh_rows(const JointEstimate& joint, const G
                     .alpha_variable = "",
                     .d_variable = is_prismatic ? variable(i) : ""});
   return rows;
-}
-
-std::vector<LinkEstimate> link_estimates(const std::vector<JointEstimate>& joints) {
-  const auto rotates = [](const JointEstimate& j) {
-    return j.type == EstimatedJointType::revolute || j.type == EstimatedJointType::spherical;
-  };
-  const auto axis_of = [](const JointEstimate& j, const Vec3& axis) {
-    return j.type == EstimatedJointType::spherical ? Vec3(Vec3::Zero()) : axis;
-  };
-  std::vector<LinkEstimate> links;
-  for (const JointEstimate& to : joints)
-    for (const JointEstimate& from : joints) {
-      if (from.child != to.parent || !rotates(from) || !rotates(to)) continue;
-      const auto [length, sd] = distance({from.point_in_child, axis_of(from, from.axis_in_child),
-                                          sd_across(from.sd.point_in_child), sd_across(from.sd.axis_in_child)},
-                                         {to.point_in_parent, axis_of(to, to.axis_in_parent),
-                                          sd_across(to.sd.point_in_parent), sd_across(to.sd.axis_in_parent)});
-      links.push_back({from.child, joint_name(from), joint_name(to), length, sd});
-    }
-  return links;
 }
 
 Chain build_chain(const std::string& root, const std::vector<JointEstimate>& joints,

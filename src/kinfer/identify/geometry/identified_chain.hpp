@@ -29,9 +29,6 @@ std::vector<DhNumbers> joint_dh_rows(EstimatedJointType type, const JointGeometr
 /// The joint's rows with standard deviations. Its variable is named "parent-child"; several are "parent-child 1", ...
 std::vector<DhRowEstimate> canonical_dh_rows(const JointEstimate& joint, const GeometryEstimate& estimate);
 
-/// One for each pair of consecutive joints.
-std::vector<LinkEstimate> link_estimates(const std::vector<JointEstimate>& joints);
-
 /// From the root's sensor: for each joint a fixed row to its first axis, a moving row for each axis, and a fixed row to
 /// the child's sensor, named after it. `dh`: canonical_dh_rows of all joints in their order. `world_R_root`:
 /// orientation of the root's sensor in the world at the start.

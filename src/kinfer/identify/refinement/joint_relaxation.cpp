@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/identify/refinement/joint_relaxation.hpp"
 
+#include <algorithm>
+
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/geometry/mean_revolute.hpp"
 #include "kinfer/identify/refinement/thresholds.hpp"
@@ -24,6 +26,15 @@ double relaxation_gain(const RefinementTask& task, const RefinementFit& fitted, 
   return log_residual(fitted) - log_residual(spherical);
 }
 
+/// The bodies of the revolute joints. A universal joint consists of two revolute bodies, neither of which is a joint.
+std::vector<std::size_t> bodies_of_revolute_joints(const RefinementTask& task, const RefinementFit& fitted) {
+  std::vector<std::size_t> bodies;
+  for (std::size_t i = 0; i < task.starts.size(); ++i)
+    if (task.starts[i].type == EstimatedJointType::revolute) bodies.push_back(fitted.setup.first_body[i]);
+  std::ranges::sort(bodies);
+  return bodies;
+}
+
 }  // namespace
 
 std::vector<std::size_t> select_joints_to_relax(const std::vector<std::size_t>& revolute_joints,
@@ -39,14 +50,12 @@ std::vector<std::size_t> select_joints_to_relax(const std::vector<std::size_t>& 
 }
 
 RefinementFit relax_joints(const RefinementTask& task, RefinementFit fitted, const Observer& observer) {
-  std::vector<std::size_t> revolute_joints;
+  const std::vector<std::size_t> revolute_joints = bodies_of_revolute_joints(task, fitted);
   std::vector<double> gains;
-  for (std::size_t b = 1; b < fitted.fit.unknowns.bodies.size(); ++b) {
-    if (fitted.fit.unknowns.bodies[b].motion != JointMotion::revolute) continue;
+  for (const std::size_t body : revolute_joints) {
     report_progress(observer, "loose joints",
-                    static_cast<double>(b) / static_cast<double>(fitted.fit.unknowns.bodies.size()));
-    revolute_joints.push_back(b);
-    gains.push_back(relaxation_gain(task, fitted, b));
+                    static_cast<double>(gains.size()) / static_cast<double>(revolute_joints.size()));
+    gains.push_back(relaxation_gain(task, fitted, body));
   }
   const auto to_relax = select_joints_to_relax(revolute_joints, gains);
   return to_relax.empty() ? fitted : fit_from(task, relaxed_setup(fitted, to_relax));

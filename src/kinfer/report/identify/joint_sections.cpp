@@ -75,14 +75,40 @@ std::string joint_table(const IdentificationEvidence& e) {
   return html::table(table);
 }
 
+/// The sensor's axis nearest to the line between the two pins, and the angle between them: what a mounting drawing
+/// needs.
+Cell pin_line_cell(const LinkEstimate& link) {
+  Eigen::Index nearest = 0;
+  const double cosine = link.pin->direction.cwiseAbs().maxCoeff(&nearest);
+  const double angle = std::acos(std::min(cosine, 1.0));
+  const std::string sign = link.pin->direction[nearest] < 0.0 ? "−" : "";
+  return {fmt::format("{}° ± {}° from {}{}", html::fixed(angle / degree, 2),
+                      html::fixed(link.pin->direction_sd / degree, 2), sign, "xyz"[nearest]),
+          fmt::format("{:.12g}", angle / degree), html::CellKind::text};
+}
+
+std::vector<Cell> link_row(const LinkEstimate& link) {
+  const Cell none = html::text("–");
+  return {html::text(link.segment),
+          html::text(link.from),
+          html::text(link.to),
+          link.pin ? html::number(link.pin->distance, mm, 1) : none,
+          link.pin ? plus_minus(link.pin->sd, mm, 1) : none,
+          link.pin ? pin_line_cell(link) : none,
+          std::isfinite(link.axis_angle) ? html::number(link.axis_angle, 1.0 / degree, 2) : none,
+          html::number(link.length, mm, 1),
+          plus_minus(link.sd, mm, 1)};
+}
+
 std::string link_table(const IdentificationEvidence& e) {
-  html::Table table{.name = "links",
-                    .caption = "Shortest distance between the two axes of a segment [mm]",
-                    .head = {"Segment", "from", "to", "length", "±"},
-                    .rows = {}};
-  for (const LinkEstimate& link : e.links)
-    table.rows.push_back({html::text(link.segment), html::text(link.from), html::text(link.to),
-                          html::number(link.length, mm, 1), plus_minus(link.sd, mm, 1)});
+  html::Table table{
+      .name = "links",
+      .caption =
+          "Between the two axes of a segment [mm]: from pin to pin where they are nearly parallel "
+          "(across the mean axis, level with the sensor), their angle, and their shortest distance",
+      .head = {"Segment", "from", "to", "pin to pin", "±", "line of the pins", "axes' angle [°]", "shortest", "±"},
+      .rows = {}};
+  for (const LinkEstimate& link : e.links) table.rows.push_back(link_row(link));
   return table.rows.empty() ? "" : html::table(table);
 }
 

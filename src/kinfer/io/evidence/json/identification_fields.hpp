@@ -49,6 +49,18 @@ void fields(Archive& a, Value<Archive, JointRecord>& record) {
   a.when(joint.azimuth_unobservable, "azimuth_undetermined", joint.azimuth_unobservable);
 }
 
+/// Only where the axes are nearly parallel.
+template <class Archive>
+void pin_fields(Archive& a, Value<Archive, std::optional<PinDistance>>& pin) {
+  PinDistance p = pin.value_or(PinDistance{.distance = std::numeric_limits<double>::quiet_NaN()});
+  a.when(pin.has_value(), "pin_distance_m", p.distance);
+  a.when(pin.has_value(), "pin_distance_sd_m", p.sd);
+  a.when(pin.has_value(), "pin_line", p.direction);
+  a.when(pin.has_value(), "pin_line_sd_rad", p.direction_sd);
+  if constexpr (!Archive::is_writer)
+    if (std::isfinite(p.distance)) pin = p;
+}
+
 template <class Archive>
 void fields(Archive& a, Value<Archive, LinkEstimate>& link) {
   a("segment", link.segment);
@@ -56,6 +68,8 @@ void fields(Archive& a, Value<Archive, LinkEstimate>& link) {
   a("to", link.to);
   a("length_m", link.length);
   a("sd_m", link.sd);
+  a.later("axis_angle_rad", link.axis_angle);
+  pin_fields(a, link.pin);
 }
 
 template <class Archive>
