@@ -3,8 +3,8 @@
 // 60 minutes of six sensors on five joints, knots of 0.1 s: the work does not depend on the measured values.
 #include <benchmark/benchmark.h>
 
-#include "kinfer/base/rng.hpp"
 #include "kinfer/estimate/continuous/solver/normal_equations.hpp"
+#include "kinfer/geometry/random.hpp"
 
 namespace {
 
@@ -12,11 +12,6 @@ using namespace kinfer;
 using Eigen::Index;
 
 constexpr double minute = 60.0, knots = 0.1;  // [s]
-
-Vec3 random_vector(Rng& rng) {
-  const double x = rng.normal(), y = rng.normal(), z = rng.normal();
-  return {x, y, z};
-}
 
 std::vector<InsBlock> blocks(Index intervals, int rows, Rng& rng) {
   std::vector<InsBlock> all(static_cast<std::size_t>(intervals));
@@ -44,9 +39,10 @@ Case example(Index intervals) {
     c.problem.sensors.push_back(
         {blocks(intervals, block_nodes, rng), blocks(intervals, block_nodes, rng), blocks(intervals, 1, rng), {}, {}});
     if (s == 0) continue;
-    c.x.bodies.push_back(revolute_body(s - 1, s, exp_so3(random_vector(rng)), exp_so3(random_vector(rng))));
-    c.x.bodies.back().point_in_parent = random_vector(rng);
-    c.x.bodies.back().point_in_child = random_vector(rng);
+    const Mat3 parent_R_axis = exp_so3(normal_vector(rng)), child_R_axis = exp_so3(normal_vector(rng));
+    c.x.bodies.push_back(revolute_body(s - 1, s, parent_R_axis, child_R_axis));
+    c.x.bodies.back().point_in_parent = normal_vector(rng);
+    c.x.bodies.back().point_in_child = normal_vector(rng);
   }
   c.x.root_force = Vec3(0.0, 0.0, 9.81);
   c.x.errors.resize(6);

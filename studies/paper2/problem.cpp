@@ -10,6 +10,7 @@
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/geometry/random.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/kinematics/forward.hpp"
@@ -24,7 +25,7 @@ constexpr Instrument laser{.sigma = 10e-6, .sigma_angle = 0.0, .ppm = 5.0};
 
 PoseSet with_noise(PoseSet set, const Instrument& instrument, Rng rng) {
   for (PointMeasurement& point : set.points)
-    point.position += position_sd(instrument, point.position) * Vec3(rng.normal(), rng.normal(), rng.normal());
+    point.position += position_sd(instrument, point.position) * normal_vector(rng);
   return set;
 }
 

@@ -49,8 +49,10 @@ MeasuredRobot simulated(Chain nominal, int poses, const RobotErrors& errors, int
   };
   MeasuredRobot robot{nominal, tracker, points_of(truth, rows(poses, seed + 2), tracker, loaded, seed + 3), truth,
                       points_of(truth, rows(200, 4321), noise_free, loaded, 1)};
-  for (int i = 0; i < errors.gross_errors; ++i)
-    robot.data.points[5 * i + 3].position += rng.uniform(1e-3, 0.05) * noise(rng, 1.0).normalized();
+  for (int i = 0; i < errors.gross_errors; ++i) {
+    const double size = rng.uniform(1e-3, 0.05);
+    robot.data.points[5 * i + 3].position += size * noise(rng, 1.0).normalized();
+  }
   return robot;
 }
 

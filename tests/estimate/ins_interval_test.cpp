@@ -11,7 +11,7 @@
 #include "kinfer/estimate/continuous/model/interval_motion.hpp"
 #include "kinfer/estimate/continuous/solver/covariance.hpp"
 #include "kinfer/estimate/continuous/solver/normal_equations.hpp"
-#include "support/random.hpp"
+#include "support/random_bodies.hpp"
 
 namespace kinfer {
 namespace {
@@ -69,8 +69,8 @@ struct BranchedMotion {
     problem.root_at_rest = false;
     problem.sensors.resize(4);
     x.bodies = {{.sensor = 0},
-                revolute_body(0, 1, any_rotation(), any_rotation()),
-                revolute_body(1, 2, any_rotation(), any_rotation()),
+                test::random_revolute_body(0, 1, rng),
+                test::random_revolute_body(1, 2, rng),
                 spherical_body(0, 3, any_rotation())};
     for (InsBody& body : x.bodies) body.point_in_child = random_vector(rng), body.point_in_parent = random_vector(rng);
     x.errors.resize(4);

@@ -11,7 +11,7 @@
 #include "kinfer/estimate/continuous/solver/fact_residuals.hpp"
 #include "kinfer/estimate/continuous/solver/spline_prior.hpp"
 #include "kinfer/linalg/decompositions.hpp"
-#include "support/random.hpp"
+#include "support/random_bodies.hpp"
 
 namespace kinfer {
 namespace {
@@ -38,8 +38,8 @@ struct WholeProblem {
     problem.facts.touches = {{{InsPoint::Kind::place, 3, 0}, {0.5, 1.5}, 0.01}};
     problem.facts.surveyed = {{{InsPoint::Kind::sensor, 1}, 0.3, Vec3(1, 2, 3), 0.01}};
     x.bodies = {{.sensor = 0},
-                revolute_body(0, 1, any_rotation(), any_rotation()),
-                prismatic_body(1, 2, any_rotation(), any_rotation()),
+                test::random_revolute_body(0, 1, rng),
+                test::random_prismatic_body(1, 2, rng),
                 spherical_body(2, 3, any_rotation())};
     x.root_force = random_vector(rng), x.root_field = random_vector(rng);
     x.errors.resize(4);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kinfer/base/rng.hpp"
+#include "kinfer/geometry/random.hpp"
 
 namespace kinfer {
 namespace {
@@ -15,7 +16,7 @@ using std::numbers::pi;
 
 std::vector<Vec3> cloud(int count, const Vec3& size, Rng rng) {
   std::vector<Vec3> points;
-  for (int i = 0; i < count; ++i) points.push_back(size.cwiseProduct(Vec3(rng.normal(), rng.normal(), rng.normal())));
+  for (int i = 0; i < count; ++i) points.push_back(size.cwiseProduct(normal_vector(rng)));
   return points;
 }
 

@@ -9,6 +9,7 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/geometry/pose.hpp"
+#include "kinfer/geometry/random.hpp"
 #include "support/differences.hpp"
 
 namespace kinfer {
@@ -18,7 +19,7 @@ using std::numbers::pi;
 using testing::numeric_jacobian;
 
 Vec3 random_direction(Rng& rng) {
-  return Vec3(rng.normal(), rng.normal(), rng.normal()).normalized();
+  return normal_vector(rng).normalized();
 }
 
 /// Rotation vectors of all lengths from 0 to π, near the switch to the series and near π too.

@@ -133,7 +133,7 @@ inline Residuals planar_pose_with_outliers() {
     if (j) j->setZero();
     for (int i = 0; i < 30; ++i) {
       Rng rng = noise.stream(i);
-      const Eigen::Vector2d p(rng.uniform(-1, 1), rng.uniform(-1, 1)), error(0.01 * rng.normal(), 0.01 * rng.normal());
+      const Eigen::Vector2d p{rng.uniform(-1, 1), rng.uniform(-1, 1)}, error{0.01 * rng.normal(), 0.01 * rng.normal()};
       const Eigen::Vector2d gross = i % 5 == 0 ? Eigen::Vector2d(0.5, -0.3) : Eigen::Vector2d(0, 0);
       const Eigen::Vector2d seen = Eigen::Rotation2Dd(0.5) * p + Eigen::Vector2d(1, 2) + error + gross;
       const Eigen::Vector2d turned = Eigen::Rotation2Dd(x[0]) * p;

@@ -2,16 +2,14 @@
 // Random vectors and matrices for tests.
 #pragma once
 
-#include "kinfer/base/rng.hpp"
-#include "kinfer/geometry/rotation.hpp"
+#include "kinfer/geometry/random.hpp"
 #include "kinfer/linalg/types.hpp"
 
 namespace kinfer::test {
 
 /// Unit variance along each axis.
 inline Vec3 random_vector(Rng& rng) {
-  const double x = rng.normal(), y = rng.normal(), z = rng.normal();
-  return {x, y, z};
+  return normal_vector(rng);
 }
 
 /// Unit variance of each entry.

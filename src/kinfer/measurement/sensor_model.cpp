@@ -6,6 +6,7 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/constants.hpp"
+#include "kinfer/geometry/random.hpp"
 
 namespace kinfer {
 namespace {
@@ -79,8 +80,7 @@ SimulatedInstrument::SimulatedInstrument(const InstrumentModel& model, const Ins
 }
 
 Vec3 SimulatedInstrument::draw_normals() {
-  const double x = rng_.normal(), y = rng_.normal(), z = rng_.normal();
-  return {x, y, z};
+  return normal_vector(rng_);
 }
 
 Vec3 SimulatedInstrument::read(const Vec3& truth, double dt) {

@@ -25,8 +25,10 @@ class Spikes {
   Vec3 next() {
     Vec3 spike = Vec3::Zero();
     for (double& s : spike)
-      if (chance_ > 0.0 && rng_.uniform() < chance_)
-        s = (rng_.index(2) == 0 ? -1.0 : 1.0) * rng_.uniform(0.5, 1.0) * largest_;
+      if (chance_ > 0.0 && rng_.uniform() < chance_) {
+        const double sign = rng_.index(2) == 0 ? -1.0 : 1.0;
+        s = sign * rng_.uniform(0.5, 1.0) * largest_;
+      }
     return spike;
   }
 

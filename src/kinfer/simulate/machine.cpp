@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/geometry/random.hpp"
 #include "kinfer/simulate/machine_files.hpp"
 
 namespace kinfer {
@@ -37,29 +38,18 @@ Vec3 vector_of(const XMLElement& element, const char* attribute, const Vec3& oth
   return v;
 }
 
-Vec3 draw_normal_vector(Rng& rng) {
-  const double x = rng.normal(), y = rng.normal(), z = rng.normal();
-  return {x, y, z};
-}
-
-Quat draw_orientation(Rng& rng) {  // four independent normals point uniformly on the sphere of quaternions
-  const Vec3 v = draw_normal_vector(rng);
-  return Quat(rng.normal(), v.x(), v.y(), v.z()).normalized();
-}
-
 void randomise_mounting(XMLElement& site, double spread, Rng rng) {
   for (const char* orientation : {"quat", "euler", "xyaxes", "zaxis", "axisangle"}) site.DeleteAttribute(orientation);
-  const Vec3 shift(rng.uniform(-spread, spread), rng.uniform(-spread, spread), rng.uniform(-spread, spread));
+  const Vec3 shift = uniform_vector(rng, -spread, spread);
   site.SetAttribute("pos", text(vector_of(site, "pos", Vec3::Zero()) + shift).c_str());
-  site.SetAttribute("quat", text(draw_orientation(rng)).c_str());
+  site.SetAttribute("quat", text(random_orientation(rng)).c_str());
 }
 
 void perturb_joint(XMLElement& body, XMLElement& joint, const MachineOptions& options, Rng rng) {
-  const Vec3 axis =
-      exp_so3(options.joint_error.rad() * draw_normal_vector(rng)) * vector_of(joint, "axis", Vec3::UnitZ());
+  const Vec3 axis = exp_so3(options.joint_error.rad() * normal_vector(rng)) * vector_of(joint, "axis", Vec3::UnitZ());
   joint.SetAttribute("axis", text(axis.normalized()).c_str());
   body.SetAttribute("pos",
-                    text(vector_of(body, "pos", Vec3::Zero()) + options.joint_shift * draw_normal_vector(rng)).c_str());
+                    text(vector_of(body, "pos", Vec3::Zero()) + options.joint_shift * normal_vector(rng)).c_str());
 }
 
 /// Randomises joints and mountings of `body` and its descendants; every body and sensor has a random stream of its own.

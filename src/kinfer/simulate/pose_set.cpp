@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "kinfer/geometry/random.hpp"
 #include "kinfer/kinematics/forward.hpp"
 
 namespace kinfer {
@@ -26,7 +27,7 @@ bool in_space(const Chain& chain, const Vec3& tool_in_world, const PoseSpace& sp
 }
 
 Vec3 noise(Rng& rng, double sd) {
-  return sd * Vec3(rng.normal(), rng.normal(), rng.normal());
+  return sd * normal_vector(rng);
 }
 
 /// Measures a pose with independent errors from a stand at the world origin that has rotated by w: this adds w × p to

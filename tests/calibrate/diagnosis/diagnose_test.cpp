@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
+#include "kinfer/geometry/random.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/words/findings/findings.hpp"
 #include "support/robots.hpp"
@@ -306,7 +307,7 @@ TEST(Diagnosis, ATargetThatSlippedIsDetectedInItsRows) {
   task.data.targets = {"s2"};
   Rng rng(5);
   for (int row = 0; row < 60; ++row) {
-    const Vec3 noise = 1e-5 * Vec3(rng.normal(), rng.normal(), rng.normal());
+    const Vec3 noise = 1e-5 * normal_vector(rng);
     const Vec3 slip = row == 14 ? Vec3(0.003, 0.001, 0) : Vec3::Zero();
     task.data.points.push_back({.row = row,
                                 .target = 0,

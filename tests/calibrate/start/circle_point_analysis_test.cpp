@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kinfer/geometry/random.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "support/robots.hpp"
@@ -33,7 +34,7 @@ PoseSet sweeps(const Chain& truth, const std::vector<int>& joints, const VectorX
       VectorXd q = rest;
       q[joint] += (-60.0 + 10.0 * i) * degree;
       set.joints.col(row) = q;
-      const Vec3 noise(rng.normal(), rng.normal(), rng.normal());
+      const Vec3 noise = normal_vector(rng);
       set.points.push_back({row, -1, forward(truth, q).position + sigma * noise, std::nullopt});
       set.line.push_back(row + 2);
     }

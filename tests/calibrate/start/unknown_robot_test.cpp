@@ -5,6 +5,7 @@
 
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/calibrate/start/local_poe.hpp"
+#include "kinfer/geometry/random.hpp"
 #include "kinfer/kinematics/dh_conversion.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/words/calibration/unknown_robot.hpp"
@@ -19,8 +20,8 @@ Chain random_chain(int joints, Rng rng) {
   Chain chain = make_serial_chain(std::vector<JointType>(joints, JointType::revolute));
   for (int i = 0; i < joints; ++i) {
     auto& joint = chain.joints[i];
-    const Vec3 axis = Vec3(rng.normal(), rng.normal(), rng.normal()).normalized();
-    const Vec3 xyz(rng.normal(), rng.normal(), rng.normal()), turn(rng.normal(), rng.normal(), rng.normal());
+    const Vec3 axis = normal_vector(rng).normalized();
+    const Vec3 xyz = normal_vector(rng), turn = normal_vector(rng);
     UrdfLink link;
     link.origin = Frame::from_pose({exp_so3(turn), xyz});
     link.axis = axis;

@@ -7,6 +7,7 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/estimate/continuous/solver/batch_fit.hpp"
+#include "kinfer/geometry/random.hpp"
 
 namespace kinfer {
 namespace {
@@ -30,7 +31,7 @@ InsProblem standing() {
   std::vector<double> time;
   for (int row = 0; row < 6000; ++row) {
     time.push_back(0.02 * row);
-    const Vec3 force(wave(time.back()) + noise * rng.normal(), noise * rng.normal(), 9.80665 + noise * rng.normal());
+    const Vec3 force = Vec3(wave(time.back()), 0.0, 9.80665) + noise * normal_vector(rng);
     for (std::size_t k = 0; k < 3; ++k) {
       sensor.angular_velocity.axis[k].push_back(static_cast<float>(1e-3 * rng.normal()));
       sensor.acceleration.axis[k].push_back(static_cast<float>(force[static_cast<Index>(k)]));

@@ -5,7 +5,7 @@
 
 #include "kinfer/base/rng.hpp"
 #include "support/differences.hpp"
-#include "support/random.hpp"
+#include "support/random_bodies.hpp"
 
 namespace kinfer {
 namespace {
@@ -26,8 +26,7 @@ InsState state_of(ConstVectorRef x) {
 
 std::vector<InsBody> bodies_of_every_kind(Rng& rng) {
   const auto random_rotation = [&] { return exp_so3(random_vector(rng)); };
-  std::vector<InsBody> bodies{revolute_body(0, 1, random_rotation(), random_rotation()),
-                              prismatic_body(0, 1, random_rotation(), random_rotation()),
+  std::vector<InsBody> bodies{test::random_revolute_body(0, 1, rng), test::random_prismatic_body(0, 1, rng),
                               fixed_body(0, 1, random_rotation()), spherical_body(0, 1, random_rotation())};
   for (InsBody& body : bodies) {
     body.point_in_parent = random_vector(rng);

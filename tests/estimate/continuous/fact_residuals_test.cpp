@@ -5,7 +5,7 @@
 
 #include "kinfer/base/rng.hpp"
 #include "support/differences.hpp"
-#include "support/random.hpp"
+#include "support/random_bodies.hpp"
 
 namespace kinfer {
 namespace {
@@ -29,9 +29,9 @@ FactExample fact_example(const InsFacts& facts) {
   e.problem.sensors.resize(5);
   e.problem.facts = facts;
   e.x.bodies = {{.sensor = 0},
-                revolute_body(0, 1, random_rotation(), random_rotation()),
-                prismatic_body(1, 2, random_rotation(), random_rotation()),
-                revolute_body(2, 3, random_rotation(), random_rotation()),
+                test::random_revolute_body(0, 1, rng),
+                test::random_prismatic_body(1, 2, rng),
+                test::random_revolute_body(2, 3, rng),
                 fixed_body(0, 4, random_rotation())};
   for (InsBody& body : e.x.bodies) {
     body.point_in_parent = random_vector(rng);

@@ -3,7 +3,7 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/estimate/continuous/solver/linearisation.hpp"
-#include "support/random.hpp"
+#include "support/random_bodies.hpp"
 
 namespace kinfer {
 namespace {
@@ -44,7 +44,7 @@ ClockExample clock_example() {
     measurements.force = ins_blocks(sensor, time, InsInstrument::accelerometer, e.problem.grid);
     e.problem.sensors.push_back(measurements);
   }
-  e.x.bodies = {{.sensor = 0}, revolute_body(0, 1, exp_so3(random_vector(rng)), exp_so3(random_vector(rng)))};
+  e.x.bodies = {{.sensor = 0}, test::random_revolute_body(0, 1, rng)};
   e.x.bodies[1].point_in_child = random_vector(rng);
   e.x.root_force = random_vector(rng);
   e.x.errors.resize(2);

@@ -5,7 +5,7 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/estimate/continuous/solver/linearisation.hpp"
-#include "support/random.hpp"
+#include "support/random_bodies.hpp"
 
 namespace kinfer {
 namespace {
@@ -52,7 +52,7 @@ struct MountExample {
                                  .noise_floor = {},
                                  .mount_load = mount_loads(sensor, time, problem.grid)});
     }
-    x.bodies = {{.sensor = 0}, revolute_body(0, 1, exp_so3(random_vector(rng)), exp_so3(random_vector(rng)))};
+    x.bodies = {{.sensor = 0}, test::random_revolute_body(0, 1, rng)};
     x.bodies[1].point_in_child = random_vector(rng);
     x.errors.resize(2);
     for (InsErrors& errors : x.errors) errors.tilt = random_tilt(rng), errors.gyroscope_scale = 0.2 * random_tilt(rng);
@@ -92,7 +92,8 @@ TEST(MountCompliance, GradientsByComplianceAndMotionAgreeWithDifferences) {
 TEST(MountCompliance, ARigidMountMeasuresItsSegmentsMotion) {
   Rng rng(2);
   const InsState segment{random_vector(rng), random_vector(rng), random_vector(rng), random_vector(rng)};
-  const InsState measured = state_on_mount(segment, Mat3::Zero(), random_vector(rng), random_vector(rng));
+  const Vec3 force = random_vector(rng), force_change = random_vector(rng);
+  const InsState measured = state_on_mount(segment, Mat3::Zero(), force, force_change);
   EXPECT_EQ(measured.angular_velocity, segment.angular_velocity);
   EXPECT_EQ(measured.force, segment.force);
 }

@@ -6,7 +6,7 @@
 #include "kinfer/base/rng.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
-#include "support/random.hpp"
+#include "support/random_bodies.hpp"
 
 namespace kinfer {
 namespace {
@@ -43,7 +43,7 @@ SystemExample system_example(Index intervals, Biases biases = Biases::constant) 
   e.problem.prior = {0.1, 0.1, 0.1, 0.01, 0.01};
   for (int s = 0; s < 2; ++s)
     e.problem.sensors.push_back({random_blocks(intervals, rng), random_blocks(intervals, rng), {}, {}, {}});
-  e.x.bodies = {{.sensor = 0}, revolute_body(0, 1, exp_so3(random_vector(rng)), exp_so3(random_vector(rng)))};
+  e.x.bodies = {{.sensor = 0}, test::random_revolute_body(0, 1, rng)};
   e.x.bodies.back().point_in_child = random_vector(rng);
   e.x.errors.resize(2);
   e.x.spline_coefficients = MatrixXd(7, e.problem.grid.coefficients());

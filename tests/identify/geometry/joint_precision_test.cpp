@@ -7,6 +7,7 @@
 
 #include "identify/measured_segments.hpp"
 #include "kinfer/base/rng.hpp"
+#include "kinfer/geometry/random.hpp"
 #include "kinfer/identify/programming/structure_fit.hpp"
 
 namespace kinfer {
@@ -26,7 +27,7 @@ struct NoisyJoint {
   NoisyJoint with_noise(double acceleration, double rotation, std::uint64_t seed) const {
     NoisyJoint noisy = *this;
     Rng rng(seed);
-    const auto draw = [&](double sd) { return Vec3(sd * rng.normal(), sd * rng.normal(), sd * rng.normal()); };
+    const auto draw = [&](double sd) { return Vec3(sd * normal_vector(rng)); };
     for (FrameState& s : noisy.child) {
       s.acceleration += draw(acceleration);
       s.rotation = exp_so3(draw(rotation)) * s.rotation;
@@ -113,9 +114,9 @@ TEST(JointPrecision, CorrelatedErrorsCountForFewerSamples) {
   Rng rng(5);
   Vec3 error = Vec3::Zero();
   for (FrameState& s : slow.child) {  // the same variance, with a memory of ten rows
-    error = 0.9 * error + std::sqrt(1.0 - 0.81) * 0.05 * Vec3(rng.normal(), rng.normal(), rng.normal());
+    error = 0.9 * error + std::sqrt(1.0 - 0.81) * 0.05 * normal_vector(rng);
     s.acceleration += error;
-    s.rotation = exp_so3(1e-3 * Vec3(rng.normal(), rng.normal(), rng.normal())) * s.rotation;
+    s.rotation = exp_so3(1e-3 * normal_vector(rng)) * s.rotation;
   }
   EXPECT_GT(largest_point_sd(slow.precision()), 2.0 * largest_point_sd(white.precision()));
 }

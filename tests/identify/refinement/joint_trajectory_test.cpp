@@ -8,7 +8,7 @@
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/kinematics/forward.hpp"
-#include "support/random.hpp"
+#include "support/random_bodies.hpp"
 
 namespace kinfer {
 using namespace identify;
@@ -20,8 +20,8 @@ using test::random_vector;
 std::vector<InsBody> bodies_of(EstimatedJointType type, Rng& rng) {
   const auto turn = [&] { return exp_so3(random_vector(rng)); };
   std::vector<InsBody> bodies;
-  if (type == EstimatedJointType::prismatic) bodies = {prismatic_body(0, 1, turn(), turn())};
-  if (type == EstimatedJointType::revolute) bodies = {revolute_body(0, 1, turn(), turn())};
+  if (type == EstimatedJointType::prismatic) bodies = {test::random_prismatic_body(0, 1, rng)};
+  if (type == EstimatedJointType::revolute) bodies = {test::random_revolute_body(0, 1, rng)};
   if (type == EstimatedJointType::spherical) bodies = {spherical_body(0, 1, turn())};
   if (type == EstimatedJointType::universal) {
     bodies = {revolute_body(0, -1, turn(), Mat3::Identity()), revolute_body(1, 1, rot_y(1.2), turn())};

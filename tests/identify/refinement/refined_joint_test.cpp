@@ -10,7 +10,7 @@
 #include "kinfer/identify/refinement/clock_fit.hpp"
 #include "kinfer/identify/refinement/joint_trajectory.hpp"
 #include "kinfer/identify/refinement/refinement_setup.hpp"
-#include "support/random.hpp"
+#include "support/random_bodies.hpp"
 
 namespace kinfer {
 using namespace identify;
@@ -21,7 +21,7 @@ using test::random_vector;
 
 InsBody random_revolute(std::uint64_t seed) {
   Rng rng(seed);
-  InsBody body = revolute_body(0, 1, exp_so3(random_vector(rng)), exp_so3(random_vector(rng)));
+  InsBody body = test::random_revolute_body(0, 1, rng);
   body.point_in_parent = random_vector(rng);
   body.point_in_child = random_vector(rng);
   return body;
@@ -131,7 +131,7 @@ TEST(RefinedJoint, APointThatIsOnlyConfoundedWithAnotherParameterIsObservable) {
 
 TEST(RefinedJoint, APrismaticJointStartsAtItsZero) {
   Rng rng(7);
-  InsBody body = prismatic_body(0, 1, exp_so3(random_vector(rng)), exp_so3(random_vector(rng)));
+  InsBody body = test::random_prismatic_body(0, 1, rng);
   body.point_in_parent = random_vector(rng);
   const double zero = 0.4;
   const MatrixXd covariance = isotropic(body, 1e-3, 2e-3);

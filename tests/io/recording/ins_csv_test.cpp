@@ -189,8 +189,9 @@ TEST(PlainDecimal, EqualsFromCharsOrIsEmpty) {
   const std::string letters = "0123456789.-+eE,";
   int read = 0;
   for (int i = 0; i < 200000; ++i) {
-    std::string text = i % 2 ? fmt::format("{:.{}f}", rng.uniform(-1e3, 1e3), rng.index(9))
-                             : fmt::format("{:.{}e}", rng.normal(), rng.index(17));
+    const double number = i % 2 ? rng.uniform(-1e3, 1e3) : rng.normal();
+    const std::uint64_t digits = rng.index(i % 2 ? 9 : 17);
+    std::string text = i % 2 ? fmt::format("{:.{}f}", number, digits) : fmt::format("{:.{}e}", number, digits);
     if (i % 5 == 0) text[rng.index(text.size())] = letters[rng.index(letters.size())];
     double ours = 0.0, theirs = 0.0;
     const char* end = text.data() + text.size();
@@ -214,6 +215,7 @@ TEST(InsCsv, NoDamagedFileCrashesTheReaderOrGivesInconsistentShapes) {
     std::string text = good;
     for (std::uint64_t n = 1 + rng.index(6); n > 0 && !text.empty(); --n) {
       const std::size_t at = rng.index(text.size());
+      std::size_t from = 0;
       switch (rng.index(4)) {
         case 0:
           text[at] = bytes[rng.index(bytes.size())];
@@ -222,7 +224,8 @@ TEST(InsCsv, NoDamagedFileCrashesTheReaderOrGivesInconsistentShapes) {
           text.erase(at, 1 + rng.index(40));
           break;
         case 2:
-          text.insert(at, text.substr(rng.index(text.size()), rng.index(60)));
+          from = rng.index(text.size());
+          text.insert(at, text.substr(from, rng.index(60)));
           break;
         default:
           text.resize(at);

@@ -65,8 +65,8 @@ TEST(ProductTree, EveryOperationKeepsToTheDepthLimits) {
     for (std::uint64_t i = 0; i < 2000; ++i) {
       const AffineTree other = breed.random(rng.stream(i));
       ASSERT_TRUE(is_within(other, limits));
-      tree = breed.transfer(other, rng.index(breed.part_count(other)), tree, rng.index(breed.part_count(tree)),
-                            rng.stream(i));
+      const std::size_t part = rng.index(breed.part_count(other)), node = rng.index(breed.part_count(tree));
+      tree = breed.transfer(other, part, tree, node, rng.stream(i));
       ASSERT_TRUE(is_within(tree, limits));
       tree = breed.mutate(tree, rng.index(breed.part_count(tree)), rng.stream(i));
       ASSERT_TRUE(is_within(tree, limits));

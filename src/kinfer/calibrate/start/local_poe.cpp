@@ -8,6 +8,7 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/calibrate/start/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/geometry/random.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/measurement/row_selection.hpp"
 
@@ -24,10 +25,6 @@ double rms_spread(const PoseSet& data) {
   double squares = 0.0;
   for (const PointMeasurement& point : data.points) squares += (point.position - middle).squaredNorm();
   return std::sqrt(squares / static_cast<double>(data.points.size()));
-}
-
-Mat3 random_rotation(Rng& rng) {
-  return Quat(rng.normal(), rng.normal(), rng.normal(), rng.normal()).normalized().toRotationMatrix();
 }
 
 /// All frames between the joints, and the tool point; the tool rotation if orientations are measured. The priors are as
@@ -50,10 +47,10 @@ Chain draw_random_chain(Chain chain, const PoseSet& data, double size, Rng rng) 
   const double part = size / static_cast<double>(chain.joints.size());
   for (Joint& joint : chain.joints) {
     auto& link = std::get<UrdfLink>(joint.link);
-    link.origin = Frame::from_pose({random_rotation(rng), part * Vec3(rng.normal(), rng.normal(), rng.normal())});
+    link.origin = Frame::from_pose({random_orientation(rng).toRotationMatrix(), part * normal_vector(rng)});
   }
   std::get<UrdfLink>(chain.joints.front().link).origin.xyz += data.points.front().position;
-  chain.tool.xyz = 0.3 * part * Vec3(rng.normal(), rng.normal(), rng.normal());
+  chain.tool.xyz = 0.3 * part * normal_vector(rng);
   return chain;
 }
 

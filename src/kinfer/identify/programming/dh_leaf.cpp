@@ -126,7 +126,8 @@ void DhLeafOperators::shift_between(std::span<DhLeaf> leaves, Rng& rng) const {
   const std::uint64_t kinds = 1 + rng.index(3);  // bit 0: lengths, bit 1: angles
   if ((kinds & 1) != 0) {
     double *one = draw_length(), *other = draw_length();
-    shift(one, other, std::pow(2.0, rng.uniform(-1.0, 1.0)) * (rng.index(4) == 0 ? 1.0 : -1.0));
+    const double ratio = std::pow(2.0, rng.uniform(-1.0, 1.0));
+    shift(one, other, rng.index(4) == 0 ? ratio : -ratio);
   }
   if ((kinds & 2) != 0) {  // orientations are known far better than positions: the rotations must cancel
     double *one = draw_angle(), *other = draw_angle();
@@ -135,7 +136,8 @@ void DhLeafOperators::shift_between(std::span<DhLeaf> leaves, Rng& rng) const {
 }
 
 double DhLeafOperators::draw_step(Rng& rng) const {
-  return min_step * std::pow(max_step / min_step, rng.uniform()) * rng.normal();
+  const double size = min_step * std::pow(max_step / min_step, rng.uniform());
+  return size * rng.normal();
 }
 
 }  // namespace kinfer::identify
