@@ -48,9 +48,9 @@ void list_gross_errors(Estimate& estimate, const std::vector<Outlier>& gross_err
   merge_outliers(estimate.outliers, held_out);
 }
 
-Diagnosis diagnose_single_mounting(const CalibrationTask& task) {
+Diagnosis diagnose_mountings(const CalibrationTask& task) {
   const bool one_mounting = task.data.setups.size() < 2 && task.data.tips.empty();
-  return one_mounting ? diagnose(task) : Diagnosis{{}, task};
+  return one_mounting ? diagnose(task) : diagnose_joint_positions(task);
 }
 
 /// With all certain faults corrected, and the fixtures and directions of approach of the data.
@@ -68,7 +68,7 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
                                     const Observer& observer) {
   if (auto consistent = check_options(given, options); !consistent) return forward_error(consistent.error());
   KINFER_TRY(start, make_starting_model(given, options, rng));
-  const Diagnosis diagnosis = diagnose_single_mounting(start.task);
+  const Diagnosis diagnosis = diagnose_mountings(start.task);
   KINFER_TRY(task, prepare_task(diagnosis));
   KINFER_TRY(plan, make_validation_plan(task.data, options, rng.stream(1)));
   const PoseSet fitted = select(task.data, plan.fitted);

@@ -5,6 +5,7 @@
 
 #include "kinfer/calibrate/diagnosis/conventions.hpp"
 #include "kinfer/calibrate/diagnosis/fit_residuals.hpp"
+#include "kinfer/calibrate/diagnosis/joint_lag.hpp"
 #include "kinfer/calibrate/diagnosis/joint_positions.hpp"
 #include "kinfer/calibrate/diagnosis/row_pairing.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
@@ -36,8 +37,20 @@ Diagnosis diagnose(const CalibrationTask& task, const AlternativeOrientations& a
   if (explained) {
     check_orientations(state, alternatives);
     check_commanded_positions(state);
+    check_joint_lag(state);
     check_residuals(state);
   }
+  return {std::move(state.findings), std::move(state.task)};
+}
+
+Diagnosis diagnose_joint_positions(const CalibrationTask& task) {
+  DiagnosisState state{task, {}};
+  const auto placed = with_fixtures(task.nominal, task.data);
+  if (task.data.rows() == 0 || !placed) return {{}, task};
+  state.task.nominal = placed->chain;
+  state.task.data = placed->data;
+  check_commanded_positions(state);
+  check_joint_lag(state);
   return {std::move(state.findings), std::move(state.task)};
 }
 

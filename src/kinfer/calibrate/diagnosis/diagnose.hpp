@@ -20,4 +20,7 @@ struct Diagnosis {
 /// of the file's orientations.
 Diagnosis diagnose(const CalibrationTask& task, const AlternativeOrientations& alternatives = {});
 
+/// Only whether the joint positions are those of the measured tool: the other checks need a single mounting.
+Diagnosis diagnose_joint_positions(const CalibrationTask& task);
+
 }  // namespace kinfer::calibrate

@@ -23,39 +23,6 @@ CalibrationTask thin_task(const CalibrationTask& task) {
   return thin;
 }
 
-std::vector<double> inlier_errors(const Estimate& estimate, const PoseSet& data) {
-  std::set<int> wrong;
-  for (const Outlier& outlier : estimate.outliers) wrong.insert(outlier.row);
-  const std::vector<double> all = point_errors(estimate.chain, data);
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (!wrong.contains(data.points[i].row)) errors.push_back(all[i]);
-  return errors;
-}
-
-std::optional<double> median_error_after_fit(const CalibrationTask& task) {
-  const auto fit = fit_once(task, task.data, GeometricParameters{}, {});
-  if (!fit) return std::nullopt;
-  std::vector<double> errors = inlier_errors(*fit, task.data);
-  return errors.empty() ? std::nullopt : std::optional(median(std::move(errors)));
-}
-
-/// Largest difference of commanded and measured joint positions of each row; NaN where a command is missing.
-std::vector<double> differences(const PoseSet& data) {
-  std::vector<double> difference;
-  for (Eigen::Index row = 0; row < data.rows(); ++row)
-    difference.push_back((data.commanded.col(row) - data.joints.col(row)).cwiseAbs().maxCoeff());
-  return difference;
-}
-
-std::vector<int> find_unsettled_rows(const std::vector<double>& difference, double typical) {
-  std::vector<int> rows;
-  for (std::size_t row = 0; row < difference.size(); ++row)
-    if (difference[row] > std::max(thresholds::settled, thresholds::unsettled_ratio * typical))
-      rows.push_back(static_cast<int>(row));
-  return rows;
-}
-
 /// Residuals of the inlier points, regressed on a rigid motion of the base with amplitude `phase` (one per row):
 /// residual = (translation + rotation × (point − centre)) · phase.
 class RigidMotionRegression {
@@ -161,38 +128,6 @@ std::vector<Outlier> find_unfitted_outliers(const Estimate& fit, const Calibrati
 }
 
 }  // namespace
-
-void check_commanded_positions(DiagnosisState& state) {
-  PoseSet& data = state.task.data;
-  if (data.commanded.size() == 0) return;
-  std::vector<double> difference = differences(data), finite;
-  for (const double d : difference)
-    if (std::isfinite(d)) finite.push_back(d);
-  if (finite.empty() || median(finite) < thresholds::commanded_equal) return;
-  const double typical = median(finite);
-  const bool complete = finite.size() == difference.size();
-  CalibrationTask measured_task = thin_task(state.task), commanded_task = measured_task;
-  commanded_task.data.joints = commanded_task.data.commanded;
-  const auto measured_error = data.points.empty() ? std::nullopt : median_error_after_fit(measured_task);
-  const auto commanded_error = data.points.empty() || !complete ? std::nullopt : median_error_after_fit(commanded_task);
-  if (measured_error && commanded_error && *commanded_error < thresholds::commanded_gain * *measured_error) {
-    add_finding(state, {.kind = FindingKind::not_settled,
-                        .severity = Severity::fault,
-                        .values = {{"difference_rad", typical},
-                                   {"commanded_error_m", *commanded_error},
-                                   {"measured_error_m", *measured_error}},
-                        .applied = true});
-    data.joints = data.commanded;
-    return;
-  }
-  const std::vector<int> rows = find_unsettled_rows(difference, typical);
-  if (!rows.empty())
-    add_finding(state, {.kind = FindingKind::not_settled, .severity = Severity::warning, .rows = rows});
-  else if (typical > thresholds::settled && !measured_error)
-    add_finding(
-        state,
-        {.kind = FindingKind::not_settled, .severity = Severity::warning, .values = {{"difference_rad", typical}}});
-}
 
 /// Rows that another finding already explains.
 std::set<int> collect_explained_rows(const DiagnosisState& state) {

@@ -48,12 +48,25 @@ inline constexpr std::size_t min_orientations = 6;
 inline constexpr double max_plausible_angle = 3.0 * degree;  ///< [rad] larger tolerates worse orientations
 inline constexpr double orientation_improvement = 0.2;       ///< [1] of the disagreement as read; larger accepts more
 
+// ---- joint_lag.cpp: joint positions that are not those of the measured tool ----
+inline constexpr double commanded_equal = 1e-6;   ///< [rad], [m] commanded and measured positions are copies
+inline constexpr double settled = 0.05 * degree;  ///< [rad], [m] of a prismatic joint: the arm was at rest
+inline constexpr double unsettled_ratio = 10.0;   ///< [1] of the typical difference; larger names fewer rows
+/// Of the mean log likelihood ratio in its standard deviations (one in a thousand by chance), and of the sum: below
+/// either, commanded and measured positions explain the points alike.
+inline constexpr double min_paired_z = 3.0, min_log_ratio = 5.0;
+inline constexpr std::size_t min_lag_rows = 20;
+/// t statistic of residuals along the last motion, and their share of the sum of squares that it explains; larger finds
+/// less.
+inline constexpr double min_lag_t = 5.0, min_lag_part = 0.02;
+
+// ---- motion_regression.cpp ----
+inline constexpr double clipped_residual = 5.0;   ///< [1] of the median error: larger residuals are shortened to it
+inline constexpr double regression_ridge = 1e-9;  ///< on columns of unit length
+inline constexpr double least_own_part = 1e-4;    ///< [1] of the motion's sum of squares that no other column explains
+
 // ---- fit_residuals.cpp ----
 inline constexpr std::size_t max_fitted_rows = 400;  ///< more add no information, and cost time before each calibration
-inline constexpr double commanded_equal = 1e-6;      ///< [rad], [m] commanded and measured positions are copies
-inline constexpr double settled = 0.05 * degree;     ///< [rad], [m] of a prismatic joint: the arm was at rest
-inline constexpr double unsettled_ratio = 10.0;      ///< [1] of the typical difference; larger names fewer rows
-inline constexpr double commanded_gain = 0.8;  ///< [1] error by commanded over measured positions; below: replaced
 inline constexpr std::size_t min_residual_points = 12;  ///< base, tool and joints use up three of four equations
 inline constexpr int min_drift_rows = 20;
 inline constexpr double step_over_drift = 1.5;  ///< [1] ratio of F statistics: above, a step explains more than a drift

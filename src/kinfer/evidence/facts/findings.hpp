@@ -38,9 +38,11 @@ enum class FindingKind {
   robot_length_unit,       ///< the robot file's lengths have an implausible size
   orientation_convention,  ///< orientations in another convention
   not_settled,             ///< joint positions were read before the arm came to rest
+  joint_lag,               ///< residuals point along the motion from the row before, or to the next one
   gross_outliers,          ///< rows that no noise explains
   joint_hardly_moves,      ///< too little motion to determine a joint's parameters
   outside_limits,          ///< joint positions beyond the limits
+  outside_region,          ///< joint positions farther from those of the calibration than these are apart
   duplicate_rows,          ///< rows are copies of one another
   measurement_repeated,    ///< the same measurement at different joint positions
   not_rigid,               ///< the distance between two targets changes

@@ -59,13 +59,20 @@ std::string base_drifts_remedy(const Finding& f) {
   return phrase(name(f.kind), "warm up first, measure in random order, and measure the base again in between");
 }
 
+/// Where the points lie between read-back (0 %) and commanded joints (100 %).
+std::string lag_from_read_back(const Finding& f) {
+  if (!f.values.has("lag")) return "";
+  return fmt::format("; the points lie {:.1f} % +- {:.1f} % of the way from the read-back to the commanded joints",
+                     100.0 * f.values.number("lag"), 100.0 * f.values.number("lag_sd"));
+}
+
 std::string not_settled(const Finding& f) {
   if (f.values.has("commanded_error_m"))
     return phrase(name(f.kind),
                   "the read-back joints were taken while the arm still moved: they differ from the commanded ones by "
-                  "{:.3f} deg typically, and the commanded ones explain the points to {:.3f} mm instead of {:.3f} mm",
+                  "{:.3f} deg typically, and the commanded ones explain the points to {:.3f} mm instead of {:.3f} mm{}",
                   value_in_deg(f, "difference_rad"), value_in_mm(f, "commanded_error_m"),
-                  value_in_mm(f, "measured_error_m"));
+                  value_in_mm(f, "measured_error_m"), lag_from_read_back(f));
   if (!f.rows.empty())
     return phrase(name(f.kind),
                   "in {} commanded and read-back joints differ far more than elsewhere: the arm had not come to rest",
@@ -79,6 +86,25 @@ std::string not_settled_remedy(const Finding& f) {
     return phrase(name(f.kind), "use the commanded joints, or read back after the arm has come to rest");
   return f.rows.empty() ? phrase(name(f.kind), "read back after the arm has come to rest")
                         : phrase(name(f.kind), "measure these rows again or leave them out");
+}
+
+std::string joint_lag(const Finding& f) {
+  const double lag = f.values.number("lag");
+  const bool last = f.values.text("motion") == "last";
+  const char* reading = last ? (lag > 0.0 ? "the joints were read" : "the points were measured")
+                             : (lag > 0.0 ? "the points were measured" : "the joints were read");
+  return phrase(name(f.kind),
+                "the residuals point along the motion {}, {:.3f} mm of {:.3f} mm rms: it seems that {} {} {:.2f} % "
+                "+- {:.2f} % of that motion",
+                last ? "from the row before" : "to the next row", value_in_mm(f, "distance_m"),
+                value_in_mm(f, "error_m"), reading, last ? "before the last" : "after the first", 100.0 * std::abs(lag),
+                100.0 * f.values.number("lag_sd"));
+}
+std::string joint_lag_remedy(const Finding& f) {
+  return f.values.text("motion") == "last"
+             ? phrase(name(f.kind),
+                      "let the arm come to rest before joints and points are read, or give q1_cmd, q2_cmd, ...")
+             : phrase(name(f.kind), "read joints and points before the arm moves on");
 }
 
 std::string gross_outliers(const Finding& f) {
@@ -106,6 +132,15 @@ std::string outside_limits(const Finding& f) {
 }
 std::string outside_limits_remedy(const Finding& f) {
   return phrase(name(f.kind), "check the limits in the robot file, and the unit and sign of this reading");
+}
+
+std::string outside_region(const Finding& f) {
+  return phrase(name(f.kind),
+                "{} {} outside the joint positions that the calibration measured, up to {:.1f} times as far",
+                row_ranges(f.rows), f.rows.size() == 1 ? "lies" : "lie", f.values.number("largest_distance"));
+}
+std::string outside_region_remedy(const Finding& f) {
+  return phrase(name(f.kind), "measure some poses there and calibrate with them; until then the error may be larger");
 }
 
 std::string duplicate_rows(const Finding& f) {
@@ -144,9 +179,11 @@ constexpr std::array words_of_rows{
     FindingWords{FindingKind::base_moved, base_moved, base_moved_remedy},
     FindingWords{FindingKind::base_drifts, base_drifts, base_drifts_remedy},
     FindingWords{FindingKind::not_settled, not_settled, not_settled_remedy},
+    FindingWords{FindingKind::joint_lag, joint_lag, joint_lag_remedy},
     FindingWords{FindingKind::gross_outliers, gross_outliers, gross_outliers_remedy},
     FindingWords{FindingKind::joint_hardly_moves, joint_hardly_moves, joint_hardly_moves_remedy},
     FindingWords{FindingKind::outside_limits, outside_limits, outside_limits_remedy},
+    FindingWords{FindingKind::outside_region, outside_region, outside_region_remedy},
     FindingWords{FindingKind::duplicate_rows, duplicate_rows, repeated_remedy},
     FindingWords{FindingKind::measurement_repeated, measurement_repeated, repeated_remedy},
     FindingWords{FindingKind::not_rigid, not_rigid, not_rigid_remedy}};
