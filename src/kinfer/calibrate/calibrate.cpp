@@ -9,6 +9,7 @@
 #include "kinfer/calibrate/conclusion/recommendations.hpp"
 #include "kinfer/calibrate/conclusion/verdict.hpp"
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
+#include "kinfer/calibrate/prediction/model_error.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/calibrate/starting_model.hpp"
 #include "kinfer/calibrate/validated_fit.hpp"
@@ -94,10 +95,11 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
                                     frames_only,  fit.validation_fits, excluded.rows};
   fill_error_statistics(calibration, evaluation);
   calibration.expected_holdout_rms = expected_holdout_rms(evaluation);
+  calibration.prediction = make_prediction_model(evaluation, fit.estimate, options.threads);
   calibration.reason = judge(calibration);
   calibration.usability = usability_of(calibration.reason);
   calibration.accuracy = evaluate_pose_accuracy(frames_only, calibration.estimate.chain, task.data);
-  calibration.plot_data = make_plot_data(task, frames_only, calibration.estimate);
+  calibration.plot_data = make_plot_data(task, frames_only, calibration.estimate, calibration.prediction);
   calibration.recommendations = make_recommendations(task, calibration);
   return calibration;
 }

@@ -8,14 +8,20 @@
 #include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/deploy/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/estimate/poses/pose_uncertainty.hpp"
 
 namespace kinfer::deploy {
 namespace {
 
-double typical_point_sd(const Instrument& instrument, const PoseSet& data) {
+/// Expected rms error of the points [m]: by the instrument, and by the calibration's own uncertainty where it is known.
+double expected_rms(const Chain& chain, const Instrument& instrument, const PoseSet& data,
+                    const std::optional<PredictionModel>& prediction) {
+  const auto uncertainties =
+      prediction ? pose_uncertainties(chain, *prediction, data) : std::vector<PoseUncertainty>(data.rows());
   double squares = 0.0;
-  for (const PointMeasurement& point : data.points) squares += std::pow(position_sd(instrument, point.position), 2);
-  return std::sqrt(3.0 * squares / static_cast<double>(data.points.size()));
+  for (const PointMeasurement& point : data.points)
+    squares += 3.0 * std::pow(position_sd(instrument, point.position), 2) + uncertainties[point.row].position.trace();
+  return std::sqrt(squares / static_cast<double>(data.points.size()));
 }
 
 VerificationResult judge_by_noise(const Verification& v, double limit) {
@@ -26,7 +32,8 @@ VerificationResult judge_by_noise(const Verification& v, double limit) {
 }  // namespace
 
 Result<Verification> verify(const Chain& given_chain, const Tolerances& tolerances,
-                            const std::optional<Instrument>& instrument, const PoseSet& given_data) {
+                            const std::optional<Instrument>& instrument, const PoseSet& given_data,
+                            const std::optional<PredictionModel>& prediction) {
   if (given_data.points.empty()) return error("the data contain no measured positions to verify against");
   KINFER_TRY(placed, calibrate::with_fixtures(given_chain, given_data));
   const Chain& chain = placed.chain;
@@ -38,7 +45,7 @@ Result<Verification> verify(const Chain& given_chain, const Tolerances& toleranc
   v.frames_refitted = error_statistics(point_errors(refitted, data));
 
   if (instrument) {
-    const double sd = std::max(typical_point_sd(*instrument, data), thresholds::least_point_sd);
+    const double sd = std::max(expected_rms(chain, *instrument, data, prediction), thresholds::least_point_sd);
     v.result = judge_by_noise(v, thresholds::noise_ratio * sd);
   } else {
     v.result = v.frames_refitted.rms <= thresholds::refit_ratio * v.unmodified.rms ? VerificationResult::frames_moved

@@ -76,7 +76,7 @@ TEST(PoseCovariance, ErrorsOfAShakenCameraHaveTheCovarianceThatItsFileStates) {
 
 TEST(PoseCovariance, SixRowsTogetherBeatPointAndOrientationApart) {
   std::vector<double> together, apart;
-  for (int seed = 1; seed <= 4; ++seed) {
+  for (int seed = 1; seed <= 10; ++seed) {
     const Robot made = robot(seed);
     const PoseSet data = seen(made, 500 + seed);
     together.push_back(unseen_error(made, data)), apart.push_back(unseen_error(made, by_blocks(data)));

@@ -45,7 +45,15 @@ VectorXd low_discrepancy_point(int k, Eigen::Index n) {
   return point;
 }
 
-std::vector<WorkspacePoint> sample_workspace(const MatrixXd& joints, const Estimate& estimate) {
+/// The rms error by the covariance of the parameters, and by the model error there.
+double with_model_error(double by_parameters, const std::optional<PredictionModel>& prediction, ConstVectorRef q) {
+  if (!prediction) return by_parameters;
+  return std::sqrt(by_parameters * by_parameters +
+                   model_error_growth(*prediction, q) * prediction->model_error.topLeftCorner<3, 3>().trace());
+}
+
+std::vector<WorkspacePoint> sample_workspace(const MatrixXd& joints, const Estimate& estimate,
+                                             const std::optional<PredictionModel>& prediction) {
   const VectorXd lowest = joints.rowwise().minCoeff(), range = joints.rowwise().maxCoeff() - lowest;
   MatrixXd q(joints.rows(), thresholds::workspace_points);
   for (int k = 0; k < thresholds::workspace_points; ++k)
@@ -53,18 +61,21 @@ std::vector<WorkspacePoint> sample_workspace(const MatrixXd& joints, const Estim
   const VectorXd errors = predicted_errors(estimate, q);
   std::vector<WorkspacePoint> points;
   for (int k = 0; k < thresholds::workspace_points; ++k)
-    points.push_back({forward(estimate.chain, q.col(k)).position, errors[k], q.col(k)});
+    points.push_back(
+        {forward(estimate.chain, q.col(k)).position, with_model_error(errors[k], prediction, q.col(k)), q.col(k)});
   return points;
 }
 
 }  // namespace
 
-CalibrationPlotData make_plot_data(const CalibrationTask& task, const Chain& before, const Estimate& estimate) {
+CalibrationPlotData make_plot_data(const CalibrationTask& task, const Chain& before, const Estimate& estimate,
+                                   const std::optional<PredictionModel>& prediction) {
   CalibrationPlotData plot_data{.nominal = task.nominal, .before = before, .joints = task.data.joints};
-  for (const double error : predicted_errors(estimate, task.data.joints))
-    plot_data.rows.push_back({.predicted = error});
+  const VectorXd errors = predicted_errors(estimate, task.data.joints);
+  for (Eigen::Index row = 0; row < errors.size(); ++row)
+    plot_data.rows.push_back({.predicted = with_model_error(errors[row], prediction, task.data.joints.col(row))});
   add_points(plot_data, task, estimate.chain);
-  plot_data.workspace = sample_workspace(task.data.joints, estimate);
+  plot_data.workspace = sample_workspace(task.data.joints, estimate, prediction);
   return plot_data;
 }
 

@@ -8,7 +8,9 @@
 namespace kinfer::calibrate {
 
 /// `before`: the nominal chain with base and tool refitted. The workspace is sampled at joint positions that cover the
-/// ranges of the data evenly (an additive low-discrepancy sequence: deterministic).
-CalibrationPlotData make_plot_data(const CalibrationTask& task, const Chain& before, const Estimate& estimate);
+/// ranges of the data evenly (an additive low-discrepancy sequence: deterministic). The predicted errors include the
+/// model error of `prediction`.
+CalibrationPlotData make_plot_data(const CalibrationTask& task, const Chain& before, const Estimate& estimate,
+                                   const std::optional<PredictionModel>& prediction = std::nullopt);
 
 }  // namespace kinfer::calibrate

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // kinfer compensate: joint targets that bring the real tool to the pose of the nominal model or to a target.
 #include "kinfer/deploy/compensate.hpp"
+#include "kinfer/deploy/predict.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/units.hpp"
 #include "kinfer/words/calibration/checks.hpp"
+#include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -103,6 +105,17 @@ void print_summary(const CompensationSummary& summary, const std::vector<Compens
   fmt::print(stderr, "{}\n", words::summary(summary));
 }
 
+/// Warns of compensated joint positions that the calibration did not measure.
+void warn_of_rows_outside(const CompensateArguments& options, const std::vector<CompensatedJoints>& list) {
+  const auto corrected = read_robot(options.chain);
+  if (!corrected || !corrected->prediction || list.empty()) return;
+  PoseSet rows;
+  rows.joints.resize(list.front().q.size(), static_cast<Eigen::Index>(list.size()));
+  for (std::size_t i = 0; i < list.size(); ++i) rows.joints.col(static_cast<Eigen::Index>(i)) = list[i].q;
+  if (const auto outside = deploy::find_rows_outside(*corrected->prediction, rows))
+    fmt::print(stderr, "{}\n", words::sentence(*outside));
+}
+
 int run(const CompensateArguments& options) {
   if (options.joints.empty() == options.targets.empty()) return fail({"expected either --joints or --targets"});
   const auto chains = read_models(options);
@@ -119,6 +132,7 @@ int run(const CompensateArguments& options) {
     return fail(done.error());
   const CompensationSummary summary = summarise(*list);
   if (!options.common.quiet) print_summary(summary, *list);
+  if (!options.common.quiet) warn_of_rows_outside(options, *list);
   return summary.unreached.empty() ? exit_done : exit_do_not_use;
 }
 

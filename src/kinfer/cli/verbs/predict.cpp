@@ -9,6 +9,7 @@
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/pose_set/predictions_csv.hpp"
 #include "kinfer/io/text/text_file.hpp"
+#include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -19,6 +20,16 @@ struct PredictArguments {
   bool quiet = false;
 };
 
+/// None where the file has no [prediction].
+Result<std::vector<PoseDeviations>> deviations_of(const RobotModel& robot, const PoseSet& set) {
+  std::vector<PoseDeviations> deviations;
+  if (!robot.prediction) return deviations;
+  KINFER_TRY(uncertainties, deploy::predict_uncertainties(robot.chain, *robot.prediction, set));
+  for (const PoseUncertainty& at : uncertainties)
+    deviations.push_back({at.position.diagonal().cwiseSqrt(), at.rotation.diagonal().cwiseSqrt()});
+  return deviations;
+}
+
 int run(const PredictArguments& options) {
   const auto robot = read_robot(options.chain);
   if (!robot) return fail(robot.error());
@@ -28,7 +39,13 @@ int run(const PredictArguments& options) {
   if (!set) return fail(set.error());
   const auto poses = deploy::predict_poses(robot->chain, *set);
   if (!poses) return fail(poses.error());
-  const auto text = format_predictions_csv(*poses, *set, robot->chain.base.pose(), robot->chain.fixtures.anchors);
+  const auto deviations = deviations_of(*robot, *set);
+  if (!deviations) return fail(deviations.error());
+  if (robot->prediction && !options.quiet)
+    if (const auto outside = deploy::find_rows_outside(*robot->prediction, *set))
+      fmt::print(stderr, "{}\n", words::sentence(*outside));
+  const auto text =
+      format_predictions_csv(*poses, *set, robot->chain.base.pose(), robot->chain.fixtures.anchors, *deviations);
   if (!text) return fail(text.error());
   if (options.out.empty() || options.out == "-") {
     fmt::print("{}", *text);
@@ -49,7 +66,8 @@ Verb add_predict(CLI::App& app) {
   add_robot_option(*verb, options->chain, "--chain", "Chain: chain.toml, a robot TOML, or URDF");
   add_text(*verb, "--joints", options->joints, "File with the joint columns q1..; other columns may be there",
            Requirement::required, "CSV");
-  add_text(*verb, "-o,--out", options->out, "Where to write x,y,z,qw,qx,qy,qz [m] (default: standard output)",
+  add_text(*verb, "-o,--out", options->out,
+           "Where to write x,y,z,qw,qx,qy,qz [m] and their standard deviations (default: standard output)",
            Requirement::optional, "CSV");
   add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Requirement::optional,
            "TOML");

@@ -8,6 +8,7 @@
 #include "kinfer/evidence/calibration/calibration_plot.hpp"
 #include "kinfer/evidence/calibration/estimate.hpp"
 #include "kinfer/evidence/calibration/model_selection.hpp"
+#include "kinfer/evidence/calibration/prediction_model.hpp"
 #include "kinfer/evidence/calibration/unknown_robot.hpp"
 #include "kinfer/evidence/facts/findings.hpp"
 #include "kinfer/evidence/facts/verdict.hpp"
@@ -56,6 +57,7 @@ struct Calibration {
   std::vector<CalibrationNote> notes;                   ///< observations and automatic decisions
   std::optional<UnknownRobotEvidence> unknown_robot{};  ///< where the robot has no data sheet
   bool geometry_only = false;                           ///< found by a swarm search, which has no model selection
+  std::optional<PredictionModel> prediction{};           ///< uncertainty of the corrected chain; none without points
   std::optional<double> expected_holdout_rms{};  ///< [m] from the instrument's noise and the uncertainty of the fits
   Usability usability = Usability::use;
   CalibrationReason reason = CalibrationReason::improves_nominal;

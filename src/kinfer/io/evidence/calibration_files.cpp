@@ -25,6 +25,7 @@ std::string chain_toml(const Calibration& calibration, RobotModel robot) {
   for (const ParameterEstimate& p : calibration.estimate.values) sd[p.name] = p.sd;
   robot.chain = corrected_chain(calibration);
   robot.tolerances = calibration.nominal_model.tolerances;
+  robot.prediction = calibration.prediction;
   return format_robot_toml(robot, sd);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/io/robot/prediction_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
 
@@ -416,6 +417,7 @@ Result<RobotModel> parse_robot_toml(std::string_view text, const std::string& na
   chain.expansion = file.number_or("expansion", 0.0);
   chain.reference_temperature = file.number_or("reference_temperature", 0.0);
   file.ignore("expansion_sd");
+  robot.prediction = read_prediction(file, dof(chain), first_error);
   file.expect_no_other_keys();
   if (first_error.any()) return forward_error(first_error.as_error());
   return robot;

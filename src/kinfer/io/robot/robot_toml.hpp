@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kinfer/base/result.hpp"
+#include "kinfer/evidence/calibration/prediction_model.hpp"
 #include "kinfer/io/text/units.hpp"
 #include "kinfer/kinematics/parameters.hpp"
 #include "kinfer/measurement/pose_set.hpp"
@@ -19,8 +20,9 @@ namespace kinfer {
 struct RobotModel {
   Chain chain{};
   Tolerances tolerances{};
-  std::optional<Instrument> instrument{};     ///< absent: estimated from the residuals
-  std::optional<Vec3> instrument_position{};  ///< [m] position of the instrument in the world; for planning
+  std::optional<Instrument> instrument{};       ///< absent: estimated from the residuals
+  std::optional<Vec3> instrument_position{};    ///< [m] position of the instrument in the world; for planning
+  std::optional<PredictionModel> prediction{};  ///< uncertainty of a calibrated chain
 };
 
 /// Reads a robot file. Unknown keys, missing fields, wrong types, zero joints and broken trees are errors with the

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/io/robot/prediction_toml.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/text/format_number.hpp"
 
@@ -50,6 +51,7 @@ class RobotTomlWriter {
           format_number(mass.mass));
     write_tolerances();
     if (robot_.instrument) write_instrument(*robot_.instrument);
+    if (robot_.prediction) text_ += format_prediction_toml(*robot_.prediction);
     return std::move(text_);
   }
 

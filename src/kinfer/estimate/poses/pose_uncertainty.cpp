@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/estimate/poses/pose_uncertainty.hpp"
+
+#include <limits>
+#include <map>
+
+#include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer {
+namespace {
+
+using Eigen::Index;
+
+/// Every number of the chain that a calibration may free, by name.
+std::map<std::string, ParameterAddress> addresses_by_name(const Chain& chain) {
+  std::map<std::string, ParameterAddress> addresses;
+  for (const ParameterSet& set : {all_parameters(chain, {}), setup_parameters(chain, {})})
+    for (const Parameter& parameter : set.parameters) addresses.emplace(parameter.name, parameter.at);
+  const auto add = [&](const ParameterAddress& at) { addresses.emplace(name_of(chain, at), at); };
+  for (int joint = 0; joint < static_cast<int>(chain.joints.size()); ++joint) {
+    for (const Field field : {Field::gain, Field::compliance, Field::torque_compliance, Field::backlash})
+      add({.joint = joint, .field = field});
+    for (int term = 0; term < static_cast<int>(chain.joints[joint].harmonics.size()); ++term)
+      for (const Field field : {Field::sine, Field::cosine}) add({.joint = joint, .field = field, .term = term});
+  }
+  add({.owner = Owner::robot, .field = Field::expansion});
+  return addresses;
+}
+
+/// The parameters that the chain has, and the rows of the root that belong to them.
+struct KnownParameters {
+  ParameterSet set;
+  MatrixXd root;
+};
+
+KnownParameters known_parameters(const Chain& chain, const PredictionModel& model) {
+  const auto addresses = addresses_by_name(chain);
+  KnownParameters known;
+  std::vector<Index> rows;
+  for (std::size_t k = 0; k < model.parameters.size(); ++k) {
+    const auto found = addresses.find(model.parameters[k]);
+    if (found == addresses.end()) continue;
+    known.set.parameters.push_back(parameter_at(chain, found->second, std::numeric_limits<double>::infinity()));
+    rows.push_back(static_cast<Index>(k));
+  }
+  known.root = model.root(rows, Eigen::all);
+  return known;
+}
+
+}  // namespace
+
+std::vector<PoseUncertainty> pose_uncertainties(const Chain& chain, const PredictionModel& model, const PoseSet& rows) {
+  const KnownParameters known = known_parameters(chain, model);
+  const EvaluatedPoses at = evaluate_poses(chain, known.set, rows, Derivative::yes);
+  std::vector<PoseUncertainty> all;
+  for (Index row = 0; row < rows.rows(); ++row) {
+    const Chain mounted =
+        with_mounting(chain, rows.mounting.empty() ? -1 : rows.mounting[static_cast<std::size_t>(row)]);
+    const Mat3 world_R_base = mounted.base.pose().rotation;
+    const MatrixXd by_root = at.twists[static_cast<std::size_t>(row)] * known.root;
+    const double growth = model_error_growth(model, rows.joints.col(row));
+    const auto block = [&](Index from) {
+      const MatrixXd part = by_root.middleRows(from, 3);
+      const Mat3 error = model.model_error.block<3, 3>(from, from);
+      return Mat3(part * part.transpose() + growth * world_R_base * error * world_R_base.transpose());
+    };
+    all.push_back({block(0), block(3)});
+  }
+  return all;
+}
+
+MatrixXd covariance_root(ConstMatrixRef covariance) {
+  // Scaled to unit variances first: parameters have very different units.
+  const VectorXd sd = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  const MatrixXd scaled = sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
+  const SymmetricEigen eigen = symmetric_eigen(scaled);
+  const MatrixXd root = sd.asDiagonal() * eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  return triangular_factor(root.transpose()).transpose();
+}
+
+}  // namespace kinfer

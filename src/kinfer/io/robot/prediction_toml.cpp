@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/robot/prediction_toml.hpp"
+
+#include <fmt/format.h>
+
+namespace kinfer {
+namespace {
+
+using Eigen::Index;
+
+/// Seven digits: far more than a standard deviation is known to.
+template <class Numbers>
+std::string prediction_numbers(const Numbers& numbers) {
+  std::string text;
+  for (Index i = 0; i < numbers.size(); ++i) text += fmt::format("{}{:.7g}", i == 0 ? "" : ", ", numbers[i]);
+  return "[" + text + "]";
+}
+
+std::vector<std::string> prediction_texts(TableReader& reader, const TomlTable& table, std::string_view key) {
+  reader.ignore(key);
+  std::vector<std::string> texts;
+  const TomlValue* value = table.find(key);
+  const auto* list = value ? std::get_if<TomlArray>(&value->value) : nullptr;
+  for (std::size_t i = 0; list && i < list->size(); ++i)
+    if (const auto* text = std::get_if<std::string>(&(*list)[i].value)) texts.push_back(*text);
+  if (!list || texts.size() != list->size())
+    reader.report_error(reader.line_of(key), fmt::format("\"{}\": expected a list of names", key));
+  return texts;
+}
+
+/// The columns of a matrix, one list after the other.
+MatrixXd reshaped_numbers(TableReader& reader, std::string_view key, Index rows) {
+  const std::vector<double> numbers = reader.number_list(key);
+  const auto count = static_cast<Index>(numbers.size());
+  if (rows <= 0 || count % rows != 0) {
+    reader.report_error(reader.line_of(key), fmt::format("\"{}\": expected a multiple of {} numbers", key, rows));
+    return MatrixXd(std::max<Index>(rows, 0), 0);
+  }
+  return Eigen::Map<const MatrixXd>(numbers.data(), rows, count / rows);
+}
+
+}  // namespace
+
+std::string format_prediction_toml(const PredictionModel& model) {
+  std::string names, root;
+  for (const std::string& parameter : model.parameters)
+    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", parameter);
+  for (Index i = 0; i < model.root.rows(); ++i)
+    root += fmt::format("{}  {}", i == 0 ? "" : ",\n", [&] {
+      const std::string row = prediction_numbers(VectorXd(model.root.row(i).head(i + 1).transpose()));
+      return row.substr(1, row.size() - 2);
+    }());
+  return fmt::format(
+      "\n[prediction]\nparameters = [{}]\ncovariance_root = [\n{}\n]\nmodel_error = {}\nspread = {}\nreach = {:.7g}\n"
+      "rate = {:.7g}\nrows = {}\n",
+      names, root, prediction_numbers(VectorXd(model.model_error.reshaped())), prediction_numbers(model.spread),
+      model.reach, model.rate, prediction_numbers(VectorXd(model.rows.reshaped())));
+}
+
+std::optional<PredictionModel> read_prediction(TableReader& file, int dof, FirstError& first_error) {
+  const TomlTable* table = file.table_or_none("prediction");
+  if (!table) return std::nullopt;
+  TableReader reader(*table, file.line_of("prediction"), "prediction: ", first_error);
+  PredictionModel model;
+  model.parameters = prediction_texts(reader, *table, "parameters");
+  const auto count = static_cast<Index>(model.parameters.size());
+  const std::vector<double> root = reader.numbers("covariance_root", static_cast<std::size_t>(count * (count + 1) / 2));
+  model.root = MatrixXd::Zero(count, count);
+  std::size_t next = 0;
+  for (Index i = 0; i < count; ++i)
+    for (Index j = 0; j <= i && next < root.size(); ++j) model.root(i, j) = root[next++];
+  const std::vector<double> error = reader.numbers("model_error", 36);
+  if (error.size() == 36) model.model_error = Eigen::Map<const MatrixXd>(error.data(), 6, 6);
+  const std::vector<double> spread = reader.numbers("spread", static_cast<std::size_t>(dof));
+  model.spread = VectorXd::Ones(dof);
+  if (static_cast<int>(spread.size()) == dof) model.spread = Eigen::Map<const VectorXd>(spread.data(), dof);
+  model.reach = reader.positive_or("reach", 1.0);
+  model.rate = reader.number_or("rate", 0.0);
+  model.rows = reshaped_numbers(reader, "rows", dof);
+  reader.expect_no_other_keys();
+  return model;
+}
+
+}  // namespace kinfer

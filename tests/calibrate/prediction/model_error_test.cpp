@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/prediction/model_error.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/deploy/predict.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+#include "support/robots.hpp"
+
+namespace kinfer {
+using namespace calibrate;
+namespace {
+
+using Eigen::Index;
+
+/// An arm whose third gear harmonic [rad] is known to no term.
+Chain true_arm(int seed, double unknown) {
+  Chain truth = with_random_errors(test::nominal_robot(), {}, Rng(seed));
+  for (Joint& joint : truth.joints) joint.harmonics = {{3.0, unknown, 0.0}};
+  return truth;
+}
+
+PoseSet measured_poses(const Chain& truth, int poses, int seed) {
+  return test::measured(truth, {.poses = poses, .instrument = test::tracker, .measured = Measured::poses}, seed);
+}
+
+Calibration calibrated_arm(const PoseSet& data) {
+  return calibrate_robot({test::nominal_robot(), {}, test::tracker, data}, {}, Rng(1)).value();
+}
+
+/// Points of `rows` within the 95 % ellipsoids of prediction and instrument.
+int points_inside(const Chain& chain, const PredictionModel& model, const PoseSet& rows) {
+  const auto poses = deploy::predict_poses(chain, rows).value();
+  const auto uncertainties = deploy::predict_uncertainties(chain, model, rows).value();
+  const double limit = chi_squared_quantile(0.95, 3.0);
+  int inside = 0;
+  for (const PointMeasurement& point : rows.points) {
+    const Vec3 error = point.position - poses[point.row].position;
+    const Mat3 covariance =
+        uncertainties[point.row].position + std::pow(position_sd(test::tracker, point.position), 2) * Mat3::Identity();
+    inside += error.dot(Vec3(solve_spd(MatrixXd(covariance), VectorXd(error)).value())) <= limit;
+  }
+  return inside;
+}
+
+TEST(ModelError, NinetyFivePercentOfUnseenPointsLieInTheirEllipsoids) {
+  constexpr int robots = 12, unseen = 200;
+  int inside = 0;
+  for (int seed = 1; seed <= robots; ++seed) {
+    const Chain truth = true_arm(seed, seed % 2 ? 0.0 : 2e-4);
+    const Calibration c = calibrated_arm(measured_poses(truth, 50 + 25 * (seed % 3), seed));
+    ASSERT_TRUE(c.prediction);
+    inside += points_inside(corrected_chain(c), *c.prediction, measured_poses(truth, unseen, 1000 + seed));
+  }
+  const double share = static_cast<double>(inside) / (robots * unseen);
+  EXPECT_GT(share, 0.92);
+  EXPECT_LT(share, 0.97);
+}
+
+TEST(ModelError, UnmodelledErrorsAreFoundInPositionAndRotation) {
+  const Calibration rigid = calibrated_arm(measured_poses(true_arm(3, 0.0), 45, 3)),
+                    wavy = calibrated_arm(measured_poses(true_arm(3, 4e-4), 45, 3));
+  const auto rms = [](const Calibration& c, Index from) {
+    return std::sqrt(c.prediction->model_error.block<3, 3>(from, from).trace());
+  };
+  EXPECT_LT(rms(rigid, 0), 20e-6);
+  EXPECT_GT(rms(wavy, 0), 1e-4);
+  EXPECT_GT(rms(wavy, 3), 1e-4);
+}
+
+TEST(ModelError, GrowsOutsideTheMeasuredRegionAndItsRowsAreNamed) {
+  const Chain truth = true_arm(5, 2e-4);
+  PoseSet data = measured_poses(truth, 80, 5);
+  std::vector<int> left;
+  for (int row = 0; row < data.rows(); ++row)
+    if (data.joints(0, row) < 0.0) left.push_back(row);
+  const Calibration c = calibrated_arm(select(data, left));
+  PoseSet rows;
+  rows.joints = MatrixXd(6, 2);
+  rows.joints.col(0) = data.joints.col(left.front());
+  rows.joints.col(1) = rows.joints.col(0);
+  rows.joints(0, 1) += 4.0;
+  EXPECT_GT(model_error_growth(*c.prediction, rows.joints.col(1)),
+            model_error_growth(*c.prediction, rows.joints.col(0)));
+  const auto outside = deploy::find_rows_outside(*c.prediction, rows);
+  ASSERT_TRUE(outside);
+  EXPECT_EQ(outside->kind, FindingKind::outside_region);
+  EXPECT_EQ(outside->rows, std::vector<int>{1});
+}
+
+TEST(ModelError, ChainTomlKeepsWhatPredictionsNeed) {
+  const Chain truth = true_arm(7, 2e-4);
+  const Calibration c = calibrated_arm(measured_poses(truth, 60, 7));
+  RobotModel robot{.chain = corrected_chain(c)};
+  robot.prediction = c.prediction;
+  const RobotModel again = parse_robot_toml(format_robot_toml(robot), "chain.toml").value();
+  ASSERT_TRUE(again.prediction);
+  const PoseSet rows = measured_poses(truth, 20, 8);
+  const auto before = deploy::predict_uncertainties(robot.chain, *robot.prediction, rows).value(),
+             after = deploy::predict_uncertainties(again.chain, *again.prediction, rows).value();
+  for (std::size_t row = 0; row < before.size(); ++row) {
+    EXPECT_LT((after[row].position - before[row].position).norm(), 1e-4 * before[row].position.norm());
+    EXPECT_LT((after[row].rotation - before[row].rotation).norm(), 1e-4 * before[row].rotation.norm());
+  }
+}
+
+}  // namespace
+}  // namespace kinfer
