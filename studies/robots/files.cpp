@@ -59,8 +59,13 @@ Chain ur10_chain() {
 }
 
 PoseSet ur10_series(const std::string& folder, const std::string& file, const Chain& chain) {
-  const auto map = read_column_map(std::filesystem::path(KINFER_SOURCE_DIR) / "data/ur10/leica_columns.toml");
-  return read_pose_set(folder + "/ur10_leica/" + file, chain, *map).value();
+  auto map = read_column_map(std::filesystem::path(KINFER_SOURCE_DIR) / "data/ur10/leica_columns.toml").value();
+  const std::string path = folder + "/ur10_leica/" + file;
+  std::string head;
+  std::getline(std::ifstream(path), head);
+  if (head.find("measurement_std_x") == std::string::npos)  // series A has no standard deviations
+    std::erase_if(map.columns, [](const auto& column) { return column.first.starts_with('s'); });
+  return read_pose_set(path, chain, map).value();
 }
 
 Chain mukca_chain(const std::string& folder) {

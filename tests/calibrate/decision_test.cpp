@@ -16,42 +16,48 @@ constexpr ErrorChange clear_gain{
     .mean_before = 1e-3, .mean_after = 0.8e-3, .worst_before = 2e-3, .worst_after = 2e-3, .t = 5.0};
 constexpr ErrorChange untested{};
 
-TEST(Decision, AClearGainIsAccepted) {
-  EXPECT_EQ(decide(clear_gain, untested, 0.0), Decision::accepted);
+TEST(Decision, AClearGainIsAcceptedAndSoIsNoChange) {
+  EXPECT_EQ(decide(clear_gain, untested), Decision::accepted);
+  EXPECT_EQ(decide({.mean_before = 1e-3, .mean_after = 1e-3}, untested), Decision::accepted);
 }
 
-TEST(Decision, LessThanAHundredthIsNoImprovement) {
-  ErrorChange change = clear_gain;
-  change.mean_after = 0.991e-3;
-  EXPECT_EQ(decide(change, untested, 0.0), Decision::no_improvement);
-  change.mean_after = 0.989e-3;
-  EXPECT_EQ(decide(change, untested, 0.0), Decision::accepted);
+TEST(Decision, AMeanThatRisesByMoreThanChanceIsNoImprovement) {
+  EXPECT_EQ(decide({.mean_before = 1e-3, .mean_after = 1.01e-3, .t = -3.0}, untested), Decision::no_improvement);
+  EXPECT_EQ(decide({.mean_before = 1e-3, .mean_after = 1.01e-3, .t = -1.0}, untested), Decision::accepted);
 }
 
-TEST(Decision, AGainByChanceIsNotSignificant) {
+TEST(Decision, SinglePosesDecideNothing) {
   ErrorChange change = clear_gain;
-  change.t = 2.4;
-  EXPECT_EQ(decide(change, untested, 0.0), Decision::not_significant);
+  change.worst_after = 20e-3;
+  EXPECT_EQ(decide(change, untested), Decision::accepted);
 }
 
-TEST(Decision, NoPoseMayPayForTheOthers) {
+TEST(Decision, ATailThatCertainlyRisesIsRefused) {
   ErrorChange change = clear_gain;
-  change.worst_after = 2.1e-3;
-  EXPECT_EQ(decide(change, untested, 0.0), Decision::worst_error_rises);
-  EXPECT_EQ(decide(change, untested, 2.2e-3), Decision::accepted) << "the geometric model had a larger one";
+  change.p99 = {2e-3, 3e-3, 0.9};
+  EXPECT_EQ(decide(change, untested), Decision::accepted);
+  change.p99.rise_probability = 0.99;
+  EXPECT_EQ(decide(change, untested), Decision::tail_rises);
 }
 
 TEST(Decision, TermsThatOnlyInterpolateAreRejected) {
-  const ErrorChange worse{.mean_before = 1e-3, .mean_after = 1.03e-3},
-      equal{.mean_before = 1e-3, .mean_after = 1.01e-3};
-  EXPECT_EQ(decide(clear_gain, worse, 0.0), Decision::extrapolation_worse);
-  EXPECT_EQ(decide(clear_gain, equal, 0.0), Decision::accepted);
+  EXPECT_EQ(decide(clear_gain, {.mean_before = 1e-3, .mean_after = 1.3e-3, .t = -4.0}), Decision::extrapolation_worse);
+  EXPECT_EQ(decide(clear_gain, {.mean_before = 1e-3, .mean_after = 1.2e-3, .t = -4.0}), Decision::accepted)
+      << "a fifth less among the poses is worth a fifth more beyond them";
+  EXPECT_EQ(decide(clear_gain, {.mean_before = 1e-3, .mean_after = 1.3e-3, .t = -1.0}), Decision::accepted);
 }
 
-TEST(Decision, InterpolationIsDecidedFirst) {
-  ErrorChange change = clear_gain;
-  change.mean_after = change.mean_before;
-  EXPECT_EQ(decide(change, {.mean_before = 1.0, .mean_after = 2.0}, 0.0), Decision::no_improvement);
+TEST(CompareErrors, TheTailIsComparedByTheBootstrap) {
+  std::vector<double> before, after;
+  for (int i = 0; i < 400; ++i) before.push_back(1.0 + 0.001 * i), after.push_back(i % 8 ? 0.5 : 3.0);
+  const ErrorChange change = compare_errors(before, after);
+  EXPECT_LT(change.mean_after, change.mean_before);
+  EXPECT_DOUBLE_EQ(change.p95.after, 3.0);
+  EXPECT_GT(change.p95.rise_probability, 0.99);
+  EXPECT_EQ(compare_errors(after, before).p95.rise_probability, 0.0);
+  after = before;
+  after.front() = 100.0;
+  EXPECT_LT(compare_errors(before, after).p99.rise_probability, 0.5) << "one pose of 400";
 }
 
 TEST(CompareErrors, TIsTheMeanReductionOverItsStandardError) {
@@ -84,7 +90,7 @@ TEST(ModelSelection, TheModelsNameListsItsTerms) {
   ModelSelection selection;
   EXPECT_EQ(selected_model(selection), "");
   selection.steps = {{.decision = Decision::start},
-                     {.term = Term::gain, .decision = Decision::not_significant},
+                     {.term = Term::gain, .decision = Decision::no_evidence},
                      {.term = Term::gravity_compliance, .decision = Decision::accepted},
                      {.term = Term::backlash, .decision = Decision::data_missing},
                      {.term = Term::gear_harmonics, .decision = Decision::requested}};

@@ -6,10 +6,51 @@
 #include <vector>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/base/rng.hpp"
 #include "kinfer/calibrate/terms/thresholds.hpp"
 #include "kinfer/geometry/statistics.hpp"
 
 namespace kinfer::calibrate {
+namespace {
+
+QuantileChange compare_quantile(const std::vector<double>& before, const std::vector<double>& after, double fraction) {
+  QuantileChange change{quantile(before, fraction), quantile(after, fraction), 0.0};
+  if (change.after <= thresholds::tail_ratio * change.before) return change;
+  const Rng rng(1);
+  std::vector<double> a(before.size()), b(before.size());
+  int rises = 0;
+  for (int draw = 0; draw < thresholds::bootstrap_draws; ++draw) {
+    Rng rows = rng.stream(draw);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const std::uint64_t row = rows.index(before.size());
+      a[i] = before[row], b[i] = after[row];
+    }
+    rises += quantile(b, fraction) > quantile(a, fraction);
+  }
+  change.rise_probability = static_cast<double>(rises) / thresholds::bootstrap_draws;
+  return change;
+}
+
+bool mean_rises(const ErrorChange& change) {
+  return change.mean_after > change.mean_before && change.t < -thresholds::harm_significance;
+}
+
+bool rises(const QuantileChange& change) {
+  return change.rise_probability > thresholds::harm_probability;
+}
+
+bool tail_rises(const ErrorChange& change) {
+  return rises(change.p95) || rises(change.p99);
+}
+
+/// Whether what is lost beyond the fitted poses is more than what is gained among them, in the mean or in the 99 %
+/// point.
+bool outweighs_gain(const ErrorChange& inside, const ErrorChange& outside) {
+  return (mean_rises(outside) && outside.mean_after * inside.mean_after > outside.mean_before * inside.mean_before) ||
+         (rises(outside.p99) && outside.p99.after * inside.p99.after > outside.p99.before * inside.p99.before);
+}
+
+}  // namespace
 
 ErrorChange compare_errors(std::span<const double> before, std::span<const double> after) {
   KINFER_EXPECT(before.size() == after.size(), "{} and {} errors", before.size(), after.size());
@@ -21,23 +62,15 @@ ErrorChange compare_errors(std::span<const double> before, std::span<const doubl
   change.worst_before = *std::ranges::max_element(before), change.worst_after = *std::ranges::max_element(after);
   const double standard_error = standard_deviation(reduction) / std::sqrt(static_cast<double>(reduction.size()));
   change.t = mean(reduction) / (standard_error + 1e-300);
+  const std::vector<double> a(before.begin(), before.end()), b(after.begin(), after.end());
+  change.p95 = compare_quantile(a, b, 0.95), change.p99 = compare_quantile(a, b, 0.99);
   return change;
 }
 
-Decision decide_by_interpolation(const ErrorChange& interpolation, double geometry_worst) {
-  if (interpolation.mean_after >= (1.0 - thresholds::min_reduction) * interpolation.mean_before)
-    return Decision::no_improvement;
-  if (interpolation.t < thresholds::min_significance) return Decision::not_significant;
-  const double worst_allowed = thresholds::worst_error_ratio * std::max(interpolation.worst_before, geometry_worst);
-  return interpolation.worst_after > worst_allowed ? Decision::worst_error_rises : Decision::accepted;
-}
-
-Decision decide(const ErrorChange& interpolation, const ErrorChange& extrapolation, double geometry_worst) {
-  const Decision inside = decide_by_interpolation(interpolation, geometry_worst);
-  if (inside != Decision::accepted) return inside;
-  return extrapolation.mean_after > thresholds::extrapolation_ratio * extrapolation.mean_before
-             ? Decision::extrapolation_worse
-             : Decision::accepted;
+Decision decide(const ErrorChange& interpolation, const ErrorChange& extrapolation) {
+  if (mean_rises(interpolation)) return Decision::no_improvement;
+  if (tail_rises(interpolation)) return Decision::tail_rises;
+  return outweighs_gain(interpolation, extrapolation) ? Decision::extrapolation_worse : Decision::accepted;
 }
 
 }  // namespace kinfer::calibrate

@@ -20,11 +20,12 @@ MatrixXd standardised(const MatrixXd& joints) {
   return z;
 }
 
-Split halved(const VectorXd& along, bool hold_out_upper) {
-  const double middle = median({along.begin(), along.end()});
+Split without_end(const VectorXd& along, bool hold_out_upper) {
+  const double part = thresholds::extrapolation_part;
+  const double border = quantile({along.begin(), along.end()}, hold_out_upper ? 1.0 - part : part);
   Split split;
   for (int row = 0; row < along.size(); ++row)
-    ((along[row] > middle) == hold_out_upper ? split.holdout : split.train).push_back(row);
+    ((along[row] > border) == hold_out_upper ? split.holdout : split.train).push_back(row);
   return split;
 }
 
@@ -39,7 +40,8 @@ std::vector<Split> extrapolation_splits(const PoseSet& data, int fewest) {
   for (Eigen::Index k = 0; k < std::min<Eigen::Index>(2, dof); ++k) {
     const VectorXd along = z.transpose() * directions.vectors.col(dof - 1 - k);
     for (const bool upper : {true, false})
-      if (Split split = halved(along, upper); static_cast<int>(split.train.size()) >= fewest && !split.holdout.empty())
+      if (Split split = without_end(along, upper);
+          static_cast<int>(split.train.size()) >= fewest && !split.holdout.empty())
         splits.push_back(std::move(split));
   }
   return splits;

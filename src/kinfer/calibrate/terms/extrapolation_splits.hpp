@@ -10,8 +10,8 @@
 
 namespace kinfer::calibrate {
 
-/// Four splits: the rows are halved along the first and along the second principal direction of the joint positions
-/// (each standardised), and each half is held out once. Random folds test interpolation between the fitted poses,
+/// Four splits: along the first and along the second principal direction of the joint positions (each standardised),
+/// the quarter of the rows at each end is held out once. Random folds test interpolation between the fitted poses,
 /// these splits test extrapolation beyond them. None where fewer than `fewest` rows would be left to fit. `select`
 /// drops ball-bar measurements whose two rows fall on different sides of a split.
 std::vector<Split> extrapolation_splits(const PoseSet& data, int fewest = thresholds::min_extrapolation_rows);

@@ -24,12 +24,21 @@ HoldoutErrors cross_validate(const Estimate& fit, const ParameterSet& set, const
         fit_rows(fit.chain, set, select(rows, splits[i].train), task,
                  {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only});
   });
+  std::vector<Chain> chains;
+  for (const Estimate& split_fit : holdout_errors.split_fits) chains.push_back(split_fit.chain);
+  HoldoutErrors evaluated = evaluate_holdout(chains, rows, splits);
+  evaluated.split_fits = std::move(holdout_errors.split_fits);
+  return evaluated;
+}
+
+HoldoutErrors evaluate_holdout(const std::vector<Chain>& chains, const PoseSet& rows,
+                               const std::vector<Split>& splits) {
+  HoldoutErrors holdout_errors;
   const auto primary = primary_measurement_kind(rows);
   if (!primary) return holdout_errors;
   for (std::size_t i = 0; i < splits.size(); ++i) {
     const PoseSet evaluated = select(rows, splits[i].holdout);
-    const std::vector<double> errors =
-        primary_errors(holdout_errors.split_fits[i].chain, select(rows, splits[i].train), evaluated);
+    const std::vector<double> errors = primary_errors(chains[i], select(rows, splits[i].train), evaluated);
     for (std::size_t k = 0; k < errors.size(); ++k) {
       holdout_errors.errors.push_back(errors[k]);
       holdout_errors.row.push_back(splits[i].holdout[residual_kind(*primary).row(evaluated, k)]);

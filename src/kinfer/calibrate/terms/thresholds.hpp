@@ -18,15 +18,16 @@ inline constexpr double expansion_prior = 20e-6;  ///< [1/K] between steel and a
 /// [K] 5-95 % range of the temperatures; with less, thermal expansion is not tested.
 inline constexpr double min_temperature_range = 1.0;
 
-// ---- acceptance of a term by its held-out errors ----
-/// [standard errors] of the mean reduction; larger accepts fewer terms. Not corrected for the number of terms tested.
-KINFER_THRESHOLD(calibrate, min_significance, 2.5);
-/// [1] of the mean error; larger accepts fewer terms.
-KINFER_THRESHOLD(calibrate, min_reduction, 0.01);
-/// [1] of the largest error before, or of the geometric model; larger lets single poses pay for the others.
-KINFER_THRESHOLD(calibrate, worst_error_ratio, 1.0);
-/// [1] of the mean error beyond the fitted poses; larger accepts terms that only interpolate.
-KINFER_THRESHOLD(calibrate, extrapolation_ratio, 1.02);
+// ---- proof of a model by its held-out errors ----
+/// [standard errors] of the mean increase that refuse a term; larger trusts the marginal likelihood more.
+KINFER_THRESHOLD(calibrate, harm_significance, 2.0);
+/// [1] of the 95 or 99 % point: smaller increases are no harm.
+KINFER_THRESHOLD(calibrate, tail_ratio, 1.05);
+/// [1] bootstrap probability of an increase of that point that refuses a term.
+inline constexpr double harm_probability = 0.975;
+inline constexpr int bootstrap_draws = 200;  ///< more: slower, the probability more accurate than 1 %
+/// [1] of the rows at each end of a principal direction, held out together; larger: farther beyond the fitted poses.
+inline constexpr double extrapolation_part = 0.25;
 /// Rows left to fit on each side of an extrapolation split; with fewer, extrapolation is not tested.
 inline constexpr int min_extrapolation_rows = 15;
 

@@ -73,7 +73,7 @@ std::string model_table(const ModelSelection& selection) {
                                  "fitted", "not fitted", "worst");
   for (const SelectionStep& step : selection.steps) {
     const std::string reason = words::reason(step);
-    if (was_tested(step))
+    if (step.holdout.n > 0)
       text += fmt::format("  {:<14} {:>11.4f} {:>11.4f} {:>11.4f}   {}\n", name(step), 1e3 * step.train.mean,
                           1e3 * step.holdout.mean, 1e3 * step.holdout.max, reason);
     else

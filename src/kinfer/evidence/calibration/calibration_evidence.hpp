@@ -37,6 +37,7 @@ struct ModelRecord {
   std::optional<Decision> decision{};
   std::optional<MissingData> missing{};
   std::optional<ErrorChange> interpolation{}, extrapolation{};  ///< of a term that was tested
+  double log_evidence_gain = 0.0, contribution = 0.0;           ///< [1], [m] as in SelectionStep
 };
 
 struct ModelSelectionRecord {

@@ -11,9 +11,8 @@ namespace {
 constexpr std::array<std::string_view, term_count> names_of_terms{"gains", "coupling", "gravity",  "torques",
                                                                   "gear",  "spectrum", "backlash", "temperature"};
 constexpr std::array<std::string_view, 9> decision_names{
-    "start",           "accepted",          "requested",           "no_improvement",
-    "not_significant", "worst_error_rises", "extrapolation_worse", "not_excited",
-    "data_missing"};
+    "start",       "accepted",    "requested", "no_evidence", "no_improvement", "tail_rises", "extrapolation_worse",
+    "not_excited", "data_missing"};
 constexpr std::array<std::string_view, 7> missing_names{
     "none", "gravity", "torques", "approach_order", "temperature", "temperature_range", "spectral_line"};
 

@@ -31,12 +31,12 @@ std::vector<std::string> term_names();  ///< of all terms
 
 enum class Decision {
   start,                ///< the geometric model, which every selection starts from
-  accepted,             ///< reduces the held-out errors
+  accepted,             ///< supported by the marginal likelihood, and no harm to held-out errors
   requested,            ///< part of a fixed model
-  no_improvement,       ///< the mean held-out error does not fall enough
-  not_significant,      ///< it falls by no more than chance explains
-  worst_error_rises,    ///< the largest held-out error rises
-  extrapolation_worse,  ///< the mean error beyond the fitted poses rises
+  no_evidence,          ///< the marginal likelihood is not higher with it
+  no_improvement,       ///< supported, but the mean held-out error is higher with it
+  tail_rises,           ///< supported, but the 95 or 99 % point of the held-out errors is higher with it
+  extrapolation_worse,  ///< supported, but the errors beyond the fitted poses are higher with it
   not_excited,          ///< not tested: the data determine none of its parameters
   data_missing,         ///< not tested: see MissingData
 };
@@ -54,21 +54,31 @@ enum class MissingData {
 };
 std::string_view name(MissingData missing);  ///< "none", "gravity", …
 
+/// A point of the distribution of held-out errors for two models.
+struct QuantileChange {
+  double before = 0.0, after = 0.0;  ///< [m]
+  double rise_probability = 0.0;     ///< that it is higher after, by the bootstrap; 0 where it is not higher
+};
+
 /// Paired comparison of the held-out errors of two models, without the rows that are outliers of both.
 struct ErrorChange {
   double mean_before = 0.0, mean_after = 0.0;    ///< [m]
   double worst_before = 0.0, worst_after = 0.0;  ///< [m]
   double t = 0.0;                                ///< mean reduction of the error over its standard error
+  QuantileChange p95{}, p99{};
 };
 
-/// One candidate, tested (or skipped) on top of the terms accepted before it.
+/// One candidate. Its errors are those of the selected model with the terms up to this one; interpolation and
+/// extrapolation compare the selected model without and with it.
 struct SelectionStep {
   std::optional<Term> term{};  ///< none: the geometric model
   Decision decision = Decision::start;
   MissingData missing = MissingData::none;
   ErrorChange interpolation{};         ///< by random folds
   ErrorChange extrapolation{};         ///< by splits along the joint positions; zero where it was not tested
-  ErrorStatistics train{}, holdout{};  ///< [m] by cross-validation over the fitted rows; n = 0 where it was skipped
+  ErrorStatistics train{}, holdout{};  ///< [m] by cross-validation over the fitted rows; n = 0 where it is not selected
+  double log_evidence_gain = 0.0;      ///< log marginal likelihood of the data with all selected terms minus without it
+  double contribution = 0.0;           ///< [m] rms over the poses of what it moves the tool by
   int parameter_count = 0,
       determined_count = 0;  ///< number of parameters it adds, and how many of them the data determine
   std::vector<std::string> undetermined_parameters{};  ///< its parameters that the data do not determine

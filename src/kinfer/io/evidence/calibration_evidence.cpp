@@ -36,7 +36,9 @@ ModelRecord model_record(const SelectionStep& step) {
                      .skipped = !was_tested(step),
                      .reason = words::reason(step),
                      .decision = step.decision,
-                     .missing = step.missing};
+                     .missing = step.missing,
+                     .log_evidence_gain = step.log_evidence_gain,
+                     .contribution = step.contribution};
   if (was_tested(step) && step.term)
     record.interpolation = step.interpolation, record.extrapolation = step.extrapolation;
   return record;

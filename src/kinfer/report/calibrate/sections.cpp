@@ -195,10 +195,11 @@ html::Section model_section(const CalibrationEvidence& e) {
                     .head = {"Model", "mean, fitted", "mean, not fitted", "worst, not fitted", "", "Why"},
                     .rows = {}};
   for (const ModelRecord& model : e.model.models) table.rows.push_back(model_row(model));
-  return {"model-section", "Model selection",
-          "From simple to complex, each term on top of those selected before it. A term is selected only if it reduces "
-          "the held-out errors and does not raise the largest of them.",
-          model_selection_plot(e) + html::table(table)};
+  return {
+      "model-section", "Model selection",
+      "All terms are weighed together by the marginal likelihood of the data; the errors are those of the model with "
+      "the terms up to each row. A term that the data support is refused only if held-out errors are worse with it.",
+      model_selection_plot(e) + html::table(table)};
 }
 
 html::Section doubts_section(const CalibrationEvidence& e) {

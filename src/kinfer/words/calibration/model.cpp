@@ -14,6 +14,11 @@ std::string means(const ErrorChange& change) {
   return fmt::format("from {} to {}", fine_mm(change.mean_before), fine_mm(change.mean_after));
 }
 
+std::string tail(const ErrorChange& change) {
+  return fmt::format("95 and 99 % of the errors are below {} and {} instead of {} and {}", fine_mm(change.p95.after),
+                     fine_mm(change.p99.after), fine_mm(change.p95.before), fine_mm(change.p99.before));
+}
+
 std::string missing_data(MissingData missing) {
   switch (missing) {
     case MissingData::gravity:
@@ -76,18 +81,19 @@ std::string reason(const SelectionStep& step) {
     case Decision::requested:
       return phrase(id, "as requested");
     case Decision::accepted:
-      return phrase(id, "taken: {} ({:.0f} standard errors){}", held_out, inside.t,
+      return phrase(id, "taken: {} (log evidence {:+.1f}); it moves the tool by {}{}", held_out, step.log_evidence_gain,
+                    fine_mm(step.contribution),
                     outside.mean_before > 0.0 ? "; beyond the fitted poses " + means(outside) : "");
+    case Decision::no_evidence:
+      return phrase(id, "refused: the data do not support it (log evidence {:+.1f})", step.log_evidence_gain);
     case Decision::no_improvement:
       return phrase(id, "refused: {}", held_out);
-    case Decision::not_significant:
-      return phrase(id, "refused: {}, which chance explains ({:.1f} standard errors)", held_out, inside.t);
-    case Decision::worst_error_rises:
-      return phrase(id, "refused: {}, but the worst held-out error rises from {} to {}", held_out,
-                    fine_mm(inside.worst_before), fine_mm(inside.worst_after));
+    case Decision::tail_rises:
+      return phrase(id, "refused: {}, but {}", held_out, tail(inside));
     case Decision::extrapolation_worse:
-      return phrase(id, "refused: {} ({:.0f} standard errors), but beyond the fitted poses the mean rises {}", held_out,
-                    inside.t, means(outside));
+      return phrase(id, "refused: {} ({:.0f} standard errors), but beyond the fitted poses the mean {} {}{}", held_out,
+                    inside.t, outside.mean_after > outside.mean_before ? "rises" : "goes", means(outside),
+                    outside.p95.rise_probability + outside.p99.rise_probability > 0.0 ? ", and " + tail(outside) : "");
     case Decision::not_excited:
       return phrase(id, "not tested: these poses do not excite its terms");
     case Decision::data_missing:

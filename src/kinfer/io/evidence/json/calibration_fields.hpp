@@ -103,12 +103,21 @@ void fields(Archive& a, Value<Archive, UnknownRobotEvidence>& robot) {
 }
 
 template <class Archive>
+void fields(Archive& a, Value<Archive, QuantileChange>& change) {
+  a("before", change.before);
+  a("after", change.after);
+  a("rise_probability", change.rise_probability);
+}
+
+template <class Archive>
 void fields(Archive& a, Value<Archive, ErrorChange>& change) {
   a("mean_before", change.mean_before);
   a("mean_after", change.mean_after);
   a("worst_before", change.worst_before);
   a("worst_after", change.worst_after);
   a("standard_errors", change.t);
+  a.later("p95", change.p95);
+  a.later("p99", change.p99);
 }
 
 template <class Archive>
@@ -127,6 +136,8 @@ void fields(Archive& a, Value<Archive, ModelRecord>& model) {
   a.when(model.missing.has_value(), "missing", model.missing);
   a.when(model.interpolation.has_value(), "interpolation", model.interpolation);
   a.when(model.extrapolation.has_value(), "extrapolation", model.extrapolation);
+  a.later("log_evidence_gain", model.log_evidence_gain);
+  a.later("contribution", model.contribution);
 }
 
 template <class Archive>

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/terms/relevance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "kinfer/base/expect.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer::calibrate {
+namespace {
+
+constexpr int grid_points = 49;                                            // of factors
+constexpr double smallest_factor = 1e-3, grid_ratio = 1.2589254117941673;  // 10 per decade, to 63
+constexpr int most_sweeps = 20;                                            // usually three suffice
+constexpr double settled_step = 0.5;                                       // [grid steps]
+constexpr double local_spread = 1.0;  // [log] sd of the sizes of one term's joints about their common size
+
+double factor_at(int step) {
+  return smallest_factor * std::pow(grid_ratio, step);
+}
+
+/// What the measurements say of one group given all others, along the eigenvectors of its information.
+struct ConditionalGroup {
+  VectorXd information, image;
+
+  /// log p(data | f) − log p(data | 0)
+  double gain(double factor) const {
+    const double v = factor * factor;
+    double sum = 0.0;
+    for (Eigen::Index k = 0; k < image.size(); ++k)
+      sum += v * image[k] * image[k] / (1.0 + v * information[k]) - std::log1p(v * information[k]);
+    return 0.5 * sum;
+  }
+};
+
+std::vector<int> members_of(const std::vector<RelevanceGroup>& groups, std::span<const int> which) {
+  std::vector<int> members;
+  for (const int g : which) members.insert(members.end(), groups[g].members.begin(), groups[g].members.end());
+  return members;
+}
+
+/// The result of a maximisation over the factor, and of an integration over it.
+struct Weighed {
+  double factor = 0.0, log_bayes_factor = 0.0;
+};
+
+/// `log_prior`: of log f.
+template <class LogPrior>
+Weighed weigh(const ConditionalGroup& group, LogPrior log_prior) {
+  std::array<double, grid_points> value;
+  for (int i = 0; i < grid_points; ++i) value[i] = group.gain(factor_at(i)) + log_prior(factor_at(i));
+  const auto best = static_cast<int>(std::max_element(value.begin(), value.end()) - value.begin());
+  double sum = 0.0;
+  for (const double v : value) sum += std::exp(v - value[best]);
+  return {factor_at(best), value[best] + std::log(sum * std::log(grid_ratio))};
+}
+
+/// Density of log f for a half-Cauchy f of scale 1.
+double log_half_cauchy(double f) {
+  return std::log(2.0 / std::numbers::pi * f / (1.0 + f * f));
+}
+
+class Weighing {
+ public:
+  Weighing(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups)
+      : terms_(terms), groups_(groups), result_(groups.size()) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const bool alone = groups[g].own_size;
+      const auto same = std::find_if(families_.begin(), families_.end(), [&](const std::vector<int>& family) {
+        return !alone && !groups[family.front()].own_size && groups[family.front()].family == groups[g].family;
+      });
+      if (same == families_.end())
+        families_.push_back({static_cast<int>(g)});
+      else
+        same->push_back(static_cast<int>(g));
+    }
+  }
+
+  void start_with_all() {
+    for (GroupRelevance& group : result_) group.factor = 1.0;
+  }
+
+  /// Coordinate ascent over terms of one size, then over the sizes of their joints.
+  void run() {
+    sweep([&] {
+      double moved = 0.0;
+      for (const std::vector<int>& family : families_) moved = std::max(moved, weigh_family(family));
+      return moved;
+    });
+    sweep([&] {
+      double moved = 0.0;
+      for (const std::vector<int>& family : families_)
+        if (family.size() > 1) moved = std::max(moved, weigh_members(family));
+      return moved;
+    });
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      if (result_[g].factor == 0.0 || groups_[g].own_size) result_[g].log_evidence_gain = gain_of(static_cast<int>(g));
+  }
+
+  std::vector<GroupRelevance> result() const { return result_; }
+
+  double total() const {
+    std::vector<double> factors;
+    for (const GroupRelevance& group : result_) factors.push_back(group.factor);
+    double sum = log_evidence(terms_, groups_, factors);
+    for (const std::vector<int>& family : families_) {
+      double largest = 0.0;
+      for (const int g : family) largest = std::max(largest, factors[g]);
+      if (largest > 0.0) sum += log_half_cauchy(largest) - log_odds();
+    }
+    return sum;
+  }
+
+ private:
+  template <class Step>
+  static void sweep(Step step) {
+    for (int i = 0; i < most_sweeps; ++i)
+      if (step() < settled_step) return;
+  }
+
+  /// Log prior odds against a term: one of the candidates is expected to exist (Scott & Berger 2010).
+  double log_odds() const { return std::log(static_cast<double>(families_.size()) + 1.0); }
+
+  ConditionalGroup conditional(std::span<const int> which) const {
+    const std::vector<int> own = members_of(groups_, which);
+    std::vector<int> others;
+    std::vector<double> precision;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (result_[g].factor == 0.0 || std::ranges::find(which, static_cast<int>(g)) != which.end()) continue;
+      for (const int k : groups_[g].members)
+        others.push_back(k), precision.push_back(1.0 / (result_[g].factor * result_[g].factor));
+    }
+    MatrixXd information = terms_.information(own, own);
+    VectorXd image = terms_.image(own);
+    if (!others.empty()) {
+      MatrixXd among = terms_.information(others, others);
+      among.diagonal() += Eigen::Map<const VectorXd>(precision.data(), static_cast<Eigen::Index>(precision.size()));
+      const auto covariance = invert_spd(among);
+      KINFER_EXPECT(covariance, "{} term parameters with priors have a covariance", others.size());
+      const MatrixXd across = terms_.information(own, others) * *covariance;
+      const VectorXd image_of_others = terms_.image(others);
+      information -= across * terms_.information(others, own);
+      image -= across * image_of_others;
+    }
+    const SymmetricEigen eigen = symmetric_eigen(information);
+    return {eigen.values.cwiseMax(0.0), eigen.vectors.transpose() * image};
+  }
+
+  static double steps_between(double before, double after) {
+    if ((before == 0.0) != (after == 0.0)) return grid_points;
+    return before == 0.0 ? 0.0 : std::abs(std::log(after / before)) / std::log(grid_ratio);
+  }
+
+  double set(int g, double factor, double gain) {
+    const double moved = steps_between(result_[g].factor, factor);
+    result_[g] = {factor, gain};
+    return moved;
+  }
+
+  /// One size for the whole term.
+  double weigh_family(const std::vector<int>& family) {
+    const Weighed term = weigh(conditional(family), log_half_cauchy);
+    const double gain = term.log_bayes_factor - log_odds();
+    double moved = 0.0;
+    for (const int g : family) moved = std::max(moved, set(g, gain > 0.0 ? term.factor : 0.0, gain));
+    return moved;
+  }
+
+  /// Sizes of a term's joints about their geometric mean; in a term without support, single joints that stand out.
+  double weigh_members(const std::vector<int>& family) {
+    double sum = 0.0, count = 0.0;
+    for (const int g : family)
+      if (result_[g].factor > 0.0) sum += std::log(result_[g].factor), count += 1.0;
+    double moved = 0.0;
+    for (const int g : family) {
+      const ConditionalGroup group = conditional(std::span(&g, 1));
+      const double centre = count > 0.0 ? std::exp(sum / count) : 0.0;
+      const Weighed joint =
+          count > 0.0 ? weigh(group,
+                              [&](double f) {
+                                const double z = std::log(f / centre) / local_spread;
+                                return -0.5 * z * z - std::log(local_spread * std::sqrt(2.0 * std::numbers::pi));
+                              })
+                      : weigh(group, log_half_cauchy);
+      const double against = count > 0.0 ? 0.0 : log_odds() + std::log(static_cast<double>(family.size()));
+      const double gain = joint.log_bayes_factor - against;
+      moved = std::max(moved, set(g, gain > 0.0 ? joint.factor : 0.0, gain));
+    }
+    return moved;
+  }
+
+  double gain_of(int g) const {
+    return weigh(conditional(std::span(&g, 1)), log_half_cauchy).log_bayes_factor - log_odds();
+  }
+
+  const LinearisedTerms& terms_;
+  const std::vector<RelevanceGroup>& groups_;
+  std::vector<std::vector<int>> families_;
+  std::vector<GroupRelevance> result_;
+};
+
+}  // namespace
+
+double log_evidence(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups,
+                    std::span<const double> factors) {
+  std::vector<int> own;
+  std::vector<double> scale;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (factors[g] == 0.0) continue;
+    for (const int k : groups[g].members) own.push_back(k), scale.push_back(factors[g]);
+  }
+  if (own.empty()) return 0.0;
+  const Eigen::Map<const VectorXd> f(scale.data(), static_cast<Eigen::Index>(scale.size()));
+  const MatrixXd information = terms.information(own, own);
+  const VectorXd image = terms.image(own);
+  const SymmetricEigen eigen = symmetric_eigen(f.asDiagonal() * information * f.asDiagonal());
+  const VectorXd s = eigen.values.cwiseMax(0.0), q = eigen.vectors.transpose() * f.cwiseProduct(image);
+  return 0.5 * (q.array().square() / (1.0 + s.array()) - s.array().log1p()).sum();
+}
+
+double joint_log_evidence_gain(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups,
+                               std::vector<double> factors, int family) {
+  const double with = log_evidence(terms, groups, factors);
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    if (groups[g].family == family) factors[g] = 0.0;
+  return with - log_evidence(terms, groups, factors);
+}
+
+std::vector<GroupRelevance> weigh_groups(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups) {
+  Weighing from_none(terms, groups), from_all(terms, groups);
+  from_all.start_with_all();
+  from_none.run(), from_all.run();
+  return from_all.total() > from_none.total() ? from_all.result() : from_none.result();
+}
+
+}  // namespace kinfer::calibrate

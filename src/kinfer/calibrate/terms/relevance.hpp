@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Automatic relevance determination: how large the parameters of each group of model terms are, by the marginal
+// likelihood of the data (MacKay 1992, "Bayesian interpolation"; Tipping 2001, "Sparse Bayesian learning").
+//
+// About the optimum of a fit the measurements are linear in the parameters, so all that they say of the m term
+// parameters u (in units of their stated priors, every other parameter marginalised under its own prior) is
+//   log p(data | u) = const − ½ uᵀ A u + bᵀ u.
+// With u_g ~ N(0, f_g² I) for each group g, S and q the information and image of the group given all others,
+//   log p(data | f_g) − log p(data | f_g = 0) = ½ Σ_k [ f² q_k²/(1 + f² s_k) − log(1 + f² s_k) ]      (eigenvalues s_k)
+// is integrated over f under a half-Cauchy prior of scale 1 (Gelman 2006), which charges each group for its freedom.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kinfer/linalg/types.hpp"
+
+namespace kinfer::calibrate {
+
+/// What the measurements say of some parameters, in units of their prior standard deviations about their prior means.
+struct LinearisedTerms {
+  MatrixXd information;  ///< A, m x m, without the priors of these parameters
+  VectorXd image;        ///< b, m
+};
+
+/// Parameters with one variance.
+struct RelevanceGroup {
+  std::vector<int> members;  ///< indices into LinearisedTerms
+  int family = 0;            ///< groups of one term are expected to be of one size
+  bool own_size = false;     ///< of groups that have nothing in common with their family: spectral lines
+};
+
+struct GroupRelevance {
+  double factor = 0.0;  ///< f_g, standard deviation in units of the stated prior; 0: the data do not support the group
+  double log_evidence_gain = 0.0;  ///< of the group, given the others; negative: the data speak against it
+};
+
+/// The factors that maximise the marginal likelihood, one per group.
+std::vector<GroupRelevance> weigh_groups(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups);
+
+/// log p(data | factors) − log p(data | all factors 0), without the prior of the factors.
+double log_evidence(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups,
+                    std::span<const double> factors);
+
+/// Gain of several groups together, given the others.
+double joint_log_evidence_gain(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups,
+                               std::vector<double> factors, int family);
+
+}  // namespace kinfer::calibrate

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/terms/weighed_model.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "kinfer/calibrate/terms/ablation.hpp"
+#include "kinfer/calibrate/terms/candidate_terms.hpp"
+#include "kinfer/calibrate/terms/decision.hpp"
+#include "kinfer/calibrate/terms/extrapolation_splits.hpp"
+#include "kinfer/calibrate/validation/gross_errors.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/measurement/row_selection.hpp"
+
+namespace kinfer::calibrate {
+namespace {
+
+/// A model fitted to all rows, and its held-out errors: by interpolation (random folds), and by extrapolation (splits
+/// along the principal directions of the joint positions).
+struct ProvedModel {
+  TermModel model;
+  Estimate fit;
+  HoldoutErrors interpolation, extrapolation;
+};
+
+/// Comparisons of a model without and with some of its terms.
+struct Proof {
+  ErrorChange interpolation, extrapolation;
+  Decision decision = Decision::accepted;
+};
+
+std::vector<double> factors_of(const std::vector<GroupRelevance>& weights) {
+  std::vector<double> factors;
+  for (const GroupRelevance& group : weights) factors.push_back(group.factor);
+  return factors;
+}
+
+class ModelWeigher {
+ public:
+  ModelWeigher(const SelectionData& data, const Estimate& geometry)
+      : data_(data), geometry_(geometry), extrapolation_splits_(extrapolation_splits(data.rows)) {}
+
+  WeighedModel run() {
+    WeighedModel result = weighed_geometry(data_, geometry_);
+    candidates_ = make_candidates(geometry_, data_.task, data_.rows);
+    const Estimate fitted = weigh_all(InitialGuess::rough);
+    add_spectral_lines(candidates_, fitted, data_.task, data_.rows);
+    if (candidates_.steps.back().missing == MissingData::none) weigh_all(InitialGuess::near_optimum);
+    if (!current_.model.terms.empty()) {
+      ProvedModel plain{{}, geometry_, result.interpolation, {}};
+      plain.extrapolation = held_out(plain.fit, geometry_.parameters, extrapolation_splits_);
+      prove(plain);
+    }
+    describe(result);
+    return result;
+  }
+
+ private:
+  /// Fits all candidates, weighs their groups, and fits what is left. Returns the latter.
+  Estimate weigh_all(InitialGuess guess) {
+    current_ = {{}, geometry_, {}, {}};
+    if (candidates_.parameters.empty()) return geometry_;
+    const TermModel all = model_of_all(candidates_, geometry_.parameters);
+    const Estimate fitted = fit_rows(all.chain, all.parameters, data_.rows, data_.task,
+                                     {.initial_guess = guess, .detail = Detail::numbers_only}, data_.observer);
+    groups_ = relevance_groups(candidates_);
+    linearised_ = linearise_terms(fitted, free_indices(fitted, candidates_.parameters));
+    weights_ = weigh_groups(linearised_, groups_);
+    fit_relevant(fitted);
+    return current_.fit;
+  }
+
+  void fit_relevant(const Estimate& fitted) {
+    current_.model = model_of_relevant(candidates_, geometry_, fitted, groups_, factors_of(weights_));
+    current_.fit =
+        current_.model.terms.empty()
+            ? geometry_
+            : fit_rows(current_.model.chain, current_.model.parameters, data_.rows, data_.task,
+                       {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only}, data_.observer);
+  }
+
+  HoldoutErrors held_out(const Estimate& fit, const ParameterSet& set, const std::vector<Split>& splits) const {
+    return cross_validate(fit, set, data_.rows, splits, data_.task, data_.threads);
+  }
+
+  Proof proof_of(const HoldoutErrors& inside_before, const HoldoutErrors& outside_before,
+                 const std::vector<Outlier>& outliers_before, const ProvedModel& after) const {
+    Proof proof{compare_holdout(inside_before, outliers_before, after.interpolation, after.fit.outliers),
+                compare_holdout(outside_before, outliers_before, after.extrapolation, after.fit.outliers)};
+    proof.decision = decide(proof.interpolation, proof.extrapolation);
+    return proof;
+  }
+
+  Proof proof_of_term(Term term) const {
+    const auto removed = [&](Term other) { return other == term; };
+    return proof_of(
+        errors_without(current_.interpolation, current_.model.terms, removed, data_.rows, data_.splits, data_.threads),
+        errors_without(current_.extrapolation, current_.model.terms, removed, data_.rows, extrapolation_splits_,
+                       data_.threads),
+        current_.fit.outliers, current_);
+  }
+
+  /// Removes the terms that held-out errors speak against, the most harmful first.
+  void prove(const ProvedModel& plain) {
+    while (!current_.model.terms.empty()) {
+      current_.interpolation = held_out(current_.fit, current_.model.parameters, data_.splits);
+      current_.extrapolation = held_out(current_.fit, current_.model.parameters, extrapolation_splits_);
+      const Proof whole = proof_of(plain.interpolation, plain.extrapolation, plain.fit.outliers, current_);
+      std::optional<Term> worst;
+      double most = -1e300;
+      proofs_.clear();
+      for (const TermMaker& maker : term_makers()) {
+        if (!has(maker.term)) continue;
+        const Proof proof = proof_of_term(maker.term);
+        proofs_.push_back({maker.term, proof});
+        if (proof.decision == Decision::accepted && whole.decision == Decision::accepted) continue;
+        const double harm = -std::min(proof.interpolation.t, proof.extrapolation.t);
+        if (harm > most) most = harm, worst = maker.term;
+      }
+      if (!worst) return;
+      refuse(*worst, whole);
+    }
+  }
+
+  bool has(Term term) const {
+    return std::ranges::any_of(current_.model.terms, [&](const CandidateParameter& c) { return c.term == term; });
+  }
+
+  void refuse(Term term, const Proof& whole) {
+    const auto own = std::ranges::find_if(proofs_, [&](const auto& p) { return p.first == term; });
+    const Proof& why = own->second.decision == Decision::accepted ? whole : own->second;
+    refused_.push_back({term, why});
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      if (groups_[g].family == static_cast<int>(term)) weights_[g].factor = 0.0;
+    Estimate start = current_.fit;
+    start.chain = candidates_chain_with(current_);
+    fit_relevant(start);
+  }
+
+  /// The candidates' chain with the values of a fit of some of them.
+  Chain candidates_chain_with(const ProvedModel& fitted) const {
+    Chain chain = candidates_.chain;
+    for (const Parameter* p : geometry_.parameters.free())
+      set_value_at(chain, p->at, value_at(fitted.fit.chain, p->at));
+    return chain;
+  }
+
+  void describe(WeighedModel& result) {
+    for (SelectionStep step : candidates_.steps) {
+      HoldoutErrors errors;
+      if (step.decision == Decision::no_evidence) describe_candidate(step, errors);
+      result.steps.push_back({step, errors});
+    }
+    std::ranges::stable_sort(result.steps, {},
+                             [](const WeighedStep& s) { return s.step.term ? 1 + static_cast<int>(*s.step.term) : 0; });
+    result.fit = current_.fit;
+    if (!current_.model.terms.empty()) result.interpolation = current_.interpolation;
+  }
+
+  void describe_candidate(SelectionStep& step, HoldoutErrors& errors) {
+    const Term term = *step.term;
+    for (const auto& [refused, proof] : refused_)
+      if (refused == term)
+        step.decision = proof.decision, step.interpolation = proof.interpolation,
+        step.extrapolation = proof.extrapolation;
+    step.log_evidence_gain =
+        joint_log_evidence_gain(linearised_, groups_, factors_of(weights_), static_cast<int>(term));
+    if (!has(term)) {
+      if (step.decision == Decision::no_evidence) describe_unsupported(step, static_cast<int>(term));
+      return;
+    }
+    step.decision = Decision::accepted;
+    for (const auto& [accepted, proof] : proofs_)
+      if (accepted == term) step.interpolation = proof.interpolation, step.extrapolation = proof.extrapolation;
+    for (const CandidateParameter& c : candidates_.parameters)
+      if (c.term == term) count_determined(step, c.parameter.name, current_.fit);
+    const auto later = [&](Term other) { return static_cast<int>(other) > static_cast<int>(term); };
+    errors =
+        errors_without(current_.interpolation, current_.model.terms, later, data_.rows, data_.splits, data_.threads);
+    std::vector<CandidateParameter> own, removed;
+    for (const CandidateParameter& c : current_.model.terms) {
+      if (c.term == term) own.push_back(c);
+      if (later(c.term)) removed.push_back(c);
+    }
+    const Chain up_to_it =
+        removed.empty() ? current_.fit.chain : chain_without(current_.fit, free_indices(current_.fit, removed));
+    step.train = training_statistics(up_to_it, current_.fit.outliers, data_.rows);
+    step.contribution = displacement(current_.fit.chain, own, data_.rows);
+  }
+
+  /// Gain of the best group of a term without support; not_excited where the data know none of its numbers better than
+  /// their priors do.
+  void describe_unsupported(SelectionStep& step, int term) const {
+    bool excited = false;
+    step.log_evidence_gain = -std::numeric_limits<double>::max();
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (groups_[g].family != term) continue;
+      step.log_evidence_gain = std::max(step.log_evidence_gain, weights_[g].log_evidence_gain);
+      for (const int k : groups_[g].members) excited |= linearised_.information(k, k) > 1.0;
+    }
+    if (!excited) step.decision = Decision::not_excited;
+  }
+
+  const SelectionData& data_;
+  const Estimate& geometry_;
+  std::vector<Split> extrapolation_splits_;
+  CandidateTerms candidates_;
+  std::vector<RelevanceGroup> groups_;
+  LinearisedTerms linearised_;
+  std::vector<GroupRelevance> weights_;
+  ProvedModel current_;
+  std::vector<std::pair<Term, Proof>> proofs_, refused_;
+};
+
+}  // namespace
+
+void count_determined(SelectionStep& step, const std::string& parameter, const Estimate& fit) {
+  const auto value = std::ranges::find(fit.values, parameter, &ParameterEstimate::name);
+  if (value != fit.values.end() && value->identifiable)
+    ++step.determined_count;
+  else
+    step.undetermined_parameters.push_back(parameter);
+}
+
+ErrorStatistics training_statistics(const Chain& chain, const std::vector<Outlier>& outliers, const PoseSet& rows) {
+  const PoseSet inliers = select(rows, without_outliers(all_rows(rows), outliers));
+  return error_statistics(primary_errors(chain, rows, inliers));
+}
+
+WeighedModel weighed_geometry(const SelectionData& data, const Estimate& geometry) {
+  WeighedModel model{
+      geometry, cross_validate(geometry, geometry.parameters, data.rows, data.splits, data.task, data.threads), {}};
+  SelectionStep step{.decision = Decision::start};
+  step.train = training_statistics(geometry.chain, geometry.outliers, data.rows);
+  step.parameter_count = static_cast<int>(geometry.values.size());
+  step.determined_count = geometry.identifiability.rank;
+  model.steps.push_back({step, {{}, model.interpolation.errors, model.interpolation.row}});
+  return model;
+}
+
+WeighedModel weigh_model(const SelectionData& data, const Estimate& geometry) {
+  return ModelWeigher(data, geometry).run();
+}
+
+}  // namespace kinfer::calibrate

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measured and simulated robots for the study of regret.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinfer/calibrate/problem/task.hpp"
+
+namespace kinfer::study {
+
+struct NamedTask {
+  std::string name;
+  calibrate::CalibrationTask task;
+};
+
+/// The public sets under KINFER_DATA and the simulated cases under KINFER_CASES whose name contains `wanted`, then
+/// `simulated` robots: rigid ones, and ones with terms known and unknown to the model.
+std::vector<NamedTask> named_tasks(const std::string& wanted, int simulated);
+
+}  // namespace kinfer::study

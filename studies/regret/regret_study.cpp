@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// Regret of the automatic choice of model terms: held-out errors of the default over those of the best fixed set of
+// terms, on halves of the rows that were never fitted.
+//
+//   study_regret [--only TEXT] [--halves 5] [--sets 26] [--rows 0 (all)] [--simulated 30] [--threads 0]
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <set>
+
+#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/measurement/split.hpp"
+#include "studies/regret/data_sets.hpp"
+
+namespace kinfer::study {
+using namespace calibrate;
+namespace {
+
+struct Options {
+  std::string only;
+  int halves = 5, sets = 26, rows = 0, simulated = 30, threads = 0;
+};
+
+/// The first ones are those that win most often.
+constexpr const char* fixed_sets[] = {"geometry",
+                                      "gravity",
+                                      "gear",
+                                      "gravity+gear",
+                                      "gravity+gear+spectrum",
+                                      "gear+spectrum",
+                                      "gains",
+                                      "gains+gravity",
+                                      "gains+gear",
+                                      "gains+gravity+gear",
+                                      "gains+gravity+gear+spectrum",
+                                      "torques",
+                                      "gravity+torques",
+                                      "torques+gear",
+                                      "gravity+torques+gear",
+                                      "backlash",
+                                      "gear+backlash",
+                                      "gravity+gear+backlash",
+                                      "gravity+gear+spectrum+backlash",
+                                      "coupling",
+                                      "coupling+gear",
+                                      "coupling+gravity+gear",
+                                      "spectrum",
+                                      "gravity+spectrum",
+                                      "gravity+gear+spectrum+backlash+temperature",
+                                      "gains+coupling+gravity+torques+gear+spectrum+backlash+temperature"};
+
+using ErrorsByRow = std::map<int, double>;  // [m]
+
+/// Half of the rows labelled as held out; linked rows (ball-bars) follow the row they are linked to.
+PoseSet with_half_held_out(PoseSet data, int seed) {
+  data.set.assign(data.rows(), SplitLabel::train);
+  for (const int row : random_split(static_cast<int>(data.rows()), 0.5, Rng(seed)).holdout)
+    data.set[row] = SplitLabel::holdout;
+  for (const PairDistance& pair : data.pairs) data.set[pair.other] = data.set[pair.row];
+  return data;
+}
+
+struct Run {
+  std::string model;
+  ErrorsByRow errors;
+  double seconds = 0.0;
+};
+
+Run run(const CalibrationTask& task, const std::string& model, int threads) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto c = calibrate_robot(task, {.model = parse_model_choice(model).value(), .threads = threads}, Rng(1));
+  Run result{model, {}, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+  if (!c) return result;
+  result.model = selected_model(c->model_selection);
+  for (const RowErrors& row : c->rows)
+    if (row.held_out && std::isfinite(row.after)) result.errors[row.row] = row.after;
+  return result;
+}
+
+/// A row that every model misses by far is a wrong measurement.
+std::set<int> wrong_rows(const std::vector<Run>& runs) {
+  constexpr double far = 8.0;  // medians
+  std::map<int, int> missed;
+  for (const Run& run : runs) {
+    std::vector<double> errors;
+    for (const auto& [row, error] : run.errors) errors.push_back(error);
+    if (errors.empty()) continue;
+    const double limit = far * median(errors);
+    for (const auto& [row, error] : run.errors) missed[row] += error > limit;
+  }
+  std::set<int> wrong;
+  for (const auto& [row, times] : missed)
+    if (times == static_cast<int>(runs.size())) wrong.insert(row);
+  return wrong;
+}
+
+struct Figures {
+  double mean = 0.0, p95 = 0.0, p99 = 0.0, worst = 0.0;  // [mm]
+};
+
+Figures figures_of(const Run& run, const std::set<int>& wrong) {
+  std::vector<double> errors;
+  for (const auto& [row, error] : run.errors)
+    if (!wrong.contains(row)) errors.push_back(1e3 * error);
+  if (errors.empty()) return {};
+  return {mean(errors), quantile(errors, 0.95), quantile(errors, 0.99), *std::ranges::max_element(errors)};
+}
+
+struct Regret {
+  double mean = 1.0, p99 = 1.0, worst = 1.0;
+};
+
+Regret study_half(const NamedTask& named, int half, const Options& options) {
+  CalibrationTask task = named.task;
+  if (options.rows > 0 && task.data.rows() > options.rows)
+    task.data = select(task.data,
+                       random_split(static_cast<int>(task.data.rows()),
+                                    static_cast<double>(options.rows) / static_cast<double>(task.data.rows()), Rng(99))
+                           .holdout);
+  task.data = with_half_held_out(task.data, half);
+  std::vector<Run> runs{run(task, "auto", options.threads)};
+  for (int i = 0; i < std::min<int>(options.sets, std::size(fixed_sets)); ++i)
+    runs.push_back(run(task, fixed_sets[i], options.threads));
+  const std::set<int> wrong = wrong_rows(runs);
+  const Figures chosen = figures_of(runs.front(), wrong);
+  Figures best;
+  std::string best_name;
+  for (std::size_t i = 1; i < runs.size(); ++i)
+    if (const Figures f = figures_of(runs[i], wrong);
+        !runs[i].errors.empty() && (best_name.empty() || f.mean < best.mean))
+      best = f, best_name = runs[i].model;
+  const Figures geometry = runs.size() > 1 ? figures_of(runs[1], wrong) : chosen;
+  if (best_name.empty()) best = chosen;
+  const Regret regret{chosen.mean / best.mean, chosen.p99 / best.p99, chosen.worst / best.worst};
+  fmt::print(
+      "{:<22} {} | {:7.4f} {:7.4f} {:7.4f} {:7.4f} | {:7.4f} | {:7.4f} {:7.4f} {:7.4f} {:7.4f} | {:6.3f} {:6.3f} "
+      "{:6.3f} | {:5.1f} s | {} | {}\n",
+      named.name, half, chosen.mean, chosen.p95, chosen.p99, chosen.worst, geometry.mean, best.mean, best.p95, best.p99,
+      best.worst, regret.mean, regret.p99, regret.worst, runs.front().seconds, runs.front().model, best_name);
+  std::fflush(stdout);
+  return regret;
+}
+
+void study(const Options& options) {
+  fmt::print(
+      "{:<22} h | default: mean, 95 %, 99 %, worst [mm] | geometry | best fixed set | regret: mean, 99 %, worst | time "
+      "| chosen | best\n",
+      "set");
+  std::vector<double> means, tails, worsts;
+  for (const NamedTask& named : named_tasks(options.only, options.simulated))
+    for (int half = 1; half <= (named.name.starts_with("simulated") ? 1 : options.halves); ++half) {
+      const Regret regret = study_half(named, half, options);
+      means.push_back(regret.mean), tails.push_back(regret.p99), worsts.push_back(regret.worst);
+    }
+  if (means.empty()) return;
+  fmt::print(
+      "regret of the mean: median {:.3f}, worst {:.3f}; of the 99 % point: worst {:.3f}; of the worst pose: {:.3f}\n",
+      median(means), *std::ranges::max_element(means), *std::ranges::max_element(tails),
+      *std::ranges::max_element(worsts));
+}
+
+}  // namespace
+}  // namespace kinfer::study
+
+int main(int argc, char** argv) {
+  kinfer::study::Options options;
+  const std::map<std::string, int*> counts{{"--halves", &options.halves},
+                                           {"--sets", &options.sets},
+                                           {"--rows", &options.rows},
+                                           {"--simulated", &options.simulated},
+                                           {"--threads", &options.threads}};
+  for (int i = 1; i + 1 < argc; i += 2) {
+    if (std::string(argv[i]) == "--only") options.only = argv[i + 1];
+    if (const auto count = counts.find(argv[i]); count != counts.end()) *count->second = std::atoi(argv[i + 1]);
+  }
+  kinfer::study::study(options);
+  return 0;
+}

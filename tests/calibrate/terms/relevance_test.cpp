@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// The marginal likelihood by which terms weigh themselves, against dense formulas.
+#include "kinfer/calibrate/terms/relevance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "kinfer/base/rng.hpp"
+#include "kinfer/calibrate/terms/candidate_terms.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer {
+using namespace calibrate;
+namespace {
+
+/// y = G g + T u + noise of standard deviation 1: two nuisance parameters g of prior sd 100, six terms u in three
+/// groups of which the second has an effect.
+struct LinearModel {
+  MatrixXd nuisance, terms;
+  VectorXd y;
+  std::vector<RelevanceGroup> groups{{{0, 1}, 0}, {{2, 3}, 1}, {{4, 5}, 2}};
+};
+
+LinearModel linear_model(int rows, double effect, int seed) {
+  Rng rng(seed);
+  LinearModel model{MatrixXd(rows, 2), MatrixXd(rows, 6), VectorXd(rows)};
+  for (double& value : model.nuisance.reshaped()) value = rng.normal();
+  for (double& value : model.terms.reshaped()) value = rng.normal();
+  for (double& value : model.y) value = rng.normal();
+  model.y += model.nuisance * Eigen::Vector2d(3.0, -5.0) + effect * (model.terms.col(2) - model.terms.col(3));
+  return model;
+}
+
+constexpr double nuisance_sd = 100.0;
+
+/// log N(y; 0, I + 100² G Gᵀ + T diag(f²) Tᵀ), the long way.
+double dense_log_likelihood(const LinearModel& model, const std::vector<double>& factors) {
+  const Eigen::Index n = model.y.size();
+  MatrixXd covariance =
+      MatrixXd::Identity(n, n) + nuisance_sd * nuisance_sd * model.nuisance * model.nuisance.transpose();
+  for (std::size_t g = 0; g < model.groups.size(); ++g)
+    for (const int k : model.groups[g].members)
+      covariance += factors[g] * factors[g] * model.terms.col(k) * model.terms.col(k).transpose();
+  const MatrixXd root = *cholesky(covariance);
+  const VectorXd white = *solve_spd(covariance, model.y);
+  return -0.5 * model.y.dot(white) - root.diagonal().array().log().sum() -
+         0.5 * static_cast<double>(n) * std::log(2.0 * std::numbers::pi);
+}
+
+/// The MAP fit of all, as an estimate with priors of 1 for the terms.
+Estimate fit_of(const LinearModel& model) {
+  MatrixXd columns(model.y.size(), 8);
+  columns << model.nuisance, model.terms;
+  Estimate fit;
+  MatrixXd normal = columns.transpose() * columns;
+  for (int k = 0; k < 8; ++k) {
+    const double sd = k < 2 ? nuisance_sd : 1.0;
+    normal(k, k) += 1.0 / (sd * sd);
+    Parameter parameter;
+    parameter.prior_sd = sd;
+    fit.parameters.parameters.push_back(parameter);
+  }
+  fit.covariance = *invert_spd(normal);
+  const VectorXd x = fit.covariance * (columns.transpose() * model.y);
+  for (int k = 0; k < 8; ++k) {
+    ParameterEstimate estimate;
+    estimate.value = x[k];
+    fit.values.push_back(estimate);
+  }
+  return fit;
+}
+
+LinearisedTerms linearised(const LinearModel& model) {
+  return linearise_terms(fit_of(model), std::vector{2, 3, 4, 5, 6, 7});
+}
+
+TEST(Relevance, TheEvidenceIsThatOfTheDenseGaussian) {
+  const LinearModel model = linear_model(30, 0.7, 1);
+  const LinearisedTerms terms = linearised(model);
+  const double none = dense_log_likelihood(model, {0, 0, 0});
+  for (const std::vector<double>& factors :
+       {std::vector{1.0, 1.0, 1.0}, std::vector{0.0, 0.5, 0.0}, std::vector{0.1, 2.0, 30.0}})
+    EXPECT_NEAR(log_evidence(terms, model.groups, factors), dense_log_likelihood(model, factors) - none, 1e-6);
+}
+
+TEST(Relevance, AGroupsGainIsTheIntegralOverItsSize) {
+  LinearModel model = linear_model(30, 0.7, 2);
+  model.groups = {{{2, 3}, 0}};
+  const double none = dense_log_likelihood(model, {0});
+  double sum = 0.0;
+  constexpr double step = 0.01;  // of log f; the half-Cauchy density of f times f
+  for (double log_f = std::log(1e-3); log_f < std::log(63.0); log_f += step) {
+    const double f = std::exp(log_f);
+    sum += step * 2.0 / std::numbers::pi * f / (1.0 + f * f) * std::exp(dense_log_likelihood(model, {f}) - none);
+  }
+  const std::vector<GroupRelevance> weights = weigh_groups(linearised(model), model.groups);
+  EXPECT_NEAR(weights[0].log_evidence_gain, std::log(sum) - std::log(2.0), 0.02)
+      << "one candidate or none: odds 1 to 2";
+}
+
+TEST(Relevance, TheGroupWithAnEffectIsKeptAndTheOthersVanish) {
+  int wrong = 0;
+  for (int seed = 1; seed <= 40; ++seed) {
+    const LinearModel model = linear_model(40, 1.0, seed);
+    const auto weights = weigh_groups(linearised(model), model.groups);
+    EXPECT_GT(weights[1].factor, 0.3) << seed;
+    wrong += weights[0].factor > 0.0 || weights[2].factor > 0.0;
+  }
+  EXPECT_LE(wrong, 3);
+}
+
+TEST(Relevance, WithoutAnyEffectHardlyAnyGroupIsKept) {
+  int kept = 0;
+  for (int seed = 1; seed <= 40; ++seed) {
+    const LinearModel model = linear_model(40, 0.0, seed);
+    for (const GroupRelevance& group : weigh_groups(linearised(model), model.groups)) kept += group.factor > 0.0;
+  }
+  EXPECT_LE(kept, 3);
+}
+
+TEST(Relevance, ColumnsThatAreZeroOrEqualDoNoHarm) {
+  LinearModel model = linear_model(40, 1.0, 3);
+  model.terms.col(0).setZero(), model.terms.col(1).setZero();
+  model.terms.col(4) = model.terms.col(2), model.terms.col(5) = model.terms.col(3);
+  const auto weights = weigh_groups(linearised(model), model.groups);
+  EXPECT_EQ(weights[0].factor, 0.0);
+  EXPECT_TRUE((weights[1].factor > 0.0) != (weights[2].factor > 0.0)) << "one of two equal groups";
+}
+
+TEST(Relevance, MoreTermsThanMeasurementsAreWeighed) {
+  LinearModel model = linear_model(4, 0.0, 4);
+  for (const GroupRelevance& group : weigh_groups(linearised(model), model.groups))
+    EXPECT_TRUE(std::isfinite(group.factor) && std::isfinite(group.log_evidence_gain));
+}
+
+}  // namespace
+}  // namespace kinfer
