@@ -112,7 +112,8 @@ int run(const VerifyArguments& options) {
   if (!map) return fail(map.error());
   const auto data = read_pose_set(options.data, robot->chain, *map);
   if (!data) return fail(data.error());
-  const auto verification = deploy::verify(robot->chain, robot->tolerances, robot->instrument, *data, robot->prediction);
+  const auto verification =
+      deploy::verify(robot->chain, robot->tolerances, robot->instrument, *data, robot->prediction);
   if (!verification) return fail(verification.error());
   print(*verification, options.common);
   return verification->result == VerificationResult::valid ? exit_done : exit_do_not_use;

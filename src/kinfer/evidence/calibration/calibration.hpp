@@ -57,7 +57,7 @@ struct Calibration {
   std::vector<CalibrationNote> notes;                   ///< observations and automatic decisions
   std::optional<UnknownRobotEvidence> unknown_robot{};  ///< where the robot has no data sheet
   bool geometry_only = false;                           ///< found by a swarm search, which has no model selection
-  std::optional<PredictionModel> prediction{};           ///< uncertainty of the corrected chain; none without points
+  std::optional<PredictionModel> prediction{};          ///< uncertainty of the corrected chain; none without points
   std::optional<double> expected_holdout_rms{};  ///< [m] from the instrument's noise and the uncertainty of the fits
   Usability usability = Usability::use;
   CalibrationReason reason = CalibrationReason::improves_nominal;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the uncertainty of a calibrated chain at any joint positions is computed from; kept in chain.toml.
 //
-// covariance of the tool = J(q) Σ J(q)ᵀ + growth(q) M: uncertainty of the parameters, and the model error M that held-out rows
-// show beyond it and beyond the instrument's noise. Outside the region of the fitted rows M grows:
-// growth(q) = 1 + rate · max(0, distance(q) / reach − 1)², distance to the nearest of `rows` in units of `spread`.
+// covariance of the tool = J(q) Σ J(q)ᵀ + growth(q) M: uncertainty of the parameters, and the model error M that
+// held-out rows show beyond it and beyond the instrument's noise. Outside the region of the fitted rows M grows:
+// growth(q) = 1 + rate · (distance(q) / reach)², distance to the nearest of `rows` in units of `spread`.
 #pragma once
 
 #include <string>
@@ -18,10 +18,10 @@ struct PredictionModel {
   MatrixXd root{};                        ///< L, lower triangular, with the covariance Σ = L Lᵀ of these, SI
   /// M, 6 x 6: position [m] and rotation [rad] of the tool, along the axes of the base. Zero where it was not measured.
   MatrixXd model_error = MatrixXd::Zero(6, 6);
-  MatrixXd rows{};       ///< dof x m: joint positions that stand for the fitted rows, [rad] or [m]
-  VectorXd spread{};     ///< dof: standard deviation of each joint over the fitted rows, [rad] or [m]
-  double reach = 1.0;    ///< [1] distance up to which joint positions count as measured
-  double rate = 0.0;     ///< [1] of the growth of M
+  MatrixXd rows{};     ///< dof x m: joint positions that stand for the fitted rows, [rad] or [m]
+  VectorXd spread{};   ///< dof: standard deviation of each joint over the fitted rows, [rad] or [m]
+  double reach = 1.0;  ///< [1] distance up to which joint positions count as measured
+  double rate = 0.0;   ///< [1] of the growth of M
 };
 
 /// Distance to the nearest of `rows` in units of `spread`, over `reach`: above 1 outside the measured region.
