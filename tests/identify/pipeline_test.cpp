@@ -135,6 +135,21 @@ TEST(Identify, FindsTheFirstLinksOfThePapersExcavator) {
   EXPECT_LT(found->searches.front().holdout.total, 1.5 * found->searches.front().fitted.total);
 }
 
+TEST(Identify, ATrajectoryHasARowForEachVariableOfTwoBodiesThatAreNoMachine) {
+  const char* root = std::getenv("KINFER_DATA");
+  if (!root) GTEST_SKIP() << "KINFER_DATA is not set";
+  const fs::path file = fs::path(root) / "odd_ins_logs" / "head_chest_bicycle_20s.csv";
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is missing";
+  const auto recording = read_ins_csv(file);
+  ASSERT_TRUE(recording);
+  const auto found = identify_machine(*recording, {.threads = 1}, Rng(1));
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->joints.size(), 1u);
+  // A universal joint moved through large angles: one half of it must not be relaxed to a spherical joint.
+  EXPECT_EQ(found->joints[0].trajectory.rows(), dof(found->chain));
+  EXPECT_EQ(found->motion.trajectory.q.rows(), dof(found->chain));
+}
+
 TEST(Identify, GivesTheSameBitsForAnyNumberOfThreads) {
   const DrivenMachine drive = driven_machine("excavator", {}, Script::standard, 1);
   const auto run = [&](int threads) {
