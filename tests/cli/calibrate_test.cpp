@@ -47,7 +47,8 @@ TEST_F(Calibrate, PredictionsOfTheCorrectedChainAndOfItsUrdfAgree) {
   std::istringstream a(slurp(in("toml.csv"))), b(slurp(in("urdf.csv")));
   std::string line_a, line_b;
   std::getline(a, line_a), std::getline(b, line_b);
-  EXPECT_EQ(line_a, "x,y,z,qw,qx,qy,qz");
+  EXPECT_EQ(line_a, "x,y,z,qw,qx,qy,qz,sd_x,sd_y,sd_z,sd_rx,sd_ry,sd_rz");
+  EXPECT_EQ(line_b, "x,y,z,qw,qx,qy,qz") << "a URDF holds no uncertainty";
   int rows = 0;
   while (std::getline(a, line_a) && std::getline(b, line_b)) {
     std::istringstream cells_a(line_a), cells_b(line_b);
