@@ -2,7 +2,7 @@
 // Regret of the automatic choice of model terms: held-out errors of the default over those of the best fixed set of
 // terms, on halves of the rows that were never fitted.
 //
-//   study_regret [--only TEXT] [--halves 5] [--sets 26] [--rows 0 (all)] [--simulated 30] [--threads 0]
+//   study_regret [--only TEXT] [--halves 5] [--sets 26] [--rows 0 (all)] [--simulated 30] [--threads 0] [--reasons 0]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/measurement/split.hpp"
+#include "kinfer/words/calibration/model.hpp"
 #include "studies/regret/data_sets.hpp"
 
 namespace kinfer::study {
@@ -23,7 +24,7 @@ namespace {
 
 struct Options {
   std::string only;
-  int halves = 5, sets = 26, rows = 0, simulated = 30, threads = 0;
+  int halves = 5, sets = 26, rows = 0, simulated = 30, threads = 0, reasons = 0;
 };
 
 /// The first ones are those that win most often.
@@ -66,7 +67,7 @@ PoseSet with_half_held_out(PoseSet data, int seed) {
 }
 
 struct Run {
-  std::string model;
+  std::string model, reasons;
   ErrorsByRow errors;
   double seconds = 0.0;
 };
@@ -74,9 +75,11 @@ struct Run {
 Run run(const CalibrationTask& task, const std::string& model, int threads) {
   const auto start = std::chrono::steady_clock::now();
   const auto c = calibrate_robot(task, {.model = parse_model_choice(model).value(), .threads = threads}, Rng(1));
-  Run result{model, {}, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+  Run result{model, {}, {}, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
   if (!c) return result;
   result.model = selected_model(c->model_selection);
+  for (const SelectionStep& step : c->model_selection.steps)
+    result.reasons += fmt::format("    {}: {}\n", name(step), words::reason(step));
   for (const RowErrors& row : c->rows)
     if (row.held_out && std::isfinite(row.after)) result.errors[row.row] = row.after;
   return result;
@@ -142,6 +145,7 @@ Regret study_half(const NamedTask& named, int half, const Options& options) {
       "{:6.3f} | {:5.1f} s | {} | {}\n",
       named.name, half, chosen.mean, chosen.p95, chosen.p99, chosen.worst, geometry.mean, best.mean, best.p95, best.p99,
       best.worst, regret.mean, regret.p99, regret.worst, runs.front().seconds, runs.front().model, best_name);
+  if (options.reasons) fmt::print("{}", runs.front().reasons);
   std::fflush(stdout);
   return regret;
 }
@@ -169,11 +173,9 @@ void study(const Options& options) {
 
 int main(int argc, char** argv) {
   kinfer::study::Options options;
-  const std::map<std::string, int*> counts{{"--halves", &options.halves},
-                                           {"--sets", &options.sets},
-                                           {"--rows", &options.rows},
-                                           {"--simulated", &options.simulated},
-                                           {"--threads", &options.threads}};
+  const std::map<std::string, int*> counts{{"--halves", &options.halves},   {"--sets", &options.sets},
+                                           {"--rows", &options.rows},       {"--simulated", &options.simulated},
+                                           {"--threads", &options.threads}, {"--reasons", &options.reasons}};
   for (int i = 1; i + 1 < argc; i += 2) {
     if (std::string(argv[i]) == "--only") options.only = argv[i + 1];
     if (const auto count = counts.find(argv[i]); count != counts.end()) *count->second = std::atoi(argv[i + 1]);

@@ -43,11 +43,17 @@ bool tail_rises(const ErrorChange& change) {
   return rises(change.p95) || rises(change.p99);
 }
 
+double expected(double inside, double outside) {
+  return (1.0 - thresholds::part_beyond) * inside + thresholds::part_beyond * outside;
+}
+
 /// Whether what is lost beyond the fitted poses is more than what is gained among them, in the mean or in the 99 %
-/// point.
+/// point of all poses.
 bool outweighs_gain(const ErrorChange& inside, const ErrorChange& outside) {
-  return (mean_rises(outside) && outside.mean_after * inside.mean_after > outside.mean_before * inside.mean_before) ||
-         (rises(outside.p99) && outside.p99.after * inside.p99.after > outside.p99.before * inside.p99.before);
+  return (mean_rises(outside) &&
+          expected(inside.mean_after, outside.mean_after) > expected(inside.mean_before, outside.mean_before)) ||
+         (rises(outside.p99) &&
+          expected(inside.p99.after, outside.p99.after) > expected(inside.p99.before, outside.p99.before));
 }
 
 }  // namespace

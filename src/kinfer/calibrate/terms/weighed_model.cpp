@@ -45,9 +45,9 @@ class ModelWeigher {
   WeighedModel run() {
     WeighedModel result = weighed_geometry(data_, geometry_);
     candidates_ = make_candidates(geometry_, data_.task, data_.rows);
-    const Estimate fitted = weigh_all(InitialGuess::rough);
+    const Estimate fitted = weigh_all();
     add_spectral_lines(candidates_, fitted, data_.task, data_.rows);
-    if (candidates_.steps.back().missing == MissingData::none) weigh_all(InitialGuess::near_optimum);
+    if (candidates_.steps.back().missing == MissingData::none) weigh_all();
     if (!current_.model.terms.empty()) {
       ProvedModel plain{{}, geometry_, result.interpolation, {}};
       plain.extrapolation = held_out(plain.fit, geometry_.parameters, extrapolation_splits_);
@@ -59,15 +59,17 @@ class ModelWeigher {
 
  private:
   /// Fits all candidates, weighs their groups, and fits what is left. Returns the latter.
-  Estimate weigh_all(InitialGuess guess) {
+  Estimate weigh_all() {
     current_ = {{}, geometry_, {}, {}};
     if (candidates_.parameters.empty()) return geometry_;
     const TermModel all = model_of_all(candidates_, geometry_.parameters);
-    const Estimate fitted = fit_rows(all.chain, all.parameters, data_.rows, data_.task,
-                                     {.initial_guess = guess, .detail = Detail::numbers_only}, data_.observer);
+    const Estimate fitted =
+        fit_rows(all.chain, all.parameters, data_.rows, data_.task,
+                 {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only}, data_.observer);
     groups_ = relevance_groups(candidates_);
     linearised_ = linearise_terms(fitted, free_indices(fitted, candidates_.parameters));
     weights_ = weigh_groups(linearised_, groups_);
+    all_fitted_ = fitted;
     fit_relevant(fitted);
     return current_.fit;
   }
@@ -85,66 +87,64 @@ class ModelWeigher {
     return cross_validate(fit, set, data_.rows, splits, data_.task, data_.threads);
   }
 
-  Proof proof_of(const HoldoutErrors& inside_before, const HoldoutErrors& outside_before,
-                 const std::vector<Outlier>& outliers_before, const ProvedModel& after) const {
-    Proof proof{compare_holdout(inside_before, outliers_before, after.interpolation, after.fit.outliers),
-                compare_holdout(outside_before, outliers_before, after.extrapolation, after.fit.outliers)};
+  static Proof proof_of(const ProvedModel& before, const ProvedModel& after) {
+    const auto& outliers = before.fit.outliers;
+    Proof proof{compare_holdout(before.interpolation, outliers, after.interpolation, after.fit.outliers),
+                compare_holdout(before.extrapolation, outliers, after.extrapolation, after.fit.outliers)};
     proof.decision = decide(proof.interpolation, proof.extrapolation);
     return proof;
   }
 
-  Proof proof_of_term(Term term) const {
-    const auto removed = [&](Term other) { return other == term; };
-    return proof_of(
+  /// Held-out errors of the model without the refused terms and without `term`, from the fits with all of them.
+  ProvedModel reduced(std::optional<Term> term) const {
+    const auto removed = [&](Term other) {
+      return other == term || std::ranges::any_of(refused_, [&](const auto& r) { return r.first == other; });
+    };
+    return {
+        {},
+        current_.fit,
         errors_without(current_.interpolation, current_.model.terms, removed, data_.rows, data_.splits, data_.threads),
         errors_without(current_.extrapolation, current_.model.terms, removed, data_.rows, extrapolation_splits_,
-                       data_.threads),
-        current_.fit.outliers, current_);
+                       data_.threads)};
   }
 
-  /// Removes the terms that held-out errors speak against, the most harmful first.
+  /// Refuses the terms that held-out errors speak against, the most harmful first, and fits what is left.
   void prove(const ProvedModel& plain) {
-    while (!current_.model.terms.empty()) {
+    current_.interpolation = held_out(current_.fit, current_.model.parameters, data_.splits);
+    current_.extrapolation = held_out(current_.fit, current_.model.parameters, extrapolation_splits_);
+    while (const auto harmful = most_harmful(plain)) refused_.push_back(*harmful);
+    if (refused_.empty()) return;
+    for (const auto& [term, why] : refused_)
+      for (std::size_t g = 0; g < groups_.size(); ++g)
+        if (groups_[g].family == static_cast<int>(term)) weights_[g].factor = 0.0;
+    fit_relevant(all_fitted_);
+    if (!current_.model.terms.empty())
       current_.interpolation = held_out(current_.fit, current_.model.parameters, data_.splits);
-      current_.extrapolation = held_out(current_.fit, current_.model.parameters, extrapolation_splits_);
-      const Proof whole = proof_of(plain.interpolation, plain.extrapolation, plain.fit.outliers, current_);
-      std::optional<Term> worst;
-      double most = -1e300;
-      proofs_.clear();
-      for (const TermMaker& maker : term_makers()) {
-        if (!has(maker.term)) continue;
-        const Proof proof = proof_of_term(maker.term);
-        proofs_.push_back({maker.term, proof});
-        if (proof.decision == Decision::accepted && whole.decision == Decision::accepted) continue;
-        const double harm = -std::min(proof.interpolation.t, proof.extrapolation.t);
-        if (harm > most) most = harm, worst = maker.term;
-      }
-      if (!worst) return;
-      refuse(*worst, whole);
+  }
+
+  /// The term without which held-out errors are lowest, where they speak against it or against the whole model. Keeps
+  /// the comparisons of all terms.
+  std::optional<std::pair<Term, Proof>> most_harmful(const ProvedModel& plain) {
+    const ProvedModel present = reduced(std::nullopt);
+    const Proof whole = proof_of(plain, present);
+    std::optional<std::pair<Term, Proof>> worst;
+    double most = 0.0;
+    proofs_.clear();
+    for (const TermMaker& maker : term_makers()) {
+      if (!has(maker.term) || std::ranges::any_of(refused_, [&](const auto& r) { return r.first == maker.term; }))
+        continue;
+      const Proof proof = proof_of(reduced(maker.term), present);
+      proofs_.push_back({maker.term, proof});
+      if (proof.decision == Decision::accepted && whole.decision == Decision::accepted) continue;
+      const double harm = -std::min(proof.interpolation.t, proof.extrapolation.t);
+      if (worst && harm <= most) continue;
+      most = harm, worst = {maker.term, proof.decision == Decision::accepted ? whole : proof};
     }
+    return worst;
   }
 
   bool has(Term term) const {
     return std::ranges::any_of(current_.model.terms, [&](const CandidateParameter& c) { return c.term == term; });
-  }
-
-  void refuse(Term term, const Proof& whole) {
-    const auto own = std::ranges::find_if(proofs_, [&](const auto& p) { return p.first == term; });
-    const Proof& why = own->second.decision == Decision::accepted ? whole : own->second;
-    refused_.push_back({term, why});
-    for (std::size_t g = 0; g < groups_.size(); ++g)
-      if (groups_[g].family == static_cast<int>(term)) weights_[g].factor = 0.0;
-    Estimate start = current_.fit;
-    start.chain = candidates_chain_with(current_);
-    fit_relevant(start);
-  }
-
-  /// The candidates' chain with the values of a fit of some of them.
-  Chain candidates_chain_with(const ProvedModel& fitted) const {
-    Chain chain = candidates_.chain;
-    for (const Parameter* p : geometry_.parameters.free())
-      set_value_at(chain, p->at, value_at(fitted.fit.chain, p->at));
-    return chain;
   }
 
   void describe(WeighedModel& result) {
@@ -210,6 +210,7 @@ class ModelWeigher {
   std::vector<RelevanceGroup> groups_;
   LinearisedTerms linearised_;
   std::vector<GroupRelevance> weights_;
+  Estimate all_fitted_;  ///< of all candidates
   ProvedModel current_;
   std::vector<std::pair<Term, Proof>> proofs_, refused_;
 };
