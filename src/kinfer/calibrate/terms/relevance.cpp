@@ -12,8 +12,8 @@
 namespace kinfer::calibrate {
 namespace {
 
-constexpr int grid_points = 49;                                            // of factors
-constexpr double smallest_factor = 1e-3, grid_ratio = 1.2589254117941673;  // 10 per decade, to 63
+constexpr int grid_points = 31;                                            // of factors
+constexpr double smallest_factor = 1e-3, grid_ratio = 1.2589254117941673;  // 10 per decade, to 1
 constexpr int most_sweeps = 20;                                            // usually three suffice
 constexpr double settled_step = 0.5;                                       // [grid steps]
 constexpr double local_spread = 1.0;  // [log] sd of the sizes of one term's joints about their common size
@@ -55,12 +55,13 @@ Weighed weigh(const ConditionalGroup& group, LogPrior log_prior) {
   const auto best = static_cast<int>(std::max_element(value.begin(), value.end()) - value.begin());
   double sum = 0.0;
   for (const double v : value) sum += std::exp(v - value[best]);
+  sum -= 0.5 * (std::exp(value.front() - value[best]) + std::exp(value.back() - value[best]));  // the trapezium rule
   return {factor_at(best), value[best] + std::log(sum * std::log(grid_ratio))};
 }
 
-/// Density of log f for a half-Cauchy f of scale 1.
+/// Density of log f for a half-Cauchy f of scale 1 that is at most 1.
 double log_half_cauchy(double f) {
-  return std::log(2.0 / std::numbers::pi * f / (1.0 + f * f));
+  return std::log(4.0 / std::numbers::pi * f / (1.0 + f * f));
 }
 
 class Weighing {

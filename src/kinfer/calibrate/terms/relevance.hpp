@@ -8,6 +8,7 @@
 // With u_g ~ N(0, f_g² I) for each group g, S and q the information and image of the group given all others,
 //   log p(data | f_g) − log p(data | f_g = 0) = ½ Σ_k [ f² q_k²/(1 + f² s_k) − log(1 + f² s_k) ]      (eigenvalues s_k)
 // is integrated over f under a half-Cauchy prior of scale 1 (Gelman 2006), which charges each group for its freedom.
+// Sizes above the stated prior are left out: they win little among the poses and ruin every pose beyond them.
 #pragma once
 
 #include <span>
