@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From which uncertainty a number of an identification counts as unobservable: one limit for the forecast, the report and
-// the terminal.
+// From which uncertainty a number of an identification counts as unobservable: one limit for the forecast, the report
+// and the terminal.
 #pragma once
 
 namespace kinfer {
