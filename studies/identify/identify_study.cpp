@@ -8,6 +8,7 @@
 
 #include "kinfer/estimate/continuous/solver/noise_update.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/identify/geometry/link_estimates.hpp"
 #include "kinfer/identify/refinement/refine.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/inertial/sensor_grading.hpp"

@@ -145,7 +145,11 @@ test('the tables of an identification equal evidence.json', async () => {
     assert.ok(about(dh[i][4], degrees * row.alpha));
   });
   const links = await cells(page, 'links');
-  evidence.links.forEach((link, i) => assert.ok(about(links[i][3], 1e3 * link.length_m)));
+  evidence.links.forEach((link, i) => {
+    if (link.pin_distance_m !== undefined) assert.ok(about(links[i][3], 1e3 * link.pin_distance_m));
+    assert.ok(about(links[i][6], degrees * link.axis_angle_rad));
+    assert.ok(about(links[i][7], 1e3 * link.length_m));
+  });
   await close();
 });
 

@@ -26,8 +26,8 @@ class Spikes {
     Vec3 spike = Vec3::Zero();
     for (double& s : spike)
       if (chance_ > 0.0 && rng_.uniform() < chance_) {
-        const double sign = rng_.index(2) == 0 ? -1.0 : 1.0;
-        s = sign * rng_.uniform(0.5, 1.0) * largest_;
+        const double size = rng_.uniform(0.5, 1.0) * largest_;
+        s = rng_.index(2) == 0 ? -size : size;
       }
     return spike;
   }
