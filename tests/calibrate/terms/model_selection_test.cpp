@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calibrate/terms/simulated_selection.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/calibrate/terms/extrapolation_splits.hpp"
 #include "kinfer/calibrate/terms/gear_harmonics.hpp"
@@ -11,7 +12,6 @@
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/words/calibration/calibration.hpp"
 #include "kinfer/words/calibration/model.hpp"
-#include "support/instruments.hpp"
 
 namespace kinfer {
 using namespace calibrate;
@@ -19,19 +19,8 @@ namespace {
 
 using namespace test;
 
-PoseSet readings(const Chain& truth, int poses, int seed = 1) {
-  return readings_of(measured(truth, paper2_poses(poses, noise_free), seed));
-}
-
-const SelectionStep& step_of(const Calibration& c, Term term) {
-  for (const SelectionStep& step : c.model_selection.steps)
-    if (step.term == term) return step;
-  ADD_FAILURE() << "no step tests " << name(term);
-  return c.model_selection.steps.front();
-}
-
 bool selects(const Calibration& c, Term term) {
-  return is_selected(step_of(c, term));
+  return is_selected(step_with(c, term));
 }
 
 Calibration calibrated(const Chain& nominal, const PoseSet& data, const CalibrationOptions& options = {}) {
@@ -48,10 +37,10 @@ TEST(ModelSelection, GeometryAloneIsSelectedForAPurelyGeometricRobot) {
   for (const int seed : {1, 2, 3}) {
     const Calibration c = calibrated(nominal_robot(), measured(truth, paper2_poses(60, tracker), seed));
     EXPECT_EQ(selected_model(c.model_selection), "geometry");
-    EXPECT_EQ(step_of(c, Term::torque_compliance).missing, MissingData::torques);
-    EXPECT_EQ(step_of(c, Term::thermal_expansion).missing, MissingData::temperature);
+    EXPECT_EQ(step_with(c, Term::torque_compliance).missing, MissingData::torques);
+    EXPECT_EQ(step_with(c, Term::thermal_expansion).missing, MissingData::temperature);
     EXPECT_FALSE(selects(c, Term::gain));
-    EXPECT_TRUE(was_tested(step_of(c, Term::gain)));
+    EXPECT_TRUE(was_tested(step_with(c, Term::gain)));
   }
 }
 
@@ -60,14 +49,14 @@ TEST(ModelSelection, ThePayloadMakesComplianceObservable) {
   nominal.masses = {{1, Vec3(0.4, 0, 0.1), 60.0}, {2, Vec3(0.1, 0, 0.1), 40.0}};
   Chain truth = with_random_errors(nominal, {}, Rng(2));
   truth.joints[1].compliance = 2e-6, truth.joints[2].compliance = 3e-6;
-  PoseSet data = readings(truth, 60);
+  PoseSet data = simulated_readings(truth, 60);
   for (int row = 0; row < 60; ++row) data.payload.push_back(row % 2 ? 20.0 : 0.0);
   measure_points(data, truth, tracker, Rng(3));
   const Calibration c = calibrated(nominal, data);
-  EXPECT_TRUE(selects(c, Term::gravity_compliance)) << words::reason(step_of(c, Term::gravity_compliance));
+  EXPECT_TRUE(selects(c, Term::gravity_compliance)) << words::reason(step_with(c, Term::gravity_compliance));
   EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
   EXPECT_NEAR(c.estimate.chain.joints[1].compliance, 2e-6, 0.3e-6);
-  PoseSet unseen = readings(truth, 200, 77);
+  PoseSet unseen = simulated_readings(truth, 200, 77);
   unseen.payload.assign(200, 10.0);
   EXPECT_LT(error_on(c.estimate.chain, truth, unseen), 25e-6);
 }
@@ -76,11 +65,11 @@ TEST(ModelSelection, TorqueComplianceBacklashGearHarmonicsAndThermalExpansionAre
   const Chain nominal = nominal_robot();
   const Chain geometry = with_random_errors(nominal, {}, Rng(4));
   const auto expect_found = [&](Term term, Chain truth, auto prepare) {
-    PoseSet data = with_approach(readings(truth, 120));
+    PoseSet data = with_approach(simulated_readings(truth, 120));
     prepare(data);
     measure_points(data, truth, tracker, Rng(5));
     const Calibration c = calibrated(nominal, data);
-    EXPECT_TRUE(selects(c, term)) << name(term) << ": " << words::reason(step_of(c, term));
+    EXPECT_TRUE(selects(c, term)) << name(term) << ": " << words::reason(step_with(c, term));
     EXPECT_LT(error_on(c.estimate.chain, truth, data), 40e-6) << name(term);
   };
   Chain truth = geometry;
@@ -110,10 +99,10 @@ TEST(ModelSelection, AParallelogramsCouplingIsCorrectedAndAnUnlistedOneIsFound) 
   Chain truth = with_random_errors(nominal, {}, Rng(4));
   truth.joints[2].couplings = {{1, -1.003}};
   truth.joints[5].couplings = {{4, 0.0125}};  // a hollow wrist: one tooth of eighty couples into joint 6
-  PoseSet data = readings(truth, 80);
+  PoseSet data = simulated_readings(truth, 80);
   measure_points(data, truth, tracker, Rng(5));
   const Calibration c = calibrated(nominal, data);
-  EXPECT_TRUE(selects(c, Term::coupling)) << words::reason(step_of(c, Term::coupling));
+  EXPECT_TRUE(selects(c, Term::coupling)) << words::reason(step_with(c, Term::coupling));
   const auto factor = [&](const std::string& wanted) {
     for (const ParameterEstimate& value : c.estimate.values)
       if (value.name == wanted) return value;
@@ -123,17 +112,17 @@ TEST(ModelSelection, AParallelogramsCouplingIsCorrectedAndAnUnlistedOneIsFound) 
   EXPECT_NEAR(factor("coupling3_2").value, -1.003, 3.5 * factor("coupling3_2").sd);
   EXPECT_NEAR(factor("coupling6_5").value, 0.0125, 3.5 * factor("coupling6_5").sd);
   EXPECT_LT(factor("coupling3_2").sd, 1e-4);
-  PoseSet unseen = readings(truth, 200, 77);
+  PoseSet unseen = simulated_readings(truth, 200, 77);
   EXPECT_LT(error_on(c.estimate.chain, truth, unseen), 25e-6);
 }
 
 TEST(ModelSelection, TheSpectrumShowsAMotorHarmonicOfUnknownOrder) {
   Chain truth = with_random_errors(nominal_robot(), {}, Rng(8));
   truth.joints[1].harmonics = {{80.0, 1.5e-4, 1e-4}};
-  PoseSet data = readings(truth, 400);
+  PoseSet data = simulated_readings(truth, 400);
   measure_points(data, truth, tracker, Rng(5));
   const Calibration c = calibrated(nominal_robot(), data);
-  EXPECT_TRUE(selects(c, Term::spectral_harmonics)) << words::reason(step_of(c, Term::spectral_harmonics));
+  EXPECT_TRUE(selects(c, Term::spectral_harmonics)) << words::reason(step_with(c, Term::spectral_harmonics));
   const auto& lines = c.estimate.chain.joints[1].harmonics;
   EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const Harmonic& h) { return std::abs(h.order - 80) < 0.05; }));
 }
@@ -149,7 +138,7 @@ TEST(ModelSelection, ANamedModelIsUsedAsGiven) {
 TEST(ModelSelection, SameModelAndSameNumbersFor12And7Threads) {
   Chain truth = with_random_errors(nominal_robot(), {}, Rng(4));
   truth.joints[0].backlash = 1e-4;
-  PoseSet data = with_approach(readings(truth, 50));
+  PoseSet data = with_approach(simulated_readings(truth, 50));
   measure_points(data, truth, tracker, Rng(5));
   const Calibration one = calibrated(nominal_robot(), data, {.threads = 1});
   for (const int threads : {2, 7}) {

@@ -4,27 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include "calibrate/terms/simulated_selection.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/words/calibration/model.hpp"
-#include "support/instruments.hpp"
 
 namespace kinfer {
 using namespace calibrate;
 namespace {
 
 using namespace test;
-
-PoseSet simulated_readings(const Chain& truth, int poses, int seed = 1) {
-  return readings_of(measured(truth, paper2_poses(poses, noise_free), seed));
-}
-
-const SelectionStep& step_with(const Calibration& c, Term term) {
-  for (const SelectionStep& step : c.model_selection.steps)
-    if (step.term == term) return step;
-  ADD_FAILURE() << "no step tests " << name(term);
-  return c.model_selection.steps.front();
-}
 
 Calibration default_calibration(const Chain& nominal, const PoseSet& data,
                                 const ModelChoice& model = CrossValidatedModel{}) {
