@@ -44,6 +44,8 @@ if (/<\/script|<!--/i.test(script)) throw new Error('the bundle would end its sc
 
 writeFileSync(process.argv[2], `#include "kinfer/report/bundle.hpp"
 
+#pragma GCC diagnostic ignored "-Woverlength-strings"  // clang warns at 64 kB, which every compiler can hold
+
 namespace kinfer::report {
 namespace {
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <tinyxml2.h>
-#include <ranges>
 
 #include <algorithm>
 #include <cmath>
@@ -71,11 +70,11 @@ int add_base_joints(XMLElement& platform, Base base) {
   if (base == Base::yawing) joints.push_back({"base_yaw", "hinge", "0 0 1"});
   joints.push_back({"base_pitch", "hinge", "0 1 0"});
   joints.push_back({"base_roll", "hinge", "1 0 0"});
-  for (const BaseJoint& joint : std::views::reverse(joints)) {
+  for (auto joint = joints.rbegin(); joint != joints.rend(); ++joint) {  // each becomes the first child
     XMLElement* element = platform.GetDocument()->NewElement("joint");
-    element->SetAttribute("name", joint.name);
-    element->SetAttribute("type", joint.type);
-    element->SetAttribute("axis", joint.axis);
+    element->SetAttribute("name", joint->name);
+    element->SetAttribute("type", joint->type);
+    element->SetAttribute("axis", joint->axis);
     element->SetAttribute("limited", "false");
     platform.InsertFirstChild(element);
   }

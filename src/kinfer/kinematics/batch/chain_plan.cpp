@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <ranges>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/kinematics/elementary_motions.hpp"
@@ -282,7 +281,7 @@ std::vector<JointMotion> joint_motions_of(const Chain& chain, const Lookup& look
     list.push_back(std::move(joint_motion));
   }
   int slot = 0;
-  for (auto& motion : std::views::reverse(list)) motion.slot = slot, slot += motion.slots();
+  for (auto motion = list.rbegin(); motion != list.rend(); ++motion) motion->slot = slot, slot += motion->slots();
   return list;
 }
 
