@@ -74,7 +74,7 @@ ParameterSet table2_parameters(const Chain& robot) {
   for (int j = 0; j < 6; ++j)
     for (const Field field : {Field::a, Field::d, Field::theta, Field::alpha})
       for (const Parameter& p : all.parameters)
-        if (p.at == ParameterAddress{Owner::joint, j, field}) set.parameters.push_back(p);
+        if (p.at == ParameterAddress{JointNumber{j, field}}) set.parameters.push_back(p);
   return set;
 }
 

@@ -31,7 +31,7 @@ struct Halves {
   std::string model;
 };
 
-Halves five_halves(const Chain& chain, const PoseSet& data, const ModelChoice& model = CrossValidatedModel{}) {
+Halves five_halves(const Chain& chain, const PoseSet& data, const ModelChoice& model = AutomaticModel{}) {
   Halves sum;
   for (int seed = 1; seed <= halves; ++seed) {
     const Calibration c = on_half(chain, data, seed, model);
@@ -66,7 +66,7 @@ void ur10(const std::string& folder) {
   const Halves chosen_c = five_halves(chain, c);
   print_halves("UR10 C, selected model", 0.435, chosen_c);
   fmt::print("      {}\n", chosen_c.model);
-  for (const ModelChoice& model : {ModelChoice{FixedModel{}}, ModelChoice{CrossValidatedModel{}}}) {
+  for (const ModelChoice& model : {ModelChoice{FixedModel{}}, ModelChoice{AutomaticModel{}}}) {
     const Calibration all = calibrate_robot({chain, {}, std::nullopt, b}, {.model = model}, Rng(1)).value();
     const Verification there = verify(all.estimate.chain, {}, std::nullopt, c).value();
     print_row("UR10 fitted on B, tried on C with base and tool refitted", no_target, 1e3 * there.frames_refitted.mean,

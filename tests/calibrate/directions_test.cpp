@@ -57,7 +57,7 @@ TEST(Directions, TheJacobianEqualsDifferences) {
   ASSERT_EQ(stations.parameters.size(), 12U);
   EXPECT_EQ(stations.parameters[3].name, "station_west_rx");
   set.parameters.insert(set.parameters.end(), stations.parameters.begin(), stations.parameters.end());
-  for (Parameter& parameter : set.parameters) parameter.free = parameter.at.field != Field::compliance;
+  for (Parameter& parameter : set.parameters) parameter.free = field_of(parameter.at) != Field::compliance;
   const Weights weights = weights_of(data, Instrument{.sigma_direction = 1e-3});
   const Residuals problem = pose_residuals(chain, set, data, weights);
   const auto [jacobian, expected] = testing::jacobians(problem, pack(set, chain));

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "cli/program.hpp"
 
@@ -25,10 +24,11 @@ void drop_texts(json& a, json& b) {
   }
 }
 
-std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
-  const std::regex regex(pattern);
+/// Every piece of a text that starts with `start`, up to the next `end`. (std::regex recurses once per character.)
+std::vector<std::string> pieces(const std::string& text, const std::string& start, char end) {
   std::vector<std::string> found;
-  for (std::sregex_iterator i(text.begin(), text.end(), regex), end; i != end; ++i) found.push_back((*i)[0]);
+  for (auto at = text.find(start); at != std::string::npos; at = text.find(start, at + 1))
+    found.push_back(text.substr(at, text.find(end, at + start.size()) - at));
   return found;
 }
 
@@ -48,8 +48,10 @@ class Language : public test::Program {
     for (const char* file : {"chain.toml", "chain.urdf"})
       EXPECT_EQ(slurp(in(std::string("english/") + file)), slurp(in(std::string("names/") + file))) << file;
     const std::string shown = slurp(in("english/report.html")), named = slurp(in("names/report.html"));
-    for (const char* pattern : {"class=\"chip [a-z]+\"", "<svg[^>]*>", "<(circle|path|rect|polyline)[^>]*>"})
-      EXPECT_EQ(matches(shown, pattern), matches(named, pattern)) << pattern;
+    EXPECT_EQ(pieces(shown, "class=\"chip ", '"'), pieces(named, "class=\"chip ", '"'));
+    EXPECT_FALSE(pieces(shown, "<path", '>').empty());
+    for (const char* element : {"<svg", "<circle", "<path", "<rect", "<polyline"})
+      EXPECT_EQ(pieces(shown, element, '>'), pieces(named, element, '>')) << element;
   }
 };
 

@@ -85,16 +85,16 @@ TEST(Parameters, FixedParametersKeepTheNominalValue) {
 }
 
 TEST(Parameters, AnAddressOfAMissingNumberStopsTheProgram) {
-  EXPECT_DEATH(value_at(laws::er20(), {Owner::joint, 6, Field::a}), "joint 6 of 6");
-  EXPECT_DEATH(value_at(laws::er20(), {Owner::joint, 1, Field::rx}), "a DH row has no rx");
-  EXPECT_DEATH(value_at(laws::urdf_arm(), {Owner::base, -1, Field::alpha}), "a frame has no alpha");
+  EXPECT_DEATH(value_at(laws::er20(), JointNumber{6, Field::a}), "joint 6 of 6");
+  EXPECT_DEATH(value_at(laws::er20(), JointNumber{1, Field::rx}), "a DH row has no rx");
+  EXPECT_DEATH(value_at(laws::urdf_arm(), FrameNumber{SetupFrame::base, Field::alpha}), "a frame has no alpha");
 }
 
 TEST(Parameters, AParameterOfAnotherBranchMovesNothing) {
   const Chain chain = laws::two_arms();
   ParameterSet set;
-  set.parameters.push_back({.name = "a6", .at = {Owner::joint, 5, Field::a}});
-  set.parameters.push_back({.name = "a2", .at = {Owner::joint, 1, Field::a}});
+  set.parameters.push_back({.name = "a6", .at = JointNumber{5, Field::a}});
+  set.parameters.push_back({.name = "a2", .at = JointNumber{1, Field::a}});
   Twists twists;
   PoseEvaluator(chain, set).pose_and_derivative(laws::random_q(chain, Rng(1)), {}, twists);
   EXPECT_EQ(twists.col(0).norm(), 0.0);
@@ -104,7 +104,7 @@ TEST(Parameters, AParameterOfAnotherBranchMovesNothing) {
 TEST(Parameters, TheGainOfAPassiveJointStopsTheProgram) {
   const Chain chain = laws::coupled();
   ParameterSet set;
-  set.parameters.push_back({.name = "gain7", .at = {Owner::joint, 6, Field::gain}});
+  set.parameters.push_back({.name = "gain7", .at = JointNumber{6, Field::gain}});
   EXPECT_DEATH(PoseEvaluator(chain, set), "gain of joint 6, which has no reading");
 }
 

@@ -23,17 +23,17 @@ void express_frames_relative_to_file(std::vector<ParameterEstimate>& values, con
                                      const Chain& calibrated) {
   const auto coordinate = [](const Frame& from, const Frame& to, Field field) {
     const auto k = static_cast<int>(field);
-    if (field <= Field::z) return std::pair{from.xyz[k], to.xyz[k]};
+    if (is_translation(field)) return std::pair{from.xyz[k], to.xyz[k]};
     const Vec3 turn = to_intrinsic_xyz(from.pose().rotation.transpose() * to.pose().rotation);
     return std::pair{0.0, turn[k - static_cast<int>(Field::rx)]};
   };
   const std::vector<const Parameter*> free = set.free();
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const ParameterAddress& at = free[i]->at;
-    if (at.owner != Owner::base && at.owner != Owner::tool) continue;
-    const bool base = at.owner == Owner::base;
+    const auto* at = std::get_if<FrameNumber>(&free[i]->at);
+    if (!at || at->mounting >= 0) continue;
+    const bool base = at->frame == SetupFrame::base;
     std::tie(values[i].nominal, values[i].value) =
-        coordinate(base ? file.base : file.tool, base ? calibrated.base : calibrated.tool, at.field);
+        coordinate(base ? file.base : file.tool, base ? calibrated.base : calibrated.tool, at->field);
   }
 }
 

@@ -16,19 +16,16 @@ namespace kinfer::deploy {
 namespace {
 
 /// Relative rotation of a URDF joint's origin: its component rx, ry or rz (intrinsic) [rad].
-double rotation_change(const Chain& earlier, const Chain& later, const ParameterAddress& at) {
+double rotation_change(const Chain& earlier, const Chain& later, const JointNumber& at) {
   const auto& before = std::get<UrdfLink>(earlier.joints[at.joint].link);
   const auto& after = std::get<UrdfLink>(later.joints[at.joint].link);
   const Vec3 turn = to_intrinsic_xyz(before.origin.pose().rotation.transpose() * after.origin.pose().rotation);
   return turn[static_cast<int>(at.field) - static_cast<int>(Field::rx)];
 }
 
-bool is_frame_rotation(Field field) {
-  return field == Field::rx || field == Field::ry || field == Field::rz;
-}
-
 double change_of(const Chain& earlier, const Chain& later, const Parameter& p) {
-  if (is_frame_rotation(p.at.field)) return rotation_change(earlier, later, p.at);
+  if (const JointNumber* number = joint_number(p.at); number && is_rotation(number->field))
+    return rotation_change(earlier, later, *number);
   double change = value_at(later, p.at) - value_at(earlier, p.at);
   if (p.quantity == Quantity::angle) change = std::remainder(change, 2.0 * std::numbers::pi);
   return change;
@@ -68,7 +65,7 @@ Result<CalibrationComparison> compare_calibrations(const CalibratedRobot& earlie
   CalibrationComparison changes;
   for (const Parameter& p : all_parameters(earlier.chain, {}).parameters) {
     const auto before = earlier.sd.find(p.name), after = later.sd.find(p.name);
-    if (p.at.owner != Owner::joint || before == earlier.sd.end() || after == later.sd.end()) continue;
+    if (!is_joint_parameter(p.at) || before == earlier.sd.end() || after == later.sd.end()) continue;
     ParameterChange c{.name = p.name, .quantity = p.quantity};
     c.before = value_at(earlier.chain, p.at), c.after = value_at(later.chain, p.at);
     c.change = change_of(earlier.chain, later.chain, p);

@@ -73,6 +73,10 @@ Eigen::Matrix<double, 6, 1> screw(JointType type, const JointPlacement& joint, c
 
 }  // namespace
 
+Eigen::Matrix<double, 3, Eigen::Dynamic> point_columns(const Twists& twists, const Vec3& arm) {
+  return twists.topRows<3>() - skew(arm) * twists.bottomRows<3>();
+}
+
 double value_or_zero(std::span<const double> values, int q_index) {
   return values.empty() || std::isnan(values[q_index]) ? 0.0 : values[q_index];
 }

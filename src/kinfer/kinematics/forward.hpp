@@ -17,6 +17,9 @@ namespace kinfer {
 /// 6 x n: rows 0-2 change of position [m], rows 3-5 change of orientation as a rotation vector in the world [rad].
 using Twists = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
+/// 3 x n: change of the position of a point that is fixed in the tool, `arm` from the tool point (world axes) [m].
+Eigen::Matrix<double, 3, Eigen::Dynamic> point_columns(const Twists& twists, const Vec3& arm);
+
 /// Loads on the chain at one pose.
 struct Load {
   double payload = 0.0;                ///< [kg] point mass at the tool point

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <type_traits>
+
 #include "kinfer/base/expect.hpp"
 
 namespace kinfer {
@@ -13,19 +15,10 @@ constexpr Field plane_fields[] = {Field::rx, Field::ry, Field::offset};
 
 std::string_view field_name(Field field) {
   constexpr std::string_view names[] = {
-      "x",        "y",   "z",     "rx",        "ry",     "rz",         "a",
-      "alpha",    "d",   "theta", "beta",      "gain",   "compliance", "torque_compliance",
-      "backlash", "sin", "cos",   "expansion", "offset", "coupling"};
+      "x",        "y",   "z",     "rx",     "ry",      "rz",         "a",
+      "alpha",    "d",   "theta", "beta",   "gain",    "compliance", "torque_compliance",
+      "backlash", "sin", "cos",   "offset", "coupling"};
   return names[static_cast<int>(field)];
-}
-
-std::string name_of_joint_number(const Chain& chain, const ParameterAddress& at) {
-  if (at.field == Field::sine || at.field == Field::cosine)
-    return fmt::format("{}{:g}q{}", field_name(at.field), chain.joints[at.joint].harmonics[at.term].order,
-                       at.joint + 1);
-  if (at.field == Field::coupling)
-    return fmt::format("coupling{}_{}", at.joint + 1, chain.joints[at.joint].couplings[at.term].joint + 1);
-  return fmt::format("{}{}", field_name(at.field), at.joint + 1);
 }
 
 std::string label_of(const Vec3&, std::string_view kind, int index) {
@@ -36,13 +29,35 @@ std::string label_of(const Named& fixture, std::string_view kind, int) {
   return fmt::format("{}_{}", kind, fixture.name);
 }
 
-std::string name_of_fixture(const Fixtures& fixtures, const ParameterAddress& at) {
-  std::string name;
-  for_each_fixture_list(fixtures, [&](const auto& row, const auto& list) {
-    if (fixture_kind(row.kind) == at.fixture) name = label_of(list[at.joint], row.kind, at.joint);
-  });
-  return fmt::format("{}_{}", name, field_name(at.field));
-}
+/// As in files.
+struct NameOfNumber {
+  const Chain& chain;
+
+  std::string operator()(const FrameNumber& at) const {
+    const std::string name = fmt::format("{}_{}", at.frame == SetupFrame::base ? "base" : "tool", field_name(at.field));
+    return at.mounting < 0 ? name : fmt::format("{}@{}", name, chain.mountings[at.mounting].name);
+  }
+  std::string operator()(const JointNumber& at) const {
+    const Joint& joint = chain.joints[at.joint];
+    if (at.field == Field::sine || at.field == Field::cosine)
+      return fmt::format("{}{:g}q{}", field_name(at.field), joint.harmonics[at.term].order, at.joint + 1);
+    if (at.field == Field::coupling)
+      return fmt::format("coupling{}_{}", at.joint + 1, joint.couplings[at.term].joint + 1);
+    return fmt::format("{}{}", field_name(at.field), at.joint + 1);
+  }
+  std::string operator()(const TargetNumber& at) const {
+    return fmt::format("target_{}_{}", chain.targets[at.target].name, field_name(at.field));
+  }
+  std::string operator()(const FixtureNumber& at) const {
+    std::string name;
+    for_each_fixture_list(chain.fixtures, [&](const auto& row, const auto& list) {
+      if (fixture_kind(row.kind) == at.kind) name = label_of(list[at.index], row.kind, at.index);
+    });
+    return fmt::format("{}_{}", name, field_name(at.field));
+  }
+  std::string operator()(const GravityNumber& at) const { return fmt::format("gravity_{}", field_name(at.field)); }
+  std::string operator()(const ExpansionNumber&) const { return "expansion"; }
+};
 
 /// The functions below find a number of the chain for read and write access: the chain and its parts may be const.
 template <class F>
@@ -89,7 +104,7 @@ auto* link_number(const UrdfLink& link, Field field) {
 }
 
 template <class J>
-auto* joint_number(J& joint, Field field) {
+auto* link_or_joint_number(J& joint, Field field) {
   if (field == Field::gain) return &joint.gain;
   if (field == Field::compliance) return &joint.compliance;
   if (field == Field::torque_compliance) return &joint.torque_compliance;
@@ -97,7 +112,8 @@ auto* joint_number(J& joint, Field field) {
   return std::visit([&](auto& link) { return link_number(link, field); }, joint.link);
 }
 
-double* plane_number(Plane& plane, Field field) {
+template <class P>
+auto* plane_number(P& plane, Field field) {
   KINFER_EXPECT(field == Field::rx || field == Field::ry || field == Field::offset, "a plane has no {}",
                 field_name(field));
   return field == Field::offset ? &plane.offset : &plane.small_rotation[field == Field::rx ? 0 : 1];
@@ -105,21 +121,17 @@ double* plane_number(Plane& plane, Field field) {
 
 template <class V>
 auto* point_number(V& xyz, Field field) {
-  KINFER_EXPECT(field <= Field::z, "a point has no {}", field_name(field));
+  KINFER_EXPECT(is_translation(field), "a point has no {}", field_name(field));
   return &xyz[static_cast<int>(field) - static_cast<int>(Field::x)];
 }
 
-double* fixture_number(Vec3& point, Field field) {
-  return point_number(point, field);
-}
-double* fixture_number(Target& point, Field field) {
-  return point_number(point.xyz, field);
-}
-double* fixture_number(Plane& plane, Field field) {
-  return plane_number(plane, field);
-}
-double* fixture_number(NamedFrame& fixture, Field field) {
-  return frame_number(fixture.frame, field);
+template <class Fixture>
+auto* fixture_number(Fixture& fixture, Field field) {
+  using Kind = std::remove_const_t<Fixture>;
+  if constexpr (std::is_same_v<Kind, Vec3>) return point_number(fixture, field);
+  if constexpr (std::is_same_v<Kind, Target>) return point_number(fixture.xyz, field);
+  if constexpr (std::is_same_v<Kind, Plane>) return plane_number(fixture, field);
+  if constexpr (std::is_same_v<Kind, NamedFrame>) return frame_number(fixture.frame, field);
 }
 
 template <class List>
@@ -128,53 +140,49 @@ auto& entry(List& list, int index) {
   return list[index];
 }
 
-double* fixture_number(Fixtures& fixtures, const ParameterAddress& at) {
-  double* number = nullptr;
-  for_each_fixture_list(fixtures, [&](const auto& row, auto& list) {
-    if (fixture_kind(row.kind) == at.fixture) number = fixture_number(entry(list, at.joint), at.field);
-  });
-  return number;
-}
-const double* fixture_number(const Fixtures& fixtures, const ParameterAddress& at) {
-  return fixture_number(const_cast<Fixtures&>(fixtures), at);
-}
+/// Finds the number; the chain may be const.
+template <class C>
+struct FindNumber {
+  C& chain;
+
+  auto* operator()(const FrameNumber& at) const {
+    if (at.mounting < 0) return frame_number(at.frame == SetupFrame::base ? chain.base : chain.tool, at.field);
+    auto& mounting = entry(chain.mountings, at.mounting);
+    return frame_number(at.frame == SetupFrame::base ? *mounting.base : mounting.tool, at.field);
+  }
+  auto* operator()(const JointNumber& at) const {
+    KINFER_EXPECT(at.joint >= 0 && at.joint < static_cast<int>(chain.joints.size()), "joint {} of {}", at.joint,
+                  chain.joints.size());
+    auto& joint = chain.joints[at.joint];
+    if (at.field == Field::sine) return &entry(joint.harmonics, at.term).sine;
+    if (at.field == Field::cosine) return &entry(joint.harmonics, at.term).cosine;
+    if (at.field == Field::coupling) return &entry(joint.couplings, at.term).factor;
+    return link_or_joint_number(joint, at.field);
+  }
+  auto* operator()(const TargetNumber& at) const { return point_number(entry(chain.targets, at.target).xyz, at.field); }
+  auto* operator()(const FixtureNumber& at) const {
+    decltype(&chain.expansion) number = nullptr;
+    for_each_fixture_list(chain.fixtures, [&](const auto& row, auto& list) {
+      if (fixture_kind(row.kind) == at.kind) number = fixture_number(entry(list, at.index), at.field);
+    });
+    return number;
+  }
+  auto* operator()(const GravityNumber& at) const { return point_number(chain.gravity, at.field); }
+  auto* operator()(const ExpansionNumber&) const { return &chain.expansion; }
+};
 
 template <class C>
-auto* number(C& chain, const ParameterAddress& at) {
-  switch (at.owner) {
-    case Owner::base:
-      return frame_number(chain.base, at.field);
-    case Owner::tool:
-      return frame_number(chain.tool, at.field);
-    case Owner::mounting_base:
-      return frame_number(*entry(chain.mountings, at.joint).base, at.field);
-    case Owner::mounting_tool:
-      return frame_number(entry(chain.mountings, at.joint).tool, at.field);
-    case Owner::target:
-      return point_number(entry(chain.targets, at.joint).xyz, at.field);
-    case Owner::fixture:
-      return fixture_number(chain.fixtures, at);
-    case Owner::gravity:
-      return point_number(chain.gravity, at.field);
-    case Owner::robot:
-      return &chain.expansion;
-    case Owner::joint:
-      break;
-  }
-  KINFER_EXPECT(at.joint >= 0 && at.joint < static_cast<int>(chain.joints.size()), "joint {} of {}", at.joint,
-                chain.joints.size());
-  auto& joint = chain.joints[at.joint];
-  if (at.field == Field::sine) return &entry(joint.harmonics, at.term).sine;
-  if (at.field == Field::cosine) return &entry(joint.harmonics, at.term).cosine;
-  if (at.field == Field::coupling) return &entry(joint.couplings, at.term).factor;
-  return joint_number(joint, at.field);
+auto* find_number(C& chain, const ParameterAddress& at) {
+  return std::visit(FindNumber<C>{chain}, at);
 }
 
 }  // namespace
 
 Quantity quantity_of(const ParameterAddress& at) {
-  if (at.owner == Owner::gravity) return Quantity::acceleration;
-  switch (at.field) {
+  if (std::holds_alternative<GravityNumber>(at)) return Quantity::acceleration;
+  const std::optional<Field> field = field_of(at);
+  if (!field) return Quantity::expansion;
+  switch (*field) {
     case Field::x:
     case Field::y:
     case Field::z:
@@ -188,41 +196,38 @@ Quantity quantity_of(const ParameterAddress& at) {
     case Field::compliance:
     case Field::torque_compliance:
       return Quantity::compliance;
-    case Field::expansion:
-      return Quantity::expansion;
     default:
       return Quantity::angle;
   }
 }
 
 std::string name_of(const Chain& chain, const ParameterAddress& at) {
-  const std::string_view field = field_name(at.field);
-  switch (at.owner) {
-    case Owner::base:
-      return fmt::format("base_{}", field);
-    case Owner::tool:
-      return fmt::format("tool_{}", field);
-    case Owner::joint:
-      return name_of_joint_number(chain, at);
-    case Owner::mounting_base:
-      return fmt::format("base_{}@{}", field, chain.mountings[at.joint].name);
-    case Owner::mounting_tool:
-      return fmt::format("tool_{}@{}", field, chain.mountings[at.joint].name);
-    case Owner::target:
-      return fmt::format("target_{}_{}", chain.targets[at.joint].name, field);
-    case Owner::fixture:
-      return name_of_fixture(chain.fixtures, at);
-    case Owner::gravity:
-      return fmt::format("gravity_{}", field);
-    case Owner::robot:
-      break;
-  }
-  return std::string(field);
+  return std::visit(NameOfNumber{chain}, at);
 }
 
-bool is_frame_parameter(const ParameterAddress& at) {
-  return at.owner == Owner::base || at.owner == Owner::tool || at.owner == Owner::mounting_base ||
-         at.owner == Owner::mounting_tool;
+bool is_own_frame_parameter(const ParameterAddress& at, SetupFrame frame) {
+  const auto* number = std::get_if<FrameNumber>(&at);
+  return number && number->frame == frame && number->mounting < 0;
+}
+
+bool is_object_parameter(const ParameterAddress& at) {
+  return std::holds_alternative<TargetNumber>(at) || std::holds_alternative<FixtureNumber>(at);
+}
+
+std::optional<Field> field_of(const ParameterAddress& at) {
+  return std::visit(
+      [](const auto& number) -> std::optional<Field> {
+        if constexpr (requires { number.field; }) return number.field;
+        return std::nullopt;
+      },
+      at);
+}
+
+bool is_translation(Field field) {
+  return field == Field::x || field == Field::y || field == Field::z;
+}
+bool is_rotation(Field field) {
+  return field == Field::rx || field == Field::ry || field == Field::rz;
 }
 
 std::span<const Field> fields_of(const Vec3&) {
@@ -238,17 +243,32 @@ std::span<const Field> fields_of(const NamedFrame&) {
   return frame_fields;
 }
 
+std::vector<ParameterAddress> non_geometric_addresses(const Chain& chain) {
+  std::vector<ParameterAddress> addresses;
+  for (int j = 0; j < static_cast<int>(chain.joints.size()); ++j) {
+    const Joint& joint = chain.joints[j];
+    for (const Field field : {Field::gain, Field::compliance, Field::torque_compliance, Field::backlash})
+      addresses.push_back(JointNumber{j, field});
+    for (int term = 0; term < static_cast<int>(joint.harmonics.size()); ++term)
+      for (const Field field : {Field::sine, Field::cosine}) addresses.push_back(JointNumber{j, field, term});
+    for (int term = 0; term < static_cast<int>(joint.couplings.size()); ++term)
+      addresses.push_back(JointNumber{j, Field::coupling, term});
+  }
+  addresses.push_back(ExpansionNumber{});
+  return addresses;
+}
+
 std::string_view unit(Quantity quantity) {
   constexpr std::string_view units[] = {"m", "rad", "1", "rad/(N m)", "1/K", "m/s^2"};
   return units[static_cast<int>(quantity)];
 }
 
 double value_at(const Chain& chain, const ParameterAddress& address) {
-  return *number(chain, address);
+  return *find_number(chain, address);
 }
 
 void set_value_at(Chain& chain, const ParameterAddress& address, double value) {
-  *number(chain, address) = value;
+  *find_number(chain, address) = value;
 }
 
 }  // namespace kinfer

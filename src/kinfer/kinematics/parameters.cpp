@@ -19,19 +19,12 @@ double tolerance_of(const ParameterAddress& at, const Tolerances& t) {
   if (quantity == Quantity::ratio) return t.gain;
   if (quantity == Quantity::compliance) return t.compliance;
   const bool is_length = quantity == Quantity::length;
-  switch (at.owner) {
-    case Owner::base:
-    case Owner::mounting_base:
-      return is_length ? t.base_length : t.base_angle;
-    case Owner::tool:
-    case Owner::mounting_tool:
-    case Owner::target:
-      return is_length ? t.tool_length : t.tool_angle;
-    case Owner::fixture:
-      return t.anchor;
-    default:
-      return is_length ? t.length : t.angle;
-  }
+  if (std::holds_alternative<FixtureNumber>(at)) return t.anchor;
+  if (std::holds_alternative<TargetNumber>(at)) return t.tool_length;
+  const auto* frame = std::get_if<FrameNumber>(&at);
+  if (!frame) return is_length ? t.length : t.angle;
+  if (frame->frame == SetupFrame::base) return is_length ? t.base_length : t.base_angle;
+  return is_length ? t.tool_length : t.tool_angle;
 }
 
 void append(ParameterSet& set, const Chain& chain, const ParameterAddress& at, const Tolerances& tolerances) {
@@ -93,13 +86,13 @@ std::vector<const Parameter*> ParameterSet::free() const {
 ParameterSet all_parameters(const Chain& chain, const Tolerances& tolerances) {
   expect_well_formed(chain);
   ParameterSet set;
-  for (const Field field : frame_numbers()) append(set, chain, {Owner::base, -1, field}, tolerances);
+  for (const Field field : frame_numbers()) append(set, chain, FrameNumber{SetupFrame::base, field}, tolerances);
   for (const int j : joints_on_tool_paths(chain)) {
-    for (const Field field : fields_of(chain.joints[j])) append(set, chain, {Owner::joint, j, field}, tolerances);
+    for (const Field field : fields_of(chain.joints[j])) append(set, chain, JointNumber{j, field}, tolerances);
     for (int k = 0; k < static_cast<int>(chain.joints[j].couplings.size()); ++k)
-      append(set, chain, {Owner::joint, j, Field::coupling, k}, tolerances);
+      append(set, chain, JointNumber{j, Field::coupling, k}, tolerances);
   }
-  for (const Field field : frame_numbers()) append(set, chain, {Owner::tool, -1, field}, tolerances);
+  for (const Field field : frame_numbers()) append(set, chain, FrameNumber{SetupFrame::tool, field}, tolerances);
   return set;
 }
 
@@ -108,16 +101,16 @@ ParameterSet setup_parameters(const Chain& chain, const Tolerances& tolerances) 
   const auto xyz = {Field::x, Field::y, Field::z};
   for (int m = 0; m < static_cast<int>(chain.mountings.size()); ++m) {
     for (const Field field : frame_numbers())
-      if (chain.mountings[m].base) append(set, chain, {Owner::mounting_base, m, field}, tolerances);
-    for (const Field field : frame_numbers()) append(set, chain, {Owner::mounting_tool, m, field}, tolerances);
+      if (chain.mountings[m].base) append(set, chain, FrameNumber{SetupFrame::base, field, m}, tolerances);
+    for (const Field field : frame_numbers()) append(set, chain, FrameNumber{SetupFrame::tool, field, m}, tolerances);
   }
   for (int i = 0; i < static_cast<int>(chain.targets.size()); ++i)
-    for (const Field field : xyz) append(set, chain, {Owner::target, i, field}, tolerances);
+    for (const Field field : xyz) append(set, chain, TargetNumber{i, field}, tolerances);
   for_each_fixture_list(chain.fixtures, [&](const auto& row, const auto& list) {
     const FixtureKind kind = fixture_kind(row.kind);
     for (int i = 0; i < static_cast<int>(list.size()); ++i)
       for (const Field field : fields_of(list[i])) {
-        const ParameterAddress at{Owner::fixture, i, field, 0, kind};
+        const FixtureNumber at{kind, i, field};
         row.prior == FixturePrior::none ? append_unknown(set, chain, at) : append(set, chain, at, tolerances);
       }
   });

@@ -42,7 +42,7 @@ struct PoseEvaluator::Program {
   std::vector<JointMotionModel> motion_models;  // in the order of the joints
   std::vector<Coupling> couplings;              // Coupling::joint is here an index into q
   std::vector<int> rotational, idle;            // columns that need the tool position; columns that are zero
-  std::vector<Owner> owner;                     // of each column
+  std::vector<ParameterAddress> address;        // of each column
   bool pose_needs_torque = false, derivative_needs_torque = false, has_expansion = false;
   VectorXd zero_torque;
 
@@ -67,11 +67,11 @@ struct PoseEvaluator::Program {
     derivative_needs_torque = pose_needs_torque;
     for (const Parameter* p : set.free()) {
       wanted.push_back({p->at, static_cast<int>(wanted.size())});
-      owner.push_back(p->at.owner);
-      derivative_needs_torque |= p->at.field == Field::compliance;
+      address.push_back(p->at);
+      derivative_needs_torque |= field_of(p->at) == Field::compliance;
     }
     columns = static_cast<Eigen::Index>(wanted.size());
-    has_expansion = chain.expansion != 0.0 || std::find(owner.begin(), owner.end(), Owner::robot) != owner.end();
+    has_expansion = chain.expansion != 0.0 || std::ranges::count(address, ParameterAddress{ExpansionNumber{}}) > 0;
     recorded = program::compile(chain, wanted);
     std::vector<bool> acts(wanted.size(), false);
     for (const Step& step : recorded.steps) {
@@ -215,13 +215,13 @@ struct PoseEvaluator::Program {
   void expand_columns(const ToolAndFlange& result, const Load& load, Twists& twists) const {
     const double by = chain.expansion * load.temperature_rise;
     const Vec3 base = chain.base.xyz, shift = thermal_displacement(result, load);
-    std::vector<bool> turns(owner.size(), false);
+    std::vector<bool> turns(address.size(), false);
     for (const int c : rotational) turns[c] = true;
-    for (std::size_t c = 0; c < owner.size(); ++c) {
+    for (std::size_t c = 0; c < address.size(); ++c) {
       auto origin = twists.col(static_cast<Eigen::Index>(c)).head<3>();
-      if (owner[c] == Owner::joint) turns[c] ? origin += by * (origin - base).eval() : origin *= 1.0 + by;
-      if (owner[c] == Owner::tool && turns[c]) origin += shift;
-      if (owner[c] == Owner::robot) origin = load.temperature_rise * (result.flange - base);
+      if (is_joint_parameter(address[c])) turns[c] ? origin += by * (origin - base).eval() : origin *= 1.0 + by;
+      if (is_own_frame_parameter(address[c], SetupFrame::tool) && turns[c]) origin += shift;
+      if (std::holds_alternative<ExpansionNumber>(address[c])) origin = load.temperature_rise * (result.flange - base);
     }
   }
 };

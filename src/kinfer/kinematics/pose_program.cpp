@@ -2,6 +2,7 @@
 #include "kinfer/kinematics/pose_program.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace kinfer::program {
 namespace {
@@ -25,13 +26,12 @@ class Compiler {
  public:
   explicit Compiler(const std::vector<Column>& columns) : columns_(columns) {}
 
-  void walk(const Frame& frame, Owner owner) {
-    owner_ = owner;
+  void walk(const Frame& frame, SetupFrame which) {
+    frame_ = which, joint_ = -1;
     elementary::for_each_factor(frame, *this);
   }
 
   void walk(const Joint& joint, int index) {
-    owner_ = Owner::joint;
     joint_ = index;
     harmonics_ = &joint.harmonics;
     elementary::for_each_factor(joint, *this);
@@ -85,19 +85,27 @@ class Compiler {
     elementary::apply(pending_.product, factor.motion, factor.axis, factor.value);
   }
 
+  /// The term of an address that is `field` of the frame or joint walked now; none: another number.
+  std::optional<int> term_here(const ParameterAddress& at, Field field) const {
+    if (const JointNumber* number = joint_number(at))
+      return number->joint == joint_ && number->field == field ? std::optional(number->term) : std::nullopt;
+    const bool is_here = joint_ < 0 && is_own_frame_parameter(at, frame_) && field_of(at) == field;
+    return is_here ? std::optional(0) : std::nullopt;
+  }
+
   void record(const Factor& factor, Field field, Scale scale) {
     for (const Column& column : columns_) {
-      if (column.at.owner != owner_ || column.at.field != field) continue;
-      if (owner_ == Owner::joint && column.at.joint != joint_) continue;
+      const std::optional<int> term = term_here(column.at, field);
+      if (!term) continue;
       flush();
       const bool of_a_harmonic = field == Field::sine || field == Field::cosine;
       list_.steps.push_back({.kind = Step::Kind::record,
                              .axis = factor.axis,
                              .index = column.index,
-                             .a = of_a_harmonic ? harmonics_->at(column.at.term).order : 0.0,
+                             .a = of_a_harmonic ? harmonics_->at(*term).order : 0.0,
                              .scale = scale,
                              .source = joint_,
-                             .term = column.at.term,
+                             .term = *term,
                              .motion = factor.motion});
     }
   }
@@ -113,7 +121,7 @@ class Compiler {
   }
 
   const std::vector<Column>& columns_;
-  Owner owner_ = Owner::base;
+  SetupFrame frame_ = SetupFrame::base;  // where no joint is walked
   int joint_ = -1;
   const std::vector<Harmonic>* harmonics_ = nullptr;  // of that joint
   Pending pending_;
@@ -121,7 +129,7 @@ class Compiler {
 };
 
 bool has_expansion(const Chain& chain, const std::vector<Column>& columns) {
-  const auto is_expansion = [](const Column& column) { return column.at.owner == Owner::robot; };
+  const auto is_expansion = [](const Column& column) { return std::holds_alternative<ExpansionNumber>(column.at); };
   return chain.expansion != 0.0 || std::any_of(columns.begin(), columns.end(), is_expansion);
 }
 
@@ -129,10 +137,10 @@ bool has_expansion(const Chain& chain, const std::vector<Column>& columns) {
 
 StepList compile(const Chain& chain, const std::vector<Column>& columns) {
   Compiler compiler(columns);
-  compiler.walk(chain.base, Owner::base);
+  compiler.walk(chain.base, SetupFrame::base);
   for (const int j : path_to(chain, chain.tip_joint())) compiler.walk(chain.joints[j], j);
   if (has_expansion(chain, columns)) compiler.mark_flange();
-  compiler.walk(chain.tool, Owner::tool);
+  compiler.walk(chain.tool, SetupFrame::tool);
   return compiler.finish();
 }
 

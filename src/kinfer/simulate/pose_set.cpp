@@ -54,8 +54,9 @@ Chain with_random_errors(const Chain& nominal, const Tolerances& tolerances, Rng
   Chain truth = nominal;
   for (const Parameter& parameter : all_parameters(nominal, tolerances).parameters) {
     if (parameter.quantity == Quantity::compliance) continue;
-    const bool revolute_gain = parameter.at.field == Field::gain && rotates(nominal.joints[parameter.at.joint].type);
-    const bool coupling = parameter.at.field == Field::coupling;
+    const JointNumber* number = joint_number(parameter.at);
+    const bool revolute_gain = number && number->field == Field::gain && rotates(nominal.joints[number->joint].type);
+    const bool coupling = number && number->field == Field::coupling;
     if (revolute_gain || coupling) continue;  // an encoder's gain is exact unless a user says otherwise
     set_value_at(truth, parameter.at, parameter.nominal + parameter.prior_sd * rng.normal());
   }

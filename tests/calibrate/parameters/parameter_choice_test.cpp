@@ -86,7 +86,7 @@ TEST(GeometricParameters, EveryJointParameterHasItsTolerance) {
   const Tolerances tolerances{.length = 1e-3, .angle = 2e-3};
   const ParameterSet set = geometric_parameters(test::er20(), with_point(), tolerances);
   for (const Parameter& parameter : set.parameters) {
-    if (parameter.at.owner != Owner::joint) continue;
+    if (!is_joint_parameter(parameter.at)) continue;
     EXPECT_DOUBLE_EQ(parameter.prior_sd, parameter.quantity == Quantity::length ? 1e-3 : 2e-3) << parameter.name;
   }
 }
@@ -110,7 +110,7 @@ TEST(OffsetParameters, OfAUrdfJointTurnsOrShiftsItsOriginAboutItsAxis) {
   data.joints = MatrixXd::Zero(3, 1);
   Names joints;
   for (const Parameter& parameter : joint_offset_parameters(urdf_robot(), data, {}).parameters)
-    if (parameter.at.owner == Owner::joint) joints.insert(parameter.name);
+    if (is_joint_parameter(parameter.at)) joints.insert(parameter.name);
   EXPECT_EQ(joints, (Names{"rz1", "ry2", "z3"}));
 }
 
@@ -144,8 +144,7 @@ TEST(RestrictedToData, LeavesOutWhatNoRowRefersTo) {
   all.parameters.insert(all.parameters.end(), fixtures.parameters.begin(), fixtures.parameters.end());
   std::set<std::string> left;
   for (const Parameter& parameter : restricted_to_data(all, data).parameters)
-    if (parameter.at.owner == Owner::target || is_fixture_parameter(parameter.at))
-      left.insert(name_of(chain, parameter.at));
+    if (is_object_parameter(parameter.at)) left.insert(name_of(chain, parameter.at));
   EXPECT_EQ(left, (std::set<std::string>{"anchor1_x", "anchor1_y", "anchor1_z", "target_far_x", "target_far_y",
                                          "target_far_z"}));
 }

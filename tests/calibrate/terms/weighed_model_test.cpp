@@ -16,7 +16,7 @@ namespace {
 using namespace test;
 
 Calibration default_calibration(const Chain& nominal, const PoseSet& data,
-                                const ModelChoice& model = CrossValidatedModel{}) {
+                                const ModelChoice& model = AutomaticModel{}) {
   return calibrate_robot({nominal, {}, tracker, data}, {.model = model}, Rng(1)).value();
 }
 

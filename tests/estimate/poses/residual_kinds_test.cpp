@@ -83,12 +83,12 @@ ParameterSet everything(const Chain& chain) {
   set.parameters.insert(set.parameters.end(), around.parameters.begin(), around.parameters.end());
   const auto add = [&](const ParameterAddress& at) { set.parameters.push_back(parameter_at(chain, at, 1e-3)); };
   for (int j = 0; j < static_cast<int>(chain.joints.size()); ++j) {
-    add({Owner::joint, j, Field::torque_compliance}), add({Owner::joint, j, Field::backlash});
+    add(JointNumber{j, Field::torque_compliance}), add(JointNumber{j, Field::backlash});
     for (int term = 0; term < static_cast<int>(chain.joints[j].harmonics.size()); ++term)
-      add({Owner::joint, j, Field::sine, term}), add({Owner::joint, j, Field::cosine, term});
+      add(JointNumber{j, Field::sine, term}), add(JointNumber{j, Field::cosine, term});
   }
-  add({Owner::robot, -1, Field::expansion});
-  for (const Field field : {Field::x, Field::y, Field::z}) add({Owner::gravity, -1, field});
+  add(ExpansionNumber{});
+  for (const Field field : {Field::x, Field::y, Field::z}) add(GravityNumber{field});
   return set;
 }
 
@@ -98,7 +98,7 @@ TEST(ResidualKinds, JacobianOfAllInstrumentsInAllMountingsEqualsDifferences) {
   chain.joints[1].compliance = 0.0;
   const PoseSet data = all_kinds(chain);
   ParameterSet set = everything(chain);
-  std::erase_if(set.parameters, [](const Parameter& p) { return p.at.field == Field::compliance; });
+  std::erase_if(set.parameters, [](const Parameter& p) { return field_of(p.at) == Field::compliance; });
   Weights weights = weights_of(data, Instrument{.sigma = 1e-3, .sigma_angle = 1e-3, .sigma_tilt = 1e-2});
   const Residuals problem = pose_residuals(chain, set, data, weights);
   const VectorXd x = pack(set, chain);

@@ -34,16 +34,16 @@ std::vector<Chain> rigid_examples() {
 /// Every geometric number and every gain is free.
 ParameterSet everything(const Chain& chain) {
   ParameterSet set = all_parameters(chain, {});
-  for (Parameter& p : set.parameters) p.free = p.at.field != Field::compliance && p.at.field != Field::coupling;
+  for (Parameter& p : set.parameters) p.free = field_of(p.at) != Field::compliance && field_of(p.at) != Field::coupling;
   return set;
 }
 
 ParameterSet links_only(const Chain& chain) {
   ParameterSet set = everything(chain);
   for (Parameter& p : set.parameters) {
-    const bool dh =
-        p.at.field == Field::a || p.at.field == Field::alpha || p.at.field == Field::d || p.at.field == Field::theta;
-    p.free = p.at.owner == Owner::joint && dh;
+    const std::optional<Field> field = field_of(p.at);
+    const bool dh = field == Field::a || field == Field::alpha || field == Field::d || field == Field::theta;
+    p.free = is_joint_parameter(p.at) && dh;
   }
   return set;
 }
@@ -174,7 +174,7 @@ TEST(Batch, AnglesOfManyTurnsAreHandled) {
   for (const double turns : {1.0, 1e3, 1e7}) {
     MatrixXd x = candidates(chain, set, 3, Rng(2));
     for (Eigen::Index k = 0; k < x.rows(); ++k)
-      if (set.free()[k]->at.field == Field::alpha) x.row(k).array() += 2.0 * 3.14159265358979323846 * turns;
+      if (field_of(set.free()[k]->at) == Field::alpha) x.row(k).array() += 2.0 * 3.14159265358979323846 * turns;
     for (const batch::Kernels* kernels : runnable()) {
       std::vector<double> sum(3);
       BatchPopulation<double>(chain, set, table, *kernels).sums(x, sum);
@@ -194,7 +194,7 @@ TEST(Batch, ACompliantChainHasNoBatchForm) {
   coupled.joints[2].couplings = {{.joint = 1, .factor = 0.1}};
   ParameterSet set = everything(coupled);
   EXPECT_TRUE(has_batch_form(coupled, set));
-  for (Parameter& p : set.parameters) p.free = p.free || p.at.field == Field::coupling;
+  for (Parameter& p : set.parameters) p.free = p.free || field_of(p.at) == Field::coupling;
   EXPECT_FALSE(has_batch_form(coupled, set));
 }
 

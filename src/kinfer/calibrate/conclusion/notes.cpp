@@ -15,7 +15,7 @@ using Notes = std::vector<CalibrationNote>;
 /// Base and tool were not free parameters, but the frames of the file were not used.
 void note_frames(const Estimate& estimate, const Chain& nominal, Notes& notes) {
   for (const Parameter* parameter : estimate.parameters.free())
-    if (parameter->at.owner == Owner::base) return;
+    if (is_own_frame_parameter(parameter->at, SetupFrame::base)) return;
   const double distance = (estimate.chain.base.xyz - nominal.base.xyz).norm();
   if (distance > 0.0) notes.push_back({CalibrationNoteKind::frames_from_data, {{"distance_m", distance}}});
 }
@@ -30,7 +30,7 @@ bool has_non_geometric_terms(const Chain& chain) {
 /// Which joint offsets have changed significantly since the earlier calibration (Bonferroni's correction).
 void note_offsets(const Estimate& estimate, Notes& notes) {
   const std::vector<const Parameter*> free = estimate.parameters.free();
-  const auto is_offset = [](const Parameter* p) { return p->at.owner == Owner::joint; };
+  const auto is_offset = [](const Parameter* p) { return is_joint_parameter(p->at); };
   const auto offsets = static_cast<double>(std::count_if(free.begin(), free.end(), is_offset));
   const double limit = normal_quantile(1.0 - 0.5 * thresholds::moved_offset_risk / std::max(1.0, offsets));
   const std::size_t notes_before = notes.size();

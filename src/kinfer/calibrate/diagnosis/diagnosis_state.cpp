@@ -81,7 +81,7 @@ std::optional<FrameFit> fit_frames_quickly(const Chain& nominal, const PoseSet& 
 
 double max_plausible_error(const CalibrationTask& task) {
   ParameterSet set = geometric_parameters(task.nominal, task.data, task.tolerances);
-  std::erase_if(set.parameters, [](const Parameter& p) { return p.at.owner == Owner::base; });
+  std::erase_if(set.parameters, [](const Parameter& p) { return is_own_frame_parameter(p.at, SetupFrame::base); });
   const PoseSet data = thin_pose_set(task.data, thresholds::hypothesis_rows);
   const EvaluatedPoses at = evaluate_poses(task.nominal, set, data, Derivative::yes);
   VectorXd sd(set.free_count());

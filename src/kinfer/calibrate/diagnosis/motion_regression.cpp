@@ -18,11 +18,6 @@ bool is_usable(const JointMotions& motion, Index row) {
   return motion.col(row).allFinite();
 }
 
-/// Displacement of a measured point, fixed in the tool, by a twist of the tool.
-Eigen::Matrix<double, 3, Eigen::Dynamic> point_columns(const Twists& twists, const Vec3& arm) {
-  return twists.topRows<3>() - skew(arm) * twists.bottomRows<3>();
-}
-
 /// The linear system over the points of the usable rows, three equations each.
 struct PointSystem {
   MatrixXd columns;      ///< parameters, then the other motions, then the motion

@@ -50,7 +50,7 @@ Result<ParameterSet> select_parameter_set(const CalibrationTask& task, const Pos
 bool has_free_frames(const ParameterSet& set, const ParameterChoice& choice) {
   return std::holds_alternative<GeometricParameters>(choice) || std::holds_alternative<JointOffsetParameters>(choice) ||
          std::any_of(set.parameters.begin(), set.parameters.end(),
-                     [](const Parameter& p) { return p.at.owner == Owner::base; });
+                     [](const Parameter& p) { return is_own_frame_parameter(p.at, SetupFrame::base); });
 }
 
 /// The frame of the file where the data agree with it within `frame_agreement` tolerances, else the frame estimated
@@ -93,7 +93,7 @@ Chain perturb(const Chain& start, const ParameterSet& set, Rng rng) {
   VectorXd x = pack(set, start);
   const auto free = set.free();
   for (std::size_t k = 0; k < free.size(); ++k) {
-    if (free[k]->at.owner != Owner::joint) continue;
+    if (!is_joint_parameter(free[k]->at)) continue;
     if (free[k]->quantity == Quantity::length)
       x[static_cast<Eigen::Index>(k)] += thresholds::perturbation_length * rng.uniform(-1, 1);
     if (free[k]->quantity == Quantity::angle)

@@ -27,12 +27,10 @@ Observes observed_in_mounting(const PoseSet& data, int mounting) {
   return sum;
 }
 
-bool is_observed(const ParameterAddress& frame, const PoseSet& data) {
-  const bool own = frame.owner == Owner::base || frame.owner == Owner::tool;
-  const Observes observed = observed_in_mounting(data, own ? -1 : frame.joint);
-  const bool turn = quantity_of(frame) == Quantity::angle;
-  if (frame.owner == Owner::base || frame.owner == Owner::mounting_base)
-    return turn ? observed.base_rotation : observed.base_position;
+bool is_observed(const FrameNumber& number, const PoseSet& data) {
+  const Observes observed = observed_in_mounting(data, number.mounting);
+  const bool turn = is_rotation(number.field);
+  if (number.frame == SetupFrame::base) return turn ? observed.base_rotation : observed.base_position;
   return turn ? observed.tool_rotation : observed.tool_position;
 }
 
@@ -48,10 +46,11 @@ bool refers_to(const PoseMeasurements& data, FixtureKind kind, int fixture) {
 
 /// Whether any row refers to that target or fixture, or depends on that frame.
 bool is_referenced(const ParameterAddress& at, const PoseSet& data) {
-  if (is_frame_parameter(at)) return is_observed(at, data);
-  if (is_fixture_parameter(at)) return refers_to(data, at.fixture, at.joint);
-  return at.owner == Owner::target && std::any_of(data.points.begin(), data.points.end(),
-                                                  [&](const PointMeasurement& m) { return m.target == at.joint; });
+  if (const auto* frame = std::get_if<FrameNumber>(&at)) return is_observed(*frame, data);
+  if (const auto* fixture = std::get_if<FixtureNumber>(&at)) return refers_to(data, fixture->kind, fixture->index);
+  const auto* target = std::get_if<TargetNumber>(&at);
+  return target && std::any_of(data.points.begin(), data.points.end(),
+                               [&](const PointMeasurement& m) { return m.target == target->target; });
 }
 
 /// Hayati's angle beta is needed where the common normal of two axes is ill-defined: alpha near 0 or 180 degrees.
@@ -68,7 +67,7 @@ bool needs_beta(const Chain& chain, int index) {
   return false;
 }
 
-bool is_geometric(const Chain& chain, const ParameterAddress& at) {
+bool is_geometric(const Chain& chain, const JointNumber& at) {
   const Joint& joint = chain.joints[at.joint];
   if (at.field == Field::compliance || at.field == Field::coupling) return false;
   if (at.field == Field::gain) return translates(joint.type) && joint.is_active;
@@ -111,23 +110,26 @@ void add_gravity(ParameterSet& set, const Chain& chain, const PoseSet& data, con
   chain.gravity.cwiseAbs().maxCoeff(&down);  // a change along this axis would only scale gravity
   for (const Field field : {Field::x, Field::y, Field::z})
     if (static_cast<Eigen::Index>(field) != down)
-      set.parameters.push_back(parameter_at(chain, {Owner::gravity, -1, field}, prior));
+      set.parameters.push_back(parameter_at(chain, GravityNumber{field}, prior));
 }
 
 }  // namespace
 
 ParameterSet frame_parameters(const Chain& chain, const PoseSet& data, const Tolerances& tolerances) {
-  ParameterSet set = select_parameters(
-      chain, tolerances, [&](const Parameter& p) { return p.at.owner != Owner::target && is_referenced(p.at, data); });
+  ParameterSet set = select_parameters(chain, tolerances, [&](const Parameter& p) {
+    return !std::holds_alternative<TargetNumber>(p.at) && is_referenced(p.at, data);
+  });
   for (Parameter& parameter : set.parameters)
-    if (!is_fixture_parameter(parameter.at)) parameter.prior_sd = std::numeric_limits<double>::infinity();
+    if (!std::holds_alternative<FixtureNumber>(parameter.at))
+      parameter.prior_sd = std::numeric_limits<double>::infinity();
   add_gravity(set, chain, data, tolerances);
   return set;
 }
 
 ParameterSet geometric_parameters(const Chain& chain, const PoseSet& data, const Tolerances& tolerances) {
   ParameterSet set = select_parameters(chain, tolerances, [&](const Parameter& p) {
-    return is_joint_parameter(p.at) ? is_geometric(chain, p.at) : is_referenced(p.at, data);
+    const JointNumber* number = joint_number(p.at);
+    return number ? is_geometric(chain, *number) : is_referenced(p.at, data);
   });
   add_gravity(set, chain, data, tolerances);
   return set;
@@ -136,7 +138,8 @@ ParameterSet geometric_parameters(const Chain& chain, const PoseSet& data, const
 ParameterSet joint_offset_parameters(const Chain& chain, const PoseSet& data, const Tolerances& tolerances) {
   constexpr double collision_angle = 3.0 * degree, collision_length = 10e-3;
   ParameterSet set = select_parameters(chain, tolerances, [&](const Parameter& p) {
-    return is_joint_parameter(p.at) ? is_offset(chain.joints[p.at.joint], p.at.field) : is_referenced(p.at, data);
+    const JointNumber* number = joint_number(p.at);
+    return number ? is_offset(chain.joints[number->joint], number->field) : is_referenced(p.at, data);
   });
   for (Parameter& parameter : set.parameters)
     if (is_joint_parameter(parameter.at))
@@ -148,7 +151,7 @@ ParameterSet joint_offset_parameters(const Chain& chain, const PoseSet& data, co
 
 Result<ParameterSet> paper_dh_parameters(const Chain& chain, const Tolerances& tolerances) {
   ParameterSet set = select_parameters(
-      chain, tolerances, [](const Parameter& p) { return is_joint_parameter(p.at) && is_dh_row(p.at.field); });
+      chain, tolerances, [](const Parameter& p) { return is_joint_parameter(p.at) && is_dh_row(*field_of(p.at)); });
   if (set.parameters.empty()) return error("paper24 needs a robot in DH or MDH form");
   return set;
 }
@@ -169,8 +172,7 @@ Result<ParameterSet> named_parameters(const Chain& chain, const Tolerances& tole
 
 ParameterSet restricted_to_data(ParameterSet set, const PoseSet& data) {
   std::erase_if(set.parameters, [&](const Parameter& parameter) {
-    const bool is_object = parameter.at.owner == Owner::target || is_fixture_parameter(parameter.at);
-    return is_object && !is_referenced(parameter.at, data);
+    return is_object_parameter(parameter.at) && !is_referenced(parameter.at, data);
   });
   return set;
 }

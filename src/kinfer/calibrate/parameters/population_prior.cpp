@@ -24,7 +24,7 @@ JointParameters joint_parameters(const ParameterSet& set) {
   std::vector<double> mean, tolerance;
   const auto free = set.free();
   for (std::size_t k = 0; k < free.size(); ++k) {
-    if (free[k]->at.owner != Owner::joint || !std::isfinite(free[k]->prior_sd)) continue;
+    if (!is_joint_parameter(free[k]->at) || !std::isfinite(free[k]->prior_sd)) continue;
     numbers.index.push_back(static_cast<Eigen::Index>(k));
     numbers.address.push_back(free[k]->at);
     mean.push_back(free[k]->nominal), tolerance.push_back(free[k]->prior_sd);
@@ -74,7 +74,7 @@ ParameterSet with_population_prior(ParameterSet set, std::span<const Chain> robo
 Chain with_joint_parameters_of(const Chain& chain, const Chain& earlier, const ParameterSet& set) {
   Chain result = chain;
   for (const Parameter& parameter : set.parameters)
-    if (parameter.at.owner == Owner::joint) set_value_at(result, parameter.at, value_at(earlier, parameter.at));
+    if (is_joint_parameter(parameter.at)) set_value_at(result, parameter.at, value_at(earlier, parameter.at));
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include "kinfer/estimate/poses/pose_uncertainty.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 #include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
@@ -32,7 +33,7 @@ struct HeldOutResiduals {
 HeldOutResidual in_base(const Mat3& world_R_base, const Vec3& residual, const MatrixXd& jacobian,
                         const MatrixXd& covariance, const Mat3& noise) {
   return {world_R_base.transpose() * residual,
-          world_R_base.transpose() * (jacobian * covariance * jacobian.transpose() + noise) * world_R_base};
+          world_R_base.transpose() * (propagated_covariance(jacobian, covariance) + noise) * world_R_base};
 }
 
 /// Residuals of `rows`, which `fit` did not see.
@@ -49,11 +50,10 @@ void collect(HeldOutResiduals& all, const Estimate& fit, const PoseSet& rows,
   for (std::size_t k = 0; k < rows.points.size(); ++k) {
     const PointMeasurement& point = rows.points[k];
     const Pose& tool = at.pose[point.row];
-    const Twists& twists = at.twists[point.row];
     const Vec3 arm = point.target < 0 ? Vec3::Zero().eval() : Vec3(tool.rotation * fit.chain.targets[point.target].xyz);
-    const MatrixXd jacobian = twists.topRows<3>() - skew(arm) * twists.bottomRows<3>();
-    all.points.push_back(in_base(world_R_base(point.row), point.position - tool.position - arm, jacobian,
-                                 fit.covariance, covariance_of(weights.of<PointMeasurement>()[k], point.axes)));
+    all.points.push_back(in_base(world_R_base(point.row), point.position - tool.position - arm,
+                                 point_columns(at.twists[point.row], arm), fit.covariance,
+                                 covariance_of(weights.of<PointMeasurement>()[k], point.axes)));
   }
   for (std::size_t k = 0; k < rows.orientations.size(); ++k) {
     const OrientationMeasurement& measured = rows.orientations[k];

@@ -71,7 +71,7 @@ std::string describe_joint_types(const std::vector<JointType>& types) {
 }  // namespace
 
 Result<ModelChoice> parse_model_choice(const std::string& text) {
-  if (text == "auto") return CrossValidatedModel{};
+  if (text == "auto") return AutomaticModel{};
   FixedModel model;
   std::istringstream words(text);
   for (std::string word; std::getline(words, word, '+');) {

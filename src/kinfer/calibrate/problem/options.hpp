@@ -35,11 +35,11 @@ struct HeldOutFraction {
 struct HeldOutByLabel {};  ///< rows labelled `holdout` in the data are never fitted
 using HoldoutChoice = std::variant<CrossValidation, HeldOutFraction, HeldOutByLabel>;
 
-struct CrossValidatedModel {};  ///< geometry, and the non-geometric terms selected by cross-validation
+struct AutomaticModel {};  ///< geometry, and the non-geometric terms that the data support, weighed by evidence
 struct FixedModel {
   std::vector<Term> terms{};  ///< non-geometric terms; empty: geometry only
 };
-using ModelChoice = std::variant<CrossValidatedModel, FixedModel>;
+using ModelChoice = std::variant<AutomaticModel, FixedModel>;
 
 /// "auto", "geometry", or names of terms joined by "+". An error lists the known names.
 Result<ModelChoice> parse_model_choice(const std::string& text);
@@ -48,7 +48,7 @@ struct CalibrationOptions {
   ParameterChoice parameters = GeometricParameters{};
   HoldoutChoice holdout =
       CrossValidation{};  ///< labels in the data take precedence over cross-validation, not over a fraction
-  ModelChoice model = CrossValidatedModel{};  ///< of GeometricParameters found by least squares; else geometry only
+  ModelChoice model = AutomaticModel{};  ///< of GeometricParameters found by least squares; else geometry only
   std::optional<SwarmSearchOptions> swarm_search{};  ///< swarm search (paper 2); none: Levenberg-Marquardt
   int threads = 0;                                   ///< 0: all cores; the result does not depend on it
 };

@@ -33,10 +33,10 @@ ParameterSet free_frame_parameters(const Chain& chain, const PoseSet& data, doub
   Tolerances wide{.length = size, .angle = 1.0, .tool_length = size, .tool_angle = 1.0};
   ParameterSet set = all_parameters(chain, wide);
   std::erase_if(set.parameters, [&](const Parameter& p) {
-    const bool turn = p.at.field == Field::rx || p.at.field == Field::ry || p.at.field == Field::rz;
-    const bool place = p.at.field == Field::x || p.at.field == Field::y || p.at.field == Field::z;
-    if (p.at.owner == Owner::base || !(turn || place)) return true;
-    return p.at.owner == Owner::tool && turn && data.orientations.empty();
+    const std::optional<Field> field = field_of(p.at);
+    if (is_own_frame_parameter(p.at, SetupFrame::base) || !field) return true;
+    if (!is_rotation(*field)) return !is_translation(*field);
+    return is_own_frame_parameter(p.at, SetupFrame::tool) && data.orientations.empty();
   });
   return set;
 }

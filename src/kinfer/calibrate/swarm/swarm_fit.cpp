@@ -96,8 +96,7 @@ Bounds make_search_box(const PreparedFit& prepared, const SwarmSearchOptions& op
   const std::vector<const Parameter*> free = prepared.parameters.free();
   VectorXd centre(free.size()), half(free.size());
   for (std::size_t k = 0; k < free.size(); ++k) {
-    const bool is_joint_parameter = free[k]->at.owner == Owner::joint;
-    centre[k] = is_joint_parameter ? free[k]->nominal : value_at(prepared.start, free[k]->at);
+    centre[k] = is_joint_parameter(free[k]->at) ? free[k]->nominal : value_at(prepared.start, free[k]->at);
     half[k] = half_width(*free[k], options.box);
   }
   return {centre - half, centre + half};

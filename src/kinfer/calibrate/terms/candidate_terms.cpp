@@ -9,7 +9,7 @@
 namespace kinfer::calibrate {
 namespace {
 
-bool is_harmonic(const ParameterAddress& at) {
+bool is_harmonic(const JointNumber& at) {
   return at.field == Field::sine || at.field == Field::cosine;
 }
 
@@ -43,10 +43,13 @@ int index_of(std::vector<Entry>& list, const Entry& entry, Key Entry::*key) {
 ParameterAddress add_structure(Chain& chain, const Chain& rich, Term term, ParameterAddress at) {
   if (term == Term::gravity_compliance) chain.masses = rich.masses;
   if (term == Term::thermal_expansion) chain.reference_temperature = rich.reference_temperature;
-  if (is_harmonic(at))
-    at.term = index_of(chain.joints[at.joint].harmonics, rich.joints[at.joint].harmonics[at.term], &Harmonic::order);
-  if (at.field == Field::coupling)
-    at.term = index_of(chain.joints[at.joint].couplings, rich.joints[at.joint].couplings[at.term], &Coupling::joint);
+  auto* number = std::get_if<JointNumber>(&at);
+  if (!number) return at;
+  Joint& joint = chain.joints[number->joint];
+  const Joint& model = rich.joints[number->joint];
+  if (is_harmonic(*number)) number->term = index_of(joint.harmonics, model.harmonics[number->term], &Harmonic::order);
+  if (number->field == Field::coupling)
+    number->term = index_of(joint.couplings, model.couplings[number->term], &Coupling::joint);
   return at;
 }
 
@@ -110,7 +113,8 @@ std::vector<RelevanceGroup> relevance_groups(const CandidateTerms& candidates) {
   for (std::size_t k = 0; k < candidates.parameters.size(); ++k) {
     const auto& [term, parameter] = candidates.parameters[k];
     const bool is_line = term == Term::spectral_harmonics;
-    const std::pair key{parameter.at.joint, is_line ? parameter.at.term : 0};
+    const JointNumber* number = joint_number(parameter.at);
+    const std::pair key{number ? number->joint : -1, number && is_line ? number->term : 0};
     std::size_t g = 0;
     while (g < groups.size() && !(groups[g].family == static_cast<int>(term) && known[g] == key)) ++g;
     if (g == groups.size()) {

@@ -23,7 +23,7 @@ std::vector<Sample> samples_of(const Estimate& fitted, const PoseSet& rows, int 
   for (const Outlier& outlier : fitted.outliers) wrong.insert(outlier.row);
   std::vector<Sample> samples;
   ParameterSet angle;
-  angle.parameters.push_back(parameter_at(fitted.chain, {Owner::joint, joint, Field::gain}, 1.0));
+  angle.parameters.push_back(parameter_at(fitted.chain, JointNumber{joint, Field::gain}, 1.0));
   const EvaluatedPoses at = evaluate_poses(fitted.chain, angle, rows, Derivative::yes);
   for (const PointMeasurement& point : rows.points) {
     const double q = rows.joints(joint_row, point.row);

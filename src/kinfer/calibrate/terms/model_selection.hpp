@@ -19,7 +19,7 @@ struct SelectedModel {
   std::vector<Outlier> gross_errors;  ///< rows with gross errors, excluded from the evaluation of every model
 };
 
-/// Starts from `geometry`, the fit to all `rows`; `splits` are of these rows. CrossValidatedModel tests every term,
+/// Starts from `geometry`, the fit to all `rows`; `splits` are of these rows. AutomaticModel tests every term,
 /// FixedModel takes exactly its own, regardless of the held-out errors.
 SelectedModel select_model(const CalibrationTask& task, const PoseSet& rows, const Estimate& geometry,
                            const std::vector<Split>& splits, const ModelChoice& model, int threads,

@@ -24,7 +24,7 @@ template <class Keep>
 void free_joint_parameters(ModelTerm& model_term, Field field, double prior_sd, Keep keep) {
   for (int j = 0; j < static_cast<int>(model_term.nominal.joints.size()); ++j)
     if (keep(model_term.nominal.joints[j]))
-      model_term.parameters.push_back(parameter_at(model_term.nominal, {Owner::joint, j, field}, prior_sd));
+      model_term.parameters.push_back(parameter_at(model_term.nominal, JointNumber{j, field}, prior_sd));
 }
 
 void add_harmonic(ModelTerm& model_term, int joint, double order, double prior_sd) {
@@ -34,7 +34,7 @@ void add_harmonic(ModelTerm& model_term, int joint, double order, double prior_s
   const auto term = static_cast<int>(known - harmonics.begin());
   if (known == harmonics.end()) harmonics.push_back({order});
   for (const Field field : {Field::sine, Field::cosine})
-    model_term.parameters.push_back(parameter_at(model_term.nominal, {Owner::joint, joint, field, term}, prior_sd));
+    model_term.parameters.push_back(parameter_at(model_term.nominal, JointNumber{joint, field, term}, prior_sd));
 }
 
 std::vector<double> finite(const std::vector<double>& values) {
@@ -71,7 +71,7 @@ ModelTerm coupling(const Chain& nominal, const TermInputs&) {
     }
     for (int k = 0; k < static_cast<int>(joint.couplings.size()); ++k)
       model_term.parameters.push_back(
-          parameter_at(model_term.nominal, {Owner::joint, j, Field::coupling, k}, thresholds::coupling_prior));
+          parameter_at(model_term.nominal, JointNumber{j, Field::coupling, k}, thresholds::coupling_prior));
   }
   return model_term;
 }
@@ -122,8 +122,7 @@ ModelTerm backlash(const Chain& nominal, const TermInputs& inputs) {
 
 ModelTerm temperature(const Chain& nominal, const TermInputs& inputs) {
   ModelTerm model_term{.nominal = nominal};
-  model_term.parameters.push_back(
-      parameter_at(nominal, {Owner::robot, -1, Field::expansion}, thresholds::expansion_prior));
+  model_term.parameters.push_back(parameter_at(nominal, ExpansionNumber{}, thresholds::expansion_prior));
   const std::vector<double> measured = finite(inputs.rows.temperature);
   if (spread(measured) < thresholds::min_temperature_range)
     model_term.missing = inputs.rows.temperature.empty() ? MissingData::temperature : MissingData::temperature_range;

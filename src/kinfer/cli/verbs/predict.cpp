@@ -60,7 +60,7 @@ int run(const PredictArguments& options) {
 
 Verb add_predict(CLI::App& app) {
   CLI::App* verb =
-      add_command(app, "predict", "Tool poses of a chain for a list of joint readings",
+      add_command(app, "predict", "Tool poses of a chain for a list of joint positions",
                   "Example:\n  kinfer predict --chain calibration/chain.toml --joints joints.csv -o poses.csv");
   auto options = std::make_shared<PredictArguments>();
   add_robot_option(*verb, options->chain, "--chain", "Chain: chain.toml, a robot TOML, or URDF");

@@ -18,14 +18,12 @@ ParameterSet parameters_of_mounting(ParameterSet set, const Chain& chain, int mo
   if (mounting < 0) return set;
   const bool own_base = chain.mountings[mounting].base.has_value();
   for (Parameter& parameter : set.parameters) {
-    ParameterAddress& at = parameter.at;
-    const bool of_chain = at.owner == Owner::tool || (at.owner == Owner::base && own_base);
-    if (of_chain)
-      at.owner = Owner::gravity;  // affects no pose
-    else if (at.owner == Owner::mounting_base && at.joint == mounting)
-      at = {Owner::base, -1, at.field};
-    else if (at.owner == Owner::mounting_tool && at.joint == mounting)
-      at = {Owner::tool, -1, at.field};
+    auto* frame = std::get_if<FrameNumber>(&parameter.at);
+    if (!frame) continue;
+    if (frame->mounting == mounting)
+      frame->mounting = -1;
+    else if (frame->mounting < 0 && (frame->frame == SetupFrame::tool || own_base))
+      parameter.at = GravityNumber{Field::x};  // affects no pose
   }
   return set;
 }

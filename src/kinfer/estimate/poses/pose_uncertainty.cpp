@@ -17,14 +17,7 @@ std::map<std::string, ParameterAddress> addresses_by_name(const Chain& chain) {
   std::map<std::string, ParameterAddress> addresses;
   for (const ParameterSet& set : {all_parameters(chain, {}), setup_parameters(chain, {})})
     for (const Parameter& parameter : set.parameters) addresses.emplace(parameter.name, parameter.at);
-  const auto add = [&](const ParameterAddress& at) { addresses.emplace(name_of(chain, at), at); };
-  for (int joint = 0; joint < static_cast<int>(chain.joints.size()); ++joint) {
-    for (const Field field : {Field::gain, Field::compliance, Field::torque_compliance, Field::backlash})
-      add({.joint = joint, .field = field});
-    for (int term = 0; term < static_cast<int>(chain.joints[joint].harmonics.size()); ++term)
-      for (const Field field : {Field::sine, Field::cosine}) add({.joint = joint, .field = field, .term = term});
-  }
-  add({.owner = Owner::robot, .field = Field::expansion});
+  for (const ParameterAddress& at : non_geometric_addresses(chain)) addresses.emplace(name_of(chain, at), at);
   return addresses;
 }
 

@@ -19,8 +19,15 @@ bool has_linear_displacement(const Joint& joint) {
   return joint.compliance == 0.0 && joint.torque_compliance == 0.0 && joint.backlash == 0.0 && joint.harmonics.empty();
 }
 
+/// 0: the base, 1: the tool, 2 and more: the joints. None: not a number of the chain itself.
+std::optional<int> place_in_chain(const ParameterAddress& at) {
+  if (const JointNumber* number = joint_number(at)) return 2 + number->joint;
+  if (is_own_frame_parameter(at, SetupFrame::base)) return 0;
+  return is_own_frame_parameter(at, SetupFrame::tool) ? std::optional(1) : std::nullopt;
+}
+
 bool is_geometry_or_gain(const ParameterAddress& at) {
-  return (at.owner == Owner::base || at.owner == Owner::joint || at.owner == Owner::tool) && at.field <= Field::gain;
+  return place_in_chain(at) && field_of(at) <= Field::gain;
 }
 
 }  // namespace
@@ -47,43 +54,49 @@ class Lookup {
  public:
   explicit Lookup(const ParameterSet& set) {
     for (const Parameter* p : set.free()) {
-      angle_.push_back(is_angle(p->at.field) ? static_cast<int>(angles_.size()) : -1);
-      if (is_angle(p->at.field)) angles_.push_back(static_cast<int>(addresses_.size()));
-      addresses_.push_back(p->at);
-      owners_ |= bit(p->at.owner), fields_ |= bit(p->at.field);
+      const Field field = field_of(p->at).value_or(Field::coupling);
+      const int place = place_in_chain(p->at).value_or(-1);
+      angle_.push_back(is_angle(field) ? static_cast<int>(angles_.size()) : -1);
+      if (is_angle(field)) angles_.push_back(static_cast<int>(keys_.size()));
+      keys_.push_back({place, field});
+      frees_base_ |= place == 0, fields_ |= bit(field);
     }
   }
 
-  Value value(const ParameterAddress& at, double constant, Motion motion) const {
+  /// Of a field of the base, the tool or a joint (place_in_chain).
+  Value value(int place, Field field, double constant, Motion motion) const {
     Value value{.constant = constant};
     if (motion == Motion::rotation && constant != 0.0) value.cos = std::cos(constant), value.sin = std::sin(constant);
-    value.parameter = index_of(at);
+    value.parameter = index_of({place, field});
     if (value.parameter >= 0) value.angle = angle_[value.parameter];
     return value;
   }
-  bool frees(Owner owner) const { return owners_ & bit(owner); }
+  bool frees_base() const { return frees_base_; }
   const std::vector<int>& angles() const { return angles_; }
 
  private:
-  template <class Enum>
-  static std::uint32_t bit(Enum which) {
-    return std::uint32_t{1} << static_cast<int>(which);
-  }
+  struct Key {
+    int place;
+    Field field;
+    bool operator==(const Key&) const = default;
+  };
+  static std::uint32_t bit(Field field) { return std::uint32_t{1} << static_cast<int>(field); }
 
   /// Callers walk along the chain, and most sets are in that order: the search starts after the last match.
-  int index_of(const ParameterAddress& at) const {
-    if (!(owners_ & bit(at.owner)) || !(fields_ & bit(at.field))) return -1;
-    const auto next = addresses_.begin() + next_;
-    auto found = std::find(next, addresses_.end(), at);
-    if (found == addresses_.end()) found = std::find(addresses_.begin(), next, at);
-    if (found == next && (next == addresses_.end() || !(*next == at))) return -1;
-    next_ = found - addresses_.begin() + 1;
+  int index_of(const Key& key) const {
+    if (!(fields_ & bit(key.field))) return -1;
+    const auto next = keys_.begin() + next_;
+    auto found = std::find(next, keys_.end(), key);
+    if (found == keys_.end()) found = std::find(keys_.begin(), next, key);
+    if (found == next && (next == keys_.end() || !(*next == key))) return -1;
+    next_ = found - keys_.begin() + 1;
     return static_cast<int>(next_ - 1);
   }
 
-  std::vector<ParameterAddress> addresses_;
-  std::vector<int> angles_, angle_;        // of a parameter: its index among the angles
-  std::uint32_t owners_ = 0, fields_ = 0;  // one bit each
+  std::vector<Key> keys_;
+  std::vector<int> angles_, angle_;  // of a parameter: its index among the angles
+  std::uint32_t fields_ = 0;         // one bit each
+  bool frees_base_ = false;
   mutable std::ptrdiff_t next_ = 0;
 };
 
@@ -92,27 +105,27 @@ template <class Visitor>
 struct Walker {
   const Lookup& lookup;
   Visitor& visit;
-  Owner owner = Owner::base;
+  int place = 0;  // place_in_chain
   int joint = -1;
 
   void operator()(const Mat3& rotation) {
     if (rotation != Mat3::Identity()) visit.rotate(rotation);
   }
   void operator()(const elementary::Factor& factor) {
-    ParameterAddress at{owner, joint};
-    if (factor.field) at.field = *factor.field;
-    visit.move(factor, factor.field ? lookup.value(at, factor.value, factor.motion) : Value{.constant = factor.value},
+    visit.move(factor,
+               factor.field ? lookup.value(place, *factor.field, factor.value, factor.motion)
+                            : Value{.constant = factor.value},
                joint);
   }
 };
 
 template <class Visitor>
-void walk(const Frame& frame, Owner owner, const Lookup& lookup, Visitor& visit) {
-  elementary::for_each_factor(frame, Walker<Visitor>{lookup, visit, owner, -1});
+void walk(const Frame& frame, SetupFrame which, const Lookup& lookup, Visitor& visit) {
+  elementary::for_each_factor(frame, Walker<Visitor>{lookup, visit, which == SetupFrame::base ? 0 : 1, -1});
 }
 template <class Visitor>
 void walk(const Joint& joint, int index, const Lookup& lookup, Visitor& visit) {
-  elementary::for_each_factor(joint, Walker<Visitor>{lookup, visit, Owner::joint, index});
+  elementary::for_each_factor(joint, Walker<Visitor>{lookup, visit, 2 + index, index});
 }
 
 Factor rotation_factor(const Mat3& rotation) {
@@ -271,7 +284,7 @@ std::vector<JointMotion> joint_motions_of(const Chain& chain, const Lookup& look
     const bool turns = rotates(joint.type);
     JointMotion joint_motion{.joint = j,
                              .move = turns ? MotionKind::revolute : MotionKind::prismatic,
-                             .gain = lookup.value({Owner::joint, j, Field::gain}, joint.gain, Motion::translation),
+                             .gain = lookup.value(2 + j, Field::gain, joint.gain, Motion::translation),
                              .q_index = q_index[j]};
     for (const Coupling& c : joint.couplings) joint_motion.couplings.push_back({q_index[c.joint], c.factor});
     KINFER_EXPECT(joint_motion.gain.parameter < 0 || joint_motion.q_index >= 0,
@@ -288,7 +301,7 @@ std::vector<JointMotion> joint_motions_of(const Chain& chain, const Lookup& look
 template <class Visitor>
 void walk_joints_and_tool(const Chain& chain, const Lookup& lookup, Visitor& visit) {
   for (const int j : path_to(chain, chain.tip_joint())) walk(chain.joints[j], j, lookup, visit);
-  walk(chain.tool, Owner::tool, lookup, visit);
+  walk(chain.tool, SetupFrame::tool, lookup, visit);
 }
 
 SegmentList segments_of(const Chain& nominal, const ParameterSet& set, const Lookup& lookup,
@@ -297,10 +310,10 @@ SegmentList segments_of(const Chain& nominal, const ParameterSet& set, const Loo
   list.nominal = pack(set, nominal);
   list.angles = lookup.angles();
   FactorCollector collector;
-  if (side == BaseSide::measurement && !lookup.frees(Owner::base)) {
+  if (side == BaseSide::measurement && !lookup.frees_base()) {
     list.base = nominal.base.pose();
   } else {
-    walk(nominal.base, Owner::base, lookup, collector);
+    walk(nominal.base, SetupFrame::base, lookup, collector);
   }
   walk_joints_and_tool(nominal, lookup, collector);
   list.factors = std::move(collector.lists);
@@ -318,7 +331,7 @@ ScrewPlan screws_of(const Chain& nominal, const ParameterSet& set, const Lookup&
                     const std::vector<JointMotion>& joint_motions) {
   ScrewPlan plan;
   ScrewWriter writer{plan, joint_motions, std::vector<char>(set.free_count(), true)};
-  walk(nominal.base, Owner::base, lookup, writer);
+  walk(nominal.base, SetupFrame::base, lookup, writer);
   walk_joints_and_tool(nominal, lookup, writer);
   for (std::size_t k = 0; k < writer.is_idle.size(); ++k)
     if (writer.is_idle[k]) plan.idle.push_back(static_cast<int>(k));

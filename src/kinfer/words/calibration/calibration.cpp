@@ -119,7 +119,7 @@ Advice advice(const CalibrationAdvice& a) {
     case CalibrationAdviceKind::check_model:
       return {phrase(name(a.kind),
                      "Look for what the model lacks: load, gears, temperature, a loose mount, or a worse instrument"),
-              phrase(name(a.kind), "the residuals are {:.0f} times what the instrument can excuse",
+              phrase(name(a.kind), "the residuals are {:.0f} times what the instrument explains",
                      a.values.number("residual_ratio"))};
     case CalibrationAdviceKind::check_outliers:
       return advice_on_outliers(a);

@@ -36,7 +36,7 @@ std::string verdict(const Verification& v) {
                     figures, mm_text(v.frames_refitted.mean));
     case VerificationResult::robot_changed:
       return phrase(id,
-                    "Not good any more: {}, more than the instrument can excuse, and refitting base and tool does not "
+                    "Not good any more: {}, more than the instrument explains, and refitting base and tool does not "
                     "cure it ({}). Calibrate again.",
                     figures, mm_text(v.frames_refitted.mean));
   }

@@ -32,7 +32,7 @@ std::string missing_data(MissingData missing) {
     case MissingData::temperature_range:
       return "the temperature hardly changed (less than 1 K)";
     case MissingData::spectral_line:
-      return "the spectrum of the residuals shows no further line";
+      return "the residuals have no further significant harmonic";
     case MissingData::none:
       break;
   }
@@ -46,27 +46,28 @@ std::string description(const SelectionStep& step) {
   const std::string_view id = name(*step.term);
   switch (*step.term) {
     case Term::gain:
-      return phrase(id, "a gain of each turning joint's encoder");
+      return phrase(id, "a gain of each revolute joint's encoder");
     case Term::coupling:
       return phrase(id,
-                    "how far each turning joint follows the readings of the two before it (transmissions, "
+                    "how far each revolute joint follows the positions of the two before it (transmissions, "
                     "parallelograms)");
     case Term::gravity_compliance:
       return step.masses_approximate
-                 ? phrase(id,
-                          "compliance of each turning joint under gravity, with masses guessed from the lengths of the "
-                          "links")
-                 : phrase(id, "compliance of each turning joint under gravity");
+                 ? phrase(
+                       id,
+                       "compliance of each revolute joint under gravity, with masses estimated from the lengths of the "
+                       "links")
+                 : phrase(id, "compliance of each revolute joint under gravity");
     case Term::torque_compliance:
       return phrase(id, "compliance of each joint by its measured torque");
     case Term::gear_harmonics:
-      return phrase(id, "what comes back once and twice a turn of each joint (eccentric gears and encoders)");
+      return phrase(id, "errors of period one and one half revolution of each joint (eccentric gears and encoders)");
     case Term::spectral_harmonics:
-      return phrase(id, "what else the spectrum of the residuals shows");
+      return phrase(id, "further harmonics of joint positions, found in the residuals");
     case Term::backlash:
-      return phrase(id, "a shift by the side from which each joint was approached (the order of the rows)");
+      return phrase(id, "backlash: an offset with the sign of the direction of approach (from the order of the rows)");
     case Term::thermal_expansion:
-      return phrase(id, "thermal growth of all lengths");
+      return phrase(id, "thermal expansion of all lengths");
   }
   return "";
 }
@@ -77,7 +78,7 @@ std::string reason(const SelectionStep& step) {
   const std::string held_out = "the held-out mean goes " + means(inside);
   switch (step.decision) {
     case Decision::start:
-      return phrase(id, "where every robot begins");
+      return phrase(id, "the start of every selection");
     case Decision::requested:
       return phrase(id, "as requested");
     case Decision::accepted:
@@ -95,7 +96,7 @@ std::string reason(const SelectionStep& step) {
                     inside.t, outside.mean_after > outside.mean_before ? "rises" : "goes", means(outside),
                     outside.p95.rise_probability + outside.p99.rise_probability > 0.0 ? ", and " + tail(outside) : "");
     case Decision::not_excited:
-      return phrase(id, "not tested: these poses do not excite its terms");
+      return phrase(id, "not tested: these poses do not excite its parameters");
     case Decision::data_missing:
       return phrase(id, "not tested: {}", missing_data(step.missing));
   }

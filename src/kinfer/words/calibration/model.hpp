@@ -8,7 +8,7 @@
 
 namespace kinfer::words {
 
-/// What the candidate models: "compliance of each turning joint under gravity".
+/// What the candidate models: "compliance of each revolute joint under gravity".
 std::string description(const SelectionStep& step);
 
 /// Why it was accepted, rejected or skipped.

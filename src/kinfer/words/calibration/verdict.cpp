@@ -77,7 +77,7 @@ VerdictText parts_of_verdict(const Calibration& c) {
     case CalibrationReason::no_improvement:
       return with_remarks(c, "the corrected model is no better than the nominal one: " + figures(c));
     case CalibrationReason::unmodelled_effects:
-      return with_remarks(c, fmt::format("better, but the errors are {:.0f} times what instrument and fit can excuse, "
+      return with_remarks(c, fmt::format("better, but the errors are {:.0f} times what instrument and fit explain, "
                                          "so something is not modelled: {}",
                                          reported_errors(c, c.after).rms / *c.expected_holdout_rms, figures(c)));
     case CalibrationReason::not_validated: {

@@ -22,7 +22,7 @@ std::string wrong_unit(const Finding& f) {
     return phrase(name(f.kind), "{} is in {}, but was read as {}", f.values.text("joint"), unit, read_as);
   if (f.kind == FindingKind::length_unit)
     return phrase(name(f.kind), "the measured positions are {}, but were read as {}", unit, read_as);
-  return phrase(name(f.kind), "the joint readings are {}, but were read as {}", unit, read_as);
+  return phrase(name(f.kind), "the joint positions are {}, but were read as {}", unit, read_as);
 }
 std::string wrong_unit_remedy(const Finding& f) {
   const std::string& unit = f.values.text("unit");

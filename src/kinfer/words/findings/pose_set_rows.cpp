@@ -14,7 +14,7 @@ namespace {
 std::string rows_shifted(const Finding& f) {
   const int shift = f.values.count("shift"), by = std::abs(shift);
   return phrase(name(f.kind),
-                "{}the joint readings are shifted by {} row{} against the measurements: those of row i belong to the "
+                "{}the joint positions are shifted by {} row{} against the measurements: those of row i belong to the "
                 "measurement of row i {} {}",
                 f.values.count("whole_set") ? "" : "in " + row_ranges(f.rows) + " ", by, by == 1 ? "" : "s",
                 shift > 0 ? "-" : "+", by);

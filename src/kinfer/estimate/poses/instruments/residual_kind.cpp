@@ -15,12 +15,16 @@ void keep_entries(PoseMeasurements& measured, const std::vector<bool>& kept) {
   list.resize(to);
 }
 
+int axis_of(Field field) {
+  return static_cast<int>(field) - static_cast<int>(Field::x);
+}
+
 /// Place of a parameter among the numbers of its fixture.
-std::ptrdiff_t number_in_fixture(const Fixtures& fixtures, const ParameterAddress& at) {
+std::ptrdiff_t number_in_fixture(const Fixtures& fixtures, const FixtureNumber& at) {
   std::ptrdiff_t place = 0;
   for_each_fixture_list(fixtures, [&](const auto& row, const auto& list) {
-    if (fixture_kind(row.kind) != at.fixture) return;
-    const std::span<const Field> fields = fields_of(list[at.joint]);
+    if (fixture_kind(row.kind) != at.kind) return;
+    const std::span<const Field> fields = fields_of(list[at.index]);
     place = std::find(fields.begin(), fields.end(), at.field) - fields.begin();
   });
   return place;
@@ -60,12 +64,13 @@ FixtureColumns fixture_columns(const Chain& chain, const ParameterSet& set) {
   Eigen::Index column = 0;
   for (const Parameter* parameter : set.free()) {
     const ParameterAddress& at = parameter->at;
-    const int axis = static_cast<int>(at.field) - static_cast<int>(Field::x);
-    if (at.owner == Owner::target) columns.target[at.joint][axis] = column;
-    if (at.owner == Owner::gravity) columns.gravity[axis] = column;
-    if (is_fixture_parameter(at))
-      columns.fixture[index(at.fixture)][at.joint][number_in_fixture(chain.fixtures, at)] = column;
-    if (at.owner == Owner::base || at.owner == Owner::mounting_base) columns.base.push_back(column);
+    if (const auto* target = std::get_if<TargetNumber>(&at))
+      columns.target[target->target][axis_of(target->field)] = column;
+    if (const auto* gravity = std::get_if<GravityNumber>(&at)) columns.gravity[axis_of(gravity->field)] = column;
+    if (const auto* fixture = std::get_if<FixtureNumber>(&at))
+      columns.fixture[index(fixture->kind)][fixture->index][number_in_fixture(chain.fixtures, *fixture)] = column;
+    if (const auto* frame = std::get_if<FrameNumber>(&at); frame && frame->frame == SetupFrame::base)
+      columns.base.push_back(column);
     ++column;
   }
   return columns;
