@@ -13,11 +13,12 @@ declare -A may=(
   [calibrate]="base linalg geometry measurement kinematics evidence search estimate"
   [plan]="base linalg geometry measurement kinematics evidence search estimate calibrate"
   [deploy]="base linalg geometry measurement kinematics evidence search estimate calibrate plan"
+  [motion]="base linalg geometry kinematics evidence"
   [simulate]="base linalg geometry measurement kinematics"
   [words]="base linalg geometry measurement kinematics evidence inertial"
   [io]="base linalg geometry measurement kinematics evidence words"
   [report]="base linalg geometry measurement kinematics evidence words io"
-  [cli]="base linalg geometry measurement kinematics evidence inertial search estimate identify calibrate plan deploy simulate words io report cli"
+  [cli]="base linalg geometry measurement kinematics evidence inertial search estimate identify calibrate plan deploy motion simulate words io report cli"
 )
 status=0
 edges=$(grep -rHoE '#include "kinfer/[^"]*"' --include='*.?pp' . |

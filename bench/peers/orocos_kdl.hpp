@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Orocos KDL's recursive forward kinematics of the same chain.
+// Orocos KDL's recursive forward kinematics and Levenberg-Marquardt inverse kinematics of the same chain.
 #pragma once
 
 #include <memory>
@@ -15,6 +15,10 @@ class KdlChain {
   KdlChain& operator=(const KdlChain&) = delete;
 
   void position(const double* q, double* at);
+
+  /// Solution of the pose (rotation by rows, then position) to 1e-9 from `start`, revolutions removed; false where the
+  /// search fails or a joint is beyond ± limit [rad].
+  bool inverse(const double* start, const double* pose, double limit, double* q);
 
  private:
   struct Solver;

@@ -18,6 +18,8 @@ Verb add_simulate(CLI::App& app);
 Verb add_simulate_poses(CLI::App& app);
 Verb add_orient(CLI::App& app);
 Verb add_compensate(CLI::App& app);
+Verb add_reach(CLI::App& app);
+Verb add_path(CLI::App& app);
 Verb add_frames(CLI::App& app);
 Verb add_report(CLI::App& app);
 

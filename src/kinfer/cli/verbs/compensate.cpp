@@ -5,14 +5,14 @@
 
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 
+#include "kinfer/cli/parts/joint_columns.hpp"
 #include "kinfer/cli/parts/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/text/csv.hpp"
 #include "kinfer/io/text/format_number.hpp"
 #include "kinfer/io/text/text_file.hpp"
-#include "kinfer/io/text/units.hpp"
 #include "kinfer/words/calibration/checks.hpp"
 #include "kinfer/words/findings/findings.hpp"
 
@@ -24,30 +24,6 @@ struct CompensateArguments {
   RobotOption chain;
   std::string nominal, joints, targets, out, frames = "auto";
 };
-
-/// Header of a joint column of the result, and its unit in SI.
-struct JointColumn {
-  std::string header;
-  double factor = 1.0;
-};
-
-/// The headers of the input's joint columns with their units; q1.. in SI if the input has none.
-std::vector<JointColumn> joint_columns(const std::string& path, const std::vector<std::string>& names) {
-  std::vector<JointColumn> columns;
-  for (std::size_t i = 0; i < names.size(); ++i) columns.push_back({fmt::format("q{}", i + 1), 1.0});
-  const auto text = read_text_file(path);
-  const auto header = text ? read_csv_header(*text, path) : Result<CsvHeader>(error("unreadable"));
-  if (!header) return columns;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    for (const std::string& cell : header->columns) {
-      const ColumnHeader parts = parse_column_header(cell);
-      if (parts.name != columns[i].header && parts.name != "q_" + names[i]) continue;
-      const auto unit = find_unit(parts.unit);
-      columns[i] = {cell, parts.has_unit && unit ? unit->factor : 1.0};
-      break;
-    }
-  return columns;
-}
 
 std::string result_csv(const std::vector<JointColumn>& columns, const std::vector<CompensatedJoints>& list) {
   std::string text;
@@ -131,6 +107,11 @@ int run(const CompensateArguments& options) {
   else if (auto done = write_text_file(options.out, text); !done)
     return fail(done.error());
   const CompensationSummary summary = summarise(*list);
+  if (options.common.json && !(options.out.empty() || options.out == "-"))
+    fmt::print("{}\n", nlohmann::ordered_json{{"rows", summary.rows},
+                                              {"unreached", summary.unreached.size()},
+                                              {"worst_residual_mm", 1e3 * summary.worst_residual}}
+                           .dump());
   if (!options.common.quiet) print_summary(summary, *list);
   if (!options.common.quiet) warn_of_rows_outside(options, *list);
   return summary.unreached.empty() ? exit_done : exit_do_not_use;

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/posture_argument.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "kinfer/base/angle.hpp"
+#include "kinfer/io/text/csv.hpp"
+
+namespace kinfer::cli {
+
+Result<VectorXd> parse_posture(const std::string& option, const std::string& text, const Chain& chain) {
+  const std::vector<int> joints = active_joints(chain);
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const auto number = parse_number(std::string_view(text).substr(begin, end - begin));
+    if (!number) return error("{}: expected numbers separated by commas, found \"{}\"", option, text);
+    numbers.push_back(*number);
+    begin = end + 1;
+  }
+  if (numbers.size() != joints.size())
+    return error("{}: the robot has {} joints, found {} numbers", option, joints.size(), numbers.size());
+  VectorXd q(static_cast<Eigen::Index>(joints.size()));
+  for (std::size_t k = 0; k < joints.size(); ++k)
+    q[static_cast<Eigen::Index>(k)] =
+        numbers[k] * (rotates(chain.joints[static_cast<std::size_t>(joints[k])].type) ? degree : 1e-3);
+  return q;
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers of the posture search. Set on the chains of tests/laws (5 to 7 joints, 2000 random poses each), where a third
+// or three times of damping, half of worthwhile_decrease and twice the longest step change the mean time by less than
+// 10 %.
+#pragma once
+
+namespace kinfer::motion::thresholds {
+
+/// [1] of the squared weighted error; larger: shorter steps far from the target, more of them.
+inline constexpr double damping = 0.01;
+inline constexpr double least_damping = 1e-14;  ///< [1] keeps singular systems solvable
+inline constexpr double longest_step = 0.8;     ///< [rad] or [m] of one joint; larger leaves the start's posture
+inline constexpr int steps = 60;                ///< of one start
+/// Every so many steps the error must have fallen to this part, or the start is left. Larger: fewer starts, longer.
+inline constexpr int judged_steps = 5;
+inline constexpr double worthwhile_decrease = 0.6;
+inline constexpr int careful_steps = 200;    ///< inside the limits, or of a machine that deviates from the rigid chain
+inline constexpr double near_target = 1e-3;  ///< [1] weighted error at which the way is taken to end in a singularity
+inline constexpr int approach_steps = 12;    ///< of a redundant chain towards the preferred posture
+inline constexpr double approach_tolerance = 1e-4;  ///< [rad] or [m] steps at which it has arrived
+inline constexpr double same_posture = 1e-3;        ///< [rad] apart
+
+// ---- paths ----
+inline constexpr double path_step = 5e-3;        ///< [s] at which lines of the tool are examined
+inline constexpr double most_path_steps = 20e3;  ///< of a long path; its steps are longer then
+inline constexpr double path_jump = 0.2;         ///< [rad] or [m] of a joint in one step: another posture
+/// [1] smallest over largest singular value of the Jacobian, lengths divided by the distance of the tool; larger
+/// refuses lines farther from singular postures.
+inline constexpr double singular_path = 1e-3;
+inline constexpr double slow_down_margin = 1.02;  ///< [1] for what lies between the steps
+inline constexpr int speed_sweeps = 200;          ///< over the lines of a path, before all speeds are halved
+
+}  // namespace kinfer::motion::thresholds

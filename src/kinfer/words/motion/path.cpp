@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/words/motion/path.hpp"
+
+#include <algorithm>
+
+#include "kinfer/base/angle.hpp"
+#include "kinfer/words/language.hpp"
+
+namespace kinfer::words {
+
+namespace {
+
+/// Of a joint that rotates, of one that slides, or of either.
+std::string amount(double cut, const std::vector<bool>& rotational) {
+  const std::string angle = fmt::format("{:.2f} deg", cut / degree), length = fmt::format("{:.1f} mm", 1e3 * cut);
+  const auto rotating = std::ranges::count(rotational, true);
+  if (rotating == std::ssize(rotational)) return angle;
+  return rotating == 0 ? length : angle + " or " + length;
+}
+
+}  // namespace
+
+std::string summary(const TimedPath& path, const std::vector<bool>& rotational) {
+  const double cut = path.cuts.empty() ? 0.0 : *std::ranges::max_element(path.cuts);
+  std::string text = fmt::format("{:.3f} s, {} waypoints", path.duration, path.passing_times.size());
+  if (cut > 0.0) text += fmt::format(", corners are cut by up to {} of a joint", amount(cut, rotational));
+  if (path.slowed_by > 1.0)
+    text +=
+        fmt::format(", {:.2f} times as long as the tool alone needs: the joints are at their limits", path.slowed_by);
+  return phrase("path", "{}", text);
+}
+
+std::string sentence(const PathObstacle& obstacle, const std::vector<std::string>& joint_names) {
+  const std::string where = fmt::format("line {}, {:.3f} s", obstacle.line + 1, obstacle.time);
+  switch (obstacle.kind) {
+    case PathObstacle::Kind::outside_limits:
+      return phrase("outside_limits", "{}: {} leaves its limits", where,
+                    joint_names[static_cast<std::size_t>(obstacle.joint)]);
+    case PathObstacle::Kind::near_singular:
+      return phrase("near_singular", "{}: the line passes a singular posture", where);
+    case PathObstacle::Kind::not_reached:
+      break;
+  }
+  return phrase("not_reached", "{}: the line leaves the postures that go on from its beginning", where);
+}
+
+}  // namespace kinfer::words

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// A planned path in words.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinfer/evidence/motion/timed_path.hpp"
+
+namespace kinfer::words {
+
+/// "4.312 s, 5 waypoints"; with what slows it down and how much corners are cut. `rotational`: of each joint.
+std::string summary(const TimedPath& path, const std::vector<bool>& rotational);
+
+/// "line 2, 1.240 s: J3 leaves its limits"; lines are counted from 1.
+std::string sentence(const PathObstacle& obstacle, const std::vector<std::string>& joint_names);
+
+}  // namespace kinfer::words

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/program.hpp"
+
+namespace kinfer {
+namespace {
+
+using test::Outcome;
+using test::slurp;
+using test::write;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class Path : public test::Program {
+ protected:
+  Outcome path(const std::string& more) const {
+    return kinfer("path --chain " + source("examples/robot6/robot.toml") + " " + more);
+  }
+};
+
+TEST_F(Path, ThroughPosturesEndsAtTheLast) {
+  const Outcome run = path("--from 0,-90,90,0,45,0 --via 20,-80,80,0,45,0 --to 40,-90,90,0,45,10 -o path.csv --json");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("\"usable\":true"));
+  EXPECT_THAT(run.err, HasSubstr("3 waypoints, corners are cut by up to"));
+  const std::string text = slurp(in("path.csv"));
+  EXPECT_THAT(text, StartsWith("t[s],q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg],qd1[deg/s]"));
+  EXPECT_THAT(text, HasSubstr(",40,-90,90,0,45,10,0,0,0,0,0,0,0,0,0,0,0,0\n"));
+  const Outcome stopping = path("--from 0,-90,90,0,45,0 --via 20,-80,80,0,45,0 --to 40,-90,90,0,45,10 --stop");
+  EXPECT_EQ(stopping.err.find("corners"), std::string::npos) << stopping.err;
+}
+
+TEST_F(Path, AlongToolLines) {
+  write(in("joints.csv"),
+        "q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg]\n10,-80,70,20,40,-30\n15,-75,72,20,45,-30\n");
+  ASSERT_EQ(
+      kinfer("predict --chain " + source("examples/robot6/robot.toml") + " --joints joints.csv -o targets.csv").code,
+      0);
+  const Outcome run = path("--targets targets.csv --prefer 10,-80,70,20,40,-30 -o path.csv");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("2 waypoints"));
+}
+
+TEST_F(Path, BadInputIsOneSentence) {
+  EXPECT_THAT(path("--from 0,0,0,0,0,0").err, HasSubstr("expected either --from and --to, or --targets"));
+  EXPECT_THAT(path("--from 0,0 --to 1,1").err, HasSubstr("--from: the robot has 6 joints, found 2 numbers"));
+  EXPECT_THAT(path("--from 0,0,0,0,0,0 --to 9,0,0,0,0,0 --velocity 0").err,
+              HasSubstr("--velocity: expected limits above 0"));
+  EXPECT_THAT(path("--from 0,0,0,0,0,0 --to 9,0,0,0,0,0 --tool-speed 5").err, HasSubstr("--tool-speed has no effect"));
+  write(in("targets.csv"), "x,y,z,pitch[deg]\n1,0,1,10\n1,0,1,\n");
+  EXPECT_THAT(path("--targets targets.csv").err, HasSubstr("must all direct the orientation in the same way"));
+}
+
+}  // namespace
+}  // namespace kinfer

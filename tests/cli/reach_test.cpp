@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/program.hpp"
+
+namespace kinfer {
+namespace {
+
+using test::Outcome;
+using test::slurp;
+using test::write;
+using ::testing::HasSubstr;
+
+class Reach : public test::Program {
+ protected:
+  Outcome reach(const std::string& more) const {
+    return kinfer("reach --chain " + source("examples/robot6/robot.toml") + " --targets targets.csv " + more);
+  }
+};
+
+TEST_F(Reach, WhatPredictSaysOfTheFoundJointsIsTheTarget) {
+  write(in("joints.csv"), "q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg]\n10,-80,70,20,40,-30\n-25,-60,80,10,60,5\n");
+  ASSERT_EQ(
+      kinfer("predict --chain " + source("examples/robot6/robot.toml") + " --joints joints.csv -o targets.csv").code,
+      0);
+  const Outcome run = reach("-o found.csv --json");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("\"reached\":2"));
+  EXPECT_THAT(run.err, HasSubstr("2 of 2 targets are reached"));
+  ASSERT_EQ(kinfer("predict --chain " + source("examples/robot6/robot.toml") + " --joints found.csv -o again.csv").code,
+            0);
+  const Outcome all = reach("--postures all --quiet");
+  EXPECT_EQ(all.code, 0);
+  EXPECT_THAT(all.out, HasSubstr("1,2,reached"));
+  std::istringstream wanted(slurp(in("targets.csv"))), found(slurp(in("again.csv")));
+  std::string a, b;
+  std::getline(wanted, a), std::getline(found, b);
+  while (std::getline(wanted, a) && std::getline(found, b)) {
+    std::istringstream one(a), other(b);
+    for (std::string x, y; std::getline(one, x, ',') && std::getline(other, y, ',');)
+      EXPECT_NEAR(std::stod(x), std::stod(y), 3e-9);
+  }
+}
+
+TEST_F(Reach, TargetsThatAreNotReachedAreNamedWithTheReason) {
+  write(in("targets.csv"), "x[m],y[m],z[m]\n30,0,0\n1,0,1\n");
+  const Outcome run = reach("--prefer 0,-90,90,0,45,0");
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("target 1: out of reach"));
+  EXPECT_THAT(run.err, HasSubstr("1 of 2 targets are reached"));
+}
+
+TEST_F(Reach, BadInputIsOneSentence) {
+  write(in("targets.csv"), "x,y,z\n1,0,1\n");
+  const Outcome few = reach("--prefer 0,90");
+  EXPECT_EQ(few.code, 2);
+  EXPECT_THAT(few.err, HasSubstr("the robot has 6 joints, found 2 numbers"));
+  EXPECT_THAT(reach("--prefer 0,a,1").err, HasSubstr("expected numbers separated by commas"));
+  write(in("targets.csv"), "x,y\n1,0\n");
+  EXPECT_EQ(reach("").code, 2);
+}
+
+}  // namespace
+}  // namespace kinfer
