@@ -47,6 +47,18 @@ std::vector<Finding> one_of_each() {
       {.kind = FindingKind::clock,
        .values = {{"sensor", "d"}, {"offset", -0.05}, {"drift", 5e-5}, {"offset_sd", 1e-4}, {"drift_sd", 1e-6}},
        .applied = true},
+      {.kind = FindingKind::timestamp_jitter,
+       .values = {{"sensors", std::vector<std::string>{"a", "b"}},
+                  {"jitter", 2.5e-3},
+                  {"period", 0.01},
+                  {"rows_per_packet", 1.0}},
+       .applied = true},
+      {.kind = FindingKind::timestamp_jitter,
+       .values = {{"sensors", std::vector<std::string>{"a", "b"}},
+                  {"jitter", 0.03},
+                  {"period", 0.01},
+                  {"rows_per_packet", 10.0}},
+       .applied = true},
   };
 }
 

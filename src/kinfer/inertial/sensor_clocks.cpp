@@ -170,7 +170,9 @@ class ClockComparison {
  private:
   /// Shift of a logger to the first one: by correlation if reliable, else by equal start times.
   double shift_of(std::size_t logger) const {
-    if (logger == 0) return 0.0;
+    if (share_clock(recording_, 0, logger)) return 0.0;
+    for (std::size_t before = 0; before < logger; ++before)
+      if (share_clock(recording_, before, logger)) return shift_[before];
     const ClockOffset offset = estimate_clock_offset(recording_, 0, logger);
     return offset.correlation > inertial::min_logger_correlation
                ? offset.seconds

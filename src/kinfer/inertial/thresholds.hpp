@@ -55,6 +55,21 @@ inline constexpr std::size_t max_windows = 12;
 /// pairs of windows. Data: not recorded.
 inline constexpr double min_window_distance = 0.25;
 
+// --- regular sampling behind the time stamps (sampling_grid)
+
+/// Rows below which no grid is fitted. Larger: short recordings keep their stamps. Data: not recorded.
+inline constexpr std::size_t min_grid_rows = 64;
+/// Quantile of the steps between rows that is a usual long one, also where rows come in packets of up to 30, and the
+/// factor on it from which a step is a gap, behind which the phase of the grid is new. Larger: shorter gaps count as
+/// late packets. Data: definition.
+inline constexpr double usual_step_quantile = 0.97, gap_over_usual_step = 5.0;
+/// [nats] and [standard deviations] Log likelihood ratio of the signals from which regular times replace the stamps.
+/// Larger: more stamps are kept. A paired test over windows: 1 in 30 000 by chance at 4 standard deviations.
+inline constexpr double min_time_gain = 10.0, min_time_gain_sd = 4.0;
+/// [s] and share of the period: scatter of the stamps about the grid below which they are regular. Larger: less jitter
+/// is mended. 0.02 of a period at 200 Hz and 10 rad/s² is 1 mrad/s, the noise of a good gyro.
+inline constexpr double min_time_scatter = 2e-5, min_time_scatter_share = 0.01;
+
 // --- joint signals
 
 /// |cos(pitch)| below which Euler rates are bounded (1.1° from gimbal lock). Larger: rates are wrong in a wider band;

@@ -7,6 +7,11 @@
 
 namespace kinfer {
 
+bool share_clock(const InsRecording& recording, std::size_t one, std::size_t other) {
+  const int clock = recording.loggers[one].shared_clock;
+  return one == other || (clock >= 0 && clock == recording.loggers[other].shared_clock);
+}
+
 std::size_t count(const InsSensor& sensor, Fault fault) {
   return static_cast<std::size_t>(
       std::ranges::count_if(sensor.faults, [fault](std::uint8_t bits) { return (bits & fault) != 0; }));

@@ -49,10 +49,11 @@ struct InsSensor {
   bool has_magnetometer() const { return field.present(); }
 };
 
-/// One clock: the rows of one file.
+/// The rows of one file, or of those of its sensors that were sampled at the same instants.
 struct InsLogger {
   std::string name;          ///< the file's base name
   std::vector<double> time;  ///< [s], strictly increasing, one per row
+  int shared_clock = -1;  ///< loggers with the same number ≥ 0 were stamped by one clock; −1: by a clock of its own
 };
 
 struct InsRecording {
@@ -62,6 +63,9 @@ struct InsRecording {
 
   std::span<const double> time(const InsSensor& sensor) const { return loggers[sensor.logger].time; }
 };
+
+/// Whether the rows of two loggers, indices into InsRecording::loggers, were stamped by one clock.
+bool share_clock(const InsRecording& recording, std::size_t one, std::size_t other);
 
 /// Number of rows with this fault.
 std::size_t count(const InsSensor& sensor, Fault fault);

@@ -54,7 +54,7 @@ InsRecording within(const InsRecording& recording, double begin, double end) {
   };
   for (const InsLogger& logger : recording.loggers) {
     const auto [first, last] = rows(logger.time);
-    result.loggers.push_back({logger.name, part(logger.time, first, std::max(first, last))});
+    result.loggers.push_back({logger.name, part(logger.time, first, std::max(first, last)), logger.shared_clock});
   }
   for (InsSensor& sensor : result.sensors) {
     const auto [first, last] = rows(recording.loggers[sensor.logger].time);

@@ -2,12 +2,19 @@
 #include "kinfer/simulate/log_faults.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/measurement/ins_selection.hpp"
 
 namespace kinfer {
+namespace {
+
+constexpr double closest_stamps = 1e-6;  // [s]
+
+}  // namespace
 
 InsRecording with_clock_fault(const InsRecording& recording, const ClockFault& fault) {
   KINFER_EXPECT(fault.sensor < recording.sensors.size());
@@ -35,6 +42,33 @@ InsRecording with_delayed_rows(const InsRecording& recording, std::size_t sensor
     }
   std::shift_right(late.faults.begin(), late.faults.end(), by);
   std::fill_n(late.faults.begin(), by, std::uint8_t{acceleration_missing | angular_velocity_missing | field_missing});
+  return result;
+}
+
+InsRecording with_stamp_jitter(const InsRecording& recording, double jitter, Rng rng) {
+  const double scale = jitter / std::sqrt(1.0 - 2.0 / std::numbers::pi);  // of a half-normal distribution with this sd
+  InsRecording result = recording;
+  for (std::size_t l = 0; l < result.loggers.size(); ++l) {
+    Rng of_logger = rng.stream(l);
+    double before = -std::numeric_limits<double>::infinity();
+    for (double& t : result.loggers[l].time) {
+      const double late = scale * std::abs(of_logger.normal());
+      before = t = std::max(t + late, before + closest_stamps);
+    }
+  }
+  return result;
+}
+
+InsRecording with_packets(const InsRecording& recording, std::size_t rows) {
+  KINFER_EXPECT(rows > 0);
+  InsRecording result = recording;
+  for (InsLogger& logger : result.loggers)
+    for (std::size_t first = 0; first < logger.time.size(); first += rows) {
+      const std::size_t end = std::min(first + rows, logger.time.size());
+      const double arrival = logger.time[end - 1];
+      for (std::size_t row = first; row < end; ++row)
+        logger.time[row] = arrival + closest_stamps * static_cast<double>(row - first);
+    }
   return result;
 }
 

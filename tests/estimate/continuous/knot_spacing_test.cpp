@@ -71,6 +71,18 @@ TEST(KnotSpacing, VibrationAboveTheFinestKnotsIsNoiseAndRefinesNothing) {
   EXPECT_DOUBLE_EQ(knots({.waves = {{0.6, 3.0}, {31.0, 0.5}}}), widest_knot_spacing);
 }
 
+TEST(KnotSpacing, IsWiderForASlowMachineThatVibrates) {
+  const auto spacing = [](const Swing& swing) {
+    SensorModel grade;
+    grade.name = "data sheet";
+    grade.gyroscope.noise_density = 1e-4, grade.accelerometer.noise_density = 1e-3;  // as recorded() makes it
+    return select_knot_spacing(recorded(swing), grade);
+  };
+  EXPECT_GT(spacing({.waves = {{0.1, 3.0}, {31.0, 0.5}}}), 2.0 * widest_knot_spacing);
+  EXPECT_DOUBLE_EQ(spacing({.waves = {{0.1, 3.0}}}), widest_knot_spacing);
+  EXPECT_NEAR(spacing({.waves = {{2.5, 3.0}, {31.0, 0.1}}}), 0.05, 1e-6);
+}
+
 TEST(KnotSpacing, SpikesAndMissingRowsHaveNoInfluence) {
   EXPECT_DOUBLE_EQ(knots({.waves = {{0.6, 3.0}}, .spikes = 0.1, .missing = 0.1}), widest_knot_spacing);
   EXPECT_NEAR(knots({.waves = {{2.5, 3.0}}, .spikes = 0.1, .missing = 0.1}), 0.05, 1e-6);

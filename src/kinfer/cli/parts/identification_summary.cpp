@@ -89,12 +89,21 @@ std::string length_text(double length, double sd) {
   return sd < unobservable_sd ? fmt::format("{:.1f} mm (sd {:.1f} mm)", 1e3 * length, 1e3 * sd) : "unknown";
 }
 
+/// The angle between the line of the pins and the nearest axis of the segment's sensor: how the sensor sits on it.
+std::string pin_line_text(const PinDistance& pin) {
+  Eigen::Index nearest = 0;
+  const double cosine = pin.direction.cwiseAbs().maxCoeff(&nearest);
+  return fmt::format("{:.2f}° (sd {:.2f}°) from the sensor's {}{} axis", std::acos(std::min(1.0, cosine)) / degree,
+                     pin.direction_sd / degree, pin.direction[nearest] < 0.0 ? "−" : "", "xyz"[nearest]);
+}
+
 /// From pin to pin where the axes are nearly parallel, else the shortest distance.
 std::string link_line(const LinkEstimate& link) {
   const std::string ends = fmt::format("link {}: from {} to {}", link.segment, link.from, link.to);
   if (link.pin)
-    return fmt::format("{}, pin to pin {}, axes parallel within {:.2f}°\n", ends,
-                       length_text(link.pin->distance, link.pin->sd), link.axis_angle / degree);
+    return fmt::format("{}, pin to pin {}, {}, axes parallel within {:.2f}°\n", ends,
+                       length_text(link.pin->distance, link.pin->sd), pin_line_text(*link.pin),
+                       link.axis_angle / degree);
   return fmt::format("{}, shortest distance {}\n", ends, length_text(link.length, link.sd));
 }
 

@@ -47,4 +47,9 @@ Result<InsRecording> with_late_sensor(InsRecording recording, const SimulatedFau
   return with_delayed_rows(recording, what.sensor, static_cast<std::size_t>(std::round(rows)));
 }
 
+InsRecording with_stamp_faults(InsRecording recording, const SimulatedFaults& faults, const Rng& rng) {
+  if (faults.packet > 1) recording = with_packets(recording, static_cast<std::size_t>(faults.packet));
+  return faults.jitter > 0.0 ? with_stamp_jitter(recording, 1e-3 * faults.jitter, rng) : recording;
+}
+
 }  // namespace kinfer::cli

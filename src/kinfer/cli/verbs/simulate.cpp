@@ -110,9 +110,10 @@ Result<void> simulate(const SimulateArguments& options) {
   if (options.faults.foam > 0.0)
     moved = with_foam_mounts(std::move(moved), options.faults.foam * degree, rng.stream(4));
   KINFER_TRY(motion, with_remount(machine, std::move(moved), options.faults));
-  KINFER_TRY(recording,
+  KINFER_TRY(punctual,
              with_late_sensor(simulate_recording(machine, motion, sensors, trouble_of(options), rng.stream(3)),
                               options.faults));
+  const InsRecording recording = with_stamp_faults(std::move(punctual), options.faults, rng.stream(5));
   const SimulationRecord record{options.machine, sensors.name,        options.base,
                                 options.slope,   options.common.seed, options.sampling_rate};
   for (const auto& [name, text] :
@@ -165,6 +166,10 @@ void add_sensor_options(CLI::App& verb, SimulateArguments& options) {
              "rigid mounts");
   add_text(verb, "--late", options.faults.late, "This sensor's samples are logged this many ms late",
            Requirement::optional, "SENSOR=MS");
+  add_number(verb, "--jitter", options.faults.jitter, 0.0, 1000.0,
+             "Rows are stamped late by random times that scatter by this many ms (rms)");
+  add_count(verb, "--packet", options.faults.packet, 1, 1000,
+            "This many rows are stamped at once, when the last of them arrives");
   add_text(verb, "--remount", options.faults.remount,
            "This sensor is rotated by 21 degrees and shifted by 10 cm after this many seconds; truth.json describes "
            "the mounting before",

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "kinfer/estimate/continuous/model/measurement_blocks.hpp"
+#include "kinfer/geometry/statistics.hpp"
 
 namespace kinfer {
 namespace {
@@ -16,6 +17,7 @@ using Index = Eigen::Index;
 constexpr double finer = 1.0 / std::numbers::sqrt2;
 constexpr double finest_knot_spacing = 0.025;  // [s]
 constexpr double no_further_gain = 1.03;       // ratio to the residual of finer knots: no further gain
+constexpr double min_vibration_ratio = 3.0;    // scatter about smooth motion over the instrument's noise
 constexpr double window_length = 10.0;         // [s]
 constexpr std::size_t most_windows = 12;       // per sensor
 constexpr double least_activity = 0.1;   // of the largest mean square angular velocity: quieter windows are left out
@@ -101,6 +103,50 @@ std::array<double, 2> residual_rms(const std::vector<Window>& windows, double kn
   return {trimmed_rms(std::move(parts[0])), trimmed_rms(std::move(parts[1]))};
 }
 
+/// Standard deviation of one row of an instrument by its data sheet, or as it was measured at rest, if that is less: a
+/// machine may vibrate at rest, too.
+double row_noise(const InstrumentModel& measured, const InstrumentModel& data_sheet, double period) {
+  const double density = std::min(measured.noise_density, data_sheet.noise_density),
+               resolution = std::max(measured.resolution, data_sheet.resolution);
+  return std::hypot(density * std::sqrt(0.5 / period), resolution / std::sqrt(12.0));
+}
+
+/// Whether half of the sensors scatter about smooth motion by far more than their noise.
+bool machine_vibrates(const InsRecording& recording, const SensorModel& grade) {
+  const SensorModel data_sheet = sensor_grade(grade.name).value_or(grade);
+  std::array<std::vector<double>, 2> ratios;
+  for (const InsSensor& sensor : recording.sensors) {
+    const auto time = recording.time(sensor);
+    const auto windows = most_active_windows(sensor, time);
+    if (windows.empty()) continue;
+    const auto scatter = residual_rms(windows, widest_knot_spacing);
+    const double period = median_period(time);
+    const auto add = [&](std::size_t i, double noise) {
+      if (noise > 0.0) ratios[i].push_back(scatter[i] / noise);
+    };
+    add(0, row_noise(grade.gyroscope, data_sheet.gyroscope, period));
+    add(1, row_noise(grade.accelerometer, data_sheet.accelerometer, period));
+  }
+  return std::ranges::any_of(
+      ratios, [](const std::vector<double>& r) { return !r.empty() && median(r) > min_vibration_ratio; });
+}
+
+/// Whether splines with these knots leave hardly more of a sensor's measurements than those of widest_knot_spacing.
+bool loses_nothing(const std::vector<Window>& windows, double knots) {
+  const auto wide = residual_rms(windows, knots), usual = residual_rms(windows, widest_knot_spacing);
+  return wide[0] <= no_further_gain * usual[0] && wide[1] <= no_further_gain * usual[1];
+}
+
+/// The widest spacing beyond widest_knot_spacing that loses nothing of any sensor, finer by √2 once more.
+double widest_without_loss(const InsRecording& recording) {
+  double knots = widest_knot_spacing_in_vibration;
+  for (const InsSensor& sensor : recording.sensors) {
+    const auto windows = most_active_windows(sensor, recording.time(sensor));
+    while (knots > widest_knot_spacing && !loses_nothing(windows, knots)) knots *= finer;
+  }
+  return finer * knots;
+}
+
 /// The widest knot spacing that represents this sensor's motion, not finer than `least`.
 double sufficient_knot_spacing(const std::vector<Window>& windows, double widest, double least) {
   double knots = widest;
@@ -125,6 +171,12 @@ double select_knot_spacing(const InsRecording& recording) {
     knots = std::min(knots, std::max(least, finer * sufficient_knot_spacing(windows, knots / finer, least)));
   }
   return knots;
+}
+
+double select_knot_spacing(const InsRecording& recording, const SensorModel& grade) {
+  if (machine_vibrates(recording, grade))
+    if (const double wide = widest_without_loss(recording); wide > widest_knot_spacing) return wide;
+  return select_knot_spacing(recording);
 }
 
 }  // namespace kinfer

@@ -44,6 +44,7 @@ constexpr std::array named_kinds{
     NamedKind{FindingKind::idle, "idle"},
     NamedKind{FindingKind::remounted, "remounted"},
     NamedKind{FindingKind::clock, "clock"},
+    NamedKind{FindingKind::timestamp_jitter, "timestamp_jitter"},
 };
 
 }  // namespace

@@ -54,6 +54,7 @@ enum class FindingKind {
   idle,                    ///< sensors that never move
   remounted,               ///< a sensor was remounted during the recording
   clock,                   ///< a sensor's clock is offset or drifts
+  timestamp_jitter,        ///< rows were stamped at other times than they were sampled
 };
 
 /// The stable identifier for programs: "rows_shifted".

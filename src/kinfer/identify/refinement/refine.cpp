@@ -7,8 +7,8 @@
 
 #include "kinfer/estimate/continuous/excerpt.hpp"
 #include "kinfer/estimate/continuous/knot_spacing.hpp"
-#include "kinfer/estimate/continuous/solver/covariance.hpp"
 #include "kinfer/estimate/continuous/solver/fact_residuals.hpp"
+#include "kinfer/estimate/continuous/solver/model_error.hpp"
 #include "kinfer/identify/refinement/clock_fit.hpp"
 #include "kinfer/identify/refinement/fact_resolution.hpp"
 #include "kinfer/identify/refinement/low_frequency_fit.hpp"
@@ -81,7 +81,7 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
                           const std::vector<InitialJoint>& starts, const RefinementOptions& options,
                           const Observer& observer) {
   const SensorModel grade = options.grade ? *options.grade : estimate_sensor_model(recording);
-  const double knot_spacing = options.knot_spacing > 0.0 ? options.knot_spacing : select_knot_spacing(recording);
+  const double knot_spacing = options.knot_spacing > 0.0 ? options.knot_spacing : select_knot_spacing(recording, grade);
   RefinementSetup setup = set_up_refinement(recording, motion, tree, starts, grade, knot_spacing);
   KINFER_TRY(facts, resolve_facts(options.facts, segment_names(motion), setup.start.bodies, setup.problem.grid,
                                   setup.problem.root_at_rest));
@@ -104,8 +104,8 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
   }
   result.fit = fitted.fit;
   fitted.fit.cost = {};  // frees memory: the residuals of an hour are large
-  const auto covariance =
-      covariance_of(fitted.setup.problem, result.fit.layout, result.fit.unknowns, options.fit.threads);
+  const auto covariance = covariance_with_model_error(fitted.setup.problem, result.fit.layout, result.fit.unknowns,
+                                                      result.fit.cost, options.fit.threads);
   if (!covariance) return error("the continuous-time fit has no covariance: the recording is not informative enough");
   result.covariance = covariance->model;
   result.clocks = refined_clocks(fitted.setup.problem, result.fit, *covariance);

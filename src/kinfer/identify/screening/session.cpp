@@ -2,9 +2,11 @@
 #include "kinfer/identify/screening/session.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "kinfer/identify/screening/machines.hpp"
 #include "kinfer/identify/screening/remount.hpp"
+#include "kinfer/identify/screening/time_stamps.hpp"
 #include "kinfer/measurement/ins_selection.hpp"
 
 namespace kinfer::identify {
@@ -30,11 +32,17 @@ Result<Session> Session::open(const InsRecording& recording, const std::vector<s
   for (const InsSensor& sensor : recording.sensors)
     if (!sensor.acceleration.present() || !sensor.angular_velocity.present())
       return error("{}: identification needs specific force (ax ay az) and angular rate (gx gy gz)", sensor.name);
-  KINFER_TRY(chosen, select_moving_sensors(recording, sensors, root, motion));
+  MendedTimeStamps stamps = mend_time_stamps(recording, threads);
+  const InsRecording& mended = stamps.recording ? *stamps.recording : recording;
+  KINFER_TRY(chosen, select_moving_sensors(mended, sensors, root, motion));
   Session session(recording);
-  if (chosen.sensors.size() < recording.sensors.size()) session.part_ = select_sensors(recording, chosen.sensors);
+  if (chosen.sensors.size() < recording.sensors.size())
+    session.part_ = select_sensors(mended, chosen.sensors);
+  else
+    session.part_ = std::move(stamps.recording);
   session.clock_ = synchronise_sensors(session.selected(), motion, threads);
-  session.findings_ = std::move(chosen.findings);
+  session.findings_ = std::move(stamps.findings);
+  std::ranges::move(chosen.findings, std::back_inserter(session.findings_));
   return session;
 }
 

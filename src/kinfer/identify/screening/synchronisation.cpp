@@ -19,7 +19,7 @@ ClockCorrection logger_correction(const InsRecording& recording, const std::vect
   std::vector<double> offsets, drifts;
   ClockCorrection logger_clock;
   for (std::size_t s = 0; s < clocks.size(); ++s) {
-    if (recording.sensors[s].logger != logger) continue;
+    if (!share_clock(recording, recording.sensors[s].logger, logger)) continue;
     logger_clock = clocks[s].correction;
     if (!clocks[s].known) continue;
     offsets.push_back(clocks[s].correction.offset);
@@ -74,6 +74,12 @@ double tree_length(const InsRecording& recording, const SegmentMotionOptions& op
   return length;
 }
 
+bool has_several_clocks(const InsRecording& recording) {
+  for (std::size_t l = 1; l < recording.loggers.size(); ++l)
+    if (!share_clock(recording, 0, l)) return true;
+  return false;
+}
+
 bool all_zero(const std::vector<ClockCorrection>& corrections) {
   return std::ranges::all_of(corrections, &ClockCorrection::is_none);
 }
@@ -85,7 +91,7 @@ Synchronisation synchronise_sensors(const InsRecording& recording, const Segment
     return all_zero(corrections) ? std::nullopt : std::optional(synchronise_sensors(recording, corrections));
   };
   const ClockTreatment clock_treatment =
-      recording.loggers.size() > 1 ? ClockTreatment::estimated : ClockTreatment::checked;
+      has_several_clocks(recording) ? ClockTreatment::estimated : ClockTreatment::checked;
   if (recording.sensors.size() < 2)
     return {{}, std::vector<ClockCorrection>(recording.sensors.size()), clock_treatment};
   const auto clocks = estimate_sensor_clocks(recording, {}, threads);

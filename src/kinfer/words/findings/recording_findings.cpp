@@ -132,6 +132,26 @@ std::string clock_suggestion(const Finding&) {
   return phrase("clock.suggestion", "put all sensors on one clock, or let their loggers synchronise");
 }
 
+std::string timestamp_jitter_sentence(const Finding& f) {
+  const FactValues& v = f.values;
+  const auto sensors = v.texts("sensors");
+  const double scatter = 1e3 * v.number("jitter"), rate = 1.0 / v.number("period");
+  if (const double rows = v.number("rows_per_packet"); rows > 1.0)
+    return phrase("timestamp_packets",
+                  "{} sampled every {:.3f} ms ({:.1f} Hz), but the log stamps about {:.0f} rows at once, {:.2f} ms rms "
+                  "off; the regular times are used, at which the signals are smooth",
+                  fmt::join(sensors, ", "), 1e3 * v.number("period"), rate, rows, scatter);
+  return phrase(
+      "timestamp_jitter",
+      "{} sampled every {:.3f} ms ({:.1f} Hz), but the log's time stamps scatter about that by {:.2f} ms rms; "
+      "the regular times are used, at which the signals are smooth",
+      fmt::join(sensors, ", "), 1e3 * v.number("period"), rate, scatter);
+}
+
+std::string timestamp_jitter_suggestion(const Finding&) {
+  return phrase("timestamp_jitter.suggestion", "log the sensors' own sample times instead of the times of arrival");
+}
+
 struct RecordingFindingWords {
   FindingKind kind;
   std::string (*sentence)(const Finding&);
@@ -147,6 +167,7 @@ constexpr std::array recording_finding_words{
     RecordingFindingWords{FindingKind::idle, idle_sentence, idle_suggestion},
     RecordingFindingWords{FindingKind::remounted, remounted_sentence, remounted_suggestion},
     RecordingFindingWords{FindingKind::clock, clock_sentence, clock_suggestion},
+    RecordingFindingWords{FindingKind::timestamp_jitter, timestamp_jitter_sentence, timestamp_jitter_suggestion},
 };
 
 const RecordingFindingWords& recording_words_of(FindingKind kind) {

@@ -98,7 +98,44 @@ bool differ(const InsProblem& problem, const std::vector<InsNoise>& estimated) {
   return false;
 }
 
+/// Autocovariance of an axis' offsets at one interval, where it is certainly positive; else 0.
+double persistent_variance_of_axis(const InstrumentFit& fit, std::size_t axis) {
+  constexpr double certainty = 4.0;  // standard deviations of the estimate for white noise, 1 / √n of the variance
+  const double next = covariance(fit.offset, axis, 1),
+               sd = covariance(fit.offset, axis, 0) /
+                    std::sqrt(std::max<double>(1.0, static_cast<double>(fit.offset.size())));
+  return next > certainty * sd ? next : 0.0;
+}
+
+/// Variance of the offsets' mean over a long time, relative to that of white noise with the instrument's sd; mean over
+/// the axes. Of a revolute joint's two sensors one axis always fits: the joint position follows it.
+double long_run_variance(const InstrumentFit& fit) {
+  double sum = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double memory =
+        persistent_variance_of_axis(fit, axis) > 0.0 ? autocorrelation_time_of_axis(fit.offset, axis) : 1.0;
+    sum += covariance(fit.offset, axis, 0) * memory / 3.0;
+  }
+  return sum;
+}
+
 }  // namespace
+
+std::vector<InsNoise> long_run_noise(const InsProblem& problem, const InsCost& cost) {
+  std::vector<InsNoise> noise;
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+    InsNoise& own = noise.emplace_back(problem.sensors[s].noise);
+    own.angular_velocity *= std::sqrt(std::max(1.0, long_run_variance(cost.sensors[s].angular_velocity)));
+    own.force *= std::sqrt(std::max(1.0, long_run_variance(cost.sensors[s].force)));
+  }
+  return noise;
+}
+
+double persistent_variance(const InstrumentFit& fit) {
+  double sum = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) sum += persistent_variance_of_axis(fit, axis);
+  return sum;
+}
 
 double autocorrelation_time(const InstrumentFit& fit) {
   double sum = 0.0;

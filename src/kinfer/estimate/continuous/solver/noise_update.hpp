@@ -16,6 +16,16 @@ double autocorrelation_time(const InstrumentFit& fit);
 /// changed notably.
 bool update_noise(InsProblem& problem, const InsCost& cost);
 
+/// Standard deviations of white noise that has as much power at low frequencies as the residuals: what they are worth
+/// as independent samples (long-run variance; Newey and West 1987). Never below the problem's noise; magnetometers as
+/// they are.
+std::vector<InsNoise> long_run_noise(const InsProblem& problem, const InsCost& cost);
+
+/// Of the offsets, in variances of white noise, summed over the axes: what neighbouring intervals have in common
+/// (autocovariance at one interval, if certainly positive). Zero for white noise, and for vibration faster than the
+/// intervals.
+double persistent_variance(const InstrumentFit& fit);
+
 /// True if that would change a gyroscope's or an accelerometer's noise notably.
 bool needs_reweighting(const InsProblem& problem, const InsCost& cost);
 
