@@ -30,7 +30,7 @@ double off(const std::vector<double>& times, const std::vector<double>& truth) {
   return time_scatter(times, truth);
 }
 
-TEST(SamplingGrid, IsFoundBehindJitterToAMicrosecondARow) {
+TEST(SamplingGrid, IsFoundBehindJitter) {
   const InsRecording sound = one_sensor(), late = with_stamp_jitter(sound, 2e-3, Rng(3));
   const auto grid = fit_sampling_grid(late.loggers[0].time, LostSamples::anywhere);
   ASSERT_TRUE(grid);

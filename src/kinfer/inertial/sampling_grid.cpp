@@ -20,7 +20,7 @@ struct Numbering {
 };
 
 /// [s] Steps longer than this are gaps: many times the longest usual step, which a packet makes long.
-double longest_step(std::span<const double> stamps) {
+double gap_threshold(std::span<const double> stamps) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < stamps.size(); ++k) steps.push_back(stamps[k] - stamps[k - 1]);
   return inertial::gap_over_usual_step * quantile(std::move(steps), inertial::usual_step_quantile);
@@ -48,6 +48,16 @@ double period_of_steps(std::span<const double> stamps) {
   return n > 0.0 ? sum / n : usual;
 }
 
+/// Time from `expected` to a row, as the earliest of this and the next rows says, each moved back by its periods: a row
+/// that comes late does not look like a lost sample, and one that is lost later does not count yet.
+double time_ahead(std::span<const double> stamps, std::size_t row, double period, double expected) {
+  constexpr std::size_t ahead = 3;
+  double earliest = stamps[row] - expected;
+  for (std::size_t i = 1; i < std::min(ahead, stamps.size() - row); ++i)
+    earliest = std::min(earliest, stamps[row + i] - static_cast<double>(i) * period - expected);
+  return earliest;
+}
+
 Numbering number_rows(std::span<const double> stamps, double period, double gap, LostSamples lost) {
   constexpr double follow = 0.05;  // share of a row's deviation by which the expected time moves
   Numbering rows{{0.0}, {0}};
@@ -56,7 +66,8 @@ Numbering number_rows(std::span<const double> stamps, double period, double gap,
     const double expected = offset + period * rows.number.back(), step = stamps[k] - stamps[k - 1];
     const bool is_gap = step > gap;
     double steps = 1.0;
-    if (lost == LostSamples::anywhere) steps = std::max(1.0, std::round((stamps[k] - expected) / period));
+    if (lost == LostSamples::anywhere)
+      steps = std::max(1.0, std::round(time_ahead(stamps, k, period, expected) / period));
     if (lost == LostSamples::in_gaps_only && is_gap) steps = std::max(1.0, std::round(step / period));
     rows.number.push_back(rows.number.back() + steps);
     rows.stretch.push_back(rows.stretch.back() + (is_gap ? 1 : 0));
@@ -165,12 +176,8 @@ bool has_faults(const InsSensor& sensor, const WindowRows& rows, unsigned faults
   return false;
 }
 
-}  // namespace
-
-std::optional<SamplingGrid> fit_sampling_grid(std::span<const double> stamps, LostSamples lost) {
-  if (stamps.size() < inertial::min_grid_rows) return std::nullopt;
-  const double gap = longest_step(stamps);
-  double period = lost == LostSamples::anywhere ? period_of_steps(stamps) : period_over_rows(stamps);
+/// The grid that a first guess of the period leads to; empty if its times are not in the order of the rows.
+std::optional<SamplingGrid> grid_from(std::span<const double> stamps, double period, double gap, LostSamples lost) {
   Numbering rows;
   GridLine line;
   for (int round = 0; round < 2; ++round) {
@@ -184,6 +191,17 @@ std::optional<SamplingGrid> fit_sampling_grid(std::span<const double> stamps, Lo
     if (k > 0 && !(grid.time[k] - grid.time[k - 1] > 0.5 * period)) return std::nullopt;
   }
   return grid;
+}
+
+}  // namespace
+
+std::optional<SamplingGrid> fit_sampling_grid(std::span<const double> stamps, LostSamples lost) {
+  if (stamps.size() < inertial::min_grid_rows) return std::nullopt;
+  const double gap = gap_threshold(stamps), over_rows = period_over_rows(stamps);
+  if (lost == LostSamples::in_gaps_only) return grid_from(stamps, over_rows, gap, lost);
+  auto best = grid_from(stamps, over_rows, gap, lost), other = grid_from(stamps, period_of_steps(stamps), gap, lost);
+  if (!best || (other && time_scatter(stamps, other->time) < time_scatter(stamps, best->time))) best = std::move(other);
+  return best;
 }
 
 double time_scatter(std::span<const double> stamps, std::span<const double> times) {

@@ -14,6 +14,7 @@
 #include "kinfer/identify/refinement/low_frequency_fit.hpp"
 #include "kinfer/identify/refinement/refined_joints.hpp"
 #include "kinfer/identify/refinement/thresholds.hpp"
+#include "kinfer/inertial/rest/rest.hpp"
 #include "kinfer/inertial/sensor_grading.hpp"
 
 namespace kinfer::identify {
@@ -54,6 +55,15 @@ RefinementFit fit_full_bandwidth(const RefinementTask& task, RefinementSetup set
   if (options.clocks == ClockTreatment::checked && clocks_are_doubtful(problem, fitted.fit, task.options.threads))
     refit_with_free_clocks(problem, fitted.fit, task.options, observer);
   return fitted;
+}
+
+/// A grade that is neither given nor seen in rests is a guess: scale errors of its size stay possible beside those that
+/// the fit estimates.
+AssumedScale assumed_scale(const InsRecording& recording, const RefinementOptions& options, const SensorModel& grade) {
+  const bool is_guess = !options.grade && std::ranges::any_of(recording.sensors, [&](const InsSensor& sensor) {
+    return rest_periods(sensor, recording.time(sensor)).empty();
+  });
+  return is_guess ? AssumedScale{grade.gyroscope.scale_sd, grade.accelerometer.scale_sd} : AssumedScale{};
 }
 
 /// Whether a clock is wrong by so much that the caller will correct it and fit again.
@@ -104,8 +114,9 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
   }
   result.fit = fitted.fit;
   fitted.fit.cost = {};  // frees memory: the residuals of an hour are large
-  const auto covariance = covariance_with_model_error(fitted.setup.problem, result.fit.layout, result.fit.unknowns,
-                                                      result.fit.cost, options.fit.threads);
+  const auto covariance =
+      covariance_with_model_error(fitted.setup.problem, result.fit.layout, result.fit.unknowns, result.fit.cost,
+                                  assumed_scale(recording, options, grade), options.fit.threads);
   if (!covariance) return error("the continuous-time fit has no covariance: the recording is not informative enough");
   result.covariance = covariance->model;
   result.clocks = refined_clocks(fitted.setup.problem, result.fit, *covariance);

@@ -89,7 +89,8 @@ void add_considered(MatrixXd& covariance, const MatrixXd& gain, Index first, dou
 }  // namespace
 
 std::optional<InsCovariance> covariance_with_model_error(InsProblem& problem, const InsLayout& layout,
-                                                         const InsUnknowns& x, const InsCost& cost, int threads) {
+                                                         const InsUnknowns& x, const InsCost& cost,
+                                                         const AssumedScale& assumed, int threads) {
   const InsSystem system(problem, layout, x, {}, threads);
   const auto white = covariance_of(system);
   if (!white) return std::nullopt;
@@ -107,10 +108,12 @@ std::optional<InsCovariance> covariance_with_model_error(InsProblem& problem, co
       const InsMeasurements& r = problem.sensors[s];
       const SensorFit& fit = cost.sensors[s];
       constexpr double rate_axes = 2.0, force_axes = 3.0;  // a joint's position absorbs the rate about its axis
-      add_considered(result.model, gain, layout.error[s] + gyroscope_scale,
-                     considered_scale(r.angular_velocity, fit.angular_velocity, r.noise.angular_velocity, rate_axes));
+      const double rate =
+          considered_scale(r.angular_velocity, fit.angular_velocity, r.noise.angular_velocity, rate_axes);
+      const double force = considered_scale(r.force, fit.force, r.noise.force, force_axes);
+      add_considered(result.model, gain, layout.error[s] + gyroscope_scale, std::hypot(rate, assumed.gyroscope));
       add_considered(result.model, gain, layout.error[s] + accelerometer_scale,
-                     considered_scale(r.force, fit.force, r.noise.force, force_axes));
+                     std::hypot(force, assumed.accelerometer));
     }
   }
   result.inflation = white->inflation.array() * white->model.diagonal().array() / result.model.diagonal().array();

@@ -6,7 +6,8 @@
 // 2. Long-run noise (noise_update.hpp): residuals that stay alike for many intervals are worth fewer samples.
 // 3. Considered errors (Schmidt 1966): each instrument measures (I + E) truth, E with independent elements of the size
 //    that its persistent residuals have relative to its signal. E is not estimated: the fit would take the errors of
-//    any other model for it. Its effect on the estimate enters the covariance.
+//    any other model for it. Its effect on the estimate enters the covariance. Where a sensor's grade could not be
+//    told from the recording, E is as large as a scale error of the assumed grade besides.
 // Where the model is right, the residuals are white, 2. and 3. vanish, and the covariance is that of the model.
 #pragma once
 
@@ -22,9 +23,15 @@ inline constexpr double considered_over_persistent = 2.0;
 /// Larger considered scale errors are no scale errors: a sensor that hardly moves has residuals of another kind.
 inline constexpr double max_considered_scale = 0.1;
 
+/// Scale errors that are considered of every instrument, whatever its residuals say.
+struct AssumedScale {
+  double gyroscope = 0.0, accelerometer = 0.0;
+};
+
 /// At a fit with this cost. `inflation` is what the sandwich adds. Empty if the information matrix is not positive
 /// definite.
 std::optional<InsCovariance> covariance_with_model_error(InsProblem& problem, const InsLayout& layout,
-                                                         const InsUnknowns& x, const InsCost& cost, int threads);
+                                                         const InsUnknowns& x, const InsCost& cost,
+                                                         const AssumedScale& assumed, int threads);
 
 }  // namespace kinfer
