@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kinfer/base/angle.hpp"
 #include "support/carried_sensor.hpp"
@@ -46,6 +47,30 @@ TEST(Screening, RowsAtAnyRangeAreClipped) {
     ASSERT_GT(beyond, 100u);
     EXPECT_EQ(count(c.sensor, angular_velocity_clipped), beyond) << "range " << range;
   }
+}
+
+TEST(Screening, AConstantColumnIsNotClipped) {
+  const std::array scales{2.0 * 9.80665, 4.0 * 9.80665};
+  std::vector<float> column(2000, 25.0f);
+  EXPECT_TRUE(find_clipped_rows(column, scales, 12.0).empty()) << "the logger's constant";
+  for (std::size_t row = 0; row < 20; ++row) column[row] = 0.1f * static_cast<float>(row);
+  EXPECT_TRUE(find_clipped_rows(column, scales, 12.0).empty()) << "a sensor that freezes after its start";
+  column.assign(2000, static_cast<float>(scales[0]));
+  EXPECT_FALSE(find_clipped_rows(column, scales, 12.0).empty()) << "at the end of a usual range";
+}
+
+TEST(Screening, RowsOfOtherSensorsInBetweenDoNotHideARange) {
+  CarriedSensor c = noisy();
+  std::vector<float> column;
+  for (const float value : c.sensor.angular_velocity.axis[0]) {
+    column.push_back(std::clamp(value, -1.0f, 1.0f));
+    column.push_back(std::numeric_limits<float>::quiet_NaN());
+  }
+  std::size_t at_range = 0;
+  for (const float value : column) at_range += std::abs(value) >= 1.0f;
+  const auto clipped = find_clipped_rows(column, {}, 0.5);
+  EXPECT_GT(at_range, 8u);
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(clipped, true)), at_range);
 }
 
 TEST(Screening, SingleSpikesAreFoundAndNothingElse) {

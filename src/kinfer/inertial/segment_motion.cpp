@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/geometry/fit.hpp"
+#include "kinfer/inertial/clipped_peaks.hpp"
 #include "kinfer/inertial/gap_bridging.hpp"
 #include "kinfer/inertial/gaussian_smoothing.hpp"
 #include "kinfer/inertial/rest/rest.hpp"
@@ -95,12 +97,15 @@ std::vector<Vec3> filtered(const std::vector<Vec3>& signal, const GaussianKernel
   return result;
 }
 
-double rms_about_mean(const std::vector<Vec3>& signal) {
+/// Root mean square about the mean, without the share `trimmed` of the rows that are farthest from it.
+double rms_about_mean(const std::vector<Vec3>& signal, double trimmed = 0.0) {
   Vec3 mean = Vec3::Zero();
   for (const Vec3& v : signal) mean += v / static_cast<double>(signal.size());
-  double sum = 0.0;
-  for (const Vec3& v : signal) sum += (v - mean).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(signal.size()));
+  std::vector<double> squares;
+  for (const Vec3& v : signal) squares.push_back((v - mean).squaredNorm());
+  const auto kept = static_cast<std::ptrdiff_t>((1.0 - trimmed) * static_cast<double>(squares.size()));
+  if (kept < std::ssize(squares)) std::ranges::nth_element(squares, squares.begin() + kept);
+  return std::sqrt(std::accumulate(squares.begin(), squares.begin() + kept, 0.0) / static_cast<double>(kept));
 }
 
 /// Orientations at the sensor's rows, interpolated to the common clock.
@@ -120,7 +125,7 @@ std::vector<Mat3> rotations_on(std::span<const double> clock, std::span<const do
 
 /// With filters that do not estimate the gyro errors, one bias comes from the rests.
 FilterOutput filter_sensor(const InsSensor& recorded, std::span<const double> time, const FilterOptions& filter) {
-  const InsSensor sensor = bridge_gaps(recorded, time, inertial::max_filter_gap);
+  const InsSensor sensor = bridge_gaps(restore_clipped_peaks(recorded, time), time, inertial::max_filter_gap);
   FilterOutput output = run_filter(sensor, time, filter);
   if (output.bias.empty()) {
     output.bias_time = {time.front()};
@@ -155,6 +160,8 @@ ResampledSegment resample_segment(std::span<const double> clock, const InsRecord
   ResampledSegment result;
   SegmentMotion& m = result.motion;
   m.name = sensor.name;
+  const std::size_t clipped = count(sensor, angular_velocity_clipped) + count(sensor, acceleration_clipped);
+  m.clips = static_cast<double>(clipped) > inertial::max_clipped_share * static_cast<double>(sensor.rows());
   const FilterOutput filter = filter_sensor(sensor, time, options.filter);
   m.rotation = rotations_on(clock, time, filter.world_q_sensor);
   std::vector<Vec3> rate_world(clock.size()), acceleration_world(clock.size());
@@ -170,7 +177,7 @@ ResampledSegment resample_segment(std::span<const double> clock, const InsRecord
   m.angular_acceleration = filtered(rate_world, kernel, smoothed_derivative);
   m.acceleration = filtered(acceleration_world, kernel, smoothed);
   if (rms_about_mean(m.angular_velocity) < options.stationary_rate &&
-      rms_about_mean(m.acceleration) < options.stationary_acceleration)
+      rms_about_mean(m.acceleration, inertial::max_shock_share) < options.stationary_acceleration)
     set_stationary(m);
   return result;
 }
@@ -234,7 +241,7 @@ Result<RecordedMotion> segment_motion(const InsRecording& recording, const Segme
 std::vector<Mat3> segment_rotations(const RecordedMotion& motion, const InsRecording& recording,
                                     const InsSensor& sensor, const SegmentMotionOptions& options) {
   const std::span<const double> time = recording.time(sensor);
-  const InsSensor whole = bridge_gaps(sensor, time, inertial::max_filter_gap);
+  const InsSensor whole = bridge_gaps(restore_clipped_peaks(sensor, time), time, inertial::max_filter_gap);
   return rotations_on(motion.time, time, estimate_orientations(whole, time, options.filter));
 }
 

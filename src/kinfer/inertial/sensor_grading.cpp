@@ -6,6 +6,7 @@
 
 #include "kinfer/base/constants.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/inertial/clipped_peaks.hpp"
 #include "kinfer/inertial/filters/kinfer_smoother.hpp"
 #include "kinfer/inertial/thresholds.hpp"
 
@@ -127,7 +128,7 @@ SensorStatistics sensor_statistics(const InsSensor& sensor, std::span<const doub
   found.gravity_error = std::sqrt(found.gravity_error);
   found.largest_rate = largest(sensor.angular_velocity);
   found.largest_acceleration = largest(sensor.acceleration);
-  found.scale_error = scale_error(sensor, time);
+  found.scale_error = scale_error(restore_clipped_peaks(sensor, time), time);
   return found;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/inertial/clipped_peaks.hpp"
 #include "kinfer/inertial/gap_bridging.hpp"
 #include "kinfer/inertial/rest/rest.hpp"
 #include "kinfer/inertial/thresholds.hpp"
@@ -25,11 +26,13 @@ SensorOrientations orientations_of(const InsRecording& recording, std::size_t in
   const std::span<const double> time = recording.time(sensor);
   const OrientationFilter& filter = filter_of(options);
   const bool uses_field = magnetometer_use(options) == MagnetometerUse::automatic;
-  return {.sensor = index,
-          .world_q_sensor = estimate_orientations(
-              filter.is_causal ? sensor : bridge_gaps(sensor, time, inertial::max_filter_gap), time, options),
-          .heading_is_north = sensor.has_magnetometer() && uses_field,
-          .rest_seconds = bias_at_rest(rest_periods(sensor, time)).seconds};
+  return {
+      .sensor = index,
+      .world_q_sensor = estimate_orientations(
+          filter.is_causal ? sensor : bridge_gaps(restore_clipped_peaks(sensor, time), time, inertial::max_filter_gap),
+          time, options),
+      .heading_is_north = sensor.has_magnetometer() && uses_field,
+      .rest_seconds = bias_at_rest(rest_periods(sensor, time)).seconds};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/constants.hpp"
@@ -52,28 +53,38 @@ float largest_magnitude(const std::vector<float>& column) {
   return largest;
 }
 
-/// Distribution of the rows about the column's peak value.
+/// Distribution of the rows about the column's peak value. Rows without a value, those of other sensors, are left out.
 struct Peak {
   float value = 0.0f;
-  std::size_t at_peak = 0, in_runs = 0;  ///< rows with exactly this magnitude; of them with an equal neighbour
+  std::size_t at_peak = 0, in_runs = 0;  ///< rows with exactly this magnitude; of them equal to the one before
   std::size_t just_below = 0;            ///< rows within 1 % under it
-  std::size_t repeats = 0;  ///< rows below the peak equal to the previous row: if many, equal rows mean nothing
+  std::size_t repeats = 0;  ///< rows below the peak equal to the one before: if many, equal rows mean nothing
+  std::size_t changes = 0;  ///< rows below the peak that differ from the one before
 };
 
 Peak analyse_peak(const std::vector<float>& column) {
   Peak peak{.value = largest_magnitude(column)};
-  for (std::size_t row = 0; row < column.size(); ++row) {
-    const float magnitude = std::abs(column[row]);
-    const bool repeated = row > 0 && !(column[row] < column[row - 1]) && !(column[row] > column[row - 1]);
+  float before = std::numeric_limits<float>::quiet_NaN();
+  for (const float value : column) {
+    if (!std::isfinite(value)) continue;
+    const float magnitude = std::abs(value);
+    const bool repeated = !(value < before) && !(value > before) && std::isfinite(before);
+    before = value;
     if (magnitude >= peak.value) {
       ++peak.at_peak;
       if (repeated) ++peak.in_runs;
     } else {
       if (magnitude > 0.99f * peak.value) ++peak.just_below;
-      if (repeated && std::isfinite(magnitude)) ++peak.repeats;
+      ++(repeated ? peak.repeats : peak.changes);
     }
   }
   return peak;
+}
+
+/// A column that hardly ever changes is a constant of the logger or of a broken sensor, not a signal at its range.
+bool is_constant(const Peak& peak) {
+  constexpr std::size_t rows_per_change = 20;
+  return rows_per_change * peak.changes < peak.at_peak + peak.repeats;
 }
 
 bool is_full_scale(double value, std::span<const double> full_scales) {
@@ -83,7 +94,7 @@ bool is_full_scale(double value, std::span<const double> full_scales) {
 /// Clipping at an unknown range: far more rows at the peak than in the whole percent below it, in a column whose values
 /// otherwise do not repeat (noise-free simulations and sample-and-hold repeat everywhere).
 bool is_clipped_at_peak(const Peak& peak, std::size_t rows) {
-  return peak.in_runs >= 8 && peak.in_runs > 2 * peak.just_below && 20 * peak.repeats < rows;
+  return !is_constant(peak) && peak.in_runs >= 8 && peak.in_runs > 2 * peak.just_below && 20 * peak.repeats < rows;
 }
 
 double median_norm(const TriadColumns& triad) {
@@ -205,7 +216,7 @@ void flag_faults(InsSensor& sensor) {
       bits |= field_missing;
     sensor.faults[row] = static_cast<std::uint8_t>(bits);
   }
-  constexpr double smallest_acceleration_range = 1.2 * standard_gravity, smallest_rate_range = 0.5;  // [m/s²], [rad/s]
+  constexpr double smallest_acceleration_range = 1.2 * standard_gravity, smallest_rate_range = 0.1;  // [m/s²], [rad/s]
   constexpr double acceleration_spike_floor = 30.0, rate_spike_floor = 2.0;                          // [m/s²], [rad/s]
   const auto accelerometer = scaled(accelerometer_scales, standard_gravity),
              gyroscope = scaled(gyroscope_scales, degree);

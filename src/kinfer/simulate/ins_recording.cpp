@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/simulate/magnetic_faults.hpp"
 
 namespace kinfer {
 namespace {
@@ -14,7 +15,7 @@ constexpr double mean_run = 5.0;              // rows per loss
 constexpr double largest_force_spike = 80.0;  // [m/s²]
 constexpr double largest_rate_spike = 10.0;   // [rad/s]
 
-enum Stream : std::uint64_t { accelerometer = 1, gyroscope, magnetometer, losses, steel };
+enum Stream : std::uint64_t { accelerometer = 1, gyroscope, magnetometer, losses, steel, iron, transients };
 
 /// Random spikes of a three-axis instrument.
 class Spikes {
@@ -79,8 +80,17 @@ void drop_rows(InsSensor& sensor, double fraction, Rng rng) {
   }
 }
 
+/// The field at a sensor with everything that disturbs it.
+std::vector<Vec3> disturbed_field(const SensorMotion& truth, const SensorFaults& sensor_faults, bool has_transients,
+                                  double step, Rng rng) {
+  std::vector<Vec3> field = add_disturbance(truth.field, sensor_faults.magnetic_disturbance, step, rng.stream(steel));
+  if (has_transients)
+    field = with_transients(std::move(field), sensor_faults.magnetic_transients, step, rng.stream(transients));
+  return with_iron(std::move(field), sensor_faults.hard_iron, sensor_faults.soft_iron, rng.stream(iron));
+}
+
 InsSensor simulate_sensor(const SensorMotion& truth, const SensorModel& model, const SensorFaults& sensor_faults,
-                          double step, Rng rng) {
+                          bool has_transients, double step, Rng rng) {
   InsSensor sensor;
   const Spikes of_force(sensor_faults.spikes, step, largest_force_spike, rng.stream(accelerometer).stream(3));
   const Spikes of_rate(sensor_faults.spikes, step, largest_rate_spike, rng.stream(gyroscope).stream(3));
@@ -88,12 +98,24 @@ InsSensor simulate_sensor(const SensorMotion& truth, const SensorModel& model, c
   sensor.angular_velocity =
       simulate_columns(truth.angular_velocity, model.gyroscope, step, of_rate, rng.stream(gyroscope));
   if (sensor_faults.has_magnetometer)
-    sensor.field =
-        simulate_columns(add_disturbance(truth.field, sensor_faults.magnetic_disturbance, step, rng.stream(steel)),
-                         model.magnetometer, step, Spikes(0.0, step, 0.0, rng), rng.stream(magnetometer));
+    sensor.field = simulate_columns(disturbed_field(truth, sensor_faults, has_transients, step, rng),
+                                    model.magnetometer, step, Spikes(0.0, step, 0.0, rng), rng.stream(magnetometer));
   if (sensor_faults.missing > 0.0) drop_rows(sensor, sensor_faults.missing, rng.stream(losses));
   flag_faults(sensor);
   return sensor;
+}
+
+/// Two sensors at random beside which steel passes; none where nothing does.
+std::vector<bool> sensors_with_transients(std::size_t count, const SensorFaults& sensor_faults, Rng rng) {
+  std::vector<bool> has_transients(count, false);
+  if (!(sensor_faults.magnetic_transients > 0.0)) return has_transients;
+  for (std::size_t left = std::min<std::size_t>(2, count); left > 0;) {
+    const auto at = static_cast<std::size_t>(rng.index(count));
+    if (has_transients[at]) continue;
+    has_transients[at] = true;
+    --left;
+  }
+  return has_transients;
 }
 
 }  // namespace
@@ -103,8 +125,10 @@ InsRecording simulate_recording(const Machine& machine, const MachineMotion& mot
   InsRecording recording;
   recording.loggers.push_back({"imu.csv", motion.time});
   const double step = median_period(motion.time);
+  const auto has_transients = sensors_with_transients(machine.sensors.size(), sensor_faults, rng.stream(transients));
   for (std::size_t s = 0; s < machine.sensors.size(); ++s) {
-    recording.sensors.push_back(simulate_sensor(motion.sensors[s], model, sensor_faults, step, rng.stream(s)));
+    recording.sensors.push_back(
+        simulate_sensor(motion.sensors[s], model, sensor_faults, has_transients[s], step, rng.stream(s)));
     recording.sensors.back().name = machine.sensors[s].name;
   }
   return recording;

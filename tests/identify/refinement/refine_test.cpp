@@ -24,12 +24,16 @@ struct RefinedDrive {
   MachineTruth truth;
 };
 
-RefinedDrive driven(const std::string& name, const MachineOptions& options, const char* grade,
+RefinedDrive driven(const std::string& name, const MachineOptions& options, const SensorModel& grade,
                     const SensorFaults& trouble = {}) {
   const MujocoWorld world = test::world_of(name, options, 5);
   const MachineMotion motion = world.prescribe(test::drive_of(world.machine(), {}, 5), 100.0);
-  return {simulate_recording(world.machine(), motion, *sensor_grade(grade), trouble, Rng(5)),
-          machine_truth(world.machine(), motion)};
+  return {simulate_recording(world.machine(), motion, grade, trouble, Rng(5)), machine_truth(world.machine(), motion)};
+}
+
+RefinedDrive driven(const std::string& name, const MachineOptions& options, const char* grade,
+                    const SensorFaults& trouble = {}) {
+  return driven(name, options, *sensor_grade(grade), trouble);
 }
 
 Refinement refined(const RefinedDrive& drive, int threads = 0) {
@@ -86,6 +90,51 @@ TEST(Refine, NeedsNoStationaryBase) {
   const Refinement found = refined(drive);
   expect_close(found, drive.truth, 10e-3, 3e-3);
   EXPECT_TRUE(found.joints.front().estimate.unobservable_in_parent.empty());
+}
+
+/// The axes that start on a body with one fixed axis: their direction in that body is known by the azimuth alone.
+void expect_azimuths(const Refinement& found, const MachineTruth& truth, double limit) {
+  int limbs = 0;
+  for (const RefinedJoint& joint : found.joints) {
+    const JointEstimate& estimate = joint.estimate;
+    const auto t = std::ranges::find(truth.joints, estimate.child, &JointTruth::child);
+    if (t->unobservable_in_parent.size() != 1) continue;
+    ++limbs;
+    const double error = std::asin(std::min(1.0, estimate.axis_in_parent.cross(t->axis_in_parent).norm()));
+    EXPECT_LT(error, limit) << t->name;
+    EXPECT_LT(error, 4.0 * std::hypot(estimate.sd.axis_in_parent[0], estimate.sd.axis_in_parent[1])) << t->name;
+  }
+  EXPECT_GT(limbs, 0);
+}
+
+TEST(Refine, MagnetometersTellTheAzimuthOfEveryLimb) {
+  const RefinedDrive sound = driven("tree", {.mounting = Mounting::arbitrary}, "industrial");
+  expect_azimuths(refined(sound), sound.truth, 15e-3);
+  const RefinedDrive iron = driven("tree", {.mounting = Mounting::arbitrary}, "industrial",
+                                   {.hard_iron = 4.0, .soft_iron = 0.04, .magnetic_transients = 10.0});
+  const Refinement found = refined(iron);
+  expect_azimuths(found, iron.truth, 60e-3);
+  expect_close(found, iron.truth, 5e-3, 3e-3);
+}
+
+TEST(Refine, ASlopeTellsTheAzimuthWithoutMagnetometers) {
+  const RefinedDrive drive =
+      driven("excavator-general", {.slope = Angle::deg(3)}, "industrial", {.has_magnetometer = false});
+  expect_azimuths(refined(drive), drive.truth, 40e-3);
+}
+
+TEST(Refine, ClippedSamplesAreBounds) {
+  SensorModel gyroscope = *sensor_grade("industrial"), accelerometer = gyroscope;
+  gyroscope.gyroscope.range = 0.4;
+  accelerometer.accelerometer.range = 1.3 * 9.80665;
+  for (const SensorModel& grade : {gyroscope, accelerometer}) {
+    const RefinedDrive drive = driven("excavator-general", {}, grade);
+    std::size_t clipped = 0;
+    for (const InsSensor& sensor : drive.recording.sensors)
+      clipped += count(sensor, angular_velocity_clipped) + count(sensor, acceleration_clipped);
+    EXPECT_GT(clipped, 200u);
+    expect_close(refined(drive), drive.truth, 5e-3, 3e-3);
+  }
 }
 
 TEST(Refine, HandlesFaultyRecordings) {

@@ -160,6 +160,12 @@ void add_sensor_options(CLI::App& verb, SimulateArguments& options) {
   add_number(verb, "--gyro-range", options.gyro_range, 0.0, 1e5, "Saturate at this many deg/s; 0: the grade's");
   add_number(verb, "--magnetic-disturbance", options.trouble.magnetic_disturbance, 0.0, 1000.0,
              "Magnetic disturbance by moving steel [uT rms]");
+  add_number(verb, "--hard-iron", options.trouble.hard_iron, 0.0, 1000.0,
+             "Iron on each segment that carries a sensor: the size of its constant field at the magnetometer [uT]");
+  add_number(verb, "--soft-iron", options.trouble.soft_iron, 0.0, 0.5,
+             "Likewise, how much it distorts the Earth's field: 0.04 is 4 % an element of the symmetric matrix");
+  add_number(verb, "--magnetic-transients", options.trouble.magnetic_transients, 0.0, 1000.0,
+             "Steel that passes by two of the sensors: the peak of each passage of a few seconds [uT]");
   add_flag(verb, "--no-magnetometer", options.no_magnetometer, "Six axes only");
   add_number(verb, "--foam", options.faults.foam, 0.0, 30.0,
              "Sensors on foam: the mounts oscillate, and tilt by about this many degrees when mounted sideways; 0: "

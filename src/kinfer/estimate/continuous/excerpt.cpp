@@ -54,6 +54,13 @@ void copy_blocks(const std::vector<InsBlock>& from, Index window, std::vector<In
   to.insert(to.end(), static_cast<std::size_t>(gap_intervals), InsBlock{});
 }
 
+void copy_blocks(const InsClippedBlocks& from, Index window, InsClippedBlocks& to) {
+  if (from.empty()) return;
+  copy_blocks(from.blocks, window, to.blocks);
+  const auto first = from.sides.begin() + window * excerpt_window;
+  to.sides.insert(to.sides.end(), first, first + excerpt_window);
+}
+
 }  // namespace
 
 std::vector<Index> most_informative_windows(const InsProblem& problem, const InsBodies& bodies, Index count) {
@@ -101,6 +108,8 @@ InsExcerpt excerpt_of(const InsProblem& problem, const InsUnknowns& start, const
       copy_blocks(from.angular_velocity, k, to.angular_velocity);
       copy_blocks(from.force, k, to.force);
       copy_blocks(from.field, k, to.field);
+      copy_blocks(from.clipped_rate, k, to.clipped_rate);
+      copy_blocks(from.clipped_force, k, to.clipped_force);
     }
     excerpt.problem.sensors.push_back(std::move(to));
   }

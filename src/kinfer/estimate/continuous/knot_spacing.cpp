@@ -8,6 +8,7 @@
 
 #include "kinfer/estimate/continuous/model/measurement_blocks.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/measurement/ins_screening.hpp"
 
 namespace kinfer {
 namespace {
@@ -46,6 +47,23 @@ Window window_of(const InsSensor& sensor, std::span<const double> time, std::siz
   return window;
 }
 
+/// Drops rows with single outliers of any size: the splines of a quiet sensor would ring about them for many intervals,
+/// and look as if finer knots were needed.
+void drop_spikes(Window& window) {
+  constexpr double any_size = 1e-9;
+  std::vector<float> column(window.time.size());
+  std::vector<bool> is_spiky(column.size(), false);
+  for (Index c = 0; c < window.measurements.cols(); ++c) {
+    for (std::size_t i = 0; i < column.size(); ++i)
+      column[i] = static_cast<float>(window.measurements(static_cast<Index>(i), c));
+    const std::vector<bool> spikes = find_spikes(column, any_size);
+    for (std::size_t i = 0; i < spikes.size(); ++i) is_spiky[i] = is_spiky[i] || spikes[i];
+  }
+  for (std::size_t i = 0; i < is_spiky.size(); ++i)
+    if (is_spiky[i])
+      window.measurements.row(static_cast<Index>(i)).setConstant(std::numeric_limits<double>::quiet_NaN());
+}
+
 std::vector<Window> most_active_windows(const InsSensor& sensor, std::span<const double> time) {
   std::vector<Window> windows;
   for (std::size_t first = 0; first < time.size();) {
@@ -58,6 +76,7 @@ std::vector<Window> most_active_windows(const InsSensor& sensor, std::span<const
   if (windows.size() > most_windows) windows.resize(most_windows);
   const double least = windows.empty() ? 0.0 : least_activity * windows.front().activity;
   std::erase_if(windows, [&](const Window& w) { return w.activity < least; });
+  for (Window& window : windows) drop_spikes(window);
   return windows;
 }
 

@@ -35,11 +35,23 @@ std::vector<IdentificationNote> order_notes(const OrderEvidence& order) {
   return notes;
 }
 
+/// Pairs whose loop has no sensor that clips: restored peaks leave residuals in some pairs and not in others, which is
+/// what a loop looks like.
+std::vector<PairFit> without_clipped_sensors(std::vector<PairFit> closing, const OrderedMotion& ordered) {
+  const auto clips = [&](std::size_t segment) { return ordered.motion.segments[segment].clips; };
+  std::erase_if(closing, [&](const PairFit& pair) {
+    return std::ranges::any_of(path_between(ordered.tree, pair.first, pair.second),
+                               [&](const auto& edge) { return clips(edge.first) || clips(edge.second); });
+  });
+  return closing;
+}
+
 }  // namespace
 
 OrderReport report_order(const OrderedMotion& ordered, TreeOrigin origin) {
-  const auto closing_pairs =
-      origin == TreeOrigin::estimated ? loop_closing_pairs(ordered.tree) : std::vector<PairFit>{};
+  const auto closing_pairs = origin == TreeOrigin::estimated
+                                 ? without_clipped_sensors(loop_closing_pairs(ordered.tree), ordered)
+                                 : std::vector<PairFit>{};
   OrderReport report{.evidence = order_evidence(ordered, closing_pairs),
                      .notes = {},
                      .findings = loop_findings(ordered.tree, closing_pairs, segment_names(ordered.motion))};

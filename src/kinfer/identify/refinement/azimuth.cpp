@@ -1,49 +1,149 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/identify/refinement/azimuth.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "kinfer/estimate/continuous/model/azimuth.hpp"
+#include "kinfer/estimate/continuous/solver/covariance.hpp"
+#include "kinfer/estimate/continuous/solver/normal_equations.hpp"
+#include "kinfer/estimate/magnetometers/magnetic_fit.hpp"
 #include "kinfer/identify/refinement/thresholds.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer::identify {
 namespace {
 
 using Index = Eigen::Index;
 
-Vec3 perpendicular_part(const Vec3& v, const Vec3& axis) {
-  return v - axis * axis.dot(v);
+constexpr double max_axis_error = 1.5e-3;  // [rad] of the fit's orientations, which the magnetometers take as given
+constexpr int joint_iterations = 4;        // of the fit with azimuths: it starts within a few standard deviations
+
+/// Azimuths that the fit leaves uncertain, and the information that it has about them.
+struct WeakAzimuths {
+  std::vector<InsAzimuth> azimuths;
+  MatrixXd information;  // [1/rad²]; 0 where it is that of the weak priors only
+};
+
+WeakAzimuths weak_azimuths(const RefinementFit& fitted, int threads) {
+  const InsFit& fit = fitted.fit;
+  const std::vector<InsAzimuth> all = azimuths_of(fit.unknowns.bodies);
+  WeakAzimuths weak;
+  if (all.empty()) return weak;
+  const auto covariance = model_covariance(InsSystem(fitted.setup.problem, fit.layout, fit.unknowns, {}, threads));
+  if (!covariance) return weak;
+  std::vector<VectorXd> gradients;
+  for (const InsAzimuth& azimuth : all) {
+    const VectorXd gradient = azimuth_gradient(fit.layout, fit.unknowns.bodies, azimuth);
+    if (!(gradient.dot(covariance->model * gradient) > min_weak_azimuth_sd * min_weak_azimuth_sd)) continue;
+    weak.azimuths.push_back(azimuth);
+    gradients.push_back(gradient);
+  }
+  const auto count = static_cast<Index>(gradients.size());
+  MatrixXd jacobian(count, fit.layout.global_parameters);
+  for (Index i = 0; i < count; ++i) jacobian.row(i) = gradients[static_cast<std::size_t>(i)].transpose();
+  const MatrixXd own = propagated_covariance(jacobian, covariance->model);
+  weak.information = MatrixXd::Zero(count, count);
+  std::vector<Index> known;
+  for (Index i = 0; i < count; ++i)
+    if (own(i, i) < max_azimuth_prior_sd * max_azimuth_prior_sd) known.push_back(i);
+  if (known.empty()) return weak;
+  if (const auto information = invert_spd(own(known, known))) weak.information(known, known) = *information;
+  return weak;
 }
 
-/// Standard deviation of the rotation of v about `axis`. `derivative`: of v by the unknowns from `first` on.
-double rotation_sd(ConstMatrixRef covariance, Index first, const MatrixXd& derivative, const Vec3& v,
-                   const Vec3& axis) {
-  const double lever = perpendicular_part(v, axis).norm();
-  const VectorXd by_unknowns = derivative.transpose() * axis.cross(v) / (lever * lever);
-  const Index n = by_unknowns.size();
-  return std::sqrt(std::max(0.0, by_unknowns.dot(covariance.block(first, first, n, n) * by_unknowns)));
+/// The azimuths, then for each joint on the root the angle from which its positions count: nothing tells it but the
+/// magnetometers, and nobody asks, yet the root's magnetometer is of use only with it.
+std::vector<SubtreeRotation> free_rotations(const InsBodies& bodies, const std::vector<InsAzimuth>& azimuths,
+                                            const MagneticRecording& recording) {
+  std::vector<SubtreeRotation> rotations;
+  for (const InsAzimuth& azimuth : azimuths) {
+    SubtreeRotation rotation{azimuth.child, {}};
+    for (const Mat3& root_R_body : recording.root_R_body[azimuth.body])
+      rotation.axis.push_back(root_R_body * bodies[azimuth.body].child_R_axis.col(2));
+    rotations.push_back(std::move(rotation));
+  }
+  for (std::size_t b = 1; b < bodies.size(); ++b)
+    if (bodies[b].parent == 0 && bodies[b].motion == JointMotion::revolute)
+      rotations.push_back({b, std::vector<Vec3>(recording.bins, bodies[b].parent_R_axis.col(2))});
+  return rotations;
+}
+
+/// Of the sensor grade, in the unit of the field.
+IronPrior least_iron(const SensorModel& grade, double strength) {
+  const bool is_microtesla = strength > 10.0 && strength < 150.0;
+  const double unit = is_microtesla ? 1.0 : strength / 50.0;
+  const InstrumentModel& magnetometer = grade.magnetometer;
+  const double scale = std::hypot(magnetometer.scale_sd, 1e-3);
+  return {.hard_iron = unit * std::hypot(magnetometer.bias_sd, 0.05),
+          .soft_iron = scale,
+          .misalignment = std::hypot(scale / std::numbers::sqrt2, max_axis_error)};
+}
+
+MatrixXd with_zeros(ConstMatrixRef matrix, Index size) {
+  MatrixXd result = MatrixXd::Zero(size, size);
+  result.topLeftCorner(matrix.rows(), matrix.cols()) = matrix;
+  return result;
+}
+
+/// The first unknowns of a Gaussian, the others marginalised.
+std::optional<MatrixXd> marginal_information(ConstMatrixRef information, Index count) {
+  const auto covariance = invert_spd(information);
+  return covariance ? invert_spd(covariance->topLeftCorner(count, count)) : std::nullopt;
+}
+
+void fit_with_azimuths(const RefinementTask& task, RefinementFit& fitted) {
+  InsFitOptions options = task.options;
+  options.iterations = joint_iterations;
+  options.trajectory_iterations = 0;
+  options.reweighting_rounds = 1;
+  fitted.fit = fit_ins(fitted.setup.problem, fitted.fit.unknowns, options);
 }
 
 }  // namespace
 
 double azimuth_sd(const InsLayout& layout, const InsBodies& bodies, ConstMatrixRef covariance, std::size_t body) {
-  const Vec3 axis = bodies[body].child_R_axis.col(2);
   double longest = min_azimuth_lever, sd = 0.0;
   for (std::size_t next = body + 1; next < bodies.size(); ++next) {
-    const InsBody& joint = bodies[next];
-    if (joint.parent != static_cast<int>(body) || !joint.free_parent_rotation[0]) continue;
-    const Vec3 direction = joint.parent_R_axis.col(2), arm = joint.point_in_parent - bodies[body].point_in_child;
-    MatrixXd by_rotations(3, 2);
-    by_rotations << -joint.parent_R_axis.col(1), joint.parent_R_axis.col(0);
-    const double lever = perpendicular_part(direction, axis).norm();
-    if (lever > longest) {
-      longest = lever;
-      sd = rotation_sd(covariance, layout.body[next], by_rotations, direction, axis);
-    } else if (longest <= min_azimuth_lever && perpendicular_part(arm, axis).norm() > min_azimuth_lever) {
-      const Index point = layout.body[next] + joint.unknowns() - (joint.free_point_in_child ? 6 : 3);
-      sd = rotation_sd(covariance, point, MatrixXd::Identity(3, 3), arm, axis);
-    }
+    if (bodies[next].parent != static_cast<int>(body) || !bodies[next].free_parent_rotation[0]) continue;
+    const InsAzimuth azimuth{body, next};
+    const Vec3 axis = bodies[body].child_R_axis.col(2);
+    const double lever = axis.cross(bodies[next].parent_R_axis.col(2)).norm();
+    if (lever <= longest && longest > min_azimuth_lever) continue;
+    longest = std::max(longest, lever);
+    const VectorXd gradient = azimuth_gradient(layout, bodies, azimuth);
+    if (gradient.squaredNorm() > 0.0) sd = std::sqrt(std::max(0.0, gradient.dot(covariance * gradient)));
   }
   return sd;
+}
+
+void measure_azimuths(const RefinementTask& task, RefinementFit& fitted) {
+  InsProblem& problem = fitted.setup.problem;
+  InsUnknowns& x = fitted.fit.unknowns;
+  if (!problem.root_at_rest || std::ranges::count_if(task.recording.sensors, &InsSensor::has_magnetometer) < 2) return;
+  const WeakAzimuths weak = weak_azimuths(fitted, task.options.threads);
+  if (weak.azimuths.empty()) return;
+  const MagneticRecording recording = magnetic_recording(task.recording, problem, fitted.fit.layout, x);
+  const auto rotations = free_rotations(x.bodies, weak.azimuths, recording);
+  const auto size = static_cast<Index>(rotations.size()), count = static_cast<Index>(weak.azimuths.size());
+  const auto magnetic = fit_magnetometers(recording, rotations, least_iron(task.grade, recording.strength),
+                                          with_zeros(weak.information, size));
+  if (!magnetic) return;
+  const auto information = marginal_information(magnetic->information, count);
+  const auto factor = information ? cholesky(*information) : std::nullopt;
+  if (!factor) return;
+  InsAzimuthMeasurement measured{.azimuths = weak.azimuths, .directions = {}, .whitening = factor->transpose()};
+  InsBodies alone = x.bodies;
+  for (Index i = 0; i < count; ++i) {
+    const InsAzimuth& azimuth = weak.azimuths[static_cast<std::size_t>(i)];
+    rotate_azimuth(alone, azimuth, magnetic->mean[i]);
+    rotate_azimuth(x.bodies, azimuth, magnetic->unknowns.rotation[i]);
+    measured.directions.push_back(azimuth_direction(alone, azimuth));
+  }
+  problem.facts.azimuth = std::move(measured);
+  if (weak.information.squaredNorm() > 0.0) fit_with_azimuths(task, fitted);
 }
 
 }  // namespace kinfer::identify

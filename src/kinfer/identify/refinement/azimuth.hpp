@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uncertainty of a body's azimuth about the fixed axis it rotates about: the accelerometer determines the position of
-// the axis, but rotating the whole sub-tree behind the body about that axis changes no signal.
+// Azimuths of sub-trees about the fixed axis of the body that carries them. The accelerometer determines the position
+// of such an axis, but rotating the sub-tree about it changes no signal, unless the axis is inclined or moves: then
+// magnetometers tell.
 #pragma once
 
-#include "kinfer/estimate/continuous/model/problem.hpp"
+#include "kinfer/identify/refinement/refinement_fits.hpp"
 
 namespace kinfer::identify {
 
@@ -11,5 +12,11 @@ namespace kinfer::identify {
 /// Taken from the child joint whose axis is farthest from parallel, or from its point if all axes are parallel. 0 if
 /// the body has no child.
 double azimuth_sd(const InsLayout& layout, const InsBodies& bodies, ConstMatrixRef covariance, std::size_t body);
+
+/// Adds to a fit what the magnetometers tell about azimuths that gyroscopes and accelerometers leave uncertain: the
+/// sub-trees are rotated to the most likely azimuths, found on the whole circle, and where inclination or motion tells
+/// something too, the fit continues with both. Magnetometers have no say in what the other instruments determine:
+/// steel that moves with the machine would bend it.
+void measure_azimuths(const RefinementTask& task, RefinementFit& fitted);
 
 }  // namespace kinfer::identify

@@ -41,6 +41,8 @@ RefinementFit fit_below_cutoff(const RefinementTask& task, const RefinementFit& 
   RefinementSetup setup = continue_from(task, low_frequency, 1.0 / (knots_per_period * cutoff), fine.grid, start);
   for (std::size_t s = 0; s < setup.problem.sensors.size(); ++s)  // smoothed measurements do not show their noise
     setup.problem.sensors[s].noise = setup.problem.sensors[s].noise_floor = fine.sensors[s].noise_floor;
+  for (InsMeasurements& sensor : setup.problem.sensors)  // slow motion stays below the range that fast motion exceeds
+    sensor.clipped_rate = sensor.clipped_force = {};
   free_mount_compliance(setup.problem, low_frequency, tilt);
   return fit_from(task, std::move(setup));
 }

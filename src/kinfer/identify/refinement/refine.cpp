@@ -9,6 +9,7 @@
 #include "kinfer/estimate/continuous/knot_spacing.hpp"
 #include "kinfer/estimate/continuous/solver/fact_residuals.hpp"
 #include "kinfer/estimate/continuous/solver/model_error.hpp"
+#include "kinfer/identify/refinement/azimuth.hpp"
 #include "kinfer/identify/refinement/clock_fit.hpp"
 #include "kinfer/identify/refinement/fact_resolution.hpp"
 #include "kinfer/identify/refinement/low_frequency_fit.hpp"
@@ -112,6 +113,7 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
     result.noise = std::move(slow.noise);
     result.cutoff = slow.cutoff;
   }
+  measure_azimuths(task, fitted);
   result.fit = fitted.fit;
   fitted.fit.cost = {};  // frees memory: the residuals of an hour are large
   const auto covariance =

@@ -11,9 +11,6 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double field_noise_ratio =
-    0.1;  // of the field, sd of a tenth of a second: moving steel makes it a weak reference
-
 SplineGrid make_grid(const RecordedMotion& motion, double period) {
   constexpr Index min_intervals = spline_order - 1;  // the ends of a time segment do not overlap
   const double length = motion.time.back() - motion.time.front();
@@ -25,24 +22,17 @@ double noise_or_from_density(double measured, double density, double sampling_ra
 }
 
 InsMeasurements sensor_blocks(const InsRecording& recording, const InsSensor& sensor, const SplineGrid& grid,
-                              const SensorModel& grade, bool use_field) {
+                              const SensorModel& grade) {
   const auto time = recording.time(sensor);
   const double sampling_rate = 1.0 / median_period(time);
   InsMeasurements r;
   r.angular_velocity = ins_blocks(sensor, time, InsInstrument::gyroscope, grid);
   r.force = ins_blocks(sensor, time, InsInstrument::accelerometer, grid);
+  r.clipped_rate = clipped_blocks(sensor, time, InsInstrument::gyroscope, grid);
+  r.clipped_force = clipped_blocks(sensor, time, InsInstrument::accelerometer, grid);
   r.noise.angular_velocity =
       noise_or_from_density(measurement_noise(r.angular_velocity), grade.gyroscope.noise_density, sampling_rate);
   r.noise.force = noise_or_from_density(measurement_noise(r.force), grade.accelerometer.noise_density, sampling_rate);
-  if (!use_field || !sensor.has_magnetometer()) return r;
-  r.field = mean_blocks(sensor, time, InsInstrument::magnetometer, grid);
-  std::vector<double> sizes;
-  for (const InsBlock& block : r.field)
-    if (block.rows > 0) sizes.push_back(double{block.target.row(0).norm()});
-  if (sizes.empty())
-    r.field.clear();
-  else
-    r.noise.field = field_noise_ratio * median(sizes);
   return r;
 }
 
@@ -50,7 +40,6 @@ InsErrorPrior prior_of(const SensorModel& grade) {
   // Lower limits: smaller errors cannot be observed, even if a preset states 0.
   return {.gyroscope_bias = std::hypot(grade.gyroscope.bias_sd, 1e-4),
           .accelerometer_bias = std::hypot(grade.accelerometer.bias_sd, 1e-3),
-          .magnetometer_bias = std::hypot(grade.magnetometer.bias_sd, 0.01),
           .gyroscope_scale = grade.gyroscope.scale_sd,
           .accelerometer_scale = grade.accelerometer.scale_sd};
 }
@@ -120,14 +109,13 @@ RefinementSetup set_up_refinement(const InsRecording& recording, const RecordedM
                           .force_sd = grade.accelerometer.instability,
                           .time = grade.accelerometer.instability_time};
   for (const InsSensor& sensor : recording.sensors)
-    problem.sensors.push_back(sensor_blocks(recording, sensor, problem.grid, grade, problem.root_at_rest));
+    problem.sensors.push_back(sensor_blocks(recording, sensor, problem.grid, grade));
   for (InsMeasurements& joint_positions : problem.sensors) joint_positions.noise_floor = joint_positions.noise;
   InsUnknowns& x = setup.start;
   x.errors.resize(recording.sensors.size());
   std::vector<MatrixXd> rows;
   if (problem.root_at_rest) {
     x.root_force = mean_measurement(problem.sensors[tree.root].force);
-    if (!problem.sensors[tree.root].field.empty()) x.root_field = mean_measurement(problem.sensors[tree.root].field);
   } else {
     rows.push_back(root_spline_coefficients(motion, problem.grid, tree.root));
   }

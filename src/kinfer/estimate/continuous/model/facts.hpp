@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kinfer/geometry/pose.hpp"
+#include "kinfer/linalg/types.hpp"
 
 namespace kinfer {
 
@@ -46,11 +47,24 @@ struct InsSurveyedPoint {
   double sd = 0.0;          ///< [m] per axis
 };
 
+/// A rotation of the sub-tree behind the body `child` about the axis of its parent body, `body`.
+struct InsAzimuth {
+  std::size_t body = 0, child = 0;
+};
+
+/// Azimuths as the magnetometers tell them: each is 0 where its direction (azimuth_direction) is the one stated here.
+struct InsAzimuthMeasurement {
+  std::vector<InsAzimuth> azimuths;
+  std::vector<Vec3> directions;  ///< one each, in the frame of the body
+  MatrixXd whitening;            ///< W with information WᵀW of all azimuths together [1/rad]
+};
+
 struct InsFacts {
   std::vector<InsUnknownPoint> places;
   std::vector<InsRevisitedPoint> touches;
   std::vector<InsTapeDistance> tapes;
   std::vector<InsSurveyedPoint> surveyed;
+  InsAzimuthMeasurement azimuth{};
 };
 
 /// Additional unknowns of the facts: 3 per unknown point, 3 per touch, 6 for the surveyor's frame if there is one.

@@ -13,18 +13,6 @@ namespace {
 using Row = Eigen::Matrix<double, 1, block_nodes>;
 using Index = Eigen::Index;
 
-Row lagrange(double u) {
-  const auto& x = block_nodes_u();
-  Row row;
-  for (std::size_t i = 0; i < block_nodes; ++i) {
-    double product = 1.0;
-    for (std::size_t j = 0; j < block_nodes; ++j)
-      if (j != i) product *= (u - x[j]) / (x[i] - x[j]);
-    row[static_cast<Index>(i)] = product;
-  }
-  return row;
-}
-
 std::optional<Vec3> measured_vector(const InsSample& s, InsInstrument instrument) {
   switch (instrument) {
     case InsInstrument::gyroscope:
@@ -86,7 +74,7 @@ std::vector<InsBlock> accumulate_blocks(const InsSensor& sensor, std::span<const
     if (k != at) close();
     at = k;
     if (const auto value = measured_vector(sample(sensor, time, row), instrument))
-      accumulate(open, lagrange(where - static_cast<double>(k)), *value);
+      accumulate(open, node_weights(where - static_cast<double>(k)), *value);
   }
   close();
   return blocks;
@@ -102,6 +90,18 @@ const std::array<double, block_nodes>& block_nodes_u() {
     return std::array{0.5 - 0.5 * outer, 0.5 - 0.5 * inner, 0.5 + 0.5 * inner, 0.5 + 0.5 * outer};
   }();
   return places;
+}
+
+Row node_weights(double u) {
+  const auto& x = block_nodes_u();
+  Row row;
+  for (std::size_t i = 0; i < block_nodes; ++i) {
+    double product = 1.0;
+    for (std::size_t j = 0; j < block_nodes; ++j)
+      if (j != i) product *= (u - x[j]) / (x[i] - x[j]);
+    row[static_cast<Index>(i)] = product;
+  }
+  return row;
 }
 
 const NodeMatrix& node_derivative() {

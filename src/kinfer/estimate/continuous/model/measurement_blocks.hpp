@@ -22,6 +22,9 @@ constexpr int block_nodes = 4;  // a cubic per interval: relative error 1e-3 at 
 /// Positions of the Gauss-Legendre nodes in an interval, 0..1.
 const std::array<double, block_nodes>& block_nodes_u();
 
+/// Weights of the values at the nodes in the polynomial through them, at the position u in the interval.
+Eigen::Matrix<double, 1, block_nodes> node_weights(double u);
+
 using NodeMatrix = Eigen::Matrix<double, block_nodes, block_nodes>;
 
 /// Differentiation matrix: derivatives at the nodes, with respect to the position u in the interval, of the polynomial

@@ -9,6 +9,7 @@
 
 #include "kinfer/base/constants.hpp"
 #include "kinfer/estimate/continuous/model/chain_propagation.hpp"
+#include "kinfer/estimate/continuous/model/clipped_blocks.hpp"
 #include "kinfer/estimate/continuous/model/facts.hpp"
 #include "kinfer/estimate/continuous/model/measurement_blocks.hpp"
 #include "kinfer/estimate/continuous/model/mount_compliance.hpp"
@@ -28,6 +29,7 @@ struct InsMeasurements {
   InsNoise noise;                                        ///< as weighted by the fit
   InsNoise noise_floor;                                  ///< the instrument's own noise: lower bound of the above
   std::vector<InsMountLoad> mount_load{};                ///< load on its mount; empty if mounts are rigid
+  InsClippedBlocks clipped_rate{}, clipped_force{};      ///< bounds, where the instrument clips
 };
 
 /// Clock error of a sensor: a measurement logged at t was taken at t + offset + drift (t − middle of the grid).

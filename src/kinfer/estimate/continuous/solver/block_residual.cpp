@@ -52,8 +52,21 @@ std::vector<InstrumentMeasurements> instruments(const InsProblem& problem, const
   const InsMeasurements& r = problem.sensors[sensor];
   std::vector<InstrumentMeasurements> uses{{r.angular_velocity, r.noise.angular_velocity, read_gyroscope, 0},
                                            {r.force, r.noise.force, read_accelerometer, 6}};
+  if (!r.clipped_rate.empty())
+    uses.push_back({r.clipped_rate.blocks, r.noise.angular_velocity, read_gyroscope, 0, &r.clipped_rate.sides});
+  if (!r.clipped_force.empty())
+    uses.push_back({r.clipped_force.blocks, r.noise.force, read_accelerometer, 6, &r.clipped_force.sides});
   if (layout.has_field && !r.field.empty()) uses.push_back({r.field, r.noise.field, read_magnetometer, 9});
   return uses;
+}
+
+void drop_satisfied(BlockResidual& residual, const InstrumentMeasurements& instrument, Index interval) {
+  if (!instrument.is_bound()) return;
+  const auto& sides = (*instrument.sides)[static_cast<std::size_t>(interval)];
+  for (Index i = 0; i < residual.rows(); ++i)
+    for (Index axis = 0; axis < 3; ++axis)
+      if (is_satisfied(sides[static_cast<std::size_t>(i)][static_cast<std::size_t>(axis)], residual(i, axis)))
+        residual(i, axis) = 0.0;
 }
 
 InsState sensor_state_at(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, std::size_t sensor,

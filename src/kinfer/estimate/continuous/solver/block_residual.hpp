@@ -32,8 +32,20 @@ struct InstrumentMeasurements {
   const std::vector<InsBlock>& blocks;
   double sd;
   Vec3 (*read)(const InsState&, const InsErrors&);
-  Eigen::Index state_row;  ///< its first row in the state
+  Eigen::Index state_row;                                                     ///< its first row in the state
+  const std::vector<std::array<ClippedSides, block_nodes>>* sides = nullptr;  ///< of each block, if these are bounds
+
+  bool is_bound() const { return sides != nullptr; }
 };
+
+/// Whether a residual, measured − predicted, is that of a bound that the prediction satisfies.
+inline bool is_satisfied(std::int8_t side, double residual) {
+  return side != 0 && side * residual <= 0.0;
+}
+
+/// Sets the residuals of satisfied bounds to 0; nothing to do for measurements.
+void drop_satisfied(BlockResidual& residual, const InstrumentMeasurements& instrument, Eigen::Index interval);
+
 std::vector<InstrumentMeasurements> instruments(const InsProblem& problem, const InsLayout& layout, std::size_t sensor);
 
 /// State of the INS at a node, with the compliance of its mount.

@@ -63,9 +63,11 @@ InsCost item_cost(const InsProblem& problem, const InsLayout& layout, const InsU
         for (std::size_t n = 0; n < block_nodes; ++n)
           predicted.row(static_cast<Index>(n)) = use.read(states[n][b], errors).transpose();
         const double shift = clock_shift(problem, layout, errors, interval);
-        const BlockResidual r = residual(block, shifted_factor(block, layout, shift), predicted, use.sd);
+        BlockResidual r = residual(block, shifted_factor(block, layout, shift), predicted, use.sd);
+        drop_satisfied(r, use, interval);
         const RobustBlock value = robust(r.squaredNorm(), 3.0 * block.rows);
         cost.total += value.cost;
+        if (use.is_bound()) continue;  // a satisfied bound says nothing about the noise
         SensorFit& fit = cost.sensors[sensor];
         accumulate(use.state_row == 0   ? fit.angular_velocity
                    : use.state_row == 6 ? fit.force

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/estimate/continuous/model/azimuth.hpp"
 #include "kinfer/geometry/fit.hpp"
 
 namespace kinfer {
@@ -217,6 +218,21 @@ InsFactRows surveyed_rows(const InsProblem& problem, const InsLayout& layout, co
   return scaled(s.interval, x.facts.surveyor * fact.xyz - p.position, p.by_position, fact.sd);
 }
 
+/// The azimuths are constants of the machine, so any interval will do.
+InsFactRows azimuth_rows(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x) {
+  const InsAzimuthMeasurement& fact = problem.facts.azimuth;
+  const auto count = static_cast<Index>(fact.azimuths.size());
+  const Index local = spline_order * layout.spline_dimensions;
+  VectorXd left(count);
+  MatrixXd derivative = MatrixXd::Zero(count, local + layout.global_parameters);
+  for (Index i = 0; i < count; ++i) {
+    const InsAzimuth& azimuth = fact.azimuths[static_cast<std::size_t>(i)];
+    left[i] = -azimuth_from(fact.directions[static_cast<std::size_t>(i)], x.bodies, azimuth);
+    derivative.row(i).tail(layout.global_parameters) = azimuth_gradient(layout, x.bodies, azimuth).transpose();
+  }
+  return {0, fact.whitening * left, fact.whitening * derivative};
+}
+
 }  // namespace
 
 std::vector<InsFactRows> fact_rows(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x) {
@@ -225,6 +241,7 @@ std::vector<InsFactRows> fact_rows(const InsProblem& problem, const InsLayout& l
     for (const double time : problem.facts.touches[t].at) rows.push_back(touch_rows(problem, layout, x, t, time));
   for (const InsTapeDistance& tape : problem.facts.tapes) rows.push_back(tape_rows(problem, layout, x, tape));
   for (const InsSurveyedPoint& fact : problem.facts.surveyed) rows.push_back(surveyed_rows(problem, layout, x, fact));
+  if (!problem.facts.azimuth.azimuths.empty()) rows.push_back(azimuth_rows(problem, layout, x));
   return rows;
 }
 

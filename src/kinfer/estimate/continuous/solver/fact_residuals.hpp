@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Residuals of external measurements on a machine (facts: touches, tapes, surveyed points), with their derivatives with
-// respect to the unknowns of the continuous-time fit.
+// Residuals of external measurements on a machine (facts: touches, tapes, surveyed points, azimuths), with their
+// derivatives with respect to the unknowns of the continuous-time fit.
 #pragma once
 
 #include "kinfer/estimate/continuous/model/problem.hpp"
@@ -15,7 +15,7 @@ struct InsFactRows {
                         ///< i · dimensions + d is the i-th coefficient of dimension d in the interval
 };
 
-/// Of all facts, in their order: touches, tapes, surveyed points.
+/// Of all facts, in their order: touches, tapes, surveyed points, azimuths.
 std::vector<InsFactRows> fact_rows(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x);
 
 /// Sum of the squared residuals.

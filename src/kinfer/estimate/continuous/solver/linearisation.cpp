@@ -164,6 +164,16 @@ void InsLinearisation::add_facts_back_substituted(BandSegmentSum& sum, const Tim
   }
 }
 
+std::vector<VectorXd> InsLinearisation::constant_facts() const {
+  const Index local = spline_order * layout_.spline_dimensions;
+  std::vector<VectorXd> rows;
+  for (const InsFactRows& fact : facts_)
+    for (Index i = 0; i < fact.derivative.rows(); ++i)
+      if (!(fact.derivative.row(i).head(local).squaredNorm() > 0.0))
+        rows.push_back(fact.derivative.row(i).tail(layout_.global_parameters).transpose());
+  return rows;
+}
+
 std::vector<IntervalGradient> InsLinearisation::gradients(const TimeSegment& time_segment) const {
   SegmentWalker walk(problem_, layout_, x_, LinearisationScope::everything);
   std::vector<IntervalGradient> gradients;

@@ -33,6 +33,9 @@ class InsLinearisation {
   BandSegmentSum sum_back_substituted(const TimeSegment& time_segment,
                                       const std::optional<VectorXd>& border = {}) const;
 
+  /// Derivatives by the global parameters, one for each row of the facts that do not depend on the motion.
+  std::vector<VectorXd> constant_facts() const;
+
   /// Of each interval of a time segment; measurements only, without priors and facts.
   std::vector<IntervalGradient> gradients(const TimeSegment& time_segment) const;
 

@@ -193,6 +193,7 @@ InsSystem::Scores InsSystem::scores(double seconds) const {
 
 MatrixXd InsSystem::prior_information(ConstMatrixRef ends_following) const {
   MatrixXd information = global_parameter_prior(problem_, layout_, x_).matrix;
+  for (const VectorXd& fact : linearisation_.constant_facts()) information += fact * fact.transpose();
   if (layout_.bias_process == 0) return information;
   const BiasProcessPrior prior = bias_process_prior(problem_, layout_);
   MatrixXd before = MatrixXd::Zero(layout_.bias_process, layout_.global_parameters);

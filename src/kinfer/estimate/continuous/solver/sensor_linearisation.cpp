@@ -26,6 +26,17 @@ Index append(SensorRows& part, const std::vector<Index>& unknowns) {
   return column;
 }
 
+/// Satisfied bounds, whose residual is 0, do not depend on the unknowns. The part's rows are those of the block.
+void drop_satisfied_rows(SensorRows& part, const BlockResidual& r, const InstrumentMeasurements& instrument,
+                         Index interval) {
+  const auto at = static_cast<std::size_t>(interval);
+  for (Index i = 0; i < instrument.blocks[at].rows; ++i)
+    for (Index axis = 0; axis < 3; ++axis)
+      if (is_satisfied((*instrument.sides)[at][static_cast<std::size_t>(i)][static_cast<std::size_t>(axis)],
+                       r(i, axis)))
+        part.jacobian.col(part.used + 3 * i + axis).setZero();
+}
+
 /// Derivatives of one instrument's measurement with respect to the tilt compliance.
 const Eigen::Matrix<double, 3, 9>& by_tilt(const MountDerivative& on_mount, Index state_row) {
   return state_row == rate_row    ? on_mount.velocity_by_tilt
@@ -71,6 +82,12 @@ SensorLinearisation::InstrumentColumns SensorLinearisation::columns_of(const Ins
   const bool angular_velocity = instrument.state_row == rate_row, force = instrument.state_row == force_row;
   InstrumentColumns use{instrument, force ? 1UL : 0UL};
   if (scope_ == LinearisationScope::spline_only) return use;
+  for (const InstrumentColumns& other : uses_)  // bounds share the errors of the measurements
+    if (other.instrument.state_row == instrument.state_row) {
+      use.bias = other.bias;
+      use.matrix = other.matrix;
+      return use;
+    }
   const Index first = layout_.error[sensor_];
   use.bias = append(parts_[use.part], first + (angular_velocity ? 0 : force ? 3 : layout_.field_error), 3);
   if (layout_.has_matrices && (angular_velocity || force))
@@ -103,7 +120,8 @@ void SensorLinearisation::add_rows(const InstrumentColumns& use, Index interval)
   for (std::size_t n = 0; n < block_nodes; ++n)
     predicted.row(static_cast<Index>(n)) = use.instrument.read(on_mount_[n].state, errors_).transpose();
   const NodeMatrix factor = shifted_factor(block, layout_, clock_shift(problem_, layout_, errors_, interval));
-  const BlockResidual r = residual(block, factor, predicted, use.instrument.sd);
+  BlockResidual r = residual(block, factor, predicted, use.instrument.sd);
+  drop_satisfied(r, use.instrument, interval);
   const double weight = std::sqrt(robust(r.squaredNorm(), 3.0 * block.rows).weight), scale = weight / use.instrument.sd;
   WeightedBlock weighed{use, scale * factor, {}, part.used, block.rows};
   weighed.by_state.fill(scaled(use));
@@ -120,6 +138,7 @@ void SensorLinearisation::add_rows(const InstrumentColumns& use, Index interval)
     if (layout_.has_clocks)
       put_clock(weighed, scale * block.factor.cast<double>() * (node_derivative() * predicted), interval);
   }
+  if (use.instrument.is_bound()) drop_satisfied_rows(part, r, use.instrument, interval);
   for (Index i = 0; i < block.rows; ++i) part.residual.segment<3>(part.used + 3 * i) = weight * r.row(i).transpose();
   part.used += 3 * block.rows;
 }
