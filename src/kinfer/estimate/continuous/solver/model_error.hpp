@@ -18,7 +18,7 @@ namespace kinfer {
 /// Factor from the persistent residuals to the considered errors: lever arms, joint positions and biases have absorbed
 /// the rest. Larger widens the intervals of machines that do not fit the model. Set on test 1 of a pendulum with mounts
 /// that give way (two lengths); held on tests 2 and 3 (docs/development/results.md).
-inline constexpr double considered_over_persistent = 2.0;
+inline constexpr double considered_over_persistent = 3.0;
 
 /// Larger considered scale errors are no scale errors: a sensor that hardly moves has residuals of another kind.
 inline constexpr double max_considered_scale = 0.1;

@@ -98,6 +98,16 @@ bool differ(const InsProblem& problem, const std::vector<InsNoise>& estimated) {
   return false;
 }
 
+/// The offsets as far as the robust loss lets them act on the fit: intervals with shocks hardly do.
+InstrumentFit limited(const InstrumentFit& fit) {
+  constexpr float most = 5.6f;  // [sigma] root of the limit of robust() for a block of four rows
+  InstrumentFit result{.squares = fit.squares, .terms = fit.terms, .block = {}, .offset = fit.offset};
+  for (auto& offset : result.offset)
+    for (float& value : offset)
+      if (std::isfinite(value)) value = std::clamp(value, -most, most);
+  return result;
+}
+
 /// Autocovariance of an axis' offsets at one interval, where it is certainly positive; else 0.
 double persistent_variance_of_axis(const InstrumentFit& fit, std::size_t axis) {
   constexpr double certainty = 4.0;  // standard deviations of the estimate for white noise, 1 / √n of the variance
@@ -125,15 +135,16 @@ std::vector<InsNoise> long_run_noise(const InsProblem& problem, const InsCost& c
   std::vector<InsNoise> noise;
   for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
     InsNoise& own = noise.emplace_back(problem.sensors[s].noise);
-    own.angular_velocity *= std::sqrt(std::max(1.0, long_run_variance(cost.sensors[s].angular_velocity)));
-    own.force *= std::sqrt(std::max(1.0, long_run_variance(cost.sensors[s].force)));
+    own.angular_velocity *= std::sqrt(std::max(1.0, long_run_variance(limited(cost.sensors[s].angular_velocity))));
+    own.force *= std::sqrt(std::max(1.0, long_run_variance(limited(cost.sensors[s].force))));
   }
   return noise;
 }
 
 double persistent_variance(const InstrumentFit& fit) {
   double sum = 0.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) sum += persistent_variance_of_axis(fit, axis);
+  const InstrumentFit acting = limited(fit);
+  for (std::size_t axis = 0; axis < 3; ++axis) sum += persistent_variance_of_axis(acting, axis);
   return sum;
 }
 
