@@ -19,6 +19,7 @@ struct Swing {
   double moving_from = 0.0;                      ///< [s]
   double spikes = 0.0;                           ///< a second
   double missing = 0.0;                          ///< of the rows
+  double spike_size = 50.0;                      ///< [m/s²]; below 30 they are not flagged
 };
 
 InsRecording recorded(const Swing& swing) {
@@ -34,7 +35,7 @@ InsRecording recorded(const Swing& swing) {
     for (const auto& [frequency, amplitude] : swing.waves)
       if (t >= swing.moving_from) force += amplitude * std::sin(2.0 * std::numbers::pi * frequency * t);
     const Vec3 force_error = force_noise * test::random_vector(rng), rate_error = rate_noise * test::random_vector(rng);
-    const double spike = rng.uniform() * swing.sampling_rate < swing.spikes ? 50.0 : 0.0;
+    const double spike = rng.uniform() * swing.sampling_rate < swing.spikes ? swing.spike_size : 0.0;
     const bool is_missing = rng.uniform() < swing.missing;
     recording.loggers[0].time.push_back(t);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -42,15 +43,19 @@ InsRecording recorded(const Swing& swing) {
       sensor.acceleration.axis[k].push_back(static_cast<float>(force + force_error[axis] + spike));
       sensor.angular_velocity.axis[k].push_back(static_cast<float>(0.1 * force + rate_error[axis]));
     }
-    sensor.faults.push_back(is_missing    ? acceleration_missing | angular_velocity_missing
-                            : spike > 0.0 ? acceleration_spike
-                                          : 0);
+    sensor.faults.push_back(is_missing     ? acceleration_missing | angular_velocity_missing
+                            : spike > 30.0 ? acceleration_spike
+                                           : 0);
   }
   return recording;
 }
 
 double knots(const Swing& swing) {
   return select_knot_spacing(recorded(swing));
+}
+
+TEST(KnotSpacing, SpikesTooSmallToBeFlaggedAreNoMotion) {
+  EXPECT_DOUBLE_EQ(knots({.waves = {{0.6, 3.0}}, .spikes = 0.5, .spike_size = 20.0}), widest_knot_spacing);
 }
 
 TEST(KnotSpacing, IsWidestForAMachineAndFinerForAQuickerArm) {
