@@ -48,7 +48,7 @@ struct WholeProblem {
       errors.accelerometer_scale = random_vector(rng).asDiagonal();
       errors.clock = {.offset = 0.01 * rng.normal(), .drift = 1e-4 * rng.normal()};
     }
-    x.facts = {{random_vector(rng)}, {random_vector(rng)}, {any_rotation(), random_vector(rng)}};
+    x.facts = {{random_vector(rng)}, {random_vector(rng)}, {}, {any_rotation(), random_vector(rng)}};
     layout = layout_of(problem, x.bodies);
     x.spline_coefficients = test::random_matrix(layout.spline_dimensions, problem.grid.coefficients(), 2);
     x.bias_process = test::random_matrix(layout.bias_process, 3, 3);

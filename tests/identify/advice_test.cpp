@@ -89,7 +89,7 @@ OrderedMotion pair_at_rest() {
 }
 
 TEST(OrderEvidence, OfTwoSensorsHasNoMarginBecauseThereIsNoOtherTree) {
-  const OrderReport report = report_order(pair_at_rest(), TreeOrigin::estimated);
+  const OrderReport report = report_order(pair_at_rest(), {});
   EXPECT_FALSE(report.evidence.margin);
   ASSERT_EQ(report.evidence.pairs.size(), 1U);
   EXPECT_TRUE(report.evidence.pairs[0].joined);

@@ -76,10 +76,15 @@ TEST(IdentificationVerdict, PutsAFaultFirstAndAWarningLast) {
   EXPECT_TRUE(words::identification_verdict(result).starts_with("Do not use as it is: ins7 shares no joint"));
 }
 
-TEST(IdentificationVerdict, EnumerationAddsItsCertificate) {
+TEST(IdentificationVerdict, EnumerationCertifiesTheChainThatIsWritten) {
   Identification result = two_joints();
   result.search_method = LinkSearchMethod::enumeration;
-  EXPECT_TRUE(words::identification_verdict(result).ends_with("; no chain of up to 3 leaves fits better"));
+  result.searches = {{.segment = "ins1", .holdout = {.total = 0.10}, .written_holdout = LinkFit{.total = 0.09}},
+                     {.segment = "ins2", .holdout = {.total = 0.10}, .written_holdout = LinkFit{.total = 0.10}}};
+  EXPECT_TRUE(words::identification_verdict(result).ends_with(
+      "; no chain of up to 3 leaves a link predicts the held-out rows better than the one written"));
+  result.searches[1].written_holdout->total = 0.112;
+  EXPECT_TRUE(words::identification_verdict(result).ends_with("by more than 12 % better than the one written"));
 }
 
 }  // namespace

@@ -59,5 +59,38 @@ std::vector<Chain> rigid_examples() {
 INSTANTIATE_TEST_SUITE_P(every, WrittenMjcf, testing::ValuesIn(rigid_examples()),
                          [](const auto& instance) { return laws::test_name(instance.param); });
 
+/// Four bars of a parallelogram in the plane across z, closed at joint positions 0: a crank and a rocker on the base,
+/// a coupler on the rocker.
+Chain four_bars() {
+  Chain chain;
+  const auto bar = [&](const char* name, int parent, const Vec3& at) {
+    Joint joint{.name = name, .parent = parent};
+    joint.link = UrdfLink{.origin = {at, from_rpy(Vec3(0.0, 0.0, 0.3)), Vec3::Zero()}, .axis = Vec3::UnitZ()};
+    chain.joints.push_back(joint);
+  };
+  bar("crank", -1, Vec3(0.5, 0.0, 0.0));
+  bar("rocker", -1, Vec3::Zero());
+  bar("coupler", 1, Vec3(0.4, 0.0, 0.1));
+  const auto frames = joint_frames(chain, VectorXd::Zero(3));
+  const Vec3 pin = frames[2] * Vec3(0.3, 0.1, 0.0);
+  chain.closures = {{.name = "pin",
+                     .first = 0,
+                     .second = 2,
+                     .point_in_first = frames[0].inverse() * pin,
+                     .point_in_second = Vec3(0.3, 0.1, 0.0)}};
+  return chain;
+}
+
+TEST(LoopMjcf, ALoopIsConnectedAtItsPointInBothBodies) {
+  const Chain chain = four_bars();
+  const auto model = laws::mujoco_model(format_mjcf(chain));
+  ASSERT_TRUE(model);
+  ASSERT_EQ(model->neq, 1);
+  EXPECT_EQ(model->eq_type[0], mjEQ_CONNECT);
+  const Eigen::Map<const Vec3> in_first(model->eq_data), in_second(model->eq_data + 3);
+  EXPECT_LT((in_first - chain.closures[0].point_in_first).norm(), 1e-9);
+  EXPECT_LT((in_second - chain.closures[0].point_in_second).norm(), 1e-9);
+}
+
 }  // namespace
 }  // namespace kinfer

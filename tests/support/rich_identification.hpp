@@ -59,6 +59,12 @@ inline Identification rich_identification() {
   Identification found;
   found.root = "s0";
   found.joints = rich_joints();
+  found.loops = {{.joint = {.parent = "s0", .child = "s2", .axis_in_parent = Vec3::UnitY()},
+                  .segments = {"s0", "s<1>", "s2"},
+                  .gap = 2e-3,
+                  .misalignment = 1e-3,
+                  .in_step_gap = 0.2,
+                  .log_odds = 40.5}};
   found.links = {{"s<1>", "s0-s<1>", "s<1>-s2", 0.35, 0.002}, {"s2", "a", "b", 0.1, 0.9}};
   found.places = {{"tip", "s2", Vec3(0.1, 0, 0.2), Vec3(1e-3, 1e-3, 2e-3)}};
   found.clocks = {{"s<1>", 0.0123, 1.7e-6, 1e-4, 3e-7}};
@@ -75,6 +81,8 @@ inline Identification rich_identification() {
   found.searches = {{.segment = "s<1>",
                      .fitted = {1.5, 0.2, 0.01},
                      .holdout = {1.6, 0.3, 0.02},
+                     .written_fitted = LinkFit{1.7, 0.25, 0.015},
+                     .written_holdout = LinkFit{1.68, 0.31, 0.021},
                      .rows = 40,
                      .found = found.dh,
                      .merged = {found.dh.front()},

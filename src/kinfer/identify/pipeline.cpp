@@ -12,6 +12,8 @@
 #include "kinfer/identify/geometry/identified_chain.hpp"
 #include "kinfer/identify/geometry/link_estimates.hpp"
 #include "kinfer/identify/joints/search_links.hpp"
+#include "kinfer/identify/joints/searched_joint.hpp"
+#include "kinfer/identify/joints/thresholds.hpp"
 #include "kinfer/identify/refinement/refine_geometry.hpp"
 #include "kinfer/identify/screening/machines.hpp"
 #include "kinfer/identify/screening/session.hpp"
@@ -22,6 +24,10 @@ namespace {
 template <class T>
 void append(std::vector<T>& list, const std::vector<T>& more) {
   list.insert(list.end(), more.begin(), more.end());
+}
+
+const SegmentMotion& segment_of(const RecordedMotion& motion, const std::string& name) {
+  return *std::ranges::find(motion.segments, name, &SegmentMotion::name);
 }
 
 std::optional<RecordingSelection> find_consistent_part(const OrderedMotion& ordered, const IdentifyOptions& options) {
@@ -46,15 +52,50 @@ ChainGeometry searched_geometry(const std::vector<JointResult>& links) {
   return geometry;
 }
 
-Result<ChainGeometry> final_geometry(const std::vector<JointResult>& links, const Session& session,
+/// Evaluates the joints that are written in the terms of the search, on its rows.
+void certify(std::vector<JointResult>& links, const std::vector<JointEstimate>& joints, const OrderedMotion& ordered,
+             const IdentifyOptions& options) {
+  const OrientationMetric metric = orientation_metric(options.engine);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (!links[i].search) continue;
+    const SegmentMotion &parent = segment_of(ordered.motion, joints[i].parent),
+                        &child = segment_of(ordered.motion, joints[i].child);
+    links[i].search->written_fitted = fit_of_joint(joints[i], parent, child, links[i].fitted_rows, metric);
+    links[i].search->written_holdout = fit_of_joint(joints[i], parent, child, links[i].held_out_rows, metric);
+  }
+}
+
+/// Whether a search predicts the held-out rows of its link notably better than the joint that the fit found.
+bool contradicts_fit(const JointResult& link) {
+  return link.search && link.search->written_holdout &&
+         link.search->written_holdout->total > min_search_advantage * link.search->holdout.total;
+}
+
+/// The fit begins at the pairs of sensors. Where a search contradicts its result, the fit is made again from the joints
+/// of the searches, and the better of both is kept. `links` get the certificate of what is kept.
+Result<ChainGeometry> final_geometry(std::vector<JointResult>& links, const Session& session,
                                      const OrderedMotion& ordered, const IdentifyOptions& options,
                                      const Observer& observer) {
-  if (options.geometry == GeometrySource::searched) return searched_geometry(links);
+  const ChainGeometry searched = searched_geometry(links);
+  if (options.geometry == GeometrySource::searched) return searched;
   RefinementOptions refinement = options.refine;
   refinement.clocks = session.clock_treatment();
   refinement.fit.threads = options.threads;
-  return refine_geometry(searched_geometry(links), session.recording(), ordered.motion, ordered.tree, refinement,
-                         observer);
+  const auto refine_from = [&](StartSource start) {
+    refinement.start = start;
+    return refine_geometry(searched, session.recording(), ordered.motion, ordered.tree, refinement, observer);
+  };
+  KINFER_TRY(geometry, refine_from(options.refine.start));
+  if (!geometry.negative_log_likelihood) return geometry;
+  certify(links, geometry.joints, ordered, options);
+  if (refinement.start == StartSource::search || std::ranges::none_of(links, contradicts_fit)) return geometry;
+  auto other = refine_from(StartSource::search);
+  if (!other || !other->negative_log_likelihood ||
+      *other->negative_log_likelihood > *geometry.negative_log_likelihood - min_likelihood_gain)
+    return geometry;
+  other->starts_from_search = true;
+  certify(links, other->joints, ordered, options);
+  return std::move(*other);
 }
 
 Identification assemble_chain(const OrderedMotion& ordered, std::vector<JointResult> links,
@@ -63,14 +104,17 @@ Identification assemble_chain(const OrderedMotion& ordered, std::vector<JointRes
   Identification result;
   result.root = root.name;
   result.joints = geometry.joints;
+  result.loops = geometry.loops;
   result.places = geometry.places;
   result.search_method = method_of(options.engine);
+  result.starts_from_search = geometry.starts_from_search;
   for (JointResult& link : links)
     if (link.search) result.searches.push_back(std::move(*link.search));
   list_unobservable(result.joints);
   result.dh = geometry.dh;
   result.links = link_estimates(result.joints);
   result.chain = build_chain(result.root, result.joints, result.dh, root.rotation.front());
+  set_closures(result.chain, result.root, result.loops);
   set_tool(result.chain, result.places);
   return result;
 }
@@ -111,7 +155,7 @@ Result<Identification> identify_machine(const InsRecording& recording, const Ide
 
     Identification result = assemble_chain(ordered, std::move(links), geometry, options);
     result.motion = motion_evidence(ordered.motion, result, geometry.held_out);
-    OrderReport order = report_order(ordered, options.tree.empty() ? TreeOrigin::estimated : TreeOrigin::given);
+    OrderReport order = report_order(ordered, geometry.loops);
     ClockReport clocks = session.report_clocks(geometry.clocks);
     report_findings(result, session, ordered, order, clocks);
     result.notes = std::move(order.notes);

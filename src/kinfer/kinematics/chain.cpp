@@ -69,6 +69,9 @@ void expect_well_formed(const Chain& chain) {
   }
   for (const RobotMounting& mounting : chain.mountings)
     KINFER_EXPECT(mounting.tip >= -1 && mounting.tip < n, "tip {} of {} joints", mounting.tip, n);
+  for (const LoopClosure& closure : chain.closures)
+    KINFER_EXPECT(std::min(closure.first, closure.second) >= -1 && std::max(closure.first, closure.second) < n,
+                  "closure {} joins {} and {} of {} joints", closure.name, closure.first, closure.second, n);
   for (const PointMass& mass : chain.masses) {
     KINFER_EXPECT(mass.joint >= 0 && mass.joint < n, "mass on joint {} of {}", mass.joint, n);
   }

@@ -83,13 +83,24 @@ struct RobotMounting {
   int tip = -1;  ///< index of the joint that carries this tool; −1: the chain's
 };
 
+/// A revolute joint that closes a kinematic loop, as of a four-bar linkage: the line fixed in the frame of one joint
+/// and the line fixed in the frame of another coincide, points and directions. Joint positions are independent in a
+/// Chain: that they close the loop is up to whoever sets them.
+struct LoopClosure {
+  std::string name{};
+  int first = -1, second = -1;  ///< indices of the joints whose frames carry the lines; −1: the base
+  Vec3 point_in_first = Vec3::Zero(), point_in_second = Vec3::Zero();  ///< [m]
+  Vec3 axis_in_first = Vec3::UnitZ(), axis_in_second = Vec3::UnitZ();  ///< unit
+};
+
 struct Chain {
   std::string name{};
   std::string setup{};        ///< name of the set-up that base and tool belong to; empty: there is only one
   Frame base;                 ///< world_T_base
   std::vector<Joint> joints;  ///< parents before children
-  Frame tool;                 ///< flange_T_tool, on the frame of joint `tip`
-  int tip = -1;               ///< index of the joint that carries the tool; -1: the last joint
+  std::vector<LoopClosure> closures{};
+  Frame tool;    ///< flange_T_tool, on the frame of joint `tip`
+  int tip = -1;  ///< index of the joint that carries the tool; -1: the last joint
   std::vector<Target> targets;
   std::vector<PointMass> masses;
   Vec3 gravity = Vec3(0, 0, -standard_gravity);  ///< [m/s²] in the world frame

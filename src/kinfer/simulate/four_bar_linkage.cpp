@@ -77,6 +77,16 @@ Machine with_linkage(Machine machine, const FourBar& bars) {
   machine.chain.joints.push_back(make_revolute_joint("rocker", joint.parent, segment_T_rocker));
   machine.chain.joints.push_back(
       make_revolute_joint("coupler", rocker, {Mat3::Identity(), Vec3(bars.rocker, 0.0, 0.0)}));
+  // C in the last segment: at the crank's length from B, at the crank's angle in the plane.
+  const Vec3 crank =
+      plane * Vec3(bars.crank * std::cos(bars.crank_angle), bars.crank * std::sin(bars.crank_angle), 0.0);
+  machine.chain.closures.push_back({.name = "linkage",
+                                    .first = last,
+                                    .second = rocker + 1,
+                                    .point_in_first = crank,
+                                    .point_in_second = Vec3(bars.coupler, 0.0, 0.0),
+                                    .axis_in_first = link.axis,
+                                    .axis_in_second = Vec3::UnitZ()});
   const auto first = static_cast<int>(machine.sensors.size());
   machine.sensors.push_back(make_sensor("rocker", "rocker", rocker, carrier, Vec3(0.2, 0.05, 0.03)));
   machine.sensors.push_back(make_sensor("coupler", "coupler", rocker + 1, first, Vec3(0.15, -0.04, 0.02)));

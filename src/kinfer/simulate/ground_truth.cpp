@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "kinfer/base/expect.hpp"
@@ -76,6 +77,24 @@ JointTruth joint_truth(const Machine& machine, const MountedSensor& child) {
   return truth;
 }
 
+/// The sensor carried by a joint's frame.
+const MountedSensor& sensor_on(const Machine& machine, int joint) {
+  const auto found = std::ranges::find(machine.sensors, joint, &MountedSensor::joint);
+  KINFER_EXPECT(found != machine.sensors.end(), "no sensor on joint {}", joint);
+  return *found;
+}
+
+JointTruth loop_truth(const Machine& machine, const LoopClosure& closure) {
+  const MountedSensor &first = sensor_on(machine, closure.first), &second = sensor_on(machine, closure.second);
+  const Pose first_T_frame = first.segment_T_sensor.inverse(), second_T_frame = second.segment_T_sensor.inverse();
+  JointTruth truth{.name = closure.name, .parent = first.name, .child = second.name};
+  truth.axis_in_parent = first_T_frame.rotation * closure.axis_in_first;
+  truth.axis_in_child = second_T_frame.rotation * closure.axis_in_second;
+  truth.point_in_parent = first_T_frame * closure.point_in_first;
+  truth.point_in_child = second_T_frame * closure.point_in_second;
+  return truth;
+}
+
 double distance_of_lines(const Vec3& point_a, const Vec3& axis_a, const Vec3& point_b, const Vec3& axis_b) {
   const Vec3 across = axis_a.cross(axis_b), between = point_b - point_a;
   if (across.norm() < 1e-9) return (between - axis_a.dot(between) * axis_a).norm();  // parallel
@@ -112,7 +131,7 @@ std::vector<LinkTruth> links_between(const std::vector<JointTruth>& joints) {
 
 MachineTruth machine_truth(const Machine& machine, const MachineMotion& motion) {
   const std::vector<SensorExcitation> excitation = compute_excitation(machine, motion);
-  MachineTruth truth{.root = machine.sensors.front().name, .joints = {}, .links = {}};
+  MachineTruth truth{.root = machine.sensors.front().name, .joints = {}, .loops = {}, .links = {}};
   for (std::size_t s = 1; s < machine.sensors.size(); ++s) {
     const auto parent = static_cast<std::size_t>(machine.sensors[s].parent);
     JointTruth joint = joint_truth(machine, machine.sensors[s]);
@@ -125,6 +144,7 @@ MachineTruth machine_truth(const Machine& machine, const MachineMotion& motion) 
     truth.joints.push_back(std::move(joint));
   }
   truth.links = links_between(truth.joints);
+  for (const LoopClosure& closure : machine.chain.closures) truth.loops.push_back(loop_truth(machine, closure));
   return truth;
 }
 

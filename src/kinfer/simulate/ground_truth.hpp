@@ -40,7 +40,8 @@ struct LinkTruth {
 struct MachineTruth {
   std::string root;  ///< sensor
   std::vector<JointTruth> joints;
-  std::vector<LinkTruth> links;  ///< between revolute joints
+  std::vector<JointTruth> loops;  ///< joints that close kinematic loops, between the sensors on the bodies they join
+  std::vector<LinkTruth> links;   ///< between revolute joints
 };
 
 MachineTruth machine_truth(const Machine& machine, const MachineMotion& motion);

@@ -65,6 +65,19 @@ InsFacts every_kind() {
   facts.surveyed = {{place(3, 0), 0.3, Vec3(1, 2, 3), 0.01},
                     {place(3, 0), 0.8, Vec3(0, 2, 1), 0.01},
                     {{Kind::sensor, 2}, 1.5, Vec3(-1, 0, 1), 0.02}};
+  Rng rng(5);
+  facts.closures = {{.first = 4,
+                     .second = 3,
+                     .start = test::random_revolute_body(0, 1, rng),
+                     .at = {0.25, 1.35},
+                     .point_sd = 0.01,
+                     .axis_sd = 0.02},
+                    {.first = 1,
+                     .second = 3,
+                     .start = test::random_revolute_body(0, 1, rng),
+                     .at = {0.75},
+                     .point_sd = 0.1,
+                     .axis_sd = 0.1}};
   return facts;
 }
 
@@ -80,7 +93,7 @@ InsUnknowns moved(const FactExample& e, ConstVectorRef step) {
 TEST(FactResiduals, DerivativesAgreeWithDifferences) {
   const FactExample e = fact_example(every_kind());
   const auto rows = fact_rows(e.problem, e.layout, e.x);
-  ASSERT_EQ(rows.size(), 2U + 2U + 5U + 3U);
+  ASSERT_EQ(rows.size(), 2U + 2U + 5U + 3U + 2U + 1U);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const MatrixXd numeric = numeric_jacobian(
         [&](const VectorXd& step) { return VectorXd(-fact_rows(e.problem, e.layout, moved(e, step))[i].left); },
@@ -91,6 +104,50 @@ TEST(FactResiduals, DerivativesAgreeWithDifferences) {
     analytic.rightCols(e.layout.global_parameters) = rows[i].derivative.rightCols(e.layout.global_parameters);
     EXPECT_LT((analytic - numeric).norm(), 1e-5 * (1.0 + numeric.norm())) << "fact " << i;
   }
+}
+
+TEST(FactResiduals, TheirCostIsTheSumOfTheSquares) {
+  const FactExample e = fact_example(every_kind());
+  double sum = 0.0;
+  for (const InsFactRows& rows : fact_rows(e.problem, e.layout, e.x)) sum += rows.left.squaredNorm();
+  EXPECT_NEAR(fact_cost(e.problem, e.layout, e.x), sum, 1e-9 * sum);
+}
+
+TEST(FactResiduals, AClosureIsSatisfiedWhereBothLinesCoincide) {
+  InsFacts facts;
+  facts.closures = {{.first = 4,
+                     .second = 3,
+                     .start = revolute_body(0, 1, Mat3::Identity(), Mat3::Identity()),
+                     .at = {0.95},
+                     .point_sd = 0.01,
+                     .axis_sd = 0.02}};
+  FactExample e = fact_example(facts);
+  const auto at = [&](int body, const Vec3& local) {
+    FactExample with_place = e;
+    with_place.problem.facts = {.places = {{.body = body, .start = local}}, .touches = {}, .tapes = {}, .surveyed = {}};
+    with_place.layout = layout_of(with_place.problem, e.x.bodies);
+    with_place.x.facts = initial_fact_unknowns(with_place.problem, with_place.layout, e.x);
+    return point_position(with_place.problem, with_place.layout, with_place.x, place(body, 0), 0.95);
+  };
+  const auto pose_of = [&](int body) {
+    const Vec3 origin = at(body, Vec3::Zero());
+    Mat3 rotation;
+    for (int k = 0; k < 3; ++k) rotation.col(k) = at(body, Vec3::Unit(k)) - origin;
+    return Pose{rotation, origin};
+  };
+  const Pose first = pose_of(4), second = pose_of(3);
+  const Vec3 point(0.3, -0.2, 0.5), axis = Vec3(1.0, 2.0, -0.5).normalized();  // in the root
+  InsBody& joint = e.x.facts.closures[0];
+  joint.point_in_parent = first.inverse() * point;
+  joint.point_in_child = second.inverse() * point;
+  joint.parent_R_axis = frame_with_z_along(first.rotation.transpose() * axis);
+  joint.child_R_axis = frame_with_z_along(second.rotation.transpose() * axis);
+  EXPECT_LT(fact_cost(e.problem, e.layout, e.x), 1e-16);
+  joint.point_in_child += second.rotation.transpose() * Vec3(0.02, 0.0, 0.0);
+  EXPECT_NEAR(fact_cost(e.problem, e.layout, e.x), 4.0, 1e-9) << "two standard deviations of 10 mm";
+  joint.point_in_child = second.inverse() * point;
+  joint.child_R_axis = joint.child_R_axis * rot_x(0.02);
+  EXPECT_NEAR(fact_cost(e.problem, e.layout, e.x), 1.0, 1e-3) << "one standard deviation of 20 mrad";
 }
 
 TEST(FactResiduals, ATapeBetweenAxesIsTheirShortestDistance) {

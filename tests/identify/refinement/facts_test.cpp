@@ -2,6 +2,7 @@
 // Touches, tapes and surveyed points beside a recording of a simulated excavator.
 #include <gtest/gtest.h>
 
+#include "kinfer/identify/geometry/link_estimates.hpp"
 #include "kinfer/identify/refinement/refine.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/simulate/ground_truth.hpp"

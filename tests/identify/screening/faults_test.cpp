@@ -6,6 +6,7 @@
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/identify/screening/remount.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
+#include "kinfer/kinematics/forward.hpp"
 #include "kinfer/simulate/four_bar_linkage.hpp"
 #include "kinfer/simulate/log_faults.hpp"
 #include "kinfer/words/identification/verdict.hpp"
@@ -132,6 +133,10 @@ TEST(TwoMachines, OnTheSameGroundAreIdentifiedTogetherAndReported) {
   EXPECT_LT(worst_line_error(found.joints, excavator.truth), 6e-3);
 }
 
+double distance_to_line(const Vec3& point, const Vec3& truth, const Vec3& axis) {
+  return (point - truth).cross(axis).norm();
+}
+
 TEST(Linkage, ItsLoopIsFoundAndTheRestOfTheChainIsAsAccurateAsWithout) {
   for (const std::uint64_t seed : {2u, 3u}) {
     const MujocoWorld world = test::world_of("excavator", {.mounting = Mounting::arbitrary}, seed);
@@ -142,6 +147,32 @@ TEST(Linkage, ItsLoopIsFoundAndTheRestOfTheChainIsAsAccurateAsWithout) {
     const Identification found = identified(recording);
     EXPECT_TRUE(has_finding(found, "loop", "ins4, ins5, rocker, coupler"));
     MachineTruth arm = machine_truth(machine, motion);
+    ASSERT_EQ(found.loops.size(), 1U);
+    const JointEstimate& closing = found.loops[0].joint;
+    std::vector<JointTruth> bars = arm.joints;
+    bars.insert(bars.end(), arm.loops.begin(), arm.loops.end());
+    const auto truth = std::ranges::find_if(bars, [&](const JointTruth& j) {
+      return (j.parent == closing.parent && j.child == closing.child) ||
+             (j.parent == closing.child && j.child == closing.parent);
+    });
+    ASSERT_NE(truth, bars.end()) << closing.parent << " " << closing.child;
+    if (truth->parent != closing.parent) {
+      std::swap(truth->point_in_parent, truth->point_in_child);
+      std::swap(truth->axis_in_parent, truth->axis_in_child);
+    }
+    EXPECT_LT(distance_to_line(closing.point_in_parent, truth->point_in_parent, truth->axis_in_parent), 8e-3);
+    EXPECT_LT(distance_to_line(closing.point_in_child, truth->point_in_child, truth->axis_in_child), 8e-3);
+    EXPECT_LT(closing.axis_in_parent.cross(truth->axis_in_parent).norm(), 5e-3);
+    EXPECT_LT(closing.axis_in_child.cross(truth->axis_in_child).norm(), 5e-3);
+    ASSERT_EQ(found.chain.closures.size(), 1U);
+    const auto frames = joint_frames(found.chain, VectorXd::Zero(dof(found.chain)));
+    const LoopClosure& closure = found.chain.closures[0];
+    const auto frame = [&](int joint) {
+      return joint < 0 ? found.chain.base.pose() : frames[static_cast<std::size_t>(joint)];
+    };
+    EXPECT_LT((frame(closure.first) * closure.point_in_first - frame(closure.second) * closure.point_in_second).norm(),
+              5e-3)
+        << "the chain closes where the recording begins";
     std::erase_if(arm.joints,
                   [](const JointTruth& j) { return j.child != "ins2" && j.child != "ins3" && j.child != "ins4"; });
     EXPECT_LT(worst_line_error(found.joints, arm), 5e-3);

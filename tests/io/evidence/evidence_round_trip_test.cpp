@@ -107,6 +107,12 @@ TEST(EvidenceRoundTrip, ValuesOfAnIdentificationComeBack) {
   EXPECT_EQ(e.search.evaluations, 5000000000);
   EXPECT_EQ(e.forecast[0].azimuth_of, "s0");
   EXPECT_EQ(e.forecast[1].azimuth_of, "");
+  EXPECT_EQ(e.search.segments[0].written_holdout->acceleration, 0.31);
+  ASSERT_EQ(e.loops.size(), 1u);
+  EXPECT_EQ(e.loops[0].joint.child, "s2");
+  EXPECT_EQ(e.loops[0].joint.axis_in_parent, Vec3(Vec3::UnitY()));
+  EXPECT_EQ(e.loops[0].segments.size(), 3u);
+  EXPECT_EQ(e.loops[0].log_odds, 40.5);
   EXPECT_EQ(e.fit.holdout.front().second.acceleration, 0.3);
   EXPECT_DOUBLE_EQ(e.clocks[0].drift, 1.7);  // [ppm]
   EXPECT_EQ(e.motion.held_out[1].begin, 0.8);

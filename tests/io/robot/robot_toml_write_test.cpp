@@ -105,5 +105,47 @@ TEST(Digits, ReadBackGivesTheSameBitsWhereverTheUnitAllows) {
   EXPECT_EQ(format_number(-90 * degree, degree), "-90");
 }
 
+TEST(RobotTomlWriting, ALoopClosureIsReadBackWithItsFramesByName) {
+  RobotModel robot{.chain = laws::compliant_tree()};
+  const int last = static_cast<int>(robot.chain.joints.size()) - 1;
+  robot.chain.closures = {{.name = "coupler-bucket",
+                           .first = -1,
+                           .second = last,
+                           .point_in_first = Vec3(0.1, -0.2, 0.3),
+                           .point_in_second = Vec3(1.5, 0.0, -0.25),
+                           .axis_in_first = Vec3(0.0, 0.6, 0.8),
+                           .axis_in_second = Vec3::UnitX()}};
+  for (const FileUnits units : {FileUnits::si, FileUnits::mm_deg}) {
+    const Chain chain = read_back(robot, units);
+    ASSERT_EQ(chain.closures.size(), 1U);
+    const LoopClosure &read = chain.closures[0], &written = robot.chain.closures[0];
+    EXPECT_EQ(read.name, written.name);
+    EXPECT_EQ(read.first, -1);
+    EXPECT_EQ(read.second, last);
+    EXPECT_LT((read.point_in_first - written.point_in_first).norm(), 1e-12);
+    EXPECT_LT((read.point_in_second - written.point_in_second).norm(), 1e-12);
+    EXPECT_LT((read.axis_in_first - written.axis_in_first).norm(), 1e-12);
+    EXPECT_LT((read.axis_in_second - written.axis_in_second).norm(), 1e-12);
+  }
+}
+
+TEST(RobotTomlReading, AClosureThatJoinsNothingIsRefused) {
+  const auto message = [](const std::string& closure) {
+    const auto read = parse_robot_toml(
+        "convention = \"urdf\"\n[[joint]]\nname = \"boom\"\ntype = \"revolute\"\nxyz = [0, 0, 1]\naxis = [0, 1, 0]\n"
+        "[[closure]]\npoint_in_first = [0, 0, 0]\naxis_in_first = [0, 1, 0]\npoint_in_second = [0, 0, 0]\n" +
+            closure,
+        "chain.toml");
+    return read ? std::string() : read.error().what;
+  };
+  EXPECT_EQ(message("first = \"base\"\nsecond = \"boom\"\naxis_in_second = [0, 2, 0]\n"), "");
+  EXPECT_NE(message("first = \"rod\"\nsecond = \"boom\"\naxis_in_second = [0, 1, 0]\n").find("no joint is named"),
+            std::string::npos);
+  EXPECT_NE(message("first = \"boom\"\nsecond = \"boom\"\naxis_in_second = [0, 1, 0]\n").find("two frames"),
+            std::string::npos);
+  EXPECT_NE(message("first = \"base\"\nsecond = \"boom\"\naxis_in_second = [0, 0, 0]\n").find("expected a direction"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace kinfer

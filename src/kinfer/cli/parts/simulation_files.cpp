@@ -107,6 +107,15 @@ std::string truth_json(const SimulationRecord& record, const Drive& drive, const
   document["magnetic_field"] = json(magnetic_field_world);
   document["joints"] = Json::array();
   for (const JointTruth& joint : truth.joints) document["joints"].push_back(json(joint));
+  document["loops"] = Json::array();
+  for (const JointTruth& loop : truth.loops)
+    document["loops"].push_back({{"name", loop.name},
+                                 {"first", loop.parent},
+                                 {"second", loop.child},
+                                 {"axis_in_first", json(loop.axis_in_parent)},
+                                 {"point_in_first", json(loop.point_in_parent)},
+                                 {"axis_in_second", json(loop.axis_in_child)},
+                                 {"point_in_second", json(loop.point_in_child)}});
   document["links"] = Json::array();
   for (const LinkTruth& link : truth.links) {
     Json entry{{"segment", link.segment},

@@ -68,6 +68,9 @@ struct LinkFit {
 struct LinkEvidence {
   std::string segment;
   LinkFit fitted, holdout;
+  /// The same of the joint that is written, where that is not the search's own: the search's chain is then what a
+  /// competitor of it attains. None: it is the search's.
+  std::optional<LinkFit> written_fitted{}, written_holdout{};
   int rows = 0;                       ///< number of fitted rows
   std::vector<DhRowEstimate> found;   ///< leaves of the best tree (paper 1, table 5)
   std::vector<DhRowEstimate> merged;  ///< the same product, with fewer leaves (table 6)
@@ -114,6 +117,7 @@ struct PredictionSummary {
 struct Identification {
   std::string root;
   std::vector<JointEstimate> joints;  ///< parents before children
+  std::vector<LoopEstimate> loops;    ///< joints that close kinematic loops
   std::vector<LinkEstimate> links;
   std::vector<PointEstimate> places;
   std::vector<SensorClockEstimate> clocks;  ///< one per sensor; empty if all clocks agree
@@ -121,6 +125,7 @@ struct Identification {
   AccuracyTarget target{};        ///< of the forecast
   std::vector<DhRowEstimate> dh;  ///< canonical: two rows more than a joint has axes
   std::vector<LinkEvidence> searches;
+  bool starts_from_search = false;  ///< the fit began at the joints of the searches, which led to a better optimum
   OrderEvidence order;
   Chain chain;  ///< from the root's sensor; the other sensors are fixed frames
   LinkSearchMethod search_method = LinkSearchMethod::memetic;

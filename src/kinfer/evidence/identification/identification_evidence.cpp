@@ -23,12 +23,14 @@ FitRecord fit_record(const std::vector<LinkEvidence>& searches) {
 
 StructureSearchRecord structure_search_record(const Identification& identification) {
   StructureSearchRecord record{.method = identification.search_method};
+  record.is_start = identification.starts_from_search;
   for (const LinkEvidence& s : identification.searches) {
     record.evaluations += s.evaluations;
     record.generations += s.generations;
     record.best.push_back(s.best);
     record.median.push_back(s.median);
-    record.segments.push_back({s.segment, s.evaluations, search_rows(s.found), search_rows(s.merged)});
+    record.segments.push_back(
+        {s.segment, s.evaluations, s.written_fitted, s.written_holdout, search_rows(s.found), search_rows(s.merged)});
   }
   return record;
 }

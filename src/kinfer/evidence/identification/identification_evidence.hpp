@@ -53,6 +53,7 @@ struct SearchRow {
 struct SegmentSearchRecord {
   std::string segment{};
   std::int64_t evaluations = 0;
+  std::optional<LinkFit> written_fitted{}, written_holdout{};  ///< of the joint that is written; see LinkEvidence
   std::vector<SearchRow> found{}, merged{};
 };
 
@@ -62,6 +63,7 @@ struct StructureSearchRecord {
   int generations = 0;
   std::vector<std::vector<double>> best{}, median{};  ///< cost by generation, one list per segment
   std::vector<SegmentSearchRecord> segments{};
+  bool is_start = false;  ///< of the fit
 };
 
 FitRecord fit_record(const std::vector<LinkEvidence>& searches);
@@ -73,6 +75,7 @@ struct IdentificationEvidence {
   std::vector<std::string> notes{};
   std::string root{};
   std::vector<JointRecord> joints{};  ///< parents before children
+  std::vector<LoopEstimate> loops{};  ///< joints that close kinematic loops
   std::vector<LinkEstimate> links{};
   std::vector<DhRowEstimate> dh{};
   ChainView chain{};

@@ -40,6 +40,17 @@ struct JointEstimate {
   MatrixXd trajectory{};
 };
 
+/// A revolute joint outside the tree: it closes a kinematic loop. Between two sensors that the tree joins by three
+/// joints or more, `joint.parent` being the first of them in the tree; without trajectory.
+struct LoopEstimate {
+  JointEstimate joint{};
+  std::vector<std::string> segments{};  ///< sensors on the loop's segments
+  double gap = 0.0;           ///< [m] rms distance of the joint's two halves in a fit that leaves the loop open
+  double misalignment = 0.0;  ///< [rad] the same of its axes
+  double in_step_gap = 0.0;   ///< [m] the gap that joints which merely move in step would leave
+  double log_odds = 0.0;      ///< ln of the posterior odds of a closed loop
+};
+
 /// "ins1-ins2": parent and child.
 std::string joint_name(const JointEstimate& joint);
 

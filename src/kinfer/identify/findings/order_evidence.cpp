@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "kinfer/identify/findings/thresholds.hpp"
-#include "kinfer/identify/screening/loops.hpp"
+#include "kinfer/identify/loops/loop_estimate.hpp"
 #include "kinfer/identify/structure/moving_phases.hpp"
 
 namespace kinfer::identify {
@@ -27,6 +27,17 @@ OrderEvidence order_evidence(const OrderedMotion& ordered, const std::vector<Pai
   return order;
 }
 
+std::vector<PairFit> closing_pairs(const OrderedMotion& ordered, const std::vector<LoopEstimate>& loops) {
+  const std::vector<std::string> names = segment_names(ordered.motion);
+  const auto index = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+  };
+  std::vector<PairFit> pairs;
+  for (const LoopEstimate& loop : loops)
+    pairs.push_back(ordered.tree.pair(index(loop.joint.parent), index(loop.joint.child)));
+  return pairs;
+}
+
 std::vector<IdentificationNote> order_notes(const OrderEvidence& order) {
   std::vector<IdentificationNote> notes;
   if (order.margin && *order.margin < safe_margin)
@@ -35,26 +46,12 @@ std::vector<IdentificationNote> order_notes(const OrderEvidence& order) {
   return notes;
 }
 
-/// Pairs whose loop has no sensor that clips: restored peaks leave residuals in some pairs and not in others, which is
-/// what a loop looks like.
-std::vector<PairFit> without_clipped_sensors(std::vector<PairFit> closing, const OrderedMotion& ordered) {
-  const auto clips = [&](std::size_t segment) { return ordered.motion.segments[segment].clips; };
-  std::erase_if(closing, [&](const PairFit& pair) {
-    return std::ranges::any_of(path_between(ordered.tree, pair.first, pair.second),
-                               [&](const auto& edge) { return clips(edge.first) || clips(edge.second); });
-  });
-  return closing;
-}
-
 }  // namespace
 
-OrderReport report_order(const OrderedMotion& ordered, TreeOrigin origin) {
-  const auto closing_pairs = origin == TreeOrigin::estimated
-                                 ? without_clipped_sensors(loop_closing_pairs(ordered.tree), ordered)
-                                 : std::vector<PairFit>{};
-  OrderReport report{.evidence = order_evidence(ordered, closing_pairs),
+OrderReport report_order(const OrderedMotion& ordered, const std::vector<LoopEstimate>& loops) {
+  OrderReport report{.evidence = order_evidence(ordered, closing_pairs(ordered, loops)),
                      .notes = {},
-                     .findings = loop_findings(ordered.tree, closing_pairs, segment_names(ordered.motion))};
+                     .findings = loop_findings(loops)};
   report.notes = order_notes(report.evidence);
   std::ranges::copy(ordered.findings, std::back_inserter(report.findings));
   return report;

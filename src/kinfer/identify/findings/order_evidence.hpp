@@ -7,15 +7,13 @@
 
 namespace kinfer::identify {
 
-enum class TreeOrigin { estimated, given };
-
 struct OrderReport {
   OrderEvidence evidence;
   std::vector<IdentificationNote> notes;  ///< an unsafe order; phases that imply another one
   std::vector<Finding> findings;          ///< kinematic loops, given links
 };
 
-/// Loops are searched in an estimated tree only; their closing pairs do not count in the margin.
-OrderReport report_order(const OrderedMotion& ordered, TreeOrigin origin);
+/// The pairs that close `loops` do not count in the margin.
+OrderReport report_order(const OrderedMotion& ordered, const std::vector<LoopEstimate>& loops);
 
 }  // namespace kinfer::identify

@@ -8,6 +8,16 @@
 #include "kinfer/base/expect.hpp"
 
 namespace kinfer::identify {
+namespace {
+
+/// Index of the joint whose frame is the sensor's; −1: the base.
+int frame_of(const Chain& chain, const std::string& root, const std::string& sensor) {
+  const auto found = std::ranges::find(chain.joints, sensor, &Joint::name);
+  return sensor == root || found == chain.joints.end() ? -1 : static_cast<int>(found - chain.joints.begin());
+}
+
+}  // namespace
+
 JointEstimate joint_estimate(const std::string& parent, const std::string& child, const GeometryEstimate& estimate) {
   JointEstimate joint{.parent = parent, .child = child};
   joint.axis_in_parent = estimate.geometry.axis_in_parent;
@@ -72,10 +82,6 @@ Chain build_chain(const std::string& root, const std::vector<JointEstimate>& joi
   Chain chain;
   chain.name = "identified";
   chain.base.rotation = world_R_root;
-  const auto frame_of = [&](const std::string& sensor) {
-    const auto found = std::ranges::find(chain.joints, sensor, &Joint::name);
-    return sensor == root || found == chain.joints.end() ? -1 : static_cast<int>(found - chain.joints.begin());
-  };
   auto row = dh.begin();
   for (const JointEstimate& found : joints) {
     const auto first = row, last = std::find_if(row, dh.end(), [&](const auto&r) { return r.segment != found.child; });
@@ -83,7 +89,7 @@ Chain build_chain(const std::string& root, const std::vector<JointEstimate>& joi
     for (; row != last; ++row) {
       Joint joint{.name = row == first ? joint_name(found) + " axis" : row->variable()};
       if (joint.name.empty()) joint.name = row + 1 == last ? found.child : joint_name(found);
-      joint.parent = row == first ? frame_of(found.parent) : static_cast<int>(chain.joints.size()) - 1;
+      joint.parent = row == first ? frame_of(chain, root, found.parent) : static_cast<int>(chain.joints.size()) - 1;
       joint.is_active = !row->variable().empty();
       joint.type = !joint.is_active           ? JointType::fixed
                    : !row->d_variable.empty() ? JointType::prismatic
@@ -94,6 +100,19 @@ Chain build_chain(const std::string& root, const std::vector<JointEstimate>& joi
   }
   KINFER_EXPECT(row == dh.end(), "rows of no joint");
   return chain;
+}
+
+void set_closures(Chain& chain, const std::string& root, const std::vector<LoopEstimate>& loops) {
+  for (const LoopEstimate& loop : loops) {
+    const JointEstimate& joint = loop.joint;
+    chain.closures.push_back({.name = joint_name(joint),
+                              .first = frame_of(chain, root, joint.parent),
+                              .second = frame_of(chain, root, joint.child),
+                              .point_in_first = joint.point_in_parent,
+                              .point_in_second = joint.point_in_child,
+                              .axis_in_first = joint.axis_in_parent,
+                              .axis_in_second = joint.axis_in_child});
+  }
 }
 
 void set_tool(Chain& chain, const std::vector<PointEstimate>& places) {

@@ -35,6 +35,9 @@ std::vector<DhRowEstimate> canonical_dh_rows(const JointEstimate& joint, const G
 Chain build_chain(const std::string& root, const std::vector<JointEstimate>& joints,
                   const std::vector<DhRowEstimate>& dh, const Mat3& world_R_root);
 
+/// Adds the joints that close loops, between the frames of their sensors. `chain`: of build_chain.
+void set_closures(Chain& chain, const std::string& root, const std::vector<LoopEstimate>& loops);
+
 /// Sets the chain's tool to the point named "tip" or "tool", or to the only point; all others are ignored.
 void set_tool(Chain& chain, const std::vector<PointEstimate>& places);
 

@@ -212,4 +212,18 @@ InitialJoint estimate_initial_joint(const RecordedMotion& motion, const SegmentT
   return start;
 }
 
+InitialJoint initial_joint_at(const RecordedMotion& motion, std::size_t parent, std::size_t child,
+                              const JointEstimate& revolute) {
+  const Mat3 a = frame_with_z_along(revolute.axis_in_parent), b = frame_with_z_along(revolute.axis_in_child);
+  InitialJoint start{.parent = parent, .child = child, .type = EstimatedJointType::revolute};
+  start.bodies = {revolute_body(-1, -1, a, b)};
+  start.joint_positions = {revolute_positions(motion, motion.segments[parent], motion.segments[child], a, b)};
+  InsBody& body = start.bodies.front();
+  body.point_in_parent = revolute.point_in_parent;
+  body.point_in_child = revolute.point_in_child;
+  body.free_point_in_parent = body.free_point_in_child = true;
+  body.sensor = static_cast<int>(child);
+  return start;
+}
+
 }  // namespace kinfer::identify

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Initial estimate of every joint of the tree from the two adjacent sensors alone: good enough for the continuous-time
-// fit to converge.
+// Initial estimate of every joint of the tree, from the two adjacent sensors alone or from the search of its link: good
+// enough for the continuous-time fit to converge.
 #pragma once
 
 #include "kinfer/estimate/continuous/model/chain_propagation.hpp"
@@ -20,5 +20,10 @@ struct InitialJoint {
 /// Axes from the relative angular velocity, joint positions from the rotation about them, points from the pair fit.
 InitialJoint estimate_initial_joint(const RecordedMotion& motion, const SegmentTree& tree, std::size_t parent,
                                     std::size_t child, EstimatedJointType type);
+
+/// A revolute joint whose axis line is already known in both sensors' frames, as from the search of its link; joint
+/// positions as above.
+InitialJoint initial_joint_at(const RecordedMotion& motion, std::size_t parent, std::size_t child,
+                              const JointEstimate& revolute);
 
 }  // namespace kinfer::identify

@@ -13,8 +13,9 @@ struct JointResult {
   JointEstimate joint;
   std::vector<DhRowEstimate> dh{};  ///< canonical
   std::vector<IdentificationNote> notes{};
-  std::optional<LinkEvidence> search{};  ///< none: estimated from its two sensors alone
-  std::vector<FrameState> states{};      ///< of the child's sensor at every row, by the chain up to here
+  std::optional<LinkEvidence> search{};                     ///< none: estimated from its two sensors alone
+  std::vector<std::size_t> fitted_rows{}, held_out_rows{};  ///< of the search
+  std::vector<FrameState> states{};  ///< of the child's sensor at every row, by the chain up to here
 };
 
 }  // namespace kinfer::identify

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/estimate/continuous/model/chain_propagation.hpp"
 #include "kinfer/identify/geometry/identified_chain.hpp"
 #include "kinfer/identify/joints/thresholds.hpp"
 
@@ -34,6 +35,36 @@ LinkFit link_fit(const JRmse& j) {
   return {j.total, j.acceleration, j.orientation};
 }
 
+FrameState at_row(const SegmentMotion& segment, std::size_t row) {
+  return {segment.rotation[row], segment.angular_velocity[row], segment.angular_acceleration[row],
+          segment.acceleration[row]};
+}
+
+/// The state of the child behind a revolute joint on the moving parent, by the joint's own motion.
+FrameState child_state(const InsBody& joint, const FrameState& parent, const JointSignal& angle, std::size_t i) {
+  const Mat3 to_parent = parent.rotation.transpose();
+  const InsState moved = propagated(joint,
+                                    {Vec3(angle.angle[i], 0.0, 0.0), Vec3(angle.angular_velocity[i], 0.0, 0.0),
+                                     Vec3(angle.angular_acceleration[i], 0.0, 0.0)},
+                                    {to_parent * parent.angular_velocity, to_parent * parent.angular_acceleration,
+                                     to_parent * parent.acceleration, Vec3::Zero()});
+  const Mat3 rotation = parent.rotation * joint.parent_R_axis * rot_z(angle.angle[i]) * joint.child_R_axis.transpose();
+  return {rotation, rotation * moved.angular_velocity, rotation * moved.angular_acceleration, rotation * moved.force};
+}
+
+/// Rotation about the vertical that brings the first orientations closest to the second.
+double heading_between(const std::vector<FrameState>& from, const std::vector<FrameState>& to) {
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t i = 0; i < from.size(); ++i) sum += to[i].rotation * from[i].rotation.transpose();
+  return std::atan2(sum(1, 0) - sum(0, 1), sum(0, 0) + sum(1, 1));
+}
+
+void turn_about_vertical(std::vector<FrameState>& states, double heading) {
+  const Mat3 turn = rot_z(heading);
+  for (FrameState& s : states)
+    s = {turn * s.rotation, turn * s.angular_velocity, turn * s.angular_acceleration, turn * s.acceleration};
+}
+
 std::vector<std::size_t> rows_except(const std::vector<std::size_t>& rows, const std::vector<std::size_t>& excluded) {
   std::vector<std::size_t> remaining;
   std::ranges::set_difference(rows, excluded, std::back_inserter(remaining));
@@ -51,10 +82,10 @@ GeometryEstimate geometry_of(const JointSearch& search, const LinkSolution& solu
   return estimate;
 }
 
-LinkEvidence evidence_of(const JointSearch& search, LinkSolution solution, const std::vector<FrameState>& measured,
-                         const std::vector<FrameState>& predicted, OrientationMetric metric) {
+LinkEvidence evidence_of(const JointSearch& search, LinkSolution solution, const std::vector<std::size_t>& held_out,
+                         const std::vector<FrameState>& measured, const std::vector<FrameState>& predicted,
+                         OrientationMetric metric) {
   const std::string& name = search.child.name;
-  const auto held_out = thin_rows(rows_except(search.rows, solution.rows), evaluation_rows);
   return {.segment = name,
           .fitted = link_fit(j_rmse(predicted, measured, solution.rows, metric)),
           .holdout = link_fit(j_rmse(predicted, measured, held_out, metric)),
@@ -82,8 +113,37 @@ JointResult search_joint(const JointSearch& search, const std::vector<FrameState
   if (const int uses = count_signal_uses(solution.leaves); uses > 1)
     result.notes.push_back(
         {IdentificationNoteKind::several_signals, {{"child", search.child.name}, {"signals", uses}}});
-  result.search = evidence_of(search, std::move(solution), measured, result.states, orientation_metric(engine));
+  result.fitted_rows = solution.rows;
+  result.held_out_rows = thin_rows(rows_except(search.rows, solution.rows), evaluation_rows);
+  result.search = evidence_of(search, std::move(solution), result.held_out_rows, measured, result.states,
+                              orientation_metric(engine));
   return result;
+}
+
+LinkFit fit_of_joint(const JointEstimate& revolute, const SegmentMotion& parent, const SegmentMotion& child,
+                     const std::vector<std::size_t>& rows, OrientationMetric metric) {
+  InsBody joint =
+      revolute_body(-1, -1, frame_with_z_along(revolute.axis_in_parent), frame_with_z_along(revolute.axis_in_child));
+  joint.point_in_parent = revolute.point_in_parent;
+  joint.point_in_child = revolute.point_in_child;
+  JointGeometry geometry{.axis_in_parent = revolute.axis_in_parent, .axis_in_child = revolute.axis_in_child};
+  geometry.home.rotation = joint.parent_R_axis * joint.child_R_axis.transpose();
+  std::vector<FrameState> parents, measured, predicted;
+  std::vector<std::size_t> all;
+  for (const std::size_t row : rows) {
+    all.push_back(parents.size());
+    parents.push_back(at_row(parent, row));
+    measured.push_back(at_row(child, row));
+  }
+  // The headings of the two orientations are arbitrary: a joint is judged at the best one between them.
+  constexpr int heading_rounds = 8;
+  for (int round = 0; round < heading_rounds; ++round) {
+    const JointSignal angle = revolute_angle(geometry, parents, measured);
+    predicted.clear();
+    for (const std::size_t i : all) predicted.push_back(child_state(joint, parents[i], angle, i));
+    if (round + 1 < heading_rounds) turn_about_vertical(parents, heading_between(predicted, measured));
+  }
+  return link_fit(j_rmse(predicted, measured, all, metric));
 }
 
 }  // namespace kinfer::identify

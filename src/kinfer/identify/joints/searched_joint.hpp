@@ -19,4 +19,10 @@ struct JointSearch {
 JointResult search_joint(const JointSearch& search, const std::vector<FrameState>& chain_states,
                          const LinkEngine& engine, int threads, const Rng& rng, const Observer& observer);
 
+/// Cost of eq. (20), in the terms of the search, of a revolute joint that was estimated otherwise: on these rows its
+/// joint angle is the one nearest to the measured orientations, at the best heading of the one sensor against the
+/// other, which no joint determines.
+LinkFit fit_of_joint(const JointEstimate& revolute, const SegmentMotion& parent, const SegmentMotion& child,
+                     const std::vector<std::size_t>& rows, OrientationMetric metric);
+
 }  // namespace kinfer::identify

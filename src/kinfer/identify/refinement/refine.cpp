@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/identify/refinement/refine.hpp"
+#include "kinfer/estimate/continuous/fit_comparison.hpp"
+#include "kinfer/identify/loops/loop_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -97,8 +99,12 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
   KINFER_TRY(facts, resolve_facts(options.facts, segment_names(motion), setup.start.bodies, setup.problem.grid,
                                   setup.problem.root_at_rest));
   const RefinementTask task{recording, motion, tree, starts, grade, facts, options.fit};
-  RefinementFit fitted = fit_full_bandwidth(task, std::move(setup), options, observer);
   Refinement result;
+  RefinementFit fitted = fit_full_bandwidth(task, std::move(setup), options, observer);
+  result.negative_log_likelihood = negative_log_likelihood(fitted.setup.problem, fitted.fit.cost);
+  std::vector<FoundLoop> loops;
+  if (options.loops == LoopTreatment::closed) loops = close_loops(fitted.setup.problem, fitted.fit, options.fit);
+  facts.closures = fitted.setup.problem.facts.closures;
   result.grade = grade.name;
   result.knot_spacing = knot_spacing;
   for (const InsMeasurements& sensor : fitted.setup.problem.sensors) {
@@ -123,6 +129,8 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
   result.covariance = covariance->model;
   result.clocks = refined_clocks(fitted.setup.problem, result.fit, *covariance);
   result.joints = make_joints(task, fitted, *covariance, model_error);
+  result.loops =
+      loop_estimates(loops, fitted.fit.unknowns.bodies, closing_joints(fitted.fit, *covariance), segment_names(motion));
   if (options.hold_out) result.held_out = fit_held_out(task, fitted, *covariance, model_error);
   result.places = located_points(options.facts, result.fit, covariance->model);
   return result;

@@ -13,27 +13,40 @@
 
 namespace kinfer::identify {
 
+/// Where the fit begins.
+enum class StartSource {
+  pairs,  ///< each joint from its two sensors alone
+  search  ///< each revolute joint as the search of its link found it
+};
+
+/// Whether kinematic loops are searched and closed in the fit.
+enum class LoopTreatment { closed, open };
+
 struct RefinementOptions {
   std::optional<SensorModel> grade{};  ///< sensor grade; without it estimated from the recording
   InsFitOptions fit{};
   double knot_spacing = 0.0;    ///< [s] knot spacing of the splines; 0: chosen from the motion (motion_knots)
   MachineMeasurements facts{};  ///< additional knowledge: touches, tape lengths, surveyed points
   ClockTreatment clocks = ClockTreatment::checked;
+  StartSource start = StartSource::pairs;  ///< of refine_geometry
+  LoopTreatment loops = LoopTreatment::closed;
   bool hold_out = true;  ///< fit once more without some time windows, to test the chain's predictions
 };
 
 struct Refinement {
   std::vector<RefinedJoint> joints;  ///< in the order of the starts; joint position 0 is where the recording begins
   InsFit fit;
-  std::vector<InsNoise> noise;          ///< of each sensor, estimated from its residuals
-  std::vector<InsNoise> noise_floor;    ///< of each sensor, its noise floor: without any model error
-  MatrixXd covariance;                  ///< of the global parameters
-  std::string grade;                    ///< sensor grade that was used
-  std::vector<PointEstimate> places;    ///< points that the facts name
-  double knot_spacing = 0.0;            ///< [s] knot spacing that was used for the motion at full bandwidth
-  double cutoff = 0.0;                  ///< [Hz] upper limit of the passband that was used; 0: full bandwidth
-  std::vector<ResidualClock> clocks{};  ///< one a sensor; empty where the clocks agree
-  HeldOut held_out{};                   ///< empty where the recording is too short or hold_out is false
+  std::vector<InsNoise> noise;           ///< of each sensor, estimated from its residuals
+  std::vector<InsNoise> noise_floor;     ///< of each sensor, its noise floor: without any model error
+  MatrixXd covariance;                   ///< of the global parameters
+  std::string grade;                     ///< sensor grade that was used
+  std::vector<PointEstimate> places;     ///< points that the facts name
+  double knot_spacing = 0.0;             ///< [s] knot spacing that was used for the motion at full bandwidth
+  double cutoff = 0.0;                   ///< [Hz] upper limit of the passband that was used; 0: full bandwidth
+  std::vector<ResidualClock> clocks{};   ///< one a sensor; empty where the clocks agree
+  std::vector<LoopEstimate> loops{};     ///< closed in the fit
+  double negative_log_likelihood = 0.0;  ///< of the fit at full bandwidth; compares fits of one recording
+  HeldOut held_out{};                    ///< empty where the recording is too short or hold_out is false
 };
 
 /// `starts`: one for each segment but the root, parents before children.

@@ -40,22 +40,31 @@ void add_passband_notes(std::vector<IdentificationNote>& notes, const Refinement
                         {"axis_deviation", joint.axis_deviation}}});
 }
 
+std::vector<InitialJoint> make_starts(const std::vector<JointEstimate>& joints, const RecordedMotion& motion,
+                                      const SegmentTree& tree, StartSource source) {
+  std::vector<InitialJoint> starts;
+  for (const JointEstimate& joint : joints) {
+    const std::size_t parent = segment_named(motion, joint.parent), child = segment_named(motion, joint.child);
+    const bool from_search = source == StartSource::search && joint.type == EstimatedJointType::revolute;
+    starts.push_back(from_search ? initial_joint_at(motion, parent, child, joint)
+                                 : estimate_initial_joint(motion, tree, parent, child, joint.type));
+  }
+  return starts;
+}
+
 }  // namespace
 
 Result<ChainGeometry> refine_geometry(ChainGeometry searched, const InsRecording& recording,
                                       const RecordedMotion& motion, const SegmentTree& tree,
                                       const RefinementOptions& options, const Observer& observer) {
-  std::vector<InitialJoint> starts;
-  for (const JointEstimate& joint : searched.joints)
-    starts.push_back(estimate_initial_joint(motion, tree, segment_named(motion, joint.parent),
-                                            segment_named(motion, joint.child), joint.type));
+  const auto starts = make_starts(searched.joints, motion, tree, options.start);
   auto refined = refine(recording, motion, tree, starts, options, observer);
   if (!refined && !options.facts.empty()) return forward_error(refined.error());
   if (!refined) {
     searched.notes.push_back({IdentificationNoteKind::refinement_failed, {{"reason", refined.error().what}}});
     return searched;
   }
-  ChainGeometry geometry{.joints = {}, .dh = {}, .places = std::move(refined->places)};
+  ChainGeometry geometry{.joints = {}, .dh = {}, .loops = {}, .places = std::move(refined->places)};
   for (const RefinedJoint& joint : refined->joints) {
     geometry.joints.push_back(joint.estimate);
     std::ranges::copy(canonical_dh_rows(joint.estimate, joint.solution), std::back_inserter(geometry.dh));
@@ -64,6 +73,8 @@ Result<ChainGeometry> refine_geometry(ChainGeometry searched, const InsRecording
   add_misfit_notes(geometry.notes, *refined, motion);
   add_passband_notes(geometry.notes, *refined);
   geometry.clocks = std::move(refined->clocks);
+  geometry.negative_log_likelihood = refined->negative_log_likelihood;
+  geometry.loops = std::move(refined->loops);
   geometry.held_out = std::move(refined->held_out);
   return geometry;
 }

@@ -11,9 +11,12 @@ namespace kinfer::identify {
 struct ChainGeometry {
   std::vector<JointEstimate> joints;  ///< parents before children
   std::vector<DhRowEstimate> dh;      ///< of all joints, in their order
+  std::vector<LoopEstimate> loops{};
   std::vector<PointEstimate> places{};
   std::vector<IdentificationNote> notes{};
-  std::vector<ResidualClock> clocks{};  ///< residual clock errors; empty where the clocks agree
+  std::vector<ResidualClock> clocks{};              ///< residual clock errors; empty where the clocks agree
+  std::optional<double> negative_log_likelihood{};  ///< of the fit; none: the geometry of the search
+  bool starts_from_search = false;
   HeldOut held_out{};
 };
 

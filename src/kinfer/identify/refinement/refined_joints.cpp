@@ -165,4 +165,17 @@ std::vector<RefinedJoint> make_joints(const RefinementTask& task, const Refineme
   return joints;
 }
 
+std::vector<JointEstimate> closing_joints(const InsFit& fit, const InsCovariance& covariance) {
+  std::vector<JointEstimate> joints;
+  for (std::size_t c = 0; c < fit.unknowns.facts.closures.size(); ++c) {
+    const Index begin = fit.layout.closures + closure_unknowns * static_cast<Index>(c);
+    const double inflation = std::max(1.0, covariance.inflation.segment<closure_unknowns>(begin).mean());
+    const MatrixXd own = inflation * covariance.model.block<closure_unknowns, closure_unknowns>(begin, begin);
+    const double zero = 0.0;
+    joints.push_back(
+        refined_joint(EstimatedJointType::revolute, {&fit.unknowns.facts.closures[c], 1}, {&zero, 1}, own).estimate);
+  }
+  return joints;
+}
+
 }  // namespace kinfer::identify

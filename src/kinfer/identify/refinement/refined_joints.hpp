@@ -12,4 +12,7 @@ namespace kinfer::identify {
 std::vector<RefinedJoint> make_joints(const RefinementTask& task, const RefinementFit& fitted,
                                       const InsCovariance& covariance, const ModelError& error);
 
+/// The joints that close loops, in the order of the fit's closures; without names and trajectory.
+std::vector<JointEstimate> closing_joints(const InsFit& fit, const InsCovariance& covariance);
+
 }  // namespace kinfer::identify

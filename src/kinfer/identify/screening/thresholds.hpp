@@ -26,13 +26,6 @@ inline constexpr double holding_relation_factor = 3.0;
 /// interval. Data not recorded.
 inline constexpr double max_split_ratio_to_best = 1.5;
 
-/// [rad/s] rms relative angular velocity of a moving joint of a loop; larger finds fewer loops. Simulated linkage.
-inline constexpr double min_loop_joint_rate = 0.05;
-
-/// Factor on the residuals of the tree's own joints up to which a pair closes a loop; larger finds more. Simulated
-/// linkage.
-KINFER_THRESHOLD(identify, max_loop_residual_ratio, 3.0);
-
 /// Share of the relative angular velocity off its axis up to which a pair counts as a revolute joint. Simulated
 /// linkage.
 inline constexpr double max_revolute_off_axis_share = 0.1;

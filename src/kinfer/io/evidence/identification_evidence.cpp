@@ -42,6 +42,7 @@ IdentificationEvidence identification_evidence(const Identification& i, const Pr
           .notes = words::note_sentences(i),
           .root = i.root,
           .joints = joint_records(i.joints),
+          .loops = i.loops,
           .links = i.links,
           .dh = i.dh,
           .chain = chain_view(i.chain),

@@ -16,6 +16,7 @@ void fields(Archive& a, Value<Archive, IdentificationEvidence>& e) {
   a("notes", e.notes);
   a("root", e.root);
   a("joints", e.joints);
+  a.later("loops", e.loops);
   a("links", e.links);
   a("dh", e.dh);
   a("chain", e.chain);

@@ -9,7 +9,8 @@
 namespace kinfer {
 
 /// MJCF text: one body per joint, whose site has the joint's frame; sites for the tool and the targets. Joint gains and
-/// couplings become further joints on the same axis, constrained by <equality>. Kinematics only: bodies without a known
+/// couplings become further joints on the same axis, constrained by <equality>, and so are the joints that close loops
+/// (connect: by their points). Kinematics only: bodies without a known
 /// mass get a small one (boundmass).
 std::string format_mjcf(const Chain& chain);
 

@@ -109,9 +109,21 @@ class MjcfWriter {
       leaf("site", {{"name", target.name}, {"pos", xml_list(tool * target.xyz)}});
   }
 
+  std::string body_name(int joint) const { return joint < 0 ? "base" : "link_" + chain_.joints[joint].name; }
+
+  /// MuJoCo takes the point of the second body from the joint positions 0, where the loop is closed.
+  void write_closure(const LoopClosure& closure) {
+    const Pose body_T_frame = closure.first < 0 ? Pose{} : joint_transforms(chain_.joints[closure.first].link).after;
+    leaf("connect", {{"name", closure.name},
+                     {"body1", body_name(closure.first)},
+                     {"body2", body_name(closure.second)},
+                     {"anchor", xml_list(body_T_frame * closure.point_in_first)}});
+  }
+
   void write_constraints() {
-    if (constraints_.empty()) return;
+    if (constraints_.empty() && chain_.closures.empty()) return;
     open("equality", {});
+    for (const LoopClosure& closure : chain_.closures) write_closure(closure);
     for (const EqualityConstraint& constraint : constraints_)
       leaf("joint", {{"joint1", constraint.joint},
                      {"joint2", constraint.leader},

@@ -220,6 +220,39 @@ std::vector<Joint> read_joints(TableReader& file, Convention convention, const S
   return joints;
 }
 
+/// The frame of a joint, or of the base as in read_parent.
+int read_frame_reference(TableReader& row, std::string_view key, const std::vector<Joint>& joints) {
+  const std::string name = row.text(key);
+  const bool is_base = name.empty() || (name == base_name && find_joint(joints, name) < 0);
+  return is_base ? -1 : read_joint_reference(row, key, joints);
+}
+
+Vec3 read_axis(TableReader& row, std::string_view key) {
+  const Vec3 axis = row.vector(key);
+  if (axis.norm() > 0.0) return axis.normalized();
+  row.report_error(row.line_of(key), fmt::format("\"{}\": expected a direction, found zeros", key));
+  return Vec3::UnitZ();
+}
+
+std::vector<LoopClosure> read_closures(TableReader& file, const std::vector<Joint>& joints, const Scales& scales,
+                                       FirstError& first_error) {
+  std::vector<LoopClosure> closures;
+  for (const auto& [table, line] : file.tables_or_none("closure")) {
+    TableReader row(*table, line, fmt::format("closure {}: ", closures.size() + 1), first_error);
+    LoopClosure closure{.name = row.text_or("name", fmt::format("C{}", closures.size() + 1))};
+    closure.first = read_frame_reference(row, "first", joints);
+    closure.second = read_frame_reference(row, "second", joints);
+    closure.point_in_first = row.vector("point_in_first") * scales.length;
+    closure.axis_in_first = read_axis(row, "axis_in_first");
+    closure.point_in_second = row.vector("point_in_second") * scales.length;
+    closure.axis_in_second = read_axis(row, "axis_in_second");
+    row.expect_no_other_keys();
+    if (closure.first == closure.second) row.report_error(line, "\"first\" and \"second\": expected two frames");
+    closures.push_back(std::move(closure));
+  }
+  return closures;
+}
+
 std::vector<Target> read_targets(TableReader& file, const Scales& scales, FirstError& first_error) {
   std::vector<Target> targets;
   for (const auto& [table, line] : file.tables_or_none("target")) {
@@ -405,6 +438,7 @@ Result<RobotModel> parse_robot_toml(std::string_view text, const std::string& na
   chain.tool = read_frame(file, "tool", scales, first_error);
   chain.gravity = file.vector_or("gravity", chain.gravity);
   chain.joints = read_joints(file, convention, scales, first_error);
+  chain.closures = read_closures(file, chain.joints, scales, first_error);
   chain.tip = file.has("tip") ? read_joint_reference(file, "tip", chain.joints) : (file.ignore("tip"), -1);
   chain.targets = read_targets(file, scales, first_error);
   chain.masses = read_masses(file, static_cast<int>(chain.joints.size()), scales, first_error);

@@ -44,6 +44,7 @@ class RobotTomlWriter {
   std::string write() {
     write_header_keys();
     for (std::size_t i = 0; i < chain_.joints.size(); ++i) write_joint(static_cast<int>(i));
+    for (const LoopClosure& closure : chain_.closures) write_closure(closure);
     for (const Target& target : chain_.targets) write_fixture("target", target);
     write_fixtures();
     for (const PointMass& mass : chain_.masses)
@@ -197,6 +198,16 @@ class RobotTomlWriter {
       add("convention = \"{}\"\n", convention_of(joint.link));
     std::visit([&](const auto& link) { write_link(index, link); }, joint.link);
     if (has_position(joint.type)) write_motion(index, joint);
+  }
+
+  void write_closure(const LoopClosure& closure) {
+    const auto frame = [&](int joint) { return joint < 0 ? base_parent_name() : name_of(joint); };
+    add("\n[[closure]]\nname = {}\nfirst = {}\nsecond = {}\n", quoted(closure.name), quoted(frame(closure.first)),
+        quoted(frame(closure.second)));
+    add("point_in_first = {}\naxis_in_first = {}\n", list(closure.point_in_first, length_),
+        list(closure.axis_in_first));
+    add("point_in_second = {}\naxis_in_second = {}\n", list(closure.point_in_second, length_),
+        list(closure.axis_in_second));
   }
 
   void write_motion(int index, const Joint& joint) {

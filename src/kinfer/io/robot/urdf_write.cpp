@@ -29,11 +29,32 @@ class UrdfWriter {
     add_fixed("world_to_base", world, base, chain_.base.pose());
     for (std::size_t i = 0; i < chain_.joints.size(); ++i) write_joint(static_cast<int>(i), base);
     write_tool(base);
+    write_closures();
     printer_.CloseElement();
     return printer_.CStr();
   }
 
  private:
+  /// URDF is a tree: a loop stays open in it, and only a comment says where it closes.
+  void write_closures() {
+    const auto name = [&](int joint) { return joint < 0 ? std::string("base") : chain_.joints[joint].name; };
+    for (const LoopClosure& closure : chain_.closures)
+      printer_.PushComment(
+          fmt::format(" loop left open: revolute joint {} between {} (point {}, axis {}) and {} (point "
+                      "{}, axis {}) ",
+                      without_double_hyphen(closure.name), without_double_hyphen(name(closure.first)),
+                      xml_list(closure.point_in_first), xml_list(closure.axis_in_first),
+                      without_double_hyphen(name(closure.second)), xml_list(closure.point_in_second),
+                      xml_list(closure.axis_in_second))
+              .c_str());
+  }
+
+  /// XML comments may not contain "--".
+  static std::string without_double_hyphen(std::string text) {
+    for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at)) text.replace(at, 2, "-");
+    return text;
+  }
+
   std::string add_link(const std::string& wish) {
     std::string name = unique(wish, link_names_);
     printer_.OpenElement("link");

@@ -34,15 +34,16 @@ std::string given_link_suggestion(const Finding& f) {
 std::string loop_sentence(const Finding& f) {
   const FactValues& v = f.values;
   return phrase("loop",
-                "the segments {} close a loop: {} and {} share a revolute joint, too ({:.3f} m/s² left, the others "
-                "leave up to {:.3f}); the chain is cut open there",
-                fmt::join(v.texts("segments"), ", "), v.text("first"), v.text("second"), v.number("residual"),
-                v.number("largest_tree_residual"));
+                "the segments {} close a loop: {} and {} share a revolute joint, too (a fit that leaves it open keeps "
+                "its two halves within {:.1f} mm of each other, the same movements with one joint mirrored part "
+                "them by {:.0f} mm); "
+                "the joint is part of the fit, and a closure of the chain",
+                fmt::join(v.texts("segments"), ", "), v.text("first"), v.text("second"), 1e3 * v.number("gap"),
+                1e3 * v.number("mirrored_gap"));
 }
 
 std::string loop_suggestion(const Finding&) {
-  return phrase("loop.suggestion",
-                "take the joint angles of a linkage as they are measured: they depend on each other");
+  return "";  // nothing is wrong with the recording
 }
 
 std::string best_link_text(const FactValues& v) {

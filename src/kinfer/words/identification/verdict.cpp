@@ -27,6 +27,22 @@ std::string joints_text(const Identification& result) {
                 accuracy.empty() ? "" : ", their axes to " + accuracy, forecast_text(result.forecast, result.target));
 }
 
+/// What the search of all structures says about the chain that is written.
+std::string certificate_text(const std::vector<LinkEvidence>& searches) {
+  double excess = 0.0;
+  for (const LinkEvidence& search : searches)
+    if (search.written_holdout && search.holdout.total > 0.0)
+      excess = std::max(excess, search.written_holdout->total / search.holdout.total - 1.0);
+  if (excess < 0.005)
+    return phrase("best_chain",
+                  "no chain of up to 3 leaves a link predicts the held-out rows better than the one written");
+  return phrase(
+      "nearly_best_chain",
+      "no chain of up to 3 leaves a link predicts the held-out rows by more than {:.0f} % better than the one "
+      "written",
+      100.0 * excess);
+}
+
 std::string recommendation_text(Usability usability) {
   switch (usability) {
     case Usability::use:
@@ -46,8 +62,7 @@ VerdictText parts_of_verdict(const Identification& result) {
     if (invalidates_result(finding)) texts.push_back(words::sentence(finding));
   texts.push_back(joints_text(result));
   texts.push_back(prediction_text(result.prediction));
-  if (result.search_method == LinkSearchMethod::enumeration)
-    texts.push_back(phrase("best_chain", "no chain of up to 3 leaves fits better"));
+  if (result.search_method == LinkSearchMethod::enumeration) texts.push_back(certificate_text(result.searches));
   for (const Finding& finding : result.findings)
     if (finding.severity != Severity::note && !invalidates_result(finding)) texts.push_back(words::sentence(finding));
   VerdictText text{phrase(name(result.usability), "{}", recommendation_text(result.usability)), texts.front(), {}};

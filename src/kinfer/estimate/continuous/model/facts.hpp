@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// External measurements of a machine besides its recording (facts), in the terms of the continuous-time fit: touches,
-// tape distances and surveyed points, each a few residuals at one time.
+// What is known of a machine besides its recording (facts), in the terms of the continuous-time fit: touches, tape
+// distances, surveyed points and loop closures, each a few residuals at one time.
 #pragma once
 
 #include <vector>
 
+#include "kinfer/estimate/continuous/model/chain_propagation.hpp"
 #include "kinfer/geometry/pose.hpp"
 #include "kinfer/linalg/types.hpp"
 
@@ -59,19 +60,32 @@ struct InsAzimuthMeasurement {
   MatrixXd whitening;            ///< W with information WᵀW of all azimuths together [1/rad]
 };
 
+/// A revolute joint between two bodies of the tree, which closes a kinematic loop. It is an unknown like the tree's
+/// joints, but has no joint position: whenever it holds, its lines in both bodies coincide.
+struct InsClosure {
+  int first = 0, second = 0;             ///< bodies
+  InsBody start{};                       ///< revolute, its parent is `first`, its child `second`
+  std::vector<double> at{};              ///< [s]
+  double point_sd = 0.0, axis_sd = 0.0;  ///< [m] per axis, [rad] per component: at one time
+};
+inline constexpr Eigen::Index closure_unknowns = 10;
+
 struct InsFacts {
   std::vector<InsUnknownPoint> places;
   std::vector<InsRevisitedPoint> touches;
   std::vector<InsTapeDistance> tapes;
   std::vector<InsSurveyedPoint> surveyed;
   InsAzimuthMeasurement azimuth{};
+  std::vector<InsClosure> closures{};
 };
 
-/// Additional unknowns of the facts: 3 per unknown point, 3 per touch, 6 for the surveyor's frame if there is one.
+/// Additional unknowns of the facts: 3 per unknown point, 3 per touch, 10 per closure, 6 for the surveyor's frame if
+/// there is one.
 struct InsFactUnknowns {
-  std::vector<Vec3> places;   ///< [m] in the sensor's frame
-  std::vector<Vec3> touched;  ///< [m] in the root's frame
-  Pose surveyor;              ///< root_T_surveyor
+  std::vector<Vec3> places;         ///< [m] in the sensor's frame
+  std::vector<Vec3> touched;        ///< [m] in the root's frame
+  std::vector<InsBody> closures{};  ///< revolute joints, as InsClosure::start
+  Pose surveyor;                    ///< root_T_surveyor
 };
 
 }  // namespace kinfer

@@ -34,11 +34,16 @@ void each_error(const InsProblem& problem, const InsLayout& layout, Errors& all,
   visit(clock + 1, 1, &errors.clock.drift, is_reference ? certain : problem.prior.clock_drift);
 }
 
-/// `step`: 3 per unknown point, 3 per touched point, then the surveyor's frame: translation and rotation.
+/// `step`: 3 per unknown point, 3 per touched point, 10 per closure, then the surveyor's frame: translation and
+/// rotation.
 void change_facts(InsFactUnknowns& facts, ConstVectorRef step) {
   Index at = 0;
   for (auto* points : {&facts.places, &facts.touched})
     for (Vec3& point : *points) point += step.segment<3>(at), at += 3;
+  for (InsBody& joint : facts.closures) {
+    joint = retract(joint, step.segment<closure_unknowns>(at));
+    at += closure_unknowns;
+  }
   if (at == step.size()) return;
   facts.surveyor.position += step.segment<3>(at);
   facts.surveyor.rotation = facts.surveyor.rotation * exp_so3(step.segment<3>(at + 3));
@@ -72,8 +77,9 @@ InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
   for (std::size_t s = 0; s < problem.sensors.size(); ++s) layout.error.push_back(take(layout.errors_each));
   if (!problem.bias_process.is_none()) layout.bias_process = 6 * static_cast<Index>(problem.sensors.size());
   const InsFacts& facts = problem.facts;
-  layout.facts =
-      take(3 * static_cast<Index>(facts.places.size() + facts.touches.size()) + (facts.surveyed.empty() ? 0 : 6));
+  layout.facts = take(3 * static_cast<Index>(facts.places.size() + facts.touches.size()));
+  layout.closures = take(closure_unknowns * static_cast<Index>(facts.closures.size()));
+  take(facts.surveyed.empty() ? 0 : 6);
   return layout;
 }
 
@@ -111,9 +117,7 @@ GlobalParameterPrior global_parameter_prior(const InsProblem& problem, const Ins
     prior.matrix.block<3, 3>(layout.root_force, layout.root_force) += information * up * up.transpose();
     prior.right.segment<3>(layout.root_force) -= excess * information * up;
   }
-  for (std::size_t b = 0; b < x.bodies.size(); ++b) {
-    const InsBody& body = x.bodies[b];
-    Index at = layout.body[b];
+  const auto hold_joint = [&](const InsBody& body, Index at) {
     for (const auto* turns : {&body.free_parent_rotation, &body.free_child_rotation})
       for (const bool is_free : *turns)
         if (is_free) hold(at++, 0.0, problem.rotation_sd);
@@ -121,7 +125,10 @@ GlobalParameterPrior global_parameter_prior(const InsProblem& problem, const Ins
          {std::pair{body.free_point_in_parent, body.point_in_parent}, {body.free_point_in_child, body.point_in_child}})
       if (is_free)
         for (const double value : point) hold(at++, value, problem.point_sd);
-  }
+  };
+  for (std::size_t b = 0; b < x.bodies.size(); ++b) hold_joint(x.bodies[b], layout.body[b]);
+  for (std::size_t c = 0; c < x.facts.closures.size(); ++c)
+    hold_joint(x.facts.closures[c], layout.closures + closure_unknowns * static_cast<Index>(c));
   for (std::size_t s = 0; s < x.errors.size(); ++s)
     each_error(problem, layout, x.errors, s, [&](Index at, Index size, const double* value, double sd) {
       for (Index i = 0; i < size; ++i) hold(at + i, value[i], sd);

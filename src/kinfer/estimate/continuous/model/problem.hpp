@@ -100,7 +100,8 @@ struct InsLayout {
   bool has_field = false, has_matrices = false, has_clocks = false, has_tilts = false;
   Eigen::Index errors_each = 0;  ///< unknowns per sensor: [b_g, b_a, S_g, S_a, b_m, clock, tilt]
   Eigen::Index field_error = -1, clock_error = -1, tilt_error = -1;  ///< offsets in these; −1: absent
-  Eigen::Index facts = -1;  ///< first unknown of the facts: points, touched points, the surveyor's frame
+  Eigen::Index facts = -1;     ///< first unknown of the facts: points, touched points, closures, the surveyor's frame
+  Eigen::Index closures = -1;  ///< first unknown of the closures
 };
 InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies);
 

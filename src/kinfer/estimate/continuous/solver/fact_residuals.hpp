@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Residuals of external measurements on a machine (facts: touches, tapes, surveyed points, azimuths), with their
-// derivatives with respect to the unknowns of the continuous-time fit.
+// Residuals of external measurements on a machine (facts: touches, tapes, surveyed points, azimuths) and of its loop
+// closures, with their derivatives with respect to the unknowns of the continuous-time fit.
 #pragma once
 
-#include "kinfer/estimate/continuous/model/problem.hpp"
+#include "kinfer/estimate/continuous/solver/fact_rows.hpp"
 
 namespace kinfer {
 
-/// The rows of one fact at one time, in units of its standard deviation.
-struct InsFactRows {
-  Eigen::Index interval = 0;
-  VectorXd left;        ///< measured − predicted
-  MatrixXd derivative;  ///< of the prediction: rows x (order · spline dimensions + global parameters); column
-                        ///< i · dimensions + d is the i-th coefficient of dimension d in the interval
-};
-
-/// Of all facts, in their order: touches, tapes, surveyed points, azimuths.
+/// Of all facts, in their order: touches, tapes, surveyed points, azimuths, closures.
 std::vector<InsFactRows> fact_rows(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x);
 
 /// Sum of the squared residuals.

@@ -49,6 +49,23 @@ void fields(Archive& a, Value<Archive, JointRecord>& record) {
   a.when(joint.azimuth_unobservable, "azimuth_undetermined", joint.azimuth_unobservable);
 }
 
+template <class Archive>
+void fields(Archive& a, Value<Archive, LoopEstimate>& loop) {
+  auto& joint = loop.joint;
+  a("first", joint.parent);
+  a("second", joint.child);
+  a("segments", loop.segments);
+  a("axis_in_first", joint.axis_in_parent);
+  a("point_in_first", joint.point_in_parent);
+  a("axis_in_second", joint.axis_in_child);
+  a("point_in_second", joint.point_in_child);
+  a("sd", joint.sd);
+  a("open_gap_m", loop.gap);
+  a("open_misalignment_rad", loop.misalignment);
+  a("mirrored_gap_m", loop.in_step_gap);
+  a("log_odds", loop.log_odds);
+}
+
 /// Only where the axes are nearly parallel.
 template <class Archive>
 void pin_fields(Archive& a, Value<Archive, std::optional<PinDistance>>& pin) {
@@ -185,6 +202,8 @@ template <class Archive>
 void fields(Archive& a, Value<Archive, SegmentSearchRecord>& search) {
   a("segment", search.segment);
   a("evaluations", search.evaluations);
+  a.when(search.written_fitted.has_value(), "written_fitted", search.written_fitted);
+  a.when(search.written_holdout.has_value(), "written_holdout", search.written_holdout);
   a("found", search.found);
   a("merged", search.merged);
 }
@@ -202,6 +221,7 @@ void fields(Archive& a, Value<Archive, StructureSearchRecord>& search) {
   a("best", search.best);
   a("median", search.median);
   a.later("segments", search.segments);
+  a.later("is_start_of_fit", search.is_start);
   check_curves(a, search);
 }
 
