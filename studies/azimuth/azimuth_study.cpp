@@ -45,7 +45,7 @@ struct Limb {
 };
 
 struct Log {
-  std::vector<Limb> limbs;
+  std::vector<Limb> limbs{};
   double seconds = 0.0;
   std::string failure{};
 };

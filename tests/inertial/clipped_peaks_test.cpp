@@ -63,8 +63,9 @@ TEST(ClippedPeaks, AreNeverInsideTheRange) {
   const SwingingSensor swinging;
   const InsSensor restored = restore_clipped_peaks(swinging.sensor, swinging.time);
   for (std::size_t row = 0; row < swinging.time.size(); ++row)
-    if (std::abs(swinging.sensor.angular_velocity.axis[0][row]) >= swinging.rate_range)
+    if (std::abs(swinging.sensor.angular_velocity.axis[0][row]) >= swinging.rate_range) {
       EXPECT_GE(std::abs(restored.angular_velocity.axis[0][row]), swinging.rate_range);
+    }
 }
 
 TEST(ClippedPeaks, WhatIsMeasuredStaysAsItIs) {

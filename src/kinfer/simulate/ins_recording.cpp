@@ -97,9 +97,11 @@ InsSensor simulate_sensor(const SensorMotion& truth, const SensorModel& model, c
   sensor.acceleration = simulate_columns(truth.force, model.accelerometer, step, of_force, rng.stream(accelerometer));
   sensor.angular_velocity =
       simulate_columns(truth.angular_velocity, model.gyroscope, step, of_rate, rng.stream(gyroscope));
-  if (sensor_faults.has_magnetometer)
-    sensor.field = simulate_columns(disturbed_field(truth, sensor_faults, has_transients, step, rng),
-                                    model.magnetometer, step, Spikes(0.0, step, 0.0, rng), rng.stream(magnetometer));
+  if (sensor_faults.has_magnetometer) {
+    const std::vector<Vec3> field = disturbed_field(truth, sensor_faults, has_transients, step, rng);
+    const Spikes none(0.0, step, 0.0, rng);
+    sensor.field = simulate_columns(field, model.magnetometer, step, none, rng.stream(magnetometer));
+  }
   if (sensor_faults.missing > 0.0) drop_rows(sensor, sensor_faults.missing, rng.stream(losses));
   flag_faults(sensor);
   return sensor;

@@ -34,7 +34,7 @@ struct ClippedGyroscope {
         sensor.angular_velocity.axis[k].push_back(k == 0 ? std::clamp(x, -range, range) : k == 1 ? 0.2f : 0.0f);
         sensor.acceleration.axis[k].push_back(k == 2 ? 9.8f : 0.0f);
       }
-      sensor.faults.push_back(std::abs(x) >= range ? angular_velocity_clipped : std::uint8_t{0});
+      sensor.faults.push_back(std::abs(x) >= range ? std::uint8_t{angular_velocity_clipped} : std::uint8_t{0});
     }
   }
 };

@@ -15,8 +15,7 @@ namespace {
 std::vector<Vec3> process(double coefficient, std::size_t count, std::uint64_t seed = 3) {
   Rng rng(seed);
   std::vector<Vec3> series{Vec3::Zero()};
-  while (series.size() < count)
-    series.push_back(coefficient * series.back() + 0.3 * Vec3(rng.normal(), rng.normal(), rng.normal()));
+  while (series.size() < count) series.push_back(coefficient * series.back() + 0.3 * test::random_vector(rng));
   return series;
 }
 

@@ -18,9 +18,9 @@ struct MagneticSeries {
 };
 
 struct MagneticRecording {
-  std::vector<MagneticSeries> sensors;         ///< those with a magnetometer
-  std::vector<std::vector<Mat3>> root_R_body;  ///< of every body, one per bin
-  double strength = 0.0;                       ///< median norm of the field over all sensors
+  std::vector<MagneticSeries> sensors{};         ///< those with a magnetometer
+  std::vector<std::vector<Mat3>> root_R_body{};  ///< of every body, one per bin
+  double strength = 0.0;                         ///< median norm of the field over all sensors
   std::size_t bins = 0;
 };
 
