@@ -126,7 +126,8 @@ LinkFit fit_of_joint(const JointEstimate& revolute, const SegmentMotion& parent,
       revolute_body(-1, -1, frame_with_z_along(revolute.axis_in_parent), frame_with_z_along(revolute.axis_in_child));
   joint.point_in_parent = revolute.point_in_parent;
   joint.point_in_child = revolute.point_in_child;
-  JointGeometry geometry{.axis_in_parent = revolute.axis_in_parent, .axis_in_child = revolute.axis_in_child};
+  JointGeometry geometry{
+      .axis_in_parent = revolute.axis_in_parent, .axis_in_child = revolute.axis_in_child, .home = {}};
   geometry.home.rotation = joint.parent_R_axis * joint.child_R_axis.transpose();
   std::vector<FrameState> parents, measured, predicted;
   std::vector<std::size_t> all;
