@@ -44,6 +44,8 @@ TEST(Names, EveryKindHasOneOfItsOwnThatAProgramCanUse) {
       names_up_to(EstimatedJointType::rigid),
       names_up_to(LinkSearchMethod::enumeration),
       names_up_to(Usability::do_not_use),
+      names_up_to(JointUsability::unknown),
+      names_up_to(JointDoubtKind::inaccurate),
       names_up_to(TraceQuantity::angular_velocity),
       names_up_to(TraceFrame::sensor),
       names_up_to(MeasurementKind{measurement_kinds - 1}),

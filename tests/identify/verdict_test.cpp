@@ -17,17 +17,36 @@ Finding separated(Severity severity, bool applied) {
 }
 
 TEST(Usability, OnlyAnUncorrectedFaultForbidsUse) {
-  const std::vector<JointForecast> accurate{{.joint = "a-b", .is_sufficient = true}};
+  const std::vector<JointVerdict> accurate{{.joint = "a-b"}};
   for (const Severity severity : {Severity::note, Severity::warning, Severity::fault})
     for (const bool applied : {false, true})
       EXPECT_EQ(usability({separated(severity, applied)}, accurate),
                 severity == Severity::fault && !applied ? Usability::do_not_use : Usability::use);
 }
 
-TEST(Usability, AnInaccurateJointAsksForCare) {
-  EXPECT_EQ(usability({}, {{.joint = "a-b", .is_sufficient = true}, {.joint = "b-c", .is_sufficient = false}}),
-            Usability::use_with_care);
+TEST(Usability, IsThatOfTheWorstJoint) {
+  const JointVerdict good{.joint = "a-b"},
+      inaccurate{.joint = "b-c",
+                 .usability = JointUsability::use_with_care,
+                 .doubts = {{JointDoubtKind::inaccurate, {{"line_sd", 0.1}, {"direction_sd", 0.1}}}}},
+      never_moved{.joint = "c-d", .usability = JointUsability::unknown, .doubts = {{JointDoubtKind::not_moved, {}}}},
+      wrong{.joint = "d-e",
+            .usability = JointUsability::do_not_use,
+            .doubts = {{JointDoubtKind::not_connected, {{"gain", 0.1}, {"needed", 5.0}}}}};
+  EXPECT_EQ(usability({}, {good, inaccurate}), Usability::use_with_care);
+  EXPECT_EQ(usability({}, {good, never_moved}), Usability::use);
+  EXPECT_EQ(usability({}, {good, inaccurate, wrong}), Usability::do_not_use);
+  EXPECT_EQ(usability({}, {never_moved}), Usability::do_not_use) << "nothing was identified";
   EXPECT_EQ(usability({}, {}), Usability::use);
+}
+
+TEST(Usability, OfJointsThatAreAllWeaklyConnectedIsNone) {
+  const JointVerdict weak{.joint = "a-b",
+                          .usability = JointUsability::use_with_care,
+                          .doubts = {{JointDoubtKind::weakly_connected, {{"gain", 3.0}, {"needed", 5.0}}}}},
+      good{.joint = "b-c"};
+  EXPECT_EQ(usability({}, {weak, weak}), Usability::do_not_use);
+  EXPECT_EQ(usability({}, {weak, good}), Usability::use_with_care);
 }
 
 MotionEvidence motion_of_two_sensors() {
@@ -72,7 +91,7 @@ TEST(IdentificationVerdict, PutsAFaultFirstAndAWarningLast) {
   EXPECT_TRUE(warned.ends_with("it is left out"));
   EXPECT_EQ(warned.find("ins7 shares"), warned.rfind("ins7 shares")) << "a note is not part of the verdict";
   result.findings = {separated(Severity::fault, false)};
-  result.usability = usability(result.findings, result.forecast);
+  result.usability = usability(result.findings, result.verdicts);
   EXPECT_TRUE(words::identification_verdict(result).starts_with("Do not use as it is: ins7 shares no joint"));
 }
 

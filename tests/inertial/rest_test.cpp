@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "kinfer/inertial/activity.hpp"
 #include "kinfer/inertial/sensor_grading.hpp"
 #include "support/carried_sensor.hpp"
@@ -40,6 +42,50 @@ TEST(RestPeriod, ASensorThatNeverStopsHasNone) {
   const CarriedSensor c = carried({.rest = -10.0});
   EXPECT_TRUE(rest_periods(c.sensor, c.time).empty());
   EXPECT_EQ(bias_at_rest({}).seconds, 0.0);
+}
+
+TEST(RestPeriod, ALargeGyroBiasIsNoMotion) {
+  CarriedSensor c = carried({});                                        // moves from 4 s to 36 s
+  for (float& rate : c.sensor.angular_velocity.axis[1]) rate += 0.07f;  // 4 °/s
+  const auto found = rest_periods(c.sensor, c.time);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NEAR(found[0].angular_velocity.y(), 0.07, 1e-3);
+}
+
+/// The samples of two sensors in turns, each in rows of its own.
+InsRecording interleaved(const CarriedSensor& first, const CarriedSensor& second) {
+  constexpr float missing = std::numeric_limits<float>::quiet_NaN();
+  InsRecording recording;
+  recording.loggers.push_back({"log", {}});
+  recording.sensors = {first.sensor, second.sensor};
+  recording.sensors[0].field = recording.sensors[1].field = {};
+  for (std::size_t s = 0; s < 2; ++s)
+    for (auto* columns : {&recording.sensors[s].acceleration, &recording.sensors[s].angular_velocity})
+      for (auto& axis : columns->axis) {
+        std::vector<float> spread;
+        for (const float value : axis) {
+          spread.push_back(s == 0 ? value : missing);
+          spread.push_back(s == 0 ? missing : value);
+        }
+        axis = spread;
+      }
+  for (std::size_t row = 0; row < 2 * first.time.size(); ++row)
+    recording.loggers[0].time.push_back(0.0025 * static_cast<double>(row));
+  for (InsSensor& sensor : recording.sensors) flag_faults(sensor);
+  return recording;
+}
+
+TEST(Activity, OfInterleavedSensorsIsThatOfEachByItself) {
+  const CarriedSensor c = carried({.rest = 8.0});
+  InsRecording alone;
+  alone.loggers.push_back({"log", c.time});
+  alone.sensors = {c.sensor, c.sensor};
+  const auto expected = detect_activity(alone), found = detect_activity(interleaved(c, c));
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (const std::size_t s : {0u, 1u})
+      EXPECT_NEAR(found[i].sensors[s].rms_rate, expected[i].sensors[s].rms_rate,
+                  1e-3 + 0.01 * expected[i].sensors[s].rms_rate);
 }
 
 TEST(Activity, ReportsWhichSegmentMovesWhen) {

@@ -8,6 +8,7 @@
 
 #include "kinfer/measurement/clock_correction.hpp"
 #include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/unit_check.hpp"
 #include "support/carried_sensor.hpp"
 
 namespace kinfer {
@@ -102,6 +103,20 @@ TEST(UnitCheck, GravityInOtherUnitsIsFatalAndSaysWhatToWrite) {
   ASSERT_EQ(others.size(), 1u);
   EXPECT_TRUE(others[0].fatal);
   EXPECT_NE(others[0].sentence.find("state the unit of imu_ax"), std::string::npos) << others[0].sentence;
+}
+
+TEST(UnitCheck, CentrifugalForceOnAWheelIsNoOtherUnit) {
+  InsSensor wheel = plausible_sensor();
+  for (std::size_t row = 0; row < wheel.rows(); ++row) {
+    const bool rotates = row > wheel.rows() / 4;
+    wheel.acceleration.axis[0][row] = rotates ? 24.0f : 0.1f;
+    wheel.angular_velocity.axis[2][row] = rotates ? 12.0f : 0.01f;
+  }
+  EXPECT_TRUE(check_units(wheel, true).empty()) << "gravity is read at rest";
+  wheel.angular_velocity.axis[2].assign(wheel.rows(), 12.0f);
+  EXPECT_TRUE(check_units(wheel, true).empty()) << "it never rests, so nothing is known";
+  scale_all(wheel.acceleration, 100.0f);
+  EXPECT_EQ(check_units(wheel, true).size(), 1u) << "beyond any accelerometer on a wheel";
 }
 
 TEST(UnitCheck, AngularVelocityInDegreesIsFatalAndAFewCorruptRowsAreNot) {

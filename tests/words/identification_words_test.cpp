@@ -7,6 +7,7 @@
 #include "kinfer/words/findings/findings.hpp"
 #include "kinfer/words/identification/advice.hpp"
 #include "kinfer/words/identification/forecast.hpp"
+#include "kinfer/words/identification/joint_verdict.hpp"
 #include "kinfer/words/identification/notes.hpp"
 #include "kinfer/words/identification/unobservable.hpp"
 #include "kinfer/words/identification/verdict.hpp"
@@ -176,6 +177,44 @@ TEST(IdentificationVerdict, BeginsWithTheRecommendation) {
   }
   const NamesOnly names;
   EXPECT_EQ(identification_verdict(result), "do_not_use");
+}
+
+FactValues doubt_values() {
+  return {{"gain", 0.3},        {"needed", 5.0}, {"begin", 4.0},      {"end", 27.0},         {"sensor", "ins3"},
+          {"distance", 65.0},   {"reach", 15.0}, {"first", "ins1"},   {"second", "ins3"},    {"margin", 1.2},
+          {"safe_margin", 2.0}, {"ratio", 12.0}, {"line_sd", 0.0123}, {"direction_sd", 0.02}};
+}
+
+TEST(JointDoubtWords, EveryKindHasASentenceInUsersUnits) {
+  std::string all;
+  for (int kind = 0; kind <= static_cast<int>(JointDoubtKind::inaccurate); ++kind) {
+    const std::string sentence = doubt_sentence({static_cast<JointDoubtKind>(kind), doubt_values()});
+    EXPECT_FALSE(sentence.empty());
+    all += sentence + "\n";
+  }
+  for (const char* part : {"its point is 65 m from ins3", "± 12.3 mm and ± 20.0 mrad", "from 4 to 27 s only",
+                           "ins1 and ins3 may be joined instead (margin 1.20, safe is 2)"})
+    EXPECT_NE(all.find(part), std::string::npos) << part << " in " << all;
+}
+
+TEST(IdentificationVerdict, NamesTheRefusedJointFirstAndTheUsablePartNext) {
+  Identification result;
+  result.joints = {{.parent = "a", .child = "b"}, {.parent = "b", .child = "c"}};
+  result.verdicts = {{.joint = "a-b"},
+                     {.joint = "b-c",
+                      .usability = JointUsability::do_not_use,
+                      .doubts = {{JointDoubtKind::not_connected, doubt_values()}}}};
+  result.usability = Usability::do_not_use;
+  const std::string text = identification_verdict(result);
+  EXPECT_TRUE(text.starts_with("Do not use as it is: b-c: a joint explains the motion no better")) << text;
+  EXPECT_NE(text.find("of this, a-b may be used"), std::string::npos) << text;
+  EXPECT_EQ(joint_usability_text(JointUsability::do_not_use), "do not use");
+}
+
+TEST(IdentificationVerdict, OneJointIsInTheSingular) {
+  Identification result;
+  result.joints = {{.parent = "a", .child = "b"}};
+  EXPECT_NE(identification_verdict(result).find("1 joint found"), std::string::npos);
 }
 
 }  // namespace

@@ -34,6 +34,11 @@ std::vector<Finding> one_of_each() {
       {.kind = FindingKind::several_machines, .values = {{"groups", std::vector<std::string>{"a, b", "c, d"}}}},
       {.kind = FindingKind::linkage, .values = cut, .applied = true},
       {.kind = FindingKind::no_joint, .values = cut, .applied = true},
+      {.kind = FindingKind::not_connected, .values = {{"sensor", "e"}}, .applied = true},
+      {.kind = FindingKind::mixed_recording,
+       .severity = Severity::fault,
+       .values = {{"sensor", "e"}, {"begin", 4.0}, {"end", 27.3}}},
+      {.kind = FindingKind::duplicate_sensor, .severity = Severity::fault, .values = {{"first", "a"}, {"second", "e"}}},
       {.kind = FindingKind::idle,
        .values = {{"stationary", std::vector<std::string>{"a", "b"}},
                   {"left_out", std::vector<std::string>{"b"}},
@@ -75,6 +80,8 @@ TEST(RecordingFindings, EveryKindHasASentenceAndItsNumbersInUsersUnits) {
     all += sentence(finding) + "\n";
   }
   EXPECT_THAT(all, HasSubstr("turned by 10.0 deg"));
+  EXPECT_THAT(all, HasSubstr("e belongs to the machine from 4 to 27 s only"));
+  EXPECT_THAT(all, HasSubstr("a and e hold the same measurements"));
   EXPECT_THAT(all, HasSubstr("moved by about 30 mm; only what was recorded before is used"));
   EXPECT_THAT(all, HasSubstr("d are logged 50.00 (± 0.10) ms late, and its clock runs 50.0 (± 1.00) ppm slow"));
   EXPECT_THAT(all, HasSubstr("fall into 2 groups that share only the ground (a, b; c, d)"));

@@ -5,6 +5,8 @@
 
 #include "kinfer/identify/findings/advice.hpp"
 #include "kinfer/identify/findings/forecast.hpp"
+#include "kinfer/identify/findings/given_links.hpp"
+#include "kinfer/identify/findings/joint_verdicts.hpp"
 #include "kinfer/identify/findings/motion_evidence.hpp"
 #include "kinfer/identify/findings/order_evidence.hpp"
 #include "kinfer/identify/findings/unobservable.hpp"
@@ -17,6 +19,7 @@
 #include "kinfer/identify/refinement/refine_geometry.hpp"
 #include "kinfer/identify/screening/machines.hpp"
 #include "kinfer/identify/screening/session.hpp"
+#include "kinfer/identify/screening/unconnected.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -30,9 +33,11 @@ const SegmentMotion& segment_of(const RecordedMotion& motion, const std::string&
   return *std::ranges::find(motion.segments, name, &SegmentMotion::name);
 }
 
-std::optional<RecordingSelection> find_consistent_part(const OrderedMotion& ordered, const IdentifyOptions& options) {
+std::optional<RecordingSelection> find_consistent_part(const OrderedMotion& ordered,
+                                                       const std::vector<PairConnection>& connections,
+                                                       const IdentifyOptions& options) {
   const auto separation = options.tree.empty() ? MachineSeparation::of_unconnected_groups : MachineSeparation::none;
-  return select_consistent_part(ordered, options.root, separation, options.threads);
+  return select_consistent_part(ordered, connections, options.root, separation, options.threads);
 }
 
 LinkSearchOptions link_search_options(const IdentifyOptions& options) {
@@ -50,6 +55,15 @@ ChainGeometry searched_geometry(const std::vector<JointResult>& links) {
     append(geometry.notes, link.notes);
   }
   return geometry;
+}
+
+/// Segments without a connection move relative to each other, however small that seems beside errors of their own.
+std::vector<JointTypeEvidence> types_of(const OrderedMotion& ordered, const std::vector<PairConnection>& connections) {
+  std::vector<JointTypeEvidence> types = joint_types(ordered.motion, ordered.tree);
+  for (std::size_t i = 0; i < types.size(); ++i)
+    if (types[i].type == EstimatedJointType::rigid && strength_of(connections[i].whole) == ConnectionStrength::none)
+      types[i].type = EstimatedJointType::spherical;
+  return types;
 }
 
 /// Evaluates the joints that are written in the terms of the search, on its rows.
@@ -72,12 +86,14 @@ bool contradicts_fit(const JointResult& link) {
 }
 
 /// The fit begins at the pairs of sensors. Where a search contradicts its result, the fit is made again from the joints
-/// of the searches, and the better of both is kept. `links` get the certificate of what is kept.
+/// of the searches, and the better of both is kept. `links` get the certificate of what is kept. A fit of segments that
+/// have nothing to do with each other takes minutes and means nothing; that of a single pair is short.
 Result<ChainGeometry> final_geometry(std::vector<JointResult>& links, const Session& session,
-                                     const OrderedMotion& ordered, const IdentifyOptions& options,
-                                     const Observer& observer) {
+                                     const OrderedMotion& ordered, const std::vector<PairConnection>& connections,
+                                     const IdentifyOptions& options, const Observer& observer) {
   const ChainGeometry searched = searched_geometry(links);
-  if (options.geometry == GeometrySource::searched) return searched;
+  const bool is_hopeless = is_unconnected(connections) || (connections.size() > 1 && !has_certain_joint(connections));
+  if (options.geometry == GeometrySource::searched || is_hopeless) return searched;
   RefinementOptions refinement = options.refine;
   refinement.clocks = session.clock_treatment();
   refinement.fit.threads = options.threads;
@@ -128,11 +144,22 @@ void report_findings(Identification& result, const Session& session, const Order
   append(result.findings, clocks.findings);
 }
 
-void draw_conclusions(Identification& result) {
+void draw_conclusions(Identification& result, const OrderedMotion& ordered,
+                      const std::vector<PairConnection>& connections) {
   result.forecast = forecast(result.joints, result.target);
   result.prediction = summarise_prediction(result.motion);
-  result.usability = usability(result.findings, result.forecast);
+  result.verdicts = joint_verdicts(result, ordered, connections);
+  result.usability = usability(result.findings, result.verdicts);
+  withdraw_unconnected(result);
   result.advice = identification_advice(result);
+}
+
+/// The same recording without the given tree judges the links that it contradicts.
+void judge_given_links(Identification& given, const InsRecording& recording, IdentifyOptions options, const Rng& rng,
+                       const Observer& observer) {
+  if (!contradicts_given_links(given)) return;
+  options.tree.clear();
+  if (const auto estimated = identify_machine(recording, options, rng, observer)) weigh_given_links(given, *estimated);
 }
 
 }  // namespace
@@ -144,13 +171,14 @@ Result<Identification> identify_machine(const InsRecording& recording, const Ide
   for (;;) {
     KINFER_TRY(ordered,
                order_segments(session.recording(), options.motion, options.root, options.threads, options.tree));
-    if (auto part = find_consistent_part(ordered, options)) {
+    const auto connections = tree_connections(ordered.motion, ordered.tree, options.threads);
+    if (auto part = find_consistent_part(ordered, connections, options)) {
       if (const auto done = session.restrict_to(std::move(*part)); !done) return forward_error(done.error());
       continue;
     }
-    const auto types = joint_types(ordered.motion, ordered.tree);
+    const auto types = types_of(ordered, connections);
     KINFER_TRY(links, search_links(ordered, types, link_search_options(options), rng, observer));
-    KINFER_TRY(geometry, final_geometry(links, session, ordered, options, observer));
+    KINFER_TRY(geometry, final_geometry(links, session, ordered, connections, options, observer));
     if (session.update_clocks(geometry.clocks)) continue;
 
     Identification result = assemble_chain(ordered, std::move(links), geometry, options);
@@ -162,7 +190,8 @@ Result<Identification> identify_machine(const InsRecording& recording, const Ide
     append(result.notes, geometry.notes);
     result.order = std::move(order.evidence);
     result.clocks = std::move(clocks.clocks);
-    draw_conclusions(result);
+    judge_given_links(result, recording, options, rng, observer);
+    draw_conclusions(result, ordered, connections);
     return result;
   }
 }

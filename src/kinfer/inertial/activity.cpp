@@ -16,10 +16,12 @@ std::vector<double> window_rates(const InsSensor& sensor, std::span<const double
   const auto windows = static_cast<std::size_t>((time.back() - time.front()) / window) + 1;
   std::vector<double> sum(windows, 0.0), seconds(windows, 0.0);
   LowPass<Vec3> angular_velocity{Vec3::Zero()};
+  double last = time.front();  // sample of this sensor: rows between may be those of other sensors
   for (std::size_t row = 1; row < time.size(); ++row) {
     const InsSample s = sample(sensor, time, row);
-    const double dt = std::min(time[row] - time[row - 1], window);
     if (!s.has_angular_velocity) continue;
+    const double dt = std::min(time[row] - last, window);
+    last = time[row];
     angular_velocity.add(s.angular_velocity - bias, dt, 0.1 * window);
     const auto w = static_cast<std::size_t>((time[row] - time.front()) / window);
     sum[w] += dt * angular_velocity.value.squaredNorm();

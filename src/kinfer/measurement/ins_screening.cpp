@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/measurement/ins_screening.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -97,64 +95,6 @@ bool is_clipped_at_peak(const Peak& peak, std::size_t rows) {
   return !is_constant(peak) && peak.in_runs >= 8 && peak.in_runs > 2 * peak.just_below && 20 * peak.repeats < rows;
 }
 
-double median_norm(const TriadColumns& triad) {
-  std::vector<double> norms;
-  const std::size_t rows = triad.axis[0].size();
-  const std::size_t stride = std::max<std::size_t>(1, rows / 20000);  // enough for a median
-  for (std::size_t row = 0; row < rows; row += stride)
-    if (is_finite(triad, row) && !is_zero(triad, row)) norms.push_back(triad.at(row).norm());
-  if (norms.empty()) return 0.0;
-  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
-  std::ranges::nth_element(norms, middle);
-  return *middle;
-}
-
-void check_gravity_unit(const InsSensor& sensor, std::vector<UnitWarning>& warnings) {
-  const double gravity = median_norm(sensor.acceleration);
-  if (gravity <= 0.0 || (gravity > 0.7 * standard_gravity && gravity < 2.0 * standard_gravity)) return;
-  if (gravity > 0.7 && gravity < 1.5)
-    warnings.push_back({fmt::format("{0}: gravity reads {1:.3g} m/s²: the file seems to be in g; write the headers as "
-                                    "{0}_ax[g], {0}_ay[g], {0}_az[g]",
-                                    sensor.name, gravity),
-                        true});
-  else
-    warnings.push_back({fmt::format("{0}: gravity reads {1:.3g} m/s², expected about 9.81: state the unit of {0}_ax, "
-                                    "{0}_ay, {0}_az in brackets, or check the sensor",
-                                    sensor.name, gravity),
-                        true});
-}
-
-void check_angular_velocity_unit(const InsSensor& sensor, std::vector<UnitWarning>& warnings) {
-  std::size_t impossible = 0, rows = 0;
-  double fastest = 0.0;
-  for (std::size_t row = 0; row < sensor.angular_velocity.axis[0].size(); ++row) {
-    if (!is_finite(sensor.angular_velocity, row)) continue;
-    const double angular_velocity = sensor.angular_velocity.at(row).cwiseAbs().maxCoeff();
-    ++rows;
-    if (angular_velocity > max_plausible_angular_velocity) ++impossible, fastest = std::max(fastest, angular_velocity);
-  }
-  if (impossible * 1000 > rows)  // fewer are corrupt rows, and are flagged
-    warnings.push_back(
-        {fmt::format("{0}: the angular rate reaches {1:.3g} rad/s, which no such sensor can measure: the "
-                     "file seems to be in °/s; write the headers as {0}_gx[deg/s], {0}_gy[deg/s], "
-                     "{0}_gz[deg/s]",
-                     sensor.name, fastest),
-         true});
-}
-
-void check_field_unit(const InsSensor& sensor, std::vector<UnitWarning>& warnings) {
-  const double field = median_norm(sensor.field);
-  if (field <= 0.0)
-    warnings.push_back(
-        {fmt::format("{}: the magnetometer says nothing but zeros: it is not used", sensor.name), false});
-  else if (field < 8.0 || field > 500.0)
-    warnings.push_back(
-        {fmt::format("{0}: the magnetic field reads {1:.3g} µT, the Earth's is 25 to 65: it is not used; "
-                     "state its unit in brackets, {0}_mx[1] where it is arbitrary",
-                     sensor.name, field),
-         false});
-}
-
 }  // namespace
 
 std::vector<bool> find_clipped_rows(const std::vector<float>& column, std::span<const double> full_scales,
@@ -228,15 +168,6 @@ void flag_faults(InsSensor& sensor) {
     set_fault(sensor, find_clipped_rows(axis, gyroscope, smallest_rate_range), angular_velocity_clipped);
     set_fault(sensor, find_spikes(axis, rate_spike_floor), angular_velocity_spike);
   }
-}
-
-std::vector<UnitWarning> check_units(const InsSensor& sensor, bool field_has_unit) {
-  std::vector<UnitWarning> warnings;
-  check_gravity_unit(sensor, warnings);
-  check_angular_velocity_unit(sensor, warnings);
-  if (sensor.has_magnetometer() && (!field_has_unit || median_norm(sensor.field) <= 0.0))
-    check_field_unit(sensor, warnings);
-  return warnings;
 }
 
 std::size_t find_usable_end(const InsSensor& sensor) {

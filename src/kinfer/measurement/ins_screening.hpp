@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Screening of recordings: flags missing values, clipped peaks and spikes, and reports columns that seem to be in
-// another unit. Nothing is corrected.
+// Screening of recordings: flags missing values, clipped peaks and spikes. Nothing is corrected.
 #pragma once
-
-#include <string>
 
 #include "kinfer/measurement/ins_recording.hpp"
 
@@ -23,14 +20,6 @@ std::vector<bool> find_clipped_rows(const std::vector<float>& column, std::span<
 /// Spikes of up to three consecutive rows: they deviate from the rows before and after, which agree with each other, by
 /// more than `floor` and by far more than the typical second difference of the column.
 std::vector<bool> find_spikes(const std::vector<float>& column, double floor);
-
-/// A sentence for each instrument whose values cannot be in the unit that the file claims: gravity of 1 or 1000,
-/// angular velocities beyond any real sensor, a field that exists nowhere on Earth. Empty if all is plausible.
-struct UnitWarning {
-  std::string sentence;  ///< "imu: gravity reads 1.00 m/s²: the file seems to be in g; write the header as imu_ax[g]"
-  bool fatal = true;     ///< false: the column can be ignored
-};
-std::vector<UnitWarning> check_units(const InsSensor& sensor, bool field_has_unit);
 
 /// Start of the unusable tail of a recording: the first row after which no row has both angular rate and specific
 /// force; rows() if the sensor delivers to the end.

@@ -24,7 +24,8 @@ RecordedMotion four_in_series(double phase = 0.0) {
 std::optional<RecordingSelection> consistent_part(
     const OrderedMotion& ordered, MachineSeparation separation = MachineSeparation::of_unconnected_groups,
     int threads = 1) {
-  return select_consistent_part(ordered, {}, separation, threads);
+  const auto connections = tree_connections(ordered.motion, ordered.tree, threads);
+  return select_consistent_part(ordered, connections, {}, separation, threads);
 }
 
 TEST(ConsistentPart, OfAFaultlessRecordingIsAllOfIt) {

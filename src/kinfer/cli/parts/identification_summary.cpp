@@ -8,6 +8,7 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/evidence/identification/unobservable_limit.hpp"
+#include "kinfer/words/identification/joint_verdict.hpp"
 #include "kinfer/words/identification/notes.hpp"
 #include "kinfer/words/identification/unobservable.hpp"
 #include "kinfer/words/identification/verdict.hpp"
@@ -41,6 +42,10 @@ std::string vector_text(const Vec3& v, double scale, int width, int decimals) {
   return text;
 }
 
+std::string known_text(bool known, const Vec3& v, double scale, int width, int decimals) {
+  return known ? vector_text(v, scale, width, decimals) : "unknown";
+}
+
 /// Combined standard deviation of two directions; "unknown" if not determined by the data.
 std::string deviation_text(const std::array<double, 2>& sd, double scale, int decimals) {
   const double both = std::hypot(sd[0], sd[1]);
@@ -64,16 +69,30 @@ std::string joint_table(const std::vector<JointEstimate>& joints) {
   for (const JointEstimate& j : joints) {
     const auto line = [&](const std::string& head, std::string_view type, const std::string& sensor, const Vec3& axis,
                           const Vec3& point, const std::array<double, 2>& axis_sd,
-                          const std::array<double, 2>& point_sd) {
+                          const std::array<double, 2>& point_sd, const std::vector<Vec3>& unobservable) {
       text += fmt::format("{:<16} {:<10} {:<8} {:>24} {:>27} {:>16} {:>10}\n", head, type, sensor,
-                          vector_text(axis, 1.0, 8, 4), vector_text(point, 1e3, 9, 1), deviation_text(axis_sd, 1e3, 2),
-                          deviation_text(point_sd, 1e3, 1));
+                          known_text(is_axis_known(j, axis_sd), axis, 1.0, 8, 4),
+                          known_text(is_point_known(point_sd, unobservable), point, 1e3, 9, 1),
+                          deviation_text(axis_sd, 1e3, 2), deviation_text(point_sd, 1e3, 1));
     };
     line(joint_name(j), name(j.type), j.parent, j.axis_in_parent, j.point_in_parent, j.sd.axis_in_parent,
-         j.sd.point_in_parent);
-    line("", "", j.child, j.axis_in_child, j.point_in_child, j.sd.axis_in_child, j.sd.point_in_child);
+         j.sd.point_in_parent, j.unobservable_in_parent);
+    line("", "", j.child, j.axis_in_child, j.point_in_child, j.sd.axis_in_child, j.sd.point_in_child,
+         j.unobservable_in_child);
   }
   return text + "\n";
+}
+
+/// Verdict on each joint, with what speaks against it.
+std::string verdict_list(const std::vector<JointVerdict>& verdicts) {
+  std::string text;
+  for (const JointVerdict& verdict : verdicts) {
+    text += fmt::format("{:<16} {}", verdict.joint, words::joint_usability_text(verdict.usability));
+    for (std::size_t i = 0; i < verdict.doubts.size(); ++i)
+      text += (i == 0 ? ": " : "; ") + words::doubt_sentence(verdict.doubts[i]);
+    text += "\n";
+  }
+  return text.empty() ? "" : text + "\n";
 }
 
 std::string fit_table(const std::vector<LinkEvidence>& searches) {
@@ -110,8 +129,8 @@ std::string link_line(const LinkEstimate& link) {
 }  // namespace
 
 std::string identification_summary(const Identification& found) {
-  std::string text =
-      words::identification_verdict(found) + ".\n\n" + order_table(found.order) + joint_table(found.joints);
+  std::string text = words::identification_verdict(found) + ".\n\n" + order_table(found.order) +
+                     joint_table(found.joints) + verdict_list(found.verdicts);
   for (const LinkEstimate& link : found.links) text += link_line(link);
   for (const PointEstimate& place : found.places)
     text += fmt::format("{} in {}: {} mm (sd {} mm)\n", place.name, place.sensor, vector_text(place.xyz, 1e3, 9, 1),

@@ -36,11 +36,20 @@ void print_loggers(const InsRecording& recording) {
 /// Measurements per second of an instrument.
 double rate_of(const InsSensor& sensor, std::span<const double> time, Fault missing) {
   const double span = time.back() - time.front();
-  return span > 0.0 ? static_cast<double>(time.size() - count(sensor, missing) - 1) / span : 0.0;
+  const std::size_t samples = time.size() - count(sensor, missing);
+  return span > 0.0 && samples > 1 ? static_cast<double>(samples - 1) / span : 0.0;
 }
 
 std::string triple(const Vec3& v, double unit, const char* format_of) {
   return fmt::format(fmt::runtime(format_of), v.x() / unit, v.y() / unit, v.z() / unit);
+}
+
+/// The Earth's field is 25 to 65 µT; other magnitudes are of an arbitrary unit, as the header may state.
+bool is_in_microtesla(const InsSensor& sensor) {
+  double sum = 0.0, n = 0.0;
+  for (std::size_t row = 0; row < sensor.rows(); ++row)
+    if (!(sensor.faults[row] & field_missing)) sum += sensor.field.at(row).norm(), n += 1.0;
+  return n > 0.0 && sum / n > 15.0 && sum / n < 150.0;
 }
 
 void print_sensor(const InsSensor& sensor, std::span<const double> time, const std::vector<RestPeriod>& rest_list) {
@@ -66,7 +75,8 @@ void print_sensor(const InsSensor& sensor, std::span<const double> time, const s
              triple(found.rate_density, degree, "{:.4f} {:.4f} {:.4f}"),
              triple(found.acceleration_density, micro_g, "{:.0f} {:.0f} {:.0f}"));
   if (sensor.has_magnetometer())
-    fmt::print(", field {} µT/√Hz", triple(found.field_density, 1.0, "{:.3f} {:.3f} {:.3f}"));
+    fmt::print(", field {} {}/√Hz", triple(found.field_density, 1.0, "{:.3f} {:.3f} {:.3f}"),
+               is_in_microtesla(sensor) ? "µT" : "of its unit");
   fmt::print(
       "\n  gravity at rest is {:.3f} m/s² off; largest reading {:.0f} °/s and {:.1f} m/s²; gyro scale errors about "
       "{:.2g} %\n",

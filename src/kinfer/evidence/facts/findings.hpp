@@ -51,6 +51,9 @@ enum class FindingKind {
   several_machines,        ///< the recording holds more than one machine
   linkage,                 ///< a sensor on a bar of a linkage
   no_joint,                ///< a sensor that shares no joint with the others
+  not_connected,           ///< sensors that have nothing to do with the others
+  mixed_recording,         ///< a sensor that is connected with the others in a part of the recording only
+  duplicate_sensor,        ///< two sensors hold the same measurements
   idle,                    ///< sensors that never move
   remounted,               ///< a sensor was remounted during the recording
   clock,                   ///< a sensor's clock is offset or drifts

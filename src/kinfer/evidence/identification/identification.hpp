@@ -13,6 +13,7 @@
 #include "kinfer/evidence/facts/verdict.hpp"
 #include "kinfer/evidence/identification/identification_facts.hpp"
 #include "kinfer/evidence/identification/joint_estimate.hpp"
+#include "kinfer/evidence/identification/joint_verdict.hpp"
 #include "kinfer/evidence/identification/traces.hpp"
 #include "kinfer/kinematics/chain.hpp"
 
@@ -134,7 +135,9 @@ struct Identification {
   std::vector<IdentificationNote> notes;
   std::vector<IdentificationAdvice> advice;  ///< what to measure or to do next, most useful first
   PredictionSummary prediction;
-  /// do_not_use: a fault that was not corrected; use_with_care: a joint is less accurate than the target.
+  std::vector<JointVerdict> verdicts;  ///< of each joint, in the same order
+  /// do_not_use: a fault that was not corrected, or a joint against which the evidence is; use_with_care: a joint is
+  /// less certain or less accurate than wanted.
   Usability usability = Usability::use;
 };
 

@@ -19,11 +19,20 @@ struct UnobservableRecord {
   std::string what{}, how{};  ///< the quantity, and the measurement that would determine it
 };
 
-/// A joint, and what the recording does not determine of it.
+/// Why a joint is not simply used, with its sentence.
+struct JointDoubtRecord {
+  JointDoubt doubt{};
+  std::string sentence{};
+};
+
+/// A joint, its verdict, and what the recording does not determine of it.
 struct JointRecord {
   JointEstimate estimate{};                        ///< without trajectory and unobservable quantities
   std::vector<std::string> sentences{};            ///< on the unobservable quantities, with remedies
   std::vector<UnobservableRecord> unobservable{};  ///< empty in files of earlier versions
+  JointUsability usability = JointUsability::use;  ///< like the next two
+  std::vector<JointDoubtRecord> doubts{};
+  JointConnection connection{};
 };
 
 /// Correction of a sensor's clock.

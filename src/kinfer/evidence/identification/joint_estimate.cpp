@@ -2,6 +2,9 @@
 #include "kinfer/evidence/identification/joint_estimate.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "kinfer/evidence/identification/unobservable_limit.hpp"
 
 namespace kinfer {
 
@@ -19,6 +22,16 @@ std::string_view name(EstimatedJointType type) {
       break;
   }
   return "rigid";
+}
+
+bool is_axis_known(const JointEstimate& joint, const std::array<double, 2>& axis_sd) {
+  return joint.type != EstimatedJointType::spherical && std::min(axis_sd[0], axis_sd[1]) < unobservable_sd;
+}
+
+bool is_point_known(const std::array<double, 2>& point_sd, const std::vector<Vec3>& unobservable) {
+  const double least = std::min(point_sd[0], point_sd[1]);
+  if (!std::isfinite(least) || unobservable.size() >= 3) return false;
+  return least < unobservable_sd || !unobservable.empty();  // what is known lies across the unobservable directions
 }
 
 std::string joint_name(const JointEstimate& joint) {

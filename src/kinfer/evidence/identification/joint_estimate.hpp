@@ -51,6 +51,11 @@ struct LoopEstimate {
   double log_odds = 0.0;      ///< ln of the posterior odds of a closed loop
 };
 
+/// Whether the recording determines anything of a joint's axis, or of its point, in one of its sensors; what it does
+/// not determine at all has no coordinates in files and on screens. A spherical joint has no axis.
+bool is_axis_known(const JointEstimate& joint, const std::array<double, 2>& axis_sd);
+bool is_point_known(const std::array<double, 2>& point_sd, const std::vector<Vec3>& unobservable);
+
 /// "ins1-ins2": parent and child.
 std::string joint_name(const JointEstimate& joint);
 

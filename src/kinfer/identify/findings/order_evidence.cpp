@@ -27,6 +27,16 @@ OrderEvidence order_evidence(const OrderedMotion& ordered, const std::vector<Pai
   return order;
 }
 
+std::vector<IdentificationNote> order_notes(const OrderEvidence& order) {
+  std::vector<IdentificationNote> notes;
+  if (order.margin && *order.margin < safe_margin)
+    notes.push_back({IdentificationNoteKind::unsafe_order, {{"margin", *order.margin}, {"safe_margin", safe_margin}}});
+  if (!order.phases_agree) notes.push_back({IdentificationNoteKind::phases_disagree, {}});
+  return notes;
+}
+
+}  // namespace
+
 std::vector<PairFit> closing_pairs(const OrderedMotion& ordered, const std::vector<LoopEstimate>& loops) {
   const std::vector<std::string> names = segment_names(ordered.motion);
   const auto index = [&](const std::string& name) {
@@ -37,16 +47,6 @@ std::vector<PairFit> closing_pairs(const OrderedMotion& ordered, const std::vect
     pairs.push_back(ordered.tree.pair(index(loop.joint.parent), index(loop.joint.child)));
   return pairs;
 }
-
-std::vector<IdentificationNote> order_notes(const OrderEvidence& order) {
-  std::vector<IdentificationNote> notes;
-  if (order.margin && *order.margin < safe_margin)
-    notes.push_back({IdentificationNoteKind::unsafe_order, {{"margin", *order.margin}, {"safe_margin", safe_margin}}});
-  if (!order.phases_agree) notes.push_back({IdentificationNoteKind::phases_disagree, {}});
-  return notes;
-}
-
-}  // namespace
 
 OrderReport report_order(const OrderedMotion& ordered, const std::vector<LoopEstimate>& loops) {
   OrderReport report{.evidence = order_evidence(ordered, closing_pairs(ordered, loops)),

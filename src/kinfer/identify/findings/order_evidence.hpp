@@ -13,6 +13,9 @@ struct OrderReport {
   std::vector<Finding> findings;          ///< kinematic loops, given links
 };
 
+/// The pairs outside the tree that share a joint, too, because they close a loop.
+std::vector<PairFit> closing_pairs(const OrderedMotion& ordered, const std::vector<LoopEstimate>& loops);
+
 /// The pairs that close `loops` do not count in the margin.
 OrderReport report_order(const OrderedMotion& ordered, const std::vector<LoopEstimate>& loops);
 

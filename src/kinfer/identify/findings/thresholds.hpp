@@ -10,6 +10,10 @@ namespace kinfer::identify {
 /// simulated drives of six machines: no wrong tree had a larger margin.
 inline constexpr double safe_margin = 2.0;
 
+/// [m] Distance of a joint's point from a sensor beyond which no machine reaches, five times the prior of a lever arm:
+/// such a point is an artefact. Larger accepts more of them.
+inline constexpr double max_reach = 15.0;
+
 /// [rad] Angle between consecutive axes below which only the sum of their offsets d is taken as observable; larger
 /// reports more joints. Data not recorded.
 inline constexpr double parallel_axes_angle = 0.05;

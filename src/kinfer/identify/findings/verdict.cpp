@@ -15,9 +15,18 @@ PredictionSummary summarise_prediction(const MotionEvidence& motion) {
   return summary;
 }
 
-Usability usability(const std::vector<Finding>& findings, const std::vector<JointForecast>& forecast) {
-  if (std::ranges::any_of(findings, invalidates_result)) return Usability::do_not_use;
-  return all_sufficient(forecast) ? Usability::use : Usability::use_with_care;
+Usability usability(const std::vector<Finding>& findings, const std::vector<JointVerdict>& joints) {
+  const auto some = [&](JointUsability u) {
+    return std::ranges::find(joints, u, &JointVerdict::usability) != joints.end();
+  };
+  if (std::ranges::any_of(findings, invalidates_result) || some(JointUsability::do_not_use))
+    return Usability::do_not_use;
+  const bool is_all_doubtful = std::ranges::all_of(joints, [](const JointVerdict& joint) {
+    return joint.usability == JointUsability::unknown ||
+           std::ranges::find(joint.doubts, JointDoubtKind::weakly_connected, &JointDoubt::kind) != joint.doubts.end();
+  });
+  if (is_all_doubtful && !joints.empty()) return Usability::do_not_use;
+  return some(JointUsability::use_with_care) ? Usability::use_with_care : Usability::use;
 }
 
 }  // namespace kinfer::identify

@@ -10,7 +10,8 @@ namespace kinfer::identify {
 /// rows.
 PredictionSummary summarise_prediction(const MotionEvidence& motion);
 
-/// do_not_use: a fault was not corrected; use_with_care: not every joint is as accurate as wanted.
-Usability usability(const std::vector<Finding>& findings, const std::vector<JointForecast>& forecast);
+/// do_not_use: a fault was not corrected, or the evidence is against a joint, or no joint is certain (each is weakly
+/// connected or never moved); use_with_care: not every joint is as certain and as accurate as wanted.
+Usability usability(const std::vector<Finding>& findings, const std::vector<JointVerdict>& joints);
 
 }  // namespace kinfer::identify

@@ -143,7 +143,8 @@ RecordingSelection exclude_idle_sensors(const InsRecording& recording, const Seg
     else
       chosen.sensors.push_back(s);
   }
-  if (left_out.empty() || still.size() == recording.sensors.size()) return chosen;
+  if (still.size() == recording.sensors.size()) return select_all(recording.sensors.size());  // nothing moved
+  if (left_out.empty()) return chosen;
   chosen.findings.push_back({.kind = FindingKind::idle,
                              .severity = Severity::warning,
                              .values = {{"stationary", still}, {"left_out", left_out}, {"kept", kept}},

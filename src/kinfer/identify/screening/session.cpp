@@ -4,16 +4,20 @@
 #include <algorithm>
 #include <iterator>
 
+#include "kinfer/identify/screening/duplicates.hpp"
 #include "kinfer/identify/screening/machines.hpp"
 #include "kinfer/identify/screening/remount.hpp"
 #include "kinfer/identify/screening/time_stamps.hpp"
+#include "kinfer/identify/screening/unconnected.hpp"
 #include "kinfer/measurement/ins_selection.hpp"
 
 namespace kinfer::identify {
 namespace {
 
-constexpr int max_clock_updates = 3;  // the third is applied and reported, but not fitted again
-constexpr int max_restrictions = 6;   // each removes a machine or one side of a remounting
+constexpr double max_sampling_period = 0.09;  // [s] steps of 0.1 s are gaps (inertial/thresholds)
+constexpr int advised_sampling_rate = 50;     // [Hz]
+constexpr int max_clock_updates = 3;          // the third is applied and reported, but not fitted again
+constexpr int max_restrictions = 6;           // each removes a machine or one side of a remounting
 
 Result<RecordingSelection> select_moving_sensors(const InsRecording& recording, const std::vector<std::string>& names,
                                                  const std::optional<std::string>& root,
@@ -32,9 +36,18 @@ Result<Session> Session::open(const InsRecording& recording, const std::vector<s
   for (const InsSensor& sensor : recording.sensors)
     if (!sensor.acceleration.present() || !sensor.angular_velocity.present())
       return error("{}: identification needs specific force (ax ay az) and angular rate (gx gy gz)", sensor.name);
+  for (const InsLogger& logger : recording.loggers)
+    if (const double period = median_period(logger.time); period > max_sampling_period)
+      return error("{}: {:.3g} samples a second are too few to follow a machine; record {} or more", logger.name,
+                   1.0 / period, advised_sampling_rate);
   MendedTimeStamps stamps = mend_time_stamps(recording, threads);
   const InsRecording& mended = stamps.recording ? *stamps.recording : recording;
   KINFER_TRY(chosen, select_moving_sensors(mended, sensors, root, motion));
+  std::vector<Finding> duplicates = duplicate_findings(mended, chosen.sensors);
+  if (!duplicates.empty() && chosen.sensors.size() == 2)
+    return error("{} and {} hold the same measurements: one sensor under two names",
+                 duplicates.front().values.text("first"), duplicates.front().values.text("second"));
+  std::ranges::move(duplicates, std::back_inserter(chosen.findings));
   Session session(recording);
   if (chosen.sensors.size() < recording.sensors.size())
     session.part_ = select_sensors(mended, chosen.sensors);
@@ -67,9 +80,11 @@ ClockReport Session::report_clocks(const std::vector<ResidualClock>& residual) c
 }
 
 std::optional<RecordingSelection> select_consistent_part(const OrderedMotion& ordered,
+                                                         const std::vector<PairConnection>& connections,
                                                          const std::optional<std::string>& root,
                                                          MachineSeparation separation, int threads) {
   const std::size_t segments = ordered.motion.segments.size();
+  if (is_unconnected(connections)) return std::nullopt;
   if (const auto remount = find_remount(ordered, threads)) {
     RecordingSelection part = select_all(segments);
     (remount->before_is_more_informative ? part.end : part.begin) =
@@ -78,7 +93,8 @@ std::optional<RecordingSelection> select_consistent_part(const OrderedMotion& or
     return part;
   }
   if (separation == MachineSeparation::none) return std::nullopt;
-  RecordingSelection machine = select_machine(ordered, root);
+  RecordingSelection machine = select_connected(ordered, connections, root, threads);
+  if (machine.sensors.size() == segments) machine = select_machine(ordered, root);
   if (machine.sensors.size() == segments) return std::nullopt;
   return machine;
 }

@@ -3,6 +3,7 @@
 // the later steps find restrict it further.
 #pragma once
 
+#include "kinfer/identify/screening/connection.hpp"
 #include "kinfer/identify/screening/synchronisation.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 
@@ -42,8 +43,10 @@ class Session {
 
 enum class MachineSeparation { of_unconnected_groups, none };
 
-/// The consistent part of a recording with a remounted sensor or several machines; none if all of it is consistent.
+/// The consistent part of a recording with a remounted sensor, unconnected sensors or several machines; none if all of
+/// it is consistent, or nothing is connected with anything. `connections`: of the links of the tree.
 std::optional<RecordingSelection> select_consistent_part(const OrderedMotion& ordered,
+                                                         const std::vector<PairConnection>& connections,
                                                          const std::optional<std::string>& root,
                                                          MachineSeparation separation, int threads);
 

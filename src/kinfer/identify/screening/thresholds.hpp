@@ -57,4 +57,32 @@ inline constexpr NoJointThreshold machine_threshold{.residual = 0.05, .factor = 
 /// Fewer segments: a joint with a clipping sensor has up to 8 times the usual residual.
 inline constexpr NoJointThreshold part_threshold{.residual = 0.1, .factor = 10.0};
 
+/// [nats per row] Gain over shifted recordings below which two segments have nothing to do with each other; larger
+/// separates more sensors. Unrelated sensors gain at most 1.3, joints 1.7 (one of a pendulum, the others 6 and more).
+KINFER_THRESHOLD(identify, no_connection_gain, 1.5);
+
+/// [nats per row] Gain from which a connection is that of a joint; larger asks for care more often. Loose segments of
+/// one running body gain 0.5 to 6, knees 5, joints of machines 6 to 20.
+KINFER_THRESHOLD(identify, strong_connection_gain, 5.0);
+
+/// [m/s²] rms residual that is no evidence against a joint, whatever it explains: gentle drives. Larger: asks for care
+/// less often.
+inline constexpr double small_residual = 0.1;
+
+/// [nats per row] By which both halves of a recording may exceed its whole; larger finds fewer mixed recordings. Sound
+/// logs reach 1.3 (450 joints of simulated machines), those of real machines 0.2.
+inline constexpr double max_gain_of_halves = 2.5;
+
+/// [m/s²] rms acceleration, and
+inline constexpr double min_connection_excitation = 0.05;
+/// [rad/s] rms angular velocity, that a connection must explain; below both there is no evidence. Larger: judges fewer.
+inline constexpr double min_connection_rate = 0.02;
+
+/// Factor on a pair's residual in one half of the recording by which the other half must be excited, so that it is told
+/// that the pair is not connected there; larger finds fewer mixed recordings.
+inline constexpr double excited_residual_ratio = 5.0;
+
+/// [s] Shorter halves of a recording are not judged by themselves: shifts by an eighth of it are too short.
+inline constexpr double min_connection_time = 8.0;
+
 }  // namespace kinfer::identify

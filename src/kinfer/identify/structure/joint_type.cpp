@@ -184,15 +184,21 @@ std::vector<JointTypeEvidence> joint_types(const RecordedMotion& motion, const S
   for (std::size_t i = 0; i < joints.size(); ++i) {
     PairMotion& j = joints[i];
     const std::size_t child = tree.order[i + 1], parent = *tree.parent[child];
-    j.evidence.rate_error = motion_significance * std::hypot(relative_rate_noise, share * j.relative.rms_rate);
+    const auto error = [&](double part) {
+      return motion_significance * std::hypot(relative_rate_noise, part * j.relative.rms_rate);
+    };
+    j.evidence.rate_error = error(share);
+    // A single joint has no others that tell errors from motion: what all its components have may be motion.
+    if (joints.size() == 1 && j.evidence.rates[0] <= j.evidence.rate_error)
+      j.evidence.rate_error = error(min_rate_error_share);
     j.evidence.type = rotational_type(j);
     const auto& a = j.evidence.accelerations;
     const auto differences = acceleration_differences(motion.segments[parent], motion.segments[child], rows);
-    const double error = std::max(rigid_acceleration_noise, prismatic_dominance * a[1]);
+    const double slide_error = std::max(rigid_acceleration_noise, prismatic_dominance * a[1]);
     const Vec3 prismatic_axis =
         second_moment(rows.size(), [&](std::size_t k) { return differences[k]; }).vectors.col(2);
     if (j.evidence.type == EstimatedJointType::rigid &&
-        is_motion(a[0], error, effective_samples(along(differences, prismatic_axis)))) {
+        is_motion(a[0], slide_error, effective_samples(along(differences, prismatic_axis)))) {
       j.evidence.type = EstimatedJointType::prismatic;
       j.evidence.axis_in_parent = prismatic_axis;
       j.evidence.axis_in_child = j.relative.rotation.front().transpose() * prismatic_axis;

@@ -140,6 +140,9 @@ void orient_tree(SegmentTree& tree, const std::vector<Edge>& edges) {
 
 Result<SegmentTree> segment_tree(const RecordedMotion& motion, const std::optional<std::string>& root,
                                  HeadingReference headings, int threads) {
+  if (std::ranges::all_of(motion.segments, &SegmentMotion::still))
+    return error("nothing moved: all {} sensors stand still during the whole recording; move every joint",
+                 motion.segments.size());
   const std::vector<std::size_t> rows = moving_rows(motion);
   if (rows.size() < 50)
     return error("only {} rows in which the machine moves and all sensors have valid measurements", rows.size());

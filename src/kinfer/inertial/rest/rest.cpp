@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/inertial/rest/rest.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace kinfer {
@@ -62,17 +63,35 @@ void RestDetector::add(const InsSample& sample, double dt, const RestOptions& op
   still = quiet ? still + dt : 0.0;
 }
 
-std::vector<RestPeriod> rest_periods(const InsSensor& sensor, std::span<const double> time,
-                                     const RestOptions& options) {
+namespace {
+
+/// Whether the row may be another sensor's.
+bool is_empty(const InsSample& s) {
+  return !s.has_angular_velocity && !s.has_acceleration;
+}
+
+/// Median time between the sensor's own samples.
+double own_period(const InsSensor& sensor, std::span<const double> time) {
+  std::vector<double> own;
+  for (std::size_t row = 0; row < time.size(); ++row)
+    if ((sensor.faults[row] & (acceleration_missing | angular_velocity_missing)) !=
+        (acceleration_missing | angular_velocity_missing))
+      own.push_back(time[row]);
+  return median_period(own);
+}
+
+std::vector<RestPeriod> find_rests(const InsSensor& sensor, std::span<const double> time, const RestOptions& options) {
   std::vector<RestPeriod> found;
   RestDetector detector;
-  const double usual = median_period(time);
+  const double usual = own_period(sensor, time);
   std::size_t first = 0;
   bool resting = false;
+  double last = time.empty() ? 0.0 : time.front() - usual;
   for (std::size_t row = 0; row < time.size(); ++row) {
-    const double dt = row > 0 ? time[row] - time[row - 1] : usual;
+    const double dt = time[row] - last;
     const InsSample s = sample(sensor, time, row);
-    if (!s.has_angular_velocity && !s.has_acceleration && dt < options.mean_time) continue;  // row of another sensor
+    if (is_empty(s) && dt < options.mean_time) continue;  // row of another sensor
+    last = time[row];
     if (dt > gap_factor * usual && dt > options.noise_time) detector = {};
     detector.add(s, std::min(dt, options.mean_time), options);
     const bool still = detector.at_rest(options);
@@ -85,6 +104,17 @@ std::vector<RestPeriod> rest_periods(const InsSensor& sensor, std::span<const do
   }
   if (resting) add_rest(sensor, time, first, time.size() - 1, found);
   return found;
+}
+
+}  // namespace
+
+std::vector<RestPeriod> rest_periods(const InsSensor& sensor, std::span<const double> time,
+                                     const RestOptions& options) {
+  std::vector<RestPeriod> found = find_rests(sensor, time, options);
+  if (!found.empty()) return found;
+  RestOptions large_bias = options;
+  large_bias.max_gyro_bias = std::max(options.max_gyro_bias, options.largest_gyro_bias);
+  return find_rests(sensor, time, large_bias);
 }
 
 RestBias bias_at_rest(std::span<const RestPeriod> rest_periods) {

@@ -16,7 +16,8 @@ struct RestOptions {
   double mean_time = 0.5;               ///< [s] averaging time of the reference mean
   double rate_threshold = 8.7e-3;       ///< [rad/s] (0.5 °/s) a larger deviation from the mean is motion
   double acceleration_threshold = 0.2;  ///< [m/s²] likewise
-  double max_gyro_bias = 0.052;         ///< [rad/s] (3 °/s) a larger steady rate is a rotation, not a bias
+  double max_gyro_bias = 0.052;         ///< [rad/s] (3 °/s) a larger steady rate is a rotation, not a bias ...
+  double largest_gyro_bias = 0.175;     ///< [rad/s] (10 °/s) ... unless the sensor is never at rest otherwise
   double shortest = 0.25;               ///< [s] shorter stillness is not rest
 };
 

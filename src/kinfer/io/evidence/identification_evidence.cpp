@@ -1,16 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/evidence/identification/identification_evidence.hpp"
 
+#include <algorithm>
+
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/evidence/make_records.hpp"
 #include "kinfer/io/evidence/plot_rounding.hpp"
 #include "kinfer/words/identification/advice.hpp"
+#include "kinfer/words/identification/joint_verdict.hpp"
 #include "kinfer/words/identification/notes.hpp"
 #include "kinfer/words/identification/unobservable.hpp"
 #include "kinfer/words/identification/verdict.hpp"
 
 namespace kinfer {
 namespace {
+
+void set_verdict(JointRecord& record, const JointVerdict& verdict) {
+  record.usability = verdict.usability;
+  record.connection = verdict.connection;
+  for (const JointDoubt& doubt : verdict.doubts) record.doubts.push_back({doubt, words::doubt_sentence(doubt)});
+}
 
 JointRecord joint_record(const JointEstimate& joint) {
   JointRecord record{.estimate = joint, .sentences = words::unobservable_sentences(joint)};
@@ -21,9 +30,11 @@ JointRecord joint_record(const JointEstimate& joint) {
   return record;
 }
 
-std::vector<JointRecord> joint_records(const std::vector<JointEstimate>& joints) {
+std::vector<JointRecord> joint_records(const Identification& result) {
   std::vector<JointRecord> records;
-  for (const JointEstimate& joint : joints) records.push_back(joint_record(joint));
+  for (const JointEstimate& joint : result.joints) records.push_back(joint_record(joint));
+  for (std::size_t i = 0; i < std::min(records.size(), result.verdicts.size()); ++i)
+    set_verdict(records[i], result.verdicts[i]);
   return records;
 }
 
@@ -41,7 +52,7 @@ IdentificationEvidence identification_evidence(const Identification& i, const Pr
           .findings = finding_records(i.findings),
           .notes = words::note_sentences(i),
           .root = i.root,
-          .joints = joint_records(i.joints),
+          .joints = joint_records(i),
           .loops = i.loops,
           .links = i.links,
           .dh = i.dh,

@@ -13,6 +13,7 @@
 #include "kinfer/io/text/plain_decimal.hpp"
 #include "kinfer/io/text/trim.hpp"
 #include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/unit_check.hpp"
 
 namespace kinfer {
 namespace {

@@ -25,8 +25,9 @@ Cell vector_cell(const Vec3& v, double scale, int decimals) {
           fmt::format("{:.12g} {:.12g} {:.12g}", scale * v.x(), scale * v.y(), scale * v.z()), html::CellKind::number};
 }
 
-Cell axis_cell(const JointEstimate& joint, const Vec3& axis) {
+Cell axis_cell(const JointEstimate& joint, const Vec3& axis, const std::array<double, 2>& sd) {
   if (joint.type == EstimatedJointType::spherical) return {"–", "", html::CellKind::number};
+  if (!is_axis_known(joint, sd)) return html::undetermined_cell("unknown");
   return vector_cell(axis, 1.0, 5);
 }
 
@@ -35,8 +36,9 @@ Cell plus_minus(double sd, double scale, int decimals) {
   return html::number(sd, scale, decimals);
 }
 
-/// An unobservable point is shown in brackets: it is a choice, not a measurement.
-Cell point_cell(const Vec3& point, double sd) {
+/// A point that is known in some directions only is shown in brackets: the others are a choice, not a measurement.
+Cell point_cell(const Vec3& point, double sd, bool known) {
+  if (!known) return html::undetermined_cell("unknown");
   Cell cell = vector_cell(point, mm, 1);
   if (!(sd < unobservable_sd)) cell.shown = "<span class=\"note\">(" + cell.shown + ")</span>";
   return cell;
@@ -47,6 +49,7 @@ struct JointSide {
   const std::string& sensor;
   const Vec3 &axis, &point;
   const std::array<double, 2>&axis_sd, &point_sd;
+  const std::vector<Vec3>& unobservable;
 };
 
 std::vector<Cell> joint_row(const JointEstimate& joint, const JointSide& side, const std::string& head,
@@ -54,9 +57,9 @@ std::vector<Cell> joint_row(const JointEstimate& joint, const JointSide& side, c
   return {html::text(head),
           html::text(type),
           html::text(side.sensor),
-          axis_cell(joint, side.axis),
+          axis_cell(joint, side.axis, side.axis_sd),
           plus_minus(across(side.axis_sd), mrad, 2),
-          point_cell(side.point, across(side.point_sd)),
+          point_cell(side.point, across(side.point_sd), is_point_known(side.point_sd, side.unobservable)),
           plus_minus(across(side.point_sd), mm, 1)};
 }
 
@@ -67,12 +70,31 @@ std::string joint_table(const IdentificationEvidence& e) {
                     .rows = {}};
   for (const JointRecord& record : e.joints) {
     const JointEstimate& j = record.estimate;
-    const JointSide parent{j.parent, j.axis_in_parent, j.point_in_parent, j.sd.axis_in_parent, j.sd.point_in_parent};
-    const JointSide child{j.child, j.axis_in_child, j.point_in_child, j.sd.axis_in_child, j.sd.point_in_child};
+    const JointSide parent{j.parent,
+                           j.axis_in_parent,
+                           j.point_in_parent,
+                           j.sd.axis_in_parent,
+                           j.sd.point_in_parent,
+                           j.unobservable_in_parent};
+    const JointSide child{
+        j.child, j.axis_in_child, j.point_in_child, j.sd.axis_in_child, j.sd.point_in_child, j.unobservable_in_child};
     table.rows.push_back(joint_row(j, parent, joint_label(j), std::string(name(j.type))));
     table.rows.push_back(joint_row(j, child, "", ""));
   }
   return html::table(table);
+}
+
+/// Which joints may be used, and what speaks against them.
+std::string verdict_table(const IdentificationEvidence& e) {
+  html::Table table{.name = "joint-verdicts", .caption = "Verdicts", .head = {"Joint", "verdict", "why"}, .rows = {}};
+  for (const JointRecord& joint : e.joints) {
+    std::string usability(name(joint.usability));
+    std::ranges::replace(usability, '_', ' ');
+    std::string why;
+    for (const JointDoubtRecord& doubt : joint.doubts) why += (why.empty() ? "" : "; ") + doubt.sentence;
+    table.rows.push_back({html::text(joint_label(joint.estimate)), html::text(usability), html::text(why)});
+  }
+  return table.rows.empty() ? "" : html::table(table);
 }
 
 /// The sensor's axis nearest to the line between the two pins, and the angle between them: what a mounting drawing
@@ -139,8 +161,8 @@ std::vector<Cell> dh_row(const DhRowEstimate& row) {
 html::Section joints_section(const IdentificationEvidence& e) {
   return {"joints-section", "What was found",
           "Every joint as a line in space, in the frame of the INS on either side. Both points are the same physical "
-          "point. A point in brackets is unobservable: a choice of the convention.",
-          joint_table(e) + link_table(e)};
+          "point. A point in brackets is known in some directions only; the others are a choice of the convention.",
+          verdict_table(e) + joint_table(e) + link_table(e)};
 }
 
 html::Section dh_section(const IdentificationEvidence& e) {

@@ -89,6 +89,38 @@ std::string no_joint_suggestion(const Finding&) {
   return phrase("no_joint.suggestion", "mount an INS on every segment, and none on the bars of a linkage");
 }
 
+std::string not_connected_sentence(const Finding& f) {
+  return phrase("not_connected",
+                "{} has nothing to do with the other sensors: a joint explains its motion no better than it explains "
+                "that of a recording shifted in time; it is left out",
+                f.values.text("sensor"));
+}
+
+std::string not_connected_suggestion(const Finding&) {
+  return phrase("not_connected.suggestion",
+                "check that all sensors were on one machine and recorded at the same time, and their units and clocks");
+}
+
+std::string mixed_recording_sentence(const Finding& f) {
+  return phrase("mixed_recording",
+                "{} belongs to the machine from {:.0f} to {:.0f} s only: recordings were mixed, or it came off its "
+                "segment; it is left out",
+                f.values.text("sensor"), f.values.number("begin"), f.values.number("end"));
+}
+
+std::string mixed_recording_suggestion(const Finding&) {
+  return phrase("mixed_recording.suggestion", "check from which files the log was put together, or record again");
+}
+
+std::string duplicate_sensor_sentence(const Finding& f) {
+  return phrase("duplicate_sensor", "{} and {} hold the same measurements: one sensor under two names",
+                f.values.text("first"), f.values.text("second"));
+}
+
+std::string duplicate_sensor_suggestion(const Finding&) {
+  return phrase("duplicate_sensor.suggestion", "find the measurements of the sensor whose place the copy took");
+}
+
 std::string idle_sentence(const Finding& f) {
   const FactValues& v = f.values;
   return phrase("idle",
@@ -165,6 +197,9 @@ constexpr std::array recording_finding_words{
     RecordingFindingWords{FindingKind::several_machines, several_machines_sentence, several_machines_suggestion},
     RecordingFindingWords{FindingKind::linkage, linkage_sentence, no_joint_suggestion},
     RecordingFindingWords{FindingKind::no_joint, no_joint_sentence, no_joint_suggestion},
+    RecordingFindingWords{FindingKind::not_connected, not_connected_sentence, not_connected_suggestion},
+    RecordingFindingWords{FindingKind::mixed_recording, mixed_recording_sentence, mixed_recording_suggestion},
+    RecordingFindingWords{FindingKind::duplicate_sensor, duplicate_sensor_sentence, duplicate_sensor_suggestion},
     RecordingFindingWords{FindingKind::idle, idle_sentence, idle_suggestion},
     RecordingFindingWords{FindingKind::remounted, remounted_sentence, remounted_suggestion},
     RecordingFindingWords{FindingKind::clock, clock_sentence, clock_suggestion},

@@ -5,6 +5,7 @@
 
 #include "kinfer/words/findings/findings.hpp"
 #include "kinfer/words/identification/forecast.hpp"
+#include "kinfer/words/identification/joint_verdict.hpp"
 #include "kinfer/words/language.hpp"
 
 namespace kinfer::words {
@@ -22,8 +23,11 @@ std::string prediction_text(const PredictionSummary& prediction) {
 std::string joints_text(const Identification& result) {
   const auto rigid = std::ranges::count(result.joints, EstimatedJointType::rigid, &JointEstimate::type);
   const std::string rigid_text = rigid > 0 ? fmt::format(", {} of them never moved", rigid) : "";
+  const char* noun = result.joints.size() == 1 ? "joint" : "joints";
+  if (result.forecast.empty() && result.usability == Usability::do_not_use)
+    return phrase("joints_without_accuracy", "{} {} found{}", result.joints.size(), noun, rigid_text);
   const std::string accuracy = accuracy_text(result.forecast);
-  return phrase("joints_found", "{} joints found{}{}, {}", result.joints.size(), rigid_text,
+  return phrase("joints_found", "{} {} found{}{}, {}", result.joints.size(), noun, rigid_text,
                 accuracy.empty() ? "" : ", their axes to " + accuracy, forecast_text(result.forecast, result.target));
 }
 
@@ -60,6 +64,10 @@ VerdictText parts_of_verdict(const Identification& result) {
   std::vector<std::string> texts;
   for (const Finding& finding : result.findings)
     if (invalidates_result(finding)) texts.push_back(words::sentence(finding));
+  std::ranges::move(refused_joint_sentences(result), std::back_inserter(texts));
+  if (result.usability == Usability::do_not_use && texts.empty())
+    texts.push_back(phrase("no_certain_joint", "no joint is certain"));
+  if (const std::string part = usable_part_sentence(result); !part.empty() && !texts.empty()) texts.push_back(part);
   texts.push_back(joints_text(result));
   texts.push_back(prediction_text(result.prediction));
   if (result.search_method == LinkSearchMethod::enumeration) texts.push_back(certificate_text(result.searches));

@@ -29,24 +29,47 @@ void fields(Archive& a, Value<Archive, UnobservableRecord>& record) {
   a.when(!u.other_joint.empty(), "other_joint", u.other_joint);
 }
 
-/// A spherical joint has no axis.
+template <class Archive>
+void fields(Archive& a, Value<Archive, JointDoubtRecord>& record) {
+  a("kind", record.doubt.kind);
+  a("sentence", record.sentence);
+  a("values", record.doubt.values);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, JointConnection>& connection) {
+  a("force_gain", connection.force_gain);
+  a("rate_gain", connection.rate_gain);
+  a("gain_spread", connection.gain_spread);
+  a("residual", connection.residual);
+  a("shifted_residual", connection.shifted_residual);
+  a("shifted_rate", connection.shifted_rate);
+}
+
+/// A spherical joint has no axis. What is not known is null; the reason is among the sentences of not_identifiable.
 template <class Archive>
 void fields(Archive& a, Value<Archive, JointRecord>& record) {
   auto& joint = record.estimate;
   a("parent", joint.parent);
   a("child", joint.child);
   a("type", joint.type);
-  const bool has_axis = joint.type != EstimatedJointType::spherical;
-  a.known(has_axis, "axis_in_parent", joint.axis_in_parent);
-  a("point_in_parent", joint.point_in_parent);
-  a.known(has_axis, "axis_in_child", joint.axis_in_child);
-  a("point_in_child", joint.point_in_child);
+  const bool parent_axis = is_axis_known(joint, joint.sd.axis_in_parent),
+             parent_point = is_point_known(joint.sd.point_in_parent, joint.unobservable_in_parent),
+             child_axis = is_axis_known(joint, joint.sd.axis_in_child),
+             child_point = is_point_known(joint.sd.point_in_child, joint.unobservable_in_child);
+  a.known(parent_axis, "axis_in_parent", joint.axis_in_parent);
+  a.known(parent_point, "point_in_parent", joint.point_in_parent);
+  a.known(child_axis, "axis_in_child", joint.axis_in_child);
+  a.known(child_point, "point_in_child", joint.point_in_child);
   a("sd", joint.sd);
   a("not_identifiable", record.sentences);
   a("not_identifiable_in_parent", joint.unobservable_in_parent);
   a("not_identifiable_in_child", joint.unobservable_in_child);
   a.later("unobservable", record.unobservable);
   a.when(joint.azimuth_unobservable, "azimuth_undetermined", joint.azimuth_unobservable);
+  a.later("usability", record.usability);
+  a.later("doubts", record.doubts);
+  a.later("connection", record.connection);
 }
 
 template <class Archive>

@@ -20,6 +20,10 @@ inline constexpr auto last<Severity> = Severity::fault;
 template <>
 inline constexpr auto last<Usability> = Usability::do_not_use;
 template <>
+inline constexpr auto last<JointUsability> = JointUsability::unknown;
+template <>
+inline constexpr auto last<JointDoubtKind> = JointDoubtKind::inaccurate;
+template <>
 inline constexpr auto last<Stop> = Stop::cancelled;
 template <>
 inline constexpr auto last<Quantity> = Quantity::acceleration;
