@@ -95,11 +95,18 @@ TEST(IdentificationVerdict, PutsAFaultFirstAndAWarningLast) {
   EXPECT_TRUE(words::identification_verdict(result).starts_with("Do not use as it is: ins7 shares no joint"));
 }
 
+LinkEvidence searched_link(const std::string& segment, double holdout, double written) {
+  LinkEvidence link;
+  link.segment = segment;
+  link.holdout.total = holdout;
+  link.written_holdout.emplace().total = written;
+  return link;
+}
+
 TEST(IdentificationVerdict, EnumerationCertifiesTheChainThatIsWritten) {
   Identification result = two_joints();
   result.search_method = LinkSearchMethod::enumeration;
-  result.searches = {{.segment = "ins1", .holdout = {.total = 0.10}, .written_holdout = LinkFit{.total = 0.09}},
-                     {.segment = "ins2", .holdout = {.total = 0.10}, .written_holdout = LinkFit{.total = 0.10}}};
+  result.searches = {searched_link("ins1", 0.10, 0.09), searched_link("ins2", 0.10, 0.10)};
   EXPECT_TRUE(words::identification_verdict(result).ends_with(
       "; no chain of up to 3 leaves a link predicts the held-out rows better than the one written"));
   result.searches[1].written_holdout->total = 0.112;

@@ -23,7 +23,8 @@ InsRecording in_turns(std::size_t turns, std::size_t rows) {
       for (auto* triad : {&sensor.acceleration, &sensor.angular_velocity})
         for (auto& axis : triad->axis)
           axis.push_back(has ? static_cast<float>(row) : std::numeric_limits<float>::quiet_NaN());
-      sensor.faults.push_back(has ? field_missing : missing);
+      sensor.faults.push_back(
+          static_cast<std::uint8_t>(has ? static_cast<unsigned>(field_missing) : static_cast<unsigned>(missing)));
     }
   }
   return recording;

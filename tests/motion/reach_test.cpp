@@ -61,7 +61,7 @@ TEST_P(ReachLaws, EveryPoseInsideTheLimitsIsReached) {
 }
 
 INSTANTIATE_TEST_SUITE_P(all, ReachLaws, ::testing::ValuesIn(laws::examples_with_joints()),
-                         [](const auto& info) { return laws::test_name(info.param); });
+                         [](const auto& test) { return laws::test_name(test.param); });
 
 TEST(Reach, APartOfTheOrientationIsMet) {
   const Chain chain = with_limits(laws::er20());

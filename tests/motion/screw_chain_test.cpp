@@ -47,7 +47,7 @@ TEST_P(ScrewChainLaws, APeriodBringsTheToolBack) {
 }
 
 INSTANTIATE_TEST_SUITE_P(all, ScrewChainLaws, ::testing::ValuesIn(laws::examples_with_joints()),
-                         [](const auto& info) { return laws::test_name(info.param); });
+                         [](const auto& test) { return laws::test_name(test.param); });
 
 TEST(ScrewChain, AJointThatAnotherFollowsHasNoPeriod) {
   Chain chain = laws::er20();

@@ -11,19 +11,19 @@ namespace kinfer {
 using namespace identify;
 namespace {
 
-const test::DrivenMachine& excavator() {
+const test::DrivenMachine& driven_excavator() {
   static const test::DrivenMachine machine = test::driven_machine("excavator-general", 3);
   return machine;
 }
 
 TEST(TimeStamps, OfASoundRecordingStayAsTheyAre) {
-  const MendedTimeStamps mended = mend_time_stamps(excavator().recording, 0);
+  const MendedTimeStamps mended = mend_time_stamps(driven_excavator().recording, 0);
   EXPECT_FALSE(mended.recording);
   EXPECT_TRUE(mended.findings.empty());
 }
 
 TEST(TimeStamps, ThatJitterGiveWayToRegularTimesAndAreNamed) {
-  const InsRecording& sound = excavator().recording;
+  const InsRecording& sound = driven_excavator().recording;
   const MendedTimeStamps mended = mend_time_stamps(with_stamp_jitter(sound, 2e-3, Rng(1)), 0);
   ASSERT_TRUE(mended.recording);
   ASSERT_EQ(mended.findings.size(), 1u);
@@ -34,7 +34,7 @@ TEST(TimeStamps, ThatJitterGiveWayToRegularTimesAndAreNamed) {
 }
 
 TEST(TimeStamps, OfPacketsAreNamedWithTheirSize) {
-  const InsRecording& sound = excavator().recording;
+  const InsRecording& sound = driven_excavator().recording;
   const MendedTimeStamps mended = mend_time_stamps(with_packets(sound, 10), 0);
   ASSERT_TRUE(mended.recording);
   ASSERT_EQ(mended.findings.size(), 1u);
@@ -43,10 +43,10 @@ TEST(TimeStamps, OfPacketsAreNamedWithTheirSize) {
 }
 
 TEST(TimeStamps, JitterCostsNoAccuracyAndIsNotBlamedOnTheMachine) {
-  const Identification found = test::identified(with_stamp_jitter(excavator().recording, 2e-3, Rng(1)));
+  const Identification found = test::identified(with_stamp_jitter(driven_excavator().recording, 2e-3, Rng(1)));
   EXPECT_TRUE(test::has_finding(found, "timestamp_jitter", "scatter"));
   EXPECT_EQ(found.findings.size(), 1u);
-  EXPECT_LT(test::worst_line_error(found.joints, excavator().truth), 6e-3);
+  EXPECT_LT(test::worst_line_error(found.joints, driven_excavator().truth), 6e-3);
 }
 
 }  // namespace

@@ -37,6 +37,8 @@ std::string certificate_text(const std::vector<LinkEvidence>& searches) {
   for (const LinkEvidence& search : searches)
     if (search.written_holdout && search.holdout.total > 0.0)
       excess = std::max(excess, search.written_holdout->total / search.holdout.total - 1.0);
+  if (std::ranges::none_of(searches, [](const LinkEvidence& search) { return search.written_holdout.has_value(); }))
+    return phrase("best_chain", "no chain of up to 3 leaves fits better");  // the written chain is the search's
   if (excess < 0.005)
     return phrase("best_chain",
                   "no chain of up to 3 leaves a link predicts the held-out rows better than the one written");
