@@ -70,6 +70,7 @@ Machine with_linkage(Machine machine, const FourBar& bars) {
   const Joint& joint = machine.chain.joints[static_cast<std::size_t>(last)];
   const auto& link = std::get<UrdfLink>(joint.link);
   const Mat3 plane = linkage_plane(link);
+  const Vec3 axis = link.axis;  // `link` does not survive the joints added below
   const Pose segment_T_joint = link.origin.pose();
   const Pose segment_T_rocker{segment_T_joint.rotation * plane,
                               segment_T_joint.position - segment_T_joint.rotation * plane.col(0) * bars.ground};
@@ -85,7 +86,7 @@ Machine with_linkage(Machine machine, const FourBar& bars) {
                                     .second = rocker + 1,
                                     .point_in_first = crank,
                                     .point_in_second = Vec3(bars.coupler, 0.0, 0.0),
-                                    .axis_in_first = link.axis,
+                                    .axis_in_first = axis,
                                     .axis_in_second = Vec3::UnitZ()});
   const auto first = static_cast<int>(machine.sensors.size());
   machine.sensors.push_back(make_sensor("rocker", "rocker", rocker, carrier, Vec3(0.2, 0.05, 0.03)));
