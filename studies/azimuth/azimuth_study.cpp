@@ -13,6 +13,7 @@
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
+#include "studies/support/run_settings.hpp"
 #include "studies/support/truth_geometry.hpp"
 
 namespace kinfer::study {
@@ -95,8 +96,7 @@ void run(const std::string& machine, const Setting& setting, int seeds) {
       sds.push_back(1e3 * limb.sd);
       inside += std::abs(limb.error) <= 1.96 * limb.sd;
       far += std::abs(limb.error) > 4.0 * limb.sd;
-      if (std::getenv("DETAIL"))
-        fmt::print("  seed {}: {:.2f} mrad, sd {:.2f}, {:.1f} s\n", seed, 1e3 * limb.error, 1e3 * limb.sd, log.seconds);
+      fmt::print("  seed {}: {:.2f} mrad, sd {:.2f}, {:.1f} s\n", seed, 1e3 * limb.error, 1e3 * limb.sd, log.seconds);
     }
     seconds.push_back(log.seconds);
   }
@@ -113,11 +113,5 @@ void run(const std::string& machine, const Setting& setting, int seeds) {
 
 int main(int argc, char** argv) {
   using namespace kinfer::study;
-  const int seeds = argc > 1 ? std::atoi(argv[1]) : 10;
-  const std::string machine = argc > 2 ? argv[2] : "excavator-general";
-  for (const Setting& setting : settings()) {
-    const bool is_named =
-        std::any_of(argv + std::min(argc, 3), argv + argc, [&](const char* name) { return setting.name == name; });
-    if (argc <= 3 || is_named) run(machine, setting, seeds);
-  }
+  run_settings(argc, argv, 10, settings(), [](const auto&... of) { run(of...); });
 }

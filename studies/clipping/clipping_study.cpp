@@ -14,6 +14,7 @@
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
 #include "studies/identify/truth_scores.hpp"
+#include "studies/support/run_settings.hpp"
 
 namespace kinfer::study {
 namespace {
@@ -78,10 +79,9 @@ void run(const std::string& machine, const Setting& setting, int seeds) {
   int wrong_order = 0, loops = 0, remounts = 0, types = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
     const Log log = run(machine, setting, static_cast<std::uint64_t>(seed));
-    if (std::getenv("DETAIL"))
-      fmt::print("  seed {}: {} line {:.2f} mm, {:.0f} % clipped, {} loops, {} remounts, {} types, {:.1f} s\n", seed,
-                 log.is_complete ? "complete" : "wrong order", 1e3 * log.line, 100.0 * log.clipped, log.loops,
-                 log.remounts, log.wrong_types, log.seconds);
+    fmt::print("  seed {}: {} line {:.2f} mm, {:.0f} % clipped, {} loops, {} remounts, {} types, {:.1f} s\n", seed,
+               log.is_complete ? "complete" : "wrong order", 1e3 * log.line, 100.0 * log.clipped, log.loops,
+               log.remounts, log.wrong_types, log.seconds);
     if (log.is_complete) lines.push_back(1e3 * log.line);
     wrong_order += !log.is_complete, loops += log.loops, remounts += log.remounts, types += log.wrong_types;
     seconds.push_back(log.seconds);
@@ -100,11 +100,5 @@ void run(const std::string& machine, const Setting& setting, int seeds) {
 
 int main(int argc, char** argv) {
   using namespace kinfer::study;
-  const int seeds = argc > 1 ? std::atoi(argv[1]) : 10;
-  const std::string machine = argc > 2 ? argv[2] : "excavator-general";
-  for (const Setting& setting : settings()) {
-    const bool is_named =
-        std::any_of(argv + std::min(argc, 3), argv + argc, [&](const char* name) { return setting.name == name; });
-    if (argc <= 3 || is_named) run(machine, setting, seeds);
-  }
+  run_settings(argc, argv, 10, settings(), [](const auto&... of) { run(of...); });
 }

@@ -126,16 +126,6 @@ void run(const Setup& setup) {
         seed, 1e3 * score.line, 1e3 * score.direction, 1e3 * score.azimuth, 1e3 * score.axial_offset,
         found->fit.iterations, name(found->fit.stop), found->fit.cost.total, seconds(begin, started),
         seconds(started, done), found->grade, found->knot_spacing);
-    if (std::getenv("DETAIL")) {
-      for (std::size_t s = 0; s < found->fit.cost.sensors.size(); ++s) {
-        const SensorFit& f = found->fit.cost.sensors[s];
-        fmt::print("   {}: chi2/n angular velocity {:.3f} force {:.3f} field {:.4f}\n", s,
-                   f.angular_velocity.squares / f.angular_velocity.terms, f.force.squares / f.force.terms,
-                   f.field.squares / std::max(1.0, f.field.terms));
-      }
-      for (const ScoredScalar& s : score.scalars)
-        fmt::print("   {:<28} {:9.3f} sd {:8.3f}  ratio {:6.2f}\n", s.name, 1e3 * s.error, 1e3 * s.sd, s.error / s.sd);
-    }
     lines.push_back(1e3 * score.line);
     directions.push_back(1e3 * score.direction);
     for (const ScoredScalar& s : score.scalars) {

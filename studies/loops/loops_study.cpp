@@ -155,7 +155,7 @@ Outcome linkage_outcome(const Log& log, const OrderedMotion& ordered) {
   const LoopEstimate& loop = refined->loops.front();
   outcome.log_odds = loop.log_odds;
   outcome.gap = 1e3 * loop.gap;
-  outcome.in_step = 1e3 * loop.in_step_gap;
+  outcome.in_step = 1e3 * loop.mirrored_gap;
   score_loop(loop, log.truth, outcome);
   return outcome;
 }

@@ -33,11 +33,7 @@ TEST_F(Path, ThroughPosturesEndsAtTheLast) {
 }
 
 TEST_F(Path, AlongToolLines) {
-  write(in("joints.csv"),
-        "q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg]\n10,-80,70,20,40,-30\n15,-75,72,20,45,-30\n");
-  ASSERT_EQ(
-      kinfer("predict --chain " + source("examples/robot6/robot.toml") + " --joints joints.csv -o targets.csv").code,
-      0);
+  predict_targets("10,-80,70,20,40,-30\n15,-75,72,20,45,-30\n");
   const Outcome run = path("--targets targets.csv --prefer 10,-80,70,20,40,-30 -o path.csv");
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("2 waypoints"));

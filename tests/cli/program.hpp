@@ -60,6 +60,14 @@ class Program : public ::testing::Test {
     ASSERT_EQ(run.code, 0) << run.err;
   }
 
+  /// targets.csv: the tool poses of the example robot at these rows of six joint positions [deg].
+  void predict_targets(const std::string& rows) const {
+    write(in("joints.csv"), "q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg]\n" + rows);
+    const Outcome run =
+        kinfer("predict --chain " + source("examples/robot6/robot.toml") + " --joints joints.csv -o targets.csv");
+    ASSERT_EQ(run.code, 0) << run.err;
+  }
+
   std::string source(const std::string& path) const { return std::string(KINFER_SOURCE_DIR) + "/" + path; }
 
   fs::path folder_;

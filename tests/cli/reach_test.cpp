@@ -20,10 +20,7 @@ class Reach : public test::Program {
 };
 
 TEST_F(Reach, WhatPredictSaysOfTheFoundJointsIsTheTarget) {
-  write(in("joints.csv"), "q1[deg],q2[deg],q3[deg],q4[deg],q5[deg],q6[deg]\n10,-80,70,20,40,-30\n-25,-60,80,10,60,5\n");
-  ASSERT_EQ(
-      kinfer("predict --chain " + source("examples/robot6/robot.toml") + " --joints joints.csv -o targets.csv").code,
-      0);
+  predict_targets("10,-80,70,20,40,-30\n-25,-60,80,10,60,5\n");
   const Outcome run = reach("-o found.csv --json");
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("\"reached\":2"));

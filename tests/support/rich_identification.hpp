@@ -63,7 +63,7 @@ inline Identification rich_identification() {
                   .segments = {"s0", "s<1>", "s2"},
                   .gap = 2e-3,
                   .misalignment = 1e-3,
-                  .in_step_gap = 0.2,
+                  .mirrored_gap = 0.2,
                   .log_odds = 40.5}};
   found.links = {{"s<1>", "s0-s<1>", "s<1>-s2", 0.35, 0.002}, {"s2", "a", "b", 0.1, 0.9}};
   found.places = {{"tip", "s2", Vec3(0.1, 0, 0.2), Vec3(1e-3, 1e-3, 2e-3)}};

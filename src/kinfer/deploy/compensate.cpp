@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/deploy/compensate.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/deploy/thresholds.hpp"
 #include "kinfer/kinematics/same_joints.hpp"
+#include "kinfer/motion/reach.hpp"
 
 namespace kinfer::deploy {
 namespace {
@@ -21,31 +19,21 @@ CompensatedJoints make_compensated(const InverseSolution& solution) {
   return {solution.q, solution.position_error, solution.angle_error, solution.status};
 }
 
-double total_error(const InverseSolution& solution) {
-  return solution.position_error + solution.angle_error;
-}
-
-/// Random joint positions inside the limits and inside ±170° or ±0.5 m.
-VectorXd draw_configuration(const Chain& chain, Rng rng) {
-  const std::vector<int> moving = active_joints(chain);
-  VectorXd q(moving.size());
-  for (std::size_t k = 0; k < moving.size(); ++k) {
-    const Joint& joint = chain.joints[moving[k]];
-    const double reach = rotates(joint.type) ? 170.0 * degree : thresholds::reach_translation;
-    q[k] = rng.uniform(std::max(joint.lower, -reach), std::min(joint.upper, reach));
-  }
-  return q;
-}
-
-/// The nominal joint positions for a target: the first solution that reaches it, else the closest one.
-VectorXd nominal_solution(const Chain& nominal, const ToolTarget& target, Rng rng) {
-  std::optional<InverseSolution> best;
-  for (int i = 0; i < thresholds::inverse_attempts; ++i) {
-    const InverseSolution solution = solve_inverse(nominal, target, draw_configuration(nominal, rng.stream(i)));
-    if (!best || total_error(solution) < total_error(*best)) best = solution;
-    if (best->status == InverseStatus::reached) break;
-  }
-  return best->q;
+/// Nominal joint positions for each target, dof x targets: the first posture inside the limits that reaches it, else
+/// the closest.
+MatrixXd nominal_postures(const Chain& nominal, const std::vector<ToolTarget>& targets, int threads,
+                          std::uint64_t seed) {
+  std::vector<ReachTarget> goals;
+  for (const ToolTarget& target : targets)
+    goals.push_back(
+        {target.position, target.rotation ? OrientationGoal(FullGoal{*target.rotation}) : FreeOrientation{}});
+  motion::ReachOptions options;
+  options.seed = seed;
+  const auto found = motion::reach(nominal, goals, motion::middle_posture(nominal), options, threads);
+  MatrixXd postures(dof(nominal), targets.size());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    postures.col(static_cast<Eigen::Index>(i)) = found[i].postures.front().q;
+  return postures;
 }
 
 }  // namespace
@@ -92,12 +80,13 @@ std::vector<CompensatedJoints> compensate_joints(const Chain& corrected, const C
 
 std::vector<CompensatedJoints> compensate_targets(const Chain& corrected, const Chain& nominal,
                                                   const std::vector<ToolTarget>& targets, const MatrixXd& start,
-                                                  int threads, Rng rng) {
+                                                  int threads, std::uint64_t seed) {
+  const MatrixXd drawn = start.cols() > 0 ? MatrixXd() : nominal_postures(nominal, targets, threads, seed);
   std::vector<CompensatedJoints> list(targets.size());
   parallel_for(list.size(), threads, [&](std::size_t i) {
-    const VectorXd first = start.cols() > 0
-                               ? VectorXd(solve_inverse(nominal, targets[i], start.col(static_cast<Eigen::Index>(i))).q)
-                               : nominal_solution(nominal, targets[i], rng.stream(i));
+    const auto column = static_cast<Eigen::Index>(i);
+    const VectorXd first =
+        start.cols() > 0 ? solve_inverse(nominal, targets[i], start.col(column)).q : VectorXd(drawn.col(column));
     list[i] = make_compensated(solve_inverse(corrected, targets[i], first));
   });
   return list;

@@ -5,11 +5,11 @@
 // from the nominal joint positions, so that the robot keeps its configuration.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/base/rng.hpp"
 #include "kinfer/evidence/deployment/compensation.hpp"
 #include "kinfer/kinematics/parameters.hpp"
 
@@ -53,9 +53,10 @@ struct ToolTarget {
 };
 
 /// Joint positions that bring the tool of `corrected` to each target. Each search starts from the nominal solution,
-/// which itself starts from `start` (dof x targets) where given, else from random configurations inside the limits.
+/// which itself starts from `start` (dof x targets) where given; else it is the first posture inside the limits that
+/// motion::reach finds, which draws its starts from `seed`.
 std::vector<CompensatedJoints> compensate_targets(const Chain& corrected, const Chain& nominal,
                                                   const std::vector<ToolTarget>& targets, const MatrixXd& start,
-                                                  int threads, Rng rng);
+                                                  int threads, std::uint64_t seed);
 
 }  // namespace kinfer::deploy

@@ -17,9 +17,7 @@ inline constexpr int compared_poses = 200;  ///< samples of the joint ranges at 
 
 /// [1] tolerances: a corrected base further off shows that the instrument used another world frame.
 inline constexpr double frames_apart = 3.0;
-inline constexpr int joints_for_full_pose = 6;    ///< with fewer, only the tool point is compensated
-inline constexpr int inverse_attempts = 60;       ///< random configurations from which a target is tried
-inline constexpr double reach_translation = 0.5;  ///< [m] of a prismatic joint without limits
+inline constexpr int joints_for_full_pose = 6;  ///< with fewer, only the tool point is compensated
 
 /// [1] of the reach of the fitted rows: joint positions farther from these count as outside the measured region. Of the
 /// fitted rows 5 % have a distance above 1.

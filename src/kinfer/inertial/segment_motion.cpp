@@ -160,8 +160,6 @@ ResampledSegment resample_segment(std::span<const double> clock, const InsRecord
   ResampledSegment result;
   SegmentMotion& m = result.motion;
   m.name = sensor.name;
-  const std::size_t clipped = count(sensor, angular_velocity_clipped) + count(sensor, acceleration_clipped);
-  m.clips = static_cast<double>(clipped) > inertial::max_clipped_share * static_cast<double>(sensor.rows());
   const FilterOutput filter = filter_sensor(sensor, time, options.filter);
   m.rotation = rotations_on(clock, time, filter.world_q_sensor);
   std::vector<Vec3> rate_world(clock.size()), acceleration_world(clock.size());

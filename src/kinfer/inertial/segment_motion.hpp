@@ -21,7 +21,6 @@ struct SegmentMotion {
   std::vector<Vec3> angular_acceleration;  ///< [rad/s²] angular acceleration in the world
   std::vector<Vec3> acceleration;          ///< [m/s²] in the world, eq. (26) of paper 1 minus gravity
   bool still = false;                      ///< never moved: constant rotation, zero velocity and acceleration
-  bool clips = false;  ///< an instrument is at its range in many rows: peaks are restored, not measured
 };
 
 struct RecordedMotion {

@@ -32,10 +32,6 @@ inline constexpr std::size_t min_rows = 100;
 /// is found later. Data: not recorded.
 inline constexpr double first_motion_factor = 2.0;
 
-/// Of the rows: clipped ones above which orientations rest on restored peaks, and what needs exact ones is not judged.
-/// Larger: loops are reported that are none. Set on simulated logs whose gyroscopes clip at half of the largest rate.
-inline constexpr double max_clipped_share = 2e-3;
-
 /// Of the rows: the largest accelerations of a segment, spikes too small to be flagged and shocks, that are left out
 /// when it is judged whether it is stationary. Larger: a short movement is overlooked. Set on a simulated log with 13
 /// spikes a minute, which are 1.5 % of the smoothed rows.

@@ -52,6 +52,30 @@ std::vector<std::string> active_joint_names(const Chain& chain) {
   return names;
 }
 
+VectorXd JointLimits::clamped(const VectorXd& q) const {
+  return q.cwiseMax(lower).cwiseMin(upper);
+}
+
+JointLimits joint_limits(const Chain& chain) {
+  const std::vector<int> joints = active_joints(chain);
+  JointLimits limits{VectorXd(joints.size()), VectorXd(joints.size())};
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    limits.lower[at] = chain.joints[joints[k]].lower;
+    limits.upper[at] = chain.joints[joints[k]].upper;
+  }
+  return limits;
+}
+
+bool has_non_geometric_terms(const Joint& joint) {
+  return joint.compliance != 0.0 || joint.torque_compliance != 0.0 || joint.backlash != 0.0 || !joint.harmonics.empty();
+}
+
+bool has_non_geometric_terms(const Chain& chain) {
+  const auto of_joint = [](const Joint& joint) { return has_non_geometric_terms(joint); };
+  return chain.expansion != 0.0 || std::any_of(chain.joints.begin(), chain.joints.end(), of_joint);
+}
+
 void expect_well_formed(const Chain& chain) {
   const int n = static_cast<int>(chain.joints.size());
   KINFER_EXPECT(chain.tip >= -1 && chain.tip < n, "tip {} of {} joints", chain.tip, n);

@@ -20,6 +20,7 @@
 #include "kinfer/kinematics/fixtures.hpp"
 #include "kinfer/kinematics/frame.hpp"
 #include "kinfer/kinematics/joint_type.hpp"
+#include "kinfer/linalg/types.hpp"
 
 namespace kinfer {
 
@@ -126,6 +127,19 @@ std::vector<int> path_to(const Chain& chain, int tip);
 
 /// Names of the active joints, in the order of q.
 std::vector<std::string> active_joint_names(const Chain& chain);
+
+/// Limits of the positions of the active joints, in the order of q [rad] or [m]; infinite where there is none.
+struct JointLimits {
+  VectorXd lower, upper;
+  VectorXd clamped(const VectorXd& q) const;
+};
+JointLimits joint_limits(const Chain& chain);
+
+/// The joint's position depends on more than its own q and its couplings: on loads (compliance), the direction of
+/// approach (backlash) or the angle (harmonics).
+bool has_non_geometric_terms(const Joint& joint);
+/// Any joint has, or lengths grow with temperature.
+bool has_non_geometric_terms(const Chain& chain);
 
 /// Aborts (programming error) unless parents precede children and all indices are in range.
 void expect_well_formed(const Chain& chain);

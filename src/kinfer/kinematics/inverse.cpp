@@ -27,21 +27,6 @@ struct Goal {
   std::optional<Mat3> rotation;
 };
 
-struct Limits {
-  VectorXd lower, upper;
-  VectorXd clamped(const VectorXd& q) const { return q.cwiseMax(lower).cwiseMin(upper); }
-};
-
-Limits limits_of(const Chain& chain) {
-  const std::vector<int> joints = active_joints(chain);
-  Limits limits{VectorXd(joints.size()), VectorXd(joints.size())};
-  for (Eigen::Index k = 0; k < limits.lower.size(); ++k) {
-    limits.lower[k] = chain.joints[joints[k]].lower;
-    limits.upper[k] = chain.joints[joints[k]].upper;
-  }
-  return limits;
-}
-
 /// Task-space error at one q: position, then length-weighted rotation vector, 3 or 6 rows.
 struct TaskError {
   VectorXd error;
@@ -52,7 +37,7 @@ struct TaskError {
 class InverseSolver {
  public:
   InverseSolver(const Chain& chain, const Goal& goal, const InverseOptions& options, const Load& load)
-      : chain_(chain), goal_(goal), options_(options), load_(load), limits_(limits_of(chain)) {}
+      : chain_(chain), goal_(goal), options_(options), load_(load), limits_(joint_limits(chain)) {}
 
   InverseSolution run(ConstVectorRef start) {
     InverseSolution best = iterate(limits_.clamped(start));
@@ -164,7 +149,7 @@ class InverseSolver {
   const Goal& goal_;
   const InverseOptions& options_;
   const Load& load_;
-  Limits limits_;
+  JointLimits limits_;
 };
 
 InverseSolution solve_inverse(const Chain& chain, const Goal& goal, ConstVectorRef start, const InverseOptions& options,

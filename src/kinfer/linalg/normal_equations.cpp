@@ -75,6 +75,13 @@ NormalEquations normal_equations(ConstMatrixRef a, ConstVectorRef b) {
   return equations;
 }
 
+bool solve_in_place(MatrixXd& a, VectorXd& b) {
+  KINFER_EXPECT(a.rows() == a.cols() && a.rows() == b.size(), "{} x {}, {} values", a.rows(), a.cols(), b.size());
+  if (!factorise(a)) return false;
+  solve_factorised(a, b);
+  return true;
+}
+
 std::optional<VectorXd> solve_damped_by_cholesky(const NormalEquations& equations, double damping) {
   MatrixXd matrix = equations.matrix;
   matrix.diagonal().array() += damping;

@@ -16,6 +16,10 @@ struct NormalEquations {
 };
 NormalEquations normal_equations(ConstMatrixRef a, ConstVectorRef b);
 
+/// Solves a x = b in place by Cholesky, for tens of unknowns faster than Eigen: the lower half of `a` becomes its
+/// factor (the upper is not read), `b` becomes x. False, with `b` unchanged, if a pivot is not positive.
+bool solve_in_place(MatrixXd& a, VectorXd& b);
+
 /// Solves (aᵀa + damping I) x = −aᵀb by Cholesky; nullopt if the matrix is not positive definite or too badly
 /// conditioned for an accurate x. The solution by singular values below still works then.
 std::optional<VectorXd> solve_damped_by_cholesky(const NormalEquations& equations, double damping);

@@ -32,7 +32,7 @@ struct ReachOptions {
   std::uint64_t seed = 1;          ///< of the drawn starts
 };
 
-/// Finds postures of one chain. Copyable; `solve` is const, but not to be called by several threads at once.
+/// Finds postures of one chain. Movable; `solve` is const, but not to be called by several threads at once.
 class ReachSolver {
  public:
   ReachSolver(const Chain& chain, const ReachOptions& options, const Load& load = {});

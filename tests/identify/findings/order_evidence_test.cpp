@@ -25,7 +25,7 @@ LoopEstimate closing_loop() {
   return {.joint = {.parent = "s0", .child = "s3"},
           .segments = {"s0", "s1", "s2", "s3"},
           .gap = 0.002,
-          .in_step_gap = 0.2,
+          .mirrored_gap = 0.2,
           .log_odds = 40.0};
 }
 

@@ -20,13 +20,6 @@ void note_frames(const Estimate& estimate, const Chain& nominal, Notes& notes) {
   if (distance > 0.0) notes.push_back({CalibrationNoteKind::frames_from_data, {{"distance_m", distance}}});
 }
 
-bool has_non_geometric_terms(const Chain& chain) {
-  const auto is_non_geometric = [](const Joint& j) {
-    return j.compliance != 0.0 || j.torque_compliance != 0.0 || j.backlash != 0.0 || !j.harmonics.empty();
-  };
-  return chain.expansion != 0.0 || std::any_of(chain.joints.begin(), chain.joints.end(), is_non_geometric);
-}
-
 /// Which joint offsets have changed significantly since the earlier calibration (Bonferroni's correction).
 void note_offsets(const Estimate& estimate, Notes& notes) {
   const std::vector<const Parameter*> free = estimate.parameters.free();

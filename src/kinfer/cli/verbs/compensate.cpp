@@ -69,7 +69,7 @@ Result<std::vector<CompensatedJoints>> compensated_rows(const CompensateArgument
   KINFER_TRY(set, read_pose_set(options.targets, chains.nominal, {}, RequiredContent::targets));
   const MatrixXd start = set.joints.rows() > 0 ? set.joints : MatrixXd();
   return deploy::compensate_targets(chains.corrected, chains.nominal, targets_of(set), start, threads,
-                                    Rng(options.common.seed));
+                                    options.common.seed);
 }
 
 /// Reports the rows that are not reached, and why.

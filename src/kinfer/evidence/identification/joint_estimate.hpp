@@ -47,7 +47,7 @@ struct LoopEstimate {
   std::vector<std::string> segments{};  ///< sensors on the loop's segments
   double gap = 0.0;           ///< [m] rms distance of the joint's two halves in a fit that leaves the loop open
   double misalignment = 0.0;  ///< [rad] the same of its axes
-  double in_step_gap = 0.0;   ///< [m] the gap that joints which merely move in step would leave
+  double mirrored_gap = 0.0;  ///< [m] the gap that joints which merely move in step would leave
   double log_odds = 0.0;      ///< ln of the posterior odds of a closed loop
 };
 

@@ -20,7 +20,7 @@ std::vector<LoopEstimate> loop_estimates(const std::vector<FoundLoop>& loops, co
     for (const int sensor : sensors) estimate.segments.push_back(names[static_cast<std::size_t>(sensor)]);
     estimate.gap = loop.evidence.closing.gap;
     estimate.misalignment = loop.evidence.closing.misalignment;
-    estimate.in_step_gap = loop.evidence.mirrored.gap;
+    estimate.mirrored_gap = loop.evidence.mirrored.gap;
     estimate.log_odds = loop.log_odds;
     estimates.push_back(std::move(estimate));
   }
@@ -36,7 +36,7 @@ std::vector<Finding> loop_findings(const std::vector<LoopEstimate>& loops) {
                                    {"first", loop.joint.parent},
                                    {"second", loop.joint.child},
                                    {"gap", loop.gap},
-                                   {"mirrored_gap", loop.in_step_gap},
+                                   {"mirrored_gap", loop.mirrored_gap},
                                    {"log_odds", loop.log_odds}},
                         .applied = true});
   return findings;

@@ -14,11 +14,6 @@
 namespace kinfer {
 namespace {
 
-/// Moves by its own position and its couplings alone.
-bool has_linear_displacement(const Joint& joint) {
-  return joint.compliance == 0.0 && joint.torque_compliance == 0.0 && joint.backlash == 0.0 && joint.harmonics.empty();
-}
-
 /// 0: the base, 1: the tool, 2 and more: the joints. None: not a number of the chain itself.
 std::optional<int> place_in_chain(const ParameterAddress& at) {
   if (const JointNumber* number = joint_number(at)) return 2 + number->joint;
@@ -34,8 +29,7 @@ bool is_geometry_or_gain(const ParameterAddress& at) {
 
 bool has_batch_form(const Chain& chain, const ParameterSet& set) {
   const auto free = set.free();
-  return chain.expansion == 0.0 && chain.mountings.empty() &&
-         std::all_of(chain.joints.begin(), chain.joints.end(), has_linear_displacement) &&
+  return !has_non_geometric_terms(chain) && chain.mountings.empty() &&
          std::all_of(free.begin(), free.end(), [](const Parameter* p) { return is_geometry_or_gain(p->at); });
 }
 

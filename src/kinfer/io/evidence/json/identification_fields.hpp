@@ -85,7 +85,7 @@ void fields(Archive& a, Value<Archive, LoopEstimate>& loop) {
   a("sd", joint.sd);
   a("open_gap_m", loop.gap);
   a("open_misalignment_rad", loop.misalignment);
-  a("mirrored_gap_m", loop.in_step_gap);
+  a("mirrored_gap_m", loop.mirrored_gap);
   a("log_odds", loop.log_odds);
 }
 

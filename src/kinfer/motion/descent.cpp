@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/motion/descent.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kinfer/linalg/normal_equations.hpp"
+#include "kinfer/motion/thresholds.hpp"
+
+namespace kinfer::motion {
+namespace {
+
+using Eigen::Index;
+
+double sum_of_transforms(const Chain& chain) {
+  const std::vector<Pose> frames = joint_frames(chain, VectorXd::Zero(dof(chain)));
+  double length = chain.tool.xyz.norm();
+  for (const int j : path_to(chain, chain.tip_joint())) {
+    const int parent = chain.joints[static_cast<std::size_t>(j)].parent;
+    if (parent >= 0)
+      length +=
+          (frames[static_cast<std::size_t>(j)].position - frames[static_cast<std::size_t>(parent)].position).norm();
+  }
+  return length > 0.0 ? length : 1.0;
+}
+
+}  // namespace
+
+Descent::Descent(const Chain& chain, const Load& load, double position_tolerance, double angle_tolerance)
+    : chain_(chain),
+      load_(load),
+      screws_(chain),
+      limits_(joint_limits(chain)),
+      length_(sum_of_transforms(chain)),
+      deviates_(kinfer::has_non_geometric_terms(chain)),
+      position_tolerance_(position_tolerance),
+      angle_tolerance_(angle_tolerance) {}
+
+bool Descent::is_met(const ReachTask::Error& error) const {
+  return error.position <= position_tolerance_ && error.angle <= angle_tolerance_;
+}
+
+Descent::Attempt Descent::run(const ReachTask& task, VectorXd q, Steps kind) {
+  const bool clamp = kind == Steps::inside_limits;
+  const bool of_machine = deviates_ && kind != Steps::of_start;
+  const int most = kind == Steps::of_start ? thresholds::steps : thresholds::careful_steps;
+  double earlier = std::numeric_limits<double>::infinity();
+  for (int step = 0;; ++step) {
+    screws_.place(q, at_);
+    // The effect of non-geometric terms on the Jacobian is left out.
+    const ReachTask::Error error = task.error(of_machine ? tool(q) : at_.tool);
+    const double size = error.weighted.norm();
+    if (is_met(error)) return {std::move(q), size, true};
+    if (step == most) return {std::move(q), size, false};
+    if (kind == Steps::of_start && step % thresholds::judged_steps == thresholds::judged_steps - 1) {
+      if (size > thresholds::worthwhile_decrease * earlier) return {std::move(q), size, false};
+      earlier = size;
+    }
+    set_rows(task, q, error, clamp);
+    if (!set_step(task, error.weighted, thresholds::damping * size * size)) return {std::move(q), size, false};
+    const double largest = step_.cwiseAbs().maxCoeff();
+    if (largest > thresholds::longest_step) step_ *= thresholds::longest_step / largest;
+    q += step_;
+    if (clamp) q = limits_.clamped(q);
+  }
+}
+
+/// The Jacobian; without the joints that a clamped step would push against their limits.
+void Descent::set_rows(const ReachTask& task, const VectorXd& q, const ReachTask::Error& error, bool clamp) {
+  screws_.jacobian(at_, twists_);
+  task.rows(at_.tool, twists_, rows_);
+  if (!clamp) return;
+  for (Index k = 0; k < q.size(); ++k) {
+    const double towards = rows_.col(k).dot(error.weighted.head(task.rows()));
+    if ((q[k] <= limits_.lower[k] && towards < 0.0) || (q[k] >= limits_.upper[k] && towards > 0.0))
+      rows_.col(k).setZero();
+  }
+}
+
+/// step_ = Jᵀ (J Jᵀ + λ)⁻¹ e, or (JᵀJ + λ)⁻¹ Jᵀ e where that is the smaller system.
+bool Descent::set_step(const ReachTask& task, const Eigen::Matrix<double, 6, 1>& error, double damping) {
+  const double least = damping + thresholds::least_damping;
+  if (task.rows() <= rows_.cols()) {
+    normal_.noalias() = rows_.lazyProduct(rows_.transpose());
+    normal_.diagonal().array() += least;
+    right_ = error.head(task.rows());
+    if (!solve_in_place(normal_, right_)) return false;
+    step_.noalias() = rows_.transpose().lazyProduct(right_);
+  } else {
+    normal_.noalias() = rows_.transpose().lazyProduct(rows_);
+    normal_.diagonal().array() += least;
+    step_.noalias() = rows_.transpose().lazyProduct(error.head(task.rows()));
+    if (!solve_in_place(normal_, step_)) return false;
+  }
+  return true;
+}
+
+void Descent::approach(const ReachTask& task, const VectorXd& preferred, VectorXd& q) {
+  unwind(q, preferred);
+  double part = 1.0;
+  for (int k = 0; k < thresholds::approach_steps; ++k) {
+    screws_.place(q, at_);
+    screws_.jacobian(at_, twists_);
+    task.rows(at_.tool, twists_, rows_);
+    const VectorXd wanted = preferred - q;
+    // The part of the wanted step that moves the tool is taken out of it.
+    Eigen::Matrix<double, 6, 1> moved = Eigen::Matrix<double, 6, 1>::Zero();
+    moved.head(task.rows()) = rows_.lazyProduct(wanted);
+    if (!set_step(task, moved, 0.0)) break;
+    const VectorXd step = wanted - step_;
+    const double largest = part * step.cwiseAbs().maxCoeff();
+    if (largest < thresholds::approach_tolerance) break;
+    const double length = part * std::min(1.0, thresholds::longest_step / largest);
+    Attempt corrected = run(task, q + length * step, Steps::of_start);
+    if (corrected.converged && distance(corrected.q, preferred) < distance(q, preferred))
+      q = std::move(corrected.q), part = std::min(1.0, 2.0 * part);
+    else
+      part *= 0.25;
+  }
+}
+
+void Descent::unwind(VectorXd& q, const VectorXd& preferred) const {
+  for (Index k = 0; k < q.size(); ++k) {
+    const double period = screws_.period(static_cast<int>(k));
+    if (period == 0.0) continue;
+    q[k] = preferred[k] + std::remainder(q[k] - preferred[k], period);
+    if (q[k] < limits_.lower[k]) q[k] += period * std::ceil((limits_.lower[k] - q[k]) / period);
+    if (q[k] > limits_.upper[k]) q[k] -= period * std::ceil((q[k] - limits_.upper[k]) / period);
+  }
+}
+
+double Descent::distance(const VectorXd& q, const VectorXd& preferred) const {
+  double squares = 0.0;
+  for (Index k = 0; k < q.size(); ++k) {
+    const double difference = q[k] - preferred[k];
+    squares += std::pow(screws_.is_rotational(static_cast<int>(k)) ? difference : difference / length_, 2);
+  }
+  return std::sqrt(squares);
+}
+
+}  // namespace kinfer::motion
