@@ -8,6 +8,8 @@
 
 #include "kinfer/io/recording/ins_columns.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
+#include "kinfer/io/recording/ins_topics.hpp"
+#include "kinfer/io/robot_log/message_log_formats.hpp"
 
 namespace kinfer {
 namespace {
@@ -30,7 +32,9 @@ const RecordingFormat* recognised_format(const std::filesystem::path& path) {
 }  // namespace
 
 std::span<const RecordingFormat> recording_formats() {
-  static const std::array formats{RecordingFormat{.name = "CSV", .recognise = is_ins_csv, .append = append_ins_csv}};
+  static const std::array formats{
+      RecordingFormat{.name = "CSV", .recognise = is_ins_csv, .append = append_ins_csv},
+      RecordingFormat{.name = "robot log", .recognise = is_message_log, .append = append_all_ins_topics}};
   return formats;
 }
 
