@@ -4,6 +4,7 @@
 
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
 #include "kinfer/cli/parts/inspect_recording.hpp"
+#include "kinfer/cli/parts/inspect_robot_log.hpp"
 #include "kinfer/cli/parts/orientation_hypotheses.hpp"
 #include "kinfer/cli/parts/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
@@ -71,6 +72,9 @@ int inspect_pose_set(const std::string& file, const RobotModel& robot, const Col
 }
 
 int run(const InspectArguments& options) {
+  for (const std::string& file : options.files)
+    if (is_robot_log(file))
+      if (const int code = print_topics(file); code != exit_done) return code;
   if (is_recording(options.files.front()))
     return inspect_recording(options.files, options.allan ? AllanPlot::print : AllanPlot::none);
   if (options.robot.path.empty())
@@ -94,7 +98,8 @@ Verb add_inspect(CLI::App& app) {
   auto options = std::make_shared<InspectArguments>();
   add_robot_option(*verb, options->robot, "--robot", "Robot of a pose set: " + readable_model_formats(),
                    Requirement::optional);
-  add_texts(*verb, "files", options->files, "INS recordings, one a logger, or pose sets with --robot",
+  add_texts(*verb, "files", options->files,
+            "INS recordings, one a logger; robot logs (.mcap, .bag, .db3); or pose sets with --robot",
             Requirement::required, "CSV");
   add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Requirement::optional,
            "TOML");

@@ -35,7 +35,7 @@ constexpr std::array<NamedNumber, 13> number_types{{{"bool", NumberType::boolean
 using TextByType = std::pair<std::string_view, std::string_view>;
 /// Fields of the common types (ROS 2's; see ros1_header).
 constexpr std::array<TextByType, 15> built_in_types{{
-    {"std_msgs/Header", "time stamp\nstring frame_id"},
+    {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id"},
     {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z"},
     {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z"},
     {"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w"},
@@ -70,6 +70,13 @@ bool is_constant(std::string_view line) {
   for (std::size_t i = 0; i < line.size() && line[i] != '"' && line[i] != '\''; ++i)
     if (line[i] == '=' && (i == 0 || line[i - 1] != '<')) return true;
   return false;
+}
+
+/// A type without package is Header, or of the package of the type that names it.
+std::string full_type_name(std::string_view type, std::string_view within) {
+  if (type == "Header") return "std_msgs/Header";
+  if (type.find('/') != std::string_view::npos) return plain_type_name(type);
+  return std::string(within.substr(0, within.find('/') + 1)) + std::string(type);
 }
 
 class DefinitionParser {
@@ -149,7 +156,7 @@ class DefinitionParser {
     } else if (type == "time" || type == "duration") {
       field.base = FieldBase::time;
     } else {
-      const std::string name = full_name(type, within);
+      const std::string name = full_type_name(type, within);
       field.base = FieldBase::message;
       if (name == "builtin_interfaces/Time" || name == "builtin_interfaces/Duration") {
         field.base = FieldBase::time;
@@ -161,19 +168,32 @@ class DefinitionParser {
     return {};
   }
 
-  /// A type without package is Header, or of the package of the type that names it.
-  static std::string full_name(std::string_view type, const std::string& within) {
-    if (type == "Header") return "std_msgs/Header";
-    if (type.find('/') != std::string_view::npos) return plain_type_name(type);
-    return within.substr(0, within.find('/') + 1) + std::string(type);
-  }
-
   std::map<std::string, std::string_view> sections_;
   bool is_ros1_;
   std::size_t fields_ = 0;
 };
 
+std::string_view built_in_text(std::string_view type) {
+  const auto row = std::ranges::find(built_in_types, type, &TextByType::first);
+  return row == built_in_types.end() ? std::string_view() : row->second;
+}
+
 }  // namespace
+
+std::string common_message_definition(std::string_view type) {
+  std::string text(built_in_text(type));
+  std::vector<std::string> written{std::string(type)};
+  for (std::size_t i = 0; i < written.size(); ++i)
+    for (std::string_view left = built_in_text(written[i]); !left.empty();) {
+      const std::string_view line = next_line(left);
+      const std::string_view field = line.substr(0, line.find_first_of(" ["));
+      const std::string name = full_type_name(field, written[i]);
+      if (built_in_text(name).empty() || std::ranges::find(written, name) != written.end()) continue;
+      written.push_back(name);
+      text += fmt::format("\n{}\nMSG: {}\n{}", std::string(80, '='), name, built_in_text(name));
+    }
+  return text + "\n";
+}
 
 Result<std::vector<MessageField>> parse_message_definition(std::string_view text, std::string_view type, bool is_ros1) {
   return DefinitionParser(text, type, is_ros1).parse(std::string(type), 0);

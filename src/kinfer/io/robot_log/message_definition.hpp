@@ -30,4 +30,7 @@ struct MessageField {
 /// sequence number. Errors name the type that is not defined, or the line that is not understood.
 Result<std::vector<MessageField>> parse_message_definition(std::string_view text, std::string_view type, bool is_ros1);
 
+/// Definition of a common type in ROS 2's form, those of its parts included; empty for another type.
+std::string common_message_definition(std::string_view type);
+
 }  // namespace kinfer
