@@ -20,6 +20,7 @@ Verb add_orient(CLI::App& app);
 Verb add_compensate(CLI::App& app);
 Verb add_reach(CLI::App& app);
 Verb add_path(CLI::App& app);
+Verb add_pair(CLI::App& app);
 Verb add_frames(CLI::App& app);
 Verb add_report(CLI::App& app);
 

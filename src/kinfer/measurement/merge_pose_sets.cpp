@@ -90,6 +90,7 @@ PoseSet merge_pose_sets(const PoseSet& fitted, const PoseSet& held_out) {
   all.temperature = concatenate_padded(all.temperature, more.temperature, rows, count, unknown);
   all.id = concatenate_padded(all.id, more.id, rows, count, std::string());
   all.line = concatenate_padded(all.line, more.line, rows, count, 0);
+  all.time = {};  // of two clocks
   all.set.assign(rows, SplitLabel::train);
   all.set.resize(rows + count, SplitLabel::holdout);
   return all;

@@ -76,7 +76,7 @@ RowGroups select(const RowGroups& from, const std::vector<int>& rows) {
 }
 
 RowOrigin select(const RowOrigin& from, const std::vector<int>& rows) {
-  return {pick(from.id, rows), pick(from.set, rows), pick(from.line, rows)};
+  return {pick(from.id, rows), pick(from.set, rows), pick(from.line, rows), pick(from.time, rows)};
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ struct RowOrigin {
   std::vector<std::string> id;  ///< one per row; empty: none
   std::vector<SplitLabel> set;  ///< one per row; empty: none
   std::vector<int> line;        ///< line of each row in its file, from 1
+  std::vector<double> time;     ///< [s] one per row; empty: none
 };
 
 struct PoseSet : RecordedJoints, RowConditions, PoseMeasurements, FixtureNames, RowGroups, RowOrigin {

@@ -136,6 +136,7 @@ void read_row_attributes(PoseColumns& columns, PoseSet& set) {
   for (double& payload : set.payload)
     if (std::isnan(payload)) payload = 0.0;
   set.temperature = columns.numbers("temperature", Dimension::temperature).value_or(NumberColumn{});
+  set.time = columns.numbers("t", Dimension::time).value_or(NumberColumn{});
   set.id = columns.texts("id").value_or(std::vector<std::string>{});
   set.set = read_labels(columns);
   NameColumn setups = columns.name_indices("setup").value_or(NameColumn{});

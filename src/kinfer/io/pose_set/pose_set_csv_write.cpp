@@ -58,6 +58,7 @@ std::string format_pose_set_csv(const PoseSet& set, const Chain& chain, FileUnit
   write_joint_values(sheet, chain, set.commanded, "q", "_cmd");
   write_torques(sheet, set.torques);
   for_each_list(set, [&]<class M>(const std::vector<M>&) { measurement_columns<M>().write(sheet, set); });
+  write_numbers(sheet, set.time, "t[s]");
   write_numbers(sheet, set.payload, "payload[kg]");
   write_numbers(sheet, set.temperature, "temperature[C]");
   write_names(sheet, set.setup, set.setups, "setup");
