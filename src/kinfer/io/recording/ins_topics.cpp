@@ -165,7 +165,9 @@ class InsTopicReader {
   template <class Row>
   void sort_by_time(TopicRows<Row>& topic) {
     std::ranges::stable_sort(topic.rows, {}, &Row::time);
-    const auto [begin, end] = std::ranges::unique(topic.rows, {}, &Row::time);
+    const auto begin = std::unique(topic.rows.begin(), topic.rows.end(),
+                                   [](const Row& a, const Row& b) { return a.time == b.time; });
+    const auto end = topic.rows.end();
     if (begin == end) return;
     remarks_.push_back(fmt::format("{}: topic {}: {} messages repeat the time of another and are not used", file_,
                                    topic.topic, std::distance(begin, end)));
@@ -254,8 +256,7 @@ std::vector<std::string> short_topic_names(std::span<const std::string> topics) 
   for (const std::string& topic : topics) {
     std::vector<std::string> parts = parts_of(topic);
     std::ranges::sort(parts);
-    const auto repeated = std::ranges::unique(parts);
-    parts.erase(repeated.begin(), repeated.end());
+    parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
     for (const std::string& part : parts) ++uses[part];
   }
   constexpr std::array<std::string_view, 5> driver_words{"imu", "data", "data_raw", "raw", "sensors"};

@@ -9,14 +9,10 @@
 namespace kinfer {
 namespace {
 
-void add_remark(InsRecording& recording, std::string sentence) {
-  recording.remarks.push_back(std::move(sentence));
-}
-
 void add_fault_remarks(InsRecording& out, const InsSensor& sensor) {
   const auto add_count_remark = [&](Fault fault, const char* what) {
     if (const std::size_t n = count(sensor, fault); n > 0)
-      add_remark(out, fmt::format("{}: {} of {} rows {}", sensor.name, n, sensor.rows(), what));
+      out.remarks.push_back(fmt::format("{}: {} of {} rows {}", sensor.name, n, sensor.rows(), what));
   };
   add_count_remark(acceleration_clipped, "clip the accelerometer's range and are not used");
   add_count_remark(angular_velocity_clipped, "clip the gyroscope's range: the turn is larger than they say");
@@ -25,11 +21,11 @@ void add_fault_remarks(InsRecording& out, const InsSensor& sensor) {
   const std::size_t death = find_usable_end(sensor);
   if (death == sensor.rows()) return;
   if (death == 0)
-    return add_remark(out, fmt::format("{}: no row has both specific force and angular rate", sensor.name));
+    return out.remarks.push_back(fmt::format("{}: no row has both specific force and angular rate", sensor.name));
   const auto time = out.time(sensor);
   if (time.back() - time[death - 1] > 1.0)
-    add_remark(out, fmt::format("{}: says nothing after {:.3f} s ({} rows): its orientation is held there", sensor.name,
-                                time[death - 1], sensor.rows() - death));
+    out.remarks.push_back(fmt::format("{}: says nothing after {:.3f} s ({} rows): its orientation is held there",
+                                      sensor.name, time[death - 1], sensor.rows() - death));
 }
 
 }  // namespace
@@ -41,7 +37,7 @@ Result<void> screen_sensors(InsRecording& out, std::size_t first, const std::str
     flag_faults(sensor);
     for (const UnitWarning& doubt : check_units(sensor, field_has_unit[i - first])) {
       if (doubt.fatal) return error("{}: {}", name, doubt.sentence);
-      add_remark(out, doubt.sentence);
+      out.remarks.push_back(doubt.sentence);
       sensor.field = {};
     }
     add_fault_remarks(out, sensor);
@@ -51,15 +47,15 @@ Result<void> screen_sensors(InsRecording& out, std::size_t first, const std::str
 
 void add_time_remarks(InsRecording& out, std::size_t logger, const std::string& name) {
   const auto& time = out.loggers[logger].time;
-  if (time.size() == 1) add_remark(out, fmt::format("{}: one single row: no motion can be told from it", name));
+  if (time.size() == 1) out.remarks.push_back(fmt::format("{}: one single row: no motion can be told from it", name));
   constexpr double shortest_reported_gap = 0.1;  // [s]
   std::size_t n = 0;
   double longest = 0.0;
   for (const TimeGap& gap : gaps(time))
     if (gap.end - gap.begin > shortest_reported_gap) ++n, longest = std::max(longest, gap.end - gap.begin);
   if (n > 0)
-    add_remark(out,
-               fmt::format("{}: {} gaps in time, the longest {:.3g} s: nothing is known in between", name, n, longest));
+    out.remarks.push_back(
+        fmt::format("{}: {} gaps in time, the longest {:.3g} s: nothing is known in between", name, n, longest));
 }
 
 }  // namespace kinfer
