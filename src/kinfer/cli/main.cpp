@@ -9,14 +9,15 @@
 
 #include "kinfer/base/version.hpp"
 #include "kinfer/cli/parts/common.hpp"
+#include "kinfer/cli/parts/task_pool.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/words/language.hpp"
 
 namespace {
 
-int run(int argc, char** argv) {
+int run(const std::vector<std::string>& words) {
   using namespace kinfer::cli;
-  store_command_line(argc, argv);
+  store_command_line(words);
   CLI::App app("kinfer: from raw measurements to a proven kinematic model", "kinfer");
   app.set_version_flag("--version", std::string("kinfer ") + kinfer::version);
   std::string language = "english";
@@ -28,7 +29,8 @@ int run(int argc, char** argv) {
   app.footer("\n`kinfer VERB --help` explains a verb and shows an example.");
   const std::vector<Verb> verbs = add_verbs(app);
   try {
-    app.parse(argc, argv);
+    // CLI11 takes the words without the program's name, the last one first.
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend() - 1));
   } catch (const CLI::ParseError& parse_error) {
     return app.exit(parse_error) == 0 ? exit_done : exit_bad_input;  // --help and --version end here too
   }
@@ -38,16 +40,24 @@ int run(int argc, char** argv) {
   return exit_bad_input;
 }
 
+int run_guarded(const std::vector<std::string>& words) {
+  try {
+    return run(words);
+  } catch (const std::exception& failure) {
+    fmt::print(stderr, "kinfer: internal error: {}\n", failure.what());
+    return kinfer::cli::exit_internal;
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   // glibc raises this threshold dynamically up to 32 MB, and blocks below it are not returned to the system: an hour of
   // six sensors then took a third more memory.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& failure) {
-    fmt::print(stderr, "kinfer: internal error: {}\n", failure.what());
-    return kinfer::cli::exit_internal;
-  }
+  kinfer::cli::set_program_call([](std::vector<std::string> words) {
+    words.insert(words.begin(), "kinfer");
+    return run_guarded(words);
+  });
+  return run_guarded(std::vector<std::string>(argv, argv + argc));
 }

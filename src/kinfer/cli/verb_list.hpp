@@ -23,6 +23,7 @@ Verb add_path(CLI::App& app);
 Verb add_pair(CLI::App& app);
 Verb add_frames(CLI::App& app);
 Verb add_report(CLI::App& app);
+Verb add_sweep(CLI::App& app);
 
 /// Adds every verb to the program, in the order of its help text.
 std::vector<Verb> add_verbs(CLI::App& app);

@@ -76,4 +76,22 @@ bool was_given(const CLI::App& verb, const std::string& option) {
   return verb.count(option) > 0;
 }
 
+namespace {
+
+const CLI::App* find_verb(const CLI::App& program, const std::string& verb) {
+  const auto found = program.get_subcommands([&](const CLI::App* command) { return command->get_name() == verb; });
+  return found.empty() ? nullptr : found.front();
+}
+
+}  // namespace
+
+bool has_verb(const CLI::App& program, const std::string& verb) {
+  return find_verb(program, verb) != nullptr;
+}
+
+bool has_option(const CLI::App& program, const std::string& verb, const std::string& option) {
+  const CLI::App* command = find_verb(program, verb);
+  return command != nullptr && command->get_option_no_throw(option) != nullptr;
+}
+
 }  // namespace kinfer::cli

@@ -40,6 +40,10 @@ void add_flag(CLI::App& verb, const std::string& name, bool& value, const std::s
 
 bool was_chosen(const CLI::App& verb);
 
+/// Whether the program has this verb, and whether the verb has this option ("--seed").
+bool has_verb(const CLI::App& program, const std::string& verb);
+bool has_option(const CLI::App& program, const std::string& verb, const std::string& option);
+
 /// Whether the user gave this option of the verb ("--method").
 bool was_given(const CLI::App& verb, const std::string& option);
 

@@ -17,14 +17,14 @@ namespace kinfer::cli {
 namespace {
 
 std::vector<std::string>& command_line() {
-  static std::vector<std::string> words;  // set once by main
+  static std::vector<std::string> words;  // set once for each run
   return words;
 }
 
 }  // namespace
 
-void store_command_line(int argc, char** argv) {
-  command_line().assign(argv, argv + argc);
+void store_command_line(const std::vector<std::string>& words) {
+  command_line() = words;
 }
 
 void add_quiet_option(CLI::App& verb, bool& quiet) {

@@ -90,6 +90,6 @@ class RunRecord {
 std::vector<InputFile> fingerprints(const std::vector<std::string>& paths);
 
 /// Stores the program's arguments for run.json.
-void store_command_line(int argc, char** argv);
+void store_command_line(const std::vector<std::string>& words);
 
 }  // namespace kinfer::cli

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/sweep_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "kinfer/io/text/text_file.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rows of the folder's manifest that are others in `tasks`; rows that were added or left out are no contradiction.
+std::vector<std::string> changed_keys(const std::vector<SweepTask>& was, const std::vector<SweepTask>& is) {
+  std::vector<std::string> keys;
+  for (const SweepTask& task : is) {
+    const auto old = std::ranges::find(was, task.key, &SweepTask::key);
+    if (old != was.end() && !(*old == task)) keys.push_back(task.key);
+  }
+  return keys;
+}
+
+bool share_keys(const std::vector<SweepTask>& was, const std::vector<SweepTask>& is) {
+  return std::ranges::any_of(
+      is, [&](const SweepTask& task) { return std::ranges::find(was, task.key, &SweepTask::key) != was.end(); });
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) text += (i > 0 ? ", " : "") + names[i];
+  return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
+}
+
+Result<void> check_manifest(const fs::path& path, const std::vector<SweepTask>& tasks, bool may_resume) {
+  const fs::path manifest = path / "manifest.csv";
+  if (!fs::exists(manifest)) {
+    const auto is_hidden = [](const fs::directory_entry& entry) { return entry.path().filename().string()[0] == '.'; };
+    if (!std::all_of(fs::directory_iterator(path), fs::directory_iterator(), is_hidden))
+      return error("{}: expected a new or empty folder, or that of a sweep", path.string());
+    return {};
+  }
+  if (!may_resume) return error("{}: holds results of a sweep; --resume goes on with it", path.string());
+  KINFER_TRY(was, read_manifest(manifest));
+  if (!share_keys(was, tasks)) return error("{}: belongs to another manifest, with none of these keys", path.string());
+  if (const auto changed = changed_keys(was, tasks); !changed.empty())
+    return error("{}: rows of the manifest have changed since: {}; give these other keys, or the sweep another folder",
+                 path.string(), list_of(changed));
+  return {};
+}
+
+/// Folders of this shard's tasks that were running when an earlier process was killed.
+void remove_unfinished(const fs::path& path, const std::vector<SweepTask>& tasks, const Shard& shard) {
+  std::set<std::string> keys;
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    if (shard.has(i)) keys.insert(tasks[i].key);
+  std::vector<fs::path> unfinished;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+    const std::string name = entry.path().filename().string();  // ".KEY.PROCESS"
+    const std::size_t point = name.rfind('.');
+    if (name.front() == '.' && point > 0 && entry.is_directory() && keys.contains(name.substr(1, point - 1)))
+      unfinished.push_back(entry.path());
+  }
+  std::error_code ignored;
+  for (const fs::path& folder : unfinished) fs::remove_all(folder, ignored);
+}
+
+/// The last line that the program printed as an error, without its name.
+std::string last_complaint(const fs::path& messages) {
+  std::ifstream file(messages);
+  std::string found, line;
+  while (std::getline(file, line))
+    if (line.starts_with("kinfer: ")) found = line.substr(8);
+  return found;
+}
+
+}  // namespace
+
+Result<Shard> parse_shard(const std::string& text) {
+  Shard shard;
+  char rest = '\0';
+  if (std::sscanf(text.c_str(), "%d/%d%c", &shard.part, &shard.parts, &rest) != 2)
+    return error("--shard {}: expected a part and the number of parts, as 2/8", text);
+  if (shard.parts < 1 || shard.part < 1 || shard.part > shard.parts)
+    return error("--shard {}: expected a part from 1 to {}", text, std::max(1, shard.parts));
+  return shard;
+}
+
+Result<SweepFolder> SweepFolder::open(const fs::path& path, const std::vector<SweepTask>& tasks, const Shard& shard,
+                                      bool may_resume) {
+  if (auto ready = create_writable_folder(path); !ready) return forward_error(ready.error());
+  if (auto checked = check_manifest(path, tasks, may_resume); !checked) return forward_error(checked.error());
+  const std::string name = shard.parts == 1 ? ".lock" : fmt::format(".lock-{}-of-{}", shard.part, shard.parts);
+  const int lock = ::open((path / name).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  SweepFolder folder(path, lock);
+  if (lock < 0) return error("{}: cannot be locked", path.string());
+  if (::flock(lock, LOCK_EX | LOCK_NB) != 0) return error("{}: another sweep works in this folder", path.string());
+  remove_unfinished(path, tasks, shard);
+  // With rows that an earlier manifest had and this one has not, so that their results stay explained.
+  std::vector<SweepTask> all = tasks;
+  if (fs::exists(path / "manifest.csv")) {
+    KINFER_TRY(was, read_manifest(path / "manifest.csv"));
+    for (SweepTask& task : was)
+      if (std::ranges::find(all, task.key, &SweepTask::key) == all.end()) all.push_back(std::move(task));
+  }
+  if (auto done = write_text_file(path / "manifest.csv", format_manifest(all)); !done)
+    return forward_error(done.error());
+  return folder;
+}
+
+SweepFolder::SweepFolder(SweepFolder&& other) noexcept
+    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
+
+SweepFolder::~SweepFolder() {
+  if (lock_ >= 0) ::close(lock_);
+}
+
+bool SweepFolder::is_done(const SweepTask& task) const {
+  return fs::exists(path_ / task.key);
+}
+
+Result<TaskResult> SweepFolder::result_of(const SweepTask& task) const {
+  const fs::path file = path_ / task.key / "task.json";
+  KINFER_TRY(text, read_text_file(file));
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("exit_code") || !json["exit_code"].is_number_integer())
+    return error("{}: no record of a task", file.string());
+  return TaskResult{.exit_code = json["exit_code"].get<int>(),
+                    .signal = json.value("signal", 0),
+                    .sentence = json.value("sentence", std::string())};
+}
+
+Result<fs::path> SweepFolder::begin(const SweepTask& task) const {
+  const fs::path folder = path_ / fmt::format(".{}.{}", task.key, ::getpid());
+  std::error_code failure;
+  fs::remove_all(folder, failure);
+  if (!fs::create_directory(folder, failure)) return error("{}: the folder cannot be made", folder.string());
+  return folder;
+}
+
+Result<TaskResult> SweepFolder::end(const SweepTask& task, std::uint64_t seed, int exit_code, int signal) const {
+  const fs::path folder = path_ / fmt::format(".{}.{}", task.key, ::getpid());
+  TaskResult result{.exit_code = exit_code, .signal = signal, .sentence = {}};
+  if (signal != 0)
+    result.sentence = fmt::format("the program was ended by signal {}", signal);
+  else if (exit_code > 1)
+    result.sentence = last_complaint(folder / "messages.txt");
+  std::error_code ignored;
+  for (const char* name : {"output.txt", "messages.txt"})
+    if (fs::file_size(folder / name, ignored) == 0) fs::remove(folder / name, ignored);
+  nlohmann::ordered_json json{{"format", "kinfer-task/1"},
+                              {"key", task.key},
+                              {"verb", task.verb},
+                              {"arguments", task.arguments},
+                              {"seed", seed},
+                              {"exit_code", exit_code},
+                              {"signal", signal},
+                              {"sentence", result.sentence}};
+  if (auto done = write_text_file(folder / "task.json", json.dump(1) + "\n"); !done) return forward_error(done.error());
+  std::error_code failure;
+  fs::rename(folder, path_ / task.key, failure);
+  if (failure) {
+    fs::remove_all(folder, ignored);
+    if (!is_done(task)) return error("{}: {}", (path_ / task.key).string(), failure.message());
+  }
+  return result;
+}
+
+void SweepFolder::discard(const SweepTask& task) const {
+  std::error_code ignored;
+  fs::remove_all(path_ / task.key, ignored);
+}
+
+}  // namespace kinfer::cli

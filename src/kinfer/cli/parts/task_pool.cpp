@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/task_pool.hpp"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+
+namespace kinfer::cli {
+namespace {
+
+ProgramCall& stored_call() {
+  static ProgramCall call;  // set once by main
+  return call;
+}
+
+void redirect(int descriptor, const std::filesystem::path& file) {
+  const int opened = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (opened < 0) return;
+  ::dup2(opened, descriptor);
+  ::close(opened);
+}
+
+}  // namespace
+
+void set_program_call(ProgramCall call) {
+  stored_call() = std::move(call);
+}
+
+const ProgramCall& program_call() {
+  return stored_call();
+}
+
+bool TaskPool::start(int task, const std::vector<std::string>& words, const std::filesystem::path& folder) {
+  std::fflush(nullptr);  // or the child would print what is buffered here again
+  const pid_t process = ::fork();
+  if (process < 0) return false;
+  if (process == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nothing goes on after the sweep was killed
+    redirect(STDOUT_FILENO, folder / "output.txt");
+    redirect(STDERR_FILENO, folder / "messages.txt");
+    const int code = program_call()(words);
+    std::fflush(nullptr);
+    ::_exit(code);  // without destructors of the parent's objects
+  }
+  running_[process] = task;
+  return true;
+}
+
+EndedTask TaskPool::wait() {
+  for (;;) {
+    int status = 0;
+    const pid_t process = ::waitpid(-1, &status, 0);
+    if (process < 0 && errno == EINTR) continue;
+    const auto found = running_.find(process);
+    if (found == running_.end()) continue;
+    const EndedTask ended{.task = found->second,
+                          .exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 3,
+                          .signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0};
+    running_.erase(found);
+    return ended;
+  }
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tasks of a sweep in processes of their own, so that a crash of one is a result and not the end of all.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace kinfer::cli {
+
+/// Runs the program with these words, without its name; its exit code.
+using ProgramCall = std::function<int(const std::vector<std::string>& words)>;
+void set_program_call(ProgramCall call);
+const ProgramCall& program_call();
+
+struct EndedTask {
+  int task = 0;
+  int exit_code = 0;
+  int signal = 0;  ///< that ended it; 0: none
+};
+
+class TaskPool {
+ public:
+  explicit TaskPool(int workers) : workers_(workers) {}
+  bool is_full() const { return static_cast<int>(running_.size()) >= workers_; }
+  bool is_empty() const { return running_.empty(); }
+
+  /// Starts the program with these words; what it prints goes to output.txt and messages.txt in `folder`. False where
+  /// no process can be made.
+  bool start(int task, const std::vector<std::string>& words, const std::filesystem::path& folder);
+
+  /// Waits until a task ends.
+  EndedTask wait();
+
+ private:
+  int workers_;
+  std::map<int, int> running_;  // process → task
+};
+
+}  // namespace kinfer::cli
