@@ -74,7 +74,7 @@ Played played(EstimatedJointType type, std::uint64_t seed) {
   joint.estimate.parent = "a";
   joint.estimate.child = "b";
   Played result{build_chain("a", {joint.estimate}, canonical_dh_rows(joint.estimate, joint.solution), Mat3::Identity()),
-                joint_trajectory(type, bodies, joint.solution.geometry, grid, band, times),
+                joint_trajectory(type, bodies, joint.solution.geometry, joint.zero, grid, band, times),
                 {}};
   for (const double t : times) result.truth.push_back(pose_of(bodies, spline_value(grid, band, t)));
   return result;

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "kinfer/base/expect.hpp"
+#include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
 namespace {
@@ -12,14 +15,34 @@ int count(std::size_t size) {
   return static_cast<int>(size);
 }
 
+double prior_sd(const TrackingPrior& prior, TrackingParameterKind kind) {
+  switch (kind) {
+    case TrackingParameterKind::parent_rotation:
+    case TrackingParameterKind::child_rotation:
+      return prior.rotation;
+    case TrackingParameterKind::point_in_parent:
+    case TrackingParameterKind::point_in_child:
+      return prior.point;
+    case TrackingParameterKind::gyroscope_bias:
+      return prior.bias.rate;
+    case TrackingParameterKind::accelerometer_bias:
+      return prior.bias.force;
+    case TrackingParameterKind::gyroscope_scale:
+      return prior.scale.rate;
+    case TrackingParameterKind::accelerometer_scale:
+      return prior.scale.force;
+  }
+  return 0.0;
+}
+
 }  // namespace
 
-std::string_view name(BodyMotion motion) {
+std::string_view name(TrackingMotion motion) {
   constexpr std::array<std::string_view, 4> names{"fixed", "revolute", "prismatic", "spherical"};
   return names[static_cast<std::size_t>(motion)];
 }
 
-int degrees_of_freedom(BodyMotion motion) {
+int degrees_of_freedom(TrackingMotion motion) {
   constexpr std::array<int, 4> counts{0, 1, 1, 3};
   return counts[static_cast<std::size_t>(motion)];
 }
@@ -45,6 +68,19 @@ std::vector<std::string> position_names(const TrackingModel& model) {
   return names;
 }
 
+MatrixXd hidden_directions(const TrackingModel& model) {
+  constexpr double hidden_share = 0.5;  // of the prior's variance
+  const auto size = static_cast<Eigen::Index>(model.parameters.size());
+  VectorXd scale(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const double sd = prior_sd(model.prior, model.parameters[static_cast<std::size_t>(i)].kind);
+    scale[i] = sd > 0.0 ? 1.0 / sd : 0.0;
+  }
+  const SymmetricEigen eigen = symmetric_eigen(scale.asDiagonal() * model.covariance * scale.asDiagonal());
+  const auto known = std::ranges::count_if(eigen.values, [](double value) { return value <= hidden_share; });
+  return eigen.vectors.rightCols(size - known);
+}
+
 void expect_well_formed(const TrackingModel& model) {
   KINFER_EXPECT(!model.bodies.empty() && model.bodies.front().parent == -1);
   for (int b = 0; b < count(model.bodies.size()); ++b) {
@@ -57,7 +93,6 @@ void expect_well_formed(const TrackingModel& model) {
                   sensor.body);
   const auto size = static_cast<Eigen::Index>(model.parameters.size());
   KINFER_EXPECT(model.covariance.rows() == size && model.covariance.cols() == size);
-  KINFER_EXPECT(model.hidden.cols() == 0 || model.hidden.rows() == size);
   KINFER_EXPECT(model.tool.body < count(model.bodies.size()));
 }
 

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "kinfer/base/constants.hpp"
-#include "kinfer/evidence/identification/joint_estimate.hpp"
+#include "kinfer/evidence/facts/estimated_joint_type.hpp"
 #include "kinfer/geometry/pose.hpp"
 #include "kinfer/linalg/types.hpp"
 
@@ -46,23 +46,24 @@ struct TrackingSensor {
   double clock_offset = 0.0, clock_offset_sd = 0.0;  ///< [s] a sample stamped t was taken at t + offset
 };
 
-/// Standard deviations of the sensors' errors before the log was seen, of one axis; 0: not estimated.
-struct TrackingSensorPrior {
-  InsLevel bias{}, scale{};         ///< scale: of an element of S, dimensionless
-  InsLevel bias_instability{};      ///< of a first-order Gauss-Markov process on top of the constant bias
-  double instability_time = 100.0;  ///< [s] its correlation time
+/// Standard deviations of the parameters before the log was seen, of one axis; 0: not estimated.
+struct TrackingPrior {
+  double rotation = 1.0, point = 3.0;  ///< [rad], [m] of the geometry
+  InsLevel bias{}, scale{};            ///< scale: of an element of S, dimensionless
+  InsLevel bias_instability{};         ///< of a first-order Gauss-Markov process on top of the constant bias
+  double instability_time = 100.0;     ///< [s] its correlation time
 };
 
-enum class BodyMotion { fixed, revolute, prismatic, spherical };
-std::string_view name(BodyMotion motion);   ///< "fixed", ...
-int degrees_of_freedom(BodyMotion motion);  ///< 0, 1, 1, 3
+enum class TrackingMotion { fixed, revolute, prismatic, spherical };
+std::string_view name(TrackingMotion motion);   ///< "fixed", ...
+int degrees_of_freedom(TrackingMotion motion);  ///< 0, 1, 1, 3
 
 /// A body and the motion that connects it to its parent. Body 0 is the base segment and has no joint.
 struct TrackingBody {
   int parent = -1;
   int sensor = -1;  ///< index into TrackingModel::sensors; −1: none
   int joint = -1;   ///< index into TrackingModel::joints; −1: body 0
-  BodyMotion motion = BodyMotion::fixed;
+  TrackingMotion motion = TrackingMotion::fixed;
   Mat3 parent_R_axis = Mat3::Identity(), child_R_axis = Mat3::Identity();  ///< A, B
   Vec3 point_in_parent = Vec3::Zero(), point_in_child = Vec3::Zero();      ///< [m] p, c
 };
@@ -124,21 +125,22 @@ struct TrackingModel {
   std::vector<TrackingSensor> sensors;
   std::vector<TrackingBody> bodies;  ///< parents before children
   std::vector<TrackingJoint> joints;
-  TrackingSensorPrior prior{};
+  TrackingPrior prior{};
   TrackingBase base{};
   double gravity = standard_gravity;  ///< [m/s²]
   double gravity_sd = 0.03;
   TrackingTool tool{};
   std::vector<TrackingParameter> parameters;  ///< the covariance's rows, in order
   MatrixXd covariance;                        ///< SI, positive semidefinite, model errors included
-  /// Combinations of parameters of which the log told nothing, one unit column each; their variance is the prior's.
-  MatrixXd hidden;
-
-  int positions() const;  ///< length of q
+  int positions() const;                      ///< length of q
 };
 
 /// Names of the joint positions, in the order of q; they are those of the chain's active joints.
 std::vector<std::string> position_names(const TrackingModel& model);
+
+/// Combinations of parameters of which the log told nothing, one unit column each in units of the prior's standard
+/// deviations: their variance is more than half of the prior's.
+MatrixXd hidden_directions(const TrackingModel& model);
 
 /// Aborts (programming error) unless indices are in range, parents precede children and sizes agree.
 void expect_well_formed(const TrackingModel& model);

@@ -40,6 +40,19 @@ std::array<double, 2> axis_variance(std::span<const Mat3> rotations, const Mat3&
   return variance;
 }
 
+/// Of the child's axis across the parent's, mean of both directions.
+double deviation_memory_of(std::span<const Mat3> rotations, const Mat3& frame, const Vec3& in_child) {
+  const auto count = static_cast<double>(rotations.size());
+  double memory = 0.0;
+  for (Index k = 0; k < 2; ++k) {
+    std::vector<double> offset;
+    for (const Mat3& r : rotations) offset.push_back(frame.col(k).dot(r * in_child));
+    const double samples = effective_samples(offset), correlation = (count - samples) / (count + samples);
+    memory += correlation > 0.0 ? -0.5 / std::log(correlation) : 0.0;
+  }
+  return memory;
+}
+
 double axis_deviation_of(std::span<const Mat3> rotations, const AxisPair& axes) {
   double square = 0.0;
   for (const Mat3& r : rotations) {
@@ -67,7 +80,8 @@ MeanRevolute fit_mean_revolute(const InsBody& spherical, std::span<const Mat3> r
   const AxisPair axes = mean_axes(rotations);
   const Mat3 a = frame_with_z_along(axes.in_parent), b = frame_with_z_along(axes.in_child);
   MeanRevolute revolute{revolute_body(spherical.parent, spherical.sensor, a, b), 0.0,
-                        axis_deviation_of(rotations, axes), MatrixXd::Zero(10, 10)};
+                        axis_deviation_of(rotations, axes), MatrixXd::Zero(10, 10),
+                        deviation_memory_of(rotations, a, axes.in_child)};
   revolute.body.point_in_parent = spherical.point_in_parent;
   revolute.body.point_in_child = spherical.point_in_child;
   revolute.zero = revolute_position(revolute.body, rotations.front());

@@ -88,12 +88,13 @@ Mat3 spherical_axes(ConstMatrixRef turns) {
 }
 
 MatrixXd joint_trajectory(EstimatedJointType type, std::span<const InsBody> bodies, const JointGeometry& geometry,
-                          const SplineGrid& grid, ConstMatrixRef coefficients, std::span<const double> times) {
+                          std::span<const double> zero, const SplineGrid& grid, ConstMatrixRef coefficients,
+                          std::span<const double> times) {
   if (type == EstimatedJointType::rigid) return {};
   if (type == EstimatedJointType::spherical)
     return spherical_trajectory(spherical_rotation_vectors(grid, coefficients, times), geometry.spherical_axes);
   MatrixXd trajectory = spline_values(grid, coefficients, times);
-  trajectory.colwise() -= spline_value(grid, coefficients, grid.begin);
+  for (Index k = 0; k < trajectory.rows(); ++k) trajectory.row(k).array() -= zero[static_cast<std::size_t>(k)];
   if (bodies.size() == 1 && geometry.axis_in_parent.dot(bodies.front().parent_R_axis.col(2)) < 0.0)
     trajectory = -trajectory;
   return trajectory;

@@ -16,9 +16,11 @@ Binning trajectory_frames(const RecordedMotion& motion);
 std::vector<double> trajectory_times(const RecordedMotion& motion);
 
 /// One row per joint variable, in the order of joint_axes, one column per time [rad] or [m]. `bodies`: as passed to
-/// refined_joint. `coefficients`: of the splines of their joint positions, one row per degree of freedom.
+/// refined_joint, `zero` likewise. `coefficients`: of the splines of their joint positions, one row per degree of
+/// freedom.
 MatrixXd joint_trajectory(EstimatedJointType type, std::span<const InsBody> bodies, const JointGeometry& geometry,
-                          const SplineGrid& grid, ConstMatrixRef coefficients, std::span<const double> times);
+                          std::span<const double> zero, const SplineGrid& grid, ConstMatrixRef coefficients,
+                          std::span<const double> times);
 
 /// Cardan axes of a spherical joint, in the parent: most rotation about the first, least about the second, whose angle
 /// must stay within ±90°. `turns`: rotation vectors relative to joint position 0, in the parent, 3 x times.
