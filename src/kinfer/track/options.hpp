@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input of a tracker: rows of samples, and what the user knows.
+// What the user tells a tracker. Its rows (InsRow) hold one sample for each sensor of the model, in the model's order.
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "kinfer/linalg/types.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins_row.hpp"
 
 namespace kinfer::track {
-
-/// The samples of one instant, one for each sensor of the model in its order; a sensor without a sample has no has_*.
-struct InsRow {
-  double time = 0.0;  ///< [s] never decreases
-  std::vector<InsSample> sensors;
-};
 
 enum class BaseMotion { automatic, still, moving };
 

@@ -69,7 +69,7 @@ struct TrackingBody {
 };
 
 /// What one joint position did in the log that the chain was identified from; for smoothness and plausibility.
-struct JointRange {
+struct TrackingRange {
   double lower = 0.0, upper = 0.0;  ///< [rad] or [m]
   double speed = 0.0;               ///< [1/s] largest
   double acceleration = 0.0;        ///< [1/s²] rms
@@ -83,7 +83,7 @@ struct TrackingJoint {
   int positions = 1;        ///< their number: 0 (rigid) to 3
   double stray = 0.0;       ///< [rad] rms angle of a loose hinge's two axes, per direction across them; 0: a true hinge
   double stray_time = 0.0;  ///< [s] correlation time of the stray
-  std::vector<JointRange> range{};  ///< one for each position; empty: unknown
+  std::vector<TrackingRange> range{};  ///< one for each position; empty: unknown
 };
 
 enum class TrackingParameterKind {

@@ -34,14 +34,14 @@ MatrixXd joint_splines(const InsFit& fit, const JointBodies& joint) {
              : MatrixXd();
 }
 
-std::vector<JointRange> joint_ranges(const JointEstimate& joint, const SplineGrid& grid, ConstMatrixRef splines) {
-  std::vector<JointRange> ranges;
+std::vector<TrackingRange> joint_ranges(const JointEstimate& joint, const SplineGrid& grid, ConstMatrixRef splines) {
+  std::vector<TrackingRange> ranges;
   if (joint.trajectory.size() == 0 || splines.size() == 0) return ranges;
   const MatrixXd speed = derivatives(grid, splines, 1), acceleration = derivatives(grid, splines, 2);
   const bool each = splines.rows() == joint.trajectory.rows() && splines.rows() < 3;
   const double share = std::sqrt(static_cast<double>(joint.trajectory.rows()));
   for (Index k = 0; k < joint.trajectory.rows(); ++k) {
-    JointRange range{.lower = joint.trajectory.row(k).minCoeff(), .upper = joint.trajectory.row(k).maxCoeff()};
+    TrackingRange range{.lower = joint.trajectory.row(k).minCoeff(), .upper = joint.trajectory.row(k).maxCoeff()};
     if (each) {
       range.speed = speed.row(k).cwiseAbs().maxCoeff();
       range.acceleration = rms(acceleration.row(k));

@@ -4,6 +4,7 @@
 
 #include "kinfer/estimate/continuous/model/uniform_spline.hpp"
 #include "kinfer/evidence/identification/traces.hpp"
+#include "kinfer/geometry/cardan_angles.hpp"
 #include "kinfer/identify/refinement/refined_joint.hpp"
 #include "kinfer/inertial/segment_motion.hpp"
 
@@ -28,8 +29,5 @@ Mat3 spherical_axes(ConstMatrixRef turns);
 
 /// Rotation vectors of a spherical joint relative to its orientation at the begin of the recording, 3 x times.
 MatrixXd spherical_rotation_vectors(const SplineGrid& grid, ConstMatrixRef coefficients, std::span<const double> times);
-
-/// Angles of R = Rx(q0) Ry(q1) Rz(q2); of the two solutions, unwrapped, the one nearer to `before`.
-Vec3 cardan_angles(const Mat3& r, const Vec3& before);
 
 }  // namespace kinfer::identify
