@@ -21,6 +21,23 @@ double block_variance(double white, double persistent, double slow, double sampl
   return std::max(squared(white) / count + squared(persistent), squared(slow) * sample_period / length);
 }
 
+using SensorVector = Eigen::Matrix<double, sensor_rows, 1>;
+using SensorMatrix = Eigen::Matrix<double, sensor_rows, sensor_rows>;
+
+/// vᵀ m⁻¹ v by elimination.
+double squared_distance(SensorVector v, SensorMatrix m) {
+  double t = 0.0;
+  for (Index k = 0; k < sensor_rows; ++k) {
+    t += v[k] * v[k] / m(k, k);
+    for (Index i = k + 1; i < sensor_rows; ++i) {
+      const double factor = m(i, k) / m(k, k);
+      v[i] -= factor * v[k];
+      for (Index j = k + 1; j < sensor_rows; ++j) m(i, j) -= factor * m(k, j);
+    }
+  }
+  return t;
+}
+
 }  // namespace
 
 ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
@@ -39,6 +56,7 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
   error_ = VectorXd::Zero(layout.size);
   h_ = MatrixXd::Zero(most, layout.fast);
   w_ = MatrixXd::Zero(layout.size, most);
+  unused_w_ = MatrixXd::Zero(layout.size, sensor_rows);
   s_ = inverse_ = MatrixXd::Zero(most, most);
   is_measured_.assign(static_cast<std::size_t>(2 * layout.sensors), false);
 }
@@ -240,8 +258,9 @@ void ChainFilter::examine() {
   for (std::size_t s = 0; s < is_used_.size(); ++s) {
     const Index row = sensor_rows * static_cast<Index>(s);
     innovations_.rows[s] = (is_measured_[2 * s] ? 3 : 0) + (is_measured_[2 * s + 1] ? 3 : 0);
-    Eigen::Matrix<double, sensor_rows, sensor_rows> own;
-    Eigen::Matrix<double, sensor_rows, 1> u;
+    if (!is_used_[s]) continue;
+    SensorMatrix own;
+    SensorVector u;
     for (Index i = 0; i < sensor_rows; ++i) {
       u[i] = inverse_.col(row + i).head(rows_).dot(whitened);
       for (Index j = 0; j <= i; ++j)
@@ -249,18 +268,38 @@ void ChainFilter::examine() {
     }
     for (Index i = 0; i < sensor_rows; ++i)
       if (!is_measured_[2 * s + static_cast<std::size_t>(i / 3)]) u[i] = 0.0;
-    // uᵀ own⁻¹ u by elimination.
-    double t = 0.0;
-    for (Index k = 0; k < sensor_rows; ++k) {
-      t += u[k] * u[k] / own(k, k);
-      for (Index i = k + 1; i < sensor_rows; ++i) {
-        const double factor = own(i, k) / own(k, k);
-        u[i] -= factor * u[k];
-        for (Index j = k + 1; j < sensor_rows; ++j) own(i, j) -= factor * own(k, j);
-      }
-    }
-    innovations_.leave_out[s] = t;
+    innovations_.leave_out[s] = squared_distance(u, own);
   }
+}
+
+/// The innovation of a sensor that is not used, in its own covariance.
+double ChainFilter::distance_of_unused(const BlockMeasurement& block, std::size_t s) {
+  const FilterLayout& layout = model_->layout;
+  const ChainMeasurement& m = evaluator_.result();
+  const SensorSettings& settings = model_->sensors[s];
+  const BlockSample& measured = block.sensors[s];
+  const Index row = sensor_rows * static_cast<Index>(s), fast = m.fast_end[s], geometry = m.geometry_end[s];
+  unused_w_.setZero();
+  add_product(p_.leftCols(fast), m.by_fast.block(row, 0, sensor_rows, fast), 1.0, unused_w_);
+  if (geometry > 0)
+    add_product(p_.middleCols(layout.first_geometry, geometry), m.by_geometry.block(row, 0, sensor_rows, geometry), 1.0,
+                unused_w_);
+  // Its own errors are taken as uncorrelated with the rest: they are of no use while it is out of use.
+  const Index own = layout.sensor_state(static_cast<Index>(s));
+  SensorMatrix covariance = SensorMatrix::Zero();
+  for (Index k = 0; k < fast; ++k)
+    covariance += m.by_fast.col(k).segment<sensor_rows>(row) * unused_w_.row(k);
+  for (Index k = 0; k < geometry; ++k)
+    covariance += m.by_geometry.col(k).segment<sensor_rows>(row) * unused_w_.row(layout.first_geometry + k);
+  const double rate = block_variance(settings.white.rate, settings.persistent.rate, settings.slow.rate,
+                                     settings.sample_period, block.length, measured.rate_count),
+               force = block_variance(settings.white.force, settings.persistent.force, settings.slow.force,
+                                      settings.sample_period, block.length, measured.force_count);
+  for (Index i = 0; i < sensor_rows; ++i)
+    covariance(i, i) += (i < 3 ? rate : force) + p_(own + i, own + i) +
+                        p_.diagonal().segment<3>(own + SensorIndex::gyroscope_scale + 3 * i)
+                            .dot((i < 3 ? m.angular_velocity[s] : m.force[s]).cwiseAbs2());
+  return squared_distance(innovations_.value.segment<sensor_rows>(row), covariance);
 }
 
 void ChainFilter::correct() {
@@ -309,6 +348,12 @@ void ChainFilter::update(const BlockMeasurement& block) {
   limit_outliers();
   if (!factorise_small(s_.topLeftCorner(rows_, rows_))) return;
   examine();
+  for (std::size_t s = 0; s < is_used_.size(); ++s) {
+    if (is_used_[s]) continue;
+    const bool is_measured = block.sensors[s].rate_count > 0 && block.sensors[s].force_count > 0;
+    innovations_.rows[s] = is_measured ? static_cast<int>(sensor_rows) : 0;
+    if (is_measured) innovations_.leave_out[s] = distance_of_unused(block, s);
+  }
   correct();
 }
 

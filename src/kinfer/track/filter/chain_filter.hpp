@@ -26,7 +26,7 @@ struct BlockMeasurement {
 struct Innovations {
   VectorXd value;                 ///< measured minus predicted, rows of the sensors
   std::vector<double> leave_out;  ///< T of each sensor against all others, its expectation being `leave_out_rows`
-  std::vector<int> rows;          ///< of each sensor that were measured: 0, 3 or 6
+  std::vector<int> rows;          ///< of each sensor that were measured: 0, 3 or 6; of sensors out of use too
   double log_likelihood = 0.0;    ///< of this block
 };
 
@@ -76,6 +76,7 @@ class ChainFilter {
   void multiply();  // W and S
   void limit_outliers();
   void examine();
+  double distance_of_unused(const BlockMeasurement& block, std::size_t sensor);
   void correct();
   void bound();
   void mirror();
@@ -90,7 +91,7 @@ class ChainFilter {
   // Buffers of an update: sensors' rows first, then soft constraints.
   Index rows_ = 0;
   VectorXd residual_, noise_, error_, whitened_;
-  MatrixXd h_, w_, s_, inverse_;
+  MatrixXd h_, w_, s_, inverse_, unused_w_;
   std::vector<bool> is_measured_;  // of each triple of rows
 };
 

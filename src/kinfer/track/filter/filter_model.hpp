@@ -4,17 +4,10 @@
 #pragma once
 
 #include "kinfer/evidence/tracking/tracking_model.hpp"
+#include "kinfer/track/filter/acceleration_process.hpp"
 #include "kinfer/track/filter/layout.hpp"
 
 namespace kinfer::track {
-
-/// First-order Gauss-Markov (Ornstein-Uhlenbeck) acceleration.
-struct AccelerationProcess {
-  double sd = 0.0;    ///< [rad/s²] or [m/s²] of the acceleration itself
-  double time = 0.5;  ///< [s] its correlation time
-
-  double density() const { return 2.0 * sd * sd / time; }
-};
 
 struct SensorSettings {
   int body = 0;

@@ -3,8 +3,8 @@
 // every row, and is an anti-alias filter for vibration; a single row of them would waste half of the accuracy.
 #pragma once
 
+#include "kinfer/measurement/ins_row.hpp"
 #include "kinfer/track/filter/chain_filter.hpp"
-#include "kinfer/track/options.hpp"
 
 namespace kinfer::track {
 

@@ -2,7 +2,8 @@
 // Settings of the filter that no log tells, with the data that they were set on.
 #pragma once
 
-#include "kinfer/track/filter/filter_model.hpp"
+#include "kinfer/evidence/tracking/tracking_model.hpp"
+#include "kinfer/track/filter/acceleration_process.hpp"
 
 namespace kinfer::track {
 
@@ -35,6 +36,15 @@ inline constexpr double max_inflation = 1e4;
 
 inline constexpr double max_position_sd = 1.8;  ///< [rad] an angle that could be any; [m] likewise
 inline constexpr double max_motion_sd = 30.0;   ///< per second, per second²
+
+/// A rest: three blocks [s] of so many rows in which every instrument scatters by its own noise, times this.
+inline constexpr double rest_block = 0.25, rest_noise = 1.4;
+inline constexpr int min_rest_rows = 10;
+inline constexpr double rest_creep = 2e-4;  ///< [rad/s] that a rest may hide
+
+/// A base moves where its angular velocity, averaged over so long [s], is beyond this [rad/s] and so many standard
+/// deviations of noise and bias.
+inline constexpr double base_mean = 0.1, base_rate = 2e-3, base_significance = 5.0;
 
 inline constexpr double update_period = 0.02;  ///< [s] at most 50 updates a second
 inline constexpr double longest_step = 0.1;    ///< [s] of a prediction

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "kinfer/geometry/cardan_angles.hpp"
+
 namespace kinfer::track {
 namespace {
 
@@ -27,19 +29,10 @@ Mat3 ball_covariance(const FilterLayout& layout, Index first, Index derivative, 
   return p;
 }
 
-/// Angles of exp(φ) = Rx(q₁) Ry(q₂) Rz(q₃), the solution nearer to those before.
-Vec3 cardan(const Mat3& r, const Vec3& before) {
-  const double second = std::asin(std::clamp(r(0, 2), -1.0, 1.0));
-  const Vec3 one(std::atan2(-r(1, 2), r(2, 2)), second, std::atan2(-r(0, 1), r(0, 0))),
-      other(one.x() + std::numbers::pi, std::numbers::pi - second, one.z() + std::numbers::pi);
-  Vec3 first, last;
-  for (Index k = 0; k < 3; ++k) first[k] = unwrapped(one[k], before[k]), last[k] = unwrapped(other[k], before[k]);
-  return before.hasNaN() || (first - before).norm() <= (last - before).norm() ? first : last;
-}
-
 void read_ball(const FilterModel& model, std::size_t b, const ChainState& state, const MatrixXd& covariance, Index at,
                TrackState& to) {
-  const Vec3 q = cardan(state.balls[b], to.q.segment<3>(at));
+  const Vec3 before = to.q.segment<3>(at);
+  const Vec3 q = cardan_angles(state.balls[b], before.hasNaN() ? Vec3(Vec3::Zero()) : before);
   const Mat3 turning = (rot_y(q.y()) * rot_z(q.z())).transpose();
   Mat3 rates;  // of the angles to that of the child in its axes
   rates.col(0) = turning.col(0);

@@ -7,7 +7,6 @@
 #pragma once
 
 #include "kinfer/track/filter/chain_filter.hpp"
-#include "kinfer/track/options.hpp"
 
 namespace kinfer::track {
 

@@ -12,4 +12,10 @@ inline constexpr double start_arm = 1.0;          ///< [m] typical arm of the ce
 inline constexpr double start_rate_sd = 0.05;     ///< [rad/s] of velocities by gyroscopes over the first rows
 inline constexpr double start_velocity_sd = 0.3;  ///< [m/s] of the base
 
+inline constexpr int start_places = 12;          ///< of an angle that gravity does not tell
+inline constexpr double start_log_odds = 12.0;   ///< ln: a place so much less likely than the best is dropped
+inline constexpr double start_merge = 0.02;      ///< [rad] places so near are one
+inline constexpr double given_start_sd = 0.02;   ///< [rad] or [m] of what the user states
+inline constexpr double slide_room = 0.1;        ///< [m] beyond what was seen of a slide
+
 }  // namespace kinfer::track
