@@ -15,15 +15,15 @@
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/tracking/track_rows.hpp"
 #include "kinfer/io/tracking/tracking_model_toml.hpp"
-#include "kinfer/track/composed.hpp"
 #include "kinfer/track/run_recorder.hpp"
+#include "kinfer/track/tracker.hpp"
 
 namespace kinfer::cli {
 namespace {
 
 struct TrackArguments {
   CommonOptions common;
-  std::string chain, out, start;
+  std::string chain, out, start, base = "auto";
   std::vector<std::string> logs;
   bool follow = false;
 };
@@ -76,6 +76,9 @@ Result<void> check_limits(const VectorXd& start, const Chain& chain) {
 
 Result<track::TrackOptions> track_options(const TrackArguments& options, const Chain& chain) {
   track::TrackOptions how;
+  how.base = options.base == "still"    ? track::BaseMotion::still
+             : options.base == "moving" ? track::BaseMotion::moving
+                                        : track::BaseMotion::automatic;
   if (options.start.empty()) return how;
   KINFER_TRY(start, parse_posture("--start", options.start, chain));
   if (auto checked = check_limits(start, chain); !checked) return forward_error(checked.error());
@@ -127,12 +130,14 @@ Provenance provenance_of(const TrackArguments& options) {
   std::vector<std::string> inputs{(chain / "chain.toml").string(), (chain / "track.toml").string()};
   for (const std::string& log : options.logs)
     if (log != "-") inputs.push_back(log);
-  return {.inputs = fingerprints(inputs), .options = {{"--start", options.start}}, .seed = options.common.seed};
+  return {.inputs = fingerprints(inputs),
+          .options = {{"--base", options.base}, {"--start", options.start}},
+          .seed = options.common.seed};
 }
 
 Result<TrackRun> track_rows(const TrackArguments& options, const TrackedChain& machine, const track::TrackOptions& how,
                             const std::vector<RowOutput*>& outputs) {
-  track::ComposedFilters tracker(machine.model, how);
+  track::Tracker tracker(machine.model, how);
   track::RunRecorder recorder(machine.model);
   RowSource source{.logs = options.logs, .mode = options.follow ? ReadMode::follow : ReadMode::once};
   for (const TrackingSensor& sensor : machine.model.sensors) source.sensors.push_back(sensor.name);
@@ -219,6 +224,8 @@ Verb add_track(CLI::App& app) {
   add_text(*verb, "--out", options->out, "Folder for track.csv, evidence.json, report.html, run.json",
            Requirement::optional, "DIR");
   add_flag(*verb, "--follow", options->follow, "At the end of the log wait for more, until interrupted (Ctrl-C)");
+  add_choice(*verb, "--base", options->base, {"auto", "still", "moving"},
+             "Whether the base stands still; auto: as its sensor tells");
   add_text(*verb, "--start", options->start,
            "Joint positions where the log begins, in deg and mm; nan: unknown (default: as gravity tells)",
            Requirement::optional, "LIST");
