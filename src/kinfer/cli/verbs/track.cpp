@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // kinfer track: an identified chain at work; joint positions, tool pose and alarms from INS samples, row by row.
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
+
+#include "kinfer/base/angle.hpp"
 
 #include "kinfer/cli/parts/arguments.hpp"
 #include "kinfer/cli/parts/evidence_files.hpp"
-#include "kinfer/cli/parts/posture_argument.hpp"
 #include "kinfer/cli/parts/row_source.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
+#include "kinfer/cli/parts/track_output.hpp"
 #include "kinfer/cli/parts/track_summary.hpp"
+#include "kinfer/cli/parts/tracked_chain.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/track_json.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
-#include "kinfer/io/tracking/track_rows.hpp"
-#include "kinfer/io/tracking/tracking_model_toml.hpp"
+#include "kinfer/io/text/csv.hpp"
 #include "kinfer/track/run_recorder.hpp"
 #include "kinfer/track/tracker.hpp"
 
@@ -23,56 +24,10 @@ namespace {
 
 struct TrackArguments {
   CommonOptions common;
-  std::string chain, out, start, base = "auto";
+  std::string chain, out, start, facts, base = "auto", base_at;
   std::vector<std::string> logs;
   bool follow = false;
 };
-
-struct TrackedChain {
-  Chain chain;
-  TrackingModel model;
-};
-
-/// The tool of chain.toml, which its user may have changed since.
-void take_tool(TrackingModel& model, const Chain& chain) {
-  const std::string& tip = chain.joints[static_cast<std::size_t>(chain.tip_joint())].name;
-  for (const TrackingSensor& sensor : model.sensors) {
-    if (sensor.name != tip) continue;
-    const Pose tool = chain.tool.pose();
-    if (model.tool.body != sensor.body || (model.tool.body_T_tool.position - tool.position).norm() > 1e-9)
-      model.tool.sd = Vec3::Zero();
-    model.tool.body = sensor.body;
-    model.tool.body_T_tool = tool;
-  }
-}
-
-Result<TrackedChain> read_tracked_chain(const std::string& folder) {
-  const std::filesystem::path path(folder);
-  if (!std::filesystem::is_directory(path))
-    return error("{}: expected a folder that kinfer identify wrote, with chain.toml and track.toml", folder);
-  KINFER_TRY(robot, read_robot_toml(path / "chain.toml"));
-  if (!std::filesystem::exists(path / "track.toml"))
-    return error(
-        "{}: the chain has no tracking data, track.toml: identify the machine again, without --geometry searched",
-        folder);
-  KINFER_TRY(model, read_tracking_model(path / "track.toml"));
-  if (position_names(model) != active_joint_names(robot.chain))
-    return error("{}: chain.toml and track.toml are of different machines: their joints differ", folder);
-  take_tool(model, robot.chain);
-  return TrackedChain{std::move(robot.chain), std::move(model)};
-}
-
-Result<void> check_limits(const VectorXd& start, const Chain& chain) {
-  const std::vector<int> joints = active_joints(chain);
-  for (std::size_t k = 0; k < joints.size(); ++k) {
-    const Joint& joint = chain.joints[static_cast<std::size_t>(joints[k])];
-    const double q = start[static_cast<Eigen::Index>(k)], unit = rotates(joint.type) ? degree : 1e-3;
-    if (q < joint.lower || q > joint.upper)
-      return error("--start: {} is {:.6g} {}, outside its limits {:.6g} to {:.6g}", joint.name, q / unit,
-                   rotates(joint.type) ? "deg" : "mm", joint.lower / unit, joint.upper / unit);
-  }
-  return {};
-}
 
 Result<track::TrackOptions> track_options(const TrackArguments& options, const Chain& chain) {
   track::TrackOptions how;
@@ -80,63 +35,41 @@ Result<track::TrackOptions> track_options(const TrackArguments& options, const C
              : options.base == "moving" ? track::BaseMotion::moving
                                         : track::BaseMotion::automatic;
   if (options.start.empty()) return how;
-  KINFER_TRY(start, parse_posture("--start", options.start, chain));
-  if (auto checked = check_limits(start, chain); !checked) return forward_error(checked.error());
+  KINFER_TRY(start, parse_start(options.start, chain));
   how.start = start;
   return how;
 }
 
-/// Rows of text to a file or standard output, flushed when asked.
-class RowOutput {
- public:
-  RowOutput(const TrackingModel& model, bool json) : writer_(model), json_(json) {}
-  ~RowOutput() {
-    flush();
-    if (file_ && file_ != stdout) std::fclose(file_);
+/// "X,Y,Z,HEADING" in mm and deg.
+Result<std::optional<BasePlace>> parse_place(const std::string& text) {
+  if (text.empty()) return std::optional<BasePlace>{};
+  std::array<double, 4> numbers{};
+  std::size_t begin = 0, count = 0;
+  for (; begin <= text.size() && count < 4; ++count) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const auto number = parse_number(std::string_view(text).substr(begin, end - begin));
+    if (!number || !std::isfinite(*number)) break;
+    numbers[count] = *number;
+    begin = end + 1;
   }
-  RowOutput(const RowOutput&) = delete;
-  RowOutput& operator=(const RowOutput&) = delete;
-
-  Result<void> open(const std::filesystem::path& path) {
-    file_ = path.empty() ? stdout : std::fopen(path.c_str(), "wb");
-    if (!file_) return error("{}: cannot be written", path.string());
-    if (!json_) buffer_ = writer_.header();
-    return {};
-  }
-  void add(const TrackState& state) {
-    if (json_)
-      writer_.append_json(state, buffer_);
-    else
-      writer_.append_csv(state, buffer_);
-    if (buffer_.size() > most_buffered) flush();
-  }
-  void flush() {
-    if (!file_) return;
-    std::fwrite(buffer_.data(), 1, buffer_.size(), file_);
-    std::fflush(file_);
-    buffer_.clear();
-  }
-
- private:
-  static constexpr std::size_t most_buffered = 1 << 18;
-  TrackRowWriter writer_;
-  bool json_;
-  std::FILE* file_ = nullptr;
-  std::string buffer_;
-};
+  if (count != 4 || begin <= text.size())
+    return error("--base-at {}: expected X,Y,Z,HEADING in mm and deg, as 1000,0,250,90", text);
+  return std::optional(BasePlace{1e-3 * Vec3(numbers[0], numbers[1], numbers[2]), numbers[3] * degree});
+}
 
 Provenance provenance_of(const TrackArguments& options) {
   const std::filesystem::path chain(options.chain);
   std::vector<std::string> inputs{(chain / "chain.toml").string(), (chain / "track.toml").string()};
   for (const std::string& log : options.logs)
     if (log != "-") inputs.push_back(log);
+  if (!options.facts.empty()) inputs.push_back(options.facts);
   return {.inputs = fingerprints(inputs),
-          .options = {{"--base", options.base}, {"--start", options.start}},
+          .options = {{"--base", options.base}, {"--base-at", options.base_at}, {"--start", options.start}},
           .seed = options.common.seed};
 }
 
 Result<TrackRun> track_rows(const TrackArguments& options, const TrackedChain& machine, const track::TrackOptions& how,
-                            const std::vector<RowOutput*>& outputs) {
+                            const std::vector<TrackOutput*>& outputs) {
   track::Tracker tracker(machine.model, how);
   track::RunRecorder recorder(machine.model);
   RowSource source{.logs = options.logs, .mode = options.follow ? ReadMode::follow : ReadMode::once};
@@ -144,11 +77,11 @@ Result<TrackRun> track_rows(const TrackArguments& options, const TrackedChain& m
   const auto add = [&](const InsRow& row) -> Result<void> {
     tracker.add(row);
     recorder.add(tracker.state());
-    for (RowOutput* output : outputs) output->add(tracker.state());
+    for (TrackOutput* output : outputs) output->add(tracker.state());
     return {};
   };
   const auto flush = [&] {
-    for (RowOutput* output : outputs) output->flush();
+    for (TrackOutput* output : outputs) output->flush();
   };
   KINFER_TRY(remarks, each_row(source, {add, flush}));
   flush();
@@ -180,12 +113,15 @@ int run(const TrackArguments& options) {
   RunRecord record("track", options.common);
   record.add_input(options.chain);
   for (const std::string& log : options.logs) record.add_input(log);
-  const auto machine = read_tracked_chain(options.chain);
+  const auto machine = read_tracked_chain(options.chain, options.facts);
   if (!machine) return fail(machine.error());
   const auto how = track_options(options, machine->chain);
   if (!how) return fail(how.error());
-  RowOutput table(machine->model, false), lines(machine->model, true);
-  std::vector<RowOutput*> outputs;
+  const auto place = parse_place(options.base_at);
+  if (!place) return fail(place.error());
+  TrackOutput table(TrackRowWriter(machine->model, *place), RowFormat::csv),
+      lines(TrackRowWriter(machine->model, *place), RowFormat::json_lines);
+  std::vector<TrackOutput*> outputs;
   std::optional<OutputFolder> folder;
   if (!options.out.empty()) {
     auto made = OutputFolder::make(options.out);
@@ -195,7 +131,7 @@ int run(const TrackArguments& options) {
     outputs.push_back(&table);
   }
   if (options.out.empty() || options.common.json) {
-    RowOutput& terminal = options.common.json ? lines : table;
+    TrackOutput& terminal = options.common.json ? lines : table;
     if (auto done = terminal.open({}); !done) return fail(done.error());
     outputs.push_back(&terminal);
   }
@@ -229,6 +165,15 @@ Verb add_track(CLI::App& app) {
   add_text(*verb, "--start", options->start,
            "Joint positions where the log begins, in deg and mm; nan: unknown (default: as gravity tells)",
            Requirement::optional, "LIST");
+  add_text(
+      *verb, "--facts", options->facts,
+      "Where the tool is: the place named tip or tool, with xyz in its sensor's frame (default: as the chain says)",
+      Requirement::optional, "TOML");
+  add_text(
+      *verb, "--base-at", options->base_at,
+      "Point of the base's sensor in the world and heading of its x axis when tracking begins, X,Y,Z,HEADING in mm "
+      "and deg: adds the tool's pose in the world, for a base that keeps its place",
+      Requirement::optional, "LIST");
   add_common_options(*verb, options->common);
   return {verb, [options] { return run(*options); }};
 }

@@ -51,7 +51,8 @@ Eigen::Vector4d upper_half(const Quat& q) {
 
 }  // namespace
 
-TrackRowWriter::TrackRowWriter(const TrackingModel& model) : positions_(position_names(model)) {
+TrackRowWriter::TrackRowWriter(const TrackingModel& model, std::optional<BasePlace> place)
+    : positions_(position_names(model)), place_(place) {
   for (const TrackingJoint& joint : model.joints) {
     joints_.push_back(joint.name);
     unit_.insert(unit_.end(), static_cast<std::size_t>(joint.positions),
@@ -65,13 +66,23 @@ std::string TrackRowWriter::header() const {
   for (const auto& [name, per] : {std::pair{"q", ""}, std::pair{"qd", "/s"}, std::pair{"sd_q", ""}})
     for (std::size_t k = 0; k < positions_.size(); ++k)
       text += fmt::format(",{}_{}[{}{}]", name, positions_[k], unit_[k] == 1e-3 ? "mm" : "deg", per);
-  return text +
-         ",tool_x[mm],tool_y[mm],tool_z[mm],tool_qw,tool_qx,tool_qy,tool_qz,sd_tool_x[mm],sd_tool_y[mm],sd_tool_z[mm],"
-         "sd_tool_rx[deg],sd_tool_ry[deg],sd_tool_rz[deg],base_qw,base_qx,base_qy,base_qz,sd_base_rx[deg],"
-         "sd_base_ry[deg],sd_base_rz[deg],alarm\n";
+  text +=
+      ",tool_x[mm],tool_y[mm],tool_z[mm],tool_qw,tool_qx,tool_qy,tool_qz,sd_tool_x[mm],sd_tool_y[mm],sd_tool_z[mm],"
+      "sd_tool_rx[deg],sd_tool_ry[deg],sd_tool_rz[deg],base_qw,base_qx,base_qy,base_qz,sd_base_rx[deg],"
+      "sd_base_ry[deg],sd_base_rz[deg]";
+  if (place_)
+    text +=
+        ",world_tool_x[mm],world_tool_y[mm],world_tool_z[mm],world_tool_qw,world_tool_qx,world_tool_qy,world_tool_qz";
+  return text + ",alarm\n";
 }
 
-void TrackRowWriter::append_csv(const TrackState& state, std::string& out) const {
+Pose TrackRowWriter::tool_in_world(const TrackState& state) {
+  const Mat3 level_R_base = state.world_q_base.toRotationMatrix();
+  if (!first_heading_) first_heading_ = std::atan2(level_R_base(1, 0), level_R_base(0, 0));
+  return Pose{rot_z(place_->heading - *first_heading_) * level_R_base, place_->position} * state.base_T_tool;
+}
+
+void TrackRowWriter::append_csv(const TrackState& state, std::string& out) {
   fmt::format_to(std::back_inserter(out), "{}", state.time);
   for (const VectorXd* values : {&state.q, &state.qd, &state.sd_q})
     for (Index k = 0; k < values->size(); ++k) append_cell(out, (*values)[k] / unit_[static_cast<std::size_t>(k)]);
@@ -85,6 +96,12 @@ void TrackRowWriter::append_csv(const TrackState& state, std::string& out) const
   append_all(state.sd_tool_rotation, degree, has_tool);
   append_all(upper_half(state.world_q_base), 1.0, state.started);
   append_all(state.sd_base, degree, state.started);
+  if (place_) {
+    const bool is_known = has_tool && state.started;
+    const Pose tool = is_known ? tool_in_world(state) : Pose{};
+    append_all(tool.position, 1e-3, is_known);
+    append_all(upper_half(Quat(tool.rotation)), 1.0, is_known);
+  }
   out += ',' + alarm_cell(state) + '\n';
 }
 
@@ -99,7 +116,7 @@ std::string TrackRowWriter::alarm_cell(const TrackState& state) const {
   return cell;
 }
 
-void TrackRowWriter::append_json(const TrackState& state, std::string& out) const {
+void TrackRowWriter::append_json(const TrackState& state, std::string& out) {
   const bool has_tool = state.q.allFinite();
   fmt::format_to(std::back_inserter(out), "{{\"t\":{}", state.time);
   append_json_list(out, "q", state.q);
@@ -110,6 +127,11 @@ void TrackRowWriter::append_json(const TrackState& state, std::string& out) cons
     append_json_list(out, "tool_quat", upper_half(Quat(state.base_T_tool.rotation)));
     append_json_list(out, "sd_tool_xyz", state.sd_tool_position);
     append_json_list(out, "sd_tool_rotation", state.sd_tool_rotation);
+    if (place_) {
+      const Pose tool = tool_in_world(state);
+      append_json_list(out, "world_tool_xyz", tool.position);
+      append_json_list(out, "world_tool_quat", upper_half(Quat(tool.rotation)));
+    }
   }
   append_json_list(out, "base_quat", upper_half(state.world_q_base));
   append_json_list(out, "sd_base", state.sd_base);
