@@ -15,7 +15,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown_position = std::numeric_limits<double>::quiet_NaN();
 constexpr double heading_walk = 1e-3;      // [rad/√s] of the difference of two headings
 constexpr double axis_error = 0.01;        // [rad] of an axis' horizontal parts as two filters see them
 constexpr double axis_error_time = 2.0;    // [s] over which that error stays alike
@@ -31,7 +31,7 @@ double about_z(const Mat3& r) {
   return std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1));
 }
 
-double unwrapped(double angle, double before) {
+double unwrapped_angle(double angle, double before) {
   return std::isfinite(before) ? before + std::remainder(angle - before, 2.0 * std::numbers::pi) : angle;
 }
 
@@ -64,7 +64,7 @@ ComposedFilters::ComposedFilters(const TrackingModel& model, const TrackOptions&
                        .child_sensor = model.bodies[last].sensor});
   }
   const Index positions = model.positions();
-  state_.q = state_.qd = state_.sd_q = state_.sd_qd = VectorXd::Constant(positions, unknown);
+  state_.q = state_.qd = state_.sd_q = state_.sd_qd = VectorXd::Constant(positions, unknown_position);
   state_.joints.resize(model.joints.size());
 }
 
@@ -177,12 +177,12 @@ void ComposedFilters::read_positions(const Joint& joint) {
     // Rz(q₁) C Rz(q₂) with C = Bᵀ A between both axes
     const Mat3 between = near.child_R_axis.transpose() * far.parent_R_axis;
     const double q1 = std::atan2(m(1, 2), m(0, 2)) - std::atan2(between(1, 2), between(0, 2));
-    state_.q[at] = unwrapped(q1, state_.q[at]);
-    state_.q[at + 1] = unwrapped(about_z(between.transpose() * rot_z(-q1) * m), state_.q[at + 1]);
+    state_.q[at] = unwrapped_angle(q1, state_.q[at]);
+    state_.q[at + 1] = unwrapped_angle(about_z(between.transpose() * rot_z(-q1) * m), state_.q[at + 1]);
     state_.sd_q[at] = sd_about(near.parent_R_axis.col(2));
     state_.sd_q[at + 1] = sd_about(relative * far.child_R_axis.col(2));
   } else if (near.motion == TrackingMotion::revolute) {
-    state_.q[at] = unwrapped(about_z(m), state_.q[at]);
+    state_.q[at] = unwrapped_angle(about_z(m), state_.q[at]);
     state_.qd[at] = near.parent_R_axis.col(2).dot(rate);
     state_.sd_q[at] = sd_about(near.parent_R_axis.col(2));
   }

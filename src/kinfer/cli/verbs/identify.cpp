@@ -169,10 +169,6 @@ Provenance provenance_of(const IdentifyArguments& options, const identify::Ident
   return {.inputs = fingerprints(inputs), .options = identify::describe(how), .seed = options.common.seed};
 }
 
-Tone tone_of(Usability usability) {
-  return usability == Usability::use ? Tone::good : usability == Usability::use_with_care ? Tone::neutral : Tone::bad;
-}
-
 Result<void> write_results(const OutputFolder& folder, const Provenance& provenance, const Identification& found) {
   RobotModel robot{.chain = found.chain};
   if (auto done = write_text_file(folder / "chain.toml", format_robot_toml(robot)); !done) return done;

@@ -90,10 +90,6 @@ Result<TrackRun> track_rows(const TrackArguments& options, const TrackedChain& m
   return run;
 }
 
-Tone tone_of(Usability usability) {
-  return usability == Usability::use ? Tone::good : usability == Usability::use_with_care ? Tone::neutral : Tone::bad;
-}
-
 int finish(const TrackArguments& options, const RunRecord& record, const TrackRun& run) {
   if (!options.out.empty()) {
     if (auto done = write_evidence(options.out, run); !done) return fail(done.error());
