@@ -53,12 +53,13 @@ TEST(RunRecorder, TurnsAlarmsIntoEvents) {
   for (int i = 0; i < 100; ++i) {
     TrackState state = state_at(model, 0.1 * i);
     if (i >= 20 && i < 50) state.alarms.push_back({TrackAlarmKind::sensor_lost, 3, -1, 2.0, 1.0 + 0.1 * (i % 7)});
+    if (i >= 55 && i < 57) state.alarms.push_back({TrackAlarmKind::sensor_lost, 3, -1, 5.5, 1.0});  // once more
     if (i >= 60) state.alarms.push_back({TrackAlarmKind::joint_changed, -1, 1, 6.0, 2.0});
     recorder.add(state);
   }
   const TrackRun run = recorder.run();
   ASSERT_EQ(run.events.size(), 2u);
-  EXPECT_DOUBLE_EQ(run.events[0].until, 5.0);
+  EXPECT_DOUBLE_EQ(run.events[0].until, 5.7);
   EXPECT_NEAR(run.events[0].alarm.strength, 1.6, 1e-12) << "the largest";
   EXPECT_TRUE(std::isnan(run.events[1].until)) << "still active";
 }

@@ -44,7 +44,7 @@ Usability usability_of(const TrackRun& run) {
 }  // namespace
 
 std::vector<std::string> joint_sentences(const TrackRun& run) {
-  constexpr double least_share = 5e-3;
+  constexpr double least_share = 0.05;  // of the rows; a start takes less
   std::vector<std::string> sentences;
   for (const TrackJointShare& joint : run.joints) {
     if (joint.unknown > least_share)
