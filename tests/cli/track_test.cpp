@@ -104,7 +104,7 @@ TEST_F(Track, GivesTheSameRowsHoweverTheLogArrives) {
 TEST_F(Track, BadInputIsOneSentence) {
   identify("--zero ins2=10deg@1s");
   EXPECT_THAT(kinfer("track nowhere drive/imu.csv").err, HasSubstr("nowhere: expected a folder that kinfer identify"));
-  EXPECT_THAT(kinfer("track machine drive/none.csv").err, HasSubstr("drive/none.csv: No such file"));
+  EXPECT_THAT(kinfer("track machine drive/none.csv").err, HasSubstr("drive/none.csv: no such file"));
   EXPECT_THAT(kinfer("track machine drive/imu.csv --start 1,2").err, HasSubstr("--start: the robot has"));
   EXPECT_THAT(kinfer("track machine drive/imu.csv drive/imu.csv --follow").err, HasSubstr("--follow: needs a single"));
   EXPECT_THAT(shell("cut -d, -f1-10 drive/imu.csv > few.csv; kinfer track machine few.csv").err,
