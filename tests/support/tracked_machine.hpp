@@ -10,7 +10,7 @@
 #include "kinfer/simulate/excitation.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
-#include "kinfer/track/options.hpp"
+#include "kinfer/measurement/ins_row.hpp"
 
 namespace kinfer::test {
 
@@ -78,7 +78,7 @@ inline TrackingModel tracking_model_of(const Machine& machine, const SensorModel
 }
 
 /// Row `row` of a recording with one logger.
-inline void fill_row(const InsRecording& recording, std::size_t row, track::InsRow& to) {
+inline void fill_row(const InsRecording& recording, std::size_t row, InsRow& to) {
   to.time = recording.loggers.front().time[row];
   to.sensors.resize(recording.sensors.size());
   for (std::size_t s = 0; s < recording.sensors.size(); ++s)

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <type_traits>
+
 #include "support/differences.hpp"
 #include "support/random.hpp"
 
@@ -148,11 +150,11 @@ struct Trajectory {
 constexpr double h = 1e-3;
 
 template <class F>
-auto first_difference(const F& f, double t) {
+std::invoke_result_t<F, double> first_difference(const F& f, double t) {
   return (f(t + h) - f(t - h)) / (2.0 * h);
 }
 template <class F>
-auto second_difference(const F& f, double t) {
+std::invoke_result_t<F, double> second_difference(const F& f, double t) {
   return (f(t + h) - 2.0 * f(t) + f(t - h)) / (h * h);
 }
 

@@ -75,8 +75,10 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       base_(model, *model_, given_base(options.base)),
       health_(model.sensors.size()),
       fit_(model.sensors.size()),
+      replay_(filter_),
       does_not_fit_(model.sensors.size(), false),
       composed_(model, options),
+      choice_(model),
       tool_(*model_, model.tool),
       now_(initial_state(*model_)),
       state_(unknown_state(model)) {
@@ -145,6 +147,7 @@ void Tracker::try_start() {
     }
   }
   block_.clear();
+  replay_.begin(filter_);
   state_.started = true;
   now_ = filter_.state();
 }
@@ -155,6 +158,26 @@ void Tracker::resolve_start(const BlockMeasurement& block) {
   if (!grid_->is_decided()) return;
   is_known_[static_cast<std::size_t>(grid_->position())] = true;
   grid_.reset();
+  replay_.begin(filter_);
+}
+
+/// Leaves out the sensor that disagrees most, as if it had never been believed, and takes in one that agrees again.
+void Tracker::examine_fit(const BlockMeasurement& block) {
+  replay_.add(block, filter_);
+  if (const int worst = fit_.worst(filter_); worst >= 0) {
+    const auto s = static_cast<std::size_t>(worst);
+    does_not_fit_[s] = true;
+    const SensorFit fit = fit_[s];
+    fit_.reset();
+    replay_.run(s, filter_, [&](const ChainFilter& filter, const BlockMeasurement& past) {
+      fit_.add(filter, past.time, past.length);
+    });
+    fit_.set(s, fit);
+  }
+  if (const int back = fit_.recovered(filter_); back >= 0) {
+    does_not_fit_[static_cast<std::size_t>(back)] = false;
+    fit_.reset(static_cast<std::size_t>(back));
+  }
 }
 
 void Tracker::process_block() {
@@ -166,13 +189,12 @@ void Tracker::process_block() {
     filter_.update(block);
   }
   fit_.add(filter_, block.time, block.length);
-  if (!grid_) {
-    if (const int worst = fit_.worst(filter_); worst >= 0) does_not_fit_[static_cast<std::size_t>(worst)] = true;
-    if (const int back = fit_.recovered(filter_); back >= 0) does_not_fit_[static_cast<std::size_t>(back)] = false;
-  }
+  choice_.update(filter_);
+  if (!grid_) examine_fit(block);
   base_.add(block, filter_.state());
   if (base_.mode() == BaseMode::moving && filter_.state().base == BaseMode::still) {
     filter_.set_base(BaseMode::moving);
+    replay_.begin(filter_);
     // What counted from the start can now be told.
     for (std::size_t b = 1; b < model_->bodies.size() && !grid_; ++b) {
       const Index at = model_->layout.position[b];
@@ -196,6 +218,7 @@ void Tracker::read_out(double time) {
   for (std::size_t i = 0; i < is_known_.size(); ++i)
     if (!is_known_[i] && joint_of_position_[i] >= 0)
       state_.joints[static_cast<std::size_t>(joint_of_position_[i])].reference = JointReference::start;
+  choice_.apply(*tracking_, composed_.state(), state_);
 }
 
 void Tracker::list_alarms(double time) {

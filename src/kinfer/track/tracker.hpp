@@ -7,10 +7,12 @@
 #include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/track/composed.hpp"
 #include "kinfer/track/faults/fit_monitor.hpp"
+#include "kinfer/track/faults/replay.hpp"
 #include "kinfer/track/faults/sensor_health.hpp"
 #include "kinfer/track/filter/base_watch.hpp"
 #include "kinfer/track/filter/rest_bias.hpp"
 #include "kinfer/track/filter/row_block.hpp"
+#include "kinfer/track/joint_choice.hpp"
 #include "kinfer/track/options.hpp"
 #include "kinfer/track/readout/tool_spread.hpp"
 #include "kinfer/track/start/initial_posture.hpp"
@@ -38,8 +40,8 @@ class Tracker {
   void process_block();
   void resolve_start(const BlockMeasurement& block);
   void choose_sensors();
+  void examine_fit(const BlockMeasurement& block);
   void list_alarms(double time);
-  void choose_sources();
   void read_out(double time);
 
   std::shared_ptr<const TrackingModel> tracking_;
@@ -54,8 +56,10 @@ class Tracker {
   BaseWatch base_;
   HealthWatch health_;
   FitMonitor fit_;
+  Replay replay_;
   std::vector<bool> does_not_fit_;  // sensors out of use because they disagree
   ComposedFilters composed_;
+  JointChoice choice_;
   ToolSpread tool_;
   ChainState now_;  // predicted to the last row
   std::optional<double> restarted_{};

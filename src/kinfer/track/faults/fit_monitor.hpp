@@ -29,6 +29,7 @@ class FitMonitor {
   int recovered(const ChainFilter& filter) const;
   void reset(std::size_t sensor) { fits_[sensor] = {}; }
   void reset();
+  void set(std::size_t sensor, const SensorFit& fit) { fits_[sensor] = fit; }
 
  private:
   std::vector<SensorFit> fits_;
