@@ -116,6 +116,14 @@ TEST(TrackingModel, TakesNamedZeros) {
   EXPECT_NEAR(after(2, at), 0.25, 0.1);
 }
 
+TEST(TrackingModel, KnowsTheLengthOfABoomAtTheZeroOfItsSlide) {
+  const auto drive = test::driven_machine("crane", 3);
+  const TrackingModel model = *test::identified(drive.recording).tracking;
+  const auto slide = std::ranges::find(model.bodies, TrackingMotion::prismatic, &TrackingBody::motion);
+  ASSERT_NE(slide, model.bodies.end());
+  EXPECT_LT(std::sqrt(variance_of(model, Kind::point_in_parent, static_cast<int>(slide - model.bodies.begin()))), 0.05);
+}
+
 TEST(TrackingModel, OfALooseHingeStatesItsStray) {
   const test::HandMovedChain chain;
   const Refinement refined = test::refined(chain.recording, 0);
