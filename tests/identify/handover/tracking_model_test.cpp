@@ -38,6 +38,7 @@ double sum_of_squares(const std::array<double, 2>& sd) {
 }
 
 void expect_agreement(const Identification& found) {
+  constexpr double same = 0.01;  // a slide is anchored here and not in the evidence, which azimuths notice
   ASSERT_TRUE(found.tracking);
   const TrackingModel& model = *found.tracking;
   EXPECT_EQ(position_names(model), active_joint_names(found.chain));
@@ -56,10 +57,10 @@ void expect_agreement(const Identification& found) {
     const auto body = std::ranges::find(model.bodies, static_cast<int>(j), &TrackingBody::joint) - model.bodies.begin();
     EXPECT_NEAR(variance_of(model, Kind::parent_rotation, static_cast<int>(body)),
                 sum_of_squares(found.joints[j].sd.axis_in_parent),
-                1e-3 * sum_of_squares(found.joints[j].sd.axis_in_parent));
+                same * sum_of_squares(found.joints[j].sd.axis_in_parent));
     EXPECT_NEAR(variance_of(model, Kind::child_rotation, static_cast<int>(body)),
                 sum_of_squares(found.joints[j].sd.axis_in_child),
-                1e-3 * sum_of_squares(found.joints[j].sd.axis_in_child));
+                same * sum_of_squares(found.joints[j].sd.axis_in_child));
   }
   const SymmetricEigen eigen = symmetric_eigen(model.covariance);
   EXPECT_GT(eigen.values[0], -1e-9 * eigen.values[eigen.values.size() - 1]);
