@@ -11,6 +11,7 @@ Verb add_calibrate(CLI::App& app);
 Verb add_predict(CLI::App& app);
 Verb add_plan(CLI::App& app);
 Verb add_forecast(CLI::App& app);
+Verb add_track(CLI::App& app);
 Verb add_verify(CLI::App& app);
 Verb add_inspect(CLI::App& app);
 Verb add_convert(CLI::App& app);

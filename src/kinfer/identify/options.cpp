@@ -56,6 +56,8 @@ Result<void> check(const IdentifyOptions& options) {
     return error("--smoothing {}: expected 0 .. 1 s", options.motion.smoothing);
   if (options.geometry == GeometrySource::searched && !options.refine.facts.empty())
     return error("--facts has no effect with --geometry searched");
+  if (options.geometry == GeometrySource::searched && !options.refine.zeros.empty())
+    return error("--zero has no effect with --geometry searched");
   if (options.geometry == GeometrySource::searched && options.refine.grade)
     return error("--grade has no effect with --geometry searched");
   if (const auto* bacterial = std::get_if<BacterialProgramming>(&options.engine)) return check_depth(bacterial->depth);
@@ -75,6 +77,9 @@ NamedValues describe(const IdentifyOptions& options) {
                            {"--tree", links_text(options.tree)},
                            {"--geometry", is_refined ? "refined" : "searched"}});
   if (is_refined) list.emplace_back("--grade", options.refine.grade ? options.refine.grade->name : "auto");
+  for (const NamedZero& zero : options.refine.zeros)
+    list.emplace_back("--zero", fmt::format("{}={}{}@{}s", zero.joint, zero.position,
+                                            zero.motion == elementary::Motion::rotation ? "rad" : "m", zero.at));
   return list;
 }
 

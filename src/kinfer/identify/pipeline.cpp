@@ -13,6 +13,7 @@
 #include "kinfer/identify/findings/verdict.hpp"
 #include "kinfer/identify/geometry/identified_chain.hpp"
 #include "kinfer/identify/geometry/link_estimates.hpp"
+#include "kinfer/identify/handover/complete_tracking.hpp"
 #include "kinfer/identify/joints/search_links.hpp"
 #include "kinfer/identify/joints/searched_joint.hpp"
 #include "kinfer/identify/joints/thresholds.hpp"
@@ -180,6 +181,8 @@ Result<Identification> identify_machine(const InsRecording& recording, const Ide
     KINFER_TRY(links, search_links(ordered, types, link_search_options(options), rng, observer));
     KINFER_TRY(geometry, final_geometry(links, session, ordered, connections, options, observer));
     if (session.update_clocks(geometry.clocks)) continue;
+    if (!geometry.tracking && !options.refine.zeros.empty())
+      return error("--zero: no joint positions were found in this recording");
 
     Identification result = assemble_chain(ordered, std::move(links), geometry, options);
     result.motion = motion_evidence(ordered.motion, result, geometry.held_out);
@@ -190,6 +193,7 @@ Result<Identification> identify_machine(const InsRecording& recording, const Ide
     append(result.notes, geometry.notes);
     result.order = std::move(order.evidence);
     result.clocks = std::move(clocks.clocks);
+    if (geometry.tracking) result.tracking = complete(std::move(*geometry.tracking), result);
     judge_given_links(result, recording, options, rng, observer);
     draw_conclusions(result, ordered, connections);
     return result;

@@ -8,6 +8,7 @@
 #include "kinfer/report/calibrate/page.hpp"
 #include "kinfer/report/identify/page.hpp"
 #include "kinfer/report/parts/script_data.hpp"
+#include "kinfer/report/track/page.hpp"
 
 namespace kinfer::report {
 namespace {
@@ -51,10 +52,15 @@ std::string report_html(const IdentificationEvidence& evidence) {
   return page_html(identification_page(evidence), script_data(evidence));
 }
 
+std::string report_html(const TrackRun& run) {
+  return page_html(track_page(run), "{\"kind\":\"track\"}");
+}
+
 Result<std::string> report_of_file(std::string_view text) {
   KINFER_TRY(evidence, read_evidence(text));
   if (const auto* calibration = std::get_if<CalibrationEvidence>(&evidence)) return report_html(*calibration);
   if (const auto* identification = std::get_if<IdentificationEvidence>(&evidence)) return report_html(*identification);
+  if (const auto* run = std::get_if<TrackRun>(&evidence)) return report_html(*run);
   return error("evidence.json: there is no report for kind 'frames'");
 }
 

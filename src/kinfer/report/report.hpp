@@ -9,13 +9,15 @@
 #include "kinfer/base/result.hpp"
 #include "kinfer/evidence/calibration/calibration_evidence.hpp"
 #include "kinfer/evidence/identification/identification_evidence.hpp"
+#include "kinfer/evidence/tracking/track_run.hpp"
 
 namespace kinfer::report {
 
 std::string report_html(const CalibrationEvidence& evidence);
 std::string report_html(const IdentificationEvidence& evidence);
+std::string report_html(const TrackRun& run);
 
-/// `text`: evidence.json of `calibrate` or `identify`. Errors: the text is not such a file, with the path of the first
+/// `text`: evidence.json of `calibrate`, `identify` or `track`. Errors: the text is not such a file, with the path of the first
 /// wrong value; or evidence of another kind, which has no report.
 Result<std::string> report_of_file(std::string_view text);
 

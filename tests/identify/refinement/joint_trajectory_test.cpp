@@ -15,41 +15,8 @@ using namespace identify;
 namespace {
 
 using Eigen::Index;
-using test::random_vector;
-
-std::vector<InsBody> bodies_of(EstimatedJointType type, Rng& rng) {
-  const auto turn = [&] { return exp_so3(random_vector(rng)); };
-  std::vector<InsBody> bodies;
-  if (type == EstimatedJointType::prismatic) bodies = {test::random_prismatic_body(0, 1, rng)};
-  if (type == EstimatedJointType::revolute) bodies = {test::random_revolute_body(0, 1, rng)};
-  if (type == EstimatedJointType::spherical) bodies = {spherical_body(0, 1, turn())};
-  if (type == EstimatedJointType::universal) {
-    bodies = {revolute_body(0, -1, turn(), Mat3::Identity()), revolute_body(1, 1, rot_y(1.2), turn())};
-    bodies[0].free_child_rotation = {};
-    bodies[1].free_parent_rotation = {false, true, false};
-    bodies[0].free_point_in_child = bodies[1].free_point_in_parent = false;
-  }
-  bodies.front().point_in_parent = random_vector(rng);
-  if (type != EstimatedJointType::prismatic) bodies.back().point_in_child = random_vector(rng);
-  return bodies;
-}
-
-/// parent_T_child of the continuous-time fit.
-Pose pose_of(const std::vector<InsBody>& bodies, const VectorXd& reading) {
-  Pose parent_T_here;
-  Index k = 0;
-  for (const InsBody& body : bodies) {
-    Mat3 turn = Mat3::Identity();
-    Vec3 slid = Vec3::Zero();
-    if (body.motion == JointMotion::revolute) turn = rot_z(reading[k]);
-    if (body.motion == JointMotion::prismatic) slid = reading[k] * body.parent_R_axis.col(2);
-    if (body.motion == JointMotion::spherical) turn = exp_so3(reading.segment<3>(k));
-    k += degrees_of_freedom(body.motion);
-    const Mat3 rotation = body.parent_R_axis * turn * body.child_R_axis.transpose();
-    parent_T_here = parent_T_here * Pose{rotation, body.point_in_parent + slid - rotation * body.point_in_child};
-  }
-  return parent_T_here;
-}
+using test::bodies_of;
+using test::pose_of;
 
 struct Played {
   Chain chain;
@@ -74,7 +41,7 @@ Played played(EstimatedJointType type, std::uint64_t seed) {
   joint.estimate.parent = "a";
   joint.estimate.child = "b";
   Played result{build_chain("a", {joint.estimate}, canonical_dh_rows(joint.estimate, joint.solution), Mat3::Identity()),
-                joint_trajectory(type, bodies, joint.solution.geometry, grid, band, times),
+                joint_trajectory(type, bodies, joint.solution.geometry, joint.zero, grid, band, times),
                 {}};
   for (const double t : times) result.truth.push_back(pose_of(bodies, spline_value(grid, band, t)));
   return result;

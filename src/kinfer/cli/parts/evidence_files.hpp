@@ -7,11 +7,13 @@
 #include "kinfer/base/result.hpp"
 #include "kinfer/evidence/calibration/calibration_evidence.hpp"
 #include "kinfer/evidence/identification/identification_evidence.hpp"
+#include "kinfer/evidence/tracking/track_run.hpp"
 
 namespace kinfer::cli {
 
 /// Writes evidence.json, and report.html made from it.
 Result<void> write_evidence(const std::filesystem::path& folder, const CalibrationEvidence& evidence);
 Result<void> write_evidence(const std::filesystem::path& folder, const IdentificationEvidence& evidence);
+Result<void> write_evidence(const std::filesystem::path& folder, const TrackRun& run);
 
 }  // namespace kinfer::cli

@@ -17,6 +17,10 @@ bool wants_colours(std::FILE* stream) {
          std::string_view(terminal) != "dumb";
 }
 
+Tone tone_of(Usability usability) {
+  return usability == Usability::use ? Tone::good : usability == Usability::use_with_care ? Tone::neutral : Tone::bad;
+}
+
 void print_summary(const std::string& summary, Tone tone) {
   if (!wants_colours(stdout)) {
     fmt::print("{}", summary);

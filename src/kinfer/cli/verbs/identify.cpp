@@ -13,6 +13,7 @@
 #include "kinfer/cli/parts/identification_summary.hpp"
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
+#include "kinfer/cli/parts/zero_argument.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/chain_dh_csv.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
@@ -21,6 +22,7 @@
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/tracking/tracking_model_toml.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -39,7 +41,7 @@ struct IdentifyArguments {
   double smoothing = SegmentMotionOptions{}.smoothing;
   EngineArguments search;
   int links = 0;
-  std::string geometry = "refined", grade = "auto", facts, sensors, tree;
+  std::string geometry = "refined", grade = "auto", facts, sensors, tree, zero;
 };
 
 std::vector<std::string> split_at_commas(const std::string& text) {
@@ -143,6 +145,8 @@ Result<identify::IdentifyOptions> identify_options(const CLI::App& verb, const I
   how.sensors = split_at_commas(options.sensors);
   KINFER_TRY(links, parse_links(options.tree));
   how.tree = links;
+  KINFER_TRY(zeros, parse_zeros(options.zero));
+  how.refine.zeros = zeros;
   how.links = options.links;
   how.geometry =
       options.geometry == "searched" ? identify::GeometrySource::searched : identify::GeometrySource::refined;
@@ -165,16 +169,14 @@ Provenance provenance_of(const IdentifyArguments& options, const identify::Ident
   return {.inputs = fingerprints(inputs), .options = identify::describe(how), .seed = options.common.seed};
 }
 
-Tone tone_of(Usability usability) {
-  return usability == Usability::use ? Tone::good : usability == Usability::use_with_care ? Tone::neutral : Tone::bad;
-}
-
 Result<void> write_results(const OutputFolder& folder, const Provenance& provenance, const Identification& found) {
   RobotModel robot{.chain = found.chain};
   if (auto done = write_text_file(folder / "chain.toml", format_robot_toml(robot)); !done) return done;
   if (auto done = write_text_file(folder / "chain.urdf", format_urdf(found.chain)); !done) return done;
   if (auto done = write_text_file(folder / "chain.mjcf", format_mjcf(found.chain)); !done) return done;
   if (auto done = write_text_file(folder / "chain_dh.csv", format_chain_dh_csv(found.dh)); !done) return done;
+  if (found.tracking)
+    if (auto done = write_text_file(folder / "track.toml", format_tracking_model(*found.tracking)); !done) return done;
   return write_evidence(folder.path(), identification_evidence(found, provenance));
 }
 
@@ -235,7 +237,8 @@ Verb add_identify(CLI::App& app) {
   auto options = std::make_shared<IdentifyArguments>();
   add_texts(*verb, "logs", options->logs, "INS recordings", Requirement::required, "CSV");
   add_text(*verb, "--out", options->out,
-           "Folder for chain.toml, chain.urdf, chain.mjcf, chain_dh.csv, evidence.json, report.html, run.json",
+           "Folder for chain.toml, track.toml, chain.urdf, chain.mjcf, chain_dh.csv, evidence.json, report.html, "
+           "run.json",
            Requirement::required, "DIR");
   add_text(*verb, "--filter", options->filter, "Orientation filter. " + filter_help(), Requirement::optional, "NAME");
   add_text(*verb, "--root", options->root, "Sensor on the machine's base (default: the one that stands still)",
@@ -255,6 +258,11 @@ Verb add_identify(CLI::App& app) {
   add_text(*verb, "--facts", options->facts,
            "What else is known: touches, tapes, surveyed points (docs/formats.md, Facts about a machine)",
            Requirement::optional, "TOML");
+  add_text(
+      *verb, "--zero", options->zero,
+      "Zeros of joint positions, as swing=0deg@12.5s,mast=250mm@3s: the joint that moves the sensor swing was at 0° "
+      "12.5 s into the log (default: 0 where the log begins)",
+      Requirement::optional, "JOINTS");
   add_count(*verb, "--links", options->links, 0, 1000, "Links to find, from the root outwards; 0 means all");
   add_engine_options(*verb, options->search);
   add_common_options(*verb, options->common);

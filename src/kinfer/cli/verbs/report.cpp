@@ -8,6 +8,7 @@
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/calibration_json.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
+#include "kinfer/io/evidence/track_json.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::cli {
@@ -42,9 +43,14 @@ Result<void> write_evidence(const std::filesystem::path& folder, const Identific
   return write_text_file(folder / "report.html", report::report_html(evidence));
 }
 
+Result<void> write_evidence(const std::filesystem::path& folder, const TrackRun& run) {
+  if (auto done = write_text_file(folder / "evidence.json", format_track_run(run)); !done) return done;
+  return write_text_file(folder / "report.html", report::report_html(run));
+}
+
 Verb add_report(CLI::App& app) {
   CLI::App* verb = add_command(app, "report", "Make DIR/report.html again from DIR/evidence.json",
-                               "calibrate and identify write the report themselves.\nExample:\n"
+                               "calibrate, identify and track write the report themselves.\nExample:\n"
                                "  kinfer report calibration");
   auto options = std::make_shared<ReportArguments>();
   add_text(*verb, "folder", options->folder, "Folder with evidence.json", Requirement::required, "DIR");

@@ -15,6 +15,7 @@
 #include "kinfer/evidence/identification/joint_estimate.hpp"
 #include "kinfer/evidence/identification/joint_verdict.hpp"
 #include "kinfer/evidence/identification/traces.hpp"
+#include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/kinematics/chain.hpp"
 
 namespace kinfer {
@@ -139,6 +140,7 @@ struct Identification {
   /// do_not_use: a fault that was not corrected, or a joint against which the evidence is; use_with_care: a joint is
   /// less certain or less accurate than wanted.
   Usability usability = Usability::use;
+  std::optional<TrackingModel> tracking{};  ///< of the continuous-time fit; none where the search's geometry is used
 };
 
 }  // namespace kinfer

@@ -8,22 +8,6 @@
 
 namespace kinfer {
 
-std::string_view name(EstimatedJointType type) {
-  switch (type) {
-    case EstimatedJointType::revolute:
-      return "revolute";
-    case EstimatedJointType::prismatic:
-      return "prismatic";
-    case EstimatedJointType::universal:
-      return "universal";
-    case EstimatedJointType::spherical:
-      return "spherical";
-    case EstimatedJointType::rigid:
-      break;
-  }
-  return "rigid";
-}
-
 bool is_axis_known(const JointEstimate& joint, const std::array<double, 2>& axis_sd) {
   return joint.type != EstimatedJointType::spherical && std::min(axis_sd[0], axis_sd[1]) < unobservable_sd;
 }

@@ -8,13 +8,11 @@
 #include <string_view>
 #include <vector>
 
+#include "kinfer/evidence/facts/estimated_joint_type.hpp"
 #include "kinfer/evidence/facts/unobservable.hpp"
 #include "kinfer/linalg/types.hpp"
 
 namespace kinfer {
-
-enum class EstimatedJointType { revolute, prismatic, universal, spherical, rigid };
-std::string_view name(EstimatedJointType type);  ///< "revolute", "prismatic", "universal", "spherical", "rigid"
 
 /// Standard deviations of a joint's axis and point in the two directions across the axis, in each sensor's frame.
 struct JointStandardDeviation {

@@ -40,6 +40,37 @@ std::array<double, 2> axis_variance(std::span<const Mat3> rotations, const Mat3&
   return variance;
 }
 
+/// Lag [samples] at which the autocorrelation of a series falls to 1/e: a first-order Gauss-Markov process' correlation
+/// time. The lag-one correlation would tell that of a smooth motion only in units of the sampling.
+double correlation_length(const std::vector<double>& series) {
+  constexpr double limit = 1.0 / std::numbers::e;
+  const double middle = mean(series);
+  const auto covariance_at = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (std::size_t i = lag; i < series.size(); ++i) sum += (series[i] - middle) * (series[i - lag] - middle);
+    return sum / static_cast<double>(series.size());
+  };
+  const double variance = covariance_at(0);
+  double before = 1.0;
+  for (std::size_t lag = 1; variance > 0.0 && lag < series.size() / 2; ++lag) {
+    const double now = covariance_at(lag) / variance;
+    if (now < limit) return static_cast<double>(lag) - (limit - now) / (before - now);
+    before = now;
+  }
+  return 0.0;
+}
+
+/// Of the child's axis across the parent's, mean of both directions.
+double deviation_memory_of(std::span<const Mat3> rotations, const Mat3& frame, const Vec3& in_child) {
+  double memory = 0.0;
+  for (Index k = 0; k < 2; ++k) {
+    std::vector<double> offset;
+    for (const Mat3& r : rotations) offset.push_back(frame.col(k).dot(r * in_child));
+    memory += 0.5 * correlation_length(offset);
+  }
+  return memory;
+}
+
 double axis_deviation_of(std::span<const Mat3> rotations, const AxisPair& axes) {
   double square = 0.0;
   for (const Mat3& r : rotations) {
@@ -67,7 +98,8 @@ MeanRevolute fit_mean_revolute(const InsBody& spherical, std::span<const Mat3> r
   const AxisPair axes = mean_axes(rotations);
   const Mat3 a = frame_with_z_along(axes.in_parent), b = frame_with_z_along(axes.in_child);
   MeanRevolute revolute{revolute_body(spherical.parent, spherical.sensor, a, b), 0.0,
-                        axis_deviation_of(rotations, axes), MatrixXd::Zero(10, 10)};
+                        axis_deviation_of(rotations, axes), MatrixXd::Zero(10, 10),
+                        deviation_memory_of(rotations, a, axes.in_child)};
   revolute.body.point_in_parent = spherical.point_in_parent;
   revolute.body.point_in_child = spherical.point_in_child;
   revolute.zero = revolute_position(revolute.body, rotations.front());

@@ -11,10 +11,12 @@
 namespace kinfer::identify {
 
 struct MeanRevolute {
-  InsBody body;                 ///< revolute, with the points of the spherical joint
-  double zero = 0.0;            ///< [rad] its joint position at the begin of the recording
-  double axis_deviation = 0.0;  ///< [rad] rms angle between a and R b
-  MatrixXd covariance;          ///< of the ten unknowns; the axis' part from its wander
+  InsBody body;                   ///< revolute, with the points of the spherical joint
+  double zero = 0.0;              ///< [rad] its joint position at the begin of the recording
+  double axis_deviation = 0.0;    ///< [rad] rms angle between a and R b
+  MatrixXd covariance;            ///< of the ten unknowns; the axis' part from its wander
+  double deviation_memory = 0.0;  ///< [rotations] over which the angle between the axes stays alike: a first-order
+                                  ///< Gauss-Markov process' correlation time
 };
 
 /// `rotations`: parent_R_child at evenly spaced times, the first at the begin of the recording. `points`: 6 x 6

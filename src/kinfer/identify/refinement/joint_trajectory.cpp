@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
@@ -50,25 +49,6 @@ std::vector<double> trajectory_times(const RecordedMotion& motion) {
   return times;
 }
 
-Vec3 cardan_angles(const Mat3& r, const Vec3& before) {
-  constexpr double half_turn = std::numbers::pi, full_turn = 2.0 * half_turn;
-  const double cosine = std::hypot(r(0, 0), r(0, 1));
-  Vec3 one(before.x(), std::atan2(r(0, 2), cosine), 0.0);
-  if (cosine > 1e-9) {
-    one.x() = std::atan2(-r(1, 2), r(2, 2));
-    one.z() = std::atan2(-r(0, 1), r(0, 0));
-  } else {  // gimbal lock: only the sum or difference of the outer angles is observable
-    const Mat3 rest = (rot_x(one.x()) * rot_y(one.y())).transpose() * r;
-    one.z() = std::atan2(rest(1, 0), rest(0, 0));
-  }
-  const auto near = [&](Vec3 angles) {
-    for (Index k = 0; k < 3; ++k) angles[k] += full_turn * std::round((before[k] - angles[k]) / full_turn);
-    return angles;
-  };
-  const Vec3 first = near(one), second = near({one.x() + half_turn, half_turn - one.y(), one.z() + half_turn});
-  return (first - before).norm() <= (second - before).norm() ? first : second;
-}
-
 MatrixXd spherical_rotation_vectors(const SplineGrid& grid, ConstMatrixRef coefficients,
                                     std::span<const double> times) {
   const Mat3 home = rotation_from_vector(spline_value(grid, coefficients, grid.begin));
@@ -88,12 +68,13 @@ Mat3 spherical_axes(ConstMatrixRef turns) {
 }
 
 MatrixXd joint_trajectory(EstimatedJointType type, std::span<const InsBody> bodies, const JointGeometry& geometry,
-                          const SplineGrid& grid, ConstMatrixRef coefficients, std::span<const double> times) {
+                          std::span<const double> zero, const SplineGrid& grid, ConstMatrixRef coefficients,
+                          std::span<const double> times) {
   if (type == EstimatedJointType::rigid) return {};
   if (type == EstimatedJointType::spherical)
     return spherical_trajectory(spherical_rotation_vectors(grid, coefficients, times), geometry.spherical_axes);
   MatrixXd trajectory = spline_values(grid, coefficients, times);
-  trajectory.colwise() -= spline_value(grid, coefficients, grid.begin);
+  for (Index k = 0; k < trajectory.rows(); ++k) trajectory.row(k).array() -= zero[static_cast<std::size_t>(k)];
   if (bodies.size() == 1 && geometry.axis_in_parent.dot(bodies.front().parent_R_axis.col(2)) < 0.0)
     trajectory = -trajectory;
   return trajectory;

@@ -4,6 +4,7 @@
 
 #include "kinfer/estimate/continuous/model/uniform_spline.hpp"
 #include "kinfer/evidence/identification/traces.hpp"
+#include "kinfer/geometry/cardan_angles.hpp"
 #include "kinfer/identify/refinement/refined_joint.hpp"
 #include "kinfer/inertial/segment_motion.hpp"
 
@@ -16,9 +17,11 @@ Binning trajectory_frames(const RecordedMotion& motion);
 std::vector<double> trajectory_times(const RecordedMotion& motion);
 
 /// One row per joint variable, in the order of joint_axes, one column per time [rad] or [m]. `bodies`: as passed to
-/// refined_joint. `coefficients`: of the splines of their joint positions, one row per degree of freedom.
+/// refined_joint, `zero` likewise. `coefficients`: of the splines of their joint positions, one row per degree of
+/// freedom.
 MatrixXd joint_trajectory(EstimatedJointType type, std::span<const InsBody> bodies, const JointGeometry& geometry,
-                          const SplineGrid& grid, ConstMatrixRef coefficients, std::span<const double> times);
+                          std::span<const double> zero, const SplineGrid& grid, ConstMatrixRef coefficients,
+                          std::span<const double> times);
 
 /// Cardan axes of a spherical joint, in the parent: most rotation about the first, least about the second, whose angle
 /// must stay within ±90°. `turns`: rotation vectors relative to joint position 0, in the parent, 3 x times.
@@ -26,8 +29,5 @@ Mat3 spherical_axes(ConstMatrixRef turns);
 
 /// Rotation vectors of a spherical joint relative to its orientation at the begin of the recording, 3 x times.
 MatrixXd spherical_rotation_vectors(const SplineGrid& grid, ConstMatrixRef coefficients, std::span<const double> times);
-
-/// Angles of R = Rx(q0) Ry(q1) Rz(q2); of the two solutions, unwrapped, the one nearer to `before`.
-Vec3 cardan_angles(const Mat3& r, const Vec3& before);
 
 }  // namespace kinfer::identify

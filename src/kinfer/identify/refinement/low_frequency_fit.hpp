@@ -4,16 +4,10 @@
 #pragma once
 
 #include "kinfer/base/observer.hpp"
+#include "kinfer/identify/handover/parameter_covariance.hpp"
 #include "kinfer/identify/refinement/refinement_fits.hpp"
 
 namespace kinfer::identify {
-
-/// Model errors that the covariance from white noise does not contain.
-struct ModelError {
-  std::vector<MatrixXd> shift;  ///< of each body's unknowns, one column for each alternative model
-  std::vector<double>
-      mount_deflection;  ///< [rad] rms unexplained deflection of each sensor's mount, beyond its compliance
-};
 
 /// Result of the fit of the low-frequency motion.
 struct LowFrequencyFit {

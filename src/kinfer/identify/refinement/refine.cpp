@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/identify/refinement/refine.hpp"
 #include "kinfer/estimate/continuous/fit_comparison.hpp"
+#include "kinfer/identify/handover/tracking_model.hpp"
 #include "kinfer/identify/loops/loop_estimate.hpp"
 
 #include <algorithm>
@@ -88,6 +89,40 @@ HeldOut fit_held_out(const RefinementTask& task, RefinementFit& fitted, const In
   return held;
 }
 
+/// Where a sliding joint's positions count from and the point in its parent are two names of one unknown. Tracking
+/// takes the positions from a stated zero: there the point is as certain as the length of a boom is.
+InsCovariance with_slides_anchored(RefinementFit& fitted, const InsFit& fit, const InsCovariance& covariance,
+                                   const AssumedScale& assumed, int threads) {
+  constexpr double held = 1e-6, weak = 3.0;  // [m], [rad]
+  InsProblem& problem = fitted.setup.problem;
+  const Index first = problem.root_at_rest ? 0 : 6;
+  std::vector<double> anchor_sd(static_cast<std::size_t>(fit.layout.spline_dimensions - first), weak);
+  bool has_slides = false;
+  for (std::size_t b = 0; b < fit.unknowns.bodies.size(); ++b)
+    if (fit.unknowns.bodies[b].motion == JointMotion::prismatic) {
+      anchor_sd[static_cast<std::size_t>(fit.layout.spline_dimension[b] - first)] = held;
+      has_slides = true;
+    }
+  if (!has_slides) return covariance;
+  problem.anchor_sd = std::move(anchor_sd);
+  const auto anchored = covariance_with_model_error(problem, fit.layout, fit.unknowns, fit.cost, assumed, threads);
+  problem.anchor_sd.clear();
+  return anchored.value_or(covariance);
+}
+
+TrackingModel hand_over(const RefinementTask& task, const RefinementFit& fitted, const Refinement& result,
+                        const InsCovariance& covariance, const ModelError& error) {
+  std::vector<FittedJoint> joints;
+  const std::vector<JointBodies> bodies = joint_bodies(task, fitted.setup);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const RefinedJoint& joint = result.joints[i];
+    joints.push_back({joint.estimate, joint.solution.geometry, bodies[i], joint.zero, joint.mean});
+  }
+  const MatrixXd all = covariance_of_parameters(task, fitted, covariance, error);
+  return tracking_model({task.recording, fitted.setup.problem, result.fit, result.noise, result.noise_floor, error, all,
+                         std::move(joints)});
+}
+
 }  // namespace
 
 Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
@@ -98,7 +133,11 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
   RefinementSetup setup = set_up_refinement(recording, motion, tree, starts, grade, knot_spacing);
   KINFER_TRY(facts, resolve_facts(options.facts, segment_names(motion), setup.start.bodies, setup.problem.grid,
                                   setup.problem.root_at_rest));
-  const RefinementTask task{recording, motion, tree, starts, grade, facts, options.fit};
+  const RefinementTask task{recording, motion, tree, starts, grade, facts, options.fit, options.zeros};
+  if (const auto checked =
+          check_zeros(options.zeros, joint_bodies(task, setup), segment_names(motion), setup.problem.grid);
+      !checked)
+    return forward_error(checked.error());
   Refinement result;
   RefinementFit fitted = fit_full_bandwidth(task, std::move(setup), options, observer);
   result.negative_log_likelihood = negative_log_likelihood(fitted.setup.problem, fitted.fit.cost);
@@ -129,6 +168,10 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
   result.covariance = covariance->model;
   result.clocks = refined_clocks(fitted.setup.problem, result.fit, *covariance);
   result.joints = make_joints(task, fitted, *covariance, model_error);
+  result.tracking = hand_over(task, fitted, result,
+                              with_slides_anchored(fitted, result.fit, *covariance,
+                                                   assumed_scale(recording, options, grade), options.fit.threads),
+                              model_error);
   result.loops =
       loop_estimates(loops, fitted.fit.unknowns.bodies, closing_joints(fitted.fit, *covariance), segment_names(motion));
   if (options.hold_out) result.held_out = fit_held_out(task, fitted, *covariance, model_error);

@@ -4,7 +4,9 @@
 #pragma once
 
 #include "kinfer/estimate/continuous/solver/batch_fit.hpp"
+#include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/identify/geometry/initial_joint.hpp"
+#include "kinfer/identify/handover/named_zero.hpp"
 #include "kinfer/identify/refinement/held_out.hpp"
 #include "kinfer/identify/refinement/refined_joint.hpp"
 #include "kinfer/identify/refinement/residual_clock.hpp"
@@ -30,11 +32,13 @@ struct RefinementOptions {
   ClockTreatment clocks = ClockTreatment::checked;
   StartSource start = StartSource::pairs;  ///< of refine_geometry
   LoopTreatment loops = LoopTreatment::closed;
-  bool hold_out = true;  ///< fit once more without some time windows, to test the chain's predictions
+  std::vector<NamedZero> zeros{};  ///< of joint positions; else each is 0 where the recording begins
+  bool hold_out = true;            ///< fit once more without some time windows, to test the chain's predictions
 };
 
 struct Refinement {
-  std::vector<RefinedJoint> joints;  ///< in the order of the starts; joint position 0 is where the recording begins
+  std::vector<RefinedJoint>
+      joints;  ///< in the order of the starts; joint position 0 is where the recording begins or as named
   InsFit fit;
   std::vector<InsNoise> noise;           ///< of each sensor, estimated from its residuals
   std::vector<InsNoise> noise_floor;     ///< of each sensor, its noise floor: without any model error
@@ -47,6 +51,7 @@ struct Refinement {
   std::vector<LoopEstimate> loops{};     ///< closed in the fit
   double negative_log_likelihood = 0.0;  ///< of the fit at full bandwidth; compares fits of one recording
   HeldOut held_out{};                    ///< empty where the recording is too short or hold_out is false
+  TrackingModel tracking{};
 };
 
 /// `starts`: one for each segment but the root, parents before children.

@@ -33,11 +33,11 @@ void add_misfit_notes(std::vector<IdentificationNote>& notes, const Refinement& 
 void add_passband_notes(std::vector<IdentificationNote>& notes, const Refinement& refined) {
   if (refined.cutoff > 0.0) notes.push_back({IdentificationNoteKind::limited_passband, {{"cutoff", refined.cutoff}}});
   for (const RefinedJoint& joint : refined.joints)
-    if (joint.axis_deviation > min_reported_axis_deviation)
+    if (joint.mean && joint.mean->axis_deviation > min_reported_axis_deviation)
       notes.push_back({IdentificationNoteKind::relaxed_joint,
                        {{"parent", joint.estimate.parent},
                         {"child", joint.estimate.child},
-                        {"axis_deviation", joint.axis_deviation}}});
+                        {"axis_deviation", joint.mean->axis_deviation}}});
 }
 
 std::vector<InitialJoint> make_starts(const std::vector<JointEstimate>& joints, const RecordedMotion& motion,
@@ -59,7 +59,7 @@ Result<ChainGeometry> refine_geometry(ChainGeometry searched, const InsRecording
                                       const RefinementOptions& options, const Observer& observer) {
   const auto starts = make_starts(searched.joints, motion, tree, options.start);
   auto refined = refine(recording, motion, tree, starts, options, observer);
-  if (!refined && !options.facts.empty()) return forward_error(refined.error());
+  if (!refined && !(options.facts.empty() && options.zeros.empty())) return forward_error(refined.error());
   if (!refined) {
     searched.notes.push_back({IdentificationNoteKind::refinement_failed, {{"reason", refined.error().what}}});
     return searched;
@@ -76,6 +76,7 @@ Result<ChainGeometry> refine_geometry(ChainGeometry searched, const InsRecording
   geometry.negative_log_likelihood = refined->negative_log_likelihood;
   geometry.loops = std::move(refined->loops);
   geometry.held_out = std::move(refined->held_out);
+  geometry.tracking = std::move(refined->tracking);
   return geometry;
 }
 

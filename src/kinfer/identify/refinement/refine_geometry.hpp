@@ -18,10 +18,11 @@ struct ChainGeometry {
   std::optional<double> negative_log_likelihood{};  ///< of the fit; none: the geometry of the search
   bool starts_from_search = false;
   HeldOut held_out{};
+  std::optional<TrackingModel> tracking{};  ///< of the fit
 };
 
 /// Fits the joints of the search to the whole recording; the joint types are kept. If the fit fails, the geometry of
-/// the search is returned with a note on the reason; with facts, this is an error.
+/// the search is returned with a note on the reason; with facts or named zeros, this is an error.
 Result<ChainGeometry> refine_geometry(ChainGeometry searched, const InsRecording& recording,
                                       const RecordedMotion& motion, const SegmentTree& tree,
                                       const RefinementOptions& options, const Observer& observer = {});

@@ -74,12 +74,8 @@ JointGeometry geometry_of(const InsBody& body, double zero) {
   if (body.motion == JointMotion::prismatic) g.point_in_parent += zero * g.axis_in_parent;
   g.home.rotation = a * rot_z(turns ? zero : 0.0) * b.transpose();
   g.home.position = g.point_in_parent - g.home.rotation * g.point_in_child;
-  Index largest = 0;
-  g.axis_in_parent.cwiseAbs().maxCoeff(&largest);
-  if (g.axis_in_parent[largest] < 0.0) {
-    g.axis_in_parent = -g.axis_in_parent;
-    g.axis_in_child = -g.axis_in_child;
-  }
+  g.axis_in_parent *= axis_sense(body);
+  g.axis_in_child *= axis_sense(body);
   return g;
 }
 
@@ -183,9 +179,17 @@ std::vector<DhNumbers> dh_row_sd(EstimatedJointType type, std::span<const InsBod
 
 }  // namespace
 
+double axis_sense(const InsBody& body) {
+  const Vec3 axis = body.parent_R_axis.col(2);
+  Index largest = 0;
+  axis.cwiseAbs().maxCoeff(&largest);
+  return axis[largest] < 0.0 ? -1.0 : 1.0;
+}
+
 RefinedJoint refined_joint(EstimatedJointType type, std::span<const InsBody> bodies, std::span<const double> zero,
                            ConstMatrixRef covariance, const Mat3& spherical_axes) {
   RefinedJoint result;
+  result.zero.assign(zero.begin(), zero.end());
   JointEstimate& joint = result.estimate;
   joint.type = type;
   JointGeometry& g = result.solution.geometry;

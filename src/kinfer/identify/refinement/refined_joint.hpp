@@ -5,18 +5,23 @@
 
 #include "kinfer/estimate/continuous/model/chain_propagation.hpp"
 #include "kinfer/identify/geometry/identified_chain.hpp"
+#include "kinfer/identify/geometry/mean_revolute.hpp"
 
 namespace kinfer::identify {
 
 struct RefinedJoint {
   JointEstimate estimate;
-  GeometryEstimate solution;    ///< geometry with its home at joint position `zero`, standard deviations of the DH rows
-  double axis_deviation = 0.0;  ///< [rad] rms angle between the two axes of a relaxed revolute joint
+  GeometryEstimate solution;   ///< geometry with its home at joint position `zero`, standard deviations of the DH rows
+  std::vector<double> zero{};  ///< [rad] or [m] positions of the fit's bodies that are defined as 0
+  std::optional<MeanRevolute> mean{};  ///< of a relaxed revolute joint
 };
 
+/// Sense of the joint position of a single body relative to the fit's, 1 or −1: the axis' largest coordinate in the
+/// parent is positive.
+double axis_sense(const InsBody& body);
+
 /// `bodies`: one, or several in series. `zero` [rad] or [m]: their joint positions that are defined as 0. `covariance`:
-/// of the bodies' unknowns, one after the other. `spherical_axes`: see JointGeometry. The largest coordinate of a
-/// single axis in the parent is positive.
+/// of the bodies' unknowns, one after the other. `spherical_axes`: see JointGeometry.
 RefinedJoint refined_joint(EstimatedJointType type, std::span<const InsBody> bodies, std::span<const double> zero,
                            ConstMatrixRef covariance, const Mat3& spherical_axes = Mat3::Identity());
 

@@ -5,31 +5,29 @@
 #include <cmath>
 
 #include "kinfer/identify/geometry/mean_revolute.hpp"
+#include "kinfer/identify/handover/joint_ranges.hpp"
 #include "kinfer/identify/refinement/azimuth.hpp"
 #include "kinfer/identify/refinement/joint_trajectory.hpp"
 #include "kinfer/identify/refinement/thresholds.hpp"
-#include "kinfer/linalg/products.hpp"
 
 namespace kinfer::identify {
 namespace {
 
 using Index = Eigen::Index;
 
-/// Covariance of a joint's unknowns, body after body, inflated as the residuals require.
-MatrixXd joint_covariance(const InsCovariance& covariance, const InsLayout& layout, const InsBodies& bodies,
-                          std::size_t first, std::size_t last) {
-  const Index begin = layout.body[first], n = layout.body[last] + bodies[last].unknowns() - begin;
-  return std::max(1.0, covariance.inflation.segment(begin, n).mean()) * covariance.model.block(begin, begin, n, n);
-}
-
-/// Joint positions of the joint's bodies at the beginning of the recording.
-std::vector<double> initial_joint_positions(const RefinementSetup& setup, const InsFit& fit, std::size_t first,
-                                            std::size_t last) {
-  const VectorXd all = spline_value(setup.problem.grid, fit.unknowns.spline_coefficients, setup.problem.grid.begin);
+/// Joint positions of the fit's bodies that count as 0: those at the beginning of the recording, or as the user names.
+std::vector<double> zero_positions(const RefinementTask& task, const RefinementFit& fitted, const JointBodies& joint) {
+  const SplineGrid& grid = fitted.setup.problem.grid;
+  const InsFit& fit = fitted.fit;
   std::vector<double> positions;
-  for (std::size_t b = first; b <= last; ++b)
-    for (Index i = 0; i < std::max<Index>(1, degrees_of_freedom(fit.unknowns.bodies[b].motion)); ++i)
+  for (std::size_t b = joint.first; b <= joint.last; ++b) {
+    const InsBody& body = fit.unknowns.bodies[b];
+    const NamedZero* named = named_zero(task.zeros, joint, b - joint.first, segment_names(task.motion));
+    const VectorXd all = spline_value(grid, fit.unknowns.spline_coefficients, named ? named->at : grid.begin);
+    for (Index i = 0; i < std::max<Index>(1, degrees_of_freedom(body.motion)); ++i)
       positions.push_back(fit.layout.spline_dimension[b] < 0 ? 0.0 : all[fit.layout.spline_dimension[b] + i]);
+    if (named) positions.back() -= (joint.first == joint.last ? axis_sense(body) : 1.0) * named->position;
+  }
   return positions;
 }
 
@@ -51,23 +49,6 @@ std::vector<double> knot_times(const SplineGrid& grid) {
   return times;
 }
 
-MatrixXd stacked(const std::vector<MatrixXd>& parts, std::size_t first, std::size_t last) {
-  MatrixXd all(0, parts[first].cols());
-  for (std::size_t b = first; b <= last; ++b) {
-    all.conservativeResize(all.rows() + parts[b].rows(), Eigen::NoChange);
-    all.bottomRows(parts[b].rows()) = parts[b];
-  }
-  return all;
-}
-
-/// Spline coefficients of the joint positions, one row a degree of freedom.
-MatrixXd joint_spline_coefficients(const InsFit& fit, std::size_t first, std::size_t last) {
-  Index rows = 0;
-  for (std::size_t b = first; b <= last; ++b) rows += degrees_of_freedom(fit.unknowns.bodies[b].motion);
-  return rows > 0 ? MatrixXd(fit.unknowns.spline_coefficients.middleRows(fit.layout.spline_dimension[first], rows))
-                  : MatrixXd();
-}
-
 /// [rad] Smallest axis deviation of the relaxed revolute joints. What even that joint shows is attributed to compliant
 /// mounts, which deflect in phase with the motion, so that it does not average out. 0 where a revolute joint was not
 /// relaxed: then the mounts are rigid, too.
@@ -85,82 +66,80 @@ double common_axis_deviation(const RefinementTask& task, const RefinementFit& fi
   return smallest;
 }
 
-/// Adds to a spherical joint's points (6 x 6) that the sensor frames deflect by `angle` [rad] on their segments.
-void add_point_deflection(MatrixXd& covariance, const InsBody& spherical, double angle) {
-  covariance.diagonal().head<3>().array() += angle * angle * spherical.point_in_parent.squaredNorm();
-  covariance.diagonal().tail<3>().array() += angle * angle * spherical.point_in_child.squaredNorm();
-}
-
-/// Adds to a joint's axes that the sensor frames deflect by so much [rad] on their segments.
-void add_axis_deflection(MatrixXd& covariance, const InsBody& body, double parent, double child) {
-  if (body.motion != JointMotion::revolute && body.motion != JointMotion::prismatic) return;
-  covariance.diagonal().head<2>().array() += parent * parent;
-  covariance.diagonal().segment<2>(2).array() += child * child;
-}
-
 /// A revolute joint that was relaxed to a spherical one in the fit.
 RefinedJoint relaxed_joint(const RefinementFit& fitted, std::size_t body, ConstMatrixRef covariance,
-                           double mount_deflection, std::span<const double> trajectory_time) {
+                           double mount_deflection, const NamedZero* named, std::span<const double> trajectory_time) {
   const InsProblem& problem = fitted.setup.problem;
   const double misalignment =
       std::hypot(mount_deflection, 0.5 * std::max(problem.prior.gyroscope_scale, problem.prior.accelerometer_scale));
-  const MeanRevolute revolute =
+  MeanRevolute revolute =
       fit_mean_revolute(fitted.fit.unknowns.bodies[body], spherical_rotations(fitted, body, knot_times(problem.grid)),
                         covariance, misalignment);
+  const double sense = axis_sense(revolute.body);
+  if (named)
+    revolute.zero += revolute_trajectory(revolute, spherical_rotations(fitted, body, {&named->at, 1}))(0, 0) -
+                     sense * named->position;
   RefinedJoint joint =
       refined_joint(EstimatedJointType::revolute, {&revolute.body, 1}, {&revolute.zero, 1}, revolute.covariance);
-  joint.axis_deviation = revolute.axis_deviation;
-  joint.estimate.trajectory = revolute_trajectory(revolute, spherical_rotations(fitted, body, trajectory_time));
-  if (joint.solution.geometry.axis_in_parent.dot(revolute.body.parent_R_axis.col(2)) < 0.0)
-    joint.estimate.trajectory *= -1.0;
+  joint.estimate.trajectory = sense * revolute_trajectory(revolute, spherical_rotations(fitted, body, trajectory_time));
+  joint.mean = revolute;
   return joint;
 }
 
-/// One joint with its share of the covariance and of the model's error.
-RefinedJoint make_joint(const RefinementTask& task, const RefinementFit& fitted, const InsCovariance& covariance,
-                        const ModelError& error, double mount_deflection, std::size_t index,
+/// One joint with its share of the covariance. `mount_deflection` [rad]: of the sensors on both sides.
+RefinedJoint make_joint(const RefinementTask& task, const RefinementFit& fitted, ConstMatrixRef covariance,
+                        double mount_deflection, const JointBodies& joint_bodies,
                         std::span<const double> trajectory_time) {
-  const InitialJoint& start = task.starts[index];
   const InsFit& fit = fitted.fit;
-  const std::size_t first = fitted.setup.first_body[index], last = fitted.setup.last_body[index];
+  const auto [type, first, last, parent, child] = joint_bodies;
   const auto bodies = std::span(fit.unknowns.bodies).subspan(first, last - first + 1);
-  MatrixXd own = joint_covariance(covariance, fit.layout, fit.unknowns.bodies, first, last);
-  if (!error.shift.empty()) {
-    const MatrixXd moved = stacked(error.shift, first, last);
-    own += times_transposed(moved, moved);
-    mount_deflection =
-        std::hypot(mount_deflection, error.mount_deflection[start.parent], error.mount_deflection[start.child]);
-    add_axis_deflection(own, bodies.front(), error.mount_deflection[start.parent], error.mount_deflection[start.child]);
-  }
-  if (bodies.front().motion == JointMotion::spherical) add_point_deflection(own, bodies.front(), mount_deflection);
-  if (start.type == EstimatedJointType::revolute && bodies.front().motion == JointMotion::spherical)
-    return relaxed_joint(fitted, first, own, mount_deflection, trajectory_time);
+  const Index begin = first_unknown(fit.layout, joint_bodies),
+              size = unknowns_of(fit.layout, fit.unknowns.bodies, joint_bodies);
+  const MatrixXd own = covariance.block(begin, begin, size, size);
+  if (joint_bodies.is_relaxed(fit.unknowns.bodies))
+    return relaxed_joint(fitted, first, own, mount_deflection,
+                         named_zero(task.zeros, joint_bodies, 0, segment_names(task.motion)), trajectory_time);
   const SplineGrid& grid = fitted.setup.problem.grid;
-  const MatrixXd coefficients = joint_spline_coefficients(fit, first, last);
-  const bool is_spherical = start.type == EstimatedJointType::spherical;
-  const Mat3 turning = is_spherical ? spherical_axes(spherical_rotation_vectors(grid, coefficients, trajectory_time))
-                                    : Mat3(Mat3::Identity());
-  RefinedJoint joint =
-      refined_joint(start.type, bodies, initial_joint_positions(fitted.setup, fit, first, last), own, turning);
+  const MatrixXd coefficients = joint_splines(fit, joint_bodies);
+  const Mat3 turning = type == EstimatedJointType::spherical
+                           ? spherical_axes(spherical_rotation_vectors(grid, coefficients, trajectory_time))
+                           : Mat3(Mat3::Identity());
+  RefinedJoint joint = refined_joint(type, bodies, zero_positions(task, fitted, joint_bodies), own, turning);
   joint.estimate.trajectory =
-      joint_trajectory(start.type, bodies, joint.solution.geometry, grid, coefficients, trajectory_time);
-  if (start.type == EstimatedJointType::revolute && joint.estimate.unobservable_in_child.size() == 1)
-    joint.estimate.azimuth_unobservable =
-        azimuth_sd(fit.layout, fit.unknowns.bodies, covariance.model, last) > max_azimuth_sd;
+      joint_trajectory(type, bodies, joint.solution.geometry, joint.zero, grid, coefficients, trajectory_time);
   return joint;
 }
 
 }  // namespace
 
+std::vector<JointBodies> joint_bodies(const RefinementTask& task, const RefinementSetup& setup) {
+  std::vector<JointBodies> all;
+  for (std::size_t i = 0; i < task.starts.size(); ++i)
+    all.push_back(
+        {task.starts[i].type, setup.first_body[i], setup.last_body[i], task.starts[i].parent, task.starts[i].child});
+  return all;
+}
+
+MatrixXd covariance_of_parameters(const RefinementTask& task, const RefinementFit& fitted,
+                                  const InsCovariance& covariance, const ModelError& error) {
+  return parameter_covariance(fitted.fit, covariance, error, joint_bodies(task, fitted.setup),
+                              common_axis_deviation(task, fitted));
+}
+
 std::vector<RefinedJoint> make_joints(const RefinementTask& task, const RefinementFit& fitted,
                                       const InsCovariance& covariance, const ModelError& error) {
   const std::vector<double> trajectory_time = trajectory_times(task.motion);
-  const double mount_deflection = common_axis_deviation(task, fitted);
+  const double common = common_axis_deviation(task, fitted);
+  const MatrixXd all = covariance_of_parameters(task, fitted, covariance, error);
   std::vector<RefinedJoint> joints;
-  for (std::size_t i = 0; i < task.starts.size(); ++i) {
-    joints.push_back(make_joint(task, fitted, covariance, error, mount_deflection, i, trajectory_time));
-    joints.back().estimate.parent = task.motion.segments[task.starts[i].parent].name;
-    joints.back().estimate.child = task.motion.segments[task.starts[i].child].name;
+  for (const JointBodies& bodies : joint_bodies(task, fitted.setup)) {
+    RefinedJoint joint = make_joint(task, fitted, all, deflection_at(bodies, error, common), bodies, trajectory_time);
+    joint.estimate.parent = task.motion.segments[bodies.parent].name;
+    joint.estimate.child = task.motion.segments[bodies.child].name;
+    if (bodies.type == EstimatedJointType::revolute && !joint.mean && joint.estimate.unobservable_in_child.size() == 1)
+      joint.estimate.azimuth_unobservable =
+          azimuth_sd(fitted.fit.layout, fitted.fit.unknowns.bodies, covariance.model, bodies.last) > max_azimuth_sd;
+    joints.push_back(std::move(joint));
   }
   return joints;
 }

@@ -8,6 +8,13 @@
 
 namespace kinfer::identify {
 
+/// The joints of a fit, in the order of the task's starts.
+std::vector<JointBodies> joint_bodies(const RefinementTask& task, const RefinementSetup& setup);
+
+/// parameter_covariance of a fit.
+MatrixXd covariance_of_parameters(const RefinementTask& task, const RefinementFit& fitted,
+                                  const InsCovariance& covariance, const ModelError& error);
+
 /// In the order of the task's starts, with the names of their segments.
 std::vector<RefinedJoint> make_joints(const RefinementTask& task, const RefinementFit& fitted,
                                       const InsCovariance& covariance, const ModelError& error);

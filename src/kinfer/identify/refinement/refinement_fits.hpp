@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinfer/estimate/continuous/solver/batch_fit.hpp"
+#include "kinfer/identify/handover/named_zero.hpp"
 #include "kinfer/identify/refinement/refinement_setup.hpp"
 
 namespace kinfer::identify {
@@ -16,6 +17,7 @@ struct RefinementTask {
   const SensorModel& grade;
   const InsFacts& facts;
   const InsFitOptions& options;
+  const std::vector<NamedZero>& zeros;
 };
 
 struct RefinementFit {

@@ -5,6 +5,7 @@
 #include "kinfer/io/evidence/frames_json.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/evidence/json/shared_fields.hpp"
+#include "kinfer/io/evidence/track_json.hpp"
 
 namespace kinfer {
 namespace evidence_json {
@@ -23,6 +24,7 @@ Result<Evidence> read_evidence(std::string_view text) {
   const std::string kind = found != json.end() && found->is_string() ? found->get<std::string>() : "";
   if (kind == "calibrate") return read_calibration_evidence(text);
   if (kind == "identify") return read_identification_evidence(text);
+  if (kind == "track") return read_track_run(text);
   if (kind == "frames") return read_frames_evidence(text);
   return error("evidence.json: there is no kind '{}'", kind);
 }

@@ -9,10 +9,11 @@
 #include "kinfer/evidence/calibration/calibration_evidence.hpp"
 #include "kinfer/evidence/deployment/frames_evidence.hpp"
 #include "kinfer/evidence/identification/identification_evidence.hpp"
+#include "kinfer/evidence/tracking/track_run.hpp"
 
 namespace kinfer {
 
-using Evidence = std::variant<CalibrationEvidence, IdentificationEvidence, FramesEvidence>;
+using Evidence = std::variant<CalibrationEvidence, IdentificationEvidence, FramesEvidence, TrackRun>;
 
 Result<Evidence> read_evidence(std::string_view text);
 

@@ -8,6 +8,7 @@
 #include "kinfer/evidence/calibration/calibration.hpp"
 #include "kinfer/evidence/deployment/frame_estimate.hpp"
 #include "kinfer/evidence/identification/identification.hpp"
+#include "kinfer/evidence/tracking/track_state.hpp"
 
 namespace kinfer::evidence_json {
 
@@ -61,6 +62,9 @@ template <>
 inline constexpr auto last<TraceFrame> = TraceFrame::sensor;
 template <>
 inline constexpr auto last<ToolLengthSource> = ToolLengthSource::radius_without_fit;
+
+template <>
+inline constexpr auto last<TrackAlarmKind> = TrackAlarmKind::restarted;
 
 template <class Enum>
 std::string text_of(Enum value) {

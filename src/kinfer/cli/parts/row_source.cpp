@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/row_source.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <thread>
+
+#include <fmt/ranges.h>
+
+#include "kinfer/cli/parts/ins_logs.hpp"
+#include "kinfer/io/recording/ins_columns.hpp"
+#include "kinfer/io/recording/ins_row_reader.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+constexpr auto poll_period = std::chrono::milliseconds(5);
+
+volatile std::sig_atomic_t interrupted = 0;
+
+/// While it lives, SIGINT and SIGTERM end the reading and not the program.
+class InterruptionGuard {
+ public:
+  InterruptionGuard() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { interrupted = 1; };  // without SA_RESTART: a blocked read returns
+    interrupted = 0;
+    sigaction(SIGINT, &action, &interrupt_);
+    sigaction(SIGTERM, &action, &terminate_);
+  }
+  ~InterruptionGuard() {
+    sigaction(SIGINT, &interrupt_, nullptr);
+    sigaction(SIGTERM, &terminate_, nullptr);
+  }
+  InterruptionGuard(const InterruptionGuard&) = delete;
+  InterruptionGuard& operator=(const InterruptionGuard&) = delete;
+
+ private:
+  struct sigaction interrupt_ {
+  }, terminate_{};
+};
+
+/// A file or standard input.
+class ByteSource {
+ public:
+  static Result<ByteSource> open(const std::string& path) {
+    const int file = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) return error("{}: {}", path, std::strerror(errno));
+    return ByteSource(file);
+  }
+  ~ByteSource() {
+    if (file_ > STDIN_FILENO) ::close(file_);
+  }
+  ByteSource(ByteSource&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+  ByteSource& operator=(ByteSource&&) = delete;
+
+  /// What has arrived, at least one byte unless the end is reached; waits for standard input.
+  std::string_view read() {
+    const ssize_t count = ::read(file_, buffer_.data(), buffer_.size());
+    return {buffer_.data(), count > 0 ? static_cast<std::size_t>(count) : 0};
+  }
+
+ private:
+  explicit ByteSource(int file) : file_(file) {}
+  int file_;
+  std::array<char, 1 << 16> buffer_{};
+};
+
+/// The bytes as they arrive, until the end or an interruption.
+Result<std::vector<std::string>> stream(const RowSource& source, const RowSink& sink) {
+  const std::string& path = source.logs.front();
+  KINFER_TRY(bytes, ByteSource::open(path));
+  InsRowReader reader(source.sensors, path == "-" ? "standard input" : path);
+  const InterruptionGuard guard;
+  while (!interrupted) {
+    const std::string_view piece = bytes.read();
+    if (auto done = reader.add(piece, sink.row); !done) return forward_error(done.error());
+    if (!piece.empty()) sink.pause();
+    if (piece.empty() && (source.mode == ReadMode::once || path == "-")) break;
+    if (piece.empty()) std::this_thread::sleep_for(poll_period);
+  }
+  if (auto done = reader.finish(sink.row); !done) return forward_error(done.error());
+  return reader.remarks();
+}
+
+bool is_csv(const std::string& path) {
+  auto bytes = ByteSource::open(path);
+  return bytes && is_ins_csv(bytes->read());
+}
+
+/// Index of the sensor of each name. An error where one is missing.
+Result<std::vector<std::size_t>> sensors_of(const RowSource& source, const InsRecording& recording) {
+  std::vector<std::size_t> indices;
+  std::vector<std::string> known;
+  for (const InsSensor& sensor : recording.sensors) known.push_back(sensor.name);
+  for (const std::string& name : source.sensors) {
+    const auto found = std::ranges::find(known, name);
+    if (found == known.end())
+      return error("{}: the chain has a sensor {}, the log has none of that name; it has {}",
+                   fmt::join(source.logs, ", "), name, fmt::join(known, ", "));
+    indices.push_back(static_cast<std::size_t>(found - known.begin()));
+  }
+  return indices;
+}
+
+/// Rows of the loggers, merged by time: each row holds the samples that were taken at its time.
+Result<std::vector<std::string>> replay(const RowSource& source, const RowSink& sink) {
+  KINFER_TRY(recording, read_ins_logs(source.logs));
+  KINFER_TRY(sensors, sensors_of(source, recording));
+  std::vector<std::size_t> next(recording.loggers.size(), 0);
+  InsRow row;
+  row.sensors.resize(sensors.size());
+  for (;;) {
+    double time = std::numeric_limits<double>::infinity();
+    for (std::size_t l = 0; l < next.size(); ++l)
+      if (next[l] < recording.loggers[l].time.size()) time = std::min(time, recording.loggers[l].time[next[l]]);
+    if (!std::isfinite(time)) break;
+    row.time = time;
+    for (std::size_t s = 0; s < sensors.size(); ++s) {
+      const InsSensor& sensor = recording.sensors[sensors[s]];
+      const std::vector<double>& times = recording.loggers[sensor.logger].time;
+      const std::size_t at = next[sensor.logger];
+      row.sensors[s] = at < times.size() && times[at] <= time ? sample(sensor, times, at) : InsSample{.time = time};
+    }
+    for (std::size_t l = 0; l < next.size(); ++l)
+      if (next[l] < recording.loggers[l].time.size() && recording.loggers[l].time[next[l]] <= time) ++next[l];
+    if (auto done = sink.row(row); !done) return forward_error(done.error());
+  }
+  sink.pause();
+  return recording.remarks;
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> each_row(const RowSource& source, const RowSink& sink) {
+  const bool from_input = std::ranges::find(source.logs, "-") != source.logs.end();
+  if (from_input && source.logs.size() > 1) return error("-: standard input cannot be combined with other logs");
+  if (source.logs.size() == 1 && (from_input || is_csv(source.logs.front()))) return stream(source, sink);
+  if (source.mode == ReadMode::follow)
+    return error("--follow: needs a single CSV log or standard input, found {}", fmt::join(source.logs, ", "));
+  return replay(source, sink);
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/tracked_chain.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "kinfer/base/angle.hpp"
+#include "kinfer/cli/parts/posture_argument.hpp"
+#include "kinfer/io/recording/machine_facts_toml.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/tracking/tracking_model_toml.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+/// The tool of chain.toml, which its user may have changed since.
+void take_tool(TrackingModel& model, const Chain& chain) {
+  const std::string& tip = chain.joints[static_cast<std::size_t>(chain.tip_joint())].name;
+  const auto carrier = std::ranges::find(model.sensors, tip, &TrackingSensor::name);
+  if (carrier == model.sensors.end()) return;
+  const Pose tool = chain.tool.pose();
+  const bool is_same =
+      model.tool.body == carrier->body && (model.tool.body_T_tool.position - tool.position).norm() < 1e-9;
+  model.tool = {carrier->body, tool, is_same ? model.tool.sd : Vec3::Zero()};
+}
+
+Result<void> take_tool(TrackingModel& model, const std::string& file) {
+  KINFER_TRY(facts, read_machine_facts(file));
+  const auto is_tool = [&](const SegmentPoint& place) {
+    return place.name == "tip" || place.name == "tool" || facts.places.size() == 1;
+  };
+  const auto place = std::ranges::find_if(facts.places, is_tool);
+  if (place == facts.places.end()) return error("{}: no place named tip or tool", file);
+  if (!place->xyz)
+    return error("{}: the place {} has no xyz: kinfer identify --facts finds it and keeps it in the chain", file,
+                 place->name);
+  const auto carrier = std::ranges::find(model.sensors, place->sensor, &TrackingSensor::name);
+  if (carrier == model.sensors.end()) return error("{}: the chain has no sensor {}", file, place->sensor);
+  model.tool = {carrier->body, {Mat3::Identity(), *place->xyz}, Vec3::Constant(place->sigma)};
+  return {};
+}
+
+}  // namespace
+
+Result<TrackedChain> read_tracked_chain(const std::string& folder, const std::string& facts) {
+  const std::filesystem::path path(folder);
+  if (!std::filesystem::is_directory(path))
+    return error("{}: expected a folder that kinfer identify wrote, with chain.toml and track.toml", folder);
+  KINFER_TRY(robot, read_robot_toml(path / "chain.toml"));
+  if (!std::filesystem::exists(path / "track.toml"))
+    return error(
+        "{}: the chain has no tracking data, track.toml: identify the machine again, without --geometry searched",
+        folder);
+  KINFER_TRY(model, read_tracking_model(path / "track.toml"));
+  if (position_names(model) != active_joint_names(robot.chain))
+    return error("{}: chain.toml and track.toml are of different machines: their joints differ", folder);
+  take_tool(model, robot.chain);
+  if (!facts.empty())
+    if (auto done = take_tool(model, facts); !done) return forward_error(done.error());
+  return TrackedChain{std::move(robot.chain), std::move(model)};
+}
+
+Result<VectorXd> parse_start(const std::string& text, const Chain& chain) {
+  KINFER_TRY(start, parse_posture("--start", text, chain));
+  const std::vector<int> joints = active_joints(chain);
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const Joint& joint = chain.joints[static_cast<std::size_t>(joints[k])];
+    const double q = start[static_cast<Eigen::Index>(k)], unit = rotates(joint.type) ? degree : 1e-3;
+    if (q < joint.lower || q > joint.upper)
+      return error("--start: {} is {:.6g} {}, outside its limits {:.6g} to {:.6g}", joint.name, q / unit,
+                   rotates(joint.type) ? "deg" : "mm", joint.lower / unit, joint.upper / unit);
+  }
+  return start;
+}
+
+}  // namespace kinfer::cli

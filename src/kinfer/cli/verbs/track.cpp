@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// kinfer track: an identified chain at work; joint positions, tool pose and alarms from INS samples, row by row.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "kinfer/base/angle.hpp"
+
+#include "kinfer/cli/parts/arguments.hpp"
+#include "kinfer/cli/parts/evidence_files.hpp"
+#include "kinfer/cli/parts/row_source.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
+#include "kinfer/cli/parts/track_output.hpp"
+#include "kinfer/cli/parts/track_summary.hpp"
+#include "kinfer/cli/parts/tracked_chain.hpp"
+#include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/evidence/track_json.hpp"
+#include "kinfer/io/text/csv.hpp"
+#include "kinfer/track/run_recorder.hpp"
+#include "kinfer/track/tracker.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+struct TrackArguments {
+  CommonOptions common;
+  std::string chain, out, start, facts, base = "auto", base_at;
+  std::vector<std::string> logs;
+  bool follow = false;
+};
+
+Result<track::TrackOptions> track_options(const TrackArguments& options, const Chain& chain) {
+  track::TrackOptions how;
+  how.base = options.base == "still"    ? track::BaseMotion::still
+             : options.base == "moving" ? track::BaseMotion::moving
+                                        : track::BaseMotion::automatic;
+  if (options.start.empty()) return how;
+  KINFER_TRY(start, parse_start(options.start, chain));
+  how.start = start;
+  return how;
+}
+
+/// "X,Y,Z,HEADING" in mm and deg.
+Result<std::optional<BasePlace>> parse_place(const std::string& text) {
+  if (text.empty()) return std::optional<BasePlace>{};
+  std::array<double, 4> numbers{};
+  std::size_t begin = 0, count = 0;
+  for (; begin <= text.size() && count < 4; ++count) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const auto number = parse_number(std::string_view(text).substr(begin, end - begin));
+    if (!number || !std::isfinite(*number)) break;
+    numbers[count] = *number;
+    begin = end + 1;
+  }
+  if (count != 4 || begin <= text.size())
+    return error("--base-at {}: expected X,Y,Z,HEADING in mm and deg, as 1000,0,250,90", text);
+  return std::optional(BasePlace{1e-3 * Vec3(numbers[0], numbers[1], numbers[2]), numbers[3] * degree});
+}
+
+Provenance provenance_of(const TrackArguments& options) {
+  const std::filesystem::path chain(options.chain);
+  std::vector<std::string> inputs{(chain / "chain.toml").string(), (chain / "track.toml").string()};
+  for (const std::string& log : options.logs)
+    if (log != "-") inputs.push_back(log);
+  if (!options.facts.empty()) inputs.push_back(options.facts);
+  return {.inputs = fingerprints(inputs),
+          .options = {{"--base", options.base}, {"--base-at", options.base_at}, {"--start", options.start}},
+          .seed = options.common.seed};
+}
+
+Result<TrackRun> track_rows(const TrackArguments& options, const TrackedChain& machine, const track::TrackOptions& how,
+                            const std::vector<TrackOutput*>& outputs) {
+  track::Tracker tracker(machine.model, how);
+  track::RunRecorder recorder(machine.model);
+  RowSource source{.logs = options.logs, .mode = options.follow ? ReadMode::follow : ReadMode::once};
+  for (const TrackingSensor& sensor : machine.model.sensors) source.sensors.push_back(sensor.name);
+  const auto add = [&](const InsRow& row) -> Result<void> {
+    tracker.add(row);
+    recorder.add(tracker.state());
+    for (TrackOutput* output : outputs) output->add(tracker.state());
+    return {};
+  };
+  const auto flush = [&] {
+    for (TrackOutput* output : outputs) output->flush();
+  };
+  KINFER_TRY(remarks, each_row(source, {add, flush}));
+  flush();
+  TrackRun run = recorder.run();
+  run.remarks = remarks;
+  return run;
+}
+
+int finish(const TrackArguments& options, const RunRecord& record, const TrackRun& run) {
+  if (!options.out.empty()) {
+    if (auto done = write_evidence(options.out, run); !done) return fail(done.error());
+    if (auto done = record.write(options.out); !done) return fail(done.error());
+  }
+  if (!options.common.quiet) {
+    const std::string summary = track_summary(run);
+    if (!options.out.empty() && !options.common.json)
+      print_summary(summary, tone_of(run.verdict.usability));
+    else
+      fmt::print(stderr, "{}", summary);
+  }
+  return run.verdict.usability == Usability::do_not_use ? exit_do_not_use : exit_done;
+}
+
+int run(const TrackArguments& options) {
+  RunRecord record("track", options.common);
+  record.add_input(options.chain);
+  for (const std::string& log : options.logs) record.add_input(log);
+  const auto machine = read_tracked_chain(options.chain, options.facts);
+  if (!machine) return fail(machine.error());
+  const auto how = track_options(options, machine->chain);
+  if (!how) return fail(how.error());
+  const auto place = parse_place(options.base_at);
+  if (!place) return fail(place.error());
+  TrackOutput table(TrackRowWriter(machine->model, *place), RowFormat::csv),
+      lines(TrackRowWriter(machine->model, *place), RowFormat::json_lines);
+  std::vector<TrackOutput*> outputs;
+  std::optional<OutputFolder> folder;
+  if (!options.out.empty()) {
+    auto made = OutputFolder::make(options.out);
+    if (!made) return fail(made.error());
+    folder.emplace(std::move(*made));
+    if (auto done = table.open(*folder / "track.csv"); !done) return fail(done.error());
+    outputs.push_back(&table);
+  }
+  if (options.out.empty() || options.common.json) {
+    TrackOutput& terminal = options.common.json ? lines : table;
+    if (auto done = terminal.open({}); !done) return fail(done.error());
+    outputs.push_back(&terminal);
+  }
+  const auto tracked = track_rows(options, *machine, *how, outputs);
+  if (!tracked) return fail(tracked.error());
+  return finish(options, record, track_evidence(*tracked, provenance_of(options)));
+}
+
+}  // namespace
+
+Verb add_track(CLI::App& app) {
+  CLI::App* verb = add_command(
+      app, "track", "Joint positions and tool pose of an identified machine at work, row by row",
+      "Reads chain.toml and track.toml, which kinfer identify wrote, and a log of the same sensors. Without --out "
+      "rows\n"
+      "go to standard output. Positions are in deg and mm, poses in the frame of the base's sensor (docs/formats.md).\n"
+      "Examples:\n"
+      "  kinfer track excavator work.csv --out work\n"
+      "  kinfer track excavator work.csv --out work --start 0,-31.5,23,63,40\n"
+      "  logger | kinfer track excavator - --json\n"
+      "  kinfer track excavator growing.csv --follow --out work");
+  auto options = std::make_shared<TrackArguments>();
+  add_text(*verb, "chain", options->chain, "Folder that kinfer identify wrote", Requirement::required, "DIR");
+  add_texts(*verb, "logs", options->logs, "INS recordings of the same sensors, one a logger; -: standard input",
+            Requirement::required, "LOG");
+  add_text(*verb, "--out", options->out, "Folder for track.csv, evidence.json, report.html, run.json",
+           Requirement::optional, "DIR");
+  add_flag(*verb, "--follow", options->follow, "At the end of the log wait for more, until interrupted (Ctrl-C)");
+  add_choice(*verb, "--base", options->base, {"auto", "still", "moving"},
+             "Whether the base stands still; auto: as its sensor tells");
+  add_text(*verb, "--start", options->start,
+           "Joint positions where the log begins, in deg and mm; nan: unknown (default: as gravity tells)",
+           Requirement::optional, "LIST");
+  add_text(
+      *verb, "--facts", options->facts,
+      "Where the tool is: the place named tip or tool, with xyz in its sensor's frame (default: as the chain says)",
+      Requirement::optional, "TOML");
+  add_text(
+      *verb, "--base-at", options->base_at,
+      "Point of the base's sensor in the world and heading of its x axis when tracking begins, X,Y,Z,HEADING in mm "
+      "and deg: adds the tool's pose in the world, for a base that keeps its place",
+      Requirement::optional, "LIST");
+  add_common_options(*verb, options->common);
+  return {verb, [options] { return run(*options); }};
+}
+
+}  // namespace kinfer::cli

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The samples of all sensors at one instant, as they arrive while a machine works.
+#pragma once
+
+#include "kinfer/measurement/ins_recording.hpp"
+
+namespace kinfer {
+
+/// One sample for each sensor, in an order that whoever makes and takes rows agrees on; a sensor without a sample has
+/// no has_*.
+struct InsRow {
+  double time = 0.0;  ///< [s] never decreases
+  std::vector<InsSample> sensors{};
+};
+
+}  // namespace kinfer

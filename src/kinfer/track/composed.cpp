@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/track/composed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "kinfer/base/square.hpp"
+#include "kinfer/evidence/tracking/body_poses.hpp"
+#include "kinfer/geometry/cardan_angles.hpp"
+
+namespace kinfer::track {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double unknown_position = std::numeric_limits<double>::quiet_NaN();
+constexpr double heading_walk = 1e-3;      // [rad/√s] of the difference of two headings
+constexpr double axis_error = 0.01;        // [rad] of an axis' horizontal parts as two filters see them
+constexpr double axis_error_time = 2.0;    // [s] over which that error stays alike
+constexpr double least_inclination = 0.1;  // sine, below which an axis tells no heading
+
+KinferFilterOptions without_field() {
+  KinferFilterOptions options;
+  options.magnetometer = MagnetometerUse::off;
+  return options;
+}
+
+double about_z(const Mat3& r) {
+  return std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1));
+}
+
+double unwrapped_angle(double angle, double before) {
+  return std::isfinite(before) ? before + std::remainder(angle - before, 2.0 * std::numbers::pi) : angle;
+}
+
+/// The bodies of a joint: first and last index.
+std::pair<std::size_t, std::size_t> bodies_of(const TrackingModel& model, int joint) {
+  std::size_t first = 0, last = 0;
+  for (std::size_t b = 1; b < model.bodies.size(); ++b)
+    if (model.bodies[b].joint == joint) first = first == 0 ? b : first, last = b;
+  return {first, last};
+}
+
+/// Of the rotation between both sensors, as far as its heading; none for joints that leave every heading free.
+struct HeadingMeasurement {
+  double angle = 0.0;        // [rad] by which the child's world turns against the parent's
+  double inclination = 0.0;  // sine of the angle between the axis and the vertical
+};
+
+}  // namespace
+
+ComposedFilters::ComposedFilters(const TrackingModel& model, const TrackOptions& options)
+    : model_(model),
+      options_(options),
+      filters_(model.sensors.size(), KinferFilter(without_field())),
+      rate_(model.sensors.size(), Vec3::Zero()) {
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const auto [first, last] = bodies_of(model, j);
+    const int parent = model.bodies[first].parent;
+    joints_.push_back({.index = j,
+                       .parent_sensor = model.bodies[static_cast<std::size_t>(parent)].sensor,
+                       .child_sensor = model.bodies[last].sensor});
+  }
+  const Index positions = model.positions();
+  state_.q = state_.qd = state_.sd_q = state_.sd_qd = VectorXd::Constant(positions, unknown_position);
+  state_.joints.resize(model.joints.size());
+}
+
+void ComposedFilters::add(const InsRow& row) {
+  const double dt = state_.started ? row.time - state_.time : 0.0;
+  state_.time = row.time;
+  for (std::size_t s = 0; s < filters_.size(); ++s) {
+    filters_[s].add(row.sensors[s]);
+    if (row.sensors[s].has_angular_velocity) rate_[s] = row.sensors[s].angular_velocity - filters_[s].estimate().bias;
+  }
+  state_.started = std::ranges::all_of(filters_, &KinferFilter::started);
+  for (Joint& joint : joints_) update_joint(joint, dt);
+  const KinferFilter& base = filters_[static_cast<std::size_t>(model_.bodies.front().sensor)];
+  state_.world_q_base = base.orientation();
+  state_.sd_base = base.covariance().diagonal().head<3>().cwiseSqrt();
+  state_.sd_base.z() = 0.0;  // relative to the start
+  read_tool();
+}
+
+Mat3 ComposedFilters::relative_rotation(const Joint& joint) const {
+  const Quat &parent = filters_[static_cast<std::size_t>(joint.parent_sensor)].orientation(),
+             &child = filters_[static_cast<std::size_t>(joint.child_sensor)].orientation();
+  return parent.toRotationMatrix().transpose() * rot_z(joint.heading) * child.toRotationMatrix();
+}
+
+void ComposedFilters::update_joint(Joint& joint, double dt) {
+  if (!filters_[static_cast<std::size_t>(joint.parent_sensor)].started() ||
+      !filters_[static_cast<std::size_t>(joint.child_sensor)].started())
+    return;
+  if (!joint.started) start_heading(joint);
+  joint.heading_variance += square(heading_walk) * dt;
+  measure_heading(joint, dt);
+  read_positions(joint);
+}
+
+void ComposedFilters::start_heading(Joint& joint) {
+  const auto [first, last] = bodies_of(model_, joint.index);
+  const TrackingJoint& about = model_.joints[static_cast<std::size_t>(joint.index)];
+  VectorXd start = VectorXd::Zero(about.positions);
+  const bool is_given = options_.start && options_.start->segment(about.first_position, about.positions).allFinite();
+  if (is_given) start = options_.start->segment(about.first_position, about.positions);
+  Mat3 relative = Mat3::Identity();
+  Index next = 0;
+  for (std::size_t b = first; b <= last; ++b) {
+    const int count = degrees_of_freedom(model_.bodies[b].motion);
+    relative = relative * body_pose(model_.bodies[b], start.segment(next, count)).rotation;
+    next += count;
+  }
+  joint.heading = 0.0;
+  // parentᵀ Rz(δ) child = relative: the heading that agrees best.
+  const Mat3 parent = filters_[static_cast<std::size_t>(joint.parent_sensor)].orientation().toRotationMatrix(),
+             child = filters_[static_cast<std::size_t>(joint.child_sensor)].orientation().toRotationMatrix();
+  joint.heading = about_z(parent * relative * child.transpose());
+  joint.heading_variance = is_given ? 0.0 : square(1.0);
+  joint.started = true;
+  JointStatus& status = state_.joints[static_cast<std::size_t>(joint.index)];
+  status = {JointSource::composed, is_given ? JointReference::chain : JointReference::start};
+}
+
+void ComposedFilters::measure_heading(Joint& joint, double dt) {
+  const auto [first, last] = bodies_of(model_, joint.index);
+  const TrackingBody& body = model_.bodies[first];
+  if (first != last || body.motion == TrackingMotion::spherical) return;
+  const Mat3 parent = filters_[static_cast<std::size_t>(joint.parent_sensor)].orientation().toRotationMatrix(),
+             child = filters_[static_cast<std::size_t>(joint.child_sensor)].orientation().toRotationMatrix();
+  double angle = 0.0, inclination = 1.0;
+  if (body.motion == TrackingMotion::revolute) {
+    const Vec3 a = parent * body.parent_R_axis.col(2), b = child * body.child_R_axis.col(2);
+    inclination = std::sqrt(std::hypot(a.x(), a.y()) * std::hypot(b.x(), b.y()));
+    if (inclination < least_inclination) return;
+    angle = std::atan2(b.x() * a.y() - b.y() * a.x(), a.x() * b.x() + a.y() * b.y());
+  } else {
+    angle = about_z(parent * body.parent_R_axis * body.child_R_axis.transpose() * child.transpose());
+  }
+  const double stray = std::hypot(axis_error, model_.joints[static_cast<std::size_t>(joint.index)].stray);
+  const double noise = square(stray / inclination);
+  // The first measurement counts whole, later ones as the error's time allows.
+  const double variance = joint.heading_variance > 100.0 * noise ? noise : noise * axis_error_time / std::max(dt, 1e-4);
+  const double gain = joint.heading_variance / (joint.heading_variance + variance);
+  joint.heading += gain * std::remainder(angle - joint.heading, 2.0 * std::numbers::pi);
+  joint.heading_variance *= 1.0 - gain;
+  state_.joints[static_cast<std::size_t>(joint.index)].reference = JointReference::chain;
+}
+
+void ComposedFilters::read_positions(const Joint& joint) {
+  const auto [first, last] = bodies_of(model_, joint.index);
+  const TrackingBody& near = model_.bodies[first];
+  const TrackingBody& far = model_.bodies[last];
+  const Index at = model_.joints[static_cast<std::size_t>(joint.index)].first_position;
+  const Mat3 relative = relative_rotation(joint);
+  const Mat3 m = near.parent_R_axis.transpose() * relative * far.child_R_axis;
+  const auto &parent_filter = filters_[static_cast<std::size_t>(joint.parent_sensor)],
+             &child_filter = filters_[static_cast<std::size_t>(joint.child_sensor)];
+  const Mat3 parent = parent_filter.orientation().toRotationMatrix();
+  Mat3 covariance = parent_filter.covariance().topLeftCorner<3, 3>() + child_filter.covariance().topLeftCorner<3, 3>();
+  covariance.row(2).setZero();
+  covariance.col(2).setZero();
+  covariance(2, 2) = joint.heading_variance;
+  const auto sd_about = [&](const Vec3& axis_in_parent) {
+    const Vec3 axis = parent * axis_in_parent;
+    return std::sqrt(std::max(0.0, axis.dot(covariance * axis)));
+  };
+  const Vec3 rate = relative * rate_[static_cast<std::size_t>(joint.child_sensor)] -
+                    rate_[static_cast<std::size_t>(joint.parent_sensor)];
+  if (near.motion == TrackingMotion::spherical) {
+    const Vec3 before = state_.q.segment<3>(at).allFinite() ? Vec3(state_.q.segment<3>(at)) : Vec3::Zero();
+    state_.q.segment<3>(at) = cardan_angles(m, before);
+    for (Index k = 0; k < 3; ++k) state_.sd_q[at + k] = sd_about(near.parent_R_axis.col(k));
+  } else if (first != last) {
+    // Rz(q₁) C Rz(q₂) with C = Bᵀ A between both axes
+    const Mat3 between = near.child_R_axis.transpose() * far.parent_R_axis;
+    const double q1 = std::atan2(m(1, 2), m(0, 2)) - std::atan2(between(1, 2), between(0, 2));
+    state_.q[at] = unwrapped_angle(q1, state_.q[at]);
+    state_.q[at + 1] = unwrapped_angle(about_z(between.transpose() * rot_z(-q1) * m), state_.q[at + 1]);
+    state_.sd_q[at] = sd_about(near.parent_R_axis.col(2));
+    state_.sd_q[at + 1] = sd_about(relative * far.child_R_axis.col(2));
+  } else if (near.motion == TrackingMotion::revolute) {
+    state_.q[at] = unwrapped_angle(about_z(m), state_.q[at]);
+    state_.qd[at] = near.parent_R_axis.col(2).dot(rate);
+    state_.sd_q[at] = sd_about(near.parent_R_axis.col(2));
+  }
+}
+
+void ComposedFilters::read_tool() {
+  if (!state_.q.allFinite()) return;
+  state_.base_T_tool = tool_pose(model_, body_poses(model_, state_.q));
+}
+
+}  // namespace kinfer::track

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tracking without the chain: each sensor's orientation by a filter of its own, without magnetometer, and each joint's
+// position from the orientations of its two sensors. What a tracker on the whole chain must not be worse than.
+//
+// Headings of two such filters have nothing in common. Each joint therefore has the difference δ of its two sensors'
+// headings, a random walk that the joint's axis measures where it is inclined: seen from both sides, a and b, its
+// horizontal parts agree (Laidig, Lehmann, Begin and Seel, EMBC 2019), to stray_angle / sin(inclination). Slowly,
+// because a tight constraint turns the errors of axes into heading.
+#pragma once
+
+#include <vector>
+
+#include "kinfer/evidence/tracking/track_state.hpp"
+#include "kinfer/evidence/tracking/tracking_model.hpp"
+#include "kinfer/inertial/filters/kinfer_filter.hpp"
+#include "kinfer/measurement/ins_row.hpp"
+#include "kinfer/track/options.hpp"
+
+namespace kinfer::track {
+
+/// Copyable. Displacements of prismatic joints are unknown (NaN): orientations do not tell them.
+class ComposedFilters {
+ public:
+  explicit ComposedFilters(const TrackingModel& model, const TrackOptions& options = {});
+
+  void add(const InsRow& row);
+
+  /// At the time of the last row; alarms and innovations are empty.
+  const TrackState& state() const { return state_; }
+
+ private:
+  /// A joint's sensors and the difference of their headings: rotation of the child's world into the parent's.
+  struct Joint {
+    int index = 0;  // into the model's joints
+    int parent_sensor = -1, child_sensor = -1;
+    double heading = 0.0, heading_variance = 0.0;  // [rad], [rad²]
+    bool started = false;
+  };
+
+  void update_joint(Joint& joint, double dt);
+  Mat3 relative_rotation(const Joint& joint) const;
+  void start_heading(Joint& joint);
+  void measure_heading(Joint& joint, double dt);
+  void read_positions(const Joint& joint);
+  void read_tool();
+
+  TrackingModel model_;
+  TrackOptions options_;
+  std::vector<KinferFilter> filters_;
+  std::vector<Vec3> rate_;  // [rad/s] of each sensor, without bias
+  std::vector<Joint> joints_;
+  TrackState state_;
+};
+
+}  // namespace kinfer::track

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The last seconds once more without a sensor that turned out to be faulty: until a fault is told, the filter has
+// believed it. Two earlier filters and the blocks since the older of them are kept.
+#pragma once
+
+#include "kinfer/track/filter/chain_filter.hpp"
+
+namespace kinfer::track {
+
+class Replay {
+ public:
+  explicit Replay(const ChainFilter& filter);
+
+  /// After each update of `filter` by `block`; nothing is allocated.
+  void add(const BlockMeasurement& block, const ChainFilter& filter);
+
+  /// From the older of the two filters kept, without sensor `left_out`; `visit(filter, block)` after each block.
+  template <class Visit>
+  void run(std::size_t left_out, ChainFilter& filter, const Visit& visit) {
+    std::vector<bool> used;
+    for (std::size_t s = 0; s < filter.model().sensors.size(); ++s) used.push_back(filter.uses_sensor(s));
+    filter = older_;
+    for (std::size_t s = 0; s < used.size(); ++s) filter.use_sensor(s, used[s] && s != left_out);
+    for (std::size_t i = 0; i < count_; ++i) {
+      const BlockMeasurement& block = blocks_[i];
+      filter.predict(block.time);
+      filter.update(block);
+      visit(filter, block);
+    }
+    begin(filter);
+  }
+
+  /// Forgets what was before.
+  void begin(const ChainFilter& filter);
+
+ private:
+  ChainFilter older_, newer_;
+  std::vector<BlockMeasurement> blocks_;  // since the older one
+  std::size_t count_ = 0, newer_at_ = 0;  // blocks in use; of them before the newer filter
+};
+
+}  // namespace kinfer::track

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/track/filter/chain_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/base/expect.hpp"
+#include "kinfer/linalg/small_cholesky.hpp"
+#include "kinfer/track/filter/thresholds.hpp"
+
+namespace kinfer::track {
+namespace {
+
+double squared(double x) {
+  return x * x;
+}
+
+/// Variance of a block's mean: white noise averages out, what persists over the block does not, and what persists over
+/// many blocks is worth more white noise than either.
+double block_variance(double white, double persistent, double slow, double sample_period, double length, int count) {
+  return std::max(squared(white) / count + squared(persistent), squared(slow) * sample_period / length);
+}
+
+using SensorVector = Eigen::Matrix<double, sensor_rows, 1>;
+using SensorMatrix = Eigen::Matrix<double, sensor_rows, sensor_rows>;
+
+/// vᵀ m⁻¹ v by elimination.
+double squared_distance(SensorVector v, SensorMatrix m) {
+  double t = 0.0;
+  for (Index k = 0; k < sensor_rows; ++k) {
+    t += v[k] * v[k] / m(k, k);
+    for (Index i = k + 1; i < sensor_rows; ++i) {
+      const double factor = m(i, k) / m(k, k);
+      v[i] -= factor * v[k];
+      for (Index j = k + 1; j < sensor_rows; ++j) m(i, j) -= factor * m(k, j);
+    }
+  }
+  return t;
+}
+
+}  // namespace
+
+ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
+    : model_(std::move(model)), state_(initial_state(*model_)), evaluator_(*model_) {
+  const FilterLayout& layout = model_->layout;
+  const auto sensors = static_cast<std::size_t>(layout.sensors);
+  const Index most = layout.rows() + 3 + 2 * static_cast<Index>(model_->loose.size());
+  p_ = MatrixXd::Zero(layout.size, layout.size);
+  p_.bottomRightCorner(layout.size - layout.fast, layout.size - layout.fast) = model_->parameters;
+  is_used_.assign(sensors, true);
+  inflation_.assign(sensors, {1.0, 1.0});
+  innovations_.value = VectorXd::Zero(layout.rows());
+  innovations_.leave_out.assign(sensors, 0.0);
+  innovations_.rows.assign(sensors, 0);
+  residual_ = noise_ = whitened_ = VectorXd::Zero(most);
+  error_ = VectorXd::Zero(layout.size);
+  h_ = MatrixXd::Zero(most, layout.fast);
+  w_ = MatrixXd::Zero(layout.size, most);
+  unused_w_ = MatrixXd::Zero(layout.size, sensor_rows);
+  s_ = inverse_ = MatrixXd::Zero(most, most);
+  is_measured_.assign(static_cast<std::size_t>(2 * layout.sensors), false);
+}
+
+void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {
+  const FilterLayout& layout = model_->layout;
+  KINFER_EXPECT(fast.rows() == layout.fast && fast.cols() == layout.fast);
+  std::vector<SensorErrors> sensors = std::move(state_.sensors);
+  state_ = state;
+  state_.sensors = std::move(sensors);
+  p_.leftCols(layout.fast).setZero();
+  p_.topRows(layout.fast).setZero();
+  p_.topLeftCorner(layout.fast, layout.fast) = fast;
+}
+
+void ChainFilter::place(Index position, double value, double sd) {
+  declare_known(position);
+  const Index at = model_->layout.joint_state(position);
+  state_.joints[position_states * position] = value;
+  p_(at, at) = sd * sd;
+}
+
+void ChainFilter::declare_known(Index position) {
+  const Index at = model_->layout.joint_state(position);
+  p_.row(at).setZero();
+  p_.col(at).setZero();
+}
+
+void ChainFilter::predict(double time) {
+  while (time - state_.time > 1e-9) {
+    const double dt = std::min(time - state_.time, longest_step);
+    predict_covariance(*model_, state_, dt, p_);
+    predict_mean(*model_, dt, state_);
+  }
+}
+
+void ChainFilter::set_base(BaseMode mode) {
+  if (state_.base == mode) return;
+  state_.base = mode;
+  // The first moments of motion are unknown: what the processes allow.
+  const auto set = [&](Index first, double sd) { p_.diagonal().segment<3>(first).array() += sd * sd; };
+  if (mode == BaseMode::still) return;
+  set(BaseIndex::rate, model_->base_rotation.sd * model_->base_rotation.time);
+  set(BaseIndex::angular_acceleration, model_->base_rotation.sd);
+  set(BaseIndex::velocity, base_velocity_sd);
+  set(BaseIndex::acceleration, model_->base_translation.sd);
+}
+
+void ChainFilter::form_sensor_rows(const BlockMeasurement& block, std::size_t s) {
+  const BlockSample& measured = block.sensors[s];
+  const SensorSettings& settings = model_->sensors[s];
+  const Index row = sensor_rows * static_cast<Index>(s);
+  const auto set = [&](Index first, int count, const Vec3& value, double white, double persistent, double slow,
+                       double inflation) {
+    const bool is_measured = is_used_[s] && count > 0;
+    is_measured_[static_cast<std::size_t>(first / 3)] = is_measured;
+    innovations_.value.segment<3>(first) = value - evaluator_.result().value.segment<3>(first);
+    // A row without derivatives, residual and correlation changes nothing.
+    residual_.segment<3>(first) = is_measured ? Vec3(innovations_.value.segment<3>(first)) : Vec3(Vec3::Zero());
+    noise_.segment<3>(first).setConstant(
+        is_measured ? inflation * block_variance(white, persistent, slow, settings.sample_period, block.length, count)
+                    : 1.0);
+    if (!is_measured) h_.middleRows(first, 3).setZero();
+  };
+  set(row, measured.rate_count, measured.rate, settings.white.rate, settings.persistent.rate, settings.slow.rate,
+      inflation_[s].rate);
+  set(row + 3, measured.force_count, measured.force, settings.white.force, settings.persistent.force,
+      settings.slow.force, inflation_[s].force);
+}
+
+/// A moving base stays about where it is, and the axes of a loose hinge about aligned: N(0, σ²) with a correlation time
+/// τ is worth white noise of variance σ² 2τ/length in each block.
+void ChainFilter::form_soft_rows(double length) {
+  rows_ = model_->layout.rows();
+  const auto worth = [&](double sd, double time) { return sd * sd * std::max(1.0, 2.0 * time / length); };
+  const auto append = [&](double innovation, double variance) {
+    h_.row(rows_).setZero();
+    residual_[rows_] = innovation;
+    noise_[rows_] = variance;
+    return rows_++;
+  };
+  if (state_.base == BaseMode::moving)
+    for (Index k = 0; k < 3; ++k)
+      h_(append(-state_.velocity[k], worth(base_velocity_sd, base_velocity_time)), BaseIndex::velocity + k) = 1.0;
+  for (const LooseHinge& hinge : model_->loose) {
+    const Mat3& ball = state_.balls[hinge.body];
+    const Mat3 by_turn = -ball * skew(Vec3::UnitZ());
+    for (Index k = 0; k < 2; ++k) {
+      const Index row = append(-ball(k, 2), worth(hinge.stray, hinge.time));
+      for (Index i = 0; i < 3; ++i)
+        h_(row, model_->layout.joint_state(model_->layout.position[hinge.body] + i)) = by_turn(k, i);
+    }
+  }
+}
+
+void ChainFilter::form_rows(const BlockMeasurement& block) {
+  evaluator_.evaluate(*model_, state_);
+  h_.topRows(model_->layout.rows()) = evaluator_.result().by_fast;
+  for (std::size_t s = 0; s < is_used_.size(); ++s) form_sensor_rows(block, s);
+  form_soft_rows(block.length);
+}
+
+/// W = P Hᵀ and the lower half of S = H W + R.
+void ChainFilter::multiply() {
+  const FilterLayout& layout = model_->layout;
+  const ChainMeasurement& m = evaluator_.result();
+  const Index n = layout.size;
+  w_.leftCols(rows_).setZero();
+  s_.topLeftCorner(rows_, rows_).setZero();
+  const auto each_own = [&](std::size_t s, const auto& visit) {  // a sensor's own states: row, state, derivative
+    const Index row = sensor_rows * static_cast<Index>(s), own = layout.sensor_state(static_cast<Index>(s));
+    for (Index k = 0; k < 3; ++k)
+      for (Index j = 0; j < 4; ++j) {
+        const bool is_bias = j == 0;
+        if (is_measured_[2 * s])
+          visit(row + k, own + (is_bias ? SensorIndex::gyroscope_bias + k : SensorIndex::gyroscope_scale + 3 * k + j - 1),
+                is_bias ? 1.0 : m.angular_velocity[s][j - 1]);
+        if (is_measured_[2 * s + 1])
+          visit(row + 3 + k,
+                own + (is_bias ? SensorIndex::accelerometer_bias + k : SensorIndex::accelerometer_scale + 3 * k + j - 1),
+                is_bias ? 1.0 : m.force[s][j - 1]);
+      }
+  };
+  for (std::size_t s = 0; s < is_used_.size(); ++s) {
+    if (!is_measured_[2 * s] && !is_measured_[2 * s + 1]) continue;
+    const Index row = sensor_rows * static_cast<Index>(s), fast = m.fast_end[s], geometry = m.geometry_end[s];
+    auto w = w_.middleCols(row, sensor_rows);
+    add_product(p_.leftCols(fast), h_.block(row, 0, sensor_rows, fast), 1.0, w);
+    if (geometry > 0)
+      add_product(p_.middleCols(layout.first_geometry, geometry), m.by_geometry.block(row, 0, sensor_rows, geometry),
+                  1.0, w);
+    each_own(s, [&](Index at, Index state, double factor) {
+      double* to = w_.col(at).data();
+      const double* from = p_.col(state).data();
+      for (Index i = 0; i < n; ++i) to[i] += factor * from[i];
+    });
+    for (Index half = 0; half < 2; ++half)
+      if (!is_measured_[2 * s + static_cast<std::size_t>(half)]) w_.middleCols(row + 3 * half, 3).setZero();
+  }
+  for (Index row = layout.rows(); row < rows_; ++row)
+    for (Index j = 0; j < layout.fast; ++j)
+      if (h_(row, j) > 0.0 || h_(row, j) < 0.0) w_.col(row) += h_(row, j) * p_.col(j);
+  for (std::size_t s = 0; s < is_used_.size(); ++s) {
+    const Index row = sensor_rows * static_cast<Index>(s), fast = m.fast_end[s], geometry = m.geometry_end[s];
+    for (Index j = 0; j <= std::min(row + sensor_rows, rows_) - 1; ++j) {
+      auto to = s_.col(j).segment<sensor_rows>(row);
+      for (Index k = 0; k < fast; ++k) to += w_(k, j) * h_.col(k).segment<sensor_rows>(row);
+      for (Index k = 0; k < geometry; ++k)
+        to += w_(layout.first_geometry + k, j) * m.by_geometry.col(k).segment<sensor_rows>(row);
+    }
+    each_own(s, [&](Index at, Index state, double factor) {
+      for (Index j = 0; j <= at; ++j) s_(at, j) += factor * w_(state, j);
+    });
+    for (Index half = 0; half < 2; ++half)
+      if (!is_measured_[2 * s + static_cast<std::size_t>(half)]) s_.middleRows(row + 3 * half, 3).setZero();
+  }
+  for (Index row = layout.rows(); row < rows_; ++row)
+    for (Index k = 0; k < layout.fast; ++k)
+      if (h_(row, k) > 0.0 || h_(row, k) < 0.0)
+        for (Index j = 0; j <= row; ++j) s_(row, j) += h_(row, k) * w_(k, j);
+  for (Index i = 0; i < rows_; ++i) s_(i, i) += noise_[i];
+}
+
+/// An instrument that is far off is trusted so much less that it is at the limit.
+void ChainFilter::limit_outliers() {
+  for (std::size_t half = 0; half < is_measured_.size(); ++half) {
+    if (!is_measured_[half]) continue;
+    const Index row = 3 * static_cast<Index>(half);
+    Mat3 block = s_.block<3, 3>(row, row);
+    block.triangularView<Eigen::StrictlyUpper>() = block.transpose();
+    const Vec3 v = residual_.segment<3>(row);
+    const double distance = v.dot(block.inverse() * v);
+    InsLevel& inflation = inflation_[half / 2];
+    double& factor = half % 2 == 0 ? inflation.rate : inflation.force;
+    factor = std::clamp(factor * std::exp(inflation_gain * (std::min(distance, outlier_limit) / 3.0 - 1.0)), 1.0,
+                        max_inflation);
+    if (distance > outlier_limit) s_.block<3, 3>(row, row) += (distance / outlier_limit - 1.0) * block;
+  }
+}
+
+/// Leave-one-out innovations: with u = S⁻¹ν the innovation of sensor i given all others is [(S⁻¹)_ii]⁻¹u_i, with
+/// covariance [(S⁻¹)_ii]⁻¹. `s_` holds L.
+void ChainFilter::examine() {
+  auto inverse = inverse_.topLeftCorner(rows_, rows_);
+  inverse.setIdentity();
+  for (Index j = 0; j < rows_; ++j)  // L⁻¹, column by column
+    for (Index k = j; k < rows_; ++k) {
+      const double x = inverse_(k, j) / s_(k, k);
+      inverse_(k, j) = x;
+      for (Index i = k + 1; i < rows_; ++i) inverse_(i, j) -= s_(i, k) * x;
+    }
+  auto whitened = whitened_.head(rows_);
+  whitened.setZero();
+  for (Index k = 0; k < rows_; ++k)
+    for (Index i = k; i < rows_; ++i) whitened_[i] += inverse_(i, k) * residual_[k];
+  double log_determinant = 0.0;
+  for (Index i = 0; i < rows_; ++i) log_determinant += std::log(s_(i, i));
+  innovations_.log_likelihood = -0.5 * whitened.squaredNorm() - log_determinant;
+  for (std::size_t s = 0; s < is_used_.size(); ++s) {
+    const Index row = sensor_rows * static_cast<Index>(s);
+    innovations_.rows[s] = (is_measured_[2 * s] ? 3 : 0) + (is_measured_[2 * s + 1] ? 3 : 0);
+    if (!is_used_[s]) continue;
+    SensorMatrix own;
+    SensorVector u;
+    for (Index i = 0; i < sensor_rows; ++i) {
+      u[i] = inverse_.col(row + i).head(rows_).dot(whitened);
+      for (Index j = 0; j <= i; ++j)
+        own(i, j) = own(j, i) = inverse_.col(row + i).head(rows_).dot(inverse_.col(row + j).head(rows_));
+    }
+    for (Index i = 0; i < sensor_rows; ++i)
+      if (!is_measured_[2 * s + static_cast<std::size_t>(i / 3)]) u[i] = 0.0;
+    innovations_.leave_out[s] = squared_distance(u, own);
+  }
+}
+
+/// The innovation of a sensor that is not used, in its own covariance.
+double ChainFilter::distance_of_unused(const BlockMeasurement& block, std::size_t s) {
+  const FilterLayout& layout = model_->layout;
+  const ChainMeasurement& m = evaluator_.result();
+  const SensorSettings& settings = model_->sensors[s];
+  const BlockSample& measured = block.sensors[s];
+  const Index row = sensor_rows * static_cast<Index>(s), fast = m.fast_end[s], geometry = m.geometry_end[s];
+  unused_w_.setZero();
+  add_product(p_.leftCols(fast), m.by_fast.block(row, 0, sensor_rows, fast), 1.0, unused_w_);
+  if (geometry > 0)
+    add_product(p_.middleCols(layout.first_geometry, geometry), m.by_geometry.block(row, 0, sensor_rows, geometry), 1.0,
+                unused_w_);
+  // Its own errors are taken as uncorrelated with the rest: they are of no use while it is out of use.
+  const Index own = layout.sensor_state(static_cast<Index>(s));
+  SensorMatrix covariance = SensorMatrix::Zero();
+  for (Index k = 0; k < fast; ++k)
+    covariance += m.by_fast.col(k).segment<sensor_rows>(row) * unused_w_.row(k);
+  for (Index k = 0; k < geometry; ++k)
+    covariance += m.by_geometry.col(k).segment<sensor_rows>(row) * unused_w_.row(layout.first_geometry + k);
+  const double rate = block_variance(settings.white.rate, settings.persistent.rate, settings.slow.rate,
+                                     settings.sample_period, block.length, measured.rate_count),
+               force = block_variance(settings.white.force, settings.persistent.force, settings.slow.force,
+                                      settings.sample_period, block.length, measured.force_count);
+  for (Index i = 0; i < sensor_rows; ++i)
+    covariance(i, i) += (i < 3 ? rate : force) + p_(own + i, own + i) +
+                        p_.diagonal().segment<3>(own + SensorIndex::gyroscope_scale + 3 * i)
+                            .dot((i < 3 ? m.angular_velocity[s] : m.force[s]).cwiseAbs2());
+  return squared_distance(innovations_.value.segment<sensor_rows>(row), covariance);
+}
+
+void ChainFilter::correct() {
+  const Index estimated = model_->layout.first_geometry, n = model_->layout.size, geometry = n - estimated;
+  auto y = w_.leftCols(rows_);
+  solve_right(s_.topLeftCorner(rows_, rows_), y);
+  error_.setZero();
+  for (Index j = 0; j < rows_; ++j) error_.head(estimated) += whitened_[j] * w_.col(j).head(estimated);
+  retract(*model_, error_, state_);
+  add_square(w_.block(0, 0, estimated, rows_), -1.0, p_.topLeftCorner(estimated, estimated));
+  if (geometry > 0)
+    add_product(w_.block(estimated, 0, geometry, rows_), w_.block(0, 0, estimated, rows_), -1.0,
+                p_.block(estimated, 0, geometry, estimated));
+  bound();
+  mirror();
+}
+
+/// Nothing is known less than this: a variance that grows without limit would leave the range of the linearisation.
+void ChainFilter::bound() {
+  const FilterLayout& layout = model_->layout;
+  for (Index i = 0; i < layout.fast; ++i) {
+    const bool is_position = i < 3 || (i >= base_states && (i - base_states) % position_states == 0);
+    const double limit = is_position ? max_position_sd : max_motion_sd;
+    if (p_(i, i) <= limit * limit) continue;
+    const double factor = limit / std::sqrt(p_(i, i));
+    for (Index j = 0; j <= i; ++j) p_(i, j) *= factor;
+    for (Index j = i; j < layout.size; ++j) p_(j, i) *= factor;
+  }
+}
+
+/// The lower half becomes the upper one, in tiles that stay in the cache.
+void ChainFilter::mirror() {
+  constexpr Index tile = 16;
+  const Index n = p_.rows();
+  double* p = p_.data();
+  for (Index j0 = 0; j0 < n; j0 += tile)
+    for (Index i0 = j0; i0 < n; i0 += tile)
+      for (Index j = j0; j < std::min(j0 + tile, n); ++j)
+        for (Index i = std::max(i0, j + 1); i < std::min(i0 + tile, n); ++i) p[i * n + j] = p[j * n + i];
+}
+
+void ChainFilter::update(const BlockMeasurement& block) {
+  KINFER_EXPECT(block.sensors.size() == is_used_.size());
+  form_rows(block);
+  multiply();
+  limit_outliers();
+  if (!factorise_small(s_.topLeftCorner(rows_, rows_))) return;
+  examine();
+  for (std::size_t s = 0; s < is_used_.size(); ++s) {
+    if (is_used_[s]) continue;
+    const bool is_measured = block.sensors[s].rate_count > 0 && block.sensors[s].force_count > 0;
+    innovations_.rows[s] = is_measured ? static_cast<int>(sensor_rows) : 0;
+    if (is_measured) innovations_.leave_out[s] = distance_of_unused(block, s);
+  }
+  correct();
+}
+
+void ChainFilter::update(const ScalarRow& row) {
+  const Index estimated = model_->layout.first_geometry;
+  auto w = w_.col(0);
+  w.setZero();
+  double variance = row.variance;
+  for (int k = 0; k < row.terms; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    w += row.factor[i] * p_.col(row.at[i]);
+  }
+  for (int k = 0; k < row.terms; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    variance += row.factor[i] * w[row.at[i]];
+  }
+  error_.setZero();
+  error_.head(estimated) = (row.innovation / variance) * w.head(estimated);
+  retract(*model_, error_, state_);
+  for (Index j = 0; j < estimated; ++j)
+    for (Index i = j; i < p_.rows(); ++i) p_(i, j) -= w[i] * w[j] / variance;
+  mirror();
+}
+
+}  // namespace kinfer::track

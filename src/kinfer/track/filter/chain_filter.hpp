@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Error-state extended Kalman filter on a chain (Schmidt 1966 for what is only considered): all sensors of a block of
+// rows in one update.
+//
+// With W = P Hᵀ, S = H W + R = L Lᵀ and Y = W L⁻ᵀ the update is x += Y L⁻¹ν, P −= Y Yᵀ, except that considered states
+// keep their value and covariance. Copyable; nothing is allocated after construction.
+#pragma once
+
+#include <memory>
+
+#include "kinfer/track/filter/chain_measurement.hpp"
+
+namespace kinfer::track {
+
+/// Mean of a block of rows, at their mean time.
+struct BlockSample {
+  Vec3 rate = Vec3::Zero(), force = Vec3::Zero();
+  int rate_count = 0, force_count = 0;  ///< 0: not measured
+};
+struct BlockMeasurement {
+  double time = 0.0, length = 0.0;   ///< [s] length: that the rows stand for
+  std::vector<BlockSample> sensors;  ///< in the order of the model
+};
+
+/// How an update came out.
+struct Innovations {
+  VectorXd value;                 ///< measured minus predicted, rows of the sensors
+  std::vector<double> leave_out;  ///< T of each sensor against all others, its expectation being `leave_out_rows`
+  std::vector<int> rows;          ///< of each sensor that were measured: 0, 3 or 6; of sensors out of use too
+  double log_likelihood = 0.0;    ///< of this block
+};
+
+class ChainFilter {
+ public:
+  explicit ChainFilter(std::shared_ptr<const FilterModel> model);
+
+  const FilterModel& model() const { return *model_; }
+  const ChainState& state() const { return state_; }
+  const MatrixXd& covariance() const { return p_; }
+  const Innovations& innovations() const { return innovations_; }
+
+  /// Starts in a posture; `fast`: covariance of the fast states. What is known of sensors and geometry is kept.
+  void start(const ChainState& state, ConstMatrixRef fast);
+
+  void predict(double time);
+  void update(const BlockMeasurement& block);
+
+  /// One scalar measurement h x = value of the estimated states, given by the indices of h that are not zero.
+  struct ScalarRow {
+    std::array<Index, 6> at{};
+    std::array<double, 6> factor{};
+    int terms = 0;
+    double innovation = 0.0, variance = 1.0;
+  };
+  void update(const ScalarRow& row);
+
+  void set_base(BaseMode mode);
+
+  /// Moves a joint position (of a hinge or slide) and states how well it is known there.
+  void place(Index position, double value, double sd);
+
+  /// Forgets what is unknown of a joint position: it counts from here.
+  void declare_known(Index position);
+
+  /// Leaves a sensor out of all updates (or takes it in again).
+  void use_sensor(std::size_t sensor, bool is_used) { is_used_[sensor] = is_used; }
+  bool uses_sensor(std::size_t sensor) const { return is_used_[sensor]; }
+
+  /// Factor on the variance of an instrument's measurements, as its innovations ask for; at least 1.
+  InsLevel inflation(std::size_t sensor) const { return inflation_[sensor]; }
+
+ private:
+  void form_rows(const BlockMeasurement& block);
+  void form_sensor_rows(const BlockMeasurement& block, std::size_t sensor);
+  void form_soft_rows(double length);
+  void multiply();  // W and S
+  void limit_outliers();
+  void examine();
+  double distance_of_unused(const BlockMeasurement& block, std::size_t sensor);
+  void correct();
+  void bound();
+  void mirror();
+
+  std::shared_ptr<const FilterModel> model_;
+  ChainState state_;
+  MatrixXd p_;
+  ChainEvaluator evaluator_;
+  std::vector<bool> is_used_;
+  std::vector<InsLevel> inflation_;
+  Innovations innovations_;
+  // Buffers of an update: sensors' rows first, then soft constraints.
+  Index rows_ = 0;
+  VectorXd residual_, noise_, error_, whitened_;
+  MatrixXd h_, w_, s_, inverse_, unused_w_;
+  std::vector<bool> is_measured_;  // of each triple of rows
+};
+
+}  // namespace kinfer::track

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The state of a chain with its sensors, and how it and the covariance of its error change with time.
+#pragma once
+
+#include "kinfer/track/filter/filter_model.hpp"
+
+namespace kinfer::track {
+
+struct SensorErrors {
+  Vec3 gyroscope_bias = Vec3::Zero(), accelerometer_bias = Vec3::Zero();
+  Mat3 gyroscope_scale = Mat3::Zero(), accelerometer_scale = Mat3::Zero();
+};
+
+enum class BaseMode { still, moving };
+
+struct ChainState {
+  double time = 0.0;  ///< [s]
+  BaseMode base = BaseMode::still;
+  Mat3 world_R_base = Mat3::Identity();
+  Vec3 rate = Vec3::Zero(), angular_acceleration = Vec3::Zero();  ///< of the base sensor's frame
+  Vec3 velocity = Vec3::Zero(), acceleration = Vec3::Zero();      ///< of its origin, in the world
+  VectorXd joints;          ///< q, q̇, q̈ of each joint position; q of balls is 0
+  std::vector<Mat3> balls;  ///< of each body: exp(φ); the identity unless a ball
+  std::vector<SensorErrors> sensors;
+
+  /// Motion of the base, as the chain propagates it.
+  InsState base_state(double gravity) const;
+};
+
+/// At rest at joint position 0 with the sensors' errors of the model.
+ChainState initial_state(const FilterModel& model);
+
+/// Adds an error to the estimated states; those of the geometry are left alone.
+void retract(const FilterModel& model, const VectorXd& error, ChainState& state);
+
+/// The mean after `dt` seconds.
+void predict_mean(const FilterModel& model, double dt, ChainState& state);
+
+/// The error state's covariance (symmetric) after `dt` seconds, at most `longest_step`; `state` is that before.
+void predict_covariance(const FilterModel& model, const ChainState& state, double dt, MatrixXd& covariance);
+
+}  // namespace kinfer::track

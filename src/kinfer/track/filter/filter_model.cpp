@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/track/filter/filter_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/track/filter/thresholds.hpp"
+
+namespace kinfer::track {
+namespace {
+
+InsBody filter_body(const TrackingModel& model, const TrackingBody& body) {
+  InsBody made{.parent = body.parent, .sensor = body.sensor};
+  made.parent_R_axis = body.parent_R_axis;
+  made.child_R_axis = body.child_R_axis;
+  made.point_in_parent = body.point_in_parent;
+  made.point_in_child = body.point_in_child;
+  const bool is_loose = body.joint >= 0 && model.joints[static_cast<std::size_t>(body.joint)].stray > min_stray;
+  if (body.motion == TrackingMotion::revolute) made.motion = is_loose ? JointMotion::spherical : JointMotion::revolute;
+  if (body.motion == TrackingMotion::prismatic) made.motion = JointMotion::prismatic;
+  if (body.motion == TrackingMotion::spherical) made.motion = JointMotion::spherical;
+  return made;
+}
+
+/// A ball's rotations have no geometry of their own: they are its position.
+void free_parameter(InsBody& body, const TrackingParameter& parameter) {
+  const auto component = static_cast<std::size_t>(parameter.component);
+  const bool turns = body.motion != JointMotion::spherical;
+  switch (parameter.kind) {
+    case TrackingParameterKind::parent_rotation: body.free_parent_rotation[component] = turns; break;
+    case TrackingParameterKind::child_rotation: body.free_child_rotation[component] = turns; break;
+    case TrackingParameterKind::point_in_parent: body.free_point_in_parent = true; break;
+    case TrackingParameterKind::point_in_child: body.free_point_in_child = true; break;
+    default: break;
+  }
+}
+
+Index count_before(const std::array<bool, 3>& is_free, std::size_t end) {
+  return std::count(is_free.begin(), is_free.begin() + static_cast<std::ptrdiff_t>(end), true);
+}
+
+/// Index of a parameter among the slow states (sensors, then geometry); −1: it is none of them.
+Index slow_state(const FilterModel& filter, const TrackingParameter& p) {
+  const Index component = p.component, sensor = sensor_states * p.index;
+  const Index by_row = 3 * (component % 3) + component / 3;  // the covariance's matrices are column by column
+  if (p.kind == TrackingParameterKind::gyroscope_bias) return sensor + SensorIndex::gyroscope_bias + component;
+  if (p.kind == TrackingParameterKind::accelerometer_bias) return sensor + SensorIndex::accelerometer_bias + component;
+  if (p.kind == TrackingParameterKind::gyroscope_scale) return sensor + SensorIndex::gyroscope_scale + by_row;
+  if (p.kind == TrackingParameterKind::accelerometer_scale) return sensor + SensorIndex::accelerometer_scale + by_row;
+  const auto b = static_cast<std::size_t>(p.index);
+  const auto at = static_cast<std::size_t>(p.component);
+  const InsBody& body = filter.bodies[b];
+  if (b == 0) return -1;
+  const Index first = sensor_states * filter.layout.sensors + filter.layout.geometry[b];
+  const Index parent_turns = count_before(body.free_parent_rotation, 3);
+  if (p.kind == TrackingParameterKind::parent_rotation)
+    return body.free_parent_rotation[at] ? first + count_before(body.free_parent_rotation, at) : -1;
+  if (p.kind == TrackingParameterKind::child_rotation)
+    return body.free_child_rotation[at] ? first + parent_turns + count_before(body.free_child_rotation, at) : -1;
+  const Index points = first + body.turns();
+  if (p.kind == TrackingParameterKind::point_in_parent) return points + component;
+  return points + (body.free_point_in_parent ? 3 : 0) + component;
+}
+
+MatrixXd slow_covariance(const FilterModel& filter, const TrackingModel& model) {
+  const Index size = filter.layout.size - filter.layout.fast;
+  MatrixXd covariance = MatrixXd::Zero(size, size);
+  std::vector<Index> at;
+  for (const TrackingParameter& parameter : model.parameters) at.push_back(slow_state(filter, parameter));
+  for (std::size_t i = 0; i < at.size(); ++i)
+    for (std::size_t j = 0; j < at.size(); ++j)
+      if (at[i] >= 0 && at[j] >= 0)
+        covariance(at[i], at[j]) = model.covariance(static_cast<Index>(i), static_cast<Index>(j));
+  // Biases moved since the chain was identified, by their instability and from one power-up to the next.
+  const double rate = std::max(min_bias_change.rate, bias_change * model.prior.bias_instability.rate),
+               force = std::max(min_bias_change.force, bias_change * model.prior.bias_instability.force);
+  for (Index s = 0; s < filter.layout.sensors; ++s) {
+    covariance.diagonal().segment<3>(sensor_states * s + SensorIndex::gyroscope_bias).array() += rate * rate;
+    covariance.diagonal().segment<3>(sensor_states * s + SensorIndex::accelerometer_bias).array() += force * force;
+  }
+  return covariance;
+}
+
+double excess(double level, double noise) {
+  return std::sqrt(std::max(0.0, level * level - noise * noise));
+}
+
+SensorSettings settings_of(const TrackingSensor& sensor) {
+  SensorSettings s{.body = sensor.body,
+                   .gyroscope_bias = sensor.gyroscope_bias,
+                   .accelerometer_bias = sensor.accelerometer_bias,
+                   .gyroscope_scale = sensor.gyroscope_scale,
+                   .accelerometer_scale = sensor.accelerometer_scale};
+  s.white = {std::max(min_noise.rate, sensor.noise.rate), std::max(min_noise.force, sensor.noise.force)};
+  s.persistent = {excess(sensor.residual.rate, sensor.noise.rate), excess(sensor.residual.force, sensor.noise.force)};
+  s.slow = sensor.slow_residual;
+  if (sensor.sample_period > 0.0) s.sample_period = sensor.sample_period;
+  return s;
+}
+
+/// The acceleration that a joint showed, with room for a livelier drive; hands move faster than machines.
+AccelerationProcess process_of(const TrackingJoint& joint, int position) {
+  AccelerationProcess process = machine_acceleration;
+  if (static_cast<std::size_t>(position) >= joint.range.size()) return process;
+  const double shown = acceleration_room * joint.range[static_cast<std::size_t>(position)].acceleration;
+  if (shown > process.sd) {
+    process.time = std::clamp(process.time * process.sd / shown, min_acceleration_time, process.time);
+    process.sd = shown;
+  }
+  return process;
+}
+
+void set_processes(FilterModel& filter, const TrackingModel& model) {
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    const TrackingBody& body = model.bodies[b];
+    const Index dof = degrees_of_freedom(filter.bodies[b].motion);
+    if (dof == 0) continue;
+    const TrackingJoint& joint = model.joints[static_cast<std::size_t>(body.joint)];
+    // Of a universal joint's two bodies the first carries no sensor and has the first position.
+    const bool is_second = joint.positions == 2 && body.sensor >= 0;
+    for (Index i = 0; i < dof; ++i)
+      filter.positions.push_back(process_of(joint, joint.positions == 3 ? static_cast<int>(i) : is_second ? 1 : 0));
+    if (body.motion == TrackingMotion::revolute && dof == 3)
+      filter.loose.push_back({b, joint.stray, std::max(joint.stray_time, min_stray_time)});
+  }
+  filter.base_rotation = base_rotation;
+  filter.base_translation = base_translation;
+  filter.base_rotation.sd = std::max(base_rotation.sd, acceleration_room * model.base.angular_acceleration);
+  filter.base_translation.sd = std::max(base_translation.sd, acceleration_room * model.base.acceleration);
+}
+
+}  // namespace
+
+FilterModel filter_model(const TrackingModel& model) {
+  FilterModel filter;
+  for (const TrackingBody& body : model.bodies) filter.bodies.push_back(filter_body(model, body));
+  for (const TrackingParameter& parameter : model.parameters)
+    if (parameter.kind <= TrackingParameterKind::point_in_child)
+      free_parameter(filter.bodies[static_cast<std::size_t>(parameter.index)], parameter);
+  filter.layout = layout_of(filter.bodies, static_cast<Index>(model.sensors.size()));
+  for (const TrackingSensor& sensor : model.sensors) filter.sensors.push_back(settings_of(sensor));
+  set_processes(filter, model);
+  filter.gravity = model.gravity;
+  const double time = std::max(1.0, model.prior.instability_time);
+  const InsLevel drift{std::max(min_bias_instability.rate, model.prior.bias_instability.rate),
+                       std::max(min_bias_instability.force, model.prior.bias_instability.force)};
+  filter.bias_walk = {2.0 * drift.rate * drift.rate / time, 2.0 * drift.force * drift.force / time};
+  filter.parameters = slow_covariance(filter, model);
+  return filter;
+}
+
+}  // namespace kinfer::track

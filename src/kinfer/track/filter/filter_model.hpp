@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the filter needs of a tracking model: bodies with their considered geometry, sensors with the noise of one
+// update, and the processes that drive the states.
+#pragma once
+
+#include "kinfer/evidence/tracking/tracking_model.hpp"
+#include "kinfer/track/filter/acceleration_process.hpp"
+#include "kinfer/track/filter/layout.hpp"
+
+namespace kinfer::track {
+
+struct SensorSettings {
+  int body = 0;
+  Vec3 gyroscope_bias = Vec3::Zero(), accelerometer_bias = Vec3::Zero();
+  Mat3 gyroscope_scale = Mat3::Zero(), accelerometer_scale = Mat3::Zero();
+  InsLevel white{};       ///< of one sample: averages out
+  InsLevel persistent{};  ///< of one update: does not average out within it
+  InsLevel slow{};        ///< white noise of one sample as strong as the residuals at low frequencies
+  double sample_period = 0.005;
+};
+
+/// A ball that stands for a loose hinge: its axes stray from each other.
+struct LooseHinge {
+  std::size_t body = 0;
+  double stray = 0.0, time = 0.0;  ///< [rad] per direction, [s]
+};
+
+struct FilterModel {
+  InsBodies bodies;
+  FilterLayout layout;
+  std::vector<SensorSettings> sensors;
+  std::vector<AccelerationProcess> positions;  ///< of each joint position of the filter
+  AccelerationProcess base_rotation, base_translation;
+  std::vector<LooseHinge> loose;
+  double gravity = standard_gravity;
+  InsLevel bias_walk{};  ///< variance per second of a bias' random walk
+  MatrixXd parameters;   ///< covariance of sensors' and geometry's states when tracking begins
+};
+
+FilterModel filter_model(const TrackingModel& model);
+
+}  // namespace kinfer::track

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/track/filter/row_block.hpp"
+
+#include <algorithm>
+
+namespace kinfer::track {
+
+RowBlock::RowBlock(std::size_t sensors) {
+  sum_.sensors.resize(sensors);
+  mean_.sensors.resize(sensors);
+}
+
+void RowBlock::clear() {
+  std::ranges::fill(sum_.sensors, BlockSample{});
+  sum_.time = 0.0;
+  rows_ = 0;
+}
+
+void RowBlock::add(const InsRow& row) {
+  if (rows_ == 0)
+    begin_ = row.time;
+  else if (row.time > end_)
+    period_ = row.time - end_;
+  end_ = row.time;
+  sum_.time += row.time - begin_;
+  ++rows_;
+  for (std::size_t s = 0; s < sum_.sensors.size(); ++s) {
+    const InsSample& sample = row.sensors[s];
+    BlockSample& to = sum_.sensors[s];
+    if (sample.has_angular_velocity && !sample.angular_velocity_clipped) to.rate += sample.angular_velocity, ++to.rate_count;
+    if (sample.has_acceleration) to.force += sample.acceleration, ++to.force_count;
+  }
+}
+
+bool RowBlock::is_complete(double length) const {
+  // Half a period of play, since times are rounded.
+  return rows_ > 0 && end_ - begin_ + 1.5 * period_ > length;
+}
+
+const BlockMeasurement& RowBlock::mean() {
+  mean_ = sum_;
+  mean_.time = begin_ + sum_.time / std::max(1, rows_);
+  mean_.length = end_ - begin_ + period_;
+  for (BlockSample& sample : mean_.sensors) {
+    if (sample.rate_count > 0) sample.rate /= sample.rate_count;
+    if (sample.force_count > 0) sample.force /= sample.force_count;
+  }
+  return mean_;
+}
+
+}  // namespace kinfer::track

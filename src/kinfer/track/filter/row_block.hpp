@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows gathered into one measurement for the filter: their mean at their mean time. The mean keeps the information of
+// every row, and is an anti-alias filter for vibration; a single row of them would waste half of the accuracy.
+#pragma once
+
+#include "kinfer/measurement/ins_row.hpp"
+#include "kinfer/track/filter/chain_filter.hpp"
+
+namespace kinfer::track {
+
+class RowBlock {
+ public:
+  explicit RowBlock(std::size_t sensors);
+
+  void add(const InsRow& row);
+  void clear();
+
+  int rows() const { return rows_; }
+  double begin() const { return begin_; }  ///< [s] time of the first row
+
+  /// Where another row, a sampling period later, would make it longer than `length` [s].
+  bool is_complete(double length) const;
+
+  /// Until the next call of add or clear.
+  const BlockMeasurement& mean();
+
+ private:
+  BlockMeasurement sum_, mean_;
+  int rows_ = 0;
+  double begin_ = 0.0, end_ = 0.0, period_ = 0.0;
+};
+
+}  // namespace kinfer::track

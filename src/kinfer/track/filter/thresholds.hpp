@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Settings of the filter that no log tells, with the data that they were set on.
+#pragma once
+
+#include "kinfer/evidence/tracking/tracking_model.hpp"
+#include "kinfer/track/filter/acceleration_process.hpp"
+
+namespace kinfer::track {
+
+/// Joint accelerations of machines; tenfold densities change rms errors of the simulated machines by less than 30 %.
+inline constexpr AccelerationProcess machine_acceleration{.sd = 3.9, .time = 0.5};
+inline constexpr double min_acceleration_time = 0.15;  ///< [s] of hands
+inline constexpr double acceleration_room = 2.0;       ///< a drive may be so much livelier than that of the chain
+
+/// A base that moves: a machine that rocks on its tracks. Simulated machines on a rocking and on a yawing base.
+inline constexpr AccelerationProcess base_rotation{.sd = 0.6, .time = 0.3}, base_translation{.sd = 0.3, .time = 0.3};
+inline constexpr double base_velocity_sd = 0.3;   ///< [m/s] of the base
+inline constexpr double base_velocity_time = 1.0;  ///< [s] its correlation time
+
+inline constexpr double still_base_walk = 2e-5;  ///< [rad/√s] tilting of a base that stands still: soil, outriggers
+
+inline constexpr double min_stray = 1e-3, min_stray_time = 0.02;  ///< [rad], [s] looser than that a hinge is a ball
+
+/// A bias' change between logs, in standard deviations of its instability, and at least.
+inline constexpr double bias_change = 3.0;
+inline constexpr InsLevel min_bias_change{.rate = 2e-5, .force = 1e-4};
+inline constexpr InsLevel min_bias_instability{.rate = 2e-6, .force = 2e-5};
+inline constexpr InsLevel min_noise{.rate = 1e-5, .force = 1e-4};
+
+/// An instrument whose innovation is further off (squared, in its covariance; three axes) is trusted less.
+inline constexpr double outlier_limit = 30.0;
+/// Relative change of an instrument's variance in an update, by its squared innovation over its expectation: some
+/// seconds at 50 updates a second, so that faults are told before they are taken for noise.
+inline constexpr double inflation_gain = 4e-3;
+inline constexpr double max_inflation = 1e4;
+
+inline constexpr double max_position_sd = 1.8;  ///< [rad] an angle that could be any; [m] likewise
+inline constexpr double max_motion_sd = 30.0;   ///< per second, per second²
+
+/// A rest: three blocks [s] of so many rows in which every instrument scatters by its own noise, times this.
+inline constexpr double rest_block = 0.25, rest_noise = 1.4;
+inline constexpr int min_rest_rows = 10;
+inline constexpr double rest_creep = 2e-4;  ///< [rad/s] that a rest may hide
+
+/// A base moves where its angular velocity, averaged over so long [s], is beyond this [rad/s] and so many standard
+/// deviations of noise and bias.
+inline constexpr double base_mean = 0.1, base_rate = 2e-3, base_significance = 5.0;
+
+inline constexpr double update_period = 0.02;  ///< [s] at most 50 updates a second
+inline constexpr double longest_step = 0.1;    ///< [s] of a prediction
+
+}  // namespace kinfer::track

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/track/readout/readout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "kinfer/geometry/cardan_angles.hpp"
+
+namespace kinfer::track {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+double unwrapped(double angle, double before) {
+  return std::isnan(before) ? angle : before + std::remainder(angle - before, 2.0 * std::numbers::pi);
+}
+
+double sd_at(const MatrixXd& covariance, Index at) {
+  return std::sqrt(std::max(0.0, covariance(at, at)));
+}
+
+Mat3 ball_covariance(const FilterLayout& layout, Index first, Index derivative, const MatrixXd& covariance) {
+  Mat3 p;
+  for (Index i = 0; i < 3; ++i)
+    for (Index j = 0; j < 3; ++j)
+      p(i, j) = covariance(layout.joint_state(first + i) + derivative, layout.joint_state(first + j) + derivative);
+  return p;
+}
+
+void read_ball(const FilterModel& model, std::size_t b, const ChainState& state, const MatrixXd& covariance, Index at,
+               TrackState& to) {
+  const Vec3 before = to.q.segment<3>(at);
+  const Vec3 q = cardan_angles(state.balls[b], before.hasNaN() ? Vec3(Vec3::Zero()) : before);
+  const Mat3 turning = (rot_y(q.y()) * rot_z(q.z())).transpose();
+  Mat3 rates;  // of the angles to that of the child in its axes
+  rates.col(0) = turning.col(0);
+  rates.col(1) = rot_z(q.z()).transpose().col(1);
+  rates.col(2) = Vec3::UnitZ();
+  if (std::abs(rates.determinant()) < 1e-3) rates += 1e-3 * Mat3::Identity();  // gimbal lock: only sd is affected much
+  const Mat3 back = rates.inverse();
+  const Index first = model.layout.position[b];
+  Vec3 rate;
+  for (Index i = 0; i < 3; ++i) rate[i] = state.joints[position_states * (first + i) + 1];
+  to.q.segment<3>(at) = q;
+  to.qd.segment<3>(at) = back * rate;
+  const Mat3 of_q = back * ball_covariance(model.layout, first, 0, covariance) * back.transpose(),
+             of_qd = back * ball_covariance(model.layout, first, 1, covariance) * back.transpose();
+  to.sd_q.segment<3>(at) = of_q.diagonal().cwiseMax(0.0).cwiseSqrt();
+  to.sd_qd.segment<3>(at) = of_qd.diagonal().cwiseMax(0.0).cwiseSqrt();
+}
+
+/// The turn of a loose hinge about its mean axis, the third of its ball.
+void read_loose_hinge(const FilterModel& model, std::size_t b, const ChainState& state, const MatrixXd& covariance,
+                      Index at, TrackState& to) {
+  const Mat3& r = state.balls[b];
+  to.q[at] = unwrapped(std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1)), to.q[at]);
+  const Index third = model.layout.position[b] + 2;
+  to.qd[at] = state.joints[position_states * third + 1];
+  to.sd_q[at] = sd_at(covariance, model.layout.joint_state(third));
+  to.sd_qd[at] = sd_at(covariance, model.layout.joint_state(third) + 1);
+}
+
+}  // namespace
+
+TrackState unknown_state(const TrackingModel& model) {
+  const Index n = model.positions();
+  TrackState state;
+  state.q = state.qd = state.sd_q = state.sd_qd = VectorXd::Constant(n, unknown);
+  state.sd_base = state.sd_tool_position = state.sd_tool_rotation = Vec3::Constant(unknown);
+  state.base_T_tool.position.setConstant(unknown);
+  state.joints.resize(model.joints.size());
+  state.innovation.assign(model.sensors.size(), unknown);
+  return state;
+}
+
+void read_out(const TrackingModel& tracking, const FilterModel& model, const ChainState& state,
+              const MatrixXd& covariance, TrackState& to) {
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    const TrackingBody& body = tracking.bodies[b];
+    const Index dof = degrees_of_freedom(model.bodies[b].motion);
+    if (dof == 0) continue;
+    const TrackingJoint& joint = tracking.joints[static_cast<std::size_t>(body.joint)];
+    const bool is_second = joint.positions == 2 && tracking.bodies[static_cast<std::size_t>(body.parent)].joint == body.joint;
+    const Index at = joint.first_position + (is_second ? 1 : 0);
+    if (dof == 3 && body.motion == TrackingMotion::spherical) {
+      read_ball(model, b, state, covariance, at, to);
+    } else if (dof == 3) {
+      read_loose_hinge(model, b, state, covariance, at, to);
+    } else {
+      const Index first = model.layout.position[b], row = model.layout.joint_state(first);
+      to.q[at] = state.joints[position_states * first];
+      to.qd[at] = state.joints[position_states * first + 1];
+      to.sd_q[at] = sd_at(covariance, row);
+      to.sd_qd[at] = sd_at(covariance, row + 1);
+    }
+  }
+  to.world_q_base = Quat(state.world_R_base);
+  const Mat3 attitude = state.world_R_base * covariance.topLeftCorner<3, 3>() * state.world_R_base.transpose();
+  to.sd_base = attitude.diagonal().cwiseMax(0.0).cwiseSqrt();
+}
+
+}  // namespace kinfer::track

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// How errors of the filter's states move the tool: its derivatives by joint positions and by the chain's geometry.
+#pragma once
+
+#include "kinfer/geometry/pose.hpp"
+#include "kinfer/track/filter/chain_filter.hpp"
+
+namespace kinfer::track {
+
+/// base_T_body of every body, and the covariance of a tool on one of them; buffers of its own.
+class ToolSpread {
+ public:
+  ToolSpread(const FilterModel& model, const TrackingTool& tool);
+
+  /// Nothing is allocated.
+  void evaluate(const FilterModel& model, const ChainState& state, const MatrixXd& covariance);
+
+  const Pose& tool() const { return tool_; }  ///< base_T_tool
+  const Vec3& position_sd() const { return position_sd_; }
+  const Vec3& rotation_sd() const { return rotation_sd_; }
+
+ private:
+  void set_pose(const FilterModel& model, const ChainState& state, std::size_t b);
+  void add_column(Index state, const Vec3& shift, const Vec3& turn);
+  void add_body(const FilterModel& model, std::size_t b);
+
+  TrackingTool carried_;
+  std::vector<bool> leads_to_tool_;  // of each body
+  std::vector<Pose> bodies_;
+  Pose tool_;
+  Vec3 position_sd_ = Vec3::Zero(), rotation_sd_ = Vec3::Zero();
+  std::vector<Index> index_;        // of the states with a derivative
+  Eigen::Matrix<double, 6, Eigen::Dynamic> derivative_;
+};
+
+}  // namespace kinfer::track

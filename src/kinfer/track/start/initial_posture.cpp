@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/track/start/initial_posture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kinfer/track/start/thresholds.hpp"
+
+namespace kinfer::track {
+namespace {
+
+/// What is known of a body's motion from its own sensor, or from its parent's.
+struct SeenBody {
+  Vec3 force = Vec3::Zero(), rate = Vec3::Zero();  ///< in its frame
+  double force_sd = 0.0;                           ///< [m/s²] of the direction of gravity
+};
+
+struct JointStart {
+  Vec3 position = Vec3::Zero(), sd = Vec3::Zero();
+  Mat3 ball = Mat3::Identity();
+  Vec3 heading = Vec3::Zero();  ///< of a ball: direction of gravity in its turning frame, about which nothing is told
+  std::array<bool, 3> is_known{};
+};
+
+double wrapped(double angle) {
+  return std::remainder(angle, 2.0 * std::numbers::pi);
+}
+
+double angle_of(const Vec3& v) {
+  return std::atan2(v.y(), v.x());
+}
+
+SeenBody seen_body(const FilterModel& model, const BlockMeasurement& block, const InsBody& body, const SeenBody& parent,
+                   const Mat3& child_R_parent) {
+  const bool has_sensor = body.sensor >= 0;
+  SeenBody seen{child_R_parent * parent.force, child_R_parent * parent.rate, parent.force_sd + unseen_force_sd};
+  if (!has_sensor) return seen;
+  const auto s = static_cast<std::size_t>(body.sensor);
+  const SensorSettings& sensor = model.sensors[s];
+  const BlockSample& sample = block.sensors[s];
+  if (sample.rate_count > 0) seen.rate = sample.rate - sensor.gyroscope_bias;
+  if (sample.force_count > 0) {
+    seen.force = sample.force - sensor.accelerometer_bias;
+    const double motion = std::abs(seen.force.norm() - model.gravity) + start_arm * seen.rate.squaredNorm();
+    const Index own = sensor_states * static_cast<Index>(s);
+    const double bias = std::sqrt(
+        model.parameters.diagonal().segment<3>(own + SensorIndex::accelerometer_bias).maxCoeff() +
+        model.gravity * model.gravity *
+            model.parameters.diagonal().segment<9>(own + SensorIndex::accelerometer_scale).maxCoeff());
+    seen.force_sd = std::hypot(std::hypot(min_force_sd, motion), bias, sensor.persistent.force);
+  }
+  return seen;
+}
+
+JointStart hinge_start(const InsBody& body, const SeenBody& parent, const SeenBody& child, const PositionGuess& guess) {
+  const Vec3 u = body.parent_R_axis.transpose() * parent.force, w = body.child_R_axis.transpose() * child.force;
+  const double lever = std::min(u.head<2>().norm(), w.head<2>().norm()),
+               sd = std::hypot(parent.force_sd, child.force_sd) / std::max(lever, 1e-3);
+  JointStart start;
+  const bool is_told = sd < max_told_sd;
+  double q = guess.value + wrapped(angle_of(u) - angle_of(w) - guess.value);  // the turn nearest to what was seen
+  if (guess.is_given && (!is_told || guess.sd < sd)) {
+    start.position.x() = guess.value, start.sd.x() = guess.sd, start.is_known[0] = true;
+    return start;
+  }
+  start.position.x() = q;
+  start.sd.x() = std::min(sd, max_told_sd);
+  start.is_known[0] = is_told;
+  return start;
+}
+
+/// The two angles of a universal joint: R_z(q₂) w = M R_z(−q₁) u, two solutions; the one nearer to what was seen.
+std::array<double, 2> universal_angles(const Vec3& u, const Vec3& w, const Mat3& m, double near_first,
+                                       double near_second) {
+  const Vec3 row = m.row(2);
+  // (R_z(−q) u) = (c u_x + s u_y, −s u_x + c u_y, u_z)
+  const double a = row.x() * u.x() + row.y() * u.y(), b = row.x() * u.y() - row.y() * u.x(),
+               c = w.z() - row.z() * u.z(), size = std::hypot(a, b);
+  const double middle = std::atan2(b, a), half = std::acos(std::clamp(size > 0.0 ? c / size : 0.0, -1.0, 1.0));
+  std::array<double, 2> best{near_first, near_second};
+  double least = std::numeric_limits<double>::infinity();
+  for (const double first : {middle + half, middle - half}) {
+    const double q1 = near_first + wrapped(first - near_first);
+    const Vec3 turned = m * (rot_z(-q1) * u);
+    const double q2 = near_second + wrapped(angle_of(turned) - angle_of(w) - near_second);
+    const double far = std::abs(q1 - near_first) + std::abs(q2 - near_second);
+    if (far < least) least = far, best = {q1, q2};
+  }
+  return best;
+}
+
+/// The ball nearest to its guess that carries gravity from the parent to the child; its heading stays as guessed.
+JointStart ball_start(const InsBody& body, const SeenBody& parent, const SeenBody& child, const Mat3& guess,
+                      bool is_given) {
+  JointStart start;
+  const Vec3 u = body.parent_R_axis.transpose() * parent.force, w = body.child_R_axis.transpose() * child.force;
+  start.ball = rotation_between(guess * w, u).toRotationMatrix() * guess;
+  start.sd.setConstant(std::hypot(parent.force_sd, child.force_sd) / std::max(1.0, u.norm()));
+  start.heading = w.normalized();
+  start.is_known.fill(is_given);
+  return start;
+}
+
+Mat3 child_from_parent(const InsBody& body, const JointStart& start) {
+  const Mat3 back = body.motion == JointMotion::revolute ? rot_z(-start.position.x())
+                    : body.motion == JointMotion::spherical ? Mat3(start.ball.transpose())
+                                                            : Mat3(Mat3::Identity());
+  return body.child_R_axis * back * body.parent_R_axis.transpose();
+}
+
+/// Attitude of a base on which gravity is seen.
+Mat3 levelled(const Vec3& force) {
+  return rotation_between(force, Vec3::UnitZ()).toRotationMatrix();
+}
+
+class PostureStart {
+ public:
+  PostureStart(const FilterModel& model, const BlockMeasurement& block, const std::vector<PositionGuess>& guess)
+      : model_(model), block_(block), guess_(guess), starts_(model.bodies.size()), seen_(model.bodies.size()) {
+    InsBody base = model.bodies.front();
+    seen_[0] = seen_body(model, block, base, {Vec3(0.0, 0.0, model.gravity), Vec3::Zero(), unseen_force_sd},
+                         Mat3::Identity());
+    for (std::size_t b = 1; b < model.bodies.size(); ++b) place(b);
+  }
+
+  const JointStart& joint(std::size_t body) const { return starts_[body]; }
+  const SeenBody& seen(std::size_t body) const { return seen_[body]; }
+
+ private:
+  const PositionGuess& guess_of(std::size_t b, Index i) const {
+    return guess_[static_cast<std::size_t>(model_.layout.position[b] + i)];
+  }
+  const PositionGuess& guess(std::size_t b) const { return guess_of(b, 0); }
+
+  void place(std::size_t b) {
+    const InsBody& body = model_.bodies[b];
+    const auto parent = static_cast<std::size_t>(body.parent);
+    const bool is_seen =
+        body.sensor >= 0 && block_.sensors[static_cast<std::size_t>(body.sensor)].force_count > 0;
+    const SeenBody& before = seen_[parent];
+    if (body.motion == JointMotion::revolute && body.sensor < 0) return place_first_of_universal(b);
+    SeenBody own = is_seen ? seen_body(model_, block_, body, before, Mat3::Identity()) : SeenBody{};
+    if (is_second_of_universal_ == static_cast<int>(b)) {
+      is_second_of_universal_ = -1;
+    } else if (body.motion == JointMotion::revolute && is_seen) {
+      starts_[b] = hinge_start(body, before, own, guess(b));
+    } else if (body.motion == JointMotion::spherical && is_seen) {
+      const Vec3 angles(guess_of(b, 0).value, guess_of(b, 1).value, guess_of(b, 2).value);
+      const Mat3 guessed = rot_x(angles.x()) * rot_y(angles.y()) * rot_z(angles.z());
+      starts_[b] = ball_start(body, before, own, guessed, guess(b).is_given);
+    } else if (body.motion != JointMotion::fixed) {
+      guess_start(b);
+    }
+    seen_[b] = seen_body(model_, block_, body, before, child_from_parent(body, starts_[b]));
+  }
+
+  void guess_start(std::size_t b) {
+    for (Index i = 0; i < degrees_of_freedom(model_.bodies[b].motion); ++i) {
+      const PositionGuess& g = guess_[static_cast<std::size_t>(model_.layout.position[b] + i)];
+      starts_[b].position[i] = model_.bodies[b].motion == JointMotion::spherical ? 0.0 : g.value;
+      starts_[b].sd[i] = g.sd;
+      starts_[b].is_known[static_cast<std::size_t>(i)] = g.is_given;
+    }
+  }
+
+  void place_first_of_universal(std::size_t b) {
+    const InsBody& body = model_.bodies[b];
+    const auto child = std::find_if(model_.bodies.begin() + static_cast<std::ptrdiff_t>(b) + 1, model_.bodies.end(),
+                                    [&](const InsBody& x) { return x.parent == static_cast<int>(b); });
+    const SeenBody& before = seen_[static_cast<std::size_t>(body.parent)];
+    guess_start(b);
+    if (child != model_.bodies.end() && child->motion == JointMotion::revolute && child->sensor >= 0 &&
+        block_.sensors[static_cast<std::size_t>(child->sensor)].force_count > 0) {
+      const auto c = static_cast<std::size_t>(child - model_.bodies.begin());
+      const SeenBody own = seen_body(model_, block_, *child, before, Mat3::Identity());
+      const Vec3 u = body.parent_R_axis.transpose() * before.force, w = child->child_R_axis.transpose() * own.force;
+      const Mat3 m = child->parent_R_axis.transpose() * body.child_R_axis;
+      const auto angles = universal_angles(u, w, m, guess(b).value, guess(c).value);
+      // Each is told by gravity across its own axis.
+      const double noise = std::hypot(before.force_sd, own.force_sd);
+      const std::array<double, 2> lever{(m * (rot_z(-angles[0]) * u)).cross(m * Vec3::UnitZ()).head<2>().norm(),
+                                        w.head<2>().norm()};
+      for (std::size_t k = 0; k < 2; ++k) {
+        JointStart& start = starts_[k == 0 ? b : c];
+        const double sd = noise / std::max(lever[k], 1e-3);
+        start.position.x() = angles[k], start.sd.x() = std::min(sd, max_told_sd), start.is_known[0] = sd < max_told_sd;
+      }
+      is_second_of_universal_ = static_cast<int>(c);
+    }
+    seen_[b] = seen_body(model_, block_, body, before, child_from_parent(body, starts_[b]));
+  }
+
+  const FilterModel& model_;
+  const BlockMeasurement& block_;
+  const std::vector<PositionGuess>& guess_;
+  std::vector<JointStart> starts_;
+  std::vector<SeenBody> seen_;
+  int is_second_of_universal_ = -1;
+};
+
+}  // namespace
+
+InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement& block,
+                               const std::vector<PositionGuess>& guess, BaseMode base) {
+  const FilterLayout& layout = model.layout;
+  const PostureStart found(model, block, guess);
+  InitialPosture posture{.state = initial_state(model),
+                         .covariance = MatrixXd::Zero(layout.fast, layout.fast),
+                         .is_known = std::vector<bool>(static_cast<std::size_t>(layout.positions), false)};
+  ChainState& state = posture.state;
+  state.time = block.time;
+  state.base = base;
+  state.world_R_base = levelled(found.seen(0).force);
+  const auto set = [&](Index first, double sd) { posture.covariance.diagonal().segment<3>(first).setConstant(sd * sd); };
+  const double tilt_sd = found.seen(0).force_sd / model.gravity;
+  const Vec3 up = found.seen(0).force.normalized();  // the heading counts from here
+  posture.covariance.topLeftCorner<3, 3>() = tilt_sd * tilt_sd * (Mat3::Identity() - up * up.transpose());
+  if (base == BaseMode::moving) {
+    state.rate = found.seen(0).rate;
+    set(BaseIndex::rate, start_rate_sd);
+    set(BaseIndex::angular_acceleration, model.base_rotation.sd);
+    set(BaseIndex::velocity, start_velocity_sd);
+    set(BaseIndex::acceleration, model.base_translation.sd);
+  }
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    const InsBody& body = model.bodies[b];
+    const Index dof = degrees_of_freedom(body.motion);
+    const JointStart& start = found.joint(b);
+    state.balls[b] = start.ball;
+    const Vec3 relative = body.child_R_axis.transpose() *
+                          (found.seen(b).rate - child_from_parent(body, start) *
+                                                    found.seen(static_cast<std::size_t>(body.parent)).rate);
+    for (Index i = 0; i < dof; ++i) {
+      const Index at = layout.position[b] + i, row = layout.joint_state(at);
+      const bool is_hinge = body.motion == JointMotion::revolute;
+      if (dof == 1) state.joints[position_states * at] = start.position[i];
+      const bool rate_is_seen = body.motion != JointMotion::prismatic && body.sensor >= 0;
+      if (rate_is_seen) state.joints[position_states * at + 1] = is_hinge ? relative.z() : relative[i];
+      const AccelerationProcess& process = model.positions[static_cast<std::size_t>(at)];
+      posture.covariance(row, row) = start.sd[i] * start.sd[i];
+      for (Index j = 0; j < dof && dof == 3; ++j) {  // nothing is told of the heading: it counts from here
+        const double told = start.sd[i] * start.sd[j] * ((i == j ? 1.0 : 0.0) - start.heading[i] * start.heading[j]);
+        posture.covariance(row, layout.joint_state(layout.position[b] + j)) = told;
+      }
+      const double rate_sd = rate_is_seen ? start_rate_sd : process.sd * process.time;
+      posture.covariance(row + 1, row + 1) = rate_sd * rate_sd;
+      posture.covariance(row + 2, row + 2) = process.sd * process.sd;
+      posture.is_known[static_cast<std::size_t>(at)] = start.is_known[static_cast<std::size_t>(i)];
+    }
+  }
+  return posture;
+}
+
+}  // namespace kinfer::track

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a chain is when tracking begins, in closed form from the first rows of its sensors.
+//
+// Gravity in two neighbouring sensors tells the joint between them: with u = Aᵀ f_p and w = Bᵀ f_c a hinge stands at
+// q = atan2(u_y, u_x) − atan2(w_y, w_x), with standard deviation σ_f / (g sin β), β the axis' angle to the vertical. No
+// rest is needed: what the joints' motion adds to gravity counts as error of f. The gyroscopes tell the velocities.
+#pragma once
+
+#include "kinfer/track/filter/chain_filter.hpp"
+
+namespace kinfer::track {
+
+/// Beliefs about joint positions: the user's, or the middle of what was seen.
+struct PositionGuess {
+  double value = 0.0, sd = 0.0;  ///< [rad] or [m]
+  bool is_given = false;         ///< by the user
+};
+
+struct InitialPosture {
+  ChainState state;
+  MatrixXd covariance;         ///< of the fast states
+  std::vector<bool> is_known;  ///< of each joint position of the filter: gravity or the user told it
+};
+
+/// `block`: mean of the first rows. `guess`: of each joint position of the filter.
+InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement& block,
+                               const std::vector<PositionGuess>& guess, BaseMode base);
+
+}  // namespace kinfer::track

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/track/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kinfer/base/expect.hpp"
+#include "kinfer/track/faults/thresholds.hpp"
+#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/readout/readout.hpp"
+#include "kinfer/track/start/thresholds.hpp"
+
+namespace kinfer::track {
+namespace {
+
+/// Index into the model's q of each joint position of the filter; a ball that stands for a loose hinge has its turn
+/// about the axis as the third, and no joint position for the others (−1).
+std::vector<int> model_positions(const TrackingModel& tracking, const FilterModel& model) {
+  std::vector<int> positions;
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    const TrackingBody& body = tracking.bodies[b];
+    const Index dof = degrees_of_freedom(model.bodies[b].motion);
+    if (dof == 0) continue;
+    const TrackingJoint& joint = tracking.joints[static_cast<std::size_t>(body.joint)];
+    const bool is_second = tracking.bodies[static_cast<std::size_t>(body.parent)].joint == body.joint;
+    const bool is_loose = dof == 3 && joint.positions == 1;
+    for (int i = 0; i < static_cast<int>(dof); ++i)
+      positions.push_back(is_loose ? (i == 2 ? joint.first_position : -1)
+                                   : joint.first_position + i + (is_second ? 1 : 0));
+  }
+  return positions;
+}
+
+const TrackingJoint& joint_of(const TrackingModel& tracking, int position) {
+  return *std::ranges::find_if(tracking.joints, [&](const TrackingJoint& joint) {
+    return position >= joint.first_position && position < joint.first_position + joint.positions;
+  });
+}
+
+std::vector<PositionGuess> make_guesses(const TrackingModel& tracking, const std::vector<int>& positions,
+                                        const TrackOptions& options) {
+  std::vector<PositionGuess> guesses;
+  for (const int position : positions) {
+    PositionGuess guess{.value = 0.0, .sd = max_position_sd};
+    if (position >= 0) {
+      const TrackingJoint& joint = joint_of(tracking, position);
+      const auto at = static_cast<std::size_t>(position - joint.first_position);
+      if (at < joint.range.size()) {
+        guess.value = 0.5 * (joint.range[at].lower + joint.range[at].upper);
+        guess.sd = 0.5 * (joint.range[at].upper - joint.range[at].lower) + slide_room;
+      }
+      if (options.start && position < options.start->size() && !std::isnan((*options.start)[position]))
+        guess = {.value = (*options.start)[position], .sd = given_start_sd, .is_given = true};
+    }
+    guesses.push_back(guess);
+  }
+  return guesses;
+}
+
+std::optional<BaseMode> given_base(BaseMotion motion) {
+  if (motion == BaseMotion::automatic) return {};
+  return motion == BaseMotion::moving ? BaseMode::moving : BaseMode::still;
+}
+
+}  // namespace
+
+Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
+    : tracking_(std::make_shared<TrackingModel>(model)),
+      model_(std::make_shared<FilterModel>(filter_model(model))),
+      joint_of_position_(model_positions(model, *model_)),
+      filter_(model_),
+      block_(model.sensors.size()),
+      rest_(*model_),
+      base_(model, *model_, given_base(options.base)),
+      health_(model.sensors.size()),
+      fit_(model.sensors.size()),
+      replay_(filter_),
+      does_not_fit_(model.sensors.size(), false),
+      composed_(model, options),
+      choice_(model),
+      tool_(*model_, model.tool),
+      now_(initial_state(*model_)),
+      state_(unknown_state(model)) {
+  guesses_ = make_guesses(model, joint_of_position_, options);
+  for (int& position : joint_of_position_)
+    if (position >= 0)
+      position = static_cast<int>(&joint_of(*tracking_, position) - tracking_->joints.data());
+  is_known_.assign(joint_of_position_.size(), false);
+  state_.alarms.reserve(4 * model.sensors.size() + model.joints.size() + 4);
+}
+
+/// After a gap the posture is unknown again; what was learnt of the sensors is kept.
+void Tracker::restart(double time) {
+  if (state_.started) restarted_ = time;
+  for (std::size_t i = 0; i < guesses_.size(); ++i) guesses_[i].is_given = false;
+  state_.started = false;
+  grid_.reset();
+  block_.clear();
+  fit_.reset();
+}
+
+void Tracker::add(const InsRow& row) {
+  KINFER_EXPECT(row.sensors.size() == tracking_->sensors.size());
+  if (has_rows_ && row.time - last_time_ > restart_gap) restart(row.time);
+  has_rows_ = true;
+  last_time_ = row.time;
+  health_.add(row);
+  composed_.add(row);
+  choose_sensors();
+  block_.add(row);
+  if (!state_.started) {
+    if (block_.is_complete(start_length)) try_start();
+  } else {
+    if (rest_.add(row)) rest_.correct(filter_);
+    if (block_.is_complete(update_period)) process_block();
+  }
+  state_.time = row.time;
+  if (state_.started) read_out(row.time);
+  list_alarms(row.time);
+}
+
+/// Sensors that are lost, stuck or disagree are left out.
+void Tracker::choose_sensors() {
+  for (std::size_t s = 0; s < does_not_fit_.size(); ++s) {
+    const bool is_used = !does_not_fit_[s] && !health_[s].lost && !health_[s].stuck;
+    if (is_used != filter_.uses_sensor(s)) filter_.use_sensor(s, is_used);
+  }
+}
+
+void Tracker::try_start() {
+  const BlockMeasurement& block = block_.mean();
+  const auto has_force = [](const BlockSample& s) { return s.force_count > 0 && s.rate_count > 0; };
+  if (std::ranges::none_of(block.sensors, has_force)) return block_.clear();
+  base_.add(block, filter_.state());
+  const InitialPosture posture = initial_posture(*model_, block, guesses_, base_.mode());
+  filter_.start(posture.state, posture.covariance);
+  is_known_ = posture.is_known;
+  const bool moves = base_.mode() == BaseMode::moving;
+  for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
+    const Index at = model_->layout.position[b];
+    if (model_->bodies[b].motion != JointMotion::revolute || is_known_[static_cast<std::size_t>(at)]) continue;
+    if (moves && !grid_) {
+      grid_.emplace(filter_, at);
+    } else {
+      filter_.declare_known(at);
+    }
+  }
+  block_.clear();
+  replay_.begin(filter_);
+  state_.started = true;
+  now_ = filter_.state();
+}
+
+void Tracker::resolve_start(const BlockMeasurement& block) {
+  grid_->update(block);
+  filter_ = grid_->best();
+  if (!grid_->is_decided()) return;
+  is_known_[static_cast<std::size_t>(grid_->position())] = true;
+  grid_.reset();
+  replay_.begin(filter_);
+}
+
+/// Leaves out the sensor that disagrees most, as if it had never been believed, and takes in one that agrees again.
+void Tracker::examine_fit(const BlockMeasurement& block) {
+  replay_.add(block, filter_);
+  if (const int worst = fit_.worst(filter_); worst >= 0) {
+    const auto s = static_cast<std::size_t>(worst);
+    does_not_fit_[s] = true;
+    const SensorFit fit = fit_[s];
+    fit_.reset();
+    replay_.run(s, filter_, [&](const ChainFilter& filter, const BlockMeasurement& past) {
+      fit_.add(filter, past.time, past.length);
+    });
+    fit_.set(s, fit);
+  }
+  if (const int back = fit_.recovered(filter_); back >= 0) {
+    does_not_fit_[static_cast<std::size_t>(back)] = false;
+    fit_.reset(static_cast<std::size_t>(back));
+  }
+}
+
+void Tracker::process_block() {
+  const BlockMeasurement& block = block_.mean();
+  if (grid_) {
+    resolve_start(block);
+  } else {
+    filter_.predict(block.time);
+    filter_.update(block);
+  }
+  fit_.add(filter_, block.time, block.length);
+  choice_.update(filter_);
+  if (!grid_) examine_fit(block);
+  base_.add(block, filter_.state());
+  if (base_.mode() == BaseMode::moving && filter_.state().base == BaseMode::still) {
+    filter_.set_base(BaseMode::moving);
+    replay_.begin(filter_);
+    // What counted from the start can now be told.
+    for (std::size_t b = 1; b < model_->bodies.size() && !grid_; ++b) {
+      const Index at = model_->layout.position[b];
+      if (model_->bodies[b].motion == JointMotion::revolute && !is_known_[static_cast<std::size_t>(at)])
+        grid_.emplace(filter_, at);
+    }
+  }
+  block_.clear();
+  tool_.evaluate(*model_, filter_.state(), filter_.covariance());
+}
+
+void Tracker::read_out(double time) {
+  now_ = filter_.state();
+  if (time > now_.time) predict_mean(*model_, time - now_.time, now_);
+  track::read_out(*tracking_, *model_, now_, filter_.covariance(), state_);
+  state_.base_T_tool = tool_.tool();
+  state_.sd_tool_position = tool_.position_sd();
+  state_.sd_tool_rotation = tool_.rotation_sd();
+  for (std::size_t s = 0; s < state_.innovation.size(); ++s) state_.innovation[s] = fit_[s].quick;
+  for (JointStatus& joint : state_.joints) joint = {JointSource::chain, JointReference::chain};
+  for (std::size_t i = 0; i < is_known_.size(); ++i)
+    if (!is_known_[i] && joint_of_position_[i] >= 0)
+      state_.joints[static_cast<std::size_t>(joint_of_position_[i])].reference = JointReference::start;
+  choice_.apply(*tracking_, composed_.state(), state_);
+}
+
+void Tracker::list_alarms(double time) {
+  auto& alarms = state_.alarms;
+  alarms.clear();
+  if (restarted_ && time - *restarted_ < clipped_memory)
+    alarms.push_back({.kind = TrackAlarmKind::restarted, .since = *restarted_});
+  int disagreeing = 0;
+  for (std::size_t s = 0; s < does_not_fit_.size(); ++s) {
+    const int sensor = static_cast<int>(s);
+    const SensorHealth& health = health_[s];
+    if (health.lost) alarms.push_back({.kind = TrackAlarmKind::sensor_lost, .sensor = sensor, .since = health.lost_since});
+    if (health.stuck)
+      alarms.push_back({.kind = TrackAlarmKind::sensor_stuck, .sensor = sensor, .since = health.stuck_since});
+    if (health.clipped)
+      alarms.push_back({.kind = TrackAlarmKind::sensor_clipped, .sensor = sensor, .since = health.last_clipped});
+    if (!does_not_fit_[s]) continue;
+    ++disagreeing;
+    alarms.push_back({.kind = TrackAlarmKind::sensor_moved,
+                      .sensor = sensor,
+                      .since = fit_[s].since,
+                      .strength = fit_[s].strength});
+  }
+  if (2 * disagreeing >= static_cast<int>(does_not_fit_.size()) && disagreeing > 1)
+    alarms.push_back({.kind = TrackAlarmKind::does_not_fit, .since = time});
+}
+
+}  // namespace kinfer::track

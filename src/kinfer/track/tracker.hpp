@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tracks a machine on its identified chain, row by row: joint positions and velocities, base attitude and tool pose
+// with standard deviations, from gyroscopes and accelerometers.
+#pragma once
+
+#include "kinfer/evidence/tracking/track_state.hpp"
+#include "kinfer/evidence/tracking/tracking_model.hpp"
+#include "kinfer/track/composed.hpp"
+#include "kinfer/track/faults/fit_monitor.hpp"
+#include "kinfer/track/faults/replay.hpp"
+#include "kinfer/track/faults/sensor_health.hpp"
+#include "kinfer/track/filter/base_watch.hpp"
+#include "kinfer/track/filter/rest_bias.hpp"
+#include "kinfer/track/filter/row_block.hpp"
+#include "kinfer/track/joint_choice.hpp"
+#include "kinfer/track/options.hpp"
+#include "kinfer/track/readout/tool_spread.hpp"
+#include "kinfer/track/start/initial_posture.hpp"
+#include "kinfer/track/start/start_grid.hpp"
+
+namespace kinfer::track {
+
+/// Copyable; no allocation in add() once it has started, unless it starts again.
+class Tracker {
+ public:
+  explicit Tracker(const TrackingModel& model, const TrackOptions& options = {});
+
+  /// Processes the next row.
+  void add(const InsRow& row);
+
+  /// At the time of the last row.
+  const TrackState& state() const { return state_; }
+
+  /// The filter on the chain itself, for studies and smoothing.
+  const ChainFilter& filter() const { return filter_; }
+
+ private:
+  void restart(double time);
+  void try_start();
+  void process_block();
+  void resolve_start(const BlockMeasurement& block);
+  void choose_sensors();
+  void examine_fit(const BlockMeasurement& block);
+  void list_alarms(double time);
+  void read_out(double time);
+
+  std::shared_ptr<const TrackingModel> tracking_;
+  std::shared_ptr<const FilterModel> model_;
+  std::vector<PositionGuess> guesses_;
+  std::vector<int> joint_of_position_;  // of the filter: index into the model's joints
+  ChainFilter filter_;
+  std::optional<StartGrid> grid_;
+  std::vector<bool> is_known_;  // of each joint position of the filter
+  RowBlock block_;
+  RestBias rest_;
+  BaseWatch base_;
+  HealthWatch health_;
+  FitMonitor fit_;
+  Replay replay_;
+  std::vector<bool> does_not_fit_;  // sensors out of use because they disagree
+  ComposedFilters composed_;
+  JointChoice choice_;
+  ToolSpread tool_;
+  ChainState now_;  // predicted to the last row
+  std::optional<double> restarted_{};
+  double last_time_ = 0.0;
+  bool has_rows_ = false;
+  TrackState state_;
+};
+
+}  // namespace kinfer::track

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/words/tracking/track_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinfer/words/language.hpp"
+
+namespace kinfer::words {
+namespace {
+
+std::string named(const std::vector<std::string>& names, int index, const char* kind) {
+  return index >= 0 && static_cast<std::size_t>(index) < names.size() ? names[static_cast<std::size_t>(index)]
+                                                                      : std::string(kind);
+}
+
+template <class List>
+std::vector<std::string> names_of(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& element : list) names.push_back(element.name);
+  return names;
+}
+
+/// Faults that make the result useless, and those that do not.
+bool is_fatal(TrackAlarmKind kind) {
+  return kind == TrackAlarmKind::does_not_fit;
+}
+
+bool is_remark(TrackAlarmKind kind) {
+  return kind == TrackAlarmKind::restarted || kind == TrackAlarmKind::sensor_clipped;
+}
+
+Usability usability_of(const TrackRun& run) {
+  if (run.rows == 0) return Usability::do_not_use;
+  Usability worst = Usability::use;
+  for (const TrackEvent& event : run.events) {
+    if (is_fatal(event.alarm.kind) && std::isnan(event.until)) return Usability::do_not_use;
+    if (!is_remark(event.alarm.kind)) worst = Usability::use_with_care;
+  }
+  const auto is_unknown = [](const TrackJointShare& joint) { return joint.unknown > 0.5; };
+  return std::ranges::any_of(run.joints, is_unknown) ? Usability::use_with_care : worst;
+}
+
+}  // namespace
+
+std::vector<std::string> joint_sentences(const TrackRun& run) {
+  constexpr double least_share = 0.05;  // of the rows; a start takes less
+  std::vector<std::string> sentences;
+  for (const TrackJointShare& joint : run.joints) {
+    if (joint.unknown > least_share)
+      sentences.push_back(
+          phrase("position_unknown", "{}: unknown in {:.0f} % of the rows", joint.name, 100.0 * joint.unknown));
+    if (joint.relative_to_start > least_share)
+      sentences.push_back(phrase("relative_to_start",
+                                 "{}: relative to where tracking began in {:.0f} % of the rows: neither gravity nor "
+                                 "motion told where that was; --start states it",
+                                 joint.name, 100.0 * joint.relative_to_start));
+    if (joint.composed > least_share)
+      sentences.push_back(phrase("composed",
+                                 "{}: from the orientations of its two sensors alone in {:.0f} % of the rows",
+                                 joint.name, 100.0 * joint.composed));
+  }
+  return sentences;
+}
+
+namespace {
+
+VerdictText verdict_of(const TrackRun& run, Usability usability) {
+  const auto alarms = std::ranges::count_if(run.events, [](const TrackEvent& e) { return !is_remark(e.alarm.kind); });
+  VerdictText text;
+  text.recommendation = usability == Usability::use             ? phrase("use", "Use it")
+                        : usability == Usability::use_with_care ? phrase("use_with_care", "Use it with care")
+                                                                : phrase("do_not_use", "Do not use it");
+  text.statement =
+      usability == Usability::do_not_use
+          ? phrase("does_not_fit", "the log does not fit the chain")
+          : phrase("tracked", "{} joint positions tracked over {:.1f} s, {} alarm{}", run.positions.size(),
+                   run.end - run.begin, alarms == 0 ? "no" : fmt::to_string(alarms), alarms > 1 ? "s" : "");
+  text.remarks = joint_sentences(run);
+  return text;
+}
+
+}  // namespace
+
+std::string sentence(const TrackAlarm& alarm, const std::vector<std::string>& sensors,
+                     const std::vector<std::string>& joints) {
+  const std::string_view id = name(alarm.kind);
+  const std::string sensor = named(sensors, alarm.sensor, "a sensor"), joint = named(joints, alarm.joint, "a joint");
+  switch (alarm.kind) {
+    case TrackAlarmKind::does_not_fit:
+      return phrase(id, "the log does not fit the chain: another machine, or axes that are permuted or mirrored");
+    case TrackAlarmKind::sensor_moved:
+      return phrase(id, "{} does not agree with the chain: turned, shifted or on another segment", sensor);
+    case TrackAlarmKind::joint_changed:
+      return phrase(id, "the joint {} does not agree with the chain: play, or bent", joint);
+    case TrackAlarmKind::sensor_lost:
+      return phrase(id, "{} sends no samples", sensor);
+    case TrackAlarmKind::sensor_stuck:
+      return phrase(id, "{} repeats the same sample", sensor);
+    case TrackAlarmKind::sensor_clipped:
+      return phrase(id, "{} is at the end of its range", sensor);
+    case TrackAlarmKind::sensor_late:
+      return phrase(id, "the clock of {} disagrees with the others", sensor);
+    case TrackAlarmKind::restarted:
+      break;
+  }
+  return phrase(name(TrackAlarmKind::restarted), "tracking started again after a gap");
+}
+
+TrackRun with_sentences(TrackRun run) {
+  const std::vector<std::string> sensors = names_of(run.sensors), joints = names_of(run.joints);
+  for (TrackEvent& event : run.events) event.sentence = sentence(event.alarm, sensors, joints);
+  run.verdict.usability = usability_of(run);
+  run.verdict.parts = verdict_of(run, run.verdict.usability);
+  run.verdict.sentence = sentence(*run.verdict.parts);
+  return run;
+}
+
+}  // namespace kinfer::words

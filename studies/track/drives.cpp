@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/track/drives.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "kinfer/identify/pipeline.hpp"
+#include "kinfer/simulate/mujoco_world.hpp"
+
+namespace kinfer::study {
+namespace {
+
+/// A value of a triad's columns.
+void set_row(TriadColumns& columns, std::size_t row, const Vec3& value) {
+  for (std::size_t k = 0; k < 3; ++k) columns.axis[k][row] = static_cast<float>(value[static_cast<Eigen::Index>(k)]);
+}
+
+/// Acceleration of a play that snaps from side to side, smoothed over some rows.
+double play_acceleration(double time, double size) {
+  constexpr double frequency = 3.0;  // [Hz] of the rattle
+  const double w = 2.0 * std::numbers::pi * frequency;
+  return -size * w * w * std::sin(w * time);
+}
+
+}  // namespace
+
+SimulatedDrive simulate_drive(const DriveSetup& setup) {
+  const auto mjcf =
+      machine_mjcf(setup.machine, {.base = setup.base}, Rng(setup.machine_seed).stream(1)).value();
+  const MujocoWorld world = MujocoWorld::load(mjcf).value();
+  const auto drive = make_drive(world.machine(), {.script = setup.script, .duration = setup.duration},
+                                Rng(setup.drive_seed).stream(2))
+                         .value();
+  MachineMotion motion = world.prescribe(drive, 200.0);
+  InsRecording recording = simulate_recording(world.machine(), motion, *sensor_grade(setup.grade),
+                                              {.magnetic_disturbance = setup.steel}, Rng(setup.machine_seed).stream(3));
+  return {world.machine(), std::move(motion), std::move(recording)};
+}
+
+Result<TrackingModel> identify_drive(const SimulatedDrive& drive) {
+  KINFER_TRY(found, identify::identify_machine(drive.recording, {.threads = 1}, Rng(1), {}));
+  if (!found.tracking) return error("no tracking model");
+  return *found.tracking;
+}
+
+void inject(const InjectedFault& fault, SimulatedDrive& drive) {
+  if (fault.kind == FaultKind::none) return;
+  InsSensor& sensor = drive.recording.sensors[fault.sensor];
+  const auto time = drive.recording.time(sensor);
+  const Mat3 turn = exp_so3(fault.size * Vec3(1.0, 1.0, 1.0).normalized());
+  for (std::size_t row = 1; row < sensor.rows(); ++row) {
+    const Vec3 rate = sensor.angular_velocity.at(row);
+    if (time[row] < fault.begin || time[row] > fault.end) continue;
+    const Vec3 force = sensor.acceleration.at(row);
+    switch (fault.kind) {
+      case FaultKind::turned:
+        set_row(sensor.acceleration, row, turn.transpose() * force);
+        set_row(sensor.angular_velocity, row, turn.transpose() * rate);
+        break;
+      case FaultKind::shifted: {
+        const SensorMotion& truth = drive.motion.sensors[fault.sensor];
+        const Vec3 w = truth.angular_velocity[row],
+                   change = (w - truth.angular_velocity[row - 1]) / (time[row] - time[row - 1]);
+        const Vec3 arm = fault.size * Vec3(1.0, 1.0, 1.0).normalized();
+        set_row(sensor.acceleration, row, force + change.cross(arm) + w.cross(w.cross(arm)));
+        break;
+      }
+      case FaultKind::play:
+        set_row(sensor.acceleration, row, force + Vec3(play_acceleration(time[row], 0.5 * fault.size), 0.0, 0.0));
+        break;
+      case FaultKind::lost:
+        sensor.faults[row] |= acceleration_missing | angular_velocity_missing;
+        set_row(sensor.acceleration, row, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+        set_row(sensor.angular_velocity, row, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+        break;
+      case FaultKind::none: break;
+    }
+  }
+}
+
+}  // namespace kinfer::study

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Simulated machines that are identified on one drive and tracked on another, with the truth of both.
+#pragma once
+
+#include "kinfer/evidence/tracking/tracking_model.hpp"
+#include "kinfer/simulate/excitation.hpp"
+#include "kinfer/simulate/ins_recording.hpp"
+#include "kinfer/simulate/machine_motion.hpp"
+#include "kinfer/track/tracker.hpp"
+
+namespace kinfer::study {
+
+struct DriveSetup {
+  std::string machine = "excavator-general", grade = "industrial";
+  Base base = Base::still;
+  Script script = Script::standard;
+  double duration = 0.0;      ///< [s]; 0: the script's own
+  std::uint64_t machine_seed = 1, drive_seed = 1;
+  double steel = 0.0;         ///< [µT] of moving steel
+};
+
+struct SimulatedDrive {
+  Machine machine;
+  MachineMotion motion;
+  InsRecording recording;
+};
+
+/// The same machine_seed gives the same machine and individual sensors.
+SimulatedDrive simulate_drive(const DriveSetup& setup);
+
+/// By default options; its joint positions count from the beginning of the drive.
+Result<TrackingModel> identify_drive(const SimulatedDrive& drive);
+
+/// A change of the recording from `begin` on.
+enum class FaultKind { none, turned, shifted, play, lost };
+struct InjectedFault {
+  FaultKind kind = FaultKind::none;
+  std::size_t sensor = 0;
+  double size = 0.0, begin = 0.0, end = 0.0;  ///< [rad] or [m]; [s]
+};
+void inject(const InjectedFault& fault, SimulatedDrive& drive);
+
+}  // namespace kinfer::study

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/track/scores.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "kinfer/geometry/fit.hpp"
+
+namespace kinfer::study {
+namespace {
+
+using Index = Eigen::Index;
+
+/// Truth in the terms of the model: sign and zero of each joint position.
+struct TrueJoint {
+  Index row = 0;  // of MachineMotion::q
+  double zero = 0.0, sign = 1.0;
+};
+
+std::size_t sensor_named(const Machine& machine, const std::string& name) {
+  return static_cast<std::size_t>(std::ranges::find(machine.sensors, name, &MountedSensor::name) -
+                                  machine.sensors.begin());
+}
+
+std::vector<TrueJoint> true_joints(const TrackingModel& model, const SimulatedDrive& identified) {
+  const Machine& machine = identified.machine;
+  std::vector<TrueJoint> joints;
+  for (const TrackingBody& body : model.bodies) {
+    if (body.joint < 0) continue;
+    const std::string& name = model.sensors[static_cast<std::size_t>(body.sensor)].name;
+    const std::size_t s = sensor_named(machine, name);
+    const std::vector<int> active = active_joints(machine.chain);
+    TrueJoint joint{.row = std::ranges::find(active, machine.sensors[s].joint) - active.begin()};
+    joint.zero = identified.motion.q(joint.row, 0);
+    const auto& link = std::get<UrdfLink>(machine.chain.joints[static_cast<std::size_t>(machine.sensors[s].joint)].link);
+    const Vec3 axis = machine.sensors[s].segment_T_sensor.rotation.transpose() * link.axis;
+    joint.sign = axis.dot(body.child_R_axis.col(2)) < 0.0 ? -1.0 : 1.0;
+    joints.push_back(joint);
+  }
+  return joints;
+}
+
+struct Sum {
+  double squares = 0.0, composed = 0.0, nees = 0.0, inside = 0.0, start = 0.0, composed_start = 0.0;
+  int rows = 0, composed_rows = 0;
+};
+
+/// Angle between the true and the estimated vertical in the base.
+double tilt_error(const Quat& world_q_base, const Quat& truth) {
+  return angle_between(world_q_base.conjugate() * Vec3::UnitZ(), truth.conjugate() * Vec3::UnitZ());
+}
+
+double rms_after_fit(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  const Pose a_T_b = align_points(a, b);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - a_T_b * b[i]).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, a.size())));
+}
+
+void note_alarms(const TrackState& state, TrackScore& score) {
+  for (const TrackAlarm& alarm : state.alarms)
+    if (std::ranges::none_of(score.alarms, [&](const TrackScore::Alarm& known) {
+          return known.first.kind == alarm.kind && known.first.sensor == alarm.sensor &&
+                 known.first.joint == alarm.joint;
+        }))
+      score.alarms.push_back({alarm, state.time});
+}
+
+}  // namespace
+
+TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, const SimulatedDrive& drive,
+                 const kinfer::track::TrackOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  kinfer::track::Tracker tracker(model, options);
+  kinfer::track::ComposedFilters composed(model, options);
+  const std::vector<TrueJoint> truth = true_joints(model, identified);
+  const std::size_t base = sensor_named(drive.machine, model.sensors[static_cast<std::size_t>(model.bodies[0].sensor)].name),
+                    tip = sensor_named(drive.machine, model.sensors[static_cast<std::size_t>(model.bodies[static_cast<std::size_t>(model.tool.body)].sensor)].name);
+  std::vector<std::size_t> column;  // of the recording, for each sensor of the model
+  for (const TrackingSensor& sensor : model.sensors)
+    column.push_back(static_cast<std::size_t>(std::ranges::find(drive.recording.sensors, sensor.name, &InsSensor::name) -
+                                              drive.recording.sensors.begin()));
+  TrackScore score;
+  score.joints.resize(truth.size());
+  std::vector<Sum> sums(truth.size());
+  std::vector<Vec3> tool, true_tool;
+  double tilt = 0.0, spent = 0.0;
+  int rows = 0;
+  InsRow row;
+  row.sensors.resize(model.sensors.size());
+  const std::vector<double>& time = drive.recording.loggers.front().time;
+  for (std::size_t r = 0; r < time.size(); ++r) {
+    row.time = time[r];
+    for (std::size_t s = 0; s < column.size(); ++s) {
+      const InsSensor& sensor = drive.recording.sensors[column[s]];
+      row.sensors[s] = sample(sensor, drive.recording.time(sensor), r);
+    }
+    const auto before = Clock::now();
+    tracker.add(row);
+    spent += std::chrono::duration<double>(Clock::now() - before).count();
+    composed.add(row);
+    const TrackState& state = tracker.state();
+    note_alarms(state, score);
+    if (!state.started) continue;
+    ++rows;
+    for (std::size_t j = 0; j < truth.size(); ++j) {
+      const auto at = static_cast<Index>(j);
+      const double q = truth[j].sign * (drive.motion.q(truth[j].row, static_cast<Index>(r)) - truth[j].zero);
+      const bool is_relative = state.joints[j].reference == JointReference::start;
+      Sum& sum = sums[j];
+      if (sum.rows == 0 && is_relative) sum.start = state.q[at] - q;
+      score.joints[j].is_first |= is_relative;
+      const double e = state.q[at] - q - sum.start;
+      sum.squares += e * e;
+      sum.nees += e * e / (state.sd_q[at] * state.sd_q[at]);
+      sum.inside += std::abs(e) <= 1.96 * state.sd_q[at];
+      ++sum.rows;
+      const double other = composed.state().q[at] - q;
+      if (std::isnan(other)) continue;
+      if (sum.composed_rows == 0 && is_relative) sum.composed_start = other;
+      sum.composed += (other - sum.composed_start) * (other - sum.composed_start);
+      ++sum.composed_rows;
+    }
+    const SensorMotion &below = drive.motion.sensors[base], &above = drive.motion.sensors[tip];
+    const double tilted = tilt_error(state.world_q_base, below.world_R_sensor[r]);
+    tilt += tilted * tilted;
+    if (r % 10 != 0 || state.base_T_tool.position.hasNaN()) continue;
+    tool.push_back(state.base_T_tool.position);
+    true_tool.push_back(below.world_R_sensor[r].conjugate() * Vec3(above.position[r] - below.position[r]));
+  }
+  for (std::size_t j = 0; j < truth.size(); ++j) {
+    const Sum& sum = sums[j];
+    JointScore& joint = score.joints[j];
+    const double n = std::max(1, sum.rows);
+    joint.rms = std::sqrt(sum.squares / n);
+    joint.composed_rms = std::sqrt(sum.composed / std::max(1, sum.composed_rows));
+    joint.nees = sum.nees / n;
+    joint.coverage = sum.inside / n;
+    joint.is_slide = model.bodies[j + 1].motion == TrackingMotion::prismatic;
+  }
+  score.tool_rms = rms_after_fit(true_tool, tool);
+  score.base_tilt_rms = std::sqrt(tilt / std::max(1, rows));
+  score.cpu_per_row = spent / static_cast<double>(time.size());
+  return score;
+}
+
+}  // namespace kinfer::study

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// A tracked drive beside its truth: errors of joints and tool, honesty of the standard deviations, alarms, time.
+#pragma once
+
+#include "studies/track/drives.hpp"
+
+namespace kinfer::study {
+
+struct JointScore {
+  double rms = 0.0, composed_rms = 0.0;  ///< [rad] or [m]
+  double nees = 0.0, coverage = 0.0;     ///< mean of (error/sd)²; share of errors within 1.96 sd
+  bool is_first = false;                 ///< vertical axis on a level base: counts from the start
+  bool is_slide = false;
+};
+
+struct TrackScore {
+  std::vector<JointScore> joints;
+  double tool_rms = 0.0;       ///< [m] after a rigid fit of the path
+  double base_tilt_rms = 0.0;  ///< [rad]
+  double cpu_per_row = 0.0;    ///< [s]
+  struct Alarm {
+    TrackAlarm first;
+    double at = 0.0;  ///< [s]
+  };
+  std::vector<Alarm> alarms;  ///< each kind and sensor once
+};
+
+TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, const SimulatedDrive& drive,
+                 const kinfer::track::TrackOptions& options = {});
+
+}  // namespace kinfer::study

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/track/tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <limits>
+
+#include "support/tracked_machine.hpp"
+
+// Counts allocations of the whole program, Eigen's included. Sanitizers bring their own allocator.
+#if defined(__has_feature)
+#define KINFER_HAS_SANITIZER (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define KINFER_HAS_SANITIZER 1
+#else
+#define KINFER_HAS_SANITIZER 0
+#endif
+#if defined(__GLIBC__) && !KINFER_HAS_SANITIZER
+namespace {
+std::atomic<long> allocation_count{0};
+}
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* malloc(std::size_t size) {
+  ++allocation_count;
+  return __libc_malloc(size);
+}
+}
+#define KINFER_COUNTS_ALLOCATIONS 1
+#endif
+
+namespace kinfer::track {
+namespace {
+
+constexpr double degree = 0.017453292519943295;
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+struct Case {
+  test::SimulatedDrive drive;
+  TrackingModel model;
+};
+
+Case make_case(const test::DriveSetup& setup) {
+  Case made{test::simulated_drive(setup), {}};
+  made.model = test::tracking_model_of(made.drive.machine, *sensor_grade(setup.grade), setup.sampling_rate);
+  made.model.base.moved = setup.base != Base::still;
+  return made;
+}
+
+const Case& still_excavator() {
+  static const Case made = make_case({.duration = 40.0});
+  return made;
+}
+
+struct Outcome {
+  Tracker tracker;
+  VectorXd squares, first;
+  std::vector<bool> is_relative;
+  int rows = 0;
+  std::vector<TrackAlarm> alarms;  // each kind and sensor once, with the time at which it was raised
+  std::vector<double> raised;
+
+  double rms(int joint) const { return std::sqrt(squares[joint] / rows); }
+};
+
+template <class Change>
+Outcome run(const Case& given, const TrackOptions& options, Change change, double begin = 0.0) {
+  const int joints = given.model.positions();
+  Outcome out{.tracker = Tracker(given.model, options),
+              .squares = VectorXd::Zero(joints),
+              .first = VectorXd::Constant(joints, not_a_number),
+              .is_relative = std::vector<bool>(static_cast<std::size_t>(joints), false)};
+  InsRow row;
+  for (std::size_t r = 0; r < given.drive.recording.loggers.front().time.size(); ++r) {
+    test::fill_row(given.drive.recording, r, row);
+    if (row.time < begin) continue;
+    change(row);
+    out.tracker.add(row);
+    const TrackState& state = out.tracker.state();
+    for (const TrackAlarm& alarm : state.alarms)
+      if (std::ranges::none_of(out.alarms, [&](const TrackAlarm& known) {
+            return known.kind == alarm.kind && known.sensor == alarm.sensor;
+          }))
+        out.alarms.push_back(alarm), out.raised.push_back(row.time);
+    if (!state.started) continue;
+    ++out.rows;
+    for (int j = 0; j < joints; ++j) {
+      const auto joint = static_cast<std::size_t>(j);
+      out.is_relative[joint] = state.joints[joint].reference == JointReference::start;
+      const double e = state.q[j] - given.drive.q(j, r);
+      if (std::isnan(out.first[j])) out.first[j] = out.is_relative[joint] ? e : 0.0;
+      out.squares[j] += (e - out.first[j]) * (e - out.first[j]);
+    }
+  }
+  return out;
+}
+
+const auto unchanged = [](InsRow&) {};
+
+TEST(Tracker, FollowsAnExcavatorFromRestWithoutKnowingItsSensorsErrors) {
+  const Outcome out = run(still_excavator(), {}, unchanged);
+  EXPECT_TRUE(out.is_relative[0]) << "level ground tells nothing of a vertical axis";
+  EXPECT_LT(out.rms(0), 0.4 * degree);
+  for (int j = 1; j < 5; ++j) {
+    EXPECT_FALSE(out.is_relative[static_cast<std::size_t>(j)]);
+    EXPECT_LT(out.rms(j), 0.06 * degree) << j;
+  }
+  EXPECT_TRUE(out.alarms.empty());
+}
+
+TEST(Tracker, NeedsNoRestToStart) {
+  const Outcome out = run(still_excavator(), {}, unchanged, 25.0);
+  for (int j = 1; j < 5; ++j) EXPECT_LT(out.rms(j), 0.25 * degree) << j;
+}
+
+TEST(Tracker, TellsWhereAVerticalAxisStandsWhenTheBaseRocks) {
+  const Case rocking = make_case({.base = Base::rocking, .duration = 60.0});
+  const Outcome out = run(rocking, {}, unchanged);
+  EXPECT_FALSE(out.is_relative[0]);
+  const auto last = rocking.drive.recording.loggers.front().time.size() - 1;
+  EXPECT_NEAR(out.tracker.state().q[0], rocking.drive.q(0, last), 0.2 * degree);
+}
+
+TEST(Tracker, TakesTheUsersStart) {
+  TrackOptions options;
+  options.start = VectorXd::Constant(5, not_a_number);
+  (*options.start)[0] = 0.5;
+  Tracker tracker(still_excavator().model, options);
+  InsRow row;
+  for (std::size_t r = 0; r < 100; ++r) {
+    test::fill_row(still_excavator().drive.recording, r, row);
+    tracker.add(row);
+  }
+  ASSERT_TRUE(tracker.state().started);
+  EXPECT_NEAR(tracker.state().q[0], 0.5, 0.01);
+  EXPECT_EQ(tracker.state().joints[0].reference, JointReference::chain);
+}
+
+TEST(Tracker, NamesALostAndAStuckSensorAndGoesOn) {
+  InsSample frozen;
+  const Outcome out = run(still_excavator(), {}, [&](InsRow& row) {
+    if (row.time > 15.0 && row.time < 20.0) row.sensors[3] = {};
+    if (row.time < 25.0) frozen = row.sensors[4];
+    if (row.time > 25.0 && row.time < 28.0) row.sensors[4] = frozen;
+  });
+  ASSERT_EQ(out.alarms.size(), 2u);
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_lost);
+  EXPECT_EQ(out.alarms[0].sensor, 3);
+  EXPECT_EQ(out.alarms[1].kind, TrackAlarmKind::sensor_stuck);
+  EXPECT_EQ(out.alarms[1].sensor, 4);
+  EXPECT_TRUE(out.tracker.state().alarms.empty());
+  for (int j = 1; j < 5; ++j) EXPECT_LT(out.rms(j), 0.6 * degree) << j;
+}
+
+TEST(Tracker, NamesASensorThatWasTurned) {
+  const Mat3 turn = exp_so3(0.5 * degree * Vec3(1.0, 1.0, 1.0).normalized());
+  const Outcome out = run(still_excavator(), {}, [&](InsRow& row) {
+    if (row.time < 20.0) return;
+    row.sensors[3].acceleration = turn * row.sensors[3].acceleration;
+    row.sensors[3].angular_velocity = turn * row.sensors[3].angular_velocity;
+  });
+  ASSERT_FALSE(out.alarms.empty());
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_moved);
+  EXPECT_EQ(out.alarms[0].sensor, 3);
+  EXPECT_LT(out.raised[0], 22.0);
+}
+
+TEST(Tracker, StartsAgainAfterAGap) {
+  const Outcome out = run(still_excavator(), {}, [](InsRow& row) {
+    if (row.time > 20.0) row.time += 5.0;
+  });
+  ASSERT_EQ(out.alarms.size(), 1u);
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::restarted);
+  const auto last = still_excavator().drive.recording.loggers.front().time.size() - 1;
+  for (int j = 1; j < 5; ++j) EXPECT_NEAR(out.tracker.state().q[j], still_excavator().drive.q(j, last), 0.2 * degree);
+}
+
+TEST(Tracker, ACopyGoesOnAlike) {
+  const Case& given = still_excavator();
+  Tracker one(given.model);
+  InsRow row;
+  for (std::size_t r = 0; r < 2000; ++r) {
+    test::fill_row(given.drive.recording, r, row);
+    one.add(row);
+  }
+  Tracker other = one;
+  for (std::size_t r = 2000; r < 2200; ++r) {
+    test::fill_row(given.drive.recording, r, row);
+    one.add(row);
+    other.add(row);
+  }
+  EXPECT_EQ(one.state().q, other.state().q);
+  EXPECT_EQ(one.state().sd_q, other.state().sd_q);
+}
+
+#if defined(KINFER_COUNTS_ALLOCATIONS)
+TEST(Tracker, AllocatesNothingForARow) {
+  const Case& given = still_excavator();
+  Tracker tracker(given.model);
+  InsRow row;
+  for (std::size_t r = 0; r < 600; ++r) {
+    test::fill_row(given.drive.recording, r, row);
+    tracker.add(row);
+  }
+  ASSERT_TRUE(tracker.state().started);
+  long allocated = 0;
+  for (std::size_t r = 600; r < 1600; ++r) {
+    test::fill_row(given.drive.recording, r, row);
+    const long before = allocation_count;
+    tracker.add(row);
+    allocated += allocation_count - before;
+  }
+  EXPECT_EQ(allocated, 0);
+}
+#endif
+
+}  // namespace
+}  // namespace kinfer::track
