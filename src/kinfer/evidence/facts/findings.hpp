@@ -58,6 +58,20 @@ enum class FindingKind {
   remounted,               ///< a sensor was remounted during the recording
   clock,                   ///< a sensor's clock is offset or drifts
   timestamp_jitter,        ///< rows were stamped at other times than they were sampled
+  clock_unit,              ///< times in another unit than seconds
+  clock_counts,            ///< the clock counts rows, so that the sampling rate is a guess
+  force_unit,              ///< specific force in another unit than the file says
+  rate_unit,               ///< angular rates in another unit than the file says
+  field_unit,              ///< magnetic field in another unit than the file says
+  repeated_rows,           ///< an instrument's rows are copies of the rows before
+  interpolated_rows,       ///< an instrument's rows lie on straight lines between others
+  rates_unrelated,         ///< angular rates that tell nothing of how gravity moves in the sensor
+  rate_sign,               ///< a gyroscope turns the other way round than gravity
+  left_handed,             ///< a sensor's axes are left-handed
+  instrument_axes,         ///< an instrument has other axes than the rest of its sensor
+  force_sign,              ///< accelerometers that read −g upwards
+  opposite_verticals,      ///< sensors that disagree about up and down, none of which is the odd one
+  instruments_out_of_step, ///< an accelerometer lags its gyroscope, or runs ahead of it
 };
 
 /// The stable identifier for programs: "rows_shifted".
@@ -77,5 +91,8 @@ struct Finding {
 
 /// A fault that was not corrected.
 bool invalidates_result(const Finding& finding);
+
+/// Whether the result holds only under an assumption that the data contradict, or do not support.
+bool questions_result(const Finding& finding);
 
 }  // namespace kinfer

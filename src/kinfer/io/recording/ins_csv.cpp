@@ -8,12 +8,11 @@
 #include <limits>
 
 #include "kinfer/io/recording/ins_columns.hpp"
+#include "kinfer/io/recording/ins_remarks.hpp"
 #include "kinfer/io/text/csv.hpp"
 #include "kinfer/io/text/mapped_file.hpp"
 #include "kinfer/io/text/plain_decimal.hpp"
 #include "kinfer/io/text/trim.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
-#include "kinfer/measurement/unit_check.hpp"
 
 namespace kinfer {
 namespace {
@@ -158,57 +157,6 @@ class RowReader {
   bool has_truncated_last_line_ = false;
 };
 
-void add_remark(InsRecording& recording, std::string sentence) {
-  recording.remarks.push_back(std::move(sentence));
-}
-
-void add_fault_remarks(InsRecording& out, const InsSensor& sensor) {
-  const auto add_count_remark = [&](Fault fault, const char* what) {
-    if (const std::size_t n = count(sensor, fault); n > 0)
-      add_remark(out, fmt::format("{}: {} of {} rows {}", sensor.name, n, sensor.rows(), what));
-  };
-  add_count_remark(acceleration_clipped, "clip the accelerometer's range and are not used");
-  add_count_remark(angular_velocity_clipped, "clip the gyroscope's range: the turn is larger than they say");
-  add_count_remark(acceleration_spike, "are single spikes of the accelerometer and are not used");
-  add_count_remark(angular_velocity_spike, "are single spikes of the gyroscope and are not used");
-  const std::size_t death = find_usable_end(sensor);
-  if (death == sensor.rows()) return;
-  if (death == 0)
-    return add_remark(out, fmt::format("{}: no row has both specific force and angular rate", sensor.name));
-  const auto time = out.time(sensor);
-  if (time.back() - time[death - 1] > 1.0)
-    add_remark(out, fmt::format("{}: says nothing after {:.3f} s ({} rows): its orientation is held there", sensor.name,
-                                time[death - 1], sensor.rows() - death));
-}
-
-/// Marks faults and adds remarks for the sensors from `first` on; an error where values are impossible in their unit.
-Result<void> screen_sensors(InsRecording& out, std::size_t first, const std::string& name, const InsColumns& columns) {
-  for (std::size_t i = first; i < out.sensors.size(); ++i) {
-    InsSensor& sensor = out.sensors[i];
-    flag_faults(sensor);
-    for (const UnitWarning& doubt : check_units(sensor, columns.field_has_unit[i - first])) {
-      if (doubt.fatal) return error("{}: {}", name, doubt.sentence);
-      add_remark(out, doubt.sentence);
-      sensor.field = {};
-    }
-    add_fault_remarks(out, sensor);
-  }
-  return {};
-}
-
-void add_time_remarks(InsRecording& out, const std::string& name) {
-  const auto& time = out.loggers.back().time;
-  if (time.size() == 1) add_remark(out, fmt::format("{}: one single row: no motion can be told from it", name));
-  constexpr double shortest_reported_gap = 0.1;  // [s]
-  std::size_t n = 0;
-  double longest = 0.0;
-  for (const TimeGap& gap : gaps(time))
-    if (gap.end - gap.begin > shortest_reported_gap) ++n, longest = std::max(longest, gap.end - gap.begin);
-  if (n > 0)
-    add_remark(out,
-               fmt::format("{}: {} gaps in time, the longest {:.3g} s: nothing is known in between", name, n, longest));
-}
-
 Result<void> append_logger(std::string_view text, const std::string& name, InsRecording& out,
                            const OffsetCallback& on_offset) {
   KINFER_TRY(header, read_csv_header(text, name));
@@ -216,14 +164,14 @@ Result<void> append_logger(std::string_view text, const std::string& name, InsRe
   const std::size_t first = out.sensors.size();
   KINFER_TRY(columns, parse_ins_columns(header, name, out));
   for (const std::string& column : columns.unused_columns)
-    add_remark(out, fmt::format("{}: column {} is no channel of an INS and is not used", name, column));
+    out.remarks.push_back(fmt::format("{}: column {} is no channel of an INS and is not used", name, column));
   RowReader body(text, name, header, columns, out);
   if (auto done = body.read(on_offset); !done) return done;
   if (out.loggers.back().time.empty()) return error("{}: the file has a header but no rows", name);
   if (body.has_truncated_last_line())
-    add_remark(out, fmt::format("{}: the last line is cut off and is not used", name));
+    out.remarks.push_back(fmt::format("{}: the last line is cut off and is not used", name));
   add_time_remarks(out, name);
-  return screen_sensors(out, first, name, columns);
+  return screen_sensors(out, first, name, columns.has_unit);
 }
 
 }  // namespace
