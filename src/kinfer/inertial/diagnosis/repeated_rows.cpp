@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::size_t longest_run = 12;  // rows alike beyond which the instrument measured nothing new
 constexpr double equal_digits = 2e-6;    // of a value: what remains of the digits that a file holds
+constexpr double clear_bend = 20.0;      // of that: less, and a smooth signal without noise looks straight
 
 /// Marks runs of at most `longest_run` rows in a row that are `flat`; returns their share of all rows but longer runs.
 double mark_short_runs(const std::vector<bool>& flat, std::vector<bool>& marked) {
@@ -34,6 +35,7 @@ SampleOrigin sample_origin(const TriadColumns& triad) {
   const std::size_t rows = triad.axis[0].size();
   if (rows < 3) return origin;
   std::vector<bool> same(rows, false), straight(rows, false);
+  std::size_t bent = 0, nearly_straight = 0;
   for (std::size_t k = 1; k < rows; ++k) {
     const Vec3 before = triad.at(k - 1), now = triad.at(k);
     if (!before.allFinite() || !now.allFinite()) continue;
@@ -42,9 +44,10 @@ SampleOrigin sample_origin(const TriadColumns& triad) {
     if (same[k] || k + 1 >= rows || !triad.at(k + 1).allFinite()) continue;
     const Vec3 bend = now - 0.5 * (before + triad.at(k + 1));
     straight[k] = bend.cwiseAbs().maxCoeff() <= resolution;
+    if (!straight[k]) ++(bend.cwiseAbs().maxCoeff() > clear_bend * resolution ? bent : nearly_straight);
   }
   origin.repeated_share = mark_short_runs(same, origin.repeated);
-  origin.interpolated_share = mark_short_runs(straight, origin.interpolated);
+  if (bent > 4 * nearly_straight) origin.interpolated_share = mark_short_runs(straight, origin.interpolated);
   return origin;
 }
 
