@@ -10,7 +10,7 @@ function(kinfer_embed_presets folder output)
     string(APPEND entries "    {\"${name}\", R\"preset(${text})preset\"},\n")
   endforeach()
   file(CONFIGURE OUTPUT ${output} @ONLY CONTENT [[
-#include "kinfer/io/recording/preset_files.hpp"
+#include "kinfer/io/recording/foreign/preset_files.hpp"
 
 namespace kinfer {
 namespace {

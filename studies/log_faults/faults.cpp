@@ -64,7 +64,8 @@ void write_euler_angles(InsRecording& recording) {
     for (std::size_t row = 0; row < recording.sensors[o.sensor].rows(); ++row) {
       const Vec3 rpy = to_rpy(o.world_q_sensor[row].toRotationMatrix()) / degree;
       for (std::size_t k = 0; k < 3; ++k)
-        recording.sensors[o.sensor].angular_velocity.axis[k][row] = static_cast<float>(rpy[static_cast<Eigen::Index>(k)]);
+        recording.sensors[o.sensor].angular_velocity.axis[k][row] =
+            static_cast<float>(rpy[static_cast<Eigen::Index>(k)]);
     }
 }
 
@@ -102,7 +103,9 @@ const std::vector<LogFault>& log_faults() {
       {"rates in deg/s", {Kind::rate_unit}, [](InsRecording& r, Rng) { scale_rates(r, 1.0 / degree); }},
       {"one sensor's rates in deg/s",
        {Kind::rate_unit},
-       [](InsRecording& r, Rng rng) { transform(some_sensor(r, rng).angular_velocity, 1.0 / degree, Mat3::Identity()); }},
+       [](InsRecording& r, Rng rng) {
+         transform(some_sensor(r, rng).angular_velocity, 1.0 / degree, Mat3::Identity());
+       }},
       {"forces in g",
        {Kind::force_unit},
        [](InsRecording& r, Rng) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults of logs: how often each is named, with no other kind of finding beside it; false findings on sound logs; findings on
-// the logs that are given.
+// Faults of logs: how often each is named, with no other kind of finding beside it; false findings on sound logs;
+// findings on the logs that are given.
 //
 //   study_log_faults [--seeds 4] [--sound 400] [--first-seed 1] [--only FAULT] [--verbose] [LOG.csv ...]
 //
-// Machines 1, 3, 5 with odd seeds and 2, 4 with even ones were looked at while thresholds were chosen; the others are told
-// apart ("other").
+// Machines 1, 3, 5 with odd seeds and 2, 4 with even ones were looked at while thresholds were chosen; the others are
+// told apart ("other").
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -98,7 +98,8 @@ void study_faults(const Options& options) {
         ++count.all;
         if (is_named(fault, diagnosis)) ++count.named;
         if (options.verbose) {
-          fmt::print("{} {} of {} seed {}\n", is_named(fault, diagnosis) ? "named" : "missed", fault.name, machines[m], seed);
+          fmt::print("{} {} of {} seed {}\n", is_named(fault, diagnosis) ? "named" : "missed", fault.name, machines[m],
+                     seed);
           print_findings("  found", diagnosis);
         }
       }

@@ -82,10 +82,11 @@ void check_gravity_unit(const InsSensor& sensor, std::vector<UnitWarning>& warni
   if (gravity <= 0.0 || (gravity > 0.7 * standard_gravity && gravity < largest)) return;
   const bool is_other_unit = acceleration_unit(sensor).has_value();
   if (lacks_gravity(sensor))
-    warnings.push_back({fmt::format("{0}: {0}_ax, {0}_ay, {0}_az hold no gravity (they read {1:.2g} at rest): linear or "
-                                    "free acceleration, which cannot be mended; export what the accelerometer measures",
-                                    sensor.name, gravity),
-                        true});
+    warnings.push_back(
+        {fmt::format("{0}: {0}_ax, {0}_ay, {0}_az hold no gravity (they read {1:.2g} at rest): linear or "
+                     "free acceleration, which cannot be mended; export what the accelerometer measures",
+                     sensor.name, gravity),
+         true});
   else if (gravity > 0.7 && gravity < 1.5)
     warnings.push_back({fmt::format("{0}: gravity reads {1:.3g} m/s²: the file seems to be in g; write the headers as "
                                     "{0}_ax[g], {0}_ay[g], {0}_az[g]",

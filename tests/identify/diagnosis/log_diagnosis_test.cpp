@@ -40,11 +40,12 @@ std::vector<FindingKind> kinds_of(const Result<LogDiagnosis>& diagnosis) {
 using Kinds = std::vector<FindingKind>;
 
 /// Largest difference of an instrument from the sound log's, over all sensors and rows.
-double difference(const InsRecording& log, TriadColumns InsSensor::* instrument) {
+double difference(const InsRecording& log, TriadColumns InsSensor::*instrument) {
   double most = 0.0;
   for (std::size_t s = 0; s < log.sensors.size(); ++s)
     for (std::size_t row = 0; row < log.sensors[s].rows(); ++row)
-      most = std::max(most, ((log.sensors[s].*instrument).at(row) - (sound_log().sensors[s].*instrument).at(row)).norm());
+      most =
+          std::max(most, ((log.sensors[s].*instrument).at(row) - (sound_log().sensors[s].*instrument).at(row)).norm());
   return most;
 }
 
@@ -84,13 +85,13 @@ TEST(LogDiagnosis, ANegatedInstrumentOfOneSensorIsToldByItsOtherInstrumentsAndIt
 }
 
 TEST(LogDiagnosis, ALeftHandedSensorIsToldFromAReversedGyroscopeByItsNeighbours) {
-  const auto diagnosis = diagnose_log(with([](InsRecording& r) {
-                                        const Mat3 mirror = Vec3(1, -1, 1).asDiagonal();
-                                        for (auto* triad : {&r.sensors[3].acceleration, &r.sensors[3].angular_velocity,
-                                                            &r.sensors[3].field})
-                                          transform(*triad, 1.0, mirror);
-                                      }),
-                                      1);
+  const auto diagnosis = diagnose_log(
+      with([](InsRecording& r) {
+        const Mat3 mirror = Vec3(1, -1, 1).asDiagonal();
+        for (auto* triad : {&r.sensors[3].acceleration, &r.sensors[3].angular_velocity, &r.sensors[3].field})
+          transform(*triad, 1.0, mirror);
+      }),
+      1);
   EXPECT_EQ(kinds_of(diagnosis), Kinds{FindingKind::left_handed});
 }
 

@@ -25,7 +25,8 @@ struct Swing {
 
   explicit Swing(double lag = 0.0) {
     Rng rng(3);
-    const Vec3 axis = Vec3(0.5, 0.8, 0.3).normalized(), arm(0.4, -0.2, 0.7), gravity(0, 0, standard_gravity), field(18, 5, -45);
+    const Vec3 axis = Vec3(0.5, 0.8, 0.3).normalized(), arm(0.4, -0.2, 0.7), gravity(0, 0, standard_gravity),
+               field(18, 5, -45);
     const auto noise = [&](double sd) { return Vec3(sd * rng.normal(), sd * rng.normal(), sd * rng.normal()); };
     for (int k = 0; k < 2400; ++k) {
       const double t = 0.01 * k;
@@ -36,7 +37,8 @@ struct Swing {
       const double late = t - lag;
       const Vec3 w = rate(late) * axis;
       const Mat3 r = exp_so3(angle(late) * axis);
-      push(sensor.acceleration, r.transpose() * gravity + acceleration(late) * axis.cross(arm) + w.cross(w.cross(arm)) + noise(0.02));
+      push(sensor.acceleration,
+           r.transpose() * gravity + acceleration(late) * axis.cross(arm) + w.cross(w.cross(arm)) + noise(0.02));
       push(sensor.angular_velocity, rate(t) * axis + noise(1e-3));
       push(sensor.field, r.transpose() * field + noise(0.3));
     }

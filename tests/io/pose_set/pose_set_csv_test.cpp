@@ -389,8 +389,8 @@ TEST(ColumnMap, WhatContradictsTheMapIsRefused) {
 }
 
 TEST(PoseSetCsv, DelimiterDecimalMarkAndUnitsAreToldByTheFileItself) {
-  const auto set = parse_pose_set("sep=;\n\"q1 (deg)\";\"q2 (deg)\";\"x (mm)\";\"y (mm)\";\"z (mm)\";\n90;0;1,5;2;3;\n", "poses.csv",
-                                  two_joints());
+  const auto set = parse_pose_set("sep=;\n\"q1 (deg)\";\"q2 (mm)\";\"x (mm)\";\"y (mm)\";\"z (mm)\";\n90;0;1,5;2;3;\n",
+                                  "poses.csv", two_joints());
   ASSERT_TRUE(set) << set.error().what;
   EXPECT_NEAR(set->joints(0, 0), 90 * degree, 1e-12);
   EXPECT_NEAR(set->points[0].position.x(), 1.5e-3, 1e-12);
@@ -415,7 +415,8 @@ TEST(ColumnMap, BadMapsAreRefusedWithOneSentence) {
   };
   EXPECT_EQ(complaint("delimitter = \";\""), "map.toml:1: unknown key \"delimitter\"");
   EXPECT_EQ(complaint("delimiter = \";;\""), "map.toml:1: \"delimiter\": expected one character, found \";;\"");
-  EXPECT_EQ(complaint("delimiter = \",\"\ndecimal = \",\""), "map.toml:2: \"decimal\" and \"delimiter\" are the same character");
+  EXPECT_EQ(complaint("delimiter = \",\"\ndecimal = \",\""),
+            "map.toml:2: \"decimal\" and \"delimiter\" are the same character");
   EXPECT_EQ(complaint("skip_lines = 1.5"), "map.toml:1: \"skip_lines\": expected a whole number from 0");
   EXPECT_EQ(complaint("euler = \"ABC\""),
             "map.toml:1: \"euler\": expected a sequence as \"XYZ intrinsic\" or \"ZYX extrinsic\", found \"ABC\"");

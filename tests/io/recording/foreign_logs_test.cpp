@@ -70,8 +70,8 @@ TEST_F(ForeignLogs, MicrostrainWithTimesOfDay) {
 }
 
 TEST_F(ForeignLogs, PhyphoxInTwoFilesIsOneSensorOnTheRowsOfBoth) {
-  const auto log = read({write("phone/Accelerometer.csv", phyphox("Accelerometer")),
-                         write("phone/Gyroscope.csv", phyphox("Gyroscope"))});
+  const auto log = read(
+      {write("phone/Accelerometer.csv", phyphox("Accelerometer")), write("phone/Gyroscope.csv", phyphox("Gyroscope"))});
   ASSERT_TRUE(log) << log.error().what;
   ASSERT_EQ(log->sensors.size(), 1U);
   const InsSensor& phone = log->sensors[0];
@@ -92,8 +92,9 @@ TEST_F(ForeignLogs, SensorLoggerHasItsColumnsInTheOrderZYX) {
 TEST_F(ForeignLogs, AnInstrumentAloneNamesWhatIsMissing) {
   const auto log = read({write("phone/Accelerometer.csv", phyphox("Accelerometer"))});
   ASSERT_FALSE(log);
-  EXPECT_NE(log.error().what.find("sensor phone has no angular rate (gyroscope); where it stands in another file, give both"),
-            std::string::npos)
+  EXPECT_NE(
+      log.error().what.find("sensor phone has no angular rate (gyroscope); where it stands in another file, give both"),
+      std::string::npos)
       << log.error().what;
 }
 
@@ -110,7 +111,8 @@ TEST_F(ForeignLogs, FreeAccelerationIsRefusedByName) {
 
 TEST_F(ForeignLogs, OurOwnColumnsWithAnotherDelimiterAndDecimalCommasAreRead) {
   const std::string text = lines("t;a_ax;a_ay;a_az;a_gx;a_gy;a_gz\n", [](int row) {
-    std::string line = fmt::format("{:.3f};{};{}", row / sample_rate, three(sample_force(row), ";"), three(sample_rates(row), ";"));
+    std::string line =
+        fmt::format("{:.3f};{};{}", row / sample_rate, three(sample_force(row), ";"), three(sample_rates(row), ";"));
     std::ranges::replace(line, '.', ',');
     return line;
   });
@@ -118,12 +120,13 @@ TEST_F(ForeignLogs, OurOwnColumnsWithAnotherDelimiterAndDecimalCommasAreRead) {
 }
 
 TEST_F(ForeignLogs, SeveralSensorsInOneFileAreToldByTheirNames) {
-  const std::string text = lines("time\tboom AccX\tboom AccY\tboom AccZ\tboom GyrX\tboom GyrY\tboom GyrZ\tstick AccX\tstick AccY\tstick "
-                                 "AccZ\tstick GyrX\tstick GyrY\tstick GyrZ\n",
-                                 [](int row) {
-                                   const std::string one = three(sample_force(row), "\t") + "\t" + three(sample_rates(row), "\t");
-                                   return fmt::format("{}\t{}\t{}", row / sample_rate, one, one);
-                                 });
+  const std::string text = lines(
+      "time\tboom AccX\tboom AccY\tboom AccZ\tboom GyrX\tboom GyrY\tboom GyrZ\tstick AccX\tstick AccY\tstick "
+      "AccZ\tstick GyrX\tstick GyrY\tstick GyrZ\n",
+      [](int row) {
+        const std::string one = three(sample_force(row), "\t") + "\t" + three(sample_rates(row), "\t");
+        return fmt::format("{}\t{}\t{}", row / sample_rate, one, one);
+      });
   const auto log = read({write("two.txt", text)});
   ASSERT_TRUE(log) << log.error().what;
   ASSERT_EQ(log->sensors.size(), 2U);
@@ -153,20 +156,27 @@ TEST_F(ForeignLogs, AMapReadsAFileWithoutHeaderInOtherAxesAndSigns) {
     return fmt::format("{}  {}  {}", (250 + row) % 256, three(-Vec3(f.y(), -f.x(), f.z()), "  ", standard_gravity),
                        three(Vec3(w.y(), -w.x(), w.z()), "  ", degree));
   });
-  expect_motion(read_mapped_recording(std::vector<fs::path>{write("raw.txt", text)}, write("map.toml", map_by_number)), "arm");
+  expect_motion(read_mapped_recording(std::vector<fs::path>{write("raw.txt", text)}, write("map.toml", map_by_number)),
+                "arm");
 }
 
 TEST_F(ForeignLogs, BadInputGetsOneSentence) {
   const std::string good = "time;AccX;AccY;AccZ;GyrX;GyrY;GyrZ\n";
-  const auto has = [](const std::string& sentence, const char* words) { return sentence.find(words) != std::string::npos; };
-  EXPECT_TRUE(has(error_of(good + "0;1;2;9;0;0;0\n0.01;1;x;9;0;0;0\n"), "log.csv:3: column AccY: expected a number, found \"x\""));
+  const auto has = [](const std::string& sentence, const char* words) {
+    return sentence.find(words) != std::string::npos;
+  };
+  EXPECT_TRUE(has(error_of(good + "0;1;2;9;0;0;0\n0.01;1;x;9;0;0;0\n"),
+                  "log.csv:3: column AccY: expected a number, found \"x\""));
   EXPECT_TRUE(has(error_of(good + "0;1;2;9;0;0;0\n0.01;1;2\n"), "log.csv:3: expected 7 columns, found 3"));
-  EXPECT_TRUE(has(error_of(good + "1;1;2;9;0;0;0\n0.01;1;2;9;0;0;0\n"), "log.csv:3: the time goes backwards, from 1 s to 0.01 s"));
+  EXPECT_TRUE(has(error_of(good + "1;1;2;9;0;0;0\n0.01;1;2;9;0;0;0\n"),
+                  "log.csv:3: the time goes backwards, from 1 s to 0.01 s"));
   EXPECT_TRUE(has(error_of(good), "log.csv: the file has a header but no rows with a time"));
   EXPECT_TRUE(has(error_of(good, "header = \"Packet\""), "log.csv: the file has no line with \"Packet\""));
   EXPECT_TRUE(has(error_of(good, "[columns]\nt = \"time\"\nax = \"Beschl_X\""), "no column is named \"Beschl_X\""));
-  EXPECT_TRUE(has(error_of(good, "[columns]\nspeed = \"AccX\""), "the column map has \"speed\", expected t, or SENSOR_ax"));
-  EXPECT_TRUE(has(error_of(good, "axes = [\"x\", \"x\", \"z\"]"), "map.toml:1: \"axes\": expected three different axes"));
+  EXPECT_TRUE(
+      has(error_of(good, "[columns]\nspeed = \"AccX\""), "the column map has \"speed\", expected t, or SENSOR_ax"));
+  EXPECT_TRUE(
+      has(error_of(good, "axes = [\"x\", \"x\", \"z\"]"), "map.toml:1: \"axes\": expected three different axes"));
   EXPECT_TRUE(has(error_of(good, "[sign]\nforce = 2"), "expected 1 or -1"));
   EXPECT_TRUE(has(error_of("\xFF\xFE" + good, "comment = \"%\""), "the file is UTF-16, expected UTF-8"));
   EXPECT_TRUE(has(error_of("a;b;c\n1;2;3\n", "comment = \"%\""), "no column is known as that of an accelerometer"));
@@ -201,8 +211,10 @@ TEST(ForeignLogMutations, AnyBytesAreReadOrRefusedWithOneSentence) {
     std::string text = samples[static_cast<std::size_t>(i) % samples.size()];
     for (std::uint64_t n = 1 + rng.index(6); n > 0 && !text.empty(); --n) {
       const std::size_t at = rng.index(text.size());
-      if (rng.index(2)) text[at] = bytes[rng.index(bytes.size())];
-      else text.erase(at, 1 + rng.index(30));
+      if (rng.index(2))
+        text[at] = bytes[rng.index(bytes.size())];
+      else
+        text.erase(at, 1 + rng.index(30));
     }
     const InsMap* preset = find_preset(text, "log.csv");
     auto log = parse_foreign_log(text, "log.csv", preset ? *preset : InsMap{});

@@ -16,9 +16,15 @@ namespace kinfer::test {
 constexpr int sample_rows = 60;
 constexpr double sample_rate = 100.0;  // [Hz]
 
-inline Vec3 sample_force(int row) { return {0.5, -1.0 + 0.01 * row, 9.7}; }           // [m/s²]
-inline Vec3 sample_rates(int row) { return {0.1, 0.002 * row, -0.2}; }                // [rad/s]
-inline Vec3 sample_field(int row) { return {20.0 + 0.1 * row, 1.0, -44.0}; }          // [µT]
+inline Vec3 sample_force(int row) {
+  return {0.5, -1.0 + 0.01 * row, 9.7};
+}  // [m/s²]
+inline Vec3 sample_rates(int row) {
+  return {0.1, 0.002 * row, -0.2};
+}  // [rad/s]
+inline Vec3 sample_field(int row) {
+  return {20.0 + 0.1 * row, 1.0, -44.0};
+}  // [µT]
 
 /// One line per row of the motion after `head`.
 inline std::string lines(const std::string& head, const std::function<std::string(int)>& line) {
@@ -38,15 +44,17 @@ inline std::string xsens_txt() {
       "PacketCounter\tSampleTimeFine\tAcc_X\tAcc_Y\tAcc_Z\tFreeAcc_E\tFreeAcc_N\tFreeAcc_U\tGyr_X\tGyr_Y\tGyr_Z\t"
       "Mag_X\tMag_Y\tMag_Z\r\n",
       [](int row) {
-        return fmt::format("{:05}\t\t{}\t0.1\t0.1\t0.1\t{}\t{}\r", (65500 + row) % 65536, three(sample_force(row), "\t"),
-                           three(sample_rates(row), "\t"), three(sample_field(row), "\t", 50.0));
+        return fmt::format("{:05}\t\t{}\t0.1\t0.1\t0.1\t{}\t{}\r", (65500 + row) % 65536,
+                           three(sample_force(row), "\t"), three(sample_rates(row), "\t"),
+                           three(sample_field(row), "\t", 50.0));
       });
 }
 
 inline std::string movella_dot() {
   return lines(
       "sep=,\nDeviceTag:,Sensor 1\nFirmwareVersion:,2.0.0\nOutputRate:,100\n"
-      "PacketCounter,SampleTimeFine,Quat_W,Quat_X,Quat_Y,Quat_Z,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z,Mag_X,Mag_Y,Mag_Z,\n",
+      "PacketCounter,SampleTimeFine,Quat_W,Quat_X,Quat_Y,Quat_Z,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z,Mag_X,Mag_Y,Mag_Z,"
+      "\n",
       [](int row) {
         return fmt::format("{},{},1,0,0,0,{},{},{},", row + 1, (4294900000LL + 10000LL * row) % 4294967296LL,
                            three(sample_force(row)), three(sample_rates(row), ",", degree),
@@ -66,8 +74,8 @@ inline std::string phyphox(const std::string& instrument) {
 inline std::string sensor_logger(Vec3 (*value)(int), double unit) {
   return lines("time,seconds_elapsed,z,y,x\n", [&](int row) {
     const Vec3 v = value(row) / unit;
-    return fmt::format("{},{:.3f},{:.7f},{:.7f},{:.7f}", 1700000000000000000LL + 10000000LL * row, row / sample_rate, v.z(),
-                       v.y(), v.x());
+    return fmt::format("{},{:.3f},{:.7f},{:.7f},{:.7f}", 1700000000000000000LL + 10000000LL * row, row / sample_rate,
+                       v.z(), v.y(), v.x());
   });
 }
 

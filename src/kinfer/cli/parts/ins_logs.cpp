@@ -15,8 +15,8 @@ Result<InsRecording> read_ins_logs(const std::vector<std::string>& files, const 
 
 void add_log_columns_option(CLI::App& verb, std::string& columns) {
   add_text(verb, "--columns", columns,
-           "How foreign logs' columns map to kinfer's (docs/formats.md); known formats need none", Requirement::optional,
-           "TOML");
+           "How foreign logs' columns map to kinfer's (docs/formats.md); known formats need none",
+           Requirement::optional, "TOML");
 }
 
 Result<DiagnosedLogs> read_diagnosed_logs(const std::vector<std::string>& files, const std::string& columns,

@@ -12,7 +12,8 @@
 
 namespace kinfer::cli {
 
-/// All files as one recording, by the column map if one is given. An error if a sensor lacks specific force or angular rate.
+/// All files as one recording, by the column map if one is given. An error if a sensor lacks specific force or angular
+/// rate.
 Result<InsRecording> read_ins_logs(const std::vector<std::string>& paths, const std::string& columns = "");
 
 /// A recording with its certain faults corrected, and what was found.
@@ -20,7 +21,8 @@ struct DiagnosedLogs {
   InsRecording recording;
   std::vector<Finding> findings{};
 };
-Result<DiagnosedLogs> read_diagnosed_logs(const std::vector<std::string>& paths, const std::string& columns, int threads);
+Result<DiagnosedLogs> read_diagnosed_logs(const std::vector<std::string>& paths, const std::string& columns,
+                                          int threads);
 
 /// --columns MAP.toml of INS logs.
 void add_log_columns_option(CLI::App& verb, std::string& columns);

@@ -109,7 +109,8 @@ void print_sign(const InsRecording& recording) {
 
 void print_findings(const InsRecording& recording, const std::vector<Finding>& findings) {
   fmt::print("\ndiagnosis:\n");
-  if (findings.empty()) fmt::print("  nothing wrong was found: units, signs, axes and times of the instruments agree\n");
+  if (findings.empty())
+    fmt::print("  nothing wrong was found: units, signs, axes and times of the instruments agree\n");
   for (const Finding& f : findings) {
     fmt::print("  {}: {}\n", name(f.severity), words::sentence(f));
     if (const std::string remedy = words::suggestion(f); !remedy.empty()) fmt::print("    -> {}\n", remedy);

@@ -148,10 +148,12 @@ std::string describe_axes(const Mat3& axes) {
 
 Result<void> refuse_attitudes(const InsRecording& recording) {
   for (const InsSensor& sensor : recording.sensors)
-    if (const auto fit = attitude_fit(sensor); fit && fit->error < max_attitude_error && fit->share < max_attitude_share)
-      return error("{0}: {0}_gx, {0}_gy, {0}_gz hold Euler angles, not angular rates: their vertical follows the "
-                   "accelerometer's within {1:.1f}°; export what the gyroscope measures",
-                   sensor.name, fit->error / degree);
+    if (const auto fit = attitude_fit(sensor);
+        fit && fit->error < max_attitude_error && fit->share < max_attitude_share)
+      return error(
+          "{0}: {0}_gx, {0}_gy, {0}_gz hold Euler angles, not angular rates: their vertical follows the "
+          "accelerometer's within {1:.1f}°; export what the gyroscope measures",
+          sensor.name, fit->error / degree);
   return {};
 }
 

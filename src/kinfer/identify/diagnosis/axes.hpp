@@ -10,8 +10,8 @@ namespace kinfer::identify {
 /// An error if the gyroscope's columns hold Euler angles.
 Result<void> refuse_attitudes(const InsRecording& recording);
 
-/// The unit of the rates is one for the log, unless sensors contradict each other. Other axes are mapped to those of the
-/// accelerometer: any axes that the instruments share are as good, since mountings are unknown.
+/// The unit of the rates is one for the log, unless sensors contradict each other. Other axes are mapped to those of
+/// the accelerometer: any axes that the instruments share are as good, since mountings are unknown.
 void mend_axes(MendedLog& log, int threads);
 
 /// "x, -z, y": row by row of a permutation with signs.

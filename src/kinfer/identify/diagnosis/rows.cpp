@@ -28,7 +28,8 @@ void mend_rows(MendedLog& log, int threads) {
   std::vector<std::array<SampleOrigin, 2>> origins(sensors);
   parallel_for(sensors, threads, [&](std::size_t s) {
     for (std::size_t i = 0; i < 2; ++i)
-      if (const TriadColumns& triad = log.log().sensors[s].*columns_of[i]; triad.present()) origins[s][i] = sample_origin(triad);
+      if (const TriadColumns& triad = log.log().sensors[s].*columns_of[i]; triad.present())
+        origins[s][i] = sample_origin(triad);
   });
   for (std::size_t s = 0; s < sensors; ++s) {
     bool is_edited = false;

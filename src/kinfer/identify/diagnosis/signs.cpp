@@ -46,7 +46,8 @@ VerticalSigns vertical_signs(const std::vector<std::vector<VerticalAgreement>>& 
     for (std::size_t i = 0; i < group.size(); ++i)
       for (std::size_t j = 0; j < n; ++j) {
         const VerticalAgreement& a = agreement[group[i]][j];
-        if (result.sign[j] != 0 || std::abs(a.correlation) < same_vertical || a.shared_rate < min_vertical_rate) continue;
+        if (result.sign[j] != 0 || std::abs(a.correlation) < same_vertical || a.shared_rate < min_vertical_rate)
+          continue;
         result.sign[j] = a.correlation > 0.0 ? result.sign[group[i]] : -result.sign[group[i]];
         group.push_back(j);
       }
@@ -77,7 +78,8 @@ void turn_over(InsSensor& sensor, bool field_too) {
 
 Finding* axes_finding_of(MendedLog& log, const std::string& sensor) {
   const auto at = std::ranges::find_if(log.findings, [&](const Finding& f) {
-    return (f.kind == FindingKind::rate_sign || f.kind == FindingKind::instrument_axes) && f.values.text("sensor") == sensor;
+    return (f.kind == FindingKind::rate_sign || f.kind == FindingKind::instrument_axes) &&
+           f.values.text("sensor") == sensor;
   });
   return at == log.findings.end() ? nullptr : &*at;
 }
@@ -176,7 +178,8 @@ void mend_signs(MendedLog& log, int threads) {
   for (const InsSensor& sensor : log.log().sensors) angles.push_back(field_angle(sensor));
   mend_odd_sensors(log, angles, signs, threads);
   if (signs.is_tied)
-    if (const VerticalSigns after = vertical_signs(vertical_agreement(log.log())); after.is_tied) report_tie(log, after);
+    if (const VerticalSigns after = vertical_signs(vertical_agreement(log.log())); after.is_tied)
+      report_tie(log, after);
   report_equivalents(log, signs);
   report_common_sign(log);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which way each accelerometer points its +g. Specific force and lever arms negated together obey the same equations, so
-// a sign that all sensors share is told by a magnetometer alone; that of one sensor also by the others' vertical rates.
+// Which way each accelerometer points its +g. Specific force and lever arms negated together obey the same equations,
+// so a sign that all sensors share is told by a magnetometer alone; that of one sensor also by the others' vertical
+// rates.
 #pragma once
 
 #include "kinfer/identify/diagnosis/mended_log.hpp"

@@ -35,8 +35,8 @@ bool counts_rows(std::span<const double> time) {
 /// The sampling rate at which gyroscopes and accelerometers of a logger fit each other best; 1000 is that of a clock in
 /// milliseconds. Only the turn from row to row counts, so rows 10 ms apart with scaled rates serve every hypothesis.
 double best_rate(const InsRecording& recording, std::size_t logger, int threads) {
-  constexpr std::array rates{1000.0, 10.0,  20.0,  25.0,  30.0,  40.0,  50.0,  60.0,  64.0,  75.0,  80.0,  100.0,
-                             104.0,  120.0, 125.0, 128.0, 148.0, 150.0, 200.0, 208.0, 250.0, 256.0, 400.0, 500.0, 800.0};
+  constexpr std::array rates{1000.0, 10.0,  20.0,  25.0,  30.0,  40.0,  50.0,  60.0,  64.0,  75.0,  80.0,  100.0, 104.0,
+                             120.0,  125.0, 128.0, 148.0, 150.0, 200.0, 208.0, 250.0, 256.0, 400.0, 500.0, 800.0};
   constexpr double assumed_rate = 100.0;
   std::vector<double> time = recording.loggers[logger].time;
   for (double& t : time) t /= assumed_rate;
@@ -93,9 +93,10 @@ Result<void> mend_forces(MendedLog& log) {
     const InsSensor& sensor = log.log().sensors[s];
     if (!sensor.acceleration.present()) continue;
     if (lacks_gravity(sensor) && !acceleration_unit(sensor))
-      return error("{0}: {0}_ax, {0}_ay, {0}_az hold no gravity: linear or free acceleration, which cannot be mended; "
-                   "export what the accelerometer measures",
-                   sensor.name);
+      return error(
+          "{0}: {0}_ax, {0}_ay, {0}_az hold no gravity: linear or free acceleration, which cannot be mended; "
+          "export what the accelerometer measures",
+          sensor.name);
     const double unit = acceleration_unit(sensor).value_or(1.0);
     if (std::abs(unit - 1.0) < 1e-9) continue;
     InsSensor& mended = log.edit().sensors[s];

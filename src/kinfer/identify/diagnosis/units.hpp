@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Units that a log does not state: of its clock, of specific force and of the magnetic field, by the size that they must
-// have.
+// Units that a log does not state: of its clock, of specific force and of the magnetic field, by the size that they
+// must have.
 #pragma once
 
 #include "kinfer/base/result.hpp"

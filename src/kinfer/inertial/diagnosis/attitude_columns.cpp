@@ -25,7 +25,8 @@ std::vector<TiltSample> samples_of(const InsSensor& sensor) {
       mean.up += sensor.acceleration.at(row);
       mean.columns += sensor.angular_velocity.at(row) / static_cast<double>(rows);
     }
-    if (mean.up.allFinite() && mean.columns.allFinite() && mean.up.norm() > 0.0) samples.push_back({mean.up.normalized(), mean.columns});
+    if (mean.up.allFinite() && mean.columns.allFinite() && mean.up.norm() > 0.0)
+      samples.push_back({mean.up.normalized(), mean.columns});
   }
   return samples;
 }
@@ -56,11 +57,11 @@ std::optional<AttitudeFit> attitude_fit(const InsSensor& sensor) {
       for (const double roll_sign : {1.0, -1.0})
         for (const double pitch_sign : {1.0, -1.0})
           for (const double up_sign : {1.0, -1.0})
-            best = std::min(best, median_angle(samples, [&](const TiltSample& s) {
-                              const double r = roll_sign * unit * s.columns[roll], p = pitch_sign * unit * s.columns[1];
-                              return Vec3(up_sign *
-                                          Vec3(-std::sin(p), std::cos(p) * std::sin(r), std::cos(p) * std::cos(r)));
-                            }));
+            best = std::min(
+                best, median_angle(samples, [&](const TiltSample& s) {
+                  const double r = roll_sign * unit * s.columns[roll], p = pitch_sign * unit * s.columns[1];
+                  return Vec3(up_sign * Vec3(-std::sin(p), std::cos(p) * std::sin(r), std::cos(p) * std::cos(r)));
+                }));
   return AttitudeFit{best, null > 0.0 ? best / null : 1.0};
 }
 

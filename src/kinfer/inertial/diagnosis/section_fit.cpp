@@ -10,14 +10,14 @@
 namespace kinfer {
 namespace {
 
-constexpr double grid_step = 0.01;         // [s] grid on which both instruments are compared
+constexpr double grid_step = 0.01;            // [s] grid on which both instruments are compared
 constexpr double longest_bridged_gap = 0.06;  // [s] beyond which samples are not interpolated
 constexpr std::ptrdiff_t most_lag_steps = 15;
 constexpr std::size_t lag_count = 2 * most_lag_steps + 1;
-constexpr std::size_t section_steps = 200;           // steps: 2 s
+constexpr std::size_t section_steps = 200;                  // steps: 2 s
 constexpr std::size_t section_margin = most_lag_steps + 2;  // steps before and after a section
-constexpr std::size_t half_kernel = 5;         // steps: triangular smoothing of both
-constexpr std::size_t quiet_steps = 50;              // steps of the quietest moment
+constexpr std::size_t half_kernel = 5;                      // steps: triangular smoothing of both
+constexpr std::size_t quiet_steps = 50;                     // steps of the quietest moment
 constexpr double independent_samples = 20.0;  // samples of a section, since residuals are alike for tenths of a second
 constexpr std::size_t most_sections = 120;
 constexpr double usual_error = 0.01;  // of the direction's length: what scale errors and misalignments leave
@@ -105,7 +105,8 @@ Design design_at(const Samples& rate, std::size_t k, const Mat3& map, const Mat3
 
 /// Sums over a section that give the residual of every permutation of the direction's axes.
 struct SectionSums {
-  Eigen::Matrix<double, most_unknowns, most_unknowns> normal = Eigen::Matrix<double, most_unknowns, most_unknowns>::Zero();
+  Eigen::Matrix<double, most_unknowns, most_unknowns> normal =
+      Eigen::Matrix<double, most_unknowns, most_unknowns>::Zero();
   std::array<Eigen::Matrix<double, most_unknowns, 3>, 3> moments{};  // [k](i, j): sum of design(j, i) · direction(k)
   double square = 0.0;
   double count = 0.0;

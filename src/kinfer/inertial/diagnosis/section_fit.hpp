@@ -2,12 +2,12 @@
 // Do the instruments of one sensor tell of the same motion? Over a short section in which mostly one joint moves, the
 // sensor circles about it with a lever arm r, so that specific force and magnetic field are
 //   f = Rᵀ g + ω̇ × r + ω × (ω × r),   m = Rᵀ h
-// with R integrated from the gyroscope and g, r, h unknown: linear. Another unit, sign or order of the gyroscope's axes, or
-// a shift in time, leaves larger residuals. Each section weighs by how well it fits, so that those in which one joint
-// moves decide.
+// with R integrated from the gyroscope and g, r, h unknown: linear. Another unit, sign or order of the gyroscope's
+// axes, or a shift in time, leaves larger residuals. Each section weighs by how well it fits, so that those in which
+// one joint moves decide.
 //
-// For ω = u s P ω_file with a permutation P of determinant 1 with signs, s = ±1 and the unit u, f in these axes equals Pᵀ f
-// in the file's: one integration for each u and s serves 24 maps.
+// For ω = u s P ω_file with a permutation P of determinant 1 with signs, s = ±1 and the unit u, f in these axes equals
+// Pᵀ f in the file's: one integration for each u and s serves 24 maps.
 #pragma once
 
 #include <array>
@@ -46,10 +46,10 @@ struct MapLikelihoods {
 MapLikelihoods map_likelihoods(const SectionSignals& signals, double unit, LeverArm lever_arm);
 
 struct InstrumentLag {
-  double lag = 0.0;       ///< [s] of the direction behind the gyroscope
-  double gain = 0.0;      ///< [nats] log likelihood of this lag over none
+  double lag = 0.0;        ///< [s] of the direction behind the gyroscope
+  double gain = 0.0;       ///< [nats] log likelihood of this lag over none
   double half_gain = 0.0;  ///< [nats] the smaller one of that of either half of the sections
-  double sd = 0.0;        ///< [s] from the curvature of the likelihood; 0: unknown
+  double sd = 0.0;         ///< [s] from the curvature of the likelihood; 0: unknown
 };
 
 /// Lags up to 0.15 s either way. `map`: from the file's rates to the direction's axes, in rad/s.

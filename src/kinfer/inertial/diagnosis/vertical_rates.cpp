@@ -22,8 +22,7 @@ std::vector<double> vertical_rates(const InsSensor& sensor, std::span<const doub
     if (!(k >= 0.0 && k < static_cast<double>(bins)) || !f.allFinite() || !w.allFinite() || !(f.norm() > 0.0)) continue;
     sum[static_cast<std::size_t>(k)] += w.dot(f) / f.norm(), n[static_cast<std::size_t>(k)] += 1.0;
   }
-  for (std::size_t k = 0; k < bins; ++k)
-    sum[k] = n[k] > 0.0 ? sum[k] / n[k] : std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t k = 0; k < bins; ++k) sum[k] = n[k] > 0.0 ? sum[k] / n[k] : std::numeric_limits<double>::quiet_NaN();
   return sum;
 }
 

@@ -14,9 +14,9 @@
 
 namespace kinfer {
 
-/// Maps the columns of a foreign file to kinfer's (TOML): delimiter, decimal, skip_lines, comment, header, [columns] ours =
-/// "theirs [unit]" (or "#3 [unit]" by number), euler. With `euler`, the columns rx, ry, rz give the orientation in that
-/// sequence, or as rotation vector.
+/// Maps the columns of a foreign file to kinfer's (TOML): delimiter, decimal, skip_lines, comment, header, [columns]
+/// ours = "theirs [unit]" (or "#3 [unit]" by number), euler. With `euler`, the columns rx, ry, rz give the orientation
+/// in that sequence, or as rotation vector.
 struct ColumnMap {
   CsvFormat format{automatic, automatic};
   std::vector<std::pair<std::string, std::string>>

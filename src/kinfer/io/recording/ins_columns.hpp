@@ -26,7 +26,7 @@ struct InsColumns {
   std::vector<InsColumn> columns;  ///< one per column of the header
   std::size_t time_column = 0;
   std::vector<std::array<bool, 3>> has_unit;  ///< one per sensor of this file: its instruments' units are stated
-  std::vector<std::string> unused_columns;  ///< names of columns that are not INS channels
+  std::vector<std::string> unused_columns;    ///< names of columns that are not INS channels
 };
 
 /// Adds the file's logger and sensors (without rows) to `out`. Errors: an incomplete triad, a sensor without

@@ -25,7 +25,8 @@ std::span<const RecordingFormat> recording_formats();
 bool is_recording(const std::filesystem::path& path);
 
 /// Reads one log or several, one per logger, each with its own clock and possibly of different formats. Logs of other
-/// programs are read by their preset, or by what their headers say; the instruments of one sensor may be in several files.
+/// programs are read by their preset, or by what their headers say; the instruments of one sensor may be in several
+/// files.
 Result<InsRecording> read_recording(std::span<const std::filesystem::path> paths);
 
 /// The same with a column map for all files (docs/formats.md).

@@ -194,13 +194,12 @@ Result<CsvHeader> read_csv_header(std::string_view text, const std::string& name
   CsvHeader header;
   header.line = lines.number();
   header.body = lines.after();
-  header.delimiter =
-      format.delimiter == automatic ? find_delimiter(lines.line(), format.decimal) : format.delimiter;
+  header.delimiter = format.delimiter == automatic ? find_delimiter(lines.line(), format.decimal) : format.delimiter;
   std::vector<std::string_view> cells;
   std::deque<std::string> unquoted;
   if (!CellSplitter(header.delimiter, unquoted).split(lines.line(), cells)) return unclosed_quote(name, header.line);
   header.columns.assign(cells.begin(), cells.end());
-  if (header.delimiter != blanks && header.columns.size() > 1 && header.columns.back().empty() &&
+  if (header.delimiter != ',' && header.columns.size() > 1 && header.columns.back().empty() &&
       format.delimiter == automatic)
     header.columns.pop_back();  // a delimiter ends each line
   if (format.header_line == HeaderLine::none) {
@@ -232,10 +231,12 @@ Result<CsvTable> split_csv(std::string_view text, const std::string& name, const
   while (lines.next_content_line()) {
     const std::size_t before = table.cells.size();
     if (!splitter.split(lines.line(), table.cells)) return unclosed_quote(name, lines.number());
-    if (table.cells.size() == before + columns + 1 && format.delimiter == automatic && table.cells.back().empty())
+    if (table.cells.size() == before + columns + 1 && format.delimiter == automatic && table.header.delimiter != ',' &&
+        table.cells.back().empty())
       table.cells.pop_back();
     const std::size_t found = table.cells.size() - before;
-    if (found != columns) return forward_error({describe_column_count(name, lines.number(), columns, found, table.header.delimiter)});
+    if (found != columns)
+      return forward_error({describe_column_count(name, lines.number(), columns, found, table.header.delimiter)});
     table.line.push_back(lines.number());
   }
   return table;

@@ -21,16 +21,16 @@ enum class HeaderLine { first, with_word, none };
 struct CsvFormat {
   char delimiter = ',';
   char decimal = '.';
-  int skip_lines = 0;                           ///< before the header
-  std::vector<std::string> comments{};          ///< lines that begin with one of these are skipped, as those with #
-  HeaderLine header_line = HeaderLine::first;   ///< none: the columns are named #1, #2 ...
-  std::string header_word{};                    ///< of HeaderLine::with_word: the first line that contains it
+  int skip_lines = 0;                          ///< before the header
+  std::vector<std::string> comments{};         ///< lines that begin with one of these are skipped, as those with #
+  HeaderLine header_line = HeaderLine::first;  ///< none: the columns are named #1, #2 ...
+  std::string header_word{};                   ///< of HeaderLine::with_word: the first line that contains it
 };
 
 struct CsvHeader {
   std::vector<std::string> columns;
-  int line = 0;          ///< from 1
-  std::size_t body = 0;  ///< offset in the text of the line after the header
+  int line = 0;                         ///< from 1
+  std::size_t body = 0;                 ///< offset in the text of the line after the header
   char delimiter = ',', decimal = '.';  ///< as found, where they were automatic
 };
 

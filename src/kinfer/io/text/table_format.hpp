@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a foreign file is cut into a header and cells, as column maps say it: delimiter, decimal, skip_lines, comment, header.
+// How a foreign file is cut into a header and cells, as column maps say it: delimiter, decimal, skip_lines, comment,
+// header.
 #pragma once
 
 #include "kinfer/io/text/csv.hpp"

@@ -29,8 +29,8 @@ struct Unit {
   double offset = 0.0;
 };
 
-/// m mm um, rad deg mrad, their squares (mm^2) and products (mm.deg), s ms us ns, kg, N.m, m/s^2 g mg, rad/s deg/s, uT mT
-/// nT T G, C K, 1, and other spellings of them (m/s², °/s, dps, Gauss); empty for any other text. "g" is the
+/// m mm um, rad deg mrad, their squares (mm^2) and products (mm.deg), s ms us ns, kg, N.m, m/s^2 g mg, rad/s deg/s, uT
+/// mT nT T G, C K, 1, and other spellings of them (m/s², °/s, dps, Gauss); empty for any other text. "g" is the
 /// acceleration. Temperatures are converted to °C.
 std::optional<Unit> find_unit(std::string_view text);
 

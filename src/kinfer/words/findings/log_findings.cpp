@@ -39,9 +39,10 @@ std::string clock_unit_suggestion(const Finding&) {
 }
 
 std::string clock_counts_sentence(const Finding& f) {
-  return phrase("clock_counts",
-                "the times of {} count rows; {:.0f} rows a second fit gyroscopes and accelerometers best, and are assumed",
-                f.values.text("logger"), f.values.number("rate"));
+  return phrase(
+      "clock_counts",
+      "the times of {} count rows; {:.0f} rows a second fit gyroscopes and accelerometers best, and are assumed",
+      f.values.text("logger"), f.values.number("rate"));
 }
 
 std::string clock_counts_suggestion(const Finding&) {
@@ -69,7 +70,8 @@ std::string rate_unit_sentence(const Finding& f) {
 }
 
 std::string rate_unit_suggestion(const Finding& f) {
-  return phrase("rate_unit.suggestion", "state the unit in the header: {}_gx[deg/s]", f.values.texts("sensors").front());
+  return phrase("rate_unit.suggestion", "state the unit in the header: {}_gx[deg/s]",
+                f.values.texts("sensors").front());
 }
 
 std::string field_unit_sentence(const Finding& f) {
@@ -83,8 +85,7 @@ std::string field_unit_suggestion(const Finding& f) {
 }
 
 std::string repeated_rows_sentence(const Finding& f) {
-  return phrase("repeated_rows",
-                "{:.0f} % of the rows of {}'s {} repeat the row before; the copies are not used",
+  return phrase("repeated_rows", "{:.0f} % of the rows of {}'s {} repeat the row before; the copies are not used",
                 100.0 * f.values.number("share"), f.values.text("sensor"), f.values.text("instrument"));
 }
 
@@ -100,10 +101,11 @@ std::string rows_suggestion(const Finding&) {
 }
 
 std::string rates_unrelated_sentence(const Finding& f) {
-  return phrase("rates_unrelated",
-                "what stands in the gyroscopes' columns of {} explains nothing of how gravity moves in the sensors, in no "
-                "unit and no order of axes: no angular rates, or those of other sensors",
-                sensors_of(f));
+  return phrase(
+      "rates_unrelated",
+      "what stands in the gyroscopes' columns of {} explains nothing of how gravity moves in the sensors, in no "
+      "unit and no order of axes: no angular rates, or those of other sensors",
+      sensors_of(f));
 }
 
 std::string rates_unrelated_suggestion(const Finding&) {
@@ -115,10 +117,11 @@ std::string rate_sign_sentence(const Finding& f) {
   if (f.applied)
     return phrase("rate_sign", "the gyroscope of {} turns the other way round than its accelerometer; it was reversed",
                   sensor);
-  return phrase("rate_sign_or_left_handed",
-                "the gyroscope of {} turns the other way round than its accelerometer: its sign is wrong, or the sensor's "
-                "axes are left-handed; the gyroscope was reversed, with left-handed axes lever arms come out mirrored",
-                sensor);
+  return phrase(
+      "rate_sign_or_left_handed",
+      "the gyroscope of {} turns the other way round than its accelerometer: its sign is wrong, or the sensor's "
+      "axes are left-handed; the gyroscope was reversed, with left-handed axes lever arms come out mirrored",
+      sensor);
 }
 
 std::string rate_sign_suggestion(const Finding& f) {
@@ -128,7 +131,8 @@ std::string rate_sign_suggestion(const Finding& f) {
 }
 
 std::string left_handed_sentence(const Finding& f) {
-  return phrase("left_handed", "the axes of {} are left-handed, by its own gyroscope and its neighbours; they were mirrored",
+  return phrase("left_handed",
+                "the axes of {} are left-handed, by its own gyroscope and its neighbours; they were mirrored",
                 f.values.text("sensor"));
 }
 
@@ -138,9 +142,8 @@ std::string left_handed_suggestion(const Finding&) {
 
 std::string instrument_axes_sentence(const Finding& f) {
   const FactValues& v = f.values;
-  return phrase("instrument_axes",
-                "the {} of {} has other axes than its other instruments: theirs are its {}; {}", v.text("instrument"),
-                v.text("sensor"), v.text("axes"),
+  return phrase("instrument_axes", "the {} of {} has other axes than its other instruments: theirs are its {}; {}",
+                v.text("instrument"), v.text("sensor"), v.text("axes"),
                 f.applied ? "it was mapped to them" : "this map fits best, but another one nearly as well");
 }
 
@@ -155,24 +158,26 @@ std::string force_sign_sentence(const Finding& f) {
   if (f.applied)
     return phrase("force_sign", "the accelerometer of {} reads -g upwards, by its neighbours; it was negated",
                   sensors_of(f));
-  return phrase("force_sign_of_all",
-                "the magnetic field points out of the ground where the accelerometers of {} see up: they read -g upwards, "
-                "or the log is from the southern hemisphere; if they do, all lever arms are mirrored",
-                sensors_of(f));
+  return phrase(
+      "force_sign_of_all",
+      "the magnetic field points out of the ground where the accelerometers of {} see up: they read -g upwards, "
+      "or the log is from the southern hemisphere; if they do, all lever arms are mirrored",
+      sensors_of(f));
 }
 
 std::string force_sign_suggestion(const Finding& f) {
-  if (f.applied)
-    return phrase("force_sign.suggestion", "write specific force: +g upwards at rest");
-  return phrase("force_sign_of_all.suggestion",
-                "check that a sensor at rest reads +9.81 m/s² on the axis that points up, else negate (sign in --columns)");
+  if (f.applied) return phrase("force_sign.suggestion", "write specific force: +g upwards at rest");
+  return phrase(
+      "force_sign_of_all.suggestion",
+      "check that a sensor at rest reads +9.81 m/s² on the axis that points up, else negate (sign in --columns)");
 }
 
 std::string opposite_verticals_sentence(const Finding& f) {
-  return phrase("opposite_verticals",
-                "{} and {} see each other's rotation about the vertical reversed: the accelerometers of one side read -g "
-                "upwards, or its axes are left-handed; the recording does not tell which",
-                fmt::join(f.values.texts("sensors"), ", "), fmt::join(f.values.texts("others"), ", "));
+  return phrase(
+      "opposite_verticals",
+      "{} and {} see each other's rotation about the vertical reversed: the accelerometers of one side read -g "
+      "upwards, or its axes are left-handed; the recording does not tell which",
+      fmt::join(f.values.texts("sensors"), ", "), fmt::join(f.values.texts("others"), ", "));
 }
 
 std::string opposite_verticals_suggestion(const Finding&) {
@@ -185,7 +190,8 @@ std::string out_of_step_sentence(const Finding& f) {
   return phrase("instruments_out_of_step",
                 "the accelerometer of {} is logged {:.0f} ± {:.0f} ms {} than its gyroscope: a filter's delay, or "
                 "instruments logged apart; it was shifted",
-                f.values.text("sensor"), 1e3 * std::abs(lag), 1e3 * f.values.number("sd"), lag > 0.0 ? "later" : "earlier");
+                f.values.text("sensor"), 1e3 * std::abs(lag), 1e3 * f.values.number("sd"),
+                lag > 0.0 ? "later" : "earlier");
 }
 
 std::string out_of_step_suggestion(const Finding&) {

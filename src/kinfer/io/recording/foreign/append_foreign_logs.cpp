@@ -4,7 +4,7 @@
 #include <map>
 
 #include "kinfer/io/recording/foreign/foreign_log.hpp"
-#include "kinfer/io/recording/ins_remarks.hpp"
+#include "kinfer/io/recording/foreign/ins_remarks.hpp"
 
 namespace kinfer {
 namespace {
@@ -27,8 +27,9 @@ bool share_a_sensor(const ForeignLog& a, const ForeignLog& b) {
   });
 }
 
-Result<void> add_instruments(const InsSensor& part, const std::array<bool, 3>& stated, const std::vector<std::size_t>& rows,
-                             std::size_t all_rows, const std::string& file, ForeignLog& into) {
+Result<void> add_instruments(const InsSensor& part, const std::array<bool, 3>& stated,
+                             const std::vector<std::size_t>& rows, std::size_t all_rows, const std::string& file,
+                             ForeignLog& into) {
   auto at = std::ranges::find(into.sensors, part.name, &InsSensor::name);
   if (at == into.sensors.end()) {
     into.sensors.push_back({.name = part.name, .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}});
@@ -65,7 +66,8 @@ Result<ForeignLog> joined(const std::vector<ForeignLog>& logs) {
   for (const ForeignLog& log : logs) {
     const auto rows = rows_in(log.time, whole.time);
     for (std::size_t s = 0; s < log.sensors.size(); ++s)
-      if (auto done = add_instruments(log.sensors[s], log.stated_units[s], rows, whole.time.size(), log.name, whole); !done)
+      if (auto done = add_instruments(log.sensors[s], log.stated_units[s], rows, whole.time.size(), log.name, whole);
+          !done)
         return forward_error(done.error());
   }
   return whole;
@@ -77,9 +79,10 @@ Result<void> append_log(ForeignLog log, InsRecording& recording) {
   recording.remarks.insert(recording.remarks.end(), log.remarks.begin(), log.remarks.end());
   for (InsSensor& sensor : log.sensors) {
     if (!sensor.acceleration.present() && log.has_free_acceleration)
-      return error("{}: sensor {} has linear or free acceleration only, from which gravity is removed, which cannot be "
-                   "mended; export what the accelerometer measures",
-                   log.name, sensor.name);
+      return error(
+          "{}: sensor {} has linear or free acceleration only, from which gravity is removed, which cannot be "
+          "mended; export what the accelerometer measures",
+          log.name, sensor.name);
     if (!sensor.acceleration.present() || !sensor.angular_velocity.present())
       return error("{}: sensor {} has no {}; where it stands in another file, give both", log.name, sensor.name,
                    sensor.acceleration.present() ? "angular rate (gyroscope)" : "specific force (accelerometer)");

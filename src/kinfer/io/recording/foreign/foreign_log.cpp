@@ -22,7 +22,8 @@ std::optional<double> parse_time_of_day(std::string_view cell) {
   if (cell.ends_with('Z')) cell.remove_suffix(1);
   const auto first = cell.find(':'), second = first == std::string_view::npos ? first : cell.find(':', first + 1);
   if (second == std::string_view::npos) return std::nullopt;
-  const auto hours = parse_number(cell.substr(0, first)), minutes = parse_number(cell.substr(first + 1, second - first - 1)),
+  const auto hours = parse_number(cell.substr(0, first)),
+             minutes = parse_number(cell.substr(first + 1, second - first - 1)),
              seconds = parse_number(cell.substr(second + 1));
   if (!hours || !minutes || !seconds) return std::nullopt;
   return 3600.0 * *hours + 60.0 * *minutes + *seconds;
@@ -71,7 +72,8 @@ struct TimedRows {
   std::size_t repeated = 0;
 };
 
-Result<TimedRows> read_times(const CsvTable& table, const LogColumns& columns, const InsMap& map, const std::string& name) {
+Result<TimedRows> read_times(const CsvTable& table, const LogColumns& columns, const InsMap& map,
+                             const std::string& name) {
   const bool has_clock =
       columns.clock && (!columns.counter || ClockReader(table, *columns.clock, 1.0, 0.0, name).has_values());
   ClockReader clock = has_clock ? ClockReader(table, *columns.clock, columns.clock_tick, map.clock.wraps, name)
@@ -82,9 +84,10 @@ Result<TimedRows> read_times(const CsvTable& table, const LogColumns& columns, c
     if (std::isnan(time)) continue;
     if (!timed.time.empty() && !(time > timed.time.back())) {
       if (time < timed.time.back())
-        return error("{}:{}: the time goes backwards, from {} s to {} s; is this several recordings in one file, or a clock "
-                     "that starts again (wraps in a column map)?",
-                     name, table.line[row], timed.time.back(), time);
+        return error(
+            "{}:{}: the time goes backwards, from {} s to {} s; is this several recordings in one file, or a clock "
+            "that starts again (wraps in a column map)?",
+            name, table.line[row], timed.time.back(), time);
       ++timed.repeated;
       continue;
     }
@@ -105,7 +108,8 @@ Result<std::vector<float>> read_channel(const CsvTable& table, const LogColumn& 
     if (!value)
       return error("{}:{}: {}", name, table.line[row],
                    describe_invalid_number(table.header.columns[column.index], cell, table.header.decimal));
-    values.push_back(std::isfinite(*value) ? static_cast<float>(column.factor * *value) : std::numeric_limits<float>::quiet_NaN());
+    values.push_back(std::isfinite(*value) ? static_cast<float>(column.factor * *value)
+                                           : std::numeric_limits<float>::quiet_NaN());
   }
   return values;
 }
@@ -128,7 +132,8 @@ InsSensor& sensor_of(ForeignLog& log, const std::string& name) {
   const auto at = std::ranges::find(log.sensors, name, &InsSensor::name);
   if (at != log.sensors.end()) return *at;
   log.stated_units.push_back({});
-  return log.sensors.emplace_back(InsSensor{.name = name, .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}});
+  return log.sensors.emplace_back(
+      InsSensor{.name = name, .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}});
 }
 
 void orient(TriadColumns& triad, double sign, const Mat3& axes) {
@@ -166,7 +171,8 @@ Result<ForeignLog> parse_foreign_log(std::string_view text, const std::filesyste
     KINFER_TRY(values, read_channel(table, column, timed, name));
     InsSensor& sensor = sensor_of(log, column.sensor.empty() ? unnamed : column.sensor);
     instrument_columns(sensor, column.instrument).axis[column.axis] = std::move(values);
-    if (column.has_unit) log.stated_units[static_cast<std::size_t>(&sensor - log.sensors.data())][column.instrument] = true;
+    if (column.has_unit)
+      log.stated_units[static_cast<std::size_t>(&sensor - log.sensors.data())][column.instrument] = true;
   }
   if (auto done = expect_triads(log, name, table.header.line); !done) return forward_error(done.error());
   for (InsSensor& sensor : log.sensors)
@@ -174,7 +180,8 @@ Result<ForeignLog> parse_foreign_log(std::string_view text, const std::filesyste
   log.has_free_acceleration = columns.has_free_acceleration;
   log.time = std::move(timed.time);
   if (timed.repeated > 0)
-    log.remarks.push_back(fmt::format("{}: {} rows have the time of the row before and are not used", name, timed.repeated));
+    log.remarks.push_back(
+        fmt::format("{}: {} rows have the time of the row before and are not used", name, timed.repeated));
   if (!map.title.empty()) log.remarks.push_back(fmt::format("{}: read as {}", name, map.title));
   return log;
 }

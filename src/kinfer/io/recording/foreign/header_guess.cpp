@@ -15,26 +15,36 @@ struct Word {
 
 // Longer words first: "linearacceleration" holds "acceleration".
 constexpr std::array instrument_words{
-    Word{"magneticfield", ChannelKind::field},    Word{"magnetometer", ChannelKind::field},
-    Word{"accelerometer", ChannelKind::force},    Word{"acceleration", ChannelKind::force},
-    Word{"specificforce", ChannelKind::force},    Word{"angularvelocity", ChannelKind::rate},
-    Word{"angularrate", ChannelKind::rate},       Word{"turnrate", ChannelKind::rate},
-    Word{"gyroscope", ChannelKind::rate},         Word{"calibratedacc", ChannelKind::force},
-    Word{"accel", ChannelKind::force},            Word{"gyro", ChannelKind::rate},
-    Word{"magn", ChannelKind::field},             Word{"acc", ChannelKind::force},
-    Word{"gyr", ChannelKind::rate},               Word{"mag", ChannelKind::field},
+    Word{"magneticfield", ChannelKind::field},
+    Word{"magnetometer", ChannelKind::field},
+    Word{"accelerometer", ChannelKind::force},
+    Word{"acceleration", ChannelKind::force},
+    Word{"specificforce", ChannelKind::force},
+    Word{"angularvelocity", ChannelKind::rate},
+    Word{"angularrate", ChannelKind::rate},
+    Word{"turnrate", ChannelKind::rate},
+    Word{"gyroscope", ChannelKind::rate},
+    Word{"calibratedacc", ChannelKind::force},
+    Word{"accel", ChannelKind::force},
+    Word{"gyro", ChannelKind::rate},
+    Word{"magn", ChannelKind::field},
+    Word{"acc", ChannelKind::force},
+    Word{"gyr", ChannelKind::rate},
+    Word{"mag", ChannelKind::field},
 };
 constexpr std::array free_words{"linear", "free", "user", "dynamic", "withoutgravity", "withoutg", "nogravity"};
 constexpr std::array time_words{"t",           "time",      "timestamp", "sampletimefine", "secondselapsed",
                                 "elapsedtime", "timeinsec", "seconds",   "times",          "systemtime"};
 // Derived quantities that hold an instrument's word.
-constexpr std::array other_words{"bias", "temp", "norm", "abs", "std", "status", "range", "clip", "delta", "uncalibrated_bias"};
+constexpr std::array other_words{"bias",   "temp",  "norm", "abs",   "std",
+                                 "status", "range", "clip", "delta", "uncalibrated_bias"};
 
 /// Lower case, letters and digits only.
 std::string simplified(std::string_view name) {
   std::string text;
   for (const char c : name)
-    if (std::isalnum(static_cast<unsigned char>(c))) text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
 }
 
@@ -65,7 +75,8 @@ std::string_view trimmed(std::string_view text) {
 /// Position of a word in the name that ignores case and separators; the name's part before it names the sensor.
 std::string sensor_before(std::string_view name, std::string_view word) {
   for (std::size_t end = 0; end <= name.size(); ++end)
-    if (simplified(name.substr(end)).starts_with(word) && (end == name.size() || std::isalnum(static_cast<unsigned char>(name[end]))))
+    if (simplified(name.substr(end)).starts_with(word) &&
+        (end == name.size() || std::isalnum(static_cast<unsigned char>(name[end]))))
       return std::string(trimmed(name.substr(0, end)));
   return {};
 }

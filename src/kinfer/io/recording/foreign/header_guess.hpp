@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the header of a foreign log says by itself: which columns are accelerometer, gyroscope and magnetometer, of which
-// sensor, and which is the clock. "IMU2 Acc_X (g)", "Gyroscope y (rad/s)", "X Accel [x8004]", "boom_gz".
+// What the header of a foreign log says by itself: which columns are accelerometer, gyroscope and magnetometer, of
+// which sensor, and which is the clock. "IMU2 Acc_X (g)", "Gyroscope y (rad/s)", "X Accel [x8004]", "boom_gz".
 #pragma once
 
 #include <optional>

@@ -62,8 +62,10 @@ void read_axes(const TomlTable& table, TableReader& file, InsMap& map) {
   if (is_triple)
     for (std::size_t k = 0; k < 3; ++k) texts[k] = std::get<std::string>((*array)[k].value);
   const auto axes = is_triple ? parse_axes(texts) : std::nullopt;
-  if (axes) map.axes = *axes;
-  else file.report_error(value->line, "\"axes\": expected three different axes as [\"-x\", \"y\", \"z\"]");
+  if (axes)
+    map.axes = *axes;
+  else
+    file.report_error(value->line, "\"axes\": expected three different axes as [\"-x\", \"y\", \"z\"]");
 }
 
 void read_signs(TableReader& file, FirstError& first_error, InsMap& map) {

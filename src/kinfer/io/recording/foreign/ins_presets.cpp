@@ -5,7 +5,7 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/io/recording/foreign/log_columns.hpp"
-#include "kinfer/io/recording/preset_files.hpp"
+#include "kinfer/io/recording/foreign/preset_files.hpp"
 
 namespace kinfer {
 namespace {

@@ -76,7 +76,8 @@ Result<LogColumns> mapped_columns(const CsvHeader& header, const InsMap& map, co
 }
 
 Result<LogColumns> guessed_columns(const CsvHeader& header, const InsMap& map, const std::string& where) {
-  constexpr std::array counter_names{"PacketCounter", "Packet Counter", "Counter", "counter", "Sample", "Index", "Frame"};
+  constexpr std::array counter_names{"PacketCounter", "Packet Counter", "Counter", "counter",
+                                     "Sample",        "Index",          "Frame"};
   LogColumns found;
   for (std::size_t c = 0; c < header.columns.size(); ++c) {
     const ColumnHeader in_file = plain_header(header.columns[c]);
@@ -84,7 +85,8 @@ Result<LogColumns> guessed_columns(const CsvHeader& header, const InsMap& map, c
     if (guess.kind == ChannelKind::time && !found.clock) found.clock = c, found.clock_tick = time_factor(in_file);
     if (std::ranges::find(counter_names, in_file.name) != counter_names.end() && !found.counter) found.counter = c;
     found.has_free_acceleration |= guess.kind == ChannelKind::free_acceleration;
-    if (guess.kind != ChannelKind::force && guess.kind != ChannelKind::rate && guess.kind != ChannelKind::field) continue;
+    if (guess.kind != ChannelKind::force && guess.kind != ChannelKind::rate && guess.kind != ChannelKind::field)
+      continue;
     LogColumn column{c, guess.sensor, instrument_of(guess.kind), guess.axis, 1.0, false};
     const bool is_taken = std::ranges::any_of(found.channels, [&](const LogColumn& other) {
       return other.sensor == column.sensor && other.instrument == column.instrument && other.axis == column.axis;
@@ -135,13 +137,15 @@ Result<LogColumns> find_log_columns(const CsvHeader& header, std::string_view pr
   if (auto done = apply_clock(map.counter, header, preamble, where, columns.counter, columns.counter_tick); !done)
     return forward_error(done.error());
   if (columns.channels.empty() && columns.has_free_acceleration)
-    return error("{}: the file holds linear or free acceleration, from which gravity is removed, which cannot be mended; "
-                 "export what the accelerometer measures",
-                 where);
+    return error(
+        "{}: the file holds linear or free acceleration, from which gravity is removed, which cannot be mended; "
+        "export what the accelerometer measures",
+        where);
   if (columns.channels.empty())
-    return error("{}: no column is known as that of an accelerometer, gyroscope or magnetometer; a column map "
-                 "(--columns) can say which is which",
-                 where);
+    return error(
+        "{}: no column is known as that of an accelerometer, gyroscope or magnetometer; a column map "
+        "(--columns) can say which is which",
+        where);
   if (!columns.clock && !columns.counter)
     return error("{}: no column is known as a time; a column map (--columns) can say t = \"name [unit]\"", where);
   return columns;

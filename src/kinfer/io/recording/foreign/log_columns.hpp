@@ -16,13 +16,13 @@ struct LogColumn {
   std::string sensor;          ///< empty: the file's
   std::size_t instrument = 0;  ///< 0 specific force, 1 angular rate, 2 magnetic field
   std::size_t axis = 0;
-  double factor = 1.0;         ///< SI (µT) per unit of the file
+  double factor = 1.0;  ///< SI (µT) per unit of the file
   bool has_unit = false;
 };
 
 struct LogColumns {
   std::vector<LogColumn> channels;
-  std::optional<std::size_t> clock, counter;  ///< columns
+  std::optional<std::size_t> clock, counter;    ///< columns
   double clock_tick = 1.0, counter_tick = 1.0;  ///< [s] of one count
   bool has_free_acceleration = false;
 };

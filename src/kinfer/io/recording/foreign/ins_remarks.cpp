@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/recording/ins_remarks.hpp"
+#include "kinfer/io/recording/foreign/ins_remarks.hpp"
 
 #include <fmt/format.h>
 
@@ -43,9 +43,10 @@ void convert_gauss(InsRecording& out, InsSensor& sensor) {
   for (auto& axis : sensor.field.axis)
     for (float& value : axis) value *= 100.0F;
   flag_faults(sensor);
-  add_remark(out, fmt::format("{0}: the magnetic field is taken to be in gauss; state its unit in brackets, {0}_mx[G], or "
-                              "{0}_mx[1] where it is arbitrary",
-                              sensor.name));
+  add_remark(out,
+             fmt::format("{0}: the magnetic field is taken to be in gauss; state its unit in brackets, {0}_mx[G], or "
+                         "{0}_mx[1] where it is arbitrary",
+                         sensor.name));
 }
 
 }  // namespace
