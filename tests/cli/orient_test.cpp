@@ -83,7 +83,7 @@ TEST_F(Orient, SeveralLoggersAreWrittenOneAfterTheOther) {
 }
 
 TEST_F(Orient, BadInputGivesOneSentenceExitCode2AndNoFile) {
-  write(in("g.csv"), "t,i_ax,i_ay,i_az,i_gx,i_gy,i_gz\n0,0,0,1,0,0,0\n0.01,0,0,1,0,0,0\n");
+  write(in("g.csv"), "t,i_ax[m/s^2],i_ay[m/s^2],i_az[m/s^2],i_gx,i_gy,i_gz\n0,0,0,1,0,0,0\n0.01,0,0,1,0,0,0\n");
   write(in("dead.csv"), "t,i_ax,i_ay,i_az,i_gx,i_gy,i_gz\n0,0,0,0,0,0,0\n0.01,0,0,0,0,0,0\n");
   const std::pair<const char*, const char*> cases[] = {
       {"orient none.csv -o q.csv", "none.csv: no such file"},

@@ -11,6 +11,14 @@ namespace {
 
 using testing::HasSubstr;
 
+FactValues unit_of(double unit) {
+  return {{"sensors", std::vector<std::string>{"a", "b"}}, {"unit", unit}};
+}
+
+FactValues share_of(const char* instrument) {
+  return {{"sensor", "a"}, {"instrument", std::string(instrument)}, {"share", 0.5}};
+}
+
 std::vector<Finding> one_of_each() {
   const FactValues cut{{"sensor", "e"}, {"link", "a-e"}, {"residual", 0.5}, {"usual_residual", 0.01}};
   FactValues group = cut;
@@ -67,6 +75,34 @@ std::vector<Finding> one_of_each() {
                   {"period", 0.01},
                   {"rows_per_packet", 10.0}},
        .applied = true},
+      {.kind = FindingKind::clock_unit, .values = {{"logger", "a.csv"}, {"unit", 1e-3}}, .applied = true},
+      {.kind = FindingKind::clock_counts,
+       .severity = Severity::fault,
+       .values = {{"logger", "a.csv"}, {"unit", 0.01}, {"rate", 100.0}}},
+      {.kind = FindingKind::force_unit, .values = unit_of(9.80665), .applied = true},
+      {.kind = FindingKind::rate_unit, .values = unit_of(0.017453292519943295), .applied = true},
+      {.kind = FindingKind::field_unit, .values = unit_of(1e3), .applied = true},
+      {.kind = FindingKind::repeated_rows, .values = share_of("gyroscope"), .applied = true},
+      {.kind = FindingKind::interpolated_rows, .values = share_of("accelerometer"), .applied = true},
+      {.kind = FindingKind::rates_unrelated, .severity = Severity::fault, .values = unit_of(1.0)},
+      {.kind = FindingKind::rate_sign, .severity = Severity::fault, .values = {{"sensor", "b"}}, .applied = true},
+      {.kind = FindingKind::rate_sign, .severity = Severity::fault, .values = {{"sensor", "b"}}},
+      {.kind = FindingKind::left_handed, .severity = Severity::fault, .values = {{"sensor", "c"}}, .applied = true},
+      {.kind = FindingKind::instrument_axes,
+       .severity = Severity::fault,
+       .values = {{"sensor", "b"}, {"instrument", "gyroscope"}, {"axes", "y, -x, z"}},
+       .applied = true},
+      {.kind = FindingKind::force_sign,
+       .severity = Severity::fault,
+       .values = {{"sensors", std::vector<std::string>{"d"}}},
+       .applied = true},
+      {.kind = FindingKind::force_sign, .values = {{"sensors", std::vector<std::string>{"a", "b"}}}},
+      {.kind = FindingKind::opposite_verticals,
+       .severity = Severity::fault,
+       .values = {{"sensors", std::vector<std::string>{"a"}}, {"others", std::vector<std::string>{"b"}}}},
+      {.kind = FindingKind::instruments_out_of_step,
+       .values = {{"sensor", "b"}, {"lag", 0.04}, {"sd", 0.002}},
+       .applied = true},
   };
 }
 
@@ -85,6 +121,10 @@ TEST(RecordingFindings, EveryKindHasASentenceAndItsNumbersInUsersUnits) {
   EXPECT_THAT(all, HasSubstr("moved by about 30 mm; only what was recorded before is used"));
   EXPECT_THAT(all, HasSubstr("d are logged 50.00 (± 0.10) ms late, and its clock runs 50.0 (± 1.00) ppm slow"));
   EXPECT_THAT(all, HasSubstr("fall into 2 groups that share only the ground (a, b; c, d)"));
+  EXPECT_THAT(all, HasSubstr("the specific forces of a, b are in g, by the size of gravity"));
+  EXPECT_THAT(all, HasSubstr("the angular rates of a, b are in deg/s"));
+  EXPECT_THAT(all, HasSubstr("the accelerometer of b is logged 40 ± 2 ms later than its gyroscope"));
+  EXPECT_THAT(all, HasSubstr("the gyroscope of b has other axes than its other instruments: theirs are its y, -x, z"));
   EXPECT_THAT(all, HasSubstr("a-b is against the log: a joint there leaves 0.500 m/s²"));
 }
 

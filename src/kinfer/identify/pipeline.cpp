@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "kinfer/identify/diagnosis/diagnosis.hpp"
 #include "kinfer/identify/findings/advice.hpp"
 #include "kinfer/identify/findings/forecast.hpp"
 #include "kinfer/identify/findings/given_links.hpp"
@@ -21,6 +22,7 @@
 #include "kinfer/identify/screening/machines.hpp"
 #include "kinfer/identify/screening/session.hpp"
 #include "kinfer/identify/screening/unconnected.hpp"
+#include "kinfer/measurement/ins_selection.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -155,6 +157,13 @@ void draw_conclusions(Identification& result, const OrderedMotion& ordered,
   result.advice = identification_advice(result);
 }
 
+/// The recording of the named sensors, so that others are not judged; none if none is named.
+Result<std::optional<InsRecording>> named_part(const InsRecording& log, const std::vector<std::string>& names) {
+  if (names.empty()) return std::nullopt;
+  KINFER_TRY(sensors, find_sensors(log, names));
+  return select_sensors(log, sensors);
+}
+
 /// The same recording without the given tree judges the links that it contradicts.
 void judge_given_links(Identification& given, const InsRecording& recording, IdentifyOptions options, const Rng& rng,
                        const Observer& observer) {
@@ -165,9 +174,12 @@ void judge_given_links(Identification& given, const InsRecording& recording, Ide
 
 }  // namespace
 
-Result<Identification> identify_machine(const InsRecording& recording, const IdentifyOptions& options, const Rng& rng,
+Result<Identification> identify_machine(const InsRecording& log, const IdentifyOptions& options, const Rng& rng,
                                         const Observer& observer) {
   if (const auto checked = check(options); !checked) return forward_error(checked.error());
+  KINFER_TRY(named, named_part(log, options.sensors));
+  KINFER_TRY(diagnosis, diagnose_log(named ? *named : log, options.threads));
+  const InsRecording& recording = diagnosis.of(named ? *named : log);
   KINFER_TRY(session, Session::open(recording, options.sensors, options.root, options.motion, options.threads));
   for (;;) {
     KINFER_TRY(ordered,
@@ -188,13 +200,14 @@ Result<Identification> identify_machine(const InsRecording& recording, const Ide
     result.motion = motion_evidence(ordered.motion, result, geometry.held_out);
     OrderReport order = report_order(ordered, geometry.loops);
     ClockReport clocks = session.report_clocks(geometry.clocks);
+    append(result.findings, diagnosis.findings);
     report_findings(result, session, ordered, order, clocks);
     result.notes = std::move(order.notes);
     append(result.notes, geometry.notes);
     result.order = std::move(order.evidence);
     result.clocks = std::move(clocks.clocks);
     if (geometry.tracking) result.tracking = complete(std::move(*geometry.tracking), result);
-    judge_given_links(result, recording, options, rng, observer);
+    judge_given_links(result, log, options, rng, observer);
     draw_conclusions(result, ordered, connections);
     return result;
   }

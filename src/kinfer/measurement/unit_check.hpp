@@ -2,6 +2,7 @@
 // Columns that seem to be in another unit than the file claims. Nothing is corrected.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "kinfer/measurement/ins_recording.hpp"
@@ -13,7 +14,20 @@ namespace kinfer {
 struct UnitWarning {
   std::string sentence;  ///< "imu: gravity reads 1.00 m/s²: the file seems to be in g; write the header as imu_ax[g]"
   bool fatal = true;     ///< false: the column can be ignored
+  bool is_other_unit = false;  ///< one other unit explains the values: they can be used if the file states none
+  std::size_t instrument = 0;  ///< 0 specific force, 1 angular rate, 2 magnetic field
 };
 std::vector<UnitWarning> check_units(const InsSensor& sensor, bool field_has_unit);
+
+/// m/s² per unit in which the specific force must be for gravity to be right: 1, or that of g, mg or mm/s²; none if no
+/// known unit explains it.
+std::optional<double> acceleration_unit(const InsSensor& sensor);
+
+/// The specific force has hardly any size while the sensor does not rotate: linear or free acceleration, from which a
+/// filter has removed gravity.
+bool lacks_gravity(const InsSensor& sensor);
+
+/// µT per unit in which the field would be the Earth's: 1, or that of G, mT, T or nT; none if no known unit does it.
+std::optional<double> field_unit(const InsSensor& sensor);
 
 }  // namespace kinfer

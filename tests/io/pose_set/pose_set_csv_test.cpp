@@ -328,8 +328,6 @@ TEST(PoseSetCsv, BadFilesAreRefusedWithOneSentence) {
       {"q1,q2,pair,distance\n0,0,a,1\n", "poses.csv:2: column pair: expected 2 rows of pair \"a\", found 1"},
       {"q1,q2,pair,distance\n0,0,a,1\n0,0,a,2\n",
        "poses.csv:3: column distance: the rows of pair \"a\" give different distances"},
-      {"q1;q2;x;y;z\n0;0;1;2;3\n",
-       "poses.csv:1: expected columns separated by \",\"; a column map can say delimiter = \";\""},
       {header + "0,0,1,2,\"3\n",
        "poses.csv:2: a quoted cell does not end on this line, or text follows its closing quote"},
       {std::string("\xFF\xFEq\0", 4), "poses.csv:1: the file is UTF-16, expected UTF-8; save it as CSV UTF-8"},
@@ -390,6 +388,26 @@ TEST(ColumnMap, WhatContradictsTheMapIsRefused) {
             "decimal marks are mixed");
 }
 
+TEST(PoseSetCsv, DelimiterDecimalMarkAndUnitsAreToldByTheFileItself) {
+  const auto set = parse_pose_set("sep=;\n\"q1 (deg)\";\"q2 (mm)\";\"x (mm)\";\"y (mm)\";\"z (mm)\";\n90;0;1,5;2;3;\n",
+                                  "poses.csv", two_joints());
+  ASSERT_TRUE(set) << set.error().what;
+  EXPECT_NEAR(set->joints(0, 0), 90 * degree, 1e-12);
+  EXPECT_NEAR(set->points[0].position.x(), 1.5e-3, 1e-12);
+}
+
+TEST(PoseSetCsv, RotationVectorsAndColumnsByNumberAreMapped) {
+  const auto map = parse_column_map(
+      "header = \"none\"\neuler = \"rotation vector\"\n[columns]\nq1 = \"#1\"\nq2 = \"#2\"\nx = \"#3 [mm]\"\ny = \"#4 "
+      "[mm]\"\nz = \"#5 [mm]\"\nrx = \"#6\"\nry = \"#7\"\nrz = \"#8\"\n",
+      "map.toml");
+  ASSERT_TRUE(map) << map.error().what;
+  const auto set = parse_pose_set("0 1 1000 2000 3000 0 0 1.5\n", "rtde.txt", two_joints(), *map);
+  ASSERT_TRUE(set) << set.error().what;
+  EXPECT_NEAR(set->points[0].position.y(), 2.0, 1e-12);
+  EXPECT_NEAR(angle_between(set->orientations[0].orientation.toRotationMatrix(), rot_z(1.5)), 0.0, 1e-9);
+}
+
 TEST(ColumnMap, BadMapsAreRefusedWithOneSentence) {
   const auto complaint = [](const std::string& text) {
     const auto map = parse_column_map(text, "map.toml");
@@ -397,7 +415,8 @@ TEST(ColumnMap, BadMapsAreRefusedWithOneSentence) {
   };
   EXPECT_EQ(complaint("delimitter = \";\""), "map.toml:1: unknown key \"delimitter\"");
   EXPECT_EQ(complaint("delimiter = \";;\""), "map.toml:1: \"delimiter\": expected one character, found \";;\"");
-  EXPECT_EQ(complaint("decimal = \",\""), "map.toml:1: \"decimal\" and \"delimiter\" are the same character");
+  EXPECT_EQ(complaint("delimiter = \",\"\ndecimal = \",\""),
+            "map.toml:2: \"decimal\" and \"delimiter\" are the same character");
   EXPECT_EQ(complaint("skip_lines = 1.5"), "map.toml:1: \"skip_lines\": expected a whole number from 0");
   EXPECT_EQ(complaint("euler = \"ABC\""),
             "map.toml:1: \"euler\": expected a sequence as \"XYZ intrinsic\" or \"ZYX extrinsic\", found \"ABC\"");

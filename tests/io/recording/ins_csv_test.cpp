@@ -93,28 +93,47 @@ TEST(InsCsv, TimeMustRise) {
             "imu.csv:5: duplicate time 0.02 s; the time must be strictly increasing");
 }
 
-TEST(InsCsv, ImpossibleNumbersAreReported) {
-  EXPECT_EQ(error_of(imu_header + still_rows(50, 1.0)),
+const std::string header_with_units =
+    "t,imu_ax[m/s^2],imu_ay[m/s^2],imu_az[m/s^2],imu_gx[rad/s],imu_gy[rad/s],imu_gz[rad/s],imu_mx,imu_my,imu_mz\n";
+
+TEST(InsCsv, NumbersThatCannotBeInTheStatedUnitAreErrors) {
+  EXPECT_EQ(error_of(header_with_units + still_rows(50, 1.0)),
             "imu.csv: imu: gravity reads 1.01 m/s²: the file seems to be in g; write the headers as imu_ax[g], "
             "imu_ay[g], imu_az[g]");
-  EXPECT_NE(error_of(imu_header + still_rows(50, 1000.0)).find("gravity reads 1e+03 m/s², expected about 9.81"),
+  EXPECT_NE(error_of(header_with_units + still_rows(50, 1000.0)).find("gravity reads 1e+03 m/s², expected about 9.81"),
             std::string::npos);
-  std::string fast = imu_header;
+  std::string fast = header_with_units;
   for (int i = 0; i < 50; ++i) fast += fmt::format("{},0,0,9.8,{},0,0,1,20,-44\n", 0.01 * i, 90 + i);
   EXPECT_NE(error_of(fast).find("the file seems to be in °/s; write the headers as imu_gx[deg/s]"), std::string::npos);
 }
 
+TEST(InsCsv, NumbersInAnotherUnitThatTheFileDoesNotStateAreLeftToTheDiagnosis) {
+  EXPECT_EQ(error_of(imu_header + still_rows(50, 1.0)), "no error");
+  EXPECT_NE(error_of(imu_header + still_rows(50, 55.0)).find("gravity reads 55 m/s²"), std::string::npos)
+      << "no known unit";
+  EXPECT_NE(error_of(imu_header + still_rows(50, 0.02)).find("hold no gravity"), std::string::npos);
+}
+
 TEST(InsCsv, AnImplausibleMagneticFieldIsReportedAndNotUsed) {
   std::string text = imu_header;
-  for (int i = 0; i < 50; ++i) text += fmt::format("{},0,0,9.8,0,0,0,0.1,0.4,-0.5\n", 0.01 * i);
+  for (int i = 0; i < 50; ++i) text += fmt::format("{},0,0,9.8,0,0,0,1.1,1.4,-1.5\n", 0.01 * i);
   auto read = parse_ins_csv(text, "imu.csv");
   ASSERT_TRUE(read);
   EXPECT_FALSE(read->sensors[0].has_magnetometer());
   ASSERT_EQ(read->remarks.size(), 1u);
-  EXPECT_NE(read->remarks[0].find("the magnetic field reads 0.648 µT"), std::string::npos);
+  EXPECT_NE(read->remarks[0].find("the magnetic field reads 2.33 µT"), std::string::npos);
   text.replace(text.find("imu_mx"), 6, "imu_mx[1]");
   read = parse_ins_csv(text, "imu.csv");
   EXPECT_TRUE(read->sensors[0].has_magnetometer()) << "arbitrary units, and said so";
+}
+
+TEST(InsCsv, AMagneticFieldInGaussIsConverted) {
+  std::string text = imu_header;
+  for (int i = 0; i < 50; ++i) text += fmt::format("{},0,0,9.8,0,0,0,0.1,0.2,-0.44\n", 0.01 * i);
+  const auto read = parse_ins_csv(text, "imu.csv");
+  ASSERT_TRUE(read);
+  EXPECT_LT((read->sensors[0].field.at(3) - Vec3(10, 20, -44)).norm(), 1e-4);
+  EXPECT_NE(read->remarks.at(0).find("taken to be in gauss"), std::string::npos);
 }
 
 TEST(InsCsv, AnAllZeroMagnetometerIsReportedAndNotUsed) {

@@ -1,16 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input of the verbs that identify: INS recordings.
+// Input of the verbs that read INS recordings.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "kinfer/base/result.hpp"
+#include "kinfer/cli/parts/arguments.hpp"
+#include "kinfer/evidence/facts/findings.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
 
 namespace kinfer::cli {
 
-/// All files as one recording. An error if a sensor lacks specific force or angular rate.
-Result<InsRecording> read_ins_logs(const std::vector<std::string>& paths);
+/// All files as one recording, by the column map if one is given. An error if a sensor lacks specific force or angular
+/// rate.
+Result<InsRecording> read_ins_logs(const std::vector<std::string>& paths, const std::string& columns = "");
+
+/// A recording with its certain faults corrected, and what was found.
+struct DiagnosedLogs {
+  InsRecording recording;
+  std::vector<Finding> findings{};
+};
+Result<DiagnosedLogs> read_diagnosed_logs(const std::vector<std::string>& paths, const std::string& columns,
+                                          int threads);
+
+/// --columns MAP.toml of INS logs.
+void add_log_columns_option(CLI::App& verb, std::string& columns);
 
 }  // namespace kinfer::cli

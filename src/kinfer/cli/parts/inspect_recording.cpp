@@ -7,10 +7,11 @@
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/constants.hpp"
 #include "kinfer/cli/parts/common.hpp"
+#include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/inertial/activity.hpp"
 #include "kinfer/inertial/allan.hpp"
 #include "kinfer/inertial/sensor_grading.hpp"
-#include "kinfer/io/recording/recording_formats.hpp"
+#include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -97,6 +98,26 @@ void print_activity(const InsRecording& recording) {
   }
 }
 
+/// Whether the sign of all accelerometers together is known, which only magnetometers tell.
+void print_sign(const InsRecording& recording) {
+  const bool is_told = std::ranges::any_of(recording.sensors, &InsSensor::has_magnetometer);
+  if (!is_told)
+    fmt::print(
+        "  assumed: accelerometers read +g upwards at rest; without magnetometer nothing in the log tells, and if they "
+        "read -g all lever arms come out mirrored\n");
+}
+
+void print_findings(const InsRecording& recording, const std::vector<Finding>& findings) {
+  fmt::print("\ndiagnosis:\n");
+  if (findings.empty())
+    fmt::print("  nothing wrong was found: units, signs, axes and times of the instruments agree\n");
+  for (const Finding& f : findings) {
+    fmt::print("  {}: {}\n", name(f.severity), words::sentence(f));
+    if (const std::string remedy = words::suggestion(f); !remedy.empty()) fmt::print("    -> {}\n", remedy);
+  }
+  print_sign(recording);
+}
+
 /// Values of one axis over the rows of a rest; missing values are skipped, which is harmless at rest.
 std::vector<double> values_at_rest(const std::vector<float>& axis, const RestPeriod& rest) {
   std::vector<double> values;
@@ -144,10 +165,11 @@ void print_allan(const InsRecording& recording) {
 
 }  // namespace
 
-int inspect_recording(const std::vector<std::string>& paths, AllanPlot allan) {
-  const std::vector<std::filesystem::path> files(paths.begin(), paths.end());
-  const auto recording = read_recording(files);
-  if (!recording) return fail(recording.error());
+int inspect_recording(const std::vector<std::string>& paths, const std::string& columns, AllanPlot allan) {
+  constexpr int all_cores = 0;
+  const auto logs = read_diagnosed_logs(paths, columns, all_cores);
+  if (!logs) return fail(logs.error());
+  const InsRecording* recording = &logs->recording;
   print_loggers(*recording);
   for (const InsSensor& sensor : recording->sensors) {
     const auto time = recording->time(sensor);
@@ -156,6 +178,7 @@ int inspect_recording(const std::vector<std::string>& paths, AllanPlot allan) {
   print_activity(*recording);
   if (!recording->remarks.empty()) fmt::print("\n");
   for (const std::string& remark : recording->remarks) fmt::print("! {}\n", remark);
+  print_findings(*recording, logs->findings);
   if (allan == AllanPlot::print) print_allan(*recording);
   return exit_done;
 }

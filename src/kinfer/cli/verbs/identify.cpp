@@ -41,7 +41,7 @@ struct IdentifyArguments {
   double smoothing = SegmentMotionOptions{}.smoothing;
   EngineArguments search;
   int links = 0;
-  std::string geometry = "refined", grade = "auto", facts, sensors, tree, zero;
+  std::string geometry = "refined", grade = "auto", facts, sensors, tree, zero, columns;
 };
 
 std::vector<std::string> split_at_commas(const std::string& text) {
@@ -166,6 +166,7 @@ Result<identify::IdentifyOptions> identify_options(const CLI::App& verb, const I
 Provenance provenance_of(const IdentifyArguments& options, const identify::IdentifyOptions& how) {
   std::vector<std::string> inputs = options.logs;
   if (!options.facts.empty()) inputs.push_back(options.facts);
+  if (!options.columns.empty()) inputs.push_back(options.columns);
   return {.inputs = fingerprints(inputs), .options = identify::describe(how), .seed = options.common.seed};
 }
 
@@ -184,9 +185,10 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   RunRecord record("identify", options.common);
   for (const std::string& path : options.logs) record.add_input(path);
   if (!options.facts.empty()) record.add_input(options.facts);
+  if (!options.columns.empty()) record.add_input(options.columns);
   const auto how = identify_options(verb, options);
   if (!how) return fail(how.error());
-  const auto recording = read_ins_logs(options.logs);
+  const auto recording = read_ins_logs(options.logs, options.columns);
   if (!recording) return fail(recording.error());
   const auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
@@ -264,6 +266,7 @@ Verb add_identify(CLI::App& app) {
       "12.5 s into the log (default: 0 where the log begins)",
       Requirement::optional, "JOINTS");
   add_count(*verb, "--links", options->links, 0, 1000, "Links to find, from the root outwards; 0 means all");
+  add_log_columns_option(*verb, options->columns);
   add_engine_options(*verb, options->search);
   add_common_options(*verb, options->common);
   return {verb, [verb, options] { return run(*verb, *options); }};

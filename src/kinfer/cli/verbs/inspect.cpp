@@ -75,8 +75,9 @@ int run(const InspectArguments& options) {
   for (const std::string& file : options.files)
     if (is_robot_log(file))
       if (const int code = print_topics(file); code != exit_done) return code;
-  if (is_recording(options.files.front()))
-    return inspect_recording(options.files, options.allan ? AllanPlot::print : AllanPlot::none);
+  const bool is_mapped_log = options.robot.path.empty() && !options.columns.empty();
+  if (is_mapped_log || is_recording(options.files.front()))
+    return inspect_recording(options.files, options.columns, options.allan ? AllanPlot::print : AllanPlot::none);
   if (options.robot.path.empty())
     return fail({fmt::format("{}: no INS recording (no columns t and SENSOR_ax ...); a pose set needs --robot",
                              options.files.front())});

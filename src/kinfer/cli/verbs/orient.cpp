@@ -3,10 +3,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/inertial/sensor_orientations.hpp"
 #include "kinfer/io/recording/orientation_csv.hpp"
-#include "kinfer/io/recording/recording_formats.hpp"
+#include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 struct OrientArguments {
   CommonOptions common;
   std::vector<std::string> logs;
-  std::string out, filter = "kinfer", sensor, magnetometer = "auto";
+  std::string out, filter = "kinfer", sensor, columns, magnetometer = "auto";
 };
 
 /// Indices of the selected sensors: all, or the one named.
@@ -59,13 +60,15 @@ int run(const OrientArguments& options) {
   const auto filter = filter_named(options.filter);
   if (!filter) return fail({fmt::format("--filter {}: no such filter, known are {}", options.filter, filter_names())});
   const FilterOptions how = options.magnetometer == "off" ? without_magnetometer(*filter) : *filter;
-  const std::vector<std::filesystem::path> paths(options.logs.begin(), options.logs.end());
-  const auto recording = read_recording(paths);
-  if (!recording) return fail(recording.error());
+  const auto logs = read_diagnosed_logs(options.logs, options.columns, options.common.threads);
+  if (!logs) return fail(logs.error());
+  const InsRecording* recording = &logs->recording;
   const auto chosen = chosen_sensors(*recording, options.sensor);
   if (!chosen) return fail(chosen.error());
   const auto orientations = estimate_orientations(*recording, *chosen, how);
   if (!orientations) return fail(orientations.error());
+  if (!options.common.quiet)
+    for (const Finding& f : logs->findings) fmt::print(stderr, "kinfer: {}\n", words::sentence(f));
   if (!options.common.quiet)
     for (const std::string& remark : recording->remarks) fmt::print(stderr, "kinfer: {}\n", remark);
   if (auto done = write_orientation_csv(options.out, *recording, *orientations); !done) return fail(done.error());
@@ -92,6 +95,7 @@ Verb add_orient(CLI::App& app) {
   add_text(*verb, "--sensor", options->sensor, "Only this sensor (default: all)", Requirement::optional, "NAME");
   add_choice(*verb, "--magnetometer", options->magnetometer, {"auto", "off"},
              "auto: heading from the magnetometer where there is one; off: never");
+  add_log_columns_option(*verb, options->columns);
   add_common_options(*verb, options->common);
   return {verb, [options] { return run(*options); }};
 }

@@ -48,6 +48,20 @@ constexpr std::array named_kinds{
     NamedKind{FindingKind::remounted, "remounted"},
     NamedKind{FindingKind::clock, "clock"},
     NamedKind{FindingKind::timestamp_jitter, "timestamp_jitter"},
+    NamedKind{FindingKind::clock_unit, "clock_unit"},
+    NamedKind{FindingKind::clock_counts, "clock_counts"},
+    NamedKind{FindingKind::force_unit, "force_unit"},
+    NamedKind{FindingKind::rate_unit, "rate_unit"},
+    NamedKind{FindingKind::field_unit, "field_unit"},
+    NamedKind{FindingKind::repeated_rows, "repeated_rows"},
+    NamedKind{FindingKind::interpolated_rows, "interpolated_rows"},
+    NamedKind{FindingKind::rates_unrelated, "rates_unrelated"},
+    NamedKind{FindingKind::rate_sign, "rate_sign"},
+    NamedKind{FindingKind::left_handed, "left_handed"},
+    NamedKind{FindingKind::instrument_axes, "instrument_axes"},
+    NamedKind{FindingKind::force_sign, "force_sign"},
+    NamedKind{FindingKind::opposite_verticals, "opposite_verticals"},
+    NamedKind{FindingKind::instruments_out_of_step, "instruments_out_of_step"},
 };
 
 }  // namespace
@@ -63,6 +77,10 @@ std::optional<FindingKind> finding_kind(std::string_view name) {
 
 bool invalidates_result(const Finding& finding) {
   return finding.severity == Severity::fault && !finding.applied;
+}
+
+bool questions_result(const Finding& finding) {
+  return finding.kind == FindingKind::force_sign && !finding.applied;
 }
 
 }  // namespace kinfer

@@ -26,7 +26,8 @@ Usability usability(const std::vector<Finding>& findings, const std::vector<Join
            std::ranges::find(joint.doubts, JointDoubtKind::weakly_connected, &JointDoubt::kind) != joint.doubts.end();
   });
   if (is_all_doubtful && !joints.empty()) return Usability::do_not_use;
-  return some(JointUsability::use_with_care) ? Usability::use_with_care : Usability::use;
+  const bool is_questioned = some(JointUsability::use_with_care) || std::ranges::any_of(findings, questions_result);
+  return is_questioned ? Usability::use_with_care : Usability::use;
 }
 
 }  // namespace kinfer::identify

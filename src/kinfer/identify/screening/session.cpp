@@ -43,11 +43,10 @@ Result<Session> Session::open(const InsRecording& recording, const std::vector<s
   MendedTimeStamps stamps = mend_time_stamps(recording, threads);
   const InsRecording& mended = stamps.recording ? *stamps.recording : recording;
   KINFER_TRY(chosen, select_moving_sensors(mended, sensors, root, motion));
-  std::vector<Finding> duplicates = duplicate_findings(mended, chosen.sensors);
+  const std::vector<Finding> duplicates = duplicate_findings(mended, chosen.sensors);
   if (!duplicates.empty() && chosen.sensors.size() == 2)
     return error("{} and {} hold the same measurements: one sensor under two names",
                  duplicates.front().values.text("first"), duplicates.front().values.text("second"));
-  std::ranges::move(duplicates, std::back_inserter(chosen.findings));
   Session session(recording);
   if (chosen.sensors.size() < recording.sensors.size())
     session.part_ = select_sensors(mended, chosen.sensors);

@@ -60,7 +60,7 @@ Result<ReachTargets> parse_reach_targets(std::string_view text, const std::strin
     read.targets[static_cast<std::size_t>(point.row)].position = point.position;
   for (const OrientationMeasurement& m : set.orientations)
     read.targets[static_cast<std::size_t>(m.row)].orientation = FullGoal{m.orientation.toRotationMatrix()};
-  KINFER_TRY(table, split_csv(text, name, {map.delimiter, map.decimal, map.skip_lines}));
+  KINFER_TRY(table, split_csv(text, name, map.format));
   FirstError first_error(name);
   PoseColumns columns(table, map, first_error);
   read_axes(columns, read.targets);

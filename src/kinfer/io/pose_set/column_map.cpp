@@ -1,36 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/pose_set/column_map.hpp"
 
+#include "kinfer/io/text/table_format.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
 
 namespace kinfer {
 namespace {
 
-char read_character(TableReader& file, std::string_view key, char fallback) {
-  std::string text = file.text_or(key, std::string(1, fallback));
-  if (text == "tab") text = "\t";
-  if (text.size() == 1) return text.front();
-  file.report_error(file.line_of(key), fmt::format("\"{}\": expected one character, found \"{}\"", key, text));
-  return fallback;
-}
-
-int read_skip_lines(TableReader& file) {
-  const double lines = file.number_or("skip_lines", 0.0);
-  if (lines >= 0 && lines <= 1e6 && lines == static_cast<int>(lines)) return static_cast<int>(lines);
-  file.report_error(file.line_of("skip_lines"), "\"skip_lines\": expected a whole number from 0");
-  return 0;
-}
-
-std::optional<EulerSequence> read_euler(TableReader& file) {
-  if (!file.has("euler")) return file.ignore("euler"), std::nullopt;
+void read_euler(TableReader& file, ColumnMap& map) {
+  if (!file.has("euler")) return file.ignore("euler");
   const std::string text = file.text("euler");
-  const auto sequence = parse_euler_sequence(text);
-  if (!sequence)
+  map.is_rotation_vector = text == "rotation vector";
+  if (map.is_rotation_vector) return;
+  map.euler = parse_euler_sequence(text);
+  if (!map.euler)
     file.report_error(
         file.line_of("euler"),
         fmt::format("\"euler\": expected a sequence as \"XYZ intrinsic\" or \"ZYX extrinsic\", found \"{}\"", text));
-  return sequence;
 }
 
 }  // namespace
@@ -40,14 +27,8 @@ Result<ColumnMap> parse_column_map(std::string_view text, const std::string& nam
   FirstError first_error(name);
   TableReader file(table, 1, "", first_error);
   ColumnMap map;
-  map.delimiter = read_character(file, "delimiter", map.delimiter);
-  map.decimal = read_character(file, "decimal", map.decimal);
-  if (map.decimal != '.' && map.decimal != ',')
-    file.report_error(file.line_of("decimal"), "\"decimal\": expected \".\" or \",\"");
-  if (map.decimal == map.delimiter)
-    file.report_error(file.line_of("decimal"), "\"decimal\" and \"delimiter\" are the same character");
-  map.skip_lines = read_skip_lines(file);
-  map.euler = read_euler(file);
+  map.format = read_table_format(file);
+  read_euler(file, map);
   if (const TomlTable* columns = file.table_or_none("columns")) {
     TableReader reader(*columns, file.line_of("columns"), "columns: ", first_error);
     for (const auto& [ours, theirs] : columns->entries) map.columns.emplace_back(ours, reader.text(ours));

@@ -90,8 +90,8 @@ Unit PoseColumns::unit_of(const Column& column, Dimension dimension) {
 double PoseColumns::number(const Column& column, const Unit& unit, std::size_t row) {
   const std::string_view cell = table_.cell(row, column.index);
   if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto value = parse_number(cell, map_.decimal);
-  if (!value) report_error(row, describe_invalid_number(column.name, cell, map_.decimal));
+  const auto value = parse_number(cell, table_.header.decimal);
+  if (!value) report_error(row, describe_invalid_number(column.name, cell, table_.header.decimal));
   if (value && !std::isfinite(*value))
     report_error(row, fmt::format("column {}: expected a finite number, found \"{}\"", column.name, cell));
   return value ? unit.factor * (*value + unit.offset) : 0.0;

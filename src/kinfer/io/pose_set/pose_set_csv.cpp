@@ -168,20 +168,20 @@ PoseSet read_columns(PoseColumns& columns, const Chain& chain, const ColumnMap& 
 }
 
 /// A file with another delimiter looks like one with a single column.
-bool has_other_delimiter(const CsvHeader& header, const ColumnMap& map) {
+bool has_other_delimiter(const CsvHeader& header) {
   if (header.columns.size() != 1) return false;
-  return header.columns[0].find_first_of(map.delimiter == ';' ? ",\t" : ";\t") != std::string::npos;
+  return header.columns[0].find_first_of(header.delimiter == ';' ? ",\t" : ";\t") != std::string::npos;
 }
 
 }  // namespace
 
 Result<PoseSet> parse_pose_set(std::string_view text, const std::string& name, const Chain& chain, const ColumnMap& map,
                                RequiredContent required) {
-  KINFER_TRY(table, split_csv(text, name, {map.delimiter, map.decimal, map.skip_lines}));
+  KINFER_TRY(table, split_csv(text, name, map.format));
   const CsvHeader& header = table.header;
-  if (has_other_delimiter(header, map))
+  if (has_other_delimiter(header))
     return error("{}:{}: expected columns separated by \"{}\"; a column map can say delimiter = \";\"", name,
-                 header.line, map.delimiter);
+                 header.line, header.delimiter);
   if (map.columns.empty())
     if (auto distinct = expect_distinct_columns(header, name); !distinct) return forward_error(distinct.error());
   FirstError first_error(name);

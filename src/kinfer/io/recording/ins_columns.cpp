@@ -42,7 +42,7 @@ Result<double> parse_unit_factor(const ColumnHeader& header, Dimension dimension
 
 struct SeenChannels {
   std::array<std::array<bool, 3>, 3> has{};  // [instrument][axis]
-  bool field_has_unit = false;
+  std::array<bool, 3> has_unit{};
 };
 
 Result<void> expect_whole_triads(const SeenChannels& seen_channels, const std::string& sensor, const std::string& name,
@@ -99,7 +99,7 @@ Result<InsColumns> parse_ins_columns(const CsvHeader& header, const std::string&
       meaning = {sensor, channel->instrument, channel->axis, factor};
       seen_channels.resize(out.sensors.size() - first);
       seen_channels[sensor - first].has[channel->instrument][channel->axis] = true;
-      if (channel->instrument == 2 && column.has_unit) seen_channels[sensor - first].field_has_unit = true;
+      if (column.has_unit) seen_channels[sensor - first].has_unit[channel->instrument] = true;
     } else {
       found.unused_columns.emplace_back(column.name);
     }
@@ -112,7 +112,7 @@ Result<InsColumns> parse_ins_columns(const CsvHeader& header, const std::string&
   for (std::size_t i = 0; i < seen_channels.size(); ++i) {
     if (auto whole = expect_whole_triads(seen_channels[i], out.sensors[first + i].name, name, header.line); !whole)
       return forward_error(whole.error());
-    found.field_has_unit.push_back(seen_channels[i].field_has_unit);
+    found.has_unit.push_back(seen_channels[i].has_unit);
   }
   found.time_column = *time_column;
   return found;

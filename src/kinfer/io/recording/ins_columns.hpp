@@ -2,6 +2,7 @@
 // The header of an INS recording, interpreted: the time column, and sensor, instrument, axis and unit of the others.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -24,8 +25,8 @@ struct InsColumn {
 struct InsColumns {
   std::vector<InsColumn> columns;  ///< one per column of the header
   std::size_t time_column = 0;
-  std::vector<bool> field_has_unit;         ///< one per sensor of this file: its magnetometer's unit is stated
-  std::vector<std::string> unused_columns;  ///< names of columns that are not INS channels
+  std::vector<std::array<bool, 3>> has_unit;  ///< one per sensor of this file: its instruments' units are stated
+  std::vector<std::string> unused_columns;    ///< names of columns that are not INS channels
 };
 
 /// Adds the file's logger and sensors (without rows) to `out`. Errors: an incomplete triad, a sensor without

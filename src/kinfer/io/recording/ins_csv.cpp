@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "kinfer/io/recording/ins_columns.hpp"
-#include "kinfer/io/recording/screen_sensors.hpp"
+#include "kinfer/io/recording/foreign/ins_remarks.hpp"
 #include "kinfer/io/text/csv.hpp"
 #include "kinfer/io/text/mapped_file.hpp"
 #include "kinfer/io/text/plain_decimal.hpp"
@@ -157,10 +157,6 @@ class RowReader {
   bool has_truncated_last_line_ = false;
 };
 
-void add_remark(InsRecording& recording, std::string sentence) {
-  recording.remarks.push_back(std::move(sentence));
-}
-
 Result<void> append_logger(std::string_view text, const std::string& name, InsRecording& out,
                            const OffsetCallback& on_offset) {
   KINFER_TRY(header, read_csv_header(text, name));
@@ -168,14 +164,14 @@ Result<void> append_logger(std::string_view text, const std::string& name, InsRe
   const std::size_t first = out.sensors.size();
   KINFER_TRY(columns, parse_ins_columns(header, name, out));
   for (const std::string& column : columns.unused_columns)
-    add_remark(out, fmt::format("{}: column {} is no channel of an INS and is not used", name, column));
+    out.remarks.push_back(fmt::format("{}: column {} is no channel of an INS and is not used", name, column));
   RowReader body(text, name, header, columns, out);
   if (auto done = body.read(on_offset); !done) return done;
   if (out.loggers.back().time.empty()) return error("{}: the file has a header but no rows", name);
   if (body.has_truncated_last_line())
-    add_remark(out, fmt::format("{}: the last line is cut off and is not used", name));
+    out.remarks.push_back(fmt::format("{}: the last line is cut off and is not used", name));
   add_time_remarks(out, out.loggers.size() - 1, name);
-  return screen_sensors(out, first, name, columns.field_has_unit);
+  return screen_sensors(out, first, name, columns.has_unit);
 }
 
 }  // namespace

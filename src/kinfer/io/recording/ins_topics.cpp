@@ -9,7 +9,7 @@
 #include <numeric>
 #include <optional>
 
-#include "kinfer/io/recording/screen_sensors.hpp"
+#include "kinfer/io/recording/foreign/ins_remarks.hpp"
 #include "kinfer/io/robot_log/message_decoder.hpp"
 #include "kinfer/io/robot_log/message_log_formats.hpp"
 
@@ -165,8 +165,8 @@ class InsTopicReader {
   template <class Row>
   void sort_by_time(TopicRows<Row>& topic) {
     std::ranges::stable_sort(topic.rows, {}, &Row::time);
-    const auto begin = std::unique(topic.rows.begin(), topic.rows.end(),
-                                   [](const Row& a, const Row& b) { return a.time == b.time; });
+    const auto begin =
+        std::unique(topic.rows.begin(), topic.rows.end(), [](const Row& a, const Row& b) { return a.time == b.time; });
     const auto end = topic.rows.end();
     if (begin == end) return;
     remarks_.push_back(fmt::format("{}: topic {}: {} messages repeat the time of another and are not used", file_,
@@ -280,7 +280,8 @@ Result<void> append_ins_topics(const std::filesystem::path& path, std::span<cons
   const std::size_t first = reader.append(recording);
   for (std::size_t logger = recording.sensors[first].logger; logger < recording.loggers.size(); ++logger)
     add_time_remarks(recording, logger, recording.loggers[logger].name);
-  return screen_sensors(recording, first, path.string(), std::vector<bool>(recording.sensors.size() - first, true));
+  return screen_sensors(recording, first, path.string(),
+                        std::vector<std::array<bool, 3>>(recording.sensors.size() - first, {true, true, true}));
 }
 
 Result<void> append_all_ins_topics(const std::filesystem::path& path, InsRecording& recording) {

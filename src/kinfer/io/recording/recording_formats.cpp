@@ -6,10 +6,13 @@
 #include <fstream>
 #include <string>
 
+#include "kinfer/io/recording/foreign/foreign_log.hpp"
+#include "kinfer/io/recording/foreign/ins_presets.hpp"
 #include "kinfer/io/recording/ins_columns.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
 #include "kinfer/io/recording/ins_topics.hpp"
 #include "kinfer/io/robot_log/message_log_formats.hpp"
+#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 namespace {
@@ -22,11 +25,15 @@ std::string read_head(const std::filesystem::path& path) {
   return head;
 }
 
-const RecordingFormat* recognised_format(const std::filesystem::path& path) {
-  const std::string head = read_head(path);
+const RecordingFormat* recognised_format(const std::string& head) {
   const std::span<const RecordingFormat> formats = recording_formats();
   const auto row = std::ranges::find_if(formats, [&](const RecordingFormat& f) { return f.recognise(head); });
   return row == formats.end() ? nullptr : &*row;
+}
+
+Result<ForeignLog> read_foreign(const std::filesystem::path& path, const InsMap& map) {
+  KINFER_TRY(text, read_text_file(path));
+  return parse_foreign_log(text, path, map);
 }
 
 }  // namespace
@@ -39,16 +46,39 @@ std::span<const RecordingFormat> recording_formats() {
 }
 
 bool is_recording(const std::filesystem::path& path) {
-  return recognised_format(path) != nullptr;
+  const std::string head = read_head(path);
+  return recognised_format(head) || find_preset(head, path) || is_foreign_log(head);
 }
 
 Result<InsRecording> read_recording(std::span<const std::filesystem::path> paths) {
   InsRecording recording;
+  std::vector<ForeignLog> foreign;
   for (const std::filesystem::path& path : paths) {
-    const RecordingFormat* format = recognised_format(path);
+    const std::string head = read_head(path);
+    const RecordingFormat* format = recognised_format(head);
+    const InsMap* preset = format ? nullptr : find_preset(head, path);
+    if (preset || (!format && is_foreign_log(head))) {
+      KINFER_TRY(log, read_foreign(path, preset ? *preset : InsMap{}));
+      foreign.push_back(std::move(log));
+      continue;
+    }
     const auto done = (format ? format : &recording_formats().front())->append(path, recording);
     if (!done) return forward_error(done.error());
   }
+  if (auto done = append_foreign_logs(std::move(foreign), recording); !done) return forward_error(done.error());
+  return recording;
+}
+
+Result<InsRecording> read_mapped_recording(std::span<const std::filesystem::path> paths,
+                                           const std::filesystem::path& map_path) {
+  KINFER_TRY(map, read_ins_map(map_path));
+  std::vector<ForeignLog> logs;
+  for (const std::filesystem::path& path : paths) {
+    KINFER_TRY(log, read_foreign(path, map));
+    logs.push_back(std::move(log));
+  }
+  InsRecording recording;
+  if (auto done = append_foreign_logs(std::move(logs), recording); !done) return forward_error(done.error());
   return recording;
 }
 

@@ -21,10 +21,16 @@ struct RecordingFormat {
 /// The table. Files that no format recognises are read as the first format, whose errors say what is expected.
 std::span<const RecordingFormat> recording_formats();
 
-/// Whether some format recognises the file.
+/// Whether some format recognises the file, or a preset, or its header speaks for itself.
 bool is_recording(const std::filesystem::path& path);
 
-/// Reads one log or several, one per logger, each with its own clock and possibly of different formats.
+/// Reads one log or several, one per logger, each with its own clock and possibly of different formats. Logs of other
+/// programs are read by their preset, or by what their headers say; the instruments of one sensor may be in several
+/// files.
 Result<InsRecording> read_recording(std::span<const std::filesystem::path> paths);
+
+/// The same with a column map for all files (docs/formats.md).
+Result<InsRecording> read_mapped_recording(std::span<const std::filesystem::path> paths,
+                                           const std::filesystem::path& map);
 
 }  // namespace kinfer

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstring>
 #include <set>
+#include <span>
 
 #include "kinfer/io/text/trim.hpp"
 #include "kinfer/io/text/units.hpp"
@@ -18,13 +19,15 @@ constexpr std::string_view utf8_byte_order_mark = "\xEF\xBB\xBF";
 /// Iterates over the lines of a text, without line endings.
 class LineReader {
  public:
-  LineReader(std::string_view text, std::size_t at, int last_number) : text_(text), at_(at), number_(last_number) {}
+  LineReader(std::string_view text, std::size_t at, int last_number, std::span<const std::string> comments = {})
+      : text_(text), at_(at), number_(last_number), comments_(comments) {}
 
   bool next() {
     if (at_ >= text_.size()) return false;
     const void* found = std::memchr(text_.data() + at_, '\n', text_.size() - at_);
     const std::size_t end = found ? static_cast<const char*>(found) - text_.data() : text_.size();
     line_ = text_.substr(at_, end - at_);
+    before_ = at_;
     if (!line_.empty() && line_.back() == '\r') line_.remove_suffix(1);
     at_ = end + 1;
     ++number_;
@@ -35,19 +38,25 @@ class LineReader {
   bool next_content_line() {
     while (next()) {
       const auto first = line_.find_first_not_of(whitespace);
-      if (first != std::string_view::npos && line_[first] != '#') return true;
+      if (first != std::string_view::npos && line_[first] != '#' && !is_comment(line_.substr(first))) return true;
     }
     return false;
   }
 
   std::string_view line() const { return line_; }
   int number() const { return number_; }
+  std::size_t before() const { return before_; }
   std::size_t after() const { return std::min(at_, text_.size()); }
 
  private:
+  bool is_comment(std::string_view line) const {
+    return std::ranges::any_of(comments_, [&](const std::string& mark) { return line.starts_with(mark); });
+  }
+
   std::string_view text_, line_;
-  std::size_t at_;
+  std::size_t at_, before_ = 0;
   int number_;
+  std::span<const std::string> comments_;
 };
 
 /// Splits one line; false where a quote is not closed.
@@ -56,6 +65,7 @@ class CellSplitter {
   CellSplitter(char delimiter, std::deque<std::string>& unquoted) : delimiter_(delimiter), unquoted_(unquoted) {}
 
   bool split(std::string_view line, std::vector<std::string_view>& cells) const {
+    if (delimiter_ == blanks) return split_at_blanks(line, cells);
     std::size_t at = 0;
     while (true) {
       const auto first = line.find_first_not_of(delimiter_ == '\t' ? " " : " \t", at);
@@ -74,6 +84,15 @@ class CellSplitter {
   }
 
  private:
+  static bool split_at_blanks(std::string_view line, std::vector<std::string_view>& cells) {
+    for (std::size_t at = line.find_first_not_of(whitespace); at != std::string_view::npos;) {
+      const std::size_t end = std::min(line.find_first_of(whitespace, at), line.size());
+      cells.push_back(line.substr(at, end - at));
+      at = line.find_first_not_of(whitespace, end);
+    }
+    return true;
+  }
+
   /// Reads the cell that opens with the quote at `open`; returns the offset of the delimiter after it.
   std::optional<std::size_t> read_quoted(std::string_view line, std::size_t open,
                                          std::vector<std::string_view>& cells) const {
@@ -112,11 +131,53 @@ tl::unexpected<Error> unclosed_quote(const std::string& name, int line) {
 }
 
 std::string describe_column_count(const std::string& name, int line, std::size_t expected, std::size_t found,
-                                  const CsvFormat& format) {
+                                  char delimiter) {
   std::string text = fmt::format("{}:{}: expected {} columns, found {}", name, line, expected, found);
-  if (found > expected && format.delimiter == ',')
+  if (found > expected && delimiter == ',')
     text += "; are there commas inside numbers (thousands separators, decimal commas)?";
   return text;
+}
+
+/// The character that separates most columns of this line; blanks if none of , ; tab does.
+char find_delimiter(std::string_view line, char decimal) {
+  std::array<std::size_t, 3> counts{};
+  constexpr std::string_view candidates = ";\t,";
+  bool is_quoted = false;
+  for (const char c : line) {
+    is_quoted ^= c == '"';
+    const auto at = candidates.find(c);
+    if (!is_quoted && at != std::string_view::npos && c != decimal) ++counts[at];
+  }
+  const auto most = std::ranges::max_element(counts);
+  return *most > 0 ? candidates[static_cast<std::size_t>(most - counts.begin())] : blanks;
+}
+
+/// A comma if cells of the first rows are numbers with decimal commas and none with points.
+char find_decimal(std::string_view text, const CsvHeader& header, const CsvFormat& format) {
+  constexpr int looked_at = 20;
+  if (header.delimiter == ',') return '.';
+  LineReader lines(text, header.body, header.line, format.comments);
+  std::deque<std::string> unquoted;
+  bool has_comma = false;
+  for (int row = 0; row < looked_at && lines.next_content_line(); ++row) {
+    std::vector<std::string_view> cells;
+    if (!CellSplitter(header.delimiter, unquoted).split(lines.line(), cells)) break;
+    for (const std::string_view cell : cells) {
+      if (cell.find('.') != std::string_view::npos && parse_number(cell, '.')) return '.';
+      has_comma |= cell.find(',') != std::string_view::npos && parse_number(cell, ',').has_value();
+    }
+  }
+  return has_comma ? ',' : '.';
+}
+
+/// Moves to the header's line, or before the first row where there is none.
+bool find_header(LineReader& lines, const CsvFormat& format) {
+  while (lines.next_content_line()) {
+    if (format.header_line == HeaderLine::with_word && lines.line().find(format.header_word) == std::string_view::npos)
+      continue;
+    if (!lines.line().starts_with("sep=")) return true;  // a hint to spreadsheets
+  }
+  return false;
 }
 
 }  // namespace
@@ -124,16 +185,29 @@ std::string describe_column_count(const std::string& name, int line, std::size_t
 Result<CsvHeader> read_csv_header(std::string_view text, const std::string& name, const CsvFormat& format) {
   if (text.substr(0, 2) == "\xFF\xFE" || text.substr(0, 2) == "\xFE\xFF")
     return error("{}:1: the file is UTF-16, expected UTF-8; save it as CSV UTF-8", name);
-  LineReader lines(text, text.substr(0, 3) == utf8_byte_order_mark ? 3 : 0, 0);
+  LineReader lines(text, text.substr(0, 3) == utf8_byte_order_mark ? 3 : 0, 0, format.comments);
   for (int i = 0; i < format.skip_lines; ++i) lines.next();
-  if (!lines.next_content_line()) return error("{}: the file has no header line", name);
+  if (!find_header(lines, format))
+    return format.header_line == HeaderLine::with_word
+               ? error("{}: the file has no line with \"{}\", which begins the header", name, format.header_word)
+               : error("{}: the file has no header line", name);
   CsvHeader header;
   header.line = lines.number();
   header.body = lines.after();
+  header.delimiter = format.delimiter == automatic ? find_delimiter(lines.line(), format.decimal) : format.delimiter;
   std::vector<std::string_view> cells;
   std::deque<std::string> unquoted;
-  if (!CellSplitter(format.delimiter, unquoted).split(lines.line(), cells)) return unclosed_quote(name, header.line);
+  if (!CellSplitter(header.delimiter, unquoted).split(lines.line(), cells)) return unclosed_quote(name, header.line);
   header.columns.assign(cells.begin(), cells.end());
+  if (header.delimiter != ',' && header.columns.size() > 1 && header.columns.back().empty() &&
+      format.delimiter == automatic)
+    header.columns.pop_back();  // a delimiter ends each line
+  if (format.header_line == HeaderLine::none) {
+    for (std::size_t c = 0; c < header.columns.size(); ++c) header.columns[c] = fmt::format("#{}", c + 1);
+    header.line = lines.number() - 1;
+    header.body = lines.before();
+  }
+  header.decimal = format.decimal == automatic ? find_decimal(text, header, format) : format.decimal;
   return header;
 }
 
@@ -152,13 +226,17 @@ Result<CsvTable> split_csv(std::string_view text, const std::string& name, const
   KINFER_TRY(header, read_csv_header(text, name, format));
   table.header = std::move(header);
   const std::size_t columns = table.header.columns.size();
-  const CellSplitter splitter(format.delimiter, table.unquoted);
-  LineReader lines(text, table.header.body, table.header.line);
+  const CellSplitter splitter(table.header.delimiter, table.unquoted);
+  LineReader lines(text, table.header.body, table.header.line, format.comments);
   while (lines.next_content_line()) {
     const std::size_t before = table.cells.size();
     if (!splitter.split(lines.line(), table.cells)) return unclosed_quote(name, lines.number());
+    if (table.cells.size() == before + columns + 1 && format.delimiter == automatic && table.header.delimiter != ',' &&
+        table.cells.back().empty())
+      table.cells.pop_back();
     const std::size_t found = table.cells.size() - before;
-    if (found != columns) return forward_error({describe_column_count(name, lines.number(), columns, found, format)});
+    if (found != columns)
+      return forward_error({describe_column_count(name, lines.number(), columns, found, table.header.delimiter)});
     table.line.push_back(lines.number());
   }
   return table;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tables as text: one header line, then rows of cells. Comments (#) and empty lines are skipped; CRLF, a UTF-8
-// byte-order mark and quoted cells are supported.
+// byte-order mark and quoted cells are supported. Delimiter and decimal mark may be told from the text.
 #pragma once
 
 #include <deque>
@@ -13,16 +13,25 @@
 
 namespace kinfer {
 
+constexpr char automatic = '\0';  ///< delimiter or decimal mark as the text tells
+constexpr char blanks = ' ';      ///< delimiter: runs of blanks and tabs
+
+enum class HeaderLine { first, with_word, none };
+
 struct CsvFormat {
   char delimiter = ',';
   char decimal = '.';
-  int skip_lines = 0;  ///< before the header
+  int skip_lines = 0;                          ///< before the header
+  std::vector<std::string> comments{};         ///< lines that begin with one of these are skipped, as those with #
+  HeaderLine header_line = HeaderLine::first;  ///< none: the columns are named #1, #2 ...
+  std::string header_word{};                   ///< of HeaderLine::with_word: the first line that contains it
 };
 
 struct CsvHeader {
   std::vector<std::string> columns;
-  int line = 0;          ///< from 1
-  std::size_t body = 0;  ///< offset in the text of the line after the header
+  int line = 0;                         ///< from 1
+  std::size_t body = 0;                 ///< offset in the text of the line after the header
+  char delimiter = ',', decimal = '.';  ///< as found, where they were automatic
 };
 
 /// The first line that is neither empty nor a comment. A missing header and UTF-16 are errors.

@@ -42,17 +42,26 @@ constexpr std::array named_units{
     NamedUnit{"ms", {Dimension::time, 1e-3}},
     NamedUnit{"us", {Dimension::time, 1e-6}},
     NamedUnit{"µs", {Dimension::time, 1e-6}},
+    NamedUnit{"ns", {Dimension::time, 1e-9}},
     NamedUnit{"kg", {Dimension::mass, 1.0}},
     NamedUnit{"N.m", {Dimension::torque, 1.0}},
     NamedUnit{"m/s^2", {Dimension::acceleration, 1.0}},
+    NamedUnit{"m/s²", {Dimension::acceleration, 1.0}},
+    NamedUnit{"m/s2", {Dimension::acceleration, 1.0}},
     NamedUnit{"g", {Dimension::acceleration, standard_gravity}},
+    NamedUnit{"mg", {Dimension::acceleration, 1e-3 * standard_gravity}},
     NamedUnit{"rad/s", {Dimension::angular_rate, 1.0}},
     NamedUnit{"deg/s", {Dimension::angular_rate, degree}},
+    NamedUnit{"°/s", {Dimension::angular_rate, degree}},
+    NamedUnit{"dps", {Dimension::angular_rate, degree}},
     NamedUnit{"uT", {Dimension::magnetic_field, 1.0}},
     NamedUnit{"µT", {Dimension::magnetic_field, 1.0}},
+    NamedUnit{"\u03bcT", {Dimension::magnetic_field, 1.0}},
     NamedUnit{"mT", {Dimension::magnetic_field, 1e3}},
+    NamedUnit{"nT", {Dimension::magnetic_field, 1e-3}},
     NamedUnit{"T", {Dimension::magnetic_field, 1e6}},
     NamedUnit{"G", {Dimension::magnetic_field, 100.0}},
+    NamedUnit{"Gauss", {Dimension::magnetic_field, 100.0}},
     NamedUnit{"C", {Dimension::temperature, 1.0}},
     NamedUnit{"K", {Dimension::temperature, 1.0, -273.15}},
     NamedUnit{"1", {Dimension::one, 1.0}},
@@ -100,6 +109,10 @@ std::string_view describe(Dimension dimension) {
 
 ColumnHeader parse_column_header(std::string_view header) {
   const std::string_view text = trim(header, whitespace_and_newline);
+  if (const auto paren = text.rfind('('); paren != std::string_view::npos && text.back() == ')') {
+    const std::string_view unit = trim(text.substr(paren + 1, text.size() - paren - 2), whitespace_and_newline);
+    if (find_unit(unit)) return {trim(text.substr(0, paren), whitespace_and_newline), unit, true};
+  }
   const auto open = text.rfind('[');
   if (open == std::string_view::npos || text.back() != ']') return {text, {}, false};
   return {trim(text.substr(0, open), whitespace_and_newline),

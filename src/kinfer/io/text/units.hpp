@@ -29,14 +29,15 @@ struct Unit {
   double offset = 0.0;
 };
 
-/// m mm um, rad deg mrad, their squares (mm^2) and products (mm.deg), s ms us, kg, N.m, m/s^2 g, rad/s deg/s, uT mT T
-/// G, C K, 1; empty for any other text. "g" is the acceleration. Temperatures are converted to °C.
+/// m mm um, rad deg mrad, their squares (mm^2) and products (mm.deg), s ms us ns, kg, N.m, m/s^2 g mg, rad/s deg/s, uT
+/// mT nT T G, C K, 1, and other spellings of them (m/s², °/s, dps, Gauss); empty for any other text. "g" is the
+/// acceleration. Temperatures are converted to °C.
 std::optional<Unit> find_unit(std::string_view text);
 
 /// Name of a dimension for error messages: "a length (m, mm, um)".
 std::string_view describe(Dimension dimension);
 
-/// `header` "q1[deg]" -> name "q1", unit "deg"; no bracket: empty unit.
+/// `header` "q1[deg]" -> name "q1", unit "deg"; no bracket: empty unit. "x (mm)" likewise, if the unit is known.
 struct ColumnHeader {
   std::string_view name, unit;
   bool has_unit = false;

@@ -9,6 +9,8 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/expect.hpp"
+#include "kinfer/words/findings/finding_words.hpp"
+#include "kinfer/words/findings/log_findings.hpp"
 #include "kinfer/words/language.hpp"
 
 namespace kinfer::words {
@@ -185,38 +187,41 @@ std::string timestamp_jitter_suggestion(const Finding&) {
   return phrase("timestamp_jitter.suggestion", "log the sensors' own sample times instead of the times of arrival");
 }
 
-struct RecordingFindingWords {
-  FindingKind kind;
-  std::string (*sentence)(const Finding&);
-  std::string (*suggestion)(const Finding&);
-};
-
 constexpr std::array recording_finding_words{
-    RecordingFindingWords{FindingKind::given_link, given_link_sentence, given_link_suggestion},
-    RecordingFindingWords{FindingKind::loop, loop_sentence, loop_suggestion},
-    RecordingFindingWords{FindingKind::several_machines, several_machines_sentence, several_machines_suggestion},
-    RecordingFindingWords{FindingKind::linkage, linkage_sentence, no_joint_suggestion},
-    RecordingFindingWords{FindingKind::no_joint, no_joint_sentence, no_joint_suggestion},
-    RecordingFindingWords{FindingKind::not_connected, not_connected_sentence, not_connected_suggestion},
-    RecordingFindingWords{FindingKind::mixed_recording, mixed_recording_sentence, mixed_recording_suggestion},
-    RecordingFindingWords{FindingKind::duplicate_sensor, duplicate_sensor_sentence, duplicate_sensor_suggestion},
-    RecordingFindingWords{FindingKind::idle, idle_sentence, idle_suggestion},
-    RecordingFindingWords{FindingKind::remounted, remounted_sentence, remounted_suggestion},
-    RecordingFindingWords{FindingKind::clock, clock_sentence, clock_suggestion},
-    RecordingFindingWords{FindingKind::timestamp_jitter, timestamp_jitter_sentence, timestamp_jitter_suggestion},
+    FindingWords{FindingKind::given_link, given_link_sentence, given_link_suggestion},
+    FindingWords{FindingKind::loop, loop_sentence, loop_suggestion},
+    FindingWords{FindingKind::several_machines, several_machines_sentence, several_machines_suggestion},
+    FindingWords{FindingKind::linkage, linkage_sentence, no_joint_suggestion},
+    FindingWords{FindingKind::no_joint, no_joint_sentence, no_joint_suggestion},
+    FindingWords{FindingKind::not_connected, not_connected_sentence, not_connected_suggestion},
+    FindingWords{FindingKind::mixed_recording, mixed_recording_sentence, mixed_recording_suggestion},
+    FindingWords{FindingKind::duplicate_sensor, duplicate_sensor_sentence, duplicate_sensor_suggestion},
+    FindingWords{FindingKind::idle, idle_sentence, idle_suggestion},
+    FindingWords{FindingKind::remounted, remounted_sentence, remounted_suggestion},
+    FindingWords{FindingKind::clock, clock_sentence, clock_suggestion},
+    FindingWords{FindingKind::timestamp_jitter, timestamp_jitter_sentence, timestamp_jitter_suggestion},
 };
 
-const RecordingFindingWords& recording_words_of(FindingKind kind) {
-  const auto row = std::ranges::find(recording_finding_words, kind, &RecordingFindingWords::kind);
-  KINFER_EXPECT(row != recording_finding_words.end(), "\"{}\" is not about a recording", name(kind));
-  return *row;
+const FindingWords* find_words(std::span<const FindingWords> table, FindingKind kind) {
+  const auto row = std::ranges::find(table, kind, &FindingWords::kind);
+  return row == table.end() ? nullptr : &*row;
+}
+
+const FindingWords* recording_words(FindingKind kind) {
+  const FindingWords* words = find_words(recording_finding_words, kind);
+  return words ? words : find_words(log_words(), kind);
+}
+
+const FindingWords& recording_words_of(FindingKind kind) {
+  const FindingWords* words = recording_words(kind);
+  KINFER_EXPECT(words, "\"{}\" is not about a recording", name(kind));
+  return *words;
 }
 
 }  // namespace
 
 bool is_recording_finding(FindingKind kind) {
-  return std::ranges::find(recording_finding_words, kind, &RecordingFindingWords::kind) !=
-         recording_finding_words.end();
+  return recording_words(kind) != nullptr;
 }
 
 std::string recording_finding_sentence(const Finding& finding) {

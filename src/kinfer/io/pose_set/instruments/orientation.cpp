@@ -30,7 +30,7 @@ void read_quaternions(PoseColumns& columns, PoseSet& set) {
 }
 
 void read_euler_angles(PoseColumns& columns, const ColumnMap& map, PoseSet& set) {
-  if (!map.euler) {
+  if (!map.euler && !map.is_rotation_vector) {
     if (columns.has("rx"))
       columns.report_header_error("columns rx, ry, rz need a column map that says euler = \"XYZ intrinsic\"");
     return;
@@ -42,7 +42,9 @@ void read_euler_angles(PoseColumns& columns, const ColumnMap& map, PoseSet& set)
   for (std::size_t row = 0; row < columns.rows(); ++row)
     if (angles->measured(row))
       set.orientations.push_back(
-          {static_cast<int>(row), Quat(from_euler(*map.euler, angles->at(row))).normalized(), {}});
+          {static_cast<int>(row),
+           map.euler ? Quat(from_euler(*map.euler, angles->at(row))).normalized() : quat_exp(angles->at(row)),
+           {}});
 }
 
 void read_orientation_deviations(PoseColumns& columns, PoseSet& set) {

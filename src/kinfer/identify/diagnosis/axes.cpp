@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/diagnosis/axes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "kinfer/base/angle.hpp"
+#include "kinfer/base/parallel.hpp"
+#include "kinfer/identify/diagnosis/thresholds.hpp"
+#include "kinfer/inertial/diagnosis/attitude_columns.hpp"
+#include "kinfer/inertial/diagnosis/section_fit.hpp"
+#include "kinfer/measurement/ins_screening.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+// rad/s, deg/s, mrad/s, mdeg/s, degrees that were converted twice, and no rotation: as if the gyroscope told nothing
+constexpr std::array rate_units{1.0, degree, 1e-3, 1e-3 * degree, 1.0 / degree, 1e-9};
+constexpr std::size_t no_rotation = 5;
+
+/// Of one sensor, by unit and map.
+struct SensorLikelihoods {
+  std::array<MapLikelihoods, rate_units.size()> force{}, field{};
+
+  double of(std::size_t unit, std::size_t map) const { return force[unit].of[map] + field[unit].of[map]; }
+  std::size_t best_map(std::size_t unit) const {
+    std::size_t best = 0;
+    for (std::size_t m = 1; m < 48; ++m)
+      if (of(unit, m) > of(unit, best)) best = m;
+    return best;
+  }
+};
+
+SensorLikelihoods likelihoods_of(const InsSensor& sensor, std::span<const double> time) {
+  SensorLikelihoods result;
+  for (std::size_t u = 0; u < rate_units.size(); ++u) {
+    const double max_bias = max_quiet_rate / rate_units[u];
+    if (const auto s = section_signals(sensor.acceleration, sensor.angular_velocity, time, max_bias))
+      result.force[u] = map_likelihoods(*s, rate_units[u], LeverArm::free);
+    if (sensor.has_magnetometer())
+      if (const auto s = section_signals(sensor.field, sensor.angular_velocity, time, max_bias))
+        result.field[u] = map_likelihoods(*s, rate_units[u], LeverArm::none);
+  }
+  return result;
+}
+
+/// The unit that all sensors together favour.
+std::size_t common_unit(const std::vector<SensorLikelihoods>& sensors) {
+  std::array<double, rate_units.size()> sum{};
+  for (const SensorLikelihoods& sensor : sensors)
+    for (std::size_t u = 0; u < rate_units.size(); ++u) sum[u] += sensor.of(u, sensor.best_map(u));
+  const auto best = static_cast<std::size_t>(std::ranges::max_element(sum) - sum.begin());
+  return sum[best] - sum[0] > min_map_gain ? best : 0;
+}
+
+/// That of the log, unless this sensor by itself contradicts it.
+std::size_t unit_of(const SensorLikelihoods& sensor, std::size_t common) {
+  std::size_t best = common;
+  for (std::size_t u = 0; u < no_rotation; ++u)
+    if (sensor.of(u, sensor.best_map(u)) > sensor.of(best, sensor.best_map(best))) best = u;
+  const double gain = sensor.of(best, sensor.best_map(best)) - sensor.of(common, sensor.best_map(common));
+  return gain > 2.0 * min_map_gain ? best : common;
+}
+
+/// Gains of the best map over the identity, and over the next one of them.
+struct MapChoice {
+  std::size_t map = 0;
+  double gain = 0.0, lead = 0.0;
+};
+
+/// None where the best map leaves about what no rotation at all would: the motion is none that the model describes, as
+/// that of a sensor waved by hand.
+MapChoice best_of(const MapLikelihoods& maps, double without_rotation, double gain_per_section) {
+  const auto& of = maps.of;
+  MapChoice choice;
+  for (std::size_t m = 1; m < of.size(); ++m)
+    if (of[m] > of[choice.map]) choice.map = m;
+  if (of[choice.map] - without_rotation < gain_per_section * maps.sections) return {};
+  choice.gain = of[choice.map] - of[0];
+  choice.lead = std::numeric_limits<double>::infinity();
+  for (std::size_t m = 0; m < of.size(); ++m)
+    if (m != choice.map) choice.lead = std::min(choice.lead, of[choice.map] - of[m]);
+  return choice;
+}
+
+enum class OddInstrument { none, gyroscope, accelerometer, magnetometer };
+
+/// Which instrument has other axes than the rest of its sensor, and the map that leads to theirs.
+struct AxisFault {
+  OddInstrument instrument = OddInstrument::none;
+  Mat3 axes = Mat3::Identity();
+  double gain = 0.0, lead = 0.0;
+};
+
+AxisFault axis_fault(const SensorLikelihoods& sensor, std::size_t unit, bool has_magnetometer) {
+  MapLikelihoods both{.of = {}, .sections = sensor.force[unit].sections + sensor.field[unit].sections};
+  for (std::size_t m = 0; m < both.of.size(); ++m) both.of[m] = sensor.of(unit, m);
+  const auto alone = [&](const std::array<MapLikelihoods, rate_units.size()>& maps) {
+    return best_of(maps[unit], maps[no_rotation].of[0], min_gain_per_section_alone);
+  };
+  const MapChoice gyroscope = best_of(both, sensor.of(no_rotation, 0), min_gain_per_section);
+  const MapChoice force = alone(sensor.force), field = alone(sensor.field);
+  AxisFault best;
+  const auto consider = [&](OddInstrument instrument, const MapChoice& choice, bool inverse) {
+    const bool is_alone = instrument != OddInstrument::gyroscope;
+    if (choice.gain < (is_alone ? min_map_gain_alone : min_map_gain) || choice.gain <= best.gain) return;
+    const Mat3& axes = signed_permutations()[choice.map];
+    // Negating or mirroring a direction that the gyroscope transports shows as a rotation of axes, never as a reversal.
+    if (is_alone && axes.determinant() < 0.0) return;
+    best = {instrument, inverse ? Mat3(axes.transpose()) : axes, choice.gain, choice.lead};
+  };
+  consider(OddInstrument::gyroscope, gyroscope, false);
+  if (!has_magnetometer) return best;
+  // One odd instrument of three: the map of the gyroscope to it alone gains, that to the other is the identity.
+  const double margin = min_map_lead;
+  if (force.gain > best.gain + margin) consider(OddInstrument::accelerometer, force, true);
+  if (field.gain > best.gain + margin) consider(OddInstrument::magnetometer, field, true);
+  return best;
+}
+
+Finding axes_finding(const InsSensor& sensor, const AxisFault& fault) {
+  constexpr std::array names{"", "gyroscope", "accelerometer", "magnetometer"};
+  const bool is_sense = fault.instrument == OddInstrument::gyroscope && (fault.axes + Mat3::Identity()).isZero();
+  const bool is_certain = fault.lead > min_map_lead;
+  return {.kind = is_sense ? FindingKind::rate_sign : FindingKind::instrument_axes,
+          .severity = fault.instrument == OddInstrument::magnetometer ? Severity::warning : Severity::fault,
+          .values = {{"sensor", sensor.name},
+                     {"instrument", std::string(names[static_cast<std::size_t>(fault.instrument)])},
+                     {"axes", describe_axes(fault.axes)},
+                     {"log_likelihood_gain", fault.gain}},
+          .applied = is_certain};
+}
+
+}  // namespace
+
+std::string describe_axes(const Mat3& axes) {
+  std::string text;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      if (std::abs(axes(row, column)) > 0.5)
+        text += fmt::format("{}{}{}", text.empty() ? "" : ", ", axes(row, column) < 0.0 ? "-" : "", "xyz"[column]);
+  return text;
+}
+
+Result<void> refuse_attitudes(const InsRecording& recording) {
+  for (const InsSensor& sensor : recording.sensors)
+    if (const auto fit = attitude_fit(sensor);
+        fit && fit->error < max_attitude_error && fit->share < max_attitude_share)
+      return error(
+          "{0}: {0}_gx, {0}_gy, {0}_gz hold Euler angles, not angular rates: their vertical follows the "
+          "accelerometer's within {1:.1f}°; export what the gyroscope measures",
+          sensor.name, fit->error / degree);
+  return {};
+}
+
+void mend_axes(MendedLog& log, int threads) {
+  const std::size_t sensors = log.log().sensors.size();
+  std::vector<SensorLikelihoods> likelihoods(sensors);
+  parallel_for(sensors, threads, [&](std::size_t s) {
+    const InsSensor& sensor = log.log().sensors[s];
+    likelihoods[s] = likelihoods_of(sensor, log.log().time(sensor));
+  });
+  const std::size_t common = common_unit(likelihoods);
+  if (common == no_rotation) {
+    std::vector<std::string> names;
+    for (const InsSensor& sensor : log.log().sensors) names.push_back(sensor.name);
+    log.findings.push_back(
+        {.kind = FindingKind::rates_unrelated, .severity = Severity::fault, .values = {{"sensors", names}}});
+    return;
+  }
+  for (std::size_t s = 0; s < sensors; ++s) {
+    const std::size_t unit = unit_of(likelihoods[s], common);
+    const AxisFault fault = axis_fault(likelihoods[s], unit, log.log().sensors[s].has_magnetometer());
+    if (unit == 0 && fault.instrument == OddInstrument::none) continue;
+    InsSensor& sensor = log.edit().sensors[s];
+    if (unit != 0) {
+      transform(sensor.angular_velocity, rate_units[unit], Mat3::Identity());
+      add_unit_finding(log, FindingKind::rate_unit, Severity::fault, rate_units[unit], sensor.name);
+    }
+    if (fault.instrument != OddInstrument::none) {
+      TriadColumns& triad = fault.instrument == OddInstrument::gyroscope       ? sensor.angular_velocity
+                            : fault.instrument == OddInstrument::accelerometer ? sensor.acceleration
+                                                                               : sensor.field;
+      transform(triad, 1.0, fault.axes);
+      log.findings.push_back(axes_finding(sensor, fault));
+    }
+    flag_faults(sensor);
+  }
+}
+
+}  // namespace kinfer::identify

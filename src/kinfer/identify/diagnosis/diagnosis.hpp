@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is wrong with a log before anything is fitted: units, signs, handedness, axes, clocks, and rows that nobody
+// measured. A fault with one certain cure is cured; what is only likely is said.
+#pragma once
+
+#include <optional>
+
+#include "kinfer/base/result.hpp"
+#include "kinfer/evidence/facts/findings.hpp"
+#include "kinfer/measurement/ins_recording.hpp"
+
+namespace kinfer::identify {
+
+struct LogDiagnosis {
+  std::optional<InsRecording> mended;  ///< none if the recording is used as it is
+  std::vector<Finding> findings{};
+
+  const InsRecording& of(const InsRecording& recording) const { return mended ? *mended : recording; }
+};
+
+/// An error where the log cannot be used at all: specific force without gravity, Euler angles for rates.
+Result<LogDiagnosis> diagnose_log(const InsRecording& recording, int threads);
+
+}  // namespace kinfer::identify

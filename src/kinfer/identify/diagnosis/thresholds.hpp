@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Thresholds of the diagnosis of a log. Set on half of the machines and seeds of `./dev study log_faults`; the other
+// half and the measured logs are reported apart (docs/development/results.md).
+#pragma once
+
+namespace kinfer::identify {
+
+/// [nats] By which another unit or another map of axes must explain the instruments better than what the file says.
+/// Larger misses faults of sensors that hardly rotate. Sound logs reach 16 (a pendulum of 8 s), faults 50 to 4000.
+inline constexpr double min_map_gain = 25.0;
+
+/// [nats] By which the best map must lead the next one to be applied. Smaller leads: the fault is said, the cure is not
+/// certain.
+inline constexpr double min_map_lead = 6.0;
+
+/// [nats per section] By which a map must explain a sensor better than no rotation at all. Larger: misses faults of
+/// sensors that hardly tilt. A sensor waved by hand has 0.5, one that only slews 1.4, others 5 to 40.
+inline constexpr double min_gain_per_section = 1.0;
+/// The same where two instruments of the sensor agree and the third one alone is to be the odd one, and its gain over
+/// the axes that the file says. Sound logs reach 3.1 and 94 (all joints moved at once), faults 160 and more.
+inline constexpr double min_gain_per_section_alone = 3.0, min_map_gain_alone = 130.0;
+
+/// [rad/s] A larger mean rate at the quietest moment is no bias. Larger: slow rotations are taken for biases.
+inline constexpr double max_quiet_rate = 0.1;
+
+/// [s] Shorter lags are within what filters inside sound sensors do (measured: up to 16 ms), and the refinement of an
+/// identification does not mind them. Larger misses shorter lags.
+inline constexpr double min_reported_lag = 0.022;
+
+/// [nats] Gain of a lag in the recording, and in either half of it; larger misses lags of sensors that hardly tilt.
+inline constexpr double min_lag_gain = 15.0, min_half_lag_gain = 3.5;
+/// [s] Standard deviation of a lag. Larger: drives of all joints together, which no single circle describes, give lags
+/// of 60 ms that are none; those of 40 ms are found with 1.3 to 5.6 ms.
+inline constexpr double max_lag_sd = 6e-3;
+
+/// Share of the rows that are copies, or on straight lines between others. Sound logs: below 0.02.
+inline constexpr double max_repeated_share = 0.2;
+
+/// [rad] Angles between up and field beyond which the field points out of the ground, as in the southern hemisphere;
+/// and between which nothing is said: near the equator, or iron.
+inline constexpr double upward_field = 1.05, downward_field = 1.75;
+
+/// Correlation of vertical rates, and the rate shared [rad/s], from which two sensors have the same vertical or
+/// opposite ones. Sensors of machines reach 0.7 to 1.0; -0.5 of a wrist and 0.01 rad/s of a pendulum say nothing.
+inline constexpr double same_vertical = 0.7, min_vertical_rate = 0.02;
+
+/// [nats per row] By which the segment tree must get shorter when a sensor's vertical is turned over. Sound logs: below
+/// 0.
+inline constexpr double min_sign_gain = 0.1;
+
+/// Median angle between the vertical of Euler angles in the gyroscope's columns and the accelerometer's: [rad], and its
+/// share of what angles of zero and a constant vertical leave. Rates: above 0.9.
+inline constexpr double max_attitude_error = 0.25, max_attitude_share = 0.45;
+
+}  // namespace kinfer::identify

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Euler angles where angular rates should be: roll and pitch then tell where the accelerometer sees the vertical.
+#pragma once
+
+#include <optional>
+
+#include "kinfer/measurement/ins_recording.hpp"
+
+namespace kinfer {
+
+struct AttitudeFit {
+  double error = 0.0;  ///< [rad] median angle between the vertical by the accelerometer and by the gyroscope's columns
+  double share = 1.0;  ///< of the smaller one of the angles that a level sensor and a constant vertical would leave
+};
+
+/// The columns taken as roll, pitch, yaw or yaw, pitch, roll in degrees or radians, the best of these; empty where the
+/// recording is too short.
+std::optional<AttitudeFit> attitude_fit(const InsSensor& sensor);
+
+}  // namespace kinfer

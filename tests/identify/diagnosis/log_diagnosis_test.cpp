@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "identify/driven_machine.hpp"
+#include "kinfer/base/angle.hpp"
+#include "kinfer/base/constants.hpp"
+#include "kinfer/identify/diagnosis/diagnosis.hpp"
+#include "kinfer/identify/diagnosis/mended_log.hpp"
+#include "kinfer/measurement/ins_screening.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+const InsRecording& sound_log() {
+  static const InsRecording log = test::driven_machine("excavator-general", 5).recording;
+  return log;
+}
+
+void negate(TriadColumns& triad) {
+  transform(triad, -1.0, Mat3::Identity());
+}
+
+/// The sound log after `fault`, with its flags as a reader would set them.
+template <class Fault>
+InsRecording with(Fault fault) {
+  InsRecording log = sound_log();
+  fault(log);
+  for (InsSensor& sensor : log.sensors) flag_faults(sensor);
+  return log;
+}
+
+std::vector<FindingKind> kinds_of(const Result<LogDiagnosis>& diagnosis) {
+  EXPECT_TRUE(diagnosis) << diagnosis.error().what;
+  std::vector<FindingKind> kinds;
+  if (diagnosis)
+    for (const Finding& f : diagnosis->findings) kinds.push_back(f.kind);
+  return kinds;
+}
+
+using Kinds = std::vector<FindingKind>;
+
+/// Largest difference of an instrument from the sound log's, over all sensors and rows.
+double difference(const InsRecording& log, TriadColumns InsSensor::*instrument) {
+  double most = 0.0;
+  for (std::size_t s = 0; s < log.sensors.size(); ++s)
+    for (std::size_t row = 0; row < log.sensors[s].rows(); ++row)
+      most =
+          std::max(most, ((log.sensors[s].*instrument).at(row) - (sound_log().sensors[s].*instrument).at(row)).norm());
+  return most;
+}
+
+TEST(LogDiagnosis, ASoundLogIsUsedAsItIs) {
+  const auto diagnosis = diagnose_log(sound_log(), 1);
+  EXPECT_EQ(kinds_of(diagnosis), Kinds{});
+  EXPECT_FALSE(diagnosis->mended);
+}
+
+TEST(LogDiagnosis, UnitsAreToldAndConverted) {
+  const auto log = with([](InsRecording& r) {
+    for (InsSensor& s : r.sensors) {
+      transform(s.acceleration, 1.0 / standard_gravity, Mat3::Identity());
+      transform(s.angular_velocity, 1.0 / degree, Mat3::Identity());
+      transform(s.field, 1e-3, Mat3::Identity());
+    }
+    for (double& t : r.loggers[0].time) t *= 1e3;
+  });
+  const auto diagnosis = diagnose_log(log, 1);
+  EXPECT_EQ(kinds_of(diagnosis),
+            (Kinds{FindingKind::force_unit, FindingKind::clock_unit, FindingKind::field_unit, FindingKind::rate_unit}));
+  for (const Finding& f : diagnosis->findings) EXPECT_TRUE(f.applied);
+  EXPECT_LT(difference(*diagnosis->mended, &InsSensor::acceleration), 1e-4);
+  EXPECT_LT(difference(*diagnosis->mended, &InsSensor::angular_velocity), 1e-5);
+  EXPECT_LT(difference(*diagnosis->mended, &InsSensor::field), 1e-3);
+}
+
+TEST(LogDiagnosis, ANegatedInstrumentOfOneSensorIsToldByItsOtherInstrumentsAndItsNeighbours) {
+  const auto reversed = diagnose_log(with([](InsRecording& r) { negate(r.sensors[3].angular_velocity); }), 1);
+  EXPECT_EQ(kinds_of(reversed), Kinds{FindingKind::rate_sign});
+  EXPECT_TRUE(reversed->findings[0].applied);
+  EXPECT_LT(difference(*reversed->mended, &InsSensor::angular_velocity), 1e-6);
+  const auto upside_down = diagnose_log(with([](InsRecording& r) { negate(r.sensors[2].acceleration); }), 1);
+  EXPECT_EQ(kinds_of(upside_down), Kinds{FindingKind::force_sign});
+  EXPECT_EQ(upside_down->findings[0].values.texts("sensors").front(), "ins2");
+  EXPECT_LT(difference(*upside_down->mended, &InsSensor::acceleration), 1e-6);
+}
+
+TEST(LogDiagnosis, ALeftHandedSensorIsToldFromAReversedGyroscopeByItsNeighbours) {
+  const auto diagnosis = diagnose_log(
+      with([](InsRecording& r) {
+        const Mat3 mirror = Vec3(1, -1, 1).asDiagonal();
+        for (auto* triad : {&r.sensors[3].acceleration, &r.sensors[3].angular_velocity, &r.sensors[3].field})
+          transform(*triad, 1.0, mirror);
+      }),
+      1);
+  EXPECT_EQ(kinds_of(diagnosis), Kinds{FindingKind::left_handed});
+}
+
+TEST(LogDiagnosis, AllGyroscopesReversedMayAsWellBeLeftHandedSensors) {
+  const auto diagnosis = diagnose_log(with([](InsRecording& r) {
+                                        for (InsSensor& s : r.sensors) negate(s.angular_velocity);
+                                      }),
+                                      1);
+  for (const Finding& f : diagnosis->findings) {
+    EXPECT_EQ(f.kind, FindingKind::rate_sign);
+    EXPECT_FALSE(f.applied) << "two cures, so the result is not certain";
+    EXPECT_EQ(f.equivalents.size(), 1U);
+  }
+}
+
+TEST(LogDiagnosis, AllAccelerometersNegatedAreToldByMagnetometersAlone) {
+  const auto negate_all = [](InsRecording& r) {
+    for (InsSensor& s : r.sensors) negate(s.acceleration);
+  };
+  const auto diagnosis = diagnose_log(with(negate_all), 1);
+  EXPECT_EQ(kinds_of(diagnosis), Kinds{FindingKind::force_sign});
+  EXPECT_TRUE(questions_result(diagnosis->findings[0])) << "the southern hemisphere looks the same";
+  const auto without = diagnose_log(with([&](InsRecording& r) {
+                                      negate_all(r);
+                                      for (InsSensor& s : r.sensors) s.field = {};
+                                    }),
+                                    1);
+  EXPECT_EQ(kinds_of(without), Kinds{}) << "an exact symmetry";
+}
+
+TEST(LogDiagnosis, SwappedAxesOfOneInstrumentAreMapped) {
+  Mat3 axes = Mat3::Zero();
+  axes(0, 1) = 1.0, axes(1, 0) = -1.0, axes(2, 2) = 1.0;
+  const auto gyroscope =
+      diagnose_log(with([&](InsRecording& r) { transform(r.sensors[4].angular_velocity, 1.0, axes); }), 1);
+  EXPECT_EQ(kinds_of(gyroscope), Kinds{FindingKind::instrument_axes});
+  EXPECT_EQ(gyroscope->findings[0].values.text("instrument"), "gyroscope");
+  EXPECT_EQ(gyroscope->findings[0].values.text("axes"), "-y, x, z");
+  EXPECT_LT(difference(*gyroscope->mended, &InsSensor::angular_velocity), 1e-6);
+  const auto accelerometer =
+      diagnose_log(with([&](InsRecording& r) { transform(r.sensors[4].acceleration, 1.0, axes); }), 1);
+  EXPECT_EQ(kinds_of(accelerometer), Kinds{FindingKind::instrument_axes});
+  EXPECT_EQ(accelerometer->findings[0].values.text("instrument"), "accelerometer");
+  EXPECT_LT(difference(*accelerometer->mended, &InsSensor::acceleration), 1e-6);
+}
+
+TEST(LogDiagnosis, AnAccelerometerOutOfStepIsShifted) {
+  const auto diagnosis = diagnose_log(with([](InsRecording& r) {
+                                        for (auto& axis : r.sensors[4].acceleration.axis)
+                                          for (std::size_t k = axis.size(); k-- > 5;) axis[k] = axis[k - 5];
+                                      }),
+                                      1);
+  EXPECT_EQ(kinds_of(diagnosis), Kinds{FindingKind::instruments_out_of_step});
+  EXPECT_NEAR(diagnosis->findings[0].values.number("lag"), 0.05, 0.005);
+}
+
+TEST(LogDiagnosis, RowsThatNobodyMeasuredAreRemoved) {
+  const auto resample = [](bool linearly) {
+    return with([linearly](InsRecording& r) {
+      for (InsSensor& s : r.sensors)
+        for (auto* triad : {&s.acceleration, &s.angular_velocity})
+          for (auto& axis : triad->axis)
+            for (std::size_t k = 1; k + 1 < axis.size(); k += 2)
+              axis[k] = linearly ? 0.5F * (axis[k - 1] + axis[k + 1]) : axis[k - 1];
+    });
+  };
+  for (const bool linearly : {false, true}) {
+    const auto diagnosis = diagnose_log(resample(linearly), 1);
+    const auto kinds = kinds_of(diagnosis);
+    EXPECT_EQ(kinds, Kinds(2 * sound_log().sensors.size(),
+                           linearly ? FindingKind::interpolated_rows : FindingKind::repeated_rows));
+    EXPECT_NEAR(static_cast<double>(count(diagnosis->mended->sensors[2], acceleration_missing)),
+                0.5 * static_cast<double>(sound_log().sensors[2].rows()), 20.0);
+  }
+}
+
+TEST(LogDiagnosis, WhatCannotBeMendedIsRefusedByName) {
+  const auto free = with([](InsRecording& r) {
+    for (auto& axis : r.sensors[1].acceleration.axis)
+      for (std::size_t k = 0; k < axis.size(); ++k) axis[k] = 0.02F * static_cast<float>(k % 3);
+  });
+  EXPECT_NE(diagnose_log(free, 1).error().what.find("ins1_ax, ins1_ay, ins1_az hold no gravity"), std::string::npos);
+}
+
+TEST(LogDiagnosis, AFaultThatWasCuredDoesNotSpoilTheChain) {
+  test::DrivenMachine drive = test::driven_machine("excavator-general", 5);
+  for (InsSensor& s : drive.recording.sensors) transform(s.angular_velocity, 1.0 / degree, Mat3::Identity());
+  negate(drive.recording.sensors[2].acceleration);
+  for (InsSensor& s : drive.recording.sensors) flag_faults(s);
+  const Identification found = test::identified(drive.recording);
+  EXPECT_LT(test::worst_line_error(found.joints, drive.truth), 0.03);
+  EXPECT_NE(found.usability, Usability::do_not_use);
+  EXPECT_GE(found.findings.size(), 2U);
+}
+
+TEST(LogDiagnosis, IsTheSameForAnyNumberOfThreads) {
+  const auto log = with([](InsRecording& r) { negate(r.sensors[3].angular_velocity); });
+  const auto one = diagnose_log(log, 1), two = diagnose_log(log, 2);
+  ASSERT_EQ(one->findings.size(), two->findings.size());
+  EXPECT_EQ(one->findings[0].values, two->findings[0].values);
+}
+
+}  // namespace
+}  // namespace kinfer::identify
