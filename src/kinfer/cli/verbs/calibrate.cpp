@@ -221,8 +221,10 @@ Verb add_calibrate(CLI::App& app) {
            "CSV");
   add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, evidence.json, report.html, run.json",
            Requirement::required, "DIR");
+  begin_group(*verb, "Data");
   add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Requirement::optional,
            "TOML");
+  begin_group(*verb, "Model");
   add_text(*verb, "--parameters", options->parameters,
            "auto: the complete geometric set; paper24: a alpha d theta of each joint (base and tool as given, or from "
            "the data where those disagree); or a TOML file "
@@ -239,8 +241,10 @@ Verb add_calibrate(CLI::App& app) {
   add_choice(*verb, "--offsets", options->offsets, {"folded", "separate"},
              "Encoder offsets in the URDF file that is written back: folded into the origins, for joint positions as "
              "the controller reports them; or separate, for a controller whose zeros are corrected");
+  begin_group(*verb, "Validation");
   add_text(*verb, "--holdout", options->holdout,
            "Rows that are never fitted: a fraction (0.2), or a further pose set (default: 5-fold cross-validation)");
+  begin_group(*verb, "Search and prior knowledge");
   add_search_arguments(*verb, options->search);
   add_common_options(*verb, options->common);
   return {verb, [options, verb] { return run(*options, *verb); }};
