@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: one file per verb; exit codes as documented in docs/formats.md.
 #include <malloc.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <exception>
@@ -8,56 +10,77 @@
 #include <vector>
 
 #include "kinfer/base/version.hpp"
+#include "kinfer/cli/help/help_text.hpp"
+#include "kinfer/cli/help/suggestion.hpp"
 #include "kinfer/cli/parts/common.hpp"
-#include "kinfer/cli/parts/task_pool.hpp"
+#include "kinfer/cli/parts/program.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/words/language.hpp"
 
+namespace kinfer::cli {
 namespace {
 
-int run(const std::vector<std::string>& words) {
-  using namespace kinfer::cli;
-  store_command_line(words);
-  CLI::App app("kinfer: from raw measurements to a proven kinematic model", "kinfer");
-  app.set_version_flag("--version", std::string("kinfer ") + kinfer::version);
-  std::string language = "english";
+std::string formatted_help(const CLI::App* app, const std::string&, CLI::AppFormatMode) {
+  return app->get_parent() ? help_text(verb_entry(*app), terminal_width())
+                           : help_text(option_tree(*app), terminal_width());
+}
+
+/// Options and verbs of the program; `language` must outlive the parsing.
+std::vector<Verb> describe_program(CLI::App& app, std::string& language) {
+  app.formatter_fn(formatted_help);  // before the verbs, which inherit it
+  app.set_version_flag("--version", std::string("kinfer ") + version, "Print the version");
   app.add_option("--language", language,
                  "names: the stable name of each fact instead of its sentence, for programs and translators")
       ->check(CLI::IsMember({"english", "names"}))
       ->capture_default_str();
   app.require_subcommand(1);
-  app.footer("\n`kinfer VERB --help` explains a verb and shows an example.");
-  const std::vector<Verb> verbs = add_verbs(app);
+  app.footer("`kinfer VERB --help` explains a verb and shows an example; `kinfer demo` shows what kinfer does.");
+  return add_verbs(app);
+}
+
+}  // namespace
+
+std::size_t terminal_width() {
+  constexpr std::size_t narrowest = 60, usual = 100, widest = 120;
+  winsize size{};
+  if (isatty(STDOUT_FILENO) == 0 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return usual;
+  return std::clamp<std::size_t>(size.ws_col, narrowest, widest);
+}
+
+int run_program(const std::vector<std::string>& arguments) {
+  CLI::App app("kinfer: from raw measurements to a proven kinematic model", "kinfer");
+  std::string language = "english";
+  const std::vector<Verb> verbs = describe_program(app, language);
+  const ProgramEntry program = option_tree(app);
+  if (const auto sentence = misspelling(arguments, program)) {
+    const bool has_verb = program.find(arguments.front()) != nullptr;
+    fmt::print(stderr, "kinfer: {}\n`kinfer{} --help` lists what there is.\n", *sentence,
+               has_verb ? " " + arguments.front() : "");
+    return exit_bad_input;
+  }
+  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // CLI11 takes them from the back
   try {
-    // CLI11 takes the words without the program's name, the last one first.
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend() - 1));
+    app.parse(reversed);
   } catch (const CLI::ParseError& parse_error) {
     return app.exit(parse_error) == 0 ? exit_done : exit_bad_input;  // --help and --version end here too
   }
-  if (language == "names") kinfer::words::set_language(kinfer::words::Language::names);
+  if (language == "names") words::set_language(words::Language::names);
   for (const Verb& verb : verbs)
     if (was_chosen(*verb.command)) return verb.run();
   return exit_bad_input;
 }
 
-int run_guarded(const std::vector<std::string>& words) {
-  try {
-    return run(words);
-  } catch (const std::exception& failure) {
-    fmt::print(stderr, "kinfer: internal error: {}\n", failure.what());
-    return kinfer::cli::exit_internal;
-  }
-}
-
-}  // namespace
+}  // namespace kinfer::cli
 
 int main(int argc, char** argv) {
   // glibc raises this threshold dynamically up to 32 MB, and blocks below it are not returned to the system: an hour of
   // six sensors then took a third more memory.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  kinfer::cli::set_program_call([](std::vector<std::string> words) {
-    words.insert(words.begin(), "kinfer");
-    return run_guarded(words);
-  });
-  return run_guarded(std::vector<std::string>(argv, argv + argc));
+  try {
+    kinfer::cli::store_command_line({argv, argv + argc});
+    return kinfer::cli::run_program({argv + std::min(argc, 1), argv + argc});
+  } catch (const std::exception& failure) {
+    fmt::print(stderr, "kinfer: internal error: {}\n", failure.what());
+    return kinfer::cli::exit_internal;
+  }
 }

@@ -25,6 +25,9 @@ Verb add_pair(CLI::App& app);
 Verb add_frames(CLI::App& app);
 Verb add_report(CLI::App& app);
 Verb add_sweep(CLI::App& app);
+Verb add_demo(CLI::App& app);
+Verb add_completion(CLI::App& app);
+Verb add_man(CLI::App& app);
 
 /// Adds every verb to the program, in the order of its help text.
 std::vector<Verb> add_verbs(CLI::App& app);

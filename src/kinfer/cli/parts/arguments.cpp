@@ -8,8 +8,13 @@ namespace kinfer::cli {
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& summary,
                       const std::string& footer) {
   CLI::App* verb = program.add_subcommand(name, summary);
-  verb->footer("\n" + footer);
+  verb->set_help_flag("-h,--help", "Print this help")->group("Output and repeatability");
+  verb->footer(footer);
   return verb;
+}
+
+void begin_group(CLI::App& verb, const std::string& heading) {
+  verb.option_defaults()->group(heading);
 }
 
 void add_text(CLI::App& verb, const std::string& name, std::string& value, const std::string& help, Requirement need,
@@ -28,8 +33,12 @@ void add_texts(CLI::App& verb, const std::string& name, std::vector<std::string>
 }
 
 void add_choice(CLI::App& verb, const std::string& name, std::string& value, const std::vector<std::string>& allowed,
-                const std::string& help) {
-  verb.add_option(name, value, help)->check(CLI::IsMember(allowed))->capture_default_str();
+                const std::string& help, Requirement need) {
+  CLI::Option* option = verb.add_option(name, value, help)->check(CLI::IsMember(allowed));
+  if (need == Requirement::required)
+    option->required();
+  else
+    option->capture_default_str();
 }
 
 void add_count(CLI::App& verb, const std::string& name, int& value, int lowest, int highest, const std::string& help) {

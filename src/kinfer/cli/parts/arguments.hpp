@@ -19,13 +19,16 @@ enum class Requirement { optional, required };
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& summary,
                       const std::string& footer);
 
+/// Options that are added from now on are listed under this heading.
+void begin_group(CLI::App& verb, const std::string& heading);
+
 // Each binds `value`, which must outlive the run of the verb; its current content is the default shown in the help.
 void add_text(CLI::App& verb, const std::string& name, std::string& value, const std::string& help,
               Requirement need = Requirement::optional, const std::string& placeholder = "TEXT");
 void add_texts(CLI::App& verb, const std::string& name, std::vector<std::string>& values, const std::string& help,
                Requirement need = Requirement::optional, const std::string& placeholder = "TEXT");
 void add_choice(CLI::App& verb, const std::string& name, std::string& value, const std::vector<std::string>& allowed,
-                const std::string& help);
+                const std::string& help, Requirement need = Requirement::optional);
 void add_count(CLI::App& verb, const std::string& name, int& value, int lowest, int highest, const std::string& help);
 /// A count without default.
 void add_count(CLI::App& verb, const std::string& name, std::optional<int>& value, int lowest, int highest,

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/base/parallel.hpp"
-#include "kinfer/base/sha256.hpp"
 #include "kinfer/base/version.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/io/text/text_file.hpp"
@@ -28,10 +27,12 @@ void store_command_line(const std::vector<std::string>& words) {
 }
 
 void add_quiet_option(CLI::App& verb, bool& quiet) {
+  begin_group(verb, "Output and repeatability");
   add_flag(verb, "--quiet", quiet, "No progress, no summary; errors are still printed");
 }
 
 void add_common_options(CLI::App& verb, CommonOptions& options) {
+  begin_group(verb, "Output and repeatability");
   add_flag(verb, "--json", options.json, "Print the verdict and the headline figures as one JSON object");
   add_quiet_option(verb, options.quiet);
   add_count(verb, "--threads", options.threads, 0, 1024,
@@ -107,14 +108,6 @@ Result<void> RunRecord::write(const std::filesystem::path& folder) const {
   run["began"] = fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(begin_)));
   run["seconds"] = std::chrono::duration<double>(end - begin_).count();
   return write_text_file(folder / "run.json", run.dump(1) + "\n");
-}
-
-std::vector<InputFile> fingerprints(const std::vector<std::string>& paths) {
-  std::vector<InputFile> files;
-  for (const std::string& path : paths)
-    if (const auto fingerprint = sha256_of_file(path))
-      files.push_back({std::filesystem::path(path).filename().string(), *fingerprint});
-  return files;
 }
 
 }  // namespace kinfer::cli

@@ -12,7 +12,7 @@
 #include "kinfer/base/observer.hpp"
 #include "kinfer/base/result.hpp"
 #include "kinfer/cli/parts/arguments.hpp"
-#include "kinfer/evidence/facts/provenance.hpp"
+#include "kinfer/io/evidence/fingerprints.hpp"
 
 namespace kinfer::cli {
 
@@ -85,9 +85,6 @@ class RunRecord {
   std::vector<std::string> inputs_;
   std::chrono::system_clock::time_point begin_;
 };
-
-/// Names and hashes of the input files, for the provenance; unreadable files are skipped.
-std::vector<InputFile> fingerprints(const std::vector<std::string>& paths);
 
 /// Stores the program's arguments for run.json.
 void store_command_line(const std::vector<std::string>& words);

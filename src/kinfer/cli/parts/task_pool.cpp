@@ -9,13 +9,25 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <exception>
+
+#include "kinfer/cli/parts/common.hpp"
+#include "kinfer/cli/parts/program.hpp"
 
 namespace kinfer::cli {
 namespace {
 
-ProgramCall& stored_call() {
-  static ProgramCall call;  // set once by main
-  return call;
+/// The program in a process of its own; what it throws is an internal error, as in main.
+int run_task(const std::vector<std::string>& words) {
+  try {
+    std::vector<std::string> command{"kinfer"};
+    command.insert(command.end(), words.begin(), words.end());
+    store_command_line(command);
+    return run_program(words);
+  } catch (const std::exception& failure) {
+    fmt::print(stderr, "kinfer: internal error: {}\n", failure.what());
+    return exit_internal;
+  }
 }
 
 void redirect(int descriptor, const std::filesystem::path& file) {
@@ -27,14 +39,6 @@ void redirect(int descriptor, const std::filesystem::path& file) {
 
 }  // namespace
 
-void set_program_call(ProgramCall call) {
-  stored_call() = std::move(call);
-}
-
-const ProgramCall& program_call() {
-  return stored_call();
-}
-
 bool TaskPool::start(int task, const std::vector<std::string>& words, const std::filesystem::path& folder) {
   std::fflush(nullptr);  // or the child would print what is buffered here again
   const pid_t process = ::fork();
@@ -43,7 +47,7 @@ bool TaskPool::start(int task, const std::vector<std::string>& words, const std:
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nothing goes on after the sweep was killed
     redirect(STDOUT_FILENO, folder / "output.txt");
     redirect(STDERR_FILENO, folder / "messages.txt");
-    const int code = program_call()(words);
+    const int code = run_task(words);
     std::fflush(nullptr);
     ::_exit(code);  // without destructors of the parent's objects
   }

@@ -3,17 +3,11 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace kinfer::cli {
-
-/// Runs the program with these words, without its name; its exit code.
-using ProgramCall = std::function<int(const std::vector<std::string>& words)>;
-void set_program_call(ProgramCall call);
-const ProgramCall& program_call();
 
 struct EndedTask {
   int task = 0;

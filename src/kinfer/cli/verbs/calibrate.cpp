@@ -10,6 +10,7 @@
 #include "kinfer/calibrate/start/local_poe.hpp"
 #include "kinfer/cli/parts/calibration_summary.hpp"
 #include "kinfer/cli/parts/evidence_files.hpp"
+#include "kinfer/cli/parts/model_patch_output.hpp"
 #include "kinfer/cli/parts/robot_option.hpp"
 #include "kinfer/cli/parts/search_options.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
@@ -29,7 +30,7 @@ struct CalibrateArguments {
   CommonOptions common;
   SearchArguments search;
   RobotOption robot;
-  std::string data, out, columns, holdout, parameters = "auto", model = "auto", refit;
+  std::string data, out, columns, holdout, parameters = "auto", model = "auto", refit, offsets = "folded";
 };
 
 /// Contents of the input files.
@@ -153,6 +154,7 @@ Provenance provenance_of(const CalibrateArguments& options, const Inputs& inputs
   const auto add_file = [&](const char* option, const std::string& path) {
     if (!path.empty()) provenance.options.emplace_back(option, std::filesystem::path(path).filename().string());
   };
+  if (options.offsets != "folded") provenance.options.emplace_back("--offsets", options.offsets);
   if (is_holdout_file(inputs)) add_file("--holdout", options.holdout);
   add_file("--columns", options.columns);
   add_file("--warm-start", options.search.warm_start);
@@ -161,6 +163,12 @@ Provenance provenance_of(const CalibrateArguments& options, const Inputs& inputs
        {std::pair{"--base-link", options.robot.base_link}, std::pair{"--tip-link", options.robot.tip_link}})
     if (!value.empty()) provenance.options.emplace_back(option, value);
   return provenance;
+}
+
+/// Refuses --offsets where no robot file can be written back.
+Result<void> check_offsets(const CLI::App& verb, const RobotModel& robot) {
+  if (!was_given(verb, "--offsets") || robot.source) return {};
+  return error("--offsets has no effect here: only a URDF file is written back with calibrated origins");
 }
 
 Result<void> write_results(const CalibrateArguments& options, const Inputs& inputs, const Calibration& calibration) {
@@ -175,6 +183,7 @@ int run(const CalibrateArguments& options, const CLI::App& verb) {
   RunRecord record("calibrate", options.common);
   const auto inputs = read_inputs(options);
   if (!inputs) return fail(inputs.error());
+  if (auto effective = check_offsets(verb, inputs->robot); !effective) return fail(effective.error());
   for (const std::string& path : input_paths(options, *inputs)) record.add_input(path);
   const auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
@@ -184,12 +193,15 @@ int run(const CalibrateArguments& options, const CLI::App& verb) {
   }();
   if (!calibration) return fail(calibration.error());
   if (auto done = write_results(options, *inputs, *calibration); !done) return fail(done.error());
+  const auto offsets = options.offsets == "separate" ? EncoderOffsets::separate : EncoderOffsets::folded;
+  const auto patch = write_model_patch(options.out, inputs->robot, *calibration, offsets);
   if (auto done = record.write(options.out); !done) return fail(done.error());
   const bool usable = calibration->usability != Usability::do_not_use;
   if (options.common.json)
     fmt::print("{}", format_calibration_headline(*calibration));
   else if (!options.common.quiet)
-    print_summary(calibration_summary(*calibration), usable ? Tone::good : Tone::bad);
+    print_summary(calibration_summary(*calibration) + (patch ? model_patch_summary(*patch) : ""),
+                  usable ? Tone::good : Tone::bad);
   return usable ? exit_done : exit_do_not_use;
 }
 
@@ -209,8 +221,10 @@ Verb add_calibrate(CLI::App& app) {
            "CSV");
   add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, evidence.json, report.html, run.json",
            Requirement::required, "DIR");
+  begin_group(*verb, "Data");
   add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Requirement::optional,
            "TOML");
+  begin_group(*verb, "Model");
   add_text(*verb, "--parameters", options->parameters,
            "auto: the complete geometric set; paper24: a alpha d theta of each joint (base and tool as given, or from "
            "the data where those disagree); or a TOML file "
@@ -224,8 +238,13 @@ Verb add_calibrate(CLI::App& app) {
       *verb, "--refit", options->refit, {"offsets"},
       "offsets: after a knock or a motor change, with few poses: only joint offsets, base and tool are found anew; "
       "all else stays as the earlier calibration (--warm-start) found it");
+  add_choice(*verb, "--offsets", options->offsets, {"folded", "separate"},
+             "Encoder offsets in the URDF file that is written back: folded into the origins, for joint positions as "
+             "the controller reports them; or separate, for a controller whose zeros are corrected");
+  begin_group(*verb, "Validation");
   add_text(*verb, "--holdout", options->holdout,
            "Rows that are never fitted: a fraction (0.2), or a further pose set (default: 5-fold cross-validation)");
+  begin_group(*verb, "Search and prior knowledge");
   add_search_arguments(*verb, options->search);
   add_common_options(*verb, options->common);
   return {verb, [options, verb] { return run(*options, *verb); }};

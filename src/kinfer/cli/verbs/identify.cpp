@@ -15,12 +15,9 @@
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/parts/zero_argument.hpp"
 #include "kinfer/cli/verb_list.hpp"
-#include "kinfer/io/evidence/chain_dh_csv.hpp"
+#include "kinfer/io/evidence/identification_files.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/recording/machine_facts_toml.hpp"
-#include "kinfer/io/robot/mjcf.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
-#include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/tracking/tracking_model_toml.hpp"
 
@@ -171,11 +168,8 @@ Provenance provenance_of(const IdentifyArguments& options, const identify::Ident
 }
 
 Result<void> write_results(const OutputFolder& folder, const Provenance& provenance, const Identification& found) {
-  RobotModel robot{.chain = found.chain};
-  if (auto done = write_text_file(folder / "chain.toml", format_robot_toml(robot)); !done) return done;
-  if (auto done = write_text_file(folder / "chain.urdf", format_urdf(found.chain)); !done) return done;
-  if (auto done = write_text_file(folder / "chain.mjcf", format_mjcf(found.chain)); !done) return done;
-  if (auto done = write_text_file(folder / "chain_dh.csv", format_chain_dh_csv(found.dh)); !done) return done;
+  for (const OutputFile& file : identification_files(found))
+    if (auto done = write_text_file(folder / file.name, file.text); !done) return done;
   if (found.tracking)
     if (auto done = write_text_file(folder / "track.toml", format_tracking_model(*found.tracking)); !done) return done;
   return write_evidence(folder.path(), identification_evidence(found, provenance));
@@ -208,6 +202,7 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
 
 void add_engine_options(CLI::App& verb, EngineArguments& search) {
   constexpr int most = 1000000;
+  begin_group(verb, "Search engine");
   add_choice(verb, "--engine", search.engine, {"bmp", "bp", "enum"},
              "How each link is searched; bmp: memetic bacterial programming; bp: that of paper 1; enum: every chain of "
              "up to 3 leaves");
@@ -242,6 +237,7 @@ Verb add_identify(CLI::App& app) {
            "Folder for chain.toml, track.toml, chain.urdf, chain.mjcf, chain_dh.csv, evidence.json, report.html, "
            "run.json",
            Requirement::required, "DIR");
+  begin_group(*verb, "Recording");
   add_text(*verb, "--filter", options->filter, "Orientation filter. " + filter_help(), Requirement::optional, "NAME");
   add_text(*verb, "--root", options->root, "Sensor on the machine's base (default: the one that stands still)",
            Requirement::optional, "NAME");
@@ -253,6 +249,7 @@ Verb add_identify(CLI::App& app) {
            Requirement::optional, "LINKS");
   add_number(*verb, "--smoothing", options->smoothing,
              "Standard deviation of the Gaussian on accelerations and rates [s]");
+  begin_group(*verb, "Estimation");
   add_choice(*verb, "--geometry", options->geometry, {"refined", "searched"},
              "refined: continuous-time fit of the whole recording; searched: as the search found it (paper 1)");
   add_text(*verb, "--grade", options->grade, "What the sensors are worth: auto, noise, industrial, consumer or a TOML",

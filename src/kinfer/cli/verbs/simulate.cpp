@@ -131,6 +131,7 @@ int run(const SimulateArguments& options) {
 }
 
 void add_machine_options(CLI::App& verb, SimulateArguments& options) {
+  begin_group(verb, "Machine");
   add_flag(verb, "--arbitrary-mounting", options.arbitrary_mounting,
            "Sensors in arbitrary mountings, joints with small errors (excavator-general always is)");
   add_choice(verb, "--base", options.base, names_of(bases),
@@ -141,6 +142,7 @@ void add_machine_options(CLI::App& verb, SimulateArguments& options) {
 }
 
 void add_motion_options(CLI::App& verb, SimulateArguments& options) {
+  begin_group(verb, "Motion");
   add_choice(verb, "--excitation", options.script, names_of(drive_scripts),
              "standard: 4 s rest, 6 s a joint, 16 s all; sequential: without 'all'; together: 30 s all; gentle and "
              "vigorous: standard at 45 and 180 %; quick: its waves four times as fast");
@@ -151,6 +153,7 @@ void add_motion_options(CLI::App& verb, SimulateArguments& options) {
 }
 
 void add_sensor_options(CLI::App& verb, SimulateArguments& options) {
+  begin_group(verb, "Sensors and their faults");
   add_text(verb, "--grade", options.grade, "Sensor errors: perfect, noise, industrial, consumer or a data sheet",
            Requirement::optional, "NAME|TOML");
   add_number(verb, "--missing", options.trouble.missing, 0.0, 0.9, "Fraction of the samples that are lost");

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "kinfer/io/robot/patch/calibrated_origins.hpp"
 #include "kinfer/io/text/format_number.hpp"
 #include "kinfer/kinematics/forward.hpp"
 
@@ -39,9 +40,8 @@ Offset dh_offset(const Estimate& estimate, const Joint& nominal, const Joint& fo
 
 Offset urdf_offset(const Estimate& estimate, const Joint& nominal, const Joint& found, std::size_t index) {
   const bool is_prismatic = translates(nominal.type);
-  const auto &before = std::get<UrdfLink>(nominal.link), &after = std::get<UrdfLink>(found.link);
-  const Pose change = before.origin.pose().inverse() * after.origin.pose();
-  Offset offset{before.axis.dot(is_prismatic ? change.position : log_so3(change.rotation)), 0.0, true};
+  const auto& before = std::get<UrdfLink>(nominal.link);
+  Offset offset{zero_offset(nominal, found), 0.0, true};
   for (int k = 0; k < 3; ++k) {
     const auto* p = find(estimate, fmt::format("{}{}{}", is_prismatic ? "" : "r", "xyz"[k], index + 1));
     if (std::abs(before.axis[k]) < 1e-6) continue;

@@ -41,6 +41,7 @@ std::span<const ModelFormat> model_formats() {
             KINFER_TRY(chain, parse_urdf(text, name, ends));
             RobotModel robot;
             robot.chain = std::move(chain);
+            robot.source = {std::filesystem::path(name).filename().string(), text, ends.base_link, ends.tip_link};
             return robot;
           },
           .format = [](const RobotModel& robot, const StandardDeviations&) { return format_urdf(robot.chain); }},
@@ -68,6 +69,9 @@ std::string writable_model_extensions() {
 
 Result<RobotModel> read_robot_model(const std::filesystem::path& path, const UrdfEnds& ends) {
   const std::string extension = path.extension().string();
+  if (extension == ".xacro")
+    return error("{}: xacro files must be expanded first: xacro {} > robot.urdf", path.string(),
+                 path.filename().string());
   const ModelFormat* chosen = &model_formats().front();
   for (const ModelFormat& format : model_formats()) {
     if (format.parse && contains(format.read_extensions, extension)) {

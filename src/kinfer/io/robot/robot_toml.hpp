@@ -16,6 +16,13 @@
 
 namespace kinfer {
 
+/// The text of a robot file that can be written back with other numbers: URDF.
+struct RobotSource {
+  std::string name;                 ///< of the file, without its folder
+  std::string text;                 ///< its bytes
+  std::string base_link, tip_link;  ///< ends of the chain as they were chosen; empty: found
+};
+
 /// The contents of a robot file.
 struct RobotModel {
   Chain chain{};
@@ -23,6 +30,7 @@ struct RobotModel {
   std::optional<Instrument> instrument{};       ///< absent: estimated from the residuals
   std::optional<Vec3> instrument_position{};    ///< [m] position of the instrument in the world; for planning
   std::optional<PredictionModel> prediction{};  ///< uncertainty of a calibrated chain
+  std::optional<RobotSource> source{};          ///< where the format is the user's own, not ours
 };
 
 /// Reads a robot file. Unknown keys, missing fields, wrong types, zero joints and broken trees are errors with the

@@ -91,7 +91,7 @@ Result<void> append_log(ForeignLog log, InsRecording& recording) {
     sensor.logger = recording.loggers.size() - 1;
     recording.sensors.push_back(std::move(sensor));
   }
-  add_time_remarks(recording, log.name);
+  add_time_remarks(recording, recording.loggers.size() - 1, log.name);
   return screen_sensors(recording, first, log.name, log.stated_units);
 }
 

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files that an identification writes beside evidence.json and the report.
+#pragma once
+
+#include "kinfer/evidence/identification/identification.hpp"
+#include "kinfer/io/evidence/calibration_files.hpp"
+
+namespace kinfer {
+
+/// chain.toml, chain.urdf, chain.mjcf, chain_dh.csv
+std::vector<OutputFile> identification_files(const Identification& identification);
+
+}  // namespace kinfer
