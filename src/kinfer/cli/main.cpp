@@ -48,6 +48,7 @@ std::size_t terminal_width() {
 }
 
 int run_program(const std::vector<std::string>& arguments) {
+  store_command_line(arguments);
   CLI::App app("kinfer: from raw measurements to a proven kinematic model", "kinfer");
   std::string language = "english";
   const std::vector<Verb> verbs = describe_program(app, language);
@@ -77,7 +78,6 @@ int main(int argc, char** argv) {
   // six sensors then took a third more memory.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   try {
-    kinfer::cli::store_command_line({argv, argv + argc});
     return kinfer::cli::run_program({argv + std::min(argc, 1), argv + argc});
   } catch (const std::exception& failure) {
     fmt::print(stderr, "kinfer: internal error: {}\n", failure.what());

@@ -22,8 +22,9 @@ std::vector<std::string>& command_line() {
 
 }  // namespace
 
-void store_command_line(const std::vector<std::string>& words) {
-  command_line() = words;
+void store_command_line(const std::vector<std::string>& arguments) {
+  command_line() = {"kinfer"};
+  command_line().insert(command_line().end(), arguments.begin(), arguments.end());
 }
 
 void add_quiet_option(CLI::App& verb, bool& quiet) {

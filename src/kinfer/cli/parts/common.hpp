@@ -86,7 +86,7 @@ class RunRecord {
   std::chrono::system_clock::time_point begin_;
 };
 
-/// Stores the program's arguments for run.json.
-void store_command_line(const std::vector<std::string>& words);
+/// Stores the arguments of the program, without its name, for run.json.
+void store_command_line(const std::vector<std::string>& arguments);
 
 }  // namespace kinfer::cli

@@ -20,9 +20,6 @@ namespace {
 /// The program in a process of its own; what it throws is an internal error, as in main.
 int run_task(const std::vector<std::string>& words) {
   try {
-    std::vector<std::string> command{"kinfer"};
-    command.insert(command.end(), words.begin(), words.end());
-    store_command_line(command);
     return run_program(words);
   } catch (const std::exception& failure) {
     fmt::print(stderr, "kinfer: internal error: {}\n", failure.what());

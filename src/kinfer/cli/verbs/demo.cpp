@@ -24,11 +24,6 @@ int step(const DemoArguments& options, const char* what, std::vector<std::string
   if (!options.quiet) fmt::print(stderr, "\n== {}\n$ {}\n", what, command);
   arguments.insert(arguments.end(), {"--threads", std::to_string(options.threads)});
   if (options.quiet) arguments.emplace_back("--quiet");
-  std::vector<std::string> words{"kinfer"};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  store_command_line(static_cast<int>(pointers.size()), pointers.data());  // for run.json
   return run_program(arguments);
 }
 
