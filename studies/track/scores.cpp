@@ -110,11 +110,13 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, c
       const bool is_relative = state.joints[j].reference == JointReference::start;
       Sum& sum = sums[j];
       if (sum.rows == 0 && is_relative) sum.start = state.q[at] - q;
+      if (!is_relative && score.joints[j].is_first && score.joints[j].told_at <= 0.0) score.joints[j].told_at = state.time;
       score.joints[j].is_first |= is_relative;
-      const double e = state.q[at] - q - sum.start;
+      const double e = state.q[at] - q - (is_relative ? sum.start : 0.0);
       sum.squares += e * e;
-      sum.nees += e * e / (state.sd_q[at] * state.sd_q[at]);
-      sum.inside += std::abs(e) <= 1.96 * state.sd_q[at];
+      const double sd = std::max(state.sd_q[at], 1e-6);
+      sum.nees += e * e / (sd * sd);
+      sum.inside += std::abs(e) <= 1.96 * sd;
       ++sum.rows;
       const double other = composed.state().q[at] - q;
       if (std::isnan(other)) continue;

@@ -11,6 +11,7 @@ struct JointScore {
   double nees = 0.0, coverage = 0.0;     ///< mean of (error/sd)²; share of errors within 1.96 sd
   bool is_first = false;                 ///< vertical axis on a level base: counts from the start
   bool is_slide = false;
+  double told_at = 0.0;  ///< [s] when a position that counted from the start was told
 };
 
 struct TrackScore {

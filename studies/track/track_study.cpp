@@ -106,4 +106,5 @@ void run(const Arguments& a) {
 
 int main(int argc, char** argv) {
   kinfer::study::run(kinfer::study::parse(argc, argv));
+  return 0;
 }

@@ -132,7 +132,7 @@ void Tracker::try_start() {
   const BlockMeasurement& block = block_.mean();
   const auto has_force = [](const BlockSample& s) { return s.force_count > 0 && s.rate_count > 0; };
   if (std::ranges::none_of(block.sensors, has_force)) return block_.clear();
-  base_.add(block, filter_.state());
+  base_.add(block, filter_);
   const InitialPosture posture = initial_posture(*model_, block, guesses_, base_.mode());
   filter_.start(posture.state, posture.covariance);
   is_known_ = posture.is_known;
@@ -148,6 +148,7 @@ void Tracker::try_start() {
   }
   block_.clear();
   replay_.begin(filter_);
+  tool_.spread(*model_, filter_.state(), filter_.covariance());
   state_.started = true;
   now_ = filter_.state();
 }
@@ -161,17 +162,40 @@ void Tracker::resolve_start(const BlockMeasurement& block) {
   replay_.begin(filter_);
 }
 
+void Tracker::replay(const std::function<void(ChainFilter&)>& prepare) {
+  fit_.reset();
+  replay_.run(filter_, prepare, [&](const ChainFilter& filter, const BlockMeasurement& past) {
+    fit_.add(filter, past.time, past.length);
+  });
+}
+
+/// A base that begins to move looks like a fault of sensors at first.
+bool Tracker::base_begins_to_move(const BlockMeasurement& block) {
+  if (filter_.state().base == BaseMode::moving) return false;
+  base_.add(block, filter_);
+  const int base_sensor = tracking_->bodies.front().sensor;
+  if (fit_.worst(filter_) >= 0 && base_sensor >= 0 && fit_[static_cast<std::size_t>(base_sensor)].strength > base_suspicion)
+    base_.suspect();
+  return base_.mode() == BaseMode::moving;
+}
+
+/// The base has moved for a while; what counted from the start can now be told.
+void Tracker::let_base_move() {
+  replay([](ChainFilter& filter) { filter.set_base(BaseMode::moving); });
+  for (std::size_t b = 1; b < model_->bodies.size() && !grid_; ++b) {
+    const Index at = model_->layout.position[b];
+    if (model_->bodies[b].motion == JointMotion::revolute && !is_known_[static_cast<std::size_t>(at)])
+      grid_.emplace(filter_, at);
+  }
+}
+
 /// Leaves out the sensor that disagrees most, as if it had never been believed, and takes in one that agrees again.
-void Tracker::examine_fit(const BlockMeasurement& block) {
-  replay_.add(block, filter_);
+void Tracker::examine_fit() {
   if (const int worst = fit_.worst(filter_); worst >= 0) {
     const auto s = static_cast<std::size_t>(worst);
     does_not_fit_[s] = true;
     const SensorFit fit = fit_[s];
-    fit_.reset();
-    replay_.run(s, filter_, [&](const ChainFilter& filter, const BlockMeasurement& past) {
-      fit_.add(filter, past.time, past.length);
-    });
+    replay([&](ChainFilter& filter) { filter.use_sensor(s, false); });
     fit_.set(s, fit);
   }
   if (const int back = fit_.recovered(filter_); back >= 0) {
@@ -190,26 +214,22 @@ void Tracker::process_block() {
   }
   fit_.add(filter_, block.time, block.length);
   choice_.update(filter_);
-  if (!grid_) examine_fit(block);
-  base_.add(block, filter_.state());
-  if (base_.mode() == BaseMode::moving && filter_.state().base == BaseMode::still) {
-    filter_.set_base(BaseMode::moving);
-    replay_.begin(filter_);
-    // What counted from the start can now be told.
-    for (std::size_t b = 1; b < model_->bodies.size() && !grid_; ++b) {
-      const Index at = model_->layout.position[b];
-      if (model_->bodies[b].motion == JointMotion::revolute && !is_known_[static_cast<std::size_t>(at)])
-        grid_.emplace(filter_, at);
-    }
+  if (!grid_) {
+    replay_.add(block, filter_);
+    if (base_begins_to_move(block))
+      let_base_move();
+    else
+      examine_fit();
   }
   block_.clear();
-  tool_.evaluate(*model_, filter_.state(), filter_.covariance());
+  tool_.spread(*model_, filter_.state(), filter_.covariance());
 }
 
 void Tracker::read_out(double time) {
   now_ = filter_.state();
   if (time > now_.time) predict_mean(*model_, time - now_.time, now_);
   track::read_out(*tracking_, *model_, now_, filter_.covariance(), state_);
+  tool_.place(*model_, now_);
   state_.base_T_tool = tool_.tool();
   state_.sd_tool_position = tool_.position_sd();
   state_.sd_tool_rotation = tool_.rotation_sd();

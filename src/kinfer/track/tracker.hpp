@@ -3,6 +3,8 @@
 // with standard deviations, from gyroscopes and accelerometers.
 #pragma once
 
+#include <functional>
+
 #include "kinfer/evidence/tracking/track_state.hpp"
 #include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/track/composed.hpp"
@@ -40,7 +42,10 @@ class Tracker {
   void process_block();
   void resolve_start(const BlockMeasurement& block);
   void choose_sensors();
-  void examine_fit(const BlockMeasurement& block);
+  void replay(const std::function<void(ChainFilter&)>& prepare);
+  bool base_begins_to_move(const BlockMeasurement& block);
+  void let_base_move();
+  void examine_fit();
   void list_alarms(double time);
   void read_out(double time);
 

@@ -117,6 +117,16 @@ TEST(TrackingModel, TakesNamedZeros) {
   EXPECT_NEAR(after(2, at), 0.25, 0.1);
 }
 
+TEST(TrackingModel, HasOnlyTheSensorsOfTheLinksThatWereFound) {
+  const auto drive = test::driven_machine("excavator", 3);
+  IdentifyOptions options;
+  options.links = 2;
+  const Identification found = test::identified(drive.recording, options);
+  expect_agreement(found);
+  EXPECT_EQ(found.tracking->sensors.size(), 3u);
+  EXPECT_EQ(found.tracking->joints.size(), 2u);
+}
+
 TEST(TrackingModel, KnowsTheLengthOfABoomAtTheZeroOfItsSlide) {
   const auto drive = test::driven_machine("crane", 3);
   const TrackingModel model = *test::identified(drive.recording).tracking;

@@ -48,7 +48,7 @@ TEST(TrackJson, IsReadBackWithTheSameBytes) {
 TEST(TrackJson, SaysWhatHappened) {
   const TrackRun run = track_evidence(example_run(), {});
   EXPECT_THAT(run.verdict.sentence, HasSubstr("2 joint positions tracked over 2.0 s, 1 alarm"));
-  EXPECT_THAT(run.verdict.sentence, HasSubstr("ins0-ins1: relative to where tracking began in 100 % of the rows"));
+  EXPECT_THAT(run.verdict.sentence, HasSubstr("relative to where tracking began, which --start can state: ins0-ins1"));
   EXPECT_THAT(run.events[0].sentence, HasSubstr("ins0 does not agree with the chain"));
   TrackRun other = example_run();
   other.events.push_back({.alarm = {TrackAlarmKind::does_not_fit, -1, -1, 1.1, 9.0}, .until = std::nan("")});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last seconds once more without a sensor that turned out to be faulty: until a fault is told, the filter has
-// believed it. Two earlier filters and the blocks since the older of them are kept.
+// The last seconds once more, in the light of what they told: without a sensor that turned out to be faulty, or with a
+// base that turned out to move. Until then the filter has believed otherwise. Two earlier filters and the blocks since the older of them are kept.
 #pragma once
 
 #include "kinfer/track/filter/chain_filter.hpp"
@@ -14,13 +14,14 @@ class Replay {
   /// After each update of `filter` by `block`; nothing is allocated.
   void add(const BlockMeasurement& block, const ChainFilter& filter);
 
-  /// From the older of the two filters kept, without sensor `left_out`; `visit(filter, block)` after each block.
-  template <class Visit>
-  void run(std::size_t left_out, ChainFilter& filter, const Visit& visit) {
+  /// From the older of the two filters kept, after `prepare` has changed it; `visit(filter, block)` after each block.
+  template <class Prepare, class Visit>
+  void run(ChainFilter& filter, const Prepare& prepare, const Visit& visit) {
     std::vector<bool> used;
     for (std::size_t s = 0; s < filter.model().sensors.size(); ++s) used.push_back(filter.uses_sensor(s));
     filter = older_;
-    for (std::size_t s = 0; s < used.size(); ++s) filter.use_sensor(s, used[s] && s != left_out);
+    for (std::size_t s = 0; s < used.size(); ++s) filter.use_sensor(s, used[s]);
+    prepare(filter);
     for (std::size_t i = 0; i < count_; ++i) {
       const BlockMeasurement& block = blocks_[i];
       filter.predict(block.time);

@@ -14,20 +14,20 @@ BaseWatch::BaseWatch(const TrackingModel& model, const FilterModel& filter, std:
     return;
   }
   const SensorSettings& s = filter.sensors[static_cast<std::size_t>(sensor_)];
-  const Index own = sensor_states * sensor_;
-  const double bias = std::sqrt(filter.parameters.diagonal().segment<3>(own + SensorIndex::gyroscope_bias).maxCoeff());
-  const double noise = std::hypot(s.white.rate, s.persistent.rate) * std::sqrt(s.sample_period / base_mean);
-  rate_limit_ = base_rate + base_significance * std::hypot(noise, bias);
+  noise_ = std::hypot(s.white.rate, s.persistent.rate) * std::sqrt(s.sample_period / base_mean);
 }
 
-void BaseWatch::add(const BlockMeasurement& block, const ChainState& state) {
+void BaseWatch::add(const BlockMeasurement& block, const ChainFilter& filter) {
   if (is_given_ || mode_ == BaseMode::moving || sensor_ < 0) return;
   const BlockSample& sample = block.sensors[static_cast<std::size_t>(sensor_)];
   if (sample.rate_count == 0) return;
-  const Vec3 rate = sample.rate - state.sensors[static_cast<std::size_t>(sensor_)].gyroscope_bias;
+  const Vec3 rate = sample.rate - filter.state().sensors[static_cast<std::size_t>(sensor_)].gyroscope_bias;
   rate_ += (rate - rate_) * (1.0 - std::exp(-block.length / base_mean));
   seen_ += block.length;
-  if (rate_.norm() > rate_limit_ && seen_ > base_mean) mode_ = BaseMode::moving;
+  const Index own = filter.model().layout.sensor_state(sensor_) + SensorIndex::gyroscope_bias;
+  const double bias_variance = filter.covariance().diagonal().segment<3>(own).maxCoeff();
+  const double limit = base_rate + base_significance * std::sqrt(noise_ * noise_ + bias_variance);
+  if (rate_.norm() > limit && seen_ > base_mean) mode_ = BaseMode::moving;
 }
 
 }  // namespace kinfer::track

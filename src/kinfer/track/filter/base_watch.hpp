@@ -13,14 +13,18 @@ class BaseWatch {
   /// `given`: by the user; none: the base's sensor tells.
   BaseWatch(const TrackingModel& model, const FilterModel& filter, std::optional<BaseMode> given);
 
-  void add(const BlockMeasurement& block, const ChainState& state);
+  void add(const BlockMeasurement& block, const ChainFilter& filter);
+  /// The innovations say that it moves.
+  void suspect() {
+    if (!is_given_) mode_ = BaseMode::moving;
+  }
   BaseMode mode() const { return mode_; }
 
  private:
   bool is_given_;
   BaseMode mode_;
   int sensor_;
-  double rate_limit_ = 0.0;  // [rad/s]
+  double noise_ = 0.0;  // [rad/s] of the averaged rate
   Vec3 rate_ = Vec3::Zero();
   double seen_ = 0.0;  // [s]
 };

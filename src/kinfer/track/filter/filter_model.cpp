@@ -27,11 +27,20 @@ void free_parameter(InsBody& body, const TrackingParameter& parameter) {
   const auto component = static_cast<std::size_t>(parameter.component);
   const bool turns = body.motion != JointMotion::spherical;
   switch (parameter.kind) {
-    case TrackingParameterKind::parent_rotation: body.free_parent_rotation[component] = turns; break;
-    case TrackingParameterKind::child_rotation: body.free_child_rotation[component] = turns; break;
-    case TrackingParameterKind::point_in_parent: body.free_point_in_parent = true; break;
-    case TrackingParameterKind::point_in_child: body.free_point_in_child = true; break;
-    default: break;
+    case TrackingParameterKind::parent_rotation:
+      body.free_parent_rotation[component] = turns;
+      break;
+    case TrackingParameterKind::child_rotation:
+      body.free_child_rotation[component] = turns;
+      break;
+    case TrackingParameterKind::point_in_parent:
+      body.free_point_in_parent = true;
+      break;
+    case TrackingParameterKind::point_in_child:
+      body.free_point_in_child = true;
+      break;
+    default:
+      break;
   }
 }
 
@@ -103,11 +112,22 @@ AccelerationProcess process_of(const TrackingJoint& joint, int position) {
   AccelerationProcess process = machine_acceleration;
   if (static_cast<std::size_t>(position) >= joint.range.size()) return process;
   const double shown = acceleration_room * joint.range[static_cast<std::size_t>(position)].acceleration;
+  if (joint.type == EstimatedJointType::prismatic) process.sd = min_slide_acceleration;
   if (shown > process.sd) {
     process.time = std::clamp(process.time * process.sd / shown, min_acceleration_time, process.time);
     process.sd = shown;
   }
   return process;
+}
+
+Slide slide_of(const TrackingJoint& joint, Index position) {
+  Slide slide{.position = position, .speed = min_slide_speed};
+  if (joint.range.empty()) return slide;
+  const TrackingRange& seen = joint.range.front();
+  slide.middle = 0.5 * (seen.lower + seen.upper);
+  slide.stroke = 0.5 * (seen.upper - seen.lower) + min_slide_stroke;
+  slide.speed = std::max(min_slide_speed, seen.speed);
+  return slide;
 }
 
 void set_processes(FilterModel& filter, const TrackingModel& model) {
@@ -118,6 +138,8 @@ void set_processes(FilterModel& filter, const TrackingModel& model) {
     const TrackingJoint& joint = model.joints[static_cast<std::size_t>(body.joint)];
     // Of a universal joint's two bodies the first carries no sensor and has the first position.
     const bool is_second = joint.positions == 2 && body.sensor >= 0;
+    if (body.motion == TrackingMotion::prismatic)
+      filter.slides.push_back(slide_of(joint, static_cast<Index>(filter.positions.size())));
     for (Index i = 0; i < dof; ++i)
       filter.positions.push_back(process_of(joint, joint.positions == 3 ? static_cast<int>(i) : is_second ? 1 : 0));
     if (body.motion == TrackingMotion::revolute && dof == 3)

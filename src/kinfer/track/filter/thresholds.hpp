@@ -14,8 +14,13 @@ inline constexpr double acceleration_room = 2.0;       ///< a drive may be so mu
 
 /// A base that moves: a machine that rocks on its tracks. Simulated machines on a rocking and on a yawing base.
 inline constexpr AccelerationProcess base_rotation{.sd = 0.6, .time = 0.3}, base_translation{.sd = 0.3, .time = 0.3};
-inline constexpr double base_velocity_sd = 0.3;   ///< [m/s] of the base
+inline constexpr double base_velocity_sd = 0.3;    ///< [m/s] of the base
 inline constexpr double base_velocity_time = 1.0;  ///< [s] its correlation time
+
+/// Slides: least acceleration [m/s²], speed [m/s] and stroke [m] that a drive may have, and over which time [s] speed
+/// and position count as new; at rest an accelerometer's bias alone would carry a slide away. Simulated crane.
+inline constexpr double min_slide_acceleration = 0.1, min_slide_speed = 0.05, min_slide_stroke = 0.5,
+                        slide_speed_time = 1.0, slide_stroke_time = 20.0;
 
 inline constexpr double still_base_walk = 2e-5;  ///< [rad/√s] tilting of a base that stands still: soil, outriggers
 

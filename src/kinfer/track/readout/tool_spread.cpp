@@ -56,10 +56,14 @@ void ToolSpread::add_body(const FilterModel& model, std::size_t b) {
     for (Index i = 0; i < 3; ++i) add_column(state++, -child.col(i), Vec3::Zero());
 }
 
-void ToolSpread::evaluate(const FilterModel& model, const ChainState& state, const MatrixXd& covariance) {
+void ToolSpread::place(const FilterModel& model, const ChainState& state) {
   for (std::size_t b = 1; b < bodies_.size(); ++b) set_pose(model, state, b);
+  tool_ = bodies_[static_cast<std::size_t>(carried_.body)] * carried_.body_T_tool;
+}
+
+void ToolSpread::spread(const FilterModel& model, const ChainState& state, const MatrixXd& covariance) {
+  place(model, state);
   const Pose& carrier = bodies_[static_cast<std::size_t>(carried_.body)];
-  tool_ = carrier * carried_.body_T_tool;
   index_.clear();
   for (std::size_t b = 1; b < bodies_.size(); ++b)
     if (leads_to_tool_[b]) add_body(model, b);

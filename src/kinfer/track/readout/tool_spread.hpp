@@ -12,8 +12,9 @@ class ToolSpread {
  public:
   ToolSpread(const FilterModel& model, const TrackingTool& tool);
 
-  /// Nothing is allocated.
-  void evaluate(const FilterModel& model, const ChainState& state, const MatrixXd& covariance);
+  /// Nothing is allocated by either. place: the pose; spread: its standard deviations too.
+  void place(const FilterModel& model, const ChainState& state);
+  void spread(const FilterModel& model, const ChainState& state, const MatrixXd& covariance);
 
   const Pose& tool() const { return tool_; }  ///< base_T_tool
   const Vec3& position_sd() const { return position_sd_; }
