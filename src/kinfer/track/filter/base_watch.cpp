@@ -24,10 +24,19 @@ void BaseWatch::add(const BlockMeasurement& block, const ChainFilter& filter) {
   const Vec3 rate = sample.rate - filter.state().sensors[static_cast<std::size_t>(sensor_)].gyroscope_bias;
   rate_ += (rate - rate_) * (1.0 - std::exp(-block.length / base_mean));
   seen_ += block.length;
+  judge(filter, 1.0);
+}
+
+void BaseWatch::suspect(const ChainFilter& filter) {
+  judge(filter, base_suspicion);
+}
+
+void BaseWatch::judge(const ChainFilter& filter, double share) {
+  if (is_given_ || sensor_ < 0 || seen_ <= base_mean) return;
   const Index own = filter.model().layout.sensor_state(sensor_) + SensorIndex::gyroscope_bias;
   const double bias_variance = filter.covariance().diagonal().segment<3>(own).maxCoeff();
   const double limit = base_rate + base_significance * std::sqrt(noise_ * noise_ + bias_variance);
-  if (rate_.norm() > limit && seen_ > base_mean) mode_ = BaseMode::moving;
+  if (rate_.norm() > share * limit) mode_ = BaseMode::moving;
 }
 
 }  // namespace kinfer::track

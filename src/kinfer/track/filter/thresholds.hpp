@@ -49,6 +49,8 @@ inline constexpr double rest_creep = 2e-4;  ///< [rad/s] that a rest may hide
 
 /// A base moves where its angular velocity, averaged over so long [s], is beyond this [rad/s] and so many standard
 /// deviations of noise and bias.
+/// Where sensors disagree, this share of it suffices.
+inline constexpr double base_suspicion = 0.4;
 inline constexpr double base_mean = 0.1, base_rate = 2e-3, base_significance = 5.0;
 
 inline constexpr double update_period = 0.02;  ///< [s] at most 50 updates a second

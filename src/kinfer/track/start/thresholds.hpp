@@ -14,7 +14,9 @@ inline constexpr double start_velocity_sd = 0.3;  ///< [m/s] of the base
 
 inline constexpr int start_places = 12;          ///< of an angle that gravity does not tell
 inline constexpr double start_log_odds = 12.0;   ///< ln: a place so much less likely than the best is dropped
-inline constexpr double start_merge = 0.02;      ///< [rad] places so near are one
+inline constexpr double start_preference = 0.5;  ///< ln: for each step on the grid nearer to where the filter was
+inline constexpr double start_merge = 0.02;      ///< [rad] or [m] places so near are one
+inline constexpr double slide_step = 0.1;        ///< [m] least distance of places along a slide
 inline constexpr double given_start_sd = 0.02;   ///< [rad] or [m] of what the user states
 inline constexpr double slide_room = 0.1;        ///< [m] beyond what was seen of a slide
 
