@@ -48,13 +48,18 @@ SensorLikelihoods likelihoods_of(const InsSensor& sensor, std::span<const double
   return result;
 }
 
-/// The unit that all sensors together favour.
+/// The unit that most sensors favour: each counts up to a limit, so that one odd sensor does not speak for all. No
+/// rotation where no unit is better than that.
 std::size_t common_unit(const std::vector<SensorLikelihoods>& sensors) {
   std::array<double, rate_units.size()> sum{};
   for (const SensorLikelihoods& sensor : sensors)
-    for (std::size_t u = 0; u < rate_units.size(); ++u) sum[u] += sensor.of(u, sensor.best_map(u));
+    for (std::size_t u = 0; u < rate_units.size(); ++u) {
+      const double gain = sensor.of(u, sensor.best_map(u)) - sensor.of(0, sensor.best_map(0));
+      sum[u] += std::clamp(gain, -max_sensor_vote, max_sensor_vote);
+    }
   const auto best = static_cast<std::size_t>(std::ranges::max_element(sum) - sum.begin());
-  return sum[best] - sum[0] > min_map_gain ? best : 0;
+  if (sum[best] < min_map_gain) return 0;
+  return sum[best] - sum[no_rotation] < min_map_gain ? no_rotation : best;
 }
 
 /// That of the log, unless this sensor by itself contradicts it.

@@ -9,6 +9,9 @@ namespace kinfer::identify {
 /// Larger misses faults of sensors that hardly rotate. Sound logs reach 16 (a pendulum of 8 s), faults 50 to 4000.
 inline constexpr double min_map_gain = 25.0;
 
+/// [nats] Most that one sensor says for or against a unit of all. Larger: one odd sensor speaks for a log of two.
+inline constexpr double max_sensor_vote = 200.0;
+
 /// [nats] By which the best map must lead the next one to be applied. Smaller leads: the fault is said, the cure is not
 /// certain.
 inline constexpr double min_map_lead = 6.0;
@@ -27,11 +30,12 @@ inline constexpr double max_quiet_rate = 0.1;
 /// identification does not mind them. Larger misses shorter lags.
 inline constexpr double min_reported_lag = 0.022;
 
-/// [nats] Gain of a lag in the recording, and in either half of it; larger misses lags of sensors that hardly tilt.
-inline constexpr double min_lag_gain = 15.0, min_half_lag_gain = 3.5;
-/// [s] Standard deviation of a lag. Larger: drives of all joints together, which no single circle describes, give lags
-/// of 60 ms that are none; those of 40 ms are found with 1.3 to 5.6 ms.
-inline constexpr double max_lag_sd = 6e-3;
+/// [nats] Gain of a lag in the recording; larger misses lags of sensors that hardly tilt. And in either half of it, which
+/// may hold no section that tells, but must not speak against it.
+inline constexpr double min_lag_gain = 15.0, min_half_lag_gain = -4.0;
+/// [s] Standard deviation of a lag. Larger: drives of all joints together, which no single circle describes, give lags of
+/// 60 ms that are none; those of 40 ms are found with 1.3 to 5.9 ms.
+inline constexpr double max_lag_sd = 6.2e-3;
 
 /// Share of the rows that are copies, or on straight lines between others. Sound logs: below 0.02.
 inline constexpr double max_repeated_share = 0.2;

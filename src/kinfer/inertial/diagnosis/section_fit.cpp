@@ -85,12 +85,23 @@ bool is_complete(const SectionSignals& signals, std::size_t first) {
   return true;
 }
 
+/// Whether the direction moves in the section by more than instruments' errors: a section at rest tells nothing.
+bool direction_moves(const SectionSignals& signals, std::size_t first) {
+  constexpr double least_ratio = 4.0;  // of variances
+  Vec3 sum = Vec3::Zero();
+  double square = 0.0;
+  for (std::size_t k = first; k < first + section_steps; ++k)
+    sum += signals.direction[k], square += signals.direction[k].squaredNorm();
+  const double n = static_cast<double>(section_steps);
+  return (square / n - (sum / n).squaredNorm()) / 3.0 > least_ratio * signals.noise_variance;
+}
+
 std::vector<std::size_t> complete_sections(const SectionSignals& signals) {
   std::vector<std::size_t> sections;
   const std::size_t steps = signals.rate.size();
   const std::size_t stride = section_steps * (1 + steps / (section_steps * most_sections));
   for (std::size_t first = section_margin; first + section_steps + section_margin < steps; first += stride)
-    if (is_complete(signals, first)) sections.push_back(first);
+    if (is_complete(signals, first) && direction_moves(signals, first)) sections.push_back(first);
   return sections;
 }
 

@@ -7,8 +7,8 @@
 #include <functional>
 #include <limits>
 
-#include "kinfer/io/recording/ins_columns.hpp"
 #include "kinfer/io/recording/foreign/ins_remarks.hpp"
+#include "kinfer/io/recording/ins_columns.hpp"
 #include "kinfer/io/text/csv.hpp"
 #include "kinfer/io/text/mapped_file.hpp"
 #include "kinfer/io/text/plain_decimal.hpp"
