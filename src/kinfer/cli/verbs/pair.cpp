@@ -42,7 +42,7 @@ void print_alone(const std::string& file, const PoseSet& set, const std::vector<
 }
 
 void print_pairing(const PairArguments& options, const PoseSet& joints, const PoseSet& measured, const RestLists& lists,
-                   const Pairing& pairing) {
+                   const RestPairing& pairing) {
   fmt::print("{} pairs by {} of {} rests of the robot and {} of the tracker\n", pairing.pairs.size(),
              name(pairing.method), lists.joints.size(), lists.measured.size());
   if (pairing.method == PairingMethod::time)

@@ -45,7 +45,7 @@ Samples resampled(const TriadColumns& triad, std::span<const double> time, std::
   return values;
 }
 
-Samples smoothed(const Samples& values) {
+Samples smoothed_samples(const Samples& values) {
   constexpr double area = (half_kernel + 1) * (half_kernel + 1);
   Samples smooth(values.size(), Vec3::Constant(std::nan("")));
   for (std::size_t k = half_kernel; k + half_kernel < values.size(); ++k) {
@@ -183,7 +183,8 @@ std::optional<SectionSignals> section_signals(const TriadColumns& direction, con
   if (!direction.present() || !rates.present() || time.size() < 2) return std::nullopt;
   const auto steps = static_cast<std::size_t>(std::min((time.back() - time.front()) / grid_step, most_steps));
   if (steps < section_steps + 2 * section_margin) return std::nullopt;
-  SectionSignals signals{smoothed(resampled(direction, time, steps)), smoothed(resampled(rates, time, steps)), 0.0};
+  SectionSignals signals{smoothed_samples(resampled(direction, time, steps)),
+                         smoothed_samples(resampled(rates, time, steps)), 0.0};
   const Vec3 bias = quietest_rate(signals.rate, max_bias);
   for (Vec3& w : signals.rate) w -= bias;
   const double error = usual_error * median_length(signals.direction);

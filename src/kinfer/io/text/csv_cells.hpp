@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "kinfer/io/text/csv.hpp"
+#include "kinfer/io/text/csv_format.hpp"
 #include "kinfer/io/text/trim.hpp"
 
 namespace kinfer {

@@ -15,7 +15,7 @@ using Index = Eigen::Index;
 
 /// The enumerator of that name.
 template <class Kind, std::size_t count>
-Kind kind_of(TableReader& reader, std::string_view key) {
+Kind read_kind(TableReader& reader, std::string_view key) {
   const std::string text = reader.text(key);
   for (std::size_t i = 0; i < count; ++i)
     if (name(static_cast<Kind>(i)) == text) return static_cast<Kind>(i);

@@ -44,7 +44,7 @@ double median_of(std::vector<double> values) {
 }
 
 /// Fills what follows from the pairs.
-Pairing completed(Pairing pairing, const RestLists& lists) {
+RestPairing completed(RestPairing pairing, const RestLists& lists) {
   std::vector<bool> joints(lists.joints.size(), false), measured(lists.measured.size(), false);
   for (const RestPair& pair : pairing.pairs)
     joints[static_cast<std::size_t>(pair.joints)] = measured[static_cast<std::size_t>(pair.measured)] = true;
@@ -177,12 +177,12 @@ std::string_view name(PairingMethod method) {
   return names[static_cast<std::size_t>(method)];
 }
 
-Result<Pairing> pair_by_name(const RestLists& lists) {
+Result<RestPairing> pair_by_name(const RestLists& lists) {
   std::map<std::string, int> measured;
   for (std::size_t k = 0; k < lists.measured.size(); ++k)
     if (!measured.emplace(lists.measured[k].name, static_cast<int>(k)).second)
       return error("the name \"{}\" stands in several places of the measured list", lists.measured[k].name);
-  Pairing pairing{.method = PairingMethod::name};
+  RestPairing pairing{.method = PairingMethod::name};
   std::map<std::string, int> joints;
   for (std::size_t i = 0; i < lists.joints.size(); ++i) {
     const std::string& name = lists.joints[i].name;
@@ -195,7 +195,7 @@ Result<Pairing> pair_by_name(const RestLists& lists) {
   return completed(std::move(pairing), lists);
 }
 
-Result<Pairing> pair_by_time(const RestLists& lists, std::optional<double> offset) {
+Result<RestPairing> pair_by_time(const RestLists& lists, std::optional<double> offset) {
   if (std::min(lists.joints.size(), lists.measured.size()) < least_pairs)
     return error("{} rests of the robot and {} of the tracker were found; pairing by time needs three of each",
                  lists.joints.size(), lists.measured.size());
@@ -212,15 +212,15 @@ Result<Pairing> pair_by_time(const RestLists& lists, std::optional<double> offse
           "--offset, or names",
           candidates[best].clock.offset, candidates[best].pairs.size(), candidates[k].clock.offset,
           candidates[k].pairs.size());
-  Pairing pairing{.method = PairingMethod::time, .pairs = candidates[best].pairs};
+  RestPairing pairing{.method = PairingMethod::time, .pairs = candidates[best].pairs};
   pairing.offset = candidates[best].clock.offset;
   pairing.drift = candidates[best].clock.drift;
   pairing.timing_error = candidates[best].rms;
   return completed(std::move(pairing), lists);
 }
 
-Result<Pairing> pair_by_order(const RestLists& lists) {
-  Pairing pairing{.method = PairingMethod::order};
+Result<RestPairing> pair_by_order(const RestLists& lists) {
+  RestPairing pairing{.method = PairingMethod::order};
   const std::size_t common = std::min(lists.joints.size(), lists.measured.size());
   for (std::size_t i = 0; i < common; ++i) pairing.pairs.push_back({static_cast<int>(i), static_cast<int>(i)});
   if (lists.joints.size() == lists.measured.size()) return completed(std::move(pairing), lists);

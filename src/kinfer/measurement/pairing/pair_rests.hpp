@@ -23,7 +23,7 @@ struct RestPair {
   auto operator<=>(const RestPair&) const = default;
 };
 
-struct Pairing {
+struct RestPairing {
   PairingMethod method = PairingMethod::order;
   std::vector<RestPair> pairs{};                      ///< in the order of the robot's rests
   std::vector<int> joints_alone{}, measured_alone{};  ///< rests without partner
@@ -41,8 +41,8 @@ struct RestLists {
 /// By time with `offset` [s], tracker minus robot, where it is known; it need not be better than to half a rest.
 /// Errors: names that repeat or do not meet; counts that differ, with the first place where measured and predicted
 /// distances part; several offsets in time that explain the rests equally well.
-Result<Pairing> pair_by_name(const RestLists& lists);
-Result<Pairing> pair_by_time(const RestLists& lists, std::optional<double> offset = std::nullopt);
-Result<Pairing> pair_by_order(const RestLists& lists);
+Result<RestPairing> pair_by_name(const RestLists& lists);
+Result<RestPairing> pair_by_time(const RestLists& lists, std::optional<double> offset = std::nullopt);
+Result<RestPairing> pair_by_order(const RestLists& lists);
 
 }  // namespace kinfer

@@ -62,7 +62,8 @@ std::vector<Rest> measured_rests(const PoseSet& measured) {
   return rests_of(measured, points_of(measured), MatrixXd());
 }
 
-Result<Pairing> pair_rests(const RestLists& lists, std::optional<PairingMethod> method, std::optional<double> offset) {
+Result<RestPairing> pair_rests(const RestLists& lists, std::optional<PairingMethod> method,
+                               std::optional<double> offset) {
   const bool by_name = have_names(lists.joints) && have_names(lists.measured);
   const bool by_time = have_durations(lists.joints) && have_durations(lists.measured);
   if (method == PairingMethod::name && !by_name) return error("pairing by name needs a column id in both files");
@@ -76,7 +77,7 @@ Result<Pairing> pair_rests(const RestLists& lists, std::optional<PairingMethod> 
                                        : pair_by_order(lists);
 }
 
-PoseSet paired_set(const PoseSet& joints, const PoseSet& measured, const RestLists& lists, const Pairing& pairing) {
+PoseSet paired_set(const PoseSet& joints, const PoseSet& measured, const RestLists& lists, const RestPairing& pairing) {
   PoseSet set;
   set.joint_names = joints.joint_names;
   set.joints.resize(joints.joints.rows(), static_cast<Eigen::Index>(pairing.pairs.size()));

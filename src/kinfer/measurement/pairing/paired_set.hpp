@@ -18,11 +18,12 @@ std::vector<Rest> joint_rests(const PoseSet& joints);
 std::vector<Rest> measured_rests(const PoseSet& measured);
 
 /// By `method`; none: by name where both files have names, by time where both have times, else by order.
-Result<Pairing> pair_rests(const RestLists& lists, std::optional<PairingMethod> method, std::optional<double> offset);
+Result<RestPairing> pair_rests(const RestLists& lists, std::optional<PairingMethod> method,
+                               std::optional<double> offset);
 
 /// One row a pair: means of the joint positions, of the tool point and of its orientation. The scatter of a point
 /// becomes its standard deviation where each of its components has one. `id` and `line` are those of the first joint
 /// row.
-PoseSet paired_set(const PoseSet& joints, const PoseSet& measured, const RestLists& lists, const Pairing& pairing);
+PoseSet paired_set(const PoseSet& joints, const PoseSet& measured, const RestLists& lists, const RestPairing& pairing);
 
 }  // namespace kinfer
