@@ -97,7 +97,7 @@ TrackingBody read_body(TableReader& t, const TrackingModel& model, std::size_t s
   b.parent = number == 0 ? index(t, "parent", -1, 0) : index(t, "parent", 0, number);
   b.sensor = index(t, "sensor", -1, sensors);
   b.joint = number == 0 ? index(t, "joint", -1, 0) : index(t, "joint", 0, joints);
-  b.motion = kind_of<TrackingMotion, 4>(t, "motion");
+  b.motion = read_kind<TrackingMotion, 4>(t, "motion");
   b.parent_R_axis = rotation(t, "parent_R_axis");
   b.child_R_axis = rotation(t, "child_R_axis");
   b.point_in_parent = t.vector("point_in_parent");
@@ -108,7 +108,7 @@ TrackingBody read_body(TableReader& t, const TrackingModel& model, std::size_t s
 TrackingJoint read_joint(TableReader& t, FirstError& first_error) {
   TrackingJoint j;
   j.name = t.text("name");
-  j.type = kind_of<EstimatedJointType, 5>(t, "type");
+  j.type = read_kind<EstimatedJointType, 5>(t, "type");
   j.stray = t.number("stray");
   j.stray_time = t.number("stray_time");
   in_tables(t, "range", first_error, [&](TableReader& r) {
