@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -36,7 +37,8 @@ class Program : public ::testing::Test {
  protected:
   void SetUp() override {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("kinfer_") + info->test_suite_name() + "_" + info->name());
+    folder_ = fs::temp_directory_path() / (std::string("kinfer_") + info->test_suite_name() + "_" + info->name() + "_" +
+                                           std::to_string(::getpid()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }

@@ -114,6 +114,7 @@ TEST(PairRests, ByTimeOffsetAndDriftAreFound) {
 TEST(PairRests, EqualDwellsAreDecidedByDistancesOrRefused) {
   const Program program = program_of(10, true, Rng(3));
   RestLists lists = lists_of(program, 20.0, 0.0, 2);
+  lists.joints.pop_back(), lists.measured.pop_back();  // the last rest is longer, and would tell
   EXPECT_THAT(pair_by_time(lists).error().what, HasSubstr("explain the rests equally well; give --offset, or names"));
   const auto given = pair_by_time(lists, 20.3);
   ASSERT_TRUE(given) << given.error().what;
@@ -122,7 +123,7 @@ TEST(PairRests, EqualDwellsAreDecidedByDistancesOrRefused) {
   const auto found = pair_by_time(lists);
   ASSERT_TRUE(found) << found.error().what;
   EXPECT_EQ(found->pairs.front().joints, 2);
-  EXPECT_EQ(found->pairs.size(), 8u);
+  EXPECT_EQ(found->pairs.size(), 7u);
   EXPECT_LT(found->distance_error, 1e-3);
 }
 

@@ -74,7 +74,7 @@ std::optional<std::string> misspelling(const std::vector<std::string>& arguments
     if (!option)
       return fmt::format("{}there is no option {}{}", verb ? verb->name + ": " : "", name,
                          did_you_mean(name, long_and_short_names(owner)));
-    if (!verb && !option->is_flag() && name == argument) ++i;  // the value of an option of the program
+    if (!option->is_flag() && name == argument) ++i;  // its value, which may look like an option
   }
   return std::nullopt;
 }

@@ -73,6 +73,16 @@ void remove_unfinished(const fs::path& path, const std::vector<SweepTask>& tasks
   for (const fs::path& folder : unfinished) fs::remove_all(folder, ignored);
 }
 
+/// Writes "{out}" for the folder under which the task ran: its name is of one run.
+void hide_folder(const fs::path& file, const std::string& folder) {
+  const auto text = read_text_file(file);
+  if (!text) return;
+  std::string plain = *text;
+  for (std::size_t at = plain.find(folder); at != std::string::npos; at = plain.find(folder, at))
+    plain.replace(at, folder.size(), "{out}");
+  if (plain != *text) std::ofstream(file, std::ios::binary) << plain;
+}
+
 /// The last line that the program printed as an error, without its name.
 std::string last_complaint(const fs::path& messages) {
   std::ifstream file(messages);
@@ -154,8 +164,10 @@ Result<TaskResult> SweepFolder::end(const SweepTask& task, std::uint64_t seed, i
   else if (exit_code > 1)
     result.sentence = last_complaint(folder / "messages.txt");
   std::error_code ignored;
-  for (const char* name : {"output.txt", "messages.txt"})
+  for (const char* name : {"output.txt", "messages.txt"}) {
+    hide_folder(folder / name, folder.string());
     if (fs::file_size(folder / name, ignored) == 0) fs::remove(folder / name, ignored);
+  }
   nlohmann::ordered_json json{{"format", "kinfer-task/1"},
                               {"key", task.key},
                               {"verb", task.verb},

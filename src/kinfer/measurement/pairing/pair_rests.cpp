@@ -17,7 +17,10 @@ constexpr double largest_drift = 1e-3;  // [s/s] of a computer's clock it is bel
 constexpr double clearly_better = 3.0;
 constexpr std::size_t least_pairs = 3;
 constexpr double comparable_pairs = 0.7;  // of the most: with fewer an offset is no rival, however well they fit
-constexpr double parting_factor = 10.0;   // of the median distance error: there the rows no longer belong together
+/// [m] Distances of a nominal model are assumed to be at least so accurate: larger errors are of rows that do not
+/// belong together.
+constexpr double nominal_accuracy = 2e-3;
+constexpr double parting_factor = 10.0;  // of the median distance error: there the rows no longer belong together
 
 Vec3 measured_point(const RestLists& lists, int index) {
   return lists.measured[static_cast<std::size_t>(index)].mean.head<3>();
@@ -228,7 +231,7 @@ Result<RestPairing> pair_by_order(const RestLists& lists) {
   // Rows before the place belong together; a quarter of the errors are surely of such rows if the place is not early.
   std::vector<double> sorted = errors;
   std::ranges::sort(sorted);
-  const double usual = sorted.empty() ? 0.0 : sorted[sorted.size() / 4];
+  const double usual = sorted.empty() ? 0.0 : std::min(sorted[sorted.size() / 4], nominal_accuracy);
   const auto part = std::ranges::find_if(errors, [&](double e) { return e > parting_factor * usual + 1e-3; });
   if (errors.empty() || part == errors.end())
     return error("the joint list has {} rests and the measured list {}", lists.joints.size(), lists.measured.size());
