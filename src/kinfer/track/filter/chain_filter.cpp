@@ -44,7 +44,7 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
     : model_(std::move(model)), state_(initial_state(*model_)), evaluator_(*model_) {
   const FilterLayout& layout = model_->layout;
   const auto sensors = static_cast<std::size_t>(layout.sensors);
-  const Index most = layout.rows() + 3 + 2 * static_cast<Index>(model_->loose.size());
+  const Index most = layout.rows() + 3 + 2 * static_cast<Index>(model_->loose.size() + model_->slides.size());
   p_ = MatrixXd::Zero(layout.size, layout.size);
   p_.bottomRightCorner(layout.size - layout.fast, layout.size - layout.fast) = model_->parameters;
   is_used_.assign(sensors, true);
@@ -127,7 +127,7 @@ void ChainFilter::form_sensor_rows(const BlockMeasurement& block, std::size_t s)
       settings.slow.force, inflation_[s].force);
 }
 
-/// A moving base stays about where it is, and the axes of a loose hinge about aligned: N(0, σ²) with a correlation time
+/// A moving base stays about where it is, a slide in its range, and the axes of a loose hinge about aligned: N(0, σ²) with a correlation time
 /// τ is worth white noise of variance σ² 2τ/length in each block.
 void ChainFilter::form_soft_rows(double length) {
   rows_ = model_->layout.rows();
@@ -141,6 +141,12 @@ void ChainFilter::form_soft_rows(double length) {
   if (state_.base == BaseMode::moving)
     for (Index k = 0; k < 3; ++k)
       h_(append(-state_.velocity[k], worth(base_velocity_sd, base_velocity_time)), BaseIndex::velocity + k) = 1.0;
+  for (const SlideRange& slide : model_->slides) {
+    const double* x = state_.joints.data() + position_states * slide.position;
+    const Index at = model_->layout.joint_state(slide.position);
+    h_(append(slide.middle - x[0], worth(slide.half, slide_position_time)), at) = 1.0;
+    h_(append(-x[1], worth(slide.speed, slide_velocity_time)), at + 1) = 1.0;
+  }
   for (const LooseHinge& hinge : model_->loose) {
     const Mat3& ball = state_.balls[hinge.body];
     const Mat3 by_turn = -ball * skew(Vec3::UnitZ());

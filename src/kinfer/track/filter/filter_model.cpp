@@ -99,8 +99,8 @@ SensorSettings settings_of(const TrackingSensor& sensor) {
 }
 
 /// The acceleration that a joint showed, with room for a livelier drive; hands move faster than machines.
-AccelerationProcess process_of(const TrackingJoint& joint, int position) {
-  AccelerationProcess process = machine_acceleration;
+AccelerationProcess process_of(const TrackingJoint& joint, JointMotion motion, int position) {
+  AccelerationProcess process = motion == JointMotion::prismatic ? slide_acceleration : machine_acceleration;
   if (static_cast<std::size_t>(position) >= joint.range.size()) return process;
   const double shown = acceleration_room * joint.range[static_cast<std::size_t>(position)].acceleration;
   if (shown > process.sd) {
@@ -108,6 +108,16 @@ AccelerationProcess process_of(const TrackingJoint& joint, int position) {
     process.sd = shown;
   }
   return process;
+}
+
+SlideRange slide_range(const TrackingJoint& joint, Index position) {
+  SlideRange slide{.position = position, .half = unseen_slide_half, .speed = slide_speed};
+  if (joint.range.empty()) return slide;
+  const auto& seen = joint.range.front();
+  slide.middle = 0.5 * (seen.lower + seen.upper);
+  slide.half = 0.5 * (seen.upper - seen.lower) + slide_play;
+  slide.speed = std::max(slide_speed, seen.speed);
+  return slide;
 }
 
 void set_processes(FilterModel& filter, const TrackingModel& model) {
@@ -119,7 +129,9 @@ void set_processes(FilterModel& filter, const TrackingModel& model) {
     // Of a universal joint's two bodies the first carries no sensor and has the first position.
     const bool is_second = joint.positions == 2 && body.sensor >= 0;
     for (Index i = 0; i < dof; ++i)
-      filter.positions.push_back(process_of(joint, joint.positions == 3 ? static_cast<int>(i) : is_second ? 1 : 0));
+      filter.positions.push_back(process_of(joint, filter.bodies[b].motion, joint.positions == 3 ? static_cast<int>(i) : is_second ? 1 : 0));
+    if (body.motion == TrackingMotion::prismatic)
+      filter.slides.push_back(slide_range(joint, filter.layout.position[b]));
     if (body.motion == TrackingMotion::revolute && dof == 3)
       filter.loose.push_back({b, joint.stray, std::max(joint.stray_time, min_stray_time)});
   }

@@ -25,6 +25,13 @@ struct LooseHinge {
   double stray = 0.0, time = 0.0;  ///< [rad] per direction, [s]
 };
 
+/// Inertial sensors tell the acceleration of a slide, but hardly its velocity: it moves within what was seen.
+struct SlideRange {
+  Index position = 0;              ///< of the filter
+  double middle = 0.0, half = 0.0;  ///< [m]
+  double speed = 0.0;              ///< [m/s]
+};
+
 struct FilterModel {
   InsBodies bodies;
   FilterLayout layout;
@@ -32,6 +39,7 @@ struct FilterModel {
   std::vector<AccelerationProcess> positions;  ///< of each joint position of the filter
   AccelerationProcess base_rotation, base_translation;
   std::vector<LooseHinge> loose;
+  std::vector<SlideRange> slides;
   double gravity = standard_gravity;
   InsLevel bias_walk{};  ///< variance per second of a bias' random walk
   MatrixXd parameters;   ///< covariance of sensors' and geometry's states when tracking begins

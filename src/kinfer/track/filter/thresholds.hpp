@@ -9,6 +9,7 @@ namespace kinfer::track {
 
 /// Joint accelerations of machines; tenfold densities change rms errors of the simulated machines by less than 30 %.
 inline constexpr AccelerationProcess machine_acceleration{.sd = 3.9, .time = 0.5};
+inline constexpr AccelerationProcess slide_acceleration{.sd = 1.0, .time = 0.5};
 inline constexpr double min_acceleration_time = 0.15;  ///< [s] of hands
 inline constexpr double acceleration_room = 2.0;       ///< a drive may be so much livelier than that of the chain
 
@@ -16,6 +17,11 @@ inline constexpr double acceleration_room = 2.0;       ///< a drive may be so mu
 inline constexpr AccelerationProcess base_rotation{.sd = 0.6, .time = 0.3}, base_translation{.sd = 0.3, .time = 0.3};
 inline constexpr double base_velocity_sd = 0.3;   ///< [m/s] of the base
 inline constexpr double base_velocity_time = 1.0;  ///< [s] its correlation time
+
+/// Of slides: least speed [m/s] and correlation times [s] of velocity and position about what was seen; room beyond it,
+/// and half the range where nothing was seen [m].
+inline constexpr double slide_speed = 0.2, slide_velocity_time = 1.0, slide_position_time = 10.0;
+inline constexpr double slide_play = 0.1, unseen_slide_half = 1.0;
 
 inline constexpr double still_base_walk = 2e-5;  ///< [rad/√s] tilting of a base that stands still: soil, outriggers
 
