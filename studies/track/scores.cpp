@@ -102,8 +102,9 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, c
     composed.add(row);
     const TrackState& state = tracker.state();
     note_alarms(state, score);
+    for (const double x : state.innovation)
+      if (state.started && !std::isnan(x)) score.largest_innovation = std::max(score.largest_innovation, x);
     if (!state.started) continue;
-    ++rows;
     for (std::size_t j = 0; j < truth.size(); ++j) {
       const auto at = static_cast<Index>(j);
       const double q = truth[j].sign * (drive.motion.q(truth[j].row, static_cast<Index>(r)) - truth[j].zero);
@@ -125,6 +126,12 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, c
       ++sum.composed_rows;
     }
     const SensorMotion &below = drive.motion.sensors[base], &above = drive.motion.sensors[tip];
+    const bool waits = tracker.filter().state().base == kinfer::track::BaseMode::moving &&
+                       std::ranges::any_of(state.joints, [](const JointStatus& joint) {
+                         return joint.reference == JointReference::start;
+                       });
+    if (waits) continue;
+    ++rows;
     const double tilted = tilt_error(state.world_q_base, below.world_R_sensor[r]);
     tilt += tilted * tilted;
     if (r % 10 != 0 || state.base_T_tool.position.hasNaN()) continue;

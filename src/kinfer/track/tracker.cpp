@@ -136,16 +136,12 @@ void Tracker::try_start() {
   const InitialPosture posture = initial_posture(*model_, block, guesses_, base_.mode());
   filter_.start(posture.state, posture.covariance);
   is_known_ = posture.is_known;
-  const bool moves = base_.mode() == BaseMode::moving;
   for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
     const Index at = model_->layout.position[b];
-    if (model_->bodies[b].motion != JointMotion::revolute || is_known_[static_cast<std::size_t>(at)]) continue;
-    if (moves && !grid_) {
-      grid_.emplace(filter_, at);
-    } else {
+    if (model_->bodies[b].motion == JointMotion::revolute && !is_known_[static_cast<std::size_t>(at)])
       filter_.declare_known(at);
-    }
   }
+  begin_grid();
   block_.clear();
   replay_.begin(filter_);
   tool_.spread(*model_, filter_.state(), filter_.covariance());
@@ -159,6 +155,7 @@ void Tracker::resolve_start(const BlockMeasurement& block) {
   if (!grid_->is_decided()) return;
   is_known_[static_cast<std::size_t>(grid_->position())] = true;
   grid_.reset();
+  begin_grid();
   replay_.begin(filter_);
 }
 
@@ -173,19 +170,25 @@ void Tracker::replay(const std::function<void(ChainFilter&)>& prepare) {
 bool Tracker::base_begins_to_move(const BlockMeasurement& block) {
   if (filter_.state().base == BaseMode::moving) return false;
   base_.add(block, filter_);
-  const int base_sensor = tracking_->bodies.front().sensor;
-  if (fit_.worst(filter_) >= 0 && base_sensor >= 0 && fit_[static_cast<std::size_t>(base_sensor)].strength > base_suspicion)
-    base_.suspect();
+  if (fit_.worst(filter_) >= 0) base_.suspect(filter_);
   return base_.mode() == BaseMode::moving;
 }
 
 /// The base has moved for a while; what counted from the start can now be told.
 void Tracker::let_base_move() {
   replay([](ChainFilter& filter) { filter.set_base(BaseMode::moving); });
+  begin_grid();
+}
+
+/// Of the first joint position that is unknown and that motion can tell: a slide, or any on a moving base.
+void Tracker::begin_grid() {
+  const bool moves = filter_.state().base == BaseMode::moving;
   for (std::size_t b = 1; b < model_->bodies.size() && !grid_; ++b) {
     const Index at = model_->layout.position[b];
-    if (model_->bodies[b].motion == JointMotion::revolute && !is_known_[static_cast<std::size_t>(at)])
-      grid_.emplace(filter_, at);
+    const JointMotion motion = model_->bodies[b].motion;
+    if (at < 0 || is_known_[static_cast<std::size_t>(at)]) continue;
+    if (motion == JointMotion::prismatic) grid_ = StartGrid::along(filter_, at, guesses_[static_cast<std::size_t>(at)]);
+    if (motion == JointMotion::revolute && moves) grid_ = StartGrid::around(filter_, at);
   }
 }
 

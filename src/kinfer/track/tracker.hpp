@@ -45,6 +45,7 @@ class Tracker {
   void replay(const std::function<void(ChainFilter&)>& prepare);
   bool base_begins_to_move(const BlockMeasurement& block);
   void let_base_move();
+  void begin_grid();
   void examine_fit();
   void list_alarms(double time);
   void read_out(double time);

@@ -14,8 +14,6 @@ inline constexpr double clipped_memory = 0.5;  ///< [s]
 inline constexpr double short_mean = 0.5, long_mean = 10.0;  ///< [s] of the leave-one-out innovations
 inline constexpr double max_single = 400.0;     ///< of one block
 inline constexpr double quick_limit = 2.5, slow_limit = 1.6, recovered_limit = 1.2;
-/// Of the strength of the base sensor's disagreement at which a disagreement of any is put down to a moving base.
-inline constexpr double base_suspicion = 0.5;
 /// Variance of an instrument's residuals over that of the identification beyond which the chain does not fit a joint,
 /// and below which it fits again.
 inline constexpr double misfit_inflation = 40.0, fitting_inflation = 10.0;

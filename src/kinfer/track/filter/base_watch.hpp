@@ -14,18 +14,18 @@ class BaseWatch {
   BaseWatch(const TrackingModel& model, const FilterModel& filter, std::optional<BaseMode> given);
 
   void add(const BlockMeasurement& block, const ChainFilter& filter);
-  /// The innovations say that it moves.
-  void suspect() {
-    if (!is_given_) mode_ = BaseMode::moving;
-  }
+  /// Sensors disagree: less motion of the base is needed to put it down to that.
+  void suspect(const ChainFilter& filter);
   BaseMode mode() const { return mode_; }
 
  private:
+  void judge(const ChainFilter& filter, double share);
+
   bool is_given_;
   BaseMode mode_;
   int sensor_;
   double noise_ = 0.0;  // [rad/s] of the averaged rate
-  Vec3 rate_ = Vec3::Zero();
+  Vec3 rate_ = Vec3::Zero();  // [rad/s] measured, averaged
   double seen_ = 0.0;  // [s]
 };
 

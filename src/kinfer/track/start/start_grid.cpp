@@ -9,12 +9,27 @@
 
 namespace kinfer::track {
 
-StartGrid::StartGrid(const ChainFilter& filter, Index position) : position_(position) {
+void StartGrid::add_place(const ChainFilter& filter, double value, double sd, int steps_away) {
+  candidates_.push_back({filter, -start_preference * steps_away});
+  candidates_.back().filter.place(position_, value, sd);
+}
+
+StartGrid StartGrid::around(const ChainFilter& filter, Index position) {
+  StartGrid grid(position, true);
   const double q = filter.state().joints[position_states * position], step = 2.0 * std::numbers::pi / start_places;
-  for (int k = 0; k < start_places; ++k) {
-    candidates_.push_back({filter});
-    candidates_.back().filter.place(position, q + std::remainder(k * step, 2.0 * std::numbers::pi), 0.5 * step);
-  }
+  for (int k = 0; k < start_places; ++k)
+    grid.add_place(filter, q + std::remainder(k * step, 2.0 * std::numbers::pi), 0.5 * step,
+                   std::min(k, start_places - k));
+  return grid;
+}
+
+StartGrid StartGrid::along(const ChainFilter& filter, Index position, const PositionGuess& guess) {
+  StartGrid grid(position, false);
+  const double step = std::max(slide_step, 2.0 * guess.sd / (start_places - 1));
+  const int places = 1 + static_cast<int>(2.0 * guess.sd / step);
+  for (int k = 0; k < places; ++k)
+    grid.add_place(filter, guess.value - guess.sd + k * step, 0.5 * step, std::abs(2 * k - places + 1) / 2);
+  return grid;
 }
 
 const ChainFilter& StartGrid::best() const {
@@ -25,8 +40,9 @@ void StartGrid::update(const BlockMeasurement& block) {
   for (Candidate& candidate : candidates_) {
     candidate.filter.predict(block.time);
     candidate.filter.update(block);
-    candidate.log_weight += candidate.filter.innovations().log_likelihood;
+    if (updates_ >= start_updates) candidate.log_weight += candidate.filter.innovations().log_likelihood;
   }
+  if (++updates_ <= start_updates) return;
   drop_unlikely();
   merge();
 }
@@ -39,10 +55,14 @@ void StartGrid::drop_unlikely() {
 /// Candidates that have converged to one place are one.
 void StartGrid::merge() {
   std::ranges::stable_sort(candidates_, std::greater<>{}, &Candidate::log_weight);
-  const auto at = [&](const Candidate& c) { return c.filter.state().joints[position_states * position_]; };
+  const auto distance = [&](const Candidate& a, const Candidate& b) {
+    const double d = a.filter.state().joints[position_states * position_] -
+                     b.filter.state().joints[position_states * position_];
+    return std::abs(is_angle_ ? std::remainder(d, 2.0 * std::numbers::pi) : d);
+  };
   for (std::size_t i = 0; i < candidates_.size(); ++i)
     for (std::size_t j = candidates_.size() - 1; j > i; --j)
-      if (std::abs(std::remainder(at(candidates_[i]) - at(candidates_[j]), 2.0 * std::numbers::pi)) < start_merge)
+      if (distance(candidates_[i], candidates_[j]) < start_merge)
         candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(j));
 }
 

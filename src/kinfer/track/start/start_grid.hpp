@@ -1,26 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several starts at once, where gravity does not tell a joint position but the base's motion will: a filter from each
-// place on a grid, until their likelihoods tell. One filter that begins with a large standard deviation ends confident
+// Several starts at once, where gravity does not tell a joint position but motion will: a filter from each place on a
+// grid, until their likelihoods tell. One filter that begins with a large standard deviation ends confident
 // and wrong, because its linearisation holds for small angles only.
 #pragma once
 
-#include "kinfer/track/filter/chain_filter.hpp"
+#include "kinfer/track/start/initial_posture.hpp"
 
 namespace kinfer::track {
 
 class StartGrid {
  public:
   /// From `filter`, with the angle `position` all around the circle.
-  StartGrid(const ChainFilter& filter, Index position);
+  static StartGrid around(const ChainFilter& filter, Index position);
+  /// From `filter`, with the displacement `position` within `guess` and its standard deviation on both sides.
+  static StartGrid along(const ChainFilter& filter, Index position, const PositionGuess& guess);
 
   void update(const BlockMeasurement& block);
 
   /// Only one place is left, or all that are left agree.
   bool is_decided() const { return candidates_.size() == 1; }
+  /// The likeliest; among equals the one nearest to where the filter was.
   const ChainFilter& best() const;
   Index position() const { return position_; }
 
  private:
+  StartGrid(Index position, bool is_angle) : position_(position), is_angle_(is_angle) {}
+  void add_place(const ChainFilter& filter, double value, double sd, int steps_away);
   void drop_unlikely();
   void merge();
 
@@ -29,6 +34,8 @@ class StartGrid {
     double log_weight = 0.0;
   };
   Index position_;
+  bool is_angle_;
+  int updates_ = 0;
   std::vector<Candidate> candidates_;
 };
 
