@@ -12,6 +12,7 @@ using Index = Eigen::Index;
 
 constexpr std::size_t most_bins = 2000;     // a screen shows no more
 constexpr std::size_t most_events = 10000;  // a run with more is hopeless anyway
+constexpr double shortest_break = 2.0;      // [s] between two alarms of the same kind that count as two
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Of two values, of which any may be unknown.
@@ -23,7 +24,7 @@ double greatest(double a, double b) {
 }
 
 bool is_same_alarm(const TrackAlarm& a, const TrackAlarm& b) {
-  return a.kind == b.kind && a.sensor == b.sensor && a.joint == b.joint && a.since == b.since;
+  return a.kind == b.kind && a.sensor == b.sensor && a.joint == b.joint;
 }
 
 bool rotates(const TrackingModel& model, std::size_t position) {
@@ -99,16 +100,20 @@ void RunRecorder::merge_pairs() {
 void RunRecorder::follow_alarms(const TrackState& state) {
   for (TrackEvent& event : events_) {
     const auto same = [&](const TrackAlarm& alarm) { return is_same_alarm(alarm, event.alarm); };
-    const auto active = std::ranges::find_if(state.alarms, same);
-    if (active != state.alarms.end())
-      event.alarm.strength = std::max(event.alarm.strength, active->strength);
-    else if (std::isnan(event.until))
-      event.until = state.time;
+    if (std::isnan(event.until) && std::ranges::none_of(state.alarms, same)) event.until = state.time;
   }
   for (const TrackAlarm& alarm : state.alarms) {
-    const auto same = [&](const TrackEvent& event) { return is_same_alarm(alarm, event.alarm); };
-    if (events_.size() < most_events && std::ranges::none_of(events_, same))
+    const auto continues = [&](const TrackEvent& event) {
+      return is_same_alarm(alarm, event.alarm) &&
+             (std::isnan(event.until) || state.time - event.until < shortest_break);
+    };
+    const auto event = std::ranges::find_if(events_, continues);
+    if (event != events_.end()) {
+      event->until = not_a_number;
+      event->alarm.strength = std::max(event->alarm.strength, alarm.strength);
+    } else if (events_.size() < most_events) {
       events_.push_back({.alarm = alarm, .until = not_a_number});
+    }
   }
 }
 

@@ -127,12 +127,20 @@ TEST_P(TrackedJoint, ChangesWithTheFitsUnknownsAsTheJacobianSays) {
   EXPECT_EQ(tracked_.jacobian.rows(), static_cast<Index>(tracked_.parameters.size()));
 }
 
-TEST_P(TrackedJoint, OfARevoluteJointShiftingBothPointsAlongTheAxisChangesNothing) {
-  if (GetParam().first != EstimatedJointType::revolute) GTEST_SKIP();
-  VectorXd slide = VectorXd::Zero(10);
-  slide << VectorXd::Zero(4), bodies_[0].parent_R_axis.col(2), bodies_[0].child_R_axis.col(2);
-  EXPECT_LT((tracked_.jacobian * slide).norm(), 1e-9);
-  EXPECT_NEAR(tracked_.bodies[0].point_in_child.dot(tracked_.bodies[0].child_R_axis.col(2)), 0.0, 1e-12);
+TEST(TrackedBodies, ShiftingBothPointsOfAHingeAlongTheAxisChangesNothing) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Rng rng(seed);
+    const std::vector<InsBody> bodies = test::bodies_of(EstimatedJointType::revolute, rng);
+    const double zero = 0.3;
+    const RefinedJoint joint =
+        refined_joint(EstimatedJointType::revolute, bodies, {&zero, 1}, MatrixXd::Identity(10, 10));
+    const TrackedBodies tracked =
+        tracked_bodies(EstimatedJointType::revolute, bodies, joint.zero, joint.solution.geometry);
+    VectorXd slide(10);
+    slide << VectorXd::Zero(4), bodies[0].parent_R_axis.col(2), bodies[0].child_R_axis.col(2);
+    EXPECT_LT((tracked.jacobian * slide).norm(), 1e-9);
+    EXPECT_NEAR(tracked.bodies[0].point_in_child.dot(tracked.bodies[0].child_R_axis.col(2)), 0.0, 1e-12);
+  }
 }
 
 std::vector<std::pair<EstimatedJointType, int>> every_case() {

@@ -38,6 +38,7 @@ double sum_of_squares(const std::array<double, 2>& sd) {
 }
 
 void expect_agreement(const Identification& found) {
+  constexpr double same = 0.01;  // a slide is anchored here and not in the evidence, which azimuths notice
   ASSERT_TRUE(found.tracking);
   const TrackingModel& model = *found.tracking;
   EXPECT_EQ(position_names(model), active_joint_names(found.chain));
@@ -56,10 +57,10 @@ void expect_agreement(const Identification& found) {
     const auto body = std::ranges::find(model.bodies, static_cast<int>(j), &TrackingBody::joint) - model.bodies.begin();
     EXPECT_NEAR(variance_of(model, Kind::parent_rotation, static_cast<int>(body)),
                 sum_of_squares(found.joints[j].sd.axis_in_parent),
-                1e-3 * sum_of_squares(found.joints[j].sd.axis_in_parent));
+                same * sum_of_squares(found.joints[j].sd.axis_in_parent));
     EXPECT_NEAR(variance_of(model, Kind::child_rotation, static_cast<int>(body)),
                 sum_of_squares(found.joints[j].sd.axis_in_child),
-                1e-3 * sum_of_squares(found.joints[j].sd.axis_in_child));
+                same * sum_of_squares(found.joints[j].sd.axis_in_child));
   }
   const SymmetricEigen eigen = symmetric_eigen(model.covariance);
   EXPECT_GT(eigen.values[0], -1e-9 * eigen.values[eigen.values.size() - 1]);
@@ -116,6 +117,24 @@ TEST(TrackingModel, TakesNamedZeros) {
   EXPECT_NEAR(after(2, at), 0.25, 0.1);
 }
 
+TEST(TrackingModel, HasOnlyTheSensorsOfTheLinksThatWereFound) {
+  const auto drive = test::driven_machine("excavator", 3);
+  IdentifyOptions options;
+  options.links = 2;
+  const Identification found = test::identified(drive.recording, options);
+  expect_agreement(found);
+  EXPECT_EQ(found.tracking->sensors.size(), 3u);
+  EXPECT_EQ(found.tracking->joints.size(), 2u);
+}
+
+TEST(TrackingModel, KnowsTheLengthOfABoomAtTheZeroOfItsSlide) {
+  const auto drive = test::driven_machine("crane", 3);
+  const TrackingModel model = *test::identified(drive.recording).tracking;
+  const auto slide = std::ranges::find(model.bodies, TrackingMotion::prismatic, &TrackingBody::motion);
+  ASSERT_NE(slide, model.bodies.end());
+  EXPECT_LT(std::sqrt(variance_of(model, Kind::point_in_parent, static_cast<int>(slide - model.bodies.begin()))), 0.05);
+}
+
 TEST(TrackingModel, OfALooseHingeStatesItsStray) {
   const test::HandMovedChain chain;
   const Refinement refined = test::refined(chain.recording, 0);
@@ -123,8 +142,7 @@ TEST(TrackingModel, OfALooseHingeStatesItsStray) {
   ASSERT_EQ(model.joints.size(), 2u);
   EXPECT_EQ(model.joints[0].stray, 0.0);
   EXPECT_NEAR(model.joints[1].stray, 0.05 / std::sqrt(2.0), 0.02) << "waves of 0.05 rad in both directions";
-  EXPECT_GT(model.joints[1].stray_time, 0.1);
-  EXPECT_LT(model.joints[1].stray_time, 3.0);
+  EXPECT_NEAR(model.joints[1].stray_time, 0.19 / 0.27, 0.25) << "cos 2π f t falls to 1/e: waves of 0.23 and 0.31 Hz";
   EXPECT_EQ(model.bodies[2].motion, TrackingMotion::revolute);
   EXPECT_EQ(model.joints[1].range.size(), 1u);
   EXPECT_GT(variance_of(model, Kind::parent_rotation, 2), 0.0);

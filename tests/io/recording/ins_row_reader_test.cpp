@@ -68,7 +68,9 @@ TEST(InsRowReader, AgreesWithTheReaderOfWholeLogs) {
       const InsSample whole = sample(sensor, log->time(sensor), i), one = stream.rows[i].sensors[s];
       EXPECT_LT((whole.acceleration - one.acceleration).norm(), 1e-5);
       EXPECT_EQ(whole.has_angular_velocity, one.has_angular_velocity) << i;
-      if (one.has_angular_velocity) EXPECT_LT((whole.angular_velocity - one.angular_velocity).norm(), 1e-6);
+      if (one.has_angular_velocity) {
+        EXPECT_LT((whole.angular_velocity - one.angular_velocity).norm(), 1e-6);
+      }
     }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
+std::string with_text_replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
@@ -70,13 +70,16 @@ TEST(TrackingModelToml, BadFilesAreOneSentenceWithTheLine) {
     return read ? std::string("none") : read.error().what;
   };
   EXPECT_EQ(complaint(good), "none");
-  EXPECT_THAT(complaint(replaced(good, "gravity = ", "graviti = ")), HasSubstr("track.toml:"));
-  EXPECT_THAT(complaint(replaced(good, "motion = \"revolute\"", "motion = \"rotary\"")),
+  EXPECT_THAT(complaint(with_text_replaced(good, "gravity = ", "graviti = ")), HasSubstr("track.toml:"));
+  EXPECT_THAT(complaint(with_text_replaced(good, "motion = \"revolute\"", "motion = \"rotary\"")),
               HasSubstr("\"rotary\" is none of its values"));
-  EXPECT_THAT(complaint(replaced(good, "parent = 0", "parent = 7")), HasSubstr("\"parent\": 7 is out of range"));
-  EXPECT_THAT(complaint(replaced(good, "point_in_parent 1 0", "point_in_parent 99 0")), HasSubstr("expected texts"));
-  EXPECT_THAT(complaint(replaced(good, "[base]", "[bass]")), HasSubstr("[base] is missing"));
-  EXPECT_THAT(complaint(replaced(good, "parent_R_axis = [", "parent_R_axis = [3")), HasSubstr("is no rotation"));
+  EXPECT_THAT(complaint(with_text_replaced(good, "parent = 0", "parent = 7")),
+              HasSubstr("\"parent\": 7 is out of range"));
+  EXPECT_THAT(complaint(with_text_replaced(good, "point_in_parent 1 0", "point_in_parent 99 0")),
+              HasSubstr("expected texts"));
+  EXPECT_THAT(complaint(with_text_replaced(good, "[base]", "[bass]")), HasSubstr("[base] is missing"));
+  EXPECT_THAT(complaint(with_text_replaced(good, "parent_R_axis = [", "parent_R_axis = [3")),
+              HasSubstr("is no rotation"));
 }
 
 }  // namespace

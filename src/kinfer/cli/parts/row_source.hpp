@@ -17,8 +17,8 @@ enum class ReadMode {
 };
 
 struct RowSource {
-  std::vector<std::string> logs;     ///< one a logger; "-": standard input, alone
-  std::vector<std::string> sensors;  ///< whose samples a row holds, in this order
+  std::vector<std::string> logs{};     ///< one a logger; "-": standard input, alone
+  std::vector<std::string> sensors{};  ///< whose samples a row holds, in this order
   ReadMode mode = ReadMode::once;
 };
 

@@ -10,6 +10,8 @@
 namespace kinfer::cli {
 namespace {
 
+constexpr std::size_t most_events_shown = 20;
+
 std::string position_line(const TrackCurve& curve) {
   double low = NAN, high = NAN, sd = NAN;
   for (std::size_t i = 0; i < curve.low.size(); ++i) {
@@ -29,9 +31,13 @@ std::string track_summary(const TrackRun& run) {
   text += fmt::format("{:<16} {:>10} {:>10} {:>10}\n", "joint", "least", "greatest", "largest sd");
   for (const TrackCurve& curve : run.positions) text += position_line(curve);
   if (!run.events.empty()) text += '\n';
-  for (const TrackEvent& event : run.events)
+  for (std::size_t i = 0; i < run.events.size() && i < most_events_shown; ++i) {
+    const TrackEvent& event = run.events[i];
     text += fmt::format("{:>9.2f} s  {}{}\n", event.alarm.since, event.sentence,
                         std::isnan(event.until) ? "" : fmt::format(" (until {:.2f} s)", event.until));
+  }
+  if (run.events.size() > most_events_shown)
+    text += fmt::format("{:>11}  and {} more\n", "", run.events.size() - most_events_shown);
   if (!run.remarks.empty()) text += '\n';
   for (const std::string& remark : run.remarks) text += "! " + remark + '\n';
   return text;

@@ -40,15 +40,33 @@ std::array<double, 2> axis_variance(std::span<const Mat3> rotations, const Mat3&
   return variance;
 }
 
+/// Lag [samples] at which the autocorrelation of a series falls to 1/e: a first-order Gauss-Markov process' correlation
+/// time. The lag-one correlation would tell that of a smooth motion only in units of the sampling.
+double correlation_length(const std::vector<double>& series) {
+  constexpr double limit = 1.0 / std::numbers::e;
+  const double middle = mean(series);
+  const auto covariance_at = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (std::size_t i = lag; i < series.size(); ++i) sum += (series[i] - middle) * (series[i - lag] - middle);
+    return sum / static_cast<double>(series.size());
+  };
+  const double variance = covariance_at(0);
+  double before = 1.0;
+  for (std::size_t lag = 1; variance > 0.0 && lag < series.size() / 2; ++lag) {
+    const double now = covariance_at(lag) / variance;
+    if (now < limit) return static_cast<double>(lag) - (limit - now) / (before - now);
+    before = now;
+  }
+  return 0.0;
+}
+
 /// Of the child's axis across the parent's, mean of both directions.
 double deviation_memory_of(std::span<const Mat3> rotations, const Mat3& frame, const Vec3& in_child) {
-  const auto count = static_cast<double>(rotations.size());
   double memory = 0.0;
   for (Index k = 0; k < 2; ++k) {
     std::vector<double> offset;
     for (const Mat3& r : rotations) offset.push_back(frame.col(k).dot(r * in_child));
-    const double samples = effective_samples(offset), correlation = (count - samples) / (count + samples);
-    memory += correlation > 0.0 ? -0.5 / std::log(correlation) : 0.0;
+    memory += 0.5 * correlation_length(offset);
   }
   return memory;
 }

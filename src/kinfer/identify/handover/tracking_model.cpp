@@ -30,6 +30,21 @@ Eigen::Matrix<double, 6, 1> mean_bias(const InsUnknowns& x, std::size_t sensor) 
   return bias;
 }
 
+/// The fit's sensors that are on bodies; not those behind the links that were searched.
+std::vector<std::size_t> carried_sensors(const FittedMachine& machine) {
+  std::vector<std::size_t> carried;
+  for (std::size_t s = 0; s < machine.problem.sensors.size(); ++s)
+    if (std::ranges::count(machine.fit.unknowns.bodies, static_cast<int>(s), &InsBody::sensor) > 0)
+      carried.push_back(s);
+  return carried;
+}
+
+/// Index into the model's sensors; −1 stays.
+int renumbered(const std::vector<std::size_t>& carried, int sensor) {
+  return sensor < 0 ? -1
+                    : static_cast<int>(std::ranges::find(carried, static_cast<std::size_t>(sensor)) - carried.begin());
+}
+
 TrackingSensor tracking_sensor(const FittedMachine& machine, const std::vector<InsNoise>& slow, std::size_t s) {
   const InsErrors& errors = machine.fit.unknowns.errors[s];
   const auto bias = mean_bias(machine.fit.unknowns, s);
@@ -112,13 +127,14 @@ void add_joint_rows(Parameters& parameters, const FittedMachine& machine, const 
   parameters.replaced.emplace_back(row, propagated_covariance(tracked.jacobian, joint.mean->covariance));
 }
 
-void add_joint(TrackingModel& model, Parameters& parameters, const FittedMachine& machine, const FittedJoint& joint) {
+void add_joint(TrackingModel& model, Parameters& parameters, const FittedMachine& machine, const FittedJoint& joint,
+               const std::vector<std::size_t>& carried) {
   const TrackedBodies tracked = bodies_of(joint, machine.fit.unknowns.bodies);
   for (std::size_t i = 0; i < tracked.bodies.size(); ++i) {
     const InsBody& fitted = machine.fit.unknowns.bodies[joint.bodies.first + i];
     TrackingBody body = tracked.bodies[i];
     body.parent = fitted.parent;
-    body.sensor = fitted.sensor;
+    body.sensor = renumbered(carried, fitted.sensor);
     body.joint = static_cast<int>(model.joints.size());
     model.bodies.push_back(body);
   }
@@ -134,9 +150,9 @@ void add_joint(TrackingModel& model, Parameters& parameters, const FittedMachine
   add_joint_rows(parameters, machine, joint, tracked);
 }
 
-void add_sensor_rows(Parameters& parameters, const FittedMachine& machine, std::size_t sensor) {
+void add_sensor_rows(Parameters& parameters, const FittedMachine& machine, std::size_t sensor, int number) {
   const auto add = [&](Kind kind, Index first, Index count) {
-    for (Index i = 0; i < count; ++i) parameters.add({kind, static_cast<int>(sensor), static_cast<int>(i)});
+    for (Index i = 0; i < count; ++i) parameters.add({kind, number, static_cast<int>(i)});
     parameters.new_rows(count).middleCols(first, count).setIdentity();
   };
   const Index first = machine.fit.layout.error[sensor];
@@ -171,14 +187,15 @@ TrackingModel tracking_model(const FittedMachine& machine) {
   TrackingModel model;
   const InsFit& fit = machine.fit;
   const std::vector<InsNoise> slow = long_run_noise(machine.problem, fit.cost);
-  for (std::size_t s = 0; s < machine.problem.sensors.size(); ++s)
-    model.sensors.push_back(tracking_sensor(machine, slow, s));
+  const std::vector<std::size_t> carried = carried_sensors(machine);
+  for (const std::size_t s : carried) model.sensors.push_back(tracking_sensor(machine, slow, s));
   model.prior = tracking_prior(machine.problem);
   set_gravity(model, machine);
-  model.bodies.push_back({.sensor = fit.unknowns.bodies.front().sensor});
+  model.bodies.push_back({.sensor = renumbered(carried, fit.unknowns.bodies.front().sensor)});
   Parameters parameters(fit.layout.global_parameters);
-  for (const FittedJoint& joint : machine.joints) add_joint(model, parameters, machine, joint);
-  for (std::size_t s = 0; s < model.sensors.size(); ++s) add_sensor_rows(parameters, machine, s);
+  for (const FittedJoint& joint : machine.joints) add_joint(model, parameters, machine, joint, carried);
+  for (std::size_t i = 0; i < carried.size(); ++i)
+    add_sensor_rows(parameters, machine, carried[i], static_cast<int>(i));
   model.parameters = std::move(parameters.list);
   model.covariance = covariance_of(parameters, machine.covariance);
   model.tool.body = static_cast<int>(model.bodies.size()) - 1;

@@ -89,6 +89,27 @@ HeldOut fit_held_out(const RefinementTask& task, RefinementFit& fitted, const In
   return held;
 }
 
+/// Where a sliding joint's positions count from and the point in its parent are two names of one unknown. Tracking
+/// takes the positions from a stated zero: there the point is as certain as the length of a boom is.
+InsCovariance with_slides_anchored(RefinementFit& fitted, const InsFit& fit, const InsCovariance& covariance,
+                                   const AssumedScale& assumed, int threads) {
+  constexpr double held = 1e-6, weak = 3.0;  // [m], [rad]
+  InsProblem& problem = fitted.setup.problem;
+  const Index first = problem.root_at_rest ? 0 : 6;
+  std::vector<double> anchor_sd(static_cast<std::size_t>(fit.layout.spline_dimensions - first), weak);
+  bool has_slides = false;
+  for (std::size_t b = 0; b < fit.unknowns.bodies.size(); ++b)
+    if (fit.unknowns.bodies[b].motion == JointMotion::prismatic) {
+      anchor_sd[static_cast<std::size_t>(fit.layout.spline_dimension[b] - first)] = held;
+      has_slides = true;
+    }
+  if (!has_slides) return covariance;
+  problem.anchor_sd = std::move(anchor_sd);
+  const auto anchored = covariance_with_model_error(problem, fit.layout, fit.unknowns, fit.cost, assumed, threads);
+  problem.anchor_sd.clear();
+  return anchored.value_or(covariance);
+}
+
 TrackingModel hand_over(const RefinementTask& task, const RefinementFit& fitted, const Refinement& result,
                         const InsCovariance& covariance, const ModelError& error) {
   std::vector<FittedJoint> joints;
@@ -147,7 +168,10 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
   result.covariance = covariance->model;
   result.clocks = refined_clocks(fitted.setup.problem, result.fit, *covariance);
   result.joints = make_joints(task, fitted, *covariance, model_error);
-  result.tracking = hand_over(task, fitted, result, *covariance, model_error);
+  result.tracking = hand_over(task, fitted, result,
+                              with_slides_anchored(fitted, result.fit, *covariance,
+                                                   assumed_scale(recording, options, grade), options.fit.threads),
+                              model_error);
   result.loops =
       loop_estimates(loops, fitted.fit.unknowns.bodies, closing_joints(fitted.fit, *covariance), segment_names(motion));
   if (options.hold_out) result.held_out = fit_held_out(task, fitted, *covariance, model_error);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/words/tracking/track_run.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -44,22 +46,24 @@ Usability usability_of(const TrackRun& run) {
 }  // namespace
 
 std::vector<std::string> joint_sentences(const TrackRun& run) {
-  constexpr double least_share = 5e-3;
   std::vector<std::string> sentences;
-  for (const TrackJointShare& joint : run.joints) {
-    if (joint.unknown > least_share)
-      sentences.push_back(
-          phrase("position_unknown", "{}: unknown in {:.0f} % of the rows", joint.name, 100.0 * joint.unknown));
-    if (joint.relative_to_start > least_share)
-      sentences.push_back(phrase("relative_to_start",
-                                 "{}: relative to where tracking began in {:.0f} % of the rows: neither gravity nor "
-                                 "motion told where that was; --start states it",
-                                 joint.name, 100.0 * joint.relative_to_start));
-    if (joint.composed > least_share)
-      sentences.push_back(phrase("composed",
-                                 "{}: from the orientations of its two sensors alone in {:.0f} % of the rows",
-                                 joint.name, 100.0 * joint.composed));
-  }
+  const auto list = [&](double TrackJointShare::*share) {
+    constexpr double least_share = 0.05;  // of the rows; a start takes less
+    std::vector<std::string> names;
+    for (const TrackJointShare& joint : run.joints)
+      if (joint.*share > least_share)
+        names.push_back(joint.*share > 1.0 - least_share
+                            ? joint.name
+                            : phrase(joint.name, "{} ({:.0f} % of the time)", joint.name, 100.0 * (joint.*share)));
+    return fmt::format("{}", fmt::join(names, ", "));
+  };
+  if (const std::string names = list(&TrackJointShare::unknown); !names.empty())
+    sentences.push_back(phrase("position_unknown", "unknown: {}", names));
+  if (const std::string names = list(&TrackJointShare::relative_to_start); !names.empty())
+    sentences.push_back(
+        phrase("relative_to_start", "relative to where tracking began, which --start can state: {}", names));
+  if (const std::string names = list(&TrackJointShare::composed); !names.empty())
+    sentences.push_back(phrase("composed", "from the orientations of two sensors alone: {}", names));
   return sentences;
 }
 

@@ -16,7 +16,7 @@ std::string sentence(const TrackAlarm& alarm, const std::vector<std::string>& se
 /// The run with verdict and the sentences of its events.
 TrackRun with_sentences(TrackRun run);
 
-/// Of each joint whose positions did not all come from the chain; empty where all did.
+/// On joints whose positions are unknown, relative to the start or not from the chain; empty where all is as wanted.
 std::vector<std::string> joint_sentences(const TrackRun& run);
 
 }  // namespace kinfer::words

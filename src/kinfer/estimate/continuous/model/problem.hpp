@@ -76,6 +76,7 @@ struct InsProblem {
   double rotation_sd = 1.0;           ///< [rad] weak prior: keeps an unobservable azimuth at its initial value
   std::size_t clock_reference = 0;    ///< sensor whose clock is the reference
   std::vector<double> anchor;         ///< prior mean of each joint's first coefficient: fixes an unobservable constant
+  std::vector<double> anchor_sd{};    ///< [rad] or [m] standard deviations of the same; empty: weak, 3 each
   InsFacts facts{};                   ///< external measurements
 };
 

@@ -16,7 +16,7 @@ double roughness_sd(const InsProblem& problem, Index spline_dimension) {
   return (spline_dimension < 3 ? root_rate : root_force) * cubed;
 }
 
-constexpr double anchor_sd = 3.0;  // [rad] or [m]
+constexpr double weak_anchor_sd = 3.0;  // [rad] or [m]
 
 }  // namespace
 
@@ -34,6 +34,8 @@ void each_spline_prior(const InsProblem& problem, const InsLayout& layout, Const
     const Index joint = spline_dimension - (problem.root_at_rest ? 0 : 6);
     if (interval == 0 && joint >= 0) {
       const double start = problem.anchor.empty() ? 0.0 : problem.anchor[static_cast<std::size_t>(joint)];
+      const double anchor_sd =
+          problem.anchor_sd.empty() ? weak_anchor_sd : problem.anchor_sd[static_cast<std::size_t>(joint)];
       visit({spline_dimension, SplineWeights::Unit(0), coefficients(spline_dimension, 0) - start, anchor_sd});
     }
   }
