@@ -21,8 +21,7 @@ void BaseWatch::add(const BlockMeasurement& block, const ChainFilter& filter) {
   if (is_given_ || mode_ == BaseMode::moving || sensor_ < 0) return;
   const BlockSample& sample = block.sensors[static_cast<std::size_t>(sensor_)];
   if (sample.rate_count == 0) return;
-  const Vec3 rate = sample.rate - filter.state().sensors[static_cast<std::size_t>(sensor_)].gyroscope_bias;
-  rate_ += (rate - rate_) * (1.0 - std::exp(-block.length / base_mean));
+  rate_ += (sample.rate - rate_) * (1.0 - std::exp(-block.length / base_mean));
   seen_ += block.length;
   judge(filter, 1.0);
 }
@@ -36,7 +35,9 @@ void BaseWatch::judge(const ChainFilter& filter, double share) {
   const Index own = filter.model().layout.sensor_state(sensor_) + SensorIndex::gyroscope_bias;
   const double bias_variance = filter.covariance().diagonal().segment<3>(own).maxCoeff();
   const double limit = base_rate + base_significance * std::sqrt(noise_ * noise_ + bias_variance);
-  if (rate_.norm() > share * limit) mode_ = BaseMode::moving;
+  // The bias as it is known now: that of the first rows was a guess.
+  const Vec3 rate = rate_ - filter.state().sensors[static_cast<std::size_t>(sensor_)].gyroscope_bias;
+  if (rate.norm() > share * limit) mode_ = BaseMode::moving;
 }
 
 }  // namespace kinfer::track

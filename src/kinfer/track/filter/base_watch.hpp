@@ -25,7 +25,7 @@ class BaseWatch {
   BaseMode mode_;
   int sensor_;
   double noise_ = 0.0;  // [rad/s] of the averaged rate
-  Vec3 rate_ = Vec3::Zero();
+  Vec3 rate_ = Vec3::Zero();  // [rad/s] measured, averaged
   double seen_ = 0.0;  // [s]
 };
 

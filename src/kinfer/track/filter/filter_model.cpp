@@ -27,20 +27,11 @@ void free_parameter(InsBody& body, const TrackingParameter& parameter) {
   const auto component = static_cast<std::size_t>(parameter.component);
   const bool turns = body.motion != JointMotion::spherical;
   switch (parameter.kind) {
-    case TrackingParameterKind::parent_rotation:
-      body.free_parent_rotation[component] = turns;
-      break;
-    case TrackingParameterKind::child_rotation:
-      body.free_child_rotation[component] = turns;
-      break;
-    case TrackingParameterKind::point_in_parent:
-      body.free_point_in_parent = true;
-      break;
-    case TrackingParameterKind::point_in_child:
-      body.free_point_in_child = true;
-      break;
-    default:
-      break;
+    case TrackingParameterKind::parent_rotation: body.free_parent_rotation[component] = turns; break;
+    case TrackingParameterKind::child_rotation: body.free_child_rotation[component] = turns; break;
+    case TrackingParameterKind::point_in_parent: body.free_point_in_parent = true; break;
+    case TrackingParameterKind::point_in_child: body.free_point_in_child = true; break;
+    default: break;
   }
 }
 
@@ -108,11 +99,10 @@ SensorSettings settings_of(const TrackingSensor& sensor) {
 }
 
 /// The acceleration that a joint showed, with room for a livelier drive; hands move faster than machines.
-AccelerationProcess process_of(const TrackingJoint& joint, int position) {
-  AccelerationProcess process = machine_acceleration;
+AccelerationProcess process_of(const TrackingJoint& joint, JointMotion motion, int position) {
+  AccelerationProcess process = motion == JointMotion::prismatic ? slide_acceleration : machine_acceleration;
   if (static_cast<std::size_t>(position) >= joint.range.size()) return process;
   const double shown = acceleration_room * joint.range[static_cast<std::size_t>(position)].acceleration;
-  if (joint.type == EstimatedJointType::prismatic) process.sd = min_slide_acceleration;
   if (shown > process.sd) {
     process.time = std::clamp(process.time * process.sd / shown, min_acceleration_time, process.time);
     process.sd = shown;
@@ -120,13 +110,13 @@ AccelerationProcess process_of(const TrackingJoint& joint, int position) {
   return process;
 }
 
-Slide slide_of(const TrackingJoint& joint, Index position) {
-  Slide slide{.position = position, .speed = min_slide_speed};
+SlideRange slide_range(const TrackingJoint& joint, Index position) {
+  SlideRange slide{.position = position, .half = unseen_slide_half, .speed = slide_speed};
   if (joint.range.empty()) return slide;
-  const TrackingRange& seen = joint.range.front();
+  const auto& seen = joint.range.front();
   slide.middle = 0.5 * (seen.lower + seen.upper);
-  slide.stroke = 0.5 * (seen.upper - seen.lower) + min_slide_stroke;
-  slide.speed = std::max(min_slide_speed, seen.speed);
+  slide.half = 0.5 * (seen.upper - seen.lower) + slide_play;
+  slide.speed = std::max(slide_speed, seen.speed);
   return slide;
 }
 
@@ -138,10 +128,10 @@ void set_processes(FilterModel& filter, const TrackingModel& model) {
     const TrackingJoint& joint = model.joints[static_cast<std::size_t>(body.joint)];
     // Of a universal joint's two bodies the first carries no sensor and has the first position.
     const bool is_second = joint.positions == 2 && body.sensor >= 0;
-    if (body.motion == TrackingMotion::prismatic)
-      filter.slides.push_back(slide_of(joint, static_cast<Index>(filter.positions.size())));
     for (Index i = 0; i < dof; ++i)
-      filter.positions.push_back(process_of(joint, joint.positions == 3 ? static_cast<int>(i) : is_second ? 1 : 0));
+      filter.positions.push_back(process_of(joint, filter.bodies[b].motion, joint.positions == 3 ? static_cast<int>(i) : is_second ? 1 : 0));
+    if (body.motion == TrackingMotion::prismatic)
+      filter.slides.push_back(slide_range(joint, filter.layout.position[b]));
     if (body.motion == TrackingMotion::revolute && dof == 3)
       filter.loose.push_back({b, joint.stray, std::max(joint.stray_time, min_stray_time)});
   }

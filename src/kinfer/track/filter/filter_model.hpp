@@ -25,11 +25,11 @@ struct LooseHinge {
   double stray = 0.0, time = 0.0;  ///< [rad] per direction, [s]
 };
 
-/// A slide: nothing but the speed and the stroke that it showed bounds it while no rotation carries it.
-struct Slide {
-  Index position = 0;                 ///< of the filter
-  double middle = 0.0, stroke = 0.0;  ///< [m] of the positions seen; half their range
-  double speed = 0.0;                 ///< [m/s] standard deviation
+/// Inertial sensors tell the acceleration of a slide, but hardly its velocity: it moves within what was seen.
+struct SlideRange {
+  Index position = 0;              ///< of the filter
+  double middle = 0.0, half = 0.0;  ///< [m]
+  double speed = 0.0;              ///< [m/s]
 };
 
 struct FilterModel {
@@ -39,7 +39,7 @@ struct FilterModel {
   std::vector<AccelerationProcess> positions;  ///< of each joint position of the filter
   AccelerationProcess base_rotation, base_translation;
   std::vector<LooseHinge> loose;
-  std::vector<Slide> slides;
+  std::vector<SlideRange> slides;
   double gravity = standard_gravity;
   InsLevel bias_walk{};  ///< variance per second of a bias' random walk
   MatrixXd parameters;   ///< covariance of sensors' and geometry's states when tracking begins

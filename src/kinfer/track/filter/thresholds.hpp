@@ -9,18 +9,19 @@ namespace kinfer::track {
 
 /// Joint accelerations of machines; tenfold densities change rms errors of the simulated machines by less than 30 %.
 inline constexpr AccelerationProcess machine_acceleration{.sd = 3.9, .time = 0.5};
+inline constexpr AccelerationProcess slide_acceleration{.sd = 1.0, .time = 0.5};
 inline constexpr double min_acceleration_time = 0.15;  ///< [s] of hands
 inline constexpr double acceleration_room = 2.0;       ///< a drive may be so much livelier than that of the chain
 
 /// A base that moves: a machine that rocks on its tracks. Simulated machines on a rocking and on a yawing base.
 inline constexpr AccelerationProcess base_rotation{.sd = 0.6, .time = 0.3}, base_translation{.sd = 0.3, .time = 0.3};
-inline constexpr double base_velocity_sd = 0.3;    ///< [m/s] of the base
+inline constexpr double base_velocity_sd = 0.3;   ///< [m/s] of the base
 inline constexpr double base_velocity_time = 1.0;  ///< [s] its correlation time
 
-/// Slides: least acceleration [m/s²], speed [m/s] and stroke [m] that a drive may have, and over which time [s] speed
-/// and position count as new; at rest an accelerometer's bias alone would carry a slide away. Simulated crane.
-inline constexpr double min_slide_acceleration = 0.1, min_slide_speed = 0.05, min_slide_stroke = 0.5,
-                        slide_speed_time = 1.0, slide_stroke_time = 20.0;
+/// Of slides: least speed [m/s] and correlation times [s] of velocity and position about what was seen; room beyond it,
+/// and half the range where nothing was seen [m].
+inline constexpr double slide_speed = 0.2, slide_velocity_time = 1.0, slide_position_time = 10.0;
+inline constexpr double slide_play = 0.1, unseen_slide_half = 1.0;
 
 inline constexpr double still_base_walk = 2e-5;  ///< [rad/√s] tilting of a base that stands still: soil, outriggers
 
@@ -45,7 +46,7 @@ inline constexpr double max_motion_sd = 30.0;   ///< per second, per second²
 /// A rest: three blocks [s] of so many rows in which every instrument scatters by its own noise, times this.
 inline constexpr double rest_block = 0.25, rest_noise = 1.4;
 inline constexpr int min_rest_rows = 10;
-inline constexpr double rest_creep = 2e-4;  ///< [rad/s] that a rest may hide
+inline constexpr double rest_creep = 5e-5;  ///< [rad/s] that a rest may hide
 
 /// A base moves where its angular velocity, averaged over so long [s], is beyond this [rad/s] and so many standard
 /// deviations of noise and bias.

@@ -243,7 +243,9 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
         const double told = start.sd[i] * start.sd[j] * ((i == j ? 1.0 : 0.0) - start.heading[i] * start.heading[j]);
         posture.covariance(row, layout.joint_state(layout.position[b] + j)) = told;
       }
-      const double rate_sd = rate_is_seen ? start_rate_sd : process.sd * process.time;
+      const double rate_sd = rate_is_seen                              ? start_rate_sd
+                             : body.motion == JointMotion::prismatic ? start_slide_speed
+                                                                     : process.sd * process.time;
       posture.covariance(row + 1, row + 1) = rate_sd * rate_sd;
       posture.covariance(row + 2, row + 2) = process.sd * process.sd;
       posture.is_known[static_cast<std::size_t>(at)] = start.is_known[static_cast<std::size_t>(i)];

@@ -40,8 +40,9 @@ void StartGrid::update(const BlockMeasurement& block) {
   for (Candidate& candidate : candidates_) {
     candidate.filter.predict(block.time);
     candidate.filter.update(block);
-    candidate.log_weight += candidate.filter.innovations().log_likelihood;
+    if (updates_ >= start_updates) candidate.log_weight += candidate.filter.innovations().log_likelihood;
   }
+  if (++updates_ <= start_updates) return;
   drop_unlikely();
   merge();
 }

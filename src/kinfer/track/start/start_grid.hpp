@@ -35,6 +35,7 @@ class StartGrid {
   };
   Index position_;
   bool is_angle_;
+  int updates_ = 0;
   std::vector<Candidate> candidates_;
 };
 
