@@ -34,7 +34,7 @@ namespace kinfer::track {
 namespace {
 
 constexpr double degree = 0.017453292519943295;
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 struct Case {
   test::SimulatedDrive drive;
@@ -69,7 +69,7 @@ Outcome run(const Case& given, const TrackOptions& options, Change change, doubl
   const int joints = given.model.positions();
   Outcome out{.tracker = Tracker(given.model, options),
               .squares = VectorXd::Zero(joints),
-              .first = VectorXd::Constant(joints, not_a_number),
+              .first = VectorXd::Constant(joints, no_value),
               .is_relative = std::vector<bool>(static_cast<std::size_t>(joints), false)};
   InsRow row;
   for (std::size_t r = 0; r < given.drive.recording.loggers.front().time.size(); ++r) {
@@ -118,13 +118,14 @@ TEST(Tracker, TellsWhereAVerticalAxisStandsWhenTheBaseRocks) {
   const Case rocking = make_case({.base = Base::rocking, .duration = 60.0});
   const Outcome out = run(rocking, {}, unchanged);
   EXPECT_FALSE(out.is_relative[0]);
+  EXPECT_LT(out.tracker.state().sd_q[0], 0.2 * degree);
   const auto last = rocking.drive.recording.loggers.front().time.size() - 1;
   EXPECT_NEAR(out.tracker.state().q[0], rocking.drive.q(0, last), 0.2 * degree);
 }
 
 TEST(Tracker, TakesTheUsersStart) {
   TrackOptions options;
-  options.start = VectorXd::Constant(5, not_a_number);
+  options.start = VectorXd::Constant(5, no_value);
   (*options.start)[0] = 0.5;
   Tracker tracker(still_excavator().model, options);
   InsRow row;
@@ -133,7 +134,7 @@ TEST(Tracker, TakesTheUsersStart) {
     tracker.add(row);
   }
   ASSERT_TRUE(tracker.state().started);
-  EXPECT_NEAR(tracker.state().q[0], 0.5, 0.01);
+  EXPECT_NEAR(tracker.state().q[0], 0.5, 0.05);  // a stated start has a standard deviation of 0.02
   EXPECT_EQ(tracker.state().joints[0].reference, JointReference::chain);
 }
 
@@ -144,7 +145,9 @@ TEST(Tracker, NamesALostAndAStuckSensorAndGoesOn) {
     if (row.time < 25.0) frozen = row.sensors[4];
     if (row.time > 25.0 && row.time < 28.0) row.sensors[4] = frozen;
   });
-  ASSERT_EQ(out.alarms.size(), 2u);
+  for (std::size_t i = 2; i < out.alarms.size(); ++i)
+    ADD_FAILURE() << name(out.alarms[i].kind) << " " << out.alarms[i].sensor << " at " << out.raised[i];
+  ASSERT_GE(out.alarms.size(), 2u);
   EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_lost);
   EXPECT_EQ(out.alarms[0].sensor, 3);
   EXPECT_EQ(out.alarms[1].kind, TrackAlarmKind::sensor_stuck);

@@ -190,7 +190,16 @@ void ComposedFilters::read_positions(const Joint& joint) {
 
 void ComposedFilters::read_tool() {
   if (!state_.q.allFinite()) return;
-  state_.base_T_tool = tool_pose(model_, body_poses(model_, state_.q));
+  // From the tool back to the base, without the list of all bodies' poses: nothing is allocated for a row.
+  Pose pose = model_.tool.body_T_tool;
+  for (int b = model_.tool.body; b > 0; b = model_.bodies[static_cast<std::size_t>(b)].parent) {
+    const TrackingBody& body = model_.bodies[static_cast<std::size_t>(b)];
+    const TrackingBody& parent = model_.bodies[static_cast<std::size_t>(body.parent)];
+    const int count = degrees_of_freedom(body.motion), second = parent.joint == body.joint ? 1 : 0;
+    const int first = count > 0 ? model_.joints[static_cast<std::size_t>(body.joint)].first_position + second : 0;
+    pose = body_pose(body, state_.q.segment(first, count)) * pose;
+  }
+  state_.base_T_tool = pose;
 }
 
 }  // namespace kinfer::track

@@ -46,7 +46,7 @@ inline constexpr double max_motion_sd = 30.0;   ///< per second, per second²
 /// A rest: three blocks [s] of so many rows in which every instrument scatters by its own noise, times this.
 inline constexpr double rest_block = 0.25, rest_noise = 1.4;
 inline constexpr int min_rest_rows = 10;
-inline constexpr double rest_creep = 2e-4;  ///< [rad/s] that a rest may hide
+inline constexpr double rest_creep = 5e-5;  ///< [rad/s] that a rest may hide
 
 /// A base moves where its angular velocity, averaged over so long [s], is beyond this [rad/s] and so many standard
 /// deviations of noise and bias.

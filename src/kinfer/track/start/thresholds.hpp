@@ -13,10 +13,10 @@ inline constexpr double start_rate_sd = 0.05;     ///< [rad/s] of velocities by 
 inline constexpr double start_slide_speed = 0.05;  ///< [m/s] of a slide
 inline constexpr double start_velocity_sd = 0.3;  ///< [m/s] of the base
 
-inline constexpr int start_places = 12;          ///< of an angle that gravity does not tell
+inline constexpr int start_places = 18;          ///< of an angle that gravity does not tell
 /// Updates that only settle velocities and accelerations: what they tell depends on how little was known of these.
 inline constexpr int start_updates = 25;
-inline constexpr double start_log_odds = 12.0;   ///< ln: a place so much less likely than the best is dropped
+inline constexpr double start_log_odds = 30.0;   ///< ln: a place so much less likely than the best is dropped
 inline constexpr double start_preference = 0.5;  ///< ln: for each step on the grid nearer to where the filter was
 inline constexpr double start_merge = 0.02;      ///< [rad] or [m] places so near are one
 inline constexpr double slide_step = 0.1;        ///< [m] least distance of places along a slide
