@@ -165,7 +165,7 @@ void Plot::words(double x, double y, std::string_view kind, std::string_view tex
 std::string Plot::axes() const {
   const double x0 = left, x1 = size_.width - right, y0 = size_.height - bottom, y1 = top;
   std::string grid, labels;
-  const auto y_ticks = ticks(y_, 4), x_ticks = ticks(x_, 5);
+  const auto y_ticks = y_.numbers == AxisNumbers::hidden ? std::vector<double>{} : ticks(y_, 4), x_ticks = ticks(x_, 5);
   const auto step = [](const std::vector<double>& t) { return t.size() > 1 ? t[1] - t[0] : 1.0; };
   for (const double t : y_ticks) {
     grid += fmt::format("M{} {}H{}", coordinate(x0), coordinate(py(t)), coordinate(x1));

@@ -10,11 +10,13 @@
 namespace kinfer::report::svg {
 
 enum class Scale { linear, logarithmic };
+enum class AxisNumbers { shown, hidden };
 
 struct Axis {
   std::string label{};
   double low = 0.0, high = 1.0;
   Scale scale = Scale::linear;
+  AxisNumbers numbers = AxisNumbers::shown;  ///< hidden: neither numbers nor grid lines
 };
 
 struct Size {

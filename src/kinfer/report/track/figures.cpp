@@ -29,6 +29,23 @@ std::string alarm_subject(const TrackRun& run, const TrackAlarm& alarm) {
   return "chain";
 }
 
+double end_of(const TrackRun& run, const TrackEvent& event) {
+  return std::isnan(event.until) ? run.end : event.until;
+}
+
+/// Spans of time in which at least one alarm was active, in order.
+std::vector<std::pair<double, double>> times_with_alarms(const TrackRun& run) {
+  std::vector<std::pair<double, double>> spans, merged;
+  for (const TrackEvent& event : run.events) spans.emplace_back(event.alarm.since, end_of(run, event));
+  std::ranges::sort(spans);
+  for (const auto& span : spans)
+    if (merged.empty() || span.first > merged.back().second)
+      merged.push_back(span);
+    else
+      merged.back().second = std::max(merged.back().second, span.second);
+  return merged;
+}
+
 std::string position_drawing(const TrackRun& run, const TrackCurve& curve) {
   const double unit = curve.rotates ? 1.0 / degree : 1e3;
   const std::size_t step = std::max<std::size_t>(1, run.time.size() / points_on_paper);
@@ -53,8 +70,7 @@ std::string position_drawing(const TrackRun& run, const TrackCurve& curve) {
   all.insert(all.end(), high.begin(), high.end());
   const svg::Axis axis = svg::axis_for(curve.rotates ? "[deg]" : "[mm]", all, svg::From::least);
   svg::Plot plot(time_axis(run), axis, {480.0, 190.0});
-  for (const TrackEvent& event : run.events)
-    plot.window(event.alarm.since, std::isnan(event.until) ? run.end : event.until, "stripe");
+  for (const auto& [begin, end] : times_with_alarms(run)) plot.window(begin, end, "stripe");
   std::vector<double> outline = time, edge = band_low;
   outline.insert(outline.end(), time.rbegin(), time.rend());
   edge.insert(edge.end(), band_high.rbegin(), band_high.rend());
@@ -124,13 +140,13 @@ std::string alarm_drawing(const TrackRun& run) {
     if (std::ranges::find(subjects, subject) == subjects.end()) subjects.push_back(subject);
   }
   const auto rows = static_cast<double>(subjects.size());
-  svg::Plot plot(time_axis(run), {.label = "", .low = 0.0, .high = rows}, {960.0, 70.0 + 30.0 * rows});
+  svg::Plot plot(time_axis(run), {.label = "", .low = 0.0, .high = rows, .numbers = svg::AxisNumbers::hidden},
+                 {960.0, 70.0 + 36.0 * rows});
   for (const TrackEvent& event : run.events) {
     const std::string subject = alarm_subject(run, event.alarm);
     const auto row = static_cast<double>(std::ranges::find(subjects, subject) - subjects.begin());
-    plot.bar(event.alarm.since, std::isnan(event.until) ? run.end : event.until, row + 0.2, row + 0.8, "fill-bad",
-             event.sentence);
-    plot.words(event.alarm.since, row + 0.5, "", subject);
+    plot.bar(event.alarm.since, end_of(run, event), row + 0.1, row + 0.5, "fill-bad", event.sentence);
+    plot.words(event.alarm.since, row + 0.6, "", subject);
   }
   return plot.svg("Alarms on a time line");
 }
