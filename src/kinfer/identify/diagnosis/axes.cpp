@@ -119,7 +119,7 @@ AxisFault axis_fault(const SensorLikelihoods& sensor, std::size_t unit, bool has
   AxisFault best;
   const auto consider = [&](OddInstrument instrument, const MapChoice& choice, bool inverse) {
     const bool is_alone = instrument != OddInstrument::gyroscope;
-    if (choice.gain < (is_alone ? min_map_gain_alone : min_map_gain) || choice.gain <= best.gain) return;
+    if (choice.gain < (is_alone ? min_map_gain_alone : min_axes_gain) || choice.gain <= best.gain) return;
     const Mat3& axes = signed_permutations()[choice.map];
     // Negating or mirroring a direction that the gyroscope transports shows as a rotation of axes, never as a reversal.
     if (is_alone && axes.determinant() < 0.0) return;
