@@ -48,18 +48,25 @@ SensorLikelihoods likelihoods_of(const InsSensor& sensor, std::span<const double
   return result;
 }
 
-/// The unit that most sensors favour: each counts up to a limit, so that one odd sensor does not speak for all. No
-/// rotation where no unit is better than that.
+/// [nats] How much better the sensors are explained by one unit than by another, each counting up to `most`.
+double unit_gain(const std::vector<SensorLikelihoods>& sensors, std::size_t unit, std::size_t other, double most) {
+  double sum = 0.0;
+  for (const SensorLikelihoods& sensor : sensors) {
+    const double gain = sensor.of(unit, sensor.best_map(unit)) - sensor.of(other, sensor.best_map(other));
+    sum += std::clamp(gain, -most, most);
+  }
+  return sum;
+}
+
+/// The unit that the sensors favour over rad/s; each counts up to a limit, so that one odd sensor does not speak for
+/// all. No rotation where no unit is better than that.
 std::size_t common_unit(const std::vector<SensorLikelihoods>& sensors) {
-  std::array<double, rate_units.size()> sum{};
-  for (const SensorLikelihoods& sensor : sensors)
-    for (std::size_t u = 0; u < rate_units.size(); ++u) {
-      const double gain = sensor.of(u, sensor.best_map(u)) - sensor.of(0, sensor.best_map(0));
-      sum[u] += std::clamp(gain, -max_sensor_vote, max_sensor_vote);
-    }
-  const auto best = static_cast<std::size_t>(std::ranges::max_element(sum) - sum.begin());
-  if (sum[best] < min_map_gain) return 0;
-  return sum[best] - sum[no_rotation] < min_map_gain ? no_rotation : best;
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  std::size_t best = 0;
+  for (std::size_t u = 1; u < rate_units.size(); ++u)
+    if (unit_gain(sensors, u, best, unlimited) > 0.0) best = u;
+  if (best == 0 || unit_gain(sensors, best, 0, max_sensor_vote) < min_map_gain) return 0;
+  return unit_gain(sensors, best, no_rotation, unlimited) < min_map_gain ? no_rotation : best;
 }
 
 /// That of the log, unless this sensor by itself contradicts it.
@@ -112,7 +119,7 @@ AxisFault axis_fault(const SensorLikelihoods& sensor, std::size_t unit, bool has
   AxisFault best;
   const auto consider = [&](OddInstrument instrument, const MapChoice& choice, bool inverse) {
     const bool is_alone = instrument != OddInstrument::gyroscope;
-    if (choice.gain < (is_alone ? min_map_gain_alone : min_map_gain) || choice.gain <= best.gain) return;
+    if (choice.gain < (is_alone ? min_map_gain_alone : min_axes_gain) || choice.gain <= best.gain) return;
     const Mat3& axes = signed_permutations()[choice.map];
     // Negating or mirroring a direction that the gyroscope transports shows as a rotation of axes, never as a reversal.
     if (is_alone && axes.determinant() < 0.0) return;

@@ -1,22 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/identify/diagnosis/diagnosis.hpp"
 
-#include <numeric>
+#include <algorithm>
+#include <cmath>
 
 #include "kinfer/identify/diagnosis/axes.hpp"
 #include "kinfer/identify/diagnosis/lags.hpp"
 #include "kinfer/identify/diagnosis/rows.hpp"
 #include "kinfer/identify/diagnosis/signs.hpp"
+#include "kinfer/identify/diagnosis/thresholds.hpp"
 #include "kinfer/identify/diagnosis/units.hpp"
 #include "kinfer/identify/screening/duplicates.hpp"
 
 namespace kinfer::identify {
 namespace {
 
+/// [rad/s] rms of the rates about their mean; NaN samples do not count.
+double rate_scatter(const InsSensor& sensor) {
+  Vec3 sum = Vec3::Zero();
+  double square = 0.0, n = 0.0;
+  for (std::size_t row = 0; row < sensor.angular_velocity.axis[0].size(); ++row)
+    if (const Vec3 w = sensor.angular_velocity.at(row); w.allFinite()) sum += w, square += w.squaredNorm(), n += 1.0;
+  return n > 0.0 ? std::sqrt(std::max(square / n - (sum / n).squaredNorm(), 0.0)) : 0.0;
+}
+
+/// Among sensors that move: at rest, two with coarse digits may read the same.
 std::vector<Finding> duplicates_of(const InsRecording& recording) {
-  std::vector<std::size_t> all(recording.sensors.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return duplicate_findings(recording, all);
+  std::vector<std::size_t> moving;
+  for (std::size_t s = 0; s < recording.sensors.size(); ++s)
+    if (rate_scatter(recording.sensors[s]) > min_duplicate_rate) moving.push_back(s);
+  return duplicate_findings(recording, moving);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@ namespace kinfer::identify {
 /// [nats] By which another unit or another map of axes must explain the instruments better than what the file says.
 /// Larger misses faults of sensors that hardly rotate. Sound logs reach 16 (a pendulum of 8 s), faults 50 to 4000.
 inline constexpr double min_map_gain = 25.0;
+/// The same for other axes than those of the file. Sound logs reach 77 (a quick drive), faults 200 to 4000.
+inline constexpr double min_axes_gain = 85.0;
 
 /// [nats] Most that one sensor says for or against a unit of all. Larger: one odd sensor speaks for a log of two.
 inline constexpr double max_sensor_vote = 200.0;
@@ -30,11 +32,11 @@ inline constexpr double max_quiet_rate = 0.1;
 /// identification does not mind them. Larger misses shorter lags.
 inline constexpr double min_reported_lag = 0.022;
 
-/// [nats] Gain of a lag in the recording; larger misses lags of sensors that hardly tilt. And in either half of it, which
-/// may hold no section that tells, but must not speak against it.
+/// [nats] Gain of a lag in the recording; larger misses lags of sensors that hardly tilt. And in either half of it,
+/// which may hold no section that tells, but must not speak against it.
 inline constexpr double min_lag_gain = 15.0, min_half_lag_gain = -4.0;
-/// [s] Standard deviation of a lag. Larger: drives of all joints together, which no single circle describes, give lags of
-/// 60 ms that are none; those of 40 ms are found with 1.3 to 5.9 ms.
+/// [s] Standard deviation of a lag. Larger: drives of all joints together, which no single circle describes, give lags
+/// of 60 ms that are none; those of 40 ms are found with 1.3 to 5.9 ms.
 inline constexpr double max_lag_sd = 6.2e-3;
 
 /// Share of the rows that are copies, or on straight lines between others. Sound logs: below 0.02.
@@ -55,5 +57,8 @@ inline constexpr double min_sign_gain = 0.1;
 /// Median angle between the vertical of Euler angles in the gyroscope's columns and the accelerometer's: [rad], and its
 /// share of what angles of zero and a constant vertical leave. Rates: above 0.9.
 inline constexpr double max_attitude_error = 0.25, max_attitude_share = 0.45;
+
+/// [rad/s] rms rate from which a sensor may be the copy of another one. Larger: overlooks copies of gentle drives.
+inline constexpr double min_duplicate_rate = 0.02;
 
 }  // namespace kinfer::identify

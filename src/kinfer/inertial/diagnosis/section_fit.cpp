@@ -57,19 +57,23 @@ Samples smoothed_samples(const Samples& values) {
   return smooth;
 }
 
-/// Mean rate of the quietest moment, or zero where that moves.
+/// Mean rate of the quietest moment, or zero where even that moves.
 Vec3 quietest_rate(const Samples& rate, double max_bias) {
+  constexpr double quiet_share = 0.05;  // of the rms rate: the scatter of a moment at rest
+  const double n = static_cast<double>(quiet_steps);
   Vec3 best = Vec3::Zero();
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), all = 0.0, moments = 0.0;
   for (std::size_t first = 0; first + quiet_steps <= rate.size(); first += quiet_steps) {
     Vec3 sum = Vec3::Zero();
     double square = 0.0;
     for (std::size_t k = first; k < first + quiet_steps; ++k) sum += rate[k], square += rate[k].squaredNorm();
-    const Vec3 mean = sum / static_cast<double>(quiet_steps);
-    const double scatter = square / static_cast<double>(quiet_steps) - mean.squaredNorm();
+    if (!std::isfinite(square)) continue;
+    const Vec3 mean = sum / n;
+    const double scatter = square / n - mean.squaredNorm();
+    all += square / n, moments += 1.0;
     if (scatter < least && mean.norm() < max_bias) least = scatter, best = mean;
   }
-  return best;
+  return least * moments < quiet_share * quiet_share * all ? best : Vec3(Vec3::Zero());
 }
 
 double median_length(const Samples& values) {
