@@ -38,6 +38,8 @@ class Background {
   }
 
  private:
+  struct Interrupted {};
+
   void call(const std::function<void(const Observer&)>& work) {
     try {
       work([this](const Progress& progress) {
@@ -45,8 +47,10 @@ class Background {
         stage_ = progress.detail.empty() ? std::string(progress.stage)
                                          : std::string(progress.stage) + " " + std::string(progress.detail);
         fraction_ = progress.fraction;
-        return stop_ ? ObserverDecision::stop : ObserverDecision::proceed;
+        if (stop_) throw Interrupted{};
+        return ObserverDecision::proceed;
       });
+    } catch (const Interrupted&) {  // the interruption itself is thrown by the calling thread
     } catch (...) {
       failure_ = std::current_exception();
     }

@@ -1,4 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
+import os
+import signal
+import threading
+import time
+
 import numpy as np
 import pytest
 
@@ -52,6 +57,25 @@ GOOD = dict(t=np.arange(N) / 100, acc=np.tile([0, 0, 9.81], (N, 1)), gyr=np.zero
 def test_bad_columns_get_a_sentence(columns, sentence):
     with pytest.raises(kinfer.InputError, match=sentence):
         kinfer.identify({"boom": columns})
+
+
+def test_ctrl_c_stops_an_identification(drive):
+    recording = kinfer.read_log(drive / "imu.csv")
+    begin = time.perf_counter()
+    kinfer.identify(recording)
+    whole = time.perf_counter() - begin
+    sent = []
+
+    def interrupt():
+        sent.append(time.perf_counter())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(0.1 * whole, interrupt)
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        kinfer.identify(recording)
+    timer.join()
+    assert time.perf_counter() - sent[0] < 0.7 * whole  # it does not go on to the end
 
 
 def test_something_else_gets_a_sentence(tmp_path):

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -72,6 +73,22 @@ TEST(ParallelFor, ANestedLoopRunsAllItsItems) {
   std::vector<std::vector<int>> visits(20, std::vector<int>(30, 0));
   parallel_for(20, 3, [&](std::size_t i) { parallel_for(30, 3, [&](std::size_t j) { ++visits[i][j]; }); });
   for (const auto& row : visits) EXPECT_EQ(std::accumulate(row.begin(), row.end(), 0), 30);
+}
+
+TEST(ParallelFor, AnExceptionReachesTheCallerAndEndsTheLoop) {
+  struct Cancelled {};
+  for (const int threads : {1, 2, 7}) {
+    std::atomic<int> begun = 0;
+    const auto cancel_at_ten = [&](std::size_t i) {
+      ++begun;
+      if (i == 10) throw Cancelled{};
+    };
+    EXPECT_THROW(parallel_for(100000, threads, cancel_at_ten), Cancelled);
+    EXPECT_LT(begun, 100000) << threads << " threads";
+    int visits = 0;
+    parallel_for(1, threads, [&](std::size_t) { ++visits; });
+    EXPECT_EQ(visits, 1) << "the next loop runs";
+  }
 }
 
 TEST(ParallelFor, NoItemsIsNoWork) {

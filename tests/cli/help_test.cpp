@@ -32,7 +32,8 @@ class Help : public Program {
 TEST_F(Help, OptionsAreInGroupsWithDefaultsAndAnExample) {
   const std::string help = kinfer("calibrate --help").out;
   EXPECT_THAT(help, HasSubstr("Usage: kinfer calibrate --robot FILE --data CSV --out DIR [OPTIONS]"));
-  for (const char* heading : {"\nRequired:\n", "\nModel:\n", "\nValidation:\n", "\nOutput and repeatability:\n"})
+  for (const char* heading :
+       {"\nRequired:\n", "\nRobot file:\n", "\nModel:\n", "\nValidation:\n", "\nOutput and repeatability:\n"})
     EXPECT_THAT(help, HasSubstr(heading));
   EXPECT_THAT(help, HasSubstr("--offsets folded|separate"));
   EXPECT_THAT(help, HasSubstr("[folded]"));
@@ -41,6 +42,12 @@ TEST_F(Help, OptionsAreInGroupsWithDefaultsAndAnExample) {
   std::istringstream lines(help);
   for (std::string line; std::getline(lines, line);)
     if (!line.starts_with("  kinfer")) EXPECT_LE(line.size(), 110u) << line;
+}
+
+TEST_F(Help, WithoutAVerbTheVerbsAreListed) {
+  const Outcome run = kinfer("");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("\nVerbs:\n"));
 }
 
 TEST_F(Help, EveryVerbHasAnExampleAManPageAndCompletion) {

@@ -16,6 +16,8 @@ struct Progress {
   std::string_view detail;  ///< free text: a segment's name, a fold
 };
 
+/// `stop` ends the current search and keeps its best result. To end the whole computation an observer may throw: its
+/// exception reaches whoever called the long-running function.
 enum class ObserverDecision { proceed, stop };
 
 using Observer = std::function<ObserverDecision(const Progress&)>;

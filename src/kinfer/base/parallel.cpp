@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -17,10 +18,18 @@ struct Job {
   std::size_t count = 0;
   const std::function<void(std::size_t)>* body = nullptr;
   std::atomic<std::size_t> next{0};
+  std::mutex failing{};
+  std::exception_ptr failure{};  ///< of the first item that threw; the items after it are not begun
 
   void run() {
     inside_a_parallel_loop = true;
-    for (std::size_t i = next++; i < count; i = next++) (*body)(i);
+    try {
+      for (std::size_t i = next++; i < count; i = next++) (*body)(i);
+    } catch (...) {
+      next = count;
+      const std::lock_guard lock(failing);
+      if (!failure) failure = std::current_exception();
+    }
     inside_a_parallel_loop = false;
   }
 };
@@ -50,6 +59,7 @@ class Pool {
     job.run();
     std::unique_lock lock(mutex_);
     done_.wait(lock, [this] { return busy_ == 0; });
+    if (job.failure) std::rethrow_exception(job.failure);
   }
 
  private:

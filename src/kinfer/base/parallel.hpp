@@ -13,7 +13,8 @@ namespace kinfer {
 /// Number of hardware threads (at least 1).
 int hardware_threads();
 
-/// Calls body(i) for i = 0 .. count-1 on at most `threads` threads (0: all cores); returns when all are done.
+/// Calls body(i) for i = 0 .. count-1 on at most `threads` threads (0: all cores); returns when all are done. Where a
+/// body throws, as an observer may, the items that are not begun are left out and the exception reaches the caller.
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body);
 
 }  // namespace kinfer

@@ -53,6 +53,10 @@ int run_program(const std::vector<std::string>& arguments) {
   std::string language = "english";
   const std::vector<Verb> verbs = describe_program(app, language);
   const ProgramEntry program = option_tree(app);
+  if (arguments.empty()) {
+    fmt::print(stderr, "{}", help_text(program, terminal_width()));
+    return exit_bad_input;
+  }
   if (const auto sentence = misspelling(arguments, program)) {
     const bool has_verb = program.find(arguments.front()) != nullptr;
     fmt::print(stderr, "kinfer: {}\n`kinfer{} --help` lists what there is.\n", *sentence,

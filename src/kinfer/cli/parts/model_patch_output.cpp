@@ -9,6 +9,11 @@
 
 namespace kinfer::cli {
 
+Result<void> check_offsets(bool given, const RobotModel& robot) {
+  if (!given || robot.source) return {};
+  return error("--offsets has no effect here: only a URDF file is written back with calibrated origins");
+}
+
 std::optional<ModelPatch> write_model_patch(const std::filesystem::path& folder, const RobotModel& robot,
                                             const Calibration& calibration, EncoderOffsets offsets) {
   if (!robot.source) return std::nullopt;

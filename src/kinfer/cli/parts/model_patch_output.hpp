@@ -10,6 +10,9 @@
 
 namespace kinfer::cli {
 
+/// Refuses --offsets where no robot file can be written back.
+Result<void> check_offsets(bool given, const RobotModel& robot);
+
 /// None where the file has a format that is not written back. A file that cannot be changed in place is no reason to
 /// lose the calibration: what is wrong is printed.
 std::optional<ModelPatch> write_model_patch(const std::filesystem::path& folder, const RobotModel& robot,

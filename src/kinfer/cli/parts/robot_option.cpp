@@ -6,9 +6,11 @@ namespace kinfer::cli {
 void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& name, const std::string& help,
                       Requirement need) {
   add_text(verb, name, option.path, help, need, "FILE");
+  begin_group(verb, "Robot file");
   add_text(verb, "--base-link", option.base_link, "Link of a URDF file where the chain begins (default: its root)");
   add_text(verb, "--tip-link", option.tip_link,
            "Link of a URDF file where the chain ends (default: its longest arm's)");
+  begin_group(verb, "Options");
 }
 
 Result<RobotModel> read_robot(const RobotOption& option) {

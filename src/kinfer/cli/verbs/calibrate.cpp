@@ -165,12 +165,6 @@ Provenance provenance_of(const CalibrateArguments& options, const Inputs& inputs
   return provenance;
 }
 
-/// Refuses --offsets where no robot file can be written back.
-Result<void> check_offsets(const CLI::App& verb, const RobotModel& robot) {
-  if (!was_given(verb, "--offsets") || robot.source) return {};
-  return error("--offsets has no effect here: only a URDF file is written back with calibrated origins");
-}
-
 Result<void> write_results(const CalibrateArguments& options, const Inputs& inputs, const Calibration& calibration) {
   const std::filesystem::path folder(options.out);
   for (const OutputFile& file : calibration_files(calibration, inputs.robot))
@@ -183,7 +177,8 @@ int run(const CalibrateArguments& options, const CLI::App& verb) {
   RunRecord record("calibrate", options.common);
   const auto inputs = read_inputs(options);
   if (!inputs) return fail(inputs.error());
-  if (auto effective = check_offsets(verb, inputs->robot); !effective) return fail(effective.error());
+  if (auto effective = check_offsets(was_given(verb, "--offsets"), inputs->robot); !effective)
+    return fail(effective.error());
   for (const std::string& path : input_paths(options, *inputs)) record.add_input(path);
   const auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());

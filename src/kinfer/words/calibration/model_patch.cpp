@@ -60,6 +60,10 @@ std::vector<std::string> remarks(const ModelPatch& patch) {
   if (patch.omitted.size() > 1)
     sentences.push_back(phrase("omitted_together", "all that is left out: {:.3f} mm rms, at most {:.3f} mm",
                                1e3 * patch.omitted_rms, 1e3 * patch.omitted_max));
+  if (!patch.omitted.empty())
+    sentences.push_back(phrase("geometry_alone",
+                               "part of that could be taken up by the frames: --model geometry finds the best model "
+                               "without it, which the file holds completely"));
   return sentences;
 }
 
