@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/io/robot/patch/urdf_patch.hpp"
+#include "kinfer/geometry/random.hpp"
 #include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
@@ -58,8 +59,8 @@ TEST(UrdfPatchLaw, MujocoFindsTheCalibratedToolPoses) {
   for (Joint& moved : corrected.joints) {
     if (!has_position(moved.type)) continue;
     auto& origin = std::get<UrdfLink>(moved.link).origin;
-    origin.xyz += 2e-3 * Vec3(rng.normal(), rng.normal(), rng.normal());
-    origin.small_rotation = 5e-3 * Vec3(rng.normal(), rng.normal(), rng.normal());
+    origin.xyz += 2e-3 * normal_vector(rng);
+    origin.small_rotation = 5e-3 * normal_vector(rng);
   }
   const auto origins = calibrated_origins(*in_file, corrected, EncoderOffsets::folded);
   ASSERT_TRUE(origins.has_value()) << origins.error().what;

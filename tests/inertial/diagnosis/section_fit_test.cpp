@@ -8,6 +8,7 @@
 
 #include "kinfer/base/constants.hpp"
 #include "kinfer/base/rng.hpp"
+#include "kinfer/geometry/random.hpp"
 #include "kinfer/inertial/diagnosis/attitude_columns.hpp"
 #include "kinfer/inertial/diagnosis/repeated_rows.hpp"
 
@@ -27,7 +28,7 @@ struct Swing {
     Rng rng(3);
     const Vec3 axis = Vec3(0.5, 0.8, 0.3).normalized(), arm(0.4, -0.2, 0.7), gravity(0, 0, standard_gravity),
                field(18, 5, -45);
-    const auto noise = [&](double sd) { return Vec3(sd * rng.normal(), sd * rng.normal(), sd * rng.normal()); };
+    const auto noise = [&](double sd) { return Vec3(sd * normal_vector(rng)); };
     for (int k = 0; k < 2400; ++k) {
       const double t = 0.01 * k;
       time.push_back(t);

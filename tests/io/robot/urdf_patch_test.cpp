@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kinfer/geometry/random.hpp"
 #include "kinfer/io/robot/patch/joint_origins_yaml.hpp"
 #include "kinfer/io/robot/patch/urdf_joints.hpp"
 #include "kinfer/io/robot/urdf.hpp"
@@ -43,8 +44,8 @@ Chain disturbed(Chain chain, Rng rng) {
   for (Joint& joint : chain.joints) {
     auto& link = std::get<UrdfLink>(joint.link);
     if (!has_position(joint.type)) continue;
-    link.origin.xyz += 1e-3 * Vec3(rng.normal(), rng.normal(), rng.normal());
-    link.origin.small_rotation = 3e-3 * Vec3(rng.normal(), rng.normal(), rng.normal());
+    link.origin.xyz += 1e-3 * normal_vector(rng);
+    link.origin.small_rotation = 3e-3 * normal_vector(rng);
   }
   return with_small_rotations_folded(chain);
 }

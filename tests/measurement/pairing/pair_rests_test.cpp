@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "kinfer/base/rng.hpp"
+#include "kinfer/geometry/random.hpp"
 
 namespace kinfer {
 namespace {
@@ -23,7 +24,7 @@ struct Program {
 Program program_of(int count, bool equal_dwells, Rng rng) {
   Program program;
   for (int k = 0; k < count; ++k) {
-    program.points.emplace_back(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1));
+    program.points.push_back(0.6 * normal_vector(rng));
     program.dwell.push_back(equal_dwells ? 2.0 : rng.uniform(1.0, 3.0));
   }
   return program;
