@@ -58,8 +58,8 @@ struct Outcome {
   VectorXd squares, first;
   std::vector<bool> is_relative;
   int rows = 0;
-  std::vector<TrackAlarm> alarms;  // each kind and sensor once, with the time at which it was raised
-  std::vector<double> raised;
+  std::vector<TrackAlarm> alarms{};  // each kind and sensor once, with the time at which it was raised
+  std::vector<double> raised{};
 
   double rms(int joint) const { return std::sqrt(squares[joint] / rows); }
 };

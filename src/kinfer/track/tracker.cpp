@@ -124,7 +124,9 @@ void Tracker::add(const InsRow& row) {
 void Tracker::choose_sensors() {
   for (std::size_t s = 0; s < does_not_fit_.size(); ++s) {
     const bool is_used = !does_not_fit_[s] && !health_[s].lost && !health_[s].stuck;
-    if (is_used != filter_.uses_sensor(s)) filter_.use_sensor(s, is_used);
+    if (is_used == filter_.uses_sensor(s)) continue;
+    filter_.use_sensor(s, is_used);
+    if (is_used) fit_.reset(s);  // what it showed while it was out of use says nothing
   }
 }
 
@@ -155,6 +157,7 @@ void Tracker::resolve_start(const BlockMeasurement& block) {
   if (!grid_->is_decided()) return;
   is_known_[static_cast<std::size_t>(grid_->position())] = true;
   grid_.reset();
+  fit_.reset();  // other places did not fit, which says nothing of the sensors
   begin_grid();
   replay_.begin(filter_);
 }

@@ -52,6 +52,8 @@ ChainEvaluator::ChainEvaluator(const FilterModel& model) : bodies_(model.bodies)
     result_.geometry_end.push_back(layout.geometry_end[static_cast<std::size_t>(sensor.body)]);
   }
   derivatives_.resize(bodies_.size());
+  for (std::size_t b = 1; b < bodies_.size(); ++b)
+    derivatives_[b].by_own.resize(12, 3 * degrees_of_freedom(bodies_[b].motion) + bodies_[b].unknowns());
 }
 
 void ChainEvaluator::propagate_body(const FilterModel& model, const ChainState& state, std::size_t b) {
