@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "kinfer/base/angle.hpp"
-
 #include "kinfer/cli/parts/arguments.hpp"
 #include "kinfer/cli/parts/evidence_files.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
