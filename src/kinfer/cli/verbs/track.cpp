@@ -5,14 +5,13 @@
 #include <memory>
 
 #include "kinfer/base/angle.hpp"
-
 #include "kinfer/cli/parts/arguments.hpp"
 #include "kinfer/cli/parts/evidence_files.hpp"
-#include "kinfer/cli/parts/row_source.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
-#include "kinfer/cli/parts/track_output.hpp"
-#include "kinfer/cli/parts/track_summary.hpp"
-#include "kinfer/cli/parts/tracked_chain.hpp"
+#include "kinfer/cli/tracking/row_source.hpp"
+#include "kinfer/cli/tracking/track_output.hpp"
+#include "kinfer/cli/tracking/track_summary.hpp"
+#include "kinfer/cli/tracking/tracked_chain.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/track_json.hpp"
 #include "kinfer/io/text/csv.hpp"

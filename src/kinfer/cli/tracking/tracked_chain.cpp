@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/tracked_chain.hpp"
+#include "kinfer/cli/tracking/tracked_chain.hpp"
 
 #include <algorithm>
 #include <filesystem>

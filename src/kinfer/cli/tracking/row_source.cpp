@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/row_source.hpp"
+#include "kinfer/cli/tracking/row_source.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

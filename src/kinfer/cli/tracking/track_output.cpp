@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/track_output.hpp"
+#include "kinfer/cli/tracking/track_output.hpp"
 
 namespace kinfer::cli {
 
