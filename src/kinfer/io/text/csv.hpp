@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "kinfer/base/result.hpp"
+#include "kinfer/io/text/csv_cells.hpp"
 
 namespace kinfer {
 
 constexpr char automatic = '\0';  ///< delimiter or decimal mark as the text tells
-constexpr char blanks = ' ';      ///< delimiter: runs of blanks and tabs
 
 enum class HeaderLine { first, with_word, none };
 
