@@ -7,7 +7,6 @@
 #include <set>
 #include <span>
 
-#include "kinfer/io/text/csv_cells.hpp"
 #include "kinfer/io/text/trim.hpp"
 #include "kinfer/io/text/units.hpp"
 

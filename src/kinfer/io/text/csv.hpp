@@ -10,9 +10,22 @@
 #include <vector>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/io/text/csv_format.hpp"
+#include "kinfer/io/text/csv_cells.hpp"
 
 namespace kinfer {
+
+constexpr char automatic = '\0';  ///< delimiter or decimal mark as the text tells
+
+enum class HeaderLine { first, with_word, none };
+
+struct CsvFormat {
+  char delimiter = ',';
+  char decimal = '.';
+  int skip_lines = 0;                          ///< before the header
+  std::vector<std::string> comments{};         ///< lines that begin with one of these are skipped, as those with #
+  HeaderLine header_line = HeaderLine::first;  ///< none: the columns are named #1, #2 ...
+  std::string header_word{};                   ///< of HeaderLine::with_word: the first line that contains it
+};
 
 struct CsvHeader {
   std::vector<std::string> columns;

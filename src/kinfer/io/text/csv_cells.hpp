@@ -11,10 +11,11 @@
 #include <string_view>
 #include <vector>
 
-#include "kinfer/io/text/csv_format.hpp"
 #include "kinfer/io/text/trim.hpp"
 
 namespace kinfer {
+
+constexpr char blanks = ' ';  ///< delimiter: runs of blanks and tabs
 
 /// Iterates over the lines of a text, without line endings.
 class LineReader {
