@@ -41,7 +41,7 @@ TEST_F(Help, OptionsAreInGroupsWithDefaultsAndAnExample) {
   EXPECT_LT(help.find("\nRequired:"), help.find("\nOutput and repeatability:"));
   std::istringstream lines(help);
   for (std::string line; std::getline(lines, line);)
-    if (!line.starts_with("  kinfer")) EXPECT_LE(line.size(), 110u) << line;
+    EXPECT_TRUE(line.starts_with("  kinfer") || line.size() <= 110u) << line;
 }
 
 TEST_F(Help, WithoutAVerbTheVerbsAreListed) {
@@ -63,9 +63,10 @@ TEST_F(Help, EveryVerbHasAnExampleAManPageAndCompletion) {
     EXPECT_EQ(page, kinfer("man " + verb).out);
   }
   EXPECT_THAT(slurp(in("pages/kinfer.1")), HasSubstr(".BR kinfer\\-identify (1)"));
-  if (shell("which groff") == 0)
+  if (shell("which groff") == 0) {
     EXPECT_EQ(shell("for p in pages/*; do groff -man -Tutf8 -ww -z $p; done; test ! -s shell.txt"), 0)
         << slurp(in("shell.txt"));
+  }
 }
 
 TEST_F(Help, BashCompletesVerbsOptionsChoicesAndFiles) {
@@ -85,8 +86,8 @@ TEST_F(Help, OtherShellsAcceptTheirScripts) {
   write(in("kinfer.fish"), kinfer("completion fish").out);
   EXPECT_THAT(slurp(in("_kinfer")), HasSubstr("#compdef kinfer\n"));
   EXPECT_THAT(slurp(in("kinfer.fish")), HasSubstr("-n '__fish_seen_subcommand_from calibrate' -l robot -r -F"));
-  if (shell("which zsh") == 0) EXPECT_EQ(shell("zsh -n _kinfer"), 0) << slurp(in("shell.txt"));
-  if (shell("which fish") == 0) EXPECT_EQ(shell("fish -n kinfer.fish"), 0) << slurp(in("shell.txt"));
+  EXPECT_TRUE(shell("which zsh") != 0 || shell("zsh -n _kinfer") == 0) << slurp(in("shell.txt"));
+  EXPECT_TRUE(shell("which fish") != 0 || shell("fish -n kinfer.fish") == 0) << slurp(in("shell.txt"));
 }
 
 TEST_F(Help, MisspeltWordsGetTheNearestOne) {

@@ -130,10 +130,11 @@ TEST(UrdfPatch, WhatIsMissingIsAddedInTheStyleBeside) {
 
 TEST(UrdfPatch, ToolPosesAreThoseOfTheCalibratedChain) {
   for (const EncoderOffsets offsets : {EncoderOffsets::folded, EncoderOffsets::separate}) {
-    for (const char* tip : {"hand", "side"}) expect_same_tool_poses(awkward_urdf(), {.tip_link = tip}, offsets, 3);
+    for (const char* tip : {"hand", "side"})
+      expect_same_tool_poses(awkward_urdf(), {.base_link = "", .tip_link = tip}, offsets, 3);
     for (Chain chain : laws::examples_with_joints()) {  // serial arms, trees and mimic joints
       for (Joint& joint : chain.joints) joint.compliance = 0.0;
-      expect_same_tool_poses(format_urdf(chain), {.tip_link = "tool"}, offsets, 5);
+      expect_same_tool_poses(format_urdf(chain), {.base_link = "", .tip_link = "tool"}, offsets, 5);
     }
   }
 }
@@ -163,7 +164,7 @@ TEST(UrdfPatch, AFileOfSixtyLinksSurvivesByteForByte) {
 }
 
 TEST(UrdfPatch, AnotherMachineIsRefused) {
-  const auto in_file = parse_urdf(awkward_urdf(), "in.urdf", {.tip_link = "hand"});
+  const auto in_file = parse_urdf(awkward_urdf(), "in.urdf", {.base_link = "", .tip_link = "hand"});
   ASSERT_TRUE(in_file.has_value());
   Chain other = *in_file;
   std::get<UrdfLink>(other.joints[0].link).axis = Vec3::UnitX();
