@@ -108,7 +108,7 @@ TEST(PairRests, ByTimeOffsetAndDriftAreFound) {
     EXPECT_EQ(found->pairs.size(), 15u - seed % 3);
     for (const RestPair& pair : found->pairs) EXPECT_EQ(pair.joints, pair.measured + static_cast<int>(seed % 3));
     EXPECT_EQ(found->joints_alone.size(), seed % 3);
-    EXPECT_LT(found->timing_error, 0.1);
+    EXPECT_LT(found->timing_error, 0.05);
   }
 }
 

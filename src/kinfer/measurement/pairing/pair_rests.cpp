@@ -11,7 +11,7 @@
 namespace kinfer {
 namespace {
 
-constexpr double largest_drift = 1e-3;  // [s/s] of a computer's clock it is below 1e-4
+constexpr double usual_drift = 1e-4;  // [s/s] standard deviation between two clocks of computers and instruments
 /// Two offsets explain the rests equally well unless the distances, or else the times, of one fit this much better. Set
 /// on simulated programs of equal and of random dwell times.
 constexpr double clearly_better = 3.0;
@@ -104,9 +104,9 @@ double refit_clock(const RestLists& lists, const std::vector<RestPair>& pairs, C
       n += 1.0, sx += x, sy += y, sxx += x * x, sxy += x * y, syy += y * y;
     }
   }
-  const double spread = n * sxx - sx * sx;
-  clock.drift =
-      pairs.size() >= 3 && spread > 0.0 ? std::clamp((n * sxy - sx * sy) / spread, -largest_drift, largest_drift) : 0.0;
+  // Begins and ends of rests are told less exactly than clocks run: the drift has a prior.
+  const double spread = sxx - sx * sx / n, variance = (syy - sy * sy / n) / n;
+  clock.drift = spread > 0.0 ? (sxy - sx * sy / n) / (spread + variance / (usual_drift * usual_drift)) : 0.0;
   clock.offset = (sy - clock.drift * sx) / n;
   const double squares = syy - 2.0 * clock.offset * sy - 2.0 * clock.drift * sxy + n * clock.offset * clock.offset +
                          2.0 * clock.offset * clock.drift * sx + clock.drift * clock.drift * sxx;

@@ -48,6 +48,38 @@ double dividing_value(std::vector<double> values) {
   return divide;
 }
 
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// Takes rows off both ends that are not of the rest: those that deviate from the median of its middle half by more
+/// than noise does.
+void trim(const MatrixXd& values, std::size_t& first, std::size_t& end) {
+  constexpr double beyond_noise = 6.0;  // standard deviations
+  const std::size_t quarter = (end - first) / 4;
+  std::vector<double> centre, reach;
+  for (Eigen::Index d = 0; d < values.rows(); ++d) {
+    std::vector<double> middle;
+    for (std::size_t row = first + quarter; row < end - quarter; ++row)
+      middle.push_back(values(d, static_cast<Eigen::Index>(row)));
+    centre.push_back(median_of(middle));
+    for (double& value : middle) value = std::abs(value - centre.back());
+    constexpr double sd_per_deviation = 1.4826;  // of a normal distribution
+    const double range = values.row(d).maxCoeff() - values.row(d).minCoeff();
+    reach.push_back(beyond_noise * sd_per_deviation * median_of(middle) + least_spread * range);
+  }
+  const auto is_outside = [&](std::size_t row) {
+    for (std::size_t d = 0; d < centre.size(); ++d)
+      if (std::abs(values(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(row)) - centre[d]) > reach[d])
+        return true;
+    return false;
+  };
+  while (end - first > 1 && is_outside(first)) ++first;
+  while (end - first > 1 && is_outside(end - 1)) --end;
+}
+
 Rest make_rest(const MatrixXd& values, std::size_t first, std::size_t end) {
   const auto block = values.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(end - first));
   Rest rest;
@@ -77,14 +109,15 @@ std::vector<Rest> find_rests(const std::vector<double>& time, const MatrixXd& va
       ++row;
       continue;
     }
-    const std::size_t first = row;
+    std::size_t first = row;
     while (row < time.size() && spreads[row] <= limit) ++row;
-    const std::size_t end = ends[row - 1];  // the last quiet window reaches that far
+    std::size_t end = ends[row - 1];  // the last quiet window reaches that far
+    row = std::max(row, end);
+    trim(values, first, end);
     if (time[end - 1] - time[first] < shortest) continue;
     Rest rest = make_rest(values, first, end);
     rest.begin = time[first], rest.end = time[end - 1];
     rests.push_back(std::move(rest));
-    row = std::max(row, end);
   }
   return rests;
 }
