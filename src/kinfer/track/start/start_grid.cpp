@@ -10,7 +10,7 @@
 namespace kinfer::track {
 
 void StartGrid::add_place(const ChainFilter& filter, double value, double sd, int steps_away) {
-  candidates_.push_back({filter, -start_preference * steps_away});
+  candidates_.push_back({filter, 0.0, steps_away});
   candidates_.back().filter.place(position_, value, sd);
 }
 
@@ -33,7 +33,7 @@ StartGrid StartGrid::along(const ChainFilter& filter, Index position, const Posi
 }
 
 const ChainFilter& StartGrid::best() const {
-  return std::ranges::max_element(candidates_, {}, &Candidate::log_weight)->filter;
+  return std::ranges::min_element(candidates_, {}, &Candidate::steps_away)->filter;
 }
 
 void StartGrid::update(const BlockMeasurement& block) {

@@ -19,7 +19,7 @@ class StartGrid {
 
   /// Only one place is left, or all that are left agree.
   bool is_decided() const { return candidates_.size() == 1; }
-  /// The likeliest; among equals the one nearest to where the filter was.
+  /// Of those that are left the one nearest to where the filter was: until one is told, the position counts from there.
   const ChainFilter& best() const;
   Index position() const { return position_; }
 
@@ -32,6 +32,7 @@ class StartGrid {
   struct Candidate {
     ChainFilter filter;
     double log_weight = 0.0;
+    int steps_away = 0;
   };
   Index position_;
   bool is_angle_;

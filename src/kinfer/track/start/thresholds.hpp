@@ -17,7 +17,6 @@ inline constexpr int start_places = 18;          ///< of an angle that gravity d
 /// Updates that only settle velocities and accelerations: what they tell depends on how little was known of these.
 inline constexpr int start_updates = 25;
 inline constexpr double start_log_odds = 30.0;   ///< ln: a place so much less likely than the best is dropped
-inline constexpr double start_preference = 0.5;  ///< ln: for each step on the grid nearer to where the filter was
 inline constexpr double start_merge = 0.02;      ///< [rad] or [m] places so near are one
 inline constexpr double slide_step = 0.1;        ///< [m] least distance of places along a slide
 inline constexpr double given_start_sd = 0.02;   ///< [rad] or [m] of what the user states
