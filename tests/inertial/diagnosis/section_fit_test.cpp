@@ -80,7 +80,9 @@ TEST(SectionFit, ALagIsMeasured) {
     const auto signals = section_signals(swing.sensor.acceleration, swing.sensor.angular_velocity, swing.time, 0.1);
     const InstrumentLag found = instrument_lag(*signals, Mat3::Identity());
     EXPECT_NEAR(found.lag, lag, 4e-3);  // samples are compared on a grid of 10 ms
-    if (std::abs(lag) > 0.0) EXPECT_GT(found.half_gain, 10.0);
+    if (std::abs(lag) > 0.0) {
+      EXPECT_GT(found.half_gain, 10.0);
+    }
   }
 }
 

@@ -46,7 +46,9 @@ void expect_motion(const Result<InsRecording>& read, const std::string& name, do
   for (const int row : {0, 1, sample_rows - 1}) {
     EXPECT_LT((sensor.acceleration.at(row) - sample_force(row)).norm(), 1e-4) << row;
     EXPECT_LT((sensor.angular_velocity.at(row) - sample_rates(row)).norm(), 1e-5) << row;
-    if (sensor.has_magnetometer()) EXPECT_LT(angle_between(sensor.field.at(row), sample_field(row)), 1e-5) << row;
+    if (sensor.has_magnetometer()) {
+      EXPECT_LT(angle_between(sensor.field.at(row), sample_field(row)), 1e-5) << row;
+    }
   }
   const auto& time = read->loggers[0].time;
   EXPECT_NEAR(time.back() - time.front(), (sample_rows - 1) / rate_of_row, 1e-6);
@@ -236,7 +238,9 @@ TEST(ForeignLogMutations, AnyMapIsReadOrRefused) {
     std::string text = map_by_number;
     for (int n = 0; n < 3; ++n) text[rng.index(text.size())] = "[]{}=\"#\n,-.019ax"[rng.index(16)];
     const auto map = parse_ins_map(text, "map.toml");
-    if (!map) ASSERT_EQ(map.error().what.rfind("map.toml", 0), 0U) << map.error().what;
+    if (!map) {
+      ASSERT_EQ(map.error().what.rfind("map.toml", 0), 0U) << map.error().what;
+    }
   }
 }
 
