@@ -18,21 +18,20 @@ void forget(double& mean, double x, double length, double time) {
 
 void FitMonitor::reset() {
   std::ranges::fill(fits_, SensorFit{});
-  observed_ = 0.0;
 }
 
 void FitMonitor::add(const ChainFilter& filter, double time, double length) {
-  observed_ += length;
   const Innovations& innovations = filter.innovations();
   for (std::size_t s = 0; s < fits_.size(); ++s) {
     if (innovations.rows[s] == 0) continue;
     SensorFit& fit = fits_[s];
     const double x = innovations.leave_out[s] / innovations.rows[s];
+    fit.observed += length;
     forget(fit.quick, x, length, short_mean);
     forget(fit.slow, x, length, long_mean);
     fit.strength = std::max(fit.quick / quick_limit, fit.slow / slow_limit);
     const bool was = fit.is_suspect;
-    fit.is_suspect = observed_ > settling && (was ? fit.quick > recovered_limit : fit.strength > 1.0);
+    fit.is_suspect = fit.observed > settling && (was ? fit.quick > recovered_limit : fit.strength > 1.0);
     if (fit.is_suspect && !was) fit.since = time;
   }
 }

@@ -13,6 +13,7 @@ struct SensorFit {
   double quick = 1.0, slow = 1.0;  ///< T over its expectation, over short_mean and long_mean
   bool is_suspect = false;         ///< does not agree
   double since = 0.0;              ///< [s]
+  double observed = 0.0;           ///< [s] that it was compared
   double strength = 0.0;           ///< the larger mean over its threshold
 };
 
@@ -33,7 +34,6 @@ class FitMonitor {
 
  private:
   std::vector<SensorFit> fits_;
-  double observed_ = 0.0;  // [s]
 };
 
 }  // namespace kinfer::track
