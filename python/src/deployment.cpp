@@ -76,7 +76,7 @@ py::dict compensate_in_python(const Robot& corrected, const Robot& nominal, cons
   {
     const py::gil_scoped_release without_lock;
     list = q ? deploy::compensate_joints(models.corrected, models.nominal, as_columns(*q), threads)
-             : deploy::compensate_targets(models.corrected, models.nominal, wanted, {}, threads, Rng(seed));
+             : deploy::compensate_targets(models.corrected, models.nominal, wanted, {}, threads, seed);
   }
   MatrixXd found(static_cast<Eigen::Index>(list.size()), dof(models.nominal)), residual(found.rows(), 1);
   py::list reached;
