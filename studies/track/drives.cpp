@@ -26,12 +26,11 @@ double play_acceleration(double time, double size) {
 }  // namespace
 
 SimulatedDrive simulate_drive(const DriveSetup& setup) {
-  const auto mjcf =
-      machine_mjcf(setup.machine, {.base = setup.base}, Rng(setup.machine_seed).stream(1)).value();
+  const auto mjcf = machine_mjcf(setup.machine, {.base = setup.base}, Rng(setup.machine_seed).stream(1)).value();
   const MujocoWorld world = MujocoWorld::load(mjcf).value();
-  const auto drive = make_drive(world.machine(), {.script = setup.script, .duration = setup.duration},
-                                Rng(setup.drive_seed).stream(2))
-                         .value();
+  const auto drive =
+      make_drive(world.machine(), {.script = setup.script, .duration = setup.duration}, Rng(setup.drive_seed).stream(2))
+          .value();
   MachineMotion motion = world.prescribe(drive, 200.0);
   InsRecording recording = simulate_recording(world.machine(), motion, *sensor_grade(setup.grade),
                                               {.magnetic_disturbance = setup.steel}, Rng(setup.machine_seed).stream(3));
@@ -74,7 +73,8 @@ void inject(const InjectedFault& fault, SimulatedDrive& drive) {
         set_row(sensor.acceleration, row, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
         set_row(sensor.angular_velocity, row, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
         break;
-      case FaultKind::none: break;
+      case FaultKind::none:
+        break;
     }
   }
 }

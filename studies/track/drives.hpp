@@ -14,9 +14,9 @@ struct DriveSetup {
   std::string machine = "excavator-general", grade = "industrial";
   Base base = Base::still;
   Script script = Script::standard;
-  double duration = 0.0;      ///< [s]; 0: the script's own
+  double duration = 0.0;  ///< [s]; 0: the script's own
   std::uint64_t machine_seed = 1, drive_seed = 1;
-  double steel = 0.0;         ///< [µT] of moving steel
+  double steel = 0.0;  ///< [µT] of moving steel
 };
 
 struct SimulatedDrive {

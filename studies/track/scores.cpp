@@ -33,7 +33,8 @@ std::vector<TrueJoint> true_joints(const TrackingModel& model, const SimulatedDr
     const std::vector<int> active = active_joints(machine.chain);
     TrueJoint joint{.row = std::ranges::find(active, machine.sensors[s].joint) - active.begin()};
     joint.zero = identified.motion.q(joint.row, 0);
-    const auto& link = std::get<UrdfLink>(machine.chain.joints[static_cast<std::size_t>(machine.sensors[s].joint)].link);
+    const auto& link =
+        std::get<UrdfLink>(machine.chain.joints[static_cast<std::size_t>(machine.sensors[s].joint)].link);
     const Vec3 axis = machine.sensors[s].segment_T_sensor.rotation.transpose() * link.axis;
     joint.sign = axis.dot(body.child_R_axis.col(2)) < 0.0 ? -1.0 : 1.0;
     joints.push_back(joint);
@@ -75,12 +76,15 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, c
   kinfer::track::Tracker tracker(model, options);
   kinfer::track::ComposedFilters composed(model, options);
   const std::vector<TrueJoint> truth = true_joints(model, identified);
-  const std::size_t base = sensor_named(drive.machine, model.sensors[static_cast<std::size_t>(model.bodies[0].sensor)].name),
-                    tip = sensor_named(drive.machine, model.sensors[static_cast<std::size_t>(model.bodies[static_cast<std::size_t>(model.tool.body)].sensor)].name);
+  const std::size_t
+      base = sensor_named(drive.machine, model.sensors[static_cast<std::size_t>(model.bodies[0].sensor)].name),
+      tip = sensor_named(
+          drive.machine,
+          model.sensors[static_cast<std::size_t>(model.bodies[static_cast<std::size_t>(model.tool.body)].sensor)].name);
   std::vector<std::size_t> column;  // of the recording, for each sensor of the model
   for (const TrackingSensor& sensor : model.sensors)
-    column.push_back(static_cast<std::size_t>(std::ranges::find(drive.recording.sensors, sensor.name, &InsSensor::name) -
-                                              drive.recording.sensors.begin()));
+    column.push_back(static_cast<std::size_t>(
+        std::ranges::find(drive.recording.sensors, sensor.name, &InsSensor::name) - drive.recording.sensors.begin()));
   TrackScore score;
   score.joints.resize(truth.size());
   std::vector<Sum> sums(truth.size());
@@ -111,7 +115,8 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, c
       const bool is_relative = state.joints[j].reference == JointReference::start;
       Sum& sum = sums[j];
       if (sum.rows == 0 && is_relative) sum.start = state.q[at] - q;
-      if (!is_relative && score.joints[j].is_first && score.joints[j].told_at <= 0.0) score.joints[j].told_at = state.time;
+      if (!is_relative && score.joints[j].is_first && score.joints[j].told_at <= 0.0)
+        score.joints[j].told_at = state.time;
       score.joints[j].is_first |= is_relative;
       const double e = state.q[at] - q - (is_relative ? sum.start : 0.0);
       sum.squares += e * e;

@@ -16,9 +16,9 @@ struct JointScore {
 
 struct TrackScore {
   std::vector<JointScore> joints;
-  double tool_rms = 0.0;       ///< [m] after a rigid fit of the path
-  double base_tilt_rms = 0.0;  ///< [rad]
-  double cpu_per_row = 0.0;    ///< [s]
+  double tool_rms = 0.0;            ///< [m] after a rigid fit of the path
+  double base_tilt_rms = 0.0;       ///< [rad]
+  double cpu_per_row = 0.0;         ///< [s]
   double largest_innovation = 0.0;  ///< of any sensor, T over its expectation averaged over some rows
   struct Alarm {
     TrackAlarm first;

@@ -64,7 +64,10 @@ void print(const std::string& machine, const std::string& grade, int seed, const
   fmt::print("{:<18} {:<10} {:>2}  ", machine, grade, seed);
   for (const JointScore& joint : score.joints) {
     const double unit = joint.is_slide ? 1e-3 : degree;
-    fmt::print(" {:.3f}{}({:.2f}) {:.1f} {:.0f}%", joint.rms / unit, joint.is_slide ? "mm" : joint.is_first ? "*" : "",
+    fmt::print(" {:.3f}{}({:.2f}) {:.1f} {:.0f}%", joint.rms / unit,
+               joint.is_slide   ? "mm"
+               : joint.is_first ? "*"
+                                : "",
                joint.composed_rms / unit, joint.nees, 100.0 * joint.coverage);
   }
   fmt::print("  tool {:.1f} mm, tilt {:.3f}, {:.0f} us", 1e3 * score.tool_rms, score.base_tilt_rms / degree,
@@ -90,9 +93,9 @@ void run(const Arguments& a) {
         }
         if (std::getenv("DETAIL"))
           for (const TrackingSensor& sensor : model->sensors)
-            fmt::print("  {} rate {:.2e} {:.2e} {:.2e} force {:.2e} {:.2e} {:.2e} stray {:.1e}\n", sensor.name, sensor.noise.rate,
-                       sensor.residual.rate, sensor.slow_residual.rate, sensor.noise.force, sensor.residual.force,
-                       sensor.slow_residual.force, sensor.mount_stray);
+            fmt::print("  {} rate {:.2e} {:.2e} {:.2e} force {:.2e} {:.2e} {:.2e} stray {:.1e}\n", sensor.name,
+                       sensor.noise.rate, sensor.residual.rate, sensor.slow_residual.rate, sensor.noise.force,
+                       sensor.residual.force, sensor.slow_residual.force, sensor.mount_stray);
         SimulatedDrive second = simulate_drive({.machine = machine,
                                                 .grade = grade,
                                                 .base = a.base,

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "kinfer/io/robot/patch/urdf_patch.hpp"
 #include "kinfer/geometry/random.hpp"
+#include "kinfer/io/robot/patch/urdf_patch.hpp"
 #include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"

@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "kinfer/evidence/tracking/tracking_model.hpp"
+#include "kinfer/measurement/ins_row.hpp"
 #include "kinfer/measurement/sensor_model.hpp"
 #include "kinfer/simulate/excitation.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
-#include "kinfer/measurement/ins_row.hpp"
 
 namespace kinfer::test {
 
@@ -92,7 +92,9 @@ struct SimulatedDrive {
   InsRecording recording;
 
   /// True position, velocity, acceleration of joint position `joint` of the chain behind the base sensor.
-  double q(int joint, std::size_t row) const { return motion.q(machine.base_dof + joint, static_cast<Eigen::Index>(row)); }
+  double q(int joint, std::size_t row) const {
+    return motion.q(machine.base_dof + joint, static_cast<Eigen::Index>(row));
+  }
   double qd(int joint, std::size_t row) const {
     return motion.qd(machine.base_dof + joint, static_cast<Eigen::Index>(row));
   }
@@ -115,9 +117,9 @@ inline SimulatedDrive simulated_drive(const DriveSetup& setup) {
                                  Rng(setup.machine_seed).stream(1))
                         .value();
   const MujocoWorld world = MujocoWorld::load(mjcf).value();
-  const auto drive = make_drive(world.machine(), {.script = setup.script, .duration = setup.duration},
-                                Rng(setup.drive_seed).stream(2))
-                         .value();
+  const auto drive =
+      make_drive(world.machine(), {.script = setup.script, .duration = setup.duration}, Rng(setup.drive_seed).stream(2))
+          .value();
   MachineMotion motion = world.prescribe(drive, setup.sampling_rate);
   InsRecording recording = simulate_recording(world.machine(), motion, *sensor_grade(setup.grade), setup.faults,
                                               Rng(setup.sensor_seed).stream(3));

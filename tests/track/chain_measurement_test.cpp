@@ -95,9 +95,8 @@ TEST(ChainMeasurement, DerivativesByTheErrorStateAgreeWithDifferences) {
         retract(model, step, moved);
         FilterModel other = model;
         for (std::size_t b = 1; b < model.bodies.size(); ++b)
-          other.bodies[b] =
-              kinfer::retract(model.bodies[b], step.segment(layout.first_geometry + layout.geometry[b],
-                                                            model.bodies[b].unknowns()));
+          other.bodies[b] = kinfer::retract(
+              model.bodies[b], step.segment(layout.first_geometry + layout.geometry[b], model.bodies[b].unknowns()));
         return predicted_measurement(other, moved);
       },
       VectorXd::Zero(layout.size));
@@ -169,8 +168,8 @@ TEST(ChainMeasurement, IsThatOfPosesAlongATrajectory) {
   for (TrackingSensor& sensor : tracking.sensors) sensor = {.name = "s", .body = sensor.body};
   const FilterModel model = filter_model(tracking);
   const auto n = model.layout.positions;
-  const Trajectory path{tracking, VectorXd::Constant(n, 0.8), VectorXd::LinSpaced(n, 0.7, 1.9), random_vector(rng),
-                        random_vector(rng), random_vector(rng)};
+  const Trajectory path{tracking,           VectorXd::Constant(n, 0.8), VectorXd::LinSpaced(n, 0.7, 1.9),
+                        random_vector(rng), random_vector(rng),         random_vector(rng)};
   constexpr double t0 = 0.4;
   ChainState state = initial_state(model);
   state.base = BaseMode::moving;

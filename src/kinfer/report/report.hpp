@@ -17,8 +17,8 @@ std::string report_html(const CalibrationEvidence& evidence);
 std::string report_html(const IdentificationEvidence& evidence);
 std::string report_html(const TrackRun& run);
 
-/// `text`: evidence.json of `calibrate`, `identify` or `track`. Errors: the text is not such a file, with the path of the first
-/// wrong value; or evidence of another kind, which has no report.
+/// `text`: evidence.json of `calibrate`, `identify` or `track`. Errors: the text is not such a file, with the path of
+/// the first wrong value; or evidence of another kind, which has no report.
 Result<std::string> report_of_file(std::string_view text);
 
 }  // namespace kinfer::report

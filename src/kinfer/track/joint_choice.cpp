@@ -38,8 +38,8 @@ void JointChoice::apply(const TrackingModel& model, const TrackState& composed, 
     const bool was = joint.is_composed;
     joint.is_composed = joint.misfits && other.array().isFinite().all() && joint.child_sensor >= 0;
     if (!joint.is_composed) continue;
-    const bool is_relative = chain.joints[j].reference == JointReference::start ||
-                             composed.joints[j].reference == JointReference::start;
+    const bool is_relative =
+        chain.joints[j].reference == JointReference::start || composed.joints[j].reference == JointReference::start;
     if (!was)
       for (int i = 0; i < of.positions; ++i)
         joint.offset[i] = is_relative ? chain.q[of.first_position + i] - other[i] : 0.0;

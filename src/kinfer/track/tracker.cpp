@@ -84,8 +84,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       state_(unknown_state(model)) {
   guesses_ = make_guesses(model, joint_of_position_, options);
   for (int& position : joint_of_position_)
-    if (position >= 0)
-      position = static_cast<int>(&joint_of(*tracking_, position) - tracking_->joints.data());
+    if (position >= 0) position = static_cast<int>(&joint_of(*tracking_, position) - tracking_->joints.data());
   is_known_.assign(joint_of_position_.size(), false);
   state_.alarms.reserve(4 * model.sensors.size() + model.joints.size() + 4);
 }
@@ -256,17 +255,16 @@ void Tracker::list_alarms(double time) {
   for (std::size_t s = 0; s < does_not_fit_.size(); ++s) {
     const int sensor = static_cast<int>(s);
     const SensorHealth& health = health_[s];
-    if (health.lost) alarms.push_back({.kind = TrackAlarmKind::sensor_lost, .sensor = sensor, .since = health.lost_since});
+    if (health.lost)
+      alarms.push_back({.kind = TrackAlarmKind::sensor_lost, .sensor = sensor, .since = health.lost_since});
     if (health.stuck)
       alarms.push_back({.kind = TrackAlarmKind::sensor_stuck, .sensor = sensor, .since = health.stuck_since});
     if (health.clipped)
       alarms.push_back({.kind = TrackAlarmKind::sensor_clipped, .sensor = sensor, .since = health.last_clipped});
     if (!does_not_fit_[s]) continue;
     ++disagreeing;
-    alarms.push_back({.kind = TrackAlarmKind::sensor_moved,
-                      .sensor = sensor,
-                      .since = fit_[s].since,
-                      .strength = fit_[s].strength});
+    alarms.push_back(
+        {.kind = TrackAlarmKind::sensor_moved, .sensor = sensor, .since = fit_[s].since, .strength = fit_[s].strength});
   }
   if (2 * disagreeing >= static_cast<int>(does_not_fit_.size()) && disagreeing > 1)
     alarms.push_back({.kind = TrackAlarmKind::does_not_fit, .since = time});

@@ -47,8 +47,8 @@ TEST(Manifest, FilesMakeTasksNamedAfterWhatTheWildcardsMatch) {
     fs::create_directories(folder / robot);
     std::ofstream(folder / robot / "poses_a.csv") << "x";
   }
-  const auto tasks = tasks_of_files((folder / "*" / "poses_*.csv").string(), "calibrate",
-                                    "--robot {folder}/robot.toml --data {file}");
+  const auto tasks =
+      tasks_of_files((folder / "*" / "poses_*.csv").string(), "calibrate", "--robot {folder}/robot.toml --data {file}");
   ASSERT_TRUE(tasks) << tasks.error().what;
   ASSERT_EQ(tasks->size(), 2u);
   EXPECT_EQ((*tasks)[0].key, "r1_a");

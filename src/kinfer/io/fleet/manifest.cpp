@@ -105,7 +105,8 @@ Result<std::vector<SweepTask>> parse_manifest(std::string_view text, const std::
   for (std::size_t i = 0; i < table.header.columns.size(); ++i) columns[table.header.columns[i]] = i;
   for (const char* needed : {"key", "verb", "arguments"})
     if (!columns.contains(needed))
-      return error("{}:{}: expected the columns key, verb and arguments; {} is missing", name, table.header.line, needed);
+      return error("{}:{}: expected the columns key, verb and arguments; {} is missing", name, table.header.line,
+                   needed);
   std::vector<SweepTask> tasks;
   std::map<std::string, int> line_of;
   for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -116,8 +117,7 @@ Result<std::vector<SweepTask>> parse_manifest(std::string_view text, const std::
     auto words = split_words(table.cell(row, columns["arguments"]));
     if (!words) return error("{}:{}: {}", name, task.line, words.error().what);
     task.arguments = std::move(*words);
-    if (auto checked = check_key(task.key); !checked)
-      return error("{}:{}: {}", name, task.line, checked.error().what);
+    if (auto checked = check_key(task.key); !checked) return error("{}:{}: {}", name, task.line, checked.error().what);
     if (const auto [other, is_new] = line_of.emplace(task.key, task.line); !is_new)
       return error("{}:{}: the key \"{}\" stands in line {} too", name, task.line, task.key, other->second);
     tasks.push_back(std::move(task));
@@ -156,7 +156,8 @@ Result<std::vector<SweepTask>> tasks_of_files(const std::string& pattern, const 
   for (const std::string& file : files) {
     SweepTask task{.key = wildcard_key(pattern, file), .verb = verb, .arguments = words};
     if (auto checked = check_key(task.key); !checked) return error("{}: {}", file, checked.error().what);
-    if (!keys.insert(task.key).second) return error("--each {}: the key \"{}\" stands for several files", pattern, task.key);
+    if (!keys.insert(task.key).second)
+      return error("--each {}: the key \"{}\" stands for several files", pattern, task.key);
     const std::string folder = std::filesystem::path(file).parent_path().string();
     for (std::string& word : task.arguments) {
       replace_all(word, "{file}", file);

@@ -164,7 +164,8 @@ Result<void> InsRowReader::check_gravity() {
     Gravity& gravity = gravity_[s];
     if (row_.sensors[s].has_acceleration) gravity.sum += row_.sensors[s].acceleration.norm(), ++gravity.rows;
     const double mean = gravity.sum / std::max(1, gravity.rows);
-    if (rows_ == gravity_rows && gravity.rows > 0 && (mean < least * standard_gravity || mean > most * standard_gravity))
+    if (rows_ == gravity_rows && gravity.rows > 0 &&
+        (mean < least * standard_gravity || mean > most * standard_gravity))
       return error(
           "{}: {}: gravity reads {:.2f} m/s² instead of 9.81: is the file in another unit? In g the header is "
           "{}_ax[g]",

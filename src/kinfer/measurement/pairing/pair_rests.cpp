@@ -8,6 +8,8 @@
 #include <map>
 #include <set>
 
+#include "kinfer/geometry/statistics.hpp"
+
 namespace kinfer {
 namespace {
 
@@ -39,13 +41,6 @@ std::vector<double> distance_errors(const RestLists& lists, const std::vector<Re
   return errors;
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 /// Fills what follows from the pairs.
 RestPairing completed(RestPairing pairing, const RestLists& lists) {
   std::vector<bool> joints(lists.joints.size(), false), measured(lists.measured.size(), false);
@@ -55,7 +50,7 @@ RestPairing completed(RestPairing pairing, const RestLists& lists) {
     if (!joints[i]) pairing.joints_alone.push_back(static_cast<int>(i));
   for (std::size_t i = 0; i < measured.size(); ++i)
     if (!measured[i]) pairing.measured_alone.push_back(static_cast<int>(i));
-  pairing.distance_error = median_of(distance_errors(lists, pairing.pairs));
+  pairing.distance_error = median(distance_errors(lists, pairing.pairs));
   return pairing;
 }
 
@@ -129,7 +124,7 @@ TimePairing pair_from(const RestLists& lists, double offset) {
     if (found.pairs.size() < 2) break;
     found.rms = refit_clock(lists, found.pairs, found.clock);
   }
-  found.distance = median_of(distance_errors(lists, found.pairs));
+  found.distance = median(distance_errors(lists, found.pairs));
   return found;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/geometry/statistics.hpp"
 
 namespace kinfer {
 namespace {
@@ -48,12 +49,6 @@ double dividing_value(std::vector<double> values) {
   return divide;
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 /// Takes rows off both ends that are not of the rest: those that deviate from the median of its middle half by more
 /// than noise does.
 void trim(const MatrixXd& values, std::size_t& first, std::size_t& end) {
@@ -64,11 +59,11 @@ void trim(const MatrixXd& values, std::size_t& first, std::size_t& end) {
     std::vector<double> middle;
     for (std::size_t row = first + quarter; row < end - quarter; ++row)
       middle.push_back(values(d, static_cast<Eigen::Index>(row)));
-    centre.push_back(median_of(middle));
+    centre.push_back(median(middle));
     for (double& value : middle) value = std::abs(value - centre.back());
     constexpr double sd_per_deviation = 1.4826;  // of a normal distribution
     const double range = values.row(d).maxCoeff() - values.row(d).minCoeff();
-    reach.push_back(beyond_noise * sd_per_deviation * median_of(middle) + least_spread * range);
+    reach.push_back(beyond_noise * sd_per_deviation * median(middle) + least_spread * range);
   }
   const auto is_outside = [&](std::size_t row) {
     for (std::size_t d = 0; d < centre.size(); ++d)

@@ -10,11 +10,11 @@
 namespace kinfer::track {
 
 struct SensorHealth {
-  double last_sample = 0.0;                       ///< [s]
-  double last_change = 0.0;                       ///< [s] when a value changed
-  double last_clipped = -1e9;                     ///< [s]
+  double last_sample = 0.0;    ///< [s]
+  double last_change = 0.0;    ///< [s] when a value changed
+  double last_clipped = -1e9;  ///< [s]
   bool lost = false, stuck = false, clipped = false;
-  double lost_since = 0.0, stuck_since = 0.0;     ///< [s]
+  double lost_since = 0.0, stuck_since = 0.0;  ///< [s]
 };
 
 class HealthWatch {

@@ -8,7 +8,8 @@
 namespace kinfer::track {
 BaseWatch::BaseWatch(const TrackingModel& model, const FilterModel& filter, std::optional<BaseMode> given)
     : is_given_(given.has_value()),
-      mode_(given.value_or(model.base.moved ? BaseMode::moving : BaseMode::still)), sensor_(model.bodies.front().sensor) {
+      mode_(given.value_or(model.base.moved ? BaseMode::moving : BaseMode::still)),
+      sensor_(model.bodies.front().sensor) {
   if (sensor_ < 0) {
     mode_ = given.value_or(BaseMode::moving);
     return;

@@ -24,9 +24,9 @@ class BaseWatch {
   bool is_given_;
   BaseMode mode_;
   int sensor_;
-  double noise_ = 0.0;  // [rad/s] of the averaged rate
+  double noise_ = 0.0;        // [rad/s] of the averaged rate
   Vec3 rate_ = Vec3::Zero();  // [rad/s] measured, averaged
-  double seen_ = 0.0;  // [s]
+  double seen_ = 0.0;         // [s]
 };
 
 }  // namespace kinfer::track

@@ -127,8 +127,8 @@ void ChainFilter::form_sensor_rows(const BlockMeasurement& block, std::size_t s)
       settings.slow.force, inflation_[s].force);
 }
 
-/// A moving base stays about where it is, a slide in its range, and the axes of a loose hinge about aligned: N(0, σ²) with a correlation time
-/// τ is worth white noise of variance σ² 2τ/length in each block.
+/// A moving base stays about where it is, a slide in its range, and the axes of a loose hinge about aligned: N(0, σ²)
+/// with a correlation time τ is worth white noise of variance σ² 2τ/length in each block.
 void ChainFilter::form_soft_rows(double length) {
   rows_ = model_->layout.rows();
   const auto worth = [&](double sd, double time) { return sd * sd * std::max(1.0, 2.0 * time / length); };
@@ -178,12 +178,14 @@ void ChainFilter::multiply() {
       for (Index j = 0; j < 4; ++j) {
         const bool is_bias = j == 0;
         if (is_measured_[2 * s])
-          visit(row + k, own + (is_bias ? SensorIndex::gyroscope_bias + k : SensorIndex::gyroscope_scale + 3 * k + j - 1),
+          visit(row + k,
+                own + (is_bias ? SensorIndex::gyroscope_bias + k : SensorIndex::gyroscope_scale + 3 * k + j - 1),
                 is_bias ? 1.0 : m.angular_velocity[s][j - 1]);
         if (is_measured_[2 * s + 1])
-          visit(row + 3 + k,
-                own + (is_bias ? SensorIndex::accelerometer_bias + k : SensorIndex::accelerometer_scale + 3 * k + j - 1),
-                is_bias ? 1.0 : m.force[s][j - 1]);
+          visit(
+              row + 3 + k,
+              own + (is_bias ? SensorIndex::accelerometer_bias + k : SensorIndex::accelerometer_scale + 3 * k + j - 1),
+              is_bias ? 1.0 : m.force[s][j - 1]);
       }
   };
   for (std::size_t s = 0; s < is_used_.size(); ++s) {
@@ -293,8 +295,7 @@ double ChainFilter::distance_of_unused(const BlockMeasurement& block, std::size_
   // Its own errors are taken as uncorrelated with the rest: they are of no use while it is out of use.
   const Index own = layout.sensor_state(static_cast<Index>(s));
   SensorMatrix covariance = SensorMatrix::Zero();
-  for (Index k = 0; k < fast; ++k)
-    covariance += m.by_fast.col(k).segment<sensor_rows>(row) * unused_w_.row(k);
+  for (Index k = 0; k < fast; ++k) covariance += m.by_fast.col(k).segment<sensor_rows>(row) * unused_w_.row(k);
   for (Index k = 0; k < geometry; ++k)
     covariance += m.by_geometry.col(k).segment<sensor_rows>(row) * unused_w_.row(layout.first_geometry + k);
   const double rate = block_variance(settings.white.rate, settings.persistent.rate, settings.slow.rate,
@@ -303,7 +304,8 @@ double ChainFilter::distance_of_unused(const BlockMeasurement& block, std::size_
                                       settings.sample_period, block.length, measured.force_count);
   for (Index i = 0; i < sensor_rows; ++i)
     covariance(i, i) += (i < 3 ? rate : force) + p_(own + i, own + i) +
-                        p_.diagonal().segment<3>(own + SensorIndex::gyroscope_scale + 3 * i)
+                        p_.diagonal()
+                            .segment<3>(own + SensorIndex::gyroscope_scale + 3 * i)
                             .dot((i < 3 ? m.angular_velocity[s] : m.force[s]).cwiseAbs2());
   return squared_distance(innovations_.value.segment<sensor_rows>(row), covariance);
 }

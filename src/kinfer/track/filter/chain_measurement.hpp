@@ -14,11 +14,11 @@ namespace kinfer::track {
 
 /// Six rows per sensor, gyroscope then accelerometer.
 struct ChainMeasurement {
-  VectorXd value;                                ///< rows
-  MatrixXd by_fast;                              ///< rows x fast states
-  MatrixXd by_geometry;                          ///< rows x geometry states
-  std::vector<Vec3> angular_velocity, force;     ///< true ones at each sensor: derivatives by its scale matrices
-  std::vector<Index> fast_end, geometry_end;     ///< of each sensor: derivatives beyond these are zero
+  VectorXd value;                             ///< rows
+  MatrixXd by_fast;                           ///< rows x fast states
+  MatrixXd by_geometry;                       ///< rows x geometry states
+  std::vector<Vec3> angular_velocity, force;  ///< true ones at each sensor: derivatives by its scale matrices
+  std::vector<Index> fast_end, geometry_end;  ///< of each sensor: derivatives beyond these are zero
 };
 
 /// Evaluates a chain again and again in buffers of its own.
@@ -38,7 +38,7 @@ class ChainEvaluator {
 
   InsBodies bodies_;
   std::vector<InsState> states_;
-  std::vector<MatrixXd> by_fast_, by_geometry_;  // of each body: 9 rows (ω, ω̇, f)
+  std::vector<MatrixXd> by_fast_, by_geometry_;    // of each body: 9 rows (ω, ω̇, f)
   std::vector<PropagatedDerivative> derivatives_;  // of each body, since their sizes differ
   ChainMeasurement result_;
 };

@@ -27,11 +27,20 @@ void free_parameter(InsBody& body, const TrackingParameter& parameter) {
   const auto component = static_cast<std::size_t>(parameter.component);
   const bool turns = body.motion != JointMotion::spherical;
   switch (parameter.kind) {
-    case TrackingParameterKind::parent_rotation: body.free_parent_rotation[component] = turns; break;
-    case TrackingParameterKind::child_rotation: body.free_child_rotation[component] = turns; break;
-    case TrackingParameterKind::point_in_parent: body.free_point_in_parent = true; break;
-    case TrackingParameterKind::point_in_child: body.free_point_in_child = true; break;
-    default: break;
+    case TrackingParameterKind::parent_rotation:
+      body.free_parent_rotation[component] = turns;
+      break;
+    case TrackingParameterKind::child_rotation:
+      body.free_child_rotation[component] = turns;
+      break;
+    case TrackingParameterKind::point_in_parent:
+      body.free_point_in_parent = true;
+      break;
+    case TrackingParameterKind::point_in_child:
+      body.free_point_in_child = true;
+      break;
+    default:
+      break;
   }
 }
 
@@ -129,7 +138,10 @@ void set_processes(FilterModel& filter, const TrackingModel& model) {
     // Of a universal joint's two bodies the first carries no sensor and has the first position.
     const bool is_second = joint.positions == 2 && body.sensor >= 0;
     for (Index i = 0; i < dof; ++i)
-      filter.positions.push_back(process_of(joint, filter.bodies[b].motion, joint.positions == 3 ? static_cast<int>(i) : is_second ? 1 : 0));
+      filter.positions.push_back(process_of(joint, filter.bodies[b].motion,
+                                            joint.positions == 3 ? static_cast<int>(i)
+                                            : is_second          ? 1
+                                                                 : 0));
     if (body.motion == TrackingMotion::prismatic)
       filter.slides.push_back(slide_range(joint, filter.layout.position[b]));
     if (body.motion == TrackingMotion::revolute && dof == 3)

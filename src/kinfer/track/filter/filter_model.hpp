@@ -27,9 +27,9 @@ struct LooseHinge {
 
 /// Inertial sensors tell the acceleration of a slide, but hardly its velocity: it moves within what was seen.
 struct SlideRange {
-  Index position = 0;              ///< of the filter
+  Index position = 0;               ///< of the filter
   double middle = 0.0, half = 0.0;  ///< [m]
-  double speed = 0.0;              ///< [m/s]
+  double speed = 0.0;               ///< [m/s]
 };
 
 struct FilterModel {

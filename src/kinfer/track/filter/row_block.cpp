@@ -27,7 +27,8 @@ void RowBlock::add(const InsRow& row) {
   for (std::size_t s = 0; s < sum_.sensors.size(); ++s) {
     const InsSample& sample = row.sensors[s];
     BlockSample& to = sum_.sensors[s];
-    if (sample.has_angular_velocity && !sample.angular_velocity_clipped) to.rate += sample.angular_velocity, ++to.rate_count;
+    if (sample.has_angular_velocity && !sample.angular_velocity_clipped)
+      to.rate += sample.angular_velocity, ++to.rate_count;
     if (sample.has_acceleration) to.force += sample.acceleration, ++to.force_count;
   }
 }

@@ -15,7 +15,7 @@ inline constexpr double acceleration_room = 2.0;       ///< a drive may be so mu
 
 /// A base that moves: a machine that rocks on its tracks. Simulated machines on a rocking and on a yawing base.
 inline constexpr AccelerationProcess base_rotation{.sd = 0.6, .time = 0.3}, base_translation{.sd = 0.3, .time = 0.3};
-inline constexpr double base_velocity_sd = 0.3;   ///< [m/s] of the base
+inline constexpr double base_velocity_sd = 0.3;    ///< [m/s] of the base
 inline constexpr double base_velocity_time = 1.0;  ///< [s] its correlation time
 
 /// Of slides: least speed [m/s] and correlation times [s] of velocity and position about what was seen; room beyond it,

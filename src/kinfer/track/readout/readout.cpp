@@ -82,7 +82,8 @@ void read_out(const TrackingModel& tracking, const FilterModel& model, const Cha
     const Index dof = degrees_of_freedom(model.bodies[b].motion);
     if (dof == 0) continue;
     const TrackingJoint& joint = tracking.joints[static_cast<std::size_t>(body.joint)];
-    const bool is_second = joint.positions == 2 && tracking.bodies[static_cast<std::size_t>(body.parent)].joint == body.joint;
+    const bool is_second =
+        joint.positions == 2 && tracking.bodies[static_cast<std::size_t>(body.parent)].joint == body.joint;
     const Index at = joint.first_position + (is_second ? 1 : 0);
     if (dof == 3 && body.motion == TrackingMotion::spherical) {
       read_ball(model, b, state, covariance, at, to);

@@ -46,8 +46,7 @@ void ToolSpread::add_body(const FilterModel& model, std::size_t b) {
     for (Index i = 0; i < 3; ++i) turn(model.layout.joint_state(model.layout.position[b] + i), axes.col(i));
   Index state = model.layout.first_geometry + model.layout.geometry[b];
   for (Index i = 0; i < 3; ++i)
-    if (body.free_parent_rotation[static_cast<std::size_t>(i)])
-      turn(state++, parent * body.parent_R_axis.col(i));
+    if (body.free_parent_rotation[static_cast<std::size_t>(i)]) turn(state++, parent * body.parent_R_axis.col(i));
   for (Index i = 0; i < 3; ++i)
     if (body.free_child_rotation[static_cast<std::size_t>(i)]) turn(state++, -axes.col(i));
   if (body.free_point_in_parent)

@@ -30,7 +30,7 @@ class ToolSpread {
   std::vector<Pose> bodies_;
   Pose tool_;
   Vec3 position_sd_ = Vec3::Zero(), rotation_sd_ = Vec3::Zero();
-  std::vector<Index> index_;        // of the states with a derivative
+  std::vector<Index> index_;  // of the states with a derivative
   Eigen::Matrix<double, 6, Eigen::Dynamic> derivative_;
 };
 

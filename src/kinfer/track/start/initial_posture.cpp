@@ -44,10 +44,10 @@ SeenBody seen_body(const FilterModel& model, const BlockMeasurement& block, cons
     seen.force = sample.force - sensor.accelerometer_bias;
     const double motion = std::abs(seen.force.norm() - model.gravity) + start_arm * seen.rate.squaredNorm();
     const Index own = sensor_states * static_cast<Index>(s);
-    const double bias = std::sqrt(
-        model.parameters.diagonal().segment<3>(own + SensorIndex::accelerometer_bias).maxCoeff() +
-        model.gravity * model.gravity *
-            model.parameters.diagonal().segment<9>(own + SensorIndex::accelerometer_scale).maxCoeff());
+    const double bias =
+        std::sqrt(model.parameters.diagonal().segment<3>(own + SensorIndex::accelerometer_bias).maxCoeff() +
+                  model.gravity * model.gravity *
+                      model.parameters.diagonal().segment<9>(own + SensorIndex::accelerometer_scale).maxCoeff());
     seen.force_sd = std::hypot(std::hypot(min_force_sd, motion), bias, sensor.persistent.force);
   }
   return seen;
@@ -103,7 +103,7 @@ JointStart ball_start(const InsBody& body, const SeenBody& parent, const SeenBod
 }
 
 Mat3 child_from_parent(const InsBody& body, const JointStart& start) {
-  const Mat3 back = body.motion == JointMotion::revolute ? rot_z(-start.position.x())
+  const Mat3 back = body.motion == JointMotion::revolute    ? rot_z(-start.position.x())
                     : body.motion == JointMotion::spherical ? Mat3(start.ball.transpose())
                                                             : Mat3(Mat3::Identity());
   return body.child_R_axis * back * body.parent_R_axis.transpose();
@@ -119,8 +119,8 @@ class PostureStart {
   PostureStart(const FilterModel& model, const BlockMeasurement& block, const std::vector<PositionGuess>& guess)
       : model_(model), block_(block), guess_(guess), starts_(model.bodies.size()), seen_(model.bodies.size()) {
     InsBody base = model.bodies.front();
-    seen_[0] = seen_body(model, block, base, {Vec3(0.0, 0.0, model.gravity), Vec3::Zero(), unseen_force_sd},
-                         Mat3::Identity());
+    seen_[0] =
+        seen_body(model, block, base, {Vec3(0.0, 0.0, model.gravity), Vec3::Zero(), unseen_force_sd}, Mat3::Identity());
     for (std::size_t b = 1; b < model.bodies.size(); ++b) place(b);
   }
 
@@ -136,8 +136,7 @@ class PostureStart {
   void place(std::size_t b) {
     const InsBody& body = model_.bodies[b];
     const auto parent = static_cast<std::size_t>(body.parent);
-    const bool is_seen =
-        body.sensor >= 0 && block_.sensors[static_cast<std::size_t>(body.sensor)].force_count > 0;
+    const bool is_seen = body.sensor >= 0 && block_.sensors[static_cast<std::size_t>(body.sensor)].force_count > 0;
     const SeenBody& before = seen_[parent];
     if (body.motion == JointMotion::revolute && body.sensor < 0) return place_first_of_universal(b);
     SeenBody own = is_seen ? seen_body(model_, block_, body, before, Mat3::Identity()) : SeenBody{};
@@ -212,7 +211,9 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
   state.time = block.time;
   state.base = base;
   state.world_R_base = levelled(found.seen(0).force);
-  const auto set = [&](Index first, double sd) { posture.covariance.diagonal().segment<3>(first).setConstant(sd * sd); };
+  const auto set = [&](Index first, double sd) {
+    posture.covariance.diagonal().segment<3>(first).setConstant(sd * sd);
+  };
   const double tilt_sd = found.seen(0).force_sd / model.gravity;
   const Vec3 up = found.seen(0).force.normalized();  // the heading counts from here
   posture.covariance.topLeftCorner<3, 3>() = tilt_sd * tilt_sd * (Mat3::Identity() - up * up.transpose());
@@ -228,9 +229,9 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
     const Index dof = degrees_of_freedom(body.motion);
     const JointStart& start = found.joint(b);
     state.balls[b] = start.ball;
-    const Vec3 relative = body.child_R_axis.transpose() *
-                          (found.seen(b).rate - child_from_parent(body, start) *
-                                                    found.seen(static_cast<std::size_t>(body.parent)).rate);
+    const Vec3 relative =
+        body.child_R_axis.transpose() *
+        (found.seen(b).rate - child_from_parent(body, start) * found.seen(static_cast<std::size_t>(body.parent)).rate);
     for (Index i = 0; i < dof; ++i) {
       const Index at = layout.position[b] + i, row = layout.joint_state(at);
       const bool is_hinge = body.motion == JointMotion::revolute;
@@ -243,7 +244,7 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
         const double told = start.sd[i] * start.sd[j] * ((i == j ? 1.0 : 0.0) - start.heading[i] * start.heading[j]);
         posture.covariance(row, layout.joint_state(layout.position[b] + j)) = told;
       }
-      const double rate_sd = rate_is_seen                              ? start_rate_sd
+      const double rate_sd = rate_is_seen                            ? start_rate_sd
                              : body.motion == JointMotion::prismatic ? start_slide_speed
                                                                      : process.sd * process.time;
       posture.covariance(row + 1, row + 1) = rate_sd * rate_sd;

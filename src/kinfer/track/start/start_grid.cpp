@@ -56,8 +56,8 @@ void StartGrid::drop_unlikely() {
 void StartGrid::merge() {
   std::ranges::stable_sort(candidates_, std::greater<>{}, &Candidate::log_weight);
   const auto distance = [&](const Candidate& a, const Candidate& b) {
-    const double d = a.filter.state().joints[position_states * position_] -
-                     b.filter.state().joints[position_states * position_];
+    const double d =
+        a.filter.state().joints[position_states * position_] - b.filter.state().joints[position_states * position_];
     return std::abs(is_angle_ ? std::remainder(d, 2.0 * std::numbers::pi) : d);
   };
   for (std::size_t i = 0; i < candidates_.size(); ++i)
