@@ -125,7 +125,9 @@ void Tracker::choose_sensors() {
     const bool is_used = !does_not_fit_[s] && !health_[s].lost && !health_[s].stuck;
     if (is_used == filter_.uses_sensor(s)) continue;
     filter_.use_sensor(s, is_used);
-    if (is_used) fit_.reset(s);  // what it showed while it was out of use says nothing
+    // What it showed while it was out of use says nothing, and is not averaged with what it shows now.
+    if (is_used) fit_.reset(s), block_.clear();
+    if (health_[s].stuck && state_.started && !grid_) replay([](ChainFilter&) {});  // it was believed until now
   }
 }
 

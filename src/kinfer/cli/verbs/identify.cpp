@@ -19,7 +19,6 @@
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/recording/machine_facts_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
-#include "kinfer/io/tracking/tracking_model_toml.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -170,8 +169,6 @@ Provenance provenance_of(const IdentifyArguments& options, const identify::Ident
 Result<void> write_results(const OutputFolder& folder, const Provenance& provenance, const Identification& found) {
   for (const OutputFile& file : identification_files(found))
     if (auto done = write_text_file(folder / file.name, file.text); !done) return done;
-  if (found.tracking)
-    if (auto done = write_text_file(folder / "track.toml", format_tracking_model(*found.tracking)); !done) return done;
   return write_evidence(folder.path(), identification_evidence(found, provenance));
 }
 

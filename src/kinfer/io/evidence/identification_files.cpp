@@ -4,14 +4,17 @@
 #include "kinfer/io/evidence/chain_dh_csv.hpp"
 #include "kinfer/io/robot/mjcf.hpp"
 #include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/tracking/tracking_model_toml.hpp"
 
 namespace kinfer {
 
 std::vector<OutputFile> identification_files(const Identification& identification) {
-  return {{"chain.toml", format_robot_toml(RobotModel{.chain = identification.chain})},
-          {"chain.urdf", format_urdf(identification.chain)},
-          {"chain.mjcf", format_mjcf(identification.chain)},
-          {"chain_dh.csv", format_chain_dh_csv(identification.dh)}};
+  std::vector<OutputFile> files{{"chain.toml", format_robot_toml(RobotModel{.chain = identification.chain})},
+                                {"chain.urdf", format_urdf(identification.chain)},
+                                {"chain.mjcf", format_mjcf(identification.chain)},
+                                {"chain_dh.csv", format_chain_dh_csv(identification.dh)}};
+  if (identification.tracking) files.push_back({"track.toml", format_tracking_model(*identification.tracking)});
+  return files;
 }
 
 }  // namespace kinfer

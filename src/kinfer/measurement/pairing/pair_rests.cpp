@@ -41,6 +41,12 @@ std::vector<double> distance_errors(const RestLists& lists, const std::vector<Re
   return errors;
 }
 
+/// 0 where no distances are predicted.
+double median_distance_error(const RestLists& lists, const std::vector<RestPair>& pairs) {
+  const std::vector<double> errors = distance_errors(lists, pairs);
+  return errors.empty() ? 0.0 : median(errors);
+}
+
 /// Fills what follows from the pairs.
 RestPairing completed(RestPairing pairing, const RestLists& lists) {
   std::vector<bool> joints(lists.joints.size(), false), measured(lists.measured.size(), false);
@@ -50,7 +56,7 @@ RestPairing completed(RestPairing pairing, const RestLists& lists) {
     if (!joints[i]) pairing.joints_alone.push_back(static_cast<int>(i));
   for (std::size_t i = 0; i < measured.size(); ++i)
     if (!measured[i]) pairing.measured_alone.push_back(static_cast<int>(i));
-  pairing.distance_error = median(distance_errors(lists, pairing.pairs));
+  pairing.distance_error = median_distance_error(lists, pairing.pairs);
   return pairing;
 }
 
@@ -124,7 +130,7 @@ TimePairing pair_from(const RestLists& lists, double offset) {
     if (found.pairs.size() < 2) break;
     found.rms = refit_clock(lists, found.pairs, found.clock);
   }
-  found.distance = median(distance_errors(lists, found.pairs));
+  found.distance = median_distance_error(lists, found.pairs);
   return found;
 }
 
