@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "kinfer/io/text/replace_all.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::cli {
@@ -78,8 +79,7 @@ void hide_folder(const fs::path& file, const std::string& folder) {
   const auto text = read_text_file(file);
   if (!text) return;
   std::string plain = *text;
-  for (std::size_t at = plain.find(folder); at != std::string::npos; at = plain.find(folder, at))
-    plain.replace(at, folder.size(), "{out}");
+  replace_all(plain, folder, "{out}");
   if (plain != *text) std::ofstream(file, std::ios::binary) << plain;
 }
 

@@ -13,6 +13,7 @@
 #include "kinfer/cli/parts/task_pool.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/text/replace_all.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -50,11 +51,6 @@ Result<std::vector<SweepTask>> read_tasks(const SweepArguments& options, const C
       return error("{}: \"{}\" is no verb that can be swept",
                    task.line > 0 ? fmt::format("{}:{}", options.manifest, task.line) : "--verb", task.verb);
   return tasks;
-}
-
-void replace_all(std::string& text, std::string_view what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
-    text.replace(at, what.size(), by);
 }
 
 /// The words of the task's run: its arguments, and output folder, seed and one thread where the verb knows them and the

@@ -12,6 +12,7 @@
 
 #include "kinfer/base/sha256.hpp"
 #include "kinfer/io/text/csv.hpp"
+#include "kinfer/io/text/replace_all.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
@@ -30,11 +31,6 @@ Result<void> check_key(const std::string& key) {
   if (is_key(key)) return {};
   return error("the key \"{}\" cannot name a folder; expected up to {} letters, digits, \".\", \"-\" and \"_\"", key,
                longest_key);
-}
-
-void replace_all(std::string& text, std::string_view what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
-    text.replace(at, what.size(), by);
 }
 
 std::string quoted_word(const std::string& word) {
