@@ -4,8 +4,8 @@
 
 #include "background.hpp"
 #include "kinfer/io/evidence/calibration_json.hpp"
+#include "kinfer/io/evidence/files/model_patch_files.hpp"
 #include "kinfer/io/evidence/fingerprints.hpp"
-#include "kinfer/io/evidence/model_patch_files.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/report/report.hpp"
 #include "kinfer/words/calibration/calibration.hpp"

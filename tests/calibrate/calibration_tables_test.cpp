@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
-#include "kinfer/io/evidence/joint_tables_csv.hpp"
+#include "kinfer/io/evidence/files/joint_tables_csv.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "kinfer/kinematics/pose_program.hpp"
+#include "kinfer/kinematics/poses/pose_program.hpp"
 #include "laws/example_chains.hpp"
 #include "laws/slow_chain.hpp"
 #include "support/random.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/kinematics/pose_constraints.hpp"
+#include "kinfer/kinematics/poses/pose_constraints.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/kinematics/forward.hpp"
-#include "kinfer/kinematics/pose_constraints.hpp"
+#include "kinfer/kinematics/poses/pose_constraints.hpp"
 #include "kinfer/kinematics/same_joints.hpp"
 
 namespace kinfer::deploy {

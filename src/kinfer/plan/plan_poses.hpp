@@ -7,7 +7,7 @@
 #include "kinfer/base/rng.hpp"
 #include "kinfer/evidence/deployment/pose_plan.hpp"
 #include "kinfer/kinematics/parameters.hpp"
-#include "kinfer/kinematics/pose_constraints.hpp"
+#include "kinfer/kinematics/poses/pose_constraints.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer::plan {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "kinfer/kinematics/pose_constraints.hpp"
+#include "kinfer/kinematics/poses/pose_constraints.hpp"
 #include "kinfer/plan/thresholds.hpp"
 
 namespace kinfer::plan {

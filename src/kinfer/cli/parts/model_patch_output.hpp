@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "kinfer/io/evidence/model_patch_files.hpp"
+#include "kinfer/io/evidence/files/model_patch_files.hpp"
 
 namespace kinfer::cli {
 

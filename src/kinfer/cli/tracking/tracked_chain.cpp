@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/cli/parts/posture_argument.hpp"
+#include "kinfer/cli/options/posture_argument.hpp"
 #include "kinfer/io/recording/machine_facts_toml.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/tracking/tracking_model_toml.hpp"

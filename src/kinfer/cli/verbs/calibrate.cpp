@@ -8,15 +8,15 @@
 #include <memory>
 
 #include "kinfer/calibrate/start/local_poe.hpp"
+#include "kinfer/cli/options/robot_option.hpp"
+#include "kinfer/cli/options/search_options.hpp"
 #include "kinfer/cli/parts/calibration_summary.hpp"
 #include "kinfer/cli/parts/evidence_files.hpp"
 #include "kinfer/cli/parts/model_patch_output.hpp"
-#include "kinfer/cli/parts/robot_option.hpp"
-#include "kinfer/cli/parts/search_options.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
-#include "kinfer/io/evidence/calibration_files.hpp"
 #include "kinfer/io/evidence/calibration_json.hpp"
+#include "kinfer/io/evidence/files/calibration_files.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/parameter_names_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"

@@ -7,8 +7,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "kinfer/cli/parts/joint_columns.hpp"
-#include "kinfer/cli/parts/robot_option.hpp"
+#include "kinfer/cli/options/joint_columns.hpp"
+#include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/text/format_number.hpp"

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "kinfer/cli/parts/robot_option.hpp"
+#include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/recording/ins_mcap.hpp"
 #include "kinfer/io/recording/recording_formats.hpp"

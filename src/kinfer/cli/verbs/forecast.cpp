@@ -7,7 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "kinfer/cli/parts/drive_choices.hpp"
+#include "kinfer/cli/options/drive_choices.hpp"
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/identify/pipeline.hpp"

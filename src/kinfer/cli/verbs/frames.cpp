@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "kinfer/calibrate/start/circle_point_analysis.hpp"
-#include "kinfer/cli/parts/robot_option.hpp"
+#include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/frames_json.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"

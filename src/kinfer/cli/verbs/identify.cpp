@@ -7,15 +7,15 @@
 #include <algorithm>
 #include <memory>
 
+#include "kinfer/cli/options/drive_choices.hpp"
+#include "kinfer/cli/options/zero_argument.hpp"
 #include "kinfer/cli/parts/arguments.hpp"
-#include "kinfer/cli/parts/drive_choices.hpp"
 #include "kinfer/cli/parts/evidence_files.hpp"
 #include "kinfer/cli/parts/identification_summary.hpp"
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
-#include "kinfer/cli/parts/zero_argument.hpp"
 #include "kinfer/cli/verb_list.hpp"
-#include "kinfer/io/evidence/identification_files.hpp"
+#include "kinfer/io/evidence/files/identification_files.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/recording/machine_facts_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"

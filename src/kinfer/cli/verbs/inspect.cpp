@@ -3,10 +3,10 @@
 #include <memory>
 
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
-#include "kinfer/cli/parts/inspect_recording.hpp"
-#include "kinfer/cli/parts/inspect_robot_log.hpp"
-#include "kinfer/cli/parts/orientation_hypotheses.hpp"
-#include "kinfer/cli/parts/robot_option.hpp"
+#include "kinfer/cli/inspect/inspect_recording.hpp"
+#include "kinfer/cli/inspect/inspect_robot_log.hpp"
+#include "kinfer/cli/options/orientation_hypotheses.hpp"
+#include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/estimate/poses/joint_excitation.hpp"
 #include "kinfer/io/evidence/findings_json.hpp"

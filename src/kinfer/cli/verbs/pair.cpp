@@ -2,8 +2,8 @@
 // kinfer pair: a robot's joint log and a tracker's file -> a pose set.
 #include <memory>
 
+#include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/arguments.hpp"
-#include "kinfer/cli/parts/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/text/text_file.hpp"

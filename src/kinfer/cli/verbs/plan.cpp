@@ -7,7 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "kinfer/cli/parts/robot_option.hpp"
+#include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/text/text_file.hpp"

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "kinfer/cli/parts/robot_option.hpp"
+#include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/pose_set/predictions_csv.hpp"

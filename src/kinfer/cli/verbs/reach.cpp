@@ -6,9 +6,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "kinfer/cli/parts/joint_columns.hpp"
-#include "kinfer/cli/parts/posture_argument.hpp"
-#include "kinfer/cli/parts/robot_option.hpp"
+#include "kinfer/cli/options/joint_columns.hpp"
+#include "kinfer/cli/options/posture_argument.hpp"
+#include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/motion/reach_targets_csv.hpp"
 #include "kinfer/io/text/text_file.hpp"

@@ -8,8 +8,8 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/constants.hpp"
-#include "kinfer/cli/parts/drive_choices.hpp"
-#include "kinfer/cli/parts/simulated_faults.hpp"
+#include "kinfer/cli/options/drive_choices.hpp"
+#include "kinfer/cli/options/simulated_faults.hpp"
 #include "kinfer/cli/parts/simulation_files.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/text/text_file.hpp"

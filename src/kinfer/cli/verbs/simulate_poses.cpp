@@ -2,7 +2,7 @@
 // kinfer simulate-poses: a synthetic pose set of a robot with known errors.
 #include <memory>
 
-#include "kinfer/cli/parts/robot_option.hpp"
+#include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/robot_errors_toml.hpp"

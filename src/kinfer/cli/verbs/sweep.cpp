@@ -8,10 +8,10 @@
 #include <thread>
 
 #include "kinfer/cli/parts/arguments.hpp"
-#include "kinfer/cli/parts/sweep_folder.hpp"
-#include "kinfer/cli/parts/sweep_script.hpp"
-#include "kinfer/cli/parts/task_pool.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
+#include "kinfer/cli/sweep/sweep_folder.hpp"
+#include "kinfer/cli/sweep/sweep_script.hpp"
+#include "kinfer/cli/sweep/task_pool.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/text/replace_all.hpp"
 

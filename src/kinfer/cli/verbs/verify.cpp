@@ -4,8 +4,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/calibration_summary.hpp"
-#include "kinfer/cli/parts/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/deploy/compare.hpp"
 #include "kinfer/deploy/verify.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/posture_argument.hpp"
+#include "kinfer/cli/options/posture_argument.hpp"
 
 #include <algorithm>
 #include <vector>

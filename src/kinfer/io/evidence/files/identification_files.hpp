@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinfer/evidence/identification/identification.hpp"
-#include "kinfer/io/evidence/calibration_files.hpp"
+#include "kinfer/io/evidence/files/calibration_files.hpp"
 
 namespace kinfer {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/evidence/chain_dh_csv.hpp"
+#include "kinfer/io/evidence/files/chain_dh_csv.hpp"
 
 #include <fmt/format.h>
 

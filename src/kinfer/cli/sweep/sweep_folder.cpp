@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/sweep_folder.hpp"
+#include "kinfer/cli/sweep/sweep_folder.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/evidence/identification_files.hpp"
+#include "kinfer/io/evidence/files/identification_files.hpp"
 
-#include "kinfer/io/evidence/chain_dh_csv.hpp"
+#include "kinfer/io/evidence/files/chain_dh_csv.hpp"
 #include "kinfer/io/robot/mjcf.hpp"
 #include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/io/tracking/tracking_model_toml.hpp"

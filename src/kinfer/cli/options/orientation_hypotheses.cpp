@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/orientation_hypotheses.hpp"
+#include "kinfer/cli/options/orientation_hypotheses.hpp"
 
 namespace kinfer::cli {
 namespace {

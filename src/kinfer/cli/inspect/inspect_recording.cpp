@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/inspect_recording.hpp"
+#include "kinfer/cli/inspect/inspect_recording.hpp"
 
 #include <algorithm>
 #include <cmath>

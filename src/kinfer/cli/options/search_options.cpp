@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/search_options.hpp"
+#include "kinfer/cli/options/search_options.hpp"
 
 #include <fmt/ranges.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/evidence/calibration_files.hpp"
+#include "kinfer/io/evidence/files/calibration_files.hpp"
 
 #include <fmt/format.h>
 
-#include "kinfer/io/evidence/joint_tables_csv.hpp"
+#include "kinfer/io/evidence/files/joint_tables_csv.hpp"
 #include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/io/text/format_number.hpp"
 #include "kinfer/kinematics/dh_conversion.hpp"

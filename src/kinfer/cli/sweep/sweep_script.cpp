@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/sweep_script.hpp"
+#include "kinfer/cli/sweep/sweep_script.hpp"
 
 #include <fmt/format.h>
 

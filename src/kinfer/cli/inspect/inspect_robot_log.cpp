@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/inspect_robot_log.hpp"
+#include "kinfer/cli/inspect/inspect_robot_log.hpp"
 
 #include <algorithm>
 #include <array>

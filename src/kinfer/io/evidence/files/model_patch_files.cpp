@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/evidence/model_patch_files.hpp"
+#include "kinfer/io/evidence/files/model_patch_files.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/zero_argument.hpp"
+#include "kinfer/cli/options/zero_argument.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/drive_choices.hpp"
+#include "kinfer/cli/options/drive_choices.hpp"
 
 #include <fmt/ranges.h>
 

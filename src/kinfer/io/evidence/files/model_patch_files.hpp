@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "kinfer/evidence/calibration/model_patch.hpp"
-#include "kinfer/io/evidence/calibration_files.hpp"
+#include "kinfer/io/evidence/files/calibration_files.hpp"
 
 namespace kinfer {
 

@@ -5,7 +5,7 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/kinematics/forward.hpp"
-#include "kinfer/kinematics/pose_program.hpp"
+#include "kinfer/kinematics/poses/pose_program.hpp"
 
 namespace kinfer {
 namespace {

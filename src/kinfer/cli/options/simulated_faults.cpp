@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/simulated_faults.hpp"
+#include "kinfer/cli/options/simulated_faults.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/task_pool.hpp"
+#include "kinfer/cli/sweep/task_pool.hpp"
 
 #include <fcntl.h>
 #include <sys/prctl.h>

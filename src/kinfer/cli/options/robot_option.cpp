@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/robot_option.hpp"
+#include "kinfer/cli/options/robot_option.hpp"
 
 namespace kinfer::cli {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/parts/joint_columns.hpp"
+#include "kinfer/cli/options/joint_columns.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/evidence/joint_tables_csv.hpp"
+#include "kinfer/io/evidence/files/joint_tables_csv.hpp"
 
 #include <fmt/format.h>
 
