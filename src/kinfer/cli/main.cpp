@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "kinfer/base/instruction_set.hpp"
 #include "kinfer/base/version.hpp"
 #include "kinfer/cli/help/help_text.hpp"
 #include "kinfer/cli/help/suggestion.hpp"
@@ -25,13 +26,23 @@ std::string formatted_help(const CLI::App* app, const std::string&, CLI::AppForm
                            : help_text(option_tree(*app), terminal_width());
 }
 
-/// Options and verbs of the program; `language` must outlive the parsing.
-std::vector<Verb> describe_program(CLI::App& app, std::string& language) {
+/// Options that all verbs have.
+struct ProgramOptions {
+  std::string language = "english", kernels = "auto";
+};
+
+/// Options and verbs of the program; `options` must outlive the parsing.
+std::vector<Verb> describe_program(CLI::App& app, ProgramOptions& options) {
   app.formatter_fn(formatted_help);  // before the verbs, which inherit it
   app.set_version_flag("--version", std::string("kinfer ") + version, "Print the version");
-  app.add_option("--language", language,
+  app.add_option("--language", options.language,
                  "names: the stable name of each fact instead of its sentence, for programs and translators")
       ->check(CLI::IsMember({"english", "names"}))
+      ->capture_default_str();
+  app.add_option(
+         "--kernels", options.kernels,
+         "Instruction set of the numeric kernels; portable gives the same last digits on every x86-64 processor")
+      ->check(CLI::IsMember({"auto", "portable", "avx2", "avx512"}))
       ->capture_default_str();
   app.require_subcommand(1);
   app.footer("`kinfer VERB --help` explains a verb and shows an example; `kinfer demo` shows what kinfer does.");
@@ -50,8 +61,8 @@ std::size_t terminal_width() {
 int run_program(const std::vector<std::string>& arguments) {
   store_command_line(arguments);
   CLI::App app("kinfer: from raw measurements to a proven kinematic model", "kinfer");
-  std::string language = "english";
-  const std::vector<Verb> verbs = describe_program(app, language);
+  ProgramOptions options;
+  const std::vector<Verb> verbs = describe_program(app, options);
   const ProgramEntry program = option_tree(app);
   if (arguments.empty()) {
     fmt::print(stderr, "{}", help_text(program, terminal_width()));
@@ -69,7 +80,10 @@ int run_program(const std::vector<std::string>& arguments) {
   } catch (const CLI::ParseError& parse_error) {
     return app.exit(parse_error) == 0 ? exit_done : exit_bad_input;  // --help and --version end here too
   }
-  if (language == "names") words::set_language(words::Language::names);
+  if (const auto kernels = instruction_set_named(options.kernels); kernels && !pin_instruction_set(*kernels))
+    return fail({fmt::format("--kernels {}: this processor supports {} at most", options.kernels,
+                             name(widest_instruction_set()))});
+  if (options.language == "names") words::set_language(words::Language::names);
   for (const Verb& verb : verbs)
     if (was_chosen(*verb.command)) return verb.run();
   return exit_bad_input;
