@@ -75,7 +75,7 @@ ChainState random_state(const FilterModel& model, Rng& rng) {
   for (Index i = 0; i < state.joints.size(); ++i) state.joints[i] = random_vector(rng).x();
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     if (model.bodies[b].motion == JointMotion::spherical) {
-      state.balls[b] = random_turn(rng);
+      state.spherical[b] = random_turn(rng);
       for (Index k = 0; k < 3; ++k) state.joints[position_states * (model.layout.position[b] + k)] = 0.0;
     }
   return state;
@@ -186,7 +186,7 @@ TEST(ChainMeasurement, IsThatOfPosesAlongATrajectory) {
   const auto ball_rate = [&](double t) { return body_rate([&](double at) { return path.ball(at); }, t); };
   for (std::size_t b = 1; b < model.bodies.size(); ++b)
     if (model.bodies[b].motion == JointMotion::spherical) {
-      state.balls[b] = path.ball(t0);
+      state.spherical[b] = path.ball(t0);
       const Vec3 rate = ball_rate(t0), change = first_difference(ball_rate, t0);
       for (Index k = 0; k < 3; ++k)
         state.joints.segment<3>(position_states * (model.layout.position[b] + k)) << 0.0, rate[k], change[k];
@@ -227,7 +227,7 @@ TEST(ChainState, CovarianceMovesAsTheMeanDoes) {
     d.segment(base_states, there.joints.size()) = other.joints - there.joints;
     for (std::size_t b = 1; b < model.bodies.size(); ++b)
       if (model.bodies[b].motion == JointMotion::spherical) {
-        const Vec3 turn = log_so3(there.balls[b].transpose() * other.balls[b]);
+        const Vec3 turn = log_so3(there.spherical[b].transpose() * other.spherical[b]);
         for (Index k = 0; k < 3; ++k) d[layout.joint_state(layout.position[b] + k)] = turn[k];
       }
     return d;

@@ -21,7 +21,7 @@ void ToolSpread::set_pose(const FilterModel& model, const ChainState& state, std
   if (body.motion == JointMotion::revolute)
     step.rotation = body.parent_R_axis * rot_z(state.joints[at]) * body.child_R_axis.transpose();
   if (body.motion == JointMotion::spherical)
-    step.rotation = body.parent_R_axis * state.balls[b] * body.child_R_axis.transpose();
+    step.rotation = body.parent_R_axis * state.spherical[b] * body.child_R_axis.transpose();
   if (body.motion == JointMotion::prismatic) step.position += state.joints[at] * body.parent_R_axis.col(2);
   step.position -= step.rotation * body.point_in_child;
   bodies_[b] = bodies_[static_cast<std::size_t>(body.parent)] * step;
