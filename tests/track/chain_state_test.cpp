@@ -133,9 +133,14 @@ TEST(PredictCovariance, CarriesErrorsAsTheMeanCarriesThem) {
     predict_covariance(tree.model, tree.state, dt, noise);
     predict_covariance(tree.model, tree.state, dt, p);
     EXPECT_LT((p - p.transpose()).cwiseAbs().maxCoeff(), 1e-14);
-    const MatrixXd error = (p - noise - carried).cwiseAbs();
-    // The base's attitude is carried to first order in dt: its acceleration acts within the step.
-    EXPECT_LT(error.maxCoeff(), base == BaseMode::still ? 2e-6 : 2e-4);
+    MatrixXd error = (p - noise - carried).cwiseAbs();
+    EXPECT_LT(error.maxCoeff(), 3e-4) << "attitudes of the base and of balls are carried to first order in dt";
+    const auto leave_out = [&](Index state) { error.row(state).setZero(), error.col(state).setZero(); };
+    for (Index i = 0; i < 3; ++i) {
+      leave_out(BaseIndex::attitude + i);
+      leave_out(tree.model.layout.joint_state(tree.model.layout.position[5] + i));  // the ball
+    }
+    EXPECT_LT(error.maxCoeff(), 1e-7);
     EXPECT_GE(symmetric_eigen(noise).values[0], -1e-12);
   }
 }
