@@ -54,7 +54,7 @@ ChainEvaluator::ChainEvaluator(const FilterModel& model) : bodies_(model.bodies)
   }
   derivatives_.resize(bodies_.size());
   for (std::size_t b = 1; b < bodies_.size(); ++b)
-    derivatives_[b].by_own.resize(12, 3 * degrees_of_freedom(bodies_[b].motion) + bodies_[b].unknowns());
+    derivatives_[b].by_own.resize(state_size, 3 * degrees_of_freedom(bodies_[b].motion) + bodies_[b].unknowns());
 }
 
 void ChainEvaluator::propagate_body(const FilterModel& model, const ChainState& state, std::size_t b) {
@@ -66,7 +66,7 @@ void ChainEvaluator::propagate_body(const FilterModel& model, const ChainState& 
   propagate(bodies_[b], q, states_[parent], derivative);
   if (bodies_[b].motion == JointMotion::spherical) keep_angular_velocity(q, derivative.by_own);
   states_[b] = derivative.state;
-  const Eigen::Matrix<double, 9, 9> by_parent = derivative.by_parent.topLeftCorner<9, 9>();
+  const Eigen::Matrix<double, 9, 9>& by_parent = derivative.by_parent;
   const Index fast = layout.fast_end[parent], geometry = layout.geometry_end[parent];
   for (Index j = 0; j < fast; ++j)
     by_fast_[b].col(j).head<9>().noalias() = by_parent * by_fast_[parent].col(j).head<9>();
@@ -75,9 +75,9 @@ void ChainEvaluator::propagate_body(const FilterModel& model, const ChainState& 
   const Index own = 3 * degrees_of_freedom(bodies_[b].motion);
   if (own > 0)
     for (Index j = 0; j < own; ++j)
-      by_fast_[b].col(layout.joint_state(layout.position[b]) + j) = derivative.by_own.col(j).head<9>();
+      by_fast_[b].col(layout.joint_state(layout.position[b]) + j) = derivative.by_own.col(j);
   for (Index j = 0; j < bodies_[b].unknowns(); ++j)
-    by_geometry_[b].col(layout.geometry[b] + j) = derivative.by_own.col(own + j).head<9>();
+    by_geometry_[b].col(layout.geometry[b] + j) = derivative.by_own.col(own + j);
 }
 
 void ChainEvaluator::measure(const FilterModel& model, const ChainState& state, std::size_t s) {
