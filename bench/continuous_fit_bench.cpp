@@ -33,7 +33,7 @@ Case example(Index intervals) {
   Rng rng(1);
   Case c;
   c.problem.grid = {.begin = 0.0, .period = knots, .intervals = intervals};
-  c.problem.prior = {1e-3, 1e-2, 1.0, 5e-4, 3e-4};
+  c.problem.prior = {1e-3, 1e-2, 5e-4, 3e-4};
   c.x.bodies = {{.sensor = 0}};
   for (int s = 0; s < 6; ++s) {
     c.problem.sensors.push_back(

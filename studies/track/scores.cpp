@@ -115,8 +115,8 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, c
       const bool is_relative = state.joints[j].reference == JointReference::start;
       Sum& sum = sums[j];
       if (sum.rows == 0 && is_relative) sum.start = state.q[at] - q;
-      if (!is_relative && score.joints[j].is_first && score.joints[j].told_at <= 0.0)
-        score.joints[j].told_at = state.time;
+      if (!is_relative && score.joints[j].is_first && score.joints[j].observable_at <= 0.0)
+        score.joints[j].observable_at = state.time;
       score.joints[j].is_first |= is_relative;
       const double e = state.q[at] - q - (is_relative ? sum.start : 0.0);
       sum.squares += e * e;
@@ -151,7 +151,7 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, c
     joint.composed_rms = std::sqrt(sum.composed / std::max(1, sum.composed_rows));
     joint.nees = sum.nees / n;
     joint.coverage = sum.inside / n;
-    joint.is_slide = model.bodies[j + 1].motion == TrackingMotion::prismatic;
+    joint.is_prismatic = model.bodies[j + 1].motion == TrackingMotion::prismatic;
   }
   score.tool_rms = rms_after_fit(true_tool, tool);
   score.base_tilt_rms = std::sqrt(tilt / std::max(1, rows));

@@ -10,8 +10,8 @@ struct JointScore {
   double rms = 0.0, composed_rms = 0.0;  ///< [rad] or [m]
   double nees = 0.0, coverage = 0.0;     ///< mean of (error/sd)²; share of errors within 1.96 sd
   bool is_first = false;                 ///< vertical axis on a level base: counts from the start
-  bool is_slide = false;
-  double told_at = 0.0;  ///< [s] when a position that counted from the start was told
+  bool is_prismatic = false;
+  double observable_at = 0.0;  ///< [s] when a position that counted from the start became observable
 };
 
 struct TrackScore {

@@ -63,11 +63,11 @@ Arguments parse(int count, char** values) {
 void print(const std::string& machine, const std::string& grade, int seed, const TrackScore& score) {
   fmt::print("{:<18} {:<10} {:>2}  ", machine, grade, seed);
   for (const JointScore& joint : score.joints) {
-    const double unit = joint.is_slide ? 1e-3 : degree;
+    const double unit = joint.is_prismatic ? 1e-3 : degree;
     fmt::print(" {:.3f}{}({:.2f}) {:.1f} {:.0f}%", joint.rms / unit,
-               joint.is_slide   ? "mm"
-               : joint.is_first ? "*"
-                                : "",
+               joint.is_prismatic ? "mm"
+               : joint.is_first   ? "*"
+                                  : "",
                joint.composed_rms / unit, joint.nees, 100.0 * joint.coverage);
   }
   fmt::print("  tool {:.1f} mm, tilt {:.3f}, {:.0f} us", 1e3 * score.tool_rms, score.base_tilt_rms / degree,

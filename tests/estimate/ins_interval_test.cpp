@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds within one interval of the grid: means of measurements, motion of all bodies and its derivatives.
+// What holds within one interval of the grid: motion of all bodies and its derivatives.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,36 +18,6 @@ namespace {
 
 using Eigen::Index;
 using test::random_vector;
-
-TEST(MeanBlocks, HoldTheMeanOfEachIntervalAsOneRow) {
-  InsSensor sensor{.name = "imu", .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}};
-  std::vector<double> time;
-  for (int row = 0; row < 40; ++row) {
-    time.push_back(0.0123 * row);
-    for (std::size_t k = 0; k < 3; ++k) {
-      sensor.acceleration.axis[k].push_back(1.0f), sensor.angular_velocity.axis[k].push_back(0.0f);
-      sensor.field.axis[k].push_back(static_cast<float>(20.0 + static_cast<double>(k) + 5.0 * time.back()));
-    }
-    sensor.faults.push_back(static_cast<std::uint8_t>(row == 3 ? +field_missing : 0));
-  }
-  const SplineGrid grid{0.0, 0.1, 6};
-  const auto blocks = mean_blocks(sensor, time, InsInstrument::magnetometer, grid);
-  ASSERT_EQ(blocks.size(), 6u);
-  for (std::size_t k = 0; k < 4; ++k) {
-    double mean = 0.0, count = 0.0;
-    for (std::size_t row = 0; row < time.size(); ++row)
-      if (row != 3 && static_cast<std::size_t>(time[row] / 0.1) == k) mean += 20.0 + 5.0 * time[row], count += 1.0;
-    EXPECT_EQ(blocks[k].samples, static_cast<int>(count));
-    EXPECT_EQ(blocks[k].rows, 1);
-    EXPECT_NEAR(blocks[k].target(0, 0), mean / count, 1e-4);
-    Eigen::Matrix<double, block_nodes, 1> truth;  // the factor predicts the mean from the values at the nodes
-    for (std::size_t n = 0; n < block_nodes; ++n)
-      truth[static_cast<Index>(n)] = 20.0 + 5.0 * 0.1 * (static_cast<double>(k) + block_nodes_u()[n]);
-    EXPECT_NEAR(blocks[k].factor.row(0).cast<double>() * truth, mean / count, 1e-4);
-  }
-  EXPECT_EQ(blocks[5].samples, 0);
-  EXPECT_EQ(measurement_noise(blocks), 0.0) << "a mean shows no noise";
-}
 
 TEST(GaussianWidth, LeavesAWaveOfTheCutoffAt71Percent) {
   for (const double cutoff : {0.5, 2.0, 7.0}) {
@@ -77,10 +47,10 @@ struct BranchedMotion {
     layout = layout_of(problem, x.bodies);
     x.spline_coefficients = 0.3 * test::random_matrix(layout.spline_dimensions, problem.grid.coefficients(), 9);
   }
-  /// All four vectors of a body's state at a node, one after the other.
+  /// All vectors of a body's state at a node, one after the other.
   VectorXd state(const InsUnknowns& at, std::size_t body, Index interval, std::size_t node) const {
     const InsState s = body_states(problem, layout, at, interval, node_bases(problem.grid)[node])[body];
-    return (VectorXd(12) << s.angular_velocity, s.angular_acceleration, s.force, s.field).finished();
+    return (VectorXd(state_size) << s.angular_velocity, s.angular_acceleration, s.force).finished();
   }
 };
 
@@ -102,8 +72,8 @@ TEST(IntervalMotionOf, StatesAndTheirSplineDerivativesAgreeWithDifferences) {
             return b.state(x, body, interval, node);
           };
           const VectorXd slope = (moved(1e-5) - moved(-1e-5)) / 2e-5;
-          VectorXd analytic = VectorXd::Zero(12);
-          for (Index component = 0; component < 12; ++component)
+          VectorXd analytic = VectorXd::Zero(state_size);
+          for (Index component = 0; component < state_size; ++component)
             for (Index order = 0; order < derivative_orders; ++order)
               analytic[component] +=
                   found.by_spline(derivative_orders * static_cast<Index>(d) + order,

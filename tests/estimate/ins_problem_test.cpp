@@ -31,8 +31,7 @@ struct WholeProblem {
     problem.grid = {.begin = 0.0, .period = 0.1, .intervals = 200};
     problem.root_at_rest = root_at_rest;
     problem.sensors.resize(4);
-    for (InsMeasurements& sensor : problem.sensors) sensor.field.resize(200);
-    problem.prior = {0.1, 0.2, 0.3, 0.01, 0.02, 0.004, 1e-4, 0.05};
+    problem.prior = {0.1, 0.2, 0.01, 0.02, 0.004, 1e-4, 0.05};
     problem.bias_process = {.rate_sd = 0.3, .force_sd = 0.2, .time = 10.0};
     problem.facts.places = {{.body = 3, .start = Vec3(0.1, 0.2, 0.3), .sd = 0.5}};
     problem.facts.touches = {{{InsPoint::Kind::place, 3, 0}, {0.5, 1.5}, 0.01}};
@@ -41,10 +40,10 @@ struct WholeProblem {
                 test::random_revolute_body(0, 1, rng),
                 test::random_prismatic_body(1, 2, rng),
                 spherical_body(2, 3, any_rotation())};
-    x.root_force = random_vector(rng), x.root_field = random_vector(rng);
+    x.root_force = random_vector(rng);
     x.errors.resize(4);
     for (InsErrors& errors : x.errors) {
-      errors.gyroscope_bias = random_vector(rng), errors.magnetometer_bias = random_vector(rng);
+      errors.gyroscope_bias = random_vector(rng);
       errors.accelerometer_scale = random_vector(rng).asDiagonal();
       errors.clock = {.offset = 0.01 * rng.normal(), .drift = 1e-4 * rng.normal()};
     }
@@ -71,12 +70,11 @@ TEST(InsLayoutOf, EveryGlobalParameterBelongsToExactlyOnePart) {
     const auto claim = [&](Index first, Index count) {
       if (first >= 0) owners.segment(first, count).array() += 1.0;
     };
-    claim(w.layout.root_force, 3), claim(w.layout.root_field, 3);
+    claim(w.layout.root_force, 3);
     for (std::size_t b = 0; b < 4; ++b) claim(w.layout.body[b], w.x.bodies[b].unknowns());
     for (const Index first : w.layout.error) claim(first, w.layout.errors_each);
     claim(w.layout.facts, 3 + 3 + 6);
     EXPECT_EQ(owners, VectorXd::Ones(owners.size()));
-    EXPECT_EQ(w.layout.has_field, root_at_rest) << "only the field of a root at rest is constant";
     EXPECT_EQ(w.layout.spline_dimensions, (root_at_rest ? 0 : 6) + 1 + 1 + 3);
     EXPECT_EQ(w.layout.bias_process, 6 * 4);
   }
@@ -89,7 +87,7 @@ TEST(InsLayoutOf, WhatHasNoPriorIsNotEstimated) {
   w.problem.facts = {};
   const InsLayout layout = layout_of(w.problem, w.x.bodies);
   EXPECT_FALSE(layout.has_matrices || layout.has_clocks || layout.has_tilts);
-  EXPECT_EQ(layout.errors_each, 6 + 3);
+  EXPECT_EQ(layout.errors_each, 6);
   EXPECT_EQ(layout.clock_error, -1);
   EXPECT_EQ(layout.tilt_error, -1);
   EXPECT_EQ(layout.bias_process, 0);

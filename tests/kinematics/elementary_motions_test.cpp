@@ -74,17 +74,17 @@ struct ProductOfFactors {
 TEST(ElementaryMotion, FactorsOfEveryConventionMultiplyToItsPrintedMatrix) {
   for (const Chain& chain : laws::examples())
     for (Joint joint : chain.joints)
-      for (const JointType type : {JointType::revolute, JointType::prismatic, JointType::fixed}) {
-        joint.type = type;
+      for (const JointTypeTraits& row : joint_types) {
+        joint.type = row.type;
         ProductOfFactors walk;
         walk.displacement = 0.37;
         elementary::for_each_factor(joint, walk);
         const laws::Mat4 printed =
-            std::visit([&](const auto& link) { return laws::slow_link(link, type, 0.37); }, joint.link);
+            std::visit([&](const auto& link) { return laws::slow_link(link, row.type, 0.37); }, joint.link);
         const Pose expected{printed.topLeftCorner<3, 3>(), printed.topRightCorner<3, 1>()};
         EXPECT_LT(largest_difference(walk.product, expected), 1e-14) << chain.name << ' ' << joint.name;
         EXPECT_EQ(walk.with_field, std::holds_alternative<UrdfLink>(joint.link) ? 6 : 5);
-        EXPECT_EQ(walk.moving, type == JointType::fixed ? 0 : 1);
+        EXPECT_EQ(walk.moving, has_position(row.type) ? 1 : 0);
       }
 }
 

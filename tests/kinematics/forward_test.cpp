@@ -114,7 +114,7 @@ Chain enlarged(Chain chain, double factor) {
     if (auto* urdf = std::get_if<UrdfLink>(&joint.link)) urdf->origin.xyz *= factor;
     if (auto* dh = std::get_if<DhLink>(&joint.link)) dh->a *= factor, dh->d *= factor;
     if (auto* mdh = std::get_if<MdhLink>(&joint.link)) mdh->a *= factor, mdh->d *= factor;
-    if (joint.type != JointType::prismatic) continue;
+    if (!translates(joint.type)) continue;
     joint.gain *= factor;
     for (Coupling& coupling : joint.couplings) coupling.factor *= factor;
   }

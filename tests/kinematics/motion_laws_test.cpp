@@ -124,7 +124,7 @@ TEST(TorqueLaws, OfAPayloadAreItsWeightThroughTheJacobian) {
     const VectorXd expected = 4.0 * jacobian(chain, m.q).topRows<3>().transpose() * chain.gravity;
     const std::vector<int> active = active_joints(chain);
     for (std::size_t k = 0; k < active.size(); ++k) {
-      const bool is_revolute = chain.joints[static_cast<std::size_t>(active[k])].type == JointType::revolute;
+      const bool is_revolute = rotates(chain.joints[static_cast<std::size_t>(active[k])].type);
       EXPECT_NEAR(torques[active[k]], is_revolute ? expected[static_cast<Eigen::Index>(k)] : 0.0, 1e-11) << chain.name;
     }
   }

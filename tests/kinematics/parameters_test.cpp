@@ -105,7 +105,7 @@ TEST(Parameters, TheGainOfAPassiveJointStopsTheProgram) {
   const Chain chain = laws::coupled();
   ParameterSet set;
   set.parameters.push_back({.name = "gain7", .at = JointNumber{6, Field::gain}});
-  EXPECT_DEATH(PoseEvaluator(chain, set), "gain of joint 6, which has no reading");
+  EXPECT_DEATH(PoseEvaluator(chain, set), "gain of joint 6, which has no joint position");
 }
 
 }  // namespace

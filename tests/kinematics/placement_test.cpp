@@ -22,13 +22,13 @@ TEST(Placement, EveryJointMovesAboutOrAlongItsAxis) {
       const Pose parent{exp_so3(test::random_vector(rng)), test::random_vector(rng)};
       const JointPlacement here = place_joint(parent, joint, 0.3), there = place_joint(parent, joint, 0.3 + 0.8);
       Pose motion;  // of the world, about a line or along a direction
-      if (joint.type == JointType::revolute) {
+      if (rotates(joint.type)) {
         motion.rotation = exp_so3(0.8 * here.axis);
         motion.position = here.point - motion.rotation * here.point;
-      } else if (joint.type == JointType::prismatic) {
+      } else if (translates(joint.type)) {
         motion.position = 0.8 * here.axis;
       }
-      EXPECT_NEAR(here.axis.norm(), joint.type == JointType::fixed ? 0.0 : 1.0, 1e-14);
+      EXPECT_NEAR(here.axis.norm(), has_position(joint.type) ? 1.0 : 0.0, 1e-14);
       EXPECT_LT(frame_distance(motion * here.frame, there.frame), 1e-13) << chain.name << ' ' << joint.name;
     }
   }

@@ -155,7 +155,7 @@ inline Chain compliant_tree() {
   Chain chain = two_arms();
   chain.name = "compliant tree";
   chain.masses = {{3, {0.1, 0.2, 0.0}, 5.0}, {5, {0.2, 0.1, 0.1}, 10.0}};
-  for (Joint& joint : chain.joints) joint.compliance = joint.type == JointType::revolute ? 1e-4 : 0.0;
+  for (Joint& joint : chain.joints) joint.compliance = rotates(joint.type) ? 1e-4 : 0.0;
   return chain;
 }
 

@@ -30,11 +30,11 @@ struct Line {
 
 /// From a quarter turn or a shift of one metre, so that it holds for every convention.
 Line joint_line(const Joint& joint, const laws::Mat4& rest) {
-  const double move = joint.type == JointType::revolute ? 90 * degree : 1.0;
+  const double move = rotates(joint.type) ? 90 * degree : 1.0;
   const laws::Mat4 moved = std::visit([&](const auto& l) { return laws::slow_link(l, joint.type, move); }, joint.link);
   const Mat3 rest_R = rest.topLeftCorner<3, 3>();
   const Vec3 shift = rest_R.transpose() * (moved - rest).topRightCorner<3, 1>();
-  if (joint.type == JointType::prismatic) return {shift, Vec3::Zero()};
+  if (translates(joint.type)) return {shift, Vec3::Zero()};
   const Mat3 rotation = rest_R.transpose() * moved.topLeftCorner<3, 3>();
   const Vec3 axis =
       Vec3(rotation(2, 1) - rotation(1, 2), rotation(0, 2) - rotation(2, 0), rotation(1, 0) - rotation(0, 1)) / 2.0;
@@ -49,10 +49,10 @@ std::string bodies(const Chain& chain, int parent) {
     const laws::Mat4 rest = std::visit([&](const auto& l) { return laws::slow_link(l, joint.type, 0.0); }, joint.link);
     xml += fmt::format("<body name='{}' {}>", j, placed_at(rest.topLeftCorner<3, 3>(), rest.topRightCorner<3, 1>()));
     xml += "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
-    if (joint.type != JointType::fixed) {
+    if (has_position(joint.type)) {
       const Line line = joint_line(joint, rest);
       xml += fmt::format("<joint name='{}' type='{}' axis='{}' pos='{}'/>", j,
-                         joint.type == JointType::revolute ? "hinge" : "slide", text(line.axis), text(line.point));
+                         rotates(joint.type) ? "hinge" : "slide", text(line.axis), text(line.point));
     }
     xml += bodies(chain, j) + "</body>";
   }

@@ -24,8 +24,8 @@ inline Mat4 rotation_about_y(double beta) {
 
 /// Paper 1, eq. (1), then Hayati's rotation about y.
 inline Mat4 slow_link(const DhLink& row, JointType type, double moved) {
-  const double theta = row.theta + (type == JointType::revolute ? moved : 0.0);
-  const double d = row.d + (type == JointType::prismatic ? moved : 0.0);
+  const double theta = row.theta + (rotates(type) ? moved : 0.0);
+  const double d = row.d + (translates(type) ? moved : 0.0);
   const double ct = std::cos(theta), st = std::sin(theta), ca = std::cos(row.alpha), sa = std::sin(row.alpha);
   Mat4 m;
   // clang-format off
@@ -39,8 +39,8 @@ inline Mat4 slow_link(const DhLink& row, JointType type, double moved) {
 
 /// Paper 2, eq. (3); Hayati's rotation about y stands between the equation's halves.
 inline Mat4 slow_link(const MdhLink& row, JointType type, double moved) {
-  const double theta = row.theta + (type == JointType::revolute ? moved : 0.0);
-  const double d = row.d + (type == JointType::prismatic ? moved : 0.0);
+  const double theta = row.theta + (rotates(type) ? moved : 0.0);
+  const double d = row.d + (translates(type) ? moved : 0.0);
   const auto eq3 = [](double alpha, double a, double angle, double along) {
     const double ct = std::cos(angle), st = std::sin(angle), ca = std::cos(alpha), sa = std::sin(alpha);
     Mat4 m;
@@ -68,9 +68,9 @@ inline Mat4 slow_frame(const Frame& frame) {
 
 inline Mat4 slow_link(const UrdfLink& link, JointType type, double moved) {
   Mat4 motion = Mat4::Identity();
-  if (type == JointType::revolute)
+  if (rotates(type))
     motion.topLeftCorner<3, 3>() = Eigen::AngleAxisd(moved, link.axis).toRotationMatrix();
-  if (type == JointType::prismatic) motion.topRightCorner<3, 1>() = moved * link.axis;
+  if (translates(type)) motion.topRightCorner<3, 1>() = moved * link.axis;
   return slow_frame(link.origin) * motion;
 }
 
@@ -119,7 +119,7 @@ inline VectorXd slow_torques(const Chain& chain, const VectorXd& q, double paylo
   VectorXd torques = VectorXd::Zero(n);
   constexpr double step = 1e-5;
   for (int j = 0; j < n; ++j) {
-    if (chain.joints[j].type == JointType::revolute) torques[j] = -(energy(j, step) - energy(j, -step)) / (2 * step);
+    if (rotates(chain.joints[j].type)) torques[j] = -(energy(j, step) - energy(j, -step)) / (2 * step);
   }
   return torques;
 }

@@ -6,80 +6,16 @@
 #include <type_traits>
 
 #include "support/differences.hpp"
-#include "support/random.hpp"
+#include "support/random_tracked_tree.hpp"
 
 namespace kinfer::track {
 namespace {
 
 using kinfer::testing::numeric_jacobian;
+using test::random_state;
+using test::random_tree;
+using test::random_turn;
 using test::random_vector;
-
-Mat3 random_turn(Rng& rng) {
-  return exp_so3(random_vector(rng));
-}
-
-TrackingBody random_body(int parent, int sensor, int joint, TrackingMotion motion, Rng& rng) {
-  TrackingBody body{.parent = parent, .sensor = sensor, .joint = joint, .motion = motion};
-  body.parent_R_axis = random_turn(rng);
-  body.child_R_axis = random_turn(rng);
-  body.point_in_parent = random_vector(rng);
-  body.point_in_child = random_vector(rng);
-  return body;
-}
-
-/// A tree: hinge, universal joint, slide, ball, fixed segment; the ball hangs beside the slide.
-TrackingModel random_tree(Rng& rng) {
-  using Kind = TrackingParameterKind;
-  TrackingModel model;
-  model.bodies = {TrackingBody{.sensor = 0},
-                  random_body(0, 1, 0, TrackingMotion::revolute, rng),
-                  random_body(1, -1, 1, TrackingMotion::revolute, rng),
-                  random_body(2, 2, 1, TrackingMotion::revolute, rng),
-                  random_body(3, 3, 2, TrackingMotion::prismatic, rng),
-                  random_body(3, 4, 3, TrackingMotion::spherical, rng),
-                  random_body(4, 5, 4, TrackingMotion::fixed, rng)};
-  model.joints = {{.name = "hinge"},
-                  {.name = "universal", .first_position = 1, .positions = 2},
-                  {.name = "slide", .first_position = 3},
-                  {.name = "ball", .first_position = 4, .positions = 3},
-                  {.name = "fixed", .first_position = 7, .positions = 0}};
-  for (int b = 0; b < 7; ++b) {
-    const int sensor = model.bodies[static_cast<std::size_t>(b)].sensor;
-    if (sensor >= 0) {
-      TrackingSensor made{.name = "s", .body = b};
-      made.gyroscope_bias = 0.1 * random_vector(rng);
-      made.accelerometer_bias = 0.1 * random_vector(rng);
-      made.gyroscope_scale = 0.1 * random_turn(rng);
-      made.accelerometer_scale = 0.1 * random_turn(rng);
-      model.sensors.push_back(made);
-    }
-    if (b == 0) continue;
-    for (int c = 0; c < 2; ++c) model.parameters.push_back({Kind::child_rotation, b, c});
-    for (int c = 0; c < 2; ++c) model.parameters.push_back({Kind::parent_rotation, b, c});
-    for (int c = 0; c < 3; ++c) model.parameters.push_back({Kind::point_in_child, b, c});
-    for (int c = 0; c < 3; ++c) model.parameters.push_back({Kind::point_in_parent, b, c});
-  }
-  const auto n = static_cast<Index>(model.parameters.size());
-  model.covariance = MatrixXd::Identity(n, n);
-  return model;
-}
-
-ChainState random_state(const FilterModel& model, Rng& rng) {
-  ChainState state = initial_state(model);
-  state.base = BaseMode::moving;
-  state.world_R_base = random_turn(rng);
-  state.rate = random_vector(rng);
-  state.angular_acceleration = random_vector(rng);
-  state.velocity = random_vector(rng);
-  state.acceleration = random_vector(rng);
-  for (Index i = 0; i < state.joints.size(); ++i) state.joints[i] = random_vector(rng).x();
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    if (model.bodies[b].motion == JointMotion::spherical) {
-      state.balls[b] = random_turn(rng);
-      for (Index k = 0; k < 3; ++k) state.joints[position_states * (model.layout.position[b] + k)] = 0.0;
-    }
-  return state;
-}
 
 TEST(ChainMeasurement, DerivativesByTheErrorStateAgreeWithDifferences) {
   Rng rng(3);
@@ -186,7 +122,7 @@ TEST(ChainMeasurement, IsThatOfPosesAlongATrajectory) {
   const auto ball_rate = [&](double t) { return body_rate([&](double at) { return path.ball(at); }, t); };
   for (std::size_t b = 1; b < model.bodies.size(); ++b)
     if (model.bodies[b].motion == JointMotion::spherical) {
-      state.balls[b] = path.ball(t0);
+      state.spherical[b] = path.ball(t0);
       const Vec3 rate = ball_rate(t0), change = first_difference(ball_rate, t0);
       for (Index k = 0; k < 3; ++k)
         state.joints.segment<3>(position_states * (model.layout.position[b] + k)) << 0.0, rate[k], change[k];
@@ -227,7 +163,7 @@ TEST(ChainState, CovarianceMovesAsTheMeanDoes) {
     d.segment(base_states, there.joints.size()) = other.joints - there.joints;
     for (std::size_t b = 1; b < model.bodies.size(); ++b)
       if (model.bodies[b].motion == JointMotion::spherical) {
-        const Vec3 turn = log_so3(there.balls[b].transpose() * other.balls[b]);
+        const Vec3 turn = log_so3(there.spherical[b].transpose() * other.spherical[b]);
         for (Index k = 0; k < 3; ++k) d[layout.joint_state(layout.position[b] + k)] = turn[k];
       }
     return d;

@@ -22,8 +22,8 @@ std::vector<Vec3> continuous_euler_angles(const SegmentMotion& segment) {
       angles.push_back(first);
       continue;
     }
-    const auto step_to = [&](const Vec3& reading) {
-      return Vec3((reading - angles.back()).unaryExpr([](double x) { return wrap_to_pi(x); }));
+    const auto step_to = [&](const Vec3& candidate) {
+      return Vec3((candidate - angles.back()).unaryExpr([](double x) { return wrap_to_pi(x); }));
     };
     const Vec3 step = step_to(first), other = step_to(alternative_euler_angles(first));
     angles.push_back(angles.back() + (other.norm() < step.norm() ? other : step));

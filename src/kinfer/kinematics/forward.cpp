@@ -89,7 +89,7 @@ std::vector<int> active_joint_indices(const Chain& chain) {
 }
 
 VectorXd joint_displacements(const Chain& chain, ConstVectorRef q) {
-  KINFER_EXPECT(q.size() == dof(chain), "{} readings for {} joints that have one", q.size(), dof(chain));
+  KINFER_EXPECT(q.size() == dof(chain), "{} joint positions for {} joints that have one", q.size(), dof(chain));
   const std::vector<int> index = active_joint_indices(chain);
   VectorXd displacement(chain.joints.size());
   for (Eigen::Index j = 0; j < displacement.size(); ++j) {

@@ -154,7 +154,8 @@ class InverseSolver {
 
 InverseSolution solve_inverse(const Chain& chain, const Goal& goal, ConstVectorRef start, const InverseOptions& options,
                               const Load& load) {
-  KINFER_EXPECT(start.size() == dof(chain) && start.size() > 0, "{} readings for {} joints", start.size(), dof(chain));
+  KINFER_EXPECT(start.size() == dof(chain) && start.size() > 0, "{} joint positions for {} joints", start.size(),
+                dof(chain));
   KINFER_EXPECT(options.iterations > 0 && options.length > 0.0);
   return InverseSolver(chain, goal, options, load).run(start);
 }

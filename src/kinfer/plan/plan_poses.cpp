@@ -139,8 +139,10 @@ void compute_observability(PosePlan& plan, const DesignProblem& problem, const M
                         smallest * smallest / s[0], 1.0 / s.array().max(1e-300).inverse().sum()};
 }
 
-/// Both matrices stacked vertically; either may be empty.
+/// Both matrices stacked vertically; either may be empty (0 x 0).
 MatrixXd stack(const MatrixXd& above, const MatrixXd& below) {
+  if (above.rows() == 0) return below;
+  if (below.rows() == 0) return above;
   MatrixXd both(above.rows() + below.rows(), below.cols());
   both.topRows(above.rows()) = above;
   both.bottomRows(below.rows()) = below;

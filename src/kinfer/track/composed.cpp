@@ -19,7 +19,7 @@ constexpr double unknown_position = std::numeric_limits<double>::quiet_NaN();
 constexpr double heading_walk = 1e-3;      // [rad/√s] of the difference of two headings
 constexpr double axis_error = 0.01;        // [rad] of an axis' horizontal parts as two filters see them
 constexpr double axis_error_time = 2.0;    // [s] over which that error stays alike
-constexpr double least_inclination = 0.1;  // sine, below which an axis tells no heading
+constexpr double least_inclination = 0.1;  // sine, below which an axis does not determine the heading
 
 KinferFilterOptions without_field() {
   KinferFilterOptions options;

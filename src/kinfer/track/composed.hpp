@@ -18,7 +18,7 @@
 
 namespace kinfer::track {
 
-/// Copyable. Displacements of prismatic joints are unknown (NaN): orientations do not tell them.
+/// Copyable. Displacements of prismatic joints are unknown (NaN): orientations do not determine them.
 class ComposedFilters {
  public:
   explicit ComposedFilters(const TrackingModel& model, const TrackOptions& options = {});

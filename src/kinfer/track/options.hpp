@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the user tells a tracker. Its rows (InsRow) hold one sample for each sensor of the model, in the model's order.
+// What the user states about a tracking run. Its rows (InsRow) hold one sample for each sensor of the model, in the
+// model's order.
 #pragma once
 
 #include <optional>

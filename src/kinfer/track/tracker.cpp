@@ -14,8 +14,8 @@
 namespace kinfer::track {
 namespace {
 
-/// Index into the model's q of each joint position of the filter; a ball that stands for a loose hinge has its turn
-/// about the axis as the third, and no joint position for the others (−1).
+/// Index into the model's q of each joint position of the filter; a spherical joint that stands for a loose revolute
+/// joint has its rotation about the axis as the third, and no joint position for the others (−1).
 std::vector<int> model_positions(const TrackingModel& tracking, const FilterModel& model) {
   std::vector<int> positions;
   for (std::size_t b = 1; b < model.bodies.size(); ++b) {
@@ -48,7 +48,7 @@ std::vector<PositionGuess> make_guesses(const TrackingModel& tracking, const std
       const auto at = static_cast<std::size_t>(position - joint.first_position);
       if (at < joint.range.size()) {
         guess.value = 0.5 * (joint.range[at].lower + joint.range[at].upper);
-        guess.sd = 0.5 * (joint.range[at].upper - joint.range[at].lower) + slide_room;
+        guess.sd = 0.5 * (joint.range[at].upper - joint.range[at].lower) + start_prismatic_margin;
       }
       if (options.start && position < options.start->size() && !std::isnan((*options.start)[position]))
         guess = {.value = (*options.start)[position], .sd = given_start_sd, .is_given = true};
@@ -96,6 +96,7 @@ void Tracker::restart(double time) {
   state_.started = false;
   grid_.reset();
   block_.clear();
+  waiting_.clear();
   fit_.reset();
 }
 
@@ -108,12 +109,14 @@ void Tracker::add(const InsRow& row) {
   composed_.add(row);
   choose_sensors();
   block_.add(row);
-  if (!state_.started) {
-    if (block_.is_complete(start_length)) try_start();
-  } else {
-    if (rest_.add(row)) rest_.correct(filter_);
-    if (block_.is_complete(update_period)) process_block();
+  if (block_.is_complete(update_period)) {
+    if (state_.started)
+      process_block(block_.mean());
+    else
+      wait_for_start();
+    block_.clear();
   }
+  if (rest_.add(row) && state_.started) rest_.correct(filter_);
   state_.time = row.time;
   if (state_.started) read_out(row.time);
   list_alarms(row.time);
@@ -131,10 +134,22 @@ void Tracker::choose_sensors() {
   }
 }
 
+/// The posture is that at the mean time of the first rows; the blocks behind it are processed like all that follow.
+/// Without them the joints' accelerations would be unknown for half of that time (0.2° in each position).
+void Tracker::wait_for_start() {
+  waiting_.push_back(block_.mean());
+  if (waiting_.back().time - waiting_.front().time + waiting_.back().length < start_length) return;
+  try_start();
+  if (state_.started)
+    for (const BlockMeasurement& block : waiting_)
+      if (block.time > filter_.state().time) process_block(block);
+  waiting_.clear();
+}
+
 void Tracker::try_start() {
-  const BlockMeasurement& block = block_.mean();
+  const BlockMeasurement block = mean_of(waiting_);
   const auto has_force = [](const BlockSample& s) { return s.force_count > 0 && s.rate_count > 0; };
-  if (std::ranges::none_of(block.sensors, has_force)) return block_.clear();
+  if (std::ranges::none_of(block.sensors, has_force)) return;
   base_.add(block, filter_);
   const InitialPosture posture = initial_posture(*model_, block, guesses_, base_.mode());
   filter_.start(posture.state, posture.covariance);
@@ -145,7 +160,6 @@ void Tracker::try_start() {
       filter_.declare_known(at);
   }
   begin_grid();
-  block_.clear();
   replay_.begin(filter_);
   tool_.spread(*model_, filter_.state(), filter_.covariance());
   state_.started = true;
@@ -178,13 +192,13 @@ bool Tracker::base_begins_to_move(const BlockMeasurement& block) {
   return base_.mode() == BaseMode::moving;
 }
 
-/// The base has moved for a while; what counted from the start can now be told.
+/// The base has moved for a while; what counted from the start becomes observable.
 void Tracker::let_base_move() {
   replay([](ChainFilter& filter) { filter.set_base(BaseMode::moving); });
   begin_grid();
 }
 
-/// Of the first joint position that is unknown and that motion can tell: a slide, or any on a moving base.
+/// Of the first joint position that is unknown and that motion determines: a prismatic one, or any on a moving base.
 void Tracker::begin_grid() {
   const bool moves = filter_.state().base == BaseMode::moving;
   for (std::size_t b = 1; b < model_->bodies.size() && !grid_; ++b) {
@@ -211,8 +225,7 @@ void Tracker::examine_fit() {
   }
 }
 
-void Tracker::process_block() {
-  const BlockMeasurement& block = block_.mean();
+void Tracker::process_block(const BlockMeasurement& block) {
   if (grid_) {
     resolve_start(block);
   } else {
@@ -228,7 +241,6 @@ void Tracker::process_block() {
     else
       examine_fit();
   }
-  block_.clear();
   tool_.spread(*model_, filter_.state(), filter_.covariance());
 }
 

@@ -38,8 +38,9 @@ class Tracker {
 
  private:
   void restart(double time);
+  void wait_for_start();
   void try_start();
-  void process_block();
+  void process_block(const BlockMeasurement& block);
   void resolve_start(const BlockMeasurement& block);
   void choose_sensors();
   void replay(const std::function<void(ChainFilter&)>& prepare);
@@ -58,6 +59,7 @@ class Tracker {
   std::optional<StartGrid> grid_;
   std::vector<bool> is_known_;  // of each joint position of the filter
   RowBlock block_;
+  std::vector<BlockMeasurement> waiting_;  // for the start
   RestBias rest_;
   BaseWatch base_;
   HealthWatch health_;

@@ -15,13 +15,13 @@ using test::random_vector;
 using testing::numeric_jacobian;
 
 VectorXd flat(const InsState& s) {
-  VectorXd x(12);
-  x << s.angular_velocity, s.angular_acceleration, s.force, s.field;
+  VectorXd x(state_size);
+  x << s.angular_velocity, s.angular_acceleration, s.force;
   return x;
 }
 
 InsState state_of(ConstVectorRef x) {
-  return {x.head<3>(), x.segment<3>(3), x.segment<3>(6), x.tail<3>()};
+  return {x.head<3>(), x.segment<3>(3), x.tail<3>()};
 }
 
 std::vector<InsBody> bodies_of_every_kind(Rng& rng) {
@@ -41,7 +41,7 @@ std::vector<InsBody> bodies_of_every_kind(Rng& rng) {
 TEST(ChainPropagation, DerivativesAgreeWithDifferences) {
   Rng rng(5);
   for (const InsBody& body : bodies_of_every_kind(rng)) {
-    const InsState parent{random_vector(rng), random_vector(rng), random_vector(rng), random_vector(rng)};
+    const InsState parent{random_vector(rng), random_vector(rng), random_vector(rng)};
     const JointKinematicState q{Vec3(0.4, 0.8, -0.3), Vec3(-0.7, 0.2, 0.9), Vec3(1.3, -0.5, 0.4)};
     PropagatedDerivative derivative;
     propagate(body, q, parent, derivative);
@@ -65,7 +65,7 @@ TEST(ChainPropagation, DerivativesAgreeWithDifferences) {
 TEST(ChainPropagation, SpecificForceIsThatOfThePointsMotion) {
   Rng rng(6);
   const auto bodies = bodies_of_every_kind(rng);
-  const Vec3 spin = random_vector(rng), sweep = random_vector(rng), field(1.0, 20.0, -44.0), up(0.0, 0.0, 9.81);
+  const Vec3 spin = random_vector(rng), sweep = random_vector(rng), up(0.0, 0.0, 9.81);
   const auto parent_rotation = [&](double t) { return Mat3(exp_so3(std::sin(t) * spin) * exp_so3(t * t * sweep)); };
   const auto parent_position = [&](double t) { return Vec3(std::sin(2 * t) * spin + t * t * t * sweep); };
   const auto joint_position = [](double t) { return Vec3(0.3 + std::sin(1.7 * t), t * t, std::cos(t)); };
@@ -80,7 +80,6 @@ TEST(ChainPropagation, SpecificForceIsThatOfThePointsMotion) {
     s.angular_acceleration =
         (angular_velocity_at(rotation, t0 + h) - angular_velocity_at(rotation, t0 - h)) / (2.0 * h);
     s.force = rotation(t0).transpose() * (second(position) + up);
-    s.field = rotation(t0).transpose() * field;
     return s;
   };
   for (const InsBody& body : bodies) {

@@ -79,7 +79,7 @@ struct BoundExample {
     problem.sensors.resize(2);
     const ClippedGyroscope gyroscope([](double t) { return std::sin(9.0 * t); });
     for (InsMeasurements& sensor : problem.sensors) {
-      sensor.noise = {0.1, 0.5, 1.0};
+      sensor.noise = {0.1, 0.5};
       sensor.angular_velocity = ins_blocks(gyroscope.sensor, gyroscope.time, InsInstrument::gyroscope, grid);
       sensor.force = ins_blocks(gyroscope.sensor, gyroscope.time, InsInstrument::accelerometer, grid);
     }

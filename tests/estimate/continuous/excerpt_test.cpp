@@ -57,10 +57,7 @@ InsProblem swinging(Index intervals) {
   for (const InsSensor& sensor : sensors) {
     const InsNoise noise{.angular_velocity = rate_noise, .force = force_noise};
     problem.sensors.push_back({ins_blocks(sensor, time, InsInstrument::gyroscope, problem.grid),
-                               ins_blocks(sensor, time, InsInstrument::accelerometer, problem.grid),
-                               {},
-                               noise,
-                               noise});
+                               ins_blocks(sensor, time, InsInstrument::accelerometer, problem.grid), noise, noise});
   }
   return problem;
 }

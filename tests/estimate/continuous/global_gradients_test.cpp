@@ -22,14 +22,9 @@ ClockExample clock_example() {
   Rng rng(3);
   ClockExample e;
   e.problem.grid = {.begin = 0.0, .period = 0.1, .intervals = 12};
-  e.problem.prior = {.gyroscope_bias = 1e-2,
-                     .accelerometer_bias = 0.1,
-                     .magnetometer_bias = 0.1,
-                     .clock_offset = 0.01,
-                     .clock_drift = 0.1};
+  e.problem.prior = {.gyroscope_bias = 1e-2, .accelerometer_bias = 0.1, .clock_offset = 0.01, .clock_drift = 0.1};
   for (std::size_t s = 0; s < 2; ++s) {
-    InsMeasurements measurements{
-        .angular_velocity = {}, .force = {}, .field = {}, .noise = {0.5, 0.5, 1.0}, .noise_floor = {}};
+    InsMeasurements measurements{.angular_velocity = {}, .force = {}, .noise = {0.5, 0.5}, .noise_floor = {}};
     InsSensor sensor{.name = "s", .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}};
     std::vector<double> time;
     for (int row = 0; row < 60; ++row) {

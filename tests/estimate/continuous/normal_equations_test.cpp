@@ -40,7 +40,7 @@ SystemExample system_example(Index intervals, Biases biases = Biases::constant) 
   SystemExample e;
   e.problem.grid = {.begin = 0.0, .period = 0.1, .intervals = intervals};
   e.problem.root_at_rest = false;
-  e.problem.prior = {0.1, 0.1, 0.1, 0.01, 0.01};
+  e.problem.prior = {0.1, 0.1, 0.01, 0.01};
   for (int s = 0; s < 2; ++s)
     e.problem.sensors.push_back({random_blocks(intervals, rng), random_blocks(intervals, rng), {}, {}, {}});
   e.x.bodies = {{.sensor = 0}, test::random_revolute_body(0, 1, rng)};

@@ -290,7 +290,7 @@ TEST(PoseSetCsv, BadFilesAreRefusedWithOneSentence) {
        "poses.csv:2: column y: expected a number, found \"1 234.5\"; thousands separators are not read"},
       {header + "0,0,1,nan,3\n", "poses.csv:2: column y: expected a finite number, found \"nan\""},
       {header + "inf,0,1,2,3\n", "poses.csv:2: column q1: expected a finite number, found \"inf\""},
-      {header + "0,,1,2,3\n", "poses.csv:2: column q2: a joint reading is missing"},
+      {header + "0,,1,2,3\n", "poses.csv:2: column q2: a joint position is missing"},
       {header + "0,0,1,,3\n", "poses.csv:2: expected x, y and z or none of them, found 2"},
       {"q1,q2,x,y,z,x\n0,0,1,2,3,4\n", "poses.csv:1: column x appears twice"},
       {"q1,q2,x[mm],y,z,x[m]\n0,0,1,2,3,4\n", "poses.csv:1: column x appears twice"},

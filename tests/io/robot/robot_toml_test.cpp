@@ -133,7 +133,7 @@ TEST(RobotToml, BadFilesAreRefusedWithOneSentence) {
       {with(good, "d = 504.0", "d = \"504\""), "arm.toml:12: joint 1: \"d\": expected a number, found a text"},
       {with(good, "d = 504.0", "d = nan"), "arm.toml:12: joint 1: \"d\": expected a finite number"},
       {with(good, "\"prismatic\"", "\"linear\""),
-       "arm.toml:16: joint 2: \"type\": expected \"revolute\", \"prismatic\" or \"fixed\", found \"linear\""},
+       "arm.toml:16: joint 2: \"type\": expected " + joint_type_names() + ", found \"linear\""},
       {with(good, "\"deg\"", "\"degrees\""),
        "arm.toml:3: units: \"angle\": expected an angle (rad, deg, mrad), found \"degrees\""},
       {with(good, "\"mm\"", "\"deg\""), "arm.toml:3: units: \"length\": expected a length (m, mm, um), found \"deg\""},

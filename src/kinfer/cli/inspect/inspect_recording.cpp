@@ -79,7 +79,7 @@ void print_sensor(const InsSensor& sensor, std::span<const double> time, const s
     fmt::print(", field {} {}/√Hz", triple(found.field_density, 1.0, "{:.3f} {:.3f} {:.3f}"),
                is_in_microtesla(sensor) ? "µT" : "of its unit");
   fmt::print(
-      "\n  gravity at rest is {:.3f} m/s² off; largest reading {:.0f} °/s and {:.1f} m/s²; gyro scale errors about "
+      "\n  gravity at rest is {:.3f} m/s² off; largest values {:.0f} °/s and {:.1f} m/s²; gyro scale errors about "
       "{:.2g} %\n",
       found.gravity_error, found.largest_rate / degree, found.largest_acceleration, 100.0 * found.scale_error);
   fmt::print("  judged grade: {}\n", estimate_sensor_model(found).name);

@@ -24,17 +24,17 @@ ColumnMap with_angle_unit(ColumnMap map, const std::string& unit) {
 
 std::vector<calibrate::OrientationInterpretation> orientation_hypotheses(const std::string& file, const Chain& chain,
                                                                          const ColumnMap& map) {
-  std::vector<calibrate::OrientationInterpretation> readings;
-  if (!map.euler) return readings;
+  std::vector<calibrate::OrientationInterpretation> interpretations;
+  if (!map.euler) return interpretations;
   for (const char* unit : {"deg", "rad"})
     for (const std::string& sequence : sequences()) {
       ColumnMap other = with_angle_unit(map, unit);
       other.euler = parse_euler_sequence(sequence);
       const auto set = read_pose_set(file, chain, other);
       if (!set) continue;
-      readings.push_back({{{"euler", sequence}, {"unit", std::string(unit)}}, set->orientations});
+      interpretations.push_back({{{"euler", sequence}, {"unit", std::string(unit)}}, set->orientations});
     }
-  return readings;
+  return interpretations;
 }
 
 }  // namespace kinfer::cli

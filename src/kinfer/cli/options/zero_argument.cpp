@@ -9,13 +9,13 @@
 namespace kinfer::cli {
 namespace {
 
-struct MeasuredQuantity {
+struct ZeroQuantity {
   double value = 0.0;  ///< SI
   Dimension dimension = Dimension::one;
 };
 
 /// "-30deg", "1.2 s".
-std::optional<MeasuredQuantity> parse_quantity(std::string_view text) {
+std::optional<ZeroQuantity> parse_quantity(std::string_view text) {
   const std::size_t end = text.find_last_of("0123456789.");
   if (end == std::string_view::npos) return std::nullopt;
   const auto number = parse_number(text.substr(0, end + 1));
@@ -23,7 +23,7 @@ std::optional<MeasuredQuantity> parse_quantity(std::string_view text) {
   while (!unit_text.empty() && unit_text.front() == ' ') unit_text.remove_prefix(1);
   const auto unit = find_unit(unit_text);
   if (!number || !unit) return std::nullopt;
-  return MeasuredQuantity{*number * unit->factor, unit->dimension};
+  return ZeroQuantity{*number * unit->factor, unit->dimension};
 }
 
 Result<identify::NamedZero> parse_zero(const std::string& text) {

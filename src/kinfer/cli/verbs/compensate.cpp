@@ -131,11 +131,11 @@ Verb add_compensate(CLI::App& app) {
   add_text(*verb, "--joints", options->joints, "Joint lists as the controller would send them", Requirement::optional,
            "CSV");
   add_text(*verb, "--targets", options->targets,
-           "Wanted tool poses: x,y,z, with or without qw,qx,qy,qz and readings to start from", Requirement::optional,
-           "CSV");
+           "Wanted tool poses: x,y,z, with or without qw,qx,qy,qz and joint positions to start from",
+           Requirement::optional, "CSV");
   add_text(*verb, "-o,--out", options->out,
-           "Where to write the corrected readings and residual[mm] (default: standard output)", Requirement::optional,
-           "CSV");
+           "Where to write the corrected joint positions and residual[mm] (default: standard output)",
+           Requirement::optional, "CSV");
   add_choice(*verb, "--frames", options->frames, {"auto", "world", "robot"},
              "world: base and tool as the files say; robot: the nominal ones for both");
   add_common_options(*verb, options->common);

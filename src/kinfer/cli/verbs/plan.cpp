@@ -180,7 +180,7 @@ Verb add_plan(CLI::App& app) {
   add_robot_option(*verb, options->robot, "--robot",
                    "Nominal model, its limits, tolerances and [instrument]: " + readable_model_formats());
   add_count(*verb, "--poses", options->poses, 1, 1000, "Number of poses to choose");
-  add_text(*verb, "-o,--out", options->out, "Joint readings of the poses; the figure has the same name with .svg",
+  add_text(*verb, "-o,--out", options->out, "Joint positions of the poses; the figure has the same name with .svg",
            Requirement::required, "CSV");
   add_text(*verb, "--data", options->data, "Poses measured already: which to add, and which are redundant",
            Requirement::optional, "CSV");

@@ -156,9 +156,9 @@ Verb add_track(CLI::App& app) {
            Requirement::optional, "DIR");
   add_flag(*verb, "--follow", options->follow, "At the end of the log wait for more, until interrupted (Ctrl-C)");
   add_choice(*verb, "--base", options->base, {"auto", "still", "moving"},
-             "Whether the base stands still; auto: as its sensor tells");
+             "Whether the base stands still; auto: by its sensor");
   add_text(*verb, "--start", options->start,
-           "Joint positions where the log begins, in deg and mm; nan: unknown (default: as gravity tells)",
+           "Joint positions where the log begins, in deg and mm; nan: unknown (default: by gravity)",
            Requirement::optional, "LIST");
   add_text(
       *verb, "--facts", options->facts,

@@ -102,12 +102,10 @@ InsExcerpt excerpt_of(const InsProblem& problem, const InsUnknowns& start, const
       static_cast<double>(count * excerpt_window) / static_cast<double>(problem.grid.intervals);
   excerpt.problem.prior.clock_offset = excerpt.problem.prior.clock_drift = 0.0;
   for (const InsMeasurements& from : problem.sensors) {
-    InsMeasurements to{
-        .angular_velocity = {}, .force = {}, .field = {}, .noise = from.noise, .noise_floor = from.noise_floor};
+    InsMeasurements to{.angular_velocity = {}, .force = {}, .noise = from.noise, .noise_floor = from.noise_floor};
     for (const Index k : windows) {
       copy_blocks(from.angular_velocity, k, to.angular_velocity);
       copy_blocks(from.force, k, to.force);
-      copy_blocks(from.field, k, to.field);
       copy_blocks(from.clipped_rate, k, to.clipped_rate);
       copy_blocks(from.clipped_force, k, to.clipped_force);
     }
@@ -133,7 +131,6 @@ bool start_from_excerpt(InsProblem& problem, InsUnknowns& start, const InsFitOpt
   const InsFit fit = fit_ins(excerpt.problem, excerpt.start, options, observer);
   start.bodies = fit.unknowns.bodies;
   start.root_force = fit.unknowns.root_force;
-  start.root_field = fit.unknowns.root_field;
   for (std::size_t s = 0; s < start.errors.size(); ++s) {
     const InsClock clock = start.errors[s].clock;
     start.errors[s] = fit.unknowns.errors[s];

@@ -12,7 +12,7 @@ namespace kinfer {
 
 /// Where the joint positions of a joint come from.
 enum class JointSource {
-  none,      ///< unknown: not started, or no sensor tells
+  none,      ///< unknown: not started, or no sensor shows it
   chain,     ///< the filter on the whole chain
   composed,  ///< the orientations of its two sensors, each filtered alone
 };
@@ -21,7 +21,7 @@ std::string_view name(JointSource source);
 /// What a joint position counts from.
 enum class JointReference {
   chain,  ///< the chain's zero
-  start,  ///< where tracking started: neither gravity nor motion has told where that is
+  start,  ///< where tracking started: neither gravity nor motion has shown where that is
 };
 std::string_view name(JointReference reference);
 

@@ -79,10 +79,11 @@ struct TrackingRange {
 struct TrackingJoint {
   std::string name{};  ///< of the chain's joint; several positions are "name 1", "name 2", ...
   EstimatedJointType type = EstimatedJointType::revolute;
-  int first_position = 0;   ///< index into q of its first joint position
-  int positions = 1;        ///< their number: 0 (rigid) to 3
-  double stray = 0.0;       ///< [rad] rms angle of a loose hinge's two axes, per direction across them; 0: a true hinge
-  double stray_time = 0.0;  ///< [s] correlation time of the stray
+  int first_position = 0;  ///< index into q of its first joint position
+  int positions = 1;       ///< their number: 0 (rigid) to 3
+  double stray =
+      0.0;  ///< [rad] rms angle between the two axes of a loose revolute joint, per direction across them; 0: one axis
+  double stray_time = 0.0;             ///< [s] correlation time of the stray
   std::vector<TrackingRange> range{};  ///< one for each position; empty: unknown
 };
 
@@ -138,7 +139,7 @@ struct TrackingModel {
 /// Names of the joint positions, in the order of q; they are those of the chain's active joints.
 std::vector<std::string> position_names(const TrackingModel& model);
 
-/// Combinations of parameters of which the log told nothing, one unit column each in units of the prior's standard
+/// Combinations of parameters that the log leaves unobservable, one unit column each in units of the prior's standard
 /// deviations: their variance is more than half of the prior's.
 MatrixXd hidden_directions(const TrackingModel& model);
 

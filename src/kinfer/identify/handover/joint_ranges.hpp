@@ -11,7 +11,7 @@ namespace kinfer::identify {
 MatrixXd joint_splines(const InsFit& fit, const JointBodies& joint);
 
 /// One for each position of the joint. Positions from its trajectory, speeds and accelerations from the splines: of the
-/// three of a spherical joint, and of a loose hinge, the norm.
+/// three of a spherical joint, and of a loose revolute joint, the norm.
 std::vector<TrackingRange> joint_ranges(const JointEstimate& joint, const SplineGrid& grid, ConstMatrixRef splines);
 
 TrackingBase base_motion(const InsProblem& problem, const InsFit& fit);

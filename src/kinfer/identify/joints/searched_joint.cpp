@@ -43,11 +43,11 @@ FrameState at_row(const SegmentMotion& segment, std::size_t row) {
 /// The state of the child behind a revolute joint on the moving parent, by the joint's own motion.
 FrameState child_state(const InsBody& joint, const FrameState& parent, const JointSignal& angle, std::size_t i) {
   const Mat3 to_parent = parent.rotation.transpose();
-  const InsState moved = propagated(joint,
-                                    {Vec3(angle.angle[i], 0.0, 0.0), Vec3(angle.angular_velocity[i], 0.0, 0.0),
-                                     Vec3(angle.angular_acceleration[i], 0.0, 0.0)},
-                                    {to_parent * parent.angular_velocity, to_parent * parent.angular_acceleration,
-                                     to_parent * parent.acceleration, Vec3::Zero()});
+  const InsState moved = propagated(
+      joint,
+      {Vec3(angle.angle[i], 0.0, 0.0), Vec3(angle.angular_velocity[i], 0.0, 0.0),
+       Vec3(angle.angular_acceleration[i], 0.0, 0.0)},
+      {to_parent * parent.angular_velocity, to_parent * parent.angular_acceleration, to_parent * parent.acceleration});
   const Mat3 rotation = parent.rotation * joint.parent_R_axis * rot_z(angle.angle[i]) * joint.child_R_axis.transpose();
   return {rotation, rotation * moved.angular_velocity, rotation * moved.angular_acceleration, rotation * moved.force};
 }

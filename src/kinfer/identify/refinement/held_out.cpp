@@ -36,7 +36,7 @@ class ScopedExclusion {
   template <class Visit>
   void visit_blocks(const Visit& visit) {
     for (InsMeasurements& r : problem_.sensors)
-      for (auto* blocks : {&r.angular_velocity, &r.force, &r.field, &r.clipped_rate.blocks, &r.clipped_force.blocks})
+      for (auto* blocks : {&r.angular_velocity, &r.force, &r.clipped_rate.blocks, &r.clipped_force.blocks})
         if (!blocks->empty())
           for (const auto& [begin, end] : intervals_)
             for (Index k = begin; k < end; ++k) visit((*blocks)[static_cast<std::size_t>(k)]);

@@ -91,7 +91,7 @@ void read_joints(PoseColumns& columns, const Chain& chain, RequiredContent requi
   for (std::size_t row = 0; row < columns.rows(); ++row)
     for (std::size_t i = 0; i < names.size(); ++i)
       if (std::isnan(set.joints(i, row)))
-        columns.report_error(row, fmt::format("column {}: a joint reading is missing", names[i]));
+        columns.report_error(row, fmt::format("column {}: a joint position is missing", names[i]));
 }
 
 /// Joint values that may be absent, all or some; an empty matrix where there are none.

@@ -185,7 +185,7 @@ std::vector<Coupling> read_couplings(TableReader& row, const std::vector<Joint>&
     if (index < 0)
       reader.report_error(value.line, fmt::format("no joint is named \"{}\" (there are {})", name, names_of(joints)));
     else if (!joints[index].is_active)
-      reader.report_error(value.line, fmt::format("joint \"{}\" has no reading", name));
+      reader.report_error(value.line, fmt::format("joint \"{}\" has no joint position", name));
     couplings.push_back({index, reader.number(name)});
   }
   return couplings;

@@ -217,7 +217,7 @@ class ChainBuilder {
     if (source->mimic) return report_error(fmt::format("joint \"{}\" mimics itself", source->name));
     const int leader = add_with_ancestors(source->name);
     if (leader < 0 || !has_position(chain_.joints[leader].type))
-      return report_error(fmt::format("joint \"{}\" mimics joint \"{}\", which has no reading",
+      return report_error(fmt::format("joint \"{}\" mimics joint \"{}\", which has no joint position",
                                       chain_.joints[index].name, source->name));
     chain_.joints[index].couplings = {{leader, factor}};
     UrdfLink& link = std::get<UrdfLink>(chain_.joints[index].link);

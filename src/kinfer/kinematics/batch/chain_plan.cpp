@@ -282,7 +282,7 @@ std::vector<JointMotion> joint_motions_of(const Chain& chain, const Lookup& look
                              .q_index = q_index[j]};
     for (const Coupling& c : joint.couplings) joint_motion.couplings.push_back({q_index[c.joint], c.factor});
     KINFER_EXPECT(joint_motion.gain.parameter < 0 || joint_motion.q_index >= 0,
-                  "gain of joint {}, which has no reading", j);
+                  "gain of joint {}, which has no joint position", j);
     if (joint_motion.gain.parameter >= 0)
       joint_motion.move = turns ? MotionKind::revolute_with_gain : MotionKind::prismatic_with_gain;
     list.push_back(std::move(joint_motion));

@@ -224,12 +224,12 @@ class PointSweep {
   void write_gain(const Screw& screw, double* stored, const Points<V, n>& axis, const Points<V, n>& first,
                   const Points<V, n>& second) const {
     for (int u = 0; u < n; ++u) {
-      const V reading = datum(u, screw.slot + 2);
+      const V position = datum(u, screw.slot + 2);
       if (screw.move == MotionKind::prismatic_with_gain) {
-        put(screw.gain.parameter, u, reading * axis.x[u], reading * axis.y[u], reading * axis.z[u]);
+        put(screw.gain.parameter, u, position * axis.x[u], position * axis.y[u], position * axis.z[u]);
         continue;
       }
-      const V a = reading * load<V>(stored_at(stored, 0, u)), b = reading * load<V>(stored_at(stored, 1, u));
+      const V a = position * load<V>(stored_at(stored, 0, u)), b = position * load<V>(stored_at(stored, 1, u));
       put(screw.gain.parameter, u, mul_sub(second.x[u], a, first.x[u] * b), mul_sub(second.y[u], a, first.y[u] * b),
           mul_sub(second.z[u], a, first.z[u] * b));
     }

@@ -79,7 +79,7 @@ struct PoseEvaluator::Program {
       const bool by_joint_state =
           step.scale != Scale::one && step.scale != Scale::torque && step.scale != Scale::coupled;
       KINFER_EXPECT(!by_joint_state || motion_models[step.source].q_index >= 0,
-                    "gain of joint {}, which has no reading", step.source);
+                    "gain of joint {}, which has no joint position", step.source);
       acts[step.index] = true;
       if (step.motion == Motion::rotation) rotational.push_back(step.index);
     }
@@ -202,7 +202,7 @@ struct PoseEvaluator::Program {
   }
 
   ToolAndFlange run(const StepList& list, ConstVectorRef q, const Load& load, bool needs_torque, Twists* twists) const {
-    KINFER_EXPECT(q.size() == active_count, "{} readings for {} joints that have one", q.size(), active_count);
+    KINFER_EXPECT(q.size() == active_count, "{} joint positions for {} joints that have one", q.size(), active_count);
     return run(list, {q.data(), needs_torque ? gravity(q.data(), load) : nullptr, &load}, twists);
   }
 

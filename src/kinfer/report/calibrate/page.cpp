@@ -98,7 +98,7 @@ html::Section calibration_glossary() {
       {"a, alpha, d, theta, beta",
        "The five numbers from one joint axis to the next (Denavit and Hartenberg; beta is Hayati's rotation for nearly "
        "parallel axes). The number behind the letter is the joint's row, from 1."},
-      {"gain, compliance", "Joint displacement per encoder reading; rotation per torque of gravity."},
+      {"gain, compliance", "Joint displacement per joint position; rotation per torque of gravity."},
       {"±, sd", "One standard deviation of the number."},
       {"not determined", "The data do not determine the parameter better than its tolerance does."},
       {"rms", "Root of the mean square: weighs large errors more than the mean does."},

@@ -203,7 +203,7 @@ html::Section model_section(const CalibrationEvidence& e) {
 }
 
 html::Section doubts_section(const CalibrationEvidence& e) {
-  return {"doubts", "Outliers and findings", "Rows and readings that do not fit, and what was done about them.",
+  return {"doubts", "Outliers and findings", "Rows and measurements that do not fit, and what was done about them.",
           outlier_table(e) + findings_table(e.findings, FindingRows::shown) + notes_list(e.notes)};
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last seconds once more, in the light of what they told: without a sensor that turned out to be faulty, or with a
-// base that turned out to move. Until then the filter has believed otherwise. Two earlier filters and the blocks since
-// the older of them are kept.
+// The last seconds once more, in the light of what they showed: without a sensor that turned out to be faulty, or with
+// a base that turned out to move. Until then the filter has believed otherwise. Two earlier filters and the blocks
+// since the older of them are kept.
 #pragma once
 
 #include "kinfer/track/filter/chain_filter.hpp"

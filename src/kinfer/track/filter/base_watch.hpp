@@ -10,7 +10,7 @@ namespace kinfer::track {
 
 class BaseWatch {
  public:
-  /// `given`: by the user; none: the base's sensor tells.
+  /// `given`: by the user; none: by the sensor of the base.
   BaseWatch(const TrackingModel& model, const FilterModel& filter, std::optional<BaseMode> given);
 
   void add(const BlockMeasurement& block, const ChainFilter& filter);

@@ -5,20 +5,17 @@
 #include <cmath>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/base/square.hpp"
 #include "kinfer/linalg/small_cholesky.hpp"
 #include "kinfer/track/filter/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {
 
-double squared(double x) {
-  return x * x;
-}
-
 /// Variance of a block's mean: white noise averages out, what persists over the block does not, and what persists over
 /// many blocks is worth more white noise than either.
 double block_variance(double white, double persistent, double slow, double sample_period, double length, int count) {
-  return std::max(squared(white) / count + squared(persistent), squared(slow) * sample_period / length);
+  return std::max(square(white) / count + square(persistent), square(slow) * sample_period / length);
 }
 
 using SensorVector = Eigen::Matrix<double, sensor_rows, 1>;
@@ -44,10 +41,11 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
     : model_(std::move(model)), state_(initial_state(*model_)), evaluator_(*model_) {
   const FilterLayout& layout = model_->layout;
   const auto sensors = static_cast<std::size_t>(layout.sensors);
-  const Index most = layout.rows() + 3 + 2 * static_cast<Index>(model_->loose.size() + model_->slides.size());
+  const Index most = layout.rows() + 3 + 2 * static_cast<Index>(model_->loose.size() + model_->prismatic.size());
   p_ = MatrixXd::Zero(layout.size, layout.size);
   p_.bottomRightCorner(layout.size - layout.fast, layout.size - layout.fast) = model_->parameters;
   is_used_.assign(sensors, true);
+  steady_.assign(model_->prismatic.size(), {});
   inflation_.assign(sensors, {1.0, 1.0});
   innovations_.value = VectorXd::Zero(layout.rows());
   innovations_.leave_out.assign(sensors, 0.0);
@@ -127,8 +125,8 @@ void ChainFilter::form_sensor_rows(const BlockMeasurement& block, std::size_t s)
       settings.slow.force, inflation_[s].force);
 }
 
-/// A moving base stays about where it is, a slide in its range, and the axes of a loose hinge about aligned: N(0, σ²)
-/// with a correlation time τ is worth white noise of variance σ² 2τ/length in each block.
+/// A moving base stays about where it is, a prismatic joint in its range, and the axes of a loose revolute joint about
+/// aligned: N(0, σ²) with a correlation time τ is worth white noise of variance σ² 2τ/length in each block.
 void ChainFilter::form_soft_rows(double length) {
   rows_ = model_->layout.rows();
   const auto worth = [&](double sd, double time) { return sd * sd * std::max(1.0, 2.0 * time / length); };
@@ -141,21 +139,39 @@ void ChainFilter::form_soft_rows(double length) {
   if (state_.base == BaseMode::moving)
     for (Index k = 0; k < 3; ++k)
       h_(append(-state_.velocity[k], worth(base_velocity_sd, base_velocity_time)), BaseIndex::velocity + k) = 1.0;
-  for (const SlideRange& slide : model_->slides) {
-    const double* x = state_.joints.data() + position_states * slide.position;
-    const Index at = model_->layout.joint_state(slide.position);
-    h_(append(slide.middle - x[0], worth(slide.half, slide_position_time)), at) = 1.0;
-    h_(append(-x[1], worth(slide.speed, slide_velocity_time)), at + 1) = 1.0;
+  for (std::size_t k = 0; k < model_->prismatic.size(); ++k) {
+    const PrismaticRange& range = model_->prismatic[k];
+    const double* x = state_.joints.data() + position_states * range.position;
+    const Index at = model_->layout.joint_state(range.position);
+    const double speed = rests(k, length) ? prismatic_creep : range.speed;
+    h_(append(range.middle - x[0], worth(range.half, prismatic_position_time)), at) = 1.0;
+    h_(append(-x[1], worth(speed, prismatic_velocity_time)), at + 1) = 1.0;
   }
-  for (const LooseHinge& hinge : model_->loose) {
-    const Mat3& ball = state_.balls[hinge.body];
-    const Mat3 by_turn = -ball * skew(Vec3::UnitZ());
+  for (const LooseRevoluteJoint& loose : model_->loose) {
+    const Mat3& rotation = state_.spherical[loose.body];
+    const Mat3 by_turn = -rotation * skew(Vec3::UnitZ());
     for (Index k = 0; k < 2; ++k) {
-      const Index row = append(-ball(k, 2), worth(hinge.stray, hinge.time));
+      const Index row = append(-rotation(k, 2), worth(loose.stray, loose.time));
       for (Index i = 0; i < 3; ++i)
-        h_(row, model_->layout.joint_state(model_->layout.position[hinge.body] + i)) = by_turn(k, i);
+        h_(row, model_->layout.joint_state(model_->layout.position[loose.body] + i)) = by_turn(k, i);
     }
   }
+}
+
+/// A prismatic joint rests where its velocity has been the same for a while, by even odds none. A machine's telescope
+/// is locked most of the time, and its acceleration, integrated twice, would drift by decimetres.
+bool ChainFilter::rests(std::size_t k, double length) {
+  const PrismaticRange& range = model_->prismatic[k];
+  const double velocity = state_.joints[position_states * range.position + 1];
+  const Index at = model_->layout.joint_state(range.position) + 1;
+  const auto log_density = [&](double speed) {
+    const double variance = p_(at, at) + square(speed);
+    return -0.5 * (square(velocity) / variance + std::log(variance));
+  };
+  SteadyVelocity& steady = steady_[k];
+  if (std::abs(velocity - steady.velocity) > prismatic_steadiness) steady = {velocity, 0.0};
+  steady.duration += length;
+  return steady.duration > prismatic_rest && log_density(prismatic_creep) > log_density(range.speed);
 }
 
 void ChainFilter::form_rows(const BlockMeasurement& block) {
@@ -365,19 +381,20 @@ void ChainFilter::update(const BlockMeasurement& block) {
   correct();
 }
 
+double ChainFilter::variance(const ScalarRow& row) const {
+  double variance = row.variance;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(row.terms); ++i)
+    for (std::size_t k = 0; k < static_cast<std::size_t>(row.terms); ++k)
+      variance += row.factor[i] * row.factor[k] * p_(row.at[i], row.at[k]);
+  return variance;
+}
+
 void ChainFilter::update(const ScalarRow& row) {
   const Index estimated = model_->layout.first_geometry;
+  const double variance = this->variance(row);
   auto w = w_.col(0);
   w.setZero();
-  double variance = row.variance;
-  for (int k = 0; k < row.terms; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    w += row.factor[i] * p_.col(row.at[i]);
-  }
-  for (int k = 0; k < row.terms; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    variance += row.factor[i] * w[row.at[i]];
-  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(row.terms); ++i) w += row.factor[i] * p_.col(row.at[i]);
   error_.setZero();
   error_.head(estimated) = (row.innovation / variance) * w.head(estimated);
   retract(*model_, error_, state_);

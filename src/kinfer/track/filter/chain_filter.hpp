@@ -53,10 +53,12 @@ class ChainFilter {
     double innovation = 0.0, variance = 1.0;
   };
   void update(const ScalarRow& row);
+  /// Of its innovation: that of the measurement and that of the states.
+  double variance(const ScalarRow& row) const;
 
   void set_base(BaseMode mode);
 
-  /// Moves a joint position (of a hinge or slide) and states how well it is known there.
+  /// Moves a joint position (of a revolute or prismatic joint) and states how well it is known there.
   void place(Index position, double value, double sd);
 
   /// Forgets what is unknown of a joint position: it counts from here.
@@ -73,6 +75,7 @@ class ChainFilter {
   void form_rows(const BlockMeasurement& block);
   void form_sensor_rows(const BlockMeasurement& block, std::size_t sensor);
   void form_soft_rows(double length);
+  bool rests(std::size_t prismatic, double length);
   void multiply();  // W and S
   void limit_outliers();
   void examine();
@@ -81,12 +84,17 @@ class ChainFilter {
   void bound();
   void mirror();
 
+  struct SteadyVelocity {
+    double velocity = 0.0, duration = 0.0;  // [m/s], [s] since it has been about that
+  };
+
   std::shared_ptr<const FilterModel> model_;
   ChainState state_;
   MatrixXd p_;
   ChainEvaluator evaluator_;
   std::vector<bool> is_used_;
   std::vector<InsLevel> inflation_;
+  std::vector<SteadyVelocity> steady_;  // of each prismatic joint
   Innovations innovations_;
   // Buffers of an update: sensors' rows first, then soft constraints.
   Index rows_ = 0;

@@ -6,9 +6,10 @@
 namespace kinfer::track {
 namespace {
 
-/// The body in this state: the rotation of a ball is part of its parent_R_axis, so that its joint position is zero.
-void set_ball(const InsBody& model, const Mat3& ball, InsBody& body) {
-  if (model.motion == JointMotion::spherical) body.parent_R_axis = model.parent_R_axis * ball;
+/// The body in this state: the rotation of a spherical joint is part of its parent_R_axis, so that its joint position
+/// is zero.
+void set_spherical(const InsBody& model, const Mat3& rotation, InsBody& body) {
+  if (model.motion == JointMotion::spherical) body.parent_R_axis = model.parent_R_axis * rotation;
 }
 
 JointKinematicState joint_state_of(const FilterModel& model, const ChainState& state, std::size_t b) {
@@ -21,7 +22,7 @@ JointKinematicState joint_state_of(const FilterModel& model, const ChainState& s
 }
 
 /// Columns by φ at constant φ̇ and φ̈ become columns at constant angular velocity and acceleration, which are the states
-/// of a ball.
+/// of a spherical joint.
 void keep_angular_velocity(const JointKinematicState& q, StateJacobian& columns) {
   const RotationVectorMotion r = rotation_vector_motion(q[0], q[1], q[2]);
   const Mat3 velocity = -r.velocity_by_vector,
@@ -53,19 +54,19 @@ ChainEvaluator::ChainEvaluator(const FilterModel& model) : bodies_(model.bodies)
   }
   derivatives_.resize(bodies_.size());
   for (std::size_t b = 1; b < bodies_.size(); ++b)
-    derivatives_[b].by_own.resize(12, 3 * degrees_of_freedom(bodies_[b].motion) + bodies_[b].unknowns());
+    derivatives_[b].by_own.resize(state_size, 3 * degrees_of_freedom(bodies_[b].motion) + bodies_[b].unknowns());
 }
 
 void ChainEvaluator::propagate_body(const FilterModel& model, const ChainState& state, std::size_t b) {
   const FilterLayout& layout = model.layout;
-  set_ball(model.bodies[b], state.balls[b], bodies_[b]);
+  set_spherical(model.bodies[b], state.spherical[b], bodies_[b]);
   const auto parent = static_cast<std::size_t>(bodies_[b].parent);
   const JointKinematicState q = joint_state_of(model, state, b);
   PropagatedDerivative& derivative = derivatives_[b];
   propagate(bodies_[b], q, states_[parent], derivative);
   if (bodies_[b].motion == JointMotion::spherical) keep_angular_velocity(q, derivative.by_own);
   states_[b] = derivative.state;
-  const Eigen::Matrix<double, 9, 9> by_parent = derivative.by_parent.topLeftCorner<9, 9>();
+  const Eigen::Matrix<double, 9, 9>& by_parent = derivative.by_parent;
   const Index fast = layout.fast_end[parent], geometry = layout.geometry_end[parent];
   for (Index j = 0; j < fast; ++j)
     by_fast_[b].col(j).head<9>().noalias() = by_parent * by_fast_[parent].col(j).head<9>();
@@ -74,9 +75,9 @@ void ChainEvaluator::propagate_body(const FilterModel& model, const ChainState& 
   const Index own = 3 * degrees_of_freedom(bodies_[b].motion);
   if (own > 0)
     for (Index j = 0; j < own; ++j)
-      by_fast_[b].col(layout.joint_state(layout.position[b]) + j) = derivative.by_own.col(j).head<9>();
+      by_fast_[b].col(layout.joint_state(layout.position[b]) + j) = derivative.by_own.col(j);
   for (Index j = 0; j < bodies_[b].unknowns(); ++j)
-    by_geometry_[b].col(layout.geometry[b] + j) = derivative.by_own.col(own + j).head<9>();
+    by_geometry_[b].col(layout.geometry[b] + j) = derivative.by_own.col(own + j);
 }
 
 void ChainEvaluator::measure(const FilterModel& model, const ChainState& state, std::size_t s) {
@@ -113,7 +114,7 @@ VectorXd predicted_measurement(const FilterModel& model, const ChainState& state
   std::vector<InsState> states{state.base_state(model.gravity)};
   for (std::size_t b = 1; b < model.bodies.size(); ++b) {
     InsBody body = model.bodies[b];
-    set_ball(model.bodies[b], state.balls[b], body);
+    set_spherical(model.bodies[b], state.spherical[b], body);
     states.push_back(propagated(body, joint_state_of(model, state, b), states[static_cast<std::size_t>(body.parent)]));
   }
   VectorXd value(model.layout.rows());

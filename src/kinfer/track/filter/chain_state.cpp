@@ -102,7 +102,7 @@ void move_base(const FilterModel& model, const ChainState& state, double dt, Mat
   p.topLeftCorner<base_states, base_states>().noalias() = left * f.transpose();
 }
 
-/// The attitude's error of a ball is in the turning frame: its columns ← columns exp(−turn)ᵀ.
+/// The attitude's error of a spherical joint is in the rotating frame: its columns ← columns exp(−turn)ᵀ.
 void turn_columns(const Mat3& back, Index first, MatrixXd& p) {
   for (Index i = 0; i < p.rows(); ++i) {
     const Vec3 row(p(i, first), p(i, first + position_states), p(i, first + 2 * position_states));
@@ -119,7 +119,7 @@ void turn_rows(const Mat3& back, Index first, Index begin, Index end, MatrixXd& 
   }
 }
 
-/// exp(−turn) of a ball over dt.
+/// exp(−turn) of a spherical joint over dt.
 Mat3 turned_back(const ChainState& state, Index first, double dt) {
   Vec3 turn;
   for (Index k = 0; k < 3; ++k) turn[k] = -dt * state.joints[position_states * (first + k) + 1];
@@ -135,8 +135,8 @@ void add_bias_walk(const FilterModel& model, double dt, MatrixXd& p) {
   }
 }
 
-void turn_ball(const FilterModel& model, std::size_t body, const Vec3& turn, ChainState& state) {
-  if (model.bodies[body].motion == JointMotion::spherical) state.balls[body] *= exp_so3(turn);
+void rotate_spherical(const FilterModel& model, std::size_t body, const Vec3& turn, ChainState& state) {
+  if (model.bodies[body].motion == JointMotion::spherical) state.spherical[body] *= exp_so3(turn);
 }
 
 }  // namespace
@@ -153,7 +153,7 @@ ChainState initial_state(const FilterModel& model) {
   const FilterLayout& layout = model.layout;
   ChainState state;
   state.joints = VectorXd::Zero(position_states * layout.positions);
-  state.balls.assign(model.bodies.size(), Mat3::Identity());
+  state.spherical.assign(model.bodies.size(), Mat3::Identity());
   for (const SensorSettings& s : model.sensors)
     state.sensors.push_back({s.gyroscope_bias, s.accelerometer_bias, s.gyroscope_scale, s.accelerometer_scale});
   return state;
@@ -175,7 +175,7 @@ void retract(const FilterModel& model, const VectorXd& error, ChainState& state)
       turn[i] = q;
       q = 0.0;
     }
-    turn_ball(model, b, turn, state);
+    rotate_spherical(model, b, turn, state);
   }
   for (std::size_t s = 0; s < state.sensors.size(); ++s) {
     const Index first = layout.sensor_state(static_cast<Index>(s));
@@ -210,7 +210,7 @@ void predict_mean(const FilterModel& model, double dt, ChainState& state) {
       x[1] += f.velocity_from_acceleration * x[2];
       x[2] *= f.acceleration_decay;
     }
-    turn_ball(model, b, turn, state);
+    rotate_spherical(model, b, turn, state);
   }
 }
 

@@ -19,8 +19,8 @@ struct ChainState {
   Mat3 world_R_base = Mat3::Identity();
   Vec3 rate = Vec3::Zero(), angular_acceleration = Vec3::Zero();  ///< of the base sensor's frame
   Vec3 velocity = Vec3::Zero(), acceleration = Vec3::Zero();      ///< of its origin, in the world
-  VectorXd joints;          ///< q, q̇, q̈ of each joint position; q of balls is 0
-  std::vector<Mat3> balls;  ///< of each body: exp(φ); the identity unless a ball
+  VectorXd joints;              ///< q, q̇, q̈ of each joint position; q of spherical joints is 0
+  std::vector<Mat3> spherical;  ///< of each body: exp(φ); the identity unless spherical
   std::vector<SensorErrors> sensors;
 
   /// Motion of the base, as the chain propagates it.

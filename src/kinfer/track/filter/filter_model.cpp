@@ -22,7 +22,7 @@ InsBody filter_body(const TrackingModel& model, const TrackingBody& body) {
   return made;
 }
 
-/// A ball's rotations have no geometry of their own: they are its position.
+/// The rotations of a spherical joint have no geometry of their own: they are its position.
 void free_parameter(InsBody& body, const TrackingParameter& parameter) {
   const auto component = static_cast<std::size_t>(parameter.component);
   const bool turns = body.motion != JointMotion::spherical;
@@ -109,7 +109,7 @@ SensorSettings settings_of(const TrackingSensor& sensor) {
 
 /// The acceleration that a joint showed, with room for a livelier drive; hands move faster than machines.
 AccelerationProcess process_of(const TrackingJoint& joint, JointMotion motion, int position) {
-  AccelerationProcess process = motion == JointMotion::prismatic ? slide_acceleration : machine_acceleration;
+  AccelerationProcess process = motion == JointMotion::prismatic ? prismatic_acceleration : machine_acceleration;
   if (static_cast<std::size_t>(position) >= joint.range.size()) return process;
   const double shown = acceleration_room * joint.range[static_cast<std::size_t>(position)].acceleration;
   if (shown > process.sd) {
@@ -119,14 +119,14 @@ AccelerationProcess process_of(const TrackingJoint& joint, JointMotion motion, i
   return process;
 }
 
-SlideRange slide_range(const TrackingJoint& joint, Index position) {
-  SlideRange slide{.position = position, .half = unseen_slide_half, .speed = slide_speed};
-  if (joint.range.empty()) return slide;
+PrismaticRange prismatic_range(const TrackingJoint& joint, Index position) {
+  PrismaticRange result{.position = position, .half = unseen_prismatic_half, .speed = prismatic_speed};
+  if (joint.range.empty()) return result;
   const auto& seen = joint.range.front();
-  slide.middle = 0.5 * (seen.lower + seen.upper);
-  slide.half = 0.5 * (seen.upper - seen.lower) + slide_play;
-  slide.speed = std::max(slide_speed, seen.speed);
-  return slide;
+  result.middle = 0.5 * (seen.lower + seen.upper);
+  result.half = 0.5 * (seen.upper - seen.lower) + prismatic_margin;
+  result.speed = std::max(prismatic_speed, seen.speed);
+  return result;
 }
 
 void set_processes(FilterModel& filter, const TrackingModel& model) {
@@ -143,7 +143,7 @@ void set_processes(FilterModel& filter, const TrackingModel& model) {
                                             : is_second          ? 1
                                                                  : 0));
     if (body.motion == TrackingMotion::prismatic)
-      filter.slides.push_back(slide_range(joint, filter.layout.position[b]));
+      filter.prismatic.push_back(prismatic_range(joint, filter.layout.position[b]));
     if (body.motion == TrackingMotion::revolute && dof == 3)
       filter.loose.push_back({b, joint.stray, std::max(joint.stray_time, min_stray_time)});
   }

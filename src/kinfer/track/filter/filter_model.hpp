@@ -19,14 +19,15 @@ struct SensorSettings {
   double sample_period = 0.005;
 };
 
-/// A ball that stands for a loose hinge: its axes stray from each other.
-struct LooseHinge {
+/// A spherical joint that stands for a loose revolute joint: its axes stray from each other.
+struct LooseRevoluteJoint {
   std::size_t body = 0;
   double stray = 0.0, time = 0.0;  ///< [rad] per direction, [s]
 };
 
-/// Inertial sensors tell the acceleration of a slide, but hardly its velocity: it moves within what was seen.
-struct SlideRange {
+/// Inertial sensors observe the acceleration of a prismatic joint, but hardly its velocity: it moves within the range
+/// seen.
+struct PrismaticRange {
   Index position = 0;               ///< of the filter
   double middle = 0.0, half = 0.0;  ///< [m]
   double speed = 0.0;               ///< [m/s]
@@ -38,8 +39,8 @@ struct FilterModel {
   std::vector<SensorSettings> sensors;
   std::vector<AccelerationProcess> positions;  ///< of each joint position of the filter
   AccelerationProcess base_rotation, base_translation;
-  std::vector<LooseHinge> loose;
-  std::vector<SlideRange> slides;
+  std::vector<LooseRevoluteJoint> loose;
+  std::vector<PrismaticRange> prismatic;
   double gravity = standard_gravity;
   InsLevel bias_walk{};  ///< variance per second of a bias' random walk
   MatrixXd parameters;   ///< covariance of sensors' and geometry's states when tracking begins

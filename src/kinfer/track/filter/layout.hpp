@@ -3,7 +3,7 @@
 // considered (Schmidt 1966: its uncertainty acts, but it is not estimated):
 //
 //   base     attitude θ (R ← R exp(θ)), ω, α in the base sensor's frame; velocity, acceleration in the world
-//   joints   of each joint position q, q̇, q̈; of a ball three rotations (Q ← Q exp(φ)) with their rates
+//   joints   of each joint position q, q̇, q̈; of a spherical joint three rotations (Q ← Q exp(φ)) with their rates
 //   sensors  b_g, b_a, S_g, S_a of each, the matrices row by row
 //   geometry the free unknowns of each body, in the order of InsBody
 #pragma once
@@ -26,7 +26,7 @@ struct SensorIndex {
 };
 
 struct FilterLayout {
-  Index positions = 0;                ///< joint positions of the filter: three for a ball
+  Index positions = 0;                ///< joint positions of the filter: three for a spherical joint
   Index sensors = 0;                  ///< their number
   Index fast = 0;                     ///< states of base and joints
   Index first_geometry = 0;           ///< states that are estimated end here

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/base/square.hpp"
 #include "kinfer/track/filter/thresholds.hpp"
 
 namespace kinfer::track {
@@ -13,29 +14,40 @@ double variance(const Vec3& sum, const Vec3& square, int count) {
   return (square / count - (sum / count).cwiseAbs2()).maxCoeff();
 }
 
+/// Even odds of a rest and of a steady rotation, which also is quiet: by the density of the mean rate in either case.
+bool is_rest(double rate, double variance) {
+  const auto log_density = [&](double v) { return -0.5 * (rate * rate / v + std::log(v)); };
+  return log_density(variance) > log_density(variance + square(steady_rate));
+}
+
 }  // namespace
 
 RestBias::RestBias(const FilterModel& model) {
   for (const SensorSettings& s : model.sensors) noise_.push_back(s.white);
   const auto n = model.sensors.size();
   const std::vector<Vec3> zero(n, Vec3::Zero());
-  open_ = {.sum = zero, .square = zero, .force_sum = zero, .force_square = zero, .count = std::vector<int>(n, 0)};
+  open_ = {.sum = zero,
+           .square = zero,
+           .force_sum = zero,
+           .force_square = zero,
+           .count = std::vector<int>(n, 0),
+           .is_quiet = std::vector<bool>(n, false)};
   last_.fill(open_);
 }
 
-bool RestBias::is_quiet(const Block& block) const {
-  if (block.rows < min_rest_rows) return false;
-  for (std::size_t s = 0; s < noise_.size(); ++s) {
-    if (block.count[s] < min_rest_rows) return false;
-    const double rate = rest_noise * noise_[s].rate, force = rest_noise * noise_[s].force;
-    if (variance(block.sum[s], block.square[s], block.count[s]) > rate * rate) return false;
-    if (variance(block.force_sum[s], block.force_square[s], block.count[s]) > force * force) return false;
-  }
-  return true;
+bool RestBias::is_quiet(const Block& block, std::size_t s) const {
+  if (block.count[s] < min_rest_rows) return false;
+  const double rate = rest_noise * noise_[s].rate, force = rest_noise * noise_[s].force;
+  return variance(block.sum[s], block.square[s], block.count[s]) <= rate * rate &&
+         variance(block.force_sum[s], block.force_square[s], block.count[s]) <= force * force;
+}
+
+bool RestBias::rests(std::size_t sensor) const {
+  return std::ranges::all_of(last_, [&](const Block& block) { return block.is_quiet[sensor]; });
 }
 
 void RestBias::close() {
-  open_.is_quiet = is_quiet(open_);
+  for (std::size_t s = 0; s < noise_.size(); ++s) open_.is_quiet[s] = is_quiet(open_, s);
   std::swap(last_[0], last_[1]);
   std::swap(last_[1], last_[2]);
   std::swap(last_[2], open_);
@@ -50,7 +62,7 @@ bool RestBias::add(const InsRow& row) {
   bool is_rest = false;
   if (open_.rows > 0 && row.time - open_.begin >= rest_block) {
     close();
-    is_rest = std::ranges::all_of(last_, &Block::is_quiet);
+    for (std::size_t s = 0; s < noise_.size(); ++s) is_rest |= rests(s);
   }
   if (open_.rows == 0) open_.begin = row.time;
   ++open_.rows;
@@ -66,31 +78,42 @@ bool RestBias::add(const InsRow& row) {
   return is_rest;
 }
 
+Vec3 RestBias::mean_rate(std::size_t s) const {
+  return last_[1].sum[s] / last_[1].count[s];
+}
+
+/// Difference of the biases of a joint's sensors along its axis.
+ChainFilter::ScalarRow RestBias::bias_row(const ChainFilter& filter, const InsBody& joint) const {
+  const FilterModel& model = filter.model();
+  const int parent = model.bodies[static_cast<std::size_t>(joint.parent)].sensor;
+  const auto p = static_cast<std::size_t>(parent), c = static_cast<std::size_t>(joint.sensor);
+  const Vec3 a = joint.parent_R_axis.col(2), b = joint.child_R_axis.col(2);
+  ChainFilter::ScalarRow row;
+  for (Index k = 0; k < 3; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    row.at[i] = model.layout.sensor_state(joint.sensor) + SensorIndex::gyroscope_bias + k;
+    row.at[i + 3] = model.layout.sensor_state(parent) + SensorIndex::gyroscope_bias + k;
+    row.factor[i] = b[k];
+    row.factor[i + 3] = -a[k];
+  }
+  row.terms = 6;
+  row.innovation = b.dot(mean_rate(c) - filter.state().sensors[c].gyroscope_bias) -
+                   a.dot(mean_rate(p) - filter.state().sensors[p].gyroscope_bias);
+  row.variance =
+      square(noise_[c].rate) / last_[1].count[c] + square(noise_[p].rate) / last_[1].count[p] + square(rest_creep);
+  return row;
+}
+
 void RestBias::correct(ChainFilter& filter) const {
   const FilterModel& model = filter.model();
-  const Block& middle = last_[1];
-  const auto mean = [&](std::size_t s) { return Vec3(middle.sum[s] / middle.count[s]); };
   for (const InsBody& body : model.bodies) {
     if (body.motion != JointMotion::revolute || body.sensor < 0) continue;
-    const InsBody& before = model.bodies[static_cast<std::size_t>(body.parent)];
-    if (before.sensor < 0) continue;
-    const auto p = static_cast<std::size_t>(before.sensor), c = static_cast<std::size_t>(body.sensor);
-    if (!filter.uses_sensor(p) || !filter.uses_sensor(c)) continue;
-    const Vec3 a = body.parent_R_axis.col(2), b = body.child_R_axis.col(2);
-    ChainFilter::ScalarRow row;
-    for (Index k = 0; k < 3; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      row.at[i] = model.layout.sensor_state(body.sensor) + SensorIndex::gyroscope_bias + k;
-      row.at[i + 3] = model.layout.sensor_state(before.sensor) + SensorIndex::gyroscope_bias + k;
-      row.factor[i] = b[k];
-      row.factor[i + 3] = -a[k];
-    }
-    row.terms = 6;
-    row.innovation = b.dot(mean(c) - filter.state().sensors[c].gyroscope_bias) -
-                     a.dot(mean(p) - filter.state().sensors[p].gyroscope_bias);
-    row.variance = noise_[c].rate * noise_[c].rate / middle.count[c] +
-                   noise_[p].rate * noise_[p].rate / middle.count[p] + rest_creep * rest_creep;
-    filter.update(row);
+    const int parent = model.bodies[static_cast<std::size_t>(body.parent)].sensor;
+    if (parent < 0) continue;
+    const auto p = static_cast<std::size_t>(parent), c = static_cast<std::size_t>(body.sensor);
+    if (!filter.uses_sensor(p) || !filter.uses_sensor(c) || !rests(p) || !rests(c)) continue;
+    const ChainFilter::ScalarRow row = bias_row(filter, body);
+    if (is_rest(row.innovation, filter.variance(row))) filter.update(row);
   }
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rests measure gyroscope biases: of three quiet blocks in a row the middle one shows what the gyroscopes measure
-// while nothing turns. Joint velocities are not set to zero: a joint that begins to creep would be held back (it cost
-// 0.2° at each such start), and only the biases along a joint's axis are what its position suffers from.
+// Rests measure gyroscope biases: of three quiet blocks of both sensors of a joint the middle one shows what their
+// gyroscopes measure while neither rotates; the rest of the machine may move. Joint velocities are not set to zero: a
+// joint that begins to creep would be held back (it cost 0.2° at each such start), and only the biases along a joint's
+// axis are what its position suffers from.
 #pragma once
 
 #include <array>
@@ -15,22 +16,25 @@ class RestBias {
  public:
   explicit RestBias(const FilterModel& model);
 
-  /// True if the block before the last is the middle of a rest; once for each.
+  /// True if in the block before the last some sensor is in the middle of a rest; once for each block.
   bool add(const InsRow& row);
 
-  /// Corrects the filter's biases by that block.
+  /// Corrects the filter's biases along the axes of the joints that rest in that block.
   void correct(ChainFilter& filter) const;
 
  private:
   struct Block {
     std::vector<Vec3> sum, square, force_sum, force_square;
     std::vector<int> count;
+    std::vector<bool> is_quiet;  // of each sensor
     double begin = 0.0;
     int rows = 0;
-    bool is_quiet = false;
   };
   void close();
-  bool is_quiet(const Block& block) const;
+  bool is_quiet(const Block& block, std::size_t sensor) const;
+  bool rests(std::size_t sensor) const;
+  Vec3 mean_rate(std::size_t sensor) const;
+  ChainFilter::ScalarRow bias_row(const ChainFilter& filter, const InsBody& joint) const;
 
   std::vector<InsLevel> noise_;
   Block open_;

@@ -34,7 +34,7 @@ void RowBlock::add(const InsRow& row) {
 }
 
 bool RowBlock::is_complete(double length) const {
-  // Half a period of play, since times are rounded.
+  // A margin of half a period, since times are rounded.
   return rows_ > 0 && end_ - begin_ + 1.5 * period_ > length;
 }
 
@@ -47,6 +47,29 @@ const BlockMeasurement& RowBlock::mean() {
     if (sample.force_count > 0) sample.force /= sample.force_count;
   }
   return mean_;
+}
+
+BlockMeasurement mean_of(std::span<const BlockMeasurement> blocks) {
+  BlockMeasurement mean;
+  if (blocks.empty()) return mean;
+  mean.sensors.resize(blocks.front().sensors.size());
+  for (const BlockMeasurement& block : blocks) {
+    mean.time += block.time / static_cast<double>(blocks.size());
+    for (std::size_t s = 0; s < mean.sensors.size(); ++s) {
+      const BlockSample& from = block.sensors[s];
+      BlockSample& to = mean.sensors[s];
+      to.rate += from.rate_count * from.rate;
+      to.force += from.force_count * from.force;
+      to.rate_count += from.rate_count;
+      to.force_count += from.force_count;
+    }
+  }
+  mean.length = blocks.back().time - blocks.front().time + blocks.back().length;
+  for (BlockSample& sample : mean.sensors) {
+    if (sample.rate_count > 0) sample.rate /= sample.rate_count;
+    if (sample.force_count > 0) sample.force /= sample.force_count;
+  }
+  return mean;
 }
 
 }  // namespace kinfer::track

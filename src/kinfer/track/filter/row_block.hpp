@@ -3,6 +3,8 @@
 // every row, and is an anti-alias filter for vibration; a single row of them would waste half of the accuracy.
 #pragma once
 
+#include <span>
+
 #include "kinfer/measurement/ins_row.hpp"
 #include "kinfer/track/filter/chain_filter.hpp"
 
@@ -29,5 +31,8 @@ class RowBlock {
   int rows_ = 0;
   double begin_ = 0.0, end_ = 0.0, period_ = 0.0;
 };
+
+/// One block of several in a row: means weighed by their number of rows.
+BlockMeasurement mean_of(std::span<const BlockMeasurement> blocks);
 
 }  // namespace kinfer::track

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Settings of the filter that no log tells, with the data that they were set on.
+// Settings of the filter that no log determines, with the data that they were set on.
 #pragma once
 
 #include "kinfer/evidence/tracking/tracking_model.hpp"
@@ -9,7 +9,7 @@ namespace kinfer::track {
 
 /// Joint accelerations of machines; tenfold densities change rms errors of the simulated machines by less than 30 %.
 inline constexpr AccelerationProcess machine_acceleration{.sd = 3.9, .time = 0.5};
-inline constexpr AccelerationProcess slide_acceleration{.sd = 1.0, .time = 0.5};
+inline constexpr AccelerationProcess prismatic_acceleration{.sd = 1.0, .time = 0.5};
 inline constexpr double min_acceleration_time = 0.15;  ///< [s] of hands
 inline constexpr double acceleration_room = 2.0;       ///< a drive may be so much livelier than that of the chain
 
@@ -18,14 +18,20 @@ inline constexpr AccelerationProcess base_rotation{.sd = 0.6, .time = 0.3}, base
 inline constexpr double base_velocity_sd = 0.3;    ///< [m/s] of the base
 inline constexpr double base_velocity_time = 1.0;  ///< [s] its correlation time
 
-/// Of slides: least speed [m/s] and correlation times [s] of velocity and position about what was seen; room beyond it,
-/// and half the range where nothing was seen [m].
-inline constexpr double slide_speed = 0.2, slide_velocity_time = 1.0, slide_position_time = 10.0;
-inline constexpr double slide_play = 0.1, unseen_slide_half = 1.0;
+/// Of prismatic joints: least speed [m/s] and correlation times [s] of velocity and position about what was seen; room
+/// beyond it, and half the range where nothing was seen [m].
+inline constexpr double prismatic_speed = 0.2, prismatic_velocity_time = 1.0, prismatic_position_time = 10.0;
+inline constexpr double prismatic_margin = 0.1, unseen_prismatic_half = 1.0;
+
+/// A prismatic joint may rest where its velocity has varied by less than this [m/s] for so long [s]; it creeps by less
+/// than this [m/s]. Simulated cranes.
+inline constexpr double prismatic_steadiness = 1e-2, prismatic_rest = 1.0, prismatic_creep = 1e-3;
 
 inline constexpr double still_base_walk = 2e-5;  ///< [rad/√s] tilting of a base that stands still: soil, outriggers
 
-inline constexpr double min_stray = 1e-3, min_stray_time = 0.02;  ///< [rad], [s] looser than that a hinge is a ball
+inline constexpr double min_stray = 1e-3,
+                        min_stray_time =
+                            0.02;  ///< [rad], [s] looser than that a revolute joint is tracked as a spherical one
 
 /// A bias' change between logs, in standard deviations of its instability, and at least.
 inline constexpr double bias_change = 3.0;
@@ -36,17 +42,19 @@ inline constexpr InsLevel min_noise{.rate = 1e-5, .force = 1e-4};
 /// An instrument whose innovation is further off (squared, in its covariance; three axes) is trusted less.
 inline constexpr double outlier_limit = 30.0;
 /// Relative change of an instrument's variance in an update, by its squared innovation over its expectation: some
-/// seconds at 50 updates a second, so that faults are told before they are taken for noise.
+/// seconds at 50 updates a second, so that faults are detected before they are taken for noise.
 inline constexpr double inflation_gain = 4e-3;
 inline constexpr double max_inflation = 1e4;
 
 inline constexpr double max_position_sd = 1.8;  ///< [rad] an angle that could be any; [m] likewise
 inline constexpr double max_motion_sd = 30.0;   ///< per second, per second²
 
-/// A rest: three blocks [s] of so many rows in which every instrument scatters by its own noise, times this.
+/// A rest of a sensor: three blocks [s] of so many rows in which its instruments scatter by their own noise, times
+/// this.
 inline constexpr double rest_block = 0.25, rest_noise = 1.4;
 inline constexpr int min_rest_rows = 10;
-inline constexpr double rest_creep = 5e-5;  ///< [rad/s] that a rest may hide
+inline constexpr double rest_creep = 5e-5;   ///< [rad/s] that a rest may hide
+inline constexpr double steady_rate = 0.05;  ///< [rad/s] sd of a joint's velocity where it is steady and no rest
 
 /// A base moves where its angular velocity, averaged over so long [s], is beyond this [rad/s] and so many standard
 /// deviations of noise and bias.

@@ -21,7 +21,7 @@ double sd_at(const MatrixXd& covariance, Index at) {
   return std::sqrt(std::max(0.0, covariance(at, at)));
 }
 
-Mat3 ball_covariance(const FilterLayout& layout, Index first, Index derivative, const MatrixXd& covariance) {
+Mat3 spherical_covariance(const FilterLayout& layout, Index first, Index derivative, const MatrixXd& covariance) {
   Mat3 p;
   for (Index i = 0; i < 3; ++i)
     for (Index j = 0; j < 3; ++j)
@@ -32,7 +32,7 @@ Mat3 ball_covariance(const FilterLayout& layout, Index first, Index derivative, 
 void read_ball(const FilterModel& model, std::size_t b, const ChainState& state, const MatrixXd& covariance, Index at,
                TrackState& to) {
   const Vec3 before = to.q.segment<3>(at);
-  const Vec3 q = cardan_angles(state.balls[b], before.hasNaN() ? Vec3(Vec3::Zero()) : before);
+  const Vec3 q = cardan_angles(state.spherical[b], before.hasNaN() ? Vec3(Vec3::Zero()) : before);
   const Mat3 turning = (rot_y(q.y()) * rot_z(q.z())).transpose();
   Mat3 rates;  // of the angles to that of the child in its axes
   rates.col(0) = turning.col(0);
@@ -45,16 +45,16 @@ void read_ball(const FilterModel& model, std::size_t b, const ChainState& state,
   for (Index i = 0; i < 3; ++i) rate[i] = state.joints[position_states * (first + i) + 1];
   to.q.segment<3>(at) = q;
   to.qd.segment<3>(at) = back * rate;
-  const Mat3 of_q = back * ball_covariance(model.layout, first, 0, covariance) * back.transpose(),
-             of_qd = back * ball_covariance(model.layout, first, 1, covariance) * back.transpose();
+  const Mat3 of_q = back * spherical_covariance(model.layout, first, 0, covariance) * back.transpose(),
+             of_qd = back * spherical_covariance(model.layout, first, 1, covariance) * back.transpose();
   to.sd_q.segment<3>(at) = of_q.diagonal().cwiseMax(0.0).cwiseSqrt();
   to.sd_qd.segment<3>(at) = of_qd.diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
-/// The turn of a loose hinge about its mean axis, the third of its ball.
-void read_loose_hinge(const FilterModel& model, std::size_t b, const ChainState& state, const MatrixXd& covariance,
+/// The rotation of a loose revolute joint about its mean axis, the third of its spherical joint.
+void read_loose_joint(const FilterModel& model, std::size_t b, const ChainState& state, const MatrixXd& covariance,
                       Index at, TrackState& to) {
-  const Mat3& r = state.balls[b];
+  const Mat3& r = state.spherical[b];
   to.q[at] = unwrapped(std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1)), to.q[at]);
   const Index third = model.layout.position[b] + 2;
   to.qd[at] = state.joints[position_states * third + 1];
@@ -88,7 +88,7 @@ void read_out(const TrackingModel& tracking, const FilterModel& model, const Cha
     if (dof == 3 && body.motion == TrackingMotion::spherical) {
       read_ball(model, b, state, covariance, at, to);
     } else if (dof == 3) {
-      read_loose_hinge(model, b, state, covariance, at, to);
+      read_loose_joint(model, b, state, covariance, at, to);
     } else {
       const Index first = model.layout.position[b], row = model.layout.joint_state(first);
       to.q[at] = state.joints[position_states * first];

@@ -21,7 +21,7 @@ void ToolSpread::set_pose(const FilterModel& model, const ChainState& state, std
   if (body.motion == JointMotion::revolute)
     step.rotation = body.parent_R_axis * rot_z(state.joints[at]) * body.child_R_axis.transpose();
   if (body.motion == JointMotion::spherical)
-    step.rotation = body.parent_R_axis * state.balls[b] * body.child_R_axis.transpose();
+    step.rotation = body.parent_R_axis * state.spherical[b] * body.child_R_axis.transpose();
   if (body.motion == JointMotion::prismatic) step.position += state.joints[at] * body.parent_R_axis.col(2);
   step.position -= step.rotation * body.point_in_child;
   bodies_[b] = bodies_[static_cast<std::size_t>(body.parent)] * step;
@@ -32,11 +32,14 @@ void ToolSpread::add_column(Index state, const Vec3& shift, const Vec3& turn) {
   index_.push_back(state);
 }
 
-/// Rotations are about the joint's point, in base axes.
+/// Rotations are about the joint's point, in base axes: those of the parent's frame about where a slide begins, since
+/// they turn its direction, those of the child's about where it is.
 void ToolSpread::add_body(const FilterModel& model, std::size_t b) {
   const InsBody& body = model.bodies[b];
-  const Mat3 &parent = bodies_[static_cast<std::size_t>(body.parent)].rotation, &child = bodies_[b].rotation;
-  const Vec3 arm = tool_.position - bodies_[b] * body.point_in_child;
+  const Pose& before = bodies_[static_cast<std::size_t>(body.parent)];
+  const Mat3 &parent = before.rotation, &child = bodies_[b].rotation;
+  const Vec3 arm = tool_.position - bodies_[b] * body.point_in_child,
+             parent_arm = tool_.position - before * body.point_in_parent;
   const auto turn = [&](Index state, const Vec3& axis) { add_column(state, axis.cross(arm), axis); };
   const Mat3 axes = child * body.child_R_axis;
   if (body.motion == JointMotion::revolute) turn(model.layout.joint_state(model.layout.position[b]), axes.col(2));
@@ -46,7 +49,10 @@ void ToolSpread::add_body(const FilterModel& model, std::size_t b) {
     for (Index i = 0; i < 3; ++i) turn(model.layout.joint_state(model.layout.position[b] + i), axes.col(i));
   Index state = model.layout.first_geometry + model.layout.geometry[b];
   for (Index i = 0; i < 3; ++i)
-    if (body.free_parent_rotation[static_cast<std::size_t>(i)]) turn(state++, parent * body.parent_R_axis.col(i));
+    if (body.free_parent_rotation[static_cast<std::size_t>(i)]) {
+      const Vec3 axis = parent * body.parent_R_axis.col(i);
+      add_column(state++, axis.cross(parent_arm), axis);
+    }
   for (Index i = 0; i < 3; ++i)
     if (body.free_child_rotation[static_cast<std::size_t>(i)]) turn(state++, -axes.col(i));
   if (body.free_point_in_parent)

@@ -18,8 +18,9 @@ struct SeenBody {
 
 struct JointStart {
   Vec3 position = Vec3::Zero(), sd = Vec3::Zero();
-  Mat3 ball = Mat3::Identity();
-  Vec3 heading = Vec3::Zero();  ///< of a ball: direction of gravity in its turning frame, about which nothing is told
+  Mat3 spherical = Mat3::Identity();
+  Vec3 heading =
+      Vec3::Zero();  ///< of a spherical joint: direction of gravity in its rotating frame, the unobservable axis
   std::array<bool, 3> is_known{};
 };
 
@@ -53,20 +54,46 @@ SeenBody seen_body(const FilterModel& model, const BlockMeasurement& block, cons
   return seen;
 }
 
-JointStart hinge_start(const InsBody& body, const SeenBody& parent, const SeenBody& child, const PositionGuess& guess) {
+/// Standard deviations [rad] of the direction of a joint's axis in the parent and in the child.
+struct AxisSd {
+  double in_parent = 0.0, in_child = 0.0;
+};
+
+AxisSd axis_sd(const FilterModel& model, std::size_t b) {
+  const InsBody& body = model.bodies[b];
+  Index at = sensor_states * model.layout.sensors + model.layout.geometry[b];
+  const auto next = [&](const std::array<bool, 3>& is_free) {
+    double variance = 0.0;
+    for (std::size_t i = 0; i < 3; ++i)
+      if (is_free[i]) {
+        if (i < 2) variance = std::max(variance, model.parameters(at, at));  // the third is about the axis itself
+        ++at;
+      }
+    return std::sqrt(variance);
+  };
+  AxisSd sd;
+  sd.in_parent = next(body.free_parent_rotation);
+  sd.in_child = next(body.free_child_rotation);
+  return sd;
+}
+
+/// The axis tilts what gravity has across it by what it has along it: on level ground a vertical axis is all that.
+JointStart revolute_start(const InsBody& body, const AxisSd& axis, const SeenBody& parent, const SeenBody& child,
+                          const PositionGuess& guess) {
   const Vec3 u = body.parent_R_axis.transpose() * parent.force, w = body.child_R_axis.transpose() * child.force;
   const double lever = std::min(u.head<2>().norm(), w.head<2>().norm()),
-               sd = std::hypot(parent.force_sd, child.force_sd) / std::max(lever, 1e-3);
+               of_axis = std::hypot(u.z() * axis.in_parent, w.z() * axis.in_child),
+               sd = std::hypot(parent.force_sd, child.force_sd, of_axis) / std::max(lever, 1e-3);
   JointStart start;
-  const bool is_told = sd < max_told_sd;
+  const bool is_observable = sd < max_observable_sd;
   double q = guess.value + wrapped(angle_of(u) - angle_of(w) - guess.value);  // the turn nearest to what was seen
-  if (guess.is_given && (!is_told || guess.sd < sd)) {
+  if (guess.is_given && (!is_observable || guess.sd < sd)) {
     start.position.x() = guess.value, start.sd.x() = guess.sd, start.is_known[0] = true;
     return start;
   }
   start.position.x() = q;
-  start.sd.x() = std::min(sd, max_told_sd);
-  start.is_known[0] = is_told;
+  start.sd.x() = std::min(sd, max_observable_sd);
+  start.is_known[0] = is_observable;
   return start;
 }
 
@@ -90,12 +117,13 @@ std::array<double, 2> universal_angles(const Vec3& u, const Vec3& w, const Mat3&
   return best;
 }
 
-/// The ball nearest to its guess that carries gravity from the parent to the child; its heading stays as guessed.
-JointStart ball_start(const InsBody& body, const SeenBody& parent, const SeenBody& child, const Mat3& guess,
-                      bool is_given) {
+/// The rotation of a spherical joint nearest to its guess that carries gravity from the parent to the child; its
+/// heading stays as guessed.
+JointStart spherical_start(const InsBody& body, const SeenBody& parent, const SeenBody& child, const Mat3& guess,
+                           bool is_given) {
   JointStart start;
   const Vec3 u = body.parent_R_axis.transpose() * parent.force, w = body.child_R_axis.transpose() * child.force;
-  start.ball = rotation_between(guess * w, u).toRotationMatrix() * guess;
+  start.spherical = rotation_between(guess * w, u).toRotationMatrix() * guess;
   start.sd.setConstant(std::hypot(parent.force_sd, child.force_sd) / std::max(1.0, u.norm()));
   start.heading = w.normalized();
   start.is_known.fill(is_given);
@@ -104,7 +132,7 @@ JointStart ball_start(const InsBody& body, const SeenBody& parent, const SeenBod
 
 Mat3 child_from_parent(const InsBody& body, const JointStart& start) {
   const Mat3 back = body.motion == JointMotion::revolute    ? rot_z(-start.position.x())
-                    : body.motion == JointMotion::spherical ? Mat3(start.ball.transpose())
+                    : body.motion == JointMotion::spherical ? Mat3(start.spherical.transpose())
                                                             : Mat3(Mat3::Identity());
   return body.child_R_axis * back * body.parent_R_axis.transpose();
 }
@@ -143,11 +171,11 @@ class PostureStart {
     if (is_second_of_universal_ == static_cast<int>(b)) {
       is_second_of_universal_ = -1;
     } else if (body.motion == JointMotion::revolute && is_seen) {
-      starts_[b] = hinge_start(body, before, own, guess(b));
+      starts_[b] = revolute_start(body, axis_sd(model_, b), before, own, guess(b));
     } else if (body.motion == JointMotion::spherical && is_seen) {
       const Vec3 angles(guess_of(b, 0).value, guess_of(b, 1).value, guess_of(b, 2).value);
       const Mat3 guessed = rot_x(angles.x()) * rot_y(angles.y()) * rot_z(angles.z());
-      starts_[b] = ball_start(body, before, own, guessed, guess(b).is_given);
+      starts_[b] = spherical_start(body, before, own, guessed, guess(b).is_given);
     } else if (body.motion != JointMotion::fixed) {
       guess_start(b);
     }
@@ -176,14 +204,15 @@ class PostureStart {
       const Vec3 u = body.parent_R_axis.transpose() * before.force, w = child->child_R_axis.transpose() * own.force;
       const Mat3 m = child->parent_R_axis.transpose() * body.child_R_axis;
       const auto angles = universal_angles(u, w, m, guess(b).value, guess(c).value);
-      // Each is told by gravity across its own axis.
+      // Gravity across its own axis determines each.
       const double noise = std::hypot(before.force_sd, own.force_sd);
       const std::array<double, 2> lever{(m * (rot_z(-angles[0]) * u)).cross(m * Vec3::UnitZ()).head<2>().norm(),
                                         w.head<2>().norm()};
       for (std::size_t k = 0; k < 2; ++k) {
         JointStart& start = starts_[k == 0 ? b : c];
         const double sd = noise / std::max(lever[k], 1e-3);
-        start.position.x() = angles[k], start.sd.x() = std::min(sd, max_told_sd), start.is_known[0] = sd < max_told_sd;
+        start.position.x() = angles[k], start.sd.x() = std::min(sd, max_observable_sd),
+        start.is_known[0] = sd < max_observable_sd;
       }
       is_second_of_universal_ = static_cast<int>(c);
     }
@@ -228,24 +257,25 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
     const InsBody& body = model.bodies[b];
     const Index dof = degrees_of_freedom(body.motion);
     const JointStart& start = found.joint(b);
-    state.balls[b] = start.ball;
+    state.spherical[b] = start.spherical;
     const Vec3 relative =
         body.child_R_axis.transpose() *
         (found.seen(b).rate - child_from_parent(body, start) * found.seen(static_cast<std::size_t>(body.parent)).rate);
     for (Index i = 0; i < dof; ++i) {
       const Index at = layout.position[b] + i, row = layout.joint_state(at);
-      const bool is_hinge = body.motion == JointMotion::revolute;
+      const bool is_revolute = body.motion == JointMotion::revolute;
       if (dof == 1) state.joints[position_states * at] = start.position[i];
       const bool rate_is_seen = body.motion != JointMotion::prismatic && body.sensor >= 0;
-      if (rate_is_seen) state.joints[position_states * at + 1] = is_hinge ? relative.z() : relative[i];
+      if (rate_is_seen) state.joints[position_states * at + 1] = is_revolute ? relative.z() : relative[i];
       const AccelerationProcess& process = model.positions[static_cast<std::size_t>(at)];
       posture.covariance(row, row) = start.sd[i] * start.sd[i];
-      for (Index j = 0; j < dof && dof == 3; ++j) {  // nothing is told of the heading: it counts from here
-        const double told = start.sd[i] * start.sd[j] * ((i == j ? 1.0 : 0.0) - start.heading[i] * start.heading[j]);
-        posture.covariance(row, layout.joint_state(layout.position[b] + j)) = told;
+      for (Index j = 0; j < dof && dof == 3; ++j) {  // the heading is unobservable: it counts from here
+        const double covariance =
+            start.sd[i] * start.sd[j] * ((i == j ? 1.0 : 0.0) - start.heading[i] * start.heading[j]);
+        posture.covariance(row, layout.joint_state(layout.position[b] + j)) = covariance;
       }
       const double rate_sd = rate_is_seen                            ? start_rate_sd
-                             : body.motion == JointMotion::prismatic ? start_slide_speed
+                             : body.motion == JointMotion::prismatic ? start_prismatic_speed
                                                                      : process.sd * process.time;
       posture.covariance(row + 1, row + 1) = rate_sd * rate_sd;
       posture.covariance(row + 2, row + 2) = process.sd * process.sd;

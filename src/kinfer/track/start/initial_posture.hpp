@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a chain is when tracking begins, in closed form from the first rows of its sensors.
 //
-// Gravity in two neighbouring sensors tells the joint between them: with u = Aᵀ f_p and w = Bᵀ f_c a hinge stands at
-// q = atan2(u_y, u_x) − atan2(w_y, w_x), with standard deviation σ_f / (g sin β), β the axis' angle to the vertical. No
-// rest is needed: what the joints' motion adds to gravity counts as error of f. The gyroscopes tell the velocities.
+// Gravity in two neighbouring sensors determines the joint between them: with u = Aᵀ f_p and w = Bᵀ f_c a revolute
+// joint stands at q = atan2(u_y, u_x) − atan2(w_y, w_x), with standard deviation σ_f / (g sin β), β the axis' angle to
+// the vertical. No rest is needed: what the joints' motion adds to gravity counts as error of f. The gyroscopes give
+// the velocities.
 #pragma once
 
 #include "kinfer/track/filter/chain_filter.hpp"
@@ -19,7 +20,7 @@ struct PositionGuess {
 struct InitialPosture {
   ChainState state;
   MatrixXd covariance;         ///< of the fast states
-  std::vector<bool> is_known;  ///< of each joint position of the filter: gravity or the user told it
+  std::vector<bool> is_known;  ///< of each joint position of the filter: by gravity or by the user
 };
 
 /// `block`: mean of the first rows. `guess`: of each joint position of the filter.

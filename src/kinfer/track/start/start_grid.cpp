@@ -25,7 +25,7 @@ StartGrid StartGrid::around(const ChainFilter& filter, Index position) {
 
 StartGrid StartGrid::along(const ChainFilter& filter, Index position, const PositionGuess& guess) {
   StartGrid grid(position, false);
-  const double step = std::max(slide_step, 2.0 * guess.sd / (start_places - 1));
+  const double step = std::max(prismatic_step, 2.0 * guess.sd / (start_places - 1));
   const int places = 1 + static_cast<int>(2.0 * guess.sd / step);
   for (int k = 0; k < places; ++k)
     grid.add_place(filter, guess.value - guess.sd + k * step, 0.5 * step, std::abs(2 * k - places + 1) / 2);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several starts at once, where gravity does not tell a joint position but motion will: a filter from each place on a
-// grid, until their likelihoods tell. One filter that begins with a large standard deviation ends confident
-// and wrong, because its linearisation holds for small angles only.
+// Several starts at once, where gravity does not determine a joint position but motion will: a filter from each place
+// on a grid, until their likelihoods decide. One filter that begins with a large standard deviation ends confident and
+// wrong, because its linearisation holds for small angles only.
 #pragma once
 
 #include "kinfer/track/start/initial_posture.hpp"
@@ -19,7 +19,8 @@ class StartGrid {
 
   /// Only one place is left, or all that are left agree.
   bool is_decided() const { return candidates_.size() == 1; }
-  /// Of those that are left the one nearest to where the filter was: until one is told, the position counts from there.
+  /// Of those that are left the one nearest to where the filter was: until one is chosen, the position counts from
+  /// there.
   const ChainFilter& best() const;
   Index position() const { return position_; }
 

@@ -4,22 +4,22 @@
 
 namespace kinfer::track {
 
-inline constexpr double start_length = 0.25;       ///< [s] of rows that tell where the chain is
-inline constexpr double max_told_sd = 0.35;        ///< [rad] beyond that gravity does not tell an angle
-inline constexpr double min_force_sd = 0.03;       ///< [m/s²] of gravity's direction from one sensor
-inline constexpr double unseen_force_sd = 3.0;     ///< [m/s²] of a body without a sensor
-inline constexpr double start_arm = 1.0;           ///< [m] typical arm of the centripetal acceleration
-inline constexpr double start_rate_sd = 0.05;      ///< [rad/s] of velocities by gyroscopes over the first rows
-inline constexpr double start_slide_speed = 0.05;  ///< [m/s] of a slide
-inline constexpr double start_velocity_sd = 0.3;   ///< [m/s] of the base
+inline constexpr double start_length = 0.25;           ///< [s] of rows that determine the posture
+inline constexpr double max_observable_sd = 0.35;      ///< [rad] beyond that an angle is unobservable by gravity
+inline constexpr double min_force_sd = 0.03;           ///< [m/s²] of gravity's direction from one sensor
+inline constexpr double unseen_force_sd = 3.0;         ///< [m/s²] of a body without a sensor
+inline constexpr double start_arm = 1.0;               ///< [m] typical arm of the centripetal acceleration
+inline constexpr double start_rate_sd = 0.05;          ///< [rad/s] of velocities by gyroscopes over the first rows
+inline constexpr double start_prismatic_speed = 0.05;  ///< [m/s] of a prismatic joint
+inline constexpr double start_velocity_sd = 0.3;       ///< [m/s] of the base
 
-inline constexpr int start_places = 18;  ///< of an angle that gravity does not tell
-/// Updates that only settle velocities and accelerations: what they tell depends on how little was known of these.
+inline constexpr int start_places = 18;  ///< of an angle that gravity does not determine
+/// Updates that only settle velocities and accelerations: their evidence depends on how little was known of these.
 inline constexpr int start_updates = 25;
-inline constexpr double start_log_odds = 30.0;  ///< ln: a place so much less likely than the best is dropped
-inline constexpr double start_merge = 0.02;     ///< [rad] or [m] places so near are one
-inline constexpr double slide_step = 0.1;       ///< [m] least distance of places along a slide
-inline constexpr double given_start_sd = 0.02;  ///< [rad] or [m] of what the user states
-inline constexpr double slide_room = 0.1;       ///< [m] beyond what was seen of a slide
+inline constexpr double start_log_odds = 30.0;         ///< ln: a place so much less likely than the best is dropped
+inline constexpr double start_merge = 0.02;            ///< [rad] or [m] places so near are one
+inline constexpr double prismatic_step = 0.1;          ///< [m] least distance of places along a prismatic joint
+inline constexpr double given_start_sd = 0.02;         ///< [rad] or [m] of what the user states
+inline constexpr double start_prismatic_margin = 0.1;  ///< [m] beyond what was seen of a prismatic joint
 
 }  // namespace kinfer::track

@@ -52,7 +52,7 @@ std::string joint_offset_remedy(const Finding& f) {
 
 std::string columns_swapped(const Finding& f) {
   const std::vector<std::string>& joints = f.values.texts("joints");
-  return phrase(name(f.kind), "the readings of {} and {} are exchanged", joints.at(0), joints.at(1));
+  return phrase(name(f.kind), "the joint positions of {} and {} are exchanged", joints.at(0), joints.at(1));
 }
 std::string columns_swapped_remedy(const Finding& f) {
   const std::vector<int>& columns = f.values.counts("columns");

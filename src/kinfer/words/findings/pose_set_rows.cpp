@@ -131,7 +131,7 @@ std::string outside_limits(const Finding& f) {
   return phrase(name(f.kind), "{} reads beyond its limits in {}", f.values.text("joint"), row_ranges(f.rows));
 }
 std::string outside_limits_remedy(const Finding& f) {
-  return phrase(name(f.kind), "check the limits in the robot file, and the unit and sign of this reading");
+  return phrase(name(f.kind), "check the limits in the robot file, and the unit and sign of this joint position");
 }
 
 std::string outside_region(const Finding& f) {

@@ -69,21 +69,20 @@ JointPropagation propagate_through_joint(const InsBody& body, const JointKinemat
   const Vec3& c = body.point_in_child;
   p.child.force = p.force_at_joint - p.child.angular_acceleration.cross(c) -
                   p.child.angular_velocity.cross(p.child.angular_velocity.cross(c));
-  p.child.field = p.turn * parent.field;
   return p;
 }
 
-/// Writes one Jacobian column from the derivatives of angular velocity, angular acceleration, specific force at the
-/// joint (in the child) and magnetic field.
+/// Writes one Jacobian column from the derivatives of angular velocity, angular acceleration and specific force at the
+/// joint (in the child).
 struct JacobianColumnWriter {
   const JointPropagation& p;
   const Vec3& c;
   Mat3 by_rate;  // of f_c by ω_c
 
   void put(StateJacobian& columns, Index column, const Vec3& angular_velocity, const Vec3& angular_acceleration,
-           const Vec3& force_at_joint, const Vec3& field) const {
+           const Vec3& force_at_joint) const {
     columns.col(column) << angular_velocity, angular_acceleration,
-        force_at_joint - angular_acceleration.cross(c) + by_rate * angular_velocity, field;
+        force_at_joint - angular_acceleration.cross(c) + by_rate * angular_velocity;
   }
 };
 
@@ -92,7 +91,7 @@ Mat3 lever_by_angular_velocity(const Vec3& angular_velocity, const Vec3& arm) { 
 }
 
 void by_parent_state(const JointPropagation& p, const InsState& parent, const JacobianColumnWriter& maker,
-                     Eigen::Matrix<double, 12, 12>& by_parent) {
+                     Eigen::Matrix<double, state_size, state_size>& by_parent) {
   const Mat3& r = p.turn;
   by_parent.setZero();
   by_parent.block<3, 3>(0, 0) = r;
@@ -103,7 +102,6 @@ void by_parent_state(const JointPropagation& p, const InsState& parent, const Ja
   by_parent.block<3, 3>(6, 0) = r * joint_by_rate + arm * by_parent.block<3, 3>(3, 0) + maker.by_rate * r;
   by_parent.block<3, 3>(6, 3) = -r * skew(p.arm) + arm * r;
   by_parent.block<3, 3>(6, 6) = r;
-  by_parent.block<3, 3>(9, 9) = r;
 }
 
 /// Column of a small rotation of the joint about m (in the child): the parent's frame rotates by −m as seen from the
@@ -113,14 +111,13 @@ void put_rotation(StateJacobian& columns, Index column, const JointPropagation& 
   const Vec3 angular_velocity = -m.cross(p.rate_in_child);
   const Vec3 angular_acceleration =
       -m.cross(p.turn * parent.angular_acceleration) - p.relative_velocity.cross(angular_velocity);
-  maker.put(columns, column, angular_velocity, angular_acceleration, -m.cross(p.force_at_joint) + joint_force_change,
-            -m.cross(p.child.field));
+  maker.put(columns, column, angular_velocity, angular_acceleration, -m.cross(p.force_at_joint) + joint_force_change);
 }
 
 /// Column of a change of the relative angular velocity and acceleration.
 void put_relative_velocity(StateJacobian& columns, Index column, const JointPropagation& p,
                            const JacobianColumnWriter& maker, const Vec3& change, const Vec3& change_of_change) {
-  maker.put(columns, column, change, change_of_change - change.cross(p.rate_in_child), Vec3::Zero(), Vec3::Zero());
+  maker.put(columns, column, change, change_of_change - change.cross(p.rate_in_child), Vec3::Zero());
 }
 
 void by_spherical_joint(StateJacobian& columns, const InsBody& body, const JointKinematicState& q,
@@ -131,7 +128,7 @@ void by_spherical_joint(StateJacobian& columns, const InsBody& body, const Joint
     const Vec3 turn = b * r.jacobian.col(i);
     put_relative_velocity(columns, 3 * i, p, maker, b * r.velocity_by_vector.col(i),
                           b * r.acceleration_by_vector.col(i));
-    const Eigen::Matrix<double, 12, 1> of_spin = columns.col(3 * i);
+    const Eigen::Matrix<double, state_size, 1> of_spin = columns.col(3 * i);
     put_rotation(columns, 3 * i, p, parent, maker, turn, Vec3::Zero());
     columns.col(3 * i) += of_spin;
     put_relative_velocity(columns, 3 * i + 1, p, maker, turn, b * r.acceleration_by_velocity.col(i));
@@ -148,10 +145,10 @@ void by_joint_state(StateJacobian& columns, const InsBody& body, const JointKine
     put_relative_velocity(columns, 2, p, maker, none, p.axis);
   } else if (body.motion == JointMotion::prismatic) {
     const Vec3& a = p.axis_parent;
-    maker.put(columns, 0, none, none, p.turn * (lever_matrix(parent.angular_velocity, parent.angular_acceleration) * a),
-              none);
-    maker.put(columns, 1, none, none, p.turn * (2.0 * parent.angular_velocity.cross(a)), none);
-    maker.put(columns, 2, none, none, p.turn * a, none);
+    maker.put(columns, 0, none, none,
+              p.turn * (lever_matrix(parent.angular_velocity, parent.angular_acceleration) * a));
+    maker.put(columns, 1, none, none, p.turn * (2.0 * parent.angular_velocity.cross(a)));
+    maker.put(columns, 2, none, none, p.turn * a);
   } else if (body.motion == JointMotion::spherical) {
     by_spherical_joint(columns, body, q, p, parent, maker);
   }
@@ -233,7 +230,7 @@ void propagate(const InsBody& body, const JointKinematicState& q, const InsState
   out.state = p.child;
   by_parent_state(p, parent, maker, out.by_parent);
   Index k = 3 * degrees_of_freedom(body.motion);
-  out.by_own.resize(12, k + body.unknowns());
+  out.by_own.resize(state_size, k + body.unknowns());
   by_joint_state(out.by_own, body, q, p, parent, maker);
   const Mat3 lever = lever_matrix(parent.angular_velocity, parent.angular_acceleration);
   const Mat3 child_R_turned = p.turn * body.parent_R_axis;  // B Rz(−q)
@@ -250,7 +247,7 @@ void propagate(const InsBody& body, const JointKinematicState& q, const InsState
     if (body.free_child_rotation[static_cast<std::size_t>(i)]) {
       const Vec3 b = body.child_R_axis.col(i);
       maker.put(out.by_own, k++, b.cross(p.child.angular_velocity), b.cross(p.child.angular_acceleration),
-                b.cross(p.force_at_joint), b.cross(p.child.field));
+                b.cross(p.force_at_joint));
     }
   if (body.free_point_in_parent) {
     out.by_own.middleCols<3>(k).setZero();

@@ -57,9 +57,11 @@ struct InsState {
   Vec3 angular_velocity = Vec3::Zero();      ///< [rad/s]
   Vec3 angular_acceleration = Vec3::Zero();  ///< [rad/s²]
   Vec3 force = Vec3::Zero();                 ///< [m/s²] specific force at the sensor's origin
-  Vec3 field = Vec3::Zero();                 ///< magnetic field
 };
-using StateJacobian = Eigen::Matrix<double, 12, Eigen::Dynamic>;  ///< Jacobian, rows as the members of InsState
+inline constexpr Eigen::Index state_size =
+    9;  ///< numbers of a state; rows of its Jacobians, as the members of InsState
+inline constexpr Eigen::Index rate_row = 0, force_row = 6;  ///< first rows of what an INS measures
+using StateJacobian = Eigen::Matrix<double, state_size, Eigen::Dynamic>;
 
 /// Joint position, velocity and acceleration: [rad] or [m], per second, per second². Spherical joints use all three
 /// components, others only x.
@@ -67,11 +69,11 @@ using JointKinematicState = std::array<Vec3, 3>;
 
 InsState propagated(const InsBody& body, const JointKinematicState& q, const InsState& parent);
 
-/// The same with Jacobians of the child's state: with respect to the parent's state (12 x 12), and to the joint state
-/// (of each degree of freedom position, velocity and acceleration) and the body's unknowns (12 x (3 dof + unknowns)).
+/// The same with Jacobians of the child's state: with respect to the parent's state (9 x 9), and to the joint state
+/// (of each degree of freedom position, velocity and acceleration) and the body's unknowns (9 x (3 dof + unknowns)).
 struct PropagatedDerivative {
   InsState state;
-  Eigen::Matrix<double, 12, 12> by_parent;
+  Eigen::Matrix<double, state_size, state_size> by_parent;
   StateJacobian by_own;
 };
 void propagate(const InsBody& body, const JointKinematicState& q, const InsState& parent, PropagatedDerivative& out);

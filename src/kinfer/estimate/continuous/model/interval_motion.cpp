@@ -21,7 +21,6 @@ InsState root_state(const InsProblem& problem, const InsUnknowns& x, Index inter
   InsState state;
   if (problem.root_at_rest) {
     state.force = x.root_force;
-    state.field = x.root_field;
     return state;
   }
   for (Index i = 0; i < 3; ++i) {
@@ -62,7 +61,6 @@ std::vector<InsPath> paths_of(const InsProblem& problem, const InsLayout& layout
   };
   if (!problem.root_at_rest) append(paths[0].spline_dimensions, 0, 6);
   if (problem.root_at_rest) append(paths[0].translational, layout.root_force, 3);
-  if (layout.has_field) append(paths[0].rotational, layout.root_field, 3);
   for (std::size_t b = 1; b < bodies.size(); ++b) {
     paths[b] = paths[static_cast<std::size_t>(bodies[b].parent)];
     append(paths[b].spline_dimensions, layout.spline_dimension[b], degrees_of_freedom(bodies[b].motion));
@@ -99,10 +97,11 @@ IntervalMotion::IntervalMotion(const InsProblem& problem, const InsLayout& layou
       propagated_(x.bodies.size()) {
   for (InsPath& path : paths_) {
     if (scope == LinearisationScope::spline_only) path.rotational.clear(), path.translational.clear();
-    bodies_.push_back({.state = {},
-                       .by_spline = MatrixXd::Zero(orders * number_of(path.spline_dimensions), 12 * block_nodes),
-                       .rotational = MatrixXd::Zero(number_of(path.rotational), 12 * block_nodes),
-                       .translational = MatrixXd::Zero(number_of(path.translational), 3 * block_nodes)});
+    bodies_.push_back(
+        {.state = {},
+         .by_spline = MatrixXd::Zero(orders * number_of(path.spline_dimensions), state_size * block_nodes),
+         .rotational = MatrixXd::Zero(number_of(path.rotational), state_size * block_nodes),
+         .translational = MatrixXd::Zero(number_of(path.translational), 3 * block_nodes)});
   }
   start_root();
 }
@@ -118,7 +117,6 @@ void IntervalMotion::start_root() {
         root.by_spline(orders * (3 + i), column(6 + i)) = 1.0;
       }
       if (root.translational.size() > 0) root.translational(i, column(i)) = 1.0;
-      if (root.rotational.size() > 0) root.rotational(i, column(9 + i)) = 1.0;
     }
 }
 
@@ -144,18 +142,15 @@ void IntervalMotion::move_to(Index interval) {
 void IntervalMotion::propagate_from_parent(std::size_t b, Index node) {
   const BodyMotion& parent = bodies_[static_cast<std::size_t>(x_.bodies[b].parent)];
   BodyMotion& body = bodies_[b];
-  const Eigen::Matrix<double, 12, 12>& by = propagated_[b].by_parent;
+  const auto& by = propagated_[b].by_parent;
   const auto propagate = [&](const MatrixXd& from, MatrixXd& to, Index first, const auto& by_components) {
     const Index rows = from.rows(), components = by_components.cols();
     add_product(at_node(from, rows, first, components, node), by_components, 1.0,
                 at_node(to, rows, first, components, node));
   };
-  propagate(parent.by_spline, body.by_spline, 0, by.topLeftCorner<9, 9>());
-  propagate(parent.rotational, body.rotational, 0, by.topLeftCorner<9, 9>());
-  propagate(parent.translational, body.translational, 0, by.block<3, 3>(6, 6));
-  if (!layout_.has_field) return;
-  propagate(parent.by_spline, body.by_spline, 9, by.bottomRightCorner<3, 3>());
-  propagate(parent.rotational, body.rotational, 9, by.bottomRightCorner<3, 3>());
+  propagate(parent.by_spline, body.by_spline, 0, by);
+  propagate(parent.rotational, body.rotational, 0, by);
+  propagate(parent.translational, body.translational, 0, by.block<3, 3>(force_row, force_row));
 }
 
 /// Derivatives with respect to the joint's own trajectory and parameters, behind those inherited from the parent.
@@ -164,9 +159,9 @@ void IntervalMotion::append_own_derivatives(std::size_t b, Index node) {
   BodyMotion& body = bodies_[b];
   const Index read = orders * degrees_of_freedom(x_.bodies[b].motion), turns = x_.bodies[b].turns(),
               points = x_.bodies[b].unknowns() - turns;
-  at_node(body.by_spline, body.by_spline.rows(), 0, 12, node).bottomRows(read) = own.leftCols(read).transpose();
+  at_node(body.by_spline, body.by_spline.rows(), 0, state_size, node).bottomRows(read) = own.leftCols(read).transpose();
   if (scope_ == LinearisationScope::spline_only) return;
-  at_node(body.rotational, body.rotational.rows(), 0, 12, node).bottomRows(turns) =
+  at_node(body.rotational, body.rotational.rows(), 0, state_size, node).bottomRows(turns) =
       own.middleCols(read, turns).transpose();
   at_node(body.translational, body.translational.rows(), 0, 3, node).bottomRows(points) =
       own.middleRows<3>(6).rightCols(points).transpose();

@@ -14,7 +14,7 @@ inline Eigen::Index number_of(const std::vector<Eigen::Index>& unknowns) {
 /// The unknowns on which a body's state depends.
 struct InsPath {
   std::vector<Eigen::Index> spline_dimensions;  ///< spline dimensions, ascending
-  std::vector<Eigen::Index> rotational;         ///< global parameters: frame rotations, and the root's magnetic field
+  std::vector<Eigen::Index> rotational;         ///< global parameters: frame rotations
   std::vector<Eigen::Index> translational;  ///< global parameters that only affect specific force: points, root's force
 };
 std::vector<InsPath> paths_of(const InsProblem& problem, const InsLayout& layout, const InsBodies& bodies);
@@ -32,8 +32,8 @@ constexpr Eigen::Index derivative_orders = 3;  // states depend on time derivati
 /// component · nodes + node belongs to a state's component (in the order of the members of InsState) at a node.
 struct BodyMotion {
   std::array<InsState, block_nodes> state;
-  MatrixXd by_spline;      ///< dimensions · orders x 12 · nodes: by each spline dimension's time derivatives
-  MatrixXd rotational;     ///< unknowns x 12·nodes
+  MatrixXd by_spline;      ///< dimensions · orders x 9 · nodes: by each spline dimension's time derivatives
+  MatrixXd rotational;     ///< unknowns x 9·nodes
   MatrixXd translational;  ///< unknowns x 3·nodes: of the specific force
 };
 

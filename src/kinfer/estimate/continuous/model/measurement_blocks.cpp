@@ -14,16 +14,9 @@ using Row = Eigen::Matrix<double, 1, block_nodes>;
 using Index = Eigen::Index;
 
 std::optional<Vec3> measured_vector(const InsSample& s, InsInstrument instrument) {
-  switch (instrument) {
-    case InsInstrument::gyroscope:
-      return s.has_angular_velocity && !s.angular_velocity_clipped ? std::optional<Vec3>(s.angular_velocity)
-                                                                   : std::nullopt;
-    case InsInstrument::accelerometer:
-      return s.has_acceleration ? std::optional<Vec3>(s.acceleration) : std::nullopt;
-    case InsInstrument::magnetometer:
-      return s.has_field ? std::optional<Vec3>(s.field) : std::nullopt;
-  }
-  return std::nullopt;
+  if (instrument == InsInstrument::accelerometer)
+    return s.has_acceleration ? std::optional<Vec3>(s.acceleration) : std::nullopt;
+  return s.has_angular_velocity && !s.angular_velocity_clipped ? std::optional<Vec3>(s.angular_velocity) : std::nullopt;
 }
 
 /// A block while its measurements are accumulated, in double precision.
@@ -34,8 +27,9 @@ struct OpenBlock {
   int samples = 0;
 };
 
-InsBlock to_block(const OpenBlock& g, int rows) {
-  return {g.factor.cast<float>(), g.target.cast<float>(), g.left.cast<float>(), g.samples, rows};
+InsBlock to_block(const OpenBlock& g) {
+  return {g.factor.cast<float>(), g.target.cast<float>(), g.left.cast<float>(), g.samples,
+          std::min(g.samples, block_nodes)};
 }
 
 /// Adds one row of V and y to R and Qᵀ y by Givens rotations; the remainder of y goes to the residual squares.
@@ -54,30 +48,6 @@ void take(OpenBlock& block, Row v, Vec3 y) {
     block.factor.row(k).head(k).setZero();
   }
   block.left += y.cwiseAbs2();
-}
-
-template <class Take, class Store>
-std::vector<InsBlock> accumulate_blocks(const InsSensor& sensor, std::span<const double> time, InsInstrument instrument,
-                                        const SplineGrid& grid, double clock_offset, const Take& accumulate,
-                                        const Store& store) {
-  std::vector<InsBlock> blocks(static_cast<std::size_t>(grid.intervals));
-  OpenBlock open;
-  Index at = -1;
-  const auto close = [&] {
-    if (open.samples > 0) blocks[static_cast<std::size_t>(at)] = store(open);
-    open = {};
-  };
-  for (std::size_t row = 0; row < time.size(); ++row) {
-    const double where = (time[row] + clock_offset - grid.begin) / grid.period;
-    const auto k = static_cast<Index>(std::floor(where));
-    if (k < 0 || k >= grid.intervals) continue;
-    if (k != at) close();
-    at = k;
-    if (const auto value = measured_vector(sample(sensor, time, row), instrument))
-      accumulate(open, node_weights(where - static_cast<double>(k)), *value);
-  }
-  close();
-  return blocks;
 }
 
 }  // namespace
@@ -124,24 +94,24 @@ const NodeMatrix& node_derivative() {
 
 std::vector<InsBlock> ins_blocks(const InsSensor& sensor, std::span<const double> time, InsInstrument instrument,
                                  const SplineGrid& grid, double clock_offset) {
-  return accumulate_blocks(sensor, time, instrument, grid, clock_offset, take,
-                           [](const OpenBlock& g) { return to_block(g, std::min(g.samples, block_nodes)); });
-}
-
-std::vector<InsBlock> mean_blocks(const InsSensor& sensor, std::span<const double> time, InsInstrument instrument,
-                                  const SplineGrid& grid, double clock_offset) {
-  return accumulate_blocks(
-      sensor, time, instrument, grid, clock_offset,
-      [](OpenBlock& block, const Row& v, const Vec3& y) {
-        ++block.samples;
-        block.factor.row(0) += v;
-        block.target.row(0) += y.transpose();
-      },
-      [](OpenBlock g) {
-        g.factor.row(0) /= g.samples;
-        g.target.row(0) /= g.samples;
-        return to_block(g, 1);
-      });
+  std::vector<InsBlock> blocks(static_cast<std::size_t>(grid.intervals));
+  OpenBlock open;
+  Index at = -1;
+  const auto close = [&] {
+    if (open.samples > 0) blocks[static_cast<std::size_t>(at)] = to_block(open);
+    open = {};
+  };
+  for (std::size_t row = 0; row < time.size(); ++row) {
+    const double where = (time[row] + clock_offset - grid.begin) / grid.period;
+    const auto k = static_cast<Index>(std::floor(where));
+    if (k < 0 || k >= grid.intervals) continue;
+    if (k != at) close();
+    at = k;
+    if (const auto value = measured_vector(sample(sensor, time, row), instrument))
+      take(open, node_weights(where - static_cast<double>(k)), *value);
+  }
+  close();
+  return blocks;
 }
 
 double measurement_noise(std::span<const InsBlock> blocks) {

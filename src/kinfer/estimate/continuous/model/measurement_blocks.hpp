@@ -43,16 +43,11 @@ struct InsBlock {
   std::int32_t rows = 0;                           ///< rows of R and Qᵀ y in use
 };
 
-enum class InsInstrument { gyroscope, accelerometer, magnetometer };
+enum class InsInstrument { gyroscope, accelerometer };
 
 /// One block per grid interval. Invalid samples are left out. `clock_offset` [s] is added to the times.
 std::vector<InsBlock> ins_blocks(const InsSensor& sensor, std::span<const double> time, InsInstrument instrument,
                                  const SplineGrid& grid, double clock_offset = 0.0);
-
-/// Only the mean of each interval's measurements, as one row: for instruments with slowly varying disturbances
-/// (magnetometers).
-std::vector<InsBlock> mean_blocks(const InsSensor& sensor, std::span<const double> time, InsInstrument instrument,
-                                  const SplineGrid& grid, double clock_offset = 0.0);
 
 /// Standard deviation of one measurement about its block's polynomial, robust against blocks with shocks; 0 if no block
 /// is overdetermined.

@@ -44,7 +44,6 @@ InsState state_on_mount(const InsState& segment, const Mat3& tilt, const Vec3& f
   InsState state = segment;
   state.angular_velocity = back * segment.angular_velocity + right_jacobian(turned) * (tilt * force_change);
   state.force = back * segment.force;
-  state.field = back * segment.field;
   return state;
 }
 
@@ -58,13 +57,11 @@ MountDerivative state_on_mount_derivative(const InsState& segment, const Mat3& t
   const Vec3 angular_velocity = d.turn * segment.angular_velocity;
   d.state.angular_velocity = angular_velocity + own.angular_velocity;
   d.state.force = d.turn * segment.force;
-  d.state.field = d.turn * segment.field;
   const Mat3 velocity_by_rotation = skew(angular_velocity) * own.jacobian + own.velocity_by_vector;
-  const Mat3 force_by_turn = skew(d.state.force) * own.jacobian, field_by_turn = skew(d.state.field) * own.jacobian;
+  const Mat3 force_by_turn = skew(d.state.force) * own.jacobian;
   for (Index j = 0; j < 3; ++j) {
     d.velocity_by_tilt.middleCols<3>(3 * j) = force[j] * velocity_by_rotation + force_change[j] * own.jacobian;
     d.force_by_tilt.middleCols<3>(3 * j) = force[j] * force_by_turn;
-    d.field_by_tilt.middleCols<3>(3 * j) = force[j] * field_by_turn;
   }
   return d;
 }

@@ -38,7 +38,7 @@ InsState state_on_mount(const InsState& segment, const Mat3& tilt, const Vec3& f
 struct MountDerivative {
   InsState state;
   Mat3 turn;  ///< exp(−θ)
-  Eigen::Matrix<double, 3, 9> velocity_by_tilt, force_by_tilt, field_by_tilt;
+  Eigen::Matrix<double, 3, 9> velocity_by_tilt, force_by_tilt;
 };
 MountDerivative state_on_mount_derivative(const InsState& segment, const Mat3& tilt, const Vec3& force,
                                           const Vec3& force_change);

@@ -24,8 +24,6 @@ void each_error(const InsProblem& problem, const InsLayout& layout, Errors& all,
     visit(first + 6, 9, errors.gyroscope_scale.data(), problem.prior.gyroscope_scale);
     visit(first + 15, 9, errors.accelerometer_scale.data(), problem.prior.accelerometer_scale);
   }
-  if (layout.has_field)
-    visit(first + layout.field_error, 3, errors.magnetometer_bias.data(), problem.prior.magnetometer_bias);
   if (layout.has_tilts) visit(first + layout.tilt_error, 9, errors.tilt.data(), problem.prior.tilt);
   if (!layout.has_clocks) return;
   const bool is_reference = sensor == problem.clock_reference;
@@ -54,14 +52,11 @@ void change_facts(InsFactUnknowns& facts, ConstVectorRef step) {
 InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
   InsLayout layout;
   layout.spline_dimensions = problem.root_at_rest ? 0 : 6;
-  layout.has_field = problem.root_at_rest &&
-                     std::ranges::any_of(problem.sensors, [](const InsMeasurements& s) { return !s.field.empty(); });
   layout.has_matrices = problem.prior.gyroscope_scale > 0.0 || problem.prior.accelerometer_scale > 0.0;
   const auto take = [&](Index count) {
     return std::exchange(layout.global_parameters, layout.global_parameters + count);
   };
   if (problem.root_at_rest) layout.root_force = take(3);
-  if (layout.has_field) layout.root_field = take(3);
   for (const InsBody& body : bodies) {
     layout.body.push_back(take(body.unknowns()));
     layout.spline_dimension.push_back(body.motion == JointMotion::fixed ? -1 : layout.spline_dimensions);
@@ -70,7 +65,6 @@ InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
   layout.has_clocks = problem.prior.clock_offset > 0.0;
   const auto append = [&](Index count) { return std::exchange(layout.errors_each, layout.errors_each + count); };
   append(layout.has_matrices ? 24 : 6);
-  if (layout.has_field) layout.field_error = append(3);
   if (layout.has_clocks) layout.clock_error = append(2);
   layout.has_tilts = problem.prior.tilt > 0.0;
   if (layout.has_tilts) layout.tilt_error = append(9);
@@ -89,7 +83,6 @@ InsUnknowns retract(const InsProblem& problem, const InsLayout& layout, const In
   result.spline_coefficients += step.spline_coefficients;
   if (layout.bias_process > 0) result.bias_process += step.bias_process;
   if (layout.root_force >= 0) result.root_force += border.segment<3>(layout.root_force);
-  if (layout.root_field >= 0) result.root_field += border.segment<3>(layout.root_field);
   for (std::size_t b = 0; b < x.bodies.size(); ++b)
     result.bodies[b] = retract(x.bodies[b], border.segment(layout.body[b], x.bodies[b].unknowns()));
   for (std::size_t s = 0; s < x.errors.size(); ++s)

@@ -3,8 +3,8 @@
 //
 // Time-varying unknowns: each joint position as a quintic spline; for a moving root also its angular velocity and
 // specific force, so that a moving base needs no integration and cannot drift. Global parameters: the joint geometry,
-// the root's specific force and magnetic field if it is at rest, and each INS' biases and scale matrices, measurement =
-// (I + S) truth + b.
+// the root's specific force if it is at rest, and each INS' biases and scale matrices, measurement = (I + S) truth + b.
+// Magnetometers are not fitted here: what they tell about azimuths is a fact (estimate/magnetometers).
 #pragma once
 
 #include "kinfer/base/constants.hpp"
@@ -16,20 +16,19 @@
 
 namespace kinfer {
 
-/// Standard deviations of one measurement; of the magnetic field: of an interval's mean.
+/// Standard deviations of one measurement.
 struct InsNoise {
   double angular_velocity = 1.0;  ///< [rad/s]
   double force = 1.0;             ///< [m/s²]
-  double field = 1.0;
 };
 
 /// Measurements of one INS, by intervals of the grid.
 struct InsMeasurements {
-  std::vector<InsBlock> angular_velocity, force, field;  ///< field: empty if not used
-  InsNoise noise;                                        ///< as weighted by the fit
-  InsNoise noise_floor;                                  ///< the instrument's own noise: lower bound of the above
-  std::vector<InsMountLoad> mount_load{};                ///< load on its mount; empty if mounts are rigid
-  InsClippedBlocks clipped_rate{}, clipped_force{};      ///< bounds, where the instrument clips
+  std::vector<InsBlock> angular_velocity, force;
+  InsNoise noise;                                    ///< as weighted by the fit
+  InsNoise noise_floor;                              ///< the instrument's own noise: lower bound of the above
+  std::vector<InsMountLoad> mount_load{};            ///< load on its mount; empty if mounts are rigid
+  InsClippedBlocks clipped_rate{}, clipped_force{};  ///< bounds, where the instrument clips
 };
 
 /// Clock error of a sensor: a measurement logged at t was taken at t + offset + drift (t − middle of the grid).
@@ -40,7 +39,7 @@ struct InsClock {
 
 /// Systematic errors of one INS.
 struct InsErrors {
-  Vec3 gyroscope_bias = Vec3::Zero(), accelerometer_bias = Vec3::Zero(), magnetometer_bias = Vec3::Zero();
+  Vec3 gyroscope_bias = Vec3::Zero(), accelerometer_bias = Vec3::Zero();
   Mat3 gyroscope_scale = Mat3::Zero(), accelerometer_scale = Mat3::Zero();  ///< S
   InsClock clock{};
   Mat3 tilt = Mat3::Zero();  ///< [rad per m/s²] of its mount (ins_mount)
@@ -48,8 +47,7 @@ struct InsErrors {
 
 /// Prior standard deviations of the errors of an INS; matrices, clocks and tilts with 0 are not estimated.
 struct InsErrorPrior {
-  double gyroscope_bias = 0.0, accelerometer_bias = 0.0, magnetometer_bias = 0.0, gyroscope_scale = 0.0,
-         accelerometer_scale = 0.0;
+  double gyroscope_bias = 0.0, accelerometer_bias = 0.0, gyroscope_scale = 0.0, accelerometer_scale = 0.0;
   double clock_offset = 0.0, clock_drift = 0.0;
   double tilt = 0.0;
 };
@@ -84,23 +82,22 @@ struct InsUnknowns {
   MatrixXd spline_coefficients;  ///< dimensions x coefficients: [root angular velocity, root force] if it moves, joints
   InsBodies bodies;
   Vec3 root_force = Vec3::Zero();  ///< [m/s²] if the root is at rest
-  Vec3 root_field = Vec3::Zero();
-  std::vector<InsErrors> errors;  ///< one per sensor
-  MatrixXd bias_process{};        ///< [gyroscope, accelerometer] of each sensor x time segments; empty: constant biases
+  std::vector<InsErrors> errors;   ///< one per sensor
+  MatrixXd bias_process{};  ///< [gyroscope, accelerometer] of each sensor x time segments; empty: constant biases
   InsFactUnknowns facts{};
 };
 
 /// Index of each unknown.
 struct InsLayout {
-  Eigen::Index spline_dimensions = 0;             ///< spline dimensions
-  Eigen::Index global_parameters = 0;             ///< number of global parameters
-  Eigen::Index root_force = -1, root_field = -1;  ///< first of three global parameters; −1: absent
-  std::vector<Eigen::Index> body, error;          ///< first global parameter of each body and sensor
-  std::vector<Eigen::Index> spline_dimension;     ///< first spline dimension of each body's joint; −1: none
-  Eigen::Index bias_process = 0;                  ///< unknowns per time segment: six per sensor, or none
-  bool has_field = false, has_matrices = false, has_clocks = false, has_tilts = false;
-  Eigen::Index errors_each = 0;  ///< unknowns per sensor: [b_g, b_a, S_g, S_a, b_m, clock, tilt]
-  Eigen::Index field_error = -1, clock_error = -1, tilt_error = -1;  ///< offsets in these; −1: absent
+  Eigen::Index spline_dimensions = 0;          ///< spline dimensions
+  Eigen::Index global_parameters = 0;          ///< number of global parameters
+  Eigen::Index root_force = -1;                ///< first of three global parameters; −1: absent
+  std::vector<Eigen::Index> body, error;       ///< first global parameter of each body and sensor
+  std::vector<Eigen::Index> spline_dimension;  ///< first spline dimension of each body's joint; −1: none
+  Eigen::Index bias_process = 0;               ///< unknowns per time segment: six per sensor, or none
+  bool has_matrices = false, has_clocks = false, has_tilts = false;
+  Eigen::Index errors_each = 0;                    ///< unknowns per sensor: [b_g, b_a, S_g, S_a, clock, tilt]
+  Eigen::Index clock_error = -1, tilt_error = -1;  ///< offsets in these; −1: absent
   Eigen::Index facts = -1;     ///< first unknown of the facts: points, touched points, closures, the surveyor's frame
   Eigen::Index closures = -1;  ///< first unknown of the closures
 };

@@ -16,9 +16,6 @@ Vec3 read_gyroscope(const InsState& s, const InsErrors& e) {
 Vec3 read_accelerometer(const InsState& s, const InsErrors& e) {
   return s.force + e.accelerometer_scale * s.force + e.accelerometer_bias;
 }
-Vec3 read_magnetometer(const InsState& s, const InsErrors& e) {
-  return s.field + e.magnetometer_bias;
-}
 
 }  // namespace
 
@@ -47,16 +44,14 @@ RobustBlock robust(double squares, double terms) {
   return {limit * (1.0 + std::log(squares / limit)), limit / squares};
 }
 
-std::vector<InstrumentMeasurements> instruments(const InsProblem& problem, const InsLayout& layout,
-                                                std::size_t sensor) {
+std::vector<InstrumentMeasurements> instruments(const InsProblem& problem, std::size_t sensor) {
   const InsMeasurements& r = problem.sensors[sensor];
-  std::vector<InstrumentMeasurements> uses{{r.angular_velocity, r.noise.angular_velocity, read_gyroscope, 0},
-                                           {r.force, r.noise.force, read_accelerometer, 6}};
+  std::vector<InstrumentMeasurements> uses{{r.angular_velocity, r.noise.angular_velocity, read_gyroscope, rate_row},
+                                           {r.force, r.noise.force, read_accelerometer, force_row}};
   if (!r.clipped_rate.empty())
-    uses.push_back({r.clipped_rate.blocks, r.noise.angular_velocity, read_gyroscope, 0, &r.clipped_rate.sides});
+    uses.push_back({r.clipped_rate.blocks, r.noise.angular_velocity, read_gyroscope, rate_row, &r.clipped_rate.sides});
   if (!r.clipped_force.empty())
-    uses.push_back({r.clipped_force.blocks, r.noise.force, read_accelerometer, 6, &r.clipped_force.sides});
-  if (layout.has_field && !r.field.empty()) uses.push_back({r.field, r.noise.field, read_magnetometer, 9});
+    uses.push_back({r.clipped_force.blocks, r.noise.force, read_accelerometer, force_row, &r.clipped_force.sides});
   return uses;
 }
 

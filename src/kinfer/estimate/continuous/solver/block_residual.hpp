@@ -46,7 +46,7 @@ inline bool is_satisfied(std::int8_t side, double residual) {
 /// Sets the residuals of satisfied bounds to 0; nothing to do for measurements.
 void drop_satisfied(BlockResidual& residual, const InstrumentMeasurements& instrument, Eigen::Index interval);
 
-std::vector<InstrumentMeasurements> instruments(const InsProblem& problem, const InsLayout& layout, std::size_t sensor);
+std::vector<InstrumentMeasurements> instruments(const InsProblem& problem, std::size_t sensor);
 
 /// State of the INS at a node, with the compliance of its mount.
 InsState sensor_state_at(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, std::size_t sensor,

@@ -57,7 +57,7 @@ InsCost item_cost(const InsProblem& problem, const InsLayout& layout, const InsU
       const InsErrors errors = errors_at(problem, x, sensor, interval);
       for (std::size_t n = 0; n < block_nodes; ++n)
         states[n][b] = sensor_state_at(problem, layout, x, sensor, interval, n, states[n][b]);
-      for (const InstrumentMeasurements& use : instruments(problem, layout, sensor)) {
+      for (const InstrumentMeasurements& use : instruments(problem, sensor)) {
         const InsBlock& block = use.blocks[static_cast<std::size_t>(interval)];
         BlockResidual predicted;
         for (std::size_t n = 0; n < block_nodes; ++n)
@@ -69,10 +69,7 @@ InsCost item_cost(const InsProblem& problem, const InsLayout& layout, const InsU
         cost.total += value.cost;
         if (use.is_bound()) continue;  // a satisfied bound says nothing about the noise
         SensorFit& fit = cost.sensors[sensor];
-        accumulate(use.state_row == 0   ? fit.angular_velocity
-                   : use.state_row == 6 ? fit.force
-                                        : fit.field,
-                   block, r, value);
+        accumulate(use.state_row == rate_row ? fit.angular_velocity : fit.force, block, r, value);
       }
     }
     each_spline_prior(problem, layout, x.spline_coefficients, interval, [&](const SplinePriorTerm& term) {
@@ -84,7 +81,6 @@ InsCost item_cost(const InsProblem& problem, const InsLayout& layout, const InsU
 
 /// `all`: number of intervals of the recording; reserved at once, so that an hour's data are not held twice.
 void append(InstrumentFit& to, const InstrumentFit& more, std::size_t all) {
-  if (more.block.empty()) return;
   to.block.reserve(all);
   to.offset.reserve(all);
   to.squares += more.squares;
@@ -109,7 +105,6 @@ InsCost cost_of(const InsProblem& problem, const InsLayout& layout, const InsUnk
     for (std::size_t s = 0; s < sum.sensors.size(); ++s) {
       append(sum.sensors[s].angular_velocity, item.sensors[s].angular_velocity, all);
       append(sum.sensors[s].force, item.sensors[s].force, all);
-      append(sum.sensors[s].field, item.sensors[s].field, all);
     }
     item = {};
   }

@@ -22,7 +22,7 @@ struct InstrumentFit {
   std::vector<std::array<float, 3>> offset;  ///< [sigma] of each interval, per axis; NaN: no measurements
 };
 struct SensorFit {
-  InstrumentFit angular_velocity, force, field;
+  InstrumentFit angular_velocity, force;
 };
 
 struct InsCost {

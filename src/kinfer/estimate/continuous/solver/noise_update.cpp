@@ -21,7 +21,10 @@ double covariance(const std::vector<std::array<float, 3>>& offset, std::size_t a
   return n > 0.0 ? sum / n : 0.0;
 }
 
-double autocorrelation_time_of_axis(const std::vector<std::array<float, 3>>& offset, std::size_t axis) {
+/// Integrated autocorrelation time [intervals] of an axis: variance of a mean over a long time relative to white noise,
+/// 1 + 2 Σ ρ over the lags of the offsets' autocorrelation up to the first that is not positive, at most a tenth of the
+/// recording; at least 1.
+double autocorrelation_time(const std::vector<std::array<float, 3>>& offset, std::size_t axis) {
   const double variance = covariance(offset, axis, 0);
   double memory = 1.0;
   for (std::size_t lag = 1; variance > 0.0 && lag < offset.size() / 10; ++lag) {
@@ -66,21 +69,8 @@ void estimate_instrument_noise(std::vector<InsNoise>& all, const InsProblem& pro
     all[s].*noise = factors[s] * problem.sensors[s].noise_floor.*noise;
 }
 
-/// Magnetometers: their noise is only ever increased. The correlation time is a rough figure, and they only fix the
-/// gauge, so a coarse weight is enough.
-void estimate_magnetometer_noise(std::vector<InsNoise>& all, const InsProblem& problem, const InsCost& cost) {
-  constexpr double coarse = 2.0;
-  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
-    const InstrumentFit& field = cost.sensors[s].field;
-    const double ratio = field.block.empty() ? 0.0 : trimmed_mean(field) * autocorrelation_time(field);
-    all[s].field = problem.sensors[s].noise.field * (ratio > coarse ? std::sqrt(ratio) : 1.0);
-  }
-}
-
-/// Of gyroscopes and accelerometers; magnetometers unchanged.
 std::vector<InsNoise> estimated_noise(const InsProblem& problem, const InsCost& cost) {
-  std::vector<InsNoise> estimated;
-  for (const InsMeasurements& sensor : problem.sensors) estimated.push_back(sensor.noise);
+  std::vector<InsNoise> estimated(problem.sensors.size());
   estimate_instrument_noise(estimated, problem, cost, &InsNoise::angular_velocity, &SensorFit::angular_velocity);
   estimate_instrument_noise(estimated, problem, cost, &InsNoise::force, &SensorFit::force);
   return estimated;
@@ -91,8 +81,7 @@ bool differ(const InsProblem& problem, const std::vector<InsNoise>& estimated) {
   const auto differs = [](double a, double b) { return std::abs(b - a) > notable * a; };
   for (std::size_t s = 0; s < estimated.size(); ++s) {
     const InsNoise& noise = problem.sensors[s].noise;
-    if (differs(noise.angular_velocity, estimated[s].angular_velocity) || differs(noise.force, estimated[s].force) ||
-        differs(noise.field, estimated[s].field))
+    if (differs(noise.angular_velocity, estimated[s].angular_velocity) || differs(noise.force, estimated[s].force))
       return true;
   }
   return false;
@@ -122,8 +111,7 @@ double persistent_variance_of_axis(const InstrumentFit& fit, std::size_t axis) {
 double long_run_variance(const InstrumentFit& fit) {
   double sum = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double memory =
-        persistent_variance_of_axis(fit, axis) > 0.0 ? autocorrelation_time_of_axis(fit.offset, axis) : 1.0;
+    const double memory = persistent_variance_of_axis(fit, axis) > 0.0 ? autocorrelation_time(fit.offset, axis) : 1.0;
     sum += covariance(fit.offset, axis, 0) * memory / 3.0;
   }
   return sum;
@@ -148,19 +136,12 @@ double persistent_variance(const InstrumentFit& fit) {
   return sum;
 }
 
-double autocorrelation_time(const InstrumentFit& fit) {
-  double sum = 0.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) sum += autocorrelation_time_of_axis(fit.offset, axis) / 3.0;
-  return sum;
-}
-
 bool needs_reweighting(const InsProblem& problem, const InsCost& cost) {
   return differ(problem, estimated_noise(problem, cost));
 }
 
 bool update_noise(InsProblem& problem, const InsCost& cost) {
-  std::vector<InsNoise> estimated = estimated_noise(problem, cost);
-  estimate_magnetometer_noise(estimated, problem, cost);
+  const std::vector<InsNoise> estimated = estimated_noise(problem, cost);
   const bool changed = differ(problem, estimated);
   for (std::size_t s = 0; s < estimated.size(); ++s) problem.sensors[s].noise = estimated[s];
   return changed;

@@ -11,7 +11,10 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr Index rate_row = 0, force_row = 6;
+/// Index of an instrument's part.
+std::size_t part_of(const InstrumentMeasurements& instrument) {
+  return instrument.state_row == force_row ? 1 : 0;
+}
 
 /// Appends columns of further global parameters; returns the first column.
 Index append(SensorRows& part, Index first, Index count) {
@@ -39,9 +42,7 @@ void drop_satisfied_rows(SensorRows& part, const BlockResidual& r, const Instrum
 
 /// Derivatives of one instrument's measurement with respect to the tilt compliance.
 const Eigen::Matrix<double, 3, 9>& by_tilt(const MountDerivative& on_mount, Index state_row) {
-  return state_row == rate_row    ? on_mount.velocity_by_tilt
-         : state_row == force_row ? on_mount.force_by_tilt
-                                  : on_mount.field_by_tilt;
+  return state_row == rate_row ? on_mount.velocity_by_tilt : on_mount.force_by_tilt;
 }
 
 }  // namespace
@@ -54,52 +55,41 @@ SensorLinearisation::SensorLinearisation(const InsProblem& problem, const InsLay
       motion_(motion),
       body_(body),
       sensor_(static_cast<std::size_t>(x.bodies[body].sensor)),
-      scope_(scope) {
+      scope_(scope),
+      instruments_(instruments(problem, sensor_)) {
   const InsPath& path = motion.path(body);
   for (SensorRows& part : parts_)
     for (Index i = 0; i < spline_order; ++i)
       for (const Index spline_dimension : path.spline_dimensions)
         part.band.push_back(i * layout.spline_dimensions + spline_dimension);
-  if (scope == LinearisationScope::everything) {
-    for (SensorRows& part : parts_) part.rotational = append(part, path.rotational);
-    parts_[1].translational = append(parts_[1], path.translational);
-  }
-  for (const InstrumentMeasurements& instrument : instruments(problem, layout, sensor_))
-    uses_.push_back(columns_of(instrument));
+  if (scope == LinearisationScope::everything) append_global_columns(path);
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     SensorRows& part = parts_[p];
-    if (scope == LinearisationScope::everything) {
-      if (layout.has_tilts) part.tilt = append(part, layout.error[sensor_] + layout.tilt_error, 9);
-      if (layout.has_clocks) part.clock = append(part, layout.error[sensor_] + layout.clock_error, 2);
-    }
-    const auto instruments = std::ranges::count(uses_, p, &InstrumentColumns::part);
-    part.jacobian.resize(number_of(part.band) + number_of(part.border), 3 * block_nodes * instruments);
+    const auto count = std::ranges::count(instruments_, p, part_of);
+    part.jacobian.resize(number_of(part.band) + number_of(part.border), 3 * block_nodes * count);
     part.residual.resize(part.jacobian.cols());
   }
 }
 
-SensorLinearisation::InstrumentColumns SensorLinearisation::columns_of(const InstrumentMeasurements& instrument) {
-  const bool angular_velocity = instrument.state_row == rate_row, force = instrument.state_row == force_row;
-  InstrumentColumns use{instrument, force ? 1UL : 0UL};
-  if (scope_ == LinearisationScope::spline_only) return use;
-  for (const InstrumentColumns& other : uses_)  // bounds share the errors of the measurements
-    if (other.instrument.state_row == instrument.state_row) {
-      use.bias = other.bias;
-      use.matrix = other.matrix;
-      return use;
-    }
-  const Index first = layout_.error[sensor_];
-  use.bias = append(parts_[use.part], first + (angular_velocity ? 0 : force ? 3 : layout_.field_error), 3);
-  if (layout_.has_matrices && (angular_velocity || force))
-    use.matrix = append(parts_[use.part], first + (angular_velocity ? 6 : 15), 9);
-  return use;
+/// Measurements and bounds of an instrument share its errors.
+void SensorLinearisation::append_global_columns(const InsPath& path) {
+  const Index errors = layout_.error[sensor_];
+  for (const Index p : {0, 1}) {
+    SensorRows& part = parts_[static_cast<std::size_t>(p)];
+    part.rotational = append(part, path.rotational);
+    if (p == 1) part.translational = append(part, path.translational);
+    part.bias = append(part, errors + 3 * p, 3);
+    if (layout_.has_matrices) part.matrix = append(part, errors + 6 + 9 * p, 9);
+    if (layout_.has_tilts) part.tilt = append(part, errors + layout_.tilt_error, 9);
+    if (layout_.has_clocks) part.clock = append(part, errors + layout_.clock_error, 2);
+  }
 }
 
 void SensorLinearisation::move_to(Index interval) {
   errors_ = errors_at(problem_, x_, sensor_, interval);
   update_sensor_states(interval);
   for (SensorRows& part : parts_) part.used = 0;
-  for (const InstrumentColumns& use : uses_) add_rows(use, interval);
+  for (const InstrumentMeasurements& instrument : instruments_) add_rows(instrument, interval);
 }
 
 void SensorLinearisation::update_sensor_states(Index interval) {
@@ -112,51 +102,49 @@ void SensorLinearisation::update_sensor_states(Index interval) {
   }
 }
 
-void SensorLinearisation::add_rows(const InstrumentColumns& use, Index interval) {
-  const InsBlock& block = use.instrument.blocks[static_cast<std::size_t>(interval)];
+void SensorLinearisation::add_rows(const InstrumentMeasurements& instrument, Index interval) {
+  const InsBlock& block = instrument.blocks[static_cast<std::size_t>(interval)];
   if (block.rows == 0) return;
-  SensorRows& part = parts_[use.part];
+  SensorRows& part = parts_[part_of(instrument)];
   BlockResidual predicted;
   for (std::size_t n = 0; n < block_nodes; ++n)
-    predicted.row(static_cast<Index>(n)) = use.instrument.read(on_mount_[n].state, errors_).transpose();
+    predicted.row(static_cast<Index>(n)) = instrument.read(on_mount_[n].state, errors_).transpose();
   const NodeMatrix factor = shifted_factor(block, layout_, clock_shift(problem_, layout_, errors_, interval));
-  BlockResidual r = residual(block, factor, predicted, use.instrument.sd);
-  drop_satisfied(r, use.instrument, interval);
-  const double weight = std::sqrt(robust(r.squaredNorm(), 3.0 * block.rows).weight), scale = weight / use.instrument.sd;
-  WeightedBlock weighed{use, scale * factor, {}, part.used, block.rows};
-  weighed.by_state.fill(scaled(use));
+  BlockResidual r = residual(block, factor, predicted, instrument.sd);
+  drop_satisfied(r, instrument, interval);
+  const double weight = std::sqrt(robust(r.squaredNorm(), 3.0 * block.rows).weight), scale = weight / instrument.sd;
+  WeightedBlock weighed{instrument, part, scale * factor, {}, part.used, block.rows};
+  weighed.by_state.fill(scaled(instrument));
   if (layout_.has_tilts)
     for (std::size_t n = 0; n < block_nodes; ++n) weighed.by_state[n] *= on_mount_[n].turn;
   put_spline_columns(weighed);
   if (scope_ == LinearisationScope::everything) {
     part.jacobian.block(number_of(part.band), part.used, number_of(part.border), 3 * block.rows).setZero();
     const BodyMotion& body = motion_.body(body_);
-    put_global_columns(weighed, body.rotational.middleCols(use.instrument.state_row * block_nodes, 3 * block_nodes),
+    put_global_columns(weighed, body.rotational.middleCols(instrument.state_row * block_nodes, 3 * block_nodes),
                        part.rotational);
-    if (use.instrument.state_row == force_row) put_global_columns(weighed, body.translational, part.translational);
+    if (instrument.state_row == force_row) put_global_columns(weighed, body.translational, part.translational);
     put_errors(weighed);
     if (layout_.has_clocks)
       put_clock(weighed, scale * block.factor.cast<double>() * (node_derivative() * predicted), interval);
   }
-  if (use.instrument.is_bound()) drop_satisfied_rows(part, r, use.instrument, interval);
+  if (instrument.is_bound()) drop_satisfied_rows(part, r, instrument, interval);
   for (Index i = 0; i < block.rows; ++i) part.residual.segment<3>(part.used + 3 * i) = weight * r.row(i).transpose();
   part.used += 3 * block.rows;
 }
 
 /// Scale matrix of the instrument: I + S.
-Mat3 SensorLinearisation::scaled(const InstrumentColumns& use) const {
-  const Mat3 one = Mat3::Identity();
-  if (use.instrument.state_row == rate_row) return one + errors_.gyroscope_scale;
-  return use.instrument.state_row == force_row ? Mat3(one + errors_.accelerometer_scale) : one;
+Mat3 SensorLinearisation::scaled(const InstrumentMeasurements& instrument) const {
+  return Mat3::Identity() + (instrument.state_row == rate_row ? errors_.gyroscope_scale : errors_.accelerometer_scale);
 }
 
 /// Chain rule for each coefficient of each spline dimension: block row by nodes, nodes by the dimension's time
 /// derivatives, these by the coefficient.
 void SensorLinearisation::put_spline_columns(const WeightedBlock& w) {
   constexpr Index derivatives = block_nodes * derivative_orders;
-  SensorRows& part = parts_[w.use.part];
+  SensorRows& part = w.part;
   const MatrixXd& by_spline = motion_.body(body_).by_spline;
-  const Index spline_dimensions = number_of(part.band) / spline_order, first = w.use.instrument.state_row * block_nodes;
+  const Index spline_dimensions = number_of(part.band) / spline_order, first = w.instrument.state_row * block_nodes;
   std::array<Eigen::Matrix<double, spline_order, derivatives>, block_nodes> coefficients;  // for each row of the block
   for (Index i = 0; i < w.rows; ++i)
     for (Index k = 0; k < derivatives; ++k) {
@@ -187,7 +175,7 @@ void SensorLinearisation::put_spline_columns(const WeightedBlock& w) {
 /// `by_unknowns`: three components of the segment's state, each at all nodes.
 void SensorLinearisation::put_global_columns(const WeightedBlock& w, const Eigen::Ref<const MatrixXd>& by_unknowns,
                                              Index column) {
-  MatrixXd& jacobian = parts_[w.use.part].jacobian;
+  MatrixXd& jacobian = w.part.jacobian;
   Eigen::Matrix<double, block_nodes, 3 * block_nodes> weight;
   for (Index axis = 0; axis < 3; ++axis) {
     for (Index component = 0; component < 3; ++component)
@@ -202,12 +190,11 @@ void SensorLinearisation::put_global_columns(const WeightedBlock& w, const Eigen
 }
 
 void SensorLinearisation::put_errors(const WeightedBlock& w) {
-  MatrixXd& jacobian = parts_[w.use.part].jacobian;
-  const Index tilt = parts_[w.use.part].tilt, state_row = w.use.instrument.state_row;
-  const bool has_matrix = layout_.has_matrices && (state_row == rate_row || state_row == force_row);
-  const Mat3 scale = scaled(w.use);
+  MatrixXd& jacobian = w.part.jacobian;
+  const Index state_row = w.instrument.state_row;
+  const Mat3 scale = scaled(w.instrument);
   for (Index i = 0; i < w.rows; ++i)
-    for (Index axis = 0; axis < 3; ++axis) jacobian(w.use.bias + axis, w.first + 3 * i + axis) = w.weight.row(i).sum();
+    for (Index axis = 0; axis < 3; ++axis) jacobian(w.part.bias + axis, w.first + 3 * i + axis) = w.weight.row(i).sum();
   for (std::size_t n = 0; n < block_nodes; ++n) {
     const Vec3& truth = state_row == rate_row ? on_mount_[n].state.angular_velocity : on_mount_[n].state.force;
     const Eigen::Matrix<double, 3, 9> tilting =
@@ -217,9 +204,9 @@ void SensorLinearisation::put_errors(const WeightedBlock& w) {
       const double weight = w.weight(i, static_cast<Index>(n));
       for (Index axis = 0; axis < 3; ++axis) {
         auto row = jacobian.col(w.first + 3 * i + axis);
-        if (has_matrix)  // S is stored column by column
-          for (Index j = 0; j < 3; ++j) row[w.use.matrix + 3 * j + axis] += weight * truth[j];
-        if (layout_.has_tilts) row.segment<9>(tilt) += weight * tilting.row(axis).transpose();
+        if (layout_.has_matrices)  // S is stored column by column
+          for (Index j = 0; j < 3; ++j) row[w.part.matrix + 3 * j + axis] += weight * truth[j];
+        if (layout_.has_tilts) row.segment<9>(w.part.tilt) += weight * tilting.row(axis).transpose();
       }
     }
   }
@@ -227,7 +214,7 @@ void SensorLinearisation::put_errors(const WeightedBlock& w) {
 
 /// `by_shift`: derivative of the block's rows with respect to the time shift in intervals.
 void SensorLinearisation::put_clock(const WeightedBlock& w, const BlockResidual& by_shift, Index interval) {
-  SensorRows& part = parts_[w.use.part];
+  SensorRows& part = w.part;
   for (Index i = 0; i < w.rows; ++i)
     for (Index axis = 0; axis < 3; ++axis) {
       auto row = part.jacobian.col(w.first + 3 * i + axis);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // One sensor's measurements in one interval as whitened, robustly weighted residual rows with their Jacobian.
 //
-// Gyroscope and magnetometer do not depend on points, nor does the accelerometer on the errors of these two: so the
-// rows come in two parts, each with its own columns.
+// The gyroscope does not depend on points, nor either instrument on the errors of the other: so the rows come in two
+// parts, each with its own columns.
 #pragma once
 
 #include "kinfer/estimate/continuous/model/interval_motion.hpp"
@@ -11,7 +11,7 @@
 
 namespace kinfer {
 
-/// The rows of instruments that depend on the same unknowns.
+/// The rows of one instrument: its measurements and its bounds.
 struct SensorRows {
   std::vector<Eigen::Index> band;    ///< of each spline column: i·dimensions + dimension in the interval, ascending
   std::vector<Eigen::Index> border;  ///< of each further column: its global parameter
@@ -20,7 +20,7 @@ struct SensorRows {
   Eigen::Index used = 0;  ///< rows of this interval
 
   // First columns of each group; unused if the group is absent or held.
-  Eigen::Index rotational = 0, translational = 0, tilt = 0, clock = 0;
+  Eigen::Index rotational = 0, translational = 0, bias = 0, matrix = 0, tilt = 0, clock = 0;
 };
 
 /// One sensor, interval by interval. The constructor's arguments must outlive it.
@@ -35,27 +35,23 @@ class SensorLinearisation {
   const std::array<SensorRows, 2>& parts() const { return parts_; }
 
  private:
-  struct InstrumentColumns {
-    InstrumentMeasurements instrument;
-    std::size_t part;
-    Eigen::Index bias = 0, matrix = 0;  // columns
-  };
   /// One block: its row i is Σ weight(i, node) · (prediction at the node).
   struct WeightedBlock {
-    const InstrumentColumns& use;
+    const InstrumentMeasurements& instrument;
+    SensorRows& part;
     NodeMatrix weight;
     std::array<Mat3, block_nodes> by_state;  // derivative of the prediction with respect to the segment's state
-    Eigen::Index first, rows;                // of its rows in their part, three per row of the block
+    Eigen::Index first, rows;                // of its rows in the part, three per row of the block
   };
-  InstrumentColumns columns_of(const InstrumentMeasurements& instrument);
+  void append_global_columns(const InsPath& path);
   void update_sensor_states(Eigen::Index interval);
-  void add_rows(const InstrumentColumns& use, Eigen::Index interval);
+  void add_rows(const InstrumentMeasurements& instrument, Eigen::Index interval);
   void put_spline_columns(const WeightedBlock& block);
   void put_global_columns(const WeightedBlock& block, const Eigen::Ref<const MatrixXd>& by_unknowns,
                           Eigen::Index column);
   void put_errors(const WeightedBlock& block);
   void put_clock(const WeightedBlock& block, const BlockResidual& by_shift, Eigen::Index interval);
-  Mat3 scaled(const InstrumentColumns& use) const;
+  Mat3 scaled(const InstrumentMeasurements& instrument) const;
 
   const InsProblem& problem_;
   const InsLayout& layout_;
@@ -63,8 +59,8 @@ class SensorLinearisation {
   const IntervalMotion& motion_;
   std::size_t body_, sensor_;
   LinearisationScope scope_;
-  std::array<SensorRows, 2> parts_;  // gyroscope and magnetometer, accelerometer
-  std::vector<InstrumentColumns> uses_;
+  std::array<SensorRows, 2> parts_;  // gyroscope, accelerometer
+  std::vector<InstrumentMeasurements> instruments_;
   InsErrors errors_;
   std::array<MountDerivative, block_nodes> on_mount_;
 };
