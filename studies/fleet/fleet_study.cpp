@@ -41,8 +41,11 @@ Chain make_robot(const RobotModel& nominal, const SeriesKind& kind, Rng series, 
   Rng shared = series.stream(1), own = robot.stream(2);
   for (const Parameter& p : all_parameters(nominal.chain, nominal.tolerances).parameters) {
     const double common_error = shared.normal(), own_error = own.normal();
-    if (is_joint_parameter(p.at) && std::isfinite(p.prior_sd))
-      set_value_at(chain, p.at, p.nominal + p.prior_sd * (kind.common * common_error + kind.own * own_error));
+    if (!is_joint_parameter(p.at)) continue;
+    // Gains and compliances are left as nominal: the fits of this study are of the geometry.
+    const bool is_geometry = p.quantity == Quantity::length || p.quantity == Quantity::angle;
+    const double errors = kind.common * common_error + kind.own * own_error;
+    set_value_at(chain, p.at, is_geometry && std::isfinite(p.prior_sd) ? p.nominal + p.prior_sd * errors : p.nominal);
   }
   return chain;
 }

@@ -126,17 +126,34 @@ TEST(Merge, ThePageHoldsEveryRowAsData) {
 TEST(TaskSummary, IsReadBackAsItWasWritten) {
   TaskSummary summary = calibrations(1)[0].summary;
   summary.findings = {"gross_outliers"};
-  summary.information = ParameterInformation{.names = {"theta2"},
-                                             .nominal = VectorXd::Constant(1, 0.5),
-                                             .tolerance = VectorXd::Constant(1, 1e-3),
-                                             .information = MatrixXd::Constant(1, 1, 4.0),
-                                             .vector = VectorXd::Constant(1, 2.0)};
   const std::string text = format_task_summary(summary);
   const auto read = parse_task_summary(text);
   ASSERT_TRUE(read) << read.error().what;
   EXPECT_EQ(format_task_summary(*read), text);
   EXPECT_FALSE(parse_task_summary(text.substr(0, text.size() / 2)));
   EXPECT_FALSE(parse_task_summary("{}"));
+}
+
+TEST(Information, IsReadBackAsItWasWritten) {
+  const ParameterInformation information{.names = {"theta2"},
+                                         .nominal = VectorXd::Constant(1, 0.5),
+                                         .tolerance = VectorXd::Constant(1, 1e-3),
+                                         .information = MatrixXd::Constant(1, 1, 4.0),
+                                         .vector = VectorXd::Constant(1, 2.0)};
+  const std::string text = format_information(information);
+  const auto read = parse_information(text);
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(format_information(*read), text);
+  EXPECT_FALSE(parse_information(text.substr(0, text.size() / 2)));
+}
+
+TEST(Merge, APriorIsMadeOfTheLatestCalibrationOfEachRobot) {
+  auto rows = calibrations(4);
+  rows[0].robot = rows[1].robot = rows[2].robot = "arm";
+  rows[0].date = "2026-05-01", rows[1].date = "2026-07-01", rows[2].date = "2026-06-01";
+  EXPECT_EQ(fleet::rows_of_prior(rows), (std::vector<int>{1, 3}));
+  rows[1].exit_code = 1;
+  EXPECT_EQ(fleet::rows_of_prior(rows), (std::vector<int>{2, 3}));
 }
 
 }  // namespace

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "kinfer/fleet/monitoring.hpp"
 #include "kinfer/fleet/population_fit.hpp"
 #include "kinfer/fleet/spread.hpp"
+#include "kinfer/fleet/thresholds.hpp"
 
 namespace kinfer::fleet {
 namespace {
@@ -60,20 +62,23 @@ std::vector<CoverageCount> count_coverage(const std::vector<FleetRow>& rows) {
   return list;
 }
 
-/// Of each robot the latest calibration; a row without a robot's name is a robot of its own.
-std::vector<const ParameterInformation*> informative_robots(const std::vector<FleetRow>& rows) {
-  std::map<std::string, const FleetRow*> latest;
-  for (const FleetRow& row : rows) {
-    if (!row.summary.information || row.exit_code != 0) continue;
-    const FleetRow*& held = latest[row.robot.empty() ? row.key : row.robot];
-    if (!held || held->date <= row.date) held = &row;
-  }
-  std::vector<const ParameterInformation*> robots;
-  for (const auto& [name, row] : latest) robots.push_back(&*row->summary.information);
-  return robots;
-}
-
 }  // namespace
+
+std::vector<int> rows_of_prior(const std::vector<FleetRow>& rows) {
+  std::map<std::string, int> latest;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const FleetRow& row = rows[i];
+    if (row.verb != "calibrate" || row.state != TaskState::done || row.exit_code != 0) continue;
+    const auto [at, is_new] = latest.emplace(row.robot.empty() ? row.key : row.robot, static_cast<int>(i));
+    const FleetRow& held = rows[static_cast<std::size_t>(at->second)];
+    if (std::tie(held.date, held.key) < std::tie(row.date, row.key)) at->second = static_cast<int>(i);
+  }
+  std::vector<int> all, sample;
+  for (const auto& [robot, row] : latest) all.push_back(row);
+  const std::size_t n = std::min<std::size_t>(thresholds::largest_sample, all.size());
+  for (std::size_t i = 0; i < n; ++i) sample.push_back(all[i * all.size() / n]);
+  return sample;
+}
 
 Fleet merge_rows(std::vector<FleetRow> rows) {
   std::ranges::sort(rows, {}, &FleetRow::key);
@@ -88,7 +93,11 @@ Fleet merge_rows(std::vector<FleetRow> rows) {
   fleet.failures = group_failures(fleet.rows);
   fleet.coverage = count_coverage(fleet.rows);
   fleet.chart = monitor(fleet.rows);
-  fleet.population = fit_population(informative_robots(fleet.rows));
+  std::vector<const ParameterInformation*> robots;
+  for (const int i : rows_of_prior(fleet.rows))
+    if (const auto& information = fleet.rows[static_cast<std::size_t>(i)].summary.information)
+      robots.push_back(&*information);
+  fleet.population = fit_population(robots);
   return fleet;
 }
 

@@ -8,6 +8,10 @@
 
 namespace kinfer::fleet {
 
+/// Indices of the rows that a prior is made of: the latest calibration of each robot that may be used, an even sample
+/// of them where there are very many. A row without a robot's name is a robot of its own.
+std::vector<int> rows_of_prior(const std::vector<FleetRow>& rows);
+
 /// `rows` in any order, each key once.
 Fleet merge_rows(std::vector<FleetRow> rows);
 

@@ -101,8 +101,8 @@ struct Shrinkage {
 
 /// Expectation maximisation.
 Gaussian fit_gaussian(const Robots& robots, Eigen::Index n, const Shrinkage& shrinkage) {
-  constexpr int most_iterations = 60;
-  constexpr double converged = 1e-4;  // tolerances; the standard deviations of the result are some tenths of one
+  constexpr int most_iterations = 40;
+  constexpr double converged = 1e-3;  // tolerances; the standard deviations of the result are some tenths of one
   const double largest = chi_squared_quantile(thresholds::population_share, static_cast<double>(n));
   Gaussian now{VectorXd::Zero(n), MatrixXd::Identity(n, n)};
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
@@ -144,7 +144,7 @@ Gaussian fit_gaussian(const Robots& robots, Eigen::Index n, const Shrinkage& shr
 
 /// The log likelihood of each robot under a population that was fitted to robots of the other folds, summed.
 double held_out_likelihood(const Robots& robots, Eigen::Index n, const Shrinkage& shrinkage) {
-  const std::size_t folds = std::min<std::size_t>(4, robots.size());
+  const std::size_t folds = std::min<std::size_t>(3, robots.size());
   double sum = 0.0;
   for (std::size_t fold = 0; fold < folds; ++fold) {
     Robots fitted;
@@ -158,13 +158,15 @@ double held_out_likelihood(const Robots& robots, Eigen::Index n, const Shrinkage
   return sum;
 }
 
-Shrinkage select_shrinkage(const Robots& robots, Eigen::Index n) {
-  // More robots than several times the parameters need little help, and would take a minute.
-  constexpr std::size_t many = 100;
-  if (robots.size() > many) return {.uncorrelated = 12.0};
+Shrinkage select_shrinkage(const Robots& all, Eigen::Index n) {
+  // The choice is coarse, and 40 robots make it as well as more would.
+  constexpr std::size_t enough = 40;
+  Robots robots;
+  for (std::size_t i = 0; i < std::min(enough, all.size()); ++i)
+    robots.push_back(all[i * all.size() / std::min(enough, all.size())]);
   Shrinkage best;
   double most = -std::numeric_limits<double>::infinity();
-  for (const double uncorrelated : {200.0, 50.0, 12.0, 3.0})
+  for (const double uncorrelated : {200.0, 12.0})
     for (const double toleranced : {1.0, 0.1, 5.0}) {
       const Shrinkage candidate{uncorrelated, toleranced};
       const double likelihood = held_out_likelihood(robots, n, candidate);
@@ -197,18 +199,9 @@ PopulationPrior common_parameters(std::span<const ParameterInformation* const> r
   return population;
 }
 
-/// At most `largest_sample`, evenly over the list.
-std::vector<const ParameterInformation*> even_sample(std::span<const ParameterInformation* const> robots) {
-  std::vector<const ParameterInformation*> sample;
-  const std::size_t n = std::min<std::size_t>(thresholds::largest_sample, robots.size());
-  for (std::size_t i = 0; i < n; ++i) sample.push_back(robots[i * robots.size() / n]);
-  return sample;
-}
-
 }  // namespace
 
-std::optional<PopulationPrior> fit_population(std::span<const ParameterInformation* const> all) {
-  const auto sample = even_sample(all);
+std::optional<PopulationPrior> fit_population(std::span<const ParameterInformation* const> sample) {
   PopulationPrior population = common_parameters(sample);
   const auto n = static_cast<Eigen::Index>(population.names.size());
   std::vector<RobotLikelihood> likelihoods;

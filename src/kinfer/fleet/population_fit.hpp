@@ -15,7 +15,7 @@ namespace kinfer::fleet {
 /// maximisation over the x_k. A robot with few poses has a small Λ_k and moves mean and covariance little; one that is
 /// farther off than 99.9 % weighs less by its squared distance.
 /// The covariance is shrunk towards an uncorrelated one, as if this were that of `pseudo_robots` more robots; their
-/// number is chosen by the likelihood of robots that were left out (four folds). Variances and mean are shrunk towards
+/// number is chosen by the likelihood of robots that were left out (three folds). Variances and mean are shrunk towards
 /// the data sheet's tolerances and nominal values.
 /// Only parameters that at least half of the robots estimated. None for fewer than two robots.
 std::optional<PopulationPrior> fit_population(std::span<const ParameterInformation* const> robots);

@@ -24,7 +24,7 @@ inline constexpr int shortest_series = 4;
 inline constexpr double chart_allowance = 0.5;
 
 /// [robots] More add nothing to a prior of some tens of parameters, but cost time: an even sample is taken.
-inline constexpr int largest_sample = 400;
+inline constexpr int largest_sample = 200;
 
 /// [robots] Fewer than these with informative data make no population.
 inline constexpr int fewest_robots = 2;

@@ -38,19 +38,19 @@ std::string without_folder(std::string text, const fs::path& folder) {
   return text;
 }
 
+void make_unreadable(FleetRow& row, const Error& problem) {
+  row.state = TaskState::unreadable;
+  row.sentence = without_folder(problem.what, row.folder);
+  row.summary = {};
+}
+
 FleetRow read_row(const fs::path& folder, const std::string& key) {
-  FleetRow row{.key = key};
-  const auto unreadable = [&](const Error& problem) {
-    row = {.key = key, .verb = row.verb, .state = TaskState::unreadable};
-    row.sentence = without_folder(problem.what, folder);
-    return row;
-  };
-  if (auto done = read_task_record(folder, row); !done) return unreadable(done.error());
+  FleetRow row{.key = key, .folder = folder.string()};
+  if (auto done = read_task_record(folder, row); !done) return make_unreadable(row, done.error()), row;
   if (!fs::exists(folder / "summary.json")) return row;  // a verb that has none, or one that failed before its end
   const auto text = read_text_file(folder / "summary.json");
-  if (!text) return unreadable(text.error());
-  auto summary = parse_task_summary(*text);
-  if (!summary) return unreadable(summary.error());
+  Result<TaskSummary> summary = text ? parse_task_summary(*text) : forward_error(text.error());
+  if (!summary) return make_unreadable(row, summary.error()), row;
   row.summary = std::move(*summary);
   return row;
 }
@@ -86,6 +86,20 @@ Result<std::vector<FleetRow>> read_runs(const std::vector<std::string>& folders)
   for (const FleetRow& row : rows)
     if (!keys.insert(row.key).second) return error("the key \"{}\" has results in two of the folders", row.key);
   return rows;
+}
+
+void read_information(std::vector<FleetRow>& rows, const std::vector<int>& which) {
+  for (const int i : which) {
+    FleetRow& row = rows[static_cast<std::size_t>(i)];
+    const fs::path file = fs::path(row.folder) / "information.json";
+    if (!fs::exists(file)) continue;  // a calibration that frees no joint parameter
+    const auto text = read_text_file(file);
+    Result<ParameterInformation> information = text ? parse_information(*text) : forward_error(text.error());
+    if (information)
+      row.summary.information = std::move(*information);
+    else
+      make_unreadable(row, information.error());
+  }
 }
 
 }  // namespace kinfer::cli

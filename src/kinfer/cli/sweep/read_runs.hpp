@@ -15,4 +15,7 @@ namespace kinfer::cli {
 /// foreign makes its row unreadable, and nothing else. Errors: a folder without a manifest; a key in two folders.
 Result<std::vector<FleetRow>> read_runs(const std::vector<std::string>& folders);
 
+/// Fills in what the data of these rows say about their robots; a row whose file is damaged becomes unreadable.
+void read_information(std::vector<FleetRow>& rows, const std::vector<int>& which);
+
 }  // namespace kinfer::cli

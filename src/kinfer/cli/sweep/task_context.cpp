@@ -21,7 +21,11 @@ bool is_task() {
 }
 
 Result<void> write_summary(const TaskSummary& summary) {
-  return write_text_file(task_context().folder / "summary.json", format_task_summary(summary));
+  const auto& folder = task_context().folder;
+  if (summary.information)
+    if (auto done = write_text_file(folder / "information.json", format_information(*summary.information)); !done)
+      return done;
+  return write_text_file(folder / "summary.json", format_task_summary(summary));
 }
 
 }  // namespace

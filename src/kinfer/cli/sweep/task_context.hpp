@@ -20,7 +20,7 @@ struct TaskContext {
 /// Of this process; set in the child that runs the task.
 void set_task_context(TaskContext context);
 
-/// Writes summary.json into the task's folder; nothing where there is none.
+/// Writes summary.json, and information.json of a calibration, into the task's folder; nothing where there is none.
 Result<void> write_task_summary(const Calibration& calibration);
 Result<void> write_task_summary(const Identification& identification);
 Result<void> write_task_summary(const Verification& verification);

@@ -51,6 +51,7 @@ void print_fleet(const Fleet& fleet) {
 int run(const MergeArguments& options) {
   auto rows = read_runs(options.runs);
   if (!rows) return fail(rows.error());
+  read_information(*rows, fleet::rows_of_prior(*rows));
   const auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
   const Fleet fleet = fleet::merge_rows(std::move(*rows));

@@ -21,6 +21,7 @@ std::string_view name(TaskState state);
 
 struct FleetRow {
   std::string key{}, verb{};
+  std::string folder{};         ///< of the task's files; in no output
   std::string robot{}, date{};  ///< of the manifest; the date as YYYY-MM-DD, with a time or without
   TaskState state = TaskState::done;
   int exit_code = 0, signal = 0;

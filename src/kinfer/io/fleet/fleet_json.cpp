@@ -30,6 +30,7 @@ void fields(Archive& a, Value<Archive, SummaryParameter>& parameter) {
 
 template <class Archive>
 void fields(Archive& a, Value<Archive, ParameterInformation>& information) {
+  a.constant("format", "kinfer-information/1");
   a("names", information.names);
   a("nominal", information.nominal);
   a("tolerance", information.tolerance);
@@ -46,7 +47,6 @@ void fields(Archive& a, Value<Archive, TaskSummary>& summary) {
   a("figures", summary.figures);
   a("findings", summary.findings);
   a("parameters", summary.parameters);
-  a.when(summary.information.has_value(), "information", summary.information);
 }
 
 template <class Archive>
@@ -172,14 +172,22 @@ std::string format_task_summary(const TaskSummary& summary) {
 }
 
 Result<TaskSummary> parse_task_summary(std::string_view text) {
-  KINFER_TRY(summary, evidence_json::parse_file<TaskSummary>(text, "summary.json"));
-  if (const auto& i = summary.information) {
-    const std::size_t n = i->names.size();
-    if (!evidence_json::has_size(i->nominal, n) || !evidence_json::has_size(i->tolerance, n) ||
-        !evidence_json::has_size(i->vector, n) || !evidence_json::is_square(i->information, n))
-      return error("summary.json: information: expected as many numbers as names");
-  }
-  return summary;
+  return evidence_json::parse_file<TaskSummary>(text, "summary.json");
+}
+
+std::string format_information(const ParameterInformation& information) {
+  auto json = evidence_json::JsonWriter::object_of(information);
+  evidence_json::round_numbers(json);
+  return json.dump() + "\n";
+}
+
+Result<ParameterInformation> parse_information(std::string_view text) {
+  KINFER_TRY(data, evidence_json::parse_file<ParameterInformation>(text, "information.json"));
+  const std::size_t n = data.names.size();
+  if (!evidence_json::has_size(data.nominal, n) || !evidence_json::has_size(data.tolerance, n) ||
+      !evidence_json::has_size(data.vector, n) || !evidence_json::is_square(data.information, n))
+    return error("information.json: expected as many numbers as names");
+  return data;
 }
 
 std::string format_fleet(const Fleet& fleet) {
