@@ -127,7 +127,7 @@ void fields(Archive& a, Value<Archive, PopulationPrior>& population) {
 
 namespace {
 
-double rounded(double value) {
+double with_ten_digits(double value) {
   if (!std::isfinite(value)) return value;
   char text[40];
   const auto written = std::to_chars(text, text + sizeof text, value, std::chars_format::scientific, 9);
@@ -137,7 +137,7 @@ double rounded(double value) {
 }
 
 void round_numbers(Json& json) {
-  if (json.is_number_float()) json = rounded(json.get<double>());
+  if (json.is_number_float()) json = with_ten_digits(json.get<double>());
   if (json.is_structured())
     for (Json& member : json) round_numbers(member);
 }
