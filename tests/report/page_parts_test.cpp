@@ -62,7 +62,6 @@ TEST(Section, IsLabelledByItsTitle) {
 
 TEST(Bundle, IsEmbeddedAndFetchesNothing) {
   for (const std::string_view part : {report_script(), report_style()}) {
-    ASSERT_GT(part.size(), 1000u);
     EXPECT_EQ(part.find("</script"), std::string_view::npos) << "it would end its own element";
     EXPECT_EQ(part.find("</style"), std::string_view::npos);
     EXPECT_EQ(part.find("@import"), std::string_view::npos);
