@@ -142,7 +142,7 @@ void compute_observability(PosePlan& plan, const DesignProblem& problem, const M
 /// Both matrices stacked vertically; either may be empty.
 MatrixXd stack(const MatrixXd& above, const MatrixXd& below) {
   MatrixXd both(above.rows() + below.rows(), below.cols());
-  both.topRows(above.rows()) = above;
+  if (above.size() > 0) both.topRows(above.rows()) = above;  // an empty one has no columns
   both.bottomRows(below.rows()) = below;
   return both;
 }
@@ -193,6 +193,8 @@ Result<PosePlan> plan_poses(const PlanTask& task, const PlanOptions& options, Rn
   plan.criterion = options.criterion;
   const std::vector<int> chosen =
       best_design(problem, options.criterion, options.poses, options.starts, options.threads, rng.stream(2));
+  if (chosen.empty())
+    return error("no choice of poses has a finite expected error: check the lengths of the robot and its tolerances");
   const bool is_from_list = task.candidates.size() > 0;
   const MatrixXd q = is_from_list
                          ? MatrixXd(candidates(Eigen::all, chosen))
