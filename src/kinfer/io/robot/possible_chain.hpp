@@ -10,7 +10,7 @@
 namespace kinfer {
 
 /// What is wrong with the joint's numbers, as a sentence without its place: "a: 1e+300 m is not possible for a length
-/// (at most 100000 m)"; nothing where all can be.
+/// (at most 2e+07 m)"; nothing where all can be.
 std::optional<std::string> impossible_number(const Joint& joint);
 
 /// Likewise for the rest of the chain (frames, targets, masses, fixtures), and a chain in which no joint moves.

@@ -20,7 +20,7 @@ struct PossibleRange {
 
 namespace possible {
 
-inline constexpr PossibleRange length{"a length", 1e5, "m"};
+inline constexpr PossibleRange length{"a length", 2e7, "m"};  // coordinates of a survey reach the size of the Earth
 inline constexpr PossibleRange angle{"an angle", 1e4, "rad"};
 inline constexpr PossibleRange ratio{"a gain", 1e4, "1"};
 inline constexpr PossibleRange compliance{"a compliance", 10.0, "rad/(N m)"};
@@ -37,7 +37,7 @@ inline constexpr PossibleRange number{"a number of a machine", 1e15, "SI"};
 /// Of values with this dimension, in the units of `find_unit`.
 PossibleRange possible_range(Dimension dimension);
 
-/// "1e+300 m is not possible for a length (at most 100000 m)" where the value is outside or not finite; nothing
+/// "1e+300 m is not possible for a length (at most 2e+07 m)" where the value is outside or not finite; nothing
 /// otherwise.
 std::optional<std::string> impossible(double value, const PossibleRange& range);
 
