@@ -16,10 +16,11 @@ declare -A may=(
   [motion]="base linalg geometry kinematics evidence"
   [track]="base linalg geometry measurement kinematics evidence inertial estimate"
   [simulate]="base linalg geometry measurement kinematics"
+  [fleet]="base linalg geometry measurement kinematics evidence search estimate inertial"
   [words]="base linalg geometry measurement kinematics evidence inertial"
   [io]="base linalg geometry measurement kinematics evidence words"
   [report]="base linalg geometry measurement kinematics evidence words io"
-  [cli]="base linalg geometry measurement kinematics evidence inertial search estimate identify calibrate plan deploy motion track simulate words io report cli"
+  [cli]="base linalg geometry measurement kinematics evidence inertial search estimate identify calibrate plan deploy motion track fleet simulate words io report cli"
 )
 status=0
 edges=$(grep -rHoE '#include "kinfer/[^"]*"' --include='*.?pp' . |

@@ -107,13 +107,15 @@ TEST(CalibrationWords, EveryNoteAndEveryAdviceHasWords) {
                           {"prismatic", std::vector<int>{0}},
                           {"error_there_m", 4e-4},
                           {"error_m", 1e-4},
+                          {"robots", 12},
+                          {"log_odds", -7.5},
                           {"more", 20},
                           {"poses", 40},
                           {"enough", 60}};
   std::set<std::string> sentences;
   for (int i = 0; i <= static_cast<int>(CalibrationNoteKind::no_offset_moved); ++i)
     sentences.insert(words::sentence(CalibrationNote{static_cast<CalibrationNoteKind>(i), values}));
-  EXPECT_EQ(sentences.size(), 6U);
+  EXPECT_EQ(sentences.size(), 8U);
   EXPECT_EQ(sentences.count(""), 0U);
   std::set<std::string> what;
   for (int i = 0; i <= static_cast<int>(CalibrationAdviceKind::keep_verification_poses); ++i) {

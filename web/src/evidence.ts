@@ -97,7 +97,13 @@ export interface IdentifyEvidence {
   motion: MotionJson;
 }
 
-export type Evidence = CalibrateEvidence | IdentifyEvidence;
+export interface FleetEvidence {
+  kind: 'fleet';
+  head: string[];
+  rows: (string | number | null)[][];
+}
+
+export type Evidence = CalibrateEvidence | IdentifyEvidence | FleetEvidence;
 
 export function readEvidence(): Evidence {
   const element = document.getElementById('evidence');

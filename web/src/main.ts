@@ -2,6 +2,7 @@
 // Makes the report interactive: the machine moves, plots zoom, tables can be copied.
 import { CalibrateMachine } from './calibrate_machine';
 import { readEvidence } from './evidence';
+import { showFleet } from './fleet_table';
 import { IdentifyMachine } from './identify_machine';
 import { enliven } from './tables';
 import { addThemeButton } from './theme';
@@ -11,6 +12,7 @@ import { showTraces } from './traces';
 function enlivenMachine(): void {
   const place = document.getElementById('machine');
   const evidence = readEvidence();
+  if (evidence.kind === 'fleet') return showFleet(evidence);
   if (!place) return;
   const stage = document.createElement('div');
   const panel = document.createElement('div');

@@ -9,6 +9,7 @@
 #include "kinfer/calibrate/conclusion/recommendations.hpp"
 #include "kinfer/calibrate/conclusion/verdict.hpp"
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
+#include "kinfer/calibrate/fit/population_choice.hpp"
 #include "kinfer/calibrate/prediction/model_error.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/calibrate/starting_model.hpp"
@@ -70,9 +71,11 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
   if (auto consistent = check_options(given, options); !consistent) return forward_error(consistent.error());
   KINFER_TRY(start, make_starting_model(given, options, rng));
   const Diagnosis diagnosis = diagnose_mountings(start.task);
-  KINFER_TRY(task, prepare_task(diagnosis));
-  KINFER_TRY(plan, make_validation_plan(task.data, options, rng.stream(1)));
-  const PoseSet fitted = select(task.data, plan.fitted);
+  KINFER_TRY(prepared, prepare_task(diagnosis));
+  KINFER_TRY(plan, make_validation_plan(prepared.data, options, rng.stream(1)));
+  const PoseSet fitted = select(prepared.data, plan.fitted);
+  KINFER_TRY(population, choose_population(prepared, fitted, options.parameters, rng.stream(2)));
+  const CalibrationTask& task = population.task;
   KINFER_TRY(frames_only, fit_frames_only(task, fitted));
   KINFER_TRY(fit, fit_and_validate(task, plan, fitted, options, rng, observer));
   const ExcludedRows excluded = select_excluded_rows(fit.gross_errors, plan);
@@ -91,6 +94,7 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
   calibration.holdout = plan.scheme;
   calibration.gross_error_rows = excluded.rows;
   calibration.notes = make_notes(calibration.estimate, task.nominal, excluded, fit.scale, options.parameters);
+  if (population.note) calibration.notes.push_back(*population.note);
   const EvaluationInputs evaluation{task.nominal, task.instrument,     task.data,    plan,
                                     frames_only,  fit.validation_fits, excluded.rows};
   fill_error_statistics(calibration, evaluation);

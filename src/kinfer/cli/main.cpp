@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "kinfer/base/instruction_set.hpp"
 #include "kinfer/base/version.hpp"
 #include "kinfer/cli/help/help_text.hpp"
 #include "kinfer/cli/help/suggestion.hpp"
@@ -28,7 +29,7 @@ std::string formatted_help(const CLI::App* app, const std::string&, CLI::AppForm
 
 /// Options before the verb.
 struct ProgramOptions {
-  std::string language = "english";
+  std::string language = "english", kernels = "auto";
   double memory = 8.0;   ///< [GB]
   double time = 3600.0;  ///< [s]
 };
@@ -45,6 +46,11 @@ std::vector<Verb> describe_program(CLI::App& app, ProgramOptions& options) {
              "Memory beyond which the program ends with a sentence [GB]; 0: any");
   add_number(app, "--limit-time", options.time, 0.0, 1e8,
              "Time after which it ends with a sentence [s]; 0: any; track and sweep have none");
+  app.add_option(
+         "--kernels", options.kernels,
+         "Instruction set of the numeric kernels; portable gives the same last digits on every x86-64 processor")
+      ->check(CLI::IsMember({"auto", "portable", "avx2", "avx512"}))
+      ->capture_default_str();
   app.require_subcommand(1);
   app.footer("`kinfer VERB --help` explains a verb and shows an example; `kinfer demo` shows what kinfer does.");
   return add_verbs(app);
@@ -88,6 +94,9 @@ int run_program(const std::vector<std::string>& arguments) {
   }
   limit_memory(options.memory);
   if (const std::string name = chosen_verb(app); name != "track" && name != "sweep") limit_time(options.time);
+  if (const auto kernels = instruction_set_named(options.kernels); kernels && !pin_instruction_set(*kernels))
+    return fail({fmt::format("--kernels {}: this processor supports {} at most", options.kernels,
+                             name(widest_instruction_set()))});
   if (options.language == "names") words::set_language(words::Language::names);
   for (const Verb& verb : verbs)
     if (was_chosen(*verb.command)) return verb.run();

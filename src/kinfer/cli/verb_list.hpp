@@ -25,6 +25,7 @@ Verb add_pair(CLI::App& app);
 Verb add_frames(CLI::App& app);
 Verb add_report(CLI::App& app);
 Verb add_sweep(CLI::App& app);
+Verb add_merge(CLI::App& app);
 Verb add_demo(CLI::App& app);
 Verb add_completion(CLI::App& app);
 Verb add_man(CLI::App& app);

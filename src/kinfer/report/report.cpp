@@ -6,6 +6,8 @@
 #include "kinfer/io/evidence/evidence_file.hpp"
 #include "kinfer/report/bundle.hpp"
 #include "kinfer/report/calibrate/page.hpp"
+#include "kinfer/report/fleet/page.hpp"
+#include "kinfer/report/fleet/table_data.hpp"
 #include "kinfer/report/identify/page.hpp"
 #include "kinfer/report/parts/script_data.hpp"
 #include "kinfer/report/track/page.hpp"
@@ -23,7 +25,7 @@ std::string contents(const std::vector<html::Section>& sections) {
 constexpr std::string_view content_security_policy =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:";
 
-std::string page_html(const Page& page, const std::string& data) {
+std::string page_html(const Page& page, const std::string& data, std::string_view source = "evidence.json") {
   std::string html = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
@@ -36,9 +38,9 @@ std::string page_html(const Page& page, const std::string& data) {
       contents(page.sections), page.first);
   for (const html::Section& section : page.sections) html += html::section(section);
   html += fmt::format(
-      "</main>\n<footer>Made by kinfer from evidence.json.</footer>\n"
+      "</main>\n<footer>Made by kinfer from {}.</footer>\n"
       "<script type=\"application/json\" id=\"evidence\">{}</script>\n<script>{}</script>\n</body>\n</html>\n",
-      escape_for_script(data), report_script());
+      source, escape_for_script(data), report_script());
   return html;
 }
 
@@ -54,6 +56,10 @@ std::string report_html(const IdentificationEvidence& evidence) {
 
 std::string report_html(const TrackRun& run) {
   return page_html(track_page(run), "{\"kind\":\"track\"}");
+}
+
+std::string report_html(const Fleet& fleet) {
+  return page_html(fleet_page(fleet), fleet_table_data(fleet), "table.csv and fleet.json");
 }
 
 Result<std::string> report_of_file(std::string_view text) {

@@ -8,6 +8,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/evidence/calibration/calibration_evidence.hpp"
+#include "kinfer/evidence/fleet/fleet.hpp"
 #include "kinfer/evidence/identification/identification_evidence.hpp"
 #include "kinfer/evidence/tracking/track_run.hpp"
 
@@ -16,6 +17,7 @@ namespace kinfer::report {
 std::string report_html(const CalibrationEvidence& evidence);
 std::string report_html(const IdentificationEvidence& evidence);
 std::string report_html(const TrackRun& run);
+std::string report_html(const Fleet& fleet);
 
 /// `text`: evidence.json of `calibrate`, `identify` or `track`. Errors: the text is not such a file, with the path of
 /// the first wrong value; or evidence of another kind, which has no report.

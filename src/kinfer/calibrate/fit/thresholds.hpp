@@ -18,5 +18,8 @@ inline constexpr double unconverged_residual = 2e-3;
 inline constexpr int random_starts = 20;  ///< more: slower, finds the solution from worse nominal models
 /// [m], [rad] perturbation of a random start: Levenberg-Marquardt converges from these errors.
 inline constexpr double perturbation_length = 0.1, perturbation_angle = 20.0 * degree;
+/// [1] odds against a robot's being one of the population, by its data, from which on its own tolerances are used. Set
+/// by reasoning: who names a population is taken to err once in a hundred times.
+inline constexpr double foreign_odds = 100.0;
 
 }  // namespace kinfer::calibrate::thresholds

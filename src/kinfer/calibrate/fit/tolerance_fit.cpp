@@ -115,7 +115,8 @@ Result<PreparedFit> prepare_fit(const CalibrationTask& task, const PoseSet& rows
   KINFER_TRY(set, select_parameter_set(task, rows, choice, tolerances));
   const auto with_priors = [&](const Chain& start, const ParameterSet& parameters) {
     return PreparedFit{task.earlier ? with_joint_parameters_of(start, *task.earlier, parameters) : start,
-                       with_population_prior(parameters, task.robot_population)};
+                       task.population ? with_population_prior(parameters, *task.population)
+                                       : with_population_prior(parameters, task.robot_population)};
   };
   KINFER_TRY(found, with_estimated_frames(task.nominal, rows));
   if (!has_free_frames(set, choice)) return with_priors(base_agrees_with_data(task, found) ? task.nominal : found, set);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/calibrate/parameters/population_prior.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "kinfer/base/expect.hpp"
@@ -41,6 +43,24 @@ MatrixXd information_root(const MatrixXd& covariance) {
   return cholesky(*inverse)->transpose();
 }
 
+/// Parameters k of `index` get mean `shift` and this covariance, both in tolerances from nominal.
+ParameterSet with_joint_prior(ParameterSet set, const JointParameters& numbers, const VectorXd& shift,
+                              const MatrixXd& covariance) {
+  const Eigen::Index n = numbers.mean.size();
+  const MatrixXd root = information_root(covariance) * numbers.tolerance.cwiseInverse().asDiagonal();
+  set.prior_sqrt_information = prior_sqrt_information_of(set);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j) set.prior_sqrt_information(numbers.index[i], numbers.index[j]) = root(i, j);
+  Eigen::Index i = 0;
+  for (Parameter& parameter : set.parameters) {
+    if (i == n || !parameter.free || !(parameter.at == numbers.address[i])) continue;
+    parameter.nominal += shift[i] * numbers.tolerance[i];
+    parameter.prior_sd = std::sqrt(covariance(i, i)) * numbers.tolerance[i];
+    ++i;
+  }
+  return set;
+}
+
 }  // namespace
 
 ParameterSet with_population_prior(ParameterSet set, std::span<const Chain> robot_population) {
@@ -56,19 +76,28 @@ ParameterSet with_population_prior(ParameterSet set, std::span<const Chain> robo
   const VectorXd shift = deviation.rowwise().sum() / count;
   deviation.colwise() -= shift;
   const MatrixXd covariance = (MatrixXd::Identity(n, n) + times_transposed(deviation, deviation)) / count;
-  const MatrixXd root = information_root(covariance) * numbers.tolerance.cwiseInverse().asDiagonal();
+  return with_joint_prior(std::move(set), numbers, shift, covariance);
+}
 
-  set.prior_sqrt_information = prior_sqrt_information_of(set);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j) set.prior_sqrt_information(numbers.index[i], numbers.index[j]) = root(i, j);
-  Eigen::Index i = 0;
-  for (Parameter& parameter : set.parameters) {
-    if (i == n || !parameter.free || !(parameter.at == numbers.address[i])) continue;
-    parameter.nominal += shift[i] * numbers.tolerance[i];
-    parameter.prior_sd = std::sqrt(covariance(i, i)) * numbers.tolerance[i];
-    ++i;
+ParameterSet with_population_prior(ParameterSet set, const PopulationPrior& population) {
+  const JointParameters all = joint_parameters(set);
+  const auto free = set.free();
+  JointParameters numbers;
+  std::vector<Eigen::Index> own;  // index in `all`
+  std::vector<Eigen::Index> of;   // index in the population
+  for (std::size_t i = 0; i < all.index.size(); ++i) {
+    const auto at = std::ranges::find(population.names, free[static_cast<std::size_t>(all.index[i])]->name);
+    if (at == population.names.end()) continue;
+    numbers.index.push_back(all.index[i]), numbers.address.push_back(all.address[i]);
+    own.push_back(static_cast<Eigen::Index>(i)), of.push_back(at - population.names.begin());
   }
-  return set;
+  if (own.empty()) return set;
+  numbers.mean = all.mean(own), numbers.tolerance = all.tolerance(own);
+  const VectorXd per_tolerance = numbers.tolerance.cwiseInverse();
+  const VectorXd shift = (VectorXd(population.mean(of)) - numbers.mean).cwiseProduct(per_tolerance);
+  const MatrixXd block = population.covariance(of, of);
+  return with_joint_prior(std::move(set), numbers, shift,
+                          per_tolerance.asDiagonal() * block * per_tolerance.asDiagonal());
 }
 
 Chain with_joint_parameters_of(const Chain& chain, const Chain& earlier, const ParameterSet& set) {

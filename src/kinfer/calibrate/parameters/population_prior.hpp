@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "kinfer/evidence/fleet/population.hpp"
 #include "kinfer/kinematics/parameters.hpp"
 
 namespace kinfer::calibrate {
@@ -15,6 +16,10 @@ namespace kinfer::calibrate {
 /// Base and tool belong to a set-up, not to the robot, and keep their priors. Each chain of `robot_population` must
 /// have the joints that the set refers to.
 ParameterSet with_population_prior(ParameterSet set, std::span<const Chain> robot_population);
+
+/// The free joint parameters that `population` names get its mean and their block of its covariance; others keep their
+/// tolerances.
+ParameterSet with_population_prior(ParameterSet set, const PopulationPrior& population);
 
 /// `chain` with the joint parameters of `earlier`; base and tool are kept. Both must have the same joints.
 Chain with_joint_parameters_of(const Chain& chain, const Chain& earlier, const ParameterSet& set);

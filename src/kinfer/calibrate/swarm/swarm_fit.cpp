@@ -32,9 +32,8 @@ Problem make_problem(const CalibrationTask& task, const PreparedFit& prepared, c
   const auto fitness = std::make_shared<SwarmFitness>(prepared.start, prepared.parameters, rows);
   const VectorXd mean = nominal_of(prepared.parameters);
   const double sigma = task.instrument ? task.instrument->sigma : 0.0;
-  const MatrixXd prior = task.robot_population.empty()
-                             ? MatrixXd(0, mean.size())
-                             : MatrixXd(sigma * prior_sqrt_information_of(prepared.parameters));
+  const MatrixXd prior = task.has_population() ? MatrixXd(sigma * prior_sqrt_information_of(prepared.parameters))
+                                               : MatrixXd(0, mean.size());
   const auto evaluate = [fitness, mean, prior](ConstMatrixRef x, std::span<double> cost) {
     fitness->sums(x, cost);
     if (prior.rows() == 0) return;

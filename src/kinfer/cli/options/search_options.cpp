@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "kinfer/calibrate/starting_model.hpp"
+#include "kinfer/io/fleet/fleet_json.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
@@ -49,6 +50,20 @@ Result<Chain> read_earlier_chain(const std::string& path, const calibrate::Calib
   return robot.chain;
 }
 
+/// The folder of a merge, or its prior.json; else the chain.toml of an earlier calibration.
+bool is_population(const std::string& path) {
+  return path.ends_with(".json") || std::filesystem::is_directory(path);
+}
+
+std::string population_path(const std::string& path) {
+  return path.ends_with(".json") ? path : (std::filesystem::path(path) / "prior.json").string();
+}
+
+bool names_joint_parameters_of(const calibrate::CalibrationTask& task, const PopulationPrior& population) {
+  const ParameterSet set = all_parameters(task.nominal, task.tolerances);
+  return std::ranges::any_of(population.names, [&](const std::string& name) { return set.find(name) != nullptr; });
+}
+
 /// The methods in which an option has an effect.
 struct SwarmOption {
   const char* name;
@@ -73,9 +88,11 @@ void add_search_arguments(CLI::App& verb, SearchArguments& a) {
   add_choice(verb, "--method", a.method, methods, "lm: least squares; the others are swarm searches (paper 2)");
   add_text(verb, "--warm-start", a.warm_start, "Folder of an earlier calibration of this robot: where searches start",
            Requirement::optional, "DIR");
-  add_texts(verb, "--prior", a.prior,
-            "Earlier calibrations of robots of this kind (chain.toml files): their mean and spread are the prior",
-            Requirement::optional, "TOML");
+  add_texts(
+      verb, "--prior", a.prior,
+      "Robots of this kind, whose mean and spread are the prior: chain.toml files of earlier calibrations, or the "
+      "folder that `kinfer merge` made",
+      Requirement::optional, "TOML");
   add_count(verb, "--particles", a.particles, 2, 100000, "Swarm search: number of particles");
   add_count(verb, "--iterations", a.iterations, 1, 10000000,
             "Swarm search: largest number of updates; it ends earlier where 200 updates gain less than 1 %");
@@ -127,6 +144,14 @@ Result<std::optional<calibrate::SwarmSearchOptions>> read_swarm_options(const Se
 
 Result<void> read_earlier_calibrations(const SearchArguments& arguments, calibrate::CalibrationTask& task) {
   for (const std::string& path : arguments.prior) {
+    if (is_population(path)) {
+      if (arguments.prior.size() > 1) return error("--prior: expected one fleet, or chain.toml files");
+      KINFER_TRY(population, read_population(population_path(path)));
+      if (!names_joint_parameters_of(task, population))
+        return error("{}: none of its parameters is one of this robot's", population_path(path));
+      task.population = std::move(population);
+      continue;
+    }
     KINFER_TRY(chain, read_earlier_chain(path, task));
     task.robot_population.push_back(std::move(chain));
   }
@@ -137,7 +162,8 @@ Result<void> read_earlier_calibrations(const SearchArguments& arguments, calibra
 }
 
 std::vector<std::string> input_paths(const SearchArguments& arguments) {
-  std::vector<std::string> paths = arguments.prior;
+  std::vector<std::string> paths;
+  for (const std::string& path : arguments.prior) paths.push_back(is_population(path) ? population_path(path) : path);
   if (!arguments.warm_start.empty()) paths.push_back(chain_path(arguments));
   if (has_net(arguments) && arguments.method == "bpnn-pso") paths.push_back(net_path(arguments).string());
   return paths;

@@ -5,8 +5,10 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "kinfer/base/instruction_set.hpp"
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/base/version.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
@@ -19,6 +21,16 @@ namespace {
 std::vector<std::string>& command_line() {
   static std::vector<std::string> words;  // set once for each run
   return words;
+}
+
+/// "AMD EPYC 7B13"; empty where the system does not tell.
+std::string processor_model() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(file, line))
+    if (line.starts_with("model name"))
+      if (const auto colon = line.find(": "); colon != std::string::npos) return line.substr(colon + 2);
+  return "";
 }
 
 }  // namespace
@@ -86,6 +98,8 @@ Result<void> RunRecord::write(OutputFolder& folder) const {
   run["version"] = version;
   run["compiler"] = compiler;
   run["build"] = build_type;
+  run["processor"] = processor_model();
+  run["processor_class"] = processor_class();
   run["threads"] = options_.threads > 0 ? options_.threads : hardware_threads();
   run["seed"] = options_.seed;
   run["inputs"] = inputs_;

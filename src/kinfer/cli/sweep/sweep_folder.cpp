@@ -7,11 +7,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <thread>
+#include <unordered_map>
 #include <utility>
 
+#include "kinfer/base/instruction_set.hpp"
 #include "kinfer/io/text/replace_all.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
@@ -20,19 +24,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rows of the folder's manifest that are others in `tasks`; rows that were added or left out are no contradiction.
-std::vector<std::string> changed_keys(const std::vector<SweepTask>& was, const std::vector<SweepTask>& is) {
-  std::vector<std::string> keys;
-  for (const SweepTask& task : is) {
-    const auto old = std::ranges::find(was, task.key, &SweepTask::key);
-    if (old != was.end() && !(*old == task)) keys.push_back(task.key);
-  }
-  return keys;
+using TasksByKey = std::unordered_map<std::string, const SweepTask*>;
+
+TasksByKey by_key(const std::vector<SweepTask>& tasks) {
+  TasksByKey map;
+  for (const SweepTask& task : tasks) map.emplace(task.key, &task);
+  return map;
 }
 
-bool share_keys(const std::vector<SweepTask>& was, const std::vector<SweepTask>& is) {
-  return std::ranges::any_of(
-      is, [&](const SweepTask& task) { return std::ranges::find(was, task.key, &SweepTask::key) != was.end(); });
+/// Rows of the folder's manifest that are others in `tasks`; rows that were added or left out are no contradiction.
+std::vector<std::string> changed_keys(const TasksByKey& was, const std::vector<SweepTask>& is) {
+  std::vector<std::string> keys;
+  for (const SweepTask& task : is) {
+    const auto old = was.find(task.key);
+    if (old != was.end() && !(*old->second == task)) keys.push_back(task.key);
+  }
+  return keys;
 }
 
 std::string list_of(const std::vector<std::string>& names) {
@@ -52,8 +59,10 @@ Result<void> check_manifest(const fs::path& path, const std::vector<SweepTask>& 
   }
   if (!may_resume) return error("{}: holds results of a sweep; --resume goes on with it", path.string());
   KINFER_TRY(was, read_manifest(manifest));
-  if (!share_keys(was, tasks)) return error("{}: belongs to another manifest, with none of these keys", path.string());
-  if (const auto changed = changed_keys(was, tasks); !changed.empty())
+  const TasksByKey old = by_key(was);
+  if (std::ranges::none_of(tasks, [&](const SweepTask& task) { return old.contains(task.key); }))
+    return error("{}: belongs to another manifest, with none of these keys", path.string());
+  if (const auto changed = changed_keys(old, tasks); !changed.empty())
     return error("{}: rows of the manifest have changed since: {}; give these other keys, or the sweep another folder",
                  path.string(), list_of(changed));
   return {};
@@ -77,6 +86,16 @@ void remove_unfinished(const fs::path& path, const std::vector<SweepTask>& tasks
   }
   std::error_code ignored;
   for (const fs::path& folder : unfinished) fs::remove_all(folder, ignored);
+}
+
+/// Tasks of a sweep that was killed hold its lock until they have died too, some milliseconds later.
+bool take_lock(int file) {
+  constexpr int trials = 20;
+  for (int i = 0; i < trials; ++i) {
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return false;
 }
 
 /// Writes "{out}" for the folder under which the task ran: its name is of one run.
@@ -117,14 +136,15 @@ Result<SweepFolder> SweepFolder::open(const fs::path& path, const std::vector<Sw
   const int lock = ::open((path / name).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   SweepFolder folder(path, lock);
   if (lock < 0) return error("{}: cannot be locked", path.string());
-  if (::flock(lock, LOCK_EX | LOCK_NB) != 0) return error("{}: another sweep works in this folder", path.string());
+  if (!take_lock(lock)) return error("{}: another sweep works in this folder", path.string());
   remove_unfinished(path, tasks, shard);
   // With rows that an earlier manifest had and this one has not, so that their results stay explained.
   std::vector<SweepTask> all = tasks;
   if (fs::exists(path / "manifest.csv")) {
     KINFER_TRY(was, read_manifest(path / "manifest.csv"));
+    const TasksByKey now = by_key(tasks);
     for (SweepTask& task : was)
-      if (std::ranges::find(all, task.key, &SweepTask::key) == all.end()) all.push_back(std::move(task));
+      if (!now.contains(task.key)) all.push_back(std::move(task));
   }
   if (auto done = write_text_file(path / "manifest.csv", format_manifest(all)); !done)
     return forward_error(done.error());
@@ -180,6 +200,7 @@ Result<TaskResult> SweepFolder::end(const SweepTask& task, std::uint64_t seed, i
                               {"seed", seed},
                               {"exit_code", exit_code},
                               {"signal", signal},
+                              {"processor_class", processor_class()},
                               {"sentence", result.sentence}};
   if (auto done = write_text_file(folder / "task.json", dump_json(json, 1) + "\n"); !done)
     return forward_error(done.error());

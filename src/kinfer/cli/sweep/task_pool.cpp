@@ -36,14 +36,15 @@ void redirect(int descriptor, const std::filesystem::path& file) {
 
 }  // namespace
 
-bool TaskPool::start(int task, const std::vector<std::string>& words, const std::filesystem::path& folder) {
+bool TaskPool::start(int task, const std::vector<std::string>& words, const TaskContext& context) {
   std::fflush(nullptr);  // or the child would print what is buffered here again
   const pid_t process = ::fork();
   if (process < 0) return false;
   if (process == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nothing goes on after the sweep was killed
-    redirect(STDOUT_FILENO, folder / "output.txt");
-    redirect(STDERR_FILENO, folder / "messages.txt");
+    redirect(STDOUT_FILENO, context.folder / "output.txt");
+    redirect(STDERR_FILENO, context.folder / "messages.txt");
+    set_task_context(context);
     const int code = run_task(words);
     std::fflush(nullptr);
     ::_exit(code);  // without destructors of the parent's objects

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "kinfer/cli/sweep/task_context.hpp"
+
 namespace kinfer::cli {
 
 struct EndedTask {
@@ -21,9 +23,9 @@ class TaskPool {
   bool is_full() const { return static_cast<int>(running_.size()) >= workers_; }
   bool is_empty() const { return running_.empty(); }
 
-  /// Starts the program with these words; what it prints goes to output.txt and messages.txt in `folder`. False where
-  /// no process can be made.
-  bool start(int task, const std::vector<std::string>& words, const std::filesystem::path& folder);
+  /// Starts the program with these words; what it prints goes to output.txt and messages.txt in the context's folder.
+  /// False where no process can be made.
+  bool start(int task, const std::vector<std::string>& words, const TaskContext& context);
 
   /// Waits until a task ends.
   EndedTask wait();

@@ -14,6 +14,7 @@
 #include "kinfer/cli/parts/evidence_files.hpp"
 #include "kinfer/cli/parts/model_patch_output.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
+#include "kinfer/cli/sweep/task_context.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/calibration_json.hpp"
 #include "kinfer/io/evidence/files/calibration_files.hpp"
@@ -191,6 +192,7 @@ int run(const CalibrateArguments& options, const CLI::App& verb) {
   const auto offsets = options.offsets == "separate" ? EncoderOffsets::separate : EncoderOffsets::folded;
   const auto patch = write_model_patch(*folder, inputs->robot, *calibration, offsets);
   if (auto done = record.write(*folder); !done) return fail(done.error());
+  if (auto done = write_task_summary(*calibration); !done) return fail(done.error());
   if (auto done = folder->commit(); !done) return fail(done.error());
   const bool usable = calibration->usability != Usability::do_not_use;
   if (options.common.json)

@@ -14,6 +14,7 @@
 #include "kinfer/cli/parts/identification_summary.hpp"
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
+#include "kinfer/cli/sweep/task_context.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/files/identification_files.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
@@ -190,6 +191,7 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   if (!found) return fail(found.error());
   if (auto done = write_results(*folder, provenance_of(options, *how), *found); !done) return fail(done.error());
   if (auto done = record.write(*folder); !done) return fail(done.error());
+  if (auto done = write_task_summary(*found); !done) return fail(done.error());
   if (auto done = folder->commit(); !done) return fail(done.error());
   if (options.common.json)
     fmt::print("{}", format_identification_headline(*found));

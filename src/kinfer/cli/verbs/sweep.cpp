@@ -7,6 +7,7 @@
 #include <memory>
 #include <thread>
 
+#include "kinfer/base/instruction_set.hpp"
 #include "kinfer/cli/parts/arguments.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/sweep/sweep_folder.hpp"
@@ -19,7 +20,7 @@ namespace kinfer::cli {
 namespace {
 
 struct SweepArguments {
-  std::string manifest, each, verb, arguments, out, shard, print;
+  std::string manifest, each, verb, arguments, out, shard, print, prior;
   int workers = 0, shards = 0;
   std::uint64_t seed = 1;
   bool resume = false, retry = false, quiet = false;
@@ -39,6 +40,21 @@ void count(const TaskResult& result, Tally& tally) {
     ++(result.exit_code == exit_done ? tally.use : tally.do_not_use);
 }
 
+/// The prior becomes an argument of the tasks, so that a resumed sweep cannot mix results with and without it.
+Result<void> add_prior(const SweepArguments& options, const CLI::App& program, std::vector<SweepTask>& tasks) {
+  if (options.prior.empty()) return {};
+  bool has_effect = false;
+  for (SweepTask& task : tasks) {
+    if (!has_option(program, task.verb, "--prior") ||
+        std::ranges::find(task.arguments, "--prior") != task.arguments.end())
+      continue;
+    task.arguments.insert(task.arguments.end(), {"--prior", options.prior});
+    has_effect = true;
+  }
+  if (!has_effect) return error("--prior has no effect: no task without it is a calibration");
+  return {};
+}
+
 Result<std::vector<SweepTask>> read_tasks(const SweepArguments& options, const CLI::App& program) {
   if (options.manifest.empty() == options.each.empty()) return error("expected a manifest, or --each with --verb");
   if (!options.each.empty() && options.verb.empty()) return error("--each needs --verb");
@@ -47,9 +63,10 @@ Result<std::vector<SweepTask>> read_tasks(const SweepArguments& options, const C
   KINFER_TRY(tasks, options.each.empty() ? read_manifest(options.manifest)
                                          : tasks_of_files(options.each, options.verb, options.arguments));
   for (const SweepTask& task : tasks)
-    if (!has_verb(program, task.verb) || task.verb == "sweep")
+    if (!has_verb(program, task.verb) || task.verb == "sweep" || task.verb == "merge")
       return error("{}: \"{}\" is no verb that can be swept",
                    task.line > 0 ? fmt::format("{}:{}", options.manifest, task.line) : "--verb", task.verb);
+  if (auto done = add_prior(options, program, tasks); !done) return forward_error(done.error());
   return tasks;
 }
 
@@ -91,7 +108,8 @@ class SweepRun {
         if (auto done = wait(); !done) return forward_error(done.error());
       KINFER_TRY(folder, folder_.begin(tasks_[i]));
       const auto words = words_of(tasks_[i], seed_of(tasks_[i]), folder.string(), program_);
-      if (!pool_.start(static_cast<int>(i), words, folder)) return error("no process can be made for a task");
+      if (!pool_.start(static_cast<int>(i), words, {folder, tasks_[i].truth}))
+        return error("no process can be made for a task");
     }
     while (!pool_.is_empty())
       if (auto done = wait(); !done) return forward_error(done.error());
@@ -160,12 +178,15 @@ std::string shell_word(const std::string& word) {
 
 int print_script(const SweepArguments& options, std::size_t tasks) {
   const int shards = options.shards > 0 ? options.shards : static_cast<int>(std::min<std::size_t>(tasks, 8));
-  std::string command = "kinfer sweep";
+  const InstructionSet kernels = instruction_set();
+  std::string command =
+      kernels == widest_instruction_set() ? "kinfer sweep" : fmt::format("kinfer --kernels {} sweep", name(kernels));
   const auto add = [&](const std::string& name, const std::string& value) {
     if (!value.empty()) command += (name.empty() ? "" : " " + name) + " " + shell_word(value);
   };
   add("", options.manifest), add("--each", options.each), add("--verb", options.verb);
-  add("--arguments", options.arguments), add("--out", options.out), add("--seed", std::to_string(options.seed));
+  add("--arguments", options.arguments), add("--prior", options.prior), add("--out", options.out),
+      add("--seed", std::to_string(options.seed));
   fmt::print("{}", sweep_script(options.print, command + " --resume --quiet", shards));
   return exit_done;
 }
@@ -207,6 +228,8 @@ Verb add_sweep(CLI::App& app) {
   add_text(*verb, "--verb", options->verb, "With --each: the verb", Requirement::optional, "VERB");
   add_text(*verb, "--arguments", options->arguments, "With --each: its arguments; {file}, {folder}, {out}, {seed}",
            Requirement::optional, "WORDS");
+  add_text(*verb, "--prior", options->prior,
+           "Folder of `kinfer merge`: its population is the prior of each calibration", Requirement::optional, "FLEET");
   add_text(*verb, "--out", options->out, "Folder of all tasks' folders", Requirement::required, "DIR");
   add_flag(*verb, "--resume", options->resume, "Go on with a sweep that was interrupted");
   add_flag(*verb, "--retry", options->retry, "Go on, and run tasks again that were refused or failed");

@@ -6,6 +6,7 @@
 
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/calibration_summary.hpp"
+#include "kinfer/cli/sweep/task_context.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/deploy/compare.hpp"
 #include "kinfer/deploy/verify.hpp"
@@ -116,6 +117,7 @@ int run(const VerifyArguments& options) {
   const auto verification =
       deploy::verify(robot->chain, robot->tolerances, robot->instrument, *data, robot->prediction);
   if (!verification) return fail(verification.error());
+  if (auto done = write_task_summary(*verification); !done) return fail(done.error());
   print(*verification, options.common);
   return verification->result == VerificationResult::valid ? exit_done : exit_do_not_use;
 }

@@ -9,8 +9,9 @@ namespace {
 // In the order of the enumerators.
 constexpr std::array<std::string_view, 6> reason_names{"improves_nominal",   "no_improvement", "not_validated",
                                                        "unmodelled_effects", "generalises",    "overfitted"};
-constexpr std::array<std::string_view, 6> note_names{"many_gross_errors",  "tolerances_scaled",  "frames_from_data",
-                                                     "urdf_geometry_only", "joint_offset_moved", "no_offset_moved"};
+constexpr std::array<std::string_view, 8> note_names{"many_gross_errors",  "tolerances_scaled", "frames_from_data",
+                                                     "urdf_geometry_only", "population_used",   "foreign_to_population",
+                                                     "joint_offset_moved", "no_offset_moved"};
 constexpr std::array<std::string_view, 7> advice_names{
     "use_corrections",          "check_model",        "check_outliers",         "extend_joint_range",
     "measure_uncertain_region", "measure_more_poses", "keep_verification_poses"};

@@ -31,11 +31,13 @@ enum class CalibrationReason {
 std::string_view name(CalibrationReason reason);
 
 enum class CalibrationNoteKind {
-  many_gross_errors,   ///< too many held-out rows with gross errors to exclude them: "rows"
-  tolerances_scaled,   ///< the tolerances were too small: "factor"
-  frames_from_data,    ///< base and tool of the robot file disagree with the data: "distance_m"
-  urdf_geometry_only,  ///< a URDF cannot hold the whole model
-  joint_offset_moved,  ///< since the earlier calibration: "parameter", "change_m" or "change_rad", "sigmas"
+  many_gross_errors,      ///< too many held-out rows with gross errors to exclude them: "rows"
+  tolerances_scaled,      ///< the tolerances were too small: "factor"
+  frames_from_data,       ///< base and tool of the robot file disagree with the data: "distance_m"
+  urdf_geometry_only,     ///< a URDF cannot hold the whole model
+  population_used,        ///< the robot may be one of the prior's population: "robots", "log_odds"
+  foreign_to_population,  ///< it is not, and was calibrated without that prior: "robots", "log_odds"
+  joint_offset_moved,     ///< since the earlier calibration: "parameter", "change_m" or "change_rad", "sigmas"
   no_offset_moved,
 };
 std::string_view name(CalibrationNoteKind kind);

@@ -46,6 +46,17 @@ std::string quoted_cell(const std::string& cell) {
   return "\"" + text + "\"";
 }
 
+constexpr std::array<std::pair<const char*, std::string SweepTask::*>, 3> optional_columns{
+    {{"robot", &SweepTask::robot}, {"date", &SweepTask::date}, {"truth", &SweepTask::truth}}};
+
+/// Such dates are in the order of time where they are in the order of the alphabet.
+bool is_date(const std::string& text) {
+  constexpr std::string_view form = "0000-00-00";
+  for (std::size_t i = 0; i < form.size(); ++i)
+    if (i >= text.size() || (form[i] == '0' ? text[i] < '0' || text[i] > '9' : text[i] != form[i])) return false;
+  return text.size() == form.size() || text[form.size()] == 'T' || text[form.size()] == ' ';
+}
+
 /// What the wildcards of `pattern` matched in `path`, joined by "_": each part of a path between two slashes that has
 /// wildcards counts as a whole, without what stands before the first and behind the last of them.
 std::string wildcard_key(const std::string& pattern, const std::string& path) {
@@ -113,7 +124,11 @@ Result<std::vector<SweepTask>> parse_manifest(std::string_view text, const std::
     auto words = split_words(table.cell(row, columns["arguments"]));
     if (!words) return error("{}:{}: {}", name, task.line, words.error().what);
     task.arguments = std::move(*words);
+    for (const auto& [column, member] : optional_columns)
+      if (columns.contains(column)) task.*member = std::string(table.cell(row, columns[column]));
     if (auto checked = check_key(task.key); !checked) return error("{}:{}: {}", name, task.line, checked.error().what);
+    if (!task.date.empty() && !is_date(task.date))
+      return error("{}:{}: the date \"{}\": expected YYYY-MM-DD, or with a time behind it", name, task.line, task.date);
     if (const auto [other, is_new] = line_of.emplace(task.key, task.line); !is_new)
       return error("{}:{}: the key \"{}\" stands in line {} too", name, task.line, task.key, other->second);
     tasks.push_back(std::move(task));
@@ -128,11 +143,18 @@ Result<std::vector<SweepTask>> read_manifest(const std::filesystem::path& path) 
 }
 
 std::string format_manifest(const std::vector<SweepTask>& tasks) {
-  std::string text = "key,verb,arguments\n";
+  std::string text = "key,verb,arguments";
+  std::vector<std::string SweepTask::*> more;
+  for (const auto& column : optional_columns)
+    if (std::ranges::any_of(tasks, [&](const SweepTask& task) { return !(task.*column.second).empty(); }))
+      text += fmt::format(",{}", column.first), more.push_back(column.second);
+  text += "\n";
   for (const SweepTask& task : tasks) {
     std::string arguments;
     for (const std::string& word : task.arguments) arguments += (arguments.empty() ? "" : " ") + quoted_word(word);
-    text += fmt::format("{},{},{}\n", task.key, task.verb, quoted_cell(arguments));
+    text += fmt::format("{},{},{}", task.key, task.verb, quoted_cell(arguments));
+    for (const auto member : more) text += "," + quoted_cell(task.*member);
+    text += "\n";
   }
   return text;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The manifest of a sweep (docs/formats.md): a CSV file with one task a row, columns key, verb and arguments.
+// The manifest of a sweep (docs/formats.md): a CSV file with one task a row, columns key, verb and arguments, and
+// where they are known robot, date and truth.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +17,14 @@ struct SweepTask {
   std::string key{};                     ///< letters, digits, ".", "-" and "_": the name of the task's folder
   std::string verb{};                    ///< "calibrate"
   std::vector<std::string> arguments{};  ///< of the verb; "{out}" stands for the task's folder, "{seed}" for its seed
+  std::string robot{};                   ///< whose result it is; empty: not stated
+  std::string date{};                    ///< of the measurements, YYYY-MM-DD or with a time behind it: sorts as text
+  std::string truth{};                   ///< robot file that made the data, of simulations; empty: unknown
   int line = 0;                          ///< in the file, from 1
 
+  /// Robot and date say nothing about how it runs.
   bool operator==(const SweepTask& other) const {
-    return key == other.key && verb == other.verb && arguments == other.arguments;
+    return key == other.key && verb == other.verb && arguments == other.arguments && truth == other.truth;
   }
 };
 

@@ -73,6 +73,17 @@ std::string sentence(const CalibrationNote& note) {
                     mm(values, "distance_m"));
     case CalibrationNoteKind::urdf_geometry_only:
       return phrase(name(note.kind), "chain.urdf holds the geometry alone; chain.toml holds what goes beyond it");
+    case CalibrationNoteKind::population_used:
+      return phrase(name(note.kind),
+                    "the prior is a population of {} robots; the data are {:.1e} times as likely with it as with the "
+                    "tolerances of the data sheet",
+                    values.count("robots"), std::exp(values.number("log_odds")));
+    case CalibrationNoteKind::foreign_to_population:
+      return phrase(
+          name(note.kind),
+          "this robot is foreign to the population of {} robots that was given as prior (odds 1 : {:.1e}): the "
+          "tolerances of the data sheet were used instead",
+          values.count("robots"), std::exp(-values.number("log_odds")));
     case CalibrationNoteKind::joint_offset_moved: {
       const bool length = values.has("change_m");
       return phrase(name(note.kind), "{} has moved by {:+.4f} {} since the earlier calibration ({:.0f} sd)",

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/sweep/task_context.hpp"
+
+#include <optional>
+
+#include "kinfer/fleet/summary.hpp"
+#include "kinfer/io/fleet/fleet_json.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/text/text_file.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+TaskContext& task_context() {
+  static TaskContext context;  // set once in each process
+  return context;
+}
+
+bool is_task() {
+  return !task_context().folder.empty();
+}
+
+Result<void> write_summary(const TaskSummary& summary) {
+  const auto& folder = task_context().folder;
+  if (summary.information)
+    if (auto done = write_text_file(folder / "information.json", format_information(*summary.information)); !done)
+      return done;
+  return write_text_file(folder / "summary.json", format_task_summary(summary));
+}
+
+}  // namespace
+
+void set_task_context(TaskContext context) {
+  task_context() = std::move(context);
+}
+
+Result<void> write_task_summary(const Calibration& calibration) {
+  if (!is_task()) return {};
+  std::optional<Chain> truth;
+  if (const std::string& path = task_context().truth; !path.empty()) {
+    KINFER_TRY(robot, read_robot_toml(path));
+    truth = std::move(robot.chain);
+  }
+  return write_summary(fleet::summary_of(calibration, truth ? &*truth : nullptr));
+}
+
+Result<void> write_task_summary(const Identification& identification) {
+  return is_task() ? write_summary(fleet::summary_of(identification)) : Result<void>{};
+}
+
+Result<void> write_task_summary(const Verification& verification) {
+  return is_task() ? write_summary(fleet::summary_of(verification)) : Result<void>{};
+}
+
+}  // namespace kinfer::cli
