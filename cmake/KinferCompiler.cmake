@@ -37,6 +37,9 @@ if(KINFER_SANITIZE)
   add_compile_options(-fno-sanitize=pointer-overflow)  # Eigen forms pointers into empty matrices, which it never reads
   add_link_options(-fsanitize=address,undefined)
 endif()
+if(KINFER_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)  # counts which branches an input takes
+endif()
 
 find_program(KINFER_CCACHE ccache)
 if(KINFER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

@@ -158,9 +158,9 @@ void run_log(const std::string& path, const std::string& root, const std::vector
   for (std::size_t s = 0; s < found.fit.cost.sensors.size(); ++s) {
     const SensorFit& f = found.fit.cost.sensors[s];
     const InsNoise& noise = found.noise[s];
-    fmt::print("{}: noise angular velocity {:.4f} force {:.4f}, autocorrelation time {:.1f} {:.1f}\n",
-               motion.segments[s].name, noise.angular_velocity, noise.force, autocorrelation_time(f.angular_velocity),
-               autocorrelation_time(f.force));
+    fmt::print("{}: noise angular velocity {:.4f} force {:.4f}, persistent variance {:.2f} {:.2f}\n",
+               motion.segments[s].name, noise.angular_velocity, noise.force, persistent_variance(f.angular_velocity),
+               persistent_variance(f.force));
   }
   for (const RefinedJoint& joint : found.joints) {
     const JointEstimate& j = joint.estimate;

@@ -55,7 +55,7 @@ TEST(Chain, AMalformedChainStopsTheProgram) {
   chain = laws::compliant();
   chain.masses[0].joint = 9;
   EXPECT_DEATH(expect_well_formed(chain), "mass on joint 9 of 6");
-  EXPECT_DEATH(forward(laws::er20(), VectorXd::Zero(5)), "5 readings for 6 joints");
+  EXPECT_DEATH(forward(laws::er20(), VectorXd::Zero(5)), "5 joint positions for 6 joints");
 }
 
 TEST(Chain, TheEr20HasTheReachOfItsTable) {

@@ -202,8 +202,8 @@ TEST(Inverse, TolerancesAreWhatIsLeftAtMost) {
 }
 
 TEST(Inverse, AStartOfAnotherLengthStopsTheProgram) {
-  EXPECT_DEATH(inverse_position(planar(), Vec3::Zero(), VectorXd::Zero(3)), "3 readings for 2 joints");
-  EXPECT_DEATH(inverse_position(laws::without_joints(), Vec3::Zero(), VectorXd()), "0 readings for 0 joints");
+  EXPECT_DEATH(inverse_position(planar(), Vec3::Zero(), VectorXd::Zero(3)), "3 joint positions for 2 joints");
+  EXPECT_DEATH(inverse_position(laws::without_joints(), Vec3::Zero(), VectorXd()), "0 joint positions for 0 joints");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <csignal>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -64,6 +65,10 @@ class Pool {
 
  private:
   void work() {
+    // Signals interrupt the thread that began the work: it alone writes results.
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, nullptr);
     std::unique_lock lock(mutex_);
     for (;;) {
       wake_.wait(lock, [this] { return closing_ || wanted_ > 0; });

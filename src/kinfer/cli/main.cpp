@@ -14,6 +14,7 @@
 #include "kinfer/cli/help/help_text.hpp"
 #include "kinfer/cli/help/suggestion.hpp"
 #include "kinfer/cli/parts/common.hpp"
+#include "kinfer/cli/parts/process.hpp"
 #include "kinfer/cli/parts/program.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/words/language.hpp"
@@ -26,9 +27,11 @@ std::string formatted_help(const CLI::App* app, const std::string&, CLI::AppForm
                            : help_text(option_tree(*app), terminal_width());
 }
 
-/// Options that all verbs have.
+/// Options before the verb.
 struct ProgramOptions {
   std::string language = "english", kernels = "auto";
+  double memory = 8.0;   ///< [GB]
+  double time = 3600.0;  ///< [s]
 };
 
 /// Options and verbs of the program; `options` must outlive the parsing.
@@ -39,6 +42,10 @@ std::vector<Verb> describe_program(CLI::App& app, ProgramOptions& options) {
                  "names: the stable name of each fact instead of its sentence, for programs and translators")
       ->check(CLI::IsMember({"english", "names"}))
       ->capture_default_str();
+  add_number(app, "--limit-memory", options.memory, 0.0, 1e6,
+             "Memory beyond which the program ends with a sentence [GB]; 0: any");
+  add_number(app, "--limit-time", options.time, 0.0, 1e8,
+             "Time after which it ends with a sentence [s]; 0: any; track and sweep have none");
   app.add_option(
          "--kernels", options.kernels,
          "Instruction set of the numeric kernels; portable gives the same last digits on every x86-64 processor")
@@ -47,6 +54,11 @@ std::vector<Verb> describe_program(CLI::App& app, ProgramOptions& options) {
   app.require_subcommand(1);
   app.footer("`kinfer VERB --help` explains a verb and shows an example; `kinfer demo` shows what kinfer does.");
   return add_verbs(app);
+}
+
+std::string chosen_verb(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? "" : chosen.front()->get_name();
 }
 
 }  // namespace
@@ -80,6 +92,8 @@ int run_program(const std::vector<std::string>& arguments) {
   } catch (const CLI::ParseError& parse_error) {
     return app.exit(parse_error) == 0 ? exit_done : exit_bad_input;  // --help and --version end here too
   }
+  limit_memory(options.memory);
+  if (const std::string name = chosen_verb(app); name != "track" && name != "sweep") limit_time(options.time);
   if (const auto kernels = instruction_set_named(options.kernels); kernels && !pin_instruction_set(*kernels))
     return fail({fmt::format("--kernels {}: this processor supports {} at most", options.kernels,
                              name(widest_instruction_set()))});
@@ -96,9 +110,10 @@ int main(int argc, char** argv) {
   // six sensors then took a third more memory.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   try {
-    return kinfer::cli::run_program({argv + std::min(argc, 1), argv + argc});
-  } catch (const std::exception& failure) {
-    fmt::print(stderr, "kinfer: internal error: {}\n", failure.what());
-    return kinfer::cli::exit_internal;
+    kinfer::cli::prepare_process();
+    const int code = kinfer::cli::run_program({argv + std::min(argc, 1), argv + argc});
+    return kinfer::cli::flush_standard_output() ? code : kinfer::cli::exit_bad_input;
+  } catch (const std::exception&) {
+    return kinfer::cli::code_of_exception();
   }
 }

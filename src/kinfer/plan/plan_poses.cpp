@@ -144,7 +144,7 @@ MatrixXd stack(const MatrixXd& above, const MatrixXd& below) {
   if (above.rows() == 0) return below;
   if (below.rows() == 0) return above;
   MatrixXd both(above.rows() + below.rows(), below.cols());
-  both.topRows(above.rows()) = above;
+  if (above.size() > 0) both.topRows(above.rows()) = above;  // an empty one has no columns
   both.bottomRows(below.rows()) = below;
   return both;
 }
@@ -195,6 +195,8 @@ Result<PosePlan> plan_poses(const PlanTask& task, const PlanOptions& options, Rn
   plan.criterion = options.criterion;
   const std::vector<int> chosen =
       best_design(problem, options.criterion, options.poses, options.starts, options.threads, rng.stream(2));
+  if (chosen.empty())
+    return error("no choice of poses has a finite expected error: check the lengths of the robot and its tolerances");
   const bool is_from_list = task.candidates.size() > 0;
   const MatrixXd q = is_from_list
                          ? MatrixXd(candidates(Eigen::all, chosen))

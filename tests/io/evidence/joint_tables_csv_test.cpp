@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tables for robot controllers: read back with an independent formula they are the same machine.
-#include "kinfer/io/evidence/joint_tables_csv.hpp"
+#include "kinfer/io/evidence/files/joint_tables_csv.hpp"
 
 #include <gtest/gtest.h>
 

@@ -96,15 +96,17 @@ void add_search_arguments(CLI::App& verb, SearchArguments& a) {
   add_count(verb, "--particles", a.particles, 2, 100000, "Swarm search: number of particles");
   add_count(verb, "--iterations", a.iterations, 1, 10000000,
             "Swarm search: largest number of updates; it ends earlier where 200 updates gain less than 1 %");
-  add_number(verb, "--inertia", a.inertia, "PSO: weight w of the velocity (paper: 0.9, which hardly converges)");
-  add_number(verb, "--own", a.own, "PSO: c1, pull of a particle's own best");
-  add_number(verb, "--swarm", a.swarm, "PSO: c2, pull of the swarm's best");
+  add_number(verb, "--inertia", a.inertia, 0.0, 10.0,
+             "PSO: weight w of the velocity (paper: 0.9, which hardly converges)");
+  add_number(verb, "--own", a.own, 0.0, 10.0, "PSO: c1, pull of a particle's own best");
+  add_number(verb, "--swarm", a.swarm, 0.0, 10.0, "PSO: c2, pull of the swarm's best");
   add_choice(verb, "--walls", a.boundary, {"absorb", "clamp", "open"}, "PSO: particles that leave the box");
   add_choice(verb, "--net-use", a.net_use, {"initial-swarm", "every-update"},
              "BPNN-PSO: every-update is the literal reading, and harms");
-  add_number(verb, "--box-length", a.box_length, "Half width of the box about the nominal lengths [mm]");
-  add_number(verb, "--box-angle", a.box_angle, "Half width of the box about the nominal angles [deg]");
-  add_number(verb, "--box-tolerances", a.box_tolerances, "Half width of the box in tolerances instead (0: not)");
+  add_number(verb, "--box-length", a.box_length, 0.0, 1e5, "Half width of the box about the nominal lengths [mm]");
+  add_number(verb, "--box-angle", a.box_angle, 0.0, 180.0, "Half width of the box about the nominal angles [deg]");
+  add_number(verb, "--box-tolerances", a.box_tolerances, 0.0, 1e6,
+             "Half width of the box in tolerances instead (0: not)");
 }
 
 Result<void> check_search_arguments(const SearchArguments& arguments, const CLI::App& verb) {

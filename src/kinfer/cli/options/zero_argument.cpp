@@ -9,13 +9,13 @@
 namespace kinfer::cli {
 namespace {
 
-struct ZeroQuantity {
+struct PhysicalValue {
   double value = 0.0;  ///< SI
   Dimension dimension = Dimension::one;
 };
 
 /// "-30deg", "1.2 s".
-std::optional<ZeroQuantity> parse_quantity(std::string_view text) {
+std::optional<PhysicalValue> parse_physical_value(std::string_view text) {
   const std::size_t end = text.find_last_of("0123456789.");
   if (end == std::string_view::npos) return std::nullopt;
   const auto number = parse_number(text.substr(0, end + 1));
@@ -23,7 +23,7 @@ std::optional<ZeroQuantity> parse_quantity(std::string_view text) {
   while (!unit_text.empty() && unit_text.front() == ' ') unit_text.remove_prefix(1);
   const auto unit = find_unit(unit_text);
   if (!number || !unit) return std::nullopt;
-  return ZeroQuantity{*number * unit->factor, unit->dimension};
+  return PhysicalValue{*number * unit->factor, unit->dimension};
 }
 
 Result<identify::NamedZero> parse_zero(const std::string& text) {
@@ -33,10 +33,10 @@ Result<identify::NamedZero> parse_zero(const std::string& text) {
   const std::size_t equals = text.rfind('='), at = text.rfind('@');
   if (equals == std::string::npos || at == std::string::npos || equals == 0 || at < equals)
     return malformed("expected a joint, its position and the time at which it had it");
-  const auto position = parse_quantity(std::string_view(text).substr(equals + 1, at - equals - 1));
+  const auto position = parse_physical_value(std::string_view(text).substr(equals + 1, at - equals - 1));
   if (!position || (position->dimension != Dimension::angle && position->dimension != Dimension::length))
     return malformed("the position needs a unit, deg or rad or mm or m");
-  const auto time = parse_quantity(std::string_view(text).substr(at + 1));
+  const auto time = parse_physical_value(std::string_view(text).substr(at + 1));
   if (!time || time->dimension != Dimension::time) return malformed("the time needs its unit, s");
   return identify::NamedZero{.joint = text.substr(0, equals),
                              .position = position->value,

@@ -1,9 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/cli/parts/arguments.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 namespace kinfer::cli {
+namespace {
+
+/// CLI11's own range lets nan pass, and states limits with six decimals. Without a description help lines stay short.
+CLI::Validator in_range(double lowest, double highest) {
+  const auto complaint = [lowest, highest](const std::string& text) -> std::string {
+    double value = 0.0;
+    if (CLI::detail::lexical_cast(text, value) && value >= lowest && value <= highest) return {};
+    return fmt::format("expected a number from {:g} to {:g}, found \"{}\"", lowest, highest, text);
+  };
+  return CLI::Validator(complaint, "");
+}
+
+}  // namespace
 
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& summary,
                       const std::string& footer) {
@@ -42,31 +57,24 @@ void add_choice(CLI::App& verb, const std::string& name, std::string& value, con
 }
 
 void add_count(CLI::App& verb, const std::string& name, int& value, int lowest, int highest, const std::string& help) {
-  CLI::Validator in_range = CLI::Range(lowest, highest);
-  in_range.description("");  // keeps the help line short; the error message states the range
-  verb.add_option(name, value, help)->type_name("N")->check(in_range)->capture_default_str();
+  verb.add_option(name, value, help)->type_name("N")->check(in_range(lowest, highest))->capture_default_str();
 }
 
 void add_count(CLI::App& verb, const std::string& name, std::optional<int>& value, int lowest, int highest,
                const std::string& help) {
-  CLI::Validator in_range = CLI::Range(lowest, highest);
-  in_range.description("");
-  verb.add_option(name, value, help)->type_name("N")->check(in_range);
-}
-
-void add_number(CLI::App& verb, const std::string& name, double& value, const std::string& help) {
-  verb.add_option(name, value, help)->capture_default_str();
+  verb.add_option(name, value, help)->type_name("N")->check(in_range(lowest, highest));
 }
 
 void add_number(CLI::App& verb, const std::string& name, double& value, double lowest, double highest,
                 const std::string& help) {
-  CLI::Validator in_range = CLI::Range(lowest, highest);
-  in_range.description("");
-  verb.add_option(name, value, help)->check(in_range)->capture_default_str();
+  verb.add_option(name, value, help)->check(in_range(lowest, highest))->capture_default_str();
 }
 
-void add_number(CLI::App& verb, const std::string& name, double& value, bool& given, const std::string& help) {
-  verb.add_option(name, value, help)->each([&given](const std::string&) { given = true; });
+void add_number(CLI::App& verb, const std::string& name, double& value, bool& given, double lowest, double highest,
+                const std::string& help) {
+  verb.add_option(name, value, help)->check(in_range(lowest, highest))->each([&given](const std::string&) {
+    given = true;
+  });
 }
 
 void add_seed(CLI::App& verb, const std::string& name, std::uint64_t& value, const std::string& help) {

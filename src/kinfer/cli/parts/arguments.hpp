@@ -33,11 +33,12 @@ void add_count(CLI::App& verb, const std::string& name, int& value, int lowest, 
 /// A count without default.
 void add_count(CLI::App& verb, const std::string& name, std::optional<int>& value, int lowest, int highest,
                const std::string& help);
-void add_number(CLI::App& verb, const std::string& name, double& value, const std::string& help);
+/// Every number has limits: what lies outside them, nan and the infinities are refused when the arguments are parsed.
 void add_number(CLI::App& verb, const std::string& name, double& value, double lowest, double highest,
                 const std::string& help);
 /// A number without default; `given` tells whether the option was used.
-void add_number(CLI::App& verb, const std::string& name, double& value, bool& given, const std::string& help);
+void add_number(CLI::App& verb, const std::string& name, double& value, bool& given, double lowest, double highest,
+                const std::string& help);
 void add_seed(CLI::App& verb, const std::string& name, std::uint64_t& value, const std::string& help);
 void add_flag(CLI::App& verb, const std::string& name, bool& value, const std::string& help);
 

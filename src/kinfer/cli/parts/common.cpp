@@ -12,6 +12,7 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/base/version.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::cli {
@@ -58,25 +59,6 @@ int fail(const Error& error) {
   return exit_bad_input;
 }
 
-Result<OutputFolder> OutputFolder::make(const std::filesystem::path& path) {
-  std::vector<std::filesystem::path> missing;
-  for (auto folder = std::filesystem::absolute(path); !folder.empty() && !std::filesystem::exists(folder);
-       folder = folder.parent_path())
-    missing.push_back(folder);
-  OutputFolder folder(path, std::move(missing));
-  if (auto ready = create_writable_folder(path); !ready) return forward_error(ready.error());
-  return folder;
-}
-
-OutputFolder::OutputFolder(OutputFolder&& other) noexcept
-    : path_(std::move(other.path_)), made_(std::exchange(other.made_, {})) {}
-
-OutputFolder::~OutputFolder() {
-  std::error_code ignored;  // remove() refuses to delete a folder that is not empty
-  for (const auto& folder : made_)
-    if (!std::filesystem::remove(folder, ignored)) return;
-}
-
 ProgressLine::ProgressLine(const CommonOptions& options) : shown_(!options.quiet && isatty(fileno(stderr)) != 0) {}
 
 ProgressLine::~ProgressLine() {
@@ -103,10 +85,11 @@ RunRecord::RunRecord(std::string verb, const CommonOptions& options)
     : verb_(std::move(verb)), options_(options), begin_(std::chrono::system_clock::now()) {}
 
 void RunRecord::add_input(const std::filesystem::path& path) {
-  inputs_.push_back(std::filesystem::absolute(path).string());
+  std::error_code ignored;  // of a name that is empty: reading it says so
+  inputs_.push_back(std::filesystem::absolute(path, ignored).string());
 }
 
-Result<void> RunRecord::write(const std::filesystem::path& folder) const {
+Result<void> RunRecord::write(OutputFolder& folder) const {
   const auto end = std::chrono::system_clock::now();
   nlohmann::ordered_json run;
   run["format"] = "kinfer-run/1";
@@ -122,7 +105,7 @@ Result<void> RunRecord::write(const std::filesystem::path& folder) const {
   run["inputs"] = inputs_;
   run["began"] = fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(begin_)));
   run["seconds"] = std::chrono::duration<double>(end - begin_).count();
-  return write_text_file(folder / "run.json", run.dump(1) + "\n");
+  return write_text_file(folder / "run.json", dump_json(run, 1) + "\n");
 }
 
 }  // namespace kinfer::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by all verbs: common options, exit codes, output folders, progress, run.json.
+// Shared by all verbs: common options, exit codes, progress, run.json.
 #pragma once
 
 #include <chrono>
@@ -12,6 +12,7 @@
 #include "kinfer/base/observer.hpp"
 #include "kinfer/base/result.hpp"
 #include "kinfer/cli/parts/arguments.hpp"
+#include "kinfer/cli/parts/output_folder.hpp"
 #include "kinfer/io/evidence/fingerprints.hpp"
 
 namespace kinfer::cli {
@@ -31,24 +32,6 @@ void add_quiet_option(CLI::App& verb, bool& quiet);
 
 /// Prints "kinfer: sentence" to stderr and returns exit_bad_input.
 int fail(const Error& error);
-
-/// Output folder of a run: created and checked to be writable before anything is computed; removed again after a failed
-/// run if it was created by it and is still empty.
-class OutputFolder {
- public:
-  static Result<OutputFolder> make(const std::filesystem::path& path);
-  ~OutputFolder();
-  OutputFolder(OutputFolder&& other) noexcept;
-  OutputFolder& operator=(OutputFolder&&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  OutputFolder(std::filesystem::path path, std::vector<std::filesystem::path> made)
-      : path_(std::move(path)), made_(std::move(made)) {}
-  std::filesystem::path path_;
-  std::vector<std::filesystem::path> made_;  ///< folders that did not exist before, innermost first
-};
 
 /// A verb of the program and the function that runs it.
 struct Verb {
@@ -77,7 +60,7 @@ class RunRecord {
  public:
   RunRecord(std::string verb, const CommonOptions& options);
   void add_input(const std::filesystem::path& path);
-  Result<void> write(const std::filesystem::path& folder) const;
+  Result<void> write(OutputFolder& folder) const;  ///< run.json
 
  private:
   std::string verb_;

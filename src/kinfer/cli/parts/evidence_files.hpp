@@ -2,9 +2,8 @@
 // Writes evidence.json and the report made from it.
 #pragma once
 
-#include <filesystem>
-
 #include "kinfer/base/result.hpp"
+#include "kinfer/cli/parts/output_folder.hpp"
 #include "kinfer/evidence/calibration/calibration_evidence.hpp"
 #include "kinfer/evidence/identification/identification_evidence.hpp"
 #include "kinfer/evidence/tracking/track_run.hpp"
@@ -12,8 +11,8 @@
 namespace kinfer::cli {
 
 /// Writes evidence.json, and report.html made from it.
-Result<void> write_evidence(const std::filesystem::path& folder, const CalibrationEvidence& evidence);
-Result<void> write_evidence(const std::filesystem::path& folder, const IdentificationEvidence& evidence);
-Result<void> write_evidence(const std::filesystem::path& folder, const TrackRun& run);
+Result<void> write_evidence(OutputFolder& folder, const CalibrationEvidence& evidence);
+Result<void> write_evidence(OutputFolder& folder, const IdentificationEvidence& evidence);
+Result<void> write_evidence(OutputFolder& folder, const TrackRun& run);
 
 }  // namespace kinfer::cli

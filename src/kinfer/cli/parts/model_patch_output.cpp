@@ -14,7 +14,7 @@ Result<void> check_offsets(bool given, const RobotModel& robot) {
   return error("--offsets has no effect here: only a URDF file is written back with calibrated origins");
 }
 
-std::optional<ModelPatch> write_model_patch(const std::filesystem::path& folder, const RobotModel& robot,
+std::optional<ModelPatch> write_model_patch(OutputFolder& folder, const RobotModel& robot,
                                             const Calibration& calibration, EncoderOffsets offsets) {
   if (!robot.source) return std::nullopt;
   auto model = patch_model(robot, calibration, offsets);

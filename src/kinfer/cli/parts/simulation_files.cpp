@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/cli/parts/simulation_files.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 
 #include <fmt/format.h>
 
@@ -129,7 +130,7 @@ std::string truth_json(const SimulationRecord& record, const Drive& drive, const
   document["schedule"] = Json::array();
   for (const Phase& phase : drive.phases)
     document["schedule"].push_back({{"what", phase.what}, {"begin", phase.begin}, {"end", phase.end}});
-  return document.dump(1) + "\n";
+  return dump_json(document, 1) + "\n";
 }
 
 }  // namespace kinfer::cli

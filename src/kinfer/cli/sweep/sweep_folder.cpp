@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/cli/sweep/sweep_folder.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -76,7 +77,11 @@ void remove_unfinished(const fs::path& path, const std::vector<SweepTask>& tasks
   for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
     const std::string name = entry.path().filename().string();  // ".KEY.PROCESS"
     const std::size_t point = name.rfind('.');
-    if (name.front() == '.' && point > 0 && entry.is_directory() && keys.contains(name.substr(1, point - 1)))
+    const std::string owner = name.substr(1, point - 1);
+    // Of a task, or what a task that was killed had not put in place.
+    const bool is_staging = name.starts_with("..") && name.find(".kinfer-") != std::string::npos &&
+                            keys.contains(owner.substr(1, owner.rfind('.') - 1));
+    if (name.front() == '.' && point > 0 && entry.is_directory() && (keys.contains(owner) || is_staging))
       unfinished.push_back(entry.path());
   }
   std::error_code ignored;
@@ -197,7 +202,8 @@ Result<TaskResult> SweepFolder::end(const SweepTask& task, std::uint64_t seed, i
                               {"signal", signal},
                               {"processor_class", processor_class()},
                               {"sentence", result.sentence}};
-  if (auto done = write_text_file(folder / "task.json", json.dump(1) + "\n"); !done) return forward_error(done.error());
+  if (auto done = write_text_file(folder / "task.json", dump_json(json, 1) + "\n"); !done)
+    return forward_error(done.error());
   std::error_code failure;
   fs::rename(folder, path_ / task.key, failure);
   if (failure) {

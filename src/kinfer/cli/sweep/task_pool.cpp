@@ -12,18 +12,18 @@
 #include <exception>
 
 #include "kinfer/cli/parts/common.hpp"
+#include "kinfer/cli/parts/process.hpp"
 #include "kinfer/cli/parts/program.hpp"
 
 namespace kinfer::cli {
 namespace {
 
-/// The program in a process of its own; what it throws is an internal error, as in main.
+/// The program in a process of its own; what it throws ends it as in main.
 int run_task(const std::vector<std::string>& words) {
   try {
     return run_program(words);
-  } catch (const std::exception& failure) {
-    fmt::print(stderr, "kinfer: internal error: {}\n", failure.what());
-    return exit_internal;
+  } catch (const std::exception&) {
+    return code_of_exception();
   }
 }
 

@@ -24,11 +24,14 @@ class TrackOutput {
   Result<void> open(const std::filesystem::path& path);
   void add(const TrackState& state);
   void flush();
+  /// An error where not all rows could be written.
+  Result<void> close();
 
  private:
   TrackRowWriter writer_;
   RowFormat format_;
   std::FILE* file_ = nullptr;
+  std::string name_;
   std::string buffer_;
 };
 

@@ -95,7 +95,7 @@ Result<calibrate::HoldoutChoice> add_holdout(const std::string& text, const Robo
   double fraction = 0.0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), fraction);
   if (code == std::errc{} && end == text.data() + text.size()) {
-    if (fraction <= 0.0 || fraction >= 1.0)
+    if (!(fraction > 0.0 && fraction < 1.0))
       return error("--holdout {}: expected a fraction between 0 and 1, or a file", text);
     return calibrate::HeldOutFraction{fraction};
   }
@@ -166,8 +166,8 @@ Provenance provenance_of(const CalibrateArguments& options, const Inputs& inputs
   return provenance;
 }
 
-Result<void> write_results(const CalibrateArguments& options, const Inputs& inputs, const Calibration& calibration) {
-  const std::filesystem::path folder(options.out);
+Result<void> write_results(OutputFolder& folder, const CalibrateArguments& options, const Inputs& inputs,
+                           const Calibration& calibration) {
   for (const OutputFile& file : calibration_files(calibration, inputs.robot))
     if (auto done = write_text_file(folder / file.name, file.text); !done) return done;
   return write_evidence(folder, calibration_evidence(calibration, provenance_of(options, inputs)));
@@ -181,18 +181,19 @@ int run(const CalibrateArguments& options, const CLI::App& verb) {
   if (auto effective = check_offsets(was_given(verb, "--offsets"), inputs->robot); !effective)
     return fail(effective.error());
   for (const std::string& path : input_paths(options, *inputs)) record.add_input(path);
-  const auto folder = OutputFolder::make(options.out);
+  auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
   const Result<Calibration> calibration = [&] {
     ProgressLine progress(options.common);
     return calibrate::calibrate_robot(inputs->task, inputs->options, Rng(options.common.seed), progress.observer());
   }();
   if (!calibration) return fail(calibration.error());
-  if (auto done = write_results(options, *inputs, *calibration); !done) return fail(done.error());
+  if (auto done = write_results(*folder, options, *inputs, *calibration); !done) return fail(done.error());
   const auto offsets = options.offsets == "separate" ? EncoderOffsets::separate : EncoderOffsets::folded;
-  const auto patch = write_model_patch(options.out, inputs->robot, *calibration, offsets);
-  if (auto done = record.write(options.out); !done) return fail(done.error());
+  const auto patch = write_model_patch(*folder, inputs->robot, *calibration, offsets);
+  if (auto done = record.write(*folder); !done) return fail(done.error());
   if (auto done = write_task_summary(*calibration); !done) return fail(done.error());
+  if (auto done = folder->commit(); !done) return fail(done.error());
   const bool usable = calibration->usability != Usability::do_not_use;
   if (options.common.json)
     fmt::print("{}", format_calibration_headline(*calibration));

@@ -25,11 +25,12 @@ int print_completion(const CLI::App& app, const std::string& shell) {
 }
 
 int write_man_pages(const ProgramEntry& program, const std::string& out) {
-  const auto folder = OutputFolder::make(out);
+  auto folder = OutputFolder::make(out);
   if (!folder) return fail(folder.error());
   auto done = write_text_file(*folder / "kinfer.1", man_page(program, version));
   for (const VerbEntry& verb : program.verbs)
     if (done) done = write_text_file(*folder / ("kinfer-" + verb.name + ".1"), man_page(verb, version));
+  if (done) done = folder->commit();
   return done ? exit_done : fail(done.error());
 }
 

@@ -12,6 +12,7 @@
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/machine_from_chain.hpp"
 #include "kinfer/simulate/prescribed_motion.hpp"
@@ -77,7 +78,7 @@ void print_json(const std::vector<JointForecast>& joints, const ForecastArgument
                     {"acceleration_factor", f.acceleration_factor},
                     {"time_factor", f.time_factor}});
   const nlohmann::ordered_json all{{"verdict", words::forecast_text(joints, target_of(options))}, {"joints", list}};
-  fmt::print("{}\n", all.dump());
+  fmt::print("{}\n", dump_json(all));
 }
 
 int run(const ForecastArguments& options) {

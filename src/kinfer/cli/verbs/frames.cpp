@@ -40,7 +40,7 @@ std::string summary(const FrameEstimate& found) {
                     1e3 * found.base_differs, found.base_turned / degree, 1e3 * found.tool_differs);
 }
 
-Result<void> write_results(const OutputFolder& folder, RobotModel robot, const FrameEstimate& found) {
+Result<void> write_results(OutputFolder& folder, RobotModel robot, const FrameEstimate& found) {
   robot.chain = found.chain;
   if (auto done = write_text_file(folder / "chain.toml", format_robot_toml(robot)); !done) return done;
   return write_text_file(folder / "evidence.json", format_frames_evidence(frames_evidence(found)));
@@ -57,10 +57,11 @@ int run(const FramesArguments& options) {
   if (!data) return fail(data.error());
   const auto found = calibrate::estimate_frames_from_circles(robot->chain, *data);
   if (!found) return fail({options.data + ": " + found.error().what});
-  const auto folder = OutputFolder::make(options.out);
+  auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
   if (auto done = write_results(*folder, *robot, *found); !done) return fail(done.error());
-  if (auto done = record.write(options.out); !done) return fail(done.error());
+  if (auto done = record.write(*folder); !done) return fail(done.error());
+  if (auto done = folder->commit(); !done) return fail(done.error());
   if (options.common.json)
     fmt::print("{}", format_frames_evidence(frames_evidence(*found)));
   else if (!options.common.quiet)

@@ -167,10 +167,10 @@ Provenance provenance_of(const IdentifyArguments& options, const identify::Ident
   return {.inputs = fingerprints(inputs), .options = identify::describe(how), .seed = options.common.seed};
 }
 
-Result<void> write_results(const OutputFolder& folder, const Provenance& provenance, const Identification& found) {
+Result<void> write_results(OutputFolder& folder, const Provenance& provenance, const Identification& found) {
   for (const OutputFile& file : identification_files(found))
     if (auto done = write_text_file(folder / file.name, file.text); !done) return done;
-  return write_evidence(folder.path(), identification_evidence(found, provenance));
+  return write_evidence(folder, identification_evidence(found, provenance));
 }
 
 int run(const CLI::App& verb, const IdentifyArguments& options) {
@@ -182,7 +182,7 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   if (!how) return fail(how.error());
   const auto recording = read_ins_logs(options.logs, options.columns);
   if (!recording) return fail(recording.error());
-  const auto folder = OutputFolder::make(options.out);
+  auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
   const Result<Identification> found = [&] {
     ProgressLine progress(options.common);
@@ -190,8 +190,9 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   }();
   if (!found) return fail(found.error());
   if (auto done = write_results(*folder, provenance_of(options, *how), *found); !done) return fail(done.error());
-  if (auto done = record.write(options.out); !done) return fail(done.error());
+  if (auto done = record.write(*folder); !done) return fail(done.error());
   if (auto done = write_task_summary(*found); !done) return fail(done.error());
+  if (auto done = folder->commit(); !done) return fail(done.error());
   if (options.common.json)
     fmt::print("{}", format_identification_headline(*found));
   else if (!options.common.quiet)
@@ -246,7 +247,7 @@ Verb add_identify(CLI::App& app) {
            "Which sensors' segments share joints, as ins0-ins1,ins1-ins2 (default: as the log tells; what it tells "
            "against them is said)",
            Requirement::optional, "LINKS");
-  add_number(*verb, "--smoothing", options->smoothing,
+  add_number(*verb, "--smoothing", options->smoothing, 0.0, 10.0,
              "Standard deviation of the Gaussian on accelerations and rates [s]");
   begin_group(*verb, "Estimation");
   add_choice(*verb, "--geometry", options->geometry, {"refined", "searched"},

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "kinfer/cli/parts/output_folder.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/sweep/read_runs.hpp"
 #include "kinfer/cli/verb_list.hpp"
@@ -22,15 +23,15 @@ struct MergeArguments {
   bool quiet = false;
 };
 
-Result<void> write_fleet(const OutputFolder& folder, const Fleet& fleet) {
+Result<void> write_fleet(OutputFolder& folder, const Fleet& fleet) {
   for (const auto& [name, text] :
        {std::pair{"table.csv", format_fleet_table(fleet.rows)}, std::pair{"fleet.json", format_fleet(fleet)},
         std::pair{"report.html", report::report_html(fleet)}})
     if (auto done = write_text_file(folder / name, text); !done) return done;
+  if (fleet.population) return write_text_file(folder / "prior.json", format_population(*fleet.population));
   std::error_code ignored;
-  std::filesystem::remove(folder / "prior.json", ignored);  // of an earlier merge
-  return fleet.population ? write_text_file(folder / "prior.json", format_population(*fleet.population))
-                          : Result<void>{};
+  std::filesystem::remove(folder.visible("prior.json"), ignored);  // of an earlier merge
+  return {};
 }
 
 void print_fleet(const Fleet& fleet) {
@@ -52,10 +53,11 @@ int run(const MergeArguments& options) {
   auto rows = read_runs(options.runs);
   if (!rows) return fail(rows.error());
   read_information(*rows, fleet::rows_of_prior(*rows));
-  const auto folder = OutputFolder::make(options.out);
+  auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
   const Fleet fleet = fleet::merge_rows(std::move(*rows));
   if (auto done = write_fleet(*folder, fleet); !done) return fail(done.error());
+  if (auto done = folder->commit(); !done) return fail(done.error());
   if (!options.quiet) print_fleet(fleet);
   return exit_done;
 }

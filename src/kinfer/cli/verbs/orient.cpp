@@ -7,6 +7,7 @@
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/inertial/sensor_orientations.hpp"
 #include "kinfer/io/recording/orientation_csv.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer::cli {
@@ -73,7 +74,7 @@ int run(const OrientArguments& options) {
     for (const std::string& remark : recording->remarks) fmt::print(stderr, "kinfer: {}\n", remark);
   if (auto done = write_orientation_csv(options.out, *recording, *orientations); !done) return fail(done.error());
   if (options.common.json)
-    fmt::print("{}\n", as_json(options, *recording, *orientations).dump());
+    fmt::print("{}\n", dump_json(as_json(options, *recording, *orientations)));
   else if (!options.common.quiet)
     print_summary(options, *recording, *orientations);
   return exit_done;

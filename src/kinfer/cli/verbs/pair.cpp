@@ -101,7 +101,7 @@ Verb add_pair(CLI::App& app) {
   add_text(*verb, "--measured-columns", options->measured_columns, "How the tracker file's columns map to kinfer's",
            Requirement::optional, "TOML");
   add_choice(*verb, "--by", options->by, {"auto", "name", "time", "order"}, "What tells the partner of a rest");
-  add_number(*verb, "--offset", options->offset, options->has_offset,
+  add_number(*verb, "--offset", options->offset, options->has_offset, -1e10, 1e10,
              "By time: tracker's clock minus robot's, roughly [s]");
   add_text(*verb, "--out", options->out, "Pose set to write", Requirement::required, "CSV");
   add_quiet_option(*verb, options->quiet);

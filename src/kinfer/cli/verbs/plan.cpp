@@ -10,6 +10,7 @@
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/report/parts/plan_figure.hpp"
 #include "kinfer/words/calibration/checks.hpp"
@@ -131,7 +132,7 @@ std::string headline_json(const PosePlan& plan) {
       {"rows", plan.candidates},
       {"leave_out", plan.redundant_rows},
       {"travel_rad", plan.travel}};
-  return json.dump() + "\n";
+  return dump_json(json) + "\n";
 }
 
 /// An error for an option that was given but has no effect with --candidates: listed poses are not checked.
@@ -197,9 +198,10 @@ Verb add_plan(CLI::App& app) {
            Requirement::optional, "X,Y,Z");
   add_number(*verb, "--acceptance", options->acceptance_angle, 1.0, 180.0,
              "Largest angle between the tool's z axis and the instrument [deg]");
-  add_number(*verb, "--lowest", options->lowest.value, options->lowest.given,
+  add_number(*verb, "--lowest", options->lowest.value, options->lowest.given, -1e6, 1e6,
              "Tool and joints stay above this height over the base [mm]");
-  add_number(*verb, "--clearance", options->clearance, "Tool stays further than this from the base axis [mm]");
+  add_number(*verb, "--clearance", options->clearance, 0.0, 1e6,
+             "Tool stays further than this from the base axis [mm]");
   add_number(*verb, "--spacing", options->spacing, 0.0, 90.0,
              "Some joint differs by more than this between any two poses [deg]");
   add_common_options(*verb, options->common);

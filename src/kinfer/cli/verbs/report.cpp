@@ -32,18 +32,18 @@ int run(const ReportArguments& options) {
 
 }  // namespace
 
-Result<void> write_evidence(const std::filesystem::path& folder, const CalibrationEvidence& evidence) {
+Result<void> write_evidence(OutputFolder& folder, const CalibrationEvidence& evidence) {
   if (auto done = write_text_file(folder / "evidence.json", format_calibration_evidence(evidence)); !done) return done;
   return write_text_file(folder / "report.html", report::report_html(evidence));
 }
 
-Result<void> write_evidence(const std::filesystem::path& folder, const IdentificationEvidence& evidence) {
+Result<void> write_evidence(OutputFolder& folder, const IdentificationEvidence& evidence) {
   if (auto done = write_text_file(folder / "evidence.json", format_identification_evidence(evidence)); !done)
     return done;
   return write_text_file(folder / "report.html", report::report_html(evidence));
 }
 
-Result<void> write_evidence(const std::filesystem::path& folder, const TrackRun& run) {
+Result<void> write_evidence(OutputFolder& folder, const TrackRun& run) {
   if (auto done = write_text_file(folder / "evidence.json", format_track_run(run)); !done) return done;
   return write_text_file(folder / "report.html", report::report_html(run));
 }

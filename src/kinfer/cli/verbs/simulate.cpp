@@ -12,6 +12,7 @@
 #include "kinfer/cli/options/simulated_faults.hpp"
 #include "kinfer/cli/parts/simulation_files.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/simulate/compliant_mounts.hpp"
 #include "kinfer/simulate/four_bar_linkage.hpp"
@@ -80,7 +81,7 @@ void print_summary(const SimulateArguments& options, const Machine& machine, con
     const nlohmann::ordered_json headline{
         {"machine", options.machine}, {"joints", joints},   {"sensors", machine.sensors.size()},
         {"rows", motion.time.size()}, {"seconds", seconds}, {"grade", options.grade}};
-    fmt::print("{}\n", headline.dump());
+    fmt::print("{}\n", dump_json(headline));
   } else if (!options.common.quiet) {
     fmt::print(
         "{}: {} joints, {} sensors of grade {}, {:.1f} s at {} Hz in {}:\n"
@@ -120,7 +121,8 @@ Result<void> simulate(const SimulateArguments& options) {
        {std::pair{"imu.csv", imu_csv(recording)}, std::pair{"motion.csv", motion_csv(machine, motion)},
         std::pair{"truth.json", truth_json(record, drive, machine, truth)}, std::pair{"machine.xml", mjcf}})
     if (auto done = write_text_file(folder / name, text); !done) return done;
-  if (auto done = run_record.write(folder.path()); !done) return done;
+  if (auto done = run_record.write(folder); !done) return done;
+  if (auto done = folder.commit(); !done) return done;
   print_summary(options, machine, motion);
   return {};
 }

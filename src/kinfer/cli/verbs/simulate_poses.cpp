@@ -63,13 +63,14 @@ int run(const SimulatePosesArguments& options) {
   RobotModel nominal = *robot, true_robot = *robot;
   nominal.instrument = true_robot.instrument = simulation.instrument;
   true_robot.chain = with_small_rotations_folded(*truth);
-  const auto folder = OutputFolder::make(options.out);
+  auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
   for (const auto& [name, text] :
        {std::pair{"poses.csv", format_pose_set_csv(*set, robot->chain, FileUnits::mm_deg)},
         std::pair{"robot.toml", format_robot_toml(nominal)}, std::pair{"truth.toml", format_robot_toml(true_robot)}})
     if (auto done = write_text_file(*folder / name, text); !done) return fail(done.error());
-  if (auto done = record.write(folder->path()); !done) return fail(done.error());
+  if (auto done = record.write(*folder); !done) return fail(done.error());
+  if (auto done = folder->commit(); !done) return fail(done.error());
   if (!options.common.quiet)
     fmt::print("{} poses of {} in {}: poses.csv (measured), robot.toml (nominal), truth.toml (what made the data)\n",
                set->rows(), robot->chain.name.empty() ? "the robot" : robot->chain.name, options.out);
@@ -89,14 +90,15 @@ Verb add_simulate_poses(CLI::App& app) {
            "[errors] name = value by parameter name (default: drawn from the tolerances)", Requirement::optional,
            "TOML");
   add_choice(*verb, "--measured", options->measured, {"position", "pose"}, "What the instrument measures");
-  add_number(*verb, "--sigma", options->sigma.value, options->sigma.given,
+  add_number(*verb, "--sigma", options->sigma.value, options->sigma.given, 0.0, 1000.0,
              "Noise of the positions, one sigma per axis [mm] (default: the robot file's, or 0.01)");
-  add_number(*verb, "--sigma-angle", options->sigma_angle.value, options->sigma_angle.given,
+  add_number(*verb, "--sigma-angle", options->sigma_angle.value, options->sigma_angle.given, 0.0, 90.0,
              "Noise of the orientations, one sigma per axis [deg]");
-  add_number(*verb, "--ppm", options->ppm.value, options->ppm.given, "Plus this much of the distance [um/m]");
-  add_number(*verb, "--lowest", options->lowest.value, options->lowest.given,
+  add_number(*verb, "--ppm", options->ppm.value, options->ppm.given, 0.0, 1e5, "Plus this much of the distance [um/m]");
+  add_number(*verb, "--lowest", options->lowest.value, options->lowest.given, -1e6, 1e6,
              "Tool stays above this height over the base [mm]");
-  add_number(*verb, "--clearance", options->clearance, "Tool stays further than this from the base axis [mm]");
+  add_number(*verb, "--clearance", options->clearance, 0.0, 1e6,
+             "Tool stays further than this from the base axis [mm]");
   add_number(
       *verb, "--shake", options->shake, 0.0, 1.0,
       "The instrument's stand turns by this much about each axis between poses [deg]; the file has the covariance "

@@ -89,10 +89,11 @@ Result<TrackRun> track_rows(const TrackArguments& options, const TrackedChain& m
   return run;
 }
 
-int finish(const TrackArguments& options, const RunRecord& record, const TrackRun& run) {
-  if (!options.out.empty()) {
-    if (auto done = write_evidence(options.out, run); !done) return fail(done.error());
-    if (auto done = record.write(options.out); !done) return fail(done.error());
+int finish(const TrackArguments& options, const RunRecord& record, const TrackRun& run, OutputFolder* folder) {
+  if (folder) {
+    if (auto done = write_evidence(*folder, run); !done) return fail(done.error());
+    if (auto done = record.write(*folder); !done) return fail(done.error());
+    if (auto done = folder->commit(); !done) return fail(done.error());
   }
   if (!options.common.quiet) {
     const std::string summary = track_summary(run);
@@ -122,7 +123,8 @@ int run(const TrackArguments& options) {
     auto made = OutputFolder::make(options.out);
     if (!made) return fail(made.error());
     folder.emplace(std::move(*made));
-    if (auto done = table.open(*folder / "track.csv"); !done) return fail(done.error());
+    if (auto done = table.open(options.follow ? folder->visible("track.csv") : *folder / "track.csv"); !done)
+      return fail(done.error());
     outputs.push_back(&table);
   }
   if (options.out.empty() || options.common.json) {
@@ -132,7 +134,8 @@ int run(const TrackArguments& options) {
   }
   const auto tracked = track_rows(options, *machine, *how, outputs);
   if (!tracked) return fail(tracked.error());
-  return finish(options, record, track_evidence(*tracked, provenance_of(options)));
+  if (auto done = table.close(); !done) return fail(done.error());
+  return finish(options, record, track_evidence(*tracked, provenance_of(options)), folder ? &*folder : nullptr);
 }
 
 }  // namespace

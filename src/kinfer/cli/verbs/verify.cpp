@@ -12,6 +12,7 @@
 #include "kinfer/deploy/verify.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/standard_deviations_toml.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/words/calibration/checks.hpp"
 
 namespace kinfer::cli {
@@ -33,7 +34,7 @@ void print(const Verification& v, const CommonOptions& common) {
                                       {"result", name(v.result)},
                                       {"as_it_stands", figures(v.unmodified)},
                                       {"frames_refitted", figures(v.frames_refitted)}};
-    fmt::print("{}\n", json.dump());
+    fmt::print("{}\n", dump_json(json));
   } else if (!common.quiet) {
     fmt::print("{}\n\n  as it stands            {}\n  base and tool refitted  {}\n", words::verdict(v),
                statistics_line(v.unmodified), statistics_line(v.frames_refitted));
@@ -67,7 +68,7 @@ void print(const CalibrationComparison& changes, const CommonOptions& common) {
                                       {"tool_rms", changes.tool_rms},
                                       {"tool_worst", changes.tool_worst},
                                       {"parameters", list}};
-    fmt::print("{}\n", json.dump());
+    fmt::print("{}\n", dump_json(json));
     return;
   }
   if (common.quiet) return;

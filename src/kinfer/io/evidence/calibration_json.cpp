@@ -2,6 +2,7 @@
 #include "kinfer/io/evidence/calibration_json.hpp"
 
 #include "kinfer/io/evidence/json/calibration_fields.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/words/calibration/calibration.hpp"
 
 namespace kinfer {
@@ -53,7 +54,7 @@ nlohmann::ordered_json calibration_json(const CalibrationEvidence& evidence) {
 }
 
 std::string format_calibration_evidence(const CalibrationEvidence& evidence) {
-  return calibration_json(evidence).dump(1) + "\n";
+  return dump_json(calibration_json(evidence), 1) + "\n";
 }
 
 Result<CalibrationEvidence> read_calibration_evidence(std::string_view text) {
@@ -70,7 +71,7 @@ std::string format_calibration_headline(const Calibration& c) {
   a("outliers", c.estimate.outliers.size());
   a("model", selected_model(c.model_selection));
   a("predicted_error", c.estimate.predicted_error);
-  return a.json().dump() + "\n";
+  return dump_json(a.json()) + "\n";
 }
 
 }  // namespace kinfer

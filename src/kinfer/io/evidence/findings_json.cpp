@@ -3,11 +3,12 @@
 
 #include "kinfer/io/evidence/json/shared_fields.hpp"
 #include "kinfer/io/evidence/make_records.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 
 namespace kinfer {
 
 std::string format_findings(const std::vector<Finding>& findings) {
-  return evidence_json::JsonWriter::json_of(finding_records(findings)).dump(1);
+  return dump_json(evidence_json::JsonWriter::json_of(finding_records(findings)), 1);
 }
 
 }  // namespace kinfer

@@ -3,6 +3,7 @@
 
 #include "kinfer/geometry/rotation.hpp"
 #include "kinfer/io/evidence/json/shared_fields.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/words/calibration/frames.hpp"
 
 namespace kinfer {
@@ -80,7 +81,7 @@ FramesEvidence frames_evidence(const FrameEstimate& estimate) {
 }
 
 std::string format_frames_evidence(const FramesEvidence& evidence) {
-  return evidence_json::JsonWriter::object_of(evidence).dump(1) + "\n";
+  return dump_json(evidence_json::JsonWriter::object_of(evidence), 1) + "\n";
 }
 
 Result<FramesEvidence> read_frames_evidence(std::string_view text) {

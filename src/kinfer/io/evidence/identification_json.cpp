@@ -3,6 +3,7 @@
 
 #include "kinfer/io/evidence/json/identification_fields.hpp"
 #include "kinfer/io/evidence/json/motion_fields.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 
 namespace kinfer {
 namespace evidence_json {
@@ -38,7 +39,7 @@ nlohmann::ordered_json identification_json(const IdentificationEvidence& evidenc
 }
 
 std::string format_identification_evidence(const IdentificationEvidence& evidence) {
-  return identification_json(evidence).dump(1) + "\n";
+  return dump_json(identification_json(evidence), 1) + "\n";
 }
 
 Result<IdentificationEvidence> read_identification_evidence(std::string_view text) {
@@ -54,7 +55,7 @@ std::string format_identification_headline(const Identification& identification)
   a("joints", e.joints);
   a("links", e.links);
   a("fit", e.fit);
-  return a.json().dump() + "\n";
+  return dump_json(a.json()) + "\n";
 }
 
 }  // namespace kinfer

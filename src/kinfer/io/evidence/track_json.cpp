@@ -3,6 +3,7 @@
 
 #include "kinfer/io/evidence/json/shared_fields.hpp"
 #include "kinfer/io/evidence/make_records.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/words/tracking/track_run.hpp"
 
 namespace kinfer {
@@ -82,7 +83,7 @@ TrackRun track_evidence(const TrackRun& run, const Provenance& provenance) {
 }
 
 std::string format_track_run(const TrackRun& run) {
-  return evidence_json::JsonWriter::object_of(run).dump(1) + "\n";
+  return dump_json(evidence_json::JsonWriter::object_of(run), 1) + "\n";
 }
 
 Result<TrackRun> read_track_run(std::string_view text) {

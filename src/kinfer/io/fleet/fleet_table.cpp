@@ -9,18 +9,10 @@
 #include <set>
 #include <unordered_map>
 
-#include "kinfer/io/text/replace_all.hpp"
+#include "kinfer/io/text/csv_text.hpp"
 
 namespace kinfer {
 namespace {
-
-std::string table_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = text;
-  replace_all(quoted, "\"", "\"\"");
-  replace_all(quoted, "\n", " ");
-  return "\"" + quoted + "\"";
-}
 
 std::string number_cell(double value) {
   return std::isfinite(value) ? fmt::format("{:.10g}", value) : std::string();
@@ -71,11 +63,11 @@ std::string format_fleet_table(const std::vector<FleetRow>& rows) {
   text += "\n";
   for (const FleetRow& row : rows) {
     const bool is_done = row.state == TaskState::done;
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", row.key, table_cell(row.robot), table_cell(row.date),
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", row.key, csv_cell(row.robot), csv_cell(row.date),
                         row.verb, name(row.state), is_done ? std::to_string(row.exit_code) : std::string(),
                         row.summary.usability ? name(*row.summary.usability) : std::string_view(), row.summary.reason,
                         row.deviation > 0.0 ? fmt::format("{:.3g}", row.deviation) : std::string(), row.most_deviant,
-                        findings_cell(row.summary.findings), table_cell(row.sentence));
+                        findings_cell(row.summary.findings), csv_cell(row.sentence));
     const auto values = column_values(row, columns);
     for (std::size_t i = 0; i < columns.size(); ++i) {
       text += "," + number_cell(values[i].value);

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "kinfer/io/text/csv_text.hpp"
+#include "kinfer/io/text/possible_range.hpp"
+
 namespace kinfer {
 
 bool VectorColumns::measured(std::size_t row) const {
@@ -94,7 +97,11 @@ double PoseColumns::number(const Column& column, const Unit& unit, std::size_t r
   if (!value) report_error(row, describe_invalid_number(column.name, cell, table_.header.decimal));
   if (value && !std::isfinite(*value))
     report_error(row, fmt::format("column {}: expected a finite number, found \"{}\"", column.name, cell));
-  return value ? unit.factor * (*value + unit.offset) : 0.0;
+  const double si = value ? unit.factor * (*value + unit.offset) : 0.0;
+  if (std::isfinite(si))
+    if (const auto what = impossible(si, possible_range(unit.dimension)))
+      report_error(row, fmt::format("column {}: {}", column.name, *what));
+  return si;
 }
 
 std::optional<NumberColumn> PoseColumns::numbers(std::string_view name, Dimension dimension) {
@@ -144,7 +151,7 @@ std::optional<std::vector<std::string>> PoseColumns::texts(std::string_view name
   const Column* column = take(name);
   if (!column) return std::nullopt;
   std::vector<std::string> cells(rows());
-  for (std::size_t row = 0; row < rows(); ++row) cells[row] = table_.cell(row, column->index);
+  for (std::size_t row = 0; row < rows(); ++row) cells[row] = without_formula_guard(table_.cell(row, column->index));
   return cells;
 }
 

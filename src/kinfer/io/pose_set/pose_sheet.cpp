@@ -6,20 +6,10 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/expect.hpp"
+#include "kinfer/io/text/csv_text.hpp"
 #include "kinfer/io/text/format_number.hpp"
 
 namespace kinfer {
-namespace {
-
-std::string quoted_where_needed(const std::string& text) {
-  if (text.find_first_of(",\"#") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
-}
-
-}  // namespace
-
 PoseSheet::PoseSheet(std::size_t rows, FileUnits units) : rows_(rows), in_mm_(units == FileUnits::mm_deg) {}
 
 double PoseSheet::angle() const {
@@ -58,7 +48,7 @@ template <class CellOf>
 void PoseSheet::write_line(std::string& text, CellOf cell_of) const {
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     if (i > 0) text += ',';
-    text += quoted_where_needed(cell_of(columns_[i]));
+    text += csv_cell(cell_of(columns_[i]));
   }
   text += '\n';
 }

@@ -6,6 +6,9 @@
 #include <fstream>
 #include <iterator>
 
+#include "kinfer/base/temporary_paths.hpp"
+#include "kinfer/io/text/csv_text.hpp"
+
 namespace kinfer {
 namespace {
 
@@ -13,7 +16,7 @@ std::string header(const InsRecording& recording, const std::vector<SensorOrient
   std::string text = "t";
   for (const SensorOrientations& o : orientations)
     for (const char* part : {"qw", "qx", "qy", "qz"})
-      text += fmt::format(",{}_{}", recording.sensors[o.sensor].name, part);
+      text += "," + csv_cell(fmt::format("{}_{}", recording.sensors[o.sensor].name, part));
   return text + "\n";
 }
 
@@ -54,6 +57,7 @@ Result<void> write_orientation_csv(const std::filesystem::path& path, const InsR
                                    const std::vector<SensorOrientations>& orientations) {
   std::filesystem::path unfinished = path;
   unfinished += ".unfinished";
+  const TemporaryPath until_renamed(unfinished);
   std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
   if (!file)
     return error("{}: the file cannot be written; does the folder exist, and may you write there?", path.string());

@@ -11,6 +11,7 @@
 #include "kinfer/io/recording/ins_columns.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
 #include "kinfer/io/recording/ins_topics.hpp"
+#include "kinfer/io/recording/possible_times.hpp"
 #include "kinfer/io/robot_log/message_log_formats.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
@@ -66,6 +67,7 @@ Result<InsRecording> read_recording(std::span<const std::filesystem::path> paths
     if (!done) return forward_error(done.error());
   }
   if (auto done = append_foreign_logs(std::move(foreign), recording); !done) return forward_error(done.error());
+  if (auto checked = check_times(recording); !checked) return forward_error(checked.error());
   return recording;
 }
 
@@ -79,6 +81,7 @@ Result<InsRecording> read_mapped_recording(std::span<const std::filesystem::path
   }
   InsRecording recording;
   if (auto done = append_foreign_logs(std::move(logs), recording); !done) return forward_error(done.error());
+  if (auto checked = check_times(recording); !checked) return forward_error(checked.error());
   return recording;
 }
 

@@ -7,6 +7,7 @@
 #include "kinfer/io/robot/joint_transforms.hpp"
 #include "kinfer/io/robot/mjcf.hpp"
 #include "kinfer/io/robot/xml_list.hpp"
+#include "kinfer/io/robot/xml_names.hpp"
 #include "kinfer/io/text/format_number.hpp"
 
 namespace kinfer {
@@ -139,7 +140,8 @@ class MjcfWriter {
 }  // namespace
 
 std::string format_mjcf(const Chain& chain) {
-  return MjcfWriter(chain).write();
+  const Chain named = with_xml_names(chain);
+  return MjcfWriter(named).write();
 }
 
 }  // namespace kinfer

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/io/robot/possible_chain.hpp"
 #include "kinfer/io/robot/prediction_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
@@ -216,6 +217,7 @@ std::vector<Joint> read_joints(TableReader& file, Convention convention, const S
     joints[i].parent = read_parent(readers[i], static_cast<int>(i), joints);
     joints[i].couplings = read_couplings(readers[i], joints, first_error);
     readers[i].expect_no_other_keys();
+    if (const auto what = impossible_number(joints[i])) readers[i].report_error(rows[i].second, *what);
   }
   return joints;
 }
@@ -454,6 +456,7 @@ Result<RobotModel> parse_robot_toml(std::string_view text, const std::string& na
   robot.prediction = read_prediction(file, dof(chain), first_error);
   file.expect_no_other_keys();
   if (first_error.any()) return forward_error(first_error.as_error());
+  if (const auto what = impossible_model(chain)) return error("{}: {}", name, *what);
   return robot;
 }
 

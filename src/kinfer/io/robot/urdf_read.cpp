@@ -9,8 +9,10 @@
 #include <mutex>
 #include <set>
 
+#include "kinfer/io/robot/possible_chain.hpp"
 #include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/io/robot/urdf_tree.hpp"
+#include "kinfer/io/robot/xml_names.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
@@ -106,7 +108,10 @@ class ChainBuilder {
       add_coupling(j);  // may add further joints
     if (first_error_.empty() && dof(chain_) == 0)
       first_error_ = "no joint between the base link and the tip link moves";
+    if (first_error_.empty()) first_error_ = impossible_model(chain_).value_or("");
     if (!first_error_.empty()) return error("{}: {}", file_, first_error_);
+    chain_.name = name_from_xml(chain_.name);
+    for (Joint& joint : chain_.joints) joint.name = name_from_xml(joint.name);
     return std::move(chain_);
   }
 

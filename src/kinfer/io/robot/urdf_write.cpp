@@ -7,6 +7,7 @@
 #include "kinfer/io/robot/joint_transforms.hpp"
 #include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/io/robot/xml_list.hpp"
+#include "kinfer/io/robot/xml_names.hpp"
 #include "kinfer/io/text/format_number.hpp"
 
 namespace kinfer {
@@ -166,7 +167,8 @@ class UrdfWriter {
 }  // namespace
 
 std::string format_urdf(const Chain& chain) {
-  return UrdfWriter(chain).write();
+  const Chain named = with_xml_names(chain);
+  return UrdfWriter(named).write();
 }
 
 }  // namespace kinfer

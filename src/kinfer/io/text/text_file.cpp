@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/text/text_file.hpp"
 
+#include <cerrno>
 #include <fstream>
 #include <system_error>
+
+#include "kinfer/base/temporary_paths.hpp"
 
 namespace kinfer {
 namespace {
@@ -12,6 +15,7 @@ namespace fs = std::filesystem;
 constexpr const char* unfinished_suffix = ".unfinished";
 
 bool write_bytes(const fs::path& path, std::string_view text) {
+  errno = 0;
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   file.write(text.data(), static_cast<std::streamsize>(text.size()));
   file.close();
@@ -51,8 +55,11 @@ Result<void> write_text_file(const fs::path& path, std::string_view text) {
   if (fs::is_directory(path, failure)) return error("{}: expected a file to write, found a folder", path.string());
   fs::path unfinished = path;
   unfinished += unfinished_suffix;
+  const TemporaryPath until_renamed(unfinished);
   if (!write_bytes(unfinished, text)) {
+    const bool is_full = errno == ENOSPC || errno == EDQUOT;
     remove_quietly(unfinished);
+    if (is_full) return error("{}: the file cannot be written: the disk is full", path.string());
     return error("{}: the file cannot be written; does the folder exist, and may you write there?", path.string());
   }
   fs::rename(unfinished, path, failure);

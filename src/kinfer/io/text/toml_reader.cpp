@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/io/text/possible_range.hpp"
+
 namespace kinfer {
 namespace {
 
@@ -91,6 +93,9 @@ double TableReader::finite(const TomlValue& value, std::string_view key) const {
   const double* number = std::get_if<double>(&value.value);
   if (!number) wrong_type(value, key, "a number");
   if (number && !std::isfinite(*number)) report_error(value.line, fmt::format("\"{}\": expected a finite number", key));
+  if (number && std::isfinite(*number))
+    if (const auto what = impossible(*number, possible::number))
+      report_error(value.line, fmt::format("\"{}\": {}", key, *what));
   return number && std::isfinite(*number) ? *number : 0.0;
 }
 

@@ -5,8 +5,11 @@
 
 #include <cmath>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/io/text/csv_text.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 
 namespace kinfer {
 namespace {
@@ -65,7 +68,7 @@ std::string TrackRowWriter::header() const {
   std::string text = "t[s]";
   for (const auto& [name, per] : {std::pair{"q", ""}, std::pair{"qd", "/s"}, std::pair{"sd_q", ""}})
     for (std::size_t k = 0; k < positions_.size(); ++k)
-      text += fmt::format(",{}_{}[{}{}]", name, positions_[k], unit_[k] == 1e-3 ? "mm" : "deg", per);
+      text += "," + csv_cell(fmt::format("{}_{}[{}{}]", name, positions_[k], unit_[k] == 1e-3 ? "mm" : "deg", per));
   text +=
       ",tool_x[mm],tool_y[mm],tool_z[mm],tool_qw,tool_qx,tool_qy,tool_qz,sd_tool_x[mm],sd_tool_y[mm],sd_tool_z[mm],"
       "sd_tool_rx[deg],sd_tool_ry[deg],sd_tool_rz[deg],base_qw,base_qx,base_qy,base_qz,sd_base_rx[deg],"
@@ -102,7 +105,7 @@ void TrackRowWriter::append_csv(const TrackState& state, std::string& out) {
     append_all(tool.position, 1e-3, is_known);
     append_all(upper_half(Quat(tool.rotation)), 1.0, is_known);
   }
-  out += ',' + alarm_cell(state) + '\n';
+  out += ',' + csv_cell(alarm_cell(state)) + '\n';
 }
 
 std::string TrackRowWriter::alarm_cell(const TrackState& state) const {
@@ -135,7 +138,7 @@ void TrackRowWriter::append_json(const TrackState& state, std::string& out) {
   }
   append_json_list(out, "base_quat", upper_half(state.world_q_base));
   append_json_list(out, "sd_base", state.sd_base);
-  out += ",\"alarm\":\"" + alarm_cell(state) + "\"}\n";
+  out += ",\"alarm\":" + dump_json(nlohmann::json(alarm_cell(state))) + "}\n";
 }
 
 }  // namespace kinfer

@@ -40,7 +40,7 @@ std::vector<double> inlier_errors(const CalibrationEvidence& evidence, double Ro
 std::vector<double> counts(const std::vector<double>& values, double high, std::size_t bins) {
   std::vector<double> count(bins, 0.0);
   for (const double v : values)
-    if (std::isfinite(v))
+    if (std::isfinite(v) && high > 0.0)
       count[static_cast<std::size_t>(
           std::clamp(v / high * static_cast<double>(bins), 0.0, static_cast<double>(bins - 1)))] += 1;
   return count;

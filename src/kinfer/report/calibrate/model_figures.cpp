@@ -19,7 +19,7 @@ struct HeatScale {
   double low = 0.0, high = 1.0;  ///< [mm]
 
   int class_of(double value) const {
-    if (!(high > low)) return 0;
+    if (!(high > low) || !std::isfinite(value)) return 0;
     return static_cast<int>(std::clamp((value - low) / (high - low) * classes, 0.0, classes - 1.0));
   }
   double lower_limit(int k) const { return low + (high - low) * k / classes; }

@@ -7,6 +7,7 @@
 
 #include "kinfer/io/evidence/calibration_json.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/report/parts/packed.hpp"
 
 namespace kinfer::report {
@@ -43,7 +44,7 @@ std::string script_data(const CalibrationEvidence& evidence) {
   part["rows"] = {{"before", rounded_errors(evidence.rows, &RowErrors::before)},
                   {"after", rounded_errors(evidence.rows, &RowErrors::after)},
                   {"held_out", held_out}};
-  return part.dump();
+  return dump_json(part);
 }
 
 std::string script_data(const IdentificationEvidence& evidence) {
@@ -55,7 +56,7 @@ std::string script_data(const IdentificationEvidence& evidence) {
     traces[i]["predicted"] = packed_signal(trace.predicted);
     traces[i]["residual"] = packed_signal(trace.residual);
   }
-  return part.dump();
+  return dump_json(part);
 }
 
 std::string escape_for_script(std::string_view json) {

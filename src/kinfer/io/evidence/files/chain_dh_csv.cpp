@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "kinfer/evidence/identification/unobservable_limit.hpp"
+#include "kinfer/io/text/csv_text.hpp"
 
 namespace kinfer {
 
@@ -29,7 +30,7 @@ std::string format_chain_dh_csv(const std::vector<DhRowEstimate>& rows) {
     const auto& [row, sd] = std::tie(found.row, found.sd);
     const DhCells theta = dh_cells(row.theta, sd.theta), d = dh_cells(row.d, sd.d), a = dh_cells(row.a, sd.a),
                   alpha = dh_cells(row.alpha, sd.alpha), beta = dh_cells(row.beta, sd.beta);
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", found.segment, theta.value, d.value, a.value,
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(found.segment), theta.value, d.value, a.value,
                         alpha.value, found.variable(), theta.sd, d.sd, a.sd, alpha.sd, beta.value, beta.sd);
   }
   return text;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kinfer/io/robot/patch/calibrated_origins.hpp"
+#include "kinfer/io/text/csv_text.hpp"
 #include "kinfer/io/text/format_number.hpp"
 #include "kinfer/kinematics/forward.hpp"
 
@@ -58,7 +59,7 @@ std::string format_dh_table_csv(const Chain& chain) {
   for (const Joint& joint : chain.joints)
     if (const DhNumbers* row = dh_numbers(joint))
       text +=
-          fmt::format("{},{},{},{},{},{},{},{}\n", joint.name, traits(joint.type).name,
+          fmt::format("{},{},{},{},{},{},{},{}\n", csv_cell(joint.name), traits(joint.type).name,
                       format_number(row->theta, degree), format_number(row->d, mm), format_number(row->a, mm),
                       format_number(row->alpha, degree), format_number(row->beta, degree), format_number(joint.gain));
   return text;
@@ -74,9 +75,9 @@ std::string format_joint_twists_csv(const Chain& chain) {
     const AxisLine& line = lines[i++];
     const Vec3 w = line.is_prismatic ? Vec3::Zero().eval() : line.direction;
     const Vec3 v = line.is_prismatic ? (mm * line.direction).eval() : line.point.cross(line.direction).eval();
-    text += fmt::format("{},{},{},{},{},{},{},{}\n", joint.name, traits(joint.type).name, format_number(w.x()),
-                        format_number(w.y()), format_number(w.z()), format_number(v.x(), mm), format_number(v.y(), mm),
-                        format_number(v.z(), mm));
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_cell(joint.name), traits(joint.type).name,
+                        format_number(w.x()), format_number(w.y()), format_number(w.z()), format_number(v.x(), mm),
+                        format_number(v.y(), mm), format_number(v.z(), mm));
   }
   return text;
 }
@@ -89,19 +90,20 @@ std::string format_encoder_offsets_csv(const Chain& nominal, const Estimate& est
     const Offset offset =
         dh_numbers(before) ? dh_offset(estimate, before, after, j) : urdf_offset(estimate, before, after, j);
     const bool is_prismatic = translates(before.type);
-    text += fmt::format("{},{},{},{},{}\n", before.name, format_number(offset.value, is_prismatic ? mm : degree),
-                        format_number(offset.sd, is_prismatic ? mm : degree), is_prismatic ? "mm" : "deg",
-                        offset.identifiable ? "yes" : "no");
+    text +=
+        fmt::format("{},{},{},{},{}\n", csv_cell(before.name), format_number(offset.value, is_prismatic ? mm : degree),
+                    format_number(offset.sd, is_prismatic ? mm : degree), is_prismatic ? "mm" : "deg",
+                    offset.identifiable ? "yes" : "no");
   }
   return text;
 }
 
 std::string format_covariance_csv(const Estimate& estimate) {
   std::string text = "parameter";
-  for (const ParameterEstimate& p : estimate.values) text += "," + p.name;
+  for (const ParameterEstimate& p : estimate.values) text += "," + csv_cell(p.name);
   text += "\n";
   for (Eigen::Index i = 0; i < estimate.covariance.rows(); ++i) {
-    text += estimate.values[i].name;
+    text += csv_cell(estimate.values[i].name);
     for (Eigen::Index k = 0; k < estimate.covariance.cols(); ++k)
       text += "," + format_number(estimate.covariance(i, k));
     text += "\n";

@@ -11,6 +11,7 @@
 #include "kinfer/io/robot/patch/placement_toml.hpp"
 #include "kinfer/io/robot/patch/urdf_patch.hpp"
 #include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/text/csv_text.hpp"
 #include "kinfer/io/text/format_number.hpp"
 #include "kinfer/kinematics/forward.hpp"
 
@@ -98,8 +99,7 @@ Result<PatchedModel> patch_model(const RobotModel& robot, const Calibration& cal
 std::string format_model_changes_csv(const ModelPatch& patch) {
   std::string text = "joint,line,dx[mm],dy[mm],dz[mm],rx[deg],ry[deg],rz[deg],offset,unit\n";
   for (const OriginChange& change : patch.changes) {
-    const bool quoted = change.joint.find_first_of(",\"\n") != std::string::npos;
-    text += fmt::format("{},{}", quoted ? '"' + change.joint + '"' : change.joint, change.line);
+    text += fmt::format("{},{}", csv_cell(change.joint), change.line);
     for (const double x : change.translation) text += "," + format_number(x, millimetre);
     for (const double x : change.rotation_vector) text += "," + format_number(x, degree);
     text += fmt::format(",{},{}\n", format_number(change.offset, change.translates ? millimetre : degree),

@@ -6,6 +6,8 @@
 namespace kinfer::evidence_json {
 namespace {
 
+constexpr double largest_number = 1e100;  // no result comes near; squares and sums of it stay finite
+
 FactValue fact_list(const Json& json) {
   const auto all = [&](auto is_kind) { return !json.empty() && std::ranges::all_of(json, is_kind); };
   if (all([](const Json& j) { return j.is_string(); })) return json.get<std::vector<std::string>>();
@@ -71,6 +73,7 @@ void JsonReader::read_value(const Json& json, const JsonPath& path, bool& value)
 void JsonReader::read_value(const Json& json, const JsonPath& path, double& value) {
   if (!json.is_number() && !json.is_null()) return errors_.add(path, "expected a number");
   value = json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+  if (std::abs(value) > largest_number) errors_.add(path, "expected a number of a machine, found one beyond 1e100");
 }
 
 void JsonReader::read_value(const Json& json, const JsonPath& path, std::string& value) {

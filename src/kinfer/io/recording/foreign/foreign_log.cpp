@@ -120,7 +120,8 @@ std::string sensor_name(const std::filesystem::path& path, const InsMap& map, co
   const auto has = [&](std::size_t instrument) {
     return std::ranges::any_of(columns.channels, [&](const LogColumn& c) { return c.instrument == instrument; });
   };
-  const std::string folder = std::filesystem::absolute(path).parent_path().filename().string();
+  std::error_code ignored;
+  const std::string folder = std::filesystem::absolute(path, ignored).parent_path().filename().string();
   const bool by_folder = map.sensor == "folder" || (map.sensor.empty() && !(has(0) && has(1)));
   std::string name = by_folder ? folder : map.sensor.empty() ? path.stem().string() : map.sensor;
   for (char& c : name)

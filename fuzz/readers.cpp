@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/readers.hpp"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "kinfer/base/expect.hpp"
+#include "kinfer/io/evidence/evidence_file.hpp"
+#include "kinfer/io/fleet/manifest.hpp"
+#include "kinfer/io/motion/reach_targets_csv.hpp"
+#include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/recording/foreign/foreign_log.hpp"
+#include "kinfer/io/recording/foreign/ins_map.hpp"
+#include "kinfer/io/recording/ins_csv.hpp"
+#include "kinfer/io/recording/ins_topics.hpp"
+#include "kinfer/io/recording/machine_facts_toml.hpp"
+#include "kinfer/io/recording/sensor_grade_toml.hpp"
+#include "kinfer/io/robot/mjcf.hpp"
+#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot_log/message_log_formats.hpp"
+#include "kinfer/io/tracking/tracking_model_toml.hpp"
+#include "kinfer/report/report.hpp"
+#include "kinfer/search/swarm/mlp.hpp"
+
+namespace kinfer::fuzz {
+namespace {
+
+constexpr const char* name = "input";
+
+/// Two joints, so that pose sets have columns to be read into.
+const Chain& two_joints() {
+  static const Chain chain = [] {
+    Chain made;
+    for (int j = 0; j < 2; ++j)
+      made.joints.push_back(Joint{.name = j == 0 ? "shoulder" : "elbow", .parent = j - 1, .link = MdhLink{}});
+    made.fixtures.anchors = {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0)};
+    return made;
+  }();
+  return chain;
+}
+
+void read_robot(const std::string& bytes) {
+  const auto robot = parse_robot_toml(bytes, name);
+  if (!robot) return;
+  const auto again = parse_robot_toml(format_robot_toml(*robot), name);
+  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+  format_mjcf(robot->chain);
+}
+
+void read_urdf_text(const std::string& bytes) {
+  const auto chain = parse_urdf(bytes, name);
+  if (!chain) return;
+  const auto again = parse_urdf(format_urdf(*chain), name);
+  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+}
+
+void read_poses(const std::string& bytes) {
+  const auto set = parse_pose_set(bytes, name, two_joints(), {});
+  if (!set) return;
+  const auto again = parse_pose_set(format_pose_set_csv(*set, two_joints(), FileUnits::mm_deg), name, two_joints(), {});
+  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+}
+
+void read_foreign(const std::string& bytes) {
+  static_cast<void>(parse_foreign_log(bytes, name, {}));
+}
+
+void read_grade(const std::string& bytes) {
+  const auto grade = parse_sensor_grade(bytes, name);
+  if (grade) static_cast<void>(parse_sensor_grade(format_sensor_grade(*grade), name));
+}
+
+/// Message logs are read from files; this one is in memory.
+void read_log(const std::string& bytes) {
+  const int file = ::memfd_create("log", 0);
+  if (file < 0) return;
+  const bool is_written = ::write(file, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size());
+  if (is_written && is_message_log(bytes)) {
+    InsRecording recording;
+    static_cast<void>(append_all_ins_topics("/proc/self/fd/" + std::to_string(file), recording));
+  }
+  ::close(file);
+}
+
+constexpr std::array table{
+    Reader{"ins_csv", [](const std::string& bytes) { static_cast<void>(parse_ins_csv(bytes, name)); }},
+    Reader{"ins_map", [](const std::string& bytes) { static_cast<void>(parse_ins_map(bytes, name)); }},
+    Reader{"foreign_log", read_foreign},
+    Reader{"message_log", read_log},
+    Reader{"facts", [](const std::string& bytes) { static_cast<void>(parse_machine_facts(bytes, name)); }},
+    Reader{"grade", read_grade},
+    Reader{"poses", read_poses},
+    Reader{"column_map", [](const std::string& bytes) { static_cast<void>(parse_column_map(bytes, name)); }},
+    Reader{"targets",
+           [](const std::string& bytes) { static_cast<void>(parse_reach_targets(bytes, name, two_joints(), {})); }},
+    Reader{"robot_toml", read_robot},
+    Reader{"urdf", read_urdf_text},
+    Reader{"tracking_model", [](const std::string& bytes) { static_cast<void>(parse_tracking_model(bytes, name)); }},
+    Reader{"evidence", [](const std::string& bytes) { static_cast<void>(report::report_of_file(bytes)); }},
+    Reader{"manifest", [](const std::string& bytes) { static_cast<void>(parse_manifest(bytes, name)); }},
+    Reader{"net", [](const std::string& bytes) { static_cast<void>(parse_mlp(bytes, name)); }},
+};
+
+}  // namespace
+
+std::span<const Reader> readers() {
+  return table;
+}
+
+const Reader* find_reader(std::string_view wanted) {
+  const auto found = std::ranges::find(table, wanted, &Reader::name);
+  return found == table.end() ? nullptr : &*found;
+}
+
+}  // namespace kinfer::fuzz

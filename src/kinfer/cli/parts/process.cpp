@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/parts/process.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <string_view>
+
+#include "kinfer/base/temporary_paths.hpp"
+#include "kinfer/cli/parts/common.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+char out_of_time[160] = "";  // written before the timer starts: a signal handler can print it, but not make it
+
+void say(std::string_view text) {
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
+}
+
+void end_interrupted(int signal) {
+  remove_temporary_paths();
+  ::_exit(128 + signal);
+}
+
+void end_out_of_time(int) {
+  say(std::string_view(out_of_time));
+  remove_temporary_paths();
+  ::_exit(exit_bad_input);
+}
+
+void on(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  sigfillset(&action.sa_mask);
+  ::sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+void prepare_process() {
+  for (int descriptor = ::open("/dev/null", O_RDWR); descriptor >= 0; descriptor = ::dup(descriptor))
+    if (descriptor > STDERR_FILENO) {
+      ::close(descriptor);
+      break;
+    }
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
+    struct sigaction before {};
+    ::sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) on(signal, end_interrupted);  // nohup, or a shell's background job
+  }
+}
+
+void limit_memory([[maybe_unused]] double gigabytes) {
+#if !defined(__SANITIZE_ADDRESS__)
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+  return;  // it reserves terabytes of addresses
+#endif
+#endif
+  if (!(gigabytes > 0.0)) return;
+  rlimit bounds{};
+  ::getrlimit(RLIMIT_DATA, &bounds);
+  bounds.rlim_cur = std::min(bounds.rlim_max, static_cast<rlim_t>(gigabytes * 1e9));
+  ::setrlimit(RLIMIT_DATA, &bounds);
+#endif
+}
+
+int code_of_exception() {
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+    say("kinfer: this input takes more memory than the limit; --limit-memory 32 allows 32 GB, 0 any\n");
+    return exit_bad_input;
+  } catch (const std::filesystem::filesystem_error& failure) {
+    fmt::print(stderr, "kinfer: \"{}\": {}\n", failure.path1().string(), failure.code().message());
+    return exit_bad_input;
+  } catch (const std::exception& failure) {
+    if (!flush_standard_output()) return exit_bad_input;
+    fmt::print(stderr, "kinfer: internal error: {}\n", failure.what());
+    return exit_internal;
+  }
+}
+
+void limit_time(double seconds) {
+  const auto end = fmt::format_to_n(out_of_time, sizeof(out_of_time) - 1,
+                                    "kinfer: not done after {:g} s, nothing was written; --limit-time {:g} gives it "
+                                    "ten times as long, 0 any time\n",
+                                    seconds, 10.0 * seconds);
+  *end.out = '\0';
+  on(SIGALRM, end_out_of_time);
+  const double whole = std::floor(seconds);
+  const itimerval timer{.it_interval = {},
+                        .it_value = {static_cast<time_t>(whole), static_cast<suseconds_t>(1e6 * (seconds - whole))}};
+  ::setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
+bool flush_standard_output() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
+  fmt::print(stderr, "kinfer: standard output cannot be written; is the disk full?\n");
+  return false;
+}
+
+}  // namespace kinfer::cli

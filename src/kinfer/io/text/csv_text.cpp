@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/text/csv_text.hpp"
+
+#include <algorithm>
+
+#include "kinfer/io/text/csv.hpp"
+
+namespace kinfer {
+namespace {
+
+constexpr std::string_view formula_marks = "=+-@";
+
+bool begins_formula(std::string_view text) {
+  return !text.empty() && formula_marks.find(text.front()) != std::string_view::npos && !parse_number(text);
+}
+
+}  // namespace
+
+std::string csv_cell(std::string_view text) {
+  std::string cell = begins_formula(text) ? "'" : "";
+  cell += text;
+  std::ranges::replace_if(
+      cell, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, ' ');
+  const bool is_plain = cell.find_first_of(",;\"#") == std::string::npos && trim(cell).size() == cell.size();
+  if (is_plain) return cell;
+  std::string quoted = "\"";
+  for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string_view without_formula_guard(std::string_view cell) {
+  return cell.size() > 1 && cell.front() == '\'' && begins_formula(cell.substr(1)) ? cell.substr(1) : cell;
+}
+
+}  // namespace kinfer

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// What kinfer promises of every run: typed ranges, all or nothing, one run a folder, sentences for what the system
+// denies.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <sys/file.h>
+#include <sys/mount.h>
+
+#include "cli/program.hpp"
+
+namespace kinfer::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class Trust : public Program {
+ protected:
+  std::string poses(const std::string& out, const std::string& more = "") const {
+    return "simulate-poses --robot " + source("examples/robot6/robot.toml") + " --poses 5 --out " + out + " " + more;
+  }
+  std::vector<std::string> hidden() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_))
+      if (entry.path().filename().string().find("kinfer-") != std::string::npos ||
+          entry.path().extension() == ".unfinished")
+        names.push_back(entry.path().string());
+    return names;
+  }
+};
+
+TEST_F(Trust, NumbersOutsideOfTheirRangeAreRefusedByTheParser) {
+  for (const std::string arguments :
+       {"simulate crane --out o --rate nan", "simulate crane --out o --slope inf",
+        "identify a.csv --out o --smoothing nan", "calibrate --robot r --data d --out o --method pso --box-length inf",
+        "simulate-poses --robot r --out o --sigma -1", "plan --robot r --out o --clearance 1e300",
+        "--limit-time nan man"}) {
+    const Outcome run = kinfer(arguments);
+    EXPECT_EQ(run.code, 2) << arguments;
+    EXPECT_THAT(run.err, HasSubstr("expected a number from")) << arguments;
+  }
+}
+
+TEST_F(Trust, HoldoutIsAFraction) {
+  simulate();
+  for (const std::string value : {"nan", "inf", "0", "1", "-0.5"})
+    EXPECT_EQ(kinfer("calibrate --robot data/robot.toml --data data/poses.csv --out c --holdout " + value).code, 2);
+}
+
+TEST_F(Trust, OtherFilesInTheFolderStay) {
+  fs::create_directories(in("out"));
+  write(in("out/notes.txt"), "mine");
+  ASSERT_EQ(kinfer(poses("out")).code, 0);
+  ASSERT_EQ(kinfer(poses("out", "--seed 2")).code, 0);
+  EXPECT_EQ(slurp(in("out/notes.txt")), "mine");
+  EXPECT_TRUE(fs::exists(in("out/poses.csv")));
+  EXPECT_THAT(hidden(), ::testing::IsEmpty());
+}
+
+TEST_F(Trust, TheCurrentFolderAndFoldersWithFoldersTakeResults) {
+  fs::create_directories(in("out/sub"));
+  write(in("out/sub/file"), "mine");
+  ASSERT_EQ(kinfer(poses(".")).code, 0);
+  ASSERT_EQ(kinfer(poses("out")).code, 0);
+  EXPECT_EQ(slurp(in("out/sub/file")), "mine");
+  EXPECT_TRUE(fs::exists(in("poses.csv")) && fs::exists(in("out/poses.csv")));
+  EXPECT_THAT(hidden(), ::testing::IsEmpty());
+}
+
+TEST_F(Trust, AnOutputFolderMayBeALinkButNotAFile) {
+  fs::create_directories(in("real"));
+  fs::create_directory_symlink(in("real"), in("link"));
+  ASSERT_EQ(kinfer(poses("link")).code, 0);
+  EXPECT_TRUE(fs::is_symlink(in("link")) && fs::exists(in("real/poses.csv")));
+  write(in("file"), "mine");
+  EXPECT_EQ(kinfer(poses("file")).code, 2);
+  EXPECT_EQ(slurp(in("file")), "mine");
+}
+
+TEST_F(Trust, ASecondRunIntoOneFolderIsRefused) {
+  fs::create_directories(in("out"));
+  const int lock = ::open(in("out").c_str(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(::flock(lock, LOCK_EX), 0);
+  const Outcome run = kinfer(poses("out"));
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("another run"));
+  ::close(lock);
+  EXPECT_EQ(kinfer(poses("out")).code, 0);
+}
+
+TEST_F(Trust, WhatAKilledRunLeftIsRemovedByTheNext) {
+  fs::create_directories(in(".out.kinfer-1"));
+  write(in(".out.kinfer-1/poses.csv"), "half");
+  ASSERT_EQ(kinfer(poses("out")).code, 0);
+  EXPECT_THAT(hidden(), ::testing::IsEmpty());
+}
+
+TEST_F(Trust, AFullDiskIsASentence) {
+  EXPECT_EQ(std::system(("'" KINFER_PROGRAM "' man calibrate > /dev/full 2> " + in("err").string()).c_str()) >> 8, 2);
+  EXPECT_THAT(slurp(in("err")), HasSubstr("standard output cannot be written"));
+  fs::create_directories(in("small"));
+  if (::mount("none", in("small").c_str(), "tmpfs", 0, "size=16k") != 0) GTEST_SKIP() << "needs root";
+  const Outcome run = kinfer(poses("small/out", "--poses 200"));
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("the disk is full"));
+  EXPECT_TRUE(fs::is_empty(in("small")));
+  ::umount(in("small").c_str());
+}
+
+TEST_F(Trust, ClosedStandardStreamsDoNoHarm) {
+  EXPECT_EQ(
+      std::system(("cd " + folder_.string() + " && '" KINFER_PROGRAM "' " + poses("out") + " >&- 2>&- <&-").c_str()),
+      0);
+  EXPECT_THAT(slurp(in("out/poses.csv")), ::testing::StartsWith("q1"));
+}
+
+TEST_F(Trust, AnInterruptEndsAtOnceAndLeavesNothing) {
+  const std::string command = "cd " + folder_.string() +
+                              " && timeout -s INT 0.3 '" KINFER_PROGRAM
+                              "' simulate crane --duration 600 --rate 2000 --out out; echo $? > code";
+  ASSERT_EQ(std::system(("bash -c \"" + command + "\" > /dev/null 2>&1").c_str()), 0);
+  EXPECT_FALSE(fs::exists(in("out")));
+  EXPECT_THAT(hidden(), ::testing::IsEmpty());
+}
+
+TEST_F(Trust, TimeAndMemoryHaveLimits) {
+  const Outcome late = kinfer("--limit-time 0.2 simulate crane --duration 600 --rate 2000 --out out");
+  EXPECT_EQ(late.code, 2);
+  EXPECT_THAT(late.err, HasSubstr("--limit-time"));
+  EXPECT_FALSE(fs::exists(in("out")));
+  EXPECT_THAT(kinfer("--limit-time 20 man").err, Not(HasSubstr("--limit-time")));
+}
+
+}  // namespace
+}  // namespace kinfer::test

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/io/recording/possible_times.hpp"
+
+#include <gmock/gmock.h>
+
+namespace kinfer {
+namespace {
+
+InsRecording recording(double period, std::size_t rows) {
+  InsRecording all;
+  all.loggers.push_back({.name = "imu.csv", .time = {}});
+  for (std::size_t i = 0; i < rows; ++i) all.loggers.front().time.push_back(period * static_cast<double>(i));
+  return all;
+}
+
+TEST(PossibleTimes, MillisecondsReadAsSecondsAreRefused) {
+  EXPECT_TRUE(check_times(recording(0.005, 1000)));
+  const auto checked = check_times(recording(5.0, 1000));
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().what, ::testing::HasSubstr("t[ms]"));
+}
+
+TEST(PossibleTimes, OneRowYearsLaterIsRefused) {
+  InsRecording log = recording(0.01, 1000);
+  log.loggers.front().time.push_back(1e9);
+  EXPECT_FALSE(check_times(log));
+}
+
+TEST(PossibleTimes, AGapOfAnHourIsNone) {
+  InsRecording log = recording(0.01, 1000);
+  for (double& time : log.loggers.front().time) time += time > 5.0 ? 3600.0 : 0.0;
+  EXPECT_TRUE(check_times(log));
+}
+
+}  // namespace
+}  // namespace kinfer
