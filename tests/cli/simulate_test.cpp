@@ -58,8 +58,8 @@ TEST_F(Simulate, ImpossibleOptionsAreRefusedInOneSentenceAndNothingIsWritten) {
       {"simulate tree --grade lab",
        "lab: no such sensor grade; known are perfect, noise, industrial, consumer, or a file"},
       {"simulate tree --excitation wild", "wild not in {gentle,quick,sequential,standard,together,vigorous}"},
-      {"simulate tree --rate 5", "5 not in range"},
-      {"simulate tree --missing 1.5", "1.5 not in range"},
+      {"simulate tree --rate 5", "from 20 to 2000, found \"5\""},
+      {"simulate tree --missing 1.5", "from 0 to 0.9, found \"1.5\""},
       {"simulate excavator --linkage --motion soft", "--motion soft: has no effect with --linkage"}};
   for (const auto& [arguments, sentence] : cases) {
     const Outcome run = kinfer(std::string(arguments) + " --out data");

@@ -100,7 +100,8 @@ TEST_F(Trust, AFullDiskIsASentence) {
   EXPECT_THAT(slurp(in("err")), HasSubstr("standard output cannot be written"));
   fs::create_directories(in("small"));
   if (::mount("none", in("small").c_str(), "tmpfs", 0, "size=16k") != 0) GTEST_SKIP() << "needs root";
-  const Outcome run = kinfer(poses("small/out", "--poses 200"));
+  const Outcome run =
+      kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") + " --poses 500 --out small/out");
   EXPECT_EQ(run.code, 2);
   EXPECT_THAT(run.err, HasSubstr("the disk is full"));
   EXPECT_TRUE(fs::is_empty(in("small")));

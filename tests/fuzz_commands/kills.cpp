@@ -61,7 +61,8 @@ int count_mixtures(const fs::path& program, const fs::path& material, std::uint6
     const bool ended = run.code == 0 || run.code == 1;
     const bool left_behind =
         interrupt && std::any_of(fs::directory_iterator(material), fs::directory_iterator(), is_staging);
-    const bool wrong_code = interrupt && !ended && run.code != 128 + SIGINT;
+    // In its first milliseconds, before the program is in charge, the system ends it by the signal itself.
+    const bool wrong_code = interrupt && !ended && run.code != 128 + SIGINT && run.signal != SIGINT;
     if ((!is_new && !is_old) || (ended && !is_new) || left_behind || wrong_code) {
       ++mixtures;
       fmt::print("kill {} after {:.4f} s: exit code {}, signal {}: {}{}\n", i, moment, run.code, run.signal,

@@ -94,8 +94,10 @@ Result<PoseSet> simulate_pose_set(const Chain& truth, const PoseSimulation& simu
     int tries = 0;
     do {
       if (++tries > patience)
-        return error("none of {} random poses keeps the tool above {} m and {} m away from the base axis", patience,
-                     simulation.space.lowest, simulation.space.clearance);
+        return error(
+            "none of {} random poses keeps the tool {}{} m away from the base axis", patience,
+            std::isfinite(simulation.space.lowest) ? fmt::format("above {} m and ", simulation.space.lowest) : "",
+            simulation.space.clearance);
       q = draw_joints(truth, moving, draws);
       pose = evaluator.pose(q);
     } while (!in_space(truth, pose.position, simulation.space));
