@@ -51,8 +51,8 @@ std::string bodies(const Chain& chain, int parent) {
     xml += "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
     if (has_position(joint.type)) {
       const Line line = joint_line(joint, rest);
-      xml += fmt::format("<joint name='{}' type='{}' axis='{}' pos='{}'/>", j,
-                         rotates(joint.type) ? "hinge" : "slide", text(line.axis), text(line.point));
+      xml += fmt::format("<joint name='{}' type='{}' axis='{}' pos='{}'/>", j, rotates(joint.type) ? "hinge" : "slide",
+                         text(line.axis), text(line.point));
     }
     xml += bodies(chain, j) + "</body>";
   }

@@ -68,8 +68,7 @@ inline Mat4 slow_frame(const Frame& frame) {
 
 inline Mat4 slow_link(const UrdfLink& link, JointType type, double moved) {
   Mat4 motion = Mat4::Identity();
-  if (rotates(type))
-    motion.topLeftCorner<3, 3>() = Eigen::AngleAxisd(moved, link.axis).toRotationMatrix();
+  if (rotates(type)) motion.topLeftCorner<3, 3>() = Eigen::AngleAxisd(moved, link.axis).toRotationMatrix();
   if (translates(type)) motion.topRightCorner<3, 1>() = moved * link.axis;
   return slow_frame(link.origin) * motion;
 }

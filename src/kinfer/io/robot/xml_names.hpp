@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of a chain in XML files (URDF, MJCF), which cannot hold control characters or bytes that are no UTF-8: these are
-// written as _xHHHH_, as spreadsheets do (ECMA-376, part 1, 22.9.2.19), and come back on reading.
+// Names of a chain in XML files (URDF, MJCF), which cannot hold control characters or bytes that are no UTF-8: these
+// are written as _xHHHH_, as spreadsheets do (ECMA-376, part 1, 22.9.2.19), and come back on reading.
 #pragma once
 
 #include <string>
