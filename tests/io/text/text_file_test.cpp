@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/text/text_file.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+#include <array>
 
 namespace kinfer {
 namespace {
@@ -40,6 +44,27 @@ TEST_F(TextFile, PathsThatCannotBeWrittenAreErrors) {
   EXPECT_EQ(write_text_file(folder, "x").error().what, name + ": expected a file to write, found a folder");
   EXPECT_EQ(write_text_file(folder / "none/a.txt", "x").error().what,
             name + "/none/a.txt: the file cannot be written; does the folder exist, and may you write there?");
+}
+
+TEST_F(TextFile, LinksStayAndWhatTheyPointToIsReplaced) {
+  ASSERT_TRUE(write_text_file(folder / "target.txt", "before"));
+  fs::create_symlink("target.txt", folder / "link.txt");
+  ASSERT_TRUE(write_text_file(folder / "link.txt", "after"));
+  EXPECT_TRUE(fs::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(*read_text_file(folder / "target.txt"), "after");
+}
+
+TEST_F(TextFile, APipeIsWrittenAndNotReplaced) {
+  const fs::path pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDWR | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  EXPECT_TRUE(write_text_file(pipe, "rows"));
+  std::array<char, 8> bytes{};
+  EXPECT_EQ(::read(reader, bytes.data(), bytes.size()), 4);
+  EXPECT_STREQ(bytes.data(), "rows");
+  ::close(reader);
+  EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
 TEST_F(TextFile, AnOutputFolderIsMadeOrRefusedBeforeAnythingIsComputed) {

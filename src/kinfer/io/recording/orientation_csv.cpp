@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <iterator>
+#include <ostream>
 
-#include "kinfer/base/temporary_paths.hpp"
 #include "kinfer/io/text/csv_text.hpp"
+#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 namespace {
@@ -35,7 +35,7 @@ void add_row(fmt::memory_buffer& text, const InsRecording& recording, std::size_
   text.push_back('\n');
 }
 
-void write_rows(std::ofstream& file, const InsRecording& recording,
+void write_rows(std::ostream& file, const InsRecording& recording,
                 const std::vector<SensorOrientations>& orientations) {
   constexpr std::size_t flush_size = std::size_t{1} << 20;
   fmt::memory_buffer text;
@@ -55,21 +55,10 @@ void write_rows(std::ofstream& file, const InsRecording& recording,
 
 Result<void> write_orientation_csv(const std::filesystem::path& path, const InsRecording& recording,
                                    const std::vector<SensorOrientations>& orientations) {
-  std::filesystem::path unfinished = path;
-  unfinished += ".unfinished";
-  const TemporaryPath until_renamed(unfinished);
-  std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
-  if (!file)
-    return error("{}: the file cannot be written; does the folder exist, and may you write there?", path.string());
-  file << header(recording, orientations);
-  write_rows(file, recording, orientations);
-  file.close();
-  std::error_code failure;
-  if (!file.fail()) std::filesystem::rename(unfinished, path, failure);
-  if (!file.fail() && !failure) return {};
-  std::error_code ignored;
-  std::filesystem::remove(unfinished, ignored);
-  return error("{}: the file cannot be written (disk full, or a folder of that name?)", path.string());
+  return write_file(path, [&](std::ostream& file) {
+    file << header(recording, orientations);
+    write_rows(file, recording, orientations);
+  });
 }
 
 }  // namespace kinfer

@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <fstream>
+#include <optional>
 #include <system_error>
 
 #include "kinfer/base/temporary_paths.hpp"
@@ -14,10 +15,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* unfinished_suffix = ".unfinished";
 
-bool write_bytes(const fs::path& path, std::string_view text) {
+bool write_stream(const fs::path& path, const std::function<void(std::ostream&)>& write) {
   errno = 0;
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file.write(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file) write(file);
   file.close();
   return !file.fail();
 }
@@ -50,22 +51,33 @@ Result<std::string> read_text_file(const fs::path& path) {
   return text;
 }
 
-Result<void> write_text_file(const fs::path& path, std::string_view text) {
+Result<void> write_file(const fs::path& given, const std::function<void(std::ostream&)>& write) {
   std::error_code failure;
-  if (fs::is_directory(path, failure)) return error("{}: expected a file to write, found a folder", path.string());
+  const fs::file_status status = fs::status(given, failure);
+  if (fs::is_directory(status)) return error("{}: expected a file to write, found a folder", given.string());
+  // Through links, so that what they point to is replaced and not they; devices and pipes are written and not replaced.
+  const fs::path path = fs::exists(status) ? fs::canonical(given, failure) : given;
+  const bool is_replaced = !fs::exists(status) || fs::is_regular_file(status);
   fs::path unfinished = path;
-  unfinished += unfinished_suffix;
-  const TemporaryPath until_renamed(unfinished);
-  if (!write_bytes(unfinished, text)) {
+  if (is_replaced) unfinished += unfinished_suffix;
+  std::optional<TemporaryPath> until_renamed;
+  if (is_replaced) until_renamed.emplace(unfinished);
+  if (!write_stream(unfinished, write)) {
     const bool is_full = errno == ENOSPC || errno == EDQUOT;
-    remove_quietly(unfinished);
-    if (is_full) return error("{}: the file cannot be written: the disk is full", path.string());
-    return error("{}: the file cannot be written; does the folder exist, and may you write there?", path.string());
+    if (is_replaced) remove_quietly(unfinished);
+    if (is_full) return error("{}: the file cannot be written: the disk is full", given.string());
+    return error("{}: the file cannot be written; does the folder exist, and may you write there?", given.string());
   }
+  if (!is_replaced) return {};
   fs::rename(unfinished, path, failure);
   if (!failure) return {};
   remove_quietly(unfinished);
-  return error("{}: the file cannot be replaced ({})", path.string(), failure.message());
+  return error("{}: the file cannot be replaced ({})", given.string(), failure.message());
+}
+
+Result<void> write_text_file(const fs::path& path, std::string_view text) {
+  return write_file(path,
+                    [&](std::ostream& file) { file.write(text.data(), static_cast<std::streamsize>(text.size())); });
 }
 
 Result<void> create_writable_folder(const fs::path& folder) {
@@ -73,7 +85,7 @@ Result<void> create_writable_folder(const fs::path& folder) {
   fs::create_directories(folder, failure);
   if (!fs::is_directory(folder, failure)) return error("{}: the output folder cannot be created", folder.string());
   const fs::path probe = folder / (std::string("kinfer") + unfinished_suffix);
-  const bool writable = write_bytes(probe, "");
+  const bool writable = write_stream(probe, [](std::ostream&) {});
   remove_quietly(probe);
   if (!writable) return error("{}: the output folder is not writable", folder.string());
   return {};

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <iosfwd>
 #include <string>
 #include <string_view>
 
@@ -13,7 +15,9 @@ namespace kinfer {
 /// The file's bytes. A folder and a missing, unreadable or empty file are errors.
 Result<std::string> read_text_file(const std::filesystem::path& path);
 
-/// Writes to a temporary file beside `path` and renames it, so that a reader never sees a partial file.
+/// Writes to a temporary file beside `path` and renames it, so that a reader never sees a partial file. A link stays,
+/// and what it points to is replaced; a device or a pipe is written as it is.
+Result<void> write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 Result<void> write_text_file(const std::filesystem::path& path, std::string_view text);
 
 /// Creates the folder where it is absent and checks that it is writable with a probe file, which is removed.
