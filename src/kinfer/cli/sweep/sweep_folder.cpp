@@ -88,9 +88,9 @@ void remove_unfinished(const fs::path& path, const std::vector<SweepTask>& tasks
   for (const fs::path& folder : unfinished) fs::remove_all(folder, ignored);
 }
 
-/// Tasks of a sweep that was killed hold its lock until they have died too, some milliseconds later.
+/// Tasks of a sweep that was killed hold its lock until they have died too, some milliseconds later, under load seconds.
 bool take_lock(int file) {
-  constexpr int trials = 20;
+  constexpr int trials = 100;
   for (int i = 0; i < trials; ++i) {
     if (::flock(file, LOCK_EX | LOCK_NB) == 0) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
