@@ -16,7 +16,8 @@ TEST(CsvText, ACellThatASpreadsheetWouldRunIsHarmlessAndComesBack) {
     ASSERT_TRUE(table) << table.error().what;
     const std::string_view cell = table->cell(0, 0);
     EXPECT_EQ(std::string("=+-@").find(cell.front()), std::string::npos) << name;
-    if (name != " blank ") EXPECT_EQ(without_formula_guard(cell), name);  // cells are trimmed on reading
+    if (name == " blank ") continue;  // cells are trimmed on reading
+    EXPECT_EQ(without_formula_guard(cell), name);
   }
 }
 
