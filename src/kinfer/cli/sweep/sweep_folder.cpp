@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/cli/sweep/sweep_folder.hpp"
-#include "kinfer/io/text/dump_json.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -16,6 +15,7 @@
 #include <utility>
 
 #include "kinfer/base/instruction_set.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/io/text/replace_all.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
@@ -88,7 +88,8 @@ void remove_unfinished(const fs::path& path, const std::vector<SweepTask>& tasks
   for (const fs::path& folder : unfinished) fs::remove_all(folder, ignored);
 }
 
-/// Tasks of a sweep that was killed hold its lock until they have died too, some milliseconds later, under load seconds.
+/// Tasks of a sweep that was killed hold its lock until they have died too, some milliseconds later, under load
+/// seconds.
 bool take_lock(int file) {
   constexpr int trials = 100;
   for (int i = 0; i < trials; ++i) {
@@ -96,6 +97,39 @@ bool take_lock(int file) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   return false;
+}
+
+/// While it lives, other shards that begin wait: they all look at the manifest, and write it, one after the other. A
+/// file system without locks lets them pass.
+class FolderTurn {
+ public:
+  explicit FolderTurn(const fs::path& folder) : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (folder_ >= 0) ::flock(folder_, LOCK_EX);
+  }
+  ~FolderTurn() {
+    if (folder_ >= 0) ::close(folder_);
+  }
+  FolderTurn(const FolderTurn&) = delete;
+  FolderTurn& operator=(const FolderTurn&) = delete;
+
+ private:
+  int folder_;
+};
+
+/// With rows that an earlier manifest had and this one has not, so that their results stay explained.
+Result<void> update_manifest(const fs::path& file, const std::vector<SweepTask>& tasks) {
+  std::vector<SweepTask> all = tasks;
+  std::string present;
+  if (fs::exists(file)) {
+    KINFER_TRY(was, read_manifest(file));
+    KINFER_TRY(text, read_text_file(file));
+    present = std::move(text);
+    const TasksByKey now = by_key(tasks);
+    for (SweepTask& task : was)
+      if (!now.contains(task.key)) all.push_back(std::move(task));
+  }
+  const std::string text = format_manifest(all);
+  return text == present ? Result<void>() : write_text_file(file, text);
 }
 
 /// Writes "{out}" for the folder under which the task ran: its name is of one run.
@@ -130,6 +164,9 @@ Result<Shard> parse_shard(const std::string& text) {
 
 Result<SweepFolder> SweepFolder::open(const fs::path& path, const std::vector<SweepTask>& tasks, const Shard& shard,
                                       bool may_resume) {
+  std::error_code failure;
+  fs::create_directories(path, failure);
+  const FolderTurn turn(path);
   if (auto ready = create_writable_folder(path); !ready) return forward_error(ready.error());
   if (auto checked = check_manifest(path, tasks, may_resume); !checked) return forward_error(checked.error());
   const std::string name = shard.parts == 1 ? ".lock" : fmt::format(".lock-{}-of-{}", shard.part, shard.parts);
@@ -138,16 +175,7 @@ Result<SweepFolder> SweepFolder::open(const fs::path& path, const std::vector<Sw
   if (lock < 0) return error("{}: cannot be locked", path.string());
   if (!take_lock(lock)) return error("{}: another sweep works in this folder", path.string());
   remove_unfinished(path, tasks, shard);
-  // With rows that an earlier manifest had and this one has not, so that their results stay explained.
-  std::vector<SweepTask> all = tasks;
-  if (fs::exists(path / "manifest.csv")) {
-    KINFER_TRY(was, read_manifest(path / "manifest.csv"));
-    const TasksByKey now = by_key(tasks);
-    for (SweepTask& task : was)
-      if (!now.contains(task.key)) all.push_back(std::move(task));
-  }
-  if (auto done = write_text_file(path / "manifest.csv", format_manifest(all)); !done)
-    return forward_error(done.error());
+  if (auto written = update_manifest(path / "manifest.csv", tasks); !written) return forward_error(written.error());
   return folder;
 }
 
