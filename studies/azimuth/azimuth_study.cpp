@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Azimuth of each limb about the fixed axis of the body that carries it: errors and coverage of its interval with sound
 // magnetometers, with iron and transients, and without magnetometers on a slope.
-//   study_azimuth [seeds [machine [setting ...]]]
+//   ./dev study azimuth [seeds [machine [setting ...]]]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,10 +13,11 @@
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
+#include "studies/studies.hpp"
 #include "studies/support/run_settings.hpp"
 #include "studies/support/truth_geometry.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::azimuth_study {
 using namespace identify;
 namespace {
 
@@ -109,9 +110,10 @@ void run(const std::string& machine, const Setting& setting, int seeds) {
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::azimuth_study
 
-int main(int argc, char** argv) {
-  using namespace kinfer::study;
+int kinfer::study::run_azimuth(int argc, char** argv) {
+  using namespace azimuth_study;
   run_settings(argc, argv, 10, settings(), [](const auto&... of) { run(of...); });
+  return 0;
 }

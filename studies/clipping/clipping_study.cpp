@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Identification of logs whose gyroscopes clip at half of the largest rate, or whose accelerometers clip at 1.3 g,
 // beside the same logs without clipping: worst line, findings and joint types that are wrong, time.
-//   study_clipping [seeds [machine [setting ...]]]
+//   ./dev study clipping [seeds [machine [setting ...]]]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,10 +13,11 @@
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
-#include "studies/identify/truth_scores.hpp"
+#include "studies/studies.hpp"
 #include "studies/support/run_settings.hpp"
+#include "studies/support/truth_scores.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::clipping_study {
 namespace {
 
 struct Setting {
@@ -96,9 +97,10 @@ void run(const std::string& machine, const Setting& setting, int seeds) {
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::clipping_study
 
-int main(int argc, char** argv) {
-  using namespace kinfer::study;
+int kinfer::study::run_clipping(int argc, char** argv) {
+  using namespace clipping_study;
   run_settings(argc, argv, 10, settings(), [](const auto&... of) { run(of...); });
+  return 0;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Do the standard deviations of `predict` hold? Share of points that were not fitted within the 95 % ellipsoids of
-// prediction and instrument: of random halves, and of halves of the joint space. `study_coverage simulated|real
+// prediction and instrument: of random halves, and of halves of the joint space. `./dev study coverage simulated|real
 // [KINFER_DATA]`
 #include <fmt/format.h>
 
@@ -13,11 +13,12 @@
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/measurement/split.hpp"
-#include "studies/robots/chains.hpp"
-#include "studies/robots/files.hpp"
+#include "studies/studies.hpp"
+#include "studies/support/chains.hpp"
+#include "studies/support/files.hpp"
 #include "support/robots.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::coverage_study {
 using namespace calibrate;
 namespace {
 
@@ -121,12 +122,13 @@ void real_robots(const std::string& folder) {
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::coverage_study
 
-int main(int argc, char** argv) {
+int kinfer::study::run_coverage(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "simulated";
   const char* data = argc > 2 ? argv[2] : std::getenv("KINFER_DATA");
   fmt::print("{:34} {:52} {}\n", "robot", "random halves", "halves of the joint space");
-  if (what == "simulated") kinfer::study::simulated_robots();
-  if (what == "real" && data) kinfer::study::real_robots(data);
+  if (what == "simulated") coverage_study::simulated_robots();
+  if (what == "real" && data) coverage_study::real_robots(data);
+  return 0;
 }

@@ -12,8 +12,9 @@
 #include "kinfer/io/recording/ins_csv.hpp"
 #include "kinfer/words/identification/verdict.hpp"
 #include "studies/diodem/optical_truth.hpp"
+#include "studies/studies.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::diodem_study {
 using namespace identify;
 namespace {
 
@@ -108,17 +109,18 @@ void run(const std::string& folder, const std::string& log, const std::string& r
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::diodem_study
 
-int main(int argc, char** argv) {
+int kinfer::study::run_diodem(int argc, char** argv) {
   if (argc != 2 && argc != 4) {
-    fmt::print("usage: study_diodem FOLDER [LOG ROOT]\n");
+    fmt::print("usage: ./dev study diodem FOLDER [LOG ROOT]\n");
     return 1;
   }
   if (argc == 4) {
-    kinfer::study::run(argv[1], argv[2], argv[3]);
+    diodem_study::run(argv[1], argv[2], argv[3]);
     return 0;
   }
   for (const char* log : {"rigid", "nonrigid"})
-    for (const char* root : {"seg5", "seg1"}) kinfer::study::run(argv[1], log, root);
+    for (const char* root : {"seg5", "seg1"}) diodem_study::run(argv[1], log, root);
+  return 0;
 }

@@ -2,7 +2,7 @@
 // What the population of a fleet is worth as a prior: robots of a series with 6, 10 and 20 measured poses, their error
 // at 500 other poses with and without it; and whether robots that are foreign to the series are noticed.
 //
-//   study_fleet
+//   ./dev study fleet
 //
 // A series is 20 robots, measured at 15 to 60 poses. Series "alike": a common error of one tolerance in every joint
 // parameter, and own ones of 0.3. Series "as toleranced": own errors of one tolerance, nothing in common: the prior
@@ -22,8 +22,9 @@
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/simulate/pose_set.hpp"
+#include "studies/studies.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::fleet_study {
 using namespace calibrate;
 namespace {
 
@@ -136,8 +137,8 @@ int run() {
   return 0;
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::fleet_study
 
-int main() {
-  return kinfer::study::run();
+int kinfer::study::run_fleet(int, char**) {
+  return fleet_study::run();
 }

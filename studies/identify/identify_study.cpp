@@ -16,9 +16,10 @@
 #include "kinfer/simulate/compliant_mounts.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
-#include "studies/identify/truth_scores.hpp"
+#include "studies/studies.hpp"
+#include "studies/support/truth_scores.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::identify_study {
 using namespace identify;
 namespace {
 
@@ -183,11 +184,11 @@ void run_log(const std::string& path, const std::string& root, const std::vector
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::identify_study
 
-int main(int argc, char** argv) {
+int kinfer::study::run_identify(int argc, char** argv) {
   using namespace kinfer;
-  study::Setup setup;
+  identify_study::Setup setup;
   if (argc > 4 && std::string(argv[1]) == "log") {
     std::vector<EstimatedJointType> types;
     for (const char letter : std::string(argv[4]))
@@ -195,7 +196,7 @@ int main(int argc, char** argv) {
                       : letter == 'u' ? EstimatedJointType::universal
                       : letter == 'p' ? EstimatedJointType::prismatic
                                       : EstimatedJointType::revolute);
-    study::run_log(argv[2], argv[3], types, argc > 5 ? std::atof(argv[5]) : 0.0);
+    identify_study::run_log(argv[2], argv[3], types, argc > 5 ? std::atof(argv[5]) : 0.0);
     return 0;
   }
   if (argc > 1) setup.machine = argv[1];
@@ -225,5 +226,6 @@ int main(int argc, char** argv) {
     if (word == "rocking") setup.base = Base::rocking;
     if (word == "yawing") setup.base = Base::yawing;
   }
-  study::run(setup);
+  identify_study::run(setup);
+  return 0;
 }

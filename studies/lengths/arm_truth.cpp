@@ -10,7 +10,7 @@
 #include "kinfer/io/text/csv.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::lengths_study {
 namespace {
 
 constexpr double quarter = std::numbers::pi / 2.0, half = std::numbers::pi;
@@ -150,4 +150,4 @@ std::optional<AxialLength> axial_length(const Identification& found, const std::
                                                        largest(out->sd.point_in_parent))};
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::lengths_study

@@ -10,7 +10,7 @@
 #include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::lengths_study {
 
 /// sensor_R_link of the links 1 to 6, in the order of `sensors` (names of links 1 to 6): the rotation that maps the
 /// encoders' angular velocities to the gyroscope's best (Wahba 1965). Link 1 turns about one axis only, which leaves
@@ -36,4 +36,4 @@ struct AxialLength {
 std::optional<AxialLength> axial_length(const Identification& found, const std::vector<std::string>& sensors,
                                         int middle);
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::lengths_study

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lengths that users mean, with their intervals: from pin to pin on simulated machines (seeds x machines x grades), on
 // a real pendulum and along the axes of a real arm.
-//   study_lengths                             table of the simulated machines
-//   study_lengths MACHINE GRADE SEEDS [SCRIPT]  one of them
-//   study_lengths FOLDER                      pendulum_ins and kuka_iiwa_ins in this folder
+//   ./dev study lengths                             table of the simulated machines
+//   ./dev study lengths MACHINE GRADE SEEDS [SCRIPT]  one of them
+//   ./dev study lengths FOLDER                      pendulum_ins and kuka_iiwa_ins in this folder
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,8 +19,9 @@
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
 #include "studies/lengths/arm_truth.hpp"
+#include "studies/studies.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::lengths_study {
 using namespace identify;
 namespace {
 
@@ -147,18 +148,21 @@ Script script_named(const std::string& name) {
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::lengths_study
 
-int main(int argc, char** argv) {
+int kinfer::study::run_lengths(int argc, char** argv) {
   using namespace kinfer;
   if (argc == 2) {
-    study::run_measured(argv[1]);
+    lengths_study::run_measured(argv[1]);
     return 0;
   }
   if (argc > 3) {
-    study::run_simulated(argv[1], argv[2], std::atoi(argv[3]), study::script_named(argc > 4 ? argv[4] : "standard"));
+    lengths_study::run_simulated(argv[1], argv[2], std::atoi(argv[3]),
+                                 lengths_study::script_named(argc > 4 ? argv[4] : "standard"));
     return 0;
   }
   for (const char* machine : {"excavator", "excavator-general"})
-    for (const char* grade : {"noise", "industrial"}) study::run_simulated(machine, grade, 20, Script::standard);
+    for (const char* grade : {"noise", "industrial"})
+      lengths_study::run_simulated(machine, grade, 20, Script::standard);
+  return 0;
 }

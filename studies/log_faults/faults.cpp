@@ -12,7 +12,7 @@
 #include "kinfer/inertial/sensor_orientations.hpp"
 #include "kinfer/measurement/ins_screening.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::log_faults_study {
 namespace {
 
 using identify::transform;
@@ -195,4 +195,4 @@ const std::vector<LogFault>& log_faults() {
   return flagged;
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::log_faults_study

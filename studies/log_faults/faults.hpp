@@ -10,7 +10,7 @@
 #include "kinfer/evidence/facts/findings.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::log_faults_study {
 
 struct LogFault {
   std::string name;  ///< "rates in deg/s"
@@ -21,4 +21,4 @@ struct LogFault {
 
 const std::vector<LogFault>& log_faults();
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::log_faults_study

@@ -2,7 +2,7 @@
 // Faults of logs: how often each is named, with no other kind of finding beside it; false findings on sound logs;
 // findings on the logs that are given.
 //
-//   study_log_faults [--seeds 4] [--sound 400] [--first-seed 1] [--only FAULT] [--verbose] [LOG.csv ...]
+//   ./dev study log_faults [--seeds 4] [--sound 400] [--first-seed 1] [--only FAULT] [--verbose] [LOG.csv ...]
 //
 // Machines 1, 3, 5 with odd seeds and 2, 4 with even ones were looked at while thresholds were chosen; the others are
 // told apart ("other").
@@ -18,9 +18,10 @@
 #include "kinfer/simulate/mujoco_world.hpp"
 #include "kinfer/words/findings/findings.hpp"
 #include "studies/log_faults/faults.hpp"
-#include "studies/verdict/corpus.hpp"
+#include "studies/studies.hpp"
+#include "studies/support/corpus.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::log_faults_study {
 namespace {
 
 struct Options {
@@ -137,11 +138,12 @@ void study_files(const Options& options) {
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::log_faults_study
 
-int main(int argc, char** argv) {
-  const auto options = kinfer::study::options_of(argc, argv);
-  if (options.logs.empty()) kinfer::study::study_faults(options);
-  if (options.logs.empty()) kinfer::study::study_sound_logs(options);
-  kinfer::study::study_files(options);
+int kinfer::study::run_log_faults(int argc, char** argv) {
+  const auto options = log_faults_study::options_of(argc, argv);
+  if (options.logs.empty()) log_faults_study::study_faults(options);
+  if (options.logs.empty()) log_faults_study::study_sound_logs(options);
+  log_faults_study::study_files(options);
+  return 0;
 }

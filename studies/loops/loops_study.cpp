@@ -22,9 +22,10 @@
 #include "kinfer/simulate/four_bar_linkage.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
-#include "studies/identify/truth_scores.hpp"
+#include "studies/studies.hpp"
+#include "studies/support/truth_scores.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::loops_study {
 using namespace identify;
 namespace {
 
@@ -228,11 +229,12 @@ void with_loops(const std::filesystem::path& folder, int logs) {
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::loops_study
 
-int main(int argc, char** argv) {
+int kinfer::study::run_loops(int argc, char** argv) {
   const std::filesystem::path folder = argc > 1 ? argv[1] : "studies/loops/results";
   std::filesystem::create_directories(folder);
-  kinfer::study::with_loops(folder, argc > 3 ? std::atoi(argv[3]) : 40);
-  kinfer::study::without_loops(folder, argc > 2 ? std::atoi(argv[2]) : 600);
+  loops_study::with_loops(folder, argc > 3 ? std::atoi(argv[3]) : 40);
+  loops_study::without_loops(folder, argc > 2 ? std::atoi(argv[2]) : 600);
+  return 0;
 }

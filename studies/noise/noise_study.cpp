@@ -7,9 +7,10 @@
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/estimate/poses/bundle.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "studies/studies.hpp"
 #include "support/robots.hpp"
 
-int main() {
+int kinfer::study::run_noise(int, char**) {
   using namespace kinfer;
   using namespace kinfer::calibrate;
   Chain nominal = test::er20(0.125);
@@ -42,4 +43,5 @@ int main() {
                1e6 * f.max, 1e6 * f.expected_rms, ratios.back());
   }
   fmt::print("mean  {:>9.2f}  {:>46}  {:>15.3f}\n", 1e6 * mean(means), "", mean(ratios));
+  return 0;
 }

@@ -15,6 +15,7 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/inertial/filters/orientation.hpp"
 #include "kinfer/io/text/text_file.hpp"
+#include "studies/studies.hpp"
 #include "support/measured_trial.hpp"
 #include "support/orientation_error.hpp"
 
@@ -184,7 +185,7 @@ std::string figure(const std::vector<Trial>& trials, const std::vector<NamedFilt
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int kinfer::study::run_orientation(int argc, char** argv) {
   const char* data = std::getenv("KINFER_DATA");
   if (data == nullptr) {
     fmt::print(stderr,

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <limits>
 
-namespace kinfer::study {
+namespace kinfer::study::paper1_study {
 namespace {
 
 constexpr double width = 900.0, height = 260.0, left = 80.0, right = 170.0, top = 30.0, bottom = 45.0;
@@ -75,4 +75,4 @@ void write_svg(const std::filesystem::path& path, const std::vector<Chart>& char
   file << "</svg>\n";
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::paper1_study

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace kinfer::study {
+namespace kinfer::study::paper1_study {
 
 struct Line {
   std::string label;
@@ -25,4 +25,4 @@ struct Chart {
 /// Charts below each other.
 void write_svg(const std::filesystem::path& path, const std::vector<Chart>& charts);
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::paper1_study

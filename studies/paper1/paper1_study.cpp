@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Paper 1 (Péntek et al. 2021) end to end: simulate its excavator, identify it by bacterial programming, and write its
-// tables and figures beside the printed values. `study_paper1 [FOLDER] [SEEDS]`;
+// tables and figures beside the printed values. `./dev study paper1 [FOLDER] [SEEDS]`;
 // docs/development/methods/paper1.md reads them.
 #include <fmt/format.h>
 
@@ -16,8 +16,9 @@
 #include "kinfer/simulate/prescribed_motion.hpp"
 #include "studies/paper1/figures.hpp"
 #include "studies/paper1/truth_errors.hpp"
+#include "studies/studies.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::paper1_study {
 using namespace identify;
 namespace {
 
@@ -366,8 +367,9 @@ void run(const fs::path& folder, int seeds) {
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::paper1_study
 
-int main(int argc, char** argv) {
-  kinfer::study::run(argc > 1 ? argv[1] : "paper1", argc > 2 ? std::atoi(argv[2]) : 10);
+int kinfer::study::run_paper1(int argc, char** argv) {
+  paper1_study::run(argc > 1 ? argv[1] : "paper1", argc > 2 ? std::atoi(argv[2]) : 10);
+  return 0;
 }

@@ -6,7 +6,7 @@
 
 #include "studies/support/truth_geometry.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::paper1_study {
 
 GeometryErrors geometry_errors(const std::vector<JointEstimate>& estimates, const MachineTruth& truth) {
   GeometryErrors errors;
@@ -29,4 +29,4 @@ GeometryErrors geometry_errors(const std::vector<JointEstimate>& estimates, cons
   return errors;
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::paper1_study

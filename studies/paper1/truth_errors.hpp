@@ -5,7 +5,7 @@
 #include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::paper1_study {
 
 struct GeometryErrors {
   double line = 0.0;       ///< [m] worst distance of axis lines, over joints and both frames
@@ -16,4 +16,4 @@ struct GeometryErrors {
 /// A body with one fixed axis only is first rotated about it to the best fit of its outgoing axis.
 GeometryErrors geometry_errors(const std::vector<JointEstimate>& estimates, const MachineTruth& truth);
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::paper1_study

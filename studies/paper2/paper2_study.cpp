@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Paper 2 reproduced: its tables 1-8 and figures 6-15 on simulated data, with all methods compared.
 //
-//   study_paper2 OUT [threads [seeds]]
+//   ./dev study paper2 OUT [threads [seeds]]
 //
 // With `seeds` every comparison runs over that number instead of 20 and 100: a short run, whose tables do not depend on
 // the number of threads, except for times.
@@ -14,6 +14,7 @@
 #include "compensation.hpp"
 #include "error_before.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "studies/studies.hpp"
 
 namespace kinfer::paper2 {
 namespace {
@@ -224,17 +225,18 @@ void ur10_section(Study& study) {
 }  // namespace
 }  // namespace kinfer::paper2
 
-int main(int argc, char** argv) {
+int kinfer::study::run_paper2(int argc, char** argv) {
   using namespace kinfer::paper2;
   if (argc < 2 || argc > 4) {
-    fmt::print(stderr, "usage: {} OUT [threads [seeds]]\n", argv[0]);
+    fmt::print(stderr, "usage: ./dev study {} OUT [threads [seeds]]\n", argv[0]);
     return 2;
   }
-  Study study{.folder = argv[1],
-              .threads = argc > 2 ? std::atoi(argv[2]) : 0,
-              .summary =
-                  "# Paper 2, reproduced\n\nWritten by study_paper2; docs/development/methods/paper2.md says what the "
-                  "figures mean.\n"};
+  Study study{
+      .folder = argv[1],
+      .threads = argc > 2 ? std::atoi(argv[2]) : 0,
+      .summary =
+          "# Paper 2, reproduced\n\nWritten by ./dev study paper2; docs/development/methods/paper2.md says what the "
+          "figures mean.\n"};
   if (argc > 3) study.few_seeds = study.many_seeds = std::atoi(argv[3]);
   std::filesystem::create_directories(study.folder);
   printed_tables(study);
@@ -245,4 +247,5 @@ int main(int argc, char** argv) {
   ur10_section(study);
   write(study.folder / "summary.md", study.summary);
   fmt::print("{}", study.summary);
+  return 0;
 }

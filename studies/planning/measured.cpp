@@ -14,7 +14,7 @@
 #include "kinfer/words/findings/row_ranges.hpp"
 #include "trials.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::planning_study {
 using namespace calibrate;
 using namespace plan;
 namespace {
@@ -107,4 +107,4 @@ Result<std::string> measured_robot(const std::string& folder) {
   return table;
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::planning_study

@@ -5,10 +5,10 @@
 #include "kinfer/calibrate/terms/approximate_masses.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/simulate/pose_set.hpp"
-#include "studies/robots/chains.hpp"
+#include "studies/support/chains.hpp"
 #include "trials.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::planning_study {
 using namespace calibrate;
 using namespace plan;
 namespace {
@@ -110,4 +110,4 @@ std::string simulated_robots() {
   return table;
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::planning_study

@@ -10,7 +10,7 @@
 #include "kinfer/estimate/poses/bundle.hpp"
 #include "kinfer/geometry/statistics.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::planning_study {
 using namespace calibrate;
 using namespace plan;
 namespace {
@@ -59,4 +59,4 @@ std::string row(const std::string& set, Fitting fitting, const std::string& choi
   return line;
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::planning_study

@@ -9,7 +9,7 @@
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/plan/plan_poses.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::planning_study {
 using namespace calibrate;
 using namespace plan;
 
@@ -48,4 +48,4 @@ std::string simulated_robots();
 /// Series B and C of the public UR10 set in `folder`, choosing among their own poses.
 Result<std::string> measured_robot(const std::string& folder);
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::planning_study

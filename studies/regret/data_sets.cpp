@@ -9,11 +9,11 @@
 
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
-#include "studies/robots/chains.hpp"
-#include "studies/robots/files.hpp"
+#include "studies/support/chains.hpp"
+#include "studies/support/files.hpp"
 #include "support/instruments.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::regret_study {
 using namespace calibrate;
 using namespace test;
 namespace {
@@ -100,4 +100,4 @@ std::vector<NamedTask> named_tasks(const std::string& wanted, int simulated) {
   return tasks;
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::regret_study

@@ -8,7 +8,7 @@
 
 #include "kinfer/calibrate/problem/task.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::regret_study {
 
 struct NamedTask {
   std::string name;
@@ -19,4 +19,4 @@ struct NamedTask {
 /// `simulated` robots: rigid ones, and ones with terms known and unknown to the model.
 std::vector<NamedTask> named_tasks(const std::string& wanted, int simulated);
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::regret_study

@@ -2,7 +2,8 @@
 // Regret of the automatic choice of model terms: held-out errors of the default over those of the best fixed set of
 // terms, on halves of the rows that were never fitted.
 //
-//   study_regret [--only TEXT] [--halves 5] [--sets 26] [--rows 0 (all)] [--simulated 30] [--threads 0] [--reasons 0]
+//   ./dev study regret [--only TEXT] [--halves 5] [--sets 26] [--rows 0 (all)] [--simulated 30] [--threads 0]
+//   [--reasons 0]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,8 +18,9 @@
 #include "kinfer/measurement/split.hpp"
 #include "kinfer/words/calibration/model.hpp"
 #include "studies/regret/data_sets.hpp"
+#include "studies/studies.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::regret_study {
 using namespace calibrate;
 namespace {
 
@@ -169,10 +171,10 @@ void study(const Options& options) {
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::regret_study
 
-int main(int argc, char** argv) {
-  kinfer::study::Options options;
+int kinfer::study::run_regret(int argc, char** argv) {
+  regret_study::Options options;
   const std::map<std::string, int*> counts{{"--halves", &options.halves},   {"--sets", &options.sets},
                                            {"--rows", &options.rows},       {"--simulated", &options.simulated},
                                            {"--threads", &options.threads}, {"--reasons", &options.reasons}};
@@ -180,6 +182,6 @@ int main(int argc, char** argv) {
     if (std::string(argv[i]) == "--only") options.only = argv[i + 1];
     if (const auto count = counts.find(argv[i]); count != counts.end()) *count->second = std::atoi(argv[i + 1]);
   }
-  kinfer::study::study(options);
+  regret_study::study(options);
   return 0;
 }

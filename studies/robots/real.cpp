@@ -3,15 +3,15 @@
 
 #include <limits>
 
-#include "files.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/calibrate/validation/validation_errors.hpp"
 #include "kinfer/deploy/verify.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "table.hpp"
+#include "studies/support/files.hpp"
+#include "studies/support/table.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::robots_study {
 using namespace calibrate;
 using namespace deploy;
 namespace {
@@ -114,4 +114,4 @@ void real_robots(const std::string& folder, const std::string& only) {
   if (wanted("ur10")) ur10(folder);
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::robots_study

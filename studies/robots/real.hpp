@@ -4,9 +4,9 @@
 
 #include <string>
 
-namespace kinfer::study {
+namespace kinfer::study::robots_study {
 
 /// `folder`: value of KINFER_DATA; `only`: ur10, mukca, positioner or fr3; empty: all.
 void real_robots(const std::string& folder, const std::string& only);
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::robots_study

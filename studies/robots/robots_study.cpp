@@ -2,20 +2,21 @@
 // Any robot, any instrument: calibration errors on simulated robots with known truth and, where KINFER_DATA is set, on
 // public measured sets.
 //
-//   study_robots [simulated|real|all]
+//   ./dev study robots [simulated|real|all]
 #include <cstdlib>
 #include <cstring>
 
 #include "real.hpp"
 #include "simulated.hpp"
-#include "table.hpp"
+#include "studies/studies.hpp"
+#include "studies/support/table.hpp"
 
-int main(int argc, char** argv) {
+int kinfer::study::run_robots(int argc, char** argv) {
   const std::string part = argc > 1 ? argv[1] : "all";
-  if (part != "real") kinfer::study::simulated_robots();
+  if (part != "real") robots_study::simulated_robots();
   if (part == "simulated") return 0;
   if (const char* data = std::getenv("KINFER_DATA"))
-    kinfer::study::real_robots(data, argc > 2 ? argv[2] : "");
+    robots_study::real_robots(data, argc > 2 ? argv[2] : "");
   else
     fmt::print("\nReal robots: KINFER_DATA is not set.\n");
   return 0;

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chains.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/plan/plan_poses.hpp"
+#include "studies/support/chains.hpp"
+#include "studies/support/table.hpp"
 #include "support/instruments.hpp"
-#include "table.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::robots_study {
 using namespace calibrate;
 using namespace plan;
 namespace {
@@ -201,4 +201,4 @@ void simulated_robots() {
   half_of_the_joints();
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::robots_study

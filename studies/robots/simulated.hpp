@@ -2,8 +2,8 @@
 // Simulated robots: tracker noise 10 µm + 5 µm/m and 50 poses unless said otherwise; errors on 300 held-out poses.
 #pragma once
 
-namespace kinfer::study {
+namespace kinfer::study::robots_study {
 
 void simulated_robots();
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::robots_study

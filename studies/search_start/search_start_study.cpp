@@ -18,9 +18,10 @@
 #include "kinfer/identify/refinement/refine.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
-#include "studies/identify/truth_scores.hpp"
+#include "studies/studies.hpp"
+#include "studies/support/truth_scores.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::search_start_study {
 using namespace identify;
 namespace {
 
@@ -205,10 +206,11 @@ void write_trials(const std::filesystem::path& folder, int seeds) {
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::search_start_study
 
-int main(int argc, char** argv) {
+int kinfer::study::run_search_start(int argc, char** argv) {
   const std::filesystem::path folder = argc > 1 ? argv[1] : "studies/search_start/results";
   std::filesystem::create_directories(folder);
-  kinfer::study::write_trials(folder, argc > 2 ? std::atoi(argv[2]) : 5);
+  search_start_study::write_trials(folder, argc > 2 ? std::atoi(argv[2]) : 5);
+  return 0;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Success rate and speed of structure identification: order and joint types over every machine, drive, base, grade and
 // sensor fault; the memetic search beside exhaustive search and beside paper 1's bacterial programming.
-// `study_structure [FOLDER] [SEEDS]`; docs/development/methods/structure.md reads the tables.
+// `./dev study structure [FOLDER] [SEEDS]`; docs/development/methods/structure.md reads the tables.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,8 +20,9 @@
 #include "kinfer/simulate/ground_truth.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
+#include "studies/studies.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::structure_study {
 using namespace identify;
 namespace {
 
@@ -248,12 +249,13 @@ void write_engines(const std::filesystem::path& folder, int seeds, int bp_seeds)
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::structure_study
 
-int main(int argc, char** argv) {
+int kinfer::study::run_structure(int argc, char** argv) {
   const std::filesystem::path folder = argc > 1 ? argv[1] : "studies/structure/results";
   const int seeds = argc > 2 ? std::atoi(argv[2]) : 100;
   std::filesystem::create_directories(folder);
-  kinfer::study::write_engines(folder, seeds, std::min(seeds, 2));
-  kinfer::study::write_order(folder, std::max(1, seeds / 50));
+  structure_study::write_engines(folder, seeds, std::min(seeds, 2));
+  structure_study::write_order(folder, std::max(1, seeds / 50));
+  return 0;
 }

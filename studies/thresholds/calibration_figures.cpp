@@ -6,11 +6,11 @@
 
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "studies/robots/chains.hpp"
-#include "studies/robots/files.hpp"
+#include "studies/support/chains.hpp"
+#include "studies/support/files.hpp"
 #include "support/instruments.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::thresholds_study {
 using namespace calibrate;
 using namespace test;
 namespace {
@@ -114,4 +114,4 @@ Figures calibration_figures(const std::vector<MeasuredRobot>& robots) {
           {"results to use", usable}};
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::thresholds_study

@@ -10,7 +10,7 @@
 #include "kinfer/measurement/pose_set.hpp"
 #include "studies/thresholds/figures.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::thresholds_study {
 
 struct MeasuredRobot {
   Chain nominal;
@@ -26,4 +26,4 @@ std::vector<MeasuredRobot> measured_robots();
 
 Figures calibration_figures(const std::vector<MeasuredRobot>& robots);
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::thresholds_study

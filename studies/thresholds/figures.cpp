@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace kinfer::study {
+namespace kinfer::study::thresholds_study {
 
 std::string changes(const Figures& standard, const Figures& varied) {
   std::string text;
@@ -17,4 +17,4 @@ std::string changes(const Figures& standard, const Figures& varied) {
   return text.empty() ? "no change" : text;
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::thresholds_study

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace kinfer::study {
+namespace kinfer::study::thresholds_study {
 
 struct Figure {
   std::string name;  ///< "axis lines, median [mm]"
@@ -16,4 +16,4 @@ using Figures = std::vector<Figure>;
 /// The figures that differ by more than one per cent: "axis lines, median [mm] 1.2 → 1.6"; "no change" if none does.
 std::string changes(const Figures& standard, const Figures& varied);
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::thresholds_study

@@ -13,9 +13,9 @@
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/log_faults.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
-#include "studies/identify/truth_scores.hpp"
+#include "studies/support/truth_scores.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::thresholds_study {
 namespace {
 
 struct Scene {
@@ -140,4 +140,4 @@ Figures identification_figures(const std::vector<SimulatedRecording>& recordings
           {"unusable results", sum.unusable}};
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::thresholds_study

@@ -8,7 +8,7 @@
 #include "kinfer/simulate/ground_truth.hpp"
 #include "studies/thresholds/figures.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::thresholds_study {
 
 struct SimulatedRecording {
   InsRecording recording;
@@ -22,4 +22,4 @@ std::vector<SimulatedRecording> simulated_recordings();
 
 Figures identification_figures(const std::vector<SimulatedRecording>& recordings);
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::thresholds_study

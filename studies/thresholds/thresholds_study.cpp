@@ -8,19 +8,20 @@
 #include <cstdio>
 
 #include "kinfer/base/threshold.hpp"
+#include "studies/studies.hpp"
 #include "studies/thresholds/calibration_figures.hpp"
 #include "studies/thresholds/identification_figures.hpp"
 
 #ifndef KINFER_VARY_THRESHOLDS
 
-int main() {
+int kinfer::study::run_thresholds(int, char**) {
   fmt::print(stderr, "the thresholds of this build are constants: run ./dev study thresholds\n");
   return 2;
 }
 
 #else
 
-namespace kinfer::study {
+namespace kinfer::study::thresholds_study {
 namespace {
 
 void print_standard(const std::string& title, const Figures& standard) {
@@ -54,16 +55,17 @@ std::vector<std::string> thresholds_of(std::string_view room) {
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::thresholds_study
 
-int main() {
-  using namespace kinfer::study;
+int kinfer::study::run_thresholds(int, char**) {
+  using namespace thresholds_study;
   const auto recordings = simulated_recordings();
   print_table("Identification of twelve simulated recordings", thresholds_of("identify"),
               [&] { return identification_figures(recordings); });
   const auto robots = measured_robots();
   print_table(fmt::format("Calibration of {} robots", robots.size()), thresholds_of("calibrate"),
               [&] { return calibration_figures(robots); });
+  return 0;
 }
 
 #endif

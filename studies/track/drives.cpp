@@ -8,7 +8,7 @@
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::track_study {
 namespace {
 
 /// A value of a triad's columns.
@@ -79,4 +79,4 @@ void inject(const InjectedFault& fault, SimulatedDrive& drive) {
   }
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::track_study

@@ -8,7 +8,7 @@
 #include "kinfer/simulate/machine_motion.hpp"
 #include "kinfer/track/tracker.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::track_study {
 
 struct DriveSetup {
   std::string machine = "excavator-general", grade = "industrial";
@@ -40,4 +40,4 @@ struct InjectedFault {
 };
 void inject(const InjectedFault& fault, SimulatedDrive& drive);
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::track_study

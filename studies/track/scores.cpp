@@ -7,7 +7,7 @@
 
 #include "kinfer/geometry/fit.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::track_study {
 namespace {
 
 using Index = Eigen::Index;
@@ -159,4 +159,4 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, c
   return score;
 }
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::track_study

@@ -4,7 +4,7 @@
 
 #include "studies/track/drives.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::track_study {
 
 struct JointScore {
   double rms = 0.0, composed_rms = 0.0;  ///< [rad] or [m]
@@ -30,4 +30,4 @@ struct TrackScore {
 TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, const SimulatedDrive& drive,
                  const kinfer::track::TrackOptions& options = {});
 
-}  // namespace kinfer::study
+}  // namespace kinfer::study::track_study

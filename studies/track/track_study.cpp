@@ -7,9 +7,10 @@
 #include <numbers>
 #include <string_view>
 
+#include "studies/studies.hpp"
 #include "studies/track/scores.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::track_study {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
@@ -110,9 +111,9 @@ void run(const Arguments& a) {
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::track_study
 
-int main(int argc, char** argv) {
-  kinfer::study::run(kinfer::study::parse(argc, argv));
+int kinfer::study::run_track(int argc, char** argv) {
+  track_study::run(track_study::parse(argc, argv));
   return 0;
 }

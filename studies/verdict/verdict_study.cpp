@@ -2,7 +2,8 @@
 // Verdicts on sound logs and on nonsense: how many may be used, per kind; the verdicts of the joints; of the joints of
 // sound logs that may be used, how many are farther from the truth than three standard deviations.
 //
-//   study_verdict [--sound 100] [--nonsense 60] [--seed 1] [--only KIND] [--threads 0] [--connections 1] [LOG.csv ...]
+//   ./dev study verdict [--sound 100] [--nonsense 60] [--seed 1] [--only KIND] [--threads 0] [--connections 1] [LOG.csv
+//   ...]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,10 +18,11 @@
 #include "kinfer/identify/structure/joint_type.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
-#include "studies/identify/truth_scores.hpp"
-#include "studies/verdict/corpus.hpp"
+#include "studies/studies.hpp"
+#include "studies/support/corpus.hpp"
+#include "studies/support/truth_scores.hpp"
 
-namespace kinfer::study {
+namespace kinfer::study::verdict_study {
 using namespace identify;
 namespace {
 
@@ -174,8 +176,8 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace kinfer::study
+}  // namespace kinfer::study::verdict_study
 
-int main(int argc, char** argv) {
-  return kinfer::study::run(argc, argv);
+int kinfer::study::run_verdict(int argc, char** argv) {
+  return verdict_study::run(argc, argv);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studies/identify/truth_scores.hpp"
+#include "studies/support/truth_scores.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studies/verdict/corpus.hpp"
+#include "studies/support/corpus.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/log_faults.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
-#include "studies/verdict/free_motion.hpp"
+#include "studies/support/free_motion.hpp"
 
 namespace kinfer::study {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "files.hpp"
+#include "studies/support/files.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studies/verdict/free_motion.hpp"
+#include "studies/support/free_motion.hpp"
 
 #include <algorithm>
 #include <array>
@@ -72,7 +72,7 @@ SixWaves six_waves(double turn, double place, const Make& make) {
   return waves;
 }
 
-Mat3 random_orientation(Rng& rng) {
+Mat3 random_rotation(Rng& rng) {
   const double a = rng.normal(), b = rng.normal(), c = rng.normal(), d = rng.normal();
   return Quat(a, b, c, d).normalized().toRotationMatrix();
 }
@@ -131,7 +131,7 @@ InsRecording record_free_sensors(const std::vector<FreeSensor>& sensors, double 
 BodyMotion random_motion(Rng rng) {
   const double place = rng.uniform(0.05, 0.4), turn = rng.uniform(0.2, 0.8);
   const SixWaves waves = six_waves(turn, place, [&](double size) { return random_waves(size, rng); });
-  const Pose home{random_orientation(rng), Vec3::Zero()};
+  const Pose home{random_rotation(rng), Vec3::Zero()};
   return [waves, home](double time) { return waves.at(time) * home; };
 }
 
@@ -143,7 +143,7 @@ BodyMotion running_trunk(double pace, Rng rng) {
 BodyMotion loose_segment(const BodyMotion& trunk, double pace, Rng rng) {
   const double turn = rng.uniform(0.2, 0.6), place = rng.uniform(0.02, 0.06);
   const SixWaves waves = six_waves(turn, place, [&](double size) { return gait_waves(size, pace, rng); });
-  const Pose home{random_orientation(rng), random_offset(0.5, rng)};
+  const Pose home{random_rotation(rng), random_offset(0.5, rng)};
   return [trunk, waves, home](double time) { return trunk(time) * waves.at(time) * home; };
 }
 
@@ -154,7 +154,7 @@ BodyMotion wheel_of_car(Rng car, std::size_t index, Rng wheel) {
     for (FreeWave& w : *waves) w.frequency *= 0.2;
   const Vec3 axle(index < 2 ? 1.3 : -1.3, index % 2 == 0 ? 0.8 : -0.8, 0.0);
   const double offset = wheel.uniform(0.05, 0.2), start = wheel.uniform(0.0, full_turn);
-  const Mat3 mount = random_orientation(wheel);
+  const Mat3 mount = random_rotation(wheel);
   return [=](double time) {
     const double share = departure(time);
     // The distance is driven at the mean speed from the departure on, and swings about it.
@@ -168,7 +168,7 @@ BodyMotion wheel_of_car(Rng car, std::size_t index, Rng wheel) {
 }
 
 BodyMotion fixed_on(const BodyMotion& body, Rng rng) {
-  const Pose mount{random_orientation(rng), random_offset(0.8, rng)};
+  const Pose mount{random_rotation(rng), random_offset(0.8, rng)};
   return [body, mount](double time) { return body(time) * mount; };
 }
 
