@@ -56,7 +56,7 @@ export async function open(browser, kind, options = {}) {
     if (request.url() !== url && !request.url().startsWith('data:')) complaints.push(`requested ${request.url()}`);
   });
   const began = Date.now();
-  await page.goto(url);
+  await page.goto(url, { timeout: 120000 });  // [ms] a machine that does other things at the same time
   if (options.javaScriptEnabled !== false) {
     await page.waitForFunction(() => document.documentElement.dataset.ready === 'true');
     await page.waitForFunction(() => Number(document.querySelector('.stage canvas')?.dataset.frames) > 0);

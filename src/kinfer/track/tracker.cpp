@@ -92,7 +92,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
 /// After a gap the posture is unknown again; what was learnt of the sensors is kept.
 void Tracker::restart(double time) {
   if (state_.started) restarted_ = time;
-  for (std::size_t i = 0; i < guesses_.size(); ++i) guesses_[i].is_given = false;
+  for (auto& guess : guesses_) guess.is_given = false;
   state_.started = false;
   grid_.reset();
   block_.clear();

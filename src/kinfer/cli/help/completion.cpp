@@ -81,7 +81,7 @@ std::string bash_completion(const ProgramEntry& program) {
 }
 
 std::string zsh_completion(const ProgramEntry& program) {
-  const auto escaped = [](std::string text) {  // of _arguments: colons and brackets have a meaning
+  const auto escaped = [](const std::string& text) {  // of _arguments: colons and brackets have a meaning
     std::string result;
     for (const char c : text) {
       if (c == '[' || c == ']' || c == ':' || c == '\\') result += '\\';

@@ -51,7 +51,7 @@ std::string footer_section(const std::string& footer) {
     const bool is_example = line.starts_with("  ");
     if (is_example != literal) text += is_example ? ".PP\n.nf\n" : ".fi\n.PP\n";
     literal = is_example;
-    text += escaped(is_example ? line : line) + "\n";
+    text += escaped(line) + "\n";
   }
   return text + (literal ? ".fi\n" : "");
 }

@@ -160,7 +160,7 @@ Result<void> OutputFolder::make_staging() {
 }
 
 fs::path OutputFolder::operator/(const std::string& name) {
-  const fs::path file = staging_ / name;
+  fs::path file = staging_ / name;
   if (std::ranges::find(names_, name) == names_.end()) {
     names_.push_back(name);
     temporary_.emplace_back(file);

@@ -48,7 +48,7 @@ const NamedZero* named_zero(std::span<const NamedZero> zeros, const JointBodies&
 Result<void> check_zeros(std::span<const NamedZero> zeros, std::span<const JointBodies> joints,
                          const std::vector<std::string>& names, const SplineGrid& grid) {
   for (const NamedZero& zero : zeros) {
-    if (const auto checked = check_zero(zero, joints, names); !checked) return checked;
+    if (auto checked = check_zero(zero, joints, names); !checked) return checked;
     if (zero.at < grid.begin || zero.at > grid.end())
       return error("--zero {}: {} s is outside the recording, {:.3f} to {:.3f} s", zero.joint, zero.at, grid.begin,
                    grid.end());

@@ -11,6 +11,7 @@
 // Gaussian in both cases,
 //   ln odds = n' ln (r / s) − n g² / 2 (1 / s² − 1 / r²) + ln prior odds,   n' = 2 n − 4,
 // as the gap has two components across the axis and the best points of a joint take four; likewise for its direction.
+// How much play a machine has is not known: the likelihood ratio is averaged over two decades of s.
 #pragma once
 
 #include "kinfer/identify/loops/closing_joint.hpp"

@@ -58,7 +58,8 @@ RefinementFit relax_joints(const RefinementTask& task, RefinementFit fitted, con
     gains.push_back(relaxation_gain(task, fitted, body));
   }
   const auto to_relax = select_joints_to_relax(revolute_joints, gains);
-  return to_relax.empty() ? fitted : fit_from(task, relaxed_setup(fitted, to_relax));
+  if (to_relax.empty()) return fitted;
+  return fit_from(task, relaxed_setup(fitted, to_relax));
 }
 
 }  // namespace kinfer::identify

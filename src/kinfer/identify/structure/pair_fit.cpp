@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/identify/structure/pair_fit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -52,6 +53,14 @@ Mat3 whitening(const Mat3& mean_square, double floor) {
   return 3.0 / inverse->trace() * *inverse;
 }
 
+/// The part of a relative rotation's code that tells nothing about neighbours: a joint rotates about one axis, and how
+/// far is the machine's business. Without it, the bars of a parallelogram, of which two never rotate relative to each
+/// other, are nearer to each other than to those that they turn on.
+double uninformative_rotation(const Mat3& mean_square) {
+  const double ratio = symmetric_eigen(mean_square).values[2] / (pair_rate_floor * pair_rate_floor);
+  return std::max(0.0, 0.5 * std::log1p(std::max(0.0, ratio)) - informative_rotation);
+}
+
 }  // namespace
 
 PairFit fit_pair(const RecordedMotion& motion, std::size_t first, std::size_t second,
@@ -63,8 +72,8 @@ PairFit fit_pair(const RecordedMotion& motion, std::size_t first, std::size_t se
   fit.angular_velocity = problem.mean_square_rate(world_rotation);
   problem.solve(fit, Mat3::Identity());
   for (int k = 0; k < whitening_passes; ++k) problem.solve(fit, whitening(fit.acceleration, pair_acceleration_floor));
-  fit.distance =
-      code_length(fit.acceleration, pair_acceleration_floor) + code_length(fit.angular_velocity, pair_rate_floor);
+  fit.distance = code_length(fit.acceleration, pair_acceleration_floor) +
+                 code_length(fit.angular_velocity, pair_rate_floor) - uninformative_rotation(fit.angular_velocity);
   return fit;
 }
 

@@ -202,8 +202,8 @@ class McapWriter::State {
   RecordContent statistics() const {
     std::uint64_t messages = 0;
     RecordContent counts, content;
-    for (std::uint16_t channel = 0; channel < counts_.size(); ++channel) {
-      counts.number(channel).number(std::uint64_t{counts_[channel]});
+    for (std::size_t channel = 0; channel < counts_.size(); ++channel) {
+      counts.number(static_cast<std::uint16_t>(channel)).number(std::uint64_t{counts_[channel]});
       messages += counts_[channel];
     }
     content.number(messages).number(static_cast<std::uint16_t>(schemas_.size()));

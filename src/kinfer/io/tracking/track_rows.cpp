@@ -55,7 +55,7 @@ Eigen::Vector4d upper_half(const Quat& q) {
 }  // namespace
 
 TrackRowWriter::TrackRowWriter(const TrackingModel& model, std::optional<BasePlace> place)
-    : positions_(position_names(model)), place_(place) {
+    : positions_(position_names(model)), place_(std::move(place)) {
   for (const TrackingJoint& joint : model.joints) {
     joints_.push_back(joint.name);
     unit_.insert(unit_.end(), static_cast<std::size_t>(joint.positions),

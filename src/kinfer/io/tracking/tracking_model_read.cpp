@@ -32,7 +32,7 @@ Mat3 matrix(TableReader& reader, std::string_view key) {
 
 Mat3 rotation(TableReader& reader, std::string_view key) {
   constexpr double tolerance = 1e-6;
-  const Mat3 r = matrix(reader, key);
+  Mat3 r = matrix(reader, key);
   if (!((r * r.transpose() - Mat3::Identity()).norm() < tolerance && r.determinant() > 0.0))
     reader.report_error(reader.line_of(key), fmt::format("\"{}\" is no rotation", key));
   return r;

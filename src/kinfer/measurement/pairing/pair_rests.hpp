@@ -19,8 +19,8 @@ enum class PairingMethod { name, time, order };
 std::string_view name(PairingMethod method);
 
 struct RestPair {
-  int joints = 0, measured = 0;  ///< indices of rests
-  auto operator<=>(const RestPair&) const = default;
+  int joints = 0, measured = 0;                       ///< indices of rests
+  auto operator<=>(const RestPair&) const = default;  // NOLINT(modernize-use-nullptr): a false positive
 };
 
 struct RestPairing {

@@ -12,7 +12,7 @@ namespace {
 
 /// Of a joint that rotates, of one that slides, or of either.
 std::string amount(double cut, const std::vector<bool>& rotational) {
-  const std::string angle = fmt::format("{:.2f} deg", cut / degree), length = fmt::format("{:.1f} mm", 1e3 * cut);
+  std::string angle = fmt::format("{:.2f} deg", cut / degree), length = fmt::format("{:.1f} mm", 1e3 * cut);
   const auto rotating = std::ranges::count(rotational, true);
   if (rotating == std::ssize(rotational)) return angle;
   return rotating == 0 ? length : angle + " or " + length;
