@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Kinematic loops: the odds of every pair of bodies in machines without a loop, and how well a four-bar linkage's
-// closing joint is found.
+// closing joint is found:
+//   ./dev study loops FOLDER [LOGS_WITHOUT [LOGS_WITH [FIRST_SEED]]]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,7 +66,7 @@ Log simulated(const Case& c) {
 
 struct Outcome {
   bool fitted = false, found = false, correct = false;
-  double log_odds = -std::numeric_limits<double>::infinity(), gap = 0.0, in_step = 0.0, samples = 0.0;
+  double log_odds = -std::numeric_limits<double>::infinity(), gap = 0.0, in_step = 0.0;
   double closing_line = 0.0, closing_direction = 0.0;  // [mm], [mrad]
   double line = 0.0, line_without = 0.0;               // [mm] worst of the others, with and without the closure
 };
@@ -96,7 +97,6 @@ Outcome open_outcome(const Log& log, const OrderedMotion& ordered) {
   outcome.found = best.log_odds >= min_loop_log_odds;
   outcome.gap = 1e3 * best.evidence.closing.gap;
   outcome.in_step = 1e3 * best.evidence.mirrored.gap;
-  outcome.samples = best.evidence.positions;
   return outcome;
 }
 
@@ -172,24 +172,23 @@ std::vector<Outcome> run(const std::vector<Case>& cases, const std::filesystem::
   std::vector<Outcome> outcomes(cases.size());
   parallel_for(cases.size(), 0, [&](std::size_t i) { outcomes[i] = outcome_of(cases[i]); });
   std::ofstream file(path);
-  file << "machine,seed,fitted,found,correct pair,ln odds,gap [mm],mirrored gap [mm],positions,closing line "
-          "[mm],closing direction "
-          "[mrad],worst other line [mm],the same with the loop open [mm]\n";
+  file << "machine,seed,fitted,found,correct pair,ln odds,gap [mm],mirrored gap [mm],closing line [mm],"
+          "closing direction [mrad],worst other line [mm],the same with the loop open [mm]\n";
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const Outcome& o = outcomes[i];
-    file << fmt::format("{},{},{:d},{:d},{:d},{:.1f},{:.2f},{:.1f},{:.1f},{:.2f},{:.2f},{:.2f},{:.2f}\n",
-                        cases[i].machine, cases[i].seed, o.fitted, o.found, o.correct, o.log_odds, o.gap, o.in_step,
-                        o.samples, o.closing_line, o.closing_direction, o.line, o.line_without);
+    file << fmt::format("{},{},{:d},{:d},{:d},{:.1f},{:.2f},{:.1f},{:.2f},{:.2f},{:.2f},{:.2f}\n", cases[i].machine,
+                        cases[i].seed, o.fitted, o.found, o.correct, o.log_odds, o.gap, o.in_step, o.closing_line,
+                        o.closing_direction, o.line, o.line_without);
   }
   return outcomes;
 }
 
-void without_loops(const std::filesystem::path& folder, int logs) {
+void without_loops(const std::filesystem::path& folder, int logs, int first_seed) {
   const std::vector<std::string> machines{"excavator", "excavator-general", "crane", "robot6", "tree"};
   std::vector<Case> cases;
   for (int i = 0; i < logs; ++i)
     cases.push_back({.machine = machines[static_cast<std::size_t>(i) % machines.size()],
-                     .seed = static_cast<std::uint64_t>(i) + 1});
+                     .seed = static_cast<std::uint64_t>(first_seed + i)});
   int fitted = 0, found = 0;
   double highest = -std::numeric_limits<double>::infinity();
   for (const Outcome& o : run(cases, folder / "without_loops.csv")) {
@@ -201,10 +200,10 @@ void without_loops(const std::filesystem::path& folder, int logs) {
              found, highest, min_loop_log_odds);
 }
 
-void with_loops(const std::filesystem::path& folder, int logs) {
+void with_loops(const std::filesystem::path& folder, int logs, int first_seed) {
   std::vector<Case> cases;
   for (int i = 0; i < logs; ++i)
-    cases.push_back({.machine = "excavator", .seed = static_cast<std::uint64_t>(i) + 1, .linkage = true});
+    cases.push_back({.machine = "excavator", .seed = static_cast<std::uint64_t>(first_seed + i), .linkage = true});
   std::vector<double> line, direction, other, open;
   int fitted = 0, correct = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -233,8 +232,9 @@ void with_loops(const std::filesystem::path& folder, int logs) {
 
 int kinfer::study::run_loops(int argc, char** argv) {
   const std::filesystem::path folder = argc > 1 ? argv[1] : "studies/loops/results";
+  const auto number = [&](int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; };
   std::filesystem::create_directories(folder);
-  loops_study::with_loops(folder, argc > 3 ? std::atoi(argv[3]) : 40);
-  loops_study::without_loops(folder, argc > 2 ? std::atoi(argv[2]) : 600);
+  loops_study::with_loops(folder, number(3, 40), number(4, 1));
+  loops_study::without_loops(folder, number(2, 600), number(4, 1));
   return 0;
 }

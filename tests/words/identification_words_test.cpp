@@ -165,6 +165,28 @@ TEST(ForecastWords, EveryInsufficientJointIsListed) {
   EXPECT_EQ(text.find("b-c"), std::string::npos);
 }
 
+TEST(ForecastWords, OfManyInsufficientJointsTheFirstAreListed) {
+  const std::vector<JointForecast> joints(7, {.joint = "a-b", .acceleration_factor = 2.0, .time_factor = 4.0});
+  const std::string text = forecast_text(joints, {});
+  EXPECT_NE(text.find("4.0 times the time), and 3 more"), std::string::npos) << text;
+}
+
+TEST(IdentificationVerdict, ListsThreeFindingsOfAKindAndCountsTheOthers) {
+  Identification result;
+  const auto add = [&](const std::string& sensor) {
+    result.findings.push_back(
+        {.kind = FindingKind::clock,
+         .severity = Severity::warning,
+         .values = {{"sensor", sensor}, {"offset", 0.5}, {"drift", 0.0}, {"offset_sd", 1e-4}, {"drift_sd", 0.0}}});
+  };
+  for (const char* sensor : {"a", "b", "c"}) add(sensor);
+  EXPECT_EQ(identification_verdict(result).find("more findings"), std::string::npos);
+  for (const char* sensor : {"d", "e"}) add(sensor);
+  const std::string text = identification_verdict(result);
+  EXPECT_NE(text.find(", and 2 more findings like it"), std::string::npos) << text;
+  EXPECT_EQ(text.find("of d are"), std::string::npos) << text;
+}
+
 TEST(IdentificationVerdict, BeginsWithTheRecommendation) {
   Identification result;
   result.prediction.worst_acceleration = 0.02;

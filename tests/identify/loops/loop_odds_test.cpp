@@ -28,6 +28,16 @@ TEST(LoopOdds, MoreMotionAndMorePositionsAreMoreEvidence) {
   EXPECT_GT(log_odds(planar(1e-3, 30.0, 0.1)), log_odds(planar(1e-3)));
 }
 
+TEST(LoopOdds, LittlePlayIsEvidenceInFewPositionsOfASmallMotion) {
+  const auto odds = [](double gap) {
+    LoopEvidence evidence = planar(gap, 6.0, 2.6e-3);
+    evidence.lever = 0.05;
+    return log_odds(evidence);
+  };
+  EXPECT_GT(odds(3e-5), min_loop_log_odds);
+  EXPECT_LT(odds(1e-3), min_loop_log_odds);
+}
+
 TEST(LoopOdds, AGapThatTheMirroredMotionLeavesTooClosesNoneHoweverSmall) {
   for (const double gap : {1e-4, 1e-3, 1.5e-3, 2e-3, 3e-3, 1e-2})
     EXPECT_LT(log_odds(planar(gap, 200.0, gap)), min_loop_log_odds) << gap;

@@ -137,6 +137,36 @@ double distance_to_line(const Vec3& point, const Vec3& truth, const Vec3& axis) 
   return (point - truth).cross(axis).norm();
 }
 
+/// In a parallelogram, coupler and carrier never rotate against each other, nor do crank and rocker.
+TEST(Linkage, BarsThatNeverTurnAgainstEachOtherAreNoNeighbours) {
+  for (const auto& [script, grade] : {std::pair{Script::standard, "consumer"},
+                                      {Script::sequential, "industrial"},
+                                      {Script::gentle, "industrial"},
+                                      {Script::quick, "consumer"}}) {
+    const MujocoWorld world = test::world_of("excavator", {.mounting = Mounting::arbitrary}, 16);
+    const Machine machine = with_linkage(world.machine());
+    const MachineMotion motion =
+        linkage_motion(machine, test::drive_of(world.machine(), {.script = script}, 16), 100.0);
+    const MachineTruth truth = machine_truth(machine, motion);
+    const auto ordered =
+        order_segments(simulate_recording(machine, motion, *sensor_grade(grade), {}, Rng(16)), {}, truth.root, 0);
+    ASSERT_TRUE(ordered) << ordered.error().what;
+    std::vector<JointTruth> bars = truth.joints;
+    bars.insert(bars.end(), truth.loops.begin(), truth.loops.end());
+    const auto& segments = ordered->motion.segments;
+    for (std::size_t s = 0; s < segments.size(); ++s) {
+      if (!ordered->tree.parent[s]) continue;
+      const std::string &one = segments[s].name, &other = segments[*ordered->tree.parent[s]].name;
+      EXPECT_TRUE(std::ranges::any_of(bars,
+                                      [&](const JointTruth& j) {
+                                        return (j.parent == one && j.child == other) ||
+                                               (j.parent == other && j.child == one);
+                                      }))
+          << one << " " << other << " " << grade;
+    }
+  }
+}
+
 TEST(Linkage, ItsLoopIsFoundAndTheRestOfTheChainIsAsAccurateAsWithout) {
   for (const std::uint64_t seed : {2u, 3u}) {
     const MujocoWorld world = test::world_of("excavator", {.mounting = Mounting::arbitrary}, seed);

@@ -24,7 +24,7 @@ inline constexpr double min_loop_joint_range = 0.1;
 
 /// [rad] Largest difference of a joint position from which two positions of a machine count as different: estimation
 /// errors of nearer ones are alike. Smaller counts more positions as evidence.
-inline constexpr double min_position_difference = 0.05;
+inline constexpr double min_position_difference = 0.03;
 
 /// [m], [rad] Standard deviations of a closed loop's gap in a second: play stays alike for about so long.
 inline constexpr double closure_point_sd = 1e-3, closure_axis_sd = 2e-3;

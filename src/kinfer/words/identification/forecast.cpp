@@ -47,9 +47,15 @@ std::string forecast_text(const std::vector<JointForecast>& joints, const Accura
   const std::string accuracy = fmt::format("{:g} mm and {:g} mrad", 1e3 * target.line, 1e3 * target.direction);
   if (all_sufficient(joints))
     return phrase("forecast_sufficient", "enough for {} in every joint{}", accuracy, exceptions_text(joints));
+  constexpr std::size_t most = 4;
   std::vector<std::string> insufficient;
+  std::size_t more = 0;
   for (const JointForecast& f : joints)
-    if (!f.is_sufficient) insufficient.push_back(insufficient_joint_text(f));
+    if (!f.is_sufficient && insufficient.size() == most)
+      ++more;
+    else if (!f.is_sufficient)
+      insufficient.push_back(insufficient_joint_text(f));
+  if (more > 0) insufficient.push_back(fmt::format("and {} more", more));
   return phrase("forecast_insufficient", "not enough for {} in {}{}", accuracy, fmt::join(insufficient, ", "),
                 exceptions_text(joints));
 }

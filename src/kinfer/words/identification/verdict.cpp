@@ -2,6 +2,8 @@
 #include "kinfer/words/identification/verdict.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 
 #include "kinfer/words/findings/findings.hpp"
 #include "kinfer/words/identification/forecast.hpp"
@@ -61,6 +63,23 @@ std::string recommendation_text(Usability usability) {
   return "Do not use as it is";
 }
 
+/// Of each kind the first few; the list of findings holds all.
+std::vector<std::string> warnings(const std::vector<Finding>& findings) {
+  constexpr int most = 3;
+  std::vector<std::string> texts;
+  std::map<FindingKind, std::pair<int, std::size_t>> of_kind;  // how many, and the text of the last that is listed
+  for (const Finding& finding : findings) {
+    if (finding.severity == Severity::note || invalidates_result(finding)) continue;
+    auto& [count, text] = of_kind[finding.kind];
+    if (++count > most) continue;
+    text = texts.size();
+    texts.push_back(words::sentence(finding));
+  }
+  for (const auto& [kind, listed] : of_kind)
+    if (listed.first > most) texts[listed.second] += fmt::format(", and {} more findings like it", listed.first - most);
+  return texts;
+}
+
 /// Faults first, then joints and accuracy, then what else is wrong with the recording.
 VerdictText parts_of_verdict(const Identification& result) {
   std::vector<std::string> texts;
@@ -73,8 +92,7 @@ VerdictText parts_of_verdict(const Identification& result) {
   texts.push_back(joints_text(result));
   texts.push_back(prediction_text(result.prediction));
   if (result.search_method == LinkSearchMethod::enumeration) texts.push_back(certificate_text(result.searches));
-  for (const Finding& finding : result.findings)
-    if (finding.severity != Severity::note && !invalidates_result(finding)) texts.push_back(words::sentence(finding));
+  std::ranges::move(warnings(result.findings), std::back_inserter(texts));
   VerdictText text{phrase(name(result.usability), "{}", recommendation_text(result.usability)), texts.front(), {}};
   text.remarks.assign(texts.begin() + 1, texts.end());
   return text;
