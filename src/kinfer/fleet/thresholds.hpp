@@ -33,7 +33,7 @@ inline constexpr int fewest_robots = 2;
 /// distance.
 inline constexpr double population_share = 0.999;
 
-/// mean.
+/// [robots] Weight of the stated tolerances beside the robots' spread, and of the nominal values beside their mean.
 inline constexpr double tolerance_robots = 2.0;
 inline constexpr double nominal_robots = 1.0;
 
