@@ -33,8 +33,7 @@ inline constexpr int fewest_robots = 2;
 /// distance.
 inline constexpr double population_share = 0.999;
 
-/// [robots] Weight of the stated tolerances beside the robots' spread, and of the nominal values beside their mean.
-inline constexpr double tolerance_robots = 2.0;
+/// [robots] Weight of the nominal values beside the mean of the robots.
 inline constexpr double nominal_robots = 1.0;
 
 }  // namespace kinfer::fleet::thresholds

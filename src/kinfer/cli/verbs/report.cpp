@@ -7,6 +7,7 @@
 #include "kinfer/cli/parts/evidence_files.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/calibration_json.hpp"
+#include "kinfer/io/evidence/evidence_schema.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/evidence/track_json.hpp"
 #include "kinfer/io/text/text_file.hpp"
@@ -16,10 +17,12 @@ namespace {
 
 struct ReportArguments {
   std::string folder;
-  bool quiet = false;
+  bool schema = false, quiet = false;
 };
 
 int run(const ReportArguments& options) {
+  if (options.schema == !options.folder.empty()) return fail(Error{"expected a folder with evidence.json, or --schema"});
+  if (options.schema) return fmt::print("{}", format_evidence_schema()), exit_done;
   const std::filesystem::path folder = options.folder;
   const auto evidence = read_text_file(folder / "evidence.json");
   if (!evidence) return fail(evidence.error());
@@ -51,9 +54,10 @@ Result<void> write_evidence(OutputFolder& folder, const TrackRun& run) {
 Verb add_report(CLI::App& app) {
   CLI::App* verb = add_command(app, "report", "Make DIR/report.html again from DIR/evidence.json",
                                "calibrate, identify and track write the report themselves.\nExample:\n"
-                               "  kinfer report calibration");
+                               "  kinfer report calibration\n  kinfer report --schema > evidence.schema.json");
   auto options = std::make_shared<ReportArguments>();
-  add_text(*verb, "folder", options->folder, "Folder with evidence.json", Requirement::required, "DIR");
+  add_text(*verb, "folder", options->folder, "Folder with evidence.json", Requirement::optional, "DIR");
+  add_flag(*verb, "--schema", options->schema, "Print the JSON Schema of evidence.json instead");
   add_quiet_option(*verb, options->quiet);
   return {verb, [options] { return run(*options); }};
 }

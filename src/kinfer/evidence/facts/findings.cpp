@@ -75,6 +75,12 @@ std::optional<FindingKind> finding_kind(std::string_view name) {
   return at == named_kinds.end() ? std::nullopt : std::optional(at->kind);
 }
 
+std::vector<std::string> finding_kind_names() {
+  std::vector<std::string> names;
+  for (const NamedKind& kind : named_kinds) names.emplace_back(kind.name);
+  return names;
+}
+
 bool invalidates_result(const Finding& finding) {
   return finding.severity == Severity::fault && !finding.applied;
 }

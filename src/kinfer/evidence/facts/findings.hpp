@@ -78,6 +78,9 @@ enum class FindingKind {
 std::string_view name(FindingKind kind);
 std::optional<FindingKind> finding_kind(std::string_view name);
 
+/// Of all kinds.
+std::vector<std::string> finding_kind_names();
+
 /// What was observed, as values; `words` makes the sentence and the suggestion of it.
 struct Finding {
   FindingKind kind{};

@@ -74,4 +74,8 @@ std::string format_calibration_headline(const Calibration& c) {
   return dump_json(a.json()) + "\n";
 }
 
+nlohmann::ordered_json calibration_schema() {
+  return evidence_json::JsonSchemaWriter::object_schema<CalibrationEvidence>();
+}
+
 }  // namespace kinfer

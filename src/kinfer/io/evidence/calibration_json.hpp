@@ -24,4 +24,7 @@ Result<CalibrationEvidence> read_calibration_evidence(std::string_view text);
 /// Verdict and headline figures as one line, for --json.
 std::string format_calibration_headline(const Calibration& calibration);
 
+/// JSON Schema of what is written.
+nlohmann::ordered_json calibration_schema();
+
 }  // namespace kinfer

@@ -88,4 +88,8 @@ Result<FramesEvidence> read_frames_evidence(std::string_view text) {
   return evidence_json::read_text<FramesEvidence>(text);
 }
 
+nlohmann::ordered_json frames_schema() {
+  return evidence_json::JsonSchemaWriter::object_schema<FramesEvidence>();
+}
+
 }  // namespace kinfer

@@ -58,4 +58,8 @@ std::string format_identification_headline(const Identification& identification)
   return dump_json(a.json()) + "\n";
 }
 
+nlohmann::ordered_json identification_schema() {
+  return evidence_json::JsonSchemaWriter::object_schema<IdentificationEvidence>();
+}
+
 }  // namespace kinfer

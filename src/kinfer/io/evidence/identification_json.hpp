@@ -24,4 +24,7 @@ Result<IdentificationEvidence> read_identification_evidence(std::string_view tex
 /// One line for `--json`: the verdict and the headline figures.
 std::string format_identification_headline(const Identification& identification);
 
+/// JSON Schema of what is written.
+nlohmann::ordered_json identification_schema();
+
 }  // namespace kinfer

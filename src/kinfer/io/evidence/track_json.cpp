@@ -52,7 +52,7 @@ inline void check_curves(JsonReader& a, const TrackRun& run) {
   for (const TrackSensorCurve& curve : run.sensors) agree = agree && curve.innovation.size() == run.time.size();
   if (!agree) a.error("time", "expected as many times as values");
 }
-inline void check_curves(JsonWriter&, const TrackRun&) {}
+inline void check_curves(auto&, const TrackRun&) {}
 
 template <class Archive>
 void fields(Archive& a, Value<Archive, TrackRun>& run) {
@@ -88,6 +88,10 @@ std::string format_track_run(const TrackRun& run) {
 
 Result<TrackRun> read_track_run(std::string_view text) {
   return evidence_json::read_text<TrackRun>(text);
+}
+
+nlohmann::ordered_json track_schema() {
+  return evidence_json::JsonSchemaWriter::object_schema<TrackRun>();
 }
 
 }  // namespace kinfer

@@ -2,6 +2,7 @@
 // evidence.json of `track` (docs/formats.md, kinfer-evidence/1), written and read. SI throughout.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
@@ -17,5 +18,8 @@ std::string format_track_run(const TrackRun& run);
 
 /// Error: the path of the first value that is missing or of another type, and what was expected.
 Result<TrackRun> read_track_run(std::string_view text);
+
+/// JSON Schema of what is written.
+nlohmann::ordered_json track_schema();
 
 }  // namespace kinfer

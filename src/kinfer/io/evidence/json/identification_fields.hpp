@@ -234,7 +234,7 @@ void fields(Archive& a, Value<Archive, SegmentSearchRecord>& search) {
 inline void check_curves(JsonReader& a, const StructureSearchRecord& search) {
   if (search.best.size() != search.median.size()) a.error("median", "expected one list for each of best");
 }
-inline void check_curves(JsonWriter&, const StructureSearchRecord&) {}
+inline void check_curves(auto&, const StructureSearchRecord&) {}
 
 template <class Archive>
 void fields(Archive& a, Value<Archive, StructureSearchRecord>& search) {

@@ -80,6 +80,24 @@ inline std::string text_of(JointType value) {
   return std::string(traits(value).name);
 }
 
+/// The names of all enumerators.
+template <class Enum>
+std::vector<std::string> names_of() {
+  std::vector<std::string> names;
+  for (int i = 0; i <= static_cast<int>(last<Enum>); ++i) names.push_back(text_of(static_cast<Enum>(i)));
+  return names;
+}
+template <>
+inline std::vector<std::string> names_of<FindingKind>() {
+  return finding_kind_names();
+}
+template <>
+inline std::vector<std::string> names_of<JointType>() {
+  std::vector<std::string> names;
+  for (const JointTypeTraits& type : joint_types) names.emplace_back(type.name);
+  return names;
+}
+
 /// False if no enumerator has this name.
 template <class Enum>
 bool from_text(std::string_view text, Enum& value) {

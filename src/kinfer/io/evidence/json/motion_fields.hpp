@@ -55,7 +55,7 @@ inline void check_lengths(JsonReader& a, const MotionEvidence& motion) {
         if (envelope.low.size() != motion.time.size() || envelope.high.size() != motion.time.size())
           return a.error("traces", "expected as many values as times");
 }
-inline void check_lengths(JsonWriter&, const MotionEvidence&) {}
+inline void check_lengths(auto&, const MotionEvidence&) {}
 
 template <class Archive>
 void fields(Archive& a, Value<Archive, MotionEvidence>& motion) {

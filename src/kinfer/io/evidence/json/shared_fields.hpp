@@ -6,6 +6,7 @@
 #include "kinfer/evidence/facts/advice.hpp"
 #include "kinfer/evidence/facts/records.hpp"
 #include "kinfer/io/evidence/json/json_reader.hpp"
+#include "kinfer/io/evidence/json/json_schema_writer.hpp"
 #include "kinfer/io/evidence/json/json_writer.hpp"
 #include "kinfer/kinematics/chain_view.hpp"
 
@@ -113,7 +114,7 @@ inline void check_joints(JsonReader& a, const ChainView& chain) {
       a.error("joints", "the parent of a joint must come before it");
   if (chain.tip < -1 || chain.tip >= count) a.error("tip", "no such joint");
 }
-inline void check_joints(JsonWriter&, const ChainView&) {}
+inline void check_joints(auto&, const ChainView&) {}
 
 template <class Archive>
 void fields(Archive& a, Value<Archive, ChainView>& chain) {
