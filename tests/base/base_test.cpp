@@ -3,8 +3,10 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 #include "kinfer/base/angle.hpp"
@@ -82,6 +84,7 @@ TEST(ParallelFor, AnExceptionReachesTheCallerAndEndsTheLoop) {
     const auto cancel_at_ten = [&](std::size_t i) {
       ++begun;
       if (i == 10) throw Cancelled{};
+      if (i > 10) std::this_thread::sleep_for(std::chrono::microseconds(100));  // all of them would take seconds
     };
     EXPECT_THROW(parallel_for(100000, threads, cancel_at_ten), Cancelled);
     EXPECT_LT(begun, 100000) << threads << " threads";

@@ -199,7 +199,7 @@ Result<Identification> identify_machine(const InsRecording& log, const IdentifyO
     Identification result = assemble_chain(ordered, std::move(links), geometry, options);
     result.motion = motion_evidence(ordered.motion, result, geometry.held_out);
     OrderReport order = report_order(ordered, geometry.loops);
-    ClockReport clocks = session.report_clocks(geometry.clocks);
+    ClockReport clocks = session.report_clocks(geometry.clocks, groups_on_ground(ordered));
     append(result.findings, diagnosis.findings);
     report_findings(result, session, ordered, order, clocks);
     result.notes = std::move(order.notes);

@@ -130,6 +130,8 @@ TEST(TwoMachines, OnTheSameGroundAreIdentifiedTogetherAndReported) {
   const Identification found = identified(merge_recordings(excavator.recording, crane.recording, "crane_"));
   EXPECT_TRUE(has_finding(found, "idle", "ins0, crane_ins0"));
   EXPECT_TRUE(has_finding(found, "several_machines", "share only the ground"));
+  EXPECT_TRUE(std::ranges::none_of(found.findings, [](const Finding& f) { return f.kind == FindingKind::clock; }))
+      << "nothing tells the time between the two";
   EXPECT_LT(worst_line_error(found.joints, excavator.truth), 6e-3);
 }
 

@@ -182,16 +182,21 @@ RecordingSelection select_machine(const OrderedMotion& ordered, const std::optio
   return chosen;
 }
 
-std::vector<Finding> groups_attached_to_world(const OrderedMotion& ordered) {
+std::vector<std::vector<std::size_t>> groups_on_ground(const OrderedMotion& ordered) {
   const SegmentTree& tree = ordered.tree;
   if (!ordered.motion.segments[tree.root].still) return {};
   std::vector<TreeLink> within;
   for (const TreeLink& link : links_of(tree))
     if (link.parent != tree.root) within.push_back(link);
+  auto groups = groups_of(ordered.motion.segments.size(), within);
+  std::erase_if(groups, [&](const auto& group) { return group.size() == 1 && group.front() == tree.root; });
+  return groups;
+}
+
+std::vector<Finding> groups_attached_to_world(const OrderedMotion& ordered) {
   std::vector<std::string> groups;
-  for (const auto& group : groups_of(ordered.motion.segments.size(), within))
-    if (group.front() != tree.root || group.size() > 1)
-      groups.push_back(fmt::format("{}", fmt::join(names_of(ordered.motion, group), ", ")));
+  for (const auto& group : groups_on_ground(ordered))
+    groups.push_back(fmt::format("{}", fmt::join(names_of(ordered.motion, group), ", ")));
   if (groups.size() < 2) return {};
   return {{.kind = FindingKind::several_machines, .severity = Severity::warning, .values = {{"groups", groups}}}};
 }

@@ -18,6 +18,9 @@ RecordingSelection exclude_idle_sensors(const InsRecording& recording, const Seg
 /// The largest connected group of segments, or the one of `root`.
 RecordingSelection select_machine(const OrderedMotion& ordered, const std::optional<std::string>& root);
 
+/// Groups of segments that share nothing but a stationary root, which is in none; none where the root moves.
+std::vector<std::vector<std::size_t>> groups_on_ground(const OrderedMotion& ordered);
+
 /// If the root is stationary and has several branches: a finding about them.
 std::vector<Finding> groups_attached_to_world(const OrderedMotion& ordered);
 

@@ -74,8 +74,9 @@ bool Session::update_clocks(const std::vector<ResidualClock>& residual) {
   return identify::update_clocks(clock_, selected(), residual) && ++clock_updates_ < max_clock_updates;
 }
 
-ClockReport Session::report_clocks(const std::vector<ResidualClock>& residual) const {
-  return identify::report_clocks(clock_, selected(), residual);
+ClockReport Session::report_clocks(const std::vector<ResidualClock>& residual,
+                                   const std::vector<std::vector<std::size_t>>& groups) const {
+  return identify::report_clocks(relative_to_groups(clock_, selected(), groups), selected(), residual);
 }
 
 std::optional<RecordingSelection> select_consistent_part(const OrderedMotion& ordered,

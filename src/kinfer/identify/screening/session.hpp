@@ -28,7 +28,9 @@ class Session {
   /// Applies clock errors that a fit has estimated; true if the steps before the fit should be repeated.
   bool update_clocks(const std::vector<ResidualClock>& residual);
 
-  ClockReport report_clocks(const std::vector<ResidualClock>& residual) const;
+  /// `groups` of sensors share nothing but the ground.
+  ClockReport report_clocks(const std::vector<ResidualClock>& residual,
+                            const std::vector<std::vector<std::size_t>>& groups) const;
 
  private:
   explicit Session(const InsRecording& recording) : log_(&recording) {}

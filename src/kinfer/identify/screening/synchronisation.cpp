@@ -130,6 +130,21 @@ void restrict_to(Synchronisation& clock, const InsRecording& recording, const Re
   clock.synchronised = within(select_sensors(clock.of(recording), part.sensors), clock.begin, clock.end);
 }
 
+Synchronisation relative_to_groups(Synchronisation clock, const InsRecording& recording,
+                                   const std::vector<std::vector<std::size_t>>& groups) {
+  if (has_several_clocks(recording) || groups.size() < 2) return clock;
+  for (const auto& group : groups) {
+    std::vector<double> offsets, drifts;
+    for (const std::size_t s : group) {
+      offsets.push_back(clock.corrections[s].offset);
+      drifts.push_back(clock.corrections[s].drift);
+    }
+    const double offset = median(offsets), drift = median(drifts);
+    for (const std::size_t s : group) clock.corrections[s].offset -= offset, clock.corrections[s].drift -= drift;
+  }
+  return clock;
+}
+
 ClockReport report_clocks(const Synchronisation& clock, const InsRecording& recording,
                           const std::vector<ResidualClock>& residual) {
   ClockReport report;

@@ -38,6 +38,11 @@ struct ClockReport {
   std::vector<Finding> findings;            ///< one for each clock that was corrected notably
 };
 
+/// Nothing tells the time between machines that share nothing but the ground: where all sensors are logged on one
+/// clock, each group of sensors is right at its median.
+Synchronisation relative_to_groups(Synchronisation clock, const InsRecording& recording,
+                                   const std::vector<std::vector<std::size_t>>& groups);
+
 /// The corrections of the sensors' clocks. `residual`: of the last fit, for the standard deviations.
 ClockReport report_clocks(const Synchronisation& clock, const InsRecording& recording,
                           const std::vector<ResidualClock>& residual);
