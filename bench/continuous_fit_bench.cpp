@@ -37,7 +37,7 @@ Case example(Index intervals) {
   c.x.bodies = {{.sensor = 0}};
   for (int s = 0; s < 6; ++s) {
     c.problem.sensors.push_back(
-        {blocks(intervals, block_nodes, rng), blocks(intervals, block_nodes, rng), blocks(intervals, 1, rng), {}, {}});
+        {.angular_velocity = blocks(intervals, block_nodes, rng), .force = blocks(intervals, block_nodes, rng)});
     if (s == 0) continue;
     const Mat3 parent_R_axis = exp_so3(normal_vector(rng)), child_R_axis = exp_so3(normal_vector(rng));
     c.x.bodies.push_back(revolute_body(s - 1, s, parent_R_axis, child_R_axis));
