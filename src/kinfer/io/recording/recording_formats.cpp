@@ -51,7 +51,7 @@ std::span<const RecordingFormat> recording_formats() {
 
 bool is_recording(const std::filesystem::path& path) {
   if (is_message_log_file(path)) return true;
-  if (is_log_bundle(path)) return read_log_bundle(path).has_value();
+  if (is_log_bundle(path)) return true;  // reading it says what is in it
   const std::string head = read_head(path);
   return recognised_format(head) || find_preset(head, path) || is_foreign_log(head);
 }

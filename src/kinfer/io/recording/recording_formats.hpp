@@ -22,8 +22,8 @@ struct RecordingFormat {
 /// The table. Files that no format recognises are read as the first format, whose errors say what is expected.
 std::span<const RecordingFormat> recording_formats();
 
-/// Whether some format recognises the file, or a preset, or its header speaks for itself. Of a folder or a zip archive:
-/// whether it is a robot log or holds such files.
+/// Whether some format recognises the file, or a preset, or its header speaks for itself. Folders and zip archives are
+/// taken for recordings; reading them says what is in them.
 bool is_recording(const std::filesystem::path& path);
 
 /// Reads one log or several, one per logger, each with its own clock and possibly of different formats. Logs of other
