@@ -12,9 +12,12 @@
 #include "kinfer/io/evidence/evidence_file.hpp"
 #include "kinfer/io/fleet/manifest.hpp"
 #include "kinfer/io/motion/reach_targets_csv.hpp"
+#include "kinfer/io/pose_set/foreign/pose_tables.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/pose_set/pose_topics.hpp"
 #include "kinfer/io/recording/foreign/foreign_log.hpp"
 #include "kinfer/io/recording/foreign/ins_map.hpp"
+#include "kinfer/io/recording/foreign/ins_presets.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
 #include "kinfer/io/recording/ins_topics.hpp"
 #include "kinfer/io/recording/machine_facts_toml.hpp"
@@ -23,6 +26,8 @@
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/io/robot_log/message_log_formats.hpp"
+#include "kinfer/io/text/compressed_text.hpp"
+#include "kinfer/io/text/zip_archive.hpp"
 #include "kinfer/io/tracking/tracking_model_toml.hpp"
 #include "kinfer/report/report.hpp"
 #include "kinfer/search/swarm/mlp.hpp"
@@ -70,6 +75,38 @@ void read_foreign(const std::string& bytes) {
   static_cast<void>(parse_foreign_log(bytes, name, {}));
 }
 
+void read_preset(const std::string& bytes) {
+  const InsMap* preset = find_preset(bytes, name);
+  if (preset) static_cast<void>(parse_foreign_log(bytes, name, *preset));
+}
+
+/// Every format of joint logs and tracker files, whichever would be recognised.
+void read_pose_tables(const std::string& bytes) {
+  const PoseTableChoice choice{.joints = {"shoulder", "elbow"}, .translates = {false, false}, .marker = "tip"};
+  for (const PoseTableFormat& format : pose_table_formats()) {
+    static_cast<void>(format.recognise(bytes));
+    static_cast<void>(format.read(bytes, name, nullptr));
+    const auto found = format.read(bytes, name, &choice);
+    const bool is_points = format.kind == PoseTableKind::points;
+    if (found)
+      static_cast<void>(parse_pose_table(found->table, name, two_joints(), {},
+                                         is_points ? RequiredContent::targets : RequiredContent::joints_only));
+  }
+}
+
+void read_archive(const std::string& bytes) {
+  const auto entries = zip_entries(bytes, name);
+  if (!entries) return;
+  constexpr std::size_t most = 4;  // an archive may list one file many times
+  for (std::size_t i = 0; i < std::min(entries->size(), most); ++i)
+    static_cast<void>(unpack_zip_entry(bytes, (*entries)[i], name));
+}
+
+void read_compressed(const std::string& bytes) {
+  constexpr std::size_t most = std::size_t{1} << 20;
+  static_cast<void>(unpack_zstd_head(bytes, most));
+}
+
 void read_grade(const std::string& bytes) {
   const auto grade = parse_sensor_grade(bytes, name);
   if (grade) static_cast<void>(parse_sensor_grade(format_sensor_grade(*grade), name));
@@ -82,7 +119,10 @@ void read_log(const std::string& bytes) {
   const bool is_written = ::write(file, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size());
   if (is_written && is_message_log(bytes)) {
     InsRecording recording;
-    static_cast<void>(append_all_ins_topics("/proc/self/fd/" + std::to_string(file), recording));
+    const std::string path = "/proc/self/fd/" + std::to_string(file);
+    static_cast<void>(append_all_ins_topics(path, recording));
+    static_cast<void>(read_joint_topic(path, two_joints(), {}));
+    static_cast<void>(read_point_topic(path, two_joints(), {}));
   }
   ::close(file);
 }
@@ -91,6 +131,10 @@ constexpr std::array table{
     Reader{"ins_csv", [](const std::string& bytes) { static_cast<void>(parse_ins_csv(bytes, name)); }},
     Reader{"ins_map", [](const std::string& bytes) { static_cast<void>(parse_ins_map(bytes, name)); }},
     Reader{"foreign_log", read_foreign},
+    Reader{"preset", read_preset},
+    Reader{"pose_tables", read_pose_tables},
+    Reader{"archive", read_archive},
+    Reader{"compressed", read_compressed},
     Reader{"message_log", read_log},
     Reader{"facts", [](const std::string& bytes) { static_cast<void>(parse_machine_facts(bytes, name)); }},
     Reader{"grade", read_grade},

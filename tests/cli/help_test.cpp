@@ -31,7 +31,7 @@ class Help : public Program {
 
 TEST_F(Help, OptionsAreInGroupsWithDefaultsAndAnExample) {
   const std::string help = kinfer("calibrate --help").out;
-  EXPECT_THAT(help, HasSubstr("Usage: kinfer calibrate --robot FILE --data CSV --out DIR [OPTIONS]"));
+  EXPECT_THAT(help, HasSubstr("Usage: kinfer calibrate --robot FILE --out DIR [OPTIONS]"));
   for (const char* heading :
        {"\nRequired:\n", "\nRobot file:\n", "\nModel:\n", "\nValidation:\n", "\nOutput and repeatability:\n"})
     EXPECT_THAT(help, HasSubstr(heading));

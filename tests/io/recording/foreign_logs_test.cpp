@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <zstd.h>
 
 #include <fstream>
 
@@ -10,6 +11,7 @@
 #include "kinfer/io/recording/foreign/header_guess.hpp"
 #include "kinfer/io/recording/foreign/ins_presets.hpp"
 #include "kinfer/io/recording/recording_formats.hpp"
+#include "support/zip_writer.hpp"
 
 namespace kinfer {
 namespace {
@@ -69,6 +71,66 @@ TEST_F(ForeignLogs, XioInDegreesAndG) {
 
 TEST_F(ForeignLogs, MicrostrainWithTimesOfDay) {
   expect_motion(read({write("node.csv", microstrain())}), "node");
+}
+
+TEST_F(ForeignLogs, SbgInDegreesWithALineOfUnitsBelowTheHeader) {
+  expect_motion(read({write("imuData.txt", sbg_text())}), "imuData");
+}
+
+TEST_F(ForeignLogs, VectorNavMessagesAreRowsAtTheMakersRate) {
+  constexpr double default_rate = 40.0;  // [Hz]
+  for (const auto& [name, text] : {std::pair("imu", vectornav_imu()), std::pair("ymr", vectornav_ymr())}) {
+    const auto log = read({write(std::string(name) + ".txt", text)});
+    expect_motion(log, name, default_rate);
+    ASSERT_FALSE(log->remarks.empty());
+    EXPECT_NE(log->remarks.back().find("40 rows a second"), std::string::npos) << log->remarks.back();
+  }
+}
+
+TEST_F(ForeignLogs, CompressedTextIsReadAsItIs) {
+  const std::string text = x_io();
+  std::string packed(ZSTD_compressBound(text.size()), '\0');
+  packed.resize(ZSTD_compress(packed.data(), packed.size(), text.data(), text.size(), 3));
+  fs::create_directories(folder / "left");
+  expect_motion(read({write("left/Inertial.csv.zst", packed)}), "left");
+  EXPECT_NE(read({write("cut.csv.zst", packed.substr(0, packed.size() - 20))}).error().what.find("is cut off"),
+            std::string::npos);
+}
+
+TEST_F(ForeignLogs, APhonesFolderAndItsZipAreOneSensor) {
+  fs::create_directories(folder / "phone");
+  write("phone/Accelerometer.csv", phyphox("Accelerometer")), write("phone/Gyroscope.csv", phyphox("Gyroscope"));
+  write("phone/device.csv", "\"property\";\"value\"\n\"model\";\"x\"\n");
+  const auto by_folder = read({folder / "phone"});
+  ASSERT_TRUE(by_folder) << by_folder.error().what;
+  const fs::path archive = write("phone.zip", zip_of({{"Accelerometer.csv", phyphox("Accelerometer")},
+                                                      {"Gyroscope.csv", phyphox("Gyroscope")},
+                                                      {"meta/device.csv", "\"property\";\"value\"\n"}}));
+  EXPECT_TRUE(is_recording(archive));
+  const auto by_zip = read({archive});
+  ASSERT_TRUE(by_zip) << by_zip.error().what;
+  ASSERT_EQ(by_zip->sensors.size(), 1U);
+  EXPECT_EQ(by_zip->sensors[0].name, "phone");
+  EXPECT_EQ(by_zip->sensors[0].rows(), by_folder->sensors[0].rows());
+}
+
+TEST_F(ForeignLogs, ZipArchivesThatLieAreRefused) {
+  const auto refusal = [&](const std::string& bytes) { return read({write("bad.zip", bytes)}).error().what; };
+  const auto has = [](const std::string& sentence, const char* words) {
+    return sentence.find(words) != std::string::npos;
+  };
+  const std::string good = zip_of({{"Gyroscope.csv", phyphox("Gyroscope")}});
+  EXPECT_TRUE(
+      has(refusal(zip_of({{"../Gyroscope.csv", "x"}})), "names a file \"../Gyroscope.csv\", which leads out of it"));
+  EXPECT_TRUE(has(refusal(zip_of({{"/etc/Gyroscope.csv", "x"}})), "leads out of it"));
+  EXPECT_TRUE(has(refusal(good.substr(0, good.size() - 30)), "it has no directory"));
+  EXPECT_TRUE(has(refusal(zip_of({{"readme.md", "x"}})), "no file in it is known as a log"));
+  std::string lying = good;
+  const std::size_t size = lying.find("PK\x01\x02") + 24;
+  lying[size] = '\1', lying[size + 1] = '\0', lying[size + 2] = '\0';
+  EXPECT_TRUE(has(refusal(lying), "it states 1 bytes, but holds more"));
+  lying.replace(size, 4, "\xF0\xFF\xFF\xFF");
+  EXPECT_TRUE(has(refusal(lying), "bytes; more than 1073741824 are not read"));
 }
 
 TEST_F(ForeignLogs, PhyphoxInTwoFilesIsOneSensorOnTheRowsOfBoth) {

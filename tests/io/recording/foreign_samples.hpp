@@ -99,4 +99,29 @@ inline std::string microstrain() {
       });
 }
 
+inline std::string sbg_text() {
+  return lines(
+      "timestamp\tstatus\taccelX\taccelY\taccelZ\tgyroX\tgyroY\tgyroZ\ttemperature\n"
+      "(us)\t(na)\t(m.s^-2)\t(m.s^-2)\t(m.s^-2)\t(deg.s^-1)\t(deg.s^-1)\t(deg.s^-1)\t(degC)\n",
+      [](int row) {
+        return fmt::format("{}\t0x7F\t{}\t{}\t25.5", (4294900000LL + 10000LL * row) % 4294967296LL,
+                           three(sample_force(row), "\t"), three(sample_rates(row), "\t", degree));
+      });
+}
+
+/// Between messages of another kind, as a serial port's log has them.
+inline std::string vectornav_imu() {
+  return lines("", [](int row) {
+    return fmt::format("$VNYPR,+010.000,+000.000,+000.000*5A\n$VNIMU,{},{},{},+20.7,+084.322*66",
+                       three(sample_field(row), ",", 100.0), three(sample_force(row)), three(sample_rates(row)));
+  });
+}
+
+inline std::string vectornav_ymr() {
+  return lines("", [](int row) {
+    return fmt::format("$VNYMR,+010.000,+000.000,+000.000,{},{},{}*66", three(sample_field(row), ",", 100.0),
+                       three(sample_force(row)), three(sample_rates(row)));
+  });
+}
+
 }  // namespace kinfer::test

@@ -6,6 +6,7 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/constants.hpp"
+#include "kinfer/cli/inspect/recording_json.hpp"
 #include "kinfer/cli/parts/common.hpp"
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/inertial/activity.hpp"
@@ -34,13 +35,6 @@ void print_loggers(const InsRecording& recording) {
   }
 }
 
-/// Measurements per second of an instrument.
-double rate_of(const InsSensor& sensor, std::span<const double> time, Fault missing) {
-  const double span = time.back() - time.front();
-  const std::size_t samples = time.size() - count(sensor, missing);
-  return span > 0.0 && samples > 1 ? static_cast<double>(samples - 1) / span : 0.0;
-}
-
 std::string triple(const Vec3& v, double unit, const char* format_of) {
   return fmt::format(fmt::runtime(format_of), v.x() / unit, v.y() / unit, v.z() / unit);
 }
@@ -55,9 +49,9 @@ bool is_in_microtesla(const InsSensor& sensor) {
 
 void print_sensor(const InsSensor& sensor, std::span<const double> time, const std::vector<RestPeriod>& rest_list) {
   fmt::print("\n{}: accelerometer {:.4g} Hz, gyroscope {:.4g} Hz, ", sensor.name,
-             rate_of(sensor, time, acceleration_missing), rate_of(sensor, time, angular_velocity_missing));
+             sample_rate(sensor, time, acceleration_missing), sample_rate(sensor, time, angular_velocity_missing));
   if (sensor.has_magnetometer())
-    fmt::print("magnetometer {:.4g} Hz\n", rate_of(sensor, time, field_missing));
+    fmt::print("magnetometer {:.4g} Hz\n", sample_rate(sensor, time, field_missing));
   else
     fmt::print("no magnetometer in use\n");
   if (rest_list.empty()) {
@@ -100,8 +94,7 @@ void print_activity(const InsRecording& recording) {
 
 /// Whether the sign of all accelerometers together is known, which only magnetometers tell.
 void print_sign(const InsRecording& recording) {
-  const bool is_told = std::ranges::any_of(recording.sensors, &InsSensor::has_magnetometer);
-  if (!is_told)
+  if (assumes_upward_force(recording))
     fmt::print(
         "  assumed: accelerometers read +g upwards at rest; without magnetometer nothing in the log tells, and if they "
         "read -g all lever arms come out mirrored\n");
@@ -165,10 +158,14 @@ void print_allan(const InsRecording& recording) {
 
 }  // namespace
 
-int inspect_recording(const std::vector<std::string>& paths, const std::string& columns, AllanPlot allan) {
+int inspect_recording(const RecordingChoice& choice, AllanPlot allan, InspectOutput output) {
   constexpr int all_cores = 0;
-  const auto logs = read_diagnosed_logs(paths, columns, all_cores);
+  const auto logs = read_diagnosed_logs(choice.paths, choice.columns, choice.topics, all_cores);
   if (!logs) return fail(logs.error());
+  if (output == InspectOutput::json) {
+    fmt::print("{}", recording_json(*logs));
+    return exit_done;
+  }
   const InsRecording* recording = &logs->recording;
   print_loggers(*recording);
   for (const InsSensor& sensor : recording->sensors) {

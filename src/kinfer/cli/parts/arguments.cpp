@@ -47,6 +47,11 @@ void add_texts(CLI::App& verb, const std::string& name, std::vector<std::string>
   if (need == Requirement::required) option->required();
 }
 
+void add_list(CLI::App& verb, const std::string& name, std::vector<std::string>& values, const std::string& help,
+              const std::string& placeholder) {
+  verb.add_option(name, values, help)->type_name(placeholder)->allow_extra_args(false);
+}
+
 void add_choice(CLI::App& verb, const std::string& name, std::string& value, const std::vector<std::string>& allowed,
                 const std::string& help, Requirement need) {
   CLI::Option* option = verb.add_option(name, value, help)->check(CLI::IsMember(allowed));

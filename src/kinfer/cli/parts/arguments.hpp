@@ -27,6 +27,9 @@ void add_text(CLI::App& verb, const std::string& name, std::string& value, const
               Requirement need = Requirement::optional, const std::string& placeholder = "TEXT");
 void add_texts(CLI::App& verb, const std::string& name, std::vector<std::string>& values, const std::string& help,
                Requirement need = Requirement::optional, const std::string& placeholder = "TEXT");
+/// One value each time the option is given.
+void add_list(CLI::App& verb, const std::string& name, std::vector<std::string>& values, const std::string& help,
+              const std::string& placeholder);
 void add_choice(CLI::App& verb, const std::string& name, std::string& value, const std::vector<std::string>& allowed,
                 const std::string& help, Requirement need = Requirement::optional);
 void add_count(CLI::App& verb, const std::string& name, int& value, int lowest, int highest, const std::string& help);

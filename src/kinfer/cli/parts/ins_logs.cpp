@@ -8,20 +8,23 @@
 
 namespace kinfer::cli {
 
-Result<InsRecording> read_ins_logs(const std::vector<std::string>& files, const std::string& columns) {
+Result<InsRecording> read_ins_logs(const std::vector<std::string>& files, const std::string& columns,
+                                   const std::vector<std::string>& topics) {
+  if (!columns.empty() && !topics.empty()) return error("--topic has no effect with --columns, which maps text files");
   const std::vector<std::filesystem::path> paths(files.begin(), files.end());
-  return columns.empty() ? read_recording(paths) : read_mapped_recording(paths, columns);
+  return columns.empty() ? read_recording(paths, topics) : read_mapped_recording(paths, columns);
 }
 
-void add_log_columns_option(CLI::App& verb, std::string& columns) {
+void add_log_options(CLI::App& verb, std::string& columns, std::vector<std::string>& topics) {
   add_text(verb, "--columns", columns,
            "How foreign logs' columns map to kinfer's (docs/formats.md); known formats need none",
            Requirement::optional, "TOML");
+  add_list(verb, "--topic", topics, "Imu topic of a robot log; may be repeated (default: all)", "NAME");
 }
 
 Result<DiagnosedLogs> read_diagnosed_logs(const std::vector<std::string>& files, const std::string& columns,
-                                          int threads) {
-  KINFER_TRY(recording, read_ins_logs(files, columns));
+                                          const std::vector<std::string>& topics, int threads) {
+  KINFER_TRY(recording, read_ins_logs(files, columns, topics));
   KINFER_TRY(diagnosis, identify::diagnose_log(recording, threads));
   return DiagnosedLogs{diagnosis.mended ? std::move(*diagnosis.mended) : std::move(recording),
                        std::move(diagnosis.findings)};

@@ -14,7 +14,8 @@ namespace kinfer::cli {
 
 /// All files as one recording, by the column map if one is given. An error if a sensor lacks specific force or angular
 /// rate.
-Result<InsRecording> read_ins_logs(const std::vector<std::string>& paths, const std::string& columns = "");
+Result<InsRecording> read_ins_logs(const std::vector<std::string>& paths, const std::string& columns = "",
+                                   const std::vector<std::string>& topics = {});
 
 /// A recording with its certain faults corrected, and what was found.
 struct DiagnosedLogs {
@@ -22,9 +23,9 @@ struct DiagnosedLogs {
   std::vector<Finding> findings{};
 };
 Result<DiagnosedLogs> read_diagnosed_logs(const std::vector<std::string>& paths, const std::string& columns,
-                                          int threads);
+                                          const std::vector<std::string>& topics, int threads);
 
-/// --columns MAP.toml of INS logs.
-void add_log_columns_option(CLI::App& verb, std::string& columns);
+/// --columns MAP.toml and --topic NAME of INS logs.
+void add_log_options(CLI::App& verb, std::string& columns, std::vector<std::string>& topics);
 
 }  // namespace kinfer::cli

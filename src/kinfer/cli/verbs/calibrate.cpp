@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "kinfer/calibrate/start/local_poe.hpp"
-#include "kinfer/cli/options/robot_option.hpp"
+#include "kinfer/cli/options/pairing_option.hpp"
 #include "kinfer/cli/options/search_options.hpp"
 #include "kinfer/cli/parts/calibration_summary.hpp"
 #include "kinfer/cli/parts/evidence_files.hpp"
@@ -31,12 +31,14 @@ struct CalibrateArguments {
   CommonOptions common;
   SearchArguments search;
   RobotOption robot;
+  PairingOption pairing;
   std::string data, out, columns, holdout, parameters = "auto", model = "auto", refit, offsets = "folded";
 };
 
 /// Contents of the input files.
 struct Inputs {
   RobotModel robot;
+  std::optional<PairedFiles> paired{};  ///< where a joint log and a tracker's file were given
   calibrate::CalibrationTask task;
   calibrate::CalibrationOptions options;
 };
@@ -69,9 +71,23 @@ Result<calibrate::ParameterChoice> read_parameter_choice(const CalibrateArgument
   return calibrate::NamedParameters{names};
 }
 
+/// Either a pose set, or a joint log and a tracker's file.
+Result<void> check_data(const CalibrateArguments& options, const CLI::App& verb) {
+  const bool is_paired = !options.pairing.joints.empty() || !options.pairing.measured.empty();
+  if (options.data.empty() && (options.pairing.joints.empty() || options.pairing.measured.empty()))
+    return error("expected --data POSES.csv, or --joints and --measured, which are matched as by kinfer pair");
+  if (!options.data.empty() && is_paired)
+    return error("--data and --joints with --measured are two ways to say the same; give one");
+  if (options.data.empty()) return {};
+  const auto given = given_pairing_options(verb, options.pairing);
+  if (!given.empty()) return error("{} has no effect with --data, whose rows are matched already", given.front().first);
+  return {};
+}
+
 /// Refuses options that would have no effect.
 Result<void> check_arguments(const CalibrateArguments& options, const CLI::App& verb) {
   if (auto effective = check_search_arguments(options.search, verb); !effective) return effective;
+  if (auto effective = check_data(options, verb); !effective) return effective;
   const bool refit = !options.refit.empty();
   if (refit && options.search.warm_start.empty())
     return error("--refit offsets: expected --warm-start DIR, the folder of the robot's earlier calibration");
@@ -108,12 +124,21 @@ Result<Inputs> read_inputs(const CalibrateArguments& options) {
   KINFER_TRY(types, read_joint_types(options.robot));
   KINFER_TRY(robot, read_robot_or_types(options.robot, types));
   KINFER_TRY(map, read_columns_option(options.columns));
-  KINFER_TRY(data, read_pose_set(options.data, robot.chain, map));
+  std::optional<PairedFiles> paired;
+  PoseSet data;
+  if (options.data.empty()) {
+    KINFER_TRY(found, read_paired(options.pairing, options.columns, robot.chain, types.empty()));
+    data = found.set;
+    paired = std::move(found);
+  } else {
+    KINFER_TRY(read, read_pose_set(options.data, robot.chain, map));
+    data = std::move(read);
+  }
   KINFER_TRY(parameters, read_parameter_choice(options));
   KINFER_TRY(holdout, add_holdout(options.holdout, robot, map, data));
   KINFER_TRY(model, calibrate::parse_model_choice(options.model));
   KINFER_TRY(swarm_search, read_swarm_options(options.search));
-  Inputs inputs{.robot = robot, .task = {.nominal = robot.chain}, .options = {}};
+  Inputs inputs{.robot = robot, .paired = std::move(paired), .task = {.nominal = robot.chain}, .options = {}};
   inputs.task.tolerances = robot.tolerances;
   inputs.task.instrument = robot.instrument;
   inputs.task.data = std::move(data);
@@ -138,7 +163,11 @@ bool is_holdout_file(const Inputs& inputs) {
 std::vector<std::string> input_paths(const CalibrateArguments& options, const Inputs& inputs) {
   std::vector<std::string> paths;
   if (!has_no_data_sheet(options.robot)) paths.push_back(options.robot.path);
-  paths.push_back(options.data);
+  if (options.data.empty())
+    paths.insert(paths.end(), {options.pairing.joints, options.pairing.measured});
+  else
+    paths.push_back(options.data);
+  if (!options.pairing.measured_columns.empty()) paths.push_back(options.pairing.measured_columns);
   if (!options.columns.empty()) paths.push_back(options.columns);
   if (is_parameter_file(options.parameters)) paths.push_back(options.parameters);
   if (is_holdout_file(inputs)) paths.push_back(options.holdout);
@@ -147,7 +176,7 @@ std::vector<std::string> input_paths(const CalibrateArguments& options, const In
 }
 
 /// The options that were used, and the names of the files that stand for some of them.
-Provenance provenance_of(const CalibrateArguments& options, const Inputs& inputs) {
+Provenance provenance_of(const CalibrateArguments& options, const Inputs& inputs, const CLI::App& verb) {
   Provenance provenance;
   provenance.seed = options.common.seed;
   provenance.inputs = fingerprints(input_paths(options, inputs));
@@ -158,6 +187,7 @@ Provenance provenance_of(const CalibrateArguments& options, const Inputs& inputs
   if (options.offsets != "folded") provenance.options.emplace_back("--offsets", options.offsets);
   if (is_holdout_file(inputs)) add_file("--holdout", options.holdout);
   add_file("--columns", options.columns);
+  for (const auto& given : given_pairing_options(verb, options.pairing)) provenance.options.push_back(given);
   add_file("--warm-start", options.search.warm_start);
   for (const std::string& path : options.search.prior) add_file("--prior", path);
   for (const auto& [option, value] :
@@ -166,11 +196,16 @@ Provenance provenance_of(const CalibrateArguments& options, const Inputs& inputs
   return provenance;
 }
 
-Result<void> write_results(OutputFolder& folder, const CalibrateArguments& options, const Inputs& inputs,
+Result<void> write_results(OutputFolder& folder, const Provenance& provenance, const Inputs& inputs,
                            const Calibration& calibration) {
+  if (inputs.paired)
+    if (auto done = write_text_file(folder / "poses.csv",
+                                    format_pose_set_csv(inputs.paired->set, inputs.robot.chain, FileUnits::mm_deg));
+        !done)
+      return done;
   for (const OutputFile& file : calibration_files(calibration, inputs.robot))
     if (auto done = write_text_file(folder / file.name, file.text); !done) return done;
-  return write_evidence(folder, calibration_evidence(calibration, provenance_of(options, inputs)));
+  return write_evidence(folder, calibration_evidence(calibration, provenance));
 }
 
 int run(const CalibrateArguments& options, const CLI::App& verb) {
@@ -188,7 +223,8 @@ int run(const CalibrateArguments& options, const CLI::App& verb) {
     return calibrate::calibrate_robot(inputs->task, inputs->options, Rng(options.common.seed), progress.observer());
   }();
   if (!calibration) return fail(calibration.error());
-  if (auto done = write_results(*folder, options, *inputs, *calibration); !done) return fail(done.error());
+  if (auto done = write_results(*folder, provenance_of(options, *inputs, verb), *inputs, *calibration); !done)
+    return fail(done.error());
   const auto offsets = options.offsets == "separate" ? EncoderOffsets::separate : EncoderOffsets::folded;
   const auto patch = write_model_patch(*folder, inputs->robot, *calibration, offsets);
   if (auto done = record.write(*folder); !done) return fail(done.error());
@@ -198,7 +234,8 @@ int run(const CalibrateArguments& options, const CLI::App& verb) {
   if (options.common.json)
     fmt::print("{}", format_calibration_headline(*calibration));
   else if (!options.common.quiet)
-    print_summary(calibration_summary(*calibration) + (patch ? model_patch_summary(*patch) : ""),
+    print_summary((inputs->paired ? pairing_summary(options.pairing, *inputs->paired) : "") +
+                      calibration_summary(*calibration) + (patch ? model_patch_summary(*patch) : ""),
                   usable ? Tone::good : Tone::bad);
   return usable ? exit_done : exit_do_not_use;
 }
@@ -210,18 +247,21 @@ Verb add_calibrate(CLI::App& app) {
       add_command(app, "calibrate", "Correct a robot's model from outside measurements, and prove the gain",
                   "No initial guess of base and tool is needed.\nExample:\n"
                   "  kinfer calibrate --robot robot.toml --data poses.csv --out calibration\n"
+                  "  kinfer calibrate --robot robot.toml --joints joints.csv --measured tracker.tsv --out calibration\n"
                   "  kinfer predict --chain calibration/chain.toml --joints joints.csv -o predicted.csv");
   auto options = std::make_shared<CalibrateArguments>();
   add_robot_option(*verb, options->robot, "--robot",
                    "Nominal model: " + readable_model_formats() + "; or unknown:6R, unknown:RRPR: joint types alone");
-  add_text(*verb, "--data", options->data,
-           "Pose set: joint positions and measurements (" + words::measured_kinds() + ")", Requirement::required,
-           "CSV");
   add_text(*verb, "--out", options->out, "Folder for chain.toml, chain.urdf, evidence.json, report.html, run.json",
            Requirement::required, "DIR");
   begin_group(*verb, "Data");
+  add_text(*verb, "--data", options->data,
+           "Pose set: joint positions and measurements (" + words::measured_kinds() + ")", Requirement::optional,
+           "CSV");
   add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Requirement::optional,
            "TOML");
+  begin_group(*verb, "Joint log and tracker, in place of --data");
+  add_pairing_options(*verb, options->pairing, Requirement::optional);
   begin_group(*verb, "Model");
   add_text(*verb, "--parameters", options->parameters,
            "auto: the complete geometric set; paper24: a alpha d theta of each joint (base and tool as given, or from "

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// kinfer convert: between model formats, and INS recordings to MCAP, by file extension.
+// kinfer convert: between model formats, and INS recordings and joint trajectories to MCAP, by file extension.
 #include <filesystem>
 #include <memory>
 
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/motion/trajectory_mcap.hpp"
+#include "kinfer/io/pose_set/pose_log.hpp"
 #include "kinfer/io/recording/ins_mcap.hpp"
 #include "kinfer/io/recording/recording_formats.hpp"
 
@@ -13,7 +15,7 @@ namespace {
 
 struct ConvertArguments {
   RobotOption in;
-  std::string out;
+  std::string out, robot;
   bool quiet = false;
 };
 
@@ -27,8 +29,24 @@ int convert_recording(const ConvertArguments& options) {
   return exit_done;
 }
 
+/// Joint positions over time as .mcap, with the chain that they move.
+int convert_trajectory(const ConvertArguments& options) {
+  const auto chain = read_robot({options.robot, options.in.base_link, options.in.tip_link});
+  if (!chain) return fail(chain.error());
+  const auto joints = read_pose_log(options.in.path, chain->chain, {}, RequiredContent::joints_only);
+  if (!joints) return fail(joints.error());
+  const auto done = write_trajectory_mcap(options.out, chain->chain, joints->set);
+  if (!done) return fail({fmt::format("{}: {}", options.in.path, done.error().what)});
+  if (!options.quiet)
+    fmt::print("{}: {} rows of {} joints\n", options.out, joints->set.rows(), joints->set.joints.rows());
+  return exit_done;
+}
+
 int run(const ConvertArguments& options) {
-  if (std::filesystem::path(options.out).extension() == ".mcap") return convert_recording(options);
+  const bool is_mcap = std::filesystem::path(options.out).extension() == ".mcap";
+  if (!options.robot.empty() && !is_mcap)
+    return fail({"--robot: no effect but on a joint trajectory that is written as .mcap"});
+  if (is_mcap) return options.robot.empty() ? convert_recording(options) : convert_trajectory(options);
   const auto robot = read_robot(options.in);
   if (!robot) return fail(robot.error());
   if (const auto done = write_robot_model(options.out, *robot); !done) return fail(done.error());
@@ -40,13 +58,19 @@ int run(const ConvertArguments& options) {
 
 Verb add_convert(CLI::App& app) {
   CLI::App* verb = add_command(
-      app, "convert", "Turn a robot model into another format, or an INS recording into .mcap, by file extension",
-      "Example:\n  kinfer convert calibration/chain.toml robot.urdf\n  kinfer convert drive/imu.csv drive.mcap");
+      app, "convert",
+      "Turn a robot model into another format, or an INS recording or a joint trajectory into .mcap, by file extension",
+      "Example:\n  kinfer convert calibration/chain.toml robot.urdf\n  kinfer convert drive/imu.csv drive.mcap\n"
+      "  kinfer convert path.csv path.mcap --robot calibration/chain.toml");
   auto options = std::make_shared<ConvertArguments>();
-  add_robot_option(*verb, options->in, "in", "Model to read: " + readable_model_formats() + "; or an INS recording");
+  add_robot_option(*verb, options->in, "in",
+                   "Model to read: " + readable_model_formats() +
+                       "; an INS recording; or joint positions with a column t, with --robot");
   add_text(*verb, "out", options->out,
            "Model to write: " + writable_model_extensions() + " (.xml: MJCF); .mcap for a recording",
            Requirement::required, "FILE");
+  add_text(*verb, "--robot", options->robot, "Chain that a joint trajectory moves, to write it as .mcap",
+           Requirement::optional, "FILE");
   add_quiet_option(*verb, options->quiet);
   return {verb, [options] { return run(*options); }};
 }

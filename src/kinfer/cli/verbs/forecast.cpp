@@ -23,7 +23,7 @@ namespace {
 
 struct ForecastArguments {
   CommonOptions common;
-  std::vector<std::string> logs;
+  std::vector<std::string> logs, topics;
   std::string columns, chain, drive = "standard", grade = "industrial";
   double duration = 0.0, line = 5.0, direction = 3.0;  // s, mm, mrad
 };
@@ -48,7 +48,8 @@ Result<InsRecording> simulate_drive(const ForecastArguments& options) {
 Result<std::vector<JointForecast>> forecast_of(const ForecastArguments& options) {
   if (options.logs.empty() == options.chain.empty())
     return error("expected either recordings, or --chain with a chain.toml written by identify");
-  auto recording = options.chain.empty() ? read_ins_logs(options.logs, options.columns) : simulate_drive(options);
+  auto recording =
+      options.chain.empty() ? read_ins_logs(options.logs, options.columns, options.topics) : simulate_drive(options);
   if (!recording) return forward_error(recording.error());
   identify::IdentifyOptions how;
   how.threads = options.common.threads;
@@ -111,7 +112,7 @@ Verb add_forecast(CLI::App& app) {
   add_number(*verb, "--line", options->line, 0.01, 1000.0, "Wanted of every axis line, in 95 of 100 cases [mm]");
   add_number(*verb, "--direction", options->direction, 0.01, 1000.0,
              "Wanted of every axis direction, in 95 of 100 cases [mrad]");
-  add_log_columns_option(*verb, options->columns);
+  add_log_options(*verb, options->columns, options->topics);
   add_common_options(*verb, options->common);
   return {verb, [options] { return run(*options); }};
 }

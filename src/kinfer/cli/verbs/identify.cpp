@@ -33,7 +33,7 @@ struct EngineArguments {
 
 struct IdentifyArguments {
   CommonOptions common;
-  std::vector<std::string> logs;
+  std::vector<std::string> logs, topics;
   std::string out, filter = "kinfer-offline", root;
   double smoothing = SegmentMotionOptions{}.smoothing;
   EngineArguments search;
@@ -180,7 +180,7 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   if (!options.columns.empty()) record.add_input(options.columns);
   const auto how = identify_options(verb, options);
   if (!how) return fail(how.error());
-  const auto recording = read_ins_logs(options.logs, options.columns);
+  const auto recording = read_ins_logs(options.logs, options.columns, options.topics);
   if (!recording) return fail(recording.error());
   auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
@@ -263,7 +263,7 @@ Verb add_identify(CLI::App& app) {
       "12.5 s into the log (default: 0 where the log begins)",
       Requirement::optional, "JOINTS");
   add_count(*verb, "--links", options->links, 0, 1000, "Links to find, from the root outwards; 0 means all");
-  add_log_columns_option(*verb, options->columns);
+  add_log_options(*verb, options->columns, options->topics);
   add_engine_options(*verb, options->search);
   add_common_options(*verb, options->common);
   return {verb, [verb, options] { return run(*verb, *options); }};

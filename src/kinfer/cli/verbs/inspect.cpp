@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // kinfer inspect: contents of a file and findings about it, without any fit.
+#include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
+#include "kinfer/cli/inspect/inspect_pose_log.hpp"
 #include "kinfer/cli/inspect/inspect_recording.hpp"
 #include "kinfer/cli/inspect/inspect_robot_log.hpp"
 #include "kinfer/cli/options/orientation_hypotheses.hpp"
 #include "kinfer/cli/options/robot_option.hpp"
+#include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/estimate/poses/joint_excitation.hpp"
 #include "kinfer/io/evidence/findings_json.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/recording/recording_formats.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer::cli {
@@ -20,7 +25,7 @@ namespace {
 struct InspectArguments {
   RobotOption robot;
   std::string columns;
-  std::vector<std::string> files;
+  std::vector<std::string> files, topics;
   bool allan = false, json = false;
 };
 
@@ -71,13 +76,40 @@ int inspect_pose_set(const std::string& file, const RobotModel& robot, const Col
   return exit_done;
 }
 
+/// The topics of each robot log; whether one of them has an INS.
+Result<bool> inspect_topics(const InspectArguments& options) {
+  bool has_ins = false;
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const std::string& file : options.files) {
+    if (!is_robot_log(file)) continue;
+    KINFER_TRY(log, read_topics(file));
+    has_ins |= has_imu(log);
+    if (options.json)
+      all.push_back({{"file", file}, {"kind", "robot_log"}, {"topics", topics_json(log)}});
+    else
+      print_topics(file, log);
+  }
+  // With an INS the recording's own object follows, which is the answer then.
+  if (options.json && !has_ins) fmt::print("{}\n", dump_json(all, 1));
+  return has_ins;
+}
+
 int run(const InspectArguments& options) {
-  for (const std::string& file : options.files)
-    if (is_robot_log(file))
-      if (const int code = print_topics(file); code != exit_done) return code;
+  if (std::ranges::any_of(options.files, is_robot_log)) {
+    const auto has_ins = inspect_topics(options);
+    if (!has_ins) return fail(has_ins.error());
+    if (!*has_ins && std::ranges::all_of(options.files, is_robot_log)) return exit_done;
+  }
   const bool is_mapped_log = options.robot.path.empty() && !options.columns.empty();
   if (is_mapped_log || is_recording(options.files.front()))
-    return inspect_recording(options.files, options.columns, options.allan ? AllanPlot::print : AllanPlot::none);
+    return inspect_recording({options.files, options.columns, options.topics},
+                             options.allan ? AllanPlot::print : AllanPlot::none,
+                             options.json ? InspectOutput::json : InspectOutput::text);
+  if (std::ranges::all_of(options.files, is_pose_log)) {
+    for (const std::string& file : options.files)
+      if (const int code = inspect_pose_log(file, options.json); code != exit_done) return code;
+    return exit_done;
+  }
   if (options.robot.path.empty())
     return fail({fmt::format("{}: no INS recording (no columns t and SENSOR_ax ...); a pose set needs --robot",
                              options.files.front())});
@@ -100,13 +132,14 @@ Verb add_inspect(CLI::App& app) {
   add_robot_option(*verb, options->robot, "--robot", "Robot of a pose set: " + readable_model_formats(),
                    Requirement::optional);
   add_texts(*verb, "files", options->files,
-            "INS recordings, one a logger; robot logs (.mcap, .bag, .db3); or pose sets with --robot",
+            "INS recordings, one a logger (files, folders or zip archives of phones); robot logs (.mcap, .bag, .db3, "
+            "folders); "
+            "joint logs and tracker files; or pose sets with --robot",
             Requirement::required, "CSV");
-  add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Requirement::optional,
-           "TOML");
+  add_log_options(*verb, options->columns, options->topics);
   add_flag(*verb, "--allan", options->allan,
            "Allan deviation of each sensor's longest rest: noise and bias instability");
-  add_flag(*verb, "--json", options->json, "Print the findings about a pose set as one JSON array");
+  add_flag(*verb, "--json", options->json, "Print what was understood and found as JSON");
   return {verb, [options] { return run(*options); }};
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 struct OrientArguments {
   CommonOptions common;
-  std::vector<std::string> logs;
+  std::vector<std::string> logs, topics;
   std::string out, filter = "kinfer", sensor, columns, magnetometer = "auto";
 };
 
@@ -61,7 +61,7 @@ int run(const OrientArguments& options) {
   const auto filter = filter_named(options.filter);
   if (!filter) return fail({fmt::format("--filter {}: no such filter, known are {}", options.filter, filter_names())});
   const FilterOptions how = options.magnetometer == "off" ? without_magnetometer(*filter) : *filter;
-  const auto logs = read_diagnosed_logs(options.logs, options.columns, options.common.threads);
+  const auto logs = read_diagnosed_logs(options.logs, options.columns, options.topics, options.common.threads);
   if (!logs) return fail(logs.error());
   const InsRecording* recording = &logs->recording;
   const auto chosen = chosen_sensors(*recording, options.sensor);
@@ -96,7 +96,7 @@ Verb add_orient(CLI::App& app) {
   add_text(*verb, "--sensor", options->sensor, "Only this sensor (default: all)", Requirement::optional, "NAME");
   add_choice(*verb, "--magnetometer", options->magnetometer, {"auto", "off"},
              "auto: heading from the magnetometer where there is one; off: never");
-  add_log_columns_option(*verb, options->columns);
+  add_log_options(*verb, options->columns, options->topics);
   add_common_options(*verb, options->common);
   return {verb, [options] { return run(*options); }};
 }

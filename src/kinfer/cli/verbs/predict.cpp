@@ -6,7 +6,7 @@
 
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
-#include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/pose_set/pose_log.hpp"
 #include "kinfer/io/pose_set/predictions_csv.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/words/findings/findings.hpp"
@@ -35,8 +35,11 @@ int run(const PredictArguments& options) {
   if (!robot) return fail(robot.error());
   const auto map = read_columns_option(options.columns);
   if (!map) return fail(map.error());
-  const auto set = read_pose_set(options.joints, robot->chain, *map, RequiredContent::joints_only);
-  if (!set) return fail(set.error());
+  const auto log = read_pose_log(options.joints, robot->chain, {.map = *map}, RequiredContent::joints_only);
+  if (!log) return fail(log.error());
+  if (!options.quiet)
+    for (const std::string& remark : log->remarks) fmt::print(stderr, "kinfer: {}\n", remark);
+  const PoseSet* set = &log->set;
   const auto poses = deploy::predict_poses(robot->chain, *set);
   if (!poses) return fail(poses.error());
   const auto deviations = deviations_of(*robot, *set);

@@ -178,6 +178,11 @@ bool has_other_delimiter(const CsvHeader& header) {
 Result<PoseSet> parse_pose_set(std::string_view text, const std::string& name, const Chain& chain, const ColumnMap& map,
                                RequiredContent required) {
   KINFER_TRY(table, split_csv(text, name, map.format));
+  return parse_pose_table(table, name, chain, map, required);
+}
+
+Result<PoseSet> parse_pose_table(const CsvTable& table, const std::string& name, const Chain& chain,
+                                 const ColumnMap& map, RequiredContent required) {
   const CsvHeader& header = table.header;
   if (has_other_delimiter(header))
     return error("{}:{}: expected columns separated by \"{}\"; a column map can say delimiter = \";\"", name,

@@ -22,6 +22,10 @@ Result<PoseSet> read_pose_set(const std::filesystem::path& path, const Chain& ch
 Result<PoseSet> parse_pose_set(std::string_view text, const std::string& name_in_messages, const Chain& chain,
                                const ColumnMap& map = {}, RequiredContent required = RequiredContent::measurements);
 
+/// The same of a table that was split already.
+Result<PoseSet> parse_pose_table(const CsvTable& table, const std::string& name_in_messages, const Chain& chain,
+                                 const ColumnMap& map = {}, RequiredContent required = RequiredContent::measurements);
+
 /// Pose set as CSV, lengths and angles in `units`, with full precision.
 std::string format_pose_set_csv(const PoseSet& set, const Chain& chain, FileUnits units);
 

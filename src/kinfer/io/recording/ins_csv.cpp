@@ -9,6 +9,7 @@
 
 #include "kinfer/io/recording/foreign/ins_remarks.hpp"
 #include "kinfer/io/recording/ins_columns.hpp"
+#include "kinfer/io/text/compressed_text.hpp"
 #include "kinfer/io/text/csv.hpp"
 #include "kinfer/io/text/mapped_file.hpp"
 #include "kinfer/io/text/plain_decimal.hpp"
@@ -184,6 +185,10 @@ Result<InsRecording> parse_ins_csv(std::string_view text, const std::string& nam
 
 Result<void> append_ins_csv(const std::filesystem::path& path, InsRecording& out) {
   KINFER_TRY(file, MappedFile::open(path));
+  if (is_zstd(file.text())) {
+    KINFER_TRY(text, unpack_zstd_text(file.text(), path.string()));
+    return append_logger(text, path.string(), out, [](std::size_t) {});
+  }
   return append_logger(file.text(), path.string(), out, [&](std::size_t at) { file.release_before(at); });
 }
 

@@ -4,15 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 #include "kinfer/io/recording/foreign/foreign_log.hpp"
 #include "kinfer/io/recording/foreign/ins_presets.hpp"
+#include "kinfer/io/recording/foreign/log_bundle.hpp"
 #include "kinfer/io/recording/ins_columns.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
 #include "kinfer/io/recording/ins_topics.hpp"
 #include "kinfer/io/recording/possible_times.hpp"
 #include "kinfer/io/robot_log/message_log_formats.hpp"
+#include "kinfer/io/text/compressed_text.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
@@ -23,7 +26,7 @@ std::string read_head(const std::filesystem::path& path) {
   std::string head(std::size_t{1} << 16, '\0');
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(file.gcount()));
-  return head;
+  return is_zstd(head) ? unpack_zstd_head(head, std::size_t{1} << 16) : head;
 }
 
 const RecordingFormat* recognised_format(const std::string& head) {
@@ -47,14 +50,27 @@ std::span<const RecordingFormat> recording_formats() {
 }
 
 bool is_recording(const std::filesystem::path& path) {
+  if (is_message_log_file(path)) return true;
+  if (is_log_bundle(path)) return true;  // reading it says what is in it
   const std::string head = read_head(path);
   return recognised_format(head) || find_preset(head, path) || is_foreign_log(head);
 }
 
-Result<InsRecording> read_recording(std::span<const std::filesystem::path> paths) {
+Result<InsRecording> read_recording(std::span<const std::filesystem::path> paths, std::span<const std::string> topics) {
   InsRecording recording;
   std::vector<ForeignLog> foreign;
+  bool has_robot_log = false;
   for (const std::filesystem::path& path : paths) {
+    if (is_message_log_file(path)) {
+      has_robot_log = true;
+      if (auto done = append_ins_topics(path, topics, recording); !done) return forward_error(done.error());
+      continue;
+    }
+    if (is_log_bundle(path)) {
+      KINFER_TRY(logs, read_log_bundle(path));
+      std::ranges::move(logs, std::back_inserter(foreign));
+      continue;
+    }
     const std::string head = read_head(path);
     const RecordingFormat* format = recognised_format(head);
     const InsMap* preset = format ? nullptr : find_preset(head, path);
@@ -66,6 +82,7 @@ Result<InsRecording> read_recording(std::span<const std::filesystem::path> paths
     const auto done = (format ? format : &recording_formats().front())->append(path, recording);
     if (!done) return forward_error(done.error());
   }
+  if (!topics.empty() && !has_robot_log) return error("--topic: none of the files is a robot log, which has topics");
   if (auto done = append_foreign_logs(std::move(foreign), recording); !done) return forward_error(done.error());
   if (auto checked = check_times(recording); !checked) return forward_error(checked.error());
   return recording;

@@ -34,7 +34,7 @@ constexpr std::array<NamedNumber, 13> number_types{{{"bool", NumberType::boolean
 
 using TextByType = std::pair<std::string_view, std::string_view>;
 /// Fields of the common types (ROS 2's; see ros1_header).
-constexpr std::array<TextByType, 15> built_in_types{{
+constexpr std::array<TextByType, 18> built_in_types{{
     {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id"},
     {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z"},
     {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z"},
@@ -42,6 +42,9 @@ constexpr std::array<TextByType, 15> built_in_types{{
     {"geometry_msgs/Pose", "Point position\nQuaternion orientation"},
     {"geometry_msgs/Transform", "Vector3 translation\nQuaternion rotation"},
     {"geometry_msgs/PoseStamped", "std_msgs/Header header\nPose pose"},
+    {"geometry_msgs/PoseWithCovariance", "Pose pose\nfloat64[36] covariance"},
+    {"geometry_msgs/PoseWithCovarianceStamped", "std_msgs/Header header\nPoseWithCovariance pose"},
+    {"std_msgs/String", "string data"},
     {"geometry_msgs/PointStamped", "std_msgs/Header header\nPoint point"},
     {"geometry_msgs/Vector3Stamped", "std_msgs/Header header\nVector3 vector"},
     {"geometry_msgs/TransformStamped", "std_msgs/Header header\nstring child_frame_id\nTransform transform"},

@@ -5,6 +5,7 @@
 #include <array>
 #include <fstream>
 
+#include "kinfer/io/robot_log/bag_folder.hpp"
 #include "kinfer/io/robot_log/bag_reader.hpp"
 #include "kinfer/io/robot_log/db3_reader.hpp"
 #include "kinfer/io/robot_log/mcap_reader.hpp"
@@ -24,14 +25,41 @@ bool is_message_log(std::string_view head) {
   return std::ranges::any_of(message_log_formats(), [&](const MessageLogFormat& f) { return f.recognise(head); });
 }
 
-Result<MessageLog> read_message_log(const std::filesystem::path& path, const MessageSink& sink) {
+namespace {
+
+std::string head_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string head(64, '\0');
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(file.gcount()));
+  return head;
+}
+
+Result<MessageLog> read_one_file(const std::filesystem::path& path, const MessageSink& sink) {
+  const std::string head = head_of(path);
   for (const MessageLogFormat& format : message_log_formats())
     if (format.recognise(head)) return format.read(path, sink);
   return error("{}: no robot log; known are .mcap, ROS 1 .bag (2.0) and ROS 2 .db3", path.string());
+}
+
+}  // namespace
+
+bool is_message_log_file(const std::filesystem::path& path) {
+  std::error_code failure;
+  if (std::filesystem::is_directory(path, failure)) return !bag_folder_files(path).empty();
+  return is_message_log(head_of(path));
+}
+
+Result<MessageLog> read_message_log(const std::filesystem::path& path, const MessageSink& sink) {
+  std::error_code failure;
+  if (!std::filesystem::is_directory(path, failure)) return read_one_file(path, sink);
+  const std::vector<std::filesystem::path> files = bag_folder_files(path);
+  if (files.empty())
+    return error(
+        "{}: the folder holds no .mcap and no .db3 file; is the bag compressed as files (.zstd)? "
+        "ros2 bag convert unpacks it",
+        path.string());
+  return read_bag_files(files, sink, read_one_file);
 }
 
 }  // namespace kinfer

@@ -23,7 +23,10 @@ std::span<const MessageLogFormat> message_log_formats();
 /// Whether the beginning of a file is that of some message log.
 bool is_message_log(std::string_view head);
 
-/// Reads a file of any of the formats.
+/// Whether the file, or the files of the folder, is a message log.
+bool is_message_log_file(const std::filesystem::path& path);
+
+/// Reads a file of any of the formats, or a folder of a ROS 2 bag.
 Result<MessageLog> read_message_log(const std::filesystem::path& path, const MessageSink& sink);
 
 }  // namespace kinfer

@@ -45,7 +45,7 @@ char find_delimiter(std::string_view line, char decimal) {
 char find_decimal(std::string_view text, const CsvHeader& header, const CsvFormat& format) {
   constexpr int looked_at = 20;
   if (header.delimiter == ',') return '.';
-  LineReader lines(text, header.body, header.line, format.comments);
+  LineReader lines(text, header.body, header.line, format.comments, {format.only, format.end});
   std::deque<std::string> unquoted;
   bool has_comma = false;
   for (int row = 0; row < looked_at && lines.next_content_line(); ++row) {
@@ -74,7 +74,8 @@ bool find_header(LineReader& lines, const CsvFormat& format) {
 Result<CsvHeader> read_csv_header(std::string_view text, const std::string& name, const CsvFormat& format) {
   if (text.substr(0, 2) == "\xFF\xFE" || text.substr(0, 2) == "\xFE\xFF")
     return error("{}:1: the file is UTF-16, expected UTF-8; save it as CSV UTF-8", name);
-  LineReader lines(text, text.substr(0, 3) == utf8_byte_order_mark ? 3 : 0, 0, format.comments);
+  LineReader lines(text, text.substr(0, 3) == utf8_byte_order_mark ? 3 : 0, 0, format.comments,
+                   {format.only, format.end});
   for (int i = 0; i < format.skip_lines; ++i) lines.next();
   if (!find_header(lines, format))
     return format.header_line == HeaderLine::with_word
@@ -116,7 +117,7 @@ Result<CsvTable> split_csv(std::string_view text, const std::string& name, const
   table.header = std::move(header);
   const std::size_t columns = table.header.columns.size();
   const CellSplitter splitter(table.header.delimiter, table.unquoted);
-  LineReader lines(text, table.header.body, table.header.line, format.comments);
+  LineReader lines(text, table.header.body, table.header.line, format.comments, {format.only, format.end});
   while (lines.next_content_line()) {
     const std::size_t before = table.cells.size();
     if (!splitter.split(lines.line(), table.cells)) return unclosed_quote(name, lines.number());

@@ -23,6 +23,8 @@ struct CsvFormat {
   char decimal = '.';
   int skip_lines = 0;                          ///< before the header
   std::vector<std::string> comments{};         ///< lines that begin with one of these are skipped, as those with #
+  std::string only{};                          ///< lines that do not hold this text are skipped; empty: none
+  std::string end{};                           ///< a line is read up to this text; empty: all of it
   HeaderLine header_line = HeaderLine::first;  ///< none: the columns are named #1, #2 ...
   std::string header_word{};                   ///< of HeaderLine::with_word: the first line that contains it
 };

@@ -17,11 +17,17 @@ namespace kinfer {
 
 constexpr char blanks = ' ';  ///< delimiter: runs of blanks and tabs
 
+/// Which lines of a text count, and how far; empty: all.
+struct LinePart {
+  std::string_view only, end;
+};
+
 /// Iterates over the lines of a text, without line endings.
 class LineReader {
  public:
-  LineReader(std::string_view text, std::size_t at, int last_number, std::span<const std::string> comments = {})
-      : text_(text), at_(at), number_(last_number), comments_(comments) {}
+  LineReader(std::string_view text, std::size_t at, int last_number, std::span<const std::string> comments = {},
+             LinePart part = {})
+      : text_(text), at_(at), number_(last_number), comments_(comments), part_(part) {}
 
   bool next() {
     if (at_ >= text_.size()) return false;
@@ -38,6 +44,8 @@ class LineReader {
   /// The next line that is neither empty nor a comment.
   bool next_content_line() {
     while (next()) {
+      if (!part_.only.empty() && line_.find(part_.only) == std::string_view::npos) continue;
+      if (!part_.end.empty()) line_ = line_.substr(0, line_.find(part_.end));
       const auto first = line_.find_first_not_of(whitespace);
       if (first != std::string_view::npos && line_[first] != '#' && !is_comment(line_.substr(first))) return true;
     }
@@ -58,6 +66,7 @@ class LineReader {
   std::size_t at_, before_ = 0;
   int number_;
   std::span<const std::string> comments_;
+  LinePart part_;
 };
 
 /// Splits one line; false where a quote is not closed.

@@ -33,6 +33,8 @@ CsvFormat read_table_format(TableReader& file) {
     file.report_error(file.line_of("decimal"), "\"decimal\" and \"delimiter\" are the same character");
   format.skip_lines = read_skip_lines(file);
   if (const std::string comment = file.text_or("comment", ""); !comment.empty()) format.comments = {comment};
+  format.only = file.text_or("only", "");
+  format.end = file.text_or("end", "");
   format.header_word = file.text_or("header", "");
   if (format.header_word == "none")
     format.header_line = HeaderLine::none;

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "kinfer/base/temporary_paths.hpp"
+#include "kinfer/io/text/compressed_text.hpp"
 
 namespace kinfer {
 namespace {
@@ -48,7 +49,7 @@ Result<std::string> read_text_file(const fs::path& path) {
   }
   if (file.bad()) return error("{}: reading stopped with an input error", path.string());
   if (text.empty()) return error("{}: the file is empty", path.string());
-  return text;
+  return is_zstd(text) ? unpack_zstd_text(text, path.string()) : Result<std::string>(std::move(text));
 }
 
 Result<void> write_file(const fs::path& given, const std::function<void(std::ostream&)>& write) {

@@ -74,6 +74,15 @@ struct TimedRows {
 
 Result<TimedRows> read_times(const CsvTable& table, const LogColumns& columns, const InsMap& map,
                              const std::string& name) {
+  if (columns.counts_rows) {
+    TimedRows counted;
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      counted.rows.push_back(row);
+      counted.time.push_back(columns.counter_tick * static_cast<double>(row));
+    }
+    if (counted.time.empty()) return error("{}: the file has no rows", name);
+    return counted;
+  }
   const bool has_clock =
       columns.clock && (!columns.counter || ClockReader(table, *columns.clock, 1.0, 0.0, name).has_values());
   ClockReader clock = has_clock ? ClockReader(table, *columns.clock, columns.clock_tick, map.clock.wraps, name)
@@ -121,7 +130,8 @@ std::string sensor_name(const std::filesystem::path& path, const InsMap& map, co
     return std::ranges::any_of(columns.channels, [&](const LogColumn& c) { return c.instrument == instrument; });
   };
   std::error_code ignored;
-  const std::string folder = std::filesystem::absolute(path, ignored).parent_path().filename().string();
+  std::string folder = std::filesystem::absolute(path, ignored).parent_path().filename().string();
+  if (folder.ends_with(".zip")) folder.erase(folder.size() - 4);
   const bool by_folder = map.sensor == "folder" || (map.sensor.empty() && !(has(0) && has(1)));
   std::string name = by_folder ? folder : map.sensor.empty() ? path.stem().string() : map.sensor;
   for (char& c : name)

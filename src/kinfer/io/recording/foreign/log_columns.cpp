@@ -146,7 +146,8 @@ Result<LogColumns> find_log_columns(const CsvHeader& header, std::string_view pr
         "{}: no column is known as that of an accelerometer, gyroscope or magnetometer; a column map "
         "(--columns) can say which is which",
         where);
-  if (!columns.clock && !columns.counter)
+  columns.counts_rows = !columns.clock && !columns.counter && map.counter.column.empty() && map.counter.tick > 0.0;
+  if (!columns.clock && !columns.counter && !columns.counts_rows)
     return error("{}: no column is known as a time; a column map (--columns) can say t = \"name [unit]\"", where);
   return columns;
 }

@@ -25,6 +25,7 @@ struct LogColumns {
   std::optional<std::size_t> clock, counter;    ///< columns
   double clock_tick = 1.0, counter_tick = 1.0;  ///< [s] of one count
   bool has_free_acceleration = false;
+  bool counts_rows = false;  ///< the row's number is the counter: there is no column of times
 };
 
 /// By the map's columns, or by the header where the map names none.

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/cli/inspect/inspect_pose_log.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "kinfer/cli/parts/common.hpp"
+#include "kinfer/io/pose_set/foreign/pose_tables.hpp"
+#include "kinfer/io/text/dump_json.hpp"
+#include "kinfer/io/text/text_file.hpp"
+
+namespace kinfer::cli {
+namespace {
+
+std::string use_of(PoseTableKind kind) {
+  return kind == PoseTableKind::joints ? "joint positions: pair, calibrate (--joints), predict"
+                                       : "tool points: pair, calibrate (--measured)";
+}
+
+}  // namespace
+
+bool is_pose_log(const std::string& file) {
+  const auto text = read_text_file(file);
+  return text && find_pose_table_format(*text);
+}
+
+int inspect_pose_log(const std::string& file, bool json) {
+  const auto text = read_text_file(file);
+  if (!text) return fail(text.error());
+  const PoseTableFormat& format = *find_pose_table_format(*text);
+  const auto found = format.read(*text, file, nullptr);
+  if (!found) return fail(found.error());
+  if (json) {
+    const nlohmann::ordered_json out{{"file", file},
+                                     {"kind", format.kind == PoseTableKind::joints ? "joint_log" : "tracker_file"},
+                                     {"format", format.title},
+                                     {"rows", found->table.line.size()},
+                                     {"contents", found->contents},
+                                     {"use", use_of(format.kind)},
+                                     {"remarks", found->remarks}};
+    fmt::print("{}\n", dump_json(out));
+    return exit_done;
+  }
+  fmt::print("{}: {}, {} rows\n", file, format.title, found->table.line.size());
+  std::string names;
+  for (const std::string& name : found->contents) names += (names.empty() ? "" : ", ") + name;
+  fmt::print("  {}: {}\n", format.kind == PoseTableKind::joints ? "joints" : "markers", names);
+  fmt::print("  {}\n", use_of(format.kind));
+  if (format.kind == PoseTableKind::points && found->contents.size() > 1)
+    fmt::print("  --marker NAME says which is the tool point\n");
+  for (const std::string& remark : found->remarks) fmt::print("! {}\n", remark);
+  return exit_done;
+}
+
+}  // namespace kinfer::cli
