@@ -16,6 +16,10 @@ TEST(IdentificationNotes, StateAnglesInDegreesAndKeepTheNamesOfTheSensors) {
   EXPECT_EQ(note_sentence({prismatic_joint, {{"parent", "a"}, {"child", "b"}}}), "b slides on a");
 }
 
+TEST(IdentificationNotes, StateTheAssumedSignOfAccelerometers) {
+  EXPECT_THAT(note_sentence({assumed_force_sign, {}}), testing::StartsWith("assumed: accelerometers read +g upwards"));
+}
+
 TEST(IdentificationNotes, PrecedeTheFindingsWithTheirSuggestions) {
   Identification result;
   result.notes = {{phases_disagree, {}}};

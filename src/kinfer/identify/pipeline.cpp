@@ -147,6 +147,12 @@ void report_findings(Identification& result, const Session& session, const Order
   append(result.findings, clocks.findings);
 }
 
+/// f -> -f with r -> -r is an exact symmetry of gyroscopes and accelerometers: only a magnetometer tells the sign.
+std::vector<IdentificationNote> assumptions_of(const InsRecording& recording) {
+  if (std::ranges::any_of(recording.sensors, &InsSensor::has_magnetometer)) return {};
+  return {{IdentificationNoteKind::assumed_force_sign, {}}};
+}
+
 void draw_conclusions(Identification& result, const OrderedMotion& ordered,
                       const std::vector<PairConnection>& connections) {
   result.forecast = forecast(result.joints, result.target);
@@ -204,6 +210,7 @@ Result<Identification> identify_machine(const InsRecording& log, const IdentifyO
     report_findings(result, session, ordered, order, clocks);
     result.notes = std::move(order.notes);
     append(result.notes, geometry.notes);
+    append(result.notes, assumptions_of(session.recording()));
     result.order = std::move(order.evidence);
     result.clocks = std::move(clocks.clocks);
     if (geometry.tracking) result.tracking = complete(std::move(*geometry.tracking), result);

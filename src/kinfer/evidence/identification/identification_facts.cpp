@@ -25,6 +25,8 @@ std::string_view name(IdentificationNoteKind kind) {
       return "unexplained_motion";
     case IdentificationNoteKind::limited_passband:
       return "limited_passband";
+    case IdentificationNoteKind::assumed_force_sign:
+      return "assumed_force_sign";
     case IdentificationNoteKind::relaxed_joint:
       break;
   }

@@ -19,6 +19,7 @@ enum class IdentificationNoteKind {
   refinement_failed,   ///< reason: an error's sentence
   unexplained_motion,  ///< sensor, force_ratio, rate_ratio, force_noise [m/s²]
   limited_passband,    ///< cutoff [Hz]
+  assumed_force_sign,  ///< no values: without magnetometer nothing tells whether accelerometers read +g upwards
   relaxed_joint,       ///< parent, child, axis_deviation [rad]
 };
 std::string_view name(IdentificationNoteKind kind);  ///< "several_signals", ...

@@ -66,6 +66,10 @@ std::string note_sentence(const IdentificationNote& note) {
                     "faster motion is not that of a rigid chain: the geometry comes from the motion below {:.1f} Hz, "
                     "and its standard deviations contain what a wider band would change",
                     v.number("cutoff"));
+    case IdentificationNoteKind::assumed_force_sign:
+      return phrase("assumed_force_sign",
+                    "assumed: accelerometers read +g upwards at rest; without magnetometer nothing in a log tells, and "
+                    "if they read -g, all lever arms are mirrored (a column map can say sign force = -1)");
     case IdentificationNoteKind::relaxed_joint:
       break;
   }
