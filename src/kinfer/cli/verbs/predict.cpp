@@ -37,7 +37,7 @@ int run(const PredictArguments& options) {
   if (!map) return fail(map.error());
   const auto set = read_pose_set(options.joints, robot->chain, *map, RequiredContent::joints_only);
   if (!set) return fail(set.error());
-  const auto poses = deploy::predict_poses(robot->chain, *set);
+  const auto poses = deploy::predict_poses(robot->chain, *set, robot->prediction);
   if (!poses) return fail(poses.error());
   const auto deviations = deviations_of(*robot, *set);
   if (!deviations) return fail(deviations.error());
