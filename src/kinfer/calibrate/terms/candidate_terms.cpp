@@ -39,15 +39,6 @@ int index_of(std::vector<Entry>& list, const Entry& entry, Key Entry::*key) {
   return index;
 }
 
-/// The inverse of a covariance; where rounding leaves it not positive definite, with its smallest variances raised to
-/// what rounding can tell: too little information, and not none.
-MatrixXd information_of_covariance(const MatrixXd& covariance) {
-  if (const auto inverse = invert_spd(covariance)) return *inverse;
-  const SymmetricEigen eigen = symmetric_eigen(covariance);
-  const double least = std::max(1e-13 * eigen.values.maxCoeff(), 1e-300);
-  return eigen.vectors * eigen.values.cwiseMax(least).cwiseInverse().asDiagonal() * eigen.vectors.transpose();
-}
-
 /// Adds to `chain` what a parameter of `rich` refers to. Returns its address there.
 ParameterAddress add_structure(Chain& chain, const Chain& rich, Term term, ParameterAddress at) {
   if (term == Term::gravity_compliance) chain.masses = rich.masses;
@@ -158,9 +149,9 @@ LinearisedTerms linearise_terms(const Estimate& fit, std::span<const int> indice
       covariance(i, k) = fit.covariance(indices[i], indices[k]) / (p.prior_sd * free[indices[k]]->prior_sd);
   }
   // The marginal posterior of these parameters is N(offset, covariance); their own prior, N(0, I), is taken out.
-  if (m == 0) return {MatrixXd(0, 0), VectorXd(0)};
-  const MatrixXd information = information_of_covariance(covariance);
-  return {information - MatrixXd::Identity(m, m), information * offset};
+  const auto inverse = m > 0 ? invert_spd(covariance) : std::optional(MatrixXd(0, 0));
+  if (!inverse) return {MatrixXd::Zero(m, m), VectorXd::Zero(m)};
+  return {*inverse - MatrixXd::Identity(m, m), *inverse * offset};
 }
 
 }  // namespace kinfer::calibrate
