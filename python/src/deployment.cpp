@@ -67,16 +67,18 @@ std::vector<deploy::ToolTarget> tool_targets(const py::object& targets) {
 py::dict compensate_in_python(const Robot& corrected, const Robot& nominal, const py::object& joints,
                               const py::object& targets, const std::string& frames, std::uint64_t seed, int threads) {
   if (joints.is_none() == targets.is_none()) throw InputError("expected either joints or targets");
-  const auto models = value_of(deploy::prepare_compensation(corrected.model.chain, nominal.model.chain,
-                                                            nominal.model.tolerances, frames_named(frames)));
+  const auto models =
+      value_of(deploy::prepare_compensation(corrected.model.chain, nominal.model.chain, nominal.model.tolerances,
+                                            frames_named(frames), corrected.model.prediction));
   std::optional<Numbers> q;
   if (!joints.is_none()) q = joint_positions(joints, models.nominal);
   const auto wanted = q ? std::vector<deploy::ToolTarget>{} : tool_targets(targets);
   std::vector<CompensatedJoints> list;
   {
     const py::gil_scoped_release without_lock;
-    list = q ? deploy::compensate_joints(models.corrected, models.nominal, as_columns(*q), threads)
-             : deploy::compensate_targets(models.corrected, models.nominal, wanted, {}, threads, seed);
+    list =
+        q ? deploy::compensate_joints(models.corrected, models.nominal, as_columns(*q), threads, models.prediction)
+          : deploy::compensate_targets(models.corrected, models.nominal, wanted, {}, threads, seed, models.prediction);
   }
   MatrixXd found(static_cast<Eigen::Index>(list.size()), dof(models.nominal)), residual(found.rows(), 1);
   py::list reached;

@@ -43,7 +43,7 @@ Coverage coverage(const MeasuredRobot& robot, const Split& split) {
   const auto fitted = calibrate_robot({robot.nominal, {}, robot.instrument, train}, {.threads = 2}, Rng(1));
   if (!fitted || !fitted->prediction) return {};
   const Chain chain = corrected_chain(*fitted);
-  const auto poses = deploy::predict_poses(chain, rest);
+  const auto poses = deploy::predict_poses(chain, rest, fitted->prediction);
   const auto uncertainties = deploy::predict_uncertainties(chain, *fitted->prediction, rest);
   if (!poses || !uncertainties) return {};
   const Weights weights =

@@ -48,6 +48,37 @@ TEST(Verify, WithoutAnInstrumentOnlyAMovedFrameIsFound) {
   EXPECT_EQ(verify(moved, {}, std::nullopt, today)->result, VerificationResult::frames_moved);
 }
 
+/// A chain whose gear corrections of joint 2 hold near its zero position only, and end there by `beyond`.
+struct FadingChain {
+  Chain near, far;
+  PredictionModel prediction;
+};
+FadingChain fading_chain() {
+  FadingChain model;
+  model.far = on_a_stand(with_table3_errors(er20(0.125)));
+  model.near = model.far;
+  model.near.joints[1].harmonics = {{1.0, 3e-4, 5e-4}};
+  model.prediction = {.parameters = {"sin1q2", "cos1q2"},
+                      .root = MatrixXd::Zero(2, 2),
+                      .rows = MatrixXd::Zero(6, 1),
+                      .spread = VectorXd::Constant(6, 1e-3),
+                      .beyond = Eigen::Vector2d(-3e-4, -5e-4)};
+  return model;
+}
+
+TEST(Verify, CorrectionsThatFadeAreNoErrorOfTheRobot) {
+  const auto [near, far, prediction] = fading_chain();
+  const PoseSet today = measured(far, paper2_poses(30, tracker), 5);
+  EXPECT_EQ(verify(near, {}, tracker, today)->result, VerificationResult::robot_changed);
+  const Verification faded = verify(near, {}, tracker, today, prediction).value();
+  EXPECT_EQ(faded.result, VerificationResult::valid);
+  Chain moved = near;
+  moved.base = Frame::from_pose(Pose::from_xyz_rpy({0.2, 0.5, 0.35}, {0.02, -0.03, -1.0}));
+  const Verification placed = verify(moved, {}, tracker, today, prediction).value();
+  EXPECT_EQ(placed.result, VerificationResult::frames_moved);
+  EXPECT_NEAR(placed.frames_refitted.rms, faded.frames_refitted.rms, 1e-6);
+}
+
 TEST(Verify, NeedsMeasuredPositions) {
   PoseSet data = measured(er20(), paper2_poses(5, tracker));
   data.points.clear();

@@ -69,6 +69,24 @@ TEST(RegionDistance, WithoutRowsEverythingCountsAsMeasured) {
   EXPECT_EQ(model_error_growth(model, VectorXd::Constant(4, 100.0)), 1.0);
 }
 
+TEST(CorrectionWeight, FallsFromOneAtTheEdgeOfTheMeasuredRegionToZero) {
+  PredictionModel model = measured_region();
+  const VectorXd inside = model.rows.col(7), far = VectorXd::Constant(4, 50.0);
+  EXPECT_EQ(correction_weight(model, far), 1.0) << "nothing changes beyond";
+  model.beyond = VectorXd::Ones(3);
+  EXPECT_EQ(correction_weight(model, inside), 1.0);
+  double before = 1.0;
+  for (int k = 0; k <= 40; ++k) {
+    const VectorXd q = inside + (k / 40.0) * (far - inside);
+    const double weight = correction_weight(model, q);
+    if (region_distance(model, q) <= 1.0) EXPECT_EQ(weight, 1.0);
+    EXPECT_GT(weight, 0.0);
+    if (k > 20) EXPECT_LE(weight, before);
+    before = weight;
+  }
+  EXPECT_LT(correction_weight(model, far), 0.01);
+}
+
 TEST(ModelErrorGrowth, IsOneWhereItWasMeasuredAndQuadraticBeyond) {
   const PredictionModel model = measured_region();
   EXPECT_EQ(model_error_growth(model, model.rows.col(7)), 1.0);

@@ -99,7 +99,7 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
                                     frames_only,  fit.validation_fits, excluded.rows};
   fill_error_statistics(calibration, evaluation);
   calibration.expected_holdout_rms = expected_holdout_rms(evaluation);
-  calibration.prediction = make_prediction_model(evaluation, fit.estimate, options.threads);
+  calibration.prediction = make_prediction_model(evaluation, fit.estimate, fit.beyond, options.threads);
   calibration.reason = judge(calibration);
   calibration.usability = usability_of(calibration.reason);
   calibration.accuracy = evaluate_pose_accuracy(frames_only, calibration.estimate.chain, task.data);

@@ -64,9 +64,12 @@ Result<CalibrationFit> calibrate_by_least_squares(const CalibrationTask& task, c
   const std::vector<Estimate> after = plan.fits_all_rows ? selected_model.split_fits : std::vector{selected_model.fit};
   KINFER_TRY(gross_errors, find_gross_errors(task, plan, options.parameters, geometry.estimate, rng.stream(6)));
   merge_outliers(gross_errors, with_data_rows(selected_model.gross_errors, plan.fitted));
-  return CalibrationFit{selected_model.fit, geometry.scale, pair_validation_fits(before, after),
+  return CalibrationFit{selected_model.fit,
+                        geometry.scale,
+                        pair_validation_fits(before, after),
                         selected_model.model_selection,
-                        without_explained_rows(gross_errors, selected_model.fit, fitted, task.data)};
+                        without_explained_rows(gross_errors, selected_model.fit, fitted, task.data),
+                        selected_model.beyond};
 }
 
 /// Swarm search on the inlier rows of the least-squares fit.

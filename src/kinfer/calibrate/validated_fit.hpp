@@ -14,6 +14,7 @@ struct CalibrationFit {
   std::vector<ValidationFit> validation_fits;
   ModelSelection model_selection;
   std::vector<Outlier> gross_errors;  ///< rows of the whole data set with gross errors, excluded from every evaluation
+  std::optional<Estimate> beyond{};   ///< the model to trust far from the fitted rows; none: `estimate`
 };
 
 /// `fitted`: the plan's rows of the task's data. Rows of `estimate` are those of `fitted`.

@@ -4,6 +4,7 @@
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/deploy/thresholds.hpp"
+#include "kinfer/estimate/poses/pose_uncertainty.hpp"
 #include "kinfer/kinematics/same_joints.hpp"
 #include "kinfer/motion/reach.hpp"
 
@@ -17,6 +18,11 @@ InverseSolution solve_inverse(const Chain& chain, const ToolTarget& target, Cons
 
 CompensatedJoints make_compensated(const InverseSolution& solution) {
   return {solution.q, solution.position_error, solution.angle_error, solution.status};
+}
+
+/// The corrected chain as it is at these joint positions.
+Chain corrected_at(const Chain& corrected, const std::optional<PredictionModel>& prediction, ConstVectorRef q) {
+  return prediction ? chain_with_corrections(corrected, *prediction, correction_weight(*prediction, q)) : corrected;
 }
 
 /// Nominal joint positions for each target, dof x targets: the first posture inside the limits that reaches it, else
@@ -53,17 +59,26 @@ Chain express_in_frames(Chain corrected, const Chain& nominal, CompensationFrame
   return corrected;
 }
 
+std::optional<PredictionModel> express_in_frames(std::optional<PredictionModel> prediction, CompensationFrames frames) {
+  if (!prediction || frames == CompensationFrames::as_given || prediction->beyond.size() == 0) return prediction;
+  for (std::size_t k = 0; k < prediction->parameters.size(); ++k)
+    if (prediction->parameters[k].starts_with("base_") || prediction->parameters[k].starts_with("tool_"))
+      prediction->beyond[static_cast<Eigen::Index>(k)] = 0.0;
+  return prediction;
+}
+
 Result<CompensationModels> prepare_compensation(const Chain& corrected, const Chain& nominal,
-                                                const Tolerances& tolerances,
-                                                std::optional<CompensationFrames> frames) {
+                                                const Tolerances& tolerances, std::optional<CompensationFrames> frames,
+                                                const std::optional<PredictionModel>& prediction) {
   if (!have_same_joints(corrected, nominal))
     return error("the corrected and the nominal model need joints of the same number and types");
   const CompensationFrames used = frames.value_or(select_compensation_frames(corrected, nominal, tolerances));
-  return CompensationModels{express_in_frames(corrected, nominal, used), nominal, used};
+  return CompensationModels{express_in_frames(corrected, nominal, used), nominal, used,
+                            express_in_frames(prediction, used)};
 }
 
 std::vector<CompensatedJoints> compensate_joints(const Chain& corrected, const Chain& nominal, const MatrixXd& q,
-                                                 int threads) {
+                                                 int threads, const std::optional<PredictionModel>& prediction) {
   KINFER_EXPECT(q.rows() == dof(corrected) && q.rows() == dof(nominal), "{} joint positions for {} and {} joints",
                 q.rows(), dof(corrected), dof(nominal));
   std::vector<CompensatedJoints> list(q.cols());
@@ -73,21 +88,22 @@ std::vector<CompensatedJoints> compensate_joints(const Chain& corrected, const C
     const Pose wanted = forward(nominal, start);
     ToolTarget target{wanted.position, std::nullopt};
     if (full_pose) target.rotation = wanted.rotation;
-    list[i] = make_compensated(solve_inverse(corrected, target, start));
+    list[i] = make_compensated(solve_inverse(corrected_at(corrected, prediction, start), target, start));
   });
   return list;
 }
 
 std::vector<CompensatedJoints> compensate_targets(const Chain& corrected, const Chain& nominal,
                                                   const std::vector<ToolTarget>& targets, const MatrixXd& start,
-                                                  int threads, std::uint64_t seed) {
+                                                  int threads, std::uint64_t seed,
+                                                  const std::optional<PredictionModel>& prediction) {
   const MatrixXd drawn = start.cols() > 0 ? MatrixXd() : nominal_postures(nominal, targets, threads, seed);
   std::vector<CompensatedJoints> list(targets.size());
   parallel_for(list.size(), threads, [&](std::size_t i) {
     const auto column = static_cast<Eigen::Index>(i);
     const VectorXd first =
         start.cols() > 0 ? solve_inverse(nominal, targets[i], start.col(column)).q : VectorXd(drawn.col(column));
-    list[i] = make_compensated(solve_inverse(corrected, targets[i], first));
+    list[i] = make_compensated(solve_inverse(corrected_at(corrected, prediction, first), targets[i], first));
   });
   return list;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kinfer/base/result.hpp"
+#include "kinfer/evidence/calibration/prediction_model.hpp"
 #include "kinfer/evidence/deployment/compensation.hpp"
 #include "kinfer/kinematics/parameters.hpp"
 
@@ -29,22 +30,29 @@ CompensationFrames select_compensation_frames(const Chain& corrected, const Chai
 /// The corrected chain in these frames.
 Chain express_in_frames(Chain corrected, const Chain& nominal, CompensationFrames frames);
 
+/// Its prediction model in these frames: the nominal base and tool do not change beyond the measured region.
+std::optional<PredictionModel> express_in_frames(std::optional<PredictionModel> prediction, CompensationFrames frames);
+
 /// Both chains, comparable.
 struct CompensationModels {
   Chain corrected, nominal;
   CompensationFrames frames = CompensationFrames::as_given;
+  std::optional<PredictionModel> prediction{};  ///< of the corrected chain
 };
 
 /// Expresses the corrected chain in these frames; none: those that select_compensation_frames chooses. An error where
 /// the two chains do not have the same joints.
 Result<CompensationModels> prepare_compensation(const Chain& corrected, const Chain& nominal,
                                                 const Tolerances& tolerances,
-                                                std::optional<CompensationFrames> frames = std::nullopt);
+                                                std::optional<CompensationFrames> frames = std::nullopt,
+                                                const std::optional<PredictionModel>& prediction = std::nullopt);
 
 /// For each column of `q`: the joint positions at which the tool of `corrected` has the pose that `nominal` has at q.
-/// With fewer than six joints the orientation is not free, and only the tool point is corrected.
+/// With fewer than six joints the orientation is not free, and only the tool point is corrected. With a prediction
+/// model the corrections fade outside the measured region.
 std::vector<CompensatedJoints> compensate_joints(const Chain& corrected, const Chain& nominal, const MatrixXd& q,
-                                                 int threads);
+                                                 int threads,
+                                                 const std::optional<PredictionModel>& prediction = std::nullopt);
 
 /// A desired tool position, with or without an orientation.
 struct ToolTarget {
@@ -57,6 +65,7 @@ struct ToolTarget {
 /// motion::reach finds, which draws its starts from `seed`.
 std::vector<CompensatedJoints> compensate_targets(const Chain& corrected, const Chain& nominal,
                                                   const std::vector<ToolTarget>& targets, const MatrixXd& start,
-                                                  int threads, std::uint64_t seed);
+                                                  int threads, std::uint64_t seed,
+                                                  const std::optional<PredictionModel>& prediction = std::nullopt);
 
 }  // namespace kinfer::deploy

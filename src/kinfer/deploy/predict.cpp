@@ -5,13 +5,13 @@
 
 #include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/deploy/thresholds.hpp"
-#include "kinfer/estimate/poses/pose_residuals.hpp"
 
 namespace kinfer::deploy {
 
-Result<std::vector<Pose>> predict_poses(const Chain& chain, const PoseSet& rows) {
+Result<std::vector<Pose>> predict_poses(const Chain& chain, const PoseSet& rows,
+                                        const std::optional<PredictionModel>& model) {
   KINFER_TRY(placed, calibrate::with_fixtures(chain, rows));
-  return evaluate_poses(placed.chain, {}, with_approach(placed.data), Derivative::no).pose;
+  return predicted_poses(placed.chain, model, with_approach(placed.data));
 }
 
 Result<std::vector<PoseUncertainty>> predict_uncertainties(const Chain& chain, const PredictionModel& model,

@@ -15,8 +15,10 @@
 namespace kinfer::deploy {
 
 /// The tool pose of each row in the world, in its named set-up and with its named arm, approached from the previous
-/// row. An error where the rows name an arm that the chain lacks.
-Result<std::vector<Pose>> predict_poses(const Chain& chain, const PoseSet& rows);
+/// row. Outside the measured region the corrections of encoders and gears fade, where a prediction model is given. An
+/// error where the rows name an arm that the chain lacks.
+Result<std::vector<Pose>> predict_poses(const Chain& chain, const PoseSet& rows,
+                                        const std::optional<PredictionModel>& model = std::nullopt);
 
 /// The uncertainty of these poses by the calibration's own figures.
 Result<std::vector<PoseUncertainty>> predict_uncertainties(const Chain& chain, const PredictionModel& model,

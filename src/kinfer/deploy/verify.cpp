@@ -24,6 +24,31 @@ double expected_rms(const Chain& chain, const Instrument& instrument, const Pose
   return std::sqrt(squares / static_cast<double>(data.points.size()));
 }
 
+/// The data as the chain with all its corrections would have them: what these fade by outside the measured region is
+/// taken from each point, along the axes of the base that `placed` has.
+PoseSet without_fading(PoseSet data, const Chain& chain, const Chain& placed,
+                       const std::optional<PredictionModel>& prediction) {
+  if (!prediction || prediction->beyond.size() == 0) return data;
+  const std::vector<Pose> with = predicted_poses(chain, std::nullopt, data),
+                          faded = predicted_poses(chain, prediction, data);
+  const auto turn_of = [&](int row) {
+    const int mounting = data.mounting.empty() ? -1 : data.mounting[static_cast<std::size_t>(row)];
+    return Mat3(with_mounting(placed, mounting).base.pose().rotation *
+                with_mounting(chain, mounting).base.pose().rotation.transpose());
+  };
+  for (PointMeasurement& point : data.points) {
+    const Vec3 target = point.target < 0 ? Vec3::Zero().eval() : Vec3(chain.targets[point.target].xyz);
+    point.position -= turn_of(point.row) * (faded[point.row] * target - with[point.row] * target);
+  }
+  for (OrientationMeasurement& measured : data.orientations) {
+    const Mat3 turn = turn_of(measured.row);
+    const Mat3 fading =
+        turn * faded[measured.row].rotation * with[measured.row].rotation.transpose() * turn.transpose();
+    measured.orientation = Quat(fading.transpose()) * measured.orientation;
+  }
+  return data;
+}
+
 VerificationResult judge_by_noise(const Verification& v, double limit) {
   if (v.unmodified.rms <= limit) return VerificationResult::valid;
   return v.frames_refitted.rms <= limit ? VerificationResult::frames_moved : VerificationResult::robot_changed;
@@ -39,10 +64,15 @@ Result<Verification> verify(const Chain& given_chain, const Tolerances& toleranc
   const Chain& chain = placed.chain;
   const PoseSet data = with_approach(placed.data);
   Verification v;
-  v.unmodified = error_statistics(point_errors(chain, data));
-  KINFER_TRY(refitted, calibrate::fit_frames_only(
-                           {.nominal = chain, .tolerances = tolerances, .instrument = instrument, .data = data}, data));
-  v.frames_refitted = error_statistics(point_errors(refitted, data));
+  v.unmodified = error_statistics(point_errors(chain, without_fading(data, chain, chain, prediction)));
+  const auto refit_frames = [&](const PoseSet& rows) {
+    return calibrate::fit_frames_only(
+        {.nominal = chain, .tolerances = tolerances, .instrument = instrument, .data = rows}, rows);
+  };
+  KINFER_TRY(placed_by_all, refit_frames(data));
+  const PoseSet unfaded = without_fading(data, chain, placed_by_all, prediction);
+  KINFER_TRY(refitted, refit_frames(unfaded));
+  v.frames_refitted = error_statistics(point_errors(refitted, unfaded));
 
   if (instrument) {
     const double sd = std::max(expected_rms(chain, *instrument, data, prediction), thresholds::least_point_sd);

@@ -97,6 +97,51 @@ TEST(ModelError, GrowsOutsideTheMeasuredRegionAndItsRowsAreNamed) {
   EXPECT_EQ(outside->rows, std::vector<int>{1});
 }
 
+/// An arm with eccentric gears and yielding joints.
+Chain arm_with_gears(int seed) {
+  Chain truth = with_random_errors(test::nominal_robot(), {}, Rng(seed));
+  for (Joint& joint : truth.joints) joint.harmonics = {{1.0, 2e-4, 0.0}, {2.0, 0.0, 1e-4}}, joint.compliance = 4e-6;
+  truth.masses = {{1, Vec3(0.3, 0, 0.1), 25.0}, {2, Vec3(0.1, 0, 0.1), 15.0}};
+  return truth;
+}
+
+TEST(ModelError, CorrectionsOfGearsFadeFarFromTheMeasuredRegion) {
+  const Chain truth = arm_with_gears(5);
+  const PoseSet data = measured_poses(truth, 200, 5);
+  const Calibration c = calibrate_robot({[&] {
+                                           Chain nominal = test::nominal_robot();
+                                           nominal.masses = truth.masses;
+                                           return nominal;
+                                         }(),
+                                         {},
+                                         test::tracker,
+                                         data},
+                                        {}, Rng(1))
+                            .value();
+  ASSERT_TRUE(c.prediction);
+  ASSERT_GT(c.prediction->beyond.size(), 0) << selected_model(c.model_selection);
+  const Chain chain = corrected_chain(c), beyond = chain_with_corrections(chain, *c.prediction, 0.0);
+  for (const Joint& joint : beyond.joints)
+    for (const Harmonic& harmonic : joint.harmonics) EXPECT_LT(std::hypot(harmonic.sine, harmonic.cosine), 1e-12);
+  bool yields = false;
+  for (const Joint& joint : beyond.joints) yields |= joint.compliance > 1e-6;
+  EXPECT_TRUE(yields) << "loads act everywhere";
+
+  PoseSet rows;
+  rows.joints = data.joints.leftCols(2);
+  rows.joints.col(1).array() += 40.0;
+  const auto poses = deploy::predict_poses(chain, rows, c.prediction).value();
+  EXPECT_LT((poses[0].position - forward(chain, rows.joints.col(0)).position).norm(), 1e-9);
+  EXPECT_LT((poses[1].position - forward(beyond, rows.joints.col(1)).position).norm(),
+            0.01 * (forward(chain, rows.joints.col(1)).position - forward(beyond, rows.joints.col(1)).position).norm());
+
+  RobotModel robot{.chain = chain};
+  robot.prediction = c.prediction;
+  const RobotModel again = parse_robot_toml(format_robot_toml(robot), "chain.toml").value();
+  const auto read = deploy::predict_poses(again.chain, rows, again.prediction).value();
+  for (int row = 0; row < 2; ++row) EXPECT_LT((read[row].position - poses[row].position).norm(), 1e-8);
+}
+
 TEST(ModelError, ChainTomlKeepsWhatPredictionsNeed) {
   const Chain truth = true_arm(7, 2e-4);
   const Calibration c = calibrated_arm(measured_poses(truth, 60, 7));

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/calibrate/prediction/measured_region.hpp"
 #include "kinfer/calibrate/prediction/thresholds.hpp"
 #include "kinfer/calibrate/terms/extrapolation_splits.hpp"
 #include "kinfer/estimate/poses/pose_uncertainty.hpp"
@@ -62,14 +63,6 @@ void collect(HeldOutResiduals& all, const Estimate& fit, const PoseSet& rows,
     all.rotations.push_back(in_base(world_R_base(measured.row), turn, jacobian, fit.covariance,
                                     covariance_of(weights.of<OrientationMeasurement>()[k], measured.axes)));
   }
-}
-
-/// At most region_rows of the columns, evenly spread.
-MatrixXd representatives(const MatrixXd& joints) {
-  const auto count = static_cast<int>(joints.cols()), kept = std::min(count, thresholds::region_rows);
-  std::vector<int> rows;
-  for (int k = 0; k < kept; ++k) rows.push_back(static_cast<int>(static_cast<long>(k) * count / kept));
-  return joints(Eigen::all, rows);
 }
 
 /// Residuals of `rows` by a fit to `train`, with their distances from it in the units of the final region.
@@ -169,26 +162,6 @@ Mat3 model_error(const std::vector<HeldOutResidual>& residuals, double rate) {
   return shape * least_factor([&](double factor) { return size_with(residuals, factor * shape, rate); });
 }
 
-/// The region of these joint positions: representatives, spread and reach.
-void describe_region(PredictionModel& model, const MatrixXd& joints) {
-  const auto count = static_cast<int>(joints.cols());
-  model.rows = representatives(joints);
-  const MatrixXd centred = joints.colwise() - joints.rowwise().mean();
-  model.spread = (centred.rowwise().squaredNorm() / std::max(1, count - 1)).cwiseSqrt().cwiseMax(1e-9);
-  model.reach = 1.0;
-  std::vector<double> distances;
-  for (Index row = 0; row < joints.cols(); row += std::max<Index>(1, joints.cols() / 300)) {
-    // A representative is not its own neighbour.
-    const VectorXd scale = model.spread.cwiseInverse();
-    VectorXd squares =
-        (scale.asDiagonal() * (model.rows.colwise() - VectorXd(joints.col(row)))).colwise().squaredNorm().transpose();
-    for (double& s : squares)
-      if (s == 0.0) s = std::numeric_limits<double>::infinity();
-    if (const double least = squares.minCoeff(); std::isfinite(least)) distances.push_back(std::sqrt(least));
-  }
-  if (!distances.empty()) model.reach = quantile(std::move(distances), thresholds::region_part);
-}
-
 /// Residuals of halves of the joint space that their fits did not see.
 std::vector<HeldOutResiduals> residuals_of_regions(const EvaluationInputs& evaluated, const Estimate& estimate,
                                                    const PredictionModel& region, int threads) {
@@ -217,14 +190,28 @@ double growth_rate(const std::vector<HeldOutResiduals>& of_regions, const Mat3& 
   return std::min(thresholds::largest_growth_rate, largest);
 }
 
+/// What the free parameters of the estimate change by far from the fitted rows: those that `beyond` lacks return to
+/// their prior means.
+VectorXd change_beyond(const Estimate& estimate, const Estimate& beyond) {
+  const std::vector<const Parameter*> free = estimate.parameters.free(), kept = beyond.parameters.free();
+  VectorXd change(static_cast<Index>(free.size()));
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const bool has = std::ranges::any_of(kept, [&](const Parameter* p) { return p->at == free[k]->at; });
+    const double far = has ? value_at(beyond.chain, free[k]->at) : free[k]->nominal;
+    change[static_cast<Index>(k)] = far - value_at(estimate.chain, free[k]->at);
+  }
+  return change;
+}
+
 }  // namespace
 
 std::optional<PredictionModel> make_prediction_model(const EvaluationInputs& evaluated, const Estimate& estimate,
-                                                     int threads) {
+                                                     const std::optional<Estimate>& beyond, int threads) {
   if (evaluated.data.points.empty()) return std::nullopt;
   PredictionModel model;
   for (const Parameter* parameter : estimate.parameters.free()) model.parameters.push_back(parameter->name);
   model.root = covariance_root(estimate.covariance);
+  if (beyond) model.beyond = change_beyond(estimate, *beyond);
   describe_region(model, evaluated.data.joints(Eigen::all, evaluated.plan.fitted));
   const HeldOutResiduals held_out = held_out_residuals(evaluated, model);
   const std::vector<HeldOutResiduals> of_regions = residuals_of_regions(evaluated, estimate, model, threads);

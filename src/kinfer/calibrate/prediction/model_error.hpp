@@ -12,8 +12,9 @@
 
 namespace kinfer::calibrate {
 
-/// The prediction model of the final estimate; nothing where no points were measured.
+/// The prediction model of the final estimate; nothing where no points were measured. `beyond`: a fit to the same rows
+/// without the terms that only interpolate, which holds far from them; none: the estimate holds everywhere.
 std::optional<PredictionModel> make_prediction_model(const EvaluationInputs& evaluated, const Estimate& estimate,
-                                                     int threads);
+                                                     const std::optional<Estimate>& beyond, int threads);
 
 }  // namespace kinfer::calibrate

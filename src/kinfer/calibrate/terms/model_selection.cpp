@@ -62,7 +62,7 @@ SelectedModel select_model(const CalibrationTask& task, const PoseSet& rows, con
   const std::vector<Outlier> gross_errors = find_gross_error_rows(geometry, selected.fit, rows);
   for (std::size_t i = 0; i < selection.steps.size(); ++i)
     selection.steps[i].holdout = statistics_without(selected.steps[i].held_out, gross_errors);
-  return {selected.fit, selected.interpolation.split_fits, selection, gross_errors};
+  return {selected.fit, selected.interpolation.split_fits, selection, selected.beyond, gross_errors};
 }
 
 }  // namespace kinfer::calibrate

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forward model selection: geometry first, then each group of non-geometric terms that improves held-out errors.
+// Model selection: geometry, and the non-geometric terms that the marginal likelihood supports and held-out errors do
+// not speak against.
 //
-// Extrapolation is tested by fitting one half of the poses, split along a principal direction of the joint positions,
-// and evaluating the other half: terms that only interpolate would spoil poses outside the excited joint ranges.
+// Extrapolation is tested on the ends of the joint space along its principal directions, each predicted from the rest.
+// Farther out no data of one region tell, so a second model without the terms that only interpolate holds there.
 #pragma once
+
+#include <optional>
 
 #include "kinfer/base/observer.hpp"
 #include "kinfer/calibrate/problem/options.hpp"
@@ -16,6 +19,7 @@ struct SelectedModel {
   Estimate fit;                      ///< of the selected model to all rows
   std::vector<Estimate> split_fits;  ///< one per split: the selected model fitted to the split's training rows
   ModelSelection model_selection;
+  std::optional<Estimate> beyond;     ///< the model to trust far from the rows; none: `fit`
   std::vector<Outlier> gross_errors;  ///< rows with gross errors, excluded from the evaluation of every model
 };
 

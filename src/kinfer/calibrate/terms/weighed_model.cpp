@@ -37,6 +37,12 @@ std::vector<double> factors_of(const std::vector<GroupRelevance>& weights) {
   return factors;
 }
 
+/// Deflections follow from loads and temperatures by one number a joint, so they hold wherever the loads are known. The
+/// other terms are functions of joint positions and directions that the data show only where they were measured.
+bool holds_everywhere(Term term) {
+  return term == Term::gravity_compliance || term == Term::torque_compliance || term == Term::thermal_expansion;
+}
+
 class ModelWeigher {
  public:
   ModelWeigher(const SelectionData& data, const Estimate& geometry)
@@ -52,6 +58,7 @@ class ModelWeigher {
       ProvedModel plain{{}, geometry_, result.interpolation, {}};
       plain.extrapolation = held_out(plain.fit, geometry_.parameters, extrapolation_splits_);
       prove(plain);
+      result.beyond = fit_for_everywhere(plain);
     }
     describe(result);
     return result;
@@ -120,6 +127,24 @@ class ModelWeigher {
     fit_relevant(all_fitted_);
     if (!current_.model.terms.empty())
       current_.interpolation = held_out(current_.fit, current_.model.parameters, data_.splits);
+  }
+
+  /// Geometry with the terms that hold everywhere, without the others; geometry alone where held-out ends of the joint
+  /// space are predicted worse with them. None where the model has no other terms.
+  std::optional<Estimate> fit_for_everywhere(const ProvedModel& plain) const {
+    const auto local = [](const CandidateParameter& c) { return !holds_everywhere(c.term); };
+    if (std::ranges::none_of(current_.model.terms, local)) return std::nullopt;
+    std::vector<double> factors = factors_of(weights_);
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      if (!holds_everywhere(static_cast<Term>(groups_[g].family))) factors[g] = 0.0;
+    ProvedModel loads{model_of_relevant(candidates_, geometry_, all_fitted_, groups_, factors), {}, {}, {}};
+    if (loads.model.terms.empty()) return geometry_;
+    loads.fit = fit_rows(loads.model.chain, loads.model.parameters, data_.rows, data_.task,
+                         {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only}, data_.observer);
+    loads.extrapolation = held_out(loads.fit, loads.model.parameters, extrapolation_splits_);
+    const ErrorChange change =
+        compare_holdout(plain.extrapolation, plain.fit.outliers, loads.extrapolation, loads.fit.outliers);
+    return change.t < -thresholds::harm_significance ? geometry_ : loads.fit;
   }
 
   /// The term without which held-out errors are lowest, where they speak against it or against the whole model. Keeps
@@ -216,30 +241,6 @@ class ModelWeigher {
 };
 
 }  // namespace
-
-void count_determined(SelectionStep& step, const std::string& parameter, const Estimate& fit) {
-  const auto value = std::ranges::find(fit.values, parameter, &ParameterEstimate::name);
-  if (value != fit.values.end() && value->identifiable)
-    ++step.determined_count;
-  else
-    step.undetermined_parameters.push_back(parameter);
-}
-
-ErrorStatistics training_statistics(const Chain& chain, const std::vector<Outlier>& outliers, const PoseSet& rows) {
-  const PoseSet inliers = select(rows, without_outliers(all_rows(rows), outliers));
-  return error_statistics(primary_errors(chain, rows, inliers));
-}
-
-WeighedModel weighed_geometry(const SelectionData& data, const Estimate& geometry) {
-  WeighedModel model{
-      geometry, cross_validate(geometry, geometry.parameters, data.rows, data.splits, data.task, data.threads), {}};
-  SelectionStep step{.decision = Decision::start};
-  step.train = training_statistics(geometry.chain, geometry.outliers, data.rows);
-  step.parameter_count = static_cast<int>(geometry.values.size());
-  step.determined_count = geometry.identifiability.rank;
-  model.steps.push_back({step, {{}, model.interpolation.errors, model.interpolation.row}});
-  return model;
-}
 
 WeighedModel weigh_model(const SelectionData& data, const Estimate& geometry) {
   return ModelWeigher(data, geometry).run();

@@ -53,8 +53,8 @@ std::optional<deploy::CompensationFrames> frames_of(const std::string& name) {
 Result<deploy::CompensationModels> read_models(const CompensateArguments& options) {
   KINFER_TRY(corrected, read_robot(options.chain));
   KINFER_TRY(nominal, read_robot({options.nominal, options.chain.base_link, options.chain.tip_link}));
-  auto models =
-      deploy::prepare_compensation(corrected.chain, nominal.chain, nominal.tolerances, frames_of(options.frames));
+  auto models = deploy::prepare_compensation(corrected.chain, nominal.chain, nominal.tolerances,
+                                             frames_of(options.frames), corrected.prediction);
   if (!models) return error("{}, {}: {}", options.chain.path, options.nominal, models.error().what);
   return models;
 }
@@ -64,12 +64,12 @@ Result<std::vector<CompensatedJoints>> compensated_rows(const CompensateArgument
   const int threads = options.common.threads;
   if (!options.joints.empty()) {
     KINFER_TRY(set, read_pose_set(options.joints, chains.nominal, {}, RequiredContent::joints_only));
-    return deploy::compensate_joints(chains.corrected, chains.nominal, set.joints, threads);
+    return deploy::compensate_joints(chains.corrected, chains.nominal, set.joints, threads, chains.prediction);
   }
   KINFER_TRY(set, read_pose_set(options.targets, chains.nominal, {}, RequiredContent::targets));
   const MatrixXd start = set.joints.rows() > 0 ? set.joints : MatrixXd();
   return deploy::compensate_targets(chains.corrected, chains.nominal, targets_of(set), start, threads,
-                                    options.common.seed);
+                                    options.common.seed, chains.prediction);
 }
 
 /// Reports the rows that are not reached, and why.

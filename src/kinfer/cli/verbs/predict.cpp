@@ -40,7 +40,7 @@ int run(const PredictArguments& options) {
   if (!options.quiet)
     for (const std::string& remark : log->remarks) fmt::print(stderr, "kinfer: {}\n", remark);
   const PoseSet* set = &log->set;
-  const auto poses = deploy::predict_poses(robot->chain, *set);
+  const auto poses = deploy::predict_poses(robot->chain, *set, robot->prediction);
   if (!poses) return fail(poses.error());
   const auto deviations = deviations_of(*robot, *set);
   if (!deviations) return fail(deviations.error());

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/geometry/rotation.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
@@ -21,10 +22,11 @@ std::map<std::string, ParameterAddress> addresses_by_name(const Chain& chain) {
   return addresses;
 }
 
-/// The parameters that the chain has, and the rows of the root that belong to them.
+/// The parameters that the chain has, and what belongs to them of the model.
 struct KnownParameters {
   ParameterSet set;
   MatrixXd root;
+  VectorXd beyond;
 };
 
 KnownParameters known_parameters(const Chain& chain, const PredictionModel& model) {
@@ -38,6 +40,7 @@ KnownParameters known_parameters(const Chain& chain, const PredictionModel& mode
     rows.push_back(static_cast<Index>(k));
   }
   known.root = model.root(rows, Eigen::all);
+  if (model.beyond.size() > 0) known.beyond = model.beyond(rows);
   return known;
 }
 
@@ -61,6 +64,28 @@ std::vector<PoseUncertainty> pose_uncertainties(const Chain& chain, const Predic
     all.push_back({block(0), block(3)});
   }
   return all;
+}
+
+Chain chain_with_corrections(const Chain& chain, const PredictionModel& model, double weight) {
+  if (model.beyond.size() == 0 || weight == 1.0) return chain;
+  const auto [set, root, beyond] = known_parameters(chain, model);
+  return unpack(set, chain, pack(set, chain) + (1.0 - weight) * beyond);
+}
+
+std::vector<Pose> predicted_poses(const Chain& chain, const std::optional<PredictionModel>& model,
+                                  const PoseSet& rows) {
+  std::vector<Pose> poses = evaluate_poses(chain, {}, rows, Derivative::no).pose;
+  if (!model || model->beyond.size() == 0) return poses;
+  // The two differ by millimetres and milliradians: the pose between them is that of the parameters between them.
+  const std::vector<Pose> far =
+      evaluate_poses(chain_with_corrections(chain, *model, 0.0), {}, rows, Derivative::no).pose;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const double part = 1.0 - correction_weight(*model, rows.joints.col(static_cast<Index>(i)));
+    const Mat3 turn = far[i].rotation * poses[i].rotation.transpose();
+    poses[i].rotation = exp_so3(part * log_so3(turn)) * poses[i].rotation;
+    poses[i].position += part * (far[i].position - poses[i].position);
+  }
+  return poses;
 }
 
 MatrixXd covariance_root(ConstMatrixRef covariance) {

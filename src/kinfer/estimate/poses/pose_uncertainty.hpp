@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uncertainty of the tool's pose that a calibrated chain predicts, from its prediction model.
+// The tool's pose that a calibrated chain predicts, and its uncertainty, from its prediction model.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "kinfer/evidence/calibration/prediction_model.hpp"
+#include "kinfer/geometry/pose.hpp"
 #include "kinfer/kinematics/chain.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
@@ -19,6 +21,14 @@ struct PoseUncertainty {
 /// J Σ Jᵀ + growth · M at each row, in its mounting and under its loads. Parameters that the chain does not have (any
 /// more) are left out.
 std::vector<PoseUncertainty> pose_uncertainties(const Chain& chain, const PredictionModel& model, const PoseSet& rows);
+
+/// The chain with the parameters that hold where the corrections have this weight: 1 as given, 0 far from the fitted
+/// rows.
+Chain chain_with_corrections(const Chain& chain, const PredictionModel& model, double weight);
+
+/// The tool pose of each row, in its mounting and under its loads; corrections fade outside the measured region.
+/// Without a prediction model they hold everywhere.
+std::vector<Pose> predicted_poses(const Chain& chain, const std::optional<PredictionModel>& model, const PoseSet& rows);
 
 /// Lower triangular L with covariance = L Lᵀ, of a covariance that may be singular.
 MatrixXd covariance_root(ConstMatrixRef covariance);

@@ -4,6 +4,10 @@
 // covariance of the tool = J(q) Σ J(q)ᵀ + growth(q) M: uncertainty of the parameters, and the model error M that
 // held-out rows show beyond it and beyond the instrument's noise. Outside the region of the fitted rows M grows:
 // growth(q) = 1 + rate · (distance(q) / reach)², distance to the nearest of `rows` in units of `spread`.
+//
+// What corrections of encoders and gears found out among the fitted rows says nothing of joint positions far from them:
+// there the parameters are those of a fit without these terms, x + (1 − weight(q)) · beyond, with
+// weight(q) = 1 / (1 + fade · (distance(q) / reach − 1)²) beyond the reach.
 #pragma once
 
 #include <string>
@@ -22,10 +26,15 @@ struct PredictionModel {
   VectorXd spread{};   ///< dof: standard deviation of each joint over the fitted rows, [rad] or [m]
   double reach = 1.0;  ///< [1] distance up to which joint positions count as measured
   double rate = 0.0;   ///< [1] of the growth of M
+  /// What the parameters change by far from the fitted rows, SI. Empty: nothing, the corrections hold everywhere.
+  VectorXd beyond{};
 };
 
 /// Distance to the nearest of `rows` in units of `spread`, over `reach`: above 1 outside the measured region.
 double region_distance(const PredictionModel& model, ConstVectorRef q);
+
+/// weight(q) of the corrections, 1 where it was measured.
+double correction_weight(const PredictionModel& model, ConstVectorRef q);
 
 /// growth(q) of the model error.
 double model_error_growth(const PredictionModel& model, ConstVectorRef q);

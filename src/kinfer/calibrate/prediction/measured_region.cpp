@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/prediction/measured_region.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "kinfer/calibrate/prediction/thresholds.hpp"
+#include "kinfer/geometry/statistics.hpp"
+
+namespace kinfer::calibrate {
+
+using Eigen::Index;
+
+MatrixXd representatives(const MatrixXd& joints) {
+  const auto count = static_cast<int>(joints.cols()), kept = std::min(count, thresholds::region_rows);
+  std::vector<int> rows;
+  for (int k = 0; k < kept; ++k) rows.push_back(static_cast<int>(static_cast<long>(k) * count / kept));
+  return joints(Eigen::all, rows);
+}
+
+void describe_region(PredictionModel& model, const MatrixXd& joints) {
+  const auto count = static_cast<int>(joints.cols());
+  model.rows = representatives(joints);
+  const MatrixXd centred = joints.colwise() - joints.rowwise().mean();
+  model.spread = (centred.rowwise().squaredNorm() / std::max(1, count - 1)).cwiseSqrt().cwiseMax(1e-9);
+  model.reach = 1.0;
+  std::vector<double> distances;
+  for (Index row = 0; row < joints.cols(); row += std::max<Index>(1, joints.cols() / 300)) {
+    // A representative is not its own neighbour.
+    const VectorXd scale = model.spread.cwiseInverse();
+    VectorXd squares =
+        (scale.asDiagonal() * (model.rows.colwise() - VectorXd(joints.col(row)))).colwise().squaredNorm().transpose();
+    for (double& s : squares)
+      if (s == 0.0) s = std::numeric_limits<double>::infinity();
+    if (const double least = squares.minCoeff(); std::isfinite(least)) distances.push_back(std::sqrt(least));
+  }
+  if (!distances.empty()) model.reach = quantile(std::move(distances), thresholds::region_part);
+}
+
+}  // namespace kinfer::calibrate
