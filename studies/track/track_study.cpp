@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simulated machines, identified on one drive by default options and tracked on another one.
+// Simulated machines, identified on one drive by default options and tracked on another one; then measured ones.
+// `--measured diodem|kuka|ur5` runs these alone.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "studies/track/measured.hpp"
 #include "studies/track/scores.hpp"
 
 namespace kinfer::study {
@@ -113,6 +115,13 @@ void run(const Arguments& a) {
 }  // namespace kinfer::study
 
 int main(int argc, char** argv) {
+  const char* data = std::getenv("KINFER_DATA");
+  const std::string folder = data ? data : "";
+  if (argc == 3 && std::string_view(argv[1]) == "--measured") {
+    kinfer::study::track_measured(folder, argv[2]);
+    return 0;
+  }
   kinfer::study::run(kinfer::study::parse(argc, argv));
+  if (argc == 1) kinfer::study::track_measured(folder, {});
   return 0;
 }
