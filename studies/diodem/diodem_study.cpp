@@ -11,8 +11,8 @@
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
 #include "kinfer/words/identification/verdict.hpp"
-#include "studies/diodem/optical_truth.hpp"
 #include "studies/studies.hpp"
+#include "studies/support/optical_truth.hpp"
 
 namespace kinfer::study::diodem_study {
 using namespace identify;

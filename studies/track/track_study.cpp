@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simulated machines, identified on one drive by default options and tracked on another one.
+// Simulated machines, identified on one drive by default options and tracked on another one; then measured ones.
+// `--measured diodem|kuka|ur5` runs these alone.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <string_view>
 
 #include "studies/studies.hpp"
+#include "studies/track/measured.hpp"
 #include "studies/track/scores.hpp"
 
 namespace kinfer::study::track_study {
@@ -114,6 +116,13 @@ void run(const Arguments& a) {
 }  // namespace kinfer::study::track_study
 
 int kinfer::study::run_track(int argc, char** argv) {
+  const char* data = std::getenv("KINFER_DATA");
+  const std::string folder = data ? data : "";
+  if (argc == 3 && std::string_view(argv[1]) == "--measured") {
+    track_study::track_measured(folder, argv[2]);
+    return 0;
+  }
   track_study::run(track_study::parse(argc, argv));
+  if (argc == 1) track_study::track_measured(folder, {});
   return 0;
 }

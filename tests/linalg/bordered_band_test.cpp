@@ -76,6 +76,14 @@ TEST(BorderedBand, SchurComplementIsTheInverseOfTheBordersCovariance) {
   EXPECT_LT((a * band.sensitivity() - b.transpose()).norm(), 1e-9 * b.norm());
 }
 
+TEST(BorderedBand, ConditionalCovarianceIsABlockOfTheInverse) {
+  const Problem p = random_problem(3, 2, 4, 6, Rng(5));
+  const BorderedBand band = eliminated(p);
+  const MatrixXd inverse = *invert_spd(p.whole.topLeftCorner(p.band(), p.band()));
+  for (Index k = 0; k < p.band() / 3; ++k)
+    EXPECT_LT((band.conditional_covariance(k) - inverse.block(3 * k, 3 * k, 3, 3)).norm(), 1e-9 * inverse.norm());
+}
+
 TEST(BorderedBand, ReportsWhereAPivotIsNotPositive) {
   Problem p = random_problem(2, 3, 2, 5, Rng(4));
   p.parts[2].matrix -= 1e3 * MatrixXd::Identity(6, 6);

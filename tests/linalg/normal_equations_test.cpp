@@ -100,5 +100,30 @@ TEST(NormalEquations, CholeskyRefusesARankDeficientSystemAndSvdDoesNotMoveAlongI
   EXPECT_LT((solve_damped_by_svd(singular_system(a, b), 1e-14) - shortest).norm(), 1e-10);
 }
 
+TEST(CovarianceOfNormalMatrix, IsTheInverseWhateverTheScales) {
+  Rng rng(3);
+  MatrixXd a(40, 6);
+  for (double& value : a.reshaped()) value = rng.normal();
+  VectorXd scale(6);
+  scale << 1.0, 1e-6, 1e5, 1.0, 1e-3, 1e3;
+  a = a * scale.asDiagonal();
+  const MatrixXd normal = a.transpose() * a;
+  const MatrixXd identity = covariance_of_normal_matrix(normal) * normal;
+  EXPECT_LT((scale.asDiagonal() * identity * scale.cwiseInverse().asDiagonal() - MatrixXd::Identity(6, 6)).norm(),
+            1e-9);
+}
+
+TEST(CovarianceOfNormalMatrix, ADirectionThatRoundingHidesHasALargeVarianceAndTheOthersTheirs) {
+  // Two columns that differ by a weak prior only, and one of its own.
+  MatrixXd normal = MatrixXd::Constant(3, 3, 1e12);
+  normal(2, 0) = normal(2, 1) = normal(0, 2) = normal(1, 2) = 0.0;
+  normal(2, 2) = 4.0;
+  normal(0, 0) += 1e-8, normal(1, 1) += 1e-8;
+  const MatrixXd covariance = covariance_of_normal_matrix(normal);
+  EXPECT_NEAR(covariance(2, 2), 0.25, 1e-12);
+  EXPECT_NEAR(covariance(0, 0) + 2.0 * covariance(0, 1) + covariance(1, 1), 1e-12, 1e-14) << "their sum is determined";
+  EXPECT_GT(covariance(0, 0) - 2.0 * covariance(0, 1) + covariance(1, 1), 1.0) << "their difference is not";
+}
+
 }  // namespace
 }  // namespace kinfer

@@ -46,6 +46,7 @@ export async function launch() {
 export async function open(browser, kind, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
   const page = await context.newPage();
+  page.setDefaultTimeout(120000); // [ms] the machine may do other things at the same time
   const complaints = [];
   page.on('console', (message) => {
     if (message.type() === 'error' || message.type() === 'warning') complaints.push(message.text());
@@ -56,7 +57,7 @@ export async function open(browser, kind, options = {}) {
     if (request.url() !== url && !request.url().startsWith('data:')) complaints.push(`requested ${request.url()}`);
   });
   const began = Date.now();
-  await page.goto(url, { timeout: 120000 });  // [ms] a machine that does other things at the same time
+  await page.goto(url);
   if (options.javaScriptEnabled !== false) {
     await page.waitForFunction(() => document.documentElement.dataset.ready === 'true');
     await page.waitForFunction(() => Number(document.querySelector('.stage canvas')?.dataset.frames) > 0);

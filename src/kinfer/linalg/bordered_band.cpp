@@ -113,4 +113,19 @@ MatrixXd BorderedBand::sensitivity() const {
   return result;
 }
 
+/// From the last group to the first (Takahashi et al. 1973): with pivot L and next N of a group, its block of A⁻¹ is
+/// L⁻ᵀ (I + Nᵀ Σ N) L⁻¹, Σ the block of the group behind it.
+MatrixXd BorderedBand::conditional_covariance(Index group) const {
+  KINFER_EXPECT(positive_ && reach_ == 2 && group < static_cast<Index>(groups_.size()));
+  MatrixXd block = MatrixXd::Zero(width_, width_);
+  for (auto k = static_cast<Index>(groups_.size()) - 1; k >= group; --k) {
+    const Group& here = groups_[static_cast<std::size_t>(k)];
+    MatrixXd half = MatrixXd::Identity(width_, width_) + transposed_times(here.next, product(block, here.next));
+    solve_upper(here.pivot, half);
+    block = half.transpose();
+    solve_upper(here.pivot, block);
+  }
+  return block;
+}
+
 }  // namespace kinfer

@@ -49,6 +49,9 @@ class BorderedBand {
   /// A⁻¹ Bᵀ, groups·width x border: minus the sensitivity of the band to the border.
   MatrixXd sensitivity() const;
 
+  /// Diagonal block `group` of A⁻¹: covariance of a group, the border given. Precondition: reach 2.
+  MatrixXd conditional_covariance(Eigen::Index group) const;
+
  private:
   struct Group {
     MatrixXd pivot;     ///< L, width x width, lower

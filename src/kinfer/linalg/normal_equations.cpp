@@ -103,6 +103,20 @@ VectorXd solve_damped_by_eigenvalues(const NormalEquations& equations, double da
   return eigen.vectors * along;
 }
 
+MatrixXd covariance_of_normal_matrix(ConstMatrixRef normal) {
+  constexpr double least = 1e-12;
+  // Scaled to unit diagonal before the inversion, for accuracy.
+  const VectorXd scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+  const MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+  auto inverse = invert_spd(scaled);
+  if (!inverse) {
+    const SymmetricEigen eigen = symmetric_eigen(scaled);
+    const VectorXd variances = eigen.values.cwiseMax(least).cwiseInverse();
+    inverse = eigen.vectors * variances.asDiagonal() * eigen.vectors.transpose();
+  }
+  return scale.asDiagonal() * *inverse * scale.asDiagonal();
+}
+
 SingularSystem singular_system(ConstMatrixRef a, ConstVectorRef b) {
   KINFER_EXPECT(a.rows() == b.size(), "{} rows, {} values", a.rows(), b.size());
   MatrixXd both(a.rows(), a.cols() + 1);

@@ -27,6 +27,11 @@ std::optional<VectorXd> solve_damped_by_cholesky(const NormalEquations& equation
 /// The same x from the eigenvalues of aᵀa; directions whose eigenvalue is below rounding get a zero step.
 VectorXd solve_damped_by_eigenvalues(const NormalEquations& equations, double damping);
 
+/// Covariance, the inverse of a normal matrix (lower half read) that is positive definite but for rounding. Where it is
+/// not, directions that are determined by less than 1e-12 of what each parameter is, the others given, get that much: a
+/// large variance, and not none.
+MatrixXd covariance_of_normal_matrix(ConstMatrixRef normal);
+
 /// a = u diag(s) vᵀ and uᵀb, for repeated solutions with different damping.
 struct SingularSystem {
   VectorXd s;      ///< singular values, descending

@@ -154,10 +154,11 @@ void Tracker::try_start() {
   const InitialPosture posture = initial_posture(*model_, block, guesses_, base_.mode());
   filter_.start(posture.state, posture.covariance);
   is_known_ = posture.is_known;
+  const bool moves = base_.mode() == BaseMode::moving;
   for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
     const Index at = model_->layout.position[b];
     if (model_->bodies[b].motion == JointMotion::revolute && !is_known_[static_cast<std::size_t>(at)])
-      filter_.declare_known(at);
+      moves ? filter_.place(at, posture.state.joints[position_states * at], 0.0) : filter_.declare_known(at);
   }
   begin_grid();
   replay_.begin(filter_);

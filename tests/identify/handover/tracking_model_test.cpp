@@ -24,11 +24,16 @@ Pose by_chain(const Identification& found, const std::string& sensor, const Vect
   return found.chain.base.pose().inverse() * frames[static_cast<std::size_t>(joint - found.chain.joints.begin())];
 }
 
-/// Sum of the variances of some parameters of a body or sensor.
+/// A rotation about the axis itself is the zero of a joint's positions.
+bool is_zero(const TrackingParameter& parameter) {
+  return parameter.kind == Kind::child_rotation && parameter.component == 2;
+}
+
+/// Sum of the variances of some parameters of a body or sensor, but for zeros.
 double variance_of(const TrackingModel& model, Kind kind, int index) {
   double sum = 0.0;
   for (std::size_t i = 0; i < model.parameters.size(); ++i)
-    if (model.parameters[i].kind == kind && model.parameters[i].index == index)
+    if (model.parameters[i].kind == kind && model.parameters[i].index == index && !is_zero(model.parameters[i]))
       sum += model.covariance(static_cast<Index>(i), static_cast<Index>(i));
   return sum;
 }
@@ -96,6 +101,23 @@ TEST(TrackingModel, KnowsThatTheBaseMoved) {
   expect_agreement(found);
   EXPECT_TRUE(found.tracking->base.moved);
   EXPECT_GT(found.tracking->base.angular_acceleration, 0.01);
+}
+
+TEST(TrackingModel, KnowsThatZerosShareTheErrorsOfGeometryAndSensors) {
+  const auto drive = test::driven_machine("excavator", 3);
+  const TrackingModel model = *test::identified(drive.recording).tracking;
+  std::vector<Index> zeros, others;
+  for (std::size_t i = 0; i < model.parameters.size(); ++i)
+    (is_zero(model.parameters[i]) ? zeros : others).push_back(static_cast<Index>(i));
+  ASSERT_EQ(zeros.size(), model.joints.size());
+  const MatrixXd information = *invert_spd(model.covariance(others, others) +
+                                           1e-14 * MatrixXd::Identity(std::ssize(others), std::ssize(others)));
+  for (std::size_t k = 1; k < zeros.size(); ++k) {  // the first axis is vertical: gravity does not show its zero
+    const VectorXd shared = model.covariance(others, zeros[k]);
+    const double own = model.covariance(zeros[k], zeros[k]), left = own - shared.dot(information * shared);
+    EXPECT_LT(std::sqrt(own), 0.02) << "gravity tells it";
+    EXPECT_LT(left, 0.5 * own) << "most of it is the sensors' and the axes'";
+  }
 }
 
 TEST(TrackingModel, TakesNamedZeros) {

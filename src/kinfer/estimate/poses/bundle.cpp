@@ -265,13 +265,8 @@ class Fit {
 
   void describe_parameters(Estimate& estimate) const {
     const std::vector<const Parameter*> free = set_.free();
-    const MatrixXd& normal = state_.outcome.normal.matrix;
-    // Scaled to unit diagonal before inversion, for accuracy.
-    const VectorXd scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-    const auto inverse = invert_spd(scale.asDiagonal() * normal * scale.asDiagonal());
-    const Eigen::Index n = scale.size();
-    estimate.covariance = inverse ? MatrixXd(scale.asDiagonal() * *inverse * scale.asDiagonal()) : MatrixXd::Zero(n, n);
-    for (Eigen::Index k = 0; k < n; ++k) {
+    estimate.covariance = covariance_of_normal_matrix(state_.outcome.normal.matrix);
+    for (Eigen::Index k = 0; k < estimate.covariance.rows(); ++k) {
       const Parameter& parameter = *free[k];
       const double sd = std::sqrt(std::max(0.0, estimate.covariance(k, k)));
       estimate.values.push_back({parameter.name, parameter.quantity, parameter.nominal, state_.outcome.x[k], sd,

@@ -88,7 +88,7 @@ struct TrackingJoint {
 };
 
 enum class TrackingParameterKind {
-  parent_rotation,      ///< A ← A exp(δ e_component), component 0 or 1 (2: about the axis itself)
+  parent_rotation,      ///< A ← A exp(δ e_component), component 0 or 1 (of B also 2, the zero of a revolute joint)
   child_rotation,       ///< B ← B exp(δ e_component)
   point_in_parent,      ///< [m] p
   point_in_child,       ///< [m] c

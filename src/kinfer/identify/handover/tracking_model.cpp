@@ -94,6 +94,7 @@ struct Parameters {
   std::vector<TrackingParameter> list;
   MatrixXd jacobian;
   std::vector<std::pair<Index, MatrixXd>> replaced;  // first row, covariance
+  std::vector<std::pair<Index, double>> added;       // row, variance beside that of the global parameters
 
   void add(const TrackingParameter& parameter) { list.push_back(parameter); }
   auto new_rows(Index count) {
@@ -127,6 +128,23 @@ void add_joint_rows(Parameters& parameters, const FittedMachine& machine, const 
   parameters.replaced.emplace_back(row, propagated_covariance(tracked.jacobian, joint.mean->covariance));
 }
 
+/// The zero of a revolute joint's positions is a rotation of B about the axis. It was found in the same fit as geometry
+/// and sensors, and shares their errors: with the same accelerometer biases gravity shows the same angle again.
+void add_zero_rows(Parameters& parameters, const FittedMachine& machine, const FittedJoint& joint,
+                   const TrackedBodies& tracked) {
+  if (joint.mean) return;
+  for (std::size_t i = 0; i < joint.at_zero.size(); ++i) {
+    const std::size_t body = joint.bodies.first + i;
+    const InsBody& fitted = machine.fit.unknowns.bodies[body];
+    if (fitted.motion != JointMotion::revolute) continue;
+    const Index spline = machine.fit.layout.spline_dimension[body];
+    const double sense = tracked.bodies[i].child_R_axis.col(2).dot(fitted.child_R_axis.col(2)) < 0.0 ? 1.0 : -1.0;
+    parameters.add({Kind::child_rotation, static_cast<int>(body), 2});
+    parameters.added.emplace_back(parameters.jacobian.rows(), joint.at_zero[i].conditional(spline, spline));
+    parameters.new_rows(1) = sense * joint.at_zero[i].by_global_parameters.row(spline);
+  }
+}
+
 void add_joint(TrackingModel& model, Parameters& parameters, const FittedMachine& machine, const FittedJoint& joint,
                const std::vector<std::size_t>& carried) {
   const TrackedBodies tracked = bodies_of(joint, machine.fit.unknowns.bodies);
@@ -148,6 +166,7 @@ void add_joint(TrackingModel& model, Parameters& parameters, const FittedMachine
   }
   model.joints.push_back(std::move(made));
   add_joint_rows(parameters, machine, joint, tracked);
+  add_zero_rows(parameters, machine, joint, tracked);
 }
 
 void add_sensor_rows(Parameters& parameters, const FittedMachine& machine, std::size_t sensor, int number) {
@@ -166,6 +185,7 @@ void add_sensor_rows(Parameters& parameters, const FittedMachine& machine, std::
 MatrixXd covariance_of(const Parameters& parameters, ConstMatrixRef covariance) {
   MatrixXd result = propagated_covariance(parameters.jacobian, covariance);
   for (const auto& [row, block] : parameters.replaced) result.block(row, row, block.rows(), block.cols()) = block;
+  for (const auto& [row, variance] : parameters.added) result(row, row) += variance;
   return 0.5 * (result + result.transpose());
 }
 

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "kinfer/estimate/continuous/solver/normal_equations.hpp"
 #include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/identify/geometry/mean_revolute.hpp"
 #include "kinfer/identify/handover/parameter_covariance.hpp"
@@ -17,6 +18,7 @@ struct FittedJoint {
   const JointGeometry& geometry;
   JointBodies bodies;
   std::vector<double> zero;                 ///< as for refined_joint
+  std::vector<SplineMarginal> at_zero;      ///< of each body, at the time that its zero is stated for
   const std::optional<MeanRevolute>& mean;  ///< of a relaxed joint
 };
 

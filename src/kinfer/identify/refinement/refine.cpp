@@ -114,9 +114,11 @@ TrackingModel hand_over(const RefinementTask& task, const RefinementFit& fitted,
                         const InsCovariance& covariance, const ModelError& error) {
   std::vector<FittedJoint> joints;
   const std::vector<JointBodies> bodies = joint_bodies(task, fitted.setup);
+  const InsSystem system(fitted.setup.problem, result.fit.layout, result.fit.unknowns, {}, task.options.threads);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const RefinedJoint& joint = result.joints[i];
-    joints.push_back({joint.estimate, joint.solution.geometry, bodies[i], joint.zero, joint.mean});
+    joints.push_back({joint.estimate, joint.solution.geometry, bodies[i], joint.zero,
+                      zero_marginals(task, fitted, system, bodies[i]), joint.mean});
   }
   const MatrixXd all = covariance_of_parameters(task, fitted, covariance, error);
   return tracking_model({task.recording, fitted.setup.problem, result.fit, result.noise, result.noise_floor, error, all,

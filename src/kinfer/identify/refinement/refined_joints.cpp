@@ -144,6 +144,16 @@ std::vector<RefinedJoint> make_joints(const RefinementTask& task, const Refineme
   return joints;
 }
 
+std::vector<SplineMarginal> zero_marginals(const RefinementTask& task, const RefinementFit& fitted,
+                                           const InsSystem& system, const JointBodies& joint) {
+  std::vector<SplineMarginal> marginals;
+  for (std::size_t b = joint.first; b <= joint.last && system.is_positive_definite(); ++b) {
+    const NamedZero* named = named_zero(task.zeros, joint, b - joint.first, segment_names(task.motion));
+    marginals.push_back(system.spline_marginal(named ? named->at : fitted.setup.problem.grid.begin));
+  }
+  return marginals;
+}
+
 std::vector<JointEstimate> closing_joints(const InsFit& fit, const InsCovariance& covariance) {
   std::vector<JointEstimate> joints;
   for (std::size_t c = 0; c < fit.unknowns.facts.closures.size(); ++c) {

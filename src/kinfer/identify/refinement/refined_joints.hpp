@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinfer/estimate/continuous/solver/covariance.hpp"
+#include "kinfer/estimate/continuous/solver/normal_equations.hpp"
 #include "kinfer/identify/refinement/low_frequency_fit.hpp"
 #include "kinfer/identify/refinement/refined_joint.hpp"
 
@@ -21,5 +22,9 @@ std::vector<RefinedJoint> make_joints(const RefinementTask& task, const Refineme
 
 /// The joints that close loops, in the order of the fit's closures; without names and trajectory.
 std::vector<JointEstimate> closing_joints(const InsFit& fit, const InsCovariance& covariance);
+
+/// Of each body of a joint: the splines at the time for which its zero is stated.
+std::vector<SplineMarginal> zero_marginals(const RefinementTask& task, const RefinementFit& fitted,
+                                           const InsSystem& system, const JointBodies& joint);
 
 }  // namespace kinfer::identify

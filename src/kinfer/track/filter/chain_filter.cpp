@@ -70,17 +70,33 @@ void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {
   p_.topLeftCorner(layout.fast, layout.fast) = fast;
 }
 
+/// The state of the zero of a revolute joint's positions; −1: it is not considered.
+Index ChainFilter::zero_state(Index position) const {
+  const auto at = std::ranges::find(model_->layout.position, position);
+  const auto b = static_cast<std::size_t>(at - model_->layout.position.begin());
+  if (b >= model_->bodies.size()) return -1;
+  const InsBody& body = model_->bodies[b];
+  if (body.motion != JointMotion::revolute || !body.free_child_rotation[2]) return -1;
+  return model_->layout.first_geometry + model_->layout.geometry[b] + body.turns() - 1;
+}
+
+void ChainFilter::forget(Index state) {
+  p_.row(state).setZero();
+  p_.col(state).setZero();
+}
+
 void ChainFilter::place(Index position, double value, double sd) {
-  declare_known(position);
-  const Index at = model_->layout.joint_state(position);
+  const Index at = model_->layout.joint_state(position), zero = zero_state(position);
+  forget(at);
+  if (zero >= 0 && p_(zero, zero) <= 0.0)
+    p_(zero, zero) = model_->parameters(zero - model_->layout.fast, zero - model_->layout.fast);
   state_.joints[position_states * position] = value;
   p_(at, at) = sd * sd;
 }
 
 void ChainFilter::declare_known(Index position) {
-  const Index at = model_->layout.joint_state(position);
-  p_.row(at).setZero();
-  p_.col(at).setZero();
+  forget(model_->layout.joint_state(position));
+  if (const Index zero = zero_state(position); zero >= 0) forget(zero);
 }
 
 void ChainFilter::predict(double time) {

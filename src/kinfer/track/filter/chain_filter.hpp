@@ -61,7 +61,7 @@ class ChainFilter {
   /// Moves a joint position (of a revolute or prismatic joint) and states how well it is known there.
   void place(Index position, double value, double sd);
 
-  /// Forgets what is unknown of a joint position: it counts from here.
+  /// Forgets what is unknown of a joint position and of its zero: it counts from here.
   void declare_known(Index position);
 
   /// Leaves a sensor out of all updates (or takes it in again).
@@ -72,6 +72,8 @@ class ChainFilter {
   InsLevel inflation(std::size_t sensor) const { return inflation_[sensor]; }
 
  private:
+  Index zero_state(Index position) const;
+  void forget(Index state);
   void form_rows(const BlockMeasurement& block);
   void form_sensor_rows(const BlockMeasurement& block, std::size_t sensor);
   void form_soft_rows(double length);

@@ -152,27 +152,56 @@ std::optional<InsStep> InsSystem::solve() const {
   return step;
 }
 
-/// Gradient of each interval of a time segment with respect to the global parameters.
-MatrixXd InsSystem::segment_scores(std::size_t time_segment, ConstMatrixRef ends_following) const {
+/// How a time segment's coefficients follow the global parameters.
+InsSystem::Following InsSystem::following(std::size_t time_segment, ConstMatrixRef ends_following) const {
   const auto [first, end] = segments_[time_segment];
   const BandSegment band = kept_.empty() ? eliminated(segments_[time_segment]) : kept_[time_segment];
   const Index e = end_width(), group = e + layout_.bias_process, inner = (end - first) * layout_.spline_dimensions - e,
               at = static_cast<Index>(time_segment) * group;
-  MatrixXd border = MatrixXd::Identity(layout_.global_parameters, layout_.global_parameters);
+  Following result{MatrixXd::Identity(layout_.global_parameters, layout_.global_parameters),
+                   MatrixXd(inner + 2 * e, layout_.global_parameters)};
   if (layout_.bias_process > 0)
-    border(bias_parameters_, Eigen::all) -= ends_following.middleRows(at + e, layout_.bias_process);
-  MatrixXd sensitivity(inner + 2 * e, layout_.global_parameters);
-  sensitivity.topRows(e) = ends_following.middleRows(at, e);
-  sensitivity.bottomRows(e) = ends_following.middleRows(at + group, e);
-  sensitivity.middleRows(e, inner) = band.sensitivity(sensitivity.topRows(e), sensitivity.bottomRows(e), border);
+    result.border(bias_parameters_, Eigen::all) -= ends_following.middleRows(at + e, layout_.bias_process);
+  MatrixXd& coefficients = result.coefficients;
+  coefficients.topRows(e) = ends_following.middleRows(at, e);
+  coefficients.bottomRows(e) = ends_following.middleRows(at + group, e);
+  coefficients.middleRows(e, inner) =
+      band.sensitivity(coefficients.topRows(e), coefficients.bottomRows(e), result.border);
+  return result;
+}
+
+/// Gradient of each interval of a time segment with respect to the global parameters.
+MatrixXd InsSystem::segment_scores(std::size_t time_segment, ConstMatrixRef ends_following) const {
+  const auto [first, end] = segments_[time_segment];
+  const Following sensitivity = following(time_segment, ends_following);
   MatrixXd scores(end - first, layout_.global_parameters);
   const auto gradients = linearisation_.gradients(segments_[time_segment]);
   for (Index i = 0; i < scores.rows(); ++i) {
     const IntervalGradient& gradient = gradients[static_cast<std::size_t>(i)];
-    const auto window = sensitivity.middleRows(i * layout_.spline_dimensions, spline_order * layout_.spline_dimensions);
-    scores.row(i) = (border.transpose() * gradient.border - window.transpose() * gradient.band).transpose();
+    const auto window =
+        sensitivity.coefficients.middleRows(i * layout_.spline_dimensions, spline_order * layout_.spline_dimensions);
+    scores.row(i) = (sensitivity.border.transpose() * gradient.border - window.transpose() * gradient.band).transpose();
   }
   return scores;
+}
+
+SplineMarginal InsSystem::spline_marginal(double time) const {
+  const auto [interval, u] = problem_.grid.locate(time);
+  const auto k = static_cast<std::size_t>(time_segment_at(problem_.grid, interval));
+  const MatrixXd coefficients = following(k, ends_.sensitivity()).coefficients;
+  const MatrixXd end = ends_.conditional_covariance(static_cast<Index>(k));
+  const auto basis = spline_basis(u, problem_.grid.period).at.front(),
+             basis_at_begin = spline_basis(0.0, problem_.grid.period).at.front();
+  const Index dimensions = layout_.spline_dimensions, window = (interval - segments_[k].first) * dimensions;
+  SplineMarginal result{MatrixXd::Zero(dimensions, layout_.global_parameters), MatrixXd::Zero(dimensions, dimensions)};
+  for (Index i = 0; i < spline_order; ++i)
+    result.by_global_parameters -=
+        basis[static_cast<std::size_t>(i)] * coefficients.middleRows(window + i * dimensions, dimensions);
+  for (Index i = 0; i < spline_order - 1; ++i)
+    for (Index j = 0; j < spline_order - 1; ++j)
+      result.conditional += basis_at_begin[static_cast<std::size_t>(i)] * basis_at_begin[static_cast<std::size_t>(j)] *
+                            end.block(i * dimensions, j * dimensions, dimensions, dimensions);
+  return result;
 }
 
 InsSystem::Scores InsSystem::scores(double seconds) const {

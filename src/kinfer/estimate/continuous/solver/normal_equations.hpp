@@ -19,6 +19,12 @@ struct Damping {
   bool holds_global_parameters = false;  ///< global parameters and biases are held: much less work
 };
 
+/// Values of all splines at one time, as they follow the global parameters.
+struct SplineMarginal {
+  MatrixXd by_global_parameters;  ///< derivative, dimensions x global parameters
+  MatrixXd conditional;           ///< covariance with the global parameters given, dimensions x dimensions
+};
+
 class InsSystem {
  public:
   /// At x; the arguments must outlive the system. Up to `most_kept` [bytes] of factors are kept rather than recomputed.
@@ -42,6 +48,9 @@ class InsSystem {
   /// information.
   Scores scores(double seconds) const;
 
+  /// The conditional covariance is that at the begin of the time segment.
+  SplineMarginal spline_marginal(double time) const;
+
  private:
   struct Condensed {
     BandSpan span;
@@ -56,6 +65,10 @@ class InsSystem {
   std::optional<VectorXd> global_step_of(std::size_t time_segment, const BorderedBand::Solution& ends) const;
   BandSegment eliminated(const TimeSegment& time_segment) const;
   MatrixXd between(std::size_t time_segment, const BorderedBand::Solution& ends) const;
+  struct Following {
+    MatrixXd border, coefficients;  // change of the border as the segment sees it; minus that of the coefficients
+  };
+  Following following(std::size_t time_segment, ConstMatrixRef ends_following) const;
   MatrixXd segment_scores(std::size_t time_segment, ConstMatrixRef ends_following) const;
   MatrixXd prior_information(ConstMatrixRef ends_following) const;
   Eigen::Index end_width() const { return (spline_order - 1) * layout_.spline_dimensions; }

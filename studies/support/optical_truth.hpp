@@ -8,7 +8,7 @@
 #include "kinfer/base/result.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
 
-namespace kinfer::study::diodem_study {
+namespace kinfer::study {
 
 /// Orientations of the segments over time.
 struct OpticalLog {
@@ -34,4 +34,4 @@ struct OpticalJoint {
 OpticalJoint optical_joint(const OpticalLog& optical, const OpticalAlignment& alignment, const std::string& parent,
                            const std::string& child);
 
-}  // namespace kinfer::study::diodem_study
+}  // namespace kinfer::study

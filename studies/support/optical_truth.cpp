@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studies/diodem/optical_truth.hpp"
+#include "studies/support/optical_truth.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/geometry/mean_revolute.hpp"
 
-namespace kinfer::study::diodem_study {
+namespace kinfer::study {
 using namespace identify;
 namespace {
 
@@ -149,4 +149,4 @@ OpticalJoint optical_joint(const OpticalLog& optical, const OpticalAlignment& al
   return {joint.body.parent_R_axis.col(2), joint.body.child_R_axis.col(2), joint.axis_deviation};
 }
 
-}  // namespace kinfer::study::diodem_study
+}  // namespace kinfer::study
