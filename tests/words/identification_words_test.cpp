@@ -51,7 +51,8 @@ FactValues all_values() {
 /// Notes whose sentence names no sensor.
 bool is_about_the_whole(IdentificationNoteKind kind) {
   using enum IdentificationNoteKind;
-  return kind == unsafe_order || kind == phases_disagree || kind == refinement_failed || kind == limited_passband;
+  return kind == unsafe_order || kind == phases_disagree || kind == refinement_failed || kind == limited_passband ||
+         kind == assumed_force_sign;
 }
 
 std::vector<IdentificationNote> every_note() {

@@ -6,6 +6,7 @@
 
 #include "calibrate/terms/simulated_selection.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/calibrate/terms/candidate_terms.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/words/calibration/model.hpp"
 
@@ -107,6 +108,22 @@ TEST(WeighedModel, AnAcceptedTermSaysWhatItContributesAndHowSure) {
   EXPECT_LE(gear.determined_count, gear.parameter_count);
   for (const ParameterEstimate& value : c.estimate.values)
     EXPECT_FALSE(value.name.find("1q4") != std::string::npos && std::abs(value.value) > 2.0 * value.sd) << value.name;
+}
+
+TEST(CandidateTerms, ALineThatIsACandidateAlreadyIsNotAddedAgain) {
+  Chain truth = nominal_robot();
+  truth.joints[0].harmonics = {{20.0, 3e-4, 0.0}};
+  PoseSet data = with_approach(simulated_readings(truth, 400, 5));
+  measure_points(data, truth, tracker, Rng(6));
+  const CalibrationTask task{nominal_robot(), {}, tracker, data};
+  const Estimate geometry = default_calibration(nominal_robot(), data, FixedModel{}).estimate;
+  CandidateTerms candidates = make_candidates(geometry, task, data);
+  const std::size_t before = candidates.parameters.size();
+  add_spectral_lines(candidates, geometry, task, data);
+  const std::size_t after = candidates.parameters.size();
+  EXPECT_GT(after, before) << "the line was found";
+  add_spectral_lines(candidates, geometry, task, data);
+  EXPECT_EQ(candidates.parameters.size(), after);
 }
 
 }  // namespace

@@ -13,8 +13,22 @@ bool is_harmonic(const JointNumber& at) {
   return at.field == Field::sine || at.field == Field::cosine;
 }
 
+/// A spectral line may fall on a harmonic of the gear: a parameter that is there twice would make the covariance of the
+/// candidates singular.
+void remove_known(std::vector<Parameter>& parameters, const CandidateTerms& candidates) {
+  std::vector<Parameter> kept;
+  for (const Parameter& parameter : parameters) {
+    const bool is_candidate = std::ranges::any_of(
+        candidates.parameters, [&](const CandidateParameter& c) { return c.parameter.at == parameter.at; });
+    const bool is_repeated = std::ranges::any_of(kept, [&](const Parameter& p) { return p.at == parameter.at; });
+    if (!is_candidate && !is_repeated) kept.push_back(parameter);
+  }
+  parameters = std::move(kept);
+}
+
 void add(CandidateTerms& candidates, Term term, const TermInputs& inputs) {
-  const ModelTerm made = make_model_term(term, candidates.chain, inputs);
+  ModelTerm made = make_model_term(term, candidates.chain, inputs);
+  remove_known(made.parameters, candidates);
   SelectionStep step{.term = term,
                      .decision = Decision::no_evidence,
                      .missing = made.missing,

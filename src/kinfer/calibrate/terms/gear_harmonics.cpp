@@ -109,7 +109,9 @@ std::vector<SpectralLine> lines_of_joint(std::vector<Sample> samples, int joint,
     SpectralLine best = strongest(samples, joint, step);
     for (double fine_step = 0.5 * step; fine_step > 1e-3; fine_step *= 0.5)
       for (const double order : {best.order - fine_step, best.order + fine_step})
-        if (const double by = improvement_by(samples, order); by > best.improvement) best = {joint, order, by};
+        if (const double by = order < thresholds::lowest_order ? 0.0 : improvement_by(samples, order);
+            by > best.improvement)
+          best = {joint, order, by};
     if (best.improvement < threshold) break;
     const double whole = std::round(best.order);  // gears have integer numbers of teeth; most lines have integer orders
     if (improvement_by(samples, whole) > thresholds::integer_order_ratio * best.improvement) best.order = whole;
