@@ -21,7 +21,8 @@ struct ReportArguments {
 };
 
 int run(const ReportArguments& options) {
-  if (options.schema == !options.folder.empty()) return fail(Error{"expected a folder with evidence.json, or --schema"});
+  if (options.schema == !options.folder.empty())
+    return fail(Error{"expected a folder with evidence.json, or --schema"});
   if (options.schema) return fmt::print("{}", format_evidence_schema()), exit_done;
   const std::filesystem::path folder = options.folder;
   const auto evidence = read_text_file(folder / "evidence.json");

@@ -13,7 +13,8 @@ inline constexpr double max_loop_point_sd = 3e-3;
 inline constexpr double max_loop_axis_sd = 5e-3;
 
 /// ln of the odds that two bodies which the tree does not join share a revolute joint, before anything is measured: one
-/// pair in ten thousand. Larger finds more loops. In 120 recordings without a loop no pair gained from what was measured.
+/// pair in ten thousand. Larger finds more loops. In 120 recordings without a loop no pair gained from what was
+/// measured.
 inline constexpr double loop_log_prior_odds = -9.2;
 
 /// ln of the posterior odds from which a loop is closed: 20 to 1.

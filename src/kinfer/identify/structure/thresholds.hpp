@@ -67,9 +67,10 @@ inline constexpr double pair_acceleration_floor = 0.01;
 /// [rad/s] Likewise.
 inline constexpr double pair_rate_floor = 3e-3;
 
-/// [nats] Largest code of a pair's main axis of relative rotation. Larger takes the bars of a parallelogram for one body:
-/// of 40 simulated linkages 40, 37, 28, 26 have a true tree at 1, 1.5, 2.3, 3 (19 without a limit); smaller makes the
-/// other trees less certain: of 270 all are right, the least margin is 1.06, 2.55, 3.06, 3.17 at 0, 1, 1.5, 3 (3.91).
+/// [nats] Largest code of a pair's main axis of relative rotation. Larger takes the bars of a parallelogram for one
+/// body: of 40 simulated linkages 40, 37, 28, 26 have a true tree at 1, 1.5, 2.3, 3 (19 without a limit); smaller makes
+/// the other trees less certain: of 270 all are right, the least margin is 1.06, 2.55, 3.06, 3.17 at 0, 1, 1.5, 3
+/// (3.91).
 inline constexpr double informative_rotation = 1.0;
 
 /// [rad] Prior of the difference of two magnetometers' headings.
