@@ -11,6 +11,7 @@
 #include "studies/studies.hpp"
 #include "studies/thresholds/calibration_figures.hpp"
 #include "studies/thresholds/identification_figures.hpp"
+#include "studies/thresholds/tracking_figures.hpp"
 
 #ifndef KINFER_VARY_THRESHOLDS
 
@@ -65,6 +66,9 @@ int kinfer::study::run_thresholds(int, char**) {
   const auto robots = measured_robots();
   print_table(fmt::format("Calibration of {} robots", robots.size()), thresholds_of("calibrate"),
               [&] { return calibration_figures(robots); });
+  const auto drives = tracked_drives();
+  print_table(fmt::format("Tracking of {} drives", drives.size()), thresholds_of("track"),
+              [&] { return tracking_figures(drives); });
   return 0;
 }
 

@@ -116,7 +116,7 @@ TEST(RecordingFindings, EveryKindHasASentenceAndItsNumbersInUsersUnits) {
     all += sentence(finding) + "\n";
   }
   EXPECT_THAT(all, HasSubstr("turned by 10.0 deg"));
-  EXPECT_THAT(all, HasSubstr("e belongs to the machine from 4 to 27 s only"));
+  EXPECT_THAT(all, HasSubstr("e shares joints with the others from 4 to 27 s that it does not share in the rest"));
   EXPECT_THAT(all, HasSubstr("a and e hold the same measurements"));
   EXPECT_THAT(all, HasSubstr("moved by about 30 mm; only what was recorded before is used"));
   EXPECT_THAT(all, HasSubstr("d are logged 50.00 (± 0.10) ms late, and its clock runs 50.0 (± 1.00) ppm slow"));

@@ -20,6 +20,7 @@
 #include "kinfer/identify/joints/thresholds.hpp"
 #include "kinfer/identify/refinement/refine_geometry.hpp"
 #include "kinfer/identify/screening/machines.hpp"
+#include "kinfer/identify/screening/mixed_recording.hpp"
 #include "kinfer/identify/screening/session.hpp"
 #include "kinfer/identify/screening/unconnected.hpp"
 #include "kinfer/measurement/ins_selection.hpp"
@@ -192,6 +193,7 @@ Result<Identification> identify_machine(const InsRecording& log, const IdentifyO
                order_segments(session.recording(), options.motion, options.root, options.threads, options.tree));
     const auto connections = tree_connections(ordered.motion, ordered.tree, options.threads);
     if (auto part = find_consistent_part(ordered, connections, options)) {
+      name_mixed_recording(*part, session.recording(), options.motion, options.threads);
       if (const auto done = session.restrict_to(std::move(*part)); !done) return forward_error(done.error());
       continue;
     }

@@ -20,7 +20,7 @@ void doubt_connection(const PairConnection& connection, Doubts& doubts) {
     doubts.push_back({JointDoubtKind::partly_connected, {{"begin", part->begin}, {"end", part->end}}});
   else if (strength_of(connection.whole) == ConnectionStrength::none)
     doubts.push_back({JointDoubtKind::not_connected, gain});
-  else if (strength_of(connection.whole) == ConnectionStrength::weak)
+  else if (strength_of(connection.whole) != ConnectionStrength::strong)  // weak, or too little moved for any evidence
     doubts.push_back({JointDoubtKind::weakly_connected, gain});
   if (has_changed(connection)) doubts.push_back({JointDoubtKind::changed, {}});
 }

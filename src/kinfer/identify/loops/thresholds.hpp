@@ -2,6 +2,8 @@
 // Priors of kinematic loops.
 #pragma once
 
+#include "kinfer/base/threshold.hpp"
+
 namespace kinfer::identify {
 
 /// [m] Largest play of the pins of a linkage, and error of the estimated motion beside that of its orientations; per
@@ -18,7 +20,7 @@ inline constexpr double max_loop_axis_sd = 5e-3;
 inline constexpr double loop_log_prior_odds = -9.2;
 
 /// ln of the posterior odds from which a loop is closed: 20 to 1.
-inline constexpr double min_loop_log_odds = 3.0;
+KINFER_THRESHOLD(identify, min_loop_log_odds, 3.0);
 
 /// [rad] Range of every joint of a loop. Joints that move less tell nothing about it.
 inline constexpr double min_loop_joint_range = 0.1;

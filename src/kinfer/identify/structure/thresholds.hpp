@@ -71,7 +71,7 @@ inline constexpr double pair_rate_floor = 3e-3;
 /// body: of 40 simulated linkages 40, 37, 28, 26 have a true tree at 1, 1.5, 2.3, 3 (19 without a limit); smaller makes
 /// the other trees less certain: of 270 all are right, the least margin is 1.06, 2.55, 3.06, 3.17 at 0, 1, 1.5, 3
 /// (3.91).
-inline constexpr double informative_rotation = 1.0;
+KINFER_THRESHOLD(identify, informative_rotation, 1.0);
 
 /// [rad] Prior of the difference of two magnetometers' headings.
 inline constexpr double magnetic_heading_sd = 0.5;

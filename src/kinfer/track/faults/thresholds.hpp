@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include "kinfer/base/threshold.hpp"
+
 namespace kinfer::track {
 
 inline constexpr double lost_after = 0.2;      ///< [s] without samples
@@ -12,11 +14,14 @@ inline constexpr int stuck_rows = 20;          ///< rows of it: noise exceeds th
 inline constexpr double clipped_memory = 0.5;  ///< [s]
 
 inline constexpr double short_mean = 0.5, long_mean = 10.0;  ///< [s] of the leave-one-out innovations
-inline constexpr double max_single = 400.0;                  ///< of one block
-inline constexpr double quick_limit = 2.5, slow_limit = 1.6, recovered_limit = 1.2;
+KINFER_THRESHOLD(track, max_single, 400.0);                  // of one block
+KINFER_THRESHOLD(track, quick_limit, 2.5);                   // of the short mean
+KINFER_THRESHOLD(track, slow_limit, 1.6);                    // of the long mean
+inline constexpr double recovered_limit = 1.2;
 /// Variance of an instrument's residuals over that of the identification beyond which the chain does not fit a joint,
 /// and below which it fits again.
-inline constexpr double misfit_inflation = 40.0, fitting_inflation = 10.0;
+KINFER_THRESHOLD(track, misfit_inflation, 40.0);
+inline constexpr double fitting_inflation = 10.0;
 inline constexpr double settling = 3.0;            ///< [s] after a start
 inline constexpr std::size_t replay_blocks = 100;  ///< two seconds: at least so much is replayed, at most twice
 inline constexpr double restart_gap = 1.0;         ///< [s] without rows, or without any sensor

@@ -2,6 +2,7 @@
 // Settings of the filter that no log determines, with the data that they were set on.
 #pragma once
 
+#include "kinfer/base/threshold.hpp"
 #include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/track/filter/acceleration_process.hpp"
 
@@ -40,10 +41,10 @@ inline constexpr InsLevel min_bias_instability{.rate = 2e-6, .force = 2e-5};
 inline constexpr InsLevel min_noise{.rate = 1e-5, .force = 1e-4};
 
 /// An instrument whose innovation is further off (squared, in its covariance; three axes) is trusted less.
-inline constexpr double outlier_limit = 30.0;
+KINFER_THRESHOLD(track, outlier_limit, 30.0);
 /// Relative change of an instrument's variance in an update, by its squared innovation over its expectation: some
 /// seconds at 50 updates a second, so that faults are detected before they are taken for noise.
-inline constexpr double inflation_gain = 4e-3;
+KINFER_THRESHOLD(track, inflation_gain, 4e-3);
 inline constexpr double max_inflation = 1e4;
 
 inline constexpr double max_position_sd = 1.8;  ///< [rad] an angle that could be any; [m] likewise

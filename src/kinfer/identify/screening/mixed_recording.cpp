@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/screening/mixed_recording.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "kinfer/identify/screening/connection.hpp"
+#include "kinfer/identify/screening/thresholds.hpp"
+#include "kinfer/identify/structure/ordered_motion.hpp"
+#include "kinfer/measurement/ins_selection.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+struct Span {
+  double begin = 0.0, end = 0.0;  // [s]
+};
+
+Span span_of(const InsRecording& recording) {
+  Span span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const InsLogger& logger : recording.loggers) {
+    if (logger.time.empty()) continue;
+    span.begin = std::min(span.begin, logger.time.front()), span.end = std::max(span.end, logger.time.back());
+  }
+  return span;
+}
+
+/// A joint of `part` that the pair does not have in `other`.
+bool has_lost_joint(const OrderedMotion& part, const OrderedMotion& other) {
+  for (const std::size_t child : part.tree.order) {
+    if (!part.tree.parent[child]) continue;
+    const std::size_t parent = *part.tree.parent[child];
+    if (is_edge(other.tree, parent, child)) continue;
+    const double lost = other.tree.pair(parent, child).distance - part.tree.pair(parent, child).distance;
+    if (lost > lost_joint_distance &&
+        strength_of(pair_connection(part.motion, parent, child).whole) == ConnectionStrength::strong)
+      return true;
+  }
+  return false;
+}
+
+/// Times by which the two parts are separated: where a remounted sensor changed, else in the middle.
+double cut_of(const RecordingSelection& part, const InsRecording& recording) {
+  for (const Finding& finding : part.findings)
+    if (finding.kind == FindingKind::remounted)
+      return 0.5 * (finding.values.number("begin") + finding.values.number("end"));
+  const Span whole = span_of(recording);
+  return 0.5 * (whole.begin + whole.end);
+}
+
+std::vector<std::string> sensors_of(const Finding& finding) {
+  switch (finding.kind) {
+    case FindingKind::remounted:
+    case FindingKind::no_joint:
+    case FindingKind::linkage:
+    case FindingKind::not_connected:
+      return {finding.values.text("sensor")};
+    case FindingKind::several_machines:
+      return finding.values.has("sensors") ? finding.values.texts("sensors") : std::vector<std::string>{};
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+std::optional<MixedPart> find_mixed_part(const InsRecording& recording, double cut, const SegmentMotionOptions& options,
+                                         int threads) {
+  const Span whole = span_of(recording);
+  const std::array<Span, 2> spans{Span{whole.begin, cut}, Span{cut, whole.end}};
+  std::vector<OrderedMotion> parts;
+  for (const Span& span : spans) {
+    if (span.end - span.begin < min_connection_time) return std::nullopt;
+    auto ordered = order_segments(within(recording, span.begin, span.end), options, std::nullopt, threads);
+    if (!ordered) return std::nullopt;  // at rest: nothing is known of that part
+    parts.push_back(std::move(*ordered));
+  }
+  for (const std::size_t k : {0, 1})
+    if (has_lost_joint(parts[k], parts[1 - k])) return MixedPart{spans[k].begin, spans[k].end};
+  return std::nullopt;
+}
+
+void name_mixed_recording(RecordingSelection& part, const InsRecording& recording, const SegmentMotionOptions& options,
+                          int threads) {
+  if (std::ranges::all_of(part.findings, [](const Finding& f) { return sensors_of(f).empty(); })) return;
+  const auto mixed = find_mixed_part(recording, cut_of(part, recording), options, threads);
+  if (!mixed) return;
+  std::vector<Finding> findings;
+  for (Finding& finding : part.findings) {
+    const auto sensors = sensors_of(finding);
+    if (sensors.empty()) findings.push_back(std::move(finding));
+    for (const std::string& sensor : sensors)
+      findings.push_back({.kind = FindingKind::mixed_recording,
+                          .severity = Severity::fault,
+                          .values = {{"sensor", sensor}, {"begin", mixed->begin}, {"end", mixed->end}}});
+  }
+  part.findings = std::move(findings);
+}
+
+}  // namespace kinfer::identify
