@@ -44,7 +44,7 @@ void mend_lags(MendedLog& log, int threads) {
   for (std::size_t s = 0; s < sensors; ++s) {
     const InstrumentLag& lag = lags[s];
     const bool is_certain =
-        lag.gain > min_lag_gain && lag.half_gain > min_half_lag_gain && lag.sd > 0.0 && lag.sd < max_lag_sd;
+        lag.gain > min_lag_gain && lag.half_gain > -max_half_lag_loss * lag.gain && lag.sd > 0.0 && lag.sd < max_lag_sd;
     if (std::abs(lag.lag) < min_reported_lag || !is_certain) continue;
     InsSensor& sensor = log.edit().sensors[s];
     sensor.acceleration = shifted(sensor.acceleration, log.log().time(sensor), lag.lag);

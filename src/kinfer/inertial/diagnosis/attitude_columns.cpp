@@ -45,10 +45,8 @@ std::optional<AttitudeFit> attitude_fit(const InsSensor& sensor) {
   if (!sensor.acceleration.present() || !sensor.angular_velocity.present()) return std::nullopt;
   const auto samples = samples_of(sensor);
   if (samples.size() < least_samples) return std::nullopt;
-  Vec3 mean = Vec3::Zero();
-  for (const TiltSample& s : samples) mean += s.up;
-  if (!(mean.norm() > 0.0)) return std::nullopt;
-  double null = median_angle(samples, [&](const TiltSample&) { return mean; });
+  // Rates are small angles, whose vertical is nearly the sensor's z axis.
+  double null = M_PI;
   for (const double up_sign : {1.0, -1.0})
     null = std::min(null, median_angle(samples, [&](const TiltSample&) { return Vec3(0.0, 0.0, up_sign); }));
   double best = M_PI;

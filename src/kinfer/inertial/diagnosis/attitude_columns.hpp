@@ -10,7 +10,7 @@ namespace kinfer {
 
 struct AttitudeFit {
   double error = 0.0;  ///< [rad] median angle between the vertical by the accelerometer and by the gyroscope's columns
-  double share = 1.0;  ///< of the smaller one of the angles that a level sensor and a constant vertical would leave
+  double share = 1.0;  ///< of the angle that a level sensor would leave: rates are small angles
 };
 
 /// The columns taken as roll, pitch, yaw or yaw, pitch, roll in degrees or radians, the best of these; empty where the

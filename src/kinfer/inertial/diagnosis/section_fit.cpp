@@ -89,23 +89,35 @@ bool is_complete(const SectionSignals& signals, std::size_t first) {
   return true;
 }
 
-/// Whether the direction moves in the section by more than instruments' errors: a section at rest tells nothing.
-bool direction_moves(const SectionSignals& signals, std::size_t first) {
-  constexpr double least_ratio = 4.0;  // of variances
+/// Mean square of the direction's deviation from its mean, an axis, over so many steps.
+double variance_over(const Samples& direction, std::size_t first, std::size_t steps) {
   Vec3 sum = Vec3::Zero();
   double square = 0.0;
-  for (std::size_t k = first; k < first + section_steps; ++k)
-    sum += signals.direction[k], square += signals.direction[k].squaredNorm();
-  const double n = static_cast<double>(section_steps);
-  return (square / n - (sum / n).squaredNorm()) / 3.0 > least_ratio * signals.noise_variance;
+  for (std::size_t k = first; k < first + steps; ++k) sum += direction[k], square += direction[k].squaredNorm();
+  const double n = static_cast<double>(steps);
+  return std::max(0.0, (square / n - (sum / n).squaredNorm()) / 3.0);
 }
 
-std::vector<std::size_t> complete_sections(const SectionSignals& signals) {
+/// Variance at the quietest moment.
+double quietest_variance(const Samples& direction) {
+  constexpr double least = 1e-8;
+  double quietest = std::numeric_limits<double>::infinity();
+  for (std::size_t first = 0; first + quiet_steps <= direction.size(); first += quiet_steps)
+    if (const double v = variance_over(direction, first, quiet_steps); std::isfinite(v))
+      quietest = std::min(quietest, v);
+  return std::isfinite(quietest) ? std::max(quietest, least) : least;
+}
+
+/// Sections without gaps in which the direction moves by more than errors of this variance: one at rest tells nothing.
+std::vector<std::size_t> moving_sections(const SectionSignals& signals, double error_variance) {
+  constexpr double least_ratio = 4.0;  // of variances
   std::vector<std::size_t> sections;
   const std::size_t steps = signals.rate.size();
   const std::size_t stride = section_steps * (1 + steps / (section_steps * most_sections));
   for (std::size_t first = section_margin; first + section_steps + section_margin < steps; first += stride)
-    if (is_complete(signals, first) && direction_moves(signals, first)) sections.push_back(first);
+    if (is_complete(signals, first) &&
+        variance_over(signals.direction, first, section_steps) > least_ratio * error_variance)
+      sections.push_back(first);
   return sections;
 }
 
@@ -159,8 +171,9 @@ double residual_variance(const SectionSums& sums, const MatrixXd& inverse, const
   return std::max(sums.square - used.dot(inverse * used), 0.0) / sums.count;
 }
 
-double log_likelihood(double variance, const SectionSignals& signals) {
-  return -0.5 * independent_samples * std::log(variance + signals.noise_variance);
+/// Of residuals with this mean square, which errors of `error_variance` would leave in any case.
+double log_likelihood(double variance, double error_variance) {
+  return -0.5 * independent_samples * std::log(variance + error_variance);
 }
 
 }  // namespace
@@ -188,40 +201,49 @@ std::optional<SectionSignals> section_signals(const TriadColumns& direction, con
   const auto steps = static_cast<std::size_t>(std::min((time.back() - time.front()) / grid_step, most_steps));
   if (steps < section_steps + 2 * section_margin) return std::nullopt;
   SectionSignals signals{smoothed_samples(resampled(direction, time, steps)),
-                         smoothed_samples(resampled(rates, time, steps)), 0.0};
+                         smoothed_samples(resampled(rates, time, steps)), 0.0, 0.0};
   const Vec3 bias = quietest_rate(signals.rate, max_bias);
   for (Vec3& w : signals.rate) w -= bias;
   const double error = usual_error * median_length(signals.direction);
   signals.noise_variance = std::max(error * error, 1e-12);
+  signals.quiet_variance = quietest_variance(signals.direction);
   return signals;
 }
 
 MapLikelihoods map_likelihoods(const SectionSignals& signals, double unit, LeverArm lever_arm) {
   MapLikelihoods likelihoods;
   const auto& maps = signed_permutations();
-  for (const std::size_t first : complete_sections(signals)) {
+  for (const std::size_t first : moving_sections(signals, signals.noise_variance)) {
     likelihoods.sections += 1.0;
     for (const double sense : {1.0, -1.0}) {
       const SectionSums sums = sums_over(signals, first, sense * unit * Mat3::Identity(), 0);
       const MatrixXd inverse = inverse_of(sums, lever_arm == LeverArm::free ? most_unknowns : 3);
       for (std::size_t m = 0; m < maps.size(); ++m)
         if (sense * maps[m].determinant() > 0.0)
-          likelihoods.of[m] += log_likelihood(residual_variance(sums, inverse, sense * maps[m]), signals);
+          likelihoods.of[m] +=
+              log_likelihood(residual_variance(sums, inverse, sense * maps[m]), signals.noise_variance);
     }
   }
   return likelihoods;
 }
 
 InstrumentLag instrument_lag(const SectionSignals& signals, const Mat3& map) {
+  // The free g takes up what scale errors and misalignments do to the direction's mean: they act on its change alone.
+  // So a sensor that hardly tilts has a lag by its lever arm.
+  constexpr double change_error = 0.03, quiet_ratio = 4.0;
   using Likelihood = std::array<double, lag_count>;
   std::array<Likelihood, 2> halves{};
-  const auto sections = complete_sections(signals);
-  for (std::size_t i = 0; i < sections.size(); ++i)
+  const auto sections = moving_sections(signals, quiet_ratio * signals.quiet_variance);
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const double error_variance =
+        quiet_ratio * signals.quiet_variance +
+        change_error * change_error * variance_over(signals.direction, sections[i], section_steps);
     for (std::size_t s = 0; s < lag_count; ++s) {
       const SectionSums sums = sums_over(signals, sections[i], map, static_cast<std::ptrdiff_t>(s) - most_lag_steps);
       halves[2 * i / sections.size()][s] +=
-          log_likelihood(residual_variance(sums, inverse_of(sums, most_unknowns), Mat3::Identity()), signals);
+          log_likelihood(residual_variance(sums, inverse_of(sums, most_unknowns), Mat3::Identity()), error_variance);
     }
+  }
   Likelihood whole{};
   for (std::size_t s = 0; s < lag_count; ++s) whole[s] = halves[0][s] + halves[1][s];
   const auto best = static_cast<std::size_t>(std::ranges::max_element(whole) - whole.begin());

@@ -27,6 +27,7 @@ struct SectionSignals {
   std::vector<Vec3> direction;  ///< specific force [m/s²], or field; NaN in gaps
   std::vector<Vec3> rate;       ///< in the file's unit, less the bias at the quietest moment
   double noise_variance = 0.0;  ///< of the direction's samples: residual that a section may always have
+  double quiet_variance = 0.0;  ///< of the direction's samples at the quietest moment
 };
 
 enum class LeverArm { free, none };
