@@ -107,6 +107,26 @@ TEST(LogDiagnosis, AllGyroscopesReversedMayAsWellBeLeftHandedSensors) {
   }
 }
 
+TEST(LogDiagnosis, ASensorThatOnlySlewsSharesTheReversedGyroscopesOfTheOthers) {
+  for (const char* machine : {"excavator", "robot6"}) {
+    InsRecording log = test::driven_machine(machine, 8).recording;
+    for (InsSensor& s : log.sensors) negate(s.angular_velocity), flag_faults(s);
+    const auto kinds = kinds_of(diagnose_log(log, 2));
+    EXPECT_EQ(std::ranges::count(kinds, FindingKind::force_sign), 0) << machine;
+    EXPECT_EQ(std::ranges::count(kinds, FindingKind::rate_sign), std::ssize(kinds)) << machine;
+  }
+}
+
+TEST(LogDiagnosis, BiasesThatPointUpByChanceAreNoEulerAngles) {
+  const auto log = with([](InsRecording& r) {
+    InsSensor& s = r.sensors[0];  // does not move
+    const Vec3 up = s.acceleration.at(0).normalized(), rpy(std::atan2(up.y(), up.z()), -std::asin(up.x()), 0.0);
+    for (std::size_t k = 0; k < 3; ++k)
+      for (float& w : s.angular_velocity.axis[k]) w += static_cast<float>(rpy[static_cast<Eigen::Index>(k)]);
+  });
+  EXPECT_TRUE(diagnose_log(log, 1));
+}
+
 TEST(LogDiagnosis, AllAccelerometersNegatedAreToldByMagnetometersAlone) {
   const auto negate_all = [](InsRecording& r) {
     for (InsSensor& s : r.sensors) negate(s.acceleration);

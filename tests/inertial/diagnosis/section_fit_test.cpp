@@ -19,15 +19,14 @@ void push(TriadColumns& triad, const Vec3& v) {
   for (std::size_t k = 0; k < 3; ++k) triad.axis[k].push_back(static_cast<float>(v[static_cast<Eigen::Index>(k)]));
 }
 
-/// A sensor that swings about an inclined axis with a lever arm, at 100 Hz: closed form, with a little noise.
+/// A sensor that swings about an axis with a lever arm, at 100 Hz: closed form, with a little noise.
 struct Swing {
   InsSensor sensor;
   std::vector<double> time;
 
-  explicit Swing(double lag = 0.0) {
+  explicit Swing(double lag = 0.0, const Vec3& axis = Vec3(0.5, 0.8, 0.3).normalized()) {
     Rng rng(3);
-    const Vec3 axis = Vec3(0.5, 0.8, 0.3).normalized(), arm(0.4, -0.2, 0.7), gravity(0, 0, standard_gravity),
-               field(18, 5, -45);
+    const Vec3 arm(0.4, -0.2, 0.7), gravity(0, 0, standard_gravity), field(18, 5, -45);
     const auto noise = [&](double sd) { return Vec3(sd * normal_vector(rng)); };
     for (int k = 0; k < 2400; ++k) {
       const double t = 0.01 * k;
@@ -86,6 +85,15 @@ TEST(SectionFit, ALagIsMeasured) {
   }
 }
 
+TEST(SectionFit, ALagOfASensorThatOnlySlewsIsMeasuredByItsLeverArm) {
+  const Swing swing(0.04, Vec3::UnitZ());
+  const auto signals = section_signals(swing.sensor.acceleration, swing.sensor.angular_velocity, swing.time, 0.1);
+  const InstrumentLag found = instrument_lag(*signals, Mat3::Identity());
+  EXPECT_NEAR(found.lag, 0.04, 4e-3);
+  EXPECT_LT(found.sd, 2e-3);
+  EXPECT_GT(found.gain, 60.0);
+}
+
 TEST(SectionFit, TooShortARecordingSaysNothing) {
   const Swing swing;
   const std::vector<double> second(swing.time.begin(), swing.time.begin() + 100);
@@ -114,7 +122,7 @@ TEST(AttitudeColumns, EulerAnglesFollowTheVerticalAndRatesDoNot) {
   Swing swing;
   const auto rates = attitude_fit(swing.sensor);
   ASSERT_TRUE(rates);
-  EXPECT_GT(rates->share, 0.6);
+  EXPECT_GT(rates->share_of_constant, 0.6);
   for (std::size_t row = 0; row < swing.time.size(); ++row) {
     const Vec3 up = swing.sensor.acceleration.at(row).normalized();
     const Vec3 rpy(std::atan2(up.y(), up.z()), -std::asin(up.x()), 1.0);
@@ -123,7 +131,23 @@ TEST(AttitudeColumns, EulerAnglesFollowTheVerticalAndRatesDoNot) {
   }
   const auto angles = attitude_fit(swing.sensor);
   EXPECT_LT(angles->error, 0.05);
-  EXPECT_LT(angles->share, 0.2);
+  EXPECT_LT(angles->share_of_constant, 0.2);
+}
+
+TEST(AttitudeColumns, EulerAnglesOfASensorThatDoesNotTiltPointUpAllTheSame) {
+  Swing swing(0.0, Vec3::UnitZ());
+  const Mat3 mounting = exp_so3(Vec3(0.8, 0.5, 0.0));  // the vertical in the sensor
+  const Vec3 up = mounting * Vec3::UnitZ();
+  for (std::size_t row = 0; row < swing.time.size(); ++row)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      swing.sensor.acceleration.axis[k][row] = static_cast<float>((mounting * swing.sensor.acceleration.at(row))[axis]);
+      swing.sensor.angular_velocity.axis[k][row] =
+          static_cast<float>(Vec3(std::atan2(up.y(), up.z()), -std::asin(up.x()), 0.1)[axis]);
+    }
+  const auto angles = attitude_fit(swing.sensor);
+  EXPECT_LT(angles->share_of_level, 0.45) << "beside accelerations of 2 m/s²";
+  EXPECT_GT(angles->share_of_constant, 0.6);
 }
 
 }  // namespace

@@ -159,13 +159,21 @@ std::string describe_axes(const Mat3& axes) {
 }
 
 Result<void> refuse_attitudes(const InsRecording& recording) {
-  for (const InsSensor& sensor : recording.sensors)
-    if (const auto fit = attitude_fit(sensor);
-        fit && fit->error < max_attitude_error && fit->share < max_attitude_share)
+  std::vector<std::optional<AttitudeFit>> fits;
+  for (const InsSensor& sensor : recording.sensors) fits.push_back(attitude_fit(sensor));
+  // Biases may point along a single sensor's vertical by chance, but not those of most; or the columns follow its
+  // tilting.
+  const auto points_up = [](const auto& fit) {
+    return fit && fit->error < max_attitude_error && fit->share_of_level < max_attitude_share;
+  };
+  const auto follows = [&](const auto& fit) { return points_up(fit) && fit->share_of_constant < max_attitude_share; };
+  const bool do_most = 2 * std::ranges::count_if(fits, points_up) > std::ssize(fits) && std::ssize(fits) > 1;
+  for (std::size_t s = 0; s < fits.size(); ++s)
+    if (do_most ? points_up(fits[s]) : follows(fits[s]))
       return error(
           "{0}: {0}_gx, {0}_gy, {0}_gz hold Euler angles, not angular rates: their vertical follows the "
           "accelerometer's within {1:.1f}°; export what the gyroscope measures",
-          sensor.name, fit->error / degree);
+          recording.sensors[s].name, fits[s]->error / degree);
   return {};
 }
 

@@ -99,7 +99,25 @@ void report_turned(MendedLog& log, const std::string& sensor, double gain) {
                           .applied = true});
 }
 
-/// Turns over what is opposite to its neighbours, if the segment tree agrees.
+/// A gyroscope that says the opposite of its neighbours, where its own accelerometer says nothing of its sense.
+void reverse_gyroscope(MendedLog& log, std::size_t s, double gain) {
+  InsSensor& sensor = log.edit().sensors[s];
+  transform(sensor.angular_velocity, -1.0, Mat3::Identity());
+  log.findings.push_back({.kind = FindingKind::rate_sign,
+                          .severity = Severity::fault,
+                          .values = {{"sensor", sensor.name},
+                                     {"instrument", std::string("gyroscope")},
+                                     {"axes", describe_axes(-Mat3::Identity())},
+                                     {"log_likelihood_gain", gain}},
+                          .applied = true});
+}
+
+bool has_reversed_gyroscopes(const MendedLog& log) {
+  return std::ranges::find(log.findings, FindingKind::rate_sign, &Finding::kind) != log.findings.end();
+}
+
+/// Turns over what is opposite to its neighbours, if the segment tree agrees. For a sensor that hardly tilts a reversed
+/// gyroscope looks much the same: what others of the log have is the likelier fault.
 void mend_odd_sensors(MendedLog& log, const std::vector<std::optional<double>>& angles, const VerticalSigns& signs,
                       int threads) {
   const std::size_t n = log.log().sensors.size();
@@ -119,6 +137,16 @@ void mend_odd_sensors(MendedLog& log, const std::vector<std::optional<double>>& 
     const double turned_length = tree_length(turned, threads);
     const bool by_field = !field_too && angles[s] && *angles[s] < upward_field && some_down;
     const double gain = length - turned_length;
+    if (!by_field && !axes_finding_of(log, log.log().sensors[s].name) && has_reversed_gyroscopes(log)) {
+      InsRecording reversed = log.log();
+      transform(reversed.sensors[s].angular_velocity, -1.0, Mat3::Identity());
+      if (const double found = tree_length(reversed, threads);
+          length - found > min_sign_gain && found < turned_length + likely_sign_lead) {
+        reverse_gyroscope(log, s, length - found);
+        length = found;
+        continue;
+      }
+    }
     if (!(gain > min_sign_gain) && !(by_field && gain > -min_sign_gain)) continue;
     length = turned_length;
     turn_over(log.edit().sensors[s], field_too);

@@ -55,10 +55,13 @@ inline constexpr double same_vertical = 0.7, min_vertical_rate = 0.02;
 /// [nats per row] By which the segment tree must get shorter when a sensor's vertical is turned over. Sound logs: below
 /// 0.
 inline constexpr double min_sign_gain = 0.1;
+/// [nats per row] By which a negated accelerometer must explain a sensor better than a reversed gyroscope does where
+/// other gyroscopes of the log are reversed. Larger: misses a negated accelerometer among reversed gyroscopes.
+inline constexpr double likely_sign_lead = 1.0;
 
 /// Median angle between the vertical of Euler angles in the gyroscope's columns and the accelerometer's: [rad], and its
-/// share of what angles of zero leave. Rates: 0.79 and more (120 simulated logs, iiwa, UR5, knee); Euler angles: 0.25
-/// and less.
+/// share of what angles of zero, or a constant vertical, leave. Rates: 0.79 and more (120 simulated logs, iiwa, UR5,
+/// knee); Euler angles: 0.25 and less.
 inline constexpr double max_attitude_error = 0.25, max_attitude_share = 0.45;
 
 /// [rad/s] rms rate from which a sensor may be the copy of another one. Larger: overlooks copies of gentle drives.

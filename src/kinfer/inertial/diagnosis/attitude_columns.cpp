@@ -45,10 +45,14 @@ std::optional<AttitudeFit> attitude_fit(const InsSensor& sensor) {
   if (!sensor.acceleration.present() || !sensor.angular_velocity.present()) return std::nullopt;
   const auto samples = samples_of(sensor);
   if (samples.size() < least_samples) return std::nullopt;
+  Vec3 mean = Vec3::Zero();
+  for (const TiltSample& s : samples) mean += s.up;
+  if (!(mean.norm() > 0.0)) return std::nullopt;
+  const double constant = median_angle(samples, [&](const TiltSample&) { return mean; });
   // Rates are small angles, whose vertical is nearly the sensor's z axis.
-  double null = M_PI;
+  double level = M_PI;
   for (const double up_sign : {1.0, -1.0})
-    null = std::min(null, median_angle(samples, [&](const TiltSample&) { return Vec3(0.0, 0.0, up_sign); }));
+    level = std::min(level, median_angle(samples, [&](const TiltSample&) { return Vec3(0.0, 0.0, up_sign); }));
   double best = M_PI;
   for (const double unit : {1.0, degree})
     for (const int roll : {0, 2})
@@ -60,7 +64,8 @@ std::optional<AttitudeFit> attitude_fit(const InsSensor& sensor) {
                   const double r = roll_sign * unit * s.columns[roll], p = pitch_sign * unit * s.columns[1];
                   return Vec3(up_sign * Vec3(-std::sin(p), std::cos(p) * std::sin(r), std::cos(p) * std::cos(r)));
                 }));
-  return AttitudeFit{best, null > 0.0 ? best / null : 1.0};
+  const auto share = [&](double null) { return null > 0.0 ? best / null : 1.0; };
+  return AttitudeFit{best, share(level), share(std::min(level, constant))};
 }
 
 }  // namespace kinfer

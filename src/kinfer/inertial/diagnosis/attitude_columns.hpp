@@ -10,7 +10,8 @@ namespace kinfer {
 
 struct AttitudeFit {
   double error = 0.0;  ///< [rad] median angle between the vertical by the accelerometer and by the gyroscope's columns
-  double share = 1.0;  ///< of the angle that a level sensor would leave: rates are small angles
+  double share_of_level = 1.0;     ///< of the angle that a level sensor would leave: rates are small angles
+  double share_of_constant = 1.0;  ///< of the smaller one of that and of what a constant vertical would leave
 };
 
 /// The columns taken as roll, pitch, yaw or yaw, pitch, roll in degrees or radians, the best of these; empty where the
