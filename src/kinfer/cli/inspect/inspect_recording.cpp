@@ -159,8 +159,7 @@ void print_allan(const InsRecording& recording) {
 }  // namespace
 
 int inspect_recording(const RecordingChoice& choice, AllanPlot allan, InspectOutput output) {
-  constexpr int all_cores = 0;
-  const auto logs = read_diagnosed_logs(choice.paths, choice.columns, choice.topics, all_cores);
+  const auto logs = read_diagnosed_logs({choice.paths, choice.columns, choice.topics}, CommonOptions{});
   if (!logs) return fail(logs.error());
   if (output == InspectOutput::json) {
     fmt::print("{}", recording_json(*logs));

@@ -73,8 +73,11 @@ Observer ProgressLine::observer() {
     if (stage != stage_) stage_ = stage, stage_began_ = now;
     if (now - last_ > std::chrono::milliseconds(50)) {
       last_ = now;
-      fmt::print(stderr, "\r\033[K{}  iteration {}  best {:.6g}{}", stage, progress.iteration, progress.best,
-                 time_left(std::chrono::duration<double>(now - stage_began_).count(), progress.fraction));
+      const double seconds = std::chrono::duration<double>(now - stage_began_).count();
+      fmt::print(stderr, "\r\033[K{}  {}{}", stage,
+                 progress.iteration > 0 ? fmt::format("iteration {}  best {:.6g}", progress.iteration, progress.best)
+                                        : fmt::format("{:.0f} %", 100.0 * progress.fraction),
+                 time_left(seconds, progress.fraction));
       std::fflush(stderr);
     }
     return ObserverDecision::proceed;

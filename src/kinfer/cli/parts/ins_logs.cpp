@@ -8,11 +8,13 @@
 
 namespace kinfer::cli {
 
-Result<InsRecording> read_ins_logs(const std::vector<std::string>& files, const std::string& columns,
-                                   const std::vector<std::string>& topics) {
-  if (!columns.empty() && !topics.empty()) return error("--topic has no effect with --columns, which maps text files");
-  const std::vector<std::filesystem::path> paths(files.begin(), files.end());
-  return columns.empty() ? read_recording(paths, topics) : read_mapped_recording(paths, columns);
+Result<InsRecording> read_ins_logs(const InsLogSource& source, const CommonOptions& common) {
+  if (!source.columns.empty() && !source.topics.empty())
+    return error("--topic has no effect with --columns, which maps text files");
+  const std::vector<std::filesystem::path> paths(source.files.begin(), source.files.end());
+  if (!source.columns.empty()) return read_mapped_recording(paths, source.columns);
+  ProgressLine progress(common);
+  return read_recording(paths, source.topics, progress.observer());
 }
 
 void add_log_options(CLI::App& verb, std::string& columns, std::vector<std::string>& topics) {
@@ -22,10 +24,9 @@ void add_log_options(CLI::App& verb, std::string& columns, std::vector<std::stri
   add_list(verb, "--topic", topics, "Imu topic of a robot log; may be repeated (default: all)", "NAME");
 }
 
-Result<DiagnosedLogs> read_diagnosed_logs(const std::vector<std::string>& files, const std::string& columns,
-                                          const std::vector<std::string>& topics, int threads) {
-  KINFER_TRY(recording, read_ins_logs(files, columns, topics));
-  KINFER_TRY(diagnosis, identify::diagnose_log(recording, threads));
+Result<DiagnosedLogs> read_diagnosed_logs(const InsLogSource& source, const CommonOptions& common) {
+  KINFER_TRY(recording, read_ins_logs(source, common));
+  KINFER_TRY(diagnosis, identify::diagnose_log(recording, common.threads));
   return DiagnosedLogs{diagnosis.mended ? std::move(*diagnosis.mended) : std::move(recording),
                        std::move(diagnosis.findings)};
 }

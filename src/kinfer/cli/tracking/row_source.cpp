@@ -112,7 +112,7 @@ Result<std::vector<std::size_t>> sensors_of(const RowSource& source, const InsRe
 
 /// Rows of the loggers, merged by time: each row holds the samples that were taken at its time.
 Result<std::vector<std::string>> replay(const RowSource& source, const RowSink& sink) {
-  KINFER_TRY(recording, read_ins_logs(source.logs));
+  KINFER_TRY(recording, read_ins_logs({source.logs, std::string(), {}}, CommonOptions{.quiet = true}));
   KINFER_TRY(sensors, sensors_of(source, recording));
   std::vector<std::size_t> next(recording.loggers.size(), 0);
   InsRow row;

@@ -48,8 +48,9 @@ Result<InsRecording> simulate_drive(const ForecastArguments& options) {
 Result<std::vector<JointForecast>> forecast_of(const ForecastArguments& options) {
   if (options.logs.empty() == options.chain.empty())
     return error("expected either recordings, or --chain with a chain.toml written by identify");
-  auto recording =
-      options.chain.empty() ? read_ins_logs(options.logs, options.columns, options.topics) : simulate_drive(options);
+  auto recording = options.chain.empty()
+                       ? read_ins_logs({options.logs, options.columns, options.topics}, options.common)
+                       : simulate_drive(options);
   if (!recording) return forward_error(recording.error());
   identify::IdentifyOptions how;
   how.threads = options.common.threads;

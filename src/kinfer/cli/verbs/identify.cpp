@@ -180,7 +180,7 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   if (!options.columns.empty()) record.add_input(options.columns);
   const auto how = identify_options(verb, options);
   if (!how) return fail(how.error());
-  const auto recording = read_ins_logs(options.logs, options.columns, options.topics);
+  const auto recording = read_ins_logs({options.logs, options.columns, options.topics}, options.common);
   if (!recording) return fail(recording.error());
   auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());

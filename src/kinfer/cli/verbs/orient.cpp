@@ -61,7 +61,7 @@ int run(const OrientArguments& options) {
   const auto filter = filter_named(options.filter);
   if (!filter) return fail({fmt::format("--filter {}: no such filter, known are {}", options.filter, filter_names())});
   const FilterOptions how = options.magnetometer == "off" ? without_magnetometer(*filter) : *filter;
-  const auto logs = read_diagnosed_logs(options.logs, options.columns, options.topics, options.common.threads);
+  const auto logs = read_diagnosed_logs({options.logs, options.columns, options.topics}, options.common);
   if (!logs) return fail(logs.error());
   const InsRecording* recording = &logs->recording;
   const auto chosen = chosen_sensors(*recording, options.sensor);

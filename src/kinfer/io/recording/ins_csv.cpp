@@ -183,13 +183,21 @@ Result<InsRecording> parse_ins_csv(std::string_view text, const std::string& nam
   return out;
 }
 
-Result<void> append_ins_csv(const std::filesystem::path& path, InsRecording& out) {
+Result<void> append_ins_csv(const std::filesystem::path& path, InsRecording& out, const Observer& observer) {
   KINFER_TRY(file, MappedFile::open(path));
+  const std::string name = path.string();
+  const auto report = [&](std::size_t at, std::size_t size) {
+    notify(observer,
+           {.stage = "reading", .fraction = static_cast<double>(at) / static_cast<double>(size), .detail = name});
+  };
   if (is_zstd(file.text())) {
-    KINFER_TRY(text, unpack_zstd_text(file.text(), path.string()));
-    return append_logger(text, path.string(), out, [](std::size_t) {});
+    KINFER_TRY(text, unpack_zstd_text(file.text(), name));
+    return append_logger(text, name, out, [&](std::size_t at) { report(at, text.size()); });
   }
-  return append_logger(file.text(), path.string(), out, [&](std::size_t at) { file.release_before(at); });
+  return append_logger(file.text(), name, out, [&](std::size_t at) {
+    report(at, file.text().size());
+    file.release_before(at);
+  });
 }
 
 Result<InsRecording> read_ins_csv(std::span<const std::filesystem::path> paths) {

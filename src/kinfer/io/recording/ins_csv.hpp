@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "kinfer/base/observer.hpp"
 #include "kinfer/base/result.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
 
@@ -18,7 +19,7 @@ Result<InsRecording> read_ins_csv(std::span<const std::filesystem::path> paths);
 Result<InsRecording> read_ins_csv(const std::filesystem::path& path);
 
 /// Adds the file's logger and sensors to `recording`.
-Result<void> append_ins_csv(const std::filesystem::path& path, InsRecording& recording);
+Result<void> append_ins_csv(const std::filesystem::path& path, InsRecording& recording, const Observer& observer = {});
 
 /// The same from the text of one log.
 Result<InsRecording> parse_ins_csv(std::string_view text, const std::string& name_in_messages);

@@ -66,10 +66,11 @@ class InsTopicReader {
  public:
   InsTopicReader(std::string file, std::span<const std::string> asked) : file_(std::move(file)), asked_(asked) {}
 
-  Result<void> read(const std::filesystem::path& path) {
+  Result<void> read(const std::filesystem::path& path, const Observer& observer) {
     const MessageSink sink{
         .wants = [&](std::size_t index, const LoggedTopic& topic) { return add_topic(index, topic); },
-        .on_message = [&](const LoggedMessage& message) { return add_message(message); }};
+        .on_message = [&](const LoggedMessage& message) { return add_message(message); },
+        .observer = observer};
     auto log = read_message_log(path, sink);
     if (!log) return forward_error(log.error());
     remarks_ = log->remarks;
@@ -274,9 +275,9 @@ std::vector<std::string> short_topic_names(std::span<const std::string> topics) 
 }
 
 Result<void> append_ins_topics(const std::filesystem::path& path, std::span<const std::string> topics,
-                               InsRecording& recording) {
+                               InsRecording& recording, const Observer& observer) {
   InsTopicReader reader(path.string(), topics);
-  if (auto done = reader.read(path); !done) return done;
+  if (auto done = reader.read(path, observer); !done) return done;
   const std::size_t first = reader.append(recording);
   for (std::size_t logger = recording.sensors[first].logger; logger < recording.loggers.size(); ++logger)
     add_time_remarks(recording, logger, recording.loggers[logger].name);
@@ -284,8 +285,9 @@ Result<void> append_ins_topics(const std::filesystem::path& path, std::span<cons
                         std::vector<std::array<bool, 3>>(recording.sensors.size() - first, {true, true, true}));
 }
 
-Result<void> append_all_ins_topics(const std::filesystem::path& path, InsRecording& recording) {
-  return append_ins_topics(path, {}, recording);
+Result<void> append_all_ins_topics(const std::filesystem::path& path, InsRecording& recording,
+                                   const Observer& observer) {
+  return append_ins_topics(path, {}, recording, observer);
 }
 
 }  // namespace kinfer

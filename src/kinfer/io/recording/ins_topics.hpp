@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "kinfer/base/observer.hpp"
 #include "kinfer/base/result.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
 
@@ -17,10 +18,11 @@ namespace kinfer {
 /// belongs to the Imu topic of the same frame, else to the one that shares more of its name than any other.
 /// Errors: no such topic, none that is an Imu, messages that do not fit their type.
 Result<void> append_ins_topics(const std::filesystem::path& path, std::span<const std::string> topics,
-                               InsRecording& recording);
+                               InsRecording& recording, const Observer& observer = {});
 
 /// The same with all topics.
-Result<void> append_all_ins_topics(const std::filesystem::path& path, InsRecording& recording);
+Result<void> append_all_ins_topics(const std::filesystem::path& path, InsRecording& recording,
+                                   const Observer& observer = {});
 
 /// "/boom/imu/data", "/arm/imu/data" → "boom", "arm": the parts that not all names share. One name alone: its first
 /// part that is no usual word of a sensor driver.

@@ -56,14 +56,15 @@ bool is_recording(const std::filesystem::path& path) {
   return recognised_format(head) || find_preset(head, path) || is_foreign_log(head);
 }
 
-Result<InsRecording> read_recording(std::span<const std::filesystem::path> paths, std::span<const std::string> topics) {
+Result<InsRecording> read_recording(std::span<const std::filesystem::path> paths, std::span<const std::string> topics,
+                                    const Observer& observer) {
   InsRecording recording;
   std::vector<ForeignLog> foreign;
   bool has_robot_log = false;
   for (const std::filesystem::path& path : paths) {
     if (is_message_log_file(path)) {
       has_robot_log = true;
-      if (auto done = append_ins_topics(path, topics, recording); !done) return forward_error(done.error());
+      if (auto done = append_ins_topics(path, topics, recording, observer); !done) return forward_error(done.error());
       continue;
     }
     if (is_log_bundle(path)) {
@@ -79,7 +80,7 @@ Result<InsRecording> read_recording(std::span<const std::filesystem::path> paths
       foreign.push_back(std::move(log));
       continue;
     }
-    const auto done = (format ? format : &recording_formats().front())->append(path, recording);
+    const auto done = (format ? format : &recording_formats().front())->append(path, recording, observer);
     if (!done) return forward_error(done.error());
   }
   if (!topics.empty() && !has_robot_log) return error("--topic: none of the files is a robot log, which has topics");

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "kinfer/base/observer.hpp"
 #include "kinfer/base/result.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
 
@@ -16,7 +17,8 @@ struct RecordingFormat {
   std::string_view name;                               ///< "CSV"
   bool (*recognise)(std::string_view head) = nullptr;  ///< `head`: the first 64 KiB of the file, or all of it
   /// Adds the file's logger and sensors to `recording`.
-  Result<void> (*append)(const std::filesystem::path& path, InsRecording& recording) = nullptr;
+  Result<void> (*append)(const std::filesystem::path& path, InsRecording& recording,
+                         const Observer& observer) = nullptr;
 };
 
 /// The table. Files that no format recognises are read as the first format, whose errors say what is expected.
@@ -30,7 +32,7 @@ bool is_recording(const std::filesystem::path& path);
 /// programs are read by their preset, or by what their headers say; the instruments of one sensor may be in several
 /// files, in a folder or in a zip archive. `topics`: of robot logs; all Imu topics where empty.
 Result<InsRecording> read_recording(std::span<const std::filesystem::path> paths,
-                                    std::span<const std::string> topics = {});
+                                    std::span<const std::string> topics = {}, const Observer& observer = {});
 
 /// The same with a column map for all files (docs/formats.md).
 Result<InsRecording> read_mapped_recording(std::span<const std::filesystem::path> paths,

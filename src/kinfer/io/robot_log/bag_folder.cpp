@@ -52,7 +52,8 @@ Result<MessageLog> read_bag_files(const std::vector<std::filesystem::path>& file
                            },
                            .on_message = [&](const LoggedMessage& message) -> Result<void> {
                              return sink.on_message({number[message.topic], message.log_time, message.data});
-                           }};
+                           },
+                           .observer = sink.observer};
     KINFER_TRY(log, read(file, part));
     for (std::size_t t = 0; t < log.topics.size() && t < number.size(); ++t) {
       LoggedTopic& topic = whole.topics[number[t]];

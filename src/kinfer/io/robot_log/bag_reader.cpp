@@ -55,6 +55,7 @@ class BagReader {
         break;
       }
       if (auto done = read_bag_record(header, data, true); !done) return forward_error(done.error());
+      topics_.report_progress(cursor.at(), file.text().size());
       file.release_before(cursor.at());
     }
     return topics_.take();

@@ -88,8 +88,15 @@ Result<MessageLog> read_db3(const std::filesystem::path& path, const MessageSink
                        return topics.add(static_cast<std::uint64_t>(sqlite3_column_int64(row, 0)), std::move(topic));
                      });
   if (!done) return forward_error(done.error());
+  std::size_t rows = 0, read = 0;
+  done = database.query("SELECT count(*) FROM messages", file, [&](sqlite3_stmt* row) -> Result<void> {
+    rows = static_cast<std::size_t>(sqlite3_column_int64(row, 0));
+    return {};
+  });
+  if (!done) return forward_error(done.error());
   done = database.query(
       "SELECT topic_id, timestamp, data FROM messages ORDER BY id", file, [&](sqlite3_stmt* row) -> Result<void> {
+        if ((++read & 0x3ff) == 0) topics.report_progress(read, rows);
         const void* data = sqlite3_column_blob(row, 2);
         const auto size = static_cast<std::size_t>(sqlite3_column_bytes(row, 2));
         return topics.message(static_cast<std::uint64_t>(sqlite3_column_int64(row, 0)), sqlite3_column_int64(row, 1),

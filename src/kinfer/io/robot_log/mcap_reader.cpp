@@ -41,6 +41,7 @@ class McapReader {
         return forward_error(done.error());
       }
       ended = opcode == McapOpcode::data_end;  // what follows is an index of what was read
+      topics_.report_progress(cursor.at(), file.text().size());
       file.release_before(cursor.at());
     }
     return topics_.take();

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kinfer/base/observer.hpp"
 #include "kinfer/base/result.hpp"
 
 namespace kinfer {
@@ -44,6 +45,8 @@ struct MessageSink {
   std::function<Result<bool>(std::size_t index, const LoggedTopic& topic)> wants;
   /// Called for each wanted message, in the order of the file.
   std::function<Result<void>(const LoggedMessage& message)> on_message;
+  /// Notified of the share of the file that was read.
+  Observer observer{};
 };
 
 }  // namespace kinfer

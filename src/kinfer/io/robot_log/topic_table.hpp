@@ -21,6 +21,13 @@ class TopicTable {
   bool is_wanted(std::uint64_t id) const;
   Result<void> message(std::uint64_t id, std::int64_t log_time, std::string_view data);
 
+  /// Of the file's bytes or rows.
+  void report_progress(std::size_t read, std::size_t all) const {
+    if (all > 0)
+      notify(sink_.observer,
+             {.stage = "reading", .fraction = static_cast<double>(read) / static_cast<double>(all), .detail = file_});
+  }
+
   void remark(std::string sentence) { log_.remarks.push_back(std::move(sentence)); }
   const std::string& file() const { return file_; }
   MessageLog take() { return std::move(log_); }
