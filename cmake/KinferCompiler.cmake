@@ -9,6 +9,20 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
+# Released programs stop at an index outside of a vector, a smashed stack or an overrun buffer instead of going on; what
+# that costs is measured (docs/development/performance.md).
+option(KINFER_HARDENED "Checks of the standard library, the stack and buffers in optimised builds" ON)
+add_library(kinfer_hardening INTERFACE)  # of optimised code: fortified functions are inline functions
+if(KINFER_HARDENED AND NOT KINFER_SANITIZE AND NOT KINFER_SANITIZE_THREADS AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+  add_compile_definitions(_GLIBCXX_ASSERTIONS)
+  add_compile_options(-fstack-protector-strong -fstack-clash-protection)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    add_compile_options(-fcf-protection)
+  endif()
+  add_link_options(-Wl,-z,relro,-z,now)
+  target_compile_options(kinfer_hardening INTERFACE -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
+endif()
+
 # Several files of a target are compiled as one (a unity build): Eigen, fmt and gtest are parsed once per batch. Names in
 # anonymous namespaces must then differ within a batch; a file that cannot comply is compiled alone
 # (SKIP_UNITY_BUILD_INCLUSION).
@@ -38,6 +52,10 @@ if(KINFER_SANITIZE)
   # they are used, by the processor and the address sanitizer: checks before each access take as long as everything else.
   add_compile_options(-fno-sanitize=pointer-overflow,null,alignment,object-size,vptr)
   add_link_options(-fsanitize=address,undefined)
+endif()
+if(KINFER_SANITIZE_THREADS)
+  add_compile_options(-fsanitize=thread -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=thread)
 endif()
 if(KINFER_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link)  # counts which branches an input takes

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Seeds x machines x grades: errors of the identified geometry, and coverage of its confidence intervals.
+// `./dev study identify sweep 60`: four machines, 60 seeds each, as a sweep of the whole command on all cores.
+// `./dev study identify MACHINE GRADE SEEDS [words]`: the fit alone, in circumstances that the words name.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +18,7 @@
 #include "kinfer/simulate/compliant_mounts.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
+#include "studies/identify/identify_sweep.hpp"
 #include "studies/studies.hpp"
 #include "studies/support/truth_scores.hpp"
 
@@ -188,6 +191,7 @@ void run_log(const std::string& path, const std::string& root, const std::vector
 
 int kinfer::study::run_identify(int argc, char** argv) {
   using namespace kinfer;
+  if (argc > 1 && std::string(argv[1]) == "sweep") return run_identify_sweep(argc - 1, argv + 1);
   identify_study::Setup setup;
   if (argc > 4 && std::string(argv[1]) == "log") {
     std::vector<EstimatedJointType> types;

@@ -107,6 +107,16 @@ TEST_F(Merge, TruncatedForeignAndUnfinishedFoldersAreRowsOfTheirOwn) {
   EXPECT_THAT(table, HasSubstr("r3,r3,2026-05-01,calibrate,done"));
 }
 
+TEST_F(Merge, ArchivesGiveTheBytesOfFolders) {
+  calibrate_fleet(4, "bad,calibrate,--robot none.toml --data none.csv,,,\n");
+  ASSERT_EQ(kinfer("merge runs --out whole").code, 0);
+  for (const char* shard : {"2/2", "1/2"})
+    ASSERT_EQ(kinfer("sweep manifest.csv --pack --out packed --shard " + std::string(shard)).code, 0);
+  ASSERT_EQ(kinfer("merge packed --out fleet").code, 0);
+  for (const char* file : {"table.csv", "fleet.json", "prior.json", "report.html"})
+    EXPECT_EQ(slurp(in(std::string("whole/") + file)), slurp(in(std::string("fleet/") + file))) << file;
+}
+
 TEST_F(Merge, SeveralFoldersMakeOneFleetWithTheBytesOfOne) {
   calibrate_fleet(4);
   ASSERT_EQ(kinfer("merge runs --out whole").code, 0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same manifest on every engine that is installed gives the same bytes, also after a worker was killed. Engines
-// that are missing are skipped with a message: parallel, openmpi-bin, python3-distributed of Debian; slurm is not
-// tried.
+// that are missing are skipped with a message: parallel, openmpi-bin, python3-distributed, slurmctld, slurmd,
+// slurm-client and munge of Debian.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -119,12 +119,76 @@ if __name__ == "__main__":
     os.kill(list(client.run(os.getpid).values())[0], signal.SIGKILL)
     sys.exit(job.wait(60))
 )");
-  ASSERT_EQ(shell("timeout 100 " + python + " cluster.py " + job), 0) << slurp(in("engine.txt"));
+  ASSERT_EQ(shell("DASK_TEMPORARY_DIRECTORY=$PWD timeout 100 " + python + " cluster.py " + job), 0)
+      << slurp(in("engine.txt"));
   expect_same_fleet("dask");
 }
 
-TEST_F(SweepEngines, Slurm) {
-  GTEST_SKIP() << "Slurm needs its daemons and munge; its job file runs the shards that the other engines run";
+/// A cluster of one node on this machine, in the test's folder, until it ends; no service of the system is touched.
+constexpr const char* slurm_cluster = R"sh(#!/bin/sh
+here=$PWD/slurm; mkdir -p $here/state $here/spool
+head -c 128 /dev/urandom > $here/munge.key; chmod 600 $here/munge.key
+echo CgroupPlugin=cgroup/v1 > $here/cgroup.conf
+cat > $here/slurm.conf <<END
+ClusterName=kinfer
+SlurmctldHost=$(hostname)(127.0.0.1)
+AuthType=auth/munge
+AuthInfo=socket=$here/munge.socket
+SlurmUser=root
+SlurmdUser=root
+SlurmctldPort=$1
+SlurmdPort=$(($1 + 1))
+StateSaveLocation=$here/state
+SlurmdSpoolDir=$here/spool
+SlurmctldPidFile=$here/slurmctld.pid
+SlurmdPidFile=$here/slurmd.pid
+SlurmctldLogFile=$here/slurmctld.log
+SlurmdLogFile=$here/slurmd.log
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+ReturnToService=2
+MinJobAge=30
+NodeName=$(hostname) NodeAddr=127.0.0.1 CPUs=2 State=UNKNOWN
+PartitionName=all Nodes=ALL Default=YES MaxTime=10 State=UP
+END
+export SLURM_CONF=$here/slurm.conf
+is_alive() { [ -n "$(tr -d '\0' </proc/$1/cmdline 2>/dev/null)" ]; }
+end_all() {
+  for daemon in slurmd slurmctld munged; do
+    process=$(cat $here/$daemon.pid 2>/dev/null) || continue
+    kill $process
+    tries=0
+    while is_alive $process && [ $tries -lt 100 ]; do tries=$((tries + 1)); sleep 0.1; done
+  done
+}
+trap end_all EXIT
+munged --force --socket=$here/munge.socket --key-file=$here/munge.key --pid-file=$here/munged.pid \
+  --log-file=$here/munged.log --seed-file=$here/munged.seed --num-threads=1 || exit 77
+slurmctld -c || exit 77
+slurmd || exit 77
+tries=0
+until sinfo -h -o %T | grep -q idle; do
+  tries=$((tries + 1)); [ $tries -lt 60 ] || exit 77; sleep 0.5
+done
+# One task of the array is killed in the middle; the job is submitted again and does what is left.
+(while [ ! -e slurm_runs/t9 ]; do sleep 0.05; done; scancel --signal=KILL "$(squeue -h -r -o %i | head -1)") &
+timeout 90 sbatch --wait $2
+timeout 90 sbatch --wait $2
+)sh";
+
+TEST_F(SweepEngines, SlurmAndATaskThatIsKilled) {
+  if (!has("which slurmctld slurmd sbatch munged"))
+    GTEST_SKIP() << "Slurm is not installed (Debian: slurmctld, slurmd, "
+                    "slurm-client, munge)";
+  if (::geteuid() != 0) GTEST_SKIP() << "Slurm's daemons need root";
+  write(in("cluster.sh"), slurm_cluster);
+  const int port = 20000 + static_cast<int>(::getpid() % 20000);
+  const int status = shell(fmt::format("sh cluster.sh {} {}", port, job_file("slurm", 4, "slurm_runs")));
+  if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "Slurm does not start here: " << slurp(in("engine.txt"));
+  ASSERT_EQ(status, 0) << slurp(in("engine.txt"));
+  expect_same_fleet("slurm_runs");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/mount.h>
 
 #include <map>
 
@@ -117,6 +118,58 @@ TEST_F(Sweep, TasksCanBeMadeFromFiles) {
                              " --joints {file} -o {out}/poses.csv' --out runs");
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(slurp(in("runs/a/poses.csv")), slurp(in("runs/b/poses.csv")));
+}
+
+TEST_F(Sweep, AnArchiveUnpacksIntoTheFoldersOfAnUnpackedSweep) {
+  write_tasks(5, "bad,predict,--chain none.toml --joints none.csv\n");
+  ASSERT_EQ(kinfer("sweep manifest.csv --out whole").code, 0);
+  const Outcome run = kinfer("sweep manifest.csv --out packed --pack --shard 1/2");
+  ASSERT_EQ(run.code, 0) << run.err;
+  ASSERT_EQ(kinfer("sweep manifest.csv --out packed --pack --shard 2/2").code, 0);
+  EXPECT_FALSE(fs::exists(in("packed/m0")));
+  EXPECT_THAT(kinfer("sweep manifest.csv --out packed --resume").out, HasSubstr("(6 were done before)"));
+  EXPECT_THAT(kinfer("sweep manifest.csv --out packed --retry --pack").out, HasSubstr("(5 were done before)"));
+  ASSERT_EQ(std::system(("cd '" + in("packed").string() +
+                         "' && mkdir ../unpacked && for f in results*.tar; do tar xf $f -C ../unpacked; done")
+                            .c_str()),
+            0);
+  fs::copy(in("whole/manifest.csv"), in("unpacked/manifest.csv"));
+  EXPECT_EQ(contents("whole"), contents("unpacked"));
+}
+
+TEST_F(Sweep, ATaskThatAKilledRunHalfPackedIsDoneAgain) {
+  write_tasks(3);
+  ASSERT_EQ(kinfer("sweep manifest.csv --out runs --pack").code, 0);
+  const auto size = fs::file_size(in("runs/results.tar"));
+  const std::string whole = slurp(in("runs/results.tar"));
+  for (const auto cut : {size - 1, size - 700, size / 2, std::uintmax_t{300}}) {
+    fs::resize_file(in("runs/results.tar"), cut);
+    ASSERT_EQ(kinfer("sweep manifest.csv --out runs --pack --resume --workers 1").code, 0);
+    EXPECT_EQ(fs::file_size(in("runs/results.tar")), size) << "cut at " << cut;
+  }
+  write(in("runs/results.tar"), whole.substr(0, 512) + std::string(4096, 'x'));
+  EXPECT_THAT(kinfer("sweep manifest.csv --out runs --pack --resume").err,
+              HasSubstr("runs/results.tar: no task of a sweep at byte 0"));
+}
+
+TEST_F(Sweep, AFullDiskEndsItAndWhatIsDoneStays) {
+  write_tasks(12);
+  fs::create_directories(in("small"));
+  if (::mount("none", in("small").c_str(), "tmpfs", 0, "size=64k") != 0) GTEST_SKIP() << "needs root";
+  for (const char* option : {"", " --pack"}) {
+    const std::string out = std::string("small/runs") + (*option ? "2" : "1");
+    ASSERT_EQ(::mount("none", in("small").c_str(), "tmpfs", MS_REMOUNT, "size=64k"), 0);
+    const Outcome run = kinfer("sweep manifest.csv --workers 1 --out " + out + option);
+    EXPECT_EQ(run.code, 2);
+    EXPECT_THAT(run.err, HasSubstr("the disk is full"));
+    EXPECT_FALSE(fs::exists(in(out + "/m11")));
+    ASSERT_EQ(::mount("none", in("small").c_str(), "tmpfs", MS_REMOUNT, "size=4m"), 0);
+    const Outcome again = kinfer("sweep manifest.csv --retry --out " + out + option);
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_THAT(again.out, HasSubstr("12 use, 0 do not use, 0 refused"));
+    fs::remove_all(in(out));
+  }
+  ::umount(in("small").c_str());
 }
 
 TEST_F(Sweep, JobFilesNameTheShards) {

@@ -125,11 +125,26 @@ TEST_F(Trust, AnInterruptEndsAtOnceAndLeavesNothing) {
 }
 
 TEST_F(Trust, TimeAndMemoryHaveLimits) {
-  const Outcome late = kinfer("--limit-time 0.2 simulate crane --duration 600 --rate 2000 --out out");
+  const Outcome late =
+      kinfer("--limit-time 0.2 plan --robot " + source("examples/robot6/robot.toml") + " --poses 60 --out out");
   EXPECT_EQ(late.code, 2);
   EXPECT_THAT(late.err, HasSubstr("--limit-time"));
   EXPECT_FALSE(fs::exists(in("out")));
   EXPECT_THAT(kinfer("--limit-time 20 man").err, Not(HasSubstr("--limit-time")));
+}
+
+TEST_F(Trust, WhatWouldTakeTooMuchIsSaidBeforeTheWork) {
+  const Outcome long_one = kinfer("--limit-time 2 simulate crane --duration 1800 --rate 2000 --out out");
+  EXPECT_EQ(long_one.code, 2);
+  EXPECT_THAT(long_one.err, HasSubstr("3600000 rows of "));
+  EXPECT_THAT(long_one.err, HasSubstr("and the limit is 2 s; --limit-time "));
+  EXPECT_FALSE(fs::exists(in("out")));
+  EXPECT_THAT(kinfer("simulate crane --duration 3600 --rate 2000 --out out").err, HasSubstr("the limit is 8 GB"));
+  ASSERT_EQ(kinfer("simulate crane --duration 30 --rate 100 --out log").code, 0);
+  EXPECT_THAT(kinfer("--limit-memory 0.0005 identify log/imu.csv --out out").err, HasSubstr("--limit-memory"));
+  ASSERT_EQ(kinfer(poses("few")).code, 0);
+  EXPECT_THAT(kinfer("--limit-time 0.0001 calibrate --robot few/robot.toml --data few/poses.csv --out out").err,
+              HasSubstr("--limit-time"));
 }
 
 }  // namespace

@@ -70,12 +70,19 @@ std::size_t terminal_width() {
   return std::clamp<std::size_t>(size.ws_col, narrowest, widest);
 }
 
-int run_program(const std::vector<std::string>& arguments) {
+struct Program::Description {
+  CLI::App app{"kinfer: from raw measurements to a proven kinematic model", "kinfer"};
+  ProgramOptions options{};
+  std::vector<Verb> verbs = describe_program(app, options);
+  ProgramEntry tree = option_tree(app);
+};
+
+Program::Program() : description_(std::make_unique<Description>()) {}
+Program::~Program() = default;
+
+int Program::run(const std::vector<std::string>& arguments) {
   store_command_line(arguments);
-  CLI::App app("kinfer: from raw measurements to a proven kinematic model", "kinfer");
-  ProgramOptions options;
-  const std::vector<Verb> verbs = describe_program(app, options);
-  const ProgramEntry program = option_tree(app);
+  auto& [app, options, verbs, program] = *description_;
   if (arguments.empty()) {
     fmt::print(stderr, "{}", help_text(program, terminal_width()));
     return exit_bad_input;
@@ -111,7 +118,7 @@ int main(int argc, char** argv) {
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   try {
     kinfer::cli::prepare_process();
-    const int code = kinfer::cli::run_program({argv + std::min(argc, 1), argv + argc});
+    const int code = kinfer::cli::Program().run({argv + std::min(argc, 1), argv + argc});
     return kinfer::cli::flush_standard_output() ? code : kinfer::cli::exit_bad_input;
   } catch (const std::exception&) {
     return kinfer::cli::code_of_exception();

@@ -55,16 +55,21 @@ TaskSummary summary_of(const Calibration& calibration, const Chain* truth) {
   return summary;
 }
 
-TaskSummary summary_of(const Identification& identification) {
+std::string length_name(const std::string& segment, const std::string& from, const std::string& to) {
+  return "length_" + segment + "_" + from + "_" + to;
+}
+
+TaskSummary summary_of(const Identification& identification, const std::map<std::string, double>& true_lengths) {
   TaskSummary summary{
       .verb = "identify", .usability = identification.usability, .findings = kinds_of(identification.findings)};
   summary.figures = {{"joints", static_cast<double>(identification.joints.size())},
                      {"worst_acceleration_m_s2", identification.prediction.worst_acceleration}};
-  for (const LinkEstimate& link : identification.links)
-    summary.parameters.push_back({.name = "length_" + link.segment + "_" + link.from + "_" + link.to,
-                                  .nominal = link.length,
-                                  .value = link.length,
-                                  .sd = link.sd});
+  for (const LinkEstimate& link : identification.links) {
+    const std::string name = length_name(link.segment, link.from, link.to);
+    SummaryParameter length{.name = name, .nominal = link.length, .value = link.length, .sd = link.sd};
+    if (const auto truth = true_lengths.find(name); truth != true_lengths.end()) length.truth = truth->second;
+    summary.parameters.push_back(std::move(length));
+  }
   return summary;
 }
 

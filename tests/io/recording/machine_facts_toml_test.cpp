@@ -64,6 +64,10 @@ TEST(MachineFactsToml, ErrorsNameFileAndLine) {
             "facts.toml:5: tape 1: \"sigma\": expected a positive number");
   EXPECT_EQ(wrong("[[tape]]\nfrom = \"a\"\nto = \"b\"\nlength = 1\nsigma = 1\nat = [3, 2]\n"),
             "facts.toml:6: tape 1: \"at\": expected begin, end of a time window [s], each end after its begin");
+  EXPECT_EQ(wrong("[[tape]]\nfrom = \"a\"\nto = \"b\"\nlength = 1e9\nsigma = 1\n"),
+            "facts.toml:4: tape 1: \"length\": 1e+09 m is not possible for a length (at most 2e+07 m)");
+  EXPECT_EQ(wrong("[[place]]\nname = \"a\"\nsensor = \"b\"\nxyz = [0, 1e12, 0]\nsigma = 1\n"),
+            "facts.toml:4: place 1: \"xyz\": 1e+12 m is not possible for a length (at most 2e+07 m)");
   EXPECT_NE(wrong("[[tap]]\nfrom = \"a\"\n"), "(accepted)");
 }
 

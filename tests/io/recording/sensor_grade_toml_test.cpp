@@ -43,6 +43,10 @@ TEST(SensorGradeToml, ErrorsNameFileAndLine) {
             "grade.toml:2: gyroscope: \"noise_density\": expected a number that is not negative");
   EXPECT_EQ(wrong("units = { angular_rate = \"rpm\" }\n"),
             "grade.toml:1: units: \"angular_rate\": expected an angular rate (rad/s, deg/s), found \"rpm\"");
+  EXPECT_EQ(wrong("[gyroscope]\nbias = 1e9\n"),
+            "grade.toml:2: gyroscope: \"bias\": 1e+09 rad/s is not possible for an angular rate (at most 1e+06 rad/s)");
+  EXPECT_EQ(wrong("[accelerometer]\nscale = 1e6\n"),
+            "grade.toml:2: accelerometer: \"scale\": 1e+06 is not possible for a gain (at most 10000)");
   EXPECT_NE(wrong("[gyroscope]\nnoise = 1\n").find("grade.toml:2: gyroscope: "), std::string::npos);
 }
 

@@ -16,8 +16,8 @@ std::string robot_with(const std::string& line) {
 }
 
 TEST(PossibleChain, NumbersThatNoMachineHasAreRefusedWithTheirLine) {
-  for (const std::string line :
-       {"gain = 1e300", "compliance = 1e9", "backlash = 1e200", "beta = 1e17", "harmonics = [[1, 1e300, 0]]"}) {
+  for (const std::string line : {"gain = 1e300", "compliance = 1e9", "backlash = 1e200", "beta = 1e17",
+                                 "harmonics = [[1, 1e300, 0]]", "limits = [0, 1e300]"}) {
     const auto robot = parse_robot_toml(robot_with(line), "robot.toml");
     ASSERT_FALSE(robot) << line;
     EXPECT_THAT(robot.error().what, HasSubstr("robot.toml:"));
@@ -31,6 +31,16 @@ TEST(PossibleChain, ARobotThatCannotMoveIsRefused) {
       parse_robot_toml("convention = \"urdf\"\n[[joint]]\ntype = \"fixed\"\nxyz = [0, 0, 1]\n", "r.toml");
   ASSERT_FALSE(robot);
   EXPECT_THAT(robot.error().what, HasSubstr("no joint that moves"));
+}
+
+TEST(PossibleChain, ALargeLimitOfAUrdfIsNone) {
+  const auto chain = parse_urdf(
+      "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='revolute'><parent link='a'/>"
+      "<child link='b'/><axis xyz='0 0 1'/><limit lower='-1e300' upper='2' effort='1' velocity='1'/></joint></robot>",
+      "r.urdf", {});
+  ASSERT_TRUE(chain) << chain.error().what;
+  EXPECT_EQ(chain->joints[0].lower, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(chain->joints[0].upper, 2.0);
 }
 
 TEST(PossibleChain, AUrdfWithAnAbsurdLengthIsRefused) {

@@ -73,6 +73,14 @@ TEST(TrackingModelToml, BadFilesAreOneSentenceWithTheLine) {
   EXPECT_THAT(complaint(with_text_replaced(good, "gravity = ", "graviti = ")), HasSubstr("track.toml:"));
   EXPECT_THAT(complaint(with_text_replaced(good, "motion = \"revolute\"", "motion = \"rotary\"")),
               HasSubstr("\"rotary\" is none of its values"));
+  const auto with_value = [&](const std::string& key, const std::string& value) {
+    const std::size_t at = good.find("\n" + key + " = ") + 1;
+    return std::string(good).replace(at, good.find('\n', at) - at, key + " = " + value);
+  };
+  EXPECT_THAT(complaint(with_value("gravity", "1e9")), HasSubstr("not possible for a gravity"));
+  EXPECT_THAT(complaint(with_value("sample_period", "-0.01")), HasSubstr("expected a number that is not negative"));
+  EXPECT_THAT(complaint(with_value("noise", "[inf, 0.1]")), HasSubstr("\"noise\": inf is not possible"));
+  EXPECT_THAT(complaint(with_value("gyroscope_bias", "[0, 1e9, 0]")), HasSubstr("not possible for an angular rate"));
   EXPECT_THAT(complaint(with_text_replaced(good, "parent = 0", "parent = 7")),
               HasSubstr("\"parent\": 7 is out of range"));
   EXPECT_THAT(complaint(with_text_replaced(good, "point_in_parent 1 0", "point_in_parent 99 0")),

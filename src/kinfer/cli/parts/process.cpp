@@ -24,6 +24,11 @@ namespace {
 
 char out_of_time[160] = "";  // written before the timer starts: a signal handler can print it, but not make it
 
+ProcessLimits& stated_limits() {
+  static ProcessLimits limits;
+  return limits;
+}
+
 void say(std::string_view text) {
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
 }
@@ -61,7 +66,12 @@ void prepare_process() {
   }
 }
 
-void limit_memory([[maybe_unused]] double gigabytes) {
+ProcessLimits process_limits() {
+  return stated_limits();
+}
+
+void limit_memory(double gigabytes) {
+  stated_limits().memory = gigabytes;
 #if !defined(__SANITIZE_ADDRESS__)
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
@@ -93,6 +103,7 @@ int code_of_exception() {
 }
 
 void limit_time(double seconds) {
+  stated_limits().time = seconds;
   const auto end = fmt::format_to_n(out_of_time, sizeof(out_of_time) - 1,
                                     "kinfer: not done after {:g} s, nothing was written; --limit-time {:g} gives it "
                                     "ten times as long, 0 any time\n",

@@ -9,6 +9,13 @@ namespace kinfer::cli {
 /// their place.
 void prepare_process();
 
+struct ProcessLimits {
+  double memory = 0.0;  ///< [GB]; 0: unlimited
+  double time = 0.0;    ///< [s]; 0: unlimited
+};
+/// Those that were set by the two functions below.
+ProcessLimits process_limits();
+
 /// Memory of this process in GB, beyond which it ends with a sentence; 0: unlimited.
 void limit_memory(double gigabytes);
 

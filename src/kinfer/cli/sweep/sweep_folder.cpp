@@ -5,17 +5,14 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
-#include <unordered_map>
 #include <utility>
 
 #include "kinfer/base/instruction_set.hpp"
-#include "kinfer/io/text/dump_json.hpp"
+#include "kinfer/cli/sweep/sweep_manifest.hpp"
 #include "kinfer/io/text/replace_all.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
@@ -23,50 +20,6 @@ namespace kinfer::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-using TasksByKey = std::unordered_map<std::string, const SweepTask*>;
-
-TasksByKey by_key(const std::vector<SweepTask>& tasks) {
-  TasksByKey map;
-  for (const SweepTask& task : tasks) map.emplace(task.key, &task);
-  return map;
-}
-
-/// Rows of the folder's manifest that are others in `tasks`; rows that were added or left out are no contradiction.
-std::vector<std::string> changed_keys(const TasksByKey& was, const std::vector<SweepTask>& is) {
-  std::vector<std::string> keys;
-  for (const SweepTask& task : is) {
-    const auto old = was.find(task.key);
-    if (old != was.end() && !(*old->second == task)) keys.push_back(task.key);
-  }
-  return keys;
-}
-
-std::string list_of(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 8;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) text += (i > 0 ? ", " : "") + names[i];
-  return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
-}
-
-Result<void> check_manifest(const fs::path& path, const std::vector<SweepTask>& tasks, bool may_resume) {
-  const fs::path manifest = path / "manifest.csv";
-  if (!fs::exists(manifest)) {
-    const auto is_hidden = [](const fs::directory_entry& entry) { return entry.path().filename().string()[0] == '.'; };
-    if (!std::all_of(fs::directory_iterator(path), fs::directory_iterator(), is_hidden))
-      return error("{}: expected a new or empty folder, or that of a sweep", path.string());
-    return {};
-  }
-  if (!may_resume) return error("{}: holds results of a sweep; --resume goes on with it", path.string());
-  KINFER_TRY(was, read_manifest(manifest));
-  const TasksByKey old = by_key(was);
-  if (std::ranges::none_of(tasks, [&](const SweepTask& task) { return old.contains(task.key); }))
-    return error("{}: belongs to another manifest, with none of these keys", path.string());
-  if (const auto changed = changed_keys(old, tasks); !changed.empty())
-    return error("{}: rows of the manifest have changed since: {}; give these other keys, or the sweep another folder",
-                 path.string(), list_of(changed));
-  return {};
-}
 
 /// Folders of this shard's tasks that were running when an earlier process was killed.
 void remove_unfinished(const fs::path& path, const std::vector<SweepTask>& tasks, const Shard& shard) {
@@ -116,22 +69,6 @@ class FolderTurn {
   int folder_;
 };
 
-/// With rows that an earlier manifest had and this one has not, so that their results stay explained.
-Result<void> update_manifest(const fs::path& file, const std::vector<SweepTask>& tasks) {
-  std::vector<SweepTask> all = tasks;
-  std::string present;
-  if (fs::exists(file)) {
-    KINFER_TRY(was, read_manifest(file));
-    KINFER_TRY(text, read_text_file(file));
-    present = std::move(text);
-    const TasksByKey now = by_key(tasks);
-    for (SweepTask& task : was)
-      if (!now.contains(task.key)) all.push_back(std::move(task));
-  }
-  const std::string text = format_manifest(all);
-  return text == present ? Result<void>() : write_text_file(file, text);
-}
-
 /// Writes "{out}" for the folder under which the task ran: its name is of one run.
 void hide_folder(const fs::path& file, const std::string& folder) {
   const auto text = read_text_file(file);
@@ -163,86 +100,116 @@ Result<Shard> parse_shard(const std::string& text) {
 }
 
 Result<SweepFolder> SweepFolder::open(const fs::path& path, const std::vector<SweepTask>& tasks, const Shard& shard,
-                                      bool may_resume) {
+                                      bool may_resume, ResultStorage storage) {
   std::error_code failure;
   fs::create_directories(path, failure);
   const FolderTurn turn(path);
   if (auto ready = create_writable_folder(path); !ready) return forward_error(ready.error());
   if (auto checked = check_manifest(path, tasks, may_resume); !checked) return forward_error(checked.error());
-  const std::string name = shard.parts == 1 ? ".lock" : fmt::format(".lock-{}-of-{}", shard.part, shard.parts);
-  const int lock = ::open((path / name).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  const std::string part = shard.parts == 1 ? "" : fmt::format("-{}-of-{}", shard.part, shard.parts);
+  const int lock = ::open((path / (".lock" + part)).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   SweepFolder folder(path, lock);
   if (lock < 0) return error("{}: cannot be locked", path.string());
   if (!take_lock(lock)) return error("{}: another sweep works in this folder", path.string());
   remove_unfinished(path, tasks, shard);
-  if (auto written = update_manifest(path / "manifest.csv", tasks); !written) return forward_error(written.error());
+  if (auto written = update_manifest(path, tasks); !written) return forward_error(written.error());
+  if (storage == ResultStorage::archive)
+    if (auto ready = folder.pack_results("results" + part + ".tar"); !ready) return forward_error(ready.error());
+  KINFER_TRY(packed, packed_results(path));
+  folder.packed_ = std::move(packed);
   return folder;
 }
 
 SweepFolder::SweepFolder(SweepFolder&& other) noexcept
-    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
+    : path_(std::move(other.path_)),
+      lock_(std::exchange(other.lock_, -1)),
+      packed_(std::move(other.packed_)),
+      pack_(std::move(other.pack_)),
+      scratch_(std::exchange(other.scratch_, {})) {}
 
 SweepFolder::~SweepFolder() {
+  std::error_code ignored;
+  if (!scratch_.empty()) fs::remove_all(scratch_, ignored);
   if (lock_ >= 0) ::close(lock_);
 }
 
-bool SweepFolder::is_done(const SweepTask& task) const {
-  return fs::exists(path_ / task.key);
+Result<void> SweepFolder::pack_results(const std::string& name) {
+  KINFER_TRY(pack, TaskPack::open(path_ / name));
+  pack_.emplace(std::move(pack));
+  std::error_code failure;
+  const fs::path scratch = fs::temp_directory_path(failure) / fmt::format("kinfer-sweep-{}", ::getpid());
+  if (!failure) fs::create_directory(scratch, failure);
+  if (failure) return error("{}: {}", scratch.string(), failure.message());
+  scratch_ = scratch;
+  return {};
 }
 
-Result<TaskResult> SweepFolder::result_of(const SweepTask& task) const {
-  const fs::path file = path_ / task.key / "task.json";
-  KINFER_TRY(text, read_text_file(file));
-  const auto json = nlohmann::json::parse(text, nullptr, false);
-  if (!json.is_object() || !json.contains("exit_code") || !json["exit_code"].is_number_integer())
-    return error("{}: no record of a task", file.string());
-  return TaskResult{.exit_code = json["exit_code"].get<int>(),
-                    .signal = json.value("signal", 0),
-                    .sentence = json.value("sentence", std::string())};
+bool SweepFolder::is_done(const SweepTask& task) const {
+  return packed_.contains(task.key) || fs::exists(path_ / task.key);
+}
+
+Result<TaskRecord> SweepFolder::result_of(const SweepTask& task) const {
+  const auto packed = packed_.find(task.key);
+  KINFER_TRY(text,
+             read_task_file(packed != packed_.end() ? packed->second : TaskResults{path_ / task.key, {}}, "task.json"));
+  if (!text) return error("{}: no record of a task", task.key);
+  return parse_task_record(*text);
+}
+
+fs::path SweepFolder::running(const SweepTask& task) const {
+  return (scratch_.empty() ? path_ : scratch_) / fmt::format(".{}.{}", task.key, ::getpid());
 }
 
 Result<fs::path> SweepFolder::begin(const SweepTask& task) const {
-  const fs::path folder = path_ / fmt::format(".{}.{}", task.key, ::getpid());
+  const fs::path folder = running(task);
   std::error_code failure;
   fs::remove_all(folder, failure);
-  if (!fs::create_directory(folder, failure)) return error("{}: the folder cannot be made", folder.string());
+  if (!fs::create_directory(folder, failure))
+    return error("{}: the folder cannot be made ({})", folder.string(), failure.message());
   return folder;
 }
 
-Result<TaskResult> SweepFolder::end(const SweepTask& task, std::uint64_t seed, int exit_code, int signal) const {
-  const fs::path folder = path_ / fmt::format(".{}.{}", task.key, ::getpid());
-  TaskResult result{.exit_code = exit_code, .signal = signal, .sentence = {}};
+Result<TaskRecord> SweepFolder::end(const SweepTask& task, std::uint64_t seed, int exit_code, int signal) {
+  const fs::path folder = running(task);
+  TaskRecord record{.verb = task.verb, .exit_code = exit_code, .signal = signal, .processor_class = processor_class()};
   if (signal != 0)
-    result.sentence = fmt::format("the program was ended by signal {}", signal);
+    record.sentence = fmt::format("the program was ended by signal {}", signal);
   else if (exit_code > 1)
-    result.sentence = last_complaint(folder / "messages.txt");
+    record.sentence = last_complaint(folder / "messages.txt");
   std::error_code ignored;
   for (const char* name : {"output.txt", "messages.txt"}) {
-    hide_folder(folder / name, folder.string());
-    if (fs::file_size(folder / name, ignored) == 0) fs::remove(folder / name, ignored);
+    if (fs::file_size(folder / name, ignored) == 0)
+      fs::remove(folder / name, ignored);
+    else
+      hide_folder(folder / name, folder.string());
   }
-  nlohmann::ordered_json json{{"format", "kinfer-task/1"},
-                              {"key", task.key},
-                              {"verb", task.verb},
-                              {"arguments", task.arguments},
-                              {"seed", seed},
-                              {"exit_code", exit_code},
-                              {"signal", signal},
-                              {"processor_class", processor_class()},
-                              {"sentence", result.sentence}};
-  if (auto done = write_text_file(folder / "task.json", dump_json(json, 1) + "\n"); !done)
+  if (auto done = write_text_file(folder / "task.json", format_task_record(task, seed, record)); !done)
     return forward_error(done.error());
-  std::error_code failure;
-  fs::rename(folder, path_ / task.key, failure);
-  if (failure) {
-    fs::remove_all(folder, ignored);
-    if (!is_done(task)) return error("{}: {}", (path_ / task.key).string(), failure.message());
-  }
-  return result;
+  if (auto done = pack_ ? put_into_pack(task, folder) : put_in_place(task, folder); !done)
+    return forward_error(done.error());
+  return record;
 }
 
-void SweepFolder::discard(const SweepTask& task) const {
+Result<void> SweepFolder::put_in_place(const SweepTask& task, const fs::path& folder) const {
+  std::error_code failure, ignored;
+  fs::rename(folder, path_ / task.key, failure);
+  if (!failure) return {};
+  fs::remove_all(folder, ignored);
+  if (is_done(task)) return {};  // by somebody else
+  return error("{}: {}", (path_ / task.key).string(), failure.message());
+}
+
+Result<void> SweepFolder::put_into_pack(const SweepTask& task, const fs::path& folder) {
+  KINFER_TRY(at, pack_->append(task.key, folder, {"task.json", "summary.json", "information.json"}));
+  packed_[task.key] = {pack_->path(), at};
   std::error_code ignored;
+  fs::remove_all(folder, ignored);
+  return {};
+}
+
+void SweepFolder::discard(const SweepTask& task) {
+  std::error_code ignored;
+  packed_.erase(task.key);
   fs::remove_all(path_ / task.key, ignored);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/cli/sweep/task_context.hpp"
 
+#include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "kinfer/fleet/summary.hpp"
@@ -18,6 +20,24 @@ TaskContext& task_context() {
 
 bool is_task() {
   return !task_context().folder.empty();
+}
+
+/// Of the links in truth.json of `kinfer simulate`.
+Result<std::map<std::string, double>> true_lengths(const std::filesystem::path& path) {
+  KINFER_TRY(text, read_text_file(path));
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const auto links = json.is_object() ? json.find("links") : json.end();
+  if (!json.is_object() || links == json.end() || !links->is_array())
+    return error("{}: expected truth.json of `kinfer simulate`", path.string());
+  std::map<std::string, double> lengths;
+  for (const nlohmann::json& link : *links) {
+    const auto text_of = [&](const char* key) {
+      return link.is_object() && link.contains(key) && link[key].is_string() ? link[key].get<std::string>() : "";
+    };
+    if (link.is_object() && link.contains("length_m") && link["length_m"].is_number())
+      lengths[fleet::length_name(text_of("segment"), text_of("from"), text_of("to"))] = link["length_m"].get<double>();
+  }
+  return lengths;
 }
 
 Result<void> write_summary(const TaskSummary& summary) {
@@ -45,7 +65,13 @@ Result<void> write_task_summary(const Calibration& calibration) {
 }
 
 Result<void> write_task_summary(const Identification& identification) {
-  return is_task() ? write_summary(fleet::summary_of(identification)) : Result<void>{};
+  if (!is_task()) return {};
+  std::map<std::string, double> lengths;
+  if (const std::string& path = task_context().truth; !path.empty()) {
+    KINFER_TRY(known, true_lengths(path));
+    lengths = std::move(known);
+  }
+  return write_summary(fleet::summary_of(identification, lengths));
 }
 
 Result<void> write_task_summary(const Verification& verification) {

@@ -19,9 +19,9 @@ namespace kinfer::cli {
 namespace {
 
 /// The program in a process of its own; what it throws ends it as in main.
-int run_task(const std::vector<std::string>& words) {
+int run_task(Program& program, const std::vector<std::string>& words) {
   try {
-    return run_program(words);
+    return program.run(words);
   } catch (const std::exception&) {
     return code_of_exception();
   }
@@ -36,6 +36,10 @@ void redirect(int descriptor, const std::filesystem::path& file) {
 
 }  // namespace
 
+TaskPool::TaskPool(int workers) : workers_(workers), program_(std::make_unique<Program>()) {}
+
+TaskPool::~TaskPool() = default;
+
 bool TaskPool::start(int task, const std::vector<std::string>& words, const TaskContext& context) {
   std::fflush(nullptr);  // or the child would print what is buffered here again
   const pid_t process = ::fork();
@@ -45,7 +49,7 @@ bool TaskPool::start(int task, const std::vector<std::string>& words, const Task
     redirect(STDOUT_FILENO, context.folder / "output.txt");
     redirect(STDERR_FILENO, context.folder / "messages.txt");
     set_task_context(context);
-    const int code = run_task(words);
+    const int code = run_task(*program_, words);
     std::fflush(nullptr);
     ::_exit(code);  // without destructors of the parent's objects
   }

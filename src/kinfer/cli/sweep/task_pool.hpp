@@ -4,12 +4,15 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "kinfer/cli/sweep/task_context.hpp"
 
 namespace kinfer::cli {
+
+class Program;
 
 struct EndedTask {
   int task = 0;
@@ -19,7 +22,11 @@ struct EndedTask {
 
 class TaskPool {
  public:
-  explicit TaskPool(int workers) : workers_(workers) {}
+  explicit TaskPool(int workers);
+  ~TaskPool();
+  TaskPool(const TaskPool&) = delete;
+  TaskPool& operator=(const TaskPool&) = delete;
+
   bool is_full() const { return static_cast<int>(running_.size()) >= workers_; }
   bool is_empty() const { return running_.empty(); }
 
@@ -32,7 +39,8 @@ class TaskPool {
 
  private:
   int workers_;
-  std::map<int, int> running_;  // process → task
+  std::unique_ptr<Program> program_;  // each task runs its process's copy
+  std::map<int, int> running_;        // process → task
 };
 
 }  // namespace kinfer::cli

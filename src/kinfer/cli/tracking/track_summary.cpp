@@ -12,6 +12,11 @@ namespace {
 
 constexpr std::size_t most_events_shown = 20;
 
+/// "-" for a joint that was never known.
+std::string cell(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:>10.{}f}", value, digits) : fmt::format("{:>10}", "-");
+}
+
 std::string position_line(const TrackCurve& curve) {
   double low = NAN, high = NAN, sd = NAN;
   for (std::size_t i = 0; i < curve.low.size(); ++i) {
@@ -20,7 +25,7 @@ std::string position_line(const TrackCurve& curve) {
     sd = std::fmax(sd, curve.sd[i]);
   }
   const double unit = curve.rotates ? degree : 1e-3;
-  return fmt::format("{:<16} {:>10.2f} {:>10.2f} {:>10.3f}  {}\n", curve.name, low / unit, high / unit, sd / unit,
+  return fmt::format("{:<16} {} {} {}  {}\n", curve.name, cell(low / unit, 2), cell(high / unit, 2), cell(sd / unit, 3),
                      curve.rotates ? "deg" : "mm");
 }
 

@@ -12,6 +12,7 @@
 #include "kinfer/cli/options/search_options.hpp"
 #include "kinfer/cli/parts/calibration_summary.hpp"
 #include "kinfer/cli/parts/evidence_files.hpp"
+#include "kinfer/cli/parts/expected_cost.hpp"
 #include "kinfer/cli/parts/model_patch_output.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/sweep/task_context.hpp"
@@ -134,6 +135,8 @@ Result<Inputs> read_inputs(const CalibrateArguments& options) {
     KINFER_TRY(read, read_pose_set(options.data, robot.chain, map));
     data = std::move(read);
   }
+  if (auto possible = check_cost(cost_of_calibration(static_cast<double>(data.rows()), dof(robot.chain))); !possible)
+    return forward_error(possible.error());
   KINFER_TRY(parameters, read_parameter_choice(options));
   KINFER_TRY(holdout, add_holdout(options.holdout, robot, map, data));
   KINFER_TRY(model, calibrate::parse_model_choice(options.model));

@@ -24,7 +24,7 @@ int step(const DemoArguments& options, const char* what, std::vector<std::string
   if (!options.quiet) fmt::print(stderr, "\n== {}\n$ {}\n", what, command);
   arguments.insert(arguments.end(), {"--threads", std::to_string(options.threads)});
   if (options.quiet) arguments.emplace_back("--quiet");
-  return run_program(arguments);
+  return Program().run(arguments);
 }
 
 Result<void> write_robot_files(const std::filesystem::path& folder) {

@@ -11,6 +11,7 @@
 #include "kinfer/cli/options/zero_argument.hpp"
 #include "kinfer/cli/parts/arguments.hpp"
 #include "kinfer/cli/parts/evidence_files.hpp"
+#include "kinfer/cli/parts/expected_cost.hpp"
 #include "kinfer/cli/parts/identification_summary.hpp"
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
@@ -173,6 +174,13 @@ Result<void> write_results(OutputFolder& folder, const Provenance& provenance, c
   return write_evidence(folder, identification_evidence(found, provenance));
 }
 
+ExpectedCost cost_of(const InsRecording& recording) {
+  std::size_t rows = 0;
+  for (const InsSensor& sensor : recording.sensors) rows += sensor.rows();
+  const auto sensors = static_cast<double>(std::max<std::size_t>(1, recording.sensors.size()));
+  return cost_of_identification(static_cast<double>(rows) / sensors, sensors);
+}
+
 int run(const CLI::App& verb, const IdentifyArguments& options) {
   RunRecord record("identify", options.common);
   for (const std::string& path : options.logs) record.add_input(path);
@@ -182,6 +190,7 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   if (!how) return fail(how.error());
   const auto recording = read_ins_logs({options.logs, options.columns, options.topics}, options.common);
   if (!recording) return fail(recording.error());
+  if (auto possible = check_cost(cost_of(*recording)); !possible) return fail(possible.error());
   auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
   const Result<Identification> found = [&] {

@@ -10,6 +10,7 @@
 #include "kinfer/base/constants.hpp"
 #include "kinfer/cli/options/drive_choices.hpp"
 #include "kinfer/cli/options/simulated_faults.hpp"
+#include "kinfer/cli/parts/expected_cost.hpp"
 #include "kinfer/cli/parts/simulation_files.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/text/dump_json.hpp"
@@ -105,6 +106,8 @@ Result<void> simulate(const SimulateArguments& options) {
   KINFER_TRY(drive,
              make_drive(world.machine(), {.script = drive_scripts.at(options.script), .duration = options.duration},
                         rng.stream(2)));
+  const double rows = drive.duration * options.sampling_rate, count = static_cast<double>(machine.sensors.size());
+  if (auto possible = check_cost(cost_of_simulation(rows, count)); !possible) return possible;
   KINFER_TRY(folder, OutputFolder::make(options.out));
   KINFER_TRY(moved, move(world, machine, drive, options));
   const MachineTruth truth = machine_truth(machine, moved);

@@ -23,7 +23,7 @@ struct SweepArguments {
   std::string manifest, each, verb, arguments, out, shard, print, prior;
   int workers = 0, shards = 0;
   std::uint64_t seed = 1;
-  bool resume = false, retry = false, quiet = false;
+  bool resume = false, retry = false, pack = false, quiet = false;
 };
 
 struct Tally {
@@ -31,7 +31,7 @@ struct Tally {
   int ended() const { return use + do_not_use + refused + failed; }
 };
 
-void count(const TaskResult& result, Tally& tally) {
+void count(const TaskRecord& result, Tally& tally) {
   if (result.signal != 0 || result.exit_code > exit_bad_input)
     ++tally.failed;
   else if (result.exit_code == exit_bad_input)
@@ -94,8 +94,8 @@ std::vector<std::string> words_of(const SweepTask& task, std::uint64_t seed, con
 
 class SweepRun {
  public:
-  SweepRun(const SweepArguments& options, const std::vector<SweepTask>& tasks, const Shard& shard,
-           const SweepFolder& folder, const CLI::App& program)
+  SweepRun(const SweepArguments& options, const std::vector<SweepTask>& tasks, const Shard& shard, SweepFolder& folder,
+           const CLI::App& program)
       : options_(options), tasks_(tasks), folder_(folder), program_(program), pool_(workers(options)) {
     for (std::size_t i = 0; i < tasks.size(); ++i)
       if (shard.has(i)) mine_.push_back(i);
@@ -160,7 +160,7 @@ class SweepRun {
 
   const SweepArguments& options_;
   const std::vector<SweepTask>& tasks_;
-  const SweepFolder& folder_;
+  SweepFolder& folder_;
   const CLI::App& program_;
   TaskPool pool_;
   std::vector<std::size_t> mine_;
@@ -187,6 +187,7 @@ int print_script(const SweepArguments& options, std::size_t tasks) {
   add("", options.manifest), add("--each", options.each), add("--verb", options.verb);
   add("--arguments", options.arguments), add("--prior", options.prior), add("--out", options.out),
       add("--seed", std::to_string(options.seed));
+  if (options.pack) command += " --pack";
   fmt::print("{}", sweep_script(options.print, command + " --resume --quiet", shards));
   return exit_done;
 }
@@ -199,8 +200,8 @@ int run(const SweepArguments& options, const CLI::App& program) {
   const auto shard = options.shard.empty() ? Result<Shard>(Shard{}) : parse_shard(options.shard);
   if (!shard) return fail(shard.error());
   // Shards begin in any order, so none of them can know whether it is the first.
-  const auto folder =
-      SweepFolder::open(options.out, *tasks, *shard, options.resume || options.retry || shard->parts > 1);
+  auto folder = SweepFolder::open(options.out, *tasks, *shard, options.resume || options.retry || shard->parts > 1,
+                                  options.pack ? ResultStorage::archive : ResultStorage::folders);
   if (!folder) return fail(folder.error());
   const auto tally = SweepRun(options, *tasks, *shard, *folder, program).run();
   if (!tally) return fail(tally.error());
@@ -234,6 +235,9 @@ Verb add_sweep(CLI::App& app) {
   add_flag(*verb, "--resume", options->resume, "Go on with a sweep that was interrupted");
   add_flag(*verb, "--retry", options->retry, "Go on, and run tasks again that were refused or failed");
   add_text(*verb, "--shard", options->shard, "Only part i of N of the tasks", Requirement::optional, "i/N");
+  add_flag(*verb, "--pack", options->pack,
+           "Results of all tasks in one archive (a shard's own), for file systems that many small files wear down; "
+           "tasks run below TMPDIR");
   add_count(*verb, "--workers", options->workers, 0, 1024, "Tasks at once, each with one thread; 0: one a core");
   add_seed(*verb, "--seed", options->seed, "Seed from which each task's own is made");
   add_choice(*verb, "--print", options->print, engine_names(), "Print a job file for an engine, and run nothing");

@@ -2,6 +2,7 @@
 // Many results side by side: a row for each task, what is unusual among them, and what changed over time.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,8 +22,9 @@ std::string_view name(TaskState state);
 
 struct FleetRow {
   std::string key{}, verb{};
-  std::string folder{};         ///< of the task's files; in no output
-  std::string robot{}, date{};  ///< of the manifest; the date as YYYY-MM-DD, with a time or without
+  std::string folder{};                      ///< of the task's files, or the archive that holds them; in no output
+  std::optional<std::uint64_t> packed_at{};  ///< where in the archive [bytes]; nothing: a folder
+  std::string robot{}, date{};               ///< of the manifest; the date as YYYY-MM-DD, with a time or without
   TaskState state = TaskState::done;
   int exit_code = 0, signal = 0;
   std::string sentence{};         ///< what the program said where it failed, or why the record cannot be read

@@ -15,7 +15,8 @@ namespace kinfer {
 namespace {
 
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();
-constexpr int gravity_rows = 100;  // over which the mean specific force is compared with gravity
+constexpr double largest_reading = 1e9;  // [m/s²], [rad/s], [µT]; the sums of squares stay finite
+constexpr int gravity_rows = 100;        // over which the mean specific force is compared with gravity
 
 /// The cell as a number, NaN where it is empty or not finite; nothing where it is no number.
 std::optional<double> cell_value(std::string_view cell) {
@@ -125,9 +126,9 @@ Result<void> InsRowReader::read_row(std::string_view line, const Sink& sink, boo
     if (!value) return error("{}:{}: {}", name_, line_, describe_invalid_number(header_.columns[c], cell, '.'));
     if (c == columns_->time_column)
       time = columns_->columns[c].factor * *value;
-    else
-      values_[static_cast<std::size_t>(target.sensor)][target.instrument][static_cast<Eigen::Index>(target.axis)] =
-          target.factor * *value;
+    else if (const double si = target.factor * *value;
+             std::abs(si) <= largest_reading)  // or a fault of the line: missing
+      values_[static_cast<std::size_t>(target.sensor)][target.instrument][static_cast<Eigen::Index>(target.axis)] = si;
   }
   if (auto checked = check_time(time); !checked) return checked;
   row_.time = time;

@@ -25,7 +25,14 @@ double read_positive(TableReader& table, std::string_view key, double unit) {
   const double value = table.number(key);
   if (!(value > 0.0) && table.has(key))
     table.report_error(table.line_of(key), fmt::format("\"{}\": expected a positive number", key));
+  table.expect_possible(key, unit * value, possible::length);
   return unit * value;
+}
+
+Vec3 read_point(TableReader& table, double unit) {
+  const Vec3 point = unit * table.vector("xyz");
+  for (const double value : point) table.expect_possible("xyz", value, possible::length);
+  return point;
 }
 
 /// begin, end, begin, end ... [s]
@@ -36,6 +43,8 @@ std::vector<HoldSegment> read_windows(TableReader& table, std::size_t least) {
   for (std::size_t i = 0; i + 1 < times.size(); i += 2) {
     good = good && times[i] < times[i + 1];
     all.push_back({times[i], times[i + 1]});
+    for (const double time : {times[i], times[i + 1]})
+      table.expect_possible("at", time, possible_range(Dimension::time));
   }
   if (!good && table.has("at"))
     table.report_error(table.line_of("at"),
@@ -53,7 +62,7 @@ HoldSegment read_window(TableReader& table) {
 SegmentPoint read_place(TableReader& table, double unit) {
   SegmentPoint fact{.name = table.text("name"), .sensor = table.text("sensor"), .xyz = {}};
   if (!table.has("xyz")) return fact;
-  fact.xyz = unit * table.vector("xyz");
+  fact.xyz = read_point(table, unit);
   fact.sigma = read_positive(table, "sigma", unit);
   return fact;
 }
@@ -73,7 +82,7 @@ TapeMeasurement read_tape(TableReader& table, double unit) {
 }
 
 SurveyMeasurement read_survey(TableReader& table, double unit) {
-  return {table.text("point"), read_window(table), unit * table.vector("xyz"), read_positive(table, "sigma", unit)};
+  return {table.text("point"), read_window(table), read_point(table, unit), read_positive(table, "sigma", unit)};
 }
 
 /// Reads every [[key]] table of the file with `read`.

@@ -35,25 +35,34 @@ Factors read_factors(TableReader& file, FirstError& first_error) {
   return factors;
 }
 
-double non_negative_or(TableReader& table, std::string_view key, double fallback) {
-  const double value = table.number_or(key, fallback);
+/// In SI; `fallback` is in SI too.
+double magnitude_or(TableReader& table, std::string_view key, double fallback, double factor,
+                    const PossibleRange& range) {
+  const double value = table.has(key) ? factor * table.number(key) : fallback;
   if (value < 0.0)
     table.report_error(table.line_of(key), fmt::format("\"{}\": expected a number that is not negative", key));
+  table.expect_possible(key, value, range);
   return value;
 }
 
-InstrumentModel read_instrument(TableReader& file, std::string_view key, double factor, FirstError& first_error) {
+InstrumentModel read_instrument(TableReader& file, std::string_view key, double factor, Dimension dimension,
+                                FirstError& first_error) {
   const TomlTable* found = file.table_or_none(key);
   if (!found) return {};
   TableReader table(*found, file.line_of(key), std::string(key) + ": ", first_error);
   InstrumentModel model;
-  model.noise_density = factor * non_negative_or(table, "noise_density", 0.0);
-  model.bias_sd = factor * non_negative_or(table, "bias", 0.0);
-  model.instability = factor * non_negative_or(table, "instability", 0.0);
+  const PossibleRange range = possible_range(dimension);
+  model.noise_density = magnitude_or(table, "noise_density", 0.0, factor, range);
+  model.bias_sd = magnitude_or(table, "bias", 0.0, factor, range);
+  model.instability = magnitude_or(table, "instability", 0.0, factor, range);
   model.instability_time = table.positive_or("instability_time", model.instability_time);
-  model.scale_sd = non_negative_or(table, "scale", 0.0);
-  if (table.has("range")) model.range = factor * table.positive_or("range", 1.0);
-  model.resolution = factor * non_negative_or(table, "resolution", 0.0);
+  table.expect_possible("instability_time", model.instability_time, possible_range(Dimension::time));
+  model.scale_sd = magnitude_or(table, "scale", 0.0, 1.0, possible::ratio);
+  if (table.has("range")) {
+    model.range = factor * table.positive_or("range", 1.0);
+    table.expect_possible("range", model.range, range);
+  }
+  model.resolution = magnitude_or(table, "resolution", 0.0, factor, range);
   table.expect_no_other_keys();
   return model;
 }
@@ -76,9 +85,11 @@ Result<SensorModel> parse_sensor_grade(std::string_view text, const std::string&
   SensorModel model;
   model.name = file.text_or("name", std::filesystem::path(name).stem().string());
   const Factors factors = read_factors(file, first_error);
-  model.accelerometer = read_instrument(file, "accelerometer", factors.acceleration, first_error);
-  model.gyroscope = read_instrument(file, "gyroscope", factors.angular_rate, first_error);
-  model.magnetometer = read_instrument(file, "magnetometer", factors.magnetic_field, first_error);
+  model.accelerometer =
+      read_instrument(file, "accelerometer", factors.acceleration, Dimension::acceleration, first_error);
+  model.gyroscope = read_instrument(file, "gyroscope", factors.angular_rate, Dimension::angular_rate, first_error);
+  model.magnetometer =
+      read_instrument(file, "magnetometer", factors.magnetic_field, Dimension::magnetic_field, first_error);
   file.expect_no_other_keys();
   if (first_error.any()) return forward_error(first_error.as_error());
   return model;

@@ -72,7 +72,8 @@ std::optional<std::string> impossible_number(const Joint& joint) {
     all.number("harmonics", harmonic.order, possible::harmonic_order);
     all.number("harmonics", harmonic.sine, possible::angle), all.number("harmonics", harmonic.cosine, possible::angle);
   }
-  // A URDF says "no limit" by a large number: the limits may be anything but no number.
+  for (const double limit : {joint.lower, joint.upper})
+    if (std::isfinite(limit)) all.number("limits", limit, rotates(joint.type) ? possible::angle : possible::length);
   if (!(joint.lower <= joint.upper)) all.complain("limits: expected the lower one first");
   return all.found();
 }

@@ -4,6 +4,7 @@
 #include "kinfer/base/angle.hpp"
 #include "kinfer/io/robot/prediction_toml.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/xml_names.hpp"
 #include "kinfer/io/text/format_number.hpp"
 
 namespace kinfer {
@@ -16,7 +17,7 @@ const char* convention_of(const Link& link) {
 
 std::string quoted(const std::string& text) {
   std::string result = "\"";
-  for (const char c : text) {
+  for (const char c : utf8_name(text)) {
     if (c == '"' || c == '\\') result += '\\';
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
       result += fmt::format("\\u{:04X}", static_cast<unsigned>(static_cast<unsigned char>(c)));

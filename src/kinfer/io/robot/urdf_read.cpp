@@ -18,7 +18,8 @@
 namespace kinfer {
 namespace {
 
-constexpr double unlimited = 1e9;  // what a URDF states for a joint without limits, as limits are mandatory
+constexpr double unlimited =
+    1e4;  // [rad], [m] and beyond: what a URDF states for a joint without limits, as limits are mandatory
 
 /// Captures what the library would print.
 class LogCapture : public console_bridge::OutputHandler {

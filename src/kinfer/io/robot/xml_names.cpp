@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
 namespace kinfer {
@@ -56,6 +57,17 @@ std::string xml_name(std::string_view name) {
       text += name.substr(0, size);
       name.remove_prefix(size);
     }
+  }
+  return text;
+}
+
+std::string utf8_name(std::string_view name) {
+  std::string text;
+  while (!name.empty()) {
+    const std::size_t size = character_size(name);
+    text += size > 0 ? std::string(name.substr(0, size))
+                     : fmt::format("_x{:04X}_", static_cast<unsigned char>(name.front()));
+    name.remove_prefix(std::max<std::size_t>(size, 1));
   }
   return text;
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/text/text_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <fstream>
 #include <optional>
@@ -27,6 +30,17 @@ bool write_stream(const fs::path& path, const std::function<void(std::ostream&)>
 void remove_quietly(const fs::path& path) {
   std::error_code ignored;
   fs::remove(path, ignored);
+}
+
+/// By a file without a name, which a kill cannot leave behind; by one that is removed where the file system has no
+/// such.
+bool is_writable_folder(const fs::path& folder) {
+  if (const int nameless = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600); nameless >= 0)
+    return ::close(nameless) == 0;
+  const fs::path probe = folder / (std::string("kinfer") + unfinished_suffix);
+  const bool is_writable = write_stream(probe, [](std::ostream&) {});
+  remove_quietly(probe);
+  return is_writable;
 }
 
 }  // namespace
@@ -85,10 +99,7 @@ Result<void> create_writable_folder(const fs::path& folder) {
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (!fs::is_directory(folder, failure)) return error("{}: the output folder cannot be created", folder.string());
-  const fs::path probe = folder / (std::string("kinfer") + unfinished_suffix);
-  const bool writable = write_stream(probe, [](std::ostream&) {});
-  remove_quietly(probe);
-  if (!writable) return error("{}: the output folder is not writable", folder.string());
+  if (!is_writable_folder(folder)) return error("{}: the output folder is not writable", folder.string());
   return {};
 }
 

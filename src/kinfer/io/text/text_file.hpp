@@ -20,7 +20,7 @@ Result<std::string> read_text_file(const std::filesystem::path& path);
 Result<void> write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 Result<void> write_text_file(const std::filesystem::path& path, std::string_view text);
 
-/// Creates the folder where it is absent and checks that it is writable with a probe file, which is removed.
+/// Creates the folder where it is absent and checks that it is writable with a probe file, of which nothing is left.
 Result<void> create_writable_folder(const std::filesystem::path& folder);
 
 }  // namespace kinfer

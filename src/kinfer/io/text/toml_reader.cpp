@@ -115,6 +115,10 @@ double TableReader::positive_or(std::string_view key, double fallback) {
   return value;
 }
 
+void TableReader::expect_possible(std::string_view key, double value, const PossibleRange& range) const {
+  if (const auto what = impossible(value, range)) report_error(line_of(key), fmt::format("\"{}\": {}", key, *what));
+}
+
 std::string TableReader::text(std::string_view key) {
   const TomlValue* value = require(key, "a text");
   if (!value) return {};

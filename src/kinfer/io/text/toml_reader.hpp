@@ -11,6 +11,7 @@
 #include "kinfer/base/result.hpp"
 #include "kinfer/geometry/rotation.hpp"
 #include "kinfer/io/text/first_error.hpp"
+#include "kinfer/io/text/possible_range.hpp"
 
 namespace kinfer {
 
@@ -52,6 +53,8 @@ class TableReader {
   double number(std::string_view key);  ///< finite
   double number_or(std::string_view key, double fallback);
   double positive_or(std::string_view key, double fallback);
+  /// Reports a value of the key, in SI, that its quantity cannot have; an infinite one too.
+  void expect_possible(std::string_view key, double value, const PossibleRange& range) const;
   std::string text(std::string_view key);
   std::string text_or(std::string_view key, const std::string& fallback);
   bool flag_or(std::string_view key, bool fallback);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "kinfer/io/text/possible_values.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
 #include "kinfer/io/tracking/tracking_model_toml.hpp"
@@ -23,8 +24,10 @@ Kind read_kind(TableReader& reader, std::string_view key) {
   return Kind{};
 }
 
+constexpr PossibleRange clock_time{"a time of a sensor", 1e4, "s"};
+
 Mat3 matrix(TableReader& reader, std::string_view key) {
-  const std::vector<double> numbers = reader.numbers(key, 9);
+  const std::vector<double> numbers = possible_numbers(reader, key, 9);
   Mat3 m = Mat3::Zero();
   if (numbers.size() == 9) m = Eigen::Map<const Mat3>(numbers.data()).transpose();
   return m;
@@ -38,8 +41,12 @@ Mat3 rotation(TableReader& reader, std::string_view key) {
   return r;
 }
 
+/// Of an angular velocity and a force: standard deviations.
 InsLevel pair(TableReader& reader, std::string_view key) {
-  const std::vector<double> numbers = reader.numbers(key, 2);
+  const std::vector<double> numbers = possible_numbers(reader, key, 2);
+  for (const double value : numbers)
+    if (value < 0.0)
+      reader.report_error(reader.line_of(key), fmt::format("\"{}\": expected numbers that are not negative", key));
   return numbers.size() == 2 ? InsLevel{numbers[0], numbers[1]} : InsLevel{};
 }
 
@@ -76,18 +83,18 @@ TrackingSensor read_sensor(TableReader& t, std::size_t bodies) {
   TrackingSensor s;
   s.name = t.text("name");
   s.body = index(t, "body", 0, bodies);
-  s.gyroscope_bias = t.vector("gyroscope_bias");
-  s.accelerometer_bias = t.vector("accelerometer_bias");
+  s.gyroscope_bias = vector_within(t, "gyroscope_bias", possible_range(Dimension::angular_rate));
+  s.accelerometer_bias = vector_within(t, "accelerometer_bias", possible_range(Dimension::acceleration));
   s.gyroscope_scale = matrix(t, "gyroscope_scale");
   s.accelerometer_scale = matrix(t, "accelerometer_scale");
   s.noise = pair(t, "noise");
   s.residual = pair(t, "residual");
   s.slow_residual = pair(t, "slow_residual");
-  s.sample_period = t.number("sample_period");
+  s.sample_period = magnitude(t, "sample_period", clock_time);
   s.mount_compliance = matrix(t, "mount_compliance");
-  s.mount_stray = t.number("mount_stray");
-  s.clock_offset = t.number("clock_offset");
-  s.clock_offset_sd = t.number("clock_offset_sd");
+  s.mount_stray = magnitude(t, "mount_stray", possible::number);
+  s.clock_offset = within(t, "clock_offset", clock_time);
+  s.clock_offset_sd = magnitude(t, "clock_offset_sd", clock_time);
   return s;
 }
 
@@ -100,8 +107,8 @@ TrackingBody read_body(TableReader& t, const TrackingModel& model, std::size_t s
   b.motion = read_kind<TrackingMotion, 4>(t, "motion");
   b.parent_R_axis = rotation(t, "parent_R_axis");
   b.child_R_axis = rotation(t, "child_R_axis");
-  b.point_in_parent = t.vector("point_in_parent");
-  b.point_in_child = t.vector("point_in_child");
+  b.point_in_parent = vector_within(t, "point_in_parent", possible::length);
+  b.point_in_child = vector_within(t, "point_in_child", possible::length);
   return b;
 }
 
@@ -109,10 +116,11 @@ TrackingJoint read_joint(TableReader& t, FirstError& first_error) {
   TrackingJoint j;
   j.name = t.text("name");
   j.type = read_kind<EstimatedJointType, 5>(t, "type");
-  j.stray = t.number("stray");
-  j.stray_time = t.number("stray_time");
+  j.stray = magnitude(t, "stray", possible::number);
+  j.stray_time = magnitude(t, "stray_time", possible_range(Dimension::time));
   in_tables(t, "range", first_error, [&](TableReader& r) {
-    j.range.push_back({r.number("lower"), r.number("upper"), r.number("speed"), r.number("acceleration")});
+    j.range.push_back({within(r, "lower", possible::length), within(r, "upper", possible::length),
+                       magnitude(r, "speed", possible::number), magnitude(r, "acceleration", possible::number)});
   });
   return j;
 }
@@ -162,7 +170,7 @@ void read_covariance(TableReader& t, const TomlTable& file, TrackingModel& model
   }
   if (!list) t.report_error(t.line(), "\"parameters\" is missing");
   const auto size = static_cast<Index>(model.parameters.size());
-  const std::vector<double> numbers = t.numbers("root", static_cast<std::size_t>(size * (size + 1) / 2));
+  const std::vector<double> numbers = possible_numbers(t, "root", static_cast<std::size_t>(size * (size + 1) / 2));
   MatrixXd root = MatrixXd::Zero(size, size);
   std::size_t next = 0;
   for (Index i = 0; i < size; ++i)
@@ -171,24 +179,25 @@ void read_covariance(TableReader& t, const TomlTable& file, TrackingModel& model
 }
 
 void read_head(TableReader& file, TrackingModel& model, FirstError& first_error) {
-  model.gravity = file.number("gravity");
-  model.gravity_sd = file.number("gravity_sd");
+  model.gravity = magnitude(file, "gravity", possible::gravity);
+  model.gravity_sd = magnitude(file, "gravity_sd", possible::gravity);
   in_table(file, "prior", first_error, [&](TableReader& t) {
-    model.prior = {.rotation = t.number("rotation"),
-                   .point = t.number("point"),
+    model.prior = {.rotation = magnitude(t, "rotation", possible::number),
+                   .point = magnitude(t, "point", possible::number),
                    .bias = pair(t, "bias"),
                    .scale = pair(t, "scale"),
                    .bias_instability = pair(t, "bias_instability"),
-                   .instability_time = t.number("instability_time")};
+                   .instability_time = magnitude(t, "instability_time", possible_range(Dimension::time))};
   });
   in_table(file, "base", first_error, [&](TableReader& t) {
-    model.base = {t.flag_or("moved", false), t.vector("force"), t.number("angular_acceleration"),
-                  t.number("acceleration")};
+    model.base = {t.flag_or("moved", false), vector_within(t, "force", possible_range(Dimension::acceleration)),
+                  magnitude(t, "angular_acceleration", possible::number),
+                  magnitude(t, "acceleration", possible::number)};
   });
   in_table(file, "tool", first_error, [&](TableReader& t) {
     model.tool.body = index(t, "body", 0, model.bodies.size());
-    model.tool.body_T_tool = {rotation(t, "rotation"), t.vector("xyz")};
-    model.tool.sd = t.vector("sd");
+    model.tool.body_T_tool = {rotation(t, "rotation"), vector_within(t, "xyz", possible::length)};
+    model.tool.sd = vector_within(t, "sd", possible::number);
   });
 }
 
