@@ -108,16 +108,43 @@ double quietest_variance(const Samples& direction) {
   return std::isfinite(quietest) ? std::max(quietest, least) : least;
 }
 
-/// Sections without gaps in which the direction moves by more than errors of this variance: one at rest tells nothing.
-std::vector<std::size_t> moving_sections(const SectionSignals& signals, double error_variance) {
-  constexpr double least_ratio = 4.0;  // of variances
+/// First steps of the sections without gaps.
+std::vector<std::size_t> complete_sections(const SectionSignals& signals) {
   std::vector<std::size_t> sections;
   const std::size_t steps = signals.rate.size();
   const std::size_t stride = section_steps * (1 + steps / (section_steps * most_sections));
   for (std::size_t first = section_margin; first + section_steps + section_margin < steps; first += stride)
-    if (is_complete(signals, first) &&
-        variance_over(signals.direction, first, section_steps) > least_ratio * error_variance)
-      sections.push_back(first);
+    if (is_complete(signals, first)) sections.push_back(first);
+  return sections;
+}
+
+/// Those in which the direction moves by more than errors of this variance.
+std::vector<std::size_t> moving_sections(const SectionSignals& signals, double error_variance) {
+  constexpr double least_ratio = 4.0;  // of variances
+  auto sections = complete_sections(signals);
+  std::erase_if(sections, [&](std::size_t first) {
+    return variance_over(signals.direction, first, section_steps) <= least_ratio * error_variance;
+  });
+  return sections;
+}
+
+double square_rate_over(const SectionSignals& signals, std::size_t first) {
+  double sum = 0.0;
+  for (std::size_t k = first; k < first + section_steps; ++k) sum += signals.rate[k].squaredNorm();
+  return sum;
+}
+
+/// Those in which the direction or the sensor moves: a direction that stays while the sensor rotates is that of the
+/// axis.
+std::vector<std::size_t> telling_sections(const SectionSignals& signals) {
+  constexpr double least_rate = 0.3;  // of that of the section in which the sensor rotates most
+  auto sections = complete_sections(signals);
+  double most = 0.0;
+  for (const std::size_t first : sections) most = std::max(most, square_rate_over(signals, first));
+  std::erase_if(sections, [&](std::size_t first) {
+    return variance_over(signals.direction, first, section_steps) <= 4.0 * signals.noise_variance &&
+           square_rate_over(signals, first) <= least_rate * least_rate * most;
+  });
   return sections;
 }
 
@@ -213,7 +240,7 @@ std::optional<SectionSignals> section_signals(const TriadColumns& direction, con
 MapLikelihoods map_likelihoods(const SectionSignals& signals, double unit, LeverArm lever_arm) {
   MapLikelihoods likelihoods;
   const auto& maps = signed_permutations();
-  for (const std::size_t first : moving_sections(signals, signals.noise_variance)) {
+  for (const std::size_t first : telling_sections(signals)) {
     likelihoods.sections += 1.0;
     for (const double sense : {1.0, -1.0}) {
       const SectionSums sums = sums_over(signals, first, sense * unit * Mat3::Identity(), 0);
