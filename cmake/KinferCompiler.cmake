@@ -10,7 +10,7 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 
 # Released programs stop at an index outside of a vector, a smashed stack or an overrun buffer instead of going on; what
-# that costs is measured (docs/development/performance.md).
+# that costs is measured (docs/development/results.md).
 option(KINFER_HARDENED "Checks of the standard library, the stack and buffers in optimised builds" ON)
 add_library(kinfer_hardening INTERFACE)  # of optimised code: fortified functions are inline functions
 if(KINFER_HARDENED AND NOT KINFER_SANITIZE AND NOT KINFER_SANITIZE_THREADS AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
