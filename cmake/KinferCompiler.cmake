@@ -28,6 +28,11 @@ endif()
 # (SKIP_UNITY_BUILD_INCLUSION).
 option(KINFER_UNITY "Compile files in batches: a whole build takes half the time, one changed file a few seconds more" ON)
 
+# Levels of optimisation: of rooms that call loops of other rooms, and of programs, which call nothing but the library.
+# Optimising either would double the time that they compile; a package is compiled once and copied often.
+set(KINFER_CALLER_LEVEL $<$<NOT:$<CONFIG:Debug>>:$<IF:$<BOOL:${KINFER_PACKAGE}>,-Os,-O1>>)
+set(KINFER_PROGRAM_LEVEL $<$<NOT:$<CONFIG:Debug>>:$<IF:$<BOOL:${KINFER_PACKAGE}>,-Os,-O0>>)
+
 add_library(kinfer_flags INTERFACE)
 target_compile_options(kinfer_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
@@ -44,6 +49,12 @@ if(NOT KINFER_UNITY)
   target_compile_options(kinfer_flags INTERFACE -Wshadow)
 elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(kinfer_flags INTERFACE -Wshadow=local)
+endif()
+
+if(KINFER_PACKAGE)
+  # Each function is a section of its own, so that the linker can leave out what nobody calls.
+  add_compile_options(-ffunction-sections -fdata-sections)
+  add_compile_options(-ffile-prefix-map=${PROJECT_BINARY_DIR}=. -ffile-prefix-map=${PROJECT_SOURCE_DIR}=.)
 endif()
 
 if(KINFER_SANITIZE)

@@ -23,6 +23,12 @@ std::string_view report_style() {
 ]])
     return()
   endif()
+  # A source tarball brings the bundle, ready to compile.
+  if(EXISTS ${web}/bundle.cpp)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${web}/bundle.cpp)
+    configure_file(${web}/bundle.cpp ${output} COPYONLY)
+    return()
+  endif()
   find_program(KINFER_NODE NAMES node nodejs)
   find_program(KINFER_NPM npm)
   if(NOT KINFER_NODE OR NOT KINFER_NPM)

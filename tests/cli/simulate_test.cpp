@@ -51,6 +51,26 @@ TEST_F(Simulate, SensorsOnFoamMeasureAnotherMotionOfTheSameMachine) {
   EXPECT_EQ(json::parse(slurp(in("firm/truth.json")))["joints"], json::parse(slurp(in("soft/truth.json")))["joints"]);
 }
 
+TEST_F(Simulate, WithoutMujocoIsRefusedInOneSentenceAndNothingElseMissesIt) {
+  ::setenv("KINFER_MUJOCO", in("libmujoco.so").c_str(), 1);
+  const Outcome run = kinfer("simulate tree --out none");
+  const Outcome poses = kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") + " --out poses");
+  ::unsetenv("KINFER_MUJOCO");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_NE(run.err.find("MuJoCo is needed to simulate machines"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("apt install libmujoco"), std::string::npos) << run.err;
+  EXPECT_FALSE(fs::exists(in("none")));
+  EXPECT_EQ(poses.code, 0) << poses.err;
+}
+
+TEST_F(Simulate, ALibraryThatIsNotMujocoIsRefusedInOneSentence) {
+  ::setenv("KINFER_MUJOCO", "libz.so.1", 1);
+  const Outcome run = kinfer("simulate tree --out none");
+  ::unsetenv("KINFER_MUJOCO");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_NE(run.err.find("libz.so.1 is not of version"), std::string::npos) << run.err;
+}
+
 TEST_F(Simulate, ImpossibleOptionsAreRefusedInOneSentenceAndNothingIsWritten) {
   const std::pair<const char*, const char*> cases[] = {
       {"simulate digger", "digger: no such machine; known are crane, excavator, excavator-general, robot6, tree"},

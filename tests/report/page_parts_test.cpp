@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Small parts of every page: sentences, cards, sections, the embedded script and style.
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/report/bundle.hpp"
+#include "kinfer/report/packed_text.hpp"
 #include "kinfer/report/parts/html.hpp"
 #include "kinfer/report/parts/shared_sections.hpp"
 #include "kinfer/report/parts/verdict_block.hpp"
@@ -58,6 +60,16 @@ TEST(Section, IsLabelledByItsTitle) {
   EXPECT_TRUE(shows(html, "<section id=\"parameters\" aria-labelledby=\"parameters-title\">"));
   EXPECT_TRUE(shows(html, "<h2 id=\"parameters-title\">Parameters</h2>"));
   EXPECT_EQ(count_of(html, "<section"), count_of(html, "</section>"));
+}
+
+TEST(Bundle, TextThatIsPackedComesBack) {
+  const std::string text(100000, 'x');
+  uLongf size = compressBound(text.size());
+  std::string packed(size, '\0');
+  ASSERT_EQ(compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(text.data()),
+                     text.size()),
+            Z_OK);
+  EXPECT_EQ(unpacked_text(std::string_view(packed).substr(0, size), text.size()), text);
 }
 
 TEST(Bundle, IsEmbeddedAndFetchesNothing) {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/simulate/mujoco_world.hpp"
 
-#include <mujoco/mujoco.h>
-
 #include <cmath>
 #include <cstring>
 #include <mutex>
 #include <numbers>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/simulate/mujoco_library.hpp"
 
 namespace kinfer {
 namespace {
@@ -19,8 +18,8 @@ constexpr double settling_time = 2.0;  // [s] before the first row
 constexpr const char* file_name = "machine.xml";
 
 struct Deleter {
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
-  void operator()(mjData* data) const { mj_deleteData(data); }
+  void operator()(mjModel* model) const { mujoco().mj_deleteModel(model); }
+  void operator()(mjData* data) const { mujoco().mj_deleteData(data); }
 };
 using Model = std::unique_ptr<mjModel, Deleter>;
 using Data = std::unique_ptr<mjData, Deleter>;
@@ -52,7 +51,7 @@ struct Controller {
       if (servo == Servo::stiff) wanted[k] += state.qdd;
     }
     torque = inertia.cwiseProduct(wanted);
-    if (servo == Servo::stiff) mj_mulM(model, data, torque.data(), wanted.data());
+    if (servo == Servo::stiff) mujoco().mj_mulM(model, data, torque.data(), wanted.data());
     for (Eigen::Index k = 0; k < n; ++k) data->qfrc_applied[k] = torque[k] + data->qfrc_bias[k];
   }
 };
@@ -67,8 +66,9 @@ void control_callback(const mjModel* model, mjData* data) {
 void install_callbacks() {
   static std::once_flag once;
   std::call_once(once, [] {
-    mjcb_control = control_callback;
-    mju_user_warning = [](const char*) {};  // the default handler writes a log file into the working directory
+    *mujoco().mjcb_control = control_callback;
+    *mujoco().mju_user_warning = [](const char*) {
+    };  // the default handler writes a log file into the working directory
   });
 }
 
@@ -82,7 +82,7 @@ Joint machine_joint(const mjModel& model, int joint) {
   KINFER_EXPECT(vec3(model.jnt_pos + 3 * joint).isZero(), "a machine's joint lies at its body's origin");
   const int type = model.jnt_type[joint];
   KINFER_EXPECT(type == mjJNT_HINGE || type == mjJNT_SLIDE);
-  Joint made{.name = mj_id2name(&model, mjOBJ_JOINT, joint),
+  Joint made{.name = mujoco().mj_id2name(&model, mjOBJ_JOINT, joint),
              .type = type == mjJNT_HINGE ? JointType::revolute : JointType::prismatic};
   if (model.jnt_limited[joint]) {
     made.lower = model.jnt_range[2 * joint];
@@ -99,9 +99,10 @@ std::vector<int> add_bodies(const mjModel& model, Chain& chain) {
     const int first = model.body_jntadr[body], count = model.body_jntnum[body];
     for (int k = 0; k < std::max(count, 1); ++k) {
       const int joint = count > 0 ? first + k : -1;
-      Joint made =
-          count > 0 ? machine_joint(model, joint)
-                    : Joint{.name = mj_id2name(&model, mjOBJ_BODY, body), .type = JointType::fixed, .is_active = false};
+      Joint made = count > 0 ? machine_joint(model, joint)
+                             : Joint{.name = mujoco().mj_id2name(&model, mjOBJ_BODY, body),
+                                     .type = JointType::fixed,
+                                     .is_active = false};
       made.parent = parent;
       made.link = joint_link(model, body, joint, k == 0);
       parent = static_cast<int>(chain.joints.size());
@@ -126,8 +127,8 @@ Machine read_machine(const mjModel& model) {
   const std::vector<int> frame_of_body = add_bodies(model, machine.chain);
   for (int site = 0; site < model.nsite; ++site) {
     const int body = model.site_bodyid[site], joint = frame_of_body[body];
-    MountedSensor sensor{.name = mj_id2name(&model, mjOBJ_SITE, site),
-                         .segment = mj_id2name(&model, mjOBJ_BODY, body),
+    MountedSensor sensor{.name = mujoco().mj_id2name(&model, mjOBJ_SITE, site),
+                         .segment = mujoco().mj_id2name(&model, mjOBJ_BODY, body),
                          .joint = joint,
                          .segment_T_sensor = pose(model.site_pos + 3 * site, model.site_quat + 4 * site)};
     sensor.parent = find_parent_sensor(machine, joint);
@@ -167,7 +168,7 @@ void record(const mjModel& model, const mjData& data, const std::vector<SensorAd
   for (std::size_t s = 0; s < addresses.size(); ++s) {
     SensorMotion& sensor = motion.sensors[s];
     mjtNum orientation[4];
-    mju_mat2Quat(orientation, data.site_xmat + 9 * s);
+    mujoco().mju_mat2Quat(orientation, data.site_xmat + 9 * s);
     sensor.world_R_sensor[row] = quat(orientation);
     sensor.position[row] = vec3(data.site_xpos + 3 * s);
     sensor.force[row] = vec3(data.sensordata + addresses[s].accelerometer);
@@ -177,9 +178,9 @@ void record(const mjModel& model, const mjData& data, const std::vector<SensorAd
 }
 
 VectorXd inertia_about_joints(const mjModel& model, mjData& data) {
-  mj_forward(&model, &data);
+  mujoco().mj_forward(&model, &data);
   MatrixXd mass(model.nv, model.nv);
-  mj_fullM(&model, mass.data(), data.qM);
+  mujoco().mj_fullM(&model, mass.data(), data.qM);
   return mass.diagonal();
 }
 
@@ -206,26 +207,27 @@ const Machine& MujocoWorld::machine() const {
 }
 
 Result<MujocoWorld> MujocoWorld::load(const std::string& mjcf) {
+  if (auto found = load_mujoco(); !found) return forward_error(found.error());
   install_callbacks();
   const auto files = std::make_unique<mjVFS>();  // 2 MB: not for the stack
-  mj_defaultVFS(files.get());
-  mj_makeEmptyFileVFS(files.get(), file_name, static_cast<int>(mjcf.size()));
+  mujoco().mj_defaultVFS(files.get());
+  mujoco().mj_makeEmptyFileVFS(files.get(), file_name, static_cast<int>(mjcf.size()));
   std::memcpy(files->filedata[0], mjcf.data(), mjcf.size());
   char why[1000] = "";
-  Model model(mj_loadXML(file_name, files.get(), why, sizeof why));
-  mj_deleteVFS(files.get());
+  Model model(mujoco().mj_loadXML(file_name, files.get(), why, sizeof why));
+  mujoco().mj_deleteVFS(files.get());
   if (!model) return error("{}: {}", file_name, why);
   Machine machine = read_machine(*model);
   return MujocoWorld(std::make_unique<Engine>(Engine{std::move(model), std::move(machine)}));
 }
 
 Result<MachineMotion> MujocoWorld::drive(const Drive& drive, double sampling_rate, Servo servo) const {
-  const Model model(mj_copyModel(nullptr, engine_->model.get()));
-  const Data data(mj_makeData(model.get()));
+  const Model model(mujoco().mj_copyModel(nullptr, engine_->model.get()));
+  const Data data(mujoco().mj_makeData(model.get()));
   const double longest_step = servo == Servo::stiff ? stiff_step : soft_step;
   const int substeps = static_cast<int>(std::ceil(1.0 / (sampling_rate * longest_step) - 1e-9));
   model->opt.timestep = 1.0 / (sampling_rate * substeps);
-  mj_resetDataKeyframe(model.get(), data.get(), 0);
+  mujoco().mj_resetDataKeyframe(model.get(), data.get(), 0);
   const std::vector<SensorAddresses> addresses = find_sensor_addresses(*model);
   const Controller controller{&drive, servo, inertia_about_joints(*model, *data)};
   active_controller = &controller;
@@ -235,10 +237,10 @@ Result<MachineMotion> MujocoWorld::drive(const Drive& drive, double sampling_rat
   for (int row = first_row; row < rows; ++row) {
     data->time = row / sampling_rate;  // exact, not accumulated over steps
     if (row >= 0) {
-      mj_forward(model.get(), data.get());
+      mujoco().mj_forward(model.get(), data.get());
       record(*model, *data, addresses, static_cast<std::size_t>(row), motion);
     }
-    for (int step = 0; step < substeps; ++step) mj_step(model.get(), data.get());
+    for (int step = 0; step < substeps; ++step) mujoco().mj_step(model.get(), data.get());
   }
   active_controller = nullptr;
   if (is_unstable(*data)) return error("the simulation became unstable: a gentler script or another seed may help");
@@ -247,7 +249,7 @@ Result<MachineMotion> MujocoWorld::drive(const Drive& drive, double sampling_rat
 
 MachineMotion MujocoWorld::prescribe(const Drive& drive, double sampling_rate) const {
   const mjModel* model = engine_->model.get();
-  const Data data(mj_makeData(model));
+  const Data data(mujoco().mj_makeData(model));
   const std::vector<SensorAddresses> addresses = find_sensor_addresses(*model);
   MachineMotion motion = make_motion(machine(), row_count(drive.duration, sampling_rate), sampling_rate);
   for (std::size_t row = 0; row < motion.time.size(); ++row) {
@@ -257,7 +259,7 @@ MachineMotion MujocoWorld::prescribe(const Drive& drive, double sampling_rate) c
       data->qvel[k] = state.qd;
       data->qacc[k] = state.qdd;
     }
-    mj_inverse(model, data.get());
+    mujoco().mj_inverse(model, data.get());
     record(*model, *data, addresses, row, motion);
   }
   return motion;
