@@ -29,11 +29,13 @@ check_file() {
   [ "$(stat -c %s "$deb")" -le $largest_package ] || fail "the package is larger than $largest_package bytes"
   [ "$dependencies" -le $most_dependencies ] || fail "more than $most_dependencies dependencies"
   if dpkg-deb -f "$deb" Depends | grep -q mujoco; then fail "MuJoCo is a dependency"; fi
-  readelf -h "$program" | grep -q 'Type: *DYN' || fail "the program is not position-independent"
-  readelf -lW "$program" | grep -q GNU_RELRO || fail "no RELRO"
-  readelf -dW "$program" | grep -qE 'BIND_NOW|FLAGS_1.*NOW' || fail "RELRO is not full"
-  readelf --dyn-syms -W "$program" | grep -q __stack_chk_fail || fail "no stack protector"
-  readelf --dyn-syms -W "$program" | grep -q '_chk@' || fail "no fortified function"
+  local header
+  header=$(readelf -hldW --dyn-syms "$program")  # whole: grep -q would end a pipe too early
+  grep -q 'Type: *DYN' <<<"$header" || fail "the program is not position-independent"
+  grep -q GNU_RELRO <<<"$header" || fail "no RELRO"
+  grep -qE 'BIND_NOW|FLAGS_1.*NOW' <<<"$header" || fail "RELRO is not full"
+  grep -q __stack_chk_fail <<<"$header" || fail "no stack protector"
+  grep -q '_chk@' <<<"$header" || fail "no fortified function"
   local text
   for deb in "$folder"/*.deb; do
     dpkg-deb -x "$deb" "$work/all"
