@@ -80,7 +80,9 @@ TEST(InsCsv, AWrongHeaderIsAnErrorOfOneSentence) {
 TEST(InsCsv, AWrongRowIsNamedWithItsLine) {
   EXPECT_EQ(error_of(imu_header + still_rows(2) + "0.02,1,2,3\n" + still_rows(1, 9.81, 0.03)),
             "imu.csv:4: expected 10 columns, found 4");
-  EXPECT_EQ(error_of(imu_header + "0,0,0,9.8,0,0,0,1,20,-44,5\n"), "imu.csv:2: expected 10 columns, found 11");
+  EXPECT_EQ(error_of(imu_header + "0,0,0,9.8,0,0,0,1,20,-44,5\n"),
+            "imu.csv:2: expected 10 columns, found 11; are there commas inside numbers (thousands separators, decimal "
+            "commas)?");
   EXPECT_EQ(error_of(imu_header + "0,0,x1,9.8,0,0,0,1,20,-44\n"),
             "imu.csv:2: column imu_ay: expected a number, found \"x1\"");
   EXPECT_EQ(error_of(imu_header + ",0,0,9.8,0,0,0,1,20,-44\n"), "imu.csv:2: column t: expected a time, found none");

@@ -134,7 +134,7 @@ class RowReader {
 
   Result<void> wrong_width(std::string_view line, int number) const {
     const auto found = std::ranges::count(line, ',') + 1;
-    return error("{}:{}: expected {} columns, found {}", name_, number, targets_.size(), found);
+    return error("{}", describe_column_count(name_, number, targets_.size(), static_cast<std::size_t>(found), ','));
   }
 
   Result<void> add_time(double time, int number) {

@@ -109,7 +109,7 @@ Result<void> InsRowReader::read_header(const std::string& line) {
 Result<void> InsRowReader::read_row(std::string_view line, const Sink& sink, bool is_last) {
   const auto cells = static_cast<std::size_t>(std::ranges::count(line, ',')) + 1;
   if (cells != targets_.size()) {
-    if (!is_last) return error("{}:{}: expected {} columns, found {}", name_, line_, targets_.size(), cells);
+    if (!is_last) return error("{}", describe_column_count(name_, line_, targets_.size(), cells, ','));
     remarks_.push_back(fmt::format("{}: the last line is cut off and is not used", name_));
     return {};
   }

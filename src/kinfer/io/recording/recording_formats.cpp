@@ -16,6 +16,7 @@
 #include "kinfer/io/recording/possible_times.hpp"
 #include "kinfer/io/robot_log/message_log_formats.hpp"
 #include "kinfer/io/text/compressed_text.hpp"
+#include "kinfer/io/text/csv.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
@@ -53,6 +54,7 @@ bool is_recording(const std::filesystem::path& path) {
   if (is_message_log_file(path)) return true;
   if (is_log_bundle(path)) return true;  // reading it says what is in it
   const std::string head = read_head(path);
+  if (is_utf16(head)) return true;  // likewise
   return recognised_format(head) || find_preset(head, path) || is_foreign_log(head);
 }
 

@@ -19,14 +19,6 @@ tl::unexpected<Error> unclosed_quote(const std::string& name, int line) {
   return error("{}:{}: a quoted cell does not end on this line, or text follows its closing quote", name, line);
 }
 
-std::string describe_column_count(const std::string& name, int line, std::size_t expected, std::size_t found,
-                                  char delimiter) {
-  std::string text = fmt::format("{}:{}: expected {} columns, found {}", name, line, expected, found);
-  if (found > expected && delimiter == ',')
-    text += "; are there commas inside numbers (thousands separators, decimal commas)?";
-  return text;
-}
-
 /// The character that separates most columns of this line; blanks if none of , ; tab does.
 char find_delimiter(std::string_view line, char decimal) {
   std::array<std::size_t, 3> counts{};
@@ -71,9 +63,20 @@ bool find_header(LineReader& lines, const CsvFormat& format) {
 
 }  // namespace
 
+bool is_utf16(std::string_view text) {
+  return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+}
+
+std::string describe_column_count(const std::string& name, int line, std::size_t expected, std::size_t found,
+                                  char delimiter) {
+  std::string text = fmt::format("{}:{}: expected {} columns, found {}", name, line, expected, found);
+  if (found > expected && delimiter == ',')
+    text += "; are there commas inside numbers (thousands separators, decimal commas)?";
+  return text;
+}
+
 Result<CsvHeader> read_csv_header(std::string_view text, const std::string& name, const CsvFormat& format) {
-  if (text.substr(0, 2) == "\xFF\xFE" || text.substr(0, 2) == "\xFE\xFF")
-    return error("{}:1: the file is UTF-16, expected UTF-8; save it as CSV UTF-8", name);
+  if (is_utf16(text)) return error("{}:1: the file is UTF-16, expected UTF-8; save it as CSV UTF-8", name);
   LineReader lines(text, text.substr(0, 3) == utf8_byte_order_mark ? 3 : 0, 0, format.comments,
                    {format.only, format.end});
   for (int i = 0; i < format.skip_lines; ++i) lines.next();

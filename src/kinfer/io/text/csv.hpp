@@ -36,6 +36,13 @@ struct CsvHeader {
   char delimiter = ',', decimal = '.';  ///< as found, where they were automatic
 };
 
+/// By its byte order mark: no reader takes it, and each says so.
+bool is_utf16(std::string_view text);
+
+/// "poses.csv:3: expected 9 columns, found 8", and what commas inside numbers have to do with it.
+std::string describe_column_count(const std::string& name, int line, std::size_t expected, std::size_t found,
+                                  char delimiter);
+
 /// The first line that is neither empty nor a comment. A missing header and UTF-16 are errors.
 Result<CsvHeader> read_csv_header(std::string_view text, const std::string& name_in_messages,
                                   const CsvFormat& format = {});
