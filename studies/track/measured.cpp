@@ -10,7 +10,6 @@
 #include <numbers>
 #include <sstream>
 
-#include "kinfer/evidence/tracking/body_poses.hpp"
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
 #include "kinfer/measurement/ins_selection.hpp"
@@ -48,21 +47,45 @@ std::vector<std::vector<double>> read_numbers(const std::string& path) {
   return rows;
 }
 
-/// One row of the orientations that a tracker tells, for each pair.
-void note(const TrackingModel& model, const TrackState& state, const std::vector<MeasuredLog::Pair>& pairs,
-          std::vector<RelativeOrientation>& to) {
-  VectorXd q = state.q;
-  if (q.size() == 0) return;
-  const std::vector<Pose> poses = body_poses(model, q.array().isFinite().select(q, 0.0));
-  const auto rotation = [&](const std::string& name) -> Mat3 {
-    const auto sensor = std::ranges::find(model.sensors, name, &TrackingSensor::name);
-    return sensor == model.sensors.end() ? Mat3::Constant(std::nan(""))
-                                         : poses[static_cast<std::size_t>(sensor->body)].rotation;
+/// The joints between two sensors, and whether their rotations are inverted: from the parent up to a common body and
+/// down to the child.
+struct RotationPath {
+  struct Step {
+    std::size_t joint = 0;
+    bool is_inverse = false;
   };
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    to[i].time.push_back(state.time);
-    to[i].rotation.emplace_back(rotation(pairs[i].parent).transpose() * rotation(pairs[i].child));
+  std::vector<Step> steps;
+};
+
+/// Joints from a sensor's body down to the base.
+std::vector<std::size_t> joints_to_base(const TrackingModel& model, const std::string& sensor) {
+  std::vector<std::size_t> joints;
+  const auto found = std::ranges::find(model.sensors, sensor, &TrackingSensor::name);
+  for (int b = found->body; b > 0;) {
+    const TrackingBody& body = model.bodies[static_cast<std::size_t>(b)];
+    const auto joint = static_cast<std::size_t>(body.joint);
+    if (joints.empty() || joints.back() != joint) joints.push_back(joint);
+    b = body.parent;
   }
+  return joints;
+}
+
+RotationPath rotation_path(const TrackingModel& model, const MeasuredLog::Pair& pair) {
+  std::vector<std::size_t> up = joints_to_base(model, pair.parent), down = joints_to_base(model, pair.child);
+  while (!up.empty() && !down.empty() && up.back() == down.back()) up.pop_back(), down.pop_back();
+  RotationPath path;
+  for (const std::size_t joint : up) path.steps.push_back({joint, true});
+  for (auto joint = down.rbegin(); joint != down.rend(); ++joint) path.steps.push_back({*joint, false});
+  return path;
+}
+
+Mat3 rotation_along(const RotationPath& path, const TrackState& state) {
+  Quat rotation = Quat::Identity();
+  for (const RotationPath::Step& step : path.steps) {
+    const Quat& own = state.joints[step.joint].parent_q_child;
+    rotation = rotation * (step.is_inverse ? own.conjugate() : own);
+  }
+  return rotation.toRotationMatrix();
 }
 
 struct TrackedLog {
@@ -76,6 +99,8 @@ TrackedLog tracked(const TrackingModel& model, const MeasuredLog& log) {
   result.composed.resize(log.pairs.size());
   kinfer::track::Tracker tracker(model, {});
   kinfer::track::ComposedFilters composed(model, {});
+  std::vector<RotationPath> paths;
+  for (const MeasuredLog::Pair& pair : log.pairs) paths.push_back(rotation_path(model, pair));
   std::vector<const InsSensor*> sensors;
   for (const TrackingSensor& sensor : model.sensors)
     sensors.push_back(&*std::ranges::find(log.tracked.sensors, sensor.name, &InsSensor::name));
@@ -89,8 +114,12 @@ TrackedLog tracked(const TrackingModel& model, const MeasuredLog& log) {
     tracker.add(row);
     composed.add(row);
     if (!tracker.state().started) continue;
-    note(model, tracker.state(), log.pairs, result.chain);
-    note(model, composed.state(), log.pairs, result.composed);
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      result.chain[i].time.push_back(row.time);
+      result.chain[i].rotation.push_back(rotation_along(paths[i], tracker.state()));
+      result.composed[i].time.push_back(row.time);
+      result.composed[i].rotation.push_back(rotation_along(paths[i], composed.state()));
+    }
     for (const TrackAlarm& alarm : tracker.state().alarms) {
       const std::string text = fmt::format("{} {}", kinfer::name(alarm.kind), alarm.sensor);
       if (std::ranges::find_if(result.alarms, [&](const auto& a) { return a.starts_with(text); }) ==

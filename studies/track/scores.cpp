@@ -53,6 +53,7 @@ double tilt_error(const Quat& world_q_base, const Quat& truth) {
 }
 
 double rms_after_fit(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  if (a.empty()) return 0.0;
   const Pose a_T_b = align_points(a, b);
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - a_T_b * b[i]).squaredNorm();

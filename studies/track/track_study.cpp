@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Simulated machines, identified on one drive by default options and tracked on another one; then measured ones.
-// `--measured diodem|kuka|ur5` runs these alone.
+// `--measured diodem|kuka|ur5` runs these alone; `--alarms on` counts alarms instead (with --machines, --grades,
+// --first, --seeds, --duration).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <string_view>
 
 #include "studies/studies.hpp"
+#include "studies/track/alarms.hpp"
 #include "studies/track/measured.hpp"
 #include "studies/track/scores.hpp"
 
@@ -24,6 +26,7 @@ struct Arguments {
   int first_seed = 1, seeds = 1;
   double duration = 120.0, steel = 0.0;
   InjectedFault fault{};
+  bool counts_alarms = false;
 };
 
 std::vector<std::string> split(std::string_view text) {
@@ -50,6 +53,7 @@ Arguments parse(int count, char** values) {
     if (key == "--first") a.first_seed = static_cast<int>(number);
     if (key == "--duration") a.duration = number;
     if (key == "--steel") a.steel = number;
+    if (key == "--alarms") a.counts_alarms = value == "on";
     if (key == "--fault")
       a.fault.kind = value == "turned"    ? FaultKind::turned
                      : value == "shifted" ? FaultKind::shifted
@@ -122,7 +126,16 @@ int kinfer::study::run_track(int argc, char** argv) {
     track_study::track_measured(folder, argv[2]);
     return 0;
   }
-  track_study::run(track_study::parse(argc, argv));
+  const track_study::Arguments arguments = track_study::parse(argc, argv);
+  if (arguments.counts_alarms) {
+    track_study::study_alarms({.machines = arguments.machines,
+                               .grades = arguments.grades,
+                               .first_seed = arguments.first_seed,
+                               .seeds = arguments.seeds,
+                               .duration = arguments.duration});
+    return 0;
+  }
+  track_study::run(arguments);
   if (argc == 1) track_study::track_measured(folder, {});
   return 0;
 }

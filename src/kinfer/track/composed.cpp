@@ -9,6 +9,7 @@
 #include "kinfer/base/square.hpp"
 #include "kinfer/evidence/tracking/body_poses.hpp"
 #include "kinfer/geometry/cardan_angles.hpp"
+#include "kinfer/track/filter/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {
@@ -19,12 +20,20 @@ constexpr double unknown_position = std::numeric_limits<double>::quiet_NaN();
 constexpr double heading_walk = 1e-3;      // [rad/√s] of the difference of two headings
 constexpr double axis_error = 0.01;        // [rad] of an axis' horizontal parts as two filters see them
 constexpr double axis_error_time = 2.0;    // [s] over which that error stays alike
+constexpr double known_bias_sd = 1e-3;     // [rad/s] by which a gyroscope's bias changed since the identification
+constexpr double axis_memory = 10.0;       // [s] over which its error is averaged
 constexpr double least_inclination = 0.1;  // sine, below which an axis does not determine the heading
 
-KinferFilterOptions without_field() {
+/// Without magnetometer, from the gyroscope's errors as the identification found them.
+KinferFilter filter_of(const TrackingSensor& sensor) {
   KinferFilterOptions options;
   options.magnetometer = MagnetometerUse::off;
-  return options;
+  options.bias_sd = known_bias_sd;
+  KinferFilter filter(options);
+  KinferEstimate estimate;
+  estimate.bias = sensor.gyroscope_bias;
+  filter.set_estimate(estimate);
+  return filter;
 }
 
 double about_z(const Mat3& r) {
@@ -52,10 +61,8 @@ struct HeadingMeasurement {
 }  // namespace
 
 ComposedFilters::ComposedFilters(const TrackingModel& model, const TrackOptions& options)
-    : model_(model),
-      options_(options),
-      filters_(model.sensors.size(), KinferFilter(without_field())),
-      rate_(model.sensors.size(), Vec3::Zero()) {
+    : model_(model), options_(options), rate_(model.sensors.size(), Vec3::Zero()) {
+  for (const TrackingSensor& sensor : model.sensors) filters_.push_back(filter_of(sensor));
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     const auto [first, last] = bodies_of(model, j);
     const int parent = model.bodies[first].parent;
@@ -95,9 +102,49 @@ void ComposedFilters::update_joint(Joint& joint, double dt) {
       !filters_[static_cast<std::size_t>(joint.child_sensor)].started())
     return;
   if (!joint.started) start_heading(joint);
-  joint.heading_variance += square(heading_walk) * dt;
+  let_heading_drift(joint, dt);
   measure_heading(joint, dt);
+  watch_axis(joint, dt);
   read_positions(joint);
+}
+
+/// As their filters state it: biases that no rest has shown yet make headings drift.
+void ComposedFilters::let_heading_drift(Joint& joint, double dt) {
+  const double variance = filters_[static_cast<std::size_t>(joint.parent_sensor)].covariance()(2, 2) +
+                          filters_[static_cast<std::size_t>(joint.child_sensor)].covariance()(2, 2);
+  const double walk = std::max(square(heading_walk) * dt, variance - joint.filters_variance);
+  joint.filters_variance = variance;
+  if (dt <= 0.0) return;
+  joint.heading_variance += walk;
+  joint.drift += walk;
+}
+
+/// What both sensors see of one axis differs by their tilts, and by the axis' own stray.
+void ComposedFilters::watch_axis(Joint& joint, double dt) {
+  const auto [first, last] = bodies_of(model_, joint.index);
+  const TrackingBody& body = model_.bodies[first];
+  if (first != last || body.motion != TrackingMotion::revolute) return;
+  const Mat3 between = body.parent_R_axis.transpose() * relative_rotation(joint) * body.child_R_axis;
+  joint.watched = std::min(joint.watched + dt, axis_memory);
+  const double share = joint.watched > 0.0 ? dt / joint.watched : 0.0;
+  // What stays the same is an error of the axis, and turns with neither.
+  joint.axis_mean += share * (between.col(2).head<2>() - joint.axis_mean);
+  const double variation = 0.5 * (between.col(2).head<2>() - joint.axis_mean).squaredNorm();
+  joint.axis_variance += share * (variation - joint.axis_variance);
+}
+
+double ComposedFilters::tilt_variance(std::size_t joint) const {
+  const Joint& of = joints_[joint];
+  const auto tilt = [&](int sensor) {
+    return 0.5 * filters_[static_cast<std::size_t>(sensor)].covariance().diagonal().head<2>().sum();
+  };
+  double variance = tilt(of.parent_sensor) + tilt(of.child_sensor);
+  if (of.watched > 0.0) variance += std::max(0.0, of.axis_variance - square(model_.joints[joint].stray));
+  return variance;
+}
+
+Vec3 ComposedFilters::vertical(std::size_t joint) const {
+  return filters_[static_cast<std::size_t>(joints_[joint].parent_sensor)].orientation().conjugate() * Vec3::UnitZ();
 }
 
 void ComposedFilters::start_heading(Joint& joint) {
@@ -121,7 +168,8 @@ void ComposedFilters::start_heading(Joint& joint) {
   joint.heading_variance = is_given ? 0.0 : square(1.0);
   joint.started = true;
   JointStatus& status = state_.joints[static_cast<std::size_t>(joint.index)];
-  status = {JointSource::composed, is_given ? JointReference::chain : JointReference::start};
+  status.source = JointSource::composed;
+  status.reference = is_given ? JointReference::chain : JointReference::start;
 }
 
 void ComposedFilters::measure_heading(Joint& joint, double dt) {
@@ -163,9 +211,11 @@ void ComposedFilters::read_positions(const Joint& joint) {
   covariance.row(2).setZero();
   covariance.col(2).setZero();
   covariance(2, 2) = joint.heading_variance;
+  const double of_axis =
+      std::max(0.0, joint.axis_variance - square(model_.joints[static_cast<std::size_t>(joint.index)].stray));
   const auto sd_about = [&](const Vec3& axis_in_parent) {
     const Vec3 axis = parent * axis_in_parent;
-    return std::sqrt(std::max(0.0, axis.dot(covariance * axis)));
+    return std::sqrt(std::max(0.0, axis.dot(covariance * axis)) + of_axis);
   };
   const Vec3 rate = relative * rate_[static_cast<std::size_t>(joint.child_sensor)] -
                     rate_[static_cast<std::size_t>(joint.parent_sensor)];
@@ -185,6 +235,34 @@ void ComposedFilters::read_positions(const Joint& joint) {
     state_.q[at] = unwrapped_angle(about_z(m), state_.q[at]);
     state_.qd[at] = near.parent_R_axis.col(2).dot(rate);
     state_.sd_q[at] = sd_about(near.parent_R_axis.col(2));
+  }
+  read_rotation(joint, relative);
+}
+
+/// A loose joint's axis strays by so much, and what exceeds that is an error of the orientations.
+Mat3 ComposedFilters::shrunk(const Joint& joint, const Mat3& relative) const {
+  const TrackingBody& body = model_.bodies[bodies_of(model_, joint.index).first];
+  const double stray = square(model_.joints[static_cast<std::size_t>(joint.index)].stray);
+  const Mat3 between = body.parent_R_axis.transpose() * relative * body.child_R_axis, turn = rot_z(about_z(between));
+  const double believed = stray / std::max(stray + square(axis_error), joint.axis_variance);
+  const Vec3 tilt = log_so3(between * turn.transpose());
+  return body.parent_R_axis * exp_so3(believed * tilt) * turn * body.child_R_axis.transpose();
+}
+
+/// The joint knows more than the headings do, unless it leaves every rotation free.
+void ComposedFilters::read_rotation(const Joint& joint, const Mat3& relative) {
+  const TrackingJoint& of = model_.joints[static_cast<std::size_t>(joint.index)];
+  Quat& rotation = state_.joints[static_cast<std::size_t>(joint.index)].parent_q_child;
+  if (of.positions == 3) rotation = Quat(relative);
+  if (of.stray > min_stray) rotation = Quat(shrunk(joint, relative));
+  if (of.positions == 3 || of.stray > min_stray) return;
+  const auto [first, last] = bodies_of(model_, joint.index);
+  Index next = of.first_position;
+  rotation = Quat::Identity();
+  for (std::size_t b = first; b <= last; ++b) {
+    const int count = degrees_of_freedom(model_.bodies[b].motion);
+    rotation = rotation * Quat(body_pose(model_.bodies[b], state_.q.segment(next, count)).rotation);
+    next += count;
   }
 }
 

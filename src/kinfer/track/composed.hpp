@@ -28,20 +28,36 @@ class ComposedFilters {
   /// At the time of the last row; alarms and innovations are empty.
   const TrackState& state() const { return state_; }
 
+  /// [rad²] by which the heading of a joint's child in its parent may have drifted since the start.
+  double drift(std::size_t joint) const { return joints_[joint].drift; }
+  /// [rad²] per direction, of the rotation between a joint's sensors but for its heading: as their filters state it,
+  /// and as far as they see a revolute joint's axis in different directions.
+  double tilt_variance(std::size_t joint) const;
+  /// Up, in the frame of the joint's parent sensor.
+  Vec3 vertical(std::size_t joint) const;
+
  private:
   /// A joint's sensors and the difference of their headings: rotation of the child's world into the parent's.
   struct Joint {
     int index = 0;  // into the model's joints
     int parent_sensor = -1, child_sensor = -1;
     double heading = 0.0, heading_variance = 0.0;  // [rad], [rad²]
+    double drift = 0.0;                            // [rad²] of both filters' headings since the start
+    double filters_variance = 0.0;                 // [rad²] of both headings, as the filters state it
+    Eigen::Vector2d axis_mean{0.0, 0.0};           // of the child's axis, across the parent's
+    double axis_variance = 0.0, watched = 0.0;     // [rad²] per direction, of the axis seen from both sides; [s]
     bool started = false;
   };
 
   void update_joint(Joint& joint, double dt);
+  void let_heading_drift(Joint& joint, double dt);
+  void watch_axis(Joint& joint, double dt);
+  Mat3 shrunk(const Joint& joint, const Mat3& relative) const;
   Mat3 relative_rotation(const Joint& joint) const;
   void start_heading(Joint& joint);
   void measure_heading(Joint& joint, double dt);
   void read_positions(const Joint& joint);
+  void read_rotation(const Joint& joint, const Mat3& relative);
   void read_tool();
 
   TrackingModel model_;

@@ -78,9 +78,11 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       replay_(filter_),
       does_not_fit_(model.sensors.size(), false),
       composed_(model, options),
-      choice_(model),
+      is_sound_(model.sensors.size(), true),
+      fusion_(model),
       tool_(*model_, model.tool),
       now_(initial_state(*model_)),
+      chain_state_(unknown_state(model)),
       state_(unknown_state(model)) {
   guesses_ = make_guesses(model, joint_of_position_, options);
   for (int& position : joint_of_position_)
@@ -154,6 +156,7 @@ void Tracker::try_start() {
   const InitialPosture posture = initial_posture(*model_, block, guesses_, base_.mode());
   filter_.start(posture.state, posture.covariance);
   is_known_ = posture.is_known;
+  fusion_.reset();
   const bool moves = base_.mode() == BaseMode::moving;
   for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
     const Index at = model_->layout.position[b];
@@ -211,6 +214,13 @@ void Tracker::begin_grid() {
   }
 }
 
+/// Most sensors at once are far from what the chain explains: another machine's log, permuted axes.
+void Tracker::watch_misfit(double time) {
+  const double common = filter_.common_inflation();
+  if (common < fitting_inflation) misfit_since_.reset();
+  if (common > misfit_inflation && !misfit_since_) misfit_since_ = time;
+}
+
 /// Leaves out the sensor that disagrees most, as if it had never been believed, and takes in one that agrees again.
 void Tracker::examine_fit() {
   if (const int worst = fit_.worst(filter_); worst >= 0) {
@@ -234,13 +244,13 @@ void Tracker::process_block(const BlockMeasurement& block) {
     filter_.update(block);
   }
   fit_.add(filter_, block.time, block.length);
-  choice_.update(filter_);
   if (!grid_) {
     replay_.add(block, filter_);
     if (base_begins_to_move(block))
       let_base_move();
     else
       examine_fit();
+    watch_misfit(block.time);
   }
   tool_.spread(*model_, filter_.state(), filter_.covariance());
 }
@@ -248,17 +258,30 @@ void Tracker::process_block(const BlockMeasurement& block) {
 void Tracker::read_out(double time) {
   now_ = filter_.state();
   if (time > now_.time) predict_mean(*model_, time - now_.time, now_);
-  track::read_out(*tracking_, *model_, now_, filter_.covariance(), state_);
+  track::read_out(*tracking_, *model_, now_, filter_.covariance(), chain_state_);
   tool_.place(*model_, now_);
   state_.base_T_tool = tool_.tool();
   state_.sd_tool_position = tool_.position_sd();
   state_.sd_tool_rotation = tool_.rotation_sd();
   for (std::size_t s = 0; s < state_.innovation.size(); ++s) state_.innovation[s] = fit_[s].quick;
-  for (JointStatus& joint : state_.joints) joint = {JointSource::chain, JointReference::chain};
+  for (JointStatus& joint : chain_state_.joints) {
+    joint.source = JointSource::chain;
+    joint.reference = JointReference::chain;
+  }
   for (std::size_t i = 0; i < is_known_.size(); ++i)
     if (!is_known_[i] && joint_of_position_[i] >= 0)
-      state_.joints[static_cast<std::size_t>(joint_of_position_[i])].reference = JointReference::start;
-  choice_.apply(*tracking_, composed_.state(), state_);
+      chain_state_.joints[static_cast<std::size_t>(joint_of_position_[i])].reference = JointReference::start;
+  chain_state_.time = time;
+  state_.q = chain_state_.q;
+  state_.qd = chain_state_.qd;
+  state_.sd_q = chain_state_.sd_q;
+  state_.sd_qd = chain_state_.sd_qd;
+  state_.joints = chain_state_.joints;
+  state_.world_q_base = chain_state_.world_q_base;
+  state_.sd_base = chain_state_.sd_base;
+  for (std::size_t s = 0; s < is_sound_.size(); ++s)
+    is_sound_[s] = !does_not_fit_[s] && !health_[s].lost && !health_[s].stuck;
+  fusion_.apply(*tracking_, composed_, is_sound_, state_);
 }
 
 void Tracker::list_alarms(double time) {
@@ -283,6 +306,10 @@ void Tracker::list_alarms(double time) {
   }
   if (2 * disagreeing >= static_cast<int>(does_not_fit_.size()) && disagreeing > 1)
     alarms.push_back({.kind = TrackAlarmKind::does_not_fit, .since = time});
+  else if (misfit_since_)
+    alarms.push_back({.kind = TrackAlarmKind::does_not_fit,
+                      .since = *misfit_since_,
+                      .strength = filter_.common_inflation() / misfit_inflation});
 }
 
 }  // namespace kinfer::track

@@ -14,7 +14,7 @@
 #include "kinfer/track/filter/base_watch.hpp"
 #include "kinfer/track/filter/rest_bias.hpp"
 #include "kinfer/track/filter/row_block.hpp"
-#include "kinfer/track/joint_choice.hpp"
+#include "kinfer/track/joint_fusion.hpp"
 #include "kinfer/track/options.hpp"
 #include "kinfer/track/readout/tool_spread.hpp"
 #include "kinfer/track/start/initial_posture.hpp"
@@ -33,6 +33,9 @@ class Tracker {
   /// At the time of the last row.
   const TrackState& state() const { return state_; }
 
+  /// Of the filter on the chain alone, not averaged with the composed positions; for studies. Alarms are empty.
+  const TrackState& chain_state() const { return chain_state_; }
+
   /// The filter on the chain itself, for studies and smoothing.
   const ChainFilter& filter() const { return filter_; }
 
@@ -48,6 +51,7 @@ class Tracker {
   void let_base_move();
   void begin_grid();
   void examine_fit();
+  void watch_misfit(double time);
   void list_alarms(double time);
   void read_out(double time);
 
@@ -67,13 +71,14 @@ class Tracker {
   Replay replay_;
   std::vector<bool> does_not_fit_;  // sensors out of use because they disagree
   ComposedFilters composed_;
-  JointChoice choice_;
+  std::vector<bool> is_sound_;  // sensors that the composed filters may use
+  JointFusion fusion_;
   ToolSpread tool_;
   ChainState now_;  // predicted to the last row
-  std::optional<double> restarted_{};
+  std::optional<double> restarted_{}, misfit_since_{};
   double last_time_ = 0.0;
   bool has_rows_ = false;
-  TrackState state_;
+  TrackState chain_state_, state_;
 };
 
 }  // namespace kinfer::track

@@ -28,6 +28,9 @@ std::string_view name(JointReference reference);
 struct JointStatus {
   JointSource source = JointSource::none;
   JointReference reference = JointReference::chain;
+  /// Rotation of the child's segment in its parent's, in the frames of their sensors. Of a loose joint it is more than
+  /// its joint position says.
+  Quat parent_q_child = Quat::Identity();
 };
 
 enum class TrackAlarmKind {

@@ -25,15 +25,41 @@ Span span_of(const InsRecording& recording) {
   return span;
 }
 
-/// A joint of `part` that the pair does not have in `other`.
+/// [nats per row] of the joints of `tree`, by the pairs of `part`.
+double length_of(const SegmentTree& tree, const OrderedMotion& part) {
+  double length = 0.0;
+  for (std::size_t child = 0; child < tree.parent.size(); ++child)
+    if (tree.parent[child]) length += part.tree.pair(*tree.parent[child], child).distance;
+  return length;
+}
+
+bool is_connected(const OrderedMotion& part, std::size_t a, std::size_t b) {
+  const auto strength = strength_of(pair_connection(part.motion, a, b).whole);
+  return strength == ConnectionStrength::strong || strength == ConnectionStrength::weak;
+}
+
+/// Whether `segment` has a joint in `part` that it does not have in `other`.
+bool has_other_joint(std::size_t segment, const OrderedMotion& part, const OrderedMotion& other) {
+  for (std::size_t s = 0; s < part.tree.parent.size(); ++s)
+    if (s != segment && is_edge(part.tree, segment, s) && !is_edge(other.tree, segment, s) &&
+        is_connected(part, segment, s))
+      return true;
+  return false;
+}
+
+/// A joint of `part` that the pair does not have in `other`, where one of the two has another joint instead (a fit that
+/// fails has none). The joints of `other` must be none for `part` either: segments between which nothing moves may be
+/// exchanged in a tree.
 bool has_lost_joint(const OrderedMotion& part, const OrderedMotion& other) {
+  if (length_of(other.tree, part) - length_of(part.tree, part) < lost_joint_distance) return false;
   for (const std::size_t child : part.tree.order) {
     if (!part.tree.parent[child]) continue;
     const std::size_t parent = *part.tree.parent[child];
     if (is_edge(other.tree, parent, child)) continue;
     const double lost = other.tree.pair(parent, child).distance - part.tree.pair(parent, child).distance;
     if (lost > lost_joint_distance &&
-        strength_of(pair_connection(part.motion, parent, child).whole) == ConnectionStrength::strong)
+        strength_of(pair_connection(part.motion, parent, child).whole) == ConnectionStrength::strong &&
+        (has_other_joint(parent, other, part) || has_other_joint(child, other, part)))
       return true;
   }
   return false;

@@ -73,9 +73,9 @@ inline constexpr double small_residual = 0.1;
 /// logs reach 1.3 (450 joints of simulated machines), those of real machines 0.2.
 inline constexpr double max_gain_of_halves = 2.5;
 
-/// [nats per row] By which a pair's fit must be better in one part of a recording than in the other for it to be a joint
-/// there only; larger finds fewer mixed recordings. Joints of simulated machines differ by 1.3 between halves, pairs whose
-/// sensor was exchanged by 6 to 20 (ten logs).
+/// [nats per row] By which a pair's fit must be better in one part of a recording than in the other for it to be a
+/// joint there only; larger finds fewer mixed recordings. Joints of simulated machines differ by 1.3 between halves,
+/// pairs whose sensor was exchanged by 6 to 20 (ten logs).
 inline constexpr double lost_joint_distance = 4.0;
 
 /// [m/s²] rms acceleration, and

@@ -30,7 +30,7 @@ double read_positive(TableReader& table, std::string_view key, double unit) {
 }
 
 Vec3 read_point(TableReader& table, double unit) {
-  const Vec3 point = unit * table.vector("xyz");
+  Vec3 point = unit * table.vector("xyz");
   for (const double value : point) table.expect_possible("xyz", value, possible::length);
   return point;
 }

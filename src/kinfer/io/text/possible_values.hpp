@@ -23,14 +23,14 @@ inline double magnitude(TableReader& reader, std::string_view key, const Possibl
 }
 
 inline Vec3 vector_within(TableReader& reader, std::string_view key, const PossibleRange& range) {
-  const Vec3 values = reader.vector(key);
+  Vec3 values = reader.vector(key);
   for (const double value : values) reader.expect_possible(key, value, range);
   return values;
 }
 
 /// Of no particular quantity, but finite.
 inline std::vector<double> possible_numbers(TableReader& reader, std::string_view key, std::size_t count) {
-  const std::vector<double> numbers = reader.numbers(key, count);
+  std::vector<double> numbers = reader.numbers(key, count);
   for (const double value : numbers) reader.expect_possible(key, value, possible::number);
   return numbers;
 }

@@ -29,11 +29,29 @@ void FitMonitor::add(const ChainFilter& filter, double time, double length) {
     fit.observed += length;
     forget(fit.quick, x, length, short_mean);
     forget(fit.slow, x, length, long_mean);
-    fit.strength = std::max(fit.quick / quick_limit, fit.slow / slow_limit);
+  }
+  for (std::size_t s = 0; s < fits_.size(); ++s) {
+    if (innovations.rows[s] == 0) continue;
+    SensorFit& fit = fits_[s];
+    // Where all are trusted less already, the tails of the innovations are heavier than those of the hand-over.
+    const double tails = std::sqrt(filter.common_inflation());
+    fit.strength = std::max(fit.quick / (quick_limit * tails * median_of_others(filter, s, &SensorFit::quick)),
+                            fit.slow / (slow_limit * tails * median_of_others(filter, s, &SensorFit::slow)));
     const bool was = fit.is_suspect;
     fit.is_suspect = fit.observed > settling && (was ? fit.quick > recovered_limit : fit.strength > 1.0);
     if (fit.is_suspect && !was) fit.since = time;
   }
+}
+
+/// Where most sensors disagree it is the motion that the chain does not explain, and no sensor is at fault.
+double FitMonitor::median_of_others(const ChainFilter& filter, std::size_t sensor, double SensorFit::*mean) const {
+  std::size_t count = 0;
+  for (std::size_t s = 0; s < fits_.size(); ++s)
+    if (s != sensor && filter.uses_sensor(s)) ordered_[count++] = fits_[s].*mean;
+  if (count == 0) return 1.0;
+  const auto middle = ordered_.begin() + static_cast<std::ptrdiff_t>((count - 1) / 2);
+  std::nth_element(ordered_.begin(), middle, ordered_.begin() + static_cast<std::ptrdiff_t>(count));
+  return std::max(1.0, *middle);
 }
 
 int FitMonitor::worst(const ChainFilter& filter) const {

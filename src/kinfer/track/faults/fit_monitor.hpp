@@ -19,7 +19,7 @@ struct SensorFit {
 
 class FitMonitor {
  public:
-  explicit FitMonitor(std::size_t sensors) : fits_(sensors) {}
+  explicit FitMonitor(std::size_t sensors) : fits_(sensors), ordered_(sensors, 0.0) {}
 
   void add(const ChainFilter& filter, double time, double length);
   const SensorFit& operator[](std::size_t sensor) const { return fits_[sensor]; }
@@ -33,7 +33,10 @@ class FitMonitor {
   void set(std::size_t sensor, const SensorFit& fit) { fits_[sensor] = fit; }
 
  private:
+  double median_of_others(const ChainFilter& filter, std::size_t sensor, double SensorFit::*mean) const;
+
   std::vector<SensorFit> fits_;
+  mutable std::vector<double> ordered_;  // buffer of the median
 };
 
 }  // namespace kinfer::track

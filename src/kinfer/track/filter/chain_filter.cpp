@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/base/square.hpp"
@@ -35,6 +36,13 @@ double squared_distance(SensorVector v, SensorMatrix m) {
   return t;
 }
 
+/// Of an even number the lower of the middle two; reorders.
+double lower_median(std::span<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 }  // namespace
 
 ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
@@ -56,6 +64,8 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
   w_ = MatrixXd::Zero(layout.size, most);
   unused_w_ = MatrixXd::Zero(layout.size, sensor_rows);
   s_ = inverse_ = MatrixXd::Zero(most, most);
+  leave_out_.assign(2 * sensors, 1.0);
+  ordered_.assign(sensors, 0.0);
   is_measured_.assign(static_cast<std::size_t>(2 * layout.sensors), false);
 }
 
@@ -269,10 +279,6 @@ void ChainFilter::limit_outliers() {
     block.triangularView<Eigen::StrictlyUpper>() = block.transpose();
     const Vec3 v = residual_.segment<3>(row);
     const double distance = v.dot(block.inverse() * v);
-    InsLevel& inflation = inflation_[half / 2];
-    double& factor = half % 2 == 0 ? inflation.rate : inflation.force;
-    factor = std::clamp(factor * std::exp(inflation_gain * (std::min(distance, outlier_limit) / 3.0 - 1.0)), 1.0,
-                        max_inflation);
     if (distance > outlier_limit) s_.block<3, 3>(row, row) += (distance / outlier_limit - 1.0) * block;
   }
 }
@@ -309,7 +315,36 @@ void ChainFilter::examine() {
     for (Index i = 0; i < sensor_rows; ++i)
       if (!is_measured_[2 * s + static_cast<std::size_t>(i / 3)]) u[i] = 0.0;
     innovations_.leave_out[s] = squared_distance(u, own);
+    for (Index half = 0; half < 2; ++half) {
+      const Vec3 v = u.segment<3>(3 * half);
+      const Mat3 w = own.block<3, 3>(3 * half, 3 * half);
+      leave_out_[2 * s + static_cast<std::size_t>(half)] = v.dot(w.inverse() * v) / 3.0;
+    }
   }
+}
+
+/// Each instrument's leave-one-out innovation asks for its variance: that of an instrument in motion which the chain
+/// does not explain (flexing segments, soft mounts, impacts) grows within a second. The plain innovation does not tell:
+/// it is mostly as wide as the accelerations that the state may have.
+void ChainFilter::adapt_noise() {
+  for (std::size_t half = 0; half < 2; ++half) {
+    std::size_t count = 0;
+    for (std::size_t i = half; i < is_measured_.size(); i += 2)
+      if (is_measured_[i]) ordered_[count++] = leave_out_[i];
+    if (count == 0) continue;
+    const double middle = lower_median({ordered_.data(), count});
+    const double fastest = std::min(outlier_limit / 3.0, lone_inflation * std::max(1.0, middle));
+    for (std::size_t i = half; i < is_measured_.size(); i += 2) {
+      if (!is_measured_[i]) continue;
+      double& factor = half == 0 ? inflation_[i / 2].rate : inflation_[i / 2].force;
+      factor =
+          std::clamp(factor * std::exp(inflation_gain * (std::min(leave_out_[i], fastest) - 1.0)), 1.0, max_inflation);
+    }
+  }
+  std::size_t used = 0;
+  for (std::size_t s = 0; s < is_used_.size(); ++s)
+    if (is_used_[s]) ordered_[used++] = std::max(inflation_[s].rate, inflation_[s].force);
+  if (used > 0) common_inflation_ = lower_median({ordered_.data(), used});
 }
 
 /// The innovation of a sensor that is not used, in its own covariance.
@@ -335,7 +370,7 @@ double ChainFilter::distance_of_unused(const BlockMeasurement& block, std::size_
                force = block_variance(settings.white.force, settings.persistent.force, settings.slow.force,
                                       settings.sample_period, block.length, measured.force_count);
   for (Index i = 0; i < sensor_rows; ++i)
-    covariance(i, i) += (i < 3 ? rate : force) + p_(own + i, own + i) +
+    covariance(i, i) += common_inflation_ * (i < 3 ? rate : force) + p_(own + i, own + i) +
                         p_.diagonal()
                             .segment<3>(own + SensorIndex::gyroscope_scale + 3 * i)
                             .dot((i < 3 ? m.angular_velocity[s] : m.force[s]).cwiseAbs2());
@@ -388,6 +423,7 @@ void ChainFilter::update(const BlockMeasurement& block) {
   limit_outliers();
   if (!factorise_small(s_.topLeftCorner(rows_, rows_))) return;
   examine();
+  adapt_noise();
   for (std::size_t s = 0; s < is_used_.size(); ++s) {
     if (is_used_[s]) continue;
     const bool is_measured = block.sensors[s].rate_count > 0 && block.sensors[s].force_count > 0;

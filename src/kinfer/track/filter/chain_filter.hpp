@@ -70,6 +70,8 @@ class ChainFilter {
 
   /// Factor on the variance of an instrument's measurements, as its innovations ask for; at least 1.
   InsLevel inflation(std::size_t sensor) const { return inflation_[sensor]; }
+  /// The median over the sensors in use, of the larger one of each: how far the motion is from what the chain explains.
+  double common_inflation() const { return common_inflation_; }
 
  private:
   Index zero_state(Index position) const;
@@ -81,6 +83,7 @@ class ChainFilter {
   void multiply();  // W and S
   void limit_outliers();
   void examine();
+  void adapt_noise();
   double distance_of_unused(const BlockMeasurement& block, std::size_t sensor);
   void correct();
   void bound();
@@ -103,6 +106,9 @@ class ChainFilter {
   VectorXd residual_, noise_, error_, whitened_;
   MatrixXd h_, w_, s_, inverse_, unused_w_;
   std::vector<bool> is_measured_;  // of each triple of rows
+  std::vector<double> leave_out_;  // of each triple: squared leave-one-out innovation over its expectation
+  std::vector<double> ordered_;    // buffer of medians
+  double common_inflation_ = 1.0;
 };
 
 }  // namespace kinfer::track

@@ -42,9 +42,12 @@ inline constexpr InsLevel min_noise{.rate = 1e-5, .force = 1e-4};
 
 /// An instrument whose innovation is further off (squared, in its covariance; three axes) is trusted less.
 KINFER_THRESHOLD(track, outlier_limit, 30.0);
-/// Relative change of an instrument's variance in an update, by its squared innovation over its expectation: some
-/// seconds at 50 updates a second, so that faults are detected before they are taken for noise.
-KINFER_THRESHOLD(track, inflation_gain, 4e-3);
+/// Relative change of an instrument's variance in an update, by its squared leave-one-out innovation over its
+/// expectation: a second at 50 updates a second. DIODEM trial 1, first half.
+KINFER_THRESHOLD(track, inflation_gain, 2e-2);
+/// A sensor that stands alone is followed no faster than so many times the median of all sensors: it is a fault rather
+/// than noise. DIODEM trial 1, first half.
+inline constexpr double lone_inflation = 1.5;
 inline constexpr double max_inflation = 1e4;
 
 inline constexpr double max_position_sd = 1.8;  ///< [rad] an angle that could be any; [m] likewise
@@ -62,6 +65,14 @@ inline constexpr double steady_rate = 0.05;  ///< [rad/s] sd of a joint's veloci
 /// Where sensors disagree, this share of it suffices.
 inline constexpr double base_suspicion = 0.4;
 inline constexpr double base_mean = 0.1, base_rate = 2e-3, base_significance = 5.0;
+
+/// Averaging of the chain's positions with the composed ones: shares below the first are none, they change over the
+/// second [s]. DIODEM trial 1, first half.
+inline constexpr double least_share = 0.1, share_time = 1.0;
+inline constexpr double far_apart = 2.0;  ///< standard deviations of the chain beyond which the composed one is blamed
+/// The chain's heading, where it wanders by this [rad], has this correlation time [s]; it is watched over the last [s].
+/// A heading that nothing shows at the start is known like this [rad]. DIODEM trial 1, first half.
+inline constexpr double wander_sd = 0.035, wander_time = 5.0, wander_memory = 10.0, start_offset_sd = 0.05;
 
 inline constexpr double update_period = 0.02;  ///< [s] at most 50 updates a second
 inline constexpr double longest_step = 0.1;    ///< [s] of a prediction

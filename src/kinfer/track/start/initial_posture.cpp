@@ -269,9 +269,13 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
       if (rate_is_seen) state.joints[position_states * at + 1] = is_revolute ? relative.z() : relative[i];
       const AccelerationProcess& process = model.positions[static_cast<std::size_t>(at)];
       posture.covariance(row, row) = start.sd[i] * start.sd[i];
-      for (Index j = 0; j < dof && dof == 3; ++j) {  // the heading is unobservable: it counts from here
-        const double covariance =
-            start.sd[i] * start.sd[j] * ((i == j ? 1.0 : 0.0) - start.heading[i] * start.heading[j]);
+      // Gravity does not show the heading: it counts from here, unless motion of the base will show it.
+      const bool is_shown = dof == 3 && base == BaseMode::moving && !start.is_known[0];
+      const double heading_sd = is_shown ? start_heading_sd : 0.0;
+      for (Index j = 0; j < dof && dof == 3; ++j) {
+        const double of_heading = start.heading[i] * start.heading[j],
+                     covariance = start.sd[i] * start.sd[j] * ((i == j ? 1.0 : 0.0) - of_heading) +
+                                  heading_sd * heading_sd * of_heading;
         posture.covariance(row, layout.joint_state(layout.position[b] + j)) = covariance;
       }
       const double rate_sd = rate_is_seen                            ? start_rate_sd
@@ -279,7 +283,7 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
                                                                      : process.sd * process.time;
       posture.covariance(row + 1, row + 1) = rate_sd * rate_sd;
       posture.covariance(row + 2, row + 2) = process.sd * process.sd;
-      posture.is_known[static_cast<std::size_t>(at)] = start.is_known[static_cast<std::size_t>(i)];
+      posture.is_known[static_cast<std::size_t>(at)] = is_shown || start.is_known[static_cast<std::size_t>(i)];
     }
   }
   return posture;

@@ -11,6 +11,7 @@ inline constexpr double unseen_force_sd = 3.0;         ///< [m/s²] of a body wi
 inline constexpr double start_arm = 1.0;               ///< [m] typical arm of the centripetal acceleration
 inline constexpr double start_rate_sd = 0.05;          ///< [rad/s] of velocities by gyroscopes over the first rows
 inline constexpr double start_prismatic_speed = 0.05;  ///< [m/s] of a prismatic joint
+inline constexpr double start_heading_sd = 0.03;       ///< [rad] of a spherical joint, where motion will show it
 inline constexpr double start_velocity_sd = 0.3;       ///< [m/s] of the base
 
 inline constexpr int start_places = 18;  ///< of an angle that gravity does not determine

@@ -104,10 +104,11 @@ std::string not_connected_suggestion(const Finding&) {
 }
 
 std::string mixed_recording_sentence(const Finding& f) {
-  return phrase("mixed_recording",
-                "{} shares joints with the others from {:.0f} to {:.0f} s that it does not share in the rest: recordings "
-                "were mixed, sensors were exchanged, or it came off its segment",
-                f.values.text("sensor"), f.values.number("begin"), f.values.number("end"));
+  return phrase(
+      "mixed_recording",
+      "{} shares joints with the others from {:.0f} to {:.0f} s that it does not share in the rest: recordings "
+      "were mixed, sensors were exchanged, or it came off its segment",
+      f.values.text("sensor"), f.values.number("begin"), f.values.number("end"));
 }
 
 std::string mixed_recording_suggestion(const Finding&) {

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/track/joint_fusion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kinfer/base/square.hpp"
+#include "kinfer/evidence/tracking/body_poses.hpp"
+#include "kinfer/geometry/cardan_angles.hpp"
+#include "kinfer/track/filter/thresholds.hpp"
+
+namespace kinfer::track {
+namespace {
+
+using Index = Eigen::Index;
+
+double wrapped_angle(double angle) {
+  return std::remainder(angle, 2.0 * std::numbers::pi);
+}
+
+/// Angle of the rotation's part about a unit axis.
+double twist_about(const Vec3& axis, const Quat& rotation) {
+  return wrapped_angle(2.0 * std::atan2(rotation.vec().dot(axis), rotation.w()));
+}
+
+double middle_of(const Vec3& v) {
+  return v.sum() - v.maxCoeff() - v.minCoeff();
+}
+
+}  // namespace
+
+JointFusion::JointFusion(const TrackingModel& model) : joints_(model.joints.size()) {
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    const TrackingBody& body = model.bodies[b];
+    Joint& joint = joints_[static_cast<std::size_t>(body.joint)];
+    const TrackingBody& parent = model.bodies[static_cast<std::size_t>(body.parent)];
+    if (parent.joint != body.joint) joint.parent_sensor = parent.sensor, joint.first_body = static_cast<int>(b);
+    joint.last_body = static_cast<int>(b);
+    if (body.sensor >= 0) joint.child_sensor = body.sensor;
+  }
+}
+
+void JointFusion::reset() {
+  for (Joint& joint : joints_) {
+    joint.offset = {};
+    joint.share = joint.difference = joint.age = 0.0;
+  }
+}
+
+double JointFusion::largest_share() const {
+  double most = 0.0;
+  for (const Joint& joint : joints_) most = std::max(most, joint.share);
+  return most;
+}
+
+/// The composed heading drifts, the chain's wanders: a random walk, measured with noise of the correlation time
+/// `wander_time`, longer where it wanders far. Returns the variance of the chain's heading: at least as much as it
+/// wanders about the other beyond what that drifts, because gyroscopes alone are right over seconds.
+double JointFusion::follow(Offset& offset, double measured, double chain_variance, double drift, double dt) {
+  const double difference = wrapped_angle(measured - offset.value);
+  offset.variance += std::max(0.0, drift - offset.drift);
+  offset.drift = drift;
+  offset.age += dt;
+  const double memory = std::max(std::min(offset.age, wander_memory), 1e-4);
+  offset.wander += dt / memory * (square(difference) - offset.wander);
+  const double just_started = square(start_offset_sd) * std::exp(-offset.age / wander_time),
+               honest = std::max({chain_variance, offset.wander - offset.variance, 1e-12}) + just_started,
+               farther = std::max(1.0, honest / square(wander_sd)),
+               noise = honest * farther * 2.0 * wander_time / std::max(dt, 1e-4),
+               gain = offset.variance / (offset.variance + noise);
+  offset.value += gain * difference;
+  offset.variance *= 1.0 - gain;
+  return honest;
+}
+
+/// Slowly, so that the position does not jump; a small share of either is none.
+void JointFusion::approach(Joint& joint, double chain_variance, double composed_variance, double dt) {
+  const double w = chain_variance / std::max(chain_variance + composed_variance, 1e-30),
+               wanted = std::clamp((w - least_share) / (1.0 - 2.0 * least_share), 0.0, 1.0);
+  joint.share += (wanted - joint.share) * (1.0 - std::exp(-dt / share_time));
+  if (wanted <= 0.0 && joint.share < least_share) joint.share = 0.0;
+}
+
+void JointFusion::fuse_ball(const TrackingModel& model, const ComposedFilters& composed, double dt, std::size_t j,
+                            TrackState& chain) {
+  Joint& joint = joints_[j];
+  const Index at = model.joints[j].first_position;
+  JointStatus& status = chain.joints[j];
+  const JointStatus& other = composed.state().joints[j];
+  const Vec3 up = composed.vertical(j);
+  const double chain_variance = square(middle_of(chain.sd_q.segment<3>(at)));
+  // Both start at the middle of what they know; neither knows the heading.
+  if (!joint.offset.is_set)
+    joint.offset = {.is_set = true, .variance = square(start_offset_sd), .drift = composed.drift(j)};
+  const double honest = follow(joint.offset, twist_about(up, status.parent_q_child * other.parent_q_child.conjugate()),
+                               chain_variance, composed.drift(j), dt);
+  approach(joint, honest, composed.tilt_variance(j) + joint.offset.variance, dt);
+  if (joint.share <= 0.0) return;
+  const Quat aligned = Quat(exp_so3(joint.offset.value * up)) * other.parent_q_child;
+  status.parent_q_child = status.parent_q_child.slerp(joint.share, aligned);
+  const TrackingBody& body = model.bodies[static_cast<std::size_t>(joint.first_body)];
+  const Mat3 turned = body.parent_R_axis.transpose() * status.parent_q_child.toRotationMatrix() * body.child_R_axis;
+  chain.q.segment<3>(at) = cardan_angles(turned, Vec3(chain.q.segment<3>(at)));
+}
+
+void JointFusion::fuse(const TrackingModel& model, const ComposedFilters& composed, double dt, std::size_t j,
+                       TrackState& chain) {
+  Joint& joint = joints_[j];
+  const TrackingJoint& of = model.joints[j];
+  JointStatus& status = chain.joints[j];
+  const JointStatus& other = composed.state().joints[j];
+  const Index first = of.first_position;
+  const bool is_relative = status.reference == JointReference::start || other.reference == JointReference::start;
+  if (is_relative) {
+    const double difference = chain.q[first] - composed.state().q[first];
+    if (!joint.offset.is_set) joint.offset = {.is_set = true, .value = difference, .drift = composed.drift(j)};
+    follow(joint.offset, difference, square(chain.sd_q[first]), composed.drift(j), dt);
+  } else {
+    joint.offset = {};
+  }
+  double chain_variance = 0.0, composed_variance = joint.offset.variance;
+  for (Index i = 0; i < of.positions; ++i) {
+    chain_variance += square(chain.sd_q[first + i]) / of.positions;
+    const double sd = is_relative ? std::sqrt(composed.tilt_variance(j)) : composed.state().sd_q[first + i];
+    composed_variance += square(sd) / of.positions;
+  }
+  // Where both differ by more than the chain's variance, which its innovations confirm, the other is worse than it
+  // states.
+  double difference = 0.0;
+  for (Index i = 0; i < of.positions; ++i) {
+    const double offset = i == 0 ? joint.offset.value : 0.0;
+    difference += square(wrapped_angle(composed.state().q[first + i] + offset - chain.q[first + i])) / of.positions;
+  }
+  joint.age = std::min(joint.age + dt, wander_memory);
+  joint.difference += dt / std::max(joint.age, 1e-4) * (difference - joint.difference);
+  composed_variance = std::max(composed_variance, joint.difference - square(far_apart) * chain_variance);
+  approach(joint, chain_variance, composed_variance, dt);
+  if (joint.share <= 0.0) return;
+  for (Index i = 0; i < of.positions; ++i) {
+    const double offset = i == 0 ? joint.offset.value : 0.0, q = composed.state().q[first + i] + offset;
+    chain.q[first + i] += joint.share * wrapped_angle(q - chain.q[first + i]);
+    if (std::isfinite(composed.state().qd[first + i]))
+      chain.qd[first + i] += joint.share * (composed.state().qd[first + i] - chain.qd[first + i]);
+  }
+  if (of.stray > min_stray || joint.first_body != joint.last_body) {
+    status.parent_q_child = status.parent_q_child.slerp(joint.share, other.parent_q_child);
+    return;
+  }
+  const TrackingBody& body = model.bodies[static_cast<std::size_t>(joint.first_body)];
+  status.parent_q_child = Quat(body_pose(body, chain.q.segment(first, 1)).rotation);
+}
+
+void JointFusion::apply(const TrackingModel& model, const ComposedFilters& composed, const std::vector<bool>& is_sound,
+                        TrackState& chain) {
+  const double dt = has_begun_ ? std::max(0.0, chain.time - time_) : 0.0;
+  time_ = chain.time;
+  has_begun_ = true;
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    Joint& joint = joints_[j];
+    const TrackingJoint& of = model.joints[j];
+    const auto position = composed.state().q.segment(of.first_position, of.positions);
+    const auto sound = [&](int sensor) { return sensor >= 0 && is_sound[static_cast<std::size_t>(sensor)]; };
+    if (of.positions == 0 || !sound(joint.parent_sensor) || !sound(joint.child_sensor) ||
+        !position.array().isFinite().all()) {
+      joint.share = 0.0;
+      joint.offset = {};
+      continue;
+    }
+    if (of.positions == 3)
+      fuse_ball(model, composed, dt, j, chain);
+    else
+      fuse(model, composed, dt, j, chain);
+    if (joint.share > 0.5) chain.joints[j].source = JointSource::composed;
+  }
+}
+
+}  // namespace kinfer::track

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/track/joint_fusion.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kinfer/track/readout/readout.hpp"
+
+namespace kinfer {
+namespace {
+
+constexpr double turned = 0.4, period = 0.01;  // [rad], [s]
+
+/// A joint with a horizontal axis between two sensors.
+TrackingModel hinge() {
+  TrackingModel model;
+  model.sensors = {{.name = "ins0", .body = 0}, {.name = "ins1", .body = 1}};
+  const Mat3 across = exp_so3(Vec3(1.5707963, 0.0, 0.0));
+  model.bodies.push_back({.sensor = 0});
+  model.bodies.push_back({.parent = 0, .sensor = 1, .joint = 0, .motion = TrackingMotion::revolute});
+  model.bodies.back().parent_R_axis = model.bodies.back().child_R_axis = across;
+  model.joints.push_back({.name = "ins0-ins1", .positions = 1});
+  model.covariance.resize(0, 0);
+  return model;
+}
+
+/// Position of the joint after five seconds of rest at `turned`, where a filter on the chain states `q` and `sd`.
+TrackState fused(double q, double sd, bool is_sound) {
+  const TrackingModel model = hinge();
+  track::ComposedFilters composed(model);
+  track::JointFusion fusion(model);
+  TrackState chain;
+  const Mat3 across = model.bodies[1].parent_R_axis, relative = across * rot_z(turned) * across.transpose();
+  for (int i = 0; i < 500; ++i) {
+    InsRow row{.time = i * period, .sensors = {}};
+    for (const Mat3& world_R_sensor : {Mat3(Mat3::Identity()), relative})
+      row.sensors.push_back({.time = row.time,
+                             .acceleration = world_R_sensor.transpose() * Vec3(0.0, 0.0, 9.81),
+                             .angular_velocity = Vec3::Zero(),
+                             .has_acceleration = true,
+                             .has_angular_velocity = true});
+    composed.add(row);
+    chain = track::unknown_state(model);
+    chain.time = row.time;
+    chain.q[0] = q;
+    chain.qd[0] = 0.0;
+    chain.sd_q[0] = sd;
+    chain.joints[0] = {.source = JointSource::chain, .reference = JointReference::chain};
+    fusion.apply(model, composed, {true, is_sound}, chain);
+  }
+  return chain;
+}
+
+TEST(JointFusion, AChainThatFitsIsLeftAlone) {
+  const TrackState state = fused(turned + 0.02, 1e-3, true);
+  EXPECT_EQ(state.q[0], turned + 0.02);
+  EXPECT_EQ(state.joints[0].source, JointSource::chain);
+}
+
+TEST(JointFusion, AChainThatSaysItDoesNotFitGivesWayToTheSensorsThemselves) {
+  const TrackState state = fused(turned + 0.5, 0.6, true);
+  EXPECT_NEAR(state.q[0], turned, 0.03);
+  EXPECT_EQ(state.joints[0].source, JointSource::composed);
+}
+
+TEST(JointFusion, AFaultySensorIsNotBelieved) {
+  EXPECT_EQ(fused(turned + 0.5, 0.6, false).q[0], turned + 0.5);
+}
+
+}  // namespace
+}  // namespace kinfer
