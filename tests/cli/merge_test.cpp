@@ -168,6 +168,10 @@ TEST_F(Merge, BadInputIsOneSentence) {
   EXPECT_THAT(kinfer("sweep dated.csv --out runs").err, HasSubstr("expected YYYY-MM-DD"));
   write(in("sweep.csv"), "key,verb,arguments\na,predict,\n");
   EXPECT_THAT(kinfer("sweep sweep.csv --prior fleet --out runs").err, HasSubstr("--prior has no effect"));
+  write(in("calibrations.csv"), "key,verb,arguments\na,calibrate,--robot data/robot.toml --data data/poses.csv\n");
+  EXPECT_THAT(kinfer("sweep calibrations.csv --prior fleet --out runs").err,
+              HasSubstr("--prior: fleet: no such file or folder"));
+  EXPECT_FALSE(std::filesystem::exists(in("runs/a"))) << "no task is begun with a prior that cannot be read";
 }
 
 TEST_F(Merge, KernelsCanBePinned) {

@@ -133,7 +133,7 @@ cat > $here/slurm.conf <<END
 ClusterName=kinfer
 SlurmctldHost=$(hostname)(127.0.0.1)
 AuthType=auth/munge
-AuthInfo=socket=$here/munge.socket
+AuthInfo=socket=$here/munge.socket,cred_expire=5
 SlurmUser=root
 SlurmdUser=root
 SlurmctldPort=$1
@@ -172,24 +172,41 @@ tries=0
 until sinfo -h -o %T | grep -q idle; do
   tries=$((tries + 1)); [ $tries -lt 60 ] || exit 77; sleep 0.5
 done
-# One task of the array is killed in the middle; the job is submitted again and does what is left.
-(while [ ! -e slurm_runs/t9 ]; do sleep 0.05; done; scancel --signal=KILL "$(squeue -h -r -o %i | head -1)") &
+kill_task() { scancel --signal=KILL "$(squeue -h -r -o %i | head -1)"; }
+# The daemon, the processes that supervise the tasks, and the tasks end at once; then the node comes back.
+kill_node() {
+  running=$(scontrol listpids | awk '$1 ~ /^[0-9]+$/ { print $1 }')
+  supervisors=$(for p in $running; do cut -d' ' -f4 /proc/$p/stat 2>/dev/null; done | sort -u | grep -vx 1)
+  daemon=$(cat $here/slurmd.pid)
+  kill -9 $daemon $supervisors $running
+  while is_alive $daemon; do sleep 0.1; done
+  echo "node killed, $(echo $running | wc -w) tasks"
+  slurmd
+}
+# It happens in the middle; the job is submitted again and does what is left.
+(while [ ! -e slurm_runs/t9 ]; do sleep 0.05; done; kill_$3) &
 timeout 90 sbatch --wait $2
+scancel --user=root
 timeout 90 sbatch --wait $2
 )sh";
 
-TEST_F(SweepEngines, SlurmAndATaskThatIsKilled) {
+class SlurmAndWhatDies : public SweepEngines, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(SlurmAndWhatDies, GiveTheSameBytes) {
   if (!has("which slurmctld slurmd sbatch munged"))
     GTEST_SKIP() << "Slurm is not installed (Debian: slurmctld, slurmd, "
                     "slurm-client, munge)";
   if (::geteuid() != 0) GTEST_SKIP() << "Slurm's daemons need root";
   write(in("cluster.sh"), slurm_cluster);
   const int port = 20000 + static_cast<int>(::getpid() % 20000);
-  const int status = shell(fmt::format("sh cluster.sh {} {}", port, job_file("slurm", 4, "slurm_runs")));
+  const int status = shell(fmt::format("sh cluster.sh {} {} {}", port, job_file("slurm", 4, "slurm_runs"), GetParam()));
   if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "Slurm does not start here: " << slurp(in("engine.txt"));
   ASSERT_EQ(status, 0) << slurp(in("engine.txt"));
   expect_same_fleet("slurm_runs");
 }
+
+INSTANTIATE_TEST_SUITE_P(Of, SlurmAndWhatDies, ::testing::Values("task", "node"),
+                         [](const auto& dies) { return std::string(dies.param); });
 
 }  // namespace
 }  // namespace kinfer

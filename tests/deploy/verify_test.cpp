@@ -46,6 +46,19 @@ TEST(Verify, WithoutAnInstrumentOnlyAMovedFrameIsFound) {
   moved.base.xyz.x() += 0.01;
   EXPECT_EQ(verify(truth, {}, std::nullopt, today)->result, VerificationResult::valid);
   EXPECT_EQ(verify(moved, {}, std::nullopt, today)->result, VerificationResult::frames_moved);
+  const std::string unsure = words::verdict(verify(truth, {}, std::nullopt, today).value());
+  EXPECT_NE(unsure.find("Whether the robot has changed cannot be told"), std::string::npos) << unsure;
+}
+
+TEST(Verify, AnInstrumentThatIsNotStatedIsTakenToBeAsInTheCalibration) {
+  const Chain truth = on_a_stand(with_table3_errors(er20(0.125)));
+  const PoseSet today = measured(truth, paper2_poses(30, tracker), 5);
+  Chain bent = truth;
+  std::get<MdhLink>(bent.joints[3].link).alpha += 0.2 * degree;
+  const PredictionModel known{.rows = MatrixXd::Zero(6, 1), .spread = VectorXd::Ones(6), .noise = tracker.sigma};
+  EXPECT_EQ(verify(truth, {}, std::nullopt, today, known)->result, VerificationResult::valid);
+  EXPECT_EQ(verify(bent, {}, std::nullopt, today, known)->result, VerificationResult::robot_changed);
+  EXPECT_NE(verify(bent, {}, std::nullopt, today)->result, VerificationResult::robot_changed) << "missed without it";
 }
 
 /// A chain whose gear corrections of joint 2 hold near its zero position only, and end there by `beyond`.

@@ -49,6 +49,13 @@ PoseSet without_fading(PoseSet data, const Chain& chain, const Chain& placed,
   return data;
 }
 
+/// As stated, or as noisy as in the calibration.
+std::optional<Instrument> known_instrument(const std::optional<Instrument>& stated,
+                                           const std::optional<PredictionModel>& prediction) {
+  if (stated || !prediction || !(prediction->noise > 0.0)) return stated;
+  return Instrument{.sigma = prediction->noise};
+}
+
 VerificationResult judge_by_noise(const Verification& v, double limit) {
   if (v.unmodified.rms <= limit) return VerificationResult::valid;
   return v.frames_refitted.rms <= limit ? VerificationResult::frames_moved : VerificationResult::robot_changed;
@@ -74,8 +81,10 @@ Result<Verification> verify(const Chain& given_chain, const Tolerances& toleranc
   KINFER_TRY(refitted, refit_frames(unfaded));
   v.frames_refitted = error_statistics(point_errors(refitted, unfaded));
 
-  if (instrument) {
-    const double sd = std::max(expected_rms(chain, *instrument, data, prediction), thresholds::least_point_sd);
+  const std::optional<Instrument> known = known_instrument(instrument, prediction);
+  v.noise_is_known = known.has_value();
+  if (known) {
+    const double sd = std::max(expected_rms(chain, *known, data, prediction), thresholds::least_point_sd);
     v.result = judge_by_noise(v, thresholds::noise_ratio * sd);
   } else {
     v.result = v.frames_refitted.rms <= thresholds::refit_ratio * v.unmodified.rms ? VerificationResult::frames_moved

@@ -13,7 +13,8 @@
 namespace kinfer::deploy {
 
 /// Valid: the rms error is within three times what the instrument's noise and the uncertainty of the calibration make
-/// one expect at these poses; where the instrument is not known, when refitting base and tool does not halve the error.
+/// one expect at these poses. An instrument that is not stated is taken to be as noisy as in the calibration, which
+/// `prediction` knows; without that, valid when refitting base and tool does not halve the error.
 Result<Verification> verify(const Chain& chain, const Tolerances& tolerances,
                             const std::optional<Instrument>& instrument, const PoseSet& data,
                             const std::optional<PredictionModel>& prediction = std::nullopt);

@@ -97,6 +97,9 @@ Fleet merge_rows(std::vector<FleetRow> rows) {
   for (const int i : rows_of_prior(fleet.rows))
     if (const auto& information = fleet.rows[static_cast<std::size_t>(i)].summary.information)
       robots.push_back(&*information);
+  fleet.prior_sample = {.calibrations = static_cast<int>(std::ranges::count(fleet.rows, "calibrate", &FleetRow::verb)),
+                        .robots = static_cast<int>(robots.size()),
+                        .robots_needed = thresholds::fewest_robots};
   fleet.population = fit_population(robots);
   return fleet;
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
@@ -48,6 +49,34 @@ TEST_P(RobotTomlRoundTrip, StandardDeviationsDoNotChangeTheNumbers) {
 
 INSTANTIATE_TEST_SUITE_P(Every, RobotTomlRoundTrip, testing::ValuesIn(laws::examples_with_joints()),
                          [](const auto& chain) { return laws::test_name(chain.param); });
+
+/// Exact in the seven digits that are written.
+PredictionModel example_prediction() {
+  PredictionModel model{.parameters = {"theta1", "a2"}, .rows = MatrixXd(2, 3), .spread = VectorXd(2)};
+  model.root = MatrixXd{{1e-4, 0.0}, {-2e-5, 3e-4}};
+  model.model_error.diagonal() << 1e-10, 2e-10, 3e-10, 1e-8, 2e-8, 3e-8;
+  model.rows << 0.5, -1.25, 2, 0.125, 3, -0.75;
+  model.spread << 0.5, 1.5;
+  model.reach = 0.75, model.rate = 0.5, model.noise = 3e-5;
+  model.beyond = VectorXd{{1e-3, -2e-3}};
+  return model;
+}
+
+TEST(RobotTomlWriting, ThePredictionModelIsReadBack) {
+  Chain chain;
+  chain.joints.resize(2);
+  const PredictionModel model = example_prediction();
+  const auto read = parse_robot_toml(format_robot_toml({.chain = chain, .prediction = model}), "chain.toml");
+  ASSERT_TRUE(read.has_value() && read->prediction) << (read ? "" : read.error().what);
+  const PredictionModel& again = *read->prediction;
+  EXPECT_EQ(again.parameters, model.parameters);
+  EXPECT_TRUE(again.root.isApprox(model.root, 1e-7));
+  EXPECT_TRUE(again.model_error.isApprox(model.model_error, 1e-7));
+  EXPECT_EQ(again.rows, model.rows);
+  EXPECT_EQ(again.spread, model.spread);
+  EXPECT_EQ(again.beyond, model.beyond);
+  EXPECT_EQ((std::array{again.reach, again.rate, again.noise}), (std::array{model.reach, model.rate, model.noise}));
+}
 
 TEST(RobotTomlWriting, NonGeometricValuesAreReadBackToo) {
   RobotModel robot{.chain = laws::compliant_tree()};

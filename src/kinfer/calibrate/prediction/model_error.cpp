@@ -211,6 +211,7 @@ std::optional<PredictionModel> make_prediction_model(const EvaluationInputs& eva
   PredictionModel model;
   for (const Parameter* parameter : estimate.parameters.free()) model.parameters.push_back(parameter->name);
   model.root = covariance_root(estimate.covariance);
+  if (!evaluated.instrument) model.noise = estimate.sigma;
   if (beyond) model.beyond = change_beyond(estimate, *beyond);
   describe_region(model, evaluated.data.joints(Eigen::all, evaluated.plan.fitted));
   const HeldOutResiduals held_out = held_out_residuals(evaluated, model);

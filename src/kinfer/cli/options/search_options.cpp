@@ -161,6 +161,13 @@ Result<void> read_earlier_calibrations(const SearchArguments& arguments, calibra
   return {};
 }
 
+Result<void> check_prior(const std::string& path) {
+  if (!std::filesystem::exists(path)) return error("--prior: {}: no such file or folder", path);
+  if (!is_population(path)) return {};
+  KINFER_TRY(population, read_population(population_path(path)));
+  return {};
+}
+
 std::vector<std::string> input_paths(const SearchArguments& arguments) {
   std::vector<std::string> paths;
   for (const std::string& path : arguments.prior) paths.push_back(is_population(path) ? population_path(path) : path);

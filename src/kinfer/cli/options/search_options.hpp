@@ -30,6 +30,9 @@ Result<void> check_search_arguments(const SearchArguments& arguments, const CLI:
 /// robot, unless that is to be found from the data.
 Result<void> read_earlier_calibrations(const SearchArguments& arguments, calibrate::CalibrationTask& task);
 
+/// An error where there is nothing at `path`, or a merged fleet without a readable prior.
+Result<void> check_prior(const std::string& path);
+
 /// The files that are read.
 std::vector<std::string> input_paths(const SearchArguments& arguments);
 

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "kinfer/base/instruction_set.hpp"
+#include "kinfer/cli/options/search_options.hpp"
 #include "kinfer/cli/parts/arguments.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/sweep/sweep_folder.hpp"
@@ -52,7 +53,7 @@ Result<void> add_prior(const SweepArguments& options, const CLI::App& program, s
     has_effect = true;
   }
   if (!has_effect) return error("--prior has no effect: no task without it is a calibration");
-  return {};
+  return check_prior(options.prior);  // once, and not in each of ten thousand tasks
 }
 
 Result<std::vector<SweepTask>> read_tasks(const SweepArguments& options, const CLI::App& program) {

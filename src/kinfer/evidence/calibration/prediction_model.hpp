@@ -26,6 +26,7 @@ struct PredictionModel {
   VectorXd spread{};   ///< dof: standard deviation of each joint over the fitted rows, [rad] or [m]
   double reach = 1.0;  ///< [1] distance up to which joint positions count as measured
   double rate = 0.0;   ///< [1] of the growth of M
+  double noise = 0.0;  ///< [m] of the instrument, per axis, where its residuals had to tell; 0: it was stated
   /// What the parameters change by far from the fitted rows, SI. Empty: nothing, the corrections hold everywhere.
   VectorXd beyond{};
 };

@@ -19,6 +19,7 @@ struct Verification {
   ErrorStatistics unmodified;       ///< [m] errors of the measured points
   ErrorStatistics frames_refitted;  ///< [m] with base and tool refitted: separates a moved tracker from a changed robot
   VerificationResult result = VerificationResult::valid;
+  bool noise_is_known = true;  ///< else only moved frames can be noticed
 };
 
 }  // namespace kinfer

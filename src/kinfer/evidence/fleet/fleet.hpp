@@ -87,6 +87,13 @@ struct FleetCounts {
   int use = 0, use_with_care = 0, do_not_use = 0, refused = 0, failed = 0, unfinished = 0, unreadable = 0;
 };
 
+/// What a prior can be made of.
+struct PriorSample {
+  int calibrations = 0;  ///< in the table, whatever became of them
+  int robots = 0;        ///< with a calibration that may be used and whose data tell of joint parameters
+  int robots_needed = 0;
+};
+
 struct Fleet {
   std::vector<FleetRow> rows{};  ///< by key
   FleetCounts counts{};
@@ -96,7 +103,8 @@ struct Fleet {
   std::vector<CoverageCount> coverage{};
   std::vector<std::string> processor_classes{};
   ControlChartSummary chart{};
-  std::optional<PopulationPrior> population{};
+  PriorSample prior_sample{};
+  std::optional<PopulationPrior> population{};  ///< nothing: too few robots
 };
 
 /// Indices of the rows, those that need attention first: failed, not to be used, deviating; then by key.

@@ -52,11 +52,12 @@ std::string format_prediction_toml(const PredictionModel& model) {
     }());
   const std::string beyond =
       model.beyond.size() > 0 ? "beyond = " + prediction_numbers(model.beyond) + "\n" : std::string();
+  const std::string noise = model.noise > 0.0 ? fmt::format("noise = {:.7g}\n", model.noise) : std::string();
   return fmt::format(
       "\n[prediction]\nparameters = [{}]\ncovariance_root = [\n{}\n]\nmodel_error = {}\nspread = {}\nreach = {:.7g}\n"
-      "rate = {:.7g}\n{}rows = {}\n",
+      "rate = {:.7g}\n{}{}rows = {}\n",
       names, root, prediction_numbers(VectorXd(model.model_error.reshaped())), prediction_numbers(model.spread),
-      model.reach, model.rate, beyond, prediction_numbers(VectorXd(model.rows.reshaped())));
+      model.reach, model.rate, noise, beyond, prediction_numbers(VectorXd(model.rows.reshaped())));
 }
 
 std::optional<PredictionModel> read_prediction(TableReader& file, int dof, FirstError& first_error) {
@@ -78,6 +79,7 @@ std::optional<PredictionModel> read_prediction(TableReader& file, int dof, First
   if (static_cast<int>(spread.size()) == dof) model.spread = Eigen::Map<const VectorXd>(spread.data(), dof);
   model.reach = reader.positive_or("reach", 1.0);
   model.rate = reader.number_or("rate", 0.0);
+  if (table->find("noise")) model.noise = reader.positive_or("noise", 0.0);
   if (table->find("beyond")) {
     const std::vector<double> beyond = reader.numbers("beyond", static_cast<std::size_t>(count));
     if (static_cast<Index>(beyond.size()) == count) model.beyond = Eigen::Map<const VectorXd>(beyond.data(), count);

@@ -28,6 +28,11 @@ std::string verdict(const Verification& v) {
                                           mm_text(v.unmodified.max));
   switch (v.result) {
     case VerificationResult::valid:
+      if (!v.noise_is_known)
+        return phrase("valid_noise_unknown",
+                      "Base and tool have not moved: {}. Whether the robot has changed cannot be told, because "
+                      "[instrument] states no noise.",
+                      figures);
       return phrase(id, "Still good: {}.", figures);
     case VerificationResult::frames_moved:
       return phrase(id,

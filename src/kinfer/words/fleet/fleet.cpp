@@ -75,6 +75,10 @@ std::vector<std::string> remarks(const Fleet& fleet) {
   if (fleet.population)
     list.push_back(phrase("population", "prior.json: mean and covariance of {} joint parameters over {} robots",
                           fleet.population->names.size(), fleet.population->robots));
+  else if (fleet.prior_sample.calibrations > 0)
+    list.push_back(
+        phrase("no_population", "no prior.json: {} robot{} with a calibration that may be used, and a prior needs {}",
+               fleet.prior_sample.robots, fleet.prior_sample.robots == 1 ? "" : "s", fleet.prior_sample.robots_needed));
   return list;
 }
 
