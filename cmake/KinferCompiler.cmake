@@ -16,7 +16,7 @@ add_library(kinfer_hardening INTERFACE)  # of optimised code: fortified function
 if(KINFER_HARDENED AND NOT KINFER_SANITIZE AND NOT KINFER_SANITIZE_THREADS AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
   add_compile_definitions(_GLIBCXX_ASSERTIONS)
   add_compile_options(-fstack-protector-strong -fstack-clash-protection)
-  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT KINFER_PACKAGE)
     add_compile_options(-fcf-protection)
   endif()
   add_link_options(-Wl,-z,relro,-z,now)
@@ -30,8 +30,8 @@ option(KINFER_UNITY "Compile files in batches: a whole build takes half the time
 
 # Levels of optimisation: of rooms that call loops of other rooms, and of programs, which call nothing but the library.
 # Optimising either would double the time that they compile; a package is compiled once and copied often.
-set(KINFER_CALLER_LEVEL $<$<NOT:$<CONFIG:Debug>>:$<IF:$<BOOL:${KINFER_PACKAGE}>,-Os,-O1>>)
-set(KINFER_PROGRAM_LEVEL $<$<NOT:$<CONFIG:Debug>>:$<IF:$<BOOL:${KINFER_PACKAGE}>,-Os,-O0>>)
+set(KINFER_CALLER_LEVEL $<$<NOT:$<CONFIG:Debug>>:$<IF:$<BOOL:${KINFER_PACKAGE}>,-Oz,-O1>>)
+set(KINFER_PROGRAM_LEVEL $<$<NOT:$<CONFIG:Debug>>:$<IF:$<BOOL:${KINFER_PACKAGE}>,-Oz,-O0>>)
 
 add_library(kinfer_flags INTERFACE)
 target_compile_options(kinfer_flags INTERFACE
@@ -54,6 +54,7 @@ endif()
 if(KINFER_PACKAGE)
   # Each function is a section of its own, so that the linker can leave out what nobody calls.
   add_compile_options(-ffunction-sections -fdata-sections)
+  add_compile_options(-include ${PROJECT_SOURCE_DIR}/cmake/short_assertions.hpp)
   add_compile_options(-ffile-prefix-map=${PROJECT_BINARY_DIR}=. -ffile-prefix-map=${PROJECT_SOURCE_DIR}=.)
 endif()
 

@@ -172,7 +172,7 @@ tries=0
 until sinfo -h -o %T | grep -q idle; do
   tries=$((tries + 1)); [ $tries -lt 60 ] || exit 77; sleep 0.5
 done
-kill_task() { scancel --signal=KILL "$(squeue -h -r -o %i | head -1)"; }
+kill_task() { echo "killed 1 tasks"; scancel --signal=KILL "$(squeue -h -r -o %i | head -1)"; }
 # The daemon, the processes that supervise the tasks, and the tasks end at once; then the node comes back.
 kill_node() {
   running=$(scontrol listpids | awk '$1 ~ /^[0-9]+$/ { print $1 }')
@@ -180,12 +180,12 @@ kill_node() {
   daemon=$(cat $here/slurmd.pid)
   kill -9 $daemon $supervisors $running
   while is_alive $daemon; do sleep 0.1; done
-  echo "node killed, $(echo $running | wc -w) tasks"
+  echo "killed $(echo $supervisors | wc -w) tasks"
   slurmd
 }
 # It happens in the middle; the job is submitted again and does what is left.
 (while [ ! -e slurm_runs/t9 ]; do sleep 0.05; done; kill_$3) &
-timeout 90 sbatch --wait $2
+timeout 50 sbatch --wait $2
 scancel --user=root
 timeout 90 sbatch --wait $2
 )sh";
@@ -202,6 +202,7 @@ TEST_P(SlurmAndWhatDies, GiveTheSameBytes) {
   const int status = shell(fmt::format("sh cluster.sh {} {} {}", port, job_file("slurm", 4, "slurm_runs"), GetParam()));
   if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "Slurm does not start here: " << slurp(in("engine.txt"));
   ASSERT_EQ(status, 0) << slurp(in("engine.txt"));
+  EXPECT_THAT(slurp(in("engine.txt")), ::testing::ContainsRegex("killed [1-9] tasks"));
   expect_same_fleet("slurm_runs");
 }
 

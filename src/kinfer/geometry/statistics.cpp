@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/geometry/statistics.hpp"
 
+#include <math.h>  // lgamma_r of POSIX
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,6 +11,12 @@
 
 namespace kinfer {
 namespace {
+
+/// ln Γ(x), x > 0. std::lgamma writes a global variable, which threads must not.
+double log_gamma(double x) {
+  int sign = 1;
+  return ::lgamma_r(x, &sign);
+}
 
 /// Σ zᵏ / (a (a + 1) ... (a + k)), the lower incomplete gamma function divided by zᵃ e⁻ᶻ; for z < a + 1.
 double gamma_series(double a, double z) {
@@ -96,7 +104,7 @@ double chi_squared_cdf(double x, double n) {
   KINFER_EXPECT(n > 0.0, "{} degrees of freedom", n);
   if (x <= 0.0) return 0.0;
   const double a = 0.5 * n, z = 0.5 * x;
-  const double factor = std::exp(a * std::log(z) - z - std::lgamma(a));
+  const double factor = std::exp(a * std::log(z) - z - log_gamma(a));
   return z < a + 1.0 ? factor * gamma_series(a, z) : 1.0 - factor * gamma_fraction(a, z);
 }
 
