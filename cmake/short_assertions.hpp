@@ -12,4 +12,7 @@
     __glibcxx_constexpr_assert(false);             \
     __builtin_trap();                              \
   }
+// Of strings, those in the standard library's own shared object are taken, which do not check themselves.
+#undef _GLIBCXX_EXTERN_TEMPLATE
+#define _GLIBCXX_EXTERN_TEMPLATE 1
 #endif
