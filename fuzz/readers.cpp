@@ -23,6 +23,7 @@
 #include "kinfer/io/recording/machine_facts_toml.hpp"
 #include "kinfer/io/recording/sensor_grade_toml.hpp"
 #include "kinfer/io/robot/mjcf.hpp"
+#include "kinfer/io/robot/patch/mjcf_patch.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/io/robot_log/message_log_formats.hpp"
@@ -49,18 +50,52 @@ const Chain& two_joints() {
   return chain;
 }
 
+/// More bodies inside each other than a reader of XML takes.
+bool is_deep(const Chain& chain) {
+  return chain.joints.size() > 90;
+}
+
 void read_robot(const std::string& bytes) {
   const auto robot = parse_robot_toml(bytes, name);
   if (!robot) return;
   const auto again = parse_robot_toml(format_robot_toml(*robot), name);
   KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
-  format_mjcf(robot->chain);
+  if (is_deep(robot->chain)) return;
+  const auto mjcf = parse_mjcf(format_mjcf(robot->chain), name);
+  KINFER_EXPECT(mjcf, "the MJCF that was written cannot be read: {}", mjcf.error().what);
 }
 
 void read_urdf_text(const std::string& bytes) {
   const auto chain = parse_urdf(bytes, name);
   if (!chain) return;
   const auto again = parse_urdf(format_urdf(*chain), name);
+  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+}
+
+Chain with_origins_moved(Chain chain) {
+  for (Joint& joint : chain.joints)
+    if (has_position(joint.type)) std::get<UrdfLink>(joint.link).origin.xyz.x() += 1e-3;
+  return chain;
+}
+
+void write_back(const std::string& bytes, const Chain& in_file) {
+  const auto tree = parse_mjcf_tree(bytes, name);
+  const auto ends = mjcf_ends(tree.value(), name, {});
+  for (const Chain& corrected : {in_file, with_origins_moved(in_file)}) {
+    const auto origins = calibrated_origins(in_file, corrected, EncoderOffsets::folded);
+    const auto patched = patch_mjcf(bytes, name, ends.value(), origins.value());
+    if (!patched) continue;
+    const auto again = parse_mjcf(patched->text, name);
+    KINFER_EXPECT(again, "what was written back cannot be read: {}", again.error().what);
+  }
+}
+
+void read_mjcf_text(const std::string& bytes) {
+  const auto chain = parse_mjcf(bytes, name);
+  if (!chain) return;
+  write_back(bytes, *chain);
+  if (is_deep(*chain)) return;
+  const auto again = parse_mjcf(format_mjcf(*chain), name);
   KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
 }
 
@@ -144,6 +179,7 @@ constexpr std::array table{
            [](const std::string& bytes) { static_cast<void>(parse_reach_targets(bytes, name, two_joints(), {})); }},
     Reader{"robot_toml", read_robot},
     Reader{"urdf", read_urdf_text},
+    Reader{"mjcf", read_mjcf_text},
     Reader{"tracking_model", [](const std::string& bytes) { static_cast<void>(parse_tracking_model(bytes, name)); }},
     Reader{"evidence", [](const std::string& bytes) { static_cast<void>(report::report_of_file(bytes)); }},
     Reader{"manifest", [](const std::string& bytes) { static_cast<void>(parse_manifest(bytes, name)); }},

@@ -165,7 +165,7 @@ void add_calibration(py::module_& module) {
           "evidence.json as a dictionary")
       .def("save", &save_calibration, py::arg("folder"), py::kw_only(), py::arg("offsets") = "folded",
            "Writes the files that the program writes: chain.toml, chain.urdf, evidence.json, report.html, …, and the "
-           "robot's own URDF file with calibrated origins.");
+           "robot's own URDF or MJCF file with calibrated origins.");
   module.def(
       "calibrate",
       [](const Robot& robot, const py::object& joints, py::object positions, py::object poses_, py::object distances,

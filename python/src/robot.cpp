@@ -12,7 +12,7 @@ namespace {
 Robot load_robot(const py::object& file, const std::string& base, const std::string& tip) {
   const auto path = path_of(file);
   if (!path) throw InputError("Robot.load: expected the path of a file");
-  const UrdfEnds ends{base, tip};
+  const ChainEnds ends{base, tip};
   return {value_of(read_robot_model(*path, ends)), {*path}, ends};
 }
 
@@ -64,9 +64,10 @@ void write_files(const std::string& folder, const std::vector<std::pair<std::str
 
 void add_robot(py::module_& module) {
   py::class_<Robot>(module, "Robot", "A kinematic model: a chain of joints from a base to a tool.")
-      .def_static("load", &load_robot, py::arg("path"), py::kw_only(), py::arg("base") = "", py::arg("tip") = "",
-                  "Reads a robot file (TOML or URDF, by its ending). base, tip: links of a URDF file between which the "
-                  "chain lies (default: its root and the end of its longest arm).")
+      .def_static(
+          "load", &load_robot, py::arg("path"), py::kw_only(), py::arg("base") = "", py::arg("tip") = "",
+          "Reads a robot file: TOML, URDF or MJCF. base, tip: links of a URDF file, bodies (tip: or a site) of an MJCF "
+          "file, between which the chain lies (default: its root, the end of its longest arm).")
       .def(
           "forward", &forward_of, py::arg("joints"), py::kw_only(), py::arg("threads") = 0,
           "Tool poses, (n, 4, 4) homogeneous matrices [m], at joint positions (n, dof) [rad] or [m]; (4, 4) at (dof,). "

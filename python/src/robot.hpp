@@ -13,7 +13,7 @@ namespace kinfer::python {
 struct Robot {
   RobotModel model;
   std::vector<std::string> paths{};  ///< of the file; empty: none
-  UrdfEnds ends{};
+  ChainEnds ends{};
 };
 
 /// kinfer.PoseSet: a file of poses.

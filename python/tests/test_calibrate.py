@@ -34,6 +34,16 @@ def test_a_urdf_is_written_back_as_the_program_does(poses, program, tmp_path):
         assert (tmp_path / "python" / name).read_bytes() == (tmp_path / "program" / name).read_bytes(), name
 
 
+def test_an_mjcf_is_written_back_as_the_program_does(poses, program, tmp_path):
+    program("convert", poses / "robot.toml", "arm.xml", cwd=tmp_path)
+    arguments = ["--robot", tmp_path / "arm.xml", "--tip-link", "link_J6", "--data", poses / "poses.csv"]
+    program("calibrate", *arguments, "--out", tmp_path / "program")
+    robot = kinfer.Robot.load(tmp_path / "arm.xml", tip="link_J6")
+    kinfer.calibrate(robot, poses / "poses.csv").save(tmp_path / "python")
+    for name in ("arm_calibrated.xml", "placement.toml", "model_changes.csv"):
+        assert (tmp_path / "python" / name).read_bytes() == (tmp_path / "program" / name).read_bytes(), name
+
+
 def test_arrays_of_positions_and_of_poses(robot, measured):
     joints, poses = measured
     for calibration in (

@@ -4,6 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"
+#include "kinfer/io/robot/model_formats.hpp"
+#include "kinfer/kinematics/forward.hpp"
+#include "laws/example_chains.hpp"
 
 namespace kinfer {
 namespace {
@@ -38,6 +41,23 @@ TEST_F(Identify, WritesTheChainAndItsEvidenceAndTheSameBytesForAnyNumberOfThread
   EXPECT_EQ(json["search"]["engine"], "bp");
   EXPECT_EQ(json["search"]["best"][0].size(), 6u);
   EXPECT_TRUE(json["fit"]["holdout"].contains("ins2"));
+}
+
+TEST_F(Identify, TheMjcfHasTheToolWhereTheChainHasIt) {
+  simulate();
+  ASSERT_EQ(kinfer("identify drive/imu.csv --out machine --quiet").code, 0);
+  const auto chain = read_robot_model(in("machine/chain.toml"));
+  const auto mjcf = read_robot_model(in("machine/chain.mjcf"), {.base_link = "", .tip_link = "tool"});
+  ASSERT_TRUE(chain.has_value()) << chain.error().what;
+  ASSERT_TRUE(mjcf.has_value()) << mjcf.error().what;
+  const std::vector<std::string> names = active_joint_names(chain->chain);
+  ASSERT_EQ(active_joint_names(mjcf->chain), names);
+  for (std::uint64_t k = 0; k < 200; ++k) {
+    const VectorXd q = laws::random_q(chain->chain, Rng(3).stream(k));
+    const Pose expected = forward(chain->chain, q), found = forward(mjcf->chain, q);
+    ASSERT_LT((expected.position - found.position).norm(), 1e-9);
+    ASSERT_LT((expected.rotation - found.rotation).cwiseAbs().maxCoeff(), 1e-9);
+  }
 }
 
 TEST_F(Identify, TheDefaultEngineReachesTheOptimumOfExhaustiveSearch) {

@@ -97,6 +97,61 @@ TEST_F(ModelPatches, OffsetsAreSeparateOnlyWhereAFileIsWrittenBack) {
   EXPECT_NE(refused.err.find("--offsets has no effect here"), std::string::npos) << refused.err;
 }
 
+/// The text without the values of the attributes that place a body.
+std::string without_places(std::string text) {
+  for (const char* key : {" pos=\"", " quat=\""})
+    for (std::size_t at = text.find(key); at != std::string::npos; at = text.find(key, at + 1)) {
+      const std::size_t begin = at + std::string(key).size();
+      text.erase(begin, text.find('"', begin) - begin);
+    }
+  return text;
+}
+
+TEST_F(ModelPatches, TheUsersMjcfIsWrittenBackLikewise) {
+  simulate("--measured pose");
+  ASSERT_EQ(kinfer("convert " + source("examples/robot6/robot.toml") + " robot.xml").code, 0);
+  std::string before = slurp(in("robot.xml"));
+  const std::size_t at = before.find("<joint name=\"J3\"");
+  ASSERT_NE(at, std::string::npos) << before;
+  before.insert(at, "<!-- ours -->\r\n<geom type='mesh' mesh=\"j3\"/>");
+  write(in("robot.xml"), before);
+  const Outcome run = kinfer("calibrate --robot robot.xml --tip-link link_J6 --data data/poses.csv --out cal");
+  ASSERT_EQ(run.code, 0) << run.err << run.out;
+  EXPECT_NE(run.out.find("robot_calibrated.xml is your file with the frames of 6 joints changed"), std::string::npos)
+      << run.out;
+  const std::string after = slurp(in("cal/robot_calibrated.xml"));
+  EXPECT_NE(before, after);
+  EXPECT_EQ(without_places(before), without_places(after));
+  for (const char* file : {"model_changes.csv", "placement.toml"})
+    EXPECT_TRUE(fs::exists(in(std::string("cal/") + file))) << file;
+  for (const char* file : {"joint_origins.yaml", "joint_offsets.yaml", "kinematics.yaml"})
+    EXPECT_FALSE(fs::exists(in(std::string("cal/") + file))) << file;
+  EXPECT_NE(slurp(in("cal/placement.toml")).find("link = \"link_J6\""), std::string::npos);
+  EXPECT_EQ(kinfer("verify --chain cal/robot_calibrated.xml --tip-link link_J6 --data data/poses.csv").code, 1)
+      << "base and tool are those of the cell, not of the file";
+  const Outcome separate =
+      kinfer("calibrate --robot robot.xml --tip-link link_J6 --data data/poses.csv --out apart --offsets separate");
+  ASSERT_EQ(separate.code, 0) << separate.err;
+  EXPECT_NE(slurp(in("apart/joint_offsets.yaml")).find("joint_offsets:\n  J1: "), std::string::npos);
+  EXPECT_NE(separate.out.find("add those of joint_offsets.yaml"), std::string::npos) << separate.out;
+}
+
+TEST_F(ModelPatches, EveryVerbThatTakesARobotReadsMjcf) {
+  simulate();
+  ASSERT_EQ(kinfer("convert " + source("examples/robot6/robot.toml") + " robot.xml").code, 0);
+  for (const char* arguments :
+       {"inspect data/poses.csv --robot robot.xml", "plan --robot robot.xml --poses 4 -o plan.csv",
+        "simulate-poses --robot robot.xml --poses 5 --out simulated",
+        "predict --chain robot.xml --tip-link tool --joints data/poses.csv -o predicted.csv",
+        "convert robot.xml same.toml",
+        "compensate --chain same.toml --nominal robot.xml --joints data/poses.csv -o corrected.csv"}) {
+    const Outcome run = kinfer(arguments);
+    EXPECT_EQ(run.code, 0) << arguments << "\n" << run.err << run.out;
+  }
+  ASSERT_EQ(kinfer("predict --chain data/robot.toml --joints data/poses.csv -o nominal.csv").code, 0);
+  EXPECT_LT(largest_difference("predicted.csv", "nominal.csv"), 1e-9);
+}
+
 TEST_F(ModelPatches, AXacroFileMustBeExpandedFirst) {
   write(in("arm.urdf.xacro"), "<robot/>");
   write(in("p.csv"), "q1\n0\n");

@@ -9,6 +9,7 @@
 #include <regex>
 
 #include "kinfer/io/evidence/evidence_file.hpp"
+#include "kinfer/io/robot/mjcf.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/robot/urdf.hpp"
 
@@ -76,6 +77,8 @@ void judge_file(const fs::path& path, std::vector<std::string>& broken) {
   }
   if (name.ends_with(".urdf"))
     if (const auto chain = parse_urdf(text, name, {}); !chain) complain("cannot be read: " + chain.error().what);
+  if (name.ends_with(".mjcf") || name.ends_with("_calibrated.xml"))
+    if (const auto chain = parse_mjcf(text, name); !chain) complain("cannot be read: " + chain.error().what);
   if ((name.ends_with(".urdf") || name.ends_with(".mjcf")) && !is_well_formed_xml(text)) complain("is not well-formed");
   if (name.ends_with(".urdf") || name.ends_with(".mjcf"))
     if (!number_that_is_none(lower(text)).empty()) complain("has a number that is none");

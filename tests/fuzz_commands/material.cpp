@@ -107,6 +107,7 @@ std::string make_material(const fs::path& program, const fs::path& folder, const
       {"calibrate", "--robot", "data/robot.toml", "--data", "data/poses.csv", "--out", "calibration", "--threads", "1"},
       {"calibrate", "--robot", "scara.toml", "--data", "scara/poses.csv", "--out", "scara_calibration"},
       {"convert", "robot.toml", "robot.urdf"},
+      {"convert", "scara.toml", "scara.xml"},
       {"convert", "drive/imu.csv", "imu.mcap"},
       {"predict", "--chain", "data/truth.toml", "--joints", "data/poses.csv", "-o", "predicted.csv"},
       {"predict", "--chain", "data/truth.toml", "--joints", "sweeps.csv", "-o", "swept.csv"}};
@@ -139,6 +140,7 @@ const std::vector<Recipe>& recipes() {
        {"--robot", "scara.toml", "--data", "scara/poses.csv", "--out", "out", "--prior", "scara_calibration/chain.toml",
         "scara.toml"},
        4},
+      {"calibrate", {"--robot", "scara.xml", "--data", "scara/poses.csv", "--out", "out", "--threads", "1"}, 4},
       {"predict", {"--chain", "scara.toml", "--joints", "scara/poses.csv"}, 6},
       {"predict", {"--chain", "robot.urdf", "--joints", "data/poses.csv", "-o", "out.csv"}, 4},
       {"verify", {"--chain", "calibration/chain.toml", "--data", "data/poses.csv"}, 6},
@@ -155,6 +157,7 @@ const std::vector<Recipe>& recipes() {
       {"convert", {"robot.toml", "out.urdf"}, 4},
       {"convert", {"scara.toml", "out.mjcf"}, 4},
       {"convert", {"robot.urdf", "out.toml"}, 6},
+      {"convert", {"scara.xml", "out.toml"}, 6},
       {"convert", {"short.csv", "out.mcap"}, 4},
       {"simulate", {"crane", "--rate", "20", "--duration", "16", "--out", "out"}, 4},
       {"simulate-poses", {"--robot", "scara.toml", "--poses", "5", "--out", "out"}, 8},
@@ -179,7 +182,7 @@ std::vector<std::string> files_for(const std::string& placeholder) {
             "scara_calibration/chain.toml"};
   if (placeholder == "CSV") return {"data/poses.csv", "short.csv", "targets.csv", "sweeps.csv", "manifest.csv"};
   if (placeholder == "DIR") return {"calibration", "machine", "scara_calibration"};
-  if (placeholder == "FILE" || placeholder == "ROBOT") return {"robot.toml", "robot.urdf", "scara.toml"};
+  if (placeholder == "FILE" || placeholder == "ROBOT") return {"robot.toml", "robot.urdf", "scara.toml", "scara.xml"};
   return {};
 }
 

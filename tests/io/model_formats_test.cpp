@@ -87,14 +87,33 @@ TEST_F(ModelFormats, TheExtensionChoosesTheFormat) {
   }
 }
 
+TEST_F(ModelFormats, TheOutermostElementChoosesAmongXmlFormats) {
+  const std::string before = "\xEF\xBB\xBF<?xml version='1.0'?>\n<!-- <mujoco> <robot> -->\n";
+  const fs::path path = folder / "robot.xml";
+  for (const ModelFormat& format : model_formats()) {
+    if (format.root_element.empty()) continue;
+    std::string text = format.format(robot, {});
+    text.erase(0, text.find('<' + std::string(format.root_element)));
+    ASSERT_TRUE(write_text_file(path, before + text));
+    const auto read = read_robot_model(path, {.base_link = "", .tip_link = "tool"});
+    ASSERT_TRUE(read) << format.name << ": " << read.error().what;
+    ASSERT_TRUE(read->source) << format.name;
+    EXPECT_EQ(name(read->source->format), format.name);
+    EXPECT_EQ(read->source->text, before + text);
+  }
+  ASSERT_TRUE(write_text_file(path, before + "<sdf/>"));
+  EXPECT_EQ(complaint(path), path.string() + ":3: expected <robot> (URDF) or <mujoco> (MJCF), found <sdf>");
+  ASSERT_TRUE(write_text_file(path, "units = 1"));
+  EXPECT_NE(complaint(path).find(":1: malformed XML"), std::string::npos) << complaint(path);
+}
+
 TEST_F(ModelFormats, UnknownAndUnreadableExtensionsAreNamed) {
-  EXPECT_EQ(readable_model_formats(), "TOML or URDF");
+  EXPECT_EQ(readable_model_formats(), "TOML, URDF or MJCF");
   EXPECT_EQ(writable_model_extensions(), ".toml, .urdf or .mjcf");
   const auto done = write_robot_model(folder / "robot.obj", robot);
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().what, (folder / "robot.obj").string() + ": expected an ending .toml, .urdf or .mjcf");
   EXPECT_FALSE(fs::exists(folder / "robot.obj"));
-  EXPECT_EQ(complaint("arm.mjcf"), "arm.mjcf: MJCF files are written, not read; expected TOML or URDF");
   EXPECT_EQ(complaint(folder / "none.toml"), (folder / "none.toml").string() + ": no such file");
   ASSERT_TRUE(write_text_file(folder / "robot.txt", format_robot_toml(robot)));
   EXPECT_EQ(complaint(folder / "robot.txt"), "(accepted)") << "unknown extensions are read as TOML";

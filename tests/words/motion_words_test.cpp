@@ -126,6 +126,16 @@ TEST(ModelPatchWords, SeparateOffsetsMustBeAddedByTheUser) {
   EXPECT_THAT(separate.front(), HasSubstr("joint_origins.yaml"));
 }
 
+TEST(ModelPatchWords, AnMjcfHasFramesOfJointsAndOffsetsInAFileOfTheirOwn) {
+  ModelPatch patch = patch_with(6);
+  patch.file = "arm_calibrated.xml", patch.format = RobotFileFormat::mjcf, patch.offsets = EncoderOffsets::separate;
+  patch.omitted = {{.kind = NonGeometricKind::gain, .joints = 1}};
+  EXPECT_EQ(words::headline(patch),
+            "arm_calibrated.xml is your file with the frames of 6 joints changed and every other byte kept.");
+  EXPECT_THAT(words::remarks(patch), ::testing::Contains(HasSubstr("joint_offsets.yaml")));
+  EXPECT_THAT(words::remarks(patch), ::testing::Not(::testing::Contains(HasSubstr("URDF"))));
+}
+
 TEST(MotionWords, InTheLanguageOfNamesTheyAreNames) {
   words::set_language(words::Language::names);
   EXPECT_EQ(words::summary(ReachSummary{.targets = 3}), "reach");

@@ -43,7 +43,7 @@ std::string replaced(std::string text, const std::string& old_part, const std::s
   return at == std::string::npos ? text : text.replace(at, old_part.size(), new_part);
 }
 
-std::string urdf_complaint(const std::string& text, const UrdfEnds& ends = {}) {
+std::string urdf_complaint(const std::string& text, const ChainEnds& ends = {}) {
   const auto chain = parse_urdf(text, "arm.urdf", ends);
   return chain ? "(accepted)" : chain.error().what;
 }

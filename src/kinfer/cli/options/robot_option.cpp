@@ -7,9 +7,11 @@ void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& na
                       Requirement need) {
   add_text(verb, name, option.path, help, need, "FILE");
   begin_group(verb, "Robot file");
-  add_text(verb, "--base-link", option.base_link, "Link of a URDF file where the chain begins (default: its root)");
-  add_text(verb, "--tip-link", option.tip_link,
-           "Link of a URDF file where the chain ends (default: its longest arm's)");
+  add_text(verb, "--base-link", option.base_link,
+           "Link of a URDF file or body of an MJCF file where the chain begins (default: its root, the world)");
+  add_text(
+      verb, "--tip-link", option.tip_link,
+      "Link of a URDF file, body or site of an MJCF file where the chain ends (default: the end of its longest arm)");
   begin_group(verb, "Options");
 }
 

@@ -11,7 +11,7 @@ namespace kinfer::cli {
 
 Result<void> check_offsets(bool given, const RobotModel& robot) {
   if (!given || robot.source) return {};
-  return error("--offsets has no effect here: only a URDF file is written back with calibrated origins");
+  return error("--offsets has no effect here: only a URDF or MJCF file is written back");
 }
 
 std::optional<ModelPatch> write_model_patch(OutputFolder& folder, const RobotModel& robot,

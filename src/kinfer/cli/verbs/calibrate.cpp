@@ -279,9 +279,10 @@ Verb add_calibrate(CLI::App& app) {
       *verb, "--refit", options->refit, {"offsets"},
       "offsets: after a knock or a motor change, with few poses: only joint offsets, base and tool are found anew; "
       "all else stays as the earlier calibration (--warm-start) found it");
-  add_choice(*verb, "--offsets", options->offsets, {"folded", "separate"},
-             "Encoder offsets in the URDF file that is written back: folded into the origins, for joint positions as "
-             "the controller reports them; or separate, for a controller whose zeros are corrected");
+  add_choice(
+      *verb, "--offsets", options->offsets, {"folded", "separate"},
+      "Encoder offsets in the URDF or MJCF file that is written back: folded into the origins, for joint positions as "
+      "the controller reports them; or separate, for a controller whose zeros are corrected");
   begin_group(*verb, "Validation");
   add_text(*verb, "--holdout", options->holdout,
            "Rows that are never fitted: a fraction (0.2), or a further pose set (default: 5-fold cross-validation)");

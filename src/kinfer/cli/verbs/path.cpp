@@ -149,7 +149,7 @@ Verb add_path(CLI::App& app) {
       "path.csv\n"
       "  kinfer path --chain robot.toml --targets targets.csv --tool-speed 100 -o path.csv");
   auto options = std::make_shared<PathArguments>();
-  add_robot_option(*verb, options->chain, "--chain", "Chain: chain.toml, a robot TOML, or URDF");
+  add_robot_option(*verb, options->chain, "--chain", "Chain: chain.toml, a robot TOML, URDF or MJCF");
   add_text(*verb, "--from", options->from, "First posture", Requirement::optional, "LIST");
   add_texts(*verb, "--via", options->via, "Postures between, in order", Requirement::optional, "LIST");
   add_text(*verb, "--to", options->to, "Last posture", Requirement::optional, "LIST");

@@ -105,7 +105,7 @@ Verb add_reach(CLI::App& app) {
       "  kinfer reach --chain robot.toml --targets targets.csv --postures all\n"
       "  kinfer reach --chain robot.urdf --targets path.csv --sequence --prefer 0,-90,90,0,45,0");
   auto options = std::make_shared<ReachArguments>();
-  add_robot_option(*verb, options->chain, "--chain", "Chain: chain.toml, a robot TOML, or URDF");
+  add_robot_option(*verb, options->chain, "--chain", "Chain: chain.toml, a robot TOML, URDF or MJCF");
   add_text(*verb, "--targets", options->targets,
            "Wanted tool points and orientations; joint columns q1.. are the preferred postures", Requirement::required,
            "CSV");

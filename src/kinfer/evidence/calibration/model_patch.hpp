@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinfer/geometry/rotation.hpp"
@@ -10,16 +11,23 @@
 
 namespace kinfer {
 
+/// Formats of robot files that are written back.
+enum class RobotFileFormat { urdf, mjcf };
+constexpr std::string_view name(RobotFileFormat format) {
+  return format == RobotFileFormat::urdf ? "URDF" : "MJCF";
+}
+
 /// Where the change of each joint's zero position goes.
 enum class EncoderOffsets {
   folded,    ///< into the origin: the file predicts poses from joint positions as the controller reports them
   separate,  ///< not into the origin: joint positions must have the offsets added first
 };
 
-/// The origin of one joint before and after.
+/// The place of one joint before and after: its origin in a URDF; in an MJCF its body's pose, or, where further joints
+/// of the same body follow, its own point and axis.
 struct OriginChange {
   std::string joint;
-  int line = 0;                         ///< of the joint in the file, from 1
+  int line = 0;                         ///< of the element that changed, from 1
   Vec3 translation = Vec3::Zero();      ///< [m] new minus old position, in the frame of the parent link
   Vec3 rotation_vector = Vec3::Zero();  ///< [rad] from the old to the new orientation, in the joint's frame
   double offset = 0.0;                  ///< [rad] or [m] to be added to the joint position; 0 where folded
@@ -29,6 +37,7 @@ struct OriginChange {
 
 struct ModelPatch {
   std::string file;  ///< name of the file that was written
+  RobotFileFormat format = RobotFileFormat::urdf;
   EncoderOffsets offsets = EncoderOffsets::folded;
   std::vector<OriginChange> changes;            ///< in the order of the file
   std::vector<NonGeometricDifference> omitted;  ///< what the file's format cannot hold

@@ -6,6 +6,7 @@
 
 #include "kinfer/io/robot/mjcf.hpp"
 #include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/text/xml_positions.hpp"
 
 namespace kinfer {
 namespace {
@@ -22,6 +23,35 @@ std::string join_alternatives(const std::vector<std::string_view>& names) {
   return text;
 }
 
+RobotSource source_of(RobotFileFormat format, const std::string& text, const std::string& name, const ChainEnds& ends) {
+  return {format, std::filesystem::path(name).filename().string(), text, ends};
+}
+
+/// "<robot> (URDF) or <mujoco> (MJCF)"
+std::string readable_root_elements() {
+  std::vector<std::string> names;
+  for (const ModelFormat& format : model_formats())
+    if (format.parse && !format.root_element.empty())
+      names.push_back(fmt::format("<{}> ({})", format.root_element, format.name));
+  return join_alternatives({names.begin(), names.end()});
+}
+
+/// XML by its outermost element, other text by the extension; unknown extensions are the first format.
+Result<const ModelFormat*> format_of(const std::filesystem::path& path, const std::string& text) {
+  const std::string extension = path.extension().string();
+  const std::string_view root = xml_root_name(text);
+  std::vector<const ModelFormat*> candidates;
+  for (const ModelFormat& format : model_formats()) {
+    if (!format.parse) continue;
+    if (!root.empty() && format.root_element == root) return &format;
+    if (contains(format.read_extensions, extension)) candidates.push_back(&format);
+  }
+  if (!root.empty() && candidates.size() > 1)
+    return error("{}:{}: expected {}, found <{}>", path.string(), 1 + std::count(text.data(), root.data(), '\n'),
+                 readable_root_elements(), root);
+  return candidates.empty() ? &model_formats().front() : candidates.front();
+}
+
 }  // namespace
 
 std::span<const ModelFormat> model_formats() {
@@ -31,23 +61,33 @@ std::span<const ModelFormat> model_formats() {
           .read_extensions = {".toml"},
           .write_extensions = {".toml"},
           .parse = [](const std::string& text, const std::string& name,
-                      const UrdfEnds&) { return parse_robot_toml(text, name); },
+                      const ChainEnds&) { return parse_robot_toml(text, name); },
           .format = [](const RobotModel& robot, const StandardDeviations& sd) { return format_robot_toml(robot, sd); }},
       ModelFormat{
           .name = "URDF",
           .read_extensions = {".urdf", ".xml"},
           .write_extensions = {".urdf"},
-          .parse = [](const std::string& text, const std::string& name, const UrdfEnds& ends) -> Result<RobotModel> {
+          .root_element = "robot",
+          .parse = [](const std::string& text, const std::string& name, const ChainEnds& ends) -> Result<RobotModel> {
             KINFER_TRY(chain, parse_urdf(text, name, ends));
             RobotModel robot;
             robot.chain = std::move(chain);
-            robot.source = {std::filesystem::path(name).filename().string(), text, ends.base_link, ends.tip_link};
+            robot.source = source_of(RobotFileFormat::urdf, text, name, ends);
             return robot;
           },
           .format = [](const RobotModel& robot, const StandardDeviations&) { return format_urdf(robot.chain); }},
       ModelFormat{
           .name = "MJCF",
+          .read_extensions = {".mjcf", ".xml"},
           .write_extensions = {".mjcf", ".xml"},
+          .root_element = "mujoco",
+          .parse = [](const std::string& text, const std::string& name, const ChainEnds& ends) -> Result<RobotModel> {
+            KINFER_TRY(chain, parse_mjcf(text, name, ends));
+            RobotModel robot;
+            robot.chain = std::move(chain);
+            robot.source = source_of(RobotFileFormat::mjcf, text, name, ends);
+            return robot;
+          },
           .format = [](const RobotModel& robot, const StandardDeviations&) { return format_mjcf(robot.chain); }},
   };
   return formats;
@@ -67,23 +107,14 @@ std::string writable_model_extensions() {
   return join_alternatives(names);
 }
 
-Result<RobotModel> read_robot_model(const std::filesystem::path& path, const UrdfEnds& ends) {
+Result<RobotModel> read_robot_model(const std::filesystem::path& path, const ChainEnds& ends) {
   const std::string extension = path.extension().string();
   if (extension == ".xacro")
     return error("{}: xacro files must be expanded first: xacro {} > robot.urdf", path.string(),
                  path.filename().string());
-  const ModelFormat* chosen = &model_formats().front();
-  for (const ModelFormat& format : model_formats()) {
-    if (format.parse && contains(format.read_extensions, extension)) {
-      chosen = &format;
-      break;
-    }
-    if (!format.parse && contains(format.write_extensions, extension))
-      return error("{}: {} files are written, not read; expected {}", path.string(), format.name,
-                   readable_model_formats());
-  }
   KINFER_TRY(text, read_text_file(path));
-  return chosen->parse(text, path.string(), ends);
+  KINFER_TRY(format, format_of(path, text));
+  return format->parse(text, path.string(), ends);
 }
 
 Result<void> write_robot_model(const std::filesystem::path& path, const RobotModel& robot,

@@ -9,18 +9,21 @@
 #include <vector>
 
 #include "kinfer/base/result.hpp"
+#include "kinfer/evidence/calibration/model_patch.hpp"
 #include "kinfer/evidence/calibration/prediction_model.hpp"
+#include "kinfer/io/robot/chain_ends.hpp"
 #include "kinfer/io/text/units.hpp"
 #include "kinfer/kinematics/parameters.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer {
 
-/// The text of a robot file that can be written back with other numbers: URDF.
+/// The text of a robot file that can be written back with other numbers: URDF or MJCF.
 struct RobotSource {
-  std::string name;                 ///< of the file, without its folder
-  std::string text;                 ///< its bytes
-  std::string base_link, tip_link;  ///< ends of the chain as they were chosen; empty: found
+  RobotFileFormat format = RobotFileFormat::urdf;
+  std::string name;  ///< of the file, without its folder
+  std::string text;  ///< its bytes
+  ChainEnds ends;    ///< as they were chosen
 };
 
 /// The contents of a robot file.

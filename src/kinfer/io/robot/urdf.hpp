@@ -9,19 +9,14 @@
 #include <string>
 
 #include "kinfer/base/result.hpp"
+#include "kinfer/io/robot/chain_ends.hpp"
 #include "kinfer/kinematics/chain.hpp"
 
 namespace kinfer {
 
-struct UrdfEnds {
-  std::string base_link;  ///< empty: the root link
-  std::string tip_link;   ///< empty: the only leaf, or the leaf at the end of the longest path of moving joints (first
-                          ///< in file order)
-};
-
 /// The joints from the base link to the tip link, fixed ones included; mimic joints become couplings.
-Result<Chain> read_urdf(const std::filesystem::path& path, const UrdfEnds& ends = {});
-Result<Chain> parse_urdf(const std::string& text, const std::string& name_in_messages, const UrdfEnds& ends = {});
+Result<Chain> read_urdf(const std::filesystem::path& path, const ChainEnds& ends = {});
+Result<Chain> parse_urdf(const std::string& text, const std::string& name_in_messages, const ChainEnds& ends = {});
 
 /// URDF text with links "world", "base", one link per joint, "tool", and each target as a fixed link.
 std::string format_urdf(const Chain& chain);

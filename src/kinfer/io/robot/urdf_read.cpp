@@ -98,7 +98,7 @@ class ChainBuilder {
   ChainBuilder(const UrdfTree& tree, const urdf::ModelInterface& model, const std::string& file)
       : tree_(tree), model_(model), file_(file) {}
 
-  Result<Chain> build(const UrdfEnds& ends) {
+  Result<Chain> build(const ChainEnds& ends) {
     KINFER_TRY(path, path_between(ends));
     if (path.empty()) return error("{}: base link and tip link are the same, expected joints between them", file_);
     for (const UrdfTree::Edge* edge : path) add(*edge);
@@ -134,7 +134,7 @@ class ChainBuilder {
 
   bool moves(const UrdfTree::Edge& edge) const { return model_.getJoint(edge.joint)->type != urdf::Joint::FIXED; }
 
-  Result<Path> path_between(const UrdfEnds& ends) const {
+  Result<Path> path_between(const ChainEnds& ends) const {
     const std::string base = ends.base_link.empty() ? tree_.root : ends.base_link;
     if (!tree_.has_link(base)) return error("{}: the base link \"{}\" does not exist", file_, base);
     if (ends.tip_link.empty()) return longest_path(base);
@@ -255,13 +255,13 @@ class ChainBuilder {
 
 }  // namespace
 
-Result<Chain> parse_urdf(const std::string& text, const std::string& name, const UrdfEnds& ends) {
+Result<Chain> parse_urdf(const std::string& text, const std::string& name, const ChainEnds& ends) {
   KINFER_TRY(tree, parse_urdf_tree(text, name));
   KINFER_TRY(model, parse_without_output(tree.kinematics, name));
   return ChainBuilder(tree, *model, name).build(ends);
 }
 
-Result<Chain> read_urdf(const std::filesystem::path& path, const UrdfEnds& ends) {
+Result<Chain> read_urdf(const std::filesystem::path& path, const ChainEnds& ends) {
   KINFER_TRY(text, read_text_file(path));
   return parse_urdf(text, path.string(), ends);
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "kinfer/io/robot/xml_errors.hpp"
 #include "kinfer/io/text/first_error.hpp"
 
 namespace kinfer {
@@ -13,15 +14,6 @@ namespace {
 
 using tinyxml2::XMLDocument;
 using tinyxml2::XMLElement;
-
-/// "XML_ERROR_MISMATCHED_ELEMENT" -> "mismatched element"
-std::string readable_error_name(std::string name) {
-  const std::string prefix = "XML_ERROR_";
-  if (name.rfind(prefix, 0) == 0) name.erase(0, prefix.size());
-  if (name == "PARSING") return "an element does not end";
-  for (char& c : name) c = c == '_' ? ' ' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return name;
-}
 
 std::string attribute(const XMLElement* element, const char* name) {
   const char* text = element ? element->Attribute(name) : nullptr;
@@ -154,8 +146,7 @@ bool UrdfTree::is_leaf(std::string_view link) const {
 
 Result<UrdfTree> parse_urdf_tree(std::string_view text, const std::string& name) {
   XMLDocument document;
-  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-    return error("{}:{}: malformed XML ({})", name, document.ErrorLineNum(), readable_error_name(document.ErrorName()));
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) return malformed_xml(document, name);
   const XMLElement* robot = document.RootElement();
   if (!robot || std::string_view(robot->Name()) != "robot")
     return error("{}:{}: expected <robot> as the outermost element, found <{}>", name, robot ? robot->GetLineNum() : 1,

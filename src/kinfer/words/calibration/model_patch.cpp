@@ -28,35 +28,43 @@ std::string_view noun(NonGeometricKind kind) {
   return "";
 }
 
-std::string omission(const NonGeometricDifference& difference) {
+/// Why a robot file cannot hold what is not geometry.
+std::string_view reason(RobotFileFormat format) {
+  return format == RobotFileFormat::urdf ? "as URDF cannot hold it" : "as poses of bodies cannot hold it";
+}
+
+std::string omission(const NonGeometricDifference& difference, RobotFileFormat format) {
   if (difference.depends_on_load)
-    return phrase(name(difference.kind), "left out, as URDF cannot hold it: {}; its size depends on {}",
+    return phrase(name(difference.kind), "left out, {}: {}; its size depends on {}", reason(format),
                   noun(difference.kind),
                   difference.kind == NonGeometricKind::expansion ? "the temperature" : "the torques");
   return phrase(name(difference.kind),
-                "left out, as URDF cannot hold it: {} ({} joint{}), which moves the tool by {:.3f} mm rms and at most "
+                "left out, {}: {} ({} joint{}), which moves the tool by {:.3f} mm rms and at most "
                 "{:.3f} mm over the measured poses",
-                noun(difference.kind), difference.joints, difference.joints == 1 ? "" : "s", 1e3 * difference.rms,
-                1e3 * difference.max);
+                reason(format), noun(difference.kind), difference.joints, difference.joints == 1 ? "" : "s",
+                1e3 * difference.rms, 1e3 * difference.max);
 }
 
 }  // namespace
 
 std::string headline(const ModelPatch& patch) {
   const auto inserted = std::ranges::count_if(patch.changes, &OriginChange::inserted);
-  return phrase("model_patch", "{} is your file with the origins of {} joint{} changed{} and every other byte kept.",
-                patch.file, patch.changes.size(), patch.changes.size() == 1 ? "" : "s",
-                inserted ? fmt::format(" ({} added)", inserted) : "");
+  return phrase("model_patch", "{} is your file with the {} of {} joint{} changed{} and every other byte kept.",
+                patch.file, patch.format == RobotFileFormat::urdf ? "origins" : "frames", patch.changes.size(),
+                patch.changes.size() == 1 ? "" : "s", inserted ? fmt::format(" ({} added)", inserted) : "");
 }
 
 std::vector<std::string> remarks(const ModelPatch& patch) {
   std::vector<std::string> sentences;
   if (patch.offsets == EncoderOffsets::separate)
     sentences.push_back(phrase("offsets_separate",
-                               "encoder offsets are not in the origins: add those of joint_origins.yaml to the joint "
-                               "positions, or to the zeros of the controller"));
+                               "encoder offsets are not in the {}: add those of {} to the joint positions, or to the "
+                               "zeros of the controller",
+                               patch.format == RobotFileFormat::urdf ? "origins" : "frames",
+                               patch.format == RobotFileFormat::urdf ? "joint_origins.yaml" : "joint_offsets.yaml"));
   sentences.push_back(phrase("placement", "base and tool are in placement.toml, not in the robot's model"));
-  for (const NonGeometricDifference& difference : patch.omitted) sentences.push_back(omission(difference));
+  for (const NonGeometricDifference& difference : patch.omitted)
+    sentences.push_back(omission(difference, patch.format));
   if (patch.omitted.size() > 1)
     sentences.push_back(phrase("omitted_together", "all that is left out: {:.3f} mm rms, at most {:.3f} mm",
                                1e3 * patch.omitted_rms, 1e3 * patch.omitted_max));

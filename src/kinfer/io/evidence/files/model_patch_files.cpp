@@ -7,7 +7,9 @@
 #include <filesystem>
 
 #include "kinfer/base/constants.hpp"
+#include "kinfer/io/robot/mjcf.hpp"
 #include "kinfer/io/robot/patch/joint_origins_yaml.hpp"
+#include "kinfer/io/robot/patch/mjcf_patch.hpp"
 #include "kinfer/io/robot/patch/placement_toml.hpp"
 #include "kinfer/io/robot/patch/urdf_patch.hpp"
 #include "kinfer/io/robot/urdf.hpp"
@@ -57,6 +59,45 @@ ChainEnds chain_ends(const Chain& chain, const UrdfJointPositions& joints) {
   return {first ? first->parent_link : "", last ? last->child_link : ""};
 }
 
+/// What was written, as it reads.
+struct WrittenFile {
+  PatchedText patched;
+  Chain chain;
+  ChainEnds ends;
+  std::optional<UrdfJointPositions> urdf_joints{};
+};
+
+Result<WrittenFile> patch_urdf_file(const RobotSource& source, const Chain& corrected,
+                                    const std::vector<CalibratedOrigin>& origins) {
+  KINFER_TRY(patched, patch_urdf(source.text, source.name, origins));
+  KINFER_TRY(joints, locate_urdf_joints(patched.text, source.name));
+  KINFER_TRY(chain, parse_urdf(patched.text, source.name, source.ends));
+  const ChainEnds ends = chain_ends(corrected, joints);
+  return WrittenFile{std::move(patched), std::move(chain), ends, std::move(joints)};
+}
+
+Result<WrittenFile> patch_mjcf_file(const RobotSource& source, const std::vector<CalibratedOrigin>& origins) {
+  KINFER_TRY(tree, parse_mjcf_tree(source.text, source.name));
+  KINFER_TRY(ends, mjcf_ends(tree, source.name, source.ends));
+  KINFER_TRY(patched, patch_mjcf(source.text, source.name, ends, origins));
+  KINFER_TRY(chain, parse_mjcf(patched.text, source.name, ends));
+  return WrittenFile{std::move(patched), std::move(chain), std::move(ends)};
+}
+
+/// Numbers for those who generate their robot file.
+std::vector<OutputFile> joint_tables(const WrittenFile& file, const ModelPatch& patch) {
+  std::vector<OutputFile> files;
+  if (!file.urdf_joints) {
+    if (patch.offsets == EncoderOffsets::separate)
+      files.push_back({"joint_offsets.yaml", format_joint_offsets_yaml(patch)});
+    return files;
+  }
+  files.push_back({"joint_origins.yaml", format_joint_origins_yaml(*file.urdf_joints, patch)});
+  if (auto kinematics = format_kinematics_yaml(*file.urdf_joints))
+    files.push_back({"kinematics.yaml", std::move(*kinematics)});
+  return files;
+}
+
 std::string calibrated_name(const std::string& name) {
   const std::filesystem::path path(name);
   return path.stem().string() + "_calibrated" + path.extension().string();
@@ -68,31 +109,28 @@ Result<PatchedModel> patch_model(const RobotModel& robot, const Calibration& cal
   const RobotSource& source = robot.source.value();
   const Chain corrected = corrected_chain(calibration);
   KINFER_TRY(origins, calibrated_origins(robot.chain, corrected, offsets));
-  KINFER_TRY(patched, patch_urdf(source.text, source.name, origins));
-  KINFER_TRY(joints, locate_urdf_joints(patched.text, source.name));
+  KINFER_TRY(file, source.format == RobotFileFormat::urdf ? patch_urdf_file(source, corrected, origins)
+                                                          : patch_mjcf_file(source, origins));
   const MatrixXd positions = evaluated_positions(calibration, corrected);
   const GeometricPart geometric = geometric_part(corrected, robot.chain, positions);
-
-  KINFER_TRY(written, parse_urdf(patched.text, source.name, {source.base_link, source.tip_link}));
-  written.base = corrected.base, written.tool = corrected.tool;
-  if (auto same = expect_same_poses(written, geometric.chain, positions, origins); !same)
+  file.chain.base = corrected.base, file.chain.tool = corrected.tool;
+  if (auto same = expect_same_poses(file.chain, geometric.chain, positions, origins); !same)
     return forward_error(same.error());
 
   PatchedModel model;
   model.patch = {.file = calibrated_name(source.name),
+                 .format = source.format,
                  .offsets = offsets,
-                 .changes = std::move(patched.changes),
+                 .changes = std::move(file.patched.changes),
                  .omitted = geometric.differences,
                  .omitted_rms = geometric.rms,
                  .omitted_max = geometric.max};
   StandardDeviations sd;
   for (const ParameterEstimate& p : calibration.estimate.values) sd[p.name] = p.sd;
-  model.files = {{model.patch.file, std::move(patched.text)},
-                 {"joint_origins.yaml", format_joint_origins_yaml(joints, model.patch)},
+  model.files = {{model.patch.file, std::move(file.patched.text)},
                  {"model_changes.csv", format_model_changes_csv(model.patch)},
-                 {"placement.toml", format_placement_toml(corrected, chain_ends(corrected, joints), sd)}};
-  if (auto kinematics = format_kinematics_yaml(joints))
-    model.files.push_back({"kinematics.yaml", std::move(*kinematics)});
+                 {"placement.toml", format_placement_toml(corrected, file.ends, sd)}};
+  for (OutputFile& table : joint_tables(file, model.patch)) model.files.push_back(std::move(table));
   return model;
 }
 

@@ -11,8 +11,9 @@ namespace kinfer {
 
 struct PatchedModel {
   ModelPatch patch;
-  std::vector<OutputFile> files;  ///< the robot file under the name NAME_calibrated.urdf, joint_origins.yaml,
-                                  ///< kinematics.yaml (UR, Franka), placement.toml
+  std::vector<OutputFile> files;  ///< the robot file under the name NAME_calibrated.urdf, model_changes.csv,
+                                  ///< placement.toml; of a URDF joint_origins.yaml and kinematics.yaml (UR, Franka),
+                                  ///< of an MJCF with separate offsets joint_offsets.yaml
 };
 
 /// `robot`: as read, with its source. An error where the file cannot be changed in place, where the calibrated chain is

@@ -85,8 +85,12 @@ std::string format_joint_origins_yaml(const UrdfJointPositions& joints, const Mo
   for (const UrdfJointPosition& joint : joints.joints)
     if (!joint.is_fixed) text += fmt::format("  {}:\n{}", yaml_key(joint.name), six_numbers(joint, "    "));
   if (patch.offsets == EncoderOffsets::folded) return text;
-  text +=
-      "\n# To be added to the joint positions of the controller [rad, m]; not part of the origins.\njoint_offsets:\n";
+  return text + "\n" + format_joint_offsets_yaml(patch);
+}
+
+std::string format_joint_offsets_yaml(const ModelPatch& patch) {
+  std::string text =
+      "# To be added to the joint positions of the controller [rad, m]; not part of the origins.\njoint_offsets:\n";
   for (const OriginChange& change : patch.changes)
     text += fmt::format("  {}: {}\n", yaml_key(change.joint), format_number(change.offset));
   return text;

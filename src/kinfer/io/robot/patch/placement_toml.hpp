@@ -4,14 +4,10 @@
 
 #include <string>
 
+#include "kinfer/io/robot/chain_ends.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 
 namespace kinfer {
-
-/// Links of the file between which the chain lies.
-struct ChainEnds {
-  std::string base_link, tip_link;
-};
 
 /// Base, tool, further mountings and targets of the chain as poses of links [m, rad], with standard deviations.
 std::string format_placement_toml(const Chain& chain, const ChainEnds& ends, const StandardDeviations& sd);

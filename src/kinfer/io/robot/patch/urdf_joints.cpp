@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "kinfer/io/robot/patch/xml_edits.hpp"
+
 namespace kinfer {
 namespace {
 
@@ -14,18 +16,6 @@ using Positions = std::vector<XmlElementPosition>;
 std::string text_of(const tinyxml2::XMLElement* element, const char* key) {
   const char* text = element ? element->Attribute(key) : nullptr;
   return text ? text : "";
-}
-
-/// tinyxml2 decodes entities and line ends in values; where a value has neither, it is its bytes.
-bool agrees(std::string_view text, const XmlElementPosition& position, const tinyxml2::XMLElement& element) {
-  std::size_t count = 0;
-  for (const auto* attribute = element.FirstAttribute(); attribute; attribute = attribute->Next(), ++count) {
-    const XmlAttributePosition* place = position.attribute(attribute->Name());
-    if (!place) return false;
-    const std::string_view bytes = text.substr(place->begin, place->end - place->begin);
-    if (bytes.find_first_of("&\r\n\t") == std::string_view::npos && bytes != attribute->Value()) return false;
-  }
-  return count == position.attributes.size() && position.name == element.Name();
 }
 
 Vec3 three_numbers(const std::string& text) {
@@ -57,11 +47,11 @@ class UrdfJointLocator {
   /// None where text and tree disagree.
   std::optional<UrdfJointPositions> locate(const tinyxml2::XMLElement& robot) {
     UrdfJointPositions result{.robot_name = text_of(&robot, "name"), .joints = {}};
-    if (positions_.empty() || !agrees(text_, positions_.front(), robot)) return std::nullopt;
+    if (positions_.empty() || !corresponds(text_, positions_.front(), robot)) return std::nullopt;
     const auto* element = robot.FirstChildElement("joint");
     for (const int index : children(positions_, 0)) {
       if (positions_[index].name != "joint") continue;
-      if (!element || !agrees(text_, positions_[index], *element)) return std::nullopt;
+      if (!element || !corresponds(text_, positions_[index], *element)) return std::nullopt;
       auto joint = locate_joint(*element, index);
       if (!joint) return std::nullopt;
       result.joints.push_back(std::move(*joint));
@@ -85,7 +75,7 @@ class UrdfJointLocator {
     const int place = child_named(positions_, inside, "origin");
     if ((origin == nullptr) != (place < 0)) return std::nullopt;
     if (!origin) return joint;
-    if (!agrees(text_, positions_[place], *origin)) return std::nullopt;
+    if (!corresponds(text_, positions_[place], *origin)) return std::nullopt;
     joint.origin = positions_[place];
     joint.xyz = three_numbers(text_of(origin, "xyz"));
     joint.rpy = three_numbers(text_of(origin, "rpy"));

@@ -8,7 +8,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/geometry/pose.hpp"
-#include "kinfer/io/robot/patch/xml_positions.hpp"
+#include "kinfer/io/text/xml_positions.hpp"
 
 namespace kinfer {
 

@@ -8,13 +8,9 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/io/robot/patch/calibrated_origins.hpp"
+#include "kinfer/io/robot/patch/xml_edits.hpp"
 
 namespace kinfer {
-
-struct PatchedText {
-  std::string text;
-  std::vector<OriginChange> changes;  ///< in the order of the file; joints that keep their origin are absent
-};
 
 /// Changes the values of xyz and rpy, and adds them, or the whole <origin>, where the file has none, in the style of
 /// the elements beside. Numbers are written such that they read back to the same bits.

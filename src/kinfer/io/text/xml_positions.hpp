@@ -36,4 +36,8 @@ struct XmlElementPosition {
 /// where start and end tags do not match, or a quote or bracket is not closed.
 std::optional<std::vector<XmlElementPosition>> xml_positions(std::string_view text);
 
+/// Name of the outermost element, "robot", as a part of the text; empty where the text does not begin with markup, or
+/// holds no element.
+std::string_view xml_root_name(std::string_view text);
+
 }  // namespace kinfer

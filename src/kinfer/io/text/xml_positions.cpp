@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/patch/xml_positions.hpp"
+#include "kinfer/io/text/xml_positions.hpp"
 
 namespace kinfer {
 namespace {
@@ -16,6 +16,13 @@ class XmlScanner {
       if (!read_markup()) return std::nullopt;
     if (!open_.empty()) return std::nullopt;
     return std::move(elements_);
+  }
+
+  /// Up to the start tag of the first element.
+  std::string_view scan_root_name() {
+    while (elements_.empty() && (at_ = text_.find('<', at_)) != std::string_view::npos)
+      if (!read_markup()) return {};
+    return elements_.empty() ? std::string_view{} : elements_.front().name;
   }
 
  private:
@@ -106,6 +113,13 @@ const XmlAttributePosition* XmlElementPosition::attribute(std::string_view key) 
 
 std::optional<std::vector<XmlElementPosition>> xml_positions(std::string_view text) {
   return XmlScanner(text).scan();
+}
+
+std::string_view xml_root_name(std::string_view text) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  const std::size_t first = text.find_first_not_of(xml_space, text.starts_with(byte_order_mark) ? 3 : 0);
+  if (first == std::string_view::npos || text[first] != '<') return {};
+  return XmlScanner(text).scan_root_name();
 }
 
 }  // namespace kinfer
