@@ -4,11 +4,14 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
+#include "kinfer/io/robot/mjcf.hpp"
+#include "kinfer/io/robot/patch/mjcf_patch.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/io/text/csv.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
+#include "support/mjcf_samples.hpp"
 
 namespace kinfer {
 namespace {
@@ -55,6 +58,24 @@ int refusals(const std::string& good, Read read) {
   return refused;
 }
 
+/// Every joint moved by a millimetre; the file that is written back has the tool there.
+void expect_written_back(const std::string& text, const Chain& in_file) {
+  Chain moved = in_file;
+  for (Joint& joint : moved.joints)
+    if (has_position(joint.type)) std::get<UrdfLink>(joint.link).origin.xyz.x() += 1e-3;
+  const auto origins = calibrated_origins(in_file, moved, EncoderOffsets::folded);
+  ASSERT_TRUE(origins.has_value()) << origins.error().what;
+  const auto ends = mjcf_ends(parse_mjcf_tree(text, "file").value(), "file", {});
+  const auto patched = patch_mjcf(text, "file", ends.value(), *origins);
+  if (!patched) return;  // XML that tinyxml2 takes and our scanner does not
+  const auto written = parse_mjcf(patched->text, "file", ends.value());
+  ASSERT_TRUE(written.has_value()) << written.error().what << "\n" << text << "\n" << patched->text;
+  const VectorXd q = VectorXd::Constant(dof(moved), 0.3);
+  const Pose expected = forward(moved, q), found = forward(*written, q);
+  const double size = 1.0 + expected.position.norm();
+  EXPECT_LT((expected.position - found.position).norm(), 1e-9 * size) << text;
+}
+
 TEST(Mutations, APoseSetIsReadOrRefused) {
   const Chain chain = laws::scara();
   const std::string good =
@@ -92,6 +113,16 @@ TEST(Mutations, AUrdfIsReadOrRefusedAndWhatIsReadCanMove) {
   const int refused = refusals(format_urdf(laws::coupled()), [](const std::string& text) {
     auto chain = parse_urdf(text, "file");
     if (chain) forward(*chain, VectorXd(VectorXd::Zero(dof(*chain))));
+    return chain;
+  });
+  EXPECT_GT(refused, trials / 4);
+  EXPECT_LT(refused, trials);
+}
+
+TEST(Mutations, AnMjcfIsReadOrRefusedAndWhatIsReadIsWrittenBackWithTheSamePoses) {
+  const int refused = refusals(test::awkward_mjcf(), [](const std::string& text) {
+    auto chain = parse_mjcf(text, "file");
+    if (chain) expect_written_back(text, *chain);
     return chain;
   });
   EXPECT_GT(refused, trials / 4);

@@ -60,6 +60,8 @@ print(f"import kinfer {kinfer.__version__}: {1e3 * (time.perf_counter() - start)
 PYTHON
 (cd /root && KINFER_SOURCE_DIR=/usr/share/doc/kinfer python3 /usr/share/doc/kinfer/examples/python/calibrate_from_arrays.py >/dev/null)
 
+for page in index.html docs/users/first-steps.html site.css search_index.js; do test -s "/usr/share/doc/kinfer/html/$page"; done
+
 echo "== purge"
 apt-get purge -y -q kinfer libkinfer-dev python3-kinfer kinfer-doc >/dev/null 2>&1
 apt-get autoremove --purge -y -q >/dev/null 2>&1

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "kinfer/base/constants.hpp"
+#include "kinfer/base/angle.hpp"
 #include "kinfer/geometry/rotation.hpp"
 
 namespace kinfer {

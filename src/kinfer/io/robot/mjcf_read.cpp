@@ -31,8 +31,11 @@ std::optional<std::vector<int>> bodies_down(const MjcfTree& tree, int base, int 
 struct PathMeasure {
   bool is_possible = true;
   int moving = 0;
-  auto operator<=>(const PathMeasure&) const = default;
 };
+
+bool is_better(const PathMeasure& a, const PathMeasure& b) {
+  return a.is_possible != b.is_possible ? a.is_possible : a.moving > b.moving;
+}
 
 PathMeasure measure_path(const MjcfTree& tree, const std::vector<int>& path) {
   PathMeasure measure;
@@ -55,7 +58,7 @@ int longest_leaf(const MjcfTree& tree, int base) {
     if (!path || path->empty()) continue;
     PathMeasure measure = measure_path(tree, *path);
     if (measure.moving == 0) measure.is_possible = false;  // a fixed thing beside a robot that cannot be held
-    if (measure > most) most = measure, leaf = b;
+    if (is_better(measure, most)) most = measure, leaf = b;
   }
   return leaf;
 }
