@@ -15,9 +15,10 @@ option(KINFER_HARDENED "Checks of the standard library, the stack and buffers in
 add_library(kinfer_hardening INTERFACE)  # of optimised code: fortified functions are inline functions
 if(KINFER_HARDENED AND NOT KINFER_SANITIZE AND NOT KINFER_SANITIZE_THREADS AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
   add_compile_definitions(_GLIBCXX_ASSERTIONS)
-  add_compile_options(-fstack-protector-strong)
-  if(NOT KINFER_PACKAGE)  # which has Debian's flags; these would take another 2 % of the program
-    add_compile_options(-fstack-clash-protection)
+  if(KINFER_PACKAGE)  # small: the stack is guarded where there are arrays of characters, not where a vector of three numbers lies
+    add_compile_options(-fstack-protector)
+  else()
+    add_compile_options(-fstack-protector-strong -fstack-clash-protection)
     if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
       add_compile_options(-fcf-protection)
     endif()
@@ -57,6 +58,7 @@ endif()
 if(KINFER_PACKAGE)
   # Each function is a section of its own, so that the linker can leave out what nobody calls.
   add_compile_options(-ffunction-sections -fdata-sections)
+  add_compile_options(-fno-asynchronous-unwind-tables)  # tables for exceptions alone
   add_compile_options(-include ${PROJECT_SOURCE_DIR}/cmake/short_assertions.hpp)
   add_compile_options(-ffile-prefix-map=${PROJECT_BINARY_DIR}=. -ffile-prefix-map=${PROJECT_SOURCE_DIR}=.)
 endif()
