@@ -67,14 +67,19 @@ UpdateDrive update_drive(const UpdateSetup& setup) {
   return {within(both, middle, 2.0 * middle + second.time.back()), machine_truth(after.machine(), second)};
 }
 
-void turn_sensor(InsRecording& recording, std::size_t sensor, double angle) {
+void turn_sensor(UpdateDrive& drive, std::size_t sensor, double angle) {
   const Mat3 turn = exp_so3(angle * Vec3(1.0, 1.0, 1.0).normalized());
-  for (TriadColumns* columns : {&recording.sensors[sensor].acceleration, &recording.sensors[sensor].angular_velocity})
-    for (std::size_t row = 0; row < recording.sensors[sensor].rows(); ++row) {
+  InsSensor& turned = drive.recording.sensors[sensor];
+  for (TriadColumns* columns : {&turned.acceleration, &turned.angular_velocity})
+    for (std::size_t row = 0; row < turned.rows(); ++row) {
       const Vec3 value = turn.transpose() * columns->at(row);
       for (std::size_t k = 0; k < 3; ++k)
         columns->axis[k][row] = static_cast<float>(value[static_cast<Eigen::Index>(k)]);
     }
+  for (JointTruth& joint : drive.truth.joints) {
+    if (joint.child == turned.name) joint.axis_in_child = turn.transpose() * joint.axis_in_child;
+    if (joint.parent == turned.name) joint.axis_in_parent = turn.transpose() * joint.axis_in_parent;
+  }
 }
 
 }  // namespace kinfer::study::update_study

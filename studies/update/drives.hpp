@@ -27,6 +27,6 @@ struct UpdateDrive {
 UpdateDrive update_drive(const UpdateSetup& setup);
 
 /// As if the sensor sat on its segment turned by an angle [rad].
-void turn_sensor(InsRecording& recording, std::size_t sensor, double angle);
+void turn_sensor(UpdateDrive& drive, std::size_t sensor, double angle);
 
 }  // namespace kinfer::study::update_study

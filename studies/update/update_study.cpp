@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chains updated by another drive of the same simulated machine: as it was, after a sensor was turned, after a pin was
 // moved, and by the log of another machine. `--machine NAME`, `--first N`, `--seeds N`, `--grade NAME`, `--cases
-// same,turned,pin,other`.
+// same,turned,pin,other`, `--parts on` for every joint's differences.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -22,6 +22,7 @@ constexpr double turned_by = 1.0 * degree, moved_by = 0.02;  // [rad], [m]
 struct Arguments {
   std::string machine = "excavator-general", grade = "industrial", cases = "same,turned,pin,other";
   int first_seed = 1, seeds = 1;
+  bool with_parts = false;
 };
 
 Arguments parse(int count, char** values) {
@@ -31,6 +32,7 @@ Arguments parse(int count, char** values) {
     if (key == "--machine") a.machine = value;
     if (key == "--grade") a.grade = value;
     if (key == "--cases") a.cases = value;
+    if (key == "--parts") a.with_parts = value == "on";
     if (key == "--first") a.first_seed = std::atoi(values[i + 1]);
     if (key == "--seeds") a.seeds = std::atoi(values[i + 1]);
   }
@@ -41,18 +43,24 @@ std::string size_text(const std::optional<ChangeSize>& size, double unit, const 
   return size ? fmt::format(" {:.3f} ± {:.3f} {}", size->value / unit, size->sd / unit, name) : "";
 }
 
-std::string text_of(const ChainUpdate& update) {
+std::string text_of(const ChainUpdate& update, bool with_parts) {
   std::string text = fmt::format("chi² {:.0f}/{}", update.squared_distance, update.freedom);
   for (const ChainChange& c : update.changes)
     text += fmt::format("; {} {} on {}{}{} (ln odds {:.0f})", name(c.kind), c.name, c.segment,
                         size_text(c.angle, degree, "deg"), size_text(c.distance, 1e-3, "mm"), c.log_odds);
+  if (with_parts)
+    for (const ChainPartComparison& part : update.parts)
+      text += fmt::format("\n    {} {} {} {:.3g} expected {:.3g}, chi² {:.1f}/{}", part.joint, part.sensor,
+                          name(part.quantity), part.difference, part.sd, part.squared_distance, part.freedom);
   return text + (update.is_other_machine ? "; another machine" : "");
 }
 
-/// Beside the fit of the log alone: standard deviations and squared errors of the axes in the child's frames.
+/// Of each revolute joint the standard deviation of its axis in the child's frame and the squared error over its
+/// variance, per degree of freedom; then the means.
 std::string score_text(const Identification& found, const MachineTruth& truth) {
   double squares = 0.0, sd = 0.0;
   int count = 0;
+  std::string each;
   for (const JointEstimate& joint : found.joints)
     for (const JointTruth& right : truth.joints) {
       if (right.parent != joint.parent || right.child != joint.child || joint.type != EstimatedJointType::revolute)
@@ -60,11 +68,14 @@ std::string score_text(const Identification& found, const MachineTruth& truth) {
       const double variance =
           joint.sd.axis_in_child[0] * joint.sd.axis_in_child[0] + joint.sd.axis_in_child[1] * joint.sd.axis_in_child[1];
       const double sense = joint.axis_in_child.dot(right.axis_in_child) < 0.0 ? -1.0 : 1.0;
-      squares += (sense * joint.axis_in_child - right.axis_in_child).squaredNorm() / variance;
+      const double square = (sense * joint.axis_in_child - right.axis_in_child).squaredNorm() / variance;
+      each += fmt::format(" {:.1f}", square);
+      squares += square;
       sd += std::sqrt(variance);
       ++count;
     }
-  return fmt::format("axes sd {:.3f} mrad, squared error over variance {:.2f}", 1e3 * sd / count, squares / count);
+  return fmt::format("axes sd {:.3f} mrad, squared error over variance{}, mean {:.2f}", 1e3 * sd / count, each,
+                     squares / count);
 }
 
 void print(const Arguments& a, int seed, const char* what, const Result<Identification>& found,
@@ -73,7 +84,7 @@ void print(const Arguments& a, int seed, const char* what, const Result<Identifi
     fmt::print("{} {} {}: {}\n", a.machine, seed, what, found.error().what);
   else
     fmt::print("{} {} {}: {}; {}; {}\n", a.machine, seed, what, name(found->usability),
-               found->update ? text_of(*found->update) : "-", score_text(*found, truth));
+               found->update ? text_of(*found->update, a.with_parts) : "-", score_text(*found, truth));
   std::fflush(stdout);
 }
 
@@ -95,10 +106,14 @@ void run_seed(const Arguments& a, int seed) {
     change(setup);
     return update_drive(setup);
   };
-  if (has("same")) update("same", update_drive(again));
+  if (has("same")) {
+    const UpdateDrive drive = update_drive(again);
+    print(a, seed, "alone", identify::identify_machine(drive.recording, {.threads = 1}, Rng(1)), drive.truth);
+    update("same", drive);
+  }
   if (has("turned")) {
     UpdateDrive drive = update_drive(again);
-    turn_sensor(drive.recording, 1 + number % (drive.recording.sensors.size() - 1), turned_by);
+    turn_sensor(drive, 1 + number % (drive.recording.sensors.size() - 1), turned_by);
     update(fmt::format("turned {}", 1 + number % (drive.recording.sensors.size() - 1)).c_str(), drive);
   }
   if (has("pin"))

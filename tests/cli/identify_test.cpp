@@ -76,6 +76,36 @@ TEST_F(Identify, TheDefaultEngineReachesTheOptimumOfExhaustiveSearch) {
   EXPECT_LT(found["search"]["evaluations"].get<int>(), 5000);
 }
 
+TEST_F(Identify, AnUpdateSaysWhatChangedAndKeepsStructureAndNames) {
+  simulate();
+  ASSERT_EQ(kinfer("simulate excavator --out later --seed 2 --grade noise --quiet").code, 0);
+  ASSERT_EQ(kinfer("identify drive/imu.csv --out machine --quiet").code, 0);
+  const auto one = kinfer("identify --update machine later/imu.csv --out one --threads 1");
+  ASSERT_EQ(one.code, 0) << one.err;
+  EXPECT_THAT(one.out, HasSubstr("nothing changed since the last identification"));
+  ASSERT_EQ(kinfer("identify --update machine/chain.toml later/imu.csv --out seven --threads 7 --quiet").code, 0);
+  for (const char* name : {"chain.toml", "track.toml", "chain.urdf"})
+    EXPECT_EQ(slurp(in("one") / name), slurp(in("seven") / name)) << name;
+  const auto json = nlohmann::json::parse(slurp(in("one") / "evidence.json"));
+  EXPECT_TRUE(json["update"]["changes"].empty());
+  EXPECT_EQ(json["update"]["parts"].size(), 20u) << "axis and point of five joints, in two sensors each";
+  EXPECT_EQ(active_joint_names(read_robot_model(in("one/chain.toml"))->chain),
+            active_joint_names(read_robot_model(in("machine/chain.toml"))->chain));
+  EXPECT_EQ(kinfer("track one later/imu.csv --out work --quiet").code, 0) << "the updated chain is tracked";
+
+  const auto tree = kinfer("identify --update machine later/imu.csv --out none --tree ins0-ins1");
+  EXPECT_EQ(tree.code, 2);
+  EXPECT_THAT(tree.err, HasSubstr("--tree has no effect with --update"));
+  const auto engine = kinfer("identify --update machine later/imu.csv --out none --generations 5");
+  EXPECT_EQ(engine.code, 2);
+  EXPECT_THAT(engine.err, HasSubstr("--generations: no effect with --update"));
+  ASSERT_EQ(kinfer("simulate crane --out other --grade noise --quiet").code, 0);
+  const auto other = kinfer("identify --update machine other/imu.csv --out none");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("the log has no sensor ins5 of the chain"));
+  EXPECT_EQ(kinfer("identify --update drive later/imu.csv --out none").code, 2) << "no chain there";
+}
+
 TEST_F(Identify, BadInputGivesOneSentenceAndNoOutput) {
   write(in("one.csv"), "t,a_ax,a_ay,a_az,a_gx,a_gy,a_gz\n0,0,0,9.8,0,0,0\n0.01,0,0,9.8,0,0,0\n0.02,0,0,9.8,0,0,0\n");
   const auto lonely = kinfer("identify one.csv --out out");

@@ -61,5 +61,21 @@ TEST(IdentifyOptions, GivenLinksAreDescribedAsTheyAreGiven) {
   EXPECT_EQ(described({.sensors = {"a", "b"}}, "--sensors"), "a,b");
 }
 
+TEST(IdentifyOptions, WhatAnUpdateTakesFromTheOlderChainIsRefused) {
+  IdentifyOptions update;
+  update.refine.known = TrackingModel{};
+  EXPECT_EQ(complaint(update), "");
+  EXPECT_EQ(described(update, "--engine"), "(no effect)");
+  IdentifyOptions with_tree = update, with_root = update, with_zero = update, searched = update;
+  with_tree.tree = {{"a", "b"}};
+  with_root.root = "a";
+  with_zero.refine.zeros = {{.joint = "a-b"}};
+  searched.geometry = GeometrySource::searched;
+  EXPECT_EQ(complaint(with_tree), "--tree has no effect with --update, which keeps that of the chain");
+  EXPECT_EQ(complaint(with_root), "--root has no effect with --update, which keeps that of the chain");
+  EXPECT_EQ(complaint(with_zero), "--zero has no effect with --update, which keeps that of the chain");
+  EXPECT_NE(complaint(searched), "");
+}
+
 }  // namespace
 }  // namespace kinfer

@@ -250,8 +250,8 @@ TEST(UpdateWords, ChangesAreNamedWithTheirSizesAndWhatWouldLookTheSame) {
                            .angle = ChangeSize{0.0174533, 0.000349},
                            .log_odds = 2000.0};
   EXPECT_EQ(change_sentence(sensor),
-            "hand sits otherwise on its segment: turned by 1.00° (sd 0.02°) (beyond doubt); if it was not touched, the "
-            "joint arm-hand moved on this segment");
+            "hand sits otherwise on its segment: turned by at least 1.00° (sd 0.02°) (beyond doubt); if it was not "
+            "touched, the joint arm-hand moved on this segment");
   const ChainChange joint{.kind = ChainChangeKind::joint_moved,
                           .name = "arm-hand",
                           .segment = "arm",

@@ -65,6 +65,13 @@ std::string links_text(const std::vector<GivenLink>& links) {
   return fmt::format("{}", fmt::join(items, ","));
 }
 
+/// An update searches nothing, and takes the structure from the older chain.
+NamedValues describe_update(const IdentifyOptions& options) {
+  return {{"--filter", std::string(filter_of(options.motion.filter).name)},
+          {"--smoothing", fmt::to_string(options.motion.smoothing)},
+          {"--grade", options.refine.grade ? options.refine.grade->name : "auto"}};
+}
+
 }  // namespace
 
 Result<void> check(const IdentifyOptions& options) {
@@ -83,6 +90,7 @@ Result<void> check(const IdentifyOptions& options) {
 }
 
 NamedValues describe(const IdentifyOptions& options) {
+  if (options.refine.known) return describe_update(options);
   NamedValues list{{"--engine", std::string(name(method_of(options.engine)))},
                    {"--terminals", terminals_of(options.engine) == JointVariableKind::euler ? "euler" : "hinge"},
                    {"--filter", std::string(filter_of(options.motion.filter).name)},

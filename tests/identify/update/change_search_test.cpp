@@ -50,7 +50,7 @@ TEST(ChangeSearch, NamesTheSingleCauseOfSeveralDifferences) {
   const auto chosen = choose_changes(d, covariance, all);
   ASSERT_EQ(chosen.size(), 1u);
   EXPECT_EQ(chosen.front().hypothesis, 4u);
-  const ChangeEstimate estimate = estimate_changes(d, covariance, {common}, 0.1, 10.0);
+  const ChangeEstimate estimate = estimate_changes(d, covariance, {common}, {{0.1, 10.0}});
   EXPECT_NEAR(estimate.mean[0], 0.02, 1e-9);
   EXPECT_NEAR(std::sqrt(estimate.covariance(0, 0)), 1e-3 / std::sqrt(3.0), 1e-9);
 }

@@ -152,4 +152,12 @@ inline TrackingModel identified_again(const TrackingModel& truth, double factor,
   return model;
 }
 
+/// The machine by a log that begins elsewhere: all revolute joints count from other zeros.
+inline TrackingModel with_other_zeros(TrackingModel model, std::uint64_t seed) {
+  Rng rng(seed);
+  for (TrackingBody& body : model.bodies)
+    if (body.motion == TrackingMotion::revolute) body.child_R_axis = body.child_R_axis * rot_z(3.0 * rng.normal());
+  return model;
+}
+
 }  // namespace kinfer::test

@@ -196,7 +196,9 @@ Provenance provenance_of(const IdentifyArguments& options, const identify::Ident
   if (!options.facts.empty()) inputs.push_back(options.facts);
   if (!options.columns.empty()) inputs.push_back(options.columns);
   if (!options.update.empty()) std::ranges::copy(chain_files(options.update), std::back_inserter(inputs));
-  return {.inputs = fingerprints(inputs), .options = identify::describe(how), .seed = options.common.seed};
+  auto described = identify::describe(how);
+  if (!options.update.empty()) described.emplace_back("--update", options.update);
+  return {.inputs = fingerprints(inputs), .options = std::move(described), .seed = options.common.seed};
 }
 
 Result<void> write_results(OutputFolder& folder, const Provenance& provenance, const Identification& found) {

@@ -10,10 +10,15 @@
 namespace kinfer::identify {
 namespace {
 
+/// The rotation about its own z that brings a frame as near to another as it can.
+Mat3 turn_about_axis(const Mat3& from, const Mat3& to) {
+  const Mat3 turn = from.transpose() * to;
+  return rot_z(std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1)));
+}
+
 /// Turns A and B alike about the joint's axis, so that A lies as near to `a` as it can.
 void align_about_axis(TrackingBody& body, const Mat3& a) {
-  const Mat3 turn = body.parent_R_axis.transpose() * a;
-  const Mat3 about_axis = rot_z(std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1)));
+  const Mat3 about_axis = turn_about_axis(body.parent_R_axis, a);
   body.parent_R_axis = body.parent_R_axis * about_axis;
   body.child_R_axis = body.child_R_axis * about_axis;
 }
@@ -66,6 +71,14 @@ void align_universal(TrackingBody& near, TrackingBody& far, const TrackingBody& 
   far.child_R_axis = far.child_R_axis * gamma.transpose();
 }
 
+/// The rotations of B are about its own axes, so that those of two logs agree only where B does: its zero, too.
+void align_zeros(TrackingBodies& bodies, const TrackingBodies& reference) {
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    if (bodies[b].motion == TrackingMotion::revolute)
+      bodies[b].child_R_axis =
+          bodies[b].child_R_axis * turn_about_axis(bodies[b].child_R_axis, reference[b].child_R_axis);
+}
+
 Vec3 segment(const BodyDifference& step, TrackingParameterKind kind) {
   return step.segment<3>(3 * static_cast<Eigen::Index>(kind));
 }
@@ -85,7 +98,11 @@ TrackingBodies aligned(const TrackingModel& model, const TrackingModel& referenc
 }
 
 TrackingModel aligned_model(const TrackingModel& model, const TrackingModel& reference) {
-  return transported(model, [&](const TrackingModel& one) { return aligned(one, reference); });
+  return transported(model, [&](const TrackingModel& one) {
+    TrackingBodies bodies = aligned(one, reference);
+    align_zeros(bodies, reference.bodies);
+    return bodies;
+  });
 }
 
 TrackingModel without_covariance(const TrackingModel& model) {

@@ -14,7 +14,7 @@ using TrackingBodies = std::vector<TrackingBody>;
 /// The bodies of `model` by the choices of `reference`, its zeros excepted: for the same structure, in the same order.
 TrackingBodies aligned(const TrackingModel& model, const TrackingModel& reference);
 
-/// The same with the covariance in these terms.
+/// The same with the zeros of `reference` and the covariance in these terms.
 TrackingModel aligned_model(const TrackingModel& model, const TrackingModel& reference);
 
 /// The model after a change of its bodies, which their errors take part in. `change`: of a model without covariance.

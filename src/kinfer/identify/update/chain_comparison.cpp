@@ -5,7 +5,10 @@
 #include <cmath>
 
 #include "kinfer/identify/handover/known_joint.hpp"
+#include "kinfer/identify/update/bent_axes.hpp"
 #include "kinfer/identify/update/thresholds.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -52,19 +55,34 @@ void free_slides(MatrixXd& covariance, VectorXd& value, const TrackingModel& mod
   }
 }
 
+/// Axes that are somewhere on a cone do not tell whether they differ.
+void free_bent_axes(GeometryDifference& d, const TrackingModel& known, const TrackingModel& fresh) {
+  const std::vector<double> of_known = axis_bends(known), of_fresh = axis_bends(fresh);
+  for (std::size_t i = 0; i < d.parameters.size(); ++i) {
+    const TrackingParameter& p = d.parameters[i];
+    const auto body = static_cast<std::size_t>(p.index);
+    if (p.kind != Kind::parent_rotation || std::max(of_known[body], of_fresh[body]) < max_axis_bend) continue;
+    d.covariance(static_cast<Index>(i), static_cast<Index>(i)) += forgotten_angle * forgotten_angle;
+    d.value[static_cast<Index>(i)] = 0.0;
+  }
+}
+
 ChangeHypothesis hypothesis_of(const TrackingModel& model, const ChainCause& cause,
                                const std::vector<TrackingParameter>& parameters) {
   return {effect_of(model, cause, parameters), rotations_of(cause),
           cause.kind == ChainChangeKind::sensor_moved ? moved_sensor_probability : moved_joint_probability};
 }
 
-/// Norm of some components of a size with its standard deviation; none where the prior is all there is.
+/// Norm of the components of a size that the logs tell, with its standard deviation; none where they tell nothing but
+/// its prior.
 std::optional<ChangeSize> size_of(ConstVectorRef mean, ConstMatrixRef covariance, double prior) {
-  const double norm = mean.norm();
-  const VectorXd along = norm > 0.0 ? VectorXd(mean / norm) : VectorXd::Unit(mean.size(), 0);
-  const double sd = std::sqrt(std::max(0.0, along.dot(covariance * along)));
-  if (sd > unknown_size * prior) return {};
-  return ChangeSize{norm, sd};
+  const SymmetricEigen eigen = symmetric_eigen(covariance);
+  const auto told = (eigen.values.array() < unknown_size * unknown_size * prior * prior).count();
+  if (told == 0) return {};
+  const VectorXd components = transposed_times(eigen.vectors.leftCols(told), mean);
+  const double norm = components.norm();
+  const VectorXd direction = norm > 0.0 ? VectorXd(components / norm) : VectorXd::Unit(told, 0);
+  return ChangeSize{norm, std::sqrt(std::max(0.0, direction.cwiseAbs2().dot(eigen.values.head(told))))};
 }
 
 /// The components of a cause about the machine that it has already moved; those of a sensor are stated in its old
@@ -90,8 +108,8 @@ void add(FoundCause& found, ConstVectorRef step) {
 void set_change(FoundCause& found, ConstMatrixRef covariance) {
   const Index turns = rotations_of(found.cause);
   const VectorXd size = about_moved(found);
-  found.change.angle = size_of(size.head(turns), covariance.topLeftCorner(turns, turns), change_angles.back());
-  found.change.distance = size_of(size.tail<3>(), covariance.bottomRightCorner<3, 3>(), change_distances.back());
+  found.change.angle = size_of(size.head(turns), covariance.topLeftCorner(turns, turns), found.scale.angle);
+  found.change.distance = size_of(size.tail<3>(), covariance.bottomRightCorner<3, 3>(), found.scale.distance);
 }
 
 TrackingModel moved_by(TrackingModel model, const std::vector<FoundCause>& causes) {
@@ -104,16 +122,20 @@ void estimate_sizes(std::vector<FoundCause>& causes, const TrackingModel& known,
   constexpr int turns = 6;  // Gauss-Newton; large rotations are not small
   for (int turn = 0; turn < turns && !causes.empty(); ++turn) {
     const TrackingModel moved = moved_by(known, causes);
-    const GeometryDifference d = geometry_difference(moved, fresh);
+    GeometryDifference d = geometry_difference(moved, fresh);
     std::vector<ChangeHypothesis> hypotheses;
-    for (const FoundCause& found : causes) hypotheses.push_back(hypothesis_of(moved, found.cause, d.parameters));
-    const ChangeEstimate step =
-        estimate_changes(d.value, d.covariance, hypotheses, change_angles.back(), change_distances.back());
+    std::vector<ChangeScale> scales;
+    for (const FoundCause& found : causes) {
+      hypotheses.push_back(hypothesis_of(moved, found.cause, d.parameters));
+      scales.push_back(found.scale);
+      d.value += hypotheses.back().effect * about_moved(found);
+    }
+    const ChangeEstimate estimate = estimate_changes(d.value, d.covariance, hypotheses, scales);
     Index at = 0;
     for (FoundCause& found : causes) {
       const Index size = components_of(found.cause);
-      add(found, step.mean.segment(at, size));
-      set_change(found, step.covariance.block(at, at, size, size));
+      add(found, estimate.mean.segment(at, size) - about_moved(found));
+      set_change(found, estimate.covariance.block(at, at, size, size));
       at += size;
     }
   }
@@ -138,6 +160,7 @@ std::vector<FoundCause> choose_causes(const std::vector<FoundCause>& before, con
     const ChainCause& cause = causes[chosen.hypothesis];
     result.push_back({cause,
                       VectorXd::Zero(components_of(cause)),
+                      chosen.scale,
                       {.kind = cause.kind,
                        .name = cause.name,
                        .segment = cause.segment,
@@ -183,6 +206,7 @@ GeometryDifference geometry_difference(const TrackingModel& known, const Trackin
     d.covariance(static_cast<Index>(i), static_cast<Index>(i)) += same * same;
   }
   free_slides(d.covariance, d.value, known, d.parameters);
+  free_bent_axes(d, known, fresh);
   return d;
 }
 

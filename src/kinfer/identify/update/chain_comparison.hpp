@@ -17,6 +17,7 @@ GeometryDifference geometry_difference(const TrackingModel& known, const Trackin
 struct FoundCause {
   ChainCause cause;
   VectorXd size;  ///< components of the cause
+  ChangeScale scale;
   ChainChange change;
 };
 

@@ -15,14 +15,14 @@ namespace {
 
 using Index = Eigen::Index;
 
-VectorXd prior_variance(const ChangeHypothesis& hypothesis, double angle, double distance) {
-  VectorXd variance = VectorXd::Constant(hypothesis.effect.cols(), distance * distance);
-  variance.head(hypothesis.rotations).setConstant(angle * angle);
+VectorXd prior_variance(const ChangeHypothesis& hypothesis, const ChangeScale& scale) {
+  VectorXd variance = VectorXd::Constant(hypothesis.effect.cols(), scale.distance * scale.distance);
+  variance.head(hypothesis.rotations).setConstant(scale.angle * scale.angle);
   return variance;
 }
 
-MatrixXd covariance_of_change(const ChangeHypothesis& hypothesis, double angle, double distance) {
-  const VectorXd sd = prior_variance(hypothesis, angle, distance).cwiseSqrt();
+MatrixXd covariance_of_change(const ChangeHypothesis& hypothesis, const ChangeScale& scale) {
+  const VectorXd sd = prior_variance(hypothesis, scale).cwiseSqrt();
   const MatrixXd scaled = hypothesis.effect * sd.asDiagonal();
   return times_transposed(scaled, scaled);
 }
@@ -71,8 +71,7 @@ class Search {
   MatrixXd covariance_without(std::size_t hypothesis) const {
     MatrixXd sum = MatrixXd::Zero(s_.rows(), s_.cols());
     for (const ChosenChange& change : chosen_)
-      if (change.hypothesis != hypothesis)
-        sum += covariance_of_change(hypotheses_[change.hypothesis], change.angle, change.distance);
+      if (change.hypothesis != hypothesis) sum += covariance_of_change(hypotheses_[change.hypothesis], change.scale);
     return sum;
   }
 
@@ -85,8 +84,8 @@ class Search {
     double best = -std::numeric_limits<double>::infinity();
     for (const double angle : change_angles)
       for (const double distance : change_distances) {
-        logs.push_back(evidence(others + covariance_of_change(h, angle, distance)));
-        if (logs.back() > best) best = logs.back(), result.angle = angle, result.distance = distance;
+        logs.push_back(evidence(others + covariance_of_change(h, {angle, distance})));
+        if (logs.back() > best) best = logs.back(), result.scale = {angle, distance};
       }
     const double prior = std::log(h.prior_probability / (1.0 - h.prior_probability));
     result.log_odds = log_mean_exp(logs) - evidence(others) + prior;
@@ -129,15 +128,17 @@ std::vector<ChosenChange> choose_changes(ConstVectorRef difference, ConstMatrixR
 }
 
 ChangeEstimate estimate_changes(ConstVectorRef difference, ConstMatrixRef covariance,
-                                const std::vector<ChangeHypothesis>& hypotheses, double angle, double distance) {
+                                const std::vector<ChangeHypothesis>& hypotheses,
+                                const std::vector<ChangeScale>& scales) {
   Index columns = 0;
   for (const ChangeHypothesis& h : hypotheses) columns += h.effect.cols();
   MatrixXd effect(difference.size(), columns);
   VectorXd variance(columns);
   Index at = 0;
-  for (const ChangeHypothesis& h : hypotheses) {
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    const ChangeHypothesis& h = hypotheses[i];
     effect.middleCols(at, h.effect.cols()) = h.effect;
-    variance.segment(at, h.effect.cols()) = prior_variance(h, angle, distance);
+    variance.segment(at, h.effect.cols()) = prior_variance(h, scales[i]);
     at += h.effect.cols();
   }
   const auto information = invert_spd(covariance);

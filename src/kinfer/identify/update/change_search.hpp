@@ -18,25 +18,31 @@ struct ChangeHypothesis {
   double prior_probability = 0.01;
 };
 
+/// Prior standard deviations of a change, per axis.
+struct ChangeScale {
+  double angle = 0.0, distance = 0.0;  ///< [rad], [m]
+};
+
 struct ChosenChange {
   std::size_t hypothesis = 0;
-  double log_odds = 0.0;               ///< ln posterior odds against its absence, beside the others
-  double angle = 0.0, distance = 0.0;  ///< [rad], [m] prior standard deviations of u that explain the difference best
+  double log_odds = 0.0;  ///< ln posterior odds against its absence, beside the others
+  ChangeScale scale{};    ///< that explains the difference best
 };
 
 /// Most certain first. `covariance`: S, positive definite.
 std::vector<ChosenChange> choose_changes(ConstVectorRef difference, ConstMatrixRef covariance,
                                          const std::vector<ChangeHypothesis>& hypotheses);
 
-/// Posterior of all u_h one after the other, with these prior standard deviations.
+/// Posterior of all u_h one after the other. `scales`: of each.
 struct ChangeEstimate {
   VectorXd mean;
   MatrixXd covariance;
 };
 ChangeEstimate estimate_changes(ConstVectorRef difference, ConstMatrixRef covariance,
-                                const std::vector<ChangeHypothesis>& hypotheses, double angle, double distance);
+                                const std::vector<ChangeHypothesis>& hypotheses,
+                                const std::vector<ChangeScale>& scales);
 
-/// dᵀ (S + Σ D V Dᵀ)⁻¹ d
+/// dᵀ S⁻¹ d
 double squared_distance(ConstVectorRef difference, ConstMatrixRef covariance);
 
 }  // namespace kinfer::identify

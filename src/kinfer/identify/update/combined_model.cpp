@@ -5,6 +5,7 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/identify/handover/known_joint.hpp"
+#include "kinfer/identify/update/bent_axes.hpp"
 #include "kinfer/identify/update/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
@@ -106,6 +107,18 @@ void forget_changes(PriorState& state, const ChainComparison& comparison) {
     effect.leftCols(rotations_of(found.cause)) *= forgotten_angle;
     effect.rightCols<3>() *= forgotten_distance;
     state.covariance += times_transposed(effect, effect);
+  }
+}
+
+/// Of axes that are on a cone by this model, and less so by the other, what it tells is forgotten.
+void forget_bent_axes(MatrixXd& covariance, const std::vector<TrackingParameter>& parameters,
+                      const std::vector<double>& bends, const std::vector<double>& other) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const TrackingParameter& p = parameters[i];
+    const auto body = static_cast<std::size_t>(p.index);
+    const auto row = static_cast<Index>(i);
+    if (p.kind == Kind::parent_rotation && bends[body] > max_axis_bend && bends[body] >= other[body])
+      covariance(row, row) += forgotten_angle * forgotten_angle;
   }
 }
 
@@ -214,8 +227,11 @@ void shift_ranges(TrackingModel& model, const VectorXd& offsets) {
 TrackingModel combined(const ChainComparison& comparison, const TrackingModel& fresh) {
   PriorState state = prior_state(comparison, fresh);
   forget_changes(state, comparison);
-  const VectorXd step =
-      update(state.covariance, log_estimate(state, comparison.moved, aligned_model(fresh, comparison.moved)));
+  TrackingModel log = aligned_model(fresh, comparison.moved);
+  const std::vector<double> of_known = axis_bends(comparison.moved), of_log = axis_bends(log);
+  forget_bent_axes(state.covariance, state.parameters, of_known, of_log);
+  forget_bent_axes(log.covariance, log.parameters, of_log, of_known);
+  const VectorXd step = update(state.covariance, log_estimate(state, comparison.moved, log));
   TrackingModel result = fresh;
   result.bodies = comparison.moved.bodies;
   apply(result, state, step);

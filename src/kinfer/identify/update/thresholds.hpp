@@ -22,11 +22,15 @@ inline constexpr double forgotten_angle = 1.0, forgotten_distance = 1.0;
 /// comparison are left out. Larger names fewer changes. A judgement: a tenth of what industrial sensors show.
 inline constexpr double same_angle = 3e-5, same_distance = 5e-5;
 
-/// Standard deviation of a change's size, as a fraction of the largest prior's, from which the logs do not tell it.
+/// Standard deviation of a component of a change, as a fraction of its prior's, from which the logs do not tell it.
 inline constexpr double unknown_size = 0.5;
 
 /// Changes per sensor of the machine beyond which a log is that of another machine; larger calls fewer logs so.
 inline constexpr double max_changes_per_sensor = 0.5;
+
+/// Bend of an axis' cone within one standard deviation, in standard deviations across it, from which two logs are not
+/// compared in that axis and only one of them is used for it. Larger uses more of them as if they were straight.
+inline constexpr double max_axis_bend = 0.3;
 
 /// Inflations of all variances, one as likely as the other, by which the logs' standard deviations may be too small.
 /// More of them ask for more evidence.

@@ -12,15 +12,16 @@
 namespace kinfer::words {
 namespace {
 
-/// The size of a change, and what the logs do not tell of it.
+/// The size of a change. Of a sensor at an end of the chain, the turn about its only axis is not seen.
 std::string sizes_text(const ChainChange& change) {
+  const char* least = change.alternative.empty() ? "" : "at least ";
   std::vector<std::string> sizes;
   if (change.angle)
-    sizes.push_back(
-        phrase("turned", "turned by {:.2f}° (sd {:.2f}°)", change.angle->value / degree, change.angle->sd / degree));
+    sizes.push_back(phrase("turned", "turned by {}{:.2f}° (sd {:.2f}°)", least, change.angle->value / degree,
+                           change.angle->sd / degree));
   if (change.distance)
-    sizes.push_back(
-        phrase("moved", "moved by {:.1f} mm (sd {:.1f} mm)", 1e3 * change.distance->value, 1e3 * change.distance->sd));
+    sizes.push_back(phrase("moved", "moved by {}{:.1f} mm (sd {:.1f} mm)", least, 1e3 * change.distance->value,
+                           1e3 * change.distance->sd));
   return sizes.empty() ? phrase("size_unknown", "by how much these logs do not tell")
                        : fmt::format("{}", fmt::join(sizes, ", "));
 }
