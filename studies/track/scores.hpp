@@ -27,7 +27,9 @@ struct TrackScore {
   std::vector<Alarm> alarms;  ///< each kind and sensor once
 };
 
+enum class Estimator { filter, smoother };
+
 TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, const SimulatedDrive& drive,
-                 const kinfer::track::TrackOptions& options = {});
+                 Estimator estimator = Estimator::filter);
 
 }  // namespace kinfer::study::track_study

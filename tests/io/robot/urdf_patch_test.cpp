@@ -74,7 +74,8 @@ PatchedText patched(const std::string& text, const Chain& in_file, const Chain& 
 }
 
 /// The written file has the tool poses of the corrected chain; of joint positions with the offsets added.
-void expect_same_tool_poses(const std::string& text, const ChainEnds& ends, EncoderOffsets offsets, std::uint64_t seed) {
+void expect_same_tool_poses(const std::string& text, const ChainEnds& ends, EncoderOffsets offsets,
+                            std::uint64_t seed) {
   const auto in_file = parse_urdf(text, "in.urdf", ends);
   ASSERT_TRUE(in_file.has_value()) << in_file.error().what;
   const Chain corrected = disturbed(*in_file, Rng(seed));
