@@ -12,21 +12,10 @@
 #include "kinfer/io/recording/recording_formats.hpp"
 #include "kinfer/report/report.hpp"
 #include "kinfer/words/identification/verdict.hpp"
-#include "robot.hpp"
+#include "recording.hpp"
 
 namespace kinfer::python {
 namespace {
-
-/// kinfer.Recording
-struct Recording {
-  InsRecording recording;
-  std::vector<std::string> paths{};
-};
-
-struct IdentificationResult {
-  Identification identification;
-  Provenance provenance;
-};
 
 py::object item_or_none(const py::handle& mapping, const std::vector<const char*>& keys) {
   for (const char* key : keys)
@@ -69,32 +58,6 @@ void append_sensor(const std::string& sensor, const py::handle& columns, InsReco
   };
   value_of(append_ins_arrays(
       {sensor, t, span(acceleration), span(rate), has_field ? span(field) : std::span<const double>{}}, recording));
-}
-
-/// A recording, the path or paths of logs, or {sensor: {t, acc, gyr, mag}}.
-Recording recording_of(const py::object& data) {
-  if (py::isinstance<Recording>(data)) return data.cast<Recording>();
-  Recording result;
-  if (const auto path = path_of(data)) result.paths = {*path};
-  if (py::isinstance<py::list>(data) || py::isinstance<py::tuple>(data))
-    for (const py::handle item : data) {
-      const auto path = path_of(item);
-      if (!path) throw InputError("expected the paths of logs");
-      result.paths.push_back(*path);
-    }
-  if (!result.paths.empty()) {
-    const std::vector<std::filesystem::path> files(result.paths.begin(), result.paths.end());
-    const py::gil_scoped_release without_lock;
-    result.recording = value_of(read_recording(files));
-    return result;
-  }
-  if (!py::hasattr(data, "items"))
-    throw InputError("expected a recording, the path of a log, or a dictionary {sensor: {t, acc, gyr, mag}}");
-  for (const py::handle item : data.attr("items")()) {
-    const auto pair = item.cast<std::pair<py::object, py::object>>();
-    append_sensor(py::str(pair.first), pair.second, result.recording);
-  }
-  return result;
 }
 
 py::array columns_of(const TriadColumns& triad) {
@@ -183,6 +146,38 @@ py::dict orient_in_python(const py::object& data, const std::string& filter, boo
 }
 
 }  // namespace
+
+std::optional<std::vector<std::string>> log_paths(const py::object& data) {
+  if (const auto path = path_of(data)) return std::vector{*path};
+  if (!py::isinstance<py::list>(data) && !py::isinstance<py::tuple>(data)) return std::nullopt;
+  std::vector<std::string> paths;
+  for (const py::handle item : data) {
+    const auto path = path_of(item);
+    if (!path) throw InputError("expected the paths of logs");
+    paths.push_back(*path);
+  }
+  if (paths.empty()) return std::nullopt;
+  return paths;
+}
+
+Recording recording_of(const py::object& data) {
+  if (py::isinstance<Recording>(data)) return data.cast<Recording>();
+  Recording result;
+  if (const auto paths = log_paths(data)) {
+    result.paths = *paths;
+    const std::vector<std::filesystem::path> files(paths->begin(), paths->end());
+    const py::gil_scoped_release without_lock;
+    result.recording = value_of(read_recording(files));
+    return result;
+  }
+  if (!py::hasattr(data, "items"))
+    throw InputError("expected a recording, the path of a log, or a dictionary {sensor: {t, acc, gyr, mag}}");
+  for (const py::handle item : data.attr("items")()) {
+    const auto pair = item.cast<std::pair<py::object, py::object>>();
+    append_sensor(py::str(pair.first), pair.second, result.recording);
+  }
+  return result;
+}
 
 void add_identification(py::module_& module) {
   py::class_<Recording>(module, "Recording", "A recording of inertial sensors.")

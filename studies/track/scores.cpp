@@ -89,8 +89,9 @@ std::vector<InsRow> rows_of(const TrackingModel& model, const InsRecording& reco
 
 /// Calls `add` with the state at each row and whether the filter follows a moving base.
 template <class Add>
-void each_state(const TrackingModel& model, Estimator estimator, const std::vector<InsRow>& rows, const Add& add) {
-  if (estimator == Estimator::smoother) {
+void each_state(const TrackingModel& model, kinfer::track::Estimator estimator, const std::vector<InsRow>& rows,
+                const Add& add) {
+  if (estimator == kinfer::track::Estimator::smoother) {
     kinfer::track::smooth(model, {}, rows, [&](const TrackState& state) { add(state, false); });
     return;
   }
@@ -104,7 +105,7 @@ void each_state(const TrackingModel& model, Estimator estimator, const std::vect
 }  // namespace
 
 TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, const SimulatedDrive& drive,
-                 Estimator estimator) {
+                 kinfer::track::Estimator estimator) {
   using Clock = std::chrono::steady_clock;
   kinfer::track::ComposedFilters composed(model, {});
   const std::vector<TrueJoint> truth = true_joints(model, identified);

@@ -27,9 +27,7 @@ struct TrackScore {
   std::vector<Alarm> alarms;  ///< each kind and sensor once
 };
 
-enum class Estimator { filter, smoother };
-
 TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, const SimulatedDrive& drive,
-                 Estimator estimator = Estimator::filter);
+                 kinfer::track::Estimator estimator = kinfer::track::Estimator::filter);
 
 }  // namespace kinfer::study::track_study

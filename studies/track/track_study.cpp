@@ -115,7 +115,8 @@ void run(const Arguments& a) {
                                                 .steel = a.steel});
         inject(a.fault, second);
         print(machine, grade, seed, track(*model, first, second));
-        if (a.smooths) print("  smoothed", grade, seed, track(*model, first, second, Estimator::smoother));
+        if (a.smooths)
+          print("  smoothed", grade, seed, track(*model, first, second, kinfer::track::Estimator::smoother));
       }
 }
 

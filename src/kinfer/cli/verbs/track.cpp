@@ -11,12 +11,13 @@
 #include "kinfer/cli/parts/expected_cost.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/tracking/row_source.hpp"
+#include "kinfer/cli/tracking/start_argument.hpp"
 #include "kinfer/cli/tracking/track_output.hpp"
 #include "kinfer/cli/tracking/track_summary.hpp"
-#include "kinfer/cli/tracking/tracked_chain.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/track_json.hpp"
 #include "kinfer/io/text/csv.hpp"
+#include "kinfer/io/tracking/tracked_chain.hpp"
 #include "kinfer/track/run_recorder.hpp"
 #include "kinfer/track/smooth/smoother.hpp"
 #include "kinfer/track/tracker.hpp"
@@ -30,6 +31,10 @@ struct TrackArguments {
   std::vector<std::string> logs;
   bool follow = false, smooth = false;
 };
+
+track::Estimator estimator_of(const TrackArguments& options) {
+  return options.smooth ? track::Estimator::smoother : track::Estimator::filter;
+}
 
 Result<track::TrackOptions> track_options(const TrackArguments& options, const Chain& chain) {
   track::TrackOptions how;
@@ -59,18 +64,17 @@ Result<std::optional<BasePlace>> parse_place(const std::string& text) {
   return std::optional(BasePlace{1e-3 * Vec3(numbers[0], numbers[1], numbers[2]), numbers[3] * degree});
 }
 
-Provenance provenance_of(const TrackArguments& options) {
+Provenance provenance_of(const TrackArguments& options, const track::TrackOptions& how, const TrackingModel& model) {
   const std::filesystem::path chain(options.chain);
   std::vector<std::string> inputs{(chain / "chain.toml").string(), (chain / "track.toml").string()};
   for (const std::string& log : options.logs)
     if (log != "-") inputs.push_back(log);
   if (!options.facts.empty()) inputs.push_back(options.facts);
-  return {.inputs = fingerprints(inputs),
-          .options = {{"--base", options.base},
-                      {"--base-at", options.base_at},
-                      {"--start", options.start},
-                      {"--smooth", options.smooth ? "yes" : "no"}},
-          .seed = options.common.seed};
+  Provenance provenance{.inputs = fingerprints(inputs),
+                        .options = track::describe(how, estimator_of(options), model),
+                        .seed = options.common.seed};
+  if (!options.base_at.empty()) provenance.options.emplace_back("--base-at", options.base_at);
+  return provenance;
 }
 
 /// Whoever takes the states of a run.
@@ -99,7 +103,8 @@ Result<std::vector<std::string>> track_rows(const RowSource& source, const Track
 
 /// The states after all rows have been read.
 Result<std::vector<std::string>> smooth_rows(const RowSource& source, const TrackedChain& machine,
-                                             const track::TrackOptions& how, const StateSink& sink) {
+                                             const track::TrackOptions& how, const CommonOptions& common,
+                                             const StateSink& sink) {
   constexpr std::size_t check_every = 1 << 16;
   const auto sensors = static_cast<double>(machine.model.sensors.size());
   std::vector<InsRow> rows;
@@ -109,7 +114,8 @@ Result<std::vector<std::string>> smooth_rows(const RowSource& source, const Trac
     return check_cost(cost_of_smoothing(static_cast<double>(rows.size()), sensors));
   };
   KINFER_TRY(remarks, each_row(source, {add, [] {}}));
-  track::smooth(machine.model, how, rows, sink.add);
+  ProgressLine progress(common);
+  track::smooth(machine.model, how, rows, sink.add, progress.observer());
   return remarks;
 }
 
@@ -124,8 +130,8 @@ Result<TrackRun> track_log(const TrackArguments& options, const TrackedChain& ma
                          for (TrackOutput* output : outputs) output->flush();
                        }};
   const RowSource source = row_source(options, machine.model);
-  KINFER_TRY(remarks,
-             options.smooth ? smooth_rows(source, machine, how, sink) : track_rows(source, machine, how, sink));
+  KINFER_TRY(remarks, options.smooth ? smooth_rows(source, machine, how, options.common, sink)
+                                     : track_rows(source, machine, how, sink));
   sink.flush();
   TrackRun run = recorder.run();
   run.remarks = remarks;
@@ -180,7 +186,8 @@ int run(const TrackArguments& options) {
   const auto tracked = track_log(options, *machine, *how, outputs);
   if (!tracked) return fail(tracked.error());
   if (auto done = table.close(); !done) return fail(done.error());
-  return finish(options, record, track_evidence(*tracked, provenance_of(options)), folder ? &*folder : nullptr);
+  const TrackRun evidence = track_evidence(*tracked, provenance_of(options, *how, machine->model));
+  return finish(options, record, evidence, folder ? &*folder : nullptr);
 }
 
 }  // namespace

@@ -85,12 +85,20 @@ class Pass {
   double updated_ = std::numeric_limits<double>::quiet_NaN();
 };
 
+void notify_pass(const Observer& observer, std::string_view stage, std::size_t done, std::size_t all) {
+  constexpr std::size_t every = 500;
+  if (done % every == 0)
+    notify(observer, {.stage = stage, .fraction = static_cast<double>(done) / static_cast<double>(all)});
+}
+
 /// The state at each row, of a machine that moves forward.
-std::vector<PassState> backward_pass(const TrackingModel& model, BaseMotion base, std::span<const InsRow> rows) {
+std::vector<PassState> backward_pass(const TrackingModel& model, BaseMotion base, std::span<const InsRow> rows,
+                                     const Observer& observer) {
   const TrackingModel turned = reversed(model);
   Pass pass(turned, {.base = base});
   std::vector<PassState> states(rows.size());
   for (std::size_t i = rows.size(); i-- > 0;) {
+    notify_pass(observer, "backward pass", rows.size() - i, rows.size());
     pass.add(reversed(rows[i], rows.back().time));
     states[i] = pass.state();
     states[i].qd = -states[i].qd;
@@ -101,11 +109,12 @@ std::vector<PassState> backward_pass(const TrackingModel& model, BaseMotion base
 }  // namespace
 
 void smooth(const TrackingModel& model, const TrackOptions& options, std::span<const InsRow> rows,
-            const std::function<void(const TrackState&)>& add) {
+            const std::function<void(const TrackState&)>& add, const Observer& observer) {
   if (rows.empty()) return;
-  const std::vector<PassState> backward = backward_pass(model, options.base, rows);
+  const std::vector<PassState> backward = backward_pass(model, options.base, rows, observer);
   Pass forward(model, options);
   for (std::size_t i = 0; i < rows.size(); ++i) {
+    notify_pass(observer, "forward pass", i + 1, rows.size());
     forward.add(rows[i]);
     TrackState state = forward.tracker().state();
     combine(model, forward.state(), backward[i], state);

@@ -10,6 +10,7 @@
 #include <functional>
 #include <span>
 
+#include "kinfer/base/observer.hpp"
 #include "kinfer/evidence/tracking/track_state.hpp"
 #include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/measurement/ins_row.hpp"
@@ -21,6 +22,6 @@ namespace kinfer::track {
 /// Holds the state of the backward pass at
 /// each row, 1 kB and more. `options.start` is where the recording begins.
 void smooth(const TrackingModel& model, const TrackOptions& options, std::span<const InsRow> rows,
-            const std::function<void(const TrackState&)>& add);
+            const std::function<void(const TrackState&)>& add, const Observer& observer = {});
 
 }  // namespace kinfer::track
