@@ -37,6 +37,7 @@ constexpr std::array studies{
     NamedStudy{"structure", run_structure},
     NamedStudy{"thresholds", run_thresholds},
     NamedStudy{"track", run_track},
+    NamedStudy{"update", run_update},
     NamedStudy{"verdict", run_verdict},
 };
 

@@ -24,6 +24,7 @@ int run_search_start(int argc, char** argv);
 int run_structure(int argc, char** argv);
 int run_thresholds(int argc, char** argv);
 int run_track(int argc, char** argv);
+int run_update(int argc, char** argv);
 int run_verdict(int argc, char** argv);
 
 }  // namespace kinfer::study

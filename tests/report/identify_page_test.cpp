@@ -39,6 +39,21 @@ TEST(IdentificationPage, ShowsFindingsWhereThereAreAny) {
   EXPECT_TRUE(std::ranges::none_of(page.sections, [](const auto& section) { return section.id == "doubts"; }));
 }
 
+TEST(IdentificationPage, BeginsWithWhatChangedWhereAChainWasUpdated) {
+  Identification updated = test::rich_identification();
+  updated.update = ChainUpdate{
+      .changes = {{ChainChangeKind::sensor_moved, "s<1>", "s<1>", "", ChangeSize{0.0174533, 1e-4}, {}, 1250.0}},
+      .parts = {{"s0-s<1>", "s0", ChainPartQuantity::axis, 0.0175, 2e-4, 900.0, 2}}};
+  const IdentificationEvidence e = identification_evidence(updated, test::rich_provenance());
+  const Page page = identification_page(e);
+  EXPECT_EQ(page.sections.front().id, "update-section");
+  const std::string& body = page.sections.front().body;
+  EXPECT_TRUE(shows(body, "s&lt;1&gt;"));
+  EXPECT_TRUE(shows(body, "1.00 ± 0.01"));
+  EXPECT_TRUE(shows(body, "unknown"));
+  EXPECT_TRUE(shows(body, "17.50"));
+}
+
 TEST(IdentificationPage, TellsWhetherTheOrderIsSafe) {
   IdentificationEvidence e = found();
   EXPECT_TRUE(shows(identification_page(e).first, "is safe: the next best order fits 5.50 times worse"));

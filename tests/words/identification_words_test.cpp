@@ -2,6 +2,7 @@
 // Every fact of an identification has a sentence in English and a name for programs.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "kinfer/words/findings/findings.hpp"
@@ -10,6 +11,7 @@
 #include "kinfer/words/identification/joint_verdict.hpp"
 #include "kinfer/words/identification/notes.hpp"
 #include "kinfer/words/identification/unobservable.hpp"
+#include "kinfer/words/identification/update.hpp"
 #include "kinfer/words/identification/verdict.hpp"
 #include "kinfer/words/language.hpp"
 
@@ -238,6 +240,32 @@ TEST(IdentificationVerdict, OneJointIsInTheSingular) {
   Identification result;
   result.joints = {{.parent = "a", .child = "b"}};
   EXPECT_NE(identification_verdict(result).find("1 joint found"), std::string::npos);
+}
+
+TEST(UpdateWords, ChangesAreNamedWithTheirSizesAndWhatWouldLookTheSame) {
+  const ChainChange sensor{.kind = ChainChangeKind::sensor_moved,
+                           .name = "hand",
+                           .segment = "hand",
+                           .alternative = "arm-hand",
+                           .angle = ChangeSize{0.0174533, 0.000349},
+                           .log_odds = 2000.0};
+  EXPECT_EQ(change_sentence(sensor),
+            "hand sits otherwise on its segment: turned by 1.00° (sd 0.02°) (beyond doubt); if it was not touched, the "
+            "joint arm-hand moved on this segment");
+  const ChainChange joint{.kind = ChainChangeKind::joint_moved,
+                          .name = "arm-hand",
+                          .segment = "arm",
+                          .angle = ChangeSize{0.0, 0.000349},
+                          .distance = ChangeSize{0.02, 0.001},
+                          .log_odds = std::log(20.0)};
+  EXPECT_EQ(change_sentence(joint),
+            "the joint arm-hand is elsewhere on the segment of arm: turned by 0.00° (sd 0.02°), moved by 20.0 mm (sd "
+            "1.0 mm) (odds 20 to 1)");
+  EXPECT_EQ(update_sentence({}).find("nothing changed"), 0u);
+  const std::string both = update_sentence({.changes = {sensor, joint}});
+  EXPECT_EQ(both.find("2 changes"), 0u);
+  EXPECT_NE(both.find(change_sentence(sensor)), std::string::npos);
+  EXPECT_NE(both.find(change_sentence(joint)), std::string::npos);
 }
 
 }  // namespace

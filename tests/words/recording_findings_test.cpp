@@ -38,6 +38,7 @@ std::vector<Finding> one_of_each() {
                   {"mirrored_gap", 0.17},
                   {"log_odds", 45.0}},
        .applied = true},
+      {.kind = FindingKind::other_machine, .values = {{"changes", 5}, {"sensors", 6}}},
       {.kind = FindingKind::several_machines, .values = group, .applied = true},
       {.kind = FindingKind::several_machines, .values = {{"groups", std::vector<std::string>{"a, b", "c, d"}}}},
       {.kind = FindingKind::linkage, .values = cut, .applied = true},

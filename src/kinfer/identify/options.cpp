@@ -3,6 +3,8 @@
 
 #include <fmt/ranges.h>
 
+#include <array>
+
 #include "kinfer/base/overloaded.hpp"
 
 namespace kinfer::identify {
@@ -14,6 +16,20 @@ Result<void> check_depth(const DepthLimits& depth) {
   if (depth.max < depth.min) return error("--max-depth {}: less than --min-depth {}", depth.max, depth.min);
   if (depth.max_leaves < depth.min)
     return error("--max-leaves {}: too few for --min-depth {}", depth.max_leaves, depth.min);
+  return {};
+}
+
+/// What an update takes from the older chain is not an option.
+Result<void> check_update(const IdentifyOptions& options) {
+  const std::array<std::pair<const char*, bool>, 6> given{
+      {{"--tree", !options.tree.empty()},
+       {"--root", options.root.has_value()},
+       {"--sensors", !options.sensors.empty()},
+       {"--links", options.links > 0},
+       {"--zero", !options.refine.zeros.empty()},
+       {"--geometry searched", options.geometry == GeometrySource::searched}}};
+  for (const auto& [name, is_given] : given)
+    if (is_given) return error("{} has no effect with --update, which keeps that of the chain", name);
   return {};
 }
 
@@ -60,6 +76,8 @@ Result<void> check(const IdentifyOptions& options) {
     return error("--zero has no effect with --geometry searched");
   if (options.geometry == GeometrySource::searched && options.refine.grade)
     return error("--grade has no effect with --geometry searched");
+  if (options.refine.known)
+    if (auto checked = check_update(options); !checked) return checked;
   if (const auto* bacterial = std::get_if<BacterialProgramming>(&options.engine)) return check_depth(bacterial->depth);
   return {};
 }

@@ -23,6 +23,8 @@
 #include "kinfer/identify/screening/mixed_recording.hpp"
 #include "kinfer/identify/screening/session.hpp"
 #include "kinfer/identify/screening/unconnected.hpp"
+#include "kinfer/identify/update/known_machine.hpp"
+#include "kinfer/identify/update/updated_geometry.hpp"
 #include "kinfer/measurement/ins_selection.hpp"
 
 namespace kinfer::identify {
@@ -89,6 +91,15 @@ bool contradicts_fit(const JointResult& link) {
          link.search->written_holdout->total > min_search_advantage * link.search->holdout.total;
 }
 
+/// The joints before the fit: searched, or as known from an earlier identification.
+Result<std::vector<JointResult>> initial_joints(const OrderedMotion& ordered,
+                                                const std::vector<PairConnection>& connections,
+                                                const IdentifyOptions& options, const Rng& rng,
+                                                const Observer& observer) {
+  if (options.refine.known) return known_results(*options.refine.known);
+  return search_links(ordered, types_of(ordered, connections), link_search_options(options), rng, observer);
+}
+
 /// The fit begins at the pairs of sensors. Where a search contradicts its result, the fit is made again from the joints
 /// of the searches, and the better of both is kept. `links` get the certificate of what is kept. A fit of segments that
 /// have nothing to do with each other takes minutes and means nothing; that of a single pair is short.
@@ -108,7 +119,7 @@ Result<ChainGeometry> final_geometry(std::vector<JointResult>& links, const Sess
   KINFER_TRY(geometry, refine_from(options.refine.start));
   if (!geometry.negative_log_likelihood) return geometry;
   certify(links, geometry.joints, ordered, options);
-  if (refinement.start == StartSource::search || std::ranges::none_of(links, contradicts_fit)) return geometry;
+  if (refinement.start != StartSource::pairs || std::ranges::none_of(links, contradicts_fit)) return geometry;
   auto other = refine_from(StartSource::search);
   if (!other || !other->negative_log_likelihood ||
       *other->negative_log_likelihood > *geometry.negative_log_likelihood - min_likelihood_gain)
@@ -137,6 +148,22 @@ Identification assemble_chain(const OrderedMotion& ordered, std::vector<JointRes
   set_closures(result.chain, result.root, result.loops);
   set_tool(result.chain, result.places);
   return result;
+}
+
+/// The chain of both logs together, where the machine is known and the fit has a covariance.
+std::optional<ChainUpdate> update_known(ChainGeometry& geometry, const IdentifyOptions& options) {
+  if (!options.refine.known || !geometry.tracking) return std::nullopt;
+  UpdatedGeometry updated = update_geometry(*options.refine.known, std::move(geometry));
+  geometry = std::move(updated.geometry);
+  return std::move(updated.update);
+}
+
+std::vector<Finding> findings_about(const ChainUpdate& update, const TrackingModel& known) {
+  if (!update.is_other_machine) return {};
+  return {{.kind = FindingKind::other_machine,
+           .severity = Severity::fault,
+           .values = {{"changes", static_cast<int>(update.changes.size())},
+                      {"sensors", static_cast<int>(known.sensors.size())}}}};
 }
 
 /// Findings in the order in which the faults were found: excluded parts, order, clocks.
@@ -176,19 +203,48 @@ void judge_given_links(Identification& given, const InsRecording& recording, Ide
                        const Observer& observer) {
   if (!contradicts_given_links(given)) return;
   options.tree.clear();
+  options.refine.known.reset();
+  options.refine.start = StartSource::pairs;
   if (const auto estimated = identify_machine(recording, options, rng, observer)) weigh_given_links(given, *estimated);
+}
+
+/// The options with the structure of the known machine in place of one that is searched.
+Result<IdentifyOptions> with_known_structure(const InsRecording& log, IdentifyOptions options) {
+  if (!options.refine.known) return options;
+  const TrackingModel& known = *options.refine.known;
+  if (const auto checked = check_sensors(known, log); !checked) return forward_error(checked.error());
+  options.sensors = sensor_names(known);
+  options.root = root_sensor(known);
+  options.tree = links_of(known);
+  options.refine.start = StartSource::known;
+  return options;
+}
+
+/// The known machine's joints take the order of the recording's segments.
+void take_order(IdentifyOptions& options, const OrderedMotion& ordered) {
+  if (options.refine.known)
+    options.refine.known = in_order_of(ordered.tree, segment_names(ordered.motion), *options.refine.known);
+}
+
+Result<void> check_known(const IdentifyOptions& options, const InsRecording& used) {
+  if (!options.refine.known) return {};
+  std::vector<std::string> names;
+  for (const InsSensor& sensor : used.sensors) names.push_back(sensor.name);
+  return check_segments(*options.refine.known, names);
 }
 
 }  // namespace
 
-Result<Identification> identify_machine(const InsRecording& log, const IdentifyOptions& options, const Rng& rng,
+Result<Identification> identify_machine(const InsRecording& log, const IdentifyOptions& given, const Rng& rng,
                                         const Observer& observer) {
-  if (const auto checked = check(options); !checked) return forward_error(checked.error());
+  if (const auto checked = check(given); !checked) return forward_error(checked.error());
+  KINFER_TRY(options, with_known_structure(log, given));
   KINFER_TRY(named, named_part(log, options.sensors));
   KINFER_TRY(diagnosis, diagnose_log(named ? *named : log, options.threads));
   const InsRecording& recording = diagnosis.of(named ? *named : log);
   KINFER_TRY(session, Session::open(recording, options.sensors, options.root, options.motion, options.threads));
   for (;;) {
+    if (const auto known = check_known(options, session.recording()); !known) return forward_error(known.error());
     KINFER_TRY(ordered,
                order_segments(session.recording(), options.motion, options.root, options.threads, options.tree));
     const auto connections = tree_connections(ordered.motion, ordered.tree, options.threads);
@@ -197,19 +253,22 @@ Result<Identification> identify_machine(const InsRecording& log, const IdentifyO
       if (const auto done = session.restrict_to(std::move(*part)); !done) return forward_error(done.error());
       continue;
     }
-    const auto types = types_of(ordered, connections);
-    KINFER_TRY(links, search_links(ordered, types, link_search_options(options), rng, observer));
+    take_order(options, ordered);
+    KINFER_TRY(links, initial_joints(ordered, connections, options, rng, observer));
     KINFER_TRY(geometry, final_geometry(links, session, ordered, connections, options, observer));
     if (session.update_clocks(geometry.clocks)) continue;
     if (!geometry.tracking && !options.refine.zeros.empty())
       return error("--zero: no joint positions were found in this recording");
 
+    std::optional<ChainUpdate> update = update_known(geometry, options);
     Identification result = assemble_chain(ordered, std::move(links), geometry, options);
     result.motion = motion_evidence(ordered.motion, result, geometry.held_out);
     OrderReport order = report_order(ordered, geometry.loops);
     ClockReport clocks = session.report_clocks(geometry.clocks, groups_on_ground(ordered));
     append(result.findings, diagnosis.findings);
     report_findings(result, session, ordered, order, clocks);
+    if (update) append(result.findings, findings_about(*update, *options.refine.known));
+    result.update = std::move(update);
     result.notes = std::move(order.notes);
     append(result.notes, geometry.notes);
     append(result.notes, assumptions_of(session.recording()));

@@ -120,6 +120,32 @@ TEST(EvidenceRoundTrip, ValuesOfAnIdentificationComeBack) {
   EXPECT_EQ(e.order.phases[0].moves, (std::vector<bool>{true, false, true}));
 }
 
+TEST(EvidenceRoundTrip, WhatChangedSinceAnEarlierIdentificationComesBack) {
+  Identification updated = rich_identification();
+  updated.update = ChainUpdate{
+      .changes = {{ChainChangeKind::sensor_moved, "s<1>", "s<1>", "s<1>-s2", ChangeSize{0.02, 1e-4}, {}, 12.5},
+                  {ChainChangeKind::joint_moved, "s0-s<1>", "s0", "", {}, ChangeSize{0.03, 2e-3}, 4.0}},
+      .parts = {{"s0-s<1>", "s0", ChainPartQuantity::point, 0.03, 1e-3, 900.0, 3}},
+      .squared_distance = 12.0,
+      .freedom = 20,
+      .is_other_machine = true};
+  const std::string text = written(updated);
+  const auto read = read_identification_evidence(text);
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(format_identification_evidence(*read), text);
+  ASSERT_TRUE(read->update);
+  const ChainChange &sensor = read->update->changes[0].change, &joint = read->update->changes[1].change;
+  EXPECT_EQ(sensor.angle->value, 0.02);
+  EXPECT_FALSE(sensor.distance);
+  EXPECT_EQ(sensor.alternative, "s<1>-s2");
+  EXPECT_EQ(joint.kind, ChainChangeKind::joint_moved);
+  EXPECT_EQ(joint.distance->sd, 2e-3);
+  EXPECT_EQ(read->update->parts[0].quantity, ChainPartQuantity::point);
+  EXPECT_EQ(read->update->freedom, 20);
+  EXPECT_TRUE(read->update->is_other_machine);
+  EXPECT_FALSE(read_identification_evidence(written(rich_identification())).value().update);
+}
+
 TEST(EvidenceRoundTrip, ATreeWithoutAlternativeHasNoMargin) {
   Identification two_sensors = rich_identification();
   two_sensors.order.margin = std::nullopt;

@@ -96,6 +96,7 @@ std::string verdict_list(const std::vector<JointVerdict>& verdicts) {
 }
 
 std::string fit_table(const std::vector<LinkEvidence>& searches) {
+  if (searches.empty()) return "";
   std::string text = fmt::format("{:<12} {:>12} {:>12} {:>12} {:>14} {:>12}\n", "J_RMSE", "accel. m/s2", "orient. rad",
                                  "total", "not fitted", "evaluations");
   for (const LinkEvidence& s : searches)

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "kinfer/cli/options/drive_choices.hpp"
@@ -16,6 +17,7 @@
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/sweep/task_context.hpp"
+#include "kinfer/cli/tracking/tracked_chain.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/files/identification_files.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
@@ -24,6 +26,18 @@
 
 namespace kinfer::cli {
 namespace {
+
+/// Its folder, of a chain.toml; a folder itself.
+std::string folder_of_chain(const std::string& path) {
+  const std::filesystem::path file(path);
+  if (file.filename() != "chain.toml") return path;
+  return file.has_parent_path() ? file.parent_path().string() : ".";
+}
+
+std::vector<std::string> chain_files(const std::string& path) {
+  const std::filesystem::path folder(folder_of_chain(path));
+  return {folder / "chain.toml", folder / "track.toml"};
+}
 
 /// Settings of a search engine; its own defaults where not given.
 struct EngineArguments {
@@ -39,7 +53,7 @@ struct IdentifyArguments {
   double smoothing = SegmentMotionOptions{}.smoothing;
   EngineArguments search;
   int links = 0;
-  std::string geometry = "refined", grade = "auto", facts, sensors, tree, zero, columns;
+  std::string geometry = "refined", grade = "auto", facts, sensors, tree, zero, columns, update;
 };
 
 std::vector<std::string> split_at_commas(const std::string& text) {
@@ -131,6 +145,17 @@ Result<identify::LinkEngine> engine_from(const CLI::App& verb, const EngineArgum
   return make_engine(engine, search);
 }
 
+/// Nothing is searched in an update.
+Result<void> check_update_options(const CLI::App& verb) {
+  std::vector<std::string> ineffective;
+  for (const char* name : {"--engine", "--terminals", "--rows"})
+    if (was_given(verb, name)) ineffective.emplace_back(name);
+  for (const EngineOption& option : engine_options())
+    if (was_given(verb, option.name)) ineffective.emplace_back(option.name);
+  if (ineffective.empty()) return {};
+  return error("{}: no effect with --update, which searches nothing", fmt::join(ineffective, ", "));
+}
+
 Result<identify::IdentifyOptions> identify_options(const CLI::App& verb, const IdentifyArguments& options) {
   identify::IdentifyOptions how;
   const auto filter = filter_named(options.filter);
@@ -156,6 +181,11 @@ Result<identify::IdentifyOptions> identify_options(const CLI::App& verb, const I
     KINFER_TRY(facts, read_machine_facts(options.facts));
     how.refine.facts = facts;
   }
+  if (!options.update.empty()) {
+    if (auto checked = check_update_options(verb); !checked) return forward_error(checked.error());
+    KINFER_TRY(chain, read_tracked_chain(folder_of_chain(options.update), ""));
+    how.refine.known = std::move(chain.model);
+  }
   how.threads = options.common.threads;
   if (const auto checked = identify::check(how); !checked) return forward_error(checked.error());
   return how;
@@ -165,6 +195,7 @@ Provenance provenance_of(const IdentifyArguments& options, const identify::Ident
   std::vector<std::string> inputs = options.logs;
   if (!options.facts.empty()) inputs.push_back(options.facts);
   if (!options.columns.empty()) inputs.push_back(options.columns);
+  if (!options.update.empty()) std::ranges::copy(chain_files(options.update), std::back_inserter(inputs));
   return {.inputs = fingerprints(inputs), .options = identify::describe(how), .seed = options.common.seed};
 }
 
@@ -186,6 +217,8 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   for (const std::string& path : options.logs) record.add_input(path);
   if (!options.facts.empty()) record.add_input(options.facts);
   if (!options.columns.empty()) record.add_input(options.columns);
+  if (!options.update.empty())
+    for (const std::string& path : chain_files(options.update)) record.add_input(path);
   const auto how = identify_options(verb, options);
   if (!how) return fail(how.error());
   const auto recording = read_ins_logs({options.logs, options.columns, options.topics}, options.common);
@@ -239,7 +272,9 @@ Verb add_identify(CLI::App& app) {
       add_command(app, "identify", "Find the chain of an unknown machine from one INS on each segment",
                   "Let the machine rest for a few seconds, move joint after joint, then all together.\nExample:\n"
                   "  kinfer simulate excavator --out drive --grade noise\n"
-                  "  kinfer identify drive/imu.csv --out excavator");
+                  "  kinfer identify drive/imu.csv --out excavator\n"
+                  "What changed since, after a knock or a repair:\n"
+                  "  kinfer identify --update excavator drive/imu.csv --out excavator-new");
   auto options = std::make_shared<IdentifyArguments>();
   add_texts(*verb, "logs", options->logs, "INS recordings", Requirement::required, "CSV");
   add_text(*verb, "--out", options->out,
@@ -271,6 +306,11 @@ Verb add_identify(CLI::App& app) {
       "Zeros of joint positions, as swing=0deg@12.5s,mast=250mm@3s: the joint that moves the sensor swing was at 0° "
       "12.5 s into the log (default: 0 where the log begins)",
       Requirement::optional, "JOINTS");
+  add_text(
+      *verb, "--update", options->update,
+      "Folder of an earlier identification of this machine: its structure is kept, what changed since is said, and "
+      "the new chain is that of both logs",
+      Requirement::optional, "CHAIN");
   add_count(*verb, "--links", options->links, 0, 1000, "Links to find, from the root outwards; 0 means all");
   add_log_options(*verb, options->columns, options->topics);
   add_engine_options(*verb, options->search);

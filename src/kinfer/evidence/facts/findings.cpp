@@ -42,6 +42,7 @@ constexpr std::array named_kinds{
     NamedKind{FindingKind::linkage, "linkage"},
     NamedKind{FindingKind::no_joint, "no_joint"},
     NamedKind{FindingKind::not_connected, "not_connected"},
+    NamedKind{FindingKind::other_machine, "other_machine"},
     NamedKind{FindingKind::mixed_recording, "mixed_recording"},
     NamedKind{FindingKind::duplicate_sensor, "duplicate_sensor"},
     NamedKind{FindingKind::idle, "idle"},

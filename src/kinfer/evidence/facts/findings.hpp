@@ -52,6 +52,7 @@ enum class FindingKind {
   linkage,                  ///< a sensor on a bar of a linkage
   no_joint,                 ///< a sensor that shares no joint with the others
   not_connected,            ///< sensors that have nothing to do with the others
+  other_machine,            ///< too much differs from the chain that is updated
   mixed_recording,          ///< a sensor that is connected with the others in a part of the recording only
   duplicate_sensor,         ///< two sensors hold the same measurements
   idle,                     ///< sensors that never move

@@ -11,6 +11,7 @@
 
 #include "kinfer/evidence/facts/findings.hpp"
 #include "kinfer/evidence/facts/verdict.hpp"
+#include "kinfer/evidence/identification/chain_update.hpp"
 #include "kinfer/evidence/identification/identification_facts.hpp"
 #include "kinfer/evidence/identification/joint_estimate.hpp"
 #include "kinfer/evidence/identification/joint_verdict.hpp"
@@ -140,6 +141,7 @@ struct Identification {
   /// do_not_use: a fault that was not corrected, or a joint against which the evidence is; use_with_care: a joint is
   /// less certain or less accurate than wanted.
   Usability usability = Usability::use;
+  std::optional<ChainUpdate> update{};  ///< what changed since an earlier identification, whose chain this one updates
   std::optional<TrackingModel> tracking{};  ///< of the continuous-time fit; none where the search's geometry is used
 };
 

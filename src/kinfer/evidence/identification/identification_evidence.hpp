@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -78,6 +79,22 @@ struct StructureSearchRecord {
 FitRecord fit_record(const std::vector<LinkEvidence>& searches);
 StructureSearchRecord structure_search_record(const Identification& identification);
 
+/// A change of the machine with its sentence.
+struct ChainChangeRecord {
+  ChainChange change{};
+  std::string sentence{};
+};
+
+/// What changed on the machine since the identification whose chain was updated.
+struct ChainUpdateRecord {
+  std::string sentence{};
+  std::vector<ChainChangeRecord> changes{};  ///< most certain first
+  std::vector<ChainPartComparison> parts{};
+  double squared_distance = 0.0;  ///< like the next two, as in ChainUpdate
+  int freedom = 0;
+  bool is_other_machine = false;
+};
+
 struct IdentificationEvidence {
   VerdictRecord verdict{};
   std::vector<FindingRecord> findings{};
@@ -96,6 +113,7 @@ struct IdentificationEvidence {
   FitRecord fit{};
   StructureSearchRecord search{};
   MotionEvidence motion{};
+  std::optional<ChainUpdateRecord> update{};  ///< of `identify --update`
   ProvenanceRecord provenance{};
 };
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "kinfer/geometry/fit.hpp"
+#include "kinfer/identify/geometry/thresholds.hpp"
 #include "kinfer/inertial/joint_signals.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
@@ -155,6 +156,24 @@ std::pair<Vec3, Vec3> universal_axes(const SensorPair& pair) {
   return {a, b};
 }
 
+/// q1, q2 of parent_R_child = A Rz(q1) C Rz(q2) Bᵀ, unwrapped.
+std::vector<std::vector<double>> universal_positions(const SensorPair& pair, const Mat3& a, const Mat3& c,
+                                                     const Mat3& b) {
+  std::vector<std::vector<double>> positions(2);
+  for (std::size_t row = 0; row < pair.motion.rows(); ++row) {
+    const Mat3 m = a.transpose() * relative_rotation(pair.parent, pair.child, row) * b;
+    const double sense = c(0, 2) < 0.0 ? -1.0 : 1.0;  // C z = (sin, 0, cos) of the angle between the axes
+    const double q1 = std::atan2(sense * m(1, 2), sense * m(0, 2));
+    const Mat3 rest = c.transpose() * rot_z(-q1) * m;
+    const std::array<double, 2> q{q1, std::atan2(rest(1, 0) - rest(0, 1), rest(0, 0) + rest(1, 1))};
+    for (std::size_t k = 0; k < 2; ++k) {
+      auto& position = positions[k];
+      position.push_back(position.empty() ? q[k] : position.back() + wrap_to_pi(q[k] - position.back()));
+    }
+  }
+  return positions;
+}
+
 /// parent_R_child = A Rz(q1) C Rz(q2) Bᵀ, C takes z to the second axis in the intermediate body.
 void start_universal(InitialJoint& start, const SensorPair& pair) {
   const auto [first, second] = universal_axes(pair);
@@ -169,17 +188,7 @@ void start_universal(InitialJoint& start, const SensorPair& pair) {
   const double tilt = angle_between(first, Vec3(home * second));
   const Mat3 c = rot_y(tilt);
   const Mat3 b = frame_with_z_along(second);
-  start.joint_positions.resize(2);
-  for (std::size_t row = 0; row < motion.rows(); ++row) {
-    const Mat3 m = a.transpose() * relative_rotation(pair.parent, pair.child, row) * b;
-    const double q1 = std::atan2(m(1, 2), m(0, 2));
-    const Mat3 rest = c.transpose() * rot_z(-q1) * m;
-    const std::array<double, 2> q{q1, std::atan2(rest(1, 0) - rest(0, 1), rest(0, 0) + rest(1, 1))};
-    for (std::size_t k = 0; k < 2; ++k) {
-      auto& position = start.joint_positions[k];
-      position.push_back(position.empty() ? q[k] : position.back() + wrap_to_pi(q[k] - position.back()));
-    }
-  }
+  start.joint_positions = universal_positions(pair, a, c, b);
   start.bodies = {revolute_body(-1, -1, a, Mat3::Identity()), revolute_body(-1, -1, c, b)};
   InsBody &near = start.bodies[0], &far = start.bodies[1];
   near.free_child_rotation = {};
@@ -187,15 +196,47 @@ void start_universal(InitialJoint& start, const SensorPair& pair) {
   near.free_point_in_child = far.free_point_in_parent = false;
 }
 
+SensorPair sensor_pair(const RecordedMotion& motion, const SegmentTree& tree, std::size_t parent, std::size_t child) {
+  const PairFit& fit = tree.pair(parent, child);
+  const bool in_order = fit.first == parent;
+  return {motion, motion.segments[parent], motion.segments[child], in_order ? fit.point_in_first : fit.point_in_second,
+          in_order ? fit.point_in_second : fit.point_in_first};
+}
+
+/// Whether the outer axes of a joint are where they are known to be, whatever their sense.
+bool has_known_axes(const InitialJoint& found, std::span<const InsBody> known) {
+  const auto is_near = [](const Vec3& a, const Vec3& b) { return std::abs(a.dot(b)) > std::cos(max_known_axis_error); };
+  return is_near(found.bodies.front().parent_R_axis.col(2), known.front().parent_R_axis.col(2)) &&
+         is_near(found.bodies.back().child_R_axis.col(2), known.back().child_R_axis.col(2));
+}
+
+/// Of a revolute or prismatic joint: the sense of its positions is that of its axis.
+void take_sense(InitialJoint& start, const InsBody& known) {
+  InsBody& body = start.bodies.front();
+  if (body.parent_R_axis.col(2).dot(known.parent_R_axis.col(2)) >= 0.0) return;
+  body.parent_R_axis = body.parent_R_axis * rot_x(std::numbers::pi);
+  body.child_R_axis = body.child_R_axis * rot_x(std::numbers::pi);
+  for (double& position : start.joint_positions.front()) position = -position;
+}
+
+void take_known(InitialJoint& start, const SensorPair& pair, std::span<const InsBody> known) {
+  const int sensor = start.bodies.back().sensor;
+  start.bodies.assign(known.begin(), known.end());
+  start.bodies.back().sensor = sensor;
+  const Mat3 &a = known.front().parent_R_axis, &b = known.back().child_R_axis;
+  if (start.type == EstimatedJointType::revolute)
+    start.joint_positions = {revolute_positions(pair.motion, pair.parent, pair.child, a, b)};
+  if (start.type == EstimatedJointType::universal)
+    start.joint_positions = universal_positions(pair, a, known.back().parent_R_axis, b);
+  if (start.type == EstimatedJointType::prismatic)
+    start.joint_positions = {prismatic_positions(pair.motion, pair.parent, pair.child, a.col(2))};
+}
+
 }  // namespace
 
 InitialJoint estimate_initial_joint(const RecordedMotion& motion, const SegmentTree& tree, std::size_t parent,
                                     std::size_t child, EstimatedJointType type) {
-  const PairFit& fit = tree.pair(parent, child);
-  const bool in_order = fit.first == parent;
-  const SensorPair pair{motion, motion.segments[parent], motion.segments[child],
-                        in_order ? fit.point_in_first : fit.point_in_second,
-                        in_order ? fit.point_in_second : fit.point_in_first};
+  const SensorPair pair = sensor_pair(motion, tree, parent, child);
   InitialJoint start{.parent = parent, .child = child, .type = type};
   if (type == EstimatedJointType::prismatic || type == EstimatedJointType::rigid) {
     start_prismatic_or_rigid(start, pair);
@@ -223,6 +264,21 @@ InitialJoint initial_joint_at(const RecordedMotion& motion, std::size_t parent, 
   body.point_in_child = revolute.point_in_child;
   body.free_point_in_parent = body.free_point_in_child = true;
   body.sensor = static_cast<int>(child);
+  return start;
+}
+
+InitialJoint initial_joint_from(const RecordedMotion& motion, const SegmentTree& tree, std::size_t parent,
+                                std::size_t child, EstimatedJointType type, std::span<const InsBody> known) {
+  InitialJoint start = estimate_initial_joint(motion, tree, parent, child, type);
+  const bool has_one_axis = type == EstimatedJointType::revolute || type == EstimatedJointType::prismatic;
+  if (type == EstimatedJointType::spherical) {
+    start.bodies.front().point_in_parent = known.front().point_in_parent;
+    start.bodies.back().point_in_child = known.back().point_in_child;
+  } else if (has_known_axes(start, known) || !(has_one_axis || type == EstimatedJointType::rigid)) {
+    take_known(start, sensor_pair(motion, tree, parent, child), known);
+  } else if (has_one_axis) {
+    take_sense(start, known.front());
+  }
   return start;
 }
 

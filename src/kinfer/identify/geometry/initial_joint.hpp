@@ -3,6 +3,8 @@
 // enough for the continuous-time fit to converge.
 #pragma once
 
+#include <span>
+
 #include "kinfer/estimate/continuous/model/chain_propagation.hpp"
 #include "kinfer/evidence/identification/identification.hpp"
 #include "kinfer/identify/structure/segment_tree.hpp"
@@ -25,5 +27,11 @@ InitialJoint estimate_initial_joint(const RecordedMotion& motion, const SegmentT
 /// positions as above.
 InitialJoint initial_joint_at(const RecordedMotion& motion, std::size_t parent, std::size_t child,
                               const JointEstimate& revolute);
+
+/// A joint whose bodies are known from an earlier identification, but for the sensors' biases and the joint positions.
+/// Where the recording says otherwise of its axes, by more than the pair of sensors alone may err, as
+/// estimate_initial_joint; axes keep their sense.
+InitialJoint initial_joint_from(const RecordedMotion& motion, const SegmentTree& tree, std::size_t parent,
+                                std::size_t child, EstimatedJointType type, std::span<const InsBody> known);
 
 }  // namespace kinfer::identify

@@ -19,6 +19,11 @@ inline constexpr double parallel_probability = 0.05, skew_probability = 0.95;
 /// Sine of the angle between two lines below which Hayati's angle beta replaces d. Data not recorded.
 inline constexpr double max_hayati_sine = 0.1;
 
+/// [rad] Angle between an axis known from an earlier identification and the one that its two sensors show alone, from
+/// which a fit begins at the latter: a sensor was remounted. Larger begins more fits at what is known. A judgement:
+/// pairs of sensors show an axis to a few degrees, and a fit converges from three times as far.
+inline constexpr double max_known_axis_error = 0.2;
+
 /// [m] A lever direction of the searched geometry with a larger standard deviation is unobservable. Data not recorded.
 inline constexpr double max_lever_sd = 0.5;
 

@@ -17,8 +17,9 @@ namespace kinfer::identify {
 
 /// Where the fit begins.
 enum class StartSource {
-  pairs,  ///< each joint from its two sensors alone
-  search  ///< each revolute joint as the search of its link found it
+  pairs,   ///< each joint from its two sensors alone
+  search,  ///< each revolute joint as the search of its link found it
+  known    ///< each joint as in RefinementOptions::known
 };
 
 /// Whether kinematic loops are searched and closed in the fit.
@@ -32,8 +33,9 @@ struct RefinementOptions {
   ClockTreatment clocks = ClockTreatment::checked;
   StartSource start = StartSource::pairs;  ///< of refine_geometry
   LoopTreatment loops = LoopTreatment::closed;
-  std::vector<NamedZero> zeros{};  ///< of joint positions; else each is 0 where the recording begins
-  bool hold_out = true;            ///< fit once more without some time windows, to test the chain's predictions
+  std::vector<NamedZero> zeros{};        ///< of joint positions; else each is 0 where the recording begins
+  std::optional<TrackingModel> known{};  ///< the machine as identified before: its structure is kept
+  bool hold_out = true;                  ///< fit once more without some time windows, to test the chain's predictions
 };
 
 struct Refinement {

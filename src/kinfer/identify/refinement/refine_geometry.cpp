@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/identify/handover/known_joint.hpp"
 #include "kinfer/identify/refinement/thresholds.hpp"
 
 namespace kinfer::identify {
@@ -40,12 +41,22 @@ void add_passband_notes(std::vector<IdentificationNote>& notes, const Refinement
                         {"axis_deviation", joint.mean->axis_deviation}}});
 }
 
+std::vector<InitialJoint> known_starts(const TrackingModel& known, const RecordedMotion& motion,
+                                       const SegmentTree& tree) {
+  std::vector<InitialJoint> starts;
+  for (const KnownJoint& joint : known_joints(known))
+    starts.push_back(initial_joint_from(motion, tree, segment_named(motion, joint.parent),
+                                        segment_named(motion, joint.child), joint.type, joint.bodies));
+  return starts;
+}
+
 std::vector<InitialJoint> make_starts(const std::vector<JointEstimate>& joints, const RecordedMotion& motion,
-                                      const SegmentTree& tree, StartSource source) {
+                                      const SegmentTree& tree, const RefinementOptions& options) {
+  if (options.start == StartSource::known) return known_starts(*options.known, motion, tree);
   std::vector<InitialJoint> starts;
   for (const JointEstimate& joint : joints) {
     const std::size_t parent = segment_named(motion, joint.parent), child = segment_named(motion, joint.child);
-    const bool from_search = source == StartSource::search && joint.type == EstimatedJointType::revolute;
+    const bool from_search = options.start == StartSource::search && joint.type == EstimatedJointType::revolute;
     starts.push_back(from_search ? initial_joint_at(motion, parent, child, joint)
                                  : estimate_initial_joint(motion, tree, parent, child, joint.type));
   }
@@ -57,9 +68,10 @@ std::vector<InitialJoint> make_starts(const std::vector<JointEstimate>& joints, 
 Result<ChainGeometry> refine_geometry(ChainGeometry searched, const InsRecording& recording,
                                       const RecordedMotion& motion, const SegmentTree& tree,
                                       const RefinementOptions& options, const Observer& observer) {
-  const auto starts = make_starts(searched.joints, motion, tree, options.start);
+  const auto starts = make_starts(searched.joints, motion, tree, options);
   auto refined = refine(recording, motion, tree, starts, options, observer);
-  if (!refined && !(options.facts.empty() && options.zeros.empty())) return forward_error(refined.error());
+  if (!refined && !(options.facts.empty() && options.zeros.empty() && !options.known))
+    return forward_error(refined.error());
   if (!refined) {
     searched.notes.push_back({IdentificationNoteKind::refinement_failed, {{"reason", refined.error().what}}});
     return searched;

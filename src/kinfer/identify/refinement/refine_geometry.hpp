@@ -22,7 +22,8 @@ struct ChainGeometry {
 };
 
 /// Fits the joints of the search to the whole recording; the joint types are kept. If the fit fails, the geometry of
-/// the search is returned with a note on the reason; with facts or named zeros, this is an error.
+/// the search is returned with a note on the reason; with facts, named zeros or a known machine, this is an
+/// error.
 Result<ChainGeometry> refine_geometry(ChainGeometry searched, const InsRecording& recording,
                                       const RecordedMotion& motion, const SegmentTree& tree,
                                       const RefinementOptions& options, const Observer& observer = {});

@@ -10,6 +10,7 @@
 #include "kinfer/words/identification/joint_verdict.hpp"
 #include "kinfer/words/identification/notes.hpp"
 #include "kinfer/words/identification/unobservable.hpp"
+#include "kinfer/words/identification/update.hpp"
 #include "kinfer/words/identification/verdict.hpp"
 
 namespace kinfer {
@@ -45,6 +46,18 @@ std::vector<ClockRecord> clock_records(const std::vector<SensorClockEstimate>& c
   return records;
 }
 
+std::optional<ChainUpdateRecord> update_record(const std::optional<ChainUpdate>& update) {
+  if (!update) return std::nullopt;
+  ChainUpdateRecord record{.sentence = words::update_sentence(*update),
+                           .changes = {},
+                           .parts = update->parts,
+                           .squared_distance = update->squared_distance,
+                           .freedom = update->freedom,
+                           .is_other_machine = update->is_other_machine};
+  for (const ChainChange& change : update->changes) record.changes.push_back({change, words::change_sentence(change)});
+  return record;
+}
+
 }  // namespace
 
 IdentificationEvidence identification_evidence(const Identification& i, const Provenance& provenance) {
@@ -65,6 +78,7 @@ IdentificationEvidence identification_evidence(const Identification& i, const Pr
           .fit = fit_record(i.searches),
           .search = structure_search_record(i),
           .motion = rounded(i.motion),
+          .update = update_record(i.update),
           .provenance = provenance_record(provenance)};
 }
 

@@ -29,6 +29,7 @@ void fields(Archive& a, Value<Archive, IdentificationEvidence>& e) {
   a("fit", e.fit);
   a("search", e.search);
   a("motion", e.motion);
+  a.when(e.update.has_value(), "update", e.update);
   a.later("provenance", e.provenance);
 }
 

@@ -108,6 +108,7 @@ Page identification_page(const IdentificationEvidence& e) {
                        {"What is uncertain?", how_uncertain(e)},
                        {"What to do next?", advice_list(e.next, 3)}});
   page.sections = {joints_section(e), order_section(e), dh_section(e), fit_section(e), unobservable_section(e)};
+  if (e.update) page.sections.insert(page.sections.begin(), update_section(e));
   if (!e.findings.empty()) page.sections.push_back(recording_section(e));
   for (html::Section section : {search_section(e), next_section(e.next), identification_glossary(),
                                 repeat_section(e.provenance), notices_section()})

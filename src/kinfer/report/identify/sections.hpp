@@ -16,6 +16,7 @@ html::Section dh_section(const IdentificationEvidence& evidence);
 html::Section fit_section(const IdentificationEvidence& evidence);
 html::Section unobservable_section(const IdentificationEvidence& evidence);
 html::Section recording_section(const IdentificationEvidence& evidence);  ///< findings about the recording
+html::Section update_section(const IdentificationEvidence& evidence);  ///< what changed since the chain that is updated
 html::Section search_section(const IdentificationEvidence& evidence);
 
 }  // namespace kinfer::report

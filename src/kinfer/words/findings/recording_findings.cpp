@@ -103,6 +103,17 @@ std::string not_connected_suggestion(const Finding&) {
                 "check that all sensors were on one machine and recorded at the same time, and their units and clocks");
 }
 
+std::string other_machine_sentence(const Finding& f) {
+  return phrase("other_machine",
+                "{} changes are needed to bring the older chain to this log, on a machine of {} sensors: the log is "
+                "of another machine, or all of it was mounted anew",
+                f.values.count("changes"), f.values.count("sensors"));
+}
+
+std::string other_machine_suggestion(const Finding&) {
+  return phrase("other_machine.suggestion", "identify this log by itself, without --update");
+}
+
 std::string mixed_recording_sentence(const Finding& f) {
   return phrase(
       "mixed_recording",
@@ -195,6 +206,7 @@ constexpr std::array recording_finding_words{
     FindingWords{FindingKind::linkage, linkage_sentence, no_joint_suggestion},
     FindingWords{FindingKind::no_joint, no_joint_sentence, no_joint_suggestion},
     FindingWords{FindingKind::not_connected, not_connected_sentence, not_connected_suggestion},
+    FindingWords{FindingKind::other_machine, other_machine_sentence, other_machine_suggestion},
     FindingWords{FindingKind::mixed_recording, mixed_recording_sentence, mixed_recording_suggestion},
     FindingWords{FindingKind::duplicate_sensor, duplicate_sensor_sentence, duplicate_sensor_suggestion},
     FindingWords{FindingKind::idle, idle_sentence, idle_suggestion},

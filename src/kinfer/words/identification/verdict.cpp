@@ -8,6 +8,7 @@
 #include "kinfer/words/findings/findings.hpp"
 #include "kinfer/words/identification/forecast.hpp"
 #include "kinfer/words/identification/joint_verdict.hpp"
+#include "kinfer/words/identification/update.hpp"
 #include "kinfer/words/language.hpp"
 
 namespace kinfer::words {
@@ -90,6 +91,7 @@ VerdictText parts_of_verdict(const Identification& result) {
     texts.push_back(phrase("no_certain_joint", "no joint is certain"));
   if (const std::string part = usable_part_sentence(result); !part.empty() && !texts.empty()) texts.push_back(part);
   texts.push_back(joints_text(result));
+  if (result.update) texts.push_back(update_sentence(*result.update));
   texts.push_back(prediction_text(result.prediction));
   if (result.search_method == LinkSearchMethod::enumeration) texts.push_back(certificate_text(result.searches));
   std::ranges::move(warnings(result.findings), std::back_inserter(texts));

@@ -89,6 +89,51 @@ void fields(Archive& a, Value<Archive, LoopEstimate>& loop) {
   a("log_odds", loop.log_odds);
 }
 
+/// What the logs do not tell is left out.
+template <class Archive>
+void size_fields(Archive& a, Value<Archive, std::optional<ChangeSize>>& size, const char* key, const char* sd_key) {
+  ChangeSize s = size.value_or(ChangeSize{.value = std::numeric_limits<double>::quiet_NaN()});
+  a.when(size.has_value(), key, s.value);
+  a.when(size.has_value(), sd_key, s.sd);
+  if constexpr (!Archive::is_writer)
+    if (std::isfinite(s.value)) size = s;
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, ChainChangeRecord>& record) {
+  auto& change = record.change;
+  a("kind", change.kind);
+  a("name", change.name);
+  a("segment", change.segment);
+  a.when(!change.alternative.empty(), "alternative", change.alternative);
+  size_fields(a, change.angle, "angle_rad", "angle_sd_rad");
+  size_fields(a, change.distance, "distance_m", "distance_sd_m");
+  a("log_odds", change.log_odds);
+  a("sentence", record.sentence);
+}
+
+/// The difference of an axis is in rad, that of a point in m.
+template <class Archive>
+void fields(Archive& a, Value<Archive, ChainPartComparison>& part) {
+  a("joint", part.joint);
+  a("sensor", part.sensor);
+  a("quantity", part.quantity);
+  a("difference", part.difference);
+  a("sd", part.sd);
+  a("squared_distance", part.squared_distance);
+  a("freedom", part.freedom);
+}
+
+template <class Archive>
+void fields(Archive& a, Value<Archive, ChainUpdateRecord>& update) {
+  a("sentence", update.sentence);
+  a("changes", update.changes);
+  a("parts", update.parts);
+  a("squared_distance", update.squared_distance);
+  a("freedom", update.freedom);
+  a("is_other_machine", update.is_other_machine);
+}
+
 /// Only where the axes are nearly parallel.
 template <class Archive>
 void pin_fields(Archive& a, Value<Archive, std::optional<PinDistance>>& pin) {

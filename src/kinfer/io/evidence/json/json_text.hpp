@@ -57,6 +57,10 @@ inline constexpr auto last<UnobservableRemedy> = UnobservableRemedy::move_joint;
 template <>
 inline constexpr auto last<LinkSearchMethod> = LinkSearchMethod::enumeration;
 template <>
+inline constexpr auto last<ChainChangeKind> = ChainChangeKind::joint_moved;
+template <>
+inline constexpr auto last<ChainPartQuantity> = ChainPartQuantity::point;
+template <>
 inline constexpr auto last<TraceQuantity> = TraceQuantity::angular_velocity;
 template <>
 inline constexpr auto last<TraceFrame> = TraceFrame::sensor;

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Chains updated by another drive of the same simulated machine: as it was, after a sensor was turned, after a pin was
+// moved, and by the log of another machine. `--machine NAME`, `--first N`, `--seeds N`, `--grade NAME`, `--cases
+// same,turned,pin,other`.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <string_view>
+
+#include "kinfer/identify/pipeline.hpp"
+#include "studies/studies.hpp"
+#include "studies/update/drives.hpp"
+
+namespace kinfer::study::update_study {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr double turned_by = 1.0 * degree, moved_by = 0.02;  // [rad], [m]
+
+struct Arguments {
+  std::string machine = "excavator-general", grade = "industrial", cases = "same,turned,pin,other";
+  int first_seed = 1, seeds = 1;
+};
+
+Arguments parse(int count, char** values) {
+  Arguments a;
+  for (int i = 1; i + 1 < count; i += 2) {
+    const std::string_view key = values[i], value = values[i + 1];
+    if (key == "--machine") a.machine = value;
+    if (key == "--grade") a.grade = value;
+    if (key == "--cases") a.cases = value;
+    if (key == "--first") a.first_seed = std::atoi(values[i + 1]);
+    if (key == "--seeds") a.seeds = std::atoi(values[i + 1]);
+  }
+  return a;
+}
+
+std::string size_text(const std::optional<ChangeSize>& size, double unit, const char* name) {
+  return size ? fmt::format(" {:.3f} ± {:.3f} {}", size->value / unit, size->sd / unit, name) : "";
+}
+
+std::string text_of(const ChainUpdate& update) {
+  std::string text = fmt::format("chi² {:.0f}/{}", update.squared_distance, update.freedom);
+  for (const ChainChange& c : update.changes)
+    text += fmt::format("; {} {} on {}{}{} (ln odds {:.0f})", name(c.kind), c.name, c.segment,
+                        size_text(c.angle, degree, "deg"), size_text(c.distance, 1e-3, "mm"), c.log_odds);
+  return text + (update.is_other_machine ? "; another machine" : "");
+}
+
+/// Beside the fit of the log alone: standard deviations and squared errors of the axes in the child's frames.
+std::string score_text(const Identification& found, const MachineTruth& truth) {
+  double squares = 0.0, sd = 0.0;
+  int count = 0;
+  for (const JointEstimate& joint : found.joints)
+    for (const JointTruth& right : truth.joints) {
+      if (right.parent != joint.parent || right.child != joint.child || joint.type != EstimatedJointType::revolute)
+        continue;
+      const double variance =
+          joint.sd.axis_in_child[0] * joint.sd.axis_in_child[0] + joint.sd.axis_in_child[1] * joint.sd.axis_in_child[1];
+      const double sense = joint.axis_in_child.dot(right.axis_in_child) < 0.0 ? -1.0 : 1.0;
+      squares += (sense * joint.axis_in_child - right.axis_in_child).squaredNorm() / variance;
+      sd += std::sqrt(variance);
+      ++count;
+    }
+  return fmt::format("axes sd {:.3f} mrad, squared error over variance {:.2f}", 1e3 * sd / count, squares / count);
+}
+
+void print(const Arguments& a, int seed, const char* what, const Result<Identification>& found,
+           const MachineTruth& truth) {
+  if (!found)
+    fmt::print("{} {} {}: {}\n", a.machine, seed, what, found.error().what);
+  else
+    fmt::print("{} {} {}: {}; {}; {}\n", a.machine, seed, what, name(found->usability),
+               found->update ? text_of(*found->update) : "-", score_text(*found, truth));
+  std::fflush(stdout);
+}
+
+void run_seed(const Arguments& a, int seed) {
+  const auto number = static_cast<std::uint64_t>(seed);
+  const auto has = [&](const char* name) { return a.cases.find(name) != std::string::npos; };
+  const UpdateDrive first = update_drive({.machine = a.machine, .grade = a.grade, .machine_seed = number});
+  const auto known = identify::identify_machine(first.recording, {.threads = 1}, Rng(1));
+  print(a, seed, "first", known, first.truth);
+  if (!known || !known->tracking) return;
+  const UpdateSetup again{.machine = a.machine, .grade = a.grade, .machine_seed = number, .drive = 1};
+  const auto update = [&](const char* what, const UpdateDrive& drive) {
+    identify::IdentifyOptions options{.threads = 1};
+    options.refine.known = known->tracking;
+    print(a, seed, what, identify::identify_machine(drive.recording, options, Rng(1)), drive.truth);
+  };
+  const auto with = [&](auto change) {
+    UpdateSetup setup = again;
+    change(setup);
+    return update_drive(setup);
+  };
+  if (has("same")) update("same", update_drive(again));
+  if (has("turned")) {
+    UpdateDrive drive = update_drive(again);
+    turn_sensor(drive.recording, 1 + number % (drive.recording.sensors.size() - 1), turned_by);
+    update(fmt::format("turned {}", 1 + number % (drive.recording.sensors.size() - 1)).c_str(), drive);
+  }
+  if (has("pin"))
+    update("pin", with([](UpdateSetup& s) {
+             s.moved_pin = s.machine == "robot6" ? "forearm" : "stick";
+             s.moved_by = moved_by;
+           }));
+  if (has("other")) update("other", with([](UpdateSetup& s) { s.machine_seed += 500; }));
+}
+
+}  // namespace
+}  // namespace kinfer::study::update_study
+
+int kinfer::study::run_update(int argc, char** argv) {
+  const update_study::Arguments arguments = update_study::parse(argc, argv);
+  for (int seed = arguments.first_seed; seed < arguments.first_seed + arguments.seeds; ++seed)
+    update_study::run_seed(arguments, seed);
+  return 0;
+}
