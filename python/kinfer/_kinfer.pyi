@@ -224,6 +224,7 @@ def identify(
     root: str | None = ...,
     sensors: Sequence[str] = ...,
     tree: Sequence[tuple[str, str]] = ...,
+    update: Identification | _Path | None = ...,
     seed: int = ...,
     threads: int = ...,
     progress: _Progress | None = ...,

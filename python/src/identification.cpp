@@ -84,13 +84,20 @@ py::dict sensors_of(const Recording& data) {
 IdentificationResult identify_in_python(const py::object& data, const std::optional<std::string>& root,
                                         const std::vector<std::string>& sensors,
                                         const std::vector<std::pair<std::string, std::string>>& tree,
-                                        std::uint64_t seed, int threads, const py::object& progress) {
+                                        const py::object& update, std::uint64_t seed, int threads,
+                                        const py::object& progress) {
   const Recording recording = recording_of(data);
+  std::vector<std::string> inputs = recording.paths;
   identify::IdentifyOptions options;
   options.root = root;
   options.sensors = sensors;
   for (const auto& [one, other] : tree) options.tree.push_back({one, other});
   options.threads = threads;
+  if (!update.is_none()) {
+    TrackedMachine known = tracked_machine(update);
+    options.refine.known = std::move(known.model);
+    inputs.insert(inputs.end(), known.paths.begin(), known.paths.end());
+  }
   // The filter of the program's default.
   options.motion.filter = *filter_named("kinfer-offline");
   value_of(identify::check(options));
@@ -99,7 +106,7 @@ IdentificationResult identify_in_python(const py::object& data, const std::optio
     result = identify::identify_machine(recording.recording, options, Rng(seed), observer);
   });
   return {value_of(std::move(*result)),
-          {.inputs = fingerprints(recording.paths), .options = identify::describe(options), .seed = seed}};
+          {.inputs = fingerprints(inputs), .options = identify::describe(options), .seed = seed}};
 }
 
 std::string identification_text(const IdentificationResult& result) {
@@ -206,12 +213,15 @@ void add_identification(py::module_& module) {
   module.def(
       "identify", &identify_in_python, py::arg("data"), py::kw_only(), py::arg("root") = py::none(),
       py::arg("sensors") = std::vector<std::string>{},
-      py::arg("tree") = std::vector<std::pair<std::string, std::string>>{}, py::arg("seed") = 1, py::arg("threads") = 0,
-      py::arg("progress") = py::none(),
+      py::arg("tree") = std::vector<std::pair<std::string, std::string>>{}, py::arg("update") = py::none(),
+      py::arg("seed") = 1, py::arg("threads") = 0, py::arg("progress") = py::none(),
       "Find the chain of an unknown machine from one inertial sensor on each segment. data: a Recording, the path "
       "of a log, or {sensor: columns}, where columns (a dictionary or DataFrame) have t (n,) [s], acc (n, 3) "
       "[m/s^2], gyr (n, 3) [rad/s] and, where there is one, mag (n, 3) [uT]; or ax, ay, az, gx, … each. root: "
-      "sensor on the base; sensors: those to use; tree: pairs of sensors whose segments share a joint.");
+      "sensor on the base; sensors: those to use; tree: pairs of sensors whose segments share a joint; update: an "
+      "earlier Identification "
+      "of this machine, or the folder that it was saved in: its structure is kept, what changed since is in "
+      "evidence[\"update\"], and the new chain is that of both logs.");
   module.def(
       "orient", &orient_in_python, py::arg("data"), py::kw_only(), py::arg("filter") = "kinfer-offline",
       py::arg("magnetometer") = true,

@@ -21,6 +21,15 @@ struct IdentificationResult {
   Provenance provenance;
 };
 
+/// What tracking and updates need of a machine, and the files that it came from.
+struct TrackedMachine {
+  TrackingModel model;
+  std::vector<std::string> paths{};
+};
+
+/// Of an Identification, or of the folder that it was saved in.
+TrackedMachine tracked_machine(const py::object& machine);
+
 /// The paths, where `data` is a path or a list of them.
 std::optional<std::vector<std::string>> log_paths(const py::object& data);
 

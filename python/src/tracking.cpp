@@ -9,6 +9,7 @@
 #include "kinfer/io/tracking/track_rows.hpp"
 #include "kinfer/io/tracking/tracked_chain.hpp"
 #include "kinfer/report/report.hpp"
+#include "kinfer/track/row_feed.hpp"
 #include "kinfer/track/run_recorder.hpp"
 #include "kinfer/track/smooth/smoother.hpp"
 #include "kinfer/track/tracker.hpp"
@@ -16,23 +17,6 @@
 
 namespace kinfer::python {
 namespace {
-
-/// What is tracked, and the files that it came from.
-struct Machine {
-  TrackingModel model;
-  std::vector<std::string> paths{};
-};
-
-Machine machine_of(const py::object& machine) {
-  if (py::isinstance<IdentificationResult>(machine)) {
-    const auto& identification = machine.cast<const IdentificationResult&>().identification;
-    if (!identification.tracking) throw InputError("the identified machine has no tracking data");
-    return {*identification.tracking};
-  }
-  const auto folder = path_of(machine);
-  if (!folder) throw InputError("machine: expected an Identification, or the folder that it was saved in");
-  return {value_of(read_tracked_chain(*folder, "")).model, {*folder + "/chain.toml", *folder + "/track.toml"}};
-}
 
 track::TrackOptions options_of(const TrackingModel& model, const py::object& start, const std::string& base) {
   track::TrackOptions options;
@@ -139,7 +123,7 @@ struct RowInput {
   }
 };
 
-Result<TrackedRun> track_rows(const Machine& machine, const RowInput& input, const track::TrackOptions& options,
+Result<TrackedRun> track_rows(const TrackedMachine& machine, const RowInput& input, const track::TrackOptions& options,
                               track::Estimator estimator, const Provenance& provenance, const Observer& observer) {
   RunKeeper keeper(machine.model);
   const bool smooths = estimator == track::Estimator::smoother;
@@ -156,7 +140,9 @@ Result<TrackedRun> track_rows(const Machine& machine, const RowInput& input, con
     keeper.add(tracker.state());
     return {};
   };
-  KINFER_TRY(remarks, input.each(machine.model, add));
+  track::RowFeed feed(machine.model, 0.0);
+  KINFER_TRY(remarks, input.each(machine.model, [&](const InsRow& row) { return feed.add(row, add); }));
+  if (auto done = feed.finish(add); !done) return forward_error(done.error());
   const auto keep = [&](const TrackState& state) { keeper.add(state); };
   if (smooths) track::smooth(machine.model, options, kept, keep, observer);
   return keeper.finish(remarks, provenance);
@@ -164,7 +150,7 @@ Result<TrackedRun> track_rows(const Machine& machine, const RowInput& input, con
 
 TrackedRun track_in_python(const py::object& machine, const py::object& data, const py::object& start,
                            const std::string& base, bool smooth, const py::object& progress) {
-  const Machine tracked = machine_of(machine);
+  const TrackedMachine tracked = tracked_machine(machine);
   const track::TrackOptions options = options_of(tracked.model, start, base);
   const track::Estimator estimator = smooth ? track::Estimator::smoother : track::Estimator::filter;
   RowInput input;
@@ -209,7 +195,7 @@ void save_run(const TrackedRun& run, const py::object& folder) {
 class LiveTracker {
  public:
   LiveTracker(const py::object& machine, const py::object& start, const std::string& base)
-      : model_(machine_of(machine).model), tracker_(model_, options_of(model_, start, base)) {
+      : model_(tracked_machine(machine).model), tracker_(model_, options_of(model_, start, base)) {
     row_.sensors.resize(model_.sensors.size());
   }
 
@@ -329,6 +315,17 @@ void add_live(py::module_& module) {
 }
 
 }  // namespace
+
+TrackedMachine tracked_machine(const py::object& machine) {
+  if (py::isinstance<IdentificationResult>(machine)) {
+    const auto& identification = machine.cast<const IdentificationResult&>().identification;
+    if (!identification.tracking) throw InputError("the identified machine has no tracking data");
+    return {*identification.tracking};
+  }
+  const auto folder = path_of(machine);
+  if (!folder) throw InputError("expected an Identification, or the folder that it was saved in");
+  return {value_of(read_tracked_chain(*folder, "")).model, {*folder + "/chain.toml", *folder + "/track.toml"}};
+}
 
 void add_tracking(py::module_& module) {
   add_run(module);

@@ -123,6 +123,23 @@ TEST_F(Track, SmoothsAWholeLog) {
   EXPECT_THAT(follow.err, HasSubstr("--smooth needs the whole log"));
 }
 
+TEST_F(Track, PutsRowsThatComeLateInOrder) {
+  identify();
+  ASSERT_EQ(kinfer("track machine drive/imu.csv --out work --quiet").code, 0);
+  // Every third row one place later, and one far too late.
+  ASSERT_EQ(
+      shell(
+          "awk 'NR>1 && NR%3==0 { held=$0; next } { print } held { print held; held=\"\" }' drive/imu.csv > late.csv; "
+          "sed -n 500p drive/imu.csv >> late.csv")
+          .code,
+      0);
+  EXPECT_THAT(kinfer("track machine late.csv").err, HasSubstr("the time goes backwards"));
+  const Outcome run = kinfer("track machine late.csv --out ordered --reorder 20");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("1 rows came more than 20 ms late and were left out"));
+  EXPECT_EQ(slurp(in("ordered/track.csv")), slurp(in("work/track.csv")));
+}
+
 TEST_F(Track, BadInputIsOneSentence) {
   identify("--zero ins2=10deg@1s");
   EXPECT_THAT(kinfer("track nowhere drive/imu.csv").err, HasSubstr("nowhere: expected a folder that kinfer identify"));

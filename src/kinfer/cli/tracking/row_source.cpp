@@ -16,7 +16,6 @@
 
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/io/recording/ins_columns.hpp"
-#include "kinfer/io/recording/ins_row_reader.hpp"
 #include "kinfer/io/recording/log_rows.hpp"
 
 namespace kinfer::cli {
@@ -78,7 +77,7 @@ class ByteSource {
 Result<std::vector<std::string>> stream(const RowSource& source, const RowSink& sink) {
   const std::string& path = source.logs.front();
   KINFER_TRY(bytes, ByteSource::open(path));
-  InsRowReader reader(source.sensors, path == "-" ? "standard input" : path);
+  InsRowReader reader(source.sensors, path == "-" ? "standard input" : path, source.times);
   const InterruptionGuard guard;
   while (!interrupted) {
     const std::string_view piece = bytes.read();

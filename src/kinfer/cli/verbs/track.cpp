@@ -18,6 +18,7 @@
 #include "kinfer/io/evidence/track_json.hpp"
 #include "kinfer/io/text/csv.hpp"
 #include "kinfer/io/tracking/tracked_chain.hpp"
+#include "kinfer/track/row_feed.hpp"
 #include "kinfer/track/run_recorder.hpp"
 #include "kinfer/track/smooth/smoother.hpp"
 #include "kinfer/track/tracker.hpp"
@@ -30,6 +31,7 @@ struct TrackArguments {
   std::string chain, out, start, facts, base = "auto", base_at;
   std::vector<std::string> logs;
   bool follow = false, smooth = false;
+  double reorder = 0.0;
 };
 
 track::Estimator estimator_of(const TrackArguments& options) {
@@ -73,6 +75,7 @@ Provenance provenance_of(const TrackArguments& options, const track::TrackOption
   Provenance provenance{.inputs = fingerprints(inputs),
                         .options = track::describe(how, estimator_of(options), model),
                         .seed = options.common.seed};
+  if (options.reorder > 0.0) provenance.options.emplace_back("--reorder", fmt::format("{:g}", options.reorder));
   if (!options.base_at.empty()) provenance.options.emplace_back("--base-at", options.base_at);
   return provenance;
 }
@@ -84,38 +87,52 @@ struct StateSink {
 };
 
 RowSource row_source(const TrackArguments& options, const TrackingModel& model) {
-  RowSource source{.logs = options.logs, .mode = options.follow ? ReadMode::follow : ReadMode::once};
+  RowSource source{.logs = options.logs,
+                   .mode = options.follow ? ReadMode::follow : ReadMode::once,
+                   .times = options.reorder > 0.0 ? RowTimes::any : RowTimes::increasing};
   for (const TrackingSensor& sensor : model.sensors) source.sensors.push_back(sensor.name);
   return source;
 }
 
-/// Each row's state as soon as the row is there. Returns remarks on the logs.
-Result<std::vector<std::string>> track_rows(const RowSource& source, const TrackedChain& machine,
+/// The source's rows in order of time, clocks corrected. Returns remarks on the logs.
+Result<std::vector<std::string>> each_ordered_row(const TrackArguments& options, const TrackingModel& model,
+                                                  const RowSink& sink) {
+  track::RowFeed feed(model, 1e-3 * options.reorder);
+  KINFER_TRY(remarks, each_row(row_source(options, model),
+                               {[&](const InsRow& row) { return feed.add(row, sink.row); }, sink.pause}));
+  if (auto done = feed.finish(sink.row); !done) return forward_error(done.error());
+  if (feed.dropped() > 0)
+    remarks.push_back(
+        fmt::format("{} rows came more than {:g} ms late and were left out", feed.dropped(), options.reorder));
+  return remarks;
+}
+
+/// Each row's state as soon as the row is there.
+Result<std::vector<std::string>> track_rows(const TrackArguments& options, const TrackingModel& model,
                                             const track::TrackOptions& how, const StateSink& sink) {
-  track::Tracker tracker(machine.model, how);
+  track::Tracker tracker(model, how);
   const auto add = [&](const InsRow& row) -> Result<void> {
     tracker.add(row);
     sink.add(tracker.state());
     return {};
   };
-  return each_row(source, {add, sink.flush});
+  return each_ordered_row(options, model, {add, sink.flush});
 }
 
 /// The states after all rows have been read.
-Result<std::vector<std::string>> smooth_rows(const RowSource& source, const TrackedChain& machine,
-                                             const track::TrackOptions& how, const CommonOptions& common,
-                                             const StateSink& sink) {
+Result<std::vector<std::string>> smooth_rows(const TrackArguments& options, const TrackingModel& model,
+                                             const track::TrackOptions& how, const StateSink& sink) {
   constexpr std::size_t check_every = 1 << 16;
-  const auto sensors = static_cast<double>(machine.model.sensors.size());
+  const auto sensors = static_cast<double>(model.sensors.size());
   std::vector<InsRow> rows;
   const auto add = [&](const InsRow& row) -> Result<void> {
     rows.push_back(row);
     if (rows.size() % check_every != 0) return {};
     return check_cost(cost_of_smoothing(static_cast<double>(rows.size()), sensors));
   };
-  KINFER_TRY(remarks, each_row(source, {add, [] {}}));
-  ProgressLine progress(common);
-  track::smooth(machine.model, how, rows, sink.add, progress.observer());
+  KINFER_TRY(remarks, each_ordered_row(options, model, {add, [] {}}));
+  ProgressLine progress(options.common);
+  track::smooth(model, how, rows, sink.add, progress.observer());
   return remarks;
 }
 
@@ -129,9 +146,8 @@ Result<TrackRun> track_log(const TrackArguments& options, const TrackedChain& ma
                        [&] {
                          for (TrackOutput* output : outputs) output->flush();
                        }};
-  const RowSource source = row_source(options, machine.model);
-  KINFER_TRY(remarks, options.smooth ? smooth_rows(source, machine, how, options.common, sink)
-                                     : track_rows(source, machine, how, sink));
+  KINFER_TRY(remarks, options.smooth ? smooth_rows(options, machine.model, how, sink)
+                                     : track_rows(options, machine.model, how, sink));
   sink.flush();
   TrackRun run = recorder.run();
   run.remarks = remarks;
@@ -211,6 +227,8 @@ Verb add_track(CLI::App& app) {
   add_text(*verb, "--out", options->out, "Folder for track.csv, evidence.json, report.html, run.json",
            Requirement::optional, "DIR");
   add_flag(*verb, "--follow", options->follow, "At the end of the log wait for more, until interrupted (Ctrl-C)");
+  add_number(*verb, "--reorder", options->reorder, 0.0, 60e3,
+             "Rows may come so much too late [ms]: each is held back for as long, and put in order of time");
   add_flag(*verb, "--smooth", options->smooth,
            "Use what comes after each row, too: better positions, once the whole log has been read");
   add_choice(*verb, "--base", options->base, {"auto", "still", "moving"},

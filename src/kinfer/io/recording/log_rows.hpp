@@ -2,7 +2,6 @@
 // The rows of recorded logs, as whoever follows a machine takes them.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,8 +9,6 @@
 #include "kinfer/measurement/ins_row.hpp"
 
 namespace kinfer {
-
-using InsRowSink = std::function<Result<void>(const InsRow&)>;
 
 /// Rows of a recording's loggers, merged by time: each holds the samples of `sensors`, in this order, that were taken
 /// at its time. An error where the recording lacks one.
