@@ -89,7 +89,7 @@ TEST(ClockAlignment, ChangesNothingWhereClocksAreRight) {
 }
 
 TEST(ClockAlignment, BringsSamplesToTheTimesOfTheirRows) {
-  for (const double offset : {-0.043, -0.0021, 0.0013, 0.037}) {
+  for (const double offset : {-0.043, -0.04, -0.0021, 0.0013, 0.01, 0.037}) {
     ClockAlignment clocks({0.0, offset});
     Kept kept;
     for (int i = 0; i < 400; ++i) {

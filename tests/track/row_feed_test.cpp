@@ -11,15 +11,15 @@ namespace {
 
 constexpr std::size_t late_sensor = 3, late_rows = 8;  // 40 ms
 
-struct Outcome {
+struct LateOutcome {
   double rms = 0.0;  // [rad] of the joint on the near side of the late sensor
   bool has_alarm = false;
 };
 
-Outcome track_late_sensor(const TrackingModel& model, const test::SimulatedDrive& drive) {
+LateOutcome track_late_sensor(const TrackingModel& model, const test::SimulatedDrive& drive) {
   RowFeed feed(model, 0.0);
   Tracker tracker(model);
-  Outcome outcome;
+  LateOutcome outcome;
   double squares = 0.0;
   Eigen::Index rows = 0, judged = 0;
   const auto add = [&](const InsRow& row) -> Result<void> {
@@ -48,9 +48,9 @@ Outcome track_late_sensor(const TrackingModel& model, const test::SimulatedDrive
 TEST(RowFeed, CorrectsTheClockThatTheIdentificationFound) {
   const test::SimulatedDrive drive = test::simulated_drive({.duration = 30.0});
   TrackingModel model = test::tracking_model_of(drive.machine, *sensor_grade("industrial"), 200.0);
-  const Outcome late = track_late_sensor(model, drive);
+  const LateOutcome late = track_late_sensor(model, drive);
   model.sensors[late_sensor].clock_offset = -0.04;
-  const Outcome corrected = track_late_sensor(model, drive);
+  const LateOutcome corrected = track_late_sensor(model, drive);
   EXPECT_TRUE(late.has_alarm) << "otherwise the test shows nothing";
   EXPECT_FALSE(corrected.has_alarm);
   EXPECT_LT(corrected.rms, 0.001);

@@ -178,6 +178,16 @@ TEST(UrdfPatch, AnotherMachineIsRefused) {
             "joint 2 of the calibrated chain, \"slider\", is not joint \"slide\" of the robot file");
 }
 
+TEST(UrdfPatch, AnOriginThatNoFileMayHoldIsRefused) {
+  const auto in_file = parse_urdf(awkward_urdf(), "in.urdf", {.base_link = "", .tip_link = "hand"});
+  ASSERT_TRUE(in_file.has_value()) << in_file.error().what;
+  Chain corrected = *in_file;
+  std::get<UrdfLink>(corrected.joints[0].link).origin.xyz.x() = 3e7;
+  const auto refused = calibrated_origins(*in_file, corrected, EncoderOffsets::folded);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_THAT(refused.error().what, testing::HasSubstr("is not possible for a length"));
+}
+
 TEST(UrdfPatch, AnglesStayNearTheFilesOwn) {
   const Vec3 like(3.1, 0.1, -3.1), near(-3.13, 0.12, 3.14);  // the same turn of 2 pi apart
   const Vec3 rpy = rpy_near(from_rpy(near), like);

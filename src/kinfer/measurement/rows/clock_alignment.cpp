@@ -71,8 +71,8 @@ void ClockAlignment::fill(InsRow& row) {
   for (std::size_t s = 0; s < tracks_.size(); ++s) {
     std::deque<InsSample>& samples = tracks_[s].samples;
     if (tracks_[s].offset == 0.0) continue;
-    while (samples.size() > 1 && samples[1].time <= row.time) samples.pop_front();
-    const bool is_between = samples.size() > 1 && samples[0].time <= row.time;
+    while (samples.size() > 1 && samples[1].time < row.time) samples.pop_front();
+    const bool is_between = samples.size() > 1 && samples[0].time <= row.time && samples[1].time >= row.time;
     row.sensors[s] = is_between ? interpolate(samples[0], samples[1], row.time) : InsSample{.time = row.time};
   }
 }
