@@ -113,7 +113,19 @@ void ChainFilter::predict(double time) {
   while (time - state_.time > 1e-9) {
     const double dt = std::min(time - state_.time, longest_step);
     predict_covariance(*model_, state_, dt, p_);
+    add_posture_walk(dt);
     predict_mean(*model_, dt, state_);
+  }
+}
+
+/// Axes that are off by an angle that is considered, and not estimated, show as an acceleration that changes with the
+/// posture. To a bias that was found in another posture it is a random walk with the angle turned through.
+void ChainFilter::add_posture_walk(double dt) {
+  const std::vector<Vec3>& rates = evaluator_.result().angular_velocity;
+  for (std::size_t s = 0; s < model_->sensors.size(); ++s) {
+    const double per_turn = posture_walk * square(model_->gravity * model_->sensors[s].axis_sd);
+    const Index bias = model_->layout.sensor_state(static_cast<Index>(s)) + SensorIndex::accelerometer_bias;
+    p_.diagonal().segment<3>(bias).array() += dt * rates[s].norm() * per_turn;
   }
 }
 

@@ -76,6 +76,7 @@ class ChainFilter {
  private:
   Index zero_state(Index position) const;
   void forget(Index state);
+  void add_posture_walk(double dt);
   void form_rows(const BlockMeasurement& block);
   void form_sensor_rows(const BlockMeasurement& block, std::size_t sensor);
   void form_soft_rows(double length);
