@@ -220,6 +220,34 @@ TEST(ChainFilter, AScalarMeasurementIsKalmansToo) {
   EXPECT_NEAR(filter.state().joints[0] - tree.state.joints[0], 0.01 * w[at] / variance, 1e-14);
 }
 
+/// Against Kalman's equations of a state with one more element, the noise.
+TEST(ChainFilter, NoiseThatIsInAStateAlreadyIsTakenOutOfIt) {
+  const TrackedTree tree(11);
+  ChainFilter filter = tree.filter();
+  const Index n = tree.model->layout.size, estimated = tree.model->layout.first_geometry;
+  const Index bias = tree.model->layout.sensor_state(1), at = tree.model->layout.joint_state(0);
+  const double noise = 1e-5, covariance = -4e-5;
+  MatrixXd p = MatrixXd::Zero(n + 1, n + 1);
+  p.topLeftCorner(n, n) = filter.covariance();
+  p(n, n) = noise;
+  p(n, at) = p(at, n) = covariance;
+  VectorXd h = VectorXd::Zero(n + 1);
+  h[bias] = h[n] = 1.0;
+  const VectorXd w = p * h;
+  MatrixXd expected = p - w * w.transpose() / h.dot(w);
+  expected.block(estimated, estimated, n - estimated, n - estimated) =
+      p.block(estimated, estimated, n - estimated, n - estimated);
+  filter.update({.at = {bias},
+                 .factor = {1.0},
+                 .terms = 1,
+                 .innovation = 0.003,
+                 .variance = noise,
+                 .noisy_state = at,
+                 .noise_covariance = covariance});
+  EXPECT_LT((filter.covariance() - expected.topLeftCorner(n, n)).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_NEAR(filter.state().joints[0] - tree.state.joints[0], 0.003 * w[at] / h.dot(w), 1e-14);
+}
+
 TEST(ChainFilter, APlacedJointIsKnownThereAndToNothingElse) {
   const TrackedTree tree(13);
   ChainFilter filter = tree.filter();

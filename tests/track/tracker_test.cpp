@@ -6,6 +6,8 @@
 #include <atomic>
 #include <limits>
 
+#include "kinfer/base/square.hpp"
+#include "kinfer/geometry/random.hpp"
 #include "support/tracked_machine.hpp"
 
 // Counts allocations of the whole program, Eigen's included. Sanitizers bring their own allocator.
@@ -129,6 +131,36 @@ TEST(Tracker, ATelescopeThatMovesAloneIsFollowedByItsAcceleration) {
   const Outcome out = run(given, {}, unchanged);
   EXPECT_LT(out.rms(telescope), 0.05);
   EXPECT_LT(out.largest_sd[telescope], 0.2);
+}
+
+/// A minute of rest with white noise, integrated, would be 0.054° about an upright axis (industrial gyroscopes).
+TEST(Tracker, AnUprightJointThatRestsStaysWhereItIs) {
+  const Case& given = still_excavator();
+  const SensorModel grade = *sensor_grade("industrial");
+  const double rate = grade.gyroscope.noise_density * 10.0, force = grade.accelerometer.noise_density * 10.0;
+  constexpr int seeds = 8;
+  double square_error = 0.0, nees = 0.0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    Rng rng(static_cast<std::uint64_t>(seed));
+    Tracker tracker(given.model);
+    double begin = no_value;
+    for (int k = 0; k < 12000; ++k) {
+      InsRow row{.time = 0.005 * k, .sensors = {}};
+      for (const SensorMotion& truth : given.drive.motion.sensors) {
+        InsSample& sample = row.sensors.emplace_back();
+        sample.angular_velocity = rate * normal_vector(rng);
+        sample.acceleration = truth.force.front() + force * normal_vector(rng);
+        sample.has_angular_velocity = sample.has_acceleration = true;
+      }
+      tracker.add(row);
+      if (tracker.state().started && std::isnan(begin)) begin = tracker.state().q[0];
+    }
+    const double e = tracker.state().q[0] - begin;
+    square_error += e * e / seeds;
+    nees += square(e / tracker.state().sd_q[0]) / seeds;
+  }
+  EXPECT_LT(std::sqrt(square_error), 0.02 * degree);
+  EXPECT_LT(nees, 2.5);
 }
 
 TEST(Tracker, NeedsNoRestToStart) {

@@ -61,7 +61,9 @@ inline constexpr double max_motion_sd = 30.0;   ///< per second, per second²
 /// this.
 inline constexpr double rest_block = 0.25, rest_noise = 1.4;
 inline constexpr int min_rest_rows = 10;
-inline constexpr double rest_creep = 5e-5;   ///< [rad/s] that a rest may hide
+inline constexpr double upright_axis =
+    0.05;                                   ///< [rad] nearer to the vertical gravity does not hold a position in a rest
+inline constexpr double rest_creep = 5e-5;  ///< [rad/s] that a rest may hide
 inline constexpr double steady_rate = 0.05;  ///< [rad/s] sd of a joint's velocity where it is steady and no rest
 
 /// A base moves where its angular velocity, averaged over so long [s], is beyond this [rad/s] and so many standard
