@@ -36,8 +36,9 @@ Case example(Index intervals) {
   c.problem.prior = {1e-3, 1e-2, 5e-4, 3e-4};
   c.x.bodies = {{.sensor = 0}};
   for (int s = 0; s < 6; ++s) {
-    c.problem.sensors.push_back(
-        {.angular_velocity = blocks(intervals, block_nodes, rng), .force = blocks(intervals, block_nodes, rng)});
+    InsMeasurements& sensor = c.problem.sensors.emplace_back();
+    sensor.angular_velocity = blocks(intervals, block_nodes, rng);
+    sensor.force = blocks(intervals, block_nodes, rng);
     if (s == 0) continue;
     const Mat3 parent_R_axis = exp_so3(normal_vector(rng)), child_R_axis = exp_so3(normal_vector(rng));
     c.x.bodies.push_back(revolute_body(s - 1, s, parent_R_axis, child_R_axis));

@@ -83,7 +83,8 @@ void write_back(const std::string& bytes, const Chain& in_file) {
   const auto ends = mjcf_ends(tree.value(), name, {});
   for (const Chain& corrected : {in_file, with_origins_moved(in_file)}) {
     const auto origins = calibrated_origins(in_file, corrected, EncoderOffsets::folded);
-    const auto patched = patch_mjcf(bytes, name, ends.value(), origins.value());
+    if (!origins) continue;
+    const auto patched = patch_mjcf(bytes, name, ends.value(), *origins);
     if (!patched) continue;
     const auto again = parse_mjcf(patched->text, name);
     KINFER_EXPECT(again, "what was written back cannot be read: {}", again.error().what);

@@ -11,6 +11,8 @@ from kinfer._kinfer import (
     PoseSet,
     Recording,
     Robot,
+    TrackedRun,
+    Tracker,
     __version__,
     calibrate,
     compensate,
@@ -19,6 +21,7 @@ from kinfer._kinfer import (
     plan,
     read_log,
     read_poses,
+    track,
 )
 
 __all__ = [
@@ -28,6 +31,8 @@ __all__ = [
     "PoseSet",
     "Recording",
     "Robot",
+    "TrackedRun",
+    "Tracker",
     "__version__",
     "calibrate",
     "compensate",
@@ -36,4 +41,5 @@ __all__ = [
     "plan",
     "read_log",
     "read_poses",
+    "track",
 ]

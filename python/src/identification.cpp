@@ -12,21 +12,10 @@
 #include "kinfer/io/recording/recording_formats.hpp"
 #include "kinfer/report/report.hpp"
 #include "kinfer/words/identification/verdict.hpp"
-#include "robot.hpp"
+#include "recording.hpp"
 
 namespace kinfer::python {
 namespace {
-
-/// kinfer.Recording
-struct Recording {
-  InsRecording recording;
-  std::vector<std::string> paths{};
-};
-
-struct IdentificationResult {
-  Identification identification;
-  Provenance provenance;
-};
 
 py::object item_or_none(const py::handle& mapping, const std::vector<const char*>& keys) {
   for (const char* key : keys)
@@ -71,32 +60,6 @@ void append_sensor(const std::string& sensor, const py::handle& columns, InsReco
       {sensor, t, span(acceleration), span(rate), has_field ? span(field) : std::span<const double>{}}, recording));
 }
 
-/// A recording, the path or paths of logs, or {sensor: {t, acc, gyr, mag}}.
-Recording recording_of(const py::object& data) {
-  if (py::isinstance<Recording>(data)) return data.cast<Recording>();
-  Recording result;
-  if (const auto path = path_of(data)) result.paths = {*path};
-  if (py::isinstance<py::list>(data) || py::isinstance<py::tuple>(data))
-    for (const py::handle item : data) {
-      const auto path = path_of(item);
-      if (!path) throw InputError("expected the paths of logs");
-      result.paths.push_back(*path);
-    }
-  if (!result.paths.empty()) {
-    const std::vector<std::filesystem::path> files(result.paths.begin(), result.paths.end());
-    const py::gil_scoped_release without_lock;
-    result.recording = value_of(read_recording(files));
-    return result;
-  }
-  if (!py::hasattr(data, "items"))
-    throw InputError("expected a recording, the path of a log, or a dictionary {sensor: {t, acc, gyr, mag}}");
-  for (const py::handle item : data.attr("items")()) {
-    const auto pair = item.cast<std::pair<py::object, py::object>>();
-    append_sensor(py::str(pair.first), pair.second, result.recording);
-  }
-  return result;
-}
-
 py::array columns_of(const TriadColumns& triad) {
   const std::size_t rows = triad.axis[0].size();
   py::array_t<float> array({rows, std::size_t{3}});
@@ -121,13 +84,20 @@ py::dict sensors_of(const Recording& data) {
 IdentificationResult identify_in_python(const py::object& data, const std::optional<std::string>& root,
                                         const std::vector<std::string>& sensors,
                                         const std::vector<std::pair<std::string, std::string>>& tree,
-                                        std::uint64_t seed, int threads, const py::object& progress) {
+                                        const py::object& update, std::uint64_t seed, int threads,
+                                        const py::object& progress) {
   const Recording recording = recording_of(data);
+  std::vector<std::string> inputs = recording.paths;
   identify::IdentifyOptions options;
   options.root = root;
   options.sensors = sensors;
   for (const auto& [one, other] : tree) options.tree.push_back({one, other});
   options.threads = threads;
+  if (!update.is_none()) {
+    TrackedMachine known = tracked_machine(update);
+    options.refine.known = std::move(known.model);
+    inputs.insert(inputs.end(), known.paths.begin(), known.paths.end());
+  }
   // The filter of the program's default.
   options.motion.filter = *filter_named("kinfer-offline");
   value_of(identify::check(options));
@@ -136,7 +106,7 @@ IdentificationResult identify_in_python(const py::object& data, const std::optio
     result = identify::identify_machine(recording.recording, options, Rng(seed), observer);
   });
   return {value_of(std::move(*result)),
-          {.inputs = fingerprints(recording.paths), .options = identify::describe(options), .seed = seed}};
+          {.inputs = fingerprints(inputs), .options = identify::describe(options), .seed = seed}};
 }
 
 std::string identification_text(const IdentificationResult& result) {
@@ -184,6 +154,38 @@ py::dict orient_in_python(const py::object& data, const std::string& filter, boo
 
 }  // namespace
 
+std::optional<std::vector<std::string>> log_paths(const py::object& data) {
+  if (const auto path = path_of(data)) return std::vector{*path};
+  if (!py::isinstance<py::list>(data) && !py::isinstance<py::tuple>(data)) return std::nullopt;
+  std::vector<std::string> paths;
+  for (const py::handle item : data) {
+    const auto path = path_of(item);
+    if (!path) throw InputError("expected the paths of logs");
+    paths.push_back(*path);
+  }
+  if (paths.empty()) return std::nullopt;
+  return paths;
+}
+
+Recording recording_of(const py::object& data) {
+  if (py::isinstance<Recording>(data)) return data.cast<Recording>();
+  Recording result;
+  if (const auto paths = log_paths(data)) {
+    result.paths = *paths;
+    const std::vector<std::filesystem::path> files(paths->begin(), paths->end());
+    const py::gil_scoped_release without_lock;
+    result.recording = value_of(read_recording(files));
+    return result;
+  }
+  if (!py::hasattr(data, "items"))
+    throw InputError("expected a recording, the path of a log, or a dictionary {sensor: {t, acc, gyr, mag}}");
+  for (const py::handle item : data.attr("items")()) {
+    const auto pair = item.cast<std::pair<py::object, py::object>>();
+    append_sensor(py::str(pair.first), pair.second, result.recording);
+  }
+  return result;
+}
+
 void add_identification(py::module_& module) {
   py::class_<Recording>(module, "Recording", "A recording of inertial sensors.")
       .def_property_readonly("sensors", &sensors_of,
@@ -211,12 +213,15 @@ void add_identification(py::module_& module) {
   module.def(
       "identify", &identify_in_python, py::arg("data"), py::kw_only(), py::arg("root") = py::none(),
       py::arg("sensors") = std::vector<std::string>{},
-      py::arg("tree") = std::vector<std::pair<std::string, std::string>>{}, py::arg("seed") = 1, py::arg("threads") = 0,
-      py::arg("progress") = py::none(),
+      py::arg("tree") = std::vector<std::pair<std::string, std::string>>{}, py::arg("update") = py::none(),
+      py::arg("seed") = 1, py::arg("threads") = 0, py::arg("progress") = py::none(),
       "Find the chain of an unknown machine from one inertial sensor on each segment. data: a Recording, the path "
       "of a log, or {sensor: columns}, where columns (a dictionary or DataFrame) have t (n,) [s], acc (n, 3) "
       "[m/s^2], gyr (n, 3) [rad/s] and, where there is one, mag (n, 3) [uT]; or ax, ay, az, gx, … each. root: "
-      "sensor on the base; sensors: those to use; tree: pairs of sensors whose segments share a joint.");
+      "sensor on the base; sensors: those to use; tree: pairs of sensors whose segments share a joint; update: an "
+      "earlier Identification "
+      "of this machine, or the folder that it was saved in: its structure is kept, what changed since is in "
+      "evidence[\"update\"], and the new chain is that of both logs.");
   module.def(
       "orient", &orient_in_python, py::arg("data"), py::kw_only(), py::arg("filter") = "kinfer-offline",
       py::arg("magnetometer") = true,

@@ -112,4 +112,5 @@ PYBIND11_MODULE(_kinfer, module) {
   add_calibration(module);
   add_deployment(module);
   add_identification(module);
+  add_tracking(module);
 }

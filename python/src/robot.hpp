@@ -27,6 +27,7 @@ void add_robot(py::module_& module);
 void add_calibration(py::module_& module);
 void add_deployment(py::module_& module);
 void add_identification(py::module_& module);
+void add_tracking(py::module_& module);
 
 /// Writes files into a folder, which is created; an error names the file.
 void write_files(const std::string& folder, const std::vector<std::pair<std::string, std::string>>& files);

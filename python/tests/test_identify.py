@@ -20,6 +20,16 @@ def test_the_evidence_is_the_programs_byte_for_byte(drive, program, tmp_path):
     assert machine.evidence["joints"] == machine.joints
 
 
+def test_an_update_is_the_programs_byte_for_byte(drive, program, tmp_path):
+    kinfer.identify(drive / "imu.csv").save(tmp_path / "old")
+    program("identify", "--update", tmp_path / "old", drive / "imu.csv", "--out", tmp_path / "program")
+    machine = kinfer.identify(drive / "imu.csv", update=tmp_path / "old")
+    machine.save(tmp_path / "python")
+    for name in ("evidence.json", "chain.toml", "track.toml"):
+        assert (tmp_path / "python" / name).read_bytes() == (tmp_path / "program" / name).read_bytes(), name
+    assert machine.evidence["update"]["changes"] == []
+
+
 def test_arrays_give_the_chain_of_the_file(drive):
     recording = kinfer.read_log([drive / "imu.csv"])
     sensors = recording.sensors

@@ -32,8 +32,10 @@ SimulatedDrive simulate_drive(const DriveSetup& setup) {
       make_drive(world.machine(), {.script = setup.script, .duration = setup.duration}, Rng(setup.drive_seed).stream(2))
           .value();
   MachineMotion motion = world.prescribe(drive, 200.0);
-  InsRecording recording = simulate_recording(world.machine(), motion, *sensor_grade(setup.grade),
-                                              {.magnetic_disturbance = setup.steel}, Rng(setup.machine_seed).stream(3));
+  const std::uint64_t drive_number = setup.drive_seed == setup.machine_seed ? 1 : setup.drive_seed;
+  InsRecording recording =
+      simulate_recording(world.machine(), motion, *sensor_grade(setup.grade), {.magnetic_disturbance = setup.steel},
+                         Rng(setup.machine_seed).stream(3), drive_number);
   return {world.machine(), std::move(motion), std::move(recording)};
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kinfer/geometry/fit.hpp"
+#include "kinfer/track/smooth/smoother.hpp"
 
 namespace kinfer::study::track_study {
 namespace {
@@ -69,52 +70,71 @@ void note_alarms(const TrackState& state, TrackScore& score) {
       score.alarms.push_back({alarm, state.time});
 }
 
+std::vector<InsRow> rows_of(const TrackingModel& model, const InsRecording& recording) {
+  std::vector<std::size_t> column;  // of the recording, for each sensor of the model
+  for (const TrackingSensor& sensor : model.sensors)
+    column.push_back(static_cast<std::size_t>(std::ranges::find(recording.sensors, sensor.name, &InsSensor::name) -
+                                              recording.sensors.begin()));
+  const std::vector<double>& time = recording.loggers.front().time;
+  std::vector<InsRow> rows(time.size());
+  for (std::size_t r = 0; r < time.size(); ++r) {
+    rows[r].time = time[r];
+    for (const std::size_t c : column) {
+      const InsSensor& sensor = recording.sensors[c];
+      rows[r].sensors.push_back(sample(sensor, recording.time(sensor), r));
+    }
+  }
+  return rows;
+}
+
+/// Calls `add` with the state at each row and whether the filter follows a moving base.
+template <class Add>
+void each_state(const TrackingModel& model, kinfer::track::Estimator estimator, const std::vector<InsRow>& rows,
+                const Add& add) {
+  if (estimator == kinfer::track::Estimator::smoother) {
+    kinfer::track::smooth(model, {}, rows, [&](const TrackState& state) { add(state, false); });
+    return;
+  }
+  kinfer::track::Tracker tracker(model);
+  for (const InsRow& row : rows) {
+    tracker.add(row);
+    add(tracker.state(), tracker.filter().state().base == kinfer::track::BaseMode::moving);
+  }
+}
+
 }  // namespace
 
 TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, const SimulatedDrive& drive,
-                 const kinfer::track::TrackOptions& options) {
+                 kinfer::track::Estimator estimator) {
   using Clock = std::chrono::steady_clock;
-  kinfer::track::Tracker tracker(model, options);
-  kinfer::track::ComposedFilters composed(model, options);
+  kinfer::track::ComposedFilters composed(model, {});
   const std::vector<TrueJoint> truth = true_joints(model, identified);
   const std::size_t
       base = sensor_named(drive.machine, model.sensors[static_cast<std::size_t>(model.bodies[0].sensor)].name),
       tip = sensor_named(
           drive.machine,
           model.sensors[static_cast<std::size_t>(model.bodies[static_cast<std::size_t>(model.tool.body)].sensor)].name);
-  std::vector<std::size_t> column;  // of the recording, for each sensor of the model
-  for (const TrackingSensor& sensor : model.sensors)
-    column.push_back(static_cast<std::size_t>(
-        std::ranges::find(drive.recording.sensors, sensor.name, &InsSensor::name) - drive.recording.sensors.begin()));
   TrackScore score;
   score.joints.resize(truth.size());
   std::vector<Sum> sums(truth.size());
   std::vector<Vec3> tool, true_tool;
   double tilt = 0.0, spent = 0.0;
   int rows = 0;
-  InsRow row;
-  row.sensors.resize(model.sensors.size());
-  const std::vector<double>& time = drive.recording.loggers.front().time;
-  for (std::size_t r = 0; r < time.size(); ++r) {
-    row.time = time[r];
-    for (std::size_t s = 0; s < column.size(); ++s) {
-      const InsSensor& sensor = drive.recording.sensors[column[s]];
-      row.sensors[s] = sample(sensor, drive.recording.time(sensor), r);
-    }
-    const auto before = Clock::now();
-    tracker.add(row);
-    spent += std::chrono::duration<double>(Clock::now() - before).count();
-    composed.add(row);
-    const TrackState& state = tracker.state();
+  const std::vector<InsRow> log = rows_of(model, drive.recording);
+  std::size_t r = 0;
+  auto before = Clock::now();
+  const auto judge = [&](const TrackState& state, bool base_moves) {
+    composed.add(log[r]);
     note_alarms(state, score);
     for (const double x : state.innovation)
       if (state.started && !std::isnan(x)) score.largest_innovation = std::max(score.largest_innovation, x);
-    if (!state.started) continue;
+    if (!state.started) return;
     for (std::size_t j = 0; j < truth.size(); ++j) {
       const auto at = static_cast<Index>(j);
       const double q = truth[j].sign * (drive.motion.q(truth[j].row, static_cast<Index>(r)) - truth[j].zero);
       const bool is_relative = state.joints[j].reference == JointReference::start;
       Sum& sum = sums[j];
+      if (std::isnan(state.q[at])) continue;
       if (sum.rows == 0 && is_relative) sum.start = state.q[at] - q;
       if (!is_relative && score.joints[j].is_first && score.joints[j].observable_at <= 0.0)
         score.joints[j].observable_at = state.time;
@@ -132,18 +152,23 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, c
       ++sum.composed_rows;
     }
     const SensorMotion &below = drive.motion.sensors[base], &above = drive.motion.sensors[tip];
-    const bool waits = tracker.filter().state().base == kinfer::track::BaseMode::moving &&
-                       std::ranges::any_of(state.joints, [](const JointStatus& joint) {
+    const bool waits = base_moves && std::ranges::any_of(state.joints, [](const JointStatus& joint) {
                          return joint.reference == JointReference::start;
                        });
-    if (waits) continue;
+    if (waits) return;
     ++rows;
     const double tilted = tilt_error(state.world_q_base, below.world_R_sensor[r]);
     tilt += tilted * tilted;
-    if (r % 10 != 0 || state.base_T_tool.position.hasNaN()) continue;
+    if (r % 10 != 0 || state.base_T_tool.position.hasNaN()) return;
     tool.push_back(state.base_T_tool.position);
     true_tool.push_back(below.world_R_sensor[r].conjugate() * Vec3(above.position[r] - below.position[r]));
-  }
+  };
+  each_state(model, estimator, log, [&](const TrackState& state, bool base_moves) {
+    spent += std::chrono::duration<double>(Clock::now() - before).count();
+    judge(state, base_moves);
+    ++r;
+    before = Clock::now();
+  });
   for (std::size_t j = 0; j < truth.size(); ++j) {
     const Sum& sum = sums[j];
     JointScore& joint = score.joints[j];
@@ -156,7 +181,7 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, c
   }
   score.tool_rms = rms_after_fit(true_tool, tool);
   score.base_tilt_rms = std::sqrt(tilt / std::max(1, rows));
-  score.cpu_per_row = spent / static_cast<double>(time.size());
+  score.cpu_per_row = spent / static_cast<double>(log.size());
   return score;
 }
 

@@ -28,6 +28,6 @@ struct TrackScore {
 };
 
 TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, const SimulatedDrive& drive,
-                 const kinfer::track::TrackOptions& options = {});
+                 kinfer::track::Estimator estimator = kinfer::track::Estimator::filter);
 
 }  // namespace kinfer::study::track_study

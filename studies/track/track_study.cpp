@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Simulated machines, identified on one drive by default options and tracked on another one; then measured ones.
-// `--measured diodem|kuka|ur5` runs these alone; `--alarms on` counts alarms instead (with --machines, --grades,
+// `--smooth on` prints the smoother's row below the filter's; `--measured diodem|kuka|ur5` runs these alone; `--alarms
+// on` counts alarms instead (with --machines, --grades,
 // --first, --seeds, --duration).
 #include <fmt/format.h>
 
@@ -26,7 +27,7 @@ struct Arguments {
   int first_seed = 1, seeds = 1;
   double duration = 120.0, steel = 0.0;
   InjectedFault fault{};
-  bool counts_alarms = false;
+  bool counts_alarms = false, smooths = false;
 };
 
 std::vector<std::string> split(std::string_view text) {
@@ -53,6 +54,7 @@ Arguments parse(int count, char** values) {
     if (key == "--first") a.first_seed = static_cast<int>(number);
     if (key == "--duration") a.duration = number;
     if (key == "--steel") a.steel = number;
+    if (key == "--smooth") a.smooths = value == "on";
     if (key == "--alarms") a.counts_alarms = value == "on";
     if (key == "--fault")
       a.fault.kind = value == "turned"    ? FaultKind::turned
@@ -113,6 +115,8 @@ void run(const Arguments& a) {
                                                 .steel = a.steel});
         inject(a.fault, second);
         print(machine, grade, seed, track(*model, first, second));
+        if (a.smooths)
+          print("  smoothed", grade, seed, track(*model, first, second, kinfer::track::Estimator::smoother));
       }
 }
 

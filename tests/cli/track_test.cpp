@@ -104,6 +104,42 @@ TEST_F(Track, GivesTheSameRowsHoweverTheLogArrives) {
   EXPECT_THAT(lines.out, StartsWith("{\"t\":0,\"q\":["));
 }
 
+TEST_F(Track, SmoothsAWholeLog) {
+  identify();
+  const Outcome run = kinfer("track machine drive/imu.csv --out work --smooth");
+  EXPECT_EQ(run.code, 0) << run.err;
+  const std::string csv = slurp(in("work/track.csv"));
+  EXPECT_EQ(lines_of(csv), lines_of(slurp(in("drive/imu.csv")))) << "a row per row";
+  ASSERT_EQ(kinfer("track machine drive/imu.csv --out filtered --quiet").code, 0);
+  const auto sum_of_sd = [&](const std::string& file) {
+    double sum = 0.0;
+    for (const double sd : column(slurp(in(file)), "sd_q_ins1-ins2[deg]"))
+      if (std::isfinite(sd)) sum += sd;
+    return sum;
+  };
+  EXPECT_LT(sum_of_sd("work/track.csv"), sum_of_sd("filtered/track.csv"));
+  const Outcome follow = kinfer("track machine drive/imu.csv --smooth --follow");
+  EXPECT_EQ(follow.code, 2);
+  EXPECT_THAT(follow.err, HasSubstr("--smooth needs the whole log"));
+}
+
+TEST_F(Track, PutsRowsThatComeLateInOrder) {
+  identify();
+  ASSERT_EQ(kinfer("track machine drive/imu.csv --out work --quiet").code, 0);
+  // Every third row one place later, and one far too late.
+  ASSERT_EQ(
+      shell(
+          "awk 'NR>1 && NR%3==0 { held=$0; next } { print } held { print held; held=\"\" }' drive/imu.csv > late.csv; "
+          "sed -n 500p drive/imu.csv >> late.csv")
+          .code,
+      0);
+  EXPECT_THAT(kinfer("track machine late.csv").err, HasSubstr("the time goes backwards"));
+  const Outcome run = kinfer("track machine late.csv --out ordered --reorder 20");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("1 rows came more than 20 ms late and were left out"));
+  EXPECT_EQ(slurp(in("ordered/track.csv")), slurp(in("work/track.csv")));
+}
+
 TEST_F(Track, BadInputIsOneSentence) {
   identify("--zero ins2=10deg@1s");
   EXPECT_THAT(kinfer("track nowhere drive/imu.csv").err, HasSubstr("nowhere: expected a folder that kinfer identify"));

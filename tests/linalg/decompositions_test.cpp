@@ -90,6 +90,13 @@ TEST(Positive, AnIndefiniteMatrixHasNoSolution) {
   EXPECT_FALSE(cholesky(a).has_value());
 }
 
+TEST(Positive, SemidefiniteSystemsAreSolvedInTheirRange) {
+  MatrixXd half = test::random_matrix(6, 6, 8);
+  half.row(3).setZero();  // a direction without variance
+  const MatrixXd a = half * half.transpose(), b = a * test::random_matrix(6, 2, 9);
+  EXPECT_LT((a * solve_semidefinite(a, b) - b).norm(), 1e-10);
+}
+
 TEST(SolveLeastSquares, LeavesAResidualOrthogonalToTheColumns) {
   const MatrixXd a = test::random_matrix(20, 5, 8);
   const VectorXd b = test::random_matrix(20, 1, 9);

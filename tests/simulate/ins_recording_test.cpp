@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/base/square.hpp"
 
 namespace kinfer {
 namespace {
@@ -166,6 +167,32 @@ TEST(InsSimulation, SameSeedGivesTheSameBitsAndAnotherSeedDoesNot) {
     EXPECT_NE(once.sensors[s].angular_velocity.axis, other.sensors[s].angular_velocity.axis);
   }
   EXPECT_NE(once.sensors[0].angular_velocity.axis, once.sensors[1].angular_velocity.axis);
+}
+
+TEST(InsSimulation, AnotherDriveHasTheSensorsBiasesAndOtherNoise) {
+  constexpr std::size_t sensors = 100, rows = 2000;
+  const Machine machine = one_sensor(sensors);
+  const MachineMotion motion = still(machine, rows);
+  const auto drive = [&](std::uint64_t number) {
+    return simulate_recording(machine, motion, grade("industrial"), {}, Rng(2), number);
+  };
+  const InsRecording first = drive(1), second = drive(2),
+                     unnumbered = simulate_recording(machine, motion, grade("industrial"), {}, Rng(2));
+  double change = 0.0, correlation = 0.0;
+  for (std::size_t s = 0; s < sensors; ++s) {
+    EXPECT_EQ(first.sensors[s].angular_velocity.axis, unnumbered.sensors[s].angular_velocity.axis);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto &a = first.sensors[s].angular_velocity.axis[k], &b = second.sensors[s].angular_velocity.axis[k];
+      const Moments of_a = moments(a), of_b = moments(b);
+      change += square(of_b.mean - of_a.mean) / (3.0 * sensors);
+      for (std::size_t row = 0; row < rows; ++row)
+        correlation += (a[row] - of_a.mean) * (b[row] - of_b.mean) / (of_a.sd * of_b.sd * 3.0 * sensors * rows);
+    }
+  }
+  const double noise = 0.007 * degree * 10.0 / std::sqrt(rows), drift = 10.0 / 3600 * degree;
+  const double expected = std::sqrt(2.0 * (noise * noise + drift * drift));
+  EXPECT_NEAR(std::sqrt(change) / expected, 1.0, 5.0 / std::sqrt(2.0 * 3.0 * sensors));
+  EXPECT_LT(std::abs(correlation), 5.0 / std::sqrt(3.0 * sensors * rows));
 }
 
 }  // namespace

@@ -6,10 +6,12 @@
 
 #include <cmath>
 
+#include "kinfer/base/square.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
 #include "kinfer/track/faults/fit_monitor.hpp"
 #include "kinfer/track/faults/replay.hpp"
+#include "kinfer/track/filter/thresholds.hpp"
 #include "support/random_tracked_tree.hpp"
 
 namespace kinfer::track {
@@ -218,6 +220,34 @@ TEST(ChainFilter, AScalarMeasurementIsKalmansToo) {
   EXPECT_NEAR(filter.state().joints[0] - tree.state.joints[0], 0.01 * w[at] / variance, 1e-14);
 }
 
+/// Against Kalman's equations of a state with one more element, the noise.
+TEST(ChainFilter, NoiseThatIsInAStateAlreadyIsTakenOutOfIt) {
+  const TrackedTree tree(11);
+  ChainFilter filter = tree.filter();
+  const Index n = tree.model->layout.size, estimated = tree.model->layout.first_geometry;
+  const Index bias = tree.model->layout.sensor_state(1), at = tree.model->layout.joint_state(0);
+  const double noise = 1e-5, covariance = -4e-5;
+  MatrixXd p = MatrixXd::Zero(n + 1, n + 1);
+  p.topLeftCorner(n, n) = filter.covariance();
+  p(n, n) = noise;
+  p(n, at) = p(at, n) = covariance;
+  VectorXd h = VectorXd::Zero(n + 1);
+  h[bias] = h[n] = 1.0;
+  const VectorXd w = p * h;
+  MatrixXd expected = p - w * w.transpose() / h.dot(w);
+  expected.block(estimated, estimated, n - estimated, n - estimated) =
+      p.block(estimated, estimated, n - estimated, n - estimated);
+  filter.update({.at = {bias},
+                 .factor = {1.0},
+                 .terms = 1,
+                 .innovation = 0.003,
+                 .variance = noise,
+                 .noisy_state = at,
+                 .noise_covariance = covariance});
+  EXPECT_LT((filter.covariance() - expected.topLeftCorner(n, n)).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_NEAR(filter.state().joints[0] - tree.state.joints[0], 0.003 * w[at] / h.dot(w), 1e-14);
+}
+
 TEST(ChainFilter, APlacedJointIsKnownThereAndToNothingElse) {
   const TrackedTree tree(13);
   ChainFilter filter = tree.filter();
@@ -228,6 +258,51 @@ TEST(ChainFilter, APlacedJointIsKnownThereAndToNothingElse) {
   EXPECT_NEAR(filter.covariance().row(at).norm(), 4e-4, 1e-18);
   filter.declare_known(1);
   EXPECT_EQ(filter.covariance().col(at).norm(), 0.0);
+}
+
+/// A considered axis that is off shows as another bias in another posture: only sensors that turn forget theirs.
+TEST(ChainFilter, BiasesOfForceAreForgottenWithTheAngleTurnedThrough) {
+  const TrackedTree tree(3);
+  FilterModel known = *tree.model;
+  for (SensorSettings& s : known.sensors) s.axis_sd = 0.0;
+  ChainFilter filter = tree.filter(), without(std::make_shared<FilterModel>(known));
+  without.start(tree.state, tree.fast);
+  for (ChainFilter* each : {&filter, &without}) {
+    each->update(tree.block(4));
+    each->predict(each->state().time + 0.05);
+  }
+  ChainEvaluator evaluator(known);
+  evaluator.evaluate(known, tree.filter().state());
+  for (std::size_t s = 0; s < known.sensors.size(); ++s) {
+    const Index bias = known.layout.sensor_state(static_cast<Index>(s)) + SensorIndex::accelerometer_bias;
+    const double added = filter.covariance()(bias, bias) - without.covariance()(bias, bias);
+    const double turned = 0.05 * evaluator.result().angular_velocity[s].norm();
+    const double expected = posture_walk * turned * square(known.gravity * tree.model->sensors[s].axis_sd);
+    EXPECT_NEAR(added, expected, 1e-6 * expected + 1e-15);
+  }
+}
+
+TEST(FilterModel, AxisSdsAreThoseOfTheDirectionsOnEachSegment) {
+  Rng rng(5);
+  TrackingModel model = test::random_tree(rng);
+  const FilterModel filter = filter_model(model);
+  bool is_any = false;
+  for (const SensorSettings& sensor : filter.sensors) {
+    double squares = 0.0;
+    int count = 0;
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+      const TrackingParameter& p = model.parameters[i];
+      const TrackingBody& body = model.bodies[static_cast<std::size_t>(p.index)];
+      const bool is_own = p.kind == TrackingParameterKind::child_rotation && p.index == sensor.body;
+      const bool is_next = p.kind == TrackingParameterKind::parent_rotation && body.parent == sensor.body;
+      if ((!is_own && !is_next) || p.component == 2) continue;
+      if (filter.bodies[static_cast<std::size_t>(p.index)].motion == JointMotion::spherical) continue;
+      squares += model.covariance(static_cast<Index>(i), static_cast<Index>(i)), ++count;
+    }
+    EXPECT_NEAR(sensor.axis_sd, count > 0 ? std::sqrt(squares / count) : 0.0, 1e-15);
+    is_any |= sensor.axis_sd > 0.0;
+  }
+  EXPECT_TRUE(is_any);
 }
 
 TEST(Replay, OfNothingThatIsNewEndsWhereTheFilterIs) {

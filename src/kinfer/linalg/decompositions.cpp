@@ -36,6 +36,10 @@ std::optional<VectorXd> solve_spd(ConstMatrixRef a, ConstVectorRef b) {
   return VectorXd(factor.solve(b));
 }
 
+MatrixXd solve_semidefinite(ConstMatrixRef a, ConstMatrixRef b) {
+  return a.ldlt().solve(b);
+}
+
 std::optional<MatrixXd> invert_spd(ConstMatrixRef a) {
   const Eigen::LLT<MatrixXd> factor(a);
   if (factor.info() != Eigen::Success) return std::nullopt;

@@ -33,6 +33,9 @@ SymmetricEigen symmetric_eigen(ConstMatrixRef a);
 /// Solves a x = b for symmetric positive definite a (lower half read); nullopt if a is not.
 std::optional<VectorXd> solve_spd(ConstMatrixRef a, ConstVectorRef b);
 
+/// x with a x = b for a symmetric positive semidefinite (lower half read) whose range holds the columns of b.
+MatrixXd solve_semidefinite(ConstMatrixRef a, ConstMatrixRef b);
+
 /// a⁻¹ of a symmetric positive definite matrix; nullopt if it is not.
 std::optional<MatrixXd> invert_spd(ConstMatrixRef a);
 

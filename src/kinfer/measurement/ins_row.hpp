@@ -2,6 +2,9 @@
 // The samples of all sensors at one instant, as they arrive while a machine works.
 #pragma once
 
+#include <functional>
+
+#include "kinfer/base/result.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
 
 namespace kinfer {
@@ -12,5 +15,8 @@ struct InsRow {
   double time = 0.0;  ///< [s] never decreases
   std::vector<InsSample> sensors{};
 };
+
+/// Whoever takes rows; an error ends their source.
+using InsRowSink = std::function<Result<void>(const InsRow&)>;
 
 }  // namespace kinfer

@@ -16,6 +16,14 @@ constexpr double largest_force_spike = 80.0;  // [m/s²]
 constexpr double largest_rate_spike = 10.0;   // [rad/s]
 
 enum Stream : std::uint64_t { accelerometer = 1, gyroscope, magnetometer, losses, steel, iron, transients };
+constexpr std::uint64_t other_drives = 1U << 30U;  // a stream beyond those of the sensors
+
+/// Draws of what belongs to the sensors, and of what is new in each drive.
+struct Draws {
+  Rng sensors, drive;
+
+  Draws stream(std::uint64_t index) const { return {sensors.stream(index), drive.stream(index)}; }
+};
 
 /// Random spikes of a three-axis instrument.
 class Spikes {
@@ -39,8 +47,8 @@ class Spikes {
 };
 
 TriadColumns simulate_columns(const std::vector<Vec3>& truth, const InstrumentModel& model, double step, Spikes spikes,
-                              Rng rng) {
-  SimulatedInstrument instrument(model, sample_instrument_errors(model, rng.stream(1)), rng.stream(2));
+                              const Draws& rng) {
+  SimulatedInstrument instrument(model, sample_instrument_errors(model, rng.sensors.stream(1)), rng.drive.stream(2));
   TriadColumns columns;
   for (auto& axis : columns.axis) axis.reserve(truth.size());
   for (const Vec3& t : truth) {
@@ -82,27 +90,28 @@ void drop_rows(InsSensor& sensor, double fraction, Rng rng) {
 
 /// The field at a sensor with everything that disturbs it.
 std::vector<Vec3> disturbed_field(const SensorMotion& truth, const SensorFaults& sensor_faults, bool has_transients,
-                                  double step, Rng rng) {
-  std::vector<Vec3> field = add_disturbance(truth.field, sensor_faults.magnetic_disturbance, step, rng.stream(steel));
+                                  double step, const Draws& rng) {
+  std::vector<Vec3> field =
+      add_disturbance(truth.field, sensor_faults.magnetic_disturbance, step, rng.drive.stream(steel));
   if (has_transients)
-    field = with_transients(std::move(field), sensor_faults.magnetic_transients, step, rng.stream(transients));
-  return with_iron(std::move(field), sensor_faults.hard_iron, sensor_faults.soft_iron, rng.stream(iron));
+    field = with_transients(std::move(field), sensor_faults.magnetic_transients, step, rng.drive.stream(transients));
+  return with_iron(std::move(field), sensor_faults.hard_iron, sensor_faults.soft_iron, rng.sensors.stream(iron));
 }
 
 InsSensor simulate_sensor(const SensorMotion& truth, const SensorModel& model, const SensorFaults& sensor_faults,
-                          bool has_transients, double step, Rng rng) {
+                          bool has_transients, double step, const Draws& rng) {
   InsSensor sensor;
-  const Spikes of_force(sensor_faults.spikes, step, largest_force_spike, rng.stream(accelerometer).stream(3));
-  const Spikes of_rate(sensor_faults.spikes, step, largest_rate_spike, rng.stream(gyroscope).stream(3));
+  const Spikes of_force(sensor_faults.spikes, step, largest_force_spike, rng.drive.stream(accelerometer).stream(3));
+  const Spikes of_rate(sensor_faults.spikes, step, largest_rate_spike, rng.drive.stream(gyroscope).stream(3));
   sensor.acceleration = simulate_columns(truth.force, model.accelerometer, step, of_force, rng.stream(accelerometer));
   sensor.angular_velocity =
       simulate_columns(truth.angular_velocity, model.gyroscope, step, of_rate, rng.stream(gyroscope));
   if (sensor_faults.has_magnetometer) {
     const std::vector<Vec3> field = disturbed_field(truth, sensor_faults, has_transients, step, rng);
-    const Spikes none(0.0, step, 0.0, rng);
+    const Spikes none(0.0, step, 0.0, rng.drive);
     sensor.field = simulate_columns(field, model.magnetometer, step, none, rng.stream(magnetometer));
   }
-  if (sensor_faults.missing > 0.0) drop_rows(sensor, sensor_faults.missing, rng.stream(losses));
+  if (sensor_faults.missing > 0.0) drop_rows(sensor, sensor_faults.missing, rng.drive.stream(losses));
   flag_faults(sensor);
   return sensor;
 }
@@ -123,14 +132,16 @@ std::vector<bool> sensors_with_transients(std::size_t count, const SensorFaults&
 }  // namespace
 
 InsRecording simulate_recording(const Machine& machine, const MachineMotion& motion, const SensorModel& model,
-                                const SensorFaults& sensor_faults, Rng rng) {
+                                const SensorFaults& sensor_faults, const Rng& rng, std::uint64_t drive) {
+  const Draws draws{rng, drive <= 1 ? rng : rng.stream(other_drives).stream(drive)};
   InsRecording recording;
   recording.loggers.push_back({"imu.csv", motion.time});
   const double step = median_period(motion.time);
-  const auto has_transients = sensors_with_transients(machine.sensors.size(), sensor_faults, rng.stream(transients));
+  const auto has_transients =
+      sensors_with_transients(machine.sensors.size(), sensor_faults, draws.drive.stream(transients));
   for (std::size_t s = 0; s < machine.sensors.size(); ++s) {
     recording.sensors.push_back(
-        simulate_sensor(motion.sensors[s], model, sensor_faults, has_transients[s], step, rng.stream(s)));
+        simulate_sensor(motion.sensors[s], model, sensor_faults, has_transients[s], step, draws.stream(s)));
     recording.sensors.back().name = machine.sensors[s].name;
   }
   return recording;

@@ -22,8 +22,8 @@ struct SensorFaults {
 };
 
 /// The recording of a motion by sensors of this model, each with errors of its own. Faults are flagged as a reader of
-/// the file would flag them.
+/// the file would flag them. Another `drive` (1, 2, ...) is recorded by the same sensors with other noise.
 InsRecording simulate_recording(const Machine& machine, const MachineMotion& motion, const SensorModel& model,
-                                const SensorFaults& sensor_faults, Rng rng);
+                                const SensorFaults& sensor_faults, const Rng& rng, std::uint64_t drive = 1);
 
 }  // namespace kinfer

@@ -4,7 +4,11 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/linalg/types.hpp"
 #include "kinfer/measurement/ins_row.hpp"
 
@@ -17,5 +21,14 @@ struct TrackOptions {
   /// [rad] or [m], one per joint position; NaN: unknown. Where the machine is when tracking begins.
   std::optional<VectorXd> start{};
 };
+
+enum class Estimator {
+  filter,   ///< Tracker: each row as soon as it is there
+  smoother  ///< smooth(): after the last row
+};
+
+/// As the program's options state them, for provenance; angles in deg, lengths in mm.
+std::vector<std::pair<std::string, std::string>> describe(const TrackOptions& options, Estimator estimator,
+                                                          const TrackingModel& model);
 
 }  // namespace kinfer::track

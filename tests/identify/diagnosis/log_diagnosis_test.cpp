@@ -4,6 +4,7 @@
 #include "identify/driven_machine.hpp"
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/constants.hpp"
+#include "kinfer/geometry/random.hpp"
 #include "kinfer/identify/diagnosis/diagnosis.hpp"
 #include "kinfer/identify/diagnosis/mended_log.hpp"
 #include "kinfer/measurement/ins_screening.hpp"
@@ -125,6 +126,21 @@ TEST(LogDiagnosis, BiasesThatPointUpByChanceAreNoEulerAngles) {
       for (float& w : s.angular_velocity.axis[k]) w += static_cast<float>(rpy[static_cast<Eigen::Index>(k)]);
   });
   EXPECT_TRUE(diagnose_log(log, 1));
+}
+
+/// A bias turns a direction that stands still, in a smaller unit by less.
+TEST(LogDiagnosis, ABiasOfASensorThatStandsStillIsNoOtherUnit) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const auto log = with([&](InsRecording& r) {
+      Rng rng(seed);
+      const Vec3 bias = 0.015 * normal_vector(rng).normalized();
+      InsSensor& s = r.sensors[0];  // does not move
+      for (std::size_t k = 0; k < 3; ++k)
+        for (float& w : s.angular_velocity.axis[k])
+          w += static_cast<float>(bias[static_cast<Eigen::Index>(k)] + 3.5e-3 * rng.normal());
+    });
+    EXPECT_EQ(kinds_of(diagnose_log(log, 1)), Kinds{});
+  }
 }
 
 TEST(LogDiagnosis, AllAccelerometersNegatedAreToldByMagnetometersAlone) {

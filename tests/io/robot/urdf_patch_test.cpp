@@ -74,7 +74,8 @@ PatchedText patched(const std::string& text, const Chain& in_file, const Chain& 
 }
 
 /// The written file has the tool poses of the corrected chain; of joint positions with the offsets added.
-void expect_same_tool_poses(const std::string& text, const ChainEnds& ends, EncoderOffsets offsets, std::uint64_t seed) {
+void expect_same_tool_poses(const std::string& text, const ChainEnds& ends, EncoderOffsets offsets,
+                            std::uint64_t seed) {
   const auto in_file = parse_urdf(text, "in.urdf", ends);
   ASSERT_TRUE(in_file.has_value()) << in_file.error().what;
   const Chain corrected = disturbed(*in_file, Rng(seed));
@@ -175,6 +176,16 @@ TEST(UrdfPatch, AnotherMachineIsRefused) {
   ASSERT_FALSE(refused.has_value());
   EXPECT_EQ(refused.error().what,
             "joint 2 of the calibrated chain, \"slider\", is not joint \"slide\" of the robot file");
+}
+
+TEST(UrdfPatch, AnOriginThatNoFileMayHoldIsRefused) {
+  const auto in_file = parse_urdf(awkward_urdf(), "in.urdf", {.base_link = "", .tip_link = "hand"});
+  ASSERT_TRUE(in_file.has_value()) << in_file.error().what;
+  Chain corrected = *in_file;
+  std::get<UrdfLink>(corrected.joints[0].link).origin.xyz.x() = 3e7;
+  const auto refused = calibrated_origins(*in_file, corrected, EncoderOffsets::folded);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_THAT(refused.error().what, testing::HasSubstr("is not possible for a length"));
 }
 
 TEST(UrdfPatch, AnglesStayNearTheFilesOwn) {

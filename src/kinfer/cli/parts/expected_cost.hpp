@@ -18,6 +18,7 @@ struct ExpectedCost {
 
 ExpectedCost cost_of_identification(double rows, double sensors);
 ExpectedCost cost_of_simulation(double rows, double sensors);
+ExpectedCost cost_of_smoothing(double rows, double sensors);
 ExpectedCost cost_of_calibration(double poses, double joints);
 
 /// A sentence with the option that allows it, where this is beyond the limits of the process.

@@ -102,6 +102,7 @@ std::string truth_json(const SimulationRecord& record, const Drive& drive, const
                 {"base", record.base},
                 {"slope_deg", record.slope_deg},
                 {"seed", record.seed},
+                {"drive", record.drive},
                 {"sampling_rate", record.sampling_rate},
                 {"root", truth.root}};
   document["gravity"] = json(machine.chain.gravity);

@@ -21,6 +21,7 @@ struct SimulationRecord {
   std::string machine, grade, base;
   double slope_deg = 0.0;
   std::uint64_t seed = 1;
+  int drive = 1;
   double sampling_rate = 200.0;  ///< [Hz]
 };
 std::string truth_json(const SimulationRecord& record, const Drive& drive, const Machine& machine,

@@ -16,7 +16,7 @@
 
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/io/recording/ins_columns.hpp"
-#include "kinfer/io/recording/ins_row_reader.hpp"
+#include "kinfer/io/recording/log_rows.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -77,7 +77,7 @@ class ByteSource {
 Result<std::vector<std::string>> stream(const RowSource& source, const RowSink& sink) {
   const std::string& path = source.logs.front();
   KINFER_TRY(bytes, ByteSource::open(path));
-  InsRowReader reader(source.sensors, path == "-" ? "standard input" : path);
+  InsRowReader reader(source.sensors, path == "-" ? "standard input" : path, source.times);
   const InterruptionGuard guard;
   while (!interrupted) {
     const std::string_view piece = bytes.read();
@@ -95,44 +95,11 @@ bool is_csv(const std::string& path) {
   return bytes && is_ins_csv(bytes->read());
 }
 
-/// Index of the sensor of each name. An error where one is missing.
-Result<std::vector<std::size_t>> sensors_of(const RowSource& source, const InsRecording& recording) {
-  std::vector<std::size_t> indices;
-  std::vector<std::string> known;
-  for (const InsSensor& sensor : recording.sensors) known.push_back(sensor.name);
-  for (const std::string& name : source.sensors) {
-    const auto found = std::ranges::find(known, name);
-    if (found == known.end())
-      return error("{}: the chain has a sensor {}, the log has none of that name; it has {}",
-                   fmt::join(source.logs, ", "), name, fmt::join(known, ", "));
-    indices.push_back(static_cast<std::size_t>(found - known.begin()));
-  }
-  return indices;
-}
-
-/// Rows of the loggers, merged by time: each row holds the samples that were taken at its time.
+/// Formats that are read whole, and several logs.
 Result<std::vector<std::string>> replay(const RowSource& source, const RowSink& sink) {
   KINFER_TRY(recording, read_ins_logs({source.logs, std::string(), {}}, CommonOptions{.quiet = true}));
-  KINFER_TRY(sensors, sensors_of(source, recording));
-  std::vector<std::size_t> next(recording.loggers.size(), 0);
-  InsRow row;
-  row.sensors.resize(sensors.size());
-  for (;;) {
-    double time = std::numeric_limits<double>::infinity();
-    for (std::size_t l = 0; l < next.size(); ++l)
-      if (next[l] < recording.loggers[l].time.size()) time = std::min(time, recording.loggers[l].time[next[l]]);
-    if (!std::isfinite(time)) break;
-    row.time = time;
-    for (std::size_t s = 0; s < sensors.size(); ++s) {
-      const InsSensor& sensor = recording.sensors[sensors[s]];
-      const std::vector<double>& times = recording.loggers[sensor.logger].time;
-      const std::size_t at = next[sensor.logger];
-      row.sensors[s] = at < times.size() && times[at] <= time ? sample(sensor, times, at) : InsSample{.time = time};
-    }
-    for (std::size_t l = 0; l < next.size(); ++l)
-      if (next[l] < recording.loggers[l].time.size() && recording.loggers[l].time[next[l]] <= time) ++next[l];
-    if (auto done = sink.row(row); !done) return forward_error(done.error());
-  }
+  if (auto done = each_row_of(recording, source.sensors, sink.row); !done)
+    return error("{}: {}", fmt::join(source.logs, ", "), done.error().what);
   sink.pause();
   return recording.remarks;
 }

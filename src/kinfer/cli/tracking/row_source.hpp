@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/measurement/ins_row.hpp"
+#include "kinfer/io/recording/ins_row_reader.hpp"
 
 namespace kinfer::cli {
 
@@ -20,6 +20,7 @@ struct RowSource {
   std::vector<std::string> logs{};     ///< one a logger; "-": standard input, alone
   std::vector<std::string> sensors{};  ///< whose samples a row holds, in this order
   ReadMode mode = ReadMode::once;
+  RowTimes times = RowTimes::increasing;
 };
 
 struct RowSink {

@@ -17,12 +17,12 @@
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/sweep/task_context.hpp"
-#include "kinfer/cli/tracking/tracked_chain.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/files/identification_files.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/recording/machine_facts_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/tracking/tracked_chain.hpp"
 
 namespace kinfer::cli {
 namespace {

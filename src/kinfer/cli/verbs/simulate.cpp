@@ -28,6 +28,7 @@ struct SimulateArguments {
   std::string machine, out, base = "still", script = "standard", motion = "stiff", grade = "industrial";
   double slope = 0.0;  // deg
   bool arbitrary_mounting = false;
+  int drive = 1;
   double duration = 0.0;  // s; 0: the script's default
   double sampling_rate = 200.0;
   SensorFaults trouble;
@@ -75,6 +76,11 @@ Result<MachineMotion> move(const MujocoWorld& world, const Machine& machine, con
   return world.drive(drive, options.sampling_rate, options.motion == "soft" ? Servo::soft : Servo::stiff);
 }
 
+/// The machine's own draws for its first drive.
+Rng of_drive(const Rng& rng, int drive) {
+  return drive <= 1 ? rng : rng.stream(static_cast<std::uint64_t>(drive));
+}
+
 void print_summary(const SimulateArguments& options, const Machine& machine, const MachineMotion& motion) {
   const auto joints = dof(machine.chain) - machine.base_dof;
   const double seconds = static_cast<double>(motion.time.size()) / options.sampling_rate;
@@ -105,7 +111,7 @@ Result<void> simulate(const SimulateArguments& options) {
   const Machine machine = options.linkage ? with_linkage(world.machine()) : world.machine();
   KINFER_TRY(drive,
              make_drive(world.machine(), {.script = drive_scripts.at(options.script), .duration = options.duration},
-                        rng.stream(2)));
+                        of_drive(rng.stream(2), options.drive)));
   const double rows = drive.duration * options.sampling_rate, count = static_cast<double>(machine.sensors.size());
   if (auto possible = check_cost(cost_of_simulation(rows, count)); !possible) return possible;
   KINFER_TRY(folder, OutputFolder::make(options.out));
@@ -114,12 +120,13 @@ Result<void> simulate(const SimulateArguments& options) {
   if (options.faults.foam > 0.0)
     moved = with_foam_mounts(std::move(moved), options.faults.foam * degree, rng.stream(4));
   KINFER_TRY(motion, with_remount(machine, std::move(moved), options.faults));
-  KINFER_TRY(punctual,
-             with_late_sensor(simulate_recording(machine, motion, sensors, trouble_of(options), rng.stream(3)),
-                              options.faults));
-  const InsRecording recording = with_stamp_faults(std::move(punctual), options.faults, rng.stream(5));
-  const SimulationRecord record{options.machine, sensors.name,        options.base,
-                                options.slope,   options.common.seed, options.sampling_rate};
+  KINFER_TRY(punctual, with_late_sensor(simulate_recording(machine, motion, sensors, trouble_of(options), rng.stream(3),
+                                                           static_cast<std::uint64_t>(options.drive)),
+                                        options.faults));
+  const InsRecording recording =
+      with_stamp_faults(std::move(punctual), options.faults, of_drive(rng.stream(5), options.drive));
+  const SimulationRecord record{options.machine,     sensors.name,  options.base,         options.slope,
+                                options.common.seed, options.drive, options.sampling_rate};
   for (const auto& [name, text] :
        {std::pair{"imu.csv", imu_csv(recording)}, std::pair{"motion.csv", motion_csv(machine, motion)},
         std::pair{"truth.json", truth_json(record, drive, machine, truth)}, std::pair{"machine.xml", mjcf}})
@@ -151,6 +158,8 @@ void add_motion_options(CLI::App& verb, SimulateArguments& options) {
   add_choice(verb, "--excitation", options.script, names_of(drive_scripts),
              "standard: 4 s rest, 6 s a joint, 16 s all; sequential: without 'all'; together: 30 s all; gentle and "
              "vigorous: standard at 45 and 180 %; quick: its waves four times as fast");
+  add_count(verb, "--drive", options.drive, 1, 1000000,
+            "Another drive of the same machine by the same sensors: 2, 3, ... have other motions and other noise");
   add_number(verb, "--duration", options.duration, 0.0, 3600.0, "Length of the recording [s]; 0: the script's own");
   add_choice(verb, "--motion", options.motion, {"stiff", "soft", "prescribed"},
              "stiff: forward dynamics, the joints follow; soft: they sway; prescribed: inverse dynamics");
@@ -196,7 +205,8 @@ Verb add_simulate(CLI::App& app) {
   CLI::App* verb =
       add_command(app, "simulate", "INS log of a simulated machine with known truth, to try things out",
                   "Examples:\n  kinfer simulate excavator --out data\n"
-                  "  kinfer simulate crane --excitation gentle --grade consumer --slope 4 --seed 7 --out data");
+                  "  kinfer simulate crane --excitation gentle --grade consumer --slope 4 --seed 7 --out data\n"
+                  "  kinfer simulate excavator-general --drive 2 --duration 120 --out later");
   auto options = std::make_shared<SimulateArguments>();
   add_text(*verb, "machine", options->machine, fmt::format("One of {}", fmt::join(machine_names(), ", ")),
            Requirement::required, "NAME");

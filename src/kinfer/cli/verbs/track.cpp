@@ -2,20 +2,25 @@
 // kinfer track: an identified chain at work; joint positions, tool pose and alarms from INS samples, row by row.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/cli/parts/arguments.hpp"
 #include "kinfer/cli/parts/evidence_files.hpp"
+#include "kinfer/cli/parts/expected_cost.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/tracking/row_source.hpp"
+#include "kinfer/cli/tracking/start_argument.hpp"
 #include "kinfer/cli/tracking/track_output.hpp"
 #include "kinfer/cli/tracking/track_summary.hpp"
-#include "kinfer/cli/tracking/tracked_chain.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/track_json.hpp"
 #include "kinfer/io/text/csv.hpp"
+#include "kinfer/io/tracking/tracked_chain.hpp"
+#include "kinfer/track/row_feed.hpp"
 #include "kinfer/track/run_recorder.hpp"
+#include "kinfer/track/smooth/smoother.hpp"
 #include "kinfer/track/tracker.hpp"
 
 namespace kinfer::cli {
@@ -25,8 +30,13 @@ struct TrackArguments {
   CommonOptions common;
   std::string chain, out, start, facts, base = "auto", base_at;
   std::vector<std::string> logs;
-  bool follow = false;
+  bool follow = false, smooth = false;
+  double reorder = 0.0;
 };
+
+track::Estimator estimator_of(const TrackArguments& options) {
+  return options.smooth ? track::Estimator::smoother : track::Estimator::filter;
+}
 
 Result<track::TrackOptions> track_options(const TrackArguments& options, const Chain& chain) {
   track::TrackOptions how;
@@ -56,34 +66,89 @@ Result<std::optional<BasePlace>> parse_place(const std::string& text) {
   return std::optional(BasePlace{1e-3 * Vec3(numbers[0], numbers[1], numbers[2]), numbers[3] * degree});
 }
 
-Provenance provenance_of(const TrackArguments& options) {
+Provenance provenance_of(const TrackArguments& options, const track::TrackOptions& how, const TrackingModel& model) {
   const std::filesystem::path chain(options.chain);
   std::vector<std::string> inputs{(chain / "chain.toml").string(), (chain / "track.toml").string()};
   for (const std::string& log : options.logs)
     if (log != "-") inputs.push_back(log);
   if (!options.facts.empty()) inputs.push_back(options.facts);
-  return {.inputs = fingerprints(inputs),
-          .options = {{"--base", options.base}, {"--base-at", options.base_at}, {"--start", options.start}},
-          .seed = options.common.seed};
+  Provenance provenance{.inputs = fingerprints(inputs),
+                        .options = track::describe(how, estimator_of(options), model),
+                        .seed = options.common.seed};
+  if (options.reorder > 0.0) provenance.options.emplace_back("--reorder", fmt::format("{:g}", options.reorder));
+  if (!options.base_at.empty()) provenance.options.emplace_back("--base-at", options.base_at);
+  return provenance;
 }
 
-Result<TrackRun> track_rows(const TrackArguments& options, const TrackedChain& machine, const track::TrackOptions& how,
-                            const std::vector<TrackOutput*>& outputs) {
-  track::Tracker tracker(machine.model, how);
-  track::RunRecorder recorder(machine.model);
-  RowSource source{.logs = options.logs, .mode = options.follow ? ReadMode::follow : ReadMode::once};
-  for (const TrackingSensor& sensor : machine.model.sensors) source.sensors.push_back(sensor.name);
+/// Whoever takes the states of a run.
+struct StateSink {
+  std::function<void(const TrackState&)> add;
+  std::function<void()> flush;
+};
+
+RowSource row_source(const TrackArguments& options, const TrackingModel& model) {
+  RowSource source{.logs = options.logs,
+                   .mode = options.follow ? ReadMode::follow : ReadMode::once,
+                   .times = options.reorder > 0.0 ? RowTimes::any : RowTimes::increasing};
+  for (const TrackingSensor& sensor : model.sensors) source.sensors.push_back(sensor.name);
+  return source;
+}
+
+/// The source's rows in order of time, clocks corrected. Returns remarks on the logs.
+Result<std::vector<std::string>> each_ordered_row(const TrackArguments& options, const TrackingModel& model,
+                                                  const RowSink& sink) {
+  track::RowFeed feed(model, 1e-3 * options.reorder);
+  KINFER_TRY(remarks, each_row(row_source(options, model),
+                               {[&](const InsRow& row) { return feed.add(row, sink.row); }, sink.pause}));
+  if (auto done = feed.finish(sink.row); !done) return forward_error(done.error());
+  if (feed.dropped() > 0)
+    remarks.push_back(
+        fmt::format("{} rows came more than {:g} ms late and were left out", feed.dropped(), options.reorder));
+  return remarks;
+}
+
+/// Each row's state as soon as the row is there.
+Result<std::vector<std::string>> track_rows(const TrackArguments& options, const TrackingModel& model,
+                                            const track::TrackOptions& how, const StateSink& sink) {
+  track::Tracker tracker(model, how);
   const auto add = [&](const InsRow& row) -> Result<void> {
     tracker.add(row);
-    recorder.add(tracker.state());
-    for (TrackOutput* output : outputs) output->add(tracker.state());
+    sink.add(tracker.state());
     return {};
   };
-  const auto flush = [&] {
-    for (TrackOutput* output : outputs) output->flush();
+  return each_ordered_row(options, model, {add, sink.flush});
+}
+
+/// The states after all rows have been read.
+Result<std::vector<std::string>> smooth_rows(const TrackArguments& options, const TrackingModel& model,
+                                             const track::TrackOptions& how, const StateSink& sink) {
+  constexpr std::size_t check_every = 1 << 16;
+  const auto sensors = static_cast<double>(model.sensors.size());
+  std::vector<InsRow> rows;
+  const auto add = [&](const InsRow& row) -> Result<void> {
+    rows.push_back(row);
+    if (rows.size() % check_every != 0) return {};
+    return check_cost(cost_of_smoothing(static_cast<double>(rows.size()), sensors));
   };
-  KINFER_TRY(remarks, each_row(source, {add, flush}));
-  flush();
+  KINFER_TRY(remarks, each_ordered_row(options, model, {add, [] {}}));
+  ProgressLine progress(options.common);
+  track::smooth(model, how, rows, sink.add, progress.observer());
+  return remarks;
+}
+
+Result<TrackRun> track_log(const TrackArguments& options, const TrackedChain& machine, const track::TrackOptions& how,
+                           const std::vector<TrackOutput*>& outputs) {
+  track::RunRecorder recorder(machine.model);
+  const StateSink sink{[&](const TrackState& state) {
+                         recorder.add(state);
+                         for (TrackOutput* output : outputs) output->add(state);
+                       },
+                       [&] {
+                         for (TrackOutput* output : outputs) output->flush();
+                       }};
+  KINFER_TRY(remarks, options.smooth ? smooth_rows(options, machine.model, how, sink)
+                                     : track_rows(options, machine.model, how, sink));
+  sink.flush();
   TrackRun run = recorder.run();
   run.remarks = remarks;
   return run;
@@ -106,6 +171,8 @@ int finish(const TrackArguments& options, const RunRecord& record, const TrackRu
 }
 
 int run(const TrackArguments& options) {
+  if (options.smooth && options.follow)
+    return fail({"--smooth needs the whole log: it cannot be combined with --follow"});
   RunRecord record("track", options.common);
   record.add_input(options.chain);
   for (const std::string& log : options.logs) record.add_input(log);
@@ -132,10 +199,11 @@ int run(const TrackArguments& options) {
     if (auto done = terminal.open({}); !done) return fail(done.error());
     outputs.push_back(&terminal);
   }
-  const auto tracked = track_rows(options, *machine, *how, outputs);
+  const auto tracked = track_log(options, *machine, *how, outputs);
   if (!tracked) return fail(tracked.error());
   if (auto done = table.close(); !done) return fail(done.error());
-  return finish(options, record, track_evidence(*tracked, provenance_of(options)), folder ? &*folder : nullptr);
+  const TrackRun evidence = track_evidence(*tracked, provenance_of(options, *how, machine->model));
+  return finish(options, record, evidence, folder ? &*folder : nullptr);
 }
 
 }  // namespace
@@ -149,6 +217,7 @@ Verb add_track(CLI::App& app) {
       "Examples:\n"
       "  kinfer track excavator work.csv --out work\n"
       "  kinfer track excavator work.csv --out work --start 0,-31.5,23,63,40\n"
+      "  kinfer track excavator work.csv --out work --smooth\n"
       "  logger | kinfer track excavator - --json\n"
       "  kinfer track excavator growing.csv --follow --out work");
   auto options = std::make_shared<TrackArguments>();
@@ -158,6 +227,10 @@ Verb add_track(CLI::App& app) {
   add_text(*verb, "--out", options->out, "Folder for track.csv, evidence.json, report.html, run.json",
            Requirement::optional, "DIR");
   add_flag(*verb, "--follow", options->follow, "At the end of the log wait for more, until interrupted (Ctrl-C)");
+  add_number(*verb, "--reorder", options->reorder, 0.0, 60e3,
+             "Rows may come so much too late [ms]: each is held back for as long, and put in order of time");
+  add_flag(*verb, "--smooth", options->smooth,
+           "Use what comes after each row, too: better positions, once the whole log has been read");
   add_choice(*verb, "--base", options->base, {"auto", "still", "moving"},
              "Whether the base stands still; auto: by its sensor");
   add_text(*verb, "--start", options->start,

@@ -69,13 +69,15 @@ std::size_t common_unit(const std::vector<SensorLikelihoods>& sensors) {
   return unit_gain(sensors, best, no_rotation, unlimited) < min_map_gain ? no_rotation : best;
 }
 
-/// That of the log, unless this sensor by itself contradicts it.
+/// That of the log, unless this sensor by itself contradicts it. A sensor that stands still prefers any unit that makes
+/// its bias small: another unit must explain more than no rotation does.
 std::size_t unit_of(const SensorLikelihoods& sensor, std::size_t common) {
+  const auto most = [&](std::size_t unit) { return sensor.of(unit, sensor.best_map(unit)); };
   std::size_t best = common;
   for (std::size_t u = 0; u < no_rotation; ++u)
-    if (sensor.of(u, sensor.best_map(u)) > sensor.of(best, sensor.best_map(best))) best = u;
-  const double gain = sensor.of(best, sensor.best_map(best)) - sensor.of(common, sensor.best_map(common));
-  return gain > 2.0 * min_map_gain ? best : common;
+    if (most(u) > most(best)) best = u;
+  const bool rotates = most(best) - most(no_rotation) > min_map_gain;
+  return rotates && most(best) - most(common) > 2.0 * min_map_gain ? best : common;
 }
 
 /// Gains of the best map over the identity, and over the next one of them.

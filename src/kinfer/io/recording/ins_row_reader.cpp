@@ -32,8 +32,8 @@ std::optional<double> cell_value(std::string_view cell) {
 
 }  // namespace
 
-InsRowReader::InsRowReader(std::vector<std::string> sensors, std::string name_in_messages)
-    : sensors_(std::move(sensors)), name_(std::move(name_in_messages)) {
+InsRowReader::InsRowReader(std::vector<std::string> sensors, std::string name_in_messages, RowTimes times)
+    : sensors_(std::move(sensors)), name_(std::move(name_in_messages)), times_(times) {
   row_.sensors.resize(sensors_.size());
   values_.resize(sensors_.size());
   gravity_.resize(sensors_.size());
@@ -149,6 +149,7 @@ Result<void> InsRowReader::read_row(std::string_view line, const Sink& sink, boo
 
 Result<void> InsRowReader::check_time(double time) {
   if (!std::isfinite(time)) return error("{}:{}: column t: expected a time, found none", name_, line_);
+  if (times_ == RowTimes::any) return {};
   if (rows_ > 0 && time < row_.time)
     return error("{}:{}: the time goes backwards, from {} s to {} s; is this several recordings in one file?", name_,
                  line_, row_.time, time);

@@ -2,7 +2,6 @@
 // An INS log read row by row as its bytes arrive, in pieces of any size: a file that still grows, or standard input.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,13 +13,18 @@
 
 namespace kinfer {
 
+enum class RowTimes {
+  increasing,  ///< a row that is not later than the one before is an error
+  any          ///< rows come late: somebody else puts them in order
+};
+
 /// The same rows, remarks and errors for every way of cutting the text into pieces.
 class InsRowReader {
  public:
-  using Sink = std::function<Result<void>(const InsRow&)>;
+  using Sink = InsRowSink;
 
   /// `sensors`: whose samples a row holds, in this order. An error if the log lacks one of them.
-  InsRowReader(std::vector<std::string> sensors, std::string name_in_messages);
+  InsRowReader(std::vector<std::string> sensors, std::string name_in_messages, RowTimes times = RowTimes::increasing);
 
   /// Calls `sink` for each row that is complete.
   Result<void> add(std::string_view bytes, const Sink& sink);
@@ -46,6 +50,7 @@ class InsRowReader {
 
   std::vector<std::string> sensors_, remarks_;
   std::string name_, partial_, head_;
+  RowTimes times_;
   std::optional<InsColumns> columns_;
   CsvHeader header_;
   std::vector<Target> targets_;

@@ -75,6 +75,7 @@ void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {
   std::vector<SensorErrors> sensors = std::move(state_.sensors);
   state_ = state;
   state_.sensors = std::move(sensors);
+  placed_ = state.time;
   p_.leftCols(layout.fast).setZero();
   p_.topRows(layout.fast).setZero();
   p_.topLeftCorner(layout.fast, layout.fast) = fast;
@@ -98,6 +99,7 @@ void ChainFilter::forget(Index state) {
 void ChainFilter::place(Index position, double value, double sd) {
   const Index at = model_->layout.joint_state(position), zero = zero_state(position);
   forget(at);
+  placed_ = state_.time;
   if (zero >= 0 && p_(zero, zero) <= 0.0)
     p_(zero, zero) = model_->parameters(zero - model_->layout.fast, zero - model_->layout.fast);
   state_.joints[position_states * position] = value;
@@ -105,6 +107,7 @@ void ChainFilter::place(Index position, double value, double sd) {
 }
 
 void ChainFilter::declare_known(Index position) {
+  placed_ = state_.time;
   forget(model_->layout.joint_state(position));
   if (const Index zero = zero_state(position); zero >= 0) forget(zero);
 }
@@ -113,7 +116,19 @@ void ChainFilter::predict(double time) {
   while (time - state_.time > 1e-9) {
     const double dt = std::min(time - state_.time, longest_step);
     predict_covariance(*model_, state_, dt, p_);
+    add_posture_walk(dt);
     predict_mean(*model_, dt, state_);
+  }
+}
+
+/// Axes that are off by an angle that is considered, and not estimated, show as an acceleration that changes with the
+/// posture. To a bias that was found in another posture it is a random walk with the angle turned through.
+void ChainFilter::add_posture_walk(double dt) {
+  const std::vector<Vec3>& rates = evaluator_.result().angular_velocity;
+  for (std::size_t s = 0; s < model_->sensors.size(); ++s) {
+    const double per_turn = posture_walk * square(model_->gravity * model_->sensors[s].axis_sd);
+    const Index bias = model_->layout.sensor_state(static_cast<Index>(s)) + SensorIndex::accelerometer_bias;
+    p_.diagonal().segment<3>(bias).array() += dt * rates[s].norm() * per_turn;
   }
 }
 
@@ -447,6 +462,7 @@ void ChainFilter::update(const ScalarRow& row) {
   auto w = w_.col(0);
   w.setZero();
   for (std::size_t i = 0; i < static_cast<std::size_t>(row.terms); ++i) w += row.factor[i] * p_.col(row.at[i]);
+  if (row.noisy_state >= 0) w[row.noisy_state] += row.noise_covariance;
   error_.setZero();
   error_.head(estimated) = (row.innovation / variance) * w.head(estimated);
   retract(*model_, error_, state_);

@@ -45,12 +45,15 @@ class ChainFilter {
   void predict(double time);
   void update(const BlockMeasurement& block);
 
-  /// One scalar measurement h x = value of the estimated states, given by the indices of h that are not zero.
+  /// One scalar measurement h x = value of the estimated states, given by the indices of h that are not zero. Its noise
+  /// may be part of the error of one state already, which is none of h.
   struct ScalarRow {
     std::array<Index, 6> at{};
     std::array<double, 6> factor{};
     int terms = 0;
     double innovation = 0.0, variance = 1.0;
+    Index noisy_state = -1;         ///< −1: none
+    double noise_covariance = 0.0;  ///< of that state's error with the noise
   };
   void update(const ScalarRow& row);
   /// Of its innovation: that of the measurement and that of the states.
@@ -60,6 +63,9 @@ class ChainFilter {
 
   /// Moves a joint position (of a revolute or prismatic joint) and states how well it is known there.
   void place(Index position, double value, double sd);
+
+  /// [s] Since when all positions follow from the rows: the last start or placing.
+  double placed_at() const { return placed_; }
 
   /// Forgets what is unknown of a joint position and of its zero: it counts from here.
   void declare_known(Index position);
@@ -76,6 +82,7 @@ class ChainFilter {
  private:
   Index zero_state(Index position) const;
   void forget(Index state);
+  void add_posture_walk(double dt);
   void form_rows(const BlockMeasurement& block);
   void form_sensor_rows(const BlockMeasurement& block, std::size_t sensor);
   void form_soft_rows(double length);
@@ -109,6 +116,7 @@ class ChainFilter {
   std::vector<double> leave_out_;  // of each triple: squared leave-one-out innovation over its expectation
   std::vector<double> ordered_;    // buffer of medians
   double common_inflation_ = 1.0;
+  double placed_ = 0.0;
 };
 
 }  // namespace kinfer::track

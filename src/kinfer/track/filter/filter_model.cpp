@@ -90,6 +90,31 @@ MatrixXd slow_covariance(const FilterModel& filter, const TrackingModel& model) 
   return covariance;
 }
 
+/// Root mean square over the directions of the axes on each sensor's segment, of its own joint and those of the next
+/// segments. A turn about the axis itself is a zero of the position, and turns no axis.
+void set_axis_sds(FilterModel& filter) {
+  const Index geometry = sensor_states * filter.layout.sensors;
+  std::vector<double> squares(filter.bodies.size(), 0.0);
+  std::vector<int> counts(filter.bodies.size(), 0);
+  for (std::size_t b = 1; b < filter.bodies.size(); ++b) {
+    const InsBody& body = filter.bodies[b];
+    Index at = geometry + filter.layout.geometry[b];
+    const auto gather = [&](std::size_t of, const std::array<bool, 3>& is_free) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (!is_free[k]) continue;
+        if (k < 2) squares[of] += filter.parameters(at, at), ++counts[of];
+        ++at;
+      }
+    };
+    gather(static_cast<std::size_t>(body.parent), body.free_parent_rotation);
+    gather(b, body.free_child_rotation);
+  }
+  for (SensorSettings& sensor : filter.sensors) {
+    const auto b = static_cast<std::size_t>(sensor.body);
+    if (counts[b] > 0) sensor.axis_sd = std::sqrt(squares[b] / counts[b]);
+  }
+}
+
 double excess(double level, double noise) {
   return std::sqrt(std::max(0.0, level * level - noise * noise));
 }
@@ -170,6 +195,7 @@ FilterModel filter_model(const TrackingModel& model) {
                        std::max(min_bias_instability.force, model.prior.bias_instability.force)};
   filter.bias_walk = {2.0 * drift.rate * drift.rate / time, 2.0 * drift.force * drift.force / time};
   filter.parameters = slow_covariance(filter, model);
+  set_axis_sds(filter);
   return filter;
 }
 

@@ -17,6 +17,7 @@ struct SensorSettings {
   InsLevel persistent{};  ///< of one update: does not average out within it
   InsLevel slow{};        ///< white noise of one sample as strong as the residuals at low frequencies
   double sample_period = 0.005;
+  double axis_sd = 0.0;  ///< [rad] of the directions of joint axes on its segment, which are considered
 };
 
 /// A spherical joint that stands for a loose revolute joint: its axes stray from each other.

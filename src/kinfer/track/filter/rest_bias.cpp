@@ -82,9 +82,36 @@ Vec3 RestBias::mean_rate(std::size_t s) const {
   return last_[1].sum[s] / last_[1].count[s];
 }
 
-/// Difference of the biases of a joint's sensors along its axis.
-ChainFilter::ScalarRow RestBias::bias_row(const ChainFilter& filter, const InsBody& joint) const {
+bool RestBias::is_upright(const InsBody& joint, std::size_t parent_sensor) const {
+  const Vec3 up = last_[1].force_sum[parent_sensor].normalized();
+  return joint.parent_R_axis.col(2).cross(up).norm() < upright_axis;
+}
+
+/// Whether this joint, and no other one of its sensors, integrates their noise to a position that gravity does not
+/// hold.
+bool RestBias::integrates_alone(const FilterModel& model, std::size_t body) const {
+  const int parent_body = model.bodies[body].parent;
+  const auto is_upright_joint = [&](const InsBody& other) {
+    if (other.motion != JointMotion::revolute || other.parent < 0) return false;
+    const int sensor = model.bodies[static_cast<std::size_t>(other.parent)].sensor;
+    return sensor >= 0 && rests(static_cast<std::size_t>(sensor)) &&
+           is_upright(other, static_cast<std::size_t>(sensor));
+  };
+  if (!is_upright_joint(model.bodies[body])) return false;
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    const InsBody& other = model.bodies[b];
+    const bool shares =
+        other.parent == parent_body || other.parent == static_cast<int>(body) || static_cast<int>(b) == parent_body;
+    if (b != body && shares && is_upright_joint(other)) return false;
+  }
+  return true;
+}
+
+/// Difference of the biases of a joint's sensors along its axis. About an upright axis the noise that remains in it has
+/// been integrated to the joint's position, and nothing else has corrected it since.
+ChainFilter::ScalarRow RestBias::bias_row(const ChainFilter& filter, std::size_t body) const {
   const FilterModel& model = filter.model();
+  const InsBody& joint = model.bodies[body];
   const int parent = model.bodies[static_cast<std::size_t>(joint.parent)].sensor;
   const auto p = static_cast<std::size_t>(parent), c = static_cast<std::size_t>(joint.sensor);
   const Vec3 a = joint.parent_R_axis.col(2), b = joint.child_R_axis.col(2);
@@ -99,20 +126,27 @@ ChainFilter::ScalarRow RestBias::bias_row(const ChainFilter& filter, const InsBo
   row.terms = 6;
   row.innovation = b.dot(mean_rate(c) - filter.state().sensors[c].gyroscope_bias) -
                    a.dot(mean_rate(p) - filter.state().sensors[p].gyroscope_bias);
-  row.variance =
-      square(noise_[c].rate) / last_[1].count[c] + square(noise_[p].rate) / last_[1].count[p] + square(rest_creep);
+  const double of_child = square(noise_[c].rate) / last_[1].count[c],
+               of_parent = square(noise_[p].rate) / last_[1].count[p];
+  row.variance = of_child + of_parent + square(rest_creep);
+  if (last_[1].begin >= filter.placed_at() && integrates_alone(model, body)) {
+    const bool is_fixed = joint.parent == 0 && filter.state().base == BaseMode::still;  // whose rate is not integrated
+    row.noisy_state = model.layout.joint_state(model.layout.position[body]);
+    row.noise_covariance = -rest_block * (of_child + (is_fixed ? 0.0 : of_parent));
+  }
   return row;
 }
 
 void RestBias::correct(ChainFilter& filter) const {
   const FilterModel& model = filter.model();
-  for (const InsBody& body : model.bodies) {
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    const InsBody& body = model.bodies[b];
     if (body.motion != JointMotion::revolute || body.sensor < 0) continue;
     const int parent = model.bodies[static_cast<std::size_t>(body.parent)].sensor;
     if (parent < 0) continue;
     const auto p = static_cast<std::size_t>(parent), c = static_cast<std::size_t>(body.sensor);
     if (!filter.uses_sensor(p) || !filter.uses_sensor(c) || !rests(p) || !rests(c)) continue;
-    const ChainFilter::ScalarRow row = bias_row(filter, body);
+    const ChainFilter::ScalarRow row = bias_row(filter, b);
     if (is_rest(row.innovation, filter.variance(row))) filter.update(row);
   }
 }

@@ -33,8 +33,10 @@ class RestBias {
   void close();
   bool is_quiet(const Block& block, std::size_t sensor) const;
   bool rests(std::size_t sensor) const;
+  bool is_upright(const InsBody& joint, std::size_t parent_sensor) const;
+  bool integrates_alone(const FilterModel& model, std::size_t body) const;
   Vec3 mean_rate(std::size_t sensor) const;
-  ChainFilter::ScalarRow bias_row(const ChainFilter& filter, const InsBody& joint) const;
+  ChainFilter::ScalarRow bias_row(const ChainFilter& filter, std::size_t body) const;
 
   std::vector<InsLevel> noise_;
   Block open_;

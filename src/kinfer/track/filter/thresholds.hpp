@@ -10,7 +10,7 @@ namespace kinfer::track {
 
 /// Joint accelerations of machines; tenfold densities change rms errors of the simulated machines by less than 30 %.
 inline constexpr AccelerationProcess machine_acceleration{.sd = 3.9, .time = 0.5};
-inline constexpr AccelerationProcess prismatic_acceleration{.sd = 1.0, .time = 0.5};
+inline constexpr AccelerationProcess prismatic_acceleration{.sd = 1.0, .time = 0.5, .is_measured = true};
 inline constexpr double min_acceleration_time = 0.15;  ///< [s] of hands
 inline constexpr double acceleration_room = 2.0;       ///< a drive may be so much livelier than that of the chain
 
@@ -33,6 +33,10 @@ inline constexpr double still_base_walk = 2e-5;  ///< [rad/√s] tilting of a ba
 inline constexpr double min_stray = 1e-3,
                         min_stray_time =
                             0.02;  ///< [rad], [s] looser than that a revolute joint is tracked as a spherical one
+
+/// Share of the variance of gravity's component along an axis that is considered by which a bias changes in a turn of
+/// 1 rad [1/rad]: less than all of it, since machines turn to and fro. Simulated cranes 1 to 4 (0.1 to 0.3 alike).
+inline constexpr double posture_walk = 0.1;
 
 /// A bias' change between logs, in standard deviations of its instability, and at least.
 inline constexpr double bias_change = 3.0;
@@ -57,7 +61,9 @@ inline constexpr double max_motion_sd = 30.0;   ///< per second, per second²
 /// this.
 inline constexpr double rest_block = 0.25, rest_noise = 1.4;
 inline constexpr int min_rest_rows = 10;
-inline constexpr double rest_creep = 5e-5;   ///< [rad/s] that a rest may hide
+inline constexpr double upright_axis =
+    0.05;                                   ///< [rad] nearer to the vertical gravity does not hold a position in a rest
+inline constexpr double rest_creep = 5e-5;  ///< [rad/s] that a rest may hide
 inline constexpr double steady_rate = 0.05;  ///< [rad/s] sd of a joint's velocity where it is steady and no rest
 
 /// A base moves where its angular velocity, averaged over so long [s], is beyond this [rad/s] and so many standard
@@ -74,7 +80,8 @@ inline constexpr double far_apart = 2.0;  ///< standard deviations of the chain 
 /// A heading that nothing shows at the start is known like this [rad]. DIODEM trial 1, first half.
 inline constexpr double wander_sd = 0.035, wander_time = 5.0, wander_memory = 10.0, start_offset_sd = 0.05;
 
-inline constexpr double update_period = 0.02;  ///< [s] at most 50 updates a second
-inline constexpr double longest_step = 0.1;    ///< [s] of a prediction
+inline constexpr double update_period = 0.02;   ///< [s] at most 50 updates a second
+inline constexpr double longest_bridge = 0.03;  ///< [s] between two blocks without a gap
+inline constexpr double longest_step = 0.1;     ///< [s] of a prediction
 
 }  // namespace kinfer::track

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/robot/patch/calibrated_origins.hpp"
 
+#include "kinfer/io/robot/possible_chain.hpp"
+
 namespace kinfer {
 namespace {
 
@@ -55,6 +57,7 @@ Result<std::vector<CalibratedOrigin>> calibrated_origins(const Chain& in_file, c
   for (std::size_t j = 0; j < in_file.joints.size(); ++j) {
     const Joint &before = in_file.joints[j], &after = corrected.joints[j];
     if (!has_position(before.type)) continue;
+    if (const auto what = impossible_number(after)) return error("joint \"{}\": {}", before.name, *what);
     double shift = before.is_active ? before.gain * offset[j] : 0.0;  // of the joint variable, by all offsets
     for (const Coupling& coupling : before.couplings) shift += coupling.factor * offset[coupling.joint];
     Pose origin = std::get<UrdfLink>(after.link).origin.pose();

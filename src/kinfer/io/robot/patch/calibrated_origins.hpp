@@ -23,7 +23,8 @@ struct CalibratedOrigin {
 };
 
 /// Of every joint that moves. `in_file`: the chain as read from the file, whose joints follow each other as in
-/// `corrected`. An error where `corrected` is another machine.
+/// `corrected`. An error where `corrected` is another machine,
+/// or has numbers that no file may hold.
 Result<std::vector<CalibratedOrigin>> calibrated_origins(const Chain& in_file, const Chain& corrected,
                                                          EncoderOffsets offsets);
 

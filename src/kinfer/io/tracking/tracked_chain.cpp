@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/cli/tracking/tracked_chain.hpp"
+#include "kinfer/io/tracking/tracked_chain.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "kinfer/base/angle.hpp"
-#include "kinfer/cli/options/posture_argument.hpp"
 #include "kinfer/io/recording/machine_facts_toml.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/tracking/tracking_model_toml.hpp"
 
-namespace kinfer::cli {
+namespace kinfer {
 namespace {
 
 /// The tool of chain.toml, which its user may have changed since.
@@ -60,17 +58,4 @@ Result<TrackedChain> read_tracked_chain(const std::string& folder, const std::st
   return TrackedChain{std::move(robot.chain), std::move(model)};
 }
 
-Result<VectorXd> parse_start(const std::string& text, const Chain& chain) {
-  KINFER_TRY(start, parse_posture("--start", text, chain));
-  const std::vector<int> joints = active_joints(chain);
-  for (std::size_t k = 0; k < joints.size(); ++k) {
-    const Joint& joint = chain.joints[static_cast<std::size_t>(joints[k])];
-    const double q = start[static_cast<Eigen::Index>(k)], unit = rotates(joint.type) ? degree : 1e-3;
-    if (q < joint.lower || q > joint.upper)
-      return error("--start: {} is {:.6g} {}, outside its limits {:.6g} to {:.6g}", joint.name, q / unit,
-                   rotates(joint.type) ? "deg" : "mm", joint.lower / unit, joint.upper / unit);
-  }
-  return start;
-}
-
-}  // namespace kinfer::cli
+}  // namespace kinfer

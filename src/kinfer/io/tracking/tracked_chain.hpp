@@ -8,7 +8,7 @@
 #include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/kinematics/chain.hpp"
 
-namespace kinfer::cli {
+namespace kinfer {
 
 struct TrackedChain {
   Chain chain;
@@ -19,7 +19,4 @@ struct TrackedChain {
 /// that is named "tip" or "tool" or is the only one, with known coordinates.
 Result<TrackedChain> read_tracked_chain(const std::string& folder, const std::string& facts);
 
-/// "0,-31.5,nan" in deg and mm; an error for a position outside the chain's limits.
-Result<VectorXd> parse_start(const std::string& text, const Chain& chain);
-
-}  // namespace kinfer::cli
+}  // namespace kinfer
