@@ -36,6 +36,12 @@ option(KINFER_UNITY "Compile files in batches: a whole build takes half the time
 # Optimising either would double the time that they compile; a package is compiled once and copied often.
 set(KINFER_CALLER_LEVEL $<$<NOT:$<CONFIG:Debug>>:$<IF:$<BOOL:${KINFER_PACKAGE}>,-Oz,-O1>>)
 set(KINFER_PROGRAM_LEVEL $<$<NOT:$<CONFIG:Debug>>:$<IF:$<BOOL:${KINFER_PACKAGE}>,-Oz,-O0>>)
+if(KINFER_PACKAGE AND CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  # At -Oz clang inlines next to nothing; a function of a few instructions is smaller inlined than its tables for unwinding.
+  set(little_functions "SHELL:-mllvm -inline-threshold=10")
+  list(APPEND KINFER_CALLER_LEVEL ${little_functions})
+  list(APPEND KINFER_PROGRAM_LEVEL ${little_functions})
+endif()
 
 add_library(kinfer_flags INTERFACE)
 target_compile_options(kinfer_flags INTERFACE
