@@ -41,10 +41,8 @@ struct Wave {
   std::vector<double> sine, cosine;
 
   Wave(const std::vector<Sample>& samples, double order) {
-    for (const Sample& sample : samples) {
-      sine.push_back(std::sin(order * sample.angle));
-      cosine.push_back(std::cos(order * sample.angle));
-    }
+    sine.resize(samples.size()), cosine.resize(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) ::sincos(order * samples[i].angle, &sine[i], &cosine[i]);
   }
   /// Increases the order by that of `by`, by the addition theorem instead of new sines.
   void advance(const Wave& by) {

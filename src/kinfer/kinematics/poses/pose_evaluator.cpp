@@ -23,20 +23,33 @@ struct JointMotionModel {
   double compliance = 0.0;
   int coupling_begin = 0, coupling_end = 0;
   bool deviates = false;
+  int wave_begin = 0;
 };
+
+/// Sine and cosine of a harmonic at a joint position.
+struct Wave {
+  double sine = 0.0, cosine = 1.0;
+};
+
+Wave wave_at(double angle) {
+  Wave wave;
+  ::sincos(angle, &wave.sine, &wave.cosine);
+  return wave;
+}
 
 /// Joint positions and loads at one pose.
 struct JointInputs {
   const double* q = nullptr;
   const double* torque = nullptr;  // of gravity, one per joint; null: none
   const Load* load = nullptr;
+  const Wave* waves = nullptr;  // of all harmonics, in the order of the joints
 };
 
 }  // namespace
 
 struct PoseEvaluator::Program {
   Chain chain;
-  int active_count = 0;
+  int active_count = 0, wave_count = 0;
   Eigen::Index columns = 0;
   StepList pose_only, recorded;
   std::vector<JointMotionModel> motion_models;  // in the order of the joints
@@ -56,7 +69,9 @@ struct PoseEvaluator::Program {
       const int begin = static_cast<int>(couplings.size());
       for (const Coupling& c : joint.couplings) couplings.push_back({q_index[c.joint], c.factor});
       motion_models.push_back({joint.gain, q_index[j], joint.compliance, begin, static_cast<int>(couplings.size()),
-                               joint.torque_compliance != 0.0 || joint.backlash != 0.0 || !joint.harmonics.empty()});
+                               joint.torque_compliance != 0.0 || joint.backlash != 0.0 || !joint.harmonics.empty(),
+                               wave_count});
+      wave_count += static_cast<int>(joint.harmonics.size());
       pose_needs_torque |= joint.compliance != 0.0;
     }
     pose_only = program::compile(chain, {});
@@ -80,6 +95,9 @@ struct PoseEvaluator::Program {
           step.scale != Scale::one && step.scale != Scale::torque && step.scale != Scale::coupled;
       KINFER_EXPECT(!by_joint_state || motion_models[step.source].q_index >= 0,
                     "gain of joint {}, which has no joint position", step.source);
+      const bool by_wave = step.scale == Scale::sine || step.scale == Scale::cosine;
+      KINFER_EXPECT(!by_wave || step.term < std::ssize(chain.joints[step.source].harmonics),
+                    "joint {} has no harmonic {}", step.source, step.term);
       acts[step.index] = true;
       if (step.motion == Motion::rotation) rotational.push_back(step.index);
     }
@@ -94,9 +112,29 @@ struct PoseEvaluator::Program {
     if (q_index < 0) return 0.0;
     double sum = of.torque_compliance * value_or_zero(inputs.load->torques, q_index) +
                  of.backlash * value_or_zero(inputs.load->approach, q_index);
-    for (const Harmonic& h : of.harmonics)
-      sum += h.sine * std::sin(h.order * inputs.q[q_index]) + h.cosine * std::cos(h.order * inputs.q[q_index]);
+    const Wave* wave = inputs.waves + motion_models[joint].wave_begin;
+    for (const Harmonic& h : of.harmonics) {
+      sum += h.sine * wave->sine + h.cosine * wave->cosine;
+      ++wave;
+    }
     return sum;
+  }
+
+  /// Computed once for the displacements and the columns of a pose, into a buffer that is kept between calls.
+  const Wave* waves(const double* q) const {
+    if (wave_count == 0) return nullptr;
+    thread_local std::vector<Wave> waves;
+    waves.clear();
+    for (std::size_t j = 0; j < motion_models.size(); ++j) {
+      const int q_index = motion_models[j].q_index;
+      for (const Harmonic& h : chain.joints[j].harmonics)
+        waves.push_back(q_index >= 0 ? wave_at(h.order * q[q_index]) : Wave{});
+    }
+    return waves.data();
+  }
+
+  const Wave& wave(const Step& step, const JointInputs& inputs) const {
+    return inputs.waves[motion_models[step.source].wave_begin + step.term];
   }
 
   double displacement(int joint, const JointInputs& inputs) const {
@@ -123,9 +161,9 @@ struct PoseEvaluator::Program {
       case Scale::approach:
         return value_or_zero(inputs.load->approach, q_index);
       case Scale::sine:
-        return std::sin(step.a * inputs.q[q_index]);
+        return wave(step, inputs).sine;
       case Scale::cosine:
-        return std::cos(step.a * inputs.q[q_index]);
+        return wave(step, inputs).cosine;
       case Scale::coupled:
         return inputs.q[couplings[motion_models[step.source].coupling_begin + step.term].joint];
     }
@@ -203,7 +241,7 @@ struct PoseEvaluator::Program {
 
   ToolAndFlange run(const StepList& list, ConstVectorRef q, const Load& load, bool needs_torque, Twists* twists) const {
     KINFER_EXPECT(q.size() == active_count, "{} joint positions for {} joints that have one", q.size(), active_count);
-    return run(list, {q.data(), needs_torque ? gravity(q.data(), load) : nullptr, &load}, twists);
+    return run(list, {q.data(), needs_torque ? gravity(q.data(), load) : nullptr, &load, waves(q.data())}, twists);
   }
 
   /// Displacement of the tool by thermal expansion of the robot's lengths.

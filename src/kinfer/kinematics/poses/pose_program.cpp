@@ -33,7 +33,6 @@ class Compiler {
 
   void walk(const Joint& joint, int index) {
     joint_ = index;
-    harmonics_ = &joint.harmonics;
     elementary::for_each_factor(joint, *this);
   }
 
@@ -98,11 +97,9 @@ class Compiler {
       const std::optional<int> term = term_here(column.at, field);
       if (!term) continue;
       flush();
-      const bool of_a_harmonic = field == Field::sine || field == Field::cosine;
       list_.steps.push_back({.kind = Step::Kind::record,
                              .axis = factor.axis,
                              .index = column.index,
-                             .a = of_a_harmonic ? harmonics_->at(*term).order : 0.0,
                              .scale = scale,
                              .source = joint_,
                              .term = *term,
@@ -123,7 +120,6 @@ class Compiler {
   const std::vector<Column>& columns_;
   SetupFrame frame_ = SetupFrame::base;  // where no joint is walked
   int joint_ = -1;
-  const std::vector<Harmonic>* harmonics_ = nullptr;  // of that joint
   Pending pending_;
   StepList list_;
 };

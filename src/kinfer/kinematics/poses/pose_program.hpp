@@ -8,8 +8,8 @@
 
 namespace kinfer::program {
 
-/// Factor of a recorded screw: the joint position for a gain, the torque for a compliance, the sine or cosine of `a`
-/// times the joint position for a harmonic, the position of the other joint for a coupling.
+/// Factor of a recorded screw: the joint position for a gain, the torque for a compliance, the sine or cosine of
+/// a harmonic, the position of the other joint for a coupling.
 enum class Scale { one, joint_position, torque, measured_torque, approach, sine, cosine, coupled };
 
 struct Step {
@@ -28,7 +28,7 @@ struct Step {
   double a = 0.0, b = 0.0;
   Scale scale = Scale::one;
   int source = 0;
-  int term = 0;                                              ///< coupled: which of the joint's couplings
+  int term = 0;                                              ///< which of the joint's couplings or harmonics
   elementary::Motion motion = elementary::Motion::rotation;  ///< of the recorded screw
 };
 
