@@ -101,12 +101,14 @@ IdentificationResult identify_in_python(const py::object& data, const std::optio
   // The filter of the program's default.
   options.motion.filter = *filter_named("kinfer-offline");
   value_of(identify::check(options));
+  auto described = identify::describe(options);
+  if (const auto folder = path_of(update)) described.emplace_back("--update", *folder);
   std::optional<Result<Identification>> result;
   Background(progress).run([&](const Observer& observer) {
     result = identify::identify_machine(recording.recording, options, Rng(seed), observer);
   });
   return {value_of(std::move(*result)),
-          {.inputs = fingerprints(inputs), .options = identify::describe(options), .seed = seed}};
+          {.inputs = fingerprints(inputs), .options = std::move(described), .seed = seed}};
 }
 
 std::string identification_text(const IdentificationResult& result) {
