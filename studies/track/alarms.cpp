@@ -14,14 +14,16 @@ constexpr double fault_begins = 20.0;                  // [s]
 constexpr double turned_by = 0.0087, play_of = 0.003;  // [rad], [m]
 
 bool is_of_fit(const TrackAlarm& alarm) {
-  return alarm.kind == TrackAlarmKind::sensor_moved || alarm.kind == TrackAlarmKind::does_not_fit;
+  return alarm.kind == TrackAlarmKind::sensor_moved || alarm.kind == TrackAlarmKind::joint_changed ||
+         alarm.kind == TrackAlarmKind::does_not_fit;
 }
 
 std::string alarms_of(const TrackScore& score, double since) {
   std::string text;
   for (const TrackScore::Alarm& alarm : score.alarms)
     if (is_of_fit(alarm.first))
-      text += fmt::format("  {} {} {:+.2f} s", name(alarm.first.kind), alarm.first.sensor, alarm.at - since);
+      text += fmt::format("  {} {} {:+.2f} s", name(alarm.first.kind), std::max(alarm.first.sensor, alarm.first.joint),
+                          alarm.at - since);
   return text.empty() ? "  none" : text;
 }
 

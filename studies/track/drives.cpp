@@ -23,6 +23,28 @@ double play_acceleration(double time, double size) {
   return -size * w * w * std::sin(w * time);
 }
 
+bool is_beyond(const Machine& machine, std::size_t sensor, std::size_t first) {
+  for (int s = static_cast<int>(sensor); s >= 0; s = machine.sensors[static_cast<std::size_t>(s)].parent)
+    if (s == static_cast<int>(first)) return true;
+  return false;
+}
+
+/// The pin before a sensor rattles: all beyond it move alike.
+void rattle(const InjectedFault& fault, SimulatedDrive& drive) {
+  const std::vector<SensorMotion>& truth = drive.motion.sensors;
+  for (std::size_t s = 0; s < truth.size(); ++s) {
+    if (!is_beyond(drive.machine, s, fault.sensor)) continue;
+    InsSensor& sensor = drive.recording.sensors[s];
+    const auto time = drive.recording.time(sensor);
+    for (std::size_t row = 0; row < sensor.rows(); ++row) {
+      if (time[row] < fault.begin || time[row] > fault.end) continue;
+      const Vec3 shake = play_acceleration(time[row], 0.5 * fault.size) * Vec3::UnitX();
+      const Quat turn = truth[s].world_R_sensor[row].conjugate() * truth[fault.sensor].world_R_sensor[row];
+      set_row(sensor.acceleration, row, sensor.acceleration.at(row) + turn * shake);
+    }
+  }
+}
+
 }  // namespace
 
 SimulatedDrive simulate_drive(const DriveSetup& setup) {
@@ -47,6 +69,7 @@ Result<TrackingModel> identify_drive(const SimulatedDrive& drive) {
 
 void inject(const InjectedFault& fault, SimulatedDrive& drive) {
   if (fault.kind == FaultKind::none) return;
+  if (fault.kind == FaultKind::play) return rattle(fault, drive);
   InsSensor& sensor = drive.recording.sensors[fault.sensor];
   const auto time = drive.recording.time(sensor);
   const Mat3 turn = exp_so3(fault.size * Vec3(1.0, 1.0, 1.0).normalized());
@@ -67,14 +90,12 @@ void inject(const InjectedFault& fault, SimulatedDrive& drive) {
         set_row(sensor.acceleration, row, force + change.cross(arm) + w.cross(w.cross(arm)));
         break;
       }
-      case FaultKind::play:
-        set_row(sensor.acceleration, row, force + Vec3(play_acceleration(time[row], 0.5 * fault.size), 0.0, 0.0));
-        break;
       case FaultKind::lost:
         sensor.faults[row] |= acceleration_missing | angular_velocity_missing;
         set_row(sensor.acceleration, row, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
         set_row(sensor.angular_velocity, row, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
         break;
+      case FaultKind::play:
       case FaultKind::none:
         break;
     }

@@ -31,7 +31,7 @@ SimulatedDrive simulate_drive(const DriveSetup& setup);
 /// By default options; its joint positions count from the beginning of the drive.
 Result<TrackingModel> identify_drive(const SimulatedDrive& drive);
 
-/// A change of the recording from `begin` on.
+/// A change of the recording from `begin` on; play is in the joint before the sensor and moves all beyond it.
 enum class FaultKind { none, turned, shifted, play, lost };
 struct InjectedFault {
   FaultKind kind = FaultKind::none;

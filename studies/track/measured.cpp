@@ -121,7 +121,7 @@ TrackedLog tracked(const TrackingModel& model, const MeasuredLog& log) {
       result.composed[i].rotation.push_back(rotation_along(paths[i], composed.state()));
     }
     for (const TrackAlarm& alarm : tracker.state().alarms) {
-      const std::string text = fmt::format("{} {}", kinfer::name(alarm.kind), alarm.sensor);
+      const std::string text = fmt::format("{} {}", kinfer::name(alarm.kind), std::max(alarm.sensor, alarm.joint));
       if (std::ranges::find_if(result.alarms, [&](const auto& a) { return a.starts_with(text); }) ==
           result.alarms.end())
         result.alarms.push_back(fmt::format("{} at {:.1f}", text, row.time));

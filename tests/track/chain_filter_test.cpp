@@ -328,7 +328,7 @@ TEST(Replay, OfNothingThatIsNewEndsWhereTheFilterIs) {
 TEST(FitMonitor, NamesTheSensorThatDisagreesAndForgetsItWhenItAgreesAgain) {
   const TrackedTree tree(17);
   ChainFilter filter = tree.filter();
-  FitMonitor monitor(6);
+  FitMonitor monitor(6, filter.model().joints.size());
   const auto run = [&](double turned, double seconds) {
     constexpr double step = 0.1;  // [s]
     for (double t = 0.0; t < seconds; t += step) {
@@ -340,15 +340,15 @@ TEST(FitMonitor, NamesTheSensorThatDisagreesAndForgetsItWhenItAgreesAgain) {
     }
   };
   run(0.0, 5.0);
-  EXPECT_EQ(monitor.worst(filter), -1);
+  EXPECT_EQ(monitor.worst(filter), (Suspect{}));
   run(2.0, 5.0);
-  EXPECT_EQ(monitor.worst(filter), 3);
-  EXPECT_TRUE(monitor[3].is_suspect);
+  EXPECT_EQ(monitor.worst(filter), (Suspect{.sensor = 3}));
+  EXPECT_TRUE(monitor.sensor(3).is_suspect);
   filter.use_sensor(3, false);
-  EXPECT_EQ(monitor.worst(filter), -1) << "it is out of use already";
-  EXPECT_EQ(monitor.recovered(filter), -1);
-  monitor.reset(3);
-  EXPECT_FALSE(monitor[3].is_suspect);
+  EXPECT_EQ(monitor.worst(filter), (Suspect{})) << "it is out of use already";
+  EXPECT_EQ(monitor.recovered(filter), (Suspect{}));
+  monitor.reset_sensor(3);
+  EXPECT_FALSE(monitor.sensor(3).is_suspect);
 }
 
 }  // namespace

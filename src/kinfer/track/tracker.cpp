@@ -74,7 +74,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       rest_(*model_),
       base_(model, *model_, given_base(options.base)),
       health_(model.sensors.size()),
-      fit_(model.sensors.size()),
+      fit_(model.sensors.size(), model.joints.size()),
       replay_(filter_),
       does_not_fit_(model.sensors.size(), false),
       composed_(model, options),
@@ -131,7 +131,7 @@ void Tracker::choose_sensors() {
     if (is_used == filter_.uses_sensor(s)) continue;
     filter_.use_sensor(s, is_used);
     // What it showed while it was out of use says nothing, and is not averaged with what it shows now.
-    if (is_used) fit_.reset(s), block_.clear();
+    if (is_used) fit_.reset_sensor(s), block_.clear();
     if (health_[s].stuck && state_.started && !grid_) replay([](ChainFilter&) {});  // it was believed until now
   }
 }
@@ -192,7 +192,7 @@ void Tracker::replay(const std::function<void(ChainFilter&)>& prepare) {
 bool Tracker::base_begins_to_move(const BlockMeasurement& block) {
   if (filter_.state().base == BaseMode::moving) return false;
   base_.add(block, filter_);
-  if (fit_.worst(filter_) >= 0) base_.suspect(filter_);
+  if (fit_.worst(filter_).sensor >= 0) base_.suspect(filter_);
   return base_.mode() == BaseMode::moving;
 }
 
@@ -221,18 +221,32 @@ void Tracker::watch_misfit(double time) {
   if (common > misfit_inflation && !misfit_since_) misfit_since_ = time;
 }
 
-/// Leaves out the sensor that disagrees most, as if it had never been believed, and takes in one that agrees again.
+void Tracker::leave_out(std::size_t sensor) {
+  does_not_fit_[sensor] = true;
+  const Agreement named = as_named(fit_.sensor(sensor));
+  replay([&](ChainFilter& filter) { filter.use_sensor(sensor, false); });
+  fit_.set_sensor(sensor, named);
+}
+
+void Tracker::doubt(std::size_t joint) {
+  const Agreement named = as_named(fit_.joint(joint));
+  replay([&](ChainFilter& filter) { filter.doubt_joint(joint, true); });
+  fit_.set_joint(joint, named);
+}
+
+/// What disagrees most is left out, as if it had never been believed, and what agrees again is taken in.
 void Tracker::examine_fit() {
-  if (const int worst = fit_.worst(filter_); worst >= 0) {
-    const auto s = static_cast<std::size_t>(worst);
-    does_not_fit_[s] = true;
-    const SensorFit fit = fit_[s];
-    replay([&](ChainFilter& filter) { filter.use_sensor(s, false); });
-    fit_.set(s, fit);
+  const Suspect worst = fit_.worst(filter_);
+  if (worst.sensor >= 0) leave_out(static_cast<std::size_t>(worst.sensor));
+  if (worst.joint >= 0) doubt(static_cast<std::size_t>(worst.joint));
+  const Suspect back = fit_.recovered(filter_);
+  if (back.sensor >= 0) {
+    does_not_fit_[static_cast<std::size_t>(back.sensor)] = false;
+    fit_.reset_sensor(static_cast<std::size_t>(back.sensor));
   }
-  if (const int back = fit_.recovered(filter_); back >= 0) {
-    does_not_fit_[static_cast<std::size_t>(back)] = false;
-    fit_.reset(static_cast<std::size_t>(back));
+  if (back.joint >= 0) {
+    filter_.doubt_joint(static_cast<std::size_t>(back.joint), false);
+    fit_.reset_joint(static_cast<std::size_t>(back.joint));
   }
 }
 
@@ -263,7 +277,7 @@ void Tracker::read_out(double time) {
   state_.base_T_tool = tool_.tool();
   state_.sd_tool_position = tool_.position_sd();
   state_.sd_tool_rotation = tool_.rotation_sd();
-  for (std::size_t s = 0; s < state_.innovation.size(); ++s) state_.innovation[s] = fit_[s].quick;
+  for (std::size_t s = 0; s < state_.innovation.size(); ++s) state_.innovation[s] = fit_.sensor(s).quick;
   for (JointStatus& joint : chain_state_.joints) {
     joint.source = JointSource::chain;
     joint.reference = JointReference::chain;
@@ -301,9 +315,17 @@ void Tracker::list_alarms(double time) {
       alarms.push_back({.kind = TrackAlarmKind::sensor_clipped, .sensor = sensor, .since = health.last_clipped});
     if (!does_not_fit_[s]) continue;
     ++disagreeing;
-    alarms.push_back(
-        {.kind = TrackAlarmKind::sensor_moved, .sensor = sensor, .since = fit_[s].since, .strength = fit_[s].strength});
+    alarms.push_back({.kind = TrackAlarmKind::sensor_moved,
+                      .sensor = sensor,
+                      .since = fit_.sensor(s).since,
+                      .strength = fit_.sensor(s).strength});
   }
+  for (std::size_t j = 0; j < tracking_->joints.size(); ++j)
+    if (filter_.doubts_joint(j))
+      alarms.push_back({.kind = TrackAlarmKind::joint_changed,
+                        .joint = static_cast<int>(j),
+                        .since = fit_.joint(j).since,
+                        .strength = fit_.joint(j).strength});
   if (2 * disagreeing >= static_cast<int>(does_not_fit_.size()) && disagreeing > 1)
     alarms.push_back({.kind = TrackAlarmKind::does_not_fit, .since = time});
   else if (misfit_since_)

@@ -50,6 +50,8 @@ class Tracker {
   bool base_begins_to_move(const BlockMeasurement& block);
   void let_base_move();
   void begin_grid();
+  void leave_out(std::size_t sensor);
+  void doubt(std::size_t joint);
   void examine_fit();
   void watch_misfit(double time);
   void list_alarms(double time);

@@ -5,69 +5,157 @@
 #include <cmath>
 
 #include "kinfer/track/faults/thresholds.hpp"
+#include "kinfer/track/filter/thresholds.hpp"
 
 namespace kinfer::track {
 namespace {
 
-/// Exponential mean that forgets over `time`; `x` limited so that one shock is no fault.
+/// Exponential mean that forgets over `time`.
 void forget(double& mean, double x, double length, double time) {
-  mean += (std::min(x, max_single) - mean) * (1.0 - std::exp(-length / time));
+  mean += (x - mean) * (1.0 - std::exp(-length / time));
+}
+
+/// T over its expectation, limited so that one shock is no fault; of what is named already so that it fits again soon.
+void average(Agreement& agreement, double x, double unlimited, bool is_named, double length) {
+  agreement.observed += length;
+  const double limit = is_named ? quick_limit : max_single;
+  forget(agreement.quick, std::min(x, limit), length, short_mean);
+  forget(agreement.slow, std::min(x, limit), length, long_mean);
+  forget(agreement.explains, unlimited, length, short_mean);
+}
+
+Agreement taken_in_again(const Agreement& agreement) {
+  return {.observed = agreement.was_named ? settling : 0.0, .was_named = agreement.was_named};
+}
+
+bool has_recovered(const Agreement& agreement) {
+  return agreement.slow < recovered_limit && agreement.quick < recovered_limit;
+}
+
+/// Index of what explains most, for which `is_candidate`; −1: none.
+template <class IsCandidate>
+int likeliest(const std::vector<Agreement>& agreements, const IsCandidate& is_candidate) {
+  int best = -1;
+  for (std::size_t i = 0; i < agreements.size(); ++i)
+    if (is_candidate(i) && (best < 0 || agreements[i].explains > agreements[static_cast<std::size_t>(best)].explains))
+      best = static_cast<int>(i);
+  return best;
 }
 
 }  // namespace
 
+Agreement as_named(Agreement agreement) {
+  agreement.slow = quick_limit;
+  agreement.was_named = true;
+  return agreement;
+}
+
+void FitMonitor::reset_sensor(std::size_t index) {
+  sensors_[index] = taken_in_again(sensors_[index]);
+}
+
+void FitMonitor::reset_joint(std::size_t index) {
+  joints_[index] = taken_in_again(joints_[index]);
+}
+
 void FitMonitor::reset() {
-  std::ranges::fill(fits_, SensorFit{});
+  for (Agreement& sensor : sensors_) sensor = {.was_named = sensor.was_named};
+  for (Agreement& joint : joints_) joint = {.was_named = joint.was_named};
 }
 
 void FitMonitor::add(const ChainFilter& filter, double time, double length) {
   const Innovations& innovations = filter.innovations();
-  for (std::size_t s = 0; s < fits_.size(); ++s) {
-    if (innovations.rows[s] == 0) continue;
-    SensorFit& fit = fits_[s];
-    const double x = innovations.leave_out[s] / innovations.rows[s];
-    fit.observed += length;
-    forget(fit.quick, x, length, short_mean);
-    forget(fit.slow, x, length, long_mean);
-  }
-  for (std::size_t s = 0; s < fits_.size(); ++s) {
-    if (innovations.rows[s] == 0) continue;
-    SensorFit& fit = fits_[s];
-    // Where all are trusted less already, the tails of the innovations are heavier than those of the hand-over.
-    const double tails = std::sqrt(filter.common_inflation());
-    fit.strength = std::max(fit.quick / (quick_limit * tails * median_of_others(filter, s, &SensorFit::quick)),
-                            fit.slow / (slow_limit * tails * median_of_others(filter, s, &SensorFit::slow)));
-    const bool was = fit.is_suspect;
-    fit.is_suspect = fit.observed > settling && (was ? fit.quick > recovered_limit : fit.strength > 1.0);
-    if (fit.is_suspect && !was) fit.since = time;
-  }
+  for (std::size_t s = 0; s < sensors_.size(); ++s)
+    if (const int rows = innovations.rows[s]; rows > 0)
+      average(sensors_[s], innovations.leave_out[s] / rows, innovations.unlimited[s] / rows, !filter.uses_sensor(s),
+              length);
+  for (std::size_t j = 0; j < joints_.size(); ++j)
+    if (innovations.of_joint[j] > 0.0)
+      average(joints_[j], innovations.of_joint[j] / change_rows, innovations.unlimited_of_joint[j] / change_rows,
+              filter.doubts_joint(j), length);
+  // Where all are trusted less already, the tails of the innovations are heavier than those of the hand-over.
+  const double tails = std::sqrt(filter.common_inflation());
+  for (std::size_t s = 0; s < sensors_.size(); ++s)
+    if (innovations.rows[s] > 0)
+      judge(sensors_[s], median_of_others(filter, s, &Agreement::quick), median_of_others(filter, s, &Agreement::slow),
+            tails, time);
+  for (std::size_t j = 0; j < joints_.size(); ++j)
+    if (innovations.of_joint[j] > 0.0)
+      judge(joints_[j], median_of_other_joints(filter, j, &Agreement::quick),
+            median_of_other_joints(filter, j, &Agreement::slow), tails, time);
 }
 
-/// Where most sensors disagree it is the motion that the chain does not explain, and no sensor is at fault.
-double FitMonitor::median_of_others(const ChainFilter& filter, std::size_t sensor, double SensorFit::*mean) const {
-  std::size_t count = 0;
-  for (std::size_t s = 0; s < fits_.size(); ++s)
-    if (s != sensor && filter.uses_sensor(s)) ordered_[count++] = fits_[s].*mean;
+void FitMonitor::judge(Agreement& agreement, double quick_of_others, double slow_of_others, double tails,
+                       double time) const {
+  agreement.strength = std::max(agreement.quick / (quick_limit * tails * quick_of_others),
+                                agreement.slow / (slow_limit * tails * slow_of_others));
+  const bool was = agreement.is_suspect;
+  agreement.is_suspect =
+      agreement.observed >= settling && (was ? agreement.quick > recovered_limit : agreement.strength > 1.0);
+  if (agreement.is_suspect && !was) agreement.since = time;
+}
+
+namespace {
+
+/// At least 1: where most disagree it is the motion that the chain does not explain, and none is at fault.
+double median_from_one(std::vector<double>& values, std::size_t count) {
   if (count == 0) return 1.0;
-  const auto middle = ordered_.begin() + static_cast<std::ptrdiff_t>((count - 1) / 2);
-  std::nth_element(ordered_.begin(), middle, ordered_.begin() + static_cast<std::ptrdiff_t>(count));
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((count - 1) / 2);
+  std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
   return std::max(1.0, *middle);
 }
 
-int FitMonitor::worst(const ChainFilter& filter) const {
-  int worst = -1;
-  for (std::size_t s = 0; s < fits_.size(); ++s)
-    if (filter.uses_sensor(s) && fits_[s].is_suspect &&
-        (worst < 0 || fits_[s].strength > fits_[static_cast<std::size_t>(worst)].strength))
-      worst = static_cast<int>(s);
-  return worst;
+}  // namespace
+
+double FitMonitor::median_of_others(const ChainFilter& filter, std::size_t sensor, double Agreement::*mean) const {
+  std::size_t count = 0;
+  for (std::size_t s = 0; s < sensors_.size(); ++s)
+    if (s != sensor && filter.uses_sensor(s)) ordered_[count++] = sensors_[s].*mean;
+  return median_from_one(ordered_, count);
 }
 
-int FitMonitor::recovered(const ChainFilter& filter) const {
-  for (std::size_t s = 0; s < fits_.size(); ++s)
-    if (!filter.uses_sensor(s) && fits_[s].slow < recovered_limit && fits_[s].quick < recovered_limit)
-      return static_cast<int>(s);
-  return -1;
+double FitMonitor::median_of_other_joints(const ChainFilter& filter, std::size_t joint, double Agreement::*mean) const {
+  std::size_t count = 0;
+  for (std::size_t j = 0; j < joints_.size(); ++j)
+    if (j != joint && filter.innovations().of_joint[j] > 0.0 && !filter.doubts_joint(j))
+      ordered_[count++] = joints_[j].*mean;
+  return median_from_one(ordered_, count);
+}
+
+/// A change of a joint and one of a sensor have as many unknowns: the one that explains most is the likeliest.
+Suspect FitMonitor::likeliest_of(const std::function<bool(const Agreement&)>& is_candidate,
+                                 const ChainFilter& filter) const {
+  const int sensor =
+      likeliest(sensors_, [&](std::size_t s) { return filter.uses_sensor(s) && is_candidate(sensors_[s]); });
+  const int joint =
+      likeliest(joints_, [&](std::size_t j) { return !filter.doubts_joint(j) && is_candidate(joints_[j]); });
+  if (joint < 0) return {.sensor = sensor};
+  if (sensor < 0) return {.joint = joint};
+  const bool is_joint =
+      joints_[static_cast<std::size_t>(joint)].explains > sensors_[static_cast<std::size_t>(sensor)].explains;
+  return is_joint ? Suspect{.joint = joint} : Suspect{.sensor = sensor};
+}
+
+/// Where anything is suspect: one that was named before and is suspect again, or the likeliest of all, unless that was
+/// compared for too short a time.
+Suspect FitMonitor::worst(const ChainFilter& filter) const {
+  const auto is_suspect = [](const Agreement& a) { return a.is_suspect; };
+  if (likeliest_of(is_suspect, filter) == Suspect{}) return {};
+  const Suspect again = likeliest_of([](const Agreement& a) { return a.is_suspect && a.was_named; }, filter);
+  if (again != Suspect{}) return again;
+  const Suspect named = likeliest_of([](const Agreement&) { return true; }, filter);
+  const Agreement& agreement = named.joint >= 0 ? joints_[static_cast<std::size_t>(named.joint)]
+                                                : sensors_[static_cast<std::size_t>(named.sensor)];
+  return agreement.observed < settling ? Suspect{} : named;
+}
+
+Suspect FitMonitor::recovered(const ChainFilter& filter) const {
+  Suspect back;
+  for (std::size_t s = 0; s < sensors_.size() && back.sensor < 0; ++s)
+    if (!filter.uses_sensor(s) && has_recovered(sensors_[s])) back.sensor = static_cast<int>(s);
+  for (std::size_t j = 0; j < joints_.size() && back.joint < 0; ++j)
+    if (filter.doubts_joint(j) && has_recovered(joints_[j])) back.joint = static_cast<int>(j);
+  return back;
 }
 
 }  // namespace kinfer::track

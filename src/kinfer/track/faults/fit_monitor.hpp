@@ -1,42 +1,65 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether each sensor agrees with all others through the chain: leave-one-out innovations, averaged over a short and a
-// long time. The plain innovation is blind to a turned sensor, because the filter follows it.
+// Whether each sensor agrees with all others through the chain, and the sensors beyond each joint with those before it:
+// leave-one-out innovations, averaged over a short and a long time. The plain innovation is blind to a turned sensor,
+// because the filter follows it.
 //
-// T_i = u_iᵀ [(S⁻¹)_ii]⁻¹ u_i, u = S⁻¹ν, has the number of the sensor's rows as its expectation.
+// T_i = u_iᵀ [(S⁻¹)_ii]⁻¹ u_i, u = S⁻¹ν, has the number of the sensor's rows as its expectation; T of a joint is that
+// of JointChanges.
 #pragma once
+
+#include <functional>
 
 #include "kinfer/track/filter/chain_filter.hpp"
 
 namespace kinfer::track {
 
-struct SensorFit {
+struct Agreement {
   double quick = 1.0, slow = 1.0;  ///< T over its expectation, over short_mean and long_mean
   bool is_suspect = false;         ///< does not agree
   double since = 0.0;              ///< [s]
   double observed = 0.0;           ///< [s] that it was compared
   double strength = 0.0;           ///< the larger mean over its threshold
+  double explains = 1.0;           ///< over short_mean, of the unlimited T
+  bool was_named = false;          ///< before
+};
+
+/// As it starts when it is named: it fits again after agreeing for twice long_mean or so.
+Agreement as_named(Agreement agreement);
+
+/// What explains best that the chain does not fit: a sensor or a joint; −1: none.
+struct Suspect {
+  int sensor = -1, joint = -1;
+  bool operator==(const Suspect&) const = default;
 };
 
 class FitMonitor {
  public:
-  explicit FitMonitor(std::size_t sensors) : fits_(sensors), ordered_(sensors, 0.0) {}
+  FitMonitor(std::size_t sensors, std::size_t joints)
+      : sensors_(sensors), joints_(joints), ordered_(std::max(sensors, joints), 0.0) {}
 
   void add(const ChainFilter& filter, double time, double length);
-  const SensorFit& operator[](std::size_t sensor) const { return fits_[sensor]; }
+  const Agreement& sensor(std::size_t index) const { return sensors_[index]; }
+  const Agreement& joint(std::size_t index) const { return joints_[index]; }
 
-  /// The sensor that disagrees most among those in use; −1: none does.
-  int worst(const ChainFilter& filter) const;
-  /// A sensor that is not in use and agrees again; −1: none.
-  int recovered(const ChainFilter& filter) const;
-  void reset(std::size_t sensor) { fits_[sensor] = {}; }
+  /// Among sensors in use and joints that are not doubted.
+  Suspect worst(const ChainFilter& filter) const;
+  /// A sensor that is not in use, or a joint that is doubted, and agrees again.
+  Suspect recovered(const ChainFilter& filter) const;
+  /// It is taken in again. One that was named before may be named at once.
+  void reset_sensor(std::size_t index);
+  void reset_joint(std::size_t index);
   void reset();
-  void set(std::size_t sensor, const SensorFit& fit) { fits_[sensor] = fit; }
+  void set_sensor(std::size_t index, const Agreement& agreement) { sensors_[index] = agreement; }
+  void set_joint(std::size_t index, const Agreement& agreement) { joints_[index] = agreement; }
 
  private:
-  double median_of_others(const ChainFilter& filter, std::size_t sensor, double SensorFit::*mean) const;
+  Suspect likeliest_of(const std::function<bool(const Agreement&)>& is_candidate, const ChainFilter& filter) const;
+  double median_of_others(const ChainFilter& filter, std::size_t sensor, double Agreement::*mean) const;
+  double median_of_other_joints(const ChainFilter& filter, std::size_t joint, double Agreement::*mean) const;
+  void judge(Agreement& agreement, double quick_of_others, double slow_of_others, double tails, double time) const;
 
-  std::vector<SensorFit> fits_;
-  mutable std::vector<double> ordered_;  // buffer of the median
+  std::vector<Agreement> sensors_, joints_;
+  mutable std::vector<double> ordered_;  // buffer of the medians
 };
 
 }  // namespace kinfer::track

@@ -18,10 +18,8 @@ class Replay {
   /// From the older of the two filters kept, after `prepare` has changed it; `visit(filter, block)` after each block.
   template <class Prepare, class Visit>
   void run(ChainFilter& filter, const Prepare& prepare, const Visit& visit) {
-    std::vector<bool> used;
-    for (std::size_t s = 0; s < filter.model().sensors.size(); ++s) used.push_back(filter.uses_sensor(s));
+    older_.judge_as(filter);
     filter = older_;
-    for (std::size_t s = 0; s < used.size(); ++s) filter.use_sensor(s, used[s]);
     prepare(filter);
     for (std::size_t i = 0; i < count_; ++i) {
       const BlockMeasurement& block = blocks_[i];

@@ -46,7 +46,7 @@ double lower_median(std::span<double> values) {
 }  // namespace
 
 ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
-    : model_(std::move(model)), state_(initial_state(*model_)), evaluator_(*model_) {
+    : model_(std::move(model)), state_(initial_state(*model_)), evaluator_(*model_), changes_(*model_) {
   const FilterLayout& layout = model_->layout;
   const auto sensors = static_cast<std::size_t>(layout.sensors);
   const Index most = layout.rows() + 3 + 2 * static_cast<Index>(model_->loose.size() + model_->prismatic.size());
@@ -58,12 +58,15 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
   innovations_.value = VectorXd::Zero(layout.rows());
   innovations_.leave_out.assign(sensors, 0.0);
   innovations_.rows.assign(sensors, 0);
+  innovations_.of_joint.assign(model_->joints.size(), 0.0);
+  innovations_.unlimited = innovations_.leave_out;
+  innovations_.unlimited_of_joint = innovations_.of_joint;
   residual_ = noise_ = whitened_ = VectorXd::Zero(most);
   error_ = VectorXd::Zero(layout.size);
   h_ = MatrixXd::Zero(most, layout.fast);
   w_ = MatrixXd::Zero(layout.size, most);
   unused_w_ = MatrixXd::Zero(layout.size, sensor_rows);
-  s_ = inverse_ = MatrixXd::Zero(most, most);
+  s_ = kept_ = inverse_ = MatrixXd::Zero(most, most);
   leave_out_.assign(2 * sensors, 1.0);
   ordered_.assign(sensors, 0.0);
   is_measured_.assign(static_cast<std::size_t>(2 * layout.sensors), false);
@@ -220,6 +223,7 @@ void ChainFilter::form_rows(const BlockMeasurement& block) {
   h_.topRows(model_->layout.rows()) = evaluator_.result().by_fast;
   for (std::size_t s = 0; s < is_used_.size(); ++s) form_sensor_rows(block, s);
   form_soft_rows(block.length);
+  changes_.form(*model_, evaluator_, is_measured_, state_.base == BaseMode::still);
 }
 
 /// W = P Hᵀ and the lower half of S = H W + R.
@@ -286,21 +290,30 @@ void ChainFilter::multiply() {
 }
 
 /// An instrument that is far off is trusted so much less that it is at the limit.
-void ChainFilter::limit_outliers() {
+bool ChainFilter::limit_outliers() {
+  bool has_outliers = false;
   for (std::size_t half = 0; half < is_measured_.size(); ++half) {
     if (!is_measured_[half]) continue;
     const Index row = 3 * static_cast<Index>(half);
-    Mat3 block = s_.block<3, 3>(row, row);
+    Mat3 block = kept_.block<3, 3>(row, row);
     block.triangularView<Eigen::StrictlyUpper>() = block.transpose();
     const Vec3 v = residual_.segment<3>(row);
     const double distance = v.dot(block.inverse() * v);
-    if (distance > outlier_limit) s_.block<3, 3>(row, row) += (distance / outlier_limit - 1.0) * block;
+    if (distance <= outlier_limit) continue;
+    has_outliers = true;
+    kept_.block<3, 3>(row, row) += (distance / outlier_limit - 1.0) * block;
   }
+  return has_outliers;
 }
 
-/// Leave-one-out innovations: with u = S⁻¹ν the innovation of sensor i given all others is [(S⁻¹)_ii]⁻¹u_i, with
-/// covariance [(S⁻¹)_ii]⁻¹. `s_` holds L.
-void ChainFilter::examine() {
+void ChainFilter::judge_as(const ChainFilter& other) {
+  is_used_ = other.is_used_;
+  for (std::size_t j = 0; j < changes_.size(); ++j)
+    if (changes_.is_doubted(j) != other.changes_.is_doubted(j)) changes_.doubt(j, other.changes_.is_doubted(j));
+}
+
+/// L⁻¹ and L⁻¹ν, `s_` holding L.
+void ChainFilter::invert() {
   auto inverse = inverse_.topLeftCorner(rows_, rows_);
   inverse.setIdentity();
   for (Index j = 0; j < rows_; ++j)  // L⁻¹, column by column
@@ -313,6 +326,35 @@ void ChainFilter::examine() {
   whitened.setZero();
   for (Index k = 0; k < rows_; ++k)
     for (Index i = k; i < rows_; ++i) whitened_[i] += inverse_(i, k) * residual_[k];
+}
+
+bool ChainFilter::factorise() {
+  auto s = s_.topLeftCorner(rows_, rows_);
+  s = kept_.topLeftCorner(rows_, rows_);
+  if (!factorise_small(s)) return false;
+  invert();
+  return true;
+}
+
+/// Joints in doubt are examined in the S without their changes, which is then widened by them.
+bool ChainFilter::allow_joint_changes() {
+  if (!changes_.doubts_any()) return true;
+  changes_.examine(inverse_.topLeftCorner(rows_, rows_), whitened_.head(rows_), true);
+  changes_.widen(kept_.topLeftCorner(rows_, rows_));
+  return factorise();
+}
+
+/// What a change of each sensor or joint alone would explain.
+void ChainFilter::examine_changes() {
+  changes_.examine(inverse_.topLeftCorner(rows_, rows_), whitened_.head(rows_), false);
+  for (std::size_t j = 0; j < changes_.size(); ++j) innovations_.of_joint[j] = changes_.distance(j);
+  examine();
+}
+
+/// Leave-one-out innovations: with u = S⁻¹ν the innovation of sensor i given all others is [(S⁻¹)_ii]⁻¹u_i, with
+/// covariance [(S⁻¹)_ii]⁻¹. `s_` holds L.
+void ChainFilter::examine() {
+  const auto whitened = whitened_.head(rows_);
   double log_determinant = 0.0;
   for (Index i = 0; i < rows_; ++i) log_determinant += std::log(s_(i, i));
   innovations_.log_likelihood = -0.5 * whitened.squaredNorm() - log_determinant;
@@ -435,9 +477,15 @@ void ChainFilter::update(const BlockMeasurement& block) {
   KINFER_EXPECT(block.sensors.size() == is_used_.size());
   form_rows(block);
   multiply();
-  limit_outliers();
-  if (!factorise_small(s_.topLeftCorner(rows_, rows_))) return;
-  examine();
+  kept_.topLeftCorner(rows_, rows_) = s_.topLeftCorner(rows_, rows_);
+  if (!factorise() || !allow_joint_changes()) return;
+  examine_changes();
+  innovations_.unlimited = innovations_.leave_out;
+  innovations_.unlimited_of_joint = innovations_.of_joint;
+  if (limit_outliers()) {
+    if (!factorise()) return;
+    examine_changes();
+  }
   adapt_noise();
   for (std::size_t s = 0; s < is_used_.size(); ++s) {
     if (is_used_[s]) continue;

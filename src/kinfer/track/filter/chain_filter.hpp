@@ -8,7 +8,7 @@
 
 #include <memory>
 
-#include "kinfer/track/filter/chain_measurement.hpp"
+#include "kinfer/track/filter/joint_changes.hpp"
 
 namespace kinfer::track {
 
@@ -27,7 +27,10 @@ struct Innovations {
   VectorXd value;                 ///< measured minus predicted, rows of the sensors
   std::vector<double> leave_out;  ///< T of each sensor against all others, its expectation being `leave_out_rows`
   std::vector<int> rows;          ///< of each sensor that were measured: 0, 3 or 6; of sensors out of use too
-  double log_likelihood = 0.0;    ///< of this block
+  std::vector<double> of_joint;   ///< T of each joint, its expectation being `change_rows`; 0: not compared
+  /// The same two before instruments that are far off are trusted less: what a change of it alone would explain.
+  std::vector<double> unlimited, unlimited_of_joint;
+  double log_likelihood = 0.0;  ///< of this block
 };
 
 class ChainFilter {
@@ -74,6 +77,14 @@ class ChainFilter {
   void use_sensor(std::size_t sensor, bool is_used) { is_used_[sensor] = is_used; }
   bool uses_sensor(std::size_t sensor) const { return is_used_[sensor]; }
 
+  /// A joint in doubt has a change of its own in every update: angular velocity and force beyond it follow from those
+  /// before it no better than they do.
+  void doubt_joint(std::size_t joint, bool is_doubted) { changes_.doubt(joint, is_doubted); }
+  bool doubts_joint(std::size_t joint) const { return changes_.is_doubted(joint); }
+
+  /// Uses the sensors, and doubts the joints, that `other` does.
+  void judge_as(const ChainFilter& other);
+
   /// Factor on the variance of an instrument's measurements, as its innovations ask for; at least 1.
   InsLevel inflation(std::size_t sensor) const { return inflation_[sensor]; }
   /// The median over the sensors in use, of the larger one of each: how far the motion is from what the chain explains.
@@ -88,7 +99,11 @@ class ChainFilter {
   void form_soft_rows(double length);
   bool rests(std::size_t prismatic, double length);
   void multiply();  // W and S
-  void limit_outliers();
+  bool factorise();
+  void invert();
+  bool allow_joint_changes();
+  bool limit_outliers();
+  void examine_changes();
   void examine();
   void adapt_noise();
   double distance_of_unused(const BlockMeasurement& block, std::size_t sensor);
@@ -105,13 +120,14 @@ class ChainFilter {
   MatrixXd p_;
   ChainEvaluator evaluator_;
   std::vector<bool> is_used_;
+  JointChanges changes_;
   std::vector<InsLevel> inflation_;
   std::vector<SteadyVelocity> steady_;  // of each prismatic joint
   Innovations innovations_;
   // Buffers of an update: sensors' rows first, then soft constraints.
   Index rows_ = 0;
   VectorXd residual_, noise_, error_, whitened_;
-  MatrixXd h_, w_, s_, inverse_, unused_w_;
+  MatrixXd h_, w_, s_, kept_, inverse_, unused_w_;
   std::vector<bool> is_measured_;  // of each triple of rows
   std::vector<double> leave_out_;  // of each triple: squared leave-one-out innovation over its expectation
   std::vector<double> ordered_;    // buffer of medians

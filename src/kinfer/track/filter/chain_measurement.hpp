@@ -31,6 +31,8 @@ class ChainEvaluator {
 
   const ChainMeasurement& result() const { return result_; }
   const InsState& body(std::size_t index) const { return states_[index]; }
+  /// Derivative of a body's ω, ω̇ and f by its parent's.
+  const Eigen::Matrix<double, 9, 9>& by_parent(std::size_t body) const { return derivatives_[body].by_parent; }
 
  private:
   void propagate_body(const FilterModel& model, const ChainState& state, std::size_t b);

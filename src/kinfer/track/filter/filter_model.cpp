@@ -154,6 +154,21 @@ PrismaticRange prismatic_range(const TrackingJoint& joint, Index position) {
   return result;
 }
 
+/// The last body of a joint is the first beyond it; parents come before their children.
+JointBranch branch_beyond(const TrackingModel& model, int joint) {
+  JointBranch branch;
+  std::vector<bool> is_beyond(model.bodies.size(), false);
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    const TrackingBody& body = model.bodies[b];
+    const auto parent = static_cast<std::size_t>(body.parent);
+    const bool is_first = body.joint == joint && (body.sensor >= 0 || model.bodies[parent].joint == joint);
+    is_beyond[b] = is_first || is_beyond[parent];
+    if (is_beyond[b]) branch.bodies.push_back(b);
+    if (is_beyond[b] && body.sensor >= 0) branch.sensors.push_back(static_cast<std::size_t>(body.sensor));
+  }
+  return branch;
+}
+
 void set_processes(FilterModel& filter, const TrackingModel& model) {
   for (std::size_t b = 1; b < model.bodies.size(); ++b) {
     const TrackingBody& body = model.bodies[b];
@@ -189,6 +204,8 @@ FilterModel filter_model(const TrackingModel& model) {
   filter.layout = layout_of(filter.bodies, static_cast<Index>(model.sensors.size()));
   for (const TrackingSensor& sensor : model.sensors) filter.sensors.push_back(settings_of(sensor));
   set_processes(filter, model);
+  for (std::size_t j = 0; j < model.joints.size(); ++j)
+    filter.joints.push_back(branch_beyond(model, static_cast<int>(j)));
   filter.gravity = model.gravity;
   const double time = std::max(1.0, model.prior.instability_time);
   const InsLevel drift{std::max(min_bias_instability.rate, model.prior.bias_instability.rate),

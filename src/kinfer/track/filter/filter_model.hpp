@@ -34,6 +34,11 @@ struct PrismaticRange {
   double speed = 0.0;               ///< [m/s]
 };
 
+/// What lies beyond a joint of the tracking model, in the order of the bodies.
+struct JointBranch {
+  std::vector<std::size_t> bodies{}, sensors{};
+};
+
 struct FilterModel {
   InsBodies bodies;
   FilterLayout layout;
@@ -42,6 +47,7 @@ struct FilterModel {
   AccelerationProcess base_rotation, base_translation;
   std::vector<LooseRevoluteJoint> loose;
   std::vector<PrismaticRange> prismatic;
+  std::vector<JointBranch> joints;  ///< of each joint of the tracking model
   double gravity = standard_gravity;
   InsLevel bias_walk{};  ///< variance per second of a bias' random walk
   MatrixXd parameters;   ///< covariance of sensors' and geometry's states when tracking begins

@@ -53,6 +53,8 @@ KINFER_THRESHOLD(track, inflation_gain, 2e-2);
 /// than noise. DIODEM trial 1, first half.
 inline constexpr double lone_inflation = 1.5;
 inline constexpr double max_inflation = 1e4;
+inline constexpr double joint_change_gain = 0.1;  ///< in an update, of how far a doubted joint's change is followed
+inline constexpr int change_rows = 6;             ///< of a joint's change: angular velocity and specific force
 
 inline constexpr double max_position_sd = 1.8;  ///< [rad] an angle that could be any; [m] likewise
 inline constexpr double max_motion_sd = 30.0;   ///< per second, per second²
