@@ -10,12 +10,11 @@
 namespace kinfer::study::track_study {
 namespace {
 
-constexpr double fault_begins = 20.0;                  // [s]
-constexpr double turned_by = 0.0087, play_of = 0.003;  // [rad], [m]
+constexpr double fault_begins = 20.0;                                  // [s]
+constexpr double turned_by = 0.0087, play_of = 0.003, late_by = 0.02;  // [rad], [m], [s]
 
 bool is_of_fit(const TrackAlarm& alarm) {
-  return alarm.kind == TrackAlarmKind::sensor_moved || alarm.kind == TrackAlarmKind::joint_changed ||
-         alarm.kind == TrackAlarmKind::does_not_fit;
+  return alarm.kind <= TrackAlarmKind::joint_changed || alarm.kind == TrackAlarmKind::sensor_late;
 }
 
 std::string alarms_of(const TrackScore& score, double since) {
@@ -48,7 +47,8 @@ void study_machine(const AlarmStudy& study, DriveSetup setup) {
   const SimulatedDrive healthy = simulate_drive(setup);
   for (std::size_t sensor = 1; sensor + 1 < healthy.recording.sensors.size(); ++sensor)
     for (const auto& [kind, size, label] : {std::tuple{FaultKind::turned, turned_by, "turned by 0.5 degrees"},
-                                            {FaultKind::play, play_of, "3 mm of play"}}) {
+                                            {FaultKind::play, play_of, "3 mm of play"},
+                                            {FaultKind::late, late_by, "20 ms late"}}) {
       SimulatedDrive faulty = healthy;
       inject({.kind = kind, .sensor = sensor, .size = size, .begin = fault_begins, .end = 1e9}, faulty);
       print_row(fmt::format("sensor {} {}", sensor, label), alarms_of(track(*model, identified, faulty), fault_begins));

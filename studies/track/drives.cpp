@@ -45,6 +45,18 @@ void rattle(const InjectedFault& fault, SimulatedDrive& drive) {
   }
 }
 
+/// Rows hold the samples of earlier ones.
+void delay(const InjectedFault& fault, SimulatedDrive& drive) {
+  InsSensor& sensor = drive.recording.sensors[fault.sensor];
+  const auto time = drive.recording.time(sensor);
+  const auto rows = static_cast<std::size_t>(std::lround(fault.size / (time[1] - time[0])));
+  for (std::size_t row = sensor.rows(); row-- > rows;) {
+    if (time[row] < fault.begin || time[row] > fault.end) continue;
+    set_row(sensor.acceleration, row, sensor.acceleration.at(row - rows));
+    set_row(sensor.angular_velocity, row, sensor.angular_velocity.at(row - rows));
+  }
+}
+
 }  // namespace
 
 SimulatedDrive simulate_drive(const DriveSetup& setup) {
@@ -70,6 +82,7 @@ Result<TrackingModel> identify_drive(const SimulatedDrive& drive) {
 void inject(const InjectedFault& fault, SimulatedDrive& drive) {
   if (fault.kind == FaultKind::none) return;
   if (fault.kind == FaultKind::play) return rattle(fault, drive);
+  if (fault.kind == FaultKind::late) return delay(fault, drive);
   InsSensor& sensor = drive.recording.sensors[fault.sensor];
   const auto time = drive.recording.time(sensor);
   const Mat3 turn = exp_so3(fault.size * Vec3(1.0, 1.0, 1.0).normalized());
@@ -96,6 +109,7 @@ void inject(const InjectedFault& fault, SimulatedDrive& drive) {
         set_row(sensor.angular_velocity, row, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
         break;
       case FaultKind::play:
+      case FaultKind::late:
       case FaultKind::none:
         break;
     }

@@ -32,11 +32,11 @@ SimulatedDrive simulate_drive(const DriveSetup& setup);
 Result<TrackingModel> identify_drive(const SimulatedDrive& drive);
 
 /// A change of the recording from `begin` on; play is in the joint before the sensor and moves all beyond it.
-enum class FaultKind { none, turned, shifted, play, lost };
+enum class FaultKind { none, turned, shifted, play, lost, late };
 struct InjectedFault {
   FaultKind kind = FaultKind::none;
   std::size_t sensor = 0;
-  double size = 0.0, begin = 0.0, end = 0.0;  ///< [rad] or [m]; [s]
+  double size = 0.0, begin = 0.0, end = 0.0;  ///< [rad], [m] or [s]; [s]
 };
 void inject(const InjectedFault& fault, SimulatedDrive& drive);
 

@@ -60,6 +60,7 @@ Arguments parse(int count, char** values) {
       a.fault.kind = value == "turned"    ? FaultKind::turned
                      : value == "shifted" ? FaultKind::shifted
                      : value == "play"    ? FaultKind::play
+                     : value == "late"    ? FaultKind::late
                                           : FaultKind::lost;
     if (key == "--sensor") a.fault.sensor = static_cast<std::size_t>(number);
     if (key == "--size") a.fault.size = number;
@@ -100,11 +101,6 @@ void run(const Arguments& a) {
           fmt::print("{} {} {}: {}\n", machine, grade, seed, model.error().what);
           continue;
         }
-        if (std::getenv("DETAIL"))
-          for (const TrackingSensor& sensor : model->sensors)
-            fmt::print("  {} rate {:.2e} {:.2e} {:.2e} force {:.2e} {:.2e} {:.2e} stray {:.1e}\n", sensor.name,
-                       sensor.noise.rate, sensor.residual.rate, sensor.slow_residual.rate, sensor.noise.force,
-                       sensor.residual.force, sensor.slow_residual.force, sensor.mount_stray);
         SimulatedDrive second = simulate_drive({.machine = machine,
                                                 .grade = grade,
                                                 .base = a.base,

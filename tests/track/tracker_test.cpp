@@ -222,6 +222,24 @@ TEST(Tracker, NamesASensorThatWasTurned) {
   EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_moved);
   EXPECT_EQ(out.alarms[0].sensor, 3);
   EXPECT_LT(out.raised[0], 22.0);
+  EXPECT_EQ(out.alarms.size(), 1u);  // and not its clock
+}
+
+TEST(Tracker, NamesASensorWhoseClockWentWrong) {
+  const InsRecording& recording = still_excavator().drive.recording;
+  InsRow earlier;
+  std::size_t r = 0;
+  const Outcome out = run(still_excavator(), {}, [&](InsRow& row) {
+    if (row.time > 10.0) {
+      test::fill_row(recording, r - 3, earlier);  // 15 ms
+      row.sensors[3] = earlier.sensors[3];
+    }
+    ++r;
+  });
+  for (const TrackAlarm& alarm : out.alarms) EXPECT_EQ(alarm.sensor, 3) << name(alarm.kind);
+  const auto is_late = [](const TrackAlarm& alarm) { return alarm.kind == TrackAlarmKind::sensor_late; };
+  EXPECT_TRUE(std::ranges::any_of(out.alarms, is_late));
+  for (int j = 1; j < 5; ++j) EXPECT_LT(out.rms(j), 0.3 * degree) << j;
 }
 
 /// All sensors beyond the pin of joint 2 rattle alike, by 3 mm and three times a second.

@@ -75,8 +75,10 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       base_(model, *model_, given_base(options.base)),
       health_(model.sensors.size()),
       fit_(model.sensors.size(), model.joints.size()),
+      clocks_(model.sensors.size()),
       replay_(filter_),
       does_not_fit_(model.sensors.size(), false),
+      is_late_(model.sensors.size(), false),
       composed_(model, options),
       is_sound_(model.sensors.size(), true),
       fusion_(model),
@@ -223,6 +225,7 @@ void Tracker::watch_misfit(double time) {
 
 void Tracker::leave_out(std::size_t sensor) {
   does_not_fit_[sensor] = true;
+  is_late_[sensor] = clocks_.is_late(sensor, lateness_share);
   const Agreement named = as_named(fit_.sensor(sensor));
   replay([&](ChainFilter& filter) { filter.use_sensor(sensor, false); });
   fit_.set_sensor(sensor, named);
@@ -241,7 +244,7 @@ void Tracker::examine_fit() {
   if (worst.joint >= 0) doubt(static_cast<std::size_t>(worst.joint));
   const Suspect back = fit_.recovered(filter_);
   if (back.sensor >= 0) {
-    does_not_fit_[static_cast<std::size_t>(back.sensor)] = false;
+    does_not_fit_[static_cast<std::size_t>(back.sensor)] = is_late_[static_cast<std::size_t>(back.sensor)] = false;
     fit_.reset_sensor(static_cast<std::size_t>(back.sensor));
   }
   if (back.joint >= 0) {
@@ -258,6 +261,9 @@ void Tracker::process_block(const BlockMeasurement& block) {
     filter_.update(block);
   }
   fit_.add(filter_, block.time, block.length);
+  clocks_.add(filter_, block.length);
+  for (std::size_t s = 0; s < does_not_fit_.size(); ++s)
+    if (does_not_fit_[s] && clocks_.is_late(s, lateness_share_later)) is_late_[s] = true;
   if (!grid_) {
     replay_.add(block, filter_);
     if (base_begins_to_move(block))
@@ -315,7 +321,7 @@ void Tracker::list_alarms(double time) {
       alarms.push_back({.kind = TrackAlarmKind::sensor_clipped, .sensor = sensor, .since = health.last_clipped});
     if (!does_not_fit_[s]) continue;
     ++disagreeing;
-    alarms.push_back({.kind = TrackAlarmKind::sensor_moved,
+    alarms.push_back({.kind = is_late_[s] ? TrackAlarmKind::sensor_late : TrackAlarmKind::sensor_moved,
                       .sensor = sensor,
                       .since = fit_.sensor(s).since,
                       .strength = fit_.sensor(s).strength});

@@ -8,6 +8,7 @@
 #include "kinfer/evidence/tracking/track_state.hpp"
 #include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/track/composed.hpp"
+#include "kinfer/track/faults/clock_watch.hpp"
 #include "kinfer/track/faults/fit_monitor.hpp"
 #include "kinfer/track/faults/replay.hpp"
 #include "kinfer/track/faults/sensor_health.hpp"
@@ -70,8 +71,10 @@ class Tracker {
   BaseWatch base_;
   HealthWatch health_;
   FitMonitor fit_;
+  ClockWatch clocks_;
   Replay replay_;
   std::vector<bool> does_not_fit_;  // sensors out of use because they disagree
+  std::vector<bool> is_late_;       // of these, by their clocks
   ComposedFilters composed_;
   std::vector<bool> is_sound_;  // sensors that the composed filters may use
   JointFusion fusion_;

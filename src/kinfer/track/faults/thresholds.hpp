@@ -18,6 +18,14 @@ KINFER_THRESHOLD(track, max_single, 400.0);                  // of one block
 KINFER_THRESHOLD(track, quick_limit, 2.5);                   // of the short mean
 KINFER_THRESHOLD(track, slow_limit, 1.6);                    // of the long mean
 inline constexpr double recovered_limit = 1.2;
+inline constexpr double clock_mean = 5.0;       ///< [s] over which a clock is watched
+inline constexpr double least_lateness = 2e-3;  ///< [s] below which no clock is called late
+/// Twice the log-likelihood that a sensor's lateness must gain, and its share of the sensor's disagreement; more where
+/// the sensor was named for something else already. Simulated excavators and six-axis arms 31 and 32, with turned
+/// sensors, play and samples 20 ms late.
+KINFER_THRESHOLD(track, lateness_evidence, 60.0);
+KINFER_THRESHOLD(track, lateness_share, 0.5);
+inline constexpr double lateness_share_later = 0.75;
 /// Median over the sensors of the factors on their variances, beyond which the chain as a whole does not fit, and below
 /// which it fits again. Of another machine's log it exceeds the first within a second; real healthy chains on soft
 /// mounts reach 80, a UR5 with wrong accelerometers 215 for a moment.

@@ -53,11 +53,13 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
   p_ = MatrixXd::Zero(layout.size, layout.size);
   p_.bottomRightCorner(layout.size - layout.fast, layout.size - layout.fast) = model_->parameters;
   is_used_.assign(sensors, true);
+  last_value_ = change_ = VectorXd::Zero(layout.rows());
   steady_.assign(model_->prismatic.size(), {});
   inflation_.assign(sensors, {1.0, 1.0});
   innovations_.value = VectorXd::Zero(layout.rows());
   innovations_.leave_out.assign(sensors, 0.0);
   innovations_.rows.assign(sensors, 0);
+  innovations_.lateness.assign(sensors, {});
   innovations_.of_joint.assign(model_->joints.size(), 0.0);
   innovations_.unlimited = innovations_.leave_out;
   innovations_.unlimited_of_joint = innovations_.of_joint;
@@ -218,8 +220,21 @@ bool ChainFilter::rests(std::size_t k, double length) {
   return steady.duration > prismatic_rest && log_density(prismatic_creep) > log_density(range.speed);
 }
 
+/// Of the predicted rows; none after a gap.
+void ChainFilter::follow_change() {
+  const double dt = state_.time - last_update_;
+  const VectorXd& value = evaluator_.result().value;
+  if (dt > 0.0 && dt <= longest_step)
+    change_ = (value - last_value_) / dt;
+  else
+    change_.setZero();
+  last_value_ = value;
+  last_update_ = state_.time;
+}
+
 void ChainFilter::form_rows(const BlockMeasurement& block) {
   evaluator_.evaluate(*model_, state_);
+  follow_change();
   h_.topRows(model_->layout.rows()) = evaluator_.result().by_fast;
   for (std::size_t s = 0; s < is_used_.size(); ++s) form_sensor_rows(block, s);
   form_soft_rows(block.length);
@@ -351,6 +366,12 @@ void ChainFilter::examine_changes() {
   examine();
 }
 
+/// `weighted`: S⁻¹ν of the sensor's rows, `information` their block of S⁻¹.
+void ChainFilter::score_lateness(std::size_t sensor, const SensorVector& weighted, const SensorMatrix& information) {
+  const SensorVector by_lateness = -change_.segment<sensor_rows>(sensor_rows * static_cast<Index>(sensor));
+  innovations_.lateness[sensor] = {by_lateness.dot(weighted), by_lateness.dot(information * by_lateness)};
+}
+
 /// Leave-one-out innovations: with u = S⁻¹ν the innovation of sensor i given all others is [(S⁻¹)_ii]⁻¹u_i, with
 /// covariance [(S⁻¹)_ii]⁻¹. `s_` holds L.
 void ChainFilter::examine() {
@@ -372,6 +393,7 @@ void ChainFilter::examine() {
     for (Index i = 0; i < sensor_rows; ++i)
       if (!is_measured_[2 * s + static_cast<std::size_t>(i / 3)]) u[i] = 0.0;
     innovations_.leave_out[s] = squared_distance(u, own);
+    score_lateness(s, u, own);
     for (Index half = 0; half < 2; ++half) {
       const Vec3 v = u.segment<3>(3 * half);
       const Mat3 w = own.block<3, 3>(3 * half, 3 * half);
@@ -431,7 +453,12 @@ double ChainFilter::distance_of_unused(const BlockMeasurement& block, std::size_
                         p_.diagonal()
                             .segment<3>(own + SensorIndex::gyroscope_scale + 3 * i)
                             .dot((i < 3 ? m.angular_velocity[s] : m.force[s]).cwiseAbs2());
-  return squared_distance(innovations_.value.segment<sensor_rows>(row), covariance);
+  const SensorVector innovation = innovations_.value.segment<sensor_rows>(row),
+                     by_lateness = -change_.segment<sensor_rows>(row);
+  const auto distance = [&](const SensorVector& v) { return squared_distance(v, covariance); };
+  innovations_.lateness[s] = {0.25 * (distance(by_lateness + innovation) - distance(by_lateness - innovation)),
+                              distance(by_lateness)};
+  return distance(innovation);
 }
 
 void ChainFilter::correct() {
@@ -491,7 +518,7 @@ void ChainFilter::update(const BlockMeasurement& block) {
     if (is_used_[s]) continue;
     const bool is_measured = block.sensors[s].rate_count > 0 && block.sensors[s].force_count > 0;
     innovations_.rows[s] = is_measured ? static_cast<int>(sensor_rows) : 0;
-    if (is_measured) innovations_.leave_out[s] = distance_of_unused(block, s);
+    if (is_measured) innovations_.leave_out[s] = innovations_.unlimited[s] = distance_of_unused(block, s);
   }
   correct();
 }

@@ -22,6 +22,11 @@ struct BlockMeasurement {
   std::vector<BlockSample> sensors;  ///< in the order of the model
 };
 
+/// Score and information of the time by which a sensor's measurements are later than they are taken to be.
+struct LatenessScore {
+  double score = 0.0, information = 0.0;  ///< [1/s], [1/s²]
+};
+
 /// How an update came out.
 struct Innovations {
   VectorXd value;                 ///< measured minus predicted, rows of the sensors
@@ -30,7 +35,8 @@ struct Innovations {
   std::vector<double> of_joint;   ///< T of each joint, its expectation being `change_rows`; 0: not compared
   /// The same two before instruments that are far off are trusted less: what a change of it alone would explain.
   std::vector<double> unlimited, unlimited_of_joint;
-  double log_likelihood = 0.0;  ///< of this block
+  std::vector<LatenessScore> lateness;  ///< of each sensor, by its leave-one-out innovation
+  double log_likelihood = 0.0;          ///< of this block
 };
 
 class ChainFilter {
@@ -95,6 +101,9 @@ class ChainFilter {
   void forget(Index state);
   void add_posture_walk(double dt);
   void form_rows(const BlockMeasurement& block);
+  void follow_change();
+  void score_lateness(std::size_t sensor, const Eigen::Matrix<double, sensor_rows, 1>& weighted,
+                      const Eigen::Matrix<double, sensor_rows, sensor_rows>& information);
   void form_sensor_rows(const BlockMeasurement& block, std::size_t sensor);
   void form_soft_rows(double length);
   bool rests(std::size_t prismatic, double length);
@@ -120,6 +129,8 @@ class ChainFilter {
   MatrixXd p_;
   ChainEvaluator evaluator_;
   std::vector<bool> is_used_;
+  VectorXd last_value_, change_;  // predicted rows of the last update, their rate of change
+  double last_update_ = -1e9;
   JointChanges changes_;
   std::vector<InsLevel> inflation_;
   std::vector<SteadyVelocity> steady_;  // of each prismatic joint
