@@ -114,7 +114,8 @@ TEST(Directions, TwoStationsCalibrateARobotAsWellAsPointsOfEqualAngularAccuracy)
   const Chain truth = robot_with_stations();
   const PoseSet data = seen_from_stations(truth, 60, sigma);
   const Calibration c = calibrated_with(data, {.sigma = 1e-5, .sigma_direction = sigma});
-  EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
+  EXPECT_EQ(c.usability, Usability::use_with_care) << words::verdict(c);
+  EXPECT_EQ(c.unobserved_lengths->kind, UnobservedLength::size) << "directions alone have no scale";
   EXPECT_EQ(c.measured, kind_of<DirectionMeasurement>);
   EXPECT_NEAR(*c.estimate.chi2_per_n, 1.0, 0.3);
   const Calibration by_points = calibrated_by_points(truth);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/calibrate/conclusion/unobserved_lengths.hpp"
+#include "kinfer/calibrate/fit/tolerance_fit.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/calibrate/validation/validation_errors.hpp"
 #include "kinfer/geometry/statistics.hpp"
@@ -61,13 +63,63 @@ TEST(Instruments, BallsInSocketsMakeHeldOutSocketsConsistent) {
   nominal.fixtures.socket_distances = {};
   const Calibration c = calibrated(nominal, data, {.sigma = 10e-6});
   EXPECT_EQ(c.measured, kind_of<SocketContact>);
-  EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
+  EXPECT_EQ(c.usability, Usability::use_with_care) << words::verdict(c);
+  EXPECT_EQ(c.unobserved_lengths->kind, UnobservedLength::size);
   const auto spread = [&](const Chain& chain) {
     const DataWithFixtures there = with_fixtures(chain, unseen).value();
     return mean(primary_errors(there.chain, {}, there.data));
   };
   EXPECT_LT(spread(c.estimate.chain), 0.1 * spread(nominal));
   EXPECT_LT(spread(c.estimate.chain), 60e-6);
+}
+
+/// By how much `chain` is larger than `truth` over the poses: 1e-3 is 1 mm per metre.
+double size_error(const Chain& chain, const Chain& truth, const PoseSet& data) {
+  const std::vector<Pose> a = evaluate_poses(chain, {}, data, Derivative::no).pose,
+                          b = evaluate_poses(truth, {}, data, Derivative::no).pose;
+  double larger = 0.0, smaller = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      larger += (a[i].position - a[k].position).squaredNorm();
+      smaller += (b[i].position - b[k].position).squaredNorm();
+    }
+  return std::sqrt(larger / smaller) - 1.0;
+}
+
+TEST(Instruments, TheSizeThatSocketsLeaveOpenIsAsUncertainAsSaid) {
+  const std::vector<Vec3> sockets{{0.9, 0.5, 0.4}, {0.8, -0.6, 0.6}, {1.1, 0.1, 0.9}};
+  const Tolerances tolerances;
+  double squares = 0.0, sd = 0.0;
+  constexpr int robots = 24;
+  for (int seed = 1; seed <= robots; ++seed) {
+    const Chain truth = with_random_errors(nominal_robot(), tolerances, Rng(seed));
+    PoseSet data = readings_of(measured(truth, paper2_poses(60, noise_free)));
+    data.sockets = {"a", "b", "c"};
+    touch(
+        data, truth, [&](int row) { return truth.base.pose() * sockets[row % 3]; }, 10e-6, Rng(seed + 100));
+    for (int row = 0; row < 60; ++row) data.contacts.push_back({row, row % 3});
+    const DataWithFixtures placed = with_fixtures(nominal_robot(), data).value();
+    const CalibrationTask task{placed.chain, tolerances, Instrument{.sigma = 10e-6}, placed.data};
+    const Estimate estimate = fit_once(task, task.data, GeometricParameters{}, {}, {}).value();
+    const UnobservedLengths unobserved = find_unobserved_lengths(task, estimate).value();
+    EXPECT_EQ(unobserved.kind, UnobservedLength::size);
+    squares += std::pow(size_error(estimate.chain, truth, data) / unobserved.relative_sd, 2) / robots;
+    sd += unobserved.relative_sd / robots;
+  }
+  EXPECT_GT(squares, 0.4);
+  EXPECT_LT(squares, 1.9);
+  EXPECT_GT(sd, 1e-4) << "millimetres of tolerance over a robot of a metre";
+}
+
+TEST(Instruments, OrientationsAloneLeaveAllLengthsOpen) {
+  Chain truth = true_robot();
+  PoseSet data = readings_of(measured(truth, paper2_poses(50, noise_free)));
+  const std::vector<Pose> poses = evaluate_poses(truth, {}, data, Derivative::no).pose;
+  for (int row = 0; row < 50; ++row)
+    data.orientations.push_back({.row = row, .orientation = Quat(poses[row].rotation)});
+  const Calibration c = calibrated(nominal_robot(), data, {.sigma = 10e-6, .sigma_angle = 1e-5});
+  EXPECT_EQ(c.unobserved_lengths->kind, UnobservedLength::all_lengths);
+  EXPECT_EQ(c.usability, Usability::use_with_care) << words::verdict(c);
 }
 
 TEST(Instruments, AKnownDistanceBetweenSocketsGivesTheScale) {
@@ -86,7 +138,10 @@ TEST(Instruments, AKnownDistanceBetweenSocketsGivesTheScale) {
   const double distance = (sockets[0] - sockets[1]).norm();
   nominal.fixtures.sockets = {{"b", Vec3::Zero()}, {"a", Vec3::Zero()}};  // in another order than in the data
   nominal.fixtures.socket_distances = {{0, 1, distance, 5e-6}};
-  EXPECT_NEAR(apart(calibrated(nominal, data, {.sigma = 10e-6}).estimate.chain), distance, 15e-6);
+  const Calibration c = calibrated(nominal, data, {.sigma = 10e-6});
+  EXPECT_NEAR(apart(c.estimate.chain), distance, 15e-6);
+  EXPECT_FALSE(c.unobserved_lengths);
+  EXPECT_LT(relative_size_sd(c.estimate, data), 20e-6);
 }
 
 TEST(Instruments, BallBarsPlanesAndTiltsTogetherWithFewTrackerPoints) {

@@ -42,6 +42,33 @@ TEST(Verdict, ErrorsFarAboveTheExpectedOnesAreNotModelled) {
   EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
 }
 
+TEST(Verdict, ErrorsThatThePredictionsHaveRoomForAreNotModelledEither) {
+  Calibration c = with_errors(1e-3, 1e-4, 1e-4);
+  c.expected_holdout_rms = 0.35e-4;
+  c.predicted_holdout_rms = 0.8e-4;
+  EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
+  c.predicted_holdout_rms = 1.4e-4;
+  c.reason = judge(c), c.usability = usability_of(c.reason);
+  EXPECT_EQ(c.reason, CalibrationReason::unmodelled_effects);
+  EXPECT_NE(words::verdict(c).find("the errors are 4 times what"), std::string::npos) << words::verdict(c);
+  c.expected_holdout_rms = 0.3e-4;
+  c.predicted_holdout_rms = 0.32e-4;
+  EXPECT_EQ(judge(c), CalibrationReason::unmodelled_effects) << "the predictions promise too much";
+}
+
+TEST(Verdict, WithoutAMeasuredLengthTheSizeIsNotReliedOn) {
+  Calibration c = with_errors(1e-3, 1e-4, 1e-4);
+  c.unobserved_lengths = {UnobservedLength::size, 5e-4};
+  c.usability = usability_of(judge(c), c.unobserved_lengths);
+  EXPECT_EQ(c.usability, Usability::use_with_care);
+  EXPECT_EQ(usability_of(CalibrationReason::overfitted, c.unobserved_lengths), Usability::do_not_use);
+  EXPECT_EQ(words::verdict(c).find("Use with care: "), 0u) << words::verdict(c);
+  EXPECT_NE(words::verdict(c).find("; the size of the robot is unobservable, since no length was measured: it rests on "
+                                   "the tolerances of the lengths and may be 0.98 mm per metre off (95 %)"),
+            std::string::npos)
+      << words::verdict(c);
+}
+
 TEST(Verdict, WithoutADataSheetHeldOutRowsAreComparedWithFittedOnes) {
   Calibration c = with_errors(0.0, 1e-4, 0.3e-4);
   c.unknown_robot = UnknownRobotEvidence{};

@@ -80,6 +80,8 @@ inline Calibration rich_calibration() {
   c.model_selection = rich_model_selection();
   c.holdout = HoldoutFraction{0.2};
   c.expected_holdout_rms = 1.1e-4;
+  c.predicted_holdout_rms = 1.3e-4;
+  c.unobserved_lengths = {UnobservedLength::size, 2e-4};
   c.gross_error_rows = {2};
   for (int row = 0; row < rows; ++row) c.rows.push_back({row, 1e-3 + 1e-4 * row, 1e-4, 9e-5, row % 2 == 0});
   c.rows.back().before = c.rows.back().after = not_measured;

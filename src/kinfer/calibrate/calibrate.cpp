@@ -7,6 +7,7 @@
 #include "kinfer/calibrate/conclusion/notes.hpp"
 #include "kinfer/calibrate/conclusion/plot_data.hpp"
 #include "kinfer/calibrate/conclusion/recommendations.hpp"
+#include "kinfer/calibrate/conclusion/unobserved_lengths.hpp"
 #include "kinfer/calibrate/conclusion/verdict.hpp"
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
 #include "kinfer/calibrate/fit/population_choice.hpp"
@@ -99,9 +100,13 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
                                     frames_only,  fit.validation_fits, excluded.rows};
   fill_error_statistics(calibration, evaluation);
   calibration.expected_holdout_rms = expected_holdout_rms(evaluation);
-  calibration.prediction = make_prediction_model(evaluation, fit.estimate, fit.beyond, options.threads);
+  if (const auto prediction = make_prediction_model(evaluation, fit.estimate, fit.beyond, options.threads)) {
+    calibration.prediction = prediction->model;
+    calibration.predicted_holdout_rms = prediction->holdout_rms;
+  }
+  calibration.unobserved_lengths = find_unobserved_lengths(task, fit.estimate);
   calibration.reason = judge(calibration);
-  calibration.usability = usability_of(calibration.reason);
+  calibration.usability = usability_of(calibration.reason, calibration.unobserved_lengths);
   calibration.accuracy = evaluate_pose_accuracy(frames_only, calibration.estimate.chain, task.data);
   calibration.plot_data = make_plot_data(task, frames_only, calibration.estimate, calibration.prediction);
   calibration.recommendations = make_recommendations(task, calibration);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "calibrate/terms/simulated_selection.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/calibrate/terms/candidate_terms.hpp"
@@ -57,6 +59,42 @@ TEST(WeighedModel, TorquesThatAreZeroOrConstantAreNotExcited) {
   data.torques.setZero();
   const Calibration c = default_calibration(nominal_robot(), data);
   EXPECT_EQ(step_with(c, Term::torque_compliance).decision, Decision::not_excited);
+  EXPECT_NE(words::reason(step_with(c, Term::torque_compliance)).find("do not excite"), std::string::npos);
+}
+
+TEST(WeighedModel, ATemperatureThatIsTheTimeDoesNoHarm) {
+  const Chain truth = with_random_errors(nominal_robot(), {}, Rng(3));
+  PoseSet data = with_approach(simulated_readings(truth, 60));
+  for (int row = 0; row < 60; ++row) data.time.push_back(10.0 * row), data.temperature.push_back(20.0 + 0.1 * row);
+  measure_points(data, truth, tracker, Rng(4));
+  EXPECT_LE(ratio_to_geometry(data, truth), 1.01);
+  const Calibration c = default_calibration(nominal_robot(), data);
+  EXPECT_EQ(step_with(c, Term::thermal_expansion).decision, Decision::no_evidence);
+}
+
+TEST(WeighedModel, OfTwoProportionalColumnsOneIsTakenOrBothAreNamed) {
+  Chain nominal = nominal_robot();
+  nominal.masses = {{1, Vec3(0.4, 0, 0), 60.0}, {3, Vec3(0, 0, 0.1), 30.0}};
+  Chain truth = with_random_errors(nominal, {}, Rng(3));
+  truth.joints[1].compliance = truth.joints[2].compliance = 1e-6;
+  PoseSet data = simulated_readings(truth, 80);
+  measure_points(data, truth, tracker, Rng(4));
+  data.torques = gravity_torques_of_rows(nominal, data);
+  const Calibration both = default_calibration(nominal, data),
+                    one = default_calibration(nominal, data, FixedModel{{Term::gravity_compliance}});
+  EXPECT_LE(error_on_unseen(both, truth), 1.05 * error_on_unseen(one, truth));
+  const bool takes_gravity = is_selected(step_with(both, Term::gravity_compliance)),
+             takes_torques = is_selected(step_with(both, Term::torque_compliance));
+  EXPECT_TRUE(takes_gravity || takes_torques);
+  const auto names_both = [](const UndeterminedGroup& group) {
+    const auto has = [&](const char* name) {
+      return std::ranges::find(group.parameters, name) != group.parameters.end();
+    };
+    return has("compliance2") && has("torque_compliance2");
+  };
+  if (takes_gravity && takes_torques) {
+    EXPECT_TRUE(std::ranges::any_of(both.estimate.identifiability.undetermined, names_both));
+  }
 }
 
 TEST(WeighedModel, OnePoseTwoHundredTimesIsNoEvidenceForAnyTerm) {
@@ -65,6 +103,9 @@ TEST(WeighedModel, OnePoseTwoHundredTimesIsNoEvidenceForAnyTerm) {
   for (int row = 40; row < 240; ++row) data.joints.col(row) = data.joints.col(39);
   measure_points(data, truth, tracker, Rng(4));
   EXPECT_LE(ratio_to_geometry(data, truth), 1.05);
+  const Calibration c = default_calibration(nominal_robot(), data);
+  EXPECT_EQ(c.accuracy.size(), 40u) << "the poses that are reported are the different ones";
+  EXPECT_TRUE(std::ranges::any_of(c.accuracy, [](const PoseAccuracy& pose) { return pose.rows.size() == 201; }));
 }
 
 TEST(WeighedModel, TenPosesAndMoreTermsThanMeasurementsDoNoHarm) {
@@ -77,6 +118,10 @@ TEST(WeighedModel, TenPosesAndMoreTermsThanMeasurementsDoNoHarm) {
     for (double& torque : data.torques.reshaped()) torque = 50.0 * rng.normal();
     measure_points(data, truth, tracker, Rng(40 + seed));
     ratios.push_back(ratio_to_geometry(data, truth));
+    if (seed > 1) continue;
+    EXPECT_TRUE(std::ranges::any_of(default_calibration(nominal_robot(), data).recommendations, [](const auto& advice) {
+      return advice.kind == CalibrationAdviceKind::measure_more_poses;
+    }));
   }
   EXPECT_LE(mean(ratios), 1.05);
 }
@@ -90,6 +135,7 @@ TEST(WeighedModel, AWildRowInTheOnlyPoseThatExcitesATermDoesNotDecide) {
   data.points[17].position += Vec3(0.0, 0.8e-3, 0.0);
   const Calibration c = default_calibration(nominal_robot(), data);
   EXPECT_LE(ratio_to_geometry(data, truth), 1.05) << selected_model(c.model_selection);
+  EXPECT_TRUE(std::ranges::any_of(c.estimate.outliers, [](const Outlier& o) { return o.row == 17; }));
 }
 
 TEST(WeighedModel, AnAcceptedTermSaysWhatItContributesAndHowSure) {

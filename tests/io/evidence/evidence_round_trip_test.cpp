@@ -66,6 +66,9 @@ TEST(EvidenceRoundTrip, ValuesOfACalibrationComeBack) {
   EXPECT_EQ(e.unknown_robot->axes.wrists, c.unknown_robot->axes.wrists);
   EXPECT_EQ(e.measurement, kind_of<PointMeasurement>);
   EXPECT_EQ(e.expected_holdout_rms, 1.1e-4);
+  EXPECT_EQ(e.predicted_holdout_rms, 1.3e-4);
+  EXPECT_EQ(e.unobserved_lengths->kind, UnobservedLength::size);
+  EXPECT_EQ(e.unobserved_lengths->relative_sd, 2e-4);
   EXPECT_EQ(e.identifiability.undetermined[0].parameters, (std::vector<std::string>{"a2", "d<3>"}));
   EXPECT_EQ(e.outliers[0].outlier.reasons[1].kind, kind_of<TiltMeasurement>);
   EXPECT_TRUE(e.outliers[0].outlier.held_out);
@@ -165,7 +168,7 @@ TEST(EvidenceRoundTrip, AnOlderFileWithoutLaterKeysReadsWithDefaults) {
   ordered_json json = ordered_json::parse(written(rich_calibration()));
   for (const char* key : {"format", "next", "findings", "wrong_rows", "measured", "iso9283", "use", "provenance",
                           "usability", "verdict_parts", "reason", "note_facts", "unknown_robot", "measurement",
-                          "expected_holdout_rms", "undetermined"})
+                          "expected_holdout_rms", "predicted_holdout_rms", "unobserved_lengths", "undetermined"})
     json.erase(key);
   for (auto& outlier : json["outliers"])
     for (const char* key : {"measurements", "sigmas", "held_out"}) outlier.erase(key);

@@ -6,15 +6,21 @@
 namespace kinfer::calibrate {
 namespace {
 
+/// The errors that were measured, or those that the predictions' intervals have room for.
+bool exceeds_expectation(const Calibration& calibration, double measured) {
+  const std::optional<double>& expected = calibration.expected_holdout_rms;
+  if (!expected) return false;
+  const double limit = thresholds::expectation_ratio * *expected;
+  return !(measured <= limit) || !(calibration.predicted_holdout_rms.value_or(*expected) <= limit);
+}
+
 CalibrationReason judge_against_nominal(const Calibration& calibration) {
   const ErrorStatistics &before = reported_errors(calibration, calibration.before),
                         &after = reported_errors(calibration, calibration.after);
   if (!(after.mean < before.mean)) return CalibrationReason::no_improvement;
   if (!(final_errors(calibration).rms <= thresholds::same_solution_ratio * after.rms))
     return CalibrationReason::not_validated;
-  const std::optional<double>& expected = calibration.expected_holdout_rms;
-  if (expected && !(after.rms <= thresholds::expectation_ratio * *expected))
-    return CalibrationReason::unmodelled_effects;
+  if (exceeds_expectation(calibration, after.rms)) return CalibrationReason::unmodelled_effects;
   return CalibrationReason::improves_nominal;
 }
 
@@ -31,10 +37,10 @@ CalibrationReason judge(const Calibration& calibration) {
                                    : judge_against_nominal(calibration);
 }
 
-Usability usability_of(CalibrationReason reason) {
-  return reason == CalibrationReason::improves_nominal || reason == CalibrationReason::generalises
-             ? Usability::use
-             : Usability::do_not_use;
+Usability usability_of(CalibrationReason reason, const std::optional<UnobservedLengths>& unobserved) {
+  if (reason != CalibrationReason::improves_nominal && reason != CalibrationReason::generalises)
+    return Usability::do_not_use;
+  return unobserved ? Usability::use_with_care : Usability::use;
 }
 
 }  // namespace kinfer::calibrate

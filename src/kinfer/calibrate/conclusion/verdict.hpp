@@ -6,12 +6,14 @@
 
 namespace kinfer::calibrate {
 
-/// The reason of the verdict, from the error statistics and `expected_holdout_rms` of the calibration. A robot without
-/// a data sheet has no earlier model to be compared with: its held-out errors are compared with those of the fitted
-/// rows.
+/// The reason of the verdict, from the error statistics of the calibration and what it expects of held-out rows: an
+/// effect is not modelled where the measured errors, or those that the prediction model expects
+/// (`predicted_holdout_rms`), are far above those of instrument and fit (`expected_holdout_rms`). A robot without a
+/// data sheet has no earlier model to be compared with: its held-out errors are compared with those of the fitted rows.
 CalibrationReason judge(const Calibration& calibration);
 
-/// `use` where the calibration improves the nominal model or generalises, else `do_not_use`.
-Usability usability_of(CalibrationReason reason);
+/// `do_not_use` where the calibration neither improves the nominal model nor generalises; `use_with_care` where no
+/// length was measured; else `use`.
+Usability usability_of(CalibrationReason reason, const std::optional<UnobservedLengths>& unobserved = {});
 
 }  // namespace kinfer::calibrate

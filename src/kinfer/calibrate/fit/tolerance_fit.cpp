@@ -16,15 +16,6 @@
 namespace kinfer::calibrate {
 namespace {
 
-/// Contacts alone determine only ratios of lengths: shrinking the robot would reduce the residuals. Without measured
-/// lengths the tolerances of lengths are not scaled.
-bool lengths_are_measured(const CalibrationTask& task) {
-  bool measured = !task.nominal.fixtures.socket_distances.empty();
-  for_each_list(task.data,
-                [&]<class M>(const std::vector<M>& list) { measured |= M::traits.observes.scale && !list.empty(); });
-  return measured;
-}
-
 Tolerances scaled(const CalibrationTask& task, double factor) {
   Tolerances tolerances = task.tolerances;
   for (double* value : {&tolerances.angle, &tolerances.gain}) *value *= factor;
@@ -108,6 +99,13 @@ bool residuals_exceed_noise(const Estimate& estimate, const CalibrationTask& tas
 }
 
 }  // namespace
+
+bool lengths_are_measured(const CalibrationTask& task) {
+  bool measured = !task.nominal.fixtures.socket_distances.empty();
+  for_each_list(task.data,
+                [&]<class M>(const std::vector<M>& list) { measured |= M::traits.observes.scale && !list.empty(); });
+  return measured;
+}
 
 Result<PreparedFit> prepare_fit(const CalibrationTask& task, const PoseSet& rows, const ParameterChoice& choice,
                                 ToleranceScale scale) {

@@ -10,6 +10,10 @@
 
 namespace kinfer::calibrate {
 
+/// Whether anything measures a length. Contacts, planes and directions alone determine only ratios of lengths:
+/// shrinking the robot would reduce the residuals, so the tolerances of lengths are not scaled without.
+bool lengths_are_measured(const CalibrationTask& task);
+
 /// Scale of the tolerances: 1 as given, larger where the errors of the nominal model exceed them.
 struct ToleranceScale {
   double factor = 1.0;

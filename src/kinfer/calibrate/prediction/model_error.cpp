@@ -25,6 +25,7 @@ struct HeldOutResidual {
   Vec3 residual = Vec3::Zero();   ///< [m] or [rad]
   Mat3 explained = Mat3::Zero();  ///< covariance by the fit's parameters and the instrument
   double region_distance = 0.0;   ///< of its joint positions from the fitted rows
+  bool is_tool_point = false;     ///< not another target, whose own uncertainty `explained` lacks
 };
 
 struct HeldOutResiduals {
@@ -55,6 +56,7 @@ void collect(HeldOutResiduals& all, const Estimate& fit, const PoseSet& rows,
     all.points.push_back(in_base(world_R_base(point.row), point.position - tool.position - arm,
                                  point_columns(at.twists[point.row], arm), fit.covariance,
                                  covariance_of(weights.of<PointMeasurement>()[k], point.axes)));
+    all.points.back().is_tool_point = point.target < 0;
   }
   for (std::size_t k = 0; k < rows.orientations.size(); ++k) {
     const OrientationMeasurement& measured = rows.orientations[k];
@@ -190,6 +192,19 @@ double growth_rate(const std::vector<HeldOutResiduals>& of_regions, const Mat3& 
   return std::min(thresholds::largest_growth_rate, largest);
 }
 
+std::optional<double> predicted_rms(const std::vector<HeldOutResidual>& residuals, const Mat3& model_error,
+                                    double rate) {
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (const HeldOutResidual& r : residuals) {
+    if (!r.is_tool_point) continue;
+    squares += r.explained.trace() + (1.0 + rate * r.region_distance * r.region_distance) * model_error.trace();
+    ++count;
+  }
+  if (count < thresholds::min_model_error_rows) return std::nullopt;
+  return std::sqrt(squares / static_cast<double>(count));
+}
+
 /// What the free parameters of the estimate change by far from the fitted rows: those that `beyond` lacks return to
 /// their prior means.
 VectorXd change_beyond(const Estimate& estimate, const Estimate& beyond) {
@@ -205,8 +220,8 @@ VectorXd change_beyond(const Estimate& estimate, const Estimate& beyond) {
 
 }  // namespace
 
-std::optional<PredictionModel> make_prediction_model(const EvaluationInputs& evaluated, const Estimate& estimate,
-                                                     const std::optional<Estimate>& beyond, int threads) {
+std::optional<HeldOutPrediction> make_prediction_model(const EvaluationInputs& evaluated, const Estimate& estimate,
+                                                       const std::optional<Estimate>& beyond, int threads) {
   if (evaluated.data.points.empty()) return std::nullopt;
   PredictionModel model;
   for (const Parameter* parameter : estimate.parameters.free()) model.parameters.push_back(parameter->name);
@@ -224,7 +239,7 @@ std::optional<PredictionModel> make_prediction_model(const EvaluationInputs& eva
   }
   model.model_error.topLeftCorner<3, 3>() = of_points;
   model.model_error.bottomRightCorner<3, 3>() = model_error(held_out.rotations, model.rate);
-  return model;
+  return HeldOutPrediction{model, predicted_rms(held_out.points, of_points, model.rate)};
 }
 
 }  // namespace kinfer::calibrate

@@ -12,9 +12,16 @@
 
 namespace kinfer::calibrate {
 
+struct HeldOutPrediction {
+  PredictionModel model{};
+  /// [m] rms error of the held-out tool points that the model predicts, with the instrument's noise: what its
+  /// ellipsoids have room for. Nothing where there are too few of them for a model error.
+  std::optional<double> holdout_rms{};
+};
+
 /// The prediction model of the final estimate; nothing where no points were measured. `beyond`: a fit to the same rows
 /// without the terms that only interpolate, which holds far from them; none: the estimate holds everywhere.
-std::optional<PredictionModel> make_prediction_model(const EvaluationInputs& evaluated, const Estimate& estimate,
-                                                     const std::optional<Estimate>& beyond, int threads);
+std::optional<HeldOutPrediction> make_prediction_model(const EvaluationInputs& evaluated, const Estimate& estimate,
+                                                       const std::optional<Estimate>& beyond, int threads);
 
 }  // namespace kinfer::calibrate

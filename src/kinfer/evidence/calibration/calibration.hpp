@@ -59,6 +59,9 @@ struct Calibration {
   bool geometry_only = false;                           ///< found by a swarm search, which has no model selection
   std::optional<PredictionModel> prediction{};          ///< uncertainty of the corrected chain; none without points
   std::optional<double> expected_holdout_rms{};  ///< [m] from the instrument's noise and the uncertainty of the fits
+  std::optional<double>
+      predicted_holdout_rms{};  ///< [m] the same with the model error of `prediction`; none where that is not known
+  std::optional<UnobservedLengths> unobserved_lengths{};
   Usability usability = Usability::use;
   CalibrationReason reason = CalibrationReason::improves_nominal;
 };

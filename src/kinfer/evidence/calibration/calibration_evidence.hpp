@@ -71,11 +71,13 @@ struct CalibrationEvidence {
   std::vector<CalibrationNote> note_facts{};
   std::optional<UnknownRobotEvidence> unknown_robot{};
   std::vector<FindingRecord> findings{};
-  std::string holdout{};                         ///< hold-out scheme: "5-fold cross-validation"
-  std::vector<int> gross_error_rows{};           ///< excluded from all hold-out figures
-  std::string measured = "position";             ///< quantity that the errors refer to
-  std::optional<MeasurementKind> measurement{};  ///< its kind
-  std::optional<double> expected_holdout_rms{};  ///< [m]
+  std::string holdout{};                          ///< hold-out scheme: "5-fold cross-validation"
+  std::vector<int> gross_error_rows{};            ///< excluded from all hold-out figures
+  std::string measured = "position";              ///< quantity that the errors refer to
+  std::optional<MeasurementKind> measurement{};   ///< its kind
+  std::optional<double> expected_holdout_rms{};   ///< [m] from instrument and fit
+  std::optional<double> predicted_holdout_rms{};  ///< [m] with the model error
+  std::optional<UnobservedLengths> unobserved_lengths{};
   ChainFit nominal{}, before{}, after{};
   std::optional<AccuracyStatistics> iso9283{};  ///< [m]; none without measured tool points
   double predicted_error = 0.0;                 ///< [m]

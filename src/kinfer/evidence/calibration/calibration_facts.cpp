@@ -16,7 +16,13 @@ constexpr std::array<std::string_view, 7> advice_names{
     "use_corrections",          "check_model",        "check_outliers",         "extend_joint_range",
     "measure_uncertain_region", "measure_more_poses", "keep_verification_poses"};
 
+constexpr std::array<std::string_view, 2> unobserved_names{"size", "all_lengths"};
+
 }  // namespace
+
+std::string_view name(UnobservedLength kind) {
+  return unobserved_names[static_cast<std::size_t>(kind)];
+}
 
 std::string_view name(CalibrationReason reason) {
   return reason_names[static_cast<std::size_t>(reason)];

@@ -30,6 +30,18 @@ enum class CalibrationReason {
 };
 std::string_view name(CalibrationReason reason);
 
+/// What no measurement of a calibration determines.
+enum class UnobservedLength {
+  size,         ///< lengths were measured only in relation to each other: the size rests on the tolerances
+  all_lengths,  ///< nothing that was measured depends on a length
+};
+std::string_view name(UnobservedLength kind);
+
+struct UnobservedLengths {
+  UnobservedLength kind{};
+  double relative_sd = 0.0;  ///< [1] of the size of the calibrated robot over the measured poses
+};
+
 enum class CalibrationNoteKind {
   many_gross_errors,      ///< too many held-out rows with gross errors to exclude them: "rows"
   tolerances_scaled,      ///< the tolerances were too small: "factor"

@@ -84,6 +84,8 @@ CalibrationEvidence calibration_evidence(const Calibration& c, const Provenance&
                                .measured = words::measured_quantity(c.measured),
                                .measurement = c.measured,
                                .expected_holdout_rms = c.expected_holdout_rms,
+                               .predicted_holdout_rms = c.predicted_holdout_rms,
+                               .unobserved_lengths = c.unobserved_lengths,
                                .nominal = c.nominal,
                                .before = c.before,
                                .after = c.after,

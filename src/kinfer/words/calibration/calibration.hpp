@@ -14,7 +14,7 @@ namespace kinfer::words {
 std::string verdict(const Calibration& calibration);
 VerdictText verdict_text(const Calibration& calibration);  ///< its parts
 
-/// The verdict in two words: "Use it", "Do not use", "Do not use without a look".
+/// The verdict in two words: "Use it", "Use with care", "Do not use", "Do not use without a look".
 std::string verdict_headline(const Calibration& calibration);
 
 /// "5-fold cross-validation"

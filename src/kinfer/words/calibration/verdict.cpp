@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include "kinfer/words/calibration/calibration.hpp"
@@ -8,6 +9,8 @@
 
 namespace kinfer::words {
 namespace {
+
+constexpr double normal_limit = 1.96;  // [sd] 95 % of a normal distribution
 
 std::string millimetres(double metres) {
   return fmt::format("{:.3f} mm", 1e3 * metres);
@@ -58,12 +61,35 @@ std::string figures_without_nominal(const Calibration& c) {
       millimetres(holdout.mean), millimetres(holdout.max), millimetres(train.mean));
 }
 
+std::string unobserved_text(const UnobservedLengths& unobserved) {
+  const double per_metre = 1e3 * unobserved.relative_sd;  // [mm] per metre
+  return unobserved.kind == UnobservedLength::size
+             ? phrase(name(unobserved.kind),
+                      "the size of the robot is unobservable, since no length was measured: it rests on the tolerances "
+                      "of the lengths and may be {:.2f} mm per metre off (95 %)",
+                      normal_limit * per_metre)
+             : phrase(
+                   name(unobserved.kind),
+                   "lengths are unobservable, since orientations alone were measured: they are the nominal ones, and "
+                   "the size may be {:.2f} mm per metre off (95 %)",
+                   normal_limit * per_metre);
+}
+
 std::vector<std::string> remarks(const Calibration& c) {
   const TrainHoldout& errors = has_lengths(c) ? c.after.position : c.after.orientation;
-  std::vector<std::string> texts = excluded_rows_texts(c, display_of(c)(errors.holdout_all_rows.max));
+  std::vector<std::string> texts;
+  if (c.unobserved_lengths) texts.push_back(unobserved_text(*c.unobserved_lengths));
+  for (const std::string& text : excluded_rows_texts(c, display_of(c)(errors.holdout_all_rows.max)))
+    texts.push_back(text);
   if (c.geometry_only)
     texts.push_back(phrase("geometry_only", "geometry alone: a swarm search has no model selection"));
   return texts;
+}
+
+/// The errors, by the prediction model where it has room for them, over those of instrument and fit.
+double unexplained_ratio(const Calibration& c) {
+  const double measured = reported_errors(c, c.after).rms;
+  return std::max(measured, c.predicted_holdout_rms.value_or(0.0)) / *c.expected_holdout_rms;
 }
 
 VerdictText with_remarks(const Calibration& c, const std::string& statement) {
@@ -79,7 +105,7 @@ VerdictText parts_of_verdict(const Calibration& c) {
     case CalibrationReason::unmodelled_effects:
       return with_remarks(c, fmt::format("better, but the errors are {:.0f} times what instrument and fit explain, "
                                          "so something is not modelled: {}",
-                                         reported_errors(c, c.after).rms / *c.expected_holdout_rms, figures(c)));
+                                         unexplained_ratio(c), figures(c)));
     case CalibrationReason::not_validated: {
       VerdictText text = with_remarks(
           c, fmt::format("the fit of all rows is {:.1f} times worse on them than the fits that validate it are on rows "
@@ -100,7 +126,8 @@ VerdictText parts_of_verdict(const Calibration& c) {
 }  // namespace
 
 std::string verdict_headline(const Calibration& calibration) {
-  if (calibration.usability != Usability::do_not_use) return "Use it";
+  if (calibration.usability == Usability::use) return "Use it";
+  if (calibration.usability == Usability::use_with_care) return "Use with care";
   return calibration.reason == CalibrationReason::unmodelled_effects ? "Do not use without a look" : "Do not use";
 }
 

@@ -47,6 +47,12 @@ void fields(Archive& a, Value<Archive, ParameterEstimate>& p) {
 }
 
 template <class Archive>
+void fields(Archive& a, Value<Archive, UnobservedLengths>& unobserved) {
+  a("kind", unobserved.kind);
+  a("relative_sd", unobserved.relative_sd);
+}
+
+template <class Archive>
 void fields(Archive& a, Value<Archive, UndeterminedGroup>& group) {
   a("reason", group.reason);
   a("parameters", group.parameters);

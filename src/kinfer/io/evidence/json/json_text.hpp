@@ -43,6 +43,8 @@ inline constexpr auto last<MissingData> = MissingData::spectral_line;
 template <>
 inline constexpr auto last<AxisRelation> = AxisRelation::skew;
 template <>
+inline constexpr auto last<UnobservedLength> = UnobservedLength::all_lengths;
+template <>
 inline constexpr auto last<CalibrationReason> = CalibrationReason::overfitted;
 template <>
 inline constexpr auto last<CalibrationNoteKind> = CalibrationNoteKind::no_offset_moved;
