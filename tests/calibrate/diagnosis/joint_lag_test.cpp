@@ -76,6 +76,25 @@ TEST(JointLag, OneRowInFourReadTooEarlyIsEnough) {
   EXPECT_TRUE(finding->applied) << "the median errors of both fits are alike";
 }
 
+/// A slide that read-back and command differ on by a millimetre is no angle of a milliradian.
+TEST(JointLag, APrismaticJointDiffersInMetres) {
+  Chain nominal = test::er20();
+  nominal.joints[0].type = JointType::prismatic;
+  CalibrationTask task = settled_robot(2);
+  task.nominal = nominal;
+  task.data.points.clear();
+  task.data.commanded = task.data.joints;
+  task.data.joints.row(0).array() += 0.7e-3;
+  const auto finding = finding_of(diagnose(task), FindingKind::not_settled);
+  ASSERT_TRUE(finding);
+  EXPECT_NEAR(finding->values.number("difference_m"), 0.7e-3, 1e-12);
+  EXPECT_NEAR(finding->values.number("difference_rad"), 0.0, 1e-12);
+  EXPECT_NE(words::sentence(*finding).find("differ by 0.000 deg and 0.700 mm typically"), std::string::npos)
+      << words::sentence(*finding);
+  task.data.joints.row(0) = task.data.commanded.row(0).array() + 0.4e-3;
+  EXPECT_FALSE(finding_of(diagnose(task), FindingKind::not_settled));
+}
+
 TEST(JointLag, RowsWithoutACommandKeepTheirMeasuredPositions) {
   CalibrationTask task = settled_robot(2);
   task.data.commanded = task.data.joints;

@@ -8,6 +8,7 @@
 #include "kinfer/calibrate/diagnosis/motion_regression.hpp"
 #include "kinfer/calibrate/diagnosis/thresholds.hpp"
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
+#include "kinfer/estimate/poses/joint_excitation.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/measurement/row_selection.hpp"
@@ -17,20 +18,53 @@ namespace {
 
 using Eigen::Index;
 
-/// Largest difference of commanded and measured joint positions of each row; NaN where a command is missing.
-std::vector<double> differences(const PoseSet& data) {
+/// What each joint may differ by at rest: [rad], of a prismatic one [m].
+VectorXd rest_limits(const Chain& chain, const PoseSet& data) {
+  VectorXd limits(data.joints.rows());
+  const auto joints = measure_joint_excitation(chain, data);
+  for (Index j = 0; j < limits.size(); ++j)
+    limits[j] = joints[static_cast<std::size_t>(j)].is_revolute ? thresholds::settled : thresholds::settled_prismatic;
+  return limits;
+}
+
+/// Largest difference of commanded and measured joint positions of each row, over what it may be at rest; NaN where a
+/// command is missing.
+std::vector<double> differences(const PoseSet& data, const VectorXd& limits) {
   std::vector<double> difference;
   for (Index row = 0; row < data.rows(); ++row)
-    difference.push_back((data.commanded.col(row) - data.joints.col(row)).cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
+    difference.push_back((data.commanded.col(row) - data.joints.col(row))
+                             .cwiseQuotient(limits)
+                             .cwiseAbs()
+                             .maxCoeff<Eigen::PropagateNaN>());
   return difference;
 }
 
 std::vector<int> find_unsettled_rows(const std::vector<double>& difference, double typical) {
   std::vector<int> rows;
   for (std::size_t row = 0; row < difference.size(); ++row)
-    if (difference[row] > std::max(thresholds::settled, thresholds::unsettled_ratio * typical))
-      rows.push_back(static_cast<int>(row));
+    if (difference[row] > std::max(1.0, thresholds::unsettled_ratio * typical)) rows.push_back(static_cast<int>(row));
   return rows;
+}
+
+/// Median over the rows of the largest difference among the joints with this limit, which are all revolute or all
+/// prismatic; nothing where there are none.
+std::optional<double> typical_difference(const PoseSet& data, const VectorXd& limits, double limit) {
+  std::vector<double> largest;
+  for (Index row = 0; row < data.rows(); ++row) {
+    double most = -1.0;
+    for (Index j = 0; j < limits.size(); ++j)
+      if (limits[j] == limit) most = std::max(most, std::abs(data.commanded(j, row) - data.joints(j, row)));
+    if (most >= 0.0) largest.push_back(most);
+  }
+  if (largest.empty()) return std::nullopt;
+  return median(largest);
+}
+
+void state_difference(const PoseSet& data, const VectorXd& limits, Finding& finding) {
+  if (const auto angle = typical_difference(data, limits, thresholds::settled))
+    finding.values.set("difference_rad", *angle);
+  if (const auto length = typical_difference(data, limits, thresholds::settled_prismatic))
+    finding.values.set("difference_m", *length);
 }
 
 /// Log likelihood of each row's point errors under Student's t of three dimensions, whose scale is that of most
@@ -145,14 +179,17 @@ std::vector<JointMotions> explained_otherwise(const JointMotions& last, const Jo
 void check_commanded_positions(DiagnosisState& state) {
   PoseSet& data = state.task.data;
   if (data.commanded.size() == 0) return;
-  const std::vector<double> difference = differences(data);
+  const VectorXd limits = rest_limits(state.task.nominal, data);
+  const std::vector<double> difference = differences(data, limits);
   std::vector<double> finite;
   for (const double d : difference)
     if (std::isfinite(d)) finite.push_back(d);
-  if (finite.empty() || *std::ranges::max_element(finite) < thresholds::commanded_equal) return;
+  if (finite.empty() ||
+      !((data.commanded - data.joints).cwiseAbs().maxCoeff<Eigen::PropagateNumbers>() >= thresholds::commanded_equal))
+    return;
   const double typical = median(finite);
   if (auto finding = prefer_commanded(state.task, difference)) {
-    finding->values.set("difference_rad", typical);
+    state_difference(data, limits, *finding);
     add_finding(state, *finding);
     for (Index row = 0; row < data.rows(); ++row)
       if (std::isfinite(difference[row])) data.joints.col(row) = data.commanded.col(row);
@@ -161,10 +198,11 @@ void check_commanded_positions(DiagnosisState& state) {
   const std::vector<int> rows = find_unsettled_rows(difference, typical);
   if (!rows.empty())
     add_finding(state, {.kind = FindingKind::not_settled, .severity = Severity::warning, .rows = rows});
-  else if (typical > thresholds::settled && data.points.empty())
-    add_finding(
-        state,
-        {.kind = FindingKind::not_settled, .severity = Severity::warning, .values = {{"difference_rad", typical}}});
+  else if (typical > 1.0 && data.points.empty()) {
+    Finding finding{.kind = FindingKind::not_settled, .severity = Severity::warning};
+    state_difference(data, limits, finding);
+    add_finding(state, finding);
+  }
 }
 
 void check_joint_lag(DiagnosisState& state) {

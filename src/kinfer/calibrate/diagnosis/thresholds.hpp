@@ -49,9 +49,10 @@ inline constexpr double max_plausible_angle = 3.0 * degree;  ///< [rad] larger t
 inline constexpr double orientation_improvement = 0.2;       ///< [1] of the disagreement as read; larger accepts more
 
 // ---- joint_lag.cpp: joint positions that are not those of the measured tool ----
-inline constexpr double commanded_equal = 1e-6;   ///< [rad], [m] commanded and measured positions are copies
-inline constexpr double settled = 0.05 * degree;  ///< [rad], [m] of a prismatic joint: the arm was at rest
-inline constexpr double unsettled_ratio = 10.0;   ///< [1] of the typical difference; larger names fewer rows
+inline constexpr double commanded_equal = 1e-6;    ///< [rad], [m] commanded and measured positions are copies
+inline constexpr double settled = 0.05 * degree;   ///< [rad] the arm was at rest
+inline constexpr double settled_prismatic = 5e-4;  ///< [m] likewise: as far as `settled` moves a tool 0.6 m away
+inline constexpr double unsettled_ratio = 10.0;    ///< [1] of the typical difference; larger names fewer rows
 /// Of the mean log likelihood ratio in its standard deviations (one in a thousand by chance), and of the sum: below
 /// either, commanded and measured positions explain the points alike.
 inline constexpr double min_paired_z = 3.0, min_log_ratio = 5.0;

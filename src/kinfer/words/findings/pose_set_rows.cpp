@@ -66,20 +66,26 @@ std::string lag_from_read_back(const Finding& f) {
                      100.0 * f.values.number("lag"), 100.0 * f.values.number("lag_sd"));
 }
 
+std::string typical_difference(const Finding& f) {
+  const bool turns = f.values.has("difference_rad"), slides = f.values.has("difference_m");
+  const std::string angle = turns ? fmt::format("{:.3f} deg", value_in_deg(f, "difference_rad")) : "",
+                    length = slides ? fmt::format("{:.3f} mm", value_in_mm(f, "difference_m")) : "";
+  return turns && slides ? angle + " and " + length : angle + length;
+}
+
 std::string not_settled(const Finding& f) {
   if (f.values.has("commanded_error_m"))
     return phrase(name(f.kind),
                   "the read-back joints were taken while the arm still moved: they differ from the commanded ones by "
-                  "{:.3f} deg typically, and the commanded ones explain the points to {:.3f} mm instead of {:.3f} mm{}",
-                  value_in_deg(f, "difference_rad"), value_in_mm(f, "commanded_error_m"),
-                  value_in_mm(f, "measured_error_m"), lag_from_read_back(f));
+                  "{} typically, and the commanded ones explain the points to {:.3f} mm instead of {:.3f} mm{}",
+                  typical_difference(f), value_in_mm(f, "commanded_error_m"), value_in_mm(f, "measured_error_m"),
+                  lag_from_read_back(f));
   if (!f.rows.empty())
     return phrase(name(f.kind),
                   "in {} commanded and read-back joints differ far more than elsewhere: the arm had not come to rest",
                   row_ranges(f.rows));
-  return phrase(name(f.kind),
-                "commanded and read-back joints differ by {:.3f} deg typically: was the arm still moving?",
-                value_in_deg(f, "difference_rad"));
+  return phrase(name(f.kind), "commanded and read-back joints differ by {} typically: was the arm still moving?",
+                typical_difference(f));
 }
 std::string not_settled_remedy(const Finding& f) {
   if (f.values.has("commanded_error_m"))
