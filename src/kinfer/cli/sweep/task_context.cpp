@@ -25,12 +25,12 @@ bool is_task() {
 /// Of the links in truth.json of `kinfer simulate`.
 Result<std::map<std::string, double>> true_lengths(const std::filesystem::path& path) {
   KINFER_TRY(text, read_text_file(path));
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
   const auto links = json.is_object() ? json.find("links") : json.end();
   if (!json.is_object() || links == json.end() || !links->is_array())
     return error("{}: expected truth.json of `kinfer simulate`", path.string());
   std::map<std::string, double> lengths;
-  for (const nlohmann::json& link : *links) {
+  for (const nlohmann::ordered_json& link : *links) {
     const auto text_of = [&](const char* key) {
       return link.is_object() && link.contains(key) && link[key].is_string() ? link[key].get<std::string>() : "";
     };

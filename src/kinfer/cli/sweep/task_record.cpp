@@ -26,10 +26,10 @@ std::string format_task_record(const SweepTask& task, std::uint64_t seed, const 
 }
 
 Result<TaskRecord> parse_task_record(std::string_view text) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
   const auto has = [&](const char* key, auto is_kind) { return json.contains(key) && is_kind(json[key]); };
-  const auto is_text = [](const nlohmann::json& value) { return value.is_string(); };
-  const auto is_whole = [](const nlohmann::json& value) { return value.is_number_integer(); };
+  const auto is_text = [](const nlohmann::ordered_json& value) { return value.is_string(); };
+  const auto is_whole = [](const nlohmann::ordered_json& value) { return value.is_number_integer(); };
   if (!json.is_object() || !has("format", is_text) || json["format"] != record_format || !has("verb", is_text) ||
       !has("exit_code", is_whole))
     return error("task.json: no record of a task");

@@ -138,7 +138,7 @@ void TrackRowWriter::append_json(const TrackState& state, std::string& out) {
   }
   append_json_list(out, "base_quat", upper_half(state.world_q_base));
   append_json_list(out, "sd_base", state.sd_base);
-  out += ",\"alarm\":" + dump_json(nlohmann::json(alarm_cell(state))) + "}\n";
+  out += ",\"alarm\":" + dump_json(nlohmann::ordered_json(alarm_cell(state))) + "}\n";
 }
 
 }  // namespace kinfer

@@ -28,7 +28,7 @@ std::string base64(std::span<const unsigned char> bytes) {
   return text;
 }
 
-nlohmann::json packed(std::span<const double> values) {
+nlohmann::ordered_json packed(std::span<const double> values) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double value : values)
     if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);

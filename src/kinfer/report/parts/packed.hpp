@@ -14,6 +14,6 @@ std::string base64(std::span<const unsigned char> bytes);
 
 /// {"zero", "step", "packed"}: value i is zero + step · (16-bit little-endian integer i of the base64 text); 65535
 /// encodes a value that is not finite.
-nlohmann::json packed(std::span<const double> values);
+nlohmann::ordered_json packed(std::span<const double> values);
 
 }  // namespace kinfer::report

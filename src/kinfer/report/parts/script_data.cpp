@@ -13,7 +13,7 @@
 namespace kinfer::report {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 Json members(const nlohmann::ordered_json& evidence, std::initializer_list<const char*> keys) {
   Json part;
