@@ -78,9 +78,10 @@ TEST(LinkEngine, BacterialProgrammingNeverLosesItsBest) {
   EXPECT_GE(count_signal_uses(found.leaves), 1);
 }
 
-TEST(LinkEngine, AnObserverMayEndAnEvolution) {
+TEST(LinkEngine, AnObserverMayEndASearch) {
   const LinkExample link;
-  for (const LinkEngine& engine : {LinkEngine(MemeticProgramming{.rows = 60}), LinkEngine(short_bacterial())}) {
+  for (const LinkEngine& engine : {LinkEngine(MemeticProgramming{.rows = 60}), LinkEngine(short_bacterial()),
+                                   LinkEngine(Enumeration{.rows = 60})}) {
     int calls = 0;
     const Observer after_two = [&](const Progress&) {
       return ++calls < 2 ? ObserverDecision::proceed : ObserverDecision::stop;
@@ -90,6 +91,7 @@ TEST(LinkEngine, AnObserverMayEndAnEvolution) {
     EXPECT_EQ(calls, 2);
     EXPECT_LE(found.generations, 2);
     EXPECT_FALSE(found.leaves.empty()) << "the best so far";
+    EXPECT_LT(found.evaluations, link.solved(engine, 1).evaluations);
   }
 }
 

@@ -31,8 +31,9 @@ LinkSolution search_with(BacterialProgramming engine, const LinkProblem& p, int 
           .median = std::move(found.median_history)};
 }
 
-LinkSolution search_with(const Enumeration& engine, const LinkProblem& p, int threads, const Rng&, const Observer&) {
-  return solution_of(search_exhaustive(p.parent, p.child, p.signals, p.rows, engine, threads));
+LinkSolution search_with(const Enumeration& engine, const LinkProblem& p, int threads, const Rng&,
+                         const Observer& observer) {
+  return solution_of(search_exhaustive(p.parent, p.child, p.signals, p.rows, engine, threads, observer));
 }
 
 }  // namespace

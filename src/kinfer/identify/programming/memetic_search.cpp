@@ -134,13 +134,23 @@ StructureSearchOutcome search_memetic(const std::vector<FrameState>& parent, con
 
 StructureSearchOutcome search_exhaustive(const std::vector<FrameState>& parent, const std::vector<FrameState>& child,
                                          std::span<const JointSignal> signals, const std::vector<std::size_t>& rows,
-                                         const Enumeration& options, int threads) {
+                                         const Enumeration& options, int threads, const Observer& observer) {
+  constexpr std::size_t block = 64;  // between two notifications
   const StructureFitter link = make_fitter(parent, child, signals, rows, options.rows);
   StructureFitCache fits(link);
   const std::vector<LinkStructure> structures = enumerate_structures(max_structure_leaves);
-  std::vector<double> costs(structures.size());
-  parallel_for(structures.size(), threads, [&](std::size_t i) { costs[i] = fits.cost(structures[i]); });
-  const auto least = static_cast<std::size_t>(std::ranges::min_element(costs) - costs.begin());
+  std::vector<double> costs;
+  std::size_t least = 0;
+  for (bool is_wanted = true; is_wanted && costs.size() < structures.size();) {
+    const std::size_t first = costs.size();
+    costs.resize(std::min(first + block, structures.size()));
+    parallel_for(costs.size() - first, threads,
+                 [&](std::size_t i) { costs[first + i] = fits.cost(structures[first + i]); });
+    least = static_cast<std::size_t>(std::ranges::min_element(costs) - costs.begin());
+    const double fraction = static_cast<double>(costs.size()) / static_cast<double>(structures.size());
+    is_wanted = notify(observer, {.stage = "search", .fraction = fraction, .best = costs[least], .detail = {}}) ==
+                ObserverDecision::proceed;
+  }
   StructureSearchOutcome outcome = outcome_of(fits, structures[least], costs[least]);
   outcome.best_history = {costs[least]};
   outcome.median_history = {costs[least]};

@@ -37,9 +37,10 @@ StructureSearchOutcome search_memetic(const std::vector<FrameState>& parent, con
                                       std::span<const JointSignal> signals, const std::vector<std::size_t>& rows,
                                       const MemeticProgramming& options, const Rng& rng, const Observer& observer = {});
 
-/// Every structure of up to three leaves that uses the signal once.
+/// Every structure of up to three leaves that uses the signal once; the observer is notified after each block of them,
+/// and may stop the search with the best one so far.
 StructureSearchOutcome search_exhaustive(const std::vector<FrameState>& parent, const std::vector<FrameState>& child,
                                          std::span<const JointSignal> signals, const std::vector<std::size_t>& rows,
-                                         const Enumeration& options, int threads = 0);
+                                         const Enumeration& options, int threads = 0, const Observer& observer = {});
 
 }  // namespace kinfer::identify
