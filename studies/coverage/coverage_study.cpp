@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Do the standard deviations of `predict` hold? Share of points that were not fitted within the 95 % ellipsoids of
-// prediction and instrument: of random halves, and of halves of the joint space. `./dev study coverage simulated|real
-// [KINFER_DATA]`
+// prediction and instrument: of random halves, and of halves of the joint space.
+// `./dev study coverage simulated [FIRST_SEED]`, `./dev study coverage real|UR10|positioner|FR3`
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -102,9 +102,9 @@ MeasuredRobot simulated(int seed) {
   return {nominal, test::tracker, test::measured(truth, {.poses = rows, .instrument = test::tracker}, seed)};
 }
 
-void simulated_robots() {
+void simulated_robots(int first_seed) {
   Both all;
-  for (int seed = 1; seed <= 30; ++seed) {
+  for (int seed = first_seed; seed < first_seed + 30; ++seed) {
     const MeasuredRobot robot = simulated(seed);
     const Both one = judge(robot, 1);
     print(fmt::format("simulated {}, {} rows", seed, robot.data.rows()), one);
@@ -113,12 +113,17 @@ void simulated_robots() {
   print("30 simulated robots", all);
 }
 
-void real_robots(const std::string& folder) {
-  const Chain ur10 = ur10_chain();
-  for (const char* file : {"Series_B_measurements_joint_configurations.csv", "Series_C_measurements_random_poses.csv"})
-    print(fmt::format("UR10 {:.8}", file), judge({ur10, std::nullopt, ur10_series(folder, file, ur10)}, 2));
-  print("positioner", judge({positioner_chain(), std::nullopt, positioner_rows(folder, positioner_chain())}, 5));
-  print("FR3", judge({fr3_chain(), std::nullopt, fr3_rows(folder, fr3_chain())}, 5));
+void real_robots(const std::string& folder, const std::string& only) {
+  const auto study = [&](const std::string& name, int seeds, const Chain& chain, const auto& rows) {
+    if (only == "real" || name.find(only) != std::string::npos)
+      print(name, judge({chain, std::nullopt, rows(folder, chain)}, seeds));
+  };
+  for (const char* file : {"Series_A_measurements_grid.csv", "Series_B_measurements_joint_configurations.csv",
+                           "Series_C_measurements_random_poses.csv"})
+    study(fmt::format("UR10 {:.8}", file), 2, ur10_chain(),
+          [&](const std::string& from, const Chain& chain) { return ur10_series(from, file, chain); });
+  study("positioner", 5, positioner_chain(), positioner_rows);
+  study("FR3", 5, fr3_chain(), fr3_rows);
 }
 
 }  // namespace
@@ -126,9 +131,9 @@ void real_robots(const std::string& folder) {
 
 int kinfer::study::run_coverage(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "simulated";
-  const char* data = argc > 2 ? argv[2] : std::getenv("KINFER_DATA");
+  const char* data = std::getenv("KINFER_DATA");
   fmt::print("{:34} {:52} {}\n", "robot", "random halves", "halves of the joint space");
-  if (what == "simulated") coverage_study::simulated_robots();
-  if (what == "real" && data) coverage_study::real_robots(data);
+  if (what == "simulated") coverage_study::simulated_robots(argc > 2 ? std::atoi(argv[2]) : 1);
+  if (what != "simulated" && data) coverage_study::real_robots(data, what);
   return 0;
 }

@@ -19,7 +19,8 @@ PredictionModel measured_region() {
   model.rows = random_matrix(4, 30, 5);
   model.spread = Eigen::Vector4d(0.5, 1.0, 0.2, 2.0);
   model.reach = 0.7;
-  model.rate = 0.4;
+  model.model_error.diagonal() << 1.0, 2.0, 3.0, 4.0, 5.0, 6.0;
+  model.growth = 0.4 * model.model_error;
   return model;
 }
 
@@ -66,7 +67,7 @@ TEST(RegionDistance, WithoutRowsEverythingCountsAsMeasured) {
   PredictionModel model = measured_region();
   model.rows.resize(4, 0);
   EXPECT_EQ(region_distance(model, VectorXd::Constant(4, 100.0)), 0.0);
-  EXPECT_EQ(model_error_growth(model, VectorXd::Constant(4, 100.0)), 1.0);
+  EXPECT_EQ(model_error_at(model, VectorXd::Constant(4, 100.0)), model.model_error);
 }
 
 TEST(CorrectionWeight, FallsFromOneAtTheEdgeOfTheMeasuredRegionToZero) {
@@ -87,12 +88,12 @@ TEST(CorrectionWeight, FallsFromOneAtTheEdgeOfTheMeasuredRegionToZero) {
   EXPECT_LT(correction_weight(model, far), 0.01);
 }
 
-TEST(ModelErrorGrowth, IsOneWhereItWasMeasuredAndQuadraticBeyond) {
+TEST(ModelErrorAt, GrowsQuadraticallyWithTheDistanceFromTheFittedRows) {
   const PredictionModel model = measured_region();
-  EXPECT_EQ(model_error_growth(model, model.rows.col(7)), 1.0);
+  EXPECT_EQ(model_error_at(model, model.rows.col(7)), model.model_error);
   const VectorXd far = VectorXd::Constant(4, 50.0);
   const double distance = region_distance(model, far);
-  EXPECT_NEAR(model_error_growth(model, far), 1.0 + 0.4 * distance * distance, 1e-9);
+  EXPECT_TRUE(model_error_at(model, far).isApprox((1.0 + 0.4 * distance * distance) * model.model_error, 1e-12));
 }
 
 }  // namespace

@@ -87,5 +87,23 @@ TEST(ChiSquared, DistributionRisesFromZeroToOneWithoutAStepWhereItsTwoFormulasMe
   }
 }
 
+TEST(FDistribution, QuantilesAgreeWithTheTable) {
+  // NIST/SEMATECH e-Handbook of Statistical Methods, 1.3.6.7.3: three decimals.
+  struct Row {
+    double n1, n2, p, value;
+  };
+  for (const Row& row : {Row{3, 5, 0.95, 5.409}, Row{3, 25, 0.95, 2.991}, Row{3, 60, 0.95, 2.758},
+                         Row{1, 10, 0.95, 4.965}, Row{10, 20, 0.95, 2.348}, Row{3, 10, 0.99, 6.552}})
+    EXPECT_NEAR(f_quantile(row.p, row.n1, row.n2), row.value, 5.1e-4) << row.n1 << " " << row.n2 << " " << row.p;
+}
+
+TEST(FDistribution, IsItsReciprocalsWithDegreesExchangedAndChiSquaredForManyOfTheSecond) {
+  for (const double p : {1e-6, 0.01, 0.5, 0.9, 0.9999}) {
+    EXPECT_NEAR(f_quantile(p, 3, 17) * f_quantile(1.0 - p, 17, 3), 1.0, 1e-9);
+    EXPECT_NEAR(f_quantile(p, 3, 1e9), chi_squared_quantile(p, 3) / 3.0, 1e-5 * chi_squared_quantile(p, 3));
+    EXPECT_NEAR(f_quantile(p, 2, 2), p / (1.0 - p), 1e-9 * p / (1.0 - p));
+  }
+}
+
 }  // namespace
 }  // namespace kinfer

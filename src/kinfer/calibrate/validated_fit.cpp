@@ -57,12 +57,14 @@ Result<CalibrationFit> calibrate_by_least_squares(const CalibrationTask& task, c
                                                   const PoseSet& fitted, const CalibrationOptions& options, Rng rng,
                                                   const Observer& observer) {
   KINFER_TRY(before, fit_frames_of_splits(task, plan, options.threads));
-  KINFER_TRY(geometry, fit_with_scaled_tolerances(task, fitted, options.parameters, rng.stream(2), observer));
+  KINFER_TRY(geometry,
+             fit_with_scaled_tolerances(task, fitted, options.parameters, rng.stream(2), observer, options.threads));
   const ModelChoice model = allows_model_terms(options) ? options.model : FixedModel{};
   const SelectedModel selected_model = select_model(
       task, fitted, geometry.estimate, selection_splits(plan, fitted, rng.stream(5)), model, options.threads, observer);
   const std::vector<Estimate> after = plan.fits_all_rows ? selected_model.split_fits : std::vector{selected_model.fit};
-  KINFER_TRY(gross_errors, find_gross_errors(task, plan, options.parameters, geometry.estimate, rng.stream(6)));
+  KINFER_TRY(gross_errors,
+             find_gross_errors(task, plan, options.parameters, geometry.estimate, rng.stream(6), options.threads));
   merge_outliers(gross_errors, with_data_rows(selected_model.gross_errors, plan.fitted));
   return CalibrationFit{selected_model.fit,
                         geometry.scale,
@@ -76,7 +78,8 @@ Result<CalibrationFit> calibrate_by_least_squares(const CalibrationTask& task, c
 Result<CalibrationFit> calibrate_by_swarm(const CalibrationTask& task, const ValidationPlan& plan,
                                           const PoseSet& fitted, const CalibrationOptions& options, Rng rng,
                                           const Observer& observer) {
-  KINFER_TRY(least_squares_fit, fit_with_scaled_tolerances(task, fitted, options.parameters, rng.stream(2), observer));
+  KINFER_TRY(least_squares_fit,
+             fit_with_scaled_tolerances(task, fitted, options.parameters, rng.stream(2), observer, options.threads));
   KINFER_TRY(before, fit_frames_of_splits(task, plan, options.threads));
   const Rng search_rng = rng.stream(3), validation_rng = rng.stream(4);
   const PoseSet inliers = select(fitted, without_outliers(all_rows(fitted), least_squares_fit.estimate.outliers));
@@ -94,8 +97,8 @@ Result<CalibrationFit> calibrate_by_swarm(const CalibrationTask& task, const Val
     estimate.search.swarm_comparison = runs;
   }
   const std::vector<Outlier> data_outliers = with_data_rows(estimate.outliers, plan.fitted);
-  KINFER_TRY(gross_errors,
-             find_gross_errors(task, plan, options.parameters, least_squares_fit.estimate, rng.stream(6)));
+  KINFER_TRY(gross_errors, find_gross_errors(task, plan, options.parameters, least_squares_fit.estimate, rng.stream(6),
+                                             options.threads));
   std::vector<Result<Estimate>> after(plan.validation_splits.size(), error(""));
   parallel_for(after.size(), options.threads, [&](std::size_t i) {
     after[i] = search(select(task.data, without_outliers(plan.validation_splits[i].train, data_outliers)),

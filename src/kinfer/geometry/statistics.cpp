@@ -42,6 +42,30 @@ double gamma_fraction(double a, double z) {
   return value;
 }
 
+/// a B(a, b) / (xᵃ (1 − x)ᵇ) times the regularised incomplete beta function of x, by the modified Lentz method; for
+/// x < (a + 1) / (a + b + 2).
+double beta_fraction(double a, double b, double x) {
+  double c = 1.0, d = 1.0 / (1.0 - (a + b) * x / (a + 1.0)), value = d;
+  const auto step = [&](double numerator) {
+    d = 1.0 / (1.0 + numerator * d);
+    c = 1.0 + numerator / c;
+    value *= c * d;
+    return std::abs(c * d - 1.0);
+  };
+  for (int m = 1; m < 100000; ++m) {
+    step(m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m)));
+    if (step(-(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0))) < 1e-16) break;
+  }
+  return value;
+}
+
+/// For x in (0, 1).
+double regularised_beta(double x, double a, double b) {
+  const double factor = std::exp(log_gamma(a + b) - log_gamma(a) - log_gamma(b) + a * std::log(x) + b * std::log1p(-x));
+  return x < (a + 1.0) / (a + b + 2.0) ? factor * beta_fraction(a, b, x) / a
+                                       : 1.0 - factor * beta_fraction(b, a, 1.0 - x) / b;
+}
+
 }  // namespace
 
 double mean(std::span<const double> values) {
@@ -115,6 +139,22 @@ double chi_squared_quantile(double p, double n) {
   for (int i = 0; i < 200 && high - low > 1e-14 * high; ++i) {
     const double middle = 0.5 * (low + high);
     (chi_squared_cdf(middle, n) < p ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+double f_cdf(double x, double n1, double n2) {
+  KINFER_EXPECT(n1 > 0.0 && n2 > 0.0, "{} and {} degrees of freedom", n1, n2);
+  return x <= 0.0 ? 0.0 : regularised_beta(n1 * x / (n1 * x + n2), 0.5 * n1, 0.5 * n2);
+}
+
+double f_quantile(double p, double n1, double n2) {
+  KINFER_EXPECT(p > 0.0 && p < 1.0, "p = {}", p);
+  double low = 0.0, high = 1.0;
+  while (f_cdf(high, n1, n2) < p) high *= 2.0;
+  for (int i = 0; i < 200 && high - low > 1e-14 * high; ++i) {
+    const double middle = 0.5 * (low + high);
+    (f_cdf(middle, n1, n2) < p ? low : high) = middle;
   }
   return 0.5 * (low + high);
 }

@@ -30,4 +30,11 @@ double chi_squared_quantile(double p, double n);
 /// incomplete gamma function P(n/2, x/2), by its series or continued fraction (Abramowitz and Stegun 6.5.29, 6.5.31).
 double chi_squared_cdf(double x, double n);
 
+/// Quantile of the F distribution with n1 and n2 degrees of freedom, for p in (0, 1).
+double f_quantile(double p, double n1, double n2);
+
+/// Cumulative distribution function of the F distribution with n1, n2 > 0 degrees of freedom: the regularised
+/// incomplete beta function of n1 x / (n1 x + n2), by its continued fraction (Abramowitz and Stegun 26.6.2, 26.5.8).
+double f_cdf(double x, double n1, double n2);
+
 }  // namespace kinfer

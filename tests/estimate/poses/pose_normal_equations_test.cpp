@@ -110,6 +110,42 @@ TEST(PoseNormalEquations, KernelsHandlePointsWithFullCovariances) {
   EXPECT_LT((jacobian.topRows(210) - slow_jacobian.topRows(210)).norm(), 1e-9 * slow_jacobian.topRows(210).norm());
 }
 
+void expect_no_digit_to_depend_on_threads(const Chain& chain, const ParameterSet& set, const PoseSet& data) {
+  const Weights weights = weights_of(data, Instrument{.sigma = 1e-4, .sigma_angle = 1e-3, .ppm = 10});
+  const VectorXd x = pack(set, chain);
+  for (const BlockLoss loss : {BlockLoss{}, BlockLoss{Loss::cauchy, 2.0}}) {
+    NormalEquations alone;
+    const NormalProblem one = pose_normal_problem(chain, set, data, weights, loss, 1);
+    const double cost = one.linearise(x, alone);
+    const double cost_alone = one.cost(x);
+    for (const int threads : {2, 7}) {
+      NormalEquations shared;
+      const NormalProblem problem = pose_normal_problem(chain, set, data, weights, loss, threads);
+      EXPECT_EQ(problem.linearise(x, shared), cost);
+      EXPECT_EQ(problem.cost(x), cost_alone);
+      EXPECT_EQ(shared.matrix, alone.matrix);
+      EXPECT_EQ(shared.gradient, alone.gradient);
+    }
+  }
+}
+
+TEST(PoseNormalEquations, NoDigitDependsOnTheNumberOfThreads) {
+  const Chain soft = soft_robot();
+  expect_no_digit_to_depend_on_threads(soft, all_of(soft), simulated_poses(soft, 1300));
+  const Chain chain = with_table3_errors(er20());
+  const PoseSet data = measured(chain, paper2_poses(2500, tracker));  // three parts of the kernels
+  ParameterSet set = all_parameters(er20(), {});
+  std::erase_if(set.parameters, [](const Parameter& p) { return field_of(p.at) == Field::compliance; });
+  ASSERT_TRUE(has_only_points(er20(), set, data));
+  expect_no_digit_to_depend_on_threads(er20(), set, data);
+  const Weights weights = weights_of(data, Instrument{.sigma = 1e-4});
+  const VectorXd x = pack(set, er20());
+  VectorXd r;
+  pose_residuals(er20(), set, data, weights).evaluate(x, r, nullptr);
+  const double whole = r.squaredNorm();
+  EXPECT_NEAR(pose_normal_problem(er20(), set, data, weights, {}, 2).cost(x), whole, 1e-10 * whole);
+}
+
 /// Half the gradient of the cost is Jᵀr, with compliance too: torques are held constant, so the derivative is exact.
 TEST(PoseNormalEquations, TheGradientOfACompliantRobotIsTheSlopeOfTheCost) {
   const Chain chain = soft_robot();

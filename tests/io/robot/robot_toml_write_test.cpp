@@ -57,7 +57,8 @@ PredictionModel example_prediction() {
   model.model_error.diagonal() << 1e-10, 2e-10, 3e-10, 1e-8, 2e-8, 3e-8;
   model.rows << 0.5, -1.25, 2, 0.125, 3, -0.75;
   model.spread << 0.5, 1.5;
-  model.reach = 0.75, model.rate = 0.5, model.noise = 3e-5;
+  model.growth = MatrixXd(0.25 * model.model_error);
+  model.reach = 0.75, model.noise = 3e-5;
   model.beyond = VectorXd{{1e-3, -2e-3}};
   return model;
 }
@@ -75,7 +76,8 @@ TEST(RobotTomlWriting, ThePredictionModelIsReadBack) {
   EXPECT_EQ(again.rows, model.rows);
   EXPECT_EQ(again.spread, model.spread);
   EXPECT_EQ(again.beyond, model.beyond);
-  EXPECT_EQ((std::array{again.reach, again.rate, again.noise}), (std::array{model.reach, model.rate, model.noise}));
+  EXPECT_TRUE(again.growth.isApprox(model.growth, 1e-7));
+  EXPECT_EQ((std::array{again.reach, again.noise}), (std::array{model.reach, model.noise}));
 }
 
 TEST(RobotTomlWriting, NonGeometricValuesAreReadBackToo) {

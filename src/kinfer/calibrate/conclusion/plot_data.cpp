@@ -48,8 +48,7 @@ VectorXd low_discrepancy_point(int k, Eigen::Index n) {
 /// The rms error by the covariance of the parameters, and by the model error there.
 double with_model_error(double by_parameters, const std::optional<PredictionModel>& prediction, ConstVectorRef q) {
   if (!prediction) return by_parameters;
-  return std::sqrt(by_parameters * by_parameters +
-                   model_error_growth(*prediction, q) * prediction->model_error.topLeftCorner<3, 3>().trace());
+  return std::sqrt(by_parameters * by_parameters + model_error_at(*prediction, q).topLeftCorner<3, 3>().trace());
 }
 
 std::vector<WorkspacePoint> sample_workspace(const MatrixXd& joints, const Estimate& estimate,

@@ -135,18 +135,19 @@ Result<Chain> fit_frames_only(const CalibrationTask& task, const PoseSet& rows) 
 }
 
 Result<Estimate> fit_once(const CalibrationTask& task, const PoseSet& rows, const ParameterChoice& choice,
-                          ToleranceScale scale, const Observer& observer) {
+                          ToleranceScale scale, const Observer& observer, int threads) {
   KINFER_TRY(prepared, prepare_fit(task, rows, choice, scale));
-  return fit_bundle(prepared.start, prepared.parameters, rows, task.instrument, {}, observer);
+  return fit_bundle(prepared.start, prepared.parameters, rows, task.instrument, {.threads = threads}, observer);
 }
 
 Result<ScaledFit> fit_with_scaled_tolerances(const CalibrationTask& task, const PoseSet& rows,
-                                             const ParameterChoice& choice, Rng rng, const Observer& observer) {
-  KINFER_TRY(as_given, fit_once(task, rows, choice, {}, observer));
+                                             const ParameterChoice& choice, Rng rng, const Observer& observer,
+                                             int threads) {
+  KINFER_TRY(as_given, fit_once(task, rows, choice, {}, observer, threads));
   ScaledFit best{as_given, {}};
   if (!residuals_exceed_noise(as_given, task)) return best;
   for (const double factor : thresholds::tolerance_factors) {
-    KINFER_TRY(scaled_fit, fit_once(task, rows, choice, {factor}, observer));
+    KINFER_TRY(scaled_fit, fit_once(task, rows, choice, {factor}, observer, threads));
     if (scaled_fit.negative_log_evidence < best.estimate.negative_log_evidence) best = {scaled_fit, {factor}};
   }
   const ToleranceScale widest{std::end(thresholds::tolerance_factors)[-1]};
@@ -154,7 +155,8 @@ Result<ScaledFit> fit_with_scaled_tolerances(const CalibrationTask& task, const 
   const double converged_residual = thresholds::unconverged_residual * reach(prepared.start, rows);
   for (int i = 0; i < thresholds::random_starts && best.estimate.sigma > converged_residual; ++i) {
     const Chain start = perturb(prepared.start, prepared.parameters, rng.stream(i));
-    const Estimate other = fit_bundle(start, prepared.parameters, rows, task.instrument, {}, observer);
+    const Estimate other =
+        fit_bundle(start, prepared.parameters, rows, task.instrument, {.threads = threads}, observer);
     if (other.negative_log_evidence < best.estimate.negative_log_evidence) best = {other, widest};
   }
   return best;

@@ -34,7 +34,7 @@ Result<Chain> fit_frames_only(const CalibrationTask& task, const PoseSet& rows);
 
 /// Fits with the tolerances multiplied by `scale`.
 Result<Estimate> fit_once(const CalibrationTask& task, const PoseSet& rows, const ParameterChoice& choice,
-                          ToleranceScale scale, const Observer& observer = {});
+                          ToleranceScale scale, const Observer& observer = {}, int threads = 1);
 
 struct ScaledFit {
   Estimate estimate;
@@ -43,6 +43,7 @@ struct ScaledFit {
 /// Fits with the tolerances as given, and with larger ones where the residuals far exceed the instrument's noise; keeps
 /// the fit with the highest marginal likelihood. Where the residuals stay large, random perturbed starts are tried too.
 Result<ScaledFit> fit_with_scaled_tolerances(const CalibrationTask& task, const PoseSet& rows,
-                                             const ParameterChoice& choice, Rng rng, const Observer& observer = {});
+                                             const ParameterChoice& choice, Rng rng, const Observer& observer = {},
+                                             int threads = 1);
 
 }  // namespace kinfer::calibrate

@@ -24,7 +24,7 @@ using Eigen::Index;
 struct HeldOutResidual {
   Vec3 residual = Vec3::Zero();   ///< [m] or [rad]
   Mat3 explained = Mat3::Zero();  ///< covariance by the fit's parameters and the instrument
-  double region_distance = 0.0;   ///< of its joint positions from the fitted rows
+  double distance = 0.0;          ///< of its joint positions from the fitted rows, over the region's reach
   bool is_tool_point = false;     ///< not another target, whose own uncertainty `explained` lacks
 };
 
@@ -38,9 +38,11 @@ HeldOutResidual in_base(const Mat3& world_R_base, const Vec3& residual, const Ma
           world_R_base.transpose() * (propagated_covariance(jacobian, covariance) + noise) * world_R_base};
 }
 
-/// Residuals of `rows`, which `fit` did not see.
-void collect(HeldOutResiduals& all, const Estimate& fit, const PoseSet& rows,
-             const std::optional<Instrument>& instrument) {
+/// Residuals of `rows`, which `fit` did not see, by what `model` predicts from it.
+HeldOutResiduals residuals_of(const Estimate& fit, const PredictionModel& model, const PoseSet& rows,
+                              const std::optional<Instrument>& instrument) {
+  HeldOutResiduals all;
+  const std::vector<Pose> predicted = predicted_poses(fit.chain, model, rows);
   const Instrument assumed = instrument.value_or(Instrument{.sigma = fit.sigma, .sigma_angle = fit.sigma_angle});
   const Weights weights = weights_of(rows, assumed);
   const EvaluatedPoses at = evaluate_poses(fit.chain, fit.parameters, rows, Derivative::yes);
@@ -51,7 +53,7 @@ void collect(HeldOutResiduals& all, const Estimate& fit, const PoseSet& rows,
   };
   for (std::size_t k = 0; k < rows.points.size(); ++k) {
     const PointMeasurement& point = rows.points[k];
-    const Pose& tool = at.pose[point.row];
+    const Pose& tool = predicted[static_cast<std::size_t>(point.row)];
     const Vec3 arm = point.target < 0 ? Vec3::Zero().eval() : Vec3(tool.rotation * fit.chain.targets[point.target].xyz);
     all.points.push_back(in_base(world_R_base(point.row), point.position - tool.position - arm,
                                  point_columns(at.twists[point.row], arm), fit.covariance,
@@ -60,24 +62,24 @@ void collect(HeldOutResiduals& all, const Estimate& fit, const PoseSet& rows,
   }
   for (std::size_t k = 0; k < rows.orientations.size(); ++k) {
     const OrientationMeasurement& measured = rows.orientations[k];
-    const Vec3 turn = log_so3(measured.orientation.toRotationMatrix() * at.pose[measured.row].rotation.transpose());
+    const Vec3 turn = log_so3(measured.orientation.toRotationMatrix() *
+                              predicted[static_cast<std::size_t>(measured.row)].rotation.transpose());
     const MatrixXd jacobian = at.twists[measured.row].bottomRows<3>();
     all.rotations.push_back(in_base(world_R_base(measured.row), turn, jacobian, fit.covariance,
                                     covariance_of(weights.of<OrientationMeasurement>()[k], measured.axes)));
   }
+  return all;
 }
 
 /// Residuals of `rows` by a fit to `train`, with their distances from it in the units of the final region.
 HeldOutResiduals residuals_beside(const Estimate& fit, const PoseSet& train, const PoseSet& rows,
                                   const std::optional<Instrument>& instrument, PredictionModel region) {
-  HeldOutResiduals all;
-  collect(all, fit, rows, instrument);
   region.rows = representatives(train.joints);
+  HeldOutResiduals all = residuals_of(fit, region, rows, instrument);
   VectorXd distance(rows.rows());
   for (Index row = 0; row < rows.rows(); ++row) distance[row] = region_distance(region, rows.joints.col(row));
-  for (std::size_t k = 0; k < all.points.size(); ++k) all.points[k].region_distance = distance[rows.points[k].row];
-  for (std::size_t k = 0; k < all.rotations.size(); ++k)
-    all.rotations[k].region_distance = distance[rows.orientations[k].row];
+  for (std::size_t k = 0; k < all.points.size(); ++k) all.points[k].distance = distance[rows.points[k].row];
+  for (std::size_t k = 0; k < all.rotations.size(); ++k) all.rotations[k].distance = distance[rows.orientations[k].row];
   return all;
 }
 
@@ -108,16 +110,37 @@ double squared_length(const HeldOutResidual& r, const Mat3& model_error) {
   return x.dot(Vec3(b.cross(c).dot(x), c.cross(a).dot(x), a.cross(b).dot(x))) / volume;
 }
 
-/// How large the residuals are for their covariances, 1 where 95 % of them lie within the 95 % ellipsoids. Few
+/// Whether the covariances that residuals are compared with were found from as many residuals themselves.
+enum class NoiseKnowledge { stated, estimated };
+
+/// How much larger the mean square of n Gaussian residuals is to be counted, so that an ellipsoid that is scaled by it
+/// holds 95 % of further ones: Hotelling's T² over chi-squared.
+double sampling_factor(double n) {
+  const double t_squared =
+      3.0 * (n - 1.0) * (n + 1.0) / (n * (n - 3.0)) * f_quantile(thresholds::ellipsoid_content, 3.0, n - 3.0);
+  return t_squared / chi_squared_quantile(thresholds::ellipsoid_content, 3.0);
+}
+
+/// Below it lie 95 % of further values on the average, whatever their distribution: of n sorted values, the one of
+/// rank 0.95 (n + 1); the largest where there is none.
+double upper_limit(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  const double rank = thresholds::ellipsoid_content * (n + 1.0);
+  return quantile(values, std::min(1.0, (rank - 1.0) / (n - 1.0)));
+}
+
+/// How large the residuals are for their covariances, 1 where 95 % of further ones lie within the 95 % ellipsoids. Few
 /// residuals have no 95 % point of their own: their mean square counts as much more, the fewer they are.
-double relative_size(std::vector<double> squares) {
-  const double limit = chi_squared_quantile(thresholds::ellipsoid_content, 3.0);
-  const double at_limit = quantile(squares, thresholds::ellipsoid_content) / limit;
+double relative_size(std::vector<double> squares, NoiseKnowledge noise) {
+  const auto count = static_cast<double>(squares.size());
+  const bool is_stated = noise == NoiseKnowledge::stated;
+  const double limit = is_stated ? quantile(squares, thresholds::ellipsoid_content) : upper_limit(squares);
   const double largest = thresholds::clipped_length * quantile(squares, 0.5);
   for (double& s : squares) s = std::min(s, largest);
-  const double by_mean = mean(squares) / 3.0, count = static_cast<double>(squares.size());
+  const double by_mean = (is_stated ? 1.0 : sampling_factor(count)) * mean(squares) / 3.0,
+               by_limit = limit / chi_squared_quantile(thresholds::ellipsoid_content, 3.0);
   const double trust = count / (count + thresholds::trusted_quantile_rows);
-  return std::exp(trust * std::log(std::max(at_limit, 1e-300)) + (1.0 - trust) * std::log(std::max(by_mean, 1e-300)));
+  return std::exp(trust * std::log(std::max(by_limit, 1e-300)) + (1.0 - trust) * std::log(std::max(by_mean, 1e-300)));
 }
 
 /// The least factor in [0, largest_factor] with which `size(factor)`, which falls with it, is at most 1.
@@ -151,17 +174,23 @@ Mat3 mean_excess(const std::vector<HeldOutResidual>& residuals) {
   return eigen.vectors * eigen.values.cwiseMax(least).asDiagonal() * eigen.vectors.transpose();
 }
 
-double size_with(const std::vector<HeldOutResidual>& residuals, const Mat3& model_error, double rate) {
+/// The model error as a function of the distance from the fitted rows.
+struct ModelErrors {
+  Mat3 inside = Mat3::Zero(), growth = Mat3::Zero();
+
+  Mat3 at(const HeldOutResidual& r) const { return inside + r.distance * r.distance * growth; }
+};
+
+double size_with(const std::vector<HeldOutResidual>& residuals, const ModelErrors& errors, NoiseKnowledge noise) {
   std::vector<double> squares;
-  for (const HeldOutResidual& r : residuals)
-    squares.push_back(squared_length(r, (1.0 + rate * r.region_distance * r.region_distance) * model_error));
-  return relative_size(std::move(squares));
+  for (const HeldOutResidual& r : residuals) squares.push_back(squared_length(r, errors.at(r)));
+  return relative_size(std::move(squares), noise);
 }
 
-Mat3 model_error(const std::vector<HeldOutResidual>& residuals, double rate) {
+Mat3 error_inside(const std::vector<HeldOutResidual>& residuals, const Mat3& growth, NoiseKnowledge noise) {
   if (residuals.size() < thresholds::min_model_error_rows) return Mat3::Zero();
   const Mat3 shape = mean_excess(residuals);
-  return shape * least_factor([&](double factor) { return size_with(residuals, factor * shape, rate); });
+  return shape * least_factor([&](double factor) { return size_with(residuals, {factor * shape, growth}, noise); });
 }
 
 /// Residuals of halves of the joint space that their fits did not see.
@@ -181,24 +210,49 @@ std::vector<HeldOutResiduals> residuals_of_regions(const EvaluationInputs& evalu
   return of_split;
 }
 
-/// The largest that one of the regions needs: which of them is the hardest, is not known in advance of others.
-double growth_rate(const std::vector<HeldOutResiduals>& of_regions, const Mat3& model_error) {
-  double largest = of_regions.empty() ? thresholds::default_growth_rate : 0.0;
-  for (const auto& [points, rotations] : of_regions) {
-    if (points.size() < thresholds::min_model_error_rows) continue;
-    const auto& list = points;  // clang 14 captures no structured binding
-    largest = std::max(largest, least_factor([&](double rate) { return size_with(list, model_error, rate); }));
-  }
-  return std::min(thresholds::largest_growth_rate, largest);
+/// What the errors gain outside: their mean excess over all regions, alike in all directions, and as much larger as the
+/// next region may need after the hardest of these.
+Mat3 error_growth(const std::vector<std::vector<HeldOutResidual>>& of_regions, const Mat3& inside) {
+  std::vector<HeldOutResidual> all;
+  double squares = 0.0;
+  for (const std::vector<HeldOutResidual>& region : of_regions)
+    for (const HeldOutResidual& r : region) all.push_back(r), squares += r.distance * r.distance;
+  if (all.size() < thresholds::min_model_error_rows || squares == 0.0) return thresholds::default_growth * inside;
+  const double mean_variance = mean_excess(all).trace() / 3.0;
+  const Mat3 mean_growth = mean_variance * static_cast<double>(all.size()) / squares * Mat3::Identity();
+  double hardest = 0.0;
+  for (const std::vector<HeldOutResidual>& region : of_regions)
+    if (region.size() >= thresholds::min_model_error_rows)
+      hardest = std::max(hardest, least_factor([&](double factor) {
+                           return size_with(region, {inside, factor * mean_growth}, NoiseKnowledge::stated);
+                         }));
+  return std::min(thresholds::largest_growth, thresholds::next_region * hardest) * mean_growth;
 }
 
-std::optional<double> predicted_rms(const std::vector<HeldOutResidual>& residuals, const Mat3& model_error,
-                                    double rate) {
+/// No more than the held-out rows among the fitted ones bear, where their noise is stated: they have distances too.
+Mat3 bounded_growth(const Mat3& growth, const std::vector<HeldOutResidual>& held_out, NoiseKnowledge noise) {
+  if (noise == NoiseKnowledge::estimated || held_out.size() < thresholds::min_model_error_rows) return growth;
+  const auto size = [&](double factor) { return size_with(held_out, {Mat3::Zero(), factor * growth}, noise); };
+  return size(1.0) >= 1.0 ? growth : Mat3(least_factor(size) * growth);
+}
+
+/// Both depend on each other: held-out rows among the fitted ones have a distance from them too.
+ModelErrors model_errors(const std::vector<HeldOutResidual>& held_out,
+                         const std::vector<std::vector<HeldOutResidual>>& of_regions, NoiseKnowledge noise) {
+  ModelErrors errors{error_inside(held_out, Mat3::Zero(), noise)};
+  for (int round = 0; round < thresholds::growth_rounds; ++round) {
+    errors.growth = bounded_growth(error_growth(of_regions, errors.inside), held_out, noise);
+    errors.inside = error_inside(held_out, errors.growth, noise);
+  }
+  return errors;
+}
+
+std::optional<double> predicted_rms(const std::vector<HeldOutResidual>& residuals, const ModelErrors& errors) {
   double squares = 0.0;
   std::size_t count = 0;
   for (const HeldOutResidual& r : residuals) {
     if (!r.is_tool_point) continue;
-    squares += r.explained.trace() + (1.0 + rate * r.region_distance * r.region_distance) * model_error.trace();
+    squares += r.explained.trace() + errors.at(r).trace();
     ++count;
   }
   if (count < thresholds::min_model_error_rows) return std::nullopt;
@@ -230,16 +284,18 @@ std::optional<HeldOutPrediction> make_prediction_model(const EvaluationInputs& e
   if (beyond) model.beyond = change_beyond(estimate, *beyond);
   describe_region(model, evaluated.data.joints(Eigen::all, evaluated.plan.fitted));
   const HeldOutResiduals held_out = held_out_residuals(evaluated, model);
-  const std::vector<HeldOutResiduals> of_regions = residuals_of_regions(evaluated, estimate, model, threads);
-  // Size and growth depend on each other: the held-out rows have distances too.
-  Mat3 of_points = model_error(held_out.points, 0.0);
-  for (int round = 0; round < thresholds::growth_rounds && of_points.trace() > 0.0; ++round) {
-    model.rate = growth_rate(of_regions, of_points);
-    of_points = model_error(held_out.points, model.rate);
+  std::vector<std::vector<HeldOutResidual>> points_of_regions, rotations_of_regions;
+  for (HeldOutResiduals& region : residuals_of_regions(evaluated, estimate, model, threads)) {
+    points_of_regions.push_back(std::move(region.points));
+    rotations_of_regions.push_back(std::move(region.rotations));
   }
-  model.model_error.topLeftCorner<3, 3>() = of_points;
-  model.model_error.bottomRightCorner<3, 3>() = model_error(held_out.rotations, model.rate);
-  return HeldOutPrediction{model, predicted_rms(held_out.points, of_points, model.rate)};
+  const NoiseKnowledge noise = evaluated.instrument ? NoiseKnowledge::stated : NoiseKnowledge::estimated;
+  const ModelErrors points = model_errors(held_out.points, points_of_regions, noise),
+                    rotations = model_errors(held_out.rotations, rotations_of_regions, noise);
+  model.model_error.topLeftCorner<3, 3>() = points.inside, model.growth.topLeftCorner<3, 3>() = points.growth;
+  model.model_error.bottomRightCorner<3, 3>() = rotations.inside,
+                                         model.growth.bottomRightCorner<3, 3>() = rotations.growth;
+  return HeldOutPrediction{model, predicted_rms(held_out.points, points)};
 }
 
 }  // namespace kinfer::calibrate

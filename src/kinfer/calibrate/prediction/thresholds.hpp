@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Thresholds of the uncertainty of predictions. Set on halves of UR10 B and C and on simulated robots.
+// Thresholds of the uncertainty of predictions. Set on halves of UR10 B and C, the positioner, FR3 and 30 simulated
+// robots.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +17,9 @@ inline constexpr std::size_t min_model_error_rows = 8;
 inline constexpr int region_rows = 100;              ///< joint positions that stand for the fitted region
 inline constexpr double region_part = 0.95;          ///< of the fitted rows that lie within reach of these
 inline constexpr std::size_t region_fit_rows = 400;  ///< of the fits to parts of the joint space; more: slower
-inline constexpr double largest_growth_rate = 1e3;   ///< [1] beyond: the fitted rows determine nothing there
+inline constexpr double next_region = 1.6;           ///< [1] of the hardest region's growth; larger: wider outside
+inline constexpr double largest_growth = 30.0;       ///< [1] of what explains the mean excess outside
 inline constexpr int growth_rounds = 3;
-inline constexpr double default_growth_rate = 3.0;  ///< [1] where no region could be held out
+inline constexpr double default_growth = 3.0;  ///< [1] of the error inside, where no region could be held out
 
 }  // namespace kinfer::calibrate::thresholds

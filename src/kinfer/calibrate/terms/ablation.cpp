@@ -41,7 +41,7 @@ HoldoutErrors errors_without(const HoldoutErrors& fits, const std::vector<Candid
   parallel_for(splits.size(), threads, [&](std::size_t i) {
     chains[i] = chain_without(fits.split_fits[i], free_indices(fits.split_fits[i], removed));
   });
-  return evaluate_holdout(chains, rows, splits);
+  return evaluate_holdout(chains, rows, splits, threads);
 }
 
 double displacement(const Chain& chain, const std::vector<CandidateParameter>& terms, const PoseSet& rows) {

@@ -77,8 +77,8 @@ CandidateTerms make_candidates(const Estimate& geometry, const CalibrationTask& 
 }
 
 void add_spectral_lines(CandidateTerms& candidates, const Estimate& fitted, const CalibrationTask& task,
-                        const PoseSet& rows) {
-  add(candidates, Term::spectral_harmonics, {task.tolerances, rows, fitted});
+                        const PoseSet& rows, int threads) {
+  add(candidates, Term::spectral_harmonics, {task.tolerances, rows, fitted, threads});
 }
 
 ParameterSet with_parameters(ParameterSet set, const std::vector<Parameter>& more) {

@@ -28,7 +28,7 @@ CandidateTerms make_candidates(const Estimate& geometry, const CalibrationTask& 
 
 /// Adds the spectral lines of the residuals of `fitted`.
 void add_spectral_lines(CandidateTerms& candidates, const Estimate& fitted, const CalibrationTask& task,
-                        const PoseSet& rows);
+                        const PoseSet& rows, int threads = 1);
 
 /// The set with further parameters, also beside a joint prior of those that it has.
 ParameterSet with_parameters(ParameterSet set, const std::vector<Parameter>& more);

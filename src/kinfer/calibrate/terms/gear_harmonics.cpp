@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 
+#include "kinfer/base/parallel.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 
 namespace kinfer::calibrate {
@@ -121,20 +122,21 @@ std::vector<SpectralLine> lines_of_joint(std::vector<Sample> samples, int joint,
 
 }  // namespace
 
-std::vector<SpectralLine> find_gear_harmonics(const Estimate& fitted, const PoseSet& rows, int most) {
+std::vector<SpectralLine> find_gear_harmonics(const Estimate& fitted, const PoseSet& rows, int threads, int most) {
   std::vector<SpectralLine> lines;
   if (rows.points.size() < thresholds::min_spectrum_points || !(fitted.sigma > 0.0)) return lines;
   const std::vector<int> moving = active_joints(fitted.chain);
   // For pure noise the improvement is χ² with two degrees of freedom; its maximum over n lines is about 2 ln n.
   const double tried = thresholds::highest_order * 4.0 * static_cast<double>(moving.size());
   const double threshold = 2.0 * std::log(tried) + thresholds::spectral_margin;
-  for (std::size_t k = 0; k < moving.size(); ++k) {
-    if (!rotates(fitted.chain.joints[moving[k]].type)) continue;
+  std::vector<std::vector<SpectralLine>> of_joint(moving.size());
+  parallel_for(moving.size(), threads, [&](std::size_t k) {
+    if (!rotates(fitted.chain.joints[moving[k]].type)) return;
     const auto samples = samples_of(fitted, rows, moving[k], static_cast<int>(k));
-    if (samples.size() < thresholds::min_spectrum_points) continue;
-    const auto found = lines_of_joint(samples, moving[k], threshold, most);
-    lines.insert(lines.end(), found.begin(), found.end());
-  }
+    if (samples.size() >= thresholds::min_spectrum_points)
+      of_joint[k] = lines_of_joint(samples, moving[k], threshold, most);
+  });
+  for (const std::vector<SpectralLine>& found : of_joint) lines.insert(lines.end(), found.begin(), found.end());
   std::sort(lines.begin(), lines.end(),
             [](const SpectralLine& a, const SpectralLine& b) { return a.improvement > b.improvement; });
   if (static_cast<int>(lines.size()) > most) lines.resize(most);

@@ -19,7 +19,7 @@ struct SpectralLine {
 
 /// The statistically significant lines, strongest first, at most `most`. Orders from 3 per revolution up to those of
 /// motors with high gear ratios are tested, in steps that the joint's range can resolve. Point residuals only.
-std::vector<SpectralLine> find_gear_harmonics(const Estimate& fitted, const PoseSet& rows,
+std::vector<SpectralLine> find_gear_harmonics(const Estimate& fitted, const PoseSet& rows, int threads = 1,
                                               int most = thresholds::max_spectral_lines);
 
 }  // namespace kinfer::calibrate

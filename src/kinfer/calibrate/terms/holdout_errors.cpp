@@ -26,25 +26,28 @@ HoldoutErrors cross_validate(const Estimate& fit, const ParameterSet& set, const
   });
   std::vector<Chain> chains;
   for (const Estimate& split_fit : holdout_errors.split_fits) chains.push_back(split_fit.chain);
-  HoldoutErrors evaluated = evaluate_holdout(chains, rows, splits);
+  HoldoutErrors evaluated = evaluate_holdout(chains, rows, splits, threads);
   evaluated.split_fits = std::move(holdout_errors.split_fits);
   return evaluated;
 }
 
-HoldoutErrors evaluate_holdout(const std::vector<Chain>& chains, const PoseSet& rows,
-                               const std::vector<Split>& splits) {
-  HoldoutErrors holdout_errors;
+HoldoutErrors evaluate_holdout(const std::vector<Chain>& chains, const PoseSet& rows, const std::vector<Split>& splits,
+                               int threads) {
   const auto primary = primary_measurement_kind(rows);
-  if (!primary) return holdout_errors;
-  for (std::size_t i = 0; i < splits.size(); ++i) {
+  if (!primary) return {};
+  std::vector<HoldoutErrors> of_split(splits.size());
+  parallel_for(splits.size(), threads, [&](std::size_t i) {
     const PoseSet evaluated = select(rows, splits[i].holdout);
-    const std::vector<double> errors = primary_errors(chains[i], select(rows, splits[i].train), evaluated);
-    for (std::size_t k = 0; k < errors.size(); ++k) {
-      holdout_errors.errors.push_back(errors[k]);
-      holdout_errors.row.push_back(splits[i].holdout[residual_kind(*primary).row(evaluated, k)]);
-    }
+    of_split[i].errors = primary_errors(chains[i], select(rows, splits[i].train), evaluated);
+    for (std::size_t k = 0; k < of_split[i].errors.size(); ++k)
+      of_split[i].row.push_back(splits[i].holdout[residual_kind(*primary).row(evaluated, k)]);
+  });
+  HoldoutErrors all;
+  for (const HoldoutErrors& one : of_split) {
+    all.errors.insert(all.errors.end(), one.errors.begin(), one.errors.end());
+    all.row.insert(all.row.end(), one.row.begin(), one.row.end());
   }
-  return holdout_errors;
+  return all;
 }
 
 bool contains_row(const std::vector<Outlier>& list, int row) {

@@ -27,7 +27,8 @@ HoldoutErrors cross_validate(const Estimate& fit, const ParameterSet& set, const
                              const std::vector<Split>& splits, const CalibrationTask& task, int threads);
 
 /// Errors of the held-out rows for one chain per split, fitted to its training rows.
-HoldoutErrors evaluate_holdout(const std::vector<Chain>& chains, const PoseSet& rows, const std::vector<Split>& splits);
+HoldoutErrors evaluate_holdout(const std::vector<Chain>& chains, const PoseSet& rows, const std::vector<Split>& splits,
+                               int threads);
 
 /// Statistics over the rows without gross errors.
 ErrorStatistics statistics_without(const HoldoutErrors& holdout_errors, const std::vector<Outlier>& gross_errors);

@@ -27,8 +27,8 @@ WeighedModel fit_fixed_model(const SelectionData& data, const Estimate& geometry
       step.decision = Decision::data_missing;
     } else {
       const ParameterSet set = with_parameters(fixed.fit.parameters, model_term.parameters);
-      fixed.fit =
-          fit_rows(model_term.nominal, set, data.rows, data.task, {.detail = Detail::numbers_only}, data.observer);
+      fixed.fit = fit_rows(model_term.nominal, set, data.rows, data.task,
+                           {.detail = Detail::numbers_only, .threads = data.threads}, data.observer);
       for (const Parameter& parameter : model_term.parameters) count_determined(step, parameter.name, fixed.fit);
       fixed.interpolation = cross_validate(fixed.fit, set, data.rows, data.splits, data.task, data.threads);
       step.train = training_statistics(fixed.fit.chain, fixed.fit.outliers, data.rows);
@@ -58,7 +58,7 @@ SelectedModel select_model(const CalibrationTask& task, const PoseSet& rows, con
   for (const WeighedStep& step : selected.steps) selection.steps.push_back(step.step);
   if (!selected_terms(selection).empty())  // identifiability is computed for the selected model only
     selected.fit = fit_rows(selected.fit.chain, selected.fit.parameters, rows, task,
-                            {.initial_guess = InitialGuess::near_optimum});
+                            {.initial_guess = InitialGuess::near_optimum, .threads = threads});
   const std::vector<Outlier> gross_errors = find_gross_error_rows(geometry, selected.fit, rows);
   for (std::size_t i = 0; i < selection.steps.size(); ++i)
     selection.steps[i].holdout = statistics_without(selected.steps[i].held_out, gross_errors);

@@ -106,7 +106,7 @@ ModelTerm gear(const Chain& nominal, const TermInputs&) {
 
 ModelTerm spectrum(const Chain& nominal, const TermInputs& inputs) {
   ModelTerm model_term{.nominal = nominal};
-  const std::vector<SpectralLine> lines = find_gear_harmonics(inputs.fitted, inputs.rows);
+  const std::vector<SpectralLine> lines = find_gear_harmonics(inputs.fitted, inputs.rows, inputs.threads);
   for (const SpectralLine& line : lines) add_harmonic(model_term, line.joint, line.order, thresholds::harmonic_prior);
   if (lines.empty()) model_term.missing = MissingData::spectral_line;
   return model_term;

@@ -24,6 +24,7 @@ struct TermInputs {
   const Tolerances& tolerances;
   const PoseSet& rows;
   const Estimate& fitted;  ///< the best fit so far; the gear spectrum is computed from its residuals
+  int threads = 1;
 };
 
 /// One row per term; a new term is a new row here, its name in evidence, its words in words.

@@ -52,7 +52,7 @@ class ModelWeigher {
     WeighedModel result = weighed_geometry(data_, geometry_);
     candidates_ = make_candidates(geometry_, data_.task, data_.rows);
     const Estimate fitted = weigh_all();
-    add_spectral_lines(candidates_, fitted, data_.task, data_.rows);
+    add_spectral_lines(candidates_, fitted, data_.task, data_.rows, data_.threads);
     if (candidates_.steps.back().missing == MissingData::none) weigh_all();
     if (!current_.model.terms.empty()) {
       ProvedModel plain{{}, geometry_, result.interpolation, {}};
@@ -70,9 +70,7 @@ class ModelWeigher {
     current_ = {{}, geometry_, {}, {}};
     if (candidates_.parameters.empty()) return geometry_;
     const TermModel all = model_of_all(candidates_, geometry_.parameters);
-    const Estimate fitted =
-        fit_rows(all.chain, all.parameters, data_.rows, data_.task,
-                 {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only}, data_.observer);
+    const Estimate fitted = fit_rows(all.chain, all.parameters, data_.rows, data_.task, at_optimum(), data_.observer);
     groups_ = relevance_groups(candidates_);
     linearised_ = linearise_terms(fitted, free_indices(fitted, candidates_.parameters));
     weights_ = weigh_groups(linearised_, groups_);
@@ -81,13 +79,15 @@ class ModelWeigher {
     return current_.fit;
   }
 
+  BundleOptions at_optimum() const {
+    return {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only, .threads = data_.threads};
+  }
+
   void fit_relevant(const Estimate& fitted) {
     current_.model = model_of_relevant(candidates_, geometry_, fitted, groups_, factors_of(weights_));
-    current_.fit =
-        current_.model.terms.empty()
-            ? geometry_
-            : fit_rows(current_.model.chain, current_.model.parameters, data_.rows, data_.task,
-                       {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only}, data_.observer);
+    current_.fit = current_.model.terms.empty() ? geometry_
+                                                : fit_rows(current_.model.chain, current_.model.parameters, data_.rows,
+                                                           data_.task, at_optimum(), data_.observer);
   }
 
   HoldoutErrors held_out(const Estimate& fit, const ParameterSet& set, const std::vector<Split>& splits) const {
@@ -139,8 +139,8 @@ class ModelWeigher {
       if (!holds_everywhere(static_cast<Term>(groups_[g].family))) factors[g] = 0.0;
     ProvedModel loads{model_of_relevant(candidates_, geometry_, all_fitted_, groups_, factors), {}, {}, {}};
     if (loads.model.terms.empty()) return geometry_;
-    loads.fit = fit_rows(loads.model.chain, loads.model.parameters, data_.rows, data_.task,
-                         {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only}, data_.observer);
+    loads.fit =
+        fit_rows(loads.model.chain, loads.model.parameters, data_.rows, data_.task, at_optimum(), data_.observer);
     loads.extrapolation = held_out(loads.fit, loads.model.parameters, extrapolation_splits_);
     const ErrorChange change =
         compare_holdout(plain.extrapolation, plain.fit.outliers, loads.extrapolation, loads.fit.outliers);

@@ -24,9 +24,10 @@ std::map<int, double> errors_by_row(const Chain& chain, const PoseSet& fitted_ro
 }  // namespace
 
 Result<std::vector<Outlier>> find_gross_errors(const CalibrationTask& task, const ValidationPlan& plan,
-                                               const ParameterChoice& parameters, const Estimate& geometry, Rng rng) {
+                                               const ParameterChoice& parameters, const Estimate& geometry, Rng rng,
+                                               int threads) {
   if (plan.fits_all_rows) return geometry.outliers;
-  KINFER_TRY(of_all_rows, fit_with_scaled_tolerances(task, task.data, parameters, rng));
+  KINFER_TRY(of_all_rows, fit_with_scaled_tolerances(task, task.data, parameters, rng, {}, threads));
   return of_all_rows.estimate.outliers;
 }
 

@@ -11,7 +11,8 @@ namespace kinfer::calibrate {
 /// Outliers of the geometric model fitted robustly to all rows. Held-out rows are included for this purpose only.
 /// `geometry` is the fit to the plan's fitted rows.
 Result<std::vector<Outlier>> find_gross_errors(const CalibrationTask& task, const ValidationPlan& plan,
-                                               const ParameterChoice& parameters, const Estimate& geometry, Rng rng);
+                                               const ParameterChoice& parameters, const Estimate& geometry, Rng rng,
+                                               int threads);
 
 /// Outliers of the richest model, far beyond its (smaller) noise although it was fitted to them, that the geometric
 /// model does not explain clearly better. If it does, the richer model is at fault and not the row.

@@ -2,6 +2,7 @@
 #include "kinfer/calibrate/validation/iso9283.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "kinfer/calibrate/validation/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
@@ -43,7 +44,9 @@ std::vector<PoseAccuracy> evaluate_pose_accuracy(const Chain& before, const Chai
   std::vector<PoseAccuracy> poses;
   const VectorXd tolerance = command_tolerance(after);
   const auto same_pose = [&](int a, int b) {
-    return ((data.joints.col(a) - data.joints.col(b)).array().abs() <= tolerance.array()).all();
+    for (Eigen::Index k = 0; k < tolerance.size(); ++k)
+      if (!(std::abs(data.joints(k, a) - data.joints(k, b)) <= tolerance[k])) return false;
+    return true;
   };
   for (int row = 0; row < data.rows(); ++row) {
     if (points[row].empty()) continue;

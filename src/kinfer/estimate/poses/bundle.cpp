@@ -83,8 +83,9 @@ class Fit {
     if (search.iterations > 0 || options_.initial_guess == InitialGuess::near_optimum)
       options.initial_damping = warm_start_damping;
     const Chain nominal = state_.chain;
-    state_.outcome = least_squares(pose_normal_problem(nominal, set_, kept, weights, {loss, robust_loss_scale}),
-                                   pack(set_, nominal), options, observer_);
+    state_.outcome =
+        least_squares(pose_normal_problem(nominal, set_, kept, weights, {loss, robust_loss_scale}, options_.threads),
+                      pack(set_, nominal), options, observer_);
     state_.chain = unpack(set_, nominal, state_.outcome.x);
     search.iterations += state_.outcome.iterations;
     search.evaluations += state_.outcome.evaluations;

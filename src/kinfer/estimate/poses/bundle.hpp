@@ -33,6 +33,7 @@ struct BundleOptions {
   InitialGuess initial_guess = InitialGuess::rough;
   Detail detail = Detail::all;
   double false_alarms = 1e-3;  ///< expected number of inliers rejected per data set under Gaussian noise
+  int threads = 1;             ///< at most, 0: all cores; has no effect on the result
 };
 
 /// `start` holds the values of the fixed parameters and the initial values of the free ones; the priors are centred at

@@ -22,8 +22,18 @@ double solve_excess(const std::function<double(double)>& median_norm2, double ta
   return high;
 }
 
+/// For blocks that all have the same standard deviation along every axis.
+double excess_over(double sd, const std::vector<Vec3>& residuals, double target) {
+  std::vector<double> norm2;
+  for (const Vec3& r : residuals) norm2.push_back(r.squaredNorm());
+  return std::sqrt(std::max(0.0, median(std::move(norm2)) / target - sd * sd));
+}
+
 double excess_of(const std::vector<Vec3>& residuals, const std::vector<Vec3>& sd, int size, double absorbed) {
   if (residuals.empty()) return 0.0;
+  const double target = chi_squared_quantile(0.5, size) * absorbed, first = sd.front()[0];
+  if (std::ranges::all_of(sd, [&](const Vec3& s) { return s == Vec3::Constant(first); }))
+    return excess_over(first, residuals, target);
   double largest = 0.0;
   for (const Vec3& r : residuals) largest = std::max(largest, r.norm());
   const auto median_norm2 = [&](double excess) {
@@ -32,7 +42,7 @@ double excess_of(const std::vector<Vec3>& residuals, const std::vector<Vec3>& sd
       norm2[i] = residuals[i].cwiseAbs2().cwiseQuotient((sd[i].cwiseAbs2().array() + excess * excess).matrix()).sum();
     return median(std::move(norm2));
   };
-  return solve_excess(median_norm2, chi_squared_quantile(0.5, size) * absorbed, 2.0 * largest);
+  return solve_excess(median_norm2, target, 2.0 * largest);
 }
 
 /// The kind's blocks in their own units, padded with zeros to three components.

@@ -15,9 +15,10 @@ struct BlockLoss {
   double scale = 1.0;  ///< [sigma] as LeastSquaresOptions::loss_scale
 };
 
-/// For use by one thread: buffers are kept between calls. All arguments except the last must outlive the result.
+/// For use by one caller at a time: buffers are kept between calls. The first four arguments must outlive the result.
+/// Up to `threads` threads (0: all cores) share the rows; the numbers do not depend on how many.
 NormalProblem pose_normal_problem(const Chain& nominal, const ParameterSet& set, const PoseSet& data,
-                                  const Weights& weights, BlockLoss loss = {});
+                                  const Weights& weights, BlockLoss loss = {}, int threads = 1);
 
 /// Contribution of the priors to the normal matrix: unknowns x unknowns.
 MatrixXd prior_information(const ParameterSet& set);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/base/parallel.hpp"
 #include "kinfer/estimate/poses/point_fit.hpp"
 
 namespace kinfer {
@@ -155,18 +156,22 @@ EvaluatedPoses evaluate_poses(const Chain& chain, const ParameterSet& set, const
 }
 
 void evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative,
-                    const MatrixXd& gravity, EvaluatedPoses& at) {
+                    const MatrixXd& gravity, EvaluatedPoses& at, int threads) {
+  constexpr std::size_t block = 128;  // rows
   at.pose.resize(data.rows());
   if (derivative == Derivative::yes) at.twists.resize(data.rows());
   for_each_mounting(chain, data, [&](int mounting, const auto& rows) {
     const PoseEvaluator evaluator(with_mounting(chain, mounting), parameters_of_mounting(set, chain, mounting));
-    for (const Eigen::Index row : rows) {
-      const auto q = data.joints.col(row);
-      Load load = load_at(chain, data, row);
-      if (gravity.size() > 0) load.gravity = {gravity.col(row).data(), static_cast<std::size_t>(gravity.rows())};
-      at.pose[row] = derivative == Derivative::yes ? evaluator.pose_and_derivative(q, load, at.twists[row])
-                                                   : evaluator.pose(q, load);
-    }
+    parallel_for((rows.size() + block - 1) / block, threads, [&](std::size_t b) {
+      for (std::size_t k = block * b; k < std::min(rows.size(), block * (b + 1)); ++k) {
+        const Eigen::Index row = rows[k];
+        const auto q = data.joints.col(row);
+        Load load = load_at(chain, data, row);
+        if (gravity.size() > 0) load.gravity = {gravity.col(row).data(), static_cast<std::size_t>(gravity.rows())};
+        at.pose[row] = derivative == Derivative::yes ? evaluator.pose_and_derivative(q, load, at.twists[row])
+                                                     : evaluator.pose(q, load);
+      }
+    });
   });
 }
 

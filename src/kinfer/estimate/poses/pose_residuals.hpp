@@ -16,9 +16,10 @@ namespace kinfer {
 enum class Derivative { no, yes };
 /// Each row in its own mounting, with the loads of that row.
 EvaluatedPoses evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative);
-/// The same with given gravity torques (empty: they are computed), into a reused buffer for the inner loop.
+/// The same with given gravity torques (empty: they are computed), into a reused buffer for the inner loop, on up to
+/// `threads` threads.
 void evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative,
-                    const MatrixXd& gravity, EvaluatedPoses& at);
+                    const MatrixXd& gravity, EvaluatedPoses& at, int threads = 1);
 
 /// Gravity torque about each joint's axis at each row [N m], joints x rows; empty without masses and payload.
 MatrixXd gravity_torques_of_rows(const Chain& chain, const PoseSet& data);

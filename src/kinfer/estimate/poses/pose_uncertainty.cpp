@@ -55,11 +55,11 @@ std::vector<PoseUncertainty> pose_uncertainties(const Chain& chain, const Predic
         with_mounting(chain, rows.mounting.empty() ? -1 : rows.mounting[static_cast<std::size_t>(row)]);
     const Mat3 world_R_base = mounted.base.pose().rotation;
     const MatrixXd by_root = at.twists[static_cast<std::size_t>(row)] * known.root;
-    const double growth = model_error_growth(model, rows.joints.col(row));
+    const MatrixXd model_error = model_error_at(model, rows.joints.col(row));
     const auto block = [&](Index from) {
       const MatrixXd part = by_root.middleRows(from, 3);
-      const Mat3 error = model.model_error.block<3, 3>(from, from);
-      return Mat3(part * part.transpose() + growth * world_R_base * error * world_R_base.transpose());
+      const Mat3 error = model_error.block<3, 3>(from, from);
+      return Mat3(part * part.transpose() + world_R_base * error * world_R_base.transpose());
     };
     all.push_back({block(0), block(3)});
   }

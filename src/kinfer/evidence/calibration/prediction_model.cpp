@@ -27,9 +27,9 @@ double correction_weight(const PredictionModel& model, ConstVectorRef q) {
   return 1.0 / (1.0 + fade * outside * outside);
 }
 
-double model_error_growth(const PredictionModel& model, ConstVectorRef q) {
+MatrixXd model_error_at(const PredictionModel& model, ConstVectorRef q) {
   const double distance = region_distance(model, q);
-  return 1.0 + model.rate * distance * distance;
+  return model.model_error + distance * distance * model.growth;
 }
 
 }  // namespace kinfer

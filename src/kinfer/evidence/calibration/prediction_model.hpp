@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the uncertainty of a calibrated chain at any joint positions is computed from; kept in chain.toml.
 //
-// covariance of the tool = J(q) Σ J(q)ᵀ + growth(q) M: uncertainty of the parameters, and the model error M that
-// held-out rows show beyond it and beyond the instrument's noise. Outside the region of the fitted rows M grows:
-// growth(q) = 1 + rate · (distance(q) / reach)², distance to the nearest of `rows` in units of `spread`.
+// covariance of the tool = J(q) Σ J(q)ᵀ + M + (distance(q) / reach)² G: uncertainty of the parameters, the model error
+// M that held-out rows show beyond it and beyond the instrument's noise, and what parts of the joint space that were
+// not fitted show beyond that; distance to the nearest of `rows` in units of `spread`.
 //
 // What corrections of encoders and gears found out among the fitted rows says nothing of joint positions far from them:
 // there the parameters are those of a fit without these terms, x + (1 − weight(q)) · beyond, with
@@ -22,10 +22,10 @@ struct PredictionModel {
   MatrixXd root{};                        ///< L, lower triangular, with the covariance Σ = L Lᵀ of these, SI
   /// M, 6 x 6: position [m] and rotation [rad] of the tool, along the axes of the base. Zero where it was not measured.
   MatrixXd model_error = MatrixXd::Zero(6, 6);
-  MatrixXd rows{};     ///< dof x m: joint positions that stand for the fitted rows, [rad] or [m]
-  VectorXd spread{};   ///< dof: standard deviation of each joint over the fitted rows, [rad] or [m]
-  double reach = 1.0;  ///< [1] distance up to which joint positions count as measured
-  double rate = 0.0;   ///< [1] of the growth of M
+  MatrixXd growth = MatrixXd::Zero(6, 6);  ///< G, as M
+  MatrixXd rows{};                         ///< dof x m: joint positions that stand for the fitted rows, [rad] or [m]
+  VectorXd spread{};                       ///< dof: standard deviation of each joint over the fitted rows, [rad] or [m]
+  double reach = 1.0;                      ///< [1] distance up to which joint positions count as measured
   double noise = 0.0;  ///< [m] of the instrument, per axis, where its residuals had to tell; 0: it was stated
   /// What the parameters change by far from the fitted rows, SI. Empty: nothing, the corrections hold everywhere.
   VectorXd beyond{};
@@ -37,7 +37,7 @@ double region_distance(const PredictionModel& model, ConstVectorRef q);
 /// weight(q) of the corrections, 1 where it was measured.
 double correction_weight(const PredictionModel& model, ConstVectorRef q);
 
-/// growth(q) of the model error.
-double model_error_growth(const PredictionModel& model, ConstVectorRef q);
+/// M + (distance(q) / reach)² G, 6 x 6, along the axes of the base.
+MatrixXd model_error_at(const PredictionModel& model, ConstVectorRef q);
 
 }  // namespace kinfer

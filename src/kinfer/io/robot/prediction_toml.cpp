@@ -39,6 +39,12 @@ MatrixXd reshaped_numbers(TableReader& reader, std::string_view key, Index rows)
   return Eigen::Map<const MatrixXd>(numbers.data(), rows, count / rows);
 }
 
+/// Of position and rotation, 6 x 6.
+void read_covariance(TableReader& reader, const char* key, MatrixXd& covariance) {
+  const std::vector<double> numbers = reader.numbers(key, 36);
+  if (numbers.size() == 36) covariance = Eigen::Map<const MatrixXd>(numbers.data(), 6, 6);
+}
+
 }  // namespace
 
 std::string format_prediction_toml(const PredictionModel& model) {
@@ -54,10 +60,12 @@ std::string format_prediction_toml(const PredictionModel& model) {
       model.beyond.size() > 0 ? "beyond = " + prediction_numbers(model.beyond) + "\n" : std::string();
   const std::string noise = model.noise > 0.0 ? fmt::format("noise = {:.7g}\n", model.noise) : std::string();
   return fmt::format(
-      "\n[prediction]\nparameters = [{}]\ncovariance_root = [\n{}\n]\nmodel_error = {}\nspread = {}\nreach = {:.7g}\n"
-      "rate = {:.7g}\n{}{}rows = {}\n",
-      names, root, prediction_numbers(VectorXd(model.model_error.reshaped())), prediction_numbers(model.spread),
-      model.reach, model.rate, noise, beyond, prediction_numbers(VectorXd(model.rows.reshaped())));
+      "\n[prediction]\nparameters = [{}]\ncovariance_root = [\n{}\n]\nmodel_error = {}\ngrowth = {}\nspread = "
+      "{}\nreach = {:.7g}\n"
+      "{}{}rows = {}\n",
+      names, root, prediction_numbers(VectorXd(model.model_error.reshaped())),
+      prediction_numbers(VectorXd(model.growth.reshaped())), prediction_numbers(model.spread), model.reach, noise,
+      beyond, prediction_numbers(VectorXd(model.rows.reshaped())));
 }
 
 std::optional<PredictionModel> read_prediction(TableReader& file, int dof, FirstError& first_error) {
@@ -72,13 +80,16 @@ std::optional<PredictionModel> read_prediction(TableReader& file, int dof, First
   std::size_t next = 0;
   for (Index i = 0; i < count; ++i)
     for (Index j = 0; j <= i && next < root.size(); ++j) model.root(i, j) = root[next++];
-  const std::vector<double> error = reader.numbers("model_error", 36);
-  if (error.size() == 36) model.model_error = Eigen::Map<const MatrixXd>(error.data(), 6, 6);
+  read_covariance(reader, "model_error", model.model_error);
+  // Before 2026-11-24 files had the rate at which the model error grew.
+  if (table->find("rate"))
+    model.growth = reader.number_or("rate", 0.0) * model.model_error;
+  else
+    read_covariance(reader, "growth", model.growth);
   const std::vector<double> spread = reader.numbers("spread", static_cast<std::size_t>(dof));
   model.spread = VectorXd::Ones(dof);
   if (static_cast<int>(spread.size()) == dof) model.spread = Eigen::Map<const VectorXd>(spread.data(), dof);
   model.reach = reader.positive_or("reach", 1.0);
-  model.rate = reader.number_or("rate", 0.0);
   if (table->find("noise")) model.noise = reader.positive_or("noise", 0.0);
   if (table->find("beyond")) {
     const std::vector<double> beyond = reader.numbers("beyond", static_cast<std::size_t>(count));
