@@ -13,6 +13,7 @@ namespace kinfer::study::regret_study {
 struct NamedTask {
   std::string name;
   calibrate::CalibrationTask task;
+  std::string truth{};  ///< the terms that made the data, as `--model` takes them; empty: not known, or not among them
 };
 
 /// The public sets under KINFER_DATA and the simulated cases under KINFER_CASES whose name contains `wanted`, then

@@ -23,7 +23,7 @@ PoseSet ten_rows() {
 }
 
 ModelTerm term_of(Term term, const Chain& nominal, const PoseSet& data) {
-  return make_model_term(term, nominal, {.tolerances = {}, .rows = data, .fitted = {}});
+  return make_model_term(term, nominal, {.tolerances = {}, .rows = data});
 }
 
 std::vector<std::string> parameter_names_of(const ModelTerm& term) {

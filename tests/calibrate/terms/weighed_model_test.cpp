@@ -165,10 +165,10 @@ TEST(CandidateTerms, ALineThatIsACandidateAlreadyIsNotAddedAgain) {
   const Estimate geometry = default_calibration(nominal_robot(), data, FixedModel{}).estimate;
   CandidateTerms candidates = make_candidates(geometry, task, data);
   const std::size_t before = candidates.parameters.size();
-  add_spectral_lines(candidates, geometry, task, data);
+  add_spectral_lines(candidates, find_gear_harmonics(geometry, data), task, data);
   const std::size_t after = candidates.parameters.size();
   EXPECT_GT(after, before) << "the line was found";
-  add_spectral_lines(candidates, geometry, task, data);
+  add_spectral_lines(candidates, find_gear_harmonics(geometry, data), task, data);
   EXPECT_EQ(candidates.parameters.size(), after);
 }
 

@@ -72,13 +72,13 @@ ParameterAddress add_structure(Chain& chain, const Chain& rich, Term term, Param
 CandidateTerms make_candidates(const Estimate& geometry, const CalibrationTask& task, const PoseSet& rows) {
   CandidateTerms candidates{geometry.chain, {}, {}};
   for (const TermMaker& maker : term_makers())
-    if (maker.term != Term::spectral_harmonics) add(candidates, maker.term, {task.tolerances, rows, geometry});
+    if (maker.term != Term::spectral_harmonics) add(candidates, maker.term, {task.tolerances, rows});
   return candidates;
 }
 
-void add_spectral_lines(CandidateTerms& candidates, const Estimate& fitted, const CalibrationTask& task,
-                        const PoseSet& rows, int threads) {
-  add(candidates, Term::spectral_harmonics, {task.tolerances, rows, fitted, threads});
+void add_spectral_lines(CandidateTerms& candidates, const std::vector<SpectralLine>& lines, const CalibrationTask& task,
+                        const PoseSet& rows) {
+  add(candidates, Term::spectral_harmonics, {task.tolerances, rows, lines});
 }
 
 ParameterSet with_parameters(ParameterSet set, const std::vector<Parameter>& more) {

@@ -26,9 +26,8 @@ struct CandidateTerms {
 /// Of every term but spectral lines, which are found in the residuals of a fit with all others.
 CandidateTerms make_candidates(const Estimate& geometry, const CalibrationTask& task, const PoseSet& rows);
 
-/// Adds the spectral lines of the residuals of `fitted`.
-void add_spectral_lines(CandidateTerms& candidates, const Estimate& fitted, const CalibrationTask& task,
-                        const PoseSet& rows, int threads = 1);
+void add_spectral_lines(CandidateTerms& candidates, const std::vector<SpectralLine>& lines, const CalibrationTask& task,
+                        const PoseSet& rows);
 
 /// The set with further parameters, also beside a joint prior of those that it has.
 ParameterSet with_parameters(ParameterSet set, const std::vector<Parameter>& more);

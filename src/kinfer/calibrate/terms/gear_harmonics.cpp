@@ -114,6 +114,7 @@ std::vector<SpectralLine> lines_of_joint(std::vector<Sample> samples, int joint,
     if (best.improvement < threshold) break;
     const double whole = std::round(best.order);  // gears have integer numbers of teeth; most lines have integer orders
     if (improvement_by(samples, whole) > thresholds::integer_order_ratio * best.improvement) best.order = whole;
+    best.resolution = 2.0 * std::numbers::pi / range;
     lines.push_back(best);
     remove(samples, best.order);
   }
@@ -141,6 +142,16 @@ std::vector<SpectralLine> find_gear_harmonics(const Estimate& fitted, const Pose
             [](const SpectralLine& a, const SpectralLine& b) { return a.improvement > b.improvement; });
   if (static_cast<int>(lines.size()) > most) lines.resize(most);
   return lines;
+}
+
+void merge_lines(std::vector<SpectralLine>& lines, const std::vector<SpectralLine>& more) {
+  const std::vector<SpectralLine> known = lines;
+  for (const SpectralLine& line : more)
+    if (static_cast<int>(lines.size()) < thresholds::max_spectral_lines &&
+        std::ranges::none_of(known, [&](const SpectralLine& other) {
+          return other.joint == line.joint && std::abs(other.order - line.order) < 0.5 * line.resolution;
+        }))
+      lines.push_back(line);
 }
 
 }  // namespace kinfer::calibrate

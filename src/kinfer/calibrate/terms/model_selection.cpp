@@ -16,7 +16,10 @@ namespace {
 WeighedModel fit_fixed_model(const SelectionData& data, const Estimate& geometry, const FixedModel& model) {
   WeighedModel fixed = weighed_geometry(data, geometry);
   for (const Term term : model.terms) {
-    const ModelTerm model_term = make_model_term(term, fixed.fit.chain, {data.task.tolerances, data.rows, fixed.fit});
+    const std::vector<SpectralLine> lines = term == Term::spectral_harmonics
+                                                ? find_gear_harmonics(fixed.fit, data.rows, data.threads)
+                                                : std::vector<SpectralLine>{};
+    const ModelTerm model_term = make_model_term(term, fixed.fit.chain, {data.task.tolerances, data.rows, lines});
     SelectionStep step{.term = term,
                        .decision = Decision::requested,
                        .missing = model_term.missing,

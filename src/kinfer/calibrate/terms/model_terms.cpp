@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "kinfer/calibrate/terms/approximate_masses.hpp"
-#include "kinfer/calibrate/terms/gear_harmonics.hpp"
 #include "kinfer/calibrate/terms/thresholds.hpp"
 #include "kinfer/geometry/statistics.hpp"
 
@@ -106,9 +105,9 @@ ModelTerm gear(const Chain& nominal, const TermInputs&) {
 
 ModelTerm spectrum(const Chain& nominal, const TermInputs& inputs) {
   ModelTerm model_term{.nominal = nominal};
-  const std::vector<SpectralLine> lines = find_gear_harmonics(inputs.fitted, inputs.rows, inputs.threads);
-  for (const SpectralLine& line : lines) add_harmonic(model_term, line.joint, line.order, thresholds::harmonic_prior);
-  if (lines.empty()) model_term.missing = MissingData::spectral_line;
+  for (const SpectralLine& line : inputs.lines)
+    add_harmonic(model_term, line.joint, line.order, thresholds::harmonic_prior);
+  if (inputs.lines.empty()) model_term.missing = MissingData::spectral_line;
   return model_term;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "kinfer/calibrate/terms/gear_harmonics.hpp"
 #include "kinfer/evidence/calibration/estimate.hpp"
 #include "kinfer/evidence/calibration/model_selection.hpp"
 #include "kinfer/measurement/pose_set.hpp"
@@ -23,8 +24,7 @@ struct ModelTerm {
 struct TermInputs {
   const Tolerances& tolerances;
   const PoseSet& rows;
-  const Estimate& fitted;  ///< the best fit so far; the gear spectrum is computed from its residuals
-  int threads = 1;
+  std::vector<SpectralLine> lines{};  ///< of residuals, for the term of these
 };
 
 /// One row per term; a new term is a new row here, its name in evidence, its words in words.

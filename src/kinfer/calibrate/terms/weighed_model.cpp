@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -52,7 +53,7 @@ class ModelWeigher {
     WeighedModel result = weighed_geometry(data_, geometry_);
     candidates_ = make_candidates(geometry_, data_.task, data_.rows);
     const Estimate fitted = weigh_all();
-    add_spectral_lines(candidates_, fitted, data_.task, data_.rows, data_.threads);
+    add_spectral_lines(candidates_, lines_of(fitted), data_.task, data_.rows);
     if (candidates_.steps.back().missing == MissingData::none) weigh_all();
     if (!current_.model.terms.empty()) {
       ProvedModel plain{{}, geometry_, result.interpolation, {}};
@@ -79,6 +80,25 @@ class ModelWeigher {
     return current_.fit;
   }
 
+  /// Also of the residuals of gears alone: other terms may have taken what further harmonics would explain better.
+  std::vector<SpectralLine> lines_of(const Estimate& fitted) const {
+    std::vector<SpectralLine> lines = find_gear_harmonics(fitted, data_.rows, data_.threads);
+    if (static_cast<int>(lines.size()) == thresholds::max_spectral_lines) return lines;
+    const PoseSet rows = data_.rows.points.size() > thresholds::gears_alone_rows
+                             ? select(data_.rows, thinned_rows(data_.rows, thresholds::gears_alone_rows))
+                             : data_.rows;
+    merge_lines(lines, find_gear_harmonics(fit_gears_alone(rows), rows, data_.threads));
+    return lines;
+  }
+
+  Estimate fit_gears_alone(const PoseSet& rows) const {
+    std::vector<double> factors = factors_of(weights_);
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      if (groups_[g].family != static_cast<int>(Term::gear_harmonics)) factors[g] = 0.0;
+    const TermModel model = model_of_relevant(candidates_, geometry_, all_fitted_, groups_, factors);
+    return fit_rows(model.chain, model.parameters, rows, data_.task, at_optimum(), data_.observer);
+  }
+
   BundleOptions at_optimum() const {
     return {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only, .threads = data_.threads};
   }
@@ -102,28 +122,37 @@ class ModelWeigher {
     return proof;
   }
 
-  /// Held-out errors of the model without the refused terms and without `term`, from the fits with all of them.
-  ProvedModel reduced(std::optional<Term> term) const {
-    const auto removed = [&](Term other) {
-      return other == term || std::ranges::any_of(refused_, [&](const auto& r) { return r.first == other; });
-    };
-    return {
-        {},
-        current_.fit,
-        errors_without(current_.interpolation, current_.model.terms, removed, data_.rows, data_.splits, data_.threads),
-        errors_without(current_.extrapolation, current_.model.terms, removed, data_.rows, extrapolation_splits_,
-                       data_.threads)};
+  /// [1] of the size that the marginal likelihood gives a term, 1 until held-out errors speak against it.
+  double kept(Term term) const {
+    const auto found = kept_.find(term);
+    return found == kept_.end() ? 1.0 : found->second;
   }
 
-  /// Refuses the terms that held-out errors speak against, the most harmful first, and fits what is left.
+  /// Held-out errors of the model with what is kept of its terms, without `removed`, from the fits with all of them.
+  ProvedModel reduced(std::optional<Term> removed) const {
+    const auto errors_of = [&](const HoldoutErrors& fits, const std::vector<Split>& splits) {
+      return errors_with_scaled_terms(
+          fits, current_.model.terms, [&](Term term) { return term == removed ? 0.0 : kept(term); }, data_.rows, splits,
+          data_.threads);
+    };
+    return {{},
+            current_.fit,
+            errors_of(current_.interpolation, data_.splits),
+            errors_of(current_.extrapolation, extrapolation_splits_)};
+  }
+
+  /// Terms that held-out errors speak against are kept smaller, then refused, the most harmful first. Fits what is
+  /// left.
   void prove(const ProvedModel& plain) {
     current_.interpolation = held_out(current_.fit, current_.model.parameters, data_.splits);
     current_.extrapolation = held_out(current_.fit, current_.model.parameters, extrapolation_splits_);
-    while (const auto harmful = most_harmful(plain)) refused_.push_back(*harmful);
-    if (refused_.empty()) return;
-    for (const auto& [term, why] : refused_)
-      for (std::size_t g = 0; g < groups_.size(); ++g)
-        if (groups_[g].family == static_cast<int>(term)) weights_[g].factor = 0.0;
+    while (const auto harmful = most_harmful(plain)) {
+      const bool is_whole = kept(harmful->first) == 1.0;
+      kept_[harmful->first] = is_whole ? thresholds::softening : 0.0;
+      if (!is_whole) refused_.push_back(*harmful);
+    }
+    if (kept_.empty()) return;
+    for (std::size_t g = 0; g < groups_.size(); ++g) weights_[g].factor *= kept(static_cast<Term>(groups_[g].family));
     fit_relevant(all_fitted_);
     if (!current_.model.terms.empty())
       current_.interpolation = held_out(current_.fit, current_.model.parameters, data_.splits);
@@ -156,8 +185,7 @@ class ModelWeigher {
     double most = 0.0;
     proofs_.clear();
     for (const TermMaker& maker : term_makers()) {
-      if (!has(maker.term) || std::ranges::any_of(refused_, [&](const auto& r) { return r.first == maker.term; }))
-        continue;
+      if (!has(maker.term) || kept(maker.term) == 0.0) continue;
       const Proof proof = proof_of(reduced(maker.term), present);
       proofs_.push_back({maker.term, proof});
       if (proof.decision == Decision::accepted && whole.decision == Decision::accepted) continue;
@@ -202,8 +230,9 @@ class ModelWeigher {
     for (const CandidateParameter& c : candidates_.parameters)
       if (c.term == term) count_determined(step, c.parameter.name, current_.fit);
     const auto later = [&](Term other) { return static_cast<int>(other) > static_cast<int>(term); };
-    errors =
-        errors_without(current_.interpolation, current_.model.terms, later, data_.rows, data_.splits, data_.threads);
+    errors = errors_with_scaled_terms(
+        current_.interpolation, current_.model.terms, [&](Term other) { return later(other) ? 0.0 : 1.0; }, data_.rows,
+        data_.splits, data_.threads);
     std::vector<CandidateParameter> own, removed;
     for (const CandidateParameter& c : current_.model.terms) {
       if (c.term == term) own.push_back(c);
@@ -238,6 +267,7 @@ class ModelWeigher {
   Estimate all_fitted_;  ///< of all candidates
   ProvedModel current_;
   std::vector<std::pair<Term, Proof>> proofs_, refused_;
+  std::map<Term, double> kept_;  ///< [1] of terms that held-out errors speak against
 };
 
 }  // namespace

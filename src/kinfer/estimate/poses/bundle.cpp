@@ -46,6 +46,7 @@ double effective_parameters(const NormalEquations& normal, const ParameterSet& s
 constexpr double coarse_tolerance = 1e-7;    // relative decrease of the cost
 constexpr double warm_start_damping = 1e-9;  // initial damping when the start is the optimum of nearly the same problem
 constexpr double robust_loss_scale = 2.0;    // [sigma] per row
+constexpr std::size_t rows_a_change = 1000;  // of one that may still become an inlier or outlier in the next round
 constexpr double final_tolerance = 1e-6;     // of the cost of one row: accurate to a thousandth of each sd
 
 class Fit {
@@ -121,8 +122,8 @@ class Fit {
     for (int i = 0; i < rounds; ++i) {
       minimise(Loss::none, coarse_tolerance);
       const bool settled = update_noise_level();
-      const bool same = options_.outliers == Outliers::keep_all || !update_inliers();
-      if (!settled || !same) continue;
+      const std::size_t changed = options_.outliers == Outliers::keep_all ? 0 : update_inliers();
+      if (!settled || changed > tolerated_changes()) continue;
       if (options_.detail == Detail::numbers_only) return;
       break;
     }
@@ -159,14 +160,19 @@ class Fit {
     return inlier_limits;
   }
 
-  /// True when the set of inliers changed.
-  bool update_inliers() {
+  /// Among thousands of rows a few lie so near the limit that they go in and out for many rounds.
+  std::size_t tolerated_changes() const {
+    return options_.detail == Detail::numbers_only ? blocks_.size() / rows_a_change : 0;
+  }
+
+  /// How many blocks became inliers or outliers.
+  std::size_t update_inliers() {
     const VectorXd distance = mahalanobis_distances();
     const std::array<double, 3> limit = inlier_limits();
-    bool changed = false;
+    std::size_t changed = 0;
     for (std::size_t i = 0; i < state_.inlier.size(); ++i) {
       const bool is_inlier = distance[static_cast<Eigen::Index>(i)] <= limit[blocks_[i].size - 1];
-      changed |= is_inlier != state_.inlier[i];
+      if (is_inlier != state_.inlier[i]) ++changed;
       state_.inlier[i] = is_inlier;
     }
     return changed;
