@@ -10,6 +10,7 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/io/evidence/evidence_file.hpp"
+#include "kinfer/io/fleet/fleet_json.hpp"
 #include "kinfer/io/fleet/manifest.hpp"
 #include "kinfer/io/motion/reach_targets_csv.hpp"
 #include "kinfer/io/pose_set/foreign/pose_tables.hpp"
@@ -19,6 +20,7 @@
 #include "kinfer/io/recording/foreign/ins_map.hpp"
 #include "kinfer/io/recording/foreign/ins_presets.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
+#include "kinfer/io/recording/ins_row_reader.hpp"
 #include "kinfer/io/recording/ins_topics.hpp"
 #include "kinfer/io/recording/machine_facts_toml.hpp"
 #include "kinfer/io/recording/sensor_grade_toml.hpp"
@@ -26,6 +28,7 @@
 #include "kinfer/io/robot/patch/mjcf_patch.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot_log/message_definition.hpp"
 #include "kinfer/io/robot_log/message_log_formats.hpp"
 #include "kinfer/io/text/compressed_text.hpp"
 #include "kinfer/io/text/zip_archive.hpp"
@@ -145,7 +148,72 @@ void read_compressed(const std::string& bytes) {
 
 void read_grade(const std::string& bytes) {
   const auto grade = parse_sensor_grade(bytes, name);
-  if (grade) static_cast<void>(parse_sensor_grade(format_sensor_grade(*grade), name));
+  if (!grade) return;
+  const auto again = parse_sensor_grade(format_sensor_grade(*grade), name);
+  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+}
+
+void read_tracking(const std::string& bytes) {
+  const auto model = parse_tracking_model(bytes, name);
+  if (!model) return;
+  const auto again = parse_tracking_model(format_tracking_model(*model), name);
+  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+}
+
+void read_sweep(const std::string& bytes) {
+  const auto tasks = parse_manifest(bytes, name);
+  if (!tasks) return;
+  const auto again = parse_manifest(format_manifest(*tasks), name);
+  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+  KINFER_EXPECT(*again == *tasks, "tasks change where they are written and read");
+}
+
+void read_net(const std::string& bytes) {
+  const auto net = parse_mlp(bytes, name);
+  if (!net) return;
+  const auto again = parse_mlp(format_mlp(*net), name);
+  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+}
+
+/// What a sweep keeps of each task, and what a merge makes of many.
+void read_fleet(const std::string& bytes) {
+  if (const auto summary = parse_task_summary(bytes)) {
+    const auto again = parse_task_summary(format_task_summary(*summary));
+    KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+  }
+  if (const auto information = parse_information(bytes)) {
+    const auto again = parse_information(format_information(*information));
+    KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+  }
+  if (const auto population = parse_population(bytes, name)) {
+    const auto again = parse_population(format_population(*population), name);
+    KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+  }
+}
+
+/// What a log that arrives in pieces of `size` bytes gives: rows, remarks and the error.
+std::string rows_in_pieces(const std::string& bytes, std::size_t size) {
+  InsRowReader reader({"ins0", "ins1"}, name);
+  std::string seen;
+  const auto sink = [&](const InsRow& row) -> Result<void> {
+    seen.append(reinterpret_cast<const char*>(&row.time), sizeof row.time);
+    return {};
+  };
+  Result<void> ended;
+  for (std::size_t k = 0; k < bytes.size() && ended; k += size)
+    ended = reader.add(std::string_view(bytes).substr(k, size), sink);
+  if (ended) ended = reader.finish(sink);
+  for (const std::string& remark : reader.remarks()) seen += remark;
+  return ended ? seen : seen + ended.error().what;
+}
+
+void read_rows(const std::string& bytes) {
+  KINFER_EXPECT(rows_in_pieces(bytes, 7) == rows_in_pieces(bytes, bytes.size()), "rows depend on how they arrive");
+}
+
+void read_definition(const std::string& bytes) {
+  for (const bool is_ros1 : {false, true})
+    static_cast<void>(parse_message_definition(bytes, "sensor_msgs/Imu", is_ros1));
 }
 
 /// Message logs are read from files; this one is in memory.
@@ -181,10 +249,13 @@ constexpr std::array table{
     Reader{"robot_toml", read_robot},
     Reader{"urdf", read_urdf_text},
     Reader{"mjcf", read_mjcf_text},
-    Reader{"tracking_model", [](const std::string& bytes) { static_cast<void>(parse_tracking_model(bytes, name)); }},
+    Reader{"tracking_model", read_tracking},
     Reader{"evidence", [](const std::string& bytes) { static_cast<void>(report::report_of_file(bytes)); }},
-    Reader{"manifest", [](const std::string& bytes) { static_cast<void>(parse_manifest(bytes, name)); }},
-    Reader{"net", [](const std::string& bytes) { static_cast<void>(parse_mlp(bytes, name)); }},
+    Reader{"manifest", read_sweep},
+    Reader{"fleet", read_fleet},
+    Reader{"net", read_net},
+    Reader{"rows", read_rows},
+    Reader{"message_definition", read_definition},
 };
 
 }  // namespace

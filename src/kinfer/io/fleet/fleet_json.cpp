@@ -216,16 +216,20 @@ std::string format_population(const PopulationPrior& population) {
   return json.dump(1) + "\n";
 }
 
-Result<PopulationPrior> read_population(const std::filesystem::path& path) {
-  KINFER_TRY(text, read_text_file(path));
-  KINFER_TRY(prior, evidence_json::parse_file<PopulationPrior>(text, path.string()));
+Result<PopulationPrior> parse_population(std::string_view text, const std::string& name_in_messages) {
+  KINFER_TRY(prior, evidence_json::parse_file<PopulationPrior>(text, name_in_messages));
   const std::size_t n = prior.names.size();
   if (!evidence_json::has_size(prior.nominal, n) || !evidence_json::has_size(prior.tolerance, n) ||
       !evidence_json::has_size(prior.mean, n) || !evidence_json::is_square(prior.covariance, n))
-    return error("{}: expected as many numbers as names", path.string());
+    return error("{}: expected as many numbers as names", name_in_messages);
   if (n == 0 || !prior.mean.allFinite() || !(prior.tolerance.minCoeff() > 0.0) || !cholesky(prior.covariance))
-    return error("{}: the covariance is not positive definite", path.string());
+    return error("{}: the covariance is not positive definite", name_in_messages);
   return prior;
+}
+
+Result<PopulationPrior> read_population(const std::filesystem::path& path) {
+  KINFER_TRY(text, read_text_file(path));
+  return parse_population(text, path.string());
 }
 
 }  // namespace kinfer

@@ -23,6 +23,7 @@ Result<ParameterInformation> parse_information(std::string_view text);
 std::string format_fleet(const Fleet& fleet);
 
 std::string format_population(const PopulationPrior& population);
+Result<PopulationPrior> parse_population(std::string_view text, const std::string& name_in_messages);
 Result<PopulationPrior> read_population(const std::filesystem::path& path);
 
 }  // namespace kinfer
