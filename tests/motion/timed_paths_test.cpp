@@ -65,6 +65,10 @@ TEST(ToolSpacePath, WhatCannotBeDrivenIsNamed) {
       tool_space_path(chain, line_of(chain, Vec3(9.0, 0.0, 0.0), Vec3::Zero()), posture(), limits, {}, 0.02);
   ASSERT_TRUE(far.obstacle);
   EXPECT_NE(far.obstacle->kind, PathObstacle::Kind::outside_limits);
+  const Eigen::Index before = far.path.position.cols() - 2;
+  const Vec3 last = forward(chain, far.path.position.col(before)).position;
+  EXPECT_LT((last - forward(chain, posture()).position).norm(), 3.0) << "of 9 m only what can be reached is written";
+  EXPECT_EQ(far.path.position.cols(), std::ssize(far.path.time));
 
   // A straightened wrist is singular.
   VectorXd straight = posture();

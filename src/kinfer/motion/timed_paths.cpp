@@ -162,7 +162,8 @@ class ToolLines {
   const std::vector<double>& passing_times() const { return passing_; }
   const std::optional<PathObstacle>& obstacle() const { return obstacle_; }
 
-  /// Postures at these times, each near the one before it.
+  /// Postures at these times, each near the one before it, up to the first at which the tool cannot follow its line:
+  /// beyond the reach every posture would be searched for in vain.
   MatrixXd follow(const std::vector<double>& times, const VectorXd& preferred) {
     MatrixXd q(preferred.size(), static_cast<Index>(times.size()));
     VectorXd before = preferred;
@@ -172,6 +173,7 @@ class ToolLines {
       const bool jumps = i > 0 && (posture - before).cwiseAbs().maxCoeff() > thresholds::path_jump;
       if (!obstacle_) obstacle_ = obstacle_at(times[i], found, jumps);
       q.col(static_cast<Index>(i)) = before = posture;
+      if (!is_on_line(found) || jumps) return q.leftCols(static_cast<Index>(i) + 1);
     }
     return q;
   }
@@ -183,12 +185,15 @@ class ToolLines {
     return interpolate(targets_[k], targets_[k + 1], lines_[k].at(time - passing_[k]).position[0]);
   }
 
+  static bool is_on_line(const ReachSolution& found) {
+    return found.status == ReachStatus::reached || found.status == ReachStatus::outside_limits;
+  }
+
   std::optional<PathObstacle> obstacle_at(double time, const ReachSolution& found, bool jumps) const {
     const int line = line_at(passing_, time);
     if (found.status == ReachStatus::outside_limits)
       return PathObstacle{PathObstacle::Kind::outside_limits, time, line, found.limited_joints.front()};
-    if (found.status != ReachStatus::reached || jumps)
-      return PathObstacle{PathObstacle::Kind::not_reached, time, line, -1};
+    if (!is_on_line(found) || jumps) return PathObstacle{PathObstacle::Kind::not_reached, time, line, -1};
     const bool directs = std::holds_alternative<FullGoal>(targets_.front().orientation);
     if (is_singular(chain_, found.postures.front().q, length_, directs))
       return PathObstacle{PathObstacle::Kind::near_singular, time, line, -1};
@@ -235,9 +240,11 @@ PathResult tool_space_path(const Chain& chain, const std::vector<ReachTarget>& t
   std::vector<double> unhurried = path.time;
   for (double& time : unhurried) time /= path.slowed_by;
   path.position = lines.follow(unhurried, preferred);
+  path.time.resize(static_cast<std::size_t>(path.position.cols()));
+  path.duration = path.time.back();
   set_derivatives(path);
-  path.passing_times = lines.passing_times();
-  for (double& time : path.passing_times) time *= path.slowed_by;
+  for (const double time : lines.passing_times())
+    if (path.slowed_by * time <= path.duration) path.passing_times.push_back(path.slowed_by * time);
   path.cuts.assign(path.passing_times.size(), 0.0);
   result.obstacle = lines.obstacle();
   if (result.obstacle) result.obstacle->time *= path.slowed_by;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kinfer/io/text/format_number.hpp"
+#include "kinfer/io/text/quoted_text.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
 #include "kinfer/io/text/units.hpp"
@@ -101,7 +102,7 @@ Result<SensorModel> read_sensor_grade(const std::filesystem::path& path) {
 }
 
 std::string format_sensor_grade(const SensorModel& model) {
-  return fmt::format("name = \"{}\"\n", model.name) + instrument_toml("accelerometer", model.accelerometer) +
+  return fmt::format("name = {}\n", quoted_text(model.name)) + instrument_toml("accelerometer", model.accelerometer) +
          instrument_toml("gyroscope", model.gyroscope) + instrument_toml("magnetometer", model.magnetometer);
 }
 

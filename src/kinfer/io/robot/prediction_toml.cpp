@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/robot/prediction_toml.hpp"
+#include "kinfer/io/text/quoted_text.hpp"
 
 #include <fmt/format.h>
 
@@ -50,7 +51,7 @@ void read_covariance(TableReader& reader, const char* key, MatrixXd& covariance)
 std::string format_prediction_toml(const PredictionModel& model) {
   std::string names, root;
   for (const std::string& parameter : model.parameters)
-    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", parameter);
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", quoted_text(parameter));
   for (Index i = 0; i < model.root.rows(); ++i)
     root += fmt::format("{}  {}", i == 0 ? "" : ",\n", [&] {
       const std::string row = prediction_numbers(VectorXd(model.root.row(i).head(i + 1).transpose()));

@@ -4,8 +4,8 @@
 #include "kinfer/base/angle.hpp"
 #include "kinfer/io/robot/prediction_toml.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
-#include "kinfer/io/robot/xml_names.hpp"
 #include "kinfer/io/text/format_number.hpp"
+#include "kinfer/io/text/quoted_text.hpp"
 
 namespace kinfer {
 namespace {
@@ -13,18 +13,6 @@ namespace {
 const char* convention_of(const Link& link) {
   constexpr const char* names[] = {"dh", "mdh", "urdf"};
   return names[link.index()];
-}
-
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : utf8_name(text)) {
-    if (c == '"' || c == '\\') result += '\\';
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
-      result += fmt::format("\\u{:04X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    else
-      result += c;
-  }
-  return result + '"';
 }
 
 std::string list(const Vec3& values, double factor = 1.0) {
@@ -64,19 +52,19 @@ class RobotTomlWriter {
   }
 
   void write_header_keys() {
-    if (!chain_.name.empty()) add("name = {}\n", quoted(chain_.name));
+    if (!chain_.name.empty()) add("name = {}\n", quoted_text(chain_.name));
     add("convention = \"{}\"\n", file_convention());
     add("units = {{ length = \"{}\", angle = \"{}\" }}\n", in_mm_ ? "mm" : "m", in_mm_ ? "deg" : "rad");
     write_frame("base", chain_.base);
     write_frame("tool", chain_.tool);
     add("gravity = {}\n", list(chain_.gravity));
-    if (!chain_.setup.empty()) add("setup = {}\n", quoted(chain_.setup));
+    if (!chain_.setup.empty()) add("setup = {}\n", quoted_text(chain_.setup));
     if (chain_.expansion != 0.0) {
       add("expansion = {}\nreference_temperature = {}\n", format_number(chain_.expansion),
           format_number(chain_.reference_temperature));
       if (const double sd = sd_of("expansion"); !std::isnan(sd)) add("expansion_sd = {}\n", format_number(sd));
     }
-    if (chain_.tip >= 0) add("tip = {}\n", quoted(name_of(chain_.tip)));
+    if (chain_.tip >= 0) add("tip = {}\n", quoted_text(name_of(chain_.tip)));
     for_each_fixture_list(chain_.fixtures, [&]<class T>(const auto& row, const std::vector<T>& list) {
       if constexpr (std::is_same_v<T, Vec3>) write_points(row.kind, list);
     });
@@ -118,18 +106,18 @@ class RobotTomlWriter {
 
   /// A target or socket, with its standard deviation.
   void write_fixture(std::string_view kind, const Target& point) {
-    add("\n[[{}]]\nname = {}\nxyz = {}\n", kind, quoted(point.name), list(point.xyz, length_));
+    add("\n[[{}]]\nname = {}\nxyz = {}\n", kind, quoted_text(point.name), list(point.xyz, length_));
     const std::string sd = sd_list(fmt::format("{}_{}_", kind, point.name).c_str(), "", "", length_);
     if (!sd.empty()) add("xyz_sd = {}\n", sd);
   }
 
   void write_fixture(std::string_view kind, const Plane& plane) {
-    add("\n[[{}]]\nname = {}\nnormal = {}\noffset = {}\n", kind, quoted(plane.name), list(plane.normal()),
+    add("\n[[{}]]\nname = {}\nnormal = {}\noffset = {}\n", kind, quoted_text(plane.name), list(plane.normal()),
         format_number(plane.offset, length_));
   }
 
   void write_fixture(std::string_view kind, const NamedFrame& fixture) {
-    add("\n[[{}]]\nname = {}\n", kind, quoted(fixture.name));
+    add("\n[[{}]]\nname = {}\n", kind, quoted_text(fixture.name));
     const Frame& frame = fixture.frame;
     add("xyz = {}\nrpy = {}\n", list(frame.xyz, length_), list(to_rpy(frame.pose().rotation), angle_));
     const std::string prefix = fmt::format("{}_{}_", kind, fixture.name);
@@ -147,11 +135,11 @@ class RobotTomlWriter {
     });
     for (const SocketDistance& known : fixtures.socket_distances)
       add("\n[[socket_distance]]\nfrom = {}\nto = {}\ndistance = {}\nsigma = {}\n",
-          quoted(fixtures.sockets[known.a].name), quoted(fixtures.sockets[known.b].name),
+          quoted_text(fixtures.sockets[known.a].name), quoted_text(fixtures.sockets[known.b].name),
           format_number(known.distance, length_), format_number(known.sd, length_));
     for (const RobotMounting& mounting : chain_.mountings) {
-      add("\n[[mounting]]\nname = {}\n", quoted(mounting.name));
-      if (mounting.tip >= 0) add("tip = {}\n", quoted(name_of(mounting.tip)));
+      add("\n[[mounting]]\nname = {}\n", quoted_text(mounting.name));
+      if (mounting.tip >= 0) add("tip = {}\n", quoted_text(name_of(mounting.tip)));
       if (mounting.base) write_frame("base", *mounting.base, "@" + mounting.name);
       write_frame("tool", mounting.tool, "@" + mounting.name);
     }
@@ -192,9 +180,9 @@ class RobotTomlWriter {
 
   void write_joint(int index) {
     const Joint& joint = chain_.joints[index];
-    add("\n[[joint]]\nname = {}\ntype = \"{}\"\n", quoted(name_of(index)), traits(joint.type).name);
+    add("\n[[joint]]\nname = {}\ntype = \"{}\"\n", quoted_text(name_of(index)), traits(joint.type).name);
     if (joint.parent != index - 1)
-      add("parent = {}\n", quoted(joint.parent < 0 ? base_parent_name() : name_of(joint.parent)));
+      add("parent = {}\n", quoted_text(joint.parent < 0 ? base_parent_name() : name_of(joint.parent)));
     if (convention_of(joint.link) != std::string(file_convention()))
       add("convention = \"{}\"\n", convention_of(joint.link));
     std::visit([&](const auto& link) { write_link(index, link); }, joint.link);
@@ -203,8 +191,8 @@ class RobotTomlWriter {
 
   void write_closure(const LoopClosure& closure) {
     const auto frame = [&](int joint) { return joint < 0 ? base_parent_name() : name_of(joint); };
-    add("\n[[closure]]\nname = {}\nfirst = {}\nsecond = {}\n", quoted(closure.name), quoted(frame(closure.first)),
-        quoted(frame(closure.second)));
+    add("\n[[closure]]\nname = {}\nfirst = {}\nsecond = {}\n", quoted_text(closure.name),
+        quoted_text(frame(closure.first)), quoted_text(frame(closure.second)));
     add("point_in_first = {}\naxis_in_first = {}\n", list(closure.point_in_first, length_),
         list(closure.axis_in_first));
     add("point_in_second = {}\naxis_in_second = {}\n", list(closure.point_in_second, length_),
@@ -223,7 +211,7 @@ class RobotTomlWriter {
     if (std::isfinite(joint.lower) || std::isfinite(joint.upper))
       add("limits = [{}, {}]\n", format_number(joint.lower, unit), format_number(joint.upper, unit));
     for (std::size_t i = 0; i < joint.couplings.size(); ++i)
-      add("{}{} = {}{}", i == 0 ? "coupling = { " : ", ", quoted(name_of(joint.couplings[i].joint)),
+      add("{}{} = {}{}", i == 0 ? "coupling = { " : ", ", quoted_text(name_of(joint.couplings[i].joint)),
           format_number(joint.couplings[i].factor), i + 1 == joint.couplings.size() ? " }\n" : "");
   }
 

@@ -12,9 +12,6 @@ namespace kinfer {
 
 std::string xml_name(std::string_view name);
 
-/// Bytes that are no UTF-8 likewise, for formats that take every character (TOML); they stay escaped on reading.
-std::string utf8_name(std::string_view name);
-
 /// The name that xml_name was given. Other names are unchanged, those with an escape of a printable character too.
 std::string name_from_xml(std::string_view text);
 

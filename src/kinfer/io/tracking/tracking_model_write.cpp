@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/ranges.h>
 
+#include "kinfer/io/text/quoted_text.hpp"
 #include "kinfer/io/tracking/tracking_model_toml.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
@@ -42,9 +43,9 @@ std::string head_text(const TrackingModel& model) {
 
 std::string sensor_text(const TrackingSensor& s) {
   return fmt::format(
-             "\n[[sensor]]\nname = \"{}\"\nbody = {}\ngyroscope_bias = {}\naccelerometer_bias = {}\ngyroscope_scale = "
+             "\n[[sensor]]\nname = {}\nbody = {}\ngyroscope_bias = {}\naccelerometer_bias = {}\ngyroscope_scale = "
              "{}\naccelerometer_scale = {}\n",
-             s.name, s.body, vector_text(s.gyroscope_bias), vector_text(s.accelerometer_bias),
+             quoted_text(s.name), s.body, vector_text(s.gyroscope_bias), vector_text(s.accelerometer_bias),
              matrix_text(s.gyroscope_scale), matrix_text(s.accelerometer_scale)) +
          fmt::format(
              "noise = {}\nresidual = {}\nslow_residual = {}\nsample_period = {}\nmount_compliance = {}\nmount_stray = "
@@ -62,8 +63,8 @@ std::string body_text(const TrackingBody& b) {
 }
 
 std::string joint_text(const TrackingJoint& j) {
-  std::string text = fmt::format("\n[[joint]]\nname = \"{}\"\ntype = \"{}\"\nstray = {}\nstray_time = {}\n", j.name,
-                                 name(j.type), j.stray, j.stray_time);
+  std::string text = fmt::format("\n[[joint]]\nname = {}\ntype = \"{}\"\nstray = {}\nstray_time = {}\n",
+                                 quoted_text(j.name), name(j.type), j.stray, j.stray_time);
   for (const TrackingRange& r : j.range)
     text += fmt::format("[[joint.range]]\nlower = {}\nupper = {}\nspeed = {}\nacceleration = {}\n", r.lower, r.upper,
                         r.speed, r.acceleration);

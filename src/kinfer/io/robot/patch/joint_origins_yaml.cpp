@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "kinfer/io/text/format_number.hpp"
+#include "kinfer/io/text/quoted_text.hpp"
 
 namespace kinfer {
 namespace {
@@ -17,12 +18,7 @@ std::string yaml_key(const std::string& name) {
   const bool is_plain = !name.empty() && std::isalpha(static_cast<unsigned char>(name.front())) &&
                         name.find_first_not_of(plain) == std::string::npos;
   if (is_plain) return name;
-  std::string quoted = "\"";
-  for (const char c : name) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + '"';
+  return quoted_text(name);
 }
 
 std::string six_numbers(const UrdfJointPosition& joint, std::string_view indent) {

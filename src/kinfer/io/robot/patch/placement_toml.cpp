@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "kinfer/io/text/format_number.hpp"
+#include "kinfer/io/text/quoted_text.hpp"
 
 namespace kinfer {
 namespace {
@@ -18,15 +19,6 @@ std::string toml_numbers(const Vec3& v) {
   return toml_numbers({v.x(), v.y(), v.z()});
 }
 
-std::string toml_string(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
 class PlacementWriter {
  public:
   explicit PlacementWriter(const StandardDeviations& sd) : sd_(sd) {}
@@ -36,7 +28,7 @@ class PlacementWriter {
                     const std::string& suffix = "") const {
     const Pose pose = frame.pose();
     const Quat q(pose.rotation);
-    std::string text = link.empty() ? "" : fmt::format("link = {}\n", toml_string(link));
+    std::string text = link.empty() ? "" : fmt::format("link = {}\n", quoted_text(link));
     text += fmt::format("xyz = {}\nrpy = {}\nquaternion = {}  # w, x, y, z\n", toml_numbers(pose.position),
                         toml_numbers(to_rpy(pose.rotation)), toml_numbers({q.w(), q.x(), q.y(), q.z()}));
     return text + deviations(table + "_", "", "xyz_sd", suffix) + deviations(table + "_", "r", "turn_sd", suffix);
@@ -64,15 +56,15 @@ std::string format_placement_toml(const Chain& chain, const ChainEnds& ends, con
       "# Where the robot stands and what it carries, as calibrated; lengths in m, angles in rad.\n"
       "# base: pose of the link in the frame of the measurements. tool: pose of the tool in the frame of the link.\n"
       "# R = Rz(yaw) Ry(pitch) Rx(roll); _sd: one standard deviation, of the rotation about the axes of the frame.\n";
-  if (!chain.setup.empty()) text += fmt::format("setup = {}\n", toml_string(chain.setup));
+  if (!chain.setup.empty()) text += fmt::format("setup = {}\n", quoted_text(chain.setup));
   text += "\n[base]\n" + writer.frame("base", ends.base_link, chain.base);
   text += "\n[tool]\n" + writer.frame("tool", ends.tip_link, chain.tool);
   for (const Target& target : chain.targets)
-    text += fmt::format("\n[[target]]  # on the tool\nname = {}\nxyz = {}\n", toml_string(target.name),
+    text += fmt::format("\n[[target]]  # on the tool\nname = {}\nxyz = {}\n", quoted_text(target.name),
                         toml_numbers(target.xyz));
   for (const RobotMounting& mounting : chain.mountings) {
     const std::string suffix = "@" + mounting.name;
-    text += fmt::format("\n[[mounting]]\nname = {}\n", toml_string(mounting.name));
+    text += fmt::format("\n[[mounting]]\nname = {}\n", quoted_text(mounting.name));
     if (mounting.base) text += "[mounting.base]\n" + writer.frame("base", ends.base_link, *mounting.base, suffix);
     text += "[mounting.tool]\n" + writer.frame("tool", mounting.tip < 0 ? ends.tip_link : "", mounting.tool, suffix);
   }
