@@ -76,6 +76,12 @@ TEST(ChainStateRetract, TheErrorBetweenTwoStatesLeadsFromOneToTheOther) {
   for (const Mat3& ball : moved.spherical) EXPECT_LT((ball.transpose() * ball - Mat3::Identity()).norm(), 1e-13);
 }
 
+TEST(PredictMean, TheVelocityOfABaseStaysWhileNothingAcceleratesIt) {
+  MovingTree tree(6, BaseMode::moving);
+  tree.state.acceleration = Vec3::Zero();
+  EXPECT_LT((tree.after(5.0).velocity - tree.state.velocity).norm(), 1e-12);
+}
+
 TEST(PredictMean, TwoHalvesAreOneWholeForJointsOfOneAxis) {
   const MovingTree tree(4, BaseMode::still);
   ChainState halves = tree.after(0.03);

@@ -55,10 +55,12 @@ void mix_columns(const Transition& f, Index rows, Index first, MatrixXd& p) {
   }
 }
 
+/// The velocity is the integral of the acceleration. It must not decay: with a decay of 1 s a tilt of 0.1° would show
+/// as 0.017 m/s, and not as a velocity that grows until it is beyond what a base does.
 struct BaseTransition {
   Mat3 turned;     ///< of the attitude's error
   Mat3 from_rate;  ///< of the attitude by the rate
-  double rate_from, rate_decay, velocity_from, velocity_decay, acceleration_decay, dt;
+  double rate_from, rate_decay, velocity_from, acceleration_decay, dt;
 };
 
 BaseTransition base_transition(const FilterModel& model, const ChainState& state, double dt) {
@@ -71,7 +73,6 @@ BaseTransition base_transition(const FilterModel& model, const ChainState& state
   f.rate_from = model.base_rotation.time * (1.0 - f.rate_decay);
   f.acceleration_decay = kept(model.base_translation.time);
   f.velocity_from = model.base_translation.time * (1.0 - f.acceleration_decay);
-  f.velocity_decay = kept(base_velocity_time);
   f.dt = dt;
   return f;
 }
@@ -85,7 +86,7 @@ Eigen::Matrix<double, base_states, base_states> matrix_of(const BaseTransition& 
   m.block<3, 3>(3, 3) = one;
   m.block<3, 3>(3, 6) = f.rate_from * one;
   m.block<3, 3>(6, 6) = f.rate_decay * one;
-  m.block<3, 3>(9, 9) = f.velocity_decay * one;
+  m.block<3, 3>(9, 9) = one;
   m.block<3, 3>(9, 12) = f.velocity_from * one;
   m.block<3, 3>(12, 12) = f.acceleration_decay * one;
   return m;
@@ -209,7 +210,7 @@ void predict_mean(const FilterModel& model, double dt, ChainState& state) {
     state.world_R_base *= exp_so3(dt * (state.rate + 0.5 * dt * state.angular_acceleration));
     state.rate += f.rate_from * state.angular_acceleration;
     state.angular_acceleration *= f.rate_decay;
-    state.velocity = f.velocity_decay * state.velocity + f.velocity_from * state.acceleration;
+    state.velocity += f.velocity_from * state.acceleration;
     state.acceleration *= f.acceleration_decay;
   }
   for (std::size_t b = 1; b < model.bodies.size(); ++b) {
