@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/base/rng.hpp"
 #include "kinfer/evidence/tracking/body_poses.hpp"
 #include "support/random_bodies.hpp"
 
@@ -104,6 +106,37 @@ TEST(ComposedFilters, TakeTheUsersStart) {
 TEST(ComposedFilters, FollowABall) {
   const TrackingModel model = two_bodies(TrackingMotion::spherical, exp_so3(Vec3(0.1, 0.5, -0.2)));
   EXPECT_LT(worst_error(model, rot_y(0.2)), 0.5 * degree);
+}
+
+/// The axis of a joint that swings by 1 rad, seen for 30 s.
+track::AxisSpread swinging_axis(const std::complex<double>& in_parent, const std::complex<double>& in_child,
+                                double noise) {
+  track::AxisSpread axis;
+  Rng rng(7);
+  for (int i = 0; i < 3000; ++i) {
+    const double q = std::sin(0.02 * i);
+    const std::complex<double> y = in_parent + in_child * std::polar(1.0, q);
+    axis.add({y.real() + noise * rng.normal(), y.imag() + noise * rng.normal()}, q, 0.01);
+  }
+  return axis;
+}
+
+TEST(AxisSpread, AnErrorOfTheAxisInEitherBodyIsNoneOfTheOrientations) {
+  const track::AxisSpread axis = swinging_axis({0.02, -0.01}, {0.03, 0.04}, 0.0);
+  EXPECT_GT(axis.variance(), 1e-4);
+  EXPECT_LT(axis.unexplained(), 1e-9);
+}
+
+TEST(AxisSpread, WhatVariesBesideIsTheirs) {
+  const track::AxisSpread axis = swinging_axis({0.02, -0.01}, {0.03, 0.04}, 0.01);
+  EXPECT_NEAR(axis.unexplained(), 1e-4, 1e-5);
+}
+
+TEST(AxisSpread, AJointThatDoesNotTurnTellsNoErrorInTheChild) {
+  track::AxisSpread axis;
+  for (int i = 0; i < 1000; ++i) axis.add({0.01 * (i % 2), 0.0}, 0.3 + 1e-3 * (i % 2), 0.01);
+  EXPECT_NEAR(axis.unexplained(), axis.variance(), 1e-12);
+  EXPECT_GT(axis.variance(), 1e-5);
 }
 
 TEST(ComposedFilters, DoNotKnowADisplacement) {

@@ -274,7 +274,7 @@ Result<Identification> identify_machine(const InsRecording& log, const IdentifyO
     append(result.notes, assumptions_of(session.recording()));
     result.order = std::move(order.evidence);
     result.clocks = std::move(clocks.clocks);
-    if (geometry.tracking) result.tracking = complete(std::move(*geometry.tracking), result);
+    if (geometry.tracking) result.tracking = complete(std::move(*geometry.tracking), result, session.recording());
     judge_given_links(result, log, options, rng, observer);
     draw_conclusions(result, ordered, connections);
     return result;

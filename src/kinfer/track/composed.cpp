@@ -22,6 +22,7 @@ constexpr double axis_error = 0.01;        // [rad] of an axis' horizontal parts
 constexpr double axis_error_time = 2.0;    // [s] over which that error stays alike
 constexpr double known_bias_sd = 1e-3;     // [rad/s] by which a gyroscope's bias changed since the identification
 constexpr double axis_memory = 10.0;       // [s] over which its error is averaged
+constexpr double least_turn = 1e-2;        // 1 − |mean of exp(iq)|²: a joint that has turned less tells nothing
 constexpr double least_inclination = 0.1;  // sine, below which an axis does not determine the heading
 
 /// Without magnetometer, from the gyroscope's errors as the identification found them.
@@ -59,6 +60,26 @@ struct HeadingMeasurement {
 };
 
 }  // namespace
+
+void AxisSpread::add(const Eigen::Vector2d& across, double position, double dt) {
+  watched_ = std::min(watched_ + dt, axis_memory);
+  const double share = watched_ > 0.0 ? dt / watched_ : 0.0;
+  const std::complex<double> y(across.x(), across.y()), turn = std::polar(1.0, position);
+  across_ += share * (y - across_);
+  turn_ += share * (turn - turn_);
+  product_ += share * (y * std::conj(turn) - product_);
+  square_ += share * (std::norm(y) - square_);
+}
+
+double AxisSpread::variance() const {
+  return 0.5 * std::max(0.0, square_ - std::norm(across_));
+}
+
+double AxisSpread::unexplained() const {
+  const double turned = 1.0 - std::norm(turn_);
+  if (turned < least_turn) return variance();
+  return std::max(0.0, variance() - 0.5 * std::norm(product_ - across_ * std::conj(turn_)) / turned);
+}
 
 ComposedFilters::ComposedFilters(const TrackingModel& model, const TrackOptions& options)
     : model_(model), options_(options), rate_(model.sensors.size(), Vec3::Zero()) {
@@ -125,12 +146,7 @@ void ComposedFilters::watch_axis(Joint& joint, double dt) {
   const TrackingBody& body = model_.bodies[first];
   if (first != last || body.motion != TrackingMotion::revolute) return;
   const Mat3 between = body.parent_R_axis.transpose() * relative_rotation(joint) * body.child_R_axis;
-  joint.watched = std::min(joint.watched + dt, axis_memory);
-  const double share = joint.watched > 0.0 ? dt / joint.watched : 0.0;
-  // What stays the same is an error of the axis, and turns with neither.
-  joint.axis_mean += share * (between.col(2).head<2>() - joint.axis_mean);
-  const double variation = 0.5 * (between.col(2).head<2>() - joint.axis_mean).squaredNorm();
-  joint.axis_variance += share * (variation - joint.axis_variance);
+  joint.axis.add(between.col(2).head<2>(), about_z(between), dt);
 }
 
 double ComposedFilters::tilt_variance(std::size_t joint) const {
@@ -139,7 +155,7 @@ double ComposedFilters::tilt_variance(std::size_t joint) const {
     return 0.5 * filters_[static_cast<std::size_t>(sensor)].covariance().diagonal().head<2>().sum();
   };
   double variance = tilt(of.parent_sensor) + tilt(of.child_sensor);
-  if (of.watched > 0.0) variance += std::max(0.0, of.axis_variance - square(model_.joints[joint].stray));
+  if (of.axis.is_known()) variance += std::max(0.0, of.axis.unexplained() - square(model_.joints[joint].stray));
   return variance;
 }
 
@@ -212,7 +228,7 @@ void ComposedFilters::read_positions(const Joint& joint) {
   covariance.col(2).setZero();
   covariance(2, 2) = joint.heading_variance;
   const double of_axis =
-      std::max(0.0, joint.axis_variance - square(model_.joints[static_cast<std::size_t>(joint.index)].stray));
+      std::max(0.0, joint.axis.unexplained() - square(model_.joints[static_cast<std::size_t>(joint.index)].stray));
   const auto sd_about = [&](const Vec3& axis_in_parent) {
     const Vec3 axis = parent * axis_in_parent;
     return std::sqrt(std::max(0.0, axis.dot(covariance * axis)) + of_axis);
@@ -244,7 +260,7 @@ Mat3 ComposedFilters::shrunk(const Joint& joint, const Mat3& relative) const {
   const TrackingBody& body = model_.bodies[bodies_of(model_, joint.index).first];
   const double stray = square(model_.joints[static_cast<std::size_t>(joint.index)].stray);
   const Mat3 between = body.parent_R_axis.transpose() * relative * body.child_R_axis, turn = rot_z(about_z(between));
-  const double believed = stray / std::max(stray + square(axis_error), joint.axis_variance);
+  const double believed = stray / std::max(stray + square(axis_error), joint.axis.variance());
   const Vec3 tilt = log_so3(between * turn.transpose());
   return body.parent_R_axis * exp_so3(believed * tilt) * turn * body.child_R_axis.transpose();
 }

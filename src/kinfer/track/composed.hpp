@@ -8,6 +8,7 @@
 // because a tight constraint turns the errors of axes into heading.
 #pragma once
 
+#include <complex>
 #include <vector>
 
 #include "kinfer/evidence/tracking/track_state.hpp"
@@ -17,6 +18,25 @@
 #include "kinfer/track/options.hpp"
 
 namespace kinfer::track {
+
+/// The child's axis as both orientations place it across the parent's, y = y₁ + i y₂, over the last seconds. An error
+/// of the identified axis stays the same in the parent, or turns with the child: y = a + b exp(iq). What neither
+/// explains is the error of the orientations, or the axis' own stray.
+class AxisSpread {
+ public:
+  /// `across`: y [rad], `position`: q [rad], over `dt` [s].
+  void add(const Eigen::Vector2d& across, double position, double dt);
+
+  /// [rad²] per direction, about the mean.
+  double variance() const;
+  /// [rad²] per direction, about a + b exp(iq).
+  double unexplained() const;
+  bool is_known() const { return watched_ > 0.0; }
+
+ private:
+  std::complex<double> across_{}, turn_{}, product_{};  // means of y, of exp(iq) and of y exp(−iq)
+  double square_ = 0.0, watched_ = 0.0;                 // mean of |y|²; [s]
+};
 
 /// Copyable. Displacements of prismatic joints are unknown (NaN): orientations do not determine them.
 class ComposedFilters {
@@ -44,8 +64,7 @@ class ComposedFilters {
     double heading = 0.0, heading_variance = 0.0;  // [rad], [rad²]
     double drift = 0.0;                            // [rad²] of both filters' headings since the start
     double filters_variance = 0.0;                 // [rad²] of both headings, as the filters state it
-    Eigen::Vector2d axis_mean{0.0, 0.0};           // of the child's axis, across the parent's
-    double axis_variance = 0.0, watched = 0.0;     // [rad²] per direction, of the axis seen from both sides; [s]
+    AxisSpread axis{};
     bool started = false;
   };
 
