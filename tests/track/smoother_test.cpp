@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numbers>
 
 #include "kinfer/track/smooth/pass_state.hpp"
 #include "kinfer/track/smooth/reversed.hpp"
@@ -94,10 +95,11 @@ TEST(Smoother, BridgesALostSensorFromBothSides) {
     const Errors before = filtered(given, rows, 15.0, 30.0), after = smoothed(given, rows, 15.0, 30.0);
     for (const int joint : {lost - 1, lost}) {
       EXPECT_LT(after.nees[joint] / after.rows, 4.0) << joint;
+      EXPECT_LT(after.rms(joint), 0.15 * std::numbers::pi / 180.0) << joint;  // 0.16 before rests bridged a lost sensor
       gain += std::log(before.rms(joint) / after.rms(joint)) / 6.0;
     }
   }
-  EXPECT_GT(gain, std::log(1.1));
+  EXPECT_GT(gain, 0.0);
 }
 
 TEST(Smoother, KnowsWhereTheMachineIsFromTheFirstRowOn) {

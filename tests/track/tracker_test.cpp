@@ -211,6 +211,25 @@ TEST(Tracker, NamesALostAndAStuckSensorAndGoesOn) {
   for (int j = 1; j < 5; ++j) EXPECT_LT(out.rms(j), 0.6 * degree) << j;
 }
 
+/// Shoulder and elbow of this arm are parallel: while both rest, nothing but that they rest tells their positions,
+/// which were up to 10 degrees off.
+TEST(Tracker, JointsThatRestBesideALostSensorStayWhereTheyAre) {
+  const Case arm = make_case({.machine = "robot6", .duration = 60.0});
+  const Outcome out = run(arm, {}, [&](InsRow& row) {
+    if (row.time > 25.0 && row.time < 45.0) row.sensors[2] = {};
+  });
+  for (int j = 1; j < 6; ++j) EXPECT_LT(out.rms(j), 0.3 * degree) << j;
+  EXPECT_LT(out.largest_sd.tail(5).maxCoeff(), 3.0 * degree);
+}
+
+TEST(Tracker, AJointWhoseOwnSensorIsLostAtTheEndOfTheChainMayMoveUnseen) {
+  const Case arm = make_case({.machine = "robot6", .duration = 60.0});
+  const Outcome out = run(arm, {}, [&](InsRow& row) {
+    if (row.time > 25.0 && row.time < 45.0) row.sensors[6] = {};
+  });
+  EXPECT_GT(out.largest_sd[5], 30.0 * degree);
+}
+
 TEST(Tracker, NamesASensorThatWasTurned) {
   const Mat3 turn = exp_so3(0.5 * degree * Vec3(1.0, 1.0, 1.0).normalized());
   const Outcome out = run(still_excavator(), {}, [&](InsRow& row) {

@@ -49,12 +49,13 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
     : model_(std::move(model)), state_(initial_state(*model_)), evaluator_(*model_), changes_(*model_) {
   const FilterLayout& layout = model_->layout;
   const auto sensors = static_cast<std::size_t>(layout.sensors);
-  const Index most = layout.rows() + 3 + 2 * static_cast<Index>(model_->loose.size() + model_->prismatic.size());
+  const Index most = layout.rows() + 3 + 2 * static_cast<Index>(model_->loose.size() + model_->prismatic.size()) +
+                     static_cast<Index>(model_->revolute.size());
   p_ = MatrixXd::Zero(layout.size, layout.size);
   p_.bottomRightCorner(layout.size - layout.fast, layout.size - layout.fast) = model_->parameters;
   is_used_.assign(sensors, true);
   last_value_ = change_ = VectorXd::Zero(layout.rows());
-  steady_.assign(model_->prismatic.size(), {});
+  steady_.assign(model_->prismatic.size() + model_->revolute.size(), {});
   inflation_.assign(sensors, {1.0, 1.0});
   innovations_.value = VectorXd::Zero(layout.rows());
   innovations_.leave_out.assign(sensors, 0.0);
@@ -69,6 +70,7 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
   w_ = MatrixXd::Zero(layout.size, most);
   unused_w_ = MatrixXd::Zero(layout.size, sensor_rows);
   s_ = kept_ = inverse_ = MatrixXd::Zero(most, most);
+  accelerations_ = MatrixXd::Zero(layout.positions + 6, layout.positions + 6);
   leave_out_.assign(2 * sensors, 1.0);
   ordered_.assign(sensors, 0.0);
   is_measured_.assign(static_cast<std::size_t>(2 * layout.sensors), false);
@@ -189,9 +191,19 @@ void ChainFilter::form_soft_rows(double length) {
     const PrismaticRange& range = model_->prismatic[k];
     const double* x = state_.joints.data() + position_states * range.position;
     const Index at = model_->layout.joint_state(range.position);
-    const double speed = rests(k, length) ? prismatic_creep : range.speed;
+    const RestOdds odds{range.speed, prismatic_creep, prismatic_steadiness};
+    const double speed = rests(steady_[k], range.position, odds, length) ? prismatic_creep : range.speed;
     h_(append(range.middle - x[0], worth(range.half, prismatic_position_time)), at) = 1.0;
     h_(append(-x[1], worth(speed, prismatic_velocity_time)), at + 1) = 1.0;
+  }
+  for (std::size_t k = 0; k < model_->revolute.size(); ++k) {
+    const RevoluteBetweenSensors& joint = model_->revolute[k];
+    const RestOdds odds{steady_rate, revolute_creep, revolute_steadiness};
+    const bool rests_now = rests(steady_[model_->prismatic.size() + k], joint.position, odds, length),
+               is_bridged = !is_measured_[2 * joint.parent_sensor] || !is_measured_[2 * joint.child_sensor];
+    if (!rests_now || !is_bridged || !shows_acceleration(joint.position)) continue;
+    const Index at = model_->layout.joint_state(joint.position) + 1;
+    h_(append(-state_.joints[at - base_states], worth(revolute_creep, revolute_rest_time)), at) = 1.0;
   }
   for (const LooseRevoluteJoint& loose : model_->loose) {
     const Mat3& rotation = state_.spherical[loose.body];
@@ -204,20 +216,54 @@ void ChainFilter::form_soft_rows(double length) {
   }
 }
 
-/// A prismatic joint rests where its velocity has been the same for a while, by even odds none. A machine's telescope
-/// is locked most of the time, and its acceleration, integrated twice, would drift by decimetres.
-bool ChainFilter::rests(std::size_t k, double length) {
-  const PrismaticRange& range = model_->prismatic[k];
-  const double velocity = state_.joints[position_states * range.position + 1];
-  const Index at = model_->layout.joint_state(range.position) + 1;
+/// A joint rests where its velocity has been the same for a while, by even odds none. A machine's telescope is locked
+/// most of the time, and its acceleration, integrated twice, would drift by decimetres; so does the difference of two
+/// parallel joints without the sensor between them.
+bool ChainFilter::rests(SteadyVelocity& steady, Index position, const RestOdds& odds, double length) const {
+  const double velocity = state_.joints[position_states * position + 1];
+  const Index at = model_->layout.joint_state(position) + 1;
   const auto log_density = [&](double speed) {
     const double variance = p_(at, at) + square(speed);
     return -0.5 * (square(velocity) / variance + std::log(variance));
   };
-  SteadyVelocity& steady = steady_[k];
-  if (std::abs(velocity - steady.velocity) > prismatic_steadiness) steady = {velocity, 0.0};
+  if (std::abs(velocity - steady.velocity) > odds.steadiness) steady = {velocity, 0.0};
   steady.duration += length;
-  return steady.duration > prismatic_rest && log_density(prismatic_creep) > log_density(range.speed);
+  return steady.duration > joint_rest && log_density(odds.creep) > log_density(odds.speed);
+}
+
+/// Whether the sensors that are measured tell a joint's acceleration from those of all others and of the base, by this
+/// block alone. Where they do not, a joint that seems to rest may move unseen.
+bool ChainFilter::shows_acceleration(Index position) {
+  const FilterLayout& layout = model_->layout;
+  const Index joints = layout.positions, all = joints + (state_.base == BaseMode::moving ? 6 : 0);
+  const auto process_sd = [&](Index k) {
+    return k < joints       ? model_->positions[static_cast<std::size_t>(k)].sd
+           : k < joints + 3 ? model_->base_rotation.sd
+                            : model_->base_translation.sd;
+  };
+  const auto state_of = [&](Index k) {
+    return k < joints       ? layout.joint_state(k) + 2
+           : k < joints + 3 ? BaseIndex::angular_acceleration + k - joints
+                            : BaseIndex::acceleration + k - joints - 3;
+  };
+  auto information = accelerations_.topLeftCorner(all, all);
+  information.setZero();
+  for (Index k = 0; k < all; ++k) {
+    information(k, k) = 1.0 / square(process_sd(k));
+    for (Index j = 0; j <= k; ++j)
+      for (Index row = 0; row < layout.rows(); ++row)
+        information(k, j) += h_(row, state_of(k)) * h_(row, state_of(j)) / noise_[row];
+  }
+  if (!factorise_small(information)) return false;
+  // The variance is |L⁻¹ e|².
+  double variance = 0.0;
+  for (Index i = position; i < all; ++i) {
+    double x = i == position ? 1.0 : 0.0;
+    for (Index j = position; j < i; ++j) x -= information(i, j) * error_[j];
+    error_[i] = x / information(i, i);
+    variance += square(error_[i]);
+  }
+  return variance < shown_acceleration * square(process_sd(position));
 }
 
 /// Of the predicted rows; none after a gap.

@@ -106,7 +106,14 @@ class ChainFilter {
                       const Eigen::Matrix<double, sensor_rows, sensor_rows>& information);
   void form_sensor_rows(const BlockMeasurement& block, std::size_t sensor);
   void form_soft_rows(double length);
-  bool rests(std::size_t prismatic, double length);
+  struct SteadyVelocity {
+    double velocity = 0.0, duration = 0.0;  // [m/s] or [rad/s], [s] since it has been about that
+  };
+  struct RestOdds {
+    double speed, creep, steadiness;  // [m/s] or [rad/s] of a joint that moves; of one that rests; of a steady one
+  };
+  bool rests(SteadyVelocity& steady, Index position, const RestOdds& odds, double length) const;
+  bool shows_acceleration(Index position);
   void multiply();  // W and S
   bool factorise();
   void invert();
@@ -120,10 +127,6 @@ class ChainFilter {
   void bound();
   void mirror();
 
-  struct SteadyVelocity {
-    double velocity = 0.0, duration = 0.0;  // [m/s], [s] since it has been about that
-  };
-
   std::shared_ptr<const FilterModel> model_;
   ChainState state_;
   MatrixXd p_;
@@ -133,12 +136,13 @@ class ChainFilter {
   double last_update_ = -1e9;
   JointChanges changes_;
   std::vector<InsLevel> inflation_;
-  std::vector<SteadyVelocity> steady_;  // of each prismatic joint
+  std::vector<SteadyVelocity> steady_;  // of each prismatic joint, then of each revolute one between sensors
   Innovations innovations_;
   // Buffers of an update: sensors' rows first, then soft constraints.
   Index rows_ = 0;
   VectorXd residual_, noise_, error_, whitened_;
   MatrixXd h_, w_, s_, kept_, inverse_, unused_w_;
+  MatrixXd accelerations_;         // information about those of joints and base
   std::vector<bool> is_measured_;  // of each triple of rows
   std::vector<double> leave_out_;  // of each triple: squared leave-one-out innovation over its expectation
   std::vector<double> ordered_;    // buffer of medians

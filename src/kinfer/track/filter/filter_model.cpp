@@ -184,6 +184,10 @@ void set_processes(FilterModel& filter, const TrackingModel& model) {
                                                                  : 0));
     if (body.motion == TrackingMotion::prismatic)
       filter.prismatic.push_back(prismatic_range(joint, filter.layout.position[b]));
+    const int parent_sensor = model.bodies[static_cast<std::size_t>(body.parent)].sensor;
+    if (body.motion == TrackingMotion::revolute && dof == 1 && parent_sensor >= 0 && body.sensor >= 0)
+      filter.revolute.push_back(
+          {filter.layout.position[b], static_cast<std::size_t>(parent_sensor), static_cast<std::size_t>(body.sensor)});
     if (body.motion == TrackingMotion::revolute && dof == 3)
       filter.loose.push_back({b, joint.stray, std::max(joint.stray_time, min_stray_time)});
   }

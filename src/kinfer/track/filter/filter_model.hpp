@@ -34,6 +34,13 @@ struct PrismaticRange {
   double speed = 0.0;               ///< [m/s]
 };
 
+/// A revolute joint between two sensors. Where one of them is lost, the rates of the others show the sum of this
+/// joint's and the next one's, if their axes are parallel, and only accelerations tell them apart.
+struct RevoluteBetweenSensors {
+  Index position = 0;  ///< of the filter
+  std::size_t parent_sensor = 0, child_sensor = 0;
+};
+
 /// What lies beyond a joint of the tracking model, in the order of the bodies.
 struct JointBranch {
   std::vector<std::size_t> bodies{}, sensors{};
@@ -47,6 +54,7 @@ struct FilterModel {
   AccelerationProcess base_rotation, base_translation;
   std::vector<LooseRevoluteJoint> loose;
   std::vector<PrismaticRange> prismatic;
+  std::vector<RevoluteBetweenSensors> revolute;
   std::vector<JointBranch> joints;  ///< of each joint of the tracking model
   double gravity = standard_gravity;
   InsLevel bias_walk{};  ///< variance per second of a bias' random walk
