@@ -7,7 +7,7 @@
 #   hour [3600]      seconds of six sensors: identify
 #   poses [1000000]  calibrate
 #   joints [40]      calibrate a robot with that many
-#   follow [86400]   seconds of six sensors at 50 Hz through track --follow: memory as it goes
+#   follow [86400 [50]]  seconds of six sensors at that rate [Hz] through track: memory as it goes
 # KINFER: the program; default build/bin/kinfer. Files go below ${TMPDIR:-/tmp} and are removed.
 set -euo pipefail
 home=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
@@ -77,7 +77,7 @@ case $row in
     "$kinfer" simulate-poses --robot robot.toml --poses 400 --out data --quiet
     timed "calibrate" "$kinfer" --limit-time 0 calibrate --robot data/robot.toml --data data/poses.csv --out out --quiet || true ;;
   follow)
-    "$kinfer" simulate excavator --rate 50 --duration 120 --out drive --quiet
+    "$kinfer" simulate excavator --rate "${3:-50}" --duration 120 --out drive --quiet
     "$kinfer" identify drive/imu.csv --out machine --quiet || true
     # The drive again and again, with the time going on.
     repeat='NR == 1 { print; next } { rest[++n] = substr($0, index($0, ",")); t[n] = $1 }

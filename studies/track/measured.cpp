@@ -15,6 +15,7 @@
 #include "kinfer/measurement/ins_selection.hpp"
 #include "kinfer/track/tracker.hpp"
 #include "studies/support/optical_truth.hpp"
+#include "studies/track/pairwise.hpp"
 #include "studies/track/relative_orientation.hpp"
 
 namespace kinfer::study::track_study {
@@ -88,8 +89,18 @@ Mat3 rotation_along(const RotationPath& path, const TrackState& state) {
   return rotation.toRotationMatrix();
 }
 
+/// By pairwise filters, which know no other joints.
+Mat3 rotation_along(const RotationPath& path, const PairwiseFilters& filters) {
+  Mat3 rotation = Mat3::Identity();
+  for (const RotationPath::Step& step : path.steps) {
+    const Mat3 own = filters.rotation(step.joint);
+    rotation = Mat3(rotation * (step.is_inverse ? Mat3(own.transpose()) : own));
+  }
+  return rotation;
+}
+
 struct TrackedLog {
-  std::vector<RelativeOrientation> chain, composed;
+  std::vector<RelativeOrientation> chain, composed, pairwise;
   std::vector<std::string> alarms;
 };
 
@@ -97,8 +108,10 @@ TrackedLog tracked(const TrackingModel& model, const MeasuredLog& log) {
   TrackedLog result;
   result.chain.resize(log.pairs.size());
   result.composed.resize(log.pairs.size());
+  result.pairwise.resize(log.pairs.size());
   kinfer::track::Tracker tracker(model, {});
   kinfer::track::ComposedFilters composed(model, {});
+  PairwiseFilters pairwise(model);
   std::vector<RotationPath> paths;
   for (const MeasuredLog::Pair& pair : log.pairs) paths.push_back(rotation_path(model, pair));
   std::vector<const InsSensor*> sensors;
@@ -113,12 +126,16 @@ TrackedLog tracked(const TrackingModel& model, const MeasuredLog& log) {
       row.sensors[s] = sample(*sensors[s], log.tracked.time(*sensors[s]), r);
     tracker.add(row);
     composed.add(row);
+    pairwise.add(row);
     if (!tracker.state().started) continue;
     for (std::size_t i = 0; i < paths.size(); ++i) {
       result.chain[i].time.push_back(row.time);
       result.chain[i].rotation.push_back(rotation_along(paths[i], tracker.state()));
       result.composed[i].time.push_back(row.time);
       result.composed[i].rotation.push_back(rotation_along(paths[i], composed.state()));
+      if (r == 0) continue;
+      result.pairwise[i].time.push_back(time[r - 1]);
+      result.pairwise[i].rotation.push_back(rotation_along(paths[i], pairwise));
     }
     for (const TrackAlarm& alarm : tracker.state().alarms) {
       const std::string text = fmt::format("{} {}", kinfer::name(alarm.kind), std::max(alarm.sensor, alarm.joint));
@@ -144,8 +161,8 @@ void track(const MeasuredLog& log) {
     const auto rms = [&](const RelativeOrientation& estimate) {
       return rms_difference(estimate, log.pairs[i].reference, time.front() + settled, time.back()) / degree;
     };
-    fmt::print("  {}-{} {:.2f} ({:.2f})", log.pairs[i].parent, log.pairs[i].child, rms(result.chain[i]),
-               rms(result.composed[i]));
+    fmt::print("  {}-{} {:.2f} ({:.2f}, {:.2f})", log.pairs[i].parent, log.pairs[i].child, rms(result.chain[i]),
+               rms(result.composed[i]), rms(result.pairwise[i]));
   }
   for (const std::string& alarm : result.alarms) fmt::print("; {}", alarm);
   fmt::print("\n");
@@ -222,7 +239,8 @@ void track_measured(const std::string& folder, const std::string& only) {
     fmt::print("measured chains are skipped: KINFER_DATA does not name a folder\n");
     return;
   }
-  fmt::print("pair of sensors: rms angle between relative orientations [deg] (composed filters)\n");
+  fmt::print(
+      "pair of sensors: rms angle between relative orientations [deg] (composed filters, Weygers and Kok 2020)\n");
   const auto wanted = [&](const char* name) { return only.empty() || only == name; };
   if (wanted("diodem"))
     for (const char* mounts : {"rigid", "nonrigid"}) track_hand_moved_chain(folder + "/diodem_chain5/trial1", mounts);

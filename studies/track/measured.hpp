@@ -8,8 +8,8 @@
 namespace kinfer::study::track_study {
 
 /// Prints a row for each log: rms angle between tracked and measured relative orientations of neighbouring segments,
-/// one constant rotation on each side fitted; in brackets that of the composed filters. `folder`: of the data
-/// (KINFER_DATA); `only`: sets to run, empty: all.
+/// one constant rotation on each side fitted; in brackets that of the composed filters and of pairwise ones. `folder`:
+/// of the data (KINFER_DATA); `only`: sets to run, empty: all.
 void track_measured(const std::string& folder, const std::string& only);
 
 }  // namespace kinfer::study::track_study
