@@ -31,5 +31,30 @@ TEST(Iso9283, AccuracyAndRepeatabilityAreThoseOfTheStandard) {
   EXPECT_FALSE(poses[1].repeatability.has_value());
 }
 
+TEST(Iso9283, RowsOfOnePoseAreThoseThatComparingAllFinds) {
+  const Chain chain = arm();
+  PoseSet data = test::measured(chain, test::paper2_poses(400, test::noise_free), 1);
+  Rng rng(7);
+  const double tolerance = 1e-4;  // [rad], of revolute joints
+  for (Eigen::Index row = 0; row < data.joints.cols(); ++row)
+    for (Eigen::Index k = 0; k < data.joints.rows(); ++k)  // some pairs lie within the tolerance, others just beyond
+      data.joints(k, row) = 0.1 * std::floor(rng.uniform(-1.0, 1.0)) + tolerance * rng.uniform(-0.6, 0.6);
+  std::vector<std::vector<int>> expected;
+  for (int row = 0; row < data.rows(); ++row) {
+    const auto known = std::ranges::find_if(expected, [&](const std::vector<int>& rows) {
+      return (data.joints.col(rows.front()) - data.joints.col(row)).cwiseAbs().maxCoeff() <= tolerance;
+    });
+    if (known == expected.end())
+      expected.push_back({row});
+    else
+      known->push_back(row);
+  }
+  ASSERT_GT(expected.size(), 50u);
+  ASSERT_LT(expected.size(), 350u);
+  const std::vector<PoseAccuracy> poses = evaluate_pose_accuracy(chain, chain, data);
+  ASSERT_EQ(poses.size(), expected.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_EQ(poses[i].rows, expected[i]);
+}
+
 }  // namespace
 }  // namespace kinfer
