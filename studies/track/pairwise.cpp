@@ -49,8 +49,8 @@ PairwiseFilters::PairwiseFilters(const TrackingModel& model)
 void PairwiseFilters::update(Pair& pair, double dt) const {
   const Sensor &parent = sensors_[pair.parent], &child = sensors_[pair.child];
   if (!pair.has_started) {
-    pair.world_R_parent = Quat(rotation_between(parent.force.normalized(), Vec3::UnitZ())).toRotationMatrix();
-    pair.world_R_child = Quat(rotation_between(child.force.normalized(), Vec3::UnitZ())).toRotationMatrix();
+    pair.world_R_parent = Quat(kinfer::rotation_between(parent.force.normalized(), Vec3::UnitZ())).toRotationMatrix();
+    pair.world_R_child = Quat(kinfer::rotation_between(child.force.normalized(), Vec3::UnitZ())).toRotationMatrix();
     pair.covariance = square(start_sd) * Eigen::Matrix<double, 6, 6>::Identity();
     pair.has_started = true;
   }

@@ -37,6 +37,7 @@ TEST(Manifest, BadRowsAreNamedWithTheirLine) {
   for (const char* key : {"..", "a/b", ".hidden", "", "a b"})
     EXPECT_THAT(what(fmt::format("\"{}\",plan,\n", key)), HasSubstr("cannot name a folder")) << key;
   EXPECT_THAT(what("a,plan,'open\n"), HasSubstr("m.csv:2: a quoted argument does not end"));
+  EXPECT_EQ(what("a,plan,--seed \x01\n"), "m.csv:2: the arguments hold a control character");
   EXPECT_THAT(what(""), HasSubstr("no tasks"));
   EXPECT_THAT(parse_manifest("key,verb\na,plan\n", "m.csv").error().what, HasSubstr("arguments is missing"));
 }

@@ -106,6 +106,15 @@ Result<std::vector<std::string>> split_words(std::string_view text) {
   return words;
 }
 
+namespace {
+
+/// No program can be given a zero byte, and a manifest that is written again would lose others.
+bool has_control_character(const std::string& word) {
+  return std::ranges::any_of(word, [](unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; });
+}
+
+}  // namespace
+
 Result<std::vector<SweepTask>> parse_manifest(std::string_view text, const std::string& name) {
   KINFER_TRY(table, split_csv(text, name));
   std::map<std::string, std::size_t> columns;
@@ -123,6 +132,8 @@ Result<std::vector<SweepTask>> parse_manifest(std::string_view text, const std::
                    .line = table.line[row]};
     auto words = split_words(table.cell(row, columns["arguments"]));
     if (!words) return error("{}:{}: {}", name, task.line, words.error().what);
+    if (std::ranges::any_of(*words, has_control_character))
+      return error("{}:{}: the arguments hold a control character", name, task.line);
     task.arguments = std::move(*words);
     for (const auto& [column, member] : optional_columns)
       if (columns.contains(column)) task.*member = std::string(table.cell(row, columns[column]));

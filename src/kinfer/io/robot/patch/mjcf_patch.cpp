@@ -159,7 +159,10 @@ Result<PatchedText> patch_mjcf(std::string_view text, const std::string& name, c
   KINFER_TRY(tree, parse_mjcf_tree(text, name));
   const auto positions = all_positions(text);
   if (!positions) return error("{}: its XML is too unusual to be changed in place", name);
-  return MjcfPatcher(text, tree, *positions, tree.body_named(ends.base_link), origins).patch();
+  PatchedText patched = MjcfPatcher(text, tree, *positions, tree.body_named(ends.base_link), origins).patch();
+  // Poses at the limit of what a file may hold can be beyond it once they are moved.
+  if (const auto again = parse_mjcf(patched.text, name, ends); !again) return forward_error(again.error());
+  return patched;
 }
 
 }  // namespace kinfer
