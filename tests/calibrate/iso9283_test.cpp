@@ -37,8 +37,10 @@ TEST(Iso9283, RowsOfOnePoseAreThoseThatComparingAllFinds) {
   Rng rng(7);
   const double tolerance = 1e-4;  // [rad], of revolute joints
   for (Eigen::Index row = 0; row < data.joints.cols(); ++row)
-    for (Eigen::Index k = 0; k < data.joints.rows(); ++k)  // some pairs lie within the tolerance, others just beyond
-      data.joints(k, row) = 0.1 * std::floor(rng.uniform(-1.0, 1.0)) + tolerance * rng.uniform(-0.6, 0.6);
+    for (Eigen::Index k = 0; k < data.joints.rows(); ++k) {  // some pairs lie within the tolerance, others just beyond
+      const double step = std::floor(rng.uniform(-1.0, 1.0));
+      data.joints(k, row) = 0.1 * step + tolerance * rng.uniform(-0.6, 0.6);
+    }
   std::vector<std::vector<int>> expected;
   for (int row = 0; row < data.rows(); ++row) {
     const auto known = std::ranges::find_if(expected, [&](const std::vector<int>& rows) {
