@@ -218,6 +218,54 @@ TEST(SplinePrior, VisitsEveryThirdDifferenceOnceAndTheStartOfEveryJoint) {
   }
 }
 
+/// One block with measurements in each of these intervals.
+std::vector<InsBlock> blocks_in(Index intervals, Index begin, Index end) {
+  std::vector<InsBlock> blocks(static_cast<std::size_t>(intervals));
+  for (Index k = begin; k < end; ++k) blocks[static_cast<std::size_t>(k)].rows = 4;
+  return blocks;
+}
+
+TEST(MeasuredSpan, OfAJointIsThatOfItsSensorAndThoseBeyondAndOfTheRootThatOfAll) {
+  WholeProblem w(false);
+  w.problem.sensors[0].angular_velocity = blocks_in(200, 20, 150);
+  w.problem.sensors[1].force = blocks_in(200, 10, 30);
+  w.problem.sensors[2].angular_velocity = blocks_in(200, 50, 60);
+  w.problem.sensors[3].angular_velocity = blocks_in(200, 55, 180);
+  const InsLayout layout = layout_of(w.problem, w.x.bodies);
+  const auto span_of = [&](std::size_t dimension) {
+    return std::pair(layout.measured[dimension].begin, layout.measured[dimension].end);
+  };
+  EXPECT_EQ(span_of(0), std::pair(Index{10}, Index{180})) << "the root";
+  EXPECT_EQ(span_of(6), std::pair(Index{10}, Index{180})) << "the revolute joint carries the others";
+  EXPECT_EQ(span_of(7), std::pair(Index{50}, Index{180}));
+  for (const std::size_t spherical : {8u, 9u, 10u}) EXPECT_EQ(span_of(spherical), std::pair(Index{55}, Index{180}));
+}
+
+TEST(SplinePrior, BeforeTheFirstMeasurementAndAfterTheLastASplineStaysNearItself) {
+  WholeProblem w(true);
+  for (InsMeasurements& sensor : w.problem.sensors) sensor.angular_velocity = blocks_in(200, 150, 190);
+  const InsLayout layout = layout_of(w.problem, w.x.bodies);
+  Index steps = 0;
+  MatrixXd normal = MatrixXd::Zero(205, 205);
+  for (Index interval = 0; interval < 200; ++interval)
+    each_spline_prior(w.problem, layout, w.x.spline_coefficients, interval, [&](const SplinePriorTerm& term) {
+      if (term.spline_dimension != 0) return;
+      normal.block<6, 6>(interval, interval) += term.weights * term.weights.transpose() / (term.sd * term.sd);
+      Index first = 0;
+      while (term.weights[first] == 0.0) ++first;
+      if (term.weights[first] != -1.0 || term.weights[first + 1] != 1.0) return;
+      ++steps;
+      const Index at = interval + first;
+      EXPECT_TRUE(at < 152 || at > 191) << at;
+      EXPECT_NEAR(term.value, w.x.spline_coefficients(0, at + 1) - w.x.spline_coefficients(0, at), 1e-12);
+    });
+  EXPECT_EQ(steps, 152 + 12);
+  for (Index k = 152; k < 192; ++k) normal(k, k) += 1e6;  // measured
+  const auto covariance = invert_spd(normal);
+  ASSERT_TRUE(covariance) << "third differences alone leave no numerical inverse";
+  EXPECT_LT(std::sqrt((*covariance)(0, 0)), 10.0 * 15.0) << "15 s at 10 rad/s";
+}
+
 TEST(FactCost, OfATapeIsItsSquaredErrorInStandardDeviations) {
   InsProblem problem;
   problem.grid = {.begin = 0.0, .period = 0.1, .intervals = 10};

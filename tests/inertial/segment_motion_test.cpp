@@ -124,6 +124,46 @@ TEST(SegmentMotionOf, RowsNearAGapAndTheEndsAreNotUsable) {
   EXPECT_TRUE(found->usable[1500] && found->usable[2500]);
 }
 
+void lose(InsSensor& sensor, std::size_t begin, std::size_t end) {
+  for (std::size_t row = begin; row < end; ++row) sensor.faults[row] = acceleration_missing | angular_velocity_missing;
+}
+
+TEST(SegmentMotionOf, AHeadingRestartsBehindAGapThatNoFilterBridges) {
+  CarriedPair pair(true);
+  lose(pair.recording.sensors[1], 1000, 1080);  // 0.4 s
+  lose(pair.recording.sensors[1], 2000, 2300);
+  const auto found = segment_motion(pair.recording);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->segments[0].restarts.empty());
+  ASSERT_EQ(found->segments[1].restarts.size(), 1u);
+  EXPECT_NEAR(found->segments[1].restarts[0], found->time[2150], 0.01);
+}
+
+TEST(SegmentMotionOf, BeforeItsFirstSampleAndAfterItsLastASensorDoesNotMove) {
+  CarriedPair pair(true);
+  lose(pair.recording.sensors[1], 0, 1500);
+  lose(pair.recording.sensors[1], 2500, pair.recording.sensors[1].rows());
+  const auto found = segment_motion(pair.recording);
+  ASSERT_TRUE(found);
+  const SegmentMotion& late = found->segments[1];
+  EXPECT_TRUE(late.restarts.empty());
+  for (const std::size_t row : {0u, 1000u, 1400u, 2600u, 3500u}) {
+    EXPECT_EQ(late.angular_velocity[row], Vec3::Zero()) << row;
+    EXPECT_EQ(late.acceleration[row], Vec3::Zero()) << row;
+    EXPECT_FALSE(found->usable[row]) << row;
+  }
+  EXPECT_GT(late.angular_velocity[2000].norm(), 0.1);
+}
+
+TEST(SegmentMotionOf, SensorsThatNeverMeasureAtOneTimeAreNamed) {
+  CarriedPair pair(true);
+  lose(pair.recording.sensors[0], 2000, pair.recording.sensors[0].rows());
+  lose(pair.recording.sensors[1], 0, 2200);
+  EXPECT_EQ(segment_motion(pair.recording).error().what,
+            "arm begins to measure at 11.00 s, after base ended at 10.00 s: all sensors must measure at the same time; "
+            "--sensors names some of them");
+}
+
 TEST(SegmentMotionOf, TooFewSensorsRowsOrMeasurementsAreSaid) {
   CarriedPair pair(true);
   InsRecording one = pair.recording;
@@ -164,6 +204,23 @@ TEST(GyroBasedMotion, WithoutMagnetometersTheTiltIsRightAndTheHeadingArbitrary) 
       const Vec3 up = found->segments[s].rotation[row].row(2).transpose();  // the vertical in the sensor
       EXPECT_LT(angle_between(up, Vec3(pair.truth[s][row].conjugate() * Vec3::UnitZ())), 2.0 * degree) << row;
     }
+}
+
+TEST(GyroBasedMotion, BeforeAndBehindAGapTheHeadingIsThatOfTheFilterWithMagnetometer) {
+  CarriedPair pair(true);
+  lose(pair.recording.sensors[1], 1700, 2100);
+  const auto found = gyro_based_motion(pair.recording), by_magnetometer = segment_motion(pair.recording);
+  ASSERT_TRUE(found && by_magnetometer);
+  for (const std::size_t row : {300u, 1500u, 2400u, 3000u})
+    EXPECT_LT(angle_between(found->segments[1].rotation[row], by_magnetometer->segments[1].rotation[row]), 0.5 * degree)
+        << row;
+}
+
+TEST(Heading, StepsBehindGapsAddUp) {
+  const LinearHeading heading{.angle = 0.1, .steps = {{10.0, 0.5}, {20.0, -0.2}}};
+  EXPECT_NEAR(heading.at(9.9), 0.1, 1e-15);
+  EXPECT_NEAR(heading.at(10.0), 0.6, 1e-15);
+  EXPECT_NEAR(heading.at(25.0), 0.4, 1e-15);
 }
 
 TEST(Heading, TurnsEverythingInTheWorldAboutTheVerticalAndNotTheGyro) {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <optional>
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/geometry/fit.hpp"
@@ -66,6 +68,36 @@ Resampled resample(const InsSensor& sensor, std::span<const double> time, std::s
                       clock[i] <= known_time[after] + inertial::max_gap;
   }
   return result;
+}
+
+struct Span {
+  double begin = std::numeric_limits<double>::infinity(), end = -std::numeric_limits<double>::infinity();  // [s]
+
+  bool holds(double time) const { return begin <= time && time <= end; }
+};
+
+bool has_rate(const InsSensor& sensor, std::size_t row) {
+  return !(sensor.faults[row] & (angular_velocity_missing | angular_velocity_spike));
+}
+
+/// From a sensor's first to its last rate.
+Span measured_span(const InsSensor& sensor, std::span<const double> time) {
+  Span span;
+  for (std::size_t row = 0; row < time.size(); ++row)
+    if (has_rate(sensor, row)) span = {std::min(span.begin, time[row]), time[row]};
+  return span;
+}
+
+/// Middles of the gaps that no filter integrates across.
+std::vector<double> restarts_of(const InsSensor& sensor, std::span<const double> time) {
+  std::vector<double> restarts;
+  std::optional<double> last;
+  for (std::size_t row = 0; row < time.size(); ++row) {
+    if (!has_rate(sensor, row)) continue;
+    if (last && time[row] - *last > inertial::max_filter_gap) restarts.push_back(0.5 * (*last + time[row]));
+    last = time[row];
+  }
+  return restarts;
 }
 
 /// Period of the common clock [s]: that of the sensors; for a long recording a multiple of it, because rows spaced as
@@ -162,14 +194,20 @@ ResampledSegment resample_segment(std::span<const double> clock, const InsRecord
   m.name = sensor.name;
   const FilterOutput filter = filter_sensor(sensor, time, options.filter);
   m.rotation = rotations_on(clock, time, filter.world_q_sensor);
-  std::vector<Vec3> rate_world(clock.size()), acceleration_world(clock.size());
+  m.restarts = restarts_of(sensor, time);
+  const Span measured = measured_span(sensor, time);
+  std::vector<Vec3> rate_world(clock.size(), Vec3::Zero()), acceleration_world(clock.size(), Vec3::Zero());
   for (std::size_t i = 0; i < clock.size(); ++i) {
+    result.sound.push_back(angular_velocity.sound[i] && force.sound[i]);
+    if (!result.sound.back() && !measured.holds(clock[i])) {  // as if it stood still before and after
+      m.gyro.push_back(Vec3::Zero());
+      continue;
+    }
     m.gyro.push_back(filter.true_rate(angular_velocity.values[i], clock[i]));
     rate_world[i] = m.rotation[i] * m.gyro[i];
     // Eq. (26): its printed matrix already transforms from sensor to world, so it is not transposed; the gravity
     // measured by an accelerometer at rest must be subtracted, which (26) omits.
     acceleration_world[i] = m.rotation[i] * force.values[i] - Vec3(0.0, 0.0, options.gravity);
-    result.sound.push_back(angular_velocity.sound[i] && force.sound[i]);
   }
   m.angular_velocity = filtered(rate_world, kernel, smoothed);
   m.angular_acceleration = filtered(rate_world, kernel, smoothed_derivative);
@@ -178,6 +216,24 @@ ResampledSegment resample_segment(std::span<const double> clock, const InsRecord
       rms_about_mean(m.acceleration, inertial::max_shock_share) < options.stationary_acceleration)
     set_stationary(m);
   return result;
+}
+
+/// Why there are no rows in which all sensors measure.
+tl::unexpected<Error> no_common_rows(const InsRecording& recording) {
+  const InsSensor *first_to_end = nullptr, *last_to_begin = nullptr;
+  Span common{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  for (const InsSensor& sensor : recording.sensors) {
+    const Span span = measured_span(sensor, recording.time(sensor));
+    if (span.begin > common.begin) common.begin = span.begin, last_to_begin = &sensor;
+    if (span.end < common.end) common.end = span.end, first_to_end = &sensor;
+  }
+  if (common.begin >= common.end)
+    return error(
+        "{} begins to measure at {:.2f} s, after {} ended at {:.2f} s: all sensors must measure at the "
+        "same time; --sensors names some of them",
+        last_to_begin->name, common.begin, first_to_end->name, common.end);
+  return error("all sensors measure at one time in fewer than {} rows; --sensors names some of them",
+               inertial::min_common_rows);
 }
 
 /// Rows farther than the kernel half width from every row that is not sound in some sensor.
@@ -231,6 +287,8 @@ Result<RecordedMotion> segment_motion(const InsRecording& recording, const Segme
     if (std::ranges::count(segments[i].sound, true) < static_cast<std::ptrdiff_t>(inertial::min_rows))
       return error("sensor {} has too few usable rates and specific forces", recording.sensors[i].name);
   motion.usable = usable_rows(segments, motion.rows(), kernel.half);
+  if (std::ranges::count(motion.usable, true) < static_cast<std::ptrdiff_t>(inertial::min_common_rows))
+    return no_common_rows(recording);
   for (ResampledSegment& segment : segments) motion.segments.push_back(std::move(segment.motion));
   motion.first_motion_row = first_moving_row(motion, options.stationary_rate);
   return motion;

@@ -20,6 +20,7 @@ struct SegmentMotion {
   std::vector<Vec3> angular_velocity;      ///< [rad/s] angular velocity in the world
   std::vector<Vec3> angular_acceleration;  ///< [rad/s²] angular acceleration in the world
   std::vector<Vec3> acceleration;          ///< [m/s²] in the world, eq. (26) of paper 1 minus gravity
+  std::vector<double> restarts{};          ///< [s] gaps behind which the heading is another one, ascending
   bool still = false;                      ///< never moved: constant rotation, zero velocity and acceleration
 };
 

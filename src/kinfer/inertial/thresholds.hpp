@@ -28,6 +28,9 @@ inline constexpr double min_averaging_ratio = 1.5;
 /// Usable rows below which a sensor or a recording is refused. Larger: short recordings are refused. Data: not
 /// recorded.
 inline constexpr std::size_t min_rows = 100;
+/// Rows in which all sensors measure below which a recording is refused. Larger: sensors that hardly overlap are
+/// refused. Definition: as many as a pair fit needs.
+inline constexpr std::size_t min_common_rows = 50;
 /// Of SegmentMotionOptions::stationary_rate: a smoothed angular velocity above it is motion. Larger: the first motion
 /// is found later. Data: not recorded.
 inline constexpr double first_motion_factor = 2.0;

@@ -33,6 +33,16 @@ TEST(SelectMachine, TakesAllSensorsOfOneMachine) {
   EXPECT_TRUE(chosen.findings.empty());
 }
 
+TEST(SelectMachine, SensorsThatShareSegmentsDoNotMakeTheJointsBetweenLookBad) {
+  SegmentTree tree = test::hand_made_tree(12, test::serial_edges(12));
+  for (std::size_t i = 0; i + 1 < 12; ++i) {
+    PairFit pair = revolute_pair(i, i + 1, i % 3 == 2 ? 0.054 : 0.008);
+    if (i % 3 != 2) pair.angular_velocity = 1e-6 * Mat3::Identity();
+    test::replace_pair(tree, pair);
+  }
+  EXPECT_EQ(select_machine(ordered_by(std::move(tree)), {}).sensors.size(), 12u);
+}
+
 TEST(SelectMachine, TwoMachinesAreSeparatedAndTheRootSaysWhichOneIsWanted) {
   const OrderedMotion ordered = chain_with(7, unrelated_pair(3, 4, 1.0));
   const RecordingSelection larger = select_machine(ordered, {}), other = select_machine(ordered, "s5");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "identify/measured_segments.hpp"
 #include "kinfer/base/rng.hpp"
@@ -60,6 +61,22 @@ TEST(PairFit, OfARevoluteJointItFindsAPointOfTheAxis) {
     const Vec3 in_first = transform(general_hinge(), std::vector{angle}) * fit.point_in_second;
     EXPECT_LT((in_first - fit.point_in_first).norm(), 0.01) << angle;
   }
+}
+
+TEST(PairFit, TheHeadingsBehindTheGapsOfASensorAreFound) {
+  RecordedMotion motion = pair_with_axes(2);
+  const PairFit whole = fitted_pair(motion);
+  const double first = motion.time[200], second = motion.time[350];
+  turn(motion.segments[1], motion.time, {.steps = {{first, 1.1}, {second, -2.6}}});
+  EXPECT_GT(fitted_pair(motion).residual(), 0.5) << "with one heading";
+  motion.segments[1].restarts = {first, second};
+  const PairFit fit = fitted_pair(motion);
+  EXPECT_LT(fit.residual(), 2e-3) << "headings are searched to 1e-4 rad, which is 1e-3 m/s/s of gravity";
+  EXPECT_NEAR(fit.distance, whole.distance, 0.1);
+  EXPECT_LT((fit.point_in_first - whole.point_in_first).norm(), 2e-3);
+  const double begin = fit.heading.at(motion.time.front());
+  EXPECT_NEAR(std::remainder(fit.heading.at(first) - begin + 1.1, 2.0 * std::numbers::pi), 0.0, 5e-3);
+  EXPECT_NEAR(std::remainder(fit.heading.at(second) - begin - 1.5, 2.0 * std::numbers::pi), 0.0, 5e-3);
 }
 
 TEST(PairFit, RatesAreThoseOfTheJoint) {

@@ -54,8 +54,6 @@ Result<std::vector<JointResult>> search_links(const OrderedMotion& ordered, cons
     states[child] = std::move(joint.states);
     joints.push_back(std::move(joint));
   }
-  if (std::ranges::all_of(joints, [](const JointResult& j) { return j.joint.type == EstimatedJointType::rigid; }))
-    return error("no sensor moves relative to another: move every joint of the machine");
   return joints;
 }
 

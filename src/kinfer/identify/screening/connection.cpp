@@ -37,11 +37,18 @@ Rows thinned(std::span<const std::size_t> rows, std::size_t most) {
   return chosen;
 }
 
-SegmentMotion rows_of(const SegmentMotion& segment, const Rows& rows, std::size_t shift) {
+/// The rows of a segment in place of which those that follow `shift` rows later are taken. Its headings restart where
+/// they did in between.
+SegmentMotion rows_of(const SegmentMotion& segment, std::span<const double> time, const Rows& rows, std::size_t shift) {
   SegmentMotion part;
   part.name = segment.name;
+  const auto restarts_before = [&](std::size_t row) {
+    return std::ranges::lower_bound(segment.restarts, time[row]) - segment.restarts.begin();
+  };
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::size_t row = rows[(i + shift) % rows.size()];
+    if (i > 0 && restarts_before(row) != restarts_before(rows[(i + shift - 1) % rows.size()]))
+      part.restarts.push_back(0.5 * (time[rows[i - 1]] + time[rows[i]]));
     part.rotation.push_back(segment.rotation[row]);
     part.angular_velocity.push_back(segment.angular_velocity[row]);
     part.angular_acceleration.push_back(segment.angular_acceleration[row]);
@@ -57,7 +64,8 @@ RecordedMotion shifted_pair(const RecordedMotion& motion, std::size_t first, std
   pair.gravity = motion.gravity;
   for (const std::size_t row : rows) pair.time.push_back(motion.time[row]);
   pair.usable.assign(rows.size(), true);
-  pair.segments = {rows_of(motion.segments[first], rows, 0), rows_of(motion.segments[second], rows, shift)};
+  pair.segments = {rows_of(motion.segments[first], motion.time, rows, 0),
+                   rows_of(motion.segments[second], motion.time, rows, shift)};
   return pair;
 }
 

@@ -14,7 +14,9 @@
 namespace kinfer::identify {
 namespace {
 
-constexpr double averaging_time = 0.1;  // [s] averaging time against noise
+constexpr double averaging_time = 0.1;     // [s] averaging time against noise
+constexpr std::size_t min_tree_links = 3;  // that say what is usual
+
 /// Rms deviation of a sensor's averaged measurements from their mean.
 template <class Pick>
 double deviation_from_mean(const InsSensor& sensor, std::span<const double> time, const Pick& pick) {
@@ -58,14 +60,27 @@ double misfit(const PairFit& pair) {
 struct TreeLink {
   std::size_t parent, child;
   double misfit;
+  bool rotates;
 };
 
 std::vector<TreeLink> links_of(const SegmentTree& tree) {
   std::vector<TreeLink> links;
   for (const std::size_t child : tree.order)
-    if (tree.parent[child])
-      links.push_back({*tree.parent[child], child, misfit(tree.pair(*tree.parent[child], child))});
+    if (tree.parent[child]) {
+      const PairFit& pair = tree.pair(*tree.parent[child], child);
+      links.push_back({*tree.parent[child], child, misfit(pair), pair.relative_rate() > min_rotating_rate});
+    }
   return links;
+}
+
+/// Of the joints that rotate, where there are some: two sensors on one segment leave less than any joint.
+double usual_misfit(const std::vector<TreeLink>& links) {
+  std::vector<double> all, rotating;
+  for (const TreeLink& link : links) {
+    all.push_back(link.misfit);
+    if (link.rotates) rotating.push_back(link.misfit);
+  }
+  return median(rotating.size() >= min_tree_links ? rotating : all);
 }
 
 /// Connected groups of segments by the links that are kept, each in the order of the sensors.
@@ -156,10 +171,8 @@ RecordingSelection select_machine(const OrderedMotion& ordered, const std::optio
   const std::size_t segments = ordered.motion.segments.size();
   const std::vector<TreeLink> links = links_of(ordered.tree);
   RecordingSelection chosen = select_all(segments);
-  if (links.size() < 3) return chosen;
-  std::vector<double> misfits;
-  for (const TreeLink& link : links) misfits.push_back(link.misfit);
-  const double median_misfit = median(misfits);
+  if (links.size() < min_tree_links) return chosen;
+  const double median_misfit = usual_misfit(links);
   std::vector<TreeLink> kept, cut;
   for (const TreeLink& link : links) (is_no_joint(ordered.tree, link, median_misfit) ? cut : kept).push_back(link);
   if (cut.empty()) return chosen;

@@ -90,4 +90,8 @@ inline constexpr double excited_residual_ratio = 5.0;
 /// [s] Shorter halves of a recording are not judged by themselves: shifts by an eighth of it are too short.
 inline constexpr double min_connection_time = 8.0;
 
+/// Of the nearest others with which a sensor that is left out is compared in parts of the recording. Larger: time that
+/// grows with the square of the number of sensors. All others, where the recording has seven sensors.
+inline constexpr std::size_t max_partners = 6;
+
 }  // namespace kinfer::identify

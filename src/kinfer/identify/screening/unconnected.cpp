@@ -6,6 +6,7 @@
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/identify/screening/thresholds.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -44,12 +45,24 @@ const Segments& chosen_group(const std::vector<Segments>& groups, const Recorded
   return *std::ranges::max_element(groups, {}, &Segments::size);
 }
 
-/// Where a segment is connected with any of the others in a part of the recording only.
-std::optional<PartConnection> connected_part(const RecordedMotion& motion, std::size_t segment, int threads) {
-  std::vector<PairConnection> pairs(motion.segments.size());
-  parallel_for(pairs.size(), threads, [&](std::size_t other) {
-    if (other != segment) pairs[other] = pair_connection(motion, other, segment);
-  });
+/// The segments whose motion explains that of one best, in the order of the sensors.
+Segments nearest_segments(const SegmentTree& tree, std::size_t segment, std::size_t segments) {
+  Segments others;
+  for (std::size_t s = 0; s < segments; ++s)
+    if (s != segment) others.push_back(s);
+  std::ranges::stable_sort(others, {}, [&](std::size_t s) { return tree.pair(segment, s).distance; });
+  if (others.size() > max_partners) others.resize(max_partners);
+  std::ranges::sort(others);
+  return others;
+}
+
+/// Where a segment is connected with one of the nearest others in a part of the recording only. A joint of half of the
+/// recording leaves less than none at all; all pairs of 60 sensors would take minutes.
+std::optional<PartConnection> connected_part(const OrderedMotion& ordered, std::size_t segment, int threads) {
+  const Segments others = nearest_segments(ordered.tree, segment, ordered.motion.segments.size());
+  std::vector<PairConnection> pairs(others.size());
+  parallel_for(pairs.size(), threads,
+               [&](std::size_t i) { pairs[i] = pair_connection(ordered.motion, others[i], segment); });
   for (const PairConnection& pair : pairs)
     if (const auto part = only_connected_part(pair)) return part;
   return std::nullopt;
@@ -97,7 +110,7 @@ std::vector<Finding> findings_about(const OrderedMotion& ordered, const Segments
   std::vector<Finding> mixed, strangers;
   for (const std::size_t s : group) {
     const std::string& name = ordered.motion.segments[s].name;
-    if (const auto part = connected_part(ordered.motion, s, threads))
+    if (const auto part = connected_part(ordered, s, threads))
       mixed.push_back(mixed_finding(name, *part));
     else
       strangers.push_back(stranger_finding(name, is_minority));

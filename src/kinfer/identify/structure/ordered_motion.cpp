@@ -12,8 +12,11 @@ void align_headings(RecordedMotion& motion, const SegmentTree& tree) {
     const double sign = pair.first == parent ? 1.0 : -1.0;
     LinearHeading& heading = headings[child];
     heading.middle = pair.heading.middle;
-    heading.angle = headings[parent].at(heading.middle) + sign * pair.heading.angle;
-    heading.drift = headings[parent].drift + sign * pair.heading.drift;
+    const LinearHeading& of_parent = headings[parent];
+    heading.angle = of_parent.angle + of_parent.drift * (heading.middle - of_parent.middle) + sign * pair.heading.angle;
+    heading.drift = of_parent.drift + sign * pair.heading.drift;
+    heading.steps = of_parent.steps;
+    for (const HeadingStep& step : pair.heading.steps) heading.steps.push_back({step.time, sign * step.angle});
     turn(motion.segments[child], motion.time, heading);
   }
 }

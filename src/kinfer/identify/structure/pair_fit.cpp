@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/identify/structure/thresholds.hpp"
@@ -13,37 +15,74 @@ namespace kinfer::identify {
 namespace {
 
 constexpr int heading_starts = 24;   // around the circle
+constexpr int part_sweeps = 2;       // over the headings of the parts between gaps
 constexpr int whitening_passes = 2;  // passes weighted by the residual's covariance
 
-/// Coarse grid of headings, then pattern search in angle, drift and tilt with halved steps.
+/// The numbers of a WorldRotation, with an offset of the heading for each part of the rows between gaps.
+struct WorldNumbers {
+  double angle = 0.0, drift = 0.0;  // [rad], [rad/s]
+  Vec2 tilt = Vec2::Zero();
+  std::vector<double> offsets;  // [rad]
+};
+
+/// Coarse grid of headings, then pattern search in angle, drift and tilt with halved steps. The heading of a part
+/// behind a gap is scanned around the circle, too; that of the longest part is zero by definition.
 WorldRotation search_world_rotation(const PairProblem& problem) {
   constexpr double coarse = 2.0 * std::numbers::pi / heading_starts, min_step = 1e-4;
-  WorldRotation best = problem.world_rotation(0.0, 0.0, Vec2::Zero());
-  double least = problem.cost(best);
-  const auto try_rotation = [&](double angle, double drift, const Vec2& tilt) {
-    const WorldRotation world_rotation = problem.world_rotation(angle, drift, tilt);
-    const double cost = problem.cost(world_rotation);
+  const std::vector<std::size_t>& parts = problem.parts();
+  const auto longest = static_cast<std::size_t>(std::ranges::max_element(parts) - parts.begin());
+  const auto rotation_of = [&](const WorldNumbers& x) {
+    return problem.world_rotation(x.angle, x.drift, x.tilt, x.offsets);
+  };
+  WorldNumbers best{.offsets = std::vector<double>(parts.size(), 0.0)};
+  double least = problem.cost(rotation_of(best));
+  const auto improves = [&](WorldNumbers trial) {
+    const double cost = problem.cost(rotation_of(trial));
     if (!(cost < least)) return false;
-    best = world_rotation;
+    best = std::move(trial);
     least = cost;
     return true;
   };
-  for (int k = 1; k < heading_starts; ++k) try_rotation(k * coarse, 0.0, Vec2::Zero());
+  const auto changed = [&](double angle, double drift, const Vec2& tilt) {
+    return WorldNumbers{best.angle + angle, best.drift + drift, best.tilt + tilt, best.offsets};
+  };
+  const auto shifted = [](WorldNumbers x, std::size_t part, double by) {
+    x.offsets[part] += by;
+    return x;
+  };
+  const auto scan_angle = [&, start = best] {
+    for (int k = 1; k < heading_starts; ++k) {
+      WorldNumbers trial = best;
+      trial.angle = start.angle + k * coarse;
+      improves(std::move(trial));
+    }
+  };
+  const auto scan_part = [&](std::size_t part) {
+    const WorldNumbers start = best;
+    for (int k = 1; k < heading_starts; ++k) improves(shifted(start, part, k * coarse));
+  };
+  const auto improves_part = [&](double step) {
+    for (std::size_t part = 0; part < parts.size(); ++part)
+      if (part != longest && (improves(shifted(best, part, step)) || improves(shifted(best, part, -step)))) return true;
+    return false;
+  };
+  scan_angle();
+  for (int sweep = 0; sweep < part_sweeps && parts.size() > 1; ++sweep) {
+    for (std::size_t part = 0; part < parts.size(); ++part)
+      if (part != longest) scan_part(part);
+    scan_angle();
+  }
+  const Vec2 level = Vec2::Zero(), x = Vec2::UnitX(), y = Vec2::UnitY();
   for (double step = 0.5 * coarse; step > min_step;) {
     const double drift_step = 0.01 * step, tilt_step = 0.1 * step;  // [rad/s] for a log of minutes; [rad]
-    const auto heading = best.heading;
-    const Vec2 tilt = best.tilt;
-    const auto try_tilt = [&](const Vec2& by) {
-      return try_rotation(heading.angle, heading.drift, tilt + tilt_step * by);
-    };
-    const bool better = try_rotation(heading.angle + step, heading.drift, tilt) ||
-                        try_rotation(heading.angle - step, heading.drift, tilt) ||
-                        try_rotation(heading.angle, heading.drift + drift_step, tilt) ||
-                        try_rotation(heading.angle, heading.drift - drift_step, tilt) || try_tilt(Vec2::UnitX()) ||
-                        try_tilt(-Vec2::UnitX()) || try_tilt(Vec2::UnitY()) || try_tilt(-Vec2::UnitY());
+    const bool better = improves(changed(step, 0.0, level)) || improves(changed(-step, 0.0, level)) ||
+                        improves(changed(0.0, drift_step, level)) || improves(changed(0.0, -drift_step, level)) ||
+                        improves(changed(0.0, 0.0, tilt_step * x)) || improves(changed(0.0, 0.0, -tilt_step * x)) ||
+                        improves(changed(0.0, 0.0, tilt_step * y)) || improves(changed(0.0, 0.0, -tilt_step * y)) ||
+                        improves_part(step);
     if (!better) step *= 0.5;
   }
-  return best;
+  return rotation_of(best);
 }
 
 /// Inverse of the mean square plus the floor's, scaled to the identity if isotropic.

@@ -35,15 +35,28 @@ PairProblem::PairProblem(const RecordedMotion& motion, std::size_t first, std::s
     : motion_(motion), a_(motion.segments[first]), b_(motion.segments[second]), rows_(rows), headings_(headings) {
   begin_ = motion.time[rows.front()];
   end_ = motion.time[rows.back()];
-  for (HeadingWindow& window : windows_)
-    for (auto& row : window.force) row.fill(Mat7::Zero());
-  for (const std::size_t row : rows) add(row);
-  for (HeadingWindow& window : windows_)
-    if (window.share > 0.0) window.time /= window.share;
+  make_windows();
+  for (HeadingWindow& window : windows_) window.time /= window.share;
 }
 
-WorldRotation PairProblem::world_rotation(double angle, double drift, const Vec2& tilt) const {
-  return {{angle, drift, 0.5 * (begin_ + end_)}, tilt};
+WorldRotation PairProblem::world_rotation(double angle, double drift, const Vec2& tilt,
+                                          const std::vector<double>& offsets) const {
+  WorldRotation rotation{{angle + offsets[0], drift, 0.5 * (begin_ + end_)}, tilt};
+  for (std::size_t part = 1; part < offsets.size(); ++part)
+    rotation.heading.steps.push_back({part_begin_[part], offsets[part] - offsets[part - 1]});
+  return rotation;
+}
+
+/// Squared deviations of the headings from the magnetometers' in units of their sd.
+double PairProblem::magnetic_cost(const WorldRotation& world_rotation) const {
+  if (headings_ == HeadingReference::arbitrary) return 0.0;
+  const auto square_of = [](double heading) {
+    const double ratio = std::remainder(heading, 2.0 * std::numbers::pi) / magnetic_heading_sd;
+    return ratio * ratio;
+  };
+  double heading = world_rotation.heading.angle, cost = square_of(heading);
+  for (const HeadingStep& step : world_rotation.heading.steps) cost += square_of(heading += step.angle);
+  return cost;
 }
 
 double PairProblem::cost(const WorldRotation& world_rotation) const {
@@ -52,15 +65,11 @@ double PairProblem::cost(const WorldRotation& world_rotation) const {
   const double square = normal.square + (x ? x->dot(normal.right) : 0.0);
   const double noise = pair_acceleration_floor * pair_acceleration_floor;
   const double drift_ratio = world_rotation.heading.drift / heading_drift_sd;
-  const double heading_ratio =
-      headings_ == HeadingReference::magnetometers
-          ? std::remainder(world_rotation.heading.angle, 2.0 * std::numbers::pi) / magnetic_heading_sd
-          : 0.0;
   const double tilt_ratio_squared = world_rotation.tilt.squaredNorm() / (vertical_tilt_sd * vertical_tilt_sd);
   const double independent_samples = static_cast<double>(rows_.size()) / rows_per_independent_sample;
   return 1.5 * std::log(std::max(0.0, square) / 3.0 + noise) +
          code_length(mean_square_rate(world_rotation), pair_rate_floor) +
-         0.5 * (drift_ratio * drift_ratio + heading_ratio * heading_ratio + tilt_ratio_squared) / independent_samples;
+         0.5 * (drift_ratio * drift_ratio + magnetic_cost(world_rotation) + tilt_ratio_squared) / independent_samples;
 }
 
 void PairProblem::solve(PairFit& fit, const Mat3& weight) const {
@@ -109,13 +118,33 @@ Eigen::Matrix<double, 12, 1> PairProblem::prior() const {
   return diagonal;
 }
 
-std::size_t PairProblem::window_of(std::size_t row) const {
-  const double share = (motion_.time[row] - begin_) / std::max(end_ - begin_, 1e-9);
-  return std::min(heading_windows - 1, static_cast<std::size_t>(share * static_cast<double>(heading_windows)));
+void PairProblem::make_windows() {
+  std::vector<double> restarts = a_.restarts;
+  restarts.insert(restarts.end(), b_.restarts.begin(), b_.restarts.end());
+  std::ranges::sort(restarts);
+  const double length = std::max(end_ - begin_, 1e-9);
+  std::size_t gaps = 0, last_gaps = 0, last_window = heading_windows;
+  for (const std::size_t row : rows_) {
+    const double time = motion_.time[row];
+    while (gaps < restarts.size() && restarts[gaps] <= time) ++gaps;
+    const auto window = std::min(
+        heading_windows - 1, static_cast<std::size_t>((time - begin_) / length * static_cast<double>(heading_windows)));
+    if (parts_.empty() || gaps != last_gaps) {
+      parts_.push_back(0);
+      part_begin_.push_back(gaps > 0 ? restarts[gaps - 1] : begin_);
+    }
+    if (windows_.empty() || gaps != last_gaps || window != last_window) {
+      windows_.emplace_back();
+      for (auto& moments : windows_.back().force) moments.fill(Mat7::Zero());
+    }
+    ++parts_.back();
+    last_gaps = gaps;
+    last_window = window;
+    add(windows_.back(), row);
+  }
 }
 
-void PairProblem::add(std::size_t row) {
-  HeadingWindow& window = windows_[window_of(row)];
+void PairProblem::add(HeadingWindow& window, std::size_t row) {
   const double n = count();
   const Row7 u = point_jacobian(a_, row, motion_.gravity), v = point_jacobian(b_, row, motion_.gravity);
   of_first_ += u.transpose() * u / n;

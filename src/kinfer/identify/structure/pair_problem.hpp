@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <vector>
 
@@ -31,7 +32,7 @@ struct PairFit {
 /// Where the headings of a pair come from.
 enum class HeadingReference { arbitrary, magnetometers };
 
-inline constexpr std::size_t heading_windows = 8;  // of equal length, within which the heading is constant
+inline constexpr std::size_t heading_windows = 8;  // of equal length, within which the drift is constant
 
 using Vec2 = Eigen::Vector2d;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
@@ -68,7 +69,11 @@ class PairProblem {
   PairProblem(const RecordedMotion& motion, std::size_t first, std::size_t second, const std::vector<std::size_t>& rows,
               HeadingReference headings);
 
-  WorldRotation world_rotation(double angle, double drift, const Vec2& tilt) const;
+  /// `offsets` [rad]: of the heading in each part, one per part.
+  WorldRotation world_rotation(double angle, double drift, const Vec2& tilt, const std::vector<double>& offsets) const;
+
+  /// Parts of the rows between the gaps of the two sensors, within which no heading restarts: the number of their rows.
+  const std::vector<std::size_t>& parts() const { return parts_; }
 
   /// Code length per row [nats] plus the prior of E; the residual's covariance is taken as isotropic.
   double cost(const WorldRotation& world_rotation) const;
@@ -88,8 +93,9 @@ class PairProblem {
 
   double count() const { return static_cast<double>(rows_.size()); }
   Eigen::Matrix<double, 12, 1> prior() const;
-  std::size_t window_of(std::size_t row) const;
-  void add(std::size_t row);
+  void make_windows();
+  void add(HeadingWindow& window, std::size_t row);
+  double magnetic_cost(const WorldRotation& world_rotation) const;
   Normal normal_equations(const WorldRotation& world_rotation) const;
   Eigen::Matrix<double, 3, 13> difference_jacobian(const WorldRotation& world_rotation, std::size_t row) const;
 
@@ -99,7 +105,9 @@ class PairProblem {
   HeadingReference headings_;
   double begin_ = 0.0, end_ = 0.0;
   Mat7 of_first_ = Mat7::Zero(), of_second_ = Mat7::Zero();
-  std::array<HeadingWindow, heading_windows> windows_;
+  std::vector<HeadingWindow> windows_;
+  std::vector<std::size_t> parts_;
+  std::vector<double> part_begin_;  // [s]
 };
 
 }  // namespace kinfer::identify

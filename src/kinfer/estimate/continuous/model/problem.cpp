@@ -32,6 +32,41 @@ void each_error(const InsProblem& problem, const InsLayout& layout, Errors& all,
   visit(clock + 1, 1, &errors.clock.drift, is_reference ? certain : problem.prior.clock_drift);
 }
 
+MeasuredSpan united(const MeasuredSpan& a, const MeasuredSpan& b) {
+  if (a.begin >= a.end) return b;
+  if (b.begin >= b.end) return a;
+  return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
+}
+
+MeasuredSpan measured_span(const InsMeasurements& sensor) {
+  MeasuredSpan span;
+  for (const auto* blocks : {&sensor.angular_velocity, &sensor.force})
+    for (std::size_t k = 0; k < blocks->size(); ++k)
+      if ((*blocks)[k].rows > 0) span = united(span, {static_cast<Index>(k), static_cast<Index>(k) + 1});
+  return span;
+}
+
+/// A joint moves its own sensor and those beyond; the root's motion moves all.
+std::vector<MeasuredSpan> measured_spans(const InsProblem& problem, const InsBodies& bodies, const InsLayout& layout) {
+  std::vector<MeasuredSpan> of_body(bodies.size());
+  for (std::size_t b = bodies.size(); b-- > 0;) {
+    if (bodies[b].sensor >= 0)
+      of_body[b] = united(of_body[b], measured_span(problem.sensors[static_cast<std::size_t>(bodies[b].sensor)]));
+    if (bodies[b].parent >= 0) {
+      MeasuredSpan& parent = of_body[static_cast<std::size_t>(bodies[b].parent)];
+      parent = united(parent, of_body[b]);
+    }
+  }
+  for (MeasuredSpan& span : of_body)
+    if (span.begin >= span.end) span = {0, problem.grid.intervals};  // nothing to extrapolate from
+  std::vector<MeasuredSpan> of_dimension(static_cast<std::size_t>(layout.spline_dimensions),
+                                         of_body.empty() ? MeasuredSpan{} : of_body.front());
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    for (Index i = 0; layout.spline_dimension[b] >= 0 && i < degrees_of_freedom(bodies[b].motion); ++i)
+      of_dimension[static_cast<std::size_t>(layout.spline_dimension[b] + i)] = of_body[b];
+  return of_dimension;
+}
+
 /// `step`: 3 per unknown point, 3 per touched point, 10 per closure, then the surveyor's frame: translation and
 /// rotation.
 void change_facts(InsFactUnknowns& facts, ConstVectorRef step) {
@@ -62,6 +97,7 @@ InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
     layout.spline_dimension.push_back(body.motion == JointMotion::fixed ? -1 : layout.spline_dimensions);
     layout.spline_dimensions += degrees_of_freedom(body.motion);
   }
+  layout.measured = measured_spans(problem, bodies, layout);
   layout.has_clocks = problem.prior.clock_offset > 0.0;
   const auto append = [&](Index count) { return std::exchange(layout.errors_each, layout.errors_each + count); };
   append(layout.has_matrices ? 24 : 6);

@@ -88,6 +88,13 @@ struct InsUnknowns {
 };
 
 /// Index of each unknown.
+/// Intervals from the first to the last in which some sensor measures that moves with a spline dimension.
+struct MeasuredSpan {
+  Eigen::Index begin = 0, end = 0;
+
+  bool holds(Eigen::Index interval) const { return begin <= interval && interval < end; }
+};
+
 struct InsLayout {
   Eigen::Index spline_dimensions = 0;          ///< spline dimensions
   Eigen::Index global_parameters = 0;          ///< number of global parameters
@@ -95,6 +102,7 @@ struct InsLayout {
   std::vector<Eigen::Index> body, error;       ///< first global parameter of each body and sensor
   std::vector<Eigen::Index> spline_dimension;  ///< first spline dimension of each body's joint; −1: none
   Eigen::Index bias_process = 0;               ///< unknowns per time segment: six per sensor, or none
+  std::vector<MeasuredSpan> measured;          ///< of each spline dimension
   bool has_matrices = false, has_clocks = false, has_tilts = false;
   Eigen::Index errors_each = 0;                    ///< unknowns per sensor: [b_g, b_a, S_g, S_a, clock, tilt]
   Eigen::Index clock_error = -1, tilt_error = -1;  ///< offsets in these; −1: absent
