@@ -29,8 +29,8 @@ inline constexpr double harm_probability = 0.975;
 /// Set on UR10 A: with 0.1, gear harmonics are accepted that lower the held-out mean by 13 % and put one pose 3.7 mm
 /// off.
 KINFER_THRESHOLD(calibrate, part_beyond, 0.25);
-/// [1] of the size of a term that held-out errors speak against, before it is refused. Set on MUKCa and FR3, where it
-/// lowers the held-out mean by 0.4 %; none of 60 simulated robots changes.
+/// [1] of the size of a term that held-out errors speak against, before it is refused. Set on MUKCa and FR3; its
+/// effect was not measured again.
 inline constexpr double softening = 0.3;
 inline constexpr int bootstrap_draws = 200;  ///< more: slower, the probability more accurate than 1 %
 /// [1] of the rows at each end of a principal direction, held out together; larger: farther beyond the fitted poses.

@@ -87,7 +87,6 @@ struct InsUnknowns {
   InsFactUnknowns facts{};
 };
 
-/// Index of each unknown.
 /// Intervals from the first to the last in which some sensor measures that moves with a spline dimension.
 struct MeasuredSpan {
   Eigen::Index begin = 0, end = 0;
@@ -95,6 +94,7 @@ struct MeasuredSpan {
   bool holds(Eigen::Index interval) const { return begin <= interval && interval < end; }
 };
 
+/// Index of each unknown.
 struct InsLayout {
   Eigen::Index spline_dimensions = 0;          ///< spline dimensions
   Eigen::Index global_parameters = 0;          ///< number of global parameters
