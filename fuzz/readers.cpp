@@ -53,6 +53,12 @@ const Chain& two_joints() {
   return chain;
 }
 
+/// What was written of something that was read.
+template <class T>
+void expect_readable(const Result<T>& again) {
+  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+}
+
 /// More bodies inside each other than a reader of XML takes.
 bool is_deep(const Chain& chain) {
   return chain.joints.size() > 90;
@@ -62,7 +68,7 @@ void read_robot(const std::string& bytes) {
   const auto robot = parse_robot_toml(bytes, name);
   if (!robot) return;
   const auto again = parse_robot_toml(format_robot_toml(*robot), name);
-  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+  expect_readable(again);
   if (is_deep(robot->chain)) return;
   const auto mjcf = parse_mjcf(format_mjcf(robot->chain), name);
   KINFER_EXPECT(mjcf, "the MJCF that was written cannot be read: {}", mjcf.error().what);
@@ -72,7 +78,7 @@ void read_urdf_text(const std::string& bytes) {
   const auto chain = parse_urdf(bytes, name);
   if (!chain) return;
   const auto again = parse_urdf(format_urdf(*chain), name);
-  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+  expect_readable(again);
 }
 
 Chain with_origins_moved(Chain chain) {
@@ -100,14 +106,14 @@ void read_mjcf_text(const std::string& bytes) {
   write_back(bytes, *chain);
   if (is_deep(*chain)) return;
   const auto again = parse_mjcf(format_mjcf(*chain), name);
-  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+  expect_readable(again);
 }
 
 void read_poses(const std::string& bytes) {
   const auto set = parse_pose_set(bytes, name, two_joints(), {});
   if (!set) return;
   const auto again = parse_pose_set(format_pose_set_csv(*set, two_joints(), FileUnits::mm_deg), name, two_joints(), {});
-  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+  expect_readable(again);
 }
 
 void read_foreign(const std::string& bytes) {
@@ -150,21 +156,21 @@ void read_grade(const std::string& bytes) {
   const auto grade = parse_sensor_grade(bytes, name);
   if (!grade) return;
   const auto again = parse_sensor_grade(format_sensor_grade(*grade), name);
-  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+  expect_readable(again);
 }
 
 void read_tracking(const std::string& bytes) {
   const auto model = parse_tracking_model(bytes, name);
   if (!model) return;
   const auto again = parse_tracking_model(format_tracking_model(*model), name);
-  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+  expect_readable(again);
 }
 
 void read_sweep(const std::string& bytes) {
   const auto tasks = parse_manifest(bytes, name);
   if (!tasks) return;
   const auto again = parse_manifest(format_manifest(*tasks), name);
-  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+  expect_readable(again);
   KINFER_EXPECT(*again == *tasks, "tasks change where they are written and read");
 }
 
@@ -172,22 +178,22 @@ void read_net(const std::string& bytes) {
   const auto net = parse_mlp(bytes, name);
   if (!net) return;
   const auto again = parse_mlp(format_mlp(*net), name);
-  KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+  expect_readable(again);
 }
 
 /// What a sweep keeps of each task, and what a merge makes of many.
 void read_fleet(const std::string& bytes) {
   if (const auto summary = parse_task_summary(bytes)) {
     const auto again = parse_task_summary(format_task_summary(*summary));
-    KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+    expect_readable(again);
   }
   if (const auto information = parse_information(bytes)) {
     const auto again = parse_information(format_information(*information));
-    KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+    expect_readable(again);
   }
   if (const auto population = parse_population(bytes, name)) {
     const auto again = parse_population(format_population(*population), name);
-    KINFER_EXPECT(again, "what was written cannot be read: {}", again.error().what);
+    expect_readable(again);
   }
 }
 

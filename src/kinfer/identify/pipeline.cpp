@@ -100,10 +100,6 @@ Result<std::vector<JointResult>> initial_joints(const OrderedMotion& ordered,
   return search_links(ordered, types_of(ordered, connections), link_search_options(options), rng, observer);
 }
 
-bool is_one_body(const std::vector<JointEstimate>& joints) {
-  return std::ranges::all_of(joints, [](const JointEstimate& j) { return j.type == EstimatedJointType::rigid; });
-}
-
 /// The fit begins at the pairs of sensors. Where a search contradicts its result, the fit is made again from the joints
 /// of the searches, and the better of both is kept. `links` get the certificate of what is kept. A fit of segments that
 /// have nothing to do with each other takes minutes and means nothing; that of a single pair is short.

@@ -22,6 +22,10 @@ std::string joint_name(const JointEstimate& joint) {
   return joint.parent + "-" + joint.child;
 }
 
+bool is_one_body(const std::vector<JointEstimate>& joints) {
+  return std::ranges::all_of(joints, [](const JointEstimate& j) { return j.type == EstimatedJointType::rigid; });
+}
+
 bool all_sufficient(const std::vector<JointForecast>& joints) {
   return std::ranges::all_of(joints, &JointForecast::is_sufficient);
 }

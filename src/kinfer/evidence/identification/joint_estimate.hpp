@@ -57,6 +57,9 @@ bool is_point_known(const std::array<double, 2>& point_sd, const std::vector<Vec
 /// "ins1-ins2": parent and child.
 std::string joint_name(const JointEstimate& joint);
 
+/// Whether no joint moves: all sensors are on one body.
+bool is_one_body(const std::vector<JointEstimate>& joints);
+
 /// Accuracy wanted of every joint, at 95 % confidence.
 struct AccuracyTarget {
   double line = 5e-3;       ///< [m]

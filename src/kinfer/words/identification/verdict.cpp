@@ -81,10 +81,6 @@ std::vector<std::string> warnings(const std::vector<Finding>& findings) {
   return texts;
 }
 
-bool is_one_body(const Identification& result) {
-  return std::ranges::all_of(result.joints, [](const JointEstimate& j) { return j.type == EstimatedJointType::rigid; });
-}
-
 /// Faults first, then joints and accuracy, then what else is wrong with the recording.
 VerdictText parts_of_verdict(const Identification& result) {
   std::vector<std::string> texts;
@@ -92,7 +88,7 @@ VerdictText parts_of_verdict(const Identification& result) {
     if (invalidates_result(finding)) texts.push_back(words::sentence(finding));
   std::ranges::move(refused_joint_sentences(result), std::back_inserter(texts));
   if (result.usability == Usability::do_not_use && texts.empty())
-    texts.push_back(is_one_body(result)
+    texts.push_back(is_one_body(result.joints)
                         ? phrase("one_body",
                                  "no sensor certainly moves relative to another: all of them on one body, or every "
                                  "joint must be moved, each for some seconds")
