@@ -119,10 +119,51 @@ Figures figures_of(const Run& run, const std::set<int>& wrong) {
 
 struct Regret {
   double mean = 1.0, p99 = 1.0, worst = 1.0;
+  double sd = 0.0;         // of the regret of the mean, from the paired differences of the rows
+  double foresight = 1.0;  // of the mean, over the set that other rows prefer: hindsight takes the luckiest of many
 };
 
-Regret regret_of(const Figures& chosen, const Figures& best) {
-  return {chosen.mean / best.mean, chosen.p99 / best.p99, chosen.worst / best.worst};
+/// Sum of the errors of the rows that `accepts`, without wrong ones.
+template <class Accepts>
+double sum_of(const Run& run, const std::set<int>& wrong, Accepts accepts) {
+  double sum = 0.0;
+  for (const auto& [row, error] : run.errors)
+    if (!wrong.contains(row) && accepts(row)) sum += error;
+  return sum;
+}
+
+/// Over the set that is best on the other half of the held-out rows.
+double regret_by_foresight(const Run& chosen, const std::vector<Run>& sets, const std::set<int>& wrong) {
+  std::map<int, int> part;
+  for (const auto& [row, error] : chosen.errors) part[row] = static_cast<int>(part.size()) % 2;
+  double own = 0.0, other = 0.0;
+  for (const int judged : {0, 1}) {
+    const auto is_judged = [&](int row) { return part[row] == judged; };
+    const auto decides = [&](int row) { return part[row] != judged; };
+    const Run* preferred = nullptr;
+    for (const Run& set : sets)
+      if (!set.errors.empty() && (!preferred || sum_of(set, wrong, decides) < sum_of(*preferred, wrong, decides)))
+        preferred = &set;
+    if (!preferred) return 1.0;
+    own += sum_of(chosen, wrong, is_judged), other += sum_of(*preferred, wrong, is_judged);
+  }
+  return own / other;
+}
+
+/// Standard deviation of the ratio of two means, from the differences of the rows.
+double sd_of_ratio(const Run& chosen, const Run& best, const std::set<int>& wrong) {
+  std::vector<double> differences, reference;
+  for (const auto& [row, error] : chosen.errors)
+    if (const auto other = best.errors.find(row); other != best.errors.end() && !wrong.contains(row))
+      differences.push_back(error - other->second), reference.push_back(other->second);
+  if (differences.size() < 2) return 0.0;
+  return standard_deviation(differences) / std::sqrt(static_cast<double>(differences.size())) / mean(reference);
+}
+
+Regret regret_of(const Run& chosen, const Run& best, const std::set<int>& wrong) {
+  const Figures of_chosen = figures_of(chosen, wrong), of_best = figures_of(best, wrong);
+  return {of_chosen.mean / of_best.mean, of_chosen.p99 / of_best.p99, of_chosen.worst / of_best.worst,
+          sd_of_ratio(chosen, best, wrong)};
 }
 
 /// Of a robot: by default options, and by whoever knows which terms made the data but not how large they are.
@@ -144,20 +185,22 @@ Regrets study_half(const NamedTask& named, int half, const Options& options) {
     runs.push_back(run(task, fixed_sets[i], options.threads));
   const std::set<int> wrong = wrong_rows(runs);
   const Figures chosen = figures_of(runs.front(), wrong);
-  Figures best;
-  std::string best_name;
+  const Run* best_run = &runs.front();
   for (std::size_t i = 1; i < runs.size(); ++i)
-    if (const Figures f = figures_of(runs[i], wrong);
-        !runs[i].errors.empty() && (best_name.empty() || f.mean < best.mean))
-      best = f, best_name = runs[i].model;
+    if (!runs[i].errors.empty() &&
+        (best_run == &runs.front() || figures_of(runs[i], wrong).mean < figures_of(*best_run, wrong).mean))
+      best_run = &runs[i];
+  const Figures best = figures_of(*best_run, wrong);
   const Figures geometry = runs.size() > 1 ? figures_of(runs[1], wrong) : chosen;
-  if (best_name.empty()) best = chosen;
-  const Regret regret = regret_of(chosen, best);
+  Regret regret = regret_of(runs.front(), *best_run, wrong);
+  if (runs.size() > 1) regret.foresight = regret_by_foresight(runs.front(), {runs.begin() + 1, runs.end()}, wrong);
   fmt::print(
-      "{:<22} {} | {:7.4f} {:7.4f} {:7.4f} {:7.4f} | {:7.4f} | {:7.4f} {:7.4f} {:7.4f} {:7.4f} | {:6.3f} {:6.3f} "
-      "{:6.3f} | {:5.1f} s | {} | {}\n",
+      "{:<22} {} | {:7.4f} {:7.4f} {:7.4f} {:7.4f} | {:7.4f} | {:7.4f} {:7.4f} {:7.4f} {:7.4f} | {:6.3f} ± {:.3f}, "
+      "{:6.3f}, "
+      "{:6.3f} {:6.3f} | {:5.1f} s | {} | {}\n",
       named.name, half, chosen.mean, chosen.p95, chosen.p99, chosen.worst, geometry.mean, best.mean, best.p95, best.p99,
-      best.worst, regret.mean, regret.p99, regret.worst, runs.front().seconds, runs.front().model, best_name);
+      best.worst, regret.mean, regret.sd, regret.foresight, regret.p99, regret.worst, runs.front().seconds,
+      runs.front().model, best_run->model);
   if (options.reasons) fmt::print("{}", runs.front().reasons);
   if (options.reasons > 1)
     for (const Run& run : runs) {
@@ -166,27 +209,35 @@ Regrets study_half(const NamedTask& named, int half, const Options& options) {
     }
   std::fflush(stdout);
   if (named.truth.empty()) return {regret, std::nullopt};
-  return {regret, regret_of(figures_of(run(task, named.truth, options.threads), wrong), best)};
+  return {regret, regret_of(run(task, named.truth, options.threads), *best_run, wrong)};
 }
 
 /// Columns of figures of which medians and largest ones are printed.
 struct RegretTable {
-  std::vector<double> means, tails, worsts;
+  std::vector<double> means, foresights, tails, worsts;
+  int significant = 0;  // regrets of the mean above 1 by two standard deviations
 
-  void add(const Regret& r) { means.push_back(r.mean), tails.push_back(r.p99), worsts.push_back(r.worst); }
+  void add(const Regret& r) {
+    means.push_back(r.mean), foresights.push_back(r.foresight), tails.push_back(r.p99), worsts.push_back(r.worst);
+    significant += r.mean > 1.0 + 2.0 * r.sd;
+  }
   void print(const char* of) const {
     if (means.empty()) return;
     fmt::print(
-        "{}, {} halves: regret of the mean: median {:.3f}, worst {:.3f}; of the 99 % point: worst {:.3f}; of the worst "
-        "pose: {:.3f}\n",
-        of, means.size(), median(means), *std::ranges::max_element(means), *std::ranges::max_element(tails),
+        "{}, {} halves: regret of the mean: median {:.3f}, worst {:.3f}, {} beyond chance (2 sd); over the set that "
+        "other "
+        "rows prefer: median {:.3f}, worst {:.3f}; of the 99 % point: median {:.3f}, worst {:.3f}; of the worst pose: "
+        "{:.3f}\n",
+        of, means.size(), median(means), *std::ranges::max_element(means), significant, median(foresights),
+        *std::ranges::max_element(foresights), median(tails), *std::ranges::max_element(tails),
         *std::ranges::max_element(worsts));
   }
 };
 
 void study(const Options& options) {
   fmt::print(
-      "{:<22} h | default: mean, 95 %, 99 %, worst [mm] | geometry | best fixed set | regret: mean, 99 %, worst | time "
+      "{:<22} h | default: mean, 95 %, 99 %, worst [mm] | geometry | best fixed set | regret: mean ± sd, mean over "
+      "the set that other rows prefer, 99 %, worst | time "
       "| chosen | best\n",
       "set");
   RegretTable chosen, chosen_where_known, truth;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "laws/example_chains.hpp"
 #include "support/differences.hpp"
@@ -54,6 +55,21 @@ TEST(Deviation, AHarmonicFollowsTheJointPositionAndNotTheGearedAngle) {
   chain.joints[0].gain = -2.0;
   chain.joints[0].harmonics = {{.order = 3.0, .sine = 1e-2, .cosine = 0.0}};
   EXPECT_NEAR(turned_angle(chain, 0.3), -0.6 + 1e-2 * std::sin(0.9), 1e-14);
+}
+
+TEST(Deviation, ALongSeriesOfHarmonicsIsTheSumOfItsSinesAlsoWhereItIsFoundByRecurrence) {
+  Chain chain = turntable();
+  Rng rng(3);
+  for (int order = 0; order < 95; ++order) {
+    const double sine = 1e-3 * rng.normal(), cosine = 1e-3 * rng.normal();
+    chain.joints[0].harmonics.push_back({static_cast<double>(order), sine, cosine});
+  }
+  chain.joints[0].harmonics.push_back({162.5, 1e-3, 2e-3});
+  const PoseEvaluator evaluator(chain, {});
+  for (const double q : {-5.0, -std::numbers::pi, 0.0, 1e-3, 2.7}) {
+    const VectorXd at = VectorXd::Constant(1, q);
+    EXPECT_LT((evaluator.pose(at).rotation - forward(chain, at).rotation).norm(), 1e-13) << q;
+  }
 }
 
 TEST(Deviation, BacklashFollowsTheDirectionOfApproach) {

@@ -29,6 +29,13 @@ TEST(Manifest, RowsAreTasksAndComeBackAsWritten) {
   EXPECT_EQ(*again, *tasks);
 }
 
+TEST(Manifest, AVerbWithCommasComesBackAsWritten) {
+  const std::vector<SweepTask> tasks = parse_manifest("key,verb,arguments\na,\"plan,all\",x\n", "m.csv").value();
+  const auto again = parse_manifest(format_manifest(tasks), "m.csv");
+  ASSERT_TRUE(again) << again.error().what;
+  EXPECT_EQ(again->front().verb, tasks.front().verb);
+}
+
 TEST(Manifest, BadRowsAreNamedWithTheirLine) {
   const auto what = [](const std::string& rows) {
     return parse_manifest("key,verb,arguments\n" + rows, "m.csv").error().what;

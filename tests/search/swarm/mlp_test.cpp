@@ -87,6 +87,9 @@ TEST(Mlp, ANetReadBackFromItsTextPredictsTheSameBits) {
 
 TEST(Mlp, ADamagedTextIsRefusedWithItsPosition) {
   std::string text = format_mlp(small_net());
+  EXPECT_EQ(
+      parse_mlp("kinfer-net/1 51541 51541 2 272 27", "net.txt").error().what,
+      "net.txt: the header states 51541 inputs, 51541 hidden nodes and 2 outputs, for which the file is too short");
   EXPECT_EQ(parse_mlp("something else", "net.txt").error().what,
             "net.txt: expected a network file written by kinfer: \"kinfer-net/1\" and three sizes");
   text.resize(text.size() - 30);

@@ -10,57 +10,52 @@
 
 namespace kinfer::calibrate {
 
-Chain chain_with_scaled_priors(const Estimate& fit, std::span<const int> parameters, std::span<const double> scale) {
+Chain chain_without(const Estimate& fit, std::span<const int> removed) {
   const std::vector<const Parameter*> free = fit.parameters.free();
-  const std::vector<int> own(parameters.begin(), parameters.end());
+  const std::vector<int> own(removed.begin(), removed.end());
   VectorXd x(static_cast<Eigen::Index>(free.size())), offset(static_cast<Eigen::Index>(own.size()));
   for (std::size_t k = 0; k < free.size(); ++k) x[static_cast<Eigen::Index>(k)] = fit.values[k].value;
-  // In units of the prior standard deviations, for an accurate inverse.
-  VectorXd unit(offset.size()), more(offset.size());
+  // Scaled to unit prior variance before the inversion, for accuracy.
+  VectorXd scale(offset.size());
   for (std::size_t k = 0; k < own.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    offset[i] = x[own[k]] - free[own[k]]->nominal;
-    unit[i] = free[own[k]]->prior_sd;
-    more[i] = scale[k] * scale[k] / (1.0 - scale[k] * scale[k]);
+    offset[static_cast<Eigen::Index>(k)] = x[own[k]] - free[own[k]]->nominal;
+    scale[static_cast<Eigen::Index>(k)] = free[own[k]]->prior_sd;
   }
-  MatrixXd block = unit.cwiseInverse().asDiagonal() * fit.covariance(own, own) * unit.cwiseInverse().asDiagonal();
-  block.diagonal() += more;
-  const auto inverse = invert_spd(block);
+  const MatrixXd block = fit.covariance(own, own);
+  const auto inverse = invert_spd(scale.cwiseInverse().asDiagonal() * block * scale.cwiseInverse().asDiagonal());
   KINFER_EXPECT(inverse, "parameters with priors have a positive definite covariance");
-  const VectorXd pull = unit.cwiseInverse().cwiseProduct(*inverse * unit.cwiseInverse().cwiseProduct(offset));
+  const VectorXd pull = scale.cwiseInverse().cwiseProduct(*inverse * scale.cwiseInverse().cwiseProduct(offset));
   x -= fit.covariance(Eigen::all, own) * pull;
-  for (std::size_t k = 0; k < own.size(); ++k)
-    if (scale[k] == 0.0) x[own[k]] = free[own[k]]->nominal;
+  for (const int k : own) x[k] = free[k]->nominal;
   return unpack(fit.parameters, fit.chain, x);
 }
 
-Chain chain_without(const Estimate& fit, std::span<const int> removed) {
-  return chain_with_scaled_priors(fit, removed, std::vector<double>(removed.size(), 0.0));
-}
-
-HoldoutErrors errors_with_scaled_terms(const HoldoutErrors& fits, const std::vector<CandidateParameter>& terms,
-                                       const std::function<double(Term)>& scale, const PoseSet& rows,
-                                       const std::vector<Split>& splits, int threads) {
-  std::vector<CandidateParameter> changed;
-  std::vector<double> by;
+HoldoutErrors errors_without(const HoldoutErrors& fits, const std::vector<CandidateParameter>& terms,
+                             const std::function<bool(Term)>& remove, const PoseSet& rows,
+                             const std::vector<Split>& splits, int threads) {
+  std::vector<CandidateParameter> removed;
   for (const CandidateParameter& term : terms)
-    if (const double s = scale(term.term); s < 1.0) changed.push_back(term), by.push_back(s);
-  if (changed.empty()) return {{}, fits.errors, fits.row};
+    if (remove(term.term)) removed.push_back(term);
+  if (removed.empty()) return {{}, fits.errors, fits.row};
   std::vector<Chain> chains(splits.size());
   parallel_for(splits.size(), threads, [&](std::size_t i) {
-    chains[i] = chain_with_scaled_priors(fits.split_fits[i], free_indices(fits.split_fits[i], changed), by);
+    chains[i] = chain_without(fits.split_fits[i], free_indices(fits.split_fits[i], removed));
   });
   return evaluate_holdout(chains, rows, splits, threads);
+}
+
+double rms_distance(const Chain& a, const Chain& b, const PoseSet& rows) {
+  const std::vector<Pose> of_a = evaluate_poses(a, {}, rows, Derivative::no).pose,
+                          of_b = evaluate_poses(b, {}, rows, Derivative::no).pose;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < of_a.size(); ++i) sum += (of_a[i].position - of_b[i].position).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(of_a.size()));
 }
 
 double displacement(const Chain& chain, const std::vector<CandidateParameter>& terms, const PoseSet& rows) {
   Chain without = chain;
   for (const CandidateParameter& c : terms) set_value_at(without, c.parameter.at, c.parameter.nominal);
-  const std::vector<Pose> with = evaluate_poses(chain, {}, rows, Derivative::no).pose,
-                          plain = evaluate_poses(without, {}, rows, Derivative::no).pose;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < with.size(); ++i) sum += (with[i].position - plain[i].position).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(with.size()));
+  return rms_distance(chain, without, rows);
 }
 
 }  // namespace kinfer::calibrate

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/calibrate/terms/harmonic_series.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::calibrate {
@@ -28,6 +29,12 @@ void remove_known(std::vector<Parameter>& parameters, const CandidateTerms& cand
 
 void add(CandidateTerms& candidates, Term term, const TermInputs& inputs) {
   ModelTerm made = make_model_term(term, candidates.chain, inputs);
+  const bool has_any = !made.parameters.empty();
+  remove_parts_of_series(made.parameters, made.nominal);
+  if (has_any && made.parameters.empty()) {
+    if (term != Term::spectral_harmonics) return;
+    made.missing = MissingData::spectral_line;
+  }
   remove_known(made.parameters, candidates);
   SelectionStep step{.term = term,
                      .decision = Decision::no_evidence,
@@ -79,6 +86,15 @@ CandidateTerms make_candidates(const Estimate& geometry, const CalibrationTask& 
 void add_spectral_lines(CandidateTerms& candidates, const std::vector<SpectralLine>& lines, const CalibrationTask& task,
                         const PoseSet& rows) {
   add(candidates, Term::spectral_harmonics, {task.tolerances, rows, lines});
+}
+
+void remove_parts_of_series(std::vector<Parameter>& parameters, const Chain& chain) {
+  std::erase_if(parameters, [&](const Parameter& p) {
+    const JointNumber* at = joint_number(p.at);
+    if (!at || (at->field != Field::sine && at->field != Field::cosine)) return false;
+    const Joint& joint = chain.joints[at->joint];
+    return is_in_series(joint, joint.harmonics[at->term].order);
+  });
 }
 
 ParameterSet with_parameters(ParameterSet set, const std::vector<Parameter>& more) {

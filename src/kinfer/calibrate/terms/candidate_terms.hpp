@@ -29,6 +29,9 @@ CandidateTerms make_candidates(const Estimate& geometry, const CalibrationTask& 
 void add_spectral_lines(CandidateTerms& candidates, const std::vector<SpectralLine>& lines, const CalibrationTask& task,
                         const PoseSet& rows);
 
+/// Removes harmonics that a series of their joint has already.
+void remove_parts_of_series(std::vector<Parameter>& parameters, const Chain& chain);
+
 /// The set with further parameters, also beside a joint prior of those that it has.
 ParameterSet with_parameters(ParameterSet set, const std::vector<Parameter>& more);
 

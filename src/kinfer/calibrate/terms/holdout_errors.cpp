@@ -6,29 +6,43 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/terms/decision.hpp"
+#include "kinfer/calibrate/terms/harmonic_series.hpp"
 #include "kinfer/calibrate/validation/validation_errors.hpp"
 
 namespace kinfer::calibrate {
 
 Estimate fit_rows(const Chain& start, const ParameterSet& set, const PoseSet& rows, const CalibrationTask& task,
                   const BundleOptions& options, const Observer& observer) {
-  return fit_bundle(start, restricted_to_data(set, rows), rows, task.instrument, options, observer);
+  const ParameterSet restricted = restricted_to_data(set, rows);
+  return has_series(start) ? fit_with_series(start, restricted, rows, task.instrument, options, observer)
+                           : fit_bundle(start, restricted, rows, task.instrument, options, observer);
 }
 
 HoldoutErrors cross_validate(const Estimate& fit, const ParameterSet& set, const PoseSet& rows,
                              const std::vector<Split>& splits, const CalibrationTask& task, int threads) {
-  HoldoutErrors holdout_errors;
-  holdout_errors.split_fits.resize(splits.size());
-  parallel_for(splits.size(), threads, [&](std::size_t i) {
-    holdout_errors.split_fits[i] =
-        fit_rows(fit.chain, set, select(rows, splits[i].train), task,
-                 {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only});
+  return cross_validate(fit, set, rows, std::vector<std::vector<Split>>{splits}, task, threads).front();
+}
+
+std::vector<HoldoutErrors> cross_validate(const Estimate& fit, const ParameterSet& set, const PoseSet& rows,
+                                          const std::vector<std::vector<Split>>& groups, const CalibrationTask& task,
+                                          int threads) {
+  std::vector<HoldoutErrors> errors(groups.size());
+  std::vector<std::pair<const Split*, Estimate*>> all;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    errors[g].split_fits.resize(groups[g].size());
+    for (std::size_t i = 0; i < groups[g].size(); ++i) all.emplace_back(&groups[g][i], &errors[g].split_fits[i]);
+  }
+  parallel_for(all.size(), threads, [&](std::size_t i) {
+    *all[i].second = fit_rows(fit.chain, set, select(rows, all[i].first->train), task,
+                              {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only});
   });
-  std::vector<Chain> chains;
-  for (const Estimate& split_fit : holdout_errors.split_fits) chains.push_back(split_fit.chain);
-  HoldoutErrors evaluated = evaluate_holdout(chains, rows, splits, threads);
-  evaluated.split_fits = std::move(holdout_errors.split_fits);
-  return evaluated;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    std::vector<Chain> chains;
+    for (const Estimate& split_fit : errors[g].split_fits) chains.push_back(split_fit.chain);
+    HoldoutErrors evaluated = evaluate_holdout(chains, rows, groups[g], threads);
+    errors[g].errors = std::move(evaluated.errors), errors[g].row = std::move(evaluated.row);
+  }
+  return errors;
 }
 
 HoldoutErrors evaluate_holdout(const std::vector<Chain>& chains, const PoseSet& rows, const std::vector<Split>& splits,

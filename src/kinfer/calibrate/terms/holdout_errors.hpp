@@ -25,6 +25,10 @@ Estimate fit_rows(const Chain& start, const ParameterSet& set, const PoseSet& ro
 /// Refits the model of `fit` to the training rows of each split and predicts the others.
 HoldoutErrors cross_validate(const Estimate& fit, const ParameterSet& set, const PoseSet& rows,
                              const std::vector<Split>& splits, const CalibrationTask& task, int threads);
+/// The same for several groups of splits at once, which keeps more threads busy.
+std::vector<HoldoutErrors> cross_validate(const Estimate& fit, const ParameterSet& set, const PoseSet& rows,
+                                          const std::vector<std::vector<Split>>& groups, const CalibrationTask& task,
+                                          int threads);
 
 /// Errors of the held-out rows for one chain per split, fitted to its training rows.
 HoldoutErrors evaluate_holdout(const std::vector<Chain>& chains, const PoseSet& rows, const std::vector<Split>& splits,

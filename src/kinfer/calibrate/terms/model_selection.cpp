@@ -19,7 +19,7 @@ WeighedModel fit_fixed_model(const SelectionData& data, const Estimate& geometry
     const std::vector<SpectralLine> lines = term == Term::spectral_harmonics
                                                 ? find_gear_harmonics(fixed.fit, data.rows, data.threads)
                                                 : std::vector<SpectralLine>{};
-    const ModelTerm model_term = make_model_term(term, fixed.fit.chain, {data.task.tolerances, data.rows, lines});
+    ModelTerm model_term = make_model_term(term, fixed.fit.chain, {data.task.tolerances, data.rows, lines});
     SelectionStep step{.term = term,
                        .decision = Decision::requested,
                        .missing = model_term.missing,
@@ -29,6 +29,7 @@ WeighedModel fit_fixed_model(const SelectionData& data, const Estimate& geometry
     if (model_term.missing != MissingData::none) {
       step.decision = Decision::data_missing;
     } else {
+      remove_parts_of_series(model_term.parameters, model_term.nominal);
       const ParameterSet set = with_parameters(fixed.fit.parameters, model_term.parameters);
       fixed.fit = fit_rows(model_term.nominal, set, data.rows, data.task,
                            {.detail = Detail::numbers_only, .threads = data.threads}, data.observer);

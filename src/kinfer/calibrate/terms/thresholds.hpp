@@ -29,9 +29,6 @@ inline constexpr double harm_probability = 0.975;
 /// Set on UR10 A: with 0.1, gear harmonics are accepted that lower the held-out mean by 13 % and put one pose 3.7 mm
 /// off.
 KINFER_THRESHOLD(calibrate, part_beyond, 0.25);
-/// [1] of the size of a term that held-out errors speak against, before it is refused. Set on MUKCa and FR3; its
-/// effect was not measured again.
-inline constexpr double softening = 0.3;
 inline constexpr int bootstrap_draws = 200;  ///< more: slower, the probability more accurate than 1 %
 /// [1] of the rows at each end of a principal direction, held out together; larger: farther beyond the fitted poses.
 inline constexpr double extrapolation_part = 0.25;
@@ -48,6 +45,12 @@ inline constexpr std::size_t min_spectrum_points = 60;  ///< too few below that 
 /// [Δχ²] above the expected maximum of pure noise; larger finds fewer lines.
 KINFER_THRESHOLD(calibrate, spectral_margin, 20.0);
 inline constexpr int max_spectral_lines = 24;
+/// [rad] of the coefficients of a series: where their size is sought first, and at most.
+inline constexpr double first_series_size = 1e-4, largest_series_size = 1e-3;
+/// Rows from which series and lines are compared on a part of them; more: slower.
+inline constexpr std::size_t compared_rows = 600;
+inline constexpr int series_rounds = 5;        ///< at most, of size and noise level in turn; usually three suffice
+inline constexpr double settled_noise = 0.02;  ///< [1] relative change of the noise level that ends them
 inline constexpr std::size_t gears_alone_rows = 1000;  ///< of the fit of gears alone; more: slower
 
 // ---- approximate masses: only their ratios matter ----

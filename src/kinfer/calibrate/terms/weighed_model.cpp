@@ -7,10 +7,13 @@
 #include <optional>
 #include <utility>
 
+#include "kinfer/base/expect.hpp"
+#include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/terms/ablation.hpp"
 #include "kinfer/calibrate/terms/candidate_terms.hpp"
 #include "kinfer/calibrate/terms/decision.hpp"
 #include "kinfer/calibrate/terms/extrapolation_splits.hpp"
+#include "kinfer/calibrate/terms/harmonic_series.hpp"
 #include "kinfer/calibrate/validation/gross_errors.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/measurement/row_selection.hpp"
@@ -49,11 +52,18 @@ class ModelWeigher {
   ModelWeigher(const SelectionData& data, const Estimate& geometry)
       : data_(data), geometry_(geometry), extrapolation_splits_(extrapolation_splits(data.rows)) {}
 
+  /// The fit of the relevant terms but spectral lines.
+  const Estimate& fit_without_lines() {
+    if (!fit_without_lines_) {
+      candidates_ = make_candidates(geometry_, data_.task, data_.rows);
+      fit_without_lines_ = weigh_all();
+    }
+    return *fit_without_lines_;
+  }
+
   WeighedModel run() {
     WeighedModel result = weighed_geometry(data_, geometry_);
-    candidates_ = make_candidates(geometry_, data_.task, data_.rows);
-    const Estimate fitted = weigh_all();
-    add_spectral_lines(candidates_, lines_of(fitted), data_.task, data_.rows);
+    add_spectral_lines(candidates_, lines_of(fit_without_lines()), data_.task, data_.rows);
     if (candidates_.steps.back().missing == MissingData::none) weigh_all();
     if (!current_.model.terms.empty()) {
       ProvedModel plain{{}, geometry_, result.interpolation, {}};
@@ -63,6 +73,11 @@ class ModelWeigher {
     }
     describe(result);
     return result;
+  }
+
+  /// Held-out errors of a model beyond the fitted poses.
+  HoldoutErrors extrapolation_of(const Estimate& fit) const {
+    return held_out(fit, fit.parameters, extrapolation_splits_);
   }
 
  private:
@@ -122,37 +137,31 @@ class ModelWeigher {
     return proof;
   }
 
-  /// [1] of the size that the marginal likelihood gives a term, 1 until held-out errors speak against it.
-  double kept(Term term) const {
-    const auto found = kept_.find(term);
-    return found == kept_.end() ? 1.0 : found->second;
+  bool is_refused(Term term) const {
+    return std::ranges::any_of(refused_, [&](const auto& refused) { return refused.first == term; });
   }
 
-  /// Held-out errors of the model with what is kept of its terms, without `removed`, from the fits with all of them.
-  ProvedModel reduced(std::optional<Term> removed) const {
-    const auto errors_of = [&](const HoldoutErrors& fits, const std::vector<Split>& splits) {
-      return errors_with_scaled_terms(
-          fits, current_.model.terms, [&](Term term) { return term == removed ? 0.0 : kept(term); }, data_.rows, splits,
-          data_.threads);
-    };
-    return {{},
-            current_.fit,
-            errors_of(current_.interpolation, data_.splits),
-            errors_of(current_.extrapolation, extrapolation_splits_)};
+  /// Held-out errors of the model without the refused terms and without `term`, from the fits with all of them.
+  ProvedModel reduced(std::optional<Term> term) const {
+    const auto removed = [&](Term other) { return other == term || is_refused(other); };
+    return {
+        {},
+        current_.fit,
+        errors_without(current_.interpolation, current_.model.terms, removed, data_.rows, data_.splits, data_.threads),
+        errors_without(current_.extrapolation, current_.model.terms, removed, data_.rows, extrapolation_splits_,
+                       data_.threads)};
   }
 
-  /// Terms that held-out errors speak against are kept smaller, then refused, the most harmful first. Fits what is
-  /// left.
+  /// Refuses the terms that held-out errors speak against, the most harmful first, and fits what is left.
   void prove(const ProvedModel& plain) {
-    current_.interpolation = held_out(current_.fit, current_.model.parameters, data_.splits);
-    current_.extrapolation = held_out(current_.fit, current_.model.parameters, extrapolation_splits_);
-    while (const auto harmful = most_harmful(plain)) {
-      const bool is_whole = kept(harmful->first) == 1.0;
-      kept_[harmful->first] = is_whole ? thresholds::softening : 0.0;
-      if (!is_whole) refused_.push_back(*harmful);
-    }
-    if (kept_.empty()) return;
-    for (std::size_t g = 0; g < groups_.size(); ++g) weights_[g].factor *= kept(static_cast<Term>(groups_[g].family));
+    std::vector<HoldoutErrors> errors =
+        cross_validate(current_.fit, current_.model.parameters, data_.rows,
+                       std::vector{data_.splits, extrapolation_splits_}, data_.task, data_.threads);
+    current_.interpolation = std::move(errors[0]), current_.extrapolation = std::move(errors[1]);
+    while (const auto harmful = most_harmful(plain)) refused_.push_back(*harmful);
+    if (refused_.empty()) return;
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      if (is_refused(static_cast<Term>(groups_[g].family))) weights_[g].factor = 0.0;
     fit_relevant(all_fitted_);
     if (!current_.model.terms.empty())
       current_.interpolation = held_out(current_.fit, current_.model.parameters, data_.splits);
@@ -167,13 +176,19 @@ class ModelWeigher {
     for (std::size_t g = 0; g < groups_.size(); ++g)
       if (!holds_everywhere(static_cast<Term>(groups_[g].family))) factors[g] = 0.0;
     ProvedModel loads{model_of_relevant(candidates_, geometry_, all_fitted_, groups_, factors), {}, {}, {}};
-    if (loads.model.terms.empty()) return geometry_;
-    loads.fit =
-        fit_rows(loads.model.chain, loads.model.parameters, data_.rows, data_.task, at_optimum(), data_.observer);
+    if (loads.model.terms.empty()) return fit_beside_series(geometry_.chain, geometry_.parameters);
+    loads.fit = fit_beside_series(loads.model.chain, loads.model.parameters);
     loads.extrapolation = held_out(loads.fit, loads.model.parameters, extrapolation_splits_);
     const ErrorChange change =
         compare_holdout(plain.extrapolation, plain.fit.outliers, loads.extrapolation, loads.fit.outliers);
-    return change.t < -thresholds::harm_significance ? geometry_ : loads.fit;
+    return change.t < -thresholds::harm_significance ? fit_beside_series(geometry_.chain, geometry_.parameters)
+                                                     : loads.fit;
+  }
+
+  /// With the series of the present model as they are: they end at the measured positions by themselves.
+  Estimate fit_beside_series(const Chain& start, const ParameterSet& set) const {
+    return fit_bundle(with_series_of(start, current_.fit.chain), restricted_to_data(set, data_.rows), data_.rows,
+                      data_.task.instrument, at_optimum(), data_.observer);
   }
 
   /// The term without which held-out errors are lowest, where they speak against it or against the whole model. Keeps
@@ -185,7 +200,7 @@ class ModelWeigher {
     double most = 0.0;
     proofs_.clear();
     for (const TermMaker& maker : term_makers()) {
-      if (!has(maker.term) || kept(maker.term) == 0.0) continue;
+      if (!has(maker.term) || is_refused(maker.term)) continue;
       const Proof proof = proof_of(reduced(maker.term), present);
       proofs_.push_back({maker.term, proof});
       if (proof.decision == Decision::accepted && whole.decision == Decision::accepted) continue;
@@ -230,9 +245,8 @@ class ModelWeigher {
     for (const CandidateParameter& c : candidates_.parameters)
       if (c.term == term) count_determined(step, c.parameter.name, current_.fit);
     const auto later = [&](Term other) { return static_cast<int>(other) > static_cast<int>(term); };
-    errors = errors_with_scaled_terms(
-        current_.interpolation, current_.model.terms, [&](Term other) { return later(other) ? 0.0 : 1.0; }, data_.rows,
-        data_.splits, data_.threads);
+    errors =
+        errors_without(current_.interpolation, current_.model.terms, later, data_.rows, data_.splits, data_.threads);
     std::vector<CandidateParameter> own, removed;
     for (const CandidateParameter& c : current_.model.terms) {
       if (c.term == term) own.push_back(c);
@@ -265,15 +279,96 @@ class ModelWeigher {
   LinearisedTerms linearised_;
   std::vector<GroupRelevance> weights_;
   Estimate all_fitted_;  ///< of all candidates
+  std::optional<Estimate> fit_without_lines_;
   ProvedModel current_;
   std::vector<std::pair<Term, Proof>> proofs_, refused_;
-  std::map<Term, double> kept_;  ///< [1] of terms that held-out errors speak against
 };
+
+/// Adds what series contribute to the step of harmonics that were found in the residuals.
+void describe_series(WeighedModel& model, const FoundSeries& found, const ErrorChange& interpolation,
+                     const ErrorChange& extrapolation, const PoseSet& rows) {
+  const auto is_spectrum = [](const WeighedStep& s) { return s.step.term == Term::spectral_harmonics; };
+  const auto at = std::ranges::find_if(model.steps, is_spectrum);
+  KINFER_EXPECT(at != model.steps.end(), "every model has a step of harmonics in the residuals");
+  SelectionStep& step = at->step;
+  if (step.decision != Decision::accepted) step = {.term = Term::spectral_harmonics};
+  step.decision = Decision::accepted;
+  step.log_evidence_gain += found.log_evidence_gain;
+  for (const Joint& joint : found.chain.joints)
+    if (const int order = series_order(joint); order > 0)
+      step.parameter_count += 2 * order + 1, step.determined_count += 2 * order + 1;
+  step.interpolation = interpolation, step.extrapolation = extrapolation;
+  step.train = training_statistics(model.fit.chain, model.fit.outliers, rows);
+  step.contribution = rms_distance(model.fit.chain, without_series(model.fit.chain), rows);
+  at->held_out = {{}, model.interpolation.errors, model.interpolation.row};
+}
+
+/// Models with lines and with series, and what the latter change.
+struct Comparison {
+  WeighedModel lines, series;
+  ErrorChange interpolation, extrapolation;
+
+  bool favours_series() const {
+    return decide(interpolation, extrapolation) == Decision::accepted &&
+           interpolation.t >= thresholds::harm_significance;
+  }
+};
+
+Estimate fit_beside(const SelectionData& data, const Estimate& geometry, const FoundSeries& found) {
+  return fit_rows(with_series_of(geometry.chain, found.chain), geometry.parameters, data.rows, data.task,
+                  {.initial_guess = InitialGuess::near_optimum, .threads = data.threads}, data.observer);
+}
+
+Comparison compare(const SelectionData& data, ModelWeigher& of_lines, const Estimate& geometry,
+                   const FoundSeries& found) {
+  const Estimate beside = fit_beside(data, geometry, found);
+  ModelWeigher of_series(data, beside);
+  Comparison c{of_lines.run(), of_series.run(), {}, {}};
+  c.interpolation =
+      compare_holdout(c.lines.interpolation, c.lines.fit.outliers, c.series.interpolation, c.series.fit.outliers);
+  c.extrapolation = compare_holdout(of_lines.extrapolation_of(c.lines.fit), c.lines.fit.outliers,
+                                    of_series.extrapolation_of(c.series.fit), c.series.fit.outliers);
+  return c;
+}
+
+/// The splits of some rows, counted among these.
+std::vector<Split> splits_of_part(const std::vector<Split>& splits, const std::vector<int>& part) {
+  std::map<int, int> index;
+  for (const int row : part) index.emplace(row, static_cast<int>(index.size()));
+  const auto among = [&](const std::vector<int>& rows) {
+    std::vector<int> kept;
+    for (const int row : rows)
+      if (const auto at = index.find(row); at != index.end()) kept.push_back(at->second);
+    return kept;
+  };
+  std::vector<Split> of_part;
+  for (const Split& split : splits) of_part.push_back({among(split.train), among(split.holdout)});
+  return of_part;
+}
 
 }  // namespace
 
 WeighedModel weigh_model(const SelectionData& data, const Estimate& geometry) {
-  return ModelWeigher(data, geometry).run();
+  ModelWeigher of_lines(data, geometry);
+  const auto found = find_series(of_lines.fit_without_lines(), data.rows, data.task.instrument, data.threads);
+  if (!found) return of_lines.run();
+  if (static_cast<std::size_t>(data.rows.rows()) <= thresholds::compared_rows) {
+    Comparison c = compare(data, of_lines, geometry, *found);
+    if (!c.favours_series()) return c.lines;
+    describe_series(c.series, *found, c.interpolation, c.extrapolation, data.rows);
+    return c.series;
+  }
+  const std::vector<int> part = thinned_rows(data.rows, thresholds::compared_rows);
+  const PoseSet rows = select(data.rows, part);
+  const std::vector<Split> splits = splits_of_part(data.splits, part);
+  const SelectionData fewer{data.task, rows, splits, data.threads, data.observer};
+  ModelWeigher lines_of_part(fewer, geometry);
+  const Comparison c = compare(fewer, lines_of_part, geometry, *found);
+  if (!c.favours_series()) return of_lines.run();
+  const Estimate beside = fit_beside(data, geometry, *found);
+  WeighedModel series = ModelWeigher(data, beside).run();
+  describe_series(series, *found, c.interpolation, c.extrapolation, data.rows);
+  return series;
 }
 
 }  // namespace kinfer::calibrate

@@ -58,7 +58,7 @@ class Fit {
     blocks_ = blocks_of(data);
     state_.inlier.assign(blocks_.size(), true);
     state_.search.method = SearchMethod::levenberg_marquardt;
-    state_.excess = excess_noise(start, data, instrument, 0.0);
+    state_.excess = excess_noise(start, data, instrument, 0.0, options.threads);
   }
 
   Estimate run() {
@@ -98,8 +98,8 @@ class Fit {
   /// True when the noise level has converged.
   bool update_noise_level() {
     const PoseSet kept = keep_measurements(data_, state_.inlier);
-    const ExcessNoise now =
-        excess_noise(state_.chain, kept, instrument_, effective_parameters(state_.outcome.normal, set_));
+    const ExcessNoise now = excess_noise(state_.chain, kept, instrument_,
+                                         effective_parameters(state_.outcome.normal, set_), options_.threads);
     const auto settled = [](double before, double after) { return std::abs(after - before) <= 0.02 * before; };
     bool done = true;
     for (std::size_t k = 0; k < now.of.size(); ++k) done &= settled(state_.excess.of[k], now.of[k]);
@@ -145,7 +145,7 @@ class Fit {
   VectorXd mahalanobis_distances(const Weights& weights) const {
     const ParameterSet nothing;
     VectorXd r, distance(static_cast<Eigen::Index>(blocks_.size()));
-    pose_residuals(state_.chain, nothing, data_, weights).evaluate(VectorXd(0), r, nullptr);
+    pose_residuals(state_.chain, nothing, data_, weights, options_.threads).evaluate(VectorXd(0), r, nullptr);
     Eigen::Index row = 0;
     for (std::size_t i = 0; i < blocks_.size(); row += blocks_[i++].size)
       distance[static_cast<Eigen::Index>(i)] = r.segment(row, blocks_[i].size).norm();
@@ -199,7 +199,7 @@ class Fit {
     const Weights weights = weights_of(kept, instrument_, state_.excess);
     VectorXd r;
     MatrixXd jacobian;
-    pose_residuals(state_.chain, set_, kept, weights).evaluate(state_.outcome.x, r, &jacobian);
+    pose_residuals(state_.chain, set_, kept, weights, options_.threads).evaluate(state_.outcome.x, r, &jacobian);
     return jacobian.topRows(jacobian.rows() - set_.free_count());
   }
 
@@ -233,7 +233,7 @@ class Fit {
       if (!kind.traits.observes.tool_position || kind.count(data) == 0) continue;
       if (!kind.model.metres) return {};
       const ParameterSet nothing;
-      const EvaluatedPoses at = evaluate_poses(state_.chain, nothing, data, Derivative::no);
+      const EvaluatedPoses at = evaluate_poses(state_.chain, nothing, data, Derivative::no, options_.threads);
       const FixtureColumns columns = fixture_columns(state_.chain, nothing);
       std::vector<double> metres(kind.count(data));
       for (std::size_t i = 0; i < metres.size(); ++i) metres[i] = kind.metres({state_.chain, data, at, columns}, i);
@@ -264,7 +264,7 @@ class Fit {
     const Weights specified = weights_of(kept, *instrument_);
     const ParameterSet nothing;
     VectorXd r;
-    pose_residuals(state_.chain, nothing, kept, specified).evaluate(VectorXd(0), r, nullptr);
+    pose_residuals(state_.chain, nothing, kept, specified, options_.threads).evaluate(VectorXd(0), r, nullptr);
     const double redundancy =
         std::max(1.0, static_cast<double>(r.size()) - effective_parameters(state_.outcome.normal, set_));
     return r.squaredNorm() / redundancy;
@@ -285,7 +285,7 @@ class Fit {
     if (std::find(state_.inlier.begin(), state_.inlier.end(), false) == state_.inlier.end()) return;
     const VectorXd distance = mahalanobis_distances();
     const ParameterSet nothing;
-    const EvaluatedPoses at = evaluate_poses(estimate.chain, nothing, data_, Derivative::no);
+    const EvaluatedPoses at = evaluate_poses(estimate.chain, nothing, data_, Derivative::no, options_.threads);
     const FixtureColumns columns = fixture_columns(estimate.chain, nothing);
     VectorXd residual = VectorXd::Zero(3);
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
@@ -320,7 +320,7 @@ class Fit {
 
   double predicted_rms(const Estimate& estimate) const {
     double sum = 0.0;
-    for (const Twists& twists : evaluate_poses(estimate.chain, set_, data_, Derivative::yes).twists)
+    for (const Twists& twists : evaluate_poses(estimate.chain, set_, data_, Derivative::yes, options_.threads).twists)
       sum += propagated_covariance(twists.topRows<3>(), estimate.covariance).trace();
     return data_.rows() > 0 ? std::sqrt(sum / static_cast<double>(data_.rows())) : 0.0;
   }

@@ -98,9 +98,9 @@ void estimate_pose_noise(const Weights& specified, const PoseSet& data, double l
 }  // namespace
 
 ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::optional<Instrument>& instrument,
-                         double effective_parameters) {
+                         double effective_parameters, int threads) {
   const ParameterSet nothing;
-  const EvaluatedPoses at = evaluate_poses(chain, nothing, data, Derivative::no);
+  const EvaluatedPoses at = evaluate_poses(chain, nothing, data, Derivative::no, threads);
   const FixtureColumns columns = fixture_columns(chain, nothing);
   const ResidualContext scene{chain, data, at, columns};
   double rows = 0.0;

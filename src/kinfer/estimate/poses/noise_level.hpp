@@ -20,7 +20,7 @@ struct ExcessNoise {
 /// Estimated from the median block of each kind, hence robust against a minority of outliers. `effective_parameters`:
 /// number of parameters determined by the data, by which the redundancy is reduced.
 ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::optional<Instrument>& instrument,
-                         double effective_parameters);
+                         double effective_parameters, int threads = 1);
 
 Weights weights_of(const PoseSet& data, const std::optional<Instrument>& instrument, const ExcessNoise& excess);
 

@@ -45,7 +45,7 @@ class GeneralMeasurements : public MeasurementCost {
         weights_(weights),
         loss_(loss),
         threads_(threads),
-        gravity_(gravity_torques_of_rows(nominal, data)),
+        gravity_(gravity_torques_of_rows(nominal, data, threads)),
         columns_(fixture_columns(nominal, set)),
         buffers_(buffer_count) {
     for (const ResidualKind& kind : residual_kinds()) {

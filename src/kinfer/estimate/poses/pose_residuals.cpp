@@ -64,11 +64,12 @@ VectorXd row_weights(const Weights& weights) {
 using MeasuredRows = std::function<void(ConstVectorRef x, VectorXd& r, MatrixXd* jacobian)>;
 
 /// Any kinds of measurements, block by block.
-MeasuredRows general_rows(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights) {
-  return [&nominal, &set, &data, inverse_sd = row_weights(weights), &couplings = weights.couplings](
+MeasuredRows general_rows(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights,
+                          int threads) {
+  return [&nominal, &set, &data, threads, inverse_sd = row_weights(weights), &couplings = weights.couplings](
              ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
     const Chain chain = unpack(set, nominal, x);
-    const EvaluatedPoses at = evaluate_poses(chain, set, data, jacobian ? Derivative::yes : Derivative::no);
+    const EvaluatedPoses at = evaluate_poses(chain, set, data, jacobian ? Derivative::yes : Derivative::no, threads);
     const FixtureColumns columns = fixture_columns(chain, set);
     const ResidualContext scene{chain, data, at, columns};
     BlockRows out{r, jacobian};
@@ -126,10 +127,20 @@ MeasuredRows full_covariance_point_rows(const Chain& nominal, const ParameterSet
       };
 }
 
-MeasuredRows rows_of(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights) {
-  if (!has_only_points(nominal, set, data)) return general_rows(nominal, set, data, weights);
+MeasuredRows rows_of(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights,
+                     int threads) {
+  if (!has_only_points(nominal, set, data)) return general_rows(nominal, set, data, weights, threads);
   return has_full_covariances(data) ? full_covariance_point_rows(nominal, set, data, weights)
                                     : batch_point_rows(nominal, set, data, weights);
+}
+
+/// On up to `threads` threads, a block of rows at a time.
+template <class Rows, class Body>
+void for_each_row(const Rows& rows, int threads, Body body) {
+  constexpr std::size_t block = 128;
+  parallel_for((rows.size() + block - 1) / block, threads, [&](std::size_t b) {
+    for (std::size_t k = block * b; k < std::min(rows.size(), block * (b + 1)); ++k) body(Eigen::Index{rows[k]});
+  });
 }
 
 }  // namespace
@@ -149,40 +160,38 @@ Load load_at(const Chain& chain, const PoseSet& data, Eigen::Index row) {
   return load;
 }
 
-EvaluatedPoses evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative) {
+EvaluatedPoses evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative,
+                              int threads) {
   EvaluatedPoses at;
-  evaluate_poses(chain, set, data, derivative, {}, at);
+  evaluate_poses(chain, set, data, derivative, {}, at, threads);
   return at;
 }
 
 void evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative,
                     const MatrixXd& gravity, EvaluatedPoses& at, int threads) {
-  constexpr std::size_t block = 128;  // rows
   at.pose.resize(data.rows());
   if (derivative == Derivative::yes) at.twists.resize(data.rows());
   for_each_mounting(chain, data, [&](int mounting, const auto& rows) {
     const PoseEvaluator evaluator(with_mounting(chain, mounting), parameters_of_mounting(set, chain, mounting));
-    parallel_for((rows.size() + block - 1) / block, threads, [&](std::size_t b) {
-      for (std::size_t k = block * b; k < std::min(rows.size(), block * (b + 1)); ++k) {
-        const Eigen::Index row = rows[k];
-        const auto q = data.joints.col(row);
-        Load load = load_at(chain, data, row);
-        if (gravity.size() > 0) load.gravity = {gravity.col(row).data(), static_cast<std::size_t>(gravity.rows())};
-        at.pose[row] = derivative == Derivative::yes ? evaluator.pose_and_derivative(q, load, at.twists[row])
-                                                     : evaluator.pose(q, load);
-      }
+    for_each_row(rows, threads, [&](Eigen::Index row) {
+      const auto q = data.joints.col(row);
+      Load load = load_at(chain, data, row);
+      if (gravity.size() > 0) load.gravity = {gravity.col(row).data(), static_cast<std::size_t>(gravity.rows())};
+      at.pose[row] = derivative == Derivative::yes ? evaluator.pose_and_derivative(q, load, at.twists[row])
+                                                   : evaluator.pose(q, load);
     });
   });
 }
 
-MatrixXd gravity_torques_of_rows(const Chain& chain, const PoseSet& data) {
+MatrixXd gravity_torques_of_rows(const Chain& chain, const PoseSet& data, int threads) {
   const bool loaded = std::any_of(data.payload.begin(), data.payload.end(), [](double kg) { return kg != 0.0; });
   if (chain.masses.empty() && !loaded) return {};
   MatrixXd torques(static_cast<Eigen::Index>(chain.joints.size()), data.rows());
   for_each_mounting(chain, data, [&](int mounting, const auto& rows) {
     const Chain here = with_mounting(chain, mounting);
-    for (const Eigen::Index row : rows)
+    for_each_row(rows, threads, [&](Eigen::Index row) {
       torques.col(row) = gravity_torques(here, data.joints.col(row), load_at(chain, data, row));
+    });
   });
   return torques;
 }
@@ -209,7 +218,8 @@ void write_socket_distances(const Chain& chain, const FixtureColumns& columns, V
   }
 }
 
-Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights) {
+Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights,
+                         int threads) {
   Residuals problem;
   problem.unknowns = set.free_count();
   Eigen::Index measured = 0;
@@ -222,7 +232,7 @@ Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const Po
   const auto distances = static_cast<Eigen::Index>(nominal.fixtures.socket_distances.size());
   const Eigen::Index unknowns = problem.unknowns, rows = measured + distances + unknowns;
   problem.rows = rows;
-  problem.evaluate = [write_measured = rows_of(nominal, set, data, weights), unknowns, rows,
+  problem.evaluate = [write_measured = rows_of(nominal, set, data, weights, threads), unknowns, rows,
                       priors = prior_sqrt_information_of(set),
                       centre = nominal_of(set)](ConstVectorRef x, VectorXd& r, MatrixXd* jacobian) {
     r.resize(rows);

@@ -14,22 +14,23 @@
 namespace kinfer {
 
 enum class Derivative { no, yes };
-/// Each row in its own mounting, with the loads of that row.
-EvaluatedPoses evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative);
-/// The same with given gravity torques (empty: they are computed), into a reused buffer for the inner loop, on up to
-/// `threads` threads.
+/// Each row in its own mounting, with the loads of that row; on up to `threads` threads.
+EvaluatedPoses evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative,
+                              int threads = 1);
+/// The same with given gravity torques (empty: they are computed), into a reused buffer for the inner loop.
 void evaluate_poses(const Chain& chain, const ParameterSet& set, const PoseSet& data, Derivative derivative,
                     const MatrixXd& gravity, EvaluatedPoses& at, int threads = 1);
 
 /// Gravity torque about each joint's axis at each row [N m], joints x rows; empty without masses and payload.
-MatrixXd gravity_torques_of_rows(const Chain& chain, const PoseSet& data);
+MatrixXd gravity_torques_of_rows(const Chain& chain, const PoseSet& data, int threads = 1);
 
 /// Payload, temperature rise, torques and approach direction at one row of the set. Views into the set.
 Load load_at(const Chain& chain, const PoseSet& data, Eigen::Index row);
 
 /// The least-squares problem over the free parameters of `set`; blocks first (in the order of blocks_of), then the
-/// socket distances, then the priors. All arguments must outlive the result.
-Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights);
+/// socket distances, then the priors. All arguments must outlive the result. Poses on up to `threads` threads.
+Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights,
+                         int threads = 1);
 
 /// Rows of the socket distances from `row` on.
 void write_socket_distances(const Chain& chain, const FixtureColumns& columns, VectorXd& r, MatrixXd* jacobian,

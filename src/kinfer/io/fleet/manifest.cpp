@@ -163,7 +163,7 @@ std::string format_manifest(const std::vector<SweepTask>& tasks) {
   for (const SweepTask& task : tasks) {
     std::string arguments;
     for (const std::string& word : task.arguments) arguments += (arguments.empty() ? "" : " ") + quoted_word(word);
-    text += fmt::format("{},{},{}", task.key, task.verb, quoted_cell(arguments));
+    text += fmt::format("{},{},{}", task.key, quoted_cell(task.verb), quoted_cell(arguments));
     for (const auto member : more) text += "," + quoted_cell(task.*member);
     text += "\n";
   }

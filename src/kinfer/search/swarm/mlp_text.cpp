@@ -2,6 +2,7 @@
 // A network as text: a title with the three sizes, then one line for each bound and weight array, column-major.
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 
 #include "kinfer/search/swarm/mlp.hpp"
@@ -62,10 +63,15 @@ std::string format_mlp(const Mlp& net) {
 Result<Mlp> parse_mlp(std::string_view text, const std::string& name_in_messages) {
   TokenReader tokens(text);
   int inputs = 0, hidden = 0, outputs = 0;
-  constexpr int largest = 100000;  // keeps a damaged file from allocating all memory
+  constexpr int largest = 100000;
   const bool has_header = tokens.next() == title && tokens.next(inputs) && tokens.next(hidden) && tokens.next(outputs);
   if (!has_header || std::min({inputs, hidden, outputs}) < 1 || std::max({inputs, hidden, outputs}) > largest)
     return error("{}: expected a network file written by kinfer: \"{}\" and three sizes", name_in_messages, title);
+  // Each number takes a blank and a digit: a damaged header does not allocate more than the file could fill.
+  const std::int64_t numbers = std::int64_t{hidden} * (inputs + outputs + 1) + 3 * std::int64_t{outputs} + 2 * inputs;
+  if (2 * numbers > std::ssize(text))
+    return error("{}: the header states {} inputs, {} hidden nodes and {} outputs, for which the file is too short",
+                 name_in_messages, inputs, hidden, outputs);
   Mlp net{{VectorXd(inputs), VectorXd(inputs)},
           {VectorXd(outputs), VectorXd(outputs)},
           MatrixXd(hidden, inputs),
