@@ -105,6 +105,20 @@ TEST_F(Calibrate, VerifyAcceptsNewDataOfTheSameRobotAndRefusesAMovedTracker) {
   EXPECT_EQ(as_nominal.code, 1) << as_nominal.out;
 }
 
+TEST_F(Calibrate, VerifyReadsWhatCalibrateReadInTheSameUnits) {
+  simulate();
+  ASSERT_EQ(calibrate_robot().code, 0);
+  std::string text = slurp(in("data/poses.csv"));
+  const std::string units = "x[mm],y[mm],z[mm]";
+  ASSERT_NE(text.find(units), std::string::npos);
+  write(in("no_units.csv"), text.replace(text.find(units), units.size(), "x,y,z"));
+  const Outcome run = kinfer("verify --chain cal/chain.toml --data no_units.csv");
+  EXPECT_EQ(run.code, 0) << run.out;
+  EXPECT_NE(run.out.find("the measured positions are millimetres, but were read as metres; corrected here"),
+            std::string::npos)
+      << run.out;
+}
+
 TEST_F(Calibrate, AHeldOutFileIsNeverFitted) {
   simulate();
   fs::copy(in("data/poses.csv"), in("aside.csv"));

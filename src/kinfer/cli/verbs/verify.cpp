@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "kinfer/calibrate/diagnosis/diagnose.hpp"
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/calibration_summary.hpp"
 #include "kinfer/cli/sweep/task_context.hpp"
@@ -14,6 +15,7 @@
 #include "kinfer/io/robot/standard_deviations_toml.hpp"
 #include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/words/calibration/checks.hpp"
+#include "kinfer/words/findings/pose_set_findings.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -24,7 +26,7 @@ struct VerifyArguments {
   std::string data, columns, against;
 };
 
-void print(const Verification& v, const CommonOptions& common) {
+void print(const Verification& v, const std::vector<std::string>& notes, const CommonOptions& common) {
   if (common.json) {
     const auto figures = [](const ErrorStatistics& s) {
       return nlohmann::ordered_json{{"mean", s.mean}, {"rms", s.rms}, {"sd", s.sd}, {"max", s.max}, {"n", s.n}};
@@ -33,11 +35,13 @@ void print(const Verification& v, const CommonOptions& common) {
                                       {"good", v.result == VerificationResult::valid},
                                       {"result", name(v.result)},
                                       {"as_it_stands", figures(v.unmodified)},
-                                      {"frames_refitted", figures(v.frames_refitted)}};
+                                      {"frames_refitted", figures(v.frames_refitted)},
+                                      {"notes", notes}};
     fmt::print("{}\n", dump_json(json));
   } else if (!common.quiet) {
     fmt::print("{}\n\n  as it stands            {}\n  base and tool refitted  {}\n", words::verdict(v),
                statistics_line(v.unmodified), statistics_line(v.frames_refitted));
+    for (const std::string& note : notes) fmt::print("  {}\n", note);
   }
 }
 
@@ -100,6 +104,32 @@ int run_comparison(const VerifyArguments& options) {
   return changes->changed ? exit_do_not_use : exit_done;
 }
 
+bool is_of_units(FindingKind kind) {
+  return kind == FindingKind::length_unit || kind == FindingKind::degrees_for_radians ||
+         kind == FindingKind::radians_for_degrees;
+}
+
+/// Measurements in the units of the calibration, which corrects these by itself. Any other disagreement may be the
+/// change that is sought: then they stay as they are.
+struct MeasurementsInUnits {
+  PoseSet data;
+  std::vector<std::string> notes;
+};
+
+MeasurementsInUnits in_units_of(const RobotModel& robot, PoseSet data) {
+  if (data.setups.size() > 1 || !data.tips.empty()) return {std::move(data), {}};
+  const calibrate::Diagnosis diagnosis = calibrate::diagnose(
+      {.nominal = robot.chain, .tolerances = robot.tolerances, .instrument = robot.instrument, .data = data});
+  std::vector<std::string> notes;
+  for (const Finding& finding : diagnosis.findings) {
+    if (!finding.applied) continue;
+    if (!is_of_units(finding.kind)) return {std::move(data), {}};
+    notes.push_back(words::pose_set_finding_sentence(finding) +
+                    "; corrected here (in the files: " + words::pose_set_finding_suggestion(finding) + ")");
+  }
+  return {notes.empty() ? std::move(data) : diagnosis.corrected_task.data, notes};
+}
+
 int run(const VerifyArguments& options) {
   if (!options.against.empty() && !options.data.empty())
     return fail({"verify: expected either --data or --against, not both"});
@@ -114,11 +144,19 @@ int run(const VerifyArguments& options) {
   if (!map) return fail(map.error());
   const auto data = read_pose_set(options.data, robot->chain, *map);
   if (!data) return fail(data.error());
-  const auto verification =
-      deploy::verify(robot->chain, robot->tolerances, robot->instrument, *data, robot->prediction);
+  const auto check = [&](const PoseSet& measured) {
+    return deploy::verify(robot->chain, robot->tolerances, robot->instrument, measured, robot->prediction);
+  };
+  auto verification = check(*data);
+  std::vector<std::string> notes;
+  if (verification && verification->result != VerificationResult::valid) {
+    MeasurementsInUnits measured = in_units_of(*robot, *data);
+    notes = std::move(measured.notes);
+    if (!notes.empty()) verification = check(measured.data);
+  }
   if (!verification) return fail(verification.error());
   if (auto done = write_task_summary(*verification); !done) return fail(done.error());
-  print(*verification, options.common);
+  print(*verification, notes, options.common);
   return verification->result == VerificationResult::valid ? exit_done : exit_do_not_use;
 }
 
