@@ -36,6 +36,14 @@ TEST(Manifest, AVerbWithCommasComesBackAsWritten) {
   EXPECT_EQ(again->front().verb, tasks.front().verb);
 }
 
+TEST(Manifest, AWordWithBothKindsOfQuotesComesBackAsWritten) {
+  std::vector<SweepTask> tasks = parse_manifest("key,verb,arguments\na,plan,x\n", "m.csv").value();
+  tasks.front().arguments = {"it's 5\" long", "'\"", "plain"};
+  const auto again = parse_manifest(format_manifest(tasks), "m.csv");
+  ASSERT_TRUE(again) << again.error().what;
+  EXPECT_EQ(again->front().arguments, tasks.front().arguments);
+}
+
 TEST(Manifest, BadRowsAreNamedWithTheirLine) {
   const auto what = [](const std::string& rows) {
     return parse_manifest("key,verb,arguments\n" + rows, "m.csv").error().what;

@@ -36,7 +36,11 @@ Result<void> check_key(const std::string& key) {
 std::string quoted_word(const std::string& word) {
   const bool is_plain = !word.empty() && word.find_first_of(" \t\"'") == std::string::npos;
   if (is_plain) return word;
-  return word.find('"') == std::string::npos ? "\"" + word + "\"" : "'" + word + "'";
+  if (word.find('"') == std::string::npos) return "\"" + word + "\"";
+  if (word.find('\'') == std::string::npos) return "'" + word + "'";
+  std::string pieces;  // side by side they are one word
+  for (const char c : word) pieces += c == '"' ? "'\"'" : fmt::format("\"{}\"", c);
+  return pieces;
 }
 
 std::string quoted_cell(const std::string& cell) {
