@@ -204,11 +204,8 @@ std::vector<HeldOutResiduals> residuals_of_regions(const EvaluationInputs& evalu
   parallel_for(splits.size(), threads, [&](std::size_t i) {
     const PoseSet train = select(data, splits[i].train), rest = select(data, splits[i].holdout);
     if (train.points.empty() || rest.points.empty()) return;
-    const BundleOptions at_optimum{.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only};
-    const Estimate fit =
-        has_series(estimate.chain)
-            ? fit_with_series(estimate.chain, estimate.parameters, train, evaluated.instrument, at_optimum)
-            : fit_bundle(estimate.chain, estimate.parameters, train, evaluated.instrument, at_optimum);
+    const Estimate fit = fit_with_series(estimate.chain, estimate.parameters, train, evaluated.instrument,
+                                         {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only});
     of_split[i] = residuals_beside(fit, train, rest, evaluated.instrument, region);
   });
   return of_split;

@@ -477,13 +477,12 @@ bool is_followed(const Chain& chain, std::size_t joint) {
   });
 }
 
-/// Series of zeros for joints that turn far enough, but those of `left_out`.
-std::vector<JointSeries> zero_series(const Chain& chain, const PoseSet& rows, const Resolution& resolution,
-                                     const std::vector<bool>& left_out) {
+/// Series of zeros for joints that turn far enough.
+std::vector<JointSeries> zero_series(const Chain& chain, const PoseSet& rows, const Resolution& resolution) {
   const std::vector<int> q_index = active_joint_indices(chain);
   std::vector<JointSeries> series;
   for (std::size_t j = 0; j < chain.joints.size(); ++j) {
-    if (left_out[j] || q_index[j] < 0 || !rotates(chain.joints[j].type) || is_followed(chain, j)) continue;
+    if (q_index[j] < 0 || !rotates(chain.joints[j].type) || is_followed(chain, j)) continue;
     const auto q = rows.joints.row(q_index[j]);
     if (q.maxCoeff() - q.minCoeff() >= thresholds::min_spectrum_range)
       series.push_back({static_cast<int>(j), resolution, VectorXd::Zero(resolution.knots)});
@@ -589,10 +588,9 @@ std::optional<FoundSeries> find_series(const Estimate& fitted, const PoseSet& ro
   const double without = evaluate({fitted.chain, fitted.parameters, {}}, data).log_evidence;
   DetachedSeries start{fitted.chain, without_harmonics(fitted.parameters), {}};
   for (Joint& joint : start.plain.joints) joint.harmonics.clear();  // those of gears are orders of the series
-  const std::vector<bool> none(start.plain.joints.size(), false);
   std::optional<Candidate> best;
   for (const Resolution& resolution : resolutions) {
-    start.series = zero_series(start.plain, kept, resolution, none);
+    start.series = zero_series(start.plain, kept, resolution);
     if (start.series.empty()) return std::nullopt;
     Candidate candidate = evaluate(start, data);
     if (best && candidate.log_evidence <= best->log_evidence) break;
@@ -609,6 +607,7 @@ std::optional<FoundSeries> find_series(const Estimate& fitted, const PoseSet& ro
 Estimate fit_with_series(const Chain& start, const ParameterSet& set, const PoseSet& rows,
                          const std::optional<Instrument>& instrument, const BundleOptions& options,
                          const Observer& observer) {
+  if (!has_series(start)) return fit_bundle(start, set, rows, instrument, options, observer);
   DetachedSeries model = detach(start, set);
   const auto fit_others = [&](Detail detail, InitialGuess guess, int iterations) {
     BundleOptions others = options;

@@ -33,7 +33,7 @@ struct FoundSeries {
 std::optional<FoundSeries> find_series(const Estimate& fitted, const PoseSet& rows,
                                        const std::optional<Instrument>& instrument, int threads = 1);
 
-/// Fits the series that `start` has together with the free parameters of `set`; the covariance is that of the
+/// Fits the series that `start` has, if any, together with the free parameters of `set`; the covariance is that of the
 /// parameters whatever the series are. `start` as for fit_bundle.
 Estimate fit_with_series(const Chain& start, const ParameterSet& set, const PoseSet& rows,
                          const std::optional<Instrument>& instrument, const BundleOptions& options,

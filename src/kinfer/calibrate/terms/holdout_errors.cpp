@@ -13,9 +13,7 @@ namespace kinfer::calibrate {
 
 Estimate fit_rows(const Chain& start, const ParameterSet& set, const PoseSet& rows, const CalibrationTask& task,
                   const BundleOptions& options, const Observer& observer) {
-  const ParameterSet restricted = restricted_to_data(set, rows);
-  return has_series(start) ? fit_with_series(start, restricted, rows, task.instrument, options, observer)
-                           : fit_bundle(start, restricted, rows, task.instrument, options, observer);
+  return fit_with_series(start, restricted_to_data(set, rows), rows, task.instrument, options, observer);
 }
 
 HoldoutErrors cross_validate(const Estimate& fit, const ParameterSet& set, const PoseSet& rows,
