@@ -47,7 +47,7 @@ Coverage coverage(const MeasuredRobot& robot, const Split& split) {
   const auto uncertainties = deploy::predict_uncertainties(chain, *fitted->prediction, rest);
   if (!poses || !uncertainties) return {};
   const Weights weights =
-      weights_of(rest, robot.instrument.value_or(Instrument{.sigma = fitted->estimate.sigma, .sigma_angle = 0.0}));
+      weights_of(rest, robot.instrument.value_or(Instrument{.sigma = fitted->prediction->noise, .sigma_angle = 0.0}));
   const double limit = chi_squared_quantile(0.95, 3.0);
   Coverage found;
   for (std::size_t k = 0; k < rest.points.size(); ++k) {

@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "support/random.hpp"
 
@@ -20,7 +23,8 @@ PredictionModel measured_region() {
   model.spread = Eigen::Vector4d(0.5, 1.0, 0.2, 2.0);
   model.reach = 0.7;
   model.model_error.diagonal() << 1.0, 2.0, 3.0, 4.0, 5.0, 6.0;
-  model.growth = 0.4 * model.model_error;
+  model.outside_error = 0.4 * model.model_error;
+  model.edge = 0.9;
   return model;
 }
 
@@ -88,12 +92,69 @@ TEST(CorrectionWeight, FallsFromOneAtTheEdgeOfTheMeasuredRegionToZero) {
   EXPECT_LT(correction_weight(model, far), 0.01);
 }
 
-TEST(ModelErrorAt, GrowsQuadraticallyWithTheDistanceFromTheFittedRows) {
+/// By sorting all rows, one coordinate after the other.
+double slow_one_sidedness(const PredictionModel& model, const VectorXd& q) {
+  std::vector<std::pair<double, Eigen::Index>> by_distance;
+  for (Eigen::Index i = 0; i < model.rows.cols(); ++i) {
+    double sum = 0.0;
+    for (Eigen::Index k = 0; k < q.size(); ++k) sum += std::pow((q[k] - model.rows(k, i)) / model.spread[k], 2);
+    if (sum > 0.0) by_distance.emplace_back(sum, i);
+  }
+  std::ranges::sort(by_distance);
+  const std::size_t count = std::min<std::size_t>(15, by_distance.size() / 2);
+  double offset = 0.0, squares = 0.0;
+  for (Eigen::Index k = 0; k < q.size(); ++k) {
+    double mean = 0.0;
+    for (std::size_t i = 0; i < count; ++i) mean += model.rows(k, by_distance[i].second) / static_cast<double>(count);
+    offset += std::pow((q[k] - mean) / model.spread[k], 2);
+    for (std::size_t i = 0; i < count; ++i)
+      squares += std::pow((model.rows(k, by_distance[i].second) - mean) / model.spread[k], 2);
+  }
+  return std::sqrt(offset / (squares / static_cast<double>(count)));
+}
+
+TEST(OneSidedness, IsThatOfTheNearestRows) {
   const PredictionModel model = measured_region();
-  EXPECT_EQ(model_error_at(model, model.rows.col(7)), model.model_error);
-  const VectorXd far = VectorXd::Constant(4, 50.0);
-  const double distance = region_distance(model, far);
-  EXPECT_TRUE(model_error_at(model, far).isApprox((1.0 + 0.4 * distance * distance) * model.model_error, 1e-12));
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    const VectorXd q = 2.0 * random_matrix(4, 1, 100 + i);
+    EXPECT_NEAR(one_sidedness(model, q), slow_one_sidedness(model, q), 1e-9);
+  }
+  EXPECT_NEAR(one_sidedness(model, model.rows.col(3)), slow_one_sidedness(model, model.rows.col(3)), 1e-9);
+}
+
+TEST(OneSidedness, IsSmallInAGapAndLargeOutside) {
+  PredictionModel model;
+  model.rows = MatrixXd(2, 200);
+  for (Eigen::Index i = 0; i < 200; ++i)  // two clouds with a gap between them
+    model.rows.col(i) =
+        0.1 * random_matrix(2, 1, 1 + static_cast<std::uint64_t>(i)).col(0) + Eigen::Vector2d(i % 2 ? 1.0 : -1.0, 0.0);
+  model.spread = Eigen::Vector2d(1.0, 0.1);
+  EXPECT_LT(one_sidedness(model, Eigen::Vector2d(0.0, 0.0)), 1.5);
+  EXPECT_GT(one_sidedness(model, Eigen::Vector2d(3.0, 0.0)), 5.0);
+}
+
+TEST(OneSidedness, FewOrEqualRowsSayNothingAndDoNoHarm) {
+  PredictionModel model = measured_region();
+  const VectorXd q = random_matrix(4, 1, 3);
+  model.rows = model.rows.leftCols(3).eval();
+  EXPECT_EQ(one_sidedness(model, q), 0.0);
+  model.rows = q.replicate(1, 20);
+  EXPECT_EQ(outside_share(model, q), 0.0);
+  EXPECT_EQ(outside_share(model, VectorXd(q.array() + 1.0)), 1.0) << "all rows at one place";
+}
+
+TEST(ModelErrorAt, RisesToTheOutsideErrorAndNoFurther) {
+  const PredictionModel model = measured_region();
+  const VectorXd middle = model.rows.rowwise().mean(), far = VectorXd::Constant(4, 1e4);
+  double before = 0.0;
+  for (int k = 0; k <= 40; ++k) {
+    const double share = outside_share(model, middle + std::pow(k / 40.0, 4) * (far - middle));
+    EXPECT_GE(share, 0.0);
+    EXPECT_LE(share, 1.0);
+    if (k > 20) EXPECT_GE(share, before);
+    before = share;
+  }
+  EXPECT_TRUE(model_error_at(model, far).isApprox(1.4 * model.model_error, 1e-9));
 }
 
 }  // namespace

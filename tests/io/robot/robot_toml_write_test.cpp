@@ -57,8 +57,8 @@ PredictionModel example_prediction() {
   model.model_error.diagonal() << 1e-10, 2e-10, 3e-10, 1e-8, 2e-8, 3e-8;
   model.rows << 0.5, -1.25, 2, 0.125, 3, -0.75;
   model.spread << 0.5, 1.5;
-  model.growth = MatrixXd(0.25 * model.model_error);
-  model.reach = 0.75, model.noise = 3e-5;
+  model.outside_error = MatrixXd(0.25 * model.model_error);
+  model.reach = 0.75, model.edge = 1.25, model.noise = 3e-5;
   model.beyond = VectorXd{{1e-3, -2e-3}};
   return model;
 }
@@ -76,8 +76,29 @@ TEST(RobotTomlWriting, ThePredictionModelIsReadBack) {
   EXPECT_EQ(again.rows, model.rows);
   EXPECT_EQ(again.spread, model.spread);
   EXPECT_EQ(again.beyond, model.beyond);
-  EXPECT_TRUE(again.growth.isApprox(model.growth, 1e-7));
-  EXPECT_EQ((std::array{again.reach, again.noise}), (std::array{model.reach, model.noise}));
+  EXPECT_TRUE(again.outside_error.isApprox(model.outside_error, 1e-7));
+  EXPECT_EQ((std::array{again.reach, again.edge, again.noise}), (std::array{model.reach, model.edge, model.noise}));
+}
+
+/// `text` with the line that starts with `key` replaced.
+std::string with_line(const std::string& text, const std::string& key, const std::string& line) {
+  const std::size_t start = text.find("\n" + key + " = ") + 1, end = text.find('\n', start);
+  return text.substr(0, start) + line + text.substr(end);
+}
+
+TEST(RobotTomlWriting, PredictionModelsOfOlderVersionsAreRead) {
+  Chain chain;
+  chain.joints.resize(2);
+  const PredictionModel model = example_prediction();
+  std::string text = with_line(format_robot_toml({.chain = chain, .prediction = model}), "edge", "");
+  const std::size_t error = text.find("\noutside_error = "), end = text.find('\n', error + 1);
+  const std::string numbers = text.substr(error + 17, end - error - 17);
+  const auto growth = parse_robot_toml(with_line(text, "outside_error", "growth = " + numbers), "chain.toml");
+  ASSERT_TRUE(growth.has_value() && growth->prediction) << (growth ? "" : growth.error().what);
+  EXPECT_TRUE(growth->prediction->outside_error.isApprox(4.0 * model.outside_error, 1e-6)) << "at twice the reach";
+  const auto rate = parse_robot_toml(with_line(text, "outside_error", "rate = 0.25"), "chain.toml");
+  ASSERT_TRUE(rate.has_value() && rate->prediction) << (rate ? "" : rate.error().what);
+  EXPECT_TRUE(rate->prediction->outside_error.isApprox(model.model_error, 1e-6));
 }
 
 TEST(RobotTomlWriting, NonGeometricValuesAreReadBackToo) {

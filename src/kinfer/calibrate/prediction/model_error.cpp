@@ -23,10 +23,13 @@ using Eigen::Index;
 
 /// A residual of three components that its fit did not see, along the axes of the base.
 struct HeldOutResidual {
-  Vec3 residual = Vec3::Zero();   ///< [m] or [rad]
-  Mat3 explained = Mat3::Zero();  ///< covariance by the fit's parameters and the instrument
-  double distance = 0.0;          ///< of its joint positions from the fitted rows, over the region's reach
-  bool is_tool_point = false;     ///< not another target, whose own uncertainty `explained` lacks
+  Vec3 residual = Vec3::Zero();    ///< [m] or [rad]
+  Mat3 parameters = Mat3::Zero();  ///< covariance by the fit's parameters
+  Mat3 noise = Mat3::Zero();       ///< covariance of the instrument
+  double outside = 0.0;            ///< share of the outside error at its joint positions
+  bool is_tool_point = false;      ///< not another target, whose own uncertainty `parameters` lacks
+
+  Mat3 explained() const { return parameters + noise; }
 };
 
 struct HeldOutResiduals {
@@ -36,7 +39,8 @@ struct HeldOutResiduals {
 HeldOutResidual in_base(const Mat3& world_R_base, const Vec3& residual, const MatrixXd& jacobian,
                         const MatrixXd& covariance, const Mat3& noise) {
   return {world_R_base.transpose() * residual,
-          world_R_base.transpose() * (propagated_covariance(jacobian, covariance) + noise) * world_R_base};
+          world_R_base.transpose() * propagated_covariance(jacobian, covariance) * world_R_base,
+          world_R_base.transpose() * noise * world_R_base};
 }
 
 /// Residuals of `rows`, which `fit` did not see, by what `model` predicts from it.
@@ -72,15 +76,15 @@ HeldOutResiduals residuals_of(const Estimate& fit, const PredictionModel& model,
   return all;
 }
 
-/// Residuals of `rows` by a fit to `train`, with their distances from it in the units of the final region.
+/// Residuals of `rows` by a fit to `train`, and how far outside of it they lie in the units of the final region.
 HeldOutResiduals residuals_beside(const Estimate& fit, const PoseSet& train, const PoseSet& rows,
                                   const std::optional<Instrument>& instrument, PredictionModel region) {
   region.rows = representatives(train.joints);
   HeldOutResiduals all = residuals_of(fit, region, rows, instrument);
-  VectorXd distance(rows.rows());
-  for (Index row = 0; row < rows.rows(); ++row) distance[row] = region_distance(region, rows.joints.col(row));
-  for (std::size_t k = 0; k < all.points.size(); ++k) all.points[k].distance = distance[rows.points[k].row];
-  for (std::size_t k = 0; k < all.rotations.size(); ++k) all.rotations[k].distance = distance[rows.orientations[k].row];
+  VectorXd outside(rows.rows());
+  for (Index row = 0; row < rows.rows(); ++row) outside[row] = outside_share(region, rows.joints.col(row));
+  for (std::size_t k = 0; k < all.points.size(); ++k) all.points[k].outside = outside[rows.points[k].row];
+  for (std::size_t k = 0; k < all.rotations.size(); ++k) all.rotations[k].outside = outside[rows.orientations[k].row];
   return all;
 }
 
@@ -103,7 +107,7 @@ HeldOutResiduals held_out_residuals(const EvaluationInputs& evaluated, const Pre
 /// Squared Mahalanobis length, with a model error. By Cramer's rule: called a hundred times for each of thousands of
 /// rows.
 double squared_length(const HeldOutResidual& r, const Mat3& model_error) {
-  const Mat3 covariance = r.explained + model_error;
+  const Mat3 covariance = r.explained() + model_error;
   const Vec3 a = covariance.col(0), b = covariance.col(1), c = covariance.col(2);
   const double volume = a.dot(b.cross(c));
   if (!(volume > 0.0)) return std::numeric_limits<double>::infinity();
@@ -167,7 +171,7 @@ Mat3 mean_excess(const std::vector<HeldOutResidual>& residuals) {
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const double shorten = squares[i] > largest ? largest / squares[i] : 1.0;
     const Mat3 square = shorten * residuals[i].residual * residuals[i].residual.transpose();
-    total += square, excess += square - residuals[i].explained;
+    total += square, excess += square - residuals[i].explained();
   }
   const auto n = static_cast<double>(residuals.size());
   const SymmetricEigen eigen = symmetric_eigen(MatrixXd(excess / n));
@@ -175,11 +179,12 @@ Mat3 mean_excess(const std::vector<HeldOutResidual>& residuals) {
   return eigen.vectors * eigen.values.cwiseMax(least).asDiagonal() * eigen.vectors.transpose();
 }
 
-/// The model error as a function of the distance from the fitted rows.
+/// The model error among the fitted rows, and what it gains outside of them.
 struct ModelErrors {
-  Mat3 inside = Mat3::Zero(), growth = Mat3::Zero();
+  Mat3 inside = Mat3::Zero(), outside = Mat3::Zero();
+  double noise_part = 1.0;  ///< of the variance that the residuals of the fits show, where the instrument is not stated
 
-  Mat3 at(const HeldOutResidual& r) const { return inside + r.distance * r.distance * growth; }
+  Mat3 at(const HeldOutResidual& r) const { return inside + r.outside * outside; }
 };
 
 double size_with(const std::vector<HeldOutResidual>& residuals, const ModelErrors& errors, NoiseKnowledge noise) {
@@ -188,10 +193,10 @@ double size_with(const std::vector<HeldOutResidual>& residuals, const ModelError
   return relative_size(std::move(squares), noise);
 }
 
-Mat3 error_inside(const std::vector<HeldOutResidual>& residuals, const Mat3& growth, NoiseKnowledge noise) {
+Mat3 error_inside(const std::vector<HeldOutResidual>& residuals, const Mat3& outside, NoiseKnowledge noise) {
   if (residuals.size() < thresholds::min_model_error_rows) return Mat3::Zero();
   const Mat3 shape = mean_excess(residuals);
-  return shape * least_factor([&](double factor) { return size_with(residuals, {factor * shape, growth}, noise); });
+  return shape * least_factor([&](double factor) { return size_with(residuals, {factor * shape, outside}, noise); });
 }
 
 /// Residuals of halves of the joint space that their fits did not see.
@@ -212,39 +217,59 @@ std::vector<HeldOutResiduals> residuals_of_regions(const EvaluationInputs& evalu
 }
 
 /// What the errors gain outside: their mean excess over all regions, alike in all directions, and as much larger as the
-/// next region may need after the hardest of these.
-Mat3 error_growth(const std::vector<std::vector<HeldOutResidual>>& of_regions, const Mat3& inside) {
+/// hardest of these needs.
+Mat3 error_outside(const std::vector<std::vector<HeldOutResidual>>& of_regions, const Mat3& inside) {
   std::vector<HeldOutResidual> all;
-  double squares = 0.0;
+  double shares = 0.0;
   for (const std::vector<HeldOutResidual>& region : of_regions)
-    for (const HeldOutResidual& r : region) all.push_back(r), squares += r.distance * r.distance;
-  if (all.size() < thresholds::min_model_error_rows || squares == 0.0) return thresholds::default_growth * inside;
+    for (const HeldOutResidual& r : region) all.push_back(r), shares += r.outside;
+  if (all.size() < thresholds::min_model_error_rows || shares == 0.0) return thresholds::default_outside * inside;
   const double mean_variance = mean_excess(all).trace() / 3.0;
-  const Mat3 mean_growth = mean_variance * static_cast<double>(all.size()) / squares * Mat3::Identity();
+  const Mat3 mean_outside = mean_variance * static_cast<double>(all.size()) / shares * Mat3::Identity();
   double hardest = 0.0;
   for (const std::vector<HeldOutResidual>& region : of_regions)
     if (region.size() >= thresholds::min_model_error_rows)
       hardest = std::max(hardest, least_factor([&](double factor) {
-                           return size_with(region, {inside, factor * mean_growth}, NoiseKnowledge::stated);
+                           return size_with(region, {inside, factor * mean_outside}, NoiseKnowledge::stated);
                          }));
-  return std::min(thresholds::largest_growth, thresholds::next_region * hardest) * mean_growth;
+  return std::min(thresholds::largest_outside_factor, hardest) * mean_outside;
 }
 
-/// No more than the held-out rows among the fitted ones bear, where their noise is stated: they have distances too.
-Mat3 bounded_growth(const Mat3& growth, const std::vector<HeldOutResidual>& held_out, NoiseKnowledge noise) {
-  if (noise == NoiseKnowledge::estimated || held_out.size() < thresholds::min_model_error_rows) return growth;
-  const auto size = [&](double factor) { return size_with(held_out, {Mat3::Zero(), factor * growth}, noise); };
-  return size(1.0) >= 1.0 ? growth : Mat3(least_factor(size) * growth);
+/// No more than the held-out rows among the fitted ones bear, where their noise is stated: some lie at the edge too.
+Mat3 bounded_outside(const Mat3& outside, const std::vector<HeldOutResidual>& held_out, NoiseKnowledge noise) {
+  if (noise == NoiseKnowledge::estimated || held_out.size() < thresholds::min_model_error_rows) return outside;
+  const auto size = [&](double factor) { return size_with(held_out, {Mat3::Zero(), factor * outside}, noise); };
+  return size(1.0) >= 1.0 ? outside : Mat3(least_factor(size) * outside);
 }
 
-/// Both depend on each other: held-out rows among the fitted ones have a distance from them too.
+/// Residuals of fits tell the noise and the model error together, and wild rows widen both: what is left for the noise
+/// so that 95 % of the held-out rows lie within their 95 % ellipsoids. Few rows say less of it.
+double noise_part(const std::vector<HeldOutResidual>& held_out, const ModelErrors& errors) {
+  if (held_out.size() < thresholds::min_model_error_rows) return 1.0;
+  const auto size = [&](double part) {
+    std::vector<HeldOutResidual> scaled = held_out;
+    for (HeldOutResidual& r : scaled) r.parameters *= part, r.noise *= part;
+    return size_with(scaled, errors, NoiseKnowledge::estimated);
+  };
+  double low = thresholds::least_noise, high = 1.0;
+  if (size(high) >= 1.0) return high;
+  for (int i = 0; i < 20; ++i) {
+    const double middle = 0.5 * (low + high);
+    (size(middle) > 1.0 ? low : high) = middle;
+  }
+  const auto count = static_cast<double>(held_out.size());
+  return std::pow(high, count / (count + thresholds::trusted_quantile_rows));
+}
+
+/// They depend on each other: held-out rows among the fitted ones lie at the edge too.
 ModelErrors model_errors(const std::vector<HeldOutResidual>& held_out,
                          const std::vector<std::vector<HeldOutResidual>>& of_regions, NoiseKnowledge noise) {
   ModelErrors errors{error_inside(held_out, Mat3::Zero(), noise)};
-  for (int round = 0; round < thresholds::growth_rounds; ++round) {
-    errors.growth = bounded_growth(error_growth(of_regions, errors.inside), held_out, noise);
-    errors.inside = error_inside(held_out, errors.growth, noise);
+  for (int round = 0; round < thresholds::outside_rounds; ++round) {
+    errors.outside = bounded_outside(error_outside(of_regions, errors.inside), held_out, noise);
+    errors.inside = error_inside(held_out, errors.outside, noise);
   }
+  if (noise == NoiseKnowledge::estimated) errors.noise_part = noise_part(held_out, errors);
   return errors;
 }
 
@@ -253,7 +278,7 @@ std::optional<double> predicted_rms(const std::vector<HeldOutResidual>& residual
   std::size_t count = 0;
   for (const HeldOutResidual& r : residuals) {
     if (!r.is_tool_point) continue;
-    squares += r.explained.trace() + errors.at(r).trace();
+    squares += errors.noise_part * r.explained().trace() + errors.at(r).trace();
     ++count;
   }
   if (count < thresholds::min_model_error_rows) return std::nullopt;
@@ -281,7 +306,6 @@ std::optional<HeldOutPrediction> make_prediction_model(const EvaluationInputs& e
   PredictionModel model;
   for (const Parameter* parameter : estimate.parameters.free()) model.parameters.push_back(parameter->name);
   model.root = covariance_root(estimate.covariance);
-  if (!evaluated.instrument) model.noise = estimate.sigma;
   if (beyond) model.beyond = change_beyond(estimate, *beyond);
   describe_region(model, evaluated.data.joints(Eigen::all, evaluated.plan.fitted));
   const HeldOutResiduals held_out = held_out_residuals(evaluated, model);
@@ -293,9 +317,12 @@ std::optional<HeldOutPrediction> make_prediction_model(const EvaluationInputs& e
   const NoiseKnowledge noise = evaluated.instrument ? NoiseKnowledge::stated : NoiseKnowledge::estimated;
   const ModelErrors points = model_errors(held_out.points, points_of_regions, noise),
                     rotations = model_errors(held_out.rotations, rotations_of_regions, noise);
-  model.model_error.topLeftCorner<3, 3>() = points.inside, model.growth.topLeftCorner<3, 3>() = points.growth;
-  model.model_error.bottomRightCorner<3, 3>() = rotations.inside,
-                                         model.growth.bottomRightCorner<3, 3>() = rotations.growth;
+  model.root *= std::sqrt(points.noise_part);
+  if (!evaluated.instrument) model.noise = std::sqrt(points.noise_part) * estimate.sigma;
+  model.model_error.topLeftCorner<3, 3>() = points.inside;
+  model.outside_error.topLeftCorner<3, 3>() = points.outside;
+  model.model_error.bottomRightCorner<3, 3>() = rotations.inside;
+  model.outside_error.bottomRightCorner<3, 3>() = rotations.outside;
   return HeldOutPrediction{model, predicted_rms(held_out.points, points)};
 }
 

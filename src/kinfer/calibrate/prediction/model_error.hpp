@@ -2,8 +2,8 @@
 // The model error: what the held-out residuals exceed the uncertainty of the parameters and the instrument's noise by.
 //
 // Its covariance has the shape of the mean excess, along the axes of the base, and the size with which 95 % of the
-// held-out points lie within their 95 % ellipsoids (split conformal prediction: Vovk, Gammerman, Shafer 2005). Its
-// growth outside the fitted region is set likewise on regions of the joint space that were not fitted.
+// held-out points lie within their 95 % ellipsoids (split conformal prediction: Vovk, Gammerman, Shafer 2005). What it
+// gains outside the fitted region is set likewise on regions of the joint space that were not fitted.
 #pragma once
 
 #include <optional>

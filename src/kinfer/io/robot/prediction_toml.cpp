@@ -46,6 +46,20 @@ void read_covariance(TableReader& reader, const char* key, MatrixXd& covariance)
   if (numbers.size() == 36) covariance = Eigen::Map<const MatrixXd>(numbers.data(), 6, 6);
 }
 
+/// Older files have a model error that grew with the squared distance, by a rate or a covariance: what it was at twice
+/// the reach.
+void read_outside_error(TableReader& reader, const TomlTable& table, PredictionModel& model) {
+  constexpr double squared_distance = 4.0;
+  if (table.find("rate")) {
+    model.outside_error = squared_distance * reader.number_or("rate", 0.0) * model.model_error;
+  } else if (table.find("growth")) {
+    read_covariance(reader, "growth", model.outside_error);
+    model.outside_error *= squared_distance;
+  } else {
+    read_covariance(reader, "outside_error", model.outside_error);
+  }
+}
+
 }  // namespace
 
 std::string format_prediction_toml(const PredictionModel& model) {
@@ -61,12 +75,12 @@ std::string format_prediction_toml(const PredictionModel& model) {
       model.beyond.size() > 0 ? "beyond = " + prediction_numbers(model.beyond) + "\n" : std::string();
   const std::string noise = model.noise > 0.0 ? fmt::format("noise = {:.7g}\n", model.noise) : std::string();
   return fmt::format(
-      "\n[prediction]\nparameters = [{}]\ncovariance_root = [\n{}\n]\nmodel_error = {}\ngrowth = {}\nspread = "
-      "{}\nreach = {:.7g}\n"
+      "\n[prediction]\nparameters = [{}]\ncovariance_root = [\n{}\n]\nmodel_error = {}\noutside_error = {}\nspread = "
+      "{}\nreach = {:.7g}\nedge = {:.7g}\n"
       "{}{}rows = {}\n",
       names, root, prediction_numbers(VectorXd(model.model_error.reshaped())),
-      prediction_numbers(VectorXd(model.growth.reshaped())), prediction_numbers(model.spread), model.reach, noise,
-      beyond, prediction_numbers(VectorXd(model.rows.reshaped())));
+      prediction_numbers(VectorXd(model.outside_error.reshaped())), prediction_numbers(model.spread), model.reach,
+      model.edge, noise, beyond, prediction_numbers(VectorXd(model.rows.reshaped())));
 }
 
 std::optional<PredictionModel> read_prediction(TableReader& file, int dof, FirstError& first_error) {
@@ -82,15 +96,12 @@ std::optional<PredictionModel> read_prediction(TableReader& file, int dof, First
   for (Index i = 0; i < count; ++i)
     for (Index j = 0; j <= i && next < root.size(); ++j) model.root(i, j) = root[next++];
   read_covariance(reader, "model_error", model.model_error);
-  // Before 2026-11-24 files had the rate at which the model error grew.
-  if (table->find("rate"))
-    model.growth = reader.number_or("rate", 0.0) * model.model_error;
-  else
-    read_covariance(reader, "growth", model.growth);
+  read_outside_error(reader, *table, model);
   const std::vector<double> spread = reader.numbers("spread", static_cast<std::size_t>(dof));
   model.spread = VectorXd::Ones(dof);
   if (static_cast<int>(spread.size()) == dof) model.spread = Eigen::Map<const VectorXd>(spread.data(), dof);
   model.reach = reader.positive_or("reach", 1.0);
+  model.edge = reader.positive_or("edge", 1.0);
   if (table->find("noise")) model.noise = reader.positive_or("noise", 0.0);
   if (table->find("beyond")) {
     const std::vector<double> beyond = reader.numbers("beyond", static_cast<std::size_t>(count));
