@@ -5,8 +5,8 @@
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
+#include "kinfer/calibrate/series/harmonic_series.hpp"
 #include "kinfer/calibrate/terms/decision.hpp"
-#include "kinfer/calibrate/terms/harmonic_series.hpp"
 #include "kinfer/calibrate/validation/validation_errors.hpp"
 
 namespace kinfer::calibrate {

@@ -45,12 +45,8 @@ inline constexpr std::size_t min_spectrum_points = 60;  ///< too few below that 
 /// [Δχ²] above the expected maximum of pure noise; larger finds fewer lines.
 KINFER_THRESHOLD(calibrate, spectral_margin, 20.0);
 inline constexpr int max_spectral_lines = 24;
-/// [rad] of the coefficients of a series: where their size is sought first, and at most.
-inline constexpr double first_series_size = 1e-4, largest_series_size = 1e-3;
-/// Rows from which series and lines are compared on a part of them; more: slower.
+/// Rows from which series and lines are compared on a part of them; more: slower. Set for the time on UR10 A and B.
 inline constexpr std::size_t compared_rows = 600;
-inline constexpr int series_rounds = 5;        ///< at most, of size and noise level in turn; usually three suffice
-inline constexpr double settled_noise = 0.02;  ///< [1] relative change of the noise level that ends them
 inline constexpr std::size_t gears_alone_rows = 1000;  ///< of the fit of gears alone; more: slower
 
 // ---- approximate masses: only their ratios matter ----

@@ -9,11 +9,11 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
+#include "kinfer/calibrate/series/harmonic_series.hpp"
 #include "kinfer/calibrate/terms/ablation.hpp"
 #include "kinfer/calibrate/terms/candidate_terms.hpp"
 #include "kinfer/calibrate/terms/decision.hpp"
 #include "kinfer/calibrate/terms/extrapolation_splits.hpp"
-#include "kinfer/calibrate/terms/harmonic_series.hpp"
 #include "kinfer/calibrate/validation/gross_errors.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/measurement/row_selection.hpp"

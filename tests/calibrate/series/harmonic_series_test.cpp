@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors of joints that are smooth functions of their positions, of any form.
-#include "kinfer/calibrate/terms/harmonic_series.hpp"
+#include "kinfer/calibrate/series/harmonic_series.hpp"
 
 #include <gtest/gtest.h>
 

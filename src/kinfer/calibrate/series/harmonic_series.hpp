@@ -6,21 +6,14 @@
 // N(0, size²) a priori. Where nothing was measured, it returns to zero within two knots. Only four coefficients act at
 // one position, so the normal equations of hundreds of them cost little. The size is the one that maximises the
 // marginal likelihood (MacKay 1992), and so is the number of knots.
-//
-// In the chain the series are the first harmonics of their joints: of orders 0, 1, 2, … without a gap.
 #pragma once
 
 #include <optional>
 
+#include "kinfer/calibrate/series/chain_series.hpp"
 #include "kinfer/estimate/poses/bundle.hpp"
 
 namespace kinfer::calibrate {
-
-/// The highest order of the joint's series; 0 where it has none.
-int series_order(const Joint& joint);
-bool has_series(const Chain& chain);
-/// Whether a harmonic of that order is part of the joint's series.
-bool is_in_series(const Joint& joint, double order);
 
 struct FoundSeries {
   Chain chain;                     ///< that of the estimate, with series in place of its harmonics
@@ -38,11 +31,5 @@ std::optional<FoundSeries> find_series(const Estimate& fitted, const PoseSet& ro
 Estimate fit_with_series(const Chain& start, const ParameterSet& set, const PoseSet& rows,
                          const std::optional<Instrument>& instrument, const BundleOptions& options,
                          const Observer& observer = {});
-
-/// The chain with the values of its series zero.
-Chain without_series(Chain chain);
-
-/// The chain with the series of another one with the same joints, in place of its own.
-Chain with_series_of(Chain chain, const Chain& other);
 
 }  // namespace kinfer::calibrate
