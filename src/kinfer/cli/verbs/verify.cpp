@@ -127,7 +127,8 @@ MeasurementsInUnits in_units_of(const RobotModel& robot, PoseSet data) {
     notes.push_back(words::pose_set_finding_sentence(finding) +
                     "; corrected here (in the files: " + words::pose_set_finding_suggestion(finding) + ")");
   }
-  return {notes.empty() ? std::move(data) : diagnosis.corrected_task.data, notes};
+  if (!notes.empty()) data = diagnosis.corrected_task.data;
+  return {std::move(data), std::move(notes)};
 }
 
 int run(const VerifyArguments& options) {

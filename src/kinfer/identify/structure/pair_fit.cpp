@@ -58,8 +58,9 @@ WorldRotation search_world_rotation(const PairProblem& problem) {
     }
   };
   const auto scan_part = [&](std::size_t part) {
-    const WorldNumbers start = best;
-    for (int k = 1; k < heading_starts; ++k) improves(shifted(start, part, k * coarse));
+    std::vector<WorldNumbers> around;  // the best one, whichever is better meanwhile
+    for (int k = 1; k < heading_starts; ++k) around.push_back(shifted(best, part, k * coarse));
+    for (WorldNumbers& trial : around) improves(std::move(trial));
   };
   const auto improves_part = [&](double step) {
     for (std::size_t part = 0; part < parts.size(); ++part)

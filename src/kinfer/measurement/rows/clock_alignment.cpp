@@ -38,7 +38,7 @@ bool holds_anything(const InsSample& sample) {
 
 }  // namespace
 
-ClockAlignment::ClockAlignment(std::vector<double> offsets) {
+ClockAlignment::ClockAlignment(const std::vector<double>& offsets) {
   for (const double offset : offsets) {
     tracks_.push_back({.offset = std::abs(offset) < least_clock_offset ? 0.0 : offset});
     has_effect_ |= std::abs(offset) >= least_clock_offset;

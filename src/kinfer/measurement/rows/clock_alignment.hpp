@@ -16,7 +16,7 @@ namespace kinfer {
 class ClockAlignment {
  public:
   /// [s] one for each sensor of the rows; offsets below `least_clock_offset` are none.
-  explicit ClockAlignment(std::vector<double> offsets);
+  explicit ClockAlignment(const std::vector<double>& offsets);
 
   /// Whether any sensor is off; rows pass unchanged and at once otherwise.
   bool has_effect() const { return has_effect_; }

@@ -39,7 +39,7 @@ std::string change_sentence(const ChainChange& change) {
   if (change.kind == ChainChangeKind::joint_moved)
     return phrase("joint_moved", "the joint {} is elsewhere on the segment of {}: {} ({})", change.name, change.segment,
                   size, odds);
-  const std::string text = phrase("sensor_moved", "{} sits otherwise on its segment: {} ({})", change.name, size, odds);
+  std::string text = phrase("sensor_moved", "{} sits otherwise on its segment: {} ({})", change.name, size, odds);
   if (change.alternative.empty()) return text;
   return text + phrase("moved_joint_instead", "; if it was not touched, the joint {} moved on this segment",
                        change.alternative);
