@@ -92,7 +92,8 @@ TEST_F(Track, GivesTheSameRowsHoweverTheLogArrives) {
   ASSERT_EQ(shell("dd if=drive/imu.csv bs=777 status=none | kinfer track machine - --quiet > input.csv").code, 0);
   ASSERT_EQ(
       shell("head -c 100000 drive/imu.csv > growing.csv; kinfer track machine growing.csv --follow --quiet > "
-            "followed.csv & sleep 0.5; tail -c +100001 drive/imu.csv >> growing.csv; sleep 3; kill -INT $!; wait $!")
+            "followed.csv & sleep 0.5; tail -c +100001 drive/imu.csv >> growing.csv; for i in $(seq 600); do "
+            "[ $(wc -c < followed.csv) -ge $(wc -c < file.csv) ] && break; sleep 0.1; done; kill -INT $!; wait $!")
           .code,
       0);
   const std::string file = slurp(in("file.csv"));

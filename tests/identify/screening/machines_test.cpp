@@ -71,6 +71,23 @@ TEST(SelectMachine, ASensorThatRotatesAboutOneAxisIsABarOfALinkageAnotherOneShar
   EXPECT_EQ(stranger.findings[0].kind, FindingKind::no_joint);
 }
 
+TEST(SelectMachine, ASensorInShortPiecesExplainsAllThatFitsToNoOther) {
+  OrderedMotion ordered = chain_with(7, unrelated_pair(3, 4, 1.0));
+  ordered.motion.period = 0.01;
+  ordered.motion.usable.assign(2600, true);
+  ordered.motion.segments[4].restarts = {5.0, 10.0, 15.0, 20.0, 25.0, 30.0};  // seven pieces of 3.7 s
+  ordered.motion.segments[1].restarts = std::vector<double>(20, 0.0);         // fits nevertheless
+  const RecordingSelection chosen = select_machine(ordered, {});
+  EXPECT_EQ(chosen.sensors, (Sensors{0, 1, 2, 3}));
+  ASSERT_EQ(chosen.findings.size(), 1U);
+  EXPECT_EQ(chosen.findings[0].kind, FindingKind::fragmented_sensor);
+  EXPECT_EQ(chosen.findings[0].values.text("sensor"), "s4");
+  EXPECT_EQ(chosen.findings[0].values.texts("left_out"), (std::vector<std::string>{"s4", "s5", "s6"}));
+  EXPECT_NE(words::sentence(chosen.findings[0]).find("7 pieces of 3.7 s"), std::string::npos);
+  ordered.motion.segments[4].restarts.resize(5);  // of 4.3 s
+  EXPECT_EQ(select_machine(ordered, {}).findings[0].kind, FindingKind::several_machines);
+}
+
 TEST(SelectMachine, ASmallPartMayHaveALargerResidualThanAWholeMachine) {
   EXPECT_EQ(select_machine(chain_with(5, revolute_pair(3, 4, 0.09)), {}).sensors.size(), 5U);
   EXPECT_EQ(select_machine(chain_with(5, revolute_pair(3, 4, 0.11)), {}).sensors.size(), 4U);

@@ -41,6 +41,7 @@ constexpr std::array named_kinds{
     NamedKind{FindingKind::several_machines, "several_machines"},
     NamedKind{FindingKind::linkage, "linkage"},
     NamedKind{FindingKind::no_joint, "no_joint"},
+    NamedKind{FindingKind::fragmented_sensor, "fragmented_sensor"},
     NamedKind{FindingKind::not_connected, "not_connected"},
     NamedKind{FindingKind::other_machine, "other_machine"},
     NamedKind{FindingKind::mixed_recording, "mixed_recording"},

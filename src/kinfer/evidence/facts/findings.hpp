@@ -51,6 +51,7 @@ enum class FindingKind {
   several_machines,         ///< the recording holds more than one machine
   linkage,                  ///< a sensor on a bar of a linkage
   no_joint,                 ///< a sensor that shares no joint with the others
+  fragmented_sensor,        ///< a sensor that measures in pieces too short to know its orientation
   not_connected,            ///< sensors that have nothing to do with the others
   other_machine,            ///< too much differs from the chain that is updated
   mixed_recording,          ///< a sensor that is connected with the others in a part of the recording only

@@ -140,6 +140,37 @@ Finding separation_finding(const OrderedMotion& ordered, const TreeLink& cut, co
   return finding;
 }
 
+/// [s] of a segment's measurements between its gaps, on the average.
+double mean_piece(const RecordedMotion& motion, std::size_t segment) {
+  const auto usable = static_cast<double>(std::ranges::count(motion.usable, true));
+  return usable * motion.period / static_cast<double>(motion.segments[segment].restarts.size() + 1);
+}
+
+/// The sensor with the shortest pieces of those beside the cuts, where they are too short.
+std::optional<std::size_t> fragmented_segment(const RecordedMotion& motion, const std::vector<TreeLink>& cut) {
+  std::optional<std::size_t> worst;
+  for (const TreeLink& link : cut)
+    for (const std::size_t s : {link.parent, link.child})
+      if (!motion.segments[s].restarts.empty() && mean_piece(motion, s) < least_piece &&
+          (!worst || mean_piece(motion, s) < mean_piece(motion, *worst)))
+        worst = s;
+  return worst;
+}
+
+Finding fragmented_finding(const RecordedMotion& motion, std::size_t fragmented,
+                           const std::vector<std::size_t>& selected) {
+  std::vector<std::size_t> left_out;
+  for (std::size_t s = 0; s < motion.segments.size(); ++s)
+    if (std::ranges::find(selected, s) == selected.end()) left_out.push_back(s);
+  return {.kind = FindingKind::fragmented_sensor,
+          .severity = Severity::warning,
+          .values = {{"sensor", motion.segments[fragmented].name},
+                     {"pieces", static_cast<int>(motion.segments[fragmented].restarts.size()) + 1},
+                     {"piece", mean_piece(motion, fragmented)},
+                     {"left_out", names_of(motion, left_out)}},
+          .applied = true};
+}
+
 }  // namespace
 
 RecordingSelection exclude_idle_sensors(const InsRecording& recording, const SegmentMotionOptions& options,
@@ -182,6 +213,10 @@ RecordingSelection select_machine(const OrderedMotion& ordered, const std::optio
     for (const std::string& name : names_of(ordered.motion, *group))
       if (name == *root && group->size() > 1) best = group;
   chosen.sensors = *best;
+  if (const auto fragmented = fragmented_segment(ordered.motion, cut)) {
+    chosen.findings.push_back(fragmented_finding(ordered.motion, *fragmented, chosen.sensors));
+    return chosen;
+  }
   const auto is_in = [](const std::vector<std::size_t>& group, std::size_t s) {
     return std::ranges::find(group, s) != group.end();
   };

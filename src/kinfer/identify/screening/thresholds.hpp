@@ -57,6 +57,10 @@ inline constexpr NoJointThreshold machine_threshold{.residual = 0.05, .factor = 
 /// Fewer segments: a joint with a clipping sensor has up to 8 times the usual residual.
 inline constexpr NoJointThreshold part_threshold{.residual = 0.1, .factor = 10.0};
 
+/// [s] Mean piece between the gaps of a sensor below which its orientation explains that it fits to no other one. One
+/// simulated log with pieces of 1.5, 2.5 s (does not fit) and 4 s (fits).
+inline constexpr double least_piece = 4.0;
+
 /// [nats per row] Gain over shifted recordings below which two segments have nothing to do with each other; larger
 /// separates more sensors. Unrelated sensors gain at most 1.3, joints 1.7 (one of a pendulum, the others 6 and more).
 KINFER_THRESHOLD(identify, no_connection_gain, 1.5);

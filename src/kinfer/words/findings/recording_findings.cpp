@@ -91,6 +91,19 @@ std::string no_joint_suggestion(const Finding&) {
   return phrase("no_joint.suggestion", "mount an INS on every segment, and none on the bars of a linkage");
 }
 
+std::string fragmented_sensor_sentence(const Finding& f) {
+  const FactValues& v = f.values;
+  return phrase("fragmented_sensor",
+                "{} measures in {} pieces of {:.1f} s: behind each gap its orientation is another one, and so short a "
+                "piece does not tell it; left out: {}",
+                v.text("sensor"), v.count("pieces"), v.number("piece"), fmt::join(v.texts("left_out"), ", "));
+}
+
+std::string fragmented_sensor_suggestion(const Finding& f) {
+  return phrase("fragmented_sensor.suggestion", "mend the radio or cable of {}, and record again",
+                f.values.text("sensor"));
+}
+
 std::string not_connected_sentence(const Finding& f) {
   return phrase("not_connected",
                 "{} has nothing to do with the other sensors: a joint explains its motion no better than it explains "
@@ -205,6 +218,7 @@ constexpr std::array recording_finding_words{
     FindingWords{FindingKind::several_machines, several_machines_sentence, several_machines_suggestion},
     FindingWords{FindingKind::linkage, linkage_sentence, no_joint_suggestion},
     FindingWords{FindingKind::no_joint, no_joint_sentence, no_joint_suggestion},
+    FindingWords{FindingKind::fragmented_sensor, fragmented_sensor_sentence, fragmented_sensor_suggestion},
     FindingWords{FindingKind::not_connected, not_connected_sentence, not_connected_suggestion},
     FindingWords{FindingKind::other_machine, other_machine_sentence, other_machine_suggestion},
     FindingWords{FindingKind::mixed_recording, mixed_recording_sentence, mixed_recording_suggestion},
