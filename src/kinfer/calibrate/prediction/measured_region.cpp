@@ -20,26 +20,12 @@ MatrixXd representatives(const MatrixXd& joints) {
   return joints(Eigen::all, rows);
 }
 
-namespace {
-
-/// Of the fitted rows, 95 % have less than two thirds of it.
-double edge_of(const PredictionModel& model, const MatrixXd& joints) {
-  std::vector<double> sides;
-  for (Index row = 0; row < joints.cols(); row += std::max<Index>(1, joints.cols() / 300))
-    sides.push_back(one_sidedness(model, joints.col(row)));
-  const double side = sides.empty() ? 0.0 : quantile(std::move(sides), thresholds::region_part);
-  return side > 0.0 && std::isfinite(side) ? thresholds::edge_over_measured * side : 1.0;
-}
-
-}  // namespace
-
 void describe_region(PredictionModel& model, const MatrixXd& joints) {
   const auto count = static_cast<int>(joints.cols());
   model.rows = representatives(joints);
   const MatrixXd centred = joints.colwise() - joints.rowwise().mean();
   model.spread = (centred.rowwise().squaredNorm() / std::max(1, count - 1)).cwiseSqrt().cwiseMax(1e-9);
-  model.reach = 1.0;
-  std::vector<double> distances;
+  std::vector<double> distances, sides;
   for (Index row = 0; row < joints.cols(); row += std::max<Index>(1, joints.cols() / 300)) {
     // A representative is not its own neighbour.
     const VectorXd scale = model.spread.cwiseInverse();
@@ -48,9 +34,11 @@ void describe_region(PredictionModel& model, const MatrixXd& joints) {
     for (double& s : squares)
       if (s == 0.0) s = std::numeric_limits<double>::infinity();
     if (const double least = squares.minCoeff(); std::isfinite(least)) distances.push_back(std::sqrt(least));
+    sides.push_back(one_sidedness(model, joints.col(row)));
   }
-  if (!distances.empty()) model.reach = quantile(std::move(distances), thresholds::region_part);
-  model.edge = edge_of(model, joints);
+  model.reach = distances.empty() ? 1.0 : quantile(std::move(distances), thresholds::region_part);
+  const double side = sides.empty() ? 0.0 : quantile(std::move(sides), thresholds::region_part);
+  model.edge = side > 0.0 && std::isfinite(side) ? thresholds::edge_over_measured * side : 1.0;
 }
 
 }  // namespace kinfer::calibrate

@@ -9,7 +9,7 @@ namespace kinfer::calibrate {
 /// At most region_rows of the columns, evenly spread.
 MatrixXd representatives(const MatrixXd& joints);
 
-/// The region of these joint positions (dof x n): representatives, spread and reach.
+/// The region of these joint positions (dof x n): representatives, spread, reach and edge.
 void describe_region(PredictionModel& model, const MatrixXd& joints);
 
 }  // namespace kinfer::calibrate

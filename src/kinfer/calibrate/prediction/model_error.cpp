@@ -104,10 +104,8 @@ HeldOutResiduals held_out_residuals(const EvaluationInputs& evaluated, const Pre
   return all;
 }
 
-/// Squared Mahalanobis length, with a model error. By Cramer's rule: called a hundred times for each of thousands of
-/// rows.
-double squared_length(const HeldOutResidual& r, const Mat3& model_error) {
-  const Mat3 covariance = r.explained() + model_error;
+/// Squared Mahalanobis length. By Cramer's rule: called a hundred times for each of thousands of rows.
+double squared_length(const HeldOutResidual& r, const Mat3& covariance) {
   const Vec3 a = covariance.col(0), b = covariance.col(1), c = covariance.col(2);
   const double volume = a.dot(b.cross(c));
   if (!(volume > 0.0)) return std::numeric_limits<double>::infinity();
@@ -184,12 +182,14 @@ struct ModelErrors {
   Mat3 inside = Mat3::Zero(), outside = Mat3::Zero();
   double noise_part = 1.0;  ///< of the variance that the residuals of the fits show, where the instrument is not stated
 
-  Mat3 at(const HeldOutResidual& r) const { return inside + r.outside * outside; }
+  Mat3 covariance_of(const HeldOutResidual& r) const {
+    return noise_part * r.explained() + inside + r.outside * outside;
+  }
 };
 
 double size_with(const std::vector<HeldOutResidual>& residuals, const ModelErrors& errors, NoiseKnowledge noise) {
   std::vector<double> squares;
-  for (const HeldOutResidual& r : residuals) squares.push_back(squared_length(r, errors.at(r)));
+  for (const HeldOutResidual& r : residuals) squares.push_back(squared_length(r, errors.covariance_of(r)));
   return relative_size(std::move(squares), noise);
 }
 
@@ -244,21 +244,19 @@ Mat3 bounded_outside(const Mat3& outside, const std::vector<HeldOutResidual>& he
 
 /// Residuals of fits tell the noise and the model error together, and wild rows widen both: what is left for the noise
 /// so that 95 % of the held-out rows lie within their 95 % ellipsoids. Few rows say less of it.
-double noise_part(const std::vector<HeldOutResidual>& held_out, const ModelErrors& errors) {
+double noise_part(const std::vector<HeldOutResidual>& held_out, ModelErrors errors) {
   if (held_out.size() < thresholds::min_model_error_rows) return 1.0;
-  const auto size = [&](double part) {
-    std::vector<HeldOutResidual> scaled = held_out;
-    for (HeldOutResidual& r : scaled) r.parameters *= part, r.noise *= part;
-    return size_with(scaled, errors, NoiseKnowledge::estimated);
-  };
-  double low = thresholds::least_noise, high = 1.0;
-  if (size(high) >= 1.0) return high;
-  for (int i = 0; i < 20; ++i) {
-    const double middle = 0.5 * (low + high);
-    (size(middle) > 1.0 ? low : high) = middle;
-  }
+  const double least = least_factor([&](double part) {
+    errors.noise_part = part;
+    return size_with(held_out, errors, NoiseKnowledge::estimated);
+  });
   const auto count = static_cast<double>(held_out.size());
-  return std::pow(high, count / (count + thresholds::trusted_quantile_rows));
+  return std::pow(std::clamp(least, thresholds::least_noise, 1.0), count / (count + thresholds::trusted_quantile_rows));
+}
+
+/// With the parameters' covariance as it is kept.
+void scale_parameters(std::vector<HeldOutResidual>& residuals, double factor) {
+  for (HeldOutResidual& r : residuals) r.parameters *= factor;
 }
 
 /// They depend on each other: held-out rows among the fitted ones lie at the edge too.
@@ -269,7 +267,6 @@ ModelErrors model_errors(const std::vector<HeldOutResidual>& held_out,
     errors.outside = bounded_outside(error_outside(of_regions, errors.inside), held_out, noise);
     errors.inside = error_inside(held_out, errors.outside, noise);
   }
-  if (noise == NoiseKnowledge::estimated) errors.noise_part = noise_part(held_out, errors);
   return errors;
 }
 
@@ -278,7 +275,7 @@ std::optional<double> predicted_rms(const std::vector<HeldOutResidual>& residual
   std::size_t count = 0;
   for (const HeldOutResidual& r : residuals) {
     if (!r.is_tool_point) continue;
-    squares += errors.noise_part * r.explained().trace() + errors.at(r).trace();
+    squares += errors.covariance_of(r).trace();
     ++count;
   }
   if (count < thresholds::min_model_error_rows) return std::nullopt;
@@ -308,17 +305,22 @@ std::optional<HeldOutPrediction> make_prediction_model(const EvaluationInputs& e
   model.root = covariance_root(estimate.covariance);
   if (beyond) model.beyond = change_beyond(estimate, *beyond);
   describe_region(model, evaluated.data.joints(Eigen::all, evaluated.plan.fitted));
-  const HeldOutResiduals held_out = held_out_residuals(evaluated, model);
+  HeldOutResiduals held_out = held_out_residuals(evaluated, model);
   std::vector<std::vector<HeldOutResidual>> points_of_regions, rotations_of_regions;
   for (HeldOutResiduals& region : residuals_of_regions(evaluated, estimate, model, threads)) {
     points_of_regions.push_back(std::move(region.points));
     rotations_of_regions.push_back(std::move(region.rotations));
   }
   const NoiseKnowledge noise = evaluated.instrument ? NoiseKnowledge::stated : NoiseKnowledge::estimated;
-  const ModelErrors points = model_errors(held_out.points, points_of_regions, noise),
-                    rotations = model_errors(held_out.rotations, rotations_of_regions, noise);
-  model.root *= std::sqrt(points.noise_part);
-  if (!evaluated.instrument) model.noise = std::sqrt(points.noise_part) * estimate.sigma;
+  ModelErrors points = model_errors(held_out.points, points_of_regions, noise);
+  if (noise == NoiseKnowledge::estimated) {
+    points.noise_part = noise_part(held_out.points, points);
+    model.noise = std::sqrt(points.noise_part) * estimate.sigma;
+    model.root *= std::sqrt(points.noise_part);
+    scale_parameters(held_out.rotations, points.noise_part);
+    for (std::vector<HeldOutResidual>& region : rotations_of_regions) scale_parameters(region, points.noise_part);
+  }
+  const ModelErrors rotations = model_errors(held_out.rotations, rotations_of_regions, noise);
   model.model_error.topLeftCorner<3, 3>() = points.inside;
   model.outside_error.topLeftCorner<3, 3>() = points.outside;
   model.model_error.bottomRightCorner<3, 3>() = rotations.inside;

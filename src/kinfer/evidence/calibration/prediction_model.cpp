@@ -35,6 +35,7 @@ double correction_weight(const PredictionModel& model, ConstVectorRef q) {
 }
 
 double one_sidedness(const PredictionModel& model, ConstVectorRef q) {
+  if (model.rows.cols() == 0) return 0.0;
   const VectorXd squares = squared_distances(model, q);
   std::vector<Eigen::Index> nearest;
   for (Eigen::Index row = 0; row < squares.size(); ++row)
