@@ -87,6 +87,14 @@ TEST_F(ModelFormats, TheExtensionChoosesTheFormat) {
   }
 }
 
+TEST_F(ModelFormats, AFileThatIsNoRobotIsToldWhatIsExpected) {
+  const fs::path table = folder / "poses.csv", chain = folder / "robot.toml";
+  ASSERT_TRUE(write_text_file(table, "q1[deg],x[mm]\n1,2\n"));
+  ASSERT_TRUE(write_text_file(chain, "q1[deg],x[mm]\n1,2\n"));
+  EXPECT_NE(complaint(table).find("; expected a robot as TOML, URDF or MJCF"), std::string::npos) << complaint(table);
+  EXPECT_EQ(complaint(chain).find("; expected a robot"), std::string::npos) << "it was meant as TOML";
+}
+
 TEST_F(ModelFormats, TheOutermostElementChoosesAmongXmlFormats) {
   const std::string before = "\xEF\xBB\xBF<?xml version='1.0'?>\n<!-- <mujoco> <robot> -->\n";
   const fs::path path = folder / "robot.xml";

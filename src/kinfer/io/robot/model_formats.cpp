@@ -114,7 +114,10 @@ Result<RobotModel> read_robot_model(const std::filesystem::path& path, const Cha
                  path.filename().string());
   KINFER_TRY(text, read_text_file(path));
   KINFER_TRY(format, format_of(path, text));
-  return format->parse(text, path.string(), ends);
+  auto robot = format->parse(text, path.string(), ends);
+  const bool is_guess = xml_root_name(text).empty() && !contains(format->read_extensions, extension);
+  if (!robot && is_guess) return error("{}; expected a robot as {}", robot.error().what, readable_model_formats());
+  return robot;
 }
 
 Result<void> write_robot_model(const std::filesystem::path& path, const RobotModel& robot,
