@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <csignal>
 #include <map>
+#include <set>
 #include <string>
 
 #include "fuzz_commands/process.hpp"
@@ -31,8 +32,13 @@ std::vector<std::string> command(std::uint64_t seed, const std::string& out) {
           out,         "--quiet", "--threads",       "1",      "--seed",         std::to_string(seed)};
 }
 
-bool is_staging(const fs::directory_entry& entry) {
-  return entry.path().filename().string().find(".kinfer-") != std::string::npos;
+/// Hidden folders in which results are written before they are renamed.
+std::set<std::string> staging_folders(const fs::path& material) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(material))
+    if (const std::string name = entry.path().filename().string(); name.find(".kinfer-") != std::string::npos)
+      names.insert(name);
+  return names;
 }
 
 }  // namespace
@@ -54,19 +60,24 @@ int count_mixtures(const fs::path& program, const fs::path& material, std::uint6
     // Results are written in the last tenth: most kills are there.
     const double moment = seconds * (rng.index(4) == 0 ? rng.uniform(0.0, 1.0) : rng.uniform(0.8, 1.1));
     const Snapshot before = snapshot(folder);
+    const std::set<std::string> left_before = staging_folders(material);  // by SIGKILL; the next whole run removes them
     const ProcessResult run =
         run_process(program, command(seed, "killed"), material, {.memory = 0}, moment, interrupt ? SIGINT : SIGKILL);
     const Snapshot after = snapshot(folder);
     const bool is_new = after == complete[seed], is_old = after == before;
     const bool ended = run.code == 0 || run.code == 1;
-    const bool left_behind =
-        interrupt && std::any_of(fs::directory_iterator(material), fs::directory_iterator(), is_staging);
+    const bool left_behind = interrupt && std::ranges::any_of(staging_folders(material), [&](const std::string& name) {
+                               return !left_before.contains(name);
+                             });
     // In its first milliseconds, before the program is in charge, the system ends it by the signal itself.
     const bool wrong_code = interrupt && !ended && run.code != 128 + SIGINT && run.signal != SIGINT;
     if ((!is_new && !is_old) || (ended && !is_new) || left_behind || wrong_code) {
       ++mixtures;
       fmt::print("kill {} after {:.4f} s: exit code {}, signal {}: {}{}\n", i, moment, run.code, run.signal,
-                 !is_new && !is_old ? "a mixture" : "results missing", left_behind ? ", a folder left behind" : "");
+                 !is_new && !is_old ? "a mixture"
+                 : ended && !is_new ? "results missing"
+                                    : "old or new results",
+                 left_behind ? ", a folder left behind" : "");
     }
     changed += is_new && !is_old ? 1 : 0;
     killed += ended ? 0 : 1;
