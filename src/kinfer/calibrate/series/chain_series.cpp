@@ -76,8 +76,8 @@ Chain attach(Chain plain, const std::vector<JointSeries>& series) {
 PoseSet with_moved_joints(PoseSet rows, const Chain& plain, const std::vector<JointSeries>& series) {
   const std::vector<int> q_index = active_joint_indices(plain);
   for (const JointSeries& s : series) {
-    const HarmonicSum series(harmonics_of(s.coefficients, s.resolution.order));
-    for (double& q : rows.joints.row(q_index[s.joint])) q += series.at(q);
+    const HarmonicSum sum(harmonics_of(s.coefficients, s.resolution.order));
+    for (double& q : rows.joints.row(q_index[s.joint])) q += sum.at(q);
   }
   return rows;
 }

@@ -88,7 +88,7 @@ class Pass {
 void notify_pass(const Observer& observer, std::string_view stage, std::size_t done, std::size_t all) {
   constexpr std::size_t every = 500;
   if (done % every == 0)
-    notify(observer, {.stage = stage, .fraction = static_cast<double>(done) / static_cast<double>(all)});
+    notify(observer, {.stage = stage, .fraction = static_cast<double>(done) / static_cast<double>(all), .detail = {}});
 }
 
 /// The state at each row, of a machine that moves forward.
