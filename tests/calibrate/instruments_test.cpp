@@ -216,6 +216,13 @@ TEST(Instruments, ACamerasStandardDeviationsWeightItsPoses) {
   EXPECT_LT(mean(point_errors(c.estimate.chain, measured(truth, paper2_poses(200, noise_free), 99))), 60e-6);
 }
 
+/// Of the rows that the report draws.
+double largest_drawn_error(const Calibration& c) {
+  double largest = 0.0;
+  for (const PlotRow& row : c.plot_data.rows) largest = std::max(largest, row.error_after->norm());
+  return largest;
+}
+
 TEST(Instruments, EachSetupHasABaseAndToolOfItsOwn) {
   Chain truth = true_robot(8);
   truth.mountings = {{.name = "second",
@@ -232,6 +239,7 @@ TEST(Instruments, EachSetupHasABaseAndToolOfItsOwn) {
   ASSERT_EQ(c.estimate.chain.mountings.size(), 1u);
   EXPECT_EQ(c.estimate.chain.setup, "first");
   EXPECT_LT((c.estimate.chain.mountings[0].tool.xyz - truth.mountings[0].tool.xyz).norm(), 1e-3);
+  EXPECT_LT(largest_drawn_error(c), 0.2e-3);
 }
 
 TEST(Instruments, BothArmsOfATreeAreCalibratedByRowsThatNameTheTip) {
@@ -253,6 +261,7 @@ TEST(Instruments, BothArmsOfATreeAreCalibratedByRowsThatNameTheTip) {
   EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
   EXPECT_LT(c.after.position.holdout.mean, 45e-6);
   EXPECT_GT(c.before.position.holdout.mean, 10.0 * c.after.position.holdout.mean);
+  EXPECT_LT(largest_drawn_error(c), 0.2e-3);
 }
 
 TEST(Instruments, AnAnchorThatTheRobotFileLacksIsAnError) {

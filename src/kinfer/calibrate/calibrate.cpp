@@ -108,7 +108,8 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
   calibration.reason = judge(calibration);
   calibration.usability = usability_of(calibration.reason, calibration.unobserved_lengths);
   calibration.accuracy = evaluate_pose_accuracy(frames_only, calibration.estimate.chain, task.data);
-  calibration.plot_data = make_plot_data(task, frames_only, calibration.estimate, calibration.prediction);
+  calibration.plot_data =
+      make_plot_data(task, frames_only, calibration.estimate, calibration.prediction, options.threads);
   calibration.recommendations = make_recommendations(task, calibration);
   return calibration;
 }

@@ -3,31 +3,27 @@
 
 #include <cmath>
 
+#include "kinfer/base/parallel.hpp"
 #include "kinfer/calibrate/conclusion/thresholds.hpp"
 #include "kinfer/estimate/poses/bundle.hpp"
-#include "kinfer/kinematics/forward.hpp"
+#include "kinfer/estimate/poses/pose_residuals.hpp"
 
 namespace kinfer::calibrate {
 namespace {
 
-Load load_of(const PoseSet& data, int row) {
-  return {data.payload.empty() ? 0.0 : data.payload[row]};
-}
-
-Vec3 point_on_tool(const Chain& chain, const PointMeasurement& point, ConstVectorRef q, const Load& load) {
-  const Pose tool = forward(chain, q, load);
+Vec3 point_on_tool(const Chain& chain, const PointMeasurement& point, const Pose& tool) {
   return point.target < 0 ? tool.position : tool * chain.targets[point.target].xyz;
 }
 
-void add_points(CalibrationPlotData& plot_data, const CalibrationTask& task, const Chain& after) {
+void add_points(CalibrationPlotData& plot_data, const CalibrationTask& task, const Chain& after, int threads) {
+  const EvaluatedPoses tool_before = evaluate_poses(plot_data.before, {}, task.data, Derivative::no, threads),
+                       tool_after = evaluate_poses(after, {}, task.data, Derivative::no, threads);
   for (const PointMeasurement& point : task.data.points) {
     PlotRow& row = plot_data.rows[point.row];
     if (row.measured) continue;
-    const auto q = task.data.joints.col(point.row);
-    const Load load = load_of(task.data, point.row);
     row.measured = point.position;
-    row.error_before = point_on_tool(plot_data.before, point, q, load) - point.position;
-    row.error_after = point_on_tool(after, point, q, load) - point.position;
+    row.error_before = point_on_tool(plot_data.before, point, tool_before.pose[point.row]) - point.position;
+    row.error_after = point_on_tool(after, point, tool_after.pose[point.row]) - point.position;
   }
 }
 
@@ -52,29 +48,36 @@ double with_model_error(double by_parameters, const std::optional<PredictionMode
 }
 
 std::vector<WorkspacePoint> sample_workspace(const MatrixXd& joints, const Estimate& estimate,
-                                             const std::optional<PredictionModel>& prediction) {
+                                             const std::optional<PredictionModel>& prediction, int threads) {
   const VectorXd lowest = joints.rowwise().minCoeff(), range = joints.rowwise().maxCoeff() - lowest;
   MatrixXd q(joints.rows(), thresholds::workspace_points);
   for (int k = 0; k < thresholds::workspace_points; ++k)
     q.col(k) = lowest + range.cwiseProduct(low_discrepancy_point(k, joints.rows()));
   const VectorXd errors = predicted_errors(estimate, q);
-  std::vector<WorkspacePoint> points;
-  for (int k = 0; k < thresholds::workspace_points; ++k)
-    points.push_back(
-        {forward(estimate.chain, q.col(k)).position, with_model_error(errors[k], prediction, q.col(k)), q.col(k)});
+  const PoseEvaluator evaluator(estimate.chain, {});
+  std::vector<WorkspacePoint> points(thresholds::workspace_points);
+  parallel_for(points.size(), threads, [&](std::size_t i) {
+    const auto at = q.col(static_cast<Eigen::Index>(i));
+    points[i] = {evaluator.pose(at).position, with_model_error(errors[static_cast<Eigen::Index>(i)], prediction, at),
+                 at};
+  });
   return points;
 }
 
 }  // namespace
 
 CalibrationPlotData make_plot_data(const CalibrationTask& task, const Chain& before, const Estimate& estimate,
-                                   const std::optional<PredictionModel>& prediction) {
-  CalibrationPlotData plot_data{.nominal = task.nominal, .before = before, .joints = task.data.joints};
-  const VectorXd errors = predicted_errors(estimate, task.data.joints);
-  for (Eigen::Index row = 0; row < errors.size(); ++row)
-    plot_data.rows.push_back({.predicted = with_model_error(errors[row], prediction, task.data.joints.col(row))});
-  add_points(plot_data, task, estimate.chain);
-  plot_data.workspace = sample_workspace(task.data.joints, estimate, prediction);
+                                   const std::optional<PredictionModel>& prediction, int threads) {
+  const MatrixXd& joints = task.data.joints;
+  CalibrationPlotData plot_data{.nominal = task.nominal, .before = before, .joints = joints};
+  const VectorXd errors = predicted_errors(estimate, joints);
+  plot_data.rows.resize(static_cast<std::size_t>(errors.size()));
+  parallel_for(plot_data.rows.size(), threads, [&](std::size_t i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    plot_data.rows[i].predicted = with_model_error(errors[row], prediction, joints.col(row));
+  });
+  add_points(plot_data, task, estimate.chain, threads);
+  plot_data.workspace = sample_workspace(joints, estimate, prediction, threads);
   return plot_data;
 }
 

@@ -11,6 +11,6 @@ namespace kinfer::calibrate {
 /// ranges of the data evenly (an additive low-discrepancy sequence: deterministic). The predicted errors include the
 /// model error of `prediction`.
 CalibrationPlotData make_plot_data(const CalibrationTask& task, const Chain& before, const Estimate& estimate,
-                                   const std::optional<PredictionModel>& prediction = std::nullopt);
+                                   const std::optional<PredictionModel>& prediction, int threads);
 
 }  // namespace kinfer::calibrate

@@ -120,11 +120,11 @@ Estimate fit_with_series(const Chain& start, const ParameterSet& set, const Pose
                          const Observer& observer) {
   if (!has_series(start)) return fit_bundle(start, set, rows, instrument, options, observer);
   DetachedSeries model = detach(start, set);
+  PoseSet moved = with_moved_joints(rows, model.plain, model.series);
   const auto fit_others = [&](Detail detail, InitialGuess guess, int iterations) {
     BundleOptions others = options;
     others.detail = detail, others.initial_guess = guess, others.max_iterations = iterations;
-    return fit_bundle(model.plain, model.set, with_moved_joints(rows, model.plain, model.series), instrument, others,
-                      observer);
+    return fit_bundle(model.plain, model.set, moved, instrument, others, observer);
   };
   const bool is_near = options.initial_guess == InitialGuess::near_optimum;  // only noise level and inliers are needed
   Estimate fit = fit_others(Detail::numbers_only, options.initial_guess, is_near ? 1 : options.max_iterations);
@@ -132,9 +132,9 @@ Estimate fit_with_series(const Chain& start, const ParameterSet& set, const Pose
   MatrixXd covariance = fit.covariance;
   for (int round = 0; round < thresholds::series_rounds; ++round) {
     const std::vector<bool> inliers = inliers_of(fit, rows);
-    const PoseSet moved = keep_measurements(with_moved_joints(rows, model.plain, model.series), inliers);
+    const PoseSet kept_moved = keep_measurements(moved, inliers);
     const Weights weights =
-        weights_of(moved, instrument, excess_noise(model.plain, moved, instrument, 0.0, options.threads));
+        weights_of(kept_moved, instrument, excess_noise(model.plain, kept_moved, instrument, 0.0, options.threads));
     const PoseSet kept = keep_measurements(rows, inliers);
     const SeriesProblem problem(model, {kept, weights, options.threads});
     const auto [step, of_parameters] = problem.step();
@@ -143,12 +143,14 @@ Estimate fit_with_series(const Chain& start, const ParameterSet& set, const Pose
     model = problem.moved_by(step);
     if (is_near && gain <= thresholds::settled_noise)
       break;  // one linear step from the optimum of nearly the same rows
+    moved = with_moved_joints(rows, model.plain, model.series);
     const double before = fit.sigma;
     fit = fit_others(Detail::numbers_only, InitialGuess::near_optimum, options.max_iterations);
     model.plain = fit.chain;
     if (std::abs(fit.sigma - before) <= thresholds::settled_noise * before) break;
   }
   if (options.detail == Detail::all) {
+    moved = with_moved_joints(rows, model.plain, model.series);
     fit = fit_others(Detail::all, InitialGuess::near_optimum, options.max_iterations);
     model.plain = fit.chain;
   }

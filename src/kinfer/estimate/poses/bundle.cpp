@@ -53,12 +53,17 @@ class Fit {
  public:
   Fit(const Chain& start, const ParameterSet& set, const PoseSet& data, const std::optional<Instrument>& instrument,
       const BundleOptions& options, const Observer& observer)
-      : set_(set), data_(data), instrument_(instrument), options_(options), observer_(observer) {
+      : set_(set),
+        data_(data),
+        instrument_(instrument),
+        options_(options),
+        observer_(observer),
+        no_columns_(fixture_columns(start, {})) {
     state_.chain = start;
     blocks_ = blocks_of(data);
     state_.inlier.assign(blocks_.size(), true);
     state_.search.method = SearchMethod::levenberg_marquardt;
-    state_.excess = excess_noise(start, data, instrument, 0.0, options.threads);
+    state_.excess = excess_noise(scene(data), instrument, 0.0);
   }
 
   Estimate run() {
@@ -88,6 +93,7 @@ class Fit {
         least_squares(pose_normal_problem(nominal, set_, kept, weights, {loss, robust_loss_scale}, options_.threads),
                       pack(set_, nominal), options, observer_);
     state_.chain = unpack(set_, nominal, state_.outcome.x);
+    poses_.reset();
     search.iterations += state_.outcome.iterations;
     search.evaluations += state_.outcome.evaluations;
     search.stop = state_.outcome.stop;
@@ -98,8 +104,7 @@ class Fit {
   /// True when the noise level has converged.
   bool update_noise_level() {
     const PoseSet kept = keep_measurements(data_, state_.inlier);
-    const ExcessNoise now = excess_noise(state_.chain, kept, instrument_,
-                                         effective_parameters(state_.outcome.normal, set_), options_.threads);
+    const ExcessNoise now = excess_noise(scene(kept), instrument_, effective_parameters(state_.outcome.normal, set_));
     const auto settled = [](double before, double after) { return std::abs(after - before) <= 0.02 * before; };
     bool done = true;
     for (std::size_t k = 0; k < now.of.size(); ++k) done &= settled(state_.excess.of[k], now.of[k]);
@@ -143,13 +148,18 @@ class Fit {
   }
 
   VectorXd mahalanobis_distances(const Weights& weights) const {
-    const ParameterSet nothing;
-    VectorXd r, distance(static_cast<Eigen::Index>(blocks_.size()));
-    pose_residuals(state_.chain, nothing, data_, weights, options_.threads).evaluate(VectorXd(0), r, nullptr);
+    const VectorXd r = weighted_residuals(scene(data_), weights);
+    VectorXd distance(static_cast<Eigen::Index>(blocks_.size()));
     Eigen::Index row = 0;
     for (std::size_t i = 0; i < blocks_.size(); row += blocks_[i++].size)
       distance[static_cast<Eigen::Index>(i)] = r.segment(row, blocks_[i].size).norm();
     return distance;
+  }
+
+  /// The present chain at the rows of `data`: all measurements, or those that were kept of them.
+  ResidualContext scene(const PoseSet& data) const {
+    if (!poses_) poses_ = evaluate_poses(state_.chain, {}, data_, Derivative::no, options_.threads);
+    return {state_.chain, data, *poses_, no_columns_};
   }
 
   /// Largest Mahalanobis distance [sigma] of an inlier block of 1, 2, 3 rows.
@@ -232,11 +242,9 @@ class Fit {
     for (const ResidualKind& kind : residual_kinds()) {
       if (!kind.traits.observes.tool_position || kind.count(data) == 0) continue;
       if (!kind.model.metres) return {};
-      const ParameterSet nothing;
-      const EvaluatedPoses at = evaluate_poses(state_.chain, nothing, data, Derivative::no, options_.threads);
-      const FixtureColumns columns = fixture_columns(state_.chain, nothing);
+      const ResidualContext at = scene(data);
       std::vector<double> metres(kind.count(data));
-      for (std::size_t i = 0; i < metres.size(); ++i) metres[i] = kind.metres({state_.chain, data, at, columns}, i);
+      for (std::size_t i = 0; i < metres.size(); ++i) metres[i] = kind.metres(at, i);
       return metres;
     }
     return {};
@@ -261,13 +269,12 @@ class Fit {
     for_each_list(kept, [&]<class M>(std::vector<M>& list) {
       if (!M::traits.sigma_is_known(*instrument_)) list.clear();
     });
-    const Weights specified = weights_of(kept, *instrument_);
-    const ParameterSet nothing;
-    VectorXd r;
-    pose_residuals(state_.chain, nothing, kept, specified, options_.threads).evaluate(VectorXd(0), r, nullptr);
-    const double redundancy =
-        std::max(1.0, static_cast<double>(r.size()) - effective_parameters(state_.outcome.normal, set_));
-    return r.squaredNorm() / redundancy;
+    const VectorXd r = weighted_residuals(scene(kept), weights_of(kept, *instrument_));
+    VectorXd distances(static_cast<Eigen::Index>(state_.chain.fixtures.socket_distances.size()));
+    write_socket_distances(state_.chain, no_columns_, distances, nullptr, 0);
+    const double redundancy = std::max(
+        1.0, static_cast<double>(r.size() + distances.size()) - effective_parameters(state_.outcome.normal, set_));
+    return (r.squaredNorm() + distances.squaredNorm()) / redundancy;
   }
 
   void describe_parameters(Estimate& estimate) const {
@@ -284,16 +291,14 @@ class Fit {
   void describe_outliers(Estimate& estimate) const {
     if (std::find(state_.inlier.begin(), state_.inlier.end(), false) == state_.inlier.end()) return;
     const VectorXd distance = mahalanobis_distances();
-    const ParameterSet nothing;
-    const EvaluatedPoses at = evaluate_poses(estimate.chain, nothing, data_, Derivative::no, options_.threads);
-    const FixtureColumns columns = fixture_columns(estimate.chain, nothing);
+    const ResidualContext all = scene(data_);
     VectorXd residual = VectorXd::Zero(3);
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       if (state_.inlier[i]) continue;
       const Block& block = blocks_[i];
       const ResidualKind& kind = residual_kind(block.kind);
       BlockRows out{residual, nullptr, 0};
-      kind.write({estimate.chain, data_, at, columns}, static_cast<std::size_t>(block.index), out);
+      kind.write(all, static_cast<std::size_t>(block.index), out);
       const int line = data_.line.empty() ? 0 : data_.line[block.row];
       const double sigmas = distance[static_cast<Eigen::Index>(i)];
       const OutlierReason reason{block.kind, residual.head(kind.size).norm(), sigmas};
@@ -330,8 +335,10 @@ class Fit {
   const std::optional<Instrument>& instrument_;
   const BundleOptions& options_;
   const Observer& observer_;
+  const FixtureColumns no_columns_;  ///< of residuals without derivatives
   std::vector<Block> blocks_;
   State state_;
+  mutable std::optional<EvaluatedPoses> poses_;  ///< of the present chain, once they were asked for
 };
 
 }  // namespace

@@ -102,7 +102,12 @@ ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::opt
   const ParameterSet nothing;
   const EvaluatedPoses at = evaluate_poses(chain, nothing, data, Derivative::no, threads);
   const FixtureColumns columns = fixture_columns(chain, nothing);
-  const ResidualContext scene{chain, data, at, columns};
+  return excess_noise({chain, data, at, columns}, instrument, effective_parameters);
+}
+
+ExcessNoise excess_noise(const ResidualContext& scene, const std::optional<Instrument>& instrument,
+                         double effective_parameters) {
+  const PoseSet& data = scene.data;
   double rows = 0.0;
   for (const ResidualKind& kind : residual_kinds()) rows += kind.size * static_cast<double>(kind.count(data));
   // Each determined parameter absorbs one residual; at least a tenth is kept if there is hardly any redundancy.

@@ -21,6 +21,9 @@ struct ExcessNoise {
 /// number of parameters determined by the data, by which the redundancy is reduced.
 ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::optional<Instrument>& instrument,
                          double effective_parameters, int threads = 1);
+/// The same at poses that are known.
+ExcessNoise excess_noise(const ResidualContext& scene, const std::optional<Instrument>& instrument,
+                         double effective_parameters);
 
 Weights weights_of(const PoseSet& data, const std::optional<Instrument>& instrument, const ExcessNoise& excess);
 

@@ -60,6 +60,24 @@ VectorXd row_weights(const Weights& weights) {
   return inverse_sd;
 }
 
+/// Weighted rows of all measurements, block by block. Returns how many.
+Eigen::Index write_blocks(const ResidualContext& scene, const VectorXd& inverse_sd,
+                          const std::vector<PoseCoupling>& couplings, VectorXd& r, MatrixXd* jacobian) {
+  const PoseSet& data = scene.data;
+  BlockRows out{r, jacobian};
+  for (const ResidualKind& kind : residual_kinds())
+    for (std::size_t i = 0; i < kind.count(data); ++i, out.row += kind.size) kind.write(scene, i, out);
+  r.head(out.row).array() *= inverse_sd.array();
+  if (jacobian) jacobian->topRows(out.row).array().colwise() *= inverse_sd.array();
+  const auto first_turn = static_cast<Eigen::Index>(3 * data.points.size());  // orientations follow the points
+  for (const PoseCoupling& c : couplings) {
+    const Eigen::Index turn = first_turn + 3 * c.orientation, point = 3 * c.point;
+    c.whiten(r.segment<3>(turn), r.segment<3>(point));
+    if (jacobian) c.whiten(jacobian->middleRows<3>(turn), jacobian->middleRows<3>(point));
+  }
+  return out.row;
+}
+
 /// Writes the rows of all measurements and socket distances.
 using MeasuredRows = std::function<void(ConstVectorRef x, VectorXd& r, MatrixXd* jacobian)>;
 
@@ -71,19 +89,8 @@ MeasuredRows general_rows(const Chain& nominal, const ParameterSet& set, const P
     const Chain chain = unpack(set, nominal, x);
     const EvaluatedPoses at = evaluate_poses(chain, set, data, jacobian ? Derivative::yes : Derivative::no, threads);
     const FixtureColumns columns = fixture_columns(chain, set);
-    const ResidualContext scene{chain, data, at, columns};
-    BlockRows out{r, jacobian};
-    for (const ResidualKind& kind : residual_kinds())
-      for (std::size_t i = 0; i < kind.count(data); ++i, out.row += kind.size) kind.write(scene, i, out);
-    r.head(out.row).array() *= inverse_sd.array();
-    if (jacobian) jacobian->topRows(out.row).array().colwise() *= inverse_sd.array();
-    const auto first_turn = static_cast<Eigen::Index>(3 * data.points.size());  // orientations follow the points
-    for (const PoseCoupling& c : couplings) {
-      const Eigen::Index turn = first_turn + 3 * c.orientation, point = 3 * c.point;
-      c.whiten(r.segment<3>(turn), r.segment<3>(point));
-      if (jacobian) c.whiten(jacobian->middleRows<3>(turn), jacobian->middleRows<3>(point));
-    }
-    write_socket_distances(chain, columns, r, jacobian, out.row);
+    const Eigen::Index row = write_blocks({chain, data, at, columns}, inverse_sd, couplings, r, jacobian);
+    write_socket_distances(chain, columns, r, jacobian, row);
   };
 }
 
@@ -194,6 +201,13 @@ MatrixXd gravity_torques_of_rows(const Chain& chain, const PoseSet& data, int th
     });
   });
   return torques;
+}
+
+VectorXd weighted_residuals(const ResidualContext& scene, const Weights& weights) {
+  const VectorXd inverse_sd = row_weights(weights);
+  VectorXd r(inverse_sd.size());
+  write_blocks(scene, inverse_sd, weights.couplings, r, nullptr);
+  return r;
 }
 
 void write_socket_distances(const Chain& chain, const FixtureColumns& columns, VectorXd& r, MatrixXd* jacobian,

@@ -32,6 +32,9 @@ Load load_at(const Chain& chain, const PoseSet& data, Eigen::Index row);
 Residuals pose_residuals(const Chain& nominal, const ParameterSet& set, const PoseSet& data, const Weights& weights,
                          int threads = 1);
 
+/// (measured − predicted) / sd of all blocks at poses that are known, without socket distances and priors.
+VectorXd weighted_residuals(const ResidualContext& scene, const Weights& weights);
+
 /// Rows of the socket distances from `row` on.
 void write_socket_distances(const Chain& chain, const FixtureColumns& columns, VectorXd& r, MatrixXd* jacobian,
                             Eigen::Index row);
