@@ -29,6 +29,12 @@ Split without_end(const VectorXd& along, bool hold_out_upper) {
   return split;
 }
 
+std::vector<int> every_nth(const std::vector<int>& rows, std::size_t n) {
+  std::vector<int> kept;
+  for (std::size_t i = 0; i < rows.size(); i += n) kept.push_back(rows[i]);
+  return kept;
+}
+
 }  // namespace
 
 std::vector<Split> extrapolation_splits(const PoseSet& data, int fewest) {
@@ -43,6 +49,14 @@ std::vector<Split> extrapolation_splits(const PoseSet& data, int fewest) {
       if (Split split = without_end(along, upper);
           static_cast<int>(split.train.size()) >= fewest && !split.holdout.empty())
         splits.push_back(std::move(split));
+  }
+  return splits;
+}
+
+std::vector<Split> thinned(std::vector<Split> splits, std::size_t most) {
+  for (Split& split : splits) {
+    const std::size_t n = (split.train.size() + most - 1) / most;
+    if (n > 1) split = {every_nth(split.train, n), every_nth(split.holdout, n)};
   }
   return splits;
 }

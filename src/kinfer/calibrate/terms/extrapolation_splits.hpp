@@ -2,6 +2,7 @@
 // Splits that test a model's extrapolation to joint positions far from the fitted ones.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "kinfer/calibrate/terms/thresholds.hpp"
@@ -15,5 +16,8 @@ namespace kinfer::calibrate {
 /// these splits test extrapolation beyond them. None where fewer than `fewest` rows would be left to fit. `select`
 /// drops ball-bar measurements whose two rows fall on different sides of a split.
 std::vector<Split> extrapolation_splits(const PoseSet& data, int fewest = thresholds::min_extrapolation_rows);
+
+/// Every nth row on both sides of each split, so that at most `most` are left to fit.
+std::vector<Split> thinned(std::vector<Split> splits, std::size_t most);
 
 }  // namespace kinfer::calibrate

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <set>
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/linalg/fourier_sums.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -37,22 +39,10 @@ std::vector<Sample> samples_of(const Estimate& fitted, const PoseSet& rows, int 
   return samples;
 }
 
-/// Sine and cosine of one order at all samples.
-struct Wave {
-  std::vector<double> sine, cosine;
-
-  Wave(const std::vector<Sample>& samples, double order) {
-    sine.resize(samples.size()), cosine.resize(samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) ::sincos(order * samples[i].angle, &sine[i], &cosine[i]);
-  }
-  /// Increases the order by that of `by`, by the addition theorem instead of new sines.
-  void advance(const Wave& by) {
-    for (std::size_t i = 0; i < sine.size(); ++i) {
-      const double s = sine[i] * by.cosine[i] + cosine[i] * by.sine[i];
-      cosine[i] = cosine[i] * by.cosine[i] - sine[i] * by.sine[i];
-      sine[i] = s;
-    }
-  }
+/// Normal equations of the amplitudes of a sine and a cosine of one order.
+struct WaveEquations {
+  double ss = 0.0, cc = 0.0, sc = 0.0;  ///< they do not depend on the residuals
+  double sr = 0.0, cr = 0.0;
 };
 
 /// The least-squares amplitudes of a wave, and the reduction of the sum of squares.
@@ -60,42 +50,74 @@ struct WaveFit {
   double sine = 0.0, cosine = 0.0, improvement = 0.0;
 };
 
-WaveFit fit_wave(const std::vector<Sample>& samples, const Wave& wave) {
-  double ss = 0.0, cc = 0.0, sc = 0.0, sr = 0.0, cr = 0.0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double s = wave.sine[i], c = wave.cosine[i];
-    const double weight = samples[i].weight, projection = samples[i].projection;
-    ss += s * s * weight, cc += c * c * weight, sc += s * c * weight;
-    sr += s * projection, cr += c * projection;
-  }
-  const double determinant = ss * cc - sc * sc;
-  if (!(determinant > 1e-6 * ss * cc)) return {};
-  const double sine = (sr * cc - cr * sc) / determinant, cosine = (cr * ss - sr * sc) / determinant;
-  return {sine, cosine, sine * sr + cosine * cr};
+WaveFit solve(const WaveEquations& e) {
+  const double determinant = e.ss * e.cc - e.sc * e.sc;
+  if (!(determinant > 1e-6 * e.ss * e.cc)) return {};
+  const double sine = (e.sr * e.cc - e.cr * e.sc) / determinant, cosine = (e.cr * e.ss - e.sr * e.sc) / determinant;
+  return {sine, cosine, sine * e.sr + cosine * e.cr};
 }
 
-double improvement_by(const std::vector<Sample>& samples, double order) {
-  return fit_wave(samples, Wave(samples, order)).improvement;
+WaveFit fit_wave(const std::vector<Sample>& samples, double order) {
+  WaveEquations e;
+  for (const Sample& sample : samples) {
+    double s = 0.0, c = 0.0;
+    ::sincos(order * sample.angle, &s, &c);
+    e.ss += s * s * sample.weight, e.cc += c * c * sample.weight, e.sc += s * c * sample.weight;
+    e.sr += s * sample.projection, e.cr += c * sample.projection;
+  }
+  return solve(e);
 }
 
 /// Removes the line from the residuals.
 void remove(std::vector<Sample>& samples, double order) {
-  const Wave wave(samples, order);
-  const WaveFit fit = fit_wave(samples, wave);
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    samples[i].projection -= (fit.sine * wave.sine[i] + fit.cosine * wave.cosine[i]) * samples[i].weight;
+  const WaveFit fit = fit_wave(samples, order);
+  for (Sample& sample : samples)
+    sample.projection -=
+        (fit.sine * std::sin(order * sample.angle) + fit.cosine * std::cos(order * sample.angle)) * sample.weight;
 }
 
-/// The strongest line on a grid of orders with this step.
-SpectralLine strongest(const std::vector<Sample>& samples, int joint, double step) {
-  SpectralLine best{joint, 0.0, 0.0};
-  Wave wave(samples, thresholds::lowest_order);
-  const Wave by(samples, step);
-  for (double order = thresholds::lowest_order; order <= thresholds::highest_order; order += step, wave.advance(by))
-    if (const double reduction = fit_wave(samples, wave).improvement; reduction > best.improvement)
-      best = {joint, order, reduction};
-  return best;
-}
+/// A grid of orders; what lines that are removed do not change is computed once.
+class OrderGrid {
+ public:
+  OrderGrid(const std::vector<Sample>& samples, double step) : step_(step) {
+    const auto count = static_cast<std::size_t>((thresholds::highest_order - thresholds::lowest_order) / step) + 1;
+    double all = 0.0;
+    for (const Sample& sample : samples) all += sample.weight;
+    const std::vector<Complex> twice = sums(samples, &Sample::weight, 2.0, count);
+    for (const Complex& sum : twice)
+      equations_.push_back({0.5 * (all - sum.real()), 0.5 * (all + sum.real()), 0.5 * sum.imag()});
+  }
+
+  SpectralLine strongest(const std::vector<Sample>& samples, int joint) const {
+    SpectralLine best{joint, 0.0, 0.0};
+    const std::vector<Complex> projections = sums(samples, &Sample::projection, 1.0, equations_.size());
+    for (std::size_t k = 0; k < projections.size(); ++k) {
+      WaveEquations e = equations_[k];
+      e.sr = projections[k].imag(), e.cr = projections[k].real();
+      if (const double reduction = solve(e).improvement; reduction > best.improvement)
+        best = {joint, thresholds::lowest_order + step_ * static_cast<double>(k), reduction};
+    }
+    return best;
+  }
+
+ private:
+  using Complex = std::complex<double>;
+
+  /// Σ value exp(i times order angle) of each order.
+  std::vector<Complex> sums(const std::vector<Sample>& samples, double Sample::*value, double times,
+                            std::size_t count) const {
+    std::vector<double> angle;
+    std::vector<Complex> weight;
+    for (const Sample& sample : samples) {
+      angle.push_back(times * step_ * sample.angle);
+      weight.push_back(std::polar(1.0, times * thresholds::lowest_order * sample.angle) * (sample.*value));
+    }
+    return fourier_sums(angle, weight, count);
+  }
+
+  double step_;
+  std::vector<WaveEquations> equations_;  // of each order, without the residuals' part
+};
 
 std::vector<SpectralLine> lines_of_joint(std::vector<Sample> samples, int joint, double threshold, int most) {
   std::vector<SpectralLine> lines;
@@ -104,16 +126,17 @@ std::vector<SpectralLine> lines_of_joint(std::vector<Sample> samples, int joint,
   const double range = high->angle - low->angle;
   if (range < thresholds::min_spectrum_range) return lines;
   const double step = std::min(1.0, thresholds::order_step * 2.0 * std::numbers::pi / range);
+  const OrderGrid grid(samples, step);
   while (static_cast<int>(lines.size()) < most) {
-    SpectralLine best = strongest(samples, joint, step);
+    SpectralLine best = grid.strongest(samples, joint);
     for (double fine_step = 0.5 * step; fine_step > 1e-3; fine_step *= 0.5)
       for (const double order : {best.order - fine_step, best.order + fine_step})
-        if (const double by = order < thresholds::lowest_order ? 0.0 : improvement_by(samples, order);
+        if (const double by = order < thresholds::lowest_order ? 0.0 : fit_wave(samples, order).improvement;
             by > best.improvement)
           best = {joint, order, by};
     if (best.improvement < threshold) break;
     const double whole = std::round(best.order);  // gears have integer numbers of teeth; most lines have integer orders
-    if (improvement_by(samples, whole) > thresholds::integer_order_ratio * best.improvement) best.order = whole;
+    if (fit_wave(samples, whole).improvement > thresholds::integer_order_ratio * best.improvement) best.order = whole;
     best.resolution = 2.0 * std::numbers::pi / range;
     lines.push_back(best);
     remove(samples, best.order);

@@ -34,6 +34,8 @@ inline constexpr int bootstrap_draws = 200;  ///< more: slower, the probability 
 inline constexpr double extrapolation_part = 0.25;
 /// Rows left to fit on each side of an extrapolation split; with fewer, extrapolation is not tested.
 inline constexpr int min_extrapolation_rows = 15;
+/// Rows to fit of an extrapolation split; more: slower. Set for the time on UR10 A, whose terms do not depend on it.
+inline constexpr std::size_t extrapolation_rows = 1500;
 
 // ---- gear harmonics in the spectrum of the residuals ----
 inline constexpr double lowest_order = 3.0, highest_order = 260.0;  ///< [1/rev] orders tested

@@ -50,7 +50,10 @@ bool holds_everywhere(Term term) {
 class ModelWeigher {
  public:
   ModelWeigher(const SelectionData& data, const Estimate& geometry)
-      : data_(data), geometry_(geometry), extrapolation_splits_(extrapolation_splits(data.rows)) {}
+      : data_(data),
+        geometry_(geometry),
+        extrapolation_splits_(thinned(extrapolation_splits(data.rows),
+                                      data.rows.pairs.empty() ? thresholds::extrapolation_rows : data.rows.rows())) {}
 
   /// The fit of the relevant terms but spectral lines.
   const Estimate& fit_without_lines() {
