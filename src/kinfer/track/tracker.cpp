@@ -218,7 +218,7 @@ void Tracker::begin_grid() {
 
 /// Most sensors at once are far from what the chain explains: another machine's log, permuted axes.
 void Tracker::watch_misfit(double time) {
-  const double common = filter_.common_inflation();
+  const double common = filter_.levels().common();
   if (common < fitting_inflation) misfit_since_.reset();
   if (common > misfit_inflation && !misfit_since_) misfit_since_ = time;
 }
@@ -337,7 +337,7 @@ void Tracker::list_alarms(double time) {
   else if (misfit_since_)
     alarms.push_back({.kind = TrackAlarmKind::does_not_fit,
                       .since = *misfit_since_,
-                      .strength = filter_.common_inflation() / misfit_inflation});
+                      .strength = filter_.levels().common() / misfit_inflation});
 }
 
 }  // namespace kinfer::track

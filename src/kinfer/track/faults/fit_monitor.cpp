@@ -74,7 +74,7 @@ void FitMonitor::add(const ChainFilter& filter, double time, double length) {
       average(joints_[j], innovations.of_joint[j] / change_rows, innovations.unlimited_of_joint[j] / change_rows,
               filter.doubts_joint(j), length);
   // Where all are trusted less already, the tails of the innovations are heavier than those of the hand-over.
-  const double tails = std::sqrt(filter.common_inflation());
+  const double tails = std::sqrt(filter.levels().common());
   for (std::size_t s = 0; s < sensors_.size(); ++s)
     if (innovations.rows[s] > 0)
       judge(sensors_[s], median_of_others(filter, s, &Agreement::quick), median_of_others(filter, s, &Agreement::slow),
