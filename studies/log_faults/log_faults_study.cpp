@@ -2,7 +2,7 @@
 // Faults of logs: how often each is named, with no other kind of finding beside it; false findings on sound logs;
 // findings on the logs that are given.
 //
-//   ./dev study log_faults [--seeds 4] [--sound 400] [--first-seed 1] [--only FAULT] [--verbose] [LOG.csv ...]
+//   ./dev study log_faults --help
 //
 // Machines 1, 3, 5 with odd seeds and 2, 4 with even ones were looked at while thresholds were chosen; the others are
 // told apart ("other").
@@ -19,6 +19,7 @@
 #include "kinfer/words/findings/findings.hpp"
 #include "studies/log_faults/faults.hpp"
 #include "studies/studies.hpp"
+#include "studies/support/arguments.hpp"
 #include "studies/support/corpus.hpp"
 
 namespace kinfer::study::log_faults_study {
@@ -30,24 +31,6 @@ struct Options {
   std::string only;
   std::vector<std::string> logs;
 };
-
-Options options_of(int argc, char** argv) {
-  Options options;
-  const std::map<std::string, int*> numbers{
-      {"--seeds", &options.seeds}, {"--sound", &options.sound}, {"--first-seed", &options.first_seed}};
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (const auto number = numbers.find(word); number != numbers.end() && i + 1 < argc)
-      *number->second = std::atoi(argv[++i]);
-    else if (word == "--only" && i + 1 < argc)
-      options.only = argv[++i];
-    else if (word == "--verbose")
-      options.verbose = true;
-    else
-      options.logs.push_back(word);
-  }
-  return options;
-}
 
 InsRecording sound_recording(const std::string& machine, std::uint64_t seed) {
   constexpr const char* grades[] = {"industrial", "consumer"};
@@ -141,7 +124,15 @@ void study_files(const Options& options) {
 }  // namespace kinfer::study::log_faults_study
 
 int kinfer::study::run_log_faults(int argc, char** argv) {
-  const auto options = log_faults_study::options_of(argc, argv);
+  log_faults_study::Options options;
+  ArgumentParser app("Faults of logs: what is found, and what is found in sound logs");
+  app.add_option("--seeds", options.seeds, "Logs of each fault");
+  app.add_option("--sound", options.sound, "Sound logs");
+  app.add_option("--first-seed", options.first_seed, "Of the logs");
+  app.add_option("--only", options.only, "One fault alone");
+  app.add_flag("--verbose", options.verbose, "Findings of every log");
+  app.add_option("LOG", options.logs, "INS logs to look at instead");
+  if (const auto code = app.exit_code(argc, argv)) return *code;
   if (options.logs.empty()) log_faults_study::study_faults(options);
   if (options.logs.empty()) log_faults_study::study_sound_logs(options);
   log_faults_study::study_files(options);

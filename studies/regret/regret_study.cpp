@@ -2,8 +2,7 @@
 // Regret of the automatic choice of model terms: held-out errors of the default over those of the best fixed set of
 // terms, on halves of the rows that were never fitted.
 //
-//   ./dev study regret [--only TEXT] [--halves 5] [--sets 26] [--rows 0 (all)] [--simulated 30] [--threads 0]
-//   [--reasons 0 (2: figures of every set)]
+//   ./dev study regret --help
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,6 +19,7 @@
 #include "kinfer/words/calibration/model.hpp"
 #include "studies/regret/data_sets.hpp"
 #include "studies/studies.hpp"
+#include "studies/support/arguments.hpp"
 
 namespace kinfer::study::regret_study {
 using namespace calibrate;
@@ -257,13 +257,15 @@ void study(const Options& options) {
 
 int kinfer::study::run_regret(int argc, char** argv) {
   regret_study::Options options;
-  const std::map<std::string, int*> counts{{"--halves", &options.halves},   {"--sets", &options.sets},
-                                           {"--rows", &options.rows},       {"--simulated", &options.simulated},
-                                           {"--threads", &options.threads}, {"--reasons", &options.reasons}};
-  for (int i = 1; i + 1 < argc; i += 2) {
-    if (std::string(argv[i]) == "--only") options.only = argv[i + 1];
-    if (const auto count = counts.find(argv[i]); count != counts.end()) *count->second = std::atoi(argv[i + 1]);
-  }
+  ArgumentParser app("Regret of the automatic choice of model terms, over fixed sets of terms");
+  app.add_option("--only", options.only, "Sets whose names have this in them");
+  app.add_option("--halves", options.halves, "Random halves of each measured set");
+  app.add_option("--sets", options.sets, "Fixed sets of terms, at most 26");
+  app.add_option("--rows", options.rows, "Rows of each set; 0: all");
+  app.add_option("--simulated", options.simulated, "Simulated robots");
+  app.add_option("--threads", options.threads, "0: all cores");
+  app.add_option("--reasons", options.reasons, "1: why each term was taken or not; 2: figures of every set, too");
+  if (const auto code = app.exit_code(argc, argv)) return *code;
   regret_study::study(options);
   return 0;
 }

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Simulated machines, identified on one drive by default options and tracked on another one; then measured ones.
-// `--smooth on` prints the smoother's row below the filter's; `--measured diodem|kuka|ur5` runs these alone; `--alarms
-// on` counts alarms instead (with --machines, --grades,
-// --first, --seeds, --duration).
+//   ./dev study track --help
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <numbers>
-#include <string_view>
+#include <string>
+#include <vector>
 
 #include "studies/studies.hpp"
+#include "studies/support/arguments.hpp"
 #include "studies/track/alarms.hpp"
 #include "studies/track/measured.hpp"
 #include "studies/track/scores.hpp"
@@ -30,45 +31,14 @@ struct Arguments {
   bool counts_alarms = false, smooths = false;
 };
 
-std::vector<std::string> split(std::string_view text) {
-  std::vector<std::string> parts;
-  for (;;) {
-    const auto comma = text.find(',');
-    parts.emplace_back(text.substr(0, comma));
-    if (comma == std::string_view::npos) return parts;
-    text.remove_prefix(comma + 1);
-  }
-}
-
-Arguments parse(int count, char** values) {
-  Arguments a;
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string_view key = values[i], value = values[i + 1];
-    const double number = std::atof(values[i + 1]);
-    if (key == "--machines") a.machines = split(value);
-    if (key == "--grades") a.grades = split(value);
-    if (key == "--base") a.base = value == "rocking" ? Base::rocking : value == "yawing" ? Base::yawing : Base::still;
-    if (key == "--script")
-      a.script = value == "gentle" ? Script::gentle : value == "quick" ? Script::quick : Script::standard;
-    if (key == "--seeds") a.seeds = static_cast<int>(number);
-    if (key == "--first") a.first_seed = static_cast<int>(number);
-    if (key == "--duration") a.duration = number;
-    if (key == "--steel") a.steel = number;
-    if (key == "--smooth") a.smooths = value == "on";
-    if (key == "--alarms") a.counts_alarms = value == "on";
-    if (key == "--fault")
-      a.fault.kind = value == "turned"    ? FaultKind::turned
-                     : value == "shifted" ? FaultKind::shifted
-                     : value == "play"    ? FaultKind::play
-                     : value == "late"    ? FaultKind::late
-                                          : FaultKind::lost;
-    if (key == "--sensor") a.fault.sensor = static_cast<std::size_t>(number);
-    if (key == "--size") a.fault.size = number;
-    if (key == "--from") a.fault.begin = number;
-    if (key == "--to") a.fault.end = number;
-  }
-  return a;
-}
+const std::map<std::string, Base> bases{{"still", Base::still}, {"rocking", Base::rocking}, {"yawing", Base::yawing}};
+const std::map<std::string, Script> scripts{
+    {"standard", Script::standard}, {"gentle", Script::gentle}, {"quick", Script::quick}};
+const std::map<std::string, FaultKind> faults{{"turned", FaultKind::turned},
+                                              {"shifted", FaultKind::shifted},
+                                              {"play", FaultKind::play},
+                                              {"late", FaultKind::late},
+                                              {"lost", FaultKind::lost}};
 
 void print(const std::string& machine, const std::string& grade, int seed, const TrackScore& score) {
   fmt::print("{:<18} {:<10} {:>2}  ", machine, grade, seed);
@@ -122,20 +92,40 @@ void run(const Arguments& a) {
 int kinfer::study::run_track(int argc, char** argv) {
   const char* data = std::getenv("KINFER_DATA");
   const std::string folder = data ? data : "";
-  if (argc == 3 && std::string_view(argv[1]) == "--measured") {
-    track_study::track_measured(folder, argv[2]);
+  using namespace track_study;
+  Arguments arguments;
+  std::string measured;
+  ArgumentParser app("Simulated machines tracked on another drive than they were identified on");
+  app.add_option("--machines", arguments.machines, "As of simulate, joined by commas")->delimiter(',');
+  app.add_option("--grades", arguments.grades, "Of the sensors, joined by commas")->delimiter(',');
+  app.add_option("--base", arguments.base)->transform(CLI::CheckedTransformer(bases));
+  app.add_option("--script", arguments.script, "Of the drive")->transform(CLI::CheckedTransformer(scripts));
+  app.add_option("--first", arguments.first_seed, "First seed");
+  app.add_option("--seeds", arguments.seeds, "How many");
+  app.add_option("--duration", arguments.duration, "Of a drive [s]");
+  app.add_option("--steel", arguments.steel, "Field of moving steel [T]");
+  app.add_option("--smooth", arguments.smooths, "on: the smoother's row below the filter's");
+  app.add_option("--fault", arguments.fault.kind)->transform(CLI::CheckedTransformer(faults));
+  app.add_option("--sensor", arguments.fault.sensor, "That has the fault");
+  app.add_option("--size", arguments.fault.size, "Of the fault [rad], [m] or [s]");
+  app.add_option("--from", arguments.fault.begin, "Of the fault [s]");
+  app.add_option("--to", arguments.fault.end, "Of the fault [s]");
+  app.add_option("--alarms", arguments.counts_alarms, "on: count alarms instead");
+  app.add_option("--measured", measured, "These measured machines alone: diodem, rigid, kuka or ur5");
+  if (const auto code = app.exit_code(argc, argv)) return *code;
+  if (!measured.empty()) {
+    track_measured(folder, measured);
     return 0;
   }
-  const track_study::Arguments arguments = track_study::parse(argc, argv);
   if (arguments.counts_alarms) {
-    track_study::study_alarms({.machines = arguments.machines,
-                               .grades = arguments.grades,
-                               .first_seed = arguments.first_seed,
-                               .seeds = arguments.seeds,
-                               .duration = arguments.duration});
+    study_alarms({.machines = arguments.machines,
+                  .grades = arguments.grades,
+                  .first_seed = arguments.first_seed,
+                  .seeds = arguments.seeds,
+                  .duration = arguments.duration});
     return 0;
   }
-  track_study::run(arguments);
-  if (argc == 1) track_study::track_measured(folder, {});
+  run(arguments);
+  if (argc == 1) track_measured(folder, {});
   return 0;
 }

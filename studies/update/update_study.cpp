@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chains updated by another drive of the same simulated machine: as it was, after a sensor was turned, after a pin was
-// moved, and by the log of another machine. `--machine NAME`, `--first N`, `--seeds N`, `--grade NAME`, `--cases
-// same,turned,pin,other`, `--parts on` for every joint's differences.
+// moved, and by the log of another machine.
+//
+//   ./dev study update --help
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
-#include <string_view>
 
 #include "kinfer/identify/pipeline.hpp"
 #include "studies/studies.hpp"
+#include "studies/support/arguments.hpp"
 #include "studies/update/drives.hpp"
 
 namespace kinfer::study::update_study {
@@ -24,20 +24,6 @@ struct Arguments {
   int first_seed = 1, seeds = 1;
   bool with_parts = false;
 };
-
-Arguments parse(int count, char** values) {
-  Arguments a;
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string_view key = values[i], value = values[i + 1];
-    if (key == "--machine") a.machine = value;
-    if (key == "--grade") a.grade = value;
-    if (key == "--cases") a.cases = value;
-    if (key == "--parts") a.with_parts = value == "on";
-    if (key == "--first") a.first_seed = std::atoi(values[i + 1]);
-    if (key == "--seeds") a.seeds = std::atoi(values[i + 1]);
-  }
-  return a;
-}
 
 std::string size_text(const std::optional<ChangeSize>& size, double unit, const char* name) {
   return size ? fmt::format(" {:.3f} ± {:.3f} {}", size->value / unit, size->sd / unit, name) : "";
@@ -128,8 +114,15 @@ void run_seed(const Arguments& a, int seed) {
 }  // namespace kinfer::study::update_study
 
 int kinfer::study::run_update(int argc, char** argv) {
-  const update_study::Arguments arguments = update_study::parse(argc, argv);
-  for (int seed = arguments.first_seed; seed < arguments.first_seed + arguments.seeds; ++seed)
-    update_study::run_seed(arguments, seed);
+  update_study::Arguments a;
+  ArgumentParser app("What changed on a machine: chains updated by a second log");
+  app.add_option("--machine", a.machine, "As of simulate");
+  app.add_option("--grade", a.grade, "Of the sensors");
+  app.add_option("--cases", a.cases, "Some of same, turned, pin, other, joined by commas");
+  app.add_option("--parts", a.with_parts, "on: every joint's differences");
+  app.add_option("--first", a.first_seed, "First seed");
+  app.add_option("--seeds", a.seeds, "How many");
+  if (const auto code = app.exit_code(argc, argv)) return *code;
+  for (int seed = a.first_seed; seed < a.first_seed + a.seeds; ++seed) update_study::run_seed(a, seed);
   return 0;
 }

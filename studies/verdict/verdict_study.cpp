@@ -2,8 +2,7 @@
 // Verdicts on sound logs and on nonsense: how many may be used, per kind; the verdicts of the joints; of the joints of
 // sound logs that may be used, how many are farther from the truth than three standard deviations.
 //
-//   ./dev study verdict [--sound 100] [--nonsense 60] [--seed 1] [--only KIND] [--threads 0] [--connections 1] [LOG.csv
-//   ...]
+//   ./dev study verdict --help
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,6 +18,7 @@
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
 #include "studies/studies.hpp"
+#include "studies/support/arguments.hpp"
 #include "studies/support/corpus.hpp"
 #include "studies/support/truth_scores.hpp"
 
@@ -27,29 +27,11 @@ using namespace identify;
 namespace {
 
 struct Options {
-  int sound = 100, nonsense = 60, seed = 1, threads = 0, connections = 0;
+  int sound = 100, nonsense = 60, seed = 1, threads = 0;
+  bool connections = false;
   std::string only;
   std::vector<std::string> logs;
 };
-
-Options options_of(int argc, char** argv) {
-  Options options;
-  const std::map<std::string, int*> numbers{{"--sound", &options.sound},
-                                            {"--nonsense", &options.nonsense},
-                                            {"--seed", &options.seed},
-                                            {"--threads", &options.threads},
-                                            {"--connections", &options.connections}};
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (const auto number = numbers.find(word); number != numbers.end() && i + 1 < argc)
-      *number->second = std::atoi(argv[++i]);
-    else if (word == "--only" && i + 1 < argc)
-      options.only = argv[++i];
-    else
-      options.logs.push_back(word);
-  }
-  return options;
-}
 
 /// The features that the verdict rests on, without any fit of the chain.
 void print_connections(const JudgedLog& log, int threads) {
@@ -163,8 +145,7 @@ void for_each_log(const Options& options, const Take& take) {
       take(nonsense_log(kind, 2000 * seed + i, i / kinds.size()));
 }
 
-int run(int argc, char** argv) {
-  const Options options = options_of(argc, argv);
+int run(const Options& options) {
   if (options.connections) {
     for_each_log(options, [&](const JudgedLog& log) { print_connections(log, options.threads); });
     return 0;
@@ -179,5 +160,15 @@ int run(int argc, char** argv) {
 }  // namespace kinfer::study::verdict_study
 
 int kinfer::study::run_verdict(int argc, char** argv) {
-  return verdict_study::run(argc, argv);
+  verdict_study::Options options;
+  ArgumentParser app("Verdicts on sound logs and on nonsense");
+  app.add_option("--sound", options.sound, "Sound logs");
+  app.add_option("--nonsense", options.nonsense, "Logs of nonsense, of all kinds in turn");
+  app.add_option("--seed", options.seed, "First seed");
+  app.add_option("--only", options.only, "Kind of logs: sound, or one of nonsense");
+  app.add_option("--threads", options.threads, "0: all cores");
+  app.add_option("--connections", options.connections, "1: the features that the verdict rests on, without any fit");
+  app.add_option("LOG", options.logs, "INS logs to judge instead");
+  if (const auto code = app.exit_code(argc, argv)) return *code;
+  return verdict_study::run(options);
 }
