@@ -20,8 +20,12 @@ constexpr const char* mixed =
     "===\nMSG: a/Part\nint8 code\nfloat32[] values\n===\nMSG: a/Empty\nint32 NONE=1\n";
 
 TEST(MessageDecoder, AlignsFieldsInCdr) {
-  const std::vector<std::string_view> paths{"wide", "names", "flags", "parts.values", "last"};
-  const auto decoder = MessageDecoder::make({.name = "/t", .type = "a/B", .definition = mixed}, paths);
+  const std::vector<WantedField> wanted{{"wide"},
+                                        {"names", FieldBase::text, true},
+                                        {"flags", FieldBase::number, true},
+                                        {"parts.values", FieldBase::number, true},
+                                        {"last"}};
+  const auto decoder = MessageDecoder::make({.name = "/t", .type = "a/B", .definition = mixed}, wanted);
   ASSERT_TRUE(decoder) << decoder.error().what;
   std::string cdr{'\0', '\1', '\0', '\0'};
   cdr += raw_bytes(std::uint8_t{9}) + std::string(7, '\0') + raw_bytes(2.5);
@@ -43,9 +47,10 @@ TEST(MessageDecoder, AlignsFieldsInCdr) {
 }
 
 TEST(MessageDecoder, PacksFieldsInRos1) {
-  const std::vector<std::string_view> paths{"header.stamp", "header.frame_id", "linear_acceleration.z"};
+  const std::vector<WantedField> wanted{
+      {"header.stamp", FieldBase::time}, {"header.frame_id", FieldBase::text}, {"linear_acceleration.z"}};
   const auto decoder = MessageDecoder::make(
-      {.name = "/t", .type = "sensor_msgs/Imu", .definition = "", .serialization = Serialization::ros1}, paths);
+      {.name = "/t", .type = "sensor_msgs/Imu", .definition = "", .serialization = Serialization::ros1}, wanted);
   ASSERT_TRUE(decoder) << decoder.error().what;
   std::vector<DecodedField> found;
   ASSERT_TRUE(decoder->decode(test::ros1_imu(3, 5, "boom", {1, 2, 3}, {4, 5, 6}), found));
@@ -57,8 +62,9 @@ TEST(MessageDecoder, PacksFieldsInRos1) {
 TEST(MessageDecoder, ReadsWhatTheWriterOfCdrWrites) {
   CdrMessage message;
   message.time(-1).text("f").count(2).text("a").text("bcd").count(1).number(0.5).count(0).count(0);
-  const std::vector<std::string_view> paths{"header.stamp", "name", "position"};
-  const auto decoder = MessageDecoder::make({.name = "/j", .type = "sensor_msgs/JointState"}, paths);
+  const std::vector<WantedField> wanted{
+      {"header.stamp", FieldBase::time}, {"name", FieldBase::text, true}, {"position", FieldBase::number, true}};
+  const auto decoder = MessageDecoder::make({.name = "/j", .type = "sensor_msgs/JointState"}, wanted);
   std::vector<DecodedField> found;
   ASSERT_TRUE(decoder->decode(message.bytes(), found));
   EXPECT_THAT(found[0].times, ElementsAre(-1));
@@ -67,8 +73,8 @@ TEST(MessageDecoder, ReadsWhatTheWriterOfCdrWrites) {
 }
 
 TEST(MessageDecoder, ShortMessagesAndLyingCountsAreRefused) {
-  const std::vector<std::string_view> paths{"last"};
-  const auto decoder = MessageDecoder::make({.name = "/t", .type = "a/B", .definition = mixed}, paths);
+  const std::vector<WantedField> wanted{{"last"}};
+  const auto decoder = MessageDecoder::make({.name = "/t", .type = "a/B", .definition = mixed}, wanted);
   std::vector<DecodedField> found;
   EXPECT_FALSE(decoder->decode("", found));
   EXPECT_FALSE(decoder->decode(std::string("\0\1\0\0\7", 5), found));
@@ -79,12 +85,36 @@ TEST(MessageDecoder, ShortMessagesAndLyingCountsAreRefused) {
   EXPECT_FALSE(decoder->decode(lie, found)) << "big-endian";
 }
 
+/// The error of asking for a field of a type with this definition.
+std::string error_of(const WantedField& wanted, const std::string& definition) {
+  const auto decoder =
+      MessageDecoder::make({.name = "/t", .type = "a/B", .definition = definition}, std::span(&wanted, 1));
+  return decoder ? "" : decoder.error().what;
+}
+
+TEST(MessageDecoder, FieldsOfAnotherKindThanIsAskedForAreNamed) {
+  EXPECT_EQ(error_of({"x"}, "float32 x\n"), "");
+  EXPECT_EQ(error_of({"x"}, "string x\n"), "topic /t: field x of its type a/B is no number");
+  EXPECT_EQ(error_of({"x"}, "wstring x\n"), "topic /t: field x of its type a/B is no number");
+  EXPECT_EQ(error_of({"x"}, "float64[] x\n"), "topic /t: field x of its type a/B is no number");
+  EXPECT_EQ(error_of({"x"}, "float64[3] x\n"), "topic /t: field x of its type a/B is no number");
+  EXPECT_EQ(error_of({"x", FieldBase::number, true}, "float64 x\n"),
+            "topic /t: field x of its type a/B is no list of numbers");
+  EXPECT_EQ(error_of({"stamp", FieldBase::time}, "float64 stamp\n"),
+            "topic /t: field stamp of its type a/B is no time");
+  EXPECT_EQ(error_of({"part", FieldBase::text}, "Part part\n===\nMSG: a/Part\nint8 code\n"),
+            "topic /t: field part of its type a/B is no text");
+  EXPECT_EQ(error_of({"part.code"}, "Part[] part\n===\nMSG: a/Part\nint8 code\n"),
+            "topic /t: field part.code of its type a/B is no number");
+  EXPECT_EQ(error_of({"x"}, "float64 x\nstring x\n"), "topic /t: field x of its type a/B is no number");
+}
+
 TEST(MessageDecoder, FieldsThatAreNotThereAreNamed) {
-  const std::vector<std::string_view> paths{"weight"};
-  EXPECT_THAT(MessageDecoder::make({.name = "/t", .type = "sensor_msgs/Imu"}, paths).error().what,
+  const std::vector<WantedField> wanted{{"weight"}};
+  EXPECT_THAT(MessageDecoder::make({.name = "/t", .type = "sensor_msgs/Imu"}, wanted).error().what,
               HasSubstr("topic /t: its type sensor_msgs/Imu has no field weight"));
   EXPECT_THAT(MessageDecoder::make(
-                  {.name = "/t", .type = "a/B", .definition = "", .serialization = Serialization::other}, paths)
+                  {.name = "/t", .type = "a/B", .definition = "", .serialization = Serialization::other}, wanted)
                   .error()
                   .what,
               HasSubstr("neither by ROS 1 nor by CDR"));

@@ -60,15 +60,15 @@ class TopicReader {
  public:
   TopicReader(std::string file, std::string topic) : file_(std::move(file)), topic_(std::move(topic)) {}
 
-  /// `add(fields)`: false where the message is of no use.
+  /// The first of `wanted` is the time. `add(fields)`: false where the message is of no use.
   template <class Add>
-  Result<void> read(const std::filesystem::path& path, std::span<const std::string_view> paths, Add add) {
+  Result<void> read(const std::filesystem::path& path, std::span<const WantedField> wanted, Add add) {
     std::optional<MessageDecoder> decoder;
     std::vector<DecodedField> fields;
     const MessageSink sink{.wants = [&](std::size_t, const LoggedTopic& topic) -> Result<bool> {
                              if (topic.name != topic_) return false;
                              type_ = topic.type;
-                             KINFER_TRY(made, MessageDecoder::make(topic, paths));
+                             KINFER_TRY(made, MessageDecoder::make(topic, wanted));
                              decoder = std::move(made);
                              return true;
                            },
@@ -76,7 +76,7 @@ class TopicReader {
                              ++messages_;
                              if (!decoder || !decoder->decode(message.data, fields))
                                return error("{}: a message of topic {} is shorter than its type says", file_, topic_);
-                             const std::int64_t stamp = fields[0].times.empty() ? 0 : fields[0].times[0];
+                             const std::int64_t stamp = fields[0].times[0];
                              const double time = 1e-9 * static_cast<double>(stamp != 0 ? stamp : message.log_time);
                              if (!times_.empty() && !(time > times_.back())) {
                                ++late_;
@@ -140,13 +140,14 @@ Result<PoseTopic> read_joint_topic(const std::filesystem::path& path, const Chai
                                    std::span<const std::string> topics) {
   KINFER_TRY(topic, choose_topic(
                         path, topics, [](std::string_view type) { return type == joint_type; }, joint_type));
-  constexpr std::array<std::string_view, 3> paths{"header.stamp", "name", "position"};
+  constexpr std::array<WantedField, 3> wanted{
+      {{"header.stamp", FieldBase::time}, {"name", FieldBase::text, true}, {"position", FieldBase::number, true}}};
   const std::vector<std::string> joints = active_joint_names(chain);
   TopicReader reader(path.string(), topic);
   std::vector<double> values;
   std::vector<std::string> seen;
   bool is_by_order = false;
-  auto done = reader.read(path, paths, [&](const std::vector<DecodedField>& fields) {
+  auto done = reader.read(path, wanted, [&](const std::vector<DecodedField>& fields) {
     const std::vector<std::string>& names = fields[1].texts;
     const std::vector<double>& positions = fields[2].numbers;
     if (seen.empty()) seen = names;
@@ -194,18 +195,17 @@ Result<PoseTopic> read_point_topic(const std::filesystem::path& path, const Chai
                          .on_message = [](const LoggedMessage&) -> Result<void> { return {}; }};
   if (auto log = read_message_log(path, look); !log) return forward_error(log.error());
   const PointType& fields_of = *point_type(type);
-  std::vector<std::string> names{"header.stamp"};
+  std::vector<std::string> names;  // of numbers
   for (const char axis : {'x', 'y', 'z'}) names.push_back(fmt::format("{}.{}", fields_of.position, axis));
   if (!fields_of.orientation.empty())
     for (const char axis : {'w', 'x', 'y', 'z'}) names.push_back(fmt::format("{}.{}", fields_of.orientation, axis));
-  const std::vector<std::string_view> paths(names.begin(), names.end());
+  std::vector<WantedField> wanted{{"header.stamp", FieldBase::time}};
+  for (const std::string& name : names) wanted.push_back({name});
   TopicReader reader(path.string(), topic);
   PoseSet set;
   set.joint_names = active_joint_names(chain);
-  auto done = reader.read(path, paths, [&](const std::vector<DecodedField>& fields) {
-    const auto number = [&](std::size_t at) {
-      return fields[at].numbers.empty() ? std::nan("") : fields[at].numbers[0];
-    };
+  auto done = reader.read(path, wanted, [&](const std::vector<DecodedField>& fields) {
+    const auto number = [&](std::size_t at) { return fields[at].numbers[0]; };
     const Vec3 point(number(1), number(2), number(3));
     if (!point.allFinite()) return false;
     const int row = static_cast<int>(set.points.size());

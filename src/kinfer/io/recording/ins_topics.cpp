@@ -39,18 +39,21 @@ struct TopicRows {
 using ImuTopic = TopicRows<ImuRow>;
 using MagneticTopic = TopicRows<MagneticRow>;
 
-constexpr std::array<std::string_view, 10> imu_paths{"header.stamp",
-                                                     "header.frame_id",
-                                                     "angular_velocity.x",
-                                                     "angular_velocity.y",
-                                                     "angular_velocity.z",
-                                                     "linear_acceleration.x",
-                                                     "linear_acceleration.y",
-                                                     "linear_acceleration.z",
-                                                     "angular_velocity_covariance",
-                                                     "linear_acceleration_covariance"};
-constexpr std::array<std::string_view, 5> magnetic_paths{"header.stamp", "header.frame_id", "magnetic_field.x",
-                                                         "magnetic_field.y", "magnetic_field.z"};
+constexpr std::array<WantedField, 10> imu_fields{{{"header.stamp", FieldBase::time},
+                                                  {"header.frame_id", FieldBase::text},
+                                                  {"angular_velocity.x"},
+                                                  {"angular_velocity.y"},
+                                                  {"angular_velocity.z"},
+                                                  {"linear_acceleration.x"},
+                                                  {"linear_acceleration.y"},
+                                                  {"linear_acceleration.z"},
+                                                  {"angular_velocity_covariance", FieldBase::number, true},
+                                                  {"linear_acceleration_covariance", FieldBase::number, true}}};
+constexpr std::array<WantedField, 5> magnetic_fields{{{"header.stamp", FieldBase::time},
+                                                      {"header.frame_id", FieldBase::text},
+                                                      {"magnetic_field.x"},
+                                                      {"magnetic_field.y"},
+                                                      {"magnetic_field.z"}}};
 
 /// Three numbers from the field `first` on; not a number where the covariance says that nothing is measured (−1).
 std::array<float, 3> triad_of(const std::vector<DecodedField>& fields, std::size_t first, double factor,
@@ -122,12 +125,12 @@ class InsTopicReader {
 
   Result<bool> add_topic(std::size_t index, const LoggedTopic& topic) {
     if (topic.type == "sensor_msgs/Imu" && is_asked(topic.name)) {
-      KINFER_TRY(decoder, MessageDecoder::make(topic, imu_paths));
+      KINFER_TRY(decoder, MessageDecoder::make(topic, imu_fields));
       imus_.emplace(index, ImuTopic{.topic = topic.name, .decoder = std::move(decoder)});
       return true;
     }
     if (topic.type == "sensor_msgs/MagneticField") {
-      KINFER_TRY(decoder, MessageDecoder::make(topic, magnetic_paths));
+      KINFER_TRY(decoder, MessageDecoder::make(topic, magnetic_fields));
       magnetics_.emplace(index, MagneticTopic{.topic = topic.name, .decoder = std::move(decoder)});
       return true;
     }

@@ -54,43 +54,58 @@ double read_number(NumberType type, ByteCursor& cursor) {
   return 0.0;
 }
 
+std::string expected_kind(const WantedField& field) {
+  const std::string_view one = field.base == FieldBase::number ? "number"
+                               : field.base == FieldBase::time ? "time"
+                                                               : "text";
+  return field.is_list ? fmt::format("list of {}s", one) : std::string(one);
+}
+
 }  // namespace
 
-MessageDecoder::Node MessageDecoder::compile(const MessageField& field, const std::string& prefix,
-                                             std::span<const std::string_view> paths, std::vector<bool>& is_found) {
+MessageDecoder::Node MessageDecoder::compile(const MessageField& field, const std::string& prefix, bool is_in_list,
+                                             Search& search) {
   const std::string path = prefix + field.name;
+  const bool is_list = is_in_list || field.is_array;
   Node node{.base = field.base, .number = field.number, .is_array = field.is_array, .count = field.count};
-  if (const auto at = std::ranges::find(paths, path); at != paths.end()) {
-    node.path = static_cast<int>(at - paths.begin());
-    node.is_wanted = is_found[static_cast<std::size_t>(node.path)] = true;
+  if (const auto at = std::ranges::find(search.wanted, path, &WantedField::path); at != search.wanted.end()) {
+    node.wanted = static_cast<int>(at - search.wanted.begin());
+    node.is_wanted = search.is_found[static_cast<std::size_t>(node.wanted)] = true;
+    if (field.base != at->base || is_list != at->is_list) search.misfit = node.wanted;
   }
   for (const MessageField& inside : field.fields) {
-    node.fields.push_back(compile(inside, path + ".", paths, is_found));
+    node.fields.push_back(compile(inside, path + ".", is_list, search));
     node.is_wanted |= node.fields.back().is_wanted;
   }
   return node;
 }
 
-Result<MessageDecoder> MessageDecoder::make(const LoggedTopic& topic, std::span<const std::string_view> paths) {
+Result<MessageDecoder> MessageDecoder::make(const LoggedTopic& topic, std::span<const WantedField> wanted) {
   if (topic.serialization == Serialization::other)
     return error("topic {}: its messages are serialised neither by ROS 1 nor by CDR", topic.name);
   const bool is_ros1 = topic.serialization == Serialization::ros1;
   const auto definition = parse_message_definition(topic.definition, topic.type, is_ros1);
   if (!definition) return error("topic {}: {}", topic.name, definition.error().what);
   MessageDecoder decoder;
-  decoder.paths_ = paths.size();
+  decoder.wanted_ = wanted.size();
   decoder.is_aligned_ = !is_ros1;
-  std::vector<bool> is_found(paths.size(), false);
-  for (const MessageField& field : *definition) decoder.fields_.push_back(compile(field, "", paths, is_found));
-  for (std::size_t i = 0; i < paths.size(); ++i)
-    if (!is_found[i]) return error("topic {}: its type {} has no field {}", topic.name, topic.type, paths[i]);
+  Search search{wanted, std::vector<bool>(wanted.size(), false)};
+  for (const MessageField& field : *definition) decoder.fields_.push_back(compile(field, "", false, search));
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (!search.is_found[i])
+      return error("topic {}: its type {} has no field {}", topic.name, topic.type, wanted[i].path);
+  if (search.misfit >= 0) {
+    const WantedField& field = wanted[static_cast<std::size_t>(search.misfit)];
+    return error("topic {}: field {} of its type {} is no {}", topic.name, field.path, topic.type,
+                 expected_kind(field));
+  }
   // Nothing behind the last field that is asked for needs to be read.
   while (!decoder.fields_.empty() && !decoder.fields_.back().is_wanted) decoder.fields_.pop_back();
   return decoder;
 }
 
 bool MessageDecoder::decode(std::string_view data, std::vector<DecodedField>& found) const {
-  found.resize(paths_);
+  found.resize(wanted_);
   for (DecodedField& field : found) field.numbers.clear(), field.texts.clear(), field.times.clear();
   if (is_aligned_) {
     constexpr std::size_t encapsulation = 4;  // alignment is counted from behind it
@@ -124,7 +139,7 @@ void MessageDecoder::read_fields(const std::vector<Node>& nodes, ByteCursor& cur
 }
 
 void MessageDecoder::read_one(const Node& node, ByteCursor& cursor, std::vector<DecodedField>& found) const {
-  DecodedField* field = node.path >= 0 ? &found[static_cast<std::size_t>(node.path)] : nullptr;
+  DecodedField* field = node.wanted >= 0 ? &found[static_cast<std::size_t>(node.wanted)] : nullptr;
   const auto align = [&](std::size_t size) {
     if (is_aligned_) cursor.align(size);
   };
