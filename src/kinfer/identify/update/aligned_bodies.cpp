@@ -106,7 +106,8 @@ TrackingModel aligned_model(const TrackingModel& model, const TrackingModel& ref
 }
 
 TrackingModel without_covariance(const TrackingModel& model) {
-  TrackingModel result{.sensors = model.sensors, .bodies = model.bodies, .joints = model.joints};
+  TrackingModel result;
+  result.sensors = model.sensors, result.bodies = model.bodies, result.joints = model.joints;
   result.tool = model.tool;
   return result;
 }
