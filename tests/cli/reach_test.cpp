@@ -54,6 +54,8 @@ TEST_F(Reach, BadInputIsOneSentence) {
   EXPECT_EQ(few.code, 2);
   EXPECT_THAT(few.err, HasSubstr("the robot has 6 joints, found 2 numbers"));
   EXPECT_THAT(reach("--prefer 0,a,1").err, HasSubstr("expected numbers separated by commas"));
+  EXPECT_THAT(reach("--prefer 0,-inf,90,0,45,0").err, HasSubstr("--prefer: -inf rad is not possible for an angle"));
+  EXPECT_THAT(reach("--prefer 0,1e300,90,0,45,0").err, HasSubstr("is not possible for an angle"));
   write(in("targets.csv"), "x,y\n1,0\n");
   EXPECT_EQ(reach("").code, 2);
 }

@@ -6,6 +6,7 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/io/text/csv.hpp"
+#include "kinfer/io/text/possible_range.hpp"
 
 namespace kinfer::cli {
 
@@ -22,9 +23,13 @@ Result<VectorXd> parse_posture(const std::string& option, const std::string& tex
   if (numbers.size() != joints.size())
     return error("{}: the robot has {} joints, found {} numbers", option, joints.size(), numbers.size());
   VectorXd q(static_cast<Eigen::Index>(joints.size()));
-  for (std::size_t k = 0; k < joints.size(); ++k)
-    q[static_cast<Eigen::Index>(k)] =
-        numbers[k] * (rotates(chain.joints[static_cast<std::size_t>(joints[k])].type) ? degree : 1e-3);
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const bool turns = rotates(chain.joints[static_cast<std::size_t>(joints[k])].type);
+    const double value = numbers[k] * (turns ? degree : 1e-3);
+    if (const auto wrong = impossible(value, turns ? possible::angle : possible::length))
+      return error("{}: {}", option, *wrong);
+    q[static_cast<Eigen::Index>(k)] = value;
+  }
   return q;
 }
 

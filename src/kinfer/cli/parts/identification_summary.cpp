@@ -139,6 +139,7 @@ std::string identification_summary(const Identification& found) {
   if (!found.links.empty()) text += "\n";
   text += fit_table(found.searches) + unobservable_list(found.joints);
   for (const std::string& note : words::note_sentences(found)) text += "  - " + note + "\n";
+  if (dof(found.chain) == 0) text += "  - No chain is written, since no joint of it moves\n";
   return text;
 }
 

@@ -9,6 +9,7 @@
 namespace kinfer {
 
 std::vector<OutputFile> identification_files(const Identification& identification) {
+  if (dof(identification.chain) == 0) return {};
   std::vector<OutputFile> files{{"chain.toml", format_robot_toml(RobotModel{.chain = identification.chain})},
                                 {"chain.urdf", format_urdf(identification.chain)},
                                 {"chain.mjcf", format_mjcf(identification.chain)},
