@@ -7,8 +7,8 @@
 
 namespace kinfer {
 
-/// chain.toml, chain.urdf, chain.mjcf, chain_dh.csv and track.toml; none where no joint of the chain moves, since no verb
-/// could use them.
+/// chain.toml, chain.urdf, chain.mjcf, chain_dh.csv and track.toml; none where no joint of the chain moves, since no
+/// verb could use them.
 std::vector<OutputFile> identification_files(const Identification& identification);
 
 }  // namespace kinfer
