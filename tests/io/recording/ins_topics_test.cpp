@@ -183,6 +183,8 @@ TEST_F(RobotLog, DamageIsOneSentenceAndTruncationLosesOnlyTheEnd) {
               HasSubstr("no topic of sensor_msgs/Imu has messages; the topics are /chatter (std_msgs/String)"));
   EXPECT_THAT(what(test::bag_of(test::bag_connection(0, "/a", "b/C", "") + test::bag_connection(1, "/a", "b/D", ""))),
               HasSubstr("topic /a is of two types, b/C and b/D"));
+  EXPECT_THAT(what(test::bag_of(test::bag_connection(0, "/a", "sensor_msgs/Imu", "string angular_velocity\n"))),
+              HasSubstr("bad.bag: topic /a: its type sensor_msgs/Imu has no field"));
   InsRecording recording;
   const std::vector<std::string> topics{"/leg"};
   EXPECT_THAT(append_ins_topics(write("drive.bag", bag), topics, recording).error().what,

@@ -15,7 +15,7 @@ Result<void> TopicTable::add(std::uint64_t id, LoggedTopic topic) {
   }
   const std::size_t index = log_.topics.size();
   auto wanted = sink_.wants(index, topic);
-  if (!wanted) return forward_error(std::move(wanted).error());
+  if (!wanted) return error("{}: {}", file_, wanted.error().what);
   log_.topics.push_back(std::move(topic));
   wanted_.push_back(*wanted);
   by_id_[id] = index;
