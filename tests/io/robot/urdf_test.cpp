@@ -129,6 +129,19 @@ TEST(Urdf, ParserErrorsAreReturnedAndNotPrinted) {
   EXPECT_EQ(bad_number.rfind("arm.urdf: not a valid URDF: ", 0), 0U) << bad_number;
 }
 
+// urdfdom prints some errors with the file's text as a format: "%n" ended the process.
+TEST(Urdf, TextOfTheFileIsNeverAFormat) {
+  for (const char* number : {"0 0 0.5%s%n-17", "0 0 %n%n%n%n", "%1000000000d 0 0", "0 %% 0"}) {
+    const std::string sentence = urdf_complaint(replaced(two_joint_arm, "0 0 0.5", number));
+    EXPECT_EQ(sentence.rfind("arm.urdf: not a valid URDF: ", 0), 0U) << sentence;
+    EXPECT_NE(sentence.find('%'), std::string::npos) << sentence;
+  }
+  const std::string named = replaced(two_joint_arm, "\"slide\"", "\"100%s%n\"");
+  const auto chain = parse_urdf(named, "arm.urdf", {});
+  ASSERT_TRUE(chain) << "not read";
+  EXPECT_EQ(active_joint_names(*chain).back(), "100%s%n");
+}
+
 /// The joint positions of `from` for a chain that has the same joints in another order.
 VectorXd reordered(const Chain& to, const Chain& from, const VectorXd& q) {
   const auto from_names = active_joint_names(from), to_names = active_joint_names(to);

@@ -30,21 +30,45 @@ class LogCapture : public console_bridge::OutputHandler {
   std::string first;
 };
 
-/// The library's output handler is global, hence the lock.
-Result<urdf::ModelInterfaceSharedPtr> parse_without_output(const std::string& text, const std::string& name) {
-  static std::mutex parser_mutex;
-  const std::lock_guard lock(parser_mutex);
-  LogCapture log_capture;
-  console_bridge::useOutputHandler(&log_capture);
+/// The model, and what the library says of it.
+struct Parsed {
   urdf::ModelInterfaceSharedPtr model;
+  std::string first_error;
+};
+
+/// The library's output handler and level are global: for one caller at a time.
+Parsed parse_without_output(const std::string& text, console_bridge::LogLevel level) {
+  LogCapture log_capture;
+  const console_bridge::LogLevel before = console_bridge::getLogLevel();
+  console_bridge::useOutputHandler(&log_capture);
+  console_bridge::setLogLevel(level);
+  Parsed parsed;
   try {
-    model = urdf::parseURDF(text);
+    parsed.model = urdf::parseURDF(text);
   } catch (const std::exception& failure) {
     log_capture.first = failure.what();
   }
+  console_bridge::setLogLevel(before);
   console_bridge::restorePreviousOutputHandler();
-  if (!model) return error("{}: not a valid URDF: {}", name, log_capture.first);
-  return model;
+  parsed.first_error = log_capture.first;
+  return parsed;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+/// The library prints some errors, with what the file says in them, as a format (urdfdom 3.0.1, pose.cpp). So nothing
+/// is printed of the file's own text, and only where that fails is the reason printed, of a text with each % doubled.
+Result<urdf::ModelInterfaceSharedPtr> parse_model(const std::string& text, const std::string& name) {
+  static std::mutex parser_mutex;
+  const std::lock_guard lock(parser_mutex);
+  if (Parsed parsed = parse_without_output(text, console_bridge::CONSOLE_BRIDGE_LOG_NONE); parsed.model)
+    return parsed.model;
+  const Parsed failed = parse_without_output(replaced(text, "%", "%%"), console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
+  return error("{}: not a valid URDF: {}", name, replaced(failed.first_error, "%%", "%"));
 }
 
 Frame frame_of(const urdf::Pose& pose) {
@@ -257,7 +281,7 @@ class ChainBuilder {
 
 Result<Chain> parse_urdf(const std::string& text, const std::string& name, const ChainEnds& ends) {
   KINFER_TRY(tree, parse_urdf_tree(text, name));
-  KINFER_TRY(model, parse_without_output(tree.kinematics, name));
+  KINFER_TRY(model, parse_model(tree.kinematics, name));
   return ChainBuilder(tree, *model, name).build(ends);
 }
 
