@@ -38,7 +38,8 @@ PossibleRange possible_range(Dimension dimension) {
 }
 
 std::optional<std::string> impossible(double value, const PossibleRange& range) {
-  if (std::abs(value) <= range.most) return std::nullopt;
+  constexpr double rounding = 1e-9;  // a value at the limit that was written in another unit comes back beyond it
+  if (std::abs(value) <= range.most * (1.0 + rounding)) return std::nullopt;
   const std::string_view unit = range.unit == "1" || range.unit == "SI" ? "" : range.unit;
   return fmt::format("{:g}{}{} is not possible for {} (at most {:g}{}{})", value, unit.empty() ? "" : " ", unit,
                      range.what, range.most, unit.empty() ? "" : " ", unit);
