@@ -29,7 +29,7 @@ TEST(Options, AModelChoiceIsParsedAndDescribedAlike) {
     EXPECT_EQ(described(nominal_task, {.model = parse_model_choice(text).value()}).at("--model"), text);
   EXPECT_EQ(parse_model_choice("geometry+gravitation").error().what,
             "--model geometry+gravitation: expected auto, geometry or some of gains, coupling, gravity, torques, gear, "
-            "spectrum, backlash, temperature joined by +");
+            "spectrum, backlash, temperature, field joined by +");
 }
 
 TEST(Options, TheModelOfASubsetOfTheParametersIsGeometryAlone) {

@@ -5,6 +5,7 @@
 
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
+#include "support/random_field.hpp"
 
 namespace kinfer {
 namespace {
@@ -41,12 +42,13 @@ TEST(GeometricPart, EveryKindIsNamed) {
   corrected.joints[3].torque_compliance = 1e-6;
   corrected.joints[4].couplings = {{0, 0.01}};
   corrected.expansion = 1e-5;
+  corrected.field = test::random_field(6, 3, Rng(1));
   std::string names;
   for (const auto& difference : geometric_part(corrected, reference, MatrixXd::Constant(6, 1, 0.3)).differences) {
     names += std::string(name(difference.kind)) + " ";
     EXPECT_EQ(difference.max > 0.0, !difference.depends_on_load) << names;
   }
-  EXPECT_EQ(names, "coupling compliance torque_compliance backlash harmonics expansion ");
+  EXPECT_EQ(names, "coupling compliance torque_compliance backlash harmonics expansion field ");
 }
 
 }  // namespace

@@ -73,7 +73,8 @@ bool has_non_geometric_terms(const Joint& joint) {
 
 bool has_non_geometric_terms(const Chain& chain) {
   const auto of_joint = [](const Joint& joint) { return has_non_geometric_terms(joint); };
-  return chain.expansion != 0.0 || std::any_of(chain.joints.begin(), chain.joints.end(), of_joint);
+  return chain.expansion != 0.0 || !chain.field.empty() ||
+         std::any_of(chain.joints.begin(), chain.joints.end(), of_joint);
 }
 
 void expect_well_formed(const Chain& chain) {
@@ -91,6 +92,11 @@ void expect_well_formed(const Chain& chain) {
                     link->axis.norm());
     }
   }
+  const DisplacementField& field = chain.field;
+  KINFER_EXPECT(field.empty() || (field.points.rows() == dof(chain) && field.length.size() == field.points.rows() &&
+                                  field.coefficients.cols() == field.points.cols()),
+                "a field of {} joints, {} lengths and {} coefficients for {} points", field.points.rows(),
+                field.length.size(), field.coefficients.cols(), field.points.cols());
   for (const RobotMounting& mounting : chain.mountings)
     KINFER_EXPECT(mounting.tip >= -1 && mounting.tip < n, "tip {} of {} joints", mounting.tip, n);
   for (const LoopClosure& closure : chain.closures)

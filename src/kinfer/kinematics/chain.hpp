@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "kinfer/base/constants.hpp"
+#include "kinfer/kinematics/displacement_field.hpp"
 #include "kinfer/kinematics/fixtures.hpp"
 #include "kinfer/kinematics/frame.hpp"
 #include "kinfer/kinematics/joint_type.hpp"
@@ -107,6 +108,7 @@ struct Chain {
   Vec3 gravity = Vec3(0, 0, -standard_gravity);  ///< [m/s²] in the world frame
   double expansion = 0.0;              ///< [1/K]: all lengths of the joints grow by expansion · temperature rise
   double reference_temperature = 0.0;  ///< [°C] at which the lengths are as written
+  DisplacementField field{};           ///< of the tool, beyond all that joints, links and loads explain
   Fixtures fixtures{};
   std::vector<RobotMounting> mountings{};  ///< in addition to base and tool above
 
@@ -138,7 +140,7 @@ JointLimits joint_limits(const Chain& chain);
 /// The joint's position depends on more than its own q and its couplings: on loads (compliance), the direction of
 /// approach (backlash) or the angle (harmonics).
 bool has_non_geometric_terms(const Joint& joint);
-/// Any joint has, or lengths grow with temperature.
+/// Any joint has, lengths grow with temperature, or the tool is displaced by a field.
 bool has_non_geometric_terms(const Chain& chain);
 
 /// Aborts (programming error) unless parents precede children and all indices are in range.

@@ -136,7 +136,9 @@ Pose forward(const Chain& chain, ConstVectorRef q, const Load& load) {
   for (const int j : path_to(chain, chain.tip_joint()))
     pose = place_joint(pose, chain.joints[j], displacement[j]).frame;
   pose.position = thermally_expanded(chain, load, pose.position);
-  return pose * chain.tool.pose();
+  pose = pose * chain.tool.pose();
+  if (!chain.field.empty()) pose.position += chain.base.pose().rotation * displacement_at(chain.field, q);
+  return pose;
 }
 
 std::vector<Pose> joint_frames(const Chain& chain, ConstVectorRef q, const Load& load) {
@@ -157,6 +159,7 @@ Twists jacobian(const Chain& chain, ConstVectorRef q, const Load& load) {
     if (index[j] >= 0) twists.col(index[j]) += joint.gain * twist;
     for (const Coupling& c : joint.couplings) twists.col(index[c.joint]) += c.factor * twist;
   }
+  if (!chain.field.empty()) twists.topRows<3>() += chain.base.pose().rotation * displacement_slope(chain.field, q);
   return twists;
 }
 

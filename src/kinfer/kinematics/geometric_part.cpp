@@ -14,7 +14,7 @@ namespace {
 constexpr std::array all_kinds{NonGeometricKind::gain,       NonGeometricKind::coupling,
                                NonGeometricKind::compliance, NonGeometricKind::torque_compliance,
                                NonGeometricKind::backlash,   NonGeometricKind::harmonics,
-                               NonGeometricKind::expansion};
+                               NonGeometricKind::expansion,  NonGeometricKind::field};
 
 /// Gives the joint one kind of numbers of another joint; returns whether they differed.
 bool take(Joint& joint, const Joint& from, NonGeometricKind kind) {
@@ -43,9 +43,15 @@ bool take(Joint& joint, const Joint& from, NonGeometricKind kind) {
       return assign(joint.harmonics, from.harmonics,
                     lists([](const Harmonic& h) { return std::tuple(h.order, h.sine, h.cosine); }));
     case NonGeometricKind::expansion:
+    case NonGeometricKind::field:
       break;
   }
   return false;
+}
+
+bool same(const DisplacementField& a, const DisplacementField& b) {
+  return a.points.cols() == b.points.cols() && a.points == b.points && a.length == b.length &&
+         a.coefficients == b.coefficients;
 }
 
 struct Distance {
@@ -69,7 +75,7 @@ Distance tool_distance(const Chain& a, const Chain& b, const MatrixXd& q) {
 
 std::string_view name(NonGeometricKind kind) {
   constexpr std::string_view names[] = {"gain",     "coupling",  "compliance", "torque_compliance",
-                                        "backlash", "harmonics", "expansion"};
+                                        "backlash", "harmonics", "expansion",  "field"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -85,13 +91,15 @@ GeometricPart geometric_part(const Chain& corrected, const Chain& reference, con
       if (take(without.joints[j], reference.joints[j], kind)) ++difference.joints;
     }
     const bool expands = kind == NonGeometricKind::expansion && corrected.expansion != reference.expansion;
-    if (difference.joints == 0 && !expands) continue;
+    const bool has_field = kind == NonGeometricKind::field && !same(corrected.field, reference.field);
+    if (difference.joints == 0 && !expands && !has_field) continue;
+    if (has_field) without.field = reference.field;
     difference.depends_on_load = expands || kind == NonGeometricKind::torque_compliance;
     const Distance distance = tool_distance(corrected, without, q);
     difference.rms = distance.rms, difference.max = distance.max;
     part.differences.push_back(difference);
   }
-  part.chain.expansion = reference.expansion;
+  part.chain.expansion = reference.expansion, part.chain.field = reference.field;
   if (part.differences.empty()) return part;
   const Distance distance = tool_distance(corrected, part.chain, q);
   part.rms = distance.rms, part.max = distance.max;

@@ -11,13 +11,13 @@
 namespace kinfer {
 
 /// Kinds of numbers beyond the frames of the joints.
-enum class NonGeometricKind { gain, coupling, compliance, torque_compliance, backlash, harmonics, expansion };
+enum class NonGeometricKind { gain, coupling, compliance, torque_compliance, backlash, harmonics, expansion, field };
 std::string_view name(NonGeometricKind kind);
 
 /// A kind of numbers in which a chain differs from a reference.
 struct NonGeometricDifference {
   NonGeometricKind kind = NonGeometricKind::gain;
-  int joints = 0;                ///< that differ; 0 of the expansion
+  int joints = 0;                ///< that differ; 0 of the expansion and of the field
   double rms = 0.0;              ///< [m] distance by which it moves the tool point over the given joint positions
   double max = 0.0;              ///< [m]
   bool depends_on_load = false;  ///< on measured torques or the temperature: rms and max are unknown, 0

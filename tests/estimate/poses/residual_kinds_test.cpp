@@ -7,6 +7,7 @@
 #include "kinfer/linalg/decompositions.hpp"
 #include "support/differences.hpp"
 #include "support/instruments.hpp"
+#include "support/random_field.hpp"
 
 namespace kinfer {
 namespace {
@@ -29,6 +30,7 @@ Chain rich_robot() {
   chain.joints[5].couplings = {{4, -0.3}, {3, 1e-3}};
   chain.expansion = 2e-5;
   chain.reference_temperature = 20.0;
+  chain.field = random_field(6, 5, Rng(8));
   Fixtures& around = chain.fixtures;
   around.anchors = {Vec3(1.8, -0.9, 0.1), Vec3(0.0, 2.0, 0.5)};
   around.sockets = {{"a", Vec3(1.0, 0.2, 0.5)}, {"b", Vec3(0.9, 0.4, 0.5)}};

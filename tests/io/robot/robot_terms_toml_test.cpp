@@ -6,6 +6,7 @@
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
+#include "support/random_field.hpp"
 
 namespace kinfer {
 namespace {
@@ -18,6 +19,7 @@ RobotModel rich_robot() {
   chain.joints[0].harmonics = {{1.0, 1e-4, -2e-4}, {80.5, 3e-4, 1e-4}};
   chain.expansion = 2e-5;
   chain.reference_temperature = 21.5;
+  chain.field = test::random_field(6, 4, Rng(2));
   chain.setup = "first";
   chain.fixtures.anchors = {Vec3(1.8, -0.9, 0.1)};
   chain.fixtures.sockets = {{"a \"deep\" one", Vec3(1, 2, 3)}, {"b", Vec3(0.5, 0, 0)}};

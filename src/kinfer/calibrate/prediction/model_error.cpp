@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/calibrate/functions/fit_with_functions.hpp"
 #include "kinfer/calibrate/prediction/measured_region.hpp"
 #include "kinfer/calibrate/prediction/thresholds.hpp"
-#include "kinfer/calibrate/series/harmonic_series.hpp"
 #include "kinfer/calibrate/terms/extrapolation_splits.hpp"
 #include "kinfer/estimate/poses/pose_uncertainty.hpp"
 #include "kinfer/geometry/statistics.hpp"
@@ -209,8 +209,9 @@ std::vector<HeldOutResiduals> residuals_of_regions(const EvaluationInputs& evalu
   parallel_for(splits.size(), threads, [&](std::size_t i) {
     const PoseSet train = select(data, splits[i].train), rest = select(data, splits[i].holdout);
     if (train.points.empty() || rest.points.empty()) return;
-    const Estimate fit = fit_with_series(estimate.chain, estimate.parameters, train, evaluated.instrument,
-                                         {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only});
+    const Estimate fit =
+        fit_with_functions(estimate.chain, estimate.parameters, train, evaluated.instrument,
+                           {.initial_guess = InitialGuess::near_optimum, .detail = Detail::numbers_only});
     of_split[i] = residuals_beside(fit, train, rest, evaluated.instrument, region);
   });
   return of_split;

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/calibrate/series/chain_series.hpp"
+#include "kinfer/calibrate/functions/chain_series.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::calibrate {

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/calibrate/functions/fit_with_functions.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
-#include "kinfer/calibrate/series/harmonic_series.hpp"
 #include "kinfer/calibrate/terms/decision.hpp"
 #include "kinfer/calibrate/validation/validation_errors.hpp"
 
@@ -13,7 +13,7 @@ namespace kinfer::calibrate {
 
 Estimate fit_rows(const Chain& start, const ParameterSet& set, const PoseSet& rows, const CalibrationTask& task,
                   const BundleOptions& options, const Observer& observer) {
-  return fit_with_series(start, restricted_to_data(set, rows), rows, task.instrument, options, observer);
+  return fit_with_functions(start, restricted_to_data(set, rows), rows, task.instrument, options, observer);
 }
 
 HoldoutErrors cross_validate(const Estimate& fit, const ParameterSet& set, const PoseSet& rows,

@@ -5,6 +5,7 @@
 
 #include "kinfer/calibrate/terms/candidate_terms.hpp"
 #include "kinfer/calibrate/terms/holdout_errors.hpp"
+#include "kinfer/calibrate/terms/weighed_field.hpp"
 #include "kinfer/calibrate/terms/weighed_model.hpp"
 #include "kinfer/calibrate/validation/gross_errors.hpp"
 #include "kinfer/measurement/row_selection.hpp"
@@ -16,6 +17,7 @@ namespace {
 WeighedModel fit_fixed_model(const SelectionData& data, const Estimate& geometry, const FixedModel& model) {
   WeighedModel fixed = weighed_geometry(data, geometry);
   for (const Term term : model.terms) {
+    if (term == Term::displacement_field) continue;
     const std::vector<SpectralLine> lines = term == Term::spectral_harmonics
                                                 ? find_gear_harmonics(fixed.fit, data.rows, data.threads)
                                                 : std::vector<SpectralLine>{};
@@ -40,6 +42,7 @@ WeighedModel fit_fixed_model(const SelectionData& data, const Estimate& geometry
     }
     fixed.steps.push_back({step, held_out});
   }
+  if (std::ranges::count(model.terms, Term::displacement_field) > 0) add_field(data, fixed);
   return fixed;
 }
 

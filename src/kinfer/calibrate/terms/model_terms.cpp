@@ -130,14 +130,14 @@ ModelTerm temperature(const Chain& nominal, const TermInputs& inputs) {
   return model_term;
 }
 
-constexpr std::array<TermMaker, term_count> makers{{{Term::gain, gains},
-                                                    {Term::coupling, coupling},
-                                                    {Term::gravity_compliance, gravity},
-                                                    {Term::torque_compliance, torques},
-                                                    {Term::gear_harmonics, gear},
-                                                    {Term::spectral_harmonics, spectrum},
-                                                    {Term::backlash, backlash},
-                                                    {Term::thermal_expansion, temperature}}};
+constexpr std::array<TermMaker, term_count - 1> makers{{{Term::gain, gains},
+                                                        {Term::coupling, coupling},
+                                                        {Term::gravity_compliance, gravity},
+                                                        {Term::torque_compliance, torques},
+                                                        {Term::gear_harmonics, gear},
+                                                        {Term::spectral_harmonics, spectrum},
+                                                        {Term::backlash, backlash},
+                                                        {Term::thermal_expansion, temperature}}};
 
 }  // namespace
 

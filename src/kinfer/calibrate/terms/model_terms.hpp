@@ -27,7 +27,8 @@ struct TermInputs {
   std::vector<SpectralLine> lines{};  ///< of residuals, for the term of these
 };
 
-/// One row per term; a new term is a new row here, its name in evidence, its words in words.
+/// One row per term of numbers (a displacement field is none: calibrate/functions); a new term is a new row here, its
+/// name in evidence, its words in words.
 struct TermMaker {
   Term term;
   ModelTerm (*make)(const Chain& nominal, const TermInputs& inputs);

@@ -8,12 +8,13 @@
 #include <utility>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/calibrate/functions/harmonic_series.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
-#include "kinfer/calibrate/series/harmonic_series.hpp"
 #include "kinfer/calibrate/terms/ablation.hpp"
 #include "kinfer/calibrate/terms/candidate_terms.hpp"
 #include "kinfer/calibrate/terms/decision.hpp"
 #include "kinfer/calibrate/terms/extrapolation_splits.hpp"
+#include "kinfer/calibrate/terms/weighed_field.hpp"
 #include "kinfer/calibrate/validation/gross_errors.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/measurement/row_selection.hpp"
@@ -47,13 +48,15 @@ bool holds_everywhere(Term term) {
   return term == Term::gravity_compliance || term == Term::torque_compliance || term == Term::thermal_expansion;
 }
 
+/// Splits along the principal directions of the joint positions, of a part of many rows.
+std::vector<Split> splits_beyond(const PoseSet& rows) {
+  return thinned(extrapolation_splits(rows), rows.pairs.empty() ? thresholds::extrapolation_rows : rows.rows());
+}
+
 class ModelWeigher {
  public:
   ModelWeigher(const SelectionData& data, const Estimate& geometry)
-      : data_(data),
-        geometry_(geometry),
-        extrapolation_splits_(thinned(extrapolation_splits(data.rows),
-                                      data.rows.pairs.empty() ? thresholds::extrapolation_rows : data.rows.rows())) {}
+      : data_(data), geometry_(geometry), extrapolation_splits_(splits_beyond(data.rows)) {}
 
   /// The fit of the relevant terms but spectral lines.
   const Estimate& fit_without_lines() {
@@ -349,9 +352,8 @@ std::vector<Split> splits_of_part(const std::vector<Split>& splits, const std::v
   return of_part;
 }
 
-}  // namespace
-
-WeighedModel weigh_model(const SelectionData& data, const Estimate& geometry) {
+/// The terms of numbers and of series.
+WeighedModel weigh_terms(const SelectionData& data, const Estimate& geometry) {
   ModelWeigher of_lines(data, geometry);
   const auto found = find_series(of_lines.fit_without_lines(), data.rows, data.task.instrument, data.threads);
   if (!found) return of_lines.run();
@@ -372,6 +374,14 @@ WeighedModel weigh_model(const SelectionData& data, const Estimate& geometry) {
   WeighedModel series = ModelWeigher(data, beside).run();
   describe_series(series, *found, c.interpolation, c.extrapolation, data.rows);
   return series;
+}
+
+}  // namespace
+
+WeighedModel weigh_model(const SelectionData& data, const Estimate& geometry) {
+  WeighedModel model = weigh_terms(data, geometry);
+  weigh_field(data, splits_beyond(data.rows), model);
+  return model;
 }
 
 }  // namespace kinfer::calibrate

@@ -63,7 +63,7 @@ class Fit {
     blocks_ = blocks_of(data);
     state_.inlier.assign(blocks_.size(), true);
     state_.search.method = SearchMethod::levenberg_marquardt;
-    state_.excess = excess_noise(scene(data), instrument, 0.0);
+    state_.excess = excess_noise(scene(data), instrument, options.absorbed);
   }
 
   Estimate run() {
@@ -104,7 +104,8 @@ class Fit {
   /// True when the noise level has converged.
   bool update_noise_level() {
     const PoseSet kept = keep_measurements(data_, state_.inlier);
-    const ExcessNoise now = excess_noise(scene(kept), instrument_, effective_parameters(state_.outcome.normal, set_));
+    const ExcessNoise now =
+        excess_noise(scene(kept), instrument_, options_.absorbed + effective_parameters(state_.outcome.normal, set_));
     const auto settled = [](double before, double after) { return std::abs(after - before) <= 0.02 * before; };
     bool done = true;
     for (std::size_t k = 0; k < now.of.size(); ++k) done &= settled(state_.excess.of[k], now.of[k]);
@@ -272,8 +273,8 @@ class Fit {
     const VectorXd r = weighted_residuals(scene(kept), weights_of(kept, *instrument_));
     VectorXd distances(static_cast<Eigen::Index>(state_.chain.fixtures.socket_distances.size()));
     write_socket_distances(state_.chain, no_columns_, distances, nullptr, 0);
-    const double redundancy = std::max(
-        1.0, static_cast<double>(r.size() + distances.size()) - effective_parameters(state_.outcome.normal, set_));
+    const double redundancy = std::max(1.0, static_cast<double>(r.size() + distances.size()) - options_.absorbed -
+                                                effective_parameters(state_.outcome.normal, set_));
     return (r.squaredNorm() + distances.squaredNorm()) / redundancy;
   }
 

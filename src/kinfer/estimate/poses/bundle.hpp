@@ -32,6 +32,7 @@ struct BundleOptions {
   Outliers outliers = Outliers::detect;
   InitialGuess initial_guess = InitialGuess::rough;
   Detail detail = Detail::all;
+  double absorbed = 0.0;       ///< number of residuals that functions beside the parameters absorb: less redundancy
   double false_alarms = 1e-3;  ///< expected number of inliers rejected per data set under Gaussian noise
   int threads = 1;             ///< at most, 0: all cores; has no effect on the result
 };

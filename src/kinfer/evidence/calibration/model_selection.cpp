@@ -8,13 +8,13 @@ namespace kinfer {
 namespace {
 
 // In the order of the enumerators.
-constexpr std::array<std::string_view, term_count> names_of_terms{"gains", "coupling", "gravity",  "torques",
-                                                                  "gear",  "spectrum", "backlash", "temperature"};
-constexpr std::array<std::string_view, 9> decision_names{
-    "start",       "accepted",    "requested", "no_evidence", "no_improvement", "tail_rises", "extrapolation_worse",
-    "not_excited", "data_missing"};
-constexpr std::array<std::string_view, 7> missing_names{
-    "none", "gravity", "torques", "approach_order", "temperature", "temperature_range", "spectral_line"};
+constexpr std::array<std::string_view, term_count> names_of_terms{
+    "gains", "coupling", "gravity", "torques", "gear", "spectrum", "backlash", "temperature", "field"};
+constexpr std::array<std::string_view, 10> decision_names{
+    "start",       "accepted",     "requested", "no_evidence", "no_improvement", "tail_rises", "extrapolation_worse",
+    "not_excited", "data_missing", "superseded"};
+constexpr std::array<std::string_view, 8> missing_names{
+    "none", "gravity", "torques", "approach_order", "temperature", "temperature_range", "spectral_line", "points"};
 
 }  // namespace
 
@@ -50,7 +50,8 @@ bool is_selected(const SelectionStep& step) {
 }
 
 bool was_tested(const SelectionStep& step) {
-  return step.decision != Decision::not_excited && step.decision != Decision::data_missing;
+  return step.decision != Decision::not_excited && step.decision != Decision::data_missing &&
+         step.decision != Decision::superseded;
 }
 
 std::vector<Term> selected_terms(const ModelSelection& selection) {

@@ -21,10 +21,11 @@ enum class Term {
   spectral_harmonics,  ///< lines in the spectrum of the residuals
   backlash,
   thermal_expansion,
+  displacement_field,  ///< of the tool, over all joint positions
 };
-inline constexpr int term_count = 8;
+inline constexpr int term_count = 9;
 
-/// As of --model: "gains", "coupling", "gravity", "torques", "gear", "spectrum", "backlash", "temperature"
+/// As of --model: "gains", "coupling", "gravity", "torques", "gear", "spectrum", "backlash", "temperature", "field"
 std::string_view name(Term term);
 std::optional<Term> term_named(std::string_view name);
 std::vector<std::string> term_names();  ///< of all terms
@@ -39,6 +40,7 @@ enum class Decision {
   extrapolation_worse,  ///< supported, but the errors beyond the fitted poses are higher with it
   not_excited,          ///< not tested: the data determine none of its parameters
   data_missing,         ///< not tested: see MissingData
+  superseded,           ///< not tested: series of harmonics hold the errors of the joints
 };
 std::string_view name(Decision decision);  ///< "start", "accepted", …
 
@@ -51,6 +53,7 @@ enum class MissingData {
   temperature,        ///< no temperatures
   temperature_range,  ///< the temperature hardly changed
   spectral_line,      ///< no significant line in the residuals
+  points,             ///< too few points of one tool
 };
 std::string_view name(MissingData missing);  ///< "none", "gravity", …
 

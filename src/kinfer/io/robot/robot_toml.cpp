@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/io/robot/displacement_field_toml.hpp"
 #include "kinfer/io/robot/possible_chain.hpp"
 #include "kinfer/io/robot/prediction_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
@@ -453,6 +454,7 @@ Result<RobotModel> parse_robot_toml(std::string_view text, const std::string& na
   chain.expansion = file.number_or("expansion", 0.0);
   chain.reference_temperature = file.number_or("reference_temperature", 0.0);
   file.ignore("expansion_sd");
+  chain.field = read_displacement_field(file, dof(chain), first_error);
   robot.prediction = read_prediction(file, dof(chain), first_error);
   file.expect_no_other_keys();
   if (first_error.any()) return forward_error(first_error.as_error());

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/io/robot/displacement_field_toml.hpp"
 #include "kinfer/io/robot/prediction_toml.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/text/format_number.hpp"
@@ -41,6 +42,7 @@ class RobotTomlWriter {
           format_number(mass.mass));
     write_tolerances();
     if (robot_.instrument) write_instrument(*robot_.instrument);
+    if (!chain_.field.empty()) text_ += format_displacement_field_toml(chain_.field);
     if (robot_.prediction) text_ += format_prediction_toml(*robot_.prediction);
     return std::move(text_);
   }

@@ -100,9 +100,11 @@ struct PoseEvaluator::Program {
   std::vector<ParameterAddress> address;  // of each column
   bool pose_needs_torque = false, derivative_needs_torque = false, has_expansion = false;
   VectorXd zero_torque;
+  Mat3 base_rotation = Mat3::Identity();
 
   void set_chain(const Chain& source) {
     chain = source;
+    base_rotation = chain.base.pose().rotation;
     active_count = dof(chain);
     zero_torque = VectorXd::Zero(static_cast<Eigen::Index>(chain.joints.size()));
     const std::vector<int> q_index = active_joint_indices(chain);
@@ -298,6 +300,9 @@ struct PoseEvaluator::Program {
     return chain.expansion * load.temperature_rise * (result.flange - chain.base.xyz);
   }
 
+  /// Displacement of the tool by the chain's field.
+  Vec3 field_displacement(ConstVectorRef q) const { return base_rotation * displacement_at(chain.field, q); }
+
   /// Thermal expansion of the columns: those of joints scale with the lengths, those of the tool move with the flange.
   void expand_columns(const ToolAndFlange& result, const Load& load, Twists& twists) const {
     const double by = chain.expansion * load.temperature_rise;
@@ -325,6 +330,7 @@ PoseEvaluator::PoseEvaluator(PoseEvaluator&&) noexcept = default;
 Pose PoseEvaluator::pose(ConstVectorRef q, const Load& load) const {
   auto result = program_->run(program_->pose_only, q, load, program_->pose_needs_torque, nullptr);
   if (program_->chain.expansion != 0.0) result.pose.position += program_->thermal_displacement(result, load);
+  if (!program_->chain.field.empty()) result.pose.position += program_->field_displacement(q);
   return result.pose;
 }
 
@@ -336,10 +342,16 @@ Pose PoseEvaluator::pose_and_derivative(ConstVectorRef q, const Load& load, Twis
     program_->expand_columns(result, load, twists);
     result.pose.position += program_->thermal_displacement(result, load);
   }
+  const bool has_field = !program_->chain.field.empty();
+  const Vec3 displacement = has_field ? program_->field_displacement(q) : Vec3::Zero().eval();
   for (const int c : program_->rotational) {
-    const Vec3 axis = twists.col(c).tail<3>(), lever = result.pose.position - twists.col(c).head<3>();
+    const Vec3 axis = twists.col(c).tail<3>();
+    Vec3 lever = result.pose.position - twists.col(c).head<3>();
+    // The field turns with the base, and with nothing else.
+    if (has_field && is_own_frame_parameter(program_->address[c], SetupFrame::base)) lever += displacement;
     twists.col(c).head<3>() = axis.cross(lever);
   }
+  result.pose.position += displacement;
   return result.pose;
 }
 

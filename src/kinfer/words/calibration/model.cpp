@@ -33,6 +33,8 @@ std::string missing_data(MissingData missing) {
       return "the temperature hardly changed (less than 1 K)";
     case MissingData::spectral_line:
       return "the residuals have no further significant harmonic";
+    case MissingData::points:
+      return "it needs 20 or more measured points of one tool";
     case MissingData::none:
       break;
   }
@@ -68,6 +70,8 @@ std::string description(const SelectionStep& step) {
       return phrase(id, "backlash: an offset with the sign of the direction of approach (from the order of the rows)");
     case Term::thermal_expansion:
       return phrase(id, "thermal expansion of all lengths");
+    case Term::displacement_field:
+      return phrase(id, "a displacement of the tool that is a smooth function of all joint positions, of any form");
   }
   return "";
 }
@@ -99,6 +103,8 @@ std::string reason(const SelectionStep& step) {
       return phrase(id, "not tested: these poses do not excite its parameters");
     case Decision::data_missing:
       return phrase(id, "not tested: {}", missing_data(step.missing));
+    case Decision::superseded:
+      return phrase(id, "not tested: series of harmonics hold the errors of the joints");
   }
   return "";
 }

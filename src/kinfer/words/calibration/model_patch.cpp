@@ -24,6 +24,8 @@ std::string_view noun(NonGeometricKind kind) {
       return "harmonics of gears";
     case NonGeometricKind::expansion:
       return "thermal expansion";
+    case NonGeometricKind::field:
+      return "the displacement field";
   }
   return "";
 }
@@ -38,11 +40,12 @@ std::string omission(const NonGeometricDifference& difference, RobotFileFormat f
     return phrase(name(difference.kind), "left out, {}: {}; its size depends on {}", reason(format),
                   noun(difference.kind),
                   difference.kind == NonGeometricKind::expansion ? "the temperature" : "the torques");
+  const std::string of_joints =
+      difference.joints == 0 ? "" : fmt::format(" ({} joint{})", difference.joints, difference.joints == 1 ? "" : "s");
   return phrase(name(difference.kind),
-                "left out, {}: {} ({} joint{}), which moves the tool by {:.3f} mm rms and at most "
+                "left out, {}: {}{}, which moves the tool by {:.3f} mm rms and at most "
                 "{:.3f} mm over the measured poses",
-                reason(format), noun(difference.kind), difference.joints, difference.joints == 1 ? "" : "s",
-                1e3 * difference.rms, 1e3 * difference.max);
+                reason(format), noun(difference.kind), of_joints, 1e3 * difference.rms, 1e3 * difference.max);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/calibrate/series/chain_series.hpp"
+#include "kinfer/calibrate/functions/chain_series.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,14 +5,14 @@
 
 #include <vector>
 
-#include "kinfer/calibrate/series/series_equations.hpp"
+#include "kinfer/calibrate/functions/series_equations.hpp"
 
 namespace kinfer::calibrate {
 
 class SeriesProblem {
  public:
   /// Starts with the sizes that the coefficients have. Keeps a reference to `apart`.
-  SeriesProblem(const DetachedSeries& apart, const SeriesData& data);
+  SeriesProblem(const DetachedSeries& apart, const WeightedRows& data);
 
   struct Solution {
     VectorXd step;        ///< of the parameters, and the coefficients

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/calibrate/series/series_problem.hpp"
+#include "kinfer/calibrate/functions/series_problem.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/calibrate/series/thresholds.hpp"
+#include "kinfer/calibrate/functions/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_normal_equations.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
@@ -22,7 +22,7 @@ constexpr double first_variance = thresholds::first_series_size * thresholds::fi
 
 }  // namespace
 
-SeriesProblem::SeriesProblem(const DetachedSeries& apart, const SeriesData& data)
+SeriesProblem::SeriesProblem(const DetachedSeries& apart, const WeightedRows& data)
     : apart_(apart),
       system_(make_system(apart, data)),
       parameters_(apart.set.free_count()),

@@ -10,7 +10,7 @@
 
 #include <optional>
 
-#include "kinfer/calibrate/series/chain_series.hpp"
+#include "kinfer/calibrate/functions/chain_series.hpp"
 #include "kinfer/estimate/poses/bundle.hpp"
 
 namespace kinfer::calibrate {

@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "kinfer/calibrate/series/chain_series.hpp"
-#include "kinfer/estimate/poses/pose_weights.hpp"
+#include "kinfer/calibrate/functions/beside_functions.hpp"
+#include "kinfer/calibrate/functions/chain_series.hpp"
 
 namespace kinfer::calibrate {
 
@@ -16,13 +16,6 @@ struct SeriesBlock {
   int joint = 0, knots = 0;
   std::vector<Eigen::Index> unknown;  ///< of each knot; -1: none
   Eigen::Index begin = 0, count = 0;
-};
-
-/// Measurements to which series are fitted.
-struct SeriesData {
-  const PoseSet& rows;
-  const Weights& weights;
-  int threads = 1;
 };
 
 /// About the chain without its series: the unknowns are steps of the parameters, then the coefficients themselves.
@@ -34,6 +27,6 @@ struct SeriesSystem {
   Eigen::Index residuals = 0;
 };
 
-SeriesSystem make_system(const DetachedSeries& apart, const SeriesData& data);
+SeriesSystem make_system(const DetachedSeries& apart, const WeightedRows& data);
 
 }  // namespace kinfer::calibrate

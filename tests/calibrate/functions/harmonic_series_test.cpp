@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Errors of joints that are smooth functions of their positions, of any form.
-#include "kinfer/calibrate/series/harmonic_series.hpp"
+#include "kinfer/calibrate/functions/harmonic_series.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "calibrate/functions/nominal_fits.hpp"
 #include "calibrate/terms/simulated_selection.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/words/calibration/model.hpp"
 
@@ -32,15 +32,6 @@ PoseSet bent_readings(const Chain& truth, int poses, const std::vector<int>& ben
   measure_points(moved, truth, tracker, Rng(seed + 50));
   data.points = moved.points;
   return data;
-}
-
-Estimate geometry_of(const PoseSet& data) {
-  const Chain chain = nominal_robot();
-  return fit_bundle(chain, geometric_parameters(chain, data, {}), data, tracker);
-}
-
-double mean_error(const Chain& chain, const PoseSet& data) {
-  return mean(point_errors(chain, data));
 }
 
 std::vector<int> joints_with_series(const Chain& chain) {

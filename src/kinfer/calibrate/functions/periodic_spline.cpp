@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/calibrate/series/periodic_spline.hpp"
+#include "kinfer/calibrate/functions/periodic_spline.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/calibrate/series/harmonic_series.hpp"
+#include "kinfer/calibrate/functions/harmonic_series.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "kinfer/calibrate/series/series_problem.hpp"
-#include "kinfer/calibrate/series/thresholds.hpp"
+#include "kinfer/calibrate/functions/series_problem.hpp"
+#include "kinfer/calibrate/functions/thresholds.hpp"
 #include "kinfer/estimate/poses/noise_level.hpp"
 
 namespace kinfer::calibrate {
@@ -42,7 +43,7 @@ struct Candidate {
 };
 
 /// With the sizes and the noise level that maximise the marginal likelihood.
-Candidate evaluate(const DetachedSeries& start, const SeriesData& data) {
+Candidate evaluate(const DetachedSeries& start, const WeightedRows& data) {
   SeriesProblem problem(start, data);
   const SeriesProblem::Solution solution = problem.maximise(thresholds::series_rounds);
   Candidate candidate{problem.moved_by(solution.step), problem.log_evidence(solution), {}};
@@ -53,7 +54,7 @@ Candidate evaluate(const DetachedSeries& start, const SeriesData& data) {
 
 /// Drops series one by one, the one with the least odds first, until each has more than the prior odds of one among
 /// all. None where none is left.
-std::optional<Candidate> keep_supported(Candidate candidate, DetachedSeries plain, const SeriesData& data,
+std::optional<Candidate> keep_supported(Candidate candidate, DetachedSeries plain, const WeightedRows& data,
                                         double log_odds) {
   while (!candidate.bayes_factors.empty()) {
     const auto worst = std::ranges::min_element(candidate.bayes_factors);
@@ -81,13 +82,6 @@ ParameterSet without_harmonics(const ParameterSet& set) {
   return kept;
 }
 
-std::vector<bool> inliers_of(const Estimate& fitted, const PoseSet& rows) {
-  std::vector<bool> is_inlier;
-  for (const Block& block : blocks_of(rows))
-    is_inlier.push_back(std::ranges::find(fitted.outliers, block.row, &Outlier::row) == fitted.outliers.end());
-  return is_inlier;
-}
-
 }  // namespace
 
 std::optional<FoundSeries> find_series(const Estimate& fitted, const PoseSet& rows,
@@ -95,7 +89,7 @@ std::optional<FoundSeries> find_series(const Estimate& fitted, const PoseSet& ro
   if (!rows.pairs.empty() || rows.rows() < static_cast<Index>(thresholds::min_series_points)) return std::nullopt;
   const PoseSet kept = keep_measurements(rows, inliers_of(fitted, rows));
   const Weights weights = weights_of(kept, instrument, excess_noise(fitted.chain, kept, instrument, 0.0, threads));
-  const SeriesData data{kept, weights, threads};
+  const WeightedRows data{kept, weights, threads};
   const double without = evaluate({fitted.chain, fitted.parameters, {}}, data).log_evidence;
   DetachedSeries start{fitted.chain, without_harmonics(fitted.parameters), {}};
   for (Joint& joint : start.plain.joints) joint.harmonics.clear();  // those of gears are orders of the series
@@ -155,15 +149,7 @@ Estimate fit_with_series(const Chain& start, const ParameterSet& set, const Pose
     model.plain = fit.chain;
   }
   fit.chain = attach(model.plain, model.series);
-  fit.parameters = set;
-  fit.covariance = covariance;
-  const VectorXd values = pack(set, fit.chain);
-  for (std::size_t k = 0; k < fit.values.size(); ++k) {
-    const auto i = static_cast<Index>(k);
-    fit.values[k].value = values[i];
-    fit.values[k].sd = std::sqrt(std::max(0.0, covariance(i, i)));
-  }
-  return fit;
+  return with_covariance(std::move(fit), set, covariance);
 }
 
 }  // namespace kinfer::calibrate

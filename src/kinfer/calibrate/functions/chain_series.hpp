@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "kinfer/calibrate/series/periodic_spline.hpp"
+#include "kinfer/calibrate/functions/periodic_spline.hpp"
 #include "kinfer/kinematics/parameters.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 

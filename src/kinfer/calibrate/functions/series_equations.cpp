@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/calibrate/series/series_equations.hpp"
+#include "kinfer/calibrate/functions/series_equations.hpp"
 
 #include <algorithm>
 #include <array>
@@ -40,7 +40,7 @@ struct Linearised {
   std::vector<int> pose;  // of each residual; -1: none
 };
 
-Linearised linearise(Chain chain, const ParameterSet& set, const SeriesData& data,
+Linearised linearise(Chain chain, const ParameterSet& set, const WeightedRows& data,
                      const std::vector<SeriesBlock>& blocks) {
   ParameterSet all{set.parameters, {}};
   for (const SeriesBlock& block : blocks) {  // the cosine of order 0 is 1: its column is that of the joint variable
@@ -97,7 +97,7 @@ SeriesSums sums_of(const Linearised& at, const std::vector<SeriesBlock>& blocks,
 
 }  // namespace
 
-SeriesSystem make_system(const DetachedSeries& apart, const SeriesData& data) {
+SeriesSystem make_system(const DetachedSeries& apart, const WeightedRows& data) {
   constexpr Index residuals_a_part = 8192;  // whatever the threads, so that the sums are the same
   const auto& [plain, set, series] = apart;
   const Index p = set.free_count();

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/functions/displacement_fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "kinfer/calibrate/functions/field_problem.hpp"
+#include "kinfer/calibrate/functions/harmonic_series.hpp"
+#include "kinfer/calibrate/functions/thresholds.hpp"
+#include "kinfer/estimate/poses/noise_level.hpp"
+#include "kinfer/measurement/pose_set.hpp"
+
+namespace kinfer::calibrate {
+namespace {
+
+using Eigen::Index;
+
+/// At most `most` of so many rows, evenly spread.
+std::vector<int> spread_rows(Index rows, int most) {
+  const auto count = static_cast<int>(rows), kept = std::min(count, most);
+  std::vector<int> list;
+  for (int k = 0; k < kept; ++k) list.push_back(static_cast<int>(static_cast<long>(k) * count / kept));
+  return list;
+}
+
+/// Without measurements: inducing points among the rows, lengths as multiples of the joints' standard deviations.
+DisplacementField empty_field(const PoseSet& rows, double relative_length) {
+  const MatrixXd points = rows.joints(Eigen::all, spread_rows(rows.rows(), thresholds::field_points));
+  const MatrixXd centred = rows.joints.colwise() - rows.joints.rowwise().mean();
+  const VectorXd spread = (centred.rowwise().squaredNorm() / static_cast<double>(rows.rows())).cwiseSqrt();
+  // A joint that did not move has no say; its own scale would be that of its noise.
+  const double largest = std::max(spread.maxCoeff(), 1e-9);
+  return {points, relative_length * spread.cwiseMax(1e-3 * largest), Eigen::Matrix3Xd::Zero(3, points.cols()), 0.0};
+}
+
+}  // namespace
+
+bool allows_field(const PoseSet& rows) {
+  std::set<int> shown;
+  for (const Block& block : blocks_of(rows))
+    if (residual_kind(block.kind).traits.observes.tool_position) shown.insert(block.row);
+  return rows.pairs.empty() && rows.tips.empty() && std::ssize(shown) >= thresholds::min_field_rows;
+}
+
+FoundField find_field(const Estimate& fitted, const PoseSet& rows, const std::optional<Instrument>& instrument,
+                      int threads) {
+  PoseSet kept = keep_measurements(rows, inliers_of(fitted, rows));
+  const ExcessNoise excess = excess_noise(fitted.chain, kept, instrument, 0.0, threads);
+  if (kept.rows() > thresholds::field_rows) kept = select(kept, spread_rows(kept.rows(), thresholds::field_rows));
+  const Weights weights = weights_of(kept, instrument, excess);
+  FoundField best{fitted.chain};
+  double highest = 0.0;
+  for (const double length : thresholds::field_lengths) {
+    Chain chain = fitted.chain;
+    chain.field = empty_field(kept, length);
+    const FieldProblem problem(chain, fitted.parameters, {kept, weights, threads});
+    const FieldProblem::Evidence evidence = problem.evidence(fitted.sigma);
+    if (!best.chain.field.empty() && evidence.log_bayes_factor <= highest) continue;
+    highest = evidence.log_bayes_factor;
+    const FieldProblem::Solution solution = problem.solve(evidence.size, evidence.noise);
+    best.chain = problem.moved_by(solution);
+    best.values = static_cast<int>(solution.values.size());
+    best.determined = static_cast<int>(std::lround(solution.effective_number));
+  }
+  best.log_evidence_gain = highest - std::log(1.0 + static_cast<double>(thresholds::field_lengths.size()));
+  return best;
+}
+
+Estimate fit_with_field(const Chain& start, const ParameterSet& set, const PoseSet& rows,
+                        const std::optional<Instrument>& instrument, const BundleOptions& options,
+                        const Observer& observer) {
+  double absorbed = 0.0;
+  const auto fit_others = [&](const Chain& chain, Detail detail, InitialGuess guess, int iterations) {
+    BundleOptions others = options;
+    others.detail = detail, others.initial_guess = guess, others.max_iterations = iterations;
+    others.absorbed = absorbed;
+    return fit_with_series(chain, set, rows, instrument, others, observer);
+  };
+  const bool is_near = options.initial_guess == InitialGuess::near_optimum;  // only noise level and inliers are needed
+  Estimate fit = fit_others(start, Detail::numbers_only, options.initial_guess, is_near ? 1 : options.max_iterations);
+  MatrixXd covariance = fit.covariance;
+  for (int round = 0; round < thresholds::field_rounds; ++round) {
+    const PoseSet kept = keep_measurements(rows, inliers_of(fit, rows));
+    const Weights weights =
+        weights_of(kept, instrument, excess_noise(fit.chain, kept, instrument, absorbed, options.threads));
+    const Chain present = fit.chain;
+    const FieldProblem problem(present, set, {kept, weights, options.threads});
+    const FieldProblem::Solution solution = problem.solve(start.field.size);
+    covariance = solution.covariance, absorbed = solution.effective_number;
+    fit.chain = problem.moved_by(solution);
+    // One linear step from the optimum of nearly the same rows.
+    if (is_near && round > 0 && problem.relative_gain(solution) <= thresholds::settled_noise) break;
+    const double before = fit.sigma;
+    fit = fit_others(fit.chain, Detail::numbers_only, InitialGuess::near_optimum, options.max_iterations);
+    if (round > 0 && std::abs(fit.sigma - before) <= thresholds::settled_noise * before) break;
+  }
+  if (options.detail == Detail::all)
+    fit = fit_others(fit.chain, Detail::all, InitialGuess::near_optimum, options.max_iterations);
+  return with_covariance(std::move(fit), set, covariance);
+}
+
+}  // namespace kinfer::calibrate

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/calibrate/functions/field_problem.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "kinfer/base/expect.hpp"
+#include "kinfer/calibrate/functions/thresholds.hpp"
+#include "kinfer/estimate/poses/pose_normal_equations.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
+
+namespace kinfer::calibrate {
+namespace {
+
+using Eigen::Index;
+
+/// Indices of the bases that rows can have: −1 is the chain's own.
+std::vector<int> bases_of(const Chain& chain) {
+  std::vector<int> bases{-1};
+  for (std::size_t m = 0; m < chain.mountings.size(); ++m)
+    if (chain.mountings[m].base) bases.push_back(static_cast<int>(m));
+  return bases;
+}
+
+/// The free parameters of `set`, then those translations of bases that are not among them; and the index of the
+/// translations of each base.
+struct WithTranslations {
+  ParameterSet set;
+  std::vector<std::array<Index, 3>> index{};
+};
+
+WithTranslations with_base_translations(const Chain& chain, const ParameterSet& set) {
+  WithTranslations all{{set.parameters, {}}};
+  std::vector<ParameterAddress> addresses;
+  for (const Parameter* parameter : set.free()) addresses.push_back(parameter->at);
+  for (const int mounting : bases_of(chain)) {
+    all.index.emplace_back();
+    for (const Field field : {Field::x, Field::y, Field::z}) {
+      const ParameterAddress at = FrameNumber{SetupFrame::base, field, mounting};
+      const auto found = std::ranges::find(addresses, at);
+      all.index.back()[static_cast<std::size_t>(field)] = found - addresses.begin();
+      if (found != addresses.end()) continue;
+      all.set.parameters.push_back(parameter_at(chain, at, 1.0));
+      addresses.push_back(at);
+    }
+  }
+  return all;
+}
+
+Chain without_field(Chain chain) {
+  chain.field = {};
+  return chain;
+}
+
+double log_half_cauchy(double ratio) {  // density of the logarithm
+  return std::log(2.0 / std::numbers::pi * ratio / (1.0 + ratio * ratio));
+}
+
+/// `count` numbers from `first` to `last`, each the same multiple of the one before.
+std::vector<double> geometric_sequence(double first, double last, int count) {
+  std::vector<double> values;
+  for (int k = 0; k < count; ++k) values.push_back(first * std::pow(last / first, k / (count - 1.0)));
+  return values;
+}
+
+double log_sum(const std::vector<double>& logs) {
+  const double most = *std::ranges::max_element(logs);
+  double sum = 0.0;
+  for (const double log : logs) sum += std::exp(log - most);
+  return most + std::log(sum);
+}
+
+}  // namespace
+
+FieldProblem::FieldProblem(const Chain& chain, const ParameterSet& set, const WeightedRows& data)
+    : chain_(chain), set_(set) {
+  const DisplacementField& field = chain.field;
+  MatrixXd covariance(field.points.cols(), field.points.cols());
+  for (Index k = 0; k < covariance.cols(); ++k) covariance.col(k) = kernel_at(field, field.points.col(k));
+  const SymmetricEigen eigen = symmetric_eigen(covariance);
+  std::vector<Index> kept;  // repeated and very near points add nothing
+  for (Index k = 0; k < eigen.values.size(); ++k)
+    if (eigen.values[k] > thresholds::least_field_eigenvalue * eigen.values.maxCoeff()) kept.push_back(k);
+  const MatrixXd vectors = eigen.vectors(Eigen::all, kept);
+  const VectorXd roots = eigen.values(kept).cwiseSqrt();
+  root_ = vectors * roots.asDiagonal(), basis_ = vectors * roots.cwiseInverse().asDiagonal();
+
+  const Chain plain = without_field(chain);
+  const auto [all, translations] = with_base_translations(plain, set);
+  VectorXd r;
+  MatrixXd jacobian;
+  pose_residuals(plain, all, data.rows, data.weights, data.threads).evaluate(pack(all, plain), r, &jacobian);
+  const Index parameters = set.free_count(), count = r.size() - all.free_count();
+  residuals_ = r.head(count), by_parameter_ = jacobian.topLeftCorner(count, parameters);
+  // Each row has one base: its derivatives by the translations of all others are zero.
+  const std::vector<int> bases = bases_of(chain);
+  MatrixXd slopes = MatrixXd::Zero(count, 3);
+  for (std::size_t b = 0; b < bases.size(); ++b)
+    slopes +=
+        jacobian.topRows(count)(Eigen::all, translations[b]) * with_mounting(chain, bases[b]).base.pose().rotation;
+
+  MatrixXd features(data.rows.rows(), basis_.cols());
+  for (Index row = 0; row < features.rows(); ++row)
+    features.row(row) = (kernel_at(field, data.rows.joints.col(row)).transpose() * basis_);
+  by_value_ = MatrixXd::Zero(count, 3 * features.cols());
+  Index i = 0;  // behind the blocks follow socket distances, on which no displacement acts
+  for (const Block& block : blocks_of(data.rows))
+    for (int k = 0; k < block.size; ++k, ++i)
+      for (int c = 0; c < 3; ++c)
+        by_value_.row(i).segment(c * features.cols(), features.cols()) = slopes(i, c) * features.row(block.row);
+
+  const MatrixXd prior = prior_information(set), measured = gram(by_parameter_);
+  const VectorXd offset = pack(set, plain) - nominal_of(set);
+  MatrixXd information = measured + prior.selfadjointView<Eigen::Lower>().toDenseMatrix();
+  information.diagonal() *= 1.0 + thresholds::least_parameter_information;
+  const auto inverse = invert_spd(information);
+  KINFER_EXPECT(inverse, "{} parameters have a covariance", parameters);
+  inverse_ = *inverse;
+  gradient_ = by_parameter_.transpose() * residuals_ + prior.selfadjointView<Eigen::Lower>() * offset;
+  across_ = transposed_times(by_parameter_, by_value_);
+  const MatrixXd explained = product(inverse_, across_);
+  information_ = gram(by_value_) - transposed_times(across_, explained);
+  image_ = explained.transpose() * gradient_ - by_value_.transpose() * residuals_;
+  squares_ = residuals_.squaredNorm() + offset.dot(prior.selfadjointView<Eigen::Lower>() * offset) -
+             gradient_.dot(inverse_ * gradient_);
+  redundancy_ = std::max(1.0, static_cast<double>(count) - inverse_.cwiseProduct(measured).sum());
+}
+
+FieldProblem::Spectrum FieldProblem::spectrum() const {
+  const SymmetricEigen eigen = symmetric_eigen(information_);
+  return {eigen.values.cwiseMax(0.0), (eigen.vectors.transpose() * image_).cwiseAbs2()};
+}
+
+double FieldProblem::log_evidence(const Spectrum& of, double size, double noise) const {
+  const double factor = size * size / noise;
+  const Eigen::ArrayXd gain = 1.0 + factor * of.information.array();
+  const double explained = factor / noise * (of.squared_image.array() / gain).sum();
+  return -0.5 * (redundancy_ * std::log(noise) + squares_ / noise - explained + gain.log().sum());
+}
+
+FieldProblem::Evidence FieldProblem::evidence(double scale) const {
+  const Spectrum of = spectrum();
+  const std::vector<double> noises =
+      geometric_sequence(thresholds::least_field_noise, thresholds::largest_field_noise, thresholds::field_noises);
+  const std::vector<double> sizes = geometric_sequence(thresholds::least_field_size * scale,
+                                                       thresholds::largest_field_size * scale, thresholds::field_sizes);
+  // The noise level is the best one in each case, that without a field being known in closed form.
+  const double without = log_evidence(of, 0.0, squares_ / redundancy_), spacing = std::log(sizes[1] / sizes[0]);
+  Evidence best;
+  std::vector<double> parts;
+  for (const double size : sizes) {
+    double most = -std::numeric_limits<double>::infinity(), noise = 1.0;
+    for (const double v : noises)
+      if (const double log = log_evidence(of, size, v); log > most) most = log, noise = v;
+    const double part = most - without + log_half_cauchy(size / scale) + std::log(spacing);
+    if (parts.empty() || part > *std::ranges::max_element(parts)) best.size = size, best.noise = noise;
+    parts.push_back(part);
+  }
+  best.log_bayes_factor = log_sum(parts);
+  return best;
+}
+
+FieldProblem::Solution FieldProblem::solve(double size, double noise) const {
+  MatrixXd matrix = information_ / noise;
+  matrix.diagonal().array() += 1.0 / (size * size);
+  const auto covariance = invert_spd(matrix);
+  KINFER_EXPECT(covariance, "{} values with priors have a covariance", matrix.cols());
+  Solution found{{}, *covariance * image_ / noise, size, {}, 0.0};
+  found.step = -(inverse_ * (gradient_ + across_ * found.values));
+  const MatrixXd moved = product(inverse_, across_);
+  found.covariance = inverse_ + product(product(moved, *covariance), moved.transpose());
+  found.effective_number = static_cast<double>(matrix.cols()) - covariance->trace() / (size * size);
+  return found;
+}
+
+Chain FieldProblem::moved_by(const Solution& solution) const {
+  Chain moved = unpack(set_, chain_, pack(set_, chain_) + solution.step);
+  moved.field.size = solution.size;
+  moved.field.coefficients = (basis_ * solution.values.reshaped(basis_.cols(), 3)).transpose();
+  return moved;
+}
+
+double FieldProblem::relative_gain(const Solution& solution) const {
+  const double before = residuals_after(VectorXd::Zero(set_.free_count()), present_values()).norm();
+  return before > 0.0 ? 1.0 - residuals_after(solution.step, solution.values).norm() / before : 0.0;
+}
+
+VectorXd FieldProblem::residuals_after(const VectorXd& step, const VectorXd& values) const {
+  return residuals_ + by_parameter_ * step + by_value_ * values;
+}
+
+VectorXd FieldProblem::present_values() const {
+  const MatrixXd values = root_.transpose() * chain_.field.coefficients.transpose();
+  return values.reshaped();
+}
+
+}  // namespace kinfer::calibrate

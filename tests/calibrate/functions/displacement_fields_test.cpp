@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// Displacements of the tool that are smooth functions of all joint positions.
+#include "kinfer/calibrate/functions/displacement_fields.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "calibrate/functions/nominal_fits.hpp"
+#include "calibrate/terms/simulated_selection.hpp"
+#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/calibrate/functions/field_problem.hpp"
+#include "kinfer/estimate/poses/noise_level.hpp"
+#include "kinfer/estimate/poses/pose_normal_equations.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/kinematics/forward.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/words/calibration/model.hpp"
+
+namespace kinfer {
+using namespace calibrate;
+namespace {
+
+using namespace test;
+
+/// [m] along the axes of the base: bearings and links that yield in all postures differently.
+Vec3 yielding(const VectorXd& q) {
+  return 2e-4 * Vec3(std::sin(q[0] + q[1]), std::cos(q[1] - 2.0 * q[2]), std::sin(q[2]) * std::cos(q[0]));
+}
+
+/// Points of a robot whose tool is displaced so.
+PoseSet displaced_readings(const Chain& truth, int poses, int seed = 1) {
+  PoseSet data = simulated_readings(truth, poses, seed);
+  measure_points(data, truth, tracker, Rng(seed + 50));
+  for (PointMeasurement& point : data.points) point.position += yielding(data.joints.col(point.row));
+  return data;
+}
+
+PoseSet rigid_readings(const Chain& truth, int poses, int seed) {
+  PoseSet data = simulated_readings(truth, poses, seed);
+  measure_points(data, truth, tracker, Rng(seed + 50));
+  return data;
+}
+
+Calibration calibrated(const PoseSet& data, int threads = 2) {
+  return calibrate_robot({nominal_robot(), {}, tracker, data}, {.threads = threads}, Rng(1)).value();
+}
+
+TEST(DisplacementFields, AreFoundWhereTheToolIsDisplaced) {
+  const PoseSet data = displaced_readings(nominal_robot(), 200);
+  const Estimate geometry = geometry_of(data);
+  const FoundField found = find_field(geometry, data, tracker);
+  EXPECT_GT(found.log_evidence_gain, 20.0);
+  EXPECT_GT(found.determined, 20);
+  EXPECT_LE(found.determined, found.values);
+  const Estimate fit = fit_with_field(found.chain, geometry.parameters, data, tracker, {});
+  const PoseSet unseen = displaced_readings(nominal_robot(), 200, 7);
+  EXPECT_LT(mean_error(fit.chain, unseen), 0.6 * mean_error(geometry.chain, unseen));
+}
+
+TEST(DisplacementFields, AreNotFoundInNoise) {
+  for (int seed = 1; seed <= 20; ++seed) {
+    const PoseSet data = rigid_readings(nominal_robot(), seed % 2 == 0 ? 40 : 150, seed);
+    EXPECT_LT(find_field(geometry_of(data), data, tracker).log_evidence_gain, 0.0) << seed;
+  }
+}
+
+/// A small problem, and the same by matrices of all its residuals.
+struct DenseField : ::testing::Test {
+  PoseSet data = displaced_readings(nominal_robot(), 40);
+  Estimate geometry = geometry_of(data);
+  Weights weights = weights_of(data, tracker);
+  Chain chain = find_field(geometry, data, tracker).chain;
+  const ParameterSet& set = geometry.parameters;
+  FieldProblem problem{chain, set, {data, weights}};
+
+  /// Covariance of the displacements of all rows for a size of 1: that of the inducing points carried over.
+  MatrixXd covariance_of_rows() const {
+    const DisplacementField& field = chain.field;
+    MatrixXd among(field.points.cols(), field.points.cols()), across(field.points.cols(), data.rows());
+    for (Eigen::Index k = 0; k < among.cols(); ++k) among.col(k) = kernel_at(field, field.points.col(k));
+    for (Eigen::Index i = 0; i < across.cols(); ++i) across.col(i) = kernel_at(field, data.joints.col(i));
+    return across.transpose() * solve_semidefinite(among, across);
+  }
+
+  /// Of the residuals: three a row, along the axes of the base, which here are the world's.
+  MatrixXd covariance_of_residuals(double size) const {
+    const MatrixXd rows = covariance_of_rows();
+    MatrixXd all = MatrixXd::Identity(3 * data.rows(), 3 * data.rows());
+    const Mat3 turn = chain.base.pose().rotation;
+    EXPECT_LT((turn - Mat3::Identity()).norm(), 1e-2);
+    for (Eigen::Index i = 0; i < rows.rows(); ++i)
+      for (Eigen::Index k = 0; k < rows.cols(); ++k)
+        for (int c = 0; c < 3; ++c)
+          all(3 * i + c, 3 * k + c) += size * size * rows(i, k) /
+                                       (weights.of<PointMeasurement>()[static_cast<std::size_t>(i)][c] *
+                                        weights.of<PointMeasurement>()[static_cast<std::size_t>(k)][c]);
+    return all;
+  }
+
+  struct Linear {
+    VectorXd r;
+    MatrixXd jacobian;
+  };
+  Linear linear() const {
+    Chain plain = chain;
+    plain.field = {};
+    VectorXd r;
+    MatrixXd jacobian;
+    pose_residuals(plain, set, data, weights).evaluate(pack(set, plain), r, &jacobian);
+    return {r.head(3 * data.rows()), jacobian.topRows(3 * data.rows())};
+  }
+};
+
+TEST_F(DenseField, TheCovarianceOfTheParametersIsThatOfACorrelatedNoise) {
+  constexpr double size = 1.5e-4;
+  const MatrixXd expected =
+      *invert_spd(linear().jacobian.transpose() * solve_semidefinite(covariance_of_residuals(size), linear().jacobian) +
+                  prior_information(set).selfadjointView<Eigen::Lower>().toDenseMatrix());
+  const MatrixXd found = problem.solve(size).covariance;
+  for (Eigen::Index k = 0; k < found.rows(); ++k) EXPECT_NEAR(found(k, k) / expected(k, k), 1.0, 1e-3) << k;
+}
+
+TEST_F(DenseField, TheEvidenceIsTheDensityOfTheResiduals) {
+  const auto& [r, jacobian] = linear();
+  const MatrixXd prior = prior_information(set).selfadjointView<Eigen::Lower>().toDenseMatrix();
+  const VectorXd offset = pack(set, chain) - nominal_of(set);
+  // Residuals with the parameters integrated over their prior, whose mean lies `offset` away.
+  const VectorXd centred = r - jacobian * offset;
+  const MatrixXd by_parameters = jacobian * *invert_spd(prior) * jacobian.transpose();
+  const auto density = [&](double size) {
+    const MatrixXd covariance = covariance_of_residuals(size) + by_parameters;
+    return -0.5 * centred.dot(*solve_spd(covariance, centred)) - cholesky(covariance)->diagonal().array().log().sum();
+  };
+  const FieldProblem::Spectrum spectrum = problem.spectrum();
+  const double none = problem.log_evidence(spectrum, 0.0, 1.0);
+  for (const double size : {2e-5, 1e-4, 5e-4}) {
+    const double expected = density(size) - density(0.0);
+    EXPECT_NEAR(problem.log_evidence(spectrum, size, 1.0) - none, expected, 1e-3 * std::abs(expected) + 1e-3) << size;
+  }
+}
+
+/// Cost of residuals, of the parameters' priors, and of the field: coefficientsᵀ K coefficients / size².
+TEST(DisplacementFields, TheFitEndsWhereNothingLowersTheCost) {
+  const PoseSet data = displaced_readings(nominal_robot(), 100);
+  const Estimate geometry = geometry_of(data);
+  const FoundField found = find_field(geometry, data, tracker);
+  const ParameterSet& set = geometry.parameters;
+  const Estimate fit = fit_with_field(found.chain, set, data, tracker, {});
+  ASSERT_TRUE(fit.outliers.empty());
+  const Weights weights =
+      weights_of(data, tracker, excess_noise(fit.chain, data, tracker, static_cast<double>(found.determined)));
+  const DisplacementField& field = fit.chain.field;
+  MatrixXd covariance(field.points.cols(), field.points.cols());
+  for (Eigen::Index k = 0; k < covariance.cols(); ++k) covariance.col(k) = kernel_at(field, field.points.col(k));
+  const auto cost = [&](const Chain& chain) {
+    VectorXd r;
+    pose_residuals(chain, set, data, weights).evaluate(pack(set, chain), r, nullptr);
+    return r.squaredNorm() + (chain.field.coefficients * covariance * chain.field.coefficients.transpose()).trace() /
+                                 (field.size * field.size);
+  };
+  const double least = cost(fit.chain);
+  for (const Parameter* p : set.free())
+    for (const double by : {-1e-5, 1e-5}) {
+      Chain other = fit.chain;
+      set_value_at(other, p->at, value_at(fit.chain, p->at) + by);
+      EXPECT_GT(cost(other), least - 1.0) << p->name;
+    }
+  for (Eigen::Index k = 0; k < field.points.cols(); k += 9)
+    for (const double by : {-2e-5, 2e-5}) {
+      Chain other = fit.chain;
+      other.field.coefficients(k % 3, k) += by;
+      EXPECT_GT(cost(other), least - 0.1) << k;
+    }
+}
+
+TEST(DisplacementFields, TheDefaultModelTakesThem) {
+  const PoseSet data = displaced_readings(nominal_robot(), 200);
+  const Calibration c = calibrated(data);
+  const SelectionStep& step = step_with(c, Term::displacement_field);
+  EXPECT_EQ(step.decision, Decision::accepted) << words::reason(step);
+  EXPECT_FALSE(c.estimate.chain.field.empty());
+  EXPECT_GT(step.contribution, 5e-5);
+  const PoseSet unseen = displaced_readings(nominal_robot(), 200, 7);
+  EXPECT_LT(mean_error(c.estimate.chain, unseen), 0.6 * mean_error(geometry_of(data).chain, unseen));
+  ASSERT_TRUE(c.prediction.has_value());
+  EXPECT_GT(c.prediction->beyond.size(), 0);  // far from the rows the model without the field holds
+}
+
+TEST(DisplacementFields, OfARigidRobotAreRefused) {
+  const Calibration c = calibrated(rigid_readings(with_random_errors(nominal_robot(), {}, Rng(4)), 100, 3));
+  EXPECT_EQ(step_with(c, Term::displacement_field).decision, Decision::no_evidence);
+  EXPECT_TRUE(c.estimate.chain.field.empty());
+}
+
+TEST(DisplacementFields, AreFittedWhereTheyAreAskedFor) {
+  const PoseSet data = displaced_readings(nominal_robot(), 80);
+  const auto c = calibrate_robot({nominal_robot(), {}, tracker, data},
+                                 {.model = parse_model_choice("gear+field").value(), .threads = 2}, Rng(1));
+  ASSERT_TRUE(c.has_value());
+  EXPECT_EQ(selected_model(c->model_selection), "geometry + gear + field");
+  EXPECT_FALSE(c->estimate.chain.field.empty());
+}
+
+TEST(DisplacementFields, FollowTheBaseOfEachSetUp) {
+  Chain truth = nominal_robot();
+  truth.mountings = {
+      {.name = "second", .base = Frame::from_pose(Pose::from_xyz_rpy({2, 1, 0}, {0, 0.1, 1.5})), .tool = truth.tool}};
+  const auto readings = [&](int seed) {
+    PoseSet data = simulated_readings(nominal_robot(), 120, seed);
+    for (int row = 0; row < 120; ++row) data.mounting.push_back(row % 2 == 0 ? -1 : 0);
+    measure_points(data, truth, tracker, Rng(seed + 50));
+    for (PointMeasurement& point : data.points)
+      point.position += with_mounting(truth, data.mounting[static_cast<std::size_t>(point.row)]).base.pose().rotation *
+                        yielding(data.joints.col(point.row));
+    return data;
+  };
+  const PoseSet data = readings(1), unseen = readings(7);
+  const Estimate geometry = fit_bundle(truth, geometric_parameters(truth, data, {}), data, tracker);
+  const FoundField found = find_field(geometry, data, tracker);
+  const Estimate fit = fit_with_field(found.chain, geometry.parameters, data, tracker, {});
+  EXPECT_GT(found.log_evidence_gain, 20.0);
+  EXPECT_LT(mean_error(fit.chain, unseen), 0.75 * mean_error(geometry.chain, unseen));
+}
+
+TEST(DisplacementFields, OnePoseRepeatedDoesNoHarm) {
+  PoseSet data = rigid_readings(nominal_robot(), 60, 1);
+  for (Eigen::Index row = 10; row < data.joints.cols(); ++row) data.joints.col(row) = data.joints.col(9);
+  measure_points(data, nominal_robot(), tracker, Rng(3));
+  const Calibration c = calibrated(data);
+  EXPECT_TRUE(c.estimate.chain.field.empty());
+}
+
+TEST(DisplacementFields, OfBallBarsAndOfFewRowsAreNotSought) {
+  PoseSet data = rigid_readings(nominal_robot(), 40, 1);
+  EXPECT_TRUE(allows_field(data));
+  data.pairs.push_back({0, 1, 0.5});
+  EXPECT_FALSE(allows_field(data));
+  EXPECT_FALSE(allows_field(rigid_readings(nominal_robot(), 15, 1)));
+}
+
+TEST(DisplacementFields, AreTheSameFor12And7Threads) {
+  const PoseSet data = displaced_readings(nominal_robot(), 80);
+  const Calibration one = calibrated(data, 1);
+  ASSERT_FALSE(one.estimate.chain.field.empty());
+  for (const int threads : {2, 7}) {
+    const Calibration other = calibrated(data, threads);
+    EXPECT_EQ(other.estimate.chain.field.coefficients, one.estimate.chain.field.coefficients);
+    EXPECT_EQ(other.estimate.covariance, one.estimate.covariance);
+  }
+}
+
+}  // namespace
+}  // namespace kinfer
