@@ -24,6 +24,17 @@ struct DisplacementField {
 /// exp(−½ Σ ((q − point) / length)²) of each inducing point, m.
 VectorXd kernel_at(const DisplacementField& field, ConstVectorRef q);
 
+/// Roots of the covariance K of the inducing points for a size of 1, without directions in which it is nearly singular:
+/// K = root rootᵀ, K⁻¹ = inverse_root inverse_rootᵀ, m x rank.
+struct FieldRoots {
+  MatrixXd root, inverse_root;
+};
+FieldRoots roots_of(const DisplacementField& field);
+
+/// [m²] of each component: what the values at the inducing points leave open, size² (1 − kᵀ K⁻¹ k). Zero at these
+/// points, size² far from them, 0 without a field.
+double displacement_variance(const DisplacementField& field, const FieldRoots& roots, ConstVectorRef q);
+
 /// [m] along the axes of the base; zero without a field.
 Eigen::Vector3d displacement_at(const DisplacementField& field, ConstVectorRef q);
 

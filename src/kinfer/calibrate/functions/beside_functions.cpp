@@ -13,13 +13,13 @@ std::vector<bool> inliers_of(const Estimate& fitted, const PoseSet& rows) {
   return is_inlier;
 }
 
-Estimate with_covariance(Estimate fit, const ParameterSet& set, const MatrixXd& covariance) {
+Estimate with_covariance(Estimate fit, const ParameterSet& set, const MatrixXd& covariance, const VectorXd& variances) {
   fit.parameters = set, fit.covariance = covariance;
   const VectorXd values = pack(set, fit.chain);
   for (std::size_t k = 0; k < fit.values.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     fit.values[k].value = values[i];
-    fit.values[k].sd = std::sqrt(std::max(0.0, covariance(i, i)));
+    fit.values[k].sd = std::sqrt(std::max(0.0, variances[i]));
   }
   return fit;
 }

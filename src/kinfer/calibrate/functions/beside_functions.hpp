@@ -18,8 +18,8 @@ struct WeightedRows {
 /// One per block of the rows: whether its row is none of the outliers.
 std::vector<bool> inliers_of(const Estimate& fitted, const PoseSet& rows);
 
-/// A fit with the values of its chain for the parameters of `set`, and this covariance: that of the parameters whatever
-/// the functions are.
-Estimate with_covariance(Estimate fit, const ParameterSet& set, const MatrixXd& covariance);
+/// A fit with the values of its chain for the parameters of `set`, this covariance, and these variances of the values:
+/// those whatever the functions are.
+Estimate with_covariance(Estimate fit, const ParameterSet& set, const MatrixXd& covariance, const VectorXd& variances);
 
 }  // namespace kinfer::calibrate

@@ -25,14 +25,18 @@ std::vector<int> spread_rows(Index rows, int most) {
   return list;
 }
 
-/// Without measurements: inducing points among the rows, lengths as multiples of the joints' standard deviations.
-DisplacementField empty_field(const PoseSet& rows, double relative_length) {
+/// Without measurements, with inducing points among the rows.
+DisplacementField empty_field(const PoseSet& rows, const VectorXd& length, double size) {
   const MatrixXd points = rows.joints(Eigen::all, spread_rows(rows.rows(), thresholds::field_points));
+  return {points, length, Eigen::Matrix3Xd::Zero(3, points.cols()), size};
+}
+
+VectorXd field_length(const PoseSet& rows, double relative_length) {
   const MatrixXd centred = rows.joints.colwise() - rows.joints.rowwise().mean();
   const VectorXd spread = (centred.rowwise().squaredNorm() / static_cast<double>(rows.rows())).cwiseSqrt();
   // A joint that did not move has no say; its own scale would be that of its noise.
   const double largest = std::max(spread.maxCoeff(), 1e-9);
-  return {points, relative_length * spread.cwiseMax(1e-3 * largest), Eigen::Matrix3Xd::Zero(3, points.cols()), 0.0};
+  return relative_length * spread.cwiseMax(1e-3 * largest);
 }
 
 }  // namespace
@@ -54,7 +58,7 @@ FoundField find_field(const Estimate& fitted, const PoseSet& rows, const std::op
   double highest = 0.0;
   for (const double length : thresholds::field_lengths) {
     Chain chain = fitted.chain;
-    chain.field = empty_field(kept, length);
+    chain.field = empty_field(kept, field_length(kept, length), 0.0);
     const FieldProblem problem(chain, fitted.parameters, {kept, weights, threads});
     const FieldProblem::Evidence evidence = problem.evidence(fitted.sigma);
     if (!best.chain.field.empty() && evidence.log_bayes_factor <= highest) continue;
@@ -81,14 +85,16 @@ Estimate fit_with_field(const Chain& start, const ParameterSet& set, const PoseS
   const bool is_near = options.initial_guess == InitialGuess::near_optimum;  // only noise level and inliers are needed
   Estimate fit = fit_others(start, Detail::numbers_only, options.initial_guess, is_near ? 1 : options.max_iterations);
   MatrixXd covariance = fit.covariance;
+  VectorXd variances = covariance.diagonal();
   for (int round = 0; round < thresholds::field_rounds; ++round) {
     const PoseSet kept = keep_measurements(rows, inliers_of(fit, rows));
     const Weights weights =
         weights_of(kept, instrument, excess_noise(fit.chain, kept, instrument, absorbed, options.threads));
-    const Chain present = fit.chain;
+    Chain present = fit.chain;
+    if (round == 0) present.field = empty_field(kept, start.field.length, start.field.size);
     const FieldProblem problem(present, set, {kept, weights, options.threads});
     const FieldProblem::Solution solution = problem.solve(start.field.size);
-    covariance = solution.covariance, absorbed = solution.effective_number;
+    covariance = solution.covariance, variances = solution.marginal_variances, absorbed = solution.effective_number;
     fit.chain = problem.moved_by(solution);
     // One linear step from the optimum of nearly the same rows.
     if (is_near && round > 0 && problem.relative_gain(solution) <= thresholds::settled_noise) break;
@@ -98,7 +104,7 @@ Estimate fit_with_field(const Chain& start, const ParameterSet& set, const PoseS
   }
   if (options.detail == Detail::all)
     fit = fit_others(fit.chain, Detail::all, InitialGuess::near_optimum, options.max_iterations);
-  return with_covariance(std::move(fit), set, covariance);
+  return with_covariance(std::move(fit), set, covariance, variances);
 }
 
 }  // namespace kinfer::calibrate

@@ -25,7 +25,8 @@ FoundField find_field(const Estimate& fitted, const PoseSet& rows, const std::op
                       int threads = 1);
 
 /// Fits the field that `start` has, with its size, together with the free parameters of `set` and series that it has;
-/// the covariance is that of the parameters whatever the field is. `start` as for fit_bundle.
+/// the covariance is that of the parameters with the field as found, the standard deviations of the values are those
+/// whatever it is. `start` as for fit_bundle.
 Estimate fit_with_field(const Chain& start, const ParameterSet& set, const PoseSet& rows,
                         const std::optional<Instrument>& instrument, const BundleOptions& options,
                         const Observer& observer = {});

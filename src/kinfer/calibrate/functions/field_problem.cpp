@@ -77,18 +77,8 @@ double log_sum(const std::vector<double>& logs) {
 }  // namespace
 
 FieldProblem::FieldProblem(const Chain& chain, const ParameterSet& set, const WeightedRows& data)
-    : chain_(chain), set_(set) {
+    : chain_(chain), set_(set), roots_(roots_of(chain.field)) {
   const DisplacementField& field = chain.field;
-  MatrixXd covariance(field.points.cols(), field.points.cols());
-  for (Index k = 0; k < covariance.cols(); ++k) covariance.col(k) = kernel_at(field, field.points.col(k));
-  const SymmetricEigen eigen = symmetric_eigen(covariance);
-  std::vector<Index> kept;  // repeated and very near points add nothing
-  for (Index k = 0; k < eigen.values.size(); ++k)
-    if (eigen.values[k] > thresholds::least_field_eigenvalue * eigen.values.maxCoeff()) kept.push_back(k);
-  const MatrixXd vectors = eigen.vectors(Eigen::all, kept);
-  const VectorXd roots = eigen.values(kept).cwiseSqrt();
-  root_ = vectors * roots.asDiagonal(), basis_ = vectors * roots.cwiseInverse().asDiagonal();
-
   const Chain plain = without_field(chain);
   const auto [all, translations] = with_base_translations(plain, set);
   VectorXd r;
@@ -103,9 +93,9 @@ FieldProblem::FieldProblem(const Chain& chain, const ParameterSet& set, const We
     slopes +=
         jacobian.topRows(count)(Eigen::all, translations[b]) * with_mounting(chain, bases[b]).base.pose().rotation;
 
-  MatrixXd features(data.rows.rows(), basis_.cols());
+  MatrixXd features(data.rows.rows(), roots_.inverse_root.cols());
   for (Index row = 0; row < features.rows(); ++row)
-    features.row(row) = (kernel_at(field, data.rows.joints.col(row)).transpose() * basis_);
+    features.row(row) = (kernel_at(field, data.rows.joints.col(row)).transpose() * roots_.inverse_root);
   by_value_ = MatrixXd::Zero(count, 3 * features.cols());
   Index i = 0;  // behind the blocks follow socket distances, on which no displacement acts
   for (const Block& block : blocks_of(data.rows))
@@ -169,10 +159,11 @@ FieldProblem::Solution FieldProblem::solve(double size, double noise) const {
   matrix.diagonal().array() += 1.0 / (size * size);
   const auto covariance = invert_spd(matrix);
   KINFER_EXPECT(covariance, "{} values with priors have a covariance", matrix.cols());
-  Solution found{{}, *covariance * image_ / noise, size, {}, 0.0};
+  Solution found{{}, *covariance * image_ / noise, size, {}, {}, 0.0};
   found.step = -(inverse_ * (gradient_ + across_ * found.values));
   const MatrixXd moved = product(inverse_, across_);
-  found.covariance = inverse_ + product(product(moved, *covariance), moved.transpose());
+  found.covariance = inverse_;
+  found.marginal_variances = inverse_.diagonal() + product(moved, *covariance).cwiseProduct(moved).rowwise().sum();
   found.effective_number = static_cast<double>(matrix.cols()) - covariance->trace() / (size * size);
   return found;
 }
@@ -180,7 +171,8 @@ FieldProblem::Solution FieldProblem::solve(double size, double noise) const {
 Chain FieldProblem::moved_by(const Solution& solution) const {
   Chain moved = unpack(set_, chain_, pack(set_, chain_) + solution.step);
   moved.field.size = solution.size;
-  moved.field.coefficients = (basis_ * solution.values.reshaped(basis_.cols(), 3)).transpose();
+  moved.field.coefficients =
+      (roots_.inverse_root * solution.values.reshaped(roots_.inverse_root.cols(), 3)).transpose();
   return moved;
 }
 
@@ -194,7 +186,7 @@ VectorXd FieldProblem::residuals_after(const VectorXd& step, const VectorXd& val
 }
 
 VectorXd FieldProblem::present_values() const {
-  const MatrixXd values = root_.transpose() * chain_.field.coefficients.transpose();
+  const MatrixXd values = roots_.root.transpose() * chain_.field.coefficients.transpose();
   return values.reshaped();
 }
 

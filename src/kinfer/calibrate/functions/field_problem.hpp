@@ -39,7 +39,10 @@ class FieldProblem {
     VectorXd step;    ///< of the parameters
     VectorXd values;  ///< z of all three components, one after the other [m]
     double size = 0.0;
-    MatrixXd covariance;            ///< of the parameters, the field being unknown
+    /// Of the parameters, the field being as found: where both can explain the same, they move against each other, and
+    /// the tool does not. What held-out residuals exceed it by is the model error.
+    MatrixXd covariance;
+    VectorXd marginal_variances;    ///< of the parameters, whatever the field is
     double effective_number = 0.0;  ///< of the values that the data determine
   };
   Solution solve(double size, double noise = 1.0) const;
@@ -56,8 +59,7 @@ class FieldProblem {
 
   const Chain& chain_;
   const ParameterSet& set_;
-  MatrixXd root_;       // of the covariance of the inducing points: V w^½
-  MatrixXd basis_;      // V w^−½: coefficients of z
+  FieldRoots roots_;    // of its inducing points
   VectorXd residuals_;  // without the field
   MatrixXd by_parameter_, by_value_;
   MatrixXd inverse_;      // of the parameters' information, priors included

@@ -149,7 +149,7 @@ Estimate fit_with_series(const Chain& start, const ParameterSet& set, const Pose
     model.plain = fit.chain;
   }
   fit.chain = attach(model.plain, model.series);
-  return with_covariance(std::move(fit), set, covariance);
+  return with_covariance(std::move(fit), set, covariance, covariance.diagonal());
 }
 
 }  // namespace kinfer::calibrate

@@ -27,8 +27,7 @@ inline constexpr std::array<double, 3> field_lengths{0.5, 1.0, 2.0};
 /// [1] of the noise: sizes of a field, and of its variance: noise beside it.
 inline constexpr double least_field_size = 1e-2, largest_field_size = 1e2;
 inline constexpr double least_field_noise = 0.04, largest_field_noise = 2.6;
-inline constexpr int field_sizes = 49, field_noises = 41;  ///< that are tried
-inline constexpr double least_field_eigenvalue = 1e-6;  ///< [1] of the largest one of the inducing points' covariance
+inline constexpr int field_sizes = 49, field_noises = 41;     ///< that are tried
 inline constexpr double least_parameter_information = 1e-14;  ///< [1] relative, added where a parameter has no prior
 inline constexpr int field_rounds = 5;                        ///< at most, of the field and noise level in turn
 

@@ -27,9 +27,11 @@ struct HeldOutResidual {
   Mat3 parameters = Mat3::Zero();  ///< covariance by the fit's parameters
   Mat3 noise = Mat3::Zero();       ///< covariance of the instrument
   double outside = 0.0;            ///< share of the outside error at its joint positions
+  Mat3 open = Mat3::Zero();        ///< covariance that a displacement field and fading corrections leave open
   bool is_tool_point = false;      ///< not another target, whose own uncertainty `parameters` lacks
 
-  Mat3 explained() const { return parameters + noise; }
+  /// `noise_part`: of what follows from the noise; what a field leaves open does not.
+  Mat3 explained(double noise_part = 1.0) const { return noise_part * (parameters + noise) + open; }
 };
 
 struct HeldOutResiduals {
@@ -47,10 +49,11 @@ HeldOutResidual in_base(const Mat3& world_R_base, const Vec3& residual, const Ma
 HeldOutResiduals residuals_of(const Estimate& fit, const PredictionModel& model, const PoseSet& rows,
                               const std::optional<Instrument>& instrument) {
   HeldOutResiduals all;
-  const std::vector<Pose> predicted = predicted_poses(fit.chain, model, rows);
+  const std::vector<PredictedPose> predicted = predicted_with_spread(fit.chain, model, rows);
   const Instrument assumed = instrument.value_or(Instrument{.sigma = fit.sigma, .sigma_angle = fit.sigma_angle});
   const Weights weights = weights_of(rows, assumed);
   const EvaluatedPoses at = evaluate_poses(fit.chain, fit.parameters, rows, Derivative::yes);
+  const FieldRoots roots = roots_of(fit.chain.field);
   const auto world_R_base = [&](int row) {
     return with_mounting(fit.chain, rows.mounting.empty() ? -1 : rows.mounting[static_cast<std::size_t>(row)])
         .base.pose()
@@ -58,20 +61,26 @@ HeldOutResiduals residuals_of(const Estimate& fit, const PredictionModel& model,
   };
   for (std::size_t k = 0; k < rows.points.size(); ++k) {
     const PointMeasurement& point = rows.points[k];
-    const Pose& tool = predicted[static_cast<std::size_t>(point.row)];
+    const auto& [tool, shift, turn] = predicted[static_cast<std::size_t>(point.row)];
     const Vec3 arm = point.target < 0 ? Vec3::Zero().eval() : Vec3(tool.rotation * fit.chain.targets[point.target].xyz);
     all.points.push_back(in_base(world_R_base(point.row), point.position - tool.position - arm,
                                  point_columns(at.twists[point.row], arm), fit.covariance,
                                  covariance_of(weights.of<PointMeasurement>()[k], point.axes)));
+    const Vec3 apart = world_R_base(point.row).transpose() * shift;
+    all.points.back().open =
+        displacement_variance(fit.chain.field, roots, rows.joints.col(point.row)) * Mat3::Identity() +
+        apart * apart.transpose();
     all.points.back().is_tool_point = point.target < 0;
   }
   for (std::size_t k = 0; k < rows.orientations.size(); ++k) {
     const OrientationMeasurement& measured = rows.orientations[k];
-    const Vec3 turn = log_so3(measured.orientation.toRotationMatrix() *
-                              predicted[static_cast<std::size_t>(measured.row)].rotation.transpose());
+    const auto& [tool, shift, spread] = predicted[static_cast<std::size_t>(measured.row)];
+    const Vec3 turn = log_so3(measured.orientation.toRotationMatrix() * tool.rotation.transpose());
     const MatrixXd jacobian = at.twists[measured.row].bottomRows<3>();
     all.rotations.push_back(in_base(world_R_base(measured.row), turn, jacobian, fit.covariance,
                                     covariance_of(weights.of<OrientationMeasurement>()[k], measured.axes)));
+    const Vec3 apart = world_R_base(measured.row).transpose() * spread;
+    all.rotations.back().open = apart * apart.transpose();
   }
   return all;
 }
@@ -182,9 +191,7 @@ struct ModelErrors {
   Mat3 inside = Mat3::Zero(), outside = Mat3::Zero();
   double noise_part = 1.0;  ///< of the variance that the residuals of the fits show, where the instrument is not stated
 
-  Mat3 covariance_of(const HeldOutResidual& r) const {
-    return noise_part * r.explained() + inside + r.outside * outside;
-  }
+  Mat3 covariance_of(const HeldOutResidual& r) const { return r.explained(noise_part) + inside + r.outside * outside; }
 };
 
 double size_with(const std::vector<HeldOutResidual>& residuals, const ModelErrors& errors, NoiseKnowledge noise) {

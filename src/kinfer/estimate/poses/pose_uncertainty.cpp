@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/estimate/poses/pose_uncertainty.hpp"
 
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -49,19 +50,23 @@ KnownParameters known_parameters(const Chain& chain, const PredictionModel& mode
 std::vector<PoseUncertainty> pose_uncertainties(const Chain& chain, const PredictionModel& model, const PoseSet& rows) {
   const KnownParameters known = known_parameters(chain, model);
   const EvaluatedPoses at = evaluate_poses(chain, known.set, rows, Derivative::yes);
+  const FieldRoots roots = roots_of(chain.field);
+  const std::vector<PredictedPose> predicted = predicted_with_spread(chain, model, rows);
   std::vector<PoseUncertainty> all;
   for (Index row = 0; row < rows.rows(); ++row) {
     const Chain mounted =
         with_mounting(chain, rows.mounting.empty() ? -1 : rows.mounting[static_cast<std::size_t>(row)]);
     const Mat3 world_R_base = mounted.base.pose().rotation;
     const MatrixXd by_root = at.twists[static_cast<std::size_t>(row)] * known.root;
-    const MatrixXd model_error = model_error_at(model, rows.joints.col(row));
+    MatrixXd model_error = model_error_at(model, rows.joints.col(row));
+    model_error.diagonal().head<3>().array() += displacement_variance(chain.field, roots, rows.joints.col(row));
     const auto block = [&](Index from) {
       const MatrixXd part = by_root.middleRows(from, 3);
       const Mat3 error = model_error.block<3, 3>(from, from);
       return Mat3(part * part.transpose() + world_R_base * error * world_R_base.transpose());
     };
-    all.push_back({block(0), block(3)});
+    const auto& [pose, shift, turn] = predicted[static_cast<std::size_t>(row)];
+    all.push_back({block(0) + shift * shift.transpose(), block(3) + turn * turn.transpose()});
   }
   return all;
 }
@@ -69,22 +74,35 @@ std::vector<PoseUncertainty> pose_uncertainties(const Chain& chain, const Predic
 Chain chain_with_corrections(const Chain& chain, const PredictionModel& model, double weight) {
   if (model.beyond.size() == 0 || weight == 1.0) return chain;
   const auto [set, root, beyond] = known_parameters(chain, model);
-  return unpack(set, chain, pack(set, chain) + (1.0 - weight) * beyond);
+  Chain faded = unpack(set, chain, pack(set, chain) + (1.0 - weight) * beyond);
+  faded.field.coefficients *= weight;
+  return faded;
+}
+
+std::vector<PredictedPose> predicted_with_spread(const Chain& chain, const std::optional<PredictionModel>& model,
+                                                 const PoseSet& rows) {
+  const std::vector<Pose> near = evaluate_poses(chain, {}, rows, Derivative::no).pose;
+  std::vector<PredictedPose> predicted;
+  for (const Pose& pose : near) predicted.push_back({pose});
+  if (!model || model->beyond.size() == 0) return predicted;
+  // The two differ by millimetres and milliradians: the pose between them is that of the parameters between them.
+  const std::vector<Pose> far =
+      evaluate_poses(chain_with_corrections(chain, *model, 0.0), {}, rows, Derivative::no).pose;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const double weight = correction_weight(*model, rows.joints.col(static_cast<Index>(i))), part = 1.0 - weight;
+    const Vec3 turn = log_so3(far[i].rotation * near[i].rotation.transpose()),
+               shift = far[i].position - near[i].position;
+    predicted[i].pose = {exp_so3(part * turn) * near[i].rotation, near[i].position + part * shift};
+    const double spread = std::sqrt(weight * part);
+    predicted[i].shift = spread * shift, predicted[i].turn = spread * turn;
+  }
+  return predicted;
 }
 
 std::vector<Pose> predicted_poses(const Chain& chain, const std::optional<PredictionModel>& model,
                                   const PoseSet& rows) {
-  std::vector<Pose> poses = evaluate_poses(chain, {}, rows, Derivative::no).pose;
-  if (!model || model->beyond.size() == 0) return poses;
-  // The two differ by millimetres and milliradians: the pose between them is that of the parameters between them.
-  const std::vector<Pose> far =
-      evaluate_poses(chain_with_corrections(chain, *model, 0.0), {}, rows, Derivative::no).pose;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const double part = 1.0 - correction_weight(*model, rows.joints.col(static_cast<Index>(i)));
-    const Mat3 turn = far[i].rotation * poses[i].rotation.transpose();
-    poses[i].rotation = exp_so3(part * log_so3(turn)) * poses[i].rotation;
-    poses[i].position += part * (far[i].position - poses[i].position);
-  }
+  std::vector<Pose> poses;
+  for (const PredictedPose& predicted : predicted_with_spread(chain, model, rows)) poses.push_back(predicted.pose);
   return poses;
 }
 

@@ -18,17 +18,26 @@ struct PoseUncertainty {
   Mat3 rotation = Mat3::Zero();  ///< [rad²] of the tool's rotation vector
 };
 
-/// J Σ Jᵀ + growth · M at each row, in its mounting and under its loads. Parameters that the chain does not have (any
-/// more) are left out.
+/// J Σ Jᵀ + model error + what a displacement field leaves open + what fading corrections leave open, at each row, in
+/// its mounting and under its loads. Parameters that the chain does not have (any more) are left out.
 std::vector<PoseUncertainty> pose_uncertainties(const Chain& chain, const PredictionModel& model, const PoseSet& rows);
 
 /// The chain with the parameters that hold where the corrections have this weight: 1 as given, 0 far from the fitted
-/// rows.
+/// rows, without a displacement field.
 Chain chain_with_corrections(const Chain& chain, const PredictionModel& model, double weight);
 
 /// The tool pose of each row, in its mounting and under its loads; corrections fade outside the measured region.
 /// Without a prediction model they hold everywhere.
 std::vector<Pose> predicted_poses(const Chain& chain, const std::optional<PredictionModel>& model, const PoseSet& rows);
+
+/// A pose between that with all corrections and that without, by their weight w, and how far apart the two are: of a
+/// mixture of both the covariance is w (1 − w) d dᵀ.
+struct PredictedPose {
+  Pose pose;
+  Vec3 shift = Vec3::Zero(), turn = Vec3::Zero();  ///< √(w (1 − w)) d, [m] and [rad] along the axes of the world
+};
+std::vector<PredictedPose> predicted_with_spread(const Chain& chain, const std::optional<PredictionModel>& model,
+                                                 const PoseSet& rows);
 
 /// Lower triangular L with covariance = L Lᵀ, of a covariance that may be singular.
 MatrixXd covariance_root(ConstMatrixRef covariance);
