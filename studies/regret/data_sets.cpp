@@ -73,6 +73,14 @@ NamedTask simulated_task(int seed) {
 
 }  // namespace
 
+RigidRobot rigid_robot(int seed) {
+  const Chain truth = with_random_errors(er20(), {}, Rng(seed));
+  RigidRobot robot{{er20(), {}, tracker, readings_of(measured(truth, paper2_poses(40, noise_free), seed))},
+                   measured(truth, paper2_poses(200, noise_free), seed + 1000)};
+  measure_points(robot.task.data, truth, tracker, Rng(seed + 50));
+  return robot;
+}
+
 std::vector<NamedTask> named_tasks(const std::string& wanted, int simulated) {
   std::vector<NamedTask> tasks;
   const auto add = [&](const std::string& name, const std::function<CalibrationTask()>& make) {

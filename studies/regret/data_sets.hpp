@@ -20,4 +20,11 @@ struct NamedTask {
 /// `simulated` robots: rigid ones, and ones with terms known and unknown to the model.
 std::vector<NamedTask> named_tasks(const std::string& wanted, int simulated);
 
+/// The paper's robot with errors of geometry alone, 40 poses by a tracker, and 200 poses that were not measured.
+struct RigidRobot {
+  calibrate::CalibrationTask task;
+  PoseSet unseen;  ///< points without noise
+};
+RigidRobot rigid_robot(int seed);
+
 }  // namespace kinfer::study::regret_study

@@ -17,6 +17,7 @@ struct DisplacementField {
   VectorXd length{};                ///< dof, distance over which the displacement changes [rad] or [m], > 0
   Eigen::Matrix3Xd coefficients{};  ///< 3 x m, along the axes of the base [m]
   double size = 0.0;                ///< [m] standard deviation of each component before any measurement
+  double noise = 0.0;  ///< [m] ([rad] of directions) of the measurements that it was found among; 0: unknown
 
   bool empty() const { return points.cols() == 0; }
 };

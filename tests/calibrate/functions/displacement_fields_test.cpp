@@ -117,7 +117,7 @@ TEST_F(DenseField, TheVariancesOfTheParametersAreThoseBesideACorrelatedNoise) {
   const MatrixXd expected =
       *invert_spd(linear().jacobian.transpose() * solve_semidefinite(covariance_of_residuals(size), linear().jacobian) +
                   prior_information(set).selfadjointView<Eigen::Lower>().toDenseMatrix());
-  const VectorXd found = problem.solve(size).marginal_variances;
+  const VectorXd found = problem.solve(size, 1.0).marginal_variances;
   for (Eigen::Index k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k] / expected(k, k), 1.0, 1e-3) << k;
 }
 

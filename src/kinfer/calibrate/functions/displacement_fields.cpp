@@ -10,6 +10,7 @@
 #include "kinfer/calibrate/functions/harmonic_series.hpp"
 #include "kinfer/calibrate/functions/thresholds.hpp"
 #include "kinfer/estimate/poses/noise_level.hpp"
+#include "kinfer/geometry/statistics.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer::calibrate {
@@ -26,9 +27,9 @@ std::vector<int> spread_rows(Index rows, int most) {
 }
 
 /// Without measurements, with inducing points among the rows.
-DisplacementField empty_field(const PoseSet& rows, const VectorXd& length, double size) {
+DisplacementField empty_field(const PoseSet& rows, const VectorXd& length, double size, double noise) {
   const MatrixXd points = rows.joints(Eigen::all, spread_rows(rows.rows(), thresholds::field_points));
-  return {points, length, Eigen::Matrix3Xd::Zero(3, points.cols()), size};
+  return {points, length, Eigen::Matrix3Xd::Zero(3, points.cols()), size, noise};
 }
 
 VectorXd field_length(const PoseSet& rows, double relative_length) {
@@ -37,6 +38,25 @@ VectorXd field_length(const PoseSet& rows, double relative_length) {
   // A joint that did not move has no say; its own scale would be that of its noise.
   const double largest = std::max(spread.maxCoeff(), 1e-9);
   return relative_length * spread.cwiseMax(1e-3 * largest);
+}
+
+/// [m] or [rad] of the first kind of measurements that shows the tool's position.
+double typical_sd(const Weights& weights) {
+  for (const ResidualKind& kind : residual_kinds()) {
+    if (!kind.traits.observes.tool_position || weights.of(kind.kind).empty()) continue;
+    std::vector<double> sd;
+    for (const Vec3& v : weights.of(kind.kind)) sd.push_back(v.head(kind.size).norm() / std::sqrt(kind.size));
+    return rms(sd);
+  }
+  return 1.0;
+}
+
+/// Variance in units of the weights: theirs, but no less than a part of that of the field's own measurements. Residuals
+/// beside a field that can follow nearly all of them say little of the noise, and a level found from these goes to zero
+/// together with them.
+double relative_noise(const DisplacementField& field, const Weights& weights) {
+  const double least = thresholds::least_noise_beside_field * field.noise / typical_sd(weights);
+  return std::max(1.0, least * least);
 }
 
 }  // namespace
@@ -58,13 +78,14 @@ FoundField find_field(const Estimate& fitted, const PoseSet& rows, const std::op
   double highest = 0.0;
   for (const double length : thresholds::field_lengths) {
     Chain chain = fitted.chain;
-    chain.field = empty_field(kept, field_length(kept, length), 0.0);
+    chain.field = empty_field(kept, field_length(kept, length), 0.0, 0.0);
     const FieldProblem problem(chain, fitted.parameters, {kept, weights, threads});
     const FieldProblem::Evidence evidence = problem.evidence(fitted.sigma);
     if (!best.chain.field.empty() && evidence.log_bayes_factor <= highest) continue;
     highest = evidence.log_bayes_factor;
     const FieldProblem::Solution solution = problem.solve(evidence.size, evidence.noise);
     best.chain = problem.moved_by(solution);
+    best.chain.field.noise = std::sqrt(evidence.noise) * typical_sd(weights);
     best.values = static_cast<int>(solution.values.size());
     best.determined = static_cast<int>(std::lround(solution.effective_number));
   }
@@ -91,9 +112,9 @@ Estimate fit_with_field(const Chain& start, const ParameterSet& set, const PoseS
     const Weights weights =
         weights_of(kept, instrument, excess_noise(fit.chain, kept, instrument, absorbed, options.threads));
     Chain present = fit.chain;
-    if (round == 0) present.field = empty_field(kept, start.field.length, start.field.size);
+    if (round == 0) present.field = empty_field(kept, start.field.length, start.field.size, start.field.noise);
     const FieldProblem problem(present, set, {kept, weights, options.threads});
-    const FieldProblem::Solution solution = problem.solve(start.field.size);
+    const FieldProblem::Solution solution = problem.solve(start.field.size, relative_noise(start.field, weights));
     covariance = solution.covariance, variances = solution.marginal_variances, absorbed = solution.effective_number;
     fit.chain = problem.moved_by(solution);
     // One linear step from the optimum of nearly the same rows.

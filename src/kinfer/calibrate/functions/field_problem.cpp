@@ -156,7 +156,8 @@ FieldProblem::Evidence FieldProblem::evidence(double scale) const {
 
 FieldProblem::Solution FieldProblem::solve(double size, double noise) const {
   MatrixXd matrix = information_ / noise;
-  matrix.diagonal().array() += 1.0 / (size * size);
+  // Beside rounding, which is relative to the largest.
+  matrix.diagonal().array() += 1.0 / (size * size) + thresholds::field_rounding * matrix.diagonal().maxCoeff();
   const auto covariance = invert_spd(matrix);
   KINFER_EXPECT(covariance, "{} values with priors have a covariance", matrix.cols());
   Solution found{{}, *covariance * image_ / noise, size, {}, {}, 0.0};

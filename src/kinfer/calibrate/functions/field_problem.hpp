@@ -45,7 +45,7 @@ class FieldProblem {
     VectorXd marginal_variances;    ///< of the parameters, whatever the field is
     double effective_number = 0.0;  ///< of the values that the data determine
   };
-  Solution solve(double size, double noise = 1.0) const;
+  Solution solve(double size, double noise) const;
 
   /// The chain after a step, with the field.
   Chain moved_by(const Solution& solution) const;

@@ -352,16 +352,16 @@ std::vector<Split> splits_of_part(const std::vector<Split>& splits, const std::v
   return of_part;
 }
 
-/// The terms of numbers and of series.
-WeighedModel weigh_terms(const SelectionData& data, const Estimate& geometry) {
+/// Models of terms, the best one first; of few rows also that of lines, where series are better.
+std::vector<WeighedModel> weigh_terms(const SelectionData& data, const Estimate& geometry) {
   ModelWeigher of_lines(data, geometry);
   const auto found = find_series(of_lines.fit_without_lines(), data.rows, data.task.instrument, data.threads);
-  if (!found) return of_lines.run();
+  if (!found) return {of_lines.run()};
   if (static_cast<std::size_t>(data.rows.rows()) <= thresholds::compared_rows) {
     Comparison c = compare(data, of_lines, geometry, *found);
-    if (!c.favours_series()) return c.lines;
+    if (!c.favours_series()) return {c.lines};
     describe_series(c.series, *found, c.interpolation, c.extrapolation, data.rows);
-    return c.series;
+    return {c.series, c.lines};
   }
   const std::vector<int> part = thinned_rows(data.rows, thresholds::compared_rows);
   const PoseSet rows = select(data.rows, part);
@@ -369,19 +369,37 @@ WeighedModel weigh_terms(const SelectionData& data, const Estimate& geometry) {
   const SelectionData fewer{data.task, rows, splits, data.threads, data.observer};
   ModelWeigher lines_of_part(fewer, geometry);
   const Comparison c = compare(fewer, lines_of_part, geometry, *found);
-  if (!c.favours_series()) return of_lines.run();
+  if (!c.favours_series()) return {of_lines.run()};
   const Estimate beside = fit_beside(data, geometry, *found);
   WeighedModel series = ModelWeigher(data, beside).run();
   describe_series(series, *found, c.interpolation, c.extrapolation, data.rows);
-  return series;
+  return {series};
+}
+
+/// Whether held-out errors are lower with the other model, and none of their points speaks against it.
+bool is_better(const WeighedModel& other, const WeighedModel& present, const SelectionData& data,
+               const std::vector<Split>& beyond) {
+  const auto errors_beyond = [&](const WeighedModel& model) {
+    return cross_validate(model.fit, model.fit.parameters, data.rows, beyond, data.task, data.threads);
+  };
+  const ErrorChange inside =
+      compare_holdout(present.interpolation, present.fit.outliers, other.interpolation, other.fit.outliers);
+  const ErrorChange outside =
+      compare_holdout(errors_beyond(present), present.fit.outliers, errors_beyond(other), other.fit.outliers);
+  return inside.t > 0.0 && decide(inside, outside) == Decision::accepted;
 }
 
 }  // namespace
 
 WeighedModel weigh_model(const SelectionData& data, const Estimate& geometry) {
-  WeighedModel model = weigh_terms(data, geometry);
-  weigh_field(data, splits_beyond(data.rows), model);
-  return model;
+  std::vector<WeighedModel> models = weigh_terms(data, geometry);
+  const std::vector<Split> beyond = splits_beyond(data.rows);
+  for (WeighedModel& model : models) weigh_field(data, beyond, model);
+  WeighedModel& best = models.front();
+  for (const WeighedModel& other : models)
+    if (!other.fit.chain.field.empty() && best.fit.chain.field.empty() && is_better(other, best, data, beyond))
+      best = other;
+  return best;
 }
 
 }  // namespace kinfer::calibrate

@@ -31,8 +31,9 @@ void expect_possible(TableReader& reader, std::string_view key, ConstMatrixRef n
 }  // namespace
 
 std::string format_displacement_field_toml(const DisplacementField& field) {
-  return fmt::format("\n[displacement_field]\nsize = {:.7g}\nlength = {}\npoints = {}\ncoefficients = {}\n", field.size,
-                     columns(field.length), columns(field.points), columns(field.coefficients));
+  const std::string noise = field.noise > 0.0 ? fmt::format("noise = {:.7g}\n", field.noise) : std::string();
+  return fmt::format("\n[displacement_field]\nsize = {:.7g}\n{}length = {}\npoints = {}\ncoefficients = {}\n",
+                     field.size, noise, columns(field.length), columns(field.points), columns(field.coefficients));
 }
 
 DisplacementField read_displacement_field(TableReader& file, int dof, FirstError& first_error) {
@@ -42,6 +43,7 @@ DisplacementField read_displacement_field(TableReader& file, int dof, FirstError
   DisplacementField field;
   field.size = reader.positive_or("size", 1e-4);
   reader.expect_possible("size", field.size, possible::length);
+  field.noise = table->find("noise") ? reader.positive_or("noise", 0.0) : 0.0;
   field.length = read_columns(reader, "length", dof, 1);
   expect_possible(reader, "length", field.length, possible::length);
   if (!(field.length.array() > 0.0).all())

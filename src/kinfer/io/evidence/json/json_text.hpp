@@ -37,9 +37,9 @@ inline constexpr auto last<SearchMethod> = SearchMethod::bpnn_pso;
 template <>
 inline constexpr auto last<InitialSwarm> = InitialSwarm::network;
 template <>
-inline constexpr auto last<Decision> = Decision::data_missing;
+inline constexpr auto last<Decision> = Decision::superseded;
 template <>
-inline constexpr auto last<MissingData> = MissingData::spectral_line;
+inline constexpr auto last<MissingData> = MissingData::points;
 template <>
 inline constexpr auto last<AxisRelation> = AxisRelation::skew;
 template <>
