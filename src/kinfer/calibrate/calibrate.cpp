@@ -110,6 +110,7 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
   calibration.accuracy = evaluate_pose_accuracy(frames_only, calibration.estimate.chain, task.data);
   calibration.plot_data =
       make_plot_data(task, frames_only, calibration.estimate, calibration.prediction, options.threads);
+  calibration.estimate.predicted_error = expected_error(calibration.plot_data);
   calibration.recommendations = make_recommendations(task, calibration);
   return calibration;
 }

@@ -7,6 +7,7 @@
 #include "kinfer/calibrate/conclusion/thresholds.hpp"
 #include "kinfer/estimate/poses/bundle.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/estimate/poses/pose_uncertainty.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -41,25 +42,32 @@ VectorXd low_discrepancy_point(int k, Eigen::Index n) {
   return point;
 }
 
-/// The rms error by the covariance of the parameters, and by the model error there.
-double with_model_error(double by_parameters, const std::optional<PredictionModel>& prediction, ConstVectorRef q) {
-  if (!prediction) return by_parameters;
-  return std::sqrt(by_parameters * by_parameters + model_error_at(*prediction, q).topLeftCorner<3, 3>().trace());
+/// The rms error of the tool point at each row: by the prediction model, or by the parameters alone.
+std::vector<double> expected_errors(const Estimate& estimate, const std::optional<PredictionModel>& prediction,
+                                    const PoseSet& rows, int threads) {
+  if (!prediction) {
+    const VectorXd errors = predicted_errors(estimate, rows.joints);
+    return {errors.begin(), errors.end()};
+  }
+  std::vector<double> errors;
+  for (const PoseUncertainty& at : pose_uncertainties(estimate.chain, *prediction, rows, threads))
+    errors.push_back(std::sqrt(at.position.trace()));
+  return errors;
 }
 
 std::vector<WorkspacePoint> sample_workspace(const MatrixXd& joints, const Estimate& estimate,
                                              const std::optional<PredictionModel>& prediction, int threads) {
   const VectorXd lowest = joints.rowwise().minCoeff(), range = joints.rowwise().maxCoeff() - lowest;
-  MatrixXd q(joints.rows(), thresholds::workspace_points);
+  PoseSet samples;
+  samples.joints.resize(joints.rows(), thresholds::workspace_points);
   for (int k = 0; k < thresholds::workspace_points; ++k)
-    q.col(k) = lowest + range.cwiseProduct(low_discrepancy_point(k, joints.rows()));
-  const VectorXd errors = predicted_errors(estimate, q);
+    samples.joints.col(k) = lowest + range.cwiseProduct(low_discrepancy_point(k, joints.rows()));
+  const std::vector<double> errors = expected_errors(estimate, prediction, samples, threads);
   const PoseEvaluator evaluator(estimate.chain, {});
   std::vector<WorkspacePoint> points(thresholds::workspace_points);
   parallel_for(points.size(), threads, [&](std::size_t i) {
-    const auto at = q.col(static_cast<Eigen::Index>(i));
-    points[i] = {evaluator.pose(at).position, with_model_error(errors[static_cast<Eigen::Index>(i)], prediction, at),
-                 at};
+    const auto at = samples.joints.col(static_cast<Eigen::Index>(i));
+    points[i] = {evaluator.pose(at).position, errors[i], at};
   });
   return points;
 }
@@ -70,15 +78,17 @@ CalibrationPlotData make_plot_data(const CalibrationTask& task, const Chain& bef
                                    const std::optional<PredictionModel>& prediction, int threads) {
   const MatrixXd& joints = task.data.joints;
   CalibrationPlotData plot_data{.nominal = task.nominal, .before = before, .joints = joints};
-  const VectorXd errors = predicted_errors(estimate, joints);
-  plot_data.rows.resize(static_cast<std::size_t>(errors.size()));
-  parallel_for(plot_data.rows.size(), threads, [&](std::size_t i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    plot_data.rows[i].predicted = with_model_error(errors[row], prediction, joints.col(row));
-  });
+  for (const double error : expected_errors(estimate, prediction, task.data, threads))
+    plot_data.rows.push_back({.predicted = error});
   add_points(plot_data, task, estimate.chain, threads);
   plot_data.workspace = sample_workspace(joints, estimate, prediction, threads);
   return plot_data;
+}
+
+double expected_error(const CalibrationPlotData& plot_data) {
+  double squares = 0.0;
+  for (const PlotRow& row : plot_data.rows) squares += row.predicted * row.predicted;
+  return plot_data.rows.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(plot_data.rows.size()));
 }
 
 }  // namespace kinfer::calibrate

@@ -13,4 +13,7 @@ namespace kinfer::calibrate {
 CalibrationPlotData make_plot_data(const CalibrationTask& task, const Chain& before, const Estimate& estimate,
                                    const std::optional<PredictionModel>& prediction, int threads);
 
+/// [m] rms over the rows of what the model is expected to be off.
+double expected_error(const CalibrationPlotData& plot_data);
+
 }  // namespace kinfer::calibrate

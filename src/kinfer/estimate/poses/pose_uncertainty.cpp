@@ -47,11 +47,12 @@ KnownParameters known_parameters(const Chain& chain, const PredictionModel& mode
 
 }  // namespace
 
-std::vector<PoseUncertainty> pose_uncertainties(const Chain& chain, const PredictionModel& model, const PoseSet& rows) {
+std::vector<PoseUncertainty> pose_uncertainties(const Chain& chain, const PredictionModel& model, const PoseSet& rows,
+                                                int threads) {
   const KnownParameters known = known_parameters(chain, model);
-  const EvaluatedPoses at = evaluate_poses(chain, known.set, rows, Derivative::yes);
+  const EvaluatedPoses at = evaluate_poses(chain, known.set, rows, Derivative::yes, threads);
   const FieldRoots roots = roots_of(chain.field);
-  const std::vector<PredictedPose> predicted = predicted_with_spread(chain, model, rows);
+  const std::vector<PredictedPose> predicted = predicted_with_spread(chain, model, rows, threads);
   std::vector<PoseUncertainty> all;
   for (Index row = 0; row < rows.rows(); ++row) {
     const Chain mounted =
@@ -80,14 +81,14 @@ Chain chain_with_corrections(const Chain& chain, const PredictionModel& model, d
 }
 
 std::vector<PredictedPose> predicted_with_spread(const Chain& chain, const std::optional<PredictionModel>& model,
-                                                 const PoseSet& rows) {
-  const std::vector<Pose> near = evaluate_poses(chain, {}, rows, Derivative::no).pose;
+                                                 const PoseSet& rows, int threads) {
+  const std::vector<Pose> near = evaluate_poses(chain, {}, rows, Derivative::no, threads).pose;
   std::vector<PredictedPose> predicted;
   for (const Pose& pose : near) predicted.push_back({pose});
   if (!model || model->beyond.size() == 0) return predicted;
   // The two differ by millimetres and milliradians: the pose between them is that of the parameters between them.
   const std::vector<Pose> far =
-      evaluate_poses(chain_with_corrections(chain, *model, 0.0), {}, rows, Derivative::no).pose;
+      evaluate_poses(chain_with_corrections(chain, *model, 0.0), {}, rows, Derivative::no, threads).pose;
   for (std::size_t i = 0; i < near.size(); ++i) {
     const double weight = correction_weight(*model, rows.joints.col(static_cast<Index>(i))), part = 1.0 - weight;
     const Vec3 turn = log_so3(far[i].rotation * near[i].rotation.transpose()),

@@ -20,7 +20,8 @@ struct PoseUncertainty {
 
 /// J Σ Jᵀ + model error + what a displacement field leaves open + what fading corrections leave open, at each row, in
 /// its mounting and under its loads. Parameters that the chain does not have (any more) are left out.
-std::vector<PoseUncertainty> pose_uncertainties(const Chain& chain, const PredictionModel& model, const PoseSet& rows);
+std::vector<PoseUncertainty> pose_uncertainties(const Chain& chain, const PredictionModel& model, const PoseSet& rows,
+                                                int threads = 1);
 
 /// The chain with the parameters that hold where the corrections have this weight: 1 as given, 0 far from the fitted
 /// rows, without a displacement field.
@@ -37,7 +38,7 @@ struct PredictedPose {
   Vec3 shift = Vec3::Zero(), turn = Vec3::Zero();  ///< √(w (1 − w)) d, [m] and [rad] along the axes of the world
 };
 std::vector<PredictedPose> predicted_with_spread(const Chain& chain, const std::optional<PredictionModel>& model,
-                                                 const PoseSet& rows);
+                                                 const PoseSet& rows, int threads = 1);
 
 /// Lower triangular L with covariance = L Lᵀ, of a covariance that may be singular.
 MatrixXd covariance_root(ConstMatrixRef covariance);

@@ -14,13 +14,13 @@ namespace kinfer {
 struct PlotRow {
   std::optional<Vec3> measured{};                     ///< [m] first measured point of the row, in the world frame
   std::optional<Vec3> error_before{}, error_after{};  ///< nominal chain with base and tool refitted; final chain
-  double predicted = 0.0;                             ///< [m] rms tool error predicted from the covariance
+  double predicted = 0.0;                             ///< [m] rms tool error that is expected, with model error
 };
 
 /// A tool position and the uncertainty of the corrected model there.
 struct WorkspacePoint {
   Vec3 tool = Vec3::Zero();  ///< [m] in the world frame
-  double predicted = 0.0;    ///< [m] rms tool error predicted from the covariance
+  double predicted = 0.0;    ///< [m] rms tool error that is expected, with model error
   VectorXd joints{};         ///< dof, [rad] or [m]: joint positions that put the tool there
 };
 

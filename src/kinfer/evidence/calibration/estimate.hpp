@@ -86,8 +86,9 @@ struct Estimate {
   double sigma = 0.0, sigma_angle = 0.0;  ///< [m], [rad] noise used as weights: instrument's, or the residual level
   std::vector<Outlier> outliers;
   double negative_log_evidence =
-      0.0;                       ///< −2 log of the marginal likelihood (Laplace): compares models of the same rows
-  double predicted_error = 0.0;  ///< [m] rms tool error over the data's poses, predicted from the covariance
+      0.0;  ///< −2 log of the marginal likelihood (Laplace): compares models of the same rows
+  double predicted_error =
+      0.0;  ///< [m] rms tool error expected over the data's poses; of a calibration with model error
   SearchSummary search;
 };
 
