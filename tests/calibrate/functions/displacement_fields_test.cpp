@@ -65,6 +65,23 @@ TEST(DisplacementFields, AreNotFoundInNoise) {
   }
 }
 
+// Beside orientations that are ten times as good as stated.
+TEST(DisplacementFields, AreNotFoundInPosesWhoseNoiseIsOverstated) {
+  for (int seed = 1; seed <= 10; ++seed) {
+    Instrument instrument = tracker;
+    instrument.sigma_angle = 1e-5;
+    PoseSimulation simulation = paper2_poses(seed % 2 == 0 ? 40 : 80, instrument);
+    simulation.measured = Measured::poses;
+    const PoseSet data = measured(with_random_errors(nominal_robot(), {}, Rng(seed)), simulation, seed);
+    instrument.sigma_angle = 1e-4;
+    const CalibrationTask task{nominal_robot(), {}, instrument, data};
+    const Calibration c = calibrate_robot(task, {.threads = 2}, Rng(1)).value();
+    EXPECT_FALSE(data.orientations.empty());
+    EXPECT_TRUE(c.estimate.chain.field.empty())
+        << seed << ": " << words::reason(step_with(c, Term::displacement_field));
+  }
+}
+
 /// A small problem, and the same by matrices of all its residuals.
 struct DenseField : ::testing::Test {
   PoseSet data = displaced_readings(nominal_robot(), 40);

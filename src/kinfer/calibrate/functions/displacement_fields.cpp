@@ -59,6 +59,19 @@ double relative_noise(const DisplacementField& field, const Weights& weights) {
   return std::max(1.0, least * least);
 }
 
+/// The measurements that show the tool's position and are no outliers. Others say nothing of the noise that a field is
+/// weighed against: beside orientations that are better than stated, or exact, a field takes all that is left for the
+/// small common noise.
+PoseSet shown_positions(const Estimate& fitted, const PoseSet& rows) {
+  std::vector<bool> kept = inliers_of(fitted, rows);
+  std::size_t k = 0;
+  for (const Block& block : blocks_of(rows)) {
+    if (!residual_kind(block.kind).traits.observes.tool_position) kept[k] = false;
+    ++k;
+  }
+  return keep_measurements(rows, kept);
+}
+
 }  // namespace
 
 bool allows_field(const PoseSet& rows) {
@@ -70,7 +83,7 @@ bool allows_field(const PoseSet& rows) {
 
 FoundField find_field(const Estimate& fitted, const PoseSet& rows, const std::optional<Instrument>& instrument,
                       int threads) {
-  PoseSet kept = keep_measurements(rows, inliers_of(fitted, rows));
+  PoseSet kept = shown_positions(fitted, rows);
   const ExcessNoise excess = excess_noise(fitted.chain, kept, instrument, 0.0, threads);
   if (kept.rows() > thresholds::field_rows) kept = select(kept, spread_rows(kept.rows(), thresholds::field_rows));
   const Weights weights = weights_of(kept, instrument, excess);
