@@ -2,6 +2,7 @@
 #include "kinfer/calibrate/functions/displacement_fields.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -59,17 +60,34 @@ double relative_noise(const DisplacementField& field, const Weights& weights) {
   return std::max(1.0, least * least);
 }
 
-/// The measurements that show the tool's position and are no outliers. Others say nothing of the noise that a field is
-/// weighed against: beside orientations that are better than stated, or exact, a field takes all that is left for the
-/// small common noise.
-PoseSet shown_positions(const Estimate& fitted, const PoseSet& rows) {
-  std::vector<bool> kept = inliers_of(fitted, rows);
-  std::size_t k = 0;
+/// Mean of the squared weighted residuals of each kind of measurements, 0 where there are none.
+std::array<double, measurement_kinds> mean_squares(const Chain& fitted, const PoseSet& rows, const Weights& weights) {
+  const EvaluatedPoses at = evaluate_poses(fitted, {}, rows, Derivative::no);
+  const FixtureColumns no_columns = fixture_columns(fitted, {});
+  const VectorXd r = weighted_residuals({fitted, rows, at, no_columns}, weights);
+  std::array<double, measurement_kinds> squares{}, count{};
+  Index row = 0;
   for (const Block& block : blocks_of(rows)) {
-    if (!residual_kind(block.kind).traits.observes.tool_position) kept[k] = false;
-    ++k;
+    squares[index(block.kind)] += r.segment(row, block.size).squaredNorm(), count[index(block.kind)] += block.size;
+    row += block.size;
   }
-  return keep_measurements(rows, kept);
+  for (std::size_t k = 0; k < squares.size(); ++k) squares[k] /= std::max(1.0, count[k]);
+  return squares;
+}
+
+/// Without outliers, and without kinds that do not show the tool's position and are better than stated: the evidence
+/// has one noise level, and beside exact orientations a field takes all that is left for the small common one.
+PoseSet weighing_measurements(const Estimate& fitted, const PoseSet& rows,
+                              const std::optional<Instrument>& instrument) {
+  const PoseSet inliers = keep_measurements(rows, inliers_of(fitted, rows));
+  const Weights weights = weights_of(inliers, instrument, excess_noise(fitted.chain, inliers, instrument, 0.0));
+  const auto squares = mean_squares(fitted.chain, inliers, weights);
+  // A noise that was found from these residuals is not too large, unless they are exact.
+  const double least = instrument ? thresholds::least_shown_noise : thresholds::least_estimated_noise;
+  std::vector<bool> kept;
+  for (const Block& block : blocks_of(inliers))
+    kept.push_back(residual_kind(block.kind).traits.observes.tool_position || squares[index(block.kind)] >= least);
+  return keep_measurements(inliers, kept);
 }
 
 }  // namespace
@@ -83,7 +101,7 @@ bool allows_field(const PoseSet& rows) {
 
 FoundField find_field(const Estimate& fitted, const PoseSet& rows, const std::optional<Instrument>& instrument,
                       int threads) {
-  PoseSet kept = shown_positions(fitted, rows);
+  PoseSet kept = weighing_measurements(fitted, rows, instrument);
   const ExcessNoise excess = excess_noise(fitted.chain, kept, instrument, 0.0, threads);
   if (kept.rows() > thresholds::field_rows) kept = select(kept, spread_rows(kept.rows(), thresholds::field_rows));
   const Weights weights = weights_of(kept, instrument, excess);

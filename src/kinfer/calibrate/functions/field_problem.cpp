@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
-#include "kinfer/base/expect.hpp"
 #include "kinfer/calibrate/functions/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_normal_equations.hpp"
 #include "kinfer/linalg/decompositions.hpp"
@@ -106,10 +106,7 @@ FieldProblem::FieldProblem(const Chain& chain, const ParameterSet& set, const We
   const MatrixXd prior = prior_information(set), measured = gram(by_parameter_);
   const VectorXd offset = pack(set, plain) - nominal_of(set);
   MatrixXd information = measured + prior.selfadjointView<Eigen::Lower>().toDenseMatrix();
-  information.diagonal() *= 1.0 + thresholds::least_parameter_information;
-  const auto inverse = invert_spd(information);
-  KINFER_EXPECT(inverse, "{} parameters have a covariance", parameters);
-  inverse_ = *inverse;
+  inverse_ = inverse_of_information(std::move(information));
   gradient_ = by_parameter_.transpose() * residuals_ + prior.selfadjointView<Eigen::Lower>() * offset;
   across_ = transposed_times(by_parameter_, by_value_);
   const MatrixXd explained = product(inverse_, across_);
@@ -158,14 +155,13 @@ FieldProblem::Solution FieldProblem::solve(double size, double noise) const {
   MatrixXd matrix = information_ / noise;
   // Beside rounding, which is relative to the largest.
   matrix.diagonal().array() += 1.0 / (size * size) + thresholds::field_rounding * matrix.diagonal().maxCoeff();
-  const auto covariance = invert_spd(matrix);
-  KINFER_EXPECT(covariance, "{} values with priors have a covariance", matrix.cols());
-  Solution found{{}, *covariance * image_ / noise, size, {}, {}, 0.0};
+  const MatrixXd covariance = inverse_of_information(matrix);
+  Solution found{{}, covariance * image_ / noise, size, {}, {}, 0.0};
   found.step = -(inverse_ * (gradient_ + across_ * found.values));
   const MatrixXd moved = product(inverse_, across_);
   found.covariance = inverse_;
-  found.marginal_variances = inverse_.diagonal() + product(moved, *covariance).cwiseProduct(moved).rowwise().sum();
-  found.effective_number = static_cast<double>(matrix.cols()) - covariance->trace() / (size * size);
+  found.marginal_variances = inverse_.diagonal() + product(moved, covariance).cwiseProduct(moved).rowwise().sum();
+  found.effective_number = static_cast<double>(matrix.cols()) - covariance.trace() / (size * size);
   return found;
 }
 

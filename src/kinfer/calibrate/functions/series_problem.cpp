@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -37,9 +38,8 @@ SeriesProblem::SeriesProblem(const DetachedSeries& apart, const WeightedRows& da
 }
 
 SeriesProblem::Solution SeriesProblem::solve(double noise) const {
-  const auto covariance = invert_spd(system_.matrix / noise + prior_);
-  KINFER_EXPECT(covariance, "{} unknowns with priors have a covariance", system_.gradient.size());
-  return {-(*covariance * (system_.gradient / noise + pull_)), *covariance, noise};
+  const MatrixXd covariance = inverse_of_information(system_.matrix / noise + prior_);
+  return {-(covariance * (system_.gradient / noise + pull_)), covariance, noise};
 }
 
 SeriesProblem::Solution SeriesProblem::maximise(int rounds) {
@@ -61,7 +61,7 @@ SeriesProblem::Solution SeriesProblem::maximise(int rounds) {
 
 double SeriesProblem::log_evidence(const Solution& s) const {
   const auto root = cholesky(s.covariance);
-  KINFER_EXPECT(root, "a covariance is positive definite");
+  if (!root) return -std::numeric_limits<double>::infinity();  // beside measurements without noise
   const VectorXd at = offset_ + s.step;
   double sum = residual_squares(s.step) / s.noise + at.dot(prior_ * at) +
                static_cast<double>(system_.residuals) * std::log(s.noise) - 2.0 * root->diagonal().array().log().sum();
@@ -108,10 +108,8 @@ SeriesProblem::Step SeriesProblem::step() const {
   const auto lower = root->triangularView<Eigen::Lower>();
   const MatrixXd across = lower.solve(matrix.bottomLeftCorner(n, p));
   const VectorXd own = lower.solve(gradient.tail(n));
-  const auto covariance = invert_spd(matrix.topLeftCorner(p, p) - across.transpose() * across);
-  KINFER_EXPECT(covariance, "{} parameters with priors have a covariance", p);
-  Step found{VectorXd(p + n), *covariance};
-  found.step.head(p) = -(*covariance * (gradient.head(p) - across.transpose() * own));
+  Step found{VectorXd(p + n), inverse_of_information(matrix.topLeftCorner(p, p) - across.transpose() * across)};
+  found.step.head(p) = -(found.covariance * (gradient.head(p) - across.transpose() * own));
   found.step.tail(n) = -lower.transpose().solve(own + across * found.step.head(p));
   return found;
 }

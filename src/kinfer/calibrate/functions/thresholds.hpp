@@ -28,9 +28,10 @@ inline constexpr std::array<double, 3> field_lengths{0.5, 1.0, 2.0};
 inline constexpr double least_field_size = 1e-2, largest_field_size = 1e2;
 inline constexpr double least_field_noise = 0.04, largest_field_noise = 2.6;
 inline constexpr int field_sizes = 49, field_noises = 41;  ///< that are tried
-inline constexpr double field_rounding = 1e-12;  ///< [1] of the largest information of a value: what is added to all
-inline constexpr double least_noise_beside_field = 0.5;       ///< [1] of that by the marginal likelihood
-inline constexpr double least_parameter_information = 1e-14;  ///< [1] relative, added where a parameter has no prior
-inline constexpr int field_rounds = 5;                        ///< at most, of the field and noise level in turn
+inline constexpr double field_rounding = 1e-12;   ///< [1] of the largest information of a value: what is added to all
+inline constexpr double least_shown_noise = 0.7;  ///< [1] of the stated variance: orientations with less weigh no field
+inline constexpr double least_estimated_noise = 0.1;     ///< [1] the same where the variance is that of the residuals
+inline constexpr double least_noise_beside_field = 0.5;  ///< [1] of that by the marginal likelihood
+inline constexpr int field_rounds = 5;                   ///< at most, of the field and noise level in turn
 
 }  // namespace kinfer::calibrate::thresholds
