@@ -14,6 +14,7 @@
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/measurement/split.hpp"
 #include "studies/studies.hpp"
+#include "studies/support/arguments.hpp"
 #include "studies/support/chains.hpp"
 #include "studies/support/files.hpp"
 #include "support/robots.hpp"
@@ -130,10 +131,15 @@ void real_robots(const std::string& folder, const std::string& only) {
 }  // namespace kinfer::study::coverage_study
 
 int kinfer::study::run_coverage(int argc, char** argv) {
-  const std::string what = argc > 1 ? argv[1] : "simulated";
+  std::string what = "simulated";
+  int first_seed = 1;
+  ArgumentParser app("Share of unseen points within the 95 % ellipsoids of predictions");
+  app.add_option("robots", what, "simulated, real, or a part of a measured set's name");
+  app.add_option("first_seed", first_seed, "Of the simulated robots");
+  if (const auto code = app.exit_code(argc, argv)) return *code;
   const char* data = std::getenv("KINFER_DATA");
   fmt::print("{:34} {:52} {}\n", "robot", "random halves", "halves of the joint space");
-  if (what == "simulated") coverage_study::simulated_robots(argc > 2 ? std::atoi(argv[2]) : 1);
+  if (what == "simulated") coverage_study::simulated_robots(first_seed);
   if (what != "simulated" && data) coverage_study::real_robots(data, what);
   return 0;
 }
