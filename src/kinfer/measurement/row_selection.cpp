@@ -19,13 +19,21 @@ std::vector<int> without(std::vector<int> rows, const std::vector<int>& others) 
   return rows;
 }
 
+std::vector<int> spread_indices(int count, int most) {
+  const int kept = std::min(count, most);
+  std::vector<int> indices;
+  for (int k = 0; k < kept; ++k) indices.push_back(static_cast<int>(static_cast<long>(k) * count / kept));
+  return indices;
+}
+
 std::vector<int> thinned_rows(const PoseSet& data, std::size_t most) {
   std::set<int> with_points;
   for (const PointMeasurement& point : data.points) with_points.insert(point.row);
   const std::vector<int> rows(with_points.begin(), with_points.end());
+  const std::size_t count = std::min(most, rows.size());  // more than an int may be asked for
   std::vector<int> kept;
-  const std::size_t count = std::min(most, rows.size());
-  for (std::size_t i = 0; i < count; ++i) kept.push_back(rows[i * rows.size() / count]);
+  for (const int i : spread_indices(static_cast<int>(rows.size()), static_cast<int>(count)))
+    kept.push_back(rows[static_cast<std::size_t>(i)]);
   return kept;
 }
 

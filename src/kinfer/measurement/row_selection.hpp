@@ -13,6 +13,9 @@ std::vector<int> all_rows(const PoseSet& data);
 /// The rows that are not among `others`.
 std::vector<int> without(std::vector<int> rows, const std::vector<int>& others);
 
+/// At most `most` of 0, 1, …, `count` − 1, evenly spread; ascending.
+std::vector<int> spread_indices(int count, int most);
+
 /// At most `most` of the rows with points, evenly spread; ascending.
 std::vector<int> thinned_rows(const PoseSet& data, std::size_t most);
 

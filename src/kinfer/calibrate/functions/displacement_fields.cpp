@@ -11,25 +11,17 @@
 #include "kinfer/calibrate/functions/harmonic_series.hpp"
 #include "kinfer/calibrate/functions/thresholds.hpp"
 #include "kinfer/estimate/poses/noise_level.hpp"
-#include "kinfer/geometry/statistics.hpp"
-#include "kinfer/measurement/pose_set.hpp"
+#include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
 namespace {
 
 using Eigen::Index;
 
-/// At most `most` of so many rows, evenly spread.
-std::vector<int> spread_rows(Index rows, int most) {
-  const auto count = static_cast<int>(rows), kept = std::min(count, most);
-  std::vector<int> list;
-  for (int k = 0; k < kept; ++k) list.push_back(static_cast<int>(static_cast<long>(k) * count / kept));
-  return list;
-}
-
 /// Without measurements, with inducing points among the rows.
 DisplacementField empty_field(const PoseSet& rows, const VectorXd& length, double size, double noise) {
-  const MatrixXd points = rows.joints(Eigen::all, spread_rows(rows.rows(), thresholds::field_points));
+  const MatrixXd points =
+      rows.joints(Eigen::all, spread_indices(static_cast<int>(rows.rows()), thresholds::field_points));
   return {points, length, Eigen::Matrix3Xd::Zero(3, points.cols()), size, noise};
 }
 
@@ -42,21 +34,16 @@ VectorXd field_length(const PoseSet& rows, double relative_length) {
 }
 
 /// [m] or [rad] of the first kind of measurements that shows the tool's position.
-double typical_sd(const Weights& weights) {
-  for (const ResidualKind& kind : residual_kinds()) {
-    if (!kind.traits.observes.tool_position || weights.of(kind.kind).empty()) continue;
-    std::vector<double> sd;
-    for (const Vec3& v : weights.of(kind.kind)) sd.push_back(v.head(kind.size).norm() / std::sqrt(kind.size));
-    return rms(sd);
-  }
-  return 1.0;
+double position_sd(const Weights& weights) {
+  return typical_sd(weights, [](const MeasurementTraits& traits) { return traits.observes.tool_position; });
 }
 
 /// Variance in units of the weights: theirs, but no less than a part of that of the field's own measurements. Residuals
 /// beside a field that can follow nearly all of them say little of the noise, and a level found from these goes to zero
 /// together with them.
 double relative_noise(const DisplacementField& field, const Weights& weights) {
-  const double least = thresholds::least_noise_beside_field * field.noise / typical_sd(weights);
+  const double least =
+      thresholds::least_noise_beside_field * field.noise / std::max(position_sd(weights), noise_free_sd);
   return std::max(1.0, least * least);
 }
 
@@ -103,7 +90,7 @@ FoundField find_field(const Estimate& fitted, const PoseSet& rows, const std::op
                       int threads) {
   PoseSet kept = weighing_measurements(fitted, rows, instrument);
   const ExcessNoise excess = excess_noise(fitted.chain, kept, instrument, 0.0, threads);
-  if (kept.rows() > thresholds::field_rows) kept = select(kept, spread_rows(kept.rows(), thresholds::field_rows));
+  kept = select(kept, spread_indices(static_cast<int>(kept.rows()), thresholds::field_rows));
   const Weights weights = weights_of(kept, instrument, excess);
   FoundField best{fitted.chain};
   double highest = 0.0;
@@ -116,7 +103,7 @@ FoundField find_field(const Estimate& fitted, const PoseSet& rows, const std::op
     highest = evidence.log_bayes_factor;
     const FieldProblem::Solution solution = problem.solve(evidence.size, evidence.noise);
     best.chain = problem.moved_by(solution);
-    best.chain.field.noise = std::sqrt(evidence.noise) * typical_sd(weights);
+    best.chain.field.noise = std::sqrt(evidence.noise) * position_sd(weights);
     best.values = static_cast<int>(solution.values.size());
     best.determined = static_cast<int>(std::lround(solution.effective_number));
   }

@@ -78,43 +78,47 @@ double log_sum(const std::vector<double>& logs) {
 
 FieldProblem::FieldProblem(const Chain& chain, const ParameterSet& set, const WeightedRows& data)
     : chain_(chain), set_(set), roots_(roots_of(chain.field)) {
-  const DisplacementField& field = chain.field;
-  const Chain plain = without_field(chain);
-  const auto [all, translations] = with_base_translations(plain, set);
+  linearise(data);
+  eliminate_parameters();
+}
+
+void FieldProblem::linearise(const WeightedRows& data) {
+  const Chain plain = without_field(chain_);
+  const auto [all, translations] = with_base_translations(plain, set_);
   VectorXd r;
   MatrixXd jacobian;
   pose_residuals(plain, all, data.rows, data.weights, data.threads).evaluate(pack(all, plain), r, &jacobian);
-  const Index parameters = set.free_count(), count = r.size() - all.free_count();
+  const Index parameters = set_.free_count(), count = r.size() - all.free_count();
   residuals_ = r.head(count), by_parameter_ = jacobian.topLeftCorner(count, parameters);
   // Each row has one base: its derivatives by the translations of all others are zero.
-  const std::vector<int> bases = bases_of(chain);
+  const std::vector<int> bases = bases_of(chain_);
   MatrixXd slopes = MatrixXd::Zero(count, 3);
   for (std::size_t b = 0; b < bases.size(); ++b)
     slopes +=
-        jacobian.topRows(count)(Eigen::all, translations[b]) * with_mounting(chain, bases[b]).base.pose().rotation;
+        jacobian.topRows(count)(Eigen::all, translations[b]) * with_mounting(chain_, bases[b]).base.pose().rotation;
 
-  MatrixXd features(data.rows.rows(), roots_.inverse_root.cols());
+  const Index values = roots_.inverse_root.cols();
+  MatrixXd features(data.rows.rows(), values);
   for (Index row = 0; row < features.rows(); ++row)
-    features.row(row) = (kernel_at(field, data.rows.joints.col(row)).transpose() * roots_.inverse_root);
-  by_value_ = MatrixXd::Zero(count, 3 * features.cols());
+    features.row(row) = kernel_at(chain_.field, data.rows.joints.col(row)).transpose() * roots_.inverse_root;
+  by_value_ = MatrixXd::Zero(count, 3 * values);
   Index i = 0;  // behind the blocks follow socket distances, on which no displacement acts
   for (const Block& block : blocks_of(data.rows))
     for (int k = 0; k < block.size; ++k, ++i)
-      for (int c = 0; c < 3; ++c)
-        by_value_.row(i).segment(c * features.cols(), features.cols()) = slopes(i, c) * features.row(block.row);
+      for (int c = 0; c < 3; ++c) by_value_.row(i).segment(c * values, values) = slopes(i, c) * features.row(block.row);
+}
 
-  const MatrixXd prior = prior_information(set), measured = gram(by_parameter_);
-  const VectorXd offset = pack(set, plain) - nominal_of(set);
-  MatrixXd information = measured + prior.selfadjointView<Eigen::Lower>().toDenseMatrix();
-  inverse_ = inverse_of_information(std::move(information));
-  gradient_ = by_parameter_.transpose() * residuals_ + prior.selfadjointView<Eigen::Lower>() * offset;
-  across_ = transposed_times(by_parameter_, by_value_);
-  const MatrixXd explained = product(inverse_, across_);
-  information_ = gram(by_value_) - transposed_times(across_, explained);
-  image_ = explained.transpose() * gradient_ - by_value_.transpose() * residuals_;
-  squares_ = residuals_.squaredNorm() + offset.dot(prior.selfadjointView<Eigen::Lower>() * offset) -
-             gradient_.dot(inverse_ * gradient_);
-  redundancy_ = std::max(1.0, static_cast<double>(count) - inverse_.cwiseProduct(measured).sum());
+void FieldProblem::eliminate_parameters() {
+  const MatrixXd prior = prior_information(set_), measured = gram(by_parameter_);
+  const VectorXd offset = pack(set_, chain_) - nominal_of(set_), pull = prior * offset;
+  inverse_ = inverse_of_information(measured + prior);
+  gradient_ = by_parameter_.transpose() * residuals_ + pull;
+  const MatrixXd across = transposed_times(by_parameter_, by_value_);
+  explained_ = product(inverse_, across);
+  information_ = gram(by_value_) - transposed_times(across, explained_);
+  image_ = explained_.transpose() * gradient_ - by_value_.transpose() * residuals_;
+  squares_ = residuals_.squaredNorm() + offset.dot(pull) - gradient_.dot(inverse_ * gradient_);
+  redundancy_ = std::max(1.0, static_cast<double>(residuals_.size()) - inverse_.cwiseProduct(measured).sum());
 }
 
 FieldProblem::Spectrum FieldProblem::spectrum() const {
@@ -157,10 +161,10 @@ FieldProblem::Solution FieldProblem::solve(double size, double noise) const {
   matrix.diagonal().array() += 1.0 / (size * size) + thresholds::field_rounding * matrix.diagonal().maxCoeff();
   const MatrixXd covariance = inverse_of_information(matrix);
   Solution found{{}, covariance * image_ / noise, size, {}, {}, 0.0};
-  found.step = -(inverse_ * (gradient_ + across_ * found.values));
-  const MatrixXd moved = product(inverse_, across_);
+  found.step = -(inverse_ * gradient_ + explained_ * found.values);
   found.covariance = inverse_;
-  found.marginal_variances = inverse_.diagonal() + product(moved, covariance).cwiseProduct(moved).rowwise().sum();
+  found.marginal_variances =
+      inverse_.diagonal() + product(explained_, covariance).cwiseProduct(explained_).rowwise().sum();
   found.effective_number = static_cast<double>(matrix.cols()) - covariance.trace() / (size * size);
   return found;
 }

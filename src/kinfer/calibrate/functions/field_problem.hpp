@@ -6,8 +6,8 @@
 // k(q)ᵀ V w^−½ z with independent z ~ N(0, size²): near the optimum all measurements are linear in z and the
 // parameters. These are eliminated under their own priors, which leaves an information S and an image b of z; as for a
 // group of terms (relevance.hpp), but with the noise level v unknown too:
-//   log p(data | f, v) − log p(data | 0, v) = ½ Σ_k [ f² b_k²/v² / (1 + f² s_k/v) − log(1 + f² s_k/v) ]   (eigenvalues
-//   s_k)
+//   log p(data | f, v) − log p(data | 0, v) = ½ Σ_k [ f² b_k²/v² / (1 + f² s_k/v) − log(1 + f² s_k/v) ]
+// with the eigenvalues s_k of S, and b along its eigenvectors.
 #pragma once
 
 #include "kinfer/calibrate/functions/beside_functions.hpp"
@@ -54,6 +54,8 @@ class FieldProblem {
   double relative_gain(const Solution& solution) const;
 
  private:
+  void linearise(const WeightedRows& data);
+  void eliminate_parameters();
   VectorXd residuals_after(const VectorXd& step, const VectorXd& values) const;
   VectorXd present_values() const;
 
@@ -64,7 +66,7 @@ class FieldProblem {
   MatrixXd by_parameter_, by_value_;
   MatrixXd inverse_;      // of the parameters' information, priors included
   VectorXd gradient_;     // of the parameters, priors included
-  MatrixXd across_;       // parameters x values
+  MatrixXd explained_;    // what the parameters take of each value: parameters x values
   MatrixXd information_;  // S
   VectorXd image_;        // b
   double squares_ = 0.0;  // of residuals and priors, parameters at their optimum without a field

@@ -8,16 +8,14 @@
 
 #include "kinfer/calibrate/prediction/thresholds.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
 
 using Eigen::Index;
 
 MatrixXd representatives(const MatrixXd& joints) {
-  const auto count = static_cast<int>(joints.cols()), kept = std::min(count, thresholds::region_rows);
-  std::vector<int> rows;
-  for (int k = 0; k < kept; ++k) rows.push_back(static_cast<int>(static_cast<long>(k) * count / kept));
-  return joints(Eigen::all, rows);
+  return joints(Eigen::all, spread_indices(static_cast<int>(joints.cols()), thresholds::region_rows));
 }
 
 void describe_region(PredictionModel& model, const MatrixXd& joints) {

@@ -251,20 +251,6 @@ class Fit {
     return {};
   }
 
-  /// Of the first kind with such traits that was measured.
-  template <class Accepts>
-  static double typical_sd(const Weights& weights, Accepts accepts) {
-    for (const ResidualKind& kind : residual_kinds())
-      if (accepts(kind.traits) && !weights.of(kind.kind).empty()) return typical_sd(weights, kind);
-    return 0.0;
-  }
-
-  static double typical_sd(const Weights& weights, const ResidualKind& kind) {
-    std::vector<double> sd;
-    for (const Vec3& v : weights.of(kind.kind)) sd.push_back(v.head(kind.size).norm() / std::sqrt(kind.size));
-    return sd.empty() ? 0.0 : rms(sd);
-  }
-
   /// A kind counts only where the instrument specifies its accuracy.
   double normalised_chi2(PoseSet kept) const {
     for_each_list(kept, [&]<class M>(std::vector<M>& list) {

@@ -136,4 +136,16 @@ Weights weights_of(const PoseSet& data, const std::optional<Instrument>& instrum
   return weights;
 }
 
+double typical_sd(const Weights& weights, const ResidualKind& kind) {
+  std::vector<double> sd;
+  for (const Vec3& v : weights.of(kind.kind)) sd.push_back(v.head(kind.size).norm() / std::sqrt(kind.size));
+  return sd.empty() ? 0.0 : rms(sd);
+}
+
+double typical_sd(const Weights& weights, bool (*accepts)(const MeasurementTraits&)) {
+  for (const ResidualKind& kind : residual_kinds())
+    if (accepts(kind.traits) && !weights.of(kind.kind).empty()) return typical_sd(weights, kind);
+  return 0.0;
+}
+
 }  // namespace kinfer

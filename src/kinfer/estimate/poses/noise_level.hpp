@@ -27,4 +27,9 @@ ExcessNoise excess_noise(const ResidualContext& scene, const std::optional<Instr
 
 Weights weights_of(const PoseSet& data, const std::optional<Instrument>& instrument, const ExcessNoise& excess);
 
+/// Root mean square of the standard deviations of a kind, in its unit; 0 where none was measured.
+double typical_sd(const Weights& weights, const ResidualKind& kind);
+/// Of the first kind with such traits that was measured; 0 where none was.
+double typical_sd(const Weights& weights, bool (*accepts)(const MeasurementTraits&));
+
 }  // namespace kinfer

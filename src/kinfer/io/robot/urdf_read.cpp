@@ -13,6 +13,7 @@
 #include "kinfer/io/robot/urdf.hpp"
 #include "kinfer/io/robot/urdf_tree.hpp"
 #include "kinfer/io/robot/xml_names.hpp"
+#include "kinfer/io/text/replace_all.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
@@ -54,21 +55,17 @@ Parsed parse_without_output(const std::string& text, console_bridge::LogLevel le
   return parsed;
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-  return text;
-}
-
 /// The library prints some errors, with what the file says in them, as a format (urdfdom 3.0.1, pose.cpp). So nothing
 /// is printed of the file's own text, and only where that fails is the reason printed, of a text with each % doubled.
-Result<urdf::ModelInterfaceSharedPtr> parse_model(const std::string& text, const std::string& name) {
+Result<urdf::ModelInterfaceSharedPtr> parse_model(std::string text, const std::string& name) {
   static std::mutex parser_mutex;
   const std::lock_guard lock(parser_mutex);
   if (Parsed parsed = parse_without_output(text, console_bridge::CONSOLE_BRIDGE_LOG_NONE); parsed.model)
     return parsed.model;
-  const Parsed failed = parse_without_output(replaced(text, "%", "%%"), console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
-  return error("{}: not a valid URDF: {}", name, replaced(failed.first_error, "%%", "%"));
+  replace_all(text, "%", "%%");
+  Parsed failed = parse_without_output(text, console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
+  replace_all(failed.first_error, "%%", "%");
+  return error("{}: not a valid URDF: {}", name, failed.first_error);
 }
 
 Frame frame_of(const urdf::Pose& pose) {

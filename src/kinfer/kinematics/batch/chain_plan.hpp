@@ -19,7 +19,7 @@ struct PointTable {
 };
 
 /// True if each joint displacement is gain · joint position + couplings, and only geometry and gains are identified:
-/// deflection, backlash, harmonics and thermal expansion have no batch form.
+/// deflection, backlash, harmonics, thermal expansion and displacement fields have no batch form.
 bool has_batch_form(const Chain& chain, const ParameterSet& set);
 
 }  // namespace kinfer
