@@ -67,6 +67,15 @@ TEST(RefinedJoint, TheLargestCoordinateOfItsAxisIsPositive) {
   }
 }
 
+TEST(RefinedJoint, AKnownMachinesAxisKeepsItsSenseThoughItsParentSaysLittleOfIt) {
+  const InsBody body = random_revolute(3);
+  const Vec3 in_parent = body.parent_R_axis.col(2), in_child = body.child_R_axis.col(2);
+  for (const double sense : {1.0, -1.0}) {
+    EXPECT_EQ(axis_sense(body, PositiveAxis{sense * in_parent, sense * in_child}), sense);
+    EXPECT_EQ(axis_sense(body, PositiveAxis{-0.9 * sense * in_parent, sense * in_child}), sense);
+  }
+}
+
 TEST(RefinedJoint, ItsPointsAreNearestToTheChildsSensorAndCoincide) {
   const InsBody body = random_revolute(3);
   const RefinedJoint joint = refined_body(body, isotropic(body, 1e-3, 1e-3), 0.7);

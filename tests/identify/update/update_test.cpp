@@ -2,6 +2,8 @@
 // A machine that is identified from one drive and updated by another one.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "identify/driven_machine.hpp"
 #include "kinfer/base/angle.hpp"
 
@@ -76,6 +78,37 @@ TEST(Update, JoinsTwoLogsOfTheSameMachineAndNamesATurnedSensor) {
   EXPECT_EQ(change.kind, ChainChangeKind::sensor_moved);
   ASSERT_TRUE(change.angle);
   EXPECT_NEAR(change.angle->value, degree, 3.0 * change.angle->sd);
+}
+
+/// The same machine, the positions of all joints with a single axis counted the other way.
+TrackingModel with_reversed_axes(TrackingModel model) {
+  const auto is_reversed = [](const TrackingBody& body) {
+    return body.motion == TrackingMotion::revolute || body.motion == TrackingMotion::prismatic;
+  };
+  for (TrackingBody& body : model.bodies)
+    if (is_reversed(body))
+      body.parent_R_axis = body.parent_R_axis * rot_x(std::numbers::pi),
+      body.child_R_axis = body.child_R_axis * rot_x(std::numbers::pi);
+  VectorXd sign = VectorXd::Ones(std::ssize(model.parameters));
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+    const TrackingParameter& p = model.parameters[i];
+    const bool rotates =
+        p.kind == TrackingParameterKind::parent_rotation || p.kind == TrackingParameterKind::child_rotation;
+    if (rotates && p.component > 0 && is_reversed(model.bodies[static_cast<std::size_t>(p.index)]))
+      sign[static_cast<Eigen::Index>(i)] = -1.0;
+  }
+  model.covariance = sign.asDiagonal() * model.covariance * sign.asDiagonal();
+  return model;
+}
+
+TEST(Update, KeepsTheSenseOfTheKnownAxes) {
+  Identification known = test::identified(drive_of("crane", 11).recording);
+  known.tracking = with_reversed_axes(*known.tracking);
+  const Identification found = updated(known, drive_of("crane", 12).recording);
+  ASSERT_TRUE(found.update);
+  EXPECT_EQ(changes_of(found), std::vector<std::string>{});
+  for (std::size_t j = 0; j < known.joints.size(); ++j)
+    EXPECT_LT(found.joints[j].axis_in_child.dot(known.joints[j].axis_in_child), -0.9) << j;
 }
 
 TEST(Update, NamesAMovedPinAndRefusesAnotherMachine) {

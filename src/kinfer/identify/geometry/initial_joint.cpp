@@ -210,15 +210,6 @@ bool has_known_axes(const InitialJoint& found, std::span<const InsBody> known) {
          is_near(found.bodies.back().child_R_axis.col(2), known.back().child_R_axis.col(2));
 }
 
-/// Of a revolute or prismatic joint: the sense of its positions is that of its axis.
-void take_sense(InitialJoint& start, const InsBody& known) {
-  InsBody& body = start.bodies.front();
-  if (body.parent_R_axis.col(2).dot(known.parent_R_axis.col(2)) >= 0.0) return;
-  body.parent_R_axis = body.parent_R_axis * rot_x(std::numbers::pi);
-  body.child_R_axis = body.child_R_axis * rot_x(std::numbers::pi);
-  for (double& position : start.joint_positions.front()) position = -position;
-}
-
 void take_known(InitialJoint& start, const SensorPair& pair, std::span<const InsBody> known) {
   const int sensor = start.bodies.back().sensor;
   start.bodies.assign(known.begin(), known.end());
@@ -270,14 +261,13 @@ InitialJoint initial_joint_at(const RecordedMotion& motion, std::size_t parent, 
 InitialJoint initial_joint_from(const RecordedMotion& motion, const SegmentTree& tree, std::size_t parent,
                                 std::size_t child, EstimatedJointType type, std::span<const InsBody> known) {
   InitialJoint start = estimate_initial_joint(motion, tree, parent, child, type);
+  start.positive_axis = {known.front().parent_R_axis.col(2), known.back().child_R_axis.col(2)};
   const bool has_one_axis = type == EstimatedJointType::revolute || type == EstimatedJointType::prismatic;
   if (type == EstimatedJointType::spherical) {
     start.bodies.front().point_in_parent = known.front().point_in_parent;
     start.bodies.back().point_in_child = known.back().point_in_child;
   } else if (has_known_axes(start, known) || !(has_one_axis || type == EstimatedJointType::rigid)) {
     take_known(start, sensor_pair(motion, tree, parent, child), known);
-  } else if (has_one_axis) {
-    take_sense(start, known.front());
   }
   return start;
 }

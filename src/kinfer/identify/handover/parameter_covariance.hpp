@@ -7,6 +7,7 @@
 #include "kinfer/estimate/continuous/solver/batch_fit.hpp"
 #include "kinfer/estimate/continuous/solver/covariance.hpp"
 #include "kinfer/evidence/identification/joint_estimate.hpp"
+#include "kinfer/identify/geometry/initial_joint.hpp"
 
 namespace kinfer::identify {
 
@@ -22,6 +23,7 @@ struct JointBodies {
   EstimatedJointType type = EstimatedJointType::revolute;
   std::size_t first = 0, last = 0;
   std::size_t parent = 0, child = 0;
+  std::optional<PositiveAxis> positive_axis{};
 
   bool is_relaxed(const InsBodies& bodies) const;  ///< a revolute joint that the fit relaxed to a spherical one
 };

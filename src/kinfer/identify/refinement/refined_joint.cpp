@@ -61,8 +61,8 @@ std::vector<Vec3> unobservable_directions(ConstMatrixRef covariance, Index point
   return uncertain_directions(alone ? Mat3(*alone) : Mat3(covariance.block<3, 3>(point, point)));
 }
 
-/// The joint's axis line and its pose at joint position `zero`; the sense as stated in the header.
-JointGeometry geometry_of(const InsBody& body, double zero) {
+/// The joint's axis line and its pose at joint position `zero`. `sense`: of the axis, relative to the body's.
+JointGeometry geometry_of(const InsBody& body, double zero, double sense) {
   const Mat3 &a = body.parent_R_axis, &b = body.child_R_axis;
   JointGeometry g;
   g.axis_in_parent = a.col(2);
@@ -74,8 +74,8 @@ JointGeometry geometry_of(const InsBody& body, double zero) {
   if (body.motion == JointMotion::prismatic) g.point_in_parent += zero * g.axis_in_parent;
   g.home.rotation = a * rot_z(turns ? zero : 0.0) * b.transpose();
   g.home.position = g.point_in_parent - g.home.rotation * g.point_in_child;
-  g.axis_in_parent *= axis_sense(body);
-  g.axis_in_child *= axis_sense(body);
+  g.axis_in_parent *= sense;
+  g.axis_in_child *= sense;
   return g;
 }
 
@@ -144,16 +144,17 @@ JointGeometry centred_geometry(std::span<const InsBody> bodies, std::span<const 
   return g;
 }
 
-/// Geometry of one body, or of the bodies of a universal or spherical joint.
-JointGeometry geometry_of(EstimatedJointType type, std::span<const InsBody> bodies, std::span<const double> zero) {
+/// Geometry of one body, or of the bodies of a universal or spherical joint, whose axes keep their sense.
+JointGeometry geometry_of(EstimatedJointType type, std::span<const InsBody> bodies, std::span<const double> zero,
+                          double sense) {
   return type == EstimatedJointType::universal || type == EstimatedJointType::spherical
              ? centred_geometry(bodies, zero)
-             : geometry_of(bodies.front(), zero.front());
+             : geometry_of(bodies.front(), zero.front(), sense);
 }
 
 /// Standard deviations of the DH rows, by finite differences. `here`: the joint's geometry.
 std::vector<DhNumbers> dh_row_sd(EstimatedJointType type, std::span<const InsBody> bodies, std::span<const double> zero,
-                                 const JointGeometry& here, ConstMatrixRef covariance) {
+                                 double sense, const JointGeometry& here, ConstMatrixRef covariance) {
   constexpr double step = 1e-6;  // [rad], [m]
   constexpr std::array<double DhNumbers::*, 5> numbers{&DhNumbers::theta, &DhNumbers::d, &DhNumbers::alpha,
                                                        &DhNumbers::a, &DhNumbers::beta};
@@ -164,7 +165,7 @@ std::vector<DhNumbers> dh_row_sd(EstimatedJointType type, std::span<const InsBod
     for (Index k = 0; k < bodies[b].unknowns(); ++k, ++column) {
       std::vector<InsBody> moved(bodies.begin(), bodies.end());
       moved[b] = retract(bodies[b], step * VectorXd::Unit(bodies[b].unknowns(), k));
-      JointGeometry geometry = geometry_of(type, moved, zero);
+      JointGeometry geometry = geometry_of(type, moved, zero, sense);
       geometry.spherical_axes = here.spherical_axes;
       const std::vector<DhNumbers> there = joint_dh_rows(type, geometry);
       for (std::size_t i = 0; i < 5 * rows.size(); ++i)
@@ -179,23 +180,27 @@ std::vector<DhNumbers> dh_row_sd(EstimatedJointType type, std::span<const InsBod
 
 }  // namespace
 
-double axis_sense(const InsBody& body) {
+double axis_sense(const InsBody& body, const std::optional<PositiveAxis>& known) {
   const Vec3 axis = body.parent_R_axis.col(2);
+  // In the child as well: a parent that does not move may say little of the axis.
+  if (known) return axis.dot(known->in_parent) + body.child_R_axis.col(2).dot(known->in_child) < 0.0 ? -1.0 : 1.0;
   Index largest = 0;
   axis.cwiseAbs().maxCoeff(&largest);
   return axis[largest] < 0.0 ? -1.0 : 1.0;
 }
 
 RefinedJoint refined_joint(EstimatedJointType type, std::span<const InsBody> bodies, std::span<const double> zero,
-                           ConstMatrixRef covariance, const Mat3& spherical_axes) {
+                           ConstMatrixRef covariance, const Mat3& spherical_axes,
+                           const std::optional<PositiveAxis>& known) {
   RefinedJoint result;
   result.zero.assign(zero.begin(), zero.end());
   JointEstimate& joint = result.estimate;
   joint.type = type;
   JointGeometry& g = result.solution.geometry;
-  g = geometry_of(type, bodies, zero);
+  const double sense = axis_sense(bodies.front(), known);
+  g = geometry_of(type, bodies, zero, sense);
   g.spherical_axes = spherical_axes;
-  result.solution.precision.canonical_sd = dh_row_sd(type, bodies, zero, g, covariance);
+  result.solution.precision.canonical_sd = dh_row_sd(type, bodies, zero, sense, g, covariance);
   if (type == EstimatedJointType::universal || type == EstimatedJointType::spherical) {
     set_centre(joint, bodies, covariance);
     result.solution.precision.sd = joint.sd;

@@ -5,6 +5,7 @@
 
 #include "kinfer/estimate/continuous/model/chain_propagation.hpp"
 #include "kinfer/identify/geometry/identified_chain.hpp"
+#include "kinfer/identify/geometry/initial_joint.hpp"
 #include "kinfer/identify/geometry/mean_revolute.hpp"
 
 namespace kinfer::identify {
@@ -16,13 +17,14 @@ struct RefinedJoint {
   std::optional<MeanRevolute> mean{};  ///< of a relaxed revolute joint
 };
 
-/// Sense of the joint position of a single body relative to the fit's, 1 or −1: the axis' largest coordinate in the
-/// parent is positive.
-double axis_sense(const InsBody& body);
+/// Sense of the joint position of a single body relative to the fit's, 1 or −1: that of a known machine, or else the
+/// axis' largest coordinate in the parent is positive.
+double axis_sense(const InsBody& body, const std::optional<PositiveAxis>& known = {});
 
 /// `bodies`: one, or several in series. `zero` [rad] or [m]: their joint positions that are defined as 0. `covariance`:
 /// of the bodies' unknowns, one after the other. `spherical_axes`: see JointGeometry.
 RefinedJoint refined_joint(EstimatedJointType type, std::span<const InsBody> bodies, std::span<const double> zero,
-                           ConstMatrixRef covariance, const Mat3& spherical_axes = Mat3::Identity());
+                           ConstMatrixRef covariance, const Mat3& spherical_axes = Mat3::Identity(),
+                           const std::optional<PositiveAxis>& known = {});
 
 }  // namespace kinfer::identify

@@ -26,7 +26,8 @@ std::vector<double> zero_positions(const RefinementTask& task, const RefinementF
     const VectorXd all = spline_value(grid, fit.unknowns.spline_coefficients, named ? named->at : grid.begin);
     for (Index i = 0; i < std::max<Index>(1, degrees_of_freedom(body.motion)); ++i)
       positions.push_back(fit.layout.spline_dimension[b] < 0 ? 0.0 : all[fit.layout.spline_dimension[b] + i]);
-    if (named) positions.back() -= (joint.first == joint.last ? axis_sense(body) : 1.0) * named->position;
+    if (named)
+      positions.back() -= (joint.first == joint.last ? axis_sense(body, joint.positive_axis) : 1.0) * named->position;
   }
   return positions;
 }
@@ -67,20 +68,21 @@ double common_axis_deviation(const RefinementTask& task, const RefinementFit& fi
 }
 
 /// A revolute joint that was relaxed to a spherical one in the fit.
-RefinedJoint relaxed_joint(const RefinementFit& fitted, std::size_t body, ConstMatrixRef covariance,
+RefinedJoint relaxed_joint(const RefinementFit& fitted, const JointBodies& bodies, ConstMatrixRef covariance,
                            double mount_deflection, const NamedZero* named, std::span<const double> trajectory_time) {
+  const std::size_t body = bodies.first;
   const InsProblem& problem = fitted.setup.problem;
   const double misalignment =
       std::hypot(mount_deflection, 0.5 * std::max(problem.prior.gyroscope_scale, problem.prior.accelerometer_scale));
   MeanRevolute revolute =
       fit_mean_revolute(fitted.fit.unknowns.bodies[body], spherical_rotations(fitted, body, knot_times(problem.grid)),
                         covariance, misalignment);
-  const double sense = axis_sense(revolute.body);
+  const double sense = axis_sense(revolute.body, bodies.positive_axis);
   if (named)
     revolute.zero += revolute_trajectory(revolute, spherical_rotations(fitted, body, {&named->at, 1}))(0, 0) -
                      sense * named->position;
-  RefinedJoint joint =
-      refined_joint(EstimatedJointType::revolute, {&revolute.body, 1}, {&revolute.zero, 1}, revolute.covariance);
+  RefinedJoint joint = refined_joint(EstimatedJointType::revolute, {&revolute.body, 1}, {&revolute.zero, 1},
+                                     revolute.covariance, Mat3::Identity(), bodies.positive_axis);
   joint.estimate.trajectory = sense * revolute_trajectory(revolute, spherical_rotations(fitted, body, trajectory_time));
   joint.mean = revolute;
   return joint;
@@ -91,20 +93,21 @@ RefinedJoint make_joint(const RefinementTask& task, const RefinementFit& fitted,
                         double mount_deflection, const JointBodies& joint_bodies,
                         std::span<const double> trajectory_time) {
   const InsFit& fit = fitted.fit;
-  const auto [type, first, last, parent, child] = joint_bodies;
+  const auto& [type, first, last, parent, child, positive_axis] = joint_bodies;
   const auto bodies = std::span(fit.unknowns.bodies).subspan(first, last - first + 1);
   const Index begin = first_unknown(fit.layout, joint_bodies),
               size = unknowns_of(fit.layout, fit.unknowns.bodies, joint_bodies);
   const MatrixXd own = covariance.block(begin, begin, size, size);
   if (joint_bodies.is_relaxed(fit.unknowns.bodies))
-    return relaxed_joint(fitted, first, own, mount_deflection,
+    return relaxed_joint(fitted, joint_bodies, own, mount_deflection,
                          named_zero(task.zeros, joint_bodies, 0, segment_names(task.motion)), trajectory_time);
   const SplineGrid& grid = fitted.setup.problem.grid;
   const MatrixXd coefficients = joint_splines(fit, joint_bodies);
   const Mat3 turning = type == EstimatedJointType::spherical
                            ? spherical_axes(spherical_rotation_vectors(grid, coefficients, trajectory_time))
                            : Mat3(Mat3::Identity());
-  RefinedJoint joint = refined_joint(type, bodies, zero_positions(task, fitted, joint_bodies), own, turning);
+  RefinedJoint joint =
+      refined_joint(type, bodies, zero_positions(task, fitted, joint_bodies), own, turning, positive_axis);
   joint.estimate.trajectory =
       joint_trajectory(type, bodies, joint.solution.geometry, joint.zero, grid, coefficients, trajectory_time);
   return joint;
@@ -115,8 +118,8 @@ RefinedJoint make_joint(const RefinementTask& task, const RefinementFit& fitted,
 std::vector<JointBodies> joint_bodies(const RefinementTask& task, const RefinementSetup& setup) {
   std::vector<JointBodies> all;
   for (std::size_t i = 0; i < task.starts.size(); ++i)
-    all.push_back(
-        {task.starts[i].type, setup.first_body[i], setup.last_body[i], task.starts[i].parent, task.starts[i].child});
+    all.push_back({task.starts[i].type, setup.first_body[i], setup.last_body[i], task.starts[i].parent,
+                   task.starts[i].child, task.starts[i].positive_axis});
   return all;
 }
 

@@ -113,7 +113,8 @@ TrackingModel in_order_of(const SegmentTree& tree, const std::vector<std::string
 
 RefinedJoint as_refined(const KnownJoint& joint, const TrackingModel& model) {
   const MatrixXd covariance = model.covariance(joint.parameters, joint.parameters);
-  RefinedJoint result = refined_joint(joint.type, joint.bodies, joint.zero, covariance, joint.spherical_axes);
+  const PositiveAxis own{joint.bodies.front().parent_R_axis.col(2), joint.bodies.back().child_R_axis.col(2)};
+  RefinedJoint result = refined_joint(joint.type, joint.bodies, joint.zero, covariance, joint.spherical_axes, own);
   result.estimate.parent = joint.parent;
   result.estimate.child = joint.child;
   return result;
