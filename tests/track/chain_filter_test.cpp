@@ -248,6 +248,21 @@ TEST(ChainFilter, NoiseThatIsInAStateAlreadyIsTakenOutOfIt) {
   EXPECT_NEAR(filter.state().joints[0] - tree.state.joints[0], 0.003 * w[at] / h.dot(w), 1e-14);
 }
 
+TEST(ChainFilter, AStateSharesNoMoreNoiseThanItsVarianceHolds) {
+  const TrackedTree tree(11);
+  ChainFilter filter = tree.filter();
+  const Index bias = tree.model->layout.sensor_state(1), at = tree.model->layout.joint_state(0);
+  const double before = filter.covariance()(at, at);
+  filter.update({.at = {bias},
+                 .factor = {1.0},
+                 .terms = 1,
+                 .innovation = 0.0,
+                 .variance = 1e3,  // so that the bias' own uncertainty does not matter
+                 .noisy_state = at,
+                 .noise_covariance = -1e6});
+  EXPECT_NEAR(filter.covariance()(at, at) / before, 0.75, 1e-3);
+}
+
 TEST(ChainFilter, APlacedJointIsKnownThereAndToNothingElse) {
   const TrackedTree tree(13);
   ChainFilter filter = tree.filter();

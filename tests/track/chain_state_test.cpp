@@ -118,11 +118,13 @@ TEST(PredictMean, IsTheIntegralOfItsOwnVelocity) {
   EXPECT_LT((after.world_R_base.transpose() * after.world_R_base - Mat3::Identity()).norm(), 1e-13);
 }
 
-/// Whether a state is of a joint whose acceleration counts as linear within a step, however long the step is.
-bool is_bridged(const FilterModel& model, Index state) {
+/// Whether a state's noise depends on how steps are divided: that of a joint whose acceleration counts as linear within
+/// a step, however long it is, and a position whose velocity does.
+bool is_bridged(const FilterModel& model, Index state, ShownMeans means) {
   const Index position = (state - base_states) / position_states;
-  return state >= base_states && position < model.layout.positions &&
-         model.positions[static_cast<std::size_t>(position)].is_measured;
+  if (state < base_states || position >= model.layout.positions) return false;
+  return model.positions[static_cast<std::size_t>(position)].is_measured ||
+         (means == ShownMeans::rates && (state - base_states) % position_states == 0);
 }
 
 /// With the noise taken off, F P Fᵀ with F by differences of the mean.
@@ -163,17 +165,38 @@ TEST(PredictCovariance, CarriesErrorsAsTheMeanCarriesThem) {
 TEST(PredictCovariance, NoiseOfManyShortStepsIsThatOfOneLongOne) {
   const MovingTree tree(8, BaseMode::still);
   const Index n = tree.model.layout.size;
-  MatrixXd once = MatrixXd::Zero(n, n), often = once;
-  predict_covariance(tree.model, tree.state, 0.02, once);
-  ChainState state = tree.state;
-  for (int i = 0; i < 20; ++i) {
-    predict_covariance(tree.model, state, 0.001, often);
-    predict_mean(tree.model, 0.001, state);
+  for (const ShownMeans means : {ShownMeans::rates, ShownMeans::accelerations}) {
+    MatrixXd once = MatrixXd::Zero(n, n), often = once;
+    predict_covariance(tree.model, tree.state, 0.02, once, means);
+    ChainState state = tree.state;
+    for (int i = 0; i < 20; ++i) {
+      predict_covariance(tree.model, state, 0.001, often, means);
+      predict_mean(tree.model, 0.001, state);
+    }
+    for (Index i = 0; i < n; ++i)
+      if (!is_bridged(tree.model, i, means)) EXPECT_NEAR(often(i, i), once(i, i), 0.06 * once(i, i) + 1e-15) << i;
+    const Index bias = tree.model.layout.sensor_state(0);
+    EXPECT_NEAR(once(bias, bias), 0.02 * tree.model.bias_walk.rate, 1e-18);
   }
-  for (Index i = 0; i < n; ++i)
-    if (!is_bridged(tree.model, i)) EXPECT_NEAR(often(i, i), once(i, i), 0.06 * once(i, i) + 1e-15) << i;
-  const Index bias = tree.model.layout.sensor_state(0);
-  EXPECT_NEAR(once(bias, bias), 0.02 * tree.model.bias_walk.rate, 1e-18);
+}
+
+/// Means of the rate over steps tell the change of position exactly.
+TEST(PredictCovariance, AMeasuredRateLeavesNothingOfThePositionToChance) {
+  MovingTree tree(8, BaseMode::still);
+  const auto turning = std::ranges::find_if(tree.model.positions, [](const auto& p) { return !p.is_measured; });
+  ASSERT_NE(turning, tree.model.positions.end());
+  const Index at = tree.model.layout.joint_state(turning - tree.model.positions.begin());
+  const auto position_given_velocity = [&](double dt, ShownMeans means) {
+    MatrixXd p = MatrixXd::Zero(tree.model.layout.size, tree.model.layout.size);
+    predict_covariance(tree.model, tree.state, dt, p, means);
+    EXPECT_NEAR(p(at + 1, at + 1), turning->density() * dt * dt * dt / 3.0, 1e-12);
+    return p(at, at) - square(p(at, at + 1)) / p(at + 1, at + 1);
+  };
+  EXPECT_NEAR(position_given_velocity(0.02, ShownMeans::rates), 0.0, 1e-18);
+  for (const auto& [dt, means] : {std::pair{0.02, ShownMeans::accelerations}, std::pair{0.1, ShownMeans::rates}})
+    EXPECT_NEAR(position_given_velocity(dt, means), turning->density() * std::pow(dt, 5) * (1.0 / 20.0 - 3.0 / 64.0),
+                1e-12)
+        << "a gap, or a sensor that is lost";
 }
 
 /// Means of the acceleration over steps tell the change of velocity exactly, so that only what no mean tells (a gap) is

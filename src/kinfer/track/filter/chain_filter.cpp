@@ -83,7 +83,7 @@ void ChainFilter::declare_known(Index position) {
 void ChainFilter::predict(double time) {
   while (time - state_.time > 1e-9) {
     const double dt = std::min(time - state_.time, longest_step);
-    predict_covariance(*model_, state_, dt, p_);
+    predict_covariance(*model_, state_, dt, p_, shown_);
     add_posture_walk(dt);
     predict_mean(*model_, dt, state_);
   }
@@ -145,7 +145,11 @@ void ChainFilter::form_rows(const BlockMeasurement& block) {
   evaluator_.evaluate(*model_, state_);
   follow_change();
   system_.begin(evaluator_.result());
-  for (std::size_t s = 0; s < is_used_.size(); ++s) form_sensor_rows(block, s);
+  shown_ = ShownMeans::rates;
+  for (std::size_t s = 0; s < is_used_.size(); ++s) {
+    form_sensor_rows(block, s);
+    if (!is_used_[s] || block.sensors[s].rate_count == 0) shown_ = ShownMeans::accelerations;
+  }
   soft_rows_.add(*model_, state_, p_, block.length, system_);
   changes_.form(*model_, evaluator_, system_.is_measured(), state_.base == BaseMode::still);
 }
@@ -279,13 +283,20 @@ double ChainFilter::variance(const ScalarRow& row) const {
   return variance;
 }
 
+/// Covariance of the row's noise with its noisy state. Noise reaches the state with a delay where accelerometers smooth
+/// it: the state shares no more of it than its variance holds.
+double ChainFilter::shared_noise(const ScalarRow& row) const {
+  const double most = most_shared_noise * std::sqrt(row.variance * p_(row.noisy_state, row.noisy_state));
+  return std::clamp(row.noise_covariance, -most, most);
+}
+
 void ChainFilter::update(const ScalarRow& row) {
   const Index estimated = model_->layout.first_geometry;
   const double variance = this->variance(row);
   VectorXd& w = column_;
   w.setZero();
   for (std::size_t i = 0; i < static_cast<std::size_t>(row.terms); ++i) w += row.factor[i] * p_.col(row.at[i]);
-  if (row.noisy_state >= 0) w[row.noisy_state] += row.noise_covariance;
+  if (row.noisy_state >= 0) w[row.noisy_state] += shared_noise(row);
   error_.setZero();
   error_.head(estimated) = (row.innovation / variance) * w.head(estimated);
   retract(*model_, error_, state_);

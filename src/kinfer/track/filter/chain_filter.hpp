@@ -81,6 +81,7 @@ class ChainFilter {
  private:
   Index zero_state(Index position) const;
   void forget(Index state);
+  double shared_noise(const ScalarRow& row) const;
   void add_posture_walk(double dt);
   void follow_change();
   void form_rows(const BlockMeasurement& block);
@@ -100,6 +101,7 @@ class ChainFilter {
   std::vector<bool> is_used_;
   VectorXd last_value_, change_;  // predicted rows of the last update, their rate of change
   double last_update_ = -1e9;
+  ShownMeans shown_ = ShownMeans::rates;  // by the last block
   SoftRows soft_rows_;
   JointChanges changes_;
   InstrumentLevels levels_;

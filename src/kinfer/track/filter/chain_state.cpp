@@ -32,17 +32,29 @@ Mat3 driven(double density, double dt) {
   return density * q;
 }
 
-/// The same where the acceleration is measured itself, as the mean of each block: between the middles of two blocks it
-/// counts as linear, so that velocities follow from the means. The true integral of the mean acceleration is known, and
+/// The same where the velocity is measured itself, as the mean of each block: between the middles of two blocks it
+/// counts as linear, so that positions follow from the means. The true integral of the mean rate is known, and `driven`
+/// would add an error of the position of density·dt⁵/720 in each step, twice the sensors' own.
+Mat3 driven_between_rates(double density, double dt) {
+  Mat3 q = driven(density, dt);
+  q(0, 0) = 0.25 * dt * dt * q(1, 1);
+  q(0, 1) = q(1, 0) = 0.5 * dt * q(1, 1);
+  q(0, 2) = q(2, 0) = 0.5 * dt * q(1, 2);
+  return q;
+}
+
+/// Likewise where the acceleration alone is measured: it counts as linear, so that velocities follow from the means.
 /// `driven` would add an error of the velocity of density·dt³/12 in each step, tenfold the sensors' own.
-Mat3 driven_between_means(double density, double dt) {
+Mat3 driven_between_accelerations(double density, double dt) {
   const Vec3 by_change(dt * dt / 6.0, dt / 2.0, 1.0);
   return density * dt * by_change * by_change.transpose();
 }
 
-Mat3 driven(const AccelerationProcess& process, double dt) {
-  const bool is_bridged = process.is_measured && dt <= longest_bridge;
-  return is_bridged ? driven_between_means(process.density(), dt) : driven(process.density(), dt);
+Mat3 driven(const AccelerationProcess& process, double dt, ShownMeans means) {
+  const double density = process.density();
+  if (dt <= longest_bridge && process.is_measured) return driven_between_accelerations(density, dt);
+  if (dt <= longest_bridge && means == ShownMeans::rates) return driven_between_rates(density, dt);
+  return driven(density, dt);
 }
 
 /// Applies the transition of a triple of states to columns of the covariance: columns ← columns Fᵀ.
@@ -228,7 +240,7 @@ void predict_mean(const FilterModel& model, double dt, ChainState& state) {
   }
 }
 
-void predict_covariance(const FilterModel& model, const ChainState& state, double dt, MatrixXd& p) {
+void predict_covariance(const FilterModel& model, const ChainState& state, double dt, MatrixXd& p, ShownMeans means) {
   const Index n = p.rows(), fast = model.layout.fast;
   if (state.base == BaseMode::moving) {
     move_base(model, state, dt, p);
@@ -261,7 +273,7 @@ void predict_covariance(const FilterModel& model, const ChainState& state, doubl
       x[1] += f.velocity_from_acceleration * x[2];
       x[2] *= f.acceleration_decay;
     }
-    p.block<3, 3>(first, first) += driven(process, dt);
+    p.block<3, 3>(first, first) += driven(process, dt, means);
   }
   add_bias_walk(model, dt, p);
 }

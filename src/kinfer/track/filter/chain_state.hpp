@@ -36,7 +36,12 @@ void retract(const FilterModel& model, const VectorXd& error, ChainState& state)
 /// The mean after `dt` seconds.
 void predict_mean(const FilterModel& model, double dt, ChainState& state);
 
+/// What the blocks before and after a step show as means: of all joints the rates, or (a sensor is lost) of those alone
+/// that have nothing else the accelerations.
+enum class ShownMeans { rates, accelerations };
+
 /// The error state's covariance (symmetric) after `dt` seconds, at most `longest_step`; `state` is that before.
-void predict_covariance(const FilterModel& model, const ChainState& state, double dt, MatrixXd& covariance);
+void predict_covariance(const FilterModel& model, const ChainState& state, double dt, MatrixXd& covariance,
+                        ShownMeans means = ShownMeans::rates);
 
 }  // namespace kinfer::track

@@ -107,32 +107,33 @@ bool RestBias::integrates_alone(const FilterModel& model, std::size_t body) cons
   return true;
 }
 
-/// Difference of the biases of a joint's sensors along its axis. About an upright axis the noise that remains in it has
-/// been integrated to the joint's position, and nothing else has corrected it since.
+/// Difference of the biases of a joint's sensors along its axis; that of the child alone where the parent is a base
+/// that stands still, whose own gyroscope says nothing of the child's. About an upright axis the noise that remains in
+/// it has been integrated to the joint's position, and nothing else has corrected it since.
 ChainFilter::ScalarRow RestBias::bias_row(const ChainFilter& filter, std::size_t body) const {
   const FilterModel& model = filter.model();
   const InsBody& joint = model.bodies[body];
-  const int parent = model.bodies[static_cast<std::size_t>(joint.parent)].sensor;
-  const auto p = static_cast<std::size_t>(parent), c = static_cast<std::size_t>(joint.sensor);
-  const Vec3 a = joint.parent_R_axis.col(2), b = joint.child_R_axis.col(2);
   ChainFilter::ScalarRow row;
-  for (Index k = 0; k < 3; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    row.at[i] = model.layout.sensor_state(joint.sensor) + SensorIndex::gyroscope_bias + k;
-    row.at[i + 3] = model.layout.sensor_state(parent) + SensorIndex::gyroscope_bias + k;
-    row.factor[i] = b[k];
-    row.factor[i + 3] = -a[k];
-  }
-  row.terms = 6;
-  row.innovation = b.dot(mean_rate(c) - filter.state().sensors[c].gyroscope_bias) -
-                   a.dot(mean_rate(p) - filter.state().sensors[p].gyroscope_bias);
-  const double of_child = square(noise_[c].rate) / last_[1].count[c],
-               of_parent = square(noise_[p].rate) / last_[1].count[p];
-  row.variance = of_child + of_parent + square(rest_creep);
+  row.variance = square(rest_creep);
+  double integrated = 0.0;  // variance of what has been integrated to the position
+  const auto add = [&](int sensor, const Vec3& axis) {
+    const auto s = static_cast<std::size_t>(sensor);
+    for (Index k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(row.terms++);
+      row.at[i] = model.layout.sensor_state(sensor) + SensorIndex::gyroscope_bias + k;
+      row.factor[i] = axis[k];
+    }
+    row.innovation += axis.dot(mean_rate(s) - filter.state().sensors[s].gyroscope_bias);
+    const double of_mean = square(noise_[s].rate) / last_[1].count[s];
+    row.variance += of_mean;
+    integrated += of_mean;
+  };
+  add(joint.sensor, joint.child_R_axis.col(2));
+  const bool is_on_still_base = joint.parent == 0 && filter.state().base == BaseMode::still;
+  if (!is_on_still_base) add(model.bodies[static_cast<std::size_t>(joint.parent)].sensor, -joint.parent_R_axis.col(2));
   if (last_[1].begin >= filter.placed_at() && integrates_alone(model, body)) {
-    const bool is_fixed = joint.parent == 0 && filter.state().base == BaseMode::still;  // whose rate is not integrated
     row.noisy_state = model.layout.joint_state(model.layout.position[body]);
-    row.noise_covariance = -rest_block * (of_child + (is_fixed ? 0.0 : of_parent));
+    row.noise_covariance = -rest_block * integrated;
   }
   return row;
 }
