@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "identify/driven_machine.hpp"
+
 #include <cmath>
 
 #include "kinfer/identify/refinement/joint_relaxation.hpp"
@@ -101,6 +103,32 @@ TEST(JointRelaxation, OnlyWhatStandsOutIsRelaxed) {
     for (std::size_t i = 0; i < c.gains.size(); ++i) hinges.push_back(10 + i);
     EXPECT_EQ(select_joints_to_relax(hinges, c.gains), c.relaxed) << c.why;
   }
+}
+
+/// A swing axis that is inclined by a few milliradians shows the azimuths of both limbs on its segment to some
+/// hundredths of a radian. The pairs of sensors know nothing of them, so the fit begins anywhere on the circle.
+TEST(Azimuth, OfEveryLimbIsFoundOnTheWholeCircleWithoutMagnetometers) {
+  const Rng rng(3);
+  const MujocoWorld world =
+      std::move(*MujocoWorld::load(machine_mjcf("tree", {.mounting = Mounting::arbitrary}, rng.stream(1)).value()));
+  const MachineMotion motion = world.prescribe(make_drive(world.machine(), {}, rng.stream(2)).value(), 100.0);
+  const InsRecording recording = simulate_recording(world.machine(), motion, *sensor_grade("industrial"),
+                                                    {.has_magnetometer = false}, rng.stream(3));
+  const MachineTruth truth = machine_truth(world.machine(), motion);
+  const Identification found = test::identified(recording);
+  int told = 0;
+  for (const JointEstimate& joint : found.joints) {
+    if (joint.parent != "ins1") continue;
+    const auto t = std::ranges::find_if(
+        truth.joints, [&](const JointTruth& j) { return j.parent == joint.parent && j.child == joint.child; });
+    ASSERT_NE(t, truth.joints.end());
+    const double sense = joint.axis_in_child.dot(t->axis_in_child) < 0.0 ? -1.0 : 1.0;
+    const double error = (sense * joint.axis_in_parent - t->axis_in_parent).norm();
+    const double sd = std::hypot(joint.sd.axis_in_parent[0], joint.sd.axis_in_parent[1]);
+    EXPECT_LT(error, 4.0 * sd) << joint.child;
+    told += sd < 0.1;
+  }
+  EXPECT_EQ(told, 2) << "limbs whose azimuth is known";
 }
 
 }  // namespace
