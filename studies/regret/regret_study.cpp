@@ -261,13 +261,16 @@ void study_rigid(const Options& options) {
 
 void study(const Options& options) {
   if (options.rigid > 0) return study_rigid(options);
+  const std::vector<NamedTask> tasks = named_tasks(options.only, options.simulated);
+  if (tasks.empty())
+    fmt::print("no set has \"{}\" in its name; those measured are in KINFER_DATA and KINFER_CASES\n", options.only);
   fmt::print(
       "{:<22} h | default: mean, 95 %, 99 %, worst [mm] | geometry | best fixed set | regret: mean ± sd, mean over "
       "the set that other rows prefer, 99 %, worst | time "
       "| chosen | best\n",
       "set");
   RegretTable chosen, chosen_where_known, truth;
-  for (const NamedTask& named : named_tasks(options.only, options.simulated))
+  for (const NamedTask& named : tasks)
     for (int half = 1; half <= (named.name.starts_with("simulated") ? 1 : options.halves); ++half) {
       const Regrets regrets = study_half(named, half, options);
       chosen.add(regrets.chosen);

@@ -20,6 +20,7 @@ namespace {
 using Index = Eigen::Index;
 
 constexpr double max_axis_error = 1.5e-3;  // [rad] of the fit's orientations, which the magnetometers take as given
+// Of the search on the circle: six places and more iterations end in the same azimuths on trees 3, 5, 9 and 19.
 constexpr int circle_places = 4, circle_iterations = 8, circle_rounds = 2;
 constexpr int joint_iterations = 4;  // of the fit with azimuths: it starts within a few standard deviations
 
@@ -116,38 +117,6 @@ void set_noise(InsProblem& problem, const std::vector<InsNoise>& noise) {
   for (std::size_t s = 0; s < noise.size(); ++s) problem.sensors[s].noise = noise[s];
 }
 
-/// The fit's own steps are local, and weak evidence of an azimuth has other valleys on the circle: the fit is continued
-/// from some places of it, one sub-tree after the other, and the most likely end is kept.
-void search_circle(const RefinementTask& task, RefinementFit& fitted) {
-  InsProblem& problem = fitted.setup.problem;
-  const WeakAzimuths weak = weak_azimuths(fitted, task.options.threads);
-  double lowest = negative_log_likelihood(problem, fitted.fit.cost);
-  const double before = lowest;
-  const auto continue_from = [&](const InsUnknowns& start, int iterations, int rounds) {
-    const std::vector<InsNoise> noise = noise_of(problem);
-    InsFitOptions options = task.options;
-    options.iterations = iterations, options.reweighting_rounds = rounds, options.trajectory_iterations = 0;
-    InsFit other = fit_ins(problem, start, options);
-    const double value = negative_log_likelihood(problem, other.cost);
-    if (value < lowest)
-      lowest = value, fitted.fit = std::move(other);
-    else
-      set_noise(problem, noise);
-  };
-  for (std::size_t i = 0; i < weak.azimuths.size(); ++i) {
-    const double sd = weak.sd[static_cast<Index>(i)];
-    if (sd < min_searched_azimuth_sd || sd > max_azimuth_prior_sd) continue;
-    const InsUnknowns start = fitted.fit.unknowns;
-    for (int k = 1; k < circle_places; ++k) {
-      InsUnknowns x = start;
-      rotate_azimuth(x.bodies, weak.azimuths[i], 2.0 * std::numbers::pi * k / circle_places);
-      continue_from(x, circle_iterations, circle_rounds);
-    }
-  }
-  if (lowest < before)
-    continue_from(InsUnknowns(fitted.fit.unknowns), task.options.iterations, task.options.reweighting_rounds);
-}
-
 }  // namespace
 
 double azimuth_sd(const InsLayout& layout, const InsBodies& bodies, ConstMatrixRef covariance, std::size_t body) {
@@ -165,12 +134,40 @@ double azimuth_sd(const InsLayout& layout, const InsBodies& bodies, ConstMatrixR
   return sd;
 }
 
+void search_azimuths(const RefinementTask& task, RefinementFit& fitted, const Observer& observer) {
+  InsProblem& problem = fitted.setup.problem;
+  if (!problem.root_at_rest) return;
+  const WeakAzimuths weak = weak_azimuths(fitted, task.options.threads);
+  double lowest = negative_log_likelihood(problem, fitted.fit.cost);
+  const double before = lowest;
+  const auto continue_from = [&](const InsUnknowns& start, int iterations, int rounds) {
+    const std::vector<InsNoise> noise = noise_of(problem);
+    InsFitOptions options = task.options;
+    options.iterations = iterations, options.reweighting_rounds = rounds, options.trajectory_iterations = 0;
+    InsFit other = fit_ins(problem, start, options, observer);
+    const double value = negative_log_likelihood(problem, other.cost);
+    if (value < lowest)
+      lowest = value, fitted.fit = std::move(other);
+    else
+      set_noise(problem, noise);
+  };
+  for (std::size_t i = 0; i < weak.azimuths.size(); ++i) {
+    if (weak.sd[static_cast<Index>(i)] > max_azimuth_prior_sd) continue;
+    const InsUnknowns start = fitted.fit.unknowns;
+    for (int k = 1; k < circle_places; ++k) {
+      InsUnknowns x = start;
+      rotate_azimuth(x.bodies, weak.azimuths[i], 2.0 * std::numbers::pi * k / circle_places);
+      continue_from(x, circle_iterations, circle_rounds);
+    }
+  }
+  if (lowest < before)
+    continue_from(InsUnknowns(fitted.fit.unknowns), task.options.iterations, task.options.reweighting_rounds);
+}
+
 void measure_azimuths(const RefinementTask& task, RefinementFit& fitted) {
   InsProblem& problem = fitted.setup.problem;
   InsUnknowns& x = fitted.fit.unknowns;
-  if (!problem.root_at_rest) return;
-  search_circle(task, fitted);
-  if (std::ranges::count_if(task.recording.sensors, &InsSensor::has_magnetometer) < 2) return;
+  if (!problem.root_at_rest || std::ranges::count_if(task.recording.sensors, &InsSensor::has_magnetometer) < 2) return;
   const WeakAzimuths weak = weak_azimuths(fitted, task.options.threads);
   if (weak.azimuths.empty()) return;
   const MagneticRecording recording = magnetic_recording(task.recording, problem, fitted.fit.layout, x);

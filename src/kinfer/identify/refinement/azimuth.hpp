@@ -13,6 +13,10 @@ namespace kinfer::identify {
 /// the body has no child.
 double azimuth_sd(const InsLayout& layout, const InsBodies& bodies, ConstMatrixRef covariance, std::size_t body);
 
+/// The fit's own steps are local, and weak evidence of an azimuth has other valleys on the circle: the fit is continued
+/// from some places of it, one sub-tree after the other, and the most likely end is kept.
+void search_azimuths(const RefinementTask& task, RefinementFit& fitted, const Observer& observer);
+
 /// Adds to a fit what the magnetometers tell about azimuths that gyroscopes and accelerometers leave uncertain: the
 /// sub-trees are rotated to the most likely azimuths, found on the whole circle, and where inclination or motion tells
 /// something too, the fit continues with both. Magnetometers have no say in what the other instruments determine:

@@ -56,6 +56,7 @@ RefinementFit fit_full_bandwidth(const RefinementTask& task, RefinementSetup set
   start_from_excerpt(problem, fitted.setup.start, task.options, observer);
   if (options.clocks == ClockTreatment::estimated) free_clocks(problem);
   fitted.fit = fit_ins(problem, fitted.setup.start, task.options, observer);
+  search_azimuths(task, fitted, observer);
   if (options.clocks == ClockTreatment::checked && clocks_are_doubtful(problem, fitted.fit, task.options.threads))
     refit_with_free_clocks(problem, fitted.fit, task.options, observer);
   return fitted;

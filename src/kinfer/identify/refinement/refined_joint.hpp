@@ -22,7 +22,8 @@ struct RefinedJoint {
 double axis_sense(const InsBody& body, const std::optional<PositiveAxis>& known = {});
 
 /// `bodies`: one, or several in series. `zero` [rad] or [m]: their joint positions that are defined as 0. `covariance`:
-/// of the bodies' unknowns, one after the other. `spherical_axes`: see JointGeometry.
+/// of the bodies' unknowns, one after the other. `spherical_axes`: see JointGeometry. `known`: as of
+/// axis_sense.
 RefinedJoint refined_joint(EstimatedJointType type, std::span<const InsBody> bodies, std::span<const double> zero,
                            ConstMatrixRef covariance, const Mat3& spherical_axes = Mat3::Identity(),
                            const std::optional<PositiveAxis>& known = {});

@@ -27,17 +27,14 @@ KINFER_THRESHOLD(identify, max_rigid_chain_misfit, 3.0);
 /// Data not recorded.
 inline constexpr double max_clock_offset = 1e-3;
 
-/// [rad] Standard deviation of an azimuth by gyroscopes and accelerometers above which the magnetometers are asked;
-/// larger keeps more machines free of them. The misalignment of magnetometers alone is as large.
+/// [rad] Standard deviation of an azimuth by gyroscopes and accelerometers above which it is sought on the whole circle
+/// and the magnetometers are asked; larger keeps more machines free of both. The misalignment of magnetometers alone is
+/// as large.
 inline constexpr double min_weak_azimuth_sd = 3e-3;
 
 /// [rad] The same above which it is that of the weak priors, which say nothing. Between level ground, 0.5 rad and more,
 /// and a slope of a degree, 0.02 rad.
 inline constexpr double max_azimuth_prior_sd = 0.2;
-
-/// [rad] Least standard deviation of an azimuth that is sought on the whole circle. Trees whose swing axis is inclined by
-/// a tenth of a degree, seeds 3 and 19: 0.01 to 0.05 in a wrong valley; on slopes of 3°, where none was found, 0.005.
-inline constexpr double min_searched_azimuth_sd = 0.01;
 
 /// [rad per m/s²] Smallest prior of a mount's compliance: 0.1 mrad under the sensor's own weight, which is negligible.
 inline constexpr double min_mount_compliance = 1e-5;
