@@ -324,7 +324,7 @@ TrackedMachine tracked_machine(const py::object& machine) {
   }
   const auto folder = path_of(machine);
   if (!folder) throw InputError("expected an Identification, or the folder that it was saved in");
-  return {value_of(read_tracked_chain(*folder, "")).model, {*folder + "/chain.toml", *folder + "/track.toml"}};
+  return {value_of(read_tracked_chain(*folder, "")).model, ChainFiles(*folder).names()};
 }
 
 void add_tracking(py::module_& module) {

@@ -53,6 +53,20 @@ Result<std::string> quarter_in_words(int number) {
   return "a quarter is " + std::to_string(quarter);
 }
 
+TEST(Result, ASentenceIsBoundedWhateverAFileHasInIt) {
+  const std::string cell(3000000, '1');
+  EXPECT_EQ(error("a.csv:2: expected a number, found \"{}\"; \"t\" is a time", cell).value().what,
+            "a.csv:2: expected a number, found \"" + std::string(59, '1') + "... (3000003 bytes) \"t\" is a time");
+  std::string umlauts;
+  for (int i = 0; i < 2000; ++i) umlauts += "\xc3\xa4";
+  EXPECT_EQ(bounded_sentence("x" + umlauts).substr(0, 64), "x" + umlauts.substr(0, 58) + "... (");
+  std::string words;
+  for (int i = 0; i < 100000; ++i) words += "word ";
+  EXPECT_LT(bounded_sentence(words).size(), 2010U);
+  const std::string short_one = "x.csv: " + std::string(1900, 'c');
+  EXPECT_EQ(bounded_sentence(short_one), short_one) << "a path may be as long";
+}
+
 TEST(Result, HoldsTheValueOrTheSentence) {
   EXPECT_EQ(half_of(8).value(), 4);
   ASSERT_FALSE(half_of(7));

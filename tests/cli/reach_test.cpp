@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "cli/program.hpp"
 
 namespace kinfer {
@@ -18,6 +20,22 @@ class Reach : public test::Program {
     return kinfer("reach --chain " + source("examples/robot6/robot.toml") + " --targets targets.csv " + more);
   }
 };
+
+TEST_F(Reach, TakesTheChainByPositionAndFromItsFolder) {
+  predict_targets("10,-80,70,20,40,-30\n");
+  std::filesystem::create_directory(in("robot"));
+  ASSERT_EQ(kinfer("convert " + source("examples/robot6/robot.toml") + " robot/chain.toml").code, 0);
+  const Outcome by_option = reach("--quiet");
+  EXPECT_EQ(by_option.code, 0) << by_option.err;
+  for (const char* chain : {"robot", "robot/chain.toml", "--chain robot"}) {
+    const Outcome run = kinfer(std::string("reach ") + chain + " --targets targets.csv --quiet");
+    EXPECT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(run.out, by_option.out) << chain;
+  }
+  EXPECT_EQ(kinfer("path robot --from 0,0,0,0,0,0 --to 10,0,0,0,0,0").code, 0);
+  std::filesystem::create_directory(in("empty"));
+  EXPECT_THAT(kinfer("reach empty --targets targets.csv").err, HasSubstr("empty: expected a file, found a folder"));
+}
 
 TEST_F(Reach, WhatPredictSaysOfTheFoundJointsIsTheTarget) {
   predict_targets("10,-80,70,20,40,-30\n-25,-60,80,10,60,5\n");

@@ -126,7 +126,7 @@ TEST_F(Track, SmoothsAWholeLog) {
 
 TEST_F(Track, PutsRowsThatComeLateInOrder) {
   identify();
-  ASSERT_EQ(kinfer("track machine drive/imu.csv --out work --quiet").code, 0);
+  ASSERT_EQ(kinfer("track machine/chain.toml drive/imu.csv --out work --quiet").code, 0);
   // Every third row one place later, and one far too late.
   ASSERT_EQ(
       shell(

@@ -17,10 +17,14 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
+/// The sentence without words of unbounded length, which a damaged file may have: a long sentence keeps the first
+/// characters of each word of more than 200 bytes and says how many it had, and ends after 2000 bytes.
+std::string bounded_sentence(std::string text);
+
 /// `return error("{}: no such file", path);` from any function that returns a Result.
 template <class... Args>
 tl::unexpected<Error> error(fmt::format_string<Args...> text, Args&&... args) {
-  return tl::unexpected<Error>(Error{fmt::format(text, std::forward<Args>(args)...)});
+  return tl::unexpected<Error>(Error{bounded_sentence(fmt::format(text, std::forward<Args>(args)...))});
 }
 
 /// Converts an error to the Result type of the caller.

@@ -11,6 +11,7 @@
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/identify/pipeline.hpp"
+#include "kinfer/io/robot/model_formats.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
@@ -34,7 +35,7 @@ AccuracyTarget target_of(const ForecastArguments& options) {
 
 /// Simulates the drive with an identified chain.
 Result<InsRecording> simulate_drive(const ForecastArguments& options) {
-  KINFER_TRY(robot, read_robot_toml(options.chain));
+  KINFER_TRY(robot, read_robot_toml(model_file(options.chain)));
   const auto machine = make_machine(robot.chain);
   if (!machine) return error("{}: {}", options.chain, machine.error().what);
   KINFER_TRY(grade, read_grade(options.grade));

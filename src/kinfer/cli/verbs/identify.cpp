@@ -27,18 +27,6 @@
 namespace kinfer::cli {
 namespace {
 
-/// Its folder, of a chain.toml; a folder itself.
-std::string folder_of_chain(const std::string& path) {
-  const std::filesystem::path file(path);
-  if (file.filename() != "chain.toml") return path;
-  return file.has_parent_path() ? file.parent_path().string() : ".";
-}
-
-std::vector<std::string> chain_files(const std::string& path) {
-  const std::filesystem::path folder(folder_of_chain(path));
-  return {folder / "chain.toml", folder / "track.toml"};
-}
-
 /// Settings of a search engine; its own defaults where not given.
 struct EngineArguments {
   std::string engine = "bmp", terminals = "hinge", pairing = "halves";
@@ -183,7 +171,7 @@ Result<identify::IdentifyOptions> identify_options(const CLI::App& verb, const I
   }
   if (!options.update.empty()) {
     if (auto checked = check_update_options(verb); !checked) return forward_error(checked.error());
-    KINFER_TRY(chain, read_tracked_chain(folder_of_chain(options.update), ""));
+    KINFER_TRY(chain, read_tracked_chain(options.update, ""));
     how.refine.known = std::move(chain.model);
   }
   how.threads = options.common.threads;
@@ -195,7 +183,7 @@ Provenance provenance_of(const IdentifyArguments& options, const identify::Ident
   std::vector<std::string> inputs = options.logs;
   if (!options.facts.empty()) inputs.push_back(options.facts);
   if (!options.columns.empty()) inputs.push_back(options.columns);
-  if (!options.update.empty()) std::ranges::copy(chain_files(options.update), std::back_inserter(inputs));
+  if (!options.update.empty()) std::ranges::copy(ChainFiles(options.update).names(), std::back_inserter(inputs));
   auto described = identify::describe(how);
   if (!options.update.empty()) described.emplace_back("--update", options.update);
   return {.inputs = fingerprints(inputs), .options = std::move(described), .seed = options.common.seed};
@@ -220,7 +208,7 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   if (!options.facts.empty()) record.add_input(options.facts);
   if (!options.columns.empty()) record.add_input(options.columns);
   if (!options.update.empty())
-    for (const std::string& path : chain_files(options.update)) record.add_input(path);
+    for (const std::string& path : ChainFiles(options.update).names()) record.add_input(path);
   const auto how = identify_options(verb, options);
   if (!how) return fail(how.error());
   const auto recording = read_ins_logs({options.logs, options.columns, options.topics}, options.common);

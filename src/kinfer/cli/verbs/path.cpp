@@ -145,11 +145,12 @@ Verb add_path(CLI::App& app) {
       "allows. Targets are joined by straight lines of the tool, with a stop at each. Lists are in deg, and in mm for\n"
       "sliding joints. A path that leaves joint limits or passes a singular posture is written, named on standard\n"
       "error, and the exit code is 1.\nExamples:\n"
-      "  kinfer path --chain robot.toml --from 0,-90,90,0,45,0 --via 30,-80,80,0,45,0 --to 60,-90,90,0,45,0 -o "
+      "  kinfer path robot.toml --from 0,-90,90,0,45,0 --via 30,-80,80,0,45,0 --to 60,-90,90,0,45,0 -o "
       "path.csv\n"
-      "  kinfer path --chain robot.toml --targets targets.csv --tool-speed 100 -o path.csv");
+      "  kinfer path robot.toml --targets targets.csv --tool-speed 100 -o path.csv");
   auto options = std::make_shared<PathArguments>();
-  add_robot_option(*verb, options->chain, "--chain", "Chain: chain.toml, a robot TOML, URDF or MJCF");
+  add_robot_option(*verb, options->chain, "chain,--chain",
+                   "Chain: chain.toml or the folder it is in, a robot TOML, URDF or MJCF; --chain may be left out");
   add_text(*verb, "--from", options->from, "First posture", Requirement::optional, "LIST");
   add_texts(*verb, "--via", options->via, "Postures between, in order", Requirement::optional, "LIST");
   add_text(*verb, "--to", options->to, "Last posture", Requirement::optional, "LIST");

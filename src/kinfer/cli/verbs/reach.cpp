@@ -101,11 +101,12 @@ Verb add_reach(CLI::App& app) {
       "(axis_i,axis_j,axis_k) or its pitch above the horizontal plane. Targets that no posture inside the joint "
       "limits\n"
       "reaches are named with the reason on standard error, and the exit code is 1.\nExamples:\n"
-      "  kinfer reach --chain chain.toml --targets targets.csv -o joints.csv\n"
-      "  kinfer reach --chain robot.toml --targets targets.csv --postures all\n"
-      "  kinfer reach --chain robot.urdf --targets path.csv --sequence --prefer 0,-90,90,0,45,0");
+      "  kinfer reach machine --targets targets.csv -o joints.csv\n"
+      "  kinfer reach robot.toml --targets targets.csv --postures all\n"
+      "  kinfer reach robot.urdf --targets path.csv --sequence --prefer 0,-90,90,0,45,0");
   auto options = std::make_shared<ReachArguments>();
-  add_robot_option(*verb, options->chain, "--chain", "Chain: chain.toml, a robot TOML, URDF or MJCF");
+  add_robot_option(*verb, options->chain, "chain,--chain",
+                   "Chain: chain.toml or the folder it is in, a robot TOML, URDF or MJCF; --chain may be left out");
   add_text(*verb, "--targets", options->targets,
            "Wanted tool points and orientations; joint columns q1.. are the preferred postures", Requirement::required,
            "CSV");

@@ -67,8 +67,7 @@ Result<std::optional<BasePlace>> parse_place(const std::string& text) {
 }
 
 Provenance provenance_of(const TrackArguments& options, const track::TrackOptions& how, const TrackingModel& model) {
-  const std::filesystem::path chain(options.chain);
-  std::vector<std::string> inputs{(chain / "chain.toml").string(), (chain / "track.toml").string()};
+  std::vector<std::string> inputs = ChainFiles(options.chain).names();
   for (const std::string& log : options.logs)
     if (log != "-") inputs.push_back(log);
   if (!options.facts.empty()) inputs.push_back(options.facts);
@@ -221,7 +220,8 @@ Verb add_track(CLI::App& app) {
       "  logger | kinfer track excavator - --json\n"
       "  kinfer track excavator growing.csv --follow --out work");
   auto options = std::make_shared<TrackArguments>();
-  add_text(*verb, "chain", options->chain, "Folder that kinfer identify wrote", Requirement::required, "DIR");
+  add_text(*verb, "chain", options->chain, "Folder that kinfer identify wrote, or chain.toml in it",
+           Requirement::required, "DIR");
   add_texts(*verb, "logs", options->logs, "INS recordings of the same sensors, one a logger; -: standard input",
             Requirement::required, "LOG");
   add_text(*verb, "--out", options->out, "Folder for track.csv, evidence.json, report.html, run.json",

@@ -40,18 +40,26 @@ Result<void> take_tool(TrackingModel& model, const std::string& file) {
 
 }  // namespace
 
-Result<TrackedChain> read_tracked_chain(const std::string& folder, const std::string& facts) {
-  const std::filesystem::path path(folder);
-  if (!std::filesystem::is_directory(path))
-    return error("{}: expected a folder that kinfer identify wrote, with chain.toml and track.toml", folder);
-  KINFER_TRY(robot, read_robot_toml(path / "chain.toml"));
-  if (!std::filesystem::exists(path / "track.toml"))
+ChainFiles::ChainFiles(const std::string& path) {
+  const std::filesystem::path given(path);
+  const bool is_file = given.filename() == "chain.toml" || given.filename() == "track.toml";
+  const std::filesystem::path folder = is_file ? given.parent_path() : given;
+  chain = folder / "chain.toml";
+  tracking = folder / "track.toml";
+}
+
+Result<TrackedChain> read_tracked_chain(const std::string& chain, const std::string& facts) {
+  const ChainFiles files(chain);
+  if (!std::filesystem::exists(files.chain))
+    return error("{}: expected a folder that kinfer identify wrote, with chain.toml and track.toml", chain);
+  KINFER_TRY(robot, read_robot_toml(files.chain));
+  if (!std::filesystem::exists(files.tracking))
     return error(
         "{}: the chain has no tracking data, track.toml: identify the machine again, without --geometry searched",
-        folder);
-  KINFER_TRY(model, read_tracking_model(path / "track.toml"));
+        chain);
+  KINFER_TRY(model, read_tracking_model(files.tracking));
   if (position_names(model) != active_joint_names(robot.chain))
-    return error("{}: chain.toml and track.toml are of different machines: their joints differ", folder);
+    return error("{}: chain.toml and track.toml are of different machines: their joints differ", chain);
   take_tool(model, robot.chain);
   if (!facts.empty())
     if (auto done = take_tool(model, facts); !done) return forward_error(done.error());
