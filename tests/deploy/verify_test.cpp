@@ -39,6 +39,30 @@ TEST(Verify, DistinguishesAMovedTrackerFromAChangedRobot) {
   EXPECT_NE(words::verdict(after_knock).find("Calibrate again"), std::string::npos);
 }
 
+/// A refit of nine unknowns to three or four points leaves less than the noise, whatever happened.
+TEST(Verify, FewPointsDoNotTellAMovedTrackerFromAChangedRobot) {
+  const Chain truth = on_a_stand(with_table3_errors(er20(0.125)));
+  Chain bent = truth;
+  std::get<MdhLink>(bent.joints[3].link).alpha += 0.2 * degree;
+  for (const int poses : {3, 4, 5}) {
+    for (int seed = 1; seed <= 10; ++seed) {
+      const PoseSet few = measured(truth, paper2_poses(poses, tracker), seed);
+      EXPECT_EQ(verify(truth, {}, tracker, few)->result, VerificationResult::valid);
+      const Verification changed = verify(bent, {}, tracker, few).value();
+      EXPECT_EQ(changed.redundancy, 3 * poses - 9);
+      EXPECT_NE(changed.result, VerificationResult::frames_moved) << poses << " poses, seed " << seed;
+      if (poses == 3) EXPECT_EQ(changed.result, VerificationResult::moved_or_changed);
+      const auto without_noise = verify(truth, {}, std::nullopt, few);
+      if (poses < 5)
+        EXPECT_NE(without_noise.error().what.find("measured numbers are too few"), std::string::npos);
+      else
+        EXPECT_EQ(without_noise->result, VerificationResult::valid) << seed;
+    }
+  }
+  const PoseSet three = measured(truth, paper2_poses(3, tracker), 5);
+  EXPECT_NE(words::verdict(verify(bent, {}, tracker, three).value()).find("too few to tell"), std::string::npos);
+}
+
 TEST(Verify, WithoutAnInstrumentOnlyAMovedFrameIsFound) {
   const Chain truth = on_a_stand(with_table3_errors(er20(0.125)));
   const PoseSet today = measured(truth, paper2_poses(30, tracker), 5);

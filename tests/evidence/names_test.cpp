@@ -56,7 +56,7 @@ TEST(Names, EveryKindHasOneOfItsOwnThatAProgramCanUse) {
       names_up_to(MissingData::spectral_line),
       names_up_to(AxisRelation::skew),
       names_up_to(ToolLengthSource::radius_without_fit),
-      names_up_to(VerificationResult::robot_changed),
+      names_up_to(VerificationResult::moved_or_changed),
       names_up_to(Criterion::e),
       names_up_to(CalibrationReason::overfitted),
       names_up_to(CalibrationNoteKind::no_offset_moved),

@@ -19,14 +19,16 @@ namespace {
 TEST(VerificationWords, EveryResultHasItsOwnVerdictWithBothErrors) {
   Verification verification{.unmodified = {.mean = 2e-4, .max = 9e-4}, .frames_refitted = {.mean = 1e-4}};
   std::set<std::string> verdicts;
-  for (int i = 0; i <= static_cast<int>(VerificationResult::robot_changed); ++i) {
+  for (int i = 0; i <= static_cast<int>(VerificationResult::moved_or_changed); ++i) {
     verification.result = static_cast<VerificationResult>(i);
     const std::string verdict = words::verdict(verification);
     verdicts.insert(verdict);
     EXPECT_NE(verdict.find("0.200 mm off on average and 0.900 mm at worst"), std::string::npos) << verdict;
-    EXPECT_EQ(verdict.find("0.100 mm") != std::string::npos, verification.result != VerificationResult::valid);
+    EXPECT_EQ(verdict.find("0.100 mm") != std::string::npos,
+              verification.result == VerificationResult::frames_moved ||
+                  verification.result == VerificationResult::robot_changed);
   }
-  EXPECT_EQ(verdicts.size(), 3U);
+  EXPECT_EQ(verdicts.size(), 4U);
 }
 
 TEST(ComparisonWords, NoChangeStatesHowMuchWasCompared) {

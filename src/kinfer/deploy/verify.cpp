@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
+#include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/deploy/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
@@ -56,9 +57,25 @@ std::optional<Instrument> known_instrument(const std::optional<Instrument>& stat
   return Instrument{.sigma = prediction->noise};
 }
 
-VerificationResult judge_by_noise(const Verification& v, double limit) {
+int numbers(const PoseSet& data) {
+  return 3 * static_cast<int>(data.points.size() + data.orientations.size());
+}
+
+/// rms error of the refit as of points that it had not seen: a refit to few points fits their noise, too.
+double honest_rms(const Verification& v, const PoseSet& data) {
+  return v.frames_refitted.rms * std::sqrt(static_cast<double>(numbers(data)) / v.redundancy);
+}
+
+VerificationResult judge_by_noise(const Verification& v, const PoseSet& data, double limit) {
   if (v.unmodified.rms <= limit) return VerificationResult::valid;
-  return v.frames_refitted.rms <= limit ? VerificationResult::frames_moved : VerificationResult::robot_changed;
+  if (v.redundancy > 0 && honest_rms(v, data) > limit) return VerificationResult::robot_changed;
+  return v.redundancy < thresholds::least_redundancy ? VerificationResult::moved_or_changed
+                                                     : VerificationResult::frames_moved;
+}
+
+VerificationResult judge_by_refit(const Verification& v, const PoseSet& data) {
+  return honest_rms(v, data) <= thresholds::refit_ratio * v.unmodified.rms ? VerificationResult::frames_moved
+                                                                           : VerificationResult::valid;
 }
 
 }  // namespace
@@ -81,14 +98,20 @@ Result<Verification> verify(const Chain& given_chain, const Tolerances& toleranc
   KINFER_TRY(refitted, refit_frames(unfaded));
   v.frames_refitted = error_statistics(point_errors(refitted, unfaded));
 
+  const auto unknowns = static_cast<int>(calibrate::frame_parameters(chain, data, tolerances).free_count());
+  v.redundancy = numbers(data) - unknowns;
   const std::optional<Instrument> known = known_instrument(instrument, prediction);
   v.noise_is_known = known.has_value();
   if (known) {
     const double sd = std::max(expected_rms(chain, *known, data, prediction), thresholds::least_point_sd);
-    v.result = judge_by_noise(v, thresholds::noise_ratio * sd);
+    v.result = judge_by_noise(v, data, thresholds::noise_ratio * sd);
   } else {
-    v.result = v.frames_refitted.rms <= thresholds::refit_ratio * v.unmodified.rms ? VerificationResult::frames_moved
-                                                                                   : VerificationResult::valid;
+    if (v.redundancy < thresholds::least_redundancy)
+      return error(
+          "{} measured numbers are too few to verify by: base and tool have {} unknowns, and [instrument] states no "
+          "noise; measure more poses",
+          numbers(data), unknowns);
+    v.result = judge_by_refit(v, data);
   }
   return v;
 }

@@ -36,11 +36,13 @@ void print(const Verification& v, const std::vector<std::string>& notes, const C
                                       {"result", name(v.result)},
                                       {"as_it_stands", figures(v.unmodified)},
                                       {"frames_refitted", figures(v.frames_refitted)},
+                                      {"redundancy", v.redundancy},
                                       {"notes", notes}};
     fmt::print("{}\n", dump_json(json));
   } else if (!common.quiet) {
     fmt::print("{}\n\n  as it stands            {}\n  base and tool refitted  {}\n", words::verdict(v),
-               statistics_line(v.unmodified), statistics_line(v.frames_refitted));
+               statistics_line(v.unmodified),
+               v.redundancy > 0 ? statistics_line(v.frames_refitted) : "too few points to tell");
     for (const std::string& note : notes) fmt::print("  {}\n", note);
   }
 }

@@ -11,6 +11,8 @@ std::string_view name(VerificationResult result) {
       return "frames_moved";
     case VerificationResult::robot_changed:
       return "robot_changed";
+    case VerificationResult::moved_or_changed:
+      return "moved_or_changed";
   }
   return "";
 }

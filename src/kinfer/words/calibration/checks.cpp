@@ -44,6 +44,11 @@ std::string verdict(const Verification& v) {
                     "Not good any more: {}, more than the instrument explains, and refitting base and tool does not "
                     "cure it ({}). Calibrate again.",
                     figures, mm_text(v.frames_refitted.mean));
+    case VerificationResult::moved_or_changed:
+      return phrase(id,
+                    "Not good as it stands: {}, more than the instrument explains. The points are too few to tell "
+                    "whether the instrument, the tool or the robot has moved: measure more poses.",
+                    figures);
   }
   return "";
 }
