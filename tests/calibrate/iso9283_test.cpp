@@ -31,6 +31,17 @@ TEST(Iso9283, AccuracyAndRepeatabilityAreThoseOfTheStandard) {
   EXPECT_FALSE(poses[1].repeatability.has_value());
 }
 
+TEST(Iso9283, ACopyOfAMeasurementIsNoRepetition) {
+  const Chain chain = arm();
+  PoseSet data = test::measured(chain, test::paper2_poses(3, test::noise_free), 1);
+  data.joints.col(1) = data.joints.col(0);
+  data.points[1].position = data.points[0].position;
+  const std::vector<PoseAccuracy> poses = evaluate_pose_accuracy(chain, chain, data);
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses[0].rows, (std::vector<int>{0, 1}));
+  EXPECT_FALSE(poses[0].repeatability.has_value());
+}
+
 TEST(Iso9283, RowsOfOnePoseAreThoseThatComparingAllFinds) {
   const Chain chain = arm();
   PoseSet data = test::measured(chain, test::paper2_poses(400, test::noise_free), 1);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "kinfer/calibrate/validation/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
@@ -30,6 +31,16 @@ std::vector<std::vector<Vec3>> points_of_rows(const PoseSet& data) {
   for (const PointMeasurement& point : data.points)
     if (point.target < 0) points[point.row].push_back(point.position);
   return points;
+}
+
+/// Of these rows, each once: a copy of a measurement is no repetition.
+std::vector<Vec3> distinct_points(const std::vector<int>& rows, const std::vector<std::vector<Vec3>>& points) {
+  std::vector<Vec3> distinct;
+  std::set<std::array<double, 3>> known;
+  for (const int row : rows)
+    for (const Vec3& point : points[row])
+      if (known.insert({point.x(), point.y(), point.z()}).second) distinct.push_back(point);
+  return distinct;
 }
 
 Vec3 centroid(const std::vector<Vec3>& points) {
@@ -120,8 +131,7 @@ std::vector<PoseAccuracy> evaluate_pose_accuracy(const Chain& before, const Chai
     }
   }
   for (PoseAccuracy& pose : poses) {
-    std::vector<Vec3> all;
-    for (const int row : pose.rows) all.insert(all.end(), points[row].begin(), points[row].end());
+    const std::vector<Vec3> all = distinct_points(pose.rows, points);
     const Vec3 centre = centroid(all);
     pose.accuracy_before = (centre - at_before.pose[pose.rows.front()].position).norm();
     pose.accuracy_after = (centre - at_after.pose[pose.rows.front()].position).norm();
