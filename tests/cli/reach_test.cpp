@@ -33,6 +33,8 @@ TEST_F(Reach, TakesTheChainByPositionAndFromItsFolder) {
     EXPECT_EQ(run.out, by_option.out) << chain;
   }
   EXPECT_EQ(kinfer("path robot --from 0,0,0,0,0,0 --to 10,0,0,0,0,0").code, 0);
+  ASSERT_EQ(kinfer("simulate-poses --robot robot --poses 5 --out data").code, 0);
+  EXPECT_THAT(slurp(in("data/run.json")), HasSubstr("/robot/chain.toml\"")) << "the file, not its folder";
   std::filesystem::create_directory(in("empty"));
   EXPECT_THAT(kinfer("reach empty --targets targets.csv").err, HasSubstr("empty: expected a file, found a folder"));
 }

@@ -57,13 +57,13 @@ std::optional<Instrument> known_instrument(const std::optional<Instrument>& stat
   return Instrument{.sigma = prediction->noise};
 }
 
-int numbers(const PoseSet& data) {
+int measured_numbers(const PoseSet& data) {
   return 3 * static_cast<int>(data.points.size() + data.orientations.size());
 }
 
 /// rms error of the refit as of points that it had not seen: a refit to few points fits their noise, too.
 double honest_rms(const Verification& v, const PoseSet& data) {
-  return v.frames_refitted.rms * std::sqrt(static_cast<double>(numbers(data)) / v.redundancy);
+  return v.frames_refitted.rms * std::sqrt(static_cast<double>(measured_numbers(data)) / v.redundancy);
 }
 
 VerificationResult judge_by_noise(const Verification& v, const PoseSet& data, double limit) {
@@ -99,7 +99,7 @@ Result<Verification> verify(const Chain& given_chain, const Tolerances& toleranc
   v.frames_refitted = error_statistics(point_errors(refitted, unfaded));
 
   const auto unknowns = static_cast<int>(calibrate::frame_parameters(chain, data, tolerances).free_count());
-  v.redundancy = numbers(data) - unknowns;
+  v.redundancy = measured_numbers(data) - unknowns;
   const std::optional<Instrument> known = known_instrument(instrument, prediction);
   v.noise_is_known = known.has_value();
   if (known) {
@@ -110,7 +110,7 @@ Result<Verification> verify(const Chain& given_chain, const Tolerances& toleranc
       return error(
           "{} measured numbers are too few to verify by: base and tool have {} unknowns, and [instrument] states no "
           "noise; measure more poses",
-          numbers(data), unknowns);
+          measured_numbers(data), unknowns);
     v.result = judge_by_refit(v, data);
   }
   return v;

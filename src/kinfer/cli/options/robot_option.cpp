@@ -1,11 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/cli/options/robot_option.hpp"
 
+#include <filesystem>
+
 namespace kinfer::cli {
+namespace {
+
+std::string chain_of_folder(const std::string& path) {
+  std::error_code none;
+  const std::filesystem::path inside = std::filesystem::path(path) / "chain.toml";
+  return std::filesystem::is_regular_file(inside, none) ? inside.string() : path;
+}
+
+}  // namespace
+
+void add_model_file(CLI::App& verb, const std::string& name, std::string& path, const std::string& help,
+                    Requirement need, const std::string& placeholder) {
+  add_text(verb, name, path, help, need, placeholder);
+  replace_text(verb, name.substr(name.rfind(',') + 1), chain_of_folder);
+}
 
 void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& name, const std::string& help,
                       Requirement need) {
-  add_text(verb, name, option.path, help, need, "FILE");
+  add_model_file(verb, name, option.path, help, need, "FILE");
   begin_group(verb, "Robot file");
   add_text(verb, "--base-link", option.base_link,
            "Link of a URDF file or body of an MJCF file where the chain begins (default: its root, the world)");
@@ -13,6 +30,10 @@ void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& na
       verb, "--tip-link", option.tip_link,
       "Link of a URDF file, body or site of an MJCF file where the chain ends (default: the end of its longest arm)");
   begin_group(verb, "Options");
+}
+
+void add_chain_option(CLI::App& verb, RobotOption& option, const std::string& help) {
+  add_robot_option(verb, option, "chain,--chain", help + "; --chain may be left out");
 }
 
 Result<RobotModel> read_robot(const RobotOption& option) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --robot FILE (any readable format) with --base-link and --tip-link, shared by all verbs that take a robot.
+// --robot FILE or CHAIN (any readable format) with --base-link and --tip-link, shared by all verbs that take a robot.
 #pragma once
 
 #include "kinfer/cli/parts/common.hpp"
@@ -8,11 +8,20 @@
 
 namespace kinfer::cli {
 
+/// A model's file, or the folder that `identify` or `calibrate` wrote: the value becomes the chain.toml in it, so that
+/// whatever reads, fingerprints or names the file has the same one.
+void add_model_file(CLI::App& verb, const std::string& name, std::string& path, const std::string& help,
+                    Requirement need, const std::string& placeholder);
+
 struct RobotOption {
   std::string path, base_link, tip_link;
 };
 void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& name, const std::string& help,
                       Requirement need = Requirement::required);
+
+/// CHAIN as first argument or --chain, required.
+void add_chain_option(CLI::App& verb, RobotOption& option,
+                      const std::string& help = "Chain: chain.toml or the folder it is in, a robot TOML, URDF or MJCF");
 
 /// By file extension, see model_formats.
 Result<RobotModel> read_robot(const RobotOption& option);

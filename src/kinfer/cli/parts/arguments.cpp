@@ -47,6 +47,15 @@ void add_texts(CLI::App& verb, const std::string& name, std::vector<std::string>
   if (need == Requirement::required) option->required();
 }
 
+void replace_text(CLI::App& verb, const std::string& option,
+                  const std::function<std::string(const std::string&)>& replacement) {
+  const auto replace = [replacement](std::string& text) {
+    text = replacement(text);
+    return std::string();
+  };
+  verb.get_option(option)->transform(CLI::Validator(replace, ""));
+}
+
 void add_list(CLI::App& verb, const std::string& name, std::vector<std::string>& values, const std::string& help,
               const std::string& placeholder) {
   verb.add_option(name, values, help)->type_name(placeholder)->allow_extra_args(false);

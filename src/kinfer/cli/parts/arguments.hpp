@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,9 @@ void add_text(CLI::App& verb, const std::string& name, std::string& value, const
               Requirement need = Requirement::optional, const std::string& placeholder = "TEXT");
 void add_texts(CLI::App& verb, const std::string& name, std::vector<std::string>& values, const std::string& help,
                Requirement need = Requirement::optional, const std::string& placeholder = "TEXT");
+/// What is given for this option ("--chain") is replaced when the arguments are parsed.
+void replace_text(CLI::App& verb, const std::string& option,
+                  const std::function<std::string(const std::string&)>& replacement);
 /// One value each time the option is given.
 void add_list(CLI::App& verb, const std::string& name, std::vector<std::string>& values, const std::string& help,
               const std::string& placeholder);

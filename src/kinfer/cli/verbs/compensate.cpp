@@ -125,10 +125,9 @@ Verb add_compensate(CLI::App& app) {
       "Rows that cannot be reached are said on standard error, and the exit code is 1.\nExample:\n"
       "  kinfer compensate --chain calibration/chain.toml --nominal robot.toml --joints joints.csv -o corrected.csv");
   auto options = std::make_shared<CompensateArguments>();
-  add_robot_option(*verb, options->chain, "chain,--chain",
-                   "Corrected model: chain.toml or the folder it is in, URDF or MJCF; --chain may be left out");
-  add_text(*verb, "--nominal", options->nominal, "Model that the robot's controller has", Requirement::required,
-           "ROBOT");
+  add_chain_option(*verb, options->chain, "Corrected model: chain.toml or the folder it is in, URDF or MJCF");
+  add_model_file(*verb, "--nominal", options->nominal, "Model that the robot's controller has", Requirement::required,
+                 "ROBOT");
   add_text(*verb, "--joints", options->joints, "Joint lists as the controller would send them", Requirement::optional,
            "CSV");
   add_text(*verb, "--targets", options->targets,

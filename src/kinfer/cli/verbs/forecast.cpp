@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/cli/options/drive_choices.hpp"
+#include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/identify/pipeline.hpp"
-#include "kinfer/io/robot/model_formats.hpp"
 #include "kinfer/io/robot/robot_toml.hpp"
 #include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
@@ -35,7 +35,7 @@ AccuracyTarget target_of(const ForecastArguments& options) {
 
 /// Simulates the drive with an identified chain.
 Result<InsRecording> simulate_drive(const ForecastArguments& options) {
-  KINFER_TRY(robot, read_robot_toml(model_file(options.chain)));
+  KINFER_TRY(robot, read_robot_toml(options.chain));
   const auto machine = make_machine(robot.chain);
   if (!machine) return error("{}: {}", options.chain, machine.error().what);
   KINFER_TRY(grade, read_grade(options.grade));
@@ -104,7 +104,8 @@ Verb add_forecast(CLI::App& app) {
       "  kinfer forecast --chain excavator/chain.toml --drive gentle --duration 90 --grade industrial");
   auto options = std::make_shared<ForecastArguments>();
   add_texts(*verb, "logs", options->logs, "INS recordings", Requirement::optional, "CSV");
-  add_text(*verb, "--chain", options->chain, "chain.toml of an earlier identification", Requirement::optional, "TOML");
+  add_model_file(*verb, "--chain", options->chain, "chain.toml of an earlier identification, or the folder it is in",
+                 Requirement::optional, "TOML");
   std::vector<std::string> drives;
   for (const auto& [name, script] : drive_scripts) drives.push_back(name);
   add_choice(*verb, "--drive", options->drive, drives, "Drive to rehearse (see kinfer simulate --help)");

@@ -149,8 +149,7 @@ Verb add_path(CLI::App& app) {
       "path.csv\n"
       "  kinfer path robot.toml --targets targets.csv --tool-speed 100 -o path.csv");
   auto options = std::make_shared<PathArguments>();
-  add_robot_option(*verb, options->chain, "chain,--chain",
-                   "Chain: chain.toml or the folder it is in, a robot TOML, URDF or MJCF; --chain may be left out");
+  add_chain_option(*verb, options->chain);
   add_text(*verb, "--from", options->from, "First posture", Requirement::optional, "LIST");
   add_texts(*verb, "--via", options->via, "Postures between, in order", Requirement::optional, "LIST");
   add_text(*verb, "--to", options->to, "Last posture", Requirement::optional, "LIST");

@@ -66,8 +66,7 @@ Verb add_predict(CLI::App& app) {
       add_command(app, "predict", "Tool poses of a chain for a list of joint positions",
                   "Example:\n  kinfer predict --chain calibration/chain.toml --joints joints.csv -o poses.csv");
   auto options = std::make_shared<PredictArguments>();
-  add_robot_option(*verb, options->chain, "chain,--chain",
-                   "Chain: chain.toml or the folder it is in, a robot TOML, URDF or MJCF; --chain may be left out");
+  add_chain_option(*verb, options->chain);
   add_text(*verb, "--joints", options->joints, "File with the joint columns q1..; other columns may be there",
            Requirement::required, "CSV");
   add_text(*verb, "-o,--out", options->out,

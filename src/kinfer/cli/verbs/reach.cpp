@@ -105,8 +105,7 @@ Verb add_reach(CLI::App& app) {
       "  kinfer reach robot.toml --targets targets.csv --postures all\n"
       "  kinfer reach robot.urdf --targets path.csv --sequence --prefer 0,-90,90,0,45,0");
   auto options = std::make_shared<ReachArguments>();
-  add_robot_option(*verb, options->chain, "chain,--chain",
-                   "Chain: chain.toml or the folder it is in, a robot TOML, URDF or MJCF; --chain may be left out");
+  add_chain_option(*verb, options->chain);
   add_text(*verb, "--targets", options->targets,
            "Wanted tool points and orientations; joint columns q1.. are the preferred postures", Requirement::required,
            "CSV");

@@ -171,12 +171,11 @@ Verb add_verify(CLI::App& app) {
                                "  kinfer verify --chain calibration/chain.toml --data today.csv\n"
                                "  kinfer verify --chain may/chain.toml --against june/chain.toml");
   auto options = std::make_shared<VerifyArguments>();
-  add_robot_option(*verb, options->chain, "chain,--chain",
-                   "chain.toml of the calibration, or the folder it is in; --chain may be left out");
+  add_chain_option(*verb, options->chain, "chain.toml of the calibration, or the folder it is in");
   add_text(*verb, "--data", options->data, "New pose set", Requirement::optional, "CSV");
-  add_text(*verb, "--against", options->against,
-           "A later calibration: which numbers have changed, by more than chance (exit code 1)", Requirement::optional,
-           "FILE");
+  add_model_file(*verb, "--against", options->against,
+                 "A later calibration: which numbers have changed, by more than chance (exit code 1)",
+                 Requirement::optional, "FILE");
   add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Requirement::optional,
            "TOML");
   add_common_options(*verb, options->common);

@@ -107,15 +107,7 @@ std::string writable_model_extensions() {
   return join_alternatives(names);
 }
 
-std::filesystem::path model_file(const std::filesystem::path& file_or_folder) {
-  std::error_code none;
-  const std::filesystem::path inside = file_or_folder / "chain.toml";
-  return std::filesystem::is_directory(file_or_folder, none) && std::filesystem::exists(inside, none) ? inside
-                                                                                                      : file_or_folder;
-}
-
-Result<RobotModel> read_robot_model(const std::filesystem::path& file_or_folder, const ChainEnds& ends) {
-  const std::filesystem::path path = model_file(file_or_folder);
+Result<RobotModel> read_robot_model(const std::filesystem::path& path, const ChainEnds& ends) {
   const std::string extension = path.extension().string();
   if (extension == ".xacro")
     return error("{}: xacro files must be expanded first: xacro {} > robot.urdf", path.string(),

@@ -32,11 +32,8 @@ std::span<const ModelFormat> model_formats();
 std::string readable_model_formats();
 std::string writable_model_extensions();
 
-/// The file of a model: of a folder that `identify` or `calibrate` wrote, the chain.toml in it.
-std::filesystem::path model_file(const std::filesystem::path& file_or_folder);
-
-/// Reads a model by its extension, XML by its outermost element, a folder as of model_file. xacro is refused.
-Result<RobotModel> read_robot_model(const std::filesystem::path& file_or_folder, const ChainEnds& ends = {});
+/// Reads a model by its extension, XML by its outermost element. xacro is refused.
+Result<RobotModel> read_robot_model(const std::filesystem::path& path, const ChainEnds& ends = {});
 
 /// Writes a model by its extension. An error for an extension that no format writes.
 Result<void> write_robot_model(const std::filesystem::path& path, const RobotModel& robot,
