@@ -61,7 +61,7 @@ std::vector<TrackedDrive> tracked_drives() {
 Figures tracking_figures(const std::vector<TrackedDrive>& drives) {
   double worst_joint = 0.0, tool = 0.0, false_alarms = 0.0, log_delay = 0.0, sound = 0.0, faulty = 0.0, nees = 0.0;
   for (const TrackedDrive& drive : drives) {
-    const TrackScore score = track(drive.model, drive.identified, drive.drive);
+    const TrackScore score = track(drive.model, &drive.identified, drive.drive);
     if (drive.fault.kind != FaultKind::none) {
       faulty += 1.0, log_delay += std::log(std::max(0.02, seconds_until_named(score, drive.fault)));
       continue;

@@ -41,7 +41,7 @@ void study_machine(const AlarmStudy& study, DriveSetup setup) {
   for (const auto& [script, label] :
        {std::pair{Script::standard, "standard"}, {Script::quick, "quick"}, {Script::gentle, "gentle"}}) {
     setup.script = script;
-    print_row(label, alarms_of(track(*model, identified, simulate_drive(setup)), 0.0));
+    print_row(label, alarms_of(track(*model, &identified, simulate_drive(setup)), 0.0));
   }
   setup.script = Script::standard;
   const SimulatedDrive healthy = simulate_drive(setup);
@@ -51,10 +51,11 @@ void study_machine(const AlarmStudy& study, DriveSetup setup) {
                                             {FaultKind::late, late_by, "20 ms late"}}) {
       SimulatedDrive faulty = healthy;
       inject({.kind = kind, .sensor = sensor, .size = size, .begin = fault_begins, .end = 1e9}, faulty);
-      print_row(fmt::format("sensor {} {}", sensor, label), alarms_of(track(*model, identified, faulty), fault_begins));
+      print_row(fmt::format("sensor {} {}", sensor, label),
+                alarms_of(track(*model, &identified, faulty), fault_begins));
     }
   setup.machine_seed += 1;
-  print_row("another machine's log", alarms_of(track(*model, identified, simulate_drive(setup)), 0.0));
+  print_row("another machine's log", alarms_of(track(*model, &identified, simulate_drive(setup)), 0.0));
 }
 
 void study_rocking(const AlarmStudy& study, DriveSetup setup) {
@@ -64,7 +65,7 @@ void study_rocking(const AlarmStudy& study, DriveSetup setup) {
   if (!model) return print_row("rocking, not identified", model.error().what);
   setup.duration = study.duration;
   setup.drive_seed += 1000;
-  print_row("rocking", alarms_of(track(*model, identified, simulate_drive(setup)), 0.0));
+  print_row("rocking", alarms_of(track(*model, &identified, simulate_drive(setup)), 0.0));
 }
 
 }  // namespace

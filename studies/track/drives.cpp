@@ -7,6 +7,7 @@
 
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
+#include "support/tracked_machine.hpp"
 
 namespace kinfer::study::track_study {
 namespace {
@@ -77,6 +78,10 @@ Result<TrackingModel> identify_drive(const SimulatedDrive& drive) {
   KINFER_TRY(found, identify::identify_machine(drive.recording, {.threads = 1}, Rng(1), {}));
   if (!found.tracking) return error("no tracking model");
   return *found.tracking;
+}
+
+TrackingModel exact_geometry(const SimulatedDrive& drive, const std::string& grade) {
+  return test::tracking_model_of(drive.machine, *sensor_grade(grade), 200.0, {.rotation = 1e-7, .point = 1e-6});
 }
 
 void inject(const InjectedFault& fault, SimulatedDrive& drive) {

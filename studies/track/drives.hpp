@@ -31,6 +31,10 @@ SimulatedDrive simulate_drive(const DriveSetup& setup);
 /// By default options; its joint positions count from the beginning of the drive.
 Result<TrackingModel> identify_drive(const SimulatedDrive& drive);
 
+/// The chain as built, its geometry exact, its sensors with the errors of their grade yet unknown: what any
+/// identification could hand over at best of the geometry. Joint positions are the machine's own.
+TrackingModel exact_geometry(const SimulatedDrive& drive, const std::string& grade);
+
 /// A change of the recording from `begin` on; play is in the joint before the sensor and moves all beyond it.
 enum class FaultKind { none, turned, shifted, play, lost, late };
 struct InjectedFault {

@@ -24,8 +24,8 @@ std::size_t sensor_named(const Machine& machine, const std::string& name) {
                                   machine.sensors.begin());
 }
 
-std::vector<TrueJoint> true_joints(const TrackingModel& model, const SimulatedDrive& identified) {
-  const Machine& machine = identified.machine;
+std::vector<TrueJoint> true_joints(const TrackingModel& model, const SimulatedDrive* identified,
+                                   const Machine& machine) {
   std::vector<TrueJoint> joints;
   for (const TrackingBody& body : model.bodies) {
     if (body.joint < 0) continue;
@@ -33,7 +33,7 @@ std::vector<TrueJoint> true_joints(const TrackingModel& model, const SimulatedDr
     const std::size_t s = sensor_named(machine, name);
     const std::vector<int> active = active_joints(machine.chain);
     TrueJoint joint{.row = std::ranges::find(active, machine.sensors[s].joint) - active.begin()};
-    joint.zero = identified.motion.q(joint.row, 0);
+    if (identified != nullptr) joint.zero = identified->motion.q(joint.row, 0);
     const auto& link =
         std::get<UrdfLink>(machine.chain.joints[static_cast<std::size_t>(machine.sensors[s].joint)].link);
     const Vec3 axis = machine.sensors[s].segment_T_sensor.rotation.transpose() * link.axis;
@@ -104,11 +104,11 @@ void each_state(const TrackingModel& model, kinfer::track::Estimator estimator, 
 
 }  // namespace
 
-TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, const SimulatedDrive& drive,
+TrackScore track(const TrackingModel& model, const SimulatedDrive* identified, const SimulatedDrive& drive,
                  kinfer::track::Estimator estimator) {
   using Clock = std::chrono::steady_clock;
   kinfer::track::ComposedFilters composed(model, {});
-  const std::vector<TrueJoint> truth = true_joints(model, identified);
+  const std::vector<TrueJoint> truth = true_joints(model, identified, drive.machine);
   const std::size_t
       base = sensor_named(drive.machine, model.sensors[static_cast<std::size_t>(model.bodies[0].sensor)].name),
       tip = sensor_named(

@@ -27,7 +27,8 @@ struct TrackScore {
   std::vector<Alarm> alarms;  ///< each kind and sensor once
 };
 
-TrackScore track(const TrackingModel& model, const SimulatedDrive& identified, const SimulatedDrive& drive,
+/// `identified`: the drive at whose beginning the model's joint positions are zero; null: they are the machine's own.
+TrackScore track(const TrackingModel& model, const SimulatedDrive* identified, const SimulatedDrive& drive,
                  kinfer::track::Estimator estimator = kinfer::track::Estimator::filter);
 
 }  // namespace kinfer::study::track_study

@@ -41,13 +41,30 @@ TEST(ValidationPlan, RowsOfOnePoseWithDifferentAnchorsAreHeldOutTogether) {
     }
 }
 
-TEST(ValidationPlan, RepeatedMeasurementsFromOneAnchorAreHeldOutAlone) {
-  PoseSet set = three_rows_of_each_pose(20);
+/// Its readings scatter by less than the tolerance of a commanded pose.
+TEST(ValidationPlan, RepeatedMeasurementsOfOnePoseAreHeldOutTogether) {
+  constexpr int poses = 20;
+  PoseSet set = three_rows_of_each_pose(poses);
   for (DistanceMeasurement& wire : set.distances) wire.anchor = 0;
-  bool split = false;
+  Rng rng(2);
+  for (double& q : set.joints.reshaped()) q += rng.uniform(-2e-5, 2e-5);
   for (const Split& fold : make_row_folds(set, 5, Rng(1)))
-    for (int row = 0; row < 20; ++row) split |= contains(fold.holdout, row) != contains(fold.holdout, row + 20);
-  EXPECT_TRUE(split);
+    for (int row = 0; row < poses; ++row) {
+      EXPECT_EQ(contains(fold.holdout, row), contains(fold.holdout, row + poses));
+      EXPECT_EQ(contains(fold.holdout, row), contains(fold.holdout, row + 2 * poses));
+    }
+}
+
+TEST(ValidationPlan, BallBarsFromOneReferencePoseAreHeldOutApart) {
+  PoseSet set = measured(er20(), paper2_poses(30, noise_free));
+  set.points.clear();
+  for (int row = 0; row < 30; row += 2) {
+    set.joints.col(row) = set.joints.col(0);
+    set.pairs.push_back({row, row + 1, 0.5});
+  }
+  const std::vector<Split> folds = make_row_folds(set, 5, Rng(1));
+  ASSERT_EQ(folds.size(), 5U);
+  for (const Split& fold : folds) EXPECT_EQ(fold.holdout.size(), 6U);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace {
 PoseSet rows_without_measurements(int rows) {
   PoseSet data;
   data.joints = MatrixXd::Zero(6, rows);
+  data.joints.row(0).setLinSpaced(rows, 0.0, 0.1 * rows);
   return data;
 }
 
@@ -106,6 +107,19 @@ TEST(ValidationPlan, TooFewRowsAreAnError) {
   EXPECT_EQ(refusal_of(rows_without_measurements(4), {.holdout = CrossValidation{2}}),
             "4 rows are too few to fit and validate a calibration; at least 4 are needed");
   EXPECT_EQ(refusal_of(rows_without_measurements(4), {.holdout = CrossValidation{4}}), "(accepted)");
+}
+
+TEST(ValidationPlan, OnePoseMeasuredAgainAndAgainIsTooLittle) {
+  PoseSet data = rows_without_measurements(200);
+  for (Eigen::Index row = 1; row < 200; ++row) data.joints.col(row) = data.joints.col(0);
+  EXPECT_EQ(
+      refusal_of(data),
+      "200 rows of one pose are too few to fit and validate a calibration; at least 4 different poses are needed");
+  for (Eigen::Index row = 0; row < 200; ++row) data.joints(1, row) = 0.5 * static_cast<double>(row % 3);
+  EXPECT_EQ(refusal_of(data),
+            "200 rows of 3 poses are too few to fit and validate a calibration; at least 4 different poses are needed");
+  for (Eigen::Index row = 0; row < 200; ++row) data.joints(1, row) = 0.5 * static_cast<double>(row % 4);
+  EXPECT_EQ(plan_of(data).validation_splits.size(), 4U);
 }
 
 TEST(ValidationPlan, RowsLinkedByABallBarStayTogether) {

@@ -52,7 +52,8 @@ SeriesProblem::Solution SeriesProblem::maximise(int rounds) {
           std::clamp(squares / std::max(effective_number(s, k), 1e-3), 1e-8 * largest_variance, largest_variance);
     }
     const double redundancy = static_cast<double>(system_.residuals) - effective_number(s);
-    const double noise = residual_squares(s.step) / std::max(1.0, redundancy);
+    // Of exact residuals what is left is rounding, of either sign.
+    const double noise = std::max(thresholds::least_series_noise, residual_squares(s.step) / std::max(1.0, redundancy));
     set_variances(std::move(variance));
     s = solve(noise);
   }

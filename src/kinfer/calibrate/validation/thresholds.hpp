@@ -13,7 +13,7 @@ inline constexpr int default_folds = 5;        ///< of a cross-validation; more:
 inline constexpr int leave_one_out_rows = 12;  ///< an offset refit with at most so many rows holds out one at a time
 /// Each pose gives at most six equations; base and tool alone are nine unknowns, and one row must validate the result.
 inline constexpr int min_fitted_rows = 4;
-inline constexpr std::size_t min_training_rows = 3;
+inline constexpr int min_training_poses = 3;
 
 /// [sigma] gross error of the richest model: twice the largest residual by chance among a thousand valid rows.
 KINFER_THRESHOLD(calibrate, gross_sigmas, 11.0);
@@ -24,7 +24,7 @@ inline constexpr double explained_sigmas = 4.0;
 /// One held-out row in so many with a gross error: the model is at fault, and no row is excluded.
 inline constexpr std::size_t max_gross_part = 3;
 
-/// [rad], [m] joint positions of one commanded pose of ISO 9283.
+/// [rad], [m] joint positions of one commanded pose: of ISO 9283, and of rows that are held out together.
 inline constexpr double same_pose_angle = 1e-4, same_pose_length = 1e-5;
 
 }  // namespace kinfer::calibrate::thresholds

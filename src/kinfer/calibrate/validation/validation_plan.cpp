@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "kinfer/calibrate/validation/commanded_poses.hpp"
 #include "kinfer/calibrate/validation/thresholds.hpp"
 #include "kinfer/measurement/row_selection.hpp"
 
@@ -38,6 +39,26 @@ void link_sights_of_one_pose(const PoseSet& data, Link link) {
   });
 }
 
+/// Calls link(row, other) for rows of one pose: with its copy among the fitted rows, a held-out row would show how well
+/// a pose repeats and not how well another one is predicted. Not beside ball-bars: all bars from one reference pose
+/// would be linked.
+template <class Link>
+void link_repeated_poses(const PoseSet& data, Link link) {
+  if (!data.pairs.empty()) return;
+  std::vector<int> first;
+  const std::vector<int> poses = commanded_poses(data.joints, thresholds::same_pose_angle);
+  for (int row = 0; row < data.rows(); ++row) {
+    const auto pose = static_cast<std::size_t>(poses[static_cast<std::size_t>(row)]);
+    if (pose == first.size()) first.push_back(row);
+    link(first[pose], row);
+  }
+}
+
+int distinct_poses(const PoseSet& data, const std::vector<int>& rows) {
+  const std::vector<int> poses = commanded_poses(data.joints(Eigen::all, rows), thresholds::same_pose_angle);
+  return poses.empty() ? 0 : 1 + *std::ranges::max_element(poses);
+}
+
 /// Groups of linked rows, each ascending.
 std::vector<std::vector<int>> linked_row_groups(const PoseSet& data) {
   std::vector<int> first(data.rows());  // smallest row of the group
@@ -52,6 +73,7 @@ std::vector<std::vector<int>> linked_row_groups(const PoseSet& data) {
   };
   for (const PairDistance& pair : data.pairs) link(pair.row, pair.other);
   link_sights_of_one_pose(data, link);
+  link_repeated_poses(data, link);
   std::vector<std::vector<int>> groups(data.rows());
   for (int row = 0; row < data.rows(); ++row) groups[root(row)].push_back(row);
   std::erase_if(groups, [](const auto& group) { return group.empty(); });
@@ -77,6 +99,11 @@ int fold_count(const PoseSet& data, const CrossValidation& choice, const Paramet
 }
 
 Error too_few_rows(const PoseSet& data) {
+  if (const int poses = distinct_poses(data, all_rows(data)); poses < data.rows())
+    return {fmt::format(
+        "{} rows of {} are too few to fit and validate a calibration; at least {} different poses are "
+        "needed",
+        data.rows(), poses == 1 ? "one pose" : fmt::format("{} poses", poses), thresholds::min_fitted_rows)};
   return {fmt::format("{} rows are too few to fit and validate a calibration; at least {} are needed", data.rows(),
                       thresholds::min_fitted_rows)};
 }
@@ -117,8 +144,9 @@ Result<ValidationPlan> make_validation_plan(const PoseSet& data, const Calibrati
   if (static_cast<int>(plan.fitted.size()) < thresholds::min_fitted_rows)
     return error("{} rows are left to fit; a calibration needs at least {} (20 or more are better)", plan.fitted.size(),
                  thresholds::min_fitted_rows);
+  if (distinct_poses(data, plan.fitted) < thresholds::min_fitted_rows) return forward_error(too_few_rows(data));
   for (const Split& split : plan.validation_splits)
-    if (split.train.size() < thresholds::min_training_rows) return forward_error(too_few_rows(data));
+    if (distinct_poses(data, split.train) < thresholds::min_training_poses) return forward_error(too_few_rows(data));
   return plan;
 }
 

@@ -19,8 +19,8 @@ struct ValidationPlan {
   bool fits_all_rows = true;  ///< false: the result is fitted on the train rows of the only split
 };
 
-/// Rows linked by a ball-bar, and rows of one pose with different fixtures (stations, anchors), stay on one side of a
-/// split. An error if too few rows are left to fit or to validate.
+/// Rows linked by a ball-bar, and rows of one pose (repeated, or with different fixtures: stations, anchors), stay on
+/// one side of a split. An error if too few rows or different poses are left to fit or to validate.
 Result<ValidationPlan> make_validation_plan(const PoseSet& data, const CalibrationOptions& options, Rng rng);
 
 /// k splits of all rows of `data`, with linked rows together.
