@@ -2,6 +2,9 @@
 // Each instrument alone, and several together, recover the errors of a simulated robot.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/calibrate/conclusion/unobserved_lengths.hpp"
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
@@ -177,6 +180,24 @@ TEST(Instruments, BallBarsPlanesAndTiltsTogetherWithFewTrackerPoints) {
   EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
   EXPECT_NEAR(*c.estimate.chi2_per_n, 1.0, 0.35);
   EXPECT_LT(mean(point_errors(c.estimate.chain, measured(truth, paper2_poses(200, noise_free), 99))), 100e-6);
+}
+
+TEST(Instruments, ErrorsOfTiltsAreAngles) {
+  constexpr double noise = 5e-3;  // [m/s²]
+  const Chain truth = true_robot(4);
+  PoseSet data = readings_of(measured(truth, paper2_poses(60, noise_free)));
+  measure_tilts(data, truth, noise, Rng(7));
+  Instrument instrument;
+  instrument.sigma_tilt = noise;
+  const Calibration c = calibrated(nominal_robot(), data, instrument);
+  EXPECT_EQ(c.measured, kind_of<TiltMeasurement>);
+  const double expected = noise / truth.gravity.norm() * std::sqrt(0.5 * std::numbers::pi);  // of two axes
+  EXPECT_EQ(c.after.orientation.holdout.n, 60);
+  EXPECT_GT(c.after.orientation.holdout.mean, 0.9 * expected);
+  EXPECT_LT(c.after.orientation.holdout.mean, 1.6 * expected);
+  EXPECT_GT(c.before.orientation.holdout.mean, 2.0 * c.after.orientation.holdout.mean);
+  EXPECT_EQ(words::verdict(c).find("Use with care: on poses that were not fitted the tilt is 0.0"), 0u)
+      << words::verdict(c);
 }
 
 TEST(Instruments, TargetsWithoutTheToolPointDetermineTheToolsRotation) {

@@ -29,6 +29,32 @@ TEST(Verdict, AModelThatIsNoBetterIsNotUsed) {
   EXPECT_EQ(usability_of(CalibrationReason::no_improvement), Usability::do_not_use);
 }
 
+TEST(Verdict, AnImprovementThatMayBeChanceIsUsedWithCare) {
+  Calibration c = with_errors(8e-3, 6e-3, 6e-3);
+  c.chance_of_improvement = 0.04;
+  EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
+  c.chance_of_improvement = 0.12;
+  c.reason = judge(c), c.usability = usability_of(c.reason);
+  EXPECT_EQ(c.reason, CalibrationReason::unproven);
+  EXPECT_EQ(c.usability, Usability::use_with_care);
+  EXPECT_EQ(words::verdict(c),
+            "Use with care: better, but these poses do not prove it: a model that is no better would look as good with "
+            "a probability of 12 %: on poses that were not fitted the tool is 6.000 mm off on average and 12.000 mm at "
+            "worst (8.000 mm and 16.000 mm before).");
+}
+
+TEST(Verdict, ErrorsFarAboveTheInstrumentsNoiseAreUsedWithCare) {
+  Calibration c = with_errors(44e-3, 37e-3, 37e-3);
+  c.expected_holdout_rms = 20e-3, c.noise_holdout_rms = 14e-3;
+  EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
+  c.noise_holdout_rms = 2e-3;
+  c.reason = judge(c), c.usability = usability_of(c.reason);
+  EXPECT_EQ(c.reason, CalibrationReason::beyond_noise);
+  EXPECT_EQ(c.usability, Usability::use_with_care);
+  EXPECT_NE(words::verdict(c).find("the errors are 18 times what the instrument's noise explains"), std::string::npos)
+      << words::verdict(c);
+}
+
 TEST(Verdict, AFinalFitThatConvergedElsewhereIsNotValidated) {
   EXPECT_EQ(judge(with_errors(1e-3, 1e-4, 1.6e-4)), CalibrationReason::not_validated);
   EXPECT_EQ(judge(with_errors(1e-3, 1e-4, 1.4e-4)), CalibrationReason::improves_nominal);

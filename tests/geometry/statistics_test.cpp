@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kinfer/base/rng.hpp"
+#include "kinfer/geometry/student.hpp"
 
 namespace kinfer {
 namespace {
@@ -85,6 +86,19 @@ TEST(ChiSquared, DistributionRisesFromZeroToOneWithoutAStepWhereItsTwoFormulasMe
     EXPECT_EQ(chi_squared_cdf(0.0, n), 0.0);
     EXPECT_NEAR(chi_squared_cdf(n + 40 * std::sqrt(2 * n) + 100, n), 1.0, 1e-12);
   }
+}
+
+TEST(Student, TailsAgreeWithTheTableAndWithEachOther) {
+  // NIST/SEMATECH e-Handbook of Statistical Methods, 1.3.6.7.2: three decimals.
+  struct Row {
+    int n;
+    double tail, t;
+  };
+  for (const Row& row :
+       {Row{1, 0.05, 6.314}, Row{4, 0.05, 2.132}, Row{5, 0.025, 2.571}, Row{30, 0.01, 2.457}, Row{100, 0.05, 1.660}})
+    EXPECT_NEAR(student_upper_tail(row.t, row.n), row.tail, 1e-4 * row.tail + 2e-5) << row.n;
+  EXPECT_EQ(student_upper_tail(0.0, 7), 0.5);
+  EXPECT_EQ(student_upper_tail(-1.3, 6), 1.0 - student_upper_tail(1.3, 6));
 }
 
 TEST(FDistribution, QuantilesAgreeWithTheTable) {

@@ -90,6 +90,22 @@ TEST(Positive, AnIndefiniteMatrixHasNoSolution) {
   EXPECT_FALSE(cholesky(a).has_value());
 }
 
+/// Of rank one but for the smallest part, in units that differ by 1e20.
+TEST(Positive, WhatRoundingMadeIndefiniteHasAFactorAndAnInverse) {
+  const MatrixXd sound = random_positive(5, 9);
+  EXPECT_EQ(invert_but_for_rounding(sound), *invert_spd(sound));
+  EXPECT_EQ(cholesky_but_for_rounding(sound), *cholesky(sound));
+  const VectorXd big = 1e10 * test::random_matrix(4, 1, 3);
+  MatrixXd a = big * big.transpose();
+  a(3, 3) -= 1e5;
+  ASSERT_FALSE(cholesky(a).has_value());
+  const MatrixXd root = cholesky_but_for_rounding(a), inverse = invert_but_for_rounding(a);
+  EXPECT_LT((root * root.transpose() - a).norm(), 1e-12 * a.norm());
+  EXPECT_LT((inverse * root * root.transpose() - identity(4)).norm(), 0.1);
+  const MatrixXd indefinite = Eigen::Vector3d(1.0, -1.0, 0.0).asDiagonal();
+  EXPECT_TRUE(cholesky_but_for_rounding(indefinite).allFinite());
+}
+
 TEST(Positive, SemidefiniteSystemsAreSolvedInTheirRange) {
   MatrixXd half = test::random_matrix(6, 6, 8);
   half.row(3).setZero();  // a direction without variance

@@ -99,7 +99,11 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
   const EvaluationInputs evaluation{task.nominal, task.instrument,     task.data,    plan,
                                     frames_only,  fit.validation_fits, excluded.rows};
   fill_error_statistics(calibration, evaluation);
-  calibration.expected_holdout_rms = expected_holdout_rms(evaluation);
+  calibration.chance_of_improvement = chance_of_improvement(calibration.rows, excluded.rows, task.data);
+  if (const auto expected = expected_holdout_errors(evaluation)) {
+    calibration.expected_holdout_rms = expected->of_fit;
+    calibration.noise_holdout_rms = expected->by_noise;
+  }
   if (const auto prediction = make_prediction_model(evaluation, fit.estimate, fit.beyond, options.threads)) {
     calibration.prediction = prediction->model;
     calibration.predicted_holdout_rms = prediction->holdout_rms;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinfer/fleet/student.hpp"
 #include "kinfer/fleet/thresholds.hpp"
+#include "kinfer/geometry/student.hpp"
 
 namespace kinfer::fleet {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <map>
 
-#include "kinfer/fleet/student.hpp"
 #include "kinfer/fleet/thresholds.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/geometry/student.hpp"
 
 namespace kinfer::fleet {
 namespace {

@@ -6,6 +6,8 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "kinfer/base/expect.hpp"
 
@@ -50,6 +52,24 @@ std::optional<MatrixXd> cholesky(ConstMatrixRef a) {
   const Eigen::LLT<MatrixXd> factor(a);
   if (factor.info() != Eigen::Success) return std::nullopt;
   return MatrixXd(factor.matrixL());
+}
+
+MatrixXd cholesky_but_for_rounding(ConstMatrixRef a) {
+  if (auto root = cholesky(a)) return std::move(*root);
+  KINFER_EXPECT(a.allFinite(), "a matrix of {} rows is not finite", a.rows());
+  const VectorXd scale = a.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt();
+  MatrixXd unit = scale.cwiseInverse().asDiagonal() * a * scale.cwiseInverse().asDiagonal();
+  for (double more = 1e-14;; more *= 10.0) {  // at the latest when it outweighs all others of a row
+    unit.diagonal().array() += more;
+    if (const auto root = cholesky(unit)) return scale.asDiagonal() * *root;
+  }
+}
+
+MatrixXd invert_but_for_rounding(ConstMatrixRef a) {
+  if (auto inverse = invert_spd(a)) return std::move(*inverse);
+  const MatrixXd root = cholesky_but_for_rounding(a);
+  const MatrixXd inverse = root.triangularView<Eigen::Lower>().solve(MatrixXd::Identity(a.rows(), a.cols()));
+  return inverse.transpose() * inverse;
 }
 
 VectorXd solve_least_squares(ConstMatrixRef a, ConstVectorRef b, double cut) {

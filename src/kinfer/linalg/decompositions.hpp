@@ -42,6 +42,11 @@ std::optional<MatrixXd> invert_spd(ConstMatrixRef a);
 /// l with a = l lᵀ, lower triangular; nullopt if a is not positive definite.
 std::optional<MatrixXd> cholesky(ConstMatrixRef a);
 
+/// The same for a finite matrix that is positive definite but for rounding: where it is not, of the one with a diagonal
+/// that is larger by as little as makes it so, relative to itself.
+MatrixXd cholesky_but_for_rounding(ConstMatrixRef a);
+MatrixXd invert_but_for_rounding(ConstMatrixRef a);  ///< a⁻¹, likewise
+
 /// Least-squares solution of smallest norm; singular values below `cut` times the largest count as zero.
 VectorXd solve_least_squares(ConstMatrixRef a, ConstVectorRef b, double cut = 1e-12);
 

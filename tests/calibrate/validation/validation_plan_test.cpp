@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <set>
 
@@ -162,6 +163,37 @@ TEST(ExcludedRows, AreSuspectHeldOutRowsUnlessTheyAreAThird) {
   EXPECT_TRUE(many.too_many);
   EXPECT_EQ(many.suspect_count, 3U);
   EXPECT_FALSE(select_excluded_rows({}, plan).too_many);
+}
+
+std::vector<RowErrors> held_out_rows(const std::vector<double>& gain) {
+  std::vector<RowErrors> rows;
+  for (std::size_t i = 0; i < gain.size(); ++i)
+    rows.push_back({.row = static_cast<int>(i), .before = 1e-3 + gain[i], .after = 1e-3, .held_out = true});
+  return rows;
+}
+
+TEST(ChanceOfImprovement, IsThatOfThePairedTTest) {
+  const PoseSet data = rows_without_measurements(5);
+  const std::vector<double> gain{1e-3, 2e-3, 3e-3, 4e-3, 5e-3};  // mean 3, standard error 0.7071: t = 4.243
+  EXPECT_NEAR(*chance_of_improvement(held_out_rows(gain), {}, data), 0.00662, 1e-5);
+  const std::vector<double> loss{-1e-3, -2e-3, -3e-3, -4e-3, -5e-3};
+  EXPECT_NEAR(*chance_of_improvement(held_out_rows(loss), {}, data), 1.0 - 0.00662, 1e-5);
+  EXPECT_NEAR(*chance_of_improvement(held_out_rows(gain), {0, 1, 2}, data),
+              0.5 * (1.0 - 2.0 / 3.14159265 * std::atan(9.0)), 1e-6)
+      << "two rows are left: t = 9 with one degree of freedom";
+  EXPECT_FALSE(chance_of_improvement(held_out_rows(gain), {0, 1, 2, 3}, data).has_value());
+}
+
+TEST(ChanceOfImprovement, CountsThePosesAndNotTheirRepetitions) {
+  PoseSet data = rows_without_measurements(60);
+  std::vector<double> gain;
+  for (int row = 0; row < 60; ++row) {
+    data.joints(0, row) = 0.1 * (row % 3);
+    gain.push_back(1e-3 * (row % 3 - 0.5));
+  }
+  const double once =
+      *chance_of_improvement(held_out_rows({-0.5e-3, 0.5e-3, 1.5e-3}), {}, rows_without_measurements(3));
+  EXPECT_NEAR(*chance_of_improvement(held_out_rows(gain), {}, data), once, 1e-12);
 }
 
 TEST(PrimaryMeasurementKind, IsTheFirstLengthThatWasMeasured) {

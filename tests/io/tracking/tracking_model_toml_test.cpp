@@ -71,6 +71,9 @@ TEST(TrackingModelToml, BadFilesAreOneSentenceWithTheLine) {
   };
   EXPECT_EQ(complaint(good), "none");
   EXPECT_THAT(complaint(with_text_replaced(good, "gravity = ", "graviti = ")), HasSubstr("track.toml:"));
+  const std::size_t root = good.find("root = [\n  ") + 11;
+  EXPECT_THAT(complaint(std::string(good).replace(root, good.find(',', root) - root, "2e6")),
+              HasSubstr("is not possible for the standard deviation of a "));
   EXPECT_THAT(complaint(with_text_replaced(good, "motion = \"revolute\"", "motion = \"rotary\"")),
               HasSubstr("\"rotary\" is none of its values"));
   const auto with_value = [&](const std::string& key, const std::string& value) {

@@ -16,6 +16,9 @@ KINFER_THRESHOLD(calibrate, expectation_ratio, 3.0);
 inline constexpr double same_solution_ratio = 1.5;
 /// [1] held-out mean error over that of the fitted rows, without a data sheet: above it, the model is overfitted.
 inline constexpr double generalisation_ratio = 3.0;
+/// Probability with which a model that is no better than the nominal one looks as much better on the held-out poses:
+/// above it, the improvement is not proven.
+inline constexpr double unproven_chance = 0.05;
 /// Probability that the offset of any unchanged joint is called moved (two-sided, family-wise).
 inline constexpr double moved_offset_risk = 0.01;
 

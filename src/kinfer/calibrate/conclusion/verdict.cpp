@@ -21,6 +21,9 @@ CalibrationReason judge_against_nominal(const Calibration& calibration) {
   if (!(final_errors(calibration).rms <= thresholds::same_solution_ratio * after.rms))
     return CalibrationReason::not_validated;
   if (exceeds_expectation(calibration, after.rms)) return CalibrationReason::unmodelled_effects;
+  if (calibration.chance_of_improvement.value_or(0.0) > thresholds::unproven_chance) return CalibrationReason::unproven;
+  if (calibration.noise_holdout_rms && !(after.rms <= thresholds::expectation_ratio * *calibration.noise_holdout_rms))
+    return CalibrationReason::beyond_noise;
   return CalibrationReason::improves_nominal;
 }
 
@@ -38,6 +41,8 @@ CalibrationReason judge(const Calibration& calibration) {
 }
 
 Usability usability_of(CalibrationReason reason, const std::optional<UnobservedLengths>& unobserved) {
+  if (reason == CalibrationReason::unproven || reason == CalibrationReason::beyond_noise)
+    return Usability::use_with_care;
   if (reason != CalibrationReason::improves_nominal && reason != CalibrationReason::generalises)
     return Usability::do_not_use;
   return unobserved ? Usability::use_with_care : Usability::use;

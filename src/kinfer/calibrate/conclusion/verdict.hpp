@@ -12,8 +12,8 @@ namespace kinfer::calibrate {
 /// data sheet has no earlier model to be compared with: its held-out errors are compared with those of the fitted rows.
 CalibrationReason judge(const Calibration& calibration);
 
-/// `do_not_use` where the calibration neither improves the nominal model nor generalises; `use_with_care` where no
-/// length was measured; else `use`.
+/// `do_not_use` where the calibration neither improves the nominal model nor generalises; `use_with_care` where the
+/// improvement is not proven, the errors exceed what the instrument explains, or no length was measured; else `use`.
 Usability usability_of(CalibrationReason reason, const std::optional<UnobservedLengths>& unobserved = {});
 
 }  // namespace kinfer::calibrate

@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinfer/base/expect.hpp"
-#include "kinfer/linalg/decompositions.hpp"
-
 namespace kinfer::calibrate {
 
 std::vector<bool> inliers_of(const Estimate& fitted, const PoseSet& rows) {
@@ -14,16 +11,6 @@ std::vector<bool> inliers_of(const Estimate& fitted, const PoseSet& rows) {
   for (const Block& block : blocks_of(rows))
     is_inlier.push_back(std::ranges::find(fitted.outliers, block.row, &Outlier::row) == fitted.outliers.end());
   return is_inlier;
-}
-
-MatrixXd inverse_of_information(MatrixXd information) {
-  constexpr double first = 1e-14, most = 1e-4;
-  for (double more = 0.0; more <= most; more = more == 0.0 ? first : 10.0 * more) {
-    information.diagonal() *= 1.0 + more;
-    if (const auto inverse = invert_spd(information)) return *inverse;
-  }
-  KINFER_EXPECT(false, "{} unknowns with priors have a covariance", information.cols());
-  return information;
 }
 
 Estimate with_covariance(Estimate fit, const ParameterSet& set, const MatrixXd& covariance, const VectorXd& variances) {

@@ -18,10 +18,6 @@ struct WeightedRows {
 /// One per block of the rows: whether its row is none of the outliers.
 std::vector<bool> inliers_of(const Estimate& fitted, const PoseSet& rows);
 
-/// Inverse of the information of unknowns with priors. Beside measurements without noise the priors are lost in
-/// rounding: then with a diagonal that is larger by as little as makes it positive definite.
-MatrixXd inverse_of_information(MatrixXd information);
-
 /// A fit with the values of its chain for the parameters of `set`, this covariance, and these variances of the values:
 /// those whatever the functions are.
 Estimate with_covariance(Estimate fit, const ParameterSet& set, const MatrixXd& covariance, const VectorXd& variances);

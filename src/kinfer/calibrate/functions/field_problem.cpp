@@ -111,7 +111,7 @@ void FieldProblem::linearise(const WeightedRows& data) {
 void FieldProblem::eliminate_parameters() {
   const MatrixXd prior = prior_information(set_), measured = gram(by_parameter_);
   const VectorXd offset = pack(set_, chain_) - nominal_of(set_), pull = prior * offset;
-  inverse_ = inverse_of_information(measured + prior);
+  inverse_ = invert_but_for_rounding(measured + prior);
   gradient_ = by_parameter_.transpose() * residuals_ + pull;
   const MatrixXd across = transposed_times(by_parameter_, by_value_);
   explained_ = product(inverse_, across);
@@ -159,7 +159,7 @@ FieldProblem::Solution FieldProblem::solve(double size, double noise) const {
   MatrixXd matrix = information_ / noise;
   // Beside rounding, which is relative to the largest.
   matrix.diagonal().array() += 1.0 / (size * size) + thresholds::field_rounding * matrix.diagonal().maxCoeff();
-  const MatrixXd covariance = inverse_of_information(matrix);
+  const MatrixXd covariance = invert_but_for_rounding(matrix);
   Solution found{{}, covariance * image_ / noise, size, {}, {}, 0.0};
   found.step = -(inverse_ * gradient_ + explained_ * found.values);
   found.covariance = inverse_;

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <utility>
 
-#include "kinfer/base/expect.hpp"
 #include "kinfer/calibrate/functions/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_normal_equations.hpp"
 #include "kinfer/linalg/decompositions.hpp"
@@ -38,7 +37,7 @@ SeriesProblem::SeriesProblem(const DetachedSeries& apart, const WeightedRows& da
 }
 
 SeriesProblem::Solution SeriesProblem::solve(double noise) const {
-  const MatrixXd covariance = inverse_of_information(system_.matrix / noise + prior_);
+  const MatrixXd covariance = invert_but_for_rounding(system_.matrix / noise + prior_);
   return {-(covariance * (system_.gradient / noise + pull_)), covariance, noise};
 }
 
@@ -104,12 +103,11 @@ SeriesProblem::Step SeriesProblem::step() const {
   const Index p = parameters_, n = prior_.cols() - p;
   const MatrixXd matrix = system_.matrix + prior_;
   const VectorXd gradient = system_.gradient + pull_;
-  const auto root = cholesky(matrix.bottomRightCorner(n, n));
-  KINFER_EXPECT(root, "{} coefficients with priors have a covariance", n);
-  const auto lower = root->triangularView<Eigen::Lower>();
+  const MatrixXd root = cholesky_but_for_rounding(matrix.bottomRightCorner(n, n));
+  const auto lower = root.triangularView<Eigen::Lower>();
   const MatrixXd across = lower.solve(matrix.bottomLeftCorner(n, p));
   const VectorXd own = lower.solve(gradient.tail(n));
-  Step found{VectorXd(p + n), inverse_of_information(matrix.topLeftCorner(p, p) - across.transpose() * across)};
+  Step found{VectorXd(p + n), invert_but_for_rounding(matrix.topLeftCorner(p, p) - across.transpose() * across)};
   found.step.head(p) = -(found.covariance * (gradient.head(p) - across.transpose() * own));
   found.step.tail(n) = -lower.transpose().solve(own + across * found.step.head(p));
   return found;

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "kinfer/base/expect.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
 
@@ -38,9 +37,7 @@ JointParameters joint_parameters(const ParameterSet& set) {
 
 /// Square root R of the information matrix, RᵀR = covariance⁻¹: the transposed Cholesky factor of the inverse.
 MatrixXd information_root(const MatrixXd& covariance) {
-  const auto inverse = invert_spd(covariance);
-  KINFER_EXPECT(inverse, "the tolerances make the covariance of every robot population positive definite");
-  return cholesky(*inverse)->transpose();
+  return cholesky_but_for_rounding(invert_but_for_rounding(covariance)).transpose();
 }
 
 /// Parameters k of `index` get mean `shift` and this covariance, both in tolerances from nominal.

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "kinfer/base/expect.hpp"
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/linalg/decompositions.hpp"
@@ -22,9 +21,9 @@ Chain chain_without(const Estimate& fit, std::span<const int> removed) {
     scale[static_cast<Eigen::Index>(k)] = free[own[k]]->prior_sd;
   }
   const MatrixXd block = fit.covariance(own, own);
-  const auto inverse = invert_spd(scale.cwiseInverse().asDiagonal() * block * scale.cwiseInverse().asDiagonal());
-  KINFER_EXPECT(inverse, "parameters with priors have a positive definite covariance");
-  const VectorXd pull = scale.cwiseInverse().cwiseProduct(*inverse * scale.cwiseInverse().cwiseProduct(offset));
+  const MatrixXd inverse =
+      invert_but_for_rounding(scale.cwiseInverse().asDiagonal() * block * scale.cwiseInverse().asDiagonal());
+  const VectorXd pull = scale.cwiseInverse().cwiseProduct(inverse * scale.cwiseInverse().cwiseProduct(offset));
   x -= fit.covariance(Eigen::all, own) * pull;
   for (const int k : own) x[k] = free[k]->nominal;
   return unpack(fit.parameters, fit.chain, x);

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/calibrate/validation/validation_errors.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "kinfer/calibrate/start/fixtures.hpp"
+#include "kinfer/calibrate/validation/commanded_poses.hpp"
+#include "kinfer/calibrate/validation/thresholds.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/geometry/student.hpp"
+#include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
 #include "kinfer/measurement/row_selection.hpp"
 
@@ -12,6 +18,19 @@ namespace kinfer::calibrate {
 namespace {
 
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t most_freedom = 1000;  // of the t distribution, which is the normal one from there on
+
+/// Covariance of the parameters if the instrument's noise were all that is wrong. That of the fit grows with the
+/// residuals: with few rows a model that explains nothing is as good as expected by it.
+MatrixXd covariance_at_stated_noise(const Estimate& fit, const PoseSet& fitted_rows, const Instrument& instrument) {
+  const PoseSet rows = select(fitted_rows, without_outliers(all_rows(fitted_rows), fit.outliers));
+  const Weights weights = weights_of(rows, instrument);
+  VectorXd residuals;
+  MatrixXd jacobian;
+  pose_residuals(fit.chain, fit.parameters, rows, weights)
+      .evaluate(pack(fit.parameters, fit.chain), residuals, &jacobian);
+  return invert_but_for_rounding(gram(jacobian));
+}
 
 /// Mean error of each row, of the primary kind of measurement [m]; NaN where it has none.
 std::vector<double> error_of_rows(const std::vector<double>& errors, const PoseSet& rows) {
@@ -33,13 +52,27 @@ void append(std::vector<double>& to, const std::vector<double>& more) {
   to.insert(to.end(), more.begin(), more.end());
 }
 
+/// Of the angles that were measured: orientations, or tilts where there are none.
+MeasurementKind angle_kind(const PoseSet& data) {
+  return data.orientations.empty() && !data.tilts.empty() ? kind_of<TiltMeasurement> : kind_of<OrientationMeasurement>;
+}
+
+/// [rad]. The residual of a tilt is gravity across the measured direction.
+std::vector<double> angle_errors(MeasurementKind angle, const Chain& chain, const PoseSet& rows) {
+  std::vector<double> errors = residual_norms(angle, chain, rows);
+  if (angle == kind_of<TiltMeasurement>)
+    for (double& error : errors) error /= chain.gravity.norm();
+  return errors;
+}
+
 /// Errors of one chain, or of the corresponding chains of all validation fits.
 struct ErrorLists {
-  std::vector<double> position, orientation;
+  MeasurementKind angle;  // whose errors are those of the orientation
+  std::vector<double> position{}, orientation{};
 
   void add(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& rows) {
     append(position, primary_errors(chain, fitted_rows, rows));
-    append(orientation, orientation_errors(chain, rows));
+    append(orientation, angle_errors(angle, chain, rows));
   }
   void write_statistics(ChainFit& fit, ErrorStatistics TrainHoldout::*which) const {
     fit.position.*which = error_statistics(position);
@@ -48,7 +81,7 @@ struct ErrorLists {
 };
 
 void fill_train(ChainFit& fit, const Chain& chain, const PoseSet& fitted_rows, const PoseSet& rows) {
-  ErrorLists errors;
+  ErrorLists errors{angle_kind(rows)};
   errors.add(chain, fitted_rows, rows);
   errors.write_statistics(fit, &TrainHoldout::train);
 }
@@ -56,7 +89,8 @@ void fill_train(ChainFit& fit, const Chain& chain, const PoseSet& fitted_rows, c
 /// Statistics over the held-out rows without `skipped`.
 void fill_held_out(Calibration& calibration, const EvaluationInputs& evaluated, const std::vector<int>& skipped,
                    ErrorStatistics TrainHoldout::*which) {
-  ErrorLists nominal, before, after;
+  const MeasurementKind angle = angle_kind(evaluated.data);
+  ErrorLists nominal{angle}, before{angle}, after{angle};
   const PoseSet no_rows;
   for (std::size_t i = 0; i < evaluated.fits.size(); ++i) {
     const Split& split = evaluated.plan.validation_splits[i];
@@ -114,20 +148,42 @@ void fill_error_statistics(Calibration& calibration, const EvaluationInputs& eva
   fill_held_out(calibration, evaluated, evaluated.gross_errors, &TrainHoldout::holdout);
   fill_held_out(calibration, evaluated, {}, &TrainHoldout::holdout_all_rows);
   fill_rows(calibration, evaluated);
-  calibration.measured = primary_measurement_kind(evaluated.data).value_or(kind_of<OrientationMeasurement>);
+  calibration.measured = primary_measurement_kind(evaluated.data).value_or(angle_kind(evaluated.data));
 }
 
-std::optional<double> expected_holdout_rms(const EvaluationInputs& evaluated) {
+std::optional<double> chance_of_improvement(const std::vector<RowErrors>& rows, const std::vector<int>& skipped,
+                                            const PoseSet& data) {
+  std::vector<int> judged;
+  for (const RowErrors& row : rows)
+    if (row.held_out && !std::isnan(row.before) && !std::isnan(row.after)) judged.push_back(row.row);
+  judged = without(std::move(judged), skipped);
+  const std::vector<int> pose_of_row = commanded_poses(data.joints(Eigen::all, judged), thresholds::same_pose_angle);
+  const std::size_t poses = pose_of_row.empty() ? 0 : 1 + std::ranges::max(pose_of_row);
+  if (poses < 2) return std::nullopt;
+  std::vector<double> gain(poses, 0.0), count(poses, 0.0);
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    const RowErrors& row = rows[static_cast<std::size_t>(judged[i])];
+    const auto pose = static_cast<std::size_t>(pose_of_row[i]);
+    gain[pose] += row.before - row.after, count[pose] += 1.0;
+  }
+  for (std::size_t pose = 0; pose < poses; ++pose) gain[pose] /= count[pose];
+  const double sd = standard_deviation(gain) / std::sqrt(static_cast<double>(poses));
+  if (sd <= 0.0) return mean(gain) > 0.0 ? 0.0 : 1.0;
+  return student_upper_tail(mean(gain) / sd, static_cast<int>(std::min<std::size_t>(poses - 1, most_freedom)));
+}
+
+std::optional<ExpectedErrors> expected_holdout_errors(const EvaluationInputs& evaluated) {
   const auto primary = primary_measurement_kind(evaluated.data);
   if (!evaluated.instrument || !primary) return std::nullopt;
   const ResidualKind& kind = residual_kind(*primary);
-  double squares = 0.0, count = 0.0;
+  double squares = 0.0, squares_by_noise = 0.0, count = 0.0;
   for (std::size_t i = 0; i < evaluated.fits.size(); ++i) {
     const Estimate& fit = evaluated.fits[i].after;
     const PoseSet rows =
         select(evaluated.data, without(evaluated.plan.validation_splits[i].holdout, evaluated.gross_errors));
-    const Chain chain =
-        with_unfitted_fixtures(fit.chain, select(evaluated.data, evaluated.plan.validation_splits[i].train), rows);
+    const PoseSet fitted_rows = select(evaluated.data, evaluated.plan.validation_splits[i].train);
+    const Chain chain = with_unfitted_fixtures(fit.chain, fitted_rows, rows);
+    const MatrixXd by_noise = covariance_at_stated_noise(fit, fitted_rows, *evaluated.instrument);
     const Weights weights = weights_of(rows, *evaluated.instrument);
     const EvaluatedPoses at = evaluate_poses(chain, fit.parameters, rows, Derivative::yes);
     const FixtureColumns columns = fixture_columns(chain, fit.parameters);
@@ -137,14 +193,17 @@ std::optional<double> expected_holdout_rms(const EvaluationInputs& evaluated) {
     for (std::size_t k = 0; k < kind.count(rows); ++k) {
       BlockRows out{residual, &jacobian, 0};
       kind.write(scene, k, out);
-      const double metres = kind.metres(scene, k);
-      squares += metres * metres *
-                 (weights.of(*primary)[k].head(kind.size).squaredNorm() +
-                  propagated_covariance(jacobian.topRows(kind.size), fit.covariance).trace());
+      const double metres = kind.metres(scene, k), noise = weights.of(*primary)[k].head(kind.size).squaredNorm();
+      const auto of_fit = [&](const MatrixXd& covariance) {
+        return propagated_covariance(jacobian.topRows(kind.size), covariance).trace();
+      };
+      squares += metres * metres * (noise + of_fit(fit.covariance));
+      squares_by_noise += metres * metres * (noise + of_fit(by_noise));
       count += 1.0;
     }
   }
-  return count > 0.0 ? std::optional(std::sqrt(squares / count)) : std::nullopt;
+  if (count == 0.0) return std::nullopt;
+  return ExpectedErrors{std::sqrt(squares / count), std::sqrt(squares_by_noise / count)};
 }
 
 }  // namespace kinfer::calibrate

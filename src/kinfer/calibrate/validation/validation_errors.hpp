@@ -38,8 +38,20 @@ struct EvaluationInputs {
 /// the validation fits.
 void fill_error_statistics(Calibration& calibration, const EvaluationInputs& evaluated);
 
-/// Expected rms error of the held-out rows [m]: the instrument's noise and the uncertainty of the fits without these
-/// rows. Nothing where the instrument is not known.
-std::optional<double> expected_holdout_rms(const EvaluationInputs& evaluated);
+/// Probability with which a model that is no better than the nominal one looks as much better on the held-out rows
+/// without `skipped`: one-sided paired t test of the errors of each pose, whose repeated rows count once. Nothing with
+/// fewer than two poses.
+std::optional<double> chance_of_improvement(const std::vector<RowErrors>& rows, const std::vector<int>& skipped,
+                                            const PoseSet& data);
+
+/// Expected rms errors of the held-out rows [m]: the instrument's noise, and the uncertainty of the fits without these
+/// rows.
+struct ExpectedErrors {
+  double of_fit = 0.0;    ///< as the residuals say
+  double by_noise = 0.0;  ///< if the noise of the instrument were all that is wrong
+};
+
+/// Nothing where the instrument is not known.
+std::optional<ExpectedErrors> expected_holdout_errors(const EvaluationInputs& evaluated);
 
 }  // namespace kinfer::calibrate

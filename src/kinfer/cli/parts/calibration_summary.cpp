@@ -94,17 +94,26 @@ std::string search_lines(const SearchSummary& search) {
   return text + ".\n\n";
 }
 
+std::string error_tables(const Calibration& c) {
+  const bool has_angles = c.after.orientation.train.n > 0;
+  std::string text;
+  if (has_lengths(c) || !has_angles)
+    text += fit_table(
+        c.measured == kind_of<PointMeasurement> ? "tool position [mm]" : words::measured_quantity(c.measured) + " [mm]",
+        c.nominal, c.before, c.after, &ChainFit::position, 1e3);
+  if (has_angles)
+    text += fit_table(c.measured == kind_of<TiltMeasurement> ? "tilt [deg]" : "tool orientation [deg]", c.nominal,
+                      c.before, c.after, &ChainFit::orientation, 1.0 / degree);
+  return text;
+}
+
 }  // namespace
 
 std::string calibration_summary(const Calibration& c) {
   const Estimate& e = c.estimate;
   std::string text = words::verdict(c) + "\n\n";
   text += fmt::format("Held out: {}.\n", words::description(c.holdout));
-  text += fit_table(
-      c.measured == kind_of<PointMeasurement> ? "tool position [mm]" : words::measured_quantity(c.measured) + " [mm]",
-      c.nominal, c.before, c.after, &ChainFit::position, 1e3);
-  if (c.after.orientation.train.n > 0)
-    text += fit_table("tool orientation [deg]", c.nominal, c.before, c.after, &ChainFit::orientation, 1.0 / degree);
+  text += error_tables(c);
   text += model_table(c.model_selection);
   text += search_lines(e.search);
   text += parameter_table(e);

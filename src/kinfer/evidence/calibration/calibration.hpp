@@ -59,8 +59,12 @@ struct Calibration {
   bool geometry_only = false;                           ///< found by a swarm search, which has no model selection
   std::optional<PredictionModel> prediction{};          ///< uncertainty of the corrected chain; none without points
   std::optional<double> expected_holdout_rms{};  ///< [m] from the instrument's noise and the uncertainty of the fits
+  std::optional<double> noise_holdout_rms{};     ///< [m] the same if that noise were all that is wrong
   std::optional<double>
       predicted_holdout_rms{};  ///< [m] the same with the model error of `prediction`; none where that is not known
+  /// Probability with which a model that is no better than the nominal one looks as much better on as many held-out
+  /// poses (one-sided paired t test); none where no lengths were held out.
+  std::optional<double> chance_of_improvement{};
   std::optional<UnobservedLengths> unobserved_lengths{};
   Usability usability = Usability::use;
   CalibrationReason reason = CalibrationReason::improves_nominal;

@@ -76,7 +76,9 @@ struct CalibrationEvidence {
   std::string measured = "position";              ///< quantity that the errors refer to
   std::optional<MeasurementKind> measurement{};   ///< its kind
   std::optional<double> expected_holdout_rms{};   ///< [m] from instrument and fit
+  std::optional<double> noise_holdout_rms{};      ///< [m] if the noise of the instrument were all that is wrong
   std::optional<double> predicted_holdout_rms{};  ///< [m] with the model error
+  std::optional<double> chance_of_improvement{};  ///< probability that a model that is no better looks as good
   std::optional<UnobservedLengths> unobserved_lengths{};
   ChainFit nominal{}, before{}, after{};
   std::optional<AccuracyStatistics> iso9283{};  ///< [m]; none without measured tool points

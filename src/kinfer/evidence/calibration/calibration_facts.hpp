@@ -27,6 +27,8 @@ enum class CalibrationReason {
   unmodelled_effects,  ///< the errors far exceed what instrument and fit uncertainty explain
   generalises,         ///< without a data sheet: the held-out errors are those of the fitted rows
   overfitted,          ///< without a data sheet: the held-out errors far exceed those of the fitted rows
+  unproven,            ///< better than the nominal model on held-out rows, but perhaps by chance
+  beyond_noise,        ///< better, but worse than the instrument's noise explains; few rows cannot tell why
 };
 std::string_view name(CalibrationReason reason);
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "kinfer/base/expect.hpp"
 #include "kinfer/identify/update/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
@@ -29,10 +28,9 @@ MatrixXd covariance_of_change(const ChangeHypothesis& hypothesis, const ChangeSc
 
 /// ln N(d; 0, C) but for a constant.
 double log_density(ConstVectorRef d, ConstMatrixRef covariance) {
-  const auto factor = cholesky(covariance);
-  KINFER_EXPECT(factor, "a covariance of {} parameters is not positive definite", d.size());
-  const VectorXd white = factor->triangularView<Eigen::Lower>().solve(VectorXd(d));
-  return -0.5 * white.squaredNorm() - factor->diagonal().array().log().sum();
+  const MatrixXd factor = cholesky_but_for_rounding(covariance);
+  const VectorXd white = factor.triangularView<Eigen::Lower>().solve(VectorXd(d));
+  return -0.5 * white.squaredNorm() - factor.diagonal().array().log().sum();
 }
 
 double log_mean_exp(const std::vector<double>& logs) {
@@ -141,20 +139,16 @@ ChangeEstimate estimate_changes(ConstVectorRef difference, ConstMatrixRef covari
     variance.segment(at, h.effect.cols()) = prior_variance(h, scales[i]);
     at += h.effect.cols();
   }
-  const auto information = invert_spd(covariance);
-  KINFER_EXPECT(information, "the covariance of a difference is not positive definite");
-  const MatrixXd weighted = product(*information, effect);
+  const MatrixXd weighted = product(invert_but_for_rounding(covariance), effect);
   MatrixXd posterior = transposed_times(effect, weighted);
   posterior.diagonal() += variance.cwiseInverse();
-  const auto inverse = invert_spd(posterior);
-  KINFER_EXPECT(inverse);
-  return {*inverse * (weighted.transpose() * difference), *inverse};
+  const MatrixXd inverse = invert_but_for_rounding(posterior);
+  return {inverse * (weighted.transpose() * difference), inverse};
 }
 
 double squared_distance(ConstVectorRef difference, ConstMatrixRef covariance) {
-  const auto factor = cholesky(covariance);
-  KINFER_EXPECT(factor);
-  return VectorXd(factor->triangularView<Eigen::Lower>().solve(VectorXd(difference))).squaredNorm();
+  const MatrixXd factor = cholesky_but_for_rounding(covariance);
+  return VectorXd(factor.triangularView<Eigen::Lower>().solve(VectorXd(difference))).squaredNorm();
 }
 
 }  // namespace kinfer::identify

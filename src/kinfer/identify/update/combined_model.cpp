@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "kinfer/base/expect.hpp"
 #include "kinfer/identify/handover/known_joint.hpp"
 #include "kinfer/identify/update/bent_axes.hpp"
 #include "kinfer/identify/update/thresholds.hpp"
@@ -190,9 +189,7 @@ VectorXd update(MatrixXd& covariance, const LogEstimate& log) {
   const MatrixXd cross = times_transposed(covariance, log.rows);  // P Hᵀ
   MatrixXd innovation = product(log.rows, cross);
   innovation.diagonal() += log.variance;
-  const auto inverse = invert_spd(0.5 * (innovation + innovation.transpose()));
-  KINFER_EXPECT(inverse, "the sum of two covariances is not positive definite");
-  const MatrixXd gain = product(cross, *inverse);
+  const MatrixXd gain = product(cross, invert_but_for_rounding(0.5 * (innovation + innovation.transpose())));
   const MatrixXd left = MatrixXd::Identity(covariance.rows(), covariance.cols()) - product(gain, log.rows);
   const MatrixXd noise = gain * log.variance.cwiseSqrt().asDiagonal();
   covariance = propagated_covariance(left, covariance) + times_transposed(noise, noise);

@@ -25,7 +25,9 @@ void fields(Archive& a, Value<Archive, CalibrationEvidence>& e) {
   a.later("measured", e.measured);
   a.when(e.measurement.has_value(), "measurement", e.measurement);
   a.later("expected_holdout_rms", e.expected_holdout_rms);
+  a.later("noise_holdout_rms", e.noise_holdout_rms);
   a.later("predicted_holdout_rms", e.predicted_holdout_rms);
+  a.when(e.chance_of_improvement.has_value(), "chance_of_improvement", e.chance_of_improvement);
   a.when(e.unobserved_lengths.has_value(), "unobserved_lengths", e.unobserved_lengths);
   a("nominal", e.nominal);
   a("before", e.before);

@@ -155,6 +155,26 @@ std::optional<TrackingParameter> parameter_of(std::string_view text, const Track
   return std::nullopt;
 }
 
+/// Of the standard deviation of a parameter.
+PossibleRange possible_sd(TrackingParameterKind kind) {
+  switch (kind) {
+    case TrackingParameterKind::parent_rotation:
+    case TrackingParameterKind::child_rotation:
+      return {"the standard deviation of a direction", 100.0, "rad"};
+    case TrackingParameterKind::point_in_parent:
+    case TrackingParameterKind::point_in_child:
+      return {"the standard deviation of a point", 1e5, "m"};
+    case TrackingParameterKind::gyroscope_bias:
+      return {"the standard deviation of a bias", 100.0, "rad/s"};
+    case TrackingParameterKind::accelerometer_bias:
+      return {"the standard deviation of a bias", 1e3, "m/s^2"};
+    case TrackingParameterKind::gyroscope_scale:
+    case TrackingParameterKind::accelerometer_scale:
+      break;
+  }
+  return {"the standard deviation of a scale", 100.0, "1"};
+}
+
 void read_covariance(TableReader& t, const TomlTable& file, TrackingModel& model) {
   t.ignore("parameters");
   const auto* table = std::get_if<TomlTable>(&file.find("covariance")->value);
@@ -175,6 +195,8 @@ void read_covariance(TableReader& t, const TomlTable& file, TrackingModel& model
   std::size_t next = 0;
   for (Index i = 0; i < size; ++i)
     for (Index j = 0; j <= i && next < numbers.size(); ++j) root(i, j) = numbers[next++];
+  for (Index i = 0; i < size; ++i)
+    t.expect_possible("root", root.row(i).norm(), possible_sd(model.parameters[static_cast<std::size_t>(i)].kind));
   model.covariance = times_transposed(root, root);
 }
 

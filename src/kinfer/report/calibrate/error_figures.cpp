@@ -57,6 +57,10 @@ double error_percentile_95(const CalibrationEvidence& evidence) {
   return 1e-3 * quantile(finite_sorted(inlier_errors(evidence, &RowErrors::after)), 0.95);
 }
 
+std::string measured_angle(const CalibrationEvidence& evidence) {
+  return evidence.measurement == kind_of<TiltMeasurement> ? "the tilt" : "the tool's orientation";
+}
+
 Headline headline(const CalibrationEvidence& evidence) {
   const ChainFit& after = evidence.after;
   const bool lengths = after.position.train.n > 0 || after.position.holdout.n > 0 || after.orientation.train.n == 0;
@@ -70,7 +74,7 @@ Headline headline(const CalibrationEvidence& evidence) {
   h.mean_after = factor * new_errors.mean, h.max_after = factor * new_errors.max;
   h.n = new_errors.n;
   h.unit = lengths ? "mm" : "°";
-  h.what = lengths ? measured_text(evidence) : "the tool's orientation";
+  h.what = lengths ? measured_text(evidence) : measured_angle(evidence);
   return h;
 }
 

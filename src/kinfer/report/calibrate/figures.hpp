@@ -26,6 +26,7 @@ struct Headline {
   std::string unit{};  ///< "mm", "°"
   std::string what{};  ///< "the tool", "the distance", "the tool's orientation"
 };
+std::string measured_angle(const CalibrationEvidence& evidence);  ///< "the tilt", where no orientation was measured
 Headline headline(const CalibrationEvidence& evidence);
 
 /// 95th percentile of the tool error [m]; NaN if there are no rows.

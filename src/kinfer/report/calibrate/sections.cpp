@@ -142,11 +142,13 @@ std::string start_table(const SearchSummary& search) {
 }  // namespace
 
 html::Section errors_section(const CalibrationEvidence& e) {
-  std::string tables =
-      error_table(e, {"errors", fmt::format("Error of {} [mm]", headline(e).what), &ChainFit::position, mm});
-  if (e.after.orientation.train.n > 0)
-    tables += error_table(
-        e, {"orientation-errors", "Error of the tool's orientation [°]", &ChainFit::orientation, 1.0 / degree});
+  const bool has_angles = e.after.orientation.train.n > 0;
+  std::string tables;
+  if (e.after.position.train.n > 0 || !has_angles)
+    tables += error_table(e, {"errors", fmt::format("Error of {} [mm]", headline(e).what), &ChainFit::position, mm});
+  if (has_angles)
+    tables += error_table(e, {"orientation-errors", fmt::format("Error of {} [°]", measured_angle(e)),
+                              &ChainFit::orientation, 1.0 / degree});
   return {
       "errors", "How good it is",
       fmt::format("Held-out rows: {}. Trust the figures on rows that were not fitted.", html::escape(e.holdout)),

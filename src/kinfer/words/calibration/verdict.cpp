@@ -102,6 +102,17 @@ VerdictText parts_of_verdict(const Calibration& c) {
       return with_remarks(c, figures(c));
     case CalibrationReason::no_improvement:
       return with_remarks(c, "the corrected model is no better than the nominal one: " + figures(c));
+    case CalibrationReason::unproven:
+      return with_remarks(
+          c, fmt::format("better, but these poses do not prove it: a model that is no better would look as good with a "
+                         "probability of {:.0f} %: {}",
+                         100.0 * c.chance_of_improvement.value_or(1.0), figures(c)));
+    case CalibrationReason::beyond_noise:
+      return with_remarks(
+          c,
+          fmt::format("better, but the errors are {:.0f} times what the instrument's noise explains, so something is "
+                      "not modelled or not as stated: {}",
+                      reported_errors(c, c.after).rms / c.noise_holdout_rms.value_or(1.0), figures(c)));
     case CalibrationReason::unmodelled_effects:
       return with_remarks(c, fmt::format("better, but the errors are {:.0f} times what instrument and fit explain, "
                                          "so something is not modelled: {}",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/fleet/student.hpp"
+#include "kinfer/geometry/student.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,10 @@
 
 #include "kinfer/geometry/statistics.hpp"
 
-namespace kinfer::fleet {
-namespace {
+namespace kinfer {
 
-/// Upper tail of the Student distribution at t ≥ 0 with n = 1, 2, … degrees of freedom (Abramowitz and
-/// Stegun 26.7.3-4).
 double student_upper_tail(double t, int n) {
+  if (t < 0.0) return 1.0 - student_upper_tail(-t, n);
   const double angle = std::atan(t / std::sqrt(n)), c = std::cos(angle), s = std::sin(angle);
   double sum = 0.0, term = n % 2 == 0 ? 1.0 : c;
   for (int k = n % 2 == 0 ? 2 : 3; k <= n; k += 2) {
@@ -23,8 +21,6 @@ double student_upper_tail(double t, int n) {
   return std::max(0.5 * (1.0 - inside), 1e-12);
 }
 
-}  // namespace
-
 double gaussian_of_student(double t, int n) {
   const double size = std::abs(t);
   constexpr int many = 60;
@@ -33,4 +29,4 @@ double gaussian_of_student(double t, int n) {
   return std::copysign(z, t);
 }
 
-}  // namespace kinfer::fleet
+}  // namespace kinfer
