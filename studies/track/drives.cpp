@@ -24,6 +24,12 @@ double play_acceleration(double time, double size) {
   return -size * w * w * std::sin(w * time);
 }
 
+SensorModel with_known_errors(SensorModel model) {
+  for (InstrumentModel* instrument : {&model.gyroscope, &model.accelerometer, &model.magnetometer})
+    instrument->bias_sd = instrument->scale_sd = 0.0;
+  return model;
+}
+
 bool is_beyond(const Machine& machine, std::size_t sensor, std::size_t first) {
   for (int s = static_cast<int>(sensor); s >= 0; s = machine.sensors[static_cast<std::size_t>(s)].parent)
     if (s == static_cast<int>(first)) return true;
@@ -68,9 +74,10 @@ SimulatedDrive simulate_drive(const DriveSetup& setup) {
           .value();
   MachineMotion motion = world.prescribe(drive, 200.0);
   const std::uint64_t drive_number = setup.drive_seed == setup.machine_seed ? 1 : setup.drive_seed;
+  const SensorModel grade = *sensor_grade(setup.grade);
   InsRecording recording =
-      simulate_recording(world.machine(), motion, *sensor_grade(setup.grade), {.magnetic_disturbance = setup.steel},
-                         Rng(setup.machine_seed).stream(3), drive_number);
+      simulate_recording(world.machine(), motion, setup.known_sensors ? with_known_errors(grade) : grade,
+                         {.magnetic_disturbance = setup.steel}, Rng(setup.machine_seed).stream(3), drive_number);
   return {world.machine(), std::move(motion), std::move(recording)};
 }
 
@@ -80,8 +87,9 @@ Result<TrackingModel> identify_drive(const SimulatedDrive& drive) {
   return *found.tracking;
 }
 
-TrackingModel exact_geometry(const SimulatedDrive& drive, const std::string& grade) {
-  return test::tracking_model_of(drive.machine, *sensor_grade(grade), 200.0, {.rotation = 1e-7, .point = 1e-6});
+TrackingModel exact_model(const SimulatedDrive& drive, const std::string& grade) {
+  return test::tracking_model_of(drive.machine, with_known_errors(*sensor_grade(grade)), 200.0,
+                                 {.rotation = 1e-7, .point = 1e-6});
 }
 
 void inject(const InjectedFault& fault, SimulatedDrive& drive) {

@@ -16,7 +16,8 @@ struct DriveSetup {
   Script script = Script::standard;
   double duration = 0.0;  ///< [s]; 0: the script's own
   std::uint64_t machine_seed = 1, drive_seed = 1;
-  double steel = 0.0;  ///< [µT] of moving steel
+  double steel = 0.0;          ///< [µT] of moving steel
+  bool known_sensors = false;  ///< without biases and scale errors: they are known, but for their instability
 };
 
 struct SimulatedDrive {
@@ -31,9 +32,9 @@ SimulatedDrive simulate_drive(const DriveSetup& setup);
 /// By default options; its joint positions count from the beginning of the drive.
 Result<TrackingModel> identify_drive(const SimulatedDrive& drive);
 
-/// The chain as built, its geometry exact, its sensors with the errors of their grade yet unknown: what any
-/// identification could hand over at best of the geometry. Joint positions are the machine's own.
-TrackingModel exact_geometry(const SimulatedDrive& drive, const std::string& grade);
+/// The chain as built, and sensors without biases and scale errors: what any identification could hand over at best.
+/// Joint positions are the machine's own.
+TrackingModel exact_model(const SimulatedDrive& drive, const std::string& grade);
 
 /// A change of the recording from `begin` on; play is in the joint before the sensor and moves all beyond it.
 enum class FaultKind { none, turned, shifted, play, lost, late };

@@ -28,7 +28,7 @@ struct Arguments {
   int first_seed = 1, seeds = 1;
   double duration = 120.0, steel = 0.0;
   InjectedFault fault{};
-  bool counts_alarms = false, smooths = false, has_exact_geometry = false;
+  bool counts_alarms = false, smooths = false, is_exact = false;
 };
 
 const std::map<std::string, Base> bases{{"still", Base::still}, {"rocking", Base::rocking}, {"yawing", Base::yawing}};
@@ -66,8 +66,7 @@ void run(const Arguments& a) {
         const auto number = static_cast<std::uint64_t>(seed);
         const SimulatedDrive first = simulate_drive(
             {.machine = machine, .grade = grade, .base = a.base, .machine_seed = number, .drive_seed = number});
-        const auto model =
-            a.has_exact_geometry ? Result<TrackingModel>(exact_geometry(first, grade)) : identify_drive(first);
+        const auto model = a.is_exact ? Result<TrackingModel>(exact_model(first, grade)) : identify_drive(first);
         if (!model) {
           fmt::print("{} {} {}: {}\n", machine, grade, seed, model.error().what);
           continue;
@@ -79,9 +78,10 @@ void run(const Arguments& a) {
                                                 .duration = a.duration,
                                                 .machine_seed = number,
                                                 .drive_seed = 1000 + number,
-                                                .steel = a.steel});
+                                                .steel = a.steel,
+                                                .known_sensors = a.is_exact});
         inject(a.fault, second);
-        const SimulatedDrive* zeros = a.has_exact_geometry ? nullptr : &first;
+        const SimulatedDrive* zeros = a.is_exact ? nullptr : &first;
         print(machine, grade, seed, track(*model, zeros, second));
         if (a.smooths)
           print("  smoothed", grade, seed, track(*model, zeros, second, kinfer::track::Estimator::smoother));
@@ -107,8 +107,8 @@ int kinfer::study::run_track(int argc, char** argv) {
   app.add_option("--duration", arguments.duration, "Of a drive [s]");
   app.add_option("--steel", arguments.steel, "Field of moving steel [T]");
   app.add_option("--smooth", arguments.smooths, "on: the smoother's row below the filter's");
-  app.add_option("--exact", arguments.has_exact_geometry,
-                 "on: the machine's own geometry instead of the identified one, what a filter can do at best");
+  app.add_option("--exact", arguments.is_exact,
+                 "on: the machine's own geometry and sensors without biases and scale errors, the best there can be");
   app.add_option("--fault", arguments.fault.kind)->transform(CLI::CheckedTransformer(faults));
   app.add_option("--sensor", arguments.fault.sensor, "That has the fault");
   app.add_option("--size", arguments.fault.size, "Of the fault [rad], [m] or [s]");

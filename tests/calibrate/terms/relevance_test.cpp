@@ -129,6 +129,17 @@ TEST(Relevance, ColumnsThatAreZeroOrEqualDoNoHarm) {
   EXPECT_TRUE((weights[1].factor > 0.0) != (weights[2].factor > 0.0)) << "one of two equal groups";
 }
 
+/// As of two rows with a noise of nanometres: of the sum with the priors rounding leaves an indefinite matrix.
+TEST(Relevance, InformationThatDwarfsThePriorsIsWeighed) {
+  Rng rng(5);
+  VectorXd effect(6);
+  for (double& value : effect) value = 1e10 * rng.normal();
+  LinearisedTerms terms{effect * effect.transpose(), 1e10 * effect};
+  terms.information.diagonal().array() -= 1e4;
+  for (const GroupRelevance& group : weigh_groups(terms, LinearModel{}.groups))
+    EXPECT_TRUE(std::isfinite(group.factor) && std::isfinite(group.log_evidence_gain));
+}
+
 TEST(Relevance, MoreTermsThanMeasurementsAreWeighed) {
   LinearModel model = linear_model(4, 0.0, 4);
   for (const GroupRelevance& group : weigh_groups(linearised(model), model.groups))

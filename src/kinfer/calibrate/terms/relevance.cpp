@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "kinfer/base/expect.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::calibrate {
@@ -139,9 +138,7 @@ class Weighing {
     if (!others.empty()) {
       MatrixXd among = terms_.information(others, others);
       among.diagonal() += Eigen::Map<const VectorXd>(precision.data(), static_cast<Eigen::Index>(precision.size()));
-      const auto covariance = invert_spd(among);
-      KINFER_EXPECT(covariance, "{} term parameters with priors have a covariance", others.size());
-      const MatrixXd across = terms_.information(own, others) * *covariance;
+      const MatrixXd across = terms_.information(own, others) * invert_but_for_rounding(among);
       const VectorXd image_of_others = terms_.image(others);
       information -= across * terms_.information(others, own);
       image -= across * image_of_others;

@@ -88,9 +88,8 @@ WorldRotation search_world_rotation(const PairProblem& problem) {
 
 /// Inverse of the mean square plus the floor's, scaled to the identity if isotropic.
 Mat3 whitening(const Mat3& mean_square, double floor) {
-  const auto inverse = invert_spd(mean_square + floor * floor * Mat3::Identity());
-  KINFER_EXPECT(inverse, "a mean square plus a floor is positive definite");
-  return 3.0 / inverse->trace() * *inverse;
+  const MatrixXd inverse = invert_but_for_rounding(mean_square + floor * floor * Mat3::Identity());
+  return 3.0 / inverse.trace() * inverse;
 }
 
 /// The part of a relative rotation's code that tells nothing about neighbours: a joint rotates about one axis, and how
