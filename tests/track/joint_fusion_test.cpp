@@ -10,11 +10,13 @@ namespace {
 
 constexpr double turned = 0.4, period = 0.01;  // [rad], [s]
 
-/// A joint with a horizontal axis between two sensors.
-TrackingModel hinge() {
+const Vec3 level(1.5707963, 0.0, 0.0), upright(0.0, 0.0, 0.0);  // turn of the axis z
+
+/// A joint between two sensors.
+TrackingModel hinge(const Vec3& axis = level) {
   TrackingModel model;
   model.sensors = {{.name = "ins0", .body = 0}, {.name = "ins1", .body = 1}};
-  const Mat3 across = exp_so3(Vec3(1.5707963, 0.0, 0.0));
+  const Mat3 across = exp_so3(axis);
   model.bodies.push_back({.sensor = 0});
   model.bodies.push_back({.parent = 0, .sensor = 1, .joint = 0, .motion = TrackingMotion::revolute});
   model.bodies.back().parent_R_axis = model.bodies.back().child_R_axis = across;
@@ -23,9 +25,13 @@ TrackingModel hinge() {
   return model;
 }
 
-/// Position of the joint after five seconds of rest at `turned`, where a filter on the chain states `q` and `sd`.
-TrackState fused(double q, double sd, bool is_sound) {
-  const TrackingModel model = hinge();
+struct Stated {
+  double q = 0.0, sd = 0.0;  // [rad]
+};
+
+/// Position of the joint after five seconds of rest at `turned`, where a filter on the chain states `at` of each time.
+template <class At>
+TrackState fused(const At& at, bool is_sound, const TrackingModel& model) {
   track::ComposedFilters composed(model);
   track::JointFusion fusion(model);
   TrackState chain;
@@ -41,13 +47,18 @@ TrackState fused(double q, double sd, bool is_sound) {
     composed.add(row);
     chain = track::unknown_state(model);
     chain.time = row.time;
-    chain.q[0] = q;
+    const Stated stated = at(row.time);
+    chain.q[0] = stated.q;
     chain.qd[0] = 0.0;
-    chain.sd_q[0] = sd;
+    chain.sd_q[0] = stated.sd;
     chain.joints[0] = {.source = JointSource::chain, .reference = JointReference::chain};
     fusion.apply(model, composed, {true, is_sound}, chain);
   }
   return chain;
+}
+
+TrackState fused(double q, double sd, bool is_sound) {
+  return fused([&](double) { return Stated{q, sd}; }, is_sound, hinge());
 }
 
 TEST(JointFusion, AChainThatFitsIsLeftAlone) {
@@ -64,6 +75,14 @@ TEST(JointFusion, AChainThatSaysItDoesNotFitGivesWayToTheSensorsThemselves) {
 
 TEST(JointFusion, AFaultySensorIsNotBelieved) {
   EXPECT_EQ(fused(turned + 0.5, 0.6, false).q[0], turned + 0.5);
+}
+
+/// Of an upright axis the sensors themselves show no more than where it was when the chain knew little.
+TEST(JointFusion, AChainThatLearnsWhereAnUprightJointStandsIsFollowedAtOnce) {
+  const auto learning = [](double time) {
+    return time < 4.9 ? Stated{turned + 0.04, 0.02} : Stated{turned + 0.001, 0.001};
+  };
+  EXPECT_NEAR(fused(learning, true, hinge(upright)).q[0], turned + 0.001, 1e-3);
 }
 
 }  // namespace

@@ -54,6 +54,17 @@ double JointFusion::largest_share() const {
   return most;
 }
 
+/// An offset from a chain whose position is uncertain takes its error over, and is as good as the chain was at its
+/// best: it goes along as the chain learns.
+void JointFusion::begin_or_improve(Offset& offset, double measured, double chain_variance, double drift) {
+  if (!offset.is_set) {
+    offset = {.is_set = true, .value = measured, .common = chain_variance, .drift = drift};
+  } else if (chain_variance < offset.common) {
+    offset.value += (1.0 - chain_variance / offset.common) * wrapped_angle(measured - offset.value);
+    offset.common = chain_variance;
+  }
+}
+
 /// The composed heading drifts, the chain's wanders: a random walk, measured with noise of the correlation time
 /// `wander_time`, longer where it wanders far. Returns the variance of the chain's heading: at least as much as it
 /// wanders about the other beyond what that drifts, because gyroscopes alone are right over seconds.
@@ -114,7 +125,8 @@ void JointFusion::fuse(const TrackingModel& model, const ComposedFilters& compos
   const bool is_relative = status.reference == JointReference::start || other.reference == JointReference::start;
   if (is_relative) {
     const double difference = chain.q[first] - composed.state().q[first];
-    if (!joint.offset.is_set) joint.offset = {.is_set = true, .value = difference, .drift = composed.drift(j)};
+    begin_or_improve(joint.offset, difference,
+                     status.reference == JointReference::start ? 0.0 : square(chain.sd_q[first]), composed.drift(j));
     follow(joint.offset, difference, square(chain.sd_q[first]), composed.drift(j), dt);
   } else {
     joint.offset = {};
@@ -135,7 +147,9 @@ void JointFusion::fuse(const TrackingModel& model, const ComposedFilters& compos
   joint.age = std::min(joint.age + dt, wander_memory);
   joint.difference += dt / std::max(joint.age, 1e-4) * (difference - joint.difference);
   composed_variance = std::max(composed_variance, joint.difference - square(far_apart) * chain_variance);
-  approach(joint, chain_variance, composed_variance, dt);
+  // What both have in common tells nothing for either.
+  const double own_variance = std::max(0.0, chain_variance - joint.offset.common / of.positions);
+  approach(joint, own_variance, composed_variance, dt);
   if (joint.share <= 0.0) return;
   for (Index i = 0; i < of.positions; ++i) {
     const double offset = i == 0 ? joint.offset.value : 0.0, q = composed.state().q[first + i] + offset;

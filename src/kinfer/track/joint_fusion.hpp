@@ -33,6 +33,7 @@ class JointFusion {
   struct Offset {
     bool is_set = false;
     double value = 0.0, variance = 0.0;  // [rad], [rad²]
+    double common = 0.0;                 // [rad²] error of the chain's position that the offset has taken over
     double drift = 0.0;                  // [rad²] of the composed filters when it was last updated
     double wander = 0.0, age = 0.0;      // [rad²] mean square of the chain's heading about it; [s]
   };
@@ -47,6 +48,7 @@ class JointFusion {
   void fuse(const TrackingModel& model, const ComposedFilters& composed, double dt, std::size_t j, TrackState& chain);
   void fuse_ball(const TrackingModel& model, const ComposedFilters& composed, double dt, std::size_t j,
                  TrackState& chain);
+  static void begin_or_improve(Offset& offset, double measured, double chain_variance, double drift);
   static double follow(Offset& offset, double measured, double chain_variance, double drift, double dt);
   static void approach(Joint& joint, double chain_variance, double composed_variance, double dt);
 
