@@ -105,7 +105,7 @@ int kinfer::study::run_track(int argc, char** argv) {
   app.add_option("--first", arguments.first_seed, "First seed");
   app.add_option("--seeds", arguments.seeds, "How many");
   app.add_option("--duration", arguments.duration, "Of a drive [s]");
-  app.add_option("--steel", arguments.steel, "Field of moving steel [T]");
+  app.add_option("--steel", arguments.steel, "Field of moving steel [µT]");
   app.add_option("--smooth", arguments.smooths, "on: the smoother's row below the filter's");
   app.add_option("--exact", arguments.is_exact,
                  "on: the machine's own geometry and sensors without biases and scale errors, the best there can be");

@@ -104,6 +104,9 @@ TEST(Positive, WhatRoundingMadeIndefiniteHasAFactorAndAnInverse) {
   EXPECT_LT((inverse * root * root.transpose() - identity(4)).norm(), 0.1);
   const MatrixXd indefinite = Eigen::Vector3d(1.0, -1.0, 0.0).asDiagonal();
   EXPECT_TRUE(cholesky_but_for_rounding(indefinite).allFinite());
+  MatrixXd no_diagonal = MatrixXd::Constant(2, 2, 1e10);
+  no_diagonal.diagonal() << 0.0, 1e-300;
+  EXPECT_TRUE(invert_but_for_rounding(no_diagonal).allFinite()) << "and ends";
 }
 
 TEST(Positive, SemidefiniteSystemsAreSolvedInTheirRange) {

@@ -57,7 +57,10 @@ std::optional<MatrixXd> cholesky(ConstMatrixRef a) {
 MatrixXd cholesky_but_for_rounding(ConstMatrixRef a) {
   if (auto root = cholesky(a)) return std::move(*root);
   KINFER_EXPECT(a.allFinite(), "a matrix of {} rows is not finite", a.rows());
-  const VectorXd scale = a.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt();
+  // No diagonal is so small that a row divided by its root overflows: the loop ends.
+  constexpr double smallest = std::numeric_limits<double>::epsilon() * std::numeric_limits<double>::epsilon();
+  const double least = std::max(smallest * a.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+  const VectorXd scale = a.diagonal().cwiseMax(least).cwiseSqrt();
   MatrixXd unit = scale.cwiseInverse().asDiagonal() * a * scale.cwiseInverse().asDiagonal();
   for (double more = 1e-14;; more *= 10.0) {  // at the latest when it outweighs all others of a row
     unit.diagonal().array() += more;

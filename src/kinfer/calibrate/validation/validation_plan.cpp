@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "kinfer/calibrate/validation/commanded_poses.hpp"
 #include "kinfer/calibrate/validation/thresholds.hpp"
@@ -39,6 +40,10 @@ void link_sights_of_one_pose(const PoseSet& data, Link link) {
   });
 }
 
+std::vector<int> poses_of(const PoseSet& data) {
+  return commanded_poses(data.joints, thresholds::same_pose_angle);
+}
+
 /// Calls link(row, other) for rows of one pose: with its copy among the fitted rows, a held-out row would show how well
 /// a pose repeats and not how well another one is predicted. Not beside ball-bars: all bars from one reference pose
 /// would be linked.
@@ -46,7 +51,7 @@ template <class Link>
 void link_repeated_poses(const PoseSet& data, Link link) {
   if (!data.pairs.empty()) return;
   std::vector<int> first;
-  const std::vector<int> poses = commanded_poses(data.joints, thresholds::same_pose_angle);
+  const std::vector<int> poses = poses_of(data);
   for (int row = 0; row < data.rows(); ++row) {
     const auto pose = static_cast<std::size_t>(poses[static_cast<std::size_t>(row)]);
     if (pose == first.size()) first.push_back(row);
@@ -54,9 +59,11 @@ void link_repeated_poses(const PoseSet& data, Link link) {
   }
 }
 
-int distinct_poses(const PoseSet& data, const std::vector<int>& rows) {
-  const std::vector<int> poses = commanded_poses(data.joints(Eigen::all, rows), thresholds::same_pose_angle);
-  return poses.empty() ? 0 : 1 + *std::ranges::max_element(poses);
+/// `poses`: the pose of each row of the data.
+int distinct_poses(const std::vector<int>& poses, const std::vector<int>& rows) {
+  std::set<int> distinct;
+  for (const int row : rows) distinct.insert(poses[static_cast<std::size_t>(row)]);
+  return static_cast<int>(distinct.size());
 }
 
 /// Groups of linked rows, each ascending.
@@ -91,6 +98,13 @@ Split split_to_rows(const std::vector<std::vector<int>>& groups, const Split& sp
   return {rows_of(groups, split.train), rows_of(groups, split.holdout)};
 }
 
+std::vector<Split> folds_of_groups(const std::vector<std::vector<int>>& groups, int k, Rng rng) {
+  std::vector<Split> splits;
+  for (const Split& split : folds(static_cast<int>(groups.size()), k, rng))
+    splits.push_back(split_to_rows(groups, split));
+  return splits;
+}
+
 int fold_count(const PoseSet& data, const CrossValidation& choice, const ParameterChoice& parameters) {
   if (choice.folds) return *choice.folds;
   const bool leave_one_out =
@@ -99,7 +113,7 @@ int fold_count(const PoseSet& data, const CrossValidation& choice, const Paramet
 }
 
 Error too_few_rows(const PoseSet& data) {
-  if (const int poses = distinct_poses(data, all_rows(data)); poses < data.rows())
+  if (const int poses = distinct_poses(poses_of(data), all_rows(data)); poses < data.rows())
     return {fmt::format(
         "{} rows of {} are too few to fit and validate a calibration; at least {} different poses are "
         "needed",
@@ -120,7 +134,7 @@ Result<ValidationPlan> draft_plan(const PoseSet& data, const CalibrationOptions&
   if (!folds) return error("no row is marked holdout in a column called set");
   const int k = std::min(fold_count(data, *folds, options.parameters), count);
   if (k < 2) return forward_error(too_few_rows(data));
-  return ValidationPlan{all_rows(data), make_row_folds(data, k, rng), HoldoutFolds{k}, true};
+  return ValidationPlan{all_rows(data), folds_of_groups(groups, k, rng), HoldoutFolds{k}, true};
 }
 
 }  // namespace
@@ -132,11 +146,7 @@ std::vector<int> without_outliers(std::vector<int> rows, const std::vector<Outli
 }
 
 std::vector<Split> make_row_folds(const PoseSet& data, int k, Rng rng) {
-  const std::vector<std::vector<int>> groups = linked_row_groups(data);
-  std::vector<Split> splits;
-  for (const Split& split : folds(static_cast<int>(groups.size()), k, rng))
-    splits.push_back(split_to_rows(groups, split));
-  return splits;
+  return folds_of_groups(linked_row_groups(data), k, rng);
 }
 
 Result<ValidationPlan> make_validation_plan(const PoseSet& data, const CalibrationOptions& options, Rng rng) {
@@ -144,9 +154,10 @@ Result<ValidationPlan> make_validation_plan(const PoseSet& data, const Calibrati
   if (static_cast<int>(plan.fitted.size()) < thresholds::min_fitted_rows)
     return error("{} rows are left to fit; a calibration needs at least {} (20 or more are better)", plan.fitted.size(),
                  thresholds::min_fitted_rows);
-  if (distinct_poses(data, plan.fitted) < thresholds::min_fitted_rows) return forward_error(too_few_rows(data));
+  const std::vector<int> poses = poses_of(data);
+  if (distinct_poses(poses, plan.fitted) < thresholds::min_fitted_rows) return forward_error(too_few_rows(data));
   for (const Split& split : plan.validation_splits)
-    if (distinct_poses(data, split.train) < thresholds::min_training_poses) return forward_error(too_few_rows(data));
+    if (distinct_poses(poses, split.train) < thresholds::min_training_poses) return forward_error(too_few_rows(data));
   return plan;
 }
 
