@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "kinfer/base/square.hpp"
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/track/smooth/smoother.hpp"
 
@@ -44,7 +45,7 @@ std::vector<TrueJoint> true_joints(const TrackingModel& model, const SimulatedDr
 }
 
 struct Sum {
-  double squares = 0.0, composed = 0.0, nees = 0.0, inside = 0.0, start = 0.0, composed_start = 0.0;
+  double squares = 0.0, composed = 0.0, stated = 0.0, nees = 0.0, inside = 0.0, start = 0.0, composed_start = 0.0;
   int rows = 0, composed_rows = 0;
 };
 
@@ -105,7 +106,7 @@ void each_state(const TrackingModel& model, kinfer::track::Estimator estimator, 
 }  // namespace
 
 TrackScore track(const TrackingModel& model, const SimulatedDrive* identified, const SimulatedDrive& drive,
-                 kinfer::track::Estimator estimator) {
+                 const Judgement& judgement) {
   using Clock = std::chrono::steady_clock;
   kinfer::track::ComposedFilters composed(model, {});
   const std::vector<TrueJoint> truth = true_joints(model, identified, drive.machine);
@@ -118,7 +119,7 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive* identified, c
   score.joints.resize(truth.size());
   std::vector<Sum> sums(truth.size());
   std::vector<Vec3> tool, true_tool;
-  double tilt = 0.0, spent = 0.0;
+  double tilt = 0.0, stated_tilt = 0.0, spent = 0.0;
   int rows = 0;
   const std::vector<InsRow> log = rows_of(model, drive.recording);
   std::size_t r = 0;
@@ -128,7 +129,7 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive* identified, c
     note_alarms(state, score);
     for (const double x : state.innovation)
       if (state.started && !std::isnan(x)) score.largest_innovation = std::max(score.largest_innovation, x);
-    if (!state.started) return;
+    if (!state.started || state.time - log.front().time < judgement.from) return;
     for (std::size_t j = 0; j < truth.size(); ++j) {
       const auto at = static_cast<Index>(j);
       const double q = truth[j].sign * (drive.motion.q(truth[j].row, static_cast<Index>(r)) - truth[j].zero);
@@ -142,6 +143,7 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive* identified, c
       const double e = state.q[at] - q - (is_relative ? sum.start : 0.0);
       sum.squares += e * e;
       const double sd = std::max(state.sd_q[at], 1e-6);
+      sum.stated += sd * sd;
       sum.nees += e * e / (sd * sd);
       sum.inside += std::abs(e) <= 1.96 * sd;
       ++sum.rows;
@@ -159,11 +161,12 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive* identified, c
     ++rows;
     const double tilted = tilt_error(state.world_q_base, below.world_R_sensor[r]);
     tilt += tilted * tilted;
+    stated_tilt += square(state.sd_base[0]) + square(state.sd_base[1]);
     if (r % 10 != 0 || state.base_T_tool.position.hasNaN()) return;
     tool.push_back(state.base_T_tool.position);
     true_tool.push_back(below.world_R_sensor[r].conjugate() * Vec3(above.position[r] - below.position[r]));
   };
-  each_state(model, estimator, log, [&](const TrackState& state, bool base_moves) {
+  each_state(model, judgement.estimator, log, [&](const TrackState& state, bool base_moves) {
     spent += std::chrono::duration<double>(Clock::now() - before).count();
     judge(state, base_moves);
     ++r;
@@ -175,12 +178,14 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive* identified, c
     const double n = std::max(1, sum.rows);
     joint.rms = std::sqrt(sum.squares / n);
     joint.composed_rms = std::sqrt(sum.composed / std::max(1, sum.composed_rows));
+    joint.stated = std::sqrt(sum.stated / n);
     joint.nees = sum.nees / n;
     joint.coverage = sum.inside / n;
     joint.is_prismatic = model.bodies[j + 1].motion == TrackingMotion::prismatic;
   }
   score.tool_rms = rms_after_fit(true_tool, tool);
   score.base_tilt_rms = std::sqrt(tilt / std::max(1, rows));
+  score.stated_base_tilt = std::sqrt(stated_tilt / std::max(1, rows));
   score.cpu_per_row = spent / static_cast<double>(log.size());
   return score;
 }

@@ -26,7 +26,7 @@ struct Arguments {
   Base base = Base::still;
   Script script = Script::standard;
   int first_seed = 1, seeds = 1;
-  double duration = 120.0, steel = 0.0;
+  double duration = 120.0, steel = 0.0, judged_from = 0.0;
   InjectedFault fault{};
   bool counts_alarms = false, smooths = false, is_exact = false;
 };
@@ -44,14 +44,14 @@ void print(const std::string& machine, const std::string& grade, int seed, const
   fmt::print("{:<18} {:<10} {:>2}  ", machine, grade, seed);
   for (const JointScore& joint : score.joints) {
     const double unit = joint.is_prismatic ? 1e-3 : degree;
-    fmt::print(" {:.3f}{}({:.2f}) {:.1f} {:.0f}%", joint.rms / unit,
+    fmt::print(" {:.3f}{}({:.2f}) {:.3f} {:.1f} {:.0f}%", joint.rms / unit,
                joint.is_prismatic ? "mm"
                : joint.is_first   ? "*"
                                   : "",
-               joint.composed_rms / unit, joint.nees, 100.0 * joint.coverage);
+               joint.composed_rms / unit, joint.stated / unit, joint.nees, 100.0 * joint.coverage);
   }
-  fmt::print("  tool {:.1f} mm, tilt {:.3f}, {:.0f} us", 1e3 * score.tool_rms, score.base_tilt_rms / degree,
-             1e6 * score.cpu_per_row);
+  fmt::print("  tool {:.1f} mm, tilt {:.3f} {:.3f}, {:.0f} us", 1e3 * score.tool_rms, score.base_tilt_rms / degree,
+             score.stated_base_tilt / degree, 1e6 * score.cpu_per_row);
   for (const auto& alarm : score.alarms)
     fmt::print("; {} {} {} at {:.2f}", name(alarm.first.kind), alarm.first.sensor, alarm.first.joint, alarm.at);
   fmt::print("\n");
@@ -59,7 +59,7 @@ void print(const std::string& machine, const std::string& grade, int seed, const
 }
 
 void run(const Arguments& a) {
-  fmt::print("joint: rms [deg] (composed) NEES coverage; *: counts from the start\n");
+  fmt::print("joint: rms [deg] (composed) stated NEES coverage; *: counts from the start; tilt: rms, stated\n");
   for (const std::string& machine : a.machines)
     for (const std::string& grade : a.grades)
       for (int seed = a.first_seed; seed < a.first_seed + a.seeds; ++seed) {
@@ -82,9 +82,10 @@ void run(const Arguments& a) {
                                                 .known_sensors = a.is_exact});
         inject(a.fault, second);
         const SimulatedDrive* zeros = a.is_exact ? nullptr : &first;
-        print(machine, grade, seed, track(*model, zeros, second));
+        print(machine, grade, seed, track(*model, zeros, second, {.from = a.judged_from}));
         if (a.smooths)
-          print("  smoothed", grade, seed, track(*model, zeros, second, kinfer::track::Estimator::smoother));
+          print("  smoothed", grade, seed,
+                track(*model, zeros, second, {kinfer::track::Estimator::smoother, a.judged_from}));
       }
 }
 
@@ -105,6 +106,7 @@ int kinfer::study::run_track(int argc, char** argv) {
   app.add_option("--first", arguments.first_seed, "First seed");
   app.add_option("--seeds", arguments.seeds, "How many");
   app.add_option("--duration", arguments.duration, "Of a drive [s]");
+  app.add_option("--judge-from", arguments.judged_from, "Errors before this time of the drive do not count [s]");
   app.add_option("--steel", arguments.steel, "Field of moving steel [µT]");
   app.add_option("--smooth", arguments.smooths, "on: the smoother's row below the filter's");
   app.add_option("--exact", arguments.is_exact,
