@@ -55,6 +55,18 @@ TEST(Verdict, ErrorsFarAboveTheInstrumentsNoiseAreUsedWithCare) {
       << words::verdict(c);
 }
 
+TEST(Verdict, ErrorsThatNoToleranceOfTheRobotCouldMakeAreNotOfUse) {
+  Calibration c = with_errors(1.2, 0.5, 0.5);
+  c.expected_holdout_rms = 0.4, c.noise_holdout_rms = 3e-5, c.tolerated_error = 0.6;
+  EXPECT_EQ(judge(c), CalibrationReason::beyond_noise);
+  c.tolerated_error = 0.03;
+  c.reason = judge(c), c.usability = usability_of(c.reason);
+  EXPECT_EQ(c.reason, CalibrationReason::beyond_tolerances);
+  EXPECT_EQ(c.usability, Usability::do_not_use);
+  EXPECT_NE(words::verdict(c).find("more than the tolerances of the robot's model could make"), std::string::npos)
+      << words::verdict(c);
+}
+
 TEST(Verdict, AFinalFitThatConvergedElsewhereIsNotValidated) {
   EXPECT_EQ(judge(with_errors(1e-3, 1e-4, 1.6e-4)), CalibrationReason::not_validated);
   EXPECT_EQ(judge(with_errors(1e-3, 1e-4, 1.4e-4)), CalibrationReason::improves_nominal);

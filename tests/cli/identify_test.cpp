@@ -93,6 +93,9 @@ TEST_F(Identify, AnUpdateSaysWhatChangedAndKeepsStructureAndNames) {
             active_joint_names(read_robot_model(in("machine/chain.toml"))->chain));
   EXPECT_EQ(kinfer("track one later/imu.csv --out work --quiet").code, 0) << "the updated chain is tracked";
 
+  const auto again = kinfer("identify --update one later/imu.csv --out none");
+  EXPECT_EQ(again.code, 2);
+  EXPECT_THAT(again.err, HasSubstr("was identified from this recording, which would count twice"));
   const auto tree = kinfer("identify --update machine later/imu.csv --out none --tree ins0-ins1");
   EXPECT_EQ(tree.code, 2);
   EXPECT_THAT(tree.err, HasSubstr("--tree has no effect with --update"));

@@ -45,6 +45,11 @@ TEST_F(Path, BadInputIsOneSentence) {
   EXPECT_THAT(path("--from 0,0,0,0,0,0 --to 9,0,0,0,0,0 --velocity 0").err,
               HasSubstr("--velocity: expected limits above 0"));
   EXPECT_THAT(path("--from 0,0,0,0,0,0 --to 9,0,0,0,0,0 --tool-speed 5").err, HasSubstr("--tool-speed has no effect"));
+  EXPECT_THAT(path("--from 0,0,0,0,0,0 --to 9,0,0,0,0,0 --velocity 1e-9").err,
+              HasSubstr("and at most 2000000 are written; a larger --step, --velocity"));
+  EXPECT_THAT(path("--from 0,0,0,0,0,0 --to 9,0,0,0,0,0 --jerk 1e20").err,
+              HasSubstr("is not possible for a limit of a motion"));
+  EXPECT_EQ(path("--from 0,0,0,0,0,0 --to 9,0,0,0,0,0 --jerk 1e6 -o quick.csv").code, 0);
   write(in("targets.csv"), "x,y,z,pitch[deg]\n1,0,1,10\n1,0,1,\n");
   EXPECT_THAT(path("--targets targets.csv").err, HasSubstr("must all direct the orientation in the same way"));
 }

@@ -152,9 +152,15 @@ TEST_F(Track, BadInputIsOneSentence) {
   EXPECT_THAT(
       shell("head -5 drive/imu.csv > back.csv; sed -n 3p drive/imu.csv >> back.csv; kinfer track machine back.csv").err,
       HasSubstr("back.csv:6: the time goes backwards"));
-  const Outcome cut = shell("head -c 20000 drive/imu.csv | kinfer track machine -");
+  const Outcome cut = shell("head -c 400000 drive/imu.csv | kinfer track machine -");
   EXPECT_EQ(cut.code, 0);
   EXPECT_THAT(cut.err, HasSubstr("standard input: the last line is cut off and is not used"));
+  EXPECT_EQ(kinfer("track machine drive/imu.csv --quiet --out t --start nan,nan,nan,nan").code, 0)
+      << "nan: a position that is not known";
+  EXPECT_THAT(kinfer("track machine drive/imu.csv --out t --base-at 1e300,0,0,0").err,
+              HasSubstr("is not possible for a length"));
+  EXPECT_EQ(shell("timeout -s TERM 0.05 kinfer track machine drive/imu.csv --out killed").code, 124);
+  EXPECT_FALSE(test::fs::exists(in("killed"))) << "an interrupt is no end of a whole log";
   test::fs::remove(in("machine/track.toml"));
   EXPECT_THAT(kinfer("track machine drive/imu.csv").err,
               HasSubstr("machine: the chain has no tracking data, track.toml"));

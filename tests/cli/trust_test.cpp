@@ -2,6 +2,7 @@
 // What kinfer promises of every run: typed ranges, all or nothing, one run a folder, sentences for what the system
 // denies.
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/file.h>
 #include <sys/mount.h>
@@ -39,6 +40,22 @@ TEST_F(Trust, NumbersOutsideOfTheirRangeAreRefusedByTheParser) {
     EXPECT_EQ(run.code, 2) << arguments;
     EXPECT_THAT(run.err, HasSubstr("expected a number from")) << arguments;
   }
+}
+
+TEST_F(Trust, ASeedIsAWholeNumberThatFits) {
+  for (const std::string seed : {"-1", "18446744073709551616", "1.5", "x"})
+    EXPECT_THAT(kinfer(poses("out", "--seed " + seed)).err, HasSubstr("expected a whole number from 0 to")) << seed;
+  EXPECT_EQ(kinfer(poses("out", "--seed 18446744073709551615")).code, 0);
+}
+
+TEST_F(Trust, NamesCannotCommandTheTerminal) {
+  std::string log = "t,a\x1B[31m_ax,a\x1B[31m_ay,a\x1B[31m_az,a\x1B[31m_gx,a\x1B[31m_gy,a\x1B[31m_gz\n";
+  for (int i = 0; i < 50; ++i) log += fmt::format("{},0,0,9.8,0.0{},0,0\n", 0.01 * i, i % 7);
+  write(in("log.csv"), log);
+  const Outcome run = kinfer("inspect log.csv");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("a?[31m"));
+  EXPECT_THAT(run.out, Not(HasSubstr("\x1B")));
 }
 
 TEST_F(Trust, HoldoutIsAFraction) {

@@ -39,6 +39,20 @@ TEST(Verify, DistinguishesAMovedTrackerFromAChangedRobot) {
   EXPECT_NE(words::verdict(after_knock).find("Calibrate again"), std::string::npos);
 }
 
+/// What a calibration does not know is no excuse for what it says.
+TEST(Verify, AChainThatItsCalibrationDoesNotKnowIsNotValid) {
+  const Chain truth = on_a_stand(with_table3_errors(er20(0.125)));
+  const PoseSet today = measured(truth, paper2_poses(30, tracker), 5);
+  Chain bent = truth;
+  std::get<MdhLink>(bent.joints[3].link).alpha += 12.0 * degree;
+  const PredictionModel of_a_metre{.model_error = MatrixXd::Identity(6, 6),
+                                   .rows = MatrixXd::Zero(6, 1),
+                                   .spread = VectorXd::Ones(6),
+                                   .noise = tracker.sigma};
+  EXPECT_EQ(verify(truth, {}, tracker, today, of_a_metre)->result, VerificationResult::valid);
+  EXPECT_EQ(verify(bent, {}, tracker, today, of_a_metre)->result, VerificationResult::robot_changed);
+}
+
 /// A refit of nine unknowns to three or four points leaves less than the noise, whatever happened.
 TEST(Verify, FewPointsDoNotTellAMovedTrackerFromAChangedRobot) {
   const Chain truth = on_a_stand(with_table3_errors(er20(0.125)));

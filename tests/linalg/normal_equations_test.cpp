@@ -125,5 +125,15 @@ TEST(CovarianceOfNormalMatrix, ADirectionThatRoundingHidesHasALargeVarianceAndTh
   EXPECT_GT(covariance(0, 0) - 2.0 * covariance(0, 1) + covariance(1, 1), 1.0) << "their difference is not";
 }
 
+TEST(CovarianceOfNormalMatrix, AnUnknownThatAppearsNowhereLeavesTheOthersAsTheyAre) {
+  MatrixXd normal = MatrixXd::Zero(3, 3);
+  normal(0, 0) = 4.0, normal(2, 2) = 5.0, normal(0, 2) = normal(2, 0) = 1.0;
+  const MatrixXd covariance = covariance_of_normal_matrix(normal);
+  EXPECT_TRUE(covariance.allFinite()) << covariance;
+  EXPECT_NEAR(covariance(0, 0), 5.0 / 19.0, 1e-12);
+  EXPECT_NEAR(covariance(0, 2), -1.0 / 19.0, 1e-12);
+  EXPECT_GT(covariance(1, 1), 1e12);
+}
+
 }  // namespace
 }  // namespace kinfer

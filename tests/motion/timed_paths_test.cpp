@@ -30,7 +30,7 @@ TEST(ToolSpacePath, IsAStraightLineOfTheToolWithinTheLimitsOfTheJoints) {
   const Chain chain = limited();
   const Vec3 way(0.10, -0.15, 0.08);
   const auto targets = line_of(chain, way, Vec3(0.2, 0.1, -0.1));
-  const PathResult result = tool_space_path(chain, targets, posture(), limits, {}, 0.004);
+  const PathResult result = tool_space_path(chain, targets, posture(), limits, {}, 0.004).value();
   ASSERT_FALSE(result.obstacle);
   const TimedPath& path = result.path;
   EXPECT_EQ(path.time.back(), path.duration);
@@ -51,9 +51,9 @@ TEST(ToolSpacePath, IsAStraightLineOfTheToolWithinTheLimitsOfTheJoints) {
 TEST(ToolSpacePath, IsSlowedDownWhereTheJointsAreSlow) {
   const Chain chain = limited();
   const auto targets = line_of(chain, Vec3(0.1, 0.1, 0.0), Vec3::Zero());
-  const PathResult quick = tool_space_path(chain, targets, posture(), limits, {}, 0.004);
+  const PathResult quick = tool_space_path(chain, targets, posture(), limits, {}, 0.004).value();
   const std::vector<MotionLimits> slow(6, {0.02, 6.0, 60.0});
-  const PathResult slowed = tool_space_path(chain, targets, posture(), slow, {}, 0.004);
+  const PathResult slowed = tool_space_path(chain, targets, posture(), slow, {}, 0.004).value();
   EXPECT_GT(slowed.path.slowed_by, 1.5);
   EXPECT_GT(slowed.path.duration, 1.5 * quick.path.duration);
   EXPECT_LE(slowed.path.velocity.cwiseAbs().maxCoeff(), 0.02);
@@ -62,7 +62,7 @@ TEST(ToolSpacePath, IsSlowedDownWhereTheJointsAreSlow) {
 TEST(ToolSpacePath, WhatCannotBeDrivenIsNamed) {
   const Chain chain = limited();
   const PathResult far =
-      tool_space_path(chain, line_of(chain, Vec3(9.0, 0.0, 0.0), Vec3::Zero()), posture(), limits, {}, 0.02);
+      tool_space_path(chain, line_of(chain, Vec3(9.0, 0.0, 0.0), Vec3::Zero()), posture(), limits, {}, 0.02).value();
   ASSERT_TRUE(far.obstacle);
   EXPECT_NE(far.obstacle->kind, PathObstacle::Kind::outside_limits);
   const Eigen::Index before = far.path.position.cols() - 2;
@@ -76,7 +76,7 @@ TEST(ToolSpacePath, WhatCannotBeDrivenIsNamed) {
   const Pose tool = forward(chain, straight);
   const std::vector<ReachTarget> through{{tool.position, FullGoal{tool.rotation}},
                                          {tool.position + Vec3(0, 0, 0.01), FullGoal{tool.rotation}}};
-  const PathResult singular = tool_space_path(chain, through, straight, limits, {}, 0.02);
+  const PathResult singular = tool_space_path(chain, through, straight, limits, {}, 0.02).value();
   ASSERT_TRUE(singular.obstacle);
   EXPECT_EQ(singular.obstacle->kind, PathObstacle::Kind::near_singular);
 }
@@ -85,13 +85,46 @@ TEST(JointSpacePath, LimitsOfPositionAreChecked) {
   const Chain chain = limited(1.0);
   MatrixXd waypoints = MatrixXd::Zero(6, 3);
   waypoints(2, 1) = 1.4;
-  const PathResult result = joint_space_path(chain, waypoints, limits, {}, 0.01);
+  const PathResult result = joint_space_path(chain, waypoints, limits, {}, 0.01).value();
   ASSERT_TRUE(result.obstacle);
   EXPECT_EQ(result.obstacle->kind, PathObstacle::Kind::outside_limits);
   EXPECT_EQ(result.obstacle->joint, 2);
   EXPECT_EQ(result.obstacle->line, 0);
   waypoints(2, 1) = 0.9;
-  EXPECT_FALSE(joint_space_path(chain, waypoints, limits, {}, 0.01).obstacle);
+  EXPECT_FALSE(joint_space_path(chain, waypoints, limits, {}, 0.01)->obstacle);
+}
+
+TEST(JointSpacePath, TooManySamplesAreRefusedBeforeTheWork) {
+  const Chain chain = limited();
+  MatrixXd waypoints = MatrixXd::Zero(6, 3);
+  waypoints(2, 1) = 0.9;
+  for (const MotionLimits& slow : {MotionLimits{1e-9, 6.0, 60.0}, MotionLimits{1.5, 1e-12, 60.0},
+                                   MotionLimits{1.5, 6.0, 1e-20}, MotionLimits{1e-300, 1e-300, 1e-300}}) {
+    const auto refused = joint_space_path(chain, waypoints, std::vector<MotionLimits>(6, slow), {}, 0.004);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().what.find("rows, one every 4 ms, and at most 2000000 are written"), std::string::npos)
+        << refused.error().what;
+  }
+  // 1800 s at constant velocity, and as much as the ramps take: 1.8 million rows are written, 2.2 million are not.
+  waypoints.col(2) = waypoints.col(1);
+  const std::vector<MotionLimits> slow(6, {0.0005, 6.0, 60.0});
+  const auto largest = joint_space_path(chain, waypoints, slow, {}, 0.001);
+  ASSERT_TRUE(largest) << largest.error().what;
+  EXPECT_EQ(std::ssize(largest->path.time), static_cast<std::ptrdiff_t>(largest->path.duration / 0.001) + 2);
+  EXPECT_FALSE(joint_space_path(chain, waypoints, slow, {}, 0.0008));
+}
+
+TEST(ToolSpacePath, TooManySamplesAreRefusedBeforeTheWork) {
+  const Chain chain = limited();
+  const auto targets = line_of(chain, Vec3(0.1, 0.1, 0.0), Vec3::Zero());
+  ToolPathOptions crawling;
+  crawling.translation = {1e-6, 4e-6, 2e-5}, crawling.rotation = {4e-6, 1.6e-5, 8e-5};
+  const auto refused = tool_space_path(chain, targets, posture(), limits, crawling, 0.004);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find("at most 500000 are written"), std::string::npos) << refused.error().what;
+  const auto held_up =
+      tool_space_path(chain, targets, posture(), std::vector<MotionLimits>(6, {1e-9, 6.0, 60.0}), {}, 0.004);
+  EXPECT_FALSE(held_up) << "the joints make it slow";
 }
 
 TEST(Interpolate, TurnsEachKindOfOrientationEvenly) {

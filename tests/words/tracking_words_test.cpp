@@ -83,6 +83,17 @@ TEST(TrackVerdict, DependsOnTheKindOfAlarmAndWhetherItLasts) {
     }
 }
 
+TEST(TrackVerdict, OfPositionsThatCouldBeAnyIsNotOfUse) {
+  TrackRun run = sound_run();
+  run.positions = {{.name = "swing", .sd = {1.8, 1.8, 0.01}}, {.name = "boom", .sd = {0.01, 0.01, 0.01}}};
+  EXPECT_EQ(words::with_sentences(run).verdict.usability, Usability::use_with_care);
+  run.positions[1].sd = {1.8, 1.8, 1.8};
+  EXPECT_EQ(words::with_sentences(run).verdict.usability, Usability::do_not_use);
+  EXPECT_THAT(words::with_sentences(run).verdict.sentence, HasSubstr("no joint position is known"));
+  run.positions = {{.name = "telescope", .rotates = false, .sd = {0.6, 0.6, 0.6}}};
+  EXPECT_EQ(words::with_sentences(run).verdict.usability, Usability::use);
+}
+
 TEST(TrackVerdict, OfNothingIsNotOfUse) {
   TrackRun run = sound_run();
   run.rows = 0;

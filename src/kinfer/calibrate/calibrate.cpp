@@ -10,6 +10,8 @@
 #include "kinfer/calibrate/conclusion/unobserved_lengths.hpp"
 #include "kinfer/calibrate/conclusion/verdict.hpp"
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
+#include "kinfer/calibrate/diagnosis/diagnosis_state.hpp"
+#include "kinfer/calibrate/diagnosis/moving_points.hpp"
 #include "kinfer/calibrate/fit/population_choice.hpp"
 #include "kinfer/calibrate/prediction/model_error.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
@@ -73,6 +75,7 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
   KINFER_TRY(start, make_starting_model(given, options, rng));
   const Diagnosis diagnosis = diagnose_mountings(start.task);
   KINFER_TRY(prepared, prepare_task(diagnosis));
+  if (auto moving = expect_moving_points(prepared); !moving) return forward_error(moving.error());
   KINFER_TRY(plan, make_validation_plan(prepared.data, options, rng.stream(1)));
   const PoseSet fitted = select(prepared.data, plan.fitted);
   KINFER_TRY(population, choose_population(prepared, fitted, options.parameters, rng.stream(2)));
@@ -104,6 +107,7 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
     calibration.expected_holdout_rms = expected->of_fit;
     calibration.noise_holdout_rms = expected->by_noise;
   }
+  if (task.instrument && primary_measurement_kind(task.data)) calibration.tolerated_error = max_plausible_error(task);
   if (const auto prediction = make_prediction_model(evaluation, fit.estimate, fit.beyond, options.threads)) {
     calibration.prediction = prediction->model;
     calibration.predicted_holdout_rms = prediction->holdout_rms;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/calibrate/diagnosis/diagnosis_state.hpp"
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
@@ -103,7 +104,14 @@ Result<Verification> verify(const Chain& given_chain, const Tolerances& toleranc
   const std::optional<Instrument> known = known_instrument(instrument, prediction);
   v.noise_is_known = known.has_value();
   if (known) {
-    const double sd = std::max(expected_rms(chain, *known, data, prediction), thresholds::least_point_sd);
+    // A chain that its calibration does not know is not valid because of that: its own uncertainty excuses no more than
+    // the tolerances of a robot that was never calibrated.
+    const double by_all = expected_rms(chain, *known, data, prediction),
+                 by_noise = expected_rms(chain, *known, data, std::nullopt),
+                 tolerated = calibrate::max_plausible_error(
+                     {.nominal = chain, .tolerances = tolerances, .instrument = known, .data = data});
+    const double sd =
+        std::max({std::min(by_all, tolerated / thresholds::noise_ratio), by_noise, thresholds::least_point_sd});
     v.result = judge_by_noise(v, data, thresholds::noise_ratio * sd);
   } else {
     if (v.redundancy < thresholds::least_redundancy)

@@ -104,10 +104,13 @@ VectorXd solve_damped_by_eigenvalues(const NormalEquations& equations, double da
 }
 
 MatrixXd covariance_of_normal_matrix(ConstMatrixRef normal) {
-  constexpr double least = 1e-12;
+  constexpr double least = 1e-12, least_information = 1e-9;
   // Scaled to unit diagonal before the inversion, for accuracy.
-  const VectorXd scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-  const MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+  const VectorXd scale = normal.diagonal().cwiseSqrt().cwiseMax(least_information).cwiseInverse();
+  MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+  // An unknown that appears nowhere leaves the others as they are.
+  for (Eigen::Index k = 0; k < scaled.rows(); ++k)
+    if (!(normal(k, k) > 0.0)) scaled(k, k) = 1.0;
   auto inverse = invert_spd(scaled);
   if (!inverse) {
     const SymmetricEigen eigen = symmetric_eigen(scaled);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Paths through postures: straight lines in joint space at constant speed, joined by ramps, all joints in step.
+// Paths through postures: straight lines in joint space, joined at corners, all joints in step.
 //
-// On each line the joints move in proportion. At a waypoint the velocities of all joints change together from those of
-// one line to those of the next by one S ramp, centred on the waypoint: speed, acceleration and jerk of every joint
-// stay within their limits, and the corner is cut by a known amount. From rest to rest along one line this is the
-// time-optimal double-S motion.
+// On each line the joints move in proportion, by the double S between the speeds at its ends. At a corner the
+// velocities of all joints change together from those along one line to those along the next by one S ramp, centred on
+// the waypoint: speed, acceleration and jerk of every joint stay within their limits, and the corner is cut by a known
+// amount. Only near a corner is the path slowed down for it; where a stop is quicker, it stops there.
 #pragma once
 
 #include <vector>
@@ -22,7 +22,7 @@ struct PathState {
 
 struct JointPathOptions {
   bool stop_at_waypoints = false;
-  double most_cut = 0.05;  ///< [rad] or [m] of any joint that a corner may be cut by
+  double most_cut = 0.05;  ///< [rad] or [m] of any joint that a corner may be cut by; larger: quicker; 0: stops
 };
 
 class JointPath {
@@ -34,16 +34,20 @@ class JointPath {
   PathState at(double t) const;                  ///< [s], clamped to the duration
   /// [s] when the path is at, or cuts, each waypoint.
   const std::vector<double>& passing_times() const { return passing_times_; }
-  /// [rad] or [m] by which each corner is cut, in the joint that misses its waypoint most.
+  /// [rad] or [m] by which each corner is cut, in the joint that misses its waypoint most; 0 below
+  /// 1e-9.
   const std::vector<double>& cuts() const { return cuts_; }
 
  private:
-  /// A change of velocity at a waypoint. The joints move at `after` until the next one begins.
+  /// From rest to rest through waypoints of which neighbours differ.
+  void append(const MatrixXd& waypoints, const std::vector<MotionLimits>& limits, double most_cut);
+
+  /// A change of velocity. The joints move at `after` until the next one begins.
   struct Ramp {
-    double begin = 0.0;  ///< [s]
-    VectorXd from;       ///< positions where it begins
-    VectorXd before, after;
-    SRamp shape;
+    double begin = 0.0;                    ///< [s]
+    VectorXd from{};                       ///< positions where it begins
+    VectorXd before{}, change{}, after{};  // velocities; the change by itself, as it may be tiny
+    SRamp shape{};
   };
   std::vector<Ramp> ramps_;
   std::vector<double> cuts_, passing_times_;

@@ -28,6 +28,17 @@ inline constexpr double path_jump = 0.2;         ///< [rad] or [m] of a joint in
 /// refuses lines farther from singular postures.
 inline constexpr double singular_path = 1e-3;
 inline constexpr double slow_down_margin = 1.02;  ///< [1] for what lies between the steps
-inline constexpr int speed_sweeps = 200;          ///< over the lines of a path, before all speeds are halved
+inline constexpr int profile_steps = 4000;        ///< to find the peak speed of a line; 10 to 60 are usual
+inline constexpr double least_move = 1e-100;      ///< [rad] or [m] of a joint below which neighbours are equal
+inline constexpr double most_samples = 2e6;       ///< of a path; more are refused before the work
+inline constexpr double most_tool_samples = 5e5;  ///< the same along lines of the tool: each takes 40 us and more
+
+// ---- corners ----
+inline constexpr double least_cut = 1e-9;               ///< [rad] or [m] below which corners are stops
+inline constexpr double least_corner_speed = 1e-12;     ///< [1] of the fastest on its lines; slower corners are stops
+inline constexpr double corner_steps_per_octave = 8.0;  ///< of the speeds among which that of a corner is chosen
+inline constexpr int corner_steps = 65;                 ///< larger: also slower corners
+inline constexpr double largest_corner_change = 2.0;  ///< [octaves] of the first refinement; smaller: more local optima
+inline constexpr double least_corner_change = 1e-3;   ///< [octaves] of the last
 
 }  // namespace kinfer::motion::thresholds

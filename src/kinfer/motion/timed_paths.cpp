@@ -13,6 +13,15 @@ namespace {
 
 using Eigen::Index;
 
+/// Known before the work: its time and memory grow with the samples.
+Result<void> check_samples(double duration, double step, double most) {
+  const double samples = std::floor(duration / step) + 2.0;
+  if (samples <= most) return {};
+  const std::string rows = samples < 1e15 ? fmt::format("{:.0f}", samples) : fmt::format("{:.3g}", samples);
+  return error("the path would take {:.4g} s: {} rows, one every {:.4g} ms, and at most {:.0f} are written", duration,
+               rows, 1e3 * step, most);
+}
+
 std::vector<double> sample_times(double duration, double step) {
   KINFER_EXPECT(step > 0.0, "a step of {} s", step);
   std::vector<double> times;
@@ -106,9 +115,12 @@ bool is_singular(const Chain& chain, const VectorXd& q, double length, bool dire
 
 }  // namespace
 
-PathResult joint_space_path(const Chain& chain, const MatrixXd& waypoints, const std::vector<MotionLimits>& limits,
-                            const JointPathOptions& options, double step) {
+Result<PathResult> joint_space_path(const Chain& chain, const MatrixXd& waypoints,
+                                    const std::vector<MotionLimits>& limits, const JointPathOptions& options,
+                                    double step) {
   const JointPath planned(waypoints, limits, options);
+  if (auto checked = check_samples(planned.duration(), step, thresholds::most_samples); !checked)
+    return forward_error(checked.error());
   PathResult result;
   TimedPath& path = result.path;
   path.duration = planned.duration(), path.cuts = planned.cuts(), path.passing_times = planned.passing_times();
@@ -225,10 +237,13 @@ void set_derivatives(TimedPath& path) {
 
 }  // namespace
 
-PathResult tool_space_path(const Chain& chain, const std::vector<ReachTarget>& targets, const VectorXd& preferred,
-                           const std::vector<MotionLimits>& limits, const ToolPathOptions& options, double step) {
+Result<PathResult> tool_space_path(const Chain& chain, const std::vector<ReachTarget>& targets,
+                                   const VectorXd& preferred, const std::vector<MotionLimits>& limits,
+                                   const ToolPathOptions& options, double step) {
   KINFER_EXPECT(!targets.empty(), "a path needs targets");
   ToolLines lines(chain, targets, options);
+  if (auto checked = check_samples(lines.duration(), step, thresholds::most_tool_samples); !checked)
+    return forward_error(checked.error());
   PathResult result;
   TimedPath& path = result.path;
   // The factor comes from fine steps of the unhurried time; the samples are taken once it is known.
@@ -236,6 +251,8 @@ PathResult tool_space_path(const Chain& chain, const std::vector<ReachTarget>& t
   const MatrixXd postures = lines.follow(sample_times(lines.duration(), fine), preferred);
   if (!lines.obstacle()) path.slowed_by = slow_down(postures.leftCols(postures.cols() - 1), fine, limits);
   path.duration = path.slowed_by * lines.duration();
+  if (auto checked = check_samples(path.duration, step, thresholds::most_tool_samples); !checked)
+    return forward_error(checked.error());
   path.time = sample_times(path.duration, step);
   std::vector<double> unhurried = path.time;
   for (double& time : unhurried) time /= path.slowed_by;

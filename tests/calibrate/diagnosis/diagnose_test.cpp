@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "kinfer/calibrate/diagnosis/moving_points.hpp"
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
 #include "kinfer/geometry/random.hpp"
 #include "kinfer/kinematics/forward.hpp"
@@ -86,6 +87,32 @@ TEST(Diagnosis, FaultlessSetsHaveNoFinding) {
       const Diagnosis diagnosis = diagnose(measured_robot(nominal, seed, Measured::poses));
       EXPECT_TRUE(diagnosis.findings.empty()) << seed << "\n" << listed(diagnosis.findings);
     }
+}
+
+/// A unit in which all points are small has small errors, too.
+TEST(Diagnosis, PointsThatBelongToOtherPosesAreNotExplainedByAUnit) {
+  for (const Chain& nominal : {arm6(), scara()})
+    for (int seed = 1; seed <= 6; ++seed) {
+      CalibrationTask task = measured_robot(nominal, seed);
+      Rng rng(static_cast<std::uint64_t>(seed));
+      for (std::size_t i = task.data.points.size() - 1; i > 0; --i)
+        std::swap(task.data.points[i].position,
+                  task.data.points[static_cast<std::size_t>(rng.uniform(0.0, static_cast<double>(i)))].position);
+      for (const Finding& finding : diagnose(task).findings)
+        EXPECT_FALSE(finding.applied) << seed << ": " << words::sentence(finding);
+    }
+}
+
+TEST(Diagnosis, APointThatNeverMovesIsNoMeasurement) {
+  CalibrationTask task = measured_robot(scara());
+  EXPECT_TRUE(expect_moving_points(task));
+  for (PointMeasurement& point : task.data.points) point.position = task.data.points.front().position;
+  const auto refused = expect_moving_points(task);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find("the measured points never move"), std::string::npos) << refused.error().what;
+  // A tip that is held on one point does not move by the model either.
+  task.data.joints.colwise() = VectorXd(task.data.joints.col(0));
+  EXPECT_TRUE(expect_moving_points(task));
 }
 
 TEST(Diagnosis, CommandedPositionsReplaceJointPositionsRecordedDuringMotion) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kinfer/io/evidence/files/chain_dh_csv.hpp"
 #include "support/robots.hpp"
 
 namespace kinfer {
@@ -16,6 +17,12 @@ TEST(IdentificationFiles, AreNoneWhereNoJointMoves) {
   EXPECT_EQ(files[0].name, "chain.toml");
   for (Joint& joint : found.chain.joints) joint.type = JointType::fixed;
   EXPECT_TRUE(identification_files(found).empty());
+}
+
+TEST(IdentificationFiles, NamesInTheDhTableAreCells) {
+  DhRowEstimate row;
+  row.segment = "p,q", row.theta_variable = "=1+1";
+  EXPECT_EQ(format_chain_dh_csv({row}).find(",=1+1"), std::string::npos) << format_chain_dh_csv({row});
 }
 
 }  // namespace

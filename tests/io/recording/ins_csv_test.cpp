@@ -278,5 +278,17 @@ TEST(InsCsv, AMeasuredRecordingIsRead) {
   EXPECT_NEAR(median_period(read->loggers[0].time), 0.008, 1e-9);
 }
 
+TEST(InsCsv, QuotedNumbersAreNumbers) {
+  const std::string text =
+      "\"t\",\"s_ax\",\"s_ay\",\"s_az\",\"s_gx\",\"s_gy\",\"s_gz\"\n"
+      "\"0\",\"1\",\"2\",\"9.5\",\"4\",\"5\",\"\"\n\"0.01\",1,2,9.5, \"4\" ,5,6\n";
+  const auto read = parse_ins_csv(text, "imu.csv");
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(read->loggers[0].time, (std::vector<double>{0, 0.01}));
+  EXPECT_EQ(read->sensors[0].acceleration.at(0), Vec3(1, 2, 9.5));
+  EXPECT_TRUE(std::isnan(read->sensors[0].angular_velocity.at(0).z()));
+  EXPECT_EQ(read->sensors[0].angular_velocity.at(1), Vec3(4, 5, 6));
+}
+
 }  // namespace
 }  // namespace kinfer

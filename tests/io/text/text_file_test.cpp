@@ -39,6 +39,13 @@ TEST_F(TextFile, PathsThatCannotBeReadAreErrors) {
   EXPECT_EQ(read_text_file(folder / "empty.csv").error().what, name + "/empty.csv: the file is empty");
 }
 
+TEST_F(TextFile, WhatGzipCompressedIsNamed) {
+  ASSERT_TRUE(write_text_file(folder / "a.csv.gz", std::string("\x1F\x8B\x08\x00", 4)));
+  EXPECT_EQ(
+      read_text_file(folder / "a.csv.gz").error().what,
+      folder.string() + "/a.csv.gz: compressed by gzip, which is not read; unpack it (gunzip), or compress it by zstd");
+}
+
 TEST_F(TextFile, PathsThatCannotBeWrittenAreErrors) {
   const std::string name = folder.string();
   EXPECT_EQ(write_text_file(folder, "x").error().what, name + ": expected a file to write, found a folder");

@@ -112,6 +112,16 @@ TEST(PairRests, ByTimeOffsetAndDriftAreFound) {
   }
 }
 
+TEST(PairRests, ADriftIsFoundBesideAClockThatCountsFrom1970) {
+  const Program program = program_of(15, false, Rng(4));
+  const auto near = pair_by_time(lists_of(program, 0.25, 8e-5, 0)),
+             far = pair_by_time(lists_of(program, 1.7e9 + 0.25, 8e-5, 0));
+  ASSERT_TRUE(near && far);
+  EXPECT_NEAR(far->drift, near->drift, 1e-7);
+  EXPECT_NEAR(far->offset - near->offset, 1.7e9, 1e-3);
+  EXPECT_NEAR(far->timing_error, near->timing_error, 1e-5);
+}
+
 TEST(PairRests, EqualDwellsAreDecidedByDistancesOrRefused) {
   const Program program = program_of(10, true, Rng(3));
   RestLists lists = lists_of(program, 20.0, 0.0, 2);

@@ -21,6 +21,7 @@ CalibrationReason judge_against_nominal(const Calibration& calibration) {
   if (!(final_errors(calibration).rms <= thresholds::same_solution_ratio * after.rms))
     return CalibrationReason::not_validated;
   if (exceeds_expectation(calibration, after.rms)) return CalibrationReason::unmodelled_effects;
+  if (after.rms > calibration.tolerated_error) return CalibrationReason::beyond_tolerances;
   if (calibration.chance_of_improvement.value_or(0.0) > thresholds::unproven_chance) return CalibrationReason::unproven;
   if (calibration.noise_holdout_rms && !(after.rms <= thresholds::expectation_ratio * *calibration.noise_holdout_rms))
     return CalibrationReason::beyond_noise;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "kinfer/calibrate/diagnosis/moving_points.hpp"
 #include "kinfer/calibrate/diagnosis/thresholds.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/measurement/row_selection.hpp"
@@ -158,6 +159,9 @@ struct Explanation {
   Chain chain;
   PoseSet data;
   double median_error = 0.0;
+  /// [1] the same over the spread of the points: a unit that makes all points smaller makes their errors smaller, too,
+  /// and explains nothing by that.
+  double relative_error = 0.0;
   std::vector<std::vector<std::size_t>> others{};  // sets that explain the points equally well
 };
 
@@ -178,7 +182,7 @@ class HypothesisSearch {
       std::vector<Explanation> next;
       for (const Explanation& base : beam) expand(base, next);
       std::stable_sort(next.begin(), next.end(),
-                       [](const Explanation& a, const Explanation& b) { return a.median_error < b.median_error; });
+                       [](const Explanation& a, const Explanation& b) { return a.relative_error < b.relative_error; });
       if (next.empty()) return std::nullopt;
       if (explains(next.front())) return first_equivalent(next);
       if (next.size() > thresholds::beam_width) next.erase(next.begin() + thresholds::beam_width, next.end());
@@ -194,7 +198,8 @@ class HypothesisSearch {
     const auto fit = fit_frames_quickly(e.chain, e.data);
     if (!fit) return false;
     e.median_error = fit->median_error;
-    return std::isfinite(e.median_error);
+    e.relative_error = e.median_error / spread_of(e.data.points);
+    return std::isfinite(e.relative_error);
   }
 
   /// Some faults are equivalent up to base and tool, such as a half turn of a wrist joint and the sign of the next one.
@@ -202,7 +207,7 @@ class HypothesisSearch {
   static Explanation first_equivalent(const std::vector<Explanation>& sorted) {
     std::vector<const Explanation*> equal;
     for (const Explanation& e : sorted)
-      if (e.median_error <= thresholds::equivalent_ratio * sorted.front().median_error) equal.push_back(&e);
+      if (e.relative_error <= thresholds::equivalent_ratio * sorted.front().relative_error) equal.push_back(&e);
     std::sort(equal.begin(), equal.end(), [](const auto* a, const auto* b) { return a->indices < b->indices; });
     Explanation first = *equal.front();
     for (std::size_t i = 1; i < equal.size(); ++i) first.others.push_back(equal[i]->indices);
@@ -223,7 +228,7 @@ class HypothesisSearch {
   bool explains(const Explanation& e) const {
     const double ratio = e.median_error <= max_plausible_error_ ? thresholds::plausible_improvement
                                                                 : thresholds::implausible_improvement;
-    return e.median_error < ratio * unmodified_.median_error;
+    return e.relative_error < ratio * unmodified_.relative_error;
   }
 
   std::vector<Hypothesis> list_;

@@ -81,8 +81,13 @@ std::optional<FrameFit> fit_frames_quickly(const Chain& nominal, const PoseSet& 
 
 double max_plausible_error(const CalibrationTask& task) {
   ParameterSet set = geometric_parameters(task.nominal, task.data, task.tolerances);
-  std::erase_if(set.parameters, [](const Parameter& p) { return is_own_frame_parameter(p.at, SetupFrame::base); });
-  const PoseSet data = thin_pose_set(task.data, thresholds::hypothesis_rows);
+  std::erase_if(set.parameters, [](const Parameter& p) {
+    return is_own_frame_parameter(p.at, SetupFrame::base) || std::holds_alternative<FixtureNumber>(p.at);
+  });
+  constexpr auto most = static_cast<int>(thresholds::hypothesis_rows);
+  const PoseSet data =
+      select(task.data, task.data.points.empty() ? spread_indices(static_cast<int>(task.data.rows()), most)
+                                                 : thinned_rows(task.data, thresholds::hypothesis_rows));
   const EvaluatedPoses at = evaluate_poses(task.nominal, set, data, Derivative::yes);
   VectorXd sd(set.free_count());
   for (Eigen::Index k = 0; k < sd.size(); ++k) sd[k] = set.free()[k]->prior_sd;

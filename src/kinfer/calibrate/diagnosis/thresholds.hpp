@@ -22,6 +22,8 @@ inline constexpr double smallest_reach = 0.01, largest_reach = 100.0;  ///< [m] 
 
 // ---- diagnosis_state.cpp: quick fit of base and tool ----
 inline constexpr std::size_t min_points_of_quick_fit = 4;
+/// [1] of what the nominal model moves: points that move by less are one point. Larger refuses more.
+inline constexpr double still_points = 1e-3;
 inline constexpr double plausible_error_ratio =
     4.0;  ///< [1] of the expected rms; larger tolerates worse nominal models
 

@@ -197,6 +197,9 @@ std::optional<ExpectedErrors> expected_holdout_errors(const EvaluationInputs& ev
       const auto of_fit = [&](const MatrixXd& covariance) {
         return propagated_covariance(jacobian.topRows(kind.size), covariance).trace();
       };
+      // A fixture of which every fitted row was rejected is not known; its rows tell nothing.
+      constexpr double unknown_fixture = 1e4;  // [m²]
+      if (!(metres * metres * of_fit(fit.covariance) < unknown_fixture)) continue;
       squares += metres * metres * (noise + of_fit(fit.covariance));
       squares_by_noise += metres * metres * (noise + of_fit(by_noise));
       count += 1.0;

@@ -9,6 +9,7 @@
 #include "kinfer/cli/inspect/recording_json.hpp"
 #include "kinfer/cli/parts/common.hpp"
 #include "kinfer/cli/parts/ins_logs.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/inertial/activity.hpp"
 #include "kinfer/inertial/allan.hpp"
 #include "kinfer/inertial/sensor_grading.hpp"
@@ -48,7 +49,7 @@ bool is_in_microtesla(const InsSensor& sensor) {
 }
 
 void print_sensor(const InsSensor& sensor, std::span<const double> time, const std::vector<RestPeriod>& rest_list) {
-  fmt::print("\n{}: accelerometer {:.4g} Hz, gyroscope {:.4g} Hz, ", sensor.name,
+  fmt::print("\n{}: accelerometer {:.4g} Hz, gyroscope {:.4g} Hz, ", printable(sensor.name),
              sample_rate(sensor, time, acceleration_missing), sample_rate(sensor, time, angular_velocity_missing));
   if (sensor.has_magnetometer())
     fmt::print("magnetometer {:.4g} Hz\n", sample_rate(sensor, time, field_missing));
@@ -82,7 +83,7 @@ void print_sensor(const InsSensor& sensor, std::span<const double> time, const s
 void print_activity(const InsRecording& recording) {
   if (recording.loggers.size() != 1 || recording.sensors.size() < 2) return;
   fmt::print("\nwho moves when (s; number: rms rate in °/s, - still):\n  {:>16}", "");
-  for (const InsSensor& sensor : recording.sensors) fmt::print(" {:>8}", sensor.name.substr(0, 8));
+  for (const InsSensor& sensor : recording.sensors) fmt::print(" {:>8}", printable(sensor.name).substr(0, 8));
   fmt::print("\n");
   for (const ActivitySpan& span : detect_activity(recording)) {
     fmt::print("  {:>7.1f} {:>8.1f}", span.begin, span.end);
@@ -105,8 +106,8 @@ void print_findings(const InsRecording& recording, const std::vector<Finding>& f
   if (findings.empty())
     fmt::print("  nothing wrong was found: units, signs, axes and times of the instruments agree\n");
   for (const Finding& f : findings) {
-    fmt::print("  {}: {}\n", name(f.severity), words::sentence(f));
-    if (const std::string remedy = words::suggestion(f); !remedy.empty()) fmt::print("    -> {}\n", remedy);
+    fmt::print("  {}: {}\n", name(f.severity), printable(words::sentence(f)));
+    if (const std::string remedy = words::suggestion(f); !remedy.empty()) fmt::print("    -> {}\n", printable(remedy));
   }
   print_sign(recording);
 }

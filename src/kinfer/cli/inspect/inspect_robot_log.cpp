@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "kinfer/cli/parts/common.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/io/pose_set/pose_topics.hpp"
 #include "kinfer/io/robot_log/message_log_formats.hpp"
 
@@ -60,8 +61,8 @@ void print_topics(const std::string& file, const MessageLog& log) {
   fmt::print("{}: {} topics\n", file, log.topics.size());
   fmt::print("  {:<{}} {:<{}} {:>9} {:>9}  {}\n", "topic", name_width, "type", type_width, "messages", "Hz", "use");
   for (const LoggedTopic& topic : log.topics)
-    fmt::print("  {:<{}} {:<{}} {:>9} {:>9.4g}  {}\n", topic.name, name_width, topic.type, type_width, topic.messages,
-               rate_of(topic), use_of(topic));
+    fmt::print("  {:<{}} {:<{}} {:>9} {:>9.4g}  {}\n", printable(topic.name), name_width, printable(topic.type),
+               type_width, topic.messages, rate_of(topic), use_of(topic));
   for (const std::string& remark : log.remarks) fmt::print("! {}\n", remark);
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 
 namespace kinfer::cli {
 namespace {
@@ -92,7 +93,14 @@ void add_number(CLI::App& verb, const std::string& name, double& value, bool& gi
 }
 
 void add_seed(CLI::App& verb, const std::string& name, std::uint64_t& value, const std::string& help) {
-  verb.add_option(name, value, help)->capture_default_str();
+  // CLI11 wraps what is negative or too large around.
+  const auto expect_seed = [](const std::string& text) {
+    std::uint64_t seed = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), seed);
+    const bool is_seed = code == std::errc() && end == text.data() + text.size();
+    return is_seed ? std::string() : "expected a whole number from 0 to 18446744073709551615, found \"" + text + "\"";
+  };
+  verb.add_option(name, value, help)->check(expect_seed)->capture_default_str();
 }
 
 void add_flag(CLI::App& verb, const std::string& name, bool& value, const std::string& help) {

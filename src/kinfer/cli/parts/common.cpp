@@ -55,7 +55,7 @@ void add_common_options(CLI::App& verb, CommonOptions& options) {
 }
 
 int fail(const Error& error) {
-  fmt::print(stderr, "kinfer: {}\n", error.what);
+  fmt::print(stderr, "kinfer: {}\n", printable(error.what));
   return exit_bad_input;
 }
 

@@ -10,6 +10,27 @@
 
 namespace kinfer::cli {
 
+std::string printable(std::string_view text) {
+  std::string shown;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = [&](std::size_t ahead) {
+      return i + ahead < text.size() ? static_cast<unsigned char>(text[i + ahead]) : 0U;
+    };
+    const bool is_control = (byte(0) < 0x20 && text[i] != '\n' && text[i] != '\t') || byte(0) == 0x7F;
+    const bool is_control_of_two = byte(0) == 0xC2 && byte(1) >= 0x80 && byte(1) < 0xA0;  // U+0080 to U+009F
+    const bool is_direction =  // U+200E, 200F, 202A to 202E, 2066 to 2069
+        byte(0) == 0xE2 &&
+        ((byte(1) == 0x80 && (byte(2) == 0x8E || byte(2) == 0x8F || (byte(2) >= 0xAA && byte(2) <= 0xAE))) ||
+         (byte(1) == 0x81 && byte(2) >= 0xA6 && byte(2) <= 0xA9));
+    if (is_control || is_control_of_two || is_direction)
+      shown += '?';
+    else
+      shown += text[i];
+    i += is_direction ? 2 : is_control_of_two ? 1 : 0;
+  }
+  return shown;
+}
+
 bool wants_colours(std::FILE* stream) {
   const char* refusal = std::getenv("NO_COLOR");
   const char* terminal = std::getenv("TERM");
@@ -21,7 +42,8 @@ Tone tone_of(Usability usability) {
   return usability == Usability::use ? Tone::good : usability == Usability::use_with_care ? Tone::neutral : Tone::bad;
 }
 
-void print_summary(const std::string& summary, Tone tone) {
+void print_summary(const std::string& text, Tone tone) {
+  const std::string summary = printable(text);
   if (!wants_colours(stdout)) {
     fmt::print("{}", summary);
     return;

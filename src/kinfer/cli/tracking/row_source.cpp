@@ -10,6 +10,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <optional>
 #include <thread>
 
 #include <fmt/ranges.h>
@@ -78,8 +79,10 @@ Result<std::vector<std::string>> stream(const RowSource& source, const RowSink& 
   const std::string& path = source.logs.front();
   KINFER_TRY(bytes, ByteSource::open(path));
   InsRowReader reader(source.sensors, path == "-" ? "standard input" : path, source.times);
-  const InterruptionGuard guard;
-  while (!interrupted) {
+  // Where rows go on arriving, an interrupt is how the user says that this is all; of a whole file it ends the program.
+  std::optional<InterruptionGuard> guard;
+  if (source.mode == ReadMode::follow || path == "-") guard.emplace();
+  while (!guard || !interrupted) {
     const std::string_view piece = bytes.read();
     if (auto done = reader.add(piece, sink.row); !done) return forward_error(done.error());
     if (!piece.empty()) sink.pause();

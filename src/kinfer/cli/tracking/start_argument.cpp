@@ -7,7 +7,7 @@
 namespace kinfer::cli {
 
 Result<VectorXd> parse_start(const std::string& text, const Chain& chain) {
-  KINFER_TRY(start, parse_posture("--start", text, chain));
+  KINFER_TRY(start, parse_posture("--start", text, chain, UnknownPosition::allowed));
   const std::vector<int> joints = active_joints(chain);
   for (std::size_t k = 0; k < joints.size(); ++k) {
     const Joint& joint = chain.joints[static_cast<std::size_t>(joints[k])];

@@ -18,6 +18,7 @@
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/sweep/task_context.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/evidence/evidence_file.hpp"
 #include "kinfer/io/evidence/files/identification_files.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/recording/machine_facts_toml.hpp"
@@ -179,6 +180,22 @@ Result<identify::IdentifyOptions> identify_options(const CLI::App& verb, const I
   return how;
 }
 
+/// The same recording once more would count twice. Where evidence.json no longer lies beside the chain, nothing is
+/// known.
+Result<void> expect_new_recordings(const IdentifyArguments& options) {
+  const auto text = read_text_file((ChainFiles(options.update).chain.parent_path() / "evidence.json").string());
+  if (!text) return {};
+  const auto evidence = read_evidence(*text);
+  const auto* known = evidence ? std::get_if<IdentificationEvidence>(&*evidence) : nullptr;
+  if (!known) return {};
+  for (const InputFile& log : fingerprints(options.logs))
+    for (const InputFile& input : known->provenance.inputs)
+      if (log.sha256 == input.sha256)
+        return error("{}: {} was identified from this recording, which would count twice; --update needs a new one",
+                     log.name, options.update);
+  return {};
+}
+
 Provenance provenance_of(const IdentifyArguments& options, const identify::IdentifyOptions& how) {
   std::vector<std::string> inputs = options.logs;
   if (!options.facts.empty()) inputs.push_back(options.facts);
@@ -213,6 +230,8 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   if (!how) return fail(how.error());
   const auto recording = read_ins_logs({options.logs, options.columns, options.topics}, options.common);
   if (!recording) return fail(recording.error());
+  if (!options.update.empty())
+    if (auto fresh = expect_new_recordings(options); !fresh) return fail(fresh.error());
   if (auto possible = check_cost(cost_of(*recording)); !possible) return fail(possible.error());
   auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());

@@ -31,7 +31,7 @@ Result<VectorXd> joint_values(const std::string& option, const std::string& text
   const bool is_one = text.find(',') == std::string::npos;
   std::string list = text;
   for (int k = 1; is_one && k < dof(chain); ++k) list += "," + text;
-  KINFER_TRY(values, parse_posture(option, list, chain));
+  KINFER_TRY(values, parse_motion_limits(option, list, chain));
   for (const double value : values)
     if (!(value > 0.0)) return error("{}: expected limits above 0, found \"{}\"", option, text);
   return values;
@@ -61,6 +61,12 @@ Result<MatrixXd> waypoints(const PathArguments& options, const Chain& chain) {
   return matrix;
 }
 
+/// A path of too many rows is refused with the options that make them fewer.
+Result<PathResult> with_remedy(Result<PathResult> path, const std::string& options) {
+  if (!path) return error("{}; a larger {} makes them fewer", path.error().what, options);
+  return path;
+}
+
 Result<PathResult> along_tool_lines(const PathArguments& options, const Chain& chain,
                                     const std::vector<motion::MotionLimits>& limits) {
   KINFER_TRY(map, read_columns_option(options.columns));
@@ -78,7 +84,8 @@ Result<PathResult> along_tool_lines(const PathArguments& options, const Chain& c
   for (motion::MotionLimits* of : {&how.translation, &how.rotation})
     of->velocity *= scale, of->acceleration *= scale, of->jerk *= scale;
   how.reach.seed = options.common.seed;
-  return motion::tool_space_path(chain, read.targets, preferred, limits, how, 1e-3 * options.step);
+  return with_remedy(motion::tool_space_path(chain, read.targets, preferred, limits, how, 1e-3 * options.step),
+                     "--step, --tool-speed, --velocity, --acceleration or --jerk");
 }
 
 Result<PathResult> plan(const PathArguments& options, const Chain& chain) {
@@ -87,9 +94,10 @@ Result<PathResult> plan(const PathArguments& options, const Chain& chain) {
   KINFER_TRY(postures, waypoints(options, chain));
   const double unit =
       rotates(chain.joints[static_cast<std::size_t>(active_joints(chain).front())].type) ? degree : 1e-3;
-  return motion::joint_space_path(chain, postures, limits,
-                                  {.stop_at_waypoints = options.stop, .most_cut = unit * options.corner},
-                                  1e-3 * options.step);
+  return with_remedy(motion::joint_space_path(chain, postures, limits,
+                                              {.stop_at_waypoints = options.stop, .most_cut = unit * options.corner},
+                                              1e-3 * options.step),
+                     "--step, --velocity, --acceleration or --jerk");
 }
 
 /// Options that have no effect on this kind of path are refused.
@@ -167,7 +175,7 @@ Verb add_path(CLI::App& app) {
   add_number(*verb, "--tool-speed", options->tool_speed, 1e-3, 1e5,
              "With --targets: speed of the tool [mm/s]; 250 mm/s go with 1 rad/s, four times of each per s, and so on");
   add_number(*verb, "--corner", options->corner, 0.0, 90.0,
-             "By how much a corner may be cut, in the joint that misses its waypoint most [deg, mm]");
+             "By how much a corner may be cut, in the joint that misses its waypoint most; 0 stops there [deg, mm]");
   add_flag(*verb, "--stop", options->stop, "Stop at each posture instead of cutting corners");
   add_number(*verb, "--step", options->step, 0.1, 1e4, "Time between samples [ms]");
   add_text(*verb, "--columns", options->columns, "How a foreign file's columns map to kinfer's", Requirement::optional,

@@ -17,6 +17,7 @@
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/track_json.hpp"
 #include "kinfer/io/text/csv.hpp"
+#include "kinfer/io/text/possible_range.hpp"
 #include "kinfer/io/tracking/tracked_chain.hpp"
 #include "kinfer/track/row_feed.hpp"
 #include "kinfer/track/run_recorder.hpp"
@@ -63,6 +64,9 @@ Result<std::optional<BasePlace>> parse_place(const std::string& text) {
   }
   if (count != 4 || begin <= text.size())
     return error("--base-at {}: expected X,Y,Z,HEADING in mm and deg, as 1000,0,250,90", text);
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+    if (const auto wrong = impossible(numbers[k] * (k < 3 ? 1e-3 : degree), k < 3 ? possible::length : possible::angle))
+      return error("--base-at {}: {}", text, *wrong);
   return std::optional(BasePlace{1e-3 * Vec3(numbers[0], numbers[1], numbers[2]), numbers[3] * degree});
 }
 

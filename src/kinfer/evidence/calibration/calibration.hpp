@@ -2,6 +2,7 @@
 // The result of a calibration: the estimate, its validation on held-out poses, the verdict and the recommendations.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "kinfer/evidence/calibration/calibration_facts.hpp"
@@ -60,6 +61,8 @@ struct Calibration {
   std::optional<PredictionModel> prediction{};          ///< uncertainty of the corrected chain; none without points
   std::optional<double> expected_holdout_rms{};  ///< [m] from the instrument's noise and the uncertainty of the fits
   std::optional<double> noise_holdout_rms{};     ///< [m] the same if that noise were all that is wrong
+  /// [m] Largest error that the tolerances of the nominal model could make; infinite where that is not known.
+  double tolerated_error = std::numeric_limits<double>::infinity();
   std::optional<double>
       predicted_holdout_rms{};  ///< [m] the same with the model error of `prediction`; none where that is not known
   /// Probability with which a model that is no better than the nominal one looks as much better on as many held-out

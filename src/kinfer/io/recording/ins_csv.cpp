@@ -113,7 +113,7 @@ class RowReader {
   Result<const char*> read_cell_slow_path(const char* at, const char* end, int number, std::size_t column,
                                           double& value) const {
     const char* cell_end = std::find(at, end, ',');
-    const std::string_view cell = trim({at, static_cast<std::size_t>(cell_end - at)});
+    const std::string_view cell = without_quotes(trim({at, static_cast<std::size_t>(cell_end - at)}));
     value = missing_value;
     if (!cell.empty()) {
       const auto parsed = parse_number(cell);
@@ -190,6 +190,7 @@ Result<void> append_ins_csv(const std::filesystem::path& path, InsRecording& out
     notify(observer,
            {.stage = "reading", .fraction = static_cast<double>(at) / static_cast<double>(size), .detail = name});
   };
+  if (is_gzip(file.text())) return packed_by_gzip(name);
   if (is_zstd(file.text())) {
     KINFER_TRY(text, unpack_zstd_text(file.text(), name));
     return append_logger(text, name, out, [&](std::size_t at) { report(at, text.size()); });

@@ -23,7 +23,7 @@ std::optional<double> cell_value(std::string_view cell) {
   double value = absent;
   const char* end = cell.data() + cell.size();
   if (!cell.empty() && read_plain_decimal(cell.data(), end, value) == end) return value;
-  cell = trim(cell);
+  cell = without_quotes(trim(cell));
   if (cell.empty()) return absent;
   const auto parsed = parse_number(cell);
   if (!parsed) return std::nullopt;

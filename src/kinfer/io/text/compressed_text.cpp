@@ -56,6 +56,14 @@ bool is_zstd(std::string_view head) {
   return head.starts_with(zstd_magic);
 }
 
+bool is_gzip(std::string_view head) {
+  return head.starts_with("\x1F\x8B\x08");
+}
+
+tl::unexpected<Error> packed_by_gzip(const std::string& name) {
+  return error("{}: compressed by gzip, which is not read; unpack it (gunzip), or compress it by zstd", name);
+}
+
 Result<std::string> unpack_zstd_text(std::string_view packed, const std::string& name) {
   std::string text;
   const UnpackEnd end = unpack_into(packed, largest_text, text);

@@ -11,6 +11,10 @@ namespace kinfer {
 
 bool is_zstd(std::string_view head);
 
+/// Files that are compressed by gzip are not read: the error says what to do with them.
+bool is_gzip(std::string_view head);
+tl::unexpected<Error> packed_by_gzip(const std::string& name);
+
 /// All frames of the file, one after the other. What a frame states about its size is not believed: memory grows with
 /// what comes out. Errors: damaged or cut off; more than 8 GiB.
 Result<std::string> unpack_zstd_text(std::string_view packed, const std::string& name_in_messages);

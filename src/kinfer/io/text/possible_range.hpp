@@ -29,6 +29,7 @@ inline constexpr PossibleRange mass{"a mass", 1e8, "kg"};
 inline constexpr PossibleRange gravity{"a gravity", 1e3, "m/s^2"};
 inline constexpr PossibleRange expansion{"a thermal expansion", 1.0, "1/K"};
 inline constexpr PossibleRange temperature{"a temperature", 1e4, "C"};
+inline constexpr PossibleRange motion_limit{"a limit of a motion", 1e12, "SI"};  // jerks of 1e9 deg/s^3 mean none
 /// Of a number in any file whose quantity has no range of its own: its square and the sums of squares stay finite.
 inline constexpr PossibleRange number{"a number of a machine", 1e15, "SI"};
 

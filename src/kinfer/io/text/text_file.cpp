@@ -63,6 +63,7 @@ Result<std::string> read_text_file(const fs::path& path) {
   }
   if (file.bad()) return error("{}: reading stopped with an input error", path.string());
   if (text.empty()) return error("{}: the file is empty", path.string());
+  if (is_gzip(text)) return packed_by_gzip(path.string());
   return is_zstd(text) ? unpack_zstd_text(text, path.string()) : Result<std::string>(std::move(text));
 }
 

@@ -15,4 +15,10 @@ inline std::string_view trim(std::string_view text, std::string_view outside = w
   return text.substr(begin, text.find_last_not_of(outside) - begin + 1);
 }
 
+/// The inside of a quoted cell, of a number without a delimiter in it; any other text as it is.
+inline std::string_view without_quotes(std::string_view cell) {
+  const bool is_quoted = cell.size() >= 2 && cell.front() == '"' && cell.back() == '"';
+  return is_quoted ? trim(cell.substr(1, cell.size() - 2)) : cell;
+}
+
 }  // namespace kinfer

@@ -96,21 +96,25 @@ std::vector<RestPair> overlapping_pairs(const RestLists& lists, const ClockFit& 
 
 /// Offset and drift by least squares of the begins and ends of the pairs; returns the rms that is left.
 double refit_clock(const RestLists& lists, const std::vector<RestPair>& pairs, ClockFit& clock) {
+  // Beside the offset of two clocks, 10⁹ s where one counts from 1970, the squares of what drifts would be lost.
+  const double offset = lists.measured[static_cast<std::size_t>(pairs.front().measured)].begin -
+                        lists.joints[static_cast<std::size_t>(pairs.front().joints)].begin;
   double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, syy = 0.0;
   for (const RestPair& pair : pairs) {
     const Rest &a = lists.joints[static_cast<std::size_t>(pair.joints)],
                &b = lists.measured[static_cast<std::size_t>(pair.measured)];
     for (const auto& [from, to] : {std::pair(a.begin, b.begin), std::pair(a.end, b.end)}) {
-      const double x = from - clock.origin, y = to - from;
+      const double x = from - clock.origin, y = (to - from) - offset;
       n += 1.0, sx += x, sy += y, sxx += x * x, sxy += x * y, syy += y * y;
     }
   }
   // Begins and ends of rests are told less exactly than clocks run: the drift has a prior.
   const double spread = sxx - sx * sx / n, variance = (syy - sy * sy / n) / n;
   clock.drift = spread > 0.0 ? (sxy - sx * sy / n) / (spread + variance / (usual_drift * usual_drift)) : 0.0;
-  clock.offset = (sy - clock.drift * sx) / n;
-  const double squares = syy - 2.0 * clock.offset * sy - 2.0 * clock.drift * sxy + n * clock.offset * clock.offset +
-                         2.0 * clock.offset * clock.drift * sx + clock.drift * clock.drift * sxx;
+  const double rest = (sy - clock.drift * sx) / n;
+  clock.offset = offset + rest;
+  const double squares = syy - 2.0 * rest * sy - 2.0 * clock.drift * sxy + n * rest * rest +
+                         2.0 * rest * clock.drift * sx + clock.drift * clock.drift * sxx;
   return std::sqrt(std::max(0.0, squares) / n);
 }
 

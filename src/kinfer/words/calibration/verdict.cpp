@@ -107,6 +107,12 @@ VerdictText parts_of_verdict(const Calibration& c) {
           c, fmt::format("better, but these poses do not prove it: a model that is no better would look as good with a "
                          "probability of {:.0f} %: {}",
                          100.0 * c.chance_of_improvement.value_or(1.0), figures(c)));
+    case CalibrationReason::beyond_tolerances:
+      return with_remarks(c,
+                          "better, but the errors that are left are more than the tolerances of the robot's model "
+                          "could make, so joints and measurements do not belong together or the robot is another "
+                          "one: " +
+                              figures(c));
     case CalibrationReason::beyond_noise:
       return with_remarks(
           c,

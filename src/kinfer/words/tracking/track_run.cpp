@@ -32,15 +32,32 @@ bool is_remark(TrackAlarmKind kind) {
   return kind == TrackAlarmKind::restarted || kind == TrackAlarmKind::sensor_clipped;
 }
 
+/// For most of the time the position could be any: beyond what a filter that linearises can follow.
+bool is_lost(const TrackCurve& position) {
+  constexpr double any_angle = 0.5;  // [rad]
+  const auto lost = std::ranges::count_if(position.sd, [](double sd) { return !(sd < any_angle); });
+  return position.rotates && 2 * lost > static_cast<std::ptrdiff_t>(position.sd.size());
+}
+
+/// No angle of the machine is known; of prismatic joints alone acceleration and gravity tell little.
+bool is_all_lost(const TrackRun& run) {
+  const auto turns = [](const TrackCurve& position) { return position.rotates; };
+  return std::ranges::any_of(run.positions, turns) &&
+         std::ranges::all_of(run.positions,
+                             [](const TrackCurve& position) { return !position.rotates || is_lost(position); });
+}
+
 Usability usability_of(const TrackRun& run) {
-  if (run.rows == 0) return Usability::do_not_use;
+  if (run.rows == 0 || is_all_lost(run)) return Usability::do_not_use;
   Usability worst = Usability::use;
   for (const TrackEvent& event : run.events) {
     if (is_fatal(event.alarm.kind) && std::isnan(event.until)) return Usability::do_not_use;
     if (!is_remark(event.alarm.kind)) worst = Usability::use_with_care;
   }
   const auto is_unknown = [](const TrackJointShare& joint) { return joint.unknown > 0.5; };
-  return std::ranges::any_of(run.joints, is_unknown) ? Usability::use_with_care : worst;
+  return std::ranges::any_of(run.joints, is_unknown) || std::ranges::any_of(run.positions, is_lost)
+             ? Usability::use_with_care
+             : worst;
 }
 
 }  // namespace
@@ -76,7 +93,9 @@ VerdictText verdict_of(const TrackRun& run, Usability usability) {
                         : usability == Usability::use_with_care ? phrase("use_with_care", "Use it with care")
                                                                 : phrase("do_not_use", "Do not use it");
   text.statement =
-      usability == Usability::do_not_use
+      usability == Usability::do_not_use && is_all_lost(run)
+          ? phrase("nothing_known", "no joint position is known: its standard deviation is beyond 29 deg")
+      : usability == Usability::do_not_use
           ? phrase("does_not_fit", "the log does not fit the chain")
           : phrase("tracked", "{} joint positions tracked over {:.1f} s, {} alarm{}", run.positions.size(),
                    run.end - run.begin, alarms == 0 ? "no" : fmt::to_string(alarms), alarms > 1 ? "s" : "");

@@ -31,7 +31,7 @@ std::string format_chain_dh_csv(const std::vector<DhRowEstimate>& rows) {
     const DhCells theta = dh_cells(row.theta, sd.theta), d = dh_cells(row.d, sd.d), a = dh_cells(row.a, sd.a),
                   alpha = dh_cells(row.alpha, sd.alpha), beta = dh_cells(row.beta, sd.beta);
     text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(found.segment), theta.value, d.value, a.value,
-                        alpha.value, found.variable(), theta.sd, d.sd, a.sd, alpha.sd, beta.value, beta.sd);
+                        alpha.value, csv_cell(found.variable()), theta.sd, d.sd, a.sd, alpha.sd, beta.value, beta.sd);
   }
   return text;
 }
