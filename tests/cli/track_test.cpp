@@ -159,6 +159,7 @@ TEST_F(Track, BadInputIsOneSentence) {
       << "nan: a position that is not known";
   EXPECT_THAT(kinfer("track machine drive/imu.csv --out t --base-at 1e300,0,0,0").err,
               HasSubstr("is not possible for a length"));
+  EXPECT_THAT(kinfer("track machine drive/imu.csv --out machine").err, HasSubstr("machine: is read, too"));
   EXPECT_EQ(shell("timeout -s TERM 0.05 kinfer track machine drive/imu.csv --out killed").code, 124);
   EXPECT_FALSE(test::fs::exists(in("killed"))) << "an interrupt is no end of a whole log";
   test::fs::remove(in("machine/track.toml"));

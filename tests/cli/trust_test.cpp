@@ -58,6 +58,18 @@ TEST_F(Trust, NamesCannotCommandTheTerminal) {
   EXPECT_THAT(run.out, Not(HasSubstr("\x1B")));
 }
 
+TEST_F(Trust, WhatIsReadIsNotWrittenOver) {
+  predict_targets("0,-90,90,0,45,0\n");
+  const std::string chain = source("examples/robot6/robot.toml"), before = slurp(in("joints.csv"));
+  EXPECT_THAT(kinfer("predict --chain " + chain + " --joints joints.csv -o ./joints.csv").err,
+              HasSubstr("./joints.csv: is read, too, and would be lost"));
+  EXPECT_EQ(slurp(in("joints.csv")), before);
+  EXPECT_THAT(kinfer("reach " + chain + " --targets targets.csv -o targets.csv").err, HasSubstr("is read, too"));
+  EXPECT_THAT(kinfer("path " + chain + " --targets targets.csv -o targets.csv").err, HasSubstr("is read, too"));
+  EXPECT_EQ(kinfer("predict --chain " + chain + " --joints joints.csv -o again.csv").code, 0);
+  EXPECT_EQ(kinfer("predict --chain " + chain + " --joints joints.csv -o again.csv").code, 0) << "results are renewed";
+}
+
 TEST_F(Trust, HoldoutIsAFraction) {
   simulate();
   for (const std::string value : {"nan", "inf", "0", "1", "-0.5"})

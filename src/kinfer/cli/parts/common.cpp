@@ -59,6 +59,15 @@ int fail(const Error& error) {
   return exit_bad_input;
 }
 
+Result<void> expect_other_file(const std::string& out, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    std::error_code missing;
+    if (!out.empty() && !input.empty() && std::filesystem::equivalent(out, input, missing))
+      return error("{}: is read, too, and would be lost; write to another place", out);
+  }
+  return {};
+}
+
 ProgressLine::ProgressLine(const CommonOptions& options) : shown_(!options.quiet && isatty(fileno(stderr)) != 0) {}
 
 ProgressLine::~ProgressLine() {

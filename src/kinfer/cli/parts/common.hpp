@@ -33,6 +33,10 @@ void add_quiet_option(CLI::App& verb, bool& quiet);
 /// Prints "kinfer: sentence" to stderr and returns exit_bad_input.
 int fail(const Error& error);
 
+/// An error where the file (or folder) to write is one of those that are read: what the result leaves out would be
+/// lost.
+Result<void> expect_other_file(const std::string& out, const std::vector<std::string>& inputs);
+
 /// A verb of the program and the function that runs it.
 struct Verb {
   CLI::App* command = nullptr;

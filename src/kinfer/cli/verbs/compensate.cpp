@@ -94,6 +94,10 @@ void warn_of_rows_outside(const CompensateArguments& options, const std::vector<
 
 int run(const CompensateArguments& options) {
   if (options.joints.empty() == options.targets.empty()) return fail({"expected either --joints or --targets"});
+  if (auto other =
+          expect_other_file(options.out, {options.joints, options.targets, options.nominal, options.chain.path});
+      !other)
+    return fail(other.error());
   const auto chains = read_models(options);
   if (!chains) return fail(chains.error());
   const auto list = compensated_rows(options, *chains);

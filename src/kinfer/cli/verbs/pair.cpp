@@ -17,6 +17,10 @@ struct PairArguments {
 };
 
 int run(const PairArguments& options) {
+  if (auto other =
+          expect_other_file(options.out, {options.pairing.joints, options.pairing.measured, options.robot.path});
+      !other)
+    return fail(other.error());
   const auto robot = read_robot(options.robot);
   if (!robot) return fail(robot.error());
   constexpr bool has_model = true;

@@ -31,6 +31,8 @@ Result<std::vector<PoseDeviations>> deviations_of(const RobotModel& robot, const
 }
 
 int run(const PredictArguments& options) {
+  if (auto other = expect_other_file(options.out, {options.joints, options.chain.path}); !other)
+    return fail(other.error());
   const auto robot = read_robot(options.chain);
   if (!robot) return fail(robot.error());
   const auto map = read_columns_option(options.columns);

@@ -56,6 +56,8 @@ void print_unreached(const std::vector<ReachSolution>& solutions, const ReachSum
 }
 
 int run(const ReachArguments& options) {
+  if (auto other = expect_other_file(options.out, {options.targets, options.chain.path}); !other)
+    return fail(other.error());
   const auto robot = read_robot(options.chain);
   if (!robot) return fail(robot.error());
   if (dof(robot->chain) == 0) return fail({fmt::format("{}: the robot has no joint that moves", options.chain.path)});

@@ -176,6 +176,9 @@ int finish(const TrackArguments& options, const RunRecord& record, const TrackRu
 int run(const TrackArguments& options) {
   if (options.smooth && options.follow)
     return fail({"--smooth needs the whole log: it cannot be combined with --follow"});
+  // Its evidence.json and report.html would take the place of those of the identification.
+  if (auto other = expect_other_file(options.out, {ChainFiles(options.chain).chain.parent_path().string()}); !other)
+    return fail(other.error());
   RunRecord record("track", options.common);
   record.add_input(options.chain);
   for (const std::string& log : options.logs) record.add_input(log);
