@@ -53,6 +53,19 @@ TEST(Verify, AChainThatItsCalibrationDoesNotKnowIsNotValid) {
   EXPECT_EQ(verify(bent, {}, tracker, today, of_a_metre)->result, VerificationResult::robot_changed);
 }
 
+TEST(Verify, PointsMayStateTheirOwnDeviation) {
+  const Chain truth = on_a_stand(with_table3_errors(er20(0.125)));
+  PoseSet rough = measured(truth, paper2_poses(30, tracker), 5);
+  Rng rng(2);
+  for (PointMeasurement& point : rough.points) {
+    const double x = rng.normal(), y = rng.normal(), z = rng.normal();
+    point.position += 5e-3 * Vec3(x, y, z);
+  }
+  EXPECT_NE(verify(truth, {}, tracker, rough)->result, VerificationResult::valid);
+  for (PointMeasurement& point : rough.points) point.sd = Vec3::Constant(5e-3);
+  EXPECT_EQ(verify(truth, {}, tracker, rough)->result, VerificationResult::valid);
+}
+
 /// A refit of nine unknowns to three or four points leaves less than the noise, whatever happened.
 TEST(Verify, FewPointsDoNotTellAMovedTrackerFromAChangedRobot) {
   const Chain truth = on_a_stand(with_table3_errors(er20(0.125)));

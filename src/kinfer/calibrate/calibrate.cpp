@@ -107,14 +107,18 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
     calibration.expected_holdout_rms = expected->of_fit;
     calibration.noise_holdout_rms = expected->by_noise;
   }
-  if (task.instrument && primary_measurement_kind(task.data)) calibration.tolerated_error = max_plausible_error(task);
+  calibration.tolerance_factor = fit.scale.factor;
+  if (task.instrument)
+    calibration.tolerated_error =
+        primary_measurement_kind(task.data) ? max_plausible_error(task) : max_plausible_angle(task);
   if (const auto prediction = make_prediction_model(evaluation, fit.estimate, fit.beyond, options.threads)) {
     calibration.prediction = prediction->model;
     calibration.predicted_holdout_rms = prediction->holdout_rms;
   }
   calibration.unobserved_lengths = find_unobserved_lengths(task, fit.estimate);
   calibration.reason = judge(calibration);
-  calibration.usability = usability_of(calibration.reason, calibration.unobserved_lengths);
+  calibration.usability =
+      usability_of(calibration.reason, calibration.unobserved_lengths, calibration.tolerance_factor);
   calibration.accuracy = evaluate_pose_accuracy(frames_only, calibration.estimate.chain, task.data);
   calibration.plot_data =
       make_plot_data(task, frames_only, calibration.estimate, calibration.prediction, options.threads);

@@ -22,7 +22,8 @@ double expected_rms(const Chain& chain, const Instrument& instrument, const Pose
       prediction ? pose_uncertainties(chain, *prediction, data) : std::vector<PoseUncertainty>(data.rows());
   double squares = 0.0;
   for (const PointMeasurement& point : data.points)
-    squares += 3.0 * std::pow(position_sd(instrument, point.position), 2) + uncertainties[point.row].position.trace();
+    squares += (point.sd ? point.sd->squaredNorm() : 3.0 * std::pow(position_sd(instrument, point.position), 2)) +
+               uncertainties[point.row].position.trace();
   return std::sqrt(squares / static_cast<double>(data.points.size()));
 }
 

@@ -90,12 +90,31 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
   for (int& position : joint_of_position_)
     if (position >= 0) position = static_cast<int>(&joint_of(*tracking_, position) - tracking_->joints.data());
   is_known_.assign(joint_of_position_.size(), false);
+  lost_in_gap_.assign(joint_of_position_.size(), 0.0);
   state_.alarms.reserve(4 * model.sensors.size() + model.joints.size() + 4);
 }
 
-/// After a gap the posture is unknown again; what was learnt of the sensors is kept.
+/// What a joint may have turned or slid in a gap, by the speed that it has shown, at most its range.
+double moved_in_gap(const TrackingJoint& joint, double gap) {
+  if (joint.range.empty()) return max_position_sd;
+  const auto& seen = joint.range.front();
+  return std::min({seen.speed * gap, 0.5 * (seen.upper - seen.lower), max_position_sd});
+}
+
+/// After a gap the posture is unknown again; what was learnt of the sensors is kept. A position that nothing shows then
+/// goes on from where it was, as uncertain as it may have moved meanwhile.
 void Tracker::restart(double time) {
-  if (state_.started) restarted_ = time;
+  if (state_.started) {
+    restarted_ = time;
+    for (std::size_t i = 0; i < guesses_.size(); ++i) {
+      if (joint_of_position_[i] < 0) continue;
+      const TrackingJoint& joint = tracking_->joints[static_cast<std::size_t>(joint_of_position_[i])];
+      if (joint.positions != 1) continue;
+      guesses_[i].value = state_.q[joint.first_position], guesses_[i].is_last = true;
+      lost_in_gap_[i] = std::min(max_position_sd,
+                                 std::hypot(state_.sd_q[joint.first_position], moved_in_gap(joint, time - last_time_)));
+    }
+  }
   for (auto& guess : guesses_) guess.is_given = false;
   state_.started = false;
   grid_.reset();
@@ -294,6 +313,11 @@ void Tracker::read_out(double time) {
   chain_state_.time = time;
   state_.q = chain_state_.q;
   state_.qd = chain_state_.qd;
+  for (std::size_t i = 0; i < is_known_.size(); ++i)
+    if (!is_known_[i] && lost_in_gap_[i] > 0.0) {
+      double& sd = chain_state_.sd_q[tracking_->joints[static_cast<std::size_t>(joint_of_position_[i])].first_position];
+      sd = std::hypot(sd, lost_in_gap_[i]);
+    }
   state_.sd_q = chain_state_.sd_q;
   state_.sd_qd = chain_state_.sd_qd;
   state_.joints = chain_state_.joints;

@@ -64,7 +64,8 @@ class Tracker {
   std::vector<int> joint_of_position_;  // of the filter: index into the model's joints
   ChainFilter filter_;
   std::optional<StartGrid> grid_;
-  std::vector<bool> is_known_;  // of each joint position of the filter
+  std::vector<bool> is_known_;       // of each joint position of the filter
+  std::vector<double> lost_in_gap_;  // [rad] standard deviation of what one may have turned unseen, until it is known
   RowBlock block_;
   std::vector<BlockMeasurement> waiting_;  // for the start
   RestBias rest_;

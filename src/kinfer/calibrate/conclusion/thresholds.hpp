@@ -19,6 +19,8 @@ inline constexpr double generalisation_ratio = 3.0;
 /// Probability with which a model that is no better than the nominal one looks as much better on the held-out poses:
 /// above it, the improvement is not proven.
 inline constexpr double unproven_chance = 0.05;
+/// [1] of the tolerances: a robot that is further off is perhaps another one, or its data are in other units.
+inline constexpr double strange_tolerance_factor = 100.0;
 /// Probability that the offset of any unchanged joint is called moved (two-sided, family-wise).
 inline constexpr double moved_offset_risk = 0.01;
 

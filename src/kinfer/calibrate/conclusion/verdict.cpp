@@ -41,12 +41,14 @@ CalibrationReason judge(const Calibration& calibration) {
                                    : judge_against_nominal(calibration);
 }
 
-Usability usability_of(CalibrationReason reason, const std::optional<UnobservedLengths>& unobserved) {
+Usability usability_of(CalibrationReason reason, const std::optional<UnobservedLengths>& unobserved,
+                       double tolerance_factor) {
   if (reason == CalibrationReason::unproven || reason == CalibrationReason::beyond_noise)
     return Usability::use_with_care;
   if (reason != CalibrationReason::improves_nominal && reason != CalibrationReason::generalises)
     return Usability::do_not_use;
-  return unobserved ? Usability::use_with_care : Usability::use;
+  const bool is_strange = tolerance_factor >= thresholds::strange_tolerance_factor;
+  return unobserved || is_strange ? Usability::use_with_care : Usability::use;
 }
 
 }  // namespace kinfer::calibrate

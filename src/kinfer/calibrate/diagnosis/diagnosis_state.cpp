@@ -66,6 +66,28 @@ void add_finding(DiagnosisState& state, Finding finding) {
   state.findings.push_back(std::move(finding));
 }
 
+namespace {
+
+/// Of the tool's position (rows of its twist from 0 on, [m]) or rotation (from 3 on, [rad]), base refitted.
+double rms_by_tolerances(const CalibrationTask& task, Eigen::Index first) {
+  ParameterSet set = geometric_parameters(task.nominal, task.data, task.tolerances);
+  std::erase_if(set.parameters, [](const Parameter& p) {
+    return is_own_frame_parameter(p.at, SetupFrame::base) || std::holds_alternative<FixtureNumber>(p.at);
+  });
+  constexpr auto most = static_cast<int>(thresholds::hypothesis_rows);
+  const PoseSet data =
+      select(task.data, task.data.points.empty() ? spread_indices(static_cast<int>(task.data.rows()), most)
+                                                 : thinned_rows(task.data, thresholds::hypothesis_rows));
+  const EvaluatedPoses at = evaluate_poses(task.nominal, set, data, Derivative::yes);
+  VectorXd sd(set.free_count());
+  for (Eigen::Index k = 0; k < sd.size(); ++k) sd[k] = set.free()[k]->prior_sd;
+  double squares = 0.0;
+  for (const Twists& twist : at.twists) squares += (twist.middleRows<3>(first) * sd.asDiagonal()).squaredNorm();
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, at.twists.size())));
+}
+
+}  // namespace
+
 std::optional<FrameFit> fit_frames_quickly(const Chain& nominal, const PoseSet& all) {
   const PoseSet data = keep_points_only(all);
   if (data.points.size() < thresholds::min_points_of_quick_fit) return std::nullopt;
@@ -80,22 +102,16 @@ std::optional<FrameFit> fit_frames_quickly(const Chain& nominal, const PoseSet& 
 }
 
 double max_plausible_error(const CalibrationTask& task) {
-  ParameterSet set = geometric_parameters(task.nominal, task.data, task.tolerances);
-  std::erase_if(set.parameters, [](const Parameter& p) {
-    return is_own_frame_parameter(p.at, SetupFrame::base) || std::holds_alternative<FixtureNumber>(p.at);
-  });
-  constexpr auto most = static_cast<int>(thresholds::hypothesis_rows);
-  const PoseSet data =
-      select(task.data, task.data.points.empty() ? spread_indices(static_cast<int>(task.data.rows()), most)
-                                                 : thinned_rows(task.data, thresholds::hypothesis_rows));
-  const EvaluatedPoses at = evaluate_poses(task.nominal, set, data, Derivative::yes);
-  VectorXd sd(set.free_count());
-  for (Eigen::Index k = 0; k < sd.size(); ++k) sd[k] = set.free()[k]->prior_sd;
-  double squares = 0.0;
-  for (const Twists& twist : at.twists) squares += (twist.topRows<3>() * sd.asDiagonal()).squaredNorm();
-  const double sigma = task.instrument ? task.instrument->sigma : 0.0;
-  return thresholds::plausible_error_ratio *
-         (std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, at.twists.size()))) + sigma);
+  const Instrument with = task.instrument.value_or(Instrument{});
+  const double sigma = std::max({with.sigma, with.sigma_distance.value_or(0.0), with.sigma_contact.value_or(0.0)});
+  return thresholds::plausible_error_ratio * (rms_by_tolerances(task, 0) + sigma);
+}
+
+double max_plausible_angle(const CalibrationTask& task) {
+  const Instrument with = task.instrument.value_or(Instrument{});
+  const double sigma = std::max(
+      {with.sigma_angle, with.sigma_direction.value_or(0.0), with.sigma_tilt.value_or(0.0) / standard_gravity});
+  return thresholds::plausible_error_ratio * (rms_by_tolerances(task, 3) + sigma);
 }
 
 }  // namespace kinfer::calibrate

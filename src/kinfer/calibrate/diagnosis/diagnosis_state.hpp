@@ -29,5 +29,7 @@ std::optional<FrameFit> fit_frames_quickly(const Chain& nominal, const PoseSet& 
 /// Largest point error [m] that tolerances and instrument can explain, with base and tool refitted: four times the
 /// expected rms.
 double max_plausible_error(const CalibrationTask& task);
+/// Likewise of orientations [rad].
+double max_plausible_angle(const CalibrationTask& task);
 
 }  // namespace kinfer::calibrate

@@ -226,7 +226,10 @@ Result<Chain> estimate_frames(const Chain& nominal, const PoseSet& all) {
   std::optional<Chain> best;
   for (const Chain& start : initial_guesses(nominal, data)) {
     const Chain candidate = refine_frames(with_initial_fixtures(start, data), data, frames);
-    if (!best || median_residual(candidate, data) < median_residual(*best, data)) best = candidate;
+    // The file's own frames come first; another guess must be clearly better, because where the poses do not show the
+    // tool all are equally good but for noise.
+    if (!best || median_residual(candidate, data) < thresholds::better_guess * median_residual(*best, data))
+      best = candidate;
   }
   return *best;
 }

@@ -61,7 +61,9 @@ struct Calibration {
   std::optional<PredictionModel> prediction{};          ///< uncertainty of the corrected chain; none without points
   std::optional<double> expected_holdout_rms{};  ///< [m] from the instrument's noise and the uncertainty of the fits
   std::optional<double> noise_holdout_rms{};     ///< [m] the same if that noise were all that is wrong
-  /// [m] Largest error that the tolerances of the nominal model could make; infinite where that is not known.
+  double tolerance_factor = 1.0;  ///< [1] by which the fit found the tolerances of the nominal model too small
+  /// Largest error [m], or [rad] of orientations, that the tolerances of the nominal model could make; infinite where
+  /// that is not known.
   double tolerated_error = std::numeric_limits<double>::infinity();
   std::optional<double>
       predicted_holdout_rms{};  ///< [m] the same with the model error of `prediction`; none where that is not known

@@ -86,12 +86,12 @@ JointStart revolute_start(const InsBody& body, const AxisSd& axis, const SeenBod
                sd = std::hypot(parent.force_sd, child.force_sd, of_axis) / std::max(lever, 1e-3);
   JointStart start;
   const bool is_observable = sd < max_observable_sd;
-  double q = guess.value + wrapped(angle_of(u) - angle_of(w) - guess.value);  // the turn nearest to what was seen
+  const double q = guess.value + wrapped(angle_of(u) - angle_of(w) - guess.value);  // the turn nearest to what was seen
   if (guess.is_given && (!is_observable || guess.sd < sd)) {
     start.position.x() = guess.value, start.sd.x() = guess.sd, start.is_known[0] = true;
     return start;
   }
-  start.position.x() = q;
+  start.position.x() = guess.is_last && !is_observable ? guess.value : q;
   start.sd.x() = std::min(sd, max_observable_sd);
   start.is_known[0] = is_observable;
   return start;

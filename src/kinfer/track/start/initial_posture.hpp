@@ -15,6 +15,7 @@ namespace kinfer::track {
 struct PositionGuess {
   double value = 0.0, sd = 0.0;  ///< [rad] or [m]
   bool is_given = false;         ///< by the user
+  bool is_last = false;          ///< where it was before a gap: it goes on from there where gravity does not show it
 };
 
 struct InitialPosture {

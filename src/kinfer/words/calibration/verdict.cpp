@@ -81,6 +81,12 @@ std::vector<std::string> remarks(const Calibration& c) {
   if (c.unobserved_lengths) texts.push_back(unobserved_text(*c.unobserved_lengths));
   for (const std::string& text : excluded_rows_texts(c, display_of(c)(errors.holdout_all_rows.max)))
     texts.push_back(text);
+  if (c.usability == Usability::use_with_care && c.reason == CalibrationReason::improves_nominal &&
+      !c.unobserved_lengths)
+    texts.push_back(phrase("strange_robot",
+                           "the robot is {:.0f} times further from its nominal model than the tolerances say: perhaps "
+                           "it is another one, or something is in other units",
+                           c.tolerance_factor));
   if (c.geometry_only)
     texts.push_back(phrase("geometry_only", "geometry alone: a swarm search has no model selection"));
   return texts;

@@ -47,12 +47,18 @@ bool is_all_lost(const TrackRun& run) {
                              [](const TrackCurve& position) { return !position.rotates || is_lost(position); });
 }
 
+/// After a gap such a position goes on from where it was, whatever the joint did meanwhile.
+bool counts_from_start(const TrackRun& run) {
+  return std::ranges::any_of(run.joints, [](const TrackJointShare& joint) { return joint.relative_to_start > 0.05; });
+}
+
 Usability usability_of(const TrackRun& run) {
   if (run.rows == 0 || is_all_lost(run)) return Usability::do_not_use;
   Usability worst = Usability::use;
   for (const TrackEvent& event : run.events) {
     if (is_fatal(event.alarm.kind) && std::isnan(event.until)) return Usability::do_not_use;
-    if (!is_remark(event.alarm.kind)) worst = Usability::use_with_care;
+    if (!is_remark(event.alarm.kind) || (event.alarm.kind == TrackAlarmKind::restarted && counts_from_start(run)))
+      worst = Usability::use_with_care;
   }
   const auto is_unknown = [](const TrackJointShare& joint) { return joint.unknown > 0.5; };
   return std::ranges::any_of(run.joints, is_unknown) || std::ranges::any_of(run.positions, is_lost)
