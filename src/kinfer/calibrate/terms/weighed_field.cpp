@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/calibrate/terms/weighed_field.hpp"
 
+#include <cmath>
+
 #include "kinfer/calibrate/functions/chain_series.hpp"
 #include "kinfer/calibrate/functions/displacement_fields.hpp"
 #include "kinfer/calibrate/functions/thresholds.hpp"
@@ -11,6 +13,9 @@ namespace kinfer::calibrate {
 namespace {
 
 SelectionStep step_of(const FoundField& found) {
+  // Residuals that are all zero (each socket touched once) tell nothing.
+  if (!std::isfinite(found.log_evidence_gain))
+    return {.term = Term::displacement_field, .decision = Decision::not_excited};
   return {.term = Term::displacement_field,
           .decision = Decision::no_evidence,
           .log_evidence_gain = found.log_evidence_gain,
