@@ -90,7 +90,7 @@ def test_set_ups_have_a_base_each(robot, measured):
         (dict(distances=-np.ones(40)), "distances: row 0"),
         (dict(positions=np.ones((40, 3)), model="magic"), "magic"),
         (dict(positions=np.ones((40, 3)), parameters="some"), "parameters"),
-        (dict(positions=np.ones((40, 3)), parameters=["theta99"]), "theta99"),
+        (dict(positions=np.random.default_rng(1).normal(size=(40, 3)), parameters=["theta99"]), "theta99"),
         (dict(positions=np.ones((40, 3)), holdout=2.0), "holdout: expected a fraction"),
     ],
 )
