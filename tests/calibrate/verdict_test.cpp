@@ -67,6 +67,18 @@ TEST(Verdict, ErrorsThatNoToleranceOfTheRobotCouldMakeAreNotOfUse) {
       << words::verdict(c);
 }
 
+TEST(Verdict, ARobotFarFromItsNominalModelIsUsedWithCare) {
+  Calibration c = with_errors(0.5, 1e-6, 1e-6);
+  c.tolerance_factor = 10.0;
+  EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
+  c.tolerance_factor = 1000.0;
+  c.reason = judge(c), c.usability = usability_of(c.reason);
+  EXPECT_EQ(c.reason, CalibrationReason::far_from_nominal);
+  EXPECT_EQ(c.usability, Usability::use_with_care);
+  EXPECT_NE(words::verdict(c).find("1000 times further from its nominal model"), std::string::npos)
+      << words::verdict(c);
+}
+
 TEST(Verdict, AFinalFitThatConvergedElsewhereIsNotValidated) {
   EXPECT_EQ(judge(with_errors(1e-3, 1e-4, 1.6e-4)), CalibrationReason::not_validated);
   EXPECT_EQ(judge(with_errors(1e-3, 1e-4, 1.4e-4)), CalibrationReason::improves_nominal);

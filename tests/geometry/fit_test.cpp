@@ -159,5 +159,12 @@ TEST(FitCircle, HeightAboveThePlaneCountsInTheRms) {
   EXPECT_NEAR(fit_circle(points).rms, 0.1, 1e-12);
 }
 
+TEST(RmsSpread, IsAboutTheCentroidAndDoesNotMove) {
+  const std::vector<Vec3> points{{1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 2.0, 0.0}, {0.0, -2.0, 0.0}};
+  EXPECT_NEAR(rms_spread(points), std::sqrt(2.5), 1e-15);
+  EXPECT_NEAR(rms_spread(moved({Mat3::Identity(), Vec3(100.0, 0.0, 0.0)}, points)), std::sqrt(2.5), 1e-12);
+  EXPECT_EQ(centroid(points), Vec3(0.0, 0.0, 0.0));
+}
+
 }  // namespace
 }  // namespace kinfer

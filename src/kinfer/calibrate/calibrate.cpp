@@ -117,8 +117,7 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
   }
   calibration.unobserved_lengths = find_unobserved_lengths(task, fit.estimate);
   calibration.reason = judge(calibration);
-  calibration.usability =
-      usability_of(calibration.reason, calibration.unobserved_lengths, calibration.tolerance_factor);
+  calibration.usability = usability_of(calibration.reason, calibration.unobserved_lengths);
   calibration.accuracy = evaluate_pose_accuracy(frames_only, calibration.estimate.chain, task.data);
   calibration.plot_data =
       make_plot_data(task, frames_only, calibration.estimate, calibration.prediction, options.threads);

@@ -7,9 +7,8 @@
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
-namespace {
 
-Vec3 centroid(std::span<const Vec3> points, std::span<const double> weights = {}) {
+Vec3 centroid(std::span<const Vec3> points, std::span<const double> weights) {
   Vec3 sum = Vec3::Zero();
   double total = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -19,6 +18,15 @@ Vec3 centroid(std::span<const Vec3> points, std::span<const double> weights = {}
   }
   return sum / total;
 }
+
+double rms_spread(std::span<const Vec3> points) {
+  const Vec3 center = centroid(points);
+  double squares = 0.0;
+  for (const Vec3& p : points) squares += (p - center).squaredNorm();
+  return std::sqrt(squares / static_cast<double>(points.size()));
+}
+
+namespace {
 
 SymmetricEigen principal_axes(std::span<const Vec3> points, const Vec3& center) {
   Mat3 scatter = Mat3::Zero();

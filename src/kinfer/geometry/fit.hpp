@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Least-squares fits of points: rigid alignment, plane, circle in space.
+// Least-squares fits of points: centroid, rigid alignment, plane, circle in space.
 #pragma once
 
 #include <span>
@@ -7,6 +7,11 @@
 #include "kinfer/geometry/pose.hpp"
 
 namespace kinfer {
+
+/// Weights may be empty.
+Vec3 centroid(std::span<const Vec3> points, std::span<const double> weights = {});
+/// rms distance of the points from their centroid [m]; not a number for none.
+double rms_spread(std::span<const Vec3> points);
 
 /// a_T_b that minimises Σ wᵢ |aᵢ − a_T_b bᵢ|² (Kabsch 1976, by Horn's quaternion, so never a reflection).
 /// At least 3 points that are not on a line, else the rotation about that line is arbitrary. Weights may be empty.

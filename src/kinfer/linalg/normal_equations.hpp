@@ -29,7 +29,7 @@ VectorXd solve_damped_by_eigenvalues(const NormalEquations& equations, double da
 
 /// Covariance, the inverse of a normal matrix (lower half read) that is positive definite but for rounding. Where it is
 /// not, directions that are determined by less than 1e-12 of what each parameter is, the others given, get that much: a
-/// large variance, and not none.
+/// large variance, and not none; an unknown that appears nowhere gets 1e18.
 MatrixXd covariance_of_normal_matrix(ConstMatrixRef normal);
 
 /// a = u diag(s) vᵀ and uᵀb, for repeated solutions with different damping.

@@ -87,6 +87,12 @@ bool has_measurements(const PoseMeasurements& measured) {
   return any;
 }
 
+std::vector<Vec3> point_positions(const PoseMeasurements& measured) {
+  std::vector<Vec3> positions;
+  for (const PointMeasurement& point : measured.points) positions.push_back(point.position);
+  return positions;
+}
+
 PoseSet select(const PoseSet& from, const std::vector<int>& rows) {
   std::vector<std::vector<int>> places(from.rows());  // new indices of each old row
   for (std::size_t i = 0; i < rows.size(); ++i) places[rows[i]].push_back(static_cast<int>(i));

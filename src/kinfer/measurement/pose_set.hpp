@@ -55,6 +55,9 @@ struct PoseSet : RecordedJoints, RowConditions, PoseMeasurements, FixtureNames, 
 /// True if any list of measurements is not empty.
 bool has_measurements(const PoseMeasurements& measured);
 
+/// Positions of all measured points [m], in their order.
+std::vector<Vec3> point_positions(const PoseMeasurements& measured);
+
 /// The listed rows of `from`, in that order, with their measurements. A row may be listed several times; a pair is kept
 /// if both of its rows are listed.
 PoseSet select(const PoseSet& from, const std::vector<int>& rows);

@@ -58,6 +58,13 @@ std::vector<PositionGuess> make_guesses(const TrackingModel& tracking, const std
   return guesses;
 }
 
+/// What a joint may have turned in a gap, by the speed that it has shown, at most its range.
+double moved_in_gap(const TrackingJoint& joint, double gap) {
+  if (joint.range.empty()) return max_position_sd;
+  const auto& seen = joint.range.front();
+  return std::min({seen.speed * gap, 0.5 * (seen.upper - seen.lower), max_position_sd});
+}
+
 std::optional<BaseMode> given_base(BaseMotion motion) {
   if (motion == BaseMotion::automatic) return {};
   return motion == BaseMotion::moving ? BaseMode::moving : BaseMode::still;
@@ -94,13 +101,6 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
   state_.alarms.reserve(4 * model.sensors.size() + model.joints.size() + 4);
 }
 
-/// What a joint may have turned or slid in a gap, by the speed that it has shown, at most its range.
-double moved_in_gap(const TrackingJoint& joint, double gap) {
-  if (joint.range.empty()) return max_position_sd;
-  const auto& seen = joint.range.front();
-  return std::min({seen.speed * gap, 0.5 * (seen.upper - seen.lower), max_position_sd});
-}
-
 /// After a gap the posture is unknown again; what was learnt of the sensors is kept. A position that nothing shows then
 /// goes on from where it was, as uncertain as it may have moved meanwhile.
 void Tracker::restart(double time) {
@@ -109,7 +109,7 @@ void Tracker::restart(double time) {
     for (std::size_t i = 0; i < guesses_.size(); ++i) {
       if (joint_of_position_[i] < 0) continue;
       const TrackingJoint& joint = tracking_->joints[static_cast<std::size_t>(joint_of_position_[i])];
-      if (joint.positions != 1) continue;
+      if (joint.positions != 1 || joint.type == EstimatedJointType::prismatic) continue;  // these have a grid of starts
       guesses_[i].value = state_.q[joint.first_position], guesses_[i].is_last = true;
       lost_in_gap_[i] = std::min(max_position_sd,
                                  std::hypot(state_.sd_q[joint.first_position], moved_in_gap(joint, time - last_time_)));

@@ -115,6 +115,17 @@ TEST(Diagnosis, APointThatNeverMovesIsNoMeasurement) {
   EXPECT_TRUE(expect_moving_points(task));
 }
 
+TEST(Diagnosis, ADistanceThatNeverChangesIsNoMeasurement) {
+  CalibrationTask task = measured_robot(scara());
+  task.nominal.fixtures.anchors = {Vec3(2.0, -1.0, 0.5)};
+  for (const PointMeasurement& point : task.data.points)
+    task.data.distances.push_back({.row = point.row, .anchor = 0, .distance = 1.0 + 0.01 * point.row});
+  task.data.points.clear();
+  EXPECT_TRUE(expect_moving_points(task));
+  for (DistanceMeasurement& at : task.data.distances) at.distance = 1.5;
+  EXPECT_NE(expect_moving_points(task).error().what.find("the measured distances never change"), std::string::npos);
+}
+
 TEST(Diagnosis, CommandedPositionsReplaceJointPositionsRecordedDuringMotion) {
   CalibrationTask task = measured_robot(arm6());
   task.data.commanded = task.data.joints;

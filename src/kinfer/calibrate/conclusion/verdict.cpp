@@ -25,6 +25,7 @@ CalibrationReason judge_against_nominal(const Calibration& calibration) {
   if (calibration.chance_of_improvement.value_or(0.0) > thresholds::unproven_chance) return CalibrationReason::unproven;
   if (calibration.noise_holdout_rms && !(after.rms <= thresholds::expectation_ratio * *calibration.noise_holdout_rms))
     return CalibrationReason::beyond_noise;
+  if (calibration.tolerance_factor >= thresholds::strange_tolerance_factor) return CalibrationReason::far_from_nominal;
   return CalibrationReason::improves_nominal;
 }
 
@@ -41,14 +42,23 @@ CalibrationReason judge(const Calibration& calibration) {
                                    : judge_against_nominal(calibration);
 }
 
-Usability usability_of(CalibrationReason reason, const std::optional<UnobservedLengths>& unobserved,
-                       double tolerance_factor) {
-  if (reason == CalibrationReason::unproven || reason == CalibrationReason::beyond_noise)
-    return Usability::use_with_care;
-  if (reason != CalibrationReason::improves_nominal && reason != CalibrationReason::generalises)
-    return Usability::do_not_use;
-  const bool is_strange = tolerance_factor >= thresholds::strange_tolerance_factor;
-  return unobserved || is_strange ? Usability::use_with_care : Usability::use;
+Usability usability_of(CalibrationReason reason, const std::optional<UnobservedLengths>& unobserved) {
+  switch (reason) {
+    case CalibrationReason::unproven:
+    case CalibrationReason::far_from_nominal:
+    case CalibrationReason::beyond_noise:
+      return Usability::use_with_care;
+    case CalibrationReason::improves_nominal:
+    case CalibrationReason::generalises:
+      return unobserved ? Usability::use_with_care : Usability::use;
+    case CalibrationReason::no_improvement:
+    case CalibrationReason::not_validated:
+    case CalibrationReason::unmodelled_effects:
+    case CalibrationReason::overfitted:
+    case CalibrationReason::beyond_tolerances:
+      break;
+  }
+  return Usability::do_not_use;
 }
 
 }  // namespace kinfer::calibrate

@@ -13,8 +13,8 @@ namespace kinfer::calibrate {
 CalibrationReason judge(const Calibration& calibration);
 
 /// `do_not_use` where the calibration neither improves the nominal model nor generalises; `use_with_care` where the
-/// improvement is not proven, the errors exceed what the instrument explains, or no length was measured; else `use`.
-Usability usability_of(CalibrationReason reason, const std::optional<UnobservedLengths>& unobserved = {},
-                       double tolerance_factor = 1.0);
+/// improvement is not proven, the errors exceed what the instrument explains, the robot is far from its nominal model,
+/// or no length was measured; else `use`.
+Usability usability_of(CalibrationReason reason, const std::optional<UnobservedLengths>& unobserved = {});
 
 }  // namespace kinfer::calibrate

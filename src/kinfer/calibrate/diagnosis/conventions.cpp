@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
-#include "kinfer/calibrate/diagnosis/moving_points.hpp"
 #include "kinfer/calibrate/diagnosis/thresholds.hpp"
+#include "kinfer/geometry/fit.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/measurement/row_selection.hpp"
 
@@ -198,7 +198,7 @@ class HypothesisSearch {
     const auto fit = fit_frames_quickly(e.chain, e.data);
     if (!fit) return false;
     e.median_error = fit->median_error;
-    e.relative_error = e.median_error / spread_of(e.data.points);
+    e.relative_error = e.median_error / rms_spread(point_positions(e.data));
     return std::isfinite(e.relative_error);
   }
 

@@ -57,17 +57,6 @@ FrameFit refine_base_and_tool(const Chain& chain, const PoseSet& data) {
   return fit;
 }
 
-}  // namespace
-
-void add_finding(DiagnosisState& state, Finding finding) {
-  const std::vector<int>& line = state.task.data.line;
-  for (const int row : finding.rows)
-    if (!line.empty()) finding.lines.push_back(line[row]);
-  state.findings.push_back(std::move(finding));
-}
-
-namespace {
-
 /// Of the tool's position (rows of its twist from 0 on, [m]) or rotation (from 3 on, [rad]), base refitted.
 double rms_by_tolerances(const CalibrationTask& task, Eigen::Index first) {
   ParameterSet set = geometric_parameters(task.nominal, task.data, task.tolerances);
@@ -87,6 +76,13 @@ double rms_by_tolerances(const CalibrationTask& task, Eigen::Index first) {
 }
 
 }  // namespace
+
+void add_finding(DiagnosisState& state, Finding finding) {
+  const std::vector<int>& line = state.task.data.line;
+  for (const int row : finding.rows)
+    if (!line.empty()) finding.lines.push_back(line[row]);
+  state.findings.push_back(std::move(finding));
+}
 
 std::optional<FrameFit> fit_frames_quickly(const Chain& nominal, const PoseSet& all) {
   const PoseSet data = keep_points_only(all);

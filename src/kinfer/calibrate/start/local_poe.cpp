@@ -8,6 +8,7 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/calibrate/start/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/geometry/fit.hpp"
 #include "kinfer/geometry/random.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/measurement/row_selection.hpp"
@@ -16,16 +17,6 @@ namespace kinfer::calibrate {
 namespace {
 
 constexpr double min_noise = 1e-9;  // [m], floor of a noise level
-
-/// Rms distance of the points from their centroid [m].
-double rms_spread(const PoseSet& data) {
-  Vec3 middle = Vec3::Zero();
-  for (const PointMeasurement& point : data.points) middle += point.position;
-  middle /= static_cast<double>(data.points.size());
-  double squares = 0.0;
-  for (const PointMeasurement& point : data.points) squares += (point.position - middle).squaredNorm();
-  return std::sqrt(squares / static_cast<double>(data.points.size()));
-}
 
 /// All frames between the joints, and the tool point; the tool rotation if orientations are measured. The priors are as
 /// wide as the machine: they fix unobservable directions and have no influence otherwise.
@@ -127,7 +118,7 @@ Result<LocalPoeFit> fit_local_poe(const std::vector<JointType>& types, const Pos
     return error(
         "{} positions are too few to find a robot of {} joints; at least {} are needed (twice as many are better)",
         data.points.size(), types.size(), (unknowns + unknowns / 4) / 3 + 1);
-  const double size = rms_spread(data);
+  const double size = rms_spread(point_positions(data));
   const std::size_t rows = std::max<std::size_t>(thresholds::min_start_rows, 2 * unknowns);
   PoseSet some = thin_pose_set(data, rows);
   if (!data.orientations.empty() && static_cast<std::size_t>(data.rows()) <= rows) some = data;

@@ -9,6 +9,7 @@
 #include "kinfer/calibrate/validation/commanded_poses.hpp"
 #include "kinfer/calibrate/validation/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/geometry/fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
 
 namespace kinfer::calibrate {
@@ -47,12 +48,6 @@ std::vector<Vec3> distinct_points(const std::vector<int>& rows, const std::vecto
     for (const Vec3& point : points[row])
       if (known.insert({point.x(), point.y(), point.z()}).second) distinct.push_back(point);
   return distinct;
-}
-
-Vec3 centroid(const std::vector<Vec3>& points) {
-  Vec3 sum = Vec3::Zero();
-  for (const Vec3& point : points) sum += point;
-  return sum / static_cast<double>(points.size());
 }
 
 }  // namespace

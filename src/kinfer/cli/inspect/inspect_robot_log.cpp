@@ -63,7 +63,7 @@ void print_topics(const std::string& file, const MessageLog& log) {
   for (const LoggedTopic& topic : log.topics)
     fmt::print("  {:<{}} {:<{}} {:>9} {:>9.4g}  {}\n", printable(topic.name), name_width, printable(topic.type),
                type_width, topic.messages, rate_of(topic), use_of(topic));
-  for (const std::string& remark : log.remarks) fmt::print("! {}\n", remark);
+  for (const std::string& remark : log.remarks) fmt::print("! {}\n", printable(remark));
 }
 
 }  // namespace kinfer::cli

@@ -29,6 +29,7 @@ enum class CalibrationReason {
   overfitted,          ///< without a data sheet: the held-out errors far exceed those of the fitted rows
   unproven,            ///< better than the nominal model on held-out rows, but perhaps by chance
   beyond_tolerances,   ///< better, but worse than the tolerances of the nominal model could make
+  far_from_nominal,    ///< better, but by numbers that no tolerance allows: another robot, or other units
   beyond_noise,        ///< better, but worse than the instrument's noise explains; few rows cannot tell why
 };
 std::string_view name(CalibrationReason reason);

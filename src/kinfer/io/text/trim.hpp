@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trimming of whitespace around cells.
+// Trimming of whitespace and quotes around cells.
 #pragma once
 
 #include <string_view>

@@ -81,12 +81,6 @@ std::vector<std::string> remarks(const Calibration& c) {
   if (c.unobserved_lengths) texts.push_back(unobserved_text(*c.unobserved_lengths));
   for (const std::string& text : excluded_rows_texts(c, display_of(c)(errors.holdout_all_rows.max)))
     texts.push_back(text);
-  if (c.usability == Usability::use_with_care && c.reason == CalibrationReason::improves_nominal &&
-      !c.unobserved_lengths)
-    texts.push_back(phrase("strange_robot",
-                           "the robot is {:.0f} times further from its nominal model than the tolerances say: perhaps "
-                           "it is another one, or something is in other units",
-                           c.tolerance_factor));
   if (c.geometry_only)
     texts.push_back(phrase("geometry_only", "geometry alone: a swarm search has no model selection"));
   return texts;
@@ -119,6 +113,11 @@ VerdictText parts_of_verdict(const Calibration& c) {
                           "could make, so joints and measurements do not belong together or the robot is another "
                           "one: " +
                               figures(c));
+    case CalibrationReason::far_from_nominal:
+      return with_remarks(
+          c, fmt::format("the robot is {:.0f} times further from its nominal model than the tolerances say, so perhaps "
+                         "it is another one, or something is in other units: {}",
+                         c.tolerance_factor, figures(c)));
     case CalibrationReason::beyond_noise:
       return with_remarks(
           c,

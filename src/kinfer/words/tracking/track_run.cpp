@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/words/language.hpp"
 
 namespace kinfer::words {
@@ -32,9 +33,10 @@ bool is_remark(TrackAlarmKind kind) {
   return kind == TrackAlarmKind::restarted || kind == TrackAlarmKind::sensor_clipped;
 }
 
+constexpr double any_angle = 30.0 * degree;
+
 /// For most of the time the position could be any: beyond what a filter that linearises can follow.
 bool is_lost(const TrackCurve& position) {
-  constexpr double any_angle = 0.5;  // [rad]
   const auto lost = std::ranges::count_if(position.sd, [](double sd) { return !(sd < any_angle); });
   return position.rotates && 2 * lost > static_cast<std::ptrdiff_t>(position.sd.size());
 }
@@ -100,7 +102,8 @@ VerdictText verdict_of(const TrackRun& run, Usability usability) {
                                                                 : phrase("do_not_use", "Do not use it");
   text.statement =
       usability == Usability::do_not_use && is_all_lost(run)
-          ? phrase("nothing_known", "no joint position is known: its standard deviation is beyond 29 deg")
+          ? phrase("nothing_known", "no joint position is known: its standard deviation is beyond {:.0f} deg",
+                   any_angle / degree)
       : usability == Usability::do_not_use
           ? phrase("does_not_fit", "the log does not fit the chain")
           : phrase("tracked", "{} joint positions tracked over {:.1f} s, {} alarm{}", run.positions.size(),
