@@ -56,6 +56,7 @@ Usability usability_of(CalibrationReason reason, const std::optional<UnobservedL
     case CalibrationReason::unmodelled_effects:
     case CalibrationReason::overfitted:
     case CalibrationReason::beyond_tolerances:
+    case CalibrationReason::contradictory:
       break;
   }
   return Usability::do_not_use;

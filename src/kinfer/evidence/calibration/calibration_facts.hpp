@@ -31,6 +31,7 @@ enum class CalibrationReason {
   beyond_tolerances,   ///< better, but worse than the tolerances of the nominal model could make
   far_from_nominal,    ///< better, but by numbers that no tolerance allows: another robot, or other units
   beyond_noise,        ///< better, but worse than the instrument's noise explains; few rows cannot tell why
+  contradictory,       ///< kinds of measurements that were fitted together disagree by far more than their noise
 };
 std::string_view name(CalibrationReason reason);
 

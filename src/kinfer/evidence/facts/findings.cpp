@@ -64,6 +64,8 @@ constexpr std::array named_kinds{
     NamedKind{FindingKind::force_sign, "force_sign"},
     NamedKind{FindingKind::opposite_verticals, "opposite_verticals"},
     NamedKind{FindingKind::instruments_out_of_step, "instruments_out_of_step"},
+    NamedKind{FindingKind::instrument_scale, "instrument_scale"},
+    NamedKind{FindingKind::clock_rate, "clock_rate"},
 };
 
 }  // namespace

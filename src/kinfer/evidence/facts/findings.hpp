@@ -74,6 +74,8 @@ enum class FindingKind {
   force_sign,               ///< accelerometers that read −g upwards
   opposite_verticals,       ///< sensors that disagree about up and down, none of which is the odd one
   instruments_out_of_step,  ///< an accelerometer lags its gyroscope, or runs ahead of it
+  instrument_scale,         ///< a gyroscope or an accelerometer reads a few per cent too much or too little
+  clock_rate,               ///< all gyroscopes read too much alike: the clock is slow or fast, or their unit is another
 };
 
 /// The stable identifier for programs: "rows_shifted".

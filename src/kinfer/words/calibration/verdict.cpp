@@ -124,6 +124,8 @@ VerdictText parts_of_verdict(const Calibration& c) {
           fmt::format("better, but the errors are {:.0f} times what the instrument's noise explains, so something is "
                       "not modelled or not as stated: {}",
                       reported_errors(c, c.after).rms / c.noise_holdout_rms.value_or(1.0), figures(c)));
+    case CalibrationReason::contradictory:
+      return with_remarks(c, "measurements that were fitted together contradict each other: " + figures(c));
     case CalibrationReason::unmodelled_effects:
       return with_remarks(c, fmt::format("better, but the errors are {:.0f} times what instrument and fit explain, "
                                          "so something is not modelled: {}",
