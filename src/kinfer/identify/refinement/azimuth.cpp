@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinfer/estimate/continuous/excerpt.hpp"
 #include "kinfer/estimate/continuous/fit_comparison.hpp"
 #include "kinfer/estimate/continuous/model/azimuth.hpp"
 #include "kinfer/estimate/continuous/solver/covariance.hpp"
@@ -22,7 +23,10 @@ using Index = Eigen::Index;
 constexpr double max_axis_error = 1.5e-3;  // [rad] of the fit's orientations, which the magnetometers take as given
 // Of the search on the circle: six places and more iterations end in the same azimuths on trees 3, 5, 9 and 19.
 constexpr int circle_places = 4, circle_iterations = 8, circle_rounds = 2;
-constexpr int joint_iterations = 4;  // of the fit with azimuths: it starts within a few standard deviations
+// Places are tried on this share of the recording, the windows in which the joints turn most, first.
+constexpr Index least_trial_windows = 2, most_trial_windows = 48, windows_of_a_trial_window = 4;
+constexpr double undecided_evidence = 30.0;  // −2 log likelihood: odds of 3e6 against a place
+constexpr int joint_iterations = 4;          // of the fit with azimuths: it starts within a few standard deviations
 
 /// Azimuths that the fit leaves uncertain, and the information that it has about them.
 struct WeakAzimuths {
@@ -117,6 +121,43 @@ void set_noise(InsProblem& problem, const std::vector<InsNoise>& noise) {
   for (std::size_t s = 0; s < noise.size(); ++s) problem.sensors[s].noise = noise[s];
 }
 
+/// Tells by a part of the recording which places on the circle are out of the question, in a fraction of the time.
+class AzimuthTrial {
+ public:
+  AzimuthTrial(const RefinementTask& task, const RefinementFit& fitted)
+      : options_(task.options), excerpt_(excerpt_of(fitted.setup.problem, fitted.fit.unknowns, trial_windows(fitted))) {
+    options_.iterations = circle_iterations, options_.reweighting_rounds = circle_rounds;
+    options_.trajectory_iterations = 0;
+    if (excerpt_.problem.grid.intervals > 0) reference_ = fitted_value(excerpt_.start);
+  }
+
+  bool is_possible(const InsAzimuth& azimuth, double angle) const {
+    if (excerpt_.problem.grid.intervals == 0) return true;  // too short to be divided
+    InsUnknowns start = excerpt_.start;
+    rotate_azimuth(start.bodies, azimuth, angle);
+    return fitted_value(start) < reference_ + undecided_evidence;
+  }
+
+ private:
+  static std::vector<Index> trial_windows(const RefinementFit& fitted) {
+    const InsProblem& problem = fitted.setup.problem;
+    const Index windows = problem.grid.intervals / excerpt_window;
+    return most_informative_windows(
+        problem, fitted.fit.unknowns.bodies,
+        std::clamp(windows / windows_of_a_trial_window, least_trial_windows, most_trial_windows));
+  }
+
+  double fitted_value(const InsUnknowns& start) const {
+    InsProblem problem = excerpt_.problem;
+    const InsFit fit = fit_ins(problem, start, options_);
+    return negative_log_likelihood(problem, fit.cost);
+  }
+
+  InsFitOptions options_;
+  InsExcerpt excerpt_;
+  double reference_ = 0.0;
+};
+
 }  // namespace
 
 double azimuth_sd(const InsLayout& layout, const InsBodies& bodies, ConstMatrixRef covariance, std::size_t body) {
@@ -154,9 +195,12 @@ void search_azimuths(const RefinementTask& task, RefinementFit& fitted, const Ob
   for (std::size_t i = 0; i < weak.azimuths.size(); ++i) {
     if (weak.sd[static_cast<Index>(i)] > max_azimuth_prior_sd) continue;
     const InsUnknowns start = fitted.fit.unknowns;
+    const AzimuthTrial trial(task, fitted);
     for (int k = 1; k < circle_places; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / circle_places;
+      if (!trial.is_possible(weak.azimuths[i], angle)) continue;
       InsUnknowns x = start;
-      rotate_azimuth(x.bodies, weak.azimuths[i], 2.0 * std::numbers::pi * k / circle_places);
+      rotate_azimuth(x.bodies, weak.azimuths[i], angle);
       continue_from(x, circle_iterations, circle_rounds);
     }
   }
