@@ -78,6 +78,20 @@ TEST(Compensate, ATargetIsReachedByTheRealToolWithoutAStart) {
   EXPECT_GE(reached, 18);
 }
 
+/// The first joint of the real robot counts from 60 degrees elsewhere, so behind it some elbows are beyond its limit.
+TEST(Compensate, AnotherPostureIsTakenWhereTheNominalOneIsBeyondALimit) {
+  Chain nominal;
+  nominal.joints = {mdh_joint(0, 0, 0.3, -170, 170, -1), mdh_joint(0.4, 0, 0, -140, 140, 0)};
+  nominal.tool.xyz = Vec3(0.3, 0, 0);
+  Chain real = nominal;
+  std::get<MdhLink>(real.joints[0].link).theta -= 60.0 * degree;
+  std::vector<ToolTarget> targets;
+  for (int direction = -180; direction < 180; direction += 10)
+    targets.push_back({Vec3(rot_z(direction * degree) * Vec3(0.6, 0, 0.3)), std::nullopt});
+  for (const CompensatedJoints& row : compensate_targets(real, nominal, targets, {}, 1, 1))
+    EXPECT_EQ(row.status, InverseStatus::reached);
+}
+
 TEST(Compensate, ATargetOutOfReachIsReported) {
   const Chain nominal = er20();
   const auto sent = compensate_targets(nominal, nominal, {{Vec3(9, 0, 0), std::nullopt}}, {}, 1, 1);

@@ -143,6 +143,14 @@ TEST(Verify, CorrectionsThatFadeAreNoErrorOfTheRobot) {
   EXPECT_NEAR(placed.frames_refitted.rms, faded.frames_refitted.rms, 1e-6);
 }
 
+TEST(Verify, APoseThatIsMeasuredAgainTellsNoMore) {
+  const Chain truth = on_a_stand(with_table3_errors(er20(0.125)));
+  const PoseSet today = measured(truth, paper2_poses(30, tracker), 5);
+  EXPECT_EQ(verify(truth, {}, tracker, select(today, {0, 1, 2, 3, 4, 0, 1, 2, 3, 4}))->redundancy,
+            verify(truth, {}, tracker, select(today, {0, 1, 2, 3, 4}))->redundancy);
+  EXPECT_FALSE(verify(truth, {}, tracker, select(today, std::vector<int>(30, 7))));
+}
+
 TEST(Verify, NeedsMeasuredPositions) {
   PoseSet data = measured(er20(), paper2_poses(5, tracker));
   data.points.clear();

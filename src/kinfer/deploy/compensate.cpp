@@ -25,14 +25,16 @@ Chain corrected_at(const Chain& corrected, const std::optional<PredictionModel>&
   return prediction ? chain_with_corrections(corrected, *prediction, correction_weight(*prediction, q)) : corrected;
 }
 
+ReachTarget goal_of(const ToolTarget& target) {
+  return {target.position, target.rotation ? OrientationGoal(FullGoal{*target.rotation}) : FreeOrientation{}};
+}
+
 /// Nominal joint positions for each target, dof x targets: the first posture inside the limits that reaches it, else
 /// the closest.
 MatrixXd nominal_postures(const Chain& nominal, const std::vector<ToolTarget>& targets, int threads,
                           std::uint64_t seed) {
   std::vector<ReachTarget> goals;
-  for (const ToolTarget& target : targets)
-    goals.push_back(
-        {target.position, target.rotation ? OrientationGoal(FullGoal{*target.rotation}) : FreeOrientation{}});
+  for (const ToolTarget& target : targets) goals.push_back(goal_of(target));
   motion::ReachOptions options;
   options.seed = seed;
   const auto found = motion::reach(nominal, goals, motion::middle_posture(nominal), options, threads);
@@ -40,6 +42,18 @@ MatrixXd nominal_postures(const Chain& nominal, const std::vector<ToolTarget>& t
   for (std::size_t i = 0; i < found.size(); ++i)
     postures.col(static_cast<Eigen::Index>(i)) = found[i].postures.front().q;
   return postures;
+}
+
+/// In the posture nearest to `preferred` that the chain can take: what the nominal robot reaches in one posture, the
+/// real one may reach only in another.
+CompensatedJoints compensate_in_any_posture(const Chain& corrected, const std::optional<PredictionModel>& prediction,
+                                            const ToolTarget& target, const VectorXd& preferred, std::uint64_t seed) {
+  motion::ReachOptions options;
+  options.choice = motion::PostureChoice::nearest;
+  options.seed = seed;
+  const Chain there = corrected_at(corrected, prediction, preferred);
+  const VectorXd posture = motion::ReachSolver(there, options).solve(goal_of(target), preferred).postures.front().q;
+  return make_compensated(solve_inverse(corrected_at(corrected, prediction, posture), target, posture));
 }
 
 }  // namespace
@@ -104,6 +118,9 @@ std::vector<CompensatedJoints> compensate_targets(const Chain& corrected, const 
     const VectorXd first =
         start.cols() > 0 ? solve_inverse(nominal, targets[i], start.col(column)).q : VectorXd(drawn.col(column));
     list[i] = make_compensated(solve_inverse(corrected_at(corrected, prediction, first), targets[i], first));
+    if (list[i].status == InverseStatus::reached || start.cols() > 0) return;
+    CompensatedJoints other = compensate_in_any_posture(corrected, prediction, targets[i], first, seed);
+    if (other.status == InverseStatus::reached) list[i] = std::move(other);
   });
   return list;
 }

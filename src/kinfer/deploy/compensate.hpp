@@ -62,7 +62,8 @@ struct ToolTarget {
 
 /// Joint positions that bring the tool of `corrected` to each target. Each search starts from the nominal solution,
 /// which itself starts from `start` (dof x targets) where given; else it is the first posture inside the limits that
-/// motion::reach finds, which draws its starts from `seed`.
+/// motion::reach finds, which draws its starts from `seed`. What is not reached from there without a `start` is tried
+/// in the other postures of `corrected`, the nearest first.
 std::vector<CompensatedJoints> compensate_targets(const Chain& corrected, const Chain& nominal,
                                                   const std::vector<ToolTarget>& targets, const MatrixXd& start,
                                                   int threads, std::uint64_t seed,

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "kinfer/calibrate/diagnosis/diagnosis_state.hpp"
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
+#include "kinfer/calibrate/validation/commanded_poses.hpp"
+#include "kinfer/calibrate/validation/thresholds.hpp"
 #include "kinfer/deploy/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/estimate/poses/pose_uncertainty.hpp"
@@ -59,8 +62,25 @@ std::optional<Instrument> known_instrument(const std::optional<Instrument>& stat
   return Instrument{.sigma = prediction->noise};
 }
 
+std::vector<int> poses_of(const PoseSet& data) {
+  return calibrate::commanded_poses(data.joints, calibrate::thresholds::same_pose_angle);
+}
+
+/// Of different poses and targets: a pose that was measured again tells no more about the robot.
 int measured_numbers(const PoseSet& data) {
-  return 3 * static_cast<int>(data.points.size() + data.orientations.size());
+  const std::vector<int> poses = poses_of(data);
+  const auto pose_of = [&](int row) { return poses[static_cast<std::size_t>(row)]; };
+  std::set<std::pair<int, int>> points;
+  std::set<int> orientations;
+  for (const PointMeasurement& point : data.points) points.emplace(pose_of(point.row), point.target);
+  for (const OrientationMeasurement& m : data.orientations) orientations.insert(pose_of(m.row));
+  return 3 * static_cast<int>(points.size() + orientations.size());
+}
+
+Result<void> expect_several_poses(const PoseSet& data) {
+  const std::vector<int> poses = poses_of(data);
+  if (data.rows() == 1 || std::ranges::max(poses) > 0) return {};
+  return error("all {} rows were measured at the same joint positions, which tells nothing about others", data.rows());
 }
 
 /// rms error of the refit as of points that it had not seen: a refit to few points fits their noise, too.
@@ -86,6 +106,7 @@ Result<Verification> verify(const Chain& given_chain, const Tolerances& toleranc
                             const std::optional<Instrument>& instrument, const PoseSet& given_data,
                             const std::optional<PredictionModel>& prediction) {
   if (given_data.points.empty()) return error("the data contain no measured positions to verify against");
+  if (const auto several = expect_several_poses(given_data); !several) return forward_error(several.error());
   KINFER_TRY(placed, calibrate::with_fixtures(given_chain, given_data));
   const Chain& chain = placed.chain;
   const PoseSet data = with_approach(placed.data);

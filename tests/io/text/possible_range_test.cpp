@@ -19,6 +19,9 @@ TEST(PossibleRange, WhatIsReadAtALimitComesBackFromAnotherUnit) {
 
 TEST(PossibleRange, BeyondItIsNamedWithItsUnit) {
   EXPECT_EQ(impossible(10001.0, possible::angle), "10001 rad is not possible for an angle (at most 10000 rad)");
+  EXPECT_EQ(impossible(-400.0, possible::temperature), "-400 C is not possible for a temperature (at least -273.15 C)");
+  EXPECT_TRUE(impossible(-1.0, possible::payload));
+  EXPECT_FALSE(impossible(0.0, possible::payload));
   EXPECT_TRUE(impossible(-1e300, possible::length));
   EXPECT_TRUE(impossible(std::numeric_limits<double>::quiet_NaN(), possible::number));
   EXPECT_TRUE(impossible(-std::numeric_limits<double>::infinity(), possible::ratio));

@@ -14,7 +14,7 @@ PossibleRange possible_range(Dimension dimension) {
     case Dimension::angle:
       return possible::angle;
     case Dimension::mass:
-      return possible::mass;
+      return possible::payload;
     case Dimension::temperature:
       return possible::temperature;
     case Dimension::time:
@@ -39,10 +39,12 @@ PossibleRange possible_range(Dimension dimension) {
 
 std::optional<std::string> impossible(double value, const PossibleRange& range) {
   constexpr double rounding = 1e-9;  // a value at the limit that was written in another unit comes back beyond it
-  if (std::abs(value) <= range.most * (1.0 + rounding)) return std::nullopt;
-  const std::string_view unit = range.unit == "1" || range.unit == "SI" ? "" : range.unit;
-  return fmt::format("{:g}{}{} is not possible for {} (at most {:g}{}{})", value, unit.empty() ? "" : " ", unit,
-                     range.what, range.most, unit.empty() ? "" : " ", unit);
+  const bool is_too_small = value < range.least - rounding * std::abs(range.least);
+  if (!is_too_small && value <= range.most * (1.0 + rounding)) return std::nullopt;
+  const std::string unit = range.unit == "1" || range.unit == "SI" ? "" : fmt::format(" {}", range.unit);
+  if (is_too_small && range.least != -range.most)
+    return fmt::format("{:g}{} is not possible for {} (at least {:g}{})", value, unit, range.what, range.least, unit);
+  return fmt::format("{:g}{} is not possible for {} (at most {:g}{})", value, unit, range.what, range.most, unit);
 }
 
 }  // namespace kinfer

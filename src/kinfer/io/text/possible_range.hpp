@@ -11,11 +11,12 @@
 
 namespace kinfer {
 
-/// Limits of the absolute value, far beyond any machine: they separate slips from measurements, not good from bad.
+/// Limits far beyond any machine: they separate slips from measurements, not good from bad.
 struct PossibleRange {
   std::string_view what;  ///< "a length"
   double most = 0.0;      ///< in `unit`
   std::string_view unit;  ///< SI
+  double least = -most;
 };
 
 namespace possible {
@@ -26,9 +27,11 @@ inline constexpr PossibleRange ratio{"a gain", 1e4, "1"};
 inline constexpr PossibleRange compliance{"a compliance", 10.0, "rad/(N m)"};
 inline constexpr PossibleRange harmonic_order{"an order of a harmonic", 1e5, "1"};
 inline constexpr PossibleRange mass{"a mass", 1e8, "kg"};
+inline constexpr PossibleRange payload{"a payload", 1e8, "kg",
+                                       0.0};  // that the robot carries; masses of a model may be differences
 inline constexpr PossibleRange gravity{"a gravity", 1e3, "m/s^2"};
 inline constexpr PossibleRange expansion{"a thermal expansion", 1.0, "1/K"};
-inline constexpr PossibleRange temperature{"a temperature", 1e4, "C"};
+inline constexpr PossibleRange temperature{"a temperature", 1e4, "C", -273.15};
 inline constexpr PossibleRange motion_limit{"a limit of a motion", 1e12, "SI"};  // jerks of 1e9 deg/s^3 mean none
 /// Of a number in any file whose quantity has no range of its own: its square and the sums of squares stay finite.
 inline constexpr PossibleRange number{"a number of a machine", 1e15, "SI"};
