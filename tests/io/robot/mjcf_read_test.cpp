@@ -87,6 +87,14 @@ TEST(MjcfRead, EndsAreBodiesOrSites) {
             "in.xml: no joint between the base link and the tip link moves");
 }
 
+TEST(MjcfRead, TheToolThatIsWrittenIsTheTip) {
+  Chain robot = accepted(test::unframed_mjcf());
+  robot.tool.xyz = Vec3(0.03, 0.02, 0.1);
+  const Chain back = accepted(format_mjcf(robot));
+  const VectorXd q = laws::random_q(robot, Rng(3).stream(1));
+  EXPECT_LT((forward(back, q).position - forward(robot, q).position).norm(), 1e-9);
+}
+
 TEST(MjcfRead, AFreeThingBesideARobotIsNoPartOfIt) {
   const std::string cup =
       "<body name='cup'><freejoint/><body><joint/><body><joint/><body><joint/></body></body></body></body>";

@@ -28,7 +28,7 @@ void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& na
            "Link of a URDF file or body of an MJCF file where the chain begins (default: its root, the world)");
   add_text(
       verb, "--tip-link", option.tip_link,
-      "Link of a URDF file, body or site of an MJCF file where the chain ends (default: the end of its longest arm)");
+      "Link of a URDF file, body or site of an MJCF file where the chain ends (default: the end of its longest arm, or the site \"tool\" there)");
   begin_group(verb, "Options");
 }
 

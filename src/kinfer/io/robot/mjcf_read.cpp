@@ -63,6 +63,12 @@ int longest_leaf(const MjcfTree& tree, int base) {
   return leaf;
 }
 
+/// The site in which a chain that was written as MJCF has its tool, where the body has one and no body is called so.
+bool has_tool(const MjcfTree& tree, int body) {
+  const MjcfSite* site = tree.site_named(tool_site);
+  return site && site->body == body && !site->is_placed_by_ends && tree.body_named(tool_site) < 0;
+}
+
 Pose shift(const Vec3& by) {
   return {Mat3::Identity(), by};
 }
@@ -270,7 +276,7 @@ Result<ChainEnds> mjcf_ends(const MjcfTree& tree, const std::string& name, const
   if (found.tip_link.empty()) {
     const int leaf = longest_leaf(tree, base);
     if (leaf < 0) return error("{}: no body below the base link \"{}\"", name, found.base_link);
-    found.tip_link = tree.bodies[leaf].name;
+    found.tip_link = has_tool(tree, leaf) ? tool_site : tree.bodies[leaf].name;
   }
   if (tree.body_named(found.tip_link) < 0 && !tree.site_named(found.tip_link))
     return error("{}: the tip link \"{}\" does not exist: expected the name of a body or of a site", name,

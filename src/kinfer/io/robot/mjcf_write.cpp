@@ -105,7 +105,7 @@ class MjcfWriter {
 
   void write_sites(const Pose& flange) {
     const Pose tool = flange * chain_.tool.pose();
-    leaf("site", {{"name", "tool"}, {"pos", xml_list(tool.position)}, {"quat", xml_list(Quat(tool.rotation))}});
+    leaf("site", {{"name", tool_site}, {"pos", xml_list(tool.position)}, {"quat", xml_list(Quat(tool.rotation))}});
     for (const Target& target : chain_.targets)
       leaf("site", {{"name", target.name}, {"pos", xml_list(tool * target.xyz)}});
   }
