@@ -242,6 +242,30 @@ TEST(Tracker, AJointWhoseOwnSensorIsLostAtTheEndOfTheChainMayMoveUnseen) {
   EXPECT_GT(out.largest_sd[5], 30.0 * degree);
 }
 
+class DeadInstrument : public ::testing::TestWithParam<double> {};
+
+/// From the first row its joint was called relative to where tracking began, and 3.6 deg off at 0.014 stated.
+TEST_P(DeadInstrument, OfASensorMakesItLost) {
+  const double begin = GetParam();
+  const Outcome out = run(still_excavator(), {}, [&](InsRow& row) {
+    if (row.time >= begin) row.sensors[5].has_acceleration = false;
+  });
+  ASSERT_FALSE(out.alarms.empty());
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_lost);
+  EXPECT_EQ(out.alarms[0].sensor, 5);
+  EXPECT_NEAR(out.raised[0], begin + 1.0, 0.1);
+  for (int j = 1; j < 4; ++j) EXPECT_LT(out.rms(j), 0.06 * degree) << j;
+  if (begin <= 0.0) EXPECT_GT(out.largest_sd[4], 3.0 * degree) << "no gravity tells its position";
+}
+INSTANTIATE_TEST_SUITE_P(Tracker, DeadInstrument, ::testing::Values(0.0, 10.0));
+
+TEST(Tracker, ASensorWithoutAGyroscopeIsLostAsWell) {
+  const Outcome out = run(still_excavator(), {}, [](InsRow& row) { row.sensors[3].has_angular_velocity = false; });
+  ASSERT_FALSE(out.alarms.empty());
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_lost);
+  EXPECT_EQ(out.alarms[0].sensor, 3);
+}
+
 TEST(Tracker, NamesASensorThatWasTurned) {
   const Mat3 turn = exp_so3(0.5 * degree * Vec3(1.0, 1.0, 1.0).normalized());
   const Outcome out = run(still_excavator(), {}, [&](InsRow& row) {

@@ -86,6 +86,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       replay_(filter_),
       does_not_fit_(model.sensors.size(), false),
       is_late_(model.sensors.size(), false),
+      biases_(model.sensors.size()),
       composed_(model, options),
       is_sound_(model.sensors.size(), true),
       fusion_(model),
@@ -121,6 +122,7 @@ void Tracker::restart(double time) {
   block_.clear();
   waiting_.clear();
   fit_.reset();
+  std::ranges::fill(biases_, BiasChange{});
 }
 
 void Tracker::add(const InsRow& row) {
@@ -131,18 +133,21 @@ void Tracker::add(const InsRow& row) {
   health_.add(row);
   composed_.add(row);
   choose_sensors();
+  if (block_.ends_before(row.time)) end_block();
   block_.add(row);
-  if (block_.is_complete(update_period)) {
-    if (state_.started)
-      process_block(block_.mean());
-    else
-      wait_for_start();
-    block_.clear();
-  }
+  if (block_.is_complete(update_period)) end_block();
   if (rest_.add(row) && state_.started) rest_.correct(filter_);
   state_.time = row.time;
   if (state_.started) read_out(row.time);
   list_alarms(row.time);
+}
+
+void Tracker::end_block() {
+  if (state_.started)
+    process_block(block_.mean());
+  else
+    wait_for_start();
+  block_.clear();
 }
 
 /// Sensors that are lost, stuck or disagree are left out.
@@ -181,7 +186,8 @@ void Tracker::try_start() {
   const bool moves = base_.mode() == BaseMode::moving;
   for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
     const Index at = model_->layout.position[b];
-    if (model_->bodies[b].motion == JointMotion::revolute && !is_known_[static_cast<std::size_t>(at)])
+    if (model_->bodies[b].motion == JointMotion::revolute && !is_known_[static_cast<std::size_t>(at)] &&
+        !posture.is_unseen[static_cast<std::size_t>(at)])
       moves ? filter_.place(at, posture.state.joints[position_states * at], 0.0) : filter_.declare_known(at);
   }
   begin_grid();
@@ -272,6 +278,27 @@ void Tracker::examine_fit() {
   }
 }
 
+double Tracker::bias_distance(std::size_t sensor) const {
+  const InsLevel distance = filter_.bias_distance(sensor);
+  return std::max(distance.rate, distance.force);
+}
+
+/// Biases that the filter keeps far from where they were handed over: a sensor that changed, or one that stands for a
+/// neighbour that turned. Where something else is named already, they follow from that.
+void Tracker::watch_biases(double time) {
+  bool is_explained = std::ranges::find(does_not_fit_, true) != does_not_fit_.end();
+  for (std::size_t j = 0; j < tracking_->joints.size(); ++j) is_explained |= filter_.doubts_joint(j);
+  for (std::size_t s = 0; s < biases_.size(); ++s) {
+    BiasChange& bias = biases_[s];
+    const double distance = bias_distance(s);
+    if (distance < (bias.is_named ? bias_recovered : bias_limit))
+      bias = {};
+    else if (!bias.since)
+      bias.since = time;
+    bias.is_named |= bias.since && !is_explained && time - *bias.since > settling;
+  }
+}
+
 void Tracker::process_block(const BlockMeasurement& block) {
   if (grid_) {
     resolve_start(block);
@@ -289,6 +316,7 @@ void Tracker::process_block(const BlockMeasurement& block) {
       let_base_move();
     else
       examine_fit();
+    watch_biases(block.time);
     watch_misfit(block.time);
   }
   tool_.spread(*model_, filter_.state(), filter_.covariance());
@@ -324,7 +352,7 @@ void Tracker::read_out(double time) {
   state_.world_q_base = chain_state_.world_q_base;
   state_.sd_base = chain_state_.sd_base;
   for (std::size_t s = 0; s < is_sound_.size(); ++s)
-    is_sound_[s] = !does_not_fit_[s] && !health_[s].lost && !health_[s].stuck;
+    is_sound_[s] = !does_not_fit_[s] && !health_[s].lost && !health_[s].stuck && !health_[s].instrument_missing;
   fusion_.apply(*tracking_, composed_, is_sound_, state_);
 }
 
@@ -339,10 +367,17 @@ void Tracker::list_alarms(double time) {
     const SensorHealth& health = health_[s];
     if (health.lost)
       alarms.push_back({.kind = TrackAlarmKind::sensor_lost, .sensor = sensor, .since = health.lost_since});
+    else if (health.instrument_lost)
+      alarms.push_back({.kind = TrackAlarmKind::sensor_lost, .sensor = sensor, .since = health.instrument_lost_since});
     if (health.stuck)
       alarms.push_back({.kind = TrackAlarmKind::sensor_stuck, .sensor = sensor, .since = health.stuck_since});
     if (health.clipped)
       alarms.push_back({.kind = TrackAlarmKind::sensor_clipped, .sensor = sensor, .since = health.last_clipped});
+    if (biases_[s].is_named && !does_not_fit_[s])
+      alarms.push_back({.kind = TrackAlarmKind::sensor_moved,
+                        .sensor = sensor,
+                        .since = *biases_[s].since,
+                        .strength = bias_distance(s) / bias_limit});
     if (!does_not_fit_[s]) continue;
     ++disagreeing;
     alarms.push_back({.kind = is_late_[s] ? TrackAlarmKind::sensor_late : TrackAlarmKind::sensor_moved,

@@ -41,6 +41,12 @@ class Tracker {
   const ChainFilter& filter() const { return filter_; }
 
  private:
+  /// Biases that are far from those handed over: since when [s], and for so long that it is an alarm.
+  struct BiasChange {
+    std::optional<double> since{};
+    bool is_named = false;
+  };
+
   void restart(double time);
   void wait_for_start();
   void try_start();
@@ -55,6 +61,9 @@ class Tracker {
   void doubt(std::size_t joint);
   void examine_fit();
   void watch_misfit(double time);
+  double bias_distance(std::size_t sensor) const;
+  void watch_biases(double time);
+  void end_block();
   void list_alarms(double time);
   void read_out(double time);
 
@@ -76,6 +85,7 @@ class Tracker {
   Replay replay_;
   std::vector<bool> does_not_fit_;  // sensors out of use because they disagree
   std::vector<bool> is_late_;       // of these, by their clocks
+  std::vector<BiasChange> biases_;  // of each sensor
   ComposedFilters composed_;
   std::vector<bool> is_sound_;  // sensors that the composed filters may use
   JointFusion fusion_;

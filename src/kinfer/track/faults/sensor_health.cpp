@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/track/faults/sensor_health.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "kinfer/track/faults/thresholds.hpp"
 
 namespace kinfer::track {
@@ -17,7 +20,9 @@ void HealthWatch::add(const InsRow& row) {
   for (std::size_t s = 0; s < health_.size(); ++s) {
     SensorHealth& health = health_[s];
     const InsSample& sample = row.sensors[s];
-    if (!has_begun_) health.last_sample = health.last_change = row.time;
+    if (!has_begun_) health.last_sample = health.last_change = health.last_rate = health.last_force = row.time;
+    if (sample.has_angular_velocity) health.last_rate = row.time;
+    if (sample.has_acceleration) health.last_force = row.time;
     if (sample.has_acceleration || sample.has_angular_velocity) {
       health.last_sample = row.time;
       const bool repeats = sample.has_acceleration && sample.has_angular_velocity && is_same(sample, before_[s]);
@@ -30,6 +35,10 @@ void HealthWatch::add(const InsRow& row) {
     health.lost = row.time - health.last_sample > lost_after;
     health.stuck = repeats_[s] >= stuck_rows && row.time - health.last_change > stuck_after;
     health.clipped = row.time - health.last_clipped < clipped_memory;
+    const double alone = std::abs(health.last_rate - health.last_force);
+    health.instrument_missing = alone > instrument_missing_after;
+    health.instrument_lost = alone > instrument_lost_after;
+    health.instrument_lost_since = std::min(health.last_rate, health.last_force);
     if (health.lost && !was_lost) health.lost_since = health.last_sample;
     if (health.stuck && !was_stuck) health.stuck_since = health.last_change;
   }

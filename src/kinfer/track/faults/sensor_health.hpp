@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults that a sensor's own samples show: none come, the same come again and again, they are at the range.
+// Faults that a sensor's own samples show: none come, or none of one instrument, the same come again and again, they
+// are at the range.
 #pragma once
 
 #include <array>
@@ -10,11 +11,14 @@
 namespace kinfer::track {
 
 struct SensorHealth {
-  double last_sample = 0.0;    ///< [s]
-  double last_change = 0.0;    ///< [s] when a value changed
-  double last_clipped = -1e9;  ///< [s]
+  double last_sample = 0.0;                  ///< [s]
+  double last_rate = 0.0, last_force = 0.0;  ///< [s] of either instrument
+  double last_change = 0.0;                  ///< [s] when a value changed
+  double last_clipped = -1e9;                ///< [s]
   bool lost = false, stuck = false, clipped = false;
-  double lost_since = 0.0, stuck_since = 0.0;  ///< [s]
+  bool instrument_lost = false;     ///< one instrument measures without the other
+  bool instrument_missing = false;  ///< likewise, for a short time
+  double lost_since = 0.0, stuck_since = 0.0, instrument_lost_since = 0.0;  ///< [s]
 };
 
 class HealthWatch {

@@ -35,6 +35,9 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
   last_value_ = change_ = VectorXd::Zero(layout.rows());
   error_ = column_ = VectorXd::Zero(layout.size);
   unused_w_ = MatrixXd::Zero(layout.size, sensor_rows);
+  bias_variance_ = VectorXd::Zero(layout.rows());
+  for (Index s = 0; s < layout.sensors; ++s)
+    bias_variance_.segment<sensor_rows>(sensor_rows * s) = p_.diagonal().segment<sensor_rows>(layout.sensor_state(s));
 }
 
 void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {
@@ -96,8 +99,20 @@ void ChainFilter::add_posture_walk(double dt) {
   for (std::size_t s = 0; s < model_->sensors.size(); ++s) {
     const double per_turn = posture_walk * square(model_->gravity * model_->sensors[s].axis_sd);
     const Index bias = model_->layout.sensor_state(static_cast<Index>(s)) + SensorIndex::accelerometer_bias;
-    p_.diagonal().segment<3>(bias).array() += dt * rates[s].norm() * per_turn;
+    const double walk = dt * rates[s].norm() * per_turn;
+    const Index own = sensor_rows * static_cast<Index>(s);
+    p_.diagonal().segment<3>(bias).array() += walk;
+    bias_variance_.segment<3>(own).array() += dt * model_->bias_walk.rate;
+    bias_variance_.segment<3>(own + 3).array() += dt * model_->bias_walk.force + walk;
   }
+}
+
+InsLevel ChainFilter::bias_distance(std::size_t s) const {
+  const Index own = sensor_rows * static_cast<Index>(s);
+  const Vec3 rate = state_.sensors[s].gyroscope_bias - model_->sensors[s].gyroscope_bias,
+             force = state_.sensors[s].accelerometer_bias - model_->sensors[s].accelerometer_bias;
+  return {rate.cwiseAbs2().cwiseQuotient(bias_variance_.segment<3>(own)).sum(),
+          force.cwiseAbs2().cwiseQuotient(bias_variance_.segment<3>(own + 3)).sum()};
 }
 
 void ChainFilter::set_base(BaseMode mode) {

@@ -78,6 +78,10 @@ class ChainFilter {
   /// Factors on the variances of the instruments, as their innovations ask for.
   const InstrumentLevels& levels() const { return levels_; }
 
+  /// Squared distance of an instrument's three biases from those handed over, in the variance that they had before any
+  /// row, and what they may have walked since; its expectation is at most 3.
+  InsLevel bias_distance(std::size_t sensor) const;
+
  private:
   Index zero_state(Index position) const;
   void forget(Index state);
@@ -110,6 +114,7 @@ class ChainFilter {
   VectorXd error_, column_;  // buffers of an update
   MatrixXd unused_w_;
   double placed_ = 0.0;
+  VectorXd bias_variance_;  // of each sensor's biases without the rows: gyroscope, accelerometer
 };
 
 }  // namespace kinfer::track

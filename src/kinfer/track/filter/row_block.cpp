@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "kinfer/track/filter/thresholds.hpp"
+
 namespace kinfer::track {
 
 RowBlock::RowBlock(std::size_t sensors) {
@@ -38,10 +40,14 @@ bool RowBlock::is_complete(double length) const {
   return rows_ > 0 && end_ - begin_ + 1.5 * period_ > length;
 }
 
+bool RowBlock::ends_before(double time) const {
+  return rows_ > 0 && period_ > 0.0 && time - end_ > longest_bridge + period_;
+}
+
 const BlockMeasurement& RowBlock::mean() {
   mean_ = sum_;
   mean_.time = begin_ + sum_.time / std::max(1, rows_);
-  mean_.length = end_ - begin_ + period_;
+  mean_.length = length();
   for (BlockSample& sample : mean_.sensors) {
     if (sample.rate_count > 0) sample.rate /= sample.rate_count;
     if (sample.force_count > 0) sample.force /= sample.force_count;

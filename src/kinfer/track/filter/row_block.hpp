@@ -26,6 +26,11 @@ class RowBlock {
   /// Until the next call of add or clear.
   const BlockMeasurement& mean();
 
+  /// A row at `time` [s] is beyond a gap: its mean with these rows would be that of no time.
+  bool ends_before(double time) const;
+  /// [s] that it stands for; 0: one row, of unknown sampling period.
+  double length() const { return end_ - begin_ + period_; }
+
  private:
   BlockMeasurement sum_, mean_;
   int rows_ = 0;

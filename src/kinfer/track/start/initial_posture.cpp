@@ -145,7 +145,12 @@ Mat3 levelled(const Vec3& force) {
 class PostureStart {
  public:
   PostureStart(const FilterModel& model, const BlockMeasurement& block, const std::vector<PositionGuess>& guess)
-      : model_(model), block_(block), guess_(guess), starts_(model.bodies.size()), seen_(model.bodies.size()) {
+      : model_(model),
+        block_(block),
+        guess_(guess),
+        starts_(model.bodies.size()),
+        seen_(model.bodies.size()),
+        is_unseen_(model.bodies.size(), false) {
     InsBody base = model.bodies.front();
     seen_[0] =
         seen_body(model, block, base, {Vec3(0.0, 0.0, model.gravity), Vec3::Zero(), unseen_force_sd}, Mat3::Identity());
@@ -154,6 +159,7 @@ class PostureStart {
 
   const JointStart& joint(std::size_t body) const { return starts_[body]; }
   const SeenBody& seen(std::size_t body) const { return seen_[body]; }
+  bool is_unseen(std::size_t body) const { return is_unseen_[body]; }
 
  private:
   const PositionGuess& guess_of(std::size_t b, Index i) const {
@@ -180,6 +186,12 @@ class PostureStart {
       guess_start(b);
     }
     seen_[b] = seen_body(model_, block_, body, before, child_from_parent(body, starts_[b]));
+    const int parent_sensor = model_.bodies[parent].sensor;
+    is_unseen_[b] = (body.sensor >= 0 && !is_seen) ||
+                    (parent_sensor >= 0 && block_.sensors[static_cast<std::size_t>(parent_sensor)].force_count == 0);
+    if (body.sensor < 0 || is_seen) return;
+    // Gravity as the parent sees it, turned by a position that is a guess.
+    seen_[b].force_sd = std::hypot(before.force_sd, model_.gravity * starts_[b].sd.norm());
   }
 
   void guess_start(std::size_t b) {
@@ -224,6 +236,7 @@ class PostureStart {
   const std::vector<PositionGuess>& guess_;
   std::vector<JointStart> starts_;
   std::vector<SeenBody> seen_;
+  std::vector<bool> is_unseen_;
   int is_second_of_universal_ = -1;
 };
 
@@ -235,7 +248,8 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
   const PostureStart found(model, block, guess);
   InitialPosture posture{.state = initial_state(model),
                          .covariance = MatrixXd::Zero(layout.fast, layout.fast),
-                         .is_known = std::vector<bool>(static_cast<std::size_t>(layout.positions), false)};
+                         .is_known = std::vector<bool>(static_cast<std::size_t>(layout.positions), false),
+                         .is_unseen = std::vector<bool>(static_cast<std::size_t>(layout.positions), false)};
   ChainState& state = posture.state;
   state.time = block.time;
   state.base = base;
@@ -283,6 +297,7 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
                                                                      : process.sd * process.time;
       posture.covariance(row + 1, row + 1) = rate_sd * rate_sd;
       posture.covariance(row + 2, row + 2) = process.sd * process.sd;
+      posture.is_unseen[static_cast<std::size_t>(at)] = found.is_unseen(b);
       posture.is_known[static_cast<std::size_t>(at)] = is_shown || start.is_known[static_cast<std::size_t>(i)];
     }
   }

@@ -22,6 +22,8 @@ struct InitialPosture {
   ChainState state;
   MatrixXd covariance;         ///< of the fast states
   std::vector<bool> is_known;  ///< of each joint position of the filter: by gravity or by the user
+  /// Unknown because a sensor beside it, or before that, has no accelerometer: gravity would tell, and does not.
+  std::vector<bool> is_unseen;
 };
 
 /// `block`: mean of the first rows. `guess`: of each joint position of the filter.

@@ -122,11 +122,12 @@ std::string sentence(const TrackAlarm& alarm, const std::vector<std::string>& se
     case TrackAlarmKind::does_not_fit:
       return phrase(id, "the log does not fit the chain: another machine, or axes that are permuted or mirrored");
     case TrackAlarmKind::sensor_moved:
-      return phrase(id, "{} does not agree with the chain: turned, shifted or on another segment", sensor);
+      return phrase(id, "{} does not agree with the chain: turned, shifted, on another segment, or its biases changed",
+                    sensor);
     case TrackAlarmKind::joint_changed:
       return phrase(id, "the joint {} does not agree with the chain: play, or bent", joint);
     case TrackAlarmKind::sensor_lost:
-      return phrase(id, "{} sends no samples", sensor);
+      return phrase(id, "{} sends no samples, or those of one instrument only", sensor);
     case TrackAlarmKind::sensor_stuck:
       return phrase(id, "{} repeats the same sample", sensor);
     case TrackAlarmKind::sensor_clipped:
