@@ -104,6 +104,16 @@ std::vector<Finding> one_of_each() {
       {.kind = FindingKind::opposite_verticals,
        .severity = Severity::fault,
        .values = {{"sensors", std::vector<std::string>{"a"}}, {"others", std::vector<std::string>{"b"}}}},
+      {.kind = FindingKind::instrument_scale,
+       .values = {{"sensor", "c"}, {"instrument", "gyroscope"}, {"part", "all"}, {"scale", 0.0195}, {"sd", 2e-4}},
+       .applied = true},
+      {.kind = FindingKind::instrument_scale,
+       .values = {{"sensor", "c"}, {"instrument", "accelerometer"}, {"part", "y"}, {"scale", -0.01}, {"sd", 1e-3}},
+       .applied = true},
+      {.kind = FindingKind::instrument_scale,
+       .values = {{"sensor", "c"}, {"instrument", "gyroscope"}, {"part", "axes"}, {"scale", 0.03491}, {"sd", 1e-3}},
+       .applied = true},
+      {.kind = FindingKind::clock_rate, .values = {{"scale", 0.05}, {"sd", 1e-3}}},
       {.kind = FindingKind::instruments_out_of_step,
        .values = {{"sensor", "b"}, {"lag", 0.04}, {"sd", 0.002}},
        .applied = true},
@@ -120,6 +130,10 @@ TEST(RecordingFindings, EveryKindHasASentenceAndItsNumbersInUsersUnits) {
     all += sentence(finding) + "\n";
   }
   EXPECT_THAT(all, HasSubstr("turned by 10.0 deg"));
+  EXPECT_THAT(all, HasSubstr("the gyroscope of c reads 1.95 ± 0.02 % too much, more"));
+  EXPECT_THAT(all, HasSubstr("the accelerometer of c reads 1.00 ± 0.10 % too little along its y axis, more"));
+  EXPECT_THAT(all, HasSubstr("the axes of the gyroscope of c are off by 2.00 deg, more"));
+  EXPECT_THAT(all, HasSubstr("the clock runs 5.00 % fast, and then every length is 0.91 times as long"));
   EXPECT_THAT(all, HasSubstr("e shares joints with the others from 4 to 27 s that it does not share in the rest"));
   EXPECT_THAT(all, HasSubstr("a and e hold the same measurements"));
   EXPECT_THAT(all, HasSubstr("moved by about 30 mm; only what was recorded before is used"));

@@ -268,6 +268,7 @@ Result<Identification> identify_machine(const InsRecording& log, const IdentifyO
     ClockReport clocks = session.report_clocks(geometry.clocks, groups_on_ground(ordered));
     append(result.findings, diagnosis.findings);
     report_findings(result, session, ordered, order, clocks);
+    append(result.findings, geometry.findings);
     if (update) append(result.findings, findings_about(*update, *options.refine.known));
     result.update = std::move(update);
     result.notes = std::move(order.notes);

@@ -90,7 +90,8 @@ bool invalidates_result(const Finding& finding) {
 }
 
 bool questions_result(const Finding& finding) {
-  return finding.kind == FindingKind::force_sign && !finding.applied;
+  const bool is_assumption = finding.kind == FindingKind::force_sign || finding.kind == FindingKind::clock_rate;
+  return is_assumption && !finding.applied;
 }
 
 }  // namespace kinfer

@@ -38,7 +38,7 @@ RefinementFit fit_below_cutoff(const RefinementTask& task, const RefinementFit& 
       low_frequency_measurements(task.recording, fine, full_bandwidth.fit.unknowns, cutoff, task.options.threads);
   InsUnknowns start = full_bandwidth.fit.unknowns;
   start.spline_coefficients = low_frequency_motion(start.spline_coefficients, fine.grid, cutoff);
-  RefinementSetup setup = continue_from(task, low_frequency, 1.0 / (knots_per_period * cutoff), fine.grid, start);
+  RefinementSetup setup = continue_from(task, low_frequency, 1.0 / (knots_per_period * cutoff), fine, start);
   for (std::size_t s = 0; s < setup.problem.sensors.size(); ++s)  // smoothed measurements do not show their noise
     setup.problem.sensors[s].noise = setup.problem.sensors[s].noise_floor = fine.sensors[s].noise_floor;
   for (InsMeasurements& sensor : setup.problem.sensors)  // slow motion stays below the range that fast motion exceeds

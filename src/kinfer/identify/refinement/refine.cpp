@@ -15,6 +15,7 @@
 #include "kinfer/identify/refinement/azimuth.hpp"
 #include "kinfer/identify/refinement/clock_fit.hpp"
 #include "kinfer/identify/refinement/fact_resolution.hpp"
+#include "kinfer/identify/refinement/instrument_scales.hpp"
 #include "kinfer/identify/refinement/low_frequency_fit.hpp"
 #include "kinfer/identify/refinement/refined_joints.hpp"
 #include "kinfer/identify/refinement/thresholds.hpp"
@@ -25,15 +26,6 @@ namespace kinfer::identify {
 namespace {
 
 using Index = Eigen::Index;
-
-/// Largest ratio of residual noise to noise floor over all instruments.
-double worst_misfit(const InsProblem& problem) {
-  double worst = 1.0;
-  for (const InsMeasurements& r : problem.sensors)
-    worst = std::max(
-        {worst, r.noise.angular_velocity / r.noise_floor.angular_velocity, r.noise.force / r.noise_floor.force});
-  return worst;
-}
 
 std::vector<PointEstimate> located_points(const MachineMeasurements& facts, const InsFit& fit,
                                           ConstMatrixRef covariance) {
@@ -143,6 +135,7 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
     return forward_error(checked.error());
   Refinement result;
   RefinementFit fitted = fit_full_bandwidth(task, std::move(setup), options, observer);
+  const ScaleReview scales = refit_deviant_scales(task, fitted, observer);
   result.negative_log_likelihood = negative_log_likelihood(fitted.setup.problem, fitted.fit.cost);
   std::vector<FoundLoop> loops;
   if (options.loops == LoopTreatment::closed) loops = close_loops(fitted.setup.problem, fitted.fit, options.fit);
@@ -169,6 +162,8 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
                                   assumed_scale(recording, options, grade), options.fit.threads);
   if (!covariance) return error("the continuous-time fit has no covariance: the recording is not informative enough");
   result.covariance = covariance->model;
+  add_clock_rate(scales, result.fit, *covariance, model_error);
+  result.findings = scale_findings(scales, motion, result.fit, *covariance);
   result.clocks = refined_clocks(fitted.setup.problem, result.fit, *covariance);
   result.joints = make_joints(task, fitted, *covariance, model_error);
   result.tracking = hand_over(task, fitted, result,

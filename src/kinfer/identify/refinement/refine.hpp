@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinfer/estimate/continuous/solver/batch_fit.hpp"
+#include "kinfer/evidence/facts/findings.hpp"
 #include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/identify/geometry/initial_joint.hpp"
 #include "kinfer/identify/handover/named_zero.hpp"
@@ -52,6 +53,7 @@ struct Refinement {
   std::vector<ResidualClock> clocks{};   ///< one a sensor; empty where the clocks agree
   std::vector<LoopEstimate> loops{};     ///< closed in the fit
   double negative_log_likelihood = 0.0;  ///< of the fit at full bandwidth; compares fits of one recording
+  std::vector<Finding> findings{};       ///< about instruments that deviate from their grade
   HeldOut held_out{};                    ///< empty where the recording is too short or hold_out is false
   TrackingModel tracking{};
 };

@@ -87,6 +87,7 @@ Result<ChainGeometry> refine_geometry(ChainGeometry searched, const InsRecording
   geometry.clocks = std::move(refined->clocks);
   geometry.negative_log_likelihood = refined->negative_log_likelihood;
   geometry.loops = std::move(refined->loops);
+  geometry.findings = std::move(refined->findings);
   geometry.held_out = std::move(refined->held_out);
   geometry.tracking = std::move(refined->tracking);
   return geometry;

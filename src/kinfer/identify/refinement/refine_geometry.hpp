@@ -16,6 +16,7 @@ struct ChainGeometry {
   std::vector<IdentificationNote> notes{};
   std::vector<ResidualClock> clocks{};              ///< residual clock errors; empty where the clocks agree
   std::optional<double> negative_log_likelihood{};  ///< of the fit; none: the geometry of the search
+  std::vector<Finding> findings{};                  ///< about the instruments, from the fit
   bool starts_from_search = false;
   HeldOut held_out{};
   std::optional<TrackingModel> tracking{};  ///< of the fit

@@ -37,12 +37,13 @@ void report_progress(const Observer& observer, const char* stage, double fractio
 }
 
 RefinementSetup continue_from(const RefinementTask& task, const InsRecording& recording, double knot_spacing,
-                              const SplineGrid& grid, const InsUnknowns& found) {
+                              const InsProblem& problem, const InsUnknowns& found) {
   RefinementSetup setup = set_up_refinement(recording, task.motion, task.tree, task.starts, task.grade, knot_spacing);
   setup.problem.facts = task.facts;
+  setup.problem.scale_factors = problem.scale_factors;
   setup.start = found;
   for (InsErrors& errors : setup.start.errors) errors.clock = {};  // small enough to be neglected here
-  setup.start.spline_coefficients = resample_spline(setup.problem.grid, grid, found.spline_coefficients);
+  setup.start.spline_coefficients = resample_spline(setup.problem.grid, problem.grid, found.spline_coefficients);
   anchor(setup);
   return setup;
 }
@@ -55,7 +56,7 @@ InsFit fit_motion_only(const RefinementTask& task, RefinementSetup& setup) {
 
 RefinementFit fit_whole_motion(const RefinementTask& task, const RefinementFit& found) {
   RefinementFit full_bandwidth{
-      continue_from(task, task.recording, finest_knot_spacing, found.setup.problem.grid, found.fit.unknowns), {}};
+      continue_from(task, task.recording, finest_knot_spacing, found.setup.problem, found.fit.unknowns), {}};
   full_bandwidth.fit = fit_motion_only(task, full_bandwidth.setup);
   return full_bandwidth;
 }
@@ -66,6 +67,14 @@ RefinementFit fit_from(const RefinementTask& task, RefinementSetup setup) {
   RefinementFit result{std::move(setup), {}};
   result.fit = fit_ins(result.setup.problem, result.setup.start, options);
   return result;
+}
+
+double worst_misfit(const InsProblem& problem) {
+  double worst = 1.0;
+  for (const InsMeasurements& r : problem.sensors)
+    worst = std::max(
+        {worst, r.noise.angular_velocity / r.noise_floor.angular_velocity, r.noise.force / r.noise_floor.force});
+  return worst;
 }
 
 double log_residual(const RefinementFit& fitted) {

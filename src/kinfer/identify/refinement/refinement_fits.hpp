@@ -30,9 +30,9 @@ void anchor(RefinementSetup& setup);
 
 void report_progress(const Observer& observer, const char* stage, double fraction);
 
-/// The set-up for a recording of the same machine, starting from the unknowns `found` on another grid.
+/// The set-up for a recording of the same machine, starting from the unknowns `found` of another problem.
 RefinementSetup continue_from(const RefinementTask& task, const InsRecording& recording, double knot_spacing,
-                              const SplineGrid& grid, const InsUnknowns& found);
+                              const InsProblem& problem, const InsUnknowns& found);
 
 /// Fits the motion alone, the chain held fixed.
 InsFit fit_motion_only(const RefinementTask& task, RefinementSetup& setup);
@@ -51,6 +51,9 @@ RefinementFit refit_with(const RefinementTask& task, const RefinementFit& fitted
   change(setup);
   return fit_from(task, std::move(setup));
 }
+
+/// Largest ratio of residual noise to noise floor over all instruments.
+double worst_misfit(const InsProblem& problem);
 
 /// Σ log of the instruments' residual noise; outliers have little weight.
 double log_residual(const RefinementFit& fitted);

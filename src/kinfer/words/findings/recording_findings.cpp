@@ -212,7 +212,46 @@ std::string timestamp_jitter_suggestion(const Finding&) {
   return phrase("timestamp_jitter.suggestion", "log the sensors' own sample times instead of the times of arrival");
 }
 
+/// "reads 2.00 ± 0.10 % too much"
+std::string reading(const FactValues& v) {
+  return fmt::format("{:.2f} ± {:.2f} % too {}", 100.0 * std::abs(v.number("scale")), 100.0 * v.number("sd"),
+                     v.number("scale") > 0.0 ? "much" : "little");
+}
+
+std::string instrument_scale_sentence(const Finding& f) {
+  const FactValues& v = f.values;
+  const std::string& part = v.text("part");
+  if (part == "axes")
+    return phrase("instrument_axes_skewed",
+                  "the axes of the {} of {} are off by {:.2f} deg, more than its grade says; they were estimated",
+                  v.text("instrument"), v.text("sensor"), Angle::rad(v.number("scale")).deg());
+  const std::string along = part == "all" ? "" : fmt::format(" along its {} axis", part);
+  return phrase("instrument_scale",
+                "the {} of {} reads {}{}, more than its grade says; this was estimated and corrected",
+                v.text("instrument"), v.text("sensor"), reading(v), along);
+}
+
+std::string instrument_scale_suggestion(const Finding&) {
+  return phrase("instrument_scale.suggestion", "have the sensor calibrated, or state what it is worth with --grade");
+}
+
+std::string clock_rate_sentence(const Finding& f) {
+  const double scale = f.values.number("scale");
+  return phrase(
+      "clock_rate",
+      "all gyroscopes read {} beside the turns that gravity shows: either they do, which the fit assumes, or the "
+      "clock runs {:.2f} % {}, and then every length is {:.2f} times as long",
+      reading(f.values), 100.0 * std::abs(scale), scale > 0.0 ? "fast" : "slow", 1.0 / ((1.0 + scale) * (1.0 + scale)));
+}
+
+std::string clock_rate_suggestion(const Finding&) {
+  return phrase("clock_rate.suggestion",
+                "check the sampling rate and the unit of the rates, or measure one length and compare");
+}
+
 constexpr std::array recording_finding_words{
+    FindingWords{FindingKind::instrument_scale, instrument_scale_sentence, instrument_scale_suggestion},
+    FindingWords{FindingKind::clock_rate, clock_rate_sentence, clock_rate_suggestion},
     FindingWords{FindingKind::given_link, given_link_sentence, given_link_suggestion},
     FindingWords{FindingKind::loop, loop_sentence, loop_suggestion},
     FindingWords{FindingKind::several_machines, several_machines_sentence, several_machines_suggestion},

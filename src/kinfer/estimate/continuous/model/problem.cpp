@@ -21,8 +21,9 @@ void each_error(const InsProblem& problem, const InsLayout& layout, Errors& all,
   visit(first, 3, errors.gyroscope_bias.data(), problem.prior.gyroscope_bias);
   visit(first + 3, 3, errors.accelerometer_bias.data(), problem.prior.accelerometer_bias);
   if (layout.has_matrices) {
-    visit(first + 6, 9, errors.gyroscope_scale.data(), problem.prior.gyroscope_scale);
-    visit(first + 15, 9, errors.accelerometer_scale.data(), problem.prior.accelerometer_scale);
+    const InsScaleFactor factor = problem.scale_factors.empty() ? InsScaleFactor{} : problem.scale_factors[sensor];
+    visit(first + 6, 9, errors.gyroscope_scale.data(), factor.gyroscope * problem.prior.gyroscope_scale);
+    visit(first + 15, 9, errors.accelerometer_scale.data(), factor.accelerometer * problem.prior.accelerometer_scale);
   }
   if (layout.has_tilts) visit(first + layout.tilt_error, 9, errors.tilt.data(), problem.prior.tilt);
   if (!layout.has_clocks) return;

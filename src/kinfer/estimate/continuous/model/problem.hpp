@@ -52,6 +52,11 @@ struct InsErrorPrior {
   double tilt = 0.0;
 };
 
+/// Factors on the prior standard deviations of one INS' scale matrices.
+struct InsScaleFactor {
+  double gyroscope = 1.0, accelerometer = 1.0;
+};
+
 /// Bias instability of an INS: deviation of the biases from their constants as a first-order Gauss-Markov process per
 /// axis, constant over each time segment of the grid. Standard deviations of 0: none.
 struct BiasProcess {
@@ -67,6 +72,7 @@ struct InsProblem {
   bool root_at_rest = true;
   std::vector<InsMeasurements> sensors;
   InsErrorPrior prior;
+  std::vector<InsScaleFactor> scale_factors{};  ///< one a sensor; empty: 1
   BiasProcess bias_process{};
   double gravity = standard_gravity;  ///< [m/s²] norm of the root's specific force if it is at rest
   double gravity_sd = 0.03;           ///< [m/s²] covers gravity anywhere on Earth

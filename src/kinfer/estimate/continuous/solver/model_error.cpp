@@ -104,20 +104,39 @@ std::optional<InsCovariance> covariance_with_model_error(InsProblem& problem, co
   if (layout.has_matrices) {
     const MatrixXd data = system.schur() - global_parameter_prior(problem, layout, x).matrix,
                    gain = product(white->model, data);  // step of the estimate for an error in a parameter
+    const std::vector<ConsideredScale> considered = considered_scales(problem, cost);
     for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
-      const InsMeasurements& r = problem.sensors[s];
-      const SensorFit& fit = cost.sensors[s];
-      constexpr double rate_axes = 2.0, force_axes = 3.0;  // a joint's position absorbs the rate about its axis
-      const double rate =
-          considered_scale(r.angular_velocity, fit.angular_velocity, r.noise.angular_velocity, rate_axes);
-      const double force = considered_scale(r.force, fit.force, r.noise.force, force_axes);
-      add_considered(result.model, gain, layout.error[s] + gyroscope_scale, std::hypot(rate, assumed.gyroscope));
+      add_considered(result.model, gain, layout.error[s] + gyroscope_scale,
+                     std::hypot(considered[s].gyroscope, assumed.gyroscope));
       add_considered(result.model, gain, layout.error[s] + accelerometer_scale,
-                     std::hypot(force, assumed.accelerometer));
+                     std::hypot(considered[s].accelerometer, assumed.accelerometer));
     }
   }
   result.inflation = white->inflation.array() * white->model.diagonal().array() / result.model.diagonal().array();
   return result;
+}
+
+std::vector<ConsideredScale> considered_scales(const InsProblem& problem, const InsCost& cost) {
+  constexpr double rate_axes = 2.0, force_axes = 3.0;  // a joint's position absorbs the rate about its axis
+  std::vector<ConsideredScale> considered;
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+    const InsMeasurements& r = problem.sensors[s];
+    const SensorFit& fit = cost.sensors[s];
+    considered.push_back(
+        {considered_scale(r.angular_velocity, fit.angular_velocity, r.noise.angular_velocity, rate_axes),
+         considered_scale(r.force, fit.force, r.noise.force, force_axes)});
+  }
+  return considered;
+}
+
+std::optional<LongRunEstimate> long_run_estimate(InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                                                 const InsCost& cost, int threads) {
+  const ScopedNoise scope(problem, long_run_noise(problem, cost));
+  const InsSystem system(problem, layout, x, {}, threads);
+  const auto step = system.solve();
+  const auto covariance = model_covariance(system);
+  if (!step || !covariance) return std::nullopt;
+  return LongRunEstimate{step->border, covariance->model};
 }
 
 }  // namespace kinfer

@@ -34,4 +34,19 @@ std::optional<InsCovariance> covariance_with_model_error(InsProblem& problem, co
                                                          const InsUnknowns& x, const InsCost& cost,
                                                          const AssumedScale& assumed, int threads);
 
+/// Of each sensor: scale errors as large as what the model does not explain of the motion.
+struct ConsideredScale {
+  double gyroscope = 0.0, accelerometer = 0.0;
+};
+std::vector<ConsideredScale> considered_scales(const InsProblem& problem, const InsCost& cost);
+
+/// The global parameters, were the noise white with the long-run variance of the residuals: one step from x, and their
+/// covariance.
+struct LongRunEstimate {
+  VectorXd step;
+  MatrixXd covariance;
+};
+std::optional<LongRunEstimate> long_run_estimate(InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                                                 const InsCost& cost, int threads);
+
 }  // namespace kinfer

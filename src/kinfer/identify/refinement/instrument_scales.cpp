@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/refinement/instrument_scales.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "kinfer/estimate/continuous/solver/model_error.hpp"
+#include "kinfer/identify/refinement/scale_evidence.hpp"
+#include "kinfer/identify/refinement/thresholds.hpp"
+#include "kinfer/linalg/decompositions.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr Index elements = 9, first_scale = 6;     // of a matrix; of the matrices among a sensor's errors (InsLayout)
+constexpr Index each = 2 * elements;               // scale parameters of a sensor
+constexpr std::array<Index, 3> diagonal{0, 4, 8};  // of a matrix, column by column
+constexpr int most_rounds = 3;
+
+/// Of all scale parameters, sensor by sensor: the standard deviations of the prior.
+VectorXd scale_priors(const InsProblem& problem, const std::vector<InsScaleFactor>& factors) {
+  VectorXd sd(each * static_cast<Index>(problem.sensors.size()));
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+    const InsScaleFactor factor = factors.empty() ? InsScaleFactor{} : factors[s];
+    const Index at = each * static_cast<Index>(s);
+    sd.segment<elements>(at).setConstant(factor.gyroscope * problem.prior.gyroscope_scale);
+    sd.segment<elements>(at + elements).setConstant(factor.accelerometer * problem.prior.accelerometer_scale);
+  }
+  return sd;
+}
+
+VectorXd scale_values(const std::vector<InsErrors>& errors) {
+  VectorXd values(each * static_cast<Index>(errors.size()));
+  for (std::size_t s = 0; s < errors.size(); ++s) {
+    const Index at = each * static_cast<Index>(s);
+    values.segment<elements>(at) = Eigen::Map<const VectorXd>(errors[s].gyroscope_scale.data(), elements);
+    values.segment<elements>(at + elements) =
+        Eigen::Map<const VectorXd>(errors[s].accelerometer_scale.data(), elements);
+  }
+  return values;
+}
+
+/// Indices of the scale parameters among the global parameters.
+std::vector<Index> scale_parameters(const InsLayout& layout) {
+  std::vector<Index> all;
+  for (const Index error : layout.error)
+    for (Index k = 0; k < each; ++k) all.push_back(error + first_scale + k);
+  return all;
+}
+
+/// Of what the model does not explain, each part may look like a scale error.
+VectorXd unexplained_scales(const InsProblem& problem, const InsCost& cost) {
+  VectorXd sd(each * static_cast<Index>(problem.sensors.size()));
+  Index at = 0;
+  for (const ConsideredScale& considered : considered_scales(problem, cost)) {
+    sd.segment<elements>(at).setConstant(considered.gyroscope);
+    sd.segment<elements>(at + elements).setConstant(considered.accelerometer);
+    at += each;
+  }
+  return sd;
+}
+
+/// What the recording tells of the scales, under the priors without factors, model errors among the scales.
+std::optional<ScaleEstimate> scale_estimate(const RefinementTask& task, RefinementFit& fitted) {
+  const InsFit& fit = fitted.fit;
+  InsProblem& problem = fitted.setup.problem;
+  const auto global = long_run_estimate(problem, fit.layout, fit.unknowns, fit.cost, task.options.threads);
+  if (!global) return std::nullopt;
+  const std::vector<Index> at = scale_parameters(fit.layout);
+  const auto fitted_information = invert_spd(global->covariance(at, at));
+  if (!fitted_information) return std::nullopt;
+  const auto information = [](const VectorXd& sd) { return VectorXd(sd.array().square().inverse()); };
+  const VectorXd usual = scale_priors(problem, {}), unexplained = unexplained_scales(problem, fit.cost);
+  const VectorXd prior = information((usual.array().square() + unexplained.array().square()).sqrt()),
+                 fitted_prior = information(scale_priors(problem, problem.scale_factors));
+  const MatrixXd posterior = *fitted_information + MatrixXd((prior - fitted_prior).asDiagonal());
+  const auto covariance = invert_spd(posterior);
+  if (!covariance) return std::nullopt;
+  const VectorXd right = *fitted_information * (scale_values(fit.unknowns.errors) + global->step(at));
+  return ScaleEstimate{*covariance * right, *covariance, prior.asDiagonal()};
+}
+
+/// The scale matrix of each gyroscope, of each accelerometer, and the factor of all gyroscopes.
+std::vector<MatrixXd> candidates(std::size_t sensors) {
+  const Index parameters = each * static_cast<Index>(sensors);
+  std::vector<MatrixXd> all;
+  for (Index first = 0; first < parameters; first += elements) {
+    all.emplace_back(MatrixXd::Zero(parameters, elements));
+    all.back().middleRows(first, elements).setIdentity();
+  }
+  all.emplace_back(MatrixXd::Zero(parameters, 1));
+  for (Index first = 0; first < parameters; first += each)
+    for (const Index k : diagonal) all.back()(first + k, 0) = 1.0;
+  return all;
+}
+
+ScaleReview review_scales(const RefinementTask& task, RefinementFit& fitted) {
+  ScaleReview review;
+  const auto estimate = scale_estimate(task, fitted);
+  if (!estimate) return review;
+  const std::size_t sensors = fitted.setup.problem.sensors.size();
+  for (const Widening& widening : find_widenings(*estimate, candidates(sensors), log_deviant_scale_odds)) {
+    if (widening.candidate == 2 * sensors) {
+      review.common_sd = widening.sd, review.common_log_odds = widening.log_odds;
+      continue;
+    }
+    const auto instrument = widening.candidate % 2 == 0 ? InsInstrument::gyroscope : InsInstrument::accelerometer;
+    review.deviant.push_back({widening.candidate / 2, instrument, widening.sd, widening.log_odds});
+  }
+  return review;
+}
+
+struct Estimate {
+  double value = 0.0, sd = 0.0;
+};
+
+/// The best estimate of x where a measurement is x along `direction`, with `information`.
+Estimate along(const VectorXd& direction, const VectorXd& value, ConstMatrixRef information) {
+  const VectorXd weighted = information * direction;
+  const double total = weighted.dot(direction);
+  return {weighted.dot(value) / total, 1.0 / std::sqrt(total)};
+}
+
+/// Of all gyroscopes, that of the least variance.
+Estimate common_scale(const InsFit& fit, ConstMatrixRef covariance) {
+  const std::vector<Index> at = scale_parameters(fit.layout);
+  const VectorXd values = scale_values(fit.unknowns.errors);
+  const VectorXd direction = candidates(fit.unknowns.errors.size()).back();
+  const auto information = invert_spd(covariance(at, at));
+  return information ? along(direction, values, *information) : Estimate{direction.dot(values) / direction.sum(), 0.0};
+}
+
+/// What of a matrix deviates most: "all", its scale; "x", "y", "z", that of one axis; "axes", their directions.
+struct MatrixDeviation {
+  std::string_view part = "axes";
+  Estimate size;
+};
+
+MatrixDeviation deviation_of(const DeviantScale& deviant, const InsFit& fit, ConstMatrixRef covariance) {
+  const InsErrors& errors = fit.unknowns.errors[deviant.sensor];
+  const bool is_gyroscope = deviant.instrument == InsInstrument::gyroscope;
+  const Mat3& matrix = is_gyroscope ? errors.gyroscope_scale : errors.accelerometer_scale;
+  const Index first = fit.layout.error[deviant.sensor] + first_scale + (is_gyroscope ? 0 : elements);
+  const VectorXd values = Eigen::Map<const VectorXd>(matrix.data(), elements);
+  const MatrixXd own = covariance.block(first, first, elements, elements);
+  const double skew = std::sqrt((values.squaredNorm() - matrix.diagonal().squaredNorm()) / 2.0);
+  MatrixDeviation best{.part = "axes", .size = {skew, std::sqrt(own.trace() / elements)}};
+  const auto information = invert_spd(own);
+  if (!information) return best;
+  double most = 0.5 * values.dot(*information * values);  // half of what the matrix explains
+  const auto consider = [&](std::string_view part, const VectorXd& direction) {
+    const Estimate size = along(direction, values, *information);
+    if (const double explained = size.value * size.value / (size.sd * size.sd); explained > most)
+      best = {part, size}, most = explained;
+  };
+  constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+  VectorXd all = VectorXd::Zero(elements);
+  for (const Index k : diagonal) all[k] = 1.0;
+  consider("all", all);
+  for (std::size_t k = 0; k < 3; ++k) consider(axes[k], VectorXd::Unit(elements, diagonal[k]));
+  return best;
+}
+
+std::vector<InsScaleFactor> scale_factors(const ScaleReview& review, const InsProblem& problem) {
+  const InsErrorPrior& prior = problem.prior;
+  std::vector<InsScaleFactor> factors(problem.sensors.size());
+  const auto widen = [](double& factor, double sd, double prior_sd) { factor = std::hypot(factor, sd / prior_sd); };
+  for (const DeviantScale& scale : review.deviant)
+    scale.instrument == InsInstrument::gyroscope
+        ? widen(factors[scale.sensor].gyroscope, scale.sd, prior.gyroscope_scale)
+        : widen(factors[scale.sensor].accelerometer, scale.sd, prior.accelerometer_scale);
+  for (InsScaleFactor& factor : factors) widen(factor.gyroscope, review.common_sd, prior.gyroscope_scale);
+  return factors;
+}
+
+/// A fit and what fitting changes in its problem; a copy of the problem would hold an hour of measurements twice.
+struct FitState {
+  InsFit fit;
+  std::vector<InsNoise> noise;
+};
+
+FitState state_of(const RefinementFit& fitted) {
+  FitState state{fitted.fit, {}};
+  for (const InsMeasurements& sensor : fitted.setup.problem.sensors) state.noise.push_back(sensor.noise);
+  return state;
+}
+
+void restore(RefinementFit& fitted, FitState&& state) {
+  InsProblem& problem = fitted.setup.problem;
+  fitted.fit = std::move(state.fit);
+  problem.scale_factors.clear();
+  for (std::size_t s = 0; s < state.noise.size(); ++s) problem.sensors[s].noise = state.noise[s];
+}
+
+}  // namespace
+
+bool ScaleReview::is_alike(const ScaleReview& other) const {
+  return (common_sd > 0.0) == (other.common_sd > 0.0) &&
+         std::ranges::is_permutation(deviant, other.deviant, [](const DeviantScale& a, const DeviantScale& b) {
+           return a.sensor == b.sensor && a.instrument == b.instrument;
+         });
+}
+
+ScaleReview refit_deviant_scales(const RefinementTask& task, RefinementFit& fitted, const Observer& observer) {
+  ScaleReview review;
+  InsProblem& problem = fitted.setup.problem;
+  if (problem.prior.gyroscope_scale <= 0.0 || problem.prior.accelerometer_scale <= 0.0) return review;
+  const bool explains_all = worst_misfit(problem) <= max_rigid_chain_misfit;
+  std::optional<FitState> before;
+  for (int round = 0; round < most_rounds; ++round) {
+    const ScaleReview now = review_scales(task, fitted);
+    if (now.empty() || now.is_alike(review)) break;
+    if (!explains_all && !before) before = state_of(fitted);
+    review = now;
+    problem.scale_factors = scale_factors(review, problem);
+    fitted.fit = fit_ins(problem, fitted.fit.unknowns, task.options, observer);
+  }
+  if (!before || worst_misfit(problem) <= max_rigid_chain_misfit) return review;
+  restore(fitted, std::move(*before));
+  return {};
+}
+
+std::vector<Finding> scale_findings(const ScaleReview& review, const RecordedMotion& motion, const InsFit& fit,
+                                    const InsCovariance& covariance) {
+  std::vector<Finding> findings;
+  if (review.common_sd > 0.0) {
+    const Estimate common = common_scale(fit, covariance.model);
+    findings.push_back({.kind = FindingKind::clock_rate,
+                        .severity = Severity::warning,
+                        .values = {{"scale", common.value}, {"sd", common.sd}}});
+  }
+  for (const DeviantScale& deviant : review.deviant) {
+    const MatrixDeviation deviation = deviation_of(deviant, fit, covariance.model);
+    findings.push_back(
+        {.kind = FindingKind::instrument_scale,
+         .severity = Severity::warning,
+         .values = {{"sensor", motion.segments[deviant.sensor].name},
+                    {"instrument", deviant.instrument == InsInstrument::gyroscope ? "gyroscope" : "accelerometer"},
+                    {"part", std::string(deviation.part)},
+                    {"scale", deviation.size.value},
+                    {"sd", deviation.size.sd}},
+         .applied = true});
+  }
+  return findings;
+}
+
+void add_clock_rate(const ScaleReview& review, const InsFit& fit, const InsCovariance& covariance, ModelError& error) {
+  if (review.common_sd <= 0.0) return;
+  const double rate = 1.0 + common_scale(fit, covariance.model).value, change = 1.0 / (rate * rate) - 1.0;
+  const InsBodies& bodies = fit.unknowns.bodies;
+  if (error.shift.empty()) {
+    error.mount_deflection.assign(fit.unknowns.errors.size(), 0.0);
+    for (const InsBody& body : bodies) error.shift.emplace_back(body.unknowns(), 0);
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const InsBody& body = bodies[b];
+    MatrixXd& shift = error.shift[b];
+    shift.conservativeResize(Eigen::NoChange, shift.cols() + 1);
+    shift.rightCols<1>().setZero();
+    Index at = shift.rows();
+    if (body.free_point_in_child) shift.col(shift.cols() - 1).segment<3>(at -= 3) = change * body.point_in_child;
+    if (body.free_point_in_parent) shift.col(shift.cols() - 1).segment<3>(at -= 3) = change * body.point_in_parent;
+  }
+}
+
+}  // namespace kinfer::identify

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/refinement/instrument_scales.hpp"
+
+#include <gtest/gtest.h>
+
+#include "identify/driven_machine.hpp"
+
+namespace kinfer {
+using namespace identify;
+namespace {
+
+using test::DrivenMachine;
+
+void multiply(TriadColumns& triad, float factor) {
+  for (auto& axis : triad.axis)
+    for (float& value : axis) value *= factor;
+}
+
+const Finding* finding_of(const Identification& found, FindingKind kind) {
+  const auto finding = std::ranges::find(found.findings, kind, &Finding::kind);
+  return finding == found.findings.end() ? nullptr : &*finding;
+}
+
+/// Largest error of a point in the child's sensor over its standard deviation.
+double worst_point_error(const Identification& found, const MachineTruth& truth) {
+  double worst = 0.0;
+  for (const JointTruth& joint : truth.joints) {
+    const auto f = std::ranges::find(found.joints, joint.child, &JointEstimate::child);
+    if (f == found.joints.end() || joint.type != JointType::revolute || !joint.unobservable_in_child.empty()) continue;
+    worst = std::max(worst, test::line_error(*f, joint) / std::hypot(f->sd.point_in_child[0], f->sd.point_in_child[1]));
+  }
+  return worst;
+}
+
+TEST(InstrumentScales, OneGyroscopeThatReadsTooMuchIsCorrectedAndNamed) {
+  DrivenMachine drive = test::driven_machine("crane", 4);
+  multiply(drive.recording.sensors[2].angular_velocity, 1.02f);
+  const Identification found = test::identified(drive.recording);
+  const Finding* finding = finding_of(found, FindingKind::instrument_scale);
+  ASSERT_TRUE(finding);
+  EXPECT_EQ(finding->values.text("sensor"), drive.recording.sensors[2].name);
+  EXPECT_EQ(finding->values.text("instrument"), "gyroscope");
+  EXPECT_EQ(finding->values.text("part"), "all");
+  EXPECT_NEAR(finding->values.number("scale"), 0.02, 2e-3);
+  EXPECT_FALSE(finding_of(found, FindingKind::clock_rate));
+  EXPECT_LT(worst_point_error(found, drive.truth), 2.5);
+}
+
+TEST(InstrumentScales, AClockThatIsFastLeavesTheLengthsUncertain) {
+  DrivenMachine drive = test::driven_machine("crane", 4);
+  for (InsLogger& logger : drive.recording.loggers)
+    for (double& time : logger.time) time *= 1.05;
+  const Identification found = test::identified(drive.recording);
+  const Finding* finding = finding_of(found, FindingKind::clock_rate);
+  ASSERT_TRUE(finding);
+  EXPECT_NEAR(finding->values.number("scale"), 0.05, 3e-3);
+  EXPECT_NE(found.usability, Usability::use);
+  EXPECT_LT(worst_point_error(found, drive.truth), 2.5);
+}
+
+TEST(InstrumentScales, SoundInstrumentsAreNotNamed) {
+  const DrivenMachine drive = test::driven_machine("crane", 4);
+  const Identification found = test::identified(drive.recording);
+  EXPECT_FALSE(finding_of(found, FindingKind::instrument_scale));
+  EXPECT_FALSE(finding_of(found, FindingKind::clock_rate));
+}
+
+}  // namespace
+}  // namespace kinfer
