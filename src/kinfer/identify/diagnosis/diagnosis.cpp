@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kinfer/identify/diagnosis/axes.hpp"
+#include "kinfer/identify/diagnosis/copied_rows.hpp"
 #include "kinfer/identify/diagnosis/lags.hpp"
 #include "kinfer/identify/diagnosis/rows.hpp"
 #include "kinfer/identify/diagnosis/signs.hpp"
@@ -35,6 +36,7 @@ std::vector<Finding> duplicates_of(const InsRecording& recording) {
 }  // namespace
 
 Result<LogDiagnosis> diagnose_log(const InsRecording& recording, int threads) {
+  if (const auto rows = refuse_copied_rows(recording); !rows) return forward_error(rows.error());
   MendedLog log(recording);
   log.findings = duplicates_of(recording);
   if (const auto forces = mend_forces(log); !forces) return forward_error(forces.error());

@@ -3,6 +3,8 @@
 // half and the measured logs are reported apart (docs/development/results.md).
 #pragma once
 
+#include <cstddef>
+
 namespace kinfer::identify {
 
 /// [nats] By which another unit or another map of axes must explain the instruments better than what the file says.
@@ -24,6 +26,12 @@ inline constexpr double min_gain_per_section = 1.0;
 /// The same where two instruments of the sensor agree and the third one alone is to be the odd one, and its gain over
 /// the axes that the file says. Sound logs reach 3.1 and 94 (all joints moved at once), faults 160 and more.
 inline constexpr double min_gain_per_section_alone = 3.0, min_map_gain_alone = 130.0;
+
+/// Rows in a stretch of copies, and share of a logger's rows that are copies from which a log is refused. Larger:
+/// shorter copies count twice. Chance repeats no row of six noisy channels even once in a thousand; rows that a logger
+/// sent twice are a few.
+inline constexpr std::size_t min_copied_rows = 50;
+inline constexpr double max_copied_share = 0.1;
 
 /// [rad/s] A larger mean rate at the quietest moment is no bias. Larger: slow rotations are taken for biases.
 inline constexpr double max_quiet_rate = 0.1;
