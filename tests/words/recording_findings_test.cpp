@@ -113,6 +113,8 @@ std::vector<Finding> one_of_each() {
       {.kind = FindingKind::instrument_scale,
        .values = {{"sensor", "c"}, {"instrument", "gyroscope"}, {"part", "axes"}, {"scale", 0.03491}, {"sd", 1e-3}},
        .applied = true},
+      {.kind = FindingKind::instrument_scale,
+       .values = {{"sensor", "c"}, {"instrument", "gyroscope"}, {"part", "turned"}, {"scale", 0.03491}, {"sd", 1e-3}}},
       {.kind = FindingKind::clock_rate, .values = {{"scale", 0.05}, {"sd", 1e-3}}},
       {.kind = FindingKind::instruments_out_of_step,
        .values = {{"sensor", "b"}, {"lag", 0.04}, {"sd", 0.002}},
@@ -133,6 +135,7 @@ TEST(RecordingFindings, EveryKindHasASentenceAndItsNumbersInUsersUnits) {
   EXPECT_THAT(all, HasSubstr("the gyroscope of c reads 1.95 ± 0.02 % too much, more"));
   EXPECT_THAT(all, HasSubstr("the accelerometer of c reads 1.00 ± 0.10 % too little along its y axis, more"));
   EXPECT_THAT(all, HasSubstr("the axes of the gyroscope of c are off by 2.00 deg, more"));
+  EXPECT_THAT(all, HasSubstr("gyroscope and accelerometer of c are turned by 2.00 deg against each other"));
   EXPECT_THAT(all, HasSubstr("the clock runs 5.00 % fast, and then every length is 0.91 times as long"));
   EXPECT_THAT(all, HasSubstr("e shares joints with the others from 4 to 27 s that it does not share in the rest"));
   EXPECT_THAT(all, HasSubstr("a and e hold the same measurements"));

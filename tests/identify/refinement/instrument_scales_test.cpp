@@ -46,6 +46,23 @@ TEST(InstrumentScales, OneGyroscopeThatReadsTooMuchIsCorrectedAndNamed) {
   EXPECT_LT(worst_point_error(found, drive.truth), 2.5);
 }
 
+TEST(InstrumentScales, WhichOfTwoTurnedInstrumentsIsRightStaysUncertain) {
+  DrivenMachine drive = test::driven_machine("tree", 4);
+  const Mat3 turned = exp_so3(Vec3(0.0, 0.0, 0.02));
+  TriadColumns& rates = drive.recording.sensors[2].angular_velocity;
+  for (std::size_t row = 0; row < rates.axis[0].size(); ++row) {
+    const Vec3 rate = turned * rates.at(row);
+    for (std::size_t k = 0; k < 3; ++k) rates.axis[k][row] = static_cast<float>(rate[static_cast<Eigen::Index>(k)]);
+  }
+  const Identification found = test::identified(drive.recording);
+  const Finding* finding = finding_of(found, FindingKind::instrument_scale);
+  ASSERT_TRUE(finding);
+  EXPECT_EQ(finding->values.text("part"), "turned");
+  EXPECT_NEAR(finding->values.number("scale"), 0.02, 2e-3);
+  EXPECT_NE(found.usability, Usability::use);
+  EXPECT_LT(worst_point_error(found, drive.truth), 2.5);
+}
+
 TEST(InstrumentScales, AClockThatIsFastLeavesTheLengthsUncertain) {
   DrivenMachine drive = test::driven_machine("crane", 4);
   for (InsLogger& logger : drive.recording.loggers)

@@ -90,7 +90,8 @@ bool invalidates_result(const Finding& finding) {
 }
 
 bool questions_result(const Finding& finding) {
-  const bool is_assumption = finding.kind == FindingKind::force_sign || finding.kind == FindingKind::clock_rate;
+  const bool is_assumption = finding.kind == FindingKind::force_sign || finding.kind == FindingKind::clock_rate ||
+                             finding.kind == FindingKind::instrument_scale;
   return is_assumption && !finding.applied;
 }
 

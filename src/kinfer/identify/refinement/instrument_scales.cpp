@@ -9,6 +9,7 @@
 #include "kinfer/identify/refinement/scale_evidence.hpp"
 #include "kinfer/identify/refinement/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
+#include "kinfer/linalg/products.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -83,7 +84,18 @@ std::optional<ScaleEstimate> scale_estimate(const RefinementTask& task, Refineme
   return ScaleEstimate{*covariance * right, *covariance, prior.asDiagonal()};
 }
 
-/// The scale matrix of each gyroscope, of each accelerometer, and the factor of all gyroscopes.
+/// A small rotation of an instrument's axes about x, y and z: its antisymmetric matrices, column by column.
+MatrixXd rotations() {
+  MatrixXd all(elements, 3);
+  for (Index k = 0; k < 3; ++k) {
+    const Mat3 generator = skew(Vec3::Unit(k));
+    all.col(k) = Eigen::Map<const VectorXd>(generator.data(), elements);
+  }
+  return all;
+}
+
+/// The scale matrix of each gyroscope and accelerometer; the rotation of each gyroscope against its accelerometer; the
+/// factor of all gyroscopes.
 std::vector<MatrixXd> candidates(std::size_t sensors) {
   const Index parameters = each * static_cast<Index>(sensors);
   std::vector<MatrixXd> all;
@@ -91,10 +103,30 @@ std::vector<MatrixXd> candidates(std::size_t sensors) {
     all.emplace_back(MatrixXd::Zero(parameters, elements));
     all.back().middleRows(first, elements).setIdentity();
   }
+  for (Index first = 0; first < parameters; first += each) {
+    all.emplace_back(MatrixXd::Zero(parameters, 3));
+    all.back().middleRows(first, elements) = rotations();
+    all.back().middleRows(first + elements, elements) = -rotations();
+  }
   all.emplace_back(MatrixXd::Zero(parameters, 1));
   for (Index first = 0; first < parameters; first += each)
     for (const Index k : diagonal) all.back()(first + k, 0) = 1.0;
   return all;
+}
+
+/// Adds what a widening says; `candidate` as in candidates().
+void add(ScaleReview& review, const Widening& widening, std::size_t sensors) {
+  const std::size_t matrices = 2 * sensors;
+  if (widening.candidate < matrices) {
+    const auto instrument = widening.candidate % 2 == 0 ? InsInstrument::gyroscope : InsInstrument::accelerometer;
+    review.deviant.push_back({widening.candidate / 2, instrument, widening.sd, widening.log_odds});
+  } else if (widening.candidate < matrices + sensors) {
+    // Half of the rotation each is what the prior says; all of it may be that of one instrument, about one axis.
+    const double whole = 2.0 * std::sqrt(3.0) * widening.sd;
+    review.turned.push_back({widening.candidate - matrices, whole, widening.log_odds});
+  } else {
+    review.common_sd = widening.sd, review.common_log_odds = widening.log_odds;
+  }
 }
 
 ScaleReview review_scales(const RefinementTask& task, RefinementFit& fitted) {
@@ -102,14 +134,8 @@ ScaleReview review_scales(const RefinementTask& task, RefinementFit& fitted) {
   const auto estimate = scale_estimate(task, fitted);
   if (!estimate) return review;
   const std::size_t sensors = fitted.setup.problem.sensors.size();
-  for (const Widening& widening : find_widenings(*estimate, candidates(sensors), log_deviant_scale_odds)) {
-    if (widening.candidate == 2 * sensors) {
-      review.common_sd = widening.sd, review.common_log_odds = widening.log_odds;
-      continue;
-    }
-    const auto instrument = widening.candidate % 2 == 0 ? InsInstrument::gyroscope : InsInstrument::accelerometer;
-    review.deviant.push_back({widening.candidate / 2, instrument, widening.sd, widening.log_odds});
-  }
+  for (const Widening& widening : find_widenings(*estimate, candidates(sensors), log_deviant_scale_odds))
+    add(review, widening, sensors);
   return review;
 }
 
@@ -133,6 +159,19 @@ Estimate common_scale(const InsFit& fit, ConstMatrixRef covariance) {
   return information ? along(direction, values, *information) : Estimate{direction.dot(values) / direction.sum(), 0.0};
 }
 
+/// [rad] Rotation of a sensor's gyroscope against its accelerometer.
+Estimate rotation_between(std::size_t sensor, const InsFit& fit, ConstMatrixRef covariance) {
+  const InsErrors& errors = fit.unknowns.errors[sensor];
+  const Mat3 between = errors.gyroscope_scale - errors.accelerometer_scale;
+  MatrixXd rotation(3, each);
+  rotation << 0.5 * rotations().transpose(), -0.5 * rotations().transpose();
+  const MatrixXd own = propagated_covariance(
+      rotation,
+      covariance.block(fit.layout.error[sensor] + first_scale, fit.layout.error[sensor] + first_scale, each, each));
+  const VectorXd turned = 0.5 * rotations().transpose() * Eigen::Map<const VectorXd>(between.data(), elements);
+  return {turned.norm(), std::sqrt(own.trace() / 3.0)};
+}
+
 /// What of a matrix deviates most: "all", its scale; "x", "y", "z", that of one axis; "axes", their directions.
 struct MatrixDeviation {
   std::string_view part = "axes";
@@ -146,8 +185,8 @@ MatrixDeviation deviation_of(const DeviantScale& deviant, const InsFit& fit, Con
   const Index first = fit.layout.error[deviant.sensor] + first_scale + (is_gyroscope ? 0 : elements);
   const VectorXd values = Eigen::Map<const VectorXd>(matrix.data(), elements);
   const MatrixXd own = covariance.block(first, first, elements, elements);
-  const double skew = std::sqrt((values.squaredNorm() - matrix.diagonal().squaredNorm()) / 2.0);
-  MatrixDeviation best{.part = "axes", .size = {skew, std::sqrt(own.trace() / elements)}};
+  const double skewness = std::sqrt((values.squaredNorm() - matrix.diagonal().squaredNorm()) / 2.0);
+  MatrixDeviation best{.part = "axes", .size = {skewness, std::sqrt(own.trace() / elements)}};
   const auto information = invert_spd(own);
   if (!information) return best;
   double most = 0.5 * values.dot(*information * values);  // half of what the matrix explains
@@ -172,6 +211,10 @@ std::vector<InsScaleFactor> scale_factors(const ScaleReview& review, const InsPr
     scale.instrument == InsInstrument::gyroscope
         ? widen(factors[scale.sensor].gyroscope, scale.sd, prior.gyroscope_scale)
         : widen(factors[scale.sensor].accelerometer, scale.sd, prior.accelerometer_scale);
+  for (const TurnedAxes& turned : review.turned) {
+    widen(factors[turned.sensor].gyroscope, turned.sd, prior.gyroscope_scale);
+    widen(factors[turned.sensor].accelerometer, turned.sd, prior.accelerometer_scale);
+  }
   for (InsScaleFactor& factor : factors) widen(factor.gyroscope, review.common_sd, prior.gyroscope_scale);
   return factors;
 }
@@ -199,9 +242,11 @@ void restore(RefinementFit& fitted, FitState&& state) {
 
 bool ScaleReview::is_alike(const ScaleReview& other) const {
   return (common_sd > 0.0) == (other.common_sd > 0.0) &&
-         std::ranges::is_permutation(deviant, other.deviant, [](const DeviantScale& a, const DeviantScale& b) {
-           return a.sensor == b.sensor && a.instrument == b.instrument;
-         });
+         std::ranges::is_permutation(deviant, other.deviant,
+                                     [](const DeviantScale& a, const DeviantScale& b) {
+                                       return a.sensor == b.sensor && a.instrument == b.instrument;
+                                     }) &&
+         std::ranges::is_permutation(turned, other.turned, {}, &TurnedAxes::sensor, &TurnedAxes::sensor);
 }
 
 ScaleReview refit_deviant_scales(const RefinementTask& task, RefinementFit& fitted, const Observer& observer) {
@@ -243,6 +288,16 @@ std::vector<Finding> scale_findings(const ScaleReview& review, const RecordedMot
                     {"scale", deviation.size.value},
                     {"sd", deviation.size.sd}},
          .applied = true});
+  }
+  for (const TurnedAxes& turned : review.turned) {
+    const Estimate angle = rotation_between(turned.sensor, fit, covariance.model);
+    findings.push_back({.kind = FindingKind::instrument_scale,
+                        .severity = Severity::warning,
+                        .values = {{"sensor", motion.segments[turned.sensor].name},
+                                   {"instrument", "gyroscope"},
+                                   {"part", "turned"},
+                                   {"scale", angle.value},
+                                   {"sd", angle.sd}}});
   }
   return findings;
 }

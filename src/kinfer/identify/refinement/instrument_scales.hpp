@@ -17,12 +17,21 @@ struct DeviantScale {
   double log_odds = 0.0;  ///< against its prior
 };
 
+/// A sensor whose gyroscope and accelerometer have axes that are turned against each other. Which of them is along the
+/// housing no measurement tells.
+struct TurnedAxes {
+  std::size_t sensor = 0;
+  double sd = 0.0;        ///< most likely, of the elements of both matrices
+  double log_odds = 0.0;  ///< against the priors
+};
+
 struct ScaleReview {
   std::vector<DeviantScale> deviant;
+  std::vector<TurnedAxes> turned;
   double common_sd = 0.0;        ///< most likely, of a factor that all gyroscopes share; 0: none
   double common_log_odds = 0.0;  ///< against none
 
-  bool empty() const { return deviant.empty() && common_sd <= 0.0; }
+  bool empty() const { return deviant.empty() && turned.empty() && common_sd <= 0.0; }
   bool is_alike(const ScaleReview& other) const;  ///< of the same instruments
 };
 

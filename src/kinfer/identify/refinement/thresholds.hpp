@@ -38,7 +38,7 @@ inline constexpr double max_azimuth_prior_sd = 0.2;
 
 /// ln of the prior odds that one instrument's scale errors are larger than its grade says; larger finds more. Of
 /// simulated sound recordings (four machines, industrial and consumer grade) none exceeds it; errors of 10 prior sd
-/// reach ln odds of 20 and more.
+/// reach ln odds of 57 to 68.
 inline constexpr double log_deviant_scale_odds = -7.0;
 
 /// [rad per m/s²] Smallest prior of a mount's compliance: 0.1 mrad under the sensor's own weight, which is negligible.

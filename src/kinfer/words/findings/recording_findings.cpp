@@ -225,6 +225,12 @@ std::string instrument_scale_sentence(const Finding& f) {
     return phrase("instrument_axes_skewed",
                   "the axes of the {} of {} are off by {:.2f} deg, more than its grade says; they were estimated",
                   v.text("instrument"), v.text("sensor"), Angle::rad(v.number("scale")).deg());
+  if (part == "turned")
+    return phrase(
+        "instrument_axes_turned",
+        "gyroscope and accelerometer of {} are turned by {:.2f} deg against each other, more than their grade "
+        "says; which of them is along the housing is unknown, and axes and points in it are so uncertain",
+        v.text("sensor"), Angle::rad(v.number("scale")).deg());
   const std::string along = part == "all" ? "" : fmt::format(" along its {} axis", part);
   return phrase("instrument_scale",
                 "the {} of {} reads {}{}, more than its grade says; this was estimated and corrected",
