@@ -29,6 +29,30 @@ TEST(Verdict, AModelThatIsNoBetterIsNotUsed) {
   EXPECT_EQ(usability_of(CalibrationReason::no_improvement), Usability::do_not_use);
 }
 
+TEST(Verdict, ARefitThatFindsNoMovedOffsetKeepsTheEarlierModel) {
+  Calibration c = with_errors(3.2e-5, 3.3e-5, 3.3e-5);
+  c.expected_holdout_rms = 3e-5, c.chance_of_improvement = 0.995;
+  EXPECT_EQ(judge(c), CalibrationReason::no_improvement) << "of the nominal model";
+  c.notes.push_back({CalibrationNoteKind::no_offset_moved});
+  c.reason = judge(c), c.usability = usability_of(c.reason);
+  EXPECT_EQ(c.reason, CalibrationReason::unchanged);
+  EXPECT_EQ(c.usability, Usability::use);
+  EXPECT_NE(words::verdict(c).find("keep the earlier model"), std::string::npos);
+  c.expected_holdout_rms = 5e-6;
+  EXPECT_EQ(judge(c), CalibrationReason::no_improvement) << "the earlier model does not explain the poses";
+  c = with_errors(1e-3, 3e-5, 3e-5);
+  c.chance_of_improvement = 1e-6;
+  c.notes.push_back({CalibrationNoteKind::joint_offset_moved});
+  EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
+}
+
+TEST(Verdict, ARobotThatDoesNotMoveIsNotUsed) {
+  Calibration c = with_errors(0.3, 1e-6, 1e-6);
+  c.least_motion = 1e-5;
+  EXPECT_EQ(judge(c), CalibrationReason::collapsed);
+  EXPECT_EQ(usability_of(CalibrationReason::collapsed), Usability::do_not_use);
+}
+
 TEST(Verdict, AnImprovementThatMayBeChanceIsUsedWithCare) {
   Calibration c = with_errors(8e-3, 6e-3, 6e-3);
   c.chance_of_improvement = 0.04;

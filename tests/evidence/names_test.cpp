@@ -58,7 +58,7 @@ TEST(Names, EveryKindHasOneOfItsOwnThatAProgramCanUse) {
       names_up_to(ToolLengthSource::radius_without_fit),
       names_up_to(VerificationResult::moved_or_changed),
       names_up_to(Criterion::e),
-      names_up_to(CalibrationReason::contradictory),
+      names_up_to(CalibrationReason::unchanged),
       names_up_to(CalibrationNoteKind::no_offset_moved),
       names_up_to(CalibrationAdviceKind::keep_verification_poses),
   };

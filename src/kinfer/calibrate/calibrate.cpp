@@ -2,11 +2,14 @@
 #include "kinfer/calibrate/calibrate.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
+#include "kinfer/calibrate/conclusion/least_motion.hpp"
 #include "kinfer/calibrate/conclusion/notes.hpp"
 #include "kinfer/calibrate/conclusion/plot_data.hpp"
 #include "kinfer/calibrate/conclusion/recommendations.hpp"
+#include "kinfer/calibrate/conclusion/thresholds.hpp"
 #include "kinfer/calibrate/conclusion/unobserved_lengths.hpp"
 #include "kinfer/calibrate/conclusion/verdict.hpp"
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
@@ -18,6 +21,8 @@
 #include "kinfer/calibrate/starting_model.hpp"
 #include "kinfer/calibrate/validated_fit.hpp"
 #include "kinfer/calibrate/validation/iso9283.hpp"
+#include "kinfer/calibrate/validation/kind_errors.hpp"
+#include "kinfer/measurement/copies.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -53,6 +58,18 @@ void list_gross_errors(Estimate& estimate, const std::vector<Outlier>& gross_err
   merge_outliers(estimate.outliers, held_out);
 }
 
+/// An error where a number of the fit is none that a chain can have: it would be written and could not be read again.
+Result<void> expect_possible_numbers(const Estimate& estimate) {
+  for (const ParameterEstimate& value : estimate.values)
+    if (value.quantity == Quantity::length && !(std::abs(value.value) <= thresholds::largest_length))
+      return error(
+          "{} at {:.3g} m is the best that the fit finds: no place explains these measurements, so they do not belong "
+          "to "
+          "these joint positions",
+          value.name, value.value);
+  return {};
+}
+
 Diagnosis diagnose_mountings(const CalibrationTask& task) {
   const bool one_mounting = task.data.setups.size() < 2 && task.data.tips.empty();
   return one_mounting ? diagnose(task) : diagnose_joint_positions(task);
@@ -63,7 +80,7 @@ Result<CalibrationTask> prepare_task(const Diagnosis& diagnosis) {
   CalibrationTask task = diagnosis.corrected_task;
   KINFER_TRY(placed, with_fixtures(task.nominal, task.data));
   task.nominal = placed.chain;
-  task.data = with_approach(placed.data);
+  task.data = without_copies(with_approach(placed.data));
   return task;
 }
 
@@ -82,6 +99,7 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
   const CalibrationTask& task = population.task;
   KINFER_TRY(frames_only, fit_frames_only(task, fitted));
   KINFER_TRY(fit, fit_and_validate(task, plan, fitted, options, rng, observer));
+  if (auto possible = expect_possible_numbers(fit.estimate); !possible) return forward_error(possible.error());
   const ExcludedRows excluded = select_excluded_rows(fit.gross_errors, plan);
 
   Calibration calibration;
@@ -116,6 +134,8 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
     calibration.predicted_holdout_rms = prediction->holdout_rms;
   }
   calibration.unobserved_lengths = find_unobserved_lengths(task, fit.estimate);
+  calibration.contradiction = find_contradiction(task, fit.estimate.chain, fitted);
+  calibration.least_motion = least_motion(task, frames_only, fit.estimate.chain);
   calibration.reason = judge(calibration);
   calibration.usability = usability_of(calibration.reason, calibration.unobserved_lengths);
   calibration.accuracy = evaluate_pose_accuracy(frames_only, calibration.estimate.chain, task.data);

@@ -126,6 +126,33 @@ TEST(Diagnosis, ADistanceThatNeverChangesIsNoMeasurement) {
   EXPECT_NE(expect_moving_points(task).error().what.find("the measured distances never change"), std::string::npos);
 }
 
+TEST(Diagnosis, APointThatNeverMovesAlongOneDirectionIsNoMeasurement) {
+  CalibrationTask task = measured_robot(scara());
+  for (PointMeasurement& point : task.data.points) point.position.x() = 0.0;
+  const auto refused = expect_moving_points(task);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find("never move along one direction"), std::string::npos) << refused.error().what;
+  // The joint that leads out of the plane is at rest: points in a plane are what the model predicts.
+  task = measured_robot(scara());
+  const Vec3 up = task.nominal.base.pose().rotation * Vec3::UnitZ();
+  task.data.joints.row(2).setConstant(task.data.joints(2, 0));
+  for (PointMeasurement& point : task.data.points)
+    point.position -= up * up.dot(point.position - task.data.points.front().position);
+  EXPECT_TRUE(expect_moving_points(task));
+}
+
+TEST(Diagnosis, ADirectionThatNeverChangesIsNoMeasurement) {
+  CalibrationTask task = measured_robot(scara());
+  task.data.stations = {"west"};
+  for (const PointMeasurement& point : task.data.points)
+    task.data.directions.push_back({point.row, 0, (point.position - Vec3(3.0, 1.0, 0.5)).normalized()});
+  task.data.points.clear();
+  EXPECT_TRUE(expect_moving_points(task));
+  for (DirectionMeasurement& at : task.data.directions) at.direction = Vec3::UnitZ();
+  EXPECT_NE(expect_moving_points(task).error().what.find("directions from station west never change"),
+            std::string::npos);
+}
+
 TEST(Diagnosis, CommandedPositionsReplaceJointPositionsRecordedDuringMotion) {
   CalibrationTask task = measured_robot(arm6());
   task.data.commanded = task.data.joints;

@@ -85,6 +85,8 @@ TEST(OffsetRefit, AnUnchangedRobotIsReportedAsUnchanged) {
   const Calibration c = robot.refit(8);
   const auto says_so = [](const CalibrationNote& n) { return n.kind == CalibrationNoteKind::no_offset_moved; };
   EXPECT_TRUE(std::any_of(c.notes.begin(), c.notes.end(), says_so));
+  EXPECT_EQ(c.reason, CalibrationReason::unchanged) << words::verdict(c);
+  EXPECT_EQ(c.usability, Usability::use);
 }
 
 }  // namespace

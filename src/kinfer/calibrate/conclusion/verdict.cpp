@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/calibrate/conclusion/verdict.hpp"
 
+#include <algorithm>
+
 #include "kinfer/calibrate/conclusion/thresholds.hpp"
 
 namespace kinfer::calibrate {
@@ -14,19 +16,43 @@ bool exceeds_expectation(const Calibration& calibration, double measured) {
   return !(measured <= limit) || !(calibration.predicted_holdout_rms.value_or(*expected) <= limit);
 }
 
+bool is_proven(const Calibration& calibration) {
+  return calibration.chance_of_improvement.value_or(0.0) <= thresholds::unproven_chance;
+}
+
+bool has_note(const Calibration& calibration, CalibrationNoteKind kind) {
+  return std::ranges::any_of(calibration.notes, [&](const CalibrationNote& note) { return note.kind == kind; });
+}
+
+/// A refit of offsets that does not improve the earlier model beyond chance, which explains the poses as it is. How
+/// much worse the refit is says nothing: with more free numbers it must be a little worse on held-out poses.
+bool nothing_has_moved(const Calibration& calibration) {
+  const bool none_moved = has_note(calibration, CalibrationNoteKind::no_offset_moved);
+  if (!none_moved && !has_note(calibration, CalibrationNoteKind::joint_offset_moved)) return false;
+  const ErrorStatistics &before = reported_errors(calibration, calibration.before),
+                        &after = reported_errors(calibration, calibration.after);
+  if (after.mean < before.mean && is_proven(calibration)) return false;
+  return calibration.expected_holdout_rms
+             ? before.rms <= thresholds::expectation_ratio * *calibration.expected_holdout_rms
+             : none_moved;
+}
+
 CalibrationReason judge_against_nominal(const Calibration& calibration) {
   const ErrorStatistics &before = reported_errors(calibration, calibration.before),
                         &after = reported_errors(calibration, calibration.after);
-  if (!(after.mean < before.mean)) return CalibrationReason::no_improvement;
+  if (calibration.least_motion <= thresholds::no_motion) return CalibrationReason::collapsed;
+  if (calibration.contradiction) return CalibrationReason::contradictory;
+  const bool unchanged = nothing_has_moved(calibration);
+  if (!unchanged && !(after.mean < before.mean)) return CalibrationReason::no_improvement;
   if (!(final_errors(calibration).rms <= thresholds::same_solution_ratio * after.rms))
     return CalibrationReason::not_validated;
   if (exceeds_expectation(calibration, after.rms)) return CalibrationReason::unmodelled_effects;
   if (after.rms > calibration.tolerated_error) return CalibrationReason::beyond_tolerances;
-  if (calibration.chance_of_improvement.value_or(0.0) > thresholds::unproven_chance) return CalibrationReason::unproven;
+  if (!unchanged && !is_proven(calibration)) return CalibrationReason::unproven;
   if (calibration.noise_holdout_rms && !(after.rms <= thresholds::expectation_ratio * *calibration.noise_holdout_rms))
     return CalibrationReason::beyond_noise;
   if (calibration.tolerance_factor >= thresholds::strange_tolerance_factor) return CalibrationReason::far_from_nominal;
-  return CalibrationReason::improves_nominal;
+  return unchanged ? CalibrationReason::unchanged : CalibrationReason::improves_nominal;
 }
 
 CalibrationReason judge_generalisation(const TrainHoldout& errors) {
@@ -50,6 +76,7 @@ Usability usability_of(CalibrationReason reason, const std::optional<UnobservedL
       return Usability::use_with_care;
     case CalibrationReason::improves_nominal:
     case CalibrationReason::generalises:
+    case CalibrationReason::unchanged:
       return unobserved ? Usability::use_with_care : Usability::use;
     case CalibrationReason::no_improvement:
     case CalibrationReason::not_validated:
@@ -57,6 +84,7 @@ Usability usability_of(CalibrationReason reason, const std::optional<UnobservedL
     case CalibrationReason::overfitted:
     case CalibrationReason::beyond_tolerances:
     case CalibrationReason::contradictory:
+    case CalibrationReason::collapsed:
       break;
   }
   return Usability::do_not_use;

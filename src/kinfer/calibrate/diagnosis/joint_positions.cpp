@@ -8,6 +8,7 @@
 #include "kinfer/calibrate/diagnosis/thresholds.hpp"
 #include "kinfer/estimate/poses/joint_excitation.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/measurement/copies.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -109,13 +110,13 @@ void check_joint_positions(DiagnosisState& state) {
 
 void check_duplicate_rows(DiagnosisState& state) {
   const PoseSet& data = state.task.data;
+  for (const std::vector<int>& rows : groups_of_copies(data))
+    add_finding(state, {.kind = FindingKind::duplicate_rows, .severity = Severity::warning, .rows = rows});
   for (const auto& entry : group_equal_rows(measured_values(data))) {
     const std::vector<int>& rows = entry.second;  // clang 14 captures no structured binding
     const auto same_joints = [&](int row) { return data.joints.col(row) == data.joints.col(rows.front()); };
-    const bool copies = std::all_of(rows.begin(), rows.end(), same_joints);
-    add_finding(state, {.kind = copies ? FindingKind::duplicate_rows : FindingKind::measurement_repeated,
-                        .severity = Severity::warning,
-                        .rows = rows});
+    if (!std::all_of(rows.begin(), rows.end(), same_joints))
+      add_finding(state, {.kind = FindingKind::measurement_repeated, .severity = Severity::warning, .rows = rows});
   }
 }
 

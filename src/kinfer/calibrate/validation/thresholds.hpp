@@ -5,6 +5,7 @@
 
 #include <cstddef>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/base/threshold.hpp"
 
 namespace kinfer::calibrate::thresholds {
@@ -23,6 +24,12 @@ KINFER_THRESHOLD(calibrate, geometric_error_ratio, 0.5);
 inline constexpr double explained_sigmas = 4.0;
 /// One held-out row in so many with a gross error: the model is at fault, and no row is excluded.
 inline constexpr std::size_t max_gross_part = 3;
+
+/// [rad] of tilts, orientations and directions whose noise is not stated: what is further off is no noise. Set between
+/// 1 deg, of the worst instruments that calibrate anything, and the 57 deg of directions at random.
+inline constexpr double unstated_noise_angle = 10.0 * degree;
+/// Measurements from which on their kind is judged as a whole; fewer are outliers at most.
+inline constexpr int min_judged_measurements = 4;
 
 /// [rad], [m] joint positions of one commanded pose: of ISO 9283, and of rows that are held out together.
 inline constexpr double same_pose_angle = 1e-4, same_pose_length = 1e-5;

@@ -7,7 +7,9 @@
 
 #include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/calibrate/validation/commanded_poses.hpp"
+#include "kinfer/calibrate/validation/kind_errors.hpp"
 #include "kinfer/calibrate/validation/thresholds.hpp"
+#include "kinfer/estimate/poses/noise_level.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/geometry/student.hpp"
 #include "kinfer/linalg/decompositions.hpp"
@@ -20,11 +22,26 @@ namespace {
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_freedom = 1000;  // of the t distribution, which is the normal one from there on
 
+/// The fitted rows that the fit did not reject.
+PoseSet inlier_rows(const Estimate& fit, const PoseSet& fitted_rows) {
+  return select(fitted_rows, without_outliers(all_rows(fitted_rows), fit.outliers));
+}
+
+/// Noise of the kinds for which the instrument states none, by the residuals of the fit; zero of all others.
+ExcessNoise unstated_noise(const Estimate& fit, const PoseSet& inliers, const Instrument& instrument) {
+  const auto determined = std::ranges::count_if(fit.values, &ParameterEstimate::identifiable);
+  ExcessNoise noise = excess_noise(fit.chain, inliers, instrument, static_cast<double>(determined));
+  for (const ResidualKind& kind : residual_kinds())
+    if (kind.traits.sigma_is_known(instrument)) noise.of[index(kind.kind)] = 0.0;
+  return noise;
+}
+
 /// Covariance of the parameters if the instrument's noise were all that is wrong. That of the fit grows with the
 /// residuals: with few rows a model that explains nothing is as good as expected by it.
-MatrixXd covariance_at_stated_noise(const Estimate& fit, const PoseSet& fitted_rows, const Instrument& instrument) {
-  const PoseSet rows = select(fitted_rows, without_outliers(all_rows(fitted_rows), fit.outliers));
-  const Weights weights = weights_of(rows, instrument);
+MatrixXd covariance_at_noise(const Estimate& fit, const PoseSet& inliers, const Instrument& instrument,
+                             const ExcessNoise& unstated) {
+  const PoseSet& rows = inliers;
+  const Weights weights = weights_of(rows, instrument, unstated);
   VectorXd residuals;
   MatrixXd jacobian;
   pose_residuals(fit.chain, fit.parameters, rows, weights)
@@ -57,14 +74,6 @@ MeasurementKind angle_kind(const PoseSet& data) {
   return data.orientations.empty() && !data.tilts.empty() ? kind_of<TiltMeasurement> : kind_of<OrientationMeasurement>;
 }
 
-/// [rad]. The residual of a tilt is gravity across the measured direction.
-std::vector<double> angle_errors(MeasurementKind angle, const Chain& chain, const PoseSet& rows) {
-  std::vector<double> errors = residual_norms(angle, chain, rows);
-  if (angle == kind_of<TiltMeasurement>)
-    for (double& error : errors) error /= chain.gravity.norm();
-  return errors;
-}
-
 /// Errors of one chain, or of the corresponding chains of all validation fits.
 struct ErrorLists {
   MeasurementKind angle;  // whose errors are those of the orientation
@@ -72,7 +81,7 @@ struct ErrorLists {
 
   void add(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& rows) {
     append(position, primary_errors(chain, fitted_rows, rows));
-    append(orientation, angle_errors(angle, chain, rows));
+    append(orientation, errors_of_kind(angle, chain, rows));
   }
   void write_statistics(ChainFit& fit, ErrorStatistics TrainHoldout::*which) const {
     fit.position.*which = error_statistics(position);
@@ -183,8 +192,10 @@ std::optional<ExpectedErrors> expected_holdout_errors(const EvaluationInputs& ev
         select(evaluated.data, without(evaluated.plan.validation_splits[i].holdout, evaluated.gross_errors));
     const PoseSet fitted_rows = select(evaluated.data, evaluated.plan.validation_splits[i].train);
     const Chain chain = with_unfitted_fixtures(fit.chain, fitted_rows, rows);
-    const MatrixXd by_noise = covariance_at_stated_noise(fit, fitted_rows, *evaluated.instrument);
-    const Weights weights = weights_of(rows, *evaluated.instrument);
+    const PoseSet inliers = inlier_rows(fit, fitted_rows);
+    const ExcessNoise unstated = unstated_noise(fit, inliers, *evaluated.instrument);
+    const MatrixXd by_noise = covariance_at_noise(fit, inliers, *evaluated.instrument, unstated);
+    const Weights weights = weights_of(rows, evaluated.instrument, unstated);
     const EvaluatedPoses at = evaluate_poses(chain, fit.parameters, rows, Derivative::yes);
     const FixtureColumns columns = fixture_columns(chain, fit.parameters);
     const ResidualContext scene{chain, rows, at, columns};

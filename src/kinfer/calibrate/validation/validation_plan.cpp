@@ -17,11 +17,14 @@ bool has_held_out_labels(const PoseSet& data) {
   return std::find(data.set.begin(), data.set.end(), SplitLabel::holdout) != data.set.end();
 }
 
-ValidationPlan plan_by_labels(const PoseSet& data) {
+/// An error where nothing is left of the held-out rows: copies of fitted rows have lost their measurements.
+Result<ValidationPlan> plan_by_labels(const PoseSet& data) {
   Split split;
   for (int row = 0; row < data.rows(); ++row)
     (data.set[row] == SplitLabel::holdout ? split.holdout : split.train).push_back(row);
-  return {split.train, {split}, HoldoutLabels{}, false};
+  if (has_measurements(data) && !has_measurements(select(data, split.holdout)))
+    return error("no held-out row has a measurement that is not a copy of a fitted row's: hold out other poses");
+  return ValidationPlan{split.train, {split}, HoldoutLabels{}, false};
 }
 
 /// Calls link(row, other) for rows of one pose that several fixtures see (stations, anchors): the same joint positions

@@ -71,6 +71,9 @@ struct Calibration {
   /// poses (one-sided paired t test); none where no lengths were held out.
   std::optional<double> chance_of_improvement{};
   std::optional<UnobservedLengths> unobserved_lengths{};
+  std::optional<Contradiction> contradiction{};  ///< of the kind that is contradicted most
+  /// [1] how far the corrected tool moves over how far the nominal one does, along the direction in which it lost most.
+  double least_motion = 1.0;
   Usability usability = Usability::use;
   CalibrationReason reason = CalibrationReason::improves_nominal;
 };

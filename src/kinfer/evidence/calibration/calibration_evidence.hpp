@@ -80,6 +80,7 @@ struct CalibrationEvidence {
   std::optional<double> predicted_holdout_rms{};  ///< [m] with the model error
   std::optional<double> chance_of_improvement{};  ///< probability that a model that is no better looks as good
   std::optional<UnobservedLengths> unobserved_lengths{};
+  std::optional<Contradiction> contradiction{};
   ChainFit nominal{}, before{}, after{};
   std::optional<AccuracyStatistics> iso9283{};  ///< [m]; none without measured tool points
   double predicted_error = 0.0;                 ///< [m]

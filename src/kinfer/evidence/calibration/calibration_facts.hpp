@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "kinfer/evidence/facts/fact.hpp"
+#include "kinfer/measurement/measurements.hpp"
 
 namespace kinfer {
 
@@ -32,6 +33,8 @@ enum class CalibrationReason {
   far_from_nominal,    ///< better, but by numbers that no tolerance allows: another robot, or other units
   beyond_noise,        ///< better, but worse than the instrument's noise explains; few rows cannot tell why
   contradictory,       ///< kinds of measurements that were fitted together disagree by far more than their noise
+  collapsed,           ///< explained only by a robot that does not move where the nominal one does
+  unchanged,           ///< a refit of offsets finds none that has moved: the earlier model still holds
 };
 std::string_view name(CalibrationReason reason);
 
@@ -45,6 +48,14 @@ std::string_view name(UnobservedLength kind);
 struct UnobservedLengths {
   UnobservedLength kind{};
   double relative_sd = 0.0;  ///< [1] of the size of the calibrated robot over the measured poses
+};
+
+/// A kind of measurement that the rest of the data contradict.
+struct Contradiction {
+  MeasurementKind kind = kind_of<PointMeasurement>;
+  int contradicted = 0, measured = 0;  ///< measurements that neither noise nor tolerances explain, of how many
+  double error = 0.0;                  ///< rms over all of them: [m], or [rad] of orientations, tilts and directions
+  double noise = 0.0;                  ///< in the same unit; 0: not stated
 };
 
 enum class CalibrationNoteKind {

@@ -88,6 +88,7 @@ CalibrationEvidence calibration_evidence(const Calibration& c, const Provenance&
                                .predicted_holdout_rms = c.predicted_holdout_rms,
                                .chance_of_improvement = c.chance_of_improvement,
                                .unobserved_lengths = c.unobserved_lengths,
+                               .contradiction = c.contradiction,
                                .nominal = c.nominal,
                                .before = c.before,
                                .after = c.after,

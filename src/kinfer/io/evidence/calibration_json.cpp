@@ -29,6 +29,7 @@ void fields(Archive& a, Value<Archive, CalibrationEvidence>& e) {
   a.later("predicted_holdout_rms", e.predicted_holdout_rms);
   a.when(e.chance_of_improvement.has_value(), "chance_of_improvement", e.chance_of_improvement);
   a.when(e.unobserved_lengths.has_value(), "unobserved_lengths", e.unobserved_lengths);
+  a.when(e.contradiction.has_value(), "contradiction", e.contradiction);
   a("nominal", e.nominal);
   a("before", e.before);
   a("after", e.after);

@@ -92,6 +92,21 @@ double unexplained_ratio(const Calibration& c) {
   return std::max(measured, c.predicted_holdout_rms.value_or(0.0)) / *c.expected_holdout_rms;
 }
 
+/// Which kind the others contradict, and by how much.
+std::string contradiction_text(const Calibration& c) {
+  if (!c.contradiction) return "measurements that were fitted together contradict each other: ";
+  const Contradiction& kind = *c.contradiction;
+  const bool angle = traits_of(kind.kind).unit != ResidualUnit::length;
+  const std::string noise =
+      kind.noise > 0.0 ? fmt::format(", {:.0f} times their noise", kind.error / kind.noise) : std::string{};
+  return fmt::format(
+      "{} of {} {} contradict the other measurements: they are {} off{}, more than the robot's tolerances could make, "
+      "so "
+      "correct them or leave them out: ",
+      kind.contradicted, kind.measured, traits_of(kind.kind).plural,
+      angle ? degrees(kind.error) : millimetres(kind.error), noise);
+}
+
 VerdictText with_remarks(const Calibration& c, const std::string& statement) {
   return {phrase(name(c.usability), "{}", verdict_headline(c)), phrase(name(c.reason), "{}", statement), remarks(c)};
 }
@@ -125,7 +140,14 @@ VerdictText parts_of_verdict(const Calibration& c) {
                       "not modelled or not as stated: {}",
                       reported_errors(c, c.after).rms / c.noise_holdout_rms.value_or(1.0), figures(c)));
     case CalibrationReason::contradictory:
-      return with_remarks(c, "measurements that were fitted together contradict each other: " + figures(c));
+      return with_remarks(c, contradiction_text(c) + figures(c));
+    case CalibrationReason::collapsed:
+      return with_remarks(c,
+                          "only a robot that does not move along a direction in which the nominal one does explains "
+                          "these measurements, so joints and measurements do not belong together: " +
+                              figures(c));
+    case CalibrationReason::unchanged:
+      return with_remarks(c, "these poses show no move of the joint offsets, so keep the earlier model: " + figures(c));
     case CalibrationReason::unmodelled_effects:
       return with_remarks(c, fmt::format("better, but the errors are {:.0f} times what instrument and fit explain, "
                                          "so something is not modelled: {}",

@@ -150,7 +150,7 @@ std::string outside_region_remedy(const Finding& f) {
 }
 
 std::string duplicate_rows(const Finding& f) {
-  return phrase(name(f.kind), "{} are copies of one another: the same joints and the same measurement",
+  return phrase(name(f.kind), "{} are copies of one another, the same joints and the same measurement: they count once",
                 row_ranges(f.rows));
 }
 std::string measurement_repeated(const Finding& f) {

@@ -53,6 +53,15 @@ void fields(Archive& a, Value<Archive, UnobservedLengths>& unobserved) {
 }
 
 template <class Archive>
+void fields(Archive& a, Value<Archive, Contradiction>& contradiction) {
+  a("kind", contradiction.kind);
+  a("contradicted", contradiction.contradicted);
+  a("measured", contradiction.measured);
+  a("error", contradiction.error);
+  a("noise", contradiction.noise);
+}
+
+template <class Archive>
 void fields(Archive& a, Value<Archive, UndeterminedGroup>& group) {
   a("reason", group.reason);
   a("parameters", group.parameters);

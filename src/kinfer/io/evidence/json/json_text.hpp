@@ -45,7 +45,7 @@ inline constexpr auto last<AxisRelation> = AxisRelation::skew;
 template <>
 inline constexpr auto last<UnobservedLength> = UnobservedLength::all_lengths;
 template <>
-inline constexpr auto last<CalibrationReason> = CalibrationReason::contradictory;
+inline constexpr auto last<CalibrationReason> = CalibrationReason::unchanged;
 template <>
 inline constexpr auto last<CalibrationNoteKind> = CalibrationNoteKind::no_offset_moved;
 template <>
