@@ -104,6 +104,16 @@ TEST(Contradictions, TheErrorOfATiltIsAnAngleAndNotItsSine) {
   }
 }
 
+TEST(Contradictions, AnAccelerometerOfTheOtherSignIsNone) {
+  const Chain truth = robot_with_errors();
+  PoseSet data = points_of(truth, 30);
+  measure_tilts(data, truth, 0.02, Rng(4));
+  for (TiltMeasurement& tilt : data.tilts) tilt.specific_force *= -1.0;
+  const Calibration c = calibrated_freely(data).value();
+  EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
+  EXPECT_LT(c.after.orientation.holdout.mean, 1.0 * degree);
+}
+
 TEST(Copies, TenCopiesOfSixPosesSayWhatTheSixSay) {
   const PoseSet six = points_of(robot_with_errors(), 8);
   std::vector<int> rows;

@@ -20,12 +20,16 @@ bool is_angle_of_tool(MeasurementKind kind) {
   return kind == kind_of<OrientationMeasurement> || kind == kind_of<TiltMeasurement>;
 }
 
+/// The fit is blind to the sign of all tilts, which accelerometers and their readers choose differently: it is that of
+/// most of them.
 std::vector<double> tilt_errors(const Chain& chain, const PoseSet& data) {
   const EvaluatedPoses at = evaluate_poses(chain, {}, data, Derivative::no);
   std::vector<double> errors;
   for (const TiltMeasurement& tilt : data.tilts)
     errors.push_back(
         angle_between(tilt.specific_force, -(at.pose[tilt.row].rotation.transpose() * chain.gravity).eval()));
+  if (!errors.empty() && median(errors) > 90.0 * degree)
+    for (double& error : errors) error = 180.0 * degree - error;
   return errors;
 }
 
