@@ -64,8 +64,7 @@ Result<void> expect_possible_numbers(const Estimate& estimate) {
     if (value.quantity == Quantity::length && !(std::abs(value.value) <= thresholds::largest_length))
       return error(
           "{} at {:.3g} m is the best that the fit finds: no place explains these measurements, so they do not belong "
-          "to "
-          "these joint positions",
+          "to these joint positions",
           value.name, value.value);
   return {};
 }

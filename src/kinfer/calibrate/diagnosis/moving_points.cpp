@@ -92,8 +92,7 @@ Result<void> expect_changing_points(const CalibrationTask& task, const std::vect
   if (const Changes one = along_one_direction(task, poses, feigned); still(one))
     return error(
         "the measured points never move along one direction (by {:.3g} mm), although the joints move the tool by "
-        "{:.3g} "
-        "mm or more along every one: a column repeats one value",
+        "{:.3g} mm or more along every one: a column repeats one value",
         1e3 * one.measured, 1e3 * one.predicted);
   return {};
 }
@@ -113,8 +112,7 @@ Result<void> expect_changing_directions(const CalibrationTask& task, const std::
     if (seen.angle <= thresholds::still_points && seen.across > feigned)
       return error(
           "the directions from station {} never change (by {:.3g} mrad), although the joints move the tool by {:.3g} "
-          "mm "
-          "across any line of sight: the columns repeat one value",
+          "mm across any line of sight: the columns repeat one value",
           task.data.stations[static_cast<std::size_t>(seen.station)], 1e3 * seen.angle, 1e3 * seen.across);
   return {};
 }
