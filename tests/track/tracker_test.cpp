@@ -259,6 +259,20 @@ TEST_P(DeadInstrument, OfASensorMakesItLost) {
 }
 INSTANTIATE_TEST_SUITE_P(Tracker, DeadInstrument, ::testing::Values(0.0, 10.0));
 
+TEST(Tracker, NothingIsKnownWithoutGravityInTheBase) {
+  const Outcome out = run(still_excavator(), {}, [](InsRow& row) { row.sensors[0].has_acceleration = false; });
+  EXPECT_FALSE(out.tracker.state().started);
+  ASSERT_FALSE(out.alarms.empty());
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_lost);
+  EXPECT_EQ(out.alarms[0].sensor, 0);
+}
+
+TEST(Tracker, NamesAnAccelerometerThatIsFarOffFromTheFirstRow) {
+  const Outcome out = run(still_excavator(), {}, [](InsRow& row) { row.sensors[5].acceleration.x() += 0.5; });
+  ASSERT_FALSE(out.alarms.empty());
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_moved);
+}
+
 TEST(Tracker, ASensorWithoutAGyroscopeIsLostAsWell) {
   const Outcome out = run(still_excavator(), {}, [](InsRow& row) { row.sensors[3].has_angular_velocity = false; });
   ASSERT_FALSE(out.alarms.empty());

@@ -176,8 +176,10 @@ void Tracker::wait_for_start() {
 
 void Tracker::try_start() {
   const BlockMeasurement block = mean_of(waiting_);
-  const auto has_force = [](const BlockSample& s) { return s.force_count > 0 && s.rate_count > 0; };
-  if (std::ranges::none_of(block.sensors, has_force)) return;
+  const auto measures = [](const BlockSample& s) { return s.force_count > 0 && s.rate_count > 0; };
+  if (std::ranges::none_of(block.sensors, measures)) return;
+  // Every joint is placed by how gravity lies in the base; without it all would be wrong together.
+  if (block.sensors[static_cast<std::size_t>(model_->bodies.front().sensor)].force_count == 0) return;
   base_.add(block, filter_);
   const InitialPosture posture = initial_posture(*model_, block, guesses_, base_.mode());
   filter_.start(posture.state, posture.covariance);
