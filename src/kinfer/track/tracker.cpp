@@ -111,23 +111,57 @@ void Tracker::restart(double time) {
       if (joint_of_position_[i] < 0) continue;
       const TrackingJoint& joint = tracking_->joints[static_cast<std::size_t>(joint_of_position_[i])];
       if (joint.positions != 1 || joint.type == EstimatedJointType::prismatic) continue;  // these have a grid of starts
-      guesses_[i].value = state_.q[joint.first_position], guesses_[i].is_last = true;
-      lost_in_gap_[i] = std::min(max_position_sd,
-                                 std::hypot(state_.sd_q[joint.first_position], moved_in_gap(joint, time - last_time_)));
+      guesses_[i].value = state_.q[joint.first_position], guesses_[i].rate = state_.qd[joint.first_position];
+      guesses_[i].is_last = true;
+      lost_in_gap_[i] = state_.sd_q[joint.first_position];
     }
+    last_known_ = last_time_;
+    forget_state();
   }
   for (auto& guess : guesses_) guess.is_given = false;
   state_.started = false;
   grid_.reset();
   block_.clear();
   waiting_.clear();
+  waits_since_.reset();
   fit_.reset();
   std::ranges::fill(biases_, BiasChange{});
 }
 
+/// How uncertain the positions are that go on from before a gap: by the speed that the joint has shown, and by the mean
+/// of two rates, which is the rate between but for a twelfth of the change of acceleration.
+void Tracker::expect_after_gap(double time) {
+  for (std::size_t i = 0; i < guesses_.size(); ++i) {
+    PositionGuess& guess = guesses_[i];
+    if (!guess.is_last) continue;
+    const TrackingJoint& joint = tracking_->joints[static_cast<std::size_t>(joint_of_position_[i])];
+    guess.since = time - last_known_;
+    const double by_rates = model_->positions[i].sd * guess.since * guess.since / 8.0;
+    guess.sd =
+        std::min(max_position_sd, std::hypot(lost_in_gap_[i], std::min(by_rates, moved_in_gap(joint, guess.since))));
+  }
+}
+
+/// Whether what has happened in a gap [s] is too much for the filter to go on.
+bool Tracker::is_lost_after(double gap) const {
+  if (gap <= shortest_restart_gap || !state_.started) return gap > restart_gap;
+  double most = 0.0;  // [rad/s²]
+  for (std::size_t b = 1; b < model_->bodies.size(); ++b)
+    if (model_->bodies[b].motion == JointMotion::revolute)
+      most = std::max(most, std::abs(filter_.state().joints[position_states * model_->layout.position[b] + 2]));
+  return gap > restart_gap || 0.5 * most * gap * gap > turned_in_gap;
+}
+
+/// Nothing is known until the next start; alarms stay.
+void Tracker::forget_state() {
+  std::vector<TrackAlarm> alarms = std::move(state_.alarms);
+  state_ = unknown_state(*tracking_);
+  state_.alarms = std::move(alarms);
+}
+
 void Tracker::add(const InsRow& row) {
   KINFER_EXPECT(row.sensors.size() == tracking_->sensors.size());
-  if (has_rows_ && row.time - last_time_ > restart_gap) restart(row.time);
+  if (has_rows_ && is_lost_after(row.time - last_time_)) restart(row.time);
   has_rows_ = true;
   last_time_ = row.time;
   health_.add(row);
@@ -181,17 +215,17 @@ void Tracker::try_start() {
   // Every joint is placed by how gravity lies in the base; without it all would be wrong together.
   if (block.sensors[static_cast<std::size_t>(model_->bodies.front().sensor)].force_count == 0) return;
   base_.add(block, filter_);
-  const InitialPosture posture = initial_posture(*model_, block, guesses_, base_.mode());
-  filter_.start(posture.state, posture.covariance);
+  expect_after_gap(block.time);
+  InitialPosture posture = initial_posture(*model_, block, guesses_, base_.mode());
+  if (!waits_since_) waits_since_ = block.time;
+  if (posture.is_rough && block.time - *waits_since_ < start_patience) return;
+  waits_since_.reset();
+  settle(posture, filter_, waiting_);
+  start_in(posture, filter_);
   is_known_ = posture.is_known;
+  for (std::size_t i = 0; i < guesses_.size(); ++i)
+    if (guesses_[i].is_last) lost_in_gap_[i] = guesses_[i].sd;
   fusion_.reset();
-  const bool moves = base_.mode() == BaseMode::moving;
-  for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
-    const Index at = model_->layout.position[b];
-    if (model_->bodies[b].motion == JointMotion::revolute && !is_known_[static_cast<std::size_t>(at)] &&
-        !posture.is_unseen[static_cast<std::size_t>(at)])
-      moves ? filter_.place(at, posture.state.joints[position_states * at], 0.0) : filter_.declare_known(at);
-  }
   begin_grid();
   replay_.begin(filter_);
   tool_.spread(*model_, filter_.state(), filter_.covariance());

@@ -48,6 +48,9 @@ class Tracker {
   };
 
   void restart(double time);
+  bool is_lost_after(double gap) const;
+  void forget_state();
+  void expect_after_gap(double time);
   void wait_for_start();
   void try_start();
   void process_block(const BlockMeasurement& block);
@@ -83,16 +86,17 @@ class Tracker {
   FitMonitor fit_;
   ClockWatch clocks_;
   Replay replay_;
-  std::vector<bool> does_not_fit_;  // sensors out of use because they disagree
-  std::vector<bool> is_late_;       // of these, by their clocks
-  std::vector<BiasChange> biases_;  // of each sensor
+  std::vector<bool> does_not_fit_;     // sensors out of use because they disagree
+  std::vector<bool> is_late_;          // of these, by their clocks
+  std::vector<BiasChange> biases_;     // of each sensor
+  std::optional<double> waits_since_;  // [s] for a start in a quieter moment
   ComposedFilters composed_;
   std::vector<bool> is_sound_;  // sensors that the composed filters may use
   JointFusion fusion_;
   ToolSpread tool_;
   ChainState now_;  // predicted to the last row
   std::optional<double> restarted_{}, misfit_since_{};
-  double last_time_ = 0.0;
+  double last_time_ = 0.0, last_known_ = 0.0;
   bool has_rows_ = false;
   TrackState chain_state_, state_;
 };

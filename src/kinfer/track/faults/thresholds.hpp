@@ -33,7 +33,10 @@ KINFER_THRESHOLD(track, misfit_inflation, 100.0);
 inline constexpr double fitting_inflation = 10.0;
 inline constexpr double settling = 3.0;            ///< [s] after a start
 inline constexpr std::size_t replay_blocks = 100;  ///< two seconds: at least so much is replayed, at most twice
-inline constexpr double restart_gap = 1.0;         ///< [s] without rows, or without any sensor
+/// [s] without rows, or without any sensor, after which the posture is found anew; and the shortest one after which it
+/// is where a joint may have turned further than this [rad] by its acceleration, beyond what one linearisation bridges.
+/// Set on an excavator and a six-axis arm (drives standard and quick, gaps of 0.2 to 0.9 s).
+inline constexpr double restart_gap = 0.5, shortest_restart_gap = 0.15, turned_in_gap = 0.08;
 /// [s] without one instrument of a sensor while the other one measures, after which it is called lost; and after which
 /// orientations from that sensor alone are not used.
 inline constexpr double instrument_lost_after = 1.0, instrument_missing_after = 0.2;

@@ -17,6 +17,7 @@ namespace kinfer::track {
 struct BlockSample {
   Vec3 rate = Vec3::Zero(), force = Vec3::Zero();
   int rate_count = 0, force_count = 0;  ///< 0: not measured
+  double angular_acceleration = 0.0;    ///< [rad/s²] from the first to the last block of a mean
 };
 struct BlockMeasurement {
   double time = 0.0, length = 0.0;   ///< [s] length: that the rows stand for

@@ -71,9 +71,13 @@ BlockMeasurement mean_of(std::span<const BlockMeasurement> blocks) {
     }
   }
   mean.length = blocks.back().time - blocks.front().time + blocks.back().length;
-  for (BlockSample& sample : mean.sensors) {
+  const BlockMeasurement &first = blocks.front(), &last = blocks.back();
+  for (std::size_t s = 0; s < mean.sensors.size(); ++s) {
+    BlockSample& sample = mean.sensors[s];
     if (sample.rate_count > 0) sample.rate /= sample.rate_count;
     if (sample.force_count > 0) sample.force /= sample.force_count;
+    if (last.time > first.time && first.sensors[s].rate_count > 0 && last.sensors[s].rate_count > 0)
+      sample.angular_acceleration = (last.sensors[s].rate - first.sensors[s].rate).norm() / (last.time - first.time);
   }
   return mean;
 }

@@ -4,12 +4,17 @@
 
 namespace kinfer::track {
 
-inline constexpr double start_length = 0.25;           ///< [s] of rows that determine the posture
-inline constexpr double max_observable_sd = 0.35;      ///< [rad] beyond that an angle is unobservable by gravity
-inline constexpr double min_force_sd = 0.03;           ///< [m/s²] of gravity's direction from one sensor
-inline constexpr double unseen_force_sd = 3.0;         ///< [m/s²] of a body without a sensor
-inline constexpr double start_arm = 1.0;               ///< [m] typical arm of the centripetal acceleration
-inline constexpr double start_rate_sd = 0.05;          ///< [rad/s] of velocities by gyroscopes over the first rows
+inline constexpr double start_length = 0.25;       ///< [s] of rows that determine the posture
+inline constexpr double start_patience = 2.0;      ///< [s] in which a quieter moment is waited for
+inline constexpr double max_observable_sd = 0.35;  ///< [rad] beyond that an angle is unobservable by gravity
+inline constexpr double min_force_sd = 0.03;       ///< [m/s²] of gravity's direction from one sensor
+inline constexpr double unseen_force_sd = 3.0;     ///< [m/s²] of a body without a sensor
+inline constexpr double start_arm = 1.0;           ///< [m] typical arm of the centripetal acceleration
+inline constexpr double min_settled_sd = 0.02;     ///< [rad] below that one linearisation is enough
+inline constexpr int settling_rounds = 4;      ///< excavator, crane, arm and tree in motion change little in the last
+inline constexpr double free_start_sd = 1.0;   ///< [rad] of a position that counts from here, while its place is sought
+inline constexpr int settling_places = 6;      ///< on the circle, of a position that may be anywhere
+inline constexpr double start_rate_sd = 0.05;  ///< [rad/s] of velocities by gyroscopes over the first rows
 inline constexpr double start_prismatic_speed = 0.05;  ///< [m/s] of a prismatic joint
 inline constexpr double start_heading_sd = 0.03;       ///< [rad] of a spherical joint, where motion will show it
 inline constexpr double start_velocity_sd = 0.3;       ///< [m/s] of the base
