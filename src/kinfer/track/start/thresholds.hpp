@@ -5,7 +5,7 @@
 namespace kinfer::track {
 
 inline constexpr double start_length = 0.25;       ///< [s] of rows that determine the posture
-inline constexpr double start_patience = 2.0;      ///< [s] in which a quieter moment is waited for
+inline constexpr double start_patience = 1.0;      ///< [s] in which a quieter moment is waited for
 inline constexpr double max_observable_sd = 0.35;  ///< [rad] beyond that an angle is unobservable by gravity
 inline constexpr double min_force_sd = 0.03;       ///< [m/s²] of gravity's direction from one sensor
 inline constexpr double unseen_force_sd = 3.0;     ///< [m/s²] of a body without a sensor
