@@ -18,6 +18,13 @@ Calibration with_errors(double before, double after, double final_rms) {
   return c;
 }
 
+void expect_verdict(Calibration c, CalibrationReason reason, Usability usability, const std::string& words) {
+  c.reason = judge(c), c.usability = usability_of(c.reason);
+  EXPECT_EQ(c.reason, reason);
+  EXPECT_EQ(c.usability, usability);
+  EXPECT_NE(words::verdict(c).find(words), std::string::npos) << words::verdict(c);
+}
+
 TEST(Verdict, ABetterModelIsUsed) {
   const Calibration c = with_errors(1e-3, 1e-4, 1e-4);
   EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
@@ -34,10 +41,7 @@ TEST(Verdict, ARefitThatFindsNoMovedOffsetKeepsTheEarlierModel) {
   c.expected_holdout_rms = 3e-5, c.chance_of_improvement = 0.995;
   EXPECT_EQ(judge(c), CalibrationReason::no_improvement) << "of the nominal model";
   c.notes.push_back({CalibrationNoteKind::no_offset_moved});
-  c.reason = judge(c), c.usability = usability_of(c.reason);
-  EXPECT_EQ(c.reason, CalibrationReason::unchanged);
-  EXPECT_EQ(c.usability, Usability::use);
-  EXPECT_NE(words::verdict(c).find("keep the earlier model"), std::string::npos);
+  expect_verdict(c, CalibrationReason::unchanged, Usability::use, "keep the earlier model");
   c.expected_holdout_rms = 5e-6;
   EXPECT_EQ(judge(c), CalibrationReason::no_improvement) << "the earlier model does not explain the poses";
   c = with_errors(1e-3, 3e-5, 3e-5);
@@ -72,11 +76,8 @@ TEST(Verdict, ErrorsFarAboveTheInstrumentsNoiseAreUsedWithCare) {
   c.expected_holdout_rms = 20e-3, c.noise_holdout_rms = 14e-3;
   EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
   c.noise_holdout_rms = 2e-3;
-  c.reason = judge(c), c.usability = usability_of(c.reason);
-  EXPECT_EQ(c.reason, CalibrationReason::beyond_noise);
-  EXPECT_EQ(c.usability, Usability::use_with_care);
-  EXPECT_NE(words::verdict(c).find("the errors are 18 times what the instrument's noise explains"), std::string::npos)
-      << words::verdict(c);
+  expect_verdict(c, CalibrationReason::beyond_noise, Usability::use_with_care,
+                 "the errors are 18 times what the instrument's noise explains");
 }
 
 TEST(Verdict, ErrorsThatNoToleranceOfTheRobotCouldMakeAreNotOfUse) {
@@ -84,11 +85,8 @@ TEST(Verdict, ErrorsThatNoToleranceOfTheRobotCouldMakeAreNotOfUse) {
   c.expected_holdout_rms = 0.4, c.noise_holdout_rms = 3e-5, c.tolerated_error = 0.6;
   EXPECT_EQ(judge(c), CalibrationReason::beyond_noise);
   c.tolerated_error = 0.03;
-  c.reason = judge(c), c.usability = usability_of(c.reason);
-  EXPECT_EQ(c.reason, CalibrationReason::beyond_tolerances);
-  EXPECT_EQ(c.usability, Usability::do_not_use);
-  EXPECT_NE(words::verdict(c).find("more than the tolerances of the robot's model could make"), std::string::npos)
-      << words::verdict(c);
+  expect_verdict(c, CalibrationReason::beyond_tolerances, Usability::do_not_use,
+                 "more than the tolerances of the robot's model could make");
 }
 
 TEST(Verdict, ARobotFarFromItsNominalModelIsUsedWithCare) {
@@ -96,11 +94,8 @@ TEST(Verdict, ARobotFarFromItsNominalModelIsUsedWithCare) {
   c.tolerance_factor = 10.0;
   EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
   c.tolerance_factor = 1000.0;
-  c.reason = judge(c), c.usability = usability_of(c.reason);
-  EXPECT_EQ(c.reason, CalibrationReason::far_from_nominal);
-  EXPECT_EQ(c.usability, Usability::use_with_care);
-  EXPECT_NE(words::verdict(c).find("1000 times further from its nominal model"), std::string::npos)
-      << words::verdict(c);
+  expect_verdict(c, CalibrationReason::far_from_nominal, Usability::use_with_care,
+                 "1000 times further from its nominal model");
 }
 
 TEST(Verdict, AFinalFitThatConvergedElsewhereIsNotValidated) {
@@ -122,9 +117,7 @@ TEST(Verdict, ErrorsThatThePredictionsHaveRoomForAreNotModelledEither) {
   c.predicted_holdout_rms = 0.8e-4;
   EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
   c.predicted_holdout_rms = 1.4e-4;
-  c.reason = judge(c), c.usability = usability_of(c.reason);
-  EXPECT_EQ(c.reason, CalibrationReason::unmodelled_effects);
-  EXPECT_NE(words::verdict(c).find("the errors are 4 times what"), std::string::npos) << words::verdict(c);
+  expect_verdict(c, CalibrationReason::unmodelled_effects, Usability::do_not_use, "the errors are 4 times what");
   c.expected_holdout_rms = 0.3e-4;
   c.predicted_holdout_rms = 0.32e-4;
   EXPECT_EQ(judge(c), CalibrationReason::unmodelled_effects) << "the predictions promise too much";

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <tuple>
 
+#include "kinfer/base/largest_length.hpp"
 #include "kinfer/calibrate/conclusion/least_motion.hpp"
 #include "kinfer/calibrate/conclusion/notes.hpp"
 #include "kinfer/calibrate/conclusion/plot_data.hpp"
 #include "kinfer/calibrate/conclusion/recommendations.hpp"
-#include "kinfer/calibrate/conclusion/thresholds.hpp"
 #include "kinfer/calibrate/conclusion/unobserved_lengths.hpp"
 #include "kinfer/calibrate/conclusion/verdict.hpp"
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
@@ -61,7 +61,7 @@ void list_gross_errors(Estimate& estimate, const std::vector<Outlier>& gross_err
 /// An error where a number of the fit is none that a chain can have: it would be written and could not be read again.
 Result<void> expect_possible_numbers(const Estimate& estimate) {
   for (const ParameterEstimate& value : estimate.values)
-    if (value.quantity == Quantity::length && !(std::abs(value.value) <= thresholds::largest_length))
+    if (value.quantity == Quantity::length && !(std::abs(value.value) <= largest_length))
       return error(
           "{} at {:.3g} m is the best that the fit finds: no place explains these measurements, so they do not belong "
           "to these joint positions",

@@ -10,7 +10,6 @@
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/calibrate/validation/commanded_poses.hpp"
-#include "kinfer/calibrate/validation/thresholds.hpp"
 #include "kinfer/deploy/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/estimate/poses/pose_uncertainty.hpp"
@@ -62,13 +61,9 @@ std::optional<Instrument> known_instrument(const std::optional<Instrument>& stat
   return Instrument{.sigma = prediction->noise};
 }
 
-std::vector<int> poses_of(const PoseSet& data) {
-  return calibrate::commanded_poses(data.joints, calibrate::thresholds::same_pose_angle);
-}
-
 /// Of different poses and targets: a pose that was measured again tells no more about the robot.
 int measured_numbers(const PoseSet& data) {
-  const std::vector<int> poses = poses_of(data);
+  const std::vector<int> poses = calibrate::commanded_poses(data.joints);
   const auto pose_of = [&](int row) { return poses[static_cast<std::size_t>(row)]; };
   std::set<std::pair<int, int>> points;
   std::set<int> orientations;
@@ -78,7 +73,7 @@ int measured_numbers(const PoseSet& data) {
 }
 
 Result<void> expect_several_poses(const PoseSet& data) {
-  const std::vector<int> poses = poses_of(data);
+  const std::vector<int> poses = calibrate::commanded_poses(data.joints);
   if (data.rows() == 1 || std::ranges::max(poses) > 0) return {};
   return error("all {} rows were measured at the same joint positions, which tells nothing about others", data.rows());
 }

@@ -58,11 +58,20 @@ std::vector<PositionGuess> make_guesses(const TrackingModel& tracking, const std
   return guesses;
 }
 
-/// What a joint may have turned in a gap, by the speed that it has shown, at most its range.
-double moved_in_gap(const TrackingJoint& joint, double gap) {
-  if (joint.range.empty()) return max_position_sd;
+/// Of a joint with one turning position. One without a range may be anywhere.
+LastPosition last_position(const TrackingJoint& joint, const TrackState& state, double time, double acceleration_sd) {
+  LastPosition last{.time = time,
+                    .value = state.q[joint.first_position],
+                    .rate = state.qd[joint.first_position],
+                    .sd = state.sd_q[joint.first_position],
+                    .most_turned = max_position_sd,
+                    .speed = std::numeric_limits<double>::infinity(),
+                    .acceleration_sd = acceleration_sd};
+  if (joint.range.empty()) return last;
   const auto& seen = joint.range.front();
-  return std::min({seen.speed * gap, 0.5 * (seen.upper - seen.lower), max_position_sd});
+  last.speed = seen.speed;
+  last.most_turned = std::min(max_position_sd, 0.5 * (seen.upper - seen.lower));
+  return last;
 }
 
 std::optional<BaseMode> given_base(BaseMotion motion) {
@@ -111,11 +120,8 @@ void Tracker::restart(double time) {
       if (joint_of_position_[i] < 0) continue;
       const TrackingJoint& joint = tracking_->joints[static_cast<std::size_t>(joint_of_position_[i])];
       if (joint.positions != 1 || joint.type == EstimatedJointType::prismatic) continue;  // these have a grid of starts
-      guesses_[i].value = state_.q[joint.first_position], guesses_[i].rate = state_.qd[joint.first_position];
-      guesses_[i].is_last = true;
-      lost_in_gap_[i] = state_.sd_q[joint.first_position];
+      guesses_[i].last = last_position(joint, state_, last_time_, model_->positions[i].sd);
     }
-    last_known_ = last_time_;
     forget_state();
   }
   for (auto& guess : guesses_) guess.is_given = false;
@@ -126,20 +132,6 @@ void Tracker::restart(double time) {
   waits_since_.reset();
   fit_.reset();
   std::ranges::fill(biases_, BiasChange{});
-}
-
-/// How uncertain the positions are that go on from before a gap: by the speed that the joint has shown, and by the mean
-/// of two rates, which is the rate between but for a twelfth of the change of acceleration.
-void Tracker::expect_after_gap(double time) {
-  for (std::size_t i = 0; i < guesses_.size(); ++i) {
-    PositionGuess& guess = guesses_[i];
-    if (!guess.is_last) continue;
-    const TrackingJoint& joint = tracking_->joints[static_cast<std::size_t>(joint_of_position_[i])];
-    guess.since = time - last_known_;
-    const double by_rates = model_->positions[i].sd * guess.since * guess.since / 8.0;
-    guess.sd =
-        std::min(max_position_sd, std::hypot(lost_in_gap_[i], std::min(by_rates, moved_in_gap(joint, guess.since))));
-  }
 }
 
 /// Whether what has happened in a gap [s] is too much for the filter to go on.
@@ -213,18 +205,20 @@ void Tracker::try_start() {
   const auto measures = [](const BlockSample& s) { return s.force_count > 0 && s.rate_count > 0; };
   if (std::ranges::none_of(block.sensors, measures)) return;
   // Every joint is placed by how gravity lies in the base; without it all would be wrong together.
-  if (block.sensors[static_cast<std::size_t>(model_->bodies.front().sensor)].force_count == 0) return;
+  const int base = model_->bodies.front().sensor;
+  if (base >= 0 && block.sensors[static_cast<std::size_t>(base)].force_count == 0) return;
   base_.add(block, filter_);
-  expect_after_gap(block.time);
   InitialPosture posture = initial_posture(*model_, block, guesses_, base_.mode());
   if (!waits_since_) waits_since_ = block.time;
-  if (posture.is_rough && block.time - *waits_since_ < start_patience) return;
+  const bool is_rough = std::ranges::any_of(posture.positions, &StartPosition::is_rough);
+  if (is_rough && block.time - *waits_since_ < start_patience) return;
   waits_since_.reset();
   settle(posture, filter_, waiting_);
   start_in(posture, filter_);
-  is_known_ = posture.is_known;
-  for (std::size_t i = 0; i < guesses_.size(); ++i)
-    if (guesses_[i].is_last) lost_in_gap_[i] = guesses_[i].sd;
+  for (std::size_t i = 0; i < is_known_.size(); ++i) {
+    is_known_[i] = posture.positions[i].is_known;
+    lost_in_gap_[i] = std::min(max_position_sd, posture.positions[i].lost_sd.value_or(0.0));
+  }
   fusion_.reset();
   begin_grid();
   replay_.begin(filter_);

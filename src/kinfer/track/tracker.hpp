@@ -18,7 +18,7 @@
 #include "kinfer/track/joint_fusion.hpp"
 #include "kinfer/track/options.hpp"
 #include "kinfer/track/readout/tool_spread.hpp"
-#include "kinfer/track/start/initial_posture.hpp"
+#include "kinfer/track/start/settled_start.hpp"
 #include "kinfer/track/start/start_grid.hpp"
 
 namespace kinfer::track {
@@ -50,7 +50,6 @@ class Tracker {
   void restart(double time);
   bool is_lost_after(double gap) const;
   void forget_state();
-  void expect_after_gap(double time);
   void wait_for_start();
   void try_start();
   void process_block(const BlockMeasurement& block);
@@ -96,7 +95,7 @@ class Tracker {
   ToolSpread tool_;
   ChainState now_;  // predicted to the last row
   std::optional<double> restarted_{}, misfit_since_{};
-  double last_time_ = 0.0, last_known_ = 0.0;
+  double last_time_ = 0.0;
   bool has_rows_ = false;
   TrackState chain_state_, state_;
 };

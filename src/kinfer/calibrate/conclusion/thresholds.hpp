@@ -21,8 +21,6 @@ inline constexpr double generalisation_ratio = 3.0;
 inline constexpr double unproven_chance = 0.05;
 /// [1] of the tolerances: a robot that is further off is perhaps another one, or its data are in other units.
 inline constexpr double strange_tolerance_factor = 100.0;
-/// [m] What files of chains may hold (io/text/possible_range.hpp).
-inline constexpr double largest_length = 2e7;
 /// [1] of the nominal tool's motion along a direction: a tool that moves by less does not move. As of points that are
 /// one point (diagnosis); no robot of 276 simulated sets of all instruments is below it.
 inline constexpr double no_motion = 1e-3;

@@ -8,6 +8,8 @@
 #include <map>
 #include <numeric>
 
+#include "kinfer/calibrate/validation/thresholds.hpp"
+
 namespace kinfer::calibrate {
 namespace {
 
@@ -88,8 +90,8 @@ std::vector<int> commanded_poses(const MatrixXd& joints, const VectorXd& toleran
   return poses;
 }
 
-std::vector<int> commanded_poses(const MatrixXd& joints, double tolerance) {
-  return commanded_poses(joints, VectorXd::Constant(joints.rows(), tolerance));
+std::vector<int> commanded_poses(const MatrixXd& joints) {
+  return commanded_poses(joints, VectorXd::Constant(joints.rows(), thresholds::same_pose_angle));
 }
 
 }  // namespace kinfer::calibrate

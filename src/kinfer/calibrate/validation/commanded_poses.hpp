@@ -13,7 +13,7 @@ namespace kinfer::calibrate {
 /// take seconds.
 std::vector<int> commanded_poses(const MatrixXd& joints, const VectorXd& tolerance);
 
-/// The same with one tolerance for all joints, [rad] or [m] as they are.
-std::vector<int> commanded_poses(const MatrixXd& joints, double tolerance);
+/// The same to thresholds::same_pose_angle, [rad] or [m] as the joints are.
+std::vector<int> commanded_poses(const MatrixXd& joints);
 
 }  // namespace kinfer::calibrate

@@ -166,7 +166,7 @@ std::optional<double> chance_of_improvement(const std::vector<RowErrors>& rows, 
   for (const RowErrors& row : rows)
     if (row.held_out && !std::isnan(row.before) && !std::isnan(row.after)) judged.push_back(row.row);
   judged = without(std::move(judged), skipped);
-  const std::vector<int> pose_of_row = commanded_poses(data.joints(Eigen::all, judged), thresholds::same_pose_angle);
+  const std::vector<int> pose_of_row = commanded_poses(data.joints(Eigen::all, judged));
   const std::size_t poses = pose_of_row.empty() ? 0 : 1 + std::ranges::max(pose_of_row);
   if (poses < 2) return std::nullopt;
   std::vector<double> gain(poses, 0.0), count(poses, 0.0);

@@ -43,10 +43,6 @@ void link_sights_of_one_pose(const PoseSet& data, Link link) {
   });
 }
 
-std::vector<int> poses_of(const PoseSet& data) {
-  return commanded_poses(data.joints, thresholds::same_pose_angle);
-}
-
 /// Calls link(row, other) for rows of one pose: with its copy among the fitted rows, a held-out row would show how well
 /// a pose repeats and not how well another one is predicted. Not beside ball-bars: all bars from one reference pose
 /// would be linked.
@@ -54,7 +50,7 @@ template <class Link>
 void link_repeated_poses(const PoseSet& data, Link link) {
   if (!data.pairs.empty()) return;
   std::vector<int> first;
-  const std::vector<int> poses = poses_of(data);
+  const std::vector<int> poses = commanded_poses(data.joints);
   for (int row = 0; row < data.rows(); ++row) {
     const auto pose = static_cast<std::size_t>(poses[static_cast<std::size_t>(row)]);
     if (pose == first.size()) first.push_back(row);
@@ -116,7 +112,7 @@ int fold_count(const PoseSet& data, const CrossValidation& choice, const Paramet
 }
 
 Error too_few_rows(const PoseSet& data) {
-  if (const int poses = distinct_poses(poses_of(data), all_rows(data)); poses < data.rows())
+  if (const int poses = distinct_poses(commanded_poses(data.joints), all_rows(data)); poses < data.rows())
     return {fmt::format(
         "{} rows of {} are too few to fit and validate a calibration; at least {} different poses are "
         "needed",
@@ -157,7 +153,7 @@ Result<ValidationPlan> make_validation_plan(const PoseSet& data, const Calibrati
   if (static_cast<int>(plan.fitted.size()) < thresholds::min_fitted_rows)
     return error("{} rows are left to fit; a calibration needs at least {} (20 or more are better)", plan.fitted.size(),
                  thresholds::min_fitted_rows);
-  const std::vector<int> poses = poses_of(data);
+  const std::vector<int> poses = commanded_poses(data.joints);
   if (distinct_poses(poses, plan.fitted) < thresholds::min_fitted_rows) return forward_error(too_few_rows(data));
   for (const Split& split : plan.validation_splits)
     if (distinct_poses(poses, split.train) < thresholds::min_training_poses) return forward_error(too_few_rows(data));

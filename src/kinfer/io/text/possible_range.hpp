@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "kinfer/base/largest_length.hpp"
 #include "kinfer/io/text/units.hpp"
 
 namespace kinfer {
@@ -21,7 +22,7 @@ struct PossibleRange {
 
 namespace possible {
 
-inline constexpr PossibleRange length{"a length", 2e7, "m"};  // coordinates of a survey reach the size of the Earth
+inline constexpr PossibleRange length{"a length", largest_length, "m"};
 inline constexpr PossibleRange angle{"an angle", 1e4, "rad"};
 inline constexpr PossibleRange ratio{"a gain", 1e4, "1"};
 inline constexpr PossibleRange compliance{"a compliance", 10.0, "rad/(N m)"};

@@ -23,8 +23,8 @@ struct JointStart {
   Vec3 heading =
       Vec3::Zero();  ///< of a spherical joint: direction of gravity in its rotating frame, the unobservable axis
   std::array<bool, 3> is_known{};
-  bool is_blurred = false;  ///< motion hides most of what gravity shows
-  bool is_rough = false;    ///< gravity shows it, but less than motion hides it
+  bool is_blurred = false, is_rough = false;  ///< as of StartPosition
+  std::optional<double> lost_sd{};
 };
 
 double wrapped(double angle) {
@@ -86,33 +86,46 @@ AxisSd axis_sd(const FilterModel& model, std::size_t b) {
   return sd;
 }
 
-double after_gap(const InsBody& body, const SeenBody& parent, const SeenBody& child, const PositionGuess& last) {
-  const double rate = body.child_R_axis.col(2).dot(child.rate) - body.parent_R_axis.col(2).dot(parent.rate);
-  return last.value + 0.5 * (last.rate + rate) * last.since;
+/// What gravity tells of a position about an axis that has `lever` [m/s²] of it across. Motion makes a position that
+/// gravity shows uncertain; only at an upright axis it is unobservable.
+JointStart shown_by_gravity(double lever, double of_axis, const SeenBody& parent, const SeenBody& child) {
+  lever = std::max(1e-3, lever);
+  const double sd = std::hypot(parent.force_sd, child.force_sd, of_axis) / lever,
+               rest_sd = std::hypot(parent.rest_sd, child.rest_sd, of_axis) / lever;
+  JointStart start;
+  start.sd.x() = std::min(sd, max_observable_sd);
+  start.is_known[0] = rest_sd < max_observable_sd;
+  start.is_blurred = std::hypot(parent.force_sd, child.force_sd) > 2.0 * std::hypot(parent.rest_sd, child.rest_sd);
+  start.is_rough = start.is_known[0] && sd > max_observable_sd;
+  return start;
+}
+
+/// [rad/s] Of the child against its parent, about the axis.
+double joint_rate(const InsBody& body, const SeenBody& parent, const SeenBody& child) {
+  return body.child_R_axis.col(2).dot(child.rate) - body.parent_R_axis.col(2).dot(parent.rate);
 }
 
 /// The axis tilts what gravity has across it by what it has along it: on level ground a vertical axis is all that.
-/// Motion makes a position that gravity shows uncertain; only at an upright axis it is unobservable.
 JointStart revolute_start(const InsBody& body, const AxisSd& axis, const SeenBody& parent, const SeenBody& child,
-                          const PositionGuess& guess) {
+                          const PositionGuess& guess, double time) {
   const Vec3 u = body.parent_R_axis.transpose() * parent.force, w = body.child_R_axis.transpose() * child.force;
-  const double lever = std::max(1e-3, (body.parent_R_axis.transpose() * parent.gravity).head<2>().norm()),
-               of_axis = std::hypot(u.z() * axis.in_parent, w.z() * axis.in_child),
-               sd = std::hypot(parent.force_sd, child.force_sd, of_axis) / lever;
-  JointStart start;
-  const bool is_observable = std::hypot(parent.rest_sd, child.rest_sd, of_axis) / lever < max_observable_sd;
-  const double expected = guess.is_last ? after_gap(body, parent, child, guess) : guess.value;
-  const double q = expected + wrapped(angle_of(u) - angle_of(w) - expected);  // the turn nearest to what was seen
-  if (guess.is_given && (!is_observable || guess.sd < sd)) {
-    start.position.x() = guess.value, start.sd.x() = guess.sd, start.is_known[0] = true;
+  const double lever = (body.parent_R_axis.transpose() * parent.gravity).head<2>().norm(),
+               of_axis = std::hypot(u.z() * axis.in_parent, w.z() * axis.in_child);
+  JointStart start = shown_by_gravity(lever, of_axis, parent, child);
+  const bool is_shown = start.is_known[0];
+  if (guess.is_given && (!is_shown || guess.sd < start.sd.x())) {
+    start.position.x() = guess.value, start.sd.x() = guess.sd, start.is_known[0] = true, start.is_rough = false;
     return start;
   }
-  const bool goes_on = guess.is_last && (!is_observable || guess.sd < sd);
-  start.position.x() = goes_on ? expected : q;
-  start.sd.x() = std::min(goes_on && is_observable ? guess.sd : sd, max_observable_sd);
-  start.is_known[0] = is_observable;
-  start.is_blurred = std::hypot(parent.force_sd, child.force_sd) > 2.0 * std::hypot(parent.rest_sd, child.rest_sd);
-  start.is_rough = is_observable && !goes_on && sd > max_observable_sd;
+  const PositionAfterGap expected = guess.last ? after_gap(*guess.last, time, joint_rate(body, parent, child))
+                                               : PositionAfterGap{guess.value, guess.sd};
+  const double turn = angle_of(u) - angle_of(w) - expected.value;
+  start.position.x() = expected.value + wrapped(turn);  // the turn nearest to what was seen
+  if (!guess.last) return start;
+  start.lost_sd = expected.sd;
+  if (is_shown && expected.sd >= start.sd.x()) return start;
+  start.position.x() = expected.value, start.is_rough = false;
+  if (is_shown) start.sd.x() = expected.sd;
   return start;
 }
 
@@ -197,7 +210,7 @@ class PostureStart {
     if (is_second_of_universal_ == static_cast<int>(b)) {
       is_second_of_universal_ = -1;
     } else if (body.motion == JointMotion::revolute && is_seen) {
-      starts_[b] = revolute_start(body, axis_sd(model_, b), before, own, guess(b));
+      starts_[b] = revolute_start(body, axis_sd(model_, b), before, own, guess(b), block_.time);
     } else if (body.motion == JointMotion::spherical && is_seen) {
       const Vec3 angles(guess_of(b, 0).value, guess_of(b, 1).value, guess_of(b, 2).value);
       const Mat3 guessed = rot_x(angles.x()) * rot_y(angles.y()) * rot_z(angles.z());
@@ -237,14 +250,12 @@ class PostureStart {
       const Mat3 m = child->parent_R_axis.transpose() * body.child_R_axis;
       const auto angles = universal_angles(u, w, m, guess(b).value, guess(c).value);
       // Gravity across its own axis determines each.
-      const double noise = std::hypot(before.force_sd, own.force_sd);
       const std::array<double, 2> lever{(m * (rot_z(-angles[0]) * u)).cross(m * Vec3::UnitZ()).head<2>().norm(),
                                         w.head<2>().norm()};
       for (std::size_t k = 0; k < 2; ++k) {
         JointStart& start = starts_[k == 0 ? b : c];
-        const double sd = noise / std::max(lever[k], 1e-3);
-        start.position.x() = angles[k], start.sd.x() = std::min(sd, max_observable_sd),
-        start.is_known[0] = sd < max_observable_sd;
+        start = shown_by_gravity(lever[k], 0.0, before, own);
+        start.position.x() = angles[k];
       }
       is_second_of_universal_ = static_cast<int>(c);
     }
@@ -268,10 +279,7 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
   const PostureStart found(model, block, guess);
   InitialPosture posture{.state = initial_state(model),
                          .covariance = MatrixXd::Zero(layout.fast, layout.fast),
-                         .is_known = std::vector<bool>(static_cast<std::size_t>(layout.positions), false),
-                         .is_unseen = std::vector<bool>(static_cast<std::size_t>(layout.positions), false),
-                         .goes_on = std::vector<bool>(static_cast<std::size_t>(layout.positions), false),
-                         .is_blurred = std::vector<bool>(static_cast<std::size_t>(layout.positions), false)};
+                         .positions = std::vector<StartPosition>(static_cast<std::size_t>(layout.positions))};
   ChainState& state = posture.state;
   state.time = block.time;
   state.base = base;
@@ -294,7 +302,6 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
     const Index dof = degrees_of_freedom(body.motion);
     const JointStart& start = found.joint(b);
     state.spherical[b] = start.spherical;
-    posture.is_rough |= start.is_rough;
     const Vec3 relative =
         body.child_R_axis.transpose() *
         (found.seen(b).rate - child_from_parent(body, start) * found.seen(static_cast<std::size_t>(body.parent)).rate);
@@ -320,125 +327,15 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
                                                                      : process.sd * process.time;
       posture.covariance(row + 1, row + 1) = rate_sd * rate_sd;
       posture.covariance(row + 2, row + 2) = process.sd * process.sd;
-      posture.is_unseen[static_cast<std::size_t>(at)] = found.is_unseen(b);
-      posture.is_blurred[static_cast<std::size_t>(at)] = start.is_blurred;
-      posture.goes_on[static_cast<std::size_t>(at)] = guess[static_cast<std::size_t>(at)].is_last;
-      posture.is_known[static_cast<std::size_t>(at)] = is_shown || start.is_known[static_cast<std::size_t>(i)];
+      posture.positions[static_cast<std::size_t>(at)] = {
+          .is_known = is_shown || start.is_known[static_cast<std::size_t>(i)],
+          .is_unseen = found.is_unseen(b),
+          .is_blurred = start.is_blurred,
+          .is_rough = start.is_rough,
+          .lost_sd = start.lost_sd};
     }
   }
   return posture;
-}
-
-void start_in(const InitialPosture& posture, ChainFilter& filter) {
-  const FilterModel& model = filter.model();
-  filter.start(posture.state, posture.covariance);
-  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
-    const Index at = model.layout.position[b];
-    if (model.bodies[b].motion != JointMotion::revolute || posture.is_known[static_cast<std::size_t>(at)] ||
-        posture.is_unseen[static_cast<std::size_t>(at)])
-      continue;
-    if (posture.state.base == BaseMode::moving)
-      filter.place(at, posture.state.joints[position_states * at], 0.0);
-    else
-      filter.declare_known(at);
-  }
-}
-
-namespace {
-
-/// Revolute positions that gravity shows, but not to a few degrees.
-std::vector<Index> uncertain_positions(const InitialPosture& posture, const FilterModel& model) {
-  std::vector<Index> uncertain;
-  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
-    if (model.bodies[b].motion != JointMotion::revolute) continue;
-    const Index at = model.layout.position[b], row = model.layout.joint_state(at);
-    const bool is_shown = posture.is_known[static_cast<std::size_t>(at)];
-    if (is_shown && posture.covariance(row, row) > min_settled_sd * min_settled_sd) uncertain.push_back(at);
-  }
-  return uncertain;
-}
-
-/// Those of which motion hides more than gravity shows.
-std::vector<Index> rough_positions(const InitialPosture& posture, const FilterModel& model) {
-  constexpr double widest = 0.99 * max_observable_sd * max_observable_sd;
-  std::vector<Index> rough;
-  for (const Index at : uncertain_positions(posture, model))
-    if (const Index row = model.layout.joint_state(at); posture.covariance(row, row) > widest) rough.push_back(at);
-  return rough;
-}
-
-struct SettledStart {
-  ChainState state;
-  double log_likelihood = 0.0;  ///< of the first rows
-};
-
-/// Begins again and again where the first rows place these positions.
-SettledStart settled(InitialPosture start, const ChainFilter& filter, std::span<const BlockMeasurement> first_rows,
-                     const std::vector<Index>& positions) {
-  SettledStart result;
-  for (int round = 0; round < settling_rounds; ++round) {
-    ChainFilter trial = filter;
-    start_in(start, trial);
-    result = {.state = start.state};
-    for (const BlockMeasurement& block : first_rows) {
-      if (block.time <= trial.state().time) continue;
-      trial.predict(block.time);
-      trial.update(block);
-      result.log_likelihood += trial.innovations().log_likelihood;
-    }
-    const double since = trial.state().time - start.state.time;
-    for (const Index at : positions) {
-      const auto now = trial.state().joints.segment<position_states>(position_states * at);
-      auto then = start.state.joints.segment<position_states>(position_states * at);
-      then = now;
-      then[1] -= since * now[2];
-      then[0] -= since * (now[1] - 0.5 * since * now[2]);
-    }
-  }
-  result.state = start.state;
-  return result;
-}
-
-/// Positions that count from here may be anywhere. An upright axis is never quite so: what little it shows must not
-/// contradict where the joint is said to stand, or biases would take it up.
-void free_what_counts_from_here(InitialPosture& posture, const FilterModel& model, std::vector<Index>& freed) {
-  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
-    if (model.bodies[b].motion != JointMotion::revolute) continue;
-    const Index at = model.layout.position[b], row = model.layout.joint_state(at);
-    const auto i = static_cast<std::size_t>(at);
-    if (posture.is_known[i] || posture.is_unseen[i] || posture.goes_on[i] || !posture.is_blurred[i]) continue;
-    posture.is_known[i] = true;
-    posture.covariance(row, row) = free_start_sd * free_start_sd;
-    freed.push_back(at);
-  }
-}
-
-}  // namespace
-
-void settle(InitialPosture& posture, const ChainFilter& filter, std::span<const BlockMeasurement> first_rows) {
-  const FilterModel& model = filter.model();
-  InitialPosture start = posture;
-  std::vector<Index> positions = uncertain_positions(posture, model), anywhere = rough_positions(posture, model);
-  if (posture.state.base == BaseMode::still) free_what_counts_from_here(start, model, anywhere);
-  for (const Index at : anywhere)
-    if (std::ranges::find(positions, at) == positions.end()) positions.push_back(at);
-  if (positions.empty()) return;
-  SettledStart best = settled(start, filter, first_rows, positions);
-  for (const Index at : anywhere)
-    for (int k = 1; k < settling_places; ++k) {
-      InitialPosture place = start;
-      place.state = best.state;
-      place.state.joints[position_states * at] += 2.0 * std::numbers::pi * k / settling_places;
-      SettledStart other = settled(std::move(place), filter, first_rows, positions);
-      if (other.log_likelihood > best.log_likelihood) best = std::move(other);
-    }
-  // What is already known of a turn is not given up for a whole one.
-  for (const Index at : positions) {
-    double& q = best.state.joints[position_states * at];
-    const double before = posture.state.joints[position_states * at];
-    q = before + wrapped(q - before);
-  }
-  posture.state = best.state;
 }
 
 }  // namespace kinfer::track
