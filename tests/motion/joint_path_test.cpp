@@ -178,6 +178,23 @@ TEST(JointPath, ACornerOfNothingIsAStop) {
   }
 }
 
+TEST(JointPath, ACornerIsCutInTheUnitOfEachJoint) {
+  int quicker = 0;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const RandomPath path = random_path(seed);
+    VectorXd units(path.waypoints.rows());
+    for (Index k = 0; k < units.size(); ++k) units[k] = k % 2 == 0 ? 0.02 : 0.001;
+    const JointPath cut(path.waypoints, path.limits, {.most_cut = 3.0, .cut_units = units});
+    quicker += cut.duration() < path.duration({.stop_at_waypoints = true});
+    for (std::size_t w = 0; w < cut.cuts().size(); ++w) {
+      const VectorXd missed = cut.at(cut.passing_times()[w]).position - path.waypoints.col(static_cast<Index>(w));
+      EXPECT_NEAR(missed.cwiseQuotient(units).cwiseAbs().maxCoeff(), cut.cuts()[w], 1e-6);
+      EXPECT_LE(cut.cuts()[w], 3.0 * (1.0 + 1e-9));
+    }
+  }
+  EXPECT_GE(quicker, 6);  // else a stop is
+}
+
 TEST(JointPath, OnlyNearACornerIsItSlower) {
   // A right angle between lines that take 10 s each at full speed: all but the ends and the corner is at full speed.
   const MatrixXd waypoints = (MatrixXd(2, 3) << 0.0, 10.0, 10.0, 0.0, 0.0, 10.0).finished();

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -83,6 +85,51 @@ TEST(Reach, APartOfTheOrientationIsMet) {
     const ReachSolution placed = solver.solve({tool.position}, preferred);
     ASSERT_EQ(placed.status, ReachStatus::reached);
     EXPECT_LT((forward(chain, placed.postures.front().q).position - tool.position).norm(), 1.01e-9);
+  }
+}
+
+/// Lengths to 0.6 m, a fifth of the joints but the first sliding, limits of 1.6 to 5.2 rad or 0.8 m about any centre.
+Chain random_arm(Rng& rng, int joints) {
+  Chain chain = laws::serial("any", {});
+  for (int j = 0; j < joints; ++j) {
+    DhLink row{};
+    row.a = rng.uniform(0.0, 0.6), row.d = rng.uniform(-0.3, 0.5), row.theta = rng.uniform(-3.0, 3.0);
+    const double turn = rng.uniform(-1.5, 1.5);
+    row.alpha = std::array{0.0, 90.0 * degree, -90.0 * degree, turn}[rng.index(4)];
+    Joint joint{.name = fmt::format("J{}", j + 1), .parent = j - 1, .link = row};
+    const double half = rng.uniform(0.8, 2.6), centre = rng.uniform(-0.5, 0.5);
+    joint.lower = centre - half, joint.upper = centre + half;
+    if (rng.uniform() < 0.2 && j > 0) joint.type = JointType::prismatic, joint.lower = -0.2, joint.upper = 0.6;
+    chain.joints.push_back(joint);
+  }
+  return chain;
+}
+
+/// To six decimals, as in a file.
+double rounded(double x) {
+  return std::round(x * 1e6) * 1e-6;
+}
+
+TEST(Reach, RoundedTargetsOfArmsWithTwoToSevenJointsAreReached) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Rng rng = Rng(13).stream(seed);
+    const Chain chain = random_arm(rng, 2 + static_cast<int>(rng.index(6)));
+    const ReachSolver solver(chain, {.choice = seed % 2 == 0 ? PostureChoice::first : PostureChoice::nearest});
+    for (std::uint64_t k = 0; k < 8; ++k) {
+      const Pose tool = forward(chain, random_posture(chain, rng.stream(k)));
+      Quat turn(tool.rotation);
+      turn = Quat(rounded(turn.w()), rounded(turn.x()), rounded(turn.y()), rounded(turn.z())).normalized();
+      const Vec3 axis = tool.rotation.col(2).unaryExpr(&rounded).normalized();
+      ReachTarget target{tool.position.unaryExpr(&rounded)};
+      if (seed % 4 == 1) target.orientation = AxisGoal{axis};
+      if (seed % 4 == 2) target.orientation = PitchGoal{std::asin(axis.z())};
+      if (seed % 4 == 3) target.orientation = FullGoal{turn.toRotationMatrix()};
+      const ReachSolution solution = solver.solve(target, middle_posture(chain));
+      ASSERT_EQ(solution.status, ReachStatus::reached) << seed << ", " << k;
+      expect_inside(chain, solution.postures.front().q);
+      EXPECT_LT(solution.position_error, 2e-6);
+      EXPECT_LT(solution.angle_error, 2e-6);
+    }
   }
 }
 

@@ -53,11 +53,11 @@ TEST(PathWords, CornersAreCutInTheUnitOfTheJoints) {
   TimedPath path;
   path.duration = 4.312, path.passing_times = {0, 1, 2, 3, 4};
   EXPECT_EQ(words::summary(path, {true, true}), "4.312 s, 5 waypoints");
-  path.cuts = {0.5 * degree, 2.0 * degree};
+  path.cuts = {0.5, 2.0};
   EXPECT_THAT(words::summary(path, {true, true}), HasSubstr("by up to 2.00 deg of a joint"));
-  path.cuts = {0.001, 0.0123};
+  path.cuts = {1.0, 12.3};
   EXPECT_THAT(words::summary(path, {false, false}), HasSubstr("by up to 12.3 mm of a joint"));
-  EXPECT_THAT(words::summary(path, {false, true}), HasSubstr("deg or 12.3 mm"));
+  EXPECT_THAT(words::summary(path, {false, true}), HasSubstr("by up to 12.30 deg or mm of a joint"));
 }
 
 TEST(PathWords, JointsThatSlowThePathDownAreNamedOnlyWhereTheyDo) {

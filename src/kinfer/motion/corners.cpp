@@ -16,6 +16,7 @@ struct Lines {
   std::vector<VectorXd> ways;       // [rad] or [m] of each joint
   std::vector<MotionLimits> along;  // of the part of the line
   const std::vector<MotionLimits>& joints;
+  const VectorXd& units;  // of cuts
 
   std::size_t count() const { return along.size(); }
 
@@ -26,7 +27,7 @@ struct Lines {
     if (change.isZero(0.0)) return corner;
     corner.ramp = fastest_ramp(1.0, limits_along(change, joints));
     const double duration = corner.ramp.duration();
-    corner.cut = corner.ramp.at(0.5 * duration).position * duration * change.cwiseAbs().maxCoeff();
+    corner.cut = corner.ramp.at(0.5 * duration).position * duration * change.cwiseQuotient(units).cwiseAbs().maxCoeff();
     return corner;
   }
 
@@ -37,8 +38,8 @@ struct Lines {
   }
 };
 
-Lines lines_through(const MatrixXd& waypoints, const std::vector<MotionLimits>& limits) {
-  Lines lines{{}, {}, limits};
+Lines lines_through(const MatrixXd& waypoints, const std::vector<MotionLimits>& limits, const VectorXd& units) {
+  Lines lines{{}, {}, limits, units};
   for (Index k = 0; k + 1 < waypoints.cols(); ++k) {
     lines.ways.push_back(waypoints.col(k + 1) - waypoints.col(k));
     lines.along.push_back(limits_along(lines.ways.back(), limits));
@@ -146,8 +147,8 @@ LineProfile profile_between(const Corner& corner, const Corner& next, const Moti
 }
 
 std::vector<Corner> quickest_corners(const MatrixXd& waypoints, const std::vector<MotionLimits>& limits,
-                                     double most_cut) {
-  const Lines lines = lines_through(waypoints, limits);
+                                     double most_cut, const VectorXd& units) {
+  const Lines lines = lines_through(waypoints, limits, units);
   Choices choices(lines.count() + 1, std::vector<Corner>(1));
   if (lines.count() == 1) return quickest(lines, choices);
   const std::vector<double> parts = largest_parts(lines);

@@ -18,12 +18,13 @@ struct Corner {
   double before = 0.0,
          after = 0.0;  ///< speeds along the two lines where the ramp begins and ends [parts of them per s]
   SRamp ramp{};
-  double cut = 0.0;  ///< [rad] or [m] in the joint that misses the waypoint most
+  double cut = 0.0;  ///< in the joint that misses the waypoint most, in its unit
 };
 
-/// Of each waypoint; stops at the first and the last. Neighbours of `waypoints`, dof x n, n >= 2, differ.
+/// Of each waypoint; stops at the first and the last. Neighbours of `waypoints`, dof x n, n >= 2, differ. No joint
+/// misses a waypoint by more than `most_cut` of its `units` [rad] or [m].
 std::vector<Corner> quickest_corners(const MatrixXd& waypoints, const std::vector<MotionLimits>& limits,
-                                     double most_cut);
+                                     double most_cut, const VectorXd& units);
 
 /// Of all joints, between the lines `before` and `after`. One place computes it: the ramp fits it to the last bit even
 /// where the velocities are nearly equal.

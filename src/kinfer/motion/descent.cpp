@@ -41,6 +41,11 @@ bool Descent::is_met(const ReachTask::Error& error) const {
   return error.position <= position_tolerance_ && error.angle <= angle_tolerance_;
 }
 
+/// Fewer joints than a target fixes freedoms meet it exactly only where its numbers do not end.
+bool Descent::is_met_but_for_rounding(const ReachTask& task, const ReachTask::Error& error) const {
+  return screws_.dof() < task.fixed_freedoms() && std::max(error.position, error.angle) <= thresholds::rounded_target;
+}
+
 Descent::Attempt Descent::run(const ReachTask& task, VectorXd q, Steps kind) {
   const bool clamp = kind == Steps::inside_limits;
   const bool of_machine = deviates_ && kind != Steps::of_start;
@@ -52,13 +57,14 @@ Descent::Attempt Descent::run(const ReachTask& task, VectorXd q, Steps kind) {
     const ReachTask::Error error = task.error(of_machine ? tool(q) : at_.tool);
     const double size = error.weighted.norm();
     if (is_met(error)) return {std::move(q), size, true};
-    if (step == most) return {std::move(q), size, false};
+    const auto left = [&] { return Attempt{std::move(q), size, is_met_but_for_rounding(task, error)}; };
+    if (step == most) return left();
     if (kind == Steps::of_start && step % thresholds::judged_steps == thresholds::judged_steps - 1) {
-      if (size > thresholds::worthwhile_decrease * earlier) return {std::move(q), size, false};
+      if (size > thresholds::worthwhile_decrease * earlier) return left();
       earlier = size;
     }
     set_rows(task, q, error, clamp);
-    if (!set_step(task, error.weighted, thresholds::damping * size * size)) return {std::move(q), size, false};
+    if (!set_step(task, error.weighted, thresholds::damping * size * size)) return left();
     const double largest = step_.cwiseAbs().maxCoeff();
     if (largest > thresholds::longest_step) step_ *= thresholds::longest_step / largest;
     q += step_;

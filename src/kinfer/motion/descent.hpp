@@ -50,6 +50,7 @@ class Descent {
 
  private:
   bool is_met(const ReachTask::Error& error) const;
+  bool is_met_but_for_rounding(const ReachTask& task, const ReachTask::Error& error) const;
   void set_rows(const ReachTask& task, const VectorXd& q, const ReachTask::Error& error, bool clamp);
   bool set_step(const ReachTask& task, const Eigen::Matrix<double, 6, 1>& error, double damping);
 

@@ -22,6 +22,7 @@ JointPath::JointPath(const MatrixXd& waypoints, const std::vector<MotionLimits>&
   const auto moves = [&](Index line) {
     return (waypoints.col(line + 1) - waypoints.col(line)).cwiseAbs().maxCoeff() > thresholds::least_move;
   };
+  const VectorXd units = options.cut_units.size() == 0 ? VectorXd::Ones(waypoints.rows()) : options.cut_units;
   const bool blends = !options.stop_at_waypoints && options.most_cut >= thresholds::least_cut;
   Index first = 0;
   cuts_.assign(1, 0.0), passing_times_.assign(1, 0.0);
@@ -32,13 +33,14 @@ JointPath::JointPath(const MatrixXd& waypoints, const std::vector<MotionLimits>&
     }
     Index last = first + 1;
     while (blends && last + 1 < waypoints.cols() && moves(last)) ++last;
-    append(waypoints.middleCols(first, last - first + 1), limits, options.most_cut);
+    append(waypoints.middleCols(first, last - first + 1), limits, options.most_cut, units);
     first = last;
   }
 }
 
-void JointPath::append(const MatrixXd& waypoints, const std::vector<MotionLimits>& limits, double most_cut) {
-  const std::vector<Corner> corners = quickest_corners(waypoints, limits, most_cut);
+void JointPath::append(const MatrixXd& waypoints, const std::vector<MotionLimits>& limits, double most_cut,
+                       const VectorXd& units) {
+  const std::vector<Corner> corners = quickest_corners(waypoints, limits, most_cut, units);
   const auto way = [&](Index line) -> VectorXd { return waypoints.col(line + 1) - waypoints.col(line); };
   const auto add = [&](Ramp ramp) {
     ramp.begin = duration_, duration_ += ramp.shape.duration();

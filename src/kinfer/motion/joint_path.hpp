@@ -22,7 +22,8 @@ struct PathState {
 
 struct JointPathOptions {
   bool stop_at_waypoints = false;
-  double most_cut = 0.05;  ///< [rad] or [m] of any joint that a corner may be cut by; larger: quicker; 0: stops
+  double most_cut = 0.05;  ///< units of any joint that a corner may be cut by; larger: quicker; 0: stops
+  VectorXd cut_units{};    ///< of each joint [rad] or [m]; empty: 1
 };
 
 class JointPath {
@@ -34,13 +35,13 @@ class JointPath {
   PathState at(double t) const;                  ///< [s], clamped to the duration
   /// [s] when the path is at, or cuts, each waypoint.
   const std::vector<double>& passing_times() const { return passing_times_; }
-  /// [rad] or [m] by which each corner is cut, in the joint that misses its waypoint most; 0 below
-  /// 1e-9.
+  /// Units by which each corner is cut, in the joint that misses its waypoint most; 0 below 1e-9.
   const std::vector<double>& cuts() const { return cuts_; }
 
  private:
   /// From rest to rest through waypoints of which neighbours differ.
-  void append(const MatrixXd& waypoints, const std::vector<MotionLimits>& limits, double most_cut);
+  void append(const MatrixXd& waypoints, const std::vector<MotionLimits>& limits, double most_cut,
+              const VectorXd& units);
 
   /// A change of velocity. The joints move at `after` until the next one begins.
   struct Ramp {

@@ -48,17 +48,20 @@ class ReachSolver::Search {
         if (attempt.error < closest.error) closest = std::move(attempt);
         continue;
       }
-      if (descent_.screws().dof() > task.fixed_freedoms()) descent_.approach(task, preferred, attempt.q);
+      if (is_redundant(task)) descent_.approach(task, preferred, attempt.q);
       if (descent_.has_non_geometric_terms()) attempt = descent_.run(task, std::move(attempt.q), Steps::of_machine);
       if (!attempt.converged) continue;
       descent_.unwind(attempt.q, preferred);
       if (!is_inside(attempt.q)) {
-        if (!beyond || violation(attempt.q) < violation(*beyond)) beyond = attempt.q;
-        continue;
+        if (beyond && violation(attempt.q) >= violation(*beyond)) continue;
+        beyond = attempt.q;
+        attempt = descent_.run(task, limits_.clamped(attempt.q), Steps::inside_limits);
+        if (!attempt.converged) continue;
       }
       keep(solution, std::move(attempt.q), preferred);
       if (options_.choice == PostureChoice::first) break;
     }
+    if (solution.postures.empty() && beyond && is_redundant(task)) search_inside(task, preferred, solution);
     if (!solution.postures.empty()) {
       solution.status = ReachStatus::reached;
       std::ranges::stable_sort(solution.postures, {}, &Posture::distance);
@@ -67,6 +70,21 @@ class ReachSolver::Search {
     }
     explain(task, preferred, closest, beyond, solution);
     return solution;
+  }
+
+  bool is_redundant(const ReachTask& task) const { return descent_.screws().dof() > task.fixed_freedoms(); }
+
+  /// Of a redundant chain whose postures were all outside the limits: its free joints lead back inside if the limits
+  /// restrict each step.
+  void search_inside(const ReachTask& task, const VectorXd& preferred, ReachSolution& solution) {
+    const Rng rng(options_.seed);
+    for (int start = 0; start < options_.starts; ++start) {
+      VectorXd q = start == 0 ? limits_.clamped(preferred) : draw(rng.stream(static_cast<std::uint64_t>(start)));
+      Attempt attempt = descent_.run(task, std::move(q), Steps::inside_limits);
+      if (!attempt.converged) continue;
+      keep(solution, std::move(attempt.q), preferred);
+      if (options_.choice == PostureChoice::first) return;
+    }
   }
 
   /// Why no posture was found, and the one inside the limits that comes closest.

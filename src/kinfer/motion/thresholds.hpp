@@ -18,7 +18,9 @@ inline constexpr int careful_steps = 200;    ///< inside the limits, or of a mac
 inline constexpr double near_target = 1e-3;  ///< [1] weighted error at which the way is taken to end in a singularity
 inline constexpr int approach_steps = 12;    ///< of a redundant chain towards the preferred posture
 inline constexpr double approach_tolerance = 1e-4;  ///< [rad] or [m] steps at which it has arrived
-inline constexpr double same_posture = 1e-3;        ///< [rad] apart
+/// [m] and [rad] by which targets of six decimals are rounded, quaternions included.
+inline constexpr double rounded_target = 2e-6;
+inline constexpr double same_posture = 1e-3;  ///< [rad] apart
 
 // ---- paths ----
 inline constexpr double path_step = 5e-3;        ///< [s] at which lines of the tool are examined

@@ -88,15 +88,22 @@ Result<PathResult> along_tool_lines(const PathArguments& options, const Chain& c
                      "--step, --tool-speed, --velocity, --acceleration or --jerk");
 }
 
+/// Of each joint that moves.
+std::vector<bool> rotational_joints(const Chain& chain) {
+  std::vector<bool> rotational;
+  for (const int j : active_joints(chain))
+    rotational.push_back(rotates(chain.joints[static_cast<std::size_t>(j)].type));
+  return rotational;
+}
+
 Result<PathResult> plan(const PathArguments& options, const Chain& chain) {
   KINFER_TRY(limits, joint_limits(options, chain));
   if (!options.targets.empty()) return along_tool_lines(options, chain, limits);
   KINFER_TRY(postures, waypoints(options, chain));
-  const double unit =
-      rotates(chain.joints[static_cast<std::size_t>(active_joints(chain).front())].type) ? degree : 1e-3;
-  return with_remedy(motion::joint_space_path(chain, postures, limits,
-                                              {.stop_at_waypoints = options.stop, .most_cut = unit * options.corner},
-                                              1e-3 * options.step),
+  motion::JointPathOptions how{.stop_at_waypoints = options.stop, .most_cut = options.corner};
+  how.cut_units.resize(dof(chain));
+  for (int k = 0; const bool rotates : rotational_joints(chain)) how.cut_units[k++] = rotates ? degree : 1e-3;
+  return with_remedy(motion::joint_space_path(chain, postures, limits, how, 1e-3 * options.step),
                      "--step, --velocity, --acceleration or --jerk");
 }
 
@@ -124,9 +131,7 @@ int run(const CLI::App& verb, const PathArguments& options) {
   if (dof(chain) == 0) return fail({fmt::format("{}: the robot has no joint that moves", options.chain.path)});
   const auto result = plan(options, chain);
   if (!result) return fail(result.error());
-  std::vector<bool> rotational;
-  for (const int j : active_joints(chain))
-    rotational.push_back(rotates(chain.joints[static_cast<std::size_t>(j)].type));
+  const std::vector<bool> rotational = rotational_joints(chain);
   const std::string text = format_path_csv(result->path, rotational);
   const bool to_terminal = options.out.empty() || options.out == "-";
   if (to_terminal)

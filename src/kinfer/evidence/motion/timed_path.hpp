@@ -15,7 +15,7 @@ struct TimedPath {
   MatrixXd position, velocity, acceleration;  ///< [rad] or [m], per s, per s²
   double duration = 0.0;                      ///< [s]
   std::vector<double> passing_times{};        ///< [s] at each waypoint
-  std::vector<double> cuts{};                 ///< [rad] or [m] by which each corner is cut
+  std::vector<double> cuts{};                 ///< by which each corner is cut, in the unit of the path's options
   double slowed_by = 1.0;                     ///< straight lines of the tool: factor by which the joints slow it down
 };
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "kinfer/base/angle.hpp"
 #include "kinfer/words/language.hpp"
 
 namespace kinfer::words {
@@ -12,10 +11,9 @@ namespace {
 
 /// Of a joint that rotates, of one that slides, or of either.
 std::string amount(double cut, const std::vector<bool>& rotational) {
-  std::string angle = fmt::format("{:.2f} deg", cut / degree), length = fmt::format("{:.1f} mm", 1e3 * cut);
   const auto rotating = std::ranges::count(rotational, true);
-  if (rotating == std::ssize(rotational)) return angle;
-  return rotating == 0 ? length : angle + " or " + length;
+  if (rotating == std::ssize(rotational)) return fmt::format("{:.2f} deg", cut);
+  return rotating == 0 ? fmt::format("{:.1f} mm", cut) : fmt::format("{:.2f} deg or mm", cut);
 }
 
 }  // namespace

@@ -9,7 +9,8 @@
 
 namespace kinfer::words {
 
-/// "4.312 s, 5 waypoints"; with what slows it down and how much corners are cut. `rotational`: of each joint.
+/// "4.312 s, 5 waypoints"; with what slows it down and how much corners are cut. `rotational`: of each joint; cuts in
+/// degrees or mm.
 std::string summary(const TimedPath& path, const std::vector<bool>& rotational);
 
 /// "line 2, 1.240 s: J3 leaves its limits"; lines are counted from 1.
