@@ -48,6 +48,13 @@ ParameterSet links_only(const Chain& chain) {
   return set;
 }
 
+/// Base and tool, as in a fit that leaves the joints nominal: numbers between two joint motions are constant or absent.
+ParameterSet frames_only(const Chain& chain) {
+  ParameterSet set = everything(chain);
+  for (Parameter& p : set.parameters) p.free = p.free && !is_joint_parameter(p.at);
+  return set;
+}
+
 PointTable random_points(const Chain& chain, Rng rng) {
   PointTable table;
   table.joints = MatrixXd::NullaryExpr(dof(chain), poses, [&] { return rng.uniform(-2.5, 2.5); });
@@ -82,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Batch, AnyRigidChain, ::testing::ValuesIn(rigid_example
 TEST_P(AnyRigidChain, SumsOfPopulationsAreThoseOfSinglePoses) {
   const Chain chain = GetParam();
   const PointTable table = random_points(chain, Rng(1));
-  for (const ParameterSet& set : {everything(chain), links_only(chain)}) {
+  for (const ParameterSet& set : {everything(chain), links_only(chain), frames_only(chain)}) {
     const MatrixXd x = candidates(chain, set, 19, Rng(2));
     for (const batch::Kernels* kernels : runnable()) {
       std::vector<double> sum(x.cols()), rough(x.cols());
@@ -133,7 +140,7 @@ TEST_P(AnyRigidChain, JacobianAndNormalEquationsAreThoseOfSinglePoses) {
   const PointTable table = random_points(chain, Rng(1));
   Rng rng(5);
   const Eigen::Matrix3Xd inverse_sd = Eigen::Matrix3Xd::NullaryExpr(3, poses, [&] { return rng.uniform(0.5, 2.0); });
-  for (const ParameterSet& set : {everything(chain), links_only(chain)}) {
+  for (const ParameterSet& set : {everything(chain), links_only(chain), frames_only(chain)}) {
     const VectorXd x = candidates(chain, set, 1, Rng(2)).col(0);
     VectorXd slow_r, r, gradient;
     MatrixXd slow_jacobian, jacobian, matrix;

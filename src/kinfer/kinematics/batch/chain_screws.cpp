@@ -8,7 +8,8 @@ namespace {
 
 using elementary::Motion;
 
-/// Merges a rotation and a translation along the same axis that follow each other into one screw.
+/// Merges a rotation and a translation along the same axis that follow each other into one screw, which moves with one
+/// joint at most.
 struct ScrewWriter {
   ScrewPlan& plan;
   const std::vector<JointMotion>& joint_motions;
@@ -26,7 +27,7 @@ struct ScrewWriter {
   void move(const elementary::Factor& factor, const Value& value, int joint) {
     if (value.parameter < 0 && value.constant == 0.0 && !factor.moves) return;
     const bool turns = factor.motion == Motion::rotation;
-    Screw& screw = screw_about(factor.axis, turns);
+    Screw& screw = screw_about(factor, turns);
     (turns ? screw.angle : screw.length) = value;
     (turns ? has_turn : has_shift) = true;
     written(value);
@@ -38,10 +39,11 @@ struct ScrewWriter {
   }
 
  private:
-  Screw& screw_about(int axis, bool turns) {
-    const bool fits = is_open && plan.screws.back().axis == axis && !(turns ? has_turn : has_shift);
+  Screw& screw_about(const elementary::Factor& factor, bool turns) {
+    const bool fits = is_open && plan.screws.back().axis == factor.axis && !(turns ? has_turn : has_shift) &&
+                      !(factor.moves && plan.screws.back().move != MotionKind::none);
     if (!fits) {
-      plan.screws.push_back({.axis = axis});
+      plan.screws.push_back({.axis = factor.axis});
       has_turn = has_shift = false, is_open = true;
     }
     return plan.screws.back();
