@@ -2,6 +2,7 @@
 #include "kinfer/calibrate/start/initial_frames.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 
@@ -126,12 +127,33 @@ Chain with_tool_from_tilts(Chain chain, const PoseSet& data, const std::vector<P
   return chain;
 }
 
-double median_residual(const Chain& chain, const PoseSet& data) {
+/// Residuals of a kind beyond those that its own fixtures absorb: one contact in a socket of unknown place tells
+/// nothing.
+double redundancy(const ResidualKind& kind, const PoseSet& data, const ParameterSet& frames) {
+  const auto is_absorbed = [&](const Parameter* parameter) {
+    const auto* number = std::get_if<FixtureNumber>(&parameter->at);
+    return number && !kind.traits.fixture.empty() && number->kind == fixture_kind(kind.traits.fixture) &&
+           !std::isfinite(parameter->prior_sd);
+  };
+  const std::vector<const Parameter*> free = frames.free();
+  return kind.size * static_cast<double>(kind.count(data)) -
+         static_cast<double>(std::ranges::count_if(free, is_absorbed));
+}
+
+/// By how much the noise that explains the measurements would be larger with `a` than with `b` [1]: the ratio of the
+/// median residuals of each kind, the geometric mean over the kinds by their redundancies. With an unknown noise level
+/// of each kind that is the ratio of likelihoods.
+double noise_ratio(const Chain& a, const Chain& b, const PoseSet& data, const ParameterSet& frames) {
+  const auto level = [&](const ResidualKind& kind, const Chain& chain) {
+    return std::max(thresholds::smallest_residual, median(residual_norms(kind.kind, chain, data)));
+  };
+  double sum = 0.0, weights = 0.0;
   for (const ResidualKind& kind : residual_kinds()) {
-    std::vector<double> errors = residual_norms(kind.kind, chain, data);
-    if (!errors.empty()) return median(std::move(errors));
+    const double weight = std::max(0.0, redundancy(kind, data, frames));
+    if (weight == 0.0) continue;
+    sum += weight * std::log(level(kind, a) / level(kind, b)), weights += weight;
   }
-  return 0.0;
+  return weights > 0.0 ? std::exp(sum / weights) : 1.0;
 }
 
 /// Refines all frames together with a robust loss; the noise level of each round is the median residual at its start.
@@ -228,8 +250,7 @@ Result<Chain> estimate_frames(const Chain& nominal, const PoseSet& all) {
     const Chain candidate = refine_frames(with_initial_fixtures(start, data), data, frames);
     // The file's own frames come first; another guess must be clearly better, because where the poses do not show the
     // tool all are equally good but for noise.
-    if (!best || median_residual(candidate, data) < thresholds::better_guess * median_residual(*best, data))
-      best = candidate;
+    if (!best || noise_ratio(candidate, *best, data, frames) < thresholds::better_guess) best = candidate;
   }
   return *best;
 }

@@ -16,8 +16,11 @@ inline constexpr std::size_t min_run_rows = 5;         ///< of a sweep that is f
 inline constexpr double min_run_motion = 10.0 * degree;  ///< [rad] smaller finds shorter sweeps, with worse circles
 
 // ---- initial_frames.cpp ----
-/// [1] of the median residual of the guesses before: another frame is taken below it. Smaller keeps the file's own.
+/// [1] of the noise that explains the measurements with the guess before: another frame is taken below it. Smaller
+/// keeps the file's own.
 inline constexpr double better_guess = 0.7;
+/// [m], [rad], [m/s²] no instrument is better; smaller residuals are all alike.
+inline constexpr double smallest_residual = 1e-6;
 inline constexpr double max_relative_rotation = 3.0;    ///< [rad] near 180 degrees the sign of a rotation is arbitrary
 inline constexpr std::size_t paired_orientations = 60;  ///< the number of pairs grows with the square
 inline constexpr int start_rows = 300;                  ///< determine a frame as well as all rows
