@@ -70,7 +70,7 @@ TEST(Instruments, BallsInSocketsMakeHeldOutSocketsConsistent) {
   EXPECT_EQ(c.unobserved_lengths->kind, UnobservedLength::size);
   const auto spread = [&](const Chain& chain) {
     const DataWithFixtures there = with_fixtures(chain, unseen).value();
-    return mean(primary_errors(there.chain, {}, there.data));
+    return mean(position_errors_of_fit(kind_of<SocketContact>, there.chain, {}, there.data));
   };
   EXPECT_LT(spread(c.estimate.chain), 0.1 * spread(nominal));
   EXPECT_LT(spread(c.estimate.chain), 60e-6);

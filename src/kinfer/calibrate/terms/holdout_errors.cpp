@@ -50,7 +50,7 @@ HoldoutErrors evaluate_holdout(const std::vector<Chain>& chains, const PoseSet& 
   std::vector<HoldoutErrors> of_split(splits.size());
   parallel_for(splits.size(), threads, [&](std::size_t i) {
     const PoseSet evaluated = select(rows, splits[i].holdout);
-    of_split[i].errors = primary_errors(chains[i], select(rows, splits[i].train), evaluated);
+    of_split[i].errors = position_errors_of_fit(*primary, chains[i], select(rows, splits[i].train), evaluated);
     for (std::size_t k = 0; k < of_split[i].errors.size(); ++k)
       of_split[i].row.push_back(splits[i].holdout[residual_kind(*primary).row(evaluated, k)]);
   });

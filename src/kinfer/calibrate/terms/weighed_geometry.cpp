@@ -18,8 +18,10 @@ void count_determined(SelectionStep& step, const std::string& parameter, const E
 }
 
 ErrorStatistics training_statistics(const Chain& chain, const std::vector<Outlier>& outliers, const PoseSet& rows) {
+  const auto kind = primary_measurement_kind(rows);
+  if (!kind) return {};
   const PoseSet inliers = select(rows, without_outliers(all_rows(rows), outliers));
-  return error_statistics(primary_errors(chain, rows, inliers));
+  return error_statistics(position_errors_of_fit(*kind, chain, rows, inliers));
 }
 
 WeighedModel weighed_geometry(const SelectionData& data, const Estimate& geometry) {

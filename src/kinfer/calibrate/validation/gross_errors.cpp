@@ -13,9 +13,11 @@ namespace {
 /// Largest error of each row, of the primary kind of measurement [m], for a chain that was fitted to `fitted_rows`.
 std::map<int, double> errors_by_row(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& rows) {
   std::map<int, double> largest;
-  const std::vector<double> errors = primary_errors(chain, fitted_rows, rows);
+  const auto kind = primary_measurement_kind(rows);
+  if (!kind) return largest;
+  const std::vector<double> errors = position_errors_of_fit(*kind, chain, fitted_rows, rows);
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    double& error = largest[residual_kind(*primary_measurement_kind(rows)).row(rows, i)];
+    double& error = largest[residual_kind(*kind).row(rows, i)];
     error = std::max(error, errors[i]);
   }
   return largest;

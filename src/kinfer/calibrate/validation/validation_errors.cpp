@@ -49,20 +49,18 @@ MatrixXd covariance_at_noise(const Estimate& fit, const PoseSet& inliers, const 
   return invert_but_for_rounding(gram(jacobian));
 }
 
-/// Mean error of each row, of the primary kind of measurement [m]; NaN where it has none.
-std::vector<double> error_of_rows(const std::vector<double>& errors, const PoseSet& rows) {
+/// Mean error of each row, of one kind of measurement [m]; NaN where it has none.
+std::vector<double> error_of_rows(std::optional<MeasurementKind> kind, const Chain& chain, const PoseSet& fitted_rows,
+                                  const PoseSet& rows) {
   std::vector<double> sum(rows.rows(), 0.0), count(rows.rows(), 0.0);
-  const auto kind = primary_measurement_kind(rows);
+  const std::vector<double> errors =
+      kind ? position_errors_of_fit(*kind, chain, fitted_rows, rows) : std::vector<double>{};
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const int row = residual_kind(*kind).row(rows, i);
     sum[row] += errors[i], count[row] += 1.0;
   }
   for (std::size_t row = 0; row < sum.size(); ++row) sum[row] = count[row] > 0.0 ? sum[row] / count[row] : not_measured;
   return sum;
-}
-
-std::vector<double> error_of_rows(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& rows) {
-  return error_of_rows(primary_errors(chain, fitted_rows, rows), rows);
 }
 
 void append(std::vector<double>& to, const std::vector<double>& more) {
@@ -74,14 +72,29 @@ MeasurementKind angle_kind(const PoseSet& data) {
   return data.orientations.empty() && !data.tilts.empty() ? kind_of<TiltMeasurement> : kind_of<OrientationMeasurement>;
 }
 
+/// The kinds whose errors are those of the tool's position and orientation, in all rows alike.
+struct JudgedKinds {
+  std::optional<MeasurementKind> position;
+  MeasurementKind angle;
+};
+
+/// The position is judged by what is held out: a kind that only fitted rows have would prove nothing.
+JudgedKinds judged_kinds(const EvaluationInputs& evaluated) {
+  std::vector<int> held_out;
+  for (const Split& split : evaluated.plan.validation_splits)
+    held_out.insert(held_out.end(), split.holdout.begin(), split.holdout.end());
+  std::ranges::sort(held_out);
+  return {primary_measurement_kind(select(evaluated.data, held_out)), angle_kind(evaluated.data)};
+}
+
 /// Errors of one chain, or of the corresponding chains of all validation fits.
 struct ErrorLists {
-  MeasurementKind angle;  // whose errors are those of the orientation
+  JudgedKinds kinds;
   std::vector<double> position{}, orientation{};
 
   void add(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& rows) {
-    append(position, primary_errors(chain, fitted_rows, rows));
-    append(orientation, errors_of_kind(angle, chain, rows));
+    if (kinds.position) append(position, position_errors_of_fit(*kinds.position, chain, fitted_rows, rows));
+    append(orientation, errors_of_kind(kinds.angle, chain, rows));
   }
   void write_statistics(ChainFit& fit, ErrorStatistics TrainHoldout::*which) const {
     fit.position.*which = error_statistics(position);
@@ -89,17 +102,17 @@ struct ErrorLists {
   }
 };
 
-void fill_train(ChainFit& fit, const Chain& chain, const PoseSet& fitted_rows, const PoseSet& rows) {
-  ErrorLists errors{angle_kind(rows)};
+void fill_train(ChainFit& fit, const JudgedKinds& kinds, const Chain& chain, const PoseSet& fitted_rows,
+                const PoseSet& rows) {
+  ErrorLists errors{kinds};
   errors.add(chain, fitted_rows, rows);
   errors.write_statistics(fit, &TrainHoldout::train);
 }
 
 /// Statistics over the held-out rows without `skipped`.
-void fill_held_out(Calibration& calibration, const EvaluationInputs& evaluated, const std::vector<int>& skipped,
-                   ErrorStatistics TrainHoldout::*which) {
-  const MeasurementKind angle = angle_kind(evaluated.data);
-  ErrorLists nominal{angle}, before{angle}, after{angle};
+void fill_held_out(Calibration& calibration, const EvaluationInputs& evaluated, const JudgedKinds& kinds,
+                   const std::vector<int>& skipped, ErrorStatistics TrainHoldout::*which) {
+  ErrorLists nominal{kinds}, before{kinds}, after{kinds};
   const PoseSet no_rows;
   for (std::size_t i = 0; i < evaluated.fits.size(); ++i) {
     const Split& split = evaluated.plan.validation_splits[i];
@@ -114,17 +127,17 @@ void fill_held_out(Calibration& calibration, const EvaluationInputs& evaluated, 
   after.write_statistics(calibration.after, which);
 }
 
-void fill_rows(Calibration& calibration, const EvaluationInputs& evaluated) {
+void fill_rows(Calibration& calibration, const EvaluationInputs& evaluated, std::optional<MeasurementKind> kind) {
   const PoseSet fitted = select(evaluated.data, evaluated.plan.fitted);
-  const std::vector<double> before = error_of_rows(evaluated.frames_only, fitted, evaluated.data),
-                            after = error_of_rows(calibration.estimate.chain, fitted, evaluated.data);
+  const std::vector<double> before = error_of_rows(kind, evaluated.frames_only, fitted, evaluated.data),
+                            after = error_of_rows(kind, calibration.estimate.chain, fitted, evaluated.data);
   for (int row = 0; row < evaluated.data.rows(); ++row)
     calibration.rows.push_back({row, before[row], after[row], after[row], false});
   for (std::size_t i = 0; i < evaluated.fits.size(); ++i) {
     const Split& split = evaluated.plan.validation_splits[i];
     const PoseSet rows = select(evaluated.data, split.holdout), fitted_rows = select(evaluated.data, split.train);
-    const std::vector<double> holdout_before = error_of_rows(evaluated.fits[i].before, fitted_rows, rows),
-                              holdout_after = error_of_rows(evaluated.fits[i].after.chain, fitted_rows, rows);
+    const std::vector<double> holdout_before = error_of_rows(kind, evaluated.fits[i].before, fitted_rows, rows),
+                              holdout_after = error_of_rows(kind, evaluated.fits[i].after.chain, fitted_rows, rows);
     for (std::size_t k = 0; k < split.holdout.size(); ++k) {
       RowErrors& entry = calibration.rows[split.holdout[k]];
       entry.before = holdout_before[k];
@@ -137,27 +150,31 @@ void fill_rows(Calibration& calibration, const EvaluationInputs& evaluated) {
 }  // namespace
 
 std::optional<MeasurementKind> primary_measurement_kind(const PoseSet& data) {
-  for (const ResidualKind& kind : residual_kinds())
-    if (kind.traits.observes.tool_position && kind.count(data) > 0) return kind.kind;
-  return std::nullopt;
+  const ResidualKind* most = nullptr;
+  for (const ResidualKind& kind : residual_kinds()) {
+    if (!kind.traits.observes.tool_position || kind.count(data) == 0) continue;
+    if (kind.count(data) >= thresholds::min_judging_measurements) return kind.kind;
+    if (!most || kind.count(data) > most->count(data)) most = &kind;
+  }
+  return most ? std::optional(most->kind) : std::nullopt;
 }
 
-std::vector<double> primary_errors(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& evaluated) {
-  const auto kind = primary_measurement_kind(evaluated);
-  if (!kind) return {};
-  return position_errors(*kind, with_unfitted_fixtures(chain, fitted_rows, evaluated), evaluated);
+std::vector<double> position_errors_of_fit(MeasurementKind kind, const Chain& chain, const PoseSet& fitted_rows,
+                                           const PoseSet& evaluated) {
+  return position_errors(kind, with_unfitted_fixtures(chain, fitted_rows, evaluated), evaluated);
 }
 
 void fill_error_statistics(Calibration& calibration, const EvaluationInputs& evaluated) {
   const std::vector<int> inliers = without_outliers(evaluated.plan.fitted, calibration.estimate.outliers);
   const PoseSet rows = select(evaluated.data, inliers), no_rows;
-  fill_train(calibration.nominal, evaluated.nominal, no_rows, rows);
-  fill_train(calibration.before, evaluated.frames_only, rows, rows);
-  fill_train(calibration.after, calibration.estimate.chain, rows, rows);
-  fill_held_out(calibration, evaluated, evaluated.gross_errors, &TrainHoldout::holdout);
-  fill_held_out(calibration, evaluated, {}, &TrainHoldout::holdout_all_rows);
-  fill_rows(calibration, evaluated);
-  calibration.measured = primary_measurement_kind(evaluated.data).value_or(angle_kind(evaluated.data));
+  const JudgedKinds kinds = judged_kinds(evaluated);
+  fill_train(calibration.nominal, kinds, evaluated.nominal, no_rows, rows);
+  fill_train(calibration.before, kinds, evaluated.frames_only, rows, rows);
+  fill_train(calibration.after, kinds, calibration.estimate.chain, rows, rows);
+  fill_held_out(calibration, evaluated, kinds, evaluated.gross_errors, &TrainHoldout::holdout);
+  fill_held_out(calibration, evaluated, kinds, {}, &TrainHoldout::holdout_all_rows);
+  fill_rows(calibration, evaluated, kinds.position);
+  calibration.measured = kinds.position.value_or(kinds.angle);
 }
 
 std::optional<double> chance_of_improvement(const std::vector<RowErrors>& rows, const std::vector<int>& skipped,
@@ -182,7 +199,7 @@ std::optional<double> chance_of_improvement(const std::vector<RowErrors>& rows, 
 }
 
 std::optional<ExpectedErrors> expected_holdout_errors(const EvaluationInputs& evaluated) {
-  const auto primary = primary_measurement_kind(evaluated.data);
+  const auto primary = judged_kinds(evaluated).position;
   if (!evaluated.instrument || !primary) return std::nullopt;
   const ResidualKind& kind = residual_kind(*primary);
   double squares = 0.0, squares_by_noise = 0.0, count = 0.0;

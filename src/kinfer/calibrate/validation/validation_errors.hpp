@@ -17,11 +17,14 @@ struct ValidationFit {
 };
 
 /// The primary kind of measurement, whose errors are reported first [m]: the first of points, contacts, distances,
-/// ball-bars and planes that was measured. Nothing where only orientations or tilts were measured.
+/// ball-bars, planes and directions with enough measurements to judge a model, or that with the most where none has
+/// enough. Nothing where only orientations or tilts were measured. It belongs to a whole data set: parts of it may lack
+/// this kind, and are then judged by nothing.
 std::optional<MeasurementKind> primary_measurement_kind(const PoseSet& data);
 
-/// Errors of the primary kind of `evaluated` for a chain that was fitted to `fitted_rows`.
-std::vector<double> primary_errors(const Chain& chain, const PoseSet& fitted_rows, const PoseSet& evaluated);
+/// Errors [m] of one kind that shows the tool's position, for a chain that was fitted to `fitted_rows`.
+std::vector<double> position_errors_of_fit(MeasurementKind kind, const Chain& chain, const PoseSet& fitted_rows,
+                                           const PoseSet& evaluated);
 
 /// The inputs that all error statistics share.
 struct EvaluationInputs {

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// A few measurements of one kind beside many of another: each pair of kinds has an answer or a sentence.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kinfer/calibrate/calibrate.hpp"
+#include "kinfer/words/calibration/calibration.hpp"
+#include "support/mixed_kinds.hpp"
+
+namespace kinfer {
+using namespace calibrate;
+namespace {
+
+using namespace test;
+
+Result<Calibration> calibrated(const MixedKinds& of, int seed = 1) {
+  const Chain nominal = robot_with_anchors();
+  const PoseSet data = mixed_kinds(with_random_errors(nominal, {}, Rng(seed)), of, seed);
+  return calibrate_robot({nominal, {}, of.instrument, data}, {.model = FixedModel{}}, Rng(1));
+}
+
+std::string pair_name(const ::testing::TestParamInfo<MixedKinds>& of) {
+  return "few_" + std::string(name(of.param.few)) + "_beside_" + std::string(name(of.param.many));
+}
+
+std::vector<MixedKinds> pairs_of_kinds() {
+  std::vector<MixedKinds> pairs;
+  for (const ResidualKind& many : residual_kinds())
+    for (const ResidualKind& few : residual_kinds())
+      if (many.kind != few.kind) pairs.push_back({.many = many.kind, .few = few.kind, .many_count = 20});
+  return pairs;
+}
+
+class PairOfKinds : public ::testing::TestWithParam<MixedKinds> {};
+INSTANTIATE_TEST_SUITE_P(FewBesideMany, PairOfKinds, ::testing::ValuesIn(pairs_of_kinds()), pair_name);
+
+// One in a row of its own, which most folds lack, and several that share the rows of the others.
+TEST_P(PairOfKinds, HasAnAnswerOrASentenceAndSoundDataAreNotCalledContradictory) {
+  for (const auto& [count, rows] : {std::pair{1, FewRows::own}, std::pair{6, FewRows::shared}}) {
+    MixedKinds of = GetParam();
+    of.few_count = count, of.rows = rows;
+    const Result<Calibration> c = calibrated(of);
+    if (!c) {
+      EXPECT_FALSE(c.error().what.empty());
+      continue;
+    }
+    EXPECT_TRUE(std::isfinite(c->after.position.holdout.mean)) << count;
+    EXPECT_NE(c->reason, CalibrationReason::contradictory) << count << ": " << words::verdict(*c);
+  }
+}
+
+TEST(FewBesideMany, PointsJudgeAModelOnceTheyAreEnough) {
+  for (const auto& [points, judge] : {std::pair{6, kind_of<DirectionMeasurement>}, {12, kind_of<PointMeasurement>}}) {
+    const Calibration c =
+        calibrated({.many = kind_of<DirectionMeasurement>, .few = kind_of<PointMeasurement>, .few_count = points})
+            .value();
+    EXPECT_EQ(c.measured, judge);
+    EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
+    EXPECT_EQ(c.after.position.holdout.n, judge == kind_of<PointMeasurement> ? points : 30);
+    EXPECT_LT(c.after.position.holdout.mean, 0.2 * c.before.position.holdout.mean);
+  }
+}
+
+}  // namespace
+}  // namespace kinfer
