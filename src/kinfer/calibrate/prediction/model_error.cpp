@@ -61,7 +61,7 @@ HeldOutResiduals residuals_of(const Estimate& fit, const PredictionModel& model,
   };
   for (std::size_t k = 0; k < rows.points.size(); ++k) {
     const PointMeasurement& point = rows.points[k];
-    const auto& [tool, shift, turn] = predicted[static_cast<std::size_t>(point.row)];
+    const auto& [tool, weight, shift, turn] = predicted[static_cast<std::size_t>(point.row)];
     const Vec3 arm = point.target < 0 ? Vec3::Zero().eval() : Vec3(tool.rotation * fit.chain.targets[point.target].xyz);
     all.points.push_back(in_base(world_R_base(point.row), point.position - tool.position - arm,
                                  point_columns(at.twists[point.row], arm), fit.covariance,
@@ -69,18 +69,18 @@ HeldOutResiduals residuals_of(const Estimate& fit, const PredictionModel& model,
     const Vec3 apart = world_R_base(point.row).transpose() * shift;
     all.points.back().open =
         displacement_variance(fit.chain.field, roots, rows.joints.col(point.row)) * Mat3::Identity() +
-        apart * apart.transpose();
+        weight * (1.0 - weight) * apart * apart.transpose();
     all.points.back().is_tool_point = point.target < 0;
   }
   for (std::size_t k = 0; k < rows.orientations.size(); ++k) {
     const OrientationMeasurement& measured = rows.orientations[k];
-    const auto& [tool, shift, spread] = predicted[static_cast<std::size_t>(measured.row)];
+    const auto& [tool, weight, shift, faded] = predicted[static_cast<std::size_t>(measured.row)];
     const Vec3 turn = log_so3(measured.orientation.toRotationMatrix() * tool.rotation.transpose());
     const MatrixXd jacobian = at.twists[measured.row].bottomRows<3>();
     all.rotations.push_back(in_base(world_R_base(measured.row), turn, jacobian, fit.covariance,
                                     covariance_of(weights.of<OrientationMeasurement>()[k], measured.axes)));
-    const Vec3 apart = world_R_base(measured.row).transpose() * spread;
-    all.rotations.back().open = apart * apart.transpose();
+    const Vec3 apart = world_R_base(measured.row).transpose() * faded;
+    all.rotations.back().open = weight * (1.0 - weight) * apart * apart.transpose();
   }
   return all;
 }

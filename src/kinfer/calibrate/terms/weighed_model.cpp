@@ -42,10 +42,25 @@ std::vector<double> factors_of(const std::vector<GroupRelevance>& weights) {
   return factors;
 }
 
-/// Deflections follow from loads and temperatures by one number a joint, so they hold wherever the loads are known. The
-/// other terms are functions of joint positions and directions that the data show only where they were measured.
-bool holds_everywhere(Term term) {
-  return term == Term::gravity_compliance || term == Term::torque_compliance || term == Term::thermal_expansion;
+/// Where a term holds that was found among the fitted rows.
+enum class TermReach {
+  loads,    ///< one number a joint, wherever loads and temperatures are known
+  joints,   ///< numbers of a joint's encoder and gear, as long as held-out ends of the joint space do not speak against
+  measured  ///< a function of joint positions, where it was measured
+};
+
+TermReach reach_of(Term term) {
+  switch (term) {
+    case Term::gravity_compliance:
+    case Term::torque_compliance:
+    case Term::thermal_expansion:
+      return TermReach::loads;
+    case Term::gain:
+    case Term::backlash:
+      return TermReach::joints;
+    default:
+      return TermReach::measured;
+  }
 }
 
 /// Splits along the principal directions of the joint positions, of a part of many rows.
@@ -173,22 +188,30 @@ class ModelWeigher {
       current_.interpolation = held_out(current_.fit, current_.model.parameters, data_.splits);
   }
 
-  /// Geometry with the terms that hold everywhere, without the others; geometry alone where held-out ends of the joint
-  /// space are predicted worse with them. None where the model has no other terms.
+  /// Geometry with the terms that hold everywhere, without the others; without those that make held-out ends of the
+  /// joint space worse. None where the whole model holds everywhere.
   std::optional<Estimate> fit_for_everywhere(const ProvedModel& plain) const {
-    const auto local = [](const CandidateParameter& c) { return !holds_everywhere(c.term); };
-    if (std::ranges::none_of(current_.model.terms, local)) return std::nullopt;
+    const auto most = [&](TermReach reach) {
+      return std::ranges::all_of(current_.model.terms, [&](const auto& c) { return reach_of(c.term) <= reach; });
+    };
+    if (most(TermReach::loads)) return std::nullopt;
+    const ProvedModel loads = extended(plain, TermReach::loads), joints = extended(loads, TermReach::joints);
+    if (joints.model.terms.size() == current_.model.terms.size()) return std::nullopt;
+    return joints.model.terms.empty() ? fit_beside_series(geometry_.chain, geometry_.parameters) : joints.fit;
+  }
+
+  /// The model with all terms of that reach, where held-out ends of the joint space do not speak against these.
+  ProvedModel extended(const ProvedModel& model, TermReach reach) const {
     std::vector<double> factors = factors_of(weights_);
     for (std::size_t g = 0; g < groups_.size(); ++g)
-      if (!holds_everywhere(static_cast<Term>(groups_[g].family))) factors[g] = 0.0;
-    ProvedModel loads{model_of_relevant(candidates_, geometry_, all_fitted_, groups_, factors), {}, {}, {}};
-    if (loads.model.terms.empty()) return fit_beside_series(geometry_.chain, geometry_.parameters);
-    loads.fit = fit_beside_series(loads.model.chain, loads.model.parameters);
-    loads.extrapolation = held_out(loads.fit, loads.model.parameters, extrapolation_splits_);
+      if (reach_of(static_cast<Term>(groups_[g].family)) > reach) factors[g] = 0.0;
+    ProvedModel more{model_of_relevant(candidates_, geometry_, all_fitted_, groups_, factors), {}, {}, {}};
+    if (more.model.terms.size() == model.model.terms.size()) return model;
+    more.fit = fit_beside_series(more.model.chain, more.model.parameters);
+    more.extrapolation = held_out(more.fit, more.model.parameters, extrapolation_splits_);
     const ErrorChange change =
-        compare_holdout(plain.extrapolation, plain.fit.outliers, loads.extrapolation, loads.fit.outliers);
-    return change.t < -thresholds::harm_significance ? fit_beside_series(geometry_.chain, geometry_.parameters)
-                                                     : loads.fit;
+        compare_holdout(model.extrapolation, model.fit.outliers, more.extrapolation, more.fit.outliers);
+    return change.t < -thresholds::harm_significance ? model : more;
   }
 
   /// With the series of the present model as they are: they end at the measured positions by themselves.

@@ -66,8 +66,10 @@ std::vector<PoseUncertainty> pose_uncertainties(const Chain& chain, const Predic
       const Mat3 error = model_error.block<3, 3>(from, from);
       return Mat3(part * part.transpose() + world_R_base * error * world_R_base.transpose());
     };
-    const auto& [pose, shift, turn] = predicted[static_cast<std::size_t>(row)];
-    all.push_back({block(0) + shift * shift.transpose(), block(3) + turn * turn.transpose()});
+    const auto& [pose, weight, shift, turn] = predicted[static_cast<std::size_t>(row)];
+    // w (1 − w) d dᵀ of the mixture, and (1 − w)² d dᵀ of a truth with the corrections everywhere.
+    all.push_back(
+        {block(0) + (1.0 - weight) * shift * shift.transpose(), block(3) + (1.0 - weight) * turn * turn.transpose()});
   }
   return all;
 }
@@ -94,8 +96,7 @@ std::vector<PredictedPose> predicted_with_spread(const Chain& chain, const std::
     const Vec3 turn = log_so3(far[i].rotation * near[i].rotation.transpose()),
                shift = far[i].position - near[i].position;
     predicted[i].pose = {exp_so3(part * turn) * near[i].rotation, near[i].position + part * shift};
-    const double spread = std::sqrt(weight * part);
-    predicted[i].shift = spread * shift, predicted[i].turn = spread * turn;
+    predicted[i].weight = weight, predicted[i].shift = shift, predicted[i].turn = turn;
   }
   return predicted;
 }

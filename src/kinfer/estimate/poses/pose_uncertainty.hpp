@@ -31,11 +31,12 @@ Chain chain_with_corrections(const Chain& chain, const PredictionModel& model, d
 /// Without a prediction model they hold everywhere.
 std::vector<Pose> predicted_poses(const Chain& chain, const std::optional<PredictionModel>& model, const PoseSet& rows);
 
-/// A pose between that with all corrections and that without, by their weight w, and how far apart the two are: of a
-/// mixture of both the covariance is w (1 − w) d dᵀ.
+/// A pose between that with all corrections and that without, by their weight w, and how far apart the two are, d: of a
+/// mixture of both the covariance is w (1 − w) d dᵀ, and (1 − w) d is off where the corrections go on to hold.
 struct PredictedPose {
   Pose pose;
-  Vec3 shift = Vec3::Zero(), turn = Vec3::Zero();  ///< √(w (1 − w)) d, [m] and [rad] along the axes of the world
+  double weight = 1.0;                             ///< w
+  Vec3 shift = Vec3::Zero(), turn = Vec3::Zero();  ///< d, [m] and [rad] along the axes of the world
 };
 std::vector<PredictedPose> predicted_with_spread(const Chain& chain, const std::optional<PredictionModel>& model,
                                                  const PoseSet& rows, int threads = 1);
