@@ -17,6 +17,7 @@
 #include "kinfer/calibrate/diagnosis/moving_points.hpp"
 #include "kinfer/calibrate/fit/population_choice.hpp"
 #include "kinfer/calibrate/prediction/model_error.hpp"
+#include "kinfer/calibrate/prediction/unobserved_tool.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/calibrate/starting_model.hpp"
 #include "kinfer/calibrate/validated_fit.hpp"
@@ -129,7 +130,7 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
     calibration.tolerated_error =
         primary_measurement_kind(task.data) ? max_plausible_error(task) : max_plausible_angle(task);
   if (const auto prediction = make_prediction_model(evaluation, fit.estimate, fit.beyond, options.threads)) {
-    calibration.prediction = prediction->model;
+    calibration.prediction = with_unobserved_tools(prediction->model, fit.estimate.chain, task.tolerances, fitted);
     calibration.predicted_holdout_rms = prediction->holdout_rms;
   }
   calibration.unobserved_lengths = find_unobserved_lengths(task, fit.estimate);
