@@ -42,5 +42,24 @@ TEST(LongRunNoise, OfWhiteResidualsIsThatOfTheProblem) {
   EXPECT_GT(noise[0].force, 0.5);  // variance 5.5, and alike for many intervals
 }
 
+TEST(RegressionDilution, IsThatOfTheAxesThatHardlyTurn) {
+  constexpr double noise = 0.01, samples = 10.0;
+  std::vector<InsBlock> blocks(intervals);
+  Rng rng(3);
+  for (int k = 0; k < intervals; ++k) {
+    InsBlock& block = blocks[static_cast<std::size_t>(k)];
+    block.rows = 1;
+    block.samples = static_cast<int>(samples);
+    block.factor(0, 0) = static_cast<float>(std::sqrt(samples));
+    const Vec3 truth(std::sin(0.1 * k), 0.01 * std::sin(0.1 * k), 0.0);
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      block.target(0, axis) = static_cast<float>(std::sqrt(samples) * truth[axis] + noise * rng.normal());
+  }
+  const Vec3 dilution = regression_dilution(blocks, noise);
+  EXPECT_NEAR(dilution.x(), noise * noise / samples / 0.5, 2e-6);
+  EXPECT_NEAR(dilution.y(), 0.2, 0.1);
+  EXPECT_EQ(dilution.z(), 1.0);
+}
+
 }  // namespace
 }  // namespace kinfer

@@ -28,11 +28,11 @@ VectorXd sample(std::uint64_t seed, Eigen::Index size) {
 }
 
 /// Two groups of nine, and what all have in common.
-std::vector<MatrixXd> groups() {
+std::vector<WideningCandidate> groups() {
   MatrixXd first = MatrixXd::Zero(18, 9), second = first;
   first.topRows(9).setIdentity();
   second.bottomRows(9).setIdentity();
-  return {first, second, MatrixXd::Ones(18, 1)};
+  return {{first}, {second}, {MatrixXd::Ones(18, 1)}};
 }
 
 /// ln of the density of N(0, C) at x.
@@ -45,11 +45,12 @@ double log_density(const VectorXd& x, const MatrixXd& covariance) {
 TEST(ScaleEvidence, IsTheLikelihoodRatioOfTheWiderPrior) {
   VectorXd measured = sample(1, 18);
   measured.head(9).array() += 0.02;
-  const std::vector<MatrixXd> candidates{groups().front()};
+  const std::vector<WideningCandidate> candidates{groups().front()};
   const auto found = find_widenings(estimate_of(measured), candidates, -7.0);
   ASSERT_EQ(found.size(), 1u);
   const MatrixXd usual = (prior_sd * prior_sd + noise * noise) * MatrixXd::Identity(18, 18),
-                 wider = usual + found[0].sd * found[0].sd * candidates[0] * candidates[0].transpose();
+                 wider = usual +
+                         found[0].sd * found[0].sd * candidates[0].directions * candidates[0].directions.transpose();
   EXPECT_NEAR(found[0].log_odds, log_density(measured, wider) - log_density(measured, usual), 1e-6);
   EXPECT_NEAR(found[0].sd, 0.02, 2e-3);
 }
@@ -71,6 +72,14 @@ TEST(ScaleEvidence, FindsWhatAllHaveInCommonRatherThanEachByItself) {
     ASSERT_EQ(found.size(), 1u) << seed;
     EXPECT_EQ(found[0].candidate, 2u) << seed;
   }
+}
+
+TEST(ScaleEvidence, DoesNotReachWhatNoInstrumentIs) {
+  VectorXd measured = sample(1, 18);
+  measured.head(9).array() += 0.8;
+  std::vector<WideningCandidate> candidates = groups();
+  for (WideningCandidate& candidate : candidates) candidate.largest_sd = 0.1;
+  for (const Widening& found : find_widenings(estimate_of(measured), candidates, -7.0)) EXPECT_LE(found.sd, 0.1);
 }
 
 TEST(ScaleEvidence, IsNoneWhereThePriorIsRight) {

@@ -63,6 +63,21 @@ TEST(Connection, BesideASegmentAtRestIsThatOfAFixedPoint) {
   EXPECT_NE(strength_of(pair_connection(motion, 0, 1).whole), ConnectionStrength::strong);
 }
 
+TEST(Connection, BesideASegmentAtRestIsAlsoThatOfASlideAlongOneLine) {
+  RecordedMotion motion = test::serial_machine(test::at_rest(), 2, test::general_hinge());
+  motion.segments[0] = test::measured_segment("a", test::at_rest());
+  motion.segments[1] = test::measured_segment("b", test::at_rest());
+  const auto slide = [&](const Vec3& direction, const Vec3& other) {
+    for (std::size_t i = 0; i < motion.rows(); ++i) {
+      const double at = 0.05 * static_cast<double>(i);
+      motion.segments[1].acceleration[i] = 0.3 * (std::sin(at) * direction + std::cos(1.3 * at) * other);
+    }
+    return strength_of(pair_connection(motion, 0, 1).whole);
+  };
+  EXPECT_EQ(slide(Vec3(0.6, 0.0, 0.8), Vec3::Zero()), ConnectionStrength::strong);
+  EXPECT_EQ(slide(Vec3(0.6, 0.0, 0.8), Vec3(0.0, 0.9, 0.5)), ConnectionStrength::none) << "in a plane";
+}
+
 TEST(Connection, InOneHalfAloneIsAMixedRecording) {
   const PartConnection good{0.0, 10.0, {.force_gain = 12.0, .residual = 0.02, .shifted_residual = 2.0}},
       bad{10.0, 20.0, {.force_gain = 0.1, .residual = 1.9, .shifted_residual = 2.0}},

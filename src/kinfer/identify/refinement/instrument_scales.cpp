@@ -52,14 +52,24 @@ std::vector<Index> scale_parameters(const InsLayout& layout) {
   return all;
 }
 
-/// Of what the model does not explain, each part may look like a scale error.
+/// Of one instrument's matrix, column by column: of what the model does not explain, each part may look like a scale
+/// error, and so may the noise of what the instrument hardly measures.
+VectorXd unexplained_scales(const std::vector<InsBlock>& blocks, double noise, double considered) {
+  const Vec3 dilution = regression_dilution(blocks, noise);
+  VectorXd sd(elements);
+  for (Index axis = 0; axis < 3; ++axis) sd.segment<3>(3 * axis).setConstant(std::hypot(considered, dilution[axis]));
+  return sd;
+}
+
 VectorXd unexplained_scales(const InsProblem& problem, const InsCost& cost) {
   VectorXd sd(each * static_cast<Index>(problem.sensors.size()));
-  Index at = 0;
-  for (const ConsideredScale& considered : considered_scales(problem, cost)) {
-    sd.segment<elements>(at).setConstant(considered.gyroscope);
-    sd.segment<elements>(at + elements).setConstant(considered.accelerometer);
-    at += each;
+  const std::vector<ConsideredScale> considered = considered_scales(problem, cost);
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+    const InsMeasurements& r = problem.sensors[s];
+    const Index at = each * static_cast<Index>(s);
+    sd.segment<elements>(at) =
+        unexplained_scales(r.angular_velocity, r.noise.angular_velocity, considered[s].gyroscope);
+    sd.segment<elements>(at + elements) = unexplained_scales(r.force, r.noise.force, considered[s].accelerometer);
   }
   return sd;
 }
@@ -96,21 +106,22 @@ MatrixXd rotations() {
 
 /// The scale matrix of each gyroscope and accelerometer; the rotation of each gyroscope against its accelerometer; the
 /// factor of all gyroscopes.
-std::vector<MatrixXd> candidates(std::size_t sensors) {
+std::vector<WideningCandidate> candidates(std::size_t sensors) {
   const Index parameters = each * static_cast<Index>(sensors);
-  std::vector<MatrixXd> all;
-  for (Index first = 0; first < parameters; first += elements) {
-    all.emplace_back(MatrixXd::Zero(parameters, elements));
-    all.back().middleRows(first, elements).setIdentity();
-  }
+  std::vector<WideningCandidate> all;
+  const auto add_candidate = [&](Index unknowns, double largest_sd) -> MatrixXd& {
+    return all.emplace_back(WideningCandidate{MatrixXd::Zero(parameters, unknowns), largest_sd}).directions;
+  };
+  for (Index first = 0; first < parameters; first += elements)
+    add_candidate(elements, largest_scale_sd).middleRows(first, elements).setIdentity();
   for (Index first = 0; first < parameters; first += each) {
-    all.emplace_back(MatrixXd::Zero(parameters, 3));
-    all.back().middleRows(first, elements) = rotations();
-    all.back().middleRows(first + elements, elements) = -rotations();
+    MatrixXd& turn = add_candidate(3, largest_scale_sd);
+    turn.middleRows(first, elements) = rotations();
+    turn.middleRows(first + elements, elements) = -rotations();
   }
-  all.emplace_back(MatrixXd::Zero(parameters, 1));
+  MatrixXd& common = add_candidate(1, largest_common_scale_sd);
   for (Index first = 0; first < parameters; first += each)
-    for (const Index k : diagonal) all.back()(first + k, 0) = 1.0;
+    for (const Index k : diagonal) common(first + k, 0) = 1.0;
   return all;
 }
 
@@ -154,7 +165,7 @@ Estimate along(const VectorXd& direction, const VectorXd& value, ConstMatrixRef 
 Estimate common_scale(const InsFit& fit, ConstMatrixRef covariance) {
   const std::vector<Index> at = scale_parameters(fit.layout);
   const VectorXd values = scale_values(fit.unknowns.errors);
-  const VectorXd direction = candidates(fit.unknowns.errors.size()).back();
+  const VectorXd direction = candidates(fit.unknowns.errors.size()).back().directions;
   const auto information = invert_spd(covariance(at, at));
   return information ? along(direction, values, *information) : Estimate{direction.dot(values) / direction.sum(), 0.0};
 }
@@ -219,6 +230,20 @@ std::vector<InsScaleFactor> scale_factors(const ScaleReview& review, const InsPr
   return factors;
 }
 
+/// Whether instruments and clock can have the estimated errors.
+bool are_possible(const std::vector<InsErrors>& errors, const ScaleReview& review) {
+  const double most = review.common_sd > 0.0 ? largest_common_factor : 1.0 + largest_scale,
+               least = review.common_sd > 0.0 ? 1.0 / largest_common_factor : 1.0 - largest_scale;
+  return std::ranges::all_of(errors, [&](const InsErrors& e) {
+    const Vec3 factors = Vec3::Ones() + e.gyroscope_scale.diagonal();
+    Mat3 off_diagonal = e.gyroscope_scale;
+    off_diagonal.diagonal().setZero();
+    return factors.minCoeff() > least && factors.maxCoeff() < most &&
+           off_diagonal.cwiseAbs().maxCoeff() < largest_scale &&
+           e.accelerometer_scale.cwiseAbs().maxCoeff() < largest_scale;
+  });
+}
+
 /// A fit and what fitting changes in its problem; a copy of the problem would hold an hour of measurements twice.
 struct FitState {
   InsFit fit;
@@ -258,12 +283,14 @@ ScaleReview refit_deviant_scales(const RefinementTask& task, RefinementFit& fitt
   for (int round = 0; round < most_rounds; ++round) {
     const ScaleReview now = review_scales(task, fitted);
     if (now.empty() || now.is_alike(review)) break;
-    if (!explains_all && !before) before = state_of(fitted);
+    if (!before) before = state_of(fitted);
     review = now;
     problem.scale_factors = scale_factors(review, problem);
     fitted.fit = fit_ins(problem, fitted.fit.unknowns, task.options, observer);
+    if (!are_possible(fitted.fit.unknowns.errors, review)) break;
   }
-  if (!before || worst_misfit(problem) <= max_rigid_chain_misfit) return review;
+  const bool is_explained = explains_all || worst_misfit(problem) <= max_rigid_chain_misfit;
+  if (review.empty() || (is_explained && are_possible(fitted.fit.unknowns.errors, review))) return review;
   restore(fitted, std::move(*before));
   return {};
 }

@@ -32,9 +32,9 @@ double log_odds(const SymmetricEigen& information, const VectorXd& right, double
   return 0.5 * twice;
 }
 
-/// The most likely sd, on a grid of a tenth of itself: from errors that no data sheet names to those that are units.
-Widening most_likely(std::size_t candidate, const GroupEvidence& evidence) {
-  constexpr double smallest = 1e-5, largest = 1.0, ratio = 1.1;
+/// The most likely sd up to `largest`, on a grid of a tenth of itself.
+Widening most_likely(std::size_t candidate, const GroupEvidence& evidence, double largest) {
+  constexpr double smallest = 1e-5, ratio = 1.1;
   const SymmetricEigen information = symmetric_eigen(evidence.information);
   const VectorXd right = information.vectors.transpose() * evidence.right;
   Widening best{.candidate = candidate};
@@ -59,16 +59,18 @@ void widen(ScaleEstimate& estimate, ConstMatrixRef a, double sd) {
 
 }  // namespace
 
-std::vector<Widening> find_widenings(ScaleEstimate estimate, const std::vector<MatrixXd>& candidates,
+std::vector<Widening> find_widenings(ScaleEstimate estimate, const std::vector<WideningCandidate>& candidates,
                                      double log_prior_odds) {
   std::vector<Widening> found;
   while (found.size() < candidates.size()) {
     Widening best;
     for (std::size_t c = 0; c < candidates.size(); ++c)
-      if (const Widening now = most_likely(c, group_evidence(estimate, candidates[c])); now.log_odds > best.log_odds)
+      if (const Widening now =
+              most_likely(c, group_evidence(estimate, candidates[c].directions), candidates[c].largest_sd);
+          now.log_odds > best.log_odds)
         best = now;
     if (best.log_odds + log_prior_odds < 0.0) break;
-    widen(estimate, candidates[best.candidate], best.sd);
+    widen(estimate, candidates[best.candidate].directions, best.sd);
     found.push_back(best);
   }
   return found;

@@ -6,6 +6,7 @@
 // them, g ~ N(0, s² I) one unknown per column of A, the recording would tell of g by information Λ = A'(P⁻¹ − P⁻¹CP⁻¹)A
 // and right-hand side b = A'P⁻¹m, so that with the eigenvalues λ of Λ and b along their vectors
 //   2 ln odds(s) = Σ s² b² / (1 + s² λ) − ln(1 + s² λ).
+// s has an upper limit: what no instrument does is no explanation, however likely it would make the recording.
 #pragma once
 
 #include <vector>
@@ -21,6 +22,12 @@ struct ScaleEstimate {
   MatrixXd prior_information;  ///< P⁻¹
 };
 
+/// Parameters whose prior may be too narrow.
+struct WideningCandidate {
+  MatrixXd directions;      ///< A
+  double largest_sd = 1.0;  ///< of s: larger errors are physically impossible
+};
+
 struct Widening {
   std::size_t candidate = 0;
   double sd = 0.0;        ///< s, most likely
@@ -28,7 +35,7 @@ struct Widening {
 };
 
 /// Those of the candidates A that are more likely than not to be needed, by the odds `log_prior_odds`; strongest first.
-std::vector<Widening> find_widenings(ScaleEstimate estimate, const std::vector<MatrixXd>& candidates,
+std::vector<Widening> find_widenings(ScaleEstimate estimate, const std::vector<WideningCandidate>& candidates,
                                      double log_prior_odds);
 
 }  // namespace kinfer::identify

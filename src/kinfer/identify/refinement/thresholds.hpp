@@ -41,6 +41,20 @@ inline constexpr double max_azimuth_prior_sd = 0.2;
 /// reach ln odds of 57 to 68.
 inline constexpr double log_deviant_scale_odds = -7.0;
 
+/// Largest prior standard deviation of an instrument's scale errors, as a share of the measurement, and of the angle
+/// [rad] between its axes and the housing: three times what data sheets of uncalibrated consumer sensors state (3 %).
+/// Larger takes joints of the wrong type for errors of instruments.
+inline constexpr double largest_scale_sd = 0.1;
+
+/// Largest estimate: three such standard deviations. A unit or a range beyond it is found before the fit (diagnosis).
+inline constexpr double largest_scale = 3.0 * largest_scale_sd;
+
+/// The same of a factor that all gyroscopes share, which may be the clock's: simulated clocks run up to twice as fast.
+inline constexpr double largest_common_scale_sd = 1.0;
+
+/// Largest estimate of that factor; smaller than its inverse, it is impossible, too.
+inline constexpr double largest_common_factor = 3.0;
+
 /// [rad per m/s²] Smallest prior of a mount's compliance: 0.1 mrad under the sensor's own weight, which is negligible.
 inline constexpr double min_mount_compliance = 1e-5;
 

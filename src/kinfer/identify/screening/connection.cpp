@@ -10,6 +10,7 @@
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/screening/thresholds.hpp"
 #include "kinfer/identify/structure/thresholds.hpp"
+#include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -94,18 +95,43 @@ bool is_motionless(const SegmentMotion& segment) {
          mean_square_of(segment.angular_velocity).trace() < min_connection_rate * min_connection_rate;
 }
 
+/// Whether the pair may be a prismatic joint: neither turns relative to the other.
+bool may_slide(const PairFit& fit) {
+  return fit.relative_rate() < min_rotating_rate;
+}
+
+/// [m/s²] rms acceleration that no joint explains: across the axis, where the pair may be a prismatic joint.
+double unexplained_acceleration(const PairFit& fit) {
+  if (!may_slide(fit)) return fit.residual();
+  const VectorXd squares = symmetric_eigen(fit.acceleration).values;
+  return std::sqrt(std::max(0.0, squares[0] + squares[1]));
+}
+
+/// Code length of a vector along a line; nothing but its size is known of what it is across.
+double line_length(const Mat3& mean_square, double floor) {
+  const VectorXd squares = symmetric_eigen(mean_square).values;
+  const double noise = floor * floor, across = 0.5 * (squares[0] + squares[1]) + noise;
+  return 0.5 * std::log(squares[2] + noise) + std::log(across);
+}
+
 /// Code length of a vector of which nothing but its size is known.
 double isotropic_length(const Mat3& mean_square, double floor) {
   return code_length(mean_square.trace() / 3.0 * Mat3::Identity(), floor);
 }
 
 /// Beside a segment at rest. Every machine that moves in a plane rotates about one axis of the world, so the rate
-/// speaks for a joint there only if a point is at rest, too.
+/// speaks for a joint there only if a point is at rest, too. Of a prismatic joint no point is at rest: it is a segment
+/// that does not rotate, whose accelerations have one direction.
 JointConnection connection_with_ground(const SegmentMotion& moving, const PairFit& fit) {
   const Mat3 acceleration = mean_square_of(moving.acceleration);
-  JointConnection found{.residual = fit.residual(),
+  JointConnection found{.residual = unexplained_acceleration(fit),
                         .shifted_residual = std::sqrt(acceleration.trace()),
                         .shifted_rate = fit.relative_rate()};
+  if (may_slide(fit)) {
+    found.force_gain = isotropic_length(acceleration, pair_acceleration_floor) -
+                       line_length(fit.acceleration, pair_acceleration_floor);
+    return found;
+  }
   found.force_gain = isotropic_length(acceleration, min_connection_excitation) -
                      isotropic_length(fit.acceleration, min_connection_excitation);
   if (found.residual < small_residual || found.residual < 0.3 * found.shifted_residual)
@@ -133,7 +159,7 @@ JointConnection connection_in(const RecordedMotion& motion, std::size_t parent, 
   return {.force_gain = median(force) - force_length(fit),
           .rate_gain = median(rate) - rate_length(fit),
           .gain_spread = standard_deviation(sum),
-          .residual = fit.residual(),
+          .residual = unexplained_acceleration(fit),
           .shifted_residual = median(residual),
           .shifted_rate = median(off_axis)};
 }

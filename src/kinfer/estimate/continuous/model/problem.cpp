@@ -68,6 +68,20 @@ std::vector<MeasuredSpan> measured_spans(const InsProblem& problem, const InsBod
   return of_dimension;
 }
 
+/// Slides that nothing rotates, of a root at rest: no measurement shows where they are or how fast they move.
+std::vector<bool> accelerating_dimensions(const InsProblem& problem, const InsBodies& bodies, const InsLayout& layout) {
+  std::vector<bool> found(static_cast<std::size_t>(layout.spline_dimensions), false), is_turned(bodies.size(), false);
+  if (!problem.root_at_rest) return found;
+  for (std::size_t b = 1; b < bodies.size(); ++b) {
+    const InsBody& body = bodies[b];
+    const bool rotates = body.motion == JointMotion::revolute || body.motion == JointMotion::spherical;
+    is_turned[b] = rotates || is_turned[static_cast<std::size_t>(body.parent)];
+    if (body.motion == JointMotion::prismatic && !is_turned[b])
+      found[static_cast<std::size_t>(layout.spline_dimension[b])] = true;
+  }
+  return found;
+}
+
 /// `step`: 3 per unknown point, 3 per touched point, 10 per closure, then the surveyor's frame: translation and
 /// rotation.
 void change_facts(InsFactUnknowns& facts, ConstVectorRef step) {
@@ -99,6 +113,7 @@ InsLayout layout_of(const InsProblem& problem, const InsBodies& bodies) {
     layout.spline_dimensions += degrees_of_freedom(body.motion);
   }
   layout.measured = measured_spans(problem, bodies, layout);
+  layout.only_accelerates = accelerating_dimensions(problem, bodies, layout);
   layout.has_clocks = problem.prior.clock_offset > 0.0;
   const auto append = [&](Index count) { return std::exchange(layout.errors_each, layout.errors_each + count); };
   append(layout.has_matrices ? 24 : 6);

@@ -109,6 +109,7 @@ struct InsLayout {
   std::vector<Eigen::Index> spline_dimension;  ///< first spline dimension of each body's joint; −1: none
   Eigen::Index bias_process = 0;               ///< unknowns per time segment: six per sensor, or none
   std::vector<MeasuredSpan> measured;          ///< of each spline dimension
+  std::vector<bool> only_accelerates;          ///< of each: measured by its second derivative alone
   bool has_matrices = false, has_clocks = false, has_tilts = false;
   Eigen::Index errors_each = 0;                    ///< unknowns per sensor: [b_g, b_a, S_g, S_a, clock, tilt]
   Eigen::Index clock_error = -1, tilt_error = -1;  ///< offsets in these; −1: absent

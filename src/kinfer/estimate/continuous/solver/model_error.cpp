@@ -52,23 +52,27 @@ std::optional<Vec3> block_mean(const InsBlock& block) {
   return Vec3(block.target.cast<double>().transpose() * by_offset / squares);
 }
 
-/// Of the intervals' means: rms distance from their mean, and samples per interval.
+/// Of the intervals' means: rms distance from their mean, its square along each axis, and samples per interval.
 struct SignalSize {
-  double rms = 0.0, samples = 0.0;
+  double rms = 0.0;
+  Vec3 variance = Vec3::Zero();
+  double samples = 0.0;
 };
 
 SignalSize signal_size(const std::vector<InsBlock>& blocks) {
-  Vec3 sum = Vec3::Zero();
+  Vec3 sum = Vec3::Zero(), squares_along = Vec3::Zero();
   double squares = 0.0, count = 0.0, samples = 0.0;
   for (const InsBlock& block : blocks)
     if (const auto value = block_mean(block)) {
       sum += *value;
       squares += value->squaredNorm();
+      squares_along += value->cwiseAbs2();
       samples += block.samples;
       count += 1.0;
     }
   if (count <= 0.0) return {};
-  return {std::sqrt(std::max(0.0, squares / count - (sum / count).squaredNorm())), samples / count};
+  return {std::sqrt(std::max(0.0, squares / count - (sum / count).squaredNorm())),
+          squares_along / count - (sum / count).cwiseAbs2(), samples / count};
 }
 
 /// Size of the elements of an instrument's considered E. `axes`: those in which its errors show.
@@ -127,6 +131,14 @@ std::vector<ConsideredScale> considered_scales(const InsProblem& problem, const 
          considered_scale(r.force, fit.force, r.noise.force, force_axes)});
   }
   return considered;
+}
+
+Vec3 regression_dilution(const std::vector<InsBlock>& blocks, double noise) {
+  const SignalSize measured = signal_size(blocks);
+  if (measured.samples <= 0.0) return Vec3::Ones();
+  const double of_noise = noise * noise / measured.samples;
+  return measured.variance.unaryExpr(
+      [&](double variance) { return variance > 2.0 * of_noise ? of_noise / (variance - of_noise) : 1.0; });
 }
 
 std::optional<LongRunEstimate> long_run_estimate(InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,

@@ -40,6 +40,11 @@ struct ConsideredScale {
 };
 std::vector<ConsideredScale> considered_scales(const InsProblem& problem, const InsCost& cost);
 
+/// How far a scale matrix may be off because the motion that it multiplies is itself known with noise only: for the
+/// column of each axis, the variance of the noise over that of the signal (regression dilution; Fuller 1987), at
+/// most 1. An axis that hardly turns tells nothing of its scale.
+Vec3 regression_dilution(const std::vector<InsBlock>& blocks, double noise);
+
 /// The global parameters, were the noise white with the long-run variance of the residuals: one step from x, and their
 /// covariance.
 struct LongRunEstimate {

@@ -17,6 +17,7 @@ double roughness_sd(const InsProblem& problem, Index spline_dimension) {
 }
 
 constexpr double weak_anchor_sd = 3.0;  // [rad] or [m]
+constexpr double travel_sd = 3.0;       // [m] from the first to the last position of a slide
 
 /// Standard deviation of the difference of neighbouring coefficients before a dimension's first measurement and after
 /// its last. Extrapolated by third differences alone, a spline has no finite uncertainty after some seconds, and the
@@ -49,6 +50,12 @@ void each_spline_prior(const InsProblem& problem, const InsLayout& layout, Const
         visit({spline_dimension, weights,
                weights.dot(coefficients.row(spline_dimension).segment<spline_order>(interval).transpose()), step_sd});
       }
+    }
+    if (last && layout.only_accelerates[static_cast<std::size_t>(spline_dimension)]) {
+      const double start = problem.anchor.empty() ? 0.0 : problem.anchor[static_cast<std::size_t>(spline_dimension)];
+      const Index end = problem.grid.coefficients() - 1;
+      visit({spline_dimension, SplineWeights::Unit(spline_order - 1), coefficients(spline_dimension, end) - start,
+             travel_sd});
     }
     const Index joint = spline_dimension - (problem.root_at_rest ? 0 : 6);
     if (interval == 0 && joint >= 0) {

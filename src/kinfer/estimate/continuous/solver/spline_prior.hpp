@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prior on the spline coefficients: each spline dimension is smooth (far weaker than any real shaking), and an
-// unobservable constant stays at its initial value.
+// unobservable constant stays at its initial value. Of a slide that is only seen to accelerate, the velocity is
+// unobservable, too: its travel is that of a machine.
 #pragma once
 
 #include <functional>
