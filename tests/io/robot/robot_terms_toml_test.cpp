@@ -62,6 +62,19 @@ TEST(RobotTerms, WritingThenReadingGivesEqualValues) {
   EXPECT_EQ(*read->instrument->sigma_tilt, 0.01);
 }
 
+TEST(RobotTerms, TheAccuracyOfAWireCountsWithoutThatOfPoints) {
+  const std::string text = format_robot_toml({.chain = laws::scara()});
+  const auto stated = [&](const std::string& sigmas) {
+    return parse_robot_toml(text + "[instrument]\n" + sigmas, "r.toml").value().instrument;
+  };
+  const auto wire = stated("sigma_distance = 0.05\n");
+  ASSERT_TRUE(wire.has_value());
+  EXPECT_NEAR(*wire->sigma_distance, 0.05e-3, 1e-12);
+  EXPECT_NEAR(wire->sigma, 0.05e-3, 1e-12);
+  EXPECT_NEAR(stated("sigma_distance = 0.05\nsigma_contact = 0.08\n")->sigma, 0.08e-3, 1e-12);
+  EXPECT_FALSE(stated("sigma_direction = 0.001\n").has_value()) << "no accuracy of a length is stated";
+}
+
 TEST(RobotTerms, ErrorsNameTheirLine) {
   const std::string text = format_robot_toml({.chain = laws::scara()});
   const auto with = [&](const std::string& more) { return parse_robot_toml(text + more, "r.toml"); };

@@ -405,7 +405,13 @@ double non_negative_or_zero(TableReader& reader, std::string_view key) {
   return value;
 }
 
-/// Empty where sigma is absent: it is then estimated from the residuals.
+/// Of an instrument whose `sigma` is not stated: the larger of those of its wires, bars and contacts.
+std::optional<double> stated_length_sigma(const Instrument& instrument) {
+  if (!instrument.sigma_distance && !instrument.sigma_contact) return std::nullopt;
+  return std::max(instrument.sigma_distance.value_or(0.0), instrument.sigma_contact.value_or(0.0));
+}
+
+/// Empty where no accuracy of a length is stated: it is then estimated from the residuals.
 std::optional<Instrument> read_instrument(TableReader& file, const Scales& scales, std::optional<Vec3>& at,
                                           FirstError& first_error) {
   const TomlTable* table = file.table_or_none("instrument");
@@ -422,7 +428,10 @@ std::optional<Instrument> read_instrument(TableReader& file, const Scales& scale
   }
   if (reader.has("at")) at = reader.vector("at") * scales.length;
   reader.expect_no_other_keys();
-  if (!reader.has("sigma")) return std::nullopt;
+  if (reader.has("sigma")) return instrument;
+  const std::optional<double> sigma = stated_length_sigma(instrument);
+  if (!sigma) return std::nullopt;
+  instrument.sigma = *sigma;
   return instrument;
 }
 
