@@ -49,6 +49,8 @@ TEST_F(Calibrate, PredictionsOfTheCorrectedChainAndOfItsUrdfAgree) {
   std::getline(a, line_a), std::getline(b, line_b);
   EXPECT_EQ(line_a, "x,y,z,qw,qx,qy,qz,sd_x,sd_y,sd_z,sd_rx,sd_ry,sd_rz");
   EXPECT_EQ(line_b, "x,y,z,qw,qx,qy,qz") << "a URDF holds no uncertainty";
+  EXPECT_EQ(toml.err, "");
+  EXPECT_NE(urdf.err.find("the poses come without standard deviations"), std::string::npos) << urdf.err;
   int rows = 0;
   while (std::getline(a, line_a) && std::getline(b, line_b)) {
     std::istringstream cells_a(line_a), cells_b(line_b);

@@ -9,6 +9,7 @@
 #include "kinfer/io/pose_set/pose_log.hpp"
 #include "kinfer/io/pose_set/predictions_csv.hpp"
 #include "kinfer/io/text/text_file.hpp"
+#include "kinfer/words/calibration/prediction.hpp"
 #include "kinfer/words/findings/findings.hpp"
 
 namespace kinfer::cli {
@@ -30,6 +31,15 @@ Result<std::vector<PoseDeviations>> deviations_of(const RobotModel& robot, const
   return deviations;
 }
 
+/// What is said on standard error of the predictions.
+void print_notices(const RobotModel& robot, const PoseSet& set, const std::string& path) {
+  if (!robot.prediction) {
+    fmt::print(stderr, "kinfer: {}\n", words::no_standard_deviations(path));
+  } else if (const auto outside = deploy::find_rows_outside(*robot.prediction, set)) {
+    fmt::print(stderr, "{}\n", words::sentence(*outside));
+  }
+}
+
 int run(const PredictArguments& options) {
   if (auto other = expect_other_file(options.out, {options.joints, options.chain.path}); !other)
     return fail(other.error());
@@ -46,9 +56,7 @@ int run(const PredictArguments& options) {
   if (!poses) return fail(poses.error());
   const auto deviations = deviations_of(*robot, *set);
   if (!deviations) return fail(deviations.error());
-  if (robot->prediction && !options.quiet)
-    if (const auto outside = deploy::find_rows_outside(*robot->prediction, *set))
-      fmt::print(stderr, "{}\n", words::sentence(*outside));
+  if (!options.quiet) print_notices(*robot, *set, options.chain.path);
   const auto text =
       format_predictions_csv(*poses, *set, robot->chain.base.pose(), robot->chain.fixtures.anchors, *deviations);
   if (!text) return fail(text.error());
