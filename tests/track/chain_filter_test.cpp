@@ -276,6 +276,40 @@ TEST(ChainFilter, APlacedJointIsKnownThereAndToNothingElse) {
 }
 
 /// A considered axis that is off shows as another bias in another posture: only sensors that turn forget theirs.
+/// A measurement of the position alone, by its result.
+TEST(ChainFilter, WhatIsCorrelatedWithASupposedPositionGoesAlong) {
+  const TrackedTree tree(8);
+  const Index at = tree.model->layout.joint_state(1);
+  ChainFilter measured = tree.filter(), supposed = measured;
+  const double variance = measured.covariance()(at, at), noise = 0.3 * variance, gain = variance / (variance + noise);
+  ChainFilter::ScalarRow row{.terms = 1, .innovation = 0.1, .variance = noise};
+  row.at[0] = at, row.factor[0] = 1.0;
+  measured.update(row);
+  supposed.suppose(1, supposed.state().joints[position_states] + gain * 0.1, std::sqrt(gain * noise));
+  EXPECT_LT(difference(measured.state(), supposed.state()), 1e-12);
+  EXPECT_LT((measured.covariance() - supposed.covariance()).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+/// Of a block in which a sensor has rows at the end only.
+TEST(ChainFilter, AMeasurementOfALaterTimeIsComparedWithThePredictionThere) {
+  const TrackedTree tree(5);
+  ChainFilter filter = tree.filter(), late = filter;
+  filter.update(tree.block(1));
+  const VectorXd before = predicted_measurement(*tree.model, tree.filter().state());
+  late.update(tree.block(1));
+  const double dt = 0.02, later = 0.006;
+  for (ChainFilter* of : {&filter, &late}) of->predict(dt);
+  const VectorXd change = (predicted_measurement(*tree.model, filter.state()) - before) / dt;
+  BlockMeasurement block = tree.block(2);
+  block.time = dt;
+  filter.update(block);
+  block.sensors[1].rate_time = later;
+  late.update(block);
+  const VectorXd difference = filter.innovations().value - late.innovations().value;
+  EXPECT_LT((difference.segment<3>(6) - later * change.segment<3>(6)).norm(), 1e-9);
+  EXPECT_EQ(difference.tail(difference.size() - 9).norm(), 0.0);
+}
+
 TEST(ChainFilter, BiasesOfForceAreForgottenWithTheAngleTurnedThrough) {
   const TrackedTree tree(3);
   FilterModel known = *tree.model;

@@ -27,6 +27,19 @@ TEST(RowBlock, EndsBeforeAGapAndNotBeforeTheNextRow) {
   EXPECT_NEAR(block.mean().length, 0.01, 1e-12);
 }
 
+/// Taken as that of the block's middle, the last row of a sensor before it is lost was a false alarm.
+TEST(RowBlock, ASensorThatIsNotInAllRowsHasAMeanTimeOfItsOwn) {
+  RowBlock block(1);
+  for (const double time : {0.0, 0.005, 0.010, 0.015}) {
+    InsRow row = row_at(time);
+    row.sensors[0].has_angular_velocity = time > 0.007;
+    block.add(row);
+  }
+  const BlockSample& sample = block.mean().sensors[0];
+  EXPECT_NEAR(sample.rate_time, 0.0125 - 0.0075, 1e-12);
+  EXPECT_EQ(sample.force_time, 0.0);
+}
+
 TEST(RowBlock, SlowSamplingIsNoGap) {
   RowBlock block(1);
   for (const double time : {0.0, 0.2}) block.add(row_at(time));

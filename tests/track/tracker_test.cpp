@@ -378,6 +378,56 @@ TEST(Tracker, GoesOnAfterAGapInMotion) {
     }
 }
 
+struct Silence {
+  const char* name;
+  std::vector<std::size_t> sensors{};  // counted from the last
+};
+class SilentInMotion : public ::testing::TestWithParam<Silence> {
+ protected:
+  struct Worst {
+    VectorXd after, deviations;        // [rad] from 1.5 s after the silence, and in the silence over the sd
+    std::vector<TrackAlarm> alarms{};  // beside that sensors are lost
+  };
+  static Worst follow(const Case& given, const Pause& silence) {
+    const int joints = given.model.positions();
+    Worst worst{.after = VectorXd::Zero(joints), .deviations = VectorXd::Zero(joints)};
+    Tracker tracker(given.model);
+    InsRow row;
+    for (std::size_t r = 0; r < given.drive.recording.loggers.front().time.size(); ++r) {
+      test::fill_row(given.drive.recording, r, row);
+      const bool is_silent = row.time > silence.begin && row.time < silence.end;
+      if (is_silent)
+        for (const std::size_t s : GetParam().sensors) row.sensors[row.sensors.size() - 1 - s] = {};
+      tracker.add(row);
+      for (const TrackAlarm& alarm : tracker.state().alarms)
+        if (alarm.kind != TrackAlarmKind::sensor_lost) worst.alarms.push_back(alarm);
+      for (int j = 0; j < joints; ++j) {
+        const double e = std::abs(tracker.state().q[j] - given.drive.q(j, r));
+        if (is_silent) worst.deviations[j] = std::max(worst.deviations[j], e / tracker.state().sd_q[j]);
+        if (row.time > silence.end + 1.5) worst.after[j] = std::max(worst.after[j], e);
+      }
+    }
+    return worst;
+  }
+};
+
+/// A joint whose sensor was lost was extrapolated without limit, and its sensor called moved when it came back, to the
+/// end of the log; the joints beside it were degrees off.
+TEST_P(SilentInMotion, SensorsComeBackAndTheirJointsAreFoundAgain) {
+  for (const Case* given : {&still_excavator(), &quick_arm()}) {
+    const Worst worst = follow(*given, {18.503, 24.0});
+    EXPECT_TRUE(worst.alarms.empty()) << name(worst.alarms.front().kind);
+    for (int j = 1; j < worst.after.size(); ++j) {
+      EXPECT_LT(worst.after[j], 0.5 * degree) << "joint " << j;
+      EXPECT_LT(worst.deviations[j], 5.0) << "joint " << j;
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Tracker, SilentInMotion,
+                         ::testing::Values(Silence{"TheLast", {0}}, Silence{"OneBetween", {2}},
+                                           Silence{"TheLastTwo", {1, 0}}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
 TEST(Tracker, ACopyGoesOnAlike) {
   const Case& given = still_excavator();
   Tracker one(given.model);

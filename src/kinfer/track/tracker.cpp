@@ -127,6 +127,7 @@ void Tracker::restart(double time) {
   for (auto& guess : guesses_) guess.is_given = false;
   state_.started = false;
   grid_.reset();
+  return_.reset();
   block_.clear();
   waiting_.clear();
   waits_since_.reset();
@@ -180,12 +181,47 @@ void Tracker::end_block() {
 void Tracker::choose_sensors() {
   for (std::size_t s = 0; s < does_not_fit_.size(); ++s) {
     const bool is_used = !does_not_fit_[s] && !health_[s].lost && !health_[s].stuck;
-    if (is_used == filter_.uses_sensor(s)) continue;
-    filter_.use_sensor(s, is_used);
-    // What it showed while it was out of use says nothing, and is not averaged with what it shows now.
-    if (is_used) fit_.reset_sensor(s), block_.clear();
+    if (is_used == (filter_.uses_sensor(s) || return_.waits_for(s))) continue;
+    if (is_used) {
+      take_in(s);
+      continue;
+    }
+    return_.drop(s, filter_);
+    filter_.use_sensor(s, false);
     if (health_[s].stuck && state_.started && !grid_) replay([](ChainFilter&) {});  // it was believed until now
   }
+}
+
+/// What it showed while it was out of use says nothing, and is not averaged with what it shows now. Where joints beside
+/// it have moved unseen they are found first.
+void Tracker::take_in(std::size_t sensor) {
+  fit_.reset_sensor(sensor);
+  block_.clear();
+  if (state_.started && !grid_ && has_lost_position(filter_, sensor))
+    return_.begin(sensor, filter_);
+  else
+    filter_.use_sensor(sensor, true);
+}
+
+/// A position that is not found, although its sensors measure, counts from where it seems to be, as at a start.
+void Tracker::find_returned(const BlockMeasurement& block) {
+  if (!return_.is_waiting()) return;
+  const std::optional<FoundAgain> found = return_.add(block);
+  if (!found) return;
+  filter_ = found->filter;
+  for (const FoundPosition& at : found->positions) {
+    const auto i = static_cast<std::size_t>(at.position);
+    is_known_[i] = at.sd < turned_in_gap;
+    lost_in_gap_[i] = is_known_[i] ? 0.0 : std::min(max_position_sd, at.sd);
+    if (is_known_[i]) continue;
+    if (filter_.state().base == BaseMode::moving)
+      filter_.place(at.position, filter_.state().joints[position_states * at.position], 0.0);
+    else
+      filter_.declare_known(at.position);
+  }
+  return_.begin_again(filter_);
+  begin_grid();
+  replay_.begin(filter_);
 }
 
 /// The posture is that at the mean time of the first rows; the blocks behind it are processed like all that follow.
@@ -243,6 +279,7 @@ void Tracker::replay(const std::function<void(ChainFilter&)>& prepare) {
   replay_.run(filter_, prepare, [&](const ChainFilter& filter, const BlockMeasurement& past) {
     fit_.add(filter, past.time, past.length);
   });
+  if (return_.is_waiting()) return_.begin_again(filter_);
 }
 
 /// A base that begins to move looks like a fault of sensors at first.
@@ -348,6 +385,7 @@ void Tracker::process_block(const BlockMeasurement& block) {
       examine_fit();
     watch_biases(block.time);
     watch_misfit(block.time);
+    find_returned(block);
   }
   tool_.spread(*model_, filter_.state(), filter_.covariance());
 }
@@ -382,7 +420,8 @@ void Tracker::read_out(double time) {
   state_.world_q_base = chain_state_.world_q_base;
   state_.sd_base = chain_state_.sd_base;
   for (std::size_t s = 0; s < is_sound_.size(); ++s)
-    is_sound_[s] = !does_not_fit_[s] && !health_[s].lost && !health_[s].stuck && !health_[s].instrument_missing;
+    is_sound_[s] = !does_not_fit_[s] && !health_[s].lost && !health_[s].stuck && !health_[s].instrument_missing &&
+                   !return_.waits_for(s);
   fusion_.apply(*tracking_, composed_, is_sound_, state_);
 }
 

@@ -12,6 +12,7 @@
 #include "kinfer/track/faults/fit_monitor.hpp"
 #include "kinfer/track/faults/replay.hpp"
 #include "kinfer/track/faults/sensor_health.hpp"
+#include "kinfer/track/faults/sensor_return.hpp"
 #include "kinfer/track/filter/base_watch.hpp"
 #include "kinfer/track/filter/rest_bias.hpp"
 #include "kinfer/track/filter/row_block.hpp"
@@ -55,6 +56,8 @@ class Tracker {
   void process_block(const BlockMeasurement& block);
   void resolve_start(const BlockMeasurement& block);
   void choose_sensors();
+  void take_in(std::size_t sensor);
+  void find_returned(const BlockMeasurement& block);
   void replay(const std::function<void(ChainFilter&)>& prepare);
   bool base_begins_to_move(const BlockMeasurement& block);
   void let_base_move();
@@ -85,6 +88,7 @@ class Tracker {
   FitMonitor fit_;
   ClockWatch clocks_;
   Replay replay_;
+  SensorReturn return_;
   std::vector<bool> does_not_fit_;     // sensors out of use because they disagree
   std::vector<bool> is_late_;          // of these, by their clocks
   std::vector<BiasChange> biases_;     // of each sensor

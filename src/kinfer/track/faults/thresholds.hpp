@@ -37,6 +37,11 @@ inline constexpr std::size_t replay_blocks = 100;  ///< two seconds: at least so
 /// is where a joint may have turned further than this [rad] by its acceleration, beyond what one linearisation bridges.
 /// Set on an excavator and a six-axis arm (drives standard and quick, gaps of 0.2 to 0.9 s).
 inline constexpr double restart_gap = 0.5, shortest_restart_gap = 0.15, turned_in_gap = 0.08;
+/// A sensor that comes back beside a joint that is less certain than `turned_in_gap`: the position is sought over so
+/// many seconds of rows, and as often again while no place on the circle is so much likelier than the others (ln), for
+/// the longest time [s]; from so many places, those within so many standard deviations, each settled in so many rounds.
+inline constexpr double return_length = 0.25, return_patience = 1.0, return_log_odds = 10.0, return_reach = 3.0;
+inline constexpr int return_places = 12, return_rounds = 4;
 /// [s] without one instrument of a sensor while the other one measures, after which it is called lost; and after which
 /// orientations from that sensor alone are not used.
 inline constexpr double instrument_lost_after = 1.0, instrument_missing_after = 0.2;

@@ -77,6 +77,19 @@ void ChainFilter::place(Index position, double value, double sd) {
   p_(at, at) = sd * sd;
 }
 
+void ChainFilter::suppose(Index position, double value, double sd) {
+  const Index at = model_->layout.joint_state(position), estimated = model_->layout.first_geometry;
+  const double variance = p_(at, at), change = sd * sd - variance;
+  VectorXd& share = column_;
+  share = p_.col(at) / variance;
+  error_.setZero();
+  error_.head(estimated) = (value - state_.joints[position_states * position]) * share.head(estimated);
+  retract(*model_, error_, state_);
+  for (Index j = 0; j < estimated; ++j)
+    for (Index i = j; i < p_.rows(); ++i) p_(i, j) += change * share[i] * share[j];
+  mirror();
+}
+
 void ChainFilter::declare_known(Index position) {
   placed_ = state_.time;
   forget(model_->layout.joint_state(position));
@@ -143,17 +156,18 @@ void ChainFilter::form_sensor_rows(const BlockMeasurement& block, std::size_t s)
   const BlockSample& measured = block.sensors[s];
   const SensorSettings& settings = model_->sensors[s];
   const Index row = sensor_rows * static_cast<Index>(s);
-  const auto set = [&](Index first, int count, const Vec3& value, double white, double persistent, double slow,
-                       double factor) {
-    innovations_.value.segment<3>(first) = value - evaluator_.result().value.segment<3>(first);
+  const auto set = [&](Index first, int count, double time, const Vec3& value, double white, double persistent,
+                       double slow, double factor) {
+    innovations_.value.segment<3>(first) =
+        value - evaluator_.result().value.segment<3>(first) - time * change_.segment<3>(first);
     system_.set_instrument(
         first, is_used_[s] && count > 0, innovations_.value.segment<3>(first),
         factor * block_variance(white, persistent, slow, settings.sample_period, block.length, count));
   };
-  set(row, measured.rate_count, measured.rate, settings.white.rate, settings.persistent.rate, settings.slow.rate,
-      levels_.of(s).rate);
-  set(row + 3, measured.force_count, measured.force, settings.white.force, settings.persistent.force,
-      settings.slow.force, levels_.of(s).force);
+  set(row, measured.rate_count, measured.rate_time, measured.rate, settings.white.rate, settings.persistent.rate,
+      settings.slow.rate, levels_.of(s).rate);
+  set(row + 3, measured.force_count, measured.force_time, measured.force, settings.white.force,
+      settings.persistent.force, settings.slow.force, levels_.of(s).force);
 }
 
 void ChainFilter::form_rows(const BlockMeasurement& block) {

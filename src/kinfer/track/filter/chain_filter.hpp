@@ -16,8 +16,9 @@ namespace kinfer::track {
 /// Mean of a block of rows, at their mean time.
 struct BlockSample {
   Vec3 rate = Vec3::Zero(), force = Vec3::Zero();
-  int rate_count = 0, force_count = 0;  ///< 0: not measured
-  double angular_acceleration = 0.0;    ///< [rad/s²] from the first to the last block of a mean
+  int rate_count = 0, force_count = 0;       ///< 0: not measured
+  double angular_acceleration = 0.0;         ///< [rad/s²] from the first to the last block of a mean
+  double rate_time = 0.0, force_time = 0.0;  ///< [s] mean time of its samples after the block's: some rows lack it
 };
 struct BlockMeasurement {
   double time = 0.0, length = 0.0;   ///< [s] length: that the rows stand for
@@ -57,6 +58,10 @@ class ChainFilter {
 
   /// Moves a joint position (of a revolute or prismatic joint) and states how well it is known there.
   void place(Index position, double value, double sd);
+
+  /// States a position otherwise, with another standard deviation [rad] or [m]; what is correlated with it goes along
+  /// (Jeffrey's rule). Where a linearisation begins.
+  void suppose(Index position, double value, double sd);
 
   /// [s] Since when all positions follow from the rows: the last start or placing.
   double placed_at() const { return placed_; }

@@ -154,6 +154,12 @@ PrismaticRange prismatic_range(const TrackingJoint& joint, Index position) {
   return result;
 }
 
+/// The largest that was seen; as an acceleration of the process makes it, where none was.
+double revolute_speed(const TrackingJoint& joint) {
+  return joint.range.empty() ? machine_acceleration.sd * machine_acceleration.time
+                             : std::max(least_revolute_speed, joint.range.front().speed);
+}
+
 /// The last body of a joint is the first beyond it; parents come before their children.
 JointBranch branch_beyond(const TrackingModel& model, int joint) {
   JointBranch branch;
@@ -186,8 +192,8 @@ void set_processes(FilterModel& filter, const TrackingModel& model) {
       filter.prismatic.push_back(prismatic_range(joint, filter.layout.position[b]));
     const int parent_sensor = model.bodies[static_cast<std::size_t>(body.parent)].sensor;
     if (body.motion == TrackingMotion::revolute && dof == 1 && parent_sensor >= 0 && body.sensor >= 0)
-      filter.revolute.push_back(
-          {filter.layout.position[b], static_cast<std::size_t>(parent_sensor), static_cast<std::size_t>(body.sensor)});
+      filter.revolute.push_back({filter.layout.position[b], static_cast<std::size_t>(parent_sensor),
+                                 static_cast<std::size_t>(body.sensor), revolute_speed(joint)});
     if (body.motion == TrackingMotion::revolute && dof == 3)
       filter.loose.push_back({b, joint.stray, std::max(joint.stray_time, min_stray_time)});
   }

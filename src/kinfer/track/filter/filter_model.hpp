@@ -39,6 +39,7 @@ struct PrismaticRange {
 struct RevoluteBetweenSensors {
   Index position = 0;  ///< of the filter
   std::size_t parent_sensor = 0, child_sensor = 0;
+  double speed = 0.0;  ///< [rad/s] where nothing shows how it moves
 };
 
 /// What lies beyond a joint of the tracking model, in the order of the bodies.

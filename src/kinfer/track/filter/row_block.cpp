@@ -30,8 +30,8 @@ void RowBlock::add(const InsRow& row) {
     const InsSample& sample = row.sensors[s];
     BlockSample& to = sum_.sensors[s];
     if (sample.has_angular_velocity && !sample.angular_velocity_clipped)
-      to.rate += sample.angular_velocity, ++to.rate_count;
-    if (sample.has_acceleration) to.force += sample.acceleration, ++to.force_count;
+      to.rate += sample.angular_velocity, to.rate_time += row.time - begin_, ++to.rate_count;
+    if (sample.has_acceleration) to.force += sample.acceleration, to.force_time += row.time - begin_, ++to.force_count;
   }
 }
 
@@ -46,11 +46,14 @@ bool RowBlock::ends_before(double time) const {
 
 const BlockMeasurement& RowBlock::mean() {
   mean_ = sum_;
-  mean_.time = begin_ + sum_.time / std::max(1, rows_);
+  const double middle = sum_.time / std::max(1, rows_);
+  mean_.time = begin_ + middle;
   mean_.length = length();
   for (BlockSample& sample : mean_.sensors) {
-    if (sample.rate_count > 0) sample.rate /= sample.rate_count;
-    if (sample.force_count > 0) sample.force /= sample.force_count;
+    if (sample.rate_count > 0)
+      sample.rate /= sample.rate_count, sample.rate_time = sample.rate_time / sample.rate_count - middle;
+    if (sample.force_count > 0)
+      sample.force /= sample.force_count, sample.force_time = sample.force_time / sample.force_count - middle;
   }
   return mean_;
 }

@@ -41,9 +41,12 @@ void SoftRows::add(const FilterModel& model, const ChainState& state, const Matr
     const bool rests_now = rests_at(revolute_[k], at, {steady_rate, revolute_creep, revolute_steadiness}),
                is_bridged =
                    !system.is_measured()[2 * joint.parent_sensor] || !system.is_measured()[2 * joint.child_sensor];
-    if (!rests_now || !is_bridged || !shows_acceleration(model, state.base, system, joint.position)) continue;
-    system.derivative(system.append(-state.joints[at - base_states], worth(revolute_creep, revolute_rest_time)), at) =
-        1.0;
+    if (!is_bridged) continue;
+    const bool is_shown = shows_acceleration(model, state.base, system, joint.position);
+    if (is_shown && !rests_now) continue;
+    const double variance =
+        is_shown ? worth(revolute_creep, revolute_rest_time) : worth(joint.speed, unseen_velocity_time);
+    system.derivative(system.append(-state.joints[at - base_states], variance), at) = 1.0;
   }
   for (const LooseRevoluteJoint& loose : model.loose) {
     const Mat3& rotation = state.spherical[loose.body];

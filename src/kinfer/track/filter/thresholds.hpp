@@ -35,6 +35,10 @@ inline constexpr double prismatic_steadiness = 1e-2, joint_rest = 1.0, prismatic
 inline constexpr double revolute_steadiness = 1e-2, revolute_creep = 1e-3, revolute_rest_time = 1.0;
 inline constexpr double shown_acceleration = 0.1;
 
+/// A revolute joint that no sensor shows: least speed [rad/s], correlation time of its velocity [s]. With a velocity
+/// that lasts, a joint whose sensor is lost in motion is extrapolated beyond all limits.
+inline constexpr double least_revolute_speed = 0.1, unseen_velocity_time = 1.0;
+
 inline constexpr double still_base_walk = 2e-5;  ///< [rad/√s] tilting of a base that stands still: soil, outriggers
 
 inline constexpr double min_stray = 1e-3,
