@@ -82,7 +82,8 @@ void mukca(const std::string& folder) {
     const Calibration c = calibrate_robot({chain, {}, std::nullopt, train}, {}, Rng(1)).value();
     const auto consistency = [&](const Chain& model) {
       const DataWithFixtures there = with_fixtures(model, test).value();
-      return 1e3 * mean(primary_errors(there.chain, PoseSet{}, there.data));
+      return 1e3 *
+             mean(position_errors_of_fit(*primary_measurement_kind(there.data), there.chain, PoseSet{}, there.data));
     };
     print_row("MUKCa " + arm + ", ball centres at unseen tool positions", target, consistency(c.estimate.chain),
               fmt::format("nominal {:.2f}; {}; {} rows left out", consistency(chain), selected_model(c.model_selection),
