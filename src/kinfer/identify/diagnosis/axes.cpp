@@ -10,6 +10,7 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/identify/diagnosis/neighbours.hpp"
 #include "kinfer/identify/diagnosis/thresholds.hpp"
 #include "kinfer/inertial/diagnosis/attitude_columns.hpp"
 #include "kinfer/inertial/diagnosis/section_fit.hpp"
@@ -194,6 +195,7 @@ void mend_axes(MendedLog& log, int threads) {
         {.kind = FindingKind::rates_unrelated, .severity = Severity::fault, .values = {{"sensors", names}}});
     return;
   }
+  std::vector<MappedSensor> doubtful;
   for (std::size_t s = 0; s < sensors; ++s) {
     const std::size_t unit = unit_of(likelihoods[s], common);
     const AxisFault fault = axis_fault(likelihoods[s], unit, log.log().sensors[s].has_magnetometer());
@@ -207,11 +209,13 @@ void mend_axes(MendedLog& log, int threads) {
       TriadColumns& triad = fault.instrument == OddInstrument::gyroscope       ? sensor.angular_velocity
                             : fault.instrument == OddInstrument::accelerometer ? sensor.acceleration
                                                                                : sensor.field;
+      if (fault.gain < certain_axes_gain) doubtful.push_back({s, sensor});
       transform(triad, 1.0, fault.axes);
       log.findings.push_back(axes_finding(sensor, fault));
     }
     flag_faults(sensor);
   }
+  withdraw_contradicted_maps(log, doubtful, threads);
 }
 
 }  // namespace kinfer::identify

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/diagnosis/axes.hpp"
+#include "kinfer/identify/diagnosis/neighbours.hpp"
 #include "kinfer/identify/diagnosis/thresholds.hpp"
-#include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/inertial/diagnosis/vertical_rates.hpp"
 
 namespace kinfer::identify {
@@ -59,16 +58,6 @@ VerticalSigns vertical_signs(const std::vector<std::vector<VerticalAgreement>>& 
     if (sum == 0 && group.size() > 1) result.is_tied = true;
   }
   return result;
-}
-
-/// [nats per row] of the segment tree; infinite if there is none.
-double tree_length(const InsRecording& recording, int threads) {
-  const auto ordered = order_segments(recording, {}, {}, threads);
-  if (!ordered) return std::numeric_limits<double>::infinity();
-  double length = 0.0;
-  for (std::size_t s = 0; s < ordered->tree.parent.size(); ++s)
-    if (ordered->tree.parent[s]) length += ordered->tree.pair(s, *ordered->tree.parent[s]).distance;
-  return length;
 }
 
 void turn_over(InsSensor& sensor, bool field_too) {
