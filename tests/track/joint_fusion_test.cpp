@@ -31,7 +31,7 @@ struct Stated {
 
 /// Position of the joint after five seconds of rest at `turned`, where a filter on the chain states `at` of each time.
 template <class At>
-TrackState fused(const At& at, bool is_sound, const TrackingModel& model) {
+TrackState fused(const At& at, bool is_sound, const TrackingModel& model, bool is_settled = true) {
   track::ComposedFilters composed(model);
   track::JointFusion fusion(model);
   TrackState chain;
@@ -52,7 +52,8 @@ TrackState fused(const At& at, bool is_sound, const TrackingModel& model) {
     chain.qd[0] = 0.0;
     chain.sd_q[0] = stated.sd;
     chain.joints[0] = {.source = JointSource::chain, .reference = JointReference::chain};
-    fusion.apply(model, composed, {true, is_sound}, chain);
+    const std::vector<bool> sound{true, is_sound}, settled{is_settled};
+    fusion.apply(model, composed, {.is_sound = sound, .is_settled = settled}, chain);
   }
   return chain;
 }
@@ -75,6 +76,11 @@ TEST(JointFusion, AChainThatSaysItDoesNotFitGivesWayToTheSensorsThemselves) {
 
 TEST(JointFusion, AFaultySensorIsNotBelieved) {
   EXPECT_EQ(fused(turned + 0.5, 0.6, false).q[0], turned + 0.5);
+}
+
+TEST(JointFusion, AJointThatMayStandInSeveralPlacesIsLeftAlone) {
+  const auto uncertain = [](double) { return Stated{turned + 0.5, 1.8}; };
+  EXPECT_EQ(fused(uncertain, true, hinge(), false).q[0], turned + 0.5);
 }
 
 /// Of an upright axis the sensors themselves show no more than where it was when the chain knew little.

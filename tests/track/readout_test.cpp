@@ -91,6 +91,16 @@ TEST(ToolSpread, TheToolsOwnUncertaintyTurnsWithItsBody) {
   EXPECT_EQ(spread.rotation_sd().norm(), 0.0);
 }
 
+TEST(ToolSpread, AnUnknownHeadingOfABallTurnsTheToolAboutTheVertical) {
+  const CarriedTool t(22, 5);
+  ToolSpread spread(t.model, t.tracking.tool);
+  std::vector<double> unknown(t.model.bodies.size(), 0.0);
+  unknown[5] = 1.5;
+  spread.spread(t.model, t.state, 0.0 * t.covariance, unknown);
+  const Vec3 expected = 1.5 * (t.state.world_R_base.transpose() * Vec3::UnitZ()).cwiseAbs();
+  EXPECT_LT((spread.rotation_sd() - expected).norm(), 1e-12);
+}
+
 TEST(ReadOut, PositionsOfOneAxisAreThoseOfTheFilterWithItsStandardDeviations) {
   const CarriedTool t(23, 6);
   TrackState out = unknown_state(t.tracking);

@@ -165,7 +165,7 @@ void JointFusion::fuse(const TrackingModel& model, const ComposedFilters& compos
   status.parent_q_child = Quat(body_pose(body, chain.q.segment(first, 1)).rotation);
 }
 
-void JointFusion::apply(const TrackingModel& model, const ComposedFilters& composed, const std::vector<bool>& is_sound,
+void JointFusion::apply(const TrackingModel& model, const ComposedFilters& composed, const Usable& usable,
                         TrackState& chain) {
   const double dt = has_begun_ ? std::max(0.0, chain.time - time_) : 0.0;
   time_ = chain.time;
@@ -174,8 +174,8 @@ void JointFusion::apply(const TrackingModel& model, const ComposedFilters& compo
     Joint& joint = joints_[j];
     const TrackingJoint& of = model.joints[j];
     const auto position = composed.state().q.segment(of.first_position, of.positions);
-    const auto sound = [&](int sensor) { return sensor >= 0 && is_sound[static_cast<std::size_t>(sensor)]; };
-    if (of.positions == 0 || !sound(joint.parent_sensor) || !sound(joint.child_sensor) ||
+    const auto sound = [&](int sensor) { return sensor >= 0 && usable.is_sound[static_cast<std::size_t>(sensor)]; };
+    if (of.positions == 0 || !usable.is_settled[j] || !sound(joint.parent_sensor) || !sound(joint.child_sensor) ||
         !position.array().isFinite().all()) {
       joint.share = 0.0;
       joint.offset = {};

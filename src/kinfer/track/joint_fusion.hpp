@@ -16,10 +16,15 @@ class JointFusion {
  public:
   explicit JointFusion(const TrackingModel& model);
 
+  /// What may be averaged; other joints are left alone.
+  struct Usable {
+    const std::vector<bool>& is_sound;    ///< of each sensor
+    const std::vector<bool>& is_settled;  ///< of each joint: not one of several starts that are still possible
+  };
+
   /// Averages joints of `chain`, the state of the filter, with those of `composed` at the same time; positions that
-  /// count from the start stay continuous. `is_sound`: of each sensor; joints of others are left alone.
-  void apply(const TrackingModel& model, const ComposedFilters& composed, const std::vector<bool>& is_sound,
-             TrackState& chain);
+  /// count from the start stay continuous.
+  void apply(const TrackingModel& model, const ComposedFilters& composed, const Usable& usable, TrackState& chain);
 
   /// After a start the positions count from elsewhere.
   void reset();

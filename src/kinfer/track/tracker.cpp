@@ -84,8 +84,12 @@ std::optional<BaseMode> given_base(BaseMotion motion) {
 Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
     : tracking_(std::make_shared<TrackingModel>(model)),
       model_(std::make_shared<FilterModel>(filter_model(model))),
-      joint_of_position_(model_positions(model, *model_)),
+      model_position_(model_positions(model, *model_)),
+      joint_of_position_(model_position_),
       filter_(model_),
+      motion_(*model_),
+      spread_(model, *model_),
+      unknown_(model_->bodies.size(), 0.0),
       block_(model.sensors.size()),
       rest_(*model_),
       base_(model, *model_, given_base(options.base)),
@@ -98,16 +102,18 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       biases_(model.sensors.size()),
       composed_(model, options),
       is_sound_(model.sensors.size(), true),
+      is_settled_(model.joints.size(), true),
       fusion_(model),
       tool_(*model_, model.tool),
       now_(initial_state(*model_)),
       chain_state_(unknown_state(model)),
       state_(unknown_state(model)) {
-  guesses_ = make_guesses(model, joint_of_position_, options);
+  guesses_ = make_guesses(model, model_position_, options);
   for (int& position : joint_of_position_)
     if (position >= 0) position = static_cast<int>(&joint_of(*tracking_, position) - tracking_->joints.data());
   is_known_.assign(joint_of_position_.size(), false);
-  lost_in_gap_.assign(joint_of_position_.size(), 0.0);
+  is_open_ = is_known_;
+  start_sd_ = lost_in_gap_ = std::vector<double>(joint_of_position_.size(), 0.0);
   state_.alarms.reserve(4 * model.sensors.size() + model.joints.size() + 4);
 }
 
@@ -128,6 +134,7 @@ void Tracker::restart(double time) {
   state_.started = false;
   grid_.reset();
   return_.reset();
+  motion_.reset();
   block_.clear();
   waiting_.clear();
   waits_since_.reset();
@@ -163,10 +170,16 @@ void Tracker::add(const InsRow& row) {
   if (block_.ends_before(row.time)) end_block();
   block_.add(row);
   if (block_.is_complete(update_period)) end_block();
-  if (rest_.add(row) && state_.started) rest_.correct(filter_);
+  if (rest_.add(row) && state_.started) correct_in_rest();
   state_.time = row.time;
   if (state_.started) read_out(row.time);
   list_alarms(row.time);
+}
+
+void Tracker::correct_in_rest() {
+  rest_.correct(filter_);
+  if (!grid_) return;
+  for (StartGrid::Candidate& candidate : grid_->candidates()) rest_.correct(candidate.filter);
 }
 
 void Tracker::end_block() {
@@ -213,6 +226,8 @@ void Tracker::find_returned(const BlockMeasurement& block) {
     const auto i = static_cast<std::size_t>(at.position);
     is_known_[i] = at.sd < turned_in_gap;
     lost_in_gap_[i] = is_known_[i] ? 0.0 : std::min(max_position_sd, at.sd);
+    is_open_[i] = !is_known_[i] && filter_.state().base == BaseMode::moving;
+    start_sd_[i] = lost_in_gap_[i];
     if (is_known_[i]) continue;
     if (filter_.state().base == BaseMode::moving)
       filter_.place(at.position, filter_.state().joints[position_states * at.position], 0.0);
@@ -251,23 +266,62 @@ void Tracker::try_start() {
   waits_since_.reset();
   settle(posture, filter_, waiting_);
   start_in(posture, filter_);
-  for (std::size_t i = 0; i < is_known_.size(); ++i) {
-    is_known_[i] = posture.positions[i].is_known;
-    lost_in_gap_[i] = std::min(max_position_sd, posture.positions[i].lost_sd.value_or(0.0));
-  }
+  open_positions(posture);
   fusion_.reset();
   begin_grid();
   replay_.begin(filter_);
-  tool_.spread(*model_, filter_.state(), filter_.covariance());
+  spread_tool();
   state_.started = true;
   now_ = filter_.state();
 }
 
+/// Whether a body moves whose joint leads to this one: then motion shows how the joint stands, if gravity does not.
+bool Tracker::parent_moves(std::size_t b) const {
+  if (filter_.state().base == BaseMode::moving) return true;
+  for (int a = model_->bodies[b].parent; a > 0; a = model_->bodies[static_cast<std::size_t>(a)].parent)
+    if (model_->layout.position[static_cast<std::size_t>(a)] >= 0) return true;
+  return false;
+}
+
+/// Whether what moves now tells where such a joint stands. A prismatic one is told by the rates that its own axes have.
+bool Tracker::tells_of(std::size_t b) const {
+  if (model_->bodies[b].motion == JointMotion::prismatic) return true;
+  auto parent = static_cast<std::size_t>(model_->bodies[b].parent);
+  while (parent > 0 && model_->bodies[parent].sensor < 0)
+    parent = static_cast<std::size_t>(model_->bodies[parent].parent);
+  const int sensor = model_->bodies[parent].sensor;
+  return sensor < 0 || motion_.moves(static_cast<std::size_t>(sensor));
+}
+
+void Tracker::open_positions(const InitialPosture& posture) {
+  for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
+    const JointMotion motion = model_->bodies[b].motion;
+    const bool is_loose = model_->is_loose(b);
+    for (Index k = 0; k < degrees_of_freedom(motion); ++k) {
+      const auto i = static_cast<std::size_t>(model_->layout.position[b] + k);
+      const StartPosition& start = posture.positions[i];
+      const bool is_seen = filter_.state().base == BaseMode::moving || !start.is_unseen;
+      is_known_[i] = start.is_known;
+      is_open_[i] = !start.is_known && degrees_of_freedom(motion) == 1 &&
+                    (motion == JointMotion::prismatic || (parent_moves(b) && is_seen));
+      lost_in_gap_[i] = std::min(max_position_sd, start.lost_sd.value_or(0.0));
+      const bool has_zero = start.is_known || start.is_unseen || is_loose || motion == JointMotion::prismatic;
+      start_sd_[i] = has_zero ? 0.0 : start.lost_sd ? std::max(start_sd_[i], lost_in_gap_[i]) : max_position_sd;
+    }
+  }
+}
+
 void Tracker::resolve_start(const BlockMeasurement& block) {
-  grid_->update(block);
-  filter_ = grid_->best();
+  grid_->update(block, tells_of(grid_->body()));
+  filter_ = grid_->stated();
   if (!grid_->is_decided()) return;
-  is_known_[static_cast<std::size_t>(grid_->position())] = true;
+  const std::size_t body = grid_->body();
+  for (Index k = 0; k < degrees_of_freedom(model_->bodies[body].motion); ++k) {
+    const auto i = static_cast<std::size_t>(model_->layout.position[body] + k);
+    is_known_[i] = true;
+    is_open_[i] = false;
+    start_sd_[i] = 0.0;
+  }
   grid_.reset();
   fit_.reset();  // other places did not fit, which says nothing of the sensors
   begin_grid();
@@ -293,19 +347,38 @@ bool Tracker::base_begins_to_move(const BlockMeasurement& block) {
 /// The base has moved for a while; what counted from the start becomes observable.
 void Tracker::let_base_move() {
   replay([](ChainFilter& filter) { filter.set_base(BaseMode::moving); });
+  for (std::size_t b = 1; b < model_->bodies.size(); ++b)
+    for (Index k = 0; k < degrees_of_freedom(model_->bodies[b].motion); ++k) {
+      const auto i = static_cast<std::size_t>(model_->layout.position[b] + k);
+      is_open_[i] = !is_known_[i] && degrees_of_freedom(model_->bodies[b].motion) == 1;
+    }
   begin_grid();
 }
 
-/// Of the first joint position that is unknown and that motion determines: a prismatic one, or any on a moving base.
+/// Of the first joint position that motion shows from now on.
 void Tracker::begin_grid() {
-  const bool moves = filter_.state().base == BaseMode::moving;
   for (std::size_t b = 1; b < model_->bodies.size() && !grid_; ++b) {
     const Index at = model_->layout.position[b];
-    const JointMotion motion = model_->bodies[b].motion;
-    if (at < 0 || is_known_[static_cast<std::size_t>(at)]) continue;
-    if (motion == JointMotion::prismatic) grid_ = StartGrid::along(filter_, at, guesses_[static_cast<std::size_t>(at)]);
-    if (motion == JointMotion::revolute && moves) grid_ = StartGrid::around(filter_, at);
+    if (at < 0 || !is_open_[static_cast<std::size_t>(at)] || !tells_of(b)) continue;
+    if (model_->bodies[b].motion == JointMotion::prismatic)
+      grid_ = StartGrid::along(filter_, b, guesses_[static_cast<std::size_t>(at)]);
+    else
+      grid_ = StartGrid::around(filter_, b, start_sd_[static_cast<std::size_t>(at)]);
   }
+}
+
+/// Where positions count from the start the tool is as uncertain as what they count from.
+void Tracker::spread_tool() {
+  for (std::size_t b = 1; b < unknown_.size(); ++b) {
+    const Index at = model_->layout.position[b];
+    const bool is_in_grid = grid_ && grid_->body() == b;
+    unknown_[b] = at < 0 || is_in_grid ? 0.0 : start_sd_[static_cast<std::size_t>(at)];
+  }
+  tool_.spread(*model_, filter_.state(), filter_.covariance(), unknown_);
+  if (grid_ && model_->bodies[grid_->body()].motion != JointMotion::prismatic)
+    spread_.update(*grid_, unknown_);
+  else
+    spread_.clear();
 }
 
 /// Most sensors at once are far from what the chain explains: another machine's log, permuted axes.
@@ -367,6 +440,8 @@ void Tracker::watch_biases(double time) {
 }
 
 void Tracker::process_block(const BlockMeasurement& block) {
+  motion_.add(block, filter_);
+  if (!grid_) begin_grid();
   if (grid_) {
     resolve_start(block);
   } else {
@@ -387,7 +462,22 @@ void Tracker::process_block(const BlockMeasurement& block) {
     watch_misfit(block.time);
     find_returned(block);
   }
-  tool_.spread(*model_, filter_.state(), filter_.covariance());
+  spread_tool();
+}
+
+/// What is added to the standard deviations of positions whose zero is not known: all of that, where motion will show
+/// it; where they count from the start, what they may have turned in a gap.
+void Tracker::widen_unknown() {
+  for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
+    const bool is_in_grid = grid_ && grid_->body() == b;
+    for (Index k = 0; k < degrees_of_freedom(model_->bodies[b].motion); ++k) {
+      const auto i = static_cast<std::size_t>(model_->layout.position[b] + k);
+      if (is_known_[i] || is_in_grid || joint_of_position_[i] < 0) continue;
+      double& sd = chain_state_.sd_q[model_position_[i]];
+      sd = std::hypot(sd, is_open_[i] ? start_sd_[i] : lost_in_gap_[i]);
+    }
+  }
+  if (grid_) spread_.add_to(chain_state_);
 }
 
 void Tracker::read_out(double time) {
@@ -395,9 +485,6 @@ void Tracker::read_out(double time) {
   if (time > now_.time) predict_mean(*model_, time - now_.time, now_);
   track::read_out(*tracking_, *model_, now_, filter_.covariance(), chain_state_);
   tool_.place(*model_, now_);
-  state_.base_T_tool = tool_.tool();
-  state_.sd_tool_position = tool_.position_sd();
-  state_.sd_tool_rotation = tool_.rotation_sd();
   for (std::size_t s = 0; s < state_.innovation.size(); ++s) state_.innovation[s] = fit_.sensor(s).quick;
   for (JointStatus& joint : chain_state_.joints) {
     joint.source = JointSource::chain;
@@ -409,20 +496,25 @@ void Tracker::read_out(double time) {
   chain_state_.time = time;
   state_.q = chain_state_.q;
   state_.qd = chain_state_.qd;
-  for (std::size_t i = 0; i < is_known_.size(); ++i)
-    if (!is_known_[i] && lost_in_gap_[i] > 0.0) {
-      double& sd = chain_state_.sd_q[tracking_->joints[static_cast<std::size_t>(joint_of_position_[i])].first_position];
-      sd = std::hypot(sd, lost_in_gap_[i]);
-    }
+  chain_state_.base_T_tool = tool_.tool();
+  chain_state_.sd_tool_position = tool_.position_sd();
+  chain_state_.sd_tool_rotation = tool_.rotation_sd();
+  widen_unknown();
   state_.sd_q = chain_state_.sd_q;
   state_.sd_qd = chain_state_.sd_qd;
   state_.joints = chain_state_.joints;
   state_.world_q_base = chain_state_.world_q_base;
   state_.sd_base = chain_state_.sd_base;
+  state_.base_T_tool = chain_state_.base_T_tool;
+  state_.sd_tool_position = chain_state_.sd_tool_position;
+  state_.sd_tool_rotation = chain_state_.sd_tool_rotation;
   for (std::size_t s = 0; s < is_sound_.size(); ++s)
     is_sound_[s] = !does_not_fit_[s] && !health_[s].lost && !health_[s].stuck && !health_[s].instrument_missing &&
                    !return_.waits_for(s);
-  fusion_.apply(*tracking_, composed_, is_sound_, state_);
+  is_settled_.assign(is_settled_.size(), true);
+  for (std::size_t i = 0; i < is_open_.size(); ++i)
+    if (is_open_[i]) is_settled_[static_cast<std::size_t>(joint_of_position_[i])] = false;
+  fusion_.apply(*tracking_, composed_, {.is_sound = is_sound_, .is_settled = is_settled_}, state_);
 }
 
 void Tracker::list_alarms(double time) {

@@ -19,8 +19,10 @@
 #include "kinfer/track/joint_fusion.hpp"
 #include "kinfer/track/options.hpp"
 #include "kinfer/track/readout/tool_spread.hpp"
+#include "kinfer/track/start/motion_watch.hpp"
 #include "kinfer/track/start/settled_start.hpp"
 #include "kinfer/track/start/start_grid.hpp"
+#include "kinfer/track/start/start_spread.hpp"
 
 namespace kinfer::track {
 
@@ -61,7 +63,12 @@ class Tracker {
   void replay(const std::function<void(ChainFilter&)>& prepare);
   bool base_begins_to_move(const BlockMeasurement& block);
   void let_base_move();
+  void open_positions(const InitialPosture& posture);
+  bool parent_moves(std::size_t body) const;
+  bool tells_of(std::size_t body) const;
   void begin_grid();
+  void spread_tool();
+  void widen_unknown();
   void leave_out(std::size_t sensor);
   void doubt(std::size_t joint);
   void examine_fit();
@@ -70,15 +77,22 @@ class Tracker {
   void watch_biases(double time);
   void end_block();
   void list_alarms(double time);
+  void correct_in_rest();
   void read_out(double time);
 
   std::shared_ptr<const TrackingModel> tracking_;
   std::shared_ptr<const FilterModel> model_;
   std::vector<PositionGuess> guesses_;
-  std::vector<int> joint_of_position_;  // of the filter: index into the model's joints
+  std::vector<int> model_position_;     // of each of the filter: index into the model's q; −1: none
+  std::vector<int> joint_of_position_;  // likewise: index into the model's joints
   ChainFilter filter_;
   std::optional<StartGrid> grid_;
+  MotionWatch motion_;
+  StartSpread spread_;
+  std::vector<double> unknown_;      // as of ToolSpread
   std::vector<bool> is_known_;       // of each joint position of the filter
+  std::vector<bool> is_open_;        // likewise: motion will show it, and has not yet
+  std::vector<double> start_sd_;     // [rad] of what such a position counts from: its zero, if that is not known
   std::vector<double> lost_in_gap_;  // [rad] standard deviation of what one may have turned unseen, until it is known
   RowBlock block_;
   std::vector<BlockMeasurement> waiting_;  // for the start
@@ -94,7 +108,7 @@ class Tracker {
   std::vector<BiasChange> biases_;     // of each sensor
   std::optional<double> waits_since_;  // [s] for a start in a quieter moment
   ComposedFilters composed_;
-  std::vector<bool> is_sound_;  // sensors that the composed filters may use
+  std::vector<bool> is_sound_, is_settled_;  // sensors that the composed filters may use; joints that are not open
   JointFusion fusion_;
   ToolSpread tool_;
   ChainState now_;  // predicted to the last row

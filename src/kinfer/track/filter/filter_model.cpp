@@ -205,6 +205,10 @@ void set_processes(FilterModel& filter, const TrackingModel& model) {
 
 }  // namespace
 
+bool FilterModel::is_loose(std::size_t body) const {
+  return std::ranges::any_of(loose, [body](const LooseRevoluteJoint& joint) { return joint.body == body; });
+}
+
 FilterModel filter_model(const TrackingModel& model) {
   FilterModel filter;
   for (const TrackingBody& body : model.bodies) filter.bodies.push_back(filter_body(model, body));

@@ -60,6 +60,9 @@ struct FilterModel {
   double gravity = standard_gravity;
   InsLevel bias_walk{};  ///< variance per second of a bias' random walk
   MatrixXd parameters;   ///< covariance of sensors' and geometry's states when tracking begins
+
+  /// Whether a body's spherical joint stands for a loose revolute one.
+  bool is_loose(std::size_t body) const;
 };
 
 FilterModel filter_model(const TrackingModel& model);

@@ -62,20 +62,13 @@ void read_loose_joint(const FilterModel& model, std::size_t b, const ChainState&
   to.sd_qd[at] = sd_at(covariance, model.layout.joint_state(third) + 1);
 }
 
-Mat3 parent_R_child(const FilterModel& model, std::size_t b, const ChainState& state) {
-  const InsBody& body = model.bodies[b];
-  Mat3 turn = state.spherical[b];
-  if (body.motion == JointMotion::revolute) turn = rot_z(state.joints[position_states * model.layout.position[b]]);
-  return body.parent_R_axis * turn * body.child_R_axis.transpose();
-}
-
 /// A universal joint's two bodies follow each other.
 void read_rotations(const TrackingModel& tracking, const FilterModel& model, const ChainState& state, TrackState& to) {
   for (std::size_t b = 1; b < model.bodies.size(); ++b) {
     const TrackingBody& body = tracking.bodies[b];
     Quat& rotation = to.joints[static_cast<std::size_t>(body.joint)].parent_q_child;
     const bool is_second = tracking.bodies[static_cast<std::size_t>(body.parent)].joint == body.joint;
-    const Quat own(parent_R_child(model, b, state));
+    const Quat own(parent_R_child(model, state, b));
     rotation = is_second ? rotation * own : own;
   }
 }

@@ -61,12 +61,24 @@ void ToolSpread::add_body(const FilterModel& model, std::size_t b) {
     for (Index i = 0; i < 3; ++i) add_column(state++, -child.col(i), Vec3::Zero());
 }
 
+/// How the tool moves with a joint's position, or with a ball's heading.
+Eigen::Matrix<double, 6, 1> ToolSpread::unknown_turn(const FilterModel& model, const ChainState& state,
+                                                     std::size_t b) const {
+  const InsBody& body = model.bodies[b];
+  const Vec3 axis = body.motion == JointMotion::spherical ? Vec3(state.world_R_base.transpose() * Vec3::UnitZ())
+                                                          : Vec3(bodies_[b].rotation * body.child_R_axis.col(2));
+  Eigen::Matrix<double, 6, 1> turn;
+  turn << axis.cross(tool_.position - bodies_[b] * body.point_in_child), axis;
+  return turn;
+}
+
 void ToolSpread::place(const FilterModel& model, const ChainState& state) {
   for (std::size_t b = 1; b < bodies_.size(); ++b) set_pose(model, state, b);
   tool_ = bodies_[static_cast<std::size_t>(carried_.body)] * carried_.body_T_tool;
 }
 
-void ToolSpread::spread(const FilterModel& model, const ChainState& state, const MatrixXd& covariance) {
+void ToolSpread::spread(const FilterModel& model, const ChainState& state, const MatrixXd& covariance,
+                        std::span<const double> unknown) {
   place(model, state);
   const Pose& carrier = bodies_[static_cast<std::size_t>(carried_.body)];
   index_.clear();
@@ -80,6 +92,8 @@ void ToolSpread::spread(const FilterModel& model, const ChainState& state, const
       sum += covariance(index_[static_cast<std::size_t>(i)], index_[static_cast<std::size_t>(j)]) * derivative_.col(i);
     variance += sum.cwiseProduct(derivative_.col(j));
   }
+  for (std::size_t b = 1; b < unknown.size(); ++b)
+    if (leads_to_tool_[b] && unknown[b] > 0.0) variance += (unknown[b] * unknown_turn(model, state, b)).cwiseAbs2();
   variance.head<3>() += (carrier.rotation * carried_.sd).cwiseAbs2();
   position_sd_ = variance.head<3>().cwiseMax(0.0).cwiseSqrt();
   rotation_sd_ = variance.tail<3>().cwiseMax(0.0).cwiseSqrt();

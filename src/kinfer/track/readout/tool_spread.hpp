@@ -2,6 +2,8 @@
 // How errors of the filter's states move the tool: its derivatives by joint positions and by the chain's geometry.
 #pragma once
 
+#include <span>
+
 #include "kinfer/geometry/pose.hpp"
 #include "kinfer/track/filter/chain_filter.hpp"
 
@@ -12,9 +14,12 @@ class ToolSpread {
  public:
   ToolSpread(const FilterModel& model, const TrackingTool& tool);
 
-  /// Nothing is allocated by either. place: the pose; spread: its standard deviations too.
+  /// Nothing is allocated by either. place: the pose; spread: its standard deviations too. `unknown` [rad]: of each
+  /// body by how much the zero of its joint may be off beyond the covariance, about a revolute joint's axis or a
+  /// spherical joint's vertical; empty: none.
   void place(const FilterModel& model, const ChainState& state);
-  void spread(const FilterModel& model, const ChainState& state, const MatrixXd& covariance);
+  void spread(const FilterModel& model, const ChainState& state, const MatrixXd& covariance,
+              std::span<const double> unknown = {});
 
   const Pose& tool() const { return tool_; }  ///< base_T_tool
   const Vec3& position_sd() const { return position_sd_; }
@@ -22,6 +27,7 @@ class ToolSpread {
 
  private:
   void set_pose(const FilterModel& model, const ChainState& state, std::size_t b);
+  Eigen::Matrix<double, 6, 1> unknown_turn(const FilterModel& model, const ChainState& state, std::size_t b) const;
   void add_column(Index state, const Vec3& shift, const Vec3& turn);
   void add_body(const FilterModel& model, std::size_t b);
 

@@ -5,46 +5,55 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinfer/base/square.hpp"
+#include "kinfer/track/filter/thresholds.hpp"
 #include "kinfer/track/start/thresholds.hpp"
 
 namespace kinfer::track {
 
-void StartGrid::add_place(const ChainFilter& filter, double value, double sd, int steps_away) {
-  candidates_.push_back({filter, 0.0, steps_away});
-  candidates_.back().filter.place(position_, value, sd);
-}
+StartGrid::StartGrid(const ChainFilter& filter, std::size_t body)
+    : body_(body), motion_(filter.model().bodies[body].motion), position_(filter.model().layout.position[body]) {}
 
-StartGrid StartGrid::around(const ChainFilter& filter, Index position) {
-  StartGrid grid(position, true);
-  const double q = filter.state().joints[position_states * position], step = 2.0 * std::numbers::pi / start_places;
-  for (int k = 0; k < start_places; ++k)
-    grid.add_place(filter, q + std::remainder(k * step, 2.0 * std::numbers::pi), 0.5 * step,
-                   std::min(k, start_places - k));
+StartGrid StartGrid::around(const ChainFilter& filter, std::size_t body, double sd) {
+  StartGrid grid(filter, body);
+  const double q = filter.state().joints[position_states * grid.position_],
+               step = 2.0 * std::numbers::pi / start_places;
+  for (int k = 0; k < start_places; ++k) {
+    const double turn = std::remainder(k * step, 2.0 * std::numbers::pi);
+    grid.candidates_.push_back({.filter = filter});
+    Candidate& candidate = grid.candidates_.back();
+    candidate.filter.place(grid.position_, q + turn, 0.5 * step);
+    if (sd < max_position_sd) candidate.log_weight = -0.5 * square(turn / std::max(sd, 0.5 * step));
+  }
+  grid.candidates_.front().is_stated = true;
+  grid.weigh();
   return grid;
 }
 
-StartGrid StartGrid::along(const ChainFilter& filter, Index position, const PositionGuess& guess) {
-  StartGrid grid(position, false);
+StartGrid StartGrid::along(const ChainFilter& filter, std::size_t body, const PositionGuess& guess) {
+  StartGrid grid(filter, body);
   const double step = std::max(prismatic_step, 2.0 * guess.sd / (start_places - 1));
   const int places = 1 + static_cast<int>(2.0 * guess.sd / step);
-  for (int k = 0; k < places; ++k)
-    grid.add_place(filter, guess.value - guess.sd + k * step, 0.5 * step, std::abs(2 * k - places + 1) / 2);
+  for (int k = 0; k < places; ++k) {
+    grid.candidates_.push_back({.filter = filter});
+    grid.candidates_.back().filter.place(grid.position_, guess.value - guess.sd + k * step, 0.5 * step);
+  }
+  grid.candidates_[static_cast<std::size_t>(places / 2)].is_stated = true;
+  grid.weigh();
   return grid;
 }
 
-const ChainFilter& StartGrid::best() const {
-  return std::ranges::min_element(candidates_, {}, &Candidate::steps_away)->filter;
-}
-
-void StartGrid::update(const BlockMeasurement& block) {
+void StartGrid::update(const BlockMeasurement& block, bool tells) {
   for (Candidate& candidate : candidates_) {
     candidate.filter.predict(block.time);
     candidate.filter.update(block);
-    if (updates_ >= start_updates) candidate.log_weight += candidate.filter.innovations().log_likelihood;
+    if (tells && updates_ >= start_updates) candidate.log_weight += candidate.filter.innovations().log_likelihood;
   }
   if (++updates_ <= start_updates) return;
   drop_unlikely();
   merge();
+  weigh();
+  choose();
 }
 
 void StartGrid::drop_unlikely() {
@@ -52,18 +61,59 @@ void StartGrid::drop_unlikely() {
   std::erase_if(candidates_, [&](const Candidate& c) { return c.log_weight < most - start_log_odds; });
 }
 
-/// Candidates that have converged to one place are one.
+/// Candidates that have converged to one place are one, as likely as all of them.
 void StartGrid::merge() {
   std::ranges::stable_sort(candidates_, std::greater<>{}, &Candidate::log_weight);
-  const auto distance = [&](const Candidate& a, const Candidate& b) {
-    const double d =
-        a.filter.state().joints[position_states * position_] - b.filter.state().joints[position_states * position_];
-    return std::abs(is_angle_ ? std::remainder(d, 2.0 * std::numbers::pi) : d);
-  };
   for (std::size_t i = 0; i < candidates_.size(); ++i)
-    for (std::size_t j = candidates_.size() - 1; j > i; --j)
-      if (distance(candidates_[i], candidates_[j]) < start_merge)
-        candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(j));
+    for (std::size_t j = candidates_.size() - 1; j > i; --j) {
+      Candidate &kept = candidates_[i], &other = candidates_[j];
+      if (distance(kept.filter, other.filter) >= start_merge) continue;
+      kept.log_weight += std::log1p(std::exp(other.log_weight - kept.log_weight));
+      kept.is_stated |= other.is_stated;
+      candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(j));
+    }
+}
+
+void StartGrid::weigh() {
+  const double most = std::ranges::max_element(candidates_, {}, &Candidate::log_weight)->log_weight;
+  double sum = 0.0;
+  for (const Candidate& c : candidates_) sum += std::exp(c.log_weight - most);
+  for (Candidate& c : candidates_) c.probability = std::exp(c.log_weight - most) / sum;
+}
+
+/// Mean squared distance of the position from that of a candidate.
+double StartGrid::variance_about(const Candidate& candidate) const {
+  double variance = 0.0;
+  for (const Candidate& c : candidates_) {
+    const auto own = c.filter.covariance().diagonal().segment(c.filter.model().layout.joint_state(position_),
+                                                              position_states * degrees_of_freedom(motion_));
+    double spread = 0.0;
+    for (Index i = 0; i < degrees_of_freedom(motion_); ++i) spread += own[position_states * i];
+    variance += c.probability * (spread + square(distance(c.filter, candidate.filter)));
+  }
+  return variance;
+}
+
+/// Displacements are near each other, and their places hard to tell apart: one that is stated stays, as long as it is
+/// possible, so that the position does not jump.
+void StartGrid::choose() {
+  const auto by_variance = [&](const Candidate& c) { return variance_about(c); };
+  const auto best = std::ranges::min_element(candidates_, {}, by_variance);
+  const auto now = std::ranges::find_if(candidates_, &Candidate::is_stated);
+  const bool is_possible = now != candidates_.end();
+  if (is_possible && motion_ == JointMotion::prismatic) return;
+  if (is_possible && 2.0 * variance_about(*best) > variance_about(*now)) return;
+  if (is_possible) now->is_stated = false;
+  best->is_stated = true;
+}
+
+const ChainFilter& StartGrid::stated() const {
+  return std::ranges::find_if(candidates_, &Candidate::is_stated)->filter;
+}
+
+double StartGrid::distance(const ChainFilter& a, const ChainFilter& b) const {
+  const double d = a.state().joints[position_states * position_] - b.state().joints[position_states * position_];
+  return std::abs(motion_ == JointMotion::revolute ? std::remainder(d, 2.0 * std::numbers::pi) : d);
 }
 
 }  // namespace kinfer::track

@@ -10,33 +10,44 @@ namespace kinfer::track {
 
 class StartGrid {
  public:
-  /// From `filter`, with the angle `position` all around the circle.
-  static StartGrid around(const ChainFilter& filter, Index position);
-  /// From `filter`, with the displacement `position` within `guess` and its standard deviation on both sides.
-  static StartGrid along(const ChainFilter& filter, Index position, const PositionGuess& guess);
-
-  void update(const BlockMeasurement& block);
-
-  /// Only one place is left, or all that are left agree.
-  bool is_decided() const { return candidates_.size() == 1; }
-  /// Of those that are left the one nearest to where the filter was: until one is chosen, the position counts from
-  /// there.
-  const ChainFilter& best() const;
-  Index position() const { return position_; }
-
- private:
-  StartGrid(Index position, bool is_angle) : position_(position), is_angle_(is_angle) {}
-  void add_place(const ChainFilter& filter, double value, double sd, int steps_away);
-  void drop_unlikely();
-  void merge();
-
+  /// A start that is still possible.
   struct Candidate {
     ChainFilter filter;
     double log_weight = 0.0;
-    int steps_away = 0;
+    double probability = 0.0;  ///< among all
+    bool is_stated = false;
   };
-  Index position_;
-  bool is_angle_;
+
+  /// From `filter`, with the angle of the body's joint all around the circle. `sd` [rad]: of where it is in `filter`.
+  static StartGrid around(const ChainFilter& filter, std::size_t body, double sd);
+  /// From `filter`, with the displacement of the body's joint within `guess` and its standard deviation on both sides.
+  static StartGrid along(const ChainFilter& filter, std::size_t body, const PositionGuess& guess);
+
+  /// `tells`: what the sensors show depends on the position.
+  void update(const BlockMeasurement& block, bool tells);
+
+  /// Only one place is left, or all that are left agree.
+  bool is_decided() const { return candidates_.size() == 1; }
+  /// The one that stands for all: first that where the filter was, and another where the mean squared distance of all
+  /// from it is less than half.
+  const ChainFilter& stated() const;
+  std::span<const Candidate> candidates() const { return candidates_; }
+  /// To correct each filter by what does not tell them apart.
+  std::span<Candidate> candidates() { return candidates_; }
+  std::size_t body() const { return body_; }
+
+ private:
+  StartGrid(const ChainFilter& filter, std::size_t body);
+  double distance(const ChainFilter& a, const ChainFilter& b) const;
+  double variance_about(const Candidate& candidate) const;
+  void drop_unlikely();
+  void merge();
+  void weigh();
+  void choose();
+
+  std::size_t body_;
+  JointMotion motion_;
+  Index position_;  // of the filter, the joint's first
   int updates_ = 0;
   std::vector<Candidate> candidates_;
 };

@@ -22,6 +22,7 @@ inline constexpr double start_velocity_sd = 0.3;       ///< [m/s] of the base
 inline constexpr int start_places = 18;  ///< of an angle that gravity does not determine
 /// Updates that only settle velocities and accelerations: their evidence depends on how little was known of these.
 inline constexpr int start_updates = 25;
+inline constexpr double usual_force_time = 1.0;        ///< [s] mean specific force, from which that of a motion differs
 inline constexpr double start_log_odds = 30.0;         ///< ln: a place so much less likely than the best is dropped
 inline constexpr double start_merge = 0.02;            ///< [rad] or [m] places so near are one
 inline constexpr double prismatic_step = 0.1;          ///< [m] least distance of places along a prismatic joint
