@@ -230,18 +230,23 @@ std::vector<InsScaleFactor> scale_factors(const ScaleReview& review, const InsPr
   return factors;
 }
 
-/// Whether instruments and clock can have the estimated errors.
-bool are_possible(const std::vector<InsErrors>& errors, const ScaleReview& review) {
-  const double most = review.common_sd > 0.0 ? largest_common_factor : 1.0 + largest_scale,
-               least = review.common_sd > 0.0 ? 1.0 / largest_common_factor : 1.0 - largest_scale;
-  return std::ranges::all_of(errors, [&](const InsErrors& e) {
-    const Vec3 factors = Vec3::Ones() + e.gyroscope_scale.diagonal();
-    Mat3 off_diagonal = e.gyroscope_scale;
-    off_diagonal.diagonal().setZero();
-    return factors.minCoeff() > least && factors.maxCoeff() < most &&
-           off_diagonal.cwiseAbs().maxCoeff() < largest_scale &&
-           e.accelerometer_scale.cwiseAbs().maxCoeff() < largest_scale;
-  });
+/// Whether instruments and clock can have the estimated errors. A factor of the clock leaves all elements of all
+/// gyroscopes free: those of axes that turn are estimates.
+bool are_possible(const InsProblem& problem, const std::vector<InsErrors>& errors, const ScaleReview& review) {
+  for (std::size_t s = 0; s < errors.size(); ++s) {
+    const Mat3 &rate = errors[s].gyroscope_scale, &force = errors[s].accelerometer_scale;
+    if (review.common_sd <= 0.0) {
+      if (std::max(rate.cwiseAbs().maxCoeff(), force.cwiseAbs().maxCoeff()) > largest_scale) return false;
+      continue;
+    }
+    const InsMeasurements& r = problem.sensors[s];
+    const Vec3 dilution = regression_dilution(r.angular_velocity, r.noise.angular_velocity);
+    for (Index k = 0; k < 3; ++k)
+      if (const double factor = 1.0 + rate(k, k);
+          dilution[k] < turning_dilution && (factor > largest_common_factor || factor < 1.0 / largest_common_factor))
+        return false;
+  }
+  return true;
 }
 
 /// A fit and what fitting changes in its problem; a copy of the problem would hold an hour of measurements twice.
@@ -287,10 +292,10 @@ ScaleReview refit_deviant_scales(const RefinementTask& task, RefinementFit& fitt
     review = now;
     problem.scale_factors = scale_factors(review, problem);
     fitted.fit = fit_ins(problem, fitted.fit.unknowns, task.options, observer);
-    if (!are_possible(fitted.fit.unknowns.errors, review)) break;
+    if (!are_possible(problem, fitted.fit.unknowns.errors, review)) break;
   }
   const bool is_explained = explains_all || worst_misfit(problem) <= max_rigid_chain_misfit;
-  if (review.empty() || (is_explained && are_possible(fitted.fit.unknowns.errors, review))) return review;
+  if (review.empty() || (is_explained && are_possible(problem, fitted.fit.unknowns.errors, review))) return review;
   restore(fitted, std::move(*before));
   return {};
 }

@@ -55,6 +55,10 @@ inline constexpr double largest_common_scale_sd = 1.0;
 /// Largest estimate of that factor; smaller than its inverse, it is impossible, too.
 inline constexpr double largest_common_factor = 3.0;
 
+/// [1] regression dilution of an axis that turns: its factor is known to a hundredth then, beside the clock's. Set on
+/// excavator, crane and six-axis arm with time stamps times 1.05 and 2.
+inline constexpr double turning_dilution = 0.01;
+
 /// [rad per m/s²] Smallest prior of a mount's compliance: 0.1 mrad under the sensor's own weight, which is negligible.
 inline constexpr double min_mount_compliance = 1e-5;
 
