@@ -15,7 +15,7 @@
 namespace kinfer::deploy {
 
 /// The tool pose of each row in the world, in its named set-up and with its named arm, approached from the previous
-/// row. Outside the measured region the corrections of encoders and gears fade, where a prediction model is given. An
+/// row. Outside the measured region the corrections of gears fade, where a prediction model is given. An
 /// error where the rows name an arm that the chain lacks.
 Result<std::vector<Pose>> predict_poses(const Chain& chain, const PoseSet& rows,
                                         const std::optional<PredictionModel>& model = std::nullopt);

@@ -5,7 +5,7 @@
 // held-out rows show beyond it and beyond the instrument's noise, and what parts of the joint space that were not
 // fitted show beyond that. share(q) rises from 0 among the fitted rows to 1 where all of the nearest lie to one side.
 //
-// What corrections of encoders and gears found out among the fitted rows says nothing of joint positions far from them:
+// What corrections of gears found out among the fitted rows says nothing of joint positions far from them:
 // there the parameters are those of a fit without these terms, x + (1 − weight(q)) · beyond, with
 // weight(q) = 1 / (1 + fade · (distance(q) / reach − 1)²) beyond the reach; distance to the nearest of `rows` in units
 // of `spread`.
