@@ -2,12 +2,18 @@
 // An angle with explicit units: constructed and read in radians or degrees, so that the two cannot be confused.
 #pragma once
 
+#include <cmath>
 #include <compare>
 #include <numbers>
 
 namespace kinfer {
 
 inline constexpr double degree = std::numbers::pi / 180.0;  // [rad]
+
+/// Less full turns: in [−π, π] [rad].
+inline double wrap_to_pi(double angle) {
+  return std::remainder(angle, 2.0 * std::numbers::pi);
+}
 
 class Angle {
  public:

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/deploy/thresholds.hpp"
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
@@ -27,7 +27,7 @@ double change_of(const Chain& earlier, const Chain& later, const Parameter& p) {
   if (const JointNumber* number = joint_number(p.at); number && is_rotation(number->field))
     return rotation_change(earlier, later, *number);
   double change = value_at(later, p.at) - value_at(earlier, p.at);
-  if (p.quantity == Quantity::angle) change = std::remainder(change, 2.0 * std::numbers::pi);
+  if (p.quantity == Quantity::angle) change = wrap_to_pi(change);
   return change;
 }
 

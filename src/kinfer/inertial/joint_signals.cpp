@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/inertial/gaussian_smoothing.hpp"
 #include "kinfer/inertial/thresholds.hpp"
@@ -104,10 +105,6 @@ JointSignal relative_rotation_signal(const SegmentMotion& parent, const SegmentM
 }
 
 }  // namespace
-
-double wrap_to_pi(double angle) {
-  return std::remainder(angle, 2.0 * std::numbers::pi);
-}
 
 Vec3 euler_angles(const Mat3& r) {
   return {std::atan2(r(2, 1), r(2, 2)), -std::asin(std::clamp(r(2, 0), -1.0, 1.0)), std::atan2(r(1, 0), r(0, 0))};

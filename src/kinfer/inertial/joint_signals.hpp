@@ -42,7 +42,4 @@ Vec3 euler_angles(const Mat3& world_R_sensor);
 /// The second Euler representation of a rotation: (phi, theta, psi) -> (phi + pi, pi - theta, psi + pi).
 Vec3 alternative_euler_angles(const Vec3& angles);
 
-/// An angle wrapped to [−pi, pi].
-double wrap_to_pi(double angle);
-
 }  // namespace kinfer

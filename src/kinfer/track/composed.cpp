@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/base/square.hpp"
 #include "kinfer/evidence/tracking/body_poses.hpp"
 #include "kinfer/geometry/cardan_angles.hpp"
@@ -42,7 +42,7 @@ double about_z(const Mat3& r) {
 }
 
 double unwrapped_angle(double angle, double before) {
-  return std::isfinite(before) ? before + std::remainder(angle - before, 2.0 * std::numbers::pi) : angle;
+  return std::isfinite(before) ? before + wrap_to_pi(angle - before) : angle;
 }
 
 /// The bodies of a joint: first and last index.
@@ -208,7 +208,7 @@ void ComposedFilters::measure_heading(Joint& joint, double dt) {
   // The first measurement counts whole, later ones as the error's time allows.
   const double variance = joint.heading_variance > 100.0 * noise ? noise : noise * axis_error_time / std::max(dt, 1e-4);
   const double gain = joint.heading_variance / (joint.heading_variance + variance);
-  joint.heading += gain * std::remainder(angle - joint.heading, 2.0 * std::numbers::pi);
+  joint.heading += gain * wrap_to_pi(angle - joint.heading);
   joint.heading_variance *= 1.0 - gain;
   state_.joints[static_cast<std::size_t>(joint.index)].reference = JointReference::chain;
 }

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/base/square.hpp"
 #include "kinfer/evidence/tracking/body_poses.hpp"
 #include "kinfer/geometry/cardan_angles.hpp"
@@ -15,13 +15,9 @@ namespace {
 
 using Index = Eigen::Index;
 
-double wrapped_angle(double angle) {
-  return std::remainder(angle, 2.0 * std::numbers::pi);
-}
-
 /// Angle of the rotation's part about a unit axis.
 double twist_about(const Vec3& axis, const Quat& rotation) {
-  return wrapped_angle(2.0 * std::atan2(rotation.vec().dot(axis), rotation.w()));
+  return wrap_to_pi(2.0 * std::atan2(rotation.vec().dot(axis), rotation.w()));
 }
 
 double middle_of(const Vec3& v) {
@@ -60,7 +56,7 @@ void JointFusion::begin_or_improve(Offset& offset, double measured, double chain
   if (!offset.is_set) {
     offset = {.is_set = true, .value = measured, .common = chain_variance, .drift = drift};
   } else if (chain_variance < offset.common) {
-    offset.value += (1.0 - chain_variance / offset.common) * wrapped_angle(measured - offset.value);
+    offset.value += (1.0 - chain_variance / offset.common) * wrap_to_pi(measured - offset.value);
     offset.common = chain_variance;
   }
 }
@@ -69,7 +65,7 @@ void JointFusion::begin_or_improve(Offset& offset, double measured, double chain
 /// `wander_time`, longer where it wanders far. Returns the variance of the chain's heading: at least as much as it
 /// wanders about the other beyond what that drifts, because gyroscopes alone are right over seconds.
 double JointFusion::follow(Offset& offset, double measured, double chain_variance, double drift, double dt) {
-  const double difference = wrapped_angle(measured - offset.value);
+  const double difference = wrap_to_pi(measured - offset.value);
   offset.variance += std::max(0.0, drift - offset.drift);
   offset.drift = drift;
   offset.age += dt;
@@ -142,7 +138,7 @@ void JointFusion::fuse(const TrackingModel& model, const ComposedFilters& compos
   double difference = 0.0;
   for (Index i = 0; i < of.positions; ++i) {
     const double offset = i == 0 ? joint.offset.value : 0.0;
-    difference += square(wrapped_angle(composed.state().q[first + i] + offset - chain.q[first + i])) / of.positions;
+    difference += square(wrap_to_pi(composed.state().q[first + i] + offset - chain.q[first + i])) / of.positions;
   }
   joint.age = std::min(joint.age + dt, wander_memory);
   joint.difference += dt / std::max(joint.age, 1e-4) * (difference - joint.difference);
@@ -153,7 +149,7 @@ void JointFusion::fuse(const TrackingModel& model, const ComposedFilters& compos
   if (joint.share <= 0.0) return;
   for (Index i = 0; i < of.positions; ++i) {
     const double offset = i == 0 ? joint.offset.value : 0.0, q = composed.state().q[first + i] + offset;
-    chain.q[first + i] += joint.share * wrapped_angle(q - chain.q[first + i]);
+    chain.q[first + i] += joint.share * wrap_to_pi(q - chain.q[first + i]);
     if (std::isfinite(composed.state().qd[first + i]))
       chain.qd[first + i] += joint.share * (composed.state().qd[first + i] - chain.qd[first + i]);
   }

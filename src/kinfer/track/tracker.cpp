@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/track/faults/thresholds.hpp"
@@ -13,66 +12,6 @@
 
 namespace kinfer::track {
 namespace {
-
-/// Index into the model's q of each joint position of the filter; a spherical joint that stands for a loose revolute
-/// joint has its rotation about the axis as the third, and no joint position for the others (−1).
-std::vector<int> model_positions(const TrackingModel& tracking, const FilterModel& model) {
-  std::vector<int> positions;
-  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
-    const TrackingBody& body = tracking.bodies[b];
-    const Index dof = degrees_of_freedom(model.bodies[b].motion);
-    if (dof == 0) continue;
-    const TrackingJoint& joint = tracking.joints[static_cast<std::size_t>(body.joint)];
-    const bool is_second = tracking.bodies[static_cast<std::size_t>(body.parent)].joint == body.joint;
-    const bool is_loose = dof == 3 && joint.positions == 1;
-    for (int i = 0; i < static_cast<int>(dof); ++i)
-      positions.push_back(is_loose ? (i == 2 ? joint.first_position : -1)
-                                   : joint.first_position + i + (is_second ? 1 : 0));
-  }
-  return positions;
-}
-
-const TrackingJoint& joint_of(const TrackingModel& tracking, int position) {
-  return *std::ranges::find_if(tracking.joints, [&](const TrackingJoint& joint) {
-    return position >= joint.first_position && position < joint.first_position + joint.positions;
-  });
-}
-
-std::vector<PositionGuess> make_guesses(const TrackingModel& tracking, const std::vector<int>& positions,
-                                        const TrackOptions& options) {
-  std::vector<PositionGuess> guesses;
-  for (const int position : positions) {
-    PositionGuess guess{.value = 0.0, .sd = max_position_sd};
-    if (position >= 0) {
-      const TrackingJoint& joint = joint_of(tracking, position);
-      const auto at = static_cast<std::size_t>(position - joint.first_position);
-      if (at < joint.range.size()) {
-        guess.value = 0.5 * (joint.range[at].lower + joint.range[at].upper);
-        guess.sd = 0.5 * (joint.range[at].upper - joint.range[at].lower) + start_prismatic_margin;
-      }
-      if (options.start && position < options.start->size() && !std::isnan((*options.start)[position]))
-        guess = {.value = (*options.start)[position], .sd = given_start_sd, .is_given = true};
-    }
-    guesses.push_back(guess);
-  }
-  return guesses;
-}
-
-/// Of a joint with one turning position. One without a range may be anywhere.
-LastPosition last_position(const TrackingJoint& joint, const TrackState& state, double time, double acceleration_sd) {
-  LastPosition last{.time = time,
-                    .value = state.q[joint.first_position],
-                    .rate = state.qd[joint.first_position],
-                    .sd = state.sd_q[joint.first_position],
-                    .most_turned = max_position_sd,
-                    .speed = std::numeric_limits<double>::infinity(),
-                    .acceleration_sd = acceleration_sd};
-  if (joint.range.empty()) return last;
-  const auto& seen = joint.range.front();
-  last.speed = seen.speed;
-  last.most_turned = std::min(max_position_sd, 0.5 * (seen.upper - seen.lower));
-  return last;
-}
 
 std::optional<BaseMode> given_base(BaseMotion motion) {
   if (motion == BaseMotion::automatic) return {};
@@ -84,12 +23,13 @@ std::optional<BaseMode> given_base(BaseMotion motion) {
 Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
     : tracking_(std::make_shared<TrackingModel>(model)),
       model_(std::make_shared<FilterModel>(filter_model(model))),
-      model_position_(model_positions(model, *model_)),
-      joint_of_position_(model_position_),
+      model_positions_(model_positions(model, *model_)),
+      guesses_(position_guesses(model, model_positions_, options.start)),
       filter_(model_),
       motion_(*model_),
       spread_(model, *model_),
       unknown_(model_->bodies.size(), 0.0),
+      positions_(*model_),
       block_(model.sensors.size()),
       rest_(*model_),
       base_(model, *model_, given_base(options.base)),
@@ -108,12 +48,6 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       now_(initial_state(*model_)),
       chain_state_(unknown_state(model)),
       state_(unknown_state(model)) {
-  guesses_ = make_guesses(model, model_position_, options);
-  for (int& position : joint_of_position_)
-    if (position >= 0) position = static_cast<int>(&joint_of(*tracking_, position) - tracking_->joints.data());
-  is_known_.assign(joint_of_position_.size(), false);
-  is_open_ = is_known_;
-  start_sd_ = lost_in_gap_ = std::vector<double>(joint_of_position_.size(), 0.0);
   state_.alarms.reserve(4 * model.sensors.size() + model.joints.size() + 4);
 }
 
@@ -123,8 +57,8 @@ void Tracker::restart(double time) {
   if (state_.started) {
     restarted_ = time;
     for (std::size_t i = 0; i < guesses_.size(); ++i) {
-      if (joint_of_position_[i] < 0) continue;
-      const TrackingJoint& joint = tracking_->joints[static_cast<std::size_t>(joint_of_position_[i])];
+      if (model_positions_[i].joint < 0) continue;
+      const TrackingJoint& joint = tracking_->joints[static_cast<std::size_t>(model_positions_[i].joint)];
       if (joint.positions != 1 || joint.type == EstimatedJointType::prismatic) continue;  // these have a grid of starts
       guesses_[i].last = last_position(joint, state_, last_time_, model_->positions[i].sd);
     }
@@ -222,14 +156,11 @@ void Tracker::find_returned(const BlockMeasurement& block) {
   const std::optional<FoundAgain> found = return_.add(block);
   if (!found) return;
   filter_ = found->filter;
+  const BaseMode base = filter_.state().base;
   for (const FoundPosition& at : found->positions) {
-    const auto i = static_cast<std::size_t>(at.position);
-    is_known_[i] = at.sd < turned_in_gap;
-    lost_in_gap_[i] = is_known_[i] ? 0.0 : std::min(max_position_sd, at.sd);
-    is_open_[i] = !is_known_[i] && filter_.state().base == BaseMode::moving;
-    start_sd_[i] = lost_in_gap_[i];
-    if (is_known_[i]) continue;
-    if (filter_.state().base == BaseMode::moving)
+    if (at.sd < turned_in_gap) continue;
+    positions_.lose(at.position, at.sd, base);
+    if (base == BaseMode::moving)
       filter_.place(at.position, filter_.state().joints[position_states * at.position], 0.0);
     else
       filter_.declare_known(at.position);
@@ -266,21 +197,13 @@ void Tracker::try_start() {
   waits_since_.reset();
   settle(posture, filter_, waiting_);
   start_in(posture, filter_);
-  open_positions(posture);
+  positions_.begin(*model_, posture, filter_.state().base);
   fusion_.reset();
   begin_grid();
   replay_.begin(filter_);
   spread_tool();
   state_.started = true;
   now_ = filter_.state();
-}
-
-/// Whether a body moves whose joint leads to this one: then motion shows how the joint stands, if gravity does not.
-bool Tracker::parent_moves(std::size_t b) const {
-  if (filter_.state().base == BaseMode::moving) return true;
-  for (int a = model_->bodies[b].parent; a > 0; a = model_->bodies[static_cast<std::size_t>(a)].parent)
-    if (model_->layout.position[static_cast<std::size_t>(a)] >= 0) return true;
-  return false;
 }
 
 /// Whether what moves now tells where such a joint stands. A prismatic one is told by the rates that its own axes have.
@@ -293,35 +216,11 @@ bool Tracker::tells_of(std::size_t b) const {
   return sensor < 0 || motion_.moves(static_cast<std::size_t>(sensor));
 }
 
-void Tracker::open_positions(const InitialPosture& posture) {
-  for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
-    const JointMotion motion = model_->bodies[b].motion;
-    const bool is_loose = model_->is_loose(b);
-    for (Index k = 0; k < degrees_of_freedom(motion); ++k) {
-      const auto i = static_cast<std::size_t>(model_->layout.position[b] + k);
-      const StartPosition& start = posture.positions[i];
-      const bool is_seen = filter_.state().base == BaseMode::moving || !start.is_unseen;
-      is_known_[i] = start.is_known;
-      is_open_[i] = !start.is_known && degrees_of_freedom(motion) == 1 &&
-                    (motion == JointMotion::prismatic || (parent_moves(b) && is_seen));
-      lost_in_gap_[i] = std::min(max_position_sd, start.lost_sd.value_or(0.0));
-      const bool has_zero = start.is_known || start.is_unseen || is_loose || motion == JointMotion::prismatic;
-      start_sd_[i] = has_zero ? 0.0 : start.lost_sd ? std::max(start_sd_[i], lost_in_gap_[i]) : max_position_sd;
-    }
-  }
-}
-
 void Tracker::resolve_start(const BlockMeasurement& block) {
   grid_->update(block, tells_of(grid_->body()));
   filter_ = grid_->stated();
   if (!grid_->is_decided()) return;
-  const std::size_t body = grid_->body();
-  for (Index k = 0; k < degrees_of_freedom(model_->bodies[body].motion); ++k) {
-    const auto i = static_cast<std::size_t>(model_->layout.position[body] + k);
-    is_known_[i] = true;
-    is_open_[i] = false;
-    start_sd_[i] = 0.0;
-  }
+  positions_.decide(*model_, grid_->body());
   grid_.reset();
   fit_.reset();  // other places did not fit, which says nothing of the sensors
   begin_grid();
@@ -347,11 +246,7 @@ bool Tracker::base_begins_to_move(const BlockMeasurement& block) {
 /// The base has moved for a while; what counted from the start becomes observable.
 void Tracker::let_base_move() {
   replay([](ChainFilter& filter) { filter.set_base(BaseMode::moving); });
-  for (std::size_t b = 1; b < model_->bodies.size(); ++b)
-    for (Index k = 0; k < degrees_of_freedom(model_->bodies[b].motion); ++k) {
-      const auto i = static_cast<std::size_t>(model_->layout.position[b] + k);
-      is_open_[i] = !is_known_[i] && degrees_of_freedom(model_->bodies[b].motion) == 1;
-    }
+  positions_.let_base_move(*model_);
   begin_grid();
 }
 
@@ -359,20 +254,19 @@ void Tracker::let_base_move() {
 void Tracker::begin_grid() {
   for (std::size_t b = 1; b < model_->bodies.size() && !grid_; ++b) {
     const Index at = model_->layout.position[b];
-    if (at < 0 || !is_open_[static_cast<std::size_t>(at)] || !tells_of(b)) continue;
+    if (at < 0 || !positions_[static_cast<std::size_t>(at)].is_open || !tells_of(b)) continue;
     if (model_->bodies[b].motion == JointMotion::prismatic)
       grid_ = StartGrid::along(filter_, b, guesses_[static_cast<std::size_t>(at)]);
     else
-      grid_ = StartGrid::around(filter_, b, start_sd_[static_cast<std::size_t>(at)]);
+      grid_ = StartGrid::around(filter_, b, positions_.start_sd(*model_, b));
   }
 }
 
 /// Where positions count from the start the tool is as uncertain as what they count from.
 void Tracker::spread_tool() {
   for (std::size_t b = 1; b < unknown_.size(); ++b) {
-    const Index at = model_->layout.position[b];
     const bool is_in_grid = grid_ && grid_->body() == b;
-    unknown_[b] = at < 0 || is_in_grid ? 0.0 : start_sd_[static_cast<std::size_t>(at)];
+    unknown_[b] = is_in_grid ? 0.0 : positions_.start_sd(*model_, b);
   }
   tool_.spread(*model_, filter_.state(), filter_.covariance(), unknown_);
   if (grid_ && model_->bodies[grid_->body()].motion != JointMotion::prismatic)
@@ -465,17 +359,13 @@ void Tracker::process_block(const BlockMeasurement& block) {
   spread_tool();
 }
 
-/// What is added to the standard deviations of positions whose zero is not known: all of that, where motion will show
-/// it; where they count from the start, what they may have turned in a gap.
+/// Positions whose zero is not known; the grid has the spread of its own.
 void Tracker::widen_unknown() {
-  for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
-    const bool is_in_grid = grid_ && grid_->body() == b;
-    for (Index k = 0; k < degrees_of_freedom(model_->bodies[b].motion); ++k) {
-      const auto i = static_cast<std::size_t>(model_->layout.position[b] + k);
-      if (is_known_[i] || is_in_grid || joint_of_position_[i] < 0) continue;
-      double& sd = chain_state_.sd_q[model_position_[i]];
-      sd = std::hypot(sd, is_open_[i] ? start_sd_[i] : lost_in_gap_[i]);
-    }
+  const Index in_grid = grid_ ? model_->layout.position[grid_->body()] : -1;
+  for (std::size_t i = 0; i < positions_.size(); ++i) {
+    const int q = model_positions_[i].q;
+    if (q < 0 || static_cast<Index>(i) == in_grid) continue;
+    chain_state_.sd_q[q] = std::hypot(chain_state_.sd_q[q], positions_[i].missing_sd());
   }
   if (grid_) spread_.add_to(chain_state_);
 }
@@ -490,9 +380,9 @@ void Tracker::read_out(double time) {
     joint.source = JointSource::chain;
     joint.reference = JointReference::chain;
   }
-  for (std::size_t i = 0; i < is_known_.size(); ++i)
-    if (!is_known_[i] && joint_of_position_[i] >= 0)
-      chain_state_.joints[static_cast<std::size_t>(joint_of_position_[i])].reference = JointReference::start;
+  for (std::size_t i = 0; i < positions_.size(); ++i)
+    if (!positions_[i].is_known && model_positions_[i].joint >= 0)
+      chain_state_.joints[static_cast<std::size_t>(model_positions_[i].joint)].reference = JointReference::start;
   chain_state_.time = time;
   state_.q = chain_state_.q;
   state_.qd = chain_state_.qd;
@@ -512,8 +402,8 @@ void Tracker::read_out(double time) {
     is_sound_[s] = !does_not_fit_[s] && !health_[s].lost && !health_[s].stuck && !health_[s].instrument_missing &&
                    !return_.waits_for(s);
   is_settled_.assign(is_settled_.size(), true);
-  for (std::size_t i = 0; i < is_open_.size(); ++i)
-    if (is_open_[i]) is_settled_[static_cast<std::size_t>(joint_of_position_[i])] = false;
+  for (std::size_t i = 0; i < positions_.size(); ++i)
+    if (positions_[i].is_open) is_settled_[static_cast<std::size_t>(model_positions_[i].joint)] = false;
   fusion_.apply(*tracking_, composed_, {.is_sound = is_sound_, .is_settled = is_settled_}, state_);
 }
 

@@ -19,7 +19,9 @@
 #include "kinfer/track/joint_fusion.hpp"
 #include "kinfer/track/options.hpp"
 #include "kinfer/track/readout/tool_spread.hpp"
+#include "kinfer/track/start/known_positions.hpp"
 #include "kinfer/track/start/motion_watch.hpp"
+#include "kinfer/track/start/position_guesses.hpp"
 #include "kinfer/track/start/settled_start.hpp"
 #include "kinfer/track/start/start_grid.hpp"
 #include "kinfer/track/start/start_spread.hpp"
@@ -63,8 +65,6 @@ class Tracker {
   void replay(const std::function<void(ChainFilter&)>& prepare);
   bool base_begins_to_move(const BlockMeasurement& block);
   void let_base_move();
-  void open_positions(const InitialPosture& posture);
-  bool parent_moves(std::size_t body) const;
   bool tells_of(std::size_t body) const;
   void begin_grid();
   void spread_tool();
@@ -82,18 +82,14 @@ class Tracker {
 
   std::shared_ptr<const TrackingModel> tracking_;
   std::shared_ptr<const FilterModel> model_;
-  std::vector<PositionGuess> guesses_;
-  std::vector<int> model_position_;     // of each of the filter: index into the model's q; −1: none
-  std::vector<int> joint_of_position_;  // likewise: index into the model's joints
+  std::vector<ModelPosition> model_positions_;  // of each joint position of the filter
+  std::vector<PositionGuess> guesses_;          // likewise
   ChainFilter filter_;
   std::optional<StartGrid> grid_;
   MotionWatch motion_;
   StartSpread spread_;
-  std::vector<double> unknown_;      // as of ToolSpread
-  std::vector<bool> is_known_;       // of each joint position of the filter
-  std::vector<bool> is_open_;        // likewise: motion will show it, and has not yet
-  std::vector<double> start_sd_;     // [rad] of what such a position counts from: its zero, if that is not known
-  std::vector<double> lost_in_gap_;  // [rad] standard deviation of what one may have turned unseen, until it is known
+  std::vector<double> unknown_;  // as of ToolSpread
+  KnownPositions positions_;
   RowBlock block_;
   std::vector<BlockMeasurement> waiting_;  // for the start
   RestBias rest_;

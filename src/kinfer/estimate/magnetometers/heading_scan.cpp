@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer {
@@ -64,8 +65,7 @@ struct LinearScan {
 };
 
 double wrapped_square(ConstMatrixRef information, const VectorXd& rotation) {
-  const VectorXd wrapped =
-      rotation.unaryExpr([](double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); });
+  const VectorXd wrapped = rotation.unaryExpr([](double angle) { return wrap_to_pi(angle); });
   return wrapped.dot(information * wrapped);
 }
 
@@ -83,8 +83,7 @@ MagneticUnknowns scan_headings(const MagneticModel& model, ConstMatrixRef inform
       const double from = best.rotation[k];
       for (int i = 1; i < scanned_directions; ++i) {
         MagneticUnknowns trial = best;
-        trial.rotation[k] =
-            std::remainder(from + 2.0 * std::numbers::pi * i / scanned_directions, 2.0 * std::numbers::pi);
+        trial.rotation[k] = wrap_to_pi(from + 2.0 * std::numbers::pi * i / scanned_directions);
         const double cost = scan.solve(trial) + wrapped_square(information, trial.rotation);
         if (cost >= least) continue;
         least = cost;

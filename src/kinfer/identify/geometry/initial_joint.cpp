@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/identify/geometry/thresholds.hpp"
-#include "kinfer/inertial/joint_signals.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::identify {

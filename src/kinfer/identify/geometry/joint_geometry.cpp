@@ -2,9 +2,9 @@
 #include "kinfer/identify/geometry/joint_geometry.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/base/expect.hpp"
 #include "kinfer/identify/geometry/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"

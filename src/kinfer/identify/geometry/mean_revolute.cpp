@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
@@ -122,7 +123,7 @@ MatrixXd revolute_trajectory(const MeanRevolute& revolute, std::span<const Mat3>
   double before = 0.0;
   for (std::size_t i = 0; i < rotations.size(); ++i) {
     const double position = revolute_position(revolute.body, rotations[i]) - revolute.zero;
-    before += std::remainder(position - before, 2.0 * std::numbers::pi);
+    before += wrap_to_pi(position - before);
     trajectory(0, static_cast<Index>(i)) = before;
   }
   return trajectory;

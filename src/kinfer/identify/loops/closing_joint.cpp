@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "kinfer/inertial/joint_signals.hpp"
+#include "kinfer/base/angle.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::identify {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/base/expect.hpp"
 #include "kinfer/identify/programming/link_block.hpp"
 

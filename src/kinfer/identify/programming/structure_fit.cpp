@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/base/expect.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/programming/angle_start.hpp"

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/identify/refinement/thresholds.hpp"
-#include "kinfer/inertial/joint_signals.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
 

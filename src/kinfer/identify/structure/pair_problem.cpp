@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/geometry/rotation.hpp"
 #include "kinfer/identify/structure/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
@@ -51,7 +52,7 @@ WorldRotation PairProblem::world_rotation(double angle, double drift, const Vec2
 double PairProblem::magnetic_cost(const WorldRotation& world_rotation) const {
   if (headings_ == HeadingReference::arbitrary) return 0.0;
   const auto square_of = [](double heading) {
-    const double ratio = std::remainder(heading, 2.0 * std::numbers::pi) / magnetic_heading_sd;
+    const double ratio = wrap_to_pi(heading) / magnetic_heading_sd;
     return ratio * ratio;
   };
   double heading = world_rotation.heading.angle, cost = square_of(heading);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/base/square.hpp"
 #include "kinfer/track/faults/thresholds.hpp"
 
@@ -22,7 +23,7 @@ double position_of(const ChainFilter& filter, Index position) {
 }
 
 double circular_distance(double a, double b) {
-  return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi));
+  return std::abs(wrap_to_pi(a - b));
 }
 
 /// Of a position before the rows, where the rows place it.
@@ -68,7 +69,7 @@ Search search(const ChainFilter& before, std::span<const BlockMeasurement> rows,
                expected_sd = position_sd(before, position);
   std::vector<Place> places;
   for (int k = 0; k < return_places; ++k) {
-    const double turn = std::remainder(k * step, 2.0 * std::numbers::pi);
+    const double turn = wrap_to_pi(k * step);
     if (std::abs(turn) > 0.5 * step + return_reach * expected_sd) continue;
     places.push_back(settled_place(before, rows, position, expected + turn, std::min(expected_sd, 0.5 * step)));
   }
@@ -77,7 +78,7 @@ Search search(const ChainFilter& before, std::span<const BlockMeasurement> rows,
     if (circular_distance(other.value, result.best.value) > turned_in_gap)
       result.log_odds = std::min(result.log_odds, result.best.log_likelihood - other.log_likelihood);
   // What is already known of a turn is not given up for a whole one.
-  result.best.value = expected + std::remainder(result.best.value - expected, 2.0 * std::numbers::pi);
+  result.best.value = expected + wrap_to_pi(result.best.value - expected);
   return result;
 }
 

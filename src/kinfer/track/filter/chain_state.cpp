@@ -185,19 +185,6 @@ ChainState initial_state(const FilterModel& model) {
   return state;
 }
 
-Mat3 parent_R_child(const FilterModel& model, const ChainState& state, std::size_t b) {
-  const InsBody& body = model.bodies[b];
-  Mat3 turn = state.spherical[b];
-  if (body.motion == JointMotion::revolute) turn = rot_z(state.joints[position_states * model.layout.position[b]]);
-  return body.parent_R_axis * turn * body.child_R_axis.transpose();
-}
-
-Vec3 up_in_body(const FilterModel& model, const ChainState& state, std::size_t b) {
-  if (b == 0) return state.world_R_base.transpose() * Vec3::UnitZ();
-  const auto parent = static_cast<std::size_t>(model.bodies[b].parent);
-  return parent_R_child(model, state, b).transpose() * up_in_body(model, state, parent);
-}
-
 void retract(const FilterModel& model, const VectorXd& error, ChainState& state) {
   const FilterLayout& layout = model.layout;
   state.world_R_base *= exp_so3(error.segment<3>(BaseIndex::attitude));

@@ -30,12 +30,6 @@ struct ChainState {
 /// At rest at joint position 0 with the sensors' errors of the model.
 ChainState initial_state(const FilterModel& model);
 
-/// Rotation of a body's frame in its parent's.
-Mat3 parent_R_child(const FilterModel& model, const ChainState& state, std::size_t body);
-
-/// Up, in a body's frame.
-Vec3 up_in_body(const FilterModel& model, const ChainState& state, std::size_t body);
-
 /// Adds an error to the estimated states; those of the geometry are left alone.
 void retract(const FilterModel& model, const VectorXd& error, ChainState& state);
 

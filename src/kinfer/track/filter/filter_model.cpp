@@ -230,4 +230,22 @@ FilterModel filter_model(const TrackingModel& model) {
   return filter;
 }
 
+std::vector<ModelPosition> model_positions(const TrackingModel& tracking, const FilterModel& model) {
+  std::vector<ModelPosition> positions;
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    const TrackingBody& body = tracking.bodies[b];
+    const int dof = static_cast<int>(degrees_of_freedom(model.bodies[b].motion));
+    if (dof == 0) continue;
+    const TrackingJoint& joint = tracking.joints[static_cast<std::size_t>(body.joint)];
+    const bool is_second = tracking.bodies[static_cast<std::size_t>(body.parent)].joint == body.joint;
+    for (int i = 0; i < dof; ++i) {
+      if (!model.is_loose(b))
+        positions.push_back({joint.first_position + i + (is_second ? 1 : 0), body.joint});
+      else
+        positions.push_back(i == 2 ? ModelPosition{joint.first_position, body.joint} : ModelPosition{});
+    }
+  }
+  return positions;
+}
+
 }  // namespace kinfer::track

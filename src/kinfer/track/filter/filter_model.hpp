@@ -67,4 +67,13 @@ struct FilterModel {
 
 FilterModel filter_model(const TrackingModel& model);
 
+/// Where a joint position of the filter stands in the tracking model: indices into its q and its joints; −1: none.
+struct ModelPosition {
+  int q = -1, joint = -1;
+};
+
+/// Of each position of the filter. A spherical joint that stands for a loose revolute one has its rotation about the
+/// axis as the third, and nothing for the others.
+std::vector<ModelPosition> model_positions(const TrackingModel& tracking, const FilterModel& model);
+
 }  // namespace kinfer::track

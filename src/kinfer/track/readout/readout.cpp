@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/geometry/cardan_angles.hpp"
 
 namespace kinfer::track {
@@ -14,7 +14,7 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 double unwrapped(double angle, double before) {
-  return std::isnan(before) ? angle : before + std::remainder(angle - before, 2.0 * std::numbers::pi);
+  return std::isnan(before) ? angle : before + wrap_to_pi(angle - before);
 }
 
 double sd_at(const MatrixXd& covariance, Index at) {
@@ -62,13 +62,20 @@ void read_loose_joint(const FilterModel& model, std::size_t b, const ChainState&
   to.sd_qd[at] = sd_at(covariance, model.layout.joint_state(third) + 1);
 }
 
+Mat3 parent_R_child(const FilterModel& model, std::size_t b, const ChainState& state) {
+  const InsBody& body = model.bodies[b];
+  Mat3 turn = state.spherical[b];
+  if (body.motion == JointMotion::revolute) turn = rot_z(state.joints[position_states * model.layout.position[b]]);
+  return body.parent_R_axis * turn * body.child_R_axis.transpose();
+}
+
 /// A universal joint's two bodies follow each other.
 void read_rotations(const TrackingModel& tracking, const FilterModel& model, const ChainState& state, TrackState& to) {
   for (std::size_t b = 1; b < model.bodies.size(); ++b) {
     const TrackingBody& body = tracking.bodies[b];
     Quat& rotation = to.joints[static_cast<std::size_t>(body.joint)].parent_q_child;
     const bool is_second = tracking.bodies[static_cast<std::size_t>(body.parent)].joint == body.joint;
-    const Quat own(parent_R_child(model, state, b));
+    const Quat own(parent_R_child(model, b, state));
     rotation = is_second ? rotation * own : own;
   }
 }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/base/square.hpp"
 #include "kinfer/evidence/tracking/body_poses.hpp"
 #include "kinfer/geometry/cardan_angles.hpp"
@@ -14,10 +14,6 @@ namespace kinfer::track {
 namespace {
 
 using Index = Eigen::Index;
-
-double shortest_turn(double angle) {
-  return std::remainder(angle, 2.0 * std::numbers::pi);
-}
 
 bool is_known(const PassState& pass, const TrackingJoint& joint) {
   return pass.started && pass.q.segment(joint.first_position, joint.positions).array().isFinite().all();
@@ -82,7 +78,7 @@ void combine_joint(const TrackingModel& model, const PassState& forward, const P
     const Blend position = blend(position_sd(forward, at), position_sd(backward, at)),
                 velocity = blend({forward.sd_qd[at], 0.0}, {backward.sd_qd[at], 0.0});
     const double difference = backward.q[at] - forward.q[at];
-    to.q[at] += position.share * (slides ? difference : shortest_turn(difference));
+    to.q[at] += position.share * (slides ? difference : wrap_to_pi(difference));
     to.sd_q[at] = position.sd;
     to.qd[at] += velocity.share * (backward.qd[at] - forward.qd[at]);
     to.sd_qd[at] = velocity.sd;

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/track/start/thresholds.hpp"
 
 namespace kinfer::track {
@@ -26,10 +26,6 @@ struct JointStart {
   bool is_blurred = false, is_rough = false;  ///< as of StartPosition
   std::optional<double> lost_sd{};
 };
-
-double wrapped(double angle) {
-  return std::remainder(angle, 2.0 * std::numbers::pi);
-}
 
 double angle_of(const Vec3& v) {
   return std::atan2(v.y(), v.x());
@@ -120,7 +116,7 @@ JointStart revolute_start(const InsBody& body, const AxisSd& axis, const SeenBod
   const PositionAfterGap expected = guess.last ? after_gap(*guess.last, time, joint_rate(body, parent, child))
                                                : PositionAfterGap{guess.value, guess.sd};
   const double turn = angle_of(u) - angle_of(w) - expected.value;
-  start.position.x() = expected.value + wrapped(turn);  // the turn nearest to what was seen
+  start.position.x() = expected.value + wrap_to_pi(turn);  // the turn nearest to what was seen
   if (!guess.last) return start;
   start.lost_sd = expected.sd;
   if (is_shown && expected.sd >= start.sd.x()) return start;
@@ -140,9 +136,9 @@ std::array<double, 2> universal_angles(const Vec3& u, const Vec3& w, const Mat3&
   std::array<double, 2> best{near_first, near_second};
   double least = std::numeric_limits<double>::infinity();
   for (const double first : {middle + half, middle - half}) {
-    const double q1 = near_first + wrapped(first - near_first);
+    const double q1 = near_first + wrap_to_pi(first - near_first);
     const Vec3 turned = m * (rot_z(-q1) * u);
-    const double q2 = near_second + wrapped(angle_of(turned) - angle_of(w) - near_second);
+    const double q2 = near_second + wrap_to_pi(angle_of(turned) - angle_of(w) - near_second);
     const double far = std::abs(q1 - near_first) + std::abs(q2 - near_second);
     if (far < least) least = far, best = {q1, q2};
   }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/track/start/thresholds.hpp"
 
 namespace kinfer::track {
@@ -106,7 +107,7 @@ void settle(InitialPosture& posture, const ChainFilter& filter, std::span<const 
   for (const Index at : positions) {
     double& q = best.state.joints[position_states * at];
     const double before = posture.state.joints[position_states * at];
-    q = before + std::remainder(q - before, 2.0 * std::numbers::pi);
+    q = before + wrap_to_pi(q - before);
   }
   posture.state = best.state;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/base/square.hpp"
 #include "kinfer/track/filter/thresholds.hpp"
 #include "kinfer/track/start/thresholds.hpp"
@@ -19,7 +20,7 @@ StartGrid StartGrid::around(const ChainFilter& filter, std::size_t body, double 
   const double q = filter.state().joints[position_states * grid.position_],
                step = 2.0 * std::numbers::pi / start_places;
   for (int k = 0; k < start_places; ++k) {
-    const double turn = std::remainder(k * step, 2.0 * std::numbers::pi);
+    const double turn = wrap_to_pi(k * step);
     grid.candidates_.push_back({.filter = filter});
     Candidate& candidate = grid.candidates_.back();
     candidate.filter.place(grid.position_, q + turn, 0.5 * step);
@@ -85,11 +86,8 @@ void StartGrid::weigh() {
 double StartGrid::variance_about(const Candidate& candidate) const {
   double variance = 0.0;
   for (const Candidate& c : candidates_) {
-    const auto own = c.filter.covariance().diagonal().segment(c.filter.model().layout.joint_state(position_),
-                                                              position_states * degrees_of_freedom(motion_));
-    double spread = 0.0;
-    for (Index i = 0; i < degrees_of_freedom(motion_); ++i) spread += own[position_states * i];
-    variance += c.probability * (spread + square(distance(c.filter, candidate.filter)));
+    const Index own = c.filter.model().layout.joint_state(position_);
+    variance += c.probability * (c.filter.covariance()(own, own) + square(distance(c.filter, candidate.filter)));
   }
   return variance;
 }
@@ -113,7 +111,7 @@ const ChainFilter& StartGrid::stated() const {
 
 double StartGrid::distance(const ChainFilter& a, const ChainFilter& b) const {
   const double d = a.state().joints[position_states * position_] - b.state().joints[position_states * position_];
-  return std::abs(motion_ == JointMotion::revolute ? std::remainder(d, 2.0 * std::numbers::pi) : d);
+  return std::abs(motion_ == JointMotion::revolute ? wrap_to_pi(d) : d);
 }
 
 }  // namespace kinfer::track

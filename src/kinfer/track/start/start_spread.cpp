@@ -2,8 +2,8 @@
 #include "kinfer/track/start/start_spread.hpp"
 
 #include <cmath>
-#include <numbers>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/track/readout/readout.hpp"
 
 namespace kinfer::track {
@@ -16,7 +16,11 @@ void widen(Eigen::Ref<VectorXd> sd, const Eigen::Ref<const Eigen::ArrayXd>& vari
 }  // namespace
 
 StartSpread::StartSpread(const TrackingModel& model, const FilterModel& filter)
-    : model_(model), tool_(filter, model.tool), turns_(static_cast<std::size_t>(model.positions()), true) {
+    : model_(model),
+      tool_(filter, model.tool),
+      turns_(static_cast<std::size_t>(model.positions()), true),
+      stated_(unknown_state(model)),
+      one_(stated_) {
   for (const TrackingJoint& joint : model.joints)
     if (joint.type == EstimatedJointType::prismatic) turns_[static_cast<std::size_t>(joint.first_position)] = false;
   clear();
@@ -43,7 +47,7 @@ void StartSpread::add(const TrackState& one, const TrackState& stated, double pr
   };
   VectorXd apart = one.q - stated.q;
   for (std::size_t i = 0; i < turns_.size(); ++i)
-    if (turns_[i]) apart[static_cast<Index>(i)] = std::remainder(apart[static_cast<Index>(i)], 2.0 * std::numbers::pi);
+    if (turns_[i]) apart[static_cast<Index>(i)] = wrap_to_pi(apart[static_cast<Index>(i)]);
   q_ += more(one.sd_q, stated.sd_q, apart);
   qd_ += more(one.sd_qd, stated.sd_qd, one.qd - stated.qd);
   base_ += more(one.sd_base, stated.sd_base, quat_log(one.world_q_base * stated.world_q_base.conjugate()));
@@ -55,11 +59,10 @@ void StartSpread::add(const TrackState& one, const TrackState& stated, double pr
 
 void StartSpread::update(const StartGrid& grid, std::span<const double> unknown) {
   clear();
-  TrackState stated = unknown_state(model_), one = stated;
-  read(grid.stated(), unknown, stated);
+  read(grid.stated(), unknown, stated_);
   for (const StartGrid::Candidate& candidate : grid.candidates()) {
-    read(candidate.filter, unknown, one);
-    add(one, stated, candidate.probability);
+    read(candidate.filter, unknown, one_);
+    add(one_, stated_, candidate.probability);
   }
 }
 

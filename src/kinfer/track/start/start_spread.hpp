@@ -31,6 +31,7 @@ class StartSpread {
   Eigen::ArrayXd q_, qd_;
   Eigen::Array3d base_, tool_position_, tool_rotation_;
   std::vector<bool> turns_;  // of each joint position
+  TrackState stated_, one_;  // buffers
 };
 
 }  // namespace kinfer::track

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/track/start/known_positions.hpp"
+
+#include <algorithm>
+
+#include "kinfer/track/filter/thresholds.hpp"
+
+namespace kinfer::track {
+namespace {
+
+/// Whether a body moves whose joint leads to this one: then motion shows how the joint stands, if gravity does not.
+bool parent_moves(const FilterModel& model, std::size_t body, BaseMode base) {
+  if (base == BaseMode::moving) return true;
+  for (int a = model.bodies[body].parent; a > 0; a = model.bodies[static_cast<std::size_t>(a)].parent)
+    if (model.layout.position[static_cast<std::size_t>(a)] >= 0) return true;
+  return false;
+}
+
+/// A grid of starts finds single positions only.
+bool has_grid(const FilterModel& model, std::size_t body) {
+  return degrees_of_freedom(model.bodies[body].motion) == 1;
+}
+
+template <class Change>
+void for_each_position(const FilterModel& model, std::size_t body, Change change) {
+  for (Index k = 0; k < degrees_of_freedom(model.bodies[body].motion); ++k)
+    change(static_cast<std::size_t>(model.layout.position[body] + k));
+}
+
+}  // namespace
+
+KnownPositions::KnownPositions(const FilterModel& model) : positions_(model.positions.size()) {}
+
+void KnownPositions::begin(const FilterModel& model, const InitialPosture& posture, BaseMode base) {
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    const bool slides = model.bodies[b].motion == JointMotion::prismatic;
+    for_each_position(model, b, [&](std::size_t i) {
+      const StartPosition& start = posture.positions[i];
+      const bool is_shown = slides || (parent_moves(model, b, base) && (base == BaseMode::moving || !start.is_unseen)),
+                 has_zero = slides || start.is_known || start.is_unseen || model.is_loose(b);
+      const double lost = std::min(max_position_sd, start.lost_sd.value_or(0.0)),
+                   since_before = std::max(positions_[i].start_sd, lost);
+      positions_[i] = {.is_known = start.is_known,
+                       .is_open = !start.is_known && has_grid(model, b) && is_shown,
+                       .start_sd = has_zero        ? 0.0
+                                   : start.lost_sd ? since_before
+                                                   : max_position_sd,
+                       .lost_sd = lost};
+    });
+  }
+}
+
+void KnownPositions::let_base_move(const FilterModel& model) {
+  for (std::size_t b = 1; b < model.bodies.size(); ++b)
+    for_each_position(model, b,
+                      [&](std::size_t i) { positions_[i].is_open = !positions_[i].is_known && has_grid(model, b); });
+}
+
+void KnownPositions::decide(const FilterModel& model, std::size_t body) {
+  for_each_position(model, body, [&](std::size_t i) { positions_[i] = {.is_known = true}; });
+}
+
+void KnownPositions::lose(Index position, double sd, BaseMode base) {
+  KnownPosition& at = positions_[static_cast<std::size_t>(position)];
+  at.is_known = false;
+  at.is_open = base == BaseMode::moving;
+  at.lost_sd = std::max(at.lost_sd, std::min(max_position_sd, sd));
+  at.start_sd = std::max(at.start_sd, at.lost_sd);
+}
+
+double KnownPositions::start_sd(const FilterModel& model, std::size_t body) const {
+  const Index at = model.layout.position[body];
+  return at < 0 ? 0.0 : positions_[static_cast<std::size_t>(at)].start_sd;
+}
+
+}  // namespace kinfer::track

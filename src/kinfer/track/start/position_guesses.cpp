@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/track/start/position_guesses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/start/thresholds.hpp"
+
+namespace kinfer::track {
+
+std::vector<PositionGuess> position_guesses(const TrackingModel& tracking, const std::vector<ModelPosition>& positions,
+                                            const std::optional<VectorXd>& start) {
+  std::vector<PositionGuess> guesses;
+  for (const ModelPosition& position : positions) {
+    PositionGuess guess{.value = 0.0, .sd = max_position_sd};
+    if (position.q >= 0) {
+      const TrackingJoint& joint = tracking.joints[static_cast<std::size_t>(position.joint)];
+      const auto at = static_cast<std::size_t>(position.q - joint.first_position);
+      if (at < joint.range.size()) {
+        guess.value = 0.5 * (joint.range[at].lower + joint.range[at].upper);
+        guess.sd = 0.5 * (joint.range[at].upper - joint.range[at].lower) + start_prismatic_margin;
+      }
+      if (start && position.q < start->size() && !std::isnan((*start)[position.q]))
+        guess = {.value = (*start)[position.q], .sd = given_start_sd, .is_given = true};
+    }
+    guesses.push_back(guess);
+  }
+  return guesses;
+}
+
+LastPosition last_position(const TrackingJoint& joint, const TrackState& state, double time, double acceleration_sd) {
+  LastPosition last{.time = time,
+                    .value = state.q[joint.first_position],
+                    .rate = state.qd[joint.first_position],
+                    .sd = state.sd_q[joint.first_position],
+                    .most_turned = max_position_sd,
+                    .speed = std::numeric_limits<double>::infinity(),
+                    .acceleration_sd = acceleration_sd};
+  if (joint.range.empty()) return last;
+  const auto& seen = joint.range.front();
+  last.speed = seen.speed;
+  last.most_turned = std::min(max_position_sd, 0.5 * (seen.upper - seen.lower));
+  return last;
+}
+
+}  // namespace kinfer::track
