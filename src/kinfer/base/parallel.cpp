@@ -35,7 +35,8 @@ struct Job {
   }
 };
 
-/// Workers sleep until a job is posted; the requested number of them take part, and the posting thread waits for them.
+/// Workers sleep until a job is posted; the requested number of them may take part, and the posting thread waits for
+/// those that began.
 class Pool {
  public:
   ~Pool() {
@@ -59,6 +60,9 @@ class Pool {
     wake_.notify_all();
     job.run();
     std::unique_lock lock(mutex_);
+    // All items are taken: workers that have not woken yet, on cores with other work, need not.
+    busy_ -= wanted_;
+    wanted_ = 0;
     done_.wait(lock, [this] { return busy_ == 0; });
     if (job.failure) std::rethrow_exception(job.failure);
   }

@@ -8,6 +8,7 @@
 #include "kinfer/identify/diagnosis/diagnosis.hpp"
 #include "kinfer/identify/diagnosis/mended_log.hpp"
 #include "kinfer/measurement/ins_screening.hpp"
+#include "repeats.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -130,7 +131,7 @@ TEST(LogDiagnosis, BiasesThatPointUpByChanceAreNoEulerAngles) {
 
 /// A bias turns a direction that stands still, in a smaller unit by less.
 TEST(LogDiagnosis, ABiasOfASensorThatStandsStillIsNoOtherUnit) {
-  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+  for (const std::uint64_t seed : test::repeats({1U, 2U, 3U})) {
     const auto log = with([&](InsRecording& r) {
       Rng rng(seed);
       const Vec3 bias = 0.015 * normal_vector(rng).normalized();

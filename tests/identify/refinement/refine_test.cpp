@@ -9,6 +9,7 @@
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
+#include "repeats.hpp"
 #include "simulate/worlds.hpp"
 
 namespace kinfer {
@@ -79,7 +80,7 @@ void expect_close(const Refinement& found, const MachineTruth& truth, double lin
 }
 
 TEST(Refine, IdentifiesASimulatedMachineAsAccuratelyAsItsSensorsAllow) {
-  for (const char* name : {"excavator-general", "crane", "robot6", "tree"}) {
+  for (const char* name : test::repeats({"excavator-general", "crane", "robot6", "tree"})) {
     const RefinedDrive drive = driven(name, {.mounting = Mounting::arbitrary}, "industrial");
     expect_close(refined(drive), drive.truth, 5e-3, 3e-3);
   }

@@ -10,6 +10,7 @@
 #include "kinfer/simulate/four_bar_linkage.hpp"
 #include "kinfer/simulate/log_faults.hpp"
 #include "kinfer/words/identification/verdict.hpp"
+#include "repeats.hpp"
 
 namespace kinfer {
 using namespace identify;
@@ -170,7 +171,7 @@ TEST(Linkage, BarsThatNeverTurnAgainstEachOtherAreNoNeighbours) {
 }
 
 TEST(Linkage, ItsLoopIsFoundAndTheRestOfTheChainIsAsAccurateAsWithout) {
-  for (const std::uint64_t seed : {2u, 3u}) {
+  for (const std::uint64_t seed : test::repeats({2u, 3u})) {
     const MujocoWorld world = test::world_of("excavator", {.mounting = Mounting::arbitrary}, seed);
     const Drive drive = test::drive_of(world.machine(), {}, seed);
     const Machine machine = with_linkage(world.machine());

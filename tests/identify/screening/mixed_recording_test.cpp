@@ -6,6 +6,7 @@
 
 #include "identify/driven_machine.hpp"
 #include "kinfer/simulate/log_faults.hpp"
+#include "repeats.hpp"
 
 namespace kinfer {
 using namespace identify;
@@ -74,7 +75,7 @@ TEST(MixedRecording, LogsOfTwoDrivesThatWerePutTogetherAreNamed) {
 }
 
 TEST(MixedRecording, SoundAndRefastenedSensorsAreNot) {
-  for (const std::uint64_t seed : {5, 6}) {
+  for (const std::uint64_t seed : test::repeats({5, 6})) {
     EXPECT_FALSE(is_mixed(excavator(seed)));
     EXPECT_FALSE(is_mixed(with_refastened(seed)));
   }
