@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/io/robot/robot_errors_toml.hpp"
+#include "kinfer/io/robot/toml/robot_errors_toml.hpp"
 #include "kinfer/simulate/pose_set.hpp"
 #include "kinfer/words/calibration/calibration.hpp"
 #include "kinfer/words/findings/outliers.hpp"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "arrays.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer::python {

@@ -20,7 +20,7 @@
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/fleet/population_fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "kinfer/simulate/pose_set.hpp"
 #include "studies/studies.hpp"
 

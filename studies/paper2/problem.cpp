@@ -12,7 +12,7 @@
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/random.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/measurement/split.hpp"
 #include "kinfer/simulate/pose_set.hpp"

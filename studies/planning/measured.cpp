@@ -10,7 +10,7 @@
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "kinfer/words/findings/row_ranges.hpp"
 #include "trials.hpp"
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "kinfer/calibrate/terms/approximate_masses.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "kinfer/simulate/pose_set.hpp"
 #include "studies/support/chains.hpp"
 #include "trials.hpp"

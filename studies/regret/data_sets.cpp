@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "studies/support/chains.hpp"
 #include "studies/support/files.hpp"
 #include "support/instruments.hpp"

@@ -8,8 +8,8 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
-#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
 
 namespace kinfer::study {
 namespace {

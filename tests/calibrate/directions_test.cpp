@@ -7,7 +7,7 @@
 #include "kinfer/calibrate/start/initial_frames.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "kinfer/words/calibration/calibration.hpp"
 #include "support/differences.hpp"
 #include "support/instruments.hpp"

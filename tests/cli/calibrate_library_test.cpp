@@ -6,7 +6,7 @@
 #include "kinfer/calibrate/start/local_poe.hpp"
 #include "kinfer/io/evidence/calibration_json.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 
 namespace kinfer::test {
 namespace {

@@ -9,9 +9,9 @@
 #include <regex>
 
 #include "kinfer/io/evidence/evidence_file.hpp"
-#include "kinfer/io/robot/mjcf.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
-#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/mjcf/mjcf.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
 
 namespace kinfer::fuzz {
 namespace {

@@ -4,10 +4,10 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/robot/mjcf.hpp"
+#include "kinfer/io/robot/mjcf/mjcf.hpp"
 #include "kinfer/io/robot/patch/mjcf_patch.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
-#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
 #include "kinfer/io/text/csv.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/geometry/random.hpp"
-#include "kinfer/io/robot/mjcf.hpp"
+#include "kinfer/io/robot/mjcf/mjcf.hpp"
 #include "kinfer/io/robot/patch/mjcf_patch.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Written MJCF is read by MuJoCo, whose frames must be those of the chain.
-#include "kinfer/io/robot/mjcf.hpp"
+#include "kinfer/io/robot/mjcf/mjcf.hpp"
 
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"

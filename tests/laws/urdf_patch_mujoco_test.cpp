@@ -5,7 +5,7 @@
 
 #include "kinfer/geometry/random.hpp"
 #include "kinfer/io/robot/patch/urdf_patch.hpp"
-#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
 #include "laws/mujoco_model.hpp"

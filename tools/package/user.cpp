@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <kinfer/io/robot/robot_toml.hpp>
+#include <kinfer/io/robot/toml/robot_toml.hpp>
 #include <kinfer/kinematics/forward.hpp>
 
 #include <cmath>

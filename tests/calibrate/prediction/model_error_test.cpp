@@ -6,7 +6,7 @@
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/deploy/predict.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "support/robots.hpp"

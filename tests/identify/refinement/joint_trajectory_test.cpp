@@ -5,8 +5,8 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/identify/geometry/initial_joint.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
-#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "support/random_bodies.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 
 namespace kinfer {
 namespace {

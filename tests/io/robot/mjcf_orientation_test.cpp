@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/mjcf_orientation.hpp"
+#include "kinfer/io/robot/mjcf/mjcf_orientation.hpp"
 
 #include <gtest/gtest.h>
 

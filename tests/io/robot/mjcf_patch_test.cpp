@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "kinfer/geometry/random.hpp"
-#include "kinfer/io/robot/mjcf.hpp"
+#include "kinfer/io/robot/mjcf/mjcf.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
 #include "support/mjcf_samples.hpp"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "kinfer/io/robot/mjcf.hpp"
-#include "kinfer/io/robot/mjcf_tree.hpp"
+#include "kinfer/io/robot/mjcf/mjcf.hpp"
+#include "kinfer/io/robot/mjcf/mjcf_tree.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
 #include "support/mjcf_samples.hpp"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <map>
 
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "kinfer/kinematics/poses/tool_poses.hpp"
 
 namespace kinfer {

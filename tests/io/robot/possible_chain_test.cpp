@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/possible_chain.hpp"
+#include "kinfer/io/robot/model/possible_chain.hpp"
 
 #include <gmock/gmock.h>
 
-#include "kinfer/io/robot/robot_toml.hpp"
-#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
 
 namespace kinfer {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "kinfer/io/text/format_number.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"

@@ -6,7 +6,7 @@
 #include "kinfer/geometry/random.hpp"
 #include "kinfer/io/robot/patch/joint_origins_yaml.hpp"
 #include "kinfer/io/robot/patch/urdf_joints.hpp"
-#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "laws/example_chains.hpp"
 

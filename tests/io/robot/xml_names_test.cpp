@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/xml_names.hpp"
+#include "kinfer/io/robot/xml/xml_names.hpp"
 
 #include <gtest/gtest.h>
 
-#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
 
 namespace kinfer {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "kinfer/calibrate/starting_model.hpp"
 #include "kinfer/io/fleet/fleet_json.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::cli {

@@ -20,7 +20,7 @@
 #include "kinfer/io/evidence/calibration_json.hpp"
 #include "kinfer/io/evidence/files/calibration_files.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/robot/parameter_names_toml.hpp"
+#include "kinfer/io/robot/toml/parameter_names_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/measurement/merge_pose_sets.hpp"
 #include "kinfer/words/findings/outliers.hpp"

@@ -12,7 +12,7 @@
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/identify/pipeline.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/simulate/ins_recording.hpp"
 #include "kinfer/simulate/machine_from_chain.hpp"

@@ -5,7 +5,7 @@
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/robot/robot_errors_toml.hpp"
+#include "kinfer/io/robot/toml/robot_errors_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/simulate/pose_set.hpp"
 

@@ -12,7 +12,7 @@
 #include "kinfer/deploy/compare.hpp"
 #include "kinfer/deploy/verify.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/robot/standard_deviations_toml.hpp"
+#include "kinfer/io/robot/toml/standard_deviations_toml.hpp"
 #include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/words/calibration/checks.hpp"
 #include "kinfer/words/findings/pose_set_findings.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
 #include "kinfer/io/robot_log/mcap_writer.hpp"
 #include "kinfer/kinematics/forward.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "kinfer/io/robot/mjcf.hpp"
+#include "kinfer/io/robot/mjcf/mjcf.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/xml_positions.hpp"
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
-#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
 
 namespace kinfer {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "kinfer/io/recording/machine_facts_toml.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "kinfer/io/tracking/tracking_model_toml.hpp"
 
 namespace kinfer {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "kinfer/io/evidence/files/joint_tables_csv.hpp"
-#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
 #include "kinfer/io/text/format_number.hpp"
 #include "kinfer/kinematics/dh_conversion.hpp"
 

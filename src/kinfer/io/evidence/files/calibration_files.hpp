@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kinfer/evidence/calibration/calibration.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 
 namespace kinfer {
 

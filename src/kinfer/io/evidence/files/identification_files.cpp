@@ -2,8 +2,8 @@
 #include "kinfer/io/evidence/files/identification_files.hpp"
 
 #include "kinfer/io/evidence/files/chain_dh_csv.hpp"
-#include "kinfer/io/robot/mjcf.hpp"
-#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/mjcf/mjcf.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
 #include "kinfer/io/tracking/tracking_model_toml.hpp"
 
 namespace kinfer {

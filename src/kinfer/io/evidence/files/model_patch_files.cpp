@@ -7,12 +7,12 @@
 #include <filesystem>
 
 #include "kinfer/base/constants.hpp"
-#include "kinfer/io/robot/mjcf.hpp"
+#include "kinfer/io/robot/mjcf/mjcf.hpp"
 #include "kinfer/io/robot/patch/joint_origins_yaml.hpp"
 #include "kinfer/io/robot/patch/mjcf_patch.hpp"
 #include "kinfer/io/robot/patch/placement_toml.hpp"
 #include "kinfer/io/robot/patch/urdf_patch.hpp"
-#include "kinfer/io/robot/urdf.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
 #include "kinfer/io/text/csv_text.hpp"
 #include "kinfer/io/text/format_number.hpp"
 #include "kinfer/kinematics/forward.hpp"

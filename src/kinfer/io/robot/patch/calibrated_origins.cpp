@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/robot/patch/calibrated_origins.hpp"
 
-#include "kinfer/io/robot/possible_chain.hpp"
+#include "kinfer/io/robot/model/possible_chain.hpp"
 
 namespace kinfer {
 namespace {

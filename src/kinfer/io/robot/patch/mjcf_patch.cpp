@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinfer/io/robot/mjcf.hpp"
+#include "kinfer/io/robot/mjcf/mjcf.hpp"
 
 namespace kinfer {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/io/robot/chain_ends.hpp"
+#include "kinfer/io/robot/model/chain_ends.hpp"
 #include "kinfer/io/robot/patch/calibrated_origins.hpp"
 #include "kinfer/io/robot/patch/xml_edits.hpp"
 

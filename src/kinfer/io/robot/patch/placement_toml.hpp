@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "kinfer/io/robot/chain_ends.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/model/chain_ends.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 
 namespace kinfer {
 

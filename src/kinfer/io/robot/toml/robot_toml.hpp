@@ -11,7 +11,7 @@
 #include "kinfer/base/result.hpp"
 #include "kinfer/evidence/calibration/model_patch.hpp"
 #include "kinfer/evidence/calibration/prediction_model.hpp"
-#include "kinfer/io/robot/chain_ends.hpp"
+#include "kinfer/io/robot/model/chain_ends.hpp"
 #include "kinfer/io/text/units.hpp"
 #include "kinfer/kinematics/parameters.hpp"
 #include "kinfer/measurement/pose_set.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/xml_errors.hpp"
+#include "kinfer/io/robot/xml/xml_errors.hpp"
 
 #include <cctype>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/mjcf_tree.hpp"
+#include "kinfer/io/robot/mjcf/mjcf_tree.hpp"
 
 #include <tinyxml2.h>
 
@@ -8,10 +8,10 @@
 #include <set>
 #include <unordered_map>
 
-#include "kinfer/io/robot/mjcf_attributes.hpp"
-#include "kinfer/io/robot/mjcf_defaults.hpp"
-#include "kinfer/io/robot/xml_errors.hpp"
-#include "kinfer/io/robot/xml_names.hpp"
+#include "kinfer/io/robot/mjcf/mjcf_attributes.hpp"
+#include "kinfer/io/robot/mjcf/mjcf_defaults.hpp"
+#include "kinfer/io/robot/xml/xml_errors.hpp"
+#include "kinfer/io/robot/xml/xml_names.hpp"
 #include "kinfer/io/text/first_error.hpp"
 
 namespace kinfer {

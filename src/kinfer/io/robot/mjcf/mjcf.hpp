@@ -6,8 +6,8 @@
 #include <string>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/io/robot/chain_ends.hpp"
-#include "kinfer/io/robot/mjcf_tree.hpp"
+#include "kinfer/io/robot/mjcf/mjcf_tree.hpp"
+#include "kinfer/io/robot/model/chain_ends.hpp"
 #include "kinfer/kinematics/chain.hpp"
 
 namespace kinfer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/mjcf_defaults.hpp"
+#include "kinfer/io/robot/mjcf/mjcf_defaults.hpp"
 
 #include <string_view>
 

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "kinfer/io/robot/joint_transforms.hpp"
-#include "kinfer/io/robot/mjcf.hpp"
-#include "kinfer/io/robot/xml_list.hpp"
-#include "kinfer/io/robot/xml_names.hpp"
+#include "kinfer/io/robot/mjcf/mjcf.hpp"
+#include "kinfer/io/robot/model/joint_transforms.hpp"
+#include "kinfer/io/robot/xml/xml_list.hpp"
+#include "kinfer/io/robot/xml/xml_names.hpp"
 #include "kinfer/io/text/format_number.hpp"
 
 namespace kinfer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/possible_chain.hpp"
+#include "kinfer/io/robot/model/possible_chain.hpp"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/io/robot/chain_ends.hpp"
+#include "kinfer/io/robot/model/chain_ends.hpp"
 #include "kinfer/kinematics/chain.hpp"
 
 namespace kinfer {

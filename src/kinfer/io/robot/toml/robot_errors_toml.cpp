@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/robot_errors_toml.hpp"
+#include "kinfer/io/robot/toml/robot_errors_toml.hpp"
 
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/urdf_tree.hpp"
+#include "kinfer/io/robot/urdf/urdf_tree.hpp"
 
 #include <tinyxml2.h>
 
 #include <algorithm>
 #include <set>
 
-#include "kinfer/io/robot/xml_errors.hpp"
+#include "kinfer/io/robot/xml/xml_errors.hpp"
 #include "kinfer/io/text/first_error.hpp"
 
 namespace kinfer {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "kinfer/geometry/pose.hpp"
-#include "kinfer/io/robot/mjcf_defaults.hpp"
-#include "kinfer/io/robot/mjcf_orientation.hpp"
+#include "kinfer/io/robot/mjcf/mjcf_defaults.hpp"
+#include "kinfer/io/robot/mjcf/mjcf_orientation.hpp"
 
 namespace kinfer {
 

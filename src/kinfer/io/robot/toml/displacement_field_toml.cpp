@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/displacement_field_toml.hpp"
+#include "kinfer/io/robot/toml/displacement_field_toml.hpp"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 
 #include <algorithm>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/io/robot/displacement_field_toml.hpp"
-#include "kinfer/io/robot/possible_chain.hpp"
-#include "kinfer/io/robot/prediction_toml.hpp"
+#include "kinfer/io/robot/model/possible_chain.hpp"
+#include "kinfer/io/robot/toml/displacement_field_toml.hpp"
+#include "kinfer/io/robot/toml/prediction_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/prediction_toml.hpp"
+#include "kinfer/io/robot/toml/prediction_toml.hpp"
 #include "kinfer/io/text/quoted_text.hpp"
 
 #include <fmt/format.h>

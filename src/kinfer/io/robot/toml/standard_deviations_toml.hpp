@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 
 namespace kinfer {
 

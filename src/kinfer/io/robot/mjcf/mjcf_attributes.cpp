@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/mjcf_attributes.hpp"
+#include "kinfer/io/robot/mjcf/mjcf_attributes.hpp"
 
 #include <charconv>
 #include <cmath>
 #include <string_view>
 
-#include "kinfer/io/robot/xml_names.hpp"
+#include "kinfer/io/robot/xml/xml_names.hpp"
 
 namespace kinfer {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <set>
 
-#include "kinfer/io/robot/mjcf.hpp"
-#include "kinfer/io/robot/possible_chain.hpp"
+#include "kinfer/io/robot/mjcf/mjcf.hpp"
+#include "kinfer/io/robot/model/possible_chain.hpp"
 
 namespace kinfer {
 namespace {

@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/io/robot/displacement_field_toml.hpp"
-#include "kinfer/io/robot/prediction_toml.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/displacement_field_toml.hpp"
+#include "kinfer/io/robot/toml/prediction_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 #include "kinfer/io/text/format_number.hpp"
 #include "kinfer/io/text/quoted_text.hpp"
 

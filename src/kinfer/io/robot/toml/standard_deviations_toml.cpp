@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/standard_deviations_toml.hpp"
+#include "kinfer/io/robot/toml/standard_deviations_toml.hpp"
 
 #include <cmath>
 

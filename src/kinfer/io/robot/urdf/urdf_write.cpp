@@ -4,10 +4,10 @@
 #include <cmath>
 #include <set>
 
-#include "kinfer/io/robot/joint_transforms.hpp"
-#include "kinfer/io/robot/urdf.hpp"
-#include "kinfer/io/robot/xml_list.hpp"
-#include "kinfer/io/robot/xml_names.hpp"
+#include "kinfer/io/robot/model/joint_transforms.hpp"
+#include "kinfer/io/robot/urdf/urdf.hpp"
+#include "kinfer/io/robot/xml/xml_list.hpp"
+#include "kinfer/io/robot/xml/xml_names.hpp"
 #include "kinfer/io/text/format_number.hpp"
 
 namespace kinfer {

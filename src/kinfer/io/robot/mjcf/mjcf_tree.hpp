@@ -11,7 +11,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/geometry/pose.hpp"
-#include "kinfer/io/robot/mjcf_orientation.hpp"
+#include "kinfer/io/robot/mjcf/mjcf_orientation.hpp"
 
 namespace kinfer {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/joint_transforms.hpp"
+#include "kinfer/io/robot/model/joint_transforms.hpp"
 
 namespace kinfer {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/io/robot/robot_toml.hpp"
+#include "kinfer/io/robot/toml/robot_toml.hpp"
 
 namespace kinfer {
 

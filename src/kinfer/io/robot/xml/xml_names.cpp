@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/robot/xml_names.hpp"
+#include "kinfer/io/robot/xml/xml_names.hpp"
 
 #include <fmt/format.h>
 
