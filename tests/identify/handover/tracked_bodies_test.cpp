@@ -5,7 +5,7 @@
 
 #include "kinfer/evidence/tracking/body_poses.hpp"
 #include "kinfer/geometry/cardan_angles.hpp"
-#include "kinfer/identify/refinement/refined_joint.hpp"
+#include "kinfer/identify/refinement/joints/refined_joint.hpp"
 #include "support/random_bodies.hpp"
 
 namespace kinfer {

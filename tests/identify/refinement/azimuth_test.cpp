@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/azimuth.hpp"
+#include "kinfer/identify/refinement/fits/azimuth.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "kinfer/identify/refinement/joint_relaxation.hpp"
+#include "kinfer/identify/refinement/fits/joint_relaxation.hpp"
 
 namespace kinfer {
 using namespace identify;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/instrument_scales.hpp"
+#include "kinfer/identify/refinement/scales/instrument_scales.hpp"
 
 #include <gtest/gtest.h>
 

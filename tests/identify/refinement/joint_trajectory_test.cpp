@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/joint_trajectory.hpp"
+#include "kinfer/identify/refinement/joints/joint_trajectory.hpp"
 
 #include <gtest/gtest.h>
 

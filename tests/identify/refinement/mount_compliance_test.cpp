@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/mount_compliance.hpp"
+#include "kinfer/identify/refinement/fits/mount_compliance.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/refined_joint.hpp"
+#include "kinfer/identify/refinement/joints/refined_joint.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 
 #include "identify/hand_moved_chain.hpp"
 #include "identify/measured_segments.hpp"
-#include "kinfer/identify/refinement/clock_fit.hpp"
-#include "kinfer/identify/refinement/joint_trajectory.hpp"
-#include "kinfer/identify/refinement/refinement_setup.hpp"
+#include "kinfer/identify/refinement/fits/clock_fit.hpp"
+#include "kinfer/identify/refinement/fits/refinement_setup.hpp"
+#include "kinfer/identify/refinement/joints/joint_trajectory.hpp"
 #include "support/random_bodies.hpp"
 
 namespace kinfer {

@@ -9,7 +9,7 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/identify/findings/thresholds.hpp"
-#include "kinfer/identify/refinement/joint_trajectory.hpp"
+#include "kinfer/identify/refinement/joints/joint_trajectory.hpp"
 #include "kinfer/kinematics/forward.hpp"
 
 namespace kinfer::identify {

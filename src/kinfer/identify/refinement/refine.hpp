@@ -8,9 +8,9 @@
 #include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/identify/geometry/initial_joint.hpp"
 #include "kinfer/identify/handover/named_zero.hpp"
+#include "kinfer/identify/refinement/fits/residual_clock.hpp"
 #include "kinfer/identify/refinement/held_out.hpp"
-#include "kinfer/identify/refinement/refined_joint.hpp"
-#include "kinfer/identify/refinement/residual_clock.hpp"
+#include "kinfer/identify/refinement/joints/refined_joint.hpp"
 #include "kinfer/measurement/machine_measurements.hpp"
 #include "kinfer/measurement/sensor_model.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/identify/handover/known_joint.hpp"
-#include "kinfer/identify/refinement/thresholds.hpp"
+#include "kinfer/identify/refinement/fits/thresholds.hpp"
 
 namespace kinfer::identify {
 namespace {

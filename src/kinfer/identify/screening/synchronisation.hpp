@@ -6,7 +6,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/evidence/identification/identification.hpp"
-#include "kinfer/identify/refinement/residual_clock.hpp"
+#include "kinfer/identify/refinement/fits/residual_clock.hpp"
 #include "kinfer/identify/screening/recording_selection.hpp"
 #include "kinfer/inertial/segment_motion.hpp"
 

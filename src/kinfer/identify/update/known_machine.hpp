@@ -5,7 +5,7 @@
 
 #include "kinfer/identify/handover/known_joint.hpp"
 #include "kinfer/identify/joints/joint_result.hpp"
-#include "kinfer/identify/refinement/refined_joint.hpp"
+#include "kinfer/identify/refinement/joints/refined_joint.hpp"
 #include "kinfer/identify/structure/given_tree.hpp"
 #include "kinfer/identify/structure/joint_type.hpp"
 #include "kinfer/measurement/ins_recording.hpp"

@@ -5,7 +5,7 @@
 
 #include "kinfer/geometry/cardan_angles.hpp"
 #include "kinfer/geometry/rotation.hpp"
-#include "kinfer/identify/refinement/thresholds.hpp"
+#include "kinfer/identify/refinement/fits/thresholds.hpp"
 #include "kinfer/identify/update/combined_model.hpp"
 #include "kinfer/identify/update/known_machine.hpp"
 

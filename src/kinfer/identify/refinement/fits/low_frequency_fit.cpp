@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/low_frequency_fit.hpp"
+#include "kinfer/identify/refinement/fits/low_frequency_fit.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,9 +9,9 @@
 
 #include "kinfer/estimate/continuous/low_frequency.hpp"
 #include "kinfer/estimate/continuous/solver/covariance.hpp"
-#include "kinfer/identify/refinement/joint_relaxation.hpp"
-#include "kinfer/identify/refinement/mount_compliance.hpp"
-#include "kinfer/identify/refinement/thresholds.hpp"
+#include "kinfer/identify/refinement/fits/joint_relaxation.hpp"
+#include "kinfer/identify/refinement/fits/mount_compliance.hpp"
+#include "kinfer/identify/refinement/fits/thresholds.hpp"
 
 namespace kinfer::identify {
 namespace {

@@ -2,10 +2,7 @@
 // Instruments that read too much or too little: scale errors beyond what their grade says, found and fitted.
 #pragma once
 
-#include "kinfer/estimate/continuous/solver/covariance.hpp"
-#include "kinfer/evidence/facts/findings.hpp"
-#include "kinfer/identify/handover/parameter_covariance.hpp"
-#include "kinfer/identify/refinement/refinement_fits.hpp"
+#include "kinfer/identify/refinement/fits/refinement_fits.hpp"
 
 namespace kinfer::identify {
 
@@ -38,13 +35,5 @@ struct ScaleReview {
 /// Frees the scales that the recording contradicts the priors of, and fits again. Where a rigid chain does not explain
 /// the motion even then, what the scales absorbed may be mounts that deflect: then all stays as it was.
 ScaleReview refit_deviant_scales(const RefinementTask& task, RefinementFit& fitted, const Observer& observer);
-
-/// What is said about them, by the estimates of a fit under such priors.
-std::vector<Finding> scale_findings(const ScaleReview& review, const RecordedMotion& motion, const InsFit& fit,
-                                    const InsCovariance& covariance);
-
-/// A clock that counts c seconds in one gives the same measurements as gyroscopes that read c times too much on a
-/// machine of c times c its lengths: adds the lengths as an alternative model, where all gyroscopes share a factor.
-void add_clock_rate(const ScaleReview& review, const InsFit& fit, const InsCovariance& covariance, ModelError& error);
 
 }  // namespace kinfer::identify

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/clock_fit.hpp"
+#include "kinfer/identify/refinement/fits/clock_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "kinfer/estimate/continuous/solver/normal_equations.hpp"
-#include "kinfer/identify/refinement/thresholds.hpp"
+#include "kinfer/identify/refinement/fits/thresholds.hpp"
 
 namespace kinfer::identify {
 namespace {

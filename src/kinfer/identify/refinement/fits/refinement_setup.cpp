@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/refinement_setup.hpp"
+#include "kinfer/identify/refinement/fits/refinement_setup.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "kinfer/estimate/continuous/model/uniform_spline.hpp"
 #include "kinfer/evidence/identification/traces.hpp"
 #include "kinfer/geometry/cardan_angles.hpp"
-#include "kinfer/identify/refinement/refined_joint.hpp"
+#include "kinfer/identify/refinement/joints/refined_joint.hpp"
 #include "kinfer/inertial/segment_motion.hpp"
 
 namespace kinfer::identify {

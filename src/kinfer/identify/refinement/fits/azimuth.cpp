@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/azimuth.hpp"
+#include "kinfer/identify/refinement/fits/azimuth.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "kinfer/estimate/continuous/solver/covariance.hpp"
 #include "kinfer/estimate/continuous/solver/normal_equations.hpp"
 #include "kinfer/estimate/magnetometers/magnetic_fit.hpp"
-#include "kinfer/identify/refinement/thresholds.hpp"
+#include "kinfer/identify/refinement/fits/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
 

@@ -4,8 +4,8 @@
 
 #include "kinfer/estimate/continuous/solver/covariance.hpp"
 #include "kinfer/estimate/continuous/solver/normal_equations.hpp"
-#include "kinfer/identify/refinement/low_frequency_fit.hpp"
-#include "kinfer/identify/refinement/refined_joint.hpp"
+#include "kinfer/identify/refinement/fits/low_frequency_fit.hpp"
+#include "kinfer/identify/refinement/joints/refined_joint.hpp"
 
 namespace kinfer::identify {
 

@@ -4,7 +4,7 @@
 // magnetometers tell.
 #pragma once
 
-#include "kinfer/identify/refinement/refinement_fits.hpp"
+#include "kinfer/identify/refinement/fits/refinement_fits.hpp"
 
 namespace kinfer::identify {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/joint_relaxation.hpp"
+#include "kinfer/identify/refinement/fits/joint_relaxation.hpp"
 
 #include <algorithm>
 
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/geometry/mean_revolute.hpp"
-#include "kinfer/identify/refinement/thresholds.hpp"
+#include "kinfer/identify/refinement/fits/thresholds.hpp"
 
 namespace kinfer::identify {
 namespace {

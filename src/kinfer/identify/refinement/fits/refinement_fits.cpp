@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/refinement_fits.hpp"
+#include "kinfer/identify/refinement/fits/refinement_fits.hpp"
 
 #include <algorithm>
 #include <cmath>

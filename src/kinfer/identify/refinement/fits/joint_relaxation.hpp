@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinfer/base/observer.hpp"
-#include "kinfer/identify/refinement/refinement_fits.hpp"
+#include "kinfer/identify/refinement/fits/refinement_fits.hpp"
 
 namespace kinfer::identify {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/refined_joint.hpp"
+#include "kinfer/identify/refinement/joints/refined_joint.hpp"
 
 #include <cmath>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/identify/refinement/thresholds.hpp"
+#include "kinfer/identify/refinement/fits/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "kinfer/base/observer.hpp"
 #include "kinfer/identify/handover/parameter_covariance.hpp"
-#include "kinfer/identify/refinement/refinement_fits.hpp"
+#include "kinfer/identify/refinement/fits/refinement_fits.hpp"
 
 namespace kinfer::identify {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/mount_compliance.hpp"
+#include "kinfer/identify/refinement/fits/mount_compliance.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "kinfer/identify/refinement/thresholds.hpp"
+#include "kinfer/identify/refinement/fits/thresholds.hpp"
 
 namespace kinfer::identify {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/scale_evidence.hpp"
+#include "kinfer/identify/refinement/scales/scale_evidence.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 
 #include "kinfer/estimate/continuous/solver/batch_fit.hpp"
 #include "kinfer/identify/handover/named_zero.hpp"
-#include "kinfer/identify/refinement/refinement_setup.hpp"
+#include "kinfer/identify/refinement/fits/refinement_setup.hpp"
 
 namespace kinfer::identify {
 

@@ -4,7 +4,7 @@
 
 #include "kinfer/estimate/continuous/solver/batch_fit.hpp"
 #include "kinfer/estimate/continuous/solver/covariance.hpp"
-#include "kinfer/identify/refinement/residual_clock.hpp"
+#include "kinfer/identify/refinement/fits/residual_clock.hpp"
 
 namespace kinfer::identify {
 

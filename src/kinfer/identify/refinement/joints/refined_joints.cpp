@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/identify/refinement/refined_joints.hpp"
+#include "kinfer/identify/refinement/joints/refined_joints.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "kinfer/identify/geometry/mean_revolute.hpp"
 #include "kinfer/identify/handover/joint_ranges.hpp"
-#include "kinfer/identify/refinement/azimuth.hpp"
-#include "kinfer/identify/refinement/joint_trajectory.hpp"
-#include "kinfer/identify/refinement/thresholds.hpp"
+#include "kinfer/identify/refinement/fits/azimuth.hpp"
+#include "kinfer/identify/refinement/fits/thresholds.hpp"
+#include "kinfer/identify/refinement/joints/joint_trajectory.hpp"
 
 namespace kinfer::identify {
 namespace {
