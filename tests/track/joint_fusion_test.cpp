@@ -53,7 +53,8 @@ TrackState fused(const At& at, bool is_sound, const TrackingModel& model, bool i
     chain.sd_q[0] = stated.sd;
     chain.joints[0] = {.source = JointSource::chain, .reference = JointReference::chain};
     const std::vector<bool> sound{true, is_sound}, settled{is_settled};
-    fusion.apply(model, composed, {.is_sound = sound, .is_settled = settled}, chain);
+    const std::vector<std::optional<double>> heading_sd(model.joints.size());
+    fusion.apply(model, composed, {.is_sound = sound, .is_settled = settled, .heading_sd = heading_sd}, chain);
   }
   return chain;
 }

@@ -9,6 +9,7 @@
 #include "kinfer/evidence/tracking/body_poses.hpp"
 #include "kinfer/geometry/cardan_angles.hpp"
 #include "kinfer/track/filter/thresholds.hpp"
+#include "kinfer/track/readout/readout.hpp"
 
 namespace kinfer::track {
 namespace {
@@ -64,15 +65,16 @@ void JointFusion::begin_or_improve(Offset& offset, double measured, double chain
 /// The composed heading drifts, the chain's wanders: a random walk, measured with noise of the correlation time
 /// `wander_time`, longer where it wanders far. Returns the variance of the chain's heading: at least as much as it
 /// wanders about the other beyond what that drifts, because gyroscopes alone are right over seconds.
-double JointFusion::follow(Offset& offset, double measured, double chain_variance, double drift, double dt) {
+double JointFusion::follow(Offset& offset, double measured, double chain_variance, double just_started, double drift,
+                           double dt) {
   const double difference = wrap_to_pi(measured - offset.value);
   offset.variance += std::max(0.0, drift - offset.drift);
   offset.drift = drift;
   offset.age += dt;
   const double memory = std::max(std::min(offset.age, wander_memory), 1e-4);
   offset.wander += dt / memory * (square(difference) - offset.wander);
-  const double just_started = square(start_offset_sd) * std::exp(-offset.age / wander_time),
-               honest = std::max({chain_variance, offset.wander - offset.variance, 1e-12}) + just_started,
+  const double honest = std::max({chain_variance, offset.wander - offset.variance, 1e-12}) +
+                        just_started * std::exp(-offset.age / wander_time),
                farther = std::max(1.0, honest / square(wander_sd)),
                noise = honest * farther * 2.0 * wander_time / std::max(dt, 1e-4),
                gain = offset.variance / (offset.variance + noise);
@@ -89,20 +91,43 @@ void JointFusion::approach(Joint& joint, double chain_variance, double composed_
   if (wanted <= 0.0 && joint.share < least_share) joint.share = 0.0;
 }
 
+/// Of a heading that is so much less certain [rad²] than the chain states.
+void JointFusion::widen_heading(const TrackingModel& model, std::size_t j, const Vec3& up, double variance,
+                                TrackState& chain) const {
+  const Index at = model.joints[j].first_position;
+  const TrackingBody& body = model.bodies[static_cast<std::size_t>(joints_[j].first_body)];
+  const Vec3 up_in_ball = body.child_R_axis.transpose() * (chain.joints[j].parent_q_child.conjugate() * up),
+             by_heading = cardan_rates(chain.q.segment<3>(at)) * up_in_ball;
+  auto sd = chain.sd_q.segment<3>(at);
+  sd = (sd.cwiseAbs2() + variance * by_heading.cwiseAbs2()).cwiseSqrt().eval();
+}
+
+/// Gravity shows a spherical joint but for its heading. That of the chain, where motion shows it, is followed by the
+/// composed one, which begins where the chain's is known to a few degrees, and may still be far off. Elsewhere both
+/// start at the middle of what they know.
 void JointFusion::fuse_ball(const TrackingModel& model, const ComposedFilters& composed, double dt, std::size_t j,
-                            TrackState& chain) {
+                            std::optional<double> heading_sd, TrackState& chain) {
   Joint& joint = joints_[j];
   const Index at = model.joints[j].first_position;
   JointStatus& status = chain.joints[j];
   const JointStatus& other = composed.state().joints[j];
   const Vec3 up = composed.vertical(j);
-  const double chain_variance = square(middle_of(chain.sd_q.segment<3>(at)));
-  // Both start at the middle of what they know; neither knows the heading.
-  if (!joint.offset.is_set)
-    joint.offset = {.is_set = true, .variance = square(start_offset_sd), .drift = composed.drift(j)};
-  const double honest = follow(joint.offset, twist_about(up, status.parent_q_child * other.parent_q_child.conjugate()),
-                               chain_variance, composed.drift(j), dt);
+  const double chain_variance = heading_sd ? square(*heading_sd) : square(middle_of(chain.sd_q.segment<3>(at))),
+               apart = twist_about(up, status.parent_q_child * other.parent_q_child.conjugate());
+  if (!joint.offset.is_set) {
+    if (heading_sd && *heading_sd > start_offset_sd) return;
+    joint.offset = {.is_set = true,
+                    .value = heading_sd ? apart : 0.0,
+                    .variance = square(heading_sd ? first_heading_sd : start_offset_sd),
+                    .drift = composed.drift(j)};
+  }
+  const double honest =
+      follow(joint.offset, apart, chain_variance, heading_sd ? 0.0 : square(start_offset_sd), composed.drift(j), dt);
   approach(joint, honest, composed.tilt_variance(j) + joint.offset.variance, dt);
+  if (heading_sd) {
+    const double mean_sd = (1.0 - joint.share) * std::sqrt(honest) + joint.share * std::sqrt(joint.offset.variance);
+    widen_heading(model, j, up, std::max(0.0, square(mean_sd) - chain_variance), chain);
+  }
   if (joint.share <= 0.0) return;
   const Quat aligned = Quat(exp_so3(joint.offset.value * up)) * other.parent_q_child;
   status.parent_q_child = status.parent_q_child.slerp(joint.share, aligned);
@@ -123,7 +148,7 @@ void JointFusion::fuse(const TrackingModel& model, const ComposedFilters& compos
     const double difference = chain.q[first] - composed.state().q[first];
     begin_or_improve(joint.offset, difference,
                      status.reference == JointReference::start ? 0.0 : square(chain.sd_q[first]), composed.drift(j));
-    follow(joint.offset, difference, square(chain.sd_q[first]), composed.drift(j), dt);
+    follow(joint.offset, difference, square(chain.sd_q[first]), square(start_offset_sd), composed.drift(j), dt);
   } else {
     joint.offset = {};
   }
@@ -178,7 +203,7 @@ void JointFusion::apply(const TrackingModel& model, const ComposedFilters& compo
       continue;
     }
     if (of.positions == 3)
-      fuse_ball(model, composed, dt, j, chain);
+      fuse_ball(model, composed, dt, j, usable.heading_sd[j], chain);
     else
       fuse(model, composed, dt, j, chain);
     if (joint.share > 0.5) chain.joints[j].source = JointSource::composed;

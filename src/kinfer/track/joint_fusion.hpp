@@ -7,6 +7,8 @@
 // either.
 #pragma once
 
+#include <optional>
+
 #include "kinfer/evidence/tracking/track_state.hpp"
 #include "kinfer/track/composed.hpp"
 
@@ -20,6 +22,7 @@ class JointFusion {
   struct Usable {
     const std::vector<bool>& is_sound;    ///< of each sensor
     const std::vector<bool>& is_settled;  ///< of each joint: not one of several starts that are still possible
+    const std::vector<std::optional<double>>& heading_sd;  ///< [rad] of each spherical joint that motion shows
   };
 
   /// Averages joints of `chain`, the state of the filter, with those of `composed` at the same time; positions that
@@ -52,9 +55,12 @@ class JointFusion {
 
   void fuse(const TrackingModel& model, const ComposedFilters& composed, double dt, std::size_t j, TrackState& chain);
   void fuse_ball(const TrackingModel& model, const ComposedFilters& composed, double dt, std::size_t j,
-                 TrackState& chain);
+                 std::optional<double> heading_sd, TrackState& chain);
+  void widen_heading(const TrackingModel& model, std::size_t j, const Vec3& up, double variance,
+                     TrackState& chain) const;
   static void begin_or_improve(Offset& offset, double measured, double chain_variance, double drift);
-  static double follow(Offset& offset, double measured, double chain_variance, double drift, double dt);
+  static double follow(Offset& offset, double measured, double chain_variance, double just_started, double drift,
+                       double dt);
   static void approach(Joint& joint, double chain_variance, double composed_variance, double dt);
 
   std::vector<Joint> joints_;

@@ -43,6 +43,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       composed_(model, options),
       is_sound_(model.sensors.size(), true),
       is_settled_(model.joints.size(), true),
+      heading_sd_(model.joints.size()),
       fusion_(model),
       tool_(*model_, model.tool),
       now_(initial_state(*model_)),
@@ -245,7 +246,12 @@ bool Tracker::base_begins_to_move(const BlockMeasurement& block) {
 
 /// The base has moved for a while; what counted from the start becomes observable.
 void Tracker::let_base_move() {
-  replay([](ChainFilter& filter) { filter.set_base(BaseMode::moving); });
+  replay([&](ChainFilter& filter) {
+    filter.set_base(BaseMode::moving);
+    for (std::size_t b = 1; b < model_->bodies.size(); ++b)
+      if (positions_.has_open_heading(*model_, b))
+        filter.free_heading(b, heading_sd(*model_, b, guesses_, filter.up_in_ball(b)));
+  });
   positions_.let_base_move(*model_);
   begin_grid();
 }
@@ -333,8 +339,15 @@ void Tracker::watch_biases(double time) {
   }
 }
 
+/// The heading of a spherical joint counts as shown while its parent moves.
+void Tracker::show_headings() {
+  for (std::size_t b = 1; b < model_->bodies.size(); ++b)
+    if (motion_shows_heading(*model_, b) && filter_.considers_heading(b) && tells_of(b)) filter_.show_heading(b);
+}
+
 void Tracker::process_block(const BlockMeasurement& block) {
   motion_.add(block, filter_);
+  if (!grid_) show_headings();
   if (!grid_) begin_grid();
   if (grid_) {
     resolve_start(block);
@@ -404,7 +417,16 @@ void Tracker::read_out(double time) {
   is_settled_.assign(is_settled_.size(), true);
   for (std::size_t i = 0; i < positions_.size(); ++i)
     if (positions_[i].is_open) is_settled_[static_cast<std::size_t>(model_positions_[i].joint)] = false;
-  fusion_.apply(*tracking_, composed_, {.is_sound = is_sound_, .is_settled = is_settled_}, state_);
+  for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
+    if (!motion_shows_heading(*model_, b)) continue;
+    const auto joint = static_cast<std::size_t>(tracking_->bodies[b].joint);
+    const bool is_relative = state_.joints[joint].reference == JointReference::start;
+    heading_sd_[joint].reset();
+    if (!is_relative) heading_sd_[joint] = std::sqrt(std::max(0.0, filter_.heading_variance(b)));
+    if (filter_.considers_heading(b)) is_settled_[joint] = false;
+  }
+  fusion_.apply(*tracking_, composed_, {.is_sound = is_sound_, .is_settled = is_settled_, .heading_sd = heading_sd_},
+                state_);
 }
 
 void Tracker::list_alarms(double time) {

@@ -66,6 +66,7 @@ class Tracker {
   bool base_begins_to_move(const BlockMeasurement& block);
   void let_base_move();
   bool tells_of(std::size_t body) const;
+  void show_headings();
   void begin_grid();
   void spread_tool();
   void widen_unknown();
@@ -105,6 +106,7 @@ class Tracker {
   std::optional<double> waits_since_;  // [s] for a start in a quieter moment
   ComposedFilters composed_;
   std::vector<bool> is_sound_, is_settled_;  // sensors that the composed filters may use; joints that are not open
+  std::vector<std::optional<double>> heading_sd_;  // as of JointFusion
   JointFusion fusion_;
   ToolSpread tool_;
   ChainState now_;  // predicted to the last row

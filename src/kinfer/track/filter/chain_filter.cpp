@@ -26,6 +26,7 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
       soft_rows_(*model_),
       changes_(*model_),
       levels_(model_->sensors.size()),
+      headings_(*model_),
       innovations_(*model_),
       system_(*model_) {
   const FilterLayout& layout = model_->layout;
@@ -50,6 +51,13 @@ void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {
   p_.leftCols(layout.fast).setZero();
   p_.topRows(layout.fast).setZero();
   p_.topLeftCorner(layout.fast, layout.fast) = fast;
+  headings_.reset();
+}
+
+/// It counted from the start and will be shown by motion.
+void ChainFilter::free_heading(std::size_t body, double sd) {
+  headings_.free(body, sd, p_);
+  mirror();
 }
 
 /// The state of the zero of a revolute joint's positions; −1: it is not considered.
@@ -252,13 +260,16 @@ void ChainFilter::correct() {
   const Index estimated = model_->layout.first_geometry, n = model_->layout.size, geometry = n - estimated;
   system_.divide();
   const auto gain = system_.gain();
+  headings_.begin_update(*model_, state_, p_);
   error_.setZero();
   for (Index j = 0; j < system_.rows(); ++j)
     error_.head(estimated) += system_.whitened()[j] * gain.col(j).head(estimated);
+  headings_.limit_correction(error_);
   retract(*model_, error_, state_);
   add_square(gain.topRows(estimated), -1.0, p_.topLeftCorner(estimated, estimated));
   if (geometry > 0)
     add_product(gain.bottomRows(geometry), gain.topRows(estimated), -1.0, p_.block(estimated, 0, geometry, estimated));
+  headings_.end_update(gain, error_, state_.time, p_);
   bound();
   mirror();
 }

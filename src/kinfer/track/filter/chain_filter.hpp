@@ -7,6 +7,7 @@
 
 #include <memory>
 
+#include "kinfer/track/filter/ball_headings.hpp"
 #include "kinfer/track/filter/instrument_levels.hpp"
 #include "kinfer/track/filter/joint_changes.hpp"
 #include "kinfer/track/filter/soft_rows.hpp"
@@ -84,6 +85,15 @@ class ChainFilter {
   /// Factors on the variances of the instruments, as their innovations ask for.
   const InstrumentLevels& levels() const { return levels_; }
 
+  /// The heading of a body's spherical joint is considered until motion has shown it for a while.
+  void consider_heading(std::size_t body) { headings_.consider(body); }
+  void free_heading(std::size_t body, double sd);
+  const Vec3& up_in_ball(std::size_t body) const { return headings_.up(body); }
+  bool considers_heading(std::size_t body) const { return headings_.is_considered(body); }
+  void show_heading(std::size_t body) { headings_.show(body); }
+  /// [rad²] of that heading.
+  double heading_variance(std::size_t body) const { return headings_.variance(body, p_); }
+
   /// Squared distance of an instrument's three biases from those handed over, in the variance that they had before any
   /// row, and what they may have walked since; its expectation is at most 3.
   InsLevel bias_distance(std::size_t sensor) const;
@@ -115,6 +125,7 @@ class ChainFilter {
   SoftRows soft_rows_;
   JointChanges changes_;
   InstrumentLevels levels_;
+  BallHeadings headings_;
   Innovations innovations_;
   UpdateSystem system_;
   VectorXd error_, column_;  // buffers of an update

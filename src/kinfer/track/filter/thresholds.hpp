@@ -95,6 +95,12 @@ inline constexpr double far_apart = 2.0;  ///< standard deviations of the chain 
 /// The chain's heading, where it wanders by this [rad], has this correlation time [s]; it is watched over the last [s].
 /// A heading that nothing shows at the start is known like this [rad]. DIODEM trial 1, first half.
 inline constexpr double wander_sd = 0.035, wander_time = 5.0, wander_memory = 10.0, start_offset_sd = 0.05;
+inline constexpr double first_heading_sd = 0.5;  ///< [rad] of a heading that motion has just begun to show
+
+/// A spherical joint's heading is estimated after so many updates in motion. From then on its corrections are watched
+/// over so long [s], beyond so many standard deviations. Simulated chains of two to five joints.
+inline constexpr int heading_updates = 5;
+inline constexpr double heading_watch = 1.0, heading_significance = 2.0;
 
 inline constexpr double update_period = 0.02;   ///< [s] at most 50 updates a second
 inline constexpr double longest_bridge = 0.03;  ///< [s] between two blocks without a gap

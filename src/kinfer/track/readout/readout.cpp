@@ -33,13 +33,7 @@ void read_ball(const FilterModel& model, std::size_t b, const ChainState& state,
                TrackState& to) {
   const Vec3 before = to.q.segment<3>(at);
   const Vec3 q = cardan_angles(state.spherical[b], before.hasNaN() ? Vec3(Vec3::Zero()) : before);
-  const Mat3 turning = (rot_y(q.y()) * rot_z(q.z())).transpose();
-  Mat3 rates;  // of the angles to that of the child in its axes
-  rates.col(0) = turning.col(0);
-  rates.col(1) = rot_z(q.z()).transpose().col(1);
-  rates.col(2) = Vec3::UnitZ();
-  if (std::abs(rates.determinant()) < 1e-3) rates += 1e-3 * Mat3::Identity();  // gimbal lock: only sd is affected much
-  const Mat3 back = rates.inverse();
+  const Mat3 back = cardan_rates(q);
   const Index first = model.layout.position[b];
   Vec3 rate;
   for (Index i = 0; i < 3; ++i) rate[i] = state.joints[position_states * (first + i) + 1];
@@ -81,6 +75,16 @@ void read_rotations(const TrackingModel& tracking, const FilterModel& model, con
 }
 
 }  // namespace
+
+Mat3 cardan_rates(const Vec3& q) {
+  const Mat3 turning = (rot_y(q.y()) * rot_z(q.z())).transpose();
+  Mat3 rates;  // of the angles to that of the child in its axes
+  rates.col(0) = turning.col(0);
+  rates.col(1) = rot_z(q.z()).transpose().col(1);
+  rates.col(2) = Vec3::UnitZ();
+  if (std::abs(rates.determinant()) < 1e-3) rates += 1e-3 * Mat3::Identity();  // gimbal lock: only sd is affected much
+  return rates.inverse();
+}
 
 TrackState unknown_state(const TrackingModel& model) {
   const Index n = model.positions();

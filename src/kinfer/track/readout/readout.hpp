@@ -8,6 +8,9 @@
 namespace kinfer::track {
 
 /// A state with vectors of their final lengths, everything unknown.
+/// Rates of the angles of Rx(q₁) Ry(q₂) Rz(q₃) by its angular velocity in the rotating frame.
+Mat3 cardan_rates(const Vec3& q);
+
 TrackState unknown_state(const TrackingModel& model);
 
 /// Positions, velocities and the base's attitude; angles are continuous with those that `to` holds. `covariance`: of

@@ -269,6 +269,30 @@ class PostureStart {
 
 }  // namespace
 
+bool parent_moves(const FilterModel& model, std::size_t body, BaseMode base) {
+  if (base == BaseMode::moving) return true;
+  for (int a = model.bodies[body].parent; a > 0; a = model.bodies[static_cast<std::size_t>(a)].parent)
+    if (model.layout.position[static_cast<std::size_t>(a)] >= 0) return true;
+  return false;
+}
+
+bool motion_shows_heading(const FilterModel& model, std::size_t body) {
+  if (model.bodies[body].motion != JointMotion::spherical || model.is_loose(body)) return false;
+  const auto is_tight = [&](int sensor) {
+    if (sensor < 0) return false;
+    const SensorSettings& of = model.sensors[static_cast<std::size_t>(sensor)];
+    return of.persistent.rate <= of.white.rate && of.persistent.force <= of.white.force;
+  };
+  return is_tight(model.bodies[body].sensor) &&
+         is_tight(model.bodies[static_cast<std::size_t>(model.bodies[body].parent)].sensor);
+}
+
+double heading_sd(const FilterModel& model, std::size_t body, const std::vector<PositionGuess>& guess, const Vec3& up) {
+  Vec3 half;
+  for (Index i = 0; i < 3; ++i) half[i] = guess[static_cast<std::size_t>(model.layout.position[body] + i)].sd;
+  return half.cwiseProduct(up).norm() / std::sqrt(3.0);
+}
+
 InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement& block,
                                const std::vector<PositionGuess>& guess, BaseMode base) {
   const FilterLayout& layout = model.layout;
@@ -293,6 +317,9 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
     set(BaseIndex::velocity, start_velocity_sd);
     set(BaseIndex::acceleration, model.base_translation.sd);
   }
+  const auto ball_is_shown = [&](std::size_t b) {
+    return base == BaseMode::moving || (parent_moves(model, b, base) && !found.is_unseen(b));
+  };
   for (std::size_t b = 1; b < model.bodies.size(); ++b) {
     const InsBody& body = model.bodies[b];
     const Index dof = degrees_of_freedom(body.motion);
@@ -309,9 +336,12 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
       if (rate_is_seen) state.joints[position_states * at + 1] = is_revolute ? relative.z() : relative[i];
       const AccelerationProcess& process = model.positions[static_cast<std::size_t>(at)];
       posture.covariance(row, row) = start.sd[i] * start.sd[i];
-      // Gravity does not show the heading: it counts from here, unless motion of the base will show it.
-      const bool is_shown = dof == 3 && base == BaseMode::moving && !start.is_known[0];
-      const double heading_sd = is_shown ? start_heading_sd : 0.0;
+      // Gravity does not show the heading: it counts from here, unless motion will show it.
+      const bool is_ball = motion_shows_heading(model, b),
+                 is_shown = dof == 3 && !start.is_known[0] && (is_ball ? ball_is_shown(b) : base == BaseMode::moving);
+      const double heading_sd = !is_shown ? 0.0
+                                : is_ball ? track::heading_sd(model, b, guess, start.heading)
+                                          : start_heading_sd;
       for (Index j = 0; j < dof && dof == 3; ++j) {
         const double of_heading = start.heading[i] * start.heading[j],
                      covariance = start.sd[i] * start.sd[j] * ((i == j ? 1.0 : 0.0) - of_heading) +
@@ -328,6 +358,7 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
           .is_unseen = found.is_unseen(b),
           .is_blurred = start.is_blurred,
           .is_rough = start.is_rough,
+          .has_open_heading = is_ball && is_shown,
           .lost_sd = start.lost_sd};
     }
   }

@@ -28,6 +28,7 @@ struct StartPosition {
   bool is_unseen = false;
   bool is_blurred = false;          ///< motion hides most of what gravity shows
   bool is_rough = false;            ///< gravity shows it, but motion hides more: a later moment will be better
+  bool has_open_heading = false;    ///< of a spherical joint: its heading is a guess, which motion will show
   std::optional<double> lost_sd{};  ///< [rad] of what it may have turned in a gap, where it goes on from before that
 };
 
@@ -36,6 +37,18 @@ struct InitialPosture {
   MatrixXd covariance;  ///< of the fast states
   std::vector<StartPosition> positions;
 };
+
+/// Whether a body moves whose joint leads to this one: then motion shows how the joint stands, if gravity does not.
+bool parent_moves(const FilterModel& model, std::size_t body, BaseMode base);
+
+/// Whether accelerations tell the heading of a body's spherical joint where it moves. On slack mounts they do not:
+/// their errors last, and the guess is the better one. That is where the identification's residuals beside the joint
+/// are rather more than white noise.
+bool motion_shows_heading(const FilterModel& model, std::size_t body);
+
+/// [rad] Of the guess about a spherical joint's rotation about `up`, given in its rotating frame: anywhere in its
+/// range.
+double heading_sd(const FilterModel& model, std::size_t body, const std::vector<PositionGuess>& guess, const Vec3& up);
 
 /// `block`: mean of the first rows. `guess`: of each joint position of the filter.
 InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement& block,

@@ -8,14 +8,6 @@
 namespace kinfer::track {
 namespace {
 
-/// Whether a body moves whose joint leads to this one: then motion shows how the joint stands, if gravity does not.
-bool parent_moves(const FilterModel& model, std::size_t body, BaseMode base) {
-  if (base == BaseMode::moving) return true;
-  for (int a = model.bodies[body].parent; a > 0; a = model.bodies[static_cast<std::size_t>(a)].parent)
-    if (model.layout.position[static_cast<std::size_t>(a)] >= 0) return true;
-  return false;
-}
-
 /// A grid of starts finds single positions only.
 bool has_grid(const FilterModel& model, std::size_t body) {
   return degrees_of_freedom(model.bodies[body].motion) == 1;
@@ -51,13 +43,20 @@ void KnownPositions::begin(const FilterModel& model, const InitialPosture& postu
 }
 
 void KnownPositions::let_base_move(const FilterModel& model) {
-  for (std::size_t b = 1; b < model.bodies.size(); ++b)
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    if (has_open_heading(model, b)) decide(model, b);  // its standard deviation is the filter's
     for_each_position(model, b,
                       [&](std::size_t i) { positions_[i].is_open = !positions_[i].is_known && has_grid(model, b); });
+  }
 }
 
 void KnownPositions::decide(const FilterModel& model, std::size_t body) {
   for_each_position(model, body, [&](std::size_t i) { positions_[i] = {.is_known = true}; });
+}
+
+bool KnownPositions::has_open_heading(const FilterModel& model, std::size_t body) const {
+  if (!motion_shows_heading(model, body)) return false;
+  return !positions_[static_cast<std::size_t>(model.layout.position[body])].is_known;
 }
 
 void KnownPositions::lose(Index position, double sd, BaseMode base) {

@@ -29,6 +29,8 @@ class KnownPositions {
   void begin(const FilterModel& model, const InitialPosture& posture, BaseMode base);
   /// What counted from the start will be shown by motion.
   void let_base_move(const FilterModel& model);
+  /// Whether the heading of a body's spherical joint counts from the start.
+  bool has_open_heading(const FilterModel& model, std::size_t body) const;
   /// Motion has shown where the body's joint stands.
   void decide(const FilterModel& model, std::size_t body);
   /// It has turned unseen, and is not found.

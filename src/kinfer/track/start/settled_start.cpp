@@ -78,10 +78,11 @@ void start_in(const InitialPosture& posture, ChainFilter& filter) {
   const FilterModel& model = filter.model();
   filter.start(posture.state, posture.covariance);
   for (std::size_t b = 1; b < model.bodies.size(); ++b) {
-    if (model.bodies[b].motion != JointMotion::revolute) continue;
     const Index at = model.layout.position[b];
+    if (at < 0) continue;
     const StartPosition& start = posture.positions[static_cast<std::size_t>(at)];
-    if (start.is_known || start.is_unseen) continue;
+    if (start.has_open_heading) filter.consider_heading(b);
+    if (model.bodies[b].motion != JointMotion::revolute || start.is_known || start.is_unseen) continue;
     if (posture.state.base == BaseMode::moving)
       filter.place(at, posture.state.joints[position_states * at], 0.0);
     else

@@ -16,7 +16,7 @@ inline constexpr double free_start_sd = 1.0;   ///< [rad] of a position that cou
 inline constexpr int settling_places = 6;      ///< on the circle, of a position that may be anywhere
 inline constexpr double start_rate_sd = 0.05;  ///< [rad/s] of velocities by gyroscopes over the first rows
 inline constexpr double start_prismatic_speed = 0.05;  ///< [m/s] of a prismatic joint
-inline constexpr double start_heading_sd = 0.03;       ///< [rad] of a spherical joint, where motion will show it
+inline constexpr double start_heading_sd = 0.03;       ///< [rad] of a joint that is loose or between slack mounts
 inline constexpr double start_velocity_sd = 0.3;       ///< [m/s] of the base
 
 inline constexpr int start_places = 18;  ///< of an angle that gravity does not determine
