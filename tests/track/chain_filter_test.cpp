@@ -395,7 +395,7 @@ TEST(FitMonitor, NamesTheSensorThatDisagreesAndForgetsItWhenItAgreesAgain) {
   EXPECT_TRUE(monitor.sensor(3).is_suspect);
   filter.use_sensor(3, false);
   EXPECT_EQ(monitor.worst(filter), (Suspect{})) << "it is out of use already";
-  EXPECT_EQ(monitor.recovered(filter), (Suspect{}));
+  EXPECT_EQ(monitor.recovered(filter, [](std::size_t) { return true; }), (Suspect{}));
   monitor.reset_sensor(3);
   EXPECT_FALSE(monitor.sensor(3).is_suspect);
 }

@@ -313,18 +313,53 @@ TEST(Tracker, ASensorWithoutAGyroscopeIsLostAsWell) {
   EXPECT_EQ(out.alarms[0].sensor, 3);
 }
 
+void turn_sensor(InsSample& sample, const Mat3& turn) {
+  sample.acceleration = turn * sample.acceleration;
+  sample.angular_velocity = turn * sample.angular_velocity;
+}
+
+/// Of the joint that leads to its body.
+Vec3 hinge_axis_in_sensor(const Case& given, int sensor) {
+  const auto body = std::ranges::find(given.model.bodies, sensor, &TrackingBody::sensor);
+  return body->child_R_axis.col(2);
+}
+
 TEST(Tracker, NamesASensorThatWasTurned) {
   const Mat3 turn = exp_so3(0.5 * degree * Vec3(1.0, 1.0, 1.0).normalized());
   const Outcome out = run(still_excavator(), {}, [&](InsRow& row) {
-    if (row.time < 20.0) return;
-    row.sensors[3].acceleration = turn * row.sensors[3].acceleration;
-    row.sensors[3].angular_velocity = turn * row.sensors[3].angular_velocity;
+    if (row.time > 20.0) turn_sensor(row.sensors[3], turn);
   });
   ASSERT_FALSE(out.alarms.empty());
   EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_moved);
   EXPECT_EQ(out.alarms[0].sensor, 3);
   EXPECT_LT(out.raised[0], 22.0);
   EXPECT_EQ(out.alarms.size(), 1u);  // and not its clock
+}
+
+/// Turned about the hinge: without it the positions of both hinges beside it are so uncertain soon that it seems to fit
+/// again (after 13 s, and they were 0.45 degrees off with 0.02 stated).
+TEST(Tracker, ASensorThatStaysTurnedIsNotTakenInAgain) {
+  const Case given = make_case({.duration = 70.0});
+  const Mat3 turn = exp_so3(0.5 * degree * hinge_axis_in_sensor(given, 3));
+  const Outcome out = run(given, {}, [&](InsRow& row) {
+    if (row.time > 20.0) turn_sensor(row.sensors[3], turn);
+  });
+  EXPECT_EQ(out.alarms.size(), 1u);
+  ASSERT_EQ(out.tracker.state().alarms.size(), 1u);
+  EXPECT_EQ(out.tracker.state().alarms[0].kind, TrackAlarmKind::sensor_moved);
+  EXPECT_EQ(out.tracker.state().alarms[0].sensor, 3);
+  EXPECT_LT(out.raised[0], 25.0);
+}
+
+TEST(Tracker, ASensorThatIsTurnedBackIsTakenInAgain) {
+  const Case given = make_case({.duration = 70.0});
+  const Mat3 turn = exp_so3(0.5 * degree * hinge_axis_in_sensor(given, 3));
+  const Outcome out = run(given, {}, [&](InsRow& row) {
+    if (row.time > 20.0 && row.time < 30.0) turn_sensor(row.sensors[3], turn);
+  });
+  EXPECT_EQ(out.alarms.size(), 1u);
+  EXPECT_TRUE(out.tracker.state().alarms.empty());
+  for (int j = 1; j < 5; ++j) EXPECT_LT(out.rms(j), 0.1 * degree) << j;
 }
 
 TEST(Tracker, NamesASensorWhoseClockWentWrong) {

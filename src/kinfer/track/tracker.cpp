@@ -39,6 +39,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       replay_(filter_),
       does_not_fit_(model.sensors.size(), false),
       is_late_(model.sensors.size(), false),
+      mounts_(model.sensors.size()),
       biases_(model.sensors.size()),
       composed_(model, options),
       is_sound_(model.sensors.size(), true),
@@ -74,6 +75,7 @@ void Tracker::restart(double time) {
   waiting_.clear();
   waits_since_.reset();
   fit_.reset();
+  forget_mounts();
   std::ranges::fill(biases_, BiasChange{});
 }
 
@@ -113,6 +115,8 @@ void Tracker::add(const InsRow& row) {
 
 void Tracker::correct_in_rest() {
   rest_.correct(filter_);
+  for (std::optional<TurnedMount>& mount : mounts_)
+    if (mount) rest_.correct(mount->filter());
   if (!grid_) return;
   for (StartGrid::Candidate& candidate : grid_->candidates()) rest_.correct(candidate.filter);
 }
@@ -230,6 +234,7 @@ void Tracker::resolve_start(const BlockMeasurement& block) {
 
 void Tracker::replay(const std::function<void(ChainFilter&)>& prepare) {
   fit_.reset();
+  forget_mounts();  // they have believed what turned out to be wrong
   replay_.run(filter_, prepare, [&](const ChainFilter& filter, const BlockMeasurement& past) {
     fit_.add(filter, past.time, past.length);
   });
@@ -292,7 +297,11 @@ void Tracker::leave_out(std::size_t sensor) {
   does_not_fit_[sensor] = true;
   is_late_[sensor] = clocks_.is_late(sensor, lateness_share);
   const Agreement named = as_named(fit_.sensor(sensor));
+  ChainFilter before = replay_.older();
+  before.judge_as(filter_);
+  const TurnedMount mount(before, replay_.blocks(), sensor);
   replay([&](ChainFilter& filter) { filter.use_sensor(sensor, false); });
+  mounts_[sensor] = mount;
   fit_.set_sensor(sensor, named);
 }
 
@@ -302,12 +311,44 @@ void Tracker::doubt(std::size_t joint) {
   fit_.set_joint(joint, named);
 }
 
+std::optional<double> Tracker::log_odds_of_mount(std::size_t sensor) const {
+  return mounts_[sensor] ? mounts_[sensor]->log_odds_of_original() : std::nullopt;
+}
+
+/// One that agrees, but may be turned for all that is known, stays out of use.
+bool Tracker::may_return(std::size_t sensor) const {
+  const std::optional<double> odds = log_odds_of_mount(sensor);
+  return !odds || *odds > mount_log_odds;
+}
+
+bool Tracker::is_turned(std::size_t sensor) const {
+  const std::optional<double> odds = log_odds_of_mount(sensor);
+  return odds && *odds < -mount_log_odds;
+}
+
+/// Of the sensors that are out of use because they disagree, while they measure.
+void Tracker::watch_mounts(const BlockMeasurement& block) {
+  for (std::size_t s = 0; s < mounts_.size(); ++s) {
+    const bool is_watched = does_not_fit_[s] && !health_[s].lost && !health_[s].stuck;
+    if (!is_watched)
+      mounts_[s].reset();
+    else if (!mounts_[s])
+      mounts_[s].emplace(filter_, s);
+    else if (mounts_[s]->time() < block.time)
+      mounts_[s]->add(block, filter_);
+  }
+}
+
+void Tracker::forget_mounts() {
+  for (std::optional<TurnedMount>& mount : mounts_) mount.reset();
+}
+
 /// What disagrees most is left out, as if it had never been believed, and what agrees again is taken in.
 void Tracker::examine_fit() {
   const Suspect worst = fit_.worst(filter_);
   if (worst.sensor >= 0) leave_out(static_cast<std::size_t>(worst.sensor));
   if (worst.joint >= 0) doubt(static_cast<std::size_t>(worst.joint));
-  const Suspect back = fit_.recovered(filter_);
+  const Suspect back = fit_.recovered(filter_, [this](std::size_t s) { return may_return(s); });
   if (back.sensor >= 0) {
     does_not_fit_[static_cast<std::size_t>(back.sensor)] = is_late_[static_cast<std::size_t>(back.sensor)] = false;
     fit_.reset_sensor(static_cast<std::size_t>(back.sensor));
@@ -350,6 +391,7 @@ void Tracker::process_block(const BlockMeasurement& block) {
   if (!grid_) show_headings();
   if (!grid_) begin_grid();
   if (grid_) {
+    forget_mounts();
     resolve_start(block);
   } else {
     filter_.predict(block.time);
@@ -358,13 +400,14 @@ void Tracker::process_block(const BlockMeasurement& block) {
   fit_.add(filter_, block.time, block.length);
   clocks_.add(filter_, block.length);
   for (std::size_t s = 0; s < does_not_fit_.size(); ++s)
-    if (does_not_fit_[s] && clocks_.is_late(s, lateness_share_later)) is_late_[s] = true;
+    if (does_not_fit_[s] && clocks_.is_late(s, lateness_share_later) && !is_turned(s)) is_late_[s] = true;
   if (!grid_) {
     replay_.add(block, filter_);
     if (base_begins_to_move(block))
       let_base_move();
     else
       examine_fit();
+    watch_mounts(block);
     watch_biases(block.time);
     watch_misfit(block.time);
     find_returned(block);

@@ -149,10 +149,10 @@ Suspect FitMonitor::worst(const ChainFilter& filter) const {
   return agreement.observed < settling ? Suspect{} : named;
 }
 
-Suspect FitMonitor::recovered(const ChainFilter& filter) const {
+Suspect FitMonitor::recovered(const ChainFilter& filter, const std::function<bool(std::size_t)>& may_return) const {
   Suspect back;
   for (std::size_t s = 0; s < sensors_.size() && back.sensor < 0; ++s)
-    if (!filter.uses_sensor(s) && has_recovered(sensors_[s])) back.sensor = static_cast<int>(s);
+    if (!filter.uses_sensor(s) && has_recovered(sensors_[s]) && may_return(s)) back.sensor = static_cast<int>(s);
   for (std::size_t j = 0; j < joints_.size() && back.joint < 0; ++j)
     if (filter.doubts_joint(j) && has_recovered(joints_[j])) back.joint = static_cast<int>(j);
   return back;

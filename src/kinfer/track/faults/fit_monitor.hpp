@@ -43,8 +43,8 @@ class FitMonitor {
 
   /// Among sensors in use and joints that are not doubted.
   Suspect worst(const ChainFilter& filter) const;
-  /// A sensor that is not in use, or a joint that is doubted, and agrees again.
-  Suspect recovered(const ChainFilter& filter) const;
+  /// A sensor that is not in use and may return, or a joint that is doubted, and agrees again.
+  Suspect recovered(const ChainFilter& filter, const std::function<bool(std::size_t)>& may_return) const;
   /// It is taken in again. One that was named before may be named at once.
   void reset_sensor(std::size_t index);
   void reset_joint(std::size_t index);

@@ -4,6 +4,8 @@
 // since the older of them are kept.
 #pragma once
 
+#include <span>
+
 #include "kinfer/track/filter/chain_filter.hpp"
 
 namespace kinfer::track {
@@ -29,6 +31,10 @@ class Replay {
     }
     begin(filter);
   }
+
+  /// The older of the two filters kept, and the blocks since.
+  const ChainFilter& older() const { return older_; }
+  std::span<const BlockMeasurement> blocks() const { return {blocks_.data(), count_}; }
 
   /// Forgets what was before.
   void begin(const ChainFilter& filter);

@@ -18,6 +18,9 @@ KINFER_THRESHOLD(track, max_single, 400.0);                  // of one block
 KINFER_THRESHOLD(track, quick_limit, 2.5);                   // of the short mean
 KINFER_THRESHOLD(track, slow_limit, 1.6);                    // of the long mean
 inline constexpr double recovered_limit = 1.2;
+/// A sensor that is named as moved may be turned by so much [rad] about each axis, as standard deviation. It is turned
+/// where its samples are likelier by so much (ln) than with the mounting that it had, and returns where these are.
+inline constexpr double turned_mount_sd = 0.05, mount_log_odds = 3.0;
 inline constexpr double clock_mean = 5.0;       ///< [s] over which a clock is watched
 inline constexpr double least_lateness = 2e-3;  ///< [s] below which no clock is called late
 /// Twice the log-likelihood that a sensor's lateness must gain, and its share of the sensor's disagreement; more where

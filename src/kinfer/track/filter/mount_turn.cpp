@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/track/filter/mount_turn.hpp"
+
+#include <cmath>
+
+#include "kinfer/geometry/rotation.hpp"
+
+namespace kinfer::track {
+namespace {
+
+using TurnDerivative = Eigen::Matrix<double, 18, 3>;
+
+/// Of both scale matrices, row by row, by the turn.
+TurnDerivative scales_by_turn() {
+  TurnDerivative by_turn = TurnDerivative::Zero();
+  for (Index axis = 0; axis < 3; ++axis) {
+    const Mat3 turn = skew(Vec3::Unit(axis));
+    for (Index half = 0; half < 2; ++half)
+      for (Index i = 0; i < 3; ++i)
+        for (Index j = 0; j < 3; ++j) by_turn(9 * half + 3 * i + j, axis) = turn(i, j);
+  }
+  return by_turn;
+}
+
+/// ln of the integral of the likelihood exp(−½ θᵀ Λ θ + ηᵀ θ) over a belief.
+double log_evidence(const MountTurn& belief, const Mat3& information, const Vec3& score) {
+  const Mat3 m = Mat3::Identity() + belief.covariance * information, inverse = m.inverse();
+  return -0.5 * std::log(m.determinant()) - 0.5 * belief.mean.dot(information * inverse * belief.mean) +
+         score.dot(inverse * belief.mean) + 0.5 * score.dot(inverse * belief.covariance * score);
+}
+
+}  // namespace
+
+void ChainFilter::loosen_mount(std::size_t sensor, double variance) {
+  const Index scales = model_->layout.sensor_state(static_cast<Index>(sensor)) + SensorIndex::gyroscope_scale;
+  const TurnDerivative by_turn = scales_by_turn();
+  p_.block<18, 18>(scales, scales) += variance * by_turn * by_turn.transpose();
+}
+
+MountTurn mount_turn(const ChainFilter& filter, std::size_t sensor) {
+  const Index scales = filter.model().layout.sensor_state(static_cast<Index>(sensor)) + SensorIndex::gyroscope_scale;
+  const Eigen::Matrix<double, 3, 18> mean = 0.25 * scales_by_turn().transpose();
+  const SensorErrors& state = filter.state().sensors[sensor];
+  const Mat3 scale = 0.5 * (state.gyroscope_scale + state.accelerometer_scale);
+  const Mat3 twice = scale - scale.transpose();
+  return {.mean = 0.5 * Vec3(twice(2, 1), twice(0, 2), twice(1, 0)),
+          .covariance = mean * filter.covariance().block<18, 18>(scales, scales) * mean.transpose()};
+}
+
+double log_odds_of(const MountTurn& supposed, const MountTurn& before, const MountTurn& after) {
+  const Mat3 known_before = before.covariance.inverse(), known_after = after.covariance.inverse();
+  const Mat3 information = known_after - known_before;
+  const Vec3 score = known_after * after.mean - known_before * before.mean;
+  return log_evidence(supposed, information, score) - log_evidence(before, information, score);
+}
+
+}  // namespace kinfer::track
