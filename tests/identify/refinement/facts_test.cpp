@@ -80,6 +80,24 @@ TEST(Facts, SurveyedPointsLocateTheTipBeyondTheLastSensor) {
   }
 }
 
+TEST(Facts, ASurveyedPointThatTheOthersContradictIsNamedAndNotUsed) {
+  MachineMeasurements facts = surveyed_tip();
+  const auto sound = refined(facts);
+  ASSERT_TRUE(sound);
+  EXPECT_TRUE(
+      std::ranges::none_of(sound->findings, [](const Finding& f) { return f.kind == FindingKind::gross_outliers; }));
+  facts.surveys[2].xyz.x() += 0.15;
+  const auto result = refined(facts);
+  ASSERT_TRUE(result) << result.error().what;
+  const auto wrong = std::ranges::find(result->findings, FindingKind::gross_outliers, &Finding::kind);
+  ASSERT_NE(wrong, result->findings.end());
+  EXPECT_EQ(wrong->rows, std::vector<int>{2});
+  EXPECT_TRUE(wrong->applied);
+  EXPECT_NEAR(wrong->values.number("distance"), 0.15, 0.02);
+  const PointEstimate& tip = result->places[0];
+  for (int i = 0; i < 3; ++i) EXPECT_LT(std::abs(tip.xyz[i] - tip_in_sensor[i]), 4.0 * tip.sd[i]) << i;
+}
+
 /// Largest error of a distance between neighbouring pins [m].
 double largest_link_error(const Refinement& refined, const MachineTruth& truth) {
   std::vector<JointEstimate> joints;

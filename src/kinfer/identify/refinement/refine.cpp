@@ -20,6 +20,7 @@
 #include "kinfer/identify/refinement/joints/refined_joints.hpp"
 #include "kinfer/identify/refinement/scales/instrument_scales.hpp"
 #include "kinfer/identify/refinement/scales/scale_findings.hpp"
+#include "kinfer/identify/refinement/wrong_surveys.hpp"
 #include "kinfer/inertial/rest/rest.hpp"
 #include "kinfer/inertial/sensor_grading.hpp"
 
@@ -136,6 +137,7 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
     return forward_error(checked.error());
   Refinement result;
   RefinementFit fitted = fit_full_bandwidth(task, std::move(setup), options, observer);
+  const std::vector<Finding> wrong_surveys = leave_out_wrong_surveys(facts, task, fitted);
   const ScaleReview scales = refit_deviant_scales(task, fitted, observer);
   result.negative_log_likelihood = negative_log_likelihood(fitted.setup.problem, fitted.fit.cost);
   std::vector<FoundLoop> loops;
@@ -165,6 +167,7 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
   result.covariance = covariance->model;
   add_clock_rate(scales, result.fit, *covariance, model_error);
   result.findings = scale_findings(scales, motion, result.fit, *covariance);
+  result.findings.insert(result.findings.begin(), wrong_surveys.begin(), wrong_surveys.end());
   result.clocks = refined_clocks(fitted.setup.problem, result.fit, *covariance);
   result.joints = make_joints(task, fitted, *covariance, model_error);
   result.tracking = hand_over(task, fitted, result,

@@ -113,7 +113,17 @@ std::string joint_lag_remedy(const Finding& f) {
              : phrase(name(f.kind), "read joints and points before the arm moves on");
 }
 
+/// Of points that were surveyed beside a recording.
+std::string wrong_survey(const Finding& f) {
+  return phrase(name(f.kind),
+                "surveyed point {} lies {:.0f} mm from where the recording and the other points put it, at a stated "
+                "sigma of {:.3g} mm: {}",
+                f.rows[0] + 1, value_in_mm(f, "distance"), value_in_mm(f, "sigma"),
+                f.applied ? "it was not used" : "which of the points is wrong cannot be told");
+}
+
 std::string gross_outliers(const Finding& f) {
+  if (f.values.has("facts")) return wrong_survey(f);
   const bool one = f.rows.size() == 1;
   std::vector<OutlierReason> reasons;
   const std::vector<std::string>& kinds = f.values.texts("kinds");
@@ -123,6 +133,8 @@ std::string gross_outliers(const Finding& f) {
                 one ? "" : "in the first ", outlier_reasons(reasons));
 }
 std::string gross_outliers_remedy(const Finding& f) {
+  if (f.values.has("facts"))
+    return phrase(name(f.kind), "survey the point again, or correct it in the file of --facts");
   return phrase(name(f.kind), "calibrate rejects such rows as outliers; look at them");
 }
 
