@@ -45,6 +45,18 @@ RecordedMotion two_segments(const std::vector<DhLeaf>& leaves, const std::vector
   return motion;
 }
 
+/// A base at rest, an arm that swings on it, and a child behind the leaves, measured without error.
+RecordedMotion behind_an_arm(const std::vector<DhLeaf>& leaves, const std::vector<JointSignal>& signals) {
+  const auto arm = swinging_parent(wave(0.9, 0.7, 0.3));
+  RecordedMotion motion;
+  motion.period = 0.01;
+  for (std::size_t row = 0; row < arm.size(); ++row) motion.time.push_back(0.01 * static_cast<double>(row));
+  motion.segments = {segment_of("base", std::vector<FrameState>(arm.size())), segment_of("arm", arm),
+                     segment_of("child", propagate(arm, leaves, signals))};
+  motion.usable.assign(arm.size(), true);
+  return motion;
+}
+
 JointTypeEvidence type_of(const RecordedMotion& motion) {
   const auto tree = segment_tree(motion, "parent");
   EXPECT_TRUE(tree);
@@ -66,6 +78,19 @@ TEST(JointType, CountsTheRotationAxesBetweenTwoSegments) {
   EXPECT_EQ(universal.type, EstimatedJointType::universal);
   EXPECT_EQ(type_of(two_segments({mount, first, second, third, end}, three_waves())).type,
             EstimatedJointType::spherical);
+}
+
+TEST(JointType, ASphericalJointFarFromTheBaseIsNotRevolute) {
+  const DhLeaf mount{.theta = 0.7, .d = 0.2, .alpha = -1.1, .a = 0.5}, end{.theta = -1.9, .d = 0.15, .alpha = 0.3};
+  const DhLeaf first{.alpha = 1.4, .theta_signal = 0}, second{.theta = 1.5, .alpha = -1.3, .theta_signal = 1},
+      third{.theta_signal = 2};
+  const std::vector<JointSignal> waves{wave(0.30, 0.5, 1.0), wave(0.25, 0.65, 0.2), wave(0.25, 0.4, 2.0)};
+  const RecordedMotion motion = behind_an_arm({mount, first, second, third, end}, waves);
+  const auto tree = segment_tree(motion, "base");
+  ASSERT_TRUE(tree);
+  std::vector<EstimatedJointType> types;
+  for (const auto& e : identify::joint_types(motion, *tree)) types.push_back(e.type);
+  EXPECT_EQ(types, (std::vector{EstimatedJointType::revolute, EstimatedJointType::spherical}));
 }
 
 TEST(JointType, FindsBothAxesOfAUniversalJoint) {

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/geometry/rotation.hpp"
 #include "kinfer/identify/structure/thresholds.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
@@ -67,8 +68,19 @@ std::array<double, 3> largest_first(const VectorXd& squares) {
 /// that minimises ω · (e₁ × R e₂) with the other fixed.
 struct TwoAxes {
   Vec3 in_parent, in_child;
-  double off_plane = 0.0;  // [rad/s] rms
+  double angle = 0.0, deviation = 0.0;  // [rad] between both: mean and sd
 };
+
+/// Mean and standard deviation of the angle between two axes: constant in a universal joint.
+void measure_angle(TwoAxes& axes, const std::vector<Mat3>& rotations) {
+  const auto n = static_cast<double>(rotations.size());
+  std::vector<double> angles;
+  for (const Mat3& rotation : rotations) angles.push_back(angle_between(axes.in_parent, rotation * axes.in_child));
+  axes.angle = std::accumulate(angles.begin(), angles.end(), 0.0) / n;
+  double square = 0.0;
+  for (const double angle : angles) square += (angle - axes.angle) * (angle - axes.angle) / n;
+  axes.deviation = std::sqrt(square);
+}
 
 TwoAxes two_axes(const RelativeMotion& relative, Vec3 in_parent) {
   constexpr int rounds = 30;
@@ -82,35 +94,16 @@ TwoAxes two_axes(const RelativeMotion& relative, Vec3 in_parent) {
                   return Vec3((relative.rotation[i] * in_child).cross(relative.angular_velocity[i]));
                 }).vectors.col(0);
   }
-  double sum = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 normal = in_parent.cross(relative.rotation[i] * in_child);
-    const double off = relative.angular_velocity[i].dot(normal) / std::max(normal.norm(), 0.1);
-    sum += off * off / static_cast<double>(n);
-  }
-  return {in_parent, in_child, std::sqrt(sum)};
+  TwoAxes axes{in_parent, in_child};
+  measure_angle(axes, relative.rotation);
+  return axes;
 }
 
 TwoAxes best_two_axes(const RelativeMotion& relative, const Mat3& starts) {
   TwoAxes best = two_axes(relative, starts.col(0));
   for (int k = 1; k < 3; ++k)
-    if (const TwoAxes other = two_axes(relative, starts.col(k)); other.off_plane < best.off_plane) best = other;
+    if (const TwoAxes other = two_axes(relative, starts.col(k)); other.deviation < best.deviation) best = other;
   return best;
-}
-
-/// Whether a component of this rms has a shorter code at its own size, direction parameters included, than at the size
-/// of the errors.
-bool is_motion(double size, double error, double independent_samples) {
-  constexpr double parameters = 2.0;
-  if (size <= error) return false;
-  const double ratio = size * size / (error * error);
-  return independent_samples * (ratio - 1.0 - std::log(ratio)) > parameters * std::log(independent_samples + 1.0);
-}
-
-std::vector<double> along(const std::vector<Vec3>& vectors, const Vec3& direction) {
-  std::vector<double> series;
-  for (const Vec3& v : vectors) series.push_back(direction.dot(v));
-  return series;
 }
 
 /// Acceleration of the child minus that of the parent, in the parent: translation, lever-arm terms not removed.
@@ -122,9 +115,14 @@ std::vector<Vec3> acceleration_differences(const SegmentMotion& parent, const Se
   return differences;
 }
 
+/// [rad] The headings behind a gap of 2 s at 1 rad/s were 11 and 16° off.
+constexpr double heading_error_behind_gaps = 0.26;
+
 struct PairMotion {
   RelativeMotion relative;
-  SymmetricEigen rates, accelerations;  // mean squares, least first
+  double heading_error = 0.0;  // [rad] behind gaps of either sensor
+  SymmetricEigen rates;        // mean squares, least first
+  TwoAxes two_axes;
   JointTypeEvidence evidence;
 };
 
@@ -132,43 +130,40 @@ PairMotion pair_motion(const RecordedMotion& motion, const SegmentTree& tree, st
                        const std::vector<std::size_t>& rows) {
   const std::size_t parent = *tree.parent[child];
   const PairFit& pair = tree.pair(parent, child);
-  PairMotion j{relative_motion(motion.segments[parent], motion.segments[child], rows), {}, {}, {}};
+  PairMotion j{relative_motion(motion.segments[parent], motion.segments[child], rows), 0.0, {}, {}, {}};
   j.rates = second_moment(rows.size(), [&](std::size_t i) { return j.relative.angular_velocity[i]; });
-  j.accelerations = symmetric_eigen(pair.acceleration);
   j.evidence.rates = largest_first(j.rates.values);
-  j.evidence.accelerations = largest_first(j.accelerations.values);
+  j.evidence.accelerations = largest_first(symmetric_eigen(pair.acceleration).values);
   j.evidence.axis_in_parent = j.rates.vectors.col(2);
   j.evidence.axis_in_child = second_moment(rows.size(), [&](std::size_t i) {
                                return Vec3(j.relative.rotation[i].transpose() * j.relative.angular_velocity[i]);
                              }).vectors.col(2);
+  j.two_axes = best_two_axes(j.relative, j.rates.vectors);
+  if (!motion.segments[parent].restarts.empty() || !motion.segments[child].restarts.empty())
+    j.heading_error = heading_error_behind_gaps;
   return j;
 }
 
-/// Errors as a share of the sensors' angular velocity: median over the joints of the smallest component, since few
-/// joints of a machine rotate in all directions.
-double error_share(const std::vector<PairMotion>& joints) {
-  std::vector<double> shares;
-  for (const PairMotion& j : joints)
-    shares.push_back(j.evidence.rates[2] / std::max(j.relative.rms_rate, relative_rate_noise));
-  std::ranges::sort(shares);
-  return std::clamp(shares[shares.size() / 2], min_rate_error_share, max_rate_error_share);
-}
-
-EstimatedJointType rotational_type(PairMotion& j) {
-  JointTypeEvidence& e = j.evidence;
-  const auto samples = [&](Eigen::Index k) {
-    return effective_samples(along(j.relative.angular_velocity, j.rates.vectors.col(k)));
+/// What the motion leaves to each type. To a constant orientation and to a single axis by the singular values σ of the
+/// mean rotation: mean ‖R e − mean‖² of the axes that fit best is 2 (1 − σ).
+MotionDeviations motion_deviations(const PairMotion& j) {
+  Mat3 mean = Mat3::Zero();
+  for (const Mat3& rotation : j.relative.rotation) mean += rotation / static_cast<double>(j.relative.rotation.size());
+  const VectorXd squares = symmetric_eigen(mean.transpose() * mean).values;  // σ², least first
+  const auto deviation = [&](Eigen::Index i) {
+    return std::sqrt(std::max(0.0, 2.0 * (1.0 - std::sqrt(std::max(0.0, squares[i])))));
   };
-  if (!is_motion(e.rates[0], e.rate_error, samples(2))) return EstimatedJointType::rigid;
-  if (!is_motion(e.rates[1], e.rate_error, samples(1))) return EstimatedJointType::revolute;
-  const TwoAxes axes = best_two_axes(j.relative, j.rates.vectors);
-  e.off_plane_rate = axes.off_plane;
-  // Two axes leave most of the third component.
-  const bool has_third_component = e.rates[2] > e.rate_error && axes.off_plane > 0.5 * e.rates[2];
-  if (has_third_component || is_motion(axes.off_plane, e.rate_error, samples(0))) return EstimatedJointType::spherical;
-  e.axis_in_parent = axes.in_parent;
-  e.axis_in_child = axes.in_child;
-  return EstimatedJointType::universal;
+  const auto beyond_headings = [&](double d) {
+    return std::sqrt(std::max(0.0, d * d - j.heading_error * j.heading_error));
+  };
+  return {.rotation = deviation(0),
+          .axis = beyond_headings(deviation(2)),
+          .plane = beyond_headings(j.two_axes.deviation),
+          .axes_angle = j.two_axes.angle,
+          .rate_share =
+              j.evidence.rates[0] / std::hypot(j.relative.rms_rate, relative_rate_noise / rigid_rate_share.median),
+          .acceleration = j.evidence.accelerations[0],
+          .acceleration_across = j.evidence.accelerations[1]};
 }
 
 }  // namespace
@@ -179,29 +174,24 @@ std::vector<JointTypeEvidence> joint_types(const RecordedMotion& motion, const S
   for (const std::size_t child : tree.order)
     if (tree.parent[child]) joints.push_back(pair_motion(motion, tree, child, rows));
   if (joints.empty()) return {};
-  const double share = error_share(joints);
+  std::vector<MotionDeviations> deviations;
+  for (const PairMotion& j : joints) deviations.push_back(motion_deviations(j));
+  const std::vector<TypeProbabilities> probabilities = type_probabilities(deviations);
   std::vector<JointTypeEvidence> result;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     PairMotion& j = joints[i];
     const std::size_t child = tree.order[i + 1], parent = *tree.parent[child];
-    const auto error = [&](double part) {
-      return motion_significance * std::hypot(relative_rate_noise, part * j.relative.rms_rate);
-    };
-    j.evidence.rate_error = error(share);
-    // A single joint has no others that tell errors from motion: what all its components have may be motion.
-    if (joints.size() == 1 && j.evidence.rates[0] <= j.evidence.rate_error)
-      j.evidence.rate_error = error(min_rate_error_share);
-    j.evidence.type = rotational_type(j);
-    const auto& a = j.evidence.accelerations;
-    const auto differences = acceleration_differences(motion.segments[parent], motion.segments[child], rows);
-    const double slide_error = std::max(rigid_acceleration_noise, prismatic_dominance * a[1]);
-    const Vec3 prismatic_axis =
-        second_moment(rows.size(), [&](std::size_t k) { return differences[k]; }).vectors.col(2);
-    if (j.evidence.type == EstimatedJointType::rigid &&
-        is_motion(a[0], slide_error, effective_samples(along(differences, prismatic_axis)))) {
-      j.evidence.type = EstimatedJointType::prismatic;
-      j.evidence.axis_in_parent = prismatic_axis;
-      j.evidence.axis_in_child = j.relative.rotation.front().transpose() * prismatic_axis;
+    j.evidence.probabilities = probabilities[i];
+    j.evidence.type = most_probable(probabilities[i]);
+    if (j.evidence.type == EstimatedJointType::universal) {
+      j.evidence.axis_in_parent = j.two_axes.in_parent;
+      j.evidence.axis_in_child = j.two_axes.in_child;
+    }
+    if (j.evidence.type == EstimatedJointType::prismatic) {
+      const auto differences = acceleration_differences(motion.segments[parent], motion.segments[child], rows);
+      j.evidence.axis_in_parent =
+          second_moment(rows.size(), [&](std::size_t k) { return differences[k]; }).vectors.col(2);
+      j.evidence.axis_in_child = j.relative.rotation.front().transpose() * j.evidence.axis_in_parent;
     }
     result.push_back(j.evidence);
   }

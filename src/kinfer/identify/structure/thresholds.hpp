@@ -23,25 +23,61 @@ inline constexpr std::size_t tree_rows = 1500;
 /// Rows that the joint types are decided on. Data not recorded.
 inline constexpr std::size_t joint_type_rows = 1500;
 
-/// Factor by which a prismatic joint's translation must exceed the residual across it: errors are isotropic. Larger
-/// finds fewer prismatic joints. Set on the simulated machines.
-KINFER_THRESHOLD(identify, prismatic_dominance, 1.5);
-
-/// [rad/s] Relative angular velocity of two INS without relative motion. Set, like the next four, on the simulated
-/// machines and on measured chains (DIODEM).
+/// [rad/s] Relative angular velocity of two INS without relative motion. Set on the simulated machines and on DIODEM.
 KINFER_THRESHOLD(identify, relative_rate_noise, 3e-3);
 
-/// Scale and orientation errors as a share of the angular velocity, least; larger calls more joints rigid or revolute.
-inline constexpr double min_rate_error_share = 0.02;
+/// A quantity whose logarithm is normal.
+struct LogNormal {
+  double median = 1.0, spread = 1.0;
+};
 
-/// Likewise, largest: soft mounts.
-inline constexpr double max_rate_error_share = 0.1;
+/// Joints of a machine before anything is measured: rigid, prismatic, revolute, universal, spherical.
+inline constexpr double type_prior[] = {0.06, 0.05, 0.76, 0.03, 0.1};
 
-/// Factor on the errors below which nothing counts as motion; larger finds simpler joints.
-KINFER_THRESHOLD(identify, motion_significance, 2.5);
+/// [rad] Deviation of a revolute joint's axis by errors, typical of a recording: 0.01 to 0.1° with rigid mounts and
+/// industrial sensors, 0.3 to 1° with consumer ones, 0.03 to 0.8° on the iiwa and the pendulum, 1 to 3° on DIODEM and
+/// on foam. Larger calls machines of spherical joints revolute; smaller calls soft mounts spherical joints.
+inline constexpr LogNormal orientation_error{0.1 * 0.017453292519943295, 1.0};
 
-/// [m/s²] Residual of a rigid pair: rotating biases, tilts; larger finds fewer prismatic joints.
-inline constexpr double rigid_acceleration_noise = 0.03;
+/// Spread of the errors' sizes among the joints of a recording, in logarithms: the iiwa's five differ by a factor
+/// of 20.
+inline constexpr double error_spread = 1.0;
+
+/// [rad] Rotation of a joint that moves, rms.
+inline constexpr LogNormal joint_rotation{10.0 * 0.017453292519943295, 1.3};
+
+/// [rad] Rotation of a rigid pair by headings that drift, beside twice the errors of an axis: 0.02 to 0.1° with
+/// industrial sensors, 0.1 to 1.4° with consumer ones.
+inline constexpr double rigid_rotation_error = 0.2 * 0.017453292519943295;
+
+/// Relative angular velocity of a rigid pair as a share of the sensors': scales and axes of the gyroscopes, 0.001 to
+/// 0.07 of simulated pairs.
+inline constexpr LogNormal rigid_rate_share{0.02, 0.8};
+
+/// Deviation across the main axis over the whole deviation, of errors.
+inline constexpr LogNormal error_axis_ratio{0.4, 0.8};
+
+/// Least over the mean deviation across an axis, of errors: 0.24 to 0.80 of simulated joints.
+inline constexpr LogNormal error_plane_ratio{0.5, 0.4};
+
+/// Least log density of such a ratio: gyroscopes with scale errors make errors in one direction (down to 0.07).
+inline constexpr double min_ratio_density = -3.0;
+
+/// [m/s²] Residual acceleration of the common point by errors, typical of a recording: 0.004 to 0.03 with industrial
+/// sensors, 0.02 to 0.12 with consumer ones. Larger finds fewer prismatic joints.
+inline constexpr LogNormal acceleration_error{0.02, 1.0};
+
+/// Spread of its sizes among the joints of a recording.
+inline constexpr double acceleration_error_spread = 0.7;
+
+/// Second over first direction of the same.
+inline constexpr LogNormal error_across_ratio{0.75, 0.4};
+
+/// [m/s²] Residual acceleration of a prismatic joint that moves: 0.07 to 1.5 of simulated ones.
+inline constexpr LogNormal sliding_acceleration{0.4, 1.2};
+
+/// Second over first direction of the same, Coriolis accelerations.
+inline constexpr LogNormal sliding_across_ratio{0.3, 0.8};
 
 /// [rad/s] rms within a window above which a segment moves. Set, like the next three, on the excavator of paper 1.
 inline constexpr double moving_rate = 0.05;

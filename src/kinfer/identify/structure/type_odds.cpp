@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/structure/type_odds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "kinfer/identify/structure/thresholds.hpp"
+
+namespace kinfer::identify {
+namespace {
+
+constexpr std::size_t type_count = weighed_types.size(), grid_size = 40;
+constexpr double least_deviation = 1e-5;     // [rad] of measurements without error
+constexpr double least_acceleration = 1e-4;  // [m/s²] likewise
+
+using Grid = std::array<double, grid_size>;
+using LogTypes = std::array<double, type_count>;  // ln p(T) p(d | T, errors)
+
+/// Log density of ln x for a quantity whose logarithm is normal.
+double log_normal(double x, const LogNormal& of) {
+  const double z = std::log(x / of.median) / of.spread;
+  return -0.5 * z * z - std::log(of.spread) - 0.5 * std::log(2.0 * std::numbers::pi);
+}
+
+/// Likewise of an error or a secondary effect, which may well be far smaller than is typical, but not far larger.
+double log_error(double x, const LogNormal& of) {
+  constexpr double spread_below = 3.0;  // times that above
+  const double z = std::log(x / of.median) / of.spread, scaled = z < 0.0 ? z / spread_below : z;
+  return -0.5 * scaled * scaled - std::log(of.spread) - 0.5 * std::log(2.0 * std::numbers::pi);
+}
+
+/// Log density of ln r for a ratio that is uniform between 0 and 1: the angles of a joint's axes are alike in size.
+double uniform_ratio(double ratio) {
+  return std::log(std::min(ratio, 1.0));
+}
+
+/// Sizes of errors within five standard deviations of their prior.
+Grid sizes_of(const LogNormal& prior) {
+  constexpr double reach = 5.0;
+  Grid sizes{};
+  for (std::size_t i = 0; i < grid_size; ++i)
+    sizes[i] = prior.median * std::exp(prior.spread * reach * (2.0 * static_cast<double>(i) / (grid_size - 1) - 1.0));
+  return sizes;
+}
+
+/// ln p(d | T, s, a) of one joint, for each size of the errors.
+struct JointLikelihoods {
+  std::array<std::array<double, 4>, grid_size> rotation{};  // rigid and prismatic, revolute, universal, spherical
+  Grid rests{};                                             // no translation but errors
+  double slides = 0.0;
+
+  LogTypes at(std::size_t orientation, std::size_t acceleration) const {
+    const auto& turn = rotation[orientation];
+    const double rest = rests[acceleration];
+    LogTypes types{turn[0] + rest, turn[0] + slides, turn[1] + rest, turn[2] + rest, turn[3] + rest};
+    for (std::size_t type = 0; type < type_count; ++type) types[type] += std::log(type_prior[type]);
+    return types;
+  }
+};
+
+void add_rotation(JointLikelihoods& joint, const MotionDeviations& d, const Grid& sizes) {
+  const double rotation = std::hypot(d.rotation, least_deviation), axis = std::hypot(d.axis, least_deviation),
+               plane = std::hypot(d.plane, least_deviation), share = std::max(d.rate_share, 1e-6);
+  const double moves = log_normal(rotation, joint_rotation) + uniform_ratio(share);
+  const double second_axis = uniform_ratio(axis / rotation), third_axis = uniform_ratio(plane / axis);
+  const double axis_of_errors = std::max(log_normal(axis / rotation, error_axis_ratio), min_ratio_density),
+               plane_of_errors = std::max(log_normal(plane / axis, error_plane_ratio), min_ratio_density);
+  const double inclined = std::log(std::max(std::sin(d.axes_angle), 1e-3));  // of two axes in any directions
+  for (std::size_t i = 0; i < grid_size; ++i) {
+    const auto error = [&](double deviation) { return log_error(deviation, {sizes[i], error_spread}); };
+    const double rigid = log_error(rotation, {std::hypot(2.0 * sizes[i], rigid_rotation_error), error_spread}) +
+                         log_error(share, rigid_rate_share);
+    joint.rotation[i] = {rigid + axis_of_errors + plane_of_errors, moves + error(axis) + plane_of_errors,
+                         moves + second_axis + inclined + error(plane), moves + second_axis + third_axis};
+  }
+}
+
+void add_translation(JointLikelihoods& joint, const MotionDeviations& d, const Grid& sizes) {
+  const double main = std::hypot(d.acceleration, least_acceleration),
+               across = std::hypot(d.acceleration_across, least_acceleration);
+  const double across_of_errors = std::max(log_normal(across / main, error_across_ratio), min_ratio_density);
+  for (std::size_t i = 0; i < grid_size; ++i)
+    joint.rests[i] = log_normal(main, {sizes[i], acceleration_error_spread}) + across_of_errors;
+  joint.slides = log_normal(main, sliding_acceleration) + log_error(across / main, sliding_across_ratio);
+}
+
+double log_sum(const LogTypes& logarithms) {
+  const double largest = *std::ranges::max_element(logarithms);
+  double sum = 0.0;
+  for (const double x : logarithms) sum += std::exp(x - largest);
+  return largest + std::log(sum);
+}
+
+/// Posterior of the sizes of the errors.
+std::array<Grid, grid_size> posterior(const std::vector<JointLikelihoods>& joints, const Grid& orientation,
+                                      const Grid& acceleration) {
+  std::array<Grid, grid_size> weight{};
+  double largest = -std::numeric_limits<double>::infinity(), sum = 0.0;
+  for (std::size_t i = 0; i < grid_size; ++i)
+    for (std::size_t k = 0; k < grid_size; ++k) {
+      weight[i][k] = log_normal(orientation[i], orientation_error) + log_normal(acceleration[k], acceleration_error);
+      for (const JointLikelihoods& joint : joints) weight[i][k] += log_sum(joint.at(i, k));
+      largest = std::max(largest, weight[i][k]);
+    }
+  for (Grid& row : weight)
+    for (double& w : row) sum += w = std::exp(w - largest);
+  for (Grid& row : weight)
+    for (double& w : row) w /= sum;
+  return weight;
+}
+
+}  // namespace
+
+std::vector<TypeProbabilities> type_probabilities(std::span<const MotionDeviations> joints) {
+  const Grid orientation = sizes_of(orientation_error), acceleration = sizes_of(acceleration_error);
+  std::vector<JointLikelihoods> likelihoods(joints.size());
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    add_rotation(likelihoods[j], joints[j], orientation);
+    add_translation(likelihoods[j], joints[j], acceleration);
+  }
+  const std::array<Grid, grid_size> weight = posterior(likelihoods, orientation, acceleration);
+  std::vector<TypeProbabilities> result(joints.size());
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    for (std::size_t i = 0; i < grid_size; ++i)
+      for (std::size_t k = 0; k < grid_size; ++k) {
+        const LogTypes types = likelihoods[j].at(i, k);
+        const double evidence = log_sum(types);
+        for (std::size_t t = 0; t < type_count; ++t) result[j][t] += weight[i][k] * std::exp(types[t] - evidence);
+      }
+  return result;
+}
+
+EstimatedJointType most_probable(const TypeProbabilities& probabilities) {
+  return weighed_types[static_cast<std::size_t>(std::ranges::max_element(probabilities) - probabilities.begin())];
+}
+
+}  // namespace kinfer::identify

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Probabilities of the joint types of all joints of a machine, from how far the relative motion of their segments
+// strays from each type. The sizes of the errors of orientations s (mounts that give way, headings, play) and of
+// accelerations a are unknown, but similar in all joints of a recording, and integrated out:
+//   p(T_j) = Σ w(s, a) p(T_j | d_j, s, a),   w(s, a) ∝ p(s) p(a) Π_j Σ_T p(T) p(d_j | T, s, a).
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "kinfer/evidence/identification/identification.hpp"
+
+namespace kinfer::identify {
+
+/// What the relative motion of a pair leaves to each type: rms deviations of the best joint of that type.
+struct MotionDeviations {
+  double rotation = 0.0;      ///< [rad] from a constant orientation: of a rigid or prismatic joint an error
+  double axis = 0.0;          ///< [rad] from one axis that is fixed in both: of a revolute joint an error
+  double plane = 0.0;         ///< [rad] from a constant angle between two axes, one per segment: of a universal joint
+  double axes_angle = 0.0;    ///< [rad] that angle
+  double rate_share = 0.0;    ///< relative angular velocity as a share of the sensors'
+  double acceleration = 0.0;  ///< [m/s²] from a common point, largest direction: an error unless it slides
+  double acceleration_across = 0.0;  ///< [m/s²] likewise, second direction
+};
+
+inline constexpr std::array weighed_types{EstimatedJointType::rigid, EstimatedJointType::prismatic,
+                                          EstimatedJointType::revolute, EstimatedJointType::universal,
+                                          EstimatedJointType::spherical};
+
+using TypeProbabilities = std::array<double, weighed_types.size()>;
+
+/// One per joint.
+std::vector<TypeProbabilities> type_probabilities(std::span<const MotionDeviations> joints);
+
+EstimatedJointType most_probable(const TypeProbabilities& probabilities);
+
+}  // namespace kinfer::identify

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinfer/identify/structure/type_odds.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kinfer/base/angle.hpp"
+
+namespace kinfer {
+using namespace identify;
+namespace {
+
+using enum EstimatedJointType;
+
+/// Deviations [deg] of a joint whose accelerations fit a common point.
+MotionDeviations turning(double rotation, double axis, double plane, double axes_angle, double rate_share) {
+  return {.rotation = Angle::deg(rotation).rad(),
+          .axis = Angle::deg(axis).rad(),
+          .plane = Angle::deg(plane).rad(),
+          .axes_angle = Angle::deg(axes_angle).rad(),
+          .rate_share = rate_share,
+          .acceleration = 0.02,
+          .acceleration_across = 0.015};
+}
+
+const MotionDeviations revolute_joint = turning(11.0, 0.04, 0.02, 0.1, 0.8), ball = turning(11.0, 9.0, 4.6, 30.0, 0.6),
+                       universal_joint = turning(10.0, 6.2, 0.06, 70.0, 0.7),
+                       clamped = turning(0.1, 0.04, 0.02, 0.1, 0.01);
+
+std::vector<EstimatedJointType> types_of(const std::vector<MotionDeviations>& joints) {
+  std::vector<EstimatedJointType> types;
+  for (const TypeProbabilities& p : type_probabilities(joints)) types.push_back(most_probable(p));
+  return types;
+}
+
+TEST(TypeOdds, ABallIsABallWhereverItStandsAndWhateverItsNeighboursAre) {
+  EXPECT_EQ(types_of({revolute_joint, ball}), (std::vector{revolute, spherical}));
+  EXPECT_EQ(types_of({ball, revolute_joint, universal_joint}), (std::vector{spherical, revolute, universal}));
+  EXPECT_EQ(types_of({ball, ball, ball}), (std::vector{spherical, spherical, spherical}));
+}
+
+TEST(TypeOdds, WhatAllJointsOfARecordingHaveIsErrorOfItsMounts) {
+  const MotionDeviations on_foam = turning(6.0, 1.9, 1.0, 2.0, 0.6);
+  EXPECT_EQ(types_of({on_foam, on_foam, on_foam, on_foam}), std::vector(4, revolute));
+  const auto soft = type_probabilities(std::vector(4, on_foam))[0],
+             among_rigid = type_probabilities(std::vector{revolute_joint, revolute_joint, revolute_joint, on_foam})[3];
+  EXPECT_GT(soft[2], among_rigid[2]) << "revolute";
+}
+
+TEST(TypeOdds, AccelerationsAboveThoseOfTheOtherJointsAreASlider) {
+  MotionDeviations slider = clamped;
+  slider.acceleration = 0.092;  // with Coriolis accelerations across it
+  slider.acceleration_across = 0.046;
+  MotionDeviations quiet = revolute_joint;
+  quiet.acceleration = 0.0043;
+  quiet.acceleration_across = 0.0038;
+  EXPECT_EQ(types_of({quiet, slider}), (std::vector{revolute, prismatic}));
+  EXPECT_EQ(types_of({revolute_joint, clamped}), (std::vector{revolute, rigid}));
+}
+
+TEST(TypeOdds, ProbabilitiesSumToOne) {
+  for (const TypeProbabilities& p : type_probabilities(std::vector{revolute_joint, ball, universal_joint, clamped})) {
+    double sum = 0.0;
+    for (const double probability : p) sum += probability;
+    EXPECT_NEAR(sum, 1.0, 1e-9);
+  }
+  EXPECT_TRUE(type_probabilities({}).empty());
+}
+
+}  // namespace
+}  // namespace kinfer
