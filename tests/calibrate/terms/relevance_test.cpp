@@ -35,11 +35,11 @@ LinearModel linear_model(int rows, double effect, int seed) {
 
 constexpr double nuisance_sd = 100.0;
 
-/// log N(y; 0, I + 100² G Gᵀ + T diag(f²) Tᵀ), the long way.
-double dense_log_likelihood(const LinearModel& model, const std::vector<double>& factors) {
+/// log N(y; 0, noise² I + 100² G Gᵀ + T diag(f²) Tᵀ), the long way.
+double dense_log_likelihood(const LinearModel& model, const std::vector<double>& factors, double noise = 1.0) {
   const Eigen::Index n = model.y.size();
-  MatrixXd covariance =
-      MatrixXd::Identity(n, n) + nuisance_sd * nuisance_sd * model.nuisance * model.nuisance.transpose();
+  MatrixXd covariance = noise * noise * MatrixXd::Identity(n, n) +
+                        nuisance_sd * nuisance_sd * model.nuisance * model.nuisance.transpose();
   for (std::size_t g = 0; g < model.groups.size(); ++g)
     for (const int k : model.groups[g].members)
       covariance += factors[g] * factors[g] * model.terms.col(k) * model.terms.col(k).transpose();
@@ -50,11 +50,11 @@ double dense_log_likelihood(const LinearModel& model, const std::vector<double>&
 }
 
 /// The MAP fit of all, as an estimate with priors of 1 for the terms.
-Estimate fit_of(const LinearModel& model) {
+Estimate fit_of(const LinearModel& model, double noise = 1.0) {
   MatrixXd columns(model.y.size(), 8);
   columns << model.nuisance, model.terms;
   Estimate fit;
-  MatrixXd normal = columns.transpose() * columns;
+  MatrixXd normal = columns.transpose() * columns / (noise * noise);
   for (int k = 0; k < 8; ++k) {
     const double sd = k < 2 ? nuisance_sd : 1.0;
     normal(k, k) += 1.0 / (sd * sd);
@@ -63,7 +63,7 @@ Estimate fit_of(const LinearModel& model) {
     fit.parameters.parameters.push_back(parameter);
   }
   fit.covariance = *invert_spd(normal);
-  const VectorXd x = fit.covariance * (columns.transpose() * model.y);
+  const VectorXd x = fit.covariance * (columns.transpose() * model.y) / (noise * noise);
   for (int k = 0; k < 8; ++k) {
     ParameterEstimate estimate;
     estimate.value = x[k];
@@ -72,17 +72,61 @@ Estimate fit_of(const LinearModel& model) {
   return fit;
 }
 
-LinearisedTerms linearised(const LinearModel& model) {
-  return linearise_terms(fit_of(model), std::vector{2, 3, 4, 5, 6, 7});
+LinearisedTerms linearised(const LinearModel& model, double noise = 1.0) {
+  return linearise_terms(fit_of(model, noise), std::vector{2, 3, 4, 5, 6, 7});
+}
+
+std::vector<TermsAtNoise> known_noise(const LinearModel& model) {
+  return {{linearised(model)}};
+}
+
+constexpr double noises[] = {0.5, 0.7, 1.0, 1.4, 2.0};
+
+std::vector<TermsAtNoise> unknown_noise(const LinearModel& model) {
+  std::vector<TermsAtNoise> levels;
+  for (const double noise : noises)
+    levels.push_back(
+        {linearised(model, noise), dense_log_likelihood(model, std::vector(model.groups.size(), 0.0), noise)});
+  return levels;
 }
 
 TEST(Relevance, TheEvidenceIsThatOfTheDenseGaussian) {
   const LinearModel model = linear_model(30, 0.7, 1);
-  const LinearisedTerms terms = linearised(model);
+  const std::vector<TermsAtNoise> terms = known_noise(model);
   const double none = dense_log_likelihood(model, {0, 0, 0});
   for (const std::vector<double>& factors :
        {std::vector{1.0, 1.0, 1.0}, std::vector{0.0, 0.5, 0.0}, std::vector{0.1, 2.0, 30.0}})
     EXPECT_NEAR(log_evidence(terms, model.groups, factors), dense_log_likelihood(model, factors) - none, 1e-6);
+}
+
+TEST(Relevance, TheEvidenceOfUnknownNoiseIsTheSumOverItsLevels) {
+  const LinearModel model = linear_model(30, 0.7, 1);
+  const auto sum = [&](const std::vector<double>& factors) {
+    double likelihood = 0.0;  // over that of noise 1, lest it vanish
+    for (const double noise : noises)
+      likelihood += std::exp(dense_log_likelihood(model, factors, noise) - dense_log_likelihood(model, factors));
+    return std::log(likelihood) + dense_log_likelihood(model, factors);
+  };
+  for (const std::vector<double>& factors : {std::vector{1.0, 1.0, 1.0}, std::vector{0.0, 0.5, 0.0}})
+    EXPECT_NEAR(log_evidence(unknown_noise(model), model.groups, factors), sum(factors) - sum({0, 0, 0}), 1e-6);
+}
+
+TEST(Relevance, AGroupsGainIsTheIntegralOverItsSizeAndTheNoise) {
+  LinearModel model = linear_model(30, 0.7, 2);
+  model.groups = {{{2, 3}, 0}};
+  double with = 0.0, without = 0.0;
+  constexpr double step = 0.01;
+  const double scale = dense_log_likelihood(model, {0});
+  for (const double noise : noises) {
+    without += std::exp(dense_log_likelihood(model, {0}, noise) - scale);
+    for (double log_f = std::log(1e-3); log_f < 0.0; log_f += step) {
+      const double f = std::exp(log_f);
+      with +=
+          step * 4.0 / std::numbers::pi * f / (1.0 + f * f) * std::exp(dense_log_likelihood(model, {f}, noise) - scale);
+    }
+  }
+  EXPECT_NEAR(weigh_groups(unknown_noise(model), model.groups)[0].log_evidence_gain,
+              std::log(with / without) - std::log(2.0), 0.02);
 }
 
 TEST(Relevance, AGroupsGainIsTheIntegralOverItsSize) {
@@ -95,7 +139,7 @@ TEST(Relevance, AGroupsGainIsTheIntegralOverItsSize) {
     const double f = std::exp(log_f);
     sum += step * 4.0 / std::numbers::pi * f / (1.0 + f * f) * std::exp(dense_log_likelihood(model, {f}) - none);
   }
-  const std::vector<GroupRelevance> weights = weigh_groups(linearised(model), model.groups);
+  const std::vector<GroupRelevance> weights = weigh_groups(known_noise(model), model.groups);
   EXPECT_NEAR(weights[0].log_evidence_gain, std::log(sum) - std::log(2.0), 0.02)
       << "one candidate or none: odds 1 to 2";
 }
@@ -104,7 +148,7 @@ TEST(Relevance, TheGroupWithAnEffectIsKeptAndTheOthersVanish) {
   int wrong = 0;
   for (int seed = 1; seed <= 40; ++seed) {
     const LinearModel model = linear_model(40, 1.0, seed);
-    const auto weights = weigh_groups(linearised(model), model.groups);
+    const auto weights = weigh_groups(known_noise(model), model.groups);
     EXPECT_GT(weights[1].factor, 0.3) << seed;
     wrong += weights[0].factor > 0.0 || weights[2].factor > 0.0;
   }
@@ -115,7 +159,7 @@ TEST(Relevance, WithoutAnyEffectHardlyAnyGroupIsKept) {
   int kept = 0;
   for (int seed = 1; seed <= 40; ++seed) {
     const LinearModel model = linear_model(40, 0.0, seed);
-    for (const GroupRelevance& group : weigh_groups(linearised(model), model.groups)) kept += group.factor > 0.0;
+    for (const GroupRelevance& group : weigh_groups(known_noise(model), model.groups)) kept += group.factor > 0.0;
   }
   EXPECT_LE(kept, 3);
 }
@@ -124,7 +168,7 @@ TEST(Relevance, ColumnsThatAreZeroOrEqualDoNoHarm) {
   LinearModel model = linear_model(40, 1.0, 3);
   model.terms.col(0).setZero(), model.terms.col(1).setZero();
   model.terms.col(4) = model.terms.col(2), model.terms.col(5) = model.terms.col(3);
-  const auto weights = weigh_groups(linearised(model), model.groups);
+  const auto weights = weigh_groups(known_noise(model), model.groups);
   EXPECT_EQ(weights[0].factor, 0.0);
   EXPECT_TRUE((weights[1].factor > 0.0) != (weights[2].factor > 0.0)) << "one of two equal groups";
 }
@@ -136,13 +180,13 @@ TEST(Relevance, InformationThatDwarfsThePriorsIsWeighed) {
   for (double& value : effect) value = 1e10 * rng.normal();
   LinearisedTerms terms{effect * effect.transpose(), 1e10 * effect};
   terms.information.diagonal().array() -= 1e4;
-  for (const GroupRelevance& group : weigh_groups(terms, LinearModel{}.groups))
+  for (const GroupRelevance& group : weigh_groups({{terms}}, LinearModel{}.groups))
     EXPECT_TRUE(std::isfinite(group.factor) && std::isfinite(group.log_evidence_gain));
 }
 
 TEST(Relevance, MoreTermsThanMeasurementsAreWeighed) {
   LinearModel model = linear_model(4, 0.0, 4);
-  for (const GroupRelevance& group : weigh_groups(linearised(model), model.groups))
+  for (const GroupRelevance& group : weigh_groups(known_noise(model), model.groups))
     EXPECT_TRUE(std::isfinite(group.factor) && std::isfinite(group.log_evidence_gain));
 }
 

@@ -46,6 +46,30 @@ TEST(WeighedModel, RigidRobotsLoseNothing) {
   EXPECT_LE(mean(ratios), 1.01);
 }
 
+// Of 60 residuals all candidates together explain nearly everything, whatever the noise.
+TEST(WeighedModel, FewPointsOfUnstatedNoiseGiveRigidRobotsNoTerms) {
+  int wrong = 0;
+  for (int seed = 1; seed <= 12; ++seed) {
+    const Chain truth = with_random_errors(nominal_robot(), {}, Rng(seed));
+    PoseSet data = with_approach(simulated_readings(truth, 20, 20 + seed));
+    measure_points(data, truth, tracker, Rng(40 + seed));
+    const Calibration c = calibrate_robot({nominal_robot(), {}, std::nullopt, data}, {}, Rng(1)).value();
+    wrong += selected_model(c.model_selection) != "geometry";
+  }
+  EXPECT_LE(wrong, 1);
+}
+
+TEST(WeighedModel, ManyPointsOfUnstatedNoiseShowGains) {
+  for (int seed = 1; seed <= 3; ++seed) {
+    Chain truth = with_random_errors(nominal_robot(), {}, Rng(seed));
+    for (Joint& joint : truth.joints) joint.gain = 1.0 + 1e-3 * (seed % 2 ? 1.0 : -1.0);
+    PoseSet data = simulated_readings(truth, 40, 20 + seed);
+    measure_points(data, truth, tracker, Rng(40 + seed));
+    const Calibration c = calibrate_robot({nominal_robot(), {}, std::nullopt, data}, {}, Rng(1)).value();
+    EXPECT_TRUE(is_selected(step_with(c, Term::gain))) << seed;
+  }
+}
+
 TEST(WeighedModel, TorquesThatAreZeroOrConstantAreNotExcited) {
   const Chain truth = with_random_errors(nominal_robot(), {}, Rng(3));
   PoseSet data = simulated_readings(truth, 60);

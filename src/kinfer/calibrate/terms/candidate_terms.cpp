@@ -178,7 +178,11 @@ LinearisedTerms linearise_terms(const Estimate& fit, std::span<const int> indice
     for (Eigen::Index k = 0; k < m; ++k)
       covariance(i, k) = fit.covariance(indices[i], indices[k]) / (p.prior_sd * free[indices[k]]->prior_sd);
   }
-  // The marginal posterior of these parameters is N(offset, covariance); their own prior, N(0, I), is taken out.
+  return without_own_prior(covariance, offset);
+}
+
+LinearisedTerms without_own_prior(const MatrixXd& covariance, const VectorXd& offset) {
+  const Eigen::Index m = offset.size();
   const auto inverse = m > 0 ? invert_spd(covariance) : std::optional(MatrixXd(0, 0));
   if (!inverse) return {MatrixXd::Zero(m, m), VectorXd::Zero(m)};
   return {*inverse - MatrixXd::Identity(m, m), *inverse * offset};

@@ -59,4 +59,7 @@ std::vector<int> free_indices(const Estimate& fit, const std::vector<CandidatePa
 /// Of the free parameters of a fit at `indices`; all others are marginalised.
 LinearisedTerms linearise_terms(const Estimate& fit, std::span<const int> indices);
 
+/// From the marginal posterior N(offset, covariance) of parameters, in units of their prior N(0, I).
+LinearisedTerms without_own_prior(const MatrixXd& covariance, const VectorXd& offset);
+
 }  // namespace kinfer::calibrate

@@ -21,9 +21,19 @@ double factor_at(int step) {
   return smallest_factor * std::pow(grid_ratio, step);
 }
 
-/// What the measurements say of one group given all others, along the eigenvectors of its information.
-struct ConditionalGroup {
+/// log Σ exp values.
+double log_sum(const std::vector<double>& values) {
+  const double largest = *std::ranges::max_element(values);
+  double sum = 0.0;
+  for (const double value : values) sum += std::exp(value - largest);
+  return largest + std::log(sum);
+}
+
+/// What the measurements say of one group given all others at one noise level, along the eigenvectors of its
+/// information.
+struct GroupAtNoise {
   VectorXd information, image;
+  double log_probability = 0.0;  ///< of the noise level without the group
 
   /// log p(data | f) − log p(data | 0)
   double gain(double factor) const {
@@ -32,6 +42,17 @@ struct ConditionalGroup {
     for (Eigen::Index k = 0; k < image.size(); ++k)
       sum += v * image[k] * image[k] / (1.0 + v * information[k]) - std::log1p(v * information[k]);
     return 0.5 * sum;
+  }
+};
+
+/// The same over all noise levels.
+struct ConditionalGroup {
+  std::vector<GroupAtNoise> levels;
+
+  double gain(double factor) const {
+    std::vector<double> gains;
+    for (const GroupAtNoise& level : levels) gains.push_back(level.log_probability + level.gain(factor));
+    return log_sum(gains);
   }
 };
 
@@ -65,8 +86,8 @@ double log_half_cauchy(double f) {
 
 class Weighing {
  public:
-  Weighing(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups)
-      : terms_(terms), groups_(groups), result_(groups.size()) {
+  Weighing(const std::vector<TermsAtNoise>& levels, const std::vector<RelevanceGroup>& groups)
+      : levels_(levels), groups_(groups), result_(groups.size()) {
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const bool alone = groups[g].own_size;
       const auto same = std::find_if(families_.begin(), families_.end(), [&](const std::vector<int>& family) {
@@ -105,7 +126,7 @@ class Weighing {
   double total() const {
     std::vector<double> factors;
     for (const GroupRelevance& group : result_) factors.push_back(group.factor);
-    double sum = log_evidence(terms_, groups_, factors);
+    double sum = log_evidence(levels_, groups_, factors);
     for (const std::vector<int>& family : families_) {
       double largest = 0.0;
       for (const int g : family) largest = std::max(largest, factors[g]);
@@ -133,18 +154,35 @@ class Weighing {
       for (const int k : groups_[g].members)
         others.push_back(k), precision.push_back(1.0 / (result_[g].factor * result_[g].factor));
     }
-    MatrixXd information = terms_.information(own, own);
-    VectorXd image = terms_.image(own);
+    ConditionalGroup group;
+    std::vector<double> probabilities;
+    for (const TermsAtNoise& level : levels_) {
+      group.levels.push_back(conditional(level, own, others, precision));
+      probabilities.push_back(group.levels.back().log_probability);
+    }
+    const double total = log_sum(probabilities);
+    for (GroupAtNoise& level : group.levels) level.log_probability -= total;
+    return group;
+  }
+
+  static GroupAtNoise conditional(const TermsAtNoise& level, const std::vector<int>& own,
+                                  const std::vector<int>& others, const std::vector<double>& precision) {
+    const LinearisedTerms& terms = level.terms;
+    MatrixXd information = terms.information(own, own);
+    VectorXd image = terms.image(own);
+    double log_probability = level.log_likelihood;
     if (!others.empty()) {
-      MatrixXd among = terms_.information(others, others);
-      among.diagonal() += Eigen::Map<const VectorXd>(precision.data(), static_cast<Eigen::Index>(precision.size()));
-      const MatrixXd across = terms_.information(own, others) * invert_but_for_rounding(among);
-      const VectorXd image_of_others = terms_.image(others);
-      information -= across * terms_.information(others, own);
+      const Eigen::Map<const VectorXd> p(precision.data(), static_cast<Eigen::Index>(precision.size()));
+      const MatrixXd among = terms.information(others, others) + MatrixXd(p.asDiagonal());
+      const MatrixXd covariance = invert_but_for_rounding(among), across = terms.information(own, others) * covariance;
+      const VectorXd image_of_others = terms.image(others);
+      information -= across * terms.information(others, own);
       image -= across * image_of_others;
+      log_probability += 0.5 * (image_of_others.dot(covariance * image_of_others) + p.array().log().sum()) -
+                         cholesky_but_for_rounding(among).diagonal().array().log().sum();
     }
     const SymmetricEigen eigen = symmetric_eigen(information);
-    return {eigen.values.cwiseMax(0.0), eigen.vectors.transpose() * image};
+    return {eigen.values.cwiseMax(0.0), eigen.vectors.transpose() * image, log_probability};
   }
 
   static double steps_between(double before, double after) {
@@ -194,7 +232,7 @@ class Weighing {
     return weigh(conditional(std::span(&g, 1)), log_half_cauchy).log_bayes_factor - log_odds();
   }
 
-  const LinearisedTerms& terms_;
+  const std::vector<TermsAtNoise>& levels_;
   const std::vector<RelevanceGroup>& groups_;
   std::vector<std::vector<int>> families_;
   std::vector<GroupRelevance> result_;
@@ -202,33 +240,40 @@ class Weighing {
 
 }  // namespace
 
-double log_evidence(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups,
-                    std::span<const double> factors) {
-  std::vector<int> own;
-  std::vector<double> scale;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    if (factors[g] == 0.0) continue;
-    for (const int k : groups[g].members) own.push_back(k), scale.push_back(factors[g]);
-  }
-  if (own.empty()) return 0.0;
-  const Eigen::Map<const VectorXd> f(scale.data(), static_cast<Eigen::Index>(scale.size()));
-  const MatrixXd information = terms.information(own, own);
-  const VectorXd image = terms.image(own);
-  const SymmetricEigen eigen = symmetric_eigen(f.asDiagonal() * information * f.asDiagonal());
-  const VectorXd s = eigen.values.cwiseMax(0.0), q = eigen.vectors.transpose() * f.cwiseProduct(image);
+double log_evidence(const LinearisedTerms& terms, const VectorXd& factors) {
+  const SymmetricEigen eigen = symmetric_eigen(factors.asDiagonal() * terms.information * factors.asDiagonal());
+  const VectorXd s = eigen.values.cwiseMax(0.0), q = eigen.vectors.transpose() * factors.cwiseProduct(terms.image);
   return 0.5 * (q.array().square() / (1.0 + s.array()) - s.array().log1p()).sum();
 }
 
-double joint_log_evidence_gain(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups,
-                               std::vector<double> factors, int family) {
-  const double with = log_evidence(terms, groups, factors);
-  for (std::size_t g = 0; g < groups.size(); ++g)
-    if (groups[g].family == family) factors[g] = 0.0;
-  return with - log_evidence(terms, groups, factors);
+double log_evidence(const std::vector<TermsAtNoise>& levels, const std::vector<RelevanceGroup>& groups,
+                    std::span<const double> factors) {
+  std::vector<double> with, without;
+  for (const TermsAtNoise& level : levels) {
+    VectorXd of_parameters = VectorXd::Zero(level.terms.image.size());
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      for (const int k : groups[g].members) of_parameters[k] = factors[g];
+    without.push_back(level.log_likelihood);
+    with.push_back(level.log_likelihood + log_evidence(level.terms, of_parameters));
+  }
+  return log_sum(with) - log_sum(without);
 }
 
-std::vector<GroupRelevance> weigh_groups(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups) {
-  Weighing from_none(terms, groups), from_all(terms, groups);
+double joint_log_evidence_gain(const std::vector<TermsAtNoise>& levels, const std::vector<RelevanceGroup>& groups,
+                               std::vector<double> factors, int family) {
+  const double with = log_evidence(levels, groups, factors);
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    if (groups[g].family == family) factors[g] = 0.0;
+  return with - log_evidence(levels, groups, factors);
+}
+
+const LinearisedTerms& without_terms(const std::vector<TermsAtNoise>& levels) {
+  return std::ranges::max_element(levels, {}, &TermsAtNoise::log_likelihood)->terms;
+}
+
+std::vector<GroupRelevance> weigh_groups(const std::vector<TermsAtNoise>& levels,
+                                         const std::vector<RelevanceGroup>& groups) {
+  Weighing from_none(levels, groups), from_all(levels, groups);
   from_all.start_with_all();
   from_none.run(), from_all.run();
   return from_all.total() > from_none.total() ? from_all.result() : from_none.result();

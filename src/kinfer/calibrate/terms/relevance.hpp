@@ -36,15 +36,29 @@ struct GroupRelevance {
   double log_evidence_gain = 0.0;  ///< of the group, given the others; negative: the data speak against it
 };
 
-/// The factors that maximise the marginal likelihood, one per group.
-std::vector<GroupRelevance> weigh_groups(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups);
+/// The same at one of several noise levels, where the noise is not known.
+struct TermsAtNoise {
+  LinearisedTerms terms;
+  double log_likelihood = 0.0;  ///< log p(data, this noise level | all terms 0), but for a constant
+};
 
-/// log p(data | factors) − log p(data | all factors 0), without the prior of the factors.
-double log_evidence(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups,
+/// The factors that maximise the marginal likelihood, one per group; over all noise levels together.
+std::vector<GroupRelevance> weigh_groups(const std::vector<TermsAtNoise>& levels,
+                                         const std::vector<RelevanceGroup>& groups);
+
+/// log p(data | factors) − log p(data | all factors 0) at one noise level, without the prior of the factors. One factor
+/// per parameter.
+double log_evidence(const LinearisedTerms& terms, const VectorXd& factors);
+
+/// The same over all noise levels, one factor per group.
+double log_evidence(const std::vector<TermsAtNoise>& levels, const std::vector<RelevanceGroup>& groups,
                     std::span<const double> factors);
 
 /// Gain of several groups together, given the others.
-double joint_log_evidence_gain(const LinearisedTerms& terms, const std::vector<RelevanceGroup>& groups,
+double joint_log_evidence_gain(const std::vector<TermsAtNoise>& levels, const std::vector<RelevanceGroup>& groups,
                                std::vector<double> factors, int family);
+
+/// What the measurements say at the noise level that is most likely without any term.
+const LinearisedTerms& without_terms(const std::vector<TermsAtNoise>& levels);
 
 }  // namespace kinfer::calibrate

@@ -18,6 +18,14 @@ inline constexpr double expansion_prior = 20e-6;  ///< [1/K] between steel and a
 /// [K] 5-95 % range of the temperatures; with less, thermal expansion is not tested.
 inline constexpr double min_temperature_range = 1.0;
 
+// ---- noise levels over which the relevance of terms is marginalised, where the noise is not stated ----
+/// More residuals than parameters by that: the noise level is known to 5 % and taken as estimated.
+inline constexpr double most_uncertain_redundancy = 200.0;
+/// [1] of the noise level of geometry alone: terms explain no more.
+inline constexpr double lowest_noise_part = 1e-2;
+inline constexpr double noise_level_step = 2.0;   ///< [sd] of the logarithm; the trapezium rule errs by 1 % at that
+inline constexpr double impossible_noise = 10.0;  ///< log likelihood ratio from which on levels are left out
+
 // ---- proof of a model by its held-out errors ----
 /// [standard errors] of the mean increase that refuse a term; larger trusts the marginal likelihood more.
 KINFER_THRESHOLD(calibrate, harm_significance, 2.0);

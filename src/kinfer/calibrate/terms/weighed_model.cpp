@@ -14,6 +14,7 @@
 #include "kinfer/calibrate/terms/candidate_terms.hpp"
 #include "kinfer/calibrate/terms/decision.hpp"
 #include "kinfer/calibrate/terms/extrapolation_splits.hpp"
+#include "kinfer/calibrate/terms/noise_levels.hpp"
 #include "kinfer/calibrate/terms/weighed_field.hpp"
 #include "kinfer/calibrate/validation/gross_errors.hpp"
 #include "kinfer/geometry/statistics.hpp"
@@ -102,14 +103,20 @@ class ModelWeigher {
   }
 
  private:
-  /// Fits all candidates, weighs their groups, and fits what is left. Returns the latter.
+  /// Weighs the groups of all candidates about the fit of all, or of geometry, and fits what is left. Returns the
+  /// latter.
   Estimate weigh_all() {
     current_ = {{}, geometry_, {}, {}};
     if (candidates_.parameters.empty()) return geometry_;
     const TermModel all = model_of_all(candidates_, geometry_.parameters);
-    const Estimate fitted = fit_rows(all.chain, all.parameters, data_.rows, data_.task, at_optimum(), data_.observer);
     groups_ = relevance_groups(candidates_);
-    linearised_ = linearise_terms(fitted, free_indices(fitted, candidates_.parameters));
+    linearised_ = linearise_at_noise_levels(geometry_, all, data_.rows, data_.task.instrument);
+    Estimate fitted = geometry_;
+    fitted.chain = all.chain;
+    if (linearised_.empty()) {
+      fitted = fit_rows(all.chain, all.parameters, data_.rows, data_.task, at_optimum(), data_.observer);
+      linearised_.push_back({linearise_terms(fitted, free_indices(fitted, candidates_.parameters))});
+    }
     weights_ = weigh_groups(linearised_, groups_);
     all_fitted_ = fitted;
     fit_relevant(fitted);
@@ -295,7 +302,7 @@ class ModelWeigher {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (groups_[g].family != term) continue;
       step.log_evidence_gain = std::max(step.log_evidence_gain, weights_[g].log_evidence_gain);
-      for (const int k : groups_[g].members) excited |= linearised_.information(k, k) > 1.0;
+      for (const int k : groups_[g].members) excited |= without_terms(linearised_).information(k, k) > 1.0;
     }
     if (!excited) step.decision = Decision::not_excited;
   }
@@ -305,9 +312,9 @@ class ModelWeigher {
   std::vector<Split> extrapolation_splits_;
   CandidateTerms candidates_;
   std::vector<RelevanceGroup> groups_;
-  LinearisedTerms linearised_;
+  std::vector<TermsAtNoise> linearised_;
   std::vector<GroupRelevance> weights_;
-  Estimate all_fitted_;  ///< of all candidates
+  Estimate all_fitted_;  ///< with all candidates: where the fit of what is left begins
   std::optional<Estimate> fit_without_lines_;
   ProvedModel current_;
   std::vector<std::pair<Term, Proof>> proofs_, refused_;
