@@ -202,16 +202,24 @@ TEST(PrimaryMeasurementKind, IsTheFirstLengthThatWasMeasured) {
   data.tilts.push_back({});
   data.orientations.push_back({});
   EXPECT_FALSE(primary_measurement_kind(data)) << "angles are no lengths";
-  data.plane_contacts.push_back({});
-  EXPECT_EQ(primary_measurement_kind(data), kind_of<PlaneContact>);
-  data.pairs.push_back({0, 1, 0.5});
-  EXPECT_EQ(primary_measurement_kind(data), kind_of<PairDistance>);
-  data.distances.push_back({});
-  EXPECT_EQ(primary_measurement_kind(data), kind_of<DistanceMeasurement>);
-  data.contacts.push_back({});
+  const auto measured = [&](auto& list, auto measurement) {
+    list.assign(4, measurement);
+    return primary_measurement_kind(data);
+  };
+  EXPECT_EQ(measured(data.plane_contacts, PlaneContact{}), kind_of<PlaneContact>);
+  EXPECT_EQ(measured(data.pairs, PairDistance{0, 1, 0.5}), kind_of<PairDistance>);
+  EXPECT_EQ(measured(data.distances, DistanceMeasurement{}), kind_of<DistanceMeasurement>);
+  EXPECT_EQ(measured(data.contacts, SocketContact{}), kind_of<SocketContact>);
+  EXPECT_EQ(measured(data.points, PointMeasurement{}), kind_of<PointMeasurement>);
+}
+
+TEST(PrimaryMeasurementKind, IsNoneWhereFixturesArePlacedAndNoMore) {
+  PoseSet data = rows_without_measurements(3);
+  data.contacts = {{0, 0}, {1, 1}, {2, 2}};
+  data.plane_contacts = {{0, 0}, {1, 0}, {2, 0}};
+  EXPECT_FALSE(primary_measurement_kind(data));
+  data.contacts[2].socket = 1;
   EXPECT_EQ(primary_measurement_kind(data), kind_of<SocketContact>);
-  data.points.push_back({});
-  EXPECT_EQ(primary_measurement_kind(data), kind_of<PointMeasurement>);
 }
 
 }  // namespace

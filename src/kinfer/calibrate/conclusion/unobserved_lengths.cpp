@@ -6,6 +6,7 @@
 
 #include "kinfer/calibrate/conclusion/thresholds.hpp"
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
+#include "kinfer/calibrate/validation/validation_errors.hpp"
 #include "kinfer/estimate/poses/joint_excitation.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 
@@ -18,14 +19,6 @@ bool prismatic_joint_moved(const CalibrationTask& task) {
   return std::ranges::any_of(measure_joint_excitation(task.nominal, task.data), [](const JointExcitation& joint) {
     return !joint.is_revolute && joint.upper - joint.lower >= thresholds::enough_translation;
   });
-}
-
-bool positions_are_measured(const PoseSet& data) {
-  bool measured = false;
-  for_each_list(data, [&]<class M>(const std::vector<M>& list) {
-    measured |= M::traits.observes.tool_position && !list.empty();
-  });
-  return measured;
 }
 
 }  // namespace
@@ -49,7 +42,7 @@ double relative_size_sd(const Estimate& estimate, const PoseSet& data) {
 std::optional<UnobservedLengths> find_unobserved_lengths(const CalibrationTask& task, const Estimate& estimate) {
   if (lengths_are_measured(task)) return std::nullopt;
   const double sd = relative_size_sd(estimate, task.data);
-  if (!positions_are_measured(task.data)) return UnobservedLengths{UnobservedLength::all_lengths, sd};
+  if (!primary_measurement_kind(task.data)) return UnobservedLengths{UnobservedLength::all_lengths, sd};
   if (prismatic_joint_moved(task)) return std::nullopt;
   return UnobservedLengths{UnobservedLength::size, sd};
 }

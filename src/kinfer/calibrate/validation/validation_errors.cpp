@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
+#include <type_traits>
 
 #include "kinfer/calibrate/start/fixtures.hpp"
 #include "kinfer/calibrate/validation/commanded_poses.hpp"
@@ -147,16 +150,37 @@ void fill_rows(Calibration& calibration, const EvaluationInputs& evaluated, std:
   }
 }
 
+/// Without those by which fixtures of unknown place are placed and nothing is left to judge: the only contact of a
+/// socket is where that socket is, whatever the robot.
+template <class M>
+std::size_t redundant_measurements(const std::vector<M>& list) {
+  if constexpr (RefersToFixture<M>) {
+    constexpr auto& fixtures = std::get<index(fixture_kind(M::traits.fixture))>(fixture_lists);
+    if constexpr (fixtures.prior == FixturePrior::none) {
+      const std::size_t unknowns =
+          fields_of(typename std::decay_t<decltype(Fixtures{}.*fixtures.list)>::value_type{}).size();
+      std::map<int, std::size_t> of_fixture;
+      for (const M& measurement : list) ++of_fixture[measurement.*M::fixture_index];
+      return std::accumulate(of_fixture.begin(), of_fixture.end(), std::size_t{0}, [&](std::size_t sum, const auto& f) {
+        return sum + (f.second * M::traits.rows > unknowns ? f.second : 0);
+      });
+    }
+  }
+  return list.size();
+}
+
 }  // namespace
 
 std::optional<MeasurementKind> primary_measurement_kind(const PoseSet& data) {
-  const ResidualKind* most = nullptr;
-  for (const ResidualKind& kind : residual_kinds()) {
-    if (!kind.traits.observes.tool_position || kind.count(data) == 0) continue;
-    if (kind.count(data) >= thresholds::min_judging_measurements) return kind.kind;
-    if (!most || kind.count(data) > most->count(data)) most = &kind;
-  }
-  return most ? std::optional(most->kind) : std::nullopt;
+  std::optional<MeasurementKind> enough, most;
+  std::size_t most_count = 0;
+  for_each_list(data, [&]<class M>(const std::vector<M>& list) {
+    if (enough || !M::traits.observes.tool_position) return;
+    const std::size_t count = redundant_measurements(list);
+    if (count >= thresholds::min_judging_measurements) enough = kind_of<M>;
+    if (count > most_count) most = kind_of<M>, most_count = count;
+  });
+  return enough ? enough : most;
 }
 
 std::vector<double> position_errors_of_fit(MeasurementKind kind, const Chain& chain, const PoseSet& fitted_rows,

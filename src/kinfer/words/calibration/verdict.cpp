@@ -70,8 +70,9 @@ std::string unobserved_text(const UnobservedLengths& unobserved) {
                       normal_limit * per_metre)
              : phrase(
                    name(unobserved.kind),
-                   "lengths are unobservable, since orientations alone were measured: they are the nominal ones, and "
-                   "the size may be {:.2f} mm per metre off (95 %)",
+                   "lengths are unobservable, since nothing was measured but orientations, or contacts and sights by "
+                   "which their own fixtures are placed and no more: they are the nominal ones, and the size may be "
+                   "{:.2f} mm per metre off (95 %)",
                    normal_limit * per_metre);
 }
 
