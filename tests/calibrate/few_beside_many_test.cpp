@@ -62,5 +62,35 @@ TEST(FewBesideMany, PointsJudgeAModelOnceTheyAreEnough) {
   }
 }
 
+// The only contact of a socket is where that socket is, whatever the robot.
+TEST(FewBesideMany, ContactsThatNoneRepeatsProveNothing) {
+  const Calibration c =
+      calibrated({.many = kind_of<TiltMeasurement>, .few = kind_of<SocketContact>, .few_count = 3}).value();
+  EXPECT_EQ(c.after.position.holdout.n, 0);
+  ASSERT_TRUE(c.unobserved_lengths.has_value());
+  EXPECT_EQ(c.unobserved_lengths->kind, UnobservedLength::all_lengths);
+  EXPECT_EQ(words::verdict(c).find(" mm off"), std::string::npos) << words::verdict(c);
+  EXPECT_GT(calibrated({.many = kind_of<TiltMeasurement>, .few = kind_of<SocketContact>, .few_count = 9})
+                .value()
+                .after.position.holdout.n,
+            0);
+}
+
+TEST(FewBesideMany, AStatedAccuracyOfAnglesConcernsThemAlone) {
+  MixedKinds of{.many = kind_of<PointMeasurement>, .few = kind_of<TiltMeasurement>, .few_count = 20};
+  const double tilt = *of.instrument.sigma_tilt;
+  const Calibration all = calibrated(of).value();
+  const Chain nominal = robot_with_anchors();
+  const PoseSet data = mixed_kinds(with_random_errors(nominal, {}, Rng(1)), of, 1);
+  const Calibration c =
+      calibrate_robot({nominal, {}, Instrument{.sigma_tilt = tilt}, data}, {.model = FixedModel{}}, Rng(1)).value();
+  EXPECT_EQ(c.usability, Usability::use) << words::verdict(c);
+  EXPECT_FALSE(c.expected_holdout_rms.has_value()) << "the accuracy of the points is not stated";
+  EXPECT_GT(c.estimate.sigma, 5e-6) << "but found from the residuals";
+  ASSERT_TRUE(c.estimate.chi2_per_n.has_value()) << "of the tilts";
+  EXPECT_LT(*c.estimate.chi2_per_n, 3.0) << "of which the parameters that points determine take no redundancy";
+  EXPECT_TRUE(all.expected_holdout_rms.has_value());
+}
+
 }  // namespace
 }  // namespace kinfer

@@ -75,6 +75,13 @@ Diagnosis diagnose_mountings(const CalibrationTask& task) {
   return one_mounting ? diagnose(task) : diagnose_joint_positions(task);
 }
 
+/// Of the measurements whose errors are judged.
+bool noise_is_stated(const CalibrationTask& task) {
+  const auto primary = primary_measurement_kind(task.data);
+  return task.instrument &&
+         (!primary || task.instrument->sigma > 0.0 || residual_kind(*primary).traits.sigma_of(*task.instrument) > 0.0);
+}
+
 /// With all certain faults corrected, and the fixtures and directions of approach of the data.
 Result<CalibrationTask> prepare_task(const Diagnosis& diagnosis) {
   CalibrationTask task = diagnosis.corrected_task;
@@ -126,7 +133,7 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
     calibration.noise_holdout_rms = expected->by_noise;
   }
   calibration.tolerance_factor = fit.scale.factor;
-  if (task.instrument)
+  if (noise_is_stated(task))
     calibration.tolerated_error =
         primary_measurement_kind(task.data) ? max_plausible_error(task) : max_plausible_angle(task);
   if (const auto prediction = make_prediction_model(evaluation, fit.estimate, fit.beyond, options.threads)) {

@@ -20,8 +20,8 @@ namespace kinfer {
 
 /// Accuracy of one measurement, one sigma.
 struct Instrument {
-  double sigma = 0.0;                          ///< [m] per axis
-  double sigma_angle = 0.0;                    ///< [rad] per axis
+  double sigma = 0.0;                          ///< [m] per axis; 0: not stated
+  double sigma_angle = 0.0;                    ///< [rad] per axis; 0: not stated
   double ppm = 0.0;                            ///< [1e-6] plus this fraction of the distance from the world origin
   std::optional<double> sigma_distance = {};   ///< [m] of draw wires and ball-bars; none: sigma
   std::optional<double> sigma_contact = {};    ///< [m] of sockets and planes, per axis; none: sigma
@@ -64,9 +64,6 @@ struct MeasurementTraits {
   std::optional<double> Instrument::*sigma = nullptr;  ///< null: default_sigma
   double Instrument::*default_sigma = nullptr;         ///< where `sigma` is not given; null: unknown
 
-  bool sigma_is_known(const Instrument& instrument) const {
-    return default_sigma != nullptr || (instrument.*sigma).has_value();
-  }
   /// [m], [rad] or [m/s²]; 0 where it is unknown.
   double sigma_of(const Instrument& instrument) const {
     const double fallback = default_sigma ? instrument.*default_sigma : 0.0;

@@ -72,7 +72,19 @@ TEST(RobotTerms, TheAccuracyOfAWireCountsWithoutThatOfPoints) {
   EXPECT_NEAR(*wire->sigma_distance, 0.05e-3, 1e-12);
   EXPECT_NEAR(wire->sigma, 0.05e-3, 1e-12);
   EXPECT_NEAR(stated("sigma_distance = 0.05\nsigma_contact = 0.08\n")->sigma, 0.08e-3, 1e-12);
-  EXPECT_FALSE(stated("sigma_direction = 0.001\n").has_value()) << "no accuracy of a length is stated";
+}
+
+TEST(RobotTerms, AnAccuracyOfAnglesAloneIsStated) {
+  const std::string text = format_robot_toml({.chain = laws::scara()});
+  const auto stated = [](const std::string& with) { return parse_robot_toml(with, "r.toml").value(); };
+  for (const std::string key : {"sigma_direction", "sigma_tilt", "sigma_angle"}) {
+    const RobotModel robot = stated(text + "[instrument]\n" + key + " = 0.001\n");
+    ASSERT_TRUE(robot.instrument.has_value()) << key;
+    EXPECT_EQ(robot.instrument->sigma, 0.0) << key << ": the accuracy of points stays unknown";
+    EXPECT_EQ(stated(format_robot_toml(robot)).instrument->sigma, 0.0) << key << ": also when it is written";
+  }
+  EXPECT_FALSE(stated(text + "[instrument]\nppm = 5\n").instrument.has_value());
+  EXPECT_GT(stated(text + "[instrument]\nsigma = 0\n").instrument->sigma, 0.0) << "noise-free is known";
 }
 
 TEST(RobotTerms, ErrorsNameTheirLine) {

@@ -23,6 +23,7 @@
 #include "kinfer/io/robot/toml/parameter_names_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/measurement/merge_pose_sets.hpp"
+#include "kinfer/words/calibration/checks.hpp"
 #include "kinfer/words/findings/outliers.hpp"
 
 namespace kinfer::cli {
@@ -155,6 +156,28 @@ Result<Inputs> read_inputs(const CalibrateArguments& options) {
   return inputs;
 }
 
+/// Keys of [instrument] that concern no measurement. Instruments that measure orientations, too, may measure points.
+std::vector<std::string_view> unused_accuracies(const Instrument& instrument, const PoseSet& data) {
+  const auto concerns_any = [&](auto concerns) {
+    bool any = false;
+    for_each_list(data, [&]<class M>(const std::vector<M>& list) { any |= !list.empty() && concerns(M::traits); });
+    return any;
+  };
+  std::vector<std::string_view> keys;
+  for (const InstrumentSigma& sigma : instrument_sigmas)
+    if (instrument.*sigma.value && !concerns_any([&](const MeasurementTraits& t) { return t.sigma == sigma.value; }))
+      keys.push_back(sigma.key);
+  const auto is_angle = [](const MeasurementTraits& t) { return t.default_sigma == &Instrument::sigma_angle; };
+  if (instrument.sigma_angle > 0.0 && instrument.sigma <= 0.0 && !concerns_any(is_angle)) keys.push_back("sigma_angle");
+  return keys;
+}
+
+void print_notices(const calibrate::CalibrationTask& task) {
+  if (!task.instrument) return;
+  const std::vector<std::string_view> unused = unused_accuracies(*task.instrument, task.data);
+  if (!unused.empty()) fmt::print(stderr, "kinfer: {}\n", words::unused_accuracies(unused));
+}
+
 bool is_parameter_file(const std::string& parameters) {
   return parameters != "auto" && parameters != "paper24";
 }
@@ -221,6 +244,7 @@ int run(const CalibrateArguments& options, const CLI::App& verb) {
   for (const std::string& path : input_paths(options, *inputs)) record.add_input(path);
   auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
+  if (!options.common.quiet) print_notices(inputs->task);
   const Result<Calibration> calibration = [&] {
     ProgressLine progress(options.common);
     return calibrate::calibrate_robot(inputs->task, inputs->options, Rng(options.common.seed), progress.observer());

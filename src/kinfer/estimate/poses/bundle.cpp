@@ -251,16 +251,19 @@ class Fit {
     return {};
   }
 
-  /// A kind counts only where the instrument specifies its accuracy.
-  double normalised_chi2(PoseSet kept) const {
-    for_each_list(kept, [&]<class M>(std::vector<M>& list) {
-      if (!M::traits.sigma_is_known(*instrument_)) list.clear();
-    });
-    const VectorXd r = weighted_residuals(scene(kept), weights_of(kept, *instrument_));
+  /// A kind counts only where the instrument specifies its accuracy, with its share of the redundancy.
+  std::optional<double> normalised_chi2(PoseSet kept) const {
     VectorXd distances(static_cast<Eigen::Index>(state_.chain.fixtures.socket_distances.size()));
     write_socket_distances(state_.chain, no_columns_, distances, nullptr, 0);
-    const double redundancy = std::max(1.0, static_cast<double>(r.size() + distances.size()) - options_.absorbed -
-                                                effective_parameters(state_.outcome.normal, set_));
+    double all = static_cast<double>(distances.size());
+    for (const ResidualKind& kind : residual_kinds()) all += kind.size * static_cast<double>(kind.count(kept));
+    for_each_list(kept, [&]<class M>(std::vector<M>& list) {
+      if (M::traits.sigma_of(*instrument_) <= 0.0) list.clear();
+    });
+    if (!has_measurements(kept)) return std::nullopt;
+    const VectorXd r = weighted_residuals(scene(kept), weights_of(kept, *instrument_));
+    const double left = 1.0 - (options_.absorbed + effective_parameters(state_.outcome.normal, set_)) / all;
+    const double redundancy = std::max(1.0, left * static_cast<double>(r.size() + distances.size()));
     return (r.squaredNorm() + distances.squaredNorm()) / redundancy;
   }
 

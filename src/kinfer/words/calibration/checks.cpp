@@ -94,4 +94,9 @@ std::string description(Criterion criterion) {
   return "";
 }
 
+std::string unused_accuracies(std::span<const std::string_view> keys) {
+  return phrase("unused_accuracies", "[instrument] states {}, but nothing that {} was measured", fmt::join(keys, ", "),
+                keys.size() == 1 ? "it concerns" : "they concern");
+}
+
 }  // namespace kinfer::words

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Verification, comparison and compensation of calibrated robots, and planned poses, in words.
+// Verification, comparison and compensation of calibrated robots, planned poses, and accuracies that are not used, in
+// words.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "kinfer/evidence/deployment/calibration_comparison.hpp"
 #include "kinfer/evidence/deployment/compensation.hpp"
@@ -25,6 +28,9 @@ std::string unreached_row(int row, const CompensatedJoints& joints);
 
 /// Why the nominal base and tool are used for both chains.
 std::string compensation_frames_note();
+
+/// "[instrument] states sigma_tilt, but nothing that it concerns was measured"
+std::string unused_accuracies(std::span<const std::string_view> keys);
 
 /// "tool error over the workspace (I-optimal)"
 std::string description(Criterion criterion);

@@ -411,7 +411,19 @@ std::optional<double> stated_length_sigma(const Instrument& instrument) {
   return std::max(instrument.sigma_distance.value_or(0.0), instrument.sigma_contact.value_or(0.0));
 }
 
-/// Empty where no accuracy of a length is stated: it is then estimated from the residuals.
+bool states_any_accuracy(const Instrument& instrument) {
+  return instrument.sigma > 0.0 || instrument.sigma_angle > 0.0 ||
+         std::ranges::any_of(instrument_sigmas,
+                             [&](const InstrumentSigma& s) { return (instrument.*s.value).has_value(); });
+}
+
+/// Of a stated accuracy: zero means noise-free and not that it is unknown.
+double noise_free_at_zero(double sigma) {
+  constexpr double noise_free = 1e-9;  // [m], [rad], [m/s²]
+  return std::max(sigma, noise_free);
+}
+
+/// Empty where no accuracy is stated; those that are not are zero, and estimated from the residuals.
 std::optional<Instrument> read_instrument(TableReader& file, const Scales& scales, std::optional<Vec3>& at,
                                           FirstError& first_error) {
   const TomlTable* table = file.table_or_none("instrument");
@@ -419,19 +431,18 @@ std::optional<Instrument> read_instrument(TableReader& file, const Scales& scale
   TableReader reader(*table, file.line_of("instrument"), "instrument: ", first_error);
   reader.text_or("kind", "position");
   Instrument instrument;
-  instrument.sigma = non_negative_or_zero(reader, "sigma") * scales.length;
-  instrument.sigma_angle = non_negative_or_zero(reader, "sigma_angle") * scales.angle;
+  const double length = non_negative_or_zero(reader, "sigma") * scales.length,
+               angle = non_negative_or_zero(reader, "sigma_angle") * scales.angle;
+  if (reader.has("sigma_angle")) instrument.sigma_angle = noise_free_at_zero(angle);
   instrument.ppm = non_negative_or_zero(reader, "ppm");
   for (const InstrumentSigma& sigma : instrument_sigmas) {
     const double value = non_negative_or_zero(reader, sigma.key) * scales.of(sigma.unit);
-    if (reader.has(sigma.key)) instrument.*sigma.value = value;
+    if (reader.has(sigma.key)) instrument.*sigma.value = noise_free_at_zero(value);
   }
   if (reader.has("at")) at = reader.vector("at") * scales.length;
   reader.expect_no_other_keys();
-  if (reader.has("sigma")) return instrument;
-  const std::optional<double> sigma = stated_length_sigma(instrument);
-  if (!sigma) return std::nullopt;
-  instrument.sigma = *sigma;
+  instrument.sigma = reader.has("sigma") ? noise_free_at_zero(length) : stated_length_sigma(instrument).value_or(0.0);
+  if (!states_any_accuracy(instrument)) return std::nullopt;
   return instrument;
 }
 
