@@ -216,6 +216,28 @@ TEST(PredictCovariance, AMeasuredAccelerationLeavesNothingOfTheVelocityToChance)
   EXPECT_NEAR(velocity_given_acceleration(gap), measured->density() * gap * gap * gap / 12.0, 1e-12);
 }
 
+/// Of a drive that is livelier than that of the identification no acceleration is excluded; a gentler one changes
+/// nothing.
+TEST(PredictCovariance, AJointMayMoveAsItHasMovedLately) {
+  MovingTree tree(8, BaseMode::still);
+  const auto turning = std::ranges::find_if_not(tree.model.positions, &AccelerationProcess::is_measured);
+  ASSERT_NE(turning, tree.model.positions.end());
+  const Index position = turning - tree.model.positions.begin(), at = tree.model.layout.joint_state(position);
+  const double dt = 0.02;
+  const auto variance = [&](double acceleration) {
+    ChainState state = tree.state;
+    for (double t = 0.0; t < 60.0; t += dt) {
+      state.joints[position_states * position + 2] = acceleration;
+      predict_mean(tree.model, dt, state);
+    }
+    MatrixXd p = MatrixXd::Zero(tree.model.layout.size, tree.model.layout.size);
+    predict_covariance(tree.model, state, dt, p);
+    return p(at + 2, at + 2);
+  };
+  EXPECT_DOUBLE_EQ(variance(0.9 * turning->sd), variance(0.0));
+  EXPECT_NEAR(variance(5.0 * turning->sd), 25.0 * variance(0.0), 1e-3 * variance(0.0));
+}
+
 TEST(ChainStateOf, ABaseAtRestFeelsGravityAlone) {
   const MovingTree tree(9, BaseMode::still);
   const InsState base = tree.state.base_state(9.8);

@@ -223,6 +223,34 @@ TEST(Tracker, APositionThatOnlyMotionShowsIsUncertainUntilItHas) {
   EXPECT_GT(first_sd, 1.0) << "the tool is turned by it";
 }
 
+/// After half a second at rest, with the stated position of the boom, which gravity shows, so far from the true one.
+TrackState started_beside(double error) {
+  const auto run = [](Tracker tracker) {
+    InsRow row;
+    for (std::size_t r = 0; r < 100; ++r) {
+      test::fill_row(still_excavator().drive.recording, r, row);
+      tracker.add(row);
+    }
+    return tracker.state();
+  };
+  TrackOptions options;
+  options.start = VectorXd::Constant(5, no_value);
+  (*options.start)[1] = run(Tracker(still_excavator().model, {})).q[1] + error;
+  return run(Tracker(still_excavator().model, options));
+}
+
+TEST(Tracker, SaysThatTheUsersStartIsWrongAndDoesNotUseIt) {
+  const double truth = started_beside(0.0).q[1];
+  for (const double error : {0.17, -0.5, 2.0}) {
+    const TrackState state = started_beside(error);
+    EXPECT_NEAR(state.q[1], truth, 0.02) << error;
+    ASSERT_EQ(state.alarms.size(), 1u) << error;
+    EXPECT_EQ(state.alarms[0].kind, TrackAlarmKind::start_wrong);
+    EXPECT_EQ(state.alarms[0].joint, 1);
+  }
+  for (const double error : {0.0, 0.02, -0.04}) EXPECT_TRUE(started_beside(error).alarms.empty()) << error;
+}
+
 TEST(Tracker, TakesTheUsersStart) {
   TrackOptions options;
   options.start = VectorXd::Constant(5, no_value);

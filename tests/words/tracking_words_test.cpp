@@ -16,7 +16,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr auto last_alarm = TrackAlarmKind::restarted;
+constexpr auto last_alarm = TrackAlarmKind::start_wrong;
 
 /// Two sensors and a joint, tracked over 12.5 s without any alarm.
 TrackRun sound_run() {

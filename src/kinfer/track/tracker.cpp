@@ -50,7 +50,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       now_(initial_state(*model_)),
       chain_state_(unknown_state(model)),
       state_(unknown_state(model)) {
-  state_.alarms.reserve(4 * model.sensors.size() + model.joints.size() + 4);
+  state_.alarms.reserve(4 * model.sensors.size() + 2 * model.joints.size() + 4);
 }
 
 /// After a gap the posture is unknown again; what was learnt of the sensors is kept. A position that nothing shows then
@@ -209,6 +209,17 @@ void Tracker::try_start() {
   spread_tool();
   state_.started = true;
   now_ = filter_.state();
+  list_wrong_starts(posture);
+}
+
+void Tracker::list_wrong_starts(const InitialPosture& posture) {
+  wrong_starts_.clear();
+  for (std::size_t i = 0; i < posture.positions.size(); ++i)
+    if (const double odds = posture.positions[i].contradicts_given; odds > 0.0)
+      wrong_starts_.push_back({.kind = TrackAlarmKind::start_wrong,
+                               .joint = model_positions_[i].joint,
+                               .since = now_.time,
+                               .strength = odds / wrong_start_log_odds});
 }
 
 /// Whether what moves now tells where such a joint stands. A prismatic one is told by the rates that its own axes have.
@@ -477,6 +488,8 @@ void Tracker::list_alarms(double time) {
   alarms.clear();
   if (restarted_ && time - *restarted_ < clipped_memory)
     alarms.push_back({.kind = TrackAlarmKind::restarted, .since = *restarted_});
+  for (const TrackAlarm& alarm : wrong_starts_)
+    if (time - alarm.since < clipped_memory) alarms.push_back(alarm);
   int disagreeing = 0;
   for (std::size_t s = 0; s < does_not_fit_.size(); ++s) {
     const int sensor = static_cast<int>(s);

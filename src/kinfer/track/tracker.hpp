@@ -58,6 +58,7 @@ class Tracker {
   void forget_state();
   void wait_for_start();
   void try_start();
+  void list_wrong_starts(const InitialPosture& posture);
   void process_block(const BlockMeasurement& block);
   void resolve_start(const BlockMeasurement& block);
   void choose_sensors();
@@ -118,6 +119,7 @@ class Tracker {
   ToolSpread tool_;
   ChainState now_;  // predicted to the last row
   std::optional<double> restarted_{}, misfit_since_{};
+  std::vector<TrackAlarm> wrong_starts_;
   double last_time_ = 0.0;
   bool has_rows_ = false;
   TrackState chain_state_, state_;

@@ -16,8 +16,9 @@ std::string_view name(JointReference reference) {
 }
 
 std::string_view name(TrackAlarmKind kind) {
-  constexpr std::array<std::string_view, 8> names{"does_not_fit", "sensor_moved",   "joint_changed", "sensor_lost",
-                                                  "sensor_stuck", "sensor_clipped", "sensor_late",   "restarted"};
+  constexpr std::array<std::string_view, 9> names{"does_not_fit", "sensor_moved", "joint_changed",
+                                                  "sensor_lost",  "sensor_stuck", "sensor_clipped",
+                                                  "sensor_late",  "restarted",    "start_wrong"};
   return names[static_cast<std::size_t>(kind)];
 }
 

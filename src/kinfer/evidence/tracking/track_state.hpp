@@ -42,6 +42,7 @@ enum class TrackAlarmKind {
   sensor_clipped,  ///< at its range
   sensor_late,     ///< its clock disagrees
   restarted,       ///< after a gap
+  start_wrong,     ///< gravity contradicts where the user says that a joint stands
 };
 std::string_view name(TrackAlarmKind kind);
 

@@ -27,6 +27,7 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
       changes_(*model_),
       levels_(model_->sensors.size()),
       headings_(*model_),
+      mean_rates_(*model_),
       innovations_(*model_),
       system_(*model_) {
   const FilterLayout& layout = model_->layout;
@@ -52,6 +53,7 @@ void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {
   p_.topRows(layout.fast).setZero();
   p_.topLeftCorner(layout.fast, layout.fast) = fast;
   headings_.reset();
+  mean_rates_.reset();
 }
 
 /// It counted from the start and will be shown by motion.
@@ -298,8 +300,18 @@ void ChainFilter::mirror() {
         for (Index i = std::max(i0, j + 1); i < std::min(i0 + tile, n); ++i) p[i * n + j] = p[j * n + i];
 }
 
+/// Where the rates of all joints are seen without a gap: elsewhere positions do not follow from their means.
+void ChainFilter::add_what_means_miss(double dt, const BlockMeasurement& block) {
+  if (shown_ != ShownMeans::rates || dt > longest_bridge) return mean_rates_.reset();
+  const auto rows = [](const BlockSample& sample) { return sample.rate_count; };
+  error_.setZero();
+  mean_rates_.add_missed(*model_, state_, dt, std::ranges::max(block.sensors, {}, rows).rate_count, error_);
+  retract(*model_, error_, state_);
+}
+
 void ChainFilter::update(const BlockMeasurement& block) {
   KINFER_EXPECT(block.sensors.size() == is_used_.size());
+  const double dt = state_.time - last_update_;
   form_rows(block);
   system_.multiply(evaluator_.result(), p_);
   if (!system_.factorise() || !allow_joint_changes()) return;
@@ -313,6 +325,7 @@ void ChainFilter::update(const BlockMeasurement& block) {
   levels_.adapt(innovations_, system_.is_measured(), is_used_);
   examine_unused(block);
   correct();
+  add_what_means_miss(dt, block);
 }
 
 double ChainFilter::variance(const ScalarRow& row) const {

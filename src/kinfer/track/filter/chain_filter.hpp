@@ -10,6 +10,7 @@
 #include "kinfer/track/filter/ball_headings.hpp"
 #include "kinfer/track/filter/instrument_levels.hpp"
 #include "kinfer/track/filter/joint_changes.hpp"
+#include "kinfer/track/filter/mean_rates.hpp"
 #include "kinfer/track/filter/soft_rows.hpp"
 
 namespace kinfer::track {
@@ -107,6 +108,7 @@ class ChainFilter {
   double shared_noise(const ScalarRow& row) const;
   void add_posture_walk(double dt);
   void follow_change();
+  void add_what_means_miss(double dt, const BlockMeasurement& block);
   void form_rows(const BlockMeasurement& block);
   void form_sensor_rows(const BlockMeasurement& block, std::size_t sensor);
   bool allow_joint_changes();
@@ -129,6 +131,7 @@ class ChainFilter {
   JointChanges changes_;
   InstrumentLevels levels_;
   BallHeadings headings_;
+  MeanRates mean_rates_;
   Innovations innovations_;
   UpdateSystem system_;
   VectorXd error_, column_;  // buffers of an update

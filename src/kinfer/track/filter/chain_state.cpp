@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/track/filter/chain_state.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "kinfer/base/square.hpp"
 #include "kinfer/track/filter/thresholds.hpp"
 
 namespace kinfer::track {
@@ -179,6 +181,7 @@ ChainState initial_state(const FilterModel& model) {
   const FilterLayout& layout = model.layout;
   ChainState state;
   state.joints = VectorXd::Zero(position_states * layout.positions);
+  state.liveliness = VectorXd::Zero(layout.positions);
   state.spherical.assign(model.bodies.size(), Mat3::Identity());
   for (const SensorSettings& s : model.sensors)
     state.sensors.push_back({s.gyroscope_bias, s.accelerometer_bias, s.gyroscope_scale, s.accelerometer_scale});
@@ -231,6 +234,8 @@ void predict_mean(const FilterModel& model, double dt, ChainState& state) {
     for (Index i = 0; i < dof; ++i) {
       double* x = state.joints.data() + position_states * (first + i);
       const Transition f = transition(model.positions[static_cast<std::size_t>(first + i)].time, dt);
+      double& liveliness = state.liveliness[first + i];
+      liveliness += (square(x[2]) - liveliness) * (1.0 - std::exp(-dt / liveliness_time));
       turn[i] = f.position_from_velocity * x[1] + f.position_from_acceleration * x[2];
       if (dof == 1) x[0] += turn[i];
       x[1] += f.velocity_from_acceleration * x[2];
@@ -239,6 +244,16 @@ void predict_mean(const FilterModel& model, double dt, ChainState& state) {
     rotate_spherical(model, b, turn, state);
   }
 }
+
+namespace {
+
+/// The process of a joint that turns, as lively as it has been lately.
+AccelerationProcess lively(AccelerationProcess process, double mean_square) {
+  if (!process.is_measured) process.sd = std::max(process.sd, std::sqrt(mean_square));
+  return process;
+}
+
+}  // namespace
 
 void predict_covariance(const FilterModel& model, const ChainState& state, double dt, MatrixXd& p, ShownMeans means) {
   const Index n = p.rows(), fast = model.layout.fast;
@@ -264,7 +279,7 @@ void predict_covariance(const FilterModel& model, const ChainState& state, doubl
       turn_rows(turned_back(state, model.layout.position[b], dt), model.layout.joint_state(model.layout.position[b]),
                 base_states, fast, p);
   for (Index i = 0; i < model.layout.positions; ++i) {
-    const AccelerationProcess& process = model.positions[static_cast<std::size_t>(i)];
+    const AccelerationProcess process = lively(model.positions[static_cast<std::size_t>(i)], state.liveliness[i]);
     const Index first = model.layout.joint_state(i);
     const Transition f = transition(process.time, dt);
     for (Index j = base_states; j < fast; ++j) {

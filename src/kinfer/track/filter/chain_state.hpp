@@ -20,6 +20,7 @@ struct ChainState {
   Vec3 rate = Vec3::Zero(), angular_acceleration = Vec3::Zero();  ///< of the base sensor's frame
   Vec3 velocity = Vec3::Zero(), acceleration = Vec3::Zero();      ///< of its origin, in the world
   VectorXd joints;              ///< q, q̇, q̈ of each joint position; q of spherical joints is 0
+  VectorXd liveliness;          ///< of each joint position: mean square of q̈ over `liveliness_time`
   std::vector<Mat3> spherical;  ///< of each body: exp(φ); the identity unless spherical
   std::vector<SensorErrors> sensors;
 

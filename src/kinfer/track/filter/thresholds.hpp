@@ -10,6 +10,8 @@ namespace kinfer::track {
 
 /// Joint accelerations of machines; tenfold densities change rms errors of the simulated machines by less than 30 %.
 inline constexpr AccelerationProcess machine_acceleration{.sd = 3.9, .time = 0.5};
+/// [s] over which a joint's accelerations are averaged: a drive may be livelier than that of the identification.
+inline constexpr double liveliness_time = 5.0;
 inline constexpr AccelerationProcess prismatic_acceleration{.sd = 1.0, .time = 0.5, .is_measured = true};
 inline constexpr double min_acceleration_time = 0.15;  ///< [s] of hands
 inline constexpr double acceleration_room = 2.0;       ///< a drive may be so much livelier than that of the chain

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/track/start/thresholds.hpp"
@@ -25,6 +26,7 @@ struct JointStart {
   std::array<bool, 3> is_known{};
   bool is_blurred = false, is_rough = false;  ///< as of StartPosition
   std::optional<double> lost_sd{};
+  double contradicts_given = 0.0;  ///< as of StartPosition
 };
 
 double angle_of(const Vec3& v) {
@@ -101,6 +103,13 @@ double joint_rate(const InsBody& body, const SeenBody& parent, const SeenBody& c
   return body.child_R_axis.col(2).dot(child.rate) - body.parent_R_axis.col(2).dot(parent.rate);
 }
 
+/// ln odds that a stated position is wrong, and the true one anywhere, where gravity shows one so far away.
+double log_odds_of_wrong_start(double apart, double sd) {
+  const double log_normal = -0.5 * (apart / sd) * (apart / sd) - std::log(sd * std::sqrt(2.0 * std::numbers::pi)),
+               log_uniform = -std::log(2.0 * std::numbers::pi);
+  return std::log(wrong_start_prior) + log_uniform - log_normal;
+}
+
 /// The axis tilts what gravity has across it by what it has along it: on level ground a vertical axis is all that.
 JointStart revolute_start(const InsBody& body, const AxisSd& axis, const SeenBody& parent, const SeenBody& child,
                           const PositionGuess& guess, double time) {
@@ -109,14 +118,20 @@ JointStart revolute_start(const InsBody& body, const AxisSd& axis, const SeenBod
                of_axis = std::hypot(u.z() * axis.in_parent, w.z() * axis.in_child);
   JointStart start = shown_by_gravity(lever, of_axis, parent, child);
   const bool is_shown = start.is_known[0];
+  const double by_gravity = angle_of(u) - angle_of(w), apart = wrap_to_pi(by_gravity - guess.value),
+               odds = log_odds_of_wrong_start(apart, std::hypot(guess.sd, start.sd.x()));
+  if (guess.is_given && is_shown && odds > wrong_start_log_odds) {
+    start.position.x() = guess.value + apart;
+    start.contradicts_given = odds;
+    return start;
+  }
   if (guess.is_given && (!is_shown || guess.sd < start.sd.x())) {
     start.position.x() = guess.value, start.sd.x() = guess.sd, start.is_known[0] = true, start.is_rough = false;
     return start;
   }
   const PositionAfterGap expected = guess.last ? after_gap(*guess.last, time, joint_rate(body, parent, child))
                                                : PositionAfterGap{guess.value, guess.sd};
-  const double turn = angle_of(u) - angle_of(w) - expected.value;
-  start.position.x() = expected.value + wrap_to_pi(turn);  // the turn nearest to what was seen
+  start.position.x() = expected.value + wrap_to_pi(by_gravity - expected.value);  // the turn nearest to what was seen
   if (!guess.last) return start;
   start.lost_sd = expected.sd;
   if (is_shown && expected.sd >= start.sd.x()) return start;
@@ -359,7 +374,8 @@ InitialPosture initial_posture(const FilterModel& model, const BlockMeasurement&
           .is_blurred = start.is_blurred,
           .is_rough = start.is_rough,
           .has_open_heading = is_ball && is_shown,
-          .lost_sd = start.lost_sd};
+          .lost_sd = start.lost_sd,
+          .contradicts_given = start.contradicts_given};
     }
   }
   return posture;

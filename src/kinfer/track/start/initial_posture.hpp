@@ -30,6 +30,7 @@ struct StartPosition {
   bool is_rough = false;            ///< gravity shows it, but motion hides more: a later moment will be better
   bool has_open_heading = false;    ///< of a spherical joint: its heading is a guess, which motion will show
   std::optional<double> lost_sd{};  ///< [rad] of what it may have turned in a gap, where it goes on from before that
+  double contradicts_given = 0.0;   ///< ln odds that the user's value is wrong, where gravity is believed instead
 };
 
 struct InitialPosture {

@@ -27,6 +27,8 @@ inline constexpr double start_log_odds = 30.0;         ///< ln: a place so much 
 inline constexpr double start_merge = 0.02;            ///< [rad] or [m] places so near are one
 inline constexpr double prismatic_step = 0.1;          ///< [m] least distance of places along a prismatic joint
 inline constexpr double given_start_sd = 0.02;         ///< [rad] or [m] of what the user states
+inline constexpr double wrong_start_prior = 0.01;      ///< that it is a wrong number, or in a wrong unit
+inline constexpr double wrong_start_log_odds = 3.0;    ///< ln: beyond that gravity is believed, and it is said
 inline constexpr double start_prismatic_margin = 0.1;  ///< [m] beyond what was seen of a prismatic joint
 
 }  // namespace kinfer::track

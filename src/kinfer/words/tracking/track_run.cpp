@@ -134,6 +134,9 @@ std::string sentence(const TrackAlarm& alarm, const std::vector<std::string>& se
       return phrase(id, "{} is at the end of its range", sensor);
     case TrackAlarmKind::sensor_late:
       return phrase(id, "the clock of {} disagrees with the others", sensor);
+    case TrackAlarmKind::start_wrong:
+      return phrase(id, "--start places the joint {} where gravity says that it does not stand; gravity is believed",
+                    joint);
     case TrackAlarmKind::restarted:
       break;
   }
