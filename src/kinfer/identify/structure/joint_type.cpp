@@ -17,6 +17,7 @@ struct RelativeMotion {
   std::vector<Mat3> rotation;          // parent_R_child
   std::vector<Vec3> angular_velocity;  // [rad/s] in the parent
   double rms_rate = 0.0;               // [rad/s] rms of the faster sensor
+  double rms_acceleration = 0.0;       // [m/s²] likewise
 };
 
 std::vector<std::size_t> evaluated_rows(const RecordedMotion& motion) {
@@ -36,15 +37,18 @@ double rms(const std::vector<Vec3>& vectors) {
 RelativeMotion relative_motion(const SegmentMotion& parent, const SegmentMotion& child,
                                const std::vector<std::size_t>& rows) {
   RelativeMotion relative;
-  std::vector<Vec3> of_parent, of_child;
+  std::vector<Vec3> of_parent, of_child, acceleration_of_parent, acceleration_of_child;
   for (const std::size_t row : rows) {
     const Mat3 to_parent = parent.rotation[row].transpose();
     relative.rotation.push_back(to_parent * child.rotation[row]);
     relative.angular_velocity.push_back(to_parent * (child.angular_velocity[row] - parent.angular_velocity[row]));
     of_parent.push_back(parent.angular_velocity[row]);
     of_child.push_back(child.angular_velocity[row]);
+    acceleration_of_parent.push_back(parent.acceleration[row]);
+    acceleration_of_child.push_back(child.acceleration[row]);
   }
   relative.rms_rate = std::max(rms(of_parent), rms(of_child));
+  relative.rms_acceleration = std::max(rms(acceleration_of_parent), rms(acceleration_of_child));
   return relative;
 }
 
@@ -163,7 +167,8 @@ MotionDeviations motion_deviations(const PairMotion& j) {
           .rate_share =
               j.evidence.rates[0] / std::hypot(j.relative.rms_rate, relative_rate_noise / rigid_rate_share.median),
           .acceleration = j.evidence.accelerations[0],
-          .acceleration_across = j.evidence.accelerations[1]};
+          .acceleration_across = j.evidence.accelerations[1],
+          .acceleration_level = j.relative.rms_acceleration};
 }
 
 }  // namespace

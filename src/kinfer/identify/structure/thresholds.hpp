@@ -67,6 +67,10 @@ inline constexpr double min_ratio_density = -3.0;
 /// sensors, 0.02 to 0.12 with consumer ones. Larger finds fewer prismatic joints.
 inline constexpr LogNormal acceleration_error{0.02, 1.0};
 
+/// Beside that, as a share of the segments' acceleration: scales, delays, levers. 0.0024 to 0.024 of rigid sticks that
+/// are waved by hand at 10 to 38 m/s² (nonsense logs of seed 3); less than 0.01 of machines.
+inline constexpr double acceleration_error_share = 0.006;
+
 /// Spread of its sizes among the joints of a recording.
 inline constexpr double acceleration_error_spread = 0.7;
 

@@ -81,8 +81,9 @@ void add_translation(JointLikelihoods& joint, const MotionDeviations& d, const G
   const double main = std::hypot(d.acceleration, least_acceleration),
                across = std::hypot(d.acceleration_across, least_acceleration);
   const double across_of_errors = std::max(log_normal(across / main, error_across_ratio), min_ratio_density);
+  const double of_motion = std::hypot(1.0, acceleration_error_share * d.acceleration_level / acceleration_error.median);
   for (std::size_t i = 0; i < grid_size; ++i)
-    joint.rests[i] = log_normal(main, {sizes[i], acceleration_error_spread}) + across_of_errors;
+    joint.rests[i] = log_normal(main, {of_motion * sizes[i], acceleration_error_spread}) + across_of_errors;
   joint.slides = log_normal(main, sliding_acceleration) + log_error(across / main, sliding_across_ratio);
 }
 

@@ -22,6 +22,7 @@ struct MotionDeviations {
   double rate_share = 0.0;    ///< relative angular velocity as a share of the sensors'
   double acceleration = 0.0;  ///< [m/s²] from a common point, largest direction: an error unless it slides
   double acceleration_across = 0.0;  ///< [m/s²] likewise, second direction
+  double acceleration_level = 0.0;   ///< [m/s²] rms acceleration of the segment that accelerates more
 };
 
 inline constexpr std::array weighed_types{EstimatedJointType::rigid, EstimatedJointType::prismatic,
