@@ -75,7 +75,7 @@ void Tracker::restart(double time) {
   waiting_.clear();
   waits_since_.reset();
   fit_.reset();
-  forget_mounts();
+  mounts_.reset();
   std::ranges::fill(biases_, BiasChange{});
 }
 
@@ -115,8 +115,7 @@ void Tracker::add(const InsRow& row) {
 
 void Tracker::correct_in_rest() {
   rest_.correct(filter_);
-  for (std::optional<TurnedMount>& mount : mounts_)
-    if (mount) rest_.correct(mount->filter());
+  mounts_.correct([&](ChainFilter& filter) { rest_.correct(filter); });
   if (!grid_) return;
   for (StartGrid::Candidate& candidate : grid_->candidates()) rest_.correct(candidate.filter);
 }
@@ -245,7 +244,7 @@ void Tracker::resolve_start(const BlockMeasurement& block) {
 
 void Tracker::replay(const std::function<void(ChainFilter&)>& prepare) {
   fit_.reset();
-  forget_mounts();  // they have believed what turned out to be wrong
+  mounts_.reset();  // they have believed what turned out to be wrong
   replay_.run(filter_, prepare, [&](const ChainFilter& filter, const BlockMeasurement& past) {
     fit_.add(filter, past.time, past.length);
   });
@@ -310,9 +309,10 @@ void Tracker::leave_out(std::size_t sensor) {
   const Agreement named = as_named(fit_.sensor(sensor));
   ChainFilter before = replay_.older();
   before.judge_as(filter_);
-  const TurnedMount mount(before, replay_.blocks(), sensor);
+  MountWatch mounts(does_not_fit_.size());  // of the others the filters have believed this sensor
+  mounts.begin(sensor, before, replay_.blocks());
   replay([&](ChainFilter& filter) { filter.use_sensor(sensor, false); });
-  mounts_[sensor] = mount;
+  mounts_ = mounts;
   fit_.set_sensor(sensor, named);
 }
 
@@ -322,44 +322,12 @@ void Tracker::doubt(std::size_t joint) {
   fit_.set_joint(joint, named);
 }
 
-std::optional<double> Tracker::log_odds_of_mount(std::size_t sensor) const {
-  return mounts_[sensor] ? mounts_[sensor]->log_odds_of_original() : std::nullopt;
-}
-
-/// One that agrees, but may be turned for all that is known, stays out of use.
-bool Tracker::may_return(std::size_t sensor) const {
-  const std::optional<double> odds = log_odds_of_mount(sensor);
-  return !odds || *odds > mount_log_odds;
-}
-
-bool Tracker::is_turned(std::size_t sensor) const {
-  const std::optional<double> odds = log_odds_of_mount(sensor);
-  return odds && *odds < -mount_log_odds;
-}
-
-/// Of the sensors that are out of use because they disagree, while they measure.
-void Tracker::watch_mounts(const BlockMeasurement& block) {
-  for (std::size_t s = 0; s < mounts_.size(); ++s) {
-    const bool is_watched = does_not_fit_[s] && !health_[s].lost && !health_[s].stuck;
-    if (!is_watched)
-      mounts_[s].reset();
-    else if (!mounts_[s])
-      mounts_[s].emplace(filter_, s);
-    else if (mounts_[s]->time() < block.time)
-      mounts_[s]->add(block, filter_);
-  }
-}
-
-void Tracker::forget_mounts() {
-  for (std::optional<TurnedMount>& mount : mounts_) mount.reset();
-}
-
 /// What disagrees most is left out, as if it had never been believed, and what agrees again is taken in.
 void Tracker::examine_fit() {
   const Suspect worst = fit_.worst(filter_);
   if (worst.sensor >= 0) leave_out(static_cast<std::size_t>(worst.sensor));
   if (worst.joint >= 0) doubt(static_cast<std::size_t>(worst.joint));
-  const Suspect back = fit_.recovered(filter_, [this](std::size_t s) { return may_return(s); });
+  const Suspect back = fit_.recovered(filter_, [this](std::size_t s) { return mounts_.may_return(s); });
   if (back.sensor >= 0) {
     does_not_fit_[static_cast<std::size_t>(back.sensor)] = is_late_[static_cast<std::size_t>(back.sensor)] = false;
     fit_.reset_sensor(static_cast<std::size_t>(back.sensor));
@@ -402,7 +370,7 @@ void Tracker::process_block(const BlockMeasurement& block) {
   if (!grid_) show_headings();
   if (!grid_) begin_grid();
   if (grid_) {
-    forget_mounts();
+    mounts_.reset();
     resolve_start(block);
   } else {
     filter_.predict(block.time);
@@ -411,14 +379,15 @@ void Tracker::process_block(const BlockMeasurement& block) {
   fit_.add(filter_, block.time, block.length);
   clocks_.add(filter_, block.length);
   for (std::size_t s = 0; s < does_not_fit_.size(); ++s)
-    if (does_not_fit_[s] && clocks_.is_late(s, lateness_share_later) && !is_turned(s)) is_late_[s] = true;
+    if (does_not_fit_[s] && clocks_.is_late(s, lateness_share_later) && !mounts_.is_turned(s)) is_late_[s] = true;
   if (!grid_) {
     replay_.add(block, filter_);
     if (base_begins_to_move(block))
       let_base_move();
     else
       examine_fit();
-    watch_mounts(block);
+    mounts_.add(block, filter_,
+                [&](std::size_t s) { return does_not_fit_[s] && !health_[s].lost && !health_[s].stuck; });
     watch_biases(block.time);
     watch_misfit(block.time);
     find_returned(block);

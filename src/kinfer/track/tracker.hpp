@@ -10,10 +10,10 @@
 #include "kinfer/track/composed.hpp"
 #include "kinfer/track/faults/clock_watch.hpp"
 #include "kinfer/track/faults/fit_monitor.hpp"
+#include "kinfer/track/faults/mount_watch.hpp"
 #include "kinfer/track/faults/replay.hpp"
 #include "kinfer/track/faults/sensor_health.hpp"
 #include "kinfer/track/faults/sensor_return.hpp"
-#include "kinfer/track/faults/turned_mount.hpp"
 #include "kinfer/track/filter/base_watch.hpp"
 #include "kinfer/track/filter/rest_bias.hpp"
 #include "kinfer/track/filter/row_block.hpp"
@@ -73,11 +73,6 @@ class Tracker {
   void spread_tool();
   void widen_unknown();
   void leave_out(std::size_t sensor);
-  std::optional<double> log_odds_of_mount(std::size_t sensor) const;
-  bool may_return(std::size_t sensor) const;
-  bool is_turned(std::size_t sensor) const;
-  void forget_mounts();
-  void watch_mounts(const BlockMeasurement& block);
   void doubt(std::size_t joint);
   void examine_fit();
   void watch_misfit(double time);
@@ -107,11 +102,11 @@ class Tracker {
   ClockWatch clocks_;
   Replay replay_;
   SensorReturn return_;
-  std::vector<bool> does_not_fit_;                  // sensors out of use because they disagree
-  std::vector<bool> is_late_;                       // of these, by their clocks
-  std::vector<std::optional<TurnedMount>> mounts_;  // of these
-  std::vector<BiasChange> biases_;                  // of each sensor
-  std::optional<double> waits_since_;               // [s] for a start in a quieter moment
+  std::vector<bool> does_not_fit_;     // sensors out of use because they disagree
+  std::vector<bool> is_late_;          // of these, by their clocks
+  MountWatch mounts_;                  // of these
+  std::vector<BiasChange> biases_;     // of each sensor
+  std::optional<double> waits_since_;  // [s] for a start in a quieter moment
   ComposedFilters composed_;
   std::vector<bool> is_sound_, is_settled_;  // sensors that the composed filters may use; joints that are not open
   std::vector<std::optional<double>> heading_sd_;  // as of JointFusion
