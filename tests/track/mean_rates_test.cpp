@@ -21,6 +21,9 @@ RuleErrors errors_of_sine(int rows) {
   FilterModel model;
   model.layout.positions = 1;
   model.positions = {machine_acceleration};
+  model.layout.position = {-1, 0};
+  model.bodies.resize(2);
+  model.bodies[1].motion = JointMotion::revolute;
   ChainState state;
   state.joints = VectorXd::Zero(position_states);
   MeanRates means(model);

@@ -302,7 +302,7 @@ void ChainFilter::mirror() {
 
 /// Where the rates of all joints are seen without a gap: elsewhere positions do not follow from their means.
 void ChainFilter::add_what_means_miss(double dt, const BlockMeasurement& block) {
-  if (shown_ != ShownMeans::rates || dt > longest_bridge) return mean_rates_.reset();
+  if (shown_ != ShownMeans::rates || !(dt > 0.0) || dt > longest_bridge) return mean_rates_.reset();
   const auto rows = [](const BlockSample& sample) { return sample.rate_count; };
   error_.setZero();
   mean_rates_.add_missed(*model_, state_, dt, std::ranges::max(block.sensors, {}, rows).rate_count, error_);

@@ -2,13 +2,9 @@
 #include "kinfer/track/filter/mean_rates.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace kinfer::track {
-
 namespace {
-
-constexpr Index base_rates = 3;
 
 /// [1] c of the header.
 double part_missed(int rows) {
@@ -19,32 +15,19 @@ double part_missed(int rows) {
 }  // namespace
 
 MeanRates::MeanRates(const FilterModel& model)
-    : rates_(VectorXd::Zero(base_rates + model.layout.positions)), before_(rates_), change_(rates_) {}
-
-void MeanRates::take_rates(const FilterModel& model, const ChainState& state) {
-  std::swap(rates_, before_);
-  rates_.head<base_rates>() = state.rate;
-  for (Index i = 0; i < model.layout.positions; ++i) rates_[base_rates + i] = state.joints[position_states * i + 1];
-}
+    : rates_(VectorXd::Zero(model.layout.positions)), accelerations_(rates_) {}
 
 void MeanRates::add_missed(const FilterModel& model, const ChainState& state, double dt, int rows, VectorXd& error) {
-  take_rates(model, state);
-  if (!has_rates_) {
-    has_rates_ = true;
-    return;
+  const double missed = part_missed(rows) * dt * dt;
+  for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+    if (model.bodies[b].motion != JointMotion::revolute) continue;
+    const Index i = model.layout.position[b];
+    const double rate = state.joints[position_states * i + 1], acceleration = (rate - rates_[i]) / dt;
+    if (has_accelerations_) error[model.layout.joint_state(i)] -= missed * (acceleration - accelerations_[i]);
+    rates_[i] = rate, accelerations_[i] = acceleration;
   }
-  const double missed = part_missed(rows) * dt;
-  const auto missed_since = [&](Index i) {
-    const double change = rates_[i] - before_[i], more = change - change_[i];
-    change_[i] = change;
-    return has_change_ ? missed * more : 0.0;
-  };
-  for (Index i = 0; i < base_rates; ++i)
-    if (const double more = missed_since(i); state.base == BaseMode::moving) error[BaseIndex::attitude + i] -= more;
-  for (Index i = 0; i < model.layout.positions; ++i)
-    if (const double more = missed_since(base_rates + i); !model.positions[static_cast<std::size_t>(i)].is_measured)
-      error[model.layout.joint_state(i)] -= more;
-  has_change_ = true;
+  has_accelerations_ = has_rates_;
+  has_rates_ = true;
 }
 
 }  // namespace kinfer::track
