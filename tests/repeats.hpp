@@ -5,19 +5,17 @@
 #include <initializer_list>
 #include <vector>
 
+#if defined(__has_feature)
+#define KINFER_HAS_SANITIZER (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define KINFER_HAS_SANITIZER 1
+#else
+#define KINFER_HAS_SANITIZER 0
+#endif
+
 namespace kinfer::test {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool is_instrumented = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-inline constexpr bool is_instrumented = true;
-#else
-inline constexpr bool is_instrumented = false;
-#endif
-#else
-inline constexpr bool is_instrumented = false;
-#endif
+inline constexpr bool is_instrumented = KINFER_HAS_SANITIZER;
 
 /// Seeds or machines that run the same code: all of them where figures are judged, the first where memory is.
 template <class T>

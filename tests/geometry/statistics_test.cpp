@@ -13,6 +13,12 @@
 namespace kinfer {
 namespace {
 
+TEST(Statistics, LogSumNeitherOverflowsNorVanishes) {
+  EXPECT_NEAR(log_sum(std::vector{0.0, 1.0, -2.0}), std::log(1.0 + std::exp(1.0) + std::exp(-2.0)), 1e-14);
+  for (const double shift : {1000.0, -1000.0})
+    EXPECT_NEAR(log_sum(std::vector{shift, shift}), shift + std::log(2.0), 1e-12);
+}
+
 TEST(Statistics, OfFiveNumbersAreThoseComputedByHand) {
   const std::vector<double> values{2, 4, 4, 5, 10};
   EXPECT_DOUBLE_EQ(mean(values), 5.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/track/filter/mount_turn.hpp"
+#include "kinfer/track/faults/mount_turn.hpp"
 
 #include <gtest/gtest.h>
 

@@ -78,8 +78,8 @@ Diagnosis diagnose_mountings(const CalibrationTask& task) {
 /// Of the measurements whose errors are judged.
 bool noise_is_stated(const CalibrationTask& task) {
   const auto primary = primary_measurement_kind(task.data);
-  return task.instrument &&
-         (!primary || task.instrument->sigma > 0.0 || residual_kind(*primary).traits.sigma_of(*task.instrument) > 0.0);
+  return task.instrument && (!primary || task.instrument->states_lengths() ||
+                             residual_kind(*primary).traits.sigma_of(*task.instrument) > 0.0);
 }
 
 /// With all certain faults corrected, and the fixtures and directions of approach of the data.

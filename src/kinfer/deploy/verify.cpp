@@ -57,9 +57,9 @@ PoseSet without_fading(PoseSet data, const Chain& chain, const Chain& placed,
 /// As stated, or as noisy as in the calibration.
 std::optional<Instrument> known_instrument(const std::optional<Instrument>& stated,
                                            const std::optional<PredictionModel>& prediction) {
-  if (stated && stated->sigma > 0.0) return stated;
+  if (stated && stated->states_lengths()) return stated;
   if (!prediction || !(prediction->noise > 0.0)) return std::nullopt;
-  return Instrument{.sigma = prediction->noise};
+  return with_lengths(stated.value_or(Instrument{}), prediction->noise);
 }
 
 /// Of different poses and targets: a pose that was measured again tells no more about the robot.

@@ -110,6 +110,13 @@ double robust_sd(std::vector<double> values) {
   return 1.4826 * median(std::move(values));
 }
 
+double log_sum(std::span<const double> logarithms) {
+  const double largest = *std::ranges::max_element(logarithms);
+  double sum = 0.0;
+  for (const double log : logarithms) sum += std::exp(log - largest);
+  return largest + std::log(sum);
+}
+
 double normal_cdf(double x) {
   return 0.5 * std::erfc(-x / std::numbers::sqrt2);
 }

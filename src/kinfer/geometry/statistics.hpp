@@ -19,6 +19,9 @@ double robust_sd(std::vector<double> values);
 /// Effective number of independent samples of a series, n (1 − r) / (1 + r), r the lag-one autocorrelation; at least 1.
 double effective_samples(std::span<const double> series);
 
+/// ln Σ exp values, without overflow; `logarithms` must not be empty.
+double log_sum(std::span<const double> logarithms);
+
 /// Cumulative distribution function of the standard Gaussian, and its inverse for p in (0, 1).
 double normal_cdf(double x);
 double normal_quantile(double p);

@@ -27,7 +27,15 @@ struct Instrument {
   std::optional<double> sigma_contact = {};    ///< [m] of sockets and planes, per axis; none: sigma
   std::optional<double> sigma_tilt = {};       ///< [m/s²] per axis; none: estimated from the residuals
   std::optional<double> sigma_direction = {};  ///< [rad] across the line of sight, per axis; none: from the residuals
+
+  bool states_lengths() const { return sigma > 0.0; }
 };
+
+/// The instrument with this accuracy of lengths [m] where it states none.
+inline Instrument with_lengths(Instrument instrument, double sigma) {
+  if (!instrument.states_lengths()) instrument.sigma = sigma;
+  return instrument;
+}
 
 /// Standard deviation per axis of a position measured at `position` [m]: sigma + ppm · distance from the world origin.
 double position_sd(const Instrument& instrument, const Vec3& position);

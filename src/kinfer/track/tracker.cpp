@@ -440,6 +440,13 @@ void Tracker::read_out(double time) {
   is_settled_.assign(is_settled_.size(), true);
   for (std::size_t i = 0; i < positions_.size(); ++i)
     if (positions_[i].is_open) is_settled_[static_cast<std::size_t>(model_positions_[i].joint)] = false;
+  state_headings();
+  fusion_.apply(*tracking_, composed_, {.is_sound = is_sound_, .is_settled = is_settled_, .heading_sd = heading_sd_},
+                state_);
+}
+
+/// Of spherical joints whose heading motion shows; one that it has not shown yet is not settled.
+void Tracker::state_headings() {
   for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
     if (!motion_shows_heading(*model_, b)) continue;
     const auto joint = static_cast<std::size_t>(tracking_->bodies[b].joint);
@@ -448,8 +455,6 @@ void Tracker::read_out(double time) {
     if (!is_relative) heading_sd_[joint] = std::sqrt(std::max(0.0, filter_.heading_variance(b)));
     if (filter_.considers_heading(b)) is_settled_[joint] = false;
   }
-  fusion_.apply(*tracking_, composed_, {.is_sound = is_sound_, .is_settled = is_settled_, .heading_sd = heading_sd_},
-                state_);
 }
 
 void Tracker::list_alarms(double time) {

@@ -82,6 +82,7 @@ class Tracker {
   void list_alarms(double time);
   void correct_in_rest();
   void read_out(double time);
+  void state_headings();
 
   std::shared_ptr<const TrackingModel> tracking_;
   std::shared_ptr<const FilterModel> model_;

@@ -10,6 +10,7 @@
 
 #include "kinfer/calibrate/functions/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_normal_equations.hpp"
+#include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
 
@@ -65,13 +66,6 @@ std::vector<double> geometric_sequence(double first, double last, int count) {
   std::vector<double> values;
   for (int k = 0; k < count; ++k) values.push_back(first * std::pow(last / first, k / (count - 1.0)));
   return values;
-}
-
-double log_sum(const std::vector<double>& logs) {
-  const double most = *std::ranges::max_element(logs);
-  double sum = 0.0;
-  for (const double log : logs) sum += std::exp(log - most);
-  return most + std::log(sum);
 }
 
 }  // namespace

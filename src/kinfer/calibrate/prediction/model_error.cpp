@@ -50,8 +50,7 @@ HeldOutResiduals residuals_of(const Estimate& fit, const PredictionModel& model,
                               const std::optional<Instrument>& instrument) {
   HeldOutResiduals all;
   const std::vector<PredictedPose> predicted = predicted_with_spread(fit.chain, model, rows);
-  Instrument assumed = instrument.value_or(Instrument{.sigma_angle = fit.sigma_angle});
-  if (assumed.sigma <= 0.0) assumed.sigma = fit.sigma;
+  const Instrument assumed = with_lengths(instrument.value_or(Instrument{.sigma_angle = fit.sigma_angle}), fit.sigma);
   const Weights weights = weights_of(rows, assumed);
   const EvaluatedPoses at = evaluate_poses(fit.chain, fit.parameters, rows, Derivative::yes);
   const FieldRoots roots = roots_of(fit.chain.field);
@@ -320,8 +319,9 @@ std::optional<HeldOutPrediction> make_prediction_model(const EvaluationInputs& e
     points_of_regions.push_back(std::move(region.points));
     rotations_of_regions.push_back(std::move(region.rotations));
   }
-  const NoiseKnowledge noise =
-      evaluated.instrument && evaluated.instrument->sigma > 0.0 ? NoiseKnowledge::stated : NoiseKnowledge::estimated;
+  const NoiseKnowledge noise = evaluated.instrument && evaluated.instrument->states_lengths()
+                                   ? NoiseKnowledge::stated
+                                   : NoiseKnowledge::estimated;
   ModelErrors points = model_errors(held_out.points, points_of_regions, noise);
   if (noise == NoiseKnowledge::estimated) {
     points.noise_part = noise_part(held_out.points, points);

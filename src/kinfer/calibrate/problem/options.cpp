@@ -93,7 +93,7 @@ Result<void> check_options(const CalibrationTask& task, const CalibrationOptions
   const auto* fixed = std::get_if<FixedModel>(&options.model);
   if (fixed && !fixed->terms.empty() && !allows_model_terms(options))
     return error("model terms need the complete geometric set and a least-squares fit");
-  if (options.swarm_search && task.has_population() && !(task.instrument && task.instrument->sigma > 0.0))
+  if (options.swarm_search && task.has_population() && !(task.instrument && task.instrument->states_lengths()))
     return error(
         "a swarm search weighs the prior of earlier calibrations by the instrument's noise: expected [instrument] "
         "sigma "

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::calibrate {
@@ -19,14 +20,6 @@ constexpr double local_spread = 1.0;  // [log] sd of the sizes of one term's joi
 
 double factor_at(int step) {
   return smallest_factor * std::pow(grid_ratio, step);
-}
-
-/// log Σ exp values.
-double log_sum(const std::vector<double>& values) {
-  const double largest = *std::ranges::max_element(values);
-  double sum = 0.0;
-  for (const double value : values) sum += std::exp(value - largest);
-  return largest + std::log(sum);
 }
 
 /// What the measurements say of one group given all others at one noise level, along the eigenvectors of its

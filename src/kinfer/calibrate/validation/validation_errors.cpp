@@ -226,8 +226,8 @@ std::optional<ExpectedErrors> expected_holdout_errors(const EvaluationInputs& ev
   const auto primary = judged_kinds(evaluated).position;
   if (!evaluated.instrument || !primary) return std::nullopt;
   const ResidualKind& kind = residual_kind(*primary);
-  const bool states_lengths = evaluated.instrument->sigma > 0.0;
-  if (!states_lengths && kind.traits.sigma_of(*evaluated.instrument) <= 0.0) return std::nullopt;
+  if (!evaluated.instrument->states_lengths() && kind.traits.sigma_of(*evaluated.instrument) <= 0.0)
+    return std::nullopt;
   double squares = 0.0, squares_by_noise = 0.0, count = 0.0;
   for (std::size_t i = 0; i < evaluated.fits.size(); ++i) {
     const Estimate& fit = evaluated.fits[i].after;

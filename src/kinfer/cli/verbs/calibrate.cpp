@@ -168,7 +168,8 @@ std::vector<std::string_view> unused_accuracies(const Instrument& instrument, co
     if (instrument.*sigma.value && !concerns_any([&](const MeasurementTraits& t) { return t.sigma == sigma.value; }))
       keys.push_back(sigma.key);
   const auto is_angle = [](const MeasurementTraits& t) { return t.default_sigma == &Instrument::sigma_angle; };
-  if (instrument.sigma_angle > 0.0 && instrument.sigma <= 0.0 && !concerns_any(is_angle)) keys.push_back("sigma_angle");
+  if (instrument.sigma_angle > 0.0 && !instrument.states_lengths() && !concerns_any(is_angle))
+    keys.push_back("sigma_angle");
   return keys;
 }
 

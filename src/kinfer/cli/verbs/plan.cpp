@@ -51,11 +51,7 @@ Result<plan::PlanTask> read_task(const PlanArguments& options, const RobotModel&
   plan::PlanTask task;
   task.nominal = robot.chain;
   task.tolerances = robot.tolerances;
-  if (robot.instrument) {
-    const double unstated = task.instrument.sigma;
-    task.instrument = *robot.instrument;
-    if (task.instrument.sigma <= 0.0) task.instrument.sigma = unstated;
-  }
+  if (robot.instrument) task.instrument = with_lengths(*robot.instrument, task.instrument.sigma);
   task.measures = options.measured == "pose" ? plan::Measures::poses : plan::Measures::positions;
   task.space.instrument = robot.instrument_position;
   if (!options.instrument_position.empty()) {

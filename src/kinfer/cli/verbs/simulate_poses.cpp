@@ -28,11 +28,7 @@ struct SimulatePosesArguments {
 
 PoseSimulation simulation_of(const SimulatePosesArguments& options, const RobotModel& robot) {
   PoseSimulation simulation;
-  if (robot.instrument) {
-    const double unstated = simulation.instrument.sigma;
-    simulation.instrument = *robot.instrument;
-    if (simulation.instrument.sigma <= 0.0) simulation.instrument.sigma = unstated;
-  }
+  if (robot.instrument) simulation.instrument = with_lengths(*robot.instrument, simulation.instrument.sigma);
   if (options.sigma.given) simulation.instrument.sigma = 1e-3 * options.sigma.value;
   if (options.sigma_angle.given) simulation.instrument.sigma_angle = options.sigma_angle.value * degree;
   if (options.ppm.given) simulation.instrument.ppm = options.ppm.value;

@@ -120,7 +120,7 @@ std::vector<Vec3> acceleration_differences(const SegmentMotion& parent, const Se
 }
 
 /// [rad] The headings behind a gap of 2 s at 1 rad/s were 11 and 16° off.
-constexpr double heading_error_behind_gaps = 0.26;
+constexpr double heading_error_behind_gaps = 15.0 * degree;
 
 struct PairMotion {
   RelativeMotion relative;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/base/threshold.hpp"
 
 namespace kinfer::identify {
@@ -37,18 +38,18 @@ inline constexpr double type_prior[] = {0.06, 0.05, 0.76, 0.03, 0.1};
 /// [rad] Deviation of a revolute joint's axis by errors, typical of a recording: 0.01 to 0.1° with rigid mounts and
 /// industrial sensors, 0.3 to 1° with consumer ones, 0.03 to 0.8° on the iiwa and the pendulum, 1 to 3° on DIODEM and
 /// on foam. Larger calls machines of spherical joints revolute; smaller calls soft mounts spherical joints.
-inline constexpr LogNormal orientation_error{0.1 * 0.017453292519943295, 1.0};
+inline constexpr LogNormal orientation_error{0.1 * degree, 1.0};
 
 /// Spread of the errors' sizes among the joints of a recording, in logarithms: the iiwa's five differ by a factor
 /// of 20.
 inline constexpr double error_spread = 1.0;
 
 /// [rad] Rotation of a joint that moves, rms.
-inline constexpr LogNormal joint_rotation{10.0 * 0.017453292519943295, 1.3};
+inline constexpr LogNormal joint_rotation{10.0 * degree, 1.3};
 
 /// [rad] Rotation of a rigid pair by headings that drift, beside twice the errors of an axis: 0.02 to 0.1° with
 /// industrial sensors, 0.1 to 1.4° with consumer ones.
-inline constexpr double rigid_rotation_error = 0.2 * 0.017453292519943295;
+inline constexpr double rigid_rotation_error = 0.2 * degree;
 
 /// Relative angular velocity of a rigid pair as a share of the sensors': scales and axes of the gyroscopes, 0.001 to
 /// 0.07 of simulated pairs.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/structure/thresholds.hpp"
 
 namespace kinfer::identify {
@@ -85,13 +86,6 @@ void add_translation(JointLikelihoods& joint, const MotionDeviations& d, const G
   for (std::size_t i = 0; i < grid_size; ++i)
     joint.rests[i] = log_normal(main, {of_motion * sizes[i], acceleration_error_spread}) + across_of_errors;
   joint.slides = log_normal(main, sliding_acceleration) + log_error(across / main, sliding_across_ratio);
-}
-
-double log_sum(const LogTypes& logarithms) {
-  const double largest = *std::ranges::max_element(logarithms);
-  double sum = 0.0;
-  for (const double x : logarithms) sum += std::exp(x - largest);
-  return largest + std::log(sum);
 }
 
 /// Posterior of the sizes of the errors.

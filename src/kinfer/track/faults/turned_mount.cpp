@@ -28,7 +28,7 @@ TurnedMount::TurnedMount(const ChainFilter& before, std::span<const BlockMeasure
       filter_(with_sensor(before, sensor)),
       fit_(before.model().sensors.size(), before.model().joints.size()) {
   for (const BlockMeasurement& block : rows) {
-    filter_.loosen_mount(sensor_, square(turned_mount_sd) / static_cast<double>(rows.size()));
+    loosen_mount(filter_, sensor_, square(turned_mount_sd) / static_cast<double>(rows.size()));
     update(block);
   }
   fit_.reset();
@@ -45,7 +45,7 @@ void TurnedMount::begin(const ChainFilter& without) {
   filter_.use_sensor(sensor_, true);
   is_known_ = !has_lost_position(filter_, sensor_);
   supposed_ = loosened(mount_turn(filter_, sensor_));
-  filter_.loosen_mount(sensor_, square(turned_mount_sd));
+  loosen_mount(filter_, sensor_, square(turned_mount_sd));
   fit_.reset();
 }
 

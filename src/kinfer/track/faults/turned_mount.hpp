@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "kinfer/track/faults/fit_monitor.hpp"
-#include "kinfer/track/filter/mount_turn.hpp"
+#include "kinfer/track/faults/mount_turn.hpp"
 
 namespace kinfer::track {
 

@@ -56,6 +56,10 @@ void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {
   mean_rates_.reset();
 }
 
+void ChainFilter::widen(Index first, ConstMatrixRef covariance) {
+  p_.block(first, first, covariance.rows(), covariance.cols()) += covariance;
+}
+
 /// It counted from the start and will be shown by motion.
 void ChainFilter::free_heading(std::size_t body, double sd) {
   headings_.free(body, sd, p_);

@@ -80,8 +80,8 @@ class ChainFilter {
   void doubt_joint(std::size_t joint, bool is_doubted) { changes_.doubt(joint, is_doubted); }
   bool doubts_joint(std::size_t joint) const { return changes_.is_doubted(joint); }
 
-  /// Adds a turn of the sensor's mounting to what is unknown of it, of this variance [rad²] about each axis.
-  void loosen_mount(std::size_t sensor, double variance);
+  /// Adds to what is unknown of states in a row, from the first one on.
+  void widen(Index first, ConstMatrixRef covariance);
 
   /// Uses the sensors, and doubts the joints, that `other` does.
   void judge_as(const ChainFilter& other);

@@ -412,7 +412,7 @@ std::optional<double> stated_length_sigma(const Instrument& instrument) {
 }
 
 bool states_any_accuracy(const Instrument& instrument) {
-  return instrument.sigma > 0.0 || instrument.sigma_angle > 0.0 ||
+  return instrument.states_lengths() || instrument.sigma_angle > 0.0 ||
          std::ranges::any_of(instrument_sigmas,
                              [&](const InstrumentSigma& s) { return (instrument.*s.value).has_value(); });
 }

@@ -261,7 +261,7 @@ class RobotTomlWriter {
   void write_instrument(const Instrument& instrument) {
     const bool has_angle = instrument.sigma_angle > 0.0;
     add("\n[instrument]\nkind = \"{}\"\n", has_angle ? "pose" : "position");
-    if (instrument.sigma > 0.0) add("sigma = {}\n", format_number(instrument.sigma, length_));
+    if (instrument.states_lengths()) add("sigma = {}\n", format_number(instrument.sigma, length_));
     if (has_angle) add("sigma_angle = {}\n", format_number(instrument.sigma_angle, angle_));
     add("ppm = {}\n", format_number(instrument.ppm));
     for (const InstrumentSigma& sigma : instrument_sigmas)

@@ -16,6 +16,9 @@ struct MountTurn {
 /// The mean of both antisymmetric parts.
 MountTurn mount_turn(const ChainFilter& filter, std::size_t sensor);
 
+/// Adds a turn of the sensor's mounting to what is unknown of it, of this variance [rad²] about each axis.
+void loosen_mount(ChainFilter& filter, std::size_t sensor, double variance);
+
 /// By how much the data that led from one belief about a turn to another one are likelier, ln, if the turn is
 /// distributed as `supposed` than as `before`. Bayesian, with Gaussians.
 double log_odds_of(const MountTurn& supposed, const MountTurn& before, const MountTurn& after);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/track/filter/mount_turn.hpp"
+#include "kinfer/track/faults/mount_turn.hpp"
 
 #include <cmath>
 
@@ -22,6 +22,10 @@ TurnDerivative scales_by_turn() {
   return by_turn;
 }
 
+Index first_scale(const ChainFilter& filter, std::size_t sensor) {
+  return filter.model().layout.sensor_state(static_cast<Index>(sensor)) + SensorIndex::gyroscope_scale;
+}
+
 /// ln of the integral of the likelihood exp(−½ θᵀ Λ θ + ηᵀ θ) over a belief.
 double log_evidence(const MountTurn& belief, const Mat3& information, const Vec3& score) {
   const Mat3 m = Mat3::Identity() + belief.covariance * information, inverse = m.inverse();
@@ -31,14 +35,13 @@ double log_evidence(const MountTurn& belief, const Mat3& information, const Vec3
 
 }  // namespace
 
-void ChainFilter::loosen_mount(std::size_t sensor, double variance) {
-  const Index scales = model_->layout.sensor_state(static_cast<Index>(sensor)) + SensorIndex::gyroscope_scale;
+void loosen_mount(ChainFilter& filter, std::size_t sensor, double variance) {
   const TurnDerivative by_turn = scales_by_turn();
-  p_.block<18, 18>(scales, scales) += variance * by_turn * by_turn.transpose();
+  filter.widen(first_scale(filter, sensor), variance * by_turn * by_turn.transpose());
 }
 
 MountTurn mount_turn(const ChainFilter& filter, std::size_t sensor) {
-  const Index scales = filter.model().layout.sensor_state(static_cast<Index>(sensor)) + SensorIndex::gyroscope_scale;
+  const Index scales = first_scale(filter, sensor);
   const Eigen::Matrix<double, 3, 18> mean = 0.25 * scales_by_turn().transpose();
   const SensorErrors& state = filter.state().sensors[sensor];
   const Mat3 scale = 0.5 * (state.gyroscope_scale + state.accelerometer_scale);

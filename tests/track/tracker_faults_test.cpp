@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "track/tracked_case.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace kinfer::track {
+namespace {
+
+TEST(Tracker, NamesALostAndAStuckSensorAndGoesOn) {
+  InsSample frozen;
+  const Outcome out = run(still_excavator(), {}, [&](InsRow& row) {
+    if (row.time > 15.0 && row.time < 20.0) row.sensors[3] = {};
+    if (row.time < 25.0) frozen = row.sensors[4];
+    if (row.time > 25.0 && row.time < 28.0) row.sensors[4] = frozen;
+  });
+  for (std::size_t i = 2; i < out.alarms.size(); ++i)
+    ADD_FAILURE() << name(out.alarms[i].kind) << " " << out.alarms[i].sensor << " at " << out.raised[i];
+  ASSERT_GE(out.alarms.size(), 2u);
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_lost);
+  EXPECT_EQ(out.alarms[0].sensor, 3);
+  EXPECT_EQ(out.alarms[1].kind, TrackAlarmKind::sensor_stuck);
+  EXPECT_EQ(out.alarms[1].sensor, 4);
+  EXPECT_TRUE(out.tracker.state().alarms.empty());
+  for (int j = 1; j < 5; ++j) EXPECT_LT(out.rms(j), 0.6 * degree) << j;
+}
+
+/// Shoulder and elbow of this arm are parallel: while both rest, nothing but that they rest tells their positions,
+/// which were up to 10 degrees off.
+TEST(Tracker, JointsThatRestBesideALostSensorStayWhereTheyAre) {
+  const Case arm = make_case({.machine = "robot6", .duration = 60.0});
+  const Outcome out = run(arm, {}, [&](InsRow& row) {
+    if (row.time > 25.0 && row.time < 45.0) row.sensors[2] = {};
+  });
+  for (int j = 1; j < 6; ++j) EXPECT_LT(out.rms(j), 0.3 * degree) << j;
+  EXPECT_LT(out.largest_sd.tail(5).maxCoeff(), 3.0 * degree);
+}
+
+TEST(Tracker, AJointWhoseOwnSensorIsLostAtTheEndOfTheChainMayMoveUnseen) {
+  const Case arm = make_case({.machine = "robot6", .duration = 60.0});
+  const Outcome out = run(arm, {}, [&](InsRow& row) {
+    if (row.time > 25.0 && row.time < 45.0) row.sensors[6] = {};
+  });
+  EXPECT_GT(out.largest_sd[5], 30.0 * degree);
+}
+
+class DeadInstrument : public ::testing::TestWithParam<double> {};
+
+/// From the first row its joint was called relative to where tracking began, and 3.6 deg off at 0.014 stated.
+TEST_P(DeadInstrument, OfASensorMakesItLost) {
+  const double begin = GetParam();
+  const Outcome out = run(still_excavator(), {}, [&](InsRow& row) {
+    if (row.time >= begin) row.sensors[5].has_acceleration = false;
+  });
+  ASSERT_FALSE(out.alarms.empty());
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_lost);
+  EXPECT_EQ(out.alarms[0].sensor, 5);
+  EXPECT_NEAR(out.raised[0], begin + 1.0, 0.1);
+  for (int j = 1; j < 4; ++j) EXPECT_LT(out.rms(j), 0.06 * degree) << j;
+  if (begin <= 0.0) EXPECT_GT(out.largest_sd[4], 3.0 * degree) << "no gravity tells its position";
+}
+INSTANTIATE_TEST_SUITE_P(Tracker, DeadInstrument, ::testing::Values(0.0, 10.0));
+
+TEST(Tracker, NothingIsKnownWithoutGravityInTheBase) {
+  const Outcome out = run(still_excavator(), {}, [](InsRow& row) { row.sensors[0].has_acceleration = false; });
+  EXPECT_FALSE(out.tracker.state().started);
+  ASSERT_FALSE(out.alarms.empty());
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_lost);
+  EXPECT_EQ(out.alarms[0].sensor, 0);
+}
+
+TEST(Tracker, NamesAnAccelerometerThatIsFarOffFromTheFirstRow) {
+  const Outcome out = run(still_excavator(), {}, [](InsRow& row) { row.sensors[5].acceleration.x() += 0.5; });
+  ASSERT_FALSE(out.alarms.empty());
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_moved);
+}
+
+TEST(Tracker, ASensorWithoutAGyroscopeIsLostAsWell) {
+  const Outcome out = run(still_excavator(), {}, [](InsRow& row) { row.sensors[3].has_angular_velocity = false; });
+  ASSERT_FALSE(out.alarms.empty());
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_lost);
+  EXPECT_EQ(out.alarms[0].sensor, 3);
+}
+
+void turn_sensor(InsSample& sample, const Mat3& turn) {
+  sample.acceleration = turn * sample.acceleration;
+  sample.angular_velocity = turn * sample.angular_velocity;
+}
+
+/// Of the joint that leads to its body.
+Vec3 hinge_axis_in_sensor(const Case& given, int sensor) {
+  const auto body = std::ranges::find(given.model.bodies, sensor, &TrackingBody::sensor);
+  return body->child_R_axis.col(2);
+}
+
+TEST(Tracker, NamesASensorThatWasTurned) {
+  const Mat3 turn = exp_so3(0.5 * degree * Vec3(1.0, 1.0, 1.0).normalized());
+  const Outcome out = run(still_excavator(), {}, [&](InsRow& row) {
+    if (row.time > 20.0) turn_sensor(row.sensors[3], turn);
+  });
+  ASSERT_FALSE(out.alarms.empty());
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_moved);
+  EXPECT_EQ(out.alarms[0].sensor, 3);
+  EXPECT_LT(out.raised[0], 22.0);
+  EXPECT_EQ(out.alarms.size(), 1u);  // and not its clock
+}
+
+/// Turned about the hinge: without it the positions of both hinges beside it are so uncertain soon that it seems to fit
+/// again (after 13 s, and they were 0.45 degrees off with 0.02 stated).
+TEST(Tracker, ASensorThatStaysTurnedIsNotTakenInAgain) {
+  const Case given = make_case({.duration = 70.0});
+  const Mat3 turn = exp_so3(0.5 * degree * hinge_axis_in_sensor(given, 3));
+  const Outcome out = run(given, {}, [&](InsRow& row) {
+    if (row.time > 20.0) turn_sensor(row.sensors[3], turn);
+  });
+  EXPECT_EQ(out.alarms.size(), 1u);
+  ASSERT_EQ(out.tracker.state().alarms.size(), 1u);
+  EXPECT_EQ(out.tracker.state().alarms[0].kind, TrackAlarmKind::sensor_moved);
+  EXPECT_EQ(out.tracker.state().alarms[0].sensor, 3);
+  EXPECT_LT(out.raised[0], 25.0);
+}
+
+TEST(Tracker, ASensorThatIsTurnedBackIsTakenInAgain) {
+  const Case given = make_case({.duration = 70.0});
+  const Mat3 turn = exp_so3(0.5 * degree * hinge_axis_in_sensor(given, 3));
+  const Outcome out = run(given, {}, [&](InsRow& row) {
+    if (row.time > 20.0 && row.time < 30.0) turn_sensor(row.sensors[3], turn);
+  });
+  EXPECT_EQ(out.alarms.size(), 1u);
+  EXPECT_TRUE(out.tracker.state().alarms.empty());
+  for (int j = 1; j < 5; ++j) EXPECT_LT(out.rms(j), 0.1 * degree) << j;
+}
+
+TEST(Tracker, NamesASensorWhoseClockWentWrong) {
+  const InsRecording& recording = still_excavator().drive.recording;
+  InsRow earlier;
+  std::size_t r = 0;
+  const Outcome out = run(still_excavator(), {}, [&](InsRow& row) {
+    if (row.time > 10.0) {
+      test::fill_row(recording, r - 3, earlier);  // 15 ms
+      row.sensors[3] = earlier.sensors[3];
+    }
+    ++r;
+  });
+  for (const TrackAlarm& alarm : out.alarms) EXPECT_EQ(alarm.sensor, 3) << name(alarm.kind);
+  const auto is_late = [](const TrackAlarm& alarm) { return alarm.kind == TrackAlarmKind::sensor_late; };
+  EXPECT_TRUE(std::ranges::any_of(out.alarms, is_late));
+  for (int j = 1; j < 5; ++j) EXPECT_LT(out.rms(j), 0.3 * degree) << j;
+}
+
+/// All sensors beyond the pin of joint 2 rattle alike, by 3 mm and three times a second.
+TEST(Tracker, NamesAJointWithPlay) {
+  const Case& given = still_excavator();
+  const auto& motion = given.drive.motion.sensors;
+  std::size_t r = 0;
+  const Outcome out = run(given, {}, [&](InsRow& row) {
+    const double w = 6.0 * std::numbers::pi;
+    const Vec3 shake = -1.5e-3 * w * w * std::sin(w * row.time) * Vec3::UnitX();
+    if (row.time > 8.0 && row.time < 10.0)
+      for (std::size_t s = 3; s < row.sensors.size(); ++s)
+        row.sensors[s].acceleration += motion[s].world_R_sensor[r].conjugate() * (motion[3].world_R_sensor[r] * shake);
+    ++r;
+  });
+  for (std::size_t i = 1; i < out.alarms.size(); ++i)
+    ADD_FAILURE() << name(out.alarms[i].kind) << " " << out.alarms[i].sensor << " at " << out.raised[i];
+  ASSERT_FALSE(out.alarms.empty());
+  EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::joint_changed);
+  EXPECT_EQ(out.alarms[0].joint, 2);
+  EXPECT_LT(out.raised[0], 8.5);
+  EXPECT_TRUE(out.tracker.state().alarms.empty());  // fits again
+  for (int j = 1; j < 5; ++j) EXPECT_LT(out.rms(j), 0.1 * degree) << j;
+}
+
+struct Silence {
+  const char* name;
+  std::vector<std::size_t> sensors{};  // counted from the last
+};
+class SilentInMotion : public ::testing::TestWithParam<Silence> {
+ protected:
+  struct Worst {
+    VectorXd after, deviations;        // [rad] from 1.5 s after the silence, and in the silence over the sd
+    std::vector<TrackAlarm> alarms{};  // beside that sensors are lost
+  };
+  static Worst follow(const Case& given, const Pause& silence) {
+    const int joints = given.model.positions();
+    Worst worst{.after = VectorXd::Zero(joints), .deviations = VectorXd::Zero(joints)};
+    Tracker tracker(given.model);
+    InsRow row;
+    for (std::size_t r = 0; r < given.drive.recording.loggers.front().time.size(); ++r) {
+      test::fill_row(given.drive.recording, r, row);
+      const bool is_silent = row.time > silence.begin && row.time < silence.end;
+      if (is_silent)
+        for (const std::size_t s : GetParam().sensors) row.sensors[row.sensors.size() - 1 - s] = {};
+      tracker.add(row);
+      for (const TrackAlarm& alarm : tracker.state().alarms)
+        if (alarm.kind != TrackAlarmKind::sensor_lost) worst.alarms.push_back(alarm);
+      for (int j = 0; j < joints; ++j) {
+        const double e = std::abs(tracker.state().q[j] - given.drive.q(j, r));
+        if (is_silent) worst.deviations[j] = std::max(worst.deviations[j], e / tracker.state().sd_q[j]);
+        if (row.time > silence.end + 1.5) worst.after[j] = std::max(worst.after[j], e);
+      }
+    }
+    return worst;
+  }
+};
+
+/// A joint whose sensor was lost was extrapolated without limit, and its sensor called moved when it came back, to the
+/// end of the log; the joints beside it were degrees off.
+TEST_P(SilentInMotion, SensorsComeBackAndTheirJointsAreFoundAgain) {
+  for (const Case* given : {&still_excavator(), &quick_arm()}) {
+    const Worst worst = follow(*given, {18.503, 24.0});
+    EXPECT_TRUE(worst.alarms.empty()) << name(worst.alarms.front().kind);
+    for (int j = 1; j < worst.after.size(); ++j) {
+      EXPECT_LT(worst.after[j], 0.5 * degree) << "joint " << j;
+      EXPECT_LT(worst.deviations[j], 5.0) << "joint " << j;
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Tracker, SilentInMotion,
+                         ::testing::Values(Silence{"TheLast", {0}}, Silence{"OneBetween", {2}},
+                                           Silence{"TheLastTwo", {1, 0}}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace kinfer::track
