@@ -135,8 +135,7 @@ std::string sentence(const TrackAlarm& alarm, const std::vector<std::string>& se
     case TrackAlarmKind::sensor_late:
       return phrase(id, "the clock of {} disagrees with the others", sensor);
     case TrackAlarmKind::start_wrong:
-      return phrase(id, "--start places the joint {} where gravity says that it does not stand; gravity is believed",
-                    joint);
+      return phrase(id, "gravity contradicts where --start places the joint {}, and is believed", joint);
     case TrackAlarmKind::restarted:
       break;
   }
