@@ -5,8 +5,8 @@
 set -euo pipefail
 program=$1 out=$2
 rm -rf "$out"
-KINFER_DATA='' "$program" paper2 "$out/one" 1 2 >/dev/null 2>&1
-KINFER_DATA='' "$program" paper2 "$out/two" 2 2 >/dev/null 2>&1
+KINFER_DATA='' "$program" paper2 "$out/one" 1 1 >/dev/null 2>&1
+KINFER_DATA='' "$program" paper2 "$out/two" 2 1 >/dev/null 2>&1
 without_times() {  # TABLE: the columns whose header is not in seconds
   awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) keep[i] = ($i !~ /\[s\]/) }
            { line = ""; for (i = 1; i <= NF; ++i) if (keep[i]) line = line "," $i; print line }' "$1"

@@ -5,7 +5,7 @@
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/calibrate/swarm/swarm_fit.hpp"
-#include "kinfer/calibrate/terms/model_selection.hpp"
+#include "kinfer/calibrate/terms/selection/model_selection.hpp"
 #include "kinfer/calibrate/validation/gross_errors.hpp"
 #include "kinfer/calibrate/validation/thresholds.hpp"
 #include "kinfer/measurement/row_selection.hpp"

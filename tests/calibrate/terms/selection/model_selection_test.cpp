@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Model selection accepts the terms that the data contain, rejects the others, and names those it could not test.
-#include "kinfer/calibrate/terms/model_selection.hpp"
+#include "kinfer/calibrate/terms/selection/model_selection.hpp"
 
 #include <gtest/gtest.h>
 

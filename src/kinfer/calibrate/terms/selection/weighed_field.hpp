@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "kinfer/calibrate/terms/weighed_geometry.hpp"
+#include "kinfer/calibrate/terms/selection/weighed_geometry.hpp"
 
 namespace kinfer::calibrate {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/calibrate/terms/weighed_field.hpp"
+#include "kinfer/calibrate/terms/selection/weighed_field.hpp"
 
 #include <cmath>
 

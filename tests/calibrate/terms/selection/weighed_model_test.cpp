@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Terms that weigh themselves do no harm: rigid robots, and data from which little can be known.
-#include "kinfer/calibrate/terms/weighed_model.hpp"
+#include "kinfer/calibrate/terms/selection/weighed_model.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/calibrate/terms/model_selection.hpp"
+#include "kinfer/calibrate/terms/selection/model_selection.hpp"
 
 #include <algorithm>
 
 #include "kinfer/calibrate/terms/candidate_terms.hpp"
 #include "kinfer/calibrate/terms/holdout_errors.hpp"
-#include "kinfer/calibrate/terms/weighed_field.hpp"
-#include "kinfer/calibrate/terms/weighed_model.hpp"
+#include "kinfer/calibrate/terms/selection/weighed_field.hpp"
+#include "kinfer/calibrate/terms/selection/weighed_model.hpp"
 #include "kinfer/calibrate/validation/gross_errors.hpp"
 #include "kinfer/measurement/row_selection.hpp"
 

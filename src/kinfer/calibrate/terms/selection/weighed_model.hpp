@@ -3,7 +3,7 @@
 // parameters by the marginal likelihood, and the proof of the result by held-out errors.
 #pragma once
 
-#include "kinfer/calibrate/terms/weighed_geometry.hpp"
+#include "kinfer/calibrate/terms/selection/weighed_geometry.hpp"
 
 namespace kinfer::calibrate {
 
