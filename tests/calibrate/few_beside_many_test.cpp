@@ -62,6 +62,23 @@ TEST(FewBesideMany, PointsJudgeAModelOnceTheyAreEnough) {
   }
 }
 
+// Six points place everything: the fit can pass through them at the price of a little more in the directions, and the
+// smaller their residuals become the more they would weigh.
+TEST(FewBesideMany, TheNoiseOfAFewPointsDoesNotVanish) {
+  const Chain nominal = robot_with_anchors();
+  for (int seed = 1; seed <= 8; ++seed) {
+    const MixedKinds of{.many = kind_of<DirectionMeasurement>,
+                        .few = kind_of<PointMeasurement>,
+                        .many_count = 60,
+                        .few_count = 6,
+                        .rows = FewRows::shared};
+    const PoseSet data = mixed_kinds(with_random_errors(nominal, {}, Rng(seed)), of, seed);
+    const Calibration c = calibrate_robot({nominal, {}, std::nullopt, data}, {.model = FixedModel{}}, Rng(1)).value();
+    EXPECT_GT(c.estimate.sigma, 0.2 * of.instrument.sigma) << seed;
+    EXPECT_LT(c.estimate.sigma, 5.0 * of.instrument.sigma) << seed;
+  }
+}
+
 // The only contact of a socket is where that socket is, whatever the robot.
 TEST(FewBesideMany, ContactsThatNoneRepeatsProveNothing) {
   const Calibration c =

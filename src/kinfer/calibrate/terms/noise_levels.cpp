@@ -10,7 +10,7 @@
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/terms/thresholds.hpp"
 #include "kinfer/calibrate/validation/validation_plan.hpp"
-#include "kinfer/estimate/poses/noise_level.hpp"
+#include "kinfer/estimate/poses/redundancy.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
 #include "kinfer/measurement/row_selection.hpp"
@@ -141,7 +141,8 @@ std::vector<TermsAtNoise> linearise_at_noise_levels(const Estimate& geometry, co
       has_series(all.chain) || !all.chain.field.empty())
     return {};
   const double effective = effective_parameters(geometry);
-  const Weights weights = weights_of(inliers, instrument, excess_noise(geometry.chain, inliers, instrument, effective));
+  const Weights weights = weights_of(inliers, instrument,
+                                     noise_of_fit(geometry.chain, geometry.parameters, inliers, instrument, effective));
   const LinearisedMeasurements measurements(all, inliers, instrument, weights);
   if (measurements.unstated_rows() == 0) return {};
   const double level_sd = 1.0 / std::sqrt(2.0 * std::max(1.0, residuals - effective));

@@ -12,7 +12,7 @@
 #include "kinfer/calibrate/validation/commanded_poses.hpp"
 #include "kinfer/calibrate/validation/kind_errors.hpp"
 #include "kinfer/calibrate/validation/thresholds.hpp"
-#include "kinfer/estimate/poses/noise_level.hpp"
+#include "kinfer/estimate/poses/redundancy.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/geometry/student.hpp"
 #include "kinfer/linalg/decompositions.hpp"
@@ -33,7 +33,7 @@ PoseSet inlier_rows(const Estimate& fit, const PoseSet& fitted_rows) {
 /// Noise of the kinds for which the instrument states none, by the residuals of the fit; zero of all others.
 ExcessNoise unstated_noise(const Estimate& fit, const PoseSet& inliers, const Instrument& instrument) {
   const auto determined = std::ranges::count_if(fit.values, &ParameterEstimate::identifiable);
-  ExcessNoise noise = excess_noise(fit.chain, inliers, instrument, static_cast<double>(determined));
+  ExcessNoise noise = noise_of_fit(fit.chain, fit.parameters, inliers, instrument, static_cast<double>(determined));
   for (const ResidualKind& kind : residual_kinds())
     if (kind.traits.sigma_of(instrument) > 0.0) noise.of[index(kind.kind)] = 0.0;
   return noise;

@@ -9,6 +9,7 @@
 #include "kinfer/estimate/identifiability.hpp"
 #include "kinfer/estimate/poses/noise_level.hpp"
 #include "kinfer/estimate/poses/pose_normal_equations.hpp"
+#include "kinfer/estimate/poses/redundancy.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/kinematics/batch/tool_derivatives.hpp"
 #include "kinfer/linalg/decompositions.hpp"
@@ -63,7 +64,7 @@ class Fit {
     blocks_ = blocks_of(data);
     state_.inlier.assign(blocks_.size(), true);
     state_.search.method = SearchMethod::levenberg_marquardt;
-    state_.excess = excess_noise(scene(data), instrument, options.absorbed);
+    state_.excess = excess_noise(scene(data), instrument, equal_redundancy(data, options.absorbed));
   }
 
   Estimate run() {
@@ -104,13 +105,18 @@ class Fit {
   /// True when the noise level has converged.
   bool update_noise_level() {
     const PoseSet kept = keep_measurements(data_, state_.inlier);
-    const ExcessNoise now =
-        excess_noise(scene(kept), instrument_, options_.absorbed + effective_parameters(state_.outcome.normal, set_));
+    const ExcessNoise now = excess_noise(scene(kept), instrument_, redundancy(kept));
     const auto settled = [](double before, double after) { return std::abs(after - before) <= 0.02 * before; };
     bool done = true;
     for (std::size_t k = 0; k < now.of.size(); ++k) done &= settled(state_.excess.of[k], now.of[k]);
     state_.excess = now;
     return done;
+  }
+
+  RedundancyOfKinds redundancy(const PoseSet& kept) const {
+    const double parameters = options_.absorbed + effective_parameters(state_.outcome.normal, set_);
+    return redundancy_of_kinds(state_.chain, set_, kept, weights_of(kept, instrument_, state_.excess), parameters,
+                               options_.threads);
   }
 
   /// Alternates between noise level and parameters, under a redescending (Cauchy) loss.
@@ -251,20 +257,20 @@ class Fit {
     return {};
   }
 
-  /// A kind counts only where the instrument specifies its accuracy, with its share of the redundancy.
+  /// A kind counts only where the instrument specifies its accuracy, with its own redundancy.
   std::optional<double> normalised_chi2(PoseSet kept) const {
     VectorXd distances(static_cast<Eigen::Index>(state_.chain.fixtures.socket_distances.size()));
     write_socket_distances(state_.chain, no_columns_, distances, nullptr, 0);
-    double all = static_cast<double>(distances.size());
-    for (const ResidualKind& kind : residual_kinds()) all += kind.size * static_cast<double>(kind.count(kept));
+    const RedundancyOfKinds part_left = redundancy(kept);
     for_each_list(kept, [&]<class M>(std::vector<M>& list) {
       if (M::traits.sigma_of(*instrument_) <= 0.0) list.clear();
     });
     if (!has_measurements(kept)) return std::nullopt;
+    double left = 0.0;
+    for (const ResidualKind& kind : residual_kinds())
+      left += part_left[index(kind.kind)] * kind.size * static_cast<double>(kind.count(kept));
     const VectorXd r = weighted_residuals(scene(kept), weights_of(kept, *instrument_));
-    const double left = 1.0 - (options_.absorbed + effective_parameters(state_.outcome.normal, set_)) / all;
-    const double redundancy = std::max(1.0, left * static_cast<double>(r.size() + distances.size()));
-    return (r.squaredNorm() + distances.squaredNorm()) / redundancy;
+    return (r.squaredNorm() + distances.squaredNorm()) / std::max(1.0, left + static_cast<double>(distances.size()));
   }
 
   void describe_parameters(Estimate& estimate) const {

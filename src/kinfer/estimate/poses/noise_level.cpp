@@ -74,8 +74,8 @@ void replace(Blocks& blocks, int index, const ConditionalError& by) {
 
 /// With correlated points and orientations, each hides small errors behind the shared one: points are conditioned on
 /// the orientation, then orientations on the point with the excess found for it.
-void estimate_pose_noise(const Weights& specified, const PoseSet& data, double left, Blocks& points, Blocks& turns,
-                         ExcessNoise& excess) {
+void estimate_pose_noise(const Weights& specified, const PoseSet& data, const RedundancyOfKinds& redundancy,
+                         Blocks& points, Blocks& turns, ExcessNoise& excess) {
   Blocks conditioned_points = points;
   for (const PoseCoupling& c : specified.couplings) {
     const OrientationMeasurement& turn = data.orientations[c.orientation];
@@ -84,7 +84,8 @@ void estimate_pose_noise(const Weights& specified, const PoseSet& data, double l
                          in_world(points, c.point, data.points[c.point].axes), *turn.covariance_with_point));
   }
   double& of_points = excess.of[index(kind_of<PointMeasurement>)];
-  of_points = excess_of(conditioned_points.residuals, conditioned_points.sd, 3, left);
+  of_points =
+      excess_of(conditioned_points.residuals, conditioned_points.sd, 3, redundancy[index(kind_of<PointMeasurement>)]);
   for (const PoseCoupling& c : specified.couplings) {
     const OrientationMeasurement& turn = data.orientations[c.orientation];
     ConditionalError point = in_world(points, c.point, data.points[c.point].axes);
@@ -92,37 +93,47 @@ void estimate_pose_noise(const Weights& specified, const PoseSet& data, double l
     replace(turns, c.orientation,
             condition_on(point, in_world(turns, c.orientation, turn.axes), turn.covariance_with_point->transpose()));
   }
-  excess.of[index(kind_of<OrientationMeasurement>)] = excess_of(turns.residuals, turns.sd, 3, left);
+  excess.of[index(kind_of<OrientationMeasurement>)] =
+      excess_of(turns.residuals, turns.sd, 3, redundancy[index(kind_of<OrientationMeasurement>)]);
 }
 
 }  // namespace
 
+RedundancyOfKinds equal_redundancy(const PoseSet& data, double parameters) {
+  double residuals = 0.0;
+  for (const ResidualKind& kind : residual_kinds()) residuals += kind.size * static_cast<double>(kind.count(data));
+  RedundancyOfKinds redundancy;
+  redundancy.fill(std::max(0.1, 1.0 - parameters / std::max(1.0, residuals)));
+  return redundancy;
+}
+
 ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::optional<Instrument>& instrument,
-                         double effective_parameters, int threads) {
+                         double parameters, int threads) {
+  return excess_noise(chain, data, instrument, equal_redundancy(data, parameters), threads);
+}
+
+ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::optional<Instrument>& instrument,
+                         const RedundancyOfKinds& redundancy, int threads) {
   const ParameterSet nothing;
   const EvaluatedPoses at = evaluate_poses(chain, nothing, data, Derivative::no, threads);
   const FixtureColumns columns = fixture_columns(chain, nothing);
-  return excess_noise({chain, data, at, columns}, instrument, effective_parameters);
+  return excess_noise({chain, data, at, columns}, instrument, redundancy);
 }
 
 ExcessNoise excess_noise(const ResidualContext& scene, const std::optional<Instrument>& instrument,
-                         double effective_parameters) {
+                         const RedundancyOfKinds& redundancy) {
   const PoseSet& data = scene.data;
-  double rows = 0.0;
-  for (const ResidualKind& kind : residual_kinds()) rows += kind.size * static_cast<double>(kind.count(data));
-  // Each determined parameter absorbs one residual; at least a tenth is kept if there is hardly any redundancy.
-  const double left = std::max(0.1, 1.0 - effective_parameters / rows);
   const Weights specified = weights_of(data, instrument.value_or(Instrument{}));
   ExcessNoise excess;
   std::array<Blocks, measurement_kinds> blocks;
   for (const ResidualKind& kind : residual_kinds()) {
     const auto k = index(kind.kind);
     blocks[k] = {residuals_of(kind, scene), specified.of(kind.kind)};
-    excess.of[k] = excess_of(blocks[k].residuals, blocks[k].sd, kind.size, left);
+    excess.of[k] = excess_of(blocks[k].residuals, blocks[k].sd, kind.size, redundancy[k]);
   }
+  const auto points = index(kind_of<PointMeasurement>), turns = index(kind_of<OrientationMeasurement>);
   if (!specified.couplings.empty())
-    estimate_pose_noise(specified, data, left, blocks[index(kind_of<PointMeasurement>)],
-                        blocks[index(kind_of<OrientationMeasurement>)], excess);
+    estimate_pose_noise(specified, data, redundancy, blocks[points], blocks[turns], excess);
   return excess;
 }
 

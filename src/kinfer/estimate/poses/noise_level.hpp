@@ -17,13 +17,20 @@ struct ExcessNoise {
   std::array<double, measurement_kinds> of{};
 };
 
-/// Estimated from the median block of each kind, hence robust against a minority of outliers. `effective_parameters`:
-/// number of parameters determined by the data, by which the redundancy is reduced.
-ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::optional<Instrument>& instrument,
-                         double effective_parameters, int threads = 1);
-/// The same at poses that are known.
+/// Redundancy of each kind over its number of residuals: the part of their squares that the parameters leave.
+using RedundancyOfKinds = std::array<double, measurement_kinds>;
+
+/// The same of all kinds: each parameter absorbs one residual. At least a tenth, if there is hardly any redundancy.
+RedundancyOfKinds equal_redundancy(const PoseSet& data, double parameters);
+
+/// Estimated from the median block of each kind, hence robust against a minority of outliers.
 ExcessNoise excess_noise(const ResidualContext& scene, const std::optional<Instrument>& instrument,
-                         double effective_parameters);
+                         const RedundancyOfKinds& redundancy);
+/// The same of a chain, with equal redundancy.
+ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::optional<Instrument>& instrument,
+                         double parameters, int threads = 1);
+ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::optional<Instrument>& instrument,
+                         const RedundancyOfKinds& redundancy, int threads = 1);
 
 Weights weights_of(const PoseSet& data, const std::optional<Instrument>& instrument, const ExcessNoise& excess);
 
