@@ -98,6 +98,31 @@ TEST(Facts, ASurveyedPointThatTheOthersContradictIsNamedAndNotUsed) {
   for (int i = 0; i < 3; ++i) EXPECT_LT(std::abs(tip.xyz[i] - tip_in_sensor[i]), 4.0 * tip.sd[i]) << i;
 }
 
+/// The distances between neighbouring pins.
+MachineMeasurements taped_links(double sd) {
+  MachineMeasurements facts;
+  for (const LinkTruth& link : machine_truth(excavator().machine, excavator().motion).links)
+    facts.tapes.push_back({link.from, link.to, link.length, sd, {}});
+  return facts;
+}
+
+TEST(Facts, ATapeThatTheRecordingContradictsIsNamedAndNotUsed) {
+  MachineMeasurements facts = surveyed_tip();
+  facts.tapes = taped_links(2e-3).tapes;
+  facts.tapes[1].length += 0.06;
+  const auto result = refined(facts);
+  ASSERT_TRUE(result) << result.error().what;
+  const auto is_outlier = [](const Finding& f) { return f.kind == FindingKind::gross_outliers; };
+  ASSERT_EQ(std::ranges::count_if(result->findings, is_outlier), 1);
+  const Finding& wrong = *std::ranges::find_if(result->findings, is_outlier);
+  EXPECT_EQ(wrong.values.text("facts"), "tapes");
+  EXPECT_EQ(wrong.rows, std::vector<int>{1});
+  EXPECT_TRUE(wrong.applied);
+  EXPECT_NEAR(wrong.values.number("distance"), 0.06, 5e-3);
+  const PointEstimate& tip = result->places[0];
+  for (int i = 0; i < 3; ++i) EXPECT_LT(std::abs(tip.xyz[i] - tip_in_sensor[i]), 4.0 * tip.sd[i]) << i;
+}
+
 /// Largest error of a distance between neighbouring pins [m].
 double largest_link_error(const Refinement& refined, const MachineTruth& truth) {
   std::vector<JointEstimate> joints;
@@ -116,10 +141,9 @@ double largest_link_error(const Refinement& refined, const MachineTruth& truth) 
 TEST(Facts, ATapeBetweenPinsOutweighsTheSensors) {
   const MachineTruth truth = machine_truth(excavator().machine, excavator().motion);
   constexpr double tape_sd = 5e-5;
-  MachineMeasurements facts;
-  for (const LinkTruth& link : truth.links) facts.tapes.push_back({link.from, link.to, link.length, tape_sd, {}});
-  const auto without = refined({}), with = refined(facts);
+  const auto without = refined({}), with = refined(taped_links(tape_sd));
   ASSERT_TRUE(without && with);
+  EXPECT_TRUE(with->findings.empty());
   EXPECT_LT(largest_link_error(*with, truth), 4.0 * tape_sd);
   EXPECT_GT(largest_link_error(*without, truth), 6.0 * tape_sd);
 }

@@ -20,7 +20,7 @@
 #include "kinfer/identify/refinement/joints/refined_joints.hpp"
 #include "kinfer/identify/refinement/scales/instrument_scales.hpp"
 #include "kinfer/identify/refinement/scales/scale_findings.hpp"
-#include "kinfer/identify/refinement/wrong_surveys.hpp"
+#include "kinfer/identify/refinement/wrong_facts.hpp"
 #include "kinfer/inertial/rest/rest.hpp"
 #include "kinfer/inertial/sensor_grading.hpp"
 
@@ -63,6 +63,27 @@ AssumedScale assumed_scale(const InsRecording& recording, const RefinementOption
     return rest_periods(sensor, recording.time(sensor)).empty();
   });
   return is_guess ? AssumedScale{grade.gyroscope.scale_sd, grade.accelerometer.scale_sd} : AssumedScale{};
+}
+
+/// What deviates from its stated accuracy.
+struct Deviations {
+  ScaleReview scales;
+  std::vector<Finding> wrong_facts;
+};
+
+/// A wrong fact may pass for scale errors: without it they are reviewed again. The other way round, the scales come
+/// first: a sound tape contradicts a recording whose clock runs fast.
+Deviations find_deviations(InsFacts& facts, const RefinementTask& task, RefinementFit& fitted,
+                           const Observer& observer) {
+  Deviations found;
+  found.scales = refit_deviant_scales(task, fitted, observer);
+  found.wrong_facts = leave_out_wrong_facts(facts, task, fitted);
+  if (found.scales.empty() || std::ranges::none_of(found.wrong_facts, &Finding::applied)) return found;
+  InsProblem& problem = fitted.setup.problem;
+  problem.scale_factors.clear();
+  fitted.fit = fit_ins(problem, fitted.fit.unknowns, task.options, observer);
+  found.scales = refit_deviant_scales(task, fitted, observer);
+  return found;
 }
 
 /// Whether a clock is wrong by so much that the caller will correct it and fit again.
@@ -137,8 +158,7 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
     return forward_error(checked.error());
   Refinement result;
   RefinementFit fitted = fit_full_bandwidth(task, std::move(setup), options, observer);
-  const std::vector<Finding> wrong_surveys = leave_out_wrong_surveys(facts, task, fitted);
-  const ScaleReview scales = refit_deviant_scales(task, fitted, observer);
+  const Deviations deviations = find_deviations(facts, task, fitted, observer);
   result.negative_log_likelihood = negative_log_likelihood(fitted.setup.problem, fitted.fit.cost);
   std::vector<FoundLoop> loops;
   if (options.loops == LoopTreatment::closed) loops = close_loops(fitted.setup.problem, fitted.fit, options.fit);
@@ -165,9 +185,9 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
                                   assumed_scale(recording, options, grade), options.fit.threads);
   if (!covariance) return error("the continuous-time fit has no covariance: the recording is not informative enough");
   result.covariance = covariance->model;
-  add_clock_rate(scales, result.fit, *covariance, model_error);
-  result.findings = scale_findings(scales, motion, result.fit, *covariance);
-  result.findings.insert(result.findings.begin(), wrong_surveys.begin(), wrong_surveys.end());
+  add_clock_rate(deviations.scales, result.fit, *covariance, model_error);
+  result.findings = scale_findings(deviations.scales, motion, result.fit, *covariance);
+  result.findings.insert(result.findings.begin(), deviations.wrong_facts.begin(), deviations.wrong_facts.end());
   result.clocks = refined_clocks(fitted.setup.problem, result.fit, *covariance);
   result.joints = make_joints(task, fitted, *covariance, model_error);
   result.tracking = hand_over(task, fitted, result,

@@ -113,17 +113,27 @@ std::string joint_lag_remedy(const Finding& f) {
              : phrase(name(f.kind), "read joints and points before the arm moves on");
 }
 
-/// Of points that were surveyed beside a recording.
-std::string wrong_survey(const Finding& f) {
+bool is_about_tapes(const Finding& f) {
+  return f.values.text("facts") == "tapes";
+}
+
+/// Of tapes and surveyed points beside a recording.
+std::string wrong_fact(const Finding& f) {
+  const double distance = value_in_mm(f, "distance"), sigma = value_in_mm(f, "sigma");
+  const char* end = f.applied ? "it was not used" : "which of the facts is wrong cannot be told";
+  if (is_about_tapes(f))
+    return phrase(name(f.kind),
+                  "tape {} differs by {:.0f} mm from what the recording and the other facts say, at a stated sigma of "
+                  "{:.3g} mm: {}",
+                  f.rows[0] + 1, distance, sigma, end);
   return phrase(name(f.kind),
-                "surveyed point {} lies {:.0f} mm from where the recording and the other points put it, at a stated "
+                "surveyed point {} lies {:.0f} mm from where the recording and the other facts put it, at a stated "
                 "sigma of {:.3g} mm: {}",
-                f.rows[0] + 1, value_in_mm(f, "distance"), value_in_mm(f, "sigma"),
-                f.applied ? "it was not used" : "which of the points is wrong cannot be told");
+                f.rows[0] + 1, distance, sigma, end);
 }
 
 std::string gross_outliers(const Finding& f) {
-  if (f.values.has("facts")) return wrong_survey(f);
+  if (f.values.has("facts")) return wrong_fact(f);
   const bool one = f.rows.size() == 1;
   std::vector<OutlierReason> reasons;
   const std::vector<std::string>& kinds = f.values.texts("kinds");
@@ -134,7 +144,8 @@ std::string gross_outliers(const Finding& f) {
 }
 std::string gross_outliers_remedy(const Finding& f) {
   if (f.values.has("facts"))
-    return phrase(name(f.kind), "survey the point again, or correct it in the file of --facts");
+    return phrase(name(f.kind), "{} again, or correct it in the file of --facts",
+                  is_about_tapes(f) ? "measure the length" : "survey the point");
   return phrase(name(f.kind), "calibrate rejects such rows as outliers; look at them");
 }
 

@@ -87,10 +87,11 @@ inline constexpr double clock_suspicion = 4.0;
 /// Standard deviations of a clock error from which the free clocks are kept; smaller keeps more. Data not recorded.
 KINFER_THRESHOLD(identify, clock_certainty, 6.0);
 
-/// Share of surveyed points that are wrong: another point, a digit, a target that moved. Larger doubts more of them.
-inline constexpr double wrong_survey_prior = 0.01;
+/// Share of surveyed points and tape lengths that are wrong: another point, a digit, a target that moved. Larger doubts
+/// more of them.
+inline constexpr double wrong_fact_prior = 0.01;
 
-/// Log odds from which a surveyed point is wrong, and from which it is this one: 20 to 1.
-inline constexpr double clear_survey_log_odds = 3.0;
+/// Log odds from which such a fact is wrong, and from which it is this one: 20 to 1.
+inline constexpr double clear_fact_log_odds = 3.0;
 
 }  // namespace kinfer::identify
