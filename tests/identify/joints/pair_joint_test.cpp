@@ -107,6 +107,15 @@ TEST(JointAboutPoint, HasTheCentreInBothSensorsAndStartsWhereTheMotionBegins) {
   EXPECT_EQ(found.joint.sd.along_axis, 1.0) << "not estimated";
 }
 
+TEST(JointAboutPoint, OfARevoluteJointIsThatWithoutANote) {
+  CentredPair pair;
+  pair.evidence.type = EstimatedJointType::revolute;
+  const JointResult found = joint_about_point(pair.motion, pair.tree, 0, 1, pair.evidence);
+  EXPECT_EQ(found.joint.type, EstimatedJointType::revolute);
+  EXPECT_EQ(found.dh.size(), 3U);
+  EXPECT_TRUE(found.notes.empty());
+}
+
 TEST(JointAboutPoint, OfASphericalJointHasThreeVariables) {
   CentredPair pair;
   pair.evidence.type = EstimatedJointType::spherical;
@@ -205,6 +214,20 @@ TEST(SearchLinks, SensorsOfOneBodyShareRigidJoints) {
   const auto joints = machine.searched({});
   ASSERT_TRUE(joints);
   for (const JointResult& joint : *joints) EXPECT_EQ(joint.joint.type, EstimatedJointType::rigid);
+}
+
+TEST(SearchLinks, AJointThatTurnsTooLittleForASearchKeepsItsType) {
+  SerialMachine machine;
+  const auto parent = freely_moving();
+  const auto child = propagate(parent, test::general_hinge(), std::vector{test::wave(0.015, 0.9, 1.0)});
+  machine.ordered.motion = test::recorded_motion({measured_segment("a", parent), measured_segment("b", child)});
+  const auto tree = segment_tree(machine.ordered.motion, "a");
+  ASSERT_TRUE(tree);
+  machine.ordered.tree = *tree;
+  const auto joints = machine.searched({.engine = Enumeration{.rows = 60}});
+  ASSERT_TRUE(joints) << joints.error().what;
+  EXPECT_EQ((*joints)[0].joint.type, EstimatedJointType::revolute);
+  EXPECT_FALSE((*joints)[0].search);
 }
 
 TEST(SearchLinks, AJointThatHardlyMovesIsAnErrorWithItsSensor) {

@@ -11,13 +11,20 @@ namespace {
 constexpr JointStandardDeviation not_estimated{{1.0, 1.0}, {1.0, 1.0}, {1.0, 1.0}, {1.0, 1.0}, 1.0};  // [rad], [m]
 
 JointResult pair_result(const RecordedMotion& motion, std::size_t child, JointEstimate joint,
-                        const JointGeometry& geometry, IdentificationNoteKind note) {
+                        const JointGeometry& geometry, std::optional<IdentificationNoteKind> note) {
   JointResult result;
   result.dh = canonical_dh_rows(joint, {geometry, {}});
-  result.notes = {{note, {{"parent", joint.parent}, {"child", joint.child}}}};
+  if (note) result.notes = {{*note, {{"parent", joint.parent}, {"child", joint.child}}}};
   result.states = measured_states(motion.segments[child]);
   result.joint = std::move(joint);
   return result;
+}
+
+/// None of a revolute joint, which most joints are.
+std::optional<IdentificationNoteKind> note_on(EstimatedJointType type) {
+  if (type == EstimatedJointType::universal) return IdentificationNoteKind::universal_joint;
+  if (type == EstimatedJointType::spherical) return IdentificationNoteKind::spherical_joint;
+  return std::nullopt;
 }
 
 Mat3 initial_relative_rotation(const RecordedMotion& motion, std::size_t parent, std::size_t child) {
@@ -76,9 +83,7 @@ JointResult joint_about_point(const RecordedMotion& motion, const SegmentTree& t
   joint.point_in_parent = geometry.point_in_parent;
   joint.point_in_child = geometry.point_in_child;
   joint.sd = not_estimated;
-  return pair_result(motion, child, std::move(joint), geometry,
-                     evidence.type == EstimatedJointType::universal ? IdentificationNoteKind::universal_joint
-                                                                    : IdentificationNoteKind::spherical_joint);
+  return pair_result(motion, child, std::move(joint), geometry, note_on(evidence.type));
 }
 
 JointResult rigid_joint(const RecordedMotion& motion, std::size_t parent, std::size_t child) {

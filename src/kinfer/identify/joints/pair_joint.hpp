@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joints that are not searched: prismatic, universal, spherical and rigid ones, from their pair of sensors alone.
+// Joints that are not searched: prismatic, universal, spherical and rigid ones, and revolute ones that turn by too
+// little for a search, from their pair of sensors alone.
 #pragma once
 
 #include "kinfer/identify/joints/joint_result.hpp"
@@ -11,7 +12,7 @@ namespace kinfer::identify {
 JointResult prismatic_joint(const RecordedMotion& motion, std::size_t parent, std::size_t child,
                             const JointTypeEvidence& evidence);
 
-/// Universal or spherical, as in the evidence: the pair's common point is the joint's centre.
+/// Revolute, universal or spherical, as in the evidence: the pair's common point is the joint's centre.
 JointResult joint_about_point(const RecordedMotion& motion, const SegmentTree& tree, std::size_t parent,
                               std::size_t child, const JointTypeEvidence& evidence);
 

@@ -26,8 +26,8 @@ Result<JointResult> find_joint(const OrderedMotion& ordered, std::size_t child, 
   const JointVariableKind terminals = terminals_of(options.engine);
   const auto signals =
       find_joint_signals(motion, parent, child, {.terminals = terminals, .smoothing = options.smoothing});
-  if (evidence.type == EstimatedJointType::rigid || signals.empty()) return rigid_joint(motion, parent, child);
-  if (evidence.type != EstimatedJointType::revolute)
+  if (evidence.type == EstimatedJointType::rigid) return rigid_joint(motion, parent, child);
+  if (evidence.type != EstimatedJointType::revolute || signals.empty())
     return joint_about_point(motion, ordered.tree, parent, child, evidence);
   const std::string& name = motion.segments[child].name;
   const auto rows = informative_rows(motion, parent, child, terminals);
