@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include "kinfer/geometry/rotation.hpp"
 #include "kinfer/identify/structure/thresholds.hpp"
+#include "kinfer/identify/structure/universal_axes.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::identify {
@@ -68,48 +67,6 @@ std::array<double, 3> largest_first(const VectorXd& squares) {
   return {root(2), root(1), root(0)};
 }
 
-/// Two axes, one fixed in each segment, that best span the relative angular velocity: alternately each is the direction
-/// that minimises ω · (e₁ × R e₂) with the other fixed.
-struct TwoAxes {
-  Vec3 in_parent, in_child;
-  double angle = 0.0, deviation = 0.0;  // [rad] between both: mean and sd
-};
-
-/// Mean and standard deviation of the angle between two axes: constant in a universal joint.
-void measure_angle(TwoAxes& axes, const std::vector<Mat3>& rotations) {
-  const auto n = static_cast<double>(rotations.size());
-  std::vector<double> angles;
-  for (const Mat3& rotation : rotations) angles.push_back(angle_between(axes.in_parent, rotation * axes.in_child));
-  axes.angle = std::accumulate(angles.begin(), angles.end(), 0.0) / n;
-  double square = 0.0;
-  for (const double angle : angles) square += (angle - axes.angle) * (angle - axes.angle) / n;
-  axes.deviation = std::sqrt(square);
-}
-
-TwoAxes two_axes(const RelativeMotion& relative, Vec3 in_parent) {
-  constexpr int rounds = 30;
-  const std::size_t n = relative.angular_velocity.size();
-  Vec3 in_child = Vec3::UnitZ();
-  for (int round = 0; round < rounds; ++round) {
-    in_child = second_moment(n, [&](std::size_t i) {
-                 return Vec3(relative.rotation[i].transpose() * relative.angular_velocity[i].cross(in_parent));
-               }).vectors.col(0);
-    in_parent = second_moment(n, [&](std::size_t i) {
-                  return Vec3((relative.rotation[i] * in_child).cross(relative.angular_velocity[i]));
-                }).vectors.col(0);
-  }
-  TwoAxes axes{in_parent, in_child};
-  measure_angle(axes, relative.rotation);
-  return axes;
-}
-
-TwoAxes best_two_axes(const RelativeMotion& relative, const Mat3& starts) {
-  TwoAxes best = two_axes(relative, starts.col(0));
-  for (int k = 1; k < 3; ++k)
-    if (const TwoAxes other = two_axes(relative, starts.col(k)); other.deviation < best.deviation) best = other;
-  return best;
-}
-
 /// Acceleration of the child minus that of the parent, in the parent: translation, lever-arm terms not removed.
 std::vector<Vec3> acceleration_differences(const SegmentMotion& parent, const SegmentMotion& child,
                                            const std::vector<std::size_t>& rows) {
@@ -126,7 +83,7 @@ struct PairMotion {
   RelativeMotion relative;
   double heading_error = 0.0;  // [rad] behind gaps of either sensor
   SymmetricEigen rates;        // mean squares, least first
-  TwoAxes two_axes;
+  UniversalAxes two_axes;
   JointTypeEvidence evidence;
 };
 
@@ -142,7 +99,7 @@ PairMotion pair_motion(const RecordedMotion& motion, const SegmentTree& tree, st
   j.evidence.axis_in_child = second_moment(rows.size(), [&](std::size_t i) {
                                return Vec3(j.relative.rotation[i].transpose() * j.relative.angular_velocity[i]);
                              }).vectors.col(2);
-  j.two_axes = best_two_axes(j.relative, j.rates.vectors);
+  j.two_axes = universal_axes(j.relative.rotation, j.rates.vectors);
   if (!motion.segments[parent].restarts.empty() || !motion.segments[child].restarts.empty())
     j.heading_error = heading_error_behind_gaps;
   return j;
