@@ -83,10 +83,17 @@ std::vector<Case> all_cases(int seeds) {
   return cases;
 }
 
+/// The most probable type of a joint.
+struct StatedType {
+  double probability = 0.0;
+  bool is_correct = false;
+};
+
 struct OrderOutcome {
   bool is_correct = false;
   double margin = 0.0;
   int joints = 0, correct_types = 0;
+  std::vector<StatedType> types{};
 };
 
 OrderOutcome evaluate_order(const Case& c) {
@@ -107,11 +114,28 @@ OrderOutcome evaluate_order(const Case& c) {
       outcome.is_correct = false;
       continue;
     }
-    const bool is_prismatic = truth->type == JointType::prismatic;
-    outcome.correct_types +=
-        types[i - 1].type == (is_prismatic ? EstimatedJointType::prismatic : EstimatedJointType::revolute) ? 1 : 0;
+    const EstimatedJointType true_type =
+        truth->type == JointType::prismatic ? EstimatedJointType::prismatic : EstimatedJointType::revolute;
+    const JointTypeEvidence& type = types[i - 1];
+    outcome.types.push_back({type.probabilities->of(type.type), type.type == true_type});
+    outcome.correct_types += type.type == true_type ? 1 : 0;
   }
   return outcome;
+}
+
+/// Types that are stated with a probability p are right in a share p.
+void print_reliability(const std::vector<OrderOutcome>& outcomes) {
+  constexpr double limits[] = {0.0, 0.6, 0.8, 0.9, 0.95, 0.99, 0.999, 1.0};
+  fmt::print("type stated with,joints,mean of these,right\n");
+  for (std::size_t k = 0; k + 1 < std::size(limits); ++k) {
+    double stated = 0.0;
+    int joints = 0, right = 0;
+    for (const OrderOutcome& outcome : outcomes)
+      for (const StatedType& type : outcome.types)
+        if (type.probability > limits[k] && type.probability <= limits[k + 1])
+          stated += type.probability, ++joints, right += type.is_correct ? 1 : 0;
+    if (joints > 0) fmt::print("{} to {},{},{:.4f},{}\n", limits[k], limits[k + 1], joints, stated / joints, right);
+  }
 }
 
 void write_order(const std::filesystem::path& folder, int seeds) {
@@ -135,6 +159,7 @@ void write_order(const std::filesystem::path& folder, int seeds) {
   }
   fmt::print("order correct in {} of {} logs; wrong with a margin above 2: {}; joint types correct: {} of {}\n",
              correct, cases.size(), confident_errors, types, joints);
+  print_reliability(outcomes);
 }
 
 /// One engine on one link.

@@ -75,6 +75,10 @@ TEST(JointVerdicts, EachDoubtConcernsItsJointAlone) {
          j.result.notes = {{IdentificationNoteKind::unexplained_motion,
                             {{"sensor", "c"}, {"force_ratio", 4.0}, {"rate_ratio", 12.0}, {"force_noise", 0.1}}}};
        }},
+      {JointDoubtKind::uncertain_type, JointUsability::use_with_care,
+       [](Judged& j) {
+         j.result.joints[1].type_probabilities = {{.of_type = {0.72, 0.0, 0.279, 0.001, 0.0}}};
+       }},
       {JointDoubtKind::inaccurate, JointUsability::use_with_care,
        [](Judged& j) { j.result.forecast[1].is_sufficient = false; }}};
   for (const Doubtful& doubtful : all) {
@@ -86,6 +90,18 @@ TEST(JointVerdicts, EachDoubtConcernsItsJointAlone) {
     EXPECT_EQ(verdicts[1].doubts[0].kind, doubtful.kind) << name(verdicts[1].doubts[0].kind);
     EXPECT_EQ(verdicts[1].usability, doubtful.usability) << name(doubtful.kind);
   }
+}
+
+TEST(JointVerdicts, AnUncertainTypeNamesTheTypesThatArePossible) {
+  Judged judged = three_segments();
+  judged.result.joints[0].type_probabilities = {{.of_type = {0.96, 0.0, 0.04, 0.0, 0.0}}};
+  judged.result.joints[1].type_probabilities = {{.of_type = {0.28, 0.0, 0.72, 0.0, 0.0}}};
+  judged.result.joints[1].type = EstimatedJointType::universal;
+  const auto verdicts = judged.verdicts();
+  EXPECT_EQ(verdicts[0].usability, JointUsability::use);
+  ASSERT_EQ(verdicts[1].doubts.size(), 1U);
+  EXPECT_EQ(verdicts[1].doubts[0].values.texts("types"), (std::vector<std::string>{"universal", "revolute"}));
+  EXPECT_EQ(verdicts[1].doubts[0].values.numbers("probabilities"), (std::vector{0.72, 0.28}));
 }
 
 TEST(JointVerdicts, AWeakConnectionInAnUnsafeOrderForbidsUse) {

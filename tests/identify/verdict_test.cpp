@@ -20,7 +20,7 @@ TEST(Usability, OnlyAnUncorrectedFaultForbidsUse) {
   const std::vector<JointVerdict> accurate{{.joint = "a-b"}};
   for (const Severity severity : {Severity::note, Severity::warning, Severity::fault})
     for (const bool applied : {false, true})
-      EXPECT_EQ(usability({separated(severity, applied)}, accurate),
+      EXPECT_EQ(usability({separated(severity, applied)}, {}, accurate),
                 severity == Severity::fault && !applied ? Usability::do_not_use : Usability::use);
 }
 
@@ -33,11 +33,11 @@ TEST(Usability, IsThatOfTheWorstJoint) {
       wrong{.joint = "d-e",
             .usability = JointUsability::do_not_use,
             .doubts = {{JointDoubtKind::not_connected, {{"gain", 0.1}, {"needed", 5.0}}}}};
-  EXPECT_EQ(usability({}, {good, inaccurate}), Usability::use_with_care);
-  EXPECT_EQ(usability({}, {good, never_moved}), Usability::use);
-  EXPECT_EQ(usability({}, {good, inaccurate, wrong}), Usability::do_not_use);
-  EXPECT_EQ(usability({}, {never_moved}), Usability::do_not_use) << "nothing was identified";
-  EXPECT_EQ(usability({}, {}), Usability::use);
+  EXPECT_EQ(usability({}, {}, {good, inaccurate}), Usability::use_with_care);
+  EXPECT_EQ(usability({}, {}, {good, never_moved}), Usability::use);
+  EXPECT_EQ(usability({}, {}, {good, inaccurate, wrong}), Usability::do_not_use);
+  EXPECT_EQ(usability({}, {}, {never_moved}), Usability::do_not_use) << "nothing was identified";
+  EXPECT_EQ(usability({}, {}, {}), Usability::use);
 }
 
 TEST(Usability, OfJointsThatAreAllWeaklyConnectedIsNone) {
@@ -45,8 +45,21 @@ TEST(Usability, OfJointsThatAreAllWeaklyConnectedIsNone) {
                           .usability = JointUsability::use_with_care,
                           .doubts = {{JointDoubtKind::weakly_connected, {{"gain", 3.0}, {"needed", 5.0}}}}},
       good{.joint = "b-c"};
-  EXPECT_EQ(usability({}, {weak, weak}), Usability::do_not_use);
-  EXPECT_EQ(usability({}, {weak, good}), Usability::use_with_care);
+  EXPECT_EQ(usability({}, {}, {weak, weak}), Usability::do_not_use);
+  EXPECT_EQ(usability({}, {}, {weak, good}), Usability::use_with_care);
+}
+
+JointEstimate revolute_with(double probability) {
+  JointEstimate joint{.parent = "a", .child = "b"};
+  joint.type_probabilities.emplace().of(EstimatedJointType::revolute) = probability;
+  joint.type_probabilities->of(EstimatedJointType::spherical) = 1.0 - probability;
+  return joint;
+}
+
+TEST(Usability, NeedsTheTypesOfAllJointsTogether) {
+  const std::vector<JointVerdict> verdicts(3, JointVerdict{.joint = "a-b"});
+  EXPECT_EQ(usability({}, std::vector(3, revolute_with(0.99)), verdicts), Usability::use);
+  EXPECT_EQ(usability({}, std::vector(3, revolute_with(0.97)), verdicts), Usability::use_with_care);
 }
 
 MotionEvidence motion_of_two_sensors() {
@@ -91,7 +104,7 @@ TEST(IdentificationVerdict, PutsAFaultFirstAndAWarningLast) {
   EXPECT_TRUE(warned.ends_with("it is left out"));
   EXPECT_EQ(warned.find("ins7 shares"), warned.rfind("ins7 shares")) << "a note is not part of the verdict";
   result.findings = {separated(Severity::fault, false)};
-  result.usability = usability(result.findings, result.verdicts);
+  result.usability = usability(result.findings, result.joints, result.verdicts);
   EXPECT_TRUE(words::identification_verdict(result).starts_with("Do not use as it is: ins7 shares no joint"));
 }
 

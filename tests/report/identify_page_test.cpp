@@ -54,6 +54,12 @@ TEST(IdentificationPage, BeginsWithWhatChangedWhereAChainWasUpdated) {
   EXPECT_TRUE(shows(body, "17.50"));
 }
 
+TEST(IdentificationPage, StatesHowProbableATypeIs) {
+  const std::string body = joints_section(found()).body;
+  EXPECT_TRUE(shows(body, "spherical, 70.0 %"));
+  EXPECT_TRUE(shows(body, "<td>revolute</td>")) << "not weighed";
+}
+
 TEST(IdentificationPage, TellsWhetherTheOrderIsSafe) {
   IdentificationEvidence e = found();
   EXPECT_TRUE(shows(identification_page(e).first, "is safe: the next best order fits 5.50 times worse"));

@@ -52,6 +52,7 @@ inline std::vector<JointEstimate> rich_joints() {
   hinge.unobservable_in_child = {Vec3::UnitX()};
   JointEstimate ball{.parent = "s<1>", .child = "s2", .type = EstimatedJointType::spherical};
   ball.azimuth_unobservable = true;
+  ball.type_probabilities = {{.of_type = {0.2, 0.0, 0.1, 0.7, 0.0}}};
   return {hinge, ball};
 }
 

@@ -205,9 +205,22 @@ TEST(IdentificationVerdict, BeginsWithTheRecommendation) {
 }
 
 FactValues doubt_values() {
-  return {{"gain", 0.3},        {"needed", 5.0}, {"begin", 4.0},      {"end", 27.0},         {"sensor", "ins3"},
-          {"distance", 65.0},   {"reach", 15.0}, {"first", "ins1"},   {"second", "ins3"},    {"margin", 1.2},
-          {"safe_margin", 2.0}, {"ratio", 12.0}, {"line_sd", 0.0123}, {"direction_sd", 0.02}};
+  return {{"gain", 0.3},
+          {"needed", 5.0},
+          {"begin", 4.0},
+          {"end", 27.0},
+          {"sensor", "ins3"},
+          {"distance", 65.0},
+          {"reach", 15.0},
+          {"first", "ins1"},
+          {"second", "ins3"},
+          {"margin", 1.2},
+          {"safe_margin", 2.0},
+          {"ratio", 12.0},
+          {"line_sd", 0.0123},
+          {"direction_sd", 0.02},
+          {"types", std::vector<std::string>{"revolute", "universal"}},
+          {"probabilities", std::vector{0.72, 0.28}}};
 }
 
 TEST(JointDoubtWords, EveryKindHasASentenceInUsersUnits) {
@@ -218,7 +231,8 @@ TEST(JointDoubtWords, EveryKindHasASentenceInUsersUnits) {
     all += sentence + "\n";
   }
   for (const char* part : {"its point is 65 m from ins3", "± 12.3 mm and ± 20.0 mrad", "from 4 to 27 s only",
-                           "ins1 and ins3 may be joined instead (margin 1.20, safe is 2)"})
+                           "ins1 and ins3 may be joined instead (margin 1.20, safe is 2)",
+                           "its type is uncertain: revolute with 72 %, universal with 28 %"})
     EXPECT_NE(all.find(part), std::string::npos) << part << " in " << all;
 }
 
@@ -234,6 +248,23 @@ TEST(IdentificationVerdict, NamesTheRefusedJointFirstAndTheUsablePartNext) {
   EXPECT_TRUE(text.starts_with("Do not use as it is: b-c: a joint explains the motion no better")) << text;
   EXPECT_NE(text.find("of this, a-b may be used"), std::string::npos) << text;
   EXPECT_EQ(joint_usability_text(JointUsability::do_not_use), "do not use");
+}
+
+TEST(IdentificationVerdict, NamesUncertainTypes) {
+  Identification result;
+  JointEstimate joint{.parent = "a", .child = "b"};
+  joint.type_probabilities = {{.of_type = {0.72, 0.0, 0.28, 0.0, 0.0}}};
+  result.joints = {joint};
+  result.verdicts = {{.joint = "a-b",
+                      .usability = JointUsability::use_with_care,
+                      .doubts = {{JointDoubtKind::uncertain_type, doubt_values()}}}};
+  result.usability = Usability::use_with_care;
+  EXPECT_NE(
+      identification_verdict(result).find("joint types are uncertain: a-b is revolute with 72 %, universal with 28 %"),
+      std::string::npos);
+  joint.type_probabilities = {{.of_type = {0.97, 0.0, 0.03, 0.0, 0.0}}};
+  result.joints.assign(3, joint), result.verdicts.clear();
+  EXPECT_NE(identification_verdict(result).find("all joint types are right with 91 % only"), std::string::npos);
 }
 
 TEST(IdentificationVerdict, OneJointIsInTheSingular) {

@@ -63,12 +63,15 @@ ChainGeometry searched_geometry(const std::vector<JointResult>& links) {
   return geometry;
 }
 
-/// Segments without a connection move relative to each other, however small that seems beside errors of their own.
+/// Segments without a connection move relative to each other, however small that seems beside errors of their own; a
+/// type of theirs means nothing.
 std::vector<JointTypeEvidence> types_of(const OrderedMotion& ordered, const std::vector<PairConnection>& connections) {
   std::vector<JointTypeEvidence> types = joint_types(ordered.motion, ordered.tree);
-  for (std::size_t i = 0; i < types.size(); ++i)
-    if (types[i].type == EstimatedJointType::rigid && strength_of(connections[i].whole) == ConnectionStrength::none)
-      types[i].type = EstimatedJointType::spherical;
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    if (strength_of(connections[i].whole) != ConnectionStrength::none) continue;
+    if (types[i].type == EstimatedJointType::rigid) types[i].type = EstimatedJointType::spherical;
+    types[i].probabilities.reset();
+  }
   return types;
 }
 
@@ -136,6 +139,8 @@ Identification assemble_chain(const OrderedMotion& ordered, std::vector<JointRes
   Identification result;
   result.root = root.name;
   result.joints = geometry.joints;
+  for (std::size_t i = 0; i < result.joints.size(); ++i)
+    result.joints[i].type_probabilities = links[i].joint.type_probabilities;
   result.loops = geometry.loops;
   result.places = geometry.places;
   result.search_method = method_of(options.engine);
@@ -187,7 +192,7 @@ void draw_conclusions(Identification& result, const OrderedMotion& ordered,
   result.forecast = forecast(result.joints, result.target);
   result.prediction = summarise_prediction(result.motion);
   result.verdicts = joint_verdicts(result, ordered, connections);
-  result.usability = usability(result.findings, result.verdicts);
+  result.usability = usability(result.findings, result.joints, result.verdicts);
   withdraw_unconnected(result);
   result.advice = identification_advice(result);
 }

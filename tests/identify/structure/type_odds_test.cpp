@@ -28,7 +28,7 @@ const MotionDeviations revolute_joint = turning(11.0, 0.04, 0.02, 0.1, 0.8), bal
 
 std::vector<EstimatedJointType> types_of(const std::vector<MotionDeviations>& joints) {
   std::vector<EstimatedJointType> types;
-  for (const TypeProbabilities& p : type_probabilities(joints)) types.push_back(most_probable(p));
+  for (const JointTypeProbabilities& p : type_probabilities(joints)) types.push_back(most_probable(p));
   return types;
 }
 
@@ -43,7 +43,7 @@ TEST(TypeOdds, WhatAllJointsOfARecordingHaveIsErrorOfItsMounts) {
   EXPECT_EQ(types_of({on_foam, on_foam, on_foam, on_foam}), std::vector(4, revolute));
   const auto soft = type_probabilities(std::vector(4, on_foam))[0],
              among_rigid = type_probabilities(std::vector{revolute_joint, revolute_joint, revolute_joint, on_foam})[3];
-  EXPECT_GT(soft[2], among_rigid[2]) << "revolute";
+  EXPECT_GT(soft.of(revolute), among_rigid.of(revolute));
 }
 
 TEST(TypeOdds, AccelerationsAboveThoseOfTheOtherJointsAreASlider) {
@@ -58,9 +58,10 @@ TEST(TypeOdds, AccelerationsAboveThoseOfTheOtherJointsAreASlider) {
 }
 
 TEST(TypeOdds, ProbabilitiesSumToOne) {
-  for (const TypeProbabilities& p : type_probabilities(std::vector{revolute_joint, ball, universal_joint, clamped})) {
+  for (const JointTypeProbabilities& p :
+       type_probabilities(std::vector{revolute_joint, ball, universal_joint, clamped})) {
     double sum = 0.0;
-    for (const double probability : p) sum += probability;
+    for (const double probability : p.of_type) sum += probability;
     EXPECT_NEAR(sum, 1.0, 1e-9);
   }
   EXPECT_TRUE(type_probabilities({}).empty());

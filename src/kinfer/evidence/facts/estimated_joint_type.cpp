@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/evidence/facts/estimated_joint_type.hpp"
 
+#include <algorithm>
+
 namespace kinfer {
 
 std::string_view name(EstimatedJointType type) {
@@ -17,6 +19,11 @@ std::string_view name(EstimatedJointType type) {
       break;
   }
   return "rigid";
+}
+
+EstimatedJointType most_probable(const JointTypeProbabilities& probabilities) {
+  const auto& p = probabilities.of_type;
+  return static_cast<EstimatedJointType>(std::ranges::max_element(p) - p.begin());
 }
 
 }  // namespace kinfer

@@ -22,6 +22,16 @@ std::string joint_name(const JointEstimate& joint) {
   return joint.parent + "-" + joint.child;
 }
 
+double type_probability(const JointEstimate& joint) {
+  return joint.type_probabilities ? joint.type_probabilities->of(joint.type) : 1.0;
+}
+
+double probability_of_types(const std::vector<JointEstimate>& joints) {
+  double all = 1.0;
+  for (const JointEstimate& joint : joints) all *= type_probability(joint);
+  return all;
+}
+
 bool is_one_body(const std::vector<JointEstimate>& joints) {
   return std::ranges::all_of(joints, [](const JointEstimate& j) { return j.type == EstimatedJointType::rigid; });
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,8 @@ struct JointStandardDeviation {
 struct JointEstimate {
   std::string parent{}, child{};  ///< sensors; the parent is nearer to the root
   EstimatedJointType type = EstimatedJointType::revolute;
+  /// Of the types; none where the type was given, or not weighed: of two segments without a connection.
+  std::optional<JointTypeProbabilities> type_probabilities{};
   Vec3 axis_in_parent = Vec3::UnitZ(), axis_in_child = Vec3::UnitZ();  ///< unit
   Vec3 point_in_parent = Vec3::Zero(), point_in_child = Vec3::Zero();  ///< [m]
   JointStandardDeviation sd{};
@@ -59,6 +62,15 @@ std::string joint_name(const JointEstimate& joint);
 
 /// Whether no joint moves: all sensors are on one body.
 bool is_one_body(const std::vector<JointEstimate>& joints);
+
+/// Probability that the type is the stated one; 1 where it was not weighed.
+double type_probability(const JointEstimate& joint);
+
+/// The same of all types together.
+double probability_of_types(const std::vector<JointEstimate>& joints);
+
+/// Confidence at which types, lines and directions are wanted.
+inline constexpr double wanted_confidence = 0.95;
 
 /// Accuracy wanted of every joint, at 95 % confidence.
 struct AccuracyTarget {

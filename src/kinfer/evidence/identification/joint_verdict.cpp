@@ -35,6 +35,8 @@ std::string_view name(JointDoubtKind kind) {
       return "unsafe_order";
     case JointDoubtKind::unexplained_motion:
       return "unexplained_motion";
+    case JointDoubtKind::uncertain_type:
+      return "uncertain_type";
     case JointDoubtKind::inaccurate:
       break;
   }

@@ -28,6 +28,7 @@ enum class JointDoubtKind {
   not_moved,           ///< no values
   unsafe_order,        ///< first, second: the pair that would replace it; margin, safe_margin
   unexplained_motion,  ///< sensor, ratio: of the residual noise to the instrument's
+  uncertain_type,      ///< types, probabilities: of those that are possible, most probable first
   inaccurate,          ///< line_sd [m], direction_sd [rad]
 };
 std::string_view name(JointDoubtKind kind);  ///< "not_connected", ...

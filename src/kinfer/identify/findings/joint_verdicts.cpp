@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "kinfer/identify/findings/order_evidence.hpp"
 #include "kinfer/identify/findings/thresholds.hpp"
@@ -82,6 +83,24 @@ void doubt_residuals(const Identification& result, const JointEstimate& joint, D
   }
 }
 
+/// Types that are not possible at the wanted confidence are those that together have the rest of the probability.
+void doubt_type(const JointEstimate& joint, Doubts& doubts) {
+  if (type_probability(joint) >= wanted_confidence) return;
+  std::vector<std::pair<double, EstimatedJointType>> types;
+  for (std::size_t i = 0; i < joint.type_probabilities->of_type.size(); ++i)
+    types.emplace_back(joint.type_probabilities->of_type[i], static_cast<EstimatedJointType>(i));
+  std::ranges::sort(types, std::greater{});
+  std::vector<std::string> names;
+  std::vector<double> probabilities;
+  for (double sum = 0.0; const auto& [probability, type] : types) {
+    if (sum >= wanted_confidence) break;
+    sum += probability;
+    names.emplace_back(name(type));
+    probabilities.push_back(probability);
+  }
+  doubts.push_back({JointDoubtKind::uncertain_type, {{"types", names}, {"probabilities", probabilities}}});
+}
+
 void doubt_accuracy(const Identification& result, const JointEstimate& joint, Doubts& doubts) {
   const auto forecast = std::ranges::find(result.forecast, joint_name(joint), &JointForecast::joint);
   if (forecast == result.forecast.end() || forecast->is_sufficient) return;
@@ -122,6 +141,7 @@ JointVerdict verdict_on(const JointEstimate& joint, const Identification& result
   else
     doubt_reach(joint, verdict.doubts);
   doubt_order(ordered, ordered.tree.pair(parent, child), result.loops, verdict.doubts);
+  doubt_type(joint, verdict.doubts);
   doubt_residuals(result, joint, verdict.doubts);
   doubt_accuracy(result, joint, verdict.doubts);
   verdict.usability = usability_of(verdict.doubts);

@@ -15,18 +15,20 @@ PredictionSummary summarise_prediction(const MotionEvidence& motion) {
   return summary;
 }
 
-Usability usability(const std::vector<Finding>& findings, const std::vector<JointVerdict>& joints) {
+Usability usability(const std::vector<Finding>& findings, const std::vector<JointEstimate>& joints,
+                    const std::vector<JointVerdict>& verdicts) {
   const auto some = [&](JointUsability u) {
-    return std::ranges::find(joints, u, &JointVerdict::usability) != joints.end();
+    return std::ranges::find(verdicts, u, &JointVerdict::usability) != verdicts.end();
   };
   if (std::ranges::any_of(findings, invalidates_result) || some(JointUsability::do_not_use))
     return Usability::do_not_use;
-  const bool is_all_doubtful = std::ranges::all_of(joints, [](const JointVerdict& joint) {
+  const bool is_all_doubtful = std::ranges::all_of(verdicts, [](const JointVerdict& joint) {
     return joint.usability == JointUsability::unknown ||
            std::ranges::find(joint.doubts, JointDoubtKind::weakly_connected, &JointDoubt::kind) != joint.doubts.end();
   });
-  if (is_all_doubtful && !joints.empty()) return Usability::do_not_use;
-  const bool is_questioned = some(JointUsability::use_with_care) || std::ranges::any_of(findings, questions_result);
+  if (is_all_doubtful && !verdicts.empty()) return Usability::do_not_use;
+  const bool is_questioned = some(JointUsability::use_with_care) || std::ranges::any_of(findings, questions_result) ||
+                             probability_of_types(joints) < wanted_confidence;
   return is_questioned ? Usability::use_with_care : Usability::use;
 }
 

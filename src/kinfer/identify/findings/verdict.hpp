@@ -12,6 +12,7 @@ PredictionSummary summarise_prediction(const MotionEvidence& motion);
 
 /// do_not_use: a fault was not corrected, or the evidence is against a joint, or no joint is certain (each is weakly
 /// connected or never moved); use_with_care: not every joint is as certain and as accurate as wanted.
-Usability usability(const std::vector<Finding>& findings, const std::vector<JointVerdict>& joints);
+Usability usability(const std::vector<Finding>& findings, const std::vector<JointEstimate>& joints,
+                    const std::vector<JointVerdict>& verdicts);
 
 }  // namespace kinfer::identify

@@ -51,6 +51,7 @@ Result<std::vector<JointResult>> search_links(const OrderedMotion& ordered, cons
     const std::size_t child = tree.order[i];
     KINFER_TRY(joint,
                find_joint(ordered, child, types[i - 1], states[*tree.parent[child]], options, rng.stream(i), observer));
+    joint.joint.type_probabilities = types[i - 1].probabilities;
     states[child] = std::move(joint.states);
     joints.push_back(std::move(joint));
   }

@@ -138,7 +138,7 @@ std::vector<JointTypeEvidence> joint_types(const RecordedMotion& motion, const S
   if (joints.empty()) return {};
   std::vector<MotionDeviations> deviations;
   for (const PairMotion& j : joints) deviations.push_back(motion_deviations(j));
-  const std::vector<TypeProbabilities> probabilities = type_probabilities(deviations);
+  const std::vector<JointTypeProbabilities> probabilities = type_probabilities(deviations);
   std::vector<JointTypeEvidence> result;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     PairMotion& j = joints[i];

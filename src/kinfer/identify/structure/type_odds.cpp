@@ -2,6 +2,7 @@
 #include "kinfer/identify/structure/type_odds.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -12,6 +13,9 @@
 namespace kinfer::identify {
 namespace {
 
+constexpr std::array weighed_types{EstimatedJointType::rigid, EstimatedJointType::prismatic,
+                                   EstimatedJointType::revolute, EstimatedJointType::universal,
+                                   EstimatedJointType::spherical};
 constexpr std::size_t type_count = weighed_types.size(), grid_size = 40;
 constexpr double least_deviation = 1e-5;     // [rad] of measurements without error
 constexpr double least_acceleration = 1e-4;  // [m/s²] likewise
@@ -108,7 +112,7 @@ std::array<Grid, grid_size> posterior(const std::vector<JointLikelihoods>& joint
 
 }  // namespace
 
-std::vector<TypeProbabilities> type_probabilities(std::span<const MotionDeviations> joints) {
+std::vector<JointTypeProbabilities> type_probabilities(std::span<const MotionDeviations> joints) {
   const Grid orientation = sizes_of(orientation_error), acceleration = sizes_of(acceleration_error);
   std::vector<JointLikelihoods> likelihoods(joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -116,19 +120,16 @@ std::vector<TypeProbabilities> type_probabilities(std::span<const MotionDeviatio
     add_translation(likelihoods[j], joints[j], acceleration);
   }
   const std::array<Grid, grid_size> weight = posterior(likelihoods, orientation, acceleration);
-  std::vector<TypeProbabilities> result(joints.size());
+  std::vector<JointTypeProbabilities> result(joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j)
     for (std::size_t i = 0; i < grid_size; ++i)
       for (std::size_t k = 0; k < grid_size; ++k) {
         const LogTypes types = likelihoods[j].at(i, k);
         const double evidence = log_sum(types);
-        for (std::size_t t = 0; t < type_count; ++t) result[j][t] += weight[i][k] * std::exp(types[t] - evidence);
+        for (std::size_t t = 0; t < type_count; ++t)
+          result[j].of(weighed_types[t]) += weight[i][k] * std::exp(types[t] - evidence);
       }
   return result;
-}
-
-EstimatedJointType most_probable(const TypeProbabilities& probabilities) {
-  return weighed_types[static_cast<std::size_t>(std::ranges::max_element(probabilities) - probabilities.begin())];
 }
 
 }  // namespace kinfer::identify

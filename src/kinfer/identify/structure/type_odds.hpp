@@ -5,11 +5,10 @@
 //   p(T_j) = Σ w(s, a) p(T_j | d_j, s, a),   w(s, a) ∝ p(s) p(a) Π_j Σ_T p(T) p(d_j | T, s, a).
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
-#include "kinfer/evidence/identification/identification.hpp"
+#include "kinfer/evidence/facts/estimated_joint_type.hpp"
 
 namespace kinfer::identify {
 
@@ -25,15 +24,7 @@ struct MotionDeviations {
   double acceleration_level = 0.0;   ///< [m/s²] rms acceleration of the segment that accelerates more
 };
 
-inline constexpr std::array weighed_types{EstimatedJointType::rigid, EstimatedJointType::prismatic,
-                                          EstimatedJointType::revolute, EstimatedJointType::universal,
-                                          EstimatedJointType::spherical};
-
-using TypeProbabilities = std::array<double, weighed_types.size()>;
-
 /// One per joint.
-std::vector<TypeProbabilities> type_probabilities(std::span<const MotionDeviations> joints);
-
-EstimatedJointType most_probable(const TypeProbabilities& probabilities);
+std::vector<JointTypeProbabilities> type_probabilities(std::span<const MotionDeviations> joints);
 
 }  // namespace kinfer::identify

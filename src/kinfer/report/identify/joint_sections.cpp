@@ -84,15 +84,25 @@ std::string joint_table(const IdentificationEvidence& e) {
   return html::table(table);
 }
 
-/// Which joints may be used, and what speaks against them.
+/// "revolute, 72.3 %"; certainty is never rounded to.
+std::string type_text(const JointEstimate& joint) {
+  const std::string type(name(joint.type));
+  if (!joint.type_probabilities) return type;
+  const double percent = 100.0 * type_probability(joint);
+  return percent > 99.9 ? type + ", > 99.9 %" : fmt::format("{}, {:.1f} %", type, percent);
+}
+
+/// Which joints may be used, how certain their types are, and what speaks against them.
 std::string verdict_table(const IdentificationEvidence& e) {
-  html::Table table{.name = "joint-verdicts", .caption = "Verdicts", .head = {"Joint", "verdict", "why"}, .rows = {}};
+  html::Table table{
+      .name = "joint-verdicts", .caption = "Verdicts", .head = {"Joint", "verdict", "type", "why"}, .rows = {}};
   for (const JointRecord& joint : e.joints) {
     std::string usability(name(joint.usability));
     std::ranges::replace(usability, '_', ' ');
     std::string why;
     for (const JointDoubtRecord& doubt : joint.doubts) why += (why.empty() ? "" : "; ") + doubt.sentence;
-    table.rows.push_back({html::text(joint_label(joint.estimate)), html::text(usability), html::text(why)});
+    table.rows.push_back({html::text(joint_label(joint.estimate)), html::text(usability),
+                          html::text(type_text(joint.estimate)), html::text(why)});
   }
   return table.rows.empty() ? "" : html::table(table);
 }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "kinfer/words/language.hpp"
 
@@ -14,6 +15,18 @@ std::string joint_usability_text(JointUsability usability) {
   std::ranges::replace(text, '_', ' ');
   return text;
 }
+
+namespace {
+
+/// "revolute with 72 %, universal with 28 %"
+std::string types_text(const FactValues& v) {
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < v.texts("types").size(); ++i)
+    texts.push_back(fmt::format("{} with {:.0f} %", v.texts("types")[i], 100.0 * v.numbers("probabilities")[i]));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+}  // namespace
 
 std::string doubt_sentence(const JointDoubt& doubt) {
   const FactValues& v = doubt.values;
@@ -44,11 +57,26 @@ std::string doubt_sentence(const JointDoubt& doubt) {
     case JointDoubtKind::unexplained_motion:
       return phrase("joint_unexplained_motion", "the motion of {} is explained to {:.0f} times its noise only",
                     v.text("sensor"), v.number("ratio"));
+    case JointDoubtKind::uncertain_type:
+      return phrase("joint_uncertain_type", "its type is uncertain: {}", types_text(v));
     case JointDoubtKind::inaccurate:
       break;
   }
   return phrase("joint_inaccurate", "its axis is known to ± {:.1f} mm and ± {:.1f} mrad only",
                 1e3 * v.number("line_sd"), 1e3 * v.number("direction_sd"));
+}
+
+std::string uncertain_types_sentence(const Identification& result) {
+  const double all = probability_of_types(result.joints);
+  if (all >= wanted_confidence || result.usability == Usability::do_not_use) return "";
+  std::vector<std::string> texts;
+  for (const JointVerdict& joint : result.verdicts)
+    for (const JointDoubt& doubt : joint.doubts)
+      if (doubt.kind == JointDoubtKind::uncertain_type)
+        texts.push_back(fmt::format("{} is {}", joint.joint, types_text(doubt.values)));
+  if (texts.empty())
+    return phrase("uncertain_types", "all joint types are right with {:.0f} % only", std::floor(100.0 * all));
+  return phrase("uncertain_joint_types", "joint types are uncertain: {}", fmt::join(texts, "; "));
 }
 
 std::string usable_part_sentence(const Identification& result) {

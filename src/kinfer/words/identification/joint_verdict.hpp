@@ -13,6 +13,10 @@ std::string joint_usability_text(JointUsability usability);
 
 std::string doubt_sentence(const JointDoubt& doubt);
 
+/// "the type of ins2-ins3 is uncertain: ...", or how likely all types are right where no joint alone is doubtful; empty
+/// where all types are certain.
+std::string uncertain_types_sentence(const Identification& result);
+
 /// "ins1-ins2, ins2-ins3 may be used; ins3-ins4: ...": which joints stay usable where others do not; empty where all
 /// joints have the same verdict.
 std::string usable_part_sentence(const Identification& result);

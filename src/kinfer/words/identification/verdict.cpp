@@ -95,6 +95,7 @@ VerdictText parts_of_verdict(const Identification& result) {
                         : phrase("no_certain_joint", "no joint is certain"));
   if (const std::string part = usable_part_sentence(result); !part.empty() && !texts.empty()) texts.push_back(part);
   texts.push_back(joints_text(result));
+  if (const std::string types = uncertain_types_sentence(result); !types.empty()) texts.push_back(types);
   if (result.update) texts.push_back(update_sentence(*result.update));
   texts.push_back(prediction_text(result.prediction));
   if (result.search_method == LinkSearchMethod::enumeration) texts.push_back(certificate_text(result.searches));

@@ -17,6 +17,12 @@ void fields(Archive& a, Value<Archive, JointStandardDeviation>& sd) {
 }
 
 template <class Archive>
+void fields(Archive& a, Value<Archive, JointTypeProbabilities>& types) {
+  for (std::size_t i = 0; i < types.of_type.size(); ++i)
+    a(name(static_cast<EstimatedJointType>(i)).data(), types.of_type[i]);
+}
+
+template <class Archive>
 void fields(Archive& a, Value<Archive, UnobservableRecord>& record) {
   auto& u = record.unobservable;
   a("kind", u.kind);
@@ -53,6 +59,7 @@ void fields(Archive& a, Value<Archive, JointRecord>& record) {
   a("parent", joint.parent);
   a("child", joint.child);
   a("type", joint.type);
+  a.when(joint.type_probabilities.has_value(), "type_probabilities", joint.type_probabilities);
   const bool parent_axis = is_axis_known(joint, joint.sd.axis_in_parent),
              parent_point = is_point_known(joint.sd.point_in_parent, joint.unobservable_in_parent),
              child_axis = is_axis_known(joint, joint.sd.axis_in_child),
