@@ -26,6 +26,30 @@ double circular_distance(double a, double b) {
   return std::abs(wrap_to_pi(a - b));
 }
 
+/// Whether the sensor shows a position that is lost: that of its own joint, or of one to a sensor that is in use.
+bool shows_lost_position(const ChainFilter& filter, std::size_t sensor, const RevoluteBetweenSensors& joint) {
+  const bool is_shown =
+      joint.child_sensor == sensor || (joint.parent_sensor == sensor && filter.uses_sensor(joint.child_sensor));
+  return is_shown && position_sd(filter, joint.position) > turned_in_gap;
+}
+
+using Joints = std::vector<RevoluteBetweenSensors>;
+
+/// From the base outward.
+Joints lost_joints(const ChainFilter& filter, std::size_t sensor) {
+  Joints lost;
+  for (const RevoluteBetweenSensors& joint : filter.model().revolute)
+    if (shows_lost_position(filter, sensor, joint)) lost.push_back(joint);
+  return lost;
+}
+
+/// Unseen velocities may be so far off that specific forces, quadratic in them, say nothing; gyroscopes show them.
+void suppose_velocities(ChainFilter& filter, const BlockMeasurement& first, const Joints& joints) {
+  for (const RevoluteBetweenSensors& joint : joints)
+    if (const BlockSample& child = first.sensors[joint.child_sensor]; child.rate_count > 0)
+      filter.suppose_velocity(joint.position, joint.child_sensor, child.rate);
+}
+
 /// Of a position before the rows, where the rows place it.
 struct Place {
   double value = 0.0;           // [rad]
@@ -34,13 +58,14 @@ struct Place {
 };
 
 /// Begins again and again where the rows place the position, as uncertain as at first.
-Place settled_place(const ChainFilter& before, std::span<const BlockMeasurement> rows, Index position, double value,
-                    double sd) {
+Place settled_place(const ChainFilter& before, std::span<const BlockMeasurement> rows, const Joints& lost,
+                    Index position, double value, double sd) {
   const double expected = position_of(before, position), expected_sd = position_sd(before, position);
   Place place{.value = value};
   for (int round = 0; round < return_rounds; ++round) {
     ChainFilter trial = before;
     trial.suppose(position, place.value, sd);
+    suppose_velocities(trial, rows.front(), lost);
     place.log_likelihood = -0.5 * square((place.value - expected) / expected_sd);
     double turned = 0.0, last_time = before.state().time;
     std::optional<double> last_rate;  // [rad/s] the gyroscopes show it from the first block
@@ -64,14 +89,14 @@ struct Search {
   double log_odds = std::numeric_limits<double>::infinity();
 };
 
-Search search(const ChainFilter& before, std::span<const BlockMeasurement> rows, Index position) {
+Search search(const ChainFilter& before, std::span<const BlockMeasurement> rows, const Joints& lost, Index position) {
   const double step = 2.0 * std::numbers::pi / return_places, expected = position_of(before, position),
                expected_sd = position_sd(before, position);
   std::vector<Place> places;
   for (int k = 0; k < return_places; ++k) {
     const double turn = wrap_to_pi(k * step);
     if (std::abs(turn) > 0.5 * step + return_reach * expected_sd) continue;
-    places.push_back(settled_place(before, rows, position, expected + turn, std::min(expected_sd, 0.5 * step)));
+    places.push_back(settled_place(before, rows, lost, position, expected + turn, std::min(expected_sd, 0.5 * step)));
   }
   Search result{.best = *std::ranges::max_element(places, {}, &Place::log_likelihood)};
   for (const Place& other : places)
@@ -82,32 +107,24 @@ Search search(const ChainFilter& before, std::span<const BlockMeasurement> rows,
   return result;
 }
 
-/// Whether the sensor shows a position that is lost: that of its own joint, or of one to a sensor that is in use.
-bool shows_lost_position(const ChainFilter& filter, std::size_t sensor, const RevoluteBetweenSensors& joint) {
-  const bool is_shown =
-      joint.child_sensor == sensor || (joint.parent_sensor == sensor && filter.uses_sensor(joint.child_sensor));
-  return is_shown && position_sd(filter, joint.position) > turned_in_gap;
-}
-
 }  // namespace
 
 bool has_lost_position(const ChainFilter& filter, std::size_t sensor) {
-  return std::ranges::any_of(filter.model().revolute, [&](const RevoluteBetweenSensors& joint) {
-    return shows_lost_position(filter, sensor, joint);
-  });
+  return !lost_joints(filter, sensor).empty();
 }
 
 FoundAgain find_again(const ChainFilter& before, std::span<const BlockMeasurement> rows, std::size_t sensor) {
   FoundAgain found{.filter = before};
   found.filter.use_sensor(sensor, true);
-  for (const RevoluteBetweenSensors& joint : before.model().revolute) {
-    if (!shows_lost_position(found.filter, sensor, joint)) continue;
-    const Search result = search(found.filter, rows, joint.position);
+  const Joints lost = lost_joints(found.filter, sensor);
+  for (const RevoluteBetweenSensors& joint : lost) {
+    const Search result = search(found.filter, rows, lost, joint.position);
     const bool is_known = result.best.sd < turned_in_gap;
     found.positions.push_back({joint.position, result.best.sd, is_known && result.log_odds > return_log_odds});
     // Less certain than it is by far, since the rows are processed once more.
     if (is_known) found.filter.suppose(joint.position, result.best.value, 0.5 * turned_in_gap);
   }
+  suppose_velocities(found.filter, rows.front(), lost);
   for (const BlockMeasurement& block : rows) {
     found.filter.predict(block.time);
     found.filter.update(block);

@@ -104,6 +104,14 @@ void ChainFilter::suppose(Index position, double value, double sd) {
   mirror();
 }
 
+void ChainFilter::suppose_velocity(Index position, std::size_t sensor, const Vec3& rate) {
+  evaluator_.evaluate(*model_, state_);
+  const ChainMeasurement& m = evaluator_.result();
+  const Index row = sensor_rows * static_cast<Index>(sensor), at = model_->layout.joint_state(position) + 1;
+  const Vec3 by_velocity = m.by_fast.block<3, 1>(row, at), missing = rate - m.value.segment<3>(row);
+  state_.joints[at - base_states] += by_velocity.dot(missing) / by_velocity.squaredNorm();
+}
+
 void ChainFilter::declare_known(Index position) {
   placed_ = state_.time;
   forget(model_->layout.joint_state(position));

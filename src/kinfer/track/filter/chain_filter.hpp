@@ -65,6 +65,10 @@ class ChainFilter {
   /// (Jeffrey's rule). Where a linearisation begins.
   void suppose(Index position, double value, double sd);
 
+  /// Moves a joint's velocity to where a sensor's angular velocity [rad/s] shows it; specific forces are quadratic in
+  /// it. Where a linearisation begins.
+  void suppose_velocity(Index position, std::size_t sensor, const Vec3& rate);
+
   /// [s] Since when all positions follow from the rows: the last start or placing.
   double placed_at() const { return placed_; }
 
