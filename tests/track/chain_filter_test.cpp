@@ -310,6 +310,47 @@ TEST(ChainFilter, AMeasurementOfALaterTimeIsComparedWithThePredictionThere) {
   EXPECT_EQ(difference.tail(difference.size() - 9).norm(), 0.0);
 }
 
+/// By one innovation: the rows changed at another rate before, and how fast they change now is known no better than
+/// that.
+TEST(ChainFilter, AMeasurementOfALaterTimeIsAsUncertainAsTheRateOfChange) {
+  const TrackedTree tree(5);
+  ChainFilter filter = tree.filter();
+  const VectorXd before = predicted_measurement(*tree.model, filter.state());
+  filter.update(tree.block(1));
+  const double dt = 0.02, later = 0.006;
+  filter.predict(dt);
+  const VectorXd change = (predicted_measurement(*tree.model, filter.state()) - before) / dt;
+  ChainFilter late = filter;
+  BlockMeasurement block = tree.block(2);
+  block.time = dt;
+  filter.update(block);
+  for (std::size_t s = 0; s < block.sensors.size(); ++s) {
+    BlockSample& sample = block.sensors[s];
+    sample.rate_time = sample.force_time = later;
+    sample.rate += later * change.segment<3>(6 * static_cast<Index>(s));
+    sample.force += later * change.segment<3>(6 * static_cast<Index>(s) + 3);
+  }
+  late.update(block);
+  EXPECT_LT((late.innovations().value - filter.innovations().value).norm(), 1e-9);
+  EXPECT_GT(late.covariance().trace(), 1.001 * filter.covariance().trace());
+}
+
+TEST(FitMonitor, WhatNobodyHasComparedForSecondsIsForgotten) {
+  const TrackedTree tree(6);
+  ChainFilter filter = tree.filter();
+  FitMonitor fit(filter.model().sensors.size(), filter.model().joints.size());
+  BlockMeasurement block = tree.block(3);
+  block.sensors[1].force += Vec3::Constant(5.0);
+  filter.update(block);
+  fit.add(filter, 0.0, 0.02);
+  const double then = fit.sensor(1).quick;
+  EXPECT_GT(then, 1.1);
+  block.sensors[1].rate_count = block.sensors[1].force_count = 0;
+  filter.update(block);
+  for (int i = 1; i < 150; ++i) fit.add(filter, 0.02 * i, 0.02);
+  EXPECT_NEAR(fit.sensor(1).quick, 1.0, 0.02 * (then - 1.0));
+}
+
 TEST(ChainFilter, BiasesOfForceAreForgottenWithTheAngleTurnedThrough) {
   const TrackedTree tree(3);
   FilterModel known = *tree.model;

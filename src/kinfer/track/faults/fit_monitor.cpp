@@ -16,12 +16,21 @@ void forget(double& mean, double x, double length, double time) {
 }
 
 /// T over its expectation, limited so that one shock is no fault; of what is named already so that it fits again soon.
-void average(Agreement& agreement, double x, double unlimited, bool is_named, double length) {
+void average(Agreement& agreement, double x, double unlimited, bool is_named, double time, double length) {
+  agreement.compared = time;
   agreement.observed += length;
   const double limit = is_named ? quick_limit : max_single;
   forget(agreement.quick, std::min(x, limit), length, short_mean);
   forget(agreement.slow, std::min(x, limit), length, long_mean);
   forget(agreement.explains, unlimited, length, short_mean);
+}
+
+/// What was shown before a silence says less and less, unless it is named.
+void fade(Agreement& agreement, double time, bool is_named, double length) {
+  if (is_named || time - agreement.compared < lost_after) return;
+  forget(agreement.quick, 1.0, length, short_mean);
+  forget(agreement.slow, 1.0, length, long_mean);
+  forget(agreement.explains, 1.0, length, short_mean);
 }
 
 Agreement taken_in_again(const Agreement& agreement) {
@@ -68,11 +77,15 @@ void FitMonitor::add(const ChainFilter& filter, double time, double length) {
   for (std::size_t s = 0; s < sensors_.size(); ++s)
     if (const int rows = innovations.rows[s]; rows > 0)
       average(sensors_[s], innovations.leave_out[s] / rows, innovations.unlimited[s] / rows, !filter.uses_sensor(s),
-              length);
+              time, length);
+    else
+      fade(sensors_[s], time, !filter.uses_sensor(s), length);
   for (std::size_t j = 0; j < joints_.size(); ++j)
     if (innovations.of_joint[j] > 0.0)
       average(joints_[j], innovations.of_joint[j] / change_rows, innovations.unlimited_of_joint[j] / change_rows,
-              filter.doubts_joint(j), length);
+              filter.doubts_joint(j), time, length);
+    else
+      fade(joints_[j], time, filter.doubts_joint(j), length);
   // Where all are trusted less already, the tails of the innovations are heavier than those of the hand-over.
   const double tails = std::sqrt(filter.levels().common());
   for (std::size_t s = 0; s < sensors_.size(); ++s)

@@ -18,6 +18,7 @@ struct Agreement {
   bool is_suspect = false;         ///< does not agree
   double since = 0.0;              ///< [s]
   double observed = 0.0;           ///< [s] that it was compared
+  double compared = 0.0;           ///< [s] when it was compared last
   double strength = 0.0;           ///< the larger mean over its threshold
   double explains = 1.0;           ///< over short_mean, of the unlimited T
   bool was_named = false;          ///< before

@@ -34,7 +34,7 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
   p_ = MatrixXd::Zero(layout.size, layout.size);
   p_.bottomRightCorner(layout.size - layout.fast, layout.size - layout.fast) = model_->parameters;
   is_used_.assign(static_cast<std::size_t>(layout.sensors), true);
-  last_value_ = change_ = VectorXd::Zero(layout.rows());
+  last_value_ = change_ = change_of_change_ = VectorXd::Zero(layout.rows());
   error_ = column_ = VectorXd::Zero(layout.size);
   unused_w_ = MatrixXd::Zero(layout.size, sensor_rows);
   bias_variance_ = VectorXd::Zero(layout.rows());
@@ -166,10 +166,12 @@ void ChainFilter::set_base(BaseMode mode) {
 void ChainFilter::follow_change() {
   const double dt = state_.time - last_update_;
   const VectorXd& value = evaluator_.result().value;
+  change_of_change_ = change_;
   if (dt > 0.0 && dt <= longest_step)
     change_ = (value - last_value_) / dt;
   else
     change_.setZero();
+  change_of_change_ = change_ - change_of_change_;
   last_value_ = value;
   last_update_ = state_.time;
 }
@@ -182,9 +184,11 @@ void ChainFilter::form_sensor_rows(const BlockMeasurement& block, std::size_t s)
                        double slow, double factor) {
     innovations_.value.segment<3>(first) =
         value - evaluator_.result().value.segment<3>(first) - time * change_.segment<3>(first);
+    // Samples at another time than the block's are as uncertain as the rows' rate of change, which changes as well.
+    const double shifted = square(time) * change_of_change_.segment<3>(first).squaredNorm();
     system_.set_instrument(
         first, is_used_[s] && count > 0, innovations_.value.segment<3>(first),
-        factor * block_variance(white, persistent, slow, settings.sample_period, block.length, count));
+        factor * block_variance(white, persistent, slow, settings.sample_period, block.length, count) + shifted);
   };
   set(row, measured.rate_count, measured.rate_time, measured.rate, settings.white.rate, settings.persistent.rate,
       settings.slow.rate, levels_.of(s).rate);

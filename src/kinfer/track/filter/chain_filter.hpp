@@ -129,6 +129,7 @@ class ChainFilter {
   ChainEvaluator evaluator_;
   std::vector<bool> is_used_;
   VectorXd last_value_, change_;  // predicted rows of the last update, their rate of change
+  VectorXd change_of_change_;     // from the last update to this one
   double last_update_ = -1e9;
   ShownMeans shown_ = ShownMeans::rates;  // by the last block
   SoftRows soft_rows_;
