@@ -82,11 +82,12 @@ TEST(PredictMean, TheVelocityOfABaseStaysWhileNothingAcceleratesIt) {
   EXPECT_LT((tree.after(5.0).velocity - tree.state.velocity).norm(), 1e-12);
 }
 
+/// Beyond steps between means of rates, which take the velocity for linear.
 TEST(PredictMean, TwoHalvesAreOneWholeForJointsOfOneAxis) {
   const MovingTree tree(4, BaseMode::still);
-  ChainState halves = tree.after(0.03);
+  ChainState halves = tree.after(0.04);
   predict_mean(tree.model, 0.05, halves);
-  const ChainState whole = tree.after(0.08);
+  const ChainState whole = tree.after(0.09);
   for (std::size_t b = 1; b < tree.model.bodies.size(); ++b) {
     if (degrees_of_freedom(tree.model.bodies[b].motion) != 1) continue;
     const Index at = position_states * tree.model.layout.position[b];
@@ -197,6 +198,27 @@ TEST(PredictCovariance, AMeasuredRateLeavesNothingOfThePositionToChance) {
     EXPECT_NEAR(position_given_velocity(dt, means), turning->density() * std::pow(dt, 5) * (1.0 / 20.0 - 3.0 / 64.0),
                 1e-12)
         << "a gap, or a sensor that is lost";
+}
+
+/// An acceleration that decays within a step took it further, by 1e-4 s of the velocity in all.
+TEST(PredictMean, BetweenTwoMeansOfRatesThePositionIsTheirTrapezoid) {
+  MovingTree tree(8, BaseMode::still);
+  const auto body = std::ranges::find(tree.model.bodies, JointMotion::revolute, &InsBody::motion);
+  ASSERT_NE(body, tree.model.bodies.end());
+  const Index position = tree.model.layout.position[static_cast<std::size_t>(body - tree.model.bodies.begin())];
+  const auto missing = [&](double dt, ShownMeans means) {
+    ChainState state = tree.state;
+    double* x = state.joints.data() + position_states * position;
+    x[2] = 30.0;
+    const double q = x[0], rate = x[1];
+    predict_mean(tree.model, dt, state, means);
+    return x[0] - q - 0.5 * dt * (rate + x[1]);
+  };
+  EXPECT_NEAR(missing(0.02, ShownMeans::rates), 0.0, 1e-12);
+  for (const auto& [dt, means] : {std::pair{0.02, ShownMeans::accelerations}, std::pair{0.1, ShownMeans::rates}}) {
+    const double time = tree.model.positions[static_cast<std::size_t>(position)].time;
+    EXPECT_NEAR(missing(dt, means), 30.0 * dt * dt * dt / (12.0 * time), 0.2 * 30.0 * dt * dt * dt / (12.0 * time));
+  }
 }
 
 /// Means of the acceleration over steps tell the change of velocity exactly, so that only what no mean tells (a gap) is

@@ -123,7 +123,7 @@ void ChainFilter::predict(double time) {
     const double dt = std::min(time - state_.time, longest_step);
     predict_covariance(*model_, state_, dt, p_, shown_);
     add_posture_walk(dt);
-    predict_mean(*model_, dt, state_);
+    predict_mean(*model_, dt, state_, shown_);
   }
 }
 

@@ -22,6 +22,18 @@ Transition transition(double time, double dt) {
   return {slid, dt, time * (dt - slid), e};
 }
 
+bool is_between_rates(const AccelerationProcess& process, double dt, ShownMeans means) {
+  return dt <= longest_bridge && means == ShownMeans::rates && !process.is_measured;
+}
+
+/// Of a velocity that counts as linear the position is the trapezoid. That of an acceleration which decays exceeds it
+/// by q̈ dt³/12τ in each step, which adds up to q̇ dt²/12τ: positions led by 1e-4 s.
+Transition transition(const AccelerationProcess& process, double dt, ShownMeans means) {
+  Transition f = transition(process.time, dt);
+  if (is_between_rates(process, dt, means)) f.position_from_acceleration = 0.5 * dt * f.velocity_from_acceleration;
+  return f;
+}
+
 /// Integral of the driving noise over a step short against the correlation time (Singer 1970, its leading terms).
 Mat3 driven(double density, double dt) {
   const double d2 = dt * dt, d3 = d2 * dt;
@@ -55,7 +67,7 @@ Mat3 driven_between_accelerations(double density, double dt) {
 Mat3 driven(const AccelerationProcess& process, double dt, ShownMeans means) {
   const double density = process.density();
   if (dt <= longest_bridge && process.is_measured) return driven_between_accelerations(density, dt);
-  if (dt <= longest_bridge && means == ShownMeans::rates) return driven_between_rates(density, dt);
+  if (is_between_rates(process, dt, means)) return driven_between_rates(density, dt);
   return driven(density, dt);
 }
 
@@ -218,7 +230,7 @@ void retract(const FilterModel& model, const VectorXd& error, ChainState& state)
   }
 }
 
-void predict_mean(const FilterModel& model, double dt, ChainState& state) {
+void predict_mean(const FilterModel& model, double dt, ChainState& state, ShownMeans means) {
   state.time += dt;
   if (state.base == BaseMode::moving) {
     const BaseTransition f = base_transition(model, state, dt);
@@ -233,7 +245,7 @@ void predict_mean(const FilterModel& model, double dt, ChainState& state) {
     Vec3 turn = Vec3::Zero();
     for (Index i = 0; i < dof; ++i) {
       double* x = state.joints.data() + position_states * (first + i);
-      const Transition f = transition(model.positions[static_cast<std::size_t>(first + i)].time, dt);
+      const Transition f = transition(model.positions[static_cast<std::size_t>(first + i)], dt, means);
       double& liveliness = state.liveliness[first + i];
       liveliness += (square(x[2]) - liveliness) * (1.0 - std::exp(-dt / liveliness_time));
       turn[i] = f.position_from_velocity * x[1] + f.position_from_acceleration * x[2];
@@ -268,7 +280,7 @@ void predict_covariance(const FilterModel& model, const ChainState& state, doubl
       turn_columns(turned_back(state, model.layout.position[b], dt), model.layout.joint_state(model.layout.position[b]),
                    p);
   for (Index i = 0; i < model.layout.positions; ++i)
-    mix_columns(transition(model.positions[static_cast<std::size_t>(i)].time, dt), n, model.layout.joint_state(i), p);
+    mix_columns(transition(model.positions[static_cast<std::size_t>(i)], dt, means), n, model.layout.joint_state(i), p);
   // The columns of the joints now hold P Fᵀ; rows follow by symmetry where the other index is no joint's.
   for (Index j = base_states; j < fast; ++j) {
     p.row(j).head(base_states) = p.col(j).head(base_states).transpose();
@@ -281,7 +293,7 @@ void predict_covariance(const FilterModel& model, const ChainState& state, doubl
   for (Index i = 0; i < model.layout.positions; ++i) {
     const AccelerationProcess process = lively(model.positions[static_cast<std::size_t>(i)], state.liveliness[i]);
     const Index first = model.layout.joint_state(i);
-    const Transition f = transition(process.time, dt);
+    const Transition f = transition(process, dt, means);
     for (Index j = base_states; j < fast; ++j) {
       double* x = p.col(j).data() + first;
       x[0] += f.position_from_velocity * x[1] + f.position_from_acceleration * x[2];

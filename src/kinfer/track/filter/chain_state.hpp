@@ -34,12 +34,12 @@ ChainState initial_state(const FilterModel& model);
 /// Adds an error to the estimated states; those of the geometry are left alone.
 void retract(const FilterModel& model, const VectorXd& error, ChainState& state);
 
-/// The mean after `dt` seconds.
-void predict_mean(const FilterModel& model, double dt, ChainState& state);
-
 /// What the blocks before and after a step show as means: of all joints the rates, or (a sensor is lost) of those alone
 /// that have nothing else the accelerations.
 enum class ShownMeans { rates, accelerations };
+
+/// The mean after `dt` seconds.
+void predict_mean(const FilterModel& model, double dt, ChainState& state, ShownMeans means = ShownMeans::rates);
 
 /// The error state's covariance (symmetric) after `dt` seconds, at most `longest_step`; `state` is that before.
 void predict_covariance(const FilterModel& model, const ChainState& state, double dt, MatrixXd& covariance,
