@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinfer/track/faults/turn_beside_joint.hpp"
+#include "kinfer/track/filter/row_block.hpp"
+
 namespace kinfer::track {
 namespace {
 
@@ -103,6 +106,52 @@ TEST(Tracker, NamesASensorThatWasTurned) {
   EXPECT_EQ(out.alarms[0].sensor, 3);
   EXPECT_LT(out.raised[0], 22.0);
   EXPECT_EQ(out.alarms.size(), 1u);  // and not its clock
+}
+
+/// Of the joint by the rows of two seconds, in the middle of which `change` begins.
+template <class Change>
+std::optional<std::size_t> turned_beside_joint(const Case& given, std::size_t joint, const Change& change) {
+  Tracker tracker(given.model);
+  std::optional<ChainFilter> before;
+  RowBlock block(given.model.sensors.size());
+  std::vector<BlockMeasurement> rows;
+  InsRow row;
+  for (std::size_t r = 0; row.time < 19.0; ++r) {
+    test::fill_row(given.drive.recording, r, row);
+    if (row.time < 17.0) {
+      tracker.add(row);
+      continue;
+    }
+    if (!before) before = tracker.filter();
+    if (row.time > 18.0) change(row, r);
+    block.add(row);
+    if (!block.is_complete(0.02)) continue;
+    rows.push_back(block.mean());
+    block.clear();
+  }
+  return turned_beside(*before, rows, joint);
+}
+
+/// The joints on both sides of it were named.
+TEST(TurnBesideJoint, OfASensorThatTurnedItIsLikelierThanAChangeOfEitherJoint) {
+  for (const Vec3& axis : {Vec3(1.0, 0.3, 0.2), Vec3(-0.2, 0.9, -0.4)}) {
+    const Mat3 turn = exp_so3(0.7 * degree * axis.normalized());
+    for (const std::size_t joint : {1u, 2u})
+      EXPECT_EQ(turned_beside_joint(still_excavator(), joint,
+                                    [&](InsRow& row, std::size_t) { turn_sensor(row.sensors[2], turn); }),
+                2u);
+  }
+}
+
+TEST(TurnBesideJoint, APinWithPlayIsNoTurn) {
+  const auto& motion = still_excavator().drive.motion.sensors;
+  const auto rattle = [&](InsRow& row, std::size_t r) {
+    const double w = 6.0 * std::numbers::pi;
+    const Vec3 shake = -1.5e-3 * w * w * std::sin(w * row.time) * Vec3::UnitX();
+    for (std::size_t s = 3; s < row.sensors.size(); ++s)
+      row.sensors[s].acceleration += motion[s].world_R_sensor[r].conjugate() * (motion[3].world_R_sensor[r] * shake);
+  };
+  EXPECT_EQ(turned_beside_joint(still_excavator(), 2, rattle), std::nullopt);
 }
 
 /// Turned about the hinge: without it the positions of both hinges beside it are so uncertain soon that it seems to fit

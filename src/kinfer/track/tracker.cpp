@@ -6,6 +6,7 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/track/faults/thresholds.hpp"
+#include "kinfer/track/faults/turn_beside_joint.hpp"
 #include "kinfer/track/filter/thresholds.hpp"
 #include "kinfer/track/readout/readout.hpp"
 #include "kinfer/track/start/thresholds.hpp"
@@ -306,7 +307,7 @@ void Tracker::watch_misfit(double time) {
 void Tracker::leave_out(std::size_t sensor) {
   does_not_fit_[sensor] = true;
   is_late_[sensor] = clocks_.is_late(sensor, lateness_share);
-  const Agreement named = as_named(fit_.sensor(sensor));
+  const Agreement named = as_named(fit_.sensor(sensor), filter_.state().time);
   ChainFilter before = replay_.older();
   before.judge_as(filter_);
   MountWatch mounts(does_not_fit_.size());  // of the others the filters have believed this sensor
@@ -316,8 +317,12 @@ void Tracker::leave_out(std::size_t sensor) {
   fit_.set_sensor(sensor, named);
 }
 
+/// Unless a sensor beside it that turned is likelier.
 void Tracker::doubt(std::size_t joint) {
-  const Agreement named = as_named(fit_.joint(joint));
+  ChainFilter before = replay_.older();
+  before.judge_as(filter_);
+  if (const auto turned = turned_beside(before, replay_.blocks(), joint)) return leave_out(*turned);
+  const Agreement named = as_named(fit_.joint(joint), filter_.state().time);
   replay([&](ChainFilter& filter) { filter.doubt_joint(joint, true); });
   fit_.set_joint(joint, named);
 }

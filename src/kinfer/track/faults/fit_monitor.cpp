@@ -53,7 +53,9 @@ int likeliest(const std::vector<Agreement>& agreements, const IsCandidate& is_ca
 
 }  // namespace
 
-Agreement as_named(Agreement agreement) {
+Agreement as_named(Agreement agreement, double time) {
+  if (!agreement.is_suspect) agreement.since = time;
+  agreement.is_suspect = true;
   agreement.slow = quick_limit;
   agreement.was_named = true;
   return agreement;

@@ -24,8 +24,9 @@ struct Agreement {
   bool was_named = false;          ///< before
 };
 
-/// As it starts when it is named: it fits again after agreeing for twice long_mean or so.
-Agreement as_named(Agreement agreement);
+/// As it starts when it is named, by others where it is not suspect itself: it fits again after agreeing for twice
+/// long_mean or so.
+Agreement as_named(Agreement agreement, double time);
 
 /// What explains best that the chain does not fit: a sensor or a joint; −1: none.
 struct Suspect {
