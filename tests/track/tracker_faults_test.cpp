@@ -223,6 +223,7 @@ TEST(Tracker, NamesAJointWithPlay) {
 struct Silence {
   const char* name;
   std::vector<std::size_t> sensors{};  // counted from the last
+  double deviations = 5.0;             // at most, over the sd, while they are silent
 };
 class SilentInMotion : public ::testing::TestWithParam<Silence> {
  protected:
@@ -263,13 +264,15 @@ TEST_P(SilentInMotion, SensorsComeBackAndTheirJointsAreFoundAgain) {
       const Worst worst = follow(*given, silence);
       EXPECT_TRUE(worst.alarms.empty()) << name(worst.alarms.front().kind);
       for (int j = 1; j < worst.after.size(); ++j) EXPECT_LT(worst.after[j], 0.5 * degree) << "joint " << j;
-      EXPECT_LT(worst.deviations.tail(worst.deviations.size() - 1).maxCoeff(), 8.0);
+      EXPECT_LT(worst.deviations.tail(worst.deviations.size() - 1).maxCoeff(), GetParam().deviations);
     }
 }
-INSTANTIATE_TEST_SUITE_P(Tracker, SilentInMotion,
-                         ::testing::Values(Silence{"TheLast", {0}}, Silence{"OneBetween", {2}},
-                                           Silence{"TheLastTwo", {1, 0}}, Silence{"TheLastThree", {2, 1, 0}}),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Tracker, SilentInMotion,
+    ::testing::Values(Silence{"TheLast", {0}}, Silence{"OneBetween", {2}}, Silence{"TheLastTwo", {1, 0}},
+                      // Of a quick arm without half of its sensors the acceleration is livelier than before.
+                      Silence{"TheLastThree", {2, 1, 0}, 8.0}),
+    [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
 }  // namespace kinfer::track
