@@ -6,6 +6,7 @@
 
 #include "kinfer/calibrate/calibrate.hpp"
 #include "kinfer/words/calibration/calibration.hpp"
+#include "repeats.hpp"
 #include "support/mixed_kinds.hpp"
 
 namespace kinfer {
@@ -37,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(FewBesideMany, PairOfKinds, ::testing::ValuesIn(pairs_o
 
 // One in a row of its own, which most folds lack, and several that share the rows of the others.
 TEST_P(PairOfKinds, HasAnAnswerOrASentenceAndSoundDataAreNotCalledContradictory) {
-  for (const auto& [count, rows] : {std::pair{1, FewRows::own}, std::pair{6, FewRows::shared}}) {
+  for (const auto& [count, rows] : test::repeats({std::pair{1, FewRows::own}, std::pair{6, FewRows::shared}})) {
     MixedKinds of = GetParam();
     of.few_count = count, of.rows = rows;
     const Result<Calibration> c = calibrated(of);
