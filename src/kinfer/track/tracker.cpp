@@ -77,7 +77,7 @@ void Tracker::restart(double time) {
   waits_since_.reset();
   fit_.reset();
   mounts_.reset();
-  std::ranges::fill(biases_, BiasChange{});
+  biases_.reset();
 }
 
 /// Whether what has happened in a gap [s] is too much for the filter to go on.
@@ -308,10 +308,8 @@ void Tracker::leave_out(std::size_t sensor) {
   does_not_fit_[sensor] = true;
   is_late_[sensor] = clocks_.is_late(sensor, lateness_share);
   const Agreement named = as_named(fit_.sensor(sensor), filter_.state().time);
-  ChainFilter before = replay_.older();
-  before.judge_as(filter_);
   MountWatch mounts(does_not_fit_.size());  // of the others the filters have believed this sensor
-  mounts.begin(sensor, before, replay_.blocks());
+  mounts.begin(sensor, replay_.beginning(filter_), replay_.blocks());
   replay([&](ChainFilter& filter) { filter.use_sensor(sensor, false); });
   mounts_ = mounts;
   fit_.set_sensor(sensor, named);
@@ -319,9 +317,7 @@ void Tracker::leave_out(std::size_t sensor) {
 
 /// Unless a sensor beside it that turned is likelier.
 void Tracker::doubt(std::size_t joint) {
-  ChainFilter before = replay_.older();
-  before.judge_as(filter_);
-  if (const auto turned = turned_beside(before, replay_.blocks(), joint)) return leave_out(*turned);
+  if (const auto turned = turned_beside(replay_.beginning(filter_), replay_.blocks(), joint)) return leave_out(*turned);
   const Agreement named = as_named(fit_.joint(joint), filter_.state().time);
   replay([&](ChainFilter& filter) { filter.doubt_joint(joint, true); });
   fit_.set_joint(joint, named);
@@ -343,25 +339,11 @@ void Tracker::examine_fit() {
   }
 }
 
-double Tracker::bias_distance(std::size_t sensor) const {
-  const InsLevel distance = filter_.bias_distance(sensor);
-  return std::max(distance.rate, distance.force);
-}
-
-/// Biases that the filter keeps far from where they were handed over: a sensor that changed, or one that stands for a
-/// neighbour that turned. Where something else is named already, they follow from that.
-void Tracker::watch_biases(double time) {
-  bool is_explained = std::ranges::find(does_not_fit_, true) != does_not_fit_.end();
-  for (std::size_t j = 0; j < tracking_->joints.size(); ++j) is_explained |= filter_.doubts_joint(j);
-  for (std::size_t s = 0; s < biases_.size(); ++s) {
-    BiasChange& bias = biases_[s];
-    const double distance = bias_distance(s);
-    if (distance < (bias.is_named ? bias_recovered : bias_limit))
-      bias = {};
-    else if (!bias.since)
-      bias.since = time;
-    bias.is_named |= bias.since && !is_explained && time - *bias.since > settling;
-  }
+/// Whether a sensor or joint is named already.
+bool Tracker::is_fault_named() const {
+  for (std::size_t j = 0; j < tracking_->joints.size(); ++j)
+    if (filter_.doubts_joint(j)) return true;
+  return std::ranges::find(does_not_fit_, true) != does_not_fit_.end();
 }
 
 /// The heading of a spherical joint counts as shown while its parent moves.
@@ -393,7 +375,7 @@ void Tracker::process_block(const BlockMeasurement& block) {
       examine_fit();
     mounts_.add(block, filter_,
                 [&](std::size_t s) { return does_not_fit_[s] && !health_[s].lost && !health_[s].stuck; });
-    watch_biases(block.time);
+    biases_.add(filter_, is_fault_named(), block.time);
     watch_misfit(block.time);
     find_returned(block);
   }
@@ -481,11 +463,11 @@ void Tracker::list_alarms(double time) {
       alarms.push_back({.kind = TrackAlarmKind::sensor_stuck, .sensor = sensor, .since = health.stuck_since});
     if (health.clipped)
       alarms.push_back({.kind = TrackAlarmKind::sensor_clipped, .sensor = sensor, .since = health.last_clipped});
-    if (biases_[s].is_named && !does_not_fit_[s])
+    if (const auto since = biases_.named_since(s); since && !does_not_fit_[s])
       alarms.push_back({.kind = TrackAlarmKind::sensor_moved,
                         .sensor = sensor,
-                        .since = *biases_[s].since,
-                        .strength = bias_distance(s) / bias_limit});
+                        .since = *since,
+                        .strength = bias_strength(filter_, s)});
     if (!does_not_fit_[s]) continue;
     ++disagreeing;
     alarms.push_back({.kind = is_late_[s] ? TrackAlarmKind::sensor_late : TrackAlarmKind::sensor_moved,

@@ -8,6 +8,7 @@
 #include "kinfer/evidence/tracking/track_state.hpp"
 #include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/track/composed.hpp"
+#include "kinfer/track/faults/bias_watch.hpp"
 #include "kinfer/track/faults/clock_watch.hpp"
 #include "kinfer/track/faults/fit_monitor.hpp"
 #include "kinfer/track/faults/mount_watch.hpp"
@@ -47,12 +48,6 @@ class Tracker {
   const ChainFilter& filter() const { return filter_; }
 
  private:
-  /// Biases that are far from those handed over: since when [s], and for so long that it is an alarm.
-  struct BiasChange {
-    std::optional<double> since{};
-    bool is_named = false;
-  };
-
   void restart(double time);
   bool is_lost_after(double gap) const;
   void forget_state();
@@ -76,8 +71,7 @@ class Tracker {
   void doubt(std::size_t joint);
   void examine_fit();
   void watch_misfit(double time);
-  double bias_distance(std::size_t sensor) const;
-  void watch_biases(double time);
+  bool is_fault_named() const;
   void end_block();
   void list_alarms(double time);
   void correct_in_rest();
@@ -103,10 +97,10 @@ class Tracker {
   ClockWatch clocks_;
   Replay replay_;
   SensorReturn return_;
-  std::vector<bool> does_not_fit_;     // sensors out of use because they disagree
-  std::vector<bool> is_late_;          // of these, by their clocks
-  MountWatch mounts_;                  // of these
-  std::vector<BiasChange> biases_;     // of each sensor
+  std::vector<bool> does_not_fit_;  // sensors out of use because they disagree
+  std::vector<bool> is_late_;       // of these, by their clocks
+  MountWatch mounts_;               // of these
+  BiasWatch biases_;
   std::optional<double> waits_since_;  // [s] for a start in a quieter moment
   ComposedFilters composed_;
   std::vector<bool> is_sound_, is_settled_;  // sensors that the composed filters may use; joints that are not open

@@ -114,9 +114,10 @@ class Fit {
   }
 
   RedundancyOfKinds redundancy(const PoseSet& kept) const {
-    const double parameters = options_.absorbed + effective_parameters(state_.outcome.normal, set_);
-    return redundancy_of_kinds(state_.chain, set_, kept, weights_of(kept, instrument_, state_.excess), parameters,
-                               options_.threads);
+    return redundancy_of_kinds(
+        state_.chain, set_, kept, weights_of(kept, instrument_, state_.excess),
+        {.by_parameters = effective_parameters(state_.outcome.normal, set_), .by_functions = options_.absorbed},
+        options_.threads);
   }
 
   /// Alternates between noise level and parameters, under a redescending (Cauchy) loss.
@@ -257,7 +258,8 @@ class Fit {
     return {};
   }
 
-  /// A kind counts only where the instrument specifies its accuracy, with its own redundancy.
+  /// A kind counts only where the instrument specifies its accuracy, with its own redundancy; known distances between
+  /// sockets with the mean one.
   std::optional<double> normalised_chi2(PoseSet kept) const {
     VectorXd distances(static_cast<Eigen::Index>(state_.chain.fixtures.socket_distances.size()));
     write_socket_distances(state_.chain, no_columns_, distances, nullptr, 0);
@@ -266,11 +268,12 @@ class Fit {
       if (M::traits.sigma_of(*instrument_) <= 0.0) list.clear();
     });
     if (!has_measurements(kept)) return std::nullopt;
+    const VectorXd r = weighted_residuals(scene(kept), weights_of(kept, *instrument_));
     double left = 0.0;
     for (const ResidualKind& kind : residual_kinds())
       left += part_left[index(kind.kind)] * kind.size * static_cast<double>(kind.count(kept));
-    const VectorXd r = weighted_residuals(scene(kept), weights_of(kept, *instrument_));
-    return (r.squaredNorm() + distances.squaredNorm()) / std::max(1.0, left + static_cast<double>(distances.size()));
+    left *= 1.0 + static_cast<double>(distances.size()) / static_cast<double>(r.size());
+    return (r.squaredNorm() + distances.squaredNorm()) / std::max(1.0, left);
   }
 
   void describe_parameters(Estimate& estimate) const {

@@ -44,23 +44,22 @@ MatrixXd information_of(MeasurementKind kind, const Chain& chain, const Paramete
 }  // namespace
 
 RedundancyOfKinds redundancy_of_kinds(const Chain& chain, const ParameterSet& set, const PoseSet& data,
-                                      const Weights& weights, double parameters, int threads) {
-  if (is_equal(data, parameters)) return equal_redundancy(data, parameters);
+                                      const Weights& weights, const AbsorbedResiduals& absorbed, int threads) {
+  if (is_equal(data, absorbed.all())) return equal_redundancy(data, absorbed.all());
   std::array<MatrixXd, measurement_kinds> information;
-  MatrixXd all = prior_information(set);
+  MatrixXd all = prior_information(set).selfadjointView<Eigen::Lower>();
   for (const ResidualKind& kind : residual_kinds()) {
     if (kind.count(data) == 0) continue;
     information[index(kind.kind)] = information_of(kind.kind, chain, set, data, weights, threads);
     all += information[index(kind.kind)];
   }
   const MatrixXd covariance = invert_but_for_rounding(all);
-  RedundancyOfKinds redundancy;
-  redundancy.fill(1.0);
+  RedundancyOfKinds redundancy = equal_redundancy(data, absorbed.by_functions);
   for (const ResidualKind& kind : residual_kinds()) {
     const auto k = index(kind.kind);
     if (information[k].size() == 0) continue;
-    const double absorbed = information[k].cwiseProduct(covariance).sum();
-    redundancy[k] = std::max(least_redundancy, 1.0 - absorbed / residuals_of(data, kind));
+    const double own = information[k].cwiseProduct(covariance).sum();
+    redundancy[k] *= std::max(least_redundancy, 1.0 - own / residuals_of(data, kind));
   }
   return redundancy;
 }
@@ -71,9 +70,10 @@ ExcessNoise noise_of_fit(const Chain& chain, const ParameterSet& set, const Pose
   ExcessNoise noise = excess_noise(chain, data, instrument, parameters, threads);
   if (is_equal(data, parameters)) return noise;
   for (int i = 0; i < rounds; ++i)
-    noise = excess_noise(
-        chain, data, instrument,
-        redundancy_of_kinds(chain, set, data, weights_of(data, instrument, noise), parameters, threads), threads);
+    noise = excess_noise(chain, data, instrument,
+                         redundancy_of_kinds(chain, set, data, weights_of(data, instrument, noise),
+                                             {.by_parameters = parameters}, threads),
+                         threads);
   return noise;
 }
 

@@ -20,8 +20,7 @@ class Replay {
   /// From the older of the two filters kept, after `prepare` has changed it; `visit(filter, block)` after each block.
   template <class Prepare, class Visit>
   void run(ChainFilter& filter, const Prepare& prepare, const Visit& visit) {
-    older_.judge_as(filter);
-    filter = older_;
+    filter = beginning(filter);
     prepare(filter);
     for (std::size_t i = 0; i < count_; ++i) {
       const BlockMeasurement& block = blocks_[i];
@@ -32,8 +31,12 @@ class Replay {
     begin(filter);
   }
 
-  /// The older of the two filters kept, and the blocks since.
-  const ChainFilter& older() const { return older_; }
+  /// The older of the two filters kept, which trusts the sensors as `filter` does, and the blocks since.
+  ChainFilter beginning(const ChainFilter& filter) const {
+    ChainFilter older = older_;
+    older.judge_as(filter);
+    return older;
+  }
   std::span<const BlockMeasurement> blocks() const { return {blocks_.data(), count_}; }
 
   /// Forgets what was before.
