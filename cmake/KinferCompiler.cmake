@@ -74,6 +74,9 @@ if(KINFER_SANITIZE)
   # Eigen forms pointers into empty matrices, which it never reads. Null, misaligned and foreign objects are found where
   # they are used, by the processor and the address sanitizer: checks before each access take as long as everything else.
   add_compile_options(-fno-sanitize=pointer-overflow,null,alignment,object-size,vptr)
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    add_compile_options(-fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/undefined_behaviour_ignorelist.txt)
+  endif()
   add_link_options(-fsanitize=address,undefined)
 endif()
 if(KINFER_SANITIZE_THREADS)
