@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kinfer/track/faults/turn_beside_joint.hpp"
+#include "kinfer/track/faults/change_hypotheses.hpp"
 #include "kinfer/track/filter/row_block.hpp"
 
 namespace kinfer::track {
@@ -108,6 +108,33 @@ TEST(Tracker, NamesASensorThatWasTurned) {
   EXPECT_EQ(out.alarms.size(), 1u);  // and not its clock
 }
 
+/// By less than a block's noise shows, and less than its mounting may be off: none was named.
+TEST(Tracker, NamesAConsumerSensorThatWasTurnedByHalfADegree) {
+  const Case given = make_case({.grade = "consumer", .duration = 60.0});
+  const Mat3 turn = exp_so3(0.5 * degree * Vec3(1.0, 1.0, 1.0).normalized());
+  for (const std::size_t sensor : {2u, 3u, 4u}) {
+    const Outcome out = run(given, {}, [&](InsRow& row) {
+      if (row.time > 20.0) turn_sensor(row.sensors[sensor], turn);
+    });
+    ASSERT_EQ(out.alarms.size(), 1u) << sensor;
+    EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_moved) << sensor;
+    EXPECT_EQ(out.alarms[0].sensor, static_cast<int>(sensor));
+    EXPECT_LT(out.raised[0], 22.0) << sensor;
+    EXPECT_EQ(out.tracker.state().alarms.size(), 1u) << "it was taken in again: " << sensor;
+  }
+  EXPECT_TRUE(run(given, {}, unchanged).alarms.empty());
+}
+
+/// What a knock shows for a moment is over when it is examined.
+TEST(Tracker, AConsumerSensorThatIsTurnedForAMomentIsNotNamed) {
+  const Case given = make_case({.grade = "consumer", .duration = 40.0});
+  const Mat3 turn = exp_so3(0.5 * degree * Vec3(1.0, 1.0, 1.0).normalized());
+  const Outcome out = run(given, {}, [&](InsRow& row) {
+    if (row.time > 20.0 && row.time < 20.3) turn_sensor(row.sensors[3], turn);
+  });
+  EXPECT_TRUE(out.alarms.empty());
+}
+
 /// Of the joint by the rows of two seconds, in the middle of which `change` begins.
 template <class Change>
 std::optional<std::size_t> turned_beside_joint(const Case& given, std::size_t joint, const Change& change) {
@@ -133,7 +160,7 @@ std::optional<std::size_t> turned_beside_joint(const Case& given, std::size_t jo
 }
 
 /// The joints on both sides of it were named.
-TEST(TurnBesideJoint, OfASensorThatTurnedItIsLikelierThanAChangeOfEitherJoint) {
+TEST(TurnedBeside, OfASensorThatTurnedItIsLikelierThanAChangeOfEitherJoint) {
   for (const Vec3& axis : {Vec3(1.0, 0.3, 0.2), Vec3(-0.2, 0.9, -0.4)}) {
     const Mat3 turn = exp_so3(0.7 * degree * axis.normalized());
     for (const std::size_t joint : {1u, 2u})
@@ -143,7 +170,7 @@ TEST(TurnBesideJoint, OfASensorThatTurnedItIsLikelierThanAChangeOfEitherJoint) {
   }
 }
 
-TEST(TurnBesideJoint, APinWithPlayIsNoTurn) {
+TEST(TurnedBeside, APinWithPlayIsNoTurn) {
   const auto& motion = still_excavator().drive.motion.sensors;
   const auto rattle = [&](InsRow& row, std::size_t r) {
     const double w = 6.0 * std::numbers::pi;

@@ -6,7 +6,6 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/track/faults/thresholds.hpp"
-#include "kinfer/track/faults/turn_beside_joint.hpp"
 #include "kinfer/track/filter/thresholds.hpp"
 #include "kinfer/track/readout/readout.hpp"
 #include "kinfer/track/start/thresholds.hpp"
@@ -37,6 +36,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       health_(model.sensors.size()),
       fit_(model.sensors.size(), model.joints.size()),
       clocks_(model.sensors.size()),
+      turns_(model.sensors.size()),
       replay_(filter_),
       does_not_fit_(model.sensors.size(), false),
       is_late_(model.sensors.size(), false),
@@ -76,6 +76,7 @@ void Tracker::restart(double time) {
   waiting_.clear();
   waits_since_.reset();
   fit_.reset();
+  turns_.reset();
   mounts_.reset();
   biases_.reset();
 }
@@ -239,12 +240,14 @@ void Tracker::resolve_start(const BlockMeasurement& block) {
   positions_.decide(*model_, grid_->body());
   grid_.reset();
   fit_.reset();  // other places did not fit, which says nothing of the sensors
+  turns_.reset();
   begin_grid();
   replay_.begin(filter_);
 }
 
 void Tracker::replay(const std::function<void(ChainFilter&)>& prepare) {
   fit_.reset();
+  turns_.reset();
   mounts_.reset();  // they have believed what turned out to be wrong
   replay_.run(filter_, prepare, [&](const ChainFilter& filter, const BlockMeasurement& past) {
     fit_.add(filter, past.time, past.length);
@@ -304,30 +307,50 @@ void Tracker::watch_misfit(double time) {
   if (common > misfit_inflation && !misfit_since_) misfit_since_ = time;
 }
 
-void Tracker::leave_out(std::size_t sensor) {
+void Tracker::leave_out(std::size_t sensor, double log_odds_of_turn) {
   does_not_fit_[sensor] = true;
   is_late_[sensor] = clocks_.is_late(sensor, lateness_share);
   const Agreement named = as_named(fit_.sensor(sensor), filter_.state().time);
   MountWatch mounts(does_not_fit_.size());  // of the others the filters have believed this sensor
-  mounts.begin(sensor, replay_.beginning(filter_), replay_.blocks());
+  mounts.begin(sensor, replay_.beginning(filter_), replay_.blocks(), log_odds_of_turn);
   replay([&](ChainFilter& filter) { filter.use_sensor(sensor, false); });
   mounts_ = mounts;
   fit_.set_sensor(sensor, named);
 }
 
-/// Unless a sensor beside it that turned is likelier.
 void Tracker::doubt(std::size_t joint) {
-  if (const auto turned = turned_beside(replay_.beginning(filter_), replay_.blocks(), joint)) return leave_out(*turned);
   const Agreement named = as_named(fit_.joint(joint), filter_.state().time);
   replay([&](ChainFilter& filter) { filter.doubt_joint(joint, true); });
   fit_.set_joint(joint, named);
 }
 
+void Tracker::name(const LikelyCause& cause) {
+  const auto& [sensor, joint] = cause.suspect;
+  if (sensor >= 0) leave_out(static_cast<std::size_t>(sensor), cause.log_odds);
+  if (joint >= 0) doubt(static_cast<std::size_t>(joint));
+}
+
+/// A change that showed at once, and what has followed since, once it has shown whether it lasts.
+void Tracker::examine_sudden_change(double time) {
+  const std::optional<double> noticed = turns_.noticed(time);
+  if (!noticed) return;
+  const LikelyCause cause =
+      likeliest_cause(replay_.beginning(filter_), replay_.blocks(),
+                      {.from = *noticed - 2.0 * turn_mean, .until = *noticed, .may_have_turned = [this](std::size_t s) {
+                         return turns_.may_have_turned(s);
+                       }});
+  turns_.settle(time);
+  if (cause.log_odds > sudden_log_odds) name(cause);
+}
+
 /// What disagrees most is left out, as if it had never been believed, and what agrees again is taken in.
 void Tracker::examine_fit() {
-  const Suspect worst = fit_.worst(filter_);
-  if (worst.sensor >= 0) leave_out(static_cast<std::size_t>(worst.sensor));
-  if (worst.joint >= 0) doubt(static_cast<std::size_t>(worst.joint));
+  Suspect worst = fit_.worst(filter_);
+  if (worst.joint >= 0)  // unless a sensor beside it that turned is likelier
+    if (const auto turned =
+            turned_beside(replay_.beginning(filter_), replay_.blocks(), static_cast<std::size_t>(worst.joint)))
+      worst = {.sensor = static_cast<int>(*turned)};
+  name({.suspect = worst});
   const Suspect back = fit_.recovered(filter_, [this](std::size_t s) { return mounts_.may_return(s); });
   if (back.sensor >= 0) {
     does_not_fit_[static_cast<std::size_t>(back.sensor)] = is_late_[static_cast<std::size_t>(back.sensor)] = false;
@@ -365,6 +388,7 @@ void Tracker::process_block(const BlockMeasurement& block) {
   }
   fit_.add(filter_, block.time, block.length);
   clocks_.add(filter_, block.length);
+  turns_.add(filter_, block.time, block.length);
   for (std::size_t s = 0; s < does_not_fit_.size(); ++s)
     if (does_not_fit_[s] && clocks_.is_late(s, lateness_share_later) && !mounts_.is_turned(s)) is_late_[s] = true;
   if (!grid_) {
@@ -373,6 +397,7 @@ void Tracker::process_block(const BlockMeasurement& block) {
       let_base_move();
     else
       examine_fit();
+    examine_sudden_change(block.time);
     mounts_.add(block, filter_,
                 [&](std::size_t s) { return does_not_fit_[s] && !health_[s].lost && !health_[s].stuck; });
     biases_.add(filter_, is_fault_named(), block.time);

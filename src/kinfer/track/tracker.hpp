@@ -9,12 +9,14 @@
 #include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/track/composed.hpp"
 #include "kinfer/track/faults/bias_watch.hpp"
+#include "kinfer/track/faults/change_hypotheses.hpp"
 #include "kinfer/track/faults/clock_watch.hpp"
 #include "kinfer/track/faults/fit_monitor.hpp"
 #include "kinfer/track/faults/mount_watch.hpp"
 #include "kinfer/track/faults/replay.hpp"
 #include "kinfer/track/faults/sensor_health.hpp"
 #include "kinfer/track/faults/sensor_return.hpp"
+#include "kinfer/track/faults/turn_watch.hpp"
 #include "kinfer/track/filter/base_watch.hpp"
 #include "kinfer/track/filter/rest_bias.hpp"
 #include "kinfer/track/filter/row_block.hpp"
@@ -67,8 +69,10 @@ class Tracker {
   void begin_grid();
   void spread_tool();
   void widen_unknown();
-  void leave_out(std::size_t sensor);
+  void leave_out(std::size_t sensor, double log_odds_of_turn);
   void doubt(std::size_t joint);
+  void name(const LikelyCause& cause);
+  void examine_sudden_change(double time);
   void examine_fit();
   void watch_misfit(double time);
   bool is_fault_named() const;
@@ -95,6 +99,7 @@ class Tracker {
   HealthWatch health_;
   FitMonitor fit_;
   ClockWatch clocks_;
+  TurnWatch turns_;
   Replay replay_;
   SensorReturn return_;
   std::vector<bool> does_not_fit_;  // sensors out of use because they disagree

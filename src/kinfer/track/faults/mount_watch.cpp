@@ -5,8 +5,9 @@
 
 namespace kinfer::track {
 
-void MountWatch::begin(std::size_t sensor, const ChainFilter& before, std::span<const BlockMeasurement> rows) {
-  mounts_[sensor].emplace(before, rows, sensor);
+void MountWatch::begin(std::size_t sensor, const ChainFilter& before, std::span<const BlockMeasurement> rows,
+                       double log_odds) {
+  mounts_[sensor].emplace(before, rows, sensor, log_odds);
 }
 
 void MountWatch::add(const BlockMeasurement& block, const ChainFilter& filter,

@@ -15,8 +15,9 @@ class MountWatch {
  public:
   explicit MountWatch(std::size_t sensors) : mounts_(sensors) {}
 
-  /// The sensor was left out: it was turned at some time in `rows`; `before`: the filter before them.
-  void begin(std::size_t sensor, const ChainFilter& before, std::span<const BlockMeasurement> rows);
+  /// The sensor was left out: it was turned at some time in `rows`, with these log-odds against no turn; `before`: the
+  /// filter before them.
+  void begin(std::size_t sensor, const ChainFilter& before, std::span<const BlockMeasurement> rows, double log_odds);
   /// After each update of `filter`; `is_watched`: whether a sensor is out of use because it disagrees, and measures.
   void add(const BlockMeasurement& block, const ChainFilter& filter,
            const std::function<bool(std::size_t)>& is_watched);

@@ -21,12 +21,14 @@ MountTurn loosened(MountTurn turn) {
 }  // namespace
 
 /// The turn happened at some time in these rows: until they end it is a random walk.
-TurnedMount::TurnedMount(const ChainFilter& before, std::span<const BlockMeasurement> rows, std::size_t sensor)
+TurnedMount::TurnedMount(const ChainFilter& before, std::span<const BlockMeasurement> rows, std::size_t sensor,
+                         double log_odds)
     : sensor_(sensor),
       original_(mount_turn(before, sensor)),
       supposed_(loosened(original_)),
       filter_(with_sensor(before, sensor)),
-      fit_(before.model().sensors.size(), before.model().joints.size()) {
+      fit_(before.model().sensors.size(), before.model().joints.size()),
+      log_odds_(log_odds) {
   for (const BlockMeasurement& block : rows) {
     loosen_mount(filter_, sensor_, square(turned_mount_sd) / static_cast<double>(rows.size()));
     update(block);
@@ -34,7 +36,7 @@ TurnedMount::TurnedMount(const ChainFilter& before, std::span<const BlockMeasure
   fit_.reset();
 }
 
-TurnedMount::TurnedMount(const ChainFilter& without, std::size_t sensor) : TurnedMount(without, {}, sensor) {
+TurnedMount::TurnedMount(const ChainFilter& without, std::size_t sensor) : TurnedMount(without, {}, sensor, 0.0) {
   begin(without);
 }
 
@@ -44,6 +46,7 @@ void TurnedMount::begin(const ChainFilter& without) {
   filter_ = without;
   filter_.use_sensor(sensor_, true);
   is_known_ = !has_lost_position(filter_, sensor_);
+  log_odds_ = 0.0;
   supposed_ = loosened(mount_turn(filter_, sensor_));
   loosen_mount(filter_, sensor_, square(turned_mount_sd));
   fit_.reset();
@@ -65,7 +68,7 @@ void TurnedMount::add(const BlockMeasurement& block, const ChainFilter& without)
 
 std::optional<double> TurnedMount::log_odds_of_original() const {
   if (!is_known_) return {};
-  return log_odds_of(original_, supposed_, mount_turn(filter_, sensor_));
+  return log_odds_of(original_, supposed_, mount_turn(filter_, sensor_)) - log_odds_;
 }
 
 }  // namespace kinfer::track

@@ -14,8 +14,9 @@ namespace kinfer::track {
 
 class TurnedMount {
  public:
-  /// `before`: some seconds before it was named; `rows` since. It was turned at some time in between.
-  TurnedMount(const ChainFilter& before, std::span<const BlockMeasurement> rows, std::size_t sensor);
+  /// `before`: some seconds before it was named; `rows` since. It was turned at some time in between, `log_odds` being
+  /// those of the turn by which it was named: what a change shows at once is lost in how uncertain the mounting is.
+  TurnedMount(const ChainFilter& before, std::span<const BlockMeasurement> rows, std::size_t sensor, double log_odds);
   /// It may be turned already; `without`: the filter without the sensor.
   TurnedMount(const ChainFilter& without, std::size_t sensor);
 
@@ -39,6 +40,7 @@ class TurnedMount {
   MountTurn original_, supposed_;  // supposed: before its samples since the change
   ChainFilter filter_;
   FitMonitor fit_;
+  double log_odds_;  // of the turn, before it was watched
   bool is_known_ = true;
 };
 

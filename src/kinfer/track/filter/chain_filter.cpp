@@ -227,7 +227,7 @@ bool ChainFilter::allow_joint_changes() {
 void ChainFilter::examine_changes() {
   changes_.examine(system_.inverse(), system_.whitened(), false);
   for (std::size_t j = 0; j < changes_.size(); ++j) innovations_.of_joint[j] = changes_.distance(j);
-  examine_sensors(system_, is_used_, change_, innovations_);
+  examine_sensors(system_, is_used_, evaluator_.result(), change_, innovations_);
 }
 
 /// The innovation of a sensor that is not used, in its own covariance.

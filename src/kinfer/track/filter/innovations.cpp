@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "kinfer/geometry/rotation.hpp"
+
 namespace kinfer::track {
 
 double squared_distance(SensorVector v, SensorMatrix m) {
@@ -24,14 +26,15 @@ Innovations::Innovations(const FilterModel& model) {
   leave_out.assign(sensors, 0.0);
   rows.assign(sensors, 0);
   lateness.assign(sensors, {});
+  turn.assign(sensors, {});
   of_joint.assign(model.joints.size(), 0.0);
   unlimited = leave_out;
   unlimited_of_joint = of_joint;
   of_instrument.assign(2 * sensors, 1.0);
 }
 
-void examine_sensors(const UpdateSystem& system, const std::vector<bool>& is_used, const VectorXd& change,
-                     Innovations& innovations) {
+void examine_sensors(const UpdateSystem& system, const std::vector<bool>& is_used, const ChainMeasurement& predicted,
+                     const VectorXd& change, Innovations& innovations) {
   innovations.log_likelihood = -0.5 * system.whitened().squaredNorm() - system.log_root_determinant();
   for (std::size_t s = 0; s < is_used.size(); ++s) {
     const Index row = sensor_rows * static_cast<Index>(s);
@@ -49,6 +52,9 @@ void examine_sensors(const UpdateSystem& system, const std::vector<bool>& is_use
     innovations.leave_out[s] = squared_distance(u, own);
     const SensorVector by_lateness = -change.segment<sensor_rows>(row);
     innovations.lateness[s] = {by_lateness.dot(u), by_lateness.dot(own * by_lateness)};
+    Eigen::Matrix<double, sensor_rows, 3> by_turn;
+    by_turn << -skew(predicted.angular_velocity[s]), -skew(predicted.force[s]);
+    innovations.turn[s] = {by_turn.transpose() * u, by_turn.transpose() * own * by_turn};
     for (Index half = 0; half < 2; ++half) {
       const Vec3 v = u.segment<3>(3 * half);
       const Mat3 w = own.block<3, 3>(3 * half, 3 * half);

@@ -20,6 +20,12 @@ struct LatenessScore {
   double score = 0.0, information = 0.0;  ///< [1/s], [1/s²]
 };
 
+/// Score and information of a turn of a sensor's mounting, in the sensor's frame: turned by θ it measures (I + [θ]×) z.
+struct TurnScore {
+  Vec3 score = Vec3::Zero();        ///< [1/rad]
+  Mat3 information = Mat3::Zero();  ///< [1/rad²]
+};
+
 struct Innovations {
   VectorXd value;                 ///< measured minus predicted, rows of the sensors
   std::vector<double> leave_out;  ///< T of each sensor against all others, its expectation being `leave_out_rows`
@@ -28,6 +34,7 @@ struct Innovations {
   /// The same two before instruments that are far off are trusted less: what a change of it alone would explain.
   std::vector<double> unlimited, unlimited_of_joint;
   std::vector<LatenessScore> lateness;  ///< of each sensor, by its leave-one-out innovation
+  std::vector<TurnScore> turn;          ///< likewise
   double log_likelihood = 0.0;          ///< of this block
   /// Of each instrument, gyroscope and accelerometer of a sensor in turn: T over its expectation.
   std::vector<double> of_instrument;
@@ -36,8 +43,9 @@ struct Innovations {
 };
 
 /// Leave-one-out innovations from the factorised system: with u = S⁻¹ν the innovation of sensor i given all others is
-/// [(S⁻¹)_ii]⁻¹u_i, with covariance [(S⁻¹)_ii]⁻¹. `change`: of the predicted rows [1/s].
-void examine_sensors(const UpdateSystem& system, const std::vector<bool>& is_used, const VectorXd& change,
-                     Innovations& innovations);
+/// [(S⁻¹)_ii]⁻¹u_i, with covariance [(S⁻¹)_ii]⁻¹. `predicted`: by which the system was formed; `change`: of the
+/// predicted rows [1/s].
+void examine_sensors(const UpdateSystem& system, const std::vector<bool>& is_used, const ChainMeasurement& predicted,
+                     const VectorXd& change, Innovations& innovations);
 
 }  // namespace kinfer::track
