@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "kinfer/base/angle.hpp"
 #include "kinfer/base/square.hpp"
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/track/smooth/smoother.hpp"
@@ -140,7 +141,10 @@ TrackScore track(const TrackingModel& model, const SimulatedDrive* identified, c
       if (!is_relative && score.joints[j].is_first && score.joints[j].observable_at <= 0.0)
         score.joints[j].observable_at = state.time;
       score.joints[j].is_first |= is_relative;
-      const double e = state.q[at] - q - (is_relative ? sum.start : 0.0);
+      const double apart = state.q[at] - q - (is_relative ? sum.start : 0.0);
+      // What is measured on the segments is the same after a whole turn.
+      const bool turns = model.bodies[j + 1].motion != TrackingMotion::prismatic;
+      const double e = turns && !is_relative ? wrap_to_pi(apart) : apart;
       sum.squares += e * e;
       const double sd = std::max(state.sd_q[at], 1e-6);
       sum.stated += sd * sd;

@@ -224,13 +224,13 @@ void Tracker::list_wrong_starts(const InitialPosture& posture) {
 }
 
 /// Whether what moves now tells where such a joint stands. A prismatic one is told by the rates that its own axes have.
-bool Tracker::tells_of(std::size_t b) const {
+bool Tracker::tells_of(std::size_t b, bool (MotionWatch::*moves)(std::size_t) const) const {
   if (model_->bodies[b].motion == JointMotion::prismatic) return true;
   auto parent = static_cast<std::size_t>(model_->bodies[b].parent);
   while (parent > 0 && model_->bodies[parent].sensor < 0)
     parent = static_cast<std::size_t>(model_->bodies[parent].parent);
   const int sensor = model_->bodies[parent].sensor;
-  return sensor < 0 || motion_.moves(static_cast<std::size_t>(sensor));
+  return sensor < 0 || (motion_.*moves)(static_cast<std::size_t>(sensor));
 }
 
 void Tracker::resolve_start(const BlockMeasurement& block) {
@@ -276,10 +276,10 @@ void Tracker::let_base_move() {
 }
 
 /// Of the first joint position that motion shows from now on.
-void Tracker::begin_grid() {
+void Tracker::begin_grid(bool (MotionWatch::*moves)(std::size_t) const) {
   for (std::size_t b = 1; b < model_->bodies.size() && !grid_; ++b) {
     const Index at = model_->layout.position[b];
-    if (at < 0 || !positions_[static_cast<std::size_t>(at)].is_open || !tells_of(b)) continue;
+    if (at < 0 || !positions_[static_cast<std::size_t>(at)].is_open || !tells_of(b, moves)) continue;
     if (model_->bodies[b].motion == JointMotion::prismatic)
       grid_ = StartGrid::along(filter_, b, guesses_[static_cast<std::size_t>(at)]);
     else
@@ -346,6 +346,8 @@ void Tracker::examine_sudden_change(double time) {
 /// What disagrees most is left out, as if it had never been believed, and what agrees again is taken in.
 void Tracker::examine_fit() {
   Suspect worst = fit_.worst(filter_);
+  if (worst != Suspect{}) begin_grid(&MotionWatch::may_move);
+  if (grid_) return fit_.reset();  // a position that motion begins to show is where it was supposed to be by chance
   if (worst.joint >= 0)  // unless a sensor beside it that turned is likelier
     if (const auto turned =
             turned_beside(replay_.beginning(filter_), replay_.blocks(), static_cast<std::size_t>(worst.joint)))
@@ -428,8 +430,9 @@ void Tracker::read_out(double time) {
     joint.source = JointSource::chain;
     joint.reference = JointReference::chain;
   }
+  const Index in_grid = grid_ ? model_->layout.position[grid_->body()] : -1;  // as uncertain as its places are apart
   for (std::size_t i = 0; i < positions_.size(); ++i)
-    if (!positions_[i].is_known && model_positions_[i].joint >= 0)
+    if (!positions_[i].is_known && static_cast<Index>(i) != in_grid && model_positions_[i].joint >= 0)
       chain_state_.joints[static_cast<std::size_t>(model_positions_[i].joint)].reference = JointReference::start;
   chain_state_.time = time;
   state_.q = chain_state_.q;

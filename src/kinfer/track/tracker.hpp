@@ -64,9 +64,11 @@ class Tracker {
   void replay(const std::function<void(ChainFilter&)>& prepare);
   bool base_begins_to_move(const BlockMeasurement& block);
   void let_base_move();
-  bool tells_of(std::size_t body) const;
+  bool tells_of(std::size_t body) const { return tells_of(body, &MotionWatch::moves); }
+  bool tells_of(std::size_t body, bool (MotionWatch::*moves)(std::size_t) const) const;
   void show_headings();
-  void begin_grid();
+  void begin_grid() { begin_grid(&MotionWatch::moves); }
+  void begin_grid(bool (MotionWatch::*moves)(std::size_t) const);
   void spread_tool();
   void widen_unknown();
   void leave_out(std::size_t sensor, double log_odds_of_turn);

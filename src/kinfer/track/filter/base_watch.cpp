@@ -28,7 +28,7 @@ void BaseWatch::add(const BlockMeasurement& block, const ChainFilter& filter) {
 }
 
 void BaseWatch::suspect(const ChainFilter& filter) {
-  judge(filter, base_suspicion);
+  judge(filter, motion_suspicion);
 }
 
 void BaseWatch::judge(const ChainFilter& filter, double share) {

@@ -87,7 +87,7 @@ inline constexpr double steady_rate = 0.05;  ///< [rad/s] sd of a joint's veloci
 /// A base moves where its angular velocity, averaged over so long [s], is beyond this [rad/s] and so many standard
 /// deviations of noise and bias.
 /// Where sensors disagree, this share of it suffices.
-inline constexpr double base_suspicion = 0.4;
+inline constexpr double motion_suspicion = 0.4;
 inline constexpr double base_mean = 0.1, base_rate = 2e-3, base_significance = 5.0;
 
 /// Averaging of the chain's positions with the composed ones: shares below the first are none, they change over the

@@ -37,8 +37,8 @@ void MotionWatch::add(const BlockMeasurement& block, const ChainFilter& filter) 
     const Index own = filter.model().layout.sensor_state(static_cast<Index>(s)) + SensorIndex::gyroscope_bias;
     const double bias_variance = filter.covariance().diagonal().segment<3>(own).maxCoeff(),
                  most_rate = base_rate + base_significance * std::sqrt(noise_[s].rate * noise_[s].rate + bias_variance);
-    of.moves = (of.rate - filter.state().sensors[s].gyroscope_bias).norm() > most_rate ||
-               (of.force - of.usual_force).norm() > base_significance * noise_[s].force;
+    of.strength = std::max((of.rate - filter.state().sensors[s].gyroscope_bias).norm() / most_rate,
+                           (of.force - of.usual_force).norm() / (base_significance * noise_[s].force));
   }
 }
 
