@@ -94,6 +94,16 @@ TEST(Tracker, APositionThatOnlyMotionShowsIsUncertainUntilItHas) {
   EXPECT_GT(first_sd, 1.0) << "the tool is turned by it";
 }
 
+/// The first moments of a base that begins to rock: the joint stands somewhere by chance until then, and the sensor of
+/// the base was called moved before the place was sought.
+TEST(Tracker, SensorsAreNotBlamedForAPositionThatMotionBeginsToShow) {
+  for (const std::uint64_t seed : {1u, 3u, 5u, 8u}) {
+    const Case rocking = make_case(
+        {.machine = "robot6", .base = Base::rocking, .duration = 20.0, .drive_seed = seed, .sensor_seed = seed});
+    EXPECT_TRUE(run(rocking, {}, unchanged).alarms.empty()) << seed;
+  }
+}
+
 /// After half a second at rest, with the stated position of the boom, which gravity shows, so far from the true one.
 TrackState started_beside(double error) {
   const auto run = [](Tracker tracker) {

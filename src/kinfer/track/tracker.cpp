@@ -348,7 +348,7 @@ void Tracker::examine_fit() {
   Suspect worst = fit_.worst(filter_);
   if (worst != Suspect{}) begin_grid(&MotionWatch::may_move);
   if (grid_) return fit_.reset();  // a position that motion begins to show is where it was supposed to be by chance
-  if (worst.joint >= 0)  // unless a sensor beside it that turned is likelier
+  if (worst.joint >= 0)            // unless a sensor beside it that turned is likelier
     if (const auto turned =
             turned_beside(replay_.beginning(filter_), replay_.blocks(), static_cast<std::size_t>(worst.joint)))
       worst = {.sensor = static_cast<int>(*turned)};
