@@ -275,16 +275,26 @@ void Tracker::let_base_move() {
   begin_grid();
 }
 
-/// Of the first joint position that motion shows from now on.
-void Tracker::begin_grid(bool (MotionWatch::*moves)(std::size_t) const) {
-  for (std::size_t b = 1; b < model_->bodies.size() && !grid_; ++b) {
+/// The first open position of joints of such a motion that what moves now tells of; 0: none.
+std::size_t Tracker::first_told(JointMotion motion, bool (MotionWatch::*moves)(std::size_t) const) const {
+  for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
     const Index at = model_->layout.position[b];
-    if (at < 0 || !positions_[static_cast<std::size_t>(at)].is_open || !tells_of(b, moves)) continue;
-    if (model_->bodies[b].motion == JointMotion::prismatic)
-      grid_ = StartGrid::along(filter_, b, guesses_[static_cast<std::size_t>(at)]);
-    else
-      grid_ = StartGrid::around(filter_, b, positions_.start_sd(*model_, b));
+    if (at >= 0 && model_->bodies[b].motion == motion && positions_[static_cast<std::size_t>(at)].is_open &&
+        tells_of(b, moves))
+      return b;
   }
+  return 0;
+}
+
+/// Of the first joint position that motion shows from now on. A revolute one goes before one along a joint: while it
+/// stands where it does by chance, a filter that believes in it is soon beyond repair.
+void Tracker::begin_grid(bool (MotionWatch::*moves)(std::size_t) const) {
+  const bool slides = grid_ && model_->bodies[grid_->body()].motion == JointMotion::prismatic;
+  if (grid_ && !slides) return;
+  if (const std::size_t b = first_told(JointMotion::revolute, moves); b > 0)
+    grid_ = StartGrid::around(filter_, b, positions_.start_sd(*model_, b));
+  else if (const std::size_t along = first_told(JointMotion::prismatic, moves); along > 0 && !grid_)
+    grid_ = StartGrid::along(filter_, along, guesses_[static_cast<std::size_t>(model_->layout.position[along])]);
 }
 
 /// Where positions count from the start the tool is as uncertain as what they count from.
@@ -380,7 +390,7 @@ void Tracker::show_headings() {
 void Tracker::process_block(const BlockMeasurement& block) {
   motion_.add(block, filter_);
   if (!grid_) show_headings();
-  if (!grid_) begin_grid();
+  begin_grid();
   if (grid_) {
     mounts_.reset();
     resolve_start(block);

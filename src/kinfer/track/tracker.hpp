@@ -67,6 +67,7 @@ class Tracker {
   bool tells_of(std::size_t body) const { return tells_of(body, &MotionWatch::moves); }
   bool tells_of(std::size_t body, bool (MotionWatch::*moves)(std::size_t) const) const;
   void show_headings();
+  std::size_t first_told(JointMotion motion, bool (MotionWatch::*moves)(std::size_t) const) const;
   void begin_grid() { begin_grid(&MotionWatch::moves); }
   void begin_grid(bool (MotionWatch::*moves)(std::size_t) const);
   void spread_tool();
