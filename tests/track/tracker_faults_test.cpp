@@ -224,19 +224,24 @@ TEST(Tracker, NamesASensorWhoseClockWentWrong) {
   for (int j = 1; j < 5; ++j) EXPECT_LT(out.rms(j), 0.3 * degree) << j;
 }
 
-/// All sensors beyond the pin of joint 2 rattle alike, by 3 mm and three times a second.
-TEST(Tracker, NamesAJointWithPlay) {
-  const Case& given = still_excavator();
+/// All sensors from `first` on rattle alike, by `size` [m] and three times a second, in a span of the drive.
+Outcome run_with_play(const Case& given, std::size_t first, double size, Pause span) {
   const auto& motion = given.drive.motion.sensors;
   std::size_t r = 0;
-  const Outcome out = run(given, {}, [&](InsRow& row) {
+  return run(given, {}, [&](InsRow& row) {
     const double w = 6.0 * std::numbers::pi;
-    const Vec3 shake = -1.5e-3 * w * w * std::sin(w * row.time) * Vec3::UnitX();
-    if (row.time > 8.0 && row.time < 10.0)
-      for (std::size_t s = 3; s < row.sensors.size(); ++s)
-        row.sensors[s].acceleration += motion[s].world_R_sensor[r].conjugate() * (motion[3].world_R_sensor[r] * shake);
+    const Vec3 shake = -0.5 * size * w * w * std::sin(w * row.time) * Vec3::UnitX();
+    if (row.time > span.begin && row.time < span.end)
+      for (std::size_t s = first; s < row.sensors.size(); ++s)
+        row.sensors[s].acceleration +=
+            motion[s].world_R_sensor[r].conjugate() * (motion[first].world_R_sensor[r] * shake);
     ++r;
   });
+}
+
+/// Beyond the pin of joint 2.
+TEST(Tracker, NamesAJointWithPlay) {
+  const Outcome out = run_with_play(still_excavator(), 3, 3e-3, {8.0, 10.0});
   for (std::size_t i = 1; i < out.alarms.size(); ++i)
     ADD_FAILURE() << name(out.alarms[i].kind) << " " << out.alarms[i].sensor << " at " << out.raised[i];
   ASSERT_FALSE(out.alarms.empty());
@@ -245,6 +250,19 @@ TEST(Tracker, NamesAJointWithPlay) {
   EXPECT_LT(out.raised[0], 8.5);
   EXPECT_TRUE(out.tracker.state().alarms.empty());  // fits again
   for (int j = 1; j < 5; ++j) EXPECT_LT(out.rms(j), 0.1 * degree) << j;
+}
+
+/// Its own acceleration explains most of what the first joint's pin does.
+TEST(Tracker, NamesPlayInTheFirstJointOfAConsumerMachine) {
+  for (const char* machine : {"robot6", "excavator-general"}) {
+    const Case given = make_case({.machine = machine, .grade = "consumer", .duration = 40.0});
+    const Outcome out = run_with_play(given, 1, 1e-3, {20.0, 40.0});
+    ASSERT_EQ(out.alarms.size(), 1u) << machine;
+    EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::joint_changed) << machine;
+    EXPECT_EQ(out.alarms[0].joint, 0) << machine;
+    EXPECT_GT(out.raised[0], 20.0) << machine;
+    EXPECT_LT(out.raised[0], 22.0) << machine;
+  }
 }
 
 struct Silence {

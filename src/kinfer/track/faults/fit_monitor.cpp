@@ -33,6 +33,23 @@ void fade(Agreement& agreement, double time, bool is_named, double length) {
   forget(agreement.explains, 1.0, length, short_mean);
 }
 
+/// The larger mean over its threshold.
+double strength(const Agreement& agreement, double quick_of_others, double slow_of_others, double tails) {
+  return std::max(agreement.quick / (quick_limit * tails * quick_of_others),
+                  agreement.slow / (slow_limit * tails * slow_of_others));
+}
+
+/// Of a joint, whose change its own acceleration may hide for the most part: its short mean over what it has shown in
+/// the last minute. A first moment does not tell a joint from a sensor beside it.
+double strength_over_usual(Agreement& joint, double quick_of_others, double time) {
+  const std::optional<double> usual = joint.usual.value();
+  if (!usual) return 0.0;
+  const double strength = joint.quick / (quick_of_others * std::max(least_joint_change, joint_stands_out * *usual));
+  if (strength < lasting_strength) joint.unusual_since.reset();
+  if (strength > 1.0 && !joint.unusual_since) joint.unusual_since = time;
+  return joint.unusual_since && time - *joint.unusual_since >= short_mean ? strength : 0.0;
+}
+
 Agreement taken_in_again(const Agreement& agreement) {
   return {.observed = agreement.was_named ? settling : 0.0, .was_named = agreement.was_named};
 }
@@ -92,18 +109,23 @@ void FitMonitor::add(const ChainFilter& filter, double time, double length) {
   const double tails = std::sqrt(filter.levels().common());
   for (std::size_t s = 0; s < sensors_.size(); ++s)
     if (innovations.rows[s] > 0)
-      judge(sensors_[s], median_of_others(filter, s, &Agreement::quick), median_of_others(filter, s, &Agreement::slow),
-            tails, time);
-  for (std::size_t j = 0; j < joints_.size(); ++j)
-    if (innovations.of_joint[j] > 0.0)
-      judge(joints_[j], median_of_other_joints(filter, j, &Agreement::quick),
-            median_of_other_joints(filter, j, &Agreement::slow), tails, time);
+      judge(sensors_[s],
+            strength(sensors_[s], median_of_others(filter, s, &Agreement::quick),
+                     median_of_others(filter, s, &Agreement::slow), tails),
+            time);
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    if (innovations.of_joint[j] <= 0.0) continue;
+    const double others = median_of_other_joints(filter, j, &Agreement::quick);
+    judge(joints_[j],
+          std::max(strength(joints_[j], others, median_of_other_joints(filter, j, &Agreement::slow), tails),
+                   strength_over_usual(joints_[j], others, time)),
+          time);
+    if (joints_[j].observed >= settling) joints_[j].usual.add(joints_[j].quick, time);
+  }
 }
 
-void FitMonitor::judge(Agreement& agreement, double quick_of_others, double slow_of_others, double tails,
-                       double time) const {
-  agreement.strength = std::max(agreement.quick / (quick_limit * tails * quick_of_others),
-                                agreement.slow / (slow_limit * tails * slow_of_others));
+void FitMonitor::judge(Agreement& agreement, double strength, double time) const {
+  agreement.strength = strength;
   const bool was = agreement.is_suspect;
   agreement.is_suspect =
       agreement.observed >= settling && (was ? agreement.quick > recovered_limit : agreement.strength > 1.0);

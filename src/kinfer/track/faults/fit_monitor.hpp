@@ -9,19 +9,22 @@
 
 #include <functional>
 
+#include "kinfer/track/faults/usual_peak.hpp"
 #include "kinfer/track/filter/chain_filter.hpp"
 
 namespace kinfer::track {
 
 struct Agreement {
-  double quick = 1.0, slow = 1.0;  ///< T over its expectation, over short_mean and long_mean
-  bool is_suspect = false;         ///< does not agree
-  double since = 0.0;              ///< [s]
-  double observed = 0.0;           ///< [s] that it was compared
-  double compared = 0.0;           ///< [s] when it was compared last
-  double strength = 0.0;           ///< the larger mean over its threshold
-  double explains = 1.0;           ///< over short_mean, of the unlimited T
-  bool was_named = false;          ///< before
+  double quick = 1.0, slow = 1.0;         ///< T over its expectation, over short_mean and long_mean
+  bool is_suspect = false;                ///< does not agree
+  double since = 0.0;                     ///< [s]
+  double observed = 0.0;                  ///< [s] that it was compared
+  double compared = 0.0;                  ///< [s] when it was compared last
+  double strength = 0.0;                  ///< the larger mean over its threshold
+  double explains = 1.0;                  ///< over short_mean, of the unlimited T
+  bool was_named = false;                 ///< before
+  UsualPeak usual{};                      ///< of the short mean
+  std::optional<double> unusual_since{};  ///< [s] that it has been beyond that
 };
 
 /// As it starts when it is named, by others where it is not suspect itself: it fits again after agreeing for twice
@@ -58,7 +61,7 @@ class FitMonitor {
   Suspect likeliest_of(const std::function<bool(const Agreement&)>& is_candidate, const ChainFilter& filter) const;
   double median_of_others(const ChainFilter& filter, std::size_t sensor, double Agreement::*mean) const;
   double median_of_other_joints(const ChainFilter& filter, std::size_t joint, double Agreement::*mean) const;
-  void judge(Agreement& agreement, double quick_of_others, double slow_of_others, double tails, double time) const;
+  void judge(Agreement& agreement, double strength, double time) const;
 
   std::vector<Agreement> sensors_, joints_;
   mutable std::vector<double> ordered_;  // buffer of the medians

@@ -20,9 +20,9 @@ double evidence(const TurnScore& sum) {
 
 void TurnWatch::reset() {
   std::ranges::fill(turns_, Turn{});
-  usual_ = recent_ = now_ = 0.0;
-  begin_.reset();
+  usual_ = {};
   noticed_.reset();
+  settled_.reset();
 }
 
 void TurnWatch::settle(double time) {
@@ -30,18 +30,7 @@ void TurnWatch::settle(double time) {
   settled_ = time;
 }
 
-/// What all sensors have shown at most, until some seconds ago.
-void TurnWatch::remember(double time) {
-  now_ = std::max(now_, most_);
-  if (time - bucket_ < turn_patience) return;
-  usual_ = std::max(usual_ * std::exp(-(time - bucket_) / turn_memory), recent_);
-  recent_ = now_;
-  now_ = 0.0;
-  bucket_ = time;
-}
-
 void TurnWatch::add(const ChainFilter& filter, double time, double length) {
-  if (!begin_) begin_ = bucket_ = settled_ = time;
   const double kept = std::exp(-length / turn_mean);
   double most = 0.0;
   for (std::size_t s = 0; s < turns_.size(); ++s) {
@@ -56,9 +45,10 @@ void TurnWatch::add(const ChainFilter& filter, double time, double length) {
     most = std::max(most, turn.most);
   }
   most_ = most;
-  remember(time);
-  const bool is_watched = time - *begin_ > long_mean && time - settled_ > settling;
-  if (!noticed_ && is_watched && most_ > std::max(turn_evidence, turn_stands_out * usual_)) noticed_ = time;
+  usual_.add(most_, time);
+  const std::optional<double> usual = usual_.value();
+  if (noticed_ || !usual || (settled_ && time - *settled_ < settling)) return;
+  if (most_ > std::max(turn_evidence, turn_stands_out * *usual)) noticed_ = time;
 }
 
 std::optional<double> TurnWatch::noticed(double time) const {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "kinfer/track/faults/usual_peak.hpp"
 #include "kinfer/track/filter/chain_filter.hpp"
 
 namespace kinfer::track {
@@ -33,13 +34,10 @@ class TurnWatch {
     double most = 0.0;  // since the change was noticed
   };
 
-  void remember(double time);
-
   std::vector<Turn> turns_;
-  double most_ = 0.0;                              // of all sensors
-  double usual_ = 0.0, recent_ = 0.0, now_ = 0.0;  // largest until the last seconds, in the last ones, in these
-  double bucket_ = 0.0, settled_ = 0.0;            // [s] since when these are; when a change was examined last
-  std::optional<double> begin_{}, noticed_{};      // [s]
+  double most_ = 0.0;                            // of all sensors
+  UsualPeak usual_;                              // of that
+  std::optional<double> noticed_{}, settled_{};  // [s]; settled: a change was examined last
 };
 
 }  // namespace kinfer::track
