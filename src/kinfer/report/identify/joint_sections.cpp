@@ -86,7 +86,7 @@ std::string joint_table(const IdentificationEvidence& e) {
 
 /// "revolute, 72.3 %"; certainty is never rounded to.
 std::string type_text(const JointEstimate& joint) {
-  const std::string type(name(joint.type));
+  std::string type(name(joint.type));
   if (!joint.type_probabilities) return type;
   const double percent = 100.0 * type_probability(joint);
   return percent > 99.9 ? type + ", > 99.9 %" : fmt::format("{}, {:.1f} %", type, percent);

@@ -128,9 +128,10 @@ void add_clock_rate(const ScaleReview& review, const InsFit& fit, const InsCovar
     MatrixXd& shift = error.shift[b];
     shift.conservativeResize(Eigen::NoChange, shift.cols() + 1);
     shift.rightCols<1>().setZero();
-    Index at = shift.rows();
-    if (body.free_point_in_child) shift.col(shift.cols() - 1).segment<3>(at -= 3) = change * body.point_in_child;
-    if (body.free_point_in_parent) shift.col(shift.cols() - 1).segment<3>(at -= 3) = change * body.point_in_parent;
+    // The points are the last of a body's unknowns, that in the child after that in the parent.
+    const Index in_child = shift.rows() - 3, in_parent = body.free_point_in_child ? in_child - 3 : in_child;
+    if (body.free_point_in_child) shift.col(shift.cols() - 1).segment<3>(in_child) = change * body.point_in_child;
+    if (body.free_point_in_parent) shift.col(shift.cols() - 1).segment<3>(in_parent) = change * body.point_in_parent;
   }
 }
 
