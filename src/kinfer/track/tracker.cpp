@@ -75,8 +75,7 @@ void Tracker::restart(double time) {
   block_.clear();
   waiting_.clear();
   waits_since_.reset();
-  fit_.reset();
-  turns_.reset();
+  forget_fit();
   mounts_.reset();
   biases_.reset();
 }
@@ -84,11 +83,8 @@ void Tracker::restart(double time) {
 /// Whether what has happened in a gap [s] is too much for the filter to go on.
 bool Tracker::is_lost_after(double gap) const {
   if (gap <= shortest_restart_gap || !state_.started) return gap > restart_gap;
-  double most = 0.0;  // [rad/s²]
-  for (std::size_t b = 1; b < model_->bodies.size(); ++b)
-    if (model_->bodies[b].motion == JointMotion::revolute)
-      most = std::max(most, std::abs(filter_.state().joints[position_states * model_->layout.position[b] + 2]));
-  return gap > restart_gap || 0.5 * most * gap * gap > turned_in_gap;
+  const double turned = 0.5 * largest_joint_acceleration(*model_, filter_.state()) * gap * gap;
+  return gap > restart_gap || turned > turned_in_gap;
 }
 
 /// Nothing is known until the next start; alarms stay.
@@ -133,7 +129,7 @@ void Tracker::end_block() {
 /// Sensors that are lost, stuck or disagree are left out.
 void Tracker::choose_sensors() {
   for (std::size_t s = 0; s < does_not_fit_.size(); ++s) {
-    const bool is_used = !does_not_fit_[s] && !health_[s].lost && !health_[s].stuck;
+    const bool is_used = !does_not_fit_[s] && health_[s].measures();
     if (is_used == (filter_.uses_sensor(s) || return_.waits_for(s))) continue;
     if (is_used) {
       take_in(s);
@@ -223,31 +219,25 @@ void Tracker::list_wrong_starts(const InitialPosture& posture) {
                                .strength = odds / wrong_start_log_odds});
 }
 
-/// Whether what moves now tells where such a joint stands. A prismatic one is told by the rates that its own axes have.
-bool Tracker::tells_of(std::size_t b, bool (MotionWatch::*moves)(std::size_t) const) const {
-  if (model_->bodies[b].motion == JointMotion::prismatic) return true;
-  auto parent = static_cast<std::size_t>(model_->bodies[b].parent);
-  while (parent > 0 && model_->bodies[parent].sensor < 0)
-    parent = static_cast<std::size_t>(model_->bodies[parent].parent);
-  const int sensor = model_->bodies[parent].sensor;
-  return sensor < 0 || (motion_.*moves)(static_cast<std::size_t>(sensor));
-}
-
 void Tracker::resolve_start(const BlockMeasurement& block) {
-  grid_->update(block, tells_of(grid_->body()));
+  grid_->update(block, motion_.tells_of(*model_, grid_->body()));
   filter_ = grid_->stated();
   if (!grid_->is_decided()) return;
   positions_.decide(*model_, grid_->body());
   grid_.reset();
-  fit_.reset();  // other places did not fit, which says nothing of the sensors
-  turns_.reset();
+  forget_fit();  // other places did not fit, which says nothing of the sensors
   begin_grid();
   replay_.begin(filter_);
 }
 
-void Tracker::replay(const std::function<void(ChainFilter&)>& prepare) {
+/// How well sensors and joints have fitted until now.
+void Tracker::forget_fit() {
   fit_.reset();
   turns_.reset();
+}
+
+void Tracker::replay(const std::function<void(ChainFilter&)>& prepare) {
+  forget_fit();
   mounts_.reset();  // they have believed what turned out to be wrong
   replay_.run(filter_, prepare, [&](const ChainFilter& filter, const BlockMeasurement& past) {
     fit_.add(filter, past.time, past.length);
@@ -275,26 +265,16 @@ void Tracker::let_base_move() {
   begin_grid();
 }
 
-/// The first open position of joints of such a motion that what moves now tells of; 0: none.
-std::size_t Tracker::first_told(JointMotion motion, bool (MotionWatch::*moves)(std::size_t) const) const {
-  for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
-    const Index at = model_->layout.position[b];
-    if (at >= 0 && model_->bodies[b].motion == motion && positions_[static_cast<std::size_t>(at)].is_open &&
-        tells_of(b, moves))
-      return b;
-  }
-  return 0;
-}
-
-/// Of the first joint position that motion shows from now on. A revolute one goes before one along a joint: while it
-/// stands where it does by chance, a filter that believes in it is soon beyond repair.
-void Tracker::begin_grid(bool (MotionWatch::*moves)(std::size_t) const) {
-  const bool slides = grid_ && model_->bodies[grid_->body()].motion == JointMotion::prismatic;
-  if (grid_ && !slides) return;
-  if (const std::size_t b = first_told(JointMotion::revolute, moves); b > 0)
-    grid_ = StartGrid::around(filter_, b, positions_.start_sd(*model_, b));
-  else if (const std::size_t along = first_told(JointMotion::prismatic, moves); along > 0 && !grid_)
-    grid_ = StartGrid::along(filter_, along, guesses_[static_cast<std::size_t>(model_->layout.position[along])]);
+/// Of the first joint position that motion shows from now on, or `share` of certain motion. A revolute one goes before
+/// one along a joint: while it stands where it does by chance, a filter that believes in it is soon beyond repair.
+void Tracker::begin_grid(double share) {
+  if (grid_ && model_->bodies[grid_->body()].motion == JointMotion::revolute) return;
+  const auto is_told = [&](std::size_t b) { return motion_.tells_of(*model_, b, share); };
+  if (const std::size_t turns = positions_.first_open(*model_, JointMotion::revolute, is_told); turns > 0)
+    grid_ = StartGrid::around(filter_, turns, positions_.start_sd(*model_, turns));
+  else if (const std::size_t slides = positions_.first_open(*model_, JointMotion::prismatic, is_told);
+           slides > 0 && !grid_)
+    grid_ = StartGrid::along(filter_, slides, guesses_[static_cast<std::size_t>(model_->layout.position[slides])]);
 }
 
 /// Where positions count from the start the tool is as uncertain as what they count from.
@@ -356,8 +336,8 @@ void Tracker::examine_sudden_change(double time) {
 /// What disagrees most is left out, as if it had never been believed, and what agrees again is taken in.
 void Tracker::examine_fit() {
   Suspect worst = fit_.worst(filter_);
-  if (worst != Suspect{}) begin_grid(&MotionWatch::may_move);
-  if (grid_) return fit_.reset();  // a position that motion begins to show is where it was supposed to be by chance
+  if (worst != Suspect{}) begin_grid(motion_suspicion);
+  if (grid_) return forget_fit();  // a position that motion begins to show is where it was supposed to be by chance
   if (worst.joint >= 0)            // unless a sensor beside it that turned is likelier
     if (const auto turned =
             turned_beside(replay_.beginning(filter_), replay_.blocks(), static_cast<std::size_t>(worst.joint)))
@@ -376,15 +356,14 @@ void Tracker::examine_fit() {
 
 /// Whether a sensor or joint is named already.
 bool Tracker::is_fault_named() const {
-  for (std::size_t j = 0; j < tracking_->joints.size(); ++j)
-    if (filter_.doubts_joint(j)) return true;
-  return std::ranges::find(does_not_fit_, true) != does_not_fit_.end();
+  return filter_.doubts_any_joint() || std::ranges::find(does_not_fit_, true) != does_not_fit_.end();
 }
 
 /// The heading of a spherical joint counts as shown while its parent moves.
 void Tracker::show_headings() {
   for (std::size_t b = 1; b < model_->bodies.size(); ++b)
-    if (motion_shows_heading(*model_, b) && filter_.considers_heading(b) && tells_of(b)) filter_.show_heading(b);
+    if (motion_shows_heading(*model_, b) && filter_.considers_heading(b) && motion_.tells_of(*model_, b))
+      filter_.show_heading(b);
 }
 
 void Tracker::process_block(const BlockMeasurement& block) {
@@ -410,8 +389,7 @@ void Tracker::process_block(const BlockMeasurement& block) {
     else
       examine_fit();
     examine_sudden_change(block.time);
-    mounts_.add(block, filter_,
-                [&](std::size_t s) { return does_not_fit_[s] && !health_[s].lost && !health_[s].stuck; });
+    mounts_.add(block, filter_, [&](std::size_t s) { return does_not_fit_[s] && health_[s].measures(); });
     biases_.add(filter_, is_fault_named(), block.time);
     watch_misfit(block.time);
     find_returned(block);
@@ -460,8 +438,8 @@ void Tracker::read_out(double time) {
   state_.sd_tool_position = chain_state_.sd_tool_position;
   state_.sd_tool_rotation = chain_state_.sd_tool_rotation;
   for (std::size_t s = 0; s < is_sound_.size(); ++s)
-    is_sound_[s] = !does_not_fit_[s] && !health_[s].lost && !health_[s].stuck && !health_[s].instrument_missing &&
-                   !return_.waits_for(s);
+    is_sound_[s] =
+        !does_not_fit_[s] && health_[s].measures() && !health_[s].instrument_missing && !return_.waits_for(s);
   is_settled_.assign(is_settled_.size(), true);
   for (std::size_t i = 0; i < positions_.size(); ++i)
     if (positions_[i].is_open) is_settled_[static_cast<std::size_t>(model_positions_[i].joint)] = false;
@@ -492,15 +470,7 @@ void Tracker::list_alarms(double time) {
   int disagreeing = 0;
   for (std::size_t s = 0; s < does_not_fit_.size(); ++s) {
     const int sensor = static_cast<int>(s);
-    const SensorHealth& health = health_[s];
-    if (health.lost)
-      alarms.push_back({.kind = TrackAlarmKind::sensor_lost, .sensor = sensor, .since = health.lost_since});
-    else if (health.instrument_lost)
-      alarms.push_back({.kind = TrackAlarmKind::sensor_lost, .sensor = sensor, .since = health.instrument_lost_since});
-    if (health.stuck)
-      alarms.push_back({.kind = TrackAlarmKind::sensor_stuck, .sensor = sensor, .since = health.stuck_since});
-    if (health.clipped)
-      alarms.push_back({.kind = TrackAlarmKind::sensor_clipped, .sensor = sensor, .since = health.last_clipped});
+    add_alarms(health_[s], sensor, alarms);
     if (const auto since = biases_.named_since(s); since && !does_not_fit_[s])
       alarms.push_back({.kind = TrackAlarmKind::sensor_moved,
                         .sensor = sensor,

@@ -61,15 +61,12 @@ class Tracker {
   void choose_sensors();
   void take_in(std::size_t sensor);
   void find_returned(const BlockMeasurement& block);
+  void forget_fit();
   void replay(const std::function<void(ChainFilter&)>& prepare);
   bool base_begins_to_move(const BlockMeasurement& block);
   void let_base_move();
-  bool tells_of(std::size_t body) const { return tells_of(body, &MotionWatch::moves); }
-  bool tells_of(std::size_t body, bool (MotionWatch::*moves)(std::size_t) const) const;
   void show_headings();
-  std::size_t first_told(JointMotion motion, bool (MotionWatch::*moves)(std::size_t) const) const;
-  void begin_grid() { begin_grid(&MotionWatch::moves); }
-  void begin_grid(bool (MotionWatch::*moves)(std::size_t) const);
+  void begin_grid(double share = 1.0);
   void spread_tool();
   void widen_unknown();
   void leave_out(std::size_t sensor, double log_odds_of_turn);

@@ -79,11 +79,11 @@ std::size_t rows_until(Rows rows, double time) {
   return static_cast<std::size_t>(std::ranges::upper_bound(rows, time, {}, &BlockMeasurement::time) - rows.begin());
 }
 
-/// At some time within the first `turning` rows.
+/// At some time within the first `turning` rows; `none`: log-likelihood if nothing happened.
 template <class MayHaveTurned>
-LikelyCause likeliest_turn(ChainFilter filter, Rows rows, std::size_t turning, const MayHaveTurned& may_have_turned) {
+LikelyCause likeliest_turn(ChainFilter filter, Rows rows, std::size_t turning, double none,
+                           const MayHaveTurned& may_have_turned) {
   LikelyCause cause;
-  const double none = log_likelihood(filter, rows);
   double sound = 0.0;  // likelihood of the rows before the turn
   while (turning > 0) {
     for (std::size_t s = 0; s < filter.model().sensors.size(); ++s) {
@@ -101,9 +101,8 @@ LikelyCause likeliest_turn(ChainFilter filter, Rows rows, std::size_t turning, c
 
 /// Of those beside a sensor that may have turned.
 template <class MayHaveTurned>
-LikelyCause likeliest_joint(const ChainFilter& filter, Rows rows, const MayHaveTurned& may_have_turned) {
+LikelyCause likeliest_joint(const ChainFilter& filter, Rows rows, double none, const MayHaveTurned& may_have_turned) {
   LikelyCause cause;
-  const double none = log_likelihood(filter, rows);
   for (std::size_t j = 0; j < filter.model().joints.size(); ++j) {
     if (std::ranges::none_of(sensors_beside(filter.model(), j), may_have_turned)) continue;
     const double log_odds = log_likelihood_if_doubted(filter, rows, j) - none;
@@ -131,8 +130,9 @@ LikelyCause likeliest_cause(const ChainFilter& before, Rows rows, const SuddenCh
   run(filter, rows.first(sound));
   rows = rows.subspan(sound);
   const auto may_have_turned = [&](std::size_t s) { return filter.uses_sensor(s) && change.may_have_turned(s); };
-  const LikelyCause turn = likeliest_turn(filter, rows, rows_until(rows, change.until), may_have_turned);
-  LikelyCause joint = likeliest_joint(filter, rows, may_have_turned);
+  const double none = log_likelihood(filter, rows);
+  const LikelyCause turn = likeliest_turn(filter, rows, rows_until(rows, change.until), none, may_have_turned);
+  LikelyCause joint = likeliest_joint(filter, rows, none, may_have_turned);
   if (joint.log_odds <= turn.log_odds) return turn;
   joint.log_odds = lasting_log_odds(filter, rows, static_cast<std::size_t>(joint.suspect.joint));
   return joint;

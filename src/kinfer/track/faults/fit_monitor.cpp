@@ -50,6 +50,14 @@ double strength_over_usual(Agreement& joint, double quick_of_others, double time
   return joint.unusual_since && time - *joint.unusual_since >= short_mean ? strength : 0.0;
 }
 
+void judge(Agreement& agreement, double strength, double time) {
+  agreement.strength = strength;
+  const bool was = agreement.is_suspect;
+  agreement.is_suspect =
+      agreement.observed >= settling && (was ? agreement.quick > recovered_limit : agreement.strength > 1.0);
+  if (agreement.is_suspect && !was) agreement.since = time;
+}
+
 Agreement taken_in_again(const Agreement& agreement) {
   return {.observed = agreement.was_named ? settling : 0.0, .was_named = agreement.was_named};
 }
@@ -122,14 +130,6 @@ void FitMonitor::add(const ChainFilter& filter, double time, double length) {
           time);
     if (joints_[j].observed >= settling) joints_[j].usual.add(joints_[j].quick, time);
   }
-}
-
-void FitMonitor::judge(Agreement& agreement, double strength, double time) const {
-  agreement.strength = strength;
-  const bool was = agreement.is_suspect;
-  agreement.is_suspect =
-      agreement.observed >= settling && (was ? agreement.quick > recovered_limit : agreement.strength > 1.0);
-  if (agreement.is_suspect && !was) agreement.since = time;
 }
 
 namespace {

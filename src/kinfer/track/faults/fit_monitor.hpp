@@ -61,7 +61,6 @@ class FitMonitor {
   Suspect likeliest_of(const std::function<bool(const Agreement&)>& is_candidate, const ChainFilter& filter) const;
   double median_of_others(const ChainFilter& filter, std::size_t sensor, double Agreement::*mean) const;
   double median_of_other_joints(const ChainFilter& filter, std::size_t joint, double Agreement::*mean) const;
-  void judge(Agreement& agreement, double strength, double time) const;
 
   std::vector<Agreement> sensors_, joints_;
   mutable std::vector<double> ordered_;  // buffer of the medians

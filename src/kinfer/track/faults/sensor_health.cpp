@@ -16,6 +16,18 @@ bool is_same(const InsSample& a, const InsSample& b) {
 
 }  // namespace
 
+void add_alarms(const SensorHealth& health, int sensor, std::vector<TrackAlarm>& alarms) {
+  const auto add = [&](TrackAlarmKind kind, double since) {
+    alarms.push_back({.kind = kind, .sensor = sensor, .since = since});
+  };
+  if (health.lost)
+    add(TrackAlarmKind::sensor_lost, health.lost_since);
+  else if (health.instrument_lost)
+    add(TrackAlarmKind::sensor_lost, health.instrument_lost_since);
+  if (health.stuck) add(TrackAlarmKind::sensor_stuck, health.stuck_since);
+  if (health.clipped) add(TrackAlarmKind::sensor_clipped, health.last_clipped);
+}
+
 void HealthWatch::add(const InsRow& row) {
   for (std::size_t s = 0; s < health_.size(); ++s) {
     SensorHealth& health = health_[s];

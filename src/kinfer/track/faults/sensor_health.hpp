@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "kinfer/evidence/tracking/track_state.hpp"
 #include "kinfer/measurement/ins_row.hpp"
 
 namespace kinfer::track {
@@ -18,8 +19,12 @@ struct SensorHealth {
   bool lost = false, stuck = false, clipped = false;
   bool instrument_lost = false;     ///< one instrument measures without the other
   bool instrument_missing = false;  ///< likewise, for a short time
+  bool measures() const { return !lost && !stuck; }
   double lost_since = 0.0, stuck_since = 0.0, instrument_lost_since = 0.0;  ///< [s]
 };
+
+/// What of it is an alarm of the sensor.
+void add_alarms(const SensorHealth& health, int sensor, std::vector<TrackAlarm>& alarms);
 
 class HealthWatch {
  public:

@@ -83,6 +83,7 @@ class ChainFilter {
   /// before it no better than they do.
   void doubt_joint(std::size_t joint, bool is_doubted) { changes_.doubt(joint, is_doubted); }
   bool doubts_joint(std::size_t joint) const { return changes_.is_doubted(joint); }
+  bool doubts_any_joint() const { return changes_.doubts_any(); }
 
   /// Adds to what is unknown of states in a row, from the first one on.
   void widen(Index first, ConstMatrixRef covariance);

@@ -36,6 +36,17 @@ class KnownPositions {
   /// It has turned unseen, and is not found.
   void lose(Index position, double sd, BaseMode base);
 
+  /// The first body whose joint moves so, is open and told by what moves now; 0: none.
+  template <class IsTold>
+  std::size_t first_open(const FilterModel& model, JointMotion motion, const IsTold& is_told) const {
+    for (std::size_t b = 1; b < model.bodies.size(); ++b) {
+      const Index at = model.layout.position[b];
+      if (at >= 0 && model.bodies[b].motion == motion && positions_[static_cast<std::size_t>(at)].is_open && is_told(b))
+        return b;
+    }
+    return 0;
+  }
+
   std::size_t size() const { return positions_.size(); }
   const KnownPosition& operator[](std::size_t position) const { return positions_[position]; }
   /// [rad] of where the body's joint counts from; 0 for joints without positions.

@@ -42,4 +42,12 @@ void MotionWatch::add(const BlockMeasurement& block, const ChainFilter& filter) 
   }
 }
 
+bool MotionWatch::tells_of(const FilterModel& model, std::size_t body, double share) const {
+  if (model.bodies[body].motion == JointMotion::prismatic) return true;
+  auto parent = static_cast<std::size_t>(model.bodies[body].parent);
+  while (parent > 0 && model.bodies[parent].sensor < 0) parent = static_cast<std::size_t>(model.bodies[parent].parent);
+  const int sensor = model.bodies[parent].sensor;
+  return sensor < 0 || sensors_[static_cast<std::size_t>(sensor)].strength > share;
+}
+
 }  // namespace kinfer::track

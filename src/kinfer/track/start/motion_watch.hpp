@@ -4,7 +4,6 @@
 #pragma once
 
 #include "kinfer/track/filter/chain_filter.hpp"
-#include "kinfer/track/filter/thresholds.hpp"
 
 namespace kinfer::track {
 
@@ -15,9 +14,9 @@ class MotionWatch {
   void add(const BlockMeasurement& block, const ChainFilter& filter);
   void reset();
 
-  bool moves(std::size_t sensor) const { return sensors_[sensor].strength > 1.0; }
-  /// Where sensors disagree, less motion is needed to put it down to that.
-  bool may_move(std::size_t sensor) const { return sensors_[sensor].strength > motion_suspicion; }
+  /// Whether the parent of the body's joint moves, so that it tells where the joint stands; by `share` of the motion
+  /// that is certain. A prismatic joint is told by the rates that its own axes have.
+  bool tells_of(const FilterModel& model, std::size_t body, double share = 1.0) const;
 
  private:
   struct Sensor {
