@@ -54,8 +54,8 @@ void PairwiseFilters::update(Pair& pair, double dt) const {
     pair.covariance = square(start_sd) * Eigen::Matrix<double, 6, 6>::Identity();
     pair.has_started = true;
   }
-  pair.world_R_parent *= exp_so3(dt * parent.rate);
-  pair.world_R_child *= exp_so3(dt * child.rate);
+  pair.world_R_parent *= exp_so3(dt * parent.mean_rate);
+  pair.world_R_child *= exp_so3(dt * child.mean_rate);
   pair.covariance.diagonal().head<3>().array() += square(dt * parent.rate_sd);
   pair.covariance.diagonal().tail<3>().array() += square(dt * child.rate_sd);
   const Vec3 of_parent = pair.world_R_parent * force_at(parent, pair.in_parent),
@@ -81,6 +81,8 @@ void PairwiseFilters::add(const InsRow& row) {
           !past.has_angular_velocity)
         continue;
       sensors_[s].rate = now.angular_velocity - model_.sensors[s].gyroscope_bias;
+      sensors_[s].mean_rate =
+          0.5 * (past.angular_velocity + now.angular_velocity) - model_.sensors[s].gyroscope_bias;
       sensors_[s].force = now.acceleration - model_.sensors[s].accelerometer_bias;
       sensors_[s].change = (next.angular_velocity - past.angular_velocity) / around;
       sensors_[s].change_sd = std::sqrt(2.0) * sensors_[s].rate_sd / around;

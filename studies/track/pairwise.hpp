@@ -30,6 +30,7 @@ class PairwiseFilters {
   struct Sensor {
     Mat3 world_R_sensor = Mat3::Identity();
     Vec3 rate = Vec3::Zero(), change = Vec3::Zero(), force = Vec3::Zero();  // corrected by the biases; ω̇
+    Vec3 mean_rate = Vec3::Zero();                                          // since the row before
     double rate_sd = 0.0, force_sd = 0.0, change_sd = 0.0;                  // of one row
   };
   struct Pair {

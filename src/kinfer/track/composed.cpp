@@ -29,6 +29,7 @@ constexpr double least_inclination = 0.1;  // sine, below which an axis does not
 KinferFilter filter_of(const TrackingSensor& sensor) {
   KinferFilterOptions options;
   options.magnetometer = MagnetometerUse::off;
+  options.rate_sample = RateSample::at_its_time;
   options.bias_sd = known_bias_sd;
   KinferFilter filter(options);
   KinferEstimate estimate;

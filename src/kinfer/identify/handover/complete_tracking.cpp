@@ -26,6 +26,7 @@ struct FilteredBias {
 FilteredBias filtered_bias(const InsRecording& recording, const InsSensor& sensor, double prior_sd) {
   KinferFilterOptions options;
   options.magnetometer = MagnetometerUse::off;
+  options.rate_sample = RateSample::at_its_time;
   options.bias_sd = prior_sd;
   KinferFilter filter(options);
   const auto time = recording.time(sensor);

@@ -95,9 +95,10 @@ void KinferFilter::integrate(const InsSample& sample) {
   if (!sample.has_angular_velocity && dt < options_.max_hold) return;  // the next rate will cover this time too
   if (dt >= std::max(options_.max_hold, 3.0 * typical_dt_) && typical_dt_ > 0.0) return bridge_gap(sample, dt);
   typical_dt_ = typical_dt_ > 0.0 ? typical_dt_ + 0.1 * (std::min(dt, 2.0 * typical_dt_) - typical_dt_) : dt;
-  // A sample is the mean rate since the previous one; if samples are missing in between, the mean of both is better.
+  // Where samples are missing in between, that of the neighbours is the best mean whatever a sample is.
+  const bool takes_mean = options_.rate_sample == RateSample::at_its_time || dt > 1.6 * typical_dt_;
   const Vec3 angular_velocity =
-      dt > 1.6 * typical_dt_ ? Vec3(0.5 * (last_rate_ + sample.angular_velocity)) : sample.angular_velocity;
+      takes_mean ? Vec3(0.5 * (last_rate_ + sample.angular_velocity)) : sample.angular_velocity;
   last_rate_ = sample.angular_velocity;
   if (sample.angular_velocity_clipped) period_.rate_outage += dt;
   integrate_sample(sample, angular_velocity, dt);

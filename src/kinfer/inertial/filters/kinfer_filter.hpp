@@ -10,8 +10,8 @@
 // reference strength and dip.
 //
 // World: x east, y (magnetic) north, z up; without magnetometer the initial orientation is the smallest rotation that
-// levels the sensor. The rate of a sample is the mean rate over the interval since the previous sample. Online: one
-// object per sensor, copyable, 3 kB; covariance and corrections run once per update_period.
+// levels the sensor. Online: one object per sensor, copyable, 3 kB; covariance and corrections run once per
+// update_period.
 #pragma once
 
 #include "kinfer/inertial/filters/magnetic_reference.hpp"
@@ -20,8 +20,16 @@
 
 namespace kinfer {
 
+/// What the rate of a sample is taken for. The orientations differ by half an interval between samples: 1.2° at 40 Hz
+/// and 100 °/s.
+enum class RateSample {
+  mean_since_previous,  ///< as of sensors that integrate, and as BROAD's reference was aligned
+  at_its_time,          ///< as identified chains take it; rates between samples are the means of both
+};
+
 struct KinferFilterOptions {
   MagnetometerUse magnetometer = MagnetometerUse::automatic;
+  RateSample rate_sample = RateSample::mean_since_previous;
   double update_period = 0.05;  ///< [s] between corrections; smaller costs time without benefit
 
   double gyro_noise = 5e-4;      ///< [rad/√s] angle random walk; larger trusts specific force more
