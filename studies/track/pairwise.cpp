@@ -81,8 +81,7 @@ void PairwiseFilters::add(const InsRow& row) {
           !past.has_angular_velocity)
         continue;
       sensors_[s].rate = now.angular_velocity - model_.sensors[s].gyroscope_bias;
-      sensors_[s].mean_rate =
-          0.5 * (past.angular_velocity + now.angular_velocity) - model_.sensors[s].gyroscope_bias;
+      sensors_[s].mean_rate = 0.5 * (past.angular_velocity + now.angular_velocity) - model_.sensors[s].gyroscope_bias;
       sensors_[s].force = now.acceleration - model_.sensors[s].accelerometer_bias;
       sensors_[s].change = (next.angular_velocity - past.angular_velocity) / around;
       sensors_[s].change_sd = std::sqrt(2.0) * sensors_[s].rate_sd / around;

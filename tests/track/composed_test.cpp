@@ -45,10 +45,12 @@ VectorXd driven_to(const TrackingModel& model, double t) {
   return q;
 }
 
-/// What perfect sensors measure on a base that stands in this orientation; rates are means since the last row.
-InsRow row_at(const TrackingModel& model, const Mat3& world_R_base, double t, double dt) {
-  const Mat3 before = world_R_base * body_poses(model, driven_to(model, t - dt))[1].rotation,
-             now = world_R_base * body_poses(model, driven_to(model, t))[1].rotation;
+/// What perfect sensors measure on a base that stands in this orientation.
+InsRow row_at(const TrackingModel& model, const Mat3& world_R_base, double t) {
+  constexpr double h = 1e-4;
+  const auto child_at = [&](double time) {
+    return Mat3(world_R_base * body_poses(model, driven_to(model, time))[1].rotation);
+  };
   InsRow row{.time = t, .sensors = {}};
   const auto add = [&](const Mat3& world_R_sensor, const Vec3& rate) {
     row.sensors.push_back({.time = t,
@@ -58,7 +60,7 @@ InsRow row_at(const TrackingModel& model, const Mat3& world_R_base, double t, do
                            .has_angular_velocity = true});
   };
   add(world_R_base, Vec3::Zero());
-  add(now, log_so3(before.transpose() * now) / dt);
+  add(child_at(t), log_so3(child_at(t - h).transpose() * child_at(t + h)) / (2.0 * h));
   return row;
 }
 
@@ -69,7 +71,7 @@ double worst_error(const TrackingModel& model, const Mat3& world_R_base, const t
   double worst = 0.0;
   for (int i = 1; i <= 3000; ++i) {
     const double t = dt * i;
-    filters.add(row_at(model, world_R_base, t, dt));
+    filters.add(row_at(model, world_R_base, t));
     if (t < 5.0) continue;
     const VectorXd error = filters.state().q - driven_to(model, t);
     if (!error.allFinite()) return std::numeric_limits<double>::infinity();
@@ -87,7 +89,7 @@ TEST(ComposedFilters, FollowAVerticalHingeFromWhereItStarted) {
   const TrackingModel model = two_bodies(TrackingMotion::revolute, Mat3::Identity());
   EXPECT_LT(worst_error(model, Mat3::Identity()), 0.3 * degree);
   ComposedFilters filters(model);
-  filters.add(row_at(model, Mat3::Identity(), 0.01, 0.01));
+  filters.add(row_at(model, Mat3::Identity(), 0.01));
   EXPECT_EQ(filters.state().joints[0].reference, JointReference::start);
   EXPECT_GT(filters.state().sd_q[0], 0.5) << "nobody knows where it started";
 }
@@ -97,7 +99,7 @@ TEST(ComposedFilters, TakeTheUsersStart) {
   track::TrackOptions options;
   options.start = VectorXd::Constant(1, 0.4);
   ComposedFilters filters(model, options);
-  filters.add(row_at(model, Mat3::Identity(), 0.01, 0.01));
+  filters.add(row_at(model, Mat3::Identity(), 0.01));
   EXPECT_NEAR(filters.state().q[0], 0.4, 1e-6);
   EXPECT_EQ(filters.state().joints[0].reference, JointReference::chain);
   EXPECT_LT(filters.state().sd_q[0], 0.01);
@@ -142,7 +144,7 @@ TEST(AxisSpread, AJointThatDoesNotTurnTellsNoErrorInTheChild) {
 TEST(ComposedFilters, DoNotKnowADisplacement) {
   const TrackingModel model = two_bodies(TrackingMotion::prismatic, Mat3::Identity());
   ComposedFilters filters(model);
-  filters.add(row_at(model, Mat3::Identity(), 0.01, 0.01));
+  filters.add(row_at(model, Mat3::Identity(), 0.01));
   EXPECT_TRUE(std::isnan(filters.state().q[0]));
 }
 

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "kinfer/inertial/filters/orientation.hpp"
 #include "support/carried_sensor.hpp"
 #include "support/orientation_error.hpp"
@@ -87,6 +90,32 @@ TEST(KinferFilter, GyroBiasIsFoundAtRestAndInMotion) {
     for (std::size_t row = 0; row < 55 * 200; ++row) filter.add(sample(c.sensor, c.time, row));
     EXPECT_LT((filter.estimate().bias - bias).norm(), (rest > 0 ? 0.01 : 0.1) * degree) << rest << " s of rest";
   }
+}
+
+/// Of a sensor that swings by 0.5 rad about the vertical at 40 Hz, whose samples are what they are said to be, or the
+/// other: then half an interval is missing, 2.5° at the largest rate.
+TEST(KinferFilter, RatesAreMeansOrThoseAtTheirTimes) {
+  constexpr double dt = 0.025, pace = 7.0;  // [s], [rad/s]
+  const auto angle = [](double t) { return t < 1.0 ? 0.0 : 0.5 * (1.0 - std::cos(pace * (t - 1.0))); };
+  const auto rate = [](double t) { return t < 1.0 ? 0.0 : 0.5 * pace * std::sin(pace * (t - 1.0)); };
+  for (const RateSample is : {RateSample::mean_since_previous, RateSample::at_its_time})
+    for (const RateSample said : {RateSample::mean_since_previous, RateSample::at_its_time}) {
+      KinferFilter filter({.magnetometer = MagnetometerUse::off, .rate_sample = said});
+      double worst = 0.0;
+      for (int i = 0; i < 400; ++i) {
+        const double t = dt * i, w = is == RateSample::at_its_time ? rate(t) : (angle(t) - angle(t - dt)) / dt;
+        filter.add({.time = t,
+                    .acceleration = Vec3(0.0, 0.0, 9.81),
+                    .angular_velocity = Vec3(0.0, 0.0, w),
+                    .has_acceleration = true,
+                    .has_angular_velocity = true});
+        worst = std::max(worst, filter.orientation().angularDistance(Quat(Eigen::AngleAxisd(angle(t), Vec3::UnitZ()))));
+      }
+      if (is == said)
+        EXPECT_LT(worst, 0.3 * degree);
+      else
+        EXPECT_NEAR(worst, 0.5 * dt * 0.5 * pace, 0.5 * degree);
+    }
 }
 
 TEST(KinferFilter, ALargeMachineIsFollowedAsWellAsAHandHeldSensor) {
