@@ -7,6 +7,7 @@
 #include <csignal>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -52,7 +53,7 @@ class Pool {
     const std::lock_guard one_job_at_a_time(posting_);
     {
       const std::lock_guard lock(mutex_);
-      while (static_cast<int>(workers_.size()) < helpers) workers_.emplace_back([this] { work(); });
+      helpers = std::min(helpers, threads_for(helpers));
       job_ = &job;
       wanted_ = helpers;
       busy_ = helpers;
@@ -68,6 +69,15 @@ class Pool {
   }
 
  private:
+  /// How many workers there are, of that many: fewer where the system gives no more, and no result depends on it.
+  int threads_for(int helpers) {
+    try {
+      while (static_cast<int>(workers_.size()) < helpers) workers_.emplace_back([this] { work(); });
+    } catch (const std::system_error&) {
+    }
+    return static_cast<int>(workers_.size());
+  }
+
   void work() {
     // Signals interrupt the thread that began the work: it alone writes results.
     sigset_t all;

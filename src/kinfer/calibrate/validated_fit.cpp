@@ -44,7 +44,7 @@ Result<std::vector<Chain>> fit_frames_of_splits(const CalibrationTask& task, con
 /// the fitted rows.
 std::vector<Split> selection_splits(const ValidationPlan& plan, const PoseSet& fitted, Rng rng) {
   if (plan.fits_all_rows) return plan.validation_splits;
-  return make_row_folds(fitted, std::min<int>(thresholds::default_folds, static_cast<int>(fitted.rows())), rng);
+  return make_row_folds(fitted, thresholds::default_folds, rng);
 }
 
 std::vector<ValidationFit> pair_validation_fits(const std::vector<Chain>& before, const std::vector<Estimate>& after) {

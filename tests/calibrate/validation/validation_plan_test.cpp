@@ -102,23 +102,24 @@ TEST(ValidationPlan, TooFewRowsAreAnError) {
   EXPECT_EQ(refusal_of(rows_without_measurements(3)),
             "3 rows are left to fit; a calibration needs at least 4 (20 or more are better)");
   EXPECT_EQ(refusal_of(rows_without_measurements(1)),
-            "1 rows are too few to fit and validate a calibration; at least 4 are needed");
+            "1 rows are too few to fit and validate a calibration; at least 4 beside those held out are needed");
   EXPECT_EQ(refusal_of(rows_without_measurements(8), {.holdout = HeldOutFraction{0.6}}),
             "3 rows are left to fit; a calibration needs at least 4 (20 or more are better)");
   EXPECT_EQ(refusal_of(rows_without_measurements(4), {.holdout = CrossValidation{2}}),
-            "4 rows are too few to fit and validate a calibration; at least 4 are needed");
+            "4 rows are too few to fit and validate a calibration; at least 4 beside those held out are needed");
   EXPECT_EQ(refusal_of(rows_without_measurements(4), {.holdout = CrossValidation{4}}), "(accepted)");
 }
 
 TEST(ValidationPlan, OnePoseMeasuredAgainAndAgainIsTooLittle) {
   PoseSet data = rows_without_measurements(200);
   for (Eigen::Index row = 1; row < 200; ++row) data.joints.col(row) = data.joints.col(0);
-  EXPECT_EQ(
-      refusal_of(data),
-      "200 rows of one pose are too few to fit and validate a calibration; at least 4 different poses are needed");
+  EXPECT_EQ(refusal_of(data),
+            "200 rows of one pose are too few to fit and validate a calibration; at least 4 different poses beside "
+            "those held out are needed");
   for (Eigen::Index row = 0; row < 200; ++row) data.joints(1, row) = 0.5 * static_cast<double>(row % 3);
   EXPECT_EQ(refusal_of(data),
-            "200 rows of 3 poses are too few to fit and validate a calibration; at least 4 different poses are needed");
+            "200 rows of 3 poses are too few to fit and validate a calibration; at least 4 different poses beside "
+            "those held out are needed");
   for (Eigen::Index row = 0; row < 200; ++row) data.joints(1, row) = 0.5 * static_cast<double>(row % 4);
   EXPECT_EQ(plan_of(data).validation_splits.size(), 4U);
 }
@@ -135,6 +136,14 @@ TEST(ValidationPlan, RowsLinkedByABallBarStayTogether) {
         EXPECT_EQ(held_out.contains(pair.row), held_out.contains(pair.other)) << pair.row << "-" << pair.other;
     }
   }
+}
+
+TEST(ValidationPlan, FewLinkedRowsMakeFewFolds) {
+  PoseSet data = rows_without_measurements(4);
+  data.pairs = {{0, 1, 0.5}, {2, 3, 0.5}};
+  EXPECT_EQ(make_row_folds(data, 5, Rng(1)).size(), 2U);
+  data.pairs.push_back({1, 2, 0.5});
+  EXPECT_TRUE(make_row_folds(data, 5, Rng(1)).empty());
 }
 
 TEST(ValidationPlan, DependsOnItsSeedOnly) {

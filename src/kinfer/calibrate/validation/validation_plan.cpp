@@ -114,11 +114,12 @@ int fold_count(const PoseSet& data, const CrossValidation& choice, const Paramet
 Error too_few_rows(const PoseSet& data) {
   if (const int poses = distinct_poses(commanded_poses(data.joints), all_rows(data)); poses < data.rows())
     return {fmt::format(
-        "{} rows of {} are too few to fit and validate a calibration; at least {} different poses are "
-        "needed",
+        "{} rows of {} are too few to fit and validate a calibration; at least {} different poses beside those held "
+        "out are needed",
         data.rows(), poses == 1 ? "one pose" : fmt::format("{} poses", poses), thresholds::min_fitted_rows)};
-  return {fmt::format("{} rows are too few to fit and validate a calibration; at least {} are needed", data.rows(),
-                      thresholds::min_fitted_rows)};
+  return {
+      fmt::format("{} rows are too few to fit and validate a calibration; at least {} beside those held out are needed",
+                  data.rows(), thresholds::min_fitted_rows)};
 }
 
 Result<ValidationPlan> draft_plan(const PoseSet& data, const CalibrationOptions& options, Rng rng) {
@@ -145,7 +146,9 @@ std::vector<int> without_outliers(std::vector<int> rows, const std::vector<Outli
 }
 
 std::vector<Split> make_row_folds(const PoseSet& data, int k, Rng rng) {
-  return folds_of_groups(linked_row_groups(data), k, rng);
+  const std::vector<std::vector<int>> groups = linked_row_groups(data);
+  if (groups.size() < 2) return {};
+  return folds_of_groups(groups, std::min(k, static_cast<int>(groups.size())), rng);
 }
 
 Result<ValidationPlan> make_validation_plan(const PoseSet& data, const CalibrationOptions& options, Rng rng) {

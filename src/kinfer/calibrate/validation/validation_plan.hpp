@@ -23,7 +23,7 @@ struct ValidationPlan {
 /// one side of a split. An error if too few rows or different poses are left to fit or to validate.
 Result<ValidationPlan> make_validation_plan(const PoseSet& data, const CalibrationOptions& options, Rng rng);
 
-/// k splits of all rows of `data`, with linked rows together.
+/// k splits of all rows of `data`, with linked rows together: fewer where fewer are not linked, none where all are.
 std::vector<Split> make_row_folds(const PoseSet& data, int k, Rng rng);
 
 /// The rows that are not outliers.
