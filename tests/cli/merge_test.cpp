@@ -136,6 +136,20 @@ TEST_F(Merge, SeveralFoldersMakeOneFleetWithTheBytesOfOne) {
   EXPECT_THAT(kinfer("merge runs part1 --out twice").err, HasSubstr("has results in two of the folders"));
 }
 
+TEST_F(Merge, ShardsInFoldersOfTheirOwnMakeOneFleet) {
+  calibrate_fleet(4);
+  ASSERT_EQ(kinfer("merge runs --out whole").code, 0);
+  for (const std::string shard : {"one", "two"}) {
+    fs::create_directories(in(shard));
+    fs::copy(in("runs/manifest.csv"), in(shard + "/manifest.csv"));
+    for (const int i : shard == "one" ? std::vector{0, 1} : std::vector{2, 3})
+      fs::copy(in("runs/r" + std::to_string(i)), in(shard + "/r" + std::to_string(i)), fs::copy_options::recursive);
+  }
+  ASSERT_EQ(kinfer("merge one two --out shards").code, 0);
+  for (const char* file : {"table.csv", "fleet.json"})
+    EXPECT_EQ(slurp(in(std::string("whole/") + file)), slurp(in(std::string("shards/") + file))) << file;
+}
+
 TEST_F(Merge, VerifyOverTimeIsAControlChart) {
   write(in("first.toml"), "units = { length = \"mm\", angle = \"deg\" }\n[errors]\ntheta2 = 0.0\n");
   write(in("later.toml"), "units = { length = \"mm\", angle = \"deg\" }\n[errors]\ntheta2 = 0.02\n");
@@ -166,6 +180,10 @@ TEST_F(Merge, BadInputIsOneSentence) {
               HasSubstr("prior.json: robots: "));
   write(in("dated.csv"), "key,verb,arguments,date\na,predict,,yesterday\n");
   EXPECT_THAT(kinfer("sweep dated.csv --out runs").err, HasSubstr("expected YYYY-MM-DD"));
+  for (const char* own : {"manifest.csv", "results_1.tar"}) {
+    write(in("own.csv"), fmt::format("key,verb,arguments\n{},predict,\n", own));
+    EXPECT_THAT(kinfer("sweep own.csv --out runs").err, HasSubstr("is the name of a file of the sweep itself"));
+  }
   write(in("sweep.csv"), "key,verb,arguments\na,predict,\n");
   EXPECT_THAT(kinfer("sweep sweep.csv --prior fleet --out runs").err, HasSubstr("--prior has no effect"));
   write(in("calibrations.csv"), "key,verb,arguments\na,calibrate,--robot data/robot.toml --data data/poses.csv\n");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/cli/sweep/read_runs.hpp"
 
+#include <map>
 #include <optional>
 #include <set>
 
@@ -60,6 +61,25 @@ std::vector<std::string> unlisted_keys(const fs::path& path, const std::map<std:
   return {keys.begin(), keys.end()};
 }
 
+/// Shards in folders of their own list the tasks of all: those of the others are unfinished there.
+Result<std::vector<FleetRow>> one_row_a_key(std::vector<FleetRow> rows) {
+  std::map<std::string, std::size_t> index;
+  std::vector<FleetRow> merged;
+  for (FleetRow& row : rows) {
+    const auto [at, is_new] = index.emplace(row.key, merged.size());
+    if (is_new) {
+      merged.push_back(std::move(row));
+      continue;
+    }
+    FleetRow& present = merged[at->second];
+    if (row.state == TaskState::unfinished) continue;
+    if (present.state != TaskState::unfinished)
+      return error("the key \"{}\" has results in two of the folders", row.key);
+    present = std::move(row);
+  }
+  return merged;
+}
+
 }  // namespace
 
 Result<std::vector<FleetRow>> read_runs(const std::vector<std::string>& folders) {
@@ -83,10 +103,7 @@ Result<std::vector<FleetRow>> read_runs(const std::vector<std::string>& folders)
     }
     for (const std::string& key : unlisted_keys(path, packed, listed)) rows.push_back(read_row(*results_of(key), key));
   }
-  std::set<std::string> keys;
-  for (const FleetRow& row : rows)
-    if (!keys.insert(row.key).second) return error("the key \"{}\" has results in two of the folders", row.key);
-  return rows;
+  return one_row_a_key(std::move(rows));
 }
 
 void read_information(std::vector<FleetRow>& rows, const std::vector<int>& which) {

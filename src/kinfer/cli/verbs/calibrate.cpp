@@ -245,12 +245,12 @@ int run(const CalibrateArguments& options, const CLI::App& verb) {
   for (const std::string& path : input_paths(options, *inputs)) record.add_input(path);
   auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
-  if (!options.common.quiet) print_notices(inputs->task);
   const Result<Calibration> calibration = [&] {
     ProgressLine progress(options.common);
     return calibrate::calibrate_robot(inputs->task, inputs->options, Rng(options.common.seed), progress.observer());
   }();
   if (!calibration) return fail(calibration.error());
+  if (!options.common.quiet) print_notices(inputs->task);
   if (auto done = write_results(*folder, provenance_of(options, *inputs, verb), *inputs, *calibration); !done)
     return fail(done.error());
   const auto offsets = options.offsets == "separate" ? EncoderOffsets::separate : EncoderOffsets::folded;

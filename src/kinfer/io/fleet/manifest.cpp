@@ -27,7 +27,13 @@ bool is_key(std::string_view key) {
          key.find_first_not_of(allowed) == std::string_view::npos;
 }
 
+/// Files beside the tasks' folders.
+bool is_file_of_sweep(std::string_view key) {
+  return key == "manifest.csv" || (key.starts_with("results") && key.ends_with(".tar"));
+}
+
 Result<void> check_key(const std::string& key) {
+  if (is_file_of_sweep(key)) return error("the key \"{}\" is the name of a file of the sweep itself", key);
   if (is_key(key)) return {};
   return error("the key \"{}\" cannot name a folder; expected up to {} letters, digits, \".\", \"-\" and \"_\"", key,
                longest_key);
