@@ -58,6 +58,44 @@ TEST_F(Trust, NamesCannotCommandTheTerminal) {
   EXPECT_THAT(run.out, Not(HasSubstr("\x1B")));
 }
 
+TEST_F(Trust, HostileNamesAreShownByEveryVerb) {
+  const std::string hostile = "\x1B[31m\xC2\x9B\x7F";  // ESC, the one-character CSI of C1, DEL
+  std::string robot = slurp(source("examples/robot6/robot.toml")), log = "t";
+  const auto replace = [&](const std::string& what, const std::string& by) {
+    for (std::size_t at = robot.find(what); at != std::string::npos; at = robot.find(what, at + by.size()))
+      robot.replace(at, what.size(), by);
+  };
+  replace("name = \"", "name = \"\\u001b[31m\\u009b\\u007f");
+  for (std::size_t at = robot.find("[[joint]]"), k = 1; at != std::string::npos; at = robot.find("[[joint]]", at + 9))
+    robot.insert(at + 9, fmt::format("\nname = \"J{}\\u001b[31m\\u009b\\u007f\"", k++));
+  write(in("r.toml"), robot);
+  for (const char* channel : {"ax", "ay", "az", "gx", "gy", "gz"}) log += "," + hostile + "_" + channel;
+  for (int i = 0; i < 50; ++i) log += fmt::format("\n{},0,0,9.8,0.0{},0,0", 0.01 * i, i % 7);
+  write(in("log.csv"), log + "\n");
+  for (const std::string& arguments :
+       {std::string("path r.toml --from 200,0,0,0,0,0 --to 0,0,0,0,0,0 -o path.csv"),
+        std::string("simulate-poses --robot r.toml --poses 12 --out p"),
+        std::string("inspect p/poses.csv --robot r.toml"), std::string("inspect log.csv --allan"),
+        std::string("orient log.csv -o q.csv"), "convert r.toml '" + hostile + ".urdf'", "'" + hostile + "'",
+        "plan '--" + hostile + "'", "plan --robot r.toml -o x.csv --poses '" + hostile + "'",
+        "predict r.toml --joints p/poses.csv -o '" + hostile + ".csv'"}) {
+    const Outcome run = kinfer(arguments);
+    const std::string shown = run.out + run.err;
+    EXPECT_THAT(shown, HasSubstr("?[31m??")) << arguments;
+    for (const char* control : {"\x1B", "\xC2\x9B", "\x7F"}) EXPECT_THAT(shown, Not(HasSubstr(control))) << arguments;
+  }
+  EXPECT_THAT(kinfer("inspect log.csv --json").out, HasSubstr("\\u001b[31m\xC2\x9B\x7F")) << "data keep the names";
+}
+
+TEST_F(Trust, WhatIsPrintedPassesOnePlace) {
+  for (const auto& entry : fs::recursive_directory_iterator(source("src/kinfer/cli"))) {
+    if (!entry.is_regular_file() || entry.path().filename() == "terminal.cpp") continue;
+    const std::string text = slurp(entry.path());
+    for (const char* around : {"fmt::print(", "std::cout", "std::cerr", "std::printf("})
+      EXPECT_EQ(text.find(around), std::string::npos) << entry.path() << ": print_text, print_message or print_data";
+  }
+}
+
 TEST_F(Trust, WhatIsReadIsNotWrittenOver) {
   predict_targets("0,-90,90,0,45,0\n");
   const std::string chain = source("examples/robot6/robot.toml"), before = slurp(in("joints.csv"));

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "kinfer/cli/parts/common.hpp"
 #include "kinfer/cli/parts/process.hpp"
 #include "kinfer/cli/parts/program.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/words/language.hpp"
 
@@ -84,20 +86,24 @@ int Program::run(const std::vector<std::string>& arguments) {
   store_command_line(arguments);
   auto& [app, options, verbs, program] = *description_;
   if (arguments.empty()) {
-    fmt::print(stderr, "{}", help_text(program, terminal_width()));
+    print_message("{}", help_text(program, terminal_width()));
     return exit_bad_input;
   }
   if (const auto sentence = misspelling(arguments, program)) {
     const bool has_verb = program.find(arguments.front()) != nullptr;
-    fmt::print(stderr, "kinfer: {}\n`kinfer{} --help` lists what there is.\n", *sentence,
-               has_verb ? " " + arguments.front() : "");
+    print_message("kinfer: {}\n`kinfer{} --help` lists what there is.\n", *sentence,
+                  has_verb ? " " + arguments.front() : "");
     return exit_bad_input;
   }
   std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // CLI11 takes them from the back
   try {
     app.parse(reversed);
   } catch (const CLI::ParseError& parse_error) {
-    return app.exit(parse_error) == 0 ? exit_done : exit_bad_input;  // --help and --version end here too
+    std::ostringstream out, err;
+    const int code = app.exit(parse_error, out, err);  // --help and --version end here too
+    print_text("{}", out.str());
+    print_message("{}", err.str());
+    return code == 0 ? exit_done : exit_bad_input;
   }
   limit_memory(options.memory);
   if (const std::string name = chosen_verb(app); name != "track" && name != "sweep") limit_time(options.time);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/cli/parts/common.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/io/pose_set/foreign/pose_tables.hpp"
 #include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/io/text/text_file.hpp"
@@ -37,17 +38,17 @@ int inspect_pose_log(const std::string& file, bool json) {
                                      {"contents", found->contents},
                                      {"use", use_of(format.kind)},
                                      {"remarks", found->remarks}};
-    fmt::print("{}\n", dump_json(out));
+    print_data(dump_json(out) + "\n");
     return exit_done;
   }
-  fmt::print("{}: {}, {} rows\n", file, format.title, found->table.line.size());
+  print_text("{}: {}, {} rows\n", file, format.title, found->table.line.size());
   std::string names;
   for (const std::string& name : found->contents) names += (names.empty() ? "" : ", ") + name;
-  fmt::print("  {}: {}\n", format.kind == PoseTableKind::joints ? "joints" : "markers", names);
-  fmt::print("  {}\n", use_of(format.kind));
+  print_text("  {}: {}\n", format.kind == PoseTableKind::joints ? "joints" : "markers", names);
+  print_text("  {}\n", use_of(format.kind));
   if (format.kind == PoseTableKind::points && found->contents.size() > 1)
-    fmt::print("  --marker NAME says which is the tool point\n");
-  for (const std::string& remark : found->remarks) fmt::print("! {}\n", remark);
+    print_text("  --marker NAME says which is the tool point\n");
+  for (const std::string& remark : found->remarks) print_text("! {}\n", remark);
   return exit_done;
 }
 

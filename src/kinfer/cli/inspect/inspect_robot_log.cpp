@@ -58,12 +58,12 @@ void print_topics(const std::string& file, const MessageLog& log) {
     name_width = std::max(name_width, topic.name.size());
     type_width = std::max(type_width, topic.type.size());
   }
-  fmt::print("{}: {} topics\n", file, log.topics.size());
-  fmt::print("  {:<{}} {:<{}} {:>9} {:>9}  {}\n", "topic", name_width, "type", type_width, "messages", "Hz", "use");
+  print_text("{}: {} topics\n", file, log.topics.size());
+  print_text("  {:<{}} {:<{}} {:>9} {:>9}  {}\n", "topic", name_width, "type", type_width, "messages", "Hz", "use");
   for (const LoggedTopic& topic : log.topics)
-    fmt::print("  {:<{}} {:<{}} {:>9} {:>9.4g}  {}\n", printable(topic.name), name_width, printable(topic.type),
-               type_width, topic.messages, rate_of(topic), use_of(topic));
-  for (const std::string& remark : log.remarks) fmt::print("! {}\n", printable(remark));
+    print_text("  {:<{}} {:<{}} {:>9} {:>9.4g}  {}\n", topic.name, name_width, topic.type, type_width, topic.messages,
+               rate_of(topic), use_of(topic));
+  for (const std::string& remark : log.remarks) print_text("! {}\n", remark);
 }
 
 }  // namespace kinfer::cli

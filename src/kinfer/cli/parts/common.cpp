@@ -55,7 +55,7 @@ void add_common_options(CLI::App& verb, CommonOptions& options) {
 }
 
 int fail(const Error& error) {
-  fmt::print(stderr, "kinfer: {}\n", printable(error.what));
+  print_message("kinfer: {}\n", error.what);
   return exit_bad_input;
 }
 
@@ -71,7 +71,7 @@ Result<void> expect_other_file(const std::string& out, const std::vector<std::st
 ProgressLine::ProgressLine(const CommonOptions& options) : shown_(!options.quiet && isatty(fileno(stderr)) != 0) {}
 
 ProgressLine::~ProgressLine() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_) print_progress("");
 }
 
 Observer ProgressLine::observer() {
@@ -83,11 +83,11 @@ Observer ProgressLine::observer() {
     if (now - last_ > std::chrono::milliseconds(50)) {
       last_ = now;
       const double seconds = std::chrono::duration<double>(now - stage_began_).count();
-      fmt::print(stderr, "\r\033[K{}  {}{}", stage,
-                 progress.iteration > 0 ? fmt::format("iteration {}  best {:.6g}", progress.iteration, progress.best)
-                                        : fmt::format("{:.0f} %", 100.0 * progress.fraction),
-                 time_left(seconds, progress.fraction));
-      std::fflush(stderr);
+      print_progress(fmt::format("{}  {}{}", stage,
+                                 progress.iteration > 0
+                                     ? fmt::format("iteration {}  best {:.6g}", progress.iteration, progress.best)
+                                     : fmt::format("{:.0f} %", 100.0 * progress.fraction),
+                                 time_left(seconds, progress.fraction)));
     }
     return ObserverDecision::proceed;
   };

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "kinfer/base/constants.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/words/calibration/model_patch.hpp"
 
@@ -23,7 +24,7 @@ std::optional<ModelPatch> write_model_patch(OutputFolder& folder, const RobotMod
   for (std::size_t i = 0; done && i < model->files.size(); ++i)
     done = write_text_file(folder / model->files[i].name, model->files[i].text);
   if (done) return std::move(model->patch);
-  fmt::print(stderr, "kinfer: the robot file is not written back: {}\n", done.error().what);
+  print_message("kinfer: the robot file is not written back: {}\n", done.error().what);
   return std::nullopt;
 }
 

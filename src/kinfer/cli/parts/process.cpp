@@ -18,6 +18,7 @@
 
 #include "kinfer/base/temporary_paths.hpp"
 #include "kinfer/cli/parts/common.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -93,11 +94,11 @@ int code_of_exception() {
     say("kinfer: this input takes more memory than the limit; --limit-memory 32 allows 32 GB, 0 any\n");
     return exit_bad_input;
   } catch (const std::filesystem::filesystem_error& failure) {
-    fmt::print(stderr, "kinfer: \"{}\": {}\n", failure.path1().string(), failure.code().message());
+    print_message("kinfer: \"{}\": {}\n", failure.path1().string(), failure.code().message());
     return exit_bad_input;
   } catch (const std::exception& failure) {
     if (!flush_standard_output()) return exit_bad_input;
-    fmt::print(stderr, "kinfer: internal error: {}\n", failure.what());
+    print_message("kinfer: internal error: {}\n", failure.what());
     return exit_internal;
   }
 }
@@ -118,7 +119,7 @@ void limit_time(double seconds) {
 
 bool flush_standard_output() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
-  fmt::print(stderr, "kinfer: standard output cannot be written; is the disk full?\n");
+  print_message("kinfer: standard output cannot be written; is the disk full?\n");
   return false;
 }
 

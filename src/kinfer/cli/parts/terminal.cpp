@@ -10,6 +10,15 @@
 
 namespace kinfer::cli {
 
+namespace {
+
+/// fmt throws where the stream takes no more, as the program expects; std::fwrite would not.
+void print_bytes(std::FILE* stream, std::string_view bytes) {
+  fmt::print(stream, "{}", bytes);
+}
+
+}  // namespace
+
 std::string printable(std::string_view text) {
   std::string shown;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -31,6 +40,19 @@ std::string printable(std::string_view text) {
   return shown;
 }
 
+void print_printable(std::FILE* stream, std::string_view text) {
+  print_bytes(stream, printable(text));
+}
+
+void print_data(std::string_view text) {
+  print_bytes(stdout, text);
+}
+
+void print_progress(std::string_view line) {
+  print_bytes(stderr, "\r\033[K" + printable(line));
+  std::fflush(stderr);
+}
+
 bool wants_colours(std::FILE* stream) {
   const char* refusal = std::getenv("NO_COLOR");
   const char* terminal = std::getenv("TERM");
@@ -45,12 +67,12 @@ Tone tone_of(Usability usability) {
 void print_summary(const std::string& text, Tone tone) {
   const std::string summary = printable(text);
   if (!wants_colours(stdout)) {
-    fmt::print("{}", summary);
+    print_bytes(stdout, summary);
     return;
   }
   const std::string::size_type end = std::min(summary.find('\n'), summary.size());
   const char* colour = tone == Tone::good ? "\033[1;32m" : tone == Tone::bad ? "\033[1;31m" : "\033[1m";
-  fmt::print("{}{}\033[0m{}", colour, summary.substr(0, end), summary.substr(end));
+  print_bytes(stdout, colour + summary.substr(0, end) + "\033[0m" + summary.substr(end));
 }
 
 std::string time_left(double seconds, double fraction) {

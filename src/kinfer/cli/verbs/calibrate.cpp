@@ -176,7 +176,7 @@ std::vector<std::string_view> unused_accuracies(const Instrument& instrument, co
 void print_notices(const calibrate::CalibrationTask& task) {
   if (!task.instrument) return;
   const std::vector<std::string_view> unused = unused_accuracies(*task.instrument, task.data);
-  if (!unused.empty()) fmt::print(stderr, "kinfer: {}\n", words::unused_accuracies(unused));
+  if (!unused.empty()) print_message("kinfer: {}\n", words::unused_accuracies(unused));
 }
 
 bool is_parameter_file(const std::string& parameters) {
@@ -260,7 +260,7 @@ int run(const CalibrateArguments& options, const CLI::App& verb) {
   if (auto done = folder->commit(); !done) return fail(done.error());
   const bool usable = calibration->usability != Usability::do_not_use;
   if (options.common.json)
-    fmt::print("{}", format_calibration_headline(*calibration));
+    print_data(format_calibration_headline(*calibration));
   else if (!options.common.quiet)
     print_summary((inputs->paired ? pairing_summary(options.pairing, *inputs->paired) : "") +
                       calibration_summary(*calibration) + (patch ? model_patch_summary(*patch) : ""),

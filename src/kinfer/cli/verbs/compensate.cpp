@@ -9,6 +9,7 @@
 
 #include "kinfer/cli/options/joint_columns.hpp"
 #include "kinfer/cli/options/robot_option.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/text/format_number.hpp"
@@ -76,9 +77,9 @@ Result<std::vector<CompensatedJoints>> compensated_rows(const CompensateArgument
 void print_summary(const CompensationSummary& summary, const std::vector<CompensatedJoints>& list) {
   constexpr std::size_t most = 12;  // rows listed individually
   for (std::size_t i = 0; i < std::min(most, summary.unreached.size()); ++i)
-    fmt::print(stderr, "{}\n", words::unreached_row(summary.unreached[i], list[summary.unreached[i]]));
-  if (summary.unreached.size() > most) fmt::print(stderr, "and {} more\n", summary.unreached.size() - most);
-  fmt::print(stderr, "{}\n", words::summary(summary));
+    print_message("{}\n", words::unreached_row(summary.unreached[i], list[summary.unreached[i]]));
+  if (summary.unreached.size() > most) print_message("and {} more\n", summary.unreached.size() - most);
+  print_message("{}\n", words::summary(summary));
 }
 
 /// Warns of compensated joint positions that the calibration did not measure.
@@ -89,7 +90,7 @@ void warn_of_rows_outside(const CompensateArguments& options, const std::vector<
   rows.joints.resize(list.front().q.size(), static_cast<Eigen::Index>(list.size()));
   for (std::size_t i = 0; i < list.size(); ++i) rows.joints.col(static_cast<Eigen::Index>(i)) = list[i].q;
   if (const auto outside = deploy::find_rows_outside(*corrected->prediction, rows))
-    fmt::print(stderr, "{}\n", words::sentence(*outside));
+    print_message("{}\n", words::sentence(*outside));
 }
 
 int run(const CompensateArguments& options) {
@@ -103,19 +104,20 @@ int run(const CompensateArguments& options) {
   const auto list = compensated_rows(options, *chains);
   if (!list) return fail(list.error());
   if (options.frames == "auto" && chains->frames == deploy::CompensationFrames::robot && !options.common.quiet)
-    fmt::print(stderr, "{}\n", words::compensation_frames_note());
+    print_message("{}\n", words::compensation_frames_note());
   const std::string& input = options.joints.empty() ? options.targets : options.joints;
   const std::string text = result_csv(joint_columns(input, active_joint_names(chains->nominal)), *list);
   if (options.out.empty() || options.out == "-")
-    fmt::print("{}", text);
+    print_data(text);
   else if (auto done = write_text_file(options.out, text); !done)
     return fail(done.error());
   const CompensationSummary summary = summarise(*list);
   if (options.common.json && !(options.out.empty() || options.out == "-"))
-    fmt::print("{}\n", nlohmann::ordered_json{{"rows", summary.rows},
-                                              {"unreached", summary.unreached.size()},
-                                              {"worst_residual_mm", 1e3 * summary.worst_residual}}
-                           .dump());
+    print_data(nlohmann::ordered_json{{"rows", summary.rows},
+                                      {"unreached", summary.unreached.size()},
+                                      {"worst_residual_mm", 1e3 * summary.worst_residual}}
+                   .dump() +
+               "\n");
   if (!options.common.quiet) print_summary(summary, *list);
   if (!options.common.quiet) warn_of_rows_outside(options, *list);
   return summary.unreached.empty() ? exit_done : exit_do_not_use;

@@ -6,6 +6,7 @@
 
 #include "kinfer/base/version.hpp"
 #include "kinfer/cli/help/man_page.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
@@ -18,9 +19,9 @@ struct ManArguments {
 
 int print_completion(const CLI::App& app, const std::string& shell) {
   const ProgramEntry program = option_tree(app);
-  fmt::print("{}", shell == "bash"  ? bash_completion(program)
-                   : shell == "zsh" ? zsh_completion(program)
-                                    : fish_completion(program));
+  print_data(shell == "bash"  ? bash_completion(program)
+             : shell == "zsh" ? zsh_completion(program)
+                              : fish_completion(program));
   return exit_done;
 }
 
@@ -38,12 +39,12 @@ int print_man_page(const CLI::App& app, const ManArguments& options) {
   const ProgramEntry program = option_tree(app);
   if (!options.out.empty()) return write_man_pages(program, options.out);
   if (options.verb.empty()) {
-    fmt::print("{}", man_page(program, version));
+    print_data(man_page(program, version));
     return exit_done;
   }
   const VerbEntry* verb = program.find(options.verb);
   if (!verb) return fail({fmt::format("there is no verb \"{}\"", options.verb)});
-  fmt::print("{}", man_page(*verb, version));
+  print_data(man_page(*verb, version));
   return exit_done;
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "kinfer/cli/options/robot_option.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/motion/trajectory_mcap.hpp"
 #include "kinfer/io/pose_set/pose_log.hpp"
@@ -25,7 +26,7 @@ int convert_recording(const ConvertArguments& options) {
   const auto recording = read_recording(std::span(&path, 1));
   if (!recording) return fail(recording.error());
   if (const auto done = write_ins_mcap(options.out, *recording); !done) return fail(done.error());
-  if (!options.quiet) fmt::print("{}: {} sensors\n", options.out, recording->sensors.size());
+  if (!options.quiet) print_text("{}: {} sensors\n", options.out, recording->sensors.size());
   return exit_done;
 }
 
@@ -38,7 +39,7 @@ int convert_trajectory(const ConvertArguments& options) {
   const auto done = write_trajectory_mcap(options.out, chain->chain, joints->set);
   if (!done) return fail({fmt::format("{}: {}", options.in.path, done.error().what)});
   if (!options.quiet)
-    fmt::print("{}: {} rows of {} joints\n", options.out, joints->set.rows(), joints->set.joints.rows());
+    print_text("{}: {} rows of {} joints\n", options.out, joints->set.rows(), joints->set.joints.rows());
   return exit_done;
 }
 
@@ -50,7 +51,7 @@ int run(const ConvertArguments& options) {
   const auto robot = read_robot(options.in);
   if (!robot) return fail(robot.error());
   if (const auto done = write_robot_model(options.out, *robot); !done) return fail(done.error());
-  if (!options.quiet) fmt::print("{}: {} joints\n", options.out, robot->chain.joints.size());
+  if (!options.quiet) print_text("{}: {} joints\n", options.out, robot->chain.joints.size());
   return exit_done;
 }
 

@@ -5,6 +5,7 @@
 
 #include "kinfer/cli/demo_robot.hpp"
 #include "kinfer/cli/parts/program.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
@@ -21,7 +22,7 @@ struct DemoArguments {
 int step(const DemoArguments& options, const char* what, std::vector<std::string> arguments) {
   std::string command = "kinfer";
   for (const std::string& argument : arguments) command += " " + argument;
-  if (!options.quiet) fmt::print(stderr, "\n== {}\n$ {}\n", what, command);
+  if (!options.quiet) print_message("\n== {}\n$ {}\n", what, command);
   arguments.insert(arguments.end(), {"--threads", std::to_string(options.threads)});
   if (options.quiet) arguments.emplace_back("--quiet");
   return Program().run(arguments);
@@ -52,7 +53,7 @@ int run(const DemoArguments& options) {
   };
   for (const auto& [what, arguments] : steps)
     if (const int code = step(options, what, arguments); code != exit_done) return code;
-  if (!options.quiet) fmt::print("\nOpen {} and {}.\n", in("excavator/report.html"), in("calibration/report.html"));
+  if (!options.quiet) print_text("\nOpen {} and {}.\n", in("excavator/report.html"), in("calibration/report.html"));
   return exit_done;
 }
 

@@ -10,6 +10,7 @@
 #include "kinfer/cli/options/drive_choices.hpp"
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/ins_logs.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/io/robot/toml/robot_toml.hpp"
@@ -61,12 +62,12 @@ Result<std::vector<JointForecast>> forecast_of(const ForecastArguments& options)
 }
 
 void print_table(const std::vector<JointForecast>& joints, const ForecastArguments& options) {
-  fmt::print("Expected of {}: {}.\n\n", options.chain.empty() ? "this recording" : "the " + options.drive + " drive",
+  print_text("Expected of {}: {}.\n\n", options.chain.empty() ? "this recording" : "the " + options.drive + " drive",
              words::forecast_text(joints, target_of(options)));
-  fmt::print("{:<16} {:>12} {:>16} {:>8} {:>18} {:>12}\n", "joint", "sd line [mm]", "sd axis [mrad]", "enough",
+  print_text("{:<16} {:>12} {:>16} {:>8} {:>18} {:>12}\n", "joint", "sd line [mm]", "sd axis [mrad]", "enough",
              "acceleration x", "or time x");
   for (const JointForecast& f : joints)
-    fmt::print("{:<16} {:>12.2f} {:>16.2f} {:>8} {:>18} {:>12}\n", f.joint, 1e3 * f.line_sd, 1e3 * f.direction_sd,
+    print_text("{:<16} {:>12.2f} {:>16.2f} {:>8} {:>18} {:>12}\n", f.joint, 1e3 * f.line_sd, 1e3 * f.direction_sd,
                f.is_sufficient ? "yes" : "no", f.is_sufficient ? "-" : fmt::format("{:.1f}", f.acceleration_factor),
                f.is_sufficient ? "-" : fmt::format("{:.1f}", f.time_factor));
 }
@@ -81,7 +82,7 @@ void print_json(const std::vector<JointForecast>& joints, const ForecastArgument
                     {"acceleration_factor", f.acceleration_factor},
                     {"time_factor", f.time_factor}});
   const nlohmann::ordered_json all{{"verdict", words::forecast_text(joints, target_of(options))}, {"joints", list}};
-  fmt::print("{}\n", dump_json(all));
+  print_data(dump_json(all) + "\n");
 }
 
 int run(const ForecastArguments& options) {

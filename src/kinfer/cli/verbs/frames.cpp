@@ -4,6 +4,7 @@
 
 #include "kinfer/calibrate/start/circle_point_analysis.hpp"
 #include "kinfer/cli/options/robot_option.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/frames_json.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
@@ -63,9 +64,9 @@ int run(const FramesArguments& options) {
   if (auto done = record.write(*folder); !done) return fail(done.error());
   if (auto done = folder->commit(); !done) return fail(done.error());
   if (options.common.json)
-    fmt::print("{}", format_frames_evidence(frames_evidence(*found)));
+    print_data(format_frames_evidence(frames_evidence(*found)));
   else if (!options.common.quiet)
-    fmt::print("{}", summary(*found));
+    print_text("{}", summary(*found));
   return exit_done;
 }
 

@@ -245,7 +245,7 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   if (auto done = write_task_summary(*found); !done) return fail(done.error());
   if (auto done = folder->commit(); !done) return fail(done.error());
   if (options.common.json)
-    fmt::print("{}", format_identification_headline(*found));
+    print_data(format_identification_headline(*found));
   else if (!options.common.quiet)
     print_summary(identification_summary(*found), tone_of(found->usability));
   return found->usability == Usability::do_not_use ? exit_do_not_use : exit_done;

@@ -11,6 +11,7 @@
 #include "kinfer/cli/options/orientation_hypotheses.hpp"
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/ins_logs.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/estimate/poses/joint_excitation.hpp"
 #include "kinfer/io/evidence/findings_json.hpp"
@@ -67,12 +68,12 @@ int inspect_pose_set(const std::string& file, const RobotModel& robot, const Col
   const calibrate::Diagnosis diagnosis =
       calibrate::diagnose(task, [&] { return orientation_hypotheses(file, robot.chain, map); });
   if (json) {
-    fmt::print("{}\n", format_findings(diagnosis.findings));
+    print_data(format_findings(diagnosis.findings) + "\n");
     return exit_done;
   }
-  fmt::print("{}: {} poses of {} joints; measured: {}\n", file, set->rows(), set->joints.rows(), measured_line(*set));
-  fmt::print("{}", joint_table(measure_joint_excitation(robot.chain, *set)));
-  fmt::print("{}", finding_lines(diagnosis.findings));
+  print_text("{}: {} poses of {} joints; measured: {}\n", file, set->rows(), set->joints.rows(), measured_line(*set));
+  print_text("{}", joint_table(measure_joint_excitation(robot.chain, *set)));
+  print_text("{}", finding_lines(diagnosis.findings));
   return exit_done;
 }
 
@@ -90,7 +91,7 @@ Result<bool> inspect_topics(const InspectArguments& options) {
       print_topics(file, log);
   }
   // With an INS the recording's own object follows, which is the answer then.
-  if (options.json && !has_ins) fmt::print("{}\n", dump_json(all, 1));
+  if (options.json && !has_ins) print_data(dump_json(all, 1) + "\n");
   return has_ins;
 }
 

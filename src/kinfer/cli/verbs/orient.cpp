@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/cli/parts/ins_logs.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/inertial/sensor_orientations.hpp"
 #include "kinfer/io/recording/orientation_csv.hpp"
@@ -45,15 +46,15 @@ nlohmann::ordered_json as_json(const OrientArguments& options, const InsRecordin
 
 void print_summary(const OrientArguments& options, const InsRecording& recording,
                    const std::vector<SensorOrientations>& orientations) {
-  fmt::print("{}: filter {}\n", options.out, options.filter);
+  print_text("{}: filter {}\n", options.out, options.filter);
   for (const SensorOrientations& o : orientations) {
     const std::string& name = recording.sensors[o.sensor].name;
-    fmt::print(
+    print_text(
         "  {:<12} {:>8} rows, {}, {:.1f} s of rest\n", name, o.world_q_sensor.size(),
         o.heading_is_north ? "heading from the magnetometer" : "no magnetometer: heading is relative to the start",
         o.rest_seconds);
     if (o.rest_seconds <= 0.0)
-      fmt::print("  ! {}: no rest found: the gyro bias is known from the motion alone\n", name);
+      print_text("  ! {}: no rest found: the gyro bias is known from the motion alone\n", name);
   }
 }
 
@@ -69,12 +70,12 @@ int run(const OrientArguments& options) {
   const auto orientations = estimate_orientations(*recording, *chosen, how);
   if (!orientations) return fail(orientations.error());
   if (!options.common.quiet)
-    for (const Finding& f : logs->findings) fmt::print(stderr, "kinfer: {}\n", words::sentence(f));
+    for (const Finding& f : logs->findings) print_message("kinfer: {}\n", words::sentence(f));
   if (!options.common.quiet)
-    for (const std::string& remark : recording->remarks) fmt::print(stderr, "kinfer: {}\n", remark);
+    for (const std::string& remark : recording->remarks) print_message("kinfer: {}\n", remark);
   if (auto done = write_orientation_csv(options.out, *recording, *orientations); !done) return fail(done.error());
   if (options.common.json)
-    fmt::print("{}\n", dump_json(as_json(options, *recording, *orientations)));
+    print_data(dump_json(as_json(options, *recording, *orientations)) + "\n");
   else if (!options.common.quiet)
     print_summary(options, *recording, *orientations);
   return exit_done;

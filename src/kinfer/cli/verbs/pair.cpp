@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "kinfer/cli/options/pairing_option.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
@@ -28,7 +29,7 @@ int run(const PairArguments& options) {
   if (!paired) return fail(paired.error());
   const auto done = write_text_file(options.out, format_pose_set_csv(paired->set, robot->chain, FileUnits::mm_deg));
   if (!done) return fail(done.error());
-  if (!options.quiet) fmt::print("{}", pairing_summary(options.pairing, *paired));
+  if (!options.quiet) print_text("{}", pairing_summary(options.pairing, *paired));
   return exit_done;
 }
 

@@ -6,6 +6,7 @@
 #include "kinfer/cli/options/joint_columns.hpp"
 #include "kinfer/cli/options/posture_argument.hpp"
 #include "kinfer/cli/options/robot_option.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/motion/path_csv.hpp"
 #include "kinfer/io/motion/reach_targets_csv.hpp"
@@ -135,18 +136,19 @@ int run(const CLI::App& verb, const PathArguments& options) {
   const std::string text = format_path_csv(result->path, rotational);
   const bool to_terminal = options.out.empty() || options.out == "-";
   if (to_terminal)
-    fmt::print("{}", text);
+    print_data(text);
   else if (const auto done = write_text_file(options.out, text); !done)
     return fail(done.error());
   if (options.common.json && !to_terminal)
-    fmt::print("{}\n", nlohmann::ordered_json{{"duration_s", result->path.duration},
-                                              {"samples", result->path.time.size()},
-                                              {"slowed_by", result->path.slowed_by},
-                                              {"usable", !result->obstacle}}
-                           .dump());
+    print_data(nlohmann::ordered_json{{"duration_s", result->path.duration},
+                                      {"samples", result->path.time.size()},
+                                      {"slowed_by", result->path.slowed_by},
+                                      {"usable", !result->obstacle}}
+                   .dump() +
+               "\n");
   if (!options.common.quiet) {
-    fmt::print(stderr, "{}\n", words::summary(result->path, rotational));
-    if (result->obstacle) fmt::print(stderr, "{}\n", words::sentence(*result->obstacle, active_joint_names(chain)));
+    print_message("{}\n", words::summary(result->path, rotational));
+    if (result->obstacle) print_message("{}\n", words::sentence(*result->obstacle, active_joint_names(chain)));
   }
   return result->obstacle ? exit_do_not_use : exit_done;
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/cli/options/robot_option.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/text/dump_json.hpp"
@@ -165,9 +166,9 @@ int run(const PlanArguments& options, const CLI::App& verb) {
   const auto figures = std::filesystem::path(options.out).replace_extension(".json");
   if (auto done = write_text_file(figures, headline_json(*plan)); !done) return fail(done.error());
   if (options.common.json)
-    fmt::print("{}", headline_json(*plan));
+    print_data(headline_json(*plan));
   else if (!options.common.quiet)
-    fmt::print("{}\nFigure: {}\n", summary(*plan, options), figure.string());
+    print_text("{}\nFigure: {}\n", summary(*plan, options), figure.string());
   return exit_done;
 }
 

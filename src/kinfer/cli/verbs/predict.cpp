@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "kinfer/cli/options/robot_option.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_log.hpp"
 #include "kinfer/io/pose_set/predictions_csv.hpp"
@@ -34,9 +35,9 @@ Result<std::vector<PoseDeviations>> deviations_of(const RobotModel& robot, const
 /// What is said on standard error of the predictions.
 void print_notices(const RobotModel& robot, const PoseSet& set, const std::string& path) {
   if (!robot.prediction) {
-    fmt::print(stderr, "kinfer: {}\n", words::no_standard_deviations(path));
+    print_message("kinfer: {}\n", words::no_standard_deviations(path));
   } else if (const auto outside = deploy::find_rows_outside(*robot.prediction, set)) {
-    fmt::print(stderr, "{}\n", words::sentence(*outside));
+    print_message("{}\n", words::sentence(*outside));
   }
 }
 
@@ -50,7 +51,7 @@ int run(const PredictArguments& options) {
   const auto log = read_pose_log(options.joints, robot->chain, {.map = *map}, RequiredContent::joints_only);
   if (!log) return fail(log.error());
   if (!options.quiet)
-    for (const std::string& remark : log->remarks) fmt::print(stderr, "kinfer: {}\n", remark);
+    for (const std::string& remark : log->remarks) print_message("kinfer: {}\n", remark);
   const PoseSet* set = &log->set;
   const auto poses = deploy::predict_poses(robot->chain, *set, robot->prediction);
   if (!poses) return fail(poses.error());
@@ -61,11 +62,11 @@ int run(const PredictArguments& options) {
       format_predictions_csv(*poses, *set, robot->chain.base.pose(), robot->chain.fixtures.anchors, *deviations);
   if (!text) return fail(text.error());
   if (options.out.empty() || options.out == "-") {
-    fmt::print("{}", *text);
+    print_data(*text);
     return exit_done;
   }
   if (const auto done = write_text_file(options.out, *text); !done) return fail(done.error());
-  if (!options.quiet) fmt::print("{}: {} poses\n", options.out, poses->size());
+  if (!options.quiet) print_text("{}: {} poses\n", options.out, poses->size());
   return exit_done;
 }
 

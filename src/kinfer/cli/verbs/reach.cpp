@@ -9,6 +9,7 @@
 #include "kinfer/cli/options/joint_columns.hpp"
 #include "kinfer/cli/options/posture_argument.hpp"
 #include "kinfer/cli/options/robot_option.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/motion/reach_targets_csv.hpp"
 #include "kinfer/io/text/text_file.hpp"
@@ -49,10 +50,10 @@ void print_unreached(const std::vector<ReachSolution>& solutions, const ReachSum
   constexpr std::size_t most = 12;  // targets listed individually
   for (std::size_t i = 0; i < std::min(most, summary.unreached.size()); ++i) {
     const int target = summary.unreached[i];
-    fmt::print(stderr, "{}\n",
-               words::unreached_target(target + 1, solutions[static_cast<std::size_t>(target)], joint_names));
+    print_message("{}\n",
+                  words::unreached_target(target + 1, solutions[static_cast<std::size_t>(target)], joint_names));
   }
-  if (summary.unreached.size() > most) fmt::print(stderr, "and {} more\n", summary.unreached.size() - most);
+  if (summary.unreached.size() > most) print_message("and {} more\n", summary.unreached.size() - most);
 }
 
 int run(const ReachArguments& options) {
@@ -78,18 +79,19 @@ int run(const ReachArguments& options) {
   const std::string text = format_postures_csv(solutions, joint_columns(options.targets, names));
   const bool to_terminal = options.out.empty() || options.out == "-";
   if (to_terminal)
-    fmt::print("{}", text);
+    print_data(text);
   else if (const auto done = write_text_file(options.out, text); !done)
     return fail(done.error());
   const ReachSummary summary = summarise(solutions);
   if (options.common.json && !to_terminal)
-    fmt::print("{}\n", nlohmann::ordered_json{{"targets", summary.targets},
-                                              {"reached", summary.targets - static_cast<int>(summary.unreached.size())},
-                                              {"postures", summary.postures}}
-                           .dump());
+    print_data(nlohmann::ordered_json{{"targets", summary.targets},
+                                      {"reached", summary.targets - static_cast<int>(summary.unreached.size())},
+                                      {"postures", summary.postures}}
+                   .dump() +
+               "\n");
   if (!options.common.quiet) {
     print_unreached(solutions, summary, names);
-    fmt::print(stderr, "{}\n", words::summary(summary));
+    print_message("{}\n", words::summary(summary));
   }
   return summary.unreached.empty() ? exit_done : exit_do_not_use;
 }

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "kinfer/cli/parts/evidence_files.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/calibration_json.hpp"
 #include "kinfer/io/evidence/evidence_schema.hpp"
@@ -23,14 +24,14 @@ struct ReportArguments {
 int run(const ReportArguments& options) {
   if (options.schema == !options.folder.empty())
     return fail(Error{"expected a folder with evidence.json, or --schema"});
-  if (options.schema) return fmt::print("{}", format_evidence_schema()), exit_done;
+  if (options.schema) return print_data(format_evidence_schema()), exit_done;
   const std::filesystem::path folder = options.folder;
   const auto evidence = read_text_file(folder / "evidence.json");
   if (!evidence) return fail(evidence.error());
   const auto page = report::report_of_file(*evidence);
   if (!page) return fail(page.error());
   if (auto done = write_text_file(folder / "report.html", *page); !done) return fail(done.error());
-  if (!options.quiet) fmt::print("{}\n", (folder / "report.html").string());
+  if (!options.quiet) print_text("{}\n", (folder / "report.html").string());
   return exit_done;
 }
 

@@ -12,6 +12,7 @@
 #include "kinfer/cli/options/simulated_faults.hpp"
 #include "kinfer/cli/parts/expected_cost.hpp"
 #include "kinfer/cli/parts/simulation_files.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/io/text/text_file.hpp"
@@ -88,9 +89,9 @@ void print_summary(const SimulateArguments& options, const Machine& machine, con
     const nlohmann::ordered_json headline{
         {"machine", options.machine}, {"joints", joints},   {"sensors", machine.sensors.size()},
         {"rows", motion.time.size()}, {"seconds", seconds}, {"grade", options.grade}};
-    fmt::print("{}\n", dump_json(headline));
+    print_data(dump_json(headline) + "\n");
   } else if (!options.common.quiet) {
-    fmt::print(
+    print_text(
         "{}: {} joints, {} sensors of grade {}, {:.1f} s at {} Hz in {}:\n"
         "imu.csv (what they measured), truth.json (what there is to find), motion.csv (how it moved), machine.xml "
         "(MJCF)\n",

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "kinfer/cli/options/robot_option.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/toml/robot_errors_toml.hpp"
@@ -72,7 +73,7 @@ int run(const SimulatePosesArguments& options) {
   if (auto done = record.write(*folder); !done) return fail(done.error());
   if (auto done = folder->commit(); !done) return fail(done.error());
   if (!options.common.quiet)
-    fmt::print("{} poses of {} in {}: poses.csv (measured), robot.toml (nominal), truth.toml (what made the data)\n",
+    print_text("{} poses of {} in {}: poses.csv (measured), robot.toml (nominal), truth.toml (what made the data)\n",
                set->rows(), robot->chain.name.empty() ? "the robot" : robot->chain.name, options.out);
   return exit_done;
 }

@@ -114,7 +114,7 @@ class SweepRun {
     }
     while (!pool_.is_empty())
       if (auto done = wait(); !done) return forward_error(done.error());
-    if (shows_progress_) fmt::print(stderr, "\r\033[K");
+    if (shows_progress_) print_progress("");
     return tally_;
   }
 
@@ -143,8 +143,8 @@ class SweepRun {
     KINFER_TRY(result, folder_.end(task, seed_of(task), ended.exit_code, ended.signal));
     count(result, tally_);
     if (!result.sentence.empty() && !options_.quiet) {
-      if (shows_progress_) fmt::print(stderr, "\r\033[K");
-      fmt::print(stderr, "{}: {}\n", task.key, result.sentence);
+      if (shows_progress_) print_progress("");
+      print_message("{}: {}\n", task.key, result.sentence);
     }
     show_progress();
     return {};
@@ -155,8 +155,7 @@ class SweepRun {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
     const int before = tally_.done_before, now = tally_.ended() - before;
     const double left = static_cast<double>(mine_.size()) - before;
-    fmt::print(stderr, "\r\033[K{} of {} tasks{}", tally_.ended(), mine_.size(), time_left(seconds, now / left));
-    std::fflush(stderr);
+    print_progress(fmt::format("{} of {} tasks{}", tally_.ended(), mine_.size(), time_left(seconds, now / left)));
   }
 
   const SweepArguments& options_;
@@ -189,7 +188,7 @@ int print_script(const SweepArguments& options, std::size_t tasks) {
   add("--arguments", options.arguments), add("--prior", options.prior), add("--out", options.out),
       add("--seed", std::to_string(options.seed));
   if (options.pack) command += " --pack";
-  fmt::print("{}", sweep_script(options.print, command + " --resume --quiet", shards));
+  print_data(sweep_script(options.print, command + " --resume --quiet", shards));
   return exit_done;
 }
 
@@ -207,7 +206,7 @@ int run(const SweepArguments& options, const CLI::App& program) {
   const auto tally = SweepRun(options, *tasks, *shard, *folder, program).run();
   if (!tally) return fail(tally.error());
   if (!options.quiet)
-    fmt::print("{} tasks: {} use, {} do not use, {} refused, {} failed{}\n", tally->ended(), tally->use,
+    print_text("{} tasks: {} use, {} do not use, {} refused, {} failed{}\n", tally->ended(), tally->use,
                tally->do_not_use, tally->refused, tally->failed,
                tally->done_before > 0 ? fmt::format(" ({} were done before)", tally->done_before) : "");
   return exit_done;

@@ -168,7 +168,7 @@ int finish(const TrackArguments& options, const RunRecord& record, const TrackRu
     if (!options.out.empty() && !options.common.json)
       print_summary(summary, tone_of(run.verdict.usability));
     else
-      fmt::print(stderr, "{}", summary);
+      print_message("{}", summary);
   }
   return run.verdict.usability == Usability::do_not_use ? exit_do_not_use : exit_done;
 }

@@ -7,6 +7,7 @@
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/calibration_summary.hpp"
+#include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/sweep/task_context.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/deploy/compare.hpp"
@@ -38,12 +39,12 @@ void print(const Verification& v, const std::vector<std::string>& notes, const C
                                       {"frames_refitted", figures(v.frames_refitted)},
                                       {"redundancy", v.redundancy},
                                       {"notes", notes}};
-    fmt::print("{}\n", dump_json(json));
+    print_data(dump_json(json) + "\n");
   } else if (!common.quiet) {
-    fmt::print("{}\n\n  as it stands            {}\n  base and tool refitted  {}\n", words::verdict(v),
+    print_text("{}\n\n  as it stands            {}\n  base and tool refitted  {}\n", words::verdict(v),
                statistics_line(v.unmodified),
                v.redundancy > 0 ? statistics_line(v.frames_refitted) : "too few points to tell");
-    for (const std::string& note : notes) fmt::print("  {}\n", note);
+    for (const std::string& note : notes) print_text("  {}\n", note);
   }
 }
 
@@ -74,16 +75,16 @@ void print(const CalibrationComparison& changes, const CommonOptions& common) {
                                       {"tool_rms", changes.tool_rms},
                                       {"tool_worst", changes.tool_worst},
                                       {"parameters", list}};
-    fmt::print("{}\n", dump_json(json));
+    print_data(dump_json(json) + "\n");
     return;
   }
   if (common.quiet) return;
-  fmt::print("{}\n\n  {:<12} {:>12} {:>12} {:>8}\n", words::verdict(changes), "number", "change", "sd", "sigma");
+  print_text("{}\n\n  {:<12} {:>12} {:>12} {:>8}\n", words::verdict(changes), "number", "change", "sd", "sigma");
   constexpr std::size_t most = 12;
   for (std::size_t i = 0; i < std::min(most, changes.parameters.size()); ++i) {
     const ParameterChange& c = changes.parameters[i];
     const auto [factor, unit_name] = display_unit_of_change(c.quantity);
-    fmt::print("  {:<12} {:>+12.5f} {:>12.5f} {:>+8.1f} {}{}\n", c.name, factor * c.change, factor * c.sd, c.sigmas,
+    print_text("  {:<12} {:>+12.5f} {:>12.5f} {:>+8.1f} {}{}\n", c.name, factor * c.change, factor * c.sd, c.sigmas,
                unit_name, c.significant ? "   changed" : "");
   }
 }
