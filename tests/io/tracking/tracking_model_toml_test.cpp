@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "kinfer/evidence/tracking/body_poses.hpp"
 #include "support/example_tracking_model.hpp"
 
@@ -48,6 +51,24 @@ TEST(TrackingModelToml, ACovarianceWithCertainDirectionsStaysOne) {
   EXPECT_EQ(read->covariance(2, 2), 0.0);
   const double difference = read->covariance(3, 3) + read->covariance(4, 4) - 2.0 * read->covariance(3, 4);
   EXPECT_LT(std::abs(difference), 1e-10 * read->covariance(3, 3));
+}
+
+TEST(TrackingModelToml, WhatIsUnknownIsWrittenAsUnknownAndReadBack) {
+  TrackingModel model = test::example_tracking_model(6);
+  const auto row =
+      std::ranges::find(model.parameters, TrackingParameterKind::child_rotation, &TrackingParameter::kind) -
+      model.parameters.begin();
+  const double factor = 204.0 / std::sqrt(model.covariance(row, row));  // [rad] is many turns
+  model.covariance.row(row) *= factor;
+  model.covariance.col(row) *= factor;
+  EXPECT_FALSE(parse_tracking_model(format_tracking_model(model), "track.toml"));
+  const TrackingModel limited = with_limited_deviations(model);
+  EXPECT_NEAR(std::sqrt(limited.covariance(row, row)), 10.0, 1e-9);
+  for (Eigen::Index k = 0; k < model.covariance.rows(); ++k)
+    if (k != row) EXPECT_EQ(limited.covariance(k, k), model.covariance(k, k));
+  const auto read = parse_tracking_model(format_tracking_model(limited), "track.toml");
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_NEAR(std::sqrt(read->covariance(row, row)), 10.0, 1e-6);
 }
 
 TEST(TrackingModelToml, HiddenDirectionsAreThoseWithThePriorsVariance) {

@@ -54,6 +54,35 @@ std::string_view name(TrackingParameterKind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
+double largest_deviation(TrackingParameterKind kind) {
+  switch (kind) {
+    case TrackingParameterKind::point_in_parent:
+    case TrackingParameterKind::point_in_child:
+      return 1e5;  // [m]
+    case TrackingParameterKind::accelerometer_bias:
+      return 1e3;  // [m/s²]
+    case TrackingParameterKind::parent_rotation:
+    case TrackingParameterKind::child_rotation:
+    case TrackingParameterKind::gyroscope_bias:
+    case TrackingParameterKind::gyroscope_scale:
+    case TrackingParameterKind::accelerometer_scale:
+      break;
+  }
+  return 100.0;  // [rad], [rad/s], [1]
+}
+
+TrackingModel with_limited_deviations(TrackingModel model) {
+  constexpr double share = 0.1;  // of the largest possible; the rest is left to the rounding of a file
+  const VectorXd sd = model.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  VectorXd factors = VectorXd::Ones(sd.size());
+  for (Eigen::Index i = 0; i < sd.size(); ++i) {
+    const double limit = share * largest_deviation(model.parameters[static_cast<std::size_t>(i)].kind);
+    if (sd[i] > limit) factors[i] = limit / sd[i];
+  }
+  model.covariance = factors.asDiagonal() * model.covariance * factors.asDiagonal();
+  return model;
+}
+
 int TrackingModel::positions() const {
   int sum = 0;
   for (const TrackingJoint& joint : joints) sum += joint.positions;

@@ -99,6 +99,9 @@ enum class TrackingParameterKind {
 };
 std::string_view name(TrackingParameterKind kind);  ///< "parent_rotation", ...
 
+/// Standard deviation [SI] that a parameter can have at all: far beyond what any log leaves open.
+double largest_deviation(TrackingParameterKind kind);
+
 /// A row and column of the covariance: a parameter of a body (first four kinds) or of a sensor (the others).
 struct TrackingParameter {
   TrackingParameterKind kind{};
@@ -142,6 +145,10 @@ std::vector<std::string> position_names(const TrackingModel& model);
 /// Combinations of parameters that the log leaves unobservable, one unit column each in units of the prior's standard
 /// deviations: their variance is more than half of the prior's.
 MatrixXd hidden_directions(const TrackingModel& model);
+
+/// Standard deviations far beyond a turn or the size of a machine say no more than that nothing is known: they are
+/// limited to a tenth of the largest possible ones (10 rad, 10 km), the correlations kept.
+TrackingModel with_limited_deviations(TrackingModel model);
 
 /// Aborts (programming error) unless indices are in range, parents precede children and sizes agree.
 void expect_well_formed(const TrackingModel& model);

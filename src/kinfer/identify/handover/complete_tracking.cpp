@@ -86,7 +86,7 @@ TrackingModel with_filtered_biases(TrackingModel model, const InsRecording& reco
 }
 
 TrackingModel complete(TrackingModel model, const Identification& found, const InsRecording& recording) {
-  model = with_filtered_biases(std::move(model), recording);
+  model = with_limited_deviations(with_filtered_biases(std::move(model), recording));
   for (TrackingSensor& sensor : model.sensors) {
     const auto clock = std::ranges::find(found.clocks, sensor.name, &SensorClockEstimate::sensor);
     if (clock == found.clocks.end()) continue;

@@ -157,22 +157,23 @@ std::optional<TrackingParameter> parameter_of(std::string_view text, const Track
 
 /// Of the standard deviation of a parameter.
 PossibleRange possible_sd(TrackingParameterKind kind) {
+  const double most = largest_deviation(kind);
   switch (kind) {
     case TrackingParameterKind::parent_rotation:
     case TrackingParameterKind::child_rotation:
-      return {"the standard deviation of a direction", 100.0, "rad"};
+      return {"the standard deviation of a direction", most, "rad"};
     case TrackingParameterKind::point_in_parent:
     case TrackingParameterKind::point_in_child:
-      return {"the standard deviation of a point", 1e5, "m"};
+      return {"the standard deviation of a point", most, "m"};
     case TrackingParameterKind::gyroscope_bias:
-      return {"the standard deviation of a bias", 100.0, "rad/s"};
+      return {"the standard deviation of a bias", most, "rad/s"};
     case TrackingParameterKind::accelerometer_bias:
-      return {"the standard deviation of a bias", 1e3, "m/s^2"};
+      return {"the standard deviation of a bias", most, "m/s^2"};
     case TrackingParameterKind::gyroscope_scale:
     case TrackingParameterKind::accelerometer_scale:
       break;
   }
-  return {"the standard deviation of a scale", 100.0, "1"};
+  return {"the standard deviation of a scale", most, "1"};
 }
 
 void read_covariance(TableReader& t, const TomlTable& file, TrackingModel& model) {
