@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "kinfer/base/rng.hpp"
+#include "kinfer/io/recording/ins_columns.hpp"
 #include "kinfer/io/text/plain_decimal.hpp"
 
 namespace kinfer {
@@ -45,6 +46,20 @@ TEST(InsCsv, RowsBecomeColumnsOfEachSensor) {
   EXPECT_EQ(read->sensors[1].acceleration.at(1), Vec3(1, 0, 9.75));
   EXPECT_EQ(read->sensors[0].faults[1], acceleration_missing | angular_velocity_missing);
   EXPECT_FALSE(read->sensors[0].has_magnetometer());
+}
+
+TEST(InsCsv, TheApostropheBeforeAFormulaIsNoPartOfTheSensorsName) {
+  const std::string text =
+      "t,'=a_ax,'=a_ay,'=a_az,'=a_gx,'=a_gy,'=a_gz,'-b_ax[g],'-b_ay[g],'-b_az[g],'-b_gx,'-b_gy,'-b_gz,"
+      "'c_ax,'c_ay,'c_az,'c_gx,'c_gy,'c_gz\n"
+      "0,0,0,9.8,1,2,3,0,0,1,4,5,6,0,0,9.8,7,8,9\n0.01,0,0,9.8,1,2,3,0,0,1,4,5,6,0,0,9.8,7,8,9\n";
+  EXPECT_TRUE(is_ins_csv(text));
+  const auto read = parse_ins_csv(text, "imu.csv");
+  ASSERT_TRUE(read) << read.error().what;
+  ASSERT_EQ(read->sensors.size(), 3u);
+  EXPECT_EQ(read->sensors[0].name, "=a");
+  EXPECT_EQ(read->sensors[1].name, "-b");
+  EXPECT_EQ(read->sensors[2].name, "'c") << "no spreadsheet would run it";
 }
 
 TEST(InsCsv, UnitsInBracketsAreConverted) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kinfer/base/angle.hpp"
+#include "kinfer/io/text/csv_text.hpp"
 
 namespace kinfer {
 namespace {
@@ -57,6 +58,14 @@ TEST(Units, AHeaderIsANameAndPerhapsAUnit) {
   EXPECT_EQ(parse_column_header("[deg]").name, "");
   EXPECT_EQ(parse_column_header("").name, "");
   EXPECT_EQ(parse_column_header("a]").name, "a]");
+}
+
+TEST(Units, AHeaderThatWasKeptFromBeingAFormulaComesBack) {
+  for (const std::string name : {"=a_ax", "-x", "@cmd", "+1+1", "'quoted'", "q1"}) {
+    EXPECT_EQ(parse_column_header(csv_cell(name)).name, name);
+    EXPECT_EQ(parse_column_header(csv_cell(name + "[mm]")).name, name);
+    EXPECT_EQ(parse_column_header(csv_cell(name + "[mm]")).unit, "mm");
+  }
 }
 
 }  // namespace

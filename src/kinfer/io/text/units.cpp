@@ -5,6 +5,7 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/constants.hpp"
+#include "kinfer/io/text/csv_text.hpp"
 #include "kinfer/io/text/trim.hpp"
 
 namespace kinfer {
@@ -108,7 +109,7 @@ std::string_view describe(Dimension dimension) {
 }
 
 ColumnHeader parse_column_header(std::string_view header) {
-  const std::string_view text = trim(header, whitespace_and_newline);
+  const std::string_view text = without_formula_guard(trim(header, whitespace_and_newline));
   if (const auto paren = text.rfind('('); paren != std::string_view::npos && text.back() == ')') {
     const std::string_view unit = trim(text.substr(paren + 1, text.size() - paren - 2), whitespace_and_newline);
     if (find_unit(unit)) return {trim(text.substr(0, paren), whitespace_and_newline), unit, true};

@@ -38,6 +38,7 @@ std::optional<Unit> find_unit(std::string_view text);
 std::string_view describe(Dimension dimension);
 
 /// `header` "q1[deg]" -> name "q1", unit "deg"; no bracket: empty unit. "x (mm)" likewise, if the unit is known.
+/// Without the apostrophe of csv_cell.
 struct ColumnHeader {
   std::string_view name, unit;
   bool has_unit = false;
