@@ -67,7 +67,8 @@ void add_robot(py::module_& module) {
       .def_static(
           "load", &load_robot, py::arg("path"), py::kw_only(), py::arg("base") = "", py::arg("tip") = "",
           "Reads a robot file: TOML, URDF or MJCF. base, tip: links of a URDF file, bodies (tip: or a site) of an MJCF "
-          "file, between which the chain lies (default: its root, the end of its longest arm).")
+          "file, between which the chain lies (default: its root; the tool in a file that kinfer wrote, else the end "
+          "of its longest arm).")
       .def(
           "forward", &forward_of, py::arg("joints"), py::kw_only(), py::arg("threads") = 0,
           "Tool poses, (n, 4, 4) homogeneous matrices [m], at joint positions (n, dof) [rad] or [m]; (4, 4) at (dof,). "

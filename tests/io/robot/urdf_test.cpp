@@ -167,6 +167,24 @@ TEST_P(UrdfRoundTrip, PredictsTheSamePoses) {
   }
 }
 
+TEST_P(UrdfRoundTrip, KeepsToolAndTargetsWithoutNamedEnds) {
+  Chain chain = GetParam();
+  for (Joint& joint : chain.joints) joint.compliance = 0.0;
+  chain.targets = {
+      {"s2", Vec3(0.5, 0, 0)}, {"tool", Vec3::UnitY()}, {"link_J1", Vec3::UnitZ()}, {"a\x01", -Vec3::UnitX()}};
+  const auto read = parse_urdf(format_urdf(chain), "chain.urdf");
+  ASSERT_TRUE(read.has_value()) << read.error().what;
+  const VectorXd q = laws::random_q(chain, Rng(3));
+  const Pose expected = forward(chain, q), found = forward(*read, reordered(*read, chain, q));
+  EXPECT_LT((expected.position - found.position).norm(), 1e-9);
+  EXPECT_LT((expected.rotation - found.rotation).cwiseAbs().maxCoeff(), 1e-9);
+  ASSERT_EQ(read->targets.size(), chain.targets.size());
+  for (std::size_t i = 0; i < chain.targets.size(); ++i) {
+    EXPECT_EQ(read->targets[i].name, chain.targets[i].name);
+    EXPECT_LT((read->targets[i].xyz - chain.targets[i].xyz).norm(), 1e-12);
+  }
+}
+
 TEST_P(UrdfRoundTrip, KeepsLimitsAndNamesOfTheJoints) {
   const auto read = parse_urdf(format_urdf(GetParam()), "chain.urdf", {.base_link = "", .tip_link = "tool"});
   ASSERT_TRUE(read.has_value()) << read.error().what;
@@ -190,6 +208,45 @@ TEST(Urdf, TargetsAreLinksOnTheTool) {
   ASSERT_TRUE(read.has_value()) << read.error().what;
   const VectorXd q = laws::random_q(chain, Rng(1));
   EXPECT_LT((forward(*read, q).position - forward(chain, q) * chain.targets[0].xyz).norm(), 1e-9);
+}
+
+TEST(Urdf, TheToolIsTheTipOnAShortArmAndAfterASecondRoundTrip) {
+  Chain chain = laws::two_arms();
+  chain.tip = 5;
+  chain.joints[2].couplings.clear();
+  chain.targets = {{"s2", Vec3(0.01, 0.02, 0.03)}};
+  const auto once = parse_urdf(format_urdf(chain), "chain.urdf");
+  ASSERT_TRUE(once.has_value()) << once.error().what;
+  EXPECT_EQ(active_joint_names(*once), (std::vector<std::string>{"J1", "J5", "J6"}));
+  const auto twice = parse_urdf(format_urdf(*once), "chain.urdf");
+  ASSERT_TRUE(twice.has_value()) << twice.error().what;
+  ASSERT_EQ(twice->targets.size(), 1U);
+  const VectorXd q = Vec3(0.3, -0.4, 0.5);
+  EXPECT_LT((forward(*once, q).position - forward(*twice, q).position).norm(), 1e-9);
+}
+
+TEST(Urdf, WhatIsAttachedToAWrittenToolIsTheTip) {
+  Chain chain = laws::er20();
+  chain.targets = {{"s2", Vec3(0.01, 0.02, 0.03)}};
+  const std::string text = replaced(format_urdf(chain), "</robot>",
+                                    "<link name=\"gripper\"/><joint name=\"mount\" type=\"fixed\"><parent link=\"s2\"/>"
+                                    "<child link=\"gripper\"/></joint></robot>");
+  const auto chain_with_gripper = parse_urdf(text, "chain.urdf");
+  ASSERT_TRUE(chain_with_gripper.has_value()) << chain_with_gripper.error().what;
+  EXPECT_EQ(chain_with_gripper->joints.back().name, "mount");
+  EXPECT_TRUE(chain_with_gripper->targets.empty());
+}
+
+TEST(Urdf, AToolOfAnotherProgramIsALinkLikeOthers) {
+  const std::string tool =
+      "<link name=\"tool\"/><link name=\"tcp\"/>"
+      "<joint name=\"flange_to_tool\" type=\"fixed\"><parent link=\"hand\"/><child link=\"tool\"/></joint>"
+      "<joint name=\"tool_to_tcp\" type=\"fixed\"><parent link=\"tool\"/><child link=\"tcp\"/>"
+      "<origin xyz=\"0 0 0.1\"/></joint></robot>";
+  const auto chain = parse_urdf(replaced(two_joint_arm, "</robot>", tool), "arm.urdf");
+  ASSERT_TRUE(chain.has_value()) << chain.error().what;
+  EXPECT_EQ(chain->joints.back().name, "tool_to_tcp");
+  EXPECT_TRUE(chain->targets.empty());
 }
 
 TEST(Urdf, NamesThatCollideOrNeedEscapesDoNotBreakTheFile) {

@@ -27,8 +27,8 @@ void add_robot_option(CLI::App& verb, RobotOption& option, const std::string& na
   add_text(verb, "--base-link", option.base_link,
            "Link of a URDF file or body of an MJCF file where the chain begins (default: its root, the world)");
   add_text(verb, "--tip-link", option.tip_link,
-           "Link of a URDF file, body or site of an MJCF file where the chain ends (default: the end of its longest "
-           "arm, or the site \"tool\" there)");
+           "Link of a URDF file, body or site of an MJCF file where the chain ends (default: the tool in a file "
+           "that kinfer wrote, else the end of its longest arm, or the site \"tool\" there)");
   begin_group(verb, "Options");
 }
 

@@ -8,8 +8,8 @@ namespace kinfer {
 
 struct ChainEnds {
   std::string base_link;  ///< empty: the root link of a URDF, the world of an MJCF
-  std::string tip_link;   ///< empty: the only leaf, or the leaf at the end of the longest path of moving joints (first
-                          ///< in file order)
+  std::string tip_link;   ///< empty: the tool where kinfer wrote the file, else the leaf at the end of the longest path
+                          ///< of moving joints (first in file order)
 };
 
 }  // namespace kinfer

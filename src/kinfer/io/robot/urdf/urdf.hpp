@@ -14,7 +14,8 @@
 
 namespace kinfer {
 
-/// The joints from the base link to the tip link, fixed ones included; mimic joints become couplings.
+/// The joints from the base link to the tip link, fixed ones included; mimic joints become couplings. In a file that
+/// kinfer wrote the chain ends at the tool, unless `ends` says otherwise, and then has its targets.
 Result<Chain> read_urdf(const std::filesystem::path& path, const ChainEnds& ends = {});
 Result<Chain> parse_urdf(const std::string& text, const std::string& name_in_messages, const ChainEnds& ends = {});
 

@@ -11,6 +11,7 @@
 
 #include "kinfer/io/robot/model/possible_chain.hpp"
 #include "kinfer/io/robot/urdf/urdf.hpp"
+#include "kinfer/io/robot/urdf/urdf_tool.hpp"
 #include "kinfer/io/robot/urdf/urdf_tree.hpp"
 #include "kinfer/io/robot/xml/xml_names.hpp"
 #include "kinfer/io/text/replace_all.hpp"
@@ -117,7 +118,7 @@ Pose motion(const UrdfLink& link, JointType type, double amount) {
 class ChainBuilder {
  public:
   ChainBuilder(const UrdfTree& tree, const urdf::ModelInterface& model, const std::string& file)
-      : tree_(tree), model_(model), file_(file) {}
+      : tree_(tree), model_(model), file_(file), tool_(find_written_tool(tree)) {}
 
   Result<Chain> build(const ChainEnds& ends) {
     KINFER_TRY(path, path_between(ends));
@@ -126,6 +127,7 @@ class ChainBuilder {
     chain_.name = model_.getName();
     chain_.tip = static_cast<int>(chain_.joints.size()) - 1;
     base_link_ = path.front()->parent;
+    if (tool_ && path.back()->child == tool_->link) add_targets();
     for (std::size_t j = 0; j < chain_.joints.size() && first_error_.empty(); ++j)
       add_coupling(j);  // may add further joints
     if (first_error_.empty() && dof(chain_) == 0)
@@ -153,16 +155,24 @@ class ChainBuilder {
     return path;
   }
 
-  bool moves(const UrdfTree::Edge& edge) const { return model_.getJoint(edge.joint)->type != urdf::Joint::FIXED; }
-
   Result<Path> path_between(const ChainEnds& ends) const {
     const std::string base = ends.base_link.empty() ? tree_.root : ends.base_link;
     if (!tree_.has_link(base)) return error("{}: the base link \"{}\" does not exist", file_, base);
-    if (ends.tip_link.empty()) return longest_path(base);
+    if (ends.tip_link.empty()) return default_path(base);
     if (!tree_.has_link(ends.tip_link)) return error("{}: the tip link \"{}\" does not exist", file_, ends.tip_link);
     const auto path = path_down(base, ends.tip_link);
     if (!path) return error("{}: the tip link \"{}\" is not below the base link \"{}\"", file_, ends.tip_link, base);
     return *path;
+  }
+
+  /// To the tool of a file that kinfer wrote, else to the end of the longest arm.
+  Path default_path(const std::string& base) const {
+    auto path = tool_ ? path_down(base, tool_->link) : std::nullopt;
+    return path && moving_joints(*path) > 0 ? std::move(*path) : longest_path(base);
+  }
+
+  static std::ptrdiff_t moving_joints(const Path& path) {
+    return std::ranges::count_if(path, [](const UrdfTree::Edge* edge) { return !edge->is_fixed; });
   }
 
   Path longest_path(const std::string& base) const {
@@ -171,7 +181,7 @@ class ChainBuilder {
     for (const std::string& link : tree_.links) {
       const auto path = tree_.is_leaf(link) ? path_down(base, link) : std::nullopt;
       if (!path) continue;
-      const auto moving = std::count_if(path->begin(), path->end(), [&](const auto* edge) { return moves(*edge); });
+      const std::ptrdiff_t moving = moving_joints(*path);
       if (moving > most) most = moving, longest = *path;
     }
     return longest;
@@ -192,7 +202,7 @@ class ChainBuilder {
     UrdfLink link;
     link.origin = frame_of(source.parent_to_joint_origin_transform);
     const Vec3 axis(source.axis.x, source.axis.y, source.axis.z);
-    if (!is_finite(source)) report_error(fmt::format("joint \"{}\" has a number that is not finite", edge.joint));
+    expect_finite(source);
     if (has_position(joint.type)) {
       if (axis.norm() < 1e-9)
         report_error(fmt::format("joint \"{}\" has an axis of zeros", edge.joint));
@@ -205,6 +215,15 @@ class ChainBuilder {
     }
     joint.link = link;
     chain_.joints.push_back(std::move(joint));
+  }
+
+  void add_targets() {
+    for (const UrdfTree::Edge* edge : tool_->targets) {
+      const urdf::Joint& source = *model_.getJoint(edge->joint);
+      expect_finite(source);
+      chain_.targets.push_back(
+          {name_from_xml(target_name(*edge)), frame_of(source.parent_to_joint_origin_transform).xyz});
+    }
   }
 
   int parent_index(const UrdfTree::Edge& edge) const {
@@ -263,6 +282,10 @@ class ChainBuilder {
     return index_of(joint);
   }
 
+  void expect_finite(const urdf::Joint& joint) {
+    if (!is_finite(joint)) report_error(fmt::format("joint \"{}\" has a number that is not finite", joint.name));
+  }
+
   void report_error(const std::string& sentence) {
     if (first_error_.empty()) first_error_ = sentence;
   }
@@ -270,6 +293,7 @@ class ChainBuilder {
   const UrdfTree& tree_;
   const urdf::ModelInterface& model_;
   const std::string& file_;
+  const std::optional<WrittenTool> tool_;
   std::string base_link_, first_error_;
   Chain chain_;
 };

@@ -47,7 +47,8 @@ class UrdfTreeParser {
   void read_joints(const XMLElement& robot) {
     for (auto* joint = robot.FirstChildElement("joint"); joint; joint = joint->NextSiblingElement("joint")) {
       UrdfTree::Edge edge{attribute(joint, "name"), attribute(joint->FirstChildElement("parent"), "link"),
-                          attribute(joint->FirstChildElement("child"), "link"), joint->GetLineNum()};
+                          attribute(joint->FirstChildElement("child"), "link"), joint->GetLineNum(),
+                          attribute(joint, "type") == "fixed"};
       check_edge(edge);
       tree_.edges.push_back(std::move(edge));
     }

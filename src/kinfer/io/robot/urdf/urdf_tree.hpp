@@ -14,6 +14,7 @@ struct UrdfTree {
   struct Edge {
     std::string joint, parent, child;
     int line = 0;
+    bool is_fixed = false;
   };
   std::vector<Edge> edges;         ///< joints in the order of the file
   std::vector<std::string> links;  ///< in the order of the file

@@ -6,6 +6,7 @@
 
 #include "kinfer/io/robot/model/joint_transforms.hpp"
 #include "kinfer/io/robot/urdf/urdf.hpp"
+#include "kinfer/io/robot/urdf/urdf_tool.hpp"
 #include "kinfer/io/robot/xml/xml_list.hpp"
 #include "kinfer/io/robot/xml/xml_names.hpp"
 #include "kinfer/io/text/format_number.hpp"
@@ -25,9 +26,9 @@ class UrdfWriter {
     printer_.PushHeader(false, true);
     printer_.OpenElement("robot");
     printer_.PushAttribute("name", chain_.name.empty() ? "robot" : chain_.name.c_str());
-    const std::string world = add_link("world");
-    const std::string base = add_link("base");
-    add_fixed("world_to_base", world, base, chain_.base.pose());
+    const std::string world = add_link(written_urdf::world_link);
+    const std::string base = add_link(written_urdf::base_link);
+    add_fixed(written_urdf::base_joint, world, base, chain_.base.pose());
     for (std::size_t i = 0; i < chain_.joints.size(); ++i) write_joint(static_cast<int>(i), base);
     write_tool(base);
     write_closures();
@@ -57,16 +58,10 @@ class UrdfWriter {
   }
 
   std::string add_link(const std::string& wish) {
-    std::string name = unique(wish, link_names_);
+    std::string name = unique_name(wish, link_names_);
     printer_.OpenElement("link");
     printer_.PushAttribute("name", name.c_str());
     printer_.CloseElement();
-    return name;
-  }
-
-  static std::string unique(const std::string& wish, std::set<std::string>& taken) {
-    std::string name = wish;
-    for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}", wish, i);
     return name;
   }
 
@@ -90,7 +85,7 @@ class UrdfWriter {
   }
 
   void add_fixed(const std::string& wish, const std::string& parent, const std::string& child, const Pose& origin) {
-    open_joint(unique(wish, joint_names_), "fixed", parent, child, origin);
+    open_joint(unique_name(wish, joint_names_), "fixed", parent, child, origin);
     printer_.CloseElement();
   }
 
@@ -141,7 +136,7 @@ class UrdfWriter {
       mimics.erase(mimics.begin());
     }
     for (const MimicTerm& mimic : mimics) {
-      const std::string name = unique(joint.name + "_follows_" + mimic.joint, joint_names_);
+      const std::string name = unique_name(joint.name + "_follows_" + mimic.joint, joint_names_);
       const std::string link = add_link("link_" + name);
       add_moving(name, joint, link_[index], link, Pose{}, transforms.axis, &mimic);
       link_[index] = link;
@@ -150,11 +145,12 @@ class UrdfWriter {
 
   void write_tool(const std::string& base) {
     const int tip = chain_.tip_joint();
-    const std::string tool = add_link("tool");
-    add_fixed("flange_to_tool", tip < 0 ? base : link_[tip], tool,
+    const std::string tool = add_link(written_urdf::tool_link);
+    add_fixed(written_urdf::tool_joint, tip < 0 ? base : link_[tip], tool,
               (tip < 0 ? Pose{} : after_[tip]) * chain_.tool.pose());
     for (const Target& target : chain_.targets)
-      add_fixed("tool_to_" + target.name, tool, add_link(target.name), {Mat3::Identity(), target.xyz});
+      add_fixed(written_urdf::target_joint_prefix + target.name, tool, add_link(target.name),
+                {Mat3::Identity(), target.xyz});
   }
 
   const Chain& chain_;

@@ -64,4 +64,10 @@ Chain with_xml_names(Chain chain) {
   return chain;
 }
 
+std::string unique_name(const std::string& wish, std::set<std::string>& taken) {
+  std::string name = wish;
+  for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}", wish, i);
+  return name;
+}
+
 }  // namespace kinfer

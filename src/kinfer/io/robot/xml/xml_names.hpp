@@ -3,6 +3,7 @@
 // are written as _xHHHH_, as spreadsheets do (ECMA-376, part 1, 22.9.2.19), and come back on reading.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -17,5 +18,8 @@ std::string name_from_xml(std::string_view text);
 
 /// The chain with every name as XML can hold it.
 Chain with_xml_names(Chain chain);
+
+/// The name, with a number behind it where it is taken: tool_2. It is taken from then on.
+std::string unique_name(const std::string& wish, std::set<std::string>& taken);
 
 }  // namespace kinfer
