@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "kinfer/io/robot/mjcf/mjcf.hpp"
 #include "kinfer/io/robot/mjcf/mjcf_tree.hpp"
@@ -93,6 +94,33 @@ TEST(MjcfRead, TheToolThatIsWrittenIsTheTip) {
   const Chain back = accepted(format_mjcf(robot));
   const VectorXd q = laws::random_q(robot, Rng(3).stream(1));
   EXPECT_LT((forward(back, q).position - forward(robot, q).position).norm(), 1e-9);
+}
+
+TEST(MjcfRead, TheToolThatIsWrittenIsTheTipOnAShortArm) {
+  Chain robot = laws::two_arms();
+  robot.tip = 5;
+  robot.joints[2].couplings.clear();
+  const Chain read = accepted(format_mjcf(robot));
+  EXPECT_EQ(active_joint_names(read), (std::vector<std::string>{"J1", "J5", "J6"}));
+}
+
+// MuJoCo refuses a file in which two sites have the same name.
+TEST(MjcfRead, AJointOrTargetNamedToolIsNotTheTool) {
+  for (const char* joint : {"tool", "tool_2", "J6"}) {
+    Chain robot = laws::er20();
+    robot.joints[5].name = joint;
+    robot.targets = {{"tool", Vec3(0.5, 0, 0)}, {"J1", Vec3(0, 0.5, 0)}};
+    const std::string text = format_mjcf(robot);
+    const auto tree = parse_mjcf_tree(text, "chain.mjcf");
+    ASSERT_TRUE(tree) << tree.error().what;
+    std::set<std::string> names;
+    for (const MjcfSite& site : tree->sites) EXPECT_TRUE(names.insert(site.name).second) << site.name;
+    EXPECT_EQ(names.size(), 9U) << "six joints, the tool, two targets";
+    const Chain read = accepted(text);
+    EXPECT_EQ(active_joint_names(read), active_joint_names(robot));
+    const VectorXd q = laws::random_q(robot, Rng(4));
+    EXPECT_LT((forward(read, q).position - forward(robot, q).position).norm(), 1e-9);
+  }
 }
 
 TEST(MjcfRead, AFreeThingBesideARobotIsNoPartOfIt) {

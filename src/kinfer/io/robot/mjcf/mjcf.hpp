@@ -20,8 +20,8 @@ Result<Chain> parse_mjcf(const std::string& text, const std::string& name_in_mes
 /// The name of the site that has the tool's frame, in files that are written.
 inline const std::string tool_site = "tool";
 
-/// The ends that an empty name stands for: "world", and the body at the end of the longest path of moving joints, or
-/// its site `tool_site` where it has one.
+/// The ends that an empty name stands for: "world", and the body at the end of the longest path of moving joints (in a
+/// file that kinfer wrote: the one with the tool), or its site `tool_site` where it has one.
 Result<ChainEnds> mjcf_ends(const MjcfTree& tree, const std::string& name_in_messages, const ChainEnds& ends);
 
 /// Pose of the body's frame in the frame that the chain has there: that of the body's last joint, which lies in the

@@ -69,6 +69,21 @@ bool has_tool(const MjcfTree& tree, int body) {
   return site && site->body == body && !site->is_placed_by_ends && tree.body_named(tool_site) < 0;
 }
 
+/// By the names of its bodies.
+bool is_written_by_kinfer(const MjcfTree& tree) {
+  return std::ranges::all_of(tree.bodies, [](const MjcfBody& body) {
+    return body.parent == world ? body.name == "base" : body.name.starts_with("link_");
+  });
+}
+
+/// The body that carries the tool in a file that kinfer wrote, on whichever arm, where joints move it; else the leaf at
+/// the end of the longest path.
+int default_tip(const MjcfTree& tree, int base) {
+  const MjcfSite* site = is_written_by_kinfer(tree) ? tree.site_named(tool_site) : nullptr;
+  const auto path = site ? bodies_down(tree, base, site->body) : std::nullopt;
+  return path && measure_path(tree, *path).moving > 0 ? site->body : longest_leaf(tree, base);
+}
+
 Pose shift(const Vec3& by) {
   return {Mat3::Identity(), by};
 }
@@ -274,9 +289,9 @@ Result<ChainEnds> mjcf_ends(const MjcfTree& tree, const std::string& name, const
     return error("{}: the base link \"{}\" does not exist: expected the name of a body, or world", name,
                  found.base_link);
   if (found.tip_link.empty()) {
-    const int leaf = longest_leaf(tree, base);
-    if (leaf < 0) return error("{}: no body below the base link \"{}\"", name, found.base_link);
-    found.tip_link = has_tool(tree, leaf) ? tool_site : tree.bodies[leaf].name;
+    const int tip = default_tip(tree, base);
+    if (tip < 0) return error("{}: no body below the base link \"{}\"", name, found.base_link);
+    found.tip_link = has_tool(tree, tip) ? tool_site : tree.bodies[tip].name;
   }
   if (tree.body_named(found.tip_link) < 0 && !tree.site_named(found.tip_link))
     return error("{}: the tip link \"{}\" does not exist: expected the name of a body or of a site", name,

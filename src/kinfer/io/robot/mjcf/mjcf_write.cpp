@@ -3,6 +3,7 @@
 #include <tinyxml2.h>
 
 #include <cmath>
+#include <set>
 
 #include "kinfer/io/robot/mjcf/mjcf.hpp"
 #include "kinfer/io/robot/model/joint_transforms.hpp"
@@ -21,7 +22,10 @@ struct EqualityConstraint {
 
 class MjcfWriter {
  public:
-  explicit MjcfWriter(const Chain& chain) : chain_(chain) {}
+  explicit MjcfWriter(const Chain& chain) : chain_(chain) {
+    for (const Joint& joint : chain.joints) joint_names_.insert(joint.name);
+    for (const Joint& joint : chain.joints) site_of_.push_back(unique_name(joint.name, site_names_));
+  }
 
   std::string write() {
     open("mujoco", {{"model", chain_.name.empty() ? "robot" : chain_.name}});
@@ -75,7 +79,7 @@ class MjcfWriter {
                       {"mass", format_number(mass.mass)},
                       {"contype", "0"},
                       {"conaffinity", "0"}});
-    leaf("site", {{"name", joint.name},
+    leaf("site", {{"name", site_of_[index]},
                   {"pos", xml_list(transforms.after.position)},
                   {"quat", xml_list(Quat(transforms.after.rotation))}});
     if (index == chain_.tip_joint()) write_sites(transforms.after);
@@ -87,7 +91,7 @@ class MjcfWriter {
     const Joint& joint = chain_.joints[index];
     if (joint.is_active) add_joint(joint.name, joint, axis, true);
     for (const MimicTerm& term : mimic_terms(chain_, index)) {
-      const std::string name = joint.name + "_follows_" + term.joint;
+      const std::string name = unique_name(joint.name + "_follows_" + term.joint, joint_names_);
       add_joint(name, joint, axis, false);
       constraints_.push_back({name, term.joint, term.multiplier});
     }
@@ -107,7 +111,7 @@ class MjcfWriter {
     const Pose tool = flange * chain_.tool.pose();
     leaf("site", {{"name", tool_site}, {"pos", xml_list(tool.position)}, {"quat", xml_list(Quat(tool.rotation))}});
     for (const Target& target : chain_.targets)
-      leaf("site", {{"name", target.name}, {"pos", xml_list(tool * target.xyz)}});
+      leaf("site", {{"name", unique_name(target.name, site_names_)}, {"pos", xml_list(tool * target.xyz)}});
   }
 
   std::string body_name(int joint) const { return joint < 0 ? "base" : "link_" + chain_.joints[joint].name; }
@@ -135,6 +139,8 @@ class MjcfWriter {
   const Chain& chain_;
   tinyxml2::XMLPrinter printer_;
   std::vector<EqualityConstraint> constraints_;
+  std::vector<std::string> site_of_;  ///< of each joint: the name of its site
+  std::set<std::string> site_names_{tool_site}, joint_names_;
 };
 
 }  // namespace
