@@ -40,6 +40,15 @@ TEST_F(PlanPoses, SomeOfThePosesOfAFileAreChosenAndOthersLeftOut) {
   EXPECT_LT(json::parse(added.out)["expected"]["rms"], json::parse(added.out)["existing"]["rms"]);
 }
 
+TEST_F(PlanPoses, PosesAreNotWrittenOverByTheirFigure) {
+  for (const std::string name : {"plan.svg", "plan.json"}) {
+    const Outcome run = kinfer("plan --robot " + robot() + " --poses 8 -o " + name);
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.err.find("the figure and its numbers end in .svg and .json"), std::string::npos) << run.err;
+    EXPECT_FALSE(fs::exists(in(name)));
+  }
+}
+
 TEST_F(PlanPoses, BadInputGivesOneSentence) {
   const Outcome place = kinfer("plan --robot " + robot() + " -o plan.csv --instrument-at 1,2");
   EXPECT_EQ(place.code, 2);

@@ -104,6 +104,25 @@ TEST_F(Trust, WhatIsReadIsNotWrittenOver) {
   EXPECT_EQ(slurp(in("joints.csv")), before);
   EXPECT_THAT(kinfer("reach " + chain + " --targets targets.csv -o targets.csv").err, HasSubstr("is read, too"));
   EXPECT_THAT(kinfer("path " + chain + " --targets targets.csv -o targets.csv").err, HasSubstr("is read, too"));
+  write(in("columns.toml"), "");
+  for (const std::string arguments : {"predict", "plan"})
+    EXPECT_THAT(kinfer(arguments + (arguments == "plan" ? " --robot " : " --joints joints.csv --chain ") + chain +
+                       " --columns columns.toml -o columns.toml")
+                    .err,
+                HasSubstr("is read, too"));
+  ASSERT_EQ(kinfer("convert " + chain + " robot.toml").code, 0);
+  const std::string robot = slurp(in("robot.toml"));
+  EXPECT_THAT(kinfer("convert robot.toml robot.toml").err, HasSubstr("is read, too"));
+  EXPECT_THAT(kinfer("plan --robot robot.toml --poses 8 -o robot.toml").err, HasSubstr("is read, too"));
+  EXPECT_THAT(kinfer("plan --robot robot.toml --poses 8 --data joints.csv -o joints.csv").err,
+              HasSubstr("is read, too"));
+  EXPECT_THAT(kinfer("plan --robot robot.toml --poses 8 --candidates joints.csv -o joints.csv").err,
+              HasSubstr("is read, too"));
+  EXPECT_EQ(slurp(in("robot.toml")), robot);
+  write(in("imu.csv"), before);
+  EXPECT_THAT(kinfer("orient imu.csv -o imu.csv").err, HasSubstr("is read, too"));
+  EXPECT_EQ(slurp(in("imu.csv")), before);
+  EXPECT_EQ(slurp(in("joints.csv")), before);
   EXPECT_EQ(kinfer("predict --chain " + chain + " --joints joints.csv -o again.csv").code, 0);
   EXPECT_EQ(kinfer("predict --chain " + chain + " --joints joints.csv -o again.csv").code, 0) << "results are renewed";
 }

@@ -44,6 +44,7 @@ int convert_trajectory(const ConvertArguments& options) {
 }
 
 int run(const ConvertArguments& options) {
+  if (auto other = expect_other_file(options.out, {options.in.path, options.robot}); !other) return fail(other.error());
   const bool is_mcap = std::filesystem::path(options.out).extension() == ".mcap";
   if (!options.robot.empty() && !is_mcap)
     return fail({"--robot: no effect but on a joint trajectory that is written as .mcap"});

@@ -59,6 +59,9 @@ void print_summary(const OrientArguments& options, const InsRecording& recording
 }
 
 int run(const OrientArguments& options) {
+  std::vector<std::string> inputs = options.logs;
+  inputs.push_back(options.columns);
+  if (auto other = expect_other_file(options.out, inputs); !other) return fail(other.error());
   const auto filter = filter_named(options.filter);
   if (!filter) return fail({fmt::format("--filter {}: no such filter, known are {}", options.filter, filter_names())});
   const FilterOptions how = options.magnetometer == "off" ? without_magnetometer(*filter) : *filter;

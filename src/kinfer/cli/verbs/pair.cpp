@@ -18,8 +18,8 @@ struct PairArguments {
 };
 
 int run(const PairArguments& options) {
-  if (auto other =
-          expect_other_file(options.out, {options.pairing.joints, options.pairing.measured, options.robot.path});
+  if (auto other = expect_other_file(options.out, {options.pairing.joints, options.pairing.measured, options.robot.path,
+                                                   options.joint_columns, options.pairing.measured_columns});
       !other)
     return fail(other.error());
   const auto robot = read_robot(options.robot);

@@ -124,7 +124,7 @@ Result<void> check_options(const CLI::App& verb, const PathArguments& options) {
 
 int run(const CLI::App& verb, const PathArguments& options) {
   if (const auto checked = check_options(verb, options); !checked) return fail(checked.error());
-  if (auto other = expect_other_file(options.out, {options.targets, options.chain.path}); !other)
+  if (auto other = expect_other_file(options.out, {options.targets, options.chain.path, options.columns}); !other)
     return fail(other.error());
   const auto robot = read_robot(options.chain);
   if (!robot) return fail(robot.error());

@@ -144,8 +144,30 @@ Result<void> check_arguments(const PlanArguments& options, const CLI::App& verb)
   return {};
 }
 
+/// The figure and its numbers stand beside the poses and have their name.
+struct PlanFiles {
+  std::filesystem::path poses, figure, numbers;
+};
+
+Result<PlanFiles> output_files(const PlanArguments& options) {
+  const std::filesystem::path poses = options.out;
+  PlanFiles files{poses, poses, poses};
+  files.figure.replace_extension(".svg"), files.numbers.replace_extension(".json");
+  if (poses == files.figure || poses == files.numbers)
+    return error("{}: the figure and its numbers end in .svg and .json; give the poses another extension, as .csv",
+                 options.out);
+  for (const std::filesystem::path& file : {files.poses, files.figure, files.numbers})
+    if (auto other =
+            expect_other_file(file.string(), {options.robot.path, options.data, options.candidates, options.columns});
+        !other)
+      return forward_error(other.error());
+  return files;
+}
+
 int run(const PlanArguments& options, const CLI::App& verb) {
   if (auto effective = check_arguments(options, verb); !effective) return fail(effective.error());
+  const auto files = output_files(options);
+  if (!files) return fail(files.error());
   const auto robot = read_robot(options.robot);
   if (!robot) return fail(robot.error());
   const auto task = read_task(options, *robot);
@@ -159,16 +181,14 @@ int run(const PlanArguments& options, const CLI::App& verb) {
   PoseSet poses;
   poses.joint_names = active_joint_names(robot->chain);
   poses.joints = plan->joints;
-  if (auto done = write_text_file(options.out, format_pose_set_csv(poses, robot->chain, FileUnits::mm_deg)); !done)
+  if (auto done = write_text_file(files->poses, format_pose_set_csv(poses, robot->chain, FileUnits::mm_deg)); !done)
     return fail(done.error());
-  auto figure = std::filesystem::path(options.out).replace_extension(".svg");
-  if (auto done = write_text_file(figure, report::plan_figure(*plan)); !done) return fail(done.error());
-  const auto figures = std::filesystem::path(options.out).replace_extension(".json");
-  if (auto done = write_text_file(figures, headline_json(*plan)); !done) return fail(done.error());
+  if (auto done = write_text_file(files->figure, report::plan_figure(*plan)); !done) return fail(done.error());
+  if (auto done = write_text_file(files->numbers, headline_json(*plan)); !done) return fail(done.error());
   if (options.common.json)
     print_data(headline_json(*plan));
   else if (!options.common.quiet)
-    print_text("{}\nFigure: {}\n", summary(*plan, options), figure.string());
+    print_text("{}\nFigure: {}\n", summary(*plan, options), files->figure.string());
   return exit_done;
 }
 

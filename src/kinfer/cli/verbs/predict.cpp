@@ -42,7 +42,7 @@ void print_notices(const RobotModel& robot, const PoseSet& set, const std::strin
 }
 
 int run(const PredictArguments& options) {
-  if (auto other = expect_other_file(options.out, {options.joints, options.chain.path}); !other)
+  if (auto other = expect_other_file(options.out, {options.joints, options.chain.path, options.columns}); !other)
     return fail(other.error());
   const auto robot = read_robot(options.chain);
   if (!robot) return fail(robot.error());

@@ -57,7 +57,7 @@ void print_unreached(const std::vector<ReachSolution>& solutions, const ReachSum
 }
 
 int run(const ReachArguments& options) {
-  if (auto other = expect_other_file(options.out, {options.targets, options.chain.path}); !other)
+  if (auto other = expect_other_file(options.out, {options.targets, options.chain.path, options.columns}); !other)
     return fail(other.error());
   const auto robot = read_robot(options.chain);
   if (!robot) return fail(robot.error());
