@@ -98,5 +98,16 @@ TEST_F(Simulate, AnOwnSensorGradeAndSixAxesAreRecorded) {
   EXPECT_EQ(slurp(in("data/imu.csv")).find("_mx"), std::string::npos);
 }
 
+TEST_F(Simulate, PosesHaveAHeadlineAsJson) {
+  const Outcome run = kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") +
+                             " --poses 7 --sigma 0.02 --measured pose --out poses --json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json headline = json::parse(run.out);
+  EXPECT_EQ(headline["poses"], 7);
+  EXPECT_EQ(headline["joints"], 6);
+  EXPECT_EQ(headline["measured"], "pose");
+  EXPECT_DOUBLE_EQ(headline["sigma"].get<double>(), 2e-5);
+}
+
 }  // namespace
 }  // namespace kinfer::test

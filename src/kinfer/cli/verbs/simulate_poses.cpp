@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // kinfer simulate-poses: a synthetic pose set of a robot with known errors.
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/toml/robot_errors_toml.hpp"
+#include "kinfer/io/text/dump_json.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/simulate/pose_set.hpp"
 
@@ -46,6 +48,17 @@ Result<Chain> make_true_chain(const SimulatePosesArguments& options, const Robot
   return read_robot_errors(options.errors, robot);
 }
 
+std::string headline(const RobotModel& robot, const PoseSet& set, const PoseSimulation& simulation) {
+  const Instrument& instrument = simulation.instrument;
+  return dump_json(nlohmann::ordered_json{{"robot", robot.chain.name},
+                                          {"joints", set.joints.rows()},
+                                          {"poses", set.rows()},
+                                          {"measured", simulation.measured == Measured::poses ? "pose" : "position"},
+                                          {"sigma", instrument.sigma},
+                                          {"sigma_angle", instrument.sigma_angle},
+                                          {"ppm", instrument.ppm}});
+}
+
 int run(const SimulatePosesArguments& options) {
   RunRecord record("simulate-poses", options.common);
   record.add_input(options.robot.path);
@@ -72,7 +85,9 @@ int run(const SimulatePosesArguments& options) {
     if (auto done = write_text_file(*folder / name, text); !done) return fail(done.error());
   if (auto done = record.write(*folder); !done) return fail(done.error());
   if (auto done = folder->commit(); !done) return fail(done.error());
-  if (!options.common.quiet)
+  if (options.common.json)
+    print_data(headline(*robot, *set, simulation) + "\n");
+  else if (!options.common.quiet)
     print_text("{} poses of {} in {}: poses.csv (measured), robot.toml (nominal), truth.toml (what made the data)\n",
                set->rows(), robot->chain.name.empty() ? "the robot" : robot->chain.name, options.out);
   return exit_done;
