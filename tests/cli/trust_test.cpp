@@ -184,6 +184,13 @@ TEST_F(Trust, WhatAKilledRunLeftIsRemovedByTheNext) {
 TEST_F(Trust, AFullDiskIsASentence) {
   EXPECT_EQ(std::system(("'" KINFER_PROGRAM "' man calibrate > /dev/full 2> " + in("err").string()).c_str()) >> 8, 2);
   EXPECT_THAT(slurp(in("err")), HasSubstr("standard output cannot be written"));
+  EXPECT_EQ(
+      std::system(
+          ("cd " + folder_.string() + " && '" KINFER_PROGRAM "' " + poses("full") + " > /dev/full 2> err").c_str()) >>
+          8,
+      2);
+  EXPECT_THAT(slurp(in("err")), HasSubstr("Result files, if any, are complete"));
+  EXPECT_TRUE(fs::exists(in("full/poses.csv"))) << "results are in place before the summary is printed";
   fs::create_directories(in("small"));
   if (::mount("none", in("small").c_str(), "tmpfs", 0, "size=16k") != 0) GTEST_SKIP() << "needs root";
   const Outcome run =

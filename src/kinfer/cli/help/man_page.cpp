@@ -58,7 +58,8 @@ std::string footer_section(const std::string& footer) {
 
 constexpr const char* exit_codes =
     ".SH EXIT STATUS\n.TP\n.B 0\ndone\n.TP\n.B 1\ndone, files written, but the result must not be used, or something "
-    "was not reached\n.TP\n.B 2\nbad input or usage, nothing written\n.TP\n.B 3\ninternal error\n";
+    "was not reached\n.TP\n.B 2\nbad input or usage, nothing written; or standard output cannot be written: result "
+    "files stay\n.TP\n.B 3\ninternal error\n";
 
 }  // namespace
 

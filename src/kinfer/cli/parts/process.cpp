@@ -119,7 +119,7 @@ void limit_time(double seconds) {
 
 bool flush_standard_output() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
-  print_message("kinfer: standard output cannot be written; is the disk full?\n");
+  print_message("kinfer: standard output cannot be written; is the disk full? Result files, if any, are complete\n");
   return false;
 }
 
