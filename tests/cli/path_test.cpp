@@ -39,6 +39,23 @@ TEST_F(Path, AlongToolLines) {
   EXPECT_THAT(run.err, HasSubstr("2 waypoints"));
 }
 
+TEST_F(Path, TargetsThatAreNotReachedAreNamedAsByReach) {
+  std::string slides = "convention = \"dh\"\nunits = { length = \"m\", angle = \"deg\" }\n";
+  for (const int alpha : {90, 90, 0})
+    slides += "[[joint]]\ntype = \"prismatic\"\na = 0\nd = 0\nlimits = [-1, 1]\nalpha = " + std::to_string(alpha) +
+              "\ntheta = " + std::to_string(alpha) + "\n";
+  write(in("slides.toml"), slides);
+  write(in("targets.csv"), "x,y,z\n0,0,0\n0,3,0\n0.5,5,0.5\n3,3,3\n");
+  const Outcome run = kinfer("path slides.toml --targets targets.csv -o path.csv");
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, HasSubstr("s, 1 of 4 waypoints"));
+  EXPECT_THAT(run.err, HasSubstr("target 2: only with J3 beyond its limits; 2000.0000 mm and 0.0000 deg are left"));
+  EXPECT_THAT(run.err, HasSubstr("target 4: only with J1, J2, J3 beyond their limits; 3464.1016 mm"));
+  EXPECT_THAT(run.err, HasSubstr("1 of 4 targets are reached"));
+  write(in("targets.csv"), "x,y,z\n30,0,0\n31,0,0\n");
+  EXPECT_THAT(path("--targets targets.csv -o path.csv").err, HasSubstr("s, 0 of 2 waypoints"));
+}
+
 TEST_F(Path, BadInputIsOneSentence) {
   EXPECT_THAT(path("--from 0,0,0,0,0,0").err, HasSubstr("expected either --from and --to, or --targets"));
   EXPECT_THAT(path("--from 0,0 --to 1,1").err, HasSubstr("--from: the robot has 6 joints, found 2 numbers"));

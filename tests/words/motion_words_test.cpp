@@ -50,22 +50,33 @@ TEST(ReachWords, SeveralJointsBeyondTheirLimitsAreInThePlural) {
 }
 
 TEST(PathWords, CornersAreCutInTheUnitOfTheJoints) {
-  TimedPath path;
+  PathResult result;
+  TimedPath& path = result.path;
   path.duration = 4.312, path.passing_times = {0, 1, 2, 3, 4};
-  EXPECT_EQ(words::summary(path, {true, true}), "4.312 s, 5 waypoints");
+  EXPECT_EQ(words::summary(result, {true, true}), "4.312 s, 5 waypoints");
   path.cuts = {0.5, 2.0};
-  EXPECT_THAT(words::summary(path, {true, true}), HasSubstr("by up to 2.00 deg of a joint"));
+  EXPECT_THAT(words::summary(result, {true, true}), HasSubstr("by up to 2.00 deg of a joint"));
   path.cuts = {1.0, 12.3};
-  EXPECT_THAT(words::summary(path, {false, false}), HasSubstr("by up to 12.3 mm of a joint"));
-  EXPECT_THAT(words::summary(path, {false, true}), HasSubstr("by up to 12.30 deg or mm of a joint"));
+  EXPECT_THAT(words::summary(result, {false, false}), HasSubstr("by up to 12.3 mm of a joint"));
+  EXPECT_THAT(words::summary(result, {false, true}), HasSubstr("by up to 12.30 deg or mm of a joint"));
 }
 
 TEST(PathWords, JointsThatSlowThePathDownAreNamedOnlyWhereTheyDo) {
-  TimedPath path;
+  PathResult result;
+  TimedPath& path = result.path;
   path.duration = 2.0;
-  EXPECT_THAT(words::summary(path, {true}), Not(HasSubstr("at their limits")));
+  EXPECT_THAT(words::summary(result, {true}), Not(HasSubstr("at their limits")));
   path.slowed_by = 1.5;
-  EXPECT_THAT(words::summary(path, {true}), HasSubstr("1.50 times as long as the tool alone needs"));
+  EXPECT_THAT(words::summary(result, {true}), HasSubstr("1.50 times as long as the tool alone needs"));
+}
+
+TEST(PathWords, WaypointsAreThoseThatAreMet) {
+  PathResult result;
+  result.path.duration = 2.0, result.path.passing_times = {0, 1};
+  result.targets.resize(4);  // out of reach, all of them
+  EXPECT_EQ(words::summary(result, {true}), "2.000 s, 0 of 4 waypoints");
+  result.targets[0].status = result.targets[3].status = ReachStatus::reached;
+  EXPECT_EQ(words::summary(result, {true}), "2.000 s, 1 of 4 waypoints") << "the path ends before the last";
 }
 
 TEST(PathWords, ObstaclesCountLinesFromOne) {
@@ -139,7 +150,7 @@ TEST(ModelPatchWords, AnMjcfHasFramesOfJointsAndOffsetsInAFileOfTheirOwn) {
 TEST(MotionWords, InTheLanguageOfNamesTheyAreNames) {
   words::set_language(words::Language::names);
   EXPECT_EQ(words::summary(ReachSummary{.targets = 3}), "reach");
-  EXPECT_EQ(words::summary(TimedPath{}, {true}), "path");
+  EXPECT_EQ(words::summary(PathResult{}, {true}), "path");
   EXPECT_EQ(words::sentence(PathObstacle{.kind = PathObstacle::Kind::near_singular}, {}), "near_singular");
   EXPECT_EQ(words::headline(patch_with(2)), "model_patch");
   words::set_language(words::Language::english);

@@ -264,7 +264,10 @@ Result<PathResult> tool_space_path(const Chain& chain, const std::vector<ReachTa
     if (path.slowed_by * time <= path.duration) path.passing_times.push_back(path.slowed_by * time);
   path.cuts.assign(path.passing_times.size(), 0.0);
   result.obstacle = lines.obstacle();
-  if (result.obstacle) result.obstacle->time *= path.slowed_by;
+  if (result.obstacle) {
+    result.obstacle->time *= path.slowed_by;
+    result.targets = reach(chain, targets, preferred, options.reach, options.threads);
+  }
   return result;
 }
 

@@ -19,6 +19,7 @@ struct ToolPathOptions {
   MotionLimits translation{0.25, 1.0, 5.0};  ///< of the tool point [m/s], [m/s²], [m/s³]
   MotionLimits rotation{1.0, 4.0, 20.0};     ///< of its orientation [rad/s], …
   ReachOptions reach{};
+  int threads = 1;  ///< for the targets one by one, after an obstacle
 };
 
 /// Through targets on straight lines of the tool point, orientations turning about one axis a line; at rest at each

@@ -7,6 +7,7 @@
 #include "kinfer/cli/options/posture_argument.hpp"
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
+#include "kinfer/cli/parts/unreached_targets.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/motion/path_csv.hpp"
 #include "kinfer/io/motion/reach_targets_csv.hpp"
@@ -84,7 +85,7 @@ Result<PathResult> along_tool_lines(const PathArguments& options, const Chain& c
   const double scale = 1e-3 * options.tool_speed / how.translation.velocity;
   for (motion::MotionLimits* of : {&how.translation, &how.rotation})
     of->velocity *= scale, of->acceleration *= scale, of->jerk *= scale;
-  how.reach.seed = options.common.seed;
+  how.reach.seed = options.common.seed, how.threads = options.common.threads;
   return with_remedy(motion::tool_space_path(chain, read.targets, preferred, limits, how, 1e-3 * options.step),
                      "--step, --tool-speed, --velocity, --acceleration or --jerk");
 }
@@ -147,8 +148,10 @@ int run(const CLI::App& verb, const PathArguments& options) {
                    .dump() +
                "\n");
   if (!options.common.quiet) {
-    print_message("{}\n", words::summary(result->path, rotational));
-    if (result->obstacle) print_message("{}\n", words::sentence(*result->obstacle, active_joint_names(chain)));
+    const std::vector<std::string> names = active_joint_names(chain);
+    print_message("{}\n", words::summary(*result, rotational));
+    if (result->obstacle) print_message("{}\n", words::sentence(*result->obstacle, names));
+    if (!result->targets.empty()) print_unreached_targets(result->targets, names);
   }
   return result->obstacle ? exit_do_not_use : exit_done;
 }

@@ -2,7 +2,6 @@
 // kinfer reach: joint positions at which the tool of any chain meets given targets.
 #include "kinfer/motion/reach.hpp"
 
-#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -10,10 +9,10 @@
 #include "kinfer/cli/options/posture_argument.hpp"
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
+#include "kinfer/cli/parts/unreached_targets.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/motion/reach_targets_csv.hpp"
 #include "kinfer/io/text/text_file.hpp"
-#include "kinfer/words/motion/reach.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -43,17 +42,6 @@ Result<MatrixXd> preferred_postures(const ReachArguments& options, const Chain& 
     return MatrixXd(posture);
   }
   return read.preferred.size() > 0 ? read.preferred : MatrixXd(motion::middle_posture(chain));
-}
-
-void print_unreached(const std::vector<ReachSolution>& solutions, const ReachSummary& summary,
-                     const std::vector<std::string>& joint_names) {
-  constexpr std::size_t most = 12;  // targets listed individually
-  for (std::size_t i = 0; i < std::min(most, summary.unreached.size()); ++i) {
-    const int target = summary.unreached[i];
-    print_message("{}\n",
-                  words::unreached_target(target + 1, solutions[static_cast<std::size_t>(target)], joint_names));
-  }
-  if (summary.unreached.size() > most) print_message("and {} more\n", summary.unreached.size() - most);
 }
 
 int run(const ReachArguments& options) {
@@ -89,10 +77,7 @@ int run(const ReachArguments& options) {
                                       {"postures", summary.postures}}
                    .dump() +
                "\n");
-  if (!options.common.quiet) {
-    print_unreached(solutions, summary, names);
-    print_message("{}\n", words::summary(summary));
-  }
+  if (!options.common.quiet) print_unreached_targets(solutions, names);
   return summary.unreached.empty() ? exit_done : exit_do_not_use;
 }
 

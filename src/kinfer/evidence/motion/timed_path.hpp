@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "kinfer/evidence/motion/reach_solution.hpp"
 #include "kinfer/linalg/types.hpp"
 
 namespace kinfer {
@@ -35,6 +36,7 @@ struct PathObstacle {
 struct PathResult {
   TimedPath path{};
   std::optional<PathObstacle> obstacle{};
+  std::vector<ReachSolution> targets{};  ///< of a path along tool lines with an obstacle: each target by itself
 };
 
 }  // namespace kinfer

@@ -16,11 +16,22 @@ std::string amount(double cut, const std::vector<bool>& rotational) {
   return rotating == 0 ? fmt::format("{:.1f} mm", cut) : fmt::format("{:.2f} deg or mm", cut);
 }
 
+/// Without those that no posture reaches: the tool passes beside them.
+std::string waypoints(const PathResult& result) {
+  const std::size_t passed = result.path.passing_times.size();
+  std::size_t met = passed;
+  for (std::size_t k = 0; k < std::min(passed, result.targets.size()); ++k)
+    if (result.targets[k].status != ReachStatus::reached) --met;
+  const std::size_t all = result.targets.empty() ? passed : result.targets.size();
+  return met == all ? fmt::format("{} waypoints", all) : fmt::format("{} of {} waypoints", met, all);
+}
+
 }  // namespace
 
-std::string summary(const TimedPath& path, const std::vector<bool>& rotational) {
+std::string summary(const PathResult& result, const std::vector<bool>& rotational) {
+  const TimedPath& path = result.path;
   const double cut = path.cuts.empty() ? 0.0 : *std::ranges::max_element(path.cuts);
-  std::string text = fmt::format("{:.3f} s, {} waypoints", path.duration, path.passing_times.size());
+  std::string text = fmt::format("{:.3f} s, {}", path.duration, waypoints(result));
   if (cut > 0.0) text += fmt::format(", corners are cut by up to {} of a joint", amount(cut, rotational));
   if (path.slowed_by > 1.0)
     text +=
