@@ -25,6 +25,19 @@ Identification chain_of_two() {
   return result;
 }
 
+TEST(Advice, OfAJointWithAnUnknownAxisSaysSo) {
+  Identification result;
+  result.forecast = {{.joint = "a-b",
+                      .line_sd = std::numeric_limits<double>::infinity(),
+                      .acceleration_factor = std::numeric_limits<double>::infinity(),
+                      .time_factor = std::numeric_limits<double>::infinity(),
+                      .more_excitation_suffices = false}};
+  const auto advice = identification_advice(result);
+  const auto found = std::ranges::find(advice, IdentificationAdviceKind::check_mounts, &IdentificationAdvice::kind);
+  ASSERT_NE(found, advice.end());
+  EXPECT_EQ(words::advice_text(*found).why, "the recording does not determine where its axis is");
+}
+
 TEST(Advice, OfASoundResultIsToUseItAndToMeasureTheToolAtTheEnd) {
   const Identification result = chain_of_two();
   EXPECT_THAT(kinds(result), testing::ElementsAre(use_chain, measure_tool));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "identify/hand_made_tree.hpp"
 #include "identify/measured_segments.hpp"
@@ -68,6 +69,11 @@ TEST(JointVerdicts, EachDoubtConcernsItsJointAlone) {
        [](Judged& j) { j.result.joints[1].point_in_child = Vec3(0.0, 65.0, 0.0); }},
       {JointDoubtKind::not_moved, JointUsability::unknown,
        [](Judged& j) { j.result.joints[1].type = EstimatedJointType::rigid; }},
+      {JointDoubtKind::undetermined, JointUsability::unknown,
+       [](Judged& j) {
+         j.result.forecast[1].line_sd = std::numeric_limits<double>::infinity();
+         j.result.forecast[1].is_sufficient = false;
+       }},
       {JointDoubtKind::unsafe_order, JointUsability::use_with_care,
        [](Judged& j) { j.ordered.tree.pairs[1].distance = -7.8; }},
       {JointDoubtKind::unexplained_motion, JointUsability::use_with_care,

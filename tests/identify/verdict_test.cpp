@@ -35,6 +35,10 @@ TEST(Usability, IsThatOfTheWorstJoint) {
             .doubts = {{JointDoubtKind::not_connected, {{"gain", 0.1}, {"needed", 5.0}}}}};
   EXPECT_EQ(usability({}, {}, {good, inaccurate}), Usability::use_with_care);
   EXPECT_EQ(usability({}, {}, {good, never_moved}), Usability::use);
+  const JointVerdict undetermined{
+      .joint = "e-f", .usability = JointUsability::unknown, .doubts = {{JointDoubtKind::undetermined, {}}}};
+  EXPECT_EQ(usability({}, {}, {good, undetermined}), Usability::use_with_care);
+  EXPECT_EQ(usability({}, {}, {undetermined, undetermined}), Usability::do_not_use);
   EXPECT_EQ(usability({}, {}, {good, inaccurate, wrong}), Usability::do_not_use);
   EXPECT_EQ(usability({}, {}, {never_moved}), Usability::do_not_use) << "nothing was identified";
   EXPECT_EQ(usability({}, {}, {}), Usability::use);

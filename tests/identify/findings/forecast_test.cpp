@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
@@ -48,6 +49,31 @@ TEST(Forecast, TheRecommendedDurationIsBounded) {
   EXPECT_EQ(words::forecast_text({hopeless}, {}),
             "not enough for 5 mm and 3 mrad in a-b (± 100 mm and ± 0 mrad, which a longer recording does not improve "
             "enough)");
+}
+
+TEST(Forecast, AJointOfWhichNothingIsKnownIsNeverEnough) {
+  JointEstimate joint = joint_with(1.0, 1e-4);
+  joint.sd.point_in_child = {1.0, 1.0};  // as of joints whose geometry was not fitted
+  const JointForecast line = forecast({joint}).front();
+  EXPECT_FALSE(is_determined(line));
+  EXPECT_FALSE(line.is_sufficient);
+  EXPECT_EQ(words::forecast_text({line}, {}), "not enough for 5 mm and 3 mrad in a-b (unknown)");
+  EXPECT_EQ(words::accuracy_text({line}), "");
+  EXPECT_FALSE(forecast({joint_with(1e-3, 1.0)}).front().is_sufficient) << "its axis is unknown";
+  joint = joint_with(1e-3, std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(forecast({joint}).front().is_sufficient) << "as of joints that were withdrawn";
+  joint.type = EstimatedJointType::spherical;
+  EXPECT_TRUE(forecast({joint}).front().is_sufficient) << "a spherical joint has no axis";
+}
+
+TEST(Forecast, AChildThatNeverTurnsHasItsPointInTheParent) {
+  JointEstimate joint = joint_with(1.0, 1e-4);
+  joint.sd.point_in_child = {1.0, 1.0};
+  joint.sd.point_in_parent = {1e-3, 1e-3};
+  joint.unobservable_in_child = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  EXPECT_TRUE(forecast({joint}).front().is_sufficient);
+  joint.sd.point_in_parent = {1.0, 1.0};
+  EXPECT_FALSE(forecast({joint}).front().is_sufficient);
 }
 
 TEST(Forecast, TheAzimuthIsReportedSeparately) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -61,15 +62,29 @@ Result<std::vector<JointForecast>> forecast_of(const ForecastArguments& options)
   return identify::forecast(found.joints, target_of(options));
 }
 
+std::string number_text(double value, int decimals) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "unknown";
+}
+
+std::string factor_text(const JointForecast& f, double factor) {
+  return f.is_sufficient || !is_determined(f) ? "-" : fmt::format("{:.1f}", factor);
+}
+
 void print_table(const std::vector<JointForecast>& joints, const ForecastArguments& options) {
   print_text("Expected of {}: {}.\n\n", options.chain.empty() ? "this recording" : "the " + options.drive + " drive",
              words::forecast_text(joints, target_of(options)));
   print_text("{:<16} {:>12} {:>16} {:>8} {:>18} {:>12}\n", "joint", "sd line [mm]", "sd axis [mrad]", "enough",
              "acceleration x", "or time x");
   for (const JointForecast& f : joints)
+<<<<<<< HEAD
     print_text("{:<16} {:>12.2f} {:>16.2f} {:>8} {:>18} {:>12}\n", f.joint, 1e3 * f.line_sd, 1e3 * f.direction_sd,
                f.is_sufficient ? "yes" : "no", f.is_sufficient ? "-" : fmt::format("{:.1f}", f.acceleration_factor),
                f.is_sufficient ? "-" : fmt::format("{:.1f}", f.time_factor));
+=======
+    fmt::print("{:<16} {:>12} {:>16} {:>8} {:>18} {:>12}\n", f.joint, number_text(1e3 * f.line_sd, 2),
+               number_text(1e3 * f.direction_sd, 2), f.is_sufficient ? "yes" : "no",
+               factor_text(f, f.acceleration_factor), factor_text(f, f.time_factor));
+>>>>>>> 61bee2ae (Identify, forecast: a joint of which nothing is known is never enough, and the verdict follows)
 }
 
 void print_json(const std::vector<JointForecast>& joints, const ForecastArguments& options) {

@@ -34,7 +34,7 @@ enum class IdentificationAdviceKind {
   use_chain,         ///< no values
   move_joint,        ///< parent, child
   move_further,      ///< joint, acceleration_factor, time_factor, line_sd [m], direction_sd [rad]
-  check_mounts,      ///< the same values, without the factors
+  check_mounts,      ///< the same values, without the factors; joint alone where its axis is unknown
   record_on_slope,   ///< azimuths, uncertain_azimuths, azimuth_sds [rad], azimuth_unobservable (0 or 1), points_in
   measure_tool,      ///< sensor
 };

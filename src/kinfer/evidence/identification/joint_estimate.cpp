@@ -18,6 +18,17 @@ bool is_point_known(const std::array<double, 2>& point_sd, const std::vector<Vec
   return least < unobservable_sd || !unobservable.empty();  // what is known lies across the unobservable directions
 }
 
+bool is_direction_known(const JointEstimate& joint) {
+  return joint.type == EstimatedJointType::spherical || joint.azimuth_unobservable ||
+         is_axis_known(joint, joint.sd.axis_in_child);
+}
+
+bool is_line_known(const JointEstimate& joint) {
+  return joint.unobservable_in_child.size() < 3
+             ? is_point_known(joint.sd.point_in_child, joint.unobservable_in_child)
+             : is_point_known(joint.sd.point_in_parent, joint.unobservable_in_parent);
+}
+
 std::string joint_name(const JointEstimate& joint) {
   return joint.parent + "-" + joint.child;
 }
@@ -34,6 +45,10 @@ double probability_of_types(const std::vector<JointEstimate>& joints) {
 
 bool is_one_body(const std::vector<JointEstimate>& joints) {
   return std::ranges::all_of(joints, [](const JointEstimate& j) { return j.type == EstimatedJointType::rigid; });
+}
+
+bool is_determined(const JointForecast& forecast) {
+  return std::isfinite(forecast.line_sd) && std::isfinite(forecast.direction_sd);
 }
 
 bool all_sufficient(const std::vector<JointForecast>& joints) {

@@ -57,6 +57,12 @@ struct LoopEstimate {
 bool is_axis_known(const JointEstimate& joint, const std::array<double, 2>& axis_sd);
 bool is_point_known(const std::array<double, 2>& point_sd, const std::vector<Vec3>& unobservable);
 
+/// Whether the recording determines anything of the joint's axis and of its point as the child sees them: what lies
+/// beyond the joint follows from these. A child that never turns sees no point; then the parent must. An azimuth that
+/// is unobservable is listed as such, and a spherical joint has no axis to be known.
+bool is_direction_known(const JointEstimate& joint);
+bool is_line_known(const JointEstimate& joint);
+
 /// "ins1-ins2": parent and child.
 std::string joint_name(const JointEstimate& joint);
 
@@ -80,8 +86,9 @@ struct AccuracyTarget {
 
 /// Whether the recording determines a joint to the wanted accuracy and, if not, how much more excitation is needed.
 struct JointForecast {
-  std::string joint;                         ///< "ins1-ins2"
-  double line_sd = 0.0, direction_sd = 0.0;  ///< [m], [rad] across the axis, of the worse of the two sensors
+  std::string joint;  ///< "ins1-ins2"
+  /// [m], [rad] across the axis, of the worse of the two sensors; infinite where it is unknown in the child.
+  double line_sd = 0.0, direction_sd = 0.0;
   /// The parent, where it rotates about one fixed axis only: the joint's azimuth about that axis is then nearly
   /// unobservable on level ground and is excluded from the figures above. Empty: nothing is excluded.
   std::string azimuth_of{};
@@ -92,6 +99,10 @@ struct JointForecast {
   double acceleration_factor = 1.0, time_factor = 1.0;  ///< factors on those of the recording: either suffices
   bool more_excitation_suffices = true;  ///< a faster or longer recording of the same kind can determine the joint
 };
+
+/// Whether the recording determines anything of the joint's line and of its direction. What is not finite is stored as
+/// null, which is read as NaN.
+bool is_determined(const JointForecast& forecast);
 
 /// Whether every joint is determined to the wanted accuracy.
 bool all_sufficient(const std::vector<JointForecast>& joints);

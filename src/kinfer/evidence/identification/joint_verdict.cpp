@@ -31,6 +31,8 @@ std::string_view name(JointDoubtKind kind) {
       return "beyond_reach";
     case JointDoubtKind::not_moved:
       return "not_moved";
+    case JointDoubtKind::undetermined:
+      return "undetermined";
     case JointDoubtKind::unsafe_order:
       return "unsafe_order";
     case JointDoubtKind::unexplained_motion:

@@ -14,7 +14,7 @@ enum class JointUsability {
   use,            ///< connected, in a safe order, as accurate as wanted
   use_with_care,  ///< connected, but something is doubtful or less accurate than wanted
   do_not_use,     ///< the evidence is against this joint
-  unknown         ///< the recording does not tell: it never moved
+  unknown         ///< the recording does not tell: it never moved, or nothing of its axis is determined
 };
 std::string_view name(JointUsability usability);  ///< "use", "use_with_care", "do_not_use", "unknown"
 
@@ -26,6 +26,7 @@ enum class JointDoubtKind {
   changed,             ///< no values: the two halves of the recording need different joints
   beyond_reach,        ///< sensor, distance, reach [m]
   not_moved,           ///< no values
+  undetermined,        ///< no values: nothing is known of its axis or of its point
   unsafe_order,        ///< first, second: the pair that would replace it; margin, safe_margin
   unexplained_motion,  ///< sensor, ratio: of the residual noise to the instrument's
   uncertain_type,      ///< types, probabilities: of those that are possible, most probable first

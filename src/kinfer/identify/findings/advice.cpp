@@ -29,7 +29,11 @@ void recommend_moving_rigid_joints(const Identification& result, AdviceList& lis
 void recommend_more_excitation(const Identification& result, AdviceList& list) {
   for (const JointForecast& f : result.forecast) {
     if (f.is_sufficient) continue;
-    FactValues values{{"joint", f.joint}, {"line_sd", f.line_sd}, {"direction_sd", f.direction_sd}};
+    FactValues values{{"joint", f.joint}};
+    if (is_determined(f)) {
+      values.set("line_sd", f.line_sd);
+      values.set("direction_sd", f.direction_sd);
+    }
     if (f.more_excitation_suffices) {
       values.set("acceleration_factor", f.acceleration_factor);
       values.set("time_factor", f.time_factor);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kinfer/evidence/identification/unobservable_limit.hpp"
 #include "kinfer/identify/findings/thresholds.hpp"
@@ -34,6 +35,9 @@ JointForecast forecast_joint(const JointEstimate& joint, const AccuracyTarget& t
   } else {
     set_azimuth(f, joint, target);
   }
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  if (!is_line_known(joint)) f.line_sd = unknown;
+  if (!is_direction_known(joint)) f.direction_sd = unknown;
   f.acceleration_factor =
       std::max(factor_95_percent * f.line_sd / target.line, factor_95_percent * f.direction_sd / target.direction);
   f.time_factor = f.acceleration_factor * f.acceleration_factor;

@@ -104,6 +104,7 @@ void doubt_type(const JointEstimate& joint, Doubts& doubts) {
 void doubt_accuracy(const Identification& result, const JointEstimate& joint, Doubts& doubts) {
   const auto forecast = std::ranges::find(result.forecast, joint_name(joint), &JointForecast::joint);
   if (forecast == result.forecast.end() || forecast->is_sufficient) return;
+  if (!is_determined(*forecast)) return doubts.push_back({JointDoubtKind::undetermined, {}});
   doubts.push_back(
       {JointDoubtKind::inaccurate, {{"line_sd", forecast->line_sd}, {"direction_sd", forecast->direction_sd}}});
 }
@@ -118,6 +119,7 @@ JointUsability usability_of(const Doubts& doubts) {
   if (has(JointDoubtKind::not_moved)) return JointUsability::unknown;
   // One doubt alone has happened on sound machines; an uncertain connection that also leaves the order open has not.
   if (has(JointDoubtKind::weakly_connected) && has(JointDoubtKind::unsafe_order)) return JointUsability::do_not_use;
+  if (has(JointDoubtKind::undetermined)) return JointUsability::unknown;
   return doubts.empty() ? JointUsability::use : JointUsability::use_with_care;
 }
 

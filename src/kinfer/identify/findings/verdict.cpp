@@ -27,7 +27,11 @@ Usability usability(const std::vector<Finding>& findings, const std::vector<Join
            std::ranges::find(joint.doubts, JointDoubtKind::weakly_connected, &JointDoubt::kind) != joint.doubts.end();
   });
   if (is_all_doubtful && !verdicts.empty()) return Usability::do_not_use;
-  const bool is_questioned = some(JointUsability::use_with_care) || std::ranges::any_of(findings, questions_result) ||
+  const bool is_undetermined = std::ranges::any_of(verdicts, [](const JointVerdict& joint) {
+    return std::ranges::find(joint.doubts, JointDoubtKind::undetermined, &JointDoubt::kind) != joint.doubts.end();
+  });
+  const bool is_questioned = some(JointUsability::use_with_care) || is_undetermined ||
+                             std::ranges::any_of(findings, questions_result) ||
                              probability_of_types(joints) < wanted_confidence;
   return is_questioned ? Usability::use_with_care : Usability::use;
 }

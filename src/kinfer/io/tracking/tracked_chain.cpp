@@ -55,7 +55,8 @@ Result<TrackedChain> read_tracked_chain(const std::string& chain, const std::str
   KINFER_TRY(robot, read_robot_toml(files.chain));
   if (!std::filesystem::exists(files.tracking))
     return error(
-        "{}: the chain has no tracking data, track.toml: identify the machine again, without --geometry searched",
+        "{}: the chain has no tracking data, track.toml: it is of --geometry searched, or of a recording that was not "
+        "informative enough for the fit; identify the machine again, without that option or from another recording",
         chain);
   KINFER_TRY(model, read_tracking_model(files.tracking));
   if (position_names(model) != active_joint_names(robot.chain))

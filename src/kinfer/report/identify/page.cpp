@@ -42,6 +42,7 @@ std::string first_screen(const IdentificationEvidence& e) {
 std::string axis_accuracy(const std::vector<JointForecast>& forecast) {
   double line = 0.0, direction = 0.0;
   for (const JointForecast& f : forecast) {
+    if (!is_determined(f)) continue;  // its own row says so
     line = std::max(line, f.line_sd);
     direction = std::max(direction, f.direction_sd);
   }

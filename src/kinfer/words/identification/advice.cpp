@@ -17,6 +17,7 @@ Advice move_in_sequence(const FactValues& v) {
 }
 
 std::string joint_accuracy(const FactValues& v) {
+  if (!v.has("line_sd")) return phrase("joint_undetermined", "the recording does not determine where its axis is");
   return phrase("joint_accuracy", "its line is known to {:.1f} mm and its direction to {:.1f} mrad only",
                 1e3 * v.number("line_sd"), 1e3 * v.number("direction_sd"));
 }

@@ -11,6 +11,7 @@ namespace kinfer::words {
 namespace {
 
 std::string insufficient_joint_text(const JointForecast& f) {
+  if (!is_determined(f)) return fmt::format("{} (unknown)", f.joint);
   return f.more_excitation_suffices
              ? fmt::format("{} ({:.1f} times the acceleration, or {:.1f} times the time)", f.joint,
                            f.acceleration_factor, f.time_factor)
@@ -39,7 +40,7 @@ std::string azimuth_text(const std::string& sensor, double sd, bool is_unobserva
 std::string accuracy_text(const std::vector<JointForecast>& joints) {
   double line = 0.0, direction = 0.0;
   for (const JointForecast& f : joints)
-    line = std::max(line, f.line_sd), direction = std::max(direction, f.direction_sd);
+    if (is_determined(f)) line = std::max(line, f.line_sd), direction = std::max(direction, f.direction_sd);
   return line > 0.0 ? fmt::format("± {:.1f} mm and ± {:.2f} mrad", 1e3 * line, 1e3 * direction) : "";
 }
 

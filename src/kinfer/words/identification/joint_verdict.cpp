@@ -51,6 +51,8 @@ std::string doubt_sentence(const JointDoubt& doubt) {
                     v.number("distance"), v.text("sensor"), v.number("reach"));
     case JointDoubtKind::not_moved:
       return phrase("joint_not_moved", "it never moved");
+    case JointDoubtKind::undetermined:
+      return phrase("joint_undetermined", "the recording does not determine where its axis is");
     case JointDoubtKind::unsafe_order:
       return phrase("joint_unsafe_order", "{} and {} may be joined instead (margin {:.2f}, safe is {:.0f})",
                     v.text("first"), v.text("second"), v.number("margin"), v.number("safe_margin"));
