@@ -2,15 +2,41 @@
 #include "kinfer/simulate/machine_from_chain.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 namespace kinfer {
 namespace {
 
+/// "A-B" of a joint position "A-B 2": a universal joint has two, a spherical one three.
+std::string_view joint_of_position(std::string_view position) {
+  const bool is_numbered =
+      position.size() > 2 && position[position.size() - 2] == ' ' && position.back() >= '1' && position.back() <= '3';
+  return is_numbered ? position.substr(0, position.size() - 2) : position;
+}
+
 /// "A" of a joint "A-B" that leads to the sensor "B"; empty for any other joint.
-std::string parent_sensor_name(const std::string& joint, const std::string& sensor) {
+std::string parent_in_name(std::string_view joint, const std::string& sensor) {
   return joint.size() > sensor.size() + 1 && joint.ends_with("-" + sensor)
-             ? joint.substr(0, joint.size() - sensor.size() - 1)
+             ? std::string(joint.substr(0, joint.size() - sensor.size() - 1))
              : "";
+}
+
+/// The same of a joint or of its last position.
+std::string parent_sensor_name(const std::string& last, const std::string& sensor) {
+  const std::string parent = parent_in_name(last, sensor);  // first: a sensor's own name may end with a number
+  return parent.empty() ? parent_in_name(joint_of_position(last), sensor) : parent;
+}
+
+/// A joint that moves and that no sensor shows would be left out without a word.
+Result<void> check_every_joint_leads_to_a_sensor(const Machine& machine) {
+  const auto leads_to = [&](const Joint& joint, const MountedSensor& sensor) {
+    return !parent_sensor_name(joint.name, sensor.name).empty();
+  };
+  for (const Joint& joint : machine.chain.joints)
+    if (has_position(joint.type) &&
+        std::ranges::none_of(machine.sensors, [&](const MountedSensor& sensor) { return leads_to(joint, sensor); }))
+      return error("joint {}: it leads to no sensor; expected a chain written by identify", joint.name);
+  return {};
 }
 
 }  // namespace
@@ -41,6 +67,7 @@ Result<Machine> make_machine(const Chain& chain) {
                                .segment_T_sensor = {}});
   }
   if (machine.sensors.size() < 2) return error("the chain contains no sensors; expected a chain written by identify");
+  if (auto checked = check_every_joint_leads_to_a_sensor(machine); !checked) return forward_error(checked.error());
   return machine;
 }
 

@@ -7,8 +7,9 @@
 
 namespace kinfer {
 
-/// `chain` as `identify` writes it: a moving joint "A-B" is followed by the fixed frame of sensor "B". The sensor that
-/// no joint leads to is the root. An error for any other chain.
+/// `chain` as `identify` writes it: a moving joint "A-B", or the last of its positions "A-B 1", "A-B 2", … (universal
+/// and spherical joints), is followed by the fixed frame of sensor "B". The sensor that no joint leads to is the root.
+/// An error for any other chain.
 Result<Machine> make_machine(const Chain& chain);
 
 }  // namespace kinfer
