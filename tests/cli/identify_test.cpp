@@ -96,6 +96,9 @@ TEST_F(Identify, AnUpdateSaysWhatChangedAndKeepsStructureAndNames) {
   const auto again = kinfer("identify --update one later/imu.csv --out none");
   EXPECT_EQ(again.code, 2);
   EXPECT_THAT(again.err, HasSubstr("was identified from this recording, which would count twice"));
+  const auto first = kinfer("identify --update one drive/imu.csv --out none");
+  EXPECT_EQ(first.code, 2) << "the recording before the last";
+  EXPECT_THAT(first.err, HasSubstr("was identified from this recording, which would count twice"));
   const auto tree = kinfer("identify --update machine later/imu.csv --out none --tree ins0-ins1");
   EXPECT_EQ(tree.code, 2);
   EXPECT_THAT(tree.err, HasSubstr("--tree has no effect with --update"));

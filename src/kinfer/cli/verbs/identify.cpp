@@ -21,6 +21,7 @@
 #include "kinfer/io/evidence/evidence_file.hpp"
 #include "kinfer/io/evidence/files/identification_files.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
+#include "kinfer/io/evidence/make_records.hpp"
 #include "kinfer/io/recording/machine_facts_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/tracking/tracked_chain.hpp"
@@ -180,30 +181,38 @@ Result<identify::IdentifyOptions> identify_options(const CLI::App& verb, const I
   return how;
 }
 
-/// The same recording once more would count twice. Where evidence.json no longer lies beside the chain, nothing is
-/// known.
-Result<void> expect_new_recordings(const IdentifyArguments& options) {
+/// All that went into the chain that --update continues. Where evidence.json no longer lies beside the chain, nothing
+/// is known.
+std::vector<InputFile> earlier_inputs(const IdentifyArguments& options) {
+  if (options.update.empty()) return {};
   const auto text = read_text_file((ChainFiles(options.update).chain.parent_path() / "evidence.json").string());
   if (!text) return {};
   const auto evidence = read_evidence(*text);
   const auto* known = evidence ? std::get_if<IdentificationEvidence>(&*evidence) : nullptr;
-  if (!known) return {};
+  return known ? all_inputs(known->provenance) : std::vector<InputFile>{};
+}
+
+/// A recording that is in the chain already would count twice.
+Result<void> expect_new_recordings(const IdentifyArguments& options, const std::vector<InputFile>& earlier) {
   for (const InputFile& log : fingerprints(options.logs))
-    for (const InputFile& input : known->provenance.inputs)
-      if (log.sha256 == input.sha256)
-        return error("{}: {} was identified from this recording, which would count twice; --update needs a new one",
-                     log.name, options.update);
+    if (std::ranges::find(earlier, log.sha256, &InputFile::sha256) != earlier.end())
+      return error("{}: {} was identified from this recording, which would count twice; --update needs a new one",
+                   log.name, options.update);
   return {};
 }
 
-Provenance provenance_of(const IdentifyArguments& options, const identify::IdentifyOptions& how) {
+Provenance provenance_of(const IdentifyArguments& options, const identify::IdentifyOptions& how,
+                         std::vector<InputFile> earlier) {
   std::vector<std::string> inputs = options.logs;
   if (!options.facts.empty()) inputs.push_back(options.facts);
   if (!options.columns.empty()) inputs.push_back(options.columns);
   if (!options.update.empty()) std::ranges::copy(ChainFiles(options.update).names(), std::back_inserter(inputs));
   auto described = identify::describe(how);
   if (!options.update.empty()) described.emplace_back("--update", options.update);
-  return {.inputs = fingerprints(inputs), .options = std::move(described), .seed = options.common.seed};
+  return {.inputs = fingerprints(inputs),
+          .options = std::move(described),
+          .seed = options.common.seed,
+          .earlier_inputs = std::move(earlier)};
 }
 
 Result<void> write_results(OutputFolder& folder, const Provenance& provenance, const Identification& found) {
@@ -230,8 +239,8 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   if (!how) return fail(how.error());
   const auto recording = read_ins_logs({options.logs, options.columns, options.topics}, options.common);
   if (!recording) return fail(recording.error());
-  if (!options.update.empty())
-    if (auto fresh = expect_new_recordings(options); !fresh) return fail(fresh.error());
+  const std::vector<InputFile> earlier = earlier_inputs(options);
+  if (auto fresh = expect_new_recordings(options, earlier); !fresh) return fail(fresh.error());
   if (auto possible = check_cost(cost_of(*recording)); !possible) return fail(possible.error());
   auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());
@@ -240,7 +249,8 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
     return identify::identify_machine(*recording, *how, Rng(options.common.seed), progress.observer());
   }();
   if (!found) return fail(found.error());
-  if (auto done = write_results(*folder, provenance_of(options, *how), *found); !done) return fail(done.error());
+  if (auto done = write_results(*folder, provenance_of(options, *how, earlier), *found); !done)
+    return fail(done.error());
   if (auto done = record.write(*folder); !done) return fail(done.error());
   if (auto done = write_task_summary(*found); !done) return fail(done.error());
   if (auto done = folder->commit(); !done) return fail(done.error());

@@ -18,6 +18,7 @@ struct Provenance {
   std::vector<InputFile> inputs;
   std::vector<std::pair<std::string, std::string>> options;  ///< as given, --name and value
   std::uint64_t seed = 1;
+  std::vector<InputFile> earlier_inputs{};  ///< of all identifications that this one updates, oldest first
 };
 
 }  // namespace kinfer

@@ -31,6 +31,7 @@ struct ProvenanceRecord {
   std::uint64_t seed = 1;
   std::vector<std::pair<std::string, std::string>> options{};  ///< in the order of the file
   std::vector<InputFile> inputs{};
+  std::vector<InputFile> earlier_inputs{};  ///< as of Provenance
 };
 
 }  // namespace kinfer

@@ -60,6 +60,7 @@ void fields(Archive& a, Value<Archive, ProvenanceRecord>& p) {
   a("seed", p.seed);
   a.map("options", p.options);
   a("inputs", p.inputs);
+  a.when(!p.earlier_inputs.empty(), "earlier_inputs", p.earlier_inputs);
 }
 
 template <class Archive>
