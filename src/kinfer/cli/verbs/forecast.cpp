@@ -76,15 +76,9 @@ void print_table(const std::vector<JointForecast>& joints, const ForecastArgumen
   print_text("{:<16} {:>12} {:>16} {:>8} {:>18} {:>12}\n", "joint", "sd line [mm]", "sd axis [mrad]", "enough",
              "acceleration x", "or time x");
   for (const JointForecast& f : joints)
-<<<<<<< HEAD
-    print_text("{:<16} {:>12.2f} {:>16.2f} {:>8} {:>18} {:>12}\n", f.joint, 1e3 * f.line_sd, 1e3 * f.direction_sd,
-               f.is_sufficient ? "yes" : "no", f.is_sufficient ? "-" : fmt::format("{:.1f}", f.acceleration_factor),
-               f.is_sufficient ? "-" : fmt::format("{:.1f}", f.time_factor));
-=======
-    fmt::print("{:<16} {:>12} {:>16} {:>8} {:>18} {:>12}\n", f.joint, number_text(1e3 * f.line_sd, 2),
+    print_text("{:<16} {:>12} {:>16} {:>8} {:>18} {:>12}\n", f.joint, number_text(1e3 * f.line_sd, 2),
                number_text(1e3 * f.direction_sd, 2), f.is_sufficient ? "yes" : "no",
                factor_text(f, f.acceleration_factor), factor_text(f, f.time_factor));
->>>>>>> 61bee2ae (Identify, forecast: a joint of which nothing is known is never enough, and the verdict follows)
 }
 
 void print_json(const std::vector<JointForecast>& joints, const ForecastArguments& options) {
