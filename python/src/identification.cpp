@@ -5,6 +5,7 @@
 #include "background.hpp"
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/inertial/sensor_orientations.hpp"
+#include "kinfer/io/evidence/chain_recordings.hpp"
 #include "kinfer/io/evidence/files/identification_files.hpp"
 #include "kinfer/io/evidence/fingerprints.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
@@ -88,6 +89,7 @@ IdentificationResult identify_in_python(const py::object& data, const std::optio
                                         const py::object& progress) {
   const Recording recording = recording_of(data);
   std::vector<std::string> inputs = recording.paths;
+  std::vector<InputFile> earlier;
   identify::IdentifyOptions options;
   options.root = root;
   options.sensors = sensors;
@@ -96,6 +98,8 @@ IdentificationResult identify_in_python(const py::object& data, const std::optio
   if (!update.is_none()) {
     TrackedMachine known = tracked_machine(update);
     options.refine.known = std::move(known.model);
+    earlier = std::move(known.recordings);
+    value_of(expect_new_recordings(recording.paths, earlier, path_of(update).value_or("the machine")));
     inputs.insert(inputs.end(), known.paths.begin(), known.paths.end());
   }
   // The filter of the program's default.
@@ -108,7 +112,10 @@ IdentificationResult identify_in_python(const py::object& data, const std::optio
     result = identify::identify_machine(recording.recording, options, Rng(seed), observer);
   });
   return {value_of(std::move(*result)),
-          {.inputs = fingerprints(inputs), .options = std::move(described), .seed = seed}};
+          {.inputs = fingerprints(inputs),
+           .options = std::move(described),
+           .seed = seed,
+           .earlier_inputs = std::move(earlier)}};
 }
 
 std::string identification_text(const IdentificationResult& result) {

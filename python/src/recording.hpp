@@ -21,10 +21,12 @@ struct IdentificationResult {
   Provenance provenance;
 };
 
-/// What tracking and updates need of a machine, and the files that it came from.
+/// What tracking and updates need of a machine, the files that it came from, and the recordings that it was identified
+/// from.
 struct TrackedMachine {
   TrackingModel model;
   std::vector<std::string> paths{};
+  std::vector<InputFile> recordings{};
 };
 
 /// Of an Identification, or of the folder that it was saved in.

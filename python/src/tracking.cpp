@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "background.hpp"
+#include "kinfer/io/evidence/chain_recordings.hpp"
 #include "kinfer/io/evidence/fingerprints.hpp"
+#include "kinfer/io/evidence/make_records.hpp"
 #include "kinfer/io/evidence/track_json.hpp"
 #include "kinfer/io/recording/log_rows.hpp"
 #include "kinfer/io/tracking/track_rows.hpp"
@@ -318,13 +320,13 @@ void add_live(py::module_& module) {
 
 TrackedMachine tracked_machine(const py::object& machine) {
   if (py::isinstance<IdentificationResult>(machine)) {
-    const auto& identification = machine.cast<const IdentificationResult&>().identification;
+    const auto& [identification, provenance] = machine.cast<const IdentificationResult&>();
     if (!identification.tracking) throw InputError("the identified machine has no tracking data");
-    return {*identification.tracking};
+    return {*identification.tracking, {}, all_inputs(provenance_record(provenance))};
   }
   const auto folder = path_of(machine);
   if (!folder) throw InputError("expected an Identification, or the folder that it was saved in");
-  return {value_of(read_tracked_chain(*folder, "")).model, ChainFiles(*folder).names()};
+  return {value_of(read_tracked_chain(*folder, "")).model, ChainFiles(*folder).names(), recordings_of_chain(*folder)};
 }
 
 void add_tracking(py::module_& module) {

@@ -30,6 +30,9 @@ def test_an_update_is_the_programs_byte_for_byte(drive, program, tmp_path):
     for name in ("evidence.json", "chain.toml", "track.toml"):
         assert (tmp_path / "python" / name).read_bytes() == (tmp_path / "program" / name).read_bytes(), name
     assert machine.evidence["update"]["changes"] == []
+    for used in (drive / "imu.csv", later):
+        with pytest.raises(kinfer.InputError, match="would count twice"):
+            kinfer.identify(used, update=machine)
 
 
 def test_arrays_give_the_chain_of_the_file(drive):

@@ -18,10 +18,9 @@
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/sweep/task_context.hpp"
 #include "kinfer/cli/verb_list.hpp"
-#include "kinfer/io/evidence/evidence_file.hpp"
+#include "kinfer/io/evidence/chain_recordings.hpp"
 #include "kinfer/io/evidence/files/identification_files.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
-#include "kinfer/io/evidence/make_records.hpp"
 #include "kinfer/io/recording/machine_facts_toml.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/tracking/tracked_chain.hpp"
@@ -181,26 +180,6 @@ Result<identify::IdentifyOptions> identify_options(const CLI::App& verb, const I
   return how;
 }
 
-/// All that went into the chain that --update continues. Where evidence.json no longer lies beside the chain, nothing
-/// is known.
-std::vector<InputFile> earlier_inputs(const IdentifyArguments& options) {
-  if (options.update.empty()) return {};
-  const auto text = read_text_file((ChainFiles(options.update).chain.parent_path() / "evidence.json").string());
-  if (!text) return {};
-  const auto evidence = read_evidence(*text);
-  const auto* known = evidence ? std::get_if<IdentificationEvidence>(&*evidence) : nullptr;
-  return known ? all_inputs(known->provenance) : std::vector<InputFile>{};
-}
-
-/// A recording that is in the chain already would count twice.
-Result<void> expect_new_recordings(const IdentifyArguments& options, const std::vector<InputFile>& earlier) {
-  for (const InputFile& log : fingerprints(options.logs))
-    if (std::ranges::find(earlier, log.sha256, &InputFile::sha256) != earlier.end())
-      return error("{}: {} was identified from this recording, which would count twice; --update needs a new one",
-                   log.name, options.update);
-  return {};
-}
-
 Provenance provenance_of(const IdentifyArguments& options, const identify::IdentifyOptions& how,
                          std::vector<InputFile> earlier) {
   std::vector<std::string> inputs = options.logs;
@@ -239,8 +218,8 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   if (!how) return fail(how.error());
   const auto recording = read_ins_logs({options.logs, options.columns, options.topics}, options.common);
   if (!recording) return fail(recording.error());
-  const std::vector<InputFile> earlier = earlier_inputs(options);
-  if (auto fresh = expect_new_recordings(options, earlier); !fresh) return fail(fresh.error());
+  const auto earlier = options.update.empty() ? std::vector<InputFile>{} : recordings_of_chain(options.update);
+  if (auto fresh = expect_new_recordings(options.logs, earlier, options.update); !fresh) return fail(fresh.error());
   if (auto possible = check_cost(cost_of(*recording)); !possible) return fail(possible.error());
   auto folder = OutputFolder::make(options.out);
   if (!folder) return fail(folder.error());

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <set>
 #include <span>
 
@@ -133,21 +132,6 @@ Result<CsvTable> split_csv(std::string_view text, const std::string& name, const
     table.line.push_back(lines.number());
   }
   return table;
-}
-
-std::optional<double> parse_number(std::string_view cell, char decimal) {
-  std::array<char, 64> copy;
-  if (cell.empty() || cell.size() > copy.size()) return std::nullopt;
-  std::size_t size = 0;
-  for (const char c : cell) {
-    if (c == '.' && decimal != '.') return std::nullopt;
-    copy[size++] = c == decimal ? '.' : c;
-  }
-  const char* begin = copy.data() + (copy[0] == '+' && size > 1 && copy[1] != '-' ? 1 : 0);
-  double value = 0.0;
-  const auto [after, failure] = std::from_chars(begin, copy.data() + size, value);
-  if (failure != std::errc() || after != copy.data() + size) return std::nullopt;
-  return value;
 }
 
 std::string describe_invalid_number(std::string_view column, std::string_view cell, char decimal) {

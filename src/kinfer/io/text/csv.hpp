@@ -11,6 +11,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/io/text/csv_cells.hpp"
+#include "kinfer/io/text/csv_text.hpp"
 
 namespace kinfer {
 
@@ -63,9 +64,6 @@ struct CsvTable {
   }
 };
 Result<CsvTable> split_csv(std::string_view text, const std::string& name_in_messages, const CsvFormat& format = {});
-
-/// The whole cell as a number ("nan" and "inf" included); empty where it is not a number.
-std::optional<double> parse_number(std::string_view cell, char decimal = '.');
 
 /// `column q3: expected a number, found "1.234,5"`, with a hint where the decimal mark or thousands separators are the
 /// cause.

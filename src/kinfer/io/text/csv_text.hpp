@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names and other texts as cells of a table that is written.
+// Single cells of a table: names and other texts as they are written and come back, numbers as they are read.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,5 +15,8 @@ std::string csv_cell(std::string_view text);
 
 /// The text of a cell that was read: without the apostrophe of csv_cell.
 std::string_view without_formula_guard(std::string_view cell);
+
+/// The whole cell as a number ("nan" and "inf" included); empty where it is not a number.
+std::optional<double> parse_number(std::string_view cell, char decimal = '.');
 
 }  // namespace kinfer

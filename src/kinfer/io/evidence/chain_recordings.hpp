@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// The recordings that went into an identified chain, as the evidence.json beside it remembers them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kinfer/base/result.hpp"
+#include "kinfer/evidence/facts/provenance.hpp"
+
+namespace kinfer {
+
+/// With those of the chains that it updated. `chain`: as of ChainFiles. Empty where evidence.json no longer lies beside
+/// it: nothing is known then.
+std::vector<InputFile> recordings_of_chain(const std::string& chain);
+
+/// An error where one of the files `logs` is among `earlier`, the recordings of `chain`: it would count twice.
+Result<void> expect_new_recordings(const std::vector<std::string>& logs, const std::vector<InputFile>& earlier,
+                                   const std::string& chain);
+
+}  // namespace kinfer
