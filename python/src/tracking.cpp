@@ -5,7 +5,6 @@
 #include "background.hpp"
 #include "kinfer/io/evidence/chain_recordings.hpp"
 #include "kinfer/io/evidence/fingerprints.hpp"
-#include "kinfer/io/evidence/make_records.hpp"
 #include "kinfer/io/evidence/track_json.hpp"
 #include "kinfer/io/recording/log_rows.hpp"
 #include "kinfer/io/tracking/track_rows.hpp"
@@ -322,7 +321,7 @@ TrackedMachine tracked_machine(const py::object& machine) {
   if (py::isinstance<IdentificationResult>(machine)) {
     const auto& [identification, provenance] = machine.cast<const IdentificationResult&>();
     if (!identification.tracking) throw InputError("the identified machine has no tracking data");
-    return {*identification.tracking, {}, all_inputs(provenance_record(provenance))};
+    return {*identification.tracking, {}, all_inputs(provenance.inputs, provenance.earlier_inputs)};
   }
   const auto folder = path_of(machine);
   if (!folder) throw InputError("expected an Identification, or the folder that it was saved in");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Terminal output: colours and the estimate of the time left.
+// What the program prints: prose and data, colours, and the estimate of the time left.
 #pragma once
 
 #include <fmt/format.h>

@@ -86,7 +86,7 @@ Result<std::vector<FleetRow>> read_runs(const std::vector<std::string>& folders)
   std::vector<FleetRow> rows;
   for (const std::string& folder : folders) {
     const fs::path path(folder);
-    KINFER_TRY(tasks, read_manifest(path / "manifest.csv"));
+    KINFER_TRY(tasks, read_manifest(path / manifest_name));
     KINFER_TRY(packed, packed_results(path));
     const auto results_of = [&](const std::string& key) -> std::optional<TaskResults> {
       if (fs::is_directory(path / key)) return TaskResults{path / key, {}};

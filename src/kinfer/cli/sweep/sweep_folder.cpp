@@ -114,7 +114,8 @@ Result<SweepFolder> SweepFolder::open(const fs::path& path, const std::vector<Sw
   remove_unfinished(path, tasks, shard);
   if (auto written = update_manifest(path, tasks); !written) return forward_error(written.error());
   if (storage == ResultStorage::archive)
-    if (auto ready = folder.pack_results("results" + part + ".tar"); !ready) return forward_error(ready.error());
+    if (auto ready = folder.pack_results(fmt::format("{}{}{}", archive_begin, part, archive_end)); !ready)
+      return forward_error(ready.error());
   KINFER_TRY(packed, packed_results(path));
   folder.packed_ = std::move(packed);
   return folder;

@@ -14,8 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* manifest_name = "manifest.csv";
-
 using TasksByKey = std::unordered_map<std::string, const SweepTask*>;
 
 TasksByKey by_key(const std::vector<SweepTask>& tasks) {

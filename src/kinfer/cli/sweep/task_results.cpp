@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kinfer/cli/sweep/task_record.hpp"
+#include "kinfer/io/fleet/manifest.hpp"
 #include "kinfer/io/fleet/task_pack.hpp"
 #include "kinfer/io/text/text_file.hpp"
 
@@ -23,7 +24,7 @@ int exit_code_of(const TaskResults& results) {
 std::vector<fs::path> archives_in(const fs::path& folder) {
   std::vector<fs::path> archives;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".tar" && entry.path().filename().string().starts_with("results"))
+    if (entry.path().extension() == archive_end && entry.path().filename().string().starts_with(archive_begin))
       archives.push_back(entry.path());
   std::ranges::sort(archives);
   return archives;

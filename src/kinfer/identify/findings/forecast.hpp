@@ -6,9 +6,8 @@
 
 namespace kinfer::identify {
 
-/// From the standard deviations of the observable parameters; rigid joints have none. A joint whose line or
-/// direction is unknown is never sufficient. Errors are taken as proportional
-/// to 1 / acceleration and to 1 / sqrt(time).
+/// From the standard deviations of the observable parameters; rigid joints have none. A joint whose line or direction
+/// is unknown is never sufficient. Errors are taken as proportional to 1 / acceleration and to 1 / sqrt(time).
 std::vector<JointForecast> forecast(const std::vector<JointEstimate>& joints, const AccuracyTarget& target = {});
 
 }  // namespace kinfer::identify

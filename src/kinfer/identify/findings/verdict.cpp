@@ -4,6 +4,13 @@
 #include <algorithm>
 
 namespace kinfer::identify {
+namespace {
+
+bool has_doubt(const JointVerdict& joint, JointDoubtKind kind) {
+  return std::ranges::find(joint.doubts, kind, &JointDoubt::kind) != joint.doubts.end();
+}
+
+}  // namespace
 
 PredictionSummary summarise_prediction(const MotionEvidence& motion) {
   PredictionSummary summary;
@@ -23,13 +30,11 @@ Usability usability(const std::vector<Finding>& findings, const std::vector<Join
   if (std::ranges::any_of(findings, invalidates_result) || some(JointUsability::do_not_use))
     return Usability::do_not_use;
   const bool is_all_doubtful = std::ranges::all_of(verdicts, [](const JointVerdict& joint) {
-    return joint.usability == JointUsability::unknown ||
-           std::ranges::find(joint.doubts, JointDoubtKind::weakly_connected, &JointDoubt::kind) != joint.doubts.end();
+    return joint.usability == JointUsability::unknown || has_doubt(joint, JointDoubtKind::weakly_connected);
   });
   if (is_all_doubtful && !verdicts.empty()) return Usability::do_not_use;
-  const bool is_undetermined = std::ranges::any_of(verdicts, [](const JointVerdict& joint) {
-    return std::ranges::find(joint.doubts, JointDoubtKind::undetermined, &JointDoubt::kind) != joint.doubts.end();
-  });
+  const bool is_undetermined = std::ranges::any_of(
+      verdicts, [](const JointVerdict& joint) { return has_doubt(joint, JointDoubtKind::undetermined); });
   const bool is_questioned = some(JointUsability::use_with_care) || is_undetermined ||
                              std::ranges::any_of(findings, questions_result) ||
                              probability_of_types(joints) < wanted_confidence;

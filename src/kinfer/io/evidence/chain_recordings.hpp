@@ -10,6 +10,10 @@
 
 namespace kinfer {
 
+/// What went into a result and into the identifications that it updates, oldest first. The files of their chains are
+/// left out: what they hold is in the others.
+std::vector<InputFile> all_inputs(const std::vector<InputFile>& inputs, const std::vector<InputFile>& earlier);
+
 /// With those of the chains that it updated. `chain`: as of ChainFiles. Empty where evidence.json no longer lies beside
 /// it: nothing is known then.
 std::vector<InputFile> recordings_of_chain(const std::string& chain);

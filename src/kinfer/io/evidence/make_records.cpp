@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/evidence/make_records.hpp"
 
-#include <algorithm>
-#include <iterator>
-
 #include "kinfer/base/version.hpp"
 #include "kinfer/words/findings/findings.hpp"
 
@@ -20,13 +17,6 @@ std::vector<FindingRecord> finding_records(const std::vector<Finding>& findings)
 
 ProvenanceRecord provenance_record(const Provenance& provenance) {
   return {std::string(version), provenance.seed, provenance.options, provenance.inputs, provenance.earlier_inputs};
-}
-
-std::vector<InputFile> all_inputs(const ProvenanceRecord& provenance) {
-  std::vector<InputFile> all = provenance.earlier_inputs;
-  std::ranges::copy_if(provenance.inputs, std::back_inserter(all),
-                       [](const InputFile& input) { return input.name != "chain.toml" && input.name != "track.toml"; });
-  return all;
 }
 
 }  // namespace kinfer

@@ -13,8 +13,4 @@ std::vector<FindingRecord> finding_records(const std::vector<Finding>& findings)
 /// With the version of this program.
 ProvenanceRecord provenance_record(const Provenance& provenance);
 
-/// Whatever went into a result, into the identifications that it updates, too. The files of their chains are left out:
-/// what they hold is in the inputs.
-std::vector<InputFile> all_inputs(const ProvenanceRecord& provenance);
-
 }  // namespace kinfer

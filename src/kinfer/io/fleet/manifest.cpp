@@ -27,9 +27,8 @@ bool is_key(std::string_view key) {
          key.find_first_not_of(allowed) == std::string_view::npos;
 }
 
-/// Files beside the tasks' folders.
 bool is_file_of_sweep(std::string_view key) {
-  return key == "manifest.csv" || (key.starts_with("results") && key.ends_with(".tar"));
+  return key == manifest_name || (key.starts_with(archive_begin) && key.ends_with(archive_end));
 }
 
 Result<void> check_key(const std::string& key) {

@@ -13,6 +13,10 @@
 
 namespace kinfer {
 
+// Files in a sweep's folder, beside those of its tasks.
+inline constexpr std::string_view manifest_name = "manifest.csv";
+inline constexpr std::string_view archive_begin = "results", archive_end = ".tar";  ///< of --pack, one a shard
+
 struct SweepTask {
   std::string key{};                     ///< letters, digits, ".", "-" and "_": the name of the task's folder
   std::string verb{};                    ///< "calibrate"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/evidence/make_records.hpp"
+#include "kinfer/io/evidence/chain_recordings.hpp"
 
 #include <gmock/gmock.h>
 
@@ -18,9 +18,9 @@ std::vector<std::string> names_of(const std::vector<InputFile>& files) {
 }
 
 TEST(AllInputs, AreThoseOfEarlierIdentificationsToo) {
-  const ProvenanceRecord third{.inputs = {{"third.csv", "3"}, {"chain.toml", "c"}, {"track.toml", "t"}},
-                               .earlier_inputs = {{"first.csv", "1"}, {"second.csv", "2"}}};
-  EXPECT_THAT(names_of(all_inputs(third)), ElementsAre("first.csv", "second.csv", "third.csv"));
+  const std::vector<InputFile> inputs{{"third.csv", "3"}, {"chain.toml", "c"}, {"track.toml", "t"}},
+      earlier{{"first.csv", "1"}, {"second.csv", "2"}};
+  EXPECT_THAT(names_of(all_inputs(inputs, earlier)), ElementsAre("first.csv", "second.csv", "third.csv"));
 }
 
 TEST(AllInputs, AreReadBackAsTheyWereWritten) {
