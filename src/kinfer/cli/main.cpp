@@ -8,6 +8,7 @@
 #include <exception>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kinfer/base/instruction_set.hpp"
@@ -58,6 +59,13 @@ std::vector<Verb> describe_program(CLI::App& app, ProgramOptions& options) {
   return add_verbs(app);
 }
 
+int fail_usage(std::string_view sentence, const std::vector<std::string>& arguments, const ProgramEntry& program) {
+  const bool has_verb = program.find(arguments.front()) != nullptr;
+  print_message("kinfer: {}\n`kinfer{} --help` lists what there is.\n", sentence,
+                has_verb ? " " + arguments.front() : "");
+  return exit_bad_input;
+}
+
 std::string chosen_verb(const CLI::App& app) {
   const auto chosen = app.get_subcommands();
   return chosen.empty() ? "" : chosen.front()->get_name();
@@ -89,21 +97,16 @@ int Program::run(const std::vector<std::string>& arguments) {
     print_message("{}", help_text(program, terminal_width()));
     return exit_bad_input;
   }
-  if (const auto sentence = misspelling(arguments, program)) {
-    const bool has_verb = program.find(arguments.front()) != nullptr;
-    print_message("kinfer: {}\n`kinfer{} --help` lists what there is.\n", *sentence,
-                  has_verb ? " " + arguments.front() : "");
-    return exit_bad_input;
-  }
+  if (const auto sentence = misspelling(arguments, program)) return fail_usage(*sentence, arguments, program);
   std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // CLI11 takes them from the back
   try {
     app.parse(reversed);
   } catch (const CLI::ParseError& parse_error) {
-    std::ostringstream out, err;
-    const int code = app.exit(parse_error, out, err);  // --help and --version end here too
+    if (parse_error.get_exit_code() != 0) return fail_usage(parse_error.what(), arguments, program);
+    std::ostringstream out;
+    app.exit(parse_error, out);  // --help and --version
     print_text("{}", out.str());
-    print_message("{}", err.str());
-    return code == 0 ? exit_done : exit_bad_input;
+    return exit_done;
   }
   limit_memory(options.memory);
   if (const std::string name = chosen_verb(app); name != "track" && name != "sweep") limit_time(options.time);
