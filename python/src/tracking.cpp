@@ -7,6 +7,7 @@
 #include "kinfer/io/evidence/fingerprints.hpp"
 #include "kinfer/io/evidence/track_json.hpp"
 #include "kinfer/io/recording/log_rows.hpp"
+#include "kinfer/io/recording/possible_times.hpp"
 #include "kinfer/io/tracking/track_rows.hpp"
 #include "kinfer/io/tracking/tracked_chain.hpp"
 #include "kinfer/report/report.hpp"
@@ -119,6 +120,7 @@ struct RowInput {
     std::vector<std::string> sensors;
     for (const TrackingSensor& sensor : model.sensors) sensors.push_back(sensor.name);
     if (!paths.empty()) return each_log_row(paths, sensors, sink);
+    if (auto seconds = expect_seconds(recording); !seconds) return forward_error(seconds.error());
     if (auto done = each_row_of(recording, sensors, sink); !done) return forward_error(done.error());
     return recording.remarks;
   }

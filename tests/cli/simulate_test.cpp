@@ -77,7 +77,8 @@ TEST_F(Simulate, ImpossibleOptionsAreRefusedInOneSentenceAndNothingIsWritten) {
       {"simulate tree --duration 5", "a duration of 5 s is too short for this script: 15.2 s at least"},
       {"simulate tree --grade lab",
        "lab: no such sensor grade; known are perfect, noise, industrial, consumer, or a file"},
-      {"simulate tree --excitation wild", "wild not in {gentle,quick,sequential,standard,together,vigorous}"},
+      {"simulate tree --excitation wild",
+       "--excitation: expected one of gentle, quick, sequential, standard, together, vigorous, found \"wild\""},
       {"simulate tree --rate 5", "from 20 to 2000, found \"5\""},
       {"simulate tree --missing 1.5", "from 0 to 0.9, found \"1.5\""},
       {"simulate excavator --linkage --motion soft", "--motion soft: has no effect with --linkage"}};

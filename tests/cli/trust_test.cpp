@@ -84,7 +84,80 @@ TEST_F(Trust, HostileNamesAreShownByEveryVerb) {
     EXPECT_THAT(shown, HasSubstr("?[31m??")) << arguments;
     for (const char* control : {"\x1B", "\xC2\x9B", "\x7F"}) EXPECT_THAT(shown, Not(HasSubstr(control))) << arguments;
   }
-  EXPECT_THAT(kinfer("inspect log.csv --json").out, HasSubstr("\\u001b[31m\xC2\x9B\x7F")) << "data keep the names";
+  EXPECT_THAT(kinfer("inspect log.csv --json").out, HasSubstr("\\u001b[31m\\u009b\\u007f")) << "data keep the names";
+}
+
+TEST_F(Trust, BytesOfOtherCharacterSetsCannotCommandTheTerminal) {
+  const Outcome run = kinfer("'b\x9B[31m\x85m\xC3\xBC\xE2\x80\xAE'");
+  EXPECT_THAT(run.err, HasSubstr("b?[31m?m\xC3\xBC?")) << run.err;
+}
+
+TEST_F(Trust, UsageErrorsAreInOurWords) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"plan --robot r --poses 1 --poses 2 -o x", "--poses: given 2 times, expected once"},
+      {"inspect x -o y", "inspect: expected nothing like \"-o\" here"},
+      {"simulate excavator extra --out x", "simulate: expected nothing like \"extra\" here"},
+      {"plan --robot r --poses 3.5 -o x", "--poses: expected a whole number from 1 to"},
+      {"plan --robot r --poses 1e2 -o x", "--poses: expected a whole number from 1 to"},
+      {"identify x --engine foo --out o", "--engine: expected one of bmp, bp, enum, found \"foo\""},
+      {"reach r --targets t --base-link=", "--base-link: expected TEXT after it, found none"},
+      {"identify x --out", "--out: expected DIR after it, found none"},
+      {"identify x --out o --quiet=3", "--quiet: takes no value"},
+      {"--kernels x plan", "--kernels: expected one of auto, portable, avx2, avx512, found \"x\""},
+      {"--limit-time 3", "expected a verb"},
+      {"plan", "--robot is required"}};
+  for (const auto& [arguments, sentence] : cases) {
+    const Outcome run = kinfer(arguments);
+    EXPECT_EQ(run.code, 2) << arguments;
+    EXPECT_THAT(run.err, HasSubstr(std::string("kinfer: ") + sentence)) << arguments;
+  }
+}
+
+TEST_F(Trust, ResultsOfAnEarlierRunThatAreNotRenewedDoNotStay) {
+  const std::string robot = source("examples/robot6/robot.toml");
+  ASSERT_EQ(kinfer(poses("out")).code, 0);
+  write(in("out/mine.txt"), "mine");
+  // As if the earlier run had written one file more, and had been told of one elsewhere.
+  write(in("precious"), "mine");
+  std::string record = slurp(in("out/run.json"));
+  record.replace(record.find("\"poses.csv\""), 11, R"("poses.csv", "old.csv", "../precious", ".", "sub")");
+  write(in("out/run.json"), record);
+  write(in("out/old.csv"), "old");
+  ASSERT_EQ(kinfer(poses("out")).code, 0);
+  EXPECT_FALSE(fs::exists(in("out/old.csv")));
+  EXPECT_TRUE(fs::exists(in("out/mine.txt")) && fs::exists(in("precious")) && fs::exists(in("out/poses.csv")));
+  // Where the folders cannot change places, likewise.
+  fs::create_directories(in("out/sub"));
+  write(in("out/run.json"), record);
+  write(in("out/old.csv"), "old");
+  ASSERT_EQ(kinfer(poses("out")).code, 0);
+  EXPECT_FALSE(fs::exists(in("out/old.csv")));
+  EXPECT_TRUE(fs::exists(in("out/mine.txt")) && fs::exists(in("out/sub")));
+}
+
+TEST_F(Trust, WhatIsReadIsNotDropped) {
+  const std::string robot = source("examples/robot6/robot.toml");
+  ASSERT_EQ(kinfer("simulate-poses --robot " + robot + " --poses 20 --out data").code, 0);
+  ASSERT_EQ(kinfer("calibrate --robot " + robot + " --data data/poses.csv --model geometry --out out").code, 0);
+  fs::copy_file(in("data/poses.csv"), in("out/poses.csv"));
+  std::string record = slurp(in("out/run.json"));
+  record.replace(record.find("\"chain.toml\""), 12, R"("chain.toml", "poses.csv")");
+  write(in("out/run.json"), record);
+  ASSERT_EQ(kinfer("calibrate --robot " + robot + " --data out/poses.csv --model geometry --out out").code, 0);
+  EXPECT_TRUE(fs::exists(in("out/poses.csv")));
+}
+
+TEST_F(Trust, ResultsOfTwoVerbsDoNotMix) {
+  const std::string robot = source("examples/robot6/robot.toml");
+  ASSERT_EQ(kinfer("simulate-poses --robot " + robot + " --poses 20 --out data").code, 0);
+  ASSERT_EQ(kinfer("calibrate --robot " + robot + " --data data/poses.csv --model geometry --out out").code, 0);
+  const std::string chain = slurp(in("out/chain.toml"));
+  const Outcome run = kinfer(poses("out"));
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err,
+              HasSubstr("out: holds the results of `kinfer calibrate`; give `kinfer simulate-poses` a folder"));
+  EXPECT_EQ(slurp(in("out/chain.toml")), chain);
+  EXPECT_FALSE(fs::exists(in("out/poses.csv")));
 }
 
 TEST_F(Trust, WhatIsPrintedPassesOnePlace) {

@@ -65,10 +65,21 @@ TEST(ToolSpacePath, WhatCannotBeDrivenIsNamed) {
       tool_space_path(chain, line_of(chain, Vec3(9.0, 0.0, 0.0), Vec3::Zero()), posture(), limits, {}, 0.02).value();
   ASSERT_TRUE(far.obstacle);
   EXPECT_NE(far.obstacle->kind, PathObstacle::Kind::outside_limits);
-  const Eigen::Index before = far.path.position.cols() - 2;
-  const Vec3 last = forward(chain, far.path.position.col(before)).position;
-  EXPECT_LT((last - forward(chain, posture()).position).norm(), 3.0) << "of 9 m only what can be reached is written";
+  const Vec3 start = forward(chain, posture()).position;
+  const Eigen::Index end = far.path.position.cols() - 1;
+  ASSERT_GT(end, 0);
+  EXPECT_LT(forward(chain, far.path.position.col(end)).position.x() - start.x(), 3.0)
+      << "of 9 m only what can be reached is written";
+  for (Eigen::Index i = 0; i <= end; ++i)
+    EXPECT_LT((forward(chain, far.path.position.col(i)).position - start).tail<2>().norm(), 1e-6) << "on the line";
   EXPECT_EQ(far.path.position.cols(), std::ssize(far.path.time));
+
+  std::vector<ReachTarget> beyond = line_of(chain, Vec3(0.1, 0.0, 0.0), Vec3::Zero());
+  for (ReachTarget& target : beyond) target.position.x() += 9.0;
+  const PathResult nowhere = tool_space_path(chain, beyond, posture(), limits, {}, 0.02).value();
+  ASSERT_TRUE(nowhere.obstacle);
+  EXPECT_EQ(nowhere.path.position.cols(), 0);
+  EXPECT_TRUE(nowhere.path.time.empty());
 
   // A straightened wrist is singular.
   VectorXd straight = posture();

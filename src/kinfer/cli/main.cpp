@@ -15,6 +15,7 @@
 #include "kinfer/base/version.hpp"
 #include "kinfer/cli/help/help_text.hpp"
 #include "kinfer/cli/help/suggestion.hpp"
+#include "kinfer/cli/help/usage_error.hpp"
 #include "kinfer/cli/parts/common.hpp"
 #include "kinfer/cli/parts/process.hpp"
 #include "kinfer/cli/parts/program.hpp"
@@ -41,19 +42,14 @@ struct ProgramOptions {
 std::vector<Verb> describe_program(CLI::App& app, ProgramOptions& options) {
   app.formatter_fn(formatted_help);  // before the verbs, which inherit it
   app.set_version_flag("--version", std::string("kinfer ") + version, "Print the version");
-  app.add_option("--language", options.language,
-                 "names: the stable name of each fact instead of its sentence, for programs and translators")
-      ->check(CLI::IsMember({"english", "names"}))
-      ->capture_default_str();
+  add_choice(app, "--language", options.language, {"english", "names"},
+             "names: the stable name of each fact instead of its sentence, for programs and translators");
   add_number(app, "--limit-memory", options.memory, 0.0, 1e6,
              "Memory beyond which the program ends with a sentence [GB]; 0: any");
   add_number(app, "--limit-time", options.time, 0.0, 1e8,
              "Time after which it ends with a sentence [s]; 0: any; track and sweep have none");
-  app.add_option(
-         "--kernels", options.kernels,
-         "Instruction set of the numeric kernels; portable gives the same last digits on every x86-64 processor")
-      ->check(CLI::IsMember({"auto", "portable", "avx2", "avx512"}))
-      ->capture_default_str();
+  add_choice(app, "--kernels", options.kernels, {"auto", "portable", "avx2", "avx512"},
+             "Instruction set of the numeric kernels; portable gives the same last digits on every x86-64 processor");
   app.require_subcommand(1);
   app.footer("`kinfer VERB --help` explains a verb and shows an example; `kinfer demo` shows what kinfer does.");
   return add_verbs(app);
@@ -102,7 +98,8 @@ int Program::run(const std::vector<std::string>& arguments) {
   try {
     app.parse(reversed);
   } catch (const CLI::ParseError& parse_error) {
-    if (parse_error.get_exit_code() != 0) return fail_usage(parse_error.what(), arguments, program);
+    if (parse_error.get_exit_code() != 0)
+      return fail_usage(usage_sentence(parse_error, app, arguments), arguments, program);
     std::ostringstream out;
     app.exit(parse_error, out);  // --help and --version
     print_text("{}", out.str());

@@ -54,6 +54,7 @@ struct InsLogger {
   std::string name;          ///< the file's base name
   std::vector<double> time;  ///< [s], strictly increasing, one per row
   int shared_clock = -1;  ///< loggers with the same number ≥ 0 were stamped by one clock; −1: by a clock of its own
+  bool states_unit = false;  ///< the file says in which unit its times are, which is believed
 };
 
 struct InsRecording {
@@ -80,6 +81,10 @@ struct InsSample {
   bool angular_velocity_clipped = false;  ///< has_angular_velocity, but saturated: the true rate was larger
 };
 InsSample sample(const InsSensor& sensor, std::span<const double> time, std::size_t row);
+
+/// [s] between rows of a sensor that can follow a machine: no motion is seen at 2 Hz, and a log of 1 kHz in
+/// milliseconds reads 1.
+inline constexpr double longest_sample_period = 0.5;
 
 /// Median time between rows [s]; 0 if there are fewer than two rows.
 double median_period(std::span<const double> time);

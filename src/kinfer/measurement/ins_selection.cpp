@@ -54,7 +54,8 @@ InsRecording within(const InsRecording& recording, double begin, double end) {
   };
   for (const InsLogger& logger : recording.loggers) {
     const auto [first, last] = rows(logger.time);
-    result.loggers.push_back({logger.name, part(logger.time, first, std::max(first, last)), logger.shared_clock});
+    InsLogger& kept = result.loggers.emplace_back(logger);
+    kept.time = part(logger.time, first, std::max(first, last));
   }
   for (InsSensor& sensor : result.sensors) {
     const auto [first, last] = rows(recording.loggers[sensor.logger].time);

@@ -19,6 +19,11 @@ struct UnitWarning {
 };
 std::vector<UnitWarning> check_units(const InsSensor& sensor, bool field_has_unit);
 
+/// Seconds per unit in which the times of a logger must be for its rows to be no further apart than those of a sensor
+/// that can follow a machine: 1 where its file states the unit, or that of s, ms, µs or ns; none if no known unit does
+/// it.
+std::optional<double> clock_unit(const InsLogger& logger);
+
 /// m/s² per unit in which the specific force must be for gravity to be right: 1, or that of g, mg or mm/s²; none if no
 /// known unit explains it.
 std::optional<double> acceleration_unit(const InsSensor& sensor);

@@ -174,7 +174,7 @@ class ToolLines {
   const std::vector<double>& passing_times() const { return passing_; }
   const std::optional<PathObstacle>& obstacle() const { return obstacle_; }
 
-  /// Postures at these times, each near the one before it, up to the first at which the tool cannot follow its line:
+  /// Postures at these times, each near the one before it, before the first at which the tool cannot follow its line:
   /// beyond the reach every posture would be searched for in vain.
   MatrixXd follow(const std::vector<double>& times, const VectorXd& preferred) {
     MatrixXd q(preferred.size(), static_cast<Index>(times.size()));
@@ -184,8 +184,8 @@ class ToolLines {
       const VectorXd& posture = found.postures.front().q;
       const bool jumps = i > 0 && (posture - before).cwiseAbs().maxCoeff() > thresholds::path_jump;
       if (!obstacle_) obstacle_ = obstacle_at(times[i], found, jumps);
+      if (!is_on_line(found) || jumps) return q.leftCols(static_cast<Index>(i));
       q.col(static_cast<Index>(i)) = before = posture;
-      if (!is_on_line(found) || jumps) return q.leftCols(static_cast<Index>(i) + 1);
     }
     return q;
   }
@@ -197,9 +197,7 @@ class ToolLines {
     return interpolate(targets_[k], targets_[k + 1], lines_[k].at(time - passing_[k]).position[0]);
   }
 
-  static bool is_on_line(const ReachSolution& found) {
-    return found.status == ReachStatus::reached || found.status == ReachStatus::outside_limits;
-  }
+  static bool is_on_line(const ReachSolution& found) { return found.status == ReachStatus::reached; }
 
   std::optional<PathObstacle> obstacle_at(double time, const ReachSolution& found, bool jumps) const {
     const int line = line_at(passing_, time);
@@ -258,7 +256,7 @@ Result<PathResult> tool_space_path(const Chain& chain, const std::vector<ReachTa
   for (double& time : unhurried) time /= path.slowed_by;
   path.position = lines.follow(unhurried, preferred);
   path.time.resize(static_cast<std::size_t>(path.position.cols()));
-  path.duration = path.time.back();
+  path.duration = path.time.empty() ? 0.0 : path.time.back();
   set_derivatives(path);
   for (const double time : lines.passing_times())
     if (path.slowed_by * time <= path.duration) path.passing_times.push_back(path.slowed_by * time);

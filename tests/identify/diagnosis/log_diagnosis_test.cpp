@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "identify/driven_machine.hpp"
 #include "kinfer/base/angle.hpp"
@@ -73,6 +73,17 @@ TEST(LogDiagnosis, UnitsAreToldAndConverted) {
   EXPECT_LT(difference(*diagnosis->mended, &InsSensor::acceleration), 1e-4);
   EXPECT_LT(difference(*diagnosis->mended, &InsSensor::angular_velocity), 1e-5);
   EXPECT_LT(difference(*diagnosis->mended, &InsSensor::field), 1e-3);
+}
+
+TEST(LogDiagnosis, AUnitOfTimeThatTheFileStatesIsBelieved) {
+  const auto slow = [](bool states_unit) {
+    return with([states_unit](InsRecording& r) {
+      for (double& t : r.loggers[0].time) t *= 100.0;
+      r.loggers[0].states_unit = states_unit;
+    });
+  };
+  EXPECT_EQ(kinds_of(diagnose_log(slow(true), 1)), Kinds{});
+  EXPECT_THAT(kinds_of(diagnose_log(slow(false), 1)), ::testing::Contains(FindingKind::clock_unit));
 }
 
 TEST(LogDiagnosis, ANegatedInstrumentOfOneSensorIsToldByItsOtherInstrumentsAndItsNeighbours) {

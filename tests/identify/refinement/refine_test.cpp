@@ -86,6 +86,14 @@ TEST(Refine, IdentifiesASimulatedMachineAsAccuratelyAsItsSensorsAllow) {
   }
 }
 
+TEST(Refine, SensorsWithoutNoiseAreNoExceptions) {
+  const RefinedDrive drive = driven("excavator-general", {.mounting = Mounting::arbitrary}, SensorModel{});
+  const Refinement found = refined(drive);
+  expect_close(found, drive.truth, 0.1e-3, 0.1e-3);
+  for (const RefinedJoint& joint : found.joints) EXPECT_GT(std::ranges::min(joint.estimate.sd.axis_in_child), 0.0);
+  EXPECT_FALSE(found.tracking.sensors.empty());
+}
+
 TEST(Refine, NeedsNoStationaryBase) {
   const RefinedDrive drive = driven("excavator-general", {.base = Base::yawing}, "industrial");
   const Refinement found = refined(drive);

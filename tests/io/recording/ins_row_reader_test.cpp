@@ -99,6 +99,13 @@ TEST(InsRowReader, BadInputIsOneSentence) {
   std::string in_g = header;
   for (int i = 0; i < 200; ++i) in_g += fmt::format("{},0,0,1,0,0,0,0,0,1,0,0,0\n", 0.01 * i);
   EXPECT_THAT(read_rows(in_g, 99).error, HasSubstr("a: gravity reads 1.00 m/s² instead of 9.81"));
+  for (const int rows : {5, 200}) {
+    std::string in_ms = header;
+    for (int i = 0; i < rows; ++i) in_ms += fmt::format("{}{}", 10 * i, row);
+    const ReadRows read = read_rows(in_ms, 99);
+    EXPECT_THAT(read.error, HasSubstr("log.csv: rows are 10 s apart, expected 1e-05 to 0.5 s of an INS"));
+    EXPECT_LT(read.rows.size(), 20u);
+  }
 }
 
 }  // namespace

@@ -96,6 +96,17 @@ TEST_F(RobotLog, AnInsRecordingComesBackFromMcap) {
   }
 }
 
+TEST_F(RobotLog, NamesComeBackFromMcapWhateverIsInThem) {
+  InsRecording written = example_recording();
+  const std::array names{"a/b", "a/c d", "imu"};
+  for (std::size_t s = 0; s < 3; ++s) written.sensors[s].name = names[s];
+  ASSERT_TRUE(write_ins_mcap(folder / "log.mcap", written));
+  const auto found = read(folder / "log.mcap");
+  ASSERT_TRUE(found) << found.error().what;
+  for (std::size_t s = 0; s < 3; ++s) EXPECT_EQ(found->sensors[s].name, names[s]);
+  EXPECT_TRUE(found->loggers[0].states_unit);
+}
+
 std::string bag_records(int rows) {
   std::string records = test::bag_connection(0, "/boom/imu/data", "sensor_msgs/Imu", "") +
                         test::bag_connection(1, "/arm/imu/data", "sensor_msgs/Imu", "") +

@@ -13,11 +13,20 @@ InsRecording recording(double period, std::size_t rows) {
   return all;
 }
 
-TEST(PossibleTimes, MillisecondsReadAsSecondsAreRefused) {
+TEST(PossibleTimes, MillisecondsThatAreSaidToBeSecondsAreRefused) {
   EXPECT_TRUE(check_times(recording(0.005, 1000)));
-  const auto checked = check_times(recording(5.0, 1000));
+  InsRecording log = recording(5.0, 1000);
+  log.loggers.front().states_unit = true;
+  const auto checked = check_times(log);
   ASSERT_FALSE(checked);
   EXPECT_THAT(checked.error().what, ::testing::HasSubstr("t[ms]"));
+}
+
+TEST(PossibleTimes, MillisecondsWithoutAUnitAreForTheDiagnosisToConvert) {
+  EXPECT_TRUE(check_times(recording(5.0, 1000)));
+  EXPECT_FALSE(expect_seconds(recording(5.0, 1000)));
+  EXPECT_TRUE(expect_seconds(recording(0.005, 1000)));
+  EXPECT_FALSE(check_times(recording(1e12, 1000)));
 }
 
 TEST(PossibleTimes, OneRowYearsLaterIsRefused) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/cli/parts/arguments.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 
 namespace kinfer::cli {
@@ -17,6 +18,25 @@ CLI::Validator in_range(double lowest, double highest) {
     return fmt::format("expected a number from {:g} to {:g}, found \"{}\"", lowest, highest, text);
   };
   return CLI::Validator(complaint, "");
+}
+
+CLI::Validator whole_in_range(int lowest, int highest) {
+  const auto complaint = [lowest, highest](const std::string& text) -> std::string {
+    int value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (code == std::errc() && end == text.data() + text.size() && value >= lowest && value <= highest) return {};
+    return fmt::format("expected a whole number from {} to {}, found \"{}\"", lowest, highest, text);
+  };
+  return CLI::Validator(complaint, "");
+}
+
+/// Its description is how the help and the shells' completions know the choices.
+CLI::Validator one_of(const std::vector<std::string>& allowed) {
+  const auto complaint = [allowed](const std::string& text) -> std::string {
+    if (std::ranges::find(allowed, text) != allowed.end()) return {};
+    return fmt::format("expected one of {}, found \"{}\"", fmt::join(allowed, ", "), text);
+  };
+  return CLI::Validator(complaint, fmt::format("{{{}}}", fmt::join(allowed, ",")));
 }
 
 }  // namespace
@@ -64,7 +84,7 @@ void add_list(CLI::App& verb, const std::string& name, std::vector<std::string>&
 
 void add_choice(CLI::App& verb, const std::string& name, std::string& value, const std::vector<std::string>& allowed,
                 const std::string& help, Requirement need) {
-  CLI::Option* option = verb.add_option(name, value, help)->check(CLI::IsMember(allowed));
+  CLI::Option* option = verb.add_option(name, value, help)->check(one_of(allowed));
   if (need == Requirement::required)
     option->required();
   else
@@ -72,12 +92,12 @@ void add_choice(CLI::App& verb, const std::string& name, std::string& value, con
 }
 
 void add_count(CLI::App& verb, const std::string& name, int& value, int lowest, int highest, const std::string& help) {
-  verb.add_option(name, value, help)->type_name("N")->check(in_range(lowest, highest))->capture_default_str();
+  verb.add_option(name, value, help)->type_name("N")->check(whole_in_range(lowest, highest))->capture_default_str();
 }
 
 void add_count(CLI::App& verb, const std::string& name, std::optional<int>& value, int lowest, int highest,
                const std::string& help) {
-  verb.add_option(name, value, help)->type_name("N")->check(in_range(lowest, highest));
+  verb.add_option(name, value, help)->type_name("N")->check(whole_in_range(lowest, highest));
 }
 
 void add_number(CLI::App& verb, const std::string& name, double& value, double lowest, double highest,
@@ -104,7 +124,7 @@ void add_seed(CLI::App& verb, const std::string& name, std::uint64_t& value, con
 }
 
 void add_flag(CLI::App& verb, const std::string& name, bool& value, const std::string& help) {
-  verb.add_flag(name, value, help);
+  verb.add_flag(name, value, help)->disable_flag_override();
 }
 
 bool was_chosen(const CLI::App& verb) {

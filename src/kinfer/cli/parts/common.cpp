@@ -4,6 +4,7 @@
 #include <fmt/chrono.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,8 @@
 namespace kinfer::cli {
 namespace {
 
+constexpr const char* run_file = "run.json";
+
 std::vector<std::string>& command_line() {
   static std::vector<std::string> words;  // set once for each run
   return words;
@@ -31,6 +34,35 @@ std::string processor_model() {
     if (line.starts_with("model name"))
       if (const auto colon = line.find(": "); colon != std::string::npos) return line.substr(colon + 2);
   return "";
+}
+
+/// run.json of the run that wrote the results in a folder, as far as it can be read.
+struct EarlierRun {
+  std::string verb{};
+  std::vector<std::string> outputs{};
+};
+
+EarlierRun earlier_run(const std::filesystem::path& folder) {
+  const auto text = read_text_file(folder / run_file);
+  if (!text) return {};
+  const auto run = nlohmann::json::parse(*text, nullptr, false);
+  EarlierRun earlier;
+  if (!run.is_object()) return earlier;
+  if (const auto verb = run.find("verb"); verb != run.end() && verb->is_string()) earlier.verb = *verb;
+  if (const auto outputs = run.find("outputs"); outputs != run.end() && outputs->is_array())
+    for (const auto& name : *outputs)
+      if (name.is_string()) earlier.outputs.push_back(name);
+  return earlier;
+}
+
+/// A name that cannot lead out of the folder, of a file that was not read.
+bool can_be_dropped(const std::filesystem::path& folder, const std::string& name,
+                    const std::vector<std::string>& inputs) {
+  std::error_code failure;
+  const std::filesystem::path file = folder / name;
+  return file.filename() == name && std::filesystem::is_regular_file(file, failure) &&
+         std::ranges::none_of(
+             inputs, [&](const std::string& input) { return std::filesystem::equivalent(input, file, failure); });
 }
 
 }  // namespace
@@ -101,7 +133,22 @@ void RunRecord::add_input(const std::filesystem::path& path) {
   inputs_.push_back(std::filesystem::absolute(path, ignored).string());
 }
 
+Result<OutputFolder> RunRecord::open_folder(const std::filesystem::path& path) const {
+  const EarlierRun earlier = earlier_run(path);
+  const bool holds_evidence = std::ranges::find(earlier.outputs, "evidence.json") != earlier.outputs.end();
+  if (holds_evidence && earlier.verb != verb_)
+    return error("{}: holds the results of `kinfer {}`; give `kinfer {}` a folder of its own", path.string(),
+                 earlier.verb, verb_);
+  return OutputFolder::make(path);
+}
+
 Result<void> RunRecord::write(OutputFolder& folder) const {
+  const std::filesystem::path file = folder / run_file;
+  if (const EarlierRun earlier = earlier_run(folder.path()); earlier.verb == verb_)
+    for (const std::string& name : earlier.outputs)
+      if (std::ranges::find(folder.names(), name) == folder.names().end() &&
+          can_be_dropped(folder.path(), name, inputs_))
+        folder.drop(name);
   const auto end = std::chrono::system_clock::now();
   nlohmann::ordered_json run;
   run["format"] = "kinfer-run/1";
@@ -115,9 +162,10 @@ Result<void> RunRecord::write(OutputFolder& folder) const {
   run["threads"] = options_.threads > 0 ? options_.threads : hardware_threads();
   run["seed"] = options_.seed;
   run["inputs"] = inputs_;
+  run["outputs"] = folder.names();
   run["began"] = fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(begin_)));
   run["seconds"] = std::chrono::duration<double>(end - begin_).count();
-  return write_text_file(folder / "run.json", dump_json(run, 1) + "\n");
+  return write_text_file(file, dump_json(run, 1) + "\n");
 }
 
 }  // namespace kinfer::cli

@@ -64,7 +64,10 @@ class RunRecord {
  public:
   RunRecord(std::string verb, const CommonOptions& options);
   void add_input(const std::filesystem::path& path);
-  Result<void> write(OutputFolder& folder) const;  ///< run.json
+  /// The folder of the results. An error where another verb has its results there: files of both would mix.
+  Result<OutputFolder> open_folder(const std::filesystem::path& path) const;
+  /// run.json, after all other results. Those of an earlier run that this one has not renewed are dropped.
+  Result<void> write(OutputFolder& folder) const;
 
  private:
   std::string verb_;

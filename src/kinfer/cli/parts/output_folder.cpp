@@ -64,10 +64,17 @@ bool holds_files_only(const fs::path& folder) {
   });
 }
 
+using Names = std::vector<std::string>;
+
+bool has(const Names& names, const fs::path& path) {
+  return std::ranges::find(names, path.filename().string()) != names.end();
+}
+
 /// Hard links to the files of `from` that `to` lacks: the same files, also for whoever has them open.
-bool link_others(const fs::path& from, const fs::path& to) {
+bool link_others(const fs::path& from, const fs::path& to, const Names& dropped) {
   std::error_code failure;
   for (const auto& entry : fs::directory_iterator(from, failure)) {
+    if (has(dropped, entry.path())) continue;
     const fs::path target = to / entry.path().filename();
     if (fs::symlink_status(target).type() != fs::file_type::not_found) continue;
     if (::linkat(AT_FDCWD, entry.path().c_str(), AT_FDCWD, target.c_str(), 0) != 0) return false;
@@ -76,11 +83,12 @@ bool link_others(const fs::path& from, const fs::path& to) {
 }
 
 /// Files that came while the folders changed places.
-void rescue_late_files(const fs::path& from, const fs::path& to) {
+void rescue_late_files(const fs::path& from, const fs::path& to, const Names& dropped) {
   std::error_code ignored;
   std::vector<fs::path> late;
   for (const auto& entry : fs::directory_iterator(from, ignored))
-    if (!fs::exists(fs::symlink_status(to / entry.path().filename(), ignored))) late.push_back(entry.path());
+    if (!has(dropped, entry.path()) && !fs::exists(fs::symlink_status(to / entry.path().filename(), ignored)))
+      late.push_back(entry.path());
   for (const fs::path& path : late) fs::rename(path, to / path.filename(), ignored);
 }
 
@@ -116,6 +124,7 @@ OutputFolder::OutputFolder(OutputFolder&& other) noexcept
       made_(std::exchange(other.made_, {})),
       temporary_(std::move(other.temporary_)),
       names_(std::move(other.names_)),
+      dropped_(std::move(other.dropped_)),
       lock_(std::exchange(other.lock_, -1)) {}
 
 OutputFolder::~OutputFolder() {
@@ -168,14 +177,20 @@ fs::path OutputFolder::operator/(const std::string& name) {
   return file;
 }
 
+fs::path OutputFolder::visible(const std::string& name) {
+  if (std::ranges::find(names_, name) == names_.end()) names_.push_back(name);
+  return path_ / name;
+}
+
 /// The staging folder and the folder change places, which is one step for everybody.
 bool OutputFolder::replace_whole() const {
   std::error_code failure;
   const bool stands_inside = is_inside(fs::current_path(failure), path_);  // a shell would stay in the old folder
-  if (staging_.parent_path() == path_ || stands_inside || !holds_files_only(path_) || !link_others(path_, staging_))
+  if (staging_.parent_path() == path_ || stands_inside || !holds_files_only(path_) ||
+      !link_others(path_, staging_, dropped_))
     return false;
   if (::renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) != 0) return false;
-  rescue_late_files(staging_, path_);
+  rescue_late_files(staging_, path_, dropped_);
   return true;
 }
 
@@ -189,6 +204,7 @@ Result<void> OutputFolder::replace_one_by_one() const {
     fs::rename(staging_ / name, path_ / name, failure);
     if (failure) return error("{}: the file cannot be replaced ({})", (path_ / name).string(), failure.message());
   }
+  for (const std::string& name : dropped_) fs::remove(path_ / name, failure);
   return {};
 }
 

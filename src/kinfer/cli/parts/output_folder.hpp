@@ -25,7 +25,14 @@ class OutputFolder {
   /// Where to write the file of this name.
   std::filesystem::path operator/(const std::string& name);
   /// Where files of a run that has no end appear at once (`track --follow`).
-  std::filesystem::path visible(const std::string& name) const { return path_ / name; }
+  std::filesystem::path visible(const std::string& name);
+
+  /// Of the results so far.
+  const std::vector<std::string>& names() const { return names_; }
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Removes this file, a result of an earlier run that this one does not renew, when the results are put in place.
+  void drop(const std::string& name) { dropped_.push_back(name); }
 
   /// Puts the results in place. Files of other names in the folder stay.
   Result<void> commit();
@@ -42,6 +49,7 @@ class OutputFolder {
   std::vector<std::filesystem::path> made_;  ///< folders that did not exist before, innermost first
   std::vector<TemporaryPath> temporary_;     ///< in the order in which they were made
   std::vector<std::string> names_;           ///< of the results
+  std::vector<std::string> dropped_;         ///< of earlier results
   int lock_ = -1;
 };
 

@@ -23,7 +23,8 @@
 namespace kinfer::cli {
 namespace {
 
-char out_of_time[160] = "";  // written before the timer starts: a signal handler can print it, but not make it
+char out_of_memory[160] = "";  // written when the limit is set: then there is memory
+char out_of_time[160] = "";    // written before the timer starts: a signal handler can print it, but not make it
 
 ProcessLimits& stated_limits() {
   static ProcessLimits limits;
@@ -73,13 +74,19 @@ ProcessLimits process_limits() {
 
 void limit_memory(double gigabytes) {
   stated_limits().memory = gigabytes;
+  const bool is_limited = gigabytes > 0.0;
+  const auto end = fmt::format_to_n(
+      out_of_memory, sizeof(out_of_memory) - 1, "kinfer: this input takes more memory than {}\n",
+      is_limited ? fmt::format("the limit, {:g} GB; --limit-memory {:g} allows more, 0 any", gigabytes, 4.0 * gigabytes)
+                 : "there is");
+  *end.out = '\0';
 #if !defined(__SANITIZE_ADDRESS__)
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
   return;  // it reserves terabytes of addresses
 #endif
 #endif
-  if (!(gigabytes > 0.0)) return;
+  if (!is_limited) return;
   rlimit bounds{};
   ::getrlimit(RLIMIT_DATA, &bounds);
   bounds.rlim_cur = std::min(bounds.rlim_max, static_cast<rlim_t>(gigabytes * 1e9));
@@ -91,7 +98,7 @@ int code_of_exception() {
   try {
     throw;
   } catch (const std::bad_alloc&) {
-    say("kinfer: this input takes more memory than the limit; --limit-memory 32 allows 32 GB, 0 any\n");
+    say(out_of_memory);
     return exit_bad_input;
   } catch (const std::filesystem::filesystem_error& failure) {
     print_message("kinfer: \"{}\": {}\n", failure.path1().string(), failure.code().message());

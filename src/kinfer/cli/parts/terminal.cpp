@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
+
+#include "kinfer/io/text/quoted_text.hpp"
 
 namespace kinfer::cli {
 
@@ -17,25 +20,31 @@ void print_bytes(std::FILE* stream, std::string_view bytes) {
   fmt::print(stream, "{}", bytes);
 }
 
+/// One character of UTF-8: a control character, or one that turns the direction of writing.
+bool commands_terminal(std::string_view character) {
+  const auto byte = [&](std::size_t k) { return k < character.size() ? static_cast<unsigned char>(character[k]) : 0U; };
+  const bool is_control = (byte(0) < 0x20 && byte(0) != '\n' && byte(0) != '\t') || byte(0) == 0x7F;
+  const bool is_control_of_two = byte(0) == 0xC2 && byte(1) < 0xA0;  // U+0080 to U+009F
+  const bool is_direction =                                          // U+200E, 200F, 202A to 202E, 2066 to 2069
+      byte(0) == 0xE2 &&
+      ((byte(1) == 0x80 && (byte(2) == 0x8E || byte(2) == 0x8F || (byte(2) >= 0xAA && byte(2) <= 0xAE))) ||
+       (byte(1) == 0x81 && byte(2) >= 0xA6 && byte(2) <= 0xA9));
+  return is_control || is_control_of_two || is_direction;
+}
+
 }  // namespace
 
 std::string printable(std::string_view text) {
   std::string shown;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = [&](std::size_t ahead) {
-      return i + ahead < text.size() ? static_cast<unsigned char>(text[i + ahead]) : 0U;
-    };
-    const bool is_control = (byte(0) < 0x20 && text[i] != '\n' && text[i] != '\t') || byte(0) == 0x7F;
-    const bool is_control_of_two = byte(0) == 0xC2 && byte(1) >= 0x80 && byte(1) < 0xA0;  // U+0080 to U+009F
-    const bool is_direction =  // U+200E, 200F, 202A to 202E, 2066 to 2069
-        byte(0) == 0xE2 &&
-        ((byte(1) == 0x80 && (byte(2) == 0x8E || byte(2) == 0x8F || (byte(2) >= 0xAA && byte(2) <= 0xAE))) ||
-         (byte(1) == 0x81 && byte(2) >= 0xA6 && byte(2) <= 0xA9));
-    if (is_control || is_control_of_two || is_direction)
+  while (!text.empty()) {
+    // A byte that is no UTF-8 may be a control character of another character set.
+    const std::size_t size = utf8_character_size(text);
+    const std::string_view character = text.substr(0, std::max<std::size_t>(1, size));
+    if (size == 0 || commands_terminal(character))
       shown += '?';
     else
-      shown += text[i];
-    i += is_direction ? 2 : is_control_of_two ? 1 : 0;
+      shown += character;
+    text.remove_prefix(character.size());
   }
   return shown;
 }

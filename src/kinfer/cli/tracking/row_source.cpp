@@ -18,6 +18,7 @@
 #include "kinfer/cli/parts/ins_logs.hpp"
 #include "kinfer/io/recording/ins_columns.hpp"
 #include "kinfer/io/recording/log_rows.hpp"
+#include "kinfer/io/recording/possible_times.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -101,6 +102,7 @@ bool is_csv(const std::string& path) {
 /// Formats that are read whole, and several logs.
 Result<std::vector<std::string>> replay(const RowSource& source, const RowSink& sink) {
   KINFER_TRY(recording, read_ins_logs({source.logs, std::string(), {}}, CommonOptions{.quiet = true}));
+  if (auto seconds = expect_seconds(recording); !seconds) return forward_error(seconds.error());
   if (auto done = each_row_of(recording, source.sensors, sink.row); !done)
     return error("{}: {}", fmt::join(source.logs, ", "), done.error().what);
   sink.pause();

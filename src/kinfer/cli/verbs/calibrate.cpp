@@ -243,7 +243,7 @@ int run(const CalibrateArguments& options, const CLI::App& verb) {
   if (auto effective = check_offsets(was_given(verb, "--offsets"), inputs->robot); !effective)
     return fail(effective.error());
   for (const std::string& path : input_paths(options, *inputs)) record.add_input(path);
-  auto folder = OutputFolder::make(options.out);
+  auto folder = record.open_folder(options.out);
   if (!folder) return fail(folder.error());
   const Result<Calibration> calibration = [&] {
     ProgressLine progress(options.common);

@@ -9,6 +9,7 @@
 #include "kinfer/io/motion/trajectory_mcap.hpp"
 #include "kinfer/io/pose_set/pose_log.hpp"
 #include "kinfer/io/recording/ins_mcap.hpp"
+#include "kinfer/io/recording/possible_times.hpp"
 #include "kinfer/io/recording/recording_formats.hpp"
 
 namespace kinfer::cli {
@@ -25,6 +26,7 @@ int convert_recording(const ConvertArguments& options) {
   const std::filesystem::path path = options.in.path;
   const auto recording = read_recording(std::span(&path, 1));
   if (!recording) return fail(recording.error());
+  if (const auto seconds = expect_seconds(*recording); !seconds) return fail(seconds.error());
   if (const auto done = write_ins_mcap(options.out, *recording); !done) return fail(done.error());
   if (!options.quiet) print_text("{}: {} sensors\n", options.out, recording->sensors.size());
   return exit_done;

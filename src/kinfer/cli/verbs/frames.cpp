@@ -58,7 +58,7 @@ int run(const FramesArguments& options) {
   if (!data) return fail(data.error());
   const auto found = calibrate::estimate_frames_from_circles(robot->chain, *data);
   if (!found) return fail({options.data + ": " + found.error().what});
-  auto folder = OutputFolder::make(options.out);
+  auto folder = record.open_folder(options.out);
   if (!folder) return fail(folder.error());
   if (auto done = write_results(*folder, *robot, *found); !done) return fail(done.error());
   if (auto done = record.write(*folder); !done) return fail(done.error());

@@ -221,7 +221,7 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   const auto earlier = options.update.empty() ? std::vector<InputFile>{} : recordings_of_chain(options.update);
   if (auto fresh = expect_new_recordings(options.logs, earlier, options.update); !fresh) return fail(fresh.error());
   if (auto possible = check_cost(cost_of(*recording)); !possible) return fail(possible.error());
-  auto folder = OutputFolder::make(options.out);
+  auto folder = record.open_folder(options.out);
   if (!folder) return fail(folder.error());
   const Result<Identification> found = [&] {
     ProgressLine progress(options.common);

@@ -115,7 +115,7 @@ Result<void> simulate(const SimulateArguments& options) {
                         of_drive(rng.stream(2), options.drive)));
   const double rows = drive.duration * options.sampling_rate, count = static_cast<double>(machine.sensors.size());
   if (auto possible = check_cost(cost_of_simulation(rows, count)); !possible) return possible;
-  KINFER_TRY(folder, OutputFolder::make(options.out));
+  KINFER_TRY(folder, run_record.open_folder(options.out));
   KINFER_TRY(moved, move(world, machine, drive, options));
   const MachineTruth truth = machine_truth(machine, moved);
   if (options.faults.foam > 0.0)

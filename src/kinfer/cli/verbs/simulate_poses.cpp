@@ -77,7 +77,7 @@ int run(const SimulatePosesArguments& options) {
   RobotModel nominal = *robot, true_robot = *robot;
   nominal.instrument = true_robot.instrument = simulation.instrument;
   true_robot.chain = with_small_rotations_folded(*truth);
-  auto folder = OutputFolder::make(options.out);
+  auto folder = record.open_folder(options.out);
   if (!folder) return fail(folder.error());
   for (const auto& [name, text] :
        {std::pair{"poses.csv", format_pose_set_csv(*set, robot->chain, FileUnits::mm_deg)},

@@ -193,7 +193,7 @@ int run(const TrackArguments& options) {
   std::vector<TrackOutput*> outputs;
   std::optional<OutputFolder> folder;
   if (!options.out.empty()) {
-    auto made = OutputFolder::make(options.out);
+    auto made = record.open_folder(options.out);
     if (!made) return fail(made.error());
     folder.emplace(std::move(*made));
     if (auto done = table.open(options.follow ? folder->visible("track.csv") : *folder / "track.csv"); !done)

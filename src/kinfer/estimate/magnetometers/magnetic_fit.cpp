@@ -17,7 +17,8 @@ constexpr int most_rounds = 20, least_rounds = 8, first_noise_update = 2;
 constexpr double converged_rotation = 1e-5;  // [rad] of the rotations
 constexpr double longest_step = 0.3;         // [rad]
 constexpr double first_noise = 0.03;         // of the field, before there are residuals
-constexpr double first_hard_iron = 0.1;      // of the field
+constexpr double least_noise = 1e-4;  // of the field: what is less noisy is simulated, and its equations are singular
+constexpr double first_hard_iron = 0.1;  // of the field
 constexpr double first_soft_iron = 0.05;
 constexpr double no_information = 1e-4;  // [1/rad²] keeps rotations that no magnetometer shows where they are
 
@@ -72,6 +73,7 @@ class MagneticLeastSquares {
       for (std::size_t t = 0; t < recording_.bins; ++t)
         if (recording_.sensors[s].is_valid[t]) residual[t] = model_.residual(x_, s, t);
       noise_[s] = estimate_noise(residual, recording_.sensors[s].is_valid);
+      noise_[s].sd = std::max(noise_[s].sd, least_noise * recording_.strength);
     }
   }
 

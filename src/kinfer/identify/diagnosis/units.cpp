@@ -15,15 +15,6 @@
 namespace kinfer::identify {
 namespace {
 
-constexpr double longest_period = 0.45;  // [s] of a sensor that can follow a machine
-
-/// Seconds per unit of the clock by the time between its rows; 1 where that is plausible in seconds.
-double clock_unit(double period) {
-  for (const double unit : {1.0, 1e-3, 1e-6, 1e-9})
-    if (period * unit <= longest_period) return unit;
-  return 1.0;
-}
-
 bool counts_rows(std::span<const double> time) {
   if (time.size() < 20) return false;
   std::size_t steps_of_one = 0;
@@ -68,9 +59,9 @@ void set_unit(InsLogger& logger, double unit) {
 void mend_clocks(MendedLog& log, int threads) {
   for (std::size_t l = 0; l < log.log().loggers.size(); ++l) {
     const InsLogger& logger = log.log().loggers[l];
-    double unit = clock_unit(median_period(logger.time));
+    const double unit = clock_unit(logger).value_or(1.0);
     const std::string name = logger.name;
-    if (counts_rows(logger.time)) {
+    if (!logger.states_unit && counts_rows(logger.time)) {
       const double rate = best_rate(log.log(), l, threads);
       set_unit(log.edit().loggers[l], 1.0 / rate);
       const bool is_ms = rate > 999.0;

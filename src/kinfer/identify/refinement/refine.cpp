@@ -141,17 +141,21 @@ TrackingModel hand_over(const RefinementTask& task, const RefinementFit& fitted,
                          std::move(joints)});
 }
 
-}  // namespace
+/// Without a covariance where the arithmetic does not hold the equations.
+struct RefinementAttempt {
+  std::optional<Refinement> refinement{};
+  bool is_noise_raised = false;
+};
 
-Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
-                          const std::vector<InitialJoint>& starts, const RefinementOptions& options,
-                          const Observer& observer) {
-  const SensorModel grade = options.grade ? *options.grade : estimate_sensor_model(recording);
-  const double knot_spacing = options.knot_spacing > 0.0 ? options.knot_spacing : select_knot_spacing(recording, grade);
-  RefinementSetup setup = set_up_refinement(recording, motion, tree, starts, grade, knot_spacing);
+Result<RefinementAttempt> refine_with(const InsRecording& recording, const RecordedMotion& motion,
+                                      const SegmentTree& tree, const std::vector<InitialJoint>& starts,
+                                      const RefinementOptions& options, const SensorModel& grade, double knot_spacing,
+                                      double least_noise, const Observer& observer) {
+  RefinementSetup setup = set_up_refinement(recording, motion, tree, starts, grade, knot_spacing, least_noise);
+  const bool is_noise_raised = setup.is_noise_raised;
   KINFER_TRY(facts, resolve_facts(options.facts, segment_names(motion), setup.start.bodies, setup.problem.grid,
                                   setup.problem.root_at_rest));
-  const RefinementTask task{recording, motion, tree, starts, grade, facts, options.fit, options.zeros};
+  const RefinementTask task{recording, motion, tree, starts, grade, facts, options.fit, options.zeros, least_noise};
   if (const auto checked =
           check_zeros(options.zeros, joint_bodies(task, setup), segment_names(motion), setup.problem.grid);
       !checked)
@@ -183,7 +187,7 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
   const auto covariance =
       covariance_with_model_error(fitted.setup.problem, result.fit.layout, result.fit.unknowns, result.fit.cost,
                                   assumed_scale(recording, options, grade), options.fit.threads);
-  if (!covariance) return error("the continuous-time fit has no covariance: the recording is not informative enough");
+  if (!covariance) return RefinementAttempt{std::nullopt, is_noise_raised};
   result.covariance = covariance->model;
   add_clock_rate(deviations.scales, result.fit, *covariance, model_error);
   result.findings = scale_findings(deviations.scales, motion, result.fit, *covariance);
@@ -198,7 +202,23 @@ Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& m
       loop_estimates(loops, fitted.fit.unknowns.bodies, closing_joints(fitted.fit, *covariance), segment_names(motion));
   if (options.hold_out) result.held_out = fit_held_out(task, fitted, *covariance, model_error);
   result.places = located_points(options.facts, result.fit, covariance->model);
-  return result;
+  return RefinementAttempt{std::move(result), is_noise_raised};
+}
+
+}  // namespace
+
+Result<Refinement> refine(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
+                          const std::vector<InitialJoint>& starts, const RefinementOptions& options,
+                          const Observer& observer) {
+  const SensorModel grade = options.grade ? *options.grade : estimate_sensor_model(recording);
+  const double knot_spacing = options.knot_spacing > 0.0 ? options.knot_spacing : select_knot_spacing(recording, grade);
+  for (const double least_noise : least_noises) {
+    KINFER_TRY(attempt,
+               refine_with(recording, motion, tree, starts, options, grade, knot_spacing, least_noise, observer));
+    if (attempt.refinement) return *std::move(attempt.refinement);
+    if (!attempt.is_noise_raised) break;
+  }
+  return error("the continuous-time fit has no covariance: the recording is not informative enough");
 }
 
 }  // namespace kinfer::identify

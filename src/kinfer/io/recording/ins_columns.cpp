@@ -93,6 +93,7 @@ Result<InsColumns> parse_ins_columns(const CsvHeader& header, const std::string&
       time_column = c;
       KINFER_TRY(factor, parse_unit_factor(column, Dimension::time, name, header.line));
       meaning.factor = factor;
+      out.loggers.back().states_unit = column.has_unit;
     } else if (const auto channel = parse_channel(column.name)) {
       KINFER_TRY(factor, parse_unit_factor(column, dimensions[channel->instrument], name, header.line));
       KINFER_TRY(sensor, sensor_index(out, first, channel->sensor, name));

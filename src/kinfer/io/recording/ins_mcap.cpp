@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/io/recording/ins_topics.hpp"
 #include "kinfer/io/robot_log/mcap_writer.hpp"
 
 namespace kinfer {
@@ -56,7 +57,7 @@ Result<void> write_ins_mcap(const std::filesystem::path& path, const InsRecordin
   std::vector<WrittenSensor> sensors;
   for (const InsSensor& sensor : recording.sensors) {
     WrittenSensor written{.sensor = &sensor, .time = recording.time(sensor)};
-    written.imu = writer.add_channel("/" + sensor.name + "/imu", "sensor_msgs/Imu");
+    written.imu = writer.add_channel(ins_topic(sensor.name), "sensor_msgs/Imu");
     if (sensor.has_magnetometer())
       written.magnetic = writer.add_channel("/" + sensor.name + "/magnetic_field", "sensor_msgs/MagneticField");
     sensors.push_back(written);

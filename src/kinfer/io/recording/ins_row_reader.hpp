@@ -46,6 +46,7 @@ class InsRowReader {
   Result<void> read_header(const std::string& line);
   Result<void> read_row(std::string_view line, const Sink& sink, bool is_last);
   Result<void> check_time(double time);
+  Result<void> check_period() const;
   Result<void> check_gravity();
 
   std::vector<std::string> sensors_, remarks_;
@@ -61,7 +62,8 @@ class InsRowReader {
     double sum = 0.0;
     int rows = 0;
   };
-  std::vector<Gravity> gravity_;  // of each sensor
+  std::vector<Gravity> gravity_;     // of each sensor
+  std::vector<double> first_times_;  // [s]
   int line_ = 0, rows_ = 0;
 };
 

@@ -90,7 +90,7 @@ class InsTopicReader {
   std::size_t append(InsRecording& recording) {
     std::vector<std::string> names;
     for (const auto& [index, imu] : imus_) names.push_back(imu.topic);
-    names = short_topic_names(names);
+    names = is_written_by_kinfer() ? frames() : short_topic_names(names);
     const std::size_t first = recording.sensors.size();
     int clock = 0;
     for (const InsLogger& logger : recording.loggers) clock = std::max(clock, logger.shared_clock + 1);
@@ -101,7 +101,8 @@ class InsTopicReader {
       start = std::min(start, imu.rows.front().time);
     }
     for (auto& [index, imu] : imus_) {
-      recording.loggers.push_back({.name = file_ + " " + imu.topic, .time = {}, .shared_clock = clock});
+      recording.loggers.push_back(
+          {.name = file_ + " " + imu.topic, .time = {}, .shared_clock = clock, .states_unit = true});
       recording.sensors.push_back(make_sensor(imu, start, recording.loggers.back()));
       recording.sensors.back().name = names[next++];
       recording.sensors.back().logger = recording.loggers.size() - 1;
@@ -112,6 +113,17 @@ class InsTopicReader {
   }
 
  private:
+  /// Topics of write_ins_mcap, whose frames are the names of the sensors.
+  bool is_written_by_kinfer() const {
+    return std::ranges::all_of(imus_, [](const auto& imu) { return imu.second.topic == ins_topic(imu.second.frame); });
+  }
+
+  std::vector<std::string> frames() const {
+    std::vector<std::string> names;
+    for (const auto& [index, imu] : imus_) names.push_back(imu.frame);
+    return names;
+  }
+
   bool is_asked(const std::string& topic) const {
     return asked_.empty() || std::ranges::find(asked_, topic) != asked_.end();
   }
@@ -254,6 +266,10 @@ std::vector<std::string> parts_of(const std::string& topic) {
 }
 
 }  // namespace
+
+std::string ins_topic(const std::string& sensor) {
+  return "/" + sensor + "/imu";
+}
 
 std::vector<std::string> short_topic_names(std::span<const std::string> topics) {
   std::map<std::string, std::size_t> uses;

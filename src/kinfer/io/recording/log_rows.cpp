@@ -11,6 +11,7 @@
 
 #include "kinfer/io/recording/ins_columns.hpp"
 #include "kinfer/io/recording/ins_row_reader.hpp"
+#include "kinfer/io/recording/possible_times.hpp"
 #include "kinfer/io/recording/recording_formats.hpp"
 
 namespace kinfer {
@@ -85,6 +86,7 @@ Result<std::vector<std::string>> each_log_row(const std::vector<std::string>& lo
   }
   const std::vector<std::filesystem::path> paths(logs.begin(), logs.end());
   KINFER_TRY(recording, read_recording(paths));
+  if (auto seconds = expect_seconds(recording); !seconds) return forward_error(seconds.error());
   if (auto done = each_row_of(recording, sensors, sink); !done)
     return error("{}: {}", fmt::join(logs, ", "), done.error().what);
   return recording.remarks;

@@ -3,22 +3,21 @@
 
 #include <fmt/format.h>
 
+#include "kinfer/measurement/unit_check.hpp"
+
 namespace kinfer {
 namespace {
 
-constexpr double longest_period = 0.5;    // [s] a log of 1 kHz in ms reads 1 s; no motion is seen at 2 Hz
 constexpr double shortest_period = 1e-5;  // [s] no INS samples at 100 kHz
+constexpr std::size_t few_rows = 3;       // that say nothing about the time between them
 constexpr double most_empty = 1000.0;     // rows that could have been between those that are there, for each of them
 constexpr double most_rows = 5e7;         // of a regular grid: a day of 500 Hz
 
 Result<void> check_times(const InsLogger& logger) {
   const double period = median_period(logger.time);
-  if (logger.time.size() < 3) return {};
-  if (period > longest_period || period < shortest_period)
-    return error(
-        "{}: rows are {:g} s apart, expected {:g} to {:g} s of an INS; is the time in another unit? In "
-        "milliseconds the header is t[ms]",
-        logger.name, period, shortest_period, longest_period);
+  if (logger.time.size() < few_rows) return {};
+  if (auto possible = expect_sample_period(period * clock_unit(logger).value_or(1.0), logger.name); !possible)
+    return possible;
   const double span = logger.time.back() - logger.time.front(), slots = span / period;
   if (slots > most_rows || slots > most_empty * static_cast<double>(logger.time.size()))
     return error("{}: {} rows {:g} s apart span {:g} s; is one of the times wrong, or are these several recordings?",
@@ -28,9 +27,24 @@ Result<void> check_times(const InsLogger& logger) {
 
 }  // namespace
 
+Result<void> expect_sample_period(double period, const std::string& logger) {
+  if (period <= longest_sample_period && period >= shortest_period) return {};
+  return error(
+      "{}: rows are {:g} s apart, expected {:g} to {:g} s of an INS; is the time in another unit? In milliseconds the "
+      "header is t[ms]",
+      logger, period, shortest_period, longest_sample_period);
+}
+
 Result<void> check_times(const InsRecording& recording) {
   for (const InsLogger& logger : recording.loggers)
     if (auto checked = check_times(logger); !checked) return checked;
+  return {};
+}
+
+Result<void> expect_seconds(const InsRecording& recording) {
+  for (const InsLogger& logger : recording.loggers)
+    if (logger.time.size() >= few_rows)
+      if (auto possible = expect_sample_period(median_period(logger.time), logger.name); !possible) return possible;
   return {};
 }
 

@@ -3,13 +3,21 @@
 // years later, would make a grid that no memory holds.
 #pragma once
 
+#include <string>
+
 #include "kinfer/base/result.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
 
 namespace kinfer {
 
 /// An error that names the logger whose rows are too far apart or too close, or that spans far more time than it has
-/// rows for.
+/// rows for. A unit that its file does not state may be another than seconds: who diagnoses the log converts it.
 Result<void> check_times(const InsRecording& recording);
+
+/// Of a recording that nobody diagnoses: an error, too, if the times of a logger are in another unit than seconds.
+Result<void> expect_seconds(const InsRecording& recording);
+
+/// An error, rows being so far apart [s].
+Result<void> expect_sample_period(double period, const std::string& logger);
 
 }  // namespace kinfer

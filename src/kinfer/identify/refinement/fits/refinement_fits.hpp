@@ -18,6 +18,7 @@ struct RefinementTask {
   const InsFacts& facts;
   const InsFitOptions& options;
   const std::vector<NamedZero>& zeros;
+  double least_noise = 1.0;  ///< in units of the quietest instruments' noise
 };
 
 struct RefinementFit {

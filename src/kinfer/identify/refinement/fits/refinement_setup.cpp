@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/identify/refinement/fits/thresholds.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -17,23 +18,32 @@ SplineGrid make_grid(const RecordedMotion& motion, double period) {
   return {motion.time.front(), period, std::max(min_intervals, static_cast<Index>(std::ceil(length / period)))};
 }
 
-double noise_or_from_density(double measured, double density, double sampling_rate) {
-  return measured > 0.0 ? measured : density * std::sqrt(0.5 * sampling_rate);
-}
-
-InsMeasurements sensor_blocks(const InsRecording& recording, const InsSensor& sensor, const SplineGrid& grid,
-                              const SensorModel& grade) {
+InsMeasurements sensor_blocks(const InsRecording& recording, const InsSensor& sensor, const SplineGrid& grid) {
   const auto time = recording.time(sensor);
-  const double sampling_rate = 1.0 / median_period(time);
   InsMeasurements r;
   r.angular_velocity = ins_blocks(sensor, time, InsInstrument::gyroscope, grid);
   r.force = ins_blocks(sensor, time, InsInstrument::accelerometer, grid);
   r.clipped_rate = clipped_blocks(sensor, time, InsInstrument::gyroscope, grid);
   r.clipped_force = clipped_blocks(sensor, time, InsInstrument::accelerometer, grid);
-  r.noise.angular_velocity =
-      noise_or_from_density(measurement_noise(r.angular_velocity), grade.gyroscope.noise_density, sampling_rate);
-  r.noise.force = noise_or_from_density(measurement_noise(r.force), grade.accelerometer.noise_density, sampling_rate);
   return r;
+}
+
+/// By the scatter of the measurements, or where there is too little by the grade's density. What seems less noisy than
+/// the quietest instruments is simulated, or stands still below its resolution.
+void set_noise(RefinementSetup& setup, const InsRecording& recording, const SensorModel& grade, double least_noise) {
+  for (std::size_t s = 0; s < recording.sensors.size(); ++s) {
+    InsMeasurements& measured = setup.problem.sensors[s];
+    const double bandwidth = std::sqrt(0.5 / median_period(recording.time(recording.sensors[s])));
+    const auto noise_of = [&](const std::vector<InsBlock>& blocks, double density, double least_density) {
+      const double scatter = measurement_noise(blocks), least = least_noise * least_density * bandwidth,
+                   noise = scatter > 0.0 ? scatter : density * bandwidth;
+      setup.is_noise_raised |= noise < least;
+      return std::max(noise, least);
+    };
+    measured.noise = {noise_of(measured.angular_velocity, grade.gyroscope.noise_density, least_rate_density),
+                      noise_of(measured.force, grade.accelerometer.noise_density, least_force_density)};
+    measured.noise_floor = measured.noise;
+  }
 }
 
 InsErrorPrior prior_of(const SensorModel& grade) {
@@ -99,7 +109,7 @@ void attach_joints(RefinementSetup& setup, const RecordedMotion& motion, const S
 
 RefinementSetup set_up_refinement(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
                                   const std::vector<InitialJoint>& starts, const SensorModel& grade,
-                                  double knot_spacing) {
+                                  double knot_spacing, double least_noise) {
   RefinementSetup setup;
   InsProblem& problem = setup.problem;
   problem.grid = make_grid(motion, knot_spacing);
@@ -109,8 +119,8 @@ RefinementSetup set_up_refinement(const InsRecording& recording, const RecordedM
                           .force_sd = grade.accelerometer.instability,
                           .time = grade.accelerometer.instability_time};
   for (const InsSensor& sensor : recording.sensors)
-    problem.sensors.push_back(sensor_blocks(recording, sensor, problem.grid, grade));
-  for (InsMeasurements& joint_positions : problem.sensors) joint_positions.noise_floor = joint_positions.noise;
+    problem.sensors.push_back(sensor_blocks(recording, sensor, problem.grid));
+  set_noise(setup, recording, grade, least_noise);
   InsUnknowns& x = setup.start;
   x.errors.resize(recording.sensors.size());
   std::vector<MatrixXd> rows;

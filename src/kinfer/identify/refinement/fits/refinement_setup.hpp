@@ -12,11 +12,13 @@ struct RefinementSetup {
   InsProblem problem;
   InsUnknowns start;
   std::vector<std::size_t> first_body, last_body;  ///< of each joint: one body, or several in series
+  bool is_noise_raised = false;                    ///< of a sensor, to the least
 };
 
-/// `knots`: knot spacing of the splines [s].
+/// `knot_spacing` of the splines [s]; `least_noise`: in units of the quietest instruments' noise, below which none of
+/// this recording is taken to be.
 RefinementSetup set_up_refinement(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
                                   const std::vector<InitialJoint>& starts, const SensorModel& grade,
-                                  double knot_spacing);
+                                  double knot_spacing, double least_noise = 1.0);
 
 }  // namespace kinfer::identify

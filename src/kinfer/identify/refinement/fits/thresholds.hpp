@@ -3,6 +3,7 @@
 // What half and double of those in KINFER_THRESHOLD do to the figures: docs/development/thresholds.md.
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "kinfer/base/threshold.hpp"
@@ -14,6 +15,14 @@ KINFER_THRESHOLD(identify, max_azimuth_sd, 0.1);
 
 /// [rad] Axis deviation of a relaxed joint from which it is reported; larger reports fewer. Data not recorded.
 inline constexpr double min_reported_axis_deviation = 0.01;
+
+/// [rad/√s], [m/s^1.5] Noise densities of the quietest instruments: fibre gyroscopes have 3·10⁻⁷ rad/√s (0.001 °/√h),
+/// servo accelerometers 10⁻⁵. Simulated sensors without noise have 10⁻¹⁴, and the normal equations of such a fit are
+/// beyond the arithmetic's precision.
+inline constexpr double least_rate_density = 3e-7, least_force_density = 1e-5;
+/// Multiples of them that are taken one after another until the arithmetic holds the equations; larger loses accuracy.
+/// Of simulated sensors without noise, excavators and arms need the first, telescopes the last.
+inline constexpr std::array least_noises{1.0, 10.0, 100.0};
 
 /// Residual noise over noise floor from which a sensor is reported; larger reports fewer. Data not recorded.
 inline constexpr double max_sensor_misfit = 3.0;

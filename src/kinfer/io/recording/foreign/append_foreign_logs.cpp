@@ -57,6 +57,7 @@ Result<ForeignLog> joined(const std::vector<ForeignLog>& logs) {
   ForeignLog whole;
   for (const ForeignLog& log : logs) {
     whole.has_free_acceleration |= log.has_free_acceleration;
+    whole.states_time_unit |= log.states_time_unit;
     whole.name += (whole.name.empty() ? "" : "+") + log.name;
     whole.time.insert(whole.time.end(), log.time.begin(), log.time.end());
     whole.remarks.insert(whole.remarks.end(), log.remarks.begin(), log.remarks.end());
@@ -75,7 +76,7 @@ Result<ForeignLog> joined(const std::vector<ForeignLog>& logs) {
 
 Result<void> append_log(ForeignLog log, InsRecording& recording) {
   const std::size_t first = recording.sensors.size();
-  recording.loggers.push_back({.name = log.name, .time = std::move(log.time)});
+  recording.loggers.push_back({.name = log.name, .time = std::move(log.time), .states_unit = log.states_time_unit});
   recording.remarks.insert(recording.remarks.end(), log.remarks.begin(), log.remarks.end());
   for (InsSensor& sensor : log.sensors) {
     if (!sensor.acceleration.present() && log.has_free_acceleration)

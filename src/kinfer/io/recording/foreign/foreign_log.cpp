@@ -70,24 +70,27 @@ struct TimedRows {
   std::vector<std::size_t> rows;
   std::vector<double> time;
   std::size_t repeated = 0;
+  bool states_unit = false;
 };
 
 Result<TimedRows> read_times(const CsvTable& table, const LogColumns& columns, const InsMap& map,
                              const std::string& name) {
   if (columns.counts_rows) {
     TimedRows counted;
+    counted.states_unit = columns.counter.states_unit;
     for (std::size_t row = 0; row < table.rows(); ++row) {
       counted.rows.push_back(row);
-      counted.time.push_back(columns.counter_tick * static_cast<double>(row));
+      counted.time.push_back(columns.counter.tick * static_cast<double>(row));
     }
     if (counted.time.empty()) return error("{}: the file has no rows", name);
     return counted;
   }
-  const bool has_clock =
-      columns.clock && (!columns.counter || ClockReader(table, *columns.clock, 1.0, 0.0, name).has_values());
-  ClockReader clock = has_clock ? ClockReader(table, *columns.clock, columns.clock_tick, map.clock.wraps, name)
-                                : ClockReader(table, *columns.counter, columns.counter_tick, map.counter.wraps, name);
+  const bool has_clock = columns.clock.index && (!columns.counter.index ||
+                                                 ClockReader(table, *columns.clock.index, 1.0, 0.0, name).has_values());
+  const ClockColumn& column = has_clock ? columns.clock : columns.counter;
+  ClockReader clock(table, *column.index, column.tick, has_clock ? map.clock.wraps : map.counter.wraps, name);
   TimedRows timed;
+  timed.states_unit = column.states_unit;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     KINFER_TRY(time, clock.next(row));
     if (std::isnan(time)) continue;
@@ -190,6 +193,7 @@ Result<ForeignLog> parse_foreign_log(std::string_view text, const std::filesyste
     for (std::size_t i = 0; i < 3; ++i) orient(instrument_columns(sensor, i), map.sign[i], map.axes);
   log.has_free_acceleration = columns.has_free_acceleration;
   log.time = std::move(timed.time);
+  log.states_time_unit = timed.states_unit;
   if (timed.repeated > 0)
     log.remarks.push_back(
         fmt::format("{}: {} rows have the time of the row before and are not used", name, timed.repeated));

@@ -20,6 +20,7 @@ struct ForeignLog {
   std::vector<double> time;                       ///< [s], strictly increasing
   std::vector<InsSensor> sensors;                 ///< without faults; columns of missing instruments are empty
   std::vector<std::array<bool, 3>> stated_units;  ///< of each sensor's instruments
+  bool states_time_unit = false;
   std::vector<std::string> remarks;
   bool has_free_acceleration = false;  ///< columns from which gravity is removed; they are not used
 };

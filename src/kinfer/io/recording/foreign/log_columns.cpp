@@ -47,9 +47,16 @@ Result<void> set_factor(LogColumn& column, const ColumnHeader& stated, const Col
   return {};
 }
 
-double time_factor(const ColumnHeader& header) {
+/// [s] per unit that the header states, if it does.
+std::optional<double> stated_time_unit(const ColumnHeader& header) {
   const auto unit = header.has_unit ? find_unit(header.unit) : std::nullopt;
-  return unit && unit->dimension == Dimension::time ? unit->factor : 1.0;
+  if (!unit || unit->dimension != Dimension::time) return std::nullopt;
+  return unit->factor;
+}
+
+ClockColumn clock_column(std::size_t index, const ColumnHeader& header) {
+  const auto unit = stated_time_unit(header);
+  return {index, unit.value_or(1.0), unit.has_value()};
 }
 
 Result<LogColumns> mapped_columns(const CsvHeader& header, const InsMap& map, const std::string& where) {
@@ -60,8 +67,7 @@ Result<LogColumns> mapped_columns(const CsvHeader& header, const InsMap& map, co
     if (!index) return error("{}: no column is named \"{}\", which the column map wants", where, theirs.name);
     const ColumnHeader in_file = plain_header(header.columns[*index]);
     if (ours == "t") {
-      found.clock = *index;
-      found.clock_tick = time_factor(theirs.has_unit ? theirs : in_file);
+      found.clock = clock_column(*index, theirs.has_unit ? theirs : in_file);
       continue;
     }
     const GuessedColumn channel = guess_column(ours);
@@ -82,8 +88,9 @@ Result<LogColumns> guessed_columns(const CsvHeader& header, const InsMap& map, c
   for (std::size_t c = 0; c < header.columns.size(); ++c) {
     const ColumnHeader in_file = plain_header(header.columns[c]);
     const GuessedColumn guess = guess_column(in_file.name);
-    if (guess.kind == ChannelKind::time && !found.clock) found.clock = c, found.clock_tick = time_factor(in_file);
-    if (std::ranges::find(counter_names, in_file.name) != counter_names.end() && !found.counter) found.counter = c;
+    if (guess.kind == ChannelKind::time && !found.clock.index) found.clock = clock_column(c, in_file);
+    if (std::ranges::find(counter_names, in_file.name) != counter_names.end() && !found.counter.index)
+      found.counter.index = c;
     found.has_free_acceleration |= guess.kind == ChannelKind::free_acceleration;
     if (guess.kind != ChannelKind::force && guess.kind != ChannelKind::rate && guess.kind != ChannelKind::field)
       continue;
@@ -111,17 +118,18 @@ double number_after(std::string_view preamble, const std::string& word) {
 
 /// Overrides what was guessed by what the map says of a clock.
 Result<void> apply_clock(const InsClock& clock, const CsvHeader& header, std::string_view preamble,
-                         const std::string& where, std::optional<std::size_t>& column, double& tick) {
+                         const std::string& where, ClockColumn& column) {
   if (!clock.column.empty()) {
-    column = index_of(header, plain_header(clock.column).name);
-    if (column) {
-      const ColumnHeader theirs = plain_header(clock.column);
-      tick = time_factor(theirs.has_unit ? theirs : plain_header(header.columns[*column]));
-    }
+    const ColumnHeader theirs = plain_header(clock.column);
+    column.index = index_of(header, theirs.name);
+    if (column.index)
+      column = clock_column(*column.index, theirs.has_unit ? theirs : plain_header(header.columns[*column.index]));
   }
-  if (clock.tick > 0.0) tick = clock.tick;
-  if (const double rate = number_after(preamble, clock.rate_from); rate > 0.0) tick = 1.0 / rate;
-  if (!(tick > 0.0)) return error("{}: the clock's tick is {} s", where, tick);
+  const double rate = number_after(preamble, clock.rate_from);
+  if (clock.tick > 0.0) column.tick = clock.tick;
+  if (rate > 0.0) column.tick = 1.0 / rate;
+  column.states_unit |= clock.tick > 0.0 || rate > 0.0;
+  if (!(column.tick > 0.0)) return error("{}: the clock's tick is {} s", where, column.tick);
   return {};
 }
 
@@ -132,9 +140,9 @@ Result<LogColumns> find_log_columns(const CsvHeader& header, std::string_view pr
   const std::string where = fmt::format("{}:{}", name, header.line);
   KINFER_TRY(found, map.columns.empty() ? guessed_columns(header, map, where) : mapped_columns(header, map, where));
   LogColumns columns = std::move(found);
-  if (auto done = apply_clock(map.clock, header, preamble, where, columns.clock, columns.clock_tick); !done)
+  if (auto done = apply_clock(map.clock, header, preamble, where, columns.clock); !done)
     return forward_error(done.error());
-  if (auto done = apply_clock(map.counter, header, preamble, where, columns.counter, columns.counter_tick); !done)
+  if (auto done = apply_clock(map.counter, header, preamble, where, columns.counter); !done)
     return forward_error(done.error());
   if (columns.channels.empty() && columns.has_free_acceleration)
     return error(
@@ -146,8 +154,9 @@ Result<LogColumns> find_log_columns(const CsvHeader& header, std::string_view pr
         "{}: no column is known as that of an accelerometer, gyroscope or magnetometer; a column map "
         "(--columns) can say which is which",
         where);
-  columns.counts_rows = !columns.clock && !columns.counter && map.counter.column.empty() && map.counter.tick > 0.0;
-  if (!columns.clock && !columns.counter && !columns.counts_rows)
+  columns.counts_rows =
+      !columns.clock.index && !columns.counter.index && map.counter.column.empty() && map.counter.tick > 0.0;
+  if (!columns.clock.index && !columns.counter.index && !columns.counts_rows)
     return error("{}: no column is known as a time; a column map (--columns) can say t = \"name [unit]\"", where);
   return columns;
 }

@@ -20,10 +20,15 @@ struct LogColumn {
   bool has_unit = false;
 };
 
+struct ClockColumn {
+  std::optional<std::size_t> index;  ///< in the table
+  double tick = 1.0;                 ///< [s] of one count
+  bool states_unit = false;          ///< the header, or the map, says how long a count is
+};
+
 struct LogColumns {
   std::vector<LogColumn> channels;
-  std::optional<std::size_t> clock, counter;    ///< columns
-  double clock_tick = 1.0, counter_tick = 1.0;  ///< [s] of one count
+  ClockColumn clock, counter;
   bool has_free_acceleration = false;
   bool counts_rows = false;  ///< the row's number is the counter: there is no column of times
 };
