@@ -120,7 +120,8 @@ TEST_F(Trust, ResultsOfAnEarlierRunThatAreNotRenewedDoNotStay) {
   // As if the earlier run had written one file more, and had been told of one elsewhere.
   write(in("precious"), "mine");
   std::string record = slurp(in("out/run.json"));
-  record.replace(record.find("\"poses.csv\""), 11, R"("poses.csv", "old.csv", "../precious", ".", "sub")");
+  record.replace(record.find("\"poses.csv\""), 11,
+                 R"("poses.csv", "old.csv", "../precious", ".", "sub", "poses.csv\u0000x")");
   write(in("out/run.json"), record);
   write(in("out/old.csv"), "old");
   ASSERT_EQ(kinfer(poses("out")).code, 0);
@@ -132,7 +133,7 @@ TEST_F(Trust, ResultsOfAnEarlierRunThatAreNotRenewedDoNotStay) {
   write(in("out/old.csv"), "old");
   ASSERT_EQ(kinfer(poses("out")).code, 0);
   EXPECT_FALSE(fs::exists(in("out/old.csv")));
-  EXPECT_TRUE(fs::exists(in("out/mine.txt")) && fs::exists(in("out/sub")));
+  EXPECT_TRUE(fs::exists(in("out/mine.txt")) && fs::exists(in("out/sub")) && fs::exists(in("out/poses.csv")));
 }
 
 TEST_F(Trust, WhatIsReadIsNotDropped) {

@@ -60,9 +60,10 @@ bool can_be_dropped(const std::filesystem::path& folder, const std::string& name
                     const std::vector<std::string>& inputs) {
   std::error_code failure;
   const std::filesystem::path file = folder / name;
-  return file.filename() == name && std::filesystem::is_regular_file(file, failure) &&
-         std::ranges::none_of(
-             inputs, [&](const std::string& input) { return std::filesystem::equivalent(input, file, failure); });
+  return name.find('\0') == std::string::npos && file.filename() == name &&
+         std::filesystem::is_regular_file(file, failure) && std::ranges::none_of(inputs, [&](const std::string& input) {
+           return std::filesystem::equivalent(input, file, failure);
+         });
 }
 
 }  // namespace
