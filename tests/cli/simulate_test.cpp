@@ -99,6 +99,13 @@ TEST_F(Simulate, AnOwnSensorGradeAndSixAxesAreRecorded) {
   EXPECT_EQ(slurp(in("data/imu.csv")).find("_mx"), std::string::npos);
 }
 
+TEST_F(Simulate, RowsThatAreStampedSeveralAtOnceAreRead) {
+  ASSERT_EQ(kinfer("simulate tree --duration 16 --motion prescribed --packet 3 --out data").code, 0);
+  const Outcome run = kinfer("inspect data/imu.csv");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_NE(run.out.find(" Hz (100.00 % of it is there)"), std::string::npos) << run.out;
+}
+
 TEST_F(Simulate, PosesHaveAHeadlineAsJson) {
   const Outcome run = kinfer("simulate-poses --robot " + source("examples/robot6/robot.toml") +
                              " --poses 7 --sigma 0.02 --measured pose --out poses --json");

@@ -148,6 +148,25 @@ TEST_F(Trust, WhatIsReadIsNotDropped) {
   EXPECT_TRUE(fs::exists(in("out/poses.csv")));
 }
 
+TEST_F(Trust, AResultDoesNotTakeThePlaceOfAnInput) {
+  const std::string robot = source("examples/robot6/robot.toml");
+  ASSERT_EQ(kinfer("simulate-poses --robot " + robot + " --poses 20 --out data").code, 0);
+  fs::create_directories(in("out"));
+  fs::copy_file(in("data/poses.csv"), in("out/accuracy.csv"));
+  const std::string before = slurp(in("out/accuracy.csv"));
+  const std::string calibrate = "calibrate --robot " + robot + " --model geometry --data ";
+  const Outcome run = kinfer(calibrate + "out/accuracy.csv --out out");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("out/accuracy.csv: is read, too, and would be lost"));
+  EXPECT_EQ(slurp(in("out/accuracy.csv")), before);
+  EXPECT_FALSE(fs::exists(in("out/chain.toml")));
+  // A result of its own may be renewed, also where an older version has not listed it.
+  ASSERT_EQ(kinfer(calibrate + "data/poses.csv --out own").code, 0);
+  EXPECT_NE(kinfer("calibrate --robot own/chain.toml --model geometry --data data/poses.csv --out own").code, 2);
+  write(in("own/run.json"), R"({"verb": "calibrate"})");
+  EXPECT_NE(kinfer("calibrate --robot own/chain.toml --model geometry --data data/poses.csv --out own").code, 2);
+}
+
 TEST_F(Trust, ResultsOfTwoVerbsDoNotMix) {
   const std::string robot = source("examples/robot6/robot.toml");
   ASSERT_EQ(kinfer("simulate-poses --robot " + robot + " --poses 20 --out data").code, 0);

@@ -19,6 +19,7 @@
 #include "kinfer/cli/parts/common.hpp"
 #include "kinfer/cli/parts/process.hpp"
 #include "kinfer/cli/parts/program.hpp"
+#include "kinfer/cli/parts/run_record.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/words/language.hpp"

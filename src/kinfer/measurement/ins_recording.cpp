@@ -2,6 +2,7 @@
 #include "kinfer/measurement/ins_recording.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "kinfer/base/expect.hpp"
 
@@ -30,17 +31,37 @@ InsSample sample(const InsSensor& sensor, std::span<const double> time, std::siz
   return sample;
 }
 
-double median_period(std::span<const double> time) {
-  if (time.size() < 2) return 0.0;
+namespace {
+
+std::vector<double> steps_of(std::span<const double> time) {
   std::vector<double> steps(time.size() - 1);
   for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = time[i + 1] - time[i];
+  return steps;
+}
+
+}  // namespace
+
+double median_period(std::span<const double> time) {
+  if (time.size() < 2) return 0.0;
+  std::vector<double> steps = steps_of(time);
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::ranges::nth_element(steps, middle);
   return *middle;
 }
 
+double sample_period(std::span<const double> time) {
+  const double period = median_period(time);
+  if (time.size() < 2 || period >= shortest_sample_period) return period;
+  std::vector<double> steps = steps_of(time);
+  const auto longest_usual = steps.end() - static_cast<std::ptrdiff_t>(steps.size() / 100 + 1);
+  std::ranges::nth_element(steps, longest_usual);
+  const double limit = gap_factor * *longest_usual;
+  const auto end = std::partition(steps.begin(), steps.end(), [limit](double step) { return step <= limit; });
+  return std::accumulate(steps.begin(), end, 0.0) / static_cast<double>(end - steps.begin());
+}
+
 std::vector<TimeGap> gaps(std::span<const double> time) {
-  const double limit = gap_factor * median_period(time);
+  const double limit = gap_factor * sample_period(time);
   std::vector<TimeGap> found;
   for (std::size_t row = 1; row < time.size(); ++row)
     if (time[row] - time[row - 1] > limit) found.push_back({row, time[row - 1], time[row]});

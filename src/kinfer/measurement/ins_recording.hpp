@@ -82,12 +82,16 @@ struct InsSample {
 };
 InsSample sample(const InsSensor& sensor, std::span<const double> time, std::size_t row);
 
-/// [s] between rows of a sensor that can follow a machine: no motion is seen at 2 Hz, and a log of 1 kHz in
-/// milliseconds reads 1.
-inline constexpr double longest_sample_period = 0.5;
+/// [s] between samples of a sensor that can follow a machine: no INS samples at 100 kHz, no motion is seen at 2 Hz, and
+/// a log of 1 kHz in milliseconds reads 1.
+inline constexpr double shortest_sample_period = 1e-5, longest_sample_period = 0.5;
 
 /// Median time between rows [s]; 0 if there are fewer than two rows.
 double median_period(std::span<const double> time);
+
+/// The same between samples: where most rows are closer than samples can be, because several are stamped at once, the
+/// mean step without gaps. Packets of 100 rows and more are not seen through.
+double sample_period(std::span<const double> time);
 
 /// A time step longer than this multiple of the typical period is a gap.
 constexpr double gap_factor = 3.5;

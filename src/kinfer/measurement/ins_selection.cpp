@@ -54,8 +54,10 @@ InsRecording within(const InsRecording& recording, double begin, double end) {
   };
   for (const InsLogger& logger : recording.loggers) {
     const auto [first, last] = rows(logger.time);
-    InsLogger& kept = result.loggers.emplace_back(logger);
-    kept.time = part(logger.time, first, std::max(first, last));
+    result.loggers.push_back({.name = logger.name,
+                              .time = part(logger.time, first, std::max(first, last)),
+                              .shared_clock = logger.shared_clock,
+                              .states_unit = logger.states_unit});
   }
   for (InsSensor& sensor : result.sensors) {
     const auto [first, last] = rows(recording.loggers[sensor.logger].time);

@@ -134,7 +134,7 @@ void check_field_unit(const InsSensor& sensor, std::vector<UnitWarning>& warning
 
 std::optional<double> clock_unit(const InsLogger& logger) {
   if (logger.states_unit) return 1.0;
-  const double period = median_period(logger.time);
+  const double period = sample_period(logger.time);
   for (const double unit : {1.0, 1e-3, 1e-6, 1e-9})
     if (period * unit <= longest_sample_period) return unit;
   return std::nullopt;

@@ -29,6 +29,19 @@ TEST(PossibleTimes, MillisecondsWithoutAUnitAreForTheDiagnosisToConvert) {
   EXPECT_FALSE(check_times(recording(1e12, 1000)));
 }
 
+TEST(PossibleTimes, RowsThatAreStampedSeveralAtOnceAreNotTooClose) {
+  for (const std::size_t packet : {2U, 10U}) {
+    InsRecording log = recording(0.005, 1000);
+    std::vector<double>& time = log.loggers.front().time;
+    for (std::size_t i = 0; i < time.size(); ++i)
+      time[i] = time[i / packet * packet] + 1e-6 * static_cast<double>(i % packet);
+    EXPECT_TRUE(check_times(log)) << packet;
+    EXPECT_TRUE(expect_seconds(log)) << packet;
+    time.push_back(1e9);
+    EXPECT_FALSE(check_times(log)) << packet;
+  }
+}
+
 TEST(PossibleTimes, OneRowYearsLaterIsRefused) {
   InsRecording log = recording(0.01, 1000);
   log.loggers.front().time.push_back(1e9);

@@ -22,7 +22,7 @@ constexpr double micro_g = 1e-6 * standard_gravity;  // [m/s²]
 
 void print_loggers(const InsRecording& recording) {
   for (const InsLogger& logger : recording.loggers) {
-    const double period = median_period(logger.time), span = logger.time.back() - logger.time.front();
+    const double period = sample_period(logger.time), span = logger.time.back() - logger.time.front();
     print_text("{}: {} rows, {:.3f} s to {:.3f} s", logger.name, logger.time.size(), logger.time.front(),
                logger.time.back());
     if (period > 0.0) print_text(", {:.4g} Hz", 1.0 / period);

@@ -17,7 +17,7 @@ ordered_json logger_json(const InsLogger& logger) {
   ordered_json out{{"name", logger.name}, {"rows", logger.time.size()}};
   if (logger.time.empty()) return out;
   out["begin_s"] = logger.time.front(), out["end_s"] = logger.time.back();
-  if (const double period = median_period(logger.time); period > 0.0) out["rate_hz"] = 1.0 / period;
+  if (const double period = sample_period(logger.time); period > 0.0) out["rate_hz"] = 1.0 / period;
   out["gaps"] = ordered_json::array();
   for (const auto& gap : gaps(logger.time)) out["gaps"].push_back({{"begin_s", gap.begin}, {"end_s", gap.end}});
   return out;

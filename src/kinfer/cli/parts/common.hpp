@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by all verbs: common options, exit codes, progress, run.json.
+// Shared by all verbs: common options, exit codes, progress.
 #pragma once
 
 #include <chrono>
@@ -12,8 +12,6 @@
 #include "kinfer/base/observer.hpp"
 #include "kinfer/base/result.hpp"
 #include "kinfer/cli/parts/arguments.hpp"
-#include "kinfer/cli/parts/output_folder.hpp"
-#include "kinfer/io/evidence/fingerprints.hpp"
 
 namespace kinfer::cli {
 
@@ -58,25 +56,5 @@ class ProgressLine {
   std::chrono::steady_clock::time_point last_{}, stage_began_{};
   std::string stage_;
 };
-
-/// Run-specific data that is kept out of evidence.json: command, time, threads, paths.
-class RunRecord {
- public:
-  RunRecord(std::string verb, const CommonOptions& options);
-  void add_input(const std::filesystem::path& path);
-  /// The folder of the results. An error where another verb has its results there: files of both would mix.
-  Result<OutputFolder> open_folder(const std::filesystem::path& path) const;
-  /// run.json, after all other results. Those of an earlier run that this one has not renewed are dropped.
-  Result<void> write(OutputFolder& folder) const;
-
- private:
-  std::string verb_;
-  CommonOptions options_;
-  std::vector<std::string> inputs_;
-  std::chrono::system_clock::time_point begin_;
-};
-
-/// Stores the arguments of the program, without its name, for run.json.
-void store_command_line(const std::vector<std::string>& arguments);
 
 }  // namespace kinfer::cli

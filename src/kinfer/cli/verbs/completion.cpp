@@ -6,6 +6,7 @@
 
 #include "kinfer/base/version.hpp"
 #include "kinfer/cli/help/man_page.hpp"
+#include "kinfer/cli/parts/output_folder.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/text/text_file.hpp"

@@ -4,6 +4,7 @@
 
 #include "kinfer/calibrate/start/circle_point_analysis.hpp"
 #include "kinfer/cli/options/robot_option.hpp"
+#include "kinfer/cli/parts/run_record.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/frames_json.hpp"

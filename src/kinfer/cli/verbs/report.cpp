@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "kinfer/cli/parts/evidence_files.hpp"
+#include "kinfer/cli/parts/output_folder.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/calibration_json.hpp"

@@ -11,6 +11,7 @@
 #include "kinfer/cli/options/drive_choices.hpp"
 #include "kinfer/cli/options/simulated_faults.hpp"
 #include "kinfer/cli/parts/expected_cost.hpp"
+#include "kinfer/cli/parts/run_record.hpp"
 #include "kinfer/cli/parts/simulation_files.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"

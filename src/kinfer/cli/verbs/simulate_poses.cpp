@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kinfer/cli/options/robot_option.hpp"
+#include "kinfer/cli/parts/run_record.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"

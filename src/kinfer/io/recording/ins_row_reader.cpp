@@ -17,7 +17,7 @@ namespace {
 
 constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 constexpr double largest_reading = 1e9;  // [m/s²], [rad/s], [µT]; the sums of squares stay finite
-constexpr std::size_t period_rows = 20;  // whose distance in time is that of an INS
+constexpr std::size_t period_rows = 20;  // after which the time between them is judged
 constexpr int gravity_rows = 100;        // over which the mean specific force is compared with gravity
 
 /// The cell as a number, NaN where it is empty or not finite; nothing where it is no number.
@@ -69,7 +69,7 @@ Result<void> InsRowReader::finish(const Sink& sink) {
   }
   if (!columns_) return error("{}: the file is empty", name_);
   if (rows_ == 0) return error("{}: the file has a header but no rows", name_);
-  return first_times_.size() < period_rows ? check_period() : Result<void>{};
+  return first_times_.size() < period_rows ? check_first_times() : Result<void>{};
 }
 
 Result<void> InsRowReader::add_line(std::string_view line, const Sink& sink, bool is_last) {
@@ -136,7 +136,8 @@ Result<void> InsRowReader::read_row(std::string_view line, const Sink& sink, boo
   row_.time = time;
   if (first_times_.size() < period_rows) {
     first_times_.push_back(time);
-    if (auto checked = first_times_.size() < period_rows ? Result<void>{} : check_period(); !checked) return checked;
+    if (first_times_.size() == period_rows)
+      if (auto checked = check_first_times(); !checked) return checked;
   }
   for (std::size_t s = 0; s < values_.size(); ++s) {
     const auto& [force, rate, field] = values_[s];
@@ -164,12 +165,9 @@ Result<void> InsRowReader::check_time(double time) {
   return {};
 }
 
-/// In ms instead of s: told by the first rows. Rows that arrive in packets may be closer than any INS samples.
-Result<void> InsRowReader::check_period() const {
-  constexpr std::size_t few_rows = 3;
-  if (times_ == RowTimes::any || first_times_.size() < few_rows) return {};
-  const double period = median_period(first_times_);
-  return period > longest_sample_period ? expect_sample_period(period, name_) : Result<void>{};
+/// In ms instead of s: told by the first rows, if they are in order.
+Result<void> InsRowReader::check_first_times() const {
+  return times_ == RowTimes::any ? Result<void>{} : expect_seconds(first_times_, name_);
 }
 
 /// In g instead of m/s², or a unit in between: told by the mean of the first rows.

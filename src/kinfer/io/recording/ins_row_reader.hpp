@@ -46,7 +46,7 @@ class InsRowReader {
   Result<void> read_header(const std::string& line);
   Result<void> read_row(std::string_view line, const Sink& sink, bool is_last);
   Result<void> check_time(double time);
-  Result<void> check_period() const;
+  Result<void> check_first_times() const;
   Result<void> check_gravity();
 
   std::vector<std::string> sensors_, remarks_;

@@ -3,6 +3,7 @@
 // years later, would make a grid that no memory holds.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "kinfer/base/result.hpp"
@@ -16,8 +17,6 @@ Result<void> check_times(const InsRecording& recording);
 
 /// Of a recording that nobody diagnoses: an error, too, if the times of a logger are in another unit than seconds.
 Result<void> expect_seconds(const InsRecording& recording);
-
-/// An error, rows being so far apart [s].
-Result<void> expect_sample_period(double period, const std::string& logger);
+Result<void> expect_seconds(std::span<const double> time, const std::string& logger);
 
 }  // namespace kinfer
