@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "kinfer/track/readout/readout.hpp"
 
 namespace kinfer {
@@ -29,14 +31,15 @@ struct Stated {
   double q = 0.0, sd = 0.0;  // [rad]
 };
 
-/// Position of the joint after five seconds of rest at `turned`, where a filter on the chain states `at` of each time.
+/// Position of the joint after five seconds (500 rows) of rest at `turned`, where a filter on the chain states `at` of
+/// each time.
 template <class At>
-TrackState fused(const At& at, bool is_sound, const TrackingModel& model, bool is_settled = true) {
+TrackState fused(const At& at, bool is_sound, const TrackingModel& model, bool is_settled = true, int rows = 500) {
   track::ComposedFilters composed(model);
   track::JointFusion fusion(model);
   TrackState chain;
   const Mat3 across = model.bodies[1].parent_R_axis, relative = across * rot_z(turned) * across.transpose();
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < rows; ++i) {
     InsRow row{.time = i * period, .sensors = {}};
     for (const Mat3& world_R_sensor : {Mat3(Mat3::Identity()), relative})
       row.sensors.push_back({.time = row.time,
@@ -48,10 +51,13 @@ TrackState fused(const At& at, bool is_sound, const TrackingModel& model, bool i
     chain = track::unknown_state(model);
     chain.time = row.time;
     const Stated stated = at(row.time);
+    chain.q.setZero();
     chain.q[0] = stated.q;
-    chain.qd[0] = 0.0;
-    chain.sd_q[0] = stated.sd;
-    chain.joints[0] = {.source = JointSource::chain, .reference = JointReference::chain};
+    chain.qd.setZero();
+    chain.sd_q.setConstant(stated.sd);
+    chain.joints[0] = {.source = JointSource::chain,
+                       .reference = JointReference::chain,
+                       .parent_q_child = Quat(Mat3(across * rot_z(stated.q) * across.transpose()))};
     const std::vector<bool> sound{true, is_sound}, settled{is_settled};
     const std::vector<std::optional<double>> heading_sd(model.joints.size());
     fusion.apply(model, composed, {.is_sound = sound, .is_settled = settled, .heading_sd = heading_sd}, chain);
@@ -63,8 +69,12 @@ TrackState fused(double q, double sd, bool is_sound) {
   return fused([&](double) { return Stated{q, sd}; }, is_sound, hinge());
 }
 
+/// It knows the accelerometers' errors, which the sensors' own filters do not.
 TEST(JointFusion, AChainThatFitsIsLeftAlone) {
-  const TrackState state = fused(turned + 0.02, 1e-3, true);
+  TrackingModel model = hinge();
+  model.prior.bias.force = 0.2;
+  for (TrackingSensor& sensor : model.sensors) sensor.accelerometer_bias = Vec3(0.1, 0.1, 0.1);
+  const TrackState state = fused([](double) { return Stated{turned + 0.02, 1e-3}; }, true, model);
   EXPECT_EQ(state.q[0], turned + 0.02);
   EXPECT_EQ(state.joints[0].source, JointSource::chain);
 }
@@ -73,6 +83,29 @@ TEST(JointFusion, AChainThatSaysItDoesNotFitGivesWayToTheSensorsThemselves) {
   const TrackState state = fused(turned + 0.5, 0.6, true);
   EXPECT_NEAR(state.q[0], turned, 0.03);
   EXPECT_EQ(state.joints[0].source, JointSource::composed);
+}
+
+/// Its innovations follow what it does not explain with a delay; the sensors are as good as they were.
+TEST(JointFusion, AChainFartherOffThanItStatesIsNotHeldAgainstTheSensors) {
+  const TrackState state = fused(turned + 0.5, 0.1, true);
+  EXPECT_NEAR(state.q[0], turned, 0.03);
+}
+
+TEST(JointFusion, TheFirstPositionIsAnAverageAlready) {
+  const auto off = [](double) { return Stated{turned + 0.5, 1.5}; };
+  EXPECT_NEAR(fused(off, true, hinge(), true, 1).q[0], turned, 0.03);
+}
+
+/// Motion does not show its heading, and the chain's sways by 3° about that of the sensors, which start at zero.
+TEST(JointFusion, AHeadingThatCountsFromTheStartIsThatOfTheSensors) {
+  TrackingModel model = hinge(upright);
+  model.bodies[1].motion = TrackingMotion::spherical;
+  model.joints[0].positions = 3;
+  const auto swaying = [](double time) { return Stated{0.05 * std::sin(3.0 * time), 0.01}; };
+  const TrackState state = fused(swaying, true, model);
+  const Quat& found = state.joints[0].parent_q_child;
+  const double sway = 0.05 * std::sin(3.0 * 4.99), heading = 2.0 * std::atan2(found.z(), found.w());
+  EXPECT_LT(std::abs(heading), 0.2 * std::abs(sway));
 }
 
 TEST(JointFusion, AFaultySensorIsNotBelieved) {

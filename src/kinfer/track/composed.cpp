@@ -17,11 +17,12 @@ namespace {
 using Index = Eigen::Index;
 
 constexpr double unknown_position = std::numeric_limits<double>::quiet_NaN();
-constexpr double heading_walk = 1e-3;      // [rad/√s] of the difference of two headings
-constexpr double axis_error = 0.01;        // [rad] of an axis' horizontal parts as two filters see them
-constexpr double axis_error_time = 2.0;    // [s] over which that error stays alike
-constexpr double known_bias_sd = 1e-3;     // [rad/s] by which a gyroscope's bias changed since the identification
-constexpr double axis_memory = 10.0;       // [s] over which its error is averaged
+constexpr double heading_walk = 1e-3;            // [rad/√s] of the difference of two headings
+constexpr double axis_error = 0.01;              // [rad] of an axis' horizontal parts as two filters see them
+constexpr double axis_error_time = 2.0;          // [s] over which that error stays alike
+constexpr double known_bias_sd = 1e-3;           // [rad/s] by which a gyroscope's bias changed since the identification
+constexpr double largest_error_distance = 32.9;  // χ² of 12 errors of an accelerometer, one in a thousand is beyond
+constexpr double axis_memory = 10.0;             // [s] over which its error is averaged
 constexpr double least_turn = 1e-2;        // 1 − |mean of exp(iq)|²: a joint that has turned less tells nothing
 constexpr double least_inclination = 0.1;  // sine, below which an axis does not determine the heading
 
@@ -36,6 +37,16 @@ KinferFilter filter_of(const TrackingSensor& sensor) {
   estimate.bias = sensor.gyroscope_bias;
   filter.set_estimate(estimate);
   return filter;
+}
+
+/// [rad²] per direction by which gravity seems tilted: δ = S f + b, the mean over all directions of f. The filter does
+/// not know these errors. What the prior hardly allows is not the accelerometer's, but what the chain does not explain.
+double accelerometer_tilt(const TrackingSensor& sensor, const TrackingModel& model) {
+  const double bias = sensor.accelerometer_bias.squaredNorm(), scale = sensor.accelerometer_scale.squaredNorm();
+  const auto distance = [](double square_sum, double sd) { return square_sum > 0.0 ? square_sum / square(sd) : 0.0; };
+  if (!(distance(bias, model.prior.bias.force) + distance(scale, model.prior.scale.force) < largest_error_distance))
+    return 0.0;
+  return bias / (3.0 * square(model.gravity)) + scale / 9.0;
 }
 
 double about_z(const Mat3& r) {
@@ -62,9 +73,11 @@ struct HeadingMeasurement {
 
 }  // namespace
 
-void AxisSpread::add(const Eigen::Vector2d& across, double position, double dt) {
+void AxisSpread::add(const Eigen::Vector2d& across, double position, double expected, double dt) {
   watched_ = std::min(watched_ + dt, axis_memory);
-  const double share = watched_ > 0.0 ? dt / watched_ : 0.0;
+  const double time_share = watched_ > 0.0 ? dt / watched_ : 0.0;
+  weight_ += time_share * (1.0 / expected - weight_);
+  const double share = weight_ > 0.0 ? time_share / (expected * weight_) : 0.0;
   const std::complex<double> y(across.x(), across.y()), turn = std::polar(1.0, position);
   across_ += share * (y - across_);
   turn_ += share * (turn - turn_);
@@ -72,19 +85,19 @@ void AxisSpread::add(const Eigen::Vector2d& across, double position, double dt) 
   square_ += share * (std::norm(y) - square_);
 }
 
-double AxisSpread::variance() const {
-  return 0.5 * std::max(0.0, square_ - std::norm(across_));
-}
-
-double AxisSpread::unexplained() const {
+double AxisSpread::excess() const {
   const double turned = 1.0 - std::norm(turn_);
-  if (turned < least_turn) return variance();
-  return std::max(0.0, variance() - 0.5 * std::norm(product_ - across_ * std::conj(turn_)) / turned);
+  double variance = square_ - std::norm(across_);
+  if (turned >= least_turn) variance -= std::norm(product_ - across_ * std::conj(turn_)) / turned;
+  return std::max(1.0, 0.5 * variance * weight_);
 }
 
 ComposedFilters::ComposedFilters(const TrackingModel& model, const TrackOptions& options)
     : model_(model), options_(options), rate_(model.sensors.size(), Vec3::Zero()) {
-  for (const TrackingSensor& sensor : model.sensors) filters_.push_back(filter_of(sensor));
+  for (const TrackingSensor& sensor : model.sensors) {
+    filters_.push_back(filter_of(sensor));
+    accelerometer_tilt_.push_back(accelerometer_tilt(sensor, model));
+  }
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     const auto [first, last] = bodies_of(model, j);
     const int parent = model.bodies[first].parent;
@@ -141,23 +154,40 @@ void ComposedFilters::let_heading_drift(Joint& joint, double dt) {
   joint.drift += walk;
 }
 
-/// What both sensors see of one axis differs by their tilts, and by the axis' own stray.
+/// Of the rotation between a joint's sensors, in the world, as their filters and the joint's heading state it.
+Mat3 ComposedFilters::rotation_covariance(const Joint& joint) const {
+  Mat3 covariance = filters_[static_cast<std::size_t>(joint.parent_sensor)].covariance().topLeftCorner<3, 3>() +
+                    filters_[static_cast<std::size_t>(joint.child_sensor)].covariance().topLeftCorner<3, 3>();
+  covariance.row(2).setZero();
+  covariance.col(2).setZero();
+  covariance.diagonal().head<2>().array() += accelerometer_tilt_[static_cast<std::size_t>(joint.parent_sensor)] +
+                                             accelerometer_tilt_[static_cast<std::size_t>(joint.child_sensor)];
+  covariance(2, 2) = joint.heading_variance;
+  return covariance;
+}
+
+/// [rad²] per direction across a revolute joint's axis.
+double ComposedFilters::across_variance(const Joint& joint) const {
+  const Vec3 axis = filters_[static_cast<std::size_t>(joint.parent_sensor)].orientation() *
+                    model_.bodies[bodies_of(model_, joint.index).first].parent_R_axis.col(2);
+  const Mat3 covariance = rotation_covariance(joint);
+  return 0.5 * (covariance.trace() - axis.dot(covariance * axis));
+}
+
+/// What both sensors see of one axis differs by the errors of their orientations and by the axis' own stray. Which of
+/// both exceeds what is known of it does not show: both do alike.
 void ComposedFilters::watch_axis(Joint& joint, double dt) {
   const auto [first, last] = bodies_of(model_, joint.index);
   const TrackingBody& body = model_.bodies[first];
   if (first != last || body.motion != TrackingMotion::revolute) return;
   const Mat3 between = body.parent_R_axis.transpose() * relative_rotation(joint) * body.child_R_axis;
-  joint.axis.add(between.col(2).head<2>(), about_z(between), dt);
+  const double expected = across_variance(joint) + square(model_.joints[static_cast<std::size_t>(joint.index)].stray);
+  joint.axis.add(between.col(2).head<2>(), about_z(between), expected, dt);
 }
 
 double ComposedFilters::tilt_variance(std::size_t joint) const {
   const Joint& of = joints_[joint];
-  const auto tilt = [&](int sensor) {
-    return 0.5 * filters_[static_cast<std::size_t>(sensor)].covariance().diagonal().head<2>().sum();
-  };
-  double variance = tilt(of.parent_sensor) + tilt(of.child_sensor);
-  if (of.axis.is_known()) variance += std::max(0.0, of.axis.unexplained() - square(model_.joints[joint].stray));
-  return variance;
+  return of.axis.excess() * 0.5 * rotation_covariance(of).topLeftCorner<2, 2>().trace();
 }
 
 Vec3 ComposedFilters::vertical(std::size_t joint) const {
@@ -204,10 +234,11 @@ void ComposedFilters::measure_heading(Joint& joint, double dt) {
   } else {
     angle = about_z(parent * body.parent_R_axis * body.child_R_axis.transpose() * child.transpose());
   }
-  const double stray = std::hypot(axis_error, model_.joints[static_cast<std::size_t>(joint.index)].stray);
-  const double noise = square(stray / inclination);
-  // The first measurement counts whole, later ones as the error's time allows.
-  const double variance = joint.heading_variance > 100.0 * noise ? noise : noise * axis_error_time / std::max(dt, 1e-4);
+  const double stray = std::hypot(axis_error, model_.joints[static_cast<std::size_t>(joint.index)].stray),
+               tilt = tilt_variance(static_cast<std::size_t>(joint.index));
+  const double noise = (square(stray) + tilt) / square(inclination);
+  // Errors of measurements last, but the heading is never less certain than one of them makes it.
+  const double variance = joint.heading_variance > noise ? noise : noise * axis_error_time / std::max(dt, 1e-4);
   const double gain = joint.heading_variance / (joint.heading_variance + variance);
   joint.heading += gain * wrap_to_pi(angle - joint.heading);
   joint.heading_variance *= 1.0 - gain;
@@ -221,18 +252,11 @@ void ComposedFilters::read_positions(const Joint& joint) {
   const Index at = model_.joints[static_cast<std::size_t>(joint.index)].first_position;
   const Mat3 relative = relative_rotation(joint);
   const Mat3 m = near.parent_R_axis.transpose() * relative * far.child_R_axis;
-  const auto &parent_filter = filters_[static_cast<std::size_t>(joint.parent_sensor)],
-             &child_filter = filters_[static_cast<std::size_t>(joint.child_sensor)];
-  const Mat3 parent = parent_filter.orientation().toRotationMatrix();
-  Mat3 covariance = parent_filter.covariance().topLeftCorner<3, 3>() + child_filter.covariance().topLeftCorner<3, 3>();
-  covariance.row(2).setZero();
-  covariance.col(2).setZero();
-  covariance(2, 2) = joint.heading_variance;
-  const double of_axis =
-      std::max(0.0, joint.axis.unexplained() - square(model_.joints[static_cast<std::size_t>(joint.index)].stray));
+  const Mat3 parent = filters_[static_cast<std::size_t>(joint.parent_sensor)].orientation().toRotationMatrix();
+  const Mat3 covariance = joint.axis.excess() * rotation_covariance(joint);
   const auto sd_about = [&](const Vec3& axis_in_parent) {
     const Vec3 axis = parent * axis_in_parent;
-    return std::sqrt(std::max(0.0, axis.dot(covariance * axis)) + of_axis);
+    return std::sqrt(std::max(0.0, axis.dot(covariance * axis)));
   };
   const Vec3 rate = relative * rate_[static_cast<std::size_t>(joint.child_sensor)] -
                     rate_[static_cast<std::size_t>(joint.parent_sensor)];
@@ -256,12 +280,12 @@ void ComposedFilters::read_positions(const Joint& joint) {
   read_rotation(joint, relative);
 }
 
-/// A loose joint's axis strays by so much, and what exceeds that is an error of the orientations.
+/// A loose joint's axis strays by so much, and the orientations are off by so much.
 Mat3 ComposedFilters::shrunk(const Joint& joint, const Mat3& relative) const {
   const TrackingBody& body = model_.bodies[bodies_of(model_, joint.index).first];
   const double stray = square(model_.joints[static_cast<std::size_t>(joint.index)].stray);
   const Mat3 between = body.parent_R_axis.transpose() * relative * body.child_R_axis, turn = rot_z(about_z(between));
-  const double believed = stray / std::max(stray + square(axis_error), joint.axis.variance());
+  const double believed = stray / (stray + square(axis_error) + across_variance(joint));
   const Vec3 tilt = log_so3(between * turn.transpose());
   return body.parent_R_axis * exp_so3(believed * tilt) * turn * body.child_R_axis.transpose();
 }

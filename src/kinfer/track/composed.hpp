@@ -19,23 +19,21 @@
 
 namespace kinfer::track {
 
-/// The child's axis as both orientations place it across the parent's, y = y₁ + i y₂, over the last seconds. An error
-/// of the identified axis stays the same in the parent, or turns with the child: y = a + b exp(iq). What neither
-/// explains is the error of the orientations, or the axis' own stray.
+/// The child's axis as both orientations place it across the parent's, y = y₁ + i y₂, over the last seconds, each row
+/// by the variance that is expected of it. An error of the identified axis stays the same in the parent, or turns with
+/// the child: y = a + b exp(iq). What neither explains is the error of the orientations, and the axis' own stray.
 class AxisSpread {
  public:
-  /// `across`: y [rad], `position`: q [rad], over `dt` [s].
-  void add(const Eigen::Vector2d& across, double position, double dt);
+  /// `across`: y [rad], `position`: q [rad], `expected`: variance of y per direction [rad²], over `dt` [s].
+  void add(const Eigen::Vector2d& across, double position, double expected, double dt);
 
-  /// [rad²] per direction, about the mean.
-  double variance() const;
-  /// [rad²] per direction, about a + b exp(iq).
-  double unexplained() const;
-  bool is_known() const { return watched_ > 0.0; }
+  /// By which the variance of y about a + b exp(iq) exceeds what was expected; at least 1.
+  double excess() const;
 
  private:
-  std::complex<double> across_{}, turn_{}, product_{};  // means of y, of exp(iq) and of y exp(−iq)
-  double square_ = 0.0, watched_ = 0.0;                 // mean of |y|²; [s]
+  std::complex<double> across_{}, turn_{}, product_{};  // means of y, of exp(iq) and of y exp(−iq), by weight
+  double square_ = 0.0;                                 // mean of |y|², by weight
+  double weight_ = 0.0, watched_ = 0.0;                 // mean of 1 / expected variance; [s]
 };
 
 /// Copyable. Displacements of prismatic joints are unknown (NaN): orientations do not determine them.
@@ -50,8 +48,8 @@ class ComposedFilters {
 
   /// [rad²] by which the heading of a joint's child in its parent may have drifted since the start.
   double drift(std::size_t joint) const { return joints_[joint].drift; }
-  /// [rad²] per direction, of the rotation between a joint's sensors but for its heading: as their filters state it,
-  /// and as far as they see a revolute joint's axis in different directions.
+  /// [rad²] per direction, of the rotation between a joint's sensors but for its heading: as their filters
+  /// and the accelerometers' errors make it, times the excess of what they see of a revolute joint's axis.
   double tilt_variance(std::size_t joint) const;
   /// Up, in the frame of the joint's parent sensor.
   Vec3 vertical(std::size_t joint) const;
@@ -71,6 +69,8 @@ class ComposedFilters {
   void update_joint(Joint& joint, double dt);
   void let_heading_drift(Joint& joint, double dt);
   void watch_axis(Joint& joint, double dt);
+  Mat3 rotation_covariance(const Joint& joint) const;
+  double across_variance(const Joint& joint) const;
   Mat3 shrunk(const Joint& joint, const Mat3& relative) const;
   Mat3 relative_rotation(const Joint& joint) const;
   void start_heading(Joint& joint);
@@ -82,7 +82,8 @@ class ComposedFilters {
   TrackingModel model_;
   TrackOptions options_;
   std::vector<KinferFilter> filters_;
-  std::vector<Vec3> rate_;  // [rad/s] of each sensor, without bias
+  std::vector<double> accelerometer_tilt_;  // [rad²] per direction, of each sensor, by its accelerometer's errors
+  std::vector<Vec3> rate_;                  // [rad/s] of each sensor, without bias
   std::vector<Joint> joints_;
   TrackState state_;
 };

@@ -41,7 +41,8 @@ JointFusion::JointFusion(const TrackingModel& model) : joints_(model.joints.size
 void JointFusion::reset() {
   for (Joint& joint : joints_) {
     joint.offset = {};
-    joint.share = joint.difference = joint.age = 0.0;
+    joint.share = 0.0;
+    joint.is_new = true;
   }
 }
 
@@ -72,7 +73,8 @@ double JointFusion::follow(Offset& offset, double measured, double chain_varianc
   offset.drift = drift;
   offset.age += dt;
   const double memory = std::max(std::min(offset.age, wander_memory), 1e-4);
-  offset.wander += dt / memory * (square(difference) - offset.wander);
+  const double share = offset.age > 0.0 ? dt / memory : 1.0;
+  offset.wander += share * (square(difference) - offset.wander);
   const double honest = std::max({chain_variance, offset.wander - offset.variance, 1e-12}) +
                         just_started * std::exp(-offset.age / wander_time),
                farther = std::max(1.0, honest / square(wander_sd)),
@@ -83,11 +85,12 @@ double JointFusion::follow(Offset& offset, double measured, double chain_varianc
   return honest;
 }
 
-/// Slowly, so that the position does not jump; a small share of either is none.
+/// Slowly, so that the position does not jump, unless there was none before; a small share of either is none.
 void JointFusion::approach(Joint& joint, double chain_variance, double composed_variance, double dt) {
   const double w = chain_variance / std::max(chain_variance + composed_variance, 1e-30),
                wanted = std::clamp((w - least_share) / (1.0 - 2.0 * least_share), 0.0, 1.0);
-  joint.share += (wanted - joint.share) * (1.0 - std::exp(-dt / share_time));
+  joint.share += (wanted - joint.share) * (joint.is_new ? 1.0 : 1.0 - std::exp(-dt / share_time));
+  joint.is_new = false;
   if (wanted <= 0.0 && joint.share < least_share) joint.share = 0.0;
 }
 
@@ -104,7 +107,7 @@ void JointFusion::widen_heading(const TrackingModel& model, std::size_t j, const
 
 /// Gravity shows a spherical joint but for its heading. That of the chain, where motion shows it, is followed by the
 /// composed one, which begins where the chain's is known to a few degrees, and may still be far off. Elsewhere both
-/// start at the middle of what they know.
+/// count from their starts: what a start is off by is no error of the composed heading.
 void JointFusion::fuse_ball(const TrackingModel& model, const ComposedFilters& composed, double dt, std::size_t j,
                             std::optional<double> heading_sd, TrackState& chain) {
   Joint& joint = joints_[j];
@@ -115,10 +118,13 @@ void JointFusion::fuse_ball(const TrackingModel& model, const ComposedFilters& c
   const double chain_variance = heading_sd ? square(*heading_sd) : square(middle_of(chain.sd_q.segment<3>(at))),
                apart = twist_about(up, status.parent_q_child * other.parent_q_child.conjugate());
   if (!joint.offset.is_set) {
-    if (heading_sd && *heading_sd > start_offset_sd) return;
+    if (heading_sd && *heading_sd > start_offset_sd) {
+      joint.is_new = false;
+      return;
+    }
     joint.offset = {.is_set = true,
                     .value = heading_sd ? apart : 0.0,
-                    .variance = square(heading_sd ? first_heading_sd : start_offset_sd),
+                    .variance = heading_sd ? square(first_heading_sd) : 0.0,
                     .drift = composed.drift(j)};
   }
   const double honest =
@@ -158,16 +164,6 @@ void JointFusion::fuse(const TrackingModel& model, const ComposedFilters& compos
     const double sd = is_relative ? std::sqrt(composed.tilt_variance(j)) : composed.state().sd_q[first + i];
     composed_variance += square(sd) / of.positions;
   }
-  // Where both differ by more than the chain's variance, which its innovations confirm, the other is worse than it
-  // states.
-  double difference = 0.0;
-  for (Index i = 0; i < of.positions; ++i) {
-    const double offset = i == 0 ? joint.offset.value : 0.0;
-    difference += square(wrap_to_pi(composed.state().q[first + i] + offset - chain.q[first + i])) / of.positions;
-  }
-  joint.age = std::min(joint.age + dt, wander_memory);
-  joint.difference += dt / std::max(joint.age, 1e-4) * (difference - joint.difference);
-  composed_variance = std::max(composed_variance, joint.difference - square(far_apart) * chain_variance);
   // What both have in common tells nothing for either.
   const double own_variance = std::max(0.0, chain_variance - joint.offset.common / of.positions);
   approach(joint, own_variance, composed_variance, dt);
@@ -199,6 +195,7 @@ void JointFusion::apply(const TrackingModel& model, const ComposedFilters& compo
     if (of.positions == 0 || !usable.is_settled[j] || !sound(joint.parent_sensor) || !sound(joint.child_sensor) ||
         !position.array().isFinite().all()) {
       joint.share = 0.0;
+      joint.is_new = false;
       joint.offset = {};
       continue;
     }

@@ -49,7 +49,7 @@ class JointFusion {
     int parent_sensor = -1, child_sensor = -1;  // −1: a body without a sensor
     int first_body = 0, last_body = 0;
     double share = 0.0;
-    double difference = 0.0, age = 0.0;  // [rad²] mean square of composed minus chain; [s] that it was watched
+    bool is_new = true;  // no position has been stated since the start
     Offset offset{};
   };
 

@@ -90,10 +90,9 @@ inline constexpr double steady_rate = 0.05;  ///< [rad/s] sd of a joint's veloci
 inline constexpr double motion_suspicion = 0.4;
 inline constexpr double base_mean = 0.1, base_rate = 2e-3, base_significance = 5.0;
 
-/// Averaging of the chain's positions with the composed ones: shares below the first are none, they change over the
-/// second [s]. DIODEM trial 1, first half.
-inline constexpr double least_share = 0.1, share_time = 1.0;
-inline constexpr double far_apart = 2.0;  ///< standard deviations of the chain beyond which the composed one is blamed
+/// Averaging of the chain's positions with the composed ones: shares below the first are none, DIODEM trial 1, first
+/// half; they change over the second [s], which smooths the steps of the chain's variance at its updates.
+inline constexpr double least_share = 0.1, share_time = 0.1;
 /// The chain's heading, where it wanders by this [rad], has this correlation time [s]; it is watched over the last [s].
 /// A heading that nothing shows at the start is known like this [rad]. DIODEM trial 1, first half.
 inline constexpr double wander_sd = 0.035, wander_time = 5.0, wander_memory = 10.0, start_offset_sd = 0.05;
