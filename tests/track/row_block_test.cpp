@@ -40,6 +40,19 @@ TEST(RowBlock, ASensorThatIsNotInAllRowsHasAMeanTimeOfItsOwn) {
   EXPECT_EQ(sample.force_time, 0.0);
 }
 
+TEST(RowBlock, TheFirstRowBeyondAGapIsCompleteAlone) {
+  RowBlock block(1);
+  for (const double time : {0.0, 0.01}) block.add(row_at(time));
+  block.clear();
+  block.add(row_at(0.3));
+  EXPECT_TRUE(block.is_complete(0.1));
+  EXPECT_EQ(block.mean().time, 0.3);
+  EXPECT_NEAR(block.mean().length, 0.01, 1e-12);
+  block.clear();
+  block.add(row_at(0.31));
+  EXPECT_FALSE(block.is_complete(0.1));
+}
+
 TEST(RowBlock, SlowSamplingIsNoGap) {
   RowBlock block(1);
   for (const double time : {0.0, 0.2}) block.add(row_at(time));

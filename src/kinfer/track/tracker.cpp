@@ -80,13 +80,6 @@ void Tracker::restart(double time) {
   biases_.reset();
 }
 
-/// Whether what has happened in a gap [s] is too much for the filter to go on.
-bool Tracker::is_lost_after(double gap) const {
-  if (gap <= shortest_restart_gap || !state_.started) return gap > restart_gap;
-  const double turned = 0.5 * largest_joint_acceleration(*model_, filter_.state()) * gap * gap;
-  return gap > restart_gap || turned > turned_in_gap;
-}
-
 /// Nothing is known until the next start; alarms stay.
 void Tracker::forget_state() {
   std::vector<TrackAlarm> alarms = std::move(state_.alarms);
@@ -96,7 +89,7 @@ void Tracker::forget_state() {
 
 void Tracker::add(const InsRow& row) {
   KINFER_EXPECT(row.sensors.size() == tracking_->sensors.size());
-  if (has_rows_ && is_lost_after(row.time - last_time_)) restart(row.time);
+  if (has_rows_ && row.time - last_time_ > restart_gap) restart(row.time);
   has_rows_ = true;
   last_time_ = row.time;
   health_.add(row);

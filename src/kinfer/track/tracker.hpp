@@ -51,7 +51,6 @@ class Tracker {
 
  private:
   void restart(double time);
-  bool is_lost_after(double gap) const;
   void forget_state();
   void wait_for_start();
   void try_start();

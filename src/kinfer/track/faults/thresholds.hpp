@@ -55,10 +55,11 @@ KINFER_THRESHOLD(track, misfit_inflation, 100.0);
 inline constexpr double fitting_inflation = 10.0;
 inline constexpr double settling = 3.0;            ///< [s] after a start
 inline constexpr std::size_t replay_blocks = 100;  ///< two seconds: at least so much is replayed, at most twice
-/// [s] without rows, or without any sensor, after which the posture is found anew; and the shortest one after which it
-/// is where a joint may have turned further than this [rad] by its acceleration, beyond what one linearisation bridges.
-/// Set on an excavator and a six-axis arm (drives standard and quick, gaps of 0.2 to 0.9 s).
-inline constexpr double restart_gap = 0.5, shortest_restart_gap = 0.15, turned_in_gap = 0.08;
+/// [s] without rows, or without any sensor, after which the posture is found anew. Excavators and six-axis arms in quick
+/// drives are followed over 0.5 s, and no longer over 0.6 s.
+inline constexpr double restart_gap = 0.5;
+/// [rad] A joint that is less certain than this when its sensor comes back is sought again.
+inline constexpr double turned_in_gap = 0.08;
 /// A sensor that comes back beside a joint that is less certain than `turned_in_gap`: the position is sought over so
 /// many seconds of rows, and as often again while no place on the circle is so much likelier than the others (ln), for
 /// the longest time [s]; from so many places, those within so many standard deviations, each settled in so many rounds.

@@ -162,9 +162,14 @@ void ChainFilter::set_base(BaseMode mode) {
   set(BaseIndex::acceleration, model_->base_translation.sd);
 }
 
+/// [s]; 0: there was none.
+double ChainFilter::time_since_update() const {
+  return last_update_ ? state_.time - *last_update_ : 0.0;
+}
+
 /// Of the predicted rows; none after a gap.
 void ChainFilter::follow_change() {
-  const double dt = state_.time - last_update_;
+  const double dt = time_since_update();
   const VectorXd& value = evaluator_.result().value;
   change_of_change_ = change_;
   if (dt > 0.0 && dt <= longest_step)
@@ -184,6 +189,8 @@ void ChainFilter::form_sensor_rows(const BlockMeasurement& block, std::size_t s)
                        double slow, double factor) {
     innovations_.value.segment<3>(first) =
         value - evaluator_.result().value.segment<3>(first) - time * change_.segment<3>(first);
+    innovations_.value.segment<3>(first) +=
+        evaluator_.result().by_fast.middleRows<3>(first) * error_.head(model_->layout.fast);
     // Samples at another time than the block's are as uncertain as the rows' rate of change, which changes as well.
     const double shifted = square(time) * change_of_change_.segment<3>(first).squaredNorm();
     system_.set_instrument(
@@ -200,6 +207,7 @@ void ChainFilter::form_rows(const BlockMeasurement& block) {
   evaluator_.evaluate(*model_, state_);
   follow_change();
   system_.begin(evaluator_.result());
+  error_.setZero();
   shown_ = ShownMeans::rates;
   for (std::size_t s = 0; s < is_used_.size(); ++s) {
     form_sensor_rows(block, s);
@@ -207,6 +215,32 @@ void ChainFilter::form_rows(const BlockMeasurement& block) {
   }
   soft_rows_.add(*model_, state_, p_, block.length, system_);
   changes_.form(*model_, evaluator_, system_.is_measured(), state_.base == BaseMode::still);
+}
+
+/// After a gap a joint may be far from where it was predicted: the sensors' rows are linearised again where the update
+/// leads, until it leads nowhere else (iterated EKF; Bell and Cathey 1993).
+void ChainFilter::relinearise(const BlockMeasurement& block) {
+  const Index fast = model_->layout.fast;
+  predicted_ = state_;
+  for (int round = 0; round < relinearisations; ++round) {
+    system_.multiply(evaluator_.result(), p_);
+    if (!system_.factorise()) break;
+    if (system_.limit_outliers() && !system_.factorise()) break;
+    system_.divide();
+    column_ = error_;
+    error_.setZero();
+    for (Index j = 0; j < system_.rows(); ++j)
+      error_.head(fast) += system_.whitened()[j] * system_.gain().col(j).head(fast);
+    const double moved = (error_ - column_).lpNorm<Eigen::Infinity>();
+    state_ = predicted_;
+    retract(*model_, error_, state_);
+    evaluator_.evaluate(*model_, state_);
+    system_.linearise_again(evaluator_.result());
+    for (std::size_t s = 0; s < is_used_.size(); ++s) form_sensor_rows(block, s);
+    if (moved < linearised) break;
+  }
+  changes_.form(*model_, evaluator_, system_.is_measured(), state_.base == BaseMode::still);
+  state_ = predicted_;
 }
 
 void ChainFilter::judge_as(const ChainFilter& other) {
@@ -327,8 +361,9 @@ void ChainFilter::add_what_means_miss(double dt, const BlockMeasurement& block) 
 
 void ChainFilter::update(const BlockMeasurement& block) {
   KINFER_EXPECT(block.sensors.size() == is_used_.size());
-  const double dt = state_.time - last_update_;
+  const double dt = time_since_update();
   form_rows(block);
+  if (dt > longest_bridge) relinearise(block);
   system_.multiply(evaluator_.result(), p_);
   if (!system_.factorise() || !allow_joint_changes()) return;
   examine_changes();

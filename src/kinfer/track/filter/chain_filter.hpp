@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "kinfer/track/filter/ball_headings.hpp"
 #include "kinfer/track/filter/instrument_levels.hpp"
@@ -112,10 +113,12 @@ class ChainFilter {
   void forget(Index state);
   double shared_noise(const ScalarRow& row) const;
   void add_posture_walk(double dt);
+  double time_since_update() const;
   void follow_change();
   void add_what_means_miss(double dt, const BlockMeasurement& block);
   void form_rows(const BlockMeasurement& block);
   void form_sensor_rows(const BlockMeasurement& block, std::size_t sensor);
+  void relinearise(const BlockMeasurement& block);
   bool allow_joint_changes();
   void examine_changes();
   void examine_unused(const BlockMeasurement& block);
@@ -125,13 +128,13 @@ class ChainFilter {
   void mirror();
 
   std::shared_ptr<const FilterModel> model_;
-  ChainState state_;
+  ChainState state_, predicted_;  // the second: a buffer of an update
   MatrixXd p_;
   ChainEvaluator evaluator_;
   std::vector<bool> is_used_;
   VectorXd last_value_, change_;  // predicted rows of the last update, their rate of change
   VectorXd change_of_change_;     // from the last update to this one
-  double last_update_ = -1e9;
+  std::optional<double> last_update_{};  // [s]
   ShownMeans shown_ = ShownMeans::rates;  // by the last block
   SoftRows soft_rows_;
   JointChanges changes_;

@@ -200,14 +200,6 @@ ChainState initial_state(const FilterModel& model) {
   return state;
 }
 
-double largest_joint_acceleration(const FilterModel& model, const ChainState& state) {
-  double most = 0.0;
-  for (std::size_t b = 1; b < model.bodies.size(); ++b)
-    if (model.bodies[b].motion == JointMotion::revolute)
-      most = std::max(most, std::abs(state.joints[position_states * model.layout.position[b] + 2]));
-  return most;
-}
-
 void retract(const FilterModel& model, const VectorXd& error, ChainState& state) {
   const FilterLayout& layout = model.layout;
   state.world_R_base *= exp_so3(error.segment<3>(BaseIndex::attitude));

@@ -31,9 +31,6 @@ struct ChainState {
 /// At rest at joint position 0 with the sensors' errors of the model.
 ChainState initial_state(const FilterModel& model);
 
-/// [rad/s²] Largest of revolute joints.
-double largest_joint_acceleration(const FilterModel& model, const ChainState& state);
-
 /// Adds an error to the estimated states; those of the geometry are left alone.
 void retract(const FilterModel& model, const VectorXd& error, ChainState& state);
 

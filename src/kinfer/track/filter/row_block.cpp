@@ -19,10 +19,12 @@ void RowBlock::clear() {
 }
 
 void RowBlock::add(const InsRow& row) {
-  if (rows_ == 0)
+  if (rows_ == 0) {
+    stands_alone_ = is_beyond_gap(row.time);
     begin_ = row.time;
-  else if (row.time > end_)
+  } else if (row.time > end_) {
     period_ = row.time - end_;
+  }
   end_ = row.time;
   sum_.time += row.time - begin_;
   ++rows_;
@@ -37,11 +39,15 @@ void RowBlock::add(const InsRow& row) {
 
 bool RowBlock::is_complete(double length) const {
   // A margin of half a period, since times are rounded.
-  return rows_ > 0 && end_ - begin_ + 1.5 * period_ > length;
+  return rows_ > 0 && (stands_alone_ || end_ - begin_ + 1.5 * period_ > length);
+}
+
+bool RowBlock::is_beyond_gap(double time) const {
+  return period_ > 0.0 && time - end_ > longest_bridge + period_;
 }
 
 bool RowBlock::ends_before(double time) const {
-  return rows_ > 0 && period_ > 0.0 && time - end_ > longest_bridge + period_;
+  return rows_ > 0 && is_beyond_gap(time);
 }
 
 const BlockMeasurement& RowBlock::mean() {

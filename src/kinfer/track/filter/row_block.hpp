@@ -20,7 +20,8 @@ class RowBlock {
   int rows() const { return rows_; }
   double begin() const { return begin_; }  ///< [s] time of the first row
 
-  /// Where another row, a sampling period later, would make it longer than `length` [s].
+  /// Where another row, a sampling period later, would make it longer than `length` [s]. The first row beyond a gap is
+  /// complete alone: what is stated at its time must not be older than the gap.
   bool is_complete(double length) const;
 
   /// Until the next call of add or clear.
@@ -32,8 +33,11 @@ class RowBlock {
   double length() const { return end_ - begin_ + period_; }
 
  private:
+  bool is_beyond_gap(double time) const;
+
   BlockMeasurement sum_, mean_;
   int rows_ = 0;
+  bool stands_alone_ = false;
   double begin_ = 0.0, end_ = 0.0, period_ = 0.0;
 };
 

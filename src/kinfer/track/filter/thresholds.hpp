@@ -106,5 +106,8 @@ inline constexpr double heading_watch = 1.0, heading_significance = 2.0;
 inline constexpr double update_period = 0.02;   ///< [s] at most 50 updates a second
 inline constexpr double longest_bridge = 0.03;  ///< [s] between two blocks without a gap
 inline constexpr double longest_step = 0.1;     ///< [s] of a prediction
+/// An update after a longer one is linearised again at most so often, until no fast state moves further than this.
+inline constexpr int relinearisations = 6;
+inline constexpr double linearised = 1e-4;
 
 }  // namespace kinfer::track

@@ -32,6 +32,10 @@ void UpdateSystem::begin(const ChainMeasurement& measurement) {
   h_.topRows(rows_) = measurement.by_fast;
 }
 
+void UpdateSystem::linearise_again(const ChainMeasurement& measurement) {
+  h_.topRows(layout_.rows()) = measurement.by_fast;
+}
+
 void UpdateSystem::set_instrument(Index first, bool is_measured, const Vec3& residual, double variance) {
   is_measured_[static_cast<std::size_t>(first / 3)] = is_measured;
   // A row without derivatives, residual and correlation changes nothing.

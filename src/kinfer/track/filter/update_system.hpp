@@ -19,6 +19,8 @@ class UpdateSystem {
   // ---- forming the rows ----
   /// The sensors' rows, with their derivatives; soft rows are dropped.
   void begin(const ChainMeasurement& measurement);
+  /// Other derivatives of the sensors' rows; soft rows stay.
+  void linearise_again(const ChainMeasurement& measurement);
   /// Three rows of an instrument; where it is not measured, they are rows that change nothing.
   void set_instrument(Index first, bool is_measured, const Vec3& residual, double variance);
   /// A soft row without derivatives. Returns its index.
