@@ -71,6 +71,23 @@ TEST_F(Sweep, RefusedTasksAreKeptAsSentencesAndCanBeTriedAgain) {
   EXPECT_THAT(kinfer("sweep manifest.csv --out runs --retry").out, HasSubstr("(1 were done before)"));
 }
 
+TEST_F(Sweep, SentencesOfRefusedTasksAreTheSameInEveryRun) {
+  write(in("manifest.csv"), "key,verb,arguments\nc,convert," + robot() + " {out}/none/x.urdf\n");
+  for (const std::string runs : {"a", "b"}) {
+    kinfer("sweep manifest.csv --out " + runs);
+    kinfer("merge " + runs + " --out merged-" + runs);
+  }
+  EXPECT_THAT(slurp(in("merged-a/table.csv")), HasSubstr("{out}/none/x.urdf"));
+  EXPECT_EQ(contents("merged-a"), contents("merged-b"));
+}
+
+TEST_F(Sweep, RowsOfVerbsThatWriteAFileAreKept) {
+  ASSERT_EQ(kinfer("simulate-poses --robot " + robot() + " --poses 5 --out data").code, 0);
+  write(in("manifest.csv"), "key,verb,arguments\np,predict,data/robot.toml --joints data/poses.csv\n");
+  EXPECT_EQ(kinfer("sweep manifest.csv --out runs").code, 0);
+  EXPECT_THAT(slurp(in("runs/p/output.txt")), ::testing::StartsWith("x,y,z,"));
+}
+
 TEST_F(Sweep, WhatWasKilledInTheMiddleIsDoneByTheNextRun) {
   write_tasks(6);
   ASSERT_EQ(kinfer("sweep manifest.csv --out whole").code, 0);

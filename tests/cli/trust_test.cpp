@@ -48,6 +48,66 @@ TEST_F(Trust, ASeedIsAWholeNumberThatFits) {
   EXPECT_EQ(kinfer(poses("out", "--seed 18446744073709551615")).code, 0);
 }
 
+TEST_F(Trust, RowsAndJsonDoNotShareStandardOutput) {
+  const std::string robot = source("examples/robot6/robot.toml"), ends = " --from 0,0,0,0,0,0 --to 10,0,0,0,0,0 --json";
+  EXPECT_EQ(kinfer("path " + robot + ends).code, 2);
+  for (const std::string& arguments : {"path " + robot + ends, "reach " + robot + " --targets t.csv --json",
+                                      "compensate " + robot + " --nominal " + robot + " --joints j.csv --json"})
+    EXPECT_THAT(kinfer(arguments).err, HasSubstr("--json: needs -o FILE")) << arguments;
+  EXPECT_THAT(kinfer("path " + robot + ends + " -o path.csv").out, HasSubstr("\"duration_s\""));
+}
+
+TEST_F(Trust, WhatAClosedStandardOutputLosesIsSaid) {
+  ASSERT_EQ(kinfer(poses("data")).code, 0);
+  const std::string predict = "predict data/robot.toml --joints data/poses.csv ";
+  EXPECT_EQ(kinfer(predict + ">&- 2>closed.txt; code=$?; (exit $code)").code, 2);
+  EXPECT_THAT(slurp(in("closed.txt")), HasSubstr("standard output cannot be written; is it closed"));
+  const Outcome whole = kinfer(predict + "--quiet");
+  EXPECT_EQ(whole.code, 0);
+  EXPECT_EQ(kinfer(predict + "--quiet -o poses.csv >&-; code=$?; (exit $code)").code, 0);
+  EXPECT_EQ(slurp(in("poses.csv")), whole.out);
+}
+
+TEST_F(Trust, JointsComeFromAPipe) {
+  ASSERT_EQ(kinfer(poses("data")).code, 0);
+  const std::string predict = "predict data/robot.toml --quiet --joints ";
+  const Outcome file = kinfer(predict + "data/poses.csv");
+  EXPECT_EQ(kinfer(predict + "/dev/stdin < data/poses.csv").out, file.out);
+  EXPECT_EQ(kinfer("--version >/dev/null; cat data/poses.csv | '" KINFER_PROGRAM "' " + predict + "/dev/stdin").out,
+            file.out);
+}
+
+TEST_F(Trust, FilesBeyondTheLimitOfTheirSizeLeaveNothing) {
+  ASSERT_EQ(kinfer(poses("data")).code, 0);
+  const Outcome run =
+      kinfer("--version >/dev/null; ulimit -f 4; '" KINFER_PROGRAM "' " + poses("out", "--quiet") + " --poses 2000");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_FALSE(fs::exists(in("out/poses.csv")));
+  EXPECT_TRUE(hidden().empty());
+}
+
+TEST_F(Trust, APlanBesideADeviceIsRefused) {
+  const Outcome run = kinfer("plan --robot " + source("examples/robot6/robot.toml") + " --poses 8 -o /dev/null");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("-o /dev/null: expected the name of a file"));
+}
+
+/// Log rotation: the log was mapped, and the program ended by SIGBUS.
+TEST_F(Trust, ALogThatIsCutWhileItIsReadIsASentence) {
+  std::string log = "t,a_ax,a_ay,a_az,a_gx,a_gy,a_gz\n";
+  for (int i = 0; i < 900000; ++i) log += fmt::format("{},0.125,-0.25,9.8125,0.0{},0,-0.5\n", 0.01 * i, i % 7);
+  bool was_cut = false;
+  for (int delay = 2; delay < 40; delay += 2) {
+    write(in("log.csv"), log);
+    const Outcome run = kinfer(fmt::format(
+        "orient log.csv -o q.csv --quiet & (sleep 0.0{:02}; : > log.csv); wait $!; code=$?; (exit $code)", delay));
+    EXPECT_THAT(run.code, ::testing::AnyOf(0, 2)) << delay;
+    was_cut |= slurp(in("err.txt")).empty() && run.code == 2;
+    if (run.code == 0) break;
+  }
+  EXPECT_TRUE(was_cut);
+}
+
 TEST_F(Trust, NamesCannotCommandTheTerminal) {
   std::string log = "t,a\x1B[31m_ax,a\x1B[31m_ay,a\x1B[31m_az,a\x1B[31m_gx,a\x1B[31m_gy,a\x1B[31m_gz\n";
   for (int i = 0; i < 50; ++i) log += fmt::format("{},0,0,9.8,0.0{},0,0\n", 0.01 * i, i % 7);

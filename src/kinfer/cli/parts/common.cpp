@@ -38,6 +38,16 @@ Result<void> expect_other_file(const std::string& out, const std::vector<std::st
   return {};
 }
 
+bool is_standard_output(const std::string& out) {
+  return out.empty() || out == "-";
+}
+
+Result<void> expect_json_alone(const CommonOptions& common, const std::string& out) {
+  if (common.json && is_standard_output(out))
+    return error("--json: needs -o FILE for the rows, which go to standard output otherwise");
+  return {};
+}
+
 ProgressLine::ProgressLine(const CommonOptions& options) : shown_(!options.quiet && isatty(fileno(stderr)) != 0) {}
 
 ProgressLine::~ProgressLine() {

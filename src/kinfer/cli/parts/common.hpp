@@ -35,6 +35,12 @@ int fail(const Error& error);
 /// lost.
 Result<void> expect_other_file(const std::string& out, const std::vector<std::string>& inputs);
 
+/// Whether `out` (-o) names standard output.
+bool is_standard_output(const std::string& out);
+
+/// An error where both the rows and --json would go to standard output: without a file to write, the rows do.
+Result<void> expect_json_alone(const CommonOptions& common, const std::string& out);
+
 /// A verb of the program and the function that runs it.
 struct Verb {
   CLI::App* command = nullptr;

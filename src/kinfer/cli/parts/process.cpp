@@ -53,14 +53,20 @@ void on(int signal, void (*handler)(int)) {
   ::sigaction(signal, &action, nullptr);
 }
 
+/// Where one was closed, the next file that is opened would take its place.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0) {
+      [[maybe_unused]] const int opened = ::open("/dev/null", O_RDWR);
+      if (stream == STDOUT_FILENO) expect_no_data();
+    }
+}
+
 }  // namespace
 
 void prepare_process() {
-  for (int descriptor = ::open("/dev/null", O_RDWR); descriptor >= 0; descriptor = ::dup(descriptor))
-    if (descriptor > STDERR_FILENO) {
-      ::close(descriptor);
-      break;
-    }
+  open_standard_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is an error of its write
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
     struct sigaction before {};
     ::sigaction(signal, nullptr, &before);
@@ -125,8 +131,10 @@ void limit_time(double seconds) {
 }
 
 bool flush_standard_output() {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
-  print_message("kinfer: standard output cannot be written; is the disk full? Result files, if any, are complete\n");
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && !is_data_lost()) return true;
+  print_message(
+      "kinfer: standard output cannot be written; is it closed, or the disk full? Result files, if any, are "
+      "complete\n");
   return false;
 }
 

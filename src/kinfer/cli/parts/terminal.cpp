@@ -15,6 +15,8 @@ namespace kinfer::cli {
 
 namespace {
 
+bool is_output_closed = false, is_lost = false;
+
 /// fmt throws where the stream takes no more, as the program expects; std::fwrite would not.
 void print_bytes(std::FILE* stream, std::string_view bytes) {
   fmt::print(stream, "{}", bytes);
@@ -54,7 +56,16 @@ void print_printable(std::FILE* stream, std::string_view text) {
 }
 
 void print_data(std::string_view text) {
+  if (is_output_closed && !text.empty()) is_lost = true;
   print_bytes(stdout, text);
+}
+
+void expect_no_data() {
+  is_output_closed = true;
+}
+
+bool is_data_lost() {
+  return is_lost;
 }
 
 void print_progress(std::string_view line) {

@@ -34,6 +34,10 @@ void print_message(fmt::format_string<Values...> format, Values&&... values) {
 
 /// CSV, JSON and scripts to standard output, byte for byte.
 void print_data(std::string_view text);
+/// Standard output was closed before the program began: sentences may go nowhere, results may not.
+void expect_no_data();
+/// Whether results went to a closed standard output.
+bool is_data_lost();
 
 /// Replaces the line of progress on standard error; an empty one erases it.
 void print_progress(std::string_view line);

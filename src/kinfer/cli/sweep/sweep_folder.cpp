@@ -173,10 +173,6 @@ Result<fs::path> SweepFolder::begin(const SweepTask& task) const {
 Result<TaskRecord> SweepFolder::end(const SweepTask& task, std::uint64_t seed, int exit_code, int signal) {
   const fs::path folder = running(task);
   TaskRecord record{.verb = task.verb, .exit_code = exit_code, .signal = signal, .processor_class = processor_class()};
-  if (signal != 0)
-    record.sentence = fmt::format("the program was ended by signal {}", signal);
-  else if (exit_code > 1)
-    record.sentence = last_complaint(folder / "messages.txt");
   std::error_code ignored;
   for (const char* name : {"output.txt", "messages.txt"}) {
     if (fs::file_size(folder / name, ignored) == 0)
@@ -184,6 +180,10 @@ Result<TaskRecord> SweepFolder::end(const SweepTask& task, std::uint64_t seed, i
     else
       hide_folder(folder / name, folder.string());
   }
+  if (signal != 0)
+    record.sentence = fmt::format("the program was ended by signal {}", signal);
+  else if (exit_code > 1)
+    record.sentence = last_complaint(folder / "messages.txt");
   if (auto done = write_text_file(folder / "task.json", format_task_record(task, seed, record)); !done)
     return forward_error(done.error());
   if (auto done = pack_ ? put_into_pack(task, folder) : put_in_place(task, folder); !done)

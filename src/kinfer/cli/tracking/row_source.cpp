@@ -55,23 +55,26 @@ class ByteSource {
   static Result<ByteSource> open(const std::string& path) {
     const int file = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) return error("{}: {}", path, std::strerror(errno));
-    return ByteSource(file);
+    return ByteSource(file, path == "-" ? "standard input" : path);
   }
   ~ByteSource() {
     if (file_ > STDIN_FILENO) ::close(file_);
   }
-  ByteSource(ByteSource&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+  ByteSource(ByteSource&& other) noexcept : file_(std::exchange(other.file_, -1)), name_(std::move(other.name_)) {}
   ByteSource& operator=(ByteSource&&) = delete;
 
   /// What has arrived, at least one byte unless the end is reached; waits for standard input.
-  std::string_view read() {
+  /// Errors: an input error of the device.
+  Result<std::string_view> read() {
     const ssize_t count = ::read(file_, buffer_.data(), buffer_.size());
-    return {buffer_.data(), count > 0 ? static_cast<std::size_t>(count) : 0};
+    if (count < 0 && errno != EINTR) return error("{}: reading stopped with an input error", name_);
+    return std::string_view(buffer_.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
   }
 
  private:
-  explicit ByteSource(int file) : file_(file) {}
+  ByteSource(int file, std::string name) : file_(file), name_(std::move(name)) {}
   int file_;
+  std::string name_;
   std::array<char, 1 << 16> buffer_{};
 };
 
@@ -84,7 +87,7 @@ Result<std::vector<std::string>> stream(const RowSource& source, const RowSink& 
   std::optional<InterruptionGuard> guard;
   if (source.mode == ReadMode::follow || path == "-") guard.emplace();
   while (!guard || !interrupted) {
-    const std::string_view piece = bytes.read();
+    KINFER_TRY(piece, bytes.read());
     if (auto done = reader.add(piece, sink.row); !done) return forward_error(done.error());
     if (!piece.empty()) sink.pause();
     if (piece.empty() && (source.mode == ReadMode::once || path == "-")) break;
@@ -96,7 +99,9 @@ Result<std::vector<std::string>> stream(const RowSource& source, const RowSink& 
 
 bool is_csv(const std::string& path) {
   auto bytes = ByteSource::open(path);
-  return bytes && is_ins_csv(bytes->read());
+  if (!bytes) return false;
+  const auto head = bytes->read();
+  return head && is_ins_csv(*head);
 }
 
 /// Formats that are read whole, and several logs.

@@ -95,6 +95,7 @@ void warn_of_rows_outside(const CompensateArguments& options, const std::vector<
 
 int run(const CompensateArguments& options) {
   if (options.joints.empty() == options.targets.empty()) return fail({"expected either --joints or --targets"});
+  if (const auto alone = expect_json_alone(options.common, options.out); !alone) return fail(alone.error());
   if (auto other =
           expect_other_file(options.out, {options.joints, options.targets, options.nominal, options.chain.path});
       !other)
@@ -107,12 +108,12 @@ int run(const CompensateArguments& options) {
     print_message("{}\n", words::compensation_frames_note());
   const std::string& input = options.joints.empty() ? options.targets : options.joints;
   const std::string text = result_csv(joint_columns(input, active_joint_names(chains->nominal)), *list);
-  if (options.out.empty() || options.out == "-")
+  if (is_standard_output(options.out))
     print_data(text);
   else if (auto done = write_text_file(options.out, text); !done)
     return fail(done.error());
   const CompensationSummary summary = summarise(*list);
-  if (options.common.json && !(options.out.empty() || options.out == "-"))
+  if (options.common.json)
     print_data(nlohmann::ordered_json{{"rows", summary.rows},
                                       {"unreached", summary.unreached.size()},
                                       {"worst_residual_mm", 1e3 * summary.worst_residual}}

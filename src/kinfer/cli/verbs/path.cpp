@@ -125,6 +125,7 @@ Result<void> check_options(const CLI::App& verb, const PathArguments& options) {
 
 int run(const CLI::App& verb, const PathArguments& options) {
   if (const auto checked = check_options(verb, options); !checked) return fail(checked.error());
+  if (const auto alone = expect_json_alone(options.common, options.out); !alone) return fail(alone.error());
   if (auto other = expect_other_file(options.out, {options.targets, options.chain.path, options.columns}); !other)
     return fail(other.error());
   const auto robot = read_robot(options.chain);
@@ -135,12 +136,11 @@ int run(const CLI::App& verb, const PathArguments& options) {
   if (!result) return fail(result.error());
   const std::vector<bool> rotational = rotational_joints(chain);
   const std::string text = format_path_csv(result->path, rotational);
-  const bool to_terminal = options.out.empty() || options.out == "-";
-  if (to_terminal)
+  if (is_standard_output(options.out))
     print_data(text);
   else if (const auto done = write_text_file(options.out, text); !done)
     return fail(done.error());
-  if (options.common.json && !to_terminal)
+  if (options.common.json)
     print_data(nlohmann::ordered_json{{"duration_s", result->path.duration},
                                       {"samples", result->path.time.size()},
                                       {"slowed_by", result->path.slowed_by},

@@ -151,6 +151,10 @@ struct PlanFiles {
 
 Result<PlanFiles> output_files(const PlanArguments& options) {
   const std::filesystem::path poses = options.out;
+  std::error_code missing;
+  if (std::filesystem::exists(poses, missing) && !std::filesystem::is_regular_file(poses, missing))
+    return error("-o {}: expected the name of a file, beside which the figure and its numbers are written",
+                 options.out);
   PlanFiles files{poses, poses, poses};
   files.figure.replace_extension(".svg"), files.numbers.replace_extension(".json");
   if (poses == files.figure || poses == files.numbers)

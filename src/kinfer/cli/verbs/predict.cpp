@@ -57,16 +57,17 @@ int run(const PredictArguments& options) {
   if (!poses) return fail(poses.error());
   const auto deviations = deviations_of(*robot, *set);
   if (!deviations) return fail(deviations.error());
-  if (!options.quiet) print_notices(*robot, *set, options.chain.path);
   const auto text =
       format_predictions_csv(*poses, *set, robot->chain.base.pose(), robot->chain.fixtures.anchors, *deviations);
   if (!text) return fail(text.error());
-  if (options.out.empty() || options.out == "-") {
+  const bool is_for_file = !is_standard_output(options.out);
+  if (!is_for_file)
     print_data(*text);
-    return exit_done;
-  }
-  if (const auto done = write_text_file(options.out, *text); !done) return fail(done.error());
-  if (!options.quiet) print_text("{}: {} poses\n", options.out, poses->size());
+  else if (const auto done = write_text_file(options.out, *text); !done)
+    return fail(done.error());
+  if (options.quiet) return exit_done;
+  print_notices(*robot, *set, options.chain.path);
+  if (is_for_file) print_text("{}: {} poses\n", options.out, poses->size());
   return exit_done;
 }
 

@@ -47,6 +47,7 @@ Result<MatrixXd> preferred_postures(const ReachArguments& options, const Chain& 
 int run(const ReachArguments& options) {
   if (auto other = expect_other_file(options.out, {options.targets, options.chain.path, options.columns}); !other)
     return fail(other.error());
+  if (const auto alone = expect_json_alone(options.common, options.out); !alone) return fail(alone.error());
   const auto robot = read_robot(options.chain);
   if (!robot) return fail(robot.error());
   if (dof(robot->chain) == 0) return fail({fmt::format("{}: the robot has no joint that moves", options.chain.path)});
@@ -65,13 +66,12 @@ int run(const ReachArguments& options) {
                        : motion::reach(robot->chain, read->targets, *preferred, how, options.common.threads);
   const std::vector<std::string> names = active_joint_names(robot->chain);
   const std::string text = format_postures_csv(solutions, joint_columns(options.targets, names));
-  const bool to_terminal = options.out.empty() || options.out == "-";
-  if (to_terminal)
+  if (is_standard_output(options.out))
     print_data(text);
   else if (const auto done = write_text_file(options.out, text); !done)
     return fail(done.error());
   const ReachSummary summary = summarise(solutions);
-  if (options.common.json && !to_terminal)
+  if (options.common.json)
     print_data(nlohmann::ordered_json{{"targets", summary.targets},
                                       {"reached", summary.targets - static_cast<int>(summary.unreached.size())},
                                       {"postures", summary.postures}}

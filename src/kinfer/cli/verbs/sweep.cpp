@@ -64,7 +64,7 @@ Result<std::vector<SweepTask>> read_tasks(const SweepArguments& options, const C
   KINFER_TRY(tasks, options.each.empty() ? read_manifest(options.manifest)
                                          : tasks_of_files(options.each, options.verb, options.arguments));
   for (const SweepTask& task : tasks)
-    if (!has_verb(program, task.verb) || task.verb == "sweep" || task.verb == "merge")
+    if (!has_verb(program, task.verb) || task.verb == "sweep" || task.verb == "merge" || task.verb == "demo")
       return error("{}: \"{}\" is no verb that can be swept",
                    task.line > 0 ? fmt::format("{}:{}", options.manifest, task.line) : "--verb", task.verb);
   if (auto done = add_prior(options, program, tasks); !done) return forward_error(done.error());
@@ -87,7 +87,8 @@ std::vector<std::string> words_of(const SweepTask& task, std::uint64_t seed, con
     const bool is_given = std::ranges::find(task.arguments, option) != task.arguments.end();
     if (!is_given && has_option(program, task.verb, option)) words.push_back(option), words.push_back(value);
   };
-  if (!names_folder) add("--out", folder);
+  const bool writes_file = has_option(program, task.verb, "-o");  // without it, to standard output: output.txt
+  if (!names_folder && !writes_file) add("--out", folder);
   add("--seed", std::to_string(seed));
   add("--threads", "1");
   return words;

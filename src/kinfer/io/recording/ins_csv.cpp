@@ -11,7 +11,7 @@
 #include "kinfer/io/recording/ins_columns.hpp"
 #include "kinfer/io/text/compressed_text.hpp"
 #include "kinfer/io/text/csv.hpp"
-#include "kinfer/io/text/mapped_file.hpp"
+#include "kinfer/io/text/file_bytes.hpp"
 #include "kinfer/io/text/plain_decimal.hpp"
 #include "kinfer/io/text/trim.hpp"
 
@@ -21,14 +21,24 @@ namespace {
 constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
 
 /// Called with the offset of the next line, so that the caller can release the bytes before it.
-using OffsetCallback = std::function<void(std::size_t)>;
+/// A text of `size` bytes, of which the first are there.
+struct GrowingText {
+  std::string_view filled{};
+  std::size_t size = 0;
+  std::function<Result<std::string_view>()> grow{};            ///< more of it, from the beginning
+  std::function<void(std::size_t)> pass = [](std::size_t) {};  ///< bytes before this offset are not read again
+};
+
+GrowingText whole(std::string_view text) {
+  return {.filled = text, .size = text.size(), .grow = [text] { return Result<std::string_view>(text); }};
+}
 
 /// Reads the body of one file into the columns of its sensors.
 class RowReader {
  public:
-  RowReader(std::string_view text, const std::string& name, const CsvHeader& header, const InsColumns& columns,
+  RowReader(GrowingText text, const std::string& name, const CsvHeader& header, const InsColumns& columns,
             InsRecording& out)
-      : text_(text), name_(name), header_(header), columns_(columns), time_(out.loggers.back().time) {
+      : text_(std::move(text)), name_(name), header_(header), columns_(columns), time_(out.loggers.back().time) {
     for (const InsColumn& column : columns.columns) {
       std::vector<float>* target = nullptr;
       if (column.sensor) {
@@ -41,18 +51,16 @@ class RowReader {
     reserve();
   }
 
-  Result<void> read(const OffsetCallback& on_offset) {
+  Result<void> read() {
     std::size_t at = header_.body;
     int line_number = header_.line;
-    while (at < text_.size()) {
-      const void* found = std::memchr(text_.data() + at, '\n', text_.size() - at);
-      const bool whole = found != nullptr;
-      const std::size_t end =
-          whole ? static_cast<std::size_t>(static_cast<const char*>(found) - text_.data()) : text_.size();
+    while (at < text_.size) {
+      KINFER_TRY(end, end_of_line(at));
+      const bool whole = end < text_.size;
       ++line_number;
-      if (auto done = read_line(text_.substr(at, end - at), line_number, whole); !done) return done;
+      if (auto done = read_line(text_.filled.substr(at, end - at), line_number, whole); !done) return done;
       at = end + 1;
-      if ((line_number & 0xfff) == 0) on_offset(at);
+      if ((line_number & 0xfff) == 0) text_.pass(at);
     }
     return {};
   }
@@ -65,10 +73,24 @@ class RowReader {
     double factor;
   };
 
+  /// Of the line that begins at `at`; the size of the text where it has none.
+  Result<std::size_t> end_of_line(std::size_t at) {
+    std::size_t searched = at;
+    for (;;) {
+      const std::string_view filled = text_.filled;
+      if (const void* found = std::memchr(filled.data() + searched, '\n', filled.size() - searched))
+        return static_cast<std::size_t>(static_cast<const char*>(found) - filled.data());
+      if (filled.size() == text_.size) return text_.size;
+      searched = filled.size();
+      KINFER_TRY(more, text_.grow());
+      text_.filled = more;
+    }
+  }
+
   void reserve() {
-    const auto rest = text_.substr(header_.body);
-    const std::size_t line = std::max<std::size_t>(rest.find('\n') + 1, 2);
-    const std::size_t rows = rest.size() / line + rest.size() / line / 16 + 16;
+    const auto rest = text_.filled.substr(header_.body);
+    const std::size_t size = text_.size - header_.body, line = std::max<std::size_t>(rest.find('\n') + 1, 2);
+    const std::size_t rows = size / line + size / line / 16 + 16;
     time_.reserve(rows);
     for (const Target& target : targets_)
       if (target.column) target.column->reserve(rows);
@@ -149,7 +171,7 @@ class RowReader {
     return {};
   }
 
-  std::string_view text_;
+  GrowingText text_;
   const std::string& name_;
   const CsvHeader& header_;
   const InsColumns& columns_;
@@ -158,16 +180,15 @@ class RowReader {
   bool has_truncated_last_line_ = false;
 };
 
-Result<void> append_logger(std::string_view text, const std::string& name, InsRecording& out,
-                           const OffsetCallback& on_offset) {
-  KINFER_TRY(header, read_csv_header(text, name));
+Result<void> append_logger(GrowingText text, const std::string& name, InsRecording& out) {
+  KINFER_TRY(header, read_csv_header(text.filled, name));
   if (auto distinct = expect_distinct_columns(header, name); !distinct) return distinct;
   const std::size_t first = out.sensors.size();
   KINFER_TRY(columns, parse_ins_columns(header, name, out));
   for (const std::string& column : columns.unused_columns)
     out.remarks.push_back(fmt::format("{}: column {} is no channel of an INS and is not used", name, column));
-  RowReader body(text, name, header, columns, out);
-  if (auto done = body.read(on_offset); !done) return done;
+  RowReader body(std::move(text), name, header, columns, out);
+  if (auto done = body.read(); !done) return done;
   if (out.loggers.back().time.empty()) return error("{}: the file has a header but no rows", name);
   if (body.has_truncated_last_line())
     out.remarks.push_back(fmt::format("{}: the last line is cut off and is not used", name));
@@ -179,26 +200,38 @@ Result<void> append_logger(std::string_view text, const std::string& name, InsRe
 
 Result<InsRecording> parse_ins_csv(std::string_view text, const std::string& name) {
   InsRecording out;
-  if (auto done = append_logger(text, name, out, [](std::size_t) {}); !done) return forward_error(done.error());
+  if (auto done = append_logger(whole(text), name, out); !done) return forward_error(done.error());
   return out;
 }
 
 Result<void> append_ins_csv(const std::filesystem::path& path, InsRecording& out, const Observer& observer) {
-  KINFER_TRY(file, MappedFile::open(path));
+  KINFER_TRY(file, FileBytes::open(path));
   const std::string name = path.string();
   const auto report = [&](std::size_t at, std::size_t size) {
     notify(observer,
            {.stage = "reading", .fraction = static_cast<double>(at) / static_cast<double>(size), .detail = name});
   };
-  if (is_gzip(file.text())) return packed_by_gzip(name);
-  if (is_zstd(file.text())) {
+  if (is_gzip(file.filled())) return packed_by_gzip(name);
+  if (is_zstd(file.filled())) {
+    if (auto done = file.fill_to(file.text().size()); !done) return done;
     KINFER_TRY(text, unpack_zstd_text(file.text(), name));
-    return append_logger(text, name, out, [&](std::size_t at) { report(at, text.size()); });
+    GrowingText unpacked = whole(text);
+    unpacked.pass = [&](std::size_t at) { report(at, text.size()); };
+    return append_logger(std::move(unpacked), name, out);
   }
-  return append_logger(file.text(), name, out, [&](std::size_t at) {
-    report(at, file.text().size());
-    file.release_before(at);
-  });
+  return append_logger({.filled = file.filled(),
+                        .size = file.text().size(),
+                        .grow = [&]() -> Result<std::string_view> {
+                          if (auto done = file.fill_to(file.filled().size() + 1); !done)
+                            return forward_error(done.error());
+                          return file.filled();
+                        },
+                        .pass =
+                            [&](std::size_t at) {
+                              report(at, file.text().size());
+                              file.release_before(at);
+                            }},
+                       name, out);
 }
 
 Result<InsRecording> read_ins_csv(std::span<const std::filesystem::path> paths) {

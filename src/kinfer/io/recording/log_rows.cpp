@@ -46,6 +46,7 @@ Result<std::vector<std::string>> each_csv_row(std::ifstream& file, std::string_v
   std::string buffer(piece_size, '\0');
   for (std::string_view piece = next_piece(file, buffer); !piece.empty(); piece = next_piece(file, buffer))
     if (auto done = reader.add(piece, sink); !done) return forward_error(done.error());
+  if (file.bad()) return error("{}: reading stopped with an input error", name);
   if (auto done = reader.finish(sink); !done) return forward_error(done.error());
   return reader.remarks();
 }

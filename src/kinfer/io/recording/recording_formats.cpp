@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <iterator>
 #include <string>
 
@@ -22,12 +21,10 @@
 namespace kinfer {
 namespace {
 
-std::string read_head(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string head(std::size_t{1} << 16, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
-  return is_zstd(head) ? unpack_zstd_head(head, std::size_t{1} << 16) : head;
+std::string unpacked_head(const std::filesystem::path& path) {
+  constexpr std::size_t size = 1 << 16;
+  const std::string head = read_head(path, size);
+  return is_zstd(head) ? unpack_zstd_head(head, size) : head;
 }
 
 const RecordingFormat* recognised_format(const std::string& head) {
@@ -53,7 +50,7 @@ std::span<const RecordingFormat> recording_formats() {
 bool is_recording(const std::filesystem::path& path) {
   if (is_message_log_file(path)) return true;
   if (is_log_bundle(path)) return true;  // reading it says what is in it
-  const std::string head = read_head(path);
+  const std::string head = unpacked_head(path);
   if (is_utf16(head)) return true;  // likewise
   return recognised_format(head) || find_preset(head, path) || is_foreign_log(head);
 }
@@ -74,7 +71,7 @@ Result<InsRecording> read_recording(std::span<const std::filesystem::path> paths
       std::ranges::move(logs, std::back_inserter(foreign));
       continue;
     }
-    const std::string head = read_head(path);
+    const std::string head = unpacked_head(path);
     const RecordingFormat* format = recognised_format(head);
     const InsMap* preset = format ? nullptr : find_preset(head, path);
     if (preset || (!format && is_foreign_log(head))) {

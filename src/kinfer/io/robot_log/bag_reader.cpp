@@ -6,7 +6,7 @@
 #include "kinfer/io/robot_log/byte_cursor.hpp"
 #include "kinfer/io/robot_log/decompression.hpp"
 #include "kinfer/io/robot_log/topic_table.hpp"
-#include "kinfer/io/text/mapped_file.hpp"
+#include "kinfer/io/text/file_bytes.hpp"
 
 namespace kinfer {
 namespace {
@@ -44,16 +44,20 @@ class BagReader {
  public:
   BagReader(std::string file, const MessageSink& sink) : topics_(std::move(file), sink) {}
 
-  Result<MessageLog> read(MappedFile& file, std::size_t begin) {
+  Result<MessageLog> read(FileBytes& file, std::size_t begin) {
     ByteCursor cursor(file.text());
     cursor.take(begin);
     while (cursor.left() > 0) {
-      const std::string_view header = cursor.block<std::uint32_t>(), data = cursor.block<std::uint32_t>();
+      if (auto done = file.fill_to(cursor.at() + sizeof(std::uint32_t)); !done) return forward_error(done.error());
+      const std::string_view header = cursor.block<std::uint32_t>();
+      if (auto done = file.fill_to(cursor.at() + sizeof(std::uint32_t)); !done) return forward_error(done.error());
+      const std::string_view data = cursor.block<std::uint32_t>();
       if (!cursor.good()) {
         topics_.remark(
             fmt::format("{}: the file ends in the middle of a record; what is before it is used", topics_.file()));
         break;
       }
+      if (auto done = file.fill_to(cursor.at()); !done) return forward_error(done.error());
       if (auto done = read_bag_record(header, data, true); !done) return forward_error(done.error());
       topics_.report_progress(cursor.at(), file.text().size());
       file.release_before(cursor.at());
@@ -114,7 +118,7 @@ bool is_bag(std::string_view head) {
 }
 
 Result<MessageLog> read_bag(const std::filesystem::path& path, const MessageSink& sink) {
-  KINFER_TRY(file, MappedFile::open(path));
+  KINFER_TRY(file, FileBytes::open(path));
   const std::string_view text = file.text(), line = text.substr(0, text.substr(0, 64).find('\n'));
   const std::string_view version = line.substr(std::min(line.size(), bag_magic.size()));
   if (version != "2.0") return error("{}: expected a ROS bag of version 2.0, found \"{}\"", path.string(), line);

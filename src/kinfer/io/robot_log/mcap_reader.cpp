@@ -6,12 +6,13 @@
 #include "kinfer/io/robot_log/byte_cursor.hpp"
 #include "kinfer/io/robot_log/decompression.hpp"
 #include "kinfer/io/robot_log/topic_table.hpp"
-#include "kinfer/io/text/mapped_file.hpp"
+#include "kinfer/io/text/file_bytes.hpp"
 
 namespace kinfer {
 namespace {
 
 constexpr std::string_view mcap_magic("\x89MCAP0\r\n", 8);
+constexpr std::size_t record_header = 9;  // opcode and length; longer than the magic that may end the file
 
 enum class McapOpcode : std::uint8_t { schema = 3, channel = 4, message = 5, chunk = 6, data_end = 15 };
 
@@ -23,11 +24,13 @@ class McapReader {
  public:
   McapReader(std::string file, const MessageSink& sink) : topics_(std::move(file), sink) {}
 
-  Result<MessageLog> read(MappedFile& file) {
+  Result<MessageLog> read(FileBytes& file) {
     ByteCursor cursor(file.text());
     cursor.take(mcap_magic.size());
     bool ended = false;
-    while (!ended && cursor.left() > 0 && file.text().substr(cursor.at()) != mcap_magic) {
+    while (!ended && cursor.left() > 0) {
+      if (auto done = file.fill_to(cursor.at() + record_header); !done) return forward_error(done.error());
+      if (file.text().substr(cursor.at()) == mcap_magic) break;
       const auto opcode = static_cast<McapOpcode>(cursor.number<std::uint8_t>());
       const std::string_view content = cursor.block<std::uint64_t>();
       if (!cursor.good()) {
@@ -35,6 +38,7 @@ class McapReader {
             fmt::format("{}: the file ends in the middle of a record; what is before it is used", topics_.file()));
         break;
       }
+      if (auto done = file.fill_to(cursor.at()); !done) return forward_error(done.error());
       if (opcode == McapOpcode::chunk) {
         if (auto done = read_chunk(content); !done) return forward_error(done.error());
       } else if (auto done = read_record(opcode, content); !done) {
@@ -127,7 +131,7 @@ bool is_mcap(std::string_view head) {
 }
 
 Result<MessageLog> read_mcap(const std::filesystem::path& path, const MessageSink& sink) {
-  KINFER_TRY(file, MappedFile::open(path));
+  KINFER_TRY(file, FileBytes::open(path));
   return McapReader(path.string(), sink).read(file);
 }
 

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 
 #include "kinfer/io/robot_log/bag_folder.hpp"
 #include "kinfer/io/robot_log/bag_reader.hpp"
 #include "kinfer/io/robot_log/db3_reader.hpp"
 #include "kinfer/io/robot_log/mcap_reader.hpp"
+#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 
@@ -27,16 +27,10 @@ bool is_message_log(std::string_view head) {
 
 namespace {
 
-std::string head_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string head(64, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
-  return head;
-}
+constexpr std::size_t head_size = 64;
 
 Result<MessageLog> read_one_file(const std::filesystem::path& path, const MessageSink& sink) {
-  const std::string head = head_of(path);
+  const std::string head = read_head(path, head_size);
   for (const MessageLogFormat& format : message_log_formats())
     if (format.recognise(head)) return format.read(path, sink);
   return error("{}: no robot log; known are .mcap, ROS 1 .bag (2.0) and ROS 2 .db3", path.string());
@@ -47,7 +41,7 @@ Result<MessageLog> read_one_file(const std::filesystem::path& path, const Messag
 bool is_message_log_file(const std::filesystem::path& path) {
   std::error_code failure;
   if (std::filesystem::is_directory(path, failure)) return !bag_folder_files(path).empty();
-  return is_message_log(head_of(path));
+  return is_message_log(read_head(path, head_size));
 }
 
 Result<MessageLog> read_message_log(const std::filesystem::path& path, const MessageSink& sink) {

@@ -2,6 +2,7 @@
 #include "kinfer/io/text/text_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,6 +12,7 @@
 
 #include "kinfer/base/temporary_paths.hpp"
 #include "kinfer/io/text/compressed_text.hpp"
+#include "kinfer/io/text/file_bytes.hpp"
 
 namespace kinfer {
 namespace {
@@ -43,6 +45,24 @@ bool is_writable_folder(const fs::path& folder) {
   return is_writable;
 }
 
+/// A pipe has no size, and a file may grow or be cut while it is read.
+Result<std::string> read_all(int file, const std::string& name) {
+  constexpr std::size_t piece = 1 << 16;
+  struct stat status {};
+  const bool has_size = ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0;
+  std::string text(has_size ? static_cast<std::size_t>(status.st_size) : 0, '\0');
+  KINFER_TRY(known, read_from(file, text.data(), text.size(), name));
+  text.resize(known);
+  for (std::size_t count = piece; !has_size && count == piece;) {
+    const std::size_t before = text.size();
+    text.resize(before + piece);
+    KINFER_TRY(found, read_from(file, text.data() + before, piece, name));
+    count = found;
+    text.resize(before + count);
+  }
+  return text;
+}
+
 }  // namespace
 
 Result<std::string> read_text_file(const fs::path& path) {
@@ -50,21 +70,25 @@ Result<std::string> read_text_file(const fs::path& path) {
   const fs::file_status status = fs::status(path, failure);
   if (!fs::exists(status)) return error("{}: no such file", path.string());
   if (fs::is_directory(status)) return error("{}: expected a file, found a folder", path.string());
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return error("{}: the file cannot be read (permissions?)", path.string());
-  std::string text;
-  const auto size = fs::file_size(path, failure);
-  if (!failure && size > 0) {
-    text.resize(size);
-    file.read(text.data(), static_cast<std::streamsize>(size));
-    text.resize(static_cast<std::size_t>(file.gcount()));
-  } else {  // a pipe has no size
-    text.assign(std::istreambuf_iterator<char>(file), {});
-  }
-  if (file.bad()) return error("{}: reading stopped with an input error", path.string());
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return error("{}: the file cannot be read (permissions?)", path.string());
+  auto text_result = read_all(file, path.string());
+  ::close(file);
+  if (!text_result) return text_result;
+  std::string text = std::move(*text_result);
   if (text.empty()) return error("{}: the file is empty", path.string());
   if (is_gzip(text)) return packed_by_gzip(path.string());
   return is_zstd(text) ? unpack_zstd_text(text, path.string()) : Result<std::string>(std::move(text));
+}
+
+std::string read_head(const fs::path& path, std::size_t size) {
+  std::error_code failure;
+  if (!fs::is_regular_file(path, failure)) return {};
+  std::ifstream file(path, std::ios::binary);
+  std::string head(size, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(size));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head;
 }
 
 Result<void> write_file(const fs::path& given, const std::function<void(std::ostream&)>& write) {

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 
 #include "kinfer/io/recording/foreign/ins_presets.hpp"
-#include "kinfer/io/text/mapped_file.hpp"
+#include "kinfer/io/text/file_bytes.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/zip_archive.hpp"
 
@@ -53,7 +52,7 @@ class BundleReader {
 };
 
 Result<std::vector<ForeignLog>> read_archive(const fs::path& path) {
-  KINFER_TRY(file, MappedFile::open(path));
+  KINFER_TRY(file, FileBytes::read(path));
   KINFER_TRY(entries, zip_entries(file.text(), path.string()));
   BundleReader reader(path.string());
   for (const ZipEntry& entry : entries) {
@@ -84,10 +83,7 @@ Result<std::vector<ForeignLog>> read_folder(const fs::path& path) {
 bool is_log_bundle(const fs::path& path) {
   std::error_code failure;
   if (fs::is_directory(path, failure)) return true;
-  std::ifstream file(path, std::ios::binary);
-  std::string head(4, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return is_zip(std::string_view(head).substr(0, static_cast<std::size_t>(file.gcount())));
+  return is_zip(read_head(path, 4));
 }
 
 Result<std::vector<ForeignLog>> read_log_bundle(const fs::path& path) {
