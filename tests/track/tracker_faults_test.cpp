@@ -28,6 +28,33 @@ TEST(Tracker, NamesALostAndAStuckSensorAndGoesOn) {
   for (int j = 1; j < 5; ++j) EXPECT_LT(out.rms(j), 0.6 * degree) << j;
 }
 
+std::vector<int> exchanged_of(const Outcome& out) {
+  std::vector<int> sensors;
+  for (const TrackAlarm& alarm : out.alarms)
+    if (alarm.kind == TrackAlarmKind::sensor_exchanged) sensors.push_back(alarm.sensor);
+  return sensors;
+}
+
+/// At rest gravity allows it where axes are parallel and level, whatever the joints are then said to be.
+TEST(Tracker, NamesExchangedSensors) {
+  for (const std::size_t first : {2u, 0u}) {
+    const Outcome out =
+        run(still_excavator(), {}, [first](InsRow& row) { std::swap(row.sensors[first], row.sensors[first + 1]); });
+    EXPECT_EQ(exchanged_of(out), (std::vector{static_cast<int>(first), static_cast<int>(first) + 1}));
+  }
+}
+
+TEST(Tracker, ASensorThatTurnsIsNotExchanged) {
+  const Mat3 turn = exp_so3(Vec3(0.4, -0.8, 1.2));
+  const Outcome out = run(still_excavator(), {}, [&](InsRow& row) {
+    if (row.time < 15.0) return;
+    row.sensors[2].acceleration = turn * row.sensors[2].acceleration;
+    row.sensors[2].angular_velocity = turn * row.sensors[2].angular_velocity;
+  });
+  EXPECT_FALSE(out.alarms.empty());
+  EXPECT_EQ(exchanged_of(out), std::vector<int>{});
+}
+
 /// Shoulder and elbow of this arm are parallel: while both rest, nothing but that they rest tells their positions,
 /// which were up to 10 degrees off.
 TEST(Tracker, JointsThatRestBesideALostSensorStayWhereTheyAre) {

@@ -16,7 +16,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr auto last_alarm = TrackAlarmKind::start_wrong;
+constexpr auto last_alarm = TrackAlarmKind::sensor_exchanged;
 
 /// Two sensors and a joint, tracked over 12.5 s without any alarm.
 TrackRun sound_run() {
@@ -72,7 +72,7 @@ TEST(TrackVerdict, DependsOnTheKindOfAlarmAndWhetherItLasts) {
       run.events = {event_of(kind, lasts ? to_the_end : 5.0)};
       run = words::with_sentences(run);
       const bool is_remark = kind == TrackAlarmKind::restarted || kind == TrackAlarmKind::sensor_clipped;
-      const bool is_fatal = kind == TrackAlarmKind::does_not_fit && lasts;
+      const bool is_fatal = (kind == TrackAlarmKind::does_not_fit || kind == TrackAlarmKind::sensor_exchanged) && lasts;
       EXPECT_EQ(run.verdict.usability, is_remark  ? Usability::use
                                        : is_fatal ? Usability::do_not_use
                                                   : Usability::use_with_care)

@@ -42,6 +42,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       is_late_(model.sensors.size(), false),
       mounts_(model.sensors.size()),
       biases_(model.sensors.size()),
+      exchange_(model_),
       composed_(model, options),
       is_sound_(model.sensors.size(), true),
       is_settled_(model.joints.size(), true),
@@ -387,6 +388,8 @@ void Tracker::process_block(const BlockMeasurement& block) {
     watch_misfit(block.time);
     find_returned(block);
   }
+  exchange_.suspect(misfit_since_ || biases_.names_any() || is_fault_named());
+  exchange_.add(block, guesses_, filter_.state().base);
   spread_tool();
 }
 
@@ -469,6 +472,8 @@ void Tracker::list_alarms(double time) {
                         .sensor = sensor,
                         .since = *since,
                         .strength = bias_strength(filter_, s)});
+    if (const auto& found = exchange_.found(); found && (s == found->first || s == found->second))
+      alarms.push_back({.kind = TrackAlarmKind::sensor_exchanged, .sensor = sensor, .since = found->since});
     if (!does_not_fit_[s]) continue;
     ++disagreeing;
     alarms.push_back({.kind = is_late_[s] ? TrackAlarmKind::sensor_late : TrackAlarmKind::sensor_moved,

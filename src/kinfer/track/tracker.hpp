@@ -11,6 +11,7 @@
 #include "kinfer/track/faults/bias_watch.hpp"
 #include "kinfer/track/faults/change_hypotheses.hpp"
 #include "kinfer/track/faults/clock_watch.hpp"
+#include "kinfer/track/faults/exchange.hpp"
 #include "kinfer/track/faults/fit_monitor.hpp"
 #include "kinfer/track/faults/mount_watch.hpp"
 #include "kinfer/track/faults/replay.hpp"
@@ -105,6 +106,7 @@ class Tracker {
   std::vector<bool> is_late_;       // of these, by their clocks
   MountWatch mounts_;               // of these
   BiasWatch biases_;
+  ExchangeWatch exchange_;
   std::optional<double> waits_since_;  // [s] for a start in a quieter moment
   ComposedFilters composed_;
   std::vector<bool> is_sound_, is_settled_;  // sensors that the composed filters may use; joints that are not open

@@ -16,9 +16,9 @@ std::string_view name(JointReference reference) {
 }
 
 std::string_view name(TrackAlarmKind kind) {
-  constexpr std::array<std::string_view, 9> names{"does_not_fit", "sensor_moved", "joint_changed",
-                                                  "sensor_lost",  "sensor_stuck", "sensor_clipped",
-                                                  "sensor_late",  "restarted",    "start_wrong"};
+  constexpr std::array<std::string_view, 10> names{"does_not_fit", "sensor_moved",    "joint_changed", "sensor_lost",
+                                                   "sensor_stuck", "sensor_clipped",  "sensor_late",   "restarted",
+                                                   "start_wrong",  "sensor_exchanged"};
   return names[static_cast<std::size_t>(kind)];
 }
 

@@ -34,15 +34,16 @@ struct JointStatus {
 };
 
 enum class TrackAlarmKind {
-  does_not_fit,    ///< the chain as a whole: another machine's log, or permuted axes
-  sensor_moved,    ///< a sensor does not agree with the chain: turned, shifted, on another segment
-  joint_changed,   ///< a joint does not: play, bent
-  sensor_lost,     ///< no samples
-  sensor_stuck,    ///< the same sample again and again
-  sensor_clipped,  ///< at its range
-  sensor_late,     ///< its clock disagrees
-  restarted,       ///< after a gap
-  start_wrong,     ///< gravity contradicts where the user says that a joint stands
+  does_not_fit,      ///< the chain as a whole: another machine's log, or permuted axes
+  sensor_moved,      ///< a sensor does not agree with the chain: turned, shifted, on another segment
+  joint_changed,     ///< a joint does not: play, bent
+  sensor_lost,       ///< no samples
+  sensor_stuck,      ///< the same sample again and again
+  sensor_clipped,    ///< at its range
+  sensor_late,       ///< its clock disagrees
+  restarted,         ///< after a gap
+  start_wrong,       ///< gravity contradicts where the user says that a joint stands
+  sensor_exchanged,  ///< with another sensor: the rows are explained with both in each other's place
 };
 std::string_view name(TrackAlarmKind kind);
 

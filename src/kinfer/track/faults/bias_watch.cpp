@@ -34,6 +34,10 @@ std::optional<double> BiasWatch::named_since(std::size_t sensor) const {
   return biases_[sensor].is_named ? biases_[sensor].since : std::nullopt;
 }
 
+bool BiasWatch::names_any() const {
+  return std::ranges::any_of(biases_, &BiasChange::is_named);
+}
+
 double bias_strength(const ChainFilter& filter, std::size_t sensor) {
   return bias_distance(filter, sensor) / bias_limit;
 }

@@ -21,6 +21,7 @@ class BiasWatch {
 
   /// [s] Of a sensor whose biases have been far off for so long that it is an alarm.
   std::optional<double> named_since(std::size_t sensor) const;
+  bool names_any() const;
 
  private:
   struct BiasChange {

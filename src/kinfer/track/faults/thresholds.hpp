@@ -55,11 +55,19 @@ KINFER_THRESHOLD(track, misfit_inflation, 100.0);
 inline constexpr double fitting_inflation = 10.0;
 inline constexpr double settling = 3.0;            ///< [s] after a start
 inline constexpr std::size_t replay_blocks = 100;  ///< two seconds: at least so much is replayed, at most twice
-/// [s] without rows, or without any sensor, after which the posture is found anew. Excavators and six-axis arms in quick
-/// drives are followed over 0.5 s, and no longer over 0.6 s.
+/// [s] without rows, or without any sensor, after which the posture is found anew. Excavators and six-axis arms in
+/// quick drives are followed over 0.5 s, and no longer over 0.6 s.
 inline constexpr double restart_gap = 0.5;
 /// [rad] A joint that is less certain than this when its sensor comes back is sought again.
 inline constexpr double turned_in_gap = 0.08;
+/// Two sensors are said to be exchanged beyond these ln odds, where no factor on a sensor's variances is then larger;
+/// updates by which it is judged, and how often after something did not fit, since a machine may stand still. Of
+/// simulated excavators, arms and cranes with exchanged sensors all pairs: at most 1.2; where a sensor turned by 1.5
+/// rad 5.7.
+KINFER_THRESHOLD(track, exchange_log_odds, 12.0);
+KINFER_THRESHOLD(track, exchange_inflation, 3.0);
+inline constexpr std::size_t exchange_blocks = 100;
+inline constexpr int most_exchange_trials = 5;
 /// A sensor that comes back beside a joint that is less certain than `turned_in_gap`: the position is sought over so
 /// many seconds of rows, and as often again while no place on the circle is so much likelier than the others (ln), for
 /// the longest time [s]; from so many places, those within so many standard deviations, each settled in so many rounds.

@@ -26,7 +26,7 @@ std::vector<std::string> names_of(const List& list) {
 
 /// Faults that make the result useless, and those that do not.
 bool is_fatal(TrackAlarmKind kind) {
-  return kind == TrackAlarmKind::does_not_fit;
+  return kind == TrackAlarmKind::does_not_fit || kind == TrackAlarmKind::sensor_exchanged;
 }
 
 bool is_remark(TrackAlarmKind kind) {
@@ -134,6 +134,9 @@ std::string sentence(const TrackAlarm& alarm, const std::vector<std::string>& se
       return phrase(id, "{} is at the end of its range", sensor);
     case TrackAlarmKind::sensor_late:
       return phrase(id, "the clock of {} disagrees with the others", sensor);
+    case TrackAlarmKind::sensor_exchanged:
+      return phrase(id, "{} measures in the place of another sensor: their cables, names or mountings are exchanged",
+                    sensor);
     case TrackAlarmKind::start_wrong:
       return phrase(id, "gravity contradicts where --start places the joint {}, and is believed", joint);
     case TrackAlarmKind::restarted:

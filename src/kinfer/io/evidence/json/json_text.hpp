@@ -70,7 +70,7 @@ template <>
 inline constexpr auto last<ToolLengthSource> = ToolLengthSource::radius_without_fit;
 
 template <>
-inline constexpr auto last<TrackAlarmKind> = TrackAlarmKind::start_wrong;
+inline constexpr auto last<TrackAlarmKind> = TrackAlarmKind::sensor_exchanged;
 
 template <class Enum>
 std::string text_of(Enum value) {
