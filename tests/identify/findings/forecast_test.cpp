@@ -20,14 +20,16 @@ namespace {
 
 JointEstimate joint_with(double point_sd, double axis_sd) {
   JointEstimate joint{.parent = "a", .child = "b"};
-  joint.sd.point_in_parent = {3.0, 3.0};  // unobservable, so it does not count
-  joint.sd.point_in_child = {0.1 * point_sd, point_sd};
+  joint.sd.point_in_parent = joint.sd.point_in_child = {0.1 * point_sd, point_sd};
   joint.sd.axis_in_parent = joint.sd.axis_in_child = {axis_sd, axis_sd};
   return joint;
 }
 
 TEST(Forecast, UnobservableQuantitiesDoNotCount) {
-  const auto all = forecast({joint_with(2e-3, 1e-4)});
+  JointEstimate joint = joint_with(2e-3, 1e-4);
+  joint.sd.point_in_parent = {3.0, 3.0};  // of a parent that does not rotate
+  joint.unobservable_in_parent = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  const auto all = forecast({joint});
   ASSERT_EQ(all.size(), 1U);
   EXPECT_DOUBLE_EQ(all[0].line_sd, std::hypot(2e-4, 2e-3));
   EXPECT_TRUE(all[0].is_sufficient);
@@ -64,6 +66,20 @@ TEST(Forecast, AJointOfWhichNothingIsKnownIsNeverEnough) {
   EXPECT_FALSE(forecast({joint}).front().is_sufficient) << "as of joints that were withdrawn";
   joint.type = EstimatedJointType::spherical;
   EXPECT_TRUE(forecast({joint}).front().is_sufficient) << "a spherical joint has no axis";
+}
+
+TEST(Forecast, ALineThatIsKnownWorseIsNotKnownBetter) {
+  double before = 0.0;
+  for (const double sd : {0.01, 0.2, 0.3, 0.49, 0.51, 0.94, 10.0}) {
+    JointEstimate joint = joint_with(1e-3, 1e-4);
+    joint.unobservable_in_parent = {Vec3::UnitX()};
+    joint.sd.point_in_child = {1e-3, sd};  // known across one direction, hardly across the other
+    const JointForecast line = forecast({joint}).front();
+    EXPECT_GE(line.line_sd, before) << sd;
+    EXPECT_FALSE(line.is_sufficient) << sd;
+    before = line.line_sd;
+  }
+  EXPECT_TRUE(std::isinf(before));
 }
 
 TEST(Forecast, AChildThatNeverTurnsHasItsPointInTheParent) {
