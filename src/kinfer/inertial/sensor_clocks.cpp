@@ -20,6 +20,8 @@ namespace {
 using Index = Eigen::Index;
 using Products = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;  // one row a tick
 
+constexpr Index min_ticks = 200;  // of a comparison
+
 /// Common sampling instants of all sensors after the loggers have been aligned.
 struct Ticks {
   double begin = 0.0, period = 0.0;
@@ -101,6 +103,56 @@ Lag best_lag(const Products& a, const Products& b, Index first, Index count, Ind
           .found = mutual_information(at[k]) > inertial::min_agreement};
 }
 
+/// b's products at the times of a's ticks from `first` on, where b's clock is corrected by `lag` [ticks] in the middle
+/// of all ticks and by `drift`; linear between ticks. nullopt beyond b's ends.
+std::optional<Products> moved(const Products& b, Index first, Index count, double lag, double drift) {
+  const double middle = 0.5 * static_cast<double>(b.rows());
+  Products result(count, 6);
+  for (Index i = 0; i < count; ++i) {
+    const double tick = static_cast<double>(first + i), at = tick - lag - drift * (tick - middle);
+    const auto before = static_cast<Index>(std::floor(at));
+    if (before < 0 || before + 1 >= b.rows()) return std::nullopt;
+    const double share = at - static_cast<double>(before);
+    result.row(i) = (1.0 - share) * b.row(before) + share * b.row(before + 1);
+  }
+  return result;
+}
+
+/// Lag at the middle of all ticks [ticks] and drift with the squared correlation that they leave.
+struct LagAndDrift {
+  double lag = 0.0, drift = 0.0, square = 0.0;
+};
+
+/// The best lag and drift for a window of a, on a grid about `start` and then between its points. In a window of n
+/// ticks a drift of 1 / n moves the ends by half a tick.
+LagAndDrift best_lag_and_drift(const Products& a, const Products& b, Index first, Index count, double start) {
+  const auto fixed = whitened(a, first, count);
+  if (!fixed) return {};
+  const auto square_at = [&](double lag, double drift) {
+    const auto other = moved(b, first, count, lag, drift);
+    const auto white = other ? whitened(*other, 0, count) : std::nullopt;
+    return white ? squared_correlation(*fixed, *white) : 0.0;
+  };
+  LagAndDrift best{start, 0.0, square_at(start, 0.0)};
+  const auto consider = [&](double lag, double drift) {
+    if (const double square = square_at(lag, drift); square > best.square) best = {lag, drift, square};
+  };
+  const double middle = 0.5 * static_cast<double>(b.rows()), step = 1.0 / static_cast<double>(count);
+  // What turned the window most may lie beside its middle: the lag there is that of `start` for any drift.
+  const double from_middle = std::abs(static_cast<double>(first) + 0.5 * static_cast<double>(count) - middle) +
+                             0.5 * static_cast<double>(count);
+  for (double drift = step; drift <= inertial::largest_clock_drift; drift += step)
+    for (const double signed_drift : {drift, -drift})
+      for (double shift = -drift * from_middle; shift <= drift * from_middle + 0.5; shift += 1.0)
+        consider(start + shift, signed_drift);
+  for (double part = 0.5; part > 0.05; part *= 0.5) {
+    const LagAndDrift now = best;
+    for (const double lag : {-part, 0.0, part})
+      for (const double drift : {-part, 0.0, part}) consider(now.lag + lag, now.drift + drift * step);
+  }
+  return best;
+}
+
 struct PairLag {
   std::size_t first = 0, second = 0;
   Lag lag;
@@ -140,20 +192,43 @@ class ClockComparison {
     return pairs;
   }
 
-  /// Offset at the middle and drift of a pair from windows over the whole recording (Theil 1950, Sen 1968).
+  /// Offset at the middle and drift of a pair.
   ClockCorrection line(const PairLag& pair) const {
+    const ClockCorrection near = line_of_window(pair);
+    return length() < options_.min_drift_duration ? near : line_of_windows(pair, near);
+  }
+
+ private:
+  /// From the window with the most rotation. A drift that explains it no better than chance would is none.
+  ClockCorrection line_of_window(const PairLag& pair) const {
     const ClockCorrection constant{.offset = pair.lag.seconds, .drift = 0.0, .middle = middle()};
-    if (length() < options_.min_drift_duration) return constant;
+    const Index margin =
+        reach() + static_cast<Index>(inertial::largest_clock_drift * static_cast<double>(ticks_.count));
+    const Index count = std::min(window_count(), ticks_.count - 2 * margin);
+    if (count < min_ticks) return constant;
+    const Index first = std::clamp<Index>(most_active_window(window_count()), margin, ticks_.count - count - margin);
+    const LagAndDrift found = best_lag_and_drift(products_[pair.first], products_[pair.second], first, count,
+                                                 pair.lag.seconds / ticks_.period);
+    const double samples = static_cast<double>(count) * ticks_.period / inertial::independent_rate_time,
+                 gain = samples * (mutual_information(found.square) - pair.lag.agreement);
+    if (gain < inertial::min_drift_gain) return constant;
+    return {.offset = found.lag * ticks_.period, .drift = found.drift, .middle = middle()};
+  }
+
+  /// From windows over the whole recording, about `near` (Theil 1950, Sen 1968).
+  ClockCorrection line_of_windows(const PairLag& pair, const ClockCorrection& near) const {
     const Index count = window_count();
     const auto windows = std::min<std::size_t>(inertial::max_windows, static_cast<std::size_t>(ticks_.count / count));
     std::vector<double> at, offset;
     for (std::size_t w = 0; w < windows; ++w) {
       const auto first = static_cast<Index>(static_cast<double>(ticks_.count - count) * static_cast<double>(w) /
                                             static_cast<double>(std::max<std::size_t>(1, windows - 1)));
+      const double centre =
+          ticks_.begin + ticks_.period * (static_cast<double>(first) + 0.5 * static_cast<double>(count));
       const Lag lag = compare(pair.first, pair.second, first, count,
-                              static_cast<Index>(std::round(pair.lag.seconds / ticks_.period)));
+                              static_cast<Index>(std::round(near.shift_at(centre) / ticks_.period)));
       if (!lag.found) continue;
-      at.push_back(ticks_.begin + ticks_.period * (static_cast<double>(first) + 0.5 * static_cast<double>(count)));
+      at.push_back(centre);
       offset.push_back(lag.seconds);
     }
     std::vector<double> slopes, levels;
@@ -161,13 +236,12 @@ class ClockComparison {
       for (std::size_t j = i + 1; j < at.size(); ++j)
         if (at[j] - at[i] > inertial::min_window_distance * length())
           slopes.push_back((offset[j] - offset[i]) / (at[j] - at[i]));
-    if (slopes.empty()) return constant;
+    if (slopes.empty()) return near;
     const double drift = median(slopes);
     for (std::size_t i = 0; i < at.size(); ++i) levels.push_back(offset[i] - drift * (at[i] - middle()));
     return {.offset = median(levels), .drift = drift, .middle = middle()};
   }
 
- private:
   /// Shift of a logger to the first one: by correlation if reliable, else by equal start times.
   double shift_of(std::size_t logger) const {
     if (share_clock(recording_, 0, logger)) return 0.0;
@@ -185,7 +259,7 @@ class ClockComparison {
   }
 
   Lag compare(std::size_t a, std::size_t b, Index first, Index count, Index middle) const {
-    if (count < 200) return {};
+    if (count < min_ticks) return {};
     first = std::clamp<Index>(first, std::max<Index>(0, middle + reach()),
                               std::max<Index>(0, ticks_.count - count + std::min<Index>(0, middle - reach())));
     return best_lag(products_[a], products_[b], first, count, middle, reach(), ticks_.period);
@@ -224,16 +298,18 @@ std::vector<PairLag> maximum_spanning_tree(std::vector<PairLag> pairs, std::size
   return tree;
 }
 
+/// Of the first logger, unless none of its sensors agrees with any: a base that stands still tells no time.
 std::size_t choose_reference(const InsRecording& recording, const std::vector<PairLag>& tree) {
-  std::size_t best = 0;
-  double strongest = -1.0;
+  std::size_t best = 0, best_of_first = 0;
+  double strongest = -1.0, strongest_of_first = 0.0;
   for (std::size_t s = 0; s < recording.sensors.size(); ++s) {
     double sum = 0.0;
     for (const PairLag& pair : tree)
       if (pair.first == s || pair.second == s) sum += pair.lag.agreement;
-    if (recording.sensors[s].logger == 0 && sum > strongest) best = s, strongest = sum;
+    if (sum > strongest) best = s, strongest = sum;
+    if (recording.sensors[s].logger == 0 && sum > strongest_of_first) best_of_first = s, strongest_of_first = sum;
   }
-  return best;
+  return strongest_of_first > 0.0 ? best_of_first : best;
 }
 
 }  // namespace
@@ -264,7 +340,36 @@ std::vector<ClockEstimate> estimate_sensor_clocks(const InsRecording& recording,
       clocks[other].known = true;
       reached.push_back(other);
     }
+  std::vector<ClockCorrection> known;
+  for (const ClockEstimate& clock : clocks)
+    if (clock.known) known.push_back(clock.correction);
+  if (const double drift = common_drift(known); std::abs(drift) > 0.0)
+    for (ClockEstimate& clock : clocks)
+      if (clock.known) clock.correction = without_drift(clock.correction, drift, comparison.middle());
   return clocks;
+}
+
+double common_drift(std::span<const ClockCorrection> corrections) {
+  const auto votes_for = [&](double drift) {
+    double sum = 0.0;
+    for (const ClockCorrection& c : corrections) {
+      const double off = (c.drift - drift) / inertial::usual_clock_drift;
+      sum += std::exp(-0.5 * off * off);
+    }
+    return sum;
+  };
+  double best = 0.0, most = 0.0;
+  for (const ClockCorrection& c : corrections)
+    if (const double votes = votes_for(c.drift); votes > most) best = c.drift, most = votes;
+  const bool is_reference_odd = std::abs(best) > inertial::odd_clock_drift && most > votes_for(0.0) + 0.5;
+  return is_reference_odd ? best : 0.0;
+}
+
+ClockCorrection without_drift(const ClockCorrection& correction, double drift, double middle) {
+  const auto machine_time = [&](double t) { return middle + (t + correction.shift_at(t) - middle) / (1.0 + drift); };
+  return {.offset = machine_time(correction.middle) - correction.middle,
+          .drift = (1.0 + correction.drift) / (1.0 + drift) - 1.0,
+          .middle = correction.middle};
 }
 
 }  // namespace kinfer

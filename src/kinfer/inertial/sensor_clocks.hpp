@@ -8,6 +8,9 @@
 // accumulated along the maximum spanning tree of the sensors under this measure.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "kinfer/base/result.hpp"
 #include "kinfer/measurement/clock_correction.hpp"
 
@@ -26,8 +29,15 @@ struct ClockOptions {
 };
 
 /// One per sensor. Loggers may start at any time. The reference is the sensor of the first logger that agrees best with
-/// the others.
+/// the others, or the best of all where none of it does; its drift is that of the clock that most agree on.
 std::vector<ClockEstimate> estimate_sensor_clocks(const InsRecording& recording, const ClockOptions& options = {},
                                                   int threads = 0);
+
+/// [s/s] That of most clocks where they agree with each other and not with the reference, whose drift is 0; else 0. A
+/// clock that runs fast makes the machine larger, so the odd one must not be the reference.
+double common_drift(std::span<const ClockCorrection> corrections);
+
+/// The correction to a machine time that runs slower by `drift` and is the same at `middle`.
+ClockCorrection without_drift(const ClockCorrection& correction, double drift, double middle);
 
 }  // namespace kinfer

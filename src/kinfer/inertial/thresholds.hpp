@@ -54,6 +54,15 @@ inline constexpr double min_overlap = 10.0;
 /// Correlation of two loggers above which their offset is accepted. Larger: more loggers stay unsynchronised; smaller:
 /// chance agreements. Data: not recorded.
 inline constexpr double min_logger_correlation = 0.3;
+/// [s/s] Largest drift between two clocks that is tried: ceramic resonators are within 5000 ppm. Larger takes more
+/// time.
+inline constexpr double largest_clock_drift = 6e-3;
+/// [s/s] Standard deviation of quartz clocks, and drift from which a clock is the odd one among others: three of them.
+inline constexpr double usual_clock_drift = 1e-4, odd_clock_drift = 3e-4;
+/// [s] Distance of independent samples of angular velocity, and [nats] by which a drift must explain a window better
+/// than none. Simulated machines (53 s, all loggers on one clock) stay below 4; 500 ppm gain 15 and more where both
+/// sensors rotate all the time.
+inline constexpr double independent_rate_time = 0.25, min_drift_gain = 8.0;
 /// [nats] Mutual information of two sensors that move together. Larger: fewer sensors are synchronised; smaller: chance
 /// agreements. Data: not recorded.
 inline constexpr double min_agreement = 0.15;
