@@ -99,7 +99,8 @@ IdentificationResult identify_in_python(const py::object& data, const std::optio
     TrackedMachine known = tracked_machine(update);
     options.refine.known = std::move(known.model);
     earlier = std::move(known.recordings);
-    value_of(expect_new_recordings(recording.paths, earlier, path_of(update).value_or("the machine")));
+    value_of(
+        expect_new_recordings(recording.paths, recording.recording, earlier, path_of(update).value_or("the machine")));
     inputs.insert(inputs.end(), known.paths.begin(), known.paths.end());
   }
   // The filter of the program's default.
@@ -112,7 +113,8 @@ IdentificationResult identify_in_python(const py::object& data, const std::optio
     result = identify::identify_machine(recording.recording, options, Rng(seed), observer);
   });
   return {value_of(std::move(*result)),
-          {.inputs = fingerprints(inputs),
+          {.inputs =
+               recording.paths.empty() ? fingerprints(inputs) : with_samples(fingerprints(inputs), recording.recording),
            .options = std::move(described),
            .seed = seed,
            .earlier_inputs = std::move(earlier)}};

@@ -99,6 +99,10 @@ TEST_F(Identify, AnUpdateSaysWhatChangedAndKeepsStructureAndNames) {
   const auto first = kinfer("identify --update one drive/imu.csv --out none");
   EXPECT_EQ(first.code, 2) << "the recording before the last";
   EXPECT_THAT(first.err, HasSubstr("was identified from this recording, which would count twice"));
+  ASSERT_EQ(kinfer("convert later/imu.csv later/copy.mcap").code, 0);
+  const auto copy = kinfer("identify --update one later/copy.mcap --out none");
+  EXPECT_EQ(copy.code, 2);
+  EXPECT_THAT(copy.err, HasSubstr("which holds all of the same measurements"));
   const auto tree = kinfer("identify --update machine later/imu.csv --out none --tree ins0-ins1");
   EXPECT_EQ(tree.code, 2);
   EXPECT_THAT(tree.err, HasSubstr("--tree has no effect with --update"));

@@ -182,15 +182,15 @@ Result<identify::IdentifyOptions> identify_options(const CLI::App& verb, const I
   return how;
 }
 
-Provenance provenance_of(const IdentifyArguments& options, const identify::IdentifyOptions& how,
-                         std::vector<InputFile> earlier) {
+Provenance provenance_of(const IdentifyArguments& options, const InsRecording& recording,
+                         const identify::IdentifyOptions& how, std::vector<InputFile> earlier) {
   std::vector<std::string> inputs = options.logs;
   if (!options.facts.empty()) inputs.push_back(options.facts);
   if (!options.columns.empty()) inputs.push_back(options.columns);
   if (!options.update.empty()) std::ranges::copy(ChainFiles(options.update).names(), std::back_inserter(inputs));
   auto described = identify::describe(how);
   if (!options.update.empty()) described.emplace_back("--update", options.update);
-  return {.inputs = fingerprints(inputs),
+  return {.inputs = with_samples(fingerprints(inputs), recording),
           .options = std::move(described),
           .seed = options.common.seed,
           .earlier_inputs = std::move(earlier)};
@@ -221,7 +221,8 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
   const auto recording = read_ins_logs({options.logs, options.columns, options.topics}, options.common);
   if (!recording) return fail(recording.error());
   const auto earlier = options.update.empty() ? std::vector<InputFile>{} : recordings_of_chain(options.update);
-  if (auto fresh = expect_new_recordings(options.logs, earlier, options.update); !fresh) return fail(fresh.error());
+  if (auto fresh = expect_new_recordings(options.logs, *recording, earlier, options.update); !fresh)
+    return fail(fresh.error());
   if (auto possible = check_cost(cost_of(*recording)); !possible) return fail(possible.error());
   auto folder = record.open_folder(options.out);
   if (!folder) return fail(folder.error());
@@ -230,7 +231,7 @@ int run(const CLI::App& verb, const IdentifyArguments& options) {
     return identify::identify_machine(*recording, *how, Rng(options.common.seed), progress.observer());
   }();
   if (!found) return fail(found.error());
-  if (auto done = write_results(*folder, provenance_of(options, *how, earlier), *found); !done)
+  if (auto done = write_results(*folder, provenance_of(options, *recording, *how, earlier), *found); !done)
     return fail(done.error());
   if (auto done = record.write(*folder); !done) return fail(done.error());
   if (auto done = write_task_summary(*found); !done) return fail(done.error());

@@ -12,6 +12,7 @@ namespace kinfer {
 struct InputFile {
   std::string name;  ///< without directories
   std::string sha256;
+  std::string samples{};  ///< of a recording, what it holds (measurement/sample_digest); of several logs, at the first
 };
 
 struct Provenance {

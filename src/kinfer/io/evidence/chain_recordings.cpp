@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/evidence/chain_recordings.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <variant>
@@ -9,6 +11,7 @@
 #include "kinfer/io/evidence/fingerprints.hpp"
 #include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/tracking/tracked_chain.hpp"
+#include "kinfer/measurement/sample_digest.hpp"
 
 namespace kinfer {
 
@@ -27,13 +30,27 @@ std::vector<InputFile> recordings_of_chain(const std::string& chain) {
   return known ? all_inputs(known->provenance.inputs, known->provenance.earlier_inputs) : std::vector<InputFile>{};
 }
 
-Result<void> expect_new_recordings(const std::vector<std::string>& logs, const std::vector<InputFile>& earlier,
-                                   const std::string& chain) {
+std::vector<InputFile> with_samples(std::vector<InputFile> logs, const InsRecording& recording) {
+  if (!logs.empty()) logs.front().samples = sample_digest(recording);
+  return logs;
+}
+
+Result<void> expect_new_recordings(const std::vector<std::string>& logs, const InsRecording& recording,
+                                   const std::vector<InputFile>& earlier, const std::string& chain) {
   if (earlier.empty()) return {};
   for (const InputFile& log : fingerprints(logs))
     if (std::ranges::find(earlier, log.sha256, &InputFile::sha256) != earlier.end())
       return error("{}: {} was identified from this recording, which would count twice; --update needs a new one",
                    log.name, chain);
+  const std::string samples = sample_digest(recording);
+  for (const InputFile& before : earlier)
+    if (const double share = shared_samples(samples, before.samples); share > 0.0)
+      return error(
+          "{}: {} was identified from {}, which holds {} of the same measurements; they would count twice, and "
+          "--update "
+          "needs a new recording",
+          logs.empty() ? "the recording" : logs.front(), chain, before.name,
+          share > 0.995 ? "all" : fmt::format("{:.0f} %", std::max(1.0, 100.0 * share)));
   return {};
 }
 

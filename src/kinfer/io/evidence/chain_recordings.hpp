@@ -7,6 +7,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/evidence/facts/provenance.hpp"
+#include "kinfer/measurement/ins_recording.hpp"
 
 namespace kinfer {
 
@@ -18,8 +19,12 @@ std::vector<InputFile> all_inputs(const std::vector<InputFile>& inputs, const st
 /// it: nothing is known then.
 std::vector<InputFile> recordings_of_chain(const std::string& chain);
 
-/// An error where one of the files `logs` is among `earlier`, the recordings of `chain`: it would count twice.
-Result<void> expect_new_recordings(const std::vector<std::string>& logs, const std::vector<InputFile>& earlier,
-                                   const std::string& chain);
+/// The files, the first of which remembers what their recording holds.
+std::vector<InputFile> with_samples(std::vector<InputFile> logs, const InsRecording& recording);
+
+/// An error where one of the files `logs` is among `earlier`, the recordings of `chain`, or where their recording holds
+/// samples of one of them: they would count twice.
+Result<void> expect_new_recordings(const std::vector<std::string>& logs, const InsRecording& recording,
+                                   const std::vector<InputFile>& earlier, const std::string& chain);
 
 }  // namespace kinfer

@@ -52,6 +52,7 @@ template <class Archive>
 void fields(Archive& a, Value<Archive, InputFile>& input) {
   a("name", input.name);
   a("sha256", input.sha256);
+  a.when(!input.samples.empty(), "samples", input.samples);
 }
 
 template <class Archive>
