@@ -123,6 +123,20 @@ TEST(Facts, ATapeThatTheRecordingContradictsIsNamedAndNotUsed) {
   for (int i = 0; i < 3; ++i) EXPECT_LT(std::abs(tip.xyz[i] - tip_in_sensor[i]), 4.0 * tip.sd[i]) << i;
 }
 
+TEST(Facts, AFactThatIsNotUsedLeavesNothingBehind) {
+  MachineMeasurements facts;
+  facts.tapes = {taped_links(2e-3).tapes[0]};
+  facts.tapes[0].length *= 10.0;
+  const auto with = refined(facts), without = refined({});
+  ASSERT_TRUE(with) << with.error().what;
+  ASSERT_TRUE(std::ranges::any_of(with->findings, &Finding::applied));
+  for (std::size_t i = 0; i < without->joints.size(); ++i) {
+    const JointEstimate &a = with->joints[i].estimate, &b = without->joints[i].estimate;
+    EXPECT_LT((a.point_in_child - b.point_in_child).norm(), 1e-9) << i;
+    for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(a.sd.point_in_child[k] / b.sd.point_in_child[k], 1.0, 1e-6) << i;
+  }
+}
+
 /// Largest error of a distance between neighbouring pins [m].
 double largest_link_error(const Refinement& refined, const MachineTruth& truth) {
   std::vector<JointEstimate> joints;

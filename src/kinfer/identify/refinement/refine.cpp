@@ -71,17 +71,17 @@ struct Deviations {
   std::vector<Finding> wrong_facts;
 };
 
-/// A wrong fact may pass for scale errors: without it they are reviewed again. The other way round, the scales come
-/// first: a sound tape contradicts a recording whose clock runs fast.
-Deviations find_deviations(InsFacts& facts, const RefinementTask& task, RefinementFit& fitted,
-                           const Observer& observer) {
+/// A wrong fact may pass for scale errors or for noise, or lead the fit astray: without it all begins anew, so that
+/// nothing of it is left. The other way round, the scales come first: a sound tape contradicts a recording whose clock
+/// runs fast.
+template <class SetUp>
+Deviations find_deviations(InsFacts& facts, const RefinementTask& task, const SetUp& set_up, RefinementFit& fitted,
+                           const RefinementOptions& options, const Observer& observer) {
   Deviations found;
   found.scales = refit_deviant_scales(task, fitted, observer);
   found.wrong_facts = leave_out_wrong_facts(facts, task, fitted);
-  if (found.scales.empty() || std::ranges::none_of(found.wrong_facts, &Finding::applied)) return found;
-  InsProblem& problem = fitted.setup.problem;
-  problem.scale_factors.clear();
-  fitted.fit = fit_ins(problem, fitted.fit.unknowns, task.options, observer);
+  if (std::ranges::none_of(found.wrong_facts, &Finding::applied)) return found;
+  fitted = fit_full_bandwidth(task, set_up(), options, observer);
   found.scales = refit_deviant_scales(task, fitted, observer);
   return found;
 }
@@ -151,7 +151,10 @@ Result<RefinementAttempt> refine_with(const InsRecording& recording, const Recor
                                       const SegmentTree& tree, const std::vector<InitialJoint>& starts,
                                       const RefinementOptions& options, const SensorModel& grade, double knot_spacing,
                                       double least_noise, const Observer& observer) {
-  RefinementSetup setup = set_up_refinement(recording, motion, tree, starts, grade, knot_spacing, least_noise);
+  const auto set_up = [&] {
+    return set_up_refinement(recording, motion, tree, starts, grade, knot_spacing, least_noise);
+  };
+  RefinementSetup setup = set_up();
   const bool is_noise_raised = setup.is_noise_raised;
   KINFER_TRY(facts, resolve_facts(options.facts, segment_names(motion), setup.start.bodies, setup.problem.grid,
                                   setup.problem.root_at_rest));
@@ -162,7 +165,7 @@ Result<RefinementAttempt> refine_with(const InsRecording& recording, const Recor
     return forward_error(checked.error());
   Refinement result;
   RefinementFit fitted = fit_full_bandwidth(task, std::move(setup), options, observer);
-  const Deviations deviations = find_deviations(facts, task, fitted, observer);
+  const Deviations deviations = find_deviations(facts, task, set_up, fitted, options, observer);
   result.negative_log_likelihood = negative_log_likelihood(fitted.setup.problem, fitted.fit.cost);
   std::vector<FoundLoop> loops;
   if (options.loops == LoopTreatment::closed) loops = close_loops(fitted.setup.problem, fitted.fit, options.fit);
