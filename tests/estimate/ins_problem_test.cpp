@@ -123,6 +123,7 @@ TEST(InsRetract, RotationsStayRotations) {
 TEST(InsPrior, GradientOfEveryGlobalParameterAgreesWithDifferences) {
   for (const bool root_at_rest : {true, false}) {
     WholeProblem w(root_at_rest);
+    w.problem.common = {.gyroscope = {1.0, 0.02}, .accelerometer = {1.0, 0.01}};
     w.x.errors[0].clock = {};  // the reference is held, far too stiff for differences
     const GlobalParameterPrior prior = global_parameter_prior(w.problem, w.layout, w.x);
     const Index reference = w.layout.error[0] + w.layout.clock_error;
@@ -137,6 +138,24 @@ TEST(InsPrior, GradientOfEveryGlobalParameterAgreesWithDifferences) {
     EXPECT_GE(symmetric_eigen(prior.matrix).values[0], -1e-6);
     EXPECT_GT(prior.cost, 0.0);
   }
+}
+
+TEST(InsPrior, ACommonScaleCostsLittleAndOthersAsMuchAsBefore) {
+  WholeProblem w(true);
+  for (InsErrors& errors : w.x.errors) errors.clock = {};  // the reference is held, and would hide all else
+  const auto cost = [&](double own, double sd) {
+    w.problem.common = {.gyroscope = {}, .accelerometer = {1.0, sd}};
+    for (std::size_t s = 0; s < w.x.errors.size(); ++s)
+      w.x.errors[s].accelerometer_scale = (0.05 + (s % 2 == 0 ? own : -own)) * Mat3::Identity();
+    return global_parameter_prior(w.problem, w.layout, w.x).cost;
+  };
+  const double wide = 10.0, prior = w.problem.prior.accelerometer_scale;
+  const double sensors = static_cast<double>(w.x.errors.size());
+  EXPECT_NEAR(cost(0.01, wide) - cost(0.0, wide), 3.0 * sensors * 1e-4 / (prior * prior), 1e-3) << "their difference";
+  // Of the covariance prior² I + sd² 1 1ᵀ along 1, of 3 n elements.
+  const double narrow = 0.03, n = 3.0 * sensors,
+               saved = n * 0.0025 / (prior * prior) - n * 0.0025 / (prior * prior + n * narrow * narrow);
+  EXPECT_NEAR(cost(0.0, 0.0) - cost(0.0, narrow), saved, 1e-6 * saved);
 }
 
 TEST(InsPrior, IsNothingWhereAllIsAsExpected) {

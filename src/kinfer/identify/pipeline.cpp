@@ -248,6 +248,7 @@ Result<Identification> identify_machine(const InsRecording& log, const IdentifyO
   KINFER_TRY(named, named_part(log, options.sensors));
   KINFER_TRY(diagnosis, diagnose_log(named ? *named : log, options.threads));
   const InsRecording& recording = diagnosis.of(named ? *named : log);
+  options.refine.common = diagnosis.scales;
   KINFER_TRY(session, Session::open(recording, options.sensors, options.root, options.motion, options.threads));
   for (;;) {
     if (const auto known = check_known(options, session.recording()); !known) return forward_error(known.error());

@@ -75,11 +75,40 @@ TEST(InstrumentScales, AClockThatIsFastLeavesTheLengthsUncertain) {
   EXPECT_LT(worst_point_error(found, drive.truth), 2.5);
 }
 
+TEST(InstrumentScales, AClockOfAnyRateIsNamed) {
+  for (const double rate : {0.1, 0.25, 2.0}) {
+    DrivenMachine drive = test::driven_machine("crane", 4);
+    for (InsLogger& logger : drive.recording.loggers)
+      for (double& time : logger.time) time *= rate;
+    const Identification found = test::identified(drive.recording);
+    const Finding* finding = finding_of(found, FindingKind::clock_rate);
+    ASSERT_TRUE(finding) << rate;
+    EXPECT_NEAR((1.0 + finding->values.number("scale")) / rate, 1.0, 0.01);
+    EXPECT_NE(found.usability, Usability::use);
+    EXPECT_LT(worst_point_error(found, drive.truth), 2.5) << rate;
+  }
+}
+
+TEST(InstrumentScales, AccelerometersThatAllReadTooMuchAreCorrectedByGravity) {
+  for (const float factor : {0.94f, 1.0194f, 1.1f}) {
+    DrivenMachine drive = test::driven_machine("crane", 4);
+    for (InsSensor& sensor : drive.recording.sensors) multiply(sensor.acceleration, factor);
+    const Identification found = test::identified(drive.recording);
+    const Finding* finding = finding_of(found, FindingKind::force_scale);
+    ASSERT_TRUE(finding) << factor;
+    EXPECT_TRUE(finding->applied);
+    EXPECT_NEAR(finding->values.number("scale"), double{factor} - 1.0, 2.0 * finding->values.number("sd"));
+    EXPECT_LT(finding->values.number("sd"), 4e-3);
+    EXPECT_LT(worst_point_error(found, drive.truth), 2.5) << factor;
+  }
+}
+
 TEST(InstrumentScales, SoundInstrumentsAreNotNamed) {
   const DrivenMachine drive = test::driven_machine("crane", 4);
   const Identification found = test::identified(drive.recording);
   EXPECT_FALSE(finding_of(found, FindingKind::instrument_scale));
   EXPECT_FALSE(finding_of(found, FindingKind::clock_rate));
+  EXPECT_FALSE(finding_of(found, FindingKind::force_scale));
 }
 
 }  // namespace

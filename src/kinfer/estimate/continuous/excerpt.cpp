@@ -90,6 +90,7 @@ InsExcerpt excerpt_of(const InsProblem& problem, const InsUnknowns& start, const
                                  .root_at_rest = problem.root_at_rest,
                                  .sensors = {},
                                  .prior = problem.prior,
+                                 .common = problem.common,
                                  .bias_process = problem.bias_process,
                                  .gravity = problem.gravity,
                                  .gravity_sd = problem.gravity_sd,

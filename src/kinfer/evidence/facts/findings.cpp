@@ -53,6 +53,7 @@ constexpr std::array named_kinds{
     NamedKind{FindingKind::clock_unit, "clock_unit"},
     NamedKind{FindingKind::clock_counts, "clock_counts"},
     NamedKind{FindingKind::force_unit, "force_unit"},
+    NamedKind{FindingKind::force_scale, "force_scale"},
     NamedKind{FindingKind::rate_unit, "rate_unit"},
     NamedKind{FindingKind::field_unit, "field_unit"},
     NamedKind{FindingKind::repeated_rows, "repeated_rows"},

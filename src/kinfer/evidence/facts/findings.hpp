@@ -63,6 +63,7 @@ enum class FindingKind {
   clock_unit,               ///< times in another unit than seconds
   clock_counts,             ///< the clock counts rows, so that the sampling rate is a guess
   force_unit,               ///< specific force in another unit than the file says
+  force_scale,              ///< all accelerometers read too much or too little alike: more than gravity has anywhere
   rate_unit,                ///< angular rates in another unit than the file says
   field_unit,               ///< magnetic field in another unit than the file says
   repeated_rows,            ///< an instrument's rows are copies of the rows before

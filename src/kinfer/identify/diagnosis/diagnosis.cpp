@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kinfer/identify/diagnosis/axes.hpp"
+#include "kinfer/identify/diagnosis/common_scales.hpp"
 #include "kinfer/identify/diagnosis/copied_rows.hpp"
 #include "kinfer/identify/diagnosis/lags.hpp"
 #include "kinfer/identify/diagnosis/rows.hpp"
@@ -46,8 +47,9 @@ Result<LogDiagnosis> diagnose_log(const InsRecording& recording, int threads) {
   mend_rows(log, threads);
   mend_axes(log, threads);
   mend_signs(log, threads);
+  mend_common_scales(log, threads);
   mend_lags(log, threads);
-  LogDiagnosis diagnosis{.mended = std::nullopt, .findings = std::move(log.findings)};
+  LogDiagnosis diagnosis{.mended = std::nullopt, .findings = std::move(log.findings), .scales = log.scales};
   diagnosis.mended = log.take();
   return diagnosis;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "kinfer/base/result.hpp"
+#include "kinfer/estimate/continuous/model/problem.hpp"
 #include "kinfer/evidence/facts/findings.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
 
@@ -14,6 +15,7 @@ namespace kinfer::identify {
 struct LogDiagnosis {
   std::optional<InsRecording> mended;  ///< none if the recording is used as it is
   std::vector<Finding> findings{};
+  InsCommonScales scales{};  ///< by which all instruments of a kind were divided
 
   const InsRecording& of(const InsRecording& recording) const { return mended ? *mended : recording; }
 };

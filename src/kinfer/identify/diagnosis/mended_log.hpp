@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "kinfer/estimate/continuous/model/problem.hpp"
 #include "kinfer/evidence/facts/findings.hpp"
 #include "kinfer/measurement/ins_recording.hpp"
 
@@ -18,6 +19,7 @@ class MendedLog {
   std::optional<InsRecording> take() { return std::move(copy_); }
 
   std::vector<Finding> findings;
+  InsCommonScales scales;  ///< by which all instruments of a kind were divided
 
  private:
   const InsRecording* original_;

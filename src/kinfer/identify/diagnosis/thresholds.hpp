@@ -76,6 +76,25 @@ inline constexpr double likely_sign_lead = 1.0;
 /// knee); Euler angles: 0.25 and less.
 inline constexpr double max_attitude_error = 0.25, max_attitude_share = 0.45;
 
+/// ln of the prior odds that all accelerometers of a log share a scale error: a calibration that was left out, or 1 g
+/// that was taken for 10 m/s². Larger finds more of them.
+inline constexpr double log_force_scale_odds = -3.0;
+/// Size of that error, evenly on a logarithmic scale. Smaller ones hide in what gravity is on Earth; a larger one is
+/// another unit.
+inline constexpr double least_force_scale = 1e-3, largest_force_scale = 0.3;
+/// [m/s²] By which one accelerometer's reading of gravity may be off, biases of 20 mg and scale errors of 3 % among
+/// them.
+inline constexpr double least_reading_error = 2e-3, largest_reading_error = 0.5;
+
+/// [nats] By which gyroscopes that all read a factor too much or too little, or a clock that runs so fast or slow, must
+/// explain the sensors better than what the file says, and better than no rotation. Sound logs: see
+/// docs/development/methods/recording-faults.md.
+inline constexpr double min_rate_factor_gain = 60.0;
+/// ln of a factor: the fit itself finds one nearer to 1, and finds it better.
+inline constexpr double fitted_log_factor = 0.15;
+/// Prior standard deviation of what is left of the factor for the fit.
+inline constexpr double rate_factor_sd = 0.05;
+
 /// [rad/s] rms rate from which a sensor may be the copy of another one. Larger: overlooks copies of gentle drives.
 inline constexpr double min_duplicate_rate = 0.02;
 

@@ -45,21 +45,31 @@ int renumbered(const std::vector<std::size_t>& carried, int sensor) {
                     : static_cast<int>(std::ranges::find(carried, static_cast<std::size_t>(sensor)) - carried.begin());
 }
 
+/// The matrix S of an instrument whose recording was divided by a factor before the fit.
+Mat3 undivided(const Mat3& scale, const InsCommonScale& common) {
+  return common.factor * (Mat3::Identity() + scale) - Mat3::Identity();
+}
+
+InsLevel undivided(const InsLevel& level, const InsCommonScales& common) {
+  return {common.gyroscope.factor * level.rate, common.accelerometer.factor * level.force};
+}
+
 TrackingSensor tracking_sensor(const FittedMachine& machine, const std::vector<InsNoise>& slow, std::size_t s) {
   const InsErrors& errors = machine.fit.unknowns.errors[s];
   const auto bias = mean_bias(machine.fit.unknowns, s);
   const InsBodies& bodies = machine.fit.unknowns.bodies;
   const InsSensor& sensor = machine.recording.sensors[s];
   const auto body = std::ranges::find(bodies, static_cast<int>(s), &InsBody::sensor);
+  const InsCommonScales& common = machine.problem.common;
   return {.name = sensor.name,
           .body = static_cast<int>(body - bodies.begin()),
-          .gyroscope_bias = bias.head<3>(),
-          .accelerometer_bias = bias.tail<3>(),
-          .gyroscope_scale = errors.gyroscope_scale,
-          .accelerometer_scale = errors.accelerometer_scale,
-          .noise = level(machine.noise_floor[s]),
-          .residual = largest(level(machine.noise[s]), level(machine.noise_floor[s])),
-          .slow_residual = level(slow[s]),
+          .gyroscope_bias = common.gyroscope.factor * bias.head<3>(),
+          .accelerometer_bias = common.accelerometer.factor * bias.tail<3>(),
+          .gyroscope_scale = undivided(errors.gyroscope_scale, common.gyroscope),
+          .accelerometer_scale = undivided(errors.accelerometer_scale, common.accelerometer),
+          .noise = undivided(level(machine.noise_floor[s]), common),
+          .residual = undivided(largest(level(machine.noise[s]), level(machine.noise_floor[s])), common),
+          .slow_residual = undivided(level(slow[s]), common),
           .sample_period = median_period(machine.recording.time(sensor)),
           .mount_compliance = errors.tilt,
           .mount_stray = machine.error.mount_deflection.empty() ? 0.0 : machine.error.mount_deflection[s]};
@@ -170,16 +180,17 @@ void add_joint(TrackingModel& model, Parameters& parameters, const FittedMachine
 }
 
 void add_sensor_rows(Parameters& parameters, const FittedMachine& machine, std::size_t sensor, int number) {
-  const auto add = [&](Kind kind, Index first, Index count) {
+  const auto add = [&](Kind kind, Index first, Index count, const InsCommonScale& common) {
     for (Index i = 0; i < count; ++i) parameters.add({kind, number, static_cast<int>(i)});
-    parameters.new_rows(count).middleCols(first, count).setIdentity();
+    parameters.new_rows(count).middleCols(first, count).diagonal().setConstant(common.factor);
   };
   const Index first = machine.fit.layout.error[sensor];
-  add(Kind::gyroscope_bias, first, 3);
-  add(Kind::accelerometer_bias, first + 3, 3);
+  const InsCommonScales& common = machine.problem.common;
+  add(Kind::gyroscope_bias, first, 3, common.gyroscope);
+  add(Kind::accelerometer_bias, first + 3, 3, common.accelerometer);
   if (!machine.fit.layout.has_matrices) return;
-  add(Kind::gyroscope_scale, first + 6, 9);
-  add(Kind::accelerometer_scale, first + 15, 9);
+  add(Kind::gyroscope_scale, first + 6, 9, common.gyroscope);
+  add(Kind::accelerometer_scale, first + 15, 9, common.accelerometer);
 }
 
 MatrixXd covariance_of(const Parameters& parameters, ConstMatrixRef covariance) {

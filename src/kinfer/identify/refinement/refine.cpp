@@ -152,13 +152,14 @@ Result<RefinementAttempt> refine_with(const InsRecording& recording, const Recor
                                       const RefinementOptions& options, const SensorModel& grade, double knot_spacing,
                                       double least_noise, const Observer& observer) {
   const auto set_up = [&] {
-    return set_up_refinement(recording, motion, tree, starts, grade, knot_spacing, least_noise);
+    return set_up_refinement(recording, motion, tree, starts, grade, knot_spacing, least_noise, options.common);
   };
   RefinementSetup setup = set_up();
   const bool is_noise_raised = setup.is_noise_raised;
   KINFER_TRY(facts, resolve_facts(options.facts, segment_names(motion), setup.start.bodies, setup.problem.grid,
                                   setup.problem.root_at_rest));
-  const RefinementTask task{recording, motion, tree, starts, grade, facts, options.fit, options.zeros, least_noise};
+  const RefinementTask task{recording, motion,      tree,          starts,      grade,
+                            facts,     options.fit, options.zeros, least_noise, options.common};
   if (const auto checked =
           check_zeros(options.zeros, joint_bodies(task, setup), segment_names(motion), setup.problem.grid);
       !checked)
@@ -192,8 +193,8 @@ Result<RefinementAttempt> refine_with(const InsRecording& recording, const Recor
                                   assumed_scale(recording, options, grade), options.fit.threads);
   if (!covariance) return RefinementAttempt{std::nullopt, is_noise_raised};
   result.covariance = covariance->model;
-  add_clock_rate(deviations.scales, result.fit, *covariance, model_error);
-  result.findings = scale_findings(deviations.scales, motion, result.fit, *covariance);
+  add_clock_rate(deviations.scales, options.common, result.fit, *covariance, model_error);
+  result.findings = scale_findings(deviations.scales, motion, options.common, result.fit, *covariance);
   result.findings.insert(result.findings.begin(), deviations.wrong_facts.begin(), deviations.wrong_facts.end());
   result.clocks = refined_clocks(fitted.setup.problem, result.fit, *covariance);
   result.joints = make_joints(task, fitted, *covariance, model_error);

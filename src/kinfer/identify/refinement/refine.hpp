@@ -30,6 +30,7 @@ struct RefinementOptions {
   std::optional<SensorModel> grade{};  ///< sensor grade; without it estimated from the recording
   InsFitOptions fit{};
   double knot_spacing = 0.0;    ///< [s] knot spacing of the splines; 0: chosen from the motion (motion_knots)
+  InsCommonScales common{};     ///< by which the recording was divided
   MachineMeasurements facts{};  ///< additional knowledge: touches, tape lengths, surveyed points
   ClockTreatment clocks = ClockTreatment::checked;
   StartSource start = StartSource::pairs;  ///< of refine_geometry

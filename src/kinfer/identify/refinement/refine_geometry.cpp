@@ -2,10 +2,13 @@
 #include "kinfer/identify/refinement/refine_geometry.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/identify/handover/known_joint.hpp"
 #include "kinfer/identify/refinement/fits/thresholds.hpp"
+#include "kinfer/identify/refinement/scales/scale_findings.hpp"
 
 namespace kinfer::identify {
 namespace {
@@ -63,6 +66,16 @@ std::vector<InitialJoint> make_starts(const std::vector<JointEstimate>& joints, 
   return starts;
 }
 
+/// The lengths of the search are those of one of both explanations, gyroscopes or clock, and no fit holds the others.
+void doubt_searched_lengths(ChainGeometry& searched, const InsCommonScale& rate) {
+  searched.findings.push_back(clock_rate_finding(rate.factor - 1.0, rate.factor * rate.sd, Severity::fault));
+  const double change = 1.0 / (rate.factor * rate.factor) - 1.0;
+  for (JointEstimate& joint : searched.joints)
+    for (auto [sd, point] : {std::pair{&joint.sd.point_in_parent, joint.point_in_parent},
+                             std::pair{&joint.sd.point_in_child, joint.point_in_child}})
+      for (double& value : *sd) value = std::hypot(value, change * point.norm());
+}
+
 }  // namespace
 
 Result<ChainGeometry> refine_geometry(ChainGeometry searched, const InsRecording& recording,
@@ -74,6 +87,7 @@ Result<ChainGeometry> refine_geometry(ChainGeometry searched, const InsRecording
     return forward_error(refined.error());
   if (!refined) {
     searched.notes.push_back({IdentificationNoteKind::refinement_failed, {{"reason", refined.error().what}}});
+    if (!options.common.gyroscope.is_none()) doubt_searched_lengths(searched, options.common.gyroscope);
     return searched;
   }
   ChainGeometry geometry{.joints = {}, .dh = {}, .loops = {}, .places = std::move(refined->places)};

@@ -183,10 +183,12 @@ SectionSums sums_over(const SectionSignals& signals, std::size_t first, const Ma
   return sums;
 }
 
+constexpr double lever_arm_weight = 0.01;  // lever arms of metres, no more
+
 /// The inverse of the normal matrix of the first `unknowns`.
-MatrixXd inverse_of(const SectionSums& sums, int unknowns) {
+MatrixXd inverse_of(const SectionSums& sums, int unknowns, double weight = lever_arm_weight) {
   MatrixXd normal = sums.normal.topLeftCorner(unknowns, unknowns);
-  for (int i = 3; i < unknowns; ++i) normal(i, i) += 0.01;  // lever arms of metres, no more
+  for (int i = 3; i < unknowns; ++i) normal(i, i) += weight;
   return invert_spd(normal).value_or(MatrixXd::Zero(unknowns, unknowns));
 }
 
@@ -252,6 +254,17 @@ MapLikelihoods map_likelihoods(const SectionSignals& signals, double unit, Lever
     }
   }
   return likelihoods;
+}
+
+double factor_likelihood(const SectionSignals& signals, double factor) {
+  const double weight = lever_arm_weight * std::pow(factor, 4.0);  // of lever arms in the time that they have then
+  double sum = 0.0;
+  for (const std::size_t first : telling_sections(signals)) {
+    const SectionSums sums = sums_over(signals, first, factor * Mat3::Identity(), 0);
+    sum += log_likelihood(residual_variance(sums, inverse_of(sums, most_unknowns, weight), Mat3::Identity()),
+                          signals.noise_variance);
+  }
+  return sum;
 }
 
 InstrumentLag instrument_lag(const SectionSignals& signals, const Mat3& map) {

@@ -46,6 +46,10 @@ struct MapLikelihoods {
 /// For rates in `unit` [rad/s].
 MapLikelihoods map_likelihoods(const SectionSignals& signals, double unit, LeverArm lever_arm);
 
+/// Log likelihood [nats] of the rates times `factor`, their axes as they are, summed over the sections. A clock that
+/// runs 1 / factor times too fast is the same; its lever arms then seem to be 1 / factor² times as long.
+double factor_likelihood(const SectionSignals& signals, double factor);
+
 struct InstrumentLag {
   double lag = 0.0;        ///< [s] of the direction behind the gyroscope
   double gain = 0.0;       ///< [nats] log likelihood of this lag over none

@@ -61,6 +61,27 @@ std::string force_unit_suggestion(const Finding& f) {
   return phrase("force_unit.suggestion", "state the unit in the header: {}_ax[g]", sensor);
 }
 
+/// Where 1 g was taken for 10 m/s².
+bool is_ten_for_one_g(const Finding& f) {
+  return std::abs(f.values.number("scale") - (10.0 / standard_gravity - 1.0)) < f.values.number("sd");
+}
+
+std::string force_scale_sentence(const Finding& f) {
+  const double scale = f.values.number("scale");
+  return phrase("force_scale",
+                "all accelerometers read {:.2f} ± {:.2f} % too {}: at rest they show a gravity of {:.3f} m/s², which "
+                "lies between {:.3f} and {:.3f} on Earth{}; they were corrected, and lengths are so uncertain",
+                100.0 * std::abs(scale), 100.0 * f.values.number("sd"), scale > 0.0 ? "much" : "little",
+                f.values.number("gravity"), least_gravity, largest_gravity,
+                is_ten_for_one_g(f) ? " (1 g may have been taken for 10 m/s²)" : "");
+}
+
+std::string force_scale_suggestion(const Finding&) {
+  return phrase("force_scale.suggestion",
+                "check the unit (1 g is 9.80665 m/s²), have the accelerometers calibrated, or measure one length "
+                "(--facts)");
+}
+
 std::string rate_unit_sentence(const Finding& f) {
   constexpr std::array names{UnitName{degree, "deg/s"}, UnitName{1e-3, "mrad/s"}, UnitName{1e-3 * degree, "mdeg/s"},
                              UnitName{1.0 / degree, "rad/s, though the header says deg/s"}};
@@ -202,6 +223,7 @@ constexpr std::array table_of_log_words{
     FindingWords{FindingKind::clock_unit, clock_unit_sentence, clock_unit_suggestion},
     FindingWords{FindingKind::clock_counts, clock_counts_sentence, clock_counts_suggestion},
     FindingWords{FindingKind::force_unit, force_unit_sentence, force_unit_suggestion},
+    FindingWords{FindingKind::force_scale, force_scale_sentence, force_scale_suggestion},
     FindingWords{FindingKind::rate_unit, rate_unit_sentence, rate_unit_suggestion},
     FindingWords{FindingKind::field_unit, field_unit_sentence, field_unit_suggestion},
     FindingWords{FindingKind::repeated_rows, repeated_rows_sentence, rows_suggestion},

@@ -33,6 +33,45 @@ void each_error(const InsProblem& problem, const InsLayout& layout, Errors& all,
   visit(clock + 1, 1, &errors.clock.drift, is_reference ? certain : problem.prior.clock_drift);
 }
 
+/// Diagonal elements of the scale matrices of all instruments of a kind, with the information of their own priors.
+struct CommonElements {
+  std::vector<Index> at;
+  std::vector<double> value, information;
+};
+
+CommonElements common_elements(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x,
+                               bool is_gyroscope) {
+  CommonElements elements;
+  for (std::size_t s = 0; s < x.errors.size(); ++s) {
+    const InsScaleFactor factor = problem.scale_factors.empty() ? InsScaleFactor{} : problem.scale_factors[s];
+    const double sd = is_gyroscope ? factor.gyroscope * problem.prior.gyroscope_scale
+                                   : factor.accelerometer * problem.prior.accelerometer_scale;
+    const Mat3& matrix = is_gyroscope ? x.errors[s].gyroscope_scale : x.errors[s].accelerometer_scale;
+    for (Index k = 0; k < 3; ++k) {
+      elements.at.push_back(layout.error[s] + (is_gyroscope ? 6 : 15) + 4 * k);
+      elements.value.push_back(matrix(k, k));
+      elements.information.push_back(1.0 / (sd * sd));
+    }
+  }
+  return elements;
+}
+
+/// With a common factor of variance σ² along a, the information W of their own priors becomes
+/// W − W a (1/σ² + aᵀ W a)⁻¹ aᵀ W (Woodbury's identity).
+void allow_common_scale(GlobalParameterPrior& prior, const CommonElements& elements, const InsCommonScale& common) {
+  if (common.is_none()) return;
+  double total = 0.0, weighted = 0.0;
+  for (std::size_t i = 0; i < elements.at.size(); ++i)
+    total += elements.information[i], weighted += elements.information[i] * elements.value[i];
+  const double share = 1.0 / (1.0 / (common.sd * common.sd) + total);
+  prior.cost -= share * weighted * weighted;
+  for (std::size_t i = 0; i < elements.at.size(); ++i) {
+    prior.right[elements.at[i]] += share * elements.information[i] * weighted;
+    for (std::size_t j = 0; j < elements.at.size(); ++j)
+      prior.matrix(elements.at[i], elements.at[j]) -= share * elements.information[i] * elements.information[j];
+  }
+}
+
 MeasuredSpan united(const MeasuredSpan& a, const MeasuredSpan& b) {
   if (a.begin >= a.end) return b;
   if (b.begin >= b.end) return a;
@@ -178,6 +217,10 @@ GlobalParameterPrior global_parameter_prior(const InsProblem& problem, const Ins
     each_error(problem, layout, x.errors, s, [&](Index at, Index size, const double* value, double sd) {
       for (Index i = 0; i < size; ++i) hold(at + i, value[i], sd);
     });
+  if (layout.has_matrices) {
+    allow_common_scale(prior, common_elements(problem, layout, x, true), problem.common.gyroscope);
+    allow_common_scale(prior, common_elements(problem, layout, x, false), problem.common.accelerometer);
+  }
   for (std::size_t i = 0; i < x.facts.places.size(); ++i) {
     const InsUnknownPoint& place = problem.facts.places[i];
     for (Index k = 0; k < 3; ++k)

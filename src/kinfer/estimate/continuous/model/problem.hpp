@@ -52,6 +52,20 @@ struct InsErrorPrior {
   double tilt = 0.0;
 };
 
+/// Factor that all instruments of a kind share: the log was divided by it before the fit. What is left of it has a
+/// prior of mean 0 beside those of each instrument; a standard deviation of 0: none is left.
+struct InsCommonScale {
+  double factor = 1.0, sd = 0.0;
+
+  bool is_none() const { return sd <= 0.0; }
+};
+
+struct InsCommonScales {
+  InsCommonScale gyroscope{}, accelerometer{};
+
+  bool is_none() const { return gyroscope.is_none() && accelerometer.is_none(); }
+};
+
 /// Factors on the prior standard deviations of one INS' scale matrices.
 struct InsScaleFactor {
   double gyroscope = 1.0, accelerometer = 1.0;
@@ -73,6 +87,7 @@ struct InsProblem {
   std::vector<InsMeasurements> sensors;
   InsErrorPrior prior;
   std::vector<InsScaleFactor> scale_factors{};  ///< one a sensor; empty: 1
+  InsCommonScales common{};
   BiasProcess bias_process{};
   double gravity = standard_gravity;  ///< [m/s²] norm of the root's specific force if it is at rest
   double gravity_sd = 0.03;           ///< [m/s²] covers gravity anywhere on Earth
@@ -126,7 +141,7 @@ struct InsStep {
 };
 InsUnknowns retract(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, const InsStep& step);
 
-/// Prior on the global parameters: cost and normal equations (diagonal except for gravity).
+/// Prior on the global parameters: cost and normal equations (diagonal except for gravity and common scales).
 struct GlobalParameterPrior {
   double cost = 0.0;
   MatrixXd matrix;

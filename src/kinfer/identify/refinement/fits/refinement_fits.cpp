@@ -38,8 +38,8 @@ void report_progress(const Observer& observer, const char* stage, double fractio
 
 RefinementSetup continue_from(const RefinementTask& task, const InsRecording& recording, double knot_spacing,
                               const InsProblem& problem, const InsUnknowns& found) {
-  RefinementSetup setup =
-      set_up_refinement(recording, task.motion, task.tree, task.starts, task.grade, knot_spacing, task.least_noise);
+  RefinementSetup setup = set_up_refinement(recording, task.motion, task.tree, task.starts, task.grade, knot_spacing,
+                                            task.least_noise, task.common);
   setup.problem.facts = task.facts;
   setup.problem.scale_factors = problem.scale_factors;
   setup.start = found;

@@ -19,6 +19,7 @@ struct RefinementTask {
   const InsFitOptions& options;
   const std::vector<NamedZero>& zeros;
   double least_noise = 1.0;  ///< in units of the quietest instruments' noise
+  InsCommonScales common{};  ///< by which the recording was divided
 };
 
 struct RefinementFit {

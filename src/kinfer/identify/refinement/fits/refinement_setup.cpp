@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/base/constants.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/refinement/fits/thresholds.hpp"
 
@@ -52,6 +53,22 @@ InsErrorPrior prior_of(const SensorModel& grade) {
           .accelerometer_bias = std::hypot(grade.accelerometer.bias_sd, 1e-3),
           .gyroscope_scale = grade.gyroscope.scale_sd,
           .accelerometer_scale = grade.accelerometer.scale_sd};
+}
+
+/// By a clock that runs c times too fast lever arms seem to be c² times as long. On a base at rest the fit itself
+/// compares the accelerometers with gravity, and their common factor is free; elsewhere it is as certain as the rests
+/// before the fit say.
+void set_common_scales(InsProblem& problem, const InsCommonScales& common) {
+  constexpr double free_factor = 10.0, least_scale = 1e-4;
+  problem.common = common;
+  if (common.is_none()) return;
+  problem.prior.gyroscope_scale = std::max(problem.prior.gyroscope_scale, least_scale);
+  problem.prior.accelerometer_scale = std::max(problem.prior.accelerometer_scale, least_scale);
+  problem.point_sd *= std::max(1.0, common.gyroscope.factor * common.gyroscope.factor);
+  if (common.accelerometer.is_none()) return;
+  problem.gravity = usual_gravity;
+  problem.gravity_sd = usual_gravity_sd;
+  if (problem.root_at_rest) problem.common.accelerometer.sd *= free_factor;
 }
 
 Vec3 mean_measurement(const std::vector<InsBlock>& blocks) {
@@ -109,12 +126,13 @@ void attach_joints(RefinementSetup& setup, const RecordedMotion& motion, const S
 
 RefinementSetup set_up_refinement(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
                                   const std::vector<InitialJoint>& starts, const SensorModel& grade,
-                                  double knot_spacing, double least_noise) {
+                                  double knot_spacing, double least_noise, const InsCommonScales& common) {
   RefinementSetup setup;
   InsProblem& problem = setup.problem;
   problem.grid = make_grid(motion, knot_spacing);
   problem.root_at_rest = motion.segments[tree.root].still;
   problem.prior = prior_of(grade);
+  set_common_scales(problem, common);
   problem.bias_process = {.rate_sd = grade.gyroscope.instability,
                           .force_sd = grade.accelerometer.instability,
                           .time = grade.accelerometer.instability_time};

@@ -16,9 +16,9 @@ struct RefinementSetup {
 };
 
 /// `knot_spacing` of the splines [s]; `least_noise`: in units of the quietest instruments' noise, below which none of
-/// this recording is taken to be.
+/// this recording is taken to be; `common`: by which the recording was divided.
 RefinementSetup set_up_refinement(const InsRecording& recording, const RecordedMotion& motion, const SegmentTree& tree,
                                   const std::vector<InitialJoint>& starts, const SensorModel& grade,
-                                  double knot_spacing, double least_noise = 1.0);
+                                  double knot_spacing, double least_noise = 1.0, const InsCommonScales& common = {});
 
 }  // namespace kinfer::identify

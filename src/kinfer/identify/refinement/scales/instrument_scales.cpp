@@ -49,15 +49,15 @@ std::optional<ScaleEstimate> scale_estimate(const RefinementTask& task, Refineme
   const std::vector<Index> at = indices_of_scales(fit.layout);
   const auto fitted_information = invert_spd(global->covariance(at, at));
   if (!fitted_information) return std::nullopt;
-  const auto information = [](const VectorXd& sd) { return VectorXd(sd.array().square().inverse()); };
   const VectorXd usual = scale_priors(problem, {}), unexplained = unexplained_scales(problem, fit.cost);
-  const VectorXd prior = information((usual.array().square() + unexplained.array().square()).sqrt()),
-                 fitted_prior = information(scale_priors(problem, problem.scale_factors));
-  const MatrixXd posterior = *fitted_information + MatrixXd((prior - fitted_prior).asDiagonal());
+  const MatrixXd prior =
+                     scale_information((usual.array().square() + unexplained.array().square()).sqrt(), problem.common),
+                 fitted_prior = scale_information(scale_priors(problem, problem.scale_factors), problem.common);
+  const MatrixXd posterior = *fitted_information + (prior - fitted_prior);
   const auto covariance = invert_spd(posterior);
   if (!covariance) return std::nullopt;
   const VectorXd right = *fitted_information * (scale_values(fit.unknowns.errors) + global->step(at));
-  return ScaleEstimate{*covariance * right, *covariance, prior.asDiagonal()};
+  return ScaleEstimate{*covariance * right, *covariance, prior};
 }
 
 /// The scale matrix of each gyroscope and accelerometer; the rotation of each gyroscope against its accelerometer; the

@@ -27,12 +27,23 @@ Estimate along(const VectorXd& direction, const VectorXd& value, ConstMatrixRef 
 }
 
 /// Of all gyroscopes, that of the least variance.
-Estimate common_scale(const InsFit& fit, ConstMatrixRef covariance) {
+Estimate common_residual(const InsFit& fit, ConstMatrixRef covariance) {
   const std::vector<Index> at = indices_of_scales(fit.layout);
   const VectorXd values = scale_values(fit.unknowns.errors);
   const VectorXd direction = common_factor(fit.unknowns.errors.size());
   const auto information = invert_spd(covariance(at, at));
   return information ? along(direction, values, *information) : Estimate{direction.dot(values) / direction.sum(), 0.0};
+}
+
+/// Of all gyroscopes: what they were divided by, and what the fit found beside it.
+Estimate common_scale(const InsFit& fit, ConstMatrixRef covariance, const InsCommonScale& divided) {
+  const Estimate residual = common_residual(fit, covariance);
+  return {divided.factor * (1.0 + residual.value) - 1.0, divided.factor * residual.sd};
+}
+
+/// A clock that is wrong, found before the fit or by it.
+bool is_clock_wrong(const ScaleReview& review, const InsCommonScales& divided) {
+  return review.common_sd > 0.0 || !divided.gyroscope.is_none();
 }
 
 /// [rad] Rotation of a sensor's gyroscope against its accelerometer.
@@ -81,14 +92,17 @@ MatrixDeviation deviation_of(const DeviantScale& deviant, const InsFit& fit, Con
 
 }  // namespace
 
-std::vector<Finding> scale_findings(const ScaleReview& review, const RecordedMotion& motion, const InsFit& fit,
+Finding clock_rate_finding(double scale, double sd, Severity severity) {
+  return {.kind = FindingKind::clock_rate, .severity = severity, .values = {{"scale", scale}, {"sd", sd}}};
+}
+
+std::vector<Finding> scale_findings(const ScaleReview& review, const RecordedMotion& motion,
+                                    const InsCommonScales& divided, const InsFit& fit,
                                     const InsCovariance& covariance) {
   std::vector<Finding> findings;
-  if (review.common_sd > 0.0) {
-    const Estimate common = common_scale(fit, covariance.model);
-    findings.push_back({.kind = FindingKind::clock_rate,
-                        .severity = Severity::warning,
-                        .values = {{"scale", common.value}, {"sd", common.sd}}});
+  if (is_clock_wrong(review, divided)) {
+    const Estimate common = common_scale(fit, covariance.model, divided.gyroscope);
+    findings.push_back(clock_rate_finding(common.value, common.sd, Severity::warning));
   }
   for (const DeviantScale& deviant : review.deviant) {
     const MatrixDeviation deviation = deviation_of(deviant, fit, covariance.model);
@@ -115,9 +129,11 @@ std::vector<Finding> scale_findings(const ScaleReview& review, const RecordedMot
   return findings;
 }
 
-void add_clock_rate(const ScaleReview& review, const InsFit& fit, const InsCovariance& covariance, ModelError& error) {
-  if (review.common_sd <= 0.0) return;
-  const double rate = 1.0 + common_scale(fit, covariance.model).value, change = 1.0 / (rate * rate) - 1.0;
+void add_clock_rate(const ScaleReview& review, const InsCommonScales& divided, const InsFit& fit,
+                    const InsCovariance& covariance, ModelError& error) {
+  if (!is_clock_wrong(review, divided)) return;
+  const double rate = 1.0 + common_scale(fit, covariance.model, divided.gyroscope).value,
+               change = 1.0 / (rate * rate) - 1.0;
   const InsBodies& bodies = fit.unknowns.bodies;
   if (error.shift.empty()) {
     error.mount_deflection.assign(fit.unknowns.errors.size(), 0.0);

@@ -18,6 +18,20 @@ VectorXd scale_priors(const InsProblem& problem, const std::vector<InsScaleFacto
   return sd;
 }
 
+MatrixXd scale_information(const VectorXd& sd, const InsCommonScales& common) {
+  const VectorXd own = sd.array().square().inverse();
+  MatrixXd information = own.asDiagonal();
+  const auto sensors = static_cast<std::size_t>(sd.size() / each);
+  const auto share = [&](InsInstrument instrument, const InsCommonScale& scale) {
+    if (scale.is_none()) return;
+    const VectorXd factor = common_factor(sensors, instrument), weighted = own.cwiseProduct(factor);
+    information -= weighted * weighted.transpose() / (1.0 / (scale.sd * scale.sd) + factor.dot(weighted));
+  };
+  share(InsInstrument::gyroscope, common.gyroscope);
+  share(InsInstrument::accelerometer, common.accelerometer);
+  return information;
+}
+
 VectorXd scale_values(const std::vector<InsErrors>& errors) {
   VectorXd values(each * static_cast<Index>(errors.size()));
   for (std::size_t s = 0; s < errors.size(); ++s) {
@@ -45,9 +59,9 @@ MatrixXd rotations() {
   return all;
 }
 
-VectorXd common_factor(std::size_t sensors) {
+VectorXd common_factor(std::size_t sensors, InsInstrument instrument) {
   VectorXd factor = VectorXd::Zero(each * static_cast<Index>(sensors));
-  for (Index first = 0; first < factor.size(); first += each)
+  for (Index first = instrument == InsInstrument::gyroscope ? 0 : elements; first < factor.size(); first += each)
     for (const Index k : diagonal) factor[first + k] = 1.0;
   return factor;
 }

@@ -18,6 +18,9 @@ inline constexpr std::array<Eigen::Index, 3> diagonal{0, 4, 8};  ///< of a matri
 /// Standard deviations of the prior, for all sensors; `factors`: of each, none: 1.
 VectorXd scale_priors(const InsProblem& problem, const std::vector<InsScaleFactor>& factors);
 
+/// Information of priors with these standard deviations, beside which all instruments of a kind may share a factor.
+MatrixXd scale_information(const VectorXd& sd, const InsCommonScales& common);
+
 VectorXd scale_values(const std::vector<InsErrors>& errors);
 
 /// Indices of the scale parameters among the global parameters.
@@ -26,7 +29,7 @@ std::vector<Eigen::Index> indices_of_scales(const InsLayout& layout);
 /// A small rotation of an instrument's axes about x, y and z: its antisymmetric matrices, column by column.
 MatrixXd rotations();
 
-/// A factor of all gyroscopes: a column of all scale parameters.
-VectorXd common_factor(std::size_t sensors);
+/// A factor of all gyroscopes, or of all accelerometers: a column of all scale parameters.
+VectorXd common_factor(std::size_t sensors, InsInstrument instrument = InsInstrument::gyroscope);
 
 }  // namespace kinfer::identify::scale_parameters
