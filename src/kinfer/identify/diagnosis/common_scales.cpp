@@ -65,12 +65,25 @@ double log_likelihood_on_earth(const Readings& readings, double factor) {
 }
 
 /// Too much or too little, any size as likely as its double.
-double log_likelihood_of_factors(const Readings& readings) {
+struct FactorLikelihood {
+  double log_likelihood = 0.0;
+  double mean_square = 0.0;  ///< of the scale error, given the readings
+};
+
+FactorLikelihood likelihood_of_factors(const Readings& readings) {
   constexpr double ratio = 1.1;
+  std::vector<double> scales, logs;
   LogMean over_factors;
   for (double size = least_force_scale; size < largest_force_scale; size *= ratio)
-    for (const double scale : {size, -size}) over_factors.add(log_likelihood_on_earth(readings, 1.0 + scale));
-  return over_factors.value();
+    for (const double scale : {size, -size}) {
+      scales.push_back(scale), logs.push_back(log_likelihood_on_earth(readings, 1.0 + scale));
+      over_factors.add(logs.back());
+    }
+  FactorLikelihood all{over_factors.value(), 0.0};
+  for (std::size_t i = 0; i < scales.size(); ++i)
+    all.mean_square +=
+        scales[i] * scales[i] * std::exp(logs[i] - all.log_likelihood) / static_cast<double>(scales.size());
+  return all;
 }
 
 /// [m/s²] Mean over the rests; none where the sensor never rests.
@@ -87,7 +100,11 @@ void mend_force_scale(MendedLog& log) {
     if (const auto reading = gravity_at_rest(sensor, log.log().time(sensor))) readings.push_back(*reading);
   if (readings.empty()) return;
   const ForceScale scale = common_force_scale(readings);
-  if (scale.log_odds < 0.0) return;
+  if (scale.log_odds < log_force_scale_odds) return;  // the readings speak against one
+  if (scale.log_odds < 0.0) {
+    log.scales.accelerometer.sd = scale.possible;  // left to the fit, and to the lengths' standard deviations
+    return;
+  }
   log.scales.accelerometer = {scale.factor, scale.sd};
   for (InsSensor& sensor : log.edit().sensors) {
     transform(sensor.acceleration, 1.0 / scale.factor, Mat3::Identity());
@@ -191,7 +208,9 @@ ForceScale common_force_scale(std::span<const double> given) {
   const double own =
       std::max(least_reading_error, std::sqrt(readings.square_scatter / std::max(1.0, readings.n - 1.0)));
   scale.sd = std::hypot(usual_gravity_sd, own / std::sqrt(readings.n)) / usual_gravity;
-  scale.log_odds = log_likelihood_of_factors(readings) - log_likelihood_on_earth(readings, 1.0) + log_force_scale_odds;
+  const FactorLikelihood factors = likelihood_of_factors(readings);
+  scale.log_odds = factors.log_likelihood - log_likelihood_on_earth(readings, 1.0) + log_force_scale_odds;
+  scale.possible = std::sqrt(factors.mean_square / (1.0 + std::exp(-scale.log_odds)));
   return scale;
 }
 

@@ -15,6 +15,7 @@ struct ForceScale {
   double factor = 1.0;    ///< estimated, if there is one
   double sd = 0.0;        ///< with the variation of gravity on Earth
   double log_odds = 0.0;  ///< that there is one, the prior included
+  double possible = 0.0;  ///< rms of what it may be where that is not certain: none has a share, by the odds
 };
 
 /// `readings`: [m/s²] gravity at rest, one a sensor. Their scatter, which biases and scale errors of their own leave,

@@ -78,7 +78,7 @@ inline constexpr double max_attitude_error = 0.25, max_attitude_share = 0.45;
 
 /// ln of the prior odds that all accelerometers of a log share a scale error: a calibration that was left out, or 1 g
 /// that was taken for 10 m/s². Larger finds more of them.
-inline constexpr double log_force_scale_odds = -3.0;
+inline constexpr double log_force_scale_odds = -2.0;
 /// Size of that error, evenly on a logarithmic scale. Smaller ones hide in what gravity is on Earth; a larger one is
 /// another unit.
 inline constexpr double least_force_scale = 1e-3, largest_force_scale = 0.3;

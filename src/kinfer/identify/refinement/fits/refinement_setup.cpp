@@ -68,7 +68,8 @@ void set_common_scales(InsProblem& problem, const InsCommonScales& common) {
   if (common.accelerometer.is_none()) return;
   problem.gravity = usual_gravity;
   problem.gravity_sd = usual_gravity_sd;
-  if (problem.root_at_rest) problem.common.accelerometer.sd *= free_factor;
+  const bool was_divided = std::abs(common.accelerometer.factor - 1.0) > 0.0;
+  if (problem.root_at_rest && was_divided) problem.common.accelerometer.sd *= free_factor;
 }
 
 Vec3 mean_measurement(const std::vector<InsBlock>& blocks) {
