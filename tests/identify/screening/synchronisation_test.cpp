@@ -42,6 +42,25 @@ TEST(Synchronisation, OffsetAndDriftingLoggerClocksCostNoAccuracy) {
   EXPECT_THAT(words::identification_verdict(found), testing::HasSubstr("ins4"));
 }
 
+TEST(Synchronisation, TheClockThatTheOthersDisagreeWithIsTheOddOne) {
+  const DrivenMachine drive = driven_machine("excavator-general", 1);
+  const InsRecording apart = with_clock_fault(drive.recording, {.sensor = 3, .offset = 0.02, .drift = 1e-3});
+  for (const bool is_first : {false, true}) {
+    InsRecording log = apart;
+    if (is_first) {
+      std::swap(log.loggers[0], log.loggers[log.sensors[3].logger]);
+      const std::size_t odd = log.sensors[3].logger;
+      for (InsSensor& sensor : log.sensors)
+        sensor.logger = sensor.logger == odd ? 0 : sensor.logger == 0 ? odd : sensor.logger;
+    }
+    const Identification found = identified(log);
+    EXPECT_EQ(found.joints.size(), drive.truth.joints.size());
+    EXPECT_NEAR(clock_of(found, "ins3").drift, -1e-3, 5e-5) << is_first;
+    EXPECT_NEAR(clock_of(found, "ins2").drift, 0.0, 5e-5) << is_first;
+    EXPECT_LT(worst_line_error(found.joints, drive.truth), 3e-3) << is_first;
+  }
+}
+
 TEST(Synchronisation, ADelayedSensorInTheSameFileIsFoundToo) {
   const DrivenMachine drive = driven_machine("excavator-general", 2);
   const double before = worst_line_error(identified(drive.recording).joints, drive.truth);

@@ -8,6 +8,7 @@
 #include "kinfer/identify/screening/thresholds.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/inertial/sensor_clocks.hpp"
+#include "kinfer/inertial/thresholds.hpp"
 #include "kinfer/measurement/ins_selection.hpp"
 
 namespace kinfer::identify {
@@ -29,12 +30,20 @@ ClockCorrection logger_correction(const InsRecording& recording, const std::vect
   return logger_clock;
 }
 
-/// One correction per sensor, the same for all sensors of a logger and zero for the first logger.
+/// Of the first logger, to which the others are aligned. A drift that the other clocks disagree with is its own.
+ClockCorrection reference_correction(const InsRecording& recording, const std::vector<ClockEstimate>& clocks) {
+  ClockCorrection first = logger_correction(recording, clocks, 0);
+  if (std::abs(first.drift) > inertial::odd_clock_drift) first.drift = 0.0;
+  return first;
+}
+
+/// One correction per sensor, the same for all sensors of a logger and zero for the first logger, unless it is the odd
+/// one.
 std::vector<ClockCorrection> logger_corrections(const InsRecording& recording,
                                                 const std::vector<ClockEstimate>& clocks) {
   std::vector<ClockCorrection> loggers;
   for (std::size_t l = 0; l < recording.loggers.size(); ++l) loggers.push_back(logger_correction(recording, clocks, l));
-  const ClockCorrection first = loggers.front();
+  const ClockCorrection first = reference_correction(recording, clocks);
   for (ClockCorrection& logger : loggers) logger.offset -= first.offset, logger.drift -= first.drift;
   std::vector<ClockCorrection> corrections;
   for (const InsSensor& sensor : recording.sensors) corrections.push_back(loggers[sensor.logger]);
@@ -44,7 +53,7 @@ std::vector<ClockCorrection> logger_corrections(const InsRecording& recording,
 /// Sensors that differ from their logger by more than the usual scatter get their own correction.
 std::vector<ClockCorrection> sensor_corrections(const InsRecording& recording, const std::vector<ClockEstimate>& clocks,
                                                 const std::vector<ClockCorrection>& loggers) {
-  const ClockCorrection first = logger_correction(recording, clocks, 0);
+  const ClockCorrection first = reference_correction(recording, clocks);
   std::vector<ClockCorrection> corrections = loggers;
   for (std::size_t s = 0; s < clocks.size(); ++s) {
     if (!clocks[s].known) continue;
