@@ -23,6 +23,7 @@
 #include "kinfer/calibrate/validated_fit.hpp"
 #include "kinfer/calibrate/validation/iso9283.hpp"
 #include "kinfer/calibrate/validation/kind_errors.hpp"
+#include "kinfer/estimate/poses/repeated_measurements.hpp"
 #include "kinfer/measurement/copies.hpp"
 
 namespace kinfer::calibrate {
@@ -87,7 +88,7 @@ Result<CalibrationTask> prepare_task(const Diagnosis& diagnosis) {
   CalibrationTask task = diagnosis.corrected_task;
   KINFER_TRY(placed, with_fixtures(task.nominal, task.data));
   task.nominal = placed.chain;
-  task.data = without_copies(with_approach(placed.data));
+  task.data = with_commanded_poses(without_copies(with_approach(placed.data)), task.nominal);
   return task;
 }
 

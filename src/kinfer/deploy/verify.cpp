@@ -9,10 +9,11 @@
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/start/fixtures.hpp"
-#include "kinfer/calibrate/validation/commanded_poses.hpp"
 #include "kinfer/deploy/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/estimate/poses/pose_uncertainty.hpp"
+#include "kinfer/estimate/poses/repeated_measurements.hpp"
+#include "kinfer/measurement/commanded_poses.hpp"
 
 namespace kinfer::deploy {
 namespace {
@@ -64,7 +65,7 @@ std::optional<Instrument> known_instrument(const std::optional<Instrument>& stat
 
 /// Of different poses and targets: a pose that was measured again tells no more about the robot.
 int measured_numbers(const PoseSet& data) {
-  const std::vector<int> poses = calibrate::commanded_poses(data.joints);
+  const std::vector<int> poses = commanded_poses(data);
   const auto pose_of = [&](int row) { return poses[static_cast<std::size_t>(row)]; };
   std::set<std::pair<int, int>> points;
   std::set<int> orientations;
@@ -74,7 +75,7 @@ int measured_numbers(const PoseSet& data) {
 }
 
 Result<void> expect_several_poses(const PoseSet& data) {
-  const std::vector<int> poses = calibrate::commanded_poses(data.joints);
+  const std::vector<int> poses = commanded_poses(data);
   if (data.rows() == 1 || std::ranges::max(poses) > 0) return {};
   return error("all {} rows were measured at the same joint positions, which tells nothing about others", data.rows());
 }
@@ -102,10 +103,10 @@ Result<Verification> verify(const Chain& given_chain, const Tolerances& toleranc
                             const std::optional<Instrument>& instrument, const PoseSet& given_data,
                             const std::optional<PredictionModel>& prediction) {
   if (given_data.points.empty()) return error("the data contain no measured positions to verify against");
-  if (const auto several = expect_several_poses(given_data); !several) return forward_error(several.error());
   KINFER_TRY(placed, calibrate::with_fixtures(given_chain, given_data));
   const Chain& chain = placed.chain;
-  const PoseSet data = with_approach(placed.data);
+  const PoseSet data = with_commanded_poses(with_approach(placed.data), chain);
+  if (const auto several = expect_several_poses(data); !several) return forward_error(several.error());
   Verification v;
   v.unmodified = error_statistics(point_errors(chain, without_fading(data, chain, chain, prediction)));
   const auto refit_frames = [&](const PoseSet& rows) {

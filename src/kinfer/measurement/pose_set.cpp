@@ -72,7 +72,8 @@ RowGroups select(const RowGroups& from, const std::vector<int>& rows) {
           .setup = pick(from.setup, rows),
           .tip = pick(from.tip, rows),
           .sweep = pick(from.sweep, rows),
-          .mounting = pick(from.mounting, rows)};
+          .mounting = pick(from.mounting, rows),
+          .pose = pick(from.pose, rows)};
 }
 
 RowOrigin select(const RowOrigin& from, const std::vector<int>& rows) {

@@ -35,6 +35,7 @@ struct RowGroups {
   std::vector<int> tip;           ///< one per row, index into `tips`, −1: the robot's; empty: none
   std::vector<int> sweep;         ///< one per row, index into `sweeps`, −1: none; empty: none
   std::vector<int> mounting;  ///< one per row, index into Chain::mountings, −1: the chain's base and tool; empty: none
+  std::vector<int> pose;      ///< one per row: rows of one commanded pose have the same number; empty: not known
 };
 
 /// The part of a train/holdout split to which the file assigns a row.

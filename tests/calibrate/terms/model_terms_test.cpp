@@ -145,8 +145,8 @@ TEST(ApproximateMasses, LieAtTheMiddleOfTheLinks) {
   for (const PointMass& mass : chain.masses) EXPECT_GT(mass.mass, 0.0);
 }
 
-HoldoutErrors errors_of_rows(std::vector<double> errors, std::vector<int> rows) {
-  return {.split_fits = {}, .errors = std::move(errors), .row = std::move(rows)};
+HoldoutErrors errors_of_rows(std::vector<double> errors, const std::vector<int>& rows) {
+  return {.split_fits = {}, .errors = std::move(errors), .row = rows, .pose = rows};
 }
 
 TEST(HoldoutErrors, AreSummedUpWithoutTheRowsInGrossError) {

@@ -9,6 +9,7 @@
 
 #include "kinfer/calibrate/functions/field_problem.hpp"
 #include "kinfer/calibrate/functions/harmonic_series.hpp"
+#include "kinfer/calibrate/functions/pose_means.hpp"
 #include "kinfer/calibrate/functions/thresholds.hpp"
 #include "kinfer/estimate/poses/noise_level.hpp"
 #include "kinfer/measurement/row_selection.hpp"
@@ -82,16 +83,18 @@ PoseSet weighing_measurements(const Estimate& fitted, const PoseSet& rows,
 bool allows_field(const PoseSet& rows) {
   std::set<int> shown;
   for (const Block& block : blocks_of(rows))
-    if (residual_kind(block.kind).traits.observes.tool_position) shown.insert(block.row);
+    if (residual_kind(block.kind).traits.observes.tool_position)
+      shown.insert(rows.pose.empty() ? block.row : rows.pose[static_cast<std::size_t>(block.row)]);
   return rows.pairs.empty() && rows.tips.empty() && std::ssize(shown) >= thresholds::min_field_rows;
 }
 
 FoundField find_field(const Estimate& fitted, const PoseSet& rows, const std::optional<Instrument>& instrument,
                       int threads) {
-  PoseSet kept = weighing_measurements(fitted, rows, instrument);
-  const ExcessNoise excess = excess_noise(fitted.chain, kept, instrument, 0.0, threads);
-  kept = select(kept, spread_indices(static_cast<int>(kept.rows()), thresholds::field_rows));
-  const Weights weights = weights_of(kept, instrument, excess);
+  const PoseSet weighing = weighing_measurements(fitted, rows, instrument);
+  const PoseMeans means = pose_means(fitted.chain, weighing, instrument,
+                                     excess_noise(fitted.chain, weighing, instrument, 0.0, threads), threads);
+  const PoseSet kept = select(means.rows, spread_indices(static_cast<int>(means.rows.rows()), thresholds::field_rows));
+  const Weights weights = weights_of(kept, instrument, means.excess);
   FoundField best{fitted.chain};
   double highest = 0.0;
   for (const double length : thresholds::field_lengths) {
@@ -126,9 +129,12 @@ Estimate fit_with_field(const Chain& start, const ParameterSet& set, const PoseS
   MatrixXd covariance = fit.covariance;
   VectorXd variances = covariance.diagonal();
   for (int round = 0; round < thresholds::field_rounds; ++round) {
-    const PoseSet kept = keep_measurements(rows, inliers_of(fit, rows));
-    const Weights weights =
-        weights_of(kept, instrument, excess_noise(fit.chain, kept, instrument, absorbed, options.threads));
+    const PoseSet inliers = keep_measurements(rows, inliers_of(fit, rows));
+    const PoseMeans means =
+        pose_means(fit.chain, inliers, instrument,
+                   excess_noise(fit.chain, inliers, instrument, absorbed, options.threads), options.threads);
+    const PoseSet& kept = means.rows;
+    const Weights weights = weights_of(kept, instrument, means.excess);
     Chain present = fit.chain;
     if (round == 0) present.field = empty_field(kept, start.field.length, start.field.size, start.field.noise);
     const FieldProblem problem(present, set, {kept, weights, options.threads});

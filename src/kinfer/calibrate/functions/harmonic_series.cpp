@@ -5,9 +5,11 @@
 #include <cmath>
 #include <utility>
 
+#include "kinfer/calibrate/functions/pose_means.hpp"
 #include "kinfer/calibrate/functions/series_problem.hpp"
 #include "kinfer/calibrate/functions/thresholds.hpp"
 #include "kinfer/estimate/poses/noise_level.hpp"
+#include "kinfer/measurement/commanded_poses.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -86,9 +88,12 @@ ParameterSet without_harmonics(const ParameterSet& set) {
 
 std::optional<FoundSeries> find_series(const Estimate& fitted, const PoseSet& rows,
                                        const std::optional<Instrument>& instrument, int threads) {
-  if (!rows.pairs.empty() || rows.rows() < static_cast<Index>(thresholds::min_series_points)) return std::nullopt;
-  const PoseSet kept = keep_measurements(rows, inliers_of(fitted, rows));
-  const Weights weights = weights_of(kept, instrument, excess_noise(fitted.chain, kept, instrument, 0.0, threads));
+  if (!rows.pairs.empty() || distinct_poses(rows) < thresholds::min_series_points) return std::nullopt;
+  const PoseSet inliers = keep_measurements(rows, inliers_of(fitted, rows));
+  const PoseMeans means = pose_means(fitted.chain, inliers, instrument,
+                                     excess_noise(fitted.chain, inliers, instrument, 0.0, threads), threads);
+  const PoseSet& kept = means.rows;
+  const Weights weights = weights_of(kept, instrument, means.excess);
   const WeightedRows data{kept, weights, threads};
   const double without = evaluate({fitted.chain, fitted.parameters, {}}, data).log_evidence;
   DetachedSeries start{fitted.chain, without_harmonics(fitted.parameters), {}};
@@ -127,9 +132,12 @@ Estimate fit_with_series(const Chain& start, const ParameterSet& set, const Pose
   for (int round = 0; round < thresholds::series_rounds; ++round) {
     const std::vector<bool> inliers = inliers_of(fit, rows);
     const PoseSet kept_moved = keep_measurements(moved, inliers);
-    const Weights weights =
-        weights_of(kept_moved, instrument, excess_noise(model.plain, kept_moved, instrument, 0.0, options.threads));
-    const PoseSet kept = keep_measurements(rows, inliers);
+    PoseMeans means =
+        pose_means(model.plain, kept_moved, instrument,
+                   excess_noise(model.plain, kept_moved, instrument, 0.0, options.threads), options.threads);
+    const Weights weights = weights_of(means.rows, instrument, means.excess);
+    PoseSet& kept = means.rows;
+    kept.joints = rows.joints(Eigen::all, means.of_row);
     const SeriesProblem problem(model, {kept, weights, options.threads});
     const auto [step, of_parameters] = problem.step();
     const double gain = problem.relative_gain(step);

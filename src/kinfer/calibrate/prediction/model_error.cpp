@@ -11,6 +11,7 @@
 #include "kinfer/calibrate/prediction/thresholds.hpp"
 #include "kinfer/calibrate/terms/extrapolation_splits.hpp"
 #include "kinfer/estimate/poses/pose_uncertainty.hpp"
+#include "kinfer/estimate/poses/repeated_measurements.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
@@ -43,6 +44,26 @@ HeldOutResidual in_base(const Mat3& world_R_base, const Vec3& residual, const Ma
   return {world_R_base.transpose() * residual,
           world_R_base.transpose() * propagated_covariance(jacobian, covariance) * world_R_base,
           world_R_base.transpose() * noise * world_R_base};
+}
+
+/// Measurements of one pose are one residual, their mean: the errors of the model and of its parameters are common to
+/// all. `common`: variance of the noise that is, too.
+std::vector<HeldOutResidual> means_of_poses(const std::vector<HeldOutResidual>& all, const RepeatedMeasurements& groups,
+                                            double common) {
+  if (groups.empty()) return all;
+  const Mat3 shared = common * Mat3::Identity();
+  std::vector<HeldOutResidual> means(groups.size.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    HeldOutResidual& mean = means[static_cast<std::size_t>(groups.group[i])];
+    const double part = 1.0 / groups.size_of(i);
+    mean.residual += part * all[i].residual;
+    mean.parameters += part * all[i].parameters;
+    mean.noise += part * (part * (all[i].noise - shared) + shared);
+    mean.outside += part * all[i].outside;
+    mean.open += part * all[i].open;
+    mean.is_tool_point = all[i].is_tool_point;
+  }
+  return means;
 }
 
 /// Residuals of `rows`, which `fit` did not see, by what `model` predicts from it.
@@ -94,6 +115,11 @@ HeldOutResiduals residuals_beside(const Estimate& fit, const PoseSet& train, con
   for (Index row = 0; row < rows.rows(); ++row) outside[row] = outside_share(region, rows.joints.col(row));
   for (std::size_t k = 0; k < all.points.size(); ++k) all.points[k].outside = outside[rows.points[k].row];
   for (std::size_t k = 0; k < all.rotations.size(); ++k) all.rotations[k].outside = outside[rows.orientations[k].row];
+  const auto repeated = repeated_measurements(rows);
+  const bool is_stated = instrument && instrument->states_lengths();
+  all.points = means_of_poses(all.points, repeated[index(kind_of<PointMeasurement>)],
+                              is_stated ? 0.0 : fit.sigma_pose * fit.sigma_pose);
+  all.rotations = means_of_poses(all.rotations, repeated[index(kind_of<OrientationMeasurement>)], 0.0);
   return all;
 }
 

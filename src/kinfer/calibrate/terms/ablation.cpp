@@ -35,7 +35,7 @@ HoldoutErrors errors_without(const HoldoutErrors& fits, const std::vector<Candid
   std::vector<CandidateParameter> removed;
   for (const CandidateParameter& term : terms)
     if (remove(term.term)) removed.push_back(term);
-  if (removed.empty()) return {{}, fits.errors, fits.row};
+  if (removed.empty()) return {{}, fits.errors, fits.row, fits.pose};
   std::vector<Chain> chains(splits.size());
   parallel_for(splits.size(), threads, [&](std::size_t i) {
     chains[i] = chain_without(fits.split_fits[i], free_indices(fits.split_fits[i], removed));

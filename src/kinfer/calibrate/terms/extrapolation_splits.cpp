@@ -2,10 +2,13 @@
 #include "kinfer/calibrate/terms/extrapolation_splits.hpp"
 
 #include <algorithm>
+#include <map>
+#include <vector>
 
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
+#include "kinfer/measurement/commanded_poses.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -18,6 +21,16 @@ MatrixXd standardised(const MatrixXd& joints) {
     z.row(k) *= spread > 1e-9 ? 1.0 / spread : 0.0;
   }
   return z;
+}
+
+/// Rows of one pose have the place of its first row, so that they stay on one side.
+VectorXd same_within_poses(VectorXd along, const std::vector<int>& pose) {
+  std::map<int, double> first;
+  for (std::size_t row = 0; row < pose.size(); ++row) {
+    double& place = along[static_cast<Eigen::Index>(row)];
+    place = first.try_emplace(pose[row], place).first->second;
+  }
+  return along;
 }
 
 Split without_end(const VectorXd& along, bool hold_out_upper) {
@@ -39,15 +52,16 @@ std::vector<int> every_nth(const std::vector<int>& rows, std::size_t n) {
 
 std::vector<Split> extrapolation_splits(const PoseSet& data, int fewest) {
   std::vector<Split> splits;
-  if (data.rows() < 2 * fewest) return splits;
+  const auto enough = static_cast<std::size_t>(fewest);
+  if (distinct_poses(data) < 2 * enough) return splits;
   const MatrixXd z = standardised(data.joints);
   const SymmetricEigen directions = symmetric_eigen(times_transposed(z, z));
   const Eigen::Index dof = z.rows();
   for (Eigen::Index k = 0; k < std::min<Eigen::Index>(2, dof); ++k) {
-    const VectorXd along = z.transpose() * directions.vectors.col(dof - 1 - k);
+    const VectorXd along = same_within_poses(z.transpose() * directions.vectors.col(dof - 1 - k), data.pose);
     for (const bool upper : {true, false})
       if (Split split = without_end(along, upper);
-          static_cast<int>(split.train.size()) >= fewest && !split.holdout.empty())
+          distinct_poses(data, split.train) >= enough && !split.holdout.empty())
         splits.push_back(std::move(split));
   }
   return splits;

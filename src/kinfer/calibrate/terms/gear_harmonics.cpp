@@ -8,8 +8,11 @@
 #include <set>
 
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/calibrate/functions/beside_functions.hpp"
+#include "kinfer/calibrate/functions/pose_means.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/linalg/fourier_sums.hpp"
+#include "kinfer/measurement/commanded_poses.hpp"
 
 namespace kinfer::calibrate {
 namespace {
@@ -146,8 +149,15 @@ std::vector<SpectralLine> lines_of_joint(std::vector<Sample> samples, int joint,
 
 }  // namespace
 
-std::vector<SpectralLine> find_gear_harmonics(const Estimate& fitted, const PoseSet& rows, int threads, int most) {
+std::vector<SpectralLine> find_gear_harmonics(const Estimate& with_outliers, const PoseSet& all_rows, int threads,
+                                              int most) {
   std::vector<SpectralLine> lines;
+  Estimate fitted = with_outliers;
+  PoseSet rows = all_rows;
+  if (distinct_poses(all_rows) < static_cast<std::size_t>(all_rows.rows())) {  // each pose once
+    rows = pose_means(fitted.chain, keep_measurements(rows, inliers_of(fitted, rows)), {}, {}, threads).rows;
+    fitted.outliers.clear();
+  }
   if (rows.points.size() < thresholds::min_spectrum_points || !(fitted.sigma > 0.0)) return lines;
   const std::vector<int> moving = active_joints(fitted.chain);
   // For pure noise the improvement is χ² with two degrees of freedom; its maximum over n lines is about 2 ln n.

@@ -2,12 +2,14 @@
 #include "kinfer/calibrate/terms/holdout_errors.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/calibrate/functions/fit_with_functions.hpp"
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/terms/decision.hpp"
 #include "kinfer/calibrate/validation/validation_errors.hpp"
+#include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
 
@@ -39,6 +41,7 @@ std::vector<HoldoutErrors> cross_validate(const Estimate& fit, const ParameterSe
     for (const Estimate& split_fit : errors[g].split_fits) chains.push_back(split_fit.chain);
     HoldoutErrors evaluated = evaluate_holdout(chains, rows, groups[g], threads);
     errors[g].errors = std::move(evaluated.errors), errors[g].row = std::move(evaluated.row);
+    errors[g].pose = std::move(evaluated.pose);
   }
   return errors;
 }
@@ -47,6 +50,7 @@ HoldoutErrors evaluate_holdout(const std::vector<Chain>& chains, const PoseSet& 
                                int threads) {
   const auto primary = primary_measurement_kind(rows);
   if (!primary) return {};
+  const std::vector<int> pose_of_row = rows.pose.empty() ? all_rows(rows) : rows.pose;
   std::vector<HoldoutErrors> of_split(splits.size());
   parallel_for(splits.size(), threads, [&](std::size_t i) {
     const PoseSet evaluated = select(rows, splits[i].holdout);
@@ -58,6 +62,7 @@ HoldoutErrors evaluate_holdout(const std::vector<Chain>& chains, const PoseSet& 
   for (const HoldoutErrors& one : of_split) {
     all.errors.insert(all.errors.end(), one.errors.begin(), one.errors.end());
     all.row.insert(all.row.end(), one.row.begin(), one.row.end());
+    for (const int row : one.row) all.pose.push_back(pose_of_row[static_cast<std::size_t>(row)]);
   }
   return all;
 }
@@ -75,11 +80,15 @@ ErrorStatistics statistics_without(const HoldoutErrors& holdout_errors, const st
 
 ErrorChange compare_holdout(const HoldoutErrors& before, const std::vector<Outlier>& outliers_before,
                             const HoldoutErrors& after, const std::vector<Outlier>& outliers_after) {
-  std::vector<double> a, b;
+  std::vector<double> a, b, count;
+  std::map<int, std::size_t> place_of_pose;
   for (std::size_t i = 0; i < before.errors.size(); ++i) {
     if (contains_row(outliers_before, before.row[i]) && contains_row(outliers_after, after.row[i])) continue;
-    a.push_back(before.errors[i]), b.push_back(after.errors[i]);
+    const auto [at, is_new] = place_of_pose.try_emplace(before.pose[i], a.size());
+    if (is_new) a.push_back(0.0), b.push_back(0.0), count.push_back(0.0);
+    a[at->second] += before.errors[i], b[at->second] += after.errors[i], count[at->second] += 1.0;
   }
+  for (std::size_t k = 0; k < count.size(); ++k) a[k] /= count[k], b[k] /= count[k];
   return compare_errors(a, b);
 }
 

@@ -15,7 +15,8 @@ namespace kinfer::calibrate {
 struct HoldoutErrors {
   std::vector<Estimate> split_fits;  ///< one per split
   std::vector<double> errors;
-  std::vector<int> row;  ///< of each error
+  std::vector<int> row;   ///< of each error
+  std::vector<int> pose;  ///< that was commanded, of each error
 };
 
 /// Fits to all rows, with the fixtures that the rows refer to.
@@ -37,7 +38,8 @@ HoldoutErrors evaluate_holdout(const std::vector<Chain>& chains, const PoseSet& 
 /// Statistics over the rows without gross errors.
 ErrorStatistics statistics_without(const HoldoutErrors& holdout_errors, const std::vector<Outlier>& gross_errors);
 
-/// Compares the held-out errors of two fits without the rows that are outliers of both.
+/// Compares the held-out errors of two fits without the rows that are outliers of both, each commanded pose
+/// by its mean.
 ErrorChange compare_holdout(const HoldoutErrors& before, const std::vector<Outlier>& outliers_before,
                             const HoldoutErrors& after, const std::vector<Outlier>& outliers_after);
 

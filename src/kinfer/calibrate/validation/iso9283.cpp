@@ -4,26 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 
-#include "kinfer/calibrate/validation/commanded_poses.hpp"
 #include "kinfer/calibrate/validation/thresholds.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/geometry/statistics.hpp"
+#include "kinfer/measurement/commanded_poses.hpp"
 
 namespace kinfer::calibrate {
 namespace {
-
-/// Largest difference of each joint position within one commanded pose [rad], [m].
-VectorXd command_tolerance(const Chain& chain) {
-  const std::vector<int> moving = active_joints(chain);
-  VectorXd tolerance(static_cast<Eigen::Index>(moving.size()));
-  for (std::size_t k = 0; k < moving.size(); ++k)
-    tolerance[static_cast<Eigen::Index>(k)] =
-        translates(chain.joints[moving[k]].type) ? thresholds::same_pose_length : thresholds::same_pose_angle;
-  return tolerance;
-}
 
 /// The measured tool points of each row.
 std::vector<std::vector<Vec3>> points_of_rows(const PoseSet& data) {
@@ -57,12 +48,12 @@ std::vector<PoseAccuracy> evaluate_pose_accuracy(const Chain& before, const Chai
   const EvaluatedPoses at_before = evaluate_poses(before, {}, data, Derivative::no),
                        at_after = evaluate_poses(after, {}, data, Derivative::no);
   std::vector<PoseAccuracy> poses;
-  const std::vector<int> measured = rows_with_points(points);
-  const std::vector<int> pose_of_row = commanded_poses(data.joints(Eigen::all, measured), command_tolerance(after));
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    const auto pose = static_cast<std::size_t>(pose_of_row[i]);
-    if (pose == poses.size()) poses.push_back({{}, 0.0, 0.0, {}});
-    poses[pose].rows.push_back(measured[i]);
+  const std::vector<int> pose_of_row = commanded_poses(data);
+  std::map<int, std::size_t> place;
+  for (const int row : rows_with_points(points)) {
+    const auto [at, is_new] = place.try_emplace(pose_of_row[static_cast<std::size_t>(row)], poses.size());
+    if (is_new) poses.push_back({{}, 0.0, 0.0, {}});
+    poses[at->second].rows.push_back(row);
   }
   for (PoseAccuracy& pose : poses) {
     const std::vector<Vec3> all = distinct_points(pose.rows, points);

@@ -35,7 +35,4 @@ inline constexpr int min_judged_measurements = 4;
 /// judged as of points alone.
 inline constexpr std::size_t min_judging_measurements = 8;
 
-/// [rad], [m] joint positions of one commanded pose: of ISO 9283, and of rows that are held out together.
-inline constexpr double same_pose_angle = 1e-4, same_pose_length = 1e-5;
-
 }  // namespace kinfer::calibrate::thresholds

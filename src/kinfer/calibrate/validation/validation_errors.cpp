@@ -9,7 +9,6 @@
 #include <type_traits>
 
 #include "kinfer/calibrate/start/fixtures.hpp"
-#include "kinfer/calibrate/validation/commanded_poses.hpp"
 #include "kinfer/calibrate/validation/kind_errors.hpp"
 #include "kinfer/calibrate/validation/thresholds.hpp"
 #include "kinfer/estimate/poses/redundancy.hpp"
@@ -17,6 +16,7 @@
 #include "kinfer/geometry/student.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
+#include "kinfer/measurement/commanded_poses.hpp"
 #include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
@@ -35,7 +35,7 @@ ExcessNoise unstated_noise(const Estimate& fit, const PoseSet& inliers, const In
   const auto determined = std::ranges::count_if(fit.values, &ParameterEstimate::identifiable);
   ExcessNoise noise = noise_of_fit(fit.chain, fit.parameters, inliers, instrument, static_cast<double>(determined));
   for (const ResidualKind& kind : residual_kinds())
-    if (kind.traits.sigma_of(instrument) > 0.0) noise.of[index(kind.kind)] = 0.0;
+    if (kind.traits.sigma_of(instrument) > 0.0) noise.of[index(kind.kind)] = noise.of_pose[index(kind.kind)] = 0.0;
   return noise;
 }
 
@@ -207,13 +207,15 @@ std::optional<double> chance_of_improvement(const std::vector<RowErrors>& rows, 
   for (const RowErrors& row : rows)
     if (row.held_out && !std::isnan(row.before) && !std::isnan(row.after)) judged.push_back(row.row);
   judged = without(std::move(judged), skipped);
-  const std::vector<int> pose_of_row = commanded_poses(data.joints(Eigen::all, judged));
-  const std::size_t poses = pose_of_row.empty() ? 0 : 1 + std::ranges::max(pose_of_row);
+  const std::vector<int> pose_of_row = commanded_poses(data);
+  std::map<int, std::size_t> place;
+  for (const int row : judged) place.try_emplace(pose_of_row[static_cast<std::size_t>(row)], place.size());
+  const std::size_t poses = place.size();
   if (poses < 2) return std::nullopt;
   std::vector<double> gain(poses, 0.0), count(poses, 0.0);
-  for (std::size_t i = 0; i < judged.size(); ++i) {
-    const RowErrors& row = rows[static_cast<std::size_t>(judged[i])];
-    const auto pose = static_cast<std::size_t>(pose_of_row[i]);
+  for (const int judged_row : judged) {
+    const RowErrors& row = rows[static_cast<std::size_t>(judged_row)];
+    const std::size_t pose = place.at(pose_of_row[static_cast<std::size_t>(judged_row)]);
     gain[pose] += row.before - row.after, count[pose] += 1.0;
   }
   for (std::size_t pose = 0; pose < poses; ++pose) gain[pose] /= count[pose];

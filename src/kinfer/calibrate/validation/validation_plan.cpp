@@ -6,8 +6,8 @@
 #include <numeric>
 #include <set>
 
-#include "kinfer/calibrate/validation/commanded_poses.hpp"
 #include "kinfer/calibrate/validation/thresholds.hpp"
+#include "kinfer/measurement/commanded_poses.hpp"
 #include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
@@ -49,13 +49,10 @@ void link_sights_of_one_pose(const PoseSet& data, Link link) {
 template <class Link>
 void link_repeated_poses(const PoseSet& data, Link link) {
   if (!data.pairs.empty()) return;
-  std::vector<int> first;
-  const std::vector<int> poses = commanded_poses(data.joints);
-  for (int row = 0; row < data.rows(); ++row) {
-    const auto pose = static_cast<std::size_t>(poses[static_cast<std::size_t>(row)]);
-    if (pose == first.size()) first.push_back(row);
-    link(first[pose], row);
-  }
+  std::map<int, int> first;
+  const std::vector<int> poses = commanded_poses(data);
+  for (int row = 0; row < data.rows(); ++row)
+    link(first.try_emplace(poses[static_cast<std::size_t>(row)], row).first->second, row);
 }
 
 /// `poses`: the pose of each row of the data.
@@ -112,7 +109,7 @@ int fold_count(const PoseSet& data, const CrossValidation& choice, const Paramet
 }
 
 Error too_few_rows(const PoseSet& data) {
-  if (const int poses = distinct_poses(commanded_poses(data.joints), all_rows(data)); poses < data.rows())
+  if (const int poses = distinct_poses(commanded_poses(data), all_rows(data)); poses < data.rows())
     return {fmt::format(
         "{} rows of {} are too few to fit and validate a calibration; at least {} different poses beside those held "
         "out are needed",
@@ -156,7 +153,7 @@ Result<ValidationPlan> make_validation_plan(const PoseSet& data, const Calibrati
   if (static_cast<int>(plan.fitted.size()) < thresholds::min_fitted_rows)
     return error("{} rows are left to fit; a calibration needs at least {} (20 or more are better)", plan.fitted.size(),
                  thresholds::min_fitted_rows);
-  const std::vector<int> poses = commanded_poses(data.joints);
+  const std::vector<int> poses = commanded_poses(data);
   if (distinct_poses(poses, plan.fitted) < thresholds::min_fitted_rows) return forward_error(too_few_rows(data));
   for (const Split& split : plan.validation_splits)
     if (distinct_poses(poses, split.train) < thresholds::min_training_poses) return forward_error(too_few_rows(data));

@@ -146,7 +146,7 @@ class Fit {
   /// Mahalanobis distance [sigma] of each block. An orientation is conditioned on the point of its row only where that
   /// point is an inlier.
   VectorXd mahalanobis_distances() const {
-    Weights weights = weights_of(data_, instrument_, state_.excess);
+    Weights weights = weights_of_single(data_, instrument_, state_.excess);
     if (weights.couplings.empty()) return mahalanobis_distances(weights);
     const std::vector<PoseCoupling> couplings = std::exchange(weights.couplings, {});
     const VectorXd alone = mahalanobis_distances(weights);  // points are the first blocks
@@ -223,10 +223,11 @@ class Fit {
 
   void describe_noise(Estimate& estimate) const {
     const PoseSet kept = keep_measurements(data_, state_.inlier);
-    const Weights weights = weights_of(kept, instrument_, state_.excess);
+    const Weights weights = weights_of_single(kept, instrument_, state_.excess);
     const std::vector<double> ranges = metres_of_primary_kind(kept);
     estimate.sigma = typical_sd(weights, [](const MeasurementTraits& t) { return t.observes.tool_position; }) *
                      (ranges.empty() ? 1.0 : rms(ranges));
+    estimate.sigma_pose = state_.excess.of_pose[index(kind_of<PointMeasurement>)] * (kept.points.empty() ? 0.0 : 1.0);
     estimate.sigma_angle =
         typical_sd(weights, [](const MeasurementTraits& t) { return t.unit == ResidualUnit::angle; });
     if (instrument_) estimate.chi2_per_n = normalised_chi2(kept);
@@ -235,8 +236,10 @@ class Fit {
   /// −2 log of the marginal likelihood by Laplace's approximation: misfit, noise level over all rows including
   /// outliers, and the Occam factor of the parameters.
   double negative_log_evidence() const {
-    const Weights weights = weights_of(keep_measurements(data_, state_.inlier), instrument_, state_.excess);
-    double sum = state_.outcome.cost + scaled_information_spectrum(state_.outcome.normal, set_).array().log1p().sum();
+    const PoseSet kept = keep_measurements(data_, state_.inlier);
+    const Weights weights = weights_of(kept, instrument_, state_.excess);
+    double sum = evidence_of_repeats(scene(kept), instrument_, state_.excess) + state_.outcome.cost +
+                 scaled_information_spectrum(state_.outcome.normal, set_).array().log1p().sum();
     for (const ResidualKind& kind : residual_kinds()) {
       const double sd = typical_sd(weights, kind);
       if (sd > 0.0) sum += 2.0 * kind.size * static_cast<double>(kind.count(data_)) * std::log(sd);

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <functional>
 
+#include "kinfer/estimate/poses/repeated_measurements.hpp"
 #include "kinfer/geometry/statistics.hpp"
 
 namespace kinfer {
 namespace {
+
+constexpr double least_redundancy_of_all = 0.1;
 
 /// Excess noise at which the median of the squared block norms equals that of Gaussian noise; 0 if it is below already.
 /// By bisection.
@@ -97,13 +100,90 @@ void estimate_pose_noise(const Weights& specified, const PoseSet& data, const Re
       excess_of(turns.residuals, turns.sd, 3, redundancy[index(kind_of<OrientationMeasurement>)]);
 }
 
+/// A residual in the world, where those of one pose can be compared; its variances along other axes are averaged.
+void rotate_into_world(Vec3& residual, Vec3& sd, const std::optional<Mat3>& axes) {
+  if (!axes) return;
+  residual = (*axes * residual).eval();
+  sd.setConstant(std::sqrt(sd.squaredNorm() / 3.0));
+}
+
+Blocks in_common_axes(MeasurementKind kind, Blocks blocks, const PoseSet& data) {
+  const auto rotate = [&](const auto& list) {
+    for (std::size_t i = 0; i < list.size(); ++i) rotate_into_world(blocks.residuals[i], blocks.sd[i], list[i].axes);
+  };
+  if (kind == kind_of<PointMeasurement>) rotate(data.points);
+  if (kind == kind_of<OrientationMeasurement>) rotate(data.orientations);
+  return blocks;
+}
+
+/// Mean of each group.
+std::vector<Vec3> means_of_groups(const RepeatedMeasurements& repeated, const std::vector<Vec3>& values) {
+  std::vector<Vec3> means(repeated.size.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    means[static_cast<std::size_t>(repeated.group[i])] += values[i] / repeated.size_of(i);
+  return means;
+}
+
+/// From their mean, as large as they would be from its expectation.
+Blocks deviations_in_groups(const RepeatedMeasurements& repeated, const Blocks& blocks) {
+  const std::vector<Vec3> means = means_of_groups(repeated, blocks.residuals);
+  Blocks deviations;
+  for (std::size_t i = 0; i < blocks.residuals.size(); ++i) {
+    const double m = repeated.size_of(i);
+    if (m < 2.0) continue;
+    const Vec3 deviation = blocks.residuals[i] - means[static_cast<std::size_t>(repeated.group[i])];
+    deviations.residuals.push_back(std::sqrt(m / (m - 1.0)) * deviation);
+    deviations.sd.push_back(blocks.sd[i]);
+  }
+  return deviations;
+}
+
+/// With the variance that the measurements of each leave; `excess` beside the specified one.
+Blocks group_means(const RepeatedMeasurements& repeated, const Blocks& blocks, double excess) {
+  std::vector<Vec3> variances;
+  for (const Vec3& sd : blocks.sd) variances.push_back(sd.cwiseAbs2().array() + excess * excess);
+  Blocks means{means_of_groups(repeated, blocks.residuals), means_of_groups(repeated, variances)};
+  for (std::size_t g = 0; g < means.sd.size(); ++g) means.sd[g] = (means.sd[g] / repeated.size[g]).cwiseSqrt();
+  return means;
+}
+
+/// The parameters absorb the errors of poses, and next to nothing of what scatters within them.
+double redundancy_of_poses(double redundancy, const RepeatedMeasurements& repeated) {
+  const double absorbed = (1.0 - redundancy) * static_cast<double>(repeated.group.size());
+  return std::max(least_redundancy_of_all, 1.0 - absorbed / static_cast<double>(repeated.size.size()));
+}
+
+/// What scatters within the poses, no more than all measurements do: one wrong row of few repeats tells nothing of the
+/// others. And what all of a pose have in common.
+void split_excess(const ResidualKind& kind, const RepeatedMeasurements& repeated, const Blocks& blocks,
+                  double redundancy, ExcessNoise& excess) {
+  const Blocks deviations = deviations_in_groups(repeated, blocks);
+  double &own = excess.of[index(kind.kind)], &common = excess.of_pose[index(kind.kind)];
+  own = std::min(own, excess_of(deviations.residuals, deviations.sd, kind.size, 1.0));
+  const Blocks means = group_means(repeated, blocks, own);
+  common = excess_of(means.residuals, means.sd, kind.size, redundancy_of_poses(redundancy, repeated));
+}
+
+/// The stated weights with `variance_of(k, i)` more of each measurement i of the kind k.
+template <class VarianceOf>
+Weights weights_with(const PoseSet& data, const std::optional<Instrument>& instrument, const VarianceOf& variance_of) {
+  Weights weights = weights_of(data, instrument.value_or(Instrument{}));
+  for (const ResidualKind& kind : residual_kinds()) {
+    std::vector<Vec3>& sd = weights.of(kind.kind);
+    for (std::size_t i = 0; i < sd.size(); ++i)
+      sd[i] = (sd[i].cwiseAbs2().array() + variance_of(index(kind.kind), i)).sqrt();
+  }
+  weights.couplings = couplings_of(data, weights.of<PointMeasurement>(), weights.of<OrientationMeasurement>());
+  return weights;
+}
+
 }  // namespace
 
 RedundancyOfKinds equal_redundancy(const PoseSet& data, double parameters) {
   double residuals = 0.0;
   for (const ResidualKind& kind : residual_kinds()) residuals += kind.size * static_cast<double>(kind.count(data));
   RedundancyOfKinds redundancy;
-  redundancy.fill(std::max(0.1, 1.0 - parameters / std::max(1.0, residuals)));
+  redundancy.fill(std::max(least_redundancy_of_all, 1.0 - parameters / std::max(1.0, residuals)));
   return redundancy;
 }
 
@@ -131,20 +211,53 @@ ExcessNoise excess_noise(const ResidualContext& scene, const std::optional<Instr
     blocks[k] = {residuals_of(kind, scene), specified.of(kind.kind)};
     excess.of[k] = excess_of(blocks[k].residuals, blocks[k].sd, kind.size, redundancy[k]);
   }
+  const std::array<RepeatedMeasurements, measurement_kinds> repeated = repeated_measurements(data);
+  const std::array<Blocks, measurement_kinds> independent = blocks;
   const auto points = index(kind_of<PointMeasurement>), turns = index(kind_of<OrientationMeasurement>);
   if (!specified.couplings.empty())
     estimate_pose_noise(specified, data, redundancy, blocks[points], blocks[turns], excess);
+  for (const ResidualKind& kind : residual_kinds())
+    if (const auto k = index(kind.kind); !repeated[k].empty())
+      split_excess(kind, repeated[k], in_common_axes(kind.kind, independent[k], data), redundancy[k], excess);
   return excess;
 }
 
 Weights weights_of(const PoseSet& data, const std::optional<Instrument>& instrument, const ExcessNoise& excess) {
-  Weights weights = weights_of(data, instrument.value_or(Instrument{}));
+  const std::array<RepeatedMeasurements, measurement_kinds> repeated = repeated_measurements(data);
+  return weights_with(data, instrument, [&](std::size_t kind, std::size_t i) {
+    const double m = repeated[kind].empty() ? 1.0 : repeated[kind].size_of(i);
+    return excess.of[kind] * excess.of[kind] + m * excess.of_pose[kind] * excess.of_pose[kind];
+  });
+}
+
+Weights weights_of_single(const PoseSet& data, const std::optional<Instrument>& instrument, const ExcessNoise& excess) {
+  return weights_with(data, instrument, [&](std::size_t kind, std::size_t) {
+    return excess.of[kind] * excess.of[kind] + excess.of_pose[kind] * excess.of_pose[kind];
+  });
+}
+
+double evidence_of_repeats(const ResidualContext& scene, const std::optional<Instrument>& instrument,
+                           const ExcessNoise& excess) {
+  const std::array<RepeatedMeasurements, measurement_kinds> repeated = repeated_measurements(scene.data);
+  const Weights together = weights_of(scene.data, instrument, excess);
+  ExcessNoise own_excess = excess;
+  own_excess.of_pose.fill(0.0);
+  const Weights own = weights_of(scene.data, instrument, own_excess);
+  double sum = 0.0;
   for (const ResidualKind& kind : residual_kinds()) {
-    const double more = excess.of[index(kind.kind)];
-    for (Vec3& sd : weights.of(kind.kind)) sd = (sd.cwiseAbs2().array() + more * more).sqrt();
+    const RepeatedMeasurements& groups = repeated[index(kind.kind)];
+    if (groups.empty() || !(excess.of_pose[index(kind.kind)] > 0.0)) continue;
+    const std::vector<Vec3> residuals =
+        in_common_axes(kind.kind, {residuals_of(kind, scene), own.of(kind.kind)}, scene.data).residuals;
+    const std::vector<Vec3> means = means_of_groups(groups, residuals);
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
+      const double m = groups.size_of(i), within = own.of(kind.kind)[i].head(kind.size).squaredNorm() / kind.size,
+                   all = together.of(kind.kind)[i].head(kind.size).squaredNorm() / kind.size;
+      const Vec3 deviation = residuals[i] - means[static_cast<std::size_t>(groups.group[i])];
+      sum += deviation.squaredNorm() * (1.0 / within - 1.0 / all) - kind.size * (m - 1.0) / m * std::log(all / within);
+    }
   }
-  weights.couplings = couplings_of(data, weights.of<PointMeasurement>(), weights.of<OrientationMeasurement>());
-  return weights;
+  return sum;
 }
 
 double typical_sd(const Weights& weights, const ResidualKind& kind) {

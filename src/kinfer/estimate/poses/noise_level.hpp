@@ -15,6 +15,9 @@ namespace kinfer {
 /// or [m/s²].
 struct ExcessNoise {
   std::array<double, measurement_kinds> of{};
+  /// What all measurements of one quantity at one pose have in common: the error of the model there, where poses were
+  /// repeated. Otherwise zero, and part of `of`.
+  std::array<double, measurement_kinds> of_pose{};
 };
 
 /// Redundancy of each kind over its number of residuals: the part of their squares that the parameters leave.
@@ -32,7 +35,17 @@ ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::opt
 ExcessNoise excess_noise(const Chain& chain, const PoseSet& data, const std::optional<Instrument>& instrument,
                          const RedundancyOfKinds& redundancy, int threads = 1);
 
+/// In a fit: m measurements that share the error of a pose count as independent ones of their own variance and m times
+/// that of the pose.
 Weights weights_of(const PoseSet& data, const std::optional<Instrument>& instrument, const ExcessNoise& excess);
+
+/// Of each measurement by itself: its own variance and that of the pose.
+Weights weights_of_single(const PoseSet& data, const std::optional<Instrument>& instrument, const ExcessNoise& excess);
+
+/// −2 log of the likelihood of measurements that share the error of a pose, less that of independent ones with the
+/// weights of a fit: what scatters within a pose is judged by its own variance. Zero where nothing was repeated.
+double evidence_of_repeats(const ResidualContext& scene, const std::optional<Instrument>& instrument,
+                           const ExcessNoise& excess);
 
 /// Root mean square of the standard deviations of a kind, in its unit; 0 where none was measured.
 double typical_sd(const Weights& weights, const ResidualKind& kind);

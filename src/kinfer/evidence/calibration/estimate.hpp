@@ -84,6 +84,7 @@ struct Estimate {
   std::optional<double>
       chi2_per_n;  ///< of the inlier measurements with the instrument's noise (1 is good); none: instrument unknown
   double sigma = 0.0, sigma_angle = 0.0;  ///< [m], [rad] noise used as weights: instrument's, or the residual level
+  double sigma_pose = 0.0;                ///< [m] part of `sigma` that all measurements of a repeated pose share
   std::vector<Outlier> outliers;
   double negative_log_evidence =
       0.0;  ///< −2 log of the marginal likelihood (Laplace): compares models of the same rows

@@ -31,7 +31,7 @@ void describe_series(WeighedModel& model, const FoundSeries& found, const ErrorC
   step.interpolation = interpolation, step.extrapolation = extrapolation;
   step.train = training_statistics(model.fit.chain, model.fit.outliers, rows);
   step.contribution = rms_distance(model.fit.chain, without_series(model.fit.chain), rows);
-  at->held_out = {{}, model.interpolation.errors, model.interpolation.row};
+  at->held_out = {{}, model.interpolation.errors, model.interpolation.row, model.interpolation.pose};
 }
 
 /// Models with lines and with series, and what the latter change.

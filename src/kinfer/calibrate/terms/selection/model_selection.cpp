@@ -38,7 +38,7 @@ WeighedModel fit_fixed_model(const SelectionData& data, const Estimate& geometry
       for (const Parameter& parameter : model_term.parameters) count_determined(step, parameter.name, fixed.fit);
       fixed.interpolation = cross_validate(fixed.fit, set, data.rows, data.splits, data.task, data.threads);
       step.train = training_statistics(fixed.fit.chain, fixed.fit.outliers, data.rows);
-      held_out = {{}, fixed.interpolation.errors, fixed.interpolation.row};
+      held_out = {{}, fixed.interpolation.errors, fixed.interpolation.row, fixed.interpolation.pose};
     }
     fixed.steps.push_back({step, held_out});
   }

@@ -45,7 +45,7 @@ WeighedStep describe(SelectionStep step, const WeighedModel& with, const Selecti
   plain.field = {};
   step.train = training_statistics(with.fit.chain, with.fit.outliers, data.rows);
   step.contribution = rms_distance(with.fit.chain, plain, data.rows);
-  return {step, {{}, with.interpolation.errors, with.interpolation.row}};
+  return {step, {{}, with.interpolation.errors, with.interpolation.row, with.interpolation.pose}};
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ WeighedModel weighed_geometry(const SelectionData& data, const Estimate& geometr
   step.train = training_statistics(geometry.chain, geometry.outliers, data.rows);
   step.parameter_count = static_cast<int>(geometry.values.size());
   step.determined_count = geometry.identifiability.rank;
-  model.steps.push_back({step, {{}, model.interpolation.errors, model.interpolation.row}});
+  model.steps.push_back({step, {{}, model.interpolation.errors, model.interpolation.row, model.interpolation.pose}});
   return model;
 }
 
