@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/calibrate/functions/chain_series.hpp"
@@ -11,6 +12,7 @@
 #include "kinfer/calibrate/terms/thresholds.hpp"
 #include "kinfer/calibrate/validation/validation_plan.hpp"
 #include "kinfer/estimate/poses/redundancy.hpp"
+#include "kinfer/estimate/poses/repeated_measurements.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/linalg/products.hpp"
 #include "kinfer/measurement/row_selection.hpp"
@@ -29,6 +31,17 @@ double effective_parameters(const Estimate& fit) {
   return sum;
 }
 
+/// How many residuals each block counts: those of one quantity that was measured again at the same pose count once.
+std::vector<double> residuals_of_blocks(const PoseSet& data) {
+  const auto repeated = repeated_measurements(data);
+  std::vector<double> counts;
+  for (const Block& block : blocks_of(data)) {
+    const RepeatedMeasurements& groups = repeated[index(block.kind)];
+    counts.push_back(block.size / (groups.empty() ? 1.0 : groups.size_of(static_cast<std::size_t>(block.index))));
+  }
+  return counts;
+}
+
 double log_evidence_of_all(const LinearisedTerms& terms) {
   return log_evidence(terms, VectorXd::Ones(terms.image.size()));
 }
@@ -44,20 +57,23 @@ Squares squares_of(const MatrixXd& jacobian, const VectorXd& residuals) {
   return {gram(jacobian), jacobian.transpose() * residuals, residuals.squaredNorm()};
 }
 
-/// The measurements about a chain, those of unstated noise and all others with the priors.
+/// Whether the noise that is stated is all that measurements have which geometry does not explain.
+enum class ModelError { none, possible };
+
+/// The measurements about a chain, those of uncertain noise and all others with the priors.
 class LinearisedMeasurements {
  public:
   LinearisedMeasurements(const TermModel& all, const PoseSet& rows, const std::optional<Instrument>& instrument,
-                         const Weights& weights)
+                         const Weights& weights, ModelError error)
       : set_(restricted_to_data(all.parameters, rows)), free_(set_.free()), value_(pack(set_, all.chain)) {
     VectorXd residuals;
     MatrixXd jacobian;
     pose_residuals(all.chain, set_, rows, weights).evaluate(value_, residuals, &jacobian);
     for (Eigen::Index k = 0; k < jacobian.cols(); ++k)
       jacobian.col(k) *= std::isfinite(free_[k]->prior_sd) ? free_[k]->prior_sd : free_[k]->scale;
-    const RowsByNoise by_noise = rows_by_noise(rows, instrument, residuals.size());
-    unstated_rows_ = by_noise.unstated.size();
-    unstated_ = squares_of(jacobian(by_noise.unstated, Eigen::all), residuals(by_noise.unstated));
+    const RowsByNoise by_noise = rows_by_noise(rows, instrument, weights, error, residuals.size());
+    uncertain_rows_ = by_noise.uncertain_count, lowest_level_ = by_noise.lowest_level;
+    uncertain_ = squares_of(jacobian(by_noise.uncertain, Eigen::all), residuals(by_noise.uncertain));
     others_ = squares_of(jacobian(by_noise.others, Eigen::all), residuals(by_noise.others));
     for (const CandidateParameter& candidate : all.terms) {
       const auto at = std::ranges::find_if(free_, [&](const Parameter* p) { return p->at == candidate.parameter.at; });
@@ -66,17 +82,18 @@ class LinearisedMeasurements {
     }
   }
 
-  std::size_t unstated_rows() const { return unstated_rows_; }
+  double uncertain_rows() const { return uncertain_rows_; }
+  double lowest_level() const { return lowest_level_; }
 
-  /// `level`: of the unstated noise, in units of the weights'.
+  /// `level`: of the uncertain noise, in units of the weights'.
   TermsAtNoise at(double level) const {
     const double weight = 1.0 / (level * level);
-    const MatrixXd normal = weight * unstated_.information + others_.information,
+    const MatrixXd normal = weight * uncertain_.information + others_.information,
                    covariance = invert_but_for_rounding(normal);
-    const VectorXd image = -(weight * unstated_.gradient + others_.gradient), step = covariance * image;
+    const VectorXd image = -(weight * uncertain_.gradient + others_.gradient), step = covariance * image;
     TermsAtNoise result{terms_of(covariance, step)};
-    result.log_likelihood = -static_cast<double>(unstated_rows_) * std::log(level) -
-                            0.5 * (weight * unstated_.cost + others_.cost - image.dot(step)) -
+    result.log_likelihood = -uncertain_rows_ * std::log(level) -
+                            0.5 * (weight * uncertain_.cost + others_.cost - image.dot(step)) -
                             cholesky_but_for_rounding(normal).diagonal().array().log().sum() -
                             log_evidence_of_all(result.terms) + std::log(level / (1.0 + level * level));
     return result;
@@ -84,16 +101,25 @@ class LinearisedMeasurements {
 
  private:
   struct RowsByNoise {
-    std::vector<Eigen::Index> unstated, others;
+    std::vector<Eigen::Index> uncertain, others;
+    double uncertain_count = 0.0;
+    double lowest_level = thresholds::lowest_noise_part;  ///< that of the noise that is stated
   };
   static RowsByNoise rows_by_noise(const PoseSet& data, const std::optional<Instrument>& instrument,
-                                   Eigen::Index rows) {
+                                   const Weights& weights, ModelError error, Eigen::Index rows) {
     const Weights stated = weights_of(data, instrument.value_or(Instrument{}));
     RowsByNoise result;
     Eigen::Index row = 0;
+    const std::vector<double> counts = residuals_of_blocks(data);
+    auto count = counts.begin();
     for (const Block& block : blocks_of(data)) {
-      const bool is_stated = stated.of(block.kind)[block.index].maxCoeff() > noise_free_sd;
-      for (int k = 0; k < block.size; ++k) (is_stated ? result.others : result.unstated).push_back(row++);
+      const double noise = stated.of(block.kind)[block.index].maxCoeff(),
+                   part = noise / weights.of(block.kind)[block.index].maxCoeff();
+      const bool is_stated = noise > noise_free_sd, is_all = error == ModelError::none || !(part < 1.0);
+      if (!(is_stated && is_all)) result.uncertain_count += *count;
+      ++count;
+      if (is_stated && !is_all) result.lowest_level = std::max(result.lowest_level, part);
+      for (int k = 0; k < block.size; ++k) (is_stated && is_all ? result.others : result.uncertain).push_back(row++);
     }
     for (; row < rows; ++row) result.others.push_back(row);
     return result;
@@ -112,16 +138,18 @@ class LinearisedMeasurements {
   std::vector<const Parameter*> free_;
   VectorXd value_;
   std::vector<int> terms_;
-  std::size_t unstated_rows_ = 0;
-  Squares unstated_, others_;
+  double uncertain_rows_ = 0.0;  ///< repeated ones once
+  double lowest_level_ = 0.0;
+  Squares uncertain_, others_;
 };
 
 /// Up and down from the level of geometry until neither all terms nor none are possible any more.
 std::vector<TermsAtNoise> possible_levels(const LinearisedMeasurements& measurements, double step) {
   std::vector<TermsAtNoise> levels{measurements.at(1.0)};
+  const double farthest = -std::log(thresholds::lowest_noise_part), lowest = -std::log(measurements.lowest_level());
   double none = levels[0].log_likelihood, all = none + log_evidence_of_all(levels[0].terms);
   for (const double direction : {1.0, -1.0})
-    for (double log_level = step; log_level < -std::log(thresholds::lowest_noise_part); log_level += step) {
+    for (double log_level = step; log_level < (direction > 0.0 ? farthest : lowest); log_level += step) {
       levels.push_back(measurements.at(std::exp(direction * log_level)));
       const double without = levels.back().log_likelihood, with = without + log_evidence_of_all(levels.back().terms);
       none = std::max(none, without), all = std::max(all, with);
@@ -135,16 +163,18 @@ std::vector<TermsAtNoise> possible_levels(const LinearisedMeasurements& measurem
 std::vector<TermsAtNoise> linearise_at_noise_levels(const Estimate& geometry, const TermModel& all, const PoseSet& rows,
                                                     const std::optional<Instrument>& instrument) {
   const PoseSet inliers = select(rows, without_outliers(all_rows(rows), geometry.outliers));
-  double residuals = 0.0;
-  for (const Block& block : blocks_of(inliers)) residuals += block.size;
+  const std::vector<double> counts = residuals_of_blocks(inliers);
+  const double residuals = std::accumulate(counts.begin(), counts.end(), 0.0);
   if (residuals - static_cast<double>(all.parameters.free_count()) > thresholds::most_uncertain_redundancy ||
       has_series(all.chain) || !all.chain.field.empty())
     return {};
   const double effective = effective_parameters(geometry);
   const Weights weights = weights_of(inliers, instrument,
                                      noise_of_fit(geometry.chain, geometry.parameters, inliers, instrument, effective));
-  const LinearisedMeasurements measurements(all, inliers, instrument, weights);
-  if (measurements.unstated_rows() == 0) return {};
+  const LinearisedMeasurements measurements(
+      all, inliers, instrument, weights,
+      residuals > static_cast<double>(all.terms.size()) ? ModelError::none : ModelError::possible);
+  if (measurements.uncertain_rows() == 0.0) return {};
   const double level_sd = 1.0 / std::sqrt(2.0 * std::max(1.0, residuals - effective));
   return possible_levels(measurements, thresholds::noise_level_step * level_sd);
 }

@@ -19,7 +19,9 @@
 namespace kinfer::calibrate {
 
 /// About the fit of geometry, at each noise level that is possible. Empty where the noise is stated, or well known from
-/// many residuals. `all`: geometry with all candidates at zero, of which `terms` are weighed.
+/// many residuals. With no more residuals than candidates, stated noise counts as the lowest level, where geometry does
+/// not explain the measurements: an error that no term has is explained by some of them. `all`: geometry with all
+/// candidates at zero, of which `terms` are weighed.
 std::vector<TermsAtNoise> linearise_at_noise_levels(const Estimate& geometry, const TermModel& all, const PoseSet& rows,
                                                     const std::optional<Instrument>& instrument);
 
