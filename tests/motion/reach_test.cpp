@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include "laws/example_chains.hpp"
 
@@ -64,6 +65,55 @@ TEST_P(ReachLaws, EveryPoseInsideTheLimitsIsReached) {
 
 INSTANTIATE_TEST_SUITE_P(all, ReachLaws, ::testing::ValuesIn(laws::examples_with_joints()),
                          [](const auto& test) { return laws::test_name(test.param); });
+
+/// Three joints that slide along x, y and z, and a wrist with a tool of the length `tool`, 0: none.
+Chain gantry(double lower, double upper, double tool) {
+  Chain chain;
+  for (const Vec3& axis : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())})
+    chain.joints.push_back({.name = "s" + std::to_string(chain.joints.size()),
+                            .parent = static_cast<int>(chain.joints.size()) - 1,
+                            .type = JointType::prismatic,
+                            .link = UrdfLink{.axis = axis},
+                            .lower = lower,
+                            .upper = upper});
+  if (tool > 0.0)
+    for (const Vec3& axis : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())})
+      chain.joints.push_back({.name = "r" + std::to_string(chain.joints.size()),
+                              .parent = static_cast<int>(chain.joints.size()) - 1,
+                              .link = UrdfLink{.axis = axis}});
+  chain.tool.xyz = Vec3(0.0, 0.3 * tool, tool);
+  return chain;
+}
+
+TEST(Reach, NoTravelOfJointsThatSlideIsTooLongOrTooShort) {
+  const double no_limit = std::numeric_limits<double>::infinity();
+  for (const double size : {2e-4, 1.0, 700.0, 1e4})
+    for (const bool is_limited : {true, false}) {
+      const Chain chain = gantry(is_limited ? 0.0 : -no_limit, is_limited ? size : no_limit, 0.0);
+      const ReachSolver solver(chain, {.position_tolerance = 1e-9 * size});
+      for (std::uint64_t k = 0; k < 20; ++k) {
+        Rng rng = Rng(5).stream(k);
+        const Vec3 part{rng.uniform(), rng.uniform(), rng.uniform()};
+        const ReachSolution solution = solver.solve({size * part}, middle_posture(chain));
+        EXPECT_EQ(solution.status, ReachStatus::reached) << size << " m, target " << k;
+      }
+    }
+}
+
+TEST(Reach, AWristOnALongGantryIsTurnedAndCarriedToItsTarget) {
+  for (const double size : {1.0, 100.0, 2000.0}) {
+    const Chain chain = gantry(0.0, size, 0.2);
+    const ReachSolver solver(chain, {.position_tolerance = 1e-9 * size});
+    for (std::uint64_t k = 0; k < 20; ++k) {
+      Rng rng = Rng(6).stream(k);
+      VectorXd q(6);
+      for (double& value : q) value = rng.uniform(-1.2, 1.2);
+      for (int k3 = 0; k3 < 3; ++k3) q[k3] = size * rng.uniform(0.3, 0.7);
+      const ReachSolution solution = solver.solve(full_target(forward(chain, q)), middle_posture(chain));
+      EXPECT_EQ(solution.status, ReachStatus::reached) << size << " m, target " << k;
+    }
+  }
+}
 
 TEST(Reach, APartOfTheOrientationIsMet) {
   const Chain chain = with_limits(laws::er20());

@@ -15,11 +15,11 @@ namespace {
 constexpr double initial_damping = 1e-6;  // of the largest squared column; small, as starts are usually close
 constexpr double min_damping = 1e-14;
 constexpr double max_damping = 1e8;          // beyond it a step is shorter than rounding
-constexpr double max_step = 0.5;             // [rad] or [m] of one joint: keeps to the posture of the start
+constexpr double max_step = 0.5;             // [rad] or units of one joint: keeps to the posture of the start
 constexpr double stationary_slope = 1e-8;    // relative gradient of the error below which no small change helps
 constexpr double singular_condition = 1e-4;  // smallest over largest singular value of the Jacobian
 constexpr double perturbation =
-    0.05;  // [rad] or [m], moves away from a posture where the gradient vanishes by accident
+    0.05;  // [rad] or units, moves away from a posture where the gradient vanishes by accident
 constexpr int max_perturbations = 3;
 
 struct Goal {
@@ -40,6 +40,7 @@ class InverseSolver {
       : chain_(chain), goal_(goal), options_(options), load_(load), limits_(joint_limits(chain)) {}
 
   InverseSolution run(ConstVectorRef start) {
+    unit_ = units(task_error(limits_.clamped(start)).position);
     InverseSolution best = iterate(limits_.clamped(start));
     for (int k = 1; k <= max_perturbations && best.status == InverseStatus::unreachable; ++k) {
       InverseSolution other = iterate(limits_.clamped(perturbed(best.q, k)));
@@ -60,9 +61,21 @@ class InverseSolver {
   }
 
   /// q perturbed by amounts that are the same in every run and follow no symmetry of a machine.
-  static VectorXd perturbed(VectorXd q, int k) {
-    for (Eigen::Index i = 0; i < q.size(); ++i) q[i] += perturbation * std::sin(1.0 + 2.4 * double(i) + 1.7 * k);
+  VectorXd perturbed(VectorXd q, int k) const {
+    for (Eigen::Index i = 0; i < q.size(); ++i)
+      q[i] += unit_[i] * (perturbation * std::sin(1.0 + 2.4 * double(i) + 1.7 * k));
     return q;
+  }
+
+  /// Of each joint's steps: 1 rad; of a joint that translates the reach of the machine [m], or the way to the target
+  /// where that is longer.
+  VectorXd units(double position_error) const {
+    const std::vector<int> moving = active_joints(chain_);
+    VectorXd unit = VectorXd::Ones(static_cast<Eigen::Index>(moving.size()));
+    for (std::size_t k = 0; k < moving.size(); ++k)
+      if (translates(chain_.joints[static_cast<std::size_t>(moving[k])].type))
+        unit[static_cast<Eigen::Index>(k)] = std::max(options_.length, position_error);
+    return unit;
   }
 
   TaskError task_error(const VectorXd& q) const {
@@ -75,8 +88,10 @@ class InverseSolver {
     return both;
   }
 
+  /// By the joints in their units.
   MatrixXd weighted_jacobian(const VectorXd& q) const {
     Twists twists = jacobian(chain_, q, load_);
+    for (Eigen::Index k = 0; k < unit_.size(); ++k) twists.col(k) *= unit_[k];
     if (!goal_.rotation) return twists.topRows<3>();
     twists.bottomRows<3>() *= options_.length;
     return twists;
@@ -128,9 +143,10 @@ class InverseSolver {
       stationary = damping > max_damping ||
                    (j.transpose() * now.error).norm() <= stationary_slope * full.norm() * now.error.norm();
       if (stationary) break;
-      const VectorXd tried = limits_.clamped(q + step(j, now.error, damping));
+      const VectorXd tried = limits_.clamped(q + unit_.cwiseProduct(step(j, now.error, damping)));
       TaskError then = task_error(tried);
-      const double predicted = now.error.squaredNorm() - (now.error - full * (tried - q)).squaredNorm();
+      const double predicted =
+          now.error.squaredNorm() - (now.error - full * (tried - q).cwiseQuotient(unit_)).squaredNorm();
       const double gain = now.error.squaredNorm() - then.error.squaredNorm();
       if (gain > 0.0) {
         const double trust = predicted > 0.0 ? 2.0 * std::min(gain / predicted, 1.0) - 1.0 : 0.0;
@@ -150,6 +166,7 @@ class InverseSolver {
   const InverseOptions& options_;
   const Load& load_;
   JointLimits limits_;
+  VectorXd unit_;
 };
 
 InverseSolution solve_inverse(const Chain& chain, const Goal& goal, ConstVectorRef start, const InverseOptions& options,

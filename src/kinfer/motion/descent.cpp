@@ -35,7 +35,9 @@ Descent::Descent(const Chain& chain, const Load& load, double position_tolerance
       length_(sum_of_transforms(chain)),
       deviates_(kinfer::has_non_geometric_terms(chain)),
       position_tolerance_(position_tolerance),
-      angle_tolerance_(angle_tolerance) {}
+      angle_tolerance_(angle_tolerance) {
+  set_units(0.0);
+}
 
 bool Descent::is_met(const ReachTask::Error& error) const {
   return error.position <= position_tolerance_ && error.angle <= angle_tolerance_;
@@ -44,6 +46,14 @@ bool Descent::is_met(const ReachTask::Error& error) const {
 /// Fewer joints than a target fixes freedoms meet it exactly only where its numbers do not end.
 bool Descent::is_met_but_for_rounding(const ReachTask& task, const ReachTask::Error& error) const {
   return screws_.dof() < task.fixed_freedoms() && std::max(error.position, error.angle) <= thresholds::rounded_target;
+}
+
+/// Steps of joints that translate are compared with the machine, and with the way to the target where that is longer:
+/// no number of metres is long or short by itself.
+void Descent::set_units(double position_error) {
+  unit_.setOnes(screws_.dof());
+  for (Index k = 0; k < unit_.size(); ++k)
+    if (!screws_.is_rotational(static_cast<int>(k))) unit_[k] = std::max(length_, position_error);
 }
 
 Descent::Attempt Descent::run(const ReachTask& task, VectorXd q, Steps kind) {
@@ -56,6 +66,7 @@ Descent::Attempt Descent::run(const ReachTask& task, VectorXd q, Steps kind) {
     // The effect of non-geometric terms on the Jacobian is left out.
     const ReachTask::Error error = task.error(of_machine ? tool(q) : at_.tool);
     const double size = error.weighted.norm();
+    if (step == 0) set_units(error.position);
     if (is_met(error)) return {std::move(q), size, true};
     const auto left = [&] { return Attempt{std::move(q), size, is_met_but_for_rounding(task, error)}; };
     if (step == most) return left();
@@ -63,20 +74,25 @@ Descent::Attempt Descent::run(const ReachTask& task, VectorXd q, Steps kind) {
       if (size > thresholds::worthwhile_decrease * earlier) return left();
       earlier = size;
     }
-    set_rows(task, q, error, clamp);
+    set_rows(task);
+    if (clamp) leave_out_limited(task, q, error);
     if (!set_step(task, error.weighted, thresholds::damping * size * size)) return left();
     const double largest = step_.cwiseAbs().maxCoeff();
     if (largest > thresholds::longest_step) step_ *= thresholds::longest_step / largest;
-    q += step_;
+    q += unit_.cwiseProduct(step_);
     if (clamp) q = limits_.clamped(q);
   }
 }
 
-/// The Jacobian; without the joints that a clamped step would push against their limits.
-void Descent::set_rows(const ReachTask& task, const VectorXd& q, const ReachTask::Error& error, bool clamp) {
+/// The Jacobian by the joints in their units.
+void Descent::set_rows(const ReachTask& task) {
   screws_.jacobian(at_, twists_);
   task.rows(at_.tool, twists_, rows_);
-  if (!clamp) return;
+  for (Index k = 0; k < unit_.size(); ++k) rows_.col(k) *= unit_[k];
+}
+
+/// The joints that a clamped step would push against their limits.
+void Descent::leave_out_limited(const ReachTask& task, const VectorXd& q, const ReachTask::Error& error) {
   for (Index k = 0; k < q.size(); ++k) {
     const double towards = rows_.col(k).dot(error.weighted.head(task.rows()));
     if ((q[k] <= limits_.lower[k] && towards < 0.0) || (q[k] >= limits_.upper[k] && towards > 0.0))
@@ -107,9 +123,9 @@ void Descent::approach(const ReachTask& task, const VectorXd& preferred, VectorX
   double part = 1.0;
   for (int k = 0; k < thresholds::approach_steps; ++k) {
     screws_.place(q, at_);
-    screws_.jacobian(at_, twists_);
-    task.rows(at_.tool, twists_, rows_);
-    const VectorXd wanted = preferred - q;
+    set_units(0.0);
+    set_rows(task);
+    const VectorXd wanted = (preferred - q).cwiseQuotient(unit_);
     // The part of the wanted step that moves the tool is taken out of it.
     Eigen::Matrix<double, 6, 1> moved = Eigen::Matrix<double, 6, 1>::Zero();
     moved.head(task.rows()) = rows_.lazyProduct(wanted);
@@ -118,7 +134,7 @@ void Descent::approach(const ReachTask& task, const VectorXd& preferred, VectorX
     const double largest = part * step.cwiseAbs().maxCoeff();
     if (largest < thresholds::approach_tolerance) break;
     const double length = part * std::min(1.0, thresholds::longest_step / largest);
-    Attempt corrected = run(task, q + length * step, Steps::of_start);
+    Attempt corrected = run(task, q + length * unit_.cwiseProduct(step), Steps::of_start);
     if (corrected.converged && distance(corrected.q, preferred) < distance(q, preferred))
       q = std::move(corrected.q), part = std::min(1.0, 2.0 * part);
     else

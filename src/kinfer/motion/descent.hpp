@@ -51,7 +51,9 @@ class Descent {
  private:
   bool is_met(const ReachTask::Error& error) const;
   bool is_met_but_for_rounding(const ReachTask& task, const ReachTask::Error& error) const;
-  void set_rows(const ReachTask& task, const VectorXd& q, const ReachTask::Error& error, bool clamp);
+  void set_units(double position_error);
+  void set_rows(const ReachTask& task);
+  void leave_out_limited(const ReachTask& task, const VectorXd& q, const ReachTask::Error& error);
   bool set_step(const ReachTask& task, const Eigen::Matrix<double, 6, 1>& error, double damping);
 
   Chain chain_;
@@ -66,6 +68,7 @@ class Descent {
   Twists twists_;
   MatrixXd rows_, normal_;
   VectorXd right_, step_;
+  VectorXd unit_;  ///< of each joint's steps: 1 rad, or what counts as much of a joint that translates [m]
 };
 
 }  // namespace kinfer::motion

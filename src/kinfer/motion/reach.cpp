@@ -126,7 +126,10 @@ class ReachSolver::Search {
   VectorXd draw(Rng rng) const {
     VectorXd q(descent_.screws().dof());
     for (Index k = 0; k < q.size(); ++k) {
-      const double half = descent_.screws().is_rotational(static_cast<int>(k)) ? std::numbers::pi : descent_.length();
+      const bool is_bounded = std::isfinite(limits_.lower[k]) && std::isfinite(limits_.upper[k]);
+      const double half = descent_.screws().is_rotational(static_cast<int>(k)) ? std::numbers::pi
+                          : is_bounded ? 0.5 * (limits_.upper[k] - limits_.lower[k])
+                                       : descent_.length();
       const double lower =
           std::max(limits_.lower[k], std::isfinite(limits_.upper[k]) ? limits_.upper[k] - 2.0 * half : -half);
       const double upper = std::min(limits_.upper[k], lower + 2.0 * half);

@@ -9,7 +9,7 @@ namespace kinfer::motion::thresholds {
 /// [1] of the squared weighted error; larger: shorter steps far from the target, more of them.
 inline constexpr double damping = 0.01;
 inline constexpr double least_damping = 1e-14;  ///< [1] keeps singular systems solvable
-inline constexpr double longest_step = 0.8;     ///< [rad] or [m] of one joint; larger leaves the start's posture
+inline constexpr double longest_step = 0.8;     ///< [rad] or units of one joint; larger leaves the start's posture
 inline constexpr int steps = 60;                ///< of one start
 /// Every so many steps the error must have fallen to this part, or the start is left. Larger: fewer starts, longer.
 inline constexpr int judged_steps = 5;
@@ -17,7 +17,7 @@ inline constexpr double worthwhile_decrease = 0.6;
 inline constexpr int careful_steps = 200;    ///< inside the limits, or of a machine that deviates from the rigid chain
 inline constexpr double near_target = 1e-3;  ///< [1] weighted error at which the way is taken to end in a singularity
 inline constexpr int approach_steps = 12;    ///< of a redundant chain towards the preferred posture
-inline constexpr double approach_tolerance = 1e-4;  ///< [rad] or [m] steps at which it has arrived
+inline constexpr double approach_tolerance = 1e-4;  ///< [rad] or units of steps at which it has arrived
 /// [m] and [rad] by which targets of six decimals are rounded, quaternions included.
 inline constexpr double rounded_target = 2e-6;
 inline constexpr double same_posture = 1e-3;  ///< [rad] apart
