@@ -140,6 +140,18 @@ inline Chain two_arms() {
   return chain;
 }
 
+/// The same machine with its tool on fixed joints of the base: no joint moves it.
+inline Chain with_tool_on_the_base(Chain chain) {
+  for (int parent : {-1, static_cast<int>(chain.joints.size())}) {
+    Joint joint = revolute<DhLink>(0.3, 20, 0.2);
+    joint.name = parent < 0 ? "post" : "head";
+    joint.parent = parent, joint.type = JointType::fixed, joint.is_active = false;
+    chain.joints.push_back(joint);
+  }
+  chain.tip = static_cast<int>(chain.joints.size()) - 1;
+  return chain;
+}
+
 /// Heavy arm with compliant joints.
 inline Chain compliant() {
   Chain chain = er20_with_errors();

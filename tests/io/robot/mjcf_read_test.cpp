@@ -104,6 +104,15 @@ TEST(MjcfRead, TheToolThatIsWrittenIsTheTipOnAShortArm) {
   EXPECT_EQ(active_joint_names(read), (std::vector<std::string>{"J1", "J5", "J6"}));
 }
 
+TEST(MjcfRead, AToolOnFixedJointsOfTheBaseStaysWhereItIs) {
+  const Chain robot = laws::with_tool_on_the_base(laws::two_arms());
+  const Chain read = accepted(format_mjcf(robot));
+  ASSERT_EQ(active_joint_names(read), active_joint_names(robot));
+  const VectorXd q = laws::random_q(robot, Rng(3).stream(1));
+  EXPECT_LT((forward(read, q).position - forward(robot, q).position).norm(), 1e-9);
+  EXPECT_LT(angle_between(forward(read, q).rotation, forward(robot, q).rotation), 1e-7);
+}
+
 // MuJoCo refuses a file in which two sites have the same name.
 TEST(MjcfRead, AJointOrTargetNamedToolIsNotTheTool) {
   for (const char* joint : {"tool", "tool_2", "J6"}) {

@@ -225,6 +225,16 @@ TEST(Urdf, TheToolIsTheTipOnAShortArmAndAfterASecondRoundTrip) {
   EXPECT_LT((forward(*once, q).position - forward(*twice, q).position).norm(), 1e-9);
 }
 
+TEST(Urdf, AToolOnFixedJointsOfTheBaseStaysWhereItIs) {
+  const Chain chain = laws::with_tool_on_the_base(laws::two_arms());
+  const auto read = parse_urdf(format_urdf(chain), "chain.urdf");
+  ASSERT_TRUE(read.has_value()) << read.error().what;
+  ASSERT_EQ(active_joint_names(*read), active_joint_names(chain));
+  const VectorXd q = laws::random_q(chain, Rng(1));
+  EXPECT_LT((forward(*read, q).position - forward(chain, q).position).norm(), 1e-9);
+  EXPECT_LT(angle_between(forward(*read, q).rotation, forward(chain, q).rotation), 1e-7);
+}
+
 TEST(Urdf, WhatIsAttachedToAWrittenToolIsTheTip) {
   Chain chain = laws::er20();
   chain.targets = {{"s2", Vec3(0.01, 0.02, 0.03)}};

@@ -76,12 +76,15 @@ bool is_written_by_kinfer(const MjcfTree& tree) {
   });
 }
 
-/// The body that carries the tool in a file that kinfer wrote, on whichever arm, where joints move it; else the leaf at
-/// the end of the longest path.
+/// The site of the tool in a file that kinfer wrote, on whichever arm; null where there is none.
+const MjcfSite* find_written_tool(const MjcfTree& tree) {
+  return is_written_by_kinfer(tree) ? tree.site_named(tool_site) : nullptr;
+}
+
+/// The body that carries the tool in a file that kinfer wrote, else the leaf at the end of the longest path.
 int default_tip(const MjcfTree& tree, int base) {
-  const MjcfSite* site = is_written_by_kinfer(tree) ? tree.site_named(tool_site) : nullptr;
-  const auto path = site ? bodies_down(tree, base, site->body) : std::nullopt;
-  return path && measure_path(tree, *path).moving > 0 ? site->body : longest_leaf(tree, base);
+  const MjcfSite* site = find_written_tool(tree);
+  return site && bodies_down(tree, base, site->body) ? site->body : longest_leaf(tree, base);
 }
 
 Pose shift(const Vec3& by) {
@@ -117,6 +120,7 @@ class MjcfChainBuilder {
     for (const int b : *path) add_body(b);
     add_tip(tip, site, ends.tip_link);
     chain_.tip = static_cast<int>(chain_.joints.size()) - 1;
+    if (site && site == find_written_tool(tree_) && measure_path(tree_, *path).moving == 0) add_other_arms();
     for (std::size_t j = 0; j < chain_.joints.size(); ++j) add_coupling(j);  // may add further joints
     return finish();
   }
@@ -147,6 +151,11 @@ class MjcfChainBuilder {
       }
     }
     attached_[index] = static_cast<int>(chain_.joints.size()) - 1;
+  }
+
+  /// Of a chain whose tool no joint moves: the joints that it has are on the other arms.
+  void add_other_arms() {
+    for (std::size_t j = 0; j < tree_.joints.size(); ++j) add_with_ancestors(static_cast<int>(j));
   }
 
   /// `place`: pose of the joint's point with the axes of the body, at the joint's reference.

@@ -127,7 +127,10 @@ class ChainBuilder {
     chain_.name = model_.getName();
     chain_.tip = static_cast<int>(chain_.joints.size()) - 1;
     base_link_ = path.front()->parent;
-    if (tool_ && path.back()->child == tool_->link) add_targets();
+    if (tool_ && path.back()->child == tool_->link) {
+      add_targets();
+      if (moving_joints(path) == 0) add_other_arms();
+    }
     for (std::size_t j = 0; j < chain_.joints.size() && first_error_.empty(); ++j)
       add_coupling(j);  // may add further joints
     if (first_error_.empty() && dof(chain_) == 0)
@@ -165,10 +168,10 @@ class ChainBuilder {
     return *path;
   }
 
-  /// To the tool of a file that kinfer wrote, else to the end of the longest arm.
+  /// To the tool of a file that kinfer wrote, on whichever arm, else to the end of the longest arm.
   Path default_path(const std::string& base) const {
     auto path = tool_ ? path_down(base, tool_->link) : std::nullopt;
-    return path && moving_joints(*path) > 0 ? std::move(*path) : longest_path(base);
+    return path ? std::move(*path) : longest_path(base);
   }
 
   static std::ptrdiff_t moving_joints(const Path& path) {
@@ -215,6 +218,12 @@ class ChainBuilder {
     }
     joint.link = link;
     chain_.joints.push_back(std::move(joint));
+  }
+
+  /// Of a chain whose tool no joint moves: the joints that it has are on the other arms.
+  void add_other_arms() {
+    for (const UrdfTree::Edge& edge : tree_.edges)
+      if (!edge.is_fixed) add_with_ancestors(edge.joint);
   }
 
   void add_targets() {
