@@ -22,15 +22,17 @@ def test_the_evidence_is_the_programs_byte_for_byte(drive, program, tmp_path):
 
 def test_an_update_is_the_programs_byte_for_byte(drive, program, tmp_path):
     kinfer.identify(drive / "imu.csv").save(tmp_path / "old")
-    later = tmp_path / "imu.csv"  # the same recording would be refused
-    later.write_bytes((drive / "imu.csv").read_bytes() + b"# another day\n")
+    program("simulate", "robot6", "--grade", "noise", "--drive", 2, "--out", tmp_path / "later")
+    later = tmp_path / "later" / "imu.csv"
+    copy = tmp_path / "copy.csv"
+    copy.write_bytes((drive / "imu.csv").read_bytes() + b"# another day\n")
     program("identify", "--update", tmp_path / "old", later, "--out", tmp_path / "program")
     machine = kinfer.identify(later, update=tmp_path / "old")
     machine.save(tmp_path / "python")
     for name in ("evidence.json", "chain.toml", "track.toml"):
         assert (tmp_path / "python" / name).read_bytes() == (tmp_path / "program" / name).read_bytes(), name
     assert machine.evidence["update"]["changes"] == []
-    for used in (drive / "imu.csv", later):
+    for used in (drive / "imu.csv", copy, later):
         with pytest.raises(kinfer.InputError, match="would count twice"):
             kinfer.identify(used, update=machine)
 

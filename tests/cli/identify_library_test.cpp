@@ -7,6 +7,7 @@
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
+#include "kinfer/measurement/sample_digest.hpp"
 
 namespace kinfer {
 namespace {
@@ -29,7 +30,9 @@ TEST_F(IdentifyLibrary, GivesTheBytesOfTheProgramsEvidence) {
   ASSERT_TRUE(recording) << recording.error().what;
   const auto found = identify::identify_machine(*recording, options, Rng(5));
   ASSERT_TRUE(found) << found.error().what;
-  const Provenance provenance{.inputs = {{"imu.csv", *sha256_of_file(in("drive") / "imu.csv")}},
+  const Provenance provenance{.inputs = {{.name = "imu.csv",
+                                          .sha256 = *sha256_of_file(in("drive") / "imu.csv"),
+                                          .samples = sample_digest(*recording)}},
                               .options = identify::describe(options),
                               .seed = 5};
   EXPECT_EQ(slurp(in("out") / "evidence.json"),
