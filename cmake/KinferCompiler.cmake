@@ -106,7 +106,7 @@ endif()
 set(KINFER_PRECOMPILED <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <fmt/ranges.h> <tl/expected.hpp>
   <algorithm> <array> <cmath> <filesystem> <functional> <limits> <map> <memory> <numbers> <optional> <set> <span> <string>
   <string_view> <variant> <vector> <kinfer/kinematics/chain.hpp> <kinfer/measurement/pose_set.hpp>
-  <kinfer/measurement/ins_recording.hpp> <kinfer/evidence/calibration/calibration.hpp>
+  <kinfer/measurement/ins/ins_recording.hpp> <kinfer/evidence/calibration/calibration.hpp>
   <kinfer/evidence/identification/identification.hpp>)
 
 # An object library that holds only a precompiled header, which targets with the same flags use by REUSE_FROM.

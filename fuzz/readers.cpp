@@ -10,6 +10,8 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/io/evidence/evidence_file.hpp"
+#include "kinfer/io/files/compressed_text.hpp"
+#include "kinfer/io/files/zip_archive.hpp"
 #include "kinfer/io/fleet/fleet_json.hpp"
 #include "kinfer/io/fleet/manifest.hpp"
 #include "kinfer/io/motion/reach_targets_csv.hpp"
@@ -30,8 +32,6 @@
 #include "kinfer/io/robot/urdf/urdf.hpp"
 #include "kinfer/io/robot_log/message_definition.hpp"
 #include "kinfer/io/robot_log/message_log_formats.hpp"
-#include "kinfer/io/text/compressed_text.hpp"
-#include "kinfer/io/text/zip_archive.hpp"
 #include "kinfer/io/tracking/tracking_model_toml.hpp"
 #include "kinfer/report/report.hpp"
 #include "kinfer/search/swarm/mlp.hpp"

@@ -4,7 +4,7 @@
 
 #include "kinfer/evidence/facts/provenance.hpp"
 #include "kinfer/evidence/identification/identification.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 #include "robot.hpp"
 
 namespace kinfer::python {

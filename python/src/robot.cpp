@@ -2,8 +2,8 @@
 #include "robot.hpp"
 
 #include "kinfer/base/version.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/kinematics/poses/tool_poses.hpp"
 
 namespace kinfer::python {

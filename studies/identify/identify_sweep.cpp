@@ -10,7 +10,7 @@
 
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "studies/support/truth_file.hpp"
 #include "studies/support/truth_scores.hpp"
 

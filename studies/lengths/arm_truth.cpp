@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "kinfer/geometry/fit.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/text/csv.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::study::lengths_study {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/evidence/identification/identification.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer::study::lengths_study {
 

@@ -10,7 +10,7 @@
 #include "kinfer/identify/diagnosis/mended_log.hpp"
 #include "kinfer/inertial/diagnosis/section_fit.hpp"
 #include "kinfer/inertial/sensor_orientations.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
 
 namespace kinfer::study::log_faults_study {
 namespace {

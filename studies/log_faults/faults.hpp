@@ -8,7 +8,7 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/evidence/facts/findings.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer::study::log_faults_study {
 

@@ -14,7 +14,7 @@
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/inertial/filters/orientation.hpp"
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "studies/studies.hpp"
 #include "support/measured_trial.hpp"
 #include "support/orientation_error.hpp"

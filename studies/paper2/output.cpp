@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 
 namespace kinfer::paper2 {
 namespace {

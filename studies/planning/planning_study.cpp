@@ -9,7 +9,7 @@
 
 #include <filesystem>
 
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "studies/studies.hpp"
 #include "trials.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
 
 namespace kinfer::study {

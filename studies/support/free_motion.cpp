@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "kinfer/base/constants.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
 #include "kinfer/measurement/sensor_model.hpp"
 #include "kinfer/simulate/machine_motion.hpp"
 

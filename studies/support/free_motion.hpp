@@ -7,7 +7,7 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/geometry/pose.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer::study {
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 
 namespace kinfer::study {
 namespace {

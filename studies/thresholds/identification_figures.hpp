@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
 #include "studies/thresholds/figures.hpp"
 

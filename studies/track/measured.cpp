@@ -12,7 +12,7 @@
 
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
-#include "kinfer/measurement/ins_selection.hpp"
+#include "kinfer/measurement/ins/ins_selection.hpp"
 #include "kinfer/track/tracker.hpp"
 #include "studies/support/optical_truth.hpp"
 #include "studies/track/pairwise.hpp"

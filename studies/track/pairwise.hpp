@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "kinfer/evidence/tracking/tracking_model.hpp"
-#include "kinfer/measurement/ins_row.hpp"
+#include "kinfer/measurement/ins/ins_row.hpp"
 
 namespace kinfer::study::track_study {
 

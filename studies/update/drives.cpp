@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "kinfer/measurement/ins_selection.hpp"
+#include "kinfer/measurement/ins/ins_selection.hpp"
 #include "kinfer/simulate/excitation.hpp"
 #include "kinfer/simulate/mujoco_world.hpp"
 

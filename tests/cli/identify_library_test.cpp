@@ -7,7 +7,7 @@
 #include "kinfer/identify/pipeline.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
-#include "kinfer/measurement/sample_digest.hpp"
+#include "kinfer/measurement/ins/sample_digest.hpp"
 
 namespace kinfer {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/estimate/continuous/model/chain_propagation.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer::test {
 

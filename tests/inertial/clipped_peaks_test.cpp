@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "kinfer/base/rng.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
 
 namespace kinfer {
 namespace {

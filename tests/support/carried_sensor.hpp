@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "kinfer/base/angle.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
 #include "kinfer/measurement/sensor_model.hpp"
 
 namespace kinfer::testing {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
 #include "kinfer/io/text/csv.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::testing {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "kinfer/evidence/tracking/tracking_model.hpp"
-#include "kinfer/measurement/ins_row.hpp"
+#include "kinfer/measurement/ins/ins_row.hpp"
 #include "kinfer/measurement/sensor_model.hpp"
 #include "kinfer/simulate/excitation.hpp"
 #include "kinfer/simulate/ins_recording.hpp"

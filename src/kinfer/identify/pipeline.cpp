@@ -25,7 +25,7 @@
 #include "kinfer/identify/screening/unconnected.hpp"
 #include "kinfer/identify/update/known_machine.hpp"
 #include "kinfer/identify/update/updated_geometry.hpp"
-#include "kinfer/measurement/ins_selection.hpp"
+#include "kinfer/measurement/ins/ins_selection.hpp"
 
 namespace kinfer::identify {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "kinfer/base/expect.hpp"
 #include "kinfer/linalg/decompositions.hpp"
-#include "kinfer/measurement/clipping.hpp"
+#include "kinfer/measurement/ins/clipping.hpp"
 
 namespace kinfer {
 namespace {

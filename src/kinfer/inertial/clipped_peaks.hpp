@@ -3,7 +3,7 @@
 // the clipped values the orientation would lag behind after every peak.
 #pragma once
 
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

@@ -2,7 +2,7 @@
 // Clock offset between two loggers from the angular speed of their sensors: segments of one machine move together.
 #pragma once
 
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

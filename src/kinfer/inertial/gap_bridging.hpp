@@ -2,7 +2,7 @@
 // Linear interpolation over short gaps of a sensor, so that a filter can integrate across them.
 #pragma once
 
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/measurement/clock_correction.hpp"
+#include "kinfer/measurement/ins/clock_correction.hpp"
 
 namespace kinfer {
 

@@ -4,7 +4,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/inertial/filters/orientation.hpp"
-#include "kinfer/measurement/sensor_orientations.hpp"
+#include "kinfer/measurement/ins/sensor_orientations.hpp"
 
 namespace kinfer {
 

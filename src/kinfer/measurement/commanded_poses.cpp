@@ -171,9 +171,13 @@ std::vector<int> commanded_poses(const MatrixXd& joints, const VectorXd& scale) 
   return poses;
 }
 
+int pose_of_row(const PoseSet& data, int row) {
+  return data.pose.empty() ? row : data.pose[static_cast<std::size_t>(row)];
+}
+
 std::size_t distinct_poses(const PoseSet& data, const std::vector<int>& rows) {
   std::set<int> distinct;
-  for (const int row : rows) distinct.insert(data.pose.empty() ? row : data.pose[static_cast<std::size_t>(row)]);
+  for (const int row : rows) distinct.insert(pose_of_row(data, row));
   return distinct.size();
 }
 

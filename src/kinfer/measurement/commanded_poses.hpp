@@ -24,7 +24,10 @@ std::vector<int> commanded_poses(const MatrixXd& joints, const VectorXd& scale);
 /// As the set says, or else in units of each joint's range.
 std::vector<int> commanded_poses(const PoseSet& data);
 
-/// How many different poses these rows are, all rows by default. Each row is one where the poses are not known.
+/// Of a row, as the set says. Where it does not, each row is a pose.
+int pose_of_row(const PoseSet& data, int row);
+
+/// How many different poses these rows are, all rows by default.
 std::size_t distinct_poses(const PoseSet& data, const std::vector<int>& rows);
 std::size_t distinct_poses(const PoseSet& data);
 

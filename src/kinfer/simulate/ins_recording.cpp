@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
 #include "kinfer/simulate/magnetic_faults.hpp"
 
 namespace kinfer {

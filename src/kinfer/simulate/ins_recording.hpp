@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinfer/base/rng.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 #include "kinfer/measurement/sensor_model.hpp"
 #include "kinfer/simulate/machine_motion.hpp"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "kinfer/base/expect.hpp"
-#include "kinfer/measurement/ins_selection.hpp"
+#include "kinfer/measurement/ins/ins_selection.hpp"
 
 namespace kinfer {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "kinfer/base/rng.hpp"
 #include "kinfer/geometry/pose.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 #include "kinfer/simulate/machine_motion.hpp"
 
 namespace kinfer {

@@ -14,7 +14,7 @@
 #include "kinfer/evidence/tracking/track_state.hpp"
 #include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/inertial/filters/kinfer_filter.hpp"
-#include "kinfer/measurement/ins_row.hpp"
+#include "kinfer/measurement/ins/ins_row.hpp"
 #include "kinfer/track/options.hpp"
 
 namespace kinfer::track {

@@ -10,7 +10,7 @@
 
 #include "kinfer/evidence/tracking/tracking_model.hpp"
 #include "kinfer/linalg/types.hpp"
-#include "kinfer/measurement/ins_row.hpp"
+#include "kinfer/measurement/ins/ins_row.hpp"
 
 namespace kinfer::track {
 

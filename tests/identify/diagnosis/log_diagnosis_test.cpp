@@ -7,7 +7,7 @@
 #include "kinfer/geometry/random.hpp"
 #include "kinfer/identify/diagnosis/diagnosis.hpp"
 #include "kinfer/identify/diagnosis/mended_log.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
 #include "repeats.hpp"
 
 namespace kinfer::identify {

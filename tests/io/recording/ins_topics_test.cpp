@@ -13,7 +13,7 @@
 #include "kinfer/io/recording/recording_formats.hpp"
 #include "kinfer/io/robot_log/mcap_writer.hpp"
 #include "kinfer/io/robot_log/message_log_formats.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
 #include "support/ros_messages.hpp"
 
 namespace kinfer {

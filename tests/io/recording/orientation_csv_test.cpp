@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/recording/orientation_csv.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 namespace {

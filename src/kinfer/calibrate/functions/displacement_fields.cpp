@@ -12,6 +12,7 @@
 #include "kinfer/calibrate/functions/pose_means.hpp"
 #include "kinfer/calibrate/functions/thresholds.hpp"
 #include "kinfer/estimate/poses/noise_level.hpp"
+#include "kinfer/measurement/commanded_poses.hpp"
 #include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
@@ -83,8 +84,7 @@ PoseSet weighing_measurements(const Estimate& fitted, const PoseSet& rows,
 bool allows_field(const PoseSet& rows) {
   std::set<int> shown;
   for (const Block& block : blocks_of(rows))
-    if (residual_kind(block.kind).traits.observes.tool_position)
-      shown.insert(rows.pose.empty() ? block.row : rows.pose[static_cast<std::size_t>(block.row)]);
+    if (residual_kind(block.kind).traits.observes.tool_position) shown.insert(pose_of_row(rows, block.row));
   return rows.pairs.empty() && rows.tips.empty() && std::ssize(shown) >= thresholds::min_field_rows;
 }
 

@@ -9,7 +9,7 @@
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/terms/decision.hpp"
 #include "kinfer/calibrate/validation/validation_errors.hpp"
-#include "kinfer/measurement/row_selection.hpp"
+#include "kinfer/measurement/commanded_poses.hpp"
 
 namespace kinfer::calibrate {
 
@@ -50,7 +50,6 @@ HoldoutErrors evaluate_holdout(const std::vector<Chain>& chains, const PoseSet& 
                                int threads) {
   const auto primary = primary_measurement_kind(rows);
   if (!primary) return {};
-  const std::vector<int> pose_of_row = rows.pose.empty() ? all_rows(rows) : rows.pose;
   std::vector<HoldoutErrors> of_split(splits.size());
   parallel_for(splits.size(), threads, [&](std::size_t i) {
     const PoseSet evaluated = select(rows, splits[i].holdout);
@@ -62,7 +61,7 @@ HoldoutErrors evaluate_holdout(const std::vector<Chain>& chains, const PoseSet& 
   for (const HoldoutErrors& one : of_split) {
     all.errors.insert(all.errors.end(), one.errors.begin(), one.errors.end());
     all.row.insert(all.row.end(), one.row.begin(), one.row.end());
-    for (const int row : one.row) all.pose.push_back(pose_of_row[static_cast<std::size_t>(row)]);
+    for (const int row : one.row) all.pose.push_back(pose_of_row(rows, row));
   }
   return all;
 }

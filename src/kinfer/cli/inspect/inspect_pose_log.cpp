@@ -5,9 +5,9 @@
 
 #include "kinfer/cli/parts/common.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/pose_set/foreign/pose_tables.hpp"
 #include "kinfer/io/text/dump_json.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::cli {
 namespace {

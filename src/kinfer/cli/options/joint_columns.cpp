@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/text/csv.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/units.hpp"
 
 namespace kinfer::cli {

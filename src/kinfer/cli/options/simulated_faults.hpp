@@ -5,7 +5,7 @@
 #include <string>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 #include "kinfer/simulate/machine_motion.hpp"
 
 namespace kinfer::cli {

@@ -9,7 +9,7 @@
 #include "kinfer/cli/parts/arguments.hpp"
 #include "kinfer/cli/parts/common.hpp"
 #include "kinfer/evidence/facts/findings.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer::cli {
 

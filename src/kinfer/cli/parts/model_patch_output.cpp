@@ -5,7 +5,7 @@
 
 #include "kinfer/base/constants.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/words/calibration/model_patch.hpp"
 
 namespace kinfer::cli {

@@ -12,7 +12,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 
 namespace kinfer::cli {
 namespace {
@@ -103,6 +103,7 @@ bool are_same_folder(int open, const fs::path& path) {
 
 Result<OutputFolder> OutputFolder::make(const fs::path& given) {
   if (given.empty()) return error("the output folder has no name");
+  const SignalBlock whole;  // what was made is known to who would remove it
   std::error_code failure;
   std::vector<fs::path> missing;
   for (auto folder = fs::absolute(given); !folder.empty() && !fs::exists(folder, failure);

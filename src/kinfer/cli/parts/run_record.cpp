@@ -10,8 +10,8 @@
 #include "kinfer/base/instruction_set.hpp"
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/base/version.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/text/dump_json.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::cli {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 #include "kinfer/simulate/excitation.hpp"
 #include "kinfer/simulate/ground_truth.hpp"
 

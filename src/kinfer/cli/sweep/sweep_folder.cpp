@@ -13,8 +13,8 @@
 
 #include "kinfer/base/instruction_set.hpp"
 #include "kinfer/cli/sweep/sweep_manifest.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/text/replace_all.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::cli {
 namespace {

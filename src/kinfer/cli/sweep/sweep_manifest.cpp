@@ -7,7 +7,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 
 namespace kinfer::cli {
 namespace {

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "kinfer/fleet/summary.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/fleet/fleet_json.hpp"
 #include "kinfer/io/robot/toml/robot_toml.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::cli {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "kinfer/cli/sweep/task_record.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/fleet/manifest.hpp"
 #include "kinfer/io/fleet/task_pack.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::cli {
 namespace {

@@ -11,9 +11,9 @@
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/text/format_number.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/words/calibration/checks.hpp"
 #include "kinfer/words/findings/findings.hpp"
 

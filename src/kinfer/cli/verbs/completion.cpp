@@ -9,7 +9,7 @@
 #include "kinfer/cli/parts/output_folder.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 
 namespace kinfer::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include "kinfer/cli/parts/program.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 
 namespace kinfer::cli {
 namespace {

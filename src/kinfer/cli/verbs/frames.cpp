@@ -8,8 +8,8 @@
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
 #include "kinfer/io/evidence/frames_json.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/words/calibration/frames.hpp"
 
 namespace kinfer::cli {

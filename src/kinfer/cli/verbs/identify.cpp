@@ -23,8 +23,8 @@
 #include "kinfer/io/evidence/files/identification_files.hpp"
 #include "kinfer/io/evidence/fingerprints.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/recording/machine_facts_toml.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/tracking/tracked_chain.hpp"
 
 namespace kinfer::cli {

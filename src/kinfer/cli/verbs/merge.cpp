@@ -8,9 +8,9 @@
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/sweep/read_runs.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/fleet/fleet_json.hpp"
 #include "kinfer/io/fleet/fleet_table.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/report/report.hpp"
 #include "kinfer/words/fleet/fleet.hpp"
 

@@ -9,9 +9,9 @@
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/parts/unreached_targets.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/motion/path_csv.hpp"
 #include "kinfer/io/motion/reach_targets_csv.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/motion/timed_paths.hpp"
 #include "kinfer/words/motion/path.hpp"
 

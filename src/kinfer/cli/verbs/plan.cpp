@@ -10,9 +10,9 @@
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/text/dump_json.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/report/parts/plan_figure.hpp"
 #include "kinfer/words/calibration/checks.hpp"
 

@@ -7,9 +7,9 @@
 #include "kinfer/cli/options/robot_option.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/pose_set/pose_log.hpp"
 #include "kinfer/io/pose_set/predictions_csv.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/words/calibration/prediction.hpp"
 #include "kinfer/words/findings/findings.hpp"
 

@@ -11,8 +11,8 @@
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/parts/unreached_targets.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/motion/reach_targets_csv.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer::cli {
 namespace {

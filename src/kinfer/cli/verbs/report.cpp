@@ -12,7 +12,7 @@
 #include "kinfer/io/evidence/evidence_schema.hpp"
 #include "kinfer/io/evidence/identification_json.hpp"
 #include "kinfer/io/evidence/track_json.hpp"
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 
 namespace kinfer::cli {
 namespace {

@@ -7,10 +7,10 @@
 #include "kinfer/cli/parts/run_record.hpp"
 #include "kinfer/cli/parts/terminal.hpp"
 #include "kinfer/cli/verb_list.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/robot/toml/robot_errors_toml.hpp"
 #include "kinfer/io/text/dump_json.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/simulate/pose_set.hpp"
 
 namespace kinfer::cli {

@@ -8,7 +8,7 @@
 
 #include "kinfer/estimate/continuous/model/measurement_blocks.hpp"
 #include "kinfer/geometry/statistics.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
 
 namespace kinfer {
 namespace {

@@ -3,7 +3,7 @@
 // arm must not look like a model error, and a slow machine should not cost more than necessary.
 #pragma once
 
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 #include "kinfer/measurement/sensor_model.hpp"
 
 namespace kinfer {

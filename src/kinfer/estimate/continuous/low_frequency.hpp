@@ -10,7 +10,7 @@
 #pragma once
 
 #include "kinfer/estimate/continuous/model/problem.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinfer/estimate/continuous/model/problem.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

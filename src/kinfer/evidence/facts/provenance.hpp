@@ -12,7 +12,8 @@ namespace kinfer {
 struct InputFile {
   std::string name;  ///< without directories
   std::string sha256;
-  std::string samples{};  ///< of a recording, what it holds (measurement/sample_digest); of several logs, at the first
+  std::string
+      samples{};  ///< of a recording, what it holds (measurement/ins/sample_digest); of several logs, at the first
 };
 
 struct Provenance {

@@ -14,7 +14,7 @@
 #include "kinfer/identify/diagnosis/thresholds.hpp"
 #include "kinfer/inertial/diagnosis/attitude_columns.hpp"
 #include "kinfer/inertial/diagnosis/section_fit.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
 
 namespace kinfer::identify {
 namespace {

@@ -11,7 +11,7 @@
 #include "kinfer/identify/diagnosis/thresholds.hpp"
 #include "kinfer/inertial/diagnosis/section_fit.hpp"
 #include "kinfer/inertial/rest/rest.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
 
 namespace kinfer::identify {
 namespace {

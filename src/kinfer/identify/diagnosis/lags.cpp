@@ -8,7 +8,7 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/identify/diagnosis/thresholds.hpp"
 #include "kinfer/inertial/diagnosis/section_fit.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
 
 namespace kinfer::identify {
 namespace {

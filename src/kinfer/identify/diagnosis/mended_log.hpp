@@ -6,7 +6,7 @@
 
 #include "kinfer/estimate/continuous/model/problem.hpp"
 #include "kinfer/evidence/facts/findings.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer::identify {
 

@@ -7,7 +7,7 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/identify/diagnosis/thresholds.hpp"
 #include "kinfer/inertial/diagnosis/repeated_rows.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
 
 namespace kinfer::identify {
 namespace {

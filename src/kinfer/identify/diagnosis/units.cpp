@@ -9,8 +9,8 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/identify/diagnosis/thresholds.hpp"
 #include "kinfer/inertial/diagnosis/section_fit.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
-#include "kinfer/measurement/unit_check.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
+#include "kinfer/measurement/ins/unit_check.hpp"
 
 namespace kinfer::identify {
 namespace {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinfer/evidence/identification/identification.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer::identify {
 

@@ -7,7 +7,7 @@
 #include "kinfer/identify/screening/connection.hpp"
 #include "kinfer/identify/screening/thresholds.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
-#include "kinfer/measurement/ins_selection.hpp"
+#include "kinfer/measurement/ins/ins_selection.hpp"
 
 namespace kinfer::identify {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "kinfer/identify/screening/recording_selection.hpp"
 #include "kinfer/inertial/segment_motion.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer::identify {
 

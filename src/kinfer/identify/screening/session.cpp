@@ -9,7 +9,7 @@
 #include "kinfer/identify/screening/remount.hpp"
 #include "kinfer/identify/screening/time_stamps.hpp"
 #include "kinfer/identify/screening/unconnected.hpp"
-#include "kinfer/measurement/ins_selection.hpp"
+#include "kinfer/measurement/ins/ins_selection.hpp"
 
 namespace kinfer::identify {
 namespace {

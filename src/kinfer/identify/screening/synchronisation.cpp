@@ -9,7 +9,7 @@
 #include "kinfer/identify/structure/ordered_motion.hpp"
 #include "kinfer/inertial/sensor_clocks.hpp"
 #include "kinfer/inertial/thresholds.hpp"
-#include "kinfer/measurement/ins_selection.hpp"
+#include "kinfer/measurement/ins/ins_selection.hpp"
 
 namespace kinfer::identify {
 namespace {

@@ -7,7 +7,7 @@
 #include "kinfer/base/parallel.hpp"
 #include "kinfer/inertial/sampling_grid.hpp"
 #include "kinfer/inertial/thresholds.hpp"
-#include "kinfer/measurement/interleaved_sensors.hpp"
+#include "kinfer/measurement/ins/interleaved_sensors.hpp"
 
 namespace kinfer::identify {
 namespace {

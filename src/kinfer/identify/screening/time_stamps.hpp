@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kinfer/evidence/facts/findings.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer::identify {
 

@@ -8,7 +8,7 @@
 #include "kinfer/identify/refinement/joints/refined_joint.hpp"
 #include "kinfer/identify/structure/given_tree.hpp"
 #include "kinfer/identify/structure/joint_type.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer::identify {
 

@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

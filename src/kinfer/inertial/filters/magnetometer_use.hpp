@@ -2,7 +2,7 @@
 // Input settings shared by all orientation filters.
 #pragma once
 
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

@@ -9,9 +9,9 @@
 
 #include "kinfer/io/evidence/evidence_file.hpp"
 #include "kinfer/io/evidence/fingerprints.hpp"
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/tracking/tracked_chain.hpp"
-#include "kinfer/measurement/sample_digest.hpp"
+#include "kinfer/measurement/ins/sample_digest.hpp"
 
 namespace kinfer {
 

@@ -7,7 +7,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/evidence/facts/provenance.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

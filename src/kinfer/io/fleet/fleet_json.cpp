@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "kinfer/io/evidence/json/shared_fields.hpp"
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "kinfer/words/fleet/fleet.hpp"
 

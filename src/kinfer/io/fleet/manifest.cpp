@@ -11,9 +11,9 @@
 #include <set>
 
 #include "kinfer/base/sha256.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/text/csv.hpp"
 #include "kinfer/io/text/replace_all.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 namespace {

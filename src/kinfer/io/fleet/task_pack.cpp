@@ -14,7 +14,7 @@
 #include <numeric>
 #include <utility>
 
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 
 namespace kinfer {
 namespace {

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/pose_set/pose_columns.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/text/csv.hpp"
 #include "kinfer/io/text/first_error.hpp"
 #include "kinfer/io/text/format_number.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/pose_set/column_map.hpp"
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/text/table_format.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
 
 namespace kinfer {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/pose_set/pose_log.hpp"
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/pose_set/foreign/pose_tables.hpp"
 #include "kinfer/io/pose_set/pose_set_csv.hpp"
 #include "kinfer/io/pose_set/pose_topics.hpp"
 #include "kinfer/io/robot_log/message_log_formats.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 namespace {

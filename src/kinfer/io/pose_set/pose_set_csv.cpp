@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/pose_set/measurement_columns.hpp"
 #include "kinfer/io/pose_set/pose_covariances.hpp"
 #include "kinfer/io/text/csv.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 namespace {

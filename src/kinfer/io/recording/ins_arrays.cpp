@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinfer/measurement/ins_screening.hpp"
-#include "kinfer/measurement/unit_check.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
+#include "kinfer/measurement/ins/unit_check.hpp"
 
 namespace kinfer {
 namespace {

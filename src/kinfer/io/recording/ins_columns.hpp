@@ -11,7 +11,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/io/text/csv.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

@@ -7,11 +7,11 @@
 #include <functional>
 #include <limits>
 
+#include "kinfer/io/files/compressed_text.hpp"
+#include "kinfer/io/files/file_bytes.hpp"
 #include "kinfer/io/recording/foreign/ins_remarks.hpp"
 #include "kinfer/io/recording/ins_columns.hpp"
-#include "kinfer/io/text/compressed_text.hpp"
 #include "kinfer/io/text/csv.hpp"
-#include "kinfer/io/text/file_bytes.hpp"
 #include "kinfer/io/text/plain_decimal.hpp"
 #include "kinfer/io/text/trim.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/io/recording/ins_columns.hpp"
-#include "kinfer/measurement/ins_row.hpp"
+#include "kinfer/measurement/ins/ins_row.hpp"
 
 namespace kinfer {
 

@@ -8,7 +8,7 @@
 
 #include "kinfer/base/observer.hpp"
 #include "kinfer/base/result.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

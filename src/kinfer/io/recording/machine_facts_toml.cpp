@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
 #include "kinfer/io/text/units.hpp"
 

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <ostream>
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/text/csv_text.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 namespace {

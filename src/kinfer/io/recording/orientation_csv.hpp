@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
-#include "kinfer/measurement/sensor_orientations.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
+#include "kinfer/measurement/ins/sensor_orientations.hpp"
 
 namespace kinfer {
 

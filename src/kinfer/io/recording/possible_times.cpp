@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "kinfer/measurement/unit_check.hpp"
+#include "kinfer/measurement/ins/unit_check.hpp"
 
 namespace kinfer {
 namespace {

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <string>
 
+#include "kinfer/io/files/compressed_text.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/recording/foreign/foreign_log.hpp"
 #include "kinfer/io/recording/foreign/ins_presets.hpp"
 #include "kinfer/io/recording/foreign/log_bundle.hpp"
@@ -14,9 +16,7 @@
 #include "kinfer/io/recording/ins_topics.hpp"
 #include "kinfer/io/recording/possible_times.hpp"
 #include "kinfer/io/robot_log/message_log_formats.hpp"
-#include "kinfer/io/text/compressed_text.hpp"
 #include "kinfer/io/text/csv.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/text/format_number.hpp"
 #include "kinfer/io/text/quoted_text.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
 #include "kinfer/io/text/units.hpp"
 

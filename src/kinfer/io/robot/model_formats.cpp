@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/robot/mjcf/mjcf.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/xml_positions.hpp"
 
 namespace kinfer {

@@ -3,10 +3,10 @@
 
 #include <map>
 
+#include "kinfer/io/files/file_bytes.hpp"
 #include "kinfer/io/robot_log/byte_cursor.hpp"
 #include "kinfer/io/robot_log/decompression.hpp"
 #include "kinfer/io/robot_log/topic_table.hpp"
-#include "kinfer/io/text/file_bytes.hpp"
 
 namespace kinfer {
 namespace {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <array>
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/robot_log/bag_folder.hpp"
 #include "kinfer/io/robot_log/bag_reader.hpp"
 #include "kinfer/io/robot_log/db3_reader.hpp"
 #include "kinfer/io/robot_log/mcap_reader.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/text/possible_values.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
 #include "kinfer/io/tracking/tracking_model_toml.hpp"
 #include "kinfer/linalg/products.hpp"

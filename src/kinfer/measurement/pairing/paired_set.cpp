@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/measurement/ins_row.hpp"
+#include "kinfer/measurement/ins/ins_row.hpp"
 
 namespace kinfer {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kinfer/evidence/tracking/track_state.hpp"
-#include "kinfer/measurement/ins_row.hpp"
+#include "kinfer/measurement/ins/ins_row.hpp"
 
 namespace kinfer::track {
 

@@ -132,9 +132,9 @@ class ChainFilter {
   MatrixXd p_;
   ChainEvaluator evaluator_;
   std::vector<bool> is_used_;
-  VectorXd last_value_, change_;  // predicted rows of the last update, their rate of change
-  VectorXd change_of_change_;     // from the last update to this one
-  std::optional<double> last_update_{};  // [s]
+  VectorXd last_value_, change_;          // predicted rows of the last update, their rate of change
+  VectorXd change_of_change_;             // from the last update to this one
+  std::optional<double> last_update_{};   // [s]
   ShownMeans shown_ = ShownMeans::rates;  // by the last block
   SoftRows soft_rows_;
   JointChanges changes_;

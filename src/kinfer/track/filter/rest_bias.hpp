@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include "kinfer/measurement/ins_row.hpp"
+#include "kinfer/measurement/ins/ins_row.hpp"
 #include "kinfer/track/filter/chain_filter.hpp"
 
 namespace kinfer::track {

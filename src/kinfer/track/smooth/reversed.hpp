@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinfer/evidence/tracking/tracking_model.hpp"
-#include "kinfer/measurement/ins_row.hpp"
+#include "kinfer/measurement/ins/ins_row.hpp"
 
 namespace kinfer::track {
 

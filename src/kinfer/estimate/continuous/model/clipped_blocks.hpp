@@ -8,7 +8,7 @@
 #pragma once
 
 #include "kinfer/estimate/continuous/model/measurement_blocks.hpp"
-#include "kinfer/measurement/clipping.hpp"
+#include "kinfer/measurement/ins/clipping.hpp"
 
 namespace kinfer {
 

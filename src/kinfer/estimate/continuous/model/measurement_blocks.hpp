@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "kinfer/estimate/continuous/model/uniform_spline.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

@@ -2,7 +2,7 @@
 // Clock errors that remain in a synchronised recording, as the continuous-time fit estimates them.
 #pragma once
 
-#include "kinfer/measurement/clock_correction.hpp"
+#include "kinfer/measurement/ins/clock_correction.hpp"
 
 namespace kinfer::identify {
 

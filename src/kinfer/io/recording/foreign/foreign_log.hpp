@@ -10,7 +10,7 @@
 
 #include "kinfer/base/result.hpp"
 #include "kinfer/io/recording/foreign/ins_map.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/text/table_format.hpp"
-#include "kinfer/io/text/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
 
 namespace kinfer {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 
+#include "kinfer/io/files/file_bytes.hpp"
+#include "kinfer/io/files/text_file.hpp"
+#include "kinfer/io/files/zip_archive.hpp"
 #include "kinfer/io/recording/foreign/ins_presets.hpp"
-#include "kinfer/io/text/file_bytes.hpp"
-#include "kinfer/io/text/text_file.hpp"
-#include "kinfer/io/text/zip_archive.hpp"
 
 namespace kinfer {
 namespace {

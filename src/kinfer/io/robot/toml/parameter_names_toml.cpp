@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/robot/toml/parameter_names_toml.hpp"
 
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
 
 namespace kinfer {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/robot/toml/robot_toml.hpp"
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/robot/model/possible_chain.hpp"
 #include "kinfer/io/robot/toml/displacement_field_toml.hpp"
 #include "kinfer/io/robot/toml/fixtures_toml.hpp"
 #include "kinfer/io/robot/toml/instrument_toml.hpp"
 #include "kinfer/io/robot/toml/joints_toml.hpp"
 #include "kinfer/io/robot/toml/prediction_toml.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/text/toml_reader.hpp"
 
 namespace kinfer {

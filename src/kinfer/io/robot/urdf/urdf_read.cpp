@@ -9,13 +9,13 @@
 #include <mutex>
 #include <set>
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/robot/model/possible_chain.hpp"
 #include "kinfer/io/robot/urdf/urdf.hpp"
 #include "kinfer/io/robot/urdf/urdf_tool.hpp"
 #include "kinfer/io/robot/urdf/urdf_tree.hpp"
 #include "kinfer/io/robot/xml/xml_names.hpp"
 #include "kinfer/io/text/replace_all.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/measurement/sample_digest.hpp"
+#include "kinfer/measurement/ins/sample_digest.hpp"
 
 #include <gtest/gtest.h>
 

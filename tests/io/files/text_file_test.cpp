@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/text/compressed_text.hpp"
+#include "kinfer/io/files/compressed_text.hpp"
 
 #include <zstd.h>
 

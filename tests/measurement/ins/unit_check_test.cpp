@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "kinfer/measurement/clock_correction.hpp"
-#include "kinfer/measurement/ins_screening.hpp"
-#include "kinfer/measurement/unit_check.hpp"
+#include "kinfer/measurement/ins/clock_correction.hpp"
+#include "kinfer/measurement/ins/ins_screening.hpp"
+#include "kinfer/measurement/ins/unit_check.hpp"
 #include "support/carried_sensor.hpp"
 
 namespace kinfer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/measurement/clock_correction.hpp"
+#include "kinfer/measurement/ins/clock_correction.hpp"
 
 #include <cmath>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/text/file_bytes.hpp"
+#include "kinfer/io/files/file_bytes.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "kinfer/io/files/text_file.hpp"
 #include "kinfer/io/recording/ins_csv.hpp"
-#include "kinfer/io/text/text_file.hpp"
 
 namespace kinfer {
 namespace {

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "kinfer/base/result.hpp"
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/measurement/interleaved_sensors.hpp"
+#include "kinfer/measurement/ins/interleaved_sensors.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/measurement/unit_check.hpp"
+#include "kinfer/measurement/ins/unit_check.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/text/text_file.hpp"
+#include "kinfer/io/files/text_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -11,8 +11,8 @@
 #include <system_error>
 
 #include "kinfer/base/temporary_paths.hpp"
-#include "kinfer/io/text/compressed_text.hpp"
-#include "kinfer/io/text/file_bytes.hpp"
+#include "kinfer/io/files/compressed_text.hpp"
+#include "kinfer/io/files/file_bytes.hpp"
 
 namespace kinfer {
 namespace {

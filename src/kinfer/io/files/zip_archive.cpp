@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/text/zip_archive.hpp"
+#include "kinfer/io/files/zip_archive.hpp"
 
 #include <zlib.h>
 

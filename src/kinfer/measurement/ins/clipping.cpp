@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/measurement/clipping.hpp"
+#include "kinfer/measurement/ins/clipping.hpp"
 
 #include <algorithm>
 #include <cmath>

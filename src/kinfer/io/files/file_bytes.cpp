@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/io/text/file_bytes.hpp"
+#include "kinfer/io/files/file_bytes.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t block_size = std::size_t{1} << 24;  // a multiple of every page size
 
-std::size_t in_blocks(std::size_t size) {
+std::size_t whole_blocks(std::size_t size) {
   return (size + block_size - 1) / block_size * block_size;
 }
 
@@ -45,7 +45,7 @@ Result<FileBytes> FileBytes::open(const std::filesystem::path& path) {
   const auto size = static_cast<std::size_t>(regular ? status.st_size : 0);
   // An address for each byte, and no memory yet.
   void* data = size > 0
-                   ? ::mmap(nullptr, in_blocks(size), PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0)
+                   ? ::mmap(nullptr, whole_blocks(size), PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0)
                    : MAP_FAILED;
   if (data == MAP_FAILED) ::close(file);
   if (!regular) return error("{}: expected a regular file (a pipe cannot be read here)", name);
@@ -103,7 +103,7 @@ FileBytes& FileBytes::operator=(FileBytes&& other) noexcept {
 
 FileBytes::~FileBytes() {
   if (file_ >= 0) ::close(file_);
-  if (data_) ::munmap(data_, in_blocks(size_));
+  if (data_) ::munmap(data_, whole_blocks(size_));
 }
 
 }  // namespace kinfer

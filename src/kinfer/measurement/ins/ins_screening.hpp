@@ -2,7 +2,7 @@
 // Screening of recordings: flags missing values, clipped peaks and spikes. Nothing is corrected.
 #pragma once
 
-#include "kinfer/measurement/ins_recording.hpp"
+#include "kinfer/measurement/ins/ins_recording.hpp"
 
 namespace kinfer {
 
