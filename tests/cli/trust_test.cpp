@@ -52,7 +52,7 @@ TEST_F(Trust, RowsAndJsonDoNotShareStandardOutput) {
   const std::string robot = source("examples/robot6/robot.toml"), ends = " --from 0,0,0,0,0,0 --to 10,0,0,0,0,0 --json";
   EXPECT_EQ(kinfer("path " + robot + ends).code, 2);
   for (const std::string& arguments : {"path " + robot + ends, "reach " + robot + " --targets t.csv --json",
-                                      "compensate " + robot + " --nominal " + robot + " --joints j.csv --json"})
+                                       "compensate " + robot + " --nominal " + robot + " --joints j.csv --json"})
     EXPECT_THAT(kinfer(arguments).err, HasSubstr("--json: needs -o FILE")) << arguments;
   EXPECT_THAT(kinfer("path " + robot + ends + " -o path.csv").out, HasSubstr("\"duration_s\""));
 }
