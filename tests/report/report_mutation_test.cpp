@@ -37,6 +37,9 @@ void mutate(ordered_json& json, Rng& rng) {
                                                   1e308,
                                                   -1e308,
                                                   1e17,
+                                                  1e99,
+                                                  -1e99,
+                                                  1e-300,
                                                   5e-324,
                                                   "",
                                                   "x",
@@ -55,6 +58,19 @@ void mutate(ordered_json& json, Rng& rng) {
   }
 }
 
+/// Coordinates and numbers of the page that are none.
+bool draws_numbers(const std::string& html) {
+  static const std::array<std::string, 2> none{"nan", "inf"};
+  static const std::string before = " \"ML-,(", after = " \"ML,<)%";
+  for (const std::string& word : none)
+    for (std::size_t at = html.find(word); at != std::string::npos; at = html.find(word, at + 1)) {
+      const bool begins = at > 0 && before.find(html[at - 1]) != std::string::npos;
+      const bool ends = at + 3 < html.size() && after.find(html[at + 3]) != std::string::npos;
+      if (begins && ends) return false;
+    }
+  return true;
+}
+
 TEST(Report, AMutatedFileGivesAReportOrOneSentence) {
   const std::array originals{calibration_json(calibration_evidence(rich_calibration(), rich_provenance())),
                              identification_json(identification_evidence(rich_identification(), rich_provenance()))};
@@ -66,6 +82,7 @@ TEST(Report, AMutatedFileGivesAReportOrOneSentence) {
     const auto html = report_of_file(json.dump());
     reports += html ? 1 : 0;
     EXPECT_TRUE(html || html.error().what.starts_with("evidence.json: "));
+    if (html) EXPECT_TRUE(draws_numbers(*html)) << seed;
   }
   EXPECT_GT(reports, 100);
   EXPECT_LT(reports, 900);

@@ -18,7 +18,7 @@ double exaggeration(const std::vector<PlotRow>& rows, double size) {
   for (const PlotRow& row : rows)
     if (row.error_before) lengths.push_back(row.error_before->norm());
   const double typical = quantile(finite_sorted(lengths), 0.5);
-  return round_down(0.1 * size / (typical > 0.0 ? typical : 1e-3));
+  return round_down(0.1 * size / (typical > 1e-12 ? typical : 1e-3));
 }
 
 void draw_errors(svg::Scene& scene, const std::vector<PlotRow>& rows, ErrorVector error, double times,

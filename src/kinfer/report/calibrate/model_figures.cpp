@@ -94,7 +94,7 @@ std::string singular_value_plot(const CalibrationEvidence& evidence) {
   plot.across(1.0, "border", "above: determined by the data");
   for (Eigen::Index i = 0; i < values.size(); ++i)
     plot.dot(static_cast<double>(i + 1), std::max(values[i], y.low), 3.6, values[i] > 1.0 ? "fill-after" : "fill-open",
-             {}, fmt::format("combination {}: {:.3g}", i + 1, values[i]));
+             {}, fmt::format("combination {}: {}", i + 1, html::short_number(values[i])));
   return plot.svg("Singular values in units of noise and tolerance");
 }
 

@@ -12,6 +12,7 @@
 namespace kinfer::report::svg {
 namespace {
 
+constexpr double farthest = 1e6;                                        // units of a drawing; beyond, nothing is seen
 constexpr double left = 58.0, right = 12.0, top = 12.0, bottom = 44.0;  // margins around the plot area
 
 double place(const Axis& axis, double value) {
@@ -46,7 +47,8 @@ std::string title_of(std::string_view tip) {
 }  // namespace
 
 std::string coordinate(double value) {
-  std::string text = fmt::format("{:.1f}", value);
+  if (std::isnan(value)) value = 0.0;  // of an axis without extent or an altered file: still a drawing
+  std::string text = fmt::format("{:.1f}", std::clamp(value, -farthest, farthest));
   if (text.ends_with(".0")) text.resize(text.size() - 2);
   return text == "-0" ? "0" : text;
 }
@@ -103,6 +105,7 @@ double Plot::py(double y) const {
 }
 
 void Plot::bar(double x0, double x1, double y0, double y1, std::string_view kind, std::string_view tip) {
+  if (!std::isfinite(x0 + x1) || !std::isfinite(y0 + y1)) return;
   marks_ += fmt::format("<rect class=\"{}\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\">{}</rect>", kind,
                         coordinate(px(x0)), coordinate(py(y1)), coordinate(std::max(0.5, px(x1) - px(x0))),
                         coordinate(std::max(0.0, py(y0) - py(y1))), title_of(tip));
@@ -110,6 +113,7 @@ void Plot::bar(double x0, double x1, double y0, double y1, std::string_view kind
 
 void Plot::dot(double x, double y, double radius, std::string_view kind, std::string_view attributes,
                std::string_view tip) {
+  if (!std::isfinite(x) || !std::isfinite(y)) return;
   const std::string title = title_of(tip);
   marks_ +=
       fmt::format("<circle class=\"{}\" cx=\"{}\" cy=\"{}\" r=\"{}\"{}{}", kind, coordinate(px(x)), coordinate(py(y)),
@@ -146,6 +150,7 @@ void Plot::area(const std::vector<double>& x, const std::vector<double>& low, co
 }
 
 void Plot::across(double y, std::string_view kind, std::string_view words) {
+  if (!std::isfinite(y)) return;
   const std::string at = coordinate(py(y));
   marks_ += fmt::format("<path class=\"{}\" d=\"M{} {}H{}\"/><text class=\"level\" x=\"{}\" y=\"{}\">{}</text>", kind,
                         coordinate(left), at, coordinate(size_.width - right), coordinate(size_.width - right - 4),
@@ -153,11 +158,13 @@ void Plot::across(double y, std::string_view kind, std::string_view words) {
 }
 
 void Plot::window(double x0, double x1, std::string_view kind) {
+  if (!std::isfinite(x0 + x1)) return;
   marks_ += fmt::format("<rect class=\"{}\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>", kind, coordinate(px(x0)),
                         coordinate(top), coordinate(px(x1) - px(x0)), coordinate(size_.height - top - bottom));
 }
 
 void Plot::words(double x, double y, std::string_view kind, std::string_view text) {
+  if (!std::isfinite(x) || !std::isfinite(y)) return;
   marks_ += fmt::format("<text class=\"{}\" x=\"{}\" y=\"{}\">{}</text>", kind, coordinate(px(x)), coordinate(py(y)),
                         html::escape(text));
 }
@@ -205,13 +212,13 @@ std::string heat_map(const std::vector<std::string>& names, const std::vector<st
                           coordinate(middle + 4), coordinate(margin - 5), html::escape(names[i]));
     for (std::size_t k = 0; k < names.size(); ++k) {
       const double v = values[i][k];
-      if (!(std::abs(v) >= faint)) continue;
+      if (!(std::abs(v) >= faint) || !std::isfinite(v)) continue;
       marks += fmt::format(
           "<rect class=\"{}\" fill-opacity=\"{:.2f}\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\">{}</rect>",
           i == k  ? "self"
           : v > 0 ? "plus"
                   : "minus",
-          std::abs(v), coordinate(margin + cell * static_cast<double>(k)),
+          std::min(std::abs(v), 1.0), coordinate(margin + cell * static_cast<double>(k)),
           coordinate(margin + cell * static_cast<double>(i)), coordinate(cell - 1), coordinate(cell - 1),
           i == k || std::abs(v) < strong ? "" : title_of(fmt::format("{} and {}: {:.2f}", names[i], names[k], v)));
     }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 
 #include "kinfer/base/angle.hpp"
@@ -20,14 +21,27 @@ Point2 project(const Vec3& point) {
   return {p.x(), -p.z()};
 }
 
+bool is_drawable(const Vec3& point) {
+  return point.allFinite() && point.cwiseAbs().maxCoeff() < 1e9;  // [m]; sums and scales of them stay finite
+}
+
+std::vector<Vec3> drawable(std::vector<Vec3> points) {
+  std::erase_if(points, std::not_fn(is_drawable));
+  return points;
+}
+
 }  // namespace
 
 void Scene::line(const std::vector<Vec3>& points, std::string_view kind) {
-  marks_.push_back({Shape::line, points, 0.0, std::string(kind), {}});
+  marks_.push_back({Shape::line, drawable(points), 0.0, std::string(kind), {}});
 }
 
 void Scene::strokes(const std::vector<Vec3>& pairs, std::string_view kind) {
-  if (!pairs.empty()) marks_.push_back({Shape::strokes, pairs, 0.0, std::string(kind), {}});
+  Mark mark{Shape::strokes, {}, 0.0, std::string(kind), {}};
+  for (std::size_t i = 0; i + 1 < pairs.size(); i += 2)
+    if (is_drawable(pairs[i]) && is_drawable(pairs[i + 1]))
+      mark.points.insert(mark.points.end(), {pairs[i], pairs[i + 1]});
+  if (!mark.points.empty()) marks_.push_back(std::move(mark));
 }
 
 void Scene::dot(const Vec3& point, double radius, std::string_view kind) {
@@ -35,11 +49,12 @@ void Scene::dot(const Vec3& point, double radius, std::string_view kind) {
 }
 
 void Scene::dots(const std::vector<Vec3>& points, double radius, std::string_view kind) {
-  if (!points.empty()) marks_.push_back({Shape::dots, points, radius, std::string(kind), {}});
+  if (const std::vector<Vec3> shown = drawable(points); !shown.empty())
+    marks_.push_back({Shape::dots, shown, radius, std::string(kind), {}});
 }
 
 void Scene::name(const Vec3& point, std::string_view words) {
-  marks_.push_back({Shape::name, {point}, 0.0, "name", std::string(words)});
+  if (is_drawable(point)) marks_.push_back({Shape::name, {point}, 0.0, "name", std::string(words)});
 }
 
 double Scene::radius() const {
