@@ -86,6 +86,26 @@ TEST_F(Trust, FilesBeyondTheLimitOfTheirSizeLeaveNothing) {
   EXPECT_TRUE(hidden().empty());
 }
 
+TEST_F(Trust, WithoutAnotherDescriptorNothingIsLeft) {
+  ASSERT_EQ(kinfer(poses("data")).code, 0);
+  for (const int limit : {4, 5, 6}) {
+    const Outcome run = kinfer(fmt::format("--version >/dev/null; ulimit -n {}; '" KINFER_PROGRAM "' ", limit) +
+                               poses("out", "--quiet"));
+    if (run.code != 0) EXPECT_FALSE(fs::exists(in("out"))) << limit;
+    EXPECT_TRUE(hidden().empty()) << limit;
+  }
+}
+
+TEST_F(Trust, ASmallStackIsEnlargedOrASentence) {
+  ASSERT_EQ(kinfer(poses("data")).code, 0);
+  const std::string calibrate =
+      "'" KINFER_PROGRAM "' calibrate --robot data/robot.toml --data data/poses.csv --out out --quiet";
+  EXPECT_LE(kinfer("--version >/dev/null; ulimit -S -s 128; " + calibrate).code, 1);
+  const Outcome refused = kinfer("--version >/dev/null; ulimit -s 128; " + calibrate);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("the stack is limited to 128 kB"));
+}
+
 TEST_F(Trust, APlanBesideADeviceIsRefused) {
   const Outcome run = kinfer("plan --robot " + source("examples/robot6/robot.toml") + " --poses 8 -o /dev/null");
   EXPECT_EQ(run.code, 2);
@@ -95,14 +115,17 @@ TEST_F(Trust, APlanBesideADeviceIsRefused) {
 /// Log rotation: the log was mapped, and the program ended by SIGBUS.
 TEST_F(Trust, ALogThatIsCutWhileItIsReadIsASentence) {
   std::string log = "t,a_ax,a_ay,a_az,a_gx,a_gy,a_gz\n";
-  for (int i = 0; i < 900000; ++i) log += fmt::format("{},0.125,-0.25,9.8125,0.0{},0,-0.5\n", 0.01 * i, i % 7);
+  for (int i = 0; i < 900000; ++i)
+    log += fmt::format("{},0.125,-0.25,9.8125,0.0{:05},0,-0.5\n", 0.01 * i, i * 7919LL % 99991);
   bool was_cut = false;
   for (int delay = 2; delay < 40; delay += 2) {
     write(in("log.csv"), log);
     const Outcome run = kinfer(fmt::format(
-        "orient log.csv -o q.csv --quiet & (sleep 0.0{:02}; : > log.csv); wait $!; code=$?; (exit $code)", delay));
+        "orient log.csv -o q.csv --quiet 2>said.txt & (sleep 0.0{:02}; : > log.csv); wait $!; code=$?; (exit $code)",
+        delay));
     EXPECT_THAT(run.code, ::testing::AnyOf(0, 2)) << delay;
-    was_cut |= slurp(in("err.txt")).empty() && run.code == 2;
+    was_cut |= run.code == 2;
+    EXPECT_EQ(run.code == 2, slurp(in("said.txt")).starts_with("kinfer: log.csv: ")) << slurp(in("said.txt"));
     if (run.code == 0) break;
   }
   EXPECT_TRUE(was_cut);

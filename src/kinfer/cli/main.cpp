@@ -128,6 +128,7 @@ int main(int argc, char** argv) {
   ::mallopt(M_TRIM_THRESHOLD, 256 << 20);
   try {
     kinfer::cli::prepare_process();
+    if (!kinfer::cli::enlarge_stack()) return kinfer::cli::exit_bad_input;
     const int code = kinfer::cli::Program().run({argv + std::min(argc, 1), argv + argc});
     return kinfer::cli::flush_standard_output() ? code : kinfer::cli::exit_bad_input;
   } catch (const std::exception&) {

@@ -92,6 +92,13 @@ void rescue_late_files(const fs::path& from, const fs::path& to, const Names& dr
   for (const fs::path& path : late) fs::rename(path, to / path.filename(), ignored);
 }
 
+/// File by file, which needs no descriptor: a process that may open no more leaves nothing either.
+void remove_staging(const fs::path& staging, const Names& names) {
+  std::error_code ignored;
+  for (const std::string& name : names) ::unlink((staging / name).c_str());
+  if (::rmdir(staging.c_str()) != 0) fs::remove_all(staging, ignored);
+}
+
 bool are_same_folder(int open, const fs::path& path) {
   struct stat one {
   }, other{};
@@ -130,7 +137,7 @@ OutputFolder::OutputFolder(OutputFolder&& other) noexcept
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
-  if (!staging_.empty()) fs::remove_all(staging_, ignored);
+  if (!staging_.empty()) remove_staging(staging_, names_);
   temporary_.clear();
   for (const auto& folder : made_)  // remove() refuses to delete a folder that is not empty
     if (!fs::remove(folder, ignored)) break;

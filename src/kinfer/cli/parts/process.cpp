@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <pthread.h>
 #include <sys/resource.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -72,6 +73,24 @@ void prepare_process() {
     ::sigaction(signal, nullptr, &before);
     if (before.sa_handler != SIG_IGN) on(signal, end_interrupted);  // nohup, or a shell's background job
   }
+}
+
+bool enlarge_stack() {
+  constexpr rlim_t enough = 1 << 20, usual = 8 << 20;  // the suite needs 0.25 MB; of Eigen's products 128 kB at once
+  rlimit bounds{};
+  if (::getrlimit(RLIMIT_STACK, &bounds) != 0) return true;
+  bounds.rlim_cur = std::max(bounds.rlim_cur, std::min(bounds.rlim_max, usual));
+  ::setrlimit(RLIMIT_STACK, &bounds);
+  pthread_attr_t threads;
+  if (std::size_t size = 0; ::pthread_getattr_default_np(&threads) == 0) {
+    ::pthread_attr_getstacksize(&threads, &size);
+    ::pthread_attr_setstacksize(&threads, std::max<std::size_t>(size, usual));
+    ::pthread_setattr_default_np(&threads);
+    ::pthread_attr_destroy(&threads);
+  }
+  if (bounds.rlim_cur >= enough) return true;
+  print_message("kinfer: the stack is limited to {} kB; 1024 kB are needed (ulimit -s)\n", bounds.rlim_cur / 1024);
+  return false;
 }
 
 ProcessLimits process_limits() {

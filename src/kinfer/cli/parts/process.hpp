@@ -9,6 +9,10 @@ namespace kinfer::cli {
 /// their place.
 void prepare_process();
 
+/// Raises the limits of the stack, of threads as well, to the usual 8 MB as far as that is allowed. False, with a
+/// sentence on standard error, where less than 1 MB is left.
+bool enlarge_stack();
+
 struct ProcessLimits {
   double memory = 0.0;  ///< [GB]; 0: unlimited
   double time = 0.0;    ///< [s]; 0: unlimited
