@@ -105,6 +105,33 @@ TEST_F(Track, GivesTheSameRowsHoweverTheLogArrives) {
   EXPECT_THAT(lines.out, StartsWith("{\"t\":0,\"q\":["));
 }
 
+TEST_F(Track, FollowsALogThatIsRotated) {
+  identify();
+  ASSERT_EQ(shell("kinfer track machine drive/imu.csv --quiet > file.csv").code, 0);
+  const std::string file = slurp(in("file.csv"));
+  const auto after = [](std::size_t rows) {
+    return "for i in $(seq 600); do [ $(wc -l < followed.csv) -ge " + std::to_string(rows) +
+           " ] && break; sleep 0.1; done; ";
+  };
+  for (const std::string rotate :
+       {": > growing.csv; (head -1 drive/imu.csv; tail -n +1502 drive/imu.csv) >> growing.csv; ",
+        "mv growing.csv old.csv; (head -1 drive/imu.csv; tail -n +1502 drive/imu.csv) > new; "
+        "mv new growing.csv; "}) {
+    const Outcome run = shell(
+        "head -1501 drive/imu.csv > growing.csv; kinfer track machine growing.csv --follow > "
+        "followed.csv 2> said.txt & " +
+        after(1501) + rotate + after(lines_of(file)) + "kill -INT $!; wait $!");
+    EXPECT_EQ(run.code, 0);
+    EXPECT_EQ(slurp(in("followed.csv")), file);
+    EXPECT_THAT(slurp(in("said.txt")), HasSubstr("growing.csv: the log began anew after "));
+  }
+  const Outcome again = shell(
+      "head -1501 drive/imu.csv > growing.csv; kinfer track machine growing.csv --follow --quiet > followed.csv & " +
+      after(1501) + ": > growing.csv; sleep 0.2; head -300 drive/imu.csv >> growing.csv; wait $!");
+  EXPECT_EQ(again.code, 2);
+  EXPECT_THAT(again.err, HasSubstr("the log began anew, and its time with it"));
+}
+
 TEST_F(Track, SmoothsAWholeLog) {
   identify();
   const Outcome run = kinfer("track machine drive/imu.csv --out work --smooth");

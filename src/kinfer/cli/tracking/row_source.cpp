@@ -2,10 +2,10 @@
 #include "kinfer/cli/tracking/row_source.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -60,41 +60,105 @@ class ByteSource {
   ~ByteSource() {
     if (file_ > STDIN_FILENO) ::close(file_);
   }
-  ByteSource(ByteSource&& other) noexcept : file_(std::exchange(other.file_, -1)), name_(std::move(other.name_)) {}
-  ByteSource& operator=(ByteSource&&) = delete;
+  ByteSource(ByteSource&& other) noexcept
+      : file_(std::exchange(other.file_, -1)), offset_(other.offset_), name_(std::move(other.name_)) {}
+  ByteSource& operator=(ByteSource&& other) noexcept {
+    std::swap(file_, other.file_), std::swap(name_, other.name_), offset_ = other.offset_;
+    return *this;
+  }
 
   /// What has arrived, at least one byte unless the end is reached; waits for standard input.
   /// Errors: an input error of the device.
   Result<std::string_view> read() {
     const ssize_t count = ::read(file_, buffer_.data(), buffer_.size());
     if (count < 0 && errno != EINTR) return error("{}: reading stopped with an input error", name_);
+    offset_ += std::max<off_t>(count, 0);
     return std::string_view(buffer_.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
+  }
+
+  /// Log rotation: the file was cut to less than was read, or another one stands in its place.
+  bool has_begun_anew() const {
+    struct stat open {
+    }, named{};
+    if (file_ == STDIN_FILENO || ::fstat(file_, &open) != 0) return false;
+    if (S_ISREG(open.st_mode) && open.st_size < offset_) return true;
+    return ::stat(name_.c_str(), &named) == 0 && (named.st_ino != open.st_ino || named.st_dev != open.st_dev);
   }
 
  private:
   ByteSource(int file, std::string name) : file_(file), name_(std::move(name)) {}
   int file_;
+  off_t offset_ = 0;  ///< bytes read
   std::string name_;
-  std::array<char, 1 << 16> buffer_{};
+  std::vector<char> buffer_ = std::vector<char>(1 << 16);
+};
+
+/// Rows of a file that may begin anew while it is followed; of all of them the times increase.
+class RowStream {
+ public:
+  RowStream(const RowSource& source, const RowSink& sink)
+      : source_(source), sink_(sink), name_(source.logs.front() == "-" ? "standard input" : source.logs.front()) {}
+
+  Result<void> add(std::string_view piece) { return reader_.add(piece, row_); }
+
+  Result<void> finish() { return reader_.finish(row_); }
+
+  /// What stood in the file is complete, and read; a line that was cut is left out.
+  void begin_anew() {
+    remarks_.push_back(fmt::format("{}: the log began anew after {:.3f} s and was followed on", name_, last_time_));
+    reader_ = InsRowReader(source_.sensors, name_, source_.times);
+    is_continued_ = true;
+  }
+
+  std::vector<std::string> remarks() const {
+    std::vector<std::string> all = remarks_;
+    all.insert(all.end(), reader_.remarks().begin(), reader_.remarks().end());
+    return all;
+  }
+
+ private:
+  Result<void> pass_on(const InsRow& row) {
+    if (is_continued_ && source_.times == RowTimes::increasing && row.time <= last_time_)
+      return error("{}: the log began anew, and its time with it: {:.3f} s after {:.3f} s; track it as another run",
+                   name_, row.time, last_time_);
+    is_continued_ = false;
+    last_time_ = row.time;
+    return sink_.row(row);
+  }
+
+  const RowSource& source_;
+  const RowSink& sink_;
+  std::string name_;
+  InsRowReader reader_{source_.sensors, name_, source_.times};
+  InsRowReader::Sink row_ = [this](const InsRow& row) { return pass_on(row); };
+  std::vector<std::string> remarks_;  // of files that ended
+  bool is_continued_ = false;         // another file's rows are to come
+  double last_time_ = 0.0;            // [s]
 };
 
 /// The bytes as they arrive, until the end or an interruption.
 Result<std::vector<std::string>> stream(const RowSource& source, const RowSink& sink) {
   const std::string& path = source.logs.front();
   KINFER_TRY(bytes, ByteSource::open(path));
-  InsRowReader reader(source.sensors, path == "-" ? "standard input" : path, source.times);
+  RowStream rows(source, sink);
   // Where rows go on arriving, an interrupt is how the user says that this is all; of a whole file it ends the program.
   std::optional<InterruptionGuard> guard;
   if (source.mode == ReadMode::follow || path == "-") guard.emplace();
   while (!guard || !interrupted) {
+    const bool is_over = source.mode == ReadMode::follow && bytes.has_begun_anew();  // before its end is read
     KINFER_TRY(piece, bytes.read());
-    if (auto done = reader.add(piece, sink.row); !done) return forward_error(done.error());
+    if (auto done = rows.add(piece); !done) return forward_error(done.error());
     if (!piece.empty()) sink.pause();
-    if (piece.empty() && (source.mode == ReadMode::once || path == "-")) break;
-    if (piece.empty()) std::this_thread::sleep_for(poll_period);
+    if (!piece.empty()) continue;
+    if (source.mode == ReadMode::once || path == "-") break;
+    std::this_thread::sleep_for(poll_period);
+    if (!is_over) continue;
+    KINFER_TRY(next, ByteSource::open(path));
+    bytes = std::move(next);
+    rows.begin_anew();
   }
-  if (auto done = reader.finish(sink.row); !done) return forward_error(done.error());
-  return reader.remarks();
+  if (auto done = rows.finish(); !done) return forward_error(done.error());
+  return rows.remarks();
 }
 
 bool is_csv(const std::string& path) {
