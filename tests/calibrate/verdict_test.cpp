@@ -87,6 +87,21 @@ TEST(Verdict, ErrorsThatNoToleranceOfTheRobotCouldMakeAreNotOfUse) {
   c.tolerated_error = 0.03;
   expect_verdict(c, CalibrationReason::beyond_tolerances, Usability::do_not_use,
                  "more than the tolerances of the robot's model could make");
+  c.noise_is_stated = false;
+  expect_verdict(c, CalibrationReason::unexplained, Usability::use_with_care,
+                 "unless the instrument is that inaccurate (state its sigma)");
+}
+
+TEST(Verdict, AFaultThatIsNotCorrectedIsNotOfUse) {
+  Calibration c = with_errors(40e-3, 39e-3, 39e-3);
+  c.findings.push_back({.kind = FindingKind::base_moved,
+                        .severity = Severity::fault,
+                        .rows = {3, 4, 5, 6, 7},
+                        .values = {{"distance_m", 0.076}}});
+  expect_verdict(c, CalibrationReason::fault_remains, Usability::do_not_use,
+                 "in rows 3-7 the tool is 76.0 mm elsewhere");
+  c.findings.front().applied = true;
+  EXPECT_EQ(judge(c), CalibrationReason::improves_nominal);
 }
 
 TEST(Verdict, ARobotFarFromItsNominalModelIsUsedWithCare) {

@@ -67,15 +67,28 @@ TEST(Correlation, WhitensTheSixCoordinatesOfAPose) {
 
 TEST(Approach, IsTheSignOfTheLastMovement) {
   PoseSet set;
-  set.joints = (MatrixXd(2, 5) << 0.0, 0.5, 0.5, 0.2, 0.2 + 5e-5,  //
+  set.joints = (MatrixXd(2, 5) << 0.0, 0.5, 0.5, 0.2, 0.2 + 4e-5,  //
                 1.0, 1.0, 0.9, 1.5, 1.4)
                    .finished();
-  const MatrixXd expected = (MatrixXd(2, 5) << 0, 1, 0, -1, 0,  //
+  const MatrixXd expected = (MatrixXd(2, 5) << 0, 1, 1, -1, -1,  //
                              0, 0, -1, 1, -1)
                                 .finished();
   EXPECT_EQ(with_approach(set).approach, expected);
+  set.joints *= 1e-3;  // in no unit
+  EXPECT_EQ(with_approach(set).approach, expected);
+  set.pose = {0, 1, 2, 3, 3};  // the last row repeats the pose: it has not moved
+  EXPECT_EQ(with_approach(set).approach.col(4), expected.col(3));
   set.joints.resize(2, 0);
   EXPECT_EQ(with_approach(set).approach.size(), 0);
+}
+
+TEST(Approach, OfSlowMovementsIsTheirSenseAndScatterHasNone) {
+  PoseSet set;
+  set.joints = MatrixXd::Zero(1, 2001);
+  for (int i = 1; i <= 2000; ++i) set.joints(0, i) = i <= 1000 ? 5e-5 * i : 5e-2 - 5e-5 * (i - 1000);
+  set.joints(0, 500) -= 2e-6, set.joints(0, 501) -= 5.2e-5;
+  const MatrixXd approach = with_approach(set).approach;
+  for (int i = 1; i <= 2000; ++i) EXPECT_EQ(approach(0, i), i <= 1000 ? 1.0 : -1.0) << i;
 }
 
 TEST(HasMeasurements, IsTrueForOneOfAnyKind) {

@@ -88,7 +88,7 @@ Result<CalibrationTask> prepare_task(const Diagnosis& diagnosis) {
   CalibrationTask task = diagnosis.corrected_task;
   KINFER_TRY(placed, with_fixtures(task.nominal, task.data));
   task.nominal = placed.chain;
-  task.data = with_commanded_poses(without_copies(with_approach(placed.data)), task.nominal);
+  task.data = with_approach(with_commanded_poses(without_copies(placed.data), task.nominal));
   return task;
 }
 
@@ -134,9 +134,9 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
     calibration.noise_holdout_rms = expected->by_noise;
   }
   calibration.tolerance_factor = fit.scale.factor;
-  if (noise_is_stated(task))
-    calibration.tolerated_error =
-        primary_measurement_kind(task.data) ? max_plausible_error(task) : max_plausible_angle(task);
+  calibration.noise_is_stated = noise_is_stated(task);
+  calibration.tolerated_error =
+      primary_measurement_kind(task.data) ? max_plausible_error(task) : max_plausible_angle(task);
   if (const auto prediction = make_prediction_model(evaluation, fit.estimate, fit.beyond, options.threads)) {
     calibration.prediction = with_unobserved_tools(prediction->model, fit.estimate.chain, task.tolerances, fitted);
     calibration.predicted_holdout_rms = prediction->holdout_rms;

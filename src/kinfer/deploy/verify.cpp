@@ -105,7 +105,7 @@ Result<Verification> verify(const Chain& given_chain, const Tolerances& toleranc
   if (given_data.points.empty()) return error("the data contain no measured positions to verify against");
   KINFER_TRY(placed, calibrate::with_fixtures(given_chain, given_data));
   const Chain& chain = placed.chain;
-  const PoseSet data = with_commanded_poses(with_approach(placed.data), chain);
+  const PoseSet data = with_approach(with_commanded_poses(placed.data, chain));
   if (const auto several = expect_several_poses(data); !several) return forward_error(several.error());
   Verification v;
   v.unmodified = error_statistics(point_errors(chain, without_fading(data, chain, chain, prediction)));

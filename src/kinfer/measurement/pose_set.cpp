@@ -104,13 +104,21 @@ PoseSet select(const PoseSet& from, const std::vector<int>& rows) {
 }
 
 PoseSet with_approach(PoseSet set) {
-  constexpr double still = 1e-4;  // [rad] or [m]: below this a joint counts as at rest
+  constexpr double still = 1e-4;  // of the range
   set.approach = MatrixXd::Zero(set.joints.rows(), set.joints.cols());
-  for (Eigen::Index row = 1; row < set.rows(); ++row)
+  if (set.rows() == 0) return set;
+  const VectorXd scatter = still * (set.joints.rowwise().maxCoeff() - set.joints.rowwise().minCoeff());
+  VectorXd farthest = set.joints.col(0);  // in the sense of the last movement
+  for (Eigen::Index row = 1; row < set.rows(); ++row) {
+    set.approach.col(row) = set.approach.col(row - 1);
+    const auto here = static_cast<std::size_t>(row);
+    if (!set.pose.empty() && set.pose[here] == set.pose[here - 1]) continue;
     for (Eigen::Index k = 0; k < set.joints.rows(); ++k) {
-      const double step = set.joints(k, row) - set.joints(k, row - 1);
-      if (std::abs(step) > still) set.approach(k, row) = step > 0.0 ? 1.0 : -1.0;
+      const double step = set.joints(k, row) - farthest[k], sense = step > 0.0 ? 1.0 : -1.0;
+      if (std::abs(step) <= scatter[k] && sense != set.approach(k, row)) continue;
+      if (step != 0.0) set.approach(k, row) = sense, farthest[k] = set.joints(k, row);
     }
+  }
   return set;
 }
 

@@ -63,8 +63,9 @@ std::vector<Vec3> point_positions(const PoseMeasurements& measured);
 /// if both of its rows are listed.
 PoseSet select(const PoseSet& from, const std::vector<int>& rows);
 
-/// The set with the direction of approach of each joint: the sign of its change since the previous row, 0 in the first
-/// row and where it did not move.
+/// The set with the direction of approach of each joint: the sense of its last movement up to each row, 0 before the
+/// first one. A joint that rests stays on its flank. What returns by less than 1e-4 of the joint's range is scatter of
+/// its readings and no movement; so is all between rows of one commanded pose, where these are known.
 PoseSet with_approach(PoseSet set);
 
 /// A covariance as standard deviations along its principal axes: covariance = axes diag(sd²) axesᵀ.

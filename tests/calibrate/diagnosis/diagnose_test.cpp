@@ -409,6 +409,22 @@ TEST(Diagnosis, ARobotFileInMillimetresReadAsMetresIsFound) {
   const auto at = std::ranges::find(diagnosis.findings, FindingKind::robot_length_unit, &Finding::kind);
   ASSERT_NE(at, diagnosis.findings.end()) << listed(diagnosis.findings);
   EXPECT_GT(at->values.number("reach_m"), 100.0);
+  EXPECT_EQ(at->severity, Severity::fault);
+}
+
+TEST(Diagnosis, AStageOfTheSizeOfItsPointsIsNoFault) {
+  CalibrationTask task = measured_robot(arm6());
+  for (Joint& joint : task.nominal.joints) {
+    auto& link = std::get<MdhLink>(joint.link);
+    link.a *= 1e-4, link.d *= 1e-4;
+  }
+  task.nominal.tool.xyz *= 1e-4, task.nominal.base.xyz *= 1e-4;
+  for (PointMeasurement& point : task.data.points) point.position *= 1e-4;
+  task.data = select(task.data, {0, 1, 2, 3, 4, 5, 6});  // too few to see that they belong together
+  const Diagnosis diagnosis = diagnose(task);
+  const auto at = std::ranges::find(diagnosis.findings, FindingKind::robot_length_unit, &Finding::kind);
+  ASSERT_NE(at, diagnosis.findings.end()) << listed(diagnosis.findings);
+  EXPECT_EQ(at->severity, Severity::warning);
 }
 
 TEST(Diagnosis, JointPositionsBeyondTheLimitsAreNoted) {

@@ -42,12 +42,14 @@ CalibrationReason judge_against_nominal(const Calibration& calibration) {
                         &after = reported_errors(calibration, calibration.after);
   if (calibration.least_motion <= thresholds::no_motion) return CalibrationReason::collapsed;
   if (calibration.contradiction) return CalibrationReason::contradictory;
+  if (std::ranges::any_of(calibration.findings, invalidates_result)) return CalibrationReason::fault_remains;
   const bool unchanged = nothing_has_moved(calibration);
   if (!unchanged && !(after.mean < before.mean)) return CalibrationReason::no_improvement;
   if (!(final_errors(calibration).rms <= thresholds::same_solution_ratio * after.rms))
     return CalibrationReason::not_validated;
   if (exceeds_expectation(calibration, after.rms)) return CalibrationReason::unmodelled_effects;
-  if (after.rms > calibration.tolerated_error) return CalibrationReason::beyond_tolerances;
+  if (after.rms > calibration.tolerated_error)
+    return calibration.noise_is_stated ? CalibrationReason::beyond_tolerances : CalibrationReason::unexplained;
   if (!unchanged && !is_proven(calibration)) return CalibrationReason::unproven;
   if (calibration.noise_holdout_rms && !(after.rms <= thresholds::expectation_ratio * *calibration.noise_holdout_rms))
     return CalibrationReason::beyond_noise;
@@ -73,6 +75,7 @@ Usability usability_of(CalibrationReason reason, const std::optional<UnobservedL
     case CalibrationReason::unproven:
     case CalibrationReason::far_from_nominal:
     case CalibrationReason::beyond_noise:
+    case CalibrationReason::unexplained:
       return Usability::use_with_care;
     case CalibrationReason::improves_nominal:
     case CalibrationReason::generalises:
@@ -85,6 +88,7 @@ Usability usability_of(CalibrationReason reason, const std::optional<UnobservedL
     case CalibrationReason::beyond_tolerances:
     case CalibrationReason::contradictory:
     case CalibrationReason::collapsed:
+    case CalibrationReason::fault_remains:
       break;
   }
   return Usability::do_not_use;

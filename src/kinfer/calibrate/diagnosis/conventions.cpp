@@ -236,15 +236,24 @@ class HypothesisSearch {
   Explanation unmodified_;
 };
 
-/// A reach of a few millimetres or a hundred metres: the robot file, not the measurement, has the wrong unit.
+/// A robot in another unit leaves errors as large as the points' spread.
+bool has_the_size_of_its_points(const CalibrationTask& task) {
+  if (task.data.points.empty()) return false;
+  const PoseSet rows = thin_pose_set(task.data, thresholds::hypothesis_rows);
+  const auto fit = fit_frames_quickly(task.nominal, rows);
+  return fit && fit->median_error < thresholds::fitting_part_of_spread * rms_spread(point_positions(rows));
+}
+
+/// A reach of a few millimetres or a hundred metres: the robot file, not the measurement, has the wrong unit, unless
+/// the points are as far apart.
 void check_robot_size(DiagnosisState& state) {
   const Chain& chain = state.task.nominal;
   double reach = chain.tool.xyz.norm();
   for (const JointPlacement& joint : joint_placements(chain, VectorXd::Zero(dof(chain))))
     reach = std::max(reach, (joint.frame.position - chain.base.xyz).norm());
   if (reach > thresholds::smallest_reach && reach < thresholds::largest_reach) return;
-  add_finding(state,
-              {.kind = FindingKind::robot_length_unit, .severity = Severity::fault, .values = {{"reach_m", reach}}});
+  const Severity severity = has_the_size_of_its_points(state.task) ? Severity::warning : Severity::fault;
+  add_finding(state, {.kind = FindingKind::robot_length_unit, .severity = severity, .values = {{"reach_m", reach}}});
 }
 
 }  // namespace

@@ -65,6 +65,7 @@ struct Calibration {
   /// Largest error [m], or [rad] of orientations, that the tolerances of the nominal model could make; infinite where
   /// that is not known.
   double tolerated_error = std::numeric_limits<double>::infinity();
+  bool noise_is_stated = true;  ///< the instrument's, in the unit of `tolerated_error`
   std::optional<double>
       predicted_holdout_rms{};  ///< [m] the same with the model error of `prediction`; none where that is not known
   /// Probability with which a model that is no better than the nominal one looks as much better on as many held-out

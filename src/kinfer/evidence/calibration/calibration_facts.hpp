@@ -34,6 +34,8 @@ enum class CalibrationReason {
   beyond_noise,        ///< better, but worse than the instrument's noise explains; few rows cannot tell why
   contradictory,       ///< kinds of measurements that were fitted together disagree by far more than their noise
   collapsed,           ///< explained only by a robot that does not move where the nominal one does
+  fault_remains,       ///< a fault of the data was found that kinfer cannot correct
+  unexplained,         ///< better, but worse than the tolerances could make, by an instrument that nothing is known of
   unchanged,           ///< a refit of offsets finds none that has moved: the earlier model still holds
 };
 std::string_view name(CalibrationReason reason);

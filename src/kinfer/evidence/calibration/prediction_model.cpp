@@ -29,7 +29,10 @@ double region_distance(const PredictionModel& model, ConstVectorRef q) {
 }
 
 double correction_weight(const PredictionModel& model, ConstVectorRef q) {
-  if (model.beyond.size() == 0) return 1.0;
+  return model.beyond.size() == 0 ? 1.0 : fading_weight(model, q);
+}
+
+double fading_weight(const PredictionModel& model, ConstVectorRef q) {
   const double outside = std::max(0.0, region_distance(model, q) - 1.0);
   return 1.0 / (1.0 + fade * outside * outside);
 }

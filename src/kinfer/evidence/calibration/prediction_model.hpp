@@ -38,8 +38,11 @@ struct PredictionModel {
 /// Distance to the nearest of `rows` in units of `spread`, over `reach`: above 1 outside the measured region.
 double region_distance(const PredictionModel& model, ConstVectorRef q);
 
-/// weight(q) of the corrections, 1 where it was measured.
+/// weight(q) of the corrections: 1 where it was measured, and everywhere if none of them fades.
 double correction_weight(const PredictionModel& model, ConstVectorRef q);
+
+/// weight(q) of corrections that fade.
+double fading_weight(const PredictionModel& model, ConstVectorRef q);
 
 /// How far the nearest of `rows` lie to one side of q: distance of q from their mean over their rms spread about it, in
 /// units of `spread`; rows at q itself do not count. Zero with fewer than four rows. Outside the convex hull of the

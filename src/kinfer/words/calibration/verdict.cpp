@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kinfer/words/calibration/calibration.hpp"
+#include "kinfer/words/findings/findings.hpp"
 #include "kinfer/words/findings/outliers.hpp"
 #include "kinfer/words/findings/row_ranges.hpp"
 #include "kinfer/words/language.hpp"
@@ -108,6 +109,12 @@ std::string contradiction_text(const Calibration& c) {
       angle ? degrees(kind.error) : millimetres(kind.error), noise);
 }
 
+/// The first fault that stands.
+std::string fault_text(const Calibration& c) {
+  const auto fault = std::ranges::find_if(c.findings, invalidates_result);
+  return fault == c.findings.end() ? "a fault of the data stands" : words::sentence(*fault);
+}
+
 VerdictText with_remarks(const Calibration& c, const std::string& statement) {
   return {phrase(name(c.usability), "{}", verdict_headline(c)), phrase(name(c.reason), "{}", statement), remarks(c)};
 }
@@ -129,6 +136,14 @@ VerdictText parts_of_verdict(const Calibration& c) {
                           "could make, so joints and measurements do not belong together or the robot is another "
                           "one: " +
                               figures(c));
+    case CalibrationReason::unexplained:
+      return with_remarks(c,
+                          "better, but the errors that are left are more than the tolerances of the robot's model "
+                          "could make: unless the instrument is that inaccurate (state its sigma), joints and "
+                          "measurements do not belong together: " +
+                              figures(c));
+    case CalibrationReason::fault_remains:
+      return with_remarks(c, fault_text(c) + ": " + figures(c));
     case CalibrationReason::far_from_nominal:
       return with_remarks(
           c, fmt::format("the robot is {:.0f} times further from its nominal model than the tolerances say, so perhaps "

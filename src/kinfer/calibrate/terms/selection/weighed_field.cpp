@@ -2,10 +2,12 @@
 #include "kinfer/calibrate/terms/selection/weighed_field.hpp"
 
 #include <cmath>
+#include <set>
 
 #include "kinfer/calibrate/functions/chain_series.hpp"
 #include "kinfer/calibrate/functions/displacement_fields.hpp"
 #include "kinfer/calibrate/functions/thresholds.hpp"
+#include "kinfer/calibrate/prediction/measured_region.hpp"
 #include "kinfer/calibrate/terms/ablation.hpp"
 #include "kinfer/calibrate/terms/decision.hpp"
 
@@ -40,6 +42,23 @@ WeighedModel fitted_with(const SelectionData& data, const WeighedModel& model, c
   return with;
 }
 
+/// Errors of the model as it is used: outside of the rows of each split it fades to the one without the field. They
+/// are at most the mean of both, by its weight.
+HoldoutErrors faded(HoldoutErrors with, const HoldoutErrors& without, const PoseSet& rows,
+                    const std::vector<Split>& splits) {
+  std::size_t at = 0;
+  for (const Split& split : splits) {
+    PredictionModel region;
+    describe_region(region, rows.joints(Eigen::all, split.train));
+    const std::set<int> held_out(split.holdout.begin(), split.holdout.end());
+    for (; at < with.row.size() && held_out.contains(with.row[at]); ++at) {
+      const double weight = fading_weight(region, rows.joints.col(with.row[at]));
+      with.errors[at] = weight * with.errors[at] + (1.0 - weight) * without.errors[at];
+    }
+  }
+  return with;
+}
+
 WeighedStep describe(SelectionStep step, const WeighedModel& with, const SelectionData& data) {
   Chain plain = with.fit.chain;
   plain.field = {};
@@ -64,7 +83,9 @@ void weigh_field(const SelectionData& data, const std::vector<Split>& extrapolat
     return cross_validate(fit, fit.parameters, data.rows, extrapolation, data.task, data.threads);
   };
   step.interpolation = compare_holdout(model.interpolation, model.fit.outliers, with.interpolation, with.fit.outliers);
-  step.extrapolation = compare_holdout(held_out(model.fit), model.fit.outliers, held_out(with.fit), with.fit.outliers);
+  const HoldoutErrors without = held_out(model.fit);
+  step.extrapolation = compare_holdout(without, model.fit.outliers,
+                                       faded(held_out(with.fit), without, data.rows, extrapolation), with.fit.outliers);
   step.decision = decide(step.interpolation, step.extrapolation);
   if (step.decision != Decision::accepted) return model.steps.push_back({step, {}});
   with.steps.push_back(describe(step, with, data));
