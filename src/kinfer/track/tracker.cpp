@@ -216,11 +216,28 @@ void Tracker::list_wrong_starts(const InitialPosture& posture) {
 void Tracker::resolve_start(const BlockMeasurement& block) {
   grid_->update(block, motion_.tells_of(*model_, grid_->body()));
   filter_ = grid_->stated();
-  if (!grid_->is_decided()) return;
+  if (!grid_->is_decided()) {
+    const double patience = grid_->entropy() > open_entropy ? untold_patience : undecided_patience;
+    if (block.time - grid_->untold_since() > patience) give_up_grid(block.time);
+    return;
+  }
   positions_.decide(*model_, grid_->body());
   grid_.reset();
   forget_fit();  // other places did not fit, which says nothing of the sensors
   begin_grid();
+  replay_.begin(filter_);
+}
+
+/// What seemed to be motion was none, or is over: the position counts from where it seems to be, as before.
+void Tracker::give_up_grid(double time) {
+  const auto position = static_cast<std::size_t>(model_->layout.position[grid_->body()]);
+  grid_.reset();
+  suspicion_from_ = time + suspicion_again;
+  if (filter_.state().base == BaseMode::moving)
+    filter_.place(static_cast<Index>(position), filter_.state().joints[position_states * position], 0.0);
+  else
+    filter_.declare_known(static_cast<Index>(position));
+  forget_fit();
   replay_.begin(filter_);
 }
 
@@ -330,7 +347,7 @@ void Tracker::examine_sudden_change(double time) {
 /// What disagrees most is left out, as if it had never been believed, and what agrees again is taken in.
 void Tracker::examine_fit() {
   Suspect worst = fit_.worst(filter_);
-  if (worst != Suspect{}) begin_grid(motion_suspicion);
+  if (worst != Suspect{} && filter_.state().time >= suspicion_from_) begin_grid(motion_suspicion);
   if (grid_) return forget_fit();  // a position that motion begins to show is where it was supposed to be by chance
   if (worst.joint >= 0)            // unless a sensor beside it that turned is likelier
     if (const auto turned =

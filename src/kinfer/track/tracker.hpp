@@ -58,6 +58,7 @@ class Tracker {
   void list_wrong_starts(const InitialPosture& posture);
   void process_block(const BlockMeasurement& block);
   void resolve_start(const BlockMeasurement& block);
+  void give_up_grid(double time);
   void choose_sensors();
   void take_in(std::size_t sensor);
   void find_returned(const BlockMeasurement& block);
@@ -88,6 +89,7 @@ class Tracker {
   std::vector<PositionGuess> guesses_;          // likewise
   ChainFilter filter_;
   std::optional<StartGrid> grid_;
+  double suspicion_from_ = -1e9;  // [s] from when on a suspicion of motion begins a grid
   MotionWatch motion_;
   StartSpread spread_;
   std::vector<double> unknown_;  // as of ToolSpread

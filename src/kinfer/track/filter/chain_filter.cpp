@@ -38,8 +38,11 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
   error_ = column_ = VectorXd::Zero(layout.size);
   unused_w_ = MatrixXd::Zero(layout.size, sensor_rows);
   bias_variance_ = VectorXd::Zero(layout.rows());
-  for (Index s = 0; s < layout.sensors; ++s)
-    bias_variance_.segment<sensor_rows>(sensor_rows * s) = p_.diagonal().segment<sensor_rows>(layout.sensor_state(s));
+  for (Index s = 0; s < layout.sensors; ++s) {
+    auto own = bias_variance_.segment<sensor_rows>(sensor_rows * s);
+    own = p_.diagonal().segment<sensor_rows>(layout.sensor_state(s));
+    own.head<3>().array() += square(model_->bias.rate), own.tail<3>().array() += square(model_->bias.force);
+  }
 }
 
 void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {

@@ -105,7 +105,7 @@ class ChainFilter {
   double heading_variance(std::size_t body) const { return headings_.variance(body, p_); }
 
   /// Squared distance of an instrument's three biases from those handed over, in the variance that they had before any
-  /// row, and what they may have walked since; its expectation is at most 3.
+  /// row, that of sensors of this grade, and what they may have walked since; its expectation is at most 3.
   InsLevel bias_distance(std::size_t sensor) const;
 
  private:

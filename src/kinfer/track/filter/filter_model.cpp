@@ -81,8 +81,12 @@ MatrixXd slow_covariance(const FilterModel& filter, const TrackingModel& model) 
       if (at[i] >= 0 && at[j] >= 0)
         covariance(at[i], at[j]) = model.covariance(static_cast<Index>(i), static_cast<Index>(j));
   // Biases moved since the chain was identified, by their instability and from one power-up to the next.
-  const double rate = std::max(min_bias_change.rate, bias_change * model.prior.bias_instability.rate),
-               force = std::max(min_bias_change.force, bias_change * model.prior.bias_instability.force);
+  const auto change_of = [](double least, double instability, double bias) {
+    return std::max(least, std::hypot(bias_change * instability, power_up_part * bias));
+  };
+  const InsLevel &drift = model.prior.bias_instability, &bias = model.prior.bias;
+  const double rate = change_of(min_bias_change.rate, drift.rate, bias.rate),
+               force = change_of(min_bias_change.force, drift.force, bias.force);
   for (Index s = 0; s < filter.layout.sensors; ++s) {
     covariance.diagonal().segment<3>(sensor_states * s + SensorIndex::gyroscope_bias).array() += rate * rate;
     covariance.diagonal().segment<3>(sensor_states * s + SensorIndex::accelerometer_bias).array() += force * force;
@@ -225,6 +229,7 @@ FilterModel filter_model(const TrackingModel& model) {
   const InsLevel drift{std::max(min_bias_instability.rate, model.prior.bias_instability.rate),
                        std::max(min_bias_instability.force, model.prior.bias_instability.force)};
   filter.bias_walk = {2.0 * drift.rate * drift.rate / time, 2.0 * drift.force * drift.force / time};
+  filter.bias = model.prior.bias;
   filter.parameters = slow_covariance(filter, model);
   set_axis_sds(filter);
   return filter;

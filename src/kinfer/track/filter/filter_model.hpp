@@ -58,6 +58,7 @@ struct FilterModel {
   std::vector<RevoluteBetweenSensors> revolute;
   std::vector<JointBranch> joints;  ///< of each joint of the tracking model
   double gravity = standard_gravity;
+  InsLevel bias{};       ///< standard deviation of a bias, as its grade has it
   InsLevel bias_walk{};  ///< variance per second of a bias' random walk
   MatrixXd parameters;   ///< covariance of sensors' and geometry's states when tracking begins
 

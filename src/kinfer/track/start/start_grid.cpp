@@ -13,7 +13,10 @@
 namespace kinfer::track {
 
 StartGrid::StartGrid(const ChainFilter& filter, std::size_t body)
-    : body_(body), motion_(filter.model().bodies[body].motion), position_(filter.model().layout.position[body]) {}
+    : body_(body),
+      motion_(filter.model().bodies[body].motion),
+      position_(filter.model().layout.position[body]),
+      untold_since_(filter.state().time) {}
 
 StartGrid StartGrid::around(const ChainFilter& filter, std::size_t body, double sd) {
   StartGrid grid(filter, body);
@@ -45,10 +48,12 @@ StartGrid StartGrid::along(const ChainFilter& filter, std::size_t body, const Po
 }
 
 void StartGrid::update(const BlockMeasurement& block, bool tells) {
+  const bool has_settled = updates_ >= start_updates;
+  if (tells) untold_since_ = block.time;
   for (Candidate& candidate : candidates_) {
     candidate.filter.predict(block.time);
     candidate.filter.update(block);
-    if (tells && updates_ >= start_updates) candidate.log_weight += candidate.filter.innovations().log_likelihood;
+    if (tells && has_settled) candidate.log_weight += candidate.filter.innovations().log_likelihood;
   }
   if (++updates_ <= start_updates) return;
   drop_unlikely();
@@ -80,6 +85,13 @@ void StartGrid::weigh() {
   double sum = 0.0;
   for (const Candidate& c : candidates_) sum += std::exp(c.log_weight - most);
   for (Candidate& c : candidates_) c.probability = std::exp(c.log_weight - most) / sum;
+}
+
+double StartGrid::entropy() const {
+  double sum = 0.0;
+  for (const Candidate& c : candidates_)
+    if (c.probability > 0.0) sum -= c.probability * std::log(c.probability);
+  return sum;
 }
 
 /// Mean squared distance of the position from that of a candidate.

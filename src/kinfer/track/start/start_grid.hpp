@@ -26,6 +26,11 @@ class StartGrid {
   /// `tells`: what the sensors show depends on the position.
   void update(const BlockMeasurement& block, bool tells);
 
+  /// Of the places by their probabilities [nat]: its exponential is how many are left.
+  double entropy() const;
+  /// [s] since when nothing has.
+  double untold_since() const { return untold_since_; }
+
   /// Only one place is left, or all that are left agree.
   bool is_decided() const { return candidates_.size() == 1; }
   /// The one that stands for all: first that where the filter was, and another where the mean squared distance of all
@@ -49,6 +54,7 @@ class StartGrid {
   JointMotion motion_;
   Index position_;  // of the filter, the joint's first
   int updates_ = 0;
+  double untold_since_ = 0.0;  // [s]
   std::vector<Candidate> candidates_;
 };
 
