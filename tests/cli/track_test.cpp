@@ -105,6 +105,19 @@ TEST_F(Track, GivesTheSameRowsHoweverTheLogArrives) {
   EXPECT_THAT(lines.out, StartsWith("{\"t\":0,\"q\":["));
 }
 
+/// The start was sought again and again from where the rows before had put it, and ended 700° off on every second
+/// slope.
+TEST_F(Track, BeginsOnAnySlope) {
+  ASSERT_EQ(kinfer("simulate excavator-general --out level --quiet").code, 0);
+  ASSERT_EQ(kinfer("identify level/imu.csv --out machine --quiet").code, 0);
+  for (const std::string slope : {"7", "13"}) {
+    ASSERT_EQ(kinfer("simulate excavator-general --drive 2 --out drive --quiet --slope " + slope).code, 0);
+    const Outcome run = kinfer("track machine drive/imu.csv --out work");
+    EXPECT_EQ(run.code, 0) << slope;
+    EXPECT_THAT(run.out, HasSubstr("no alarm")) << slope;
+  }
+}
+
 TEST_F(Track, FollowsALogThatIsRotated) {
   identify();
   ASSERT_EQ(shell("kinfer track machine drive/imu.csv --quiet > file.csv").code, 0);

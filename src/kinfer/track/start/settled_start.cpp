@@ -28,31 +28,40 @@ struct SettledStart {
   double log_likelihood = 0.0;  ///< of the first rows
 };
 
-/// Begins again and again where the first rows place these positions.
+/// Runs through the first rows, and moves `positions` of the start to where they place them.
+double run_and_move(InitialPosture& start, ChainFilter trial, std::span<const BlockMeasurement> first_rows,
+                    const std::vector<Index>& positions) {
+  start_in(start, trial);
+  double log_likelihood = 0.0;
+  for (const BlockMeasurement& block : first_rows) {
+    if (block.time <= trial.state().time) continue;
+    trial.predict(block.time);
+    trial.update(block);
+    log_likelihood += trial.innovations().log_likelihood;
+  }
+  const double since = trial.state().time - start.state.time;
+  for (const Index at : positions) {
+    const auto now = trial.state().joints.segment<position_states>(position_states * at);
+    auto then = start.state.joints.segment<position_states>(position_states * at);
+    then = now;
+    then[1] -= since * now[2];
+    then[0] -= since * (now[1] - 0.5 * since * now[2]);
+  }
+  return log_likelihood;
+}
+
+/// Begins again and again where the first rows place these positions, as long as that makes the rows likelier. What
+/// instruments and geometry leave moves them each time, too, and at last to where no linearisation holds.
 SettledStart settled(InitialPosture start, const ChainFilter& filter, std::span<const BlockMeasurement> first_rows,
                      const std::vector<Index>& positions) {
-  SettledStart result;
+  SettledStart best{start.state, run_and_move(start, filter, first_rows, positions)};
   for (int round = 0; round < settling_rounds; ++round) {
-    ChainFilter trial = filter;
-    start_in(start, trial);
-    result = {.state = start.state};
-    for (const BlockMeasurement& block : first_rows) {
-      if (block.time <= trial.state().time) continue;
-      trial.predict(block.time);
-      trial.update(block);
-      result.log_likelihood += trial.innovations().log_likelihood;
-    }
-    const double since = trial.state().time - start.state.time;
-    for (const Index at : positions) {
-      const auto now = trial.state().joints.segment<position_states>(position_states * at);
-      auto then = start.state.joints.segment<position_states>(position_states * at);
-      then = now;
-      then[1] -= since * now[2];
-      then[0] -= since * (now[1] - 0.5 * since * now[2]);
-    }
+    const ChainState moved = start.state;
+    const double log_likelihood = run_and_move(start, filter, first_rows, positions);
+    if (!(log_likelihood > best.log_likelihood)) break;
+    best = {moved, log_likelihood};
   }
-  result.state = start.state;
-  return result;
+  return best;
 }
 
 /// Positions that may be anywhere: those of which motion hides more than gravity shows, and on a base that stands still
