@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "kinfer/base/rng.hpp"
+#include "kinfer/identify/diagnosis/mended_log.hpp"
 #include "studies/track/scores.hpp"
 
 namespace kinfer::study::track_study {
@@ -31,6 +33,17 @@ void print_row(const std::string& what, const std::string& alarms) {
   std::fflush(stdout);
 }
 
+/// Sensors on the same segments, mounted in any way: what another machine of the type has.
+SimulatedDrive remounted(SimulatedDrive drive) {
+  Rng rng(7);
+  for (InsSensor& sensor : drive.recording.sensors) {
+    const double w = rng.normal(), x = rng.normal(), y = rng.normal(), z = rng.normal();
+    const Mat3 turn = Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
+    identify::transform(sensor.acceleration, 1.0, turn), identify::transform(sensor.angular_velocity, 1.0, turn);
+  }
+  return drive;
+}
+
 void study_machine(const AlarmStudy& study, DriveSetup setup) {
   fmt::print("{} {} {}\n", setup.machine, setup.grade, setup.machine_seed);
   const SimulatedDrive identified = simulate_drive(setup);
@@ -55,7 +68,7 @@ void study_machine(const AlarmStudy& study, DriveSetup setup) {
                 alarms_of(track(*model, &identified, faulty), fault_begins));
     }
   setup.machine_seed += 1;
-  print_row("another machine's log", alarms_of(track(*model, &identified, simulate_drive(setup)), 0.0));
+  print_row("another machine's log", alarms_of(track(*model, &identified, remounted(simulate_drive(setup))), 0.0));
 }
 
 void study_rocking(const AlarmStudy& study, DriveSetup setup) {
