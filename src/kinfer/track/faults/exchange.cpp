@@ -96,7 +96,12 @@ void ExchangeWatch::add(const BlockMeasurement& block, const std::vector<Positio
   --trials_;
   std::vector<BlockMeasurement> rows = recent_;
   std::rotate(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(next_), rows.end());
-  found_ = find_exchange(model_, rows, guesses, base);
+  const std::optional<Exchange> now = find_exchange(model_, rows, guesses, base);
+  if (now && likely_ && now->first == likely_->first && now->second == likely_->second)
+    found_ = now;
+  else if (now)
+    ++trials_;  // it is seen again, or was the chance of some seconds in which another fault shows
+  likely_ = now;
 }
 
 }  // namespace kinfer::track

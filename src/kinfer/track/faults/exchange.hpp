@@ -23,7 +23,8 @@ std::optional<Exchange> find_exchange(const std::shared_ptr<const FilterModel>& 
                                       std::span<const BlockMeasurement> rows, const std::vector<PositionGuess>& guesses,
                                       BaseMode base);
 
-/// Keeps the last rows, and looks for an exchange in them a while after a sensor was named. Copyable.
+/// Keeps the last rows, and looks for an exchange in them a while after a sensor was named. It is one where two trials
+/// in a row find the same: in seconds in which another fault shows an exchange may be likelier by chance. Copyable.
 class ExchangeWatch {
  public:
   explicit ExchangeWatch(std::shared_ptr<const FilterModel> model);
@@ -40,7 +41,7 @@ class ExchangeWatch {
   std::size_t next_ = 0, since_trial_ = 0;
   int trials_ = 0;  // left
   bool is_suspected_ = false;
-  std::optional<Exchange> found_{};
+  std::optional<Exchange> likely_{}, found_{};  // by one trial, by two in a row
 };
 
 }  // namespace kinfer::track
