@@ -155,6 +155,40 @@ TEST(LogDiagnosis, ABiasOfASensorThatStandsStillIsNoOtherUnit) {
   }
 }
 
+/// After a rest an upper carriage slews at a steady rate about the vertical: gravity shows nothing of it.
+InsSensor slewing_carriage(std::span<const double> time, double slew, std::uint64_t seed) {
+  constexpr double rest = 4.0;  // [s]
+  Rng rng(seed);
+  const Vec3 rate_bias = 2e-3 * normal_vector(rng), force_bias = 0.01 * normal_vector(rng);
+  InsSensor carriage{.name = "carriage", .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}};
+  const auto push = [](TriadColumns& triad, const Vec3& v) {
+    for (std::size_t k = 0; k < 3; ++k) triad.axis[k].push_back(static_cast<float>(v[static_cast<Eigen::Index>(k)]));
+  };
+  for (const double t : time) {
+    const double since = std::max(0.0, t - time.front() - rest), rate = since > 0.0 ? slew : 0.0;
+    const Mat3 carriage_R_world = exp_so3(Vec3(0.0, 0.0, -slew * since));
+    push(carriage.acceleration,
+         Vec3(-0.3 * rate * rate, 0.0, standard_gravity) + force_bias + 0.012 * normal_vector(rng));
+    push(carriage.angular_velocity, Vec3(0.0, 0.0, rate) + rate_bias + 1.2e-3 * normal_vector(rng));
+    push(carriage.field, carriage_R_world * Vec3(18.0, 5.0, -45.0) + 0.3 * normal_vector(rng));
+  }
+  carriage.faults.assign(time.size(), 0);
+  return carriage;
+}
+
+TEST(LogDiagnosis, ASteadySlewIsNoOtherUnit) {
+  for (const double slew : {0.02, 0.05, 0.1, 0.2})
+    for (const bool has_field : {false, true})
+      for (const std::uint64_t seed : test::repeats({1U, 2U, 3U}))
+        EXPECT_EQ(kinds_of(diagnose_log(with([&](InsRecording& r) {
+                                          r.sensors.push_back(slewing_carriage(r.loggers[0].time, slew, seed));
+                                          if (!has_field) r.sensors.back().field = {};
+                                        }),
+                                        1)),
+                  Kinds{})
+            << slew << " rad/s, field " << has_field << ", seed " << seed;
+}
+
 TEST(LogDiagnosis, AllAccelerometersNegatedAreToldByMagnetometersAlone) {
   const auto negate_all = [](InsRecording& r) {
     for (InsSensor& s : r.sensors) negate(s.acceleration);

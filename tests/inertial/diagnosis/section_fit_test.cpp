@@ -55,10 +55,11 @@ TEST(SectionFit, SoundInstrumentsFitBestAsTheyAre) {
   const auto force = section_signals(swing.sensor.acceleration, swing.sensor.angular_velocity, swing.time, 0.1);
   const auto field = section_signals(swing.sensor.field, swing.sensor.angular_velocity, swing.time, 0.1);
   ASSERT_TRUE(force && field);
-  const MapLikelihoods maps = map_likelihoods(*force, 1.0, LeverArm::free);
+  const MapLikelihoods maps = map_likelihoods(*force, telling_sections(*force), 1.0, LeverArm::free);
   EXPECT_EQ(best_of(maps), 0U);
-  EXPECT_EQ(best_of(map_likelihoods(*field, 1.0, LeverArm::none)), 0U);
-  EXPECT_GT(maps.of[0] - map_likelihoods(*force, 0.0174533, LeverArm::free).of[0], 100.0) << "rad/s, not deg/s";
+  EXPECT_EQ(best_of(map_likelihoods(*field, telling_sections(*field), 1.0, LeverArm::none)), 0U);
+  EXPECT_GT(maps.of[0] - map_likelihoods(*force, telling_sections(*force), 0.0174533, LeverArm::free).of[0], 100.0)
+      << "rad/s, not deg/s";
 }
 
 TEST(SectionFit, EveryPermutationOfTheRatesIsUndone) {
@@ -69,7 +70,7 @@ TEST(SectionFit, EveryPermutationOfTheRatesIsUndone) {
     for (std::size_t row = 0; row < swing.time.size(); ++row)
       push(rates, axes.transpose() * swing.sensor.angular_velocity.at(row));
     const auto signals = section_signals(swing.sensor.field, rates, swing.time, 0.1);
-    EXPECT_EQ(best_of(map_likelihoods(*signals, 1.0, LeverArm::none)), m);
+    EXPECT_EQ(best_of(map_likelihoods(*signals, telling_sections(*signals), 1.0, LeverArm::none)), m);
   }
 }
 

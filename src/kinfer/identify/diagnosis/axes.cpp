@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/parallel.hpp"
@@ -36,16 +37,41 @@ struct SensorLikelihoods {
   }
 };
 
+/// Direction and rates of a sensor; the bias that there can be is another one in each unit.
+struct InstrumentPair {
+  const TriadColumns& direction;
+  const TriadColumns& rates;
+  std::span<const double> time;
+  LeverArm lever_arm;
+
+  std::optional<SectionSignals> signals(double unit) const {
+    return section_signals(direction, rates, time, max_quiet_rate / unit);
+  }
+};
+
+/// What is a bias by one unit is a steady rotation by another: all sections that tell something by any unit.
+std::vector<std::size_t> sections_by_any_unit(const InstrumentPair& pair) {
+  std::set<std::size_t> sections;
+  for (const double unit : rate_units)
+    if (const auto signals = pair.signals(unit))
+      for (const std::size_t first : telling_sections(*signals)) sections.insert(first);
+  return {sections.begin(), sections.end()};
+}
+
+std::array<MapLikelihoods, rate_units.size()> likelihoods_of(const InstrumentPair& pair) {
+  const auto sections = sections_by_any_unit(pair);
+  std::array<MapLikelihoods, rate_units.size()> result{};
+  for (std::size_t u = 0; u < rate_units.size(); ++u)
+    if (const auto signals = pair.signals(rate_units[u]))
+      result[u] = map_likelihoods(*signals, sections, rate_units[u], pair.lever_arm);
+  return result;
+}
+
 SensorLikelihoods likelihoods_of(const InsSensor& sensor, std::span<const double> time) {
   SensorLikelihoods result;
-  for (std::size_t u = 0; u < rate_units.size(); ++u) {
-    const double max_bias = max_quiet_rate / rate_units[u];
-    if (const auto s = section_signals(sensor.acceleration, sensor.angular_velocity, time, max_bias))
-      result.force[u] = map_likelihoods(*s, rate_units[u], LeverArm::free);
-    if (sensor.has_magnetometer())
-      if (const auto s = section_signals(sensor.field, sensor.angular_velocity, time, max_bias))
-        result.field[u] = map_likelihoods(*s, rate_units[u], LeverArm::none);
-  }
+  result.force = likelihoods_of({sensor.acceleration, sensor.angular_velocity, time, LeverArm::free});
+  if (sensor.has_magnetometer())
+    result.field = likelihoods_of({sensor.field, sensor.angular_velocity, time, LeverArm::none});
   return result;
 }
 

@@ -40,7 +40,8 @@ double best_rate(const InsRecording& recording, std::size_t logger, int threads)
   parallel_for(rates.size(), threads, [&](std::size_t r) {
     for (const SectionSignals& sensor : sensors)
       for (std::size_t u = 0; u < 2; ++u) {
-        const auto maps = map_likelihoods(sensor, (u == 0 ? 1.0 : degree) * assumed_rate / rates[r], LeverArm::free);
+        const auto maps = map_likelihoods(sensor, telling_sections(sensor),
+                                          (u == 0 ? 1.0 : degree) * assumed_rate / rates[r], LeverArm::free);
         likelihood[r][u] += *std::ranges::max_element(maps.of);
       }
   });

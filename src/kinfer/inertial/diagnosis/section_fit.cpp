@@ -134,20 +134,6 @@ double square_rate_over(const SectionSignals& signals, std::size_t first) {
   return sum;
 }
 
-/// Those in which the direction or the sensor moves: a direction that stays while the sensor rotates is that of the
-/// axis.
-std::vector<std::size_t> telling_sections(const SectionSignals& signals) {
-  constexpr double least_rate = 0.3;  // of that of the section in which the sensor rotates most
-  auto sections = complete_sections(signals);
-  double most = 0.0;
-  for (const std::size_t first : sections) most = std::max(most, square_rate_over(signals, first));
-  std::erase_if(sections, [&](std::size_t first) {
-    return variance_over(signals.direction, first, section_steps) <= 4.0 * signals.noise_variance &&
-           square_rate_over(signals, first) <= least_rate * least_rate * most;
-  });
-  return sections;
-}
-
 /// ∂f/∂(g, r) at a sample of the rates.
 Design design_at(const Samples& rate, std::size_t k, const Mat3& map, const Mat3& begin_R_now) {
   const Mat3 w = skew(map * rate[k]);
@@ -239,10 +225,23 @@ std::optional<SectionSignals> section_signals(const TriadColumns& direction, con
   return signals;
 }
 
-MapLikelihoods map_likelihoods(const SectionSignals& signals, double unit, LeverArm lever_arm) {
+std::vector<std::size_t> telling_sections(const SectionSignals& signals) {
+  constexpr double least_rate = 0.3;  // of that of the section in which the sensor rotates most
+  auto sections = complete_sections(signals);
+  double most = 0.0;
+  for (const std::size_t first : sections) most = std::max(most, square_rate_over(signals, first));
+  std::erase_if(sections, [&](std::size_t first) {
+    return variance_over(signals.direction, first, section_steps) <= 4.0 * signals.noise_variance &&
+           square_rate_over(signals, first) <= least_rate * least_rate * most;
+  });
+  return sections;
+}
+
+MapLikelihoods map_likelihoods(const SectionSignals& signals, std::span<const std::size_t> sections, double unit,
+                               LeverArm lever_arm) {
   MapLikelihoods likelihoods;
   const auto& maps = signed_permutations();
-  for (const std::size_t first : telling_sections(signals)) {
+  for (const std::size_t first : sections) {
     likelihoods.sections += 1.0;
     for (const double sense : {1.0, -1.0}) {
       const SectionSums sums = sums_over(signals, first, sense * unit * Mat3::Identity(), 0);

@@ -43,8 +43,14 @@ struct MapLikelihoods {
   double sections = 0.0;
 };
 
-/// For rates in `unit` [rad/s].
-MapLikelihoods map_likelihoods(const SectionSignals& signals, double unit, LeverArm lever_arm);
+/// The first steps of the sections in which the direction or the sensor moves: a direction that stays while the sensor
+/// rotates is that of the axis.
+std::vector<std::size_t> telling_sections(const SectionSignals& signals);
+
+/// For rates in `unit` [rad/s]. Units are compared over the same sections: each that fits adds to the likelihood, also
+/// one in which gravity shows nothing of the rotation.
+MapLikelihoods map_likelihoods(const SectionSignals& signals, std::span<const std::size_t> sections, double unit,
+                               LeverArm lever_arm);
 
 /// Log likelihood [nats] of the rates times `factor`, their axes as they are, summed over the sections. A clock that
 /// runs 1 / factor times too fast is the same; its lever arms then seem to be 1 / factor² times as long.

@@ -84,15 +84,16 @@ std::string force_scale_suggestion(const Finding&) {
 
 std::string rate_unit_sentence(const Finding& f) {
   constexpr std::array names{UnitName{degree, "deg/s"}, UnitName{1e-3, "mrad/s"}, UnitName{1e-3 * degree, "mdeg/s"},
-                             UnitName{1.0 / degree, "rad/s, though the header says deg/s"}};
+                             UnitName{1.0 / degree, "rad/s, and had been converted as if they were in deg/s"}};
   return phrase("rate_unit",
                 "the angular rates of {} are in {}: gravity arrives where the gyroscopes carry it; they were converted",
                 sensors_of(f), name_of(names, f.values.number("unit")));
 }
 
 std::string rate_unit_suggestion(const Finding& f) {
-  return phrase("rate_unit.suggestion", "state the unit in the header: {}_gx[deg/s]",
-                f.values.texts("sensors").front());
+  const bool is_radians = f.values.number("unit") > 1.0;
+  return phrase("rate_unit.suggestion", "state the unit in the header: {}_gx[{}]", f.values.texts("sensors").front(),
+                is_radians ? "rad/s" : "deg/s");
 }
 
 std::string field_unit_sentence(const Finding& f) {
