@@ -140,6 +140,31 @@ TEST(LogDiagnosis, BiasesThatPointUpByChanceAreNoEulerAngles) {
   EXPECT_TRUE(diagnose_log(log, 1));
 }
 
+/// A level base at rest whose instruments warm up: both biases move alike, so that the rates seem to follow the tilt.
+InsSensor warming_base(std::span<const double> time, double rate_bias, double force_bias, std::uint64_t seed) {
+  constexpr double warming = 20.0;  // [s]
+  Rng rng(seed);
+  InsSensor base{.name = "base", .acceleration = {}, .angular_velocity = {}, .field = {}, .faults = {}};
+  for (const double t : time) {
+    const double warm = 1.0 - std::exp(-(t - time.front()) / warming);
+    const Vec3 force = Vec3(-warm * force_bias, warm * force_bias, standard_gravity) + 0.012 * normal_vector(rng),
+               rate = Vec3(warm * rate_bias, warm * rate_bias, 0.0) + 1.2e-3 * normal_vector(rng);
+    for (std::size_t k = 0; k < 3; ++k) {
+      base.acceleration.axis[k].push_back(static_cast<float>(force[static_cast<Eigen::Index>(k)]));
+      base.angular_velocity.axis[k].push_back(static_cast<float>(rate[static_cast<Eigen::Index>(k)]));
+    }
+  }
+  base.faults.assign(time.size(), 0);
+  return base;
+}
+
+TEST(LogDiagnosis, InstrumentsThatWarmUpHoldNoEulerAngles) {
+  for (const double warm : {0.005, 0.01, 0.02})
+    EXPECT_TRUE(diagnose_log(
+        with([&](InsRecording& r) { r.sensors.push_back(warming_base(r.loggers[0].time, warm, 10.0 * warm, 1)); }), 1))
+        << warm << " rad/s";
+}
+
 /// A bias turns a direction that stands still, in a smaller unit by less.
 TEST(LogDiagnosis, ABiasOfASensorThatStandsStillIsNoOtherUnit) {
   for (const std::uint64_t seed : test::repeats({1U, 2U, 3U})) {

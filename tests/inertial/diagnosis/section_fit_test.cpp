@@ -135,6 +135,22 @@ TEST(AttitudeColumns, EulerAnglesFollowTheVerticalAndRatesDoNot) {
   EXPECT_LT(angles->share_of_constant, 0.2);
 }
 
+TEST(AttitudeColumns, RatesOfALevelSensorThatTurnsAboutTheVerticalAreNoEulerAngles) {
+  Swing swing(0.0, Vec3::UnitZ());
+  const Vec3 tilt(0.004, -0.003, 0.0), bias(0.004, -0.003, 0.0);  // alike by chance
+  for (std::size_t row = 0; row < swing.time.size(); ++row)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      swing.sensor.acceleration.axis[k][row] =
+          static_cast<float>((exp_so3(-tilt) * Vec3(0.0, 0.0, standard_gravity))[axis]);
+      swing.sensor.angular_velocity.axis[k][row] += static_cast<float>(bias[axis]);
+    }
+  const auto rates = attitude_fit(swing.sensor);
+  EXPECT_LT(rates->error, 0.001);
+  EXPECT_GT(rates->share_of_level, 0.9);
+  EXPECT_GT(rates->share_of_constant, 0.9);
+}
+
 TEST(AttitudeColumns, EulerAnglesOfASensorThatDoesNotTiltPointUpAllTheSame) {
   Swing swing(0.0, Vec3::UnitZ());
   const Mat3 mounting = exp_so3(Vec3(0.8, 0.5, 0.0));  // the vertical in the sensor

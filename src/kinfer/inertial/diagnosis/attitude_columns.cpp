@@ -10,6 +10,8 @@
 namespace kinfer {
 namespace {
 
+constexpr double vertical_error = 0.03;  // [rad] of a vertical by an accelerometer with a bias of 30 mg
+
 struct TiltSample {
   Vec3 up, columns;
 };
@@ -64,7 +66,8 @@ std::optional<AttitudeFit> attitude_fit(const InsSensor& sensor) {
                   const double r = roll_sign * unit * s.columns[roll], p = pitch_sign * unit * s.columns[1];
                   return Vec3(up_sign * Vec3(-std::sin(p), std::cos(p) * std::sin(r), std::cos(p) * std::cos(r)));
                 }));
-  const auto share = [&](double null) { return null > 0.0 ? best / null : 1.0; };
+  // An agreement within the accelerometer's own errors is chance: biases are small angles, too, near a level sensor.
+  const auto share = [&](double null) { return std::hypot(best, vertical_error) / std::hypot(null, vertical_error); };
   return AttitudeFit{best, share(level), share(std::min(level, constant))};
 }
 
