@@ -58,6 +58,24 @@ TEST(SelectMachine, TwoMachinesAreSeparatedAndTheRootSaysWhichOneIsWanted) {
   EXPECT_NE(words::sentence(finding).find("s4, s5, s6"), std::string::npos);
 }
 
+TEST(SelectMachine, APartThatMovesWithTheOthersIsNotSurelyAnotherMachine) {
+  const OrderedMotion ordered = chain_with(7, unrelated_pair(3, 4, 1.0));
+  const auto finding_with = [&](double gain) {
+    const PairConnection link{
+        .parent = 3,
+        .child = 4,
+        .whole = {.force_gain = gain, .residual = 1.0, .shifted_residual = 2.0, .shifted_rate = 1.0}};
+    return select_machine(ordered, {}, std::span(&link, 1)).findings.at(0);
+  };
+  EXPECT_FALSE(questions_result(finding_with(0.5)));
+  for (const double gain : {2.0, 8.0}) {
+    const Finding finding = finding_with(gain);
+    EXPECT_TRUE(questions_result(finding));
+    EXPECT_NEAR(finding.values.number("connection_gain"), gain, 1e-9);
+    EXPECT_NE(words::sentence(finding).find("though they move with them"), std::string::npos);
+  }
+}
+
 TEST(SelectMachine, ASensorThatRotatesAboutOneAxisIsABarOfALinkageAnotherOneSharesNoJoint) {
   const RecordingSelection bar = select_machine(chain_with(5, revolute_pair(3, 4, 1.0)), {}),
                            stranger = select_machine(chain_with(5, unrelated_pair(3, 4, 1.0)), {});

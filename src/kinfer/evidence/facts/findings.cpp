@@ -93,7 +93,9 @@ bool invalidates_result(const Finding& finding) {
 bool questions_result(const Finding& finding) {
   const bool is_assumption = finding.kind == FindingKind::force_sign || finding.kind == FindingKind::clock_rate ||
                              finding.kind == FindingKind::instrument_scale;
-  return is_assumption && !finding.applied;
+  // A part that is left out although it moves with the others may belong to the machine.
+  const bool is_doubtful_cut = finding.kind == FindingKind::several_machines && finding.values.has("connection_gain");
+  return (is_assumption && !finding.applied) || is_doubtful_cut;
 }
 
 }  // namespace kinfer

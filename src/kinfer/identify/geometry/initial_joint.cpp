@@ -7,6 +7,7 @@
 #include "kinfer/base/angle.hpp"
 #include "kinfer/geometry/fit.hpp"
 #include "kinfer/identify/geometry/thresholds.hpp"
+#include "kinfer/identify/structure/slide_fit.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::identify {
@@ -49,30 +50,19 @@ std::vector<double> revolute_positions(const RecordedMotion& motion, const Segme
   return angles;
 }
 
-/// Relative displacement along an axis: the difference of accelerations, integrated twice with a forgetting time of a
-/// few seconds, which bounds the drift; slow displacements are left to the fit.
+/// Relative displacement along an axis: the acceleration beyond the point where the slide begins, integrated twice with
+/// a forgetting time of a few seconds, which bounds the drift; slow displacements are left to the fit.
 std::vector<double> prismatic_positions(const RecordedMotion& motion, const SegmentMotion& parent,
-                                        const SegmentMotion& child, const Vec3& axis) {
+                                        const SegmentMotion& child, const Vec3& axis, const Vec3& offset) {
   constexpr double forgetting_time = 5.0;  // [s]
   const double decay = std::exp(-motion.period / forgetting_time);
   std::vector<double> displacement(motion.rows(), 0.0);
   double velocity = 0.0;
   for (std::size_t row = 1; row < motion.rows(); ++row) {
-    const Vec3 difference = parent.rotation[row].transpose() * (child.acceleration[row] - parent.acceleration[row]);
-    velocity = decay * velocity + motion.period * axis.dot(difference);
+    velocity = decay * velocity + motion.period * axis.dot(acceleration_beyond(parent, child, offset, row));
     displacement[row] = decay * displacement[row - 1] + motion.period * velocity;
   }
   return displacement;
-}
-
-Vec3 translation_axis(const RecordedMotion& motion, const SegmentMotion& parent, const SegmentMotion& child) {
-  Mat3 spread = Mat3::Zero();
-  for (std::size_t row = motion.first_motion_row; row < motion.rows(); ++row) {
-    if (!motion.usable[row]) continue;
-    const Vec3 difference = parent.rotation[row].transpose() * (child.acceleration[row] - parent.acceleration[row]);
-    spread += difference * difference.transpose();
-  }
-  return symmetric_eigen(spread).vectors.col(2);
 }
 
 Mat3 mean_relative_rotation(const RecordedMotion& motion, const SegmentMotion& parent, const SegmentMotion& child) {
@@ -99,14 +89,16 @@ void start_revolute(InitialJoint& start, const SensorPair& pair) {
 void start_prismatic_or_rigid(InitialJoint& start, const SensorPair& pair) {
   const Mat3 home = mean_relative_rotation(pair.motion, pair.parent, pair.child);
   if (start.type == EstimatedJointType::prismatic) {
-    const Vec3 axis = translation_axis(pair.motion, pair.parent, pair.child);
-    const Mat3 a = frame_with_z_along(axis);
+    const SlideFit slide = fit_slide(pair.motion, pair.parent, pair.child).value_or(SlideFit{});
+    const Mat3 a = frame_with_z_along(slide.axis_in_parent);
     start.bodies = {prismatic_body(-1, -1, a, home.transpose() * a)};
-    start.joint_positions = {prismatic_positions(pair.motion, pair.parent, pair.child, axis)};
+    start.bodies.front().point_in_parent = slide.offset_in_parent;
+    start.joint_positions = {
+        prismatic_positions(pair.motion, pair.parent, pair.child, slide.axis_in_parent, slide.offset_in_parent)};
   } else {
     start.bodies = {fixed_body(-1, -1, home)};
+    start.bodies.front().point_in_parent = pair.point_in_parent - home * pair.point_in_child;
   }
-  start.bodies.front().point_in_parent = pair.point_in_parent - home * pair.point_in_child;
 }
 
 /// parent_R_child = exp(φ) · mean orientation, φ continuous in time.
@@ -220,7 +212,8 @@ void take_known(InitialJoint& start, const SensorPair& pair, std::span<const Ins
   if (start.type == EstimatedJointType::universal)
     start.joint_positions = universal_positions(pair, a, known.back().parent_R_axis, b);
   if (start.type == EstimatedJointType::prismatic)
-    start.joint_positions = {prismatic_positions(pair.motion, pair.parent, pair.child, a.col(2))};
+    start.joint_positions = {
+        prismatic_positions(pair.motion, pair.parent, pair.child, a.col(2), known.front().point_in_parent)};
 }
 
 }  // namespace

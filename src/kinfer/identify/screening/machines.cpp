@@ -9,6 +9,7 @@
 
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/screening/thresholds.hpp"
+#include "kinfer/identify/structure/slide_fit.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::identify {
@@ -50,11 +51,14 @@ std::vector<std::string> names_of(const RecordedMotion& motion, const std::vecto
   return names;
 }
 
-/// [m/s²] Acceleration residual of a link. If the two segments hardly rotate relative to each other, only across the
-/// direction of the largest residual, since they may share a prismatic joint.
-double misfit(const PairFit& pair) {
+/// [m/s²] Acceleration residual of a link. If the two segments hardly rotate relative to each other, only what a
+/// prismatic joint leaves: across the direction of the largest residual, or beyond Coriolis accelerations of the slide.
+double misfit(const RecordedMotion& motion, const PairFit& pair, std::size_t parent, std::size_t child) {
   if (pair.relative_rate() > min_rotating_rate) return pair.residual();
-  return std::sqrt(std::max(0.0, symmetric_eigen(pair.acceleration).values[1]));
+  const double across = std::sqrt(std::max(0.0, symmetric_eigen(pair.acceleration).values[1]));
+  if (across < part_threshold.residual) return across;
+  const auto slide = fit_slide(motion, motion.segments[parent], motion.segments[child]);
+  return slide ? std::min(across, slide->residual) : across;
 }
 
 struct TreeLink {
@@ -63,12 +67,14 @@ struct TreeLink {
   bool rotates;
 };
 
-std::vector<TreeLink> links_of(const SegmentTree& tree) {
+std::vector<TreeLink> links_of(const OrderedMotion& ordered) {
+  const SegmentTree& tree = ordered.tree;
   std::vector<TreeLink> links;
   for (const std::size_t child : tree.order)
     if (tree.parent[child]) {
       const PairFit& pair = tree.pair(*tree.parent[child], child);
-      links.push_back({*tree.parent[child], child, misfit(pair), pair.relative_rate() > min_rotating_rate});
+      links.push_back({*tree.parent[child], child, misfit(ordered.motion, pair, *tree.parent[child], child),
+                       pair.relative_rate() > min_rotating_rate});
     }
   return links;
 }
@@ -140,6 +146,17 @@ Finding separation_finding(const OrderedMotion& ordered, const TreeLink& cut, co
   return finding;
 }
 
+/// [nats per row] Of a link whose segments do not move as if they had nothing to do with each other.
+std::optional<double> connection_gain(std::span<const PairConnection> connections, const TreeLink& link) {
+  for (const PairConnection& pair : connections) {
+    const bool is_link = pair.parent == link.parent && pair.child == link.child;
+    const auto strength = strength_of(pair.whole);
+    if (is_link && (strength == ConnectionStrength::weak || strength == ConnectionStrength::strong))
+      return pair.whole.gain();
+  }
+  return std::nullopt;
+}
+
 /// [s] of a segment's measurements between its gaps, on the average.
 double mean_piece(const RecordedMotion& motion, std::size_t segment) {
   const auto usable = static_cast<double>(std::ranges::count(motion.usable, true));
@@ -198,9 +215,10 @@ RecordingSelection exclude_idle_sensors(const InsRecording& recording, const Seg
   return chosen;
 }
 
-RecordingSelection select_machine(const OrderedMotion& ordered, const std::optional<std::string>& root) {
+RecordingSelection select_machine(const OrderedMotion& ordered, const std::optional<std::string>& root,
+                                  std::span<const PairConnection> connections) {
   const std::size_t segments = ordered.motion.segments.size();
-  const std::vector<TreeLink> links = links_of(ordered.tree);
+  const std::vector<TreeLink> links = links_of(ordered);
   RecordingSelection chosen = select_all(segments);
   if (links.size() < min_tree_links) return chosen;
   const double median_misfit = usual_misfit(links);
@@ -226,6 +244,8 @@ RecordingSelection select_machine(const OrderedMotion& ordered, const std::optio
       return is_in(*group, l.parent) || is_in(*group, l.child) ? l.misfit : std::numeric_limits<double>::infinity();
     });
     chosen.findings.push_back(separation_finding(ordered, *link, *group, median_misfit));
+    if (const auto gain = connection_gain(connections, *link); gain && group->size() > 1)
+      chosen.findings.back().values.set("connection_gain", *gain);
   }
   return chosen;
 }
@@ -234,7 +254,7 @@ std::vector<std::vector<std::size_t>> groups_on_ground(const OrderedMotion& orde
   const SegmentTree& tree = ordered.tree;
   if (!ordered.motion.segments[tree.root].still) return {};
   std::vector<TreeLink> within;
-  for (const TreeLink& link : links_of(tree))
+  for (const TreeLink& link : links_of(ordered))
     if (link.parent != tree.root) within.push_back(link);
   auto groups = groups_of(ordered.motion.segments.size(), within);
   std::erase_if(groups, [&](const auto& group) { return group.size() == 1 && group.front() == tree.root; });

@@ -6,6 +6,9 @@
 // linkage, or a segment without an INS between them.
 #pragma once
 
+#include <span>
+
+#include "kinfer/identify/screening/connection.hpp"
 #include "kinfer/identify/screening/recording_selection.hpp"
 #include "kinfer/identify/structure/ordered_motion.hpp"
 
@@ -15,8 +18,10 @@ namespace kinfer::identify {
 RecordingSelection exclude_idle_sensors(const InsRecording& recording, const SegmentMotionOptions& options,
                                         const std::optional<std::string>& root);
 
-/// The largest connected group of segments, or the one of `root`.
-RecordingSelection select_machine(const OrderedMotion& ordered, const std::optional<std::string>& root);
+/// The largest connected group of segments, or the one of `root`. `connections` of the tree's links, where they are
+/// known: of a group that moves with the others for all that, a finding says so (`connection_gain`).
+RecordingSelection select_machine(const OrderedMotion& ordered, const std::optional<std::string>& root,
+                                  std::span<const PairConnection> connections = {});
 
 /// Groups of segments that share nothing but a stationary root, which is in none; none where the root moves.
 std::vector<std::vector<std::size_t>> groups_on_ground(const OrderedMotion& ordered);

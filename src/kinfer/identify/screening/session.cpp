@@ -94,7 +94,7 @@ std::optional<RecordingSelection> select_consistent_part(const OrderedMotion& or
   }
   if (separation == MachineSeparation::none) return std::nullopt;
   RecordingSelection machine = select_connected(ordered, connections, root, threads);
-  if (machine.sensors.size() == segments) machine = select_machine(ordered, root);
+  if (machine.sensors.size() == segments) machine = select_machine(ordered, root, connections);
   if (machine.sensors.size() == segments) return std::nullopt;
   return machine;
 }

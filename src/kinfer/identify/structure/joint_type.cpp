@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/identify/structure/slide_fit.hpp"
 #include "kinfer/identify/structure/thresholds.hpp"
 #include "kinfer/identify/structure/universal_axes.hpp"
 #include "kinfer/linalg/decompositions.hpp"
@@ -65,15 +66,6 @@ SymmetricEigen second_moment(std::size_t count, const Make& vector) {
 std::array<double, 3> largest_first(const VectorXd& squares) {
   const auto root = [&](Eigen::Index i) { return std::sqrt(std::max(0.0, squares[i])); };
   return {root(2), root(1), root(0)};
-}
-
-/// Acceleration of the child minus that of the parent, in the parent: translation, lever-arm terms not removed.
-std::vector<Vec3> acceleration_differences(const SegmentMotion& parent, const SegmentMotion& child,
-                                           const std::vector<std::size_t>& rows) {
-  std::vector<Vec3> differences;
-  for (const std::size_t row : rows)
-    differences.push_back(parent.rotation[row].transpose() * (child.acceleration[row] - parent.acceleration[row]));
-  return differences;
 }
 
 /// [rad] The headings behind a gap of 2 s at 1 rad/s were 11 and 16° off.
@@ -150,9 +142,8 @@ std::vector<JointTypeEvidence> joint_types(const RecordedMotion& motion, const S
       j.evidence.axis_in_child = j.two_axes.in_child;
     }
     if (j.evidence.type == EstimatedJointType::prismatic) {
-      const auto differences = acceleration_differences(motion.segments[parent], motion.segments[child], rows);
       j.evidence.axis_in_parent =
-          second_moment(rows.size(), [&](std::size_t k) { return differences[k]; }).vectors.col(2);
+          fit_slide(motion, motion.segments[parent], motion.segments[child]).value_or(SlideFit{}).axis_in_parent;
       j.evidence.axis_in_child = j.relative.rotation.front().transpose() * j.evidence.axis_in_parent;
     }
     result.push_back(j.evidence);

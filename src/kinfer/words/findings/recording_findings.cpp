@@ -55,6 +55,12 @@ std::string best_link_text(const FactValues& v) {
 
 std::string several_machines_sentence(const Finding& f) {
   const FactValues& v = f.values;
+  if (f.applied && v.has("connection_gain"))
+    return phrase("separate_part",
+                  "{} share no joint with the others that a type of joint describes ({}), though they move with them: "
+                  "part of the machine beyond a joint that gives way, or beyond a segment without INS; they are left "
+                  "out",
+                  fmt::join(v.texts("sensors"), ", "), best_link_text(v));
   if (f.applied)
     return phrase("separate_machine",
                   "{} share no joint with the others ({}): a separate machine, or a segment without INS between; they "
