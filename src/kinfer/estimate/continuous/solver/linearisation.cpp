@@ -190,4 +190,31 @@ std::vector<IntervalGradient> InsLinearisation::gradients(const TimeSegment& tim
   return gradients;
 }
 
+std::vector<VectorXd> InsLinearisation::residuals(const TimeSegment& time_segment) const {
+  SegmentWalker walk(problem_, layout_, x_, LinearisationScope::spline_only);
+  std::vector<VectorXd> all;
+  for (Index k = time_segment.first; k < time_segment.end; ++k)
+    walk.move_to(k, [&](std::size_t, const SensorRows& rows) {
+      all.emplace_back(rows.weight.head(rows.used).cwiseProduct(rows.residual.head(rows.used)));
+    });
+  return all;
+}
+
+VectorXd InsLinearisation::spline_product(const TimeSegment& time_segment,
+                                          const std::vector<VectorXd>& residuals) const {
+  SegmentWalker walk(problem_, layout_, x_, LinearisationScope::spline_only);
+  const Index width = layout_.spline_dimensions;
+  VectorXd product = VectorXd::Zero((time_segment.end - time_segment.first + spline_order - 1) * width);
+  std::size_t next = 0;
+  for (Index k = time_segment.first; k < time_segment.end; ++k) {
+    auto window = product.segment((k - time_segment.first) * width, spline_order * width);
+    walk.move_to(k, [&](std::size_t, const SensorRows& rows) {
+      const auto weight = rows.weight.head(rows.used).array();
+      const VectorXd unweighted = (weight > 0.0).select(residuals[next++].array() / weight, 0.0);
+      window(rows.band) += rows.jacobian.topLeftCorner(number_of(rows.band), rows.used) * unweighted;
+    });
+  }
+  return product;
+}
+
 }  // namespace kinfer

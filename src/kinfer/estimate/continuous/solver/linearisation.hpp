@@ -39,6 +39,14 @@ class InsLinearisation {
   /// Of each interval of a time segment; measurements only, without priors and facts.
   std::vector<IntervalGradient> gradients(const TimeSegment& time_segment) const;
 
+  /// Residuals of the measurements of a time segment times their robust weights, one vector for each interval and part
+  /// of a sensor.
+  std::vector<VectorXd> residuals(const TimeSegment& time_segment) const;
+
+  /// Derivatives by a time segment's spline coefficients, transposed, times residuals of the same rows. Not robustly
+  /// weighted.
+  VectorXd spline_product(const TimeSegment& time_segment, const std::vector<VectorXd>& residuals) const;
+
  private:
   void add_spline_prior(BandSegmentSum& sum, const TimeSegment& time_segment) const;
   void add_facts(BandSegmentSum& sum, const TimeSegment& time_segment) const;

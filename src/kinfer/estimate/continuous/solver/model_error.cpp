@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "kinfer/estimate/continuous/solver/noise_information.hpp"
 #include "kinfer/estimate/continuous/solver/noise_update.hpp"
 #include "kinfer/estimate/continuous/solver/normal_equations.hpp"
 #include "kinfer/linalg/products.hpp"
@@ -105,6 +106,8 @@ std::optional<InsCovariance> covariance_with_model_error(InsProblem& problem, co
     if (!correlated) return std::nullopt;
     result.model = correlated->model;
   }
+  discount(result.model, white->model, global_parameter_prior(problem, layout, x).matrix,
+           noise_information(problem, layout, x, threads));
   if (layout.has_matrices) {
     const MatrixXd data = system.schur() - global_parameter_prior(problem, layout, x).matrix,
                    gain = product(white->model, data);  // step of the estimate for an error in a parameter

@@ -4,11 +4,12 @@
 // 1. The sandwich (covariance.hpp) sees the errors that the splines leave over. An error of a rate about the axis of a
 //    joint disappears in the joint's position, and an error of a force in lever arms.
 // 2. Long-run noise (noise_update.hpp): residuals that stay alike for many intervals are worth fewer samples.
-// 3. Considered errors (Schmidt 1966): each instrument measures (I + E) truth, E with independent elements of the size
+// 3. Information that the noise of the trajectory simulates does not count (noise_information.hpp).
+// 4. Considered errors (Schmidt 1966): each instrument measures (I + E) truth, E with independent elements of the size
 //    that its persistent residuals have relative to its signal. E is not estimated: the fit would take the errors of
 //    any other model for it. Its effect on the estimate enters the covariance. Where a sensor's grade could not be
 //    told from the recording, E is as large as a scale error of the assumed grade besides.
-// Where the model is right, the residuals are white, 2. and 3. vanish, and the covariance is that of the model.
+// Where the model is right, the residuals are white, 2. and 4. vanish, and the covariance is that of the model.
 #pragma once
 
 #include "kinfer/estimate/continuous/solver/covariance.hpp"

@@ -68,6 +68,7 @@ SensorLinearisation::SensorLinearisation(const InsProblem& problem, const InsLay
     const auto count = std::ranges::count(instruments_, p, part_of);
     part.jacobian.resize(number_of(part.band) + number_of(part.border), 3 * block_nodes * count);
     part.residual.resize(part.jacobian.cols());
+    part.weight.resize(part.jacobian.cols());
   }
 }
 
@@ -130,6 +131,7 @@ void SensorLinearisation::add_rows(const InstrumentMeasurements& instrument, Ind
   }
   if (instrument.is_bound()) drop_satisfied_rows(part, r, instrument, interval);
   for (Index i = 0; i < block.rows; ++i) part.residual.segment<3>(part.used + 3 * i) = weight * r.row(i).transpose();
+  part.weight.segment(part.used, 3 * block.rows).setConstant(weight);
   part.used += 3 * block.rows;
 }
 

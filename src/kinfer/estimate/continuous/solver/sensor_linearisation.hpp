@@ -17,6 +17,7 @@ struct SensorRows {
   std::vector<Eigen::Index> border;  ///< of each further column: its global parameter
   MatrixXd jacobian;                 ///< transposed: columns x rows
   VectorXd residual;
+  VectorXd weight;        ///< robust weight of each row, by which jacobian and residual are multiplied
   Eigen::Index used = 0;  ///< rows of this interval
 
   // First columns of each group; unused if the group is absent or held.
