@@ -63,6 +63,19 @@ TEST(Unobservable, ConsecutiveParallelAxesShareTheirOffset) {
             UnobservableKind::point_on_axis);
 }
 
+TEST(Unobservable, OfAnUnknownAzimuthIsThePlaceOfTheJointsBehindIt) {
+  std::vector<JointEstimate> joints{{.parent = "a", .child = "b"}, {.parent = "b", .child = "c"}};
+  joints[1].axis_in_parent = Vec3::UnitX();
+  list_unobservable(joints);
+  EXPECT_EQ(kinds(joints[1]), std::vector{UnobservableKind::point_on_axis});
+  joints[0].azimuth_unobservable = true;
+  list_unobservable(joints);
+  ASSERT_EQ(kinds(joints[1]), (std::vector{UnobservableKind::place_about_axis, UnobservableKind::point_on_axis}));
+  EXPECT_EQ(words::unobservable_sentences(joints[1]).front(),
+            "the direction and the place of the axis in b about the axis of a-b, which is vertical and keeps its "
+            "direction: record once more on a slope, or with a magnetometer, as for the azimuth of b");
+}
+
 TEST(Unobservable, IsListedAnewAtEachCall) {
   std::vector<JointEstimate> joints{{.parent = "a", .child = "b"}};
   joints[0].azimuth_unobservable = true;

@@ -149,7 +149,7 @@ Identification assemble_chain(const OrderedMotion& ordered, std::vector<JointRes
     if (link.search) result.searches.push_back(std::move(*link.search));
   list_unobservable(result.joints);
   result.dh = geometry.dh;
-  result.links = link_estimates(result.joints);
+  result.links = geometry.links.empty() ? link_estimates(result.joints) : geometry.links;
   result.chain = build_chain(result.root, result.joints, result.dh, root.rotation.front());
   set_closures(result.chain, result.root, result.loops);
   set_tool(result.chain, result.places);
@@ -161,6 +161,7 @@ std::optional<ChainUpdate> update_known(ChainGeometry& geometry, const IdentifyO
   if (!options.refine.known || !geometry.tracking) return std::nullopt;
   UpdatedGeometry updated = update_geometry(*options.refine.known, std::move(geometry));
   geometry = std::move(updated.geometry);
+  geometry.links.clear();  // of the new log alone
   return std::move(updated.update);
 }
 

@@ -164,6 +164,15 @@ TEST(Refine, ReportsWhatAStationaryPlatformLeavesUnobservable) {
                                                      Field(&Unobservable::sensor, "ins0"))));
   EXPECT_TRUE(joints[0].azimuth_unobservable);
   EXPECT_THAT(joints[0].unobservable, Contains(Field(&Unobservable::kind, UnobservableKind::azimuth)));
+  EXPECT_THAT(joints[1].unobservable, Contains(Field(&Unobservable::kind, UnobservableKind::place_about_axis)));
+  // The circle on which the joint is, about the swing's axis, is as wide as its uncertainty.
+  const Vec3 swing = joints[0].axis_in_child, arm = joints[1].point_in_parent - joints[0].point_in_child;
+  const double radius = (arm - swing * swing.dot(arm)).norm();
+  const auto& sd = joints[1].sd.point_in_parent;
+  const Vec3 across = joints[1].axis_in_parent.cross(swing).normalized();
+  EXPECT_GT(std::hypot(sd[0], sd[1]), std::abs(across.dot(arm)));
+  EXPECT_GT(*std::ranges::max_element(joints[1].sd.axis_in_parent), 0.7);
+  EXPECT_GT(radius, 0.0);
   ASSERT_EQ(joints[1].unobservable_in_parent.size(), 1u);
   EXPECT_LT(angle_between(joints[0].axis_in_child, joints[1].unobservable_in_parent[0]) *
                 angle_between(joints[0].axis_in_child, Vec3(-joints[1].unobservable_in_parent[0])),

@@ -18,6 +18,8 @@ constexpr std::array unobservable_rows{
     UnobservableRow{UnobservableKind::point_across, "point_across", UnobservableRemedy::rotate_segment_or_measure},
     UnobservableRow{UnobservableKind::point_along, "point_along", UnobservableRemedy::rock_base_or_measure},
     UnobservableRow{UnobservableKind::azimuth, "azimuth", UnobservableRemedy::tilt_base_or_magnetometer},
+    UnobservableRow{UnobservableKind::place_about_axis, "place_about_axis",
+                    UnobservableRemedy::tilt_base_or_magnetometer},
     UnobservableRow{UnobservableKind::point_on_axis, "point_on_axis", UnobservableRemedy::none},
     UnobservableRow{UnobservableKind::axis_position, "axis_position", UnobservableRemedy::none},
     UnobservableRow{UnobservableKind::joint_axis, "joint_axis", UnobservableRemedy::move_joint},

@@ -25,6 +25,14 @@ void add_own_axis(JointEstimate& joint) {
   if (joint.type == EstimatedJointType::rigid) joint.unobservable.push_back({.kind = UnobservableKind::joint_axis});
 }
 
+/// What starts on a body of unknown azimuth may be anywhere about its axis.
+void add_place_about_axis(JointEstimate& joint, const std::vector<JointEstimate>& joints) {
+  for (const JointEstimate& before : joints)
+    if (before.azimuth_unobservable && before.child == joint.parent)
+      joint.unobservable.push_back(
+          {.kind = UnobservableKind::place_about_axis, .sensor = joint.parent, .other_joint = joint_name(before)});
+}
+
 bool are_consecutive_parallel(const JointEstimate& before, const JointEstimate& joint) {
   if (before.child != joint.parent || before.type != EstimatedJointType::revolute ||
       joint.type != EstimatedJointType::revolute)
@@ -42,6 +50,7 @@ void list_unobservable(std::vector<JointEstimate>& joints) {
     add_point(joint, joint.unobservable_in_child, joint.child);
     if (joint.azimuth_unobservable)
       joint.unobservable.push_back({.kind = UnobservableKind::azimuth, .sensor = joint.child});
+    add_place_about_axis(joint, joints);
     add_own_axis(joint);
     for (const JointEstimate& before : joints)
       if (are_consecutive_parallel(before, joint))

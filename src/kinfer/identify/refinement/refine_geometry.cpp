@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/identify/geometry/link_estimates.hpp"
 #include "kinfer/identify/handover/known_joint.hpp"
 #include "kinfer/identify/refinement/fits/thresholds.hpp"
 #include "kinfer/identify/refinement/scales/scale_findings.hpp"
@@ -66,6 +67,16 @@ std::vector<InitialJoint> make_starts(const std::vector<JointEstimate>& joints, 
   return starts;
 }
 
+/// An azimuth turns both joints of a link about the axis of the first one.
+std::vector<JointEstimate> joints_of_known_azimuth(const std::vector<RefinedJoint>& refined) {
+  std::vector<JointEstimate> joints;
+  for (const RefinedJoint& joint : refined) {
+    joints.push_back(joint.estimate);
+    joints.back().sd = joint.solution.precision.sd;
+  }
+  return joints;
+}
+
 /// The lengths of the search are those of one of both explanations, gyroscopes or clock, and no fit holds the others.
 void doubt_searched_lengths(ChainGeometry& searched, const InsCommonScale& rate) {
   searched.findings.push_back(clock_rate_finding(rate.factor - 1.0, rate.factor * rate.sd, Severity::fault));
@@ -95,6 +106,7 @@ Result<ChainGeometry> refine_geometry(ChainGeometry searched, const InsRecording
     geometry.joints.push_back(joint.estimate);
     std::ranges::copy(canonical_dh_rows(joint.estimate, joint.solution), std::back_inserter(geometry.dh));
   }
+  geometry.links = link_estimates(joints_of_known_azimuth(refined->joints));
   geometry.notes = std::move(searched.notes);
   add_misfit_notes(geometry.notes, *refined, motion);
   add_passband_notes(geometry.notes, *refined);

@@ -11,6 +11,7 @@ namespace kinfer::identify {
 struct ChainGeometry {
   std::vector<JointEstimate> joints;  ///< parents before children
   std::vector<DhRowEstimate> dh;      ///< of all joints, in their order
+  std::vector<LinkEstimate> links{};  ///< of the fit; none: as the joints have them
   std::vector<LoopEstimate> loops{};
   std::vector<PointEstimate> places{};
   std::vector<IdentificationNote> notes{};

@@ -33,6 +33,11 @@ std::string unobservable_text(const Unobservable& u, const JointEstimate& joint)
     case UnobservableKind::azimuth:
       return phrase("azimuth", "the azimuth of {} about this axis, which is vertical and keeps its direction",
                     u.sensor);
+    case UnobservableKind::place_about_axis:
+      return phrase("place_about_axis",
+                    "the direction and the place of {} in {} about the axis of {}, which is vertical and keeps its "
+                    "direction",
+                    point_text(joint), u.sensor, u.other_joint);
     case UnobservableKind::point_on_axis:
       return phrase("point_on_axis", "the joint's point along its own axis");
     case UnobservableKind::axis_position:
@@ -57,6 +62,9 @@ std::string remedy_text(const Unobservable& u) {
       return phrase("point_along.remedy", "rock the machine's base while recording, or measure with a tape");
     case UnobservableKind::azimuth:
       return phrase("azimuth.remedy", "record once more on a slope, or with a magnetometer");
+    case UnobservableKind::place_about_axis:
+      return phrase("place_about_axis.remedy",
+                    "record once more on a slope, or with a magnetometer, as for the azimuth of {}", u.sensor);
     case UnobservableKind::point_on_axis:
       return phrase("point_on_axis.remedy", "any point of the axis will do");
     case UnobservableKind::axis_position:

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "kinfer/identify/geometry/mean_revolute.hpp"
 #include "kinfer/identify/handover/joint_ranges.hpp"
 #include "kinfer/identify/refinement/fits/azimuth.hpp"
 #include "kinfer/identify/refinement/fits/thresholds.hpp"
+#include "kinfer/identify/refinement/joints/azimuth_arc.hpp"
 #include "kinfer/identify/refinement/joints/joint_trajectory.hpp"
 
 namespace kinfer::identify {
@@ -88,16 +91,13 @@ RefinedJoint relaxed_joint(const RefinementFit& fitted, const JointBodies& bodie
   return joint;
 }
 
-/// One joint with its share of the covariance. `mount_deflection` [rad]: of the sensors on both sides.
-RefinedJoint make_joint(const RefinementTask& task, const RefinementFit& fitted, ConstMatrixRef covariance,
+/// One joint. `own`: its share of the covariance; `mount_deflection` [rad]: of the sensors on both sides.
+RefinedJoint make_joint(const RefinementTask& task, const RefinementFit& fitted, ConstMatrixRef own,
                         double mount_deflection, const JointBodies& joint_bodies,
                         std::span<const double> trajectory_time) {
   const InsFit& fit = fitted.fit;
   const auto& [type, first, last, parent, child, positive_axis] = joint_bodies;
   const auto bodies = std::span(fit.unknowns.bodies).subspan(first, last - first + 1);
-  const Index begin = first_unknown(fit.layout, joint_bodies),
-              size = unknowns_of(fit.layout, fit.unknowns.bodies, joint_bodies);
-  const MatrixXd own = covariance.block(begin, begin, size, size);
   if (joint_bodies.is_relaxed(fit.unknowns.bodies))
     return relaxed_joint(fitted, joint_bodies, own, mount_deflection,
                          named_zero(task.zeros, joint_bodies, 0, segment_names(task.motion)), trajectory_time);
@@ -111,6 +111,46 @@ RefinedJoint make_joint(const RefinementTask& task, const RefinementFit& fitted,
   joint.estimate.trajectory =
       joint_trajectory(type, bodies, joint.solution.geometry, joint.zero, grid, coefficients, trajectory_time);
   return joint;
+}
+
+MatrixXd own_covariance(const InsFit& fit, ConstMatrixRef all, const JointBodies& joint) {
+  const Index begin = first_unknown(fit.layout, joint), size = unknowns_of(fit.layout, fit.unknowns.bodies, joint);
+  return all.block(begin, begin, size, size);
+}
+
+/// One joint with its share of the covariance of all parameters.
+RefinedJoint make_joint_on_tangent(const RefinementTask& task, const RefinementFit& fitted, ConstMatrixRef all,
+                                   double mount_deflection, const JointBodies& joint,
+                                   std::span<const double> trajectory_time) {
+  return make_joint(task, fitted, own_covariance(fitted.fit, all, joint), mount_deflection, joint, trajectory_time);
+}
+
+/// Whether the child turns about the axis of its own joint only, which keeps its direction: nothing tells where along
+/// that axis the joint is.
+bool turns_about_own_axis_only(const JointEstimate& joint) {
+  return joint.type == EstimatedJointType::revolute && joint.unobservable_in_child.size() == 1 &&
+         joint.axis_in_child.cross(joint.unobservable_in_child.front()).norm() < 0.5;
+}
+
+/// Of a joint whose axis and point lie on an arc, not on its tangent. What is unobservable stays as it is: the shifts
+/// that no signal shows; and so does what the precision says of lengths, which no azimuth changes.
+void widen_by_arc(const AzimuthArc& arc, RefinedJoint&& widened, RefinedJoint& joint) {
+  joint.estimate.sd = widened.estimate.sd;
+  if (is_point_lost(arc)) joint.estimate.sd.point_in_parent.fill(std::numeric_limits<double>::infinity());
+  joint.solution.precision.canonical_sd = std::move(widened.solution.precision.canonical_sd);
+}
+
+/// One joint with its share of the covariance of all parameters, on a body that turns about its own axis only.
+RefinedJoint make_joint_on_arc(const RefinementTask& task, const RefinementFit& fitted, ConstMatrixRef all,
+                               double mount_deflection, const JointBodies& joint,
+                               std::span<const double> trajectory_time) {
+  RefinedJoint made = make_joint_on_tangent(task, fitted, all, mount_deflection, joint, trajectory_time);
+  const auto arc = azimuth_arc(fitted.fit.layout, fitted.fit.unknowns.bodies, all, joint.first);
+  if (!arc) return made;
+  MatrixXd own = own_covariance(fitted.fit, all, joint);
+  own.topLeftCorner(arc->beyond_tangent.rows(), arc->beyond_tangent.cols()) += arc->beyond_tangent;
+  widen_by_arc(*arc, make_joint(task, fitted, own, mount_deflection, joint, trajectory_time), made);
+  return made;
 }
 
 }  // namespace
@@ -136,10 +176,15 @@ std::vector<RefinedJoint> make_joints(const RefinementTask& task, const Refineme
   const MatrixXd all = covariance_of_parameters(task, fitted, covariance, error);
   std::vector<RefinedJoint> joints;
   for (const JointBodies& bodies : joint_bodies(task, fitted.setup)) {
-    RefinedJoint joint = make_joint(task, fitted, all, deflection_at(bodies, error, common), bodies, trajectory_time);
-    joint.estimate.parent = task.motion.segments[bodies.parent].name;
+    const std::string& parent = task.motion.segments[bodies.parent].name;
+    const bool is_on_arc = std::ranges::any_of(joints, [&](const RefinedJoint& before) {
+      return before.estimate.child == parent && turns_about_own_axis_only(before.estimate);
+    });
+    RefinedJoint joint = (is_on_arc ? make_joint_on_arc : make_joint_on_tangent)(
+        task, fitted, all, deflection_at(bodies, error, common), bodies, trajectory_time);
+    joint.estimate.parent = parent;
     joint.estimate.child = task.motion.segments[bodies.child].name;
-    if (bodies.type == EstimatedJointType::revolute && !joint.mean && joint.estimate.unobservable_in_child.size() == 1)
+    if (!joint.mean && turns_about_own_axis_only(joint.estimate))
       joint.estimate.azimuth_unobservable =
           azimuth_sd(fitted.fit.layout, fitted.fit.unknowns.bodies, covariance.model, bodies.last) > max_azimuth_sd;
     joints.push_back(std::move(joint));
