@@ -78,9 +78,9 @@ Result<void> FileBytes::fill_to(std::size_t offset) {
 void FileBytes::release_before(std::size_t offset) {
   const std::size_t whole = std::min(offset, filled_) / block_size * block_size;
   if (whole <= released_) return;
-  ::mmap(data_ + released_, whole - released_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_FIXED, -1,
-         0);
-  released_ = whole;
+  const void* freed = ::mmap(data_ + released_, whole - released_, PROT_NONE,
+                             MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_FIXED, -1, 0);
+  if (freed != MAP_FAILED) released_ = whole;  // else the memory stays, and no more
 }
 
 FileBytes::FileBytes(FileBytes&& other) noexcept
