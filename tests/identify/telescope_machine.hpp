@@ -54,8 +54,9 @@ struct TelescopeMachine {
       state.force = Vec3(0.0, 0.0, 9.81);
       for (std::size_t s = 0; s < 5; ++s) {
         if (s > 0) state = propagated(bodies[s], position_at(s - 1, t), state);
-        put(recording.sensors[s], state.angular_velocity + rate_bias[s] + normal(rng, 1.2e-3),
-            state.force + force_bias[s] + normal(rng, 0.012));
+        const Vec3 rate_noise = normal(rng, 1.2e-3), force_noise = normal(rng, 0.012);
+        put(recording.sensors[s], state.angular_velocity + rate_bias[s] + rate_noise,
+            state.force + force_bias[s] + force_noise);
       }
     }
   }

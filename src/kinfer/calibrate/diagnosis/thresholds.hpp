@@ -14,8 +14,8 @@ inline constexpr int min_hypothesis_rows = 8;       ///< base and tool are nine 
 /// [1] of the points' spread: what base and tool leave of a robot that has their size. In another unit it leaves all of
 /// it; the worst of the real robots leaves 0.02.
 inline constexpr double fitting_part_of_spread = 0.1;
-inline constexpr std::size_t beam_width = 4;        ///< sets of hypotheses that are extended; larger: slower, safer
-inline constexpr int max_simultaneous_faults = 3;   ///< larger: slower, and more chance explanations
+inline constexpr std::size_t beam_width = 4;       ///< sets of hypotheses that are extended; larger: slower, safer
+inline constexpr int max_simultaneous_faults = 3;  ///< larger: slower, and more chance explanations
 /// [1] of the error without the hypothesis: a plausible explanation must fall below it. Larger accepts more.
 inline constexpr double plausible_improvement = 0.2;
 /// [1] the same for an explanation whose error exceeds what the tolerances allow. Larger accepts more.
