@@ -10,7 +10,7 @@ namespace {
 constexpr std::array<std::string_view, 15> reason_names{
     "improves_nominal", "no_improvement", "not_validated",     "unmodelled_effects", "generalises",
     "overfitted",       "unproven",       "beyond_tolerances", "far_from_nominal",   "beyond_noise",
-    "contradictory",    "collapsed",      "fault_remains",     "unexplained",       "unchanged"};
+    "contradictory",    "collapsed",      "fault_remains",     "unexplained",        "unchanged"};
 constexpr std::array<std::string_view, 8> note_names{"many_gross_errors",  "tolerances_scaled", "frames_from_data",
                                                      "urdf_geometry_only", "population_used",   "foreign_to_population",
                                                      "joint_offset_moved", "no_offset_moved"};
