@@ -22,6 +22,7 @@ constexpr double step = 1e-4;  // [m], [rad]: predictions are nearly linear in a
 // that nothing excites (four recordings of a linkage that keeps a body upright) have shares of 0.78 to 0.95 where 1 is
 // expected, the minimum of the cost being where it is most curved; of all else in these the largest share is 5e-5.
 constexpr double noise_deviations = 4.0, variance_terms = 2.0;
+constexpr double least_known = 1e-12;  // part of the information: a covariance stays finite
 
 InsUnknowns moved(const InsProblem& problem, const InsLayout& layout, const InsUnknowns& x, Index parameter) {
   return retract(problem, layout, x,
@@ -98,7 +99,7 @@ void discount(MatrixXd& covariance, ConstMatrixRef white, ConstMatrixRef prior, 
     const double variance = weights.dot(direction(noise.parameters));
     if (!(variance > 0.0)) continue;
     direction /= std::sqrt(variance);
-    const double known = std::max(1.0 - doubt * share.values[i], direction.dot(prior * direction));
+    const double known = std::max({1.0 - doubt * share.values[i], direction.dot(prior * direction), least_known});
     if (known < 1.0) covariance += (1.0 / known - 1.0) * direction * direction.transpose();
   }
 }
