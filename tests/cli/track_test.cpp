@@ -131,7 +131,7 @@ TEST_F(Track, FollowsALogThatIsRotated) {
         "mv growing.csv old.csv; (head -1 drive/imu.csv; tail -n +1502 drive/imu.csv) > new; "
         "mv new growing.csv; "}) {
     const Outcome run = shell(
-        "head -1501 drive/imu.csv > growing.csv; kinfer track machine growing.csv --follow > "
+        ": > followed.csv; head -1501 drive/imu.csv > growing.csv; kinfer track machine growing.csv --follow > "
         "followed.csv 2> said.txt & " +
         after(1501) + rotate + after(lines_of(file)) + "kill -INT $!; wait $!");
     EXPECT_EQ(run.code, 0);
@@ -139,7 +139,8 @@ TEST_F(Track, FollowsALogThatIsRotated) {
     EXPECT_THAT(slurp(in("said.txt")), HasSubstr("growing.csv: the log began anew after "));
   }
   const Outcome again = shell(
-      "head -1501 drive/imu.csv > growing.csv; kinfer track machine growing.csv --follow --quiet > followed.csv & " +
+      ": > followed.csv; head -1501 drive/imu.csv > growing.csv; kinfer track machine growing.csv --follow --quiet > "
+      "followed.csv & " +
       after(1501) + ": > growing.csv; sleep 0.2; head -300 drive/imu.csv >> growing.csv; wait $!");
   EXPECT_EQ(again.code, 2);
   EXPECT_THAT(again.err, HasSubstr("the log began anew, and its time with it"));

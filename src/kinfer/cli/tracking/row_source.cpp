@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -49,6 +50,13 @@ class InterruptionGuard {
   }, terminate_{};
 };
 
+/// Log rotation.
+enum class Rotation {
+  none,
+  cut,      ///< the file begins anew; what is read from where the reading stood may be in the middle of a row
+  replaced  ///< another one stands in its place
+};
+
 /// A file or standard input.
 class ByteSource {
  public:
@@ -61,9 +69,13 @@ class ByteSource {
     if (file_ > STDIN_FILENO) ::close(file_);
   }
   ByteSource(ByteSource&& other) noexcept
-      : file_(std::exchange(other.file_, -1)), offset_(other.offset_), name_(std::move(other.name_)) {}
+      : file_(std::exchange(other.file_, -1)),
+        head_(std::move(other.head_)),
+        offset_(other.offset_),
+        name_(std::move(other.name_)) {}
   ByteSource& operator=(ByteSource&& other) noexcept {
-    std::swap(file_, other.file_), std::swap(name_, other.name_), offset_ = other.offset_;
+    std::swap(file_, other.file_), std::swap(name_, other.name_);
+    head_ = std::move(other.head_), offset_ = other.offset_;
     return *this;
   }
 
@@ -72,22 +84,36 @@ class ByteSource {
   Result<std::string_view> read() {
     const ssize_t count = ::read(file_, buffer_.data(), buffer_.size());
     if (count < 0 && errno != EINTR) return error("{}: reading stopped with an input error", name_);
-    offset_ += std::max<off_t>(count, 0);
-    return std::string_view(buffer_.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
+    const std::string_view piece(buffer_.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
+    head_ += piece.substr(0, std::min(piece.size(), most_head - std::min(most_head, head_.size())));
+    offset_ += static_cast<off_t>(piece.size());
+    return piece;
   }
 
-  /// Log rotation: the file was cut to less than was read, or another one stands in its place.
-  bool has_begun_anew() const {
+  Rotation rotation() const {
     struct stat open {
     }, named{};
-    if (file_ == STDIN_FILENO || ::fstat(file_, &open) != 0) return false;
-    if (S_ISREG(open.st_mode) && open.st_size < offset_) return true;
-    return ::stat(name_.c_str(), &named) == 0 && (named.st_ino != open.st_ino || named.st_dev != open.st_dev);
+    if (file_ == STDIN_FILENO || ::fstat(file_, &open) != 0) return Rotation::none;
+    if (S_ISREG(open.st_mode) && (open.st_size < offset_ || !begins_as_read())) return Rotation::cut;
+    const bool is_same =
+        ::stat(name_.c_str(), &named) != 0 || (named.st_ino == open.st_ino && named.st_dev == open.st_dev);
+    return is_same ? Rotation::none : Rotation::replaced;
   }
 
  private:
+  static constexpr std::size_t most_head = 4096;  // a header and a row, whose time tells files apart
+
   ByteSource(int file, std::string name) : file_(file), name_(std::move(name)) {}
+
+  /// A file that was cut may have grown beyond what was read before.
+  bool begins_as_read() const {
+    std::array<char, most_head> now;
+    const ssize_t count = ::pread(file_, now.data(), head_.size(), 0);
+    return count >= 0 && std::string_view(now.data(), static_cast<std::size_t>(count)) == head_;
+  }
+
   int file_;
+  std::string head_;  // its first bytes
   off_t offset_ = 0;  ///< bytes read
   std::string name_;
   std::vector<char> buffer_ = std::vector<char>(1 << 16);
@@ -145,14 +171,17 @@ Result<std::vector<std::string>> stream(const RowSource& source, const RowSink& 
   std::optional<InterruptionGuard> guard;
   if (source.mode == ReadMode::follow || path == "-") guard.emplace();
   while (!guard || !interrupted) {
-    const bool is_over = source.mode == ReadMode::follow && bytes.has_begun_anew();  // before its end is read
+    const bool was_replaced = source.mode == ReadMode::follow && bytes.rotation() == Rotation::replaced;
     KINFER_TRY(piece, bytes.read());
-    if (auto done = rows.add(piece); !done) return forward_error(done.error());
-    if (!piece.empty()) sink.pause();
-    if (!piece.empty()) continue;
-    if (source.mode == ReadMode::once || path == "-") break;
-    std::this_thread::sleep_for(poll_period);
-    if (!is_over) continue;
+    const bool was_cut = source.mode == ReadMode::follow && bytes.rotation() == Rotation::cut;
+    if (!was_cut) {
+      if (auto done = rows.add(piece); !done) return forward_error(done.error());
+      if (!piece.empty()) sink.pause();
+      if (!piece.empty()) continue;
+      if (source.mode == ReadMode::once || path == "-") break;
+      std::this_thread::sleep_for(poll_period);
+      if (!was_replaced) continue;  // and read to its end since
+    }
     KINFER_TRY(next, ByteSource::open(path));
     bytes = std::move(next);
     rows.begin_anew();
