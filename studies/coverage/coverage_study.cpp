@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/calibrate/terms/extrapolation_splits.hpp"
+#include "kinfer/calibrate/validation/extrapolation_splits.hpp"
 #include "kinfer/deploy/predict.hpp"
 #include "kinfer/estimate/poses/pose_weights.hpp"
 #include "kinfer/geometry/statistics.hpp"

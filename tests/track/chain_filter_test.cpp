@@ -271,7 +271,7 @@ TEST(ChainFilter, APlacedJointIsKnownThereAndToNothingElse) {
   EXPECT_EQ(filter.state().joints[position_states], 0.7);
   EXPECT_DOUBLE_EQ(filter.covariance()(at, at), 4e-4);
   EXPECT_NEAR(filter.covariance().row(at).norm(), 4e-4, 1e-18);
-  filter.declare_known(1);
+  filter.count_from_here(1);
   EXPECT_EQ(filter.covariance().col(at).norm(), 0.0);
 }
 

@@ -152,14 +152,10 @@ void Tracker::find_returned(const BlockMeasurement& block) {
   const std::optional<FoundAgain> found = return_.add(block);
   if (!found) return;
   filter_ = found->filter;
-  const BaseMode base = filter_.state().base;
   for (const FoundPosition& at : found->positions) {
     if (at.sd < turned_in_gap) continue;
-    positions_.lose(at.position, at.sd, base);
-    if (base == BaseMode::moving)
-      filter_.place(at.position, filter_.state().joints[position_states * at.position], 0.0);
-    else
-      filter_.declare_known(at.position);
+    positions_.lose(at.position, at.sd, filter_.state().base);
+    filter_.count_from_here(at.position);
   }
   return_.begin_again(filter_);
   begin_grid();
@@ -230,13 +226,9 @@ void Tracker::resolve_start(const BlockMeasurement& block) {
 
 /// What seemed to be motion was none, or is over: the position counts from where it seems to be, as before.
 void Tracker::give_up_grid(double time) {
-  const auto position = static_cast<std::size_t>(model_->layout.position[grid_->body()]);
+  filter_.count_from_here(model_->layout.position[grid_->body()]);
   grid_.reset();
   suspicion_from_ = time + suspicion_again;
-  if (filter_.state().base == BaseMode::moving)
-    filter_.place(static_cast<Index>(position), filter_.state().joints[position_states * position], 0.0);
-  else
-    filter_.declare_known(static_cast<Index>(position));
   forget_fit();
   replay_.begin(filter_);
 }
@@ -436,20 +428,11 @@ void Tracker::read_out(double time) {
     if (!positions_[i].is_known && static_cast<Index>(i) != in_grid && model_positions_[i].joint >= 0)
       chain_state_.joints[static_cast<std::size_t>(model_positions_[i].joint)].reference = JointReference::start;
   chain_state_.time = time;
-  state_.q = chain_state_.q;
-  state_.qd = chain_state_.qd;
   chain_state_.base_T_tool = tool_.tool();
   chain_state_.sd_tool_position = tool_.position_sd();
   chain_state_.sd_tool_rotation = tool_.rotation_sd();
   widen_unknown();
-  state_.sd_q = chain_state_.sd_q;
-  state_.sd_qd = chain_state_.sd_qd;
-  state_.joints = chain_state_.joints;
-  state_.world_q_base = chain_state_.world_q_base;
-  state_.sd_base = chain_state_.sd_base;
-  state_.base_T_tool = chain_state_.base_T_tool;
-  state_.sd_tool_position = chain_state_.sd_tool_position;
-  state_.sd_tool_rotation = chain_state_.sd_tool_rotation;
+  take_estimates(chain_state_, state_);
   for (std::size_t s = 0; s < is_sound_.size(); ++s)
     is_sound_[s] =
         !does_not_fit_[s] && health_[s].measures() && !health_[s].instrument_missing && !return_.waits_for(s);

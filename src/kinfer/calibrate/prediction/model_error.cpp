@@ -9,7 +9,7 @@
 #include "kinfer/calibrate/functions/fit_with_functions.hpp"
 #include "kinfer/calibrate/prediction/measured_region.hpp"
 #include "kinfer/calibrate/prediction/thresholds.hpp"
-#include "kinfer/calibrate/terms/extrapolation_splits.hpp"
+#include "kinfer/calibrate/validation/extrapolation_splits.hpp"
 #include "kinfer/estimate/poses/pose_uncertainty.hpp"
 #include "kinfer/estimate/poses/repeated_measurements.hpp"
 #include "kinfer/geometry/statistics.hpp"

@@ -38,10 +38,6 @@ inline constexpr double harm_probability = 0.975;
 /// off.
 KINFER_THRESHOLD(calibrate, part_beyond, 0.25);
 inline constexpr int bootstrap_draws = 200;  ///< more: slower, the probability more accurate than 1 %
-/// [1] of the rows at each end of a principal direction, held out together; larger: farther beyond the fitted poses.
-inline constexpr double extrapolation_part = 0.25;
-/// Rows left to fit on each side of an extrapolation split; with fewer, extrapolation is not tested.
-inline constexpr int min_extrapolation_rows = 15;
 /// Rows to fit of an extrapolation split; more: slower. Set for the time on UR10 A, whose terms do not depend on it.
 inline constexpr std::size_t extrapolation_rows = 1500;
 

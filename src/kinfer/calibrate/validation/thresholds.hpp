@@ -35,4 +35,10 @@ inline constexpr int min_judged_measurements = 4;
 /// judged as of points alone.
 inline constexpr std::size_t min_judging_measurements = 8;
 
+// ---- extrapolation_splits.cpp ----
+/// [1] of the rows at each end of a principal direction, held out together; larger: farther beyond the fitted poses.
+inline constexpr double extrapolation_part = 0.25;
+/// Rows left to fit on each side of an extrapolation split; with fewer, extrapolation is not tested.
+inline constexpr int min_extrapolation_rows = 15;
+
 }  // namespace kinfer::calibrate::thresholds

@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/cli/tracking/row_source.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstring>
 #include <optional>
 #include <thread>
 
 #include <fmt/ranges.h>
 
 #include "kinfer/cli/parts/ins_logs.hpp"
+#include "kinfer/io/files/growing_file.hpp"
 #include "kinfer/io/recording/ins_columns.hpp"
 #include "kinfer/io/recording/log_rows.hpp"
 #include "kinfer/io/recording/possible_times.hpp"
@@ -48,75 +42,6 @@ class InterruptionGuard {
  private:
   struct sigaction interrupt_ {
   }, terminate_{};
-};
-
-/// Log rotation.
-enum class Rotation {
-  none,
-  cut,      ///< the file begins anew; what is read from where the reading stood may be in the middle of a row
-  replaced  ///< another one stands in its place
-};
-
-/// A file or standard input.
-class ByteSource {
- public:
-  static Result<ByteSource> open(const std::string& path) {
-    const int file = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) return error("{}: {}", path, std::strerror(errno));
-    return ByteSource(file, path == "-" ? "standard input" : path);
-  }
-  ~ByteSource() {
-    if (file_ > STDIN_FILENO) ::close(file_);
-  }
-  ByteSource(ByteSource&& other) noexcept
-      : file_(std::exchange(other.file_, -1)),
-        head_(std::move(other.head_)),
-        offset_(other.offset_),
-        name_(std::move(other.name_)) {}
-  ByteSource& operator=(ByteSource&& other) noexcept {
-    std::swap(file_, other.file_), std::swap(name_, other.name_);
-    head_ = std::move(other.head_), offset_ = other.offset_;
-    return *this;
-  }
-
-  /// What has arrived, at least one byte unless the end is reached; waits for standard input.
-  /// Errors: an input error of the device.
-  Result<std::string_view> read() {
-    const ssize_t count = ::read(file_, buffer_.data(), buffer_.size());
-    if (count < 0 && errno != EINTR) return error("{}: reading stopped with an input error", name_);
-    const std::string_view piece(buffer_.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
-    head_ += piece.substr(0, std::min(piece.size(), most_head - std::min(most_head, head_.size())));
-    offset_ += static_cast<off_t>(piece.size());
-    return piece;
-  }
-
-  Rotation rotation() const {
-    struct stat open {
-    }, named{};
-    if (file_ == STDIN_FILENO || ::fstat(file_, &open) != 0) return Rotation::none;
-    if (S_ISREG(open.st_mode) && (open.st_size < offset_ || !begins_as_read())) return Rotation::cut;
-    const bool is_same =
-        ::stat(name_.c_str(), &named) != 0 || (named.st_ino == open.st_ino && named.st_dev == open.st_dev);
-    return is_same ? Rotation::none : Rotation::replaced;
-  }
-
- private:
-  static constexpr std::size_t most_head = 4096;  // a header and a row, whose time tells files apart
-
-  ByteSource(int file, std::string name) : file_(file), name_(std::move(name)) {}
-
-  /// A file that was cut may have grown beyond what was read before.
-  bool begins_as_read() const {
-    std::array<char, most_head> now;
-    const ssize_t count = ::pread(file_, now.data(), head_.size(), 0);
-    return count >= 0 && std::string_view(now.data(), static_cast<std::size_t>(count)) == head_;
-  }
-
-  int file_;
-  std::string head_;  // its first bytes
-  off_t offset_ = 0;  ///< bytes read
-  std::string name_;
-  std::vector<char> buffer_ = std::vector<char>(1 << 16);
 };
 
 /// Rows of a file that may begin anew while it is followed; of all of them the times increase.
@@ -165,7 +90,7 @@ class RowStream {
 /// The bytes as they arrive, until the end or an interruption.
 Result<std::vector<std::string>> stream(const RowSource& source, const RowSink& sink) {
   const std::string& path = source.logs.front();
-  KINFER_TRY(bytes, ByteSource::open(path));
+  KINFER_TRY(bytes, GrowingFile::open(path));
   RowStream rows(source, sink);
   // Where rows go on arriving, an interrupt is how the user says that this is all; of a whole file it ends the program.
   std::optional<InterruptionGuard> guard;
@@ -182,7 +107,7 @@ Result<std::vector<std::string>> stream(const RowSource& source, const RowSink& 
       std::this_thread::sleep_for(poll_period);
       if (!was_replaced) continue;  // and read to its end since
     }
-    KINFER_TRY(next, ByteSource::open(path));
+    KINFER_TRY(next, GrowingFile::open(path));
     bytes = std::move(next);
     rows.begin_anew();
   }
@@ -191,7 +116,7 @@ Result<std::vector<std::string>> stream(const RowSource& source, const RowSink& 
 }
 
 bool is_csv(const std::string& path) {
-  auto bytes = ByteSource::open(path);
+  auto bytes = GrowingFile::open(path);
   if (!bytes) return false;
   const auto head = bytes->read();
   return head && is_ins_csv(*head);

@@ -37,41 +37,38 @@ struct SensorLikelihoods {
   }
 };
 
-/// Direction and rates of a sensor; the bias that there can be is another one in each unit.
-struct InstrumentPair {
-  const TriadColumns& direction;
-  const TriadColumns& rates;
-  std::span<const double> time;
-  LeverArm lever_arm;
+/// By each unit; the bias that there can be is another one in each.
+using SignalsByUnit = std::array<std::optional<SectionSignals>, rate_units.size()>;
 
-  std::optional<SectionSignals> signals(double unit) const {
-    return section_signals(direction, rates, time, max_quiet_rate / unit);
-  }
-};
+SignalsByUnit signals_by_unit(const TriadColumns& direction, const TriadColumns& rates, std::span<const double> time) {
+  SignalsByUnit signals;
+  for (std::size_t u = 0; u < rate_units.size(); ++u)
+    signals[u] = section_signals(direction, rates, time, max_quiet_rate / rate_units[u]);
+  return signals;
+}
 
 /// What is a bias by one unit is a steady rotation by another: all sections that tell something by any unit.
-std::vector<std::size_t> sections_by_any_unit(const InstrumentPair& pair) {
+std::vector<std::size_t> sections_by_any_unit(const SignalsByUnit& signals) {
   std::set<std::size_t> sections;
-  for (const double unit : rate_units)
-    if (const auto signals = pair.signals(unit))
-      for (const std::size_t first : telling_sections(*signals)) sections.insert(first);
+  for (const auto& by_unit : signals)
+    if (by_unit)
+      for (const std::size_t first : telling_sections(*by_unit)) sections.insert(first);
   return {sections.begin(), sections.end()};
 }
 
-std::array<MapLikelihoods, rate_units.size()> likelihoods_of(const InstrumentPair& pair) {
-  const auto sections = sections_by_any_unit(pair);
+std::array<MapLikelihoods, rate_units.size()> likelihoods_of(const SignalsByUnit& signals, LeverArm lever_arm) {
+  const auto sections = sections_by_any_unit(signals);
   std::array<MapLikelihoods, rate_units.size()> result{};
   for (std::size_t u = 0; u < rate_units.size(); ++u)
-    if (const auto signals = pair.signals(rate_units[u]))
-      result[u] = map_likelihoods(*signals, sections, rate_units[u], pair.lever_arm);
+    if (signals[u]) result[u] = map_likelihoods(*signals[u], sections, rate_units[u], lever_arm);
   return result;
 }
 
 SensorLikelihoods likelihoods_of(const InsSensor& sensor, std::span<const double> time) {
   SensorLikelihoods result;
-  result.force = likelihoods_of({sensor.acceleration, sensor.angular_velocity, time, LeverArm::free});
+  result.force = likelihoods_of(signals_by_unit(sensor.acceleration, sensor.angular_velocity, time), LeverArm::free);
   if (sensor.has_magnetometer())
-    result.field = likelihoods_of({sensor.field, sensor.angular_velocity, time, LeverArm::none});
+    result.field = likelihoods_of(signals_by_unit(sensor.field, sensor.angular_velocity, time), LeverArm::none);
   return result;
 }
 

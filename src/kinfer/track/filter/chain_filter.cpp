@@ -115,7 +115,8 @@ void ChainFilter::suppose_velocity(Index position, std::size_t sensor, const Vec
   state_.joints[at - base_states] += by_velocity.dot(missing) / by_velocity.squaredNorm();
 }
 
-void ChainFilter::declare_known(Index position) {
+void ChainFilter::count_from_here(Index position) {
+  if (state_.base == BaseMode::moving) return place(position, state_.joints[position_states * position], 0.0);
   placed_ = state_.time;
   forget(model_->layout.joint_state(position));
   if (const Index zero = zero_state(position); zero >= 0) forget(zero);

@@ -73,8 +73,9 @@ class ChainFilter {
   /// [s] Since when all positions follow from the rows: the last start or placing.
   double placed_at() const { return placed_; }
 
-  /// Forgets what is unknown of a joint position and of its zero: it counts from here.
-  void declare_known(Index position);
+  /// A joint position counts from where it stands: what is unknown of it is forgotten, on a still base that of its zero
+  /// as well.
+  void count_from_here(Index position);
 
   /// Leaves a sensor out of all updates (or takes it in again).
   void use_sensor(std::size_t sensor, bool is_used) { is_used_[sensor] = is_used; }

@@ -125,4 +125,12 @@ void read_out(const TrackingModel& tracking, const FilterModel& model, const Cha
   to.sd_base = attitude.diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
+void take_estimates(const TrackState& from, TrackState& to) {
+  to.q = from.q, to.qd = from.qd, to.sd_q = from.sd_q, to.sd_qd = from.sd_qd;
+  to.joints = from.joints;
+  to.world_q_base = from.world_q_base, to.sd_base = from.sd_base;
+  to.base_T_tool = from.base_T_tool;
+  to.sd_tool_position = from.sd_tool_position, to.sd_tool_rotation = from.sd_tool_rotation;
+}
+
 }  // namespace kinfer::track

@@ -7,11 +7,14 @@
 
 namespace kinfer::track {
 
-/// A state with vectors of their final lengths, everything unknown.
 /// Rates of the angles of Rx(q₁) Ry(q₂) Rz(q₃) by its angular velocity in the rotating frame.
 Mat3 cardan_rates(const Vec3& q);
 
+/// A state with vectors of their final lengths, everything unknown.
 TrackState unknown_state(const TrackingModel& model);
+
+/// Joints, base and tool, with their deviations; neither time nor alarms. Nothing is allocated.
+void take_estimates(const TrackState& from, TrackState& to);
 
 /// Positions, velocities and the base's attitude; angles are continuous with those that `to` holds. `covariance`: of
 /// the filter, some rows older than `state`. Nothing is allocated.

@@ -92,10 +92,7 @@ void start_in(const InitialPosture& posture, ChainFilter& filter) {
     const StartPosition& start = posture.positions[static_cast<std::size_t>(at)];
     if (start.has_open_heading) filter.consider_heading(b);
     if (model.bodies[b].motion != JointMotion::revolute || start.is_known || start.is_unseen) continue;
-    if (posture.state.base == BaseMode::moving)
-      filter.place(at, posture.state.joints[position_states * at], 0.0);
-    else
-      filter.declare_known(at);
+    filter.count_from_here(at);
   }
 }
 

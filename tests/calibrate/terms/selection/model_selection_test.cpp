@@ -6,7 +6,7 @@
 
 #include "calibrate/terms/simulated_selection.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/calibrate/terms/extrapolation_splits.hpp"
+#include "kinfer/calibrate/validation/extrapolation_splits.hpp"
 #include "kinfer/calibrate/terms/gear_harmonics.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"

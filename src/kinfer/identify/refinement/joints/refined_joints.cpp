@@ -128,8 +128,9 @@ RefinedJoint make_joint_on_tangent(const RefinementTask& task, const RefinementF
 /// Whether the child turns about the axis of its own joint only, which keeps its direction: nothing tells where along
 /// that axis the joint is.
 bool turns_about_own_axis_only(const JointEstimate& joint) {
+  constexpr double most_sine = 0.5;  // the direction is that of the axis, or across it
   return joint.type == EstimatedJointType::revolute && joint.unobservable_in_child.size() == 1 &&
-         joint.axis_in_child.cross(joint.unobservable_in_child.front()).norm() < 0.5;
+         joint.axis_in_child.cross(joint.unobservable_in_child.front()).norm() < most_sine;
 }
 
 /// Of a joint whose axis and point lie on an arc, not on its tangent. What is unobservable stays as it is: the shifts

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/calibrate/terms/extrapolation_splits.hpp"
+#include "kinfer/calibrate/validation/extrapolation_splits.hpp"
 
 #include <algorithm>
 #include <map>

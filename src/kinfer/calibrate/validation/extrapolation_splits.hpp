@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "kinfer/calibrate/terms/thresholds.hpp"
+#include "kinfer/calibrate/validation/thresholds.hpp"
 #include "kinfer/measurement/pose_set.hpp"
 #include "kinfer/measurement/split.hpp"
 
