@@ -95,7 +95,8 @@ TEST(UnknownRobotWords, AxesAreDescribedByAngleAndDistance) {
 }
 
 TEST(CalibrationWords, EveryNoteAndEveryAdviceHasWords) {
-  const FactValues values{{"rows", 3},
+  const FactValues values{{"faults", 2},
+                          {"rows", 3},
                           {"factor", 10.0},
                           {"distance_m", 0.05},
                           {"parameter", std::string("theta3")},
@@ -125,7 +126,7 @@ TEST(CalibrationWords, EveryNoteAndEveryAdviceHasWords) {
     what.insert(text.what);
     EXPECT_FALSE(text.why.empty()) << i;
   }
-  EXPECT_EQ(what.size(), 7U);
+  EXPECT_EQ(what.size(), 8U);
   EXPECT_EQ(words::sentence(CalibrationNote{CalibrationNoteKind::joint_offset_moved, values}),
             "theta3 has moved by -0.5730 deg since the earlier calibration (5 sd)");
 }

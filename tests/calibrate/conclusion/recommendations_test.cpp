@@ -37,6 +37,13 @@ std::vector<CalibrationAdviceKind> advice_kinds(const CalibrationTask& task, con
 
 using Kinds = std::vector<CalibrationAdviceKind>;
 
+TEST(Recommendations, OfFaultyDataIsToCorrectThemAndNoMore) {
+  Calibration c;
+  c.reason = CalibrationReason::fault_remains, c.usability = Usability::do_not_use;
+  c.findings.push_back({.kind = FindingKind::base_moved, .severity = Severity::fault});
+  EXPECT_EQ(advice_kinds(task_with_rows(20), c), (Kinds{correct_data}));
+}
+
 TEST(Recommendations, OfASoundCalibrationAreToUseAndToKeepIt) {
   EXPECT_EQ(advice_kinds(task_with_rows(80), {}), (Kinds{use_corrections, keep_verification_poses}));
   Calibration refused;

@@ -16,6 +16,12 @@ void recommend_use(const Calibration& c, Recommendations& list) {
   if (c.usability != Usability::do_not_use) list.push_back({CalibrationAdviceKind::use_corrections});
 }
 
+/// All else would be drawn from a fit to faulty data.
+Recommendations correct_first(const Calibration& c) {
+  const auto faults = std::ranges::count_if(c.findings, invalidates_result);
+  return {{CalibrationAdviceKind::correct_data, {{"faults", static_cast<int>(faults)}}}};
+}
+
 void recommend_model_check(const Calibration& c, Recommendations& list) {
   if (!c.estimate.chi2_per_n || *c.estimate.chi2_per_n < thresholds::misfit_chi2) return;
   list.push_back({CalibrationAdviceKind::check_model, {{"residual_ratio", std::sqrt(*c.estimate.chi2_per_n)}}});
@@ -68,6 +74,7 @@ void recommend_more_poses(const CalibrationTask& task, const Calibration& c, Rec
 }  // namespace
 
 Recommendations make_recommendations(const CalibrationTask& task, const Calibration& calibration) {
+  if (calibration.reason == CalibrationReason::fault_remains) return correct_first(calibration);
   Recommendations list;
   recommend_use(calibration, list);
   recommend_model_check(calibration, list);

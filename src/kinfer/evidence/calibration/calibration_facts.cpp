@@ -14,9 +14,10 @@ constexpr std::array<std::string_view, 15> reason_names{
 constexpr std::array<std::string_view, 8> note_names{"many_gross_errors",  "tolerances_scaled", "frames_from_data",
                                                      "urdf_geometry_only", "population_used",   "foreign_to_population",
                                                      "joint_offset_moved", "no_offset_moved"};
-constexpr std::array<std::string_view, 7> advice_names{
-    "use_corrections",          "check_model",        "check_outliers",         "extend_joint_range",
-    "measure_uncertain_region", "measure_more_poses", "keep_verification_poses"};
+constexpr std::array<std::string_view, 8> advice_names{"use_corrections",    "correct_data",
+                                                       "check_model",        "check_outliers",
+                                                       "extend_joint_range", "measure_uncertain_region",
+                                                       "measure_more_poses", "keep_verification_poses"};
 
 constexpr std::array<std::string_view, 2> unobserved_names{"size", "all_lengths"};
 

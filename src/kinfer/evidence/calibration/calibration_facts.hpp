@@ -79,6 +79,7 @@ struct CalibrationNote {
 
 enum class CalibrationAdviceKind {
   use_corrections,
+  correct_data,              ///< faults that stand: "faults", how many
   check_model,               ///< residuals far above the noise: "residual_ratio"
   check_outliers,            ///< "rows"
   extend_joint_range,        ///< "joint", "range_m" or "range_rad"

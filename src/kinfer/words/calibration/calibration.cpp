@@ -27,6 +27,13 @@ std::string joint_positions(const FactValues& values) {
   return fmt::format("{}", fmt::join(list, ", "));
 }
 
+Advice advice_on_faults(const CalibrationAdvice& a) {
+  const int n = a.values.count("faults");
+  return {phrase(name(a.kind), "Correct the data as the findings say, and calibrate again"),
+          phrase(name(a.kind), "{} fault{} and what was fitted to such data is of no use", n,
+                 n == 1 ? " stands," : "s stand,")};
+}
+
 Advice advice_on_outliers(const CalibrationAdvice& a) {
   const int n = a.values.count("rows");
   return {
@@ -127,6 +134,8 @@ Advice advice(const CalibrationAdvice& a) {
                      "Put the corrected numbers to use: offsets and DH table into the controller, or joint targets "
                      "through kinfer compensate"),
               phrase(name(a.kind), "the corrected model is in chain.toml, chain.urdf and the tables beside them")};
+    case CalibrationAdviceKind::correct_data:
+      return advice_on_faults(a);
     case CalibrationAdviceKind::check_model:
       return {phrase(name(a.kind),
                      "Look for what the model lacks: load, gears, temperature, a loose mount, or a worse instrument"),

@@ -142,8 +142,11 @@ VerdictText parts_of_verdict(const Calibration& c) {
                           "could make: unless the instrument is that inaccurate (state its sigma), joints and "
                           "measurements do not belong together: " +
                               figures(c));
-    case CalibrationReason::fault_remains:
-      return with_remarks(c, fault_text(c) + ": " + figures(c));
+    case CalibrationReason::fault_remains: {
+      VerdictText text = with_remarks(c, fault_text(c));
+      text.remarks.insert(text.remarks.begin(), figures(c));
+      return text;
+    }
     case CalibrationReason::far_from_nominal:
       return with_remarks(
           c, fmt::format("the robot is {:.0f} times further from its nominal model than the tolerances say, so perhaps "
