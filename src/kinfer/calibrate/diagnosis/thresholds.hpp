@@ -11,8 +11,8 @@ namespace kinfer::calibrate::thresholds {
 // ---- conventions.cpp: hypotheses about units, signs, offsets and columns ----
 inline constexpr std::size_t hypothesis_rows = 40;  ///< rows that a hypothesis is tested on; more: slower, more certain
 inline constexpr int min_hypothesis_rows = 8;       ///< base and tool are nine unknowns; the others must discriminate
-/// [1] of the points' spread: what base and tool leave of a robot that has their size. In another unit it leaves all of
-/// it; the worst of the real robots leaves 0.02.
+/// [1] of the points' spread: what base and tool leave of a robot that has their size. In another unit it leaves nearly
+/// all of it. Not set on data.
 inline constexpr double fitting_part_of_spread = 0.1;
 inline constexpr std::size_t beam_width = 4;       ///< sets of hypotheses that are extended; larger: slower, safer
 inline constexpr int max_simultaneous_faults = 3;  ///< larger: slower, and more chance explanations

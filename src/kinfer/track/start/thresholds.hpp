@@ -23,10 +23,11 @@ inline constexpr int start_places = 18;  ///< of an angle that gravity does not 
 /// Updates that only settle velocities and accelerations: their evidence depends on how little was known of these.
 inline constexpr int start_updates = 25;
 /// [s] in which nothing tells places apart, after which they are given up: what began was no motion, or is over.
-/// While places are open nothing that disagrees is named, so the first is short.
+/// While places are open nothing that disagrees is named, so the first is short. Set on one machine with four joints,
+/// on level ground after a power-up.
 inline constexpr double untold_patience = 2.0, undecided_patience = 20.0;
 inline constexpr double open_entropy = 1.0;            ///< [nat] three places or more, for which the first holds
-inline constexpr double suspicion_again = 60.0;        ///< [s] after a suspicion of motion that was none
+inline constexpr double suspicion_again = 60.0;        ///< [s] after a suspicion that was none; not set on data
 inline constexpr double usual_force_time = 1.0;        ///< [s] mean specific force, from which that of a motion differs
 inline constexpr double start_log_odds = 30.0;         ///< ln: a place so much less likely than the best is dropped
 inline constexpr double start_merge = 0.02;            ///< [rad] or [m] places so near are one

@@ -8,10 +8,10 @@
 #include "kinfer/calibrate/parameters/parameter_sets.hpp"
 #include "kinfer/calibrate/terms/ablation.hpp"
 #include "kinfer/calibrate/terms/decision.hpp"
-#include "kinfer/calibrate/validation/extrapolation_splits.hpp"
 #include "kinfer/calibrate/terms/noise_levels.hpp"
 #include "kinfer/calibrate/terms/selection/term_steps.hpp"
 #include "kinfer/calibrate/terms/thresholds.hpp"
+#include "kinfer/calibrate/validation/extrapolation_splits.hpp"
 #include "kinfer/measurement/row_selection.hpp"
 
 namespace kinfer::calibrate {
