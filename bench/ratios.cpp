@@ -136,7 +136,7 @@ void print(const std::map<std::string, Measured>& medians) {
   table.times("PSO 404 x 200 x 50", "kinfer_pso", "by_pagmo/cmaes", "pagmo CMA-ES", 0);
   table.times("MAP fit, 500 poses x 34 parameters", "kinfer_fit", "ceres_fit", "Ceres autodiff", 0);
   table.times("inverse kinematics, 500 random poses", "reach_full_poses", "kdl_inverse_with_restarts", "KDL, restarts",
-              0);
+              15);
   table.times("1000 bootstrap refits, 1 -> 2 threads", "bootstrap_1000/2", "bootstrap_1000/1", "1 thread", 1.85);
   table.figure("1000 bootstrap refits, two threads", "bootstrap_1000/2", "<= 2 s");
   table.figure("cold fit of paper 2's case", "cold_fit", "<= 50 us");

@@ -31,6 +31,7 @@ constexpr std::array studies{
     NamedStudy{"paper1", run_paper1},
     NamedStudy{"paper2", run_paper2},
     NamedStudy{"planning", run_planning},
+    NamedStudy{"reach", run_reach},
     NamedStudy{"regret", run_regret},
     NamedStudy{"robots", run_robots},
     NamedStudy{"search_start", run_search_start},

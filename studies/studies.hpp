@@ -18,6 +18,7 @@ int run_orientation(int argc, char** argv);
 int run_paper1(int argc, char** argv);
 int run_paper2(int argc, char** argv);
 int run_planning(int argc, char** argv);
+int run_reach(int argc, char** argv);
 int run_regret(int argc, char** argv);
 int run_robots(int argc, char** argv);
 int run_search_start(int argc, char** argv);

@@ -39,6 +39,10 @@ Descent::Descent(const Chain& chain, const Load& load, double position_tolerance
   set_units(0.0);
 }
 
+bool Descent::is_inside(const VectorXd& q) const {
+  return (q.array() >= limits_.lower.array()).all() && (q.array() <= limits_.upper.array()).all();
+}
+
 bool Descent::is_met(const ReachTask::Error& error) const {
   return error.position <= position_tolerance_ && error.angle <= angle_tolerance_;
 }
@@ -57,10 +61,12 @@ void Descent::set_units(double position_error) {
 }
 
 Descent::Attempt Descent::run(const ReachTask& task, VectorXd q, Steps kind) {
-  const bool clamp = kind == Steps::inside_limits;
+  const bool clamp = kind == Steps::inside_limits || kind == Steps::nearest_inside,
+             is_left_early = kind == Steps::of_start || kind == Steps::inside_limits;
   const bool of_machine = deviates_ && kind != Steps::of_start;
   const int most = kind == Steps::of_start ? thresholds::steps : thresholds::careful_steps;
   double earlier = std::numeric_limits<double>::infinity();
+  if (clamp) q = limits_.clamped(q);
   for (int step = 0;; ++step) {
     screws_.place(q, at_);
     // The effect of non-geometric terms on the Jacobian is left out.
@@ -70,7 +76,7 @@ Descent::Attempt Descent::run(const ReachTask& task, VectorXd q, Steps kind) {
     if (is_met(error)) return {std::move(q), size, true};
     const auto left = [&] { return Attempt{std::move(q), size, is_met_but_for_rounding(task, error)}; };
     if (step == most) return left();
-    if (kind == Steps::of_start && step % thresholds::judged_steps == thresholds::judged_steps - 1) {
+    if (is_left_early && step % thresholds::judged_steps == thresholds::judged_steps - 1) {
       if (size > thresholds::worthwhile_decrease * earlier) return left();
       earlier = size;
     }
@@ -103,7 +109,14 @@ void Descent::leave_out_limited(const ReachTask& task, const VectorXd& q, const 
 /// step_ = Jᵀ (J Jᵀ + λ)⁻¹ e, or (JᵀJ + λ)⁻¹ Jᵀ e where that is the smaller system.
 bool Descent::set_step(const ReachTask& task, const Eigen::Matrix<double, 6, 1>& error, double damping) {
   const double least = damping + thresholds::least_damping;
-  if (task.rows() <= rows_.cols()) {
+  if (task.rows() == 6 && rows_.cols() >= 6) {  // the usual case, in registers
+    const Eigen::Map<const Twists> rows(rows_.data(), 6, rows_.cols());
+    Eigen::Matrix<double, 6, 6> normal = rows.lazyProduct(rows.transpose());
+    normal.diagonal().array() += least;
+    const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(normal);
+    if (factor.info() != Eigen::Success) return false;
+    step_.noalias() = rows.transpose().lazyProduct(Eigen::Matrix<double, 6, 1>(factor.solve(error)));
+  } else if (task.rows() <= rows_.cols()) {
     normal_.noalias() = rows_.lazyProduct(rows_.transpose());
     normal_.diagonal().array() += least;
     right_ = error.head(task.rows());
@@ -120,6 +133,7 @@ bool Descent::set_step(const ReachTask& task, const Eigen::Matrix<double, 6, 1>&
 
 void Descent::approach(const ReachTask& task, const VectorXd& preferred, VectorXd& q) {
   unwind(q, preferred);
+  const Steps kind = is_inside(q) && !deviates_ ? Steps::inside_limits : Steps::of_start;
   double part = 1.0;
   for (int k = 0; k < thresholds::approach_steps; ++k) {
     screws_.place(q, at_);
@@ -134,7 +148,7 @@ void Descent::approach(const ReachTask& task, const VectorXd& preferred, VectorX
     const double largest = part * step.cwiseAbs().maxCoeff();
     if (largest < thresholds::approach_tolerance) break;
     const double length = part * std::min(1.0, thresholds::longest_step / largest);
-    Attempt corrected = run(task, q + length * unit_.cwiseProduct(step), Steps::of_start);
+    Attempt corrected = run(task, q + length * unit_.cwiseProduct(step), kind);
     if (corrected.converged && distance(corrected.q, preferred) < distance(q, preferred))
       q = std::move(corrected.q), part = std::min(1.0, 2.0 * part);
     else

@@ -11,9 +11,10 @@ namespace kinfer::motion {
 class Descent {
  public:
   enum class Steps {
-    of_start,       ///< of the rigid chain, without limits, left early
-    of_machine,     ///< the same with the non-geometric terms of the machine
-    inside_limits,  ///< of the machine, clamped to the limits
+    of_start,        ///< of the rigid chain, without limits, left early
+    of_machine,      ///< the same with the non-geometric terms of the machine
+    inside_limits,   ///< of the machine, clamped to the limits, left early
+    nearest_inside,  ///< the same to its end
   };
 
   /// What one start came to.
@@ -28,6 +29,7 @@ class Descent {
 
   const Chain& chain() const { return chain_; }
   const JointLimits& limits() const { return limits_; }
+  bool is_inside(const VectorXd& q) const;
   const ScrewChain& screws() const { return screws_; }
   /// [m] Sum of the constant transforms: a bound of how far the tool gets without prismatic joints.
   double length() const { return length_; }

@@ -43,7 +43,7 @@ class ReachSolver::Search {
     for (int start = 0; start < options_.starts; ++start) {
       solution.starts_used = start + 1;
       Attempt attempt = descent_.run(task, start == 0 ? preferred : draw(rng.stream(static_cast<std::uint64_t>(start))),
-                                     Steps::of_start);
+                                     steps_of(task, start));
       if (!attempt.converged) {
         if (attempt.error < closest.error) closest = std::move(attempt);
         continue;
@@ -52,10 +52,12 @@ class ReachSolver::Search {
       if (descent_.has_non_geometric_terms()) attempt = descent_.run(task, std::move(attempt.q), Steps::of_machine);
       if (!attempt.converged) continue;
       descent_.unwind(attempt.q, preferred);
-      if (!is_inside(attempt.q)) {
+      if (!descent_.is_inside(attempt.q)) {
         if (beyond && violation(attempt.q) >= violation(*beyond)) continue;
         beyond = attempt.q;
-        attempt = descent_.run(task, limits_.clamped(attempt.q), Steps::inside_limits);
+        // Other postures of a chain that is not redundant are as far from this one as from any start.
+        if (!is_redundant(task) && violation(attempt.q) > thresholds::same_posture) continue;
+        attempt = descent_.run(task, attempt.q, Steps::inside_limits);
         if (!attempt.converged) continue;
       }
       keep(solution, std::move(attempt.q), preferred);
@@ -74,13 +76,18 @@ class ReachSolver::Search {
 
   bool is_redundant(const ReachTask& task) const { return descent_.screws().dof() > task.fixed_freedoms(); }
 
-  /// Of a redundant chain whose postures were all outside the limits: its free joints lead back inside if the limits
-  /// restrict each step.
+  /// The free joints of a redundant chain lead back inside the limits where these restrict each step; without them the
+  /// way is shorter.
+  Steps steps_of(const ReachTask& task, int start) const {
+    return is_redundant(task) && start % 2 == 1 ? Steps::inside_limits : Steps::of_start;
+  }
+
+  /// Of a redundant chain whose postures were all outside the limits: with patience its free joints lead back inside.
   void search_inside(const ReachTask& task, const VectorXd& preferred, ReachSolution& solution) {
     const Rng rng(options_.seed);
     for (int start = 0; start < options_.starts; ++start) {
-      VectorXd q = start == 0 ? limits_.clamped(preferred) : draw(rng.stream(static_cast<std::uint64_t>(start)));
-      Attempt attempt = descent_.run(task, std::move(q), Steps::inside_limits);
+      VectorXd q = start == 0 ? preferred : draw(rng.stream(static_cast<std::uint64_t>(start)));
+      Attempt attempt = descent_.run(task, std::move(q), Steps::nearest_inside);
       if (!attempt.converged) continue;
       keep(solution, std::move(attempt.q), preferred);
       if (options_.choice == PostureChoice::first) return;
@@ -90,9 +97,8 @@ class ReachSolver::Search {
   /// Why no posture was found, and the one inside the limits that comes closest.
   void explain(const ReachTask& task, const VectorXd& preferred, const Attempt& closest,
                const std::optional<VectorXd>& beyond, ReachSolution& solution) {
-    Attempt inside = descent_.run(task, limits_.clamped(beyond ? *beyond : closest.q), Steps::inside_limits);
-    if (const Attempt other = descent_.run(task, limits_.clamped(preferred), Steps::inside_limits);
-        other.error < inside.error)
+    Attempt inside = descent_.run(task, beyond ? *beyond : closest.q, Steps::nearest_inside);
+    if (const Attempt other = descent_.run(task, preferred, Steps::nearest_inside); other.error < inside.error)
       inside = other;
     solution.postures = {{inside.q, descent_.distance(inside.q, preferred)}};
     if (inside.converged) {
@@ -108,9 +114,6 @@ class ReachSolver::Search {
     }
   }
 
-  bool is_inside(const VectorXd& q) const {
-    return (q.array() >= limits_.lower.array()).all() && (q.array() <= limits_.upper.array()).all();
-  }
   double violation(const VectorXd& q) const { return (q - limits_.clamped(q)).cwiseAbs().sum(); }
 
   void keep(ReachSolution& solution, VectorXd q, const VectorXd& preferred) const {

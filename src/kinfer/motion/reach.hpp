@@ -3,8 +3,9 @@
 //
 // From each start damped Gauss-Newton steps are made whose damping is proportional to the squared error (after Sugihara
 // 2011, "Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method"). Joint limits do not restrict
-// the steps: revolutions are removed and limits checked at the end, and a start that stops improving is left early. The
-// first start is the preferred posture, the others are drawn inside the limits.
+// the steps, but of redundant chains those of every other start: revolutions are removed and limits checked at the end,
+// and a start that stops improving is left early. The first start is the preferred posture, the others are drawn inside
+// the limits.
 #pragma once
 
 #include <cstdint>

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "kinfer/calibrate/terms/approximate_masses.hpp"
-#include "kinfer/calibrate/validation/extrapolation_splits.hpp"
 #include "kinfer/calibrate/terms/holdout_errors.hpp"
+#include "kinfer/calibrate/validation/extrapolation_splits.hpp"
 #include "kinfer/kinematics/forward.hpp"
 #include "support/robots.hpp"
 

@@ -6,8 +6,8 @@
 
 #include "calibrate/terms/simulated_selection.hpp"
 #include "kinfer/calibrate/calibrate.hpp"
-#include "kinfer/calibrate/validation/extrapolation_splits.hpp"
 #include "kinfer/calibrate/terms/gear_harmonics.hpp"
+#include "kinfer/calibrate/validation/extrapolation_splits.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/words/calibration/calibration.hpp"
