@@ -60,13 +60,11 @@ void Descent::set_units(double position_error) {
     if (!screws_.is_rotational(static_cast<int>(k))) unit_[k] = std::max(length_, position_error);
 }
 
-Descent::Attempt Descent::run(const ReachTask& task, VectorXd q, Steps kind) {
-  const bool clamp = kind == Steps::inside_limits || kind == Steps::nearest_inside,
-             is_left_early = kind == Steps::of_start || kind == Steps::inside_limits;
-  const bool of_machine = deviates_ && kind != Steps::of_start;
-  const int most = kind == Steps::of_start ? thresholds::steps : thresholds::careful_steps;
+Descent::Attempt Descent::run(const ReachTask& task, VectorXd q, Steps steps) {
+  const bool of_machine = deviates_ && steps.of_machine;
+  const int most = steps.are_patient ? thresholds::patient_steps : thresholds::steps;
   double earlier = std::numeric_limits<double>::infinity();
-  if (clamp) q = limits_.clamped(q);
+  if (steps.are_clamped) q = limits_.clamped(q);
   for (int step = 0;; ++step) {
     screws_.place(q, at_);
     // The effect of non-geometric terms on the Jacobian is left out.
@@ -76,17 +74,17 @@ Descent::Attempt Descent::run(const ReachTask& task, VectorXd q, Steps kind) {
     if (is_met(error)) return {std::move(q), size, true};
     const auto left = [&] { return Attempt{std::move(q), size, is_met_but_for_rounding(task, error)}; };
     if (step == most) return left();
-    if (is_left_early && step % thresholds::judged_steps == thresholds::judged_steps - 1) {
+    if (!steps.are_patient && step % thresholds::judged_steps == thresholds::judged_steps - 1) {
       if (size > thresholds::worthwhile_decrease * earlier) return left();
       earlier = size;
     }
     set_rows(task);
-    if (clamp) leave_out_limited(task, q, error);
+    if (steps.are_clamped) leave_out_limited(task, q, error);
     if (!set_step(task, error.weighted, thresholds::damping * size * size)) return left();
     const double largest = step_.cwiseAbs().maxCoeff();
     if (largest > thresholds::longest_step) step_ *= thresholds::longest_step / largest;
     q += unit_.cwiseProduct(step_);
-    if (clamp) q = limits_.clamped(q);
+    if (steps.are_clamped) q = limits_.clamped(q);
   }
 }
 
@@ -133,7 +131,7 @@ bool Descent::set_step(const ReachTask& task, const Eigen::Matrix<double, 6, 1>&
 
 void Descent::approach(const ReachTask& task, const VectorXd& preferred, VectorXd& q) {
   unwind(q, preferred);
-  const Steps kind = is_inside(q) && !deviates_ ? Steps::inside_limits : Steps::of_start;
+  const Steps steps{.are_clamped = is_inside(q)};
   double part = 1.0;
   for (int k = 0; k < thresholds::approach_steps; ++k) {
     screws_.place(q, at_);
@@ -148,7 +146,7 @@ void Descent::approach(const ReachTask& task, const VectorXd& preferred, VectorX
     const double largest = part * step.cwiseAbs().maxCoeff();
     if (largest < thresholds::approach_tolerance) break;
     const double length = part * std::min(1.0, thresholds::longest_step / largest);
-    Attempt corrected = run(task, q + length * unit_.cwiseProduct(step), kind);
+    Attempt corrected = run(task, q + length * unit_.cwiseProduct(step), steps);
     if (corrected.converged && distance(corrected.q, preferred) < distance(q, preferred))
       q = std::move(corrected.q), part = std::min(1.0, 2.0 * part);
     else

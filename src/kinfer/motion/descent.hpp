@@ -10,11 +10,10 @@ namespace kinfer::motion {
 
 class Descent {
  public:
-  enum class Steps {
-    of_start,        ///< of the rigid chain, without limits, left early
-    of_machine,      ///< the same with the non-geometric terms of the machine
-    inside_limits,   ///< of the machine, clamped to the limits, left early
-    nearest_inside,  ///< the same to its end
+  struct Steps {
+    bool of_machine = false;   ///< with its non-geometric terms; else of the rigid chain
+    bool are_clamped = false;  ///< to the limits
+    bool are_patient = false;  ///< to the end, else left early where the error falls slowly
   };
 
   /// What one start came to.

@@ -34,6 +34,7 @@ class ReachSolver::Search {
  private:
   using Steps = Descent::Steps;
   using Attempt = Descent::Attempt;
+  static constexpr Steps patient_inside{.of_machine = true, .are_clamped = true, .are_patient = true};
 
   ReachSolution search(const ReachTask& task, const VectorXd& preferred) {
     ReachSolution solution;
@@ -49,7 +50,8 @@ class ReachSolver::Search {
         continue;
       }
       if (is_redundant(task)) descent_.approach(task, preferred, attempt.q);
-      if (descent_.has_non_geometric_terms()) attempt = descent_.run(task, std::move(attempt.q), Steps::of_machine);
+      if (descent_.has_non_geometric_terms())
+        attempt = descent_.run(task, std::move(attempt.q), {.of_machine = true, .are_patient = true});
       if (!attempt.converged) continue;
       descent_.unwind(attempt.q, preferred);
       if (!descent_.is_inside(attempt.q)) {
@@ -57,7 +59,7 @@ class ReachSolver::Search {
         beyond = attempt.q;
         // Other postures of a chain that is not redundant are as far from this one as from any start.
         if (!is_redundant(task) && violation(attempt.q) > thresholds::same_posture) continue;
-        attempt = descent_.run(task, attempt.q, Steps::inside_limits);
+        attempt = descent_.run(task, attempt.q, {.of_machine = true, .are_clamped = true});
         if (!attempt.converged) continue;
       }
       keep(solution, std::move(attempt.q), preferred);
@@ -79,7 +81,7 @@ class ReachSolver::Search {
   /// The free joints of a redundant chain lead back inside the limits where these restrict each step; without them the
   /// way is shorter.
   Steps steps_of(const ReachTask& task, int start) const {
-    return is_redundant(task) && start % 2 == 1 ? Steps::inside_limits : Steps::of_start;
+    return {.are_clamped = is_redundant(task) && start % 2 == 1};
   }
 
   /// Of a redundant chain whose postures were all outside the limits: with patience its free joints lead back inside.
@@ -87,7 +89,7 @@ class ReachSolver::Search {
     const Rng rng(options_.seed);
     for (int start = 0; start < options_.starts; ++start) {
       VectorXd q = start == 0 ? preferred : draw(rng.stream(static_cast<std::uint64_t>(start)));
-      Attempt attempt = descent_.run(task, std::move(q), Steps::nearest_inside);
+      Attempt attempt = descent_.run(task, std::move(q), patient_inside);
       if (!attempt.converged) continue;
       keep(solution, std::move(attempt.q), preferred);
       if (options_.choice == PostureChoice::first) return;
@@ -97,9 +99,8 @@ class ReachSolver::Search {
   /// Why no posture was found, and the one inside the limits that comes closest.
   void explain(const ReachTask& task, const VectorXd& preferred, const Attempt& closest,
                const std::optional<VectorXd>& beyond, ReachSolution& solution) {
-    Attempt inside = descent_.run(task, beyond ? *beyond : closest.q, Steps::nearest_inside);
-    if (const Attempt other = descent_.run(task, preferred, Steps::nearest_inside); other.error < inside.error)
-      inside = other;
+    Attempt inside = descent_.run(task, beyond ? *beyond : closest.q, patient_inside);
+    if (const Attempt other = descent_.run(task, preferred, patient_inside); other.error < inside.error) inside = other;
     solution.postures = {{inside.q, descent_.distance(inside.q, preferred)}};
     if (inside.converged) {
       solution.status = ReachStatus::reached;

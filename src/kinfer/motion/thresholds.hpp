@@ -14,7 +14,7 @@ inline constexpr int steps = 60;                ///< of one start
 /// Every so many steps the error must have fallen to this part, or the start is left. Larger: fewer starts, longer.
 inline constexpr int judged_steps = 5;
 inline constexpr double worthwhile_decrease = 0.6;
-inline constexpr int careful_steps = 200;    ///< inside the limits, or of a machine that deviates from the rigid chain
+inline constexpr int patient_steps = 200;    ///< inside the limits, or of a machine that deviates from the rigid chain
 inline constexpr double near_target = 1e-3;  ///< [1] weighted error at which the way is taken to end in a singularity
 inline constexpr int approach_steps = 12;    ///< of a redundant chain towards the preferred posture
 inline constexpr double approach_tolerance = 1e-4;  ///< [rad] or units of steps at which it has arrived
