@@ -63,7 +63,7 @@ TEST(JointVerdicts, EachDoubtConcernsItsJointAlone) {
        [](Judged& j) { j.connections[1].whole = {.force_gain = 3.0, .residual = 1.0, .shifted_residual = 2.0}; }},
       {JointDoubtKind::changed, JointUsability::do_not_use,
        [](Judged& j) {
-         j.connections[1].halves = {{0.0, 9.0, {.force_gain = 16.0}}, {9.0, 18.0, {.force_gain = 17.0}}};
+         j.connections[1].halves = {{0.0, 9.0, {.force_gain = 16.0}, -10.0}, {9.0, 18.0, {.force_gain = 17.0}, -9.0}};
        }},
       {JointDoubtKind::beyond_reach, JointUsability::do_not_use,
        [](Judged& j) { j.result.joints[1].point_in_child = Vec3(0.0, 65.0, 0.0); }},

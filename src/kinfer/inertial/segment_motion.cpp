@@ -13,6 +13,8 @@
 #include "kinfer/inertial/gap_bridging.hpp"
 #include "kinfer/inertial/gaussian_smoothing.hpp"
 #include "kinfer/inertial/rest/rest.hpp"
+#include "kinfer/inertial/rest/slow_motion.hpp"
+#include "kinfer/inertial/rest/steady_rotation.hpp"
 #include "kinfer/inertial/thresholds.hpp"
 
 namespace kinfer {
@@ -155,13 +157,32 @@ std::vector<Mat3> rotations_on(std::span<const double> clock, std::span<const do
   return result;
 }
 
+void subtract(InsSensor& sensor, const Vec3& bias) {
+  for (std::size_t k = 0; k < 3; ++k)
+    for (float& rate : sensor.angular_velocity.axis[k])
+      rate = static_cast<float>(double{rate} - bias[static_cast<Eigen::Index>(k)]);
+}
+
+/// Where the sensor also rotates steadily, its bias is known before: the filter takes no such rate for one.
+FilterOutput filter_rotating_sensor(InsSensor sensor, std::span<const double> time, const FilterOptions& filter,
+                                    std::span<const RestPeriod> rests, double limit) {
+  const Vec3 bias = bias_at_rest(rests).mean;
+  subtract(sensor, bias);
+  FilterOutput output = run_filter(sensor, time, with_max_initial_bias(filter, limit));
+  for (Vec3& b : output.bias) b += bias;
+  return output;
+}
+
 /// With filters that do not estimate the gyro errors, one bias comes from the rests.
-FilterOutput filter_sensor(const InsSensor& recorded, std::span<const double> time, const FilterOptions& filter) {
+FilterOutput filter_sensor(const InsSensor& recorded, std::span<const double> time, const FilterOptions& filter,
+                           std::span<const RestPeriod> rests) {
   const InsSensor sensor = bridge_gaps(restore_clipped_peaks(recorded, time), time, inertial::max_filter_gap);
-  FilterOutput output = run_filter(sensor, time, filter);
+  const auto limit = steady_rate_limit(rests);
+  FilterOutput output =
+      limit ? filter_rotating_sensor(sensor, time, filter, rests, *limit) : run_filter(sensor, time, filter);
   if (output.bias.empty()) {
     output.bias_time = {time.front()};
-    output.bias = {bias_at_rest(rest_periods(sensor, time)).mean};
+    output.bias = {bias_at_rest(rests).mean};
   }
   return output;
 }
@@ -180,7 +201,8 @@ struct ResampledSegment {
 };
 
 ResampledSegment resample_segment(std::span<const double> clock, const InsRecording& recording, const InsSensor& sensor,
-                                  const GaussianKernel& kernel, const SegmentMotionOptions& options) {
+                                  const GaussianKernel& kernel, const SegmentMotionOptions& options,
+                                  std::span<const RestPeriod> rests) {
   const std::span<const double> time = recording.time(sensor);
   const auto angular_velocity = resample(sensor, time, clock, [](const InsSample& s) {
     return s.has_angular_velocity && !s.angular_velocity_clipped ? std::optional<Vec3>(s.angular_velocity)
@@ -192,7 +214,7 @@ ResampledSegment resample_segment(std::span<const double> clock, const InsRecord
   ResampledSegment result;
   SegmentMotion& m = result.motion;
   m.name = sensor.name;
-  const FilterOutput filter = filter_sensor(sensor, time, options.filter);
+  const FilterOutput filter = filter_sensor(sensor, time, options.filter, rests);
   m.rotation = rotations_on(clock, time, filter.world_q_sensor);
   m.restarts = restarts_of(sensor, time);
   const Span measured = measured_span(sensor, time);
@@ -213,7 +235,8 @@ ResampledSegment resample_segment(std::span<const double> clock, const InsRecord
   m.angular_acceleration = filtered(rate_world, kernel, smoothed_derivative);
   m.acceleration = filtered(acceleration_world, kernel, smoothed);
   if (rms_about_mean(m.angular_velocity) < options.stationary_rate &&
-      rms_about_mean(m.acceleration, inertial::max_shock_share) < options.stationary_acceleration)
+      rms_about_mean(m.acceleration, inertial::max_shock_share) < options.stationary_acceleration &&
+      !moves_slowly(sensor, time, rests))
     set_stationary(m);
   return result;
 }
@@ -280,8 +303,9 @@ Result<RecordedMotion> segment_motion(const InsRecording& recording, const Segme
   motion.time = uniform_clock(time, motion.period);
   const GaussianKernel kernel = gaussian_kernel(options.smoothing, motion.period);
   std::vector<ResampledSegment> segments(recording.sensors.size());
+  const auto rests = rest_periods_of(recording);
   parallel_for(segments.size(), threads, [&](std::size_t i) {
-    segments[i] = resample_segment(motion.time, recording, recording.sensors[i], kernel, options);
+    segments[i] = resample_segment(motion.time, recording, recording.sensors[i], kernel, options, rests[i]);
   });
   for (std::size_t i = 0; i < segments.size(); ++i)
     if (std::ranges::count(segments[i].sound, true) < static_cast<std::ptrdiff_t>(inertial::min_rows))

@@ -8,6 +8,7 @@
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/inertial/clipped_peaks.hpp"
 #include "kinfer/inertial/filters/kinfer_smoother.hpp"
+#include "kinfer/inertial/rest/steady_rotation.hpp"
 #include "kinfer/inertial/thresholds.hpp"
 
 namespace kinfer {
@@ -152,9 +153,10 @@ SensorModel estimate_sensor_model(const InsRecording& recording) {
     return std::ranges::find(sensor_grade_names, model.name) - sensor_grade_names.begin();
   };
   SensorModel worst = *sensor_grade(sensor_grade_names.front());
-  for (const InsSensor& sensor : recording.sensors) {
-    const auto time = recording.time(sensor);
-    const SensorModel model = estimate_sensor_model(sensor_statistics(sensor, time, rest_periods(sensor, time)));
+  const auto rests = rest_periods_of(recording);
+  for (std::size_t s = 0; s < rests.size(); ++s) {
+    const InsSensor& sensor = recording.sensors[s];
+    const SensorModel model = estimate_sensor_model(sensor_statistics(sensor, recording.time(sensor), rests[s]));
     if (rank(model) > rank(worst) || &sensor == &recording.sensors.front())
       worst = rank(model) >= rank(worst) ? model : worst;
   }

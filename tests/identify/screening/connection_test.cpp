@@ -96,9 +96,12 @@ TEST(Connection, InOneHalfAloneIsAMixedRecording) {
 }
 
 TEST(Connection, OfHalvesThatExceedTheWholeHasChanged) {
-  PairConnection pair{.whole = {.force_gain = 4.0}};
-  pair.halves = {{0.0, 1.0, {.force_gain = 12.0}}, {1.0, 2.0, {.force_gain = 7.0}}};
+  PairConnection pair{.whole = {.force_gain = 4.0}, .length = -12.0};
+  pair.halves = {{0.0, 1.0, {.force_gain = 12.0}, -20.0}, {1.0, 2.0, {.force_gain = 7.0}, -15.0}};
   EXPECT_TRUE(has_changed(pair));
+  pair.halves[0].length = -13.0;
+  EXPECT_FALSE(has_changed(pair)) << "the joint of the whole leaves no more: only what is shifted differs";
+  pair.halves[0].length = -20.0;
   pair.halves[1].connection.force_gain = 5.0;
   EXPECT_FALSE(has_changed(pair));
 }

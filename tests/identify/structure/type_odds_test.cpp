@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "kinfer/base/angle.hpp"
 
 namespace kinfer {
@@ -11,13 +13,15 @@ namespace {
 
 using enum EstimatedJointType;
 
-/// Deviations [deg] of a joint whose accelerations fit a common point.
+/// Deviations [deg] of a joint whose accelerations fit a common point, on segments that rotate by 1 rad/s.
 MotionDeviations turning(double rotation, double axis, double plane, double axes_angle, double rate_share) {
+  constexpr double noise = 5e-4, explained_by_scales = 0.01;
   return {.rotation = Angle::deg(rotation).rad(),
           .axis = Angle::deg(axis).rad(),
           .plane = Angle::deg(plane).rad(),
           .axes_angle = Angle::deg(axes_angle).rad(),
           .rate_share = rate_share,
+          .rates = {.residual = std::max(rate_share - explained_by_scales, noise), .noise = noise, .level = 1.0},
           .acceleration = 0.02,
           .acceleration_across = 0.015};
 }
@@ -55,6 +59,14 @@ TEST(TypeOdds, AccelerationsAboveThoseOfTheOtherJointsAreASlider) {
   quiet.acceleration_across = 0.0038;
   EXPECT_EQ(types_of({quiet, slider}), (std::vector{revolute, prismatic}));
   EXPECT_EQ(types_of({revolute_joint, clamped}), (std::vector{revolute, rigid}));
+}
+
+TEST(TypeOdds, AHingeThatHardlyMovesIsNoneOfTheGyroscopesErrors) {
+  MotionDeviations hinge = turning(1.2, 0.04, 0.02, 0.1, 0.04), scales = turning(0.3, 0.1, 0.05, 0.1, 0.02);
+  scales.rates.residual = scales.rates.noise;
+  const auto p = type_probabilities(std::vector{revolute_joint, hinge, scales});
+  EXPECT_GT(p[1].of(revolute), 0.95);
+  EXPECT_GT(p[2].of(rigid), 0.5);
 }
 
 TEST(TypeOdds, ProbabilitiesSumToOne) {

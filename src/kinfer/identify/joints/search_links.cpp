@@ -31,8 +31,7 @@ Result<JointResult> find_joint(const OrderedMotion& ordered, std::size_t child, 
     return joint_about_point(motion, ordered.tree, parent, child, evidence);
   const std::string& name = motion.segments[child].name;
   const auto rows = informative_rows(motion, parent, child, terminals);
-  if (rows.size() < min_informative_rows)
-    return error("only {} informative rows about {}: it hardly moves", rows.size(), name);
+  if (rows.size() < min_informative_rows) return joint_about_point(motion, ordered.tree, parent, child, evidence);
   return search_joint({motion.segments[parent], motion.segments[child], signals, rows}, chain_states, options.engine,
                       options.threads, rng, with_detail(observer, name));
 }

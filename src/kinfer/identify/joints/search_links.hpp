@@ -16,7 +16,7 @@ struct LinkSearchOptions {
   int threads = 0;
 };
 
-/// Parents before children. `types`: of joint_types. An error if a joint hardly moves, or none does.
+/// Parents before children. `types`: of joint_types. A joint that hardly moves is that of its pair.
 Result<std::vector<JointResult>> search_links(const OrderedMotion& ordered, const std::vector<JointTypeEvidence>& types,
                                               const LinkSearchOptions& options, const Rng& rng,
                                               const Observer& observer);

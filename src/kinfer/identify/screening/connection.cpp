@@ -139,13 +139,20 @@ JointConnection connection_with_ground(const SegmentMotion& moving, const PairFi
   return found;
 }
 
-JointConnection connection_in(const RecordedMotion& motion, std::size_t parent, std::size_t child,
-                              std::span<const std::size_t> part) {
+struct FittedConnection {
+  JointConnection connection;
+  double length = 0.0;  // [nats per row]
+};
+
+FittedConnection connection_in(const RecordedMotion& motion, std::size_t parent, std::size_t child,
+                               std::span<const std::size_t> part) {
   const Rows rows = thinned(part, connection_rows);
   const RecordedMotion recorded = shifted_pair(motion, parent, child, rows, 0);
   const PairFit fit = fit_pair(recorded, 0, 1, all_rows(recorded));
+  const double length = force_length(fit) + rate_length(fit);
   for (const std::size_t moving : {std::size_t{1}, std::size_t{0}})
-    if (is_motionless(recorded.segments[1 - moving])) return connection_with_ground(recorded.segments[moving], fit);
+    if (is_motionless(recorded.segments[1 - moving]))
+      return {connection_with_ground(recorded.segments[moving], fit), length};
   std::vector<double> force, rate, sum, residual, off_axis;
   for (std::size_t k = 1; k <= time_shifts; ++k) {
     const RecordedMotion pair = shifted_pair(motion, parent, child, rows, k * rows.size() / (time_shifts + 1));
@@ -156,12 +163,13 @@ JointConnection connection_in(const RecordedMotion& motion, std::size_t parent, 
     residual.push_back(shifted.residual());
     off_axis.push_back(shifted.off_axis_rate());
   }
-  return {.force_gain = median(force) - force_length(fit),
-          .rate_gain = median(rate) - rate_length(fit),
-          .gain_spread = standard_deviation(sum),
-          .residual = unexplained_acceleration(fit),
-          .shifted_residual = median(residual),
-          .shifted_rate = median(off_axis)};
+  return {{.force_gain = median(force) - force_length(fit),
+           .rate_gain = median(rate) - rate_length(fit),
+           .gain_spread = standard_deviation(sum),
+           .residual = unexplained_acceleration(fit),
+           .shifted_residual = median(residual),
+           .shifted_rate = median(off_axis)},
+          length};
 }
 
 /// Whether the pair is connected in `one` part, and there was something to explain in the `other` without a connection.
@@ -177,7 +185,8 @@ std::vector<PartConnection> connections_of_parts(const RecordedMotion& motion, s
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t begin = i * rows.size() / count, end = (i + 1) * rows.size() / count;
     const auto part = std::span(rows).subspan(begin, end - begin);
-    parts.push_back({motion.time[part.front()], motion.time[part.back()], connection_in(motion, parent, child, part)});
+    const auto [connection, length] = connection_in(motion, parent, child, part);
+    parts.push_back({motion.time[part.front()], motion.time[part.back()], connection, length});
   }
   return parts;
 }
@@ -192,7 +201,7 @@ std::optional<PartConnection> connected_span(const std::vector<PartConnection>& 
     return is_connected_only_in(strong.front().connection, part.connection);
   }));
   if (unconnected < needed) return std::nullopt;
-  return PartConnection{strong.front().begin, strong.back().end, strong.front().connection};
+  return PartConnection{strong.front().begin, strong.back().end, strong.front().connection, strong.front().length};
 }
 
 }  // namespace
@@ -201,7 +210,9 @@ PairConnection pair_connection(const RecordedMotion& motion, std::size_t parent,
   const Rows rows = usable_rows(motion);
   PairConnection found{.parent = parent, .child = child};
   if (rows.size() < min_connection_rows) return found;
-  found.whole = connection_in(motion, parent, child, rows);
+  const auto [whole, length] = connection_in(motion, parent, child, rows);
+  found.whole = whole;
+  found.length = length;
   const double seconds = motion.time[rows.back()] - motion.time[rows.front()];
   if (rows.size() < 2 * min_connection_rows || seconds < 2.0 * min_connection_time) return found;
   found.halves = connections_of_parts(motion, parent, child, rows, 2);
@@ -235,8 +246,10 @@ std::optional<PartConnection> only_connected_part(const PairConnection& pair) {
 }
 
 bool has_changed(const PairConnection& pair) {
-  return pair.halves.size() == 2 && std::min(pair.halves[0].connection.gain(), pair.halves[1].connection.gain()) >
-                                        pair.whole.gain() + max_gain_of_halves;
+  const auto is_explained_better = [&](const PartConnection& half) {
+    return std::min(half.connection.gain() - pair.whole.gain(), pair.length - half.length) > max_gain_of_halves;
+  };
+  return pair.halves.size() == 2 && std::ranges::all_of(pair.halves, is_explained_better);
 }
 
 }  // namespace kinfer::identify

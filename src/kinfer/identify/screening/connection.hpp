@@ -21,11 +21,13 @@ namespace kinfer::identify {
 struct PartConnection {
   double begin = 0.0, end = 0.0;  ///< [s]
   JointConnection connection{};
+  double length = 0.0;  ///< [nats per row] code length of what a joint leaves
 };
 
 struct PairConnection {
   std::size_t parent = 0, child = 0;
   JointConnection whole{};
+  double length = 0.0;                   ///< [nats per row] likewise, of the whole recording
   std::vector<PartConnection> halves{};  ///< of the moving part; empty if it is too short
   std::vector<PartConnection> parts{};   ///< up to six equal ones, where the whole is not a strong connection
 };
@@ -49,6 +51,8 @@ ConnectionStrength strength_of(const JointConnection& connection);
 std::optional<PartConnection> only_connected_part(const PairConnection& pair);
 
 /// Whether each half of the recording by itself is explained much better than both together: by two different joints.
+/// By what a joint leaves, and not only by what is explained of shifted recordings: those of a machine that slews
+/// steadily are explained better the longer they are.
 bool has_changed(const PairConnection& pair);
 
 }  // namespace kinfer::identify

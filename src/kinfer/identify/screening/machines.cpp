@@ -10,6 +10,8 @@
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/screening/thresholds.hpp"
 #include "kinfer/identify/structure/slide_fit.hpp"
+#include "kinfer/inertial/rest/slow_motion.hpp"
+#include "kinfer/inertial/rest/steady_rotation.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
 namespace kinfer::identify {
@@ -35,14 +37,17 @@ double deviation_from_mean(const InsSensor& sensor, std::span<const double> time
   return means.empty() ? 0.0 : std::sqrt(square / static_cast<double>(means.size()));
 }
 
-bool is_stationary(const InsSensor& sensor, std::span<const double> time, const SegmentMotionOptions& options) {
+bool is_stationary(const InsSensor& sensor, std::span<const double> time, const SegmentMotionOptions& options,
+                   std::span<const RestPeriod> rests) {
   return deviation_from_mean(sensor, time,
                              [](const InsSample& s) {
                                return s.has_angular_velocity ? std::optional<Vec3>(s.angular_velocity) : std::nullopt;
                              }) < options.stationary_rate &&
-         deviation_from_mean(sensor, time, [](const InsSample& s) {
-           return s.has_acceleration ? std::optional<Vec3>(s.acceleration) : std::nullopt;
-         }) < options.stationary_acceleration;
+         deviation_from_mean(sensor, time,
+                             [](const InsSample& s) {
+                               return s.has_acceleration ? std::optional<Vec3>(s.acceleration) : std::nullopt;
+                             }) < options.stationary_acceleration &&
+         !moves_slowly(sensor, time, rests);
 }
 
 std::vector<std::string> names_of(const RecordedMotion& motion, const std::vector<std::size_t>& segments) {
@@ -194,8 +199,11 @@ RecordingSelection exclude_idle_sensors(const InsRecording& recording, const Seg
                                         const std::optional<std::string>& root) {
   RecordingSelection chosen;
   std::vector<std::string> still, left_out;
-  for (const InsSensor& sensor : recording.sensors)
-    if (is_stationary(sensor, recording.time(sensor), options)) still.push_back(sensor.name);
+  const auto rests = rest_periods_of(recording);
+  for (std::size_t s = 0; s < rests.size(); ++s)
+    if (const InsSensor& sensor = recording.sensors[s];
+        is_stationary(sensor, recording.time(sensor), options, rests[s]))
+      still.push_back(sensor.name);
   const bool root_is_stationary = root && std::ranges::find(still, *root) != still.end();
   const std::string kept = still.empty() ? "" : root_is_stationary ? *root : still.front();
   for (std::size_t s = 0; s < recording.sensors.size(); ++s) {

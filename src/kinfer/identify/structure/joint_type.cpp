@@ -75,6 +75,7 @@ struct PairMotion {
   RelativeMotion relative;
   double heading_error = 0.0;  // [rad] behind gaps of either sensor
   SymmetricEigen rates;        // mean squares, least first
+  RigidRates rigid;
   UniversalAxes two_axes;
   JointTypeEvidence evidence;
 };
@@ -83,7 +84,8 @@ PairMotion pair_motion(const RecordedMotion& motion, const SegmentTree& tree, st
                        const std::vector<std::size_t>& rows) {
   const std::size_t parent = *tree.parent[child];
   const PairFit& pair = tree.pair(parent, child);
-  PairMotion j{relative_motion(motion.segments[parent], motion.segments[child], rows), 0.0, {}, {}, {}};
+  PairMotion j{relative_motion(motion.segments[parent], motion.segments[child], rows), 0.0, {}, {}, {}, {}};
+  j.rigid = rigid_rates(motion, motion.segments[parent], motion.segments[child]);
   j.rates = second_moment(rows.size(), [&](std::size_t i) { return j.relative.angular_velocity[i]; });
   j.evidence.rates = largest_first(j.rates.values);
   j.evidence.accelerations = largest_first(symmetric_eigen(pair.acceleration).values);
@@ -115,6 +117,7 @@ MotionDeviations motion_deviations(const PairMotion& j) {
           .axes_angle = j.two_axes.angle,
           .rate_share =
               j.evidence.rates[0] / std::hypot(j.relative.rms_rate, relative_rate_noise / rigid_rate_share.median),
+          .rates = j.rigid,
           .acceleration = j.evidence.accelerations[0],
           .acceleration_across = j.evidence.accelerations[1],
           .acceleration_level = j.relative.rms_acceleration};

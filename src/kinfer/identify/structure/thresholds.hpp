@@ -57,6 +57,25 @@ inline constexpr double rigid_rotation_error = 0.2 * degree;
 /// 0.07 of simulated pairs.
 inline constexpr LogNormal rigid_rate_share{0.02, 0.8};
 
+/// [rad/s] What two sensors on one body do not explain of the angular velocities of a joint that moves: 0.02 to 1 of
+/// simulated joints, 0.01 to 0.2 of an iiwa that moves slowly, 1 to 2 of DIODEM. Smaller spreads call joints rigid that
+/// hardly move.
+inline constexpr LogNormal joint_rate{0.3, 1.6};
+
+/// The relative angular velocity over that.
+inline constexpr LogNormal rate_ratio{1.3, 0.7};
+
+/// The same of a rigid pair over what is expected: 0.92 to 1.06 times the noise of simulated ones (36 waved sticks of
+/// three grades, 1 and 9 rad/s). Larger calls joints rigid that hardly move.
+inline constexpr LogNormal rigid_residual{1.0, 0.7};
+
+/// Of the angular velocity: what scales and misalignments of a gyroscope do not explain on one body (nonlinearity,
+/// jitter of the time stamps, bodies that bend).
+inline constexpr double rigid_residual_share = 0.003;
+
+/// [1/s] Angular velocity of a mount that gives way by an angle: 0.01 rad/s at 1° on foam.
+inline constexpr double mount_rate = 1.0;
+
 /// Deviation across the main axis over the whole deviation, of errors.
 inline constexpr LogNormal error_axis_ratio{0.4, 0.8};
 

@@ -19,6 +19,8 @@ constexpr std::array weighed_types{EstimatedJointType::rigid, EstimatedJointType
 constexpr std::size_t type_count = weighed_types.size(), grid_size = 40;
 constexpr double least_deviation = 1e-5;     // [rad] of measurements without error
 constexpr double least_acceleration = 1e-4;  // [m/s²] likewise
+constexpr double least_rate = 1e-4;          // [rad/s] likewise
+constexpr double least_rate_level = relative_rate_noise / rigid_rate_share.median;  // [rad/s] that shares refer to
 
 using Grid = std::array<double, grid_size>;
 using LogTypes = std::array<double, type_count>;  // ln p(T) p(d | T, errors)
@@ -65,10 +67,25 @@ struct JointLikelihoods {
   }
 };
 
+/// Of a joint that moves: what two sensors on one body do not explain is its motion, and so is the relative angular
+/// velocity, unless the joint moves in step with its parent.
+double moving_rates(const MotionDeviations& d) {
+  const double residual = std::hypot(d.rates.residual, least_rate),
+               relative = std::hypot(d.rate_share * std::hypot(d.rates.level, least_rate_level), least_rate);
+  return log_normal(residual, joint_rate) + std::max(log_normal(relative / residual, rate_ratio), min_ratio_density);
+}
+
+/// Of a rigid pair: noise, what gyroscopes have beyond scale errors, and mounts that give way.
+double rigid_rates_of(const MotionDeviations& d, double orientation_error_size) {
+  const double expected = std::hypot(std::hypot(d.rates.noise, rigid_residual_share * d.rates.level),
+                                     std::hypot(mount_rate * 2.0 * orientation_error_size, least_rate));
+  return log_error(std::hypot(d.rates.residual, least_rate) / expected, rigid_residual);
+}
+
 void add_rotation(JointLikelihoods& joint, const MotionDeviations& d, const Grid& sizes) {
   const double rotation = std::hypot(d.rotation, least_deviation), axis = std::hypot(d.axis, least_deviation),
                plane = std::hypot(d.plane, least_deviation), share = std::max(d.rate_share, 1e-6);
-  const double moves = log_normal(rotation, joint_rotation) + uniform_ratio(share);
+  const double moves = log_normal(rotation, joint_rotation) + moving_rates(d);
   const double second_axis = uniform_ratio(axis / rotation), third_axis = uniform_ratio(plane / axis);
   const double axis_of_errors = std::max(log_normal(axis / rotation, error_axis_ratio), min_ratio_density),
                plane_of_errors = std::max(log_normal(plane / axis, error_plane_ratio), min_ratio_density);
@@ -76,7 +93,7 @@ void add_rotation(JointLikelihoods& joint, const MotionDeviations& d, const Grid
   for (std::size_t i = 0; i < grid_size; ++i) {
     const auto error = [&](double deviation) { return log_error(deviation, {sizes[i], error_spread}); };
     const double rigid = log_error(rotation, {std::hypot(2.0 * sizes[i], rigid_rotation_error), error_spread}) +
-                         log_error(share, rigid_rate_share);
+                         log_error(share, rigid_rate_share) + rigid_rates_of(d, sizes[i]);
     joint.rotation[i] = {rigid + axis_of_errors + plane_of_errors, moves + error(axis) + plane_of_errors,
                          moves + second_axis + inclined + error(plane), moves + second_axis + third_axis};
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kinfer/evidence/facts/estimated_joint_type.hpp"
+#include "kinfer/identify/structure/rigid_rates.hpp"
 
 namespace kinfer::identify {
 
@@ -19,6 +20,7 @@ struct MotionDeviations {
   double plane = 0.0;         ///< [rad] from a constant angle between two axes, one per segment: of a universal joint
   double axes_angle = 0.0;    ///< [rad] that angle
   double rate_share = 0.0;    ///< relative angular velocity as a share of the sensors'
+  RigidRates rates{};         ///< what two sensors on one body do not explain of their angular velocities
   double acceleration = 0.0;  ///< [m/s²] from a common point, largest direction: an error unless it slides
   double acceleration_across = 0.0;  ///< [m/s²] likewise, second direction
   double acceleration_level = 0.0;   ///< [m/s²] rms acceleration of the segment that accelerates more

@@ -117,6 +117,22 @@ std::vector<RestPeriod> rest_periods(const InsSensor& sensor, std::span<const do
   return find_rests(sensor, time, large_bias);
 }
 
+std::vector<RestPeriod> in_parts(const RestPeriod& rest, double seconds, const InsSensor& sensor,
+                                 std::span<const double> time) {
+  const auto count = std::max<std::size_t>(1, static_cast<std::size_t>(rest.seconds() / seconds)),
+             rows = rest.last_row - rest.first_row + 1;
+  std::vector<RestPeriod> parts;
+  for (std::size_t i = 0; i < count; ++i) {
+    RestPeriod part{.first_row = rest.first_row + i * rows / count,
+                    .last_row = rest.first_row + (i + 1) * rows / count - 1};
+    part.begin = time[part.first_row];
+    part.end = time[part.last_row];
+    summarise(sensor, time, part);
+    if (part.acceleration.norm() > 0.0) parts.push_back(part);
+  }
+  return parts;
+}
+
 RestBias bias_at_rest(std::span<const RestPeriod> rest_periods) {
   RestBias bias;
   for (const RestPeriod& rest : rest_periods)

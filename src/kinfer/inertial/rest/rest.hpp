@@ -39,6 +39,7 @@ struct RestPeriod {
   Vec3 rate_sd = Vec3::Zero();           ///< [rad/s] of a single row
   Vec3 acceleration = Vec3::Zero();      ///< [m/s²] mean
   Vec3 acceleration_sd = Vec3::Zero();
+  Vec3 rotation = Vec3::Zero();  ///< [rad/s] steady rate that was taken out of the mean (steady_rotation.hpp)
   double seconds() const { return end - begin; }
 };
 
@@ -50,6 +51,10 @@ inline constexpr double rest_margin = 0.1;
 /// All rests of a sensor, without the margins.
 std::vector<RestPeriod> rest_periods(const InsSensor& sensor, std::span<const double> time,
                                      const RestOptions& options = {});
+
+/// A rest in parts of equal length, each of `seconds` or up to twice as long.
+std::vector<RestPeriod> in_parts(const RestPeriod& rest, double seconds, const InsSensor& sensor,
+                                 std::span<const double> time);
 
 /// Gyro bias from the rests: mean weighted by duration, and scatter between the rests.
 struct RestBias {

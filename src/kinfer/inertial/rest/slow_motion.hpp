@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a sensor that hardly rotates is at rest or moves slowly. What a base at rest shows, vibration and noise,
+// vanishes in the medians over a second but for the instability of the biases; slow motion does not. With the largest
+// deviations r of the rates' medians and f of the specific forces' from what is usual in the recording
+//   odds = Σ p(r, f | moves) / p(r | rests) p(f | rests),
+// where a motion changes both, or the rates only (about the vertical).
+#pragma once
+
+#include <span>
+
+#include "kinfer/inertial/rest/rest.hpp"
+
+namespace kinfer {
+
+/// A size whose logarithm is normal.
+struct TypicalSize {
+  double median, spread;
+};
+/// [rad/s] and [m/s²] Largest deviation of medians over a second from their median, of sensors at rest: biases that
+/// drift by 0.003 rad/s while the sensors warm up (1.5e-3), noise (rms 2e-4 to 6e-4 and 0.0016 to 0.0042 in twelve
+/// simulated recordings of three grades). Larger medians take slow motion for rest.
+inline constexpr TypicalSize rest_rate_deviation{1.5e-3, 0.7}, rest_force_deviation{0.015, 1.0};
+/// Likewise of sensors that move: a hinge of 1.7° has 0.02 to 0.08 rad/s and 0.3 m/s², a slew as much as its rate.
+/// Larger medians take slow motion for rest.
+inline constexpr TypicalSize moving_rate_deviation{0.3, 1.6}, moving_force_deviation{1.5, 1.6};
+/// Of the medians: the farthest ones that are left out, shocks and spikes. Larger: a short movement is overlooked.
+inline constexpr double max_shock_median_share = 0.02;
+
+/// Medians over a second deviate from their own median by so much, the farthest fiftieth left out (shocks).
+struct SlowDeviations {
+  double rate = 0.0;   ///< [rad/s]
+  double force = 0.0;  ///< [m/s²] in the sensor
+};
+SlowDeviations slow_deviations(const InsSensor& sensor, std::span<const double> time);
+
+/// ln p(moves) / p(rests).
+double slow_motion_log_odds(const SlowDeviations& deviations);
+
+/// Whether it is more likely that the sensor moves slowly than that it rests, or rotates steadily in its `rests`.
+bool moves_slowly(const InsSensor& sensor, std::span<const double> time, std::span<const RestPeriod> rests);
+
+}  // namespace kinfer
