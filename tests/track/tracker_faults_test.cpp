@@ -123,6 +123,23 @@ Vec3 hinge_axis_in_sensor(const Case& given, int sensor) {
   return body->child_R_axis.col(2);
 }
 
+/// Somebody bumped it before the first row: gravity takes the turn for a position of its joint.
+TEST(Tracker, NamesASensorThatWasTurnedBeforeTheLogAndCorrectsIt) {
+  const Case& given = still_excavator();
+  for (const int sensor : {2, 3, 5}) {
+    const Mat3 turn = exp_so3(1.0 * degree * hinge_axis_in_sensor(given, sensor));
+    const Outcome out =
+        run(given, {}, [&](InsRow& row) { turn_sensor(row.sensors[static_cast<std::size_t>(sensor)], turn); });
+    ASSERT_EQ(out.alarms.size(), 1u) << sensor;
+    EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_moved);
+    EXPECT_EQ(out.alarms[0].sensor, sensor);
+    EXPECT_LT(out.alarms[0].since, 0.5) << "since the first rows";
+    const std::size_t last = given.drive.recording.loggers.front().time.size() - 1;
+    for (int j = 1; j < 5; ++j)
+      EXPECT_NEAR(out.tracker.state().q[j], given.drive.q(j, last), 0.15 * degree) << sensor << " " << j;
+  }
+}
+
 /// Biases have changed since the chain was identified, by as much as sensors of this grade have them.
 class PoweredUpAgain {
  public:

@@ -7,7 +7,6 @@
 #include "kinfer/base/expect.hpp"
 #include "kinfer/track/faults/thresholds.hpp"
 #include "kinfer/track/filter/thresholds.hpp"
-#include "kinfer/track/readout/readout.hpp"
 #include "kinfer/track/start/thresholds.hpp"
 
 namespace kinfer::track {
@@ -41,6 +40,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       does_not_fit_(model.sensors.size(), false),
       is_late_(model.sensors.size(), false),
       mounts_(model.sensors.size()),
+      turned_(model.sensors.size()),
       biases_(model.sensors.size()),
       exchange_(model_),
       composed_(model, options),
@@ -189,6 +189,7 @@ void Tracker::try_start() {
   waits_since_.reset();
   settle(posture, filter_, waiting_);
   start_in(posture, filter_);
+  follow_turns(posture, block, guesses_, filter_);
   positions_.begin(*model_, posture, filter_.state().base);
   fusion_.reset();
   begin_grid();
@@ -319,6 +320,7 @@ void Tracker::doubt(std::size_t joint) {
 
 void Tracker::name(const LikelyCause& cause) {
   const auto& [sensor, joint] = cause.suspect;
+  if (cause.suspect != Suspect{} && correct_initial_turn() != TurnAtStart::none) return;
   if (sensor >= 0) leave_out(static_cast<std::size_t>(sensor), cause.log_odds);
   if (joint >= 0) doubt(static_cast<std::size_t>(joint));
 }
@@ -362,6 +364,26 @@ bool Tracker::is_fault_named() const {
   return filter_.doubts_any_joint() || std::ranges::find(does_not_fit_, true) != does_not_fit_.end();
 }
 
+/// A sensor that was turned before the first row. While it is open which one it was, no other fault is named.
+Tracker::TurnAtStart Tracker::correct_initial_turn() {
+  if (is_fault_named() || return_.is_waiting()) return TurnAtStart::none;
+  const std::optional<InitialTurn> turn = initial_turn(filter_);
+  if (!turn) return TurnAtStart::none;
+  if (!turn->tells_sensor())
+    return filter_.constant_faults().observed() < undecided_turn_patience ? TurnAtStart::open : TurnAtStart::none;
+  filter_.believe_turn(turn->sensor, turn->turn.mean, turn->turn.covariance);
+  turned_[turn->sensor] = {filter_.placed_at(), turn->log_odds / initial_turn_log_odds};
+  forget_fit();
+  biases_.reset();
+  replay_.begin(filter_);
+  return TurnAtStart::corrected;
+}
+
+void Tracker::examine_initial_turns() {
+  const ConstantFaults& faults = filter_.constant_faults();
+  if (faults.ends_stretch() && faults.observed() > initial_turn_after) correct_initial_turn();
+}
+
 /// The heading of a spherical joint counts as shown while its parent moves.
 void Tracker::show_headings() {
   for (std::size_t b = 1; b < model_->bodies.size(); ++b)
@@ -394,105 +416,14 @@ void Tracker::process_block(const BlockMeasurement& block) {
     examine_sudden_change(block.time);
     mounts_.add(block, filter_, [&](std::size_t s) { return does_not_fit_[s] && health_[s].measures(); });
     biases_.add(filter_, is_fault_named(), block.time);
+    if (biases_.names_any() && correct_initial_turn() == TurnAtStart::open) biases_.withhold();
     watch_misfit(block.time);
     find_returned(block);
+    examine_initial_turns();
   }
   exchange_.suspect(misfit_since_ || biases_.names_any() || is_fault_named());
   exchange_.add(block, guesses_, filter_.state().base);
   spread_tool();
-}
-
-/// Positions whose zero is not known; the grid has the spread of its own.
-void Tracker::widen_unknown() {
-  const Index in_grid = grid_ ? model_->layout.position[grid_->body()] : -1;
-  for (std::size_t i = 0; i < positions_.size(); ++i) {
-    const int q = model_positions_[i].q;
-    if (q < 0 || static_cast<Index>(i) == in_grid) continue;
-    chain_state_.sd_q[q] = std::hypot(chain_state_.sd_q[q], positions_[i].missing_sd());
-  }
-  if (grid_) spread_.add_to(chain_state_);
-}
-
-void Tracker::read_out(double time) {
-  now_ = filter_.state();
-  if (time > now_.time) predict_mean(*model_, time - now_.time, now_);
-  track::read_out(*tracking_, *model_, now_, filter_.covariance(), chain_state_);
-  tool_.place(*model_, now_);
-  for (std::size_t s = 0; s < state_.innovation.size(); ++s) state_.innovation[s] = fit_.sensor(s).quick;
-  for (JointStatus& joint : chain_state_.joints) {
-    joint.source = JointSource::chain;
-    joint.reference = JointReference::chain;
-  }
-  const Index in_grid = grid_ ? model_->layout.position[grid_->body()] : -1;  // as uncertain as its places are apart
-  for (std::size_t i = 0; i < positions_.size(); ++i)
-    if (!positions_[i].is_known && static_cast<Index>(i) != in_grid && model_positions_[i].joint >= 0)
-      chain_state_.joints[static_cast<std::size_t>(model_positions_[i].joint)].reference = JointReference::start;
-  chain_state_.time = time;
-  chain_state_.base_T_tool = tool_.tool();
-  chain_state_.sd_tool_position = tool_.position_sd();
-  chain_state_.sd_tool_rotation = tool_.rotation_sd();
-  widen_unknown();
-  take_estimates(chain_state_, state_);
-  for (std::size_t s = 0; s < is_sound_.size(); ++s)
-    is_sound_[s] =
-        !does_not_fit_[s] && health_[s].measures() && !health_[s].instrument_missing && !return_.waits_for(s);
-  is_settled_.assign(is_settled_.size(), true);
-  for (std::size_t i = 0; i < positions_.size(); ++i)
-    if (positions_[i].is_open) is_settled_[static_cast<std::size_t>(model_positions_[i].joint)] = false;
-  state_headings();
-  fusion_.apply(*tracking_, composed_, {.is_sound = is_sound_, .is_settled = is_settled_, .heading_sd = heading_sd_},
-                state_);
-}
-
-/// Of spherical joints whose heading motion shows; one that it has not shown yet is not settled.
-void Tracker::state_headings() {
-  for (std::size_t b = 1; b < model_->bodies.size(); ++b) {
-    if (!motion_shows_heading(*model_, b)) continue;
-    const auto joint = static_cast<std::size_t>(tracking_->bodies[b].joint);
-    const bool is_relative = state_.joints[joint].reference == JointReference::start;
-    heading_sd_[joint].reset();
-    if (!is_relative) heading_sd_[joint] = std::sqrt(std::max(0.0, filter_.heading_variance(b)));
-    if (filter_.considers_heading(b)) is_settled_[joint] = false;
-  }
-}
-
-void Tracker::list_alarms(double time) {
-  auto& alarms = state_.alarms;
-  alarms.clear();
-  if (restarted_ && time - *restarted_ < clipped_memory)
-    alarms.push_back({.kind = TrackAlarmKind::restarted, .since = *restarted_});
-  for (const TrackAlarm& alarm : wrong_starts_)
-    if (time - alarm.since < clipped_memory) alarms.push_back(alarm);
-  int disagreeing = 0;
-  for (std::size_t s = 0; s < does_not_fit_.size(); ++s) {
-    const int sensor = static_cast<int>(s);
-    add_alarms(health_[s], sensor, alarms);
-    if (const auto since = biases_.named_since(s); since && !does_not_fit_[s])
-      alarms.push_back({.kind = TrackAlarmKind::sensor_moved,
-                        .sensor = sensor,
-                        .since = *since,
-                        .strength = bias_strength(filter_, s)});
-    if (const auto& found = exchange_.found(); found && (s == found->first || s == found->second))
-      alarms.push_back({.kind = TrackAlarmKind::sensor_exchanged, .sensor = sensor, .since = found->since});
-    if (!does_not_fit_[s]) continue;
-    ++disagreeing;
-    alarms.push_back({.kind = is_late_[s] ? TrackAlarmKind::sensor_late : TrackAlarmKind::sensor_moved,
-                      .sensor = sensor,
-                      .since = fit_.sensor(s).since,
-                      .strength = fit_.sensor(s).strength});
-  }
-  for (std::size_t j = 0; j < tracking_->joints.size(); ++j)
-    if (filter_.doubts_joint(j))
-      alarms.push_back({.kind = TrackAlarmKind::joint_changed,
-                        .joint = static_cast<int>(j),
-                        .since = fit_.joint(j).since,
-                        .strength = fit_.joint(j).strength});
-  if (2 * disagreeing >= static_cast<int>(does_not_fit_.size()) && disagreeing > 1)
-    alarms.push_back({.kind = TrackAlarmKind::does_not_fit, .since = time});
-  else if (misfit_since_)
-    alarms.push_back({.kind = TrackAlarmKind::does_not_fit,
-                      .since = *misfit_since_,
-                      .strength = filter_.levels().common() / misfit_inflation});
 }
 
 }  // namespace kinfer::track

@@ -13,6 +13,7 @@
 #include "kinfer/track/faults/clock_watch.hpp"
 #include "kinfer/track/faults/exchange.hpp"
 #include "kinfer/track/faults/fit_monitor.hpp"
+#include "kinfer/track/faults/initial_turns.hpp"
 #include "kinfer/track/faults/mount_watch.hpp"
 #include "kinfer/track/faults/replay.hpp"
 #include "kinfer/track/faults/sensor_health.hpp"
@@ -28,6 +29,7 @@
 #include "kinfer/track/start/motion_watch.hpp"
 #include "kinfer/track/start/position_guesses.hpp"
 #include "kinfer/track/start/settled_start.hpp"
+#include "kinfer/track/start/start_by_turn.hpp"
 #include "kinfer/track/start/start_grid.hpp"
 #include "kinfer/track/start/start_spread.hpp"
 
@@ -76,6 +78,9 @@ class Tracker {
   void examine_sudden_change(double time);
   void examine_fit();
   void watch_misfit(double time);
+  void examine_initial_turns();
+  enum class TurnAtStart { none, open, corrected };
+  TurnAtStart correct_initial_turn();
   bool is_fault_named() const;
   void end_block();
   void list_alarms(double time);
@@ -107,6 +112,11 @@ class Tracker {
   std::vector<bool> does_not_fit_;  // sensors out of use because they disagree
   std::vector<bool> is_late_;       // of these, by their clocks
   MountWatch mounts_;               // of these
+  /// A sensor that was turned since the first row.
+  struct Turned {
+    double since = 0.0, strength = 0.0;  // [s]
+  };
+  std::vector<std::optional<Turned>> turned_;
   BiasWatch biases_;
   ExchangeWatch exchange_;
   std::optional<double> waits_since_;  // [s] for a start in a quieter moment

@@ -30,6 +30,10 @@ void BiasWatch::add(const ChainFilter& filter, bool is_explained, double time) {
   }
 }
 
+void BiasWatch::withhold() {
+  for (BiasChange& bias : biases_) bias.is_named = false;
+}
+
 std::optional<double> BiasWatch::named_since(std::size_t sensor) const {
   return biases_[sensor].is_named ? biases_[sensor].since : std::nullopt;
 }

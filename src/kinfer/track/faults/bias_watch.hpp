@@ -22,6 +22,8 @@ class BiasWatch {
   /// [s] Of a sensor whose biases have been far off for so long that it is an alarm.
   std::optional<double> named_since(std::size_t sensor) const;
   bool names_any() const;
+  /// Something else may explain them: no sensor is named for now.
+  void withhold();
 
  private:
   struct BiasChange {

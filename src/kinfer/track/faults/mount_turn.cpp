@@ -8,20 +8,6 @@
 namespace kinfer::track {
 namespace {
 
-using TurnDerivative = Eigen::Matrix<double, 18, 3>;
-
-/// Of both scale matrices, row by row, by the turn.
-TurnDerivative scales_by_turn() {
-  TurnDerivative by_turn = TurnDerivative::Zero();
-  for (Index axis = 0; axis < 3; ++axis) {
-    const Mat3 turn = skew(Vec3::Unit(axis));
-    for (Index half = 0; half < 2; ++half)
-      for (Index i = 0; i < 3; ++i)
-        for (Index j = 0; j < 3; ++j) by_turn(9 * half + 3 * i + j, axis) = turn(i, j);
-  }
-  return by_turn;
-}
-
 Index first_scale(const ChainFilter& filter, std::size_t sensor) {
   return filter.model().layout.sensor_state(static_cast<Index>(sensor)) + SensorIndex::gyroscope_scale;
 }

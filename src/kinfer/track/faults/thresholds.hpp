@@ -82,4 +82,19 @@ inline constexpr double instrument_lost_after = 1.0, instrument_missing_after = 
 KINFER_THRESHOLD(track, bias_limit, 50.0);
 inline constexpr double bias_recovered = 12.0;
 
+/// A sensor was turned before the first row where that is so much likelier (ln) than what is usual of its mounting, of
+/// this standard deviation [rad] at least, and than any other constant fault; by so many stretches of the log at least.
+inline constexpr double least_usual_turn = 2e-3;
+KINFER_THRESHOLD(track, initial_turn_log_odds, 12.0);
+/// [rad] that gravity turns through in a sensor's frame, beyond which a turn of the sensor is told from a bias.
+inline constexpr double bias_is_told = 0.03;
+inline constexpr double most_initial_turn = 0.15;  ///< [rad] beyond which one linearisation does not hold
+inline constexpr std::size_t least_fault_stretches = 5;
+inline constexpr double undecided_turn_patience = 20.0;  ///< [s] that nothing is named while it is open which sensor
+/// The other constant faults that compete: a delay of all gyroscopes [s], a scale of all accelerometers [1]; what is
+/// usual, and standard deviation of a fault.
+inline constexpr double usual_delay = 1e-3, delay_sd = 1e-2, usual_scale = 1e-3, scale_sd = 1e-2;
+inline constexpr double fault_correlation = 2.0;    ///< [s] that what the chain does not explain may last
+inline constexpr double initial_turn_after = 10.0;  ///< [s] of rows, unless something does not fit
+
 }  // namespace kinfer::track

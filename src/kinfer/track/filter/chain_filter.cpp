@@ -27,6 +27,7 @@ ChainFilter::ChainFilter(std::shared_ptr<const FilterModel> model)
       changes_(*model_),
       levels_(model_->sensors.size()),
       headings_(*model_),
+      constant_faults_(*model_),
       mean_rates_(*model_),
       innovations_(*model_),
       system_(*model_) {
@@ -57,6 +58,7 @@ void ChainFilter::start(const ChainState& state, ConstMatrixRef fast) {
   p_.topLeftCorner(layout.fast, layout.fast) = fast;
   headings_.reset();
   mean_rates_.reset();
+  constant_faults_.by_fault().leftCols(layout.fast).setZero();
 }
 
 void ChainFilter::widen(Index first, ConstMatrixRef covariance) {
@@ -87,6 +89,7 @@ void ChainFilter::forget(Index state) {
 void ChainFilter::place(Index position, double value, double sd) {
   const Index at = model_->layout.joint_state(position), zero = zero_state(position);
   forget(at);
+  constant_faults_.by_fault().col(at).setZero();
   placed_ = state_.time;
   if (zero >= 0 && p_(zero, zero) <= 0.0)
     p_(zero, zero) = model_->parameters(zero - model_->layout.fast, zero - model_->layout.fast);
@@ -102,6 +105,10 @@ void ChainFilter::suppose(Index position, double value, double sd) {
   error_.setZero();
   error_.head(estimated) = (value - state_.joints[position_states * position]) * share.head(estimated);
   retract(*model_, error_, state_);
+  MatrixXd& by_fault = constant_faults_.by_fault();
+  for (Index j = 0; j < estimated; ++j)
+    if (j != at) by_fault.col(j) -= share[j] * by_fault.col(at);
+  by_fault.col(at).setZero();
   for (Index j = 0; j < estimated; ++j)
     for (Index i = j; i < p_.rows(); ++i) p_(i, j) += change * share[i] * share[j];
   mirror();
@@ -119,6 +126,7 @@ void ChainFilter::count_from_here(Index position) {
   if (state_.base == BaseMode::moving) return place(position, state_.joints[position_states * position], 0.0);
   placed_ = state_.time;
   forget(model_->layout.joint_state(position));
+  constant_faults_.by_fault().col(model_->layout.joint_state(position)).setZero();
   if (const Index zero = zero_state(position); zero >= 0) forget(zero);
 }
 
@@ -127,6 +135,7 @@ void ChainFilter::predict(double time) {
     const double dt = std::min(time - state_.time, longest_step);
     predict_covariance(*model_, state_, dt, p_, shown_);
     add_posture_walk(dt);
+    constant_faults_.predict(*model_, state_, dt, shown_);
     predict_mean(*model_, dt, state_, shown_);
   }
 }
@@ -312,7 +321,7 @@ void ChainFilter::examine_unused(const BlockMeasurement& block) {
   }
 }
 
-void ChainFilter::correct() {
+void ChainFilter::correct(double length) {
   const Index estimated = model_->layout.first_geometry, n = model_->layout.size, geometry = n - estimated;
   system_.divide();
   const auto gain = system_.gain();
@@ -326,6 +335,7 @@ void ChainFilter::correct() {
   if (geometry > 0)
     add_product(gain.bottomRows(geometry), gain.topRows(estimated), -1.0, p_.block(estimated, 0, geometry, estimated));
   headings_.end_update(gain, error_, state_.time, p_);
+  constant_faults_.update(system_, evaluator_.result(), change_, length);
   bound();
   mirror();
 }
@@ -379,8 +389,22 @@ void ChainFilter::update(const BlockMeasurement& block) {
   }
   levels_.adapt(innovations_, system_.is_measured(), is_used_);
   examine_unused(block);
-  correct();
+  correct(block.length);
   add_what_means_miss(dt, block);
+}
+
+/// With the filter's error s θ and the mounting J θ, which is now part of the state, the error is (s − J) θ. It is
+/// independent of the error that a filter without the turn would have (Friedland 1969).
+void ChainFilter::believe_turn(std::size_t sensor, const Vec3& mean, const Mat3& covariance) {
+  const Index estimated = model_->layout.first_geometry,
+              scales = model_->layout.sensor_state(static_cast<Index>(sensor)) + SensorIndex::gyroscope_scale;
+  MatrixXd off = constant_faults_.by_fault().middleRows<3>(3 * static_cast<Index>(sensor)).transpose();
+  off.middleRows<18>(scales) -= scales_by_turn();
+  error_.setZero();
+  error_.head(estimated) = -off * mean;
+  retract(*model_, error_, state_);
+  p_.topLeftCorner(estimated, estimated) += off * covariance * off.transpose();
+  constant_faults_.believe_turn(sensor, off, covariance);
 }
 
 double ChainFilter::variance(const ScalarRow& row) const {
@@ -410,6 +434,7 @@ void ChainFilter::update(const ScalarRow& row) {
   retract(*model_, error_, state_);
   for (Index j = 0; j < estimated; ++j)
     for (Index i = j; i < p_.rows(); ++i) p_(i, j) -= w[i] * w[j] / variance;
+  constant_faults_.update(row.at, row.factor, row.terms, w, variance);
   mirror();
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "kinfer/track/filter/ball_headings.hpp"
+#include "kinfer/track/filter/constant_faults.hpp"
 #include "kinfer/track/filter/instrument_levels.hpp"
 #include "kinfer/track/filter/joint_changes.hpp"
 #include "kinfer/track/filter/mean_rates.hpp"
@@ -109,6 +110,13 @@ class ChainFilter {
   /// row, that of sensors of this grade, and what they may have walked since; its expectation is at most 3.
   InsLevel bias_distance(std::size_t sensor) const;
 
+  /// A sensor was turned by N(mean, covariance) [rad] in its frame since the first row: that is taken out of the
+  /// estimate, and is part of the sensor's scale matrices from here on.
+  void believe_turn(std::size_t sensor, const Vec3& mean, const Mat3& covariance);
+
+  const ConstantFaults& constant_faults() const { return constant_faults_; }
+  ConstantFaults& constant_faults() { return constant_faults_; }
+
  private:
   Index zero_state(Index position) const;
   void forget(Index state);
@@ -124,7 +132,7 @@ class ChainFilter {
   void examine_changes();
   void examine_unused(const BlockMeasurement& block);
   double distance_of_unused(const BlockMeasurement& block, std::size_t sensor);
-  void correct();
+  void correct(double length);
   void bound();
   void mirror();
 
@@ -141,6 +149,7 @@ class ChainFilter {
   JointChanges changes_;
   InstrumentLevels levels_;
   BallHeadings headings_;
+  ConstantFaults constant_faults_;
   MeanRates mean_rates_;
   Innovations innovations_;
   UpdateSystem system_;

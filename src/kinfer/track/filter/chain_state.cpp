@@ -267,6 +267,24 @@ AccelerationProcess lively(AccelerationProcess process, double mean_square) {
 
 }  // namespace
 
+void predict_error(const FilterModel& model, const ChainState& state, double dt, MatrixXd& errors, ShownMeans means) {
+  if (state.base == BaseMode::moving) {
+    const auto f = matrix_of(base_transition(model, state, dt));
+    Eigen::Matrix<double, 1, base_states> row;
+    for (Index i = 0; i < errors.rows(); ++i) {
+      row = errors.row(i).head<base_states>();
+      errors.row(i).head<base_states>().noalias() = row * f.transpose();
+    }
+  }
+  for (std::size_t b = 1; b < model.bodies.size(); ++b)
+    if (model.bodies[b].motion == JointMotion::spherical)
+      turn_columns(turned_back(state, model.layout.position[b], dt), model.layout.joint_state(model.layout.position[b]),
+                   errors);
+  for (Index i = 0; i < model.layout.positions; ++i)
+    mix_columns(transition(model.positions[static_cast<std::size_t>(i)], dt, means), errors.rows(),
+                model.layout.joint_state(i), errors);
+}
+
 void predict_covariance(const FilterModel& model, const ChainState& state, double dt, MatrixXd& p, ShownMeans means) {
   const Index n = p.rows(), fast = model.layout.fast;
   if (state.base == BaseMode::moving) {

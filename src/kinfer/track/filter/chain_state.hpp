@@ -41,6 +41,10 @@ enum class ShownMeans { rates, accelerations };
 /// The mean after `dt` seconds.
 void predict_mean(const FilterModel& model, double dt, ChainState& state, ShownMeans means = ShownMeans::rates);
 
+/// Errors of the state (a row each, of the estimated states) after `dt` seconds; `state` is that before.
+void predict_error(const FilterModel& model, const ChainState& state, double dt, MatrixXd& errors,
+                   ShownMeans means = ShownMeans::rates);
+
 /// The error state's covariance (symmetric) after `dt` seconds, at most `longest_step`; `state` is that before.
 void predict_covariance(const FilterModel& model, const ChainState& state, double dt, MatrixXd& covariance,
                         ShownMeans means = ShownMeans::rates);

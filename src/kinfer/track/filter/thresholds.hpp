@@ -106,6 +106,8 @@ inline constexpr double first_heading_sd = 0.5;  ///< [rad] of a heading that mo
 inline constexpr int heading_updates = 5;
 inline constexpr double heading_watch = 1.0, heading_significance = 2.0;
 
+inline constexpr double fault_stretch = 0.5;  ///< [s] over which the scores of constant faults are summed
+
 inline constexpr double update_period = 0.02;   ///< [s] at most 50 updates a second
 inline constexpr double longest_bridge = 0.03;  ///< [s] between two blocks without a gap
 inline constexpr double longest_step = 0.1;     ///< [s] of a prediction

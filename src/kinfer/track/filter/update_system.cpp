@@ -18,8 +18,12 @@ Index most_soft_rows(const FilterModel& model) {
 
 }  // namespace
 
+Index UpdateSystem::most_rows(const FilterModel& model) {
+  return model.layout.rows() + most_soft_rows(model);
+}
+
 UpdateSystem::UpdateSystem(const FilterModel& model) : layout_(model.layout) {
-  const Index most = layout_.rows() + most_soft_rows(model);
+  const Index most = most_rows(model);
   residual_ = noise_ = whitened_ = VectorXd::Zero(most);
   h_ = MatrixXd::Zero(most, layout_.fast);
   w_ = MatrixXd::Zero(layout_.size, most);
@@ -68,6 +72,17 @@ template <class Visit>
               own + (is_bias ? SensorIndex::accelerometer_bias + k : SensorIndex::accelerometer_scale + 3 * k + j - 1),
               is_bias ? 1.0 : measurement.force[s][j - 1]);
     }
+}
+
+void UpdateSystem::subtract_predicted(const ChainMeasurement& m, const MatrixXd& errors, MatrixRef from) const {
+  for (std::size_t s = 0; s < m.fast_end.size(); ++s) {
+    const Index row = sensor_rows * static_cast<Index>(s), fast = m.fast_end[s];
+    add_product(errors.leftCols(fast), h_.block(row, 0, sensor_rows, fast), -1.0, from.middleCols(row, sensor_rows));
+    for_each_own_state(m, s, [&](Index at, Index state, double factor) { from.col(at) -= factor * errors.col(state); });
+  }
+  for (Index row = layout_.rows(); row < rows_; ++row)
+    for (Index j = 0; j < layout_.fast; ++j)
+      if (h_(row, j) > 0.0 || h_(row, j) < 0.0) from.col(row) -= h_(row, j) * errors.col(j);
 }
 
 void UpdateSystem::multiply_covariance(const ChainMeasurement& m, const MatrixXd& p) {

@@ -16,6 +16,8 @@ class UpdateSystem {
  public:
   explicit UpdateSystem(const FilterModel& model);
 
+  static Index most_rows(const FilterModel& model);
+
   // ---- forming the rows ----
   /// The sensors' rows, with their derivatives; soft rows are dropped.
   void begin(const ChainMeasurement& measurement);
@@ -41,6 +43,10 @@ class UpdateSystem {
   bool limit_outliers();
   /// W becomes Y.
   void divide();
+  /// x becomes x L⁻ᵀ.
+  void whiten(MatrixRef x) const { solve_right(root_.topLeftCorner(rows_, rows_), x); }
+  /// Subtracts what errors of the state (a row each) change of the prediction; rows that are not measured have none.
+  void subtract_predicted(const ChainMeasurement& measurement, const MatrixXd& errors, MatrixRef from) const;
 
   auto covariance() { return s_.topLeftCorner(rows_, rows_); }           ///< S, lower half
   auto inverse() const { return inverse_.topLeftCorner(rows_, rows_); }  ///< L⁻¹
