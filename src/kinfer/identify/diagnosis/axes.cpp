@@ -218,7 +218,7 @@ void mend_axes(MendedLog& log, int threads) {
         {.kind = FindingKind::rates_unrelated, .severity = Severity::fault, .values = {{"sensors", names}}});
     return;
   }
-  std::vector<MappedSensor> doubtful;
+  std::vector<MappedSensor> mapped;
   for (std::size_t s = 0; s < sensors; ++s) {
     const std::size_t unit = unit_of(likelihoods[s], common);
     const AxisFault fault = axis_fault(likelihoods[s], unit, log.log().sensors[s].has_magnetometer());
@@ -232,13 +232,13 @@ void mend_axes(MendedLog& log, int threads) {
       TriadColumns& triad = fault.instrument == OddInstrument::gyroscope       ? sensor.angular_velocity
                             : fault.instrument == OddInstrument::accelerometer ? sensor.acceleration
                                                                                : sensor.field;
-      if (fault.gain < certain_axes_gain) doubtful.push_back({s, sensor});
+      mapped.push_back({s, sensor});
       transform(triad, 1.0, fault.axes);
       log.findings.push_back(axes_finding(sensor, fault));
     }
     flag_faults(sensor);
   }
-  withdraw_contradicted_maps(log, doubtful, threads);
+  withdraw_contradicted_maps(log, mapped, threads);
 }
 
 }  // namespace kinfer::identify

@@ -10,12 +10,9 @@ namespace kinfer::identify {
 /// [nats] By which another unit or another map of axes must explain the instruments better than what the file says.
 /// Larger misses faults of sensors that hardly rotate. Sound logs reach 16 (a pendulum of 8 s), faults 50 to 4000.
 inline constexpr double min_map_gain = 25.0;
-/// The same for other axes than those of the file. Sound logs reach 77 (a quick drive), faults 200 to 4000.
+/// The same for other axes than those of the file, before the neighbours are asked: with other axes the segment tree
+/// must not get longer. Sound logs reach 240 (all joints of an arm moved at once), faults 200 to 4000.
 inline constexpr double min_axes_gain = 85.0;
-
-/// [nats] Below it the neighbours are asked, too: with other axes the segment tree must not get longer. A sound log of
-/// a driving base with iron reached 87. Larger: orders the segments of more faulty logs twice.
-inline constexpr double certain_axes_gain = 200.0;
 
 /// [nats] Most that one sensor says for or against a unit of all. Larger: one odd sensor speaks for a log of two.
 inline constexpr double max_sensor_vote = 200.0;
