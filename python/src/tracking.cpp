@@ -11,7 +11,7 @@
 #include "kinfer/io/tracking/track_rows.hpp"
 #include "kinfer/io/tracking/tracked_chain.hpp"
 #include "kinfer/report/report.hpp"
-#include "kinfer/track/row_feed.hpp"
+#include "kinfer/track/rows/row_feed.hpp"
 #include "kinfer/track/run_recorder.hpp"
 #include "kinfer/track/smooth/smoother.hpp"
 #include "kinfer/track/tracker.hpp"

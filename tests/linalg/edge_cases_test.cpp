@@ -121,6 +121,16 @@ TEST(Decompositions, OfAWideMatrixHaveAsManyRowsAsItHas) {
   EXPECT_EQ(right_svd(wide).v.cols(), 5);
 }
 
+TEST(SolveSix, GivesWhatLeastSquaresDoAndLeavesTheRestAsItIs) {
+  const Eigen::Matrix<double, 6, 6> a = positive_matrix(6, 9), none = -a;
+  const Eigen::Matrix<double, 6, 1> b = random_matrix(6, 1, 10);
+  Eigen::Matrix<double, 6, 1> x = b, same = b;
+  ASSERT_TRUE(solve_six(a, x));
+  EXPECT_LT((x - *solve_spd(a, b)).norm(), 1e-12 * x.norm());
+  EXPECT_FALSE(solve_six(none, same));
+  EXPECT_EQ(same, b);
+}
+
 TEST(Decompositions, InverseOfAnIllConditionedMatrixIsSymmetric) {
   MatrixXd a = positive_matrix(6, 8);
   a.row(0) *= 1e4, a.col(0) *= 1e4;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/track/filter/row_block.hpp"
+#include "kinfer/track/rows/row_block.hpp"
 
 #include <gtest/gtest.h>
 

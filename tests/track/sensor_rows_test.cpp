@@ -4,7 +4,7 @@
 
 #include "kinfer/track/faults/sensor_health.hpp"
 #include "kinfer/track/faults/thresholds.hpp"
-#include "kinfer/track/filter/row_block.hpp"
+#include "kinfer/track/rows/row_block.hpp"
 #include "support/random.hpp"
 
 namespace kinfer::track {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "kinfer/track/faults/change_hypotheses.hpp"
-#include "kinfer/track/filter/row_block.hpp"
+#include "kinfer/track/rows/row_block.hpp"
 
 namespace kinfer::track {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/track/faults/turn_watch.hpp"
 
-#include "kinfer/track/filter/row_block.hpp"
+#include "kinfer/track/rows/row_block.hpp"
 #include "track/tracked_case.hpp"
 
 namespace kinfer::track {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/linalg/small_cholesky.hpp"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
 namespace kinfer {
@@ -14,6 +15,13 @@ bool factorise_small(MatrixRef a) {
       a(i, j) = (a(i, j) - a.row(i).head(j).dot(a.row(j).head(j))) / a(j, j);
     a.col(j).head(j).setZero();
   }
+  return true;
+}
+
+bool solve_six(const Eigen::Matrix<double, 6, 6>& a, Eigen::Matrix<double, 6, 1>& b) {
+  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(a);
+  if (factor.info() != Eigen::Success) return false;
+  factor.solveInPlace(b);
   return true;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "kinfer/linalg/normal_equations.hpp"
+#include "kinfer/linalg/small_cholesky.hpp"
 #include "kinfer/motion/thresholds.hpp"
 
 namespace kinfer::motion {
@@ -111,9 +112,9 @@ bool Descent::set_step(const ReachTask& task, const Eigen::Matrix<double, 6, 1>&
     const Eigen::Map<const Twists> rows(rows_.data(), 6, rows_.cols());
     Eigen::Matrix<double, 6, 6> normal = rows.lazyProduct(rows.transpose());
     normal.diagonal().array() += least;
-    const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(normal);
-    if (factor.info() != Eigen::Success) return false;
-    step_.noalias() = rows.transpose().lazyProduct(Eigen::Matrix<double, 6, 1>(factor.solve(error)));
+    Eigen::Matrix<double, 6, 1> solution = error;
+    if (!solve_six(normal, solution)) return false;
+    step_.noalias() = rows.transpose().lazyProduct(solution);
   } else if (task.rows() <= rows_.cols()) {
     normal_.noalias() = rows_.lazyProduct(rows_.transpose());
     normal_.diagonal().array() += least;

@@ -21,7 +21,7 @@
 #include "kinfer/io/text/csv.hpp"
 #include "kinfer/io/text/possible_range.hpp"
 #include "kinfer/io/tracking/tracked_chain.hpp"
-#include "kinfer/track/row_feed.hpp"
+#include "kinfer/track/rows/row_feed.hpp"
 #include "kinfer/track/run_recorder.hpp"
 #include "kinfer/track/smooth/smoother.hpp"
 #include "kinfer/track/tracker.hpp"

@@ -7,6 +7,7 @@
 
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/threshold.hpp"
+#include "kinfer/geometry/log_normal.hpp"
 
 namespace kinfer::identify {
 
@@ -26,11 +27,6 @@ inline constexpr std::size_t joint_type_rows = 1500;
 
 /// [rad/s] Relative angular velocity of two INS without relative motion. Set on the simulated machines and on DIODEM.
 KINFER_THRESHOLD(identify, relative_rate_noise, 3e-3);
-
-/// A quantity whose logarithm is normal.
-struct LogNormal {
-  double median = 1.0, spread = 1.0;
-};
 
 /// Joints of a machine before anything is measured: rigid, prismatic, revolute, universal, spherical.
 inline constexpr double type_prior[] = {0.06, 0.05, 0.76, 0.03, 0.1};

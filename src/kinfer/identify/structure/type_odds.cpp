@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/identify/structure/thresholds.hpp"
@@ -25,17 +24,11 @@ constexpr double least_rate_level = relative_rate_noise / rigid_rate_share.media
 using Grid = std::array<double, grid_size>;
 using LogTypes = std::array<double, type_count>;  // ln p(T) p(d | T, errors)
 
-/// Log density of ln x for a quantity whose logarithm is normal.
-double log_normal(double x, const LogNormal& of) {
-  const double z = std::log(x / of.median) / of.spread;
-  return -0.5 * z * z - std::log(of.spread) - 0.5 * std::log(2.0 * std::numbers::pi);
-}
-
-/// Likewise of an error or a secondary effect, which may well be far smaller than is typical, but not far larger.
+/// Log density of ln x of an error or a secondary effect, which may well be far smaller than is typical, but not far
+/// larger.
 double log_error(double x, const LogNormal& of) {
   constexpr double spread_below = 3.0;  // times that above
-  const double z = std::log(x / of.median) / of.spread, scaled = z < 0.0 ? z / spread_below : z;
-  return -0.5 * scaled * scaled - std::log(of.spread) - 0.5 * std::log(2.0 * std::numbers::pi);
+  return log_density(x < of.median ? of.median * std::pow(x / of.median, 1.0 / spread_below) : x, of);
 }
 
 /// Log density of ln r for a ratio that is uniform between 0 and 1: the angles of a joint's axes are alike in size.
@@ -72,7 +65,7 @@ struct JointLikelihoods {
 double moving_rates(const MotionDeviations& d) {
   const double residual = std::hypot(d.rates.residual, least_rate),
                relative = std::hypot(d.rate_share * std::hypot(d.rates.level, least_rate_level), least_rate);
-  return log_normal(residual, joint_rate) + std::max(log_normal(relative / residual, rate_ratio), min_ratio_density);
+  return log_density(residual, joint_rate) + std::max(log_density(relative / residual, rate_ratio), min_ratio_density);
 }
 
 /// Of a rigid pair: noise, what gyroscopes have beyond scale errors, and mounts that give way.
@@ -85,10 +78,10 @@ double rigid_rates_of(const MotionDeviations& d, double orientation_error_size) 
 void add_rotation(JointLikelihoods& joint, const MotionDeviations& d, const Grid& sizes) {
   const double rotation = std::hypot(d.rotation, least_deviation), axis = std::hypot(d.axis, least_deviation),
                plane = std::hypot(d.plane, least_deviation), share = std::max(d.rate_share, 1e-6);
-  const double moves = log_normal(rotation, joint_rotation) + moving_rates(d);
+  const double moves = log_density(rotation, joint_rotation) + moving_rates(d);
   const double second_axis = uniform_ratio(axis / rotation), third_axis = uniform_ratio(plane / axis);
-  const double axis_of_errors = std::max(log_normal(axis / rotation, error_axis_ratio), min_ratio_density),
-               plane_of_errors = std::max(log_normal(plane / axis, error_plane_ratio), min_ratio_density);
+  const double axis_of_errors = std::max(log_density(axis / rotation, error_axis_ratio), min_ratio_density),
+               plane_of_errors = std::max(log_density(plane / axis, error_plane_ratio), min_ratio_density);
   const double inclined = std::log(std::max(std::sin(d.axes_angle), 1e-3));  // of two axes in any directions
   for (std::size_t i = 0; i < grid_size; ++i) {
     const auto error = [&](double deviation) { return log_error(deviation, {sizes[i], error_spread}); };
@@ -102,11 +95,11 @@ void add_rotation(JointLikelihoods& joint, const MotionDeviations& d, const Grid
 void add_translation(JointLikelihoods& joint, const MotionDeviations& d, const Grid& sizes) {
   const double main = std::hypot(d.acceleration, least_acceleration),
                across = std::hypot(d.acceleration_across, least_acceleration);
-  const double across_of_errors = std::max(log_normal(across / main, error_across_ratio), min_ratio_density);
+  const double across_of_errors = std::max(log_density(across / main, error_across_ratio), min_ratio_density);
   const double of_motion = std::hypot(1.0, acceleration_error_share * d.acceleration_level / acceleration_error.median);
   for (std::size_t i = 0; i < grid_size; ++i)
-    joint.rests[i] = log_normal(main, {of_motion * sizes[i], acceleration_error_spread}) + across_of_errors;
-  joint.slides = log_normal(main, sliding_acceleration) + log_error(across / main, sliding_across_ratio);
+    joint.rests[i] = log_density(main, {of_motion * sizes[i], acceleration_error_spread}) + across_of_errors;
+  joint.slides = log_density(main, sliding_acceleration) + log_error(across / main, sliding_across_ratio);
 }
 
 /// Posterior of the sizes of the errors.
@@ -116,7 +109,7 @@ std::array<Grid, grid_size> posterior(const std::vector<JointLikelihoods>& joint
   double largest = -std::numeric_limits<double>::infinity(), sum = 0.0;
   for (std::size_t i = 0; i < grid_size; ++i)
     for (std::size_t k = 0; k < grid_size; ++k) {
-      weight[i][k] = log_normal(orientation[i], orientation_error) + log_normal(acceleration[k], acceleration_error);
+      weight[i][k] = log_density(orientation[i], orientation_error) + log_density(acceleration[k], acceleration_error);
       for (const JointLikelihoods& joint : joints) weight[i][k] += log_sum(joint.at(i, k));
       largest = std::max(largest, weight[i][k]);
     }

@@ -51,13 +51,8 @@ double deviation(const std::vector<Vec3>& values) {
   return distances[static_cast<std::size_t>(kept)];
 }
 
-/// Log density of the logarithm of a size, normal; of rest, smaller sizes are all alike.
-double log_density(double size, const TypicalSize& of) {
-  const double z = std::log(size / of.median) / of.spread;
-  return -0.5 * z * z - std::log(of.spread);
-}
-
-double log_density_at_rest(double size, const TypicalSize& of) {
+/// Of rest, smaller sizes are all alike.
+double log_density_at_rest(double size, const LogNormal& of) {
   return log_density(std::max(size, of.median), of);
 }
 

@@ -8,21 +8,18 @@
 
 #include <span>
 
+#include "kinfer/geometry/log_normal.hpp"
 #include "kinfer/inertial/rest/rest.hpp"
 
 namespace kinfer {
 
-/// A size whose logarithm is normal.
-struct TypicalSize {
-  double median, spread;
-};
 /// [rad/s] and [m/s²] Largest deviation of medians over a second from their median, of sensors at rest: biases that
 /// drift by 0.003 rad/s while the sensors warm up (1.5e-3), noise (rms 2e-4 to 6e-4 and 0.0016 to 0.0042 in twelve
 /// simulated recordings of three grades). Larger medians take slow motion for rest.
-inline constexpr TypicalSize rest_rate_deviation{1.5e-3, 0.7}, rest_force_deviation{0.015, 1.0};
+inline constexpr LogNormal rest_rate_deviation{1.5e-3, 0.7}, rest_force_deviation{0.015, 1.0};
 /// Likewise of sensors that move: a hinge of 1.7° has 0.02 to 0.08 rad/s and 0.3 m/s², a slew as much as its rate.
 /// Larger medians take slow motion for rest.
-inline constexpr TypicalSize moving_rate_deviation{0.3, 1.6}, moving_force_deviation{1.5, 1.6};
+inline constexpr LogNormal moving_rate_deviation{0.3, 1.6}, moving_force_deviation{1.5, 1.6};
 /// Of the medians: the farthest ones that are left out, shocks and spikes. Larger: a short movement is overlooked.
 inline constexpr double max_shock_median_share = 0.02;
 

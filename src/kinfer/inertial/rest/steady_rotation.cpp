@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 
 #include "kinfer/base/square.hpp"
 #include "kinfer/geometry/statistics.hpp"
@@ -12,6 +13,8 @@
 namespace kinfer {
 namespace {
 
+// Chosen on simulated excavators with industrial sensors whose carriage slews by 0.02 to 0.05 rad/s, steadily, to and
+// fro, with and without a rest before.
 constexpr std::size_t rate_count = 241;
 constexpr double largest_rate = 0.3, rate_sd = 0.1;  // [rad/s] of a slew
 constexpr double prior = 0.1;                        // of a rest to be a steady rotation
@@ -71,7 +74,8 @@ class Weighing {
     std::array<double, rate_count> rotates{}, others_rotate{};
     double sum = 0.0, mean = 0.0;
     for (std::size_t k = 0; k < rate_count; ++k) {
-      others_rotate[k] = std::log(step()) - 0.5 * square(rate(k) / rate_sd) - std::log(rate_sd * std::sqrt(6.2832));
+      others_rotate[k] =
+          std::log(step()) - 0.5 * square(rate(k) / rate_sd) - std::log(rate_sd * std::sqrt(2.0 * std::numbers::pi));
       for (const VerticalRate& other : others) others_rotate[k] += log_either(other, rate(k));
       rotates[k] = others_rotate[k] + log_bias_density(own.value - rate(k), own.bias_sd);
     }

@@ -22,7 +22,7 @@ class BiasWatch {
   /// [s] Of a sensor whose biases have been far off for so long that it is an alarm.
   std::optional<double> named_since(std::size_t sensor) const;
   bool names_any() const;
-  /// Something else may explain them: no sensor is named for now.
+  /// Something else may explain them: none is named by this update.
   void withhold();
 
  private:

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "kinfer/track/faults/thresholds.hpp"
-#include "kinfer/track/filter/row_block.hpp"
+#include "kinfer/track/rows/row_block.hpp"
 #include "kinfer/track/start/settled_start.hpp"
 #include "kinfer/track/start/thresholds.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/track/start/motion_watch.hpp"
+#include "kinfer/track/rest/motion_watch.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/track/filter/rest_bias.hpp"
+#include "kinfer/track/rest/rest_bias.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/track/row_feed.hpp"
+#include "kinfer/track/rows/row_feed.hpp"
 
 namespace kinfer::track {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinfer/track/filter/base_watch.hpp"
+#include "kinfer/track/rest/base_watch.hpp"
 
 #include <cmath>
 
