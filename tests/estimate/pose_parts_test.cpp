@@ -7,6 +7,8 @@
 #include "kinfer/estimate/poses/noise_level.hpp"
 #include "kinfer/estimate/poses/point_fit.hpp"
 #include "kinfer/estimate/poses/pose_normal_equations.hpp"
+#include "kinfer/geometry/statistics.hpp"
+#include "kinfer/kinematics/forward.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 #include "support/instruments.hpp"
 #include "support/robots.hpp"
@@ -218,6 +220,24 @@ TEST(ExcessNoiseOf, IsWhatTheInstrumentDoesNotExplain) {
   EXPECT_NEAR(point_sd(std::nullopt), 1e-3, 0.1e-3);
   EXPECT_NEAR(point_sd(Instrument{.sigma = 0.3e-3}), 1e-3, 0.1e-3) << "too optimistic a specification";
   EXPECT_NEAR(point_sd(Instrument{.sigma = 2e-3}), 2e-3, 1e-12) << "a specification is never reduced";
+}
+
+TEST(ExcessNoiseOf, MakesTheMedianOfTheSquaredNormsThatOfGaussianNoise) {
+  const Chain chain = test::er20();
+  for (const int poses : {201, 400}) {
+    PoseSet data = test::measured(
+        chain, {.poses = poses, .space = {.lowest = 0.0, .clearance = 0.3}, .instrument = {.sigma = 1e-3}});
+    for (std::size_t i = 0; i < data.points.size(); ++i)
+      data.points[i].sd = Vec3(1e-4, 3e-4, 2e-6 * static_cast<double>(i));
+    const double excess = excess_noise(chain, data, std::nullopt, 0.0).of[index(kind_of<PointMeasurement>)];
+    std::vector<double> norm2;
+    for (const PointMeasurement& point : data.points) {
+      const Vec3 error = forward(chain, data.joints.col(point.row)).position - point.position;
+      const Vec3 variance = point.sd->cwiseAbs2().array() + excess * excess;
+      norm2.push_back(error.cwiseAbs2().cwiseQuotient(variance).sum());
+    }
+    EXPECT_NEAR(median(std::move(norm2)), chi_squared_quantile(0.5, 3), 0.01) << poses << " poses";
+  }
 }
 
 TEST(ExcessNoiseOf, AMinorityOfOutliersDoesNotCountAndFittedParametersDo) {

@@ -2,6 +2,7 @@
 #include "kinfer/linalg/products.hpp"
 
 #include "kinfer/base/expect.hpp"
+#include "kinfer/linalg/normal_equations.hpp"
 
 namespace kinfer {
 
@@ -21,7 +22,10 @@ MatrixXd times_transposed(ConstMatrixRef a, ConstMatrixRef b) {
 }
 
 MatrixXd gram(ConstMatrixRef a) {
-  return transposed_times(a, a);
+  constexpr Eigen::Index tall = 64;  // rows from which the kernel for normal equations is faster
+  if (a.rows() < tall) return transposed_times(a, a);
+  const NormalEquations equations = normal_equations(a, VectorXd::Zero(a.rows()));
+  return equations.matrix.selfadjointView<Eigen::Lower>();
 }
 
 MatrixXd propagated_covariance(ConstMatrixRef jacobian, ConstMatrixRef covariance) {

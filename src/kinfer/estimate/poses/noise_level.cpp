@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <numeric>
 
 #include "kinfer/estimate/poses/repeated_measurements.hpp"
 #include "kinfer/geometry/statistics.hpp"
@@ -13,14 +13,37 @@ namespace {
 
 constexpr double least_redundancy_of_all = 0.1;
 
-/// Excess noise at which the median of the squared block norms equals that of Gaussian noise; 0 if it is below already.
-/// By bisection.
-double solve_excess(const std::function<double(double)>& median_norm2, double target, double upper) {
-  if (median_norm2(0.0) <= target) return 0.0;
-  double low = 0.0, high = upper;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (median_norm2(middle) > target ? low : high) = middle;
+/// Squared norm of a residual in units of its standard deviations with the excess.
+double normalised_norm2(const Vec3& residual, const Vec3& sd, double excess) {
+  return residual.cwiseAbs2().cwiseQuotient((sd.cwiseAbs2().array() + excess * excess).matrix()).sum();
+}
+
+/// The `rank`-th smallest of the excesses at which the blocks' squared norms equal `target`; 0 for a block that is
+/// below already. By bisection of what holds it, in which only blocks that may still have that rank are evaluated.
+double ranked_excess(const std::vector<Vec3>& residuals, const std::vector<Vec3>& sd, double target, std::size_t rank) {
+  std::vector<std::size_t> undecided;
+  double low = 0.0, high = 0.0;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (!(normalised_norm2(residuals[i], sd[i], 0.0) > target)) continue;
+    undecided.push_back(i);
+    high = std::max(high, residuals[i].norm());
+  }
+  const std::size_t at_zero = residuals.size() - undecided.size();
+  if (rank < at_zero) return 0.0;
+  rank -= at_zero;
+  high /= std::sqrt(target);
+  for (double middle = 0.5 * high; middle > low && middle < high; middle = std::midpoint(low, high)) {
+    const auto above = std::partition(undecided.begin(), undecided.end(), [&](std::size_t i) {
+      return !(normalised_norm2(residuals[i], sd[i], middle) > target);
+    });
+    const auto below = static_cast<std::size_t>(above - undecided.begin());
+    if (rank < below) {
+      high = middle;
+      undecided.erase(above, undecided.end());
+    } else {
+      low = middle, rank -= below;
+      undecided.erase(undecided.begin(), above);
+    }
   }
   return high;
 }
@@ -32,20 +55,16 @@ double excess_over(double sd, const std::vector<Vec3>& residuals, double target)
   return std::sqrt(std::max(0.0, median(std::move(norm2)) / target - sd * sd));
 }
 
+/// Excess noise at which the median of the squared block norms equals that of Gaussian noise; 0 if it is below already.
+/// A norm falls with the excess, so that it is the median of the blocks' own excesses.
 double excess_of(const std::vector<Vec3>& residuals, const std::vector<Vec3>& sd, int size, double absorbed) {
   if (residuals.empty()) return 0.0;
   const double target = chi_squared_quantile(0.5, size) * absorbed, first = sd.front()[0];
   if (std::ranges::all_of(sd, [&](const Vec3& s) { return s == Vec3::Constant(first); }))
     return excess_over(first, residuals, target);
-  double largest = 0.0;
-  for (const Vec3& r : residuals) largest = std::max(largest, r.norm());
-  const auto median_norm2 = [&](double excess) {
-    std::vector<double> norm2(residuals.size());
-    for (std::size_t i = 0; i < residuals.size(); ++i)
-      norm2[i] = residuals[i].cwiseAbs2().cwiseQuotient((sd[i].cwiseAbs2().array() + excess * excess).matrix()).sum();
-    return median(std::move(norm2));
-  };
-  return solve_excess(median_norm2, target, 2.0 * largest);
+  const std::size_t middle = residuals.size() / 2;
+  const double upper = ranked_excess(residuals, sd, target, middle);
+  return residuals.size() % 2 == 1 ? upper : std::midpoint(upper, ranked_excess(residuals, sd, target, middle - 1));
 }
 
 /// The kind's blocks in their own units, padded with zeros to three components.
