@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/linalg/small_cholesky.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 namespace kinfer {
@@ -18,10 +17,28 @@ bool factorise_small(MatrixRef a) {
   return true;
 }
 
+/// a = L D Lᵀ, in loops of known length that the compiler unrolls. c = L D.
 bool solve_six(const Eigen::Matrix<double, 6, 6>& a, Eigen::Matrix<double, 6, 1>& b) {
-  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(a);
-  if (factor.info() != Eigen::Success) return false;
-  factor.solveInPlace(b);
+  constexpr int n = 6;
+  double l[n][n], c[n][n], inverse[n], x[n];
+  for (int j = 0; j < n; ++j) {
+    for (int i = j; i < n; ++i) {
+      c[i][j] = a(i, j);
+      for (int k = 0; k < j; ++k) c[i][j] -= c[i][k] * l[j][k];
+    }
+    if (!(c[j][j] > 0.0)) return false;
+    inverse[j] = 1.0 / c[j][j];
+    for (int i = j + 1; i < n; ++i) l[i][j] = c[i][j] * inverse[j];
+  }
+  for (int i = 0; i < n; ++i) {
+    x[i] = b[i];
+    for (int k = 0; k < i; ++k) x[i] -= l[i][k] * x[k];
+  }
+  for (int i = n - 1; i >= 0; --i) {
+    x[i] *= inverse[i];
+    for (int k = i + 1; k < n; ++k) x[i] -= l[k][i] * x[k];
+  }
+  for (int i = 0; i < n; ++i) b[i] = x[i];
   return true;
 }
 

@@ -72,7 +72,7 @@ Descent::Attempt Descent::run(const ReachTask& task, VectorXd q, Steps steps) {
     const ReachTask::Error error = task.error(of_machine ? tool(q) : at_.tool);
     const double size = error.weighted.norm();
     if (step == 0) set_units(error.position);
-    if (is_met(error)) return {std::move(q), size, true};
+    if (is_met(error) || (steps.are_rough && size <= thresholds::rough_correction)) return {std::move(q), size, true};
     const auto left = [&] { return Attempt{std::move(q), size, is_met_but_for_rounding(task, error)}; };
     if (step == most) return left();
     if (!steps.are_patient && step % thresholds::judged_steps == thresholds::judged_steps - 1) {
@@ -130,29 +130,53 @@ bool Descent::set_step(const ReachTask& task, const Eigen::Matrix<double, 6, 1>&
   return true;
 }
 
+namespace {
+
+/// The part of the null-space step that leads to its zero, by how it has changed along `moved` (Barzilai and Borwein
+/// 1988; of one free dimension the secant step). At most 1: longer ones pass postures by.
+double secant_part(const VectorXd& moved, const VectorXd& step_before, const VectorXd& step) {
+  const double change = moved.dot(step_before - step), squares = moved.squaredNorm();
+  return change > squares ? squares / change : 1.0;
+}
+
+}  // namespace
+
 void Descent::approach(const ReachTask& task, const VectorXd& preferred, VectorXd& q) {
   unwind(q, preferred);
+  const VectorXd start = q;
   const Steps steps{.are_clamped = is_inside(q)};
+  Steps rough = steps;
+  rough.are_rough = true;
   double part = 1.0;
+  VectorXd moved, step_before;  // by the step before, if that led nearer
   for (int k = 0; k < thresholds::approach_steps; ++k) {
-    screws_.place(q, at_);
     set_units(0.0);
+    if (moved.size() == 0) screws_.place(q, at_);  // else it is there
     set_rows(task);
-    const VectorXd wanted = (preferred - q).cwiseQuotient(unit_);
-    // The part of the wanted step that moves the tool is taken out of it.
-    Eigen::Matrix<double, 6, 1> moved = Eigen::Matrix<double, 6, 1>::Zero();
-    moved.head(task.rows()) = rows_.lazyProduct(wanted);
-    if (!set_step(task, moved, 0.0)) break;
-    const VectorXd step = wanted - step_;
+    const VectorXd step = null_space_step(task, (preferred - q).cwiseQuotient(unit_));
+    if (moved.size() > 0) part = secant_part(moved, step_before, step);
     const double largest = part * step.cwiseAbs().maxCoeff();
-    if (largest < thresholds::approach_tolerance) break;
-    const double length = part * std::min(1.0, thresholds::longest_step / largest);
-    Attempt corrected = run(task, q + length * unit_.cwiseProduct(step), steps);
-    if (corrected.converged && distance(corrected.q, preferred) < distance(q, preferred))
-      q = std::move(corrected.q), part = std::min(1.0, 2.0 * part);
-    else
+    if (!(largest >= thresholds::approach_tolerance)) break;
+    part *= std::min(1.0, thresholds::longest_step / largest);
+    Attempt corrected = run(task, q + part * unit_.cwiseProduct(step), rough);
+    if (corrected.converged && distance(corrected.q, preferred) < distance(q, preferred)) {
+      moved = (corrected.q - q).cwiseQuotient(unit_), step_before = step;
+      q = std::move(corrected.q);
+    } else {
+      moved.resize(0);
       part *= 0.25;
+    }
   }
+  Attempt end = run(task, q, steps);
+  q = end.converged ? std::move(end.q) : start;
+}
+
+/// `wanted` without the part that moves the tool; 0 where that is not to be separated.
+VectorXd Descent::null_space_step(const ReachTask& task, const VectorXd& wanted) {
+  Eigen::Matrix<double, 6, 1> of_tool = Eigen::Matrix<double, 6, 1>::Zero();
+  of_tool.head(task.rows()) = rows_.lazyProduct(wanted);
+  if (!set_step(task, of_tool, 0.0)) return VectorXd::Zero(wanted.size());
+  return wanted - step_;
 }
 
 void Descent::unwind(VectorXd& q, const VectorXd& preferred) const {

@@ -13,6 +13,7 @@ class Descent {
   struct Steps {
     bool of_machine = false;   ///< with its non-geometric terms; else of the rigid chain
     bool are_clamped = false;  ///< to the limits
+    bool are_rough = false;    ///< to thresholds::rough_correction
     bool are_patient = false;  ///< to the end, else left early where the error falls slowly
   };
 
@@ -55,6 +56,7 @@ class Descent {
   void set_units(double position_error);
   void set_rows(const ReachTask& task);
   void leave_out_limited(const ReachTask& task, const VectorXd& q, const ReachTask::Error& error);
+  VectorXd null_space_step(const ReachTask& task, const VectorXd& wanted);
   bool set_step(const ReachTask& task, const Eigen::Matrix<double, 6, 1>& error, double damping);
 
   Chain chain_;

@@ -8,6 +8,15 @@
 #include "kinfer/kinematics/elementary_motions.hpp"
 
 namespace kinfer::motion {
+namespace {
+
+/// pose = pose · next, in line.
+void move_on(Pose& pose, const Pose& next) {
+  pose.position += pose.rotation.lazyProduct(next.position);
+  pose.rotation = Mat3(pose.rotation.lazyProduct(next.rotation));
+}
+
+}  // namespace
 
 ScrewChain::ScrewChain(const Chain& chain) : dof_(kinfer::dof(chain)) {
   for (const int j : active_joints(chain))
@@ -43,14 +52,15 @@ void ScrewChain::place(const VectorXd& q, Placement& at) const {
   Pose pose = base_;
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const MovingJoint& joint = joints_[j];
-    pose = pose * joint.before;
+    move_on(pose, joint.before);
     at.axis[j] = pose.rotation.col(2), at.origin[j] = pose.position;
     double variable = 0.0;
     for (const auto& [index, factor] : joint.terms) variable += factor * q[index];
     elementary::apply(pose, joint.rotates ? elementary::Motion::rotation : elementary::Motion::translation, 2,
                       variable);
   }
-  at.tool = pose * tool_;
+  at.tool = pose;
+  move_on(at.tool, tool_);
 }
 
 void ScrewChain::jacobian(const Placement& at, Twists& twists) const {
