@@ -21,7 +21,6 @@ inline constexpr double approach_tolerance = 1e-4;  ///< [rad] or units of steps
 /// [1] weighted error to which the steps of the approach are corrected, but for the last; larger: distances to the
 /// preferred posture no longer tell whether a step led nearer (at 1e-3 half of the postures found are unfinished ones).
 inline constexpr double rough_correction = 1e-6;
-inline constexpr double most_secant_length = 1.0;
 /// [m] and [rad] by which targets of six decimals are rounded, quaternions included.
 inline constexpr double rounded_target = 2e-6;
 inline constexpr double same_posture = 1e-3;  ///< [rad] apart
