@@ -102,6 +102,9 @@ class _Alarm(TypedDict):
     since: float
     until: float
     sentence: str
+    turn: float | None  # [rad] of a sensor that was turned before the log began
+    turn_sd: float | None
+    turn_hidden_sd: float | None  # about the axis that the motion shows least
 
 class TrackedRun:
     @property

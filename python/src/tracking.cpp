@@ -180,10 +180,15 @@ py::list events_of(const TrackedRun& run) {
   py::list list;
   for (const TrackEvent& event : run.run.events) {
     const auto s = static_cast<std::size_t>(event.alarm.sensor), j = static_cast<std::size_t>(event.alarm.joint);
+    const auto size_of_turn = [&](double SensorTurn::*size) {
+      return event.alarm.turn ? py::object(py::float_((*event.alarm.turn).*size)) : py::object(py::none());
+    };
     list.append(py::dict("kind"_a = std::string(name(event.alarm.kind)),
                          "sensor"_a = name_or_none(event.alarm.sensor < 0 ? "" : run.run.sensors[s].name),
                          "joint"_a = name_or_none(event.alarm.joint < 0 ? "" : run.run.joints[j].name),
-                         "since"_a = event.alarm.since, "until"_a = event.until, "sentence"_a = event.sentence));
+                         "since"_a = event.alarm.since, "until"_a = event.until, "sentence"_a = event.sentence,
+                         "turn"_a = size_of_turn(&SensorTurn::angle), "turn_sd"_a = size_of_turn(&SensorTurn::sd),
+                         "turn_hidden_sd"_a = size_of_turn(&SensorTurn::hidden_sd)));
   }
   return list;
 }

@@ -134,6 +134,11 @@ TEST(Tracker, NamesASensorThatWasTurnedBeforeTheLogAndCorrectsIt) {
     EXPECT_EQ(out.alarms[0].kind, TrackAlarmKind::sensor_moved);
     EXPECT_EQ(out.alarms[0].sensor, sensor);
     EXPECT_LT(out.alarms[0].since, 0.5) << "since the first rows";
+    const auto& alarms = out.tracker.state().alarms;
+    ASSERT_EQ(alarms.size(), 1u);
+    ASSERT_TRUE(alarms[0].turn);
+    EXPECT_NEAR(alarms[0].turn->angle, 1.0 * degree, 4.0 * alarms[0].turn->sd);
+    EXPECT_LT(alarms[0].turn->sd, 0.1 * degree);
     const std::size_t last = given.drive.recording.loggers.front().time.size() - 1;
     for (int j = 1; j < 5; ++j)
       EXPECT_NEAR(out.tracker.state().q[j], given.drive.q(j, last), 0.15 * degree) << sensor << " " << j;

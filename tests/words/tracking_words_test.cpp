@@ -49,6 +49,12 @@ TEST(AlarmWords, EveryKindHasASentenceOfItsOwnThatNamesWhatItIsAbout) {
   }
 }
 
+TEST(AlarmWords, ASensorThatWasTurnedBeforeTheLogSaysByHowMuch) {
+  const TrackAlarm alarm{.kind = TrackAlarmKind::sensor_moved, .sensor = 1, .turn = SensorTurn{0.0349, 0.0002, 0.05}};
+  EXPECT_THAT(words::sentence(alarm, {"chassis", "boom"}, {}),
+              HasSubstr("boom was turned by 2.00 ± 0.01 deg before the log began (± 2.86 deg about"));
+}
+
 TEST(AlarmWords, AnIndexBeyondTheListsIsNoCrash) {
   EXPECT_THAT(words::sentence({.kind = TrackAlarmKind::sensor_lost, .sensor = 7}, {"only"}, {}),
               HasSubstr("a sensor sends no samples"));

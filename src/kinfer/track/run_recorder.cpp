@@ -111,6 +111,7 @@ void RunRecorder::follow_alarms(const TrackState& state) {
     if (event != events_.end()) {
       event->until = not_a_number;
       event->alarm.strength = std::max(event->alarm.strength, alarm.strength);
+      if (alarm.turn) event->alarm.turn = alarm.turn;  // the longer it was seen the better it is known
     } else if (events_.size() < most_events) {
       events_.push_back({.alarm = alarm, .until = not_a_number});
     }

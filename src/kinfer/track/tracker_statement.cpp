@@ -85,7 +85,8 @@ void Tracker::list_alarms(double time) {
       alarms.push_back({.kind = TrackAlarmKind::sensor_moved,
                         .sensor = sensor,
                         .since = turned_[s]->since,
-                        .strength = turned_[s]->strength});
+                        .strength = turned_[s]->strength,
+                        .turn = size_of(mount_turn(filter_, s))});
     if (!does_not_fit_[s]) continue;
     ++disagreeing;
     alarms.push_back({.kind = is_late_[s] ? TrackAlarmKind::sensor_late : TrackAlarmKind::sensor_moved,

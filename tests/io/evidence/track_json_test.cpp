@@ -25,6 +25,9 @@ TrackRun example_run() {
   run.joints = {{.name = "ins0-ins1", .composed = 0.25, .relative_to_start = 1.0}, {.name = "ins1-ins2"}};
   run.events.push_back(
       {.alarm = {TrackAlarmKind::sensor_moved, 0, -1, 2.0, 13.0}, .until = nothing, .sentence = "moved"});
+  run.events.push_back({.alarm = {TrackAlarmKind::sensor_moved, 1, -1, 0.1, 4.0, SensorTurn{0.03, 0.001, 0.05}},
+                        .until = nothing,
+                        .sentence = "turned"});
   run.events.push_back({.alarm = {TrackAlarmKind::restarted, -1, -1, 1.5, 0.0}, .until = 1.6, .sentence = "again"});
   run.remarks = {"the last line is cut off"};
   return run;
@@ -38,6 +41,7 @@ TEST(TrackJson, IsReadBackWithTheSameBytes) {
   EXPECT_EQ(format_track_run(*read), text);
   EXPECT_TRUE(std::isnan(read->events[0].until));
   EXPECT_EQ(read->events[0].alarm, run.events[0].alarm);
+  EXPECT_EQ(read->events[1].alarm, run.events[1].alarm);
   EXPECT_EQ(read->verdict.usability, Usability::use_with_care);
   EXPECT_FALSE(read->tool[1].allFinite());
   const auto any = read_evidence(text);
@@ -47,9 +51,10 @@ TEST(TrackJson, IsReadBackWithTheSameBytes) {
 
 TEST(TrackJson, SaysWhatHappened) {
   const TrackRun run = track_evidence(example_run(), {});
-  EXPECT_THAT(run.verdict.sentence, HasSubstr("2 joint positions tracked over 2.0 s, 1 alarm"));
+  EXPECT_THAT(run.verdict.sentence, HasSubstr("2 joint positions tracked over 2.0 s, 2 alarms"));
   EXPECT_THAT(run.verdict.sentence, HasSubstr("relative to where tracking began, which --start can state: ins0-ins1"));
   EXPECT_THAT(run.events[0].sentence, HasSubstr("ins0 does not agree with the chain"));
+  EXPECT_THAT(run.events[1].sentence, HasSubstr("was turned by 1.72 ± 0.06 deg"));
   TrackRun other = example_run();
   other.events.push_back({.alarm = {TrackAlarmKind::does_not_fit, -1, -1, 1.1, 9.0}, .until = std::nan("")});
   EXPECT_EQ(track_evidence(other, {}).verdict.usability, Usability::do_not_use);

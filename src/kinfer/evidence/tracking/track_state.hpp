@@ -2,6 +2,7 @@
 // The state of a tracked machine at one time, with standard deviations.
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -47,11 +48,19 @@ enum class TrackAlarmKind {
 };
 std::string_view name(TrackAlarmKind kind);
 
+/// Of a sensor that was turned before the first row, as far as the rows show.
+struct SensorTurn {
+  double angle = 0.0, sd = 0.0;  ///< [rad]
+  double hidden_sd = 0.0;        ///< [rad] of a turn about the axis that the motion shows least
+  bool operator==(const SensorTurn&) const = default;
+};
+
 struct TrackAlarm {
   TrackAlarmKind kind{};
-  int sensor = -1, joint = -1;  ///< indices into the model's lists; −1: none
-  double since = 0.0;           ///< [s]
-  double strength = 0.0;        ///< the test's value over its threshold
+  int sensor = -1, joint = -1;       ///< indices into the model's lists; −1: none
+  double since = 0.0;                ///< [s]
+  double strength = 0.0;             ///< the test's value over its threshold
+  std::optional<SensorTurn> turn{};  ///< of `sensor_moved`, where it was turned before the first row
   bool operator==(const TrackAlarm&) const = default;
 };
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinfer/io/evidence/track_json.hpp"
 
+#include <cmath>
+#include <limits>
+
 #include "kinfer/io/evidence/json/shared_fields.hpp"
 #include "kinfer/io/evidence/make_records.hpp"
 #include "kinfer/io/text/dump_json.hpp"
@@ -24,6 +27,17 @@ void fields(Archive& a, Value<Archive, TrackSensorCurve>& curve) {
   a.plotted_list("innovation", curve.innovation);
 }
 
+/// Only of a sensor that was turned before the first row.
+template <class Archive>
+void turn_fields(Archive& a, Value<Archive, std::optional<SensorTurn>>& turn) {
+  SensorTurn size = turn.value_or(SensorTurn{.angle = std::numeric_limits<double>::quiet_NaN()});
+  a.when(turn.has_value(), "turn_rad", size.angle);
+  a.when(turn.has_value(), "turn_sd_rad", size.sd);
+  a.when(turn.has_value(), "turn_hidden_sd_rad", size.hidden_sd);
+  if constexpr (!Archive::is_writer)
+    if (std::isfinite(size.angle)) turn = size;
+}
+
 template <class Archive>
 void fields(Archive& a, Value<Archive, TrackEvent>& event) {
   a("kind", event.alarm.kind);
@@ -32,6 +46,7 @@ void fields(Archive& a, Value<Archive, TrackEvent>& event) {
   a("since", event.alarm.since);
   a("until", event.until);
   a("strength", event.alarm.strength);
+  turn_fields(a, event.alarm.turn);
   a("sentence", event.sentence);
 }
 

@@ -36,6 +36,21 @@ MountTurn mount_turn(const ChainFilter& filter, std::size_t sensor) {
           .covariance = mean * filter.covariance().block<18, 18>(scales, scales) * mean.transpose()};
 }
 
+double largest_eigenvalue(Mat3 m) {
+  const double trace = m.trace();
+  if (!(trace > 0.0)) return 0.0;
+  m /= trace;
+  for (int i = 0; i < 4; ++i) m = Mat3(m * m);
+  return trace * std::pow(m.trace(), 1.0 / 16.0);
+}
+
+SensorTurn size_of(const MountTurn& turn) {
+  const Vec3 direction = turn.mean.normalized();
+  return {.angle = turn.mean.norm(),
+          .sd = std::sqrt(direction.dot(turn.covariance * direction)),
+          .hidden_sd = std::sqrt(largest_eigenvalue(turn.covariance))};
+}
+
 double log_odds_of(const MountTurn& supposed, const MountTurn& before, const MountTurn& after) {
   const Mat3 known_before = before.covariance.inverse(), known_after = after.covariance.inverse();
   const Mat3 information = known_after - known_before;

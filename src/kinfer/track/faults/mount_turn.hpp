@@ -4,6 +4,7 @@
 // have in common.
 #pragma once
 
+#include "kinfer/evidence/tracking/track_state.hpp"
 #include "kinfer/track/filter/chain_filter.hpp"
 
 namespace kinfer::track {
@@ -15,6 +16,12 @@ struct MountTurn {
 
 /// The mean of both antisymmetric parts.
 MountTurn mount_turn(const ChainFilter& filter, std::size_t sensor);
+
+/// The largest of the eigenvalues of a matrix that has no negative ones: λ = (tr m¹⁶)^(1/16), by 7 % at most too large.
+double largest_eigenvalue(Mat3 m);
+
+/// Its angle, with the standard deviation along its direction.
+SensorTurn size_of(const MountTurn& turn);
 
 /// Adds a turn of the sensor's mounting to what is unknown of it, of this variance [rad²] about each axis.
 void loosen_mount(ChainFilter& filter, std::size_t sensor, double variance);

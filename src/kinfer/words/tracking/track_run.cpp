@@ -122,6 +122,11 @@ std::string sentence(const TrackAlarm& alarm, const std::vector<std::string>& se
     case TrackAlarmKind::does_not_fit:
       return phrase(id, "the log does not fit the chain: another machine, or axes that are permuted or mirrored");
     case TrackAlarmKind::sensor_moved:
+      if (alarm.turn)
+        return phrase(id,
+                      "{} was turned by {:.2f} ± {:.2f} deg before the log began (± {:.2f} deg about the axis that the "
+                      "motion shows least); its mounting is corrected",
+                      sensor, alarm.turn->angle / degree, alarm.turn->sd / degree, alarm.turn->hidden_sd / degree);
       return phrase(id, "{} does not agree with the chain: turned, shifted, on another segment, or its biases changed",
                     sensor);
     case TrackAlarmKind::joint_changed:
