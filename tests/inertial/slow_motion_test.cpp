@@ -52,6 +52,20 @@ TEST(SlowMotion, ABaseThatWarmsUpRestsAndASlewOfTwoHundredthsMoves) {
   EXPECT_GT(slow_motion_log_odds(slow_deviations(hinge, time)), 0.0);
 }
 
+TEST(SlowMotion, ABiasThatDriftsInAllDirectionsIsNoMotionAndAsMuchAboutTheVerticalAloneIsASlew) {
+  std::vector<double> time;
+  InsSensor drifting = turning(
+                "base", [](double t) { return 0.007 * (1.0 - std::exp(-t / 15.0)); }, Vec3::Zero(), time, Rng(4)),
+            slewing = turning(
+                "carriage", [](double t) { return std::fmod(t, 16.0) < 8.0 ? 0.012 : -0.012; }, Vec3::Zero(), time,
+                Rng(5));
+  for (std::size_t row = 0; row < time.size(); ++row)
+    for (const std::size_t axis : {0U, 1U})
+      drifting.angular_velocity.axis[axis][row] += static_cast<float>(0.009 * (1.0 - std::exp(-time[row] / 15.0)));
+  EXPECT_LT(slow_motion_log_odds(slow_deviations(drifting, time)), 0.0);
+  EXPECT_GT(slow_motion_log_odds(slow_deviations(slewing, time)), 0.0);
+}
+
 InsRecording recording_of(const std::vector<std::pair<std::function<double(double)>, Vec3>>& sensors) {
   InsRecording recording;
   recording.loggers.emplace_back();

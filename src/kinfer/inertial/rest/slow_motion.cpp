@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "kinfer/base/constants.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/inertial/rest/steady_rotation.hpp"
 
@@ -34,21 +35,27 @@ std::vector<Vec3> window_medians(const InsSensor& sensor, std::span<const double
   return medians;
 }
 
-/// Largest distance from the median, without the share of shocks.
-double deviation(const std::vector<Vec3>& values) {
-  if (values.empty()) return 0.0;
-  Vec3 middle;
+/// Component by component.
+Vec3 middle(const std::vector<Vec3>& values) {
+  Vec3 result = Vec3::Zero();
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     std::vector<double> of_axis;
     for (const Vec3& value : values) of_axis.push_back(value[axis]);
-    middle[axis] = median(of_axis);
+    if (!of_axis.empty()) result[axis] = median(std::move(of_axis));
   }
-  std::vector<double> distances;
-  for (const Vec3& value : values) distances.push_back((value - middle).norm());
+  return result;
+}
+
+/// Largest length of the deviations from the median, each mapped by `part`, without the share of shocks.
+double deviation(const std::vector<Vec3>& values, const Mat3& part) {
+  if (values.empty()) return 0.0;
+  const Vec3 usual = middle(values);
+  std::vector<double> lengths;
+  for (const Vec3& value : values) lengths.push_back((part * (value - usual)).norm());
   const auto shocks = static_cast<std::size_t>(max_shock_median_share * static_cast<double>(values.size())) + 1;
   const auto kept = static_cast<std::ptrdiff_t>(values.size() - std::min(values.size(), shocks + 1));
-  std::ranges::nth_element(distances, distances.begin() + kept);
-  return distances[static_cast<std::size_t>(kept)];
+  std::ranges::nth_element(lengths, lengths.begin() + kept);
+  return lengths[static_cast<std::size_t>(kept)];
 }
 
 /// Of rest, smaller sizes are all alike.
@@ -59,25 +66,33 @@ double log_density_at_rest(double size, const LogNormal& of) {
 }  // namespace
 
 SlowDeviations slow_deviations(const InsSensor& sensor, std::span<const double> time) {
-  return {.rate = deviation(window_medians(sensor, time,
-                                           [](const InsSample& s) {
-                                             return s.has_angular_velocity ? std::optional<Vec3>(s.angular_velocity)
-                                                                           : std::nullopt;
-                                           })),
-          .force = deviation(window_medians(sensor, time, [](const InsSample& s) {
-            return s.has_acceleration ? std::optional<Vec3>(s.acceleration) : std::nullopt;
-          }))};
+  const auto rates = window_medians(sensor, time, [](const InsSample& s) {
+    return s.has_angular_velocity ? std::optional<Vec3>(s.angular_velocity) : std::nullopt;
+  });
+  const auto forces = window_medians(sensor, time, [](const InsSample& s) {
+    return s.has_acceleration ? std::optional<Vec3>(s.acceleration) : std::nullopt;
+  });
+  const Vec3 up = middle(forces).normalized();
+  const Mat3 about = up * up.transpose(), across = Mat3::Identity() - about;
+  return {.rate_across = deviation(rates, across),
+          .rate_about = deviation(rates, about),
+          .force = deviation(forces, Mat3::Identity())};
 }
 
 double slow_motion_log_odds(const SlowDeviations& deviations) {
   constexpr double least = 1e-9;
-  const double rate = std::max(deviations.rate, least), force = std::max(deviations.force, least);
-  const double rest_rate = log_density_at_rest(rate, rest_rate_deviation),
+  const double across = std::max(deviations.rate_across, least), about = std::max(deviations.rate_about, least),
+               force = std::max(deviations.force, least);
+  const LogNormal drift_about{drift_ratio.median * std::max(across, rest_rate_deviation.median), drift_ratio.spread};
+  const LogNormal tilting_force{standard_gravity * across * tilting_time.median, tilting_time.spread};
+  const double rest_across = log_density_at_rest(across, rest_rate_deviation),
+               rest_about = log_density_at_rest(about, drift_about),
                rest_force = log_density_at_rest(force, rest_force_deviation),
-               moving_rate = log_density(rate, moving_rate_deviation),
-               moving_force = log_density(force, moving_force_deviation);
-  const std::array<double, 2> motions{moving_rate + moving_force, moving_rate + rest_force};
-  return log_sum(motions) - std::log(2.0) - rest_rate - rest_force;
+               slews = rest_across + log_density(about, moving_rate_deviation) + rest_force,
+               tilts = log_density(across, moving_rate_deviation) +
+                       log_density(about, {across, moving_rate_deviation.spread}) + log_density(force, tilting_force);
+  const std::array<double, 2> motions{slews, tilts};
+  return log_sum(motions) - std::log(2.0) - rest_across - rest_about - rest_force;
 }
 
 bool moves_slowly(const InsSensor& sensor, std::span<const double> time, std::span<const RestPeriod> rests) {
