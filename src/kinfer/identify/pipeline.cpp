@@ -240,15 +240,18 @@ Result<void> check_known(const IdentifyOptions& options, const InsRecording& use
   return check_segments(*options.refine.known, names);
 }
 
-}  // namespace
+/// Sensors that are not part of the selection.
+std::vector<std::size_t> left_out(const RecordingSelection& part, std::size_t sensors) {
+  std::vector<std::size_t> result;
+  for (std::size_t s = 0; s < sensors; ++s)
+    if (std::ranges::find(part.sensors, s) == part.sensors.end()) result.push_back(s);
+  return result;
+}
 
-Result<Identification> identify_machine(const InsRecording& log, const IdentifyOptions& given, const Rng& rng,
-                                        const Observer& observer) {
-  if (const auto checked = check(given); !checked) return forward_error(checked.error());
-  KINFER_TRY(options, with_known_structure(log, given));
-  KINFER_TRY(named, named_part(log, options.sensors));
-  KINFER_TRY(diagnosis, diagnose_log(named ? *named : log, options.threads));
-  const InsRecording& recording = diagnosis.of(named ? *named : log);
+/// `log`: the named sensors alone.
+Result<Identification> identify_diagnosed(const InsRecording& log, LogDiagnosis diagnosis, IdentifyOptions options,
+                                          const Rng& rng, const Observer& observer) {
+  const InsRecording& recording = diagnosis.of(log);
   options.refine.common = diagnosis.scales;
   KINFER_TRY(session, Session::open(recording, options.sensors, options.root, options.motion, options.threads));
   for (;;) {
@@ -257,6 +260,9 @@ Result<Identification> identify_machine(const InsRecording& log, const IdentifyO
                order_segments(session.recording(), options.motion, options.root, options.threads, options.tree));
     const auto connections = tree_connections(ordered.motion, ordered.tree, options.threads);
     if (auto part = find_consistent_part(ordered, connections, options)) {
+      const auto unconnected = left_out(*part, session.recording().sensors.size());
+      if (mend_unconnected_axes(diagnosis, log, session.recording(), unconnected, options.threads))
+        return identify_diagnosed(log, std::move(diagnosis), std::move(options), rng, observer);
       name_mixed_recording(*part, session.recording(), options.motion, options.threads);
       if (const auto done = session.restrict_to(std::move(*part)); !done) return forward_error(done.error());
       continue;
@@ -288,6 +294,18 @@ Result<Identification> identify_machine(const InsRecording& log, const IdentifyO
     draw_conclusions(result, ordered, connections);
     return result;
   }
+}
+
+}  // namespace
+
+Result<Identification> identify_machine(const InsRecording& log, const IdentifyOptions& given, const Rng& rng,
+                                        const Observer& observer) {
+  if (const auto checked = check(given); !checked) return forward_error(checked.error());
+  KINFER_TRY(options, with_known_structure(log, given));
+  KINFER_TRY(named, named_part(log, options.sensors));
+  const InsRecording& part = named ? *named : log;
+  KINFER_TRY(diagnosis, diagnose_log(part, options.threads));
+  return identify_diagnosed(part, std::move(diagnosis), std::move(options), rng, observer);
 }
 
 }  // namespace kinfer::identify

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "identify/driven_machine.hpp"
 #include "kinfer/base/angle.hpp"
 #include "kinfer/base/constants.hpp"
@@ -253,6 +256,27 @@ TEST(LogDiagnosis, AnAccelerometerOutOfStepIsShifted) {
                                       1);
   EXPECT_EQ(kinds_of(diagnosis), Kinds{FindingKind::instruments_out_of_step});
   EXPECT_NEAR(diagnosis->findings[0].values.number("lag"), 0.05, 0.005);
+}
+
+TEST(LogDiagnosis, AnEngineThatShakesABaseAtRestIsNoFaultOfItsInstruments) {
+  for (const double frequency : {22.0, 27.0, 31.0}) {
+    const auto diagnosis =
+        diagnose_log(with([&](InsRecording& r) {
+                       const Vec3 force(1.2, -0.7, 1.5), rate(0.02, 0.01, -0.015);
+                       InsSensor& base = r.sensors[0];
+                       const auto time = r.time(base);
+                       for (std::size_t row = 0; row < base.rows(); ++row) {
+                         const double angle = 2.0 * std::numbers::pi * frequency * time[row];
+                         for (std::size_t k = 0; k < 3; ++k) {
+                           const auto axis = static_cast<Eigen::Index>(k);
+                           base.acceleration.axis[k][row] += static_cast<float>(std::sin(angle) * force[axis]);
+                           base.angular_velocity.axis[k][row] += static_cast<float>(std::sin(angle + 1.0) * rate[axis]);
+                         }
+                       }
+                     }),
+                     1);
+    EXPECT_EQ(kinds_of(diagnosis), Kinds{}) << frequency;
+  }
 }
 
 TEST(LogDiagnosis, RowsThatNobodyMeasuredAreRemoved) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "kinfer/base/constants.hpp"
 #include "kinfer/base/rng.hpp"
@@ -82,6 +83,7 @@ TEST(SectionFit, ALagIsMeasured) {
     EXPECT_NEAR(found.lag, lag, 4e-3);  // samples are compared on a grid of 10 ms
     if (std::abs(lag) > 0.0) {
       EXPECT_GT(found.half_gain, 10.0);
+      EXPECT_LT(found.rival_gain, 0.5 * found.gain);
     }
   }
 }
@@ -93,6 +95,30 @@ TEST(SectionFit, ALagOfASensorThatOnlySlewsIsMeasuredByItsLeverArm) {
   EXPECT_NEAR(found.lag, 0.04, 4e-3);
   EXPECT_LT(found.sd, 2e-3);
   EXPECT_GT(found.gain, 60.0);
+}
+
+/// A sensor at rest that an engine shakes, its rates and its forces in any phase to each other.
+InsSensor shaken(std::vector<double>& time, double frequency, double phase) {
+  InsSensor sensor;
+  Rng rng(4);
+  const Vec3 direction(1.2, -0.7, 1.5), axis(0.02, 0.01, -0.015);
+  for (int k = 0; k < 6000; ++k) {
+    time.push_back(0.005 * k);
+    const double angle = 2.0 * std::numbers::pi * (frequency * time.back() + 0.2 * std::sin(0.3 * time.back()));
+    push(sensor.acceleration, Vec3(1.0, 2.0, 9.5) + std::sin(angle) * direction + 8e-3 * normal_vector(rng));
+    push(sensor.angular_velocity, std::sin(angle + phase) * axis + 1e-3 * normal_vector(rng));
+  }
+  return sensor;
+}
+
+TEST(SectionFit, TheVibrationOfASensorAtRestHasNoSingleLag) {
+  for (const double phase : {0.3, 1.0, 2.0}) {
+    std::vector<double> time;
+    const InsSensor sensor = shaken(time, 23.0, phase);
+    const auto signals = section_signals(sensor.acceleration, sensor.angular_velocity, time, 0.1);
+    const InstrumentLag found = instrument_lag(*signals, Mat3::Identity());
+    EXPECT_GT(found.rival_gain, 0.5 * found.gain) << phase;
+  }
 }
 
 TEST(SectionFit, TooShortARecordingSaysNothing) {

@@ -132,6 +132,7 @@ struct AxisFault {
   OddInstrument instrument = OddInstrument::none;
   Mat3 axes = Mat3::Identity();
   double gain = 0.0, lead = 0.0;
+  MapLikelihoods maps{};  ///< of the gyroscope to the instruments that decided
 };
 
 AxisFault axis_fault(const SensorLikelihoods& sensor, std::size_t unit, bool has_magnetometer) {
@@ -143,20 +144,20 @@ AxisFault axis_fault(const SensorLikelihoods& sensor, std::size_t unit, bool has
   const MapChoice gyroscope = best_of(both, sensor.of(no_rotation, 0), min_gain_per_section);
   const MapChoice force = alone(sensor.force), field = alone(sensor.field);
   AxisFault best;
-  const auto consider = [&](OddInstrument instrument, const MapChoice& choice, bool inverse) {
+  const auto consider = [&](OddInstrument instrument, const MapChoice& choice, const MapLikelihoods& maps) {
     const bool is_alone = instrument != OddInstrument::gyroscope;
     if (choice.gain < (is_alone ? min_map_gain_alone : min_axes_gain) || choice.gain <= best.gain) return;
     const Mat3& axes = signed_permutations()[choice.map];
     // Negating or mirroring a direction that the gyroscope transports shows as a rotation of axes, never as a reversal.
     if (is_alone && axes.determinant() < 0.0) return;
-    best = {instrument, inverse ? Mat3(axes.transpose()) : axes, choice.gain, choice.lead};
+    best = {instrument, is_alone ? Mat3(axes.transpose()) : axes, choice.gain, choice.lead, maps};
   };
-  consider(OddInstrument::gyroscope, gyroscope, false);
+  consider(OddInstrument::gyroscope, gyroscope, both);
   if (!has_magnetometer) return best;
   // One odd instrument of three: the map of the gyroscope to it alone gains, that to the other is the identity.
   const double margin = min_map_lead;
-  if (force.gain > best.gain + margin) consider(OddInstrument::accelerometer, force, true);
-  if (field.gain > best.gain + margin) consider(OddInstrument::magnetometer, field, true);
+  if (force.gain > best.gain + margin) consider(OddInstrument::accelerometer, force, sensor.force[unit]);
+  if (field.gain > best.gain + margin) consider(OddInstrument::magnetometer, field, sensor.field[unit]);
   return best;
 }
 
@@ -173,7 +174,135 @@ Finding axes_finding(const InsSensor& sensor, const AxisFault& fault) {
           .applied = is_certain};
 }
 
+TriadColumns& odd_instrument(InsSensor& sensor, OddInstrument instrument) {
+  return instrument == OddInstrument::gyroscope       ? sensor.angular_velocity
+         : instrument == OddInstrument::accelerometer ? sensor.acceleration
+                                                      : sensor.field;
+}
+
+/// A sensor with the axes that it was mapped to by its own instruments.
+struct MappedSensor {
+  std::size_t sensor = 0;
+  InsSensor before;
+  AxisFault fault;
+};
+
+/// The identity, and the maps that the sensor's own instruments favour over it, likeliest first.
+std::vector<std::size_t> favoured_maps(const MapLikelihoods& maps) {
+  std::vector<std::size_t> favoured;
+  for (std::size_t m = 1; m < maps.of.size(); ++m)
+    if (maps.of[m] > maps.of[0]) favoured.push_back(m);
+  std::ranges::stable_sort(favoured, [&](std::size_t a, std::size_t b) { return maps.of[a] > maps.of[b]; });
+  if (favoured.size() > most_favoured_maps) favoured.resize(most_favoured_maps);
+  favoured.insert(favoured.begin(), 0);
+  return favoured;
+}
+
+/// The sensor with each of the maps. Where these are reflections, turned over, too, which its own instruments cannot
+/// tell: a left-handed sensor shows as a reversed gyroscope.
+struct MappedCandidates {
+  std::vector<AxesCandidate> candidates;
+  std::vector<std::size_t> map;  ///< of each
+};
+
+MappedCandidates candidates_of(const MappedSensor& mapped) {
+  MappedCandidates result;
+  const MapLikelihoods& maps = mapped.fault.maps;
+  for (const std::size_t map : favoured_maps(maps)) {
+    const Mat3& axes = signed_permutations()[map];
+    const bool is_of_gyroscope = mapped.fault.instrument == OddInstrument::gyroscope;
+    InsSensor sensor = mapped.before;
+    transform(odd_instrument(sensor, mapped.fault.instrument), 1.0, is_of_gyroscope ? axes : Mat3(axes.transpose()));
+    result.candidates.push_back({sensor, maps.of[map]});
+    result.map.push_back(map);
+    if (axes.determinant() > 0.0) continue;
+    transform(sensor.acceleration, -1.0, Mat3::Identity());
+    result.candidates.push_back({sensor, maps.of[map]});
+    result.map.push_back(map);
+  }
+  return result;
+}
+
+/// What the neighbours leave of a map of axes: it, another one, or none.
+AxisFault judge_by_neighbours(const InsRecording& recording, const MappedSensor& mapped, int threads) {
+  const MappedCandidates tried = candidates_of(mapped);
+  const AxesChoice choice = choose_axes(recording, mapped.sensor, tried.candidates, threads);
+  const std::size_t map = tried.map[choice.candidate];
+  // Neighbours say nothing of a magnetometer, nor of a sensor that an engine shakes at rest: of it the axes are no
+  // fault.
+  const bool is_of_motion = mapped.fault.instrument != OddInstrument::magnetometer;
+  if (map == 0 || choice.tree_gain < (is_of_motion ? min_sign_gain : -min_sign_gain)) return {};
+  AxisFault fault = mapped.fault;
+  const Mat3& axes = signed_permutations()[map];
+  fault.axes = fault.instrument == OddInstrument::gyroscope ? axes : Mat3(axes.transpose());
+  fault.gain = choice.gain();
+  fault.lead = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < tried.map.size(); ++c)
+    if (tried.map[c] != map)
+      fault.lead = std::min(fault.lead, choice.log_likelihood[choice.candidate] - choice.log_likelihood[c]);
+  return fault;
+}
+
+void ask_neighbours(MendedLog& log, const std::vector<MappedSensor>& mapped, int threads) {
+  for (const MappedSensor& m : mapped) {
+    const AxisFault fault = judge_by_neighbours(log.log(), m, threads);
+    InsSensor& sensor = log.edit().sensors[m.sensor];
+    sensor = m.before;
+    if (fault.instrument == OddInstrument::none) continue;
+    transform(odd_instrument(sensor, fault.instrument), 1.0, fault.axes);
+    flag_faults(sensor);
+    log.findings.push_back(axes_finding(sensor, fault));
+  }
+}
+
+/// [nats] How much better the field agrees with the gyroscope as it is than with the mapped one; 0 without a field.
+double field_for_gyroscope(const InsSensor& sensor, std::span<const double> time, std::size_t map) {
+  if (!sensor.has_magnetometer()) return 0.0;
+  const MapLikelihoods field =
+      likelihoods_of(signals_by_unit(sensor.field, sensor.angular_velocity, time), LeverArm::none)[0];
+  return field.of[0] - field.of[map];
+}
+
+/// All maps, each as the axes of the gyroscope; its own instruments say nothing.
+std::vector<AxesCandidate> all_maps(const InsSensor& sensor) {
+  std::vector<AxesCandidate> candidates;
+  for (const Mat3& axes : signed_permutations()) {
+    candidates.push_back({sensor, 0.0});
+    transform(candidates.back().sensor.angular_velocity, 1.0, axes);
+  }
+  return candidates;
+}
+
 }  // namespace
+
+std::optional<WantedAxes> axes_wanted_by_neighbours(const InsRecording& recording,
+                                                    const std::vector<std::size_t>& unconnected, int threads) {
+  std::optional<WantedAxes> wanted;
+  double most = min_neighbours_axes_gain;
+  for (const std::size_t s : unconnected) {
+    const InsSensor& sensor = recording.sensors[s];
+    const AxesChoice choice = choose_axes(recording, s, all_maps(sensor), threads);
+    if (choice.gain() < most) continue;
+    most = choice.gain();
+    const Mat3& axes = signed_permutations()[choice.candidate];
+    const bool is_of_gyroscope =
+        axes.determinant() < 0.0 || field_for_gyroscope(sensor, recording.time(sensor), choice.candidate) <= 0.0;
+    const AxisFault fault{.instrument = is_of_gyroscope ? OddInstrument::gyroscope : OddInstrument::accelerometer,
+                          .axes = is_of_gyroscope ? axes : Mat3(axes.transpose()),
+                          .gain = choice.gain(),
+                          .lead = choice.lead()};
+    wanted = {sensor.name, fault.axes, is_of_gyroscope, axes_finding(sensor, fault)};
+  }
+  return wanted && wanted->finding.applied ? wanted : std::nullopt;
+}
+
+void map_axes(InsRecording& recording, const WantedAxes& wanted) {
+  for (InsSensor& sensor : recording.sensors) {
+    if (sensor.name != wanted.sensor) continue;
+    transform(wanted.is_of_gyroscope ? sensor.angular_velocity : sensor.acceleration, 1.0, wanted.axes);
+    flag_faults(sensor);
+  }
+}
 
 std::string describe_axes(const Mat3& axes) {
   std::string text;
@@ -229,16 +358,12 @@ void mend_axes(MendedLog& log, int threads) {
       add_unit_finding(log, FindingKind::rate_unit, Severity::fault, rate_units[unit], sensor.name);
     }
     if (fault.instrument != OddInstrument::none) {
-      TriadColumns& triad = fault.instrument == OddInstrument::gyroscope       ? sensor.angular_velocity
-                            : fault.instrument == OddInstrument::accelerometer ? sensor.acceleration
-                                                                               : sensor.field;
-      mapped.push_back({s, sensor});
-      transform(triad, 1.0, fault.axes);
-      log.findings.push_back(axes_finding(sensor, fault));
+      mapped.push_back({s, sensor, fault});
+      transform(odd_instrument(sensor, fault.instrument), 1.0, fault.axes);
     }
     flag_faults(sensor);
   }
-  withdraw_contradicted_maps(log, mapped, threads);
+  ask_neighbours(log, mapped, threads);
 }
 
 }  // namespace kinfer::identify

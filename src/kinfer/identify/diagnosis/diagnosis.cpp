@@ -34,7 +34,31 @@ std::vector<Finding> duplicates_of(const InsRecording& recording) {
   return duplicate_findings(recording, moving);
 }
 
+/// Sensors of which nothing was said about their axes, and that did not take part in an earlier question.
+std::vector<std::size_t> not_yet_mapped(const LogDiagnosis& diagnosis, const InsRecording& recording,
+                                        const std::vector<std::size_t>& sensors) {
+  std::vector<std::size_t> result;
+  for (const std::size_t s : sensors)
+    if (std::ranges::none_of(diagnosis.findings, [&](const Finding& f) {
+          return f.values.has("axes") && f.values.text("sensor") == recording.sensors[s].name;
+        }))
+      result.push_back(s);
+  return result;
+}
+
 }  // namespace
+
+bool mend_unconnected_axes(LogDiagnosis& diagnosis, const InsRecording& recording, const InsRecording& used,
+                           const std::vector<std::size_t>& unconnected, int threads) {
+  const auto asked = not_yet_mapped(diagnosis, used, unconnected);
+  if (asked.empty() || asked.size() > most_asked_sensors) return false;
+  const auto wanted = axes_wanted_by_neighbours(used, asked, threads);
+  if (!wanted) return false;
+  if (!diagnosis.mended) diagnosis.mended = recording;
+  map_axes(*diagnosis.mended, *wanted);
+  diagnosis.findings.push_back(wanted->finding);
+  return true;
+}
 
 Result<LogDiagnosis> diagnose_log(const InsRecording& recording, int threads) {
   if (const auto rows = refuse_copied_rows(recording); !rows) return forward_error(rows.error());

@@ -20,6 +20,12 @@ struct LogDiagnosis {
   const InsRecording& of(const InsRecording& recording) const { return mended ? *mended : recording; }
 };
 
+/// Maps the axes of one of the sensors that are to be left out because they share no joint with any other, if their
+/// neighbours want it: of `used`, the recording of which they are part, and of `recording`, which was diagnosed. False:
+/// nothing was mapped.
+bool mend_unconnected_axes(LogDiagnosis& diagnosis, const InsRecording& recording, const InsRecording& used,
+                           const std::vector<std::size_t>& unconnected, int threads);
+
 /// An error where the log cannot be used at all: specific force without gravity, Euler angles for rates.
 Result<LogDiagnosis> diagnose_log(const InsRecording& recording, int threads);
 

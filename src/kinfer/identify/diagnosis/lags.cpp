@@ -45,7 +45,8 @@ void mend_lags(MendedLog& log, int threads) {
     const InstrumentLag& lag = lags[s];
     const bool is_certain =
         lag.gain > min_lag_gain && lag.half_gain > -max_half_lag_loss * lag.gain && lag.sd > 0.0 && lag.sd < max_lag_sd;
-    if (std::abs(lag.lag) < min_reported_lag || !is_certain) continue;
+    const bool is_one_of_several = lag.rival_gain > max_rival_lag_gain * lag.gain;
+    if (std::abs(lag.lag) < min_reported_lag || !is_certain || is_one_of_several) continue;
     InsSensor& sensor = log.edit().sensors[s];
     sensor.acceleration = shifted(sensor.acceleration, log.log().time(sensor), lag.lag);
     flag_faults(sensor);

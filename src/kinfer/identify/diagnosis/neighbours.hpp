@@ -11,13 +11,26 @@ namespace kinfer::identify {
 /// [nats per row] of the segment tree; infinite if there is none.
 double tree_length(const InsRecording& recording, int threads);
 
-/// A sensor whose axes were mapped.
-struct MappedSensor {
-  std::size_t sensor = 0;
-  InsSensor before;
+/// Other axes of one sensor.
+struct AxesCandidate {
+  InsSensor sensor;             ///< with these axes
+  double log_likelihood = 0.0;  ///< [nats] of its own instruments
 };
 
-/// Takes back, with their findings, the maps of axes without which the tree is shorter.
-void withdraw_contradicted_maps(MendedLog& log, const std::vector<MappedSensor>& mapped, int threads);
+struct AxesChoice {
+  std::size_t candidate = 0;
+  std::vector<double> log_likelihood;  ///< [nats] of each candidate, of its own instruments and of the segment tree
+
+  double tree_gain = 0.0;  ///< [nats per row] by which the segment tree is shorter than with the first; NaN: unknown
+
+  double lead() const;  ///< [nats] over the next one
+  double gain() const { return log_likelihood[candidate] - log_likelihood.front(); }
+};
+
+/// The candidate that is likeliest to a sensor's own instruments and its neighbours together, over the minute in which
+/// it rotates most. A sensor's own instruments suppose that it circles about one joint, which quick drives contradict;
+/// its neighbours suppose nothing of its motion, but are silent where hardly anything tilts.
+AxesChoice choose_axes(const InsRecording& recording, std::size_t sensor, const std::vector<AxesCandidate>& candidates,
+                       int threads);
 
 }  // namespace kinfer::identify

@@ -14,6 +14,20 @@ inline constexpr double min_map_gain = 25.0;
 /// must not get longer. Sound logs reach 240 (all joints of an arm moved at once), faults 200 to 4000.
 inline constexpr double min_axes_gain = 85.0;
 
+/// Maps that a sensor's own instruments favour, of which the neighbours choose one. Larger: slower. Drives of 30 to
+/// 260 m/s² had the true one third at most.
+inline constexpr std::size_t most_favoured_maps = 8;
+/// [1/s] Independent rows of a pair's fit, as many as of a section (inertial/diagnosis). Larger: the neighbours count
+/// more beside the sensor's own instruments. Right and wrong maps differ by 0.2 to 40 nats a row.
+inline constexpr double independent_rows_a_second = 10.0;
+
+/// [nats] By which the segment tree must get shorter with other axes of a sensor that shares no joint with any other by
+/// those of the file. Smaller: chance maps the axes of loose sensors. Violent drives of machines of 3 to 7 joints: 1500
+/// to 9000 for a true map (30 s), sound sensors 0.
+inline constexpr double min_neighbours_axes_gain = 500.0;
+/// Sensors without a joint that the neighbours are asked about; more are another machine. Larger: slower.
+inline constexpr std::size_t most_asked_sensors = 3;
+
 /// [nats] Most that one sensor says for or against a unit of all. Larger: one odd sensor speaks for a log of two.
 inline constexpr double max_sensor_vote = 200.0;
 
@@ -47,6 +61,9 @@ inline constexpr double min_reported_lag = 0.022;
 inline constexpr double min_lag_gain = 60.0;
 /// Part of that gain that one half of the recording may lose: lags of 40 ms lose up to 0.08 of it there.
 inline constexpr double max_half_lag_loss = 0.2;
+/// Part of that gain that another lag may have. Engines that shake a sensor at rest have many lags of similar gains,
+/// half a period apart; a sensor that moves has one. Larger: vibration passes for a lag.
+inline constexpr double max_rival_lag_gain = 0.5;
 /// [s] Standard deviation of a lag: 0.7 to 1.6 ms for those of 40 ms, 3.7 ms and more in such sound logs.
 inline constexpr double max_lag_sd = 2.5e-3;
 

@@ -17,26 +17,24 @@ namespace {
 
 using Edge = std::pair<std::size_t, std::size_t>;
 
-std::vector<std::size_t> moving_rows(const RecordedMotion& motion) {
-  std::vector<std::size_t> rows;
-  const std::size_t stride = std::max<std::size_t>(1, (motion.rows() - motion.first_motion_row) / tree_rows);
-  for (std::size_t row = motion.first_motion_row; row < motion.rows(); row += stride)
-    if (motion.usable[row]) rows.push_back(row);
-  return rows;
-}
-
 /// Kruskal's algorithm (1956).
-std::vector<Edge> minimum_spanning_tree(std::vector<PairFit> pairs, std::size_t segments) {
+std::vector<PairFit> minimum_spanning_pairs(std::vector<PairFit> pairs, std::size_t segments) {
   std::ranges::stable_sort(pairs, {}, &PairFit::distance);
   std::vector<std::size_t> component(segments);
   std::iota(component.begin(), component.end(), std::size_t{0});
-  std::vector<Edge> edges;
+  std::vector<PairFit> tree;
   for (const PairFit& pair : pairs) {
     const std::size_t from = component[pair.second], to = component[pair.first];
     if (from == to) continue;
-    edges.emplace_back(pair.first, pair.second);
+    tree.push_back(pair);
     std::ranges::replace(component, from, to);
   }
+  return tree;
+}
+
+std::vector<Edge> minimum_spanning_tree(const std::vector<PairFit>& pairs, std::size_t segments) {
+  std::vector<Edge> edges;
+  for (const PairFit& pair : minimum_spanning_pairs(pairs, segments)) edges.emplace_back(pair.first, pair.second);
   return edges;
 }
 
@@ -85,6 +83,20 @@ std::vector<PairFit> all_pairs(const RecordedMotion& motion, const std::vector<s
 }
 
 }  // namespace
+
+std::vector<std::size_t> moving_rows(const RecordedMotion& motion) {
+  std::vector<std::size_t> rows;
+  const std::size_t stride = std::max<std::size_t>(1, (motion.rows() - motion.first_motion_row) / tree_rows);
+  for (std::size_t row = motion.first_motion_row; row < motion.rows(); row += stride)
+    if (motion.usable[row]) rows.push_back(row);
+  return rows;
+}
+
+double spanning_length(const std::vector<PairFit>& pairs, std::size_t segments) {
+  double length = 0.0;
+  for (const PairFit& pair : minimum_spanning_pairs(pairs, segments)) length += pair.distance;
+  return length;
+}
 
 const PairFit& SegmentTree::pair(std::size_t a, std::size_t b) const {
   const auto found = std::ranges::find_if(
@@ -144,7 +156,7 @@ Result<SegmentTree> segment_tree(const RecordedMotion& motion, const std::option
     return error("nothing moved: all {} sensors stand still during the whole recording; move every joint",
                  motion.segments.size());
   const std::vector<std::size_t> rows = moving_rows(motion);
-  if (rows.size() < 50)
+  if (rows.size() < least_tree_rows)
     return error("only {} rows in which the machine moves and all sensors have valid measurements", rows.size());
   SegmentTree tree;
   tree.pairs = all_pairs(motion, rows, headings, threads);

@@ -29,6 +29,12 @@ struct SegmentTree {
 Result<SegmentTree> segment_tree(const RecordedMotion& motion, const std::optional<std::string>& root = {},
                                  HeadingReference headings = HeadingReference::arbitrary, int threads = 0);
 
+/// The rows that pairs are fitted on: usable, evenly spaced, after the machine begins to move.
+std::vector<std::size_t> moving_rows(const RecordedMotion& motion);
+
+/// [nats per row] Sum of the distances of the minimum spanning tree.
+double spanning_length(const std::vector<PairFit>& pairs, std::size_t segments);
+
 /// Whether the two segments are joined in the tree.
 bool is_edge(const SegmentTree& tree, std::size_t a, std::size_t b);
 

@@ -21,6 +21,8 @@ inline constexpr double rows_per_independent_sample = 300.0;
 
 /// Rows of the pair fits; more did not change the order. Data not recorded.
 inline constexpr std::size_t tree_rows = 1500;
+/// Fewer rows tell nothing of a tree. Larger refuses short recordings. Data not recorded.
+inline constexpr std::size_t least_tree_rows = 50;
 
 /// Rows that the joint types are decided on. Data not recorded.
 inline constexpr std::size_t joint_type_rows = 1500;

@@ -266,6 +266,18 @@ double factor_likelihood(const SectionSignals& signals, double factor) {
   return sum;
 }
 
+namespace {
+
+/// Largest value at a local maximum other than the largest one and the one of no lag; minus infinity without any.
+double rival_maximum(std::span<const double> of, std::size_t best, std::size_t none) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t s = 1; s + 1 < of.size(); ++s)
+    if (s != best && s != none && of[s] >= of[s - 1] && of[s] >= of[s + 1]) most = std::max(most, of[s]);
+  return most;
+}
+
+}  // namespace
+
 InstrumentLag instrument_lag(const SectionSignals& signals, const Mat3& map) {
   // The free g takes up what scale errors and misalignments do to the direction's mean: they act on its change alone.
   // So a sensor that hardly tilts has a lag by its lever arm.
@@ -288,6 +300,7 @@ InstrumentLag instrument_lag(const SectionSignals& signals, const Mat3& map) {
   const auto best = static_cast<std::size_t>(std::ranges::max_element(whole) - whole.begin());
   const auto gain = [&](const Likelihood& l) { return l[best] - l[most_lag_steps]; };
   InstrumentLag result{grid_step * static_cast<double>(static_cast<std::ptrdiff_t>(best) - most_lag_steps), gain(whole),
+                       rival_maximum(whole, best, most_lag_steps) - whole[most_lag_steps],
                        std::min(gain(halves[0]), gain(halves[1])), 0.0};
   if (best == 0 || best + 1 == lag_count) return result;
   const double before = whole[best - 1], after = whole[best + 1], curvature = 2.0 * whole[best] - before - after;
