@@ -45,6 +45,11 @@ struct Outcome {
   double rms(int joint) const { return std::sqrt(squares[joint] / rows); }
 };
 
+inline void turn_sensor(InsSample& sample, const Mat3& turn) {
+  sample.acceleration = turn * sample.acceleration;
+  sample.angular_velocity = turn * sample.angular_velocity;
+}
+
 struct Pause {
   double begin = 0.0, end = 0.0;  // [s]
 };

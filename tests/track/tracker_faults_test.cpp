@@ -112,11 +112,6 @@ TEST(Tracker, ASensorWithoutAGyroscopeIsLostAsWell) {
   EXPECT_EQ(out.alarms[0].sensor, 3);
 }
 
-void turn_sensor(InsSample& sample, const Mat3& turn) {
-  sample.acceleration = turn * sample.acceleration;
-  sample.angular_velocity = turn * sample.angular_velocity;
-}
-
 /// Of the joint that leads to its body.
 Vec3 hinge_axis_in_sensor(const Case& given, int sensor) {
   const auto body = std::ranges::find(given.model.bodies, sensor, &TrackingBody::sensor);

@@ -57,6 +57,26 @@ TEST(Tracker, ATelescopeThatMovesAloneIsFollowedByItsAcceleration) {
   EXPECT_LT(out.largest_sd[telescope], 0.2);
 }
 
+/// While it rests nothing tells where the telescope stands, and the places of its grid stay open.
+TEST(Tracker, ASensorThatTurnsBeforeTheTelescopeIsPlacedIsNamed) {
+  const Case given = crane_with_a_telescope();
+  const Mat3 turn = exp_so3(Vec3(0.03, 0.03, 0.03));
+  constexpr double rest = 3.0, turned_from = 3.0 * rest;  // [s] of the drive; from when on
+  Tracker tracker(given.model);
+  InsRow row;
+  for (int again = 0; again < 5; ++again)
+    for (std::size_t r = 0; r < 600; ++r) {
+      test::fill_row(given.drive.recording, r, row);
+      row.time += again * rest;
+      if (row.time > turned_from) turn_sensor(row.sensors[2], turn);
+      tracker.add(row);
+    }
+  ASSERT_EQ(tracker.state().alarms.size(), 1u);
+  EXPECT_EQ(tracker.state().alarms[0].kind, TrackAlarmKind::sensor_moved);
+  EXPECT_EQ(tracker.state().alarms[0].sensor, 2);
+  EXPECT_NEAR(tracker.state().alarms[0].since, turned_from, 1.0);
+}
+
 TEST(Tracker, ACopyGoesOnAlike) {
   const Case& given = still_excavator();
   Tracker one(given.model);

@@ -34,6 +34,7 @@ Tracker::Tracker(const TrackingModel& model, const TrackOptions& options)
       base_(model, *model_, given_base(options.base)),
       health_(model.sensors.size()),
       fit_(model.sensors.size(), model.joints.size()),
+      place_fits_(model.sensors.size(), model.joints.size()),
       clocks_(model.sensors.size()),
       turns_(model.sensors.size()),
       replay_(filter_),
@@ -130,7 +131,7 @@ void Tracker::choose_sensors() {
       continue;
     }
     return_.drop(s, filter_);
-    filter_.use_sensor(s, false);
+    use_sensor(s, false);
     if (health_[s].stuck && state_.started && !grid_) replay([](ChainFilter&) {});  // it was believed until now
   }
 }
@@ -143,7 +144,13 @@ void Tracker::take_in(std::size_t sensor) {
   if (state_.started && !grid_ && has_lost_position(filter_, sensor))
     return_.begin(sensor, filter_);
   else
-    filter_.use_sensor(sensor, true);
+    use_sensor(sensor, true);
+}
+
+void Tracker::use_sensor(std::size_t sensor, bool is_used) {
+  filter_.use_sensor(sensor, is_used);
+  if (!grid_) return;
+  for (StartGrid::Candidate& candidate : grid_->candidates()) candidate.filter.use_sensor(sensor, is_used);
 }
 
 /// A position that is not found, although its sensors measure, counts from where it seems to be, as at a start.
@@ -220,7 +227,7 @@ void Tracker::resolve_start(const BlockMeasurement& block) {
   }
   positions_.decide(*model_, grid_->body());
   grid_.reset();
-  forget_fit();  // other places did not fit, which says nothing of the sensors
+  forget_places();
   begin_grid();
   replay_.begin(filter_);
 }
@@ -230,13 +237,19 @@ void Tracker::give_up_grid(double time) {
   filter_.count_from_here(model_->layout.position[grid_->body()]);
   grid_.reset();
   suspicion_from_ = time + suspicion_again;
-  forget_fit();
+  forget_places();
   replay_.begin(filter_);
 }
 
 /// How well sensors and joints have fitted until now.
 void Tracker::forget_fit() {
   fit_.reset();
+  turns_.reset();
+}
+
+/// Other places did not fit, which says nothing of the sensors, but of those that fitted in none.
+void Tracker::forget_places() {
+  fit_.reset_trusted(filter_);
   turns_.reset();
 }
 
@@ -277,8 +290,10 @@ void Tracker::begin_grid(double share) {
   if (const std::size_t turns = positions_.first_open(*model_, JointMotion::revolute, is_told); turns > 0)
     grid_ = StartGrid::around(filter_, turns, positions_.start_sd(*model_, turns));
   else if (const std::size_t slides = positions_.first_open(*model_, JointMotion::prismatic, is_told);
-           slides > 0 && !grid_)
+           slides > 0 && !grid_) {
+    place_fits_.reset();
     grid_ = StartGrid::along(filter_, slides, guesses_[static_cast<std::size_t>(model_->layout.position[slides])]);
+  }
 }
 
 /// Where positions count from the start the tool is as uncertain as what they count from.
@@ -338,16 +353,32 @@ void Tracker::examine_sudden_change(double time) {
   if (cause.log_odds > sudden_log_odds) name(cause);
 }
 
+/// A sensor beside a joint that does not fit, where it is likelier that it turned.
+Suspect Tracker::unless_turned_beside(Suspect suspect) const {
+  if (suspect.joint < 0) return suspect;
+  const auto turned =
+      turned_beside(replay_.beginning(filter_), replay_.blocks(), static_cast<std::size_t>(suspect.joint));
+  return turned ? Suspect{.sensor = static_cast<int>(*turned)} : suspect;
+}
+
+/// What does not fit wherever a joint that slides stands needs no place to be named. The places are sought anew from
+/// the filter that does not believe it.
+void Tracker::examine_places(const BlockMeasurement& block) {
+  if (grid_->motion() != JointMotion::prismatic) return;
+  replay_.add(block, filter_);
+  place_fits_.add(*grid_, block.time, block.length);
+  const Suspect common = place_fits_.common(*grid_);
+  if (common == Suspect{}) return;
+  grid_.reset();
+  name({.suspect = unless_turned_beside(common)});
+}
+
 /// What disagrees most is left out, as if it had never been believed, and what agrees again is taken in.
 void Tracker::examine_fit() {
-  Suspect worst = fit_.worst(filter_);
+  const Suspect worst = fit_.worst(filter_);
   if (worst != Suspect{} && filter_.state().time >= suspicion_from_) begin_grid(motion_suspicion);
-  if (grid_) return forget_fit();  // a position that motion begins to show is where it was supposed to be by chance
-  if (worst.joint >= 0)            // unless a sensor beside it that turned is likelier
-    if (const auto turned =
-            turned_beside(replay_.beginning(filter_), replay_.blocks(), static_cast<std::size_t>(worst.joint)))
-      worst = {.sensor = static_cast<int>(*turned)};
-  name({.suspect = worst});
+  if (grid_) return forget_places();  // a position that motion begins to show is where it was supposed to be by chance
+  name({.suspect = unless_turned_beside(worst)});
   const Suspect back = fit_.recovered(filter_, [this](std::size_t s) { return mounts_.may_return(s); });
   if (back.sensor >= 0) {
     does_not_fit_[static_cast<std::size_t>(back.sensor)] = is_late_[static_cast<std::size_t>(back.sensor)] = false;
@@ -407,7 +438,9 @@ void Tracker::process_block(const BlockMeasurement& block) {
   turns_.add(filter_, block.time, block.length);
   for (std::size_t s = 0; s < does_not_fit_.size(); ++s)
     if (does_not_fit_[s] && clocks_.is_late(s, lateness_share_later) && !mounts_.is_turned(s)) is_late_[s] = true;
-  if (!grid_) {
+  if (grid_) {
+    examine_places(block);
+  } else {
     replay_.add(block, filter_);
     if (base_begins_to_move(block))
       let_base_move();

@@ -15,6 +15,7 @@
 #include "kinfer/track/faults/fit_monitor.hpp"
 #include "kinfer/track/faults/initial_turns.hpp"
 #include "kinfer/track/faults/mount_watch.hpp"
+#include "kinfer/track/faults/place_fits.hpp"
 #include "kinfer/track/faults/replay.hpp"
 #include "kinfer/track/faults/sensor_health.hpp"
 #include "kinfer/track/faults/sensor_return.hpp"
@@ -65,6 +66,8 @@ class Tracker {
   void take_in(std::size_t sensor);
   void find_returned(const BlockMeasurement& block);
   void forget_fit();
+  void forget_places();
+  void use_sensor(std::size_t sensor, bool is_used);
   void replay(const std::function<void(ChainFilter&)>& prepare);
   bool base_begins_to_move(const BlockMeasurement& block);
   void let_base_move();
@@ -77,6 +80,8 @@ class Tracker {
   void name(const LikelyCause& cause);
   void examine_sudden_change(double time);
   void examine_fit();
+  Suspect unless_turned_beside(Suspect suspect) const;
+  void examine_places(const BlockMeasurement& block);
   void watch_misfit(double time);
   void examine_initial_turns();
   enum class TurnAtStart { none, open, corrected };
@@ -105,6 +110,7 @@ class Tracker {
   BaseWatch base_;
   HealthWatch health_;
   FitMonitor fit_;
+  PlaceFits place_fits_;  // while a grid is open
   ClockWatch clocks_;
   TurnWatch turns_;
   Replay replay_;

@@ -99,6 +99,13 @@ void FitMonitor::reset() {
   for (Agreement& joint : joints_) joint = {.was_named = joint.was_named};
 }
 
+void FitMonitor::reset_trusted(const ChainFilter& filter) {
+  for (std::size_t s = 0; s < sensors_.size(); ++s)
+    if (filter.uses_sensor(s)) sensors_[s] = {.was_named = sensors_[s].was_named};
+  for (std::size_t j = 0; j < joints_.size(); ++j)
+    if (!filter.doubts_joint(j)) joints_[j] = {.was_named = joints_[j].was_named};
+}
+
 void FitMonitor::add(const ChainFilter& filter, double time, double length) {
   const Innovations& innovations = filter.innovations();
   for (std::size_t s = 0; s < sensors_.size(); ++s)

@@ -54,6 +54,8 @@ class FitMonitor {
   void reset_sensor(std::size_t index);
   void reset_joint(std::size_t index);
   void reset();
+  /// But for sensors that are out of use and joints that are doubted.
+  void reset_trusted(const ChainFilter& filter);
   void set_sensor(std::size_t index, const Agreement& agreement) { sensors_[index] = agreement; }
   void set_joint(std::size_t index, const Agreement& agreement) { joints_[index] = agreement; }
 

@@ -30,6 +30,7 @@ StartGrid StartGrid::around(const ChainFilter& filter, std::size_t body, double 
     if (sd < max_position_sd) candidate.log_weight = -0.5 * square(turn / std::max(sd, 0.5 * step));
   }
   grid.candidates_.front().is_stated = true;
+  grid.number();
   grid.weigh();
   return grid;
 }
@@ -43,8 +44,13 @@ StartGrid StartGrid::along(const ChainFilter& filter, std::size_t body, const Po
     grid.candidates_.back().filter.place(grid.position_, guess.value - guess.sd + k * step, 0.5 * step);
   }
   grid.candidates_[static_cast<std::size_t>(places / 2)].is_stated = true;
+  grid.number();
   grid.weigh();
   return grid;
+}
+
+void StartGrid::number() {
+  for (std::size_t k = 0; k < candidates_.size(); ++k) candidates_[k].place = k;
 }
 
 void StartGrid::update(const BlockMeasurement& block, bool tells) {

@@ -16,6 +16,7 @@ class StartGrid {
     double log_weight = 0.0;
     double probability = 0.0;  ///< among all
     bool is_stated = false;
+    std::size_t place = 0;  ///< on the grid as it began
   };
 
   /// From `filter`, with the angle of the body's joint all around the circle. `sd` [rad]: of where it is in `filter`.
@@ -40,11 +41,13 @@ class StartGrid {
   /// To correct each filter by what does not tell them apart.
   std::span<Candidate> candidates() { return candidates_; }
   std::size_t body() const { return body_; }
+  JointMotion motion() const { return motion_; }
 
  private:
   StartGrid(const ChainFilter& filter, std::size_t body);
   double distance(const ChainFilter& a, const ChainFilter& b) const;
   double variance_about(const Candidate& candidate) const;
+  void number();
   void drop_unlikely();
   void merge();
   void weigh();
