@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "kinfer/calibrate/diagnosis/diagnose.hpp"
 #include "kinfer/calibrate/start/initial_frames.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
+#include "kinfer/estimate/poses/pose_uncertainty.hpp"
 #include "kinfer/geometry/statistics.hpp"
 #include "kinfer/words/calibration/calibration.hpp"
 #include "support/robots.hpp"
@@ -181,6 +183,31 @@ TEST(Calibrate, AnUnknownParameterNameListsTheKnownOnes) {
   ASSERT_FALSE(c.has_value());
   EXPECT_NE(c.error().what.find("\"zeta9\""), std::string::npos);
   EXPECT_NE(c.error().what.find("theta6"), std::string::npos);
+}
+
+TEST(Calibrate, RowsThatTheChosenModelExplainsAreNotNamedAsGrossErrors) {
+  Chain truth = with_random_errors(test::nominal_robot(), {}, Rng(3));
+  for (const std::size_t joint : {1U, 2U, 4U}) truth.joints[joint].torque_compliance = 2e-6;
+  PoseSet data = test::measured(truth, {.poses = 120, .instrument = {}}, 3);
+  Rng draws(4);
+  data.torques = MatrixXd::NullaryExpr(6, 120, [&](auto, auto) { return 10.0 * draws.normal(); });
+  const std::vector<int> loaded{7, 31, 55, 79, 103};
+  data.torques(Eigen::all, loaded).array() += 200.0;
+  const std::vector<Pose> tools = predicted_poses(truth, std::nullopt, data);
+  for (PointMeasurement& point : data.points) {
+    point.position = tools[static_cast<std::size_t>(point.row)].position;
+    for (double& coordinate : point.position) coordinate += tracker.sigma * draws.normal();
+  }
+  data.points[20].position.x() += 0.003;
+  const CalibrationTask task{test::nominal_robot(), {}, tracker, data};
+  const auto named = [](const std::vector<Finding>& findings) {
+    std::vector<int> rows;
+    for (const Finding& f : findings)
+      if (f.kind == FindingKind::gross_outliers) rows = f.rows;
+    return rows;
+  };
+  ASSERT_GT(named(diagnose(task).findings).size(), 1U);  // geometry alone
+  EXPECT_EQ(named(calibrate_robot(task, {}, Rng(1)).value().findings), (std::vector<int>{20}));
 }
 
 }  // namespace

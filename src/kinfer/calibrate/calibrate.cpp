@@ -14,6 +14,7 @@
 #include "kinfer/calibrate/conclusion/verdict.hpp"
 #include "kinfer/calibrate/diagnosis/diagnose.hpp"
 #include "kinfer/calibrate/diagnosis/diagnosis_state.hpp"
+#include "kinfer/calibrate/diagnosis/fit_residuals.hpp"
 #include "kinfer/calibrate/diagnosis/moving_points.hpp"
 #include "kinfer/calibrate/fit/population_choice.hpp"
 #include "kinfer/calibrate/prediction/model_error.hpp"
@@ -113,10 +114,10 @@ Result<Calibration> calibrate_robot(const CalibrationTask& given, const Calibrat
   Calibration calibration;
   calibration.nominal_model = {start.task.nominal, start.task.tolerances};
   calibration.unknown_robot = start.unknown_robot;
-  calibration.findings = diagnosis.findings;
   calibration.estimate = fit.estimate;
   calibration.estimate.outliers = with_data_rows(fit.estimate.outliers, plan.fitted);
   list_gross_errors(calibration.estimate, fit.gross_errors, excluded, plan);
+  calibration.findings = findings_left_by(diagnosis.findings, calibration.estimate.outliers);
   express_frames_relative_to_file(calibration.estimate.values, calibration.estimate.parameters, task.nominal,
                                   calibration.estimate.chain);
   calibration.model_selection = fit.model_selection;

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "kinfer/calibrate/diagnosis/thresholds.hpp"
 #include "kinfer/calibrate/fit/tolerance_fit.hpp"
@@ -127,6 +129,29 @@ std::vector<Outlier> find_unfitted_outliers(const Estimate& fit, const Calibrati
   return wrong;
 }
 
+/// What the outlier of the first row is off by, for the sentence.
+FactValues reasons_of(const Outlier& outlier) {
+  std::vector<std::string> kinds;
+  std::vector<double> residuals, sigmas;
+  for (const OutlierReason& reason : outlier.reasons) {
+    kinds.emplace_back(name(reason.kind));
+    residuals.push_back(reason.residual), sigmas.push_back(reason.sigmas);
+  }
+  return {{"kinds", kinds}, {"residuals", residuals}, {"sigmas", sigmas}};
+}
+
+/// Of one finding: none where no row is left.
+std::optional<Finding> left_by(Finding finding, const std::vector<Outlier>& outliers) {
+  const std::vector<int> named = std::move(finding.rows);
+  finding.rows.clear();
+  for (const Outlier& outlier : outliers) {
+    if (!std::ranges::binary_search(named, outlier.row)) continue;
+    if (finding.rows.empty()) finding.values = reasons_of(outlier);
+    finding.rows.push_back(outlier.row);
+  }
+  return finding.rows.empty() ? std::nullopt : std::optional{finding};
+}
+
 }  // namespace
 
 /// Rows that another finding already explains.
@@ -146,16 +171,10 @@ void report_gross_outliers(DiagnosisState& state, std::vector<Outlier> wrong) {
   if (rows.empty() || thresholds::max_outlier_part * static_cast<Eigen::Index>(rows.size()) > state.task.data.rows())
     return;
   const std::vector<int> list(rows.begin(), rows.end());
-  std::vector<std::string> kinds;
-  std::vector<double> residuals, sigmas;
-  for (const OutlierReason& reason : wrong.front().reasons) {
-    kinds.emplace_back(name(reason.kind));
-    residuals.push_back(reason.residual), sigmas.push_back(reason.sigmas);
-  }
   add_finding(state, {.kind = FindingKind::gross_outliers,
                       .severity = Severity::warning,
                       .rows = list,
-                      .values = {{"kinds", kinds}, {"residuals", residuals}, {"sigmas", sigmas}}});
+                      .values = reasons_of(wrong.front())});
 }
 
 void check_residuals(DiagnosisState& state) {
@@ -176,6 +195,18 @@ void check_residuals(DiagnosisState& state) {
   }
   check_drift(state, fit->chain, thin.data, row_of, wrong);
   report_gross_outliers(state, gross);
+}
+
+std::vector<Finding> findings_left_by(std::vector<Finding> findings, std::vector<Outlier> outliers) {
+  std::ranges::sort(outliers, {}, &Outlier::row);
+  std::vector<Finding> left;
+  for (Finding& finding : findings) {
+    if (finding.kind != FindingKind::gross_outliers)
+      left.push_back(std::move(finding));
+    else if (auto unexplained = left_by(std::move(finding), outliers))
+      left.push_back(*std::move(unexplained));
+  }
+  return left;
 }
 
 }  // namespace kinfer::calibrate
