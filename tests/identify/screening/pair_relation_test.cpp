@@ -77,6 +77,44 @@ TEST(PairRelation, AShiftedSensorChangesTheForceRelationAlone) {
   EXPECT_LT((moved - shift).cross(axis).norm(), 0.04) << "the point moves the other way in the sensor's frame";
 }
 
+/// The child rotates about two axes: about one of the parent's before the split, about its own after it, while the
+/// parent rests.
+RecordedMotion one_axis_after_the_other() {
+  constexpr double period = 0.01, rate = 0.3;
+  std::vector<FrameState> parent = test::freely_moving(), child = parent;
+  for (std::size_t row = 0; row < parent.size(); ++row) {
+    const bool is_after = row >= split_row;
+    if (is_after) parent[row] = {.rotation = parent[split_row - 1].rotation};
+    const double before = rate * period * static_cast<double>(std::min(row, split_row)),
+                 after = rate * period * static_cast<double>(row) - before;
+    child[row] = parent[row];
+    child[row].rotation = parent[row].rotation * rot_z(before) * rot_x(after);
+    child[row].angular_velocity += rate * (is_after ? child[row].rotation.col(0) : parent[row].rotation.col(2));
+  }
+  return test::recorded_motion({test::measured_segment("parent", parent), test::measured_segment("child", child)});
+}
+
+/// Least residual with another axis in the parent, before and after the split, over that of a child which is remounted.
+std::array<double, 2> part_across(const RecordedMotion& motion) {
+  const auto rows = test::all_rows(motion.rows());
+  const RelationRows child = relation_rows(motion.segments[1], rows, gyro_relation, relation_gravity),
+                     parent = relation_rows(motion.segments[0], rows, gyro_relation, relation_gravity);
+  const PairRelation relation(child, parent, gyro_relation);
+  const SplitFit constant = relation.fit(split_row, {}), own = relation.fit(split_row, {.first = true});
+  EXPECT_GT(constant.rms, 10.0 * own.rms);
+  return {relation.rms_across(own, split_row, 0) / own.rms, relation.rms_across(own, split_row, 1) / own.rms};
+}
+
+TEST(PairRelation, ANeighbourThatRestsDoesNotTellARemountingFromASecondAxis) {
+  const auto [before, after] = part_across(one_axis_after_the_other());
+  EXPECT_GT(before, 10.0);
+  EXPECT_LT(after, 1.5) << "any axis of a parent at rest leaves the same";
+  const auto [moving_before, moving_after] =
+      part_across(remounted_pair({exp_so3(Vec3(0.2, -0.3, 0.25)), Vec3::Zero()}));
+  EXPECT_GT(moving_before, 10.0);
+  EXPECT_GT(moving_after, 10.0);
+}
+
 TEST(RemountFinding, NamesTheSensorTheTimeAndThePartThatIsUsed) {
   const RecordedMotion motion = remounted_pair();
   Remount remount{.segment = 1, .begin = 2.0, .end = 3.5, .axis_rotation = 0.2, .point_shift = 0.1};

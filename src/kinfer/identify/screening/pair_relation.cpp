@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "kinfer/geometry/rotation.hpp"
 #include "kinfer/linalg/decompositions.hpp"
@@ -50,6 +51,19 @@ SplitFit PairRelation::fit(std::size_t split, SplitSensors split_sensors) const 
       if (found.rms < best.rms) best = found;
     }
   return best;
+}
+
+double PairRelation::rms_across(const SplitFit& fit, std::size_t split, std::size_t part) const {
+  constexpr int directions = 6;
+  const Vec3 one = fit.p[1][part].unitOrthogonal(), other = fit.p[1][part].cross(one);
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < directions; ++k) {
+    const double angle = std::numbers::pi * k / directions;
+    SplitParameters across = fit.p;
+    across[1][part] = std::cos(angle) * one + std::sin(angle) * other;
+    least = std::min(least, rms(across, split));
+  }
+  return least;
 }
 
 std::vector<Vec3> PairRelation::starts() const {

@@ -60,6 +60,10 @@ class PairRelation {
   /// Best parameters with a change of the given sensors at row `split`.
   SplitFit fit(std::size_t split, SplitSensors split_sensors) const;
 
+  /// The least residual rms with the second sensor's direction in that part of the fit across what it is: near the
+  /// fit's own where the part does not determine it.
+  double rms_across(const SplitFit& fit, std::size_t split, std::size_t part) const;
+
  private:
   std::vector<Vec3> starts() const;
   double residual(const SplitParameters& p, std::size_t row, std::size_t part) const;

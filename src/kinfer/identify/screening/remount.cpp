@@ -21,6 +21,15 @@ struct SplitEvidence {
   double change = 0.0;  // of the sensor's direction [rad] or point [m]
 };
 
+/// Whether both parts determine the neighbour's axis. Where it is at rest in one of them, its axis may have changed,
+/// too: a joint that rotates about two axes one after the other.
+bool neighbour_is_constant(const PairRelation& pair, const SplitFit& own, std::size_t split) {
+  const auto determines = [&](std::size_t part) {
+    return pair.rms_across(own, split, part) > broken_relation_factor * own.rms;
+  };
+  return determines(0) && determines(1);
+}
+
 SplitEvidence split_evidence(const PairRelation& pair, const MountRelation& relation, double constant_rms,
                              double usual_rms, std::size_t split) {
   const SplitFit own = pair.fit(split, {.first = true});
@@ -28,7 +37,8 @@ SplitEvidence split_evidence(const PairRelation& pair, const MountRelation& rela
   const double change =
       relation.is_direction ? std::asin(std::min(1.0, before.cross(after).norm())) : (before - after).norm();
   const bool changed = own.rms < holding_relation_factor * usual_rms &&
-                       constant_rms > broken_relation_factor * own.rms && change > relation.min_change;
+                       constant_rms > broken_relation_factor * own.rms && change > relation.min_change &&
+                       (!relation.is_direction || neighbour_is_constant(pair, own, split));
   return {split, changed, own.rms, change};
 }
 
