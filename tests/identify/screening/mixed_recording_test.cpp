@@ -89,6 +89,22 @@ TEST(MixedRecording, IdentificationNamesItInsteadOfARemounting) {
   EXPECT_EQ(std::ranges::count(refastened, FindingKind::mixed_recording), 0);
 }
 
+/// Sensor 2 of a six-axis arm is fastened otherwise from 20 s on.
+TEST(MixedRecording, NoJointOfTheSensorIsUsable) {
+  const MujocoWorld world = test::world_of("robot6", {}, 51);
+  const MachineMotion motion = with_remount(world.prescribe(test::drive_of(world.machine(), {}, 51), 100.0), 2, 2000,
+                                            {exp_so3(Vec3(0.2, 0.3, 0.1)), Vec3(0.06, 0.0, 0.08)});
+  const auto found = identify_machine(
+      simulate_recording(world.machine(), motion, *sensor_grade("industrial"), {}, Rng(51)), {}, Rng(1));
+  ASSERT_TRUE(found);
+  ASSERT_TRUE(std::ranges::count(found->findings, FindingKind::mixed_recording, &Finding::kind));
+  for (std::size_t j = 0; j < found->joints.size(); ++j) {
+    const JointEstimate& joint = found->joints[j];
+    const bool is_of_sensor = joint.parent == "ins2" || joint.child == "ins2";
+    EXPECT_EQ(found->verdicts[j].usability == JointUsability::do_not_use, is_of_sensor) << joint_name(joint);
+  }
+}
+
 TEST(MixedRecording, ShortOrUnorderablePartsAreNotJudged) {
   const InsRecording recording = excavator(5);
   EXPECT_FALSE(find_mixed_part(recording, recording.loggers.front().time.front() + 2.0, {}, 2));

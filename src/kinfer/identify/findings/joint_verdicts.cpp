@@ -26,6 +26,19 @@ void doubt_connection(const PairConnection& connection, Doubts& doubts) {
   if (has_changed(connection)) doubts.push_back({JointDoubtKind::changed, {}});
 }
 
+/// Of a sensor that is connected with the others in a part of the recording only, nothing tells which joint is the
+/// machine's.
+void doubt_mixed_sensors(const Identification& result, const JointEstimate& joint, Doubts& doubts) {
+  const bool is_mixed = std::ranges::any_of(result.findings, [&](const Finding& finding) {
+    if (finding.kind != FindingKind::mixed_recording) return false;
+    const std::string& sensor = finding.values.text("sensor");
+    return sensor == joint.parent || sensor == joint.child;
+  });
+  const bool is_said =
+      std::ranges::any_of(doubts, [](const JointDoubt& doubt) { return doubt.kind == JointDoubtKind::changed; });
+  if (is_mixed && !is_said) doubts.push_back({JointDoubtKind::changed, {}});
+}
+
 /// Distance of a point from the sensor's origin across the directions that the recording does not determine.
 double known_distance(Vec3 point, const std::vector<Vec3>& unobservable) {
   for (const Vec3& direction : unobservable) point -= direction * direction.dot(point);
@@ -138,6 +151,7 @@ JointVerdict verdict_on(const JointEstimate& joint, const Identification& result
     verdict.connection = connection->whole;
     doubt_connection(*connection, verdict.doubts);
   }
+  doubt_mixed_sensors(result, joint, verdict.doubts);
   if (joint.type == EstimatedJointType::rigid)
     verdict.doubts.push_back({JointDoubtKind::not_moved, {}});
   else
