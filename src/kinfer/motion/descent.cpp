@@ -26,6 +26,13 @@ double sum_of_transforms(const Chain& chain) {
   return length > 0.0 ? length : 1.0;
 }
 
+/// The part of the null-space step that leads to its zero, by how it has changed along `moved` (Barzilai and Borwein
+/// 1988; of one free dimension the secant step). At most 1: longer ones pass postures by.
+double secant_part(const VectorXd& moved, const VectorXd& step_before, const VectorXd& step) {
+  const double change = moved.dot(step_before - step), squares = moved.squaredNorm();
+  return change > squares ? squares / change : 1.0;
+}
+
 }  // namespace
 
 Descent::Descent(const Chain& chain, const Load& load, double position_tolerance, double angle_tolerance)
@@ -129,17 +136,6 @@ bool Descent::set_step(const ReachTask& task, const Eigen::Matrix<double, 6, 1>&
   }
   return true;
 }
-
-namespace {
-
-/// The part of the null-space step that leads to its zero, by how it has changed along `moved` (Barzilai and Borwein
-/// 1988; of one free dimension the secant step). At most 1: longer ones pass postures by.
-double secant_part(const VectorXd& moved, const VectorXd& step_before, const VectorXd& step) {
-  const double change = moved.dot(step_before - step), squares = moved.squaredNorm();
-  return change > squares ? squares / change : 1.0;
-}
-
-}  // namespace
 
 void Descent::approach(const ReachTask& task, const VectorXd& preferred, VectorXd& q) {
   unwind(q, preferred);

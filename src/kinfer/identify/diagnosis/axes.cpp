@@ -180,6 +180,12 @@ TriadColumns& odd_instrument(InsSensor& sensor, OddInstrument instrument) {
                                                       : sensor.field;
 }
 
+/// The axes of an instrument that a map of the gyroscope to the others' stands for.
+Mat3 axes_of(OddInstrument instrument, std::size_t map) {
+  const Mat3& axes = signed_permutations()[map];
+  return instrument == OddInstrument::gyroscope ? axes : Mat3(axes.transpose());
+}
+
 /// A sensor with the axes that it was mapped to by its own instruments.
 struct MappedSensor {
   std::size_t sensor = 0;
@@ -209,13 +215,11 @@ MappedCandidates candidates_of(const MappedSensor& mapped) {
   MappedCandidates result;
   const MapLikelihoods& maps = mapped.fault.maps;
   for (const std::size_t map : favoured_maps(maps)) {
-    const Mat3& axes = signed_permutations()[map];
-    const bool is_of_gyroscope = mapped.fault.instrument == OddInstrument::gyroscope;
     InsSensor sensor = mapped.before;
-    transform(odd_instrument(sensor, mapped.fault.instrument), 1.0, is_of_gyroscope ? axes : Mat3(axes.transpose()));
+    transform(odd_instrument(sensor, mapped.fault.instrument), 1.0, axes_of(mapped.fault.instrument, map));
     result.candidates.push_back({sensor, maps.of[map]});
     result.map.push_back(map);
-    if (axes.determinant() > 0.0) continue;
+    if (signed_permutations()[map].determinant() > 0.0) continue;
     transform(sensor.acceleration, -1.0, Mat3::Identity());
     result.candidates.push_back({sensor, maps.of[map]});
     result.map.push_back(map);
@@ -233,8 +237,7 @@ AxisFault judge_by_neighbours(const InsRecording& recording, const MappedSensor&
   const bool is_of_motion = mapped.fault.instrument != OddInstrument::magnetometer;
   if (map == 0 || choice.tree_gain < (is_of_motion ? min_sign_gain : -min_sign_gain)) return {};
   AxisFault fault = mapped.fault;
-  const Mat3& axes = signed_permutations()[map];
-  fault.axes = fault.instrument == OddInstrument::gyroscope ? axes : Mat3(axes.transpose());
+  fault.axes = axes_of(fault.instrument, map);
   fault.gain = choice.gain();
   fault.lead = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < tried.map.size(); ++c)
@@ -284,13 +287,11 @@ std::optional<WantedAxes> axes_wanted_by_neighbours(const InsRecording& recordin
     const AxesChoice choice = choose_axes(recording, s, all_maps(sensor), threads);
     if (choice.gain() < most) continue;
     most = choice.gain();
-    const Mat3& axes = signed_permutations()[choice.candidate];
-    const bool is_of_gyroscope =
-        axes.determinant() < 0.0 || field_for_gyroscope(sensor, recording.time(sensor), choice.candidate) <= 0.0;
-    const AxisFault fault{.instrument = is_of_gyroscope ? OddInstrument::gyroscope : OddInstrument::accelerometer,
-                          .axes = is_of_gyroscope ? axes : Mat3(axes.transpose()),
-                          .gain = choice.gain(),
-                          .lead = choice.lead()};
+    const bool is_of_gyroscope = signed_permutations()[choice.candidate].determinant() < 0.0 ||
+                                 field_for_gyroscope(sensor, recording.time(sensor), choice.candidate) <= 0.0;
+    const OddInstrument odd = is_of_gyroscope ? OddInstrument::gyroscope : OddInstrument::accelerometer;
+    const AxisFault fault{
+        .instrument = odd, .axes = axes_of(odd, choice.candidate), .gain = choice.gain(), .lead = choice.lead()};
     wanted = {sensor.name, fault.axes, is_of_gyroscope, axes_finding(sensor, fault)};
   }
   return wanted && wanted->finding.applied ? wanted : std::nullopt;

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 #include <vector>
-#include "kinfer/base/result.hpp"
 
+#include "kinfer/base/result.hpp"
 #include "kinfer/identify/diagnosis/mended_log.hpp"
 
 namespace kinfer::identify {

@@ -191,6 +191,14 @@ double log_likelihood(double variance, double error_variance) {
   return -0.5 * independent_samples * std::log(variance + error_variance);
 }
 
+/// Largest value at a local maximum other than the largest one and the one of no lag; minus infinity without any.
+double rival_maximum(std::span<const double> of, std::size_t best, std::size_t none) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t s = 1; s + 1 < of.size(); ++s)
+    if (s != best && s != none && of[s] >= of[s - 1] && of[s] >= of[s + 1]) most = std::max(most, of[s]);
+  return most;
+}
+
 }  // namespace
 
 const std::vector<Mat3>& signed_permutations() {
@@ -265,18 +273,6 @@ double factor_likelihood(const SectionSignals& signals, double factor) {
   }
   return sum;
 }
-
-namespace {
-
-/// Largest value at a local maximum other than the largest one and the one of no lag; minus infinity without any.
-double rival_maximum(std::span<const double> of, std::size_t best, std::size_t none) {
-  double most = -std::numeric_limits<double>::infinity();
-  for (std::size_t s = 1; s + 1 < of.size(); ++s)
-    if (s != best && s != none && of[s] >= of[s - 1] && of[s] >= of[s + 1]) most = std::max(most, of[s]);
-  return most;
-}
-
-}  // namespace
 
 InstrumentLag instrument_lag(const SectionSignals& signals, const Mat3& map) {
   // The free g takes up what scale errors and misalignments do to the direction's mean: they act on its change alone.

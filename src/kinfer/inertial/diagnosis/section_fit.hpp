@@ -59,8 +59,8 @@ double factor_likelihood(const SectionSignals& signals, double factor);
 struct InstrumentLag {
   double lag = 0.0;   ///< [s] of the direction behind the gyroscope
   double gain = 0.0;  ///< [nats] log likelihood of this lag over none
-  double rival_gain =
-      0.0;  ///< [nats] that of the best other lag: vibration at rest fits at one lag in each half of its period
+  /// [nats] That of the best other lag: vibration at rest fits at one lag in each half of its period.
+  double rival_gain = 0.0;
   double half_gain = 0.0;  ///< [nats] the smaller one of that of either half of the sections
   double sd = 0.0;         ///< [s] from the curvature of the likelihood; 0: unknown
 };

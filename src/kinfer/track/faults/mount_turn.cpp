@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kinfer/geometry/rotation.hpp"
+#include "kinfer/measurement/pose_set.hpp"
 
 namespace kinfer::track {
 namespace {
@@ -36,19 +37,11 @@ MountTurn mount_turn(const ChainFilter& filter, std::size_t sensor) {
           .covariance = mean * filter.covariance().block<18, 18>(scales, scales) * mean.transpose()};
 }
 
-double largest_eigenvalue(Mat3 m) {
-  const double trace = m.trace();
-  if (!(trace > 0.0)) return 0.0;
-  m /= trace;
-  for (int i = 0; i < 4; ++i) m = Mat3(m * m);
-  return trace * std::pow(m.trace(), 1.0 / 16.0);
-}
-
 SensorTurn size_of(const MountTurn& turn) {
   const Vec3 direction = turn.mean.normalized();
   return {.angle = turn.mean.norm(),
           .sd = std::sqrt(direction.dot(turn.covariance * direction)),
-          .hidden_sd = std::sqrt(largest_eigenvalue(turn.covariance))};
+          .hidden_sd = principal_deviations(turn.covariance).sd.maxCoeff()};
 }
 
 double log_odds_of(const MountTurn& supposed, const MountTurn& before, const MountTurn& after) {

@@ -17,9 +17,6 @@ struct MountTurn {
 /// The mean of both antisymmetric parts.
 MountTurn mount_turn(const ChainFilter& filter, std::size_t sensor);
 
-/// The largest of the eigenvalues of a matrix that has no negative ones: λ = (tr m¹⁶)^(1/16), by 7 % at most too large.
-double largest_eigenvalue(Mat3 m);
-
 /// Its angle, with the standard deviation along its direction.
 SensorTurn size_of(const MountTurn& turn);
 
