@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinfer/base/expect.hpp"
 #include "kinfer/kinematics/poses/harmonic_sum.hpp"
 
 namespace kinfer::calibrate {
@@ -71,6 +72,17 @@ Chain attach(Chain plain, const std::vector<JointSeries>& series) {
     harmonics.insert(harmonics.begin(), list.begin(), list.end());
   }
   return plain;
+}
+
+Chain with_series_moved(const Chain& chain, const VectorXd& step) {
+  DetachedSeries apart = detach(chain, {});
+  Eigen::Index begin = 0;
+  for (JointSeries& series : apart.series) {
+    series.coefficients += step.segment(begin, series.resolution.knots);
+    begin += series.resolution.knots;
+  }
+  KINFER_EXPECT(begin == step.size(), "{} steps of {} coefficients", step.size(), begin);
+  return attach(apart.plain, apart.series);
 }
 
 PoseSet with_moved_joints(PoseSet rows, const Chain& plain, const std::vector<JointSeries>& series) {

@@ -43,6 +43,9 @@ struct DetachedSeries {
 DetachedSeries detach(const Chain& chain, const ParameterSet& set);
 Chain attach(Chain plain, const std::vector<JointSeries>& series);
 
+/// The chain with its series moved by steps of their coefficients, all knots of one after those of the one before.
+Chain with_series_moved(const Chain& chain, const VectorXd& step);
+
 /// The joints moved by their series, which a chain without them then need not have: what other terms make of the small
 /// difference is below a tenth of a micrometre.
 PoseSet with_moved_joints(PoseSet rows, const Chain& plain, const std::vector<JointSeries>& series);

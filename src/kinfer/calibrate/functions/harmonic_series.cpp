@@ -128,7 +128,7 @@ Estimate fit_with_series(const Chain& start, const ParameterSet& set, const Pose
   const bool is_near = options.initial_guess == InitialGuess::near_optimum;  // only noise level and inliers are needed
   Estimate fit = fit_others(Detail::numbers_only, options.initial_guess, is_near ? 1 : options.max_iterations);
   model.plain = fit.chain;
-  MatrixXd covariance = fit.covariance;
+  MatrixXd covariance = fit.covariance, response;
   for (int round = 0; round < thresholds::series_rounds; ++round) {
     const std::vector<bool> inliers = inliers_of(fit, rows);
     const PoseSet kept_moved = keep_measurements(moved, inliers);
@@ -139,10 +139,10 @@ Estimate fit_with_series(const Chain& start, const ParameterSet& set, const Pose
     PoseSet& kept = means.rows;
     kept.joints = rows.joints(Eigen::all, means.of_row);
     const SeriesProblem problem(model, {kept, weights, options.threads});
-    const auto [step, of_parameters] = problem.step();
-    const double gain = problem.relative_gain(step);
-    covariance = of_parameters;
-    model = problem.moved_by(step);
+    SeriesProblem::Step step = problem.step();
+    const double gain = problem.relative_gain(step.step);
+    covariance = std::move(step.covariance), response = std::move(step.response);
+    model = problem.moved_by(step.step);
     if (is_near && gain <= thresholds::settled_noise)
       break;  // one linear step from the optimum of nearly the same rows
     moved = with_moved_joints(rows, model.plain, model.series);
@@ -157,6 +157,7 @@ Estimate fit_with_series(const Chain& start, const ParameterSet& set, const Pose
     model.plain = fit.chain;
   }
   fit.chain = attach(model.plain, model.series);
+  fit.series_response = response;
   return with_covariance(std::move(fit), set, covariance, covariance.diagonal());
 }
 

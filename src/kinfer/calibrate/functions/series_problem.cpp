@@ -107,10 +107,25 @@ SeriesProblem::Step SeriesProblem::step() const {
   const auto lower = root.triangularView<Eigen::Lower>();
   const MatrixXd across = lower.solve(matrix.bottomLeftCorner(n, p));
   const VectorXd own = lower.solve(gradient.tail(n));
-  Step found{VectorXd(p + n), invert_but_for_rounding(matrix.topLeftCorner(p, p) - across.transpose() * across)};
+  Step found{
+      VectorXd(p + n), invert_but_for_rounding(matrix.topLeftCorner(p, p) - across.transpose() * across), {}};
   found.step.head(p) = -(found.covariance * (gradient.head(p) - across.transpose() * own));
   found.step.tail(n) = -lower.transpose().solve(own + across * found.step.head(p));
+  found.response = of_all_knots(-lower.transpose().solve(across));
   return found;
+}
+
+MatrixXd SeriesProblem::of_all_knots(const MatrixXd& of_unknowns) const {
+  Index knots = 0;
+  for (const SeriesBlock& block : system_.blocks) knots += block.knots;
+  MatrixXd all = MatrixXd::Zero(knots, of_unknowns.cols());
+  Index row = 0;
+  for (const SeriesBlock& block : system_.blocks)
+    for (const Index unknown : block.unknown) {
+      if (unknown >= 0) all.row(row) = of_unknowns.row(unknown - parameters_);
+      ++row;
+    }
+  return all;
 }
 
 double SeriesProblem::relative_gain(const VectorXd& step) const {

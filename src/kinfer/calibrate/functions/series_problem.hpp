@@ -34,6 +34,7 @@ class SeriesProblem {
   struct Step {
     VectorXd step;        ///< as in a solution
     MatrixXd covariance;  ///< of the parameters alone, the series being unknown
+    MatrixXd response;    ///< derivatives of all knots of the series by the parameters, the series at their best
   };
 
   /// The solution at noise 1 by elimination of the series, whose own covariance takes a multiple of the time.
@@ -51,6 +52,8 @@ class SeriesProblem {
   /// Of the knots that rows reach.
   std::vector<double> present_variances() const;
   Solution solve(double noise) const;
+  /// One row a knot from one row an unknown coefficient; zero where no row reaches the knot.
+  MatrixXd of_all_knots(const MatrixXd& of_unknowns) const;
   VectorXd coefficients(const Solution& s, std::size_t series) const;
   /// The step that changes nothing: a step goes to coefficients, not by them.
   VectorXd present() const;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kinfer/base/parallel.hpp"
+#include "kinfer/calibrate/functions/chain_series.hpp"
 #include "kinfer/estimate/poses/pose_residuals.hpp"
 #include "kinfer/linalg/decompositions.hpp"
 
@@ -12,21 +13,22 @@ namespace kinfer::calibrate {
 Chain chain_without(const Estimate& fit, std::span<const int> removed) {
   const std::vector<const Parameter*> free = fit.parameters.free();
   const std::vector<int> own(removed.begin(), removed.end());
-  VectorXd x(static_cast<Eigen::Index>(free.size())), offset(static_cast<Eigen::Index>(own.size()));
-  for (std::size_t k = 0; k < free.size(); ++k) x[static_cast<Eigen::Index>(k)] = fit.values[k].value;
+  VectorXd fitted(static_cast<Eigen::Index>(free.size())), offset(static_cast<Eigen::Index>(own.size()));
+  for (std::size_t k = 0; k < free.size(); ++k) fitted[static_cast<Eigen::Index>(k)] = fit.values[k].value;
   // Scaled to unit prior variance before the inversion, for accuracy.
   VectorXd scale(offset.size());
   for (std::size_t k = 0; k < own.size(); ++k) {
-    offset[static_cast<Eigen::Index>(k)] = x[own[k]] - free[own[k]]->nominal;
+    offset[static_cast<Eigen::Index>(k)] = fitted[own[k]] - free[own[k]]->nominal;
     scale[static_cast<Eigen::Index>(k)] = free[own[k]]->prior_sd;
   }
   const MatrixXd block = fit.covariance(own, own);
   const MatrixXd inverse =
       invert_but_for_rounding(scale.cwiseInverse().asDiagonal() * block * scale.cwiseInverse().asDiagonal());
   const VectorXd pull = scale.cwiseInverse().cwiseProduct(inverse * scale.cwiseInverse().cwiseProduct(offset));
-  x -= fit.covariance(Eigen::all, own) * pull;
+  VectorXd x = fitted - fit.covariance(Eigen::all, own) * pull;
   for (const int k : own) x[k] = free[k]->nominal;
-  return unpack(fit.parameters, fit.chain, x);
+  const Chain without = unpack(fit.parameters, fit.chain, x);
+  return fit.series_response.size() > 0 ? with_series_moved(without, fit.series_response * (x - fitted)) : without;
 }
 
 HoldoutErrors errors_without(const HoldoutErrors& fits, const std::vector<CandidateParameter>& terms,

@@ -11,7 +11,8 @@
 namespace kinfer::calibrate {
 
 /// The chain of a fit whose free parameters at `removed` are held at their prior means. With the posterior N(x, C), the
-/// others move to x − C_{·r} C_rr⁻¹ (x_r − mean_r): the fit without them, to first order.
+/// others move to x − C_{·r} C_rr⁻¹ (x_r − mean_r), series of the chain by their response to that: the fit without
+/// them, to first order.
 Chain chain_without(const Estimate& fit, std::span<const int> removed);
 
 /// Held-out errors of the models whose fits are `fits.split_fits`, without the parameters that `remove` accepts.

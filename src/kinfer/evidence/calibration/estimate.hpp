@@ -80,6 +80,9 @@ struct Estimate {
   ParameterSet parameters;
   std::vector<ParameterEstimate> values;  ///< of the free parameters, in order
   MatrixXd covariance;                    ///< of the free parameters, SI, inflated where the residuals exceed the noise
+  /// Derivatives of the series' coefficients, all knots of one series after those of the one before, by the free
+  /// parameters where every series is at its best beside them; empty of a chain without series.
+  MatrixXd series_response;
   Identifiability identifiability;
   std::optional<double>
       chi2_per_n;  ///< of the inlier measurements with the instrument's noise (1 is good); none: instrument unknown
